@@ -1,0 +1,1 @@
+"""What every room needs: errors, names, configuration, random streams, clock, frames, compilation."""

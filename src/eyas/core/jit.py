@@ -1,0 +1,65 @@
+"""How kernels are compiled: one set of numba settings, cached on disk by a hash of the sources.
+
+numba's own cache notices a change of the function's file, not of a function it calls in another
+file. So the cache folder is named after a hash of every source file that holds kernels.
+"""
+
+import functools
+import hashlib
+import os
+import threading
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import platformdirs
+
+__all__ = ["cache_folder", "kernel", "parallel_kernel"]
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def _source_hash() -> str:
+    digest = hashlib.sha256()
+    for path in sorted(Path(__file__).parent.parent.rglob("*.py")):
+        text = path.read_bytes()
+        if b"kernel" in text:
+            digest.update(text)
+    return digest.hexdigest()[:16]
+
+
+def cache_folder() -> Path:
+    """Return the folder where compiled kernels of exactly these sources are kept."""
+    return Path(platformdirs.user_cache_dir("eyas")) / "kernels" / _source_hash()
+
+
+os.environ.setdefault("NUMBA_CACHE_DIR", str(cache_folder()))
+# One layer on every system that is safe in forked and spawned workers.
+os.environ.setdefault("NUMBA_THREADING_LAYER", "workqueue")
+
+import numba  # noqa: E402  # reads the settings above when imported
+
+
+def kernel(function: Function) -> Function:
+    """Compile a scalar function without allocation, so that CUDA kernels can call it too."""
+    compiled: Function = numba.njit(cache=True, error_model="numpy", fastmath=False)(function)
+    return compiled
+
+
+_ONE_AT_A_TIME = threading.Lock()
+
+
+def parallel_kernel(function: Function) -> Function:
+    """Compile a loop over trackers, views or bands (`numba.prange`).
+
+    numba's workqueue layer, the one that survives forking, must not be entered from two Python
+    threads at once, so calls wait for each other.
+    """
+    compiled = numba.njit(cache=True, error_model="numpy", fastmath=False, parallel=True)(function)
+
+    @functools.wraps(function)
+    def guarded(*args: Any) -> Any:  # noqa: ANN401  # same signature as the function
+        with _ONE_AT_A_TIME:
+            return compiled(*args)
+
+    return guarded  # type: ignore[return-value]

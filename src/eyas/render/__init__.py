@@ -1,0 +1,1 @@
+"""The small-image renderer: textures, baking, culling, rasterising, shading."""

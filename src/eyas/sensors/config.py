@@ -1,0 +1,22 @@
+"""Settings of the sensors."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from eyas.core.config import Config
+
+__all__ = ["CameraConfig"]
+
+
+class CameraConfig(Config):
+    """A pinhole camera without distortion."""
+
+    width: Annotated[int, Field(ge=8, le=8192)] = 320
+    """[pixels]"""
+    height: Annotated[int, Field(ge=8, le=8192)] = 240
+    """[pixels]"""
+    field_of_view: Annotated[float, Field(gt=0.05, lt=2.8)] = 0.7854
+    """Horizontal [rad]."""
+    samples: Literal[1, 4] = 1
+    """Samples for each pixel."""

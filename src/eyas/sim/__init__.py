@@ -1,0 +1,1 @@
+"""The simulation: joins the rooms, owns the clock and the step."""

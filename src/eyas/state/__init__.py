@@ -1,0 +1,1 @@
+"""Data only: dataclasses of arrays that the rooms hand to each other."""

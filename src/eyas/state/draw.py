@@ -1,0 +1,97 @@
+"""What the renderer is asked for, and what it gives."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.state.mesh import Mesh
+
+__all__ = ["DrawList", "PartLibrary", "Picture", "Views"]
+
+
+@dataclass(slots=True)
+class PartLibrary:
+    """The rigid parts that moving things are made of. K parts, each with its levels of detail."""
+
+    parts: tuple[tuple[Mesh, ...], ...]
+    """For each part its meshes, the finest first, in the part's own frame."""
+
+
+@dataclass(slots=True)
+class DrawList:
+    """Moving parts in each of W worlds, I slots a world."""
+
+    part: NDArray[np.int32]
+    """Index into the part library, -1 for an empty slot, shape (W, I)."""
+    pose: NDArray[np.float32]
+    """Part to world: rotation and translation [m], shape (W, I, 3, 4)."""
+    colour: NDArray[np.float32]
+    """Body colour, sRGB 0 to 1, shape (W, I, 3)."""
+    object_id: NDArray[np.int32]
+    """Object id, `ACTOR_OBJECT + actor`, shape (W, I)."""
+
+    @classmethod
+    def create(cls, worlds: int, slots: int) -> "DrawList":
+        """Return a list with only empty slots."""
+        return cls(
+            part=np.full((worlds, slots), -1, np.int32),
+            pose=np.zeros((worlds, slots, 3, 4), np.float32),
+            colour=np.ones((worlds, slots, 3), np.float32),
+            object_id=np.full((worlds, slots), -1, np.int32),
+        )
+
+
+@dataclass(slots=True)
+class Views:
+    """V cameras to draw."""
+
+    position: NDArray[np.float64]
+    """Optical centres, world frame [m], shape (V, 3)."""
+    rotation: NDArray[np.float64]
+    """Camera to world; columns forward, left, up, shape (V, 3, 3)."""
+    world: NDArray[np.int32]
+    """Which world's moving parts each view sees, shape (V,)."""
+    subject: NDArray[np.int32]
+    """Object id of the thing each view is about (its box is measured), or -1, shape (V,)."""
+    field_of_view: float
+    """Horizontal [rad]."""
+
+
+@dataclass(slots=True)
+class Picture:
+    """What V views show. Arrays that are None are not wanted and cost nothing."""
+
+    rgb: NDArray[np.uint8] | None
+    """sRGB, row 0 on top, shape (V, H, W, 3)."""
+    depth: NDArray[np.float32] | None
+    """Distance along the optical axis [m], infinity for sky, shape (V, H, W)."""
+    object_id: NDArray[np.int32] | None
+    """Object of each pixel, `SKY_OBJECT` for sky, shape (V, H, W)."""
+    subject_box: NDArray[np.int32] | None
+    """Pixels the subject covers, seen or hidden: left, top, right, bottom, the last two exclusive,
+    all 0 where it is outside the picture, shape (V, 4)."""
+    subject_pixels: NDArray[np.int32] | None
+    """Pixels of the subject that are seen, and that it covers seen or hidden, shape (V, 2)."""
+
+    @classmethod
+    def create(  # every output is asked for by name
+        cls,
+        views: int,
+        height: int,
+        width: int,
+        *,
+        rgb: bool = True,
+        depth: bool = False,
+        object_id: bool = False,
+        subject: bool = False,
+    ) -> "Picture":
+        """Return buffers for the outputs that are asked for."""
+        plane = (views, height, width)
+        return cls(
+            rgb=np.zeros((*plane, 3), np.uint8) if rgb else None,
+            depth=np.zeros(plane, np.float32) if depth else None,
+            object_id=np.zeros(plane, np.int32) if object_id else None,
+            subject_box=np.zeros((views, 4), np.int32) if subject else None,
+            subject_pixels=np.zeros((views, 2), np.int32) if subject else None,
+        )

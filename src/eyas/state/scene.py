@@ -1,0 +1,132 @@
+"""The world that stands still, as plain arrays, and the light that falls on it."""
+
+from dataclasses import dataclass
+from enum import IntEnum
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.state.mesh import Mesh
+from eyas.state.roads import RoadNetwork
+
+__all__ = [
+    "ACTOR_OBJECT",
+    "SKY_OBJECT",
+    "Colliders",
+    "Fixtures",
+    "Lighting",
+    "ObjectClass",
+    "Scene",
+]
+
+SKY_OBJECT = -1
+"""Object id of a pixel that shows nothing."""
+
+ACTOR_OBJECT = 1 << 16
+"""Object id of actor 0; actor a has `ACTOR_OBJECT + a`. Smaller ids are the scene's objects."""
+
+
+class ObjectClass(IntEnum):
+    """What an object of the scene is."""
+
+    GROUND = 0
+    ROAD = 1
+    MARKING = 2
+    PAVEMENT = 3
+    BUILDING = 4
+    TREE = 5
+    STRUCTURE = 6
+    POLE = 7
+    WATER = 8
+
+
+@dataclass(slots=True)
+class Fixtures:
+    """Copies of a few meshes that stand in the world (trees, poles). F copies."""
+
+    levels: tuple[tuple[Mesh, ...], ...]
+    """For each prototype its meshes, the finest first."""
+    prototype: NDArray[np.int32]
+    """Which prototype, shape (F,)."""
+    pose: NDArray[np.float32]
+    """Rotation times scale, and translation [m], shape (F, 3, 4)."""
+    object_id: NDArray[np.int32]
+    """Object of the scene, shape (F,)."""
+
+
+@dataclass(slots=True)
+class Colliders:
+    """Solid shapes for rays and collisions. B prisms with K corners in all, C capped cylinders."""
+
+    prism_points: NDArray[np.float64]
+    """Corners, counter-clockwise [m], shape (K, 2)."""
+    prism_first: NDArray[np.int32]
+    """Start of each prism's corners, shape (B + 1,)."""
+    prism_bottom: NDArray[np.float64]
+    """z [m], shape (B,)."""
+    prism_top: NDArray[np.float64]
+    """z [m], shape (B,)."""
+    prism_object: NDArray[np.int32]
+    """Object of the scene, shape (B,)."""
+    cylinder_centre: NDArray[np.float64]
+    """[m], shape (C, 2)."""
+    cylinder_radius: NDArray[np.float64]
+    """[m], shape (C,)."""
+    cylinder_bottom: NDArray[np.float64]
+    """z [m], shape (C,)."""
+    cylinder_top: NDArray[np.float64]
+    """z [m], shape (C,)."""
+    cylinder_object: NDArray[np.int32]
+    """Object of the scene, shape (C,)."""
+
+
+@dataclass(slots=True)
+class Scene:
+    """Everything of a map that stands still. T static triangles, O objects."""
+
+    name: str
+    """Name of the map."""
+    seed: int
+    """Seed of the map."""
+    size: tuple[float, float]
+    """Extent of the floor, centred on the origin [m]."""
+    ground_height: float
+    """z of the floor, the plane that the reward uses [m]."""
+    static: Mesh
+    """World-space triangles."""
+    static_object: NDArray[np.int32]
+    """Object of each static triangle, shape (T,)."""
+    object_class: NDArray[np.int32]
+    """`ObjectClass` of each object, shape (O,); the index is the object's id."""
+    fixtures: Fixtures
+    """Trees and other repeated things."""
+    colliders: Colliders
+    """Solid shapes."""
+    network: RoadNetwork
+    """The roads traffic drives on."""
+
+
+@dataclass(frozen=True, slots=True)
+class Lighting:
+    """Light and air of a weather. Colours are linear RGB radiance, white paper in sun about 1."""
+
+    sun_direction: tuple[float, float, float]
+    """Unit vector towards the sun."""
+    sun_colour: tuple[float, float, float]
+    """Sunlight on a surface that faces the sun."""
+    zenith_colour: tuple[float, float, float]
+    """Sky overhead."""
+    horizon_colour: tuple[float, float, float]
+    """Sky at the horizon."""
+    ambient_up: tuple[float, float, float]
+    """Sky light on a surface that faces up."""
+    ambient_down: tuple[float, float, float]
+    """Bounced light on a surface that faces down."""
+    fog_colour: tuple[float, float, float]
+    """What distance turns into."""
+    fog_density: float
+    """One over the visibility range [1/m]; 0 for clear air."""
+    fog_power: int = 1
+    """1: exponential, 2: exponential squared."""
+    exposure: float = 1.0
+    """Factor on everything before it becomes a picture."""

@@ -1,0 +1,1 @@
+"""What may be followed: the catalogue of vehicles, their shapes and sizes."""

@@ -1,0 +1,1 @@
+"""What follows: the drone and its gimbal."""

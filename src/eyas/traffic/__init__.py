@@ -1,0 +1,1 @@
+"""Who drives where: road networks through SUMO, recording and replay."""

@@ -1,0 +1,74 @@
+"""Settings of the traffic."""
+
+from enum import StrEnum
+from typing import Annotated
+
+from pydantic import Field, model_validator
+
+from eyas.core.config import Config
+
+__all__ = ["Demand", "TrafficConfig", "VehicleType"]
+
+Unit = Annotated[float, Field(ge=0, le=1)]
+
+
+class VehicleType(StrEnum):
+    """SUMO vehicle classes that drive."""
+
+    PASSENGER = "passenger"
+    BUS = "bus"
+    TRUCK = "truck"
+    TRAILER = "trailer"
+    MOTORCYCLE = "motorcycle"
+
+
+class Demand(StrEnum):
+    """Who enters and leaves."""
+
+    KEEP_ALIVE = "keep_alive"
+    """All vehicles are there from the start and drive on for ever."""
+    RESPAWN = "respawn"
+    """Groups of vehicles enter at intervals, drive a route and leave, as in the original."""
+
+
+class TrafficConfig(Config):
+    """What SUMO is asked to drive."""
+
+    demand: Demand = Demand.KEEP_ALIVE
+    """Who enters and leaves."""
+    vehicle_type: VehicleType = VehicleType.PASSENGER
+    """Class of all vehicles."""
+    max_vehicles: Annotated[int, Field(ge=1, le=1000)] = 40
+    """Most vehicles at a time."""
+    max_speed: Annotated[float, Field(gt=0, le=100)] = 20.0
+    """Fastest that a vehicle can drive [m/s]; the roads' limit holds too."""
+    max_acceleration: Annotated[float, Field(gt=0, le=100)] = 25.0
+    """[m/s^2]"""
+    max_deceleration: Annotated[float, Field(gt=0, le=100)] = 25.0
+    """[m/s^2]"""
+    group_size: Annotated[int, Field(ge=1, le=1000)] | None = None
+    """Vehicles that enter together (respawn); None: three for each tracker."""
+    group_interval: Annotated[float, Field(gt=0, le=3600)] = 52.0
+    """Time between groups (respawn) [s]."""
+    route_length: tuple[Annotated[float, Field(ge=0)], Annotated[float, Field(gt=0)]] = (
+        500.0,
+        7000.0,
+    )
+    """Shortest and longest route (respawn) [m]."""
+    route_count: Annotated[int, Field(ge=1, le=10_000_000)] = 100_000
+    """Most routes that are drawn (respawn)."""
+    update_routes: bool = True
+    """Whether a fresh recording may be made when none fits; the original's `rou_update`."""
+    seed: Annotated[int, Field(ge=0, lt=2**31)] | None = None
+    """Seed of SUMO and of the routes; None: the seed of the shipped recording."""
+    colour: tuple[Unit, Unit, Unit] | None = None
+    """Body colour of every car, RGB 0 to 1; None: drawn for each."""
+    recording: str | None = None
+    """Path of a recording to replay; None: the shipped or cached one that fits."""
+
+    @model_validator(mode="after")
+    def _ordered(self) -> "TrafficConfig":
+        low, high = self.route_length
+        if low >= high:
+            raise ValueError(f"route_length: the shortest ({low:g} m) must be below the longest ({high:g} m)")
+        return self

@@ -1,0 +1,1 @@
+"""What does not move: roads, buildings, trees, the maps and the weather."""

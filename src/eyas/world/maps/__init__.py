@@ -1,0 +1,1 @@
+"""The maps, one recipe a file."""

@@ -1,0 +1,47 @@
+"""The materials of the maps: names of the textures, and how many metres one repeat covers."""
+
+from eyas.state.mesh import Material, Surface
+
+__all__ = ["FACADES", "TEXTURES", "facade", "material"]
+
+FACADES = (
+    "facade_concrete",
+    "facade_brick",
+    "facade_plaster",
+    "facade_stone",
+    "facade_office",
+    "facade_glass",
+    "facade_highrise",
+    "facade_old",
+    "facade_bands",
+    "facade_red_white",
+)
+"""Walls with windows: one repeat is four floors of 3 m high and four bays of 3 m wide."""
+
+TEXTURES: dict[str, float] = {
+    "plain": 1.0,
+    "asphalt": 8.0,
+    "asphalt_light": 8.0,
+    "paving": 4.0,
+    "lawn": 12.0,
+    "soil": 8.0,
+    "concrete": 6.0,
+    "bark": 2.0,
+    "leaves": 3.0,
+    "roof_tiles": 4.0,
+    "bitumen": 8.0,
+    "brick": 4.0,
+    "stone": 4.0,
+    **dict.fromkeys(FACADES, 12.0),
+}
+"""Metres that one repeat of each texture covers."""
+
+
+def material(texture: str, tint: tuple[float, float, float] = (1.0, 1.0, 1.0)) -> Material:
+    """Return a matt material with a texture."""
+    return Material(texture=texture, tint=tint)
+
+
+def facade(kind: str, tint: tuple[float, float, float] = (1.0, 1.0, 1.0)) -> Material:
+    """Return a wall with windows; `kind` is one of `FACADES`."""
+    return Material(texture=kind, tint=tint, surface=Surface.FACADE)

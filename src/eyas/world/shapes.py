@@ -1,0 +1,197 @@
+"""Meshes of simple shapes. Angles in radians, lengths in metres, z up."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import shapely
+from numpy.typing import ArrayLike, NDArray
+
+from eyas.state.mesh import Material, Mesh
+
+__all__ = ["box", "cylinder", "flat_polygon", "quads", "sphere", "walls"]
+
+
+def quads(corners: ArrayLike, uvs: ArrayLike, material: Material) -> Mesh:
+    """Return flat-shaded quadrilaterals.
+
+    Args:
+        corners: Counter-clockwise seen from outside [m], shape (Q, 4, 3).
+        uvs: Texture coordinates in tiles, shape (Q, 4, 2).
+        material: Of all of them.
+    """
+    points = np.asarray(corners, np.float64).reshape(-1, 4, 3)
+    normals = np.cross(points[:, 2] - points[:, 0], points[:, 3] - points[:, 1])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+    first = 4 * np.arange(len(points), dtype=np.int32)[:, None]
+    triangles = np.concatenate([first + [0, 1, 2], first + [0, 2, 3]], axis=1).reshape(-1, 3)
+    return _mesh(
+        points.reshape(-1, 3),
+        np.repeat(normals, 4, axis=0),
+        np.asarray(uvs).reshape(-1, 2),
+        triangles,
+        material,
+    )
+
+
+def box(size: Sequence[float], centre: Sequence[float], material: Material, tile: float) -> Mesh:
+    """Return a box with all six faces; textures repeat every `tile` metres."""
+    half = np.asarray(size, np.float64) / 2
+    corners, uvs = [], []
+    for axis in range(3):
+        u, v = (axis + 1) % 3, (axis + 2) % 3
+        for sign in (1.0, -1.0):
+            face = np.zeros((4, 3))
+            face[:, axis] = sign * half[axis]
+            face[:, u] = sign * half[u] * np.array([-1, 1, 1, -1])
+            face[:, v] = half[v] * np.array([-1, -1, 1, 1])
+            flat = face[:, (u, v)] if v == 2 or axis == 2 else face[:, (v, u)]
+            corners.append(face + np.asarray(centre))
+            uvs.append((flat - flat.min(0)) / tile)
+    return quads(corners, uvs, material)
+
+
+def flat_polygon(polygon: shapely.Geometry, z: float, material: Material, tile: float) -> Mesh:
+    """Return a horizontal polygon (holes and several parts allowed) that faces up."""
+    cells = shapely.get_parts(shapely.constrained_delaunay_triangles(polygon))
+    if len(cells) == 0:
+        return quads(np.zeros((0, 4, 3)), np.zeros((0, 4, 2)), material)
+    flat = np.array([shapely.get_coordinates(cell)[:3] for cell in cells])
+    edge = flat[:, 1:] - flat[:, :1]
+    backwards = edge[:, 0, 0] * edge[:, 1, 1] - edge[:, 0, 1] * edge[:, 1, 0] < 0
+    flat[backwards] = flat[backwards][:, ::-1]
+    points, index = np.unique(flat.reshape(-1, 2), axis=0, return_inverse=True)
+    positions = np.column_stack([points, np.full(len(points), z)])
+    up = np.tile([0.0, 0.0, 1.0], (len(points), 1))
+    return _mesh(positions, up, points / tile, index.reshape(-1, 3), material)
+
+
+def walls(
+    outline: ArrayLike, bottom: float, top: float, material: Material, tile: float
+) -> Mesh:
+    """Return vertical walls around a closed counter-clockwise outline, shape (K, 2).
+
+    The texture goes round with a whole number of bays (quarter tiles) on each wall, v from the
+    bottom.
+    """
+    start = np.asarray(outline, np.float64)
+    end = np.roll(start, -1, axis=0)
+    length = np.linalg.norm(end - start, axis=1)
+    repeats = np.maximum(np.round(length / tile * 4), 1) / 4
+    low, high = np.full(len(start), bottom), np.full(len(start), top)
+    corners = np.stack(
+        [
+            np.column_stack([start, low]),
+            np.column_stack([end, low]),
+            np.column_stack([end, high]),
+            np.column_stack([start, high]),
+        ],
+        axis=1,
+    )
+    zero, rise = np.zeros(len(start)), np.full(len(start), (top - bottom) / tile)
+    uvs = np.stack(
+        [
+            np.column_stack([zero, zero]),
+            np.column_stack([repeats, zero]),
+            np.column_stack([repeats, rise]),
+            np.column_stack([zero, rise]),
+        ],
+        axis=1,
+    )
+    return quads(corners, uvs, material)
+
+
+def cylinder(
+    radius: tuple[float, float],
+    height: tuple[float, float],
+    sides: int,
+    material: Material,
+    *,
+    cap: bool = False,
+    tile: float = 1.0,
+) -> Mesh:
+    """Return a cone stump about z.
+
+    Args:
+        radius: At the bottom and at the top [m].
+        height: z of the bottom and of the top [m].
+        sides: Number of sides.
+        material: Of all of it.
+        cap: Close the top and the bottom.
+        tile: Metres one repeat of the texture covers.
+    """
+    angle = np.arange(sides + 1) * (2 * np.pi / sides)
+    ring = np.column_stack([np.cos(angle), np.sin(angle)])
+    slope = (radius[0] - radius[1]) / max(height[1] - height[0], 1e-9)
+    normal = np.column_stack([ring, np.full(sides + 1, slope)])
+    normal /= np.linalg.norm(normal, axis=1, keepdims=True)
+    positions = np.concatenate(
+        [np.column_stack([ring * r, np.full(sides + 1, z)]) for r, z in zip(radius, height, strict=True)]
+    )
+    along = angle * max(radius) / tile
+    uvs = np.concatenate(
+        [np.column_stack([along, np.full(sides + 1, (z - height[0]) / tile)]) for z in height]
+    )
+    low = np.arange(sides)
+    high = low + sides + 1
+    triangles = np.concatenate(
+        [np.column_stack([low, low + 1, high + 1]), np.column_stack([low, high + 1, high])]
+    )
+    normals = np.concatenate([normal, normal])
+    if cap:
+        for z_index, sign in ((0, -1.0), (1, 1.0)):
+            first = len(positions)
+            disc = ring[:-1] * radius[z_index]
+            positions = np.concatenate(
+                [positions, np.column_stack([disc, np.full(sides, height[z_index])])]
+            )
+            normals = np.concatenate([normals, np.tile([0.0, 0.0, sign], (sides, 1))])
+            uvs = np.concatenate([uvs, disc / tile])
+            fan = np.column_stack(
+                [np.full(sides - 2, first), first + np.arange(1, sides - 1), first + np.arange(2, sides)]
+            )
+            triangles = np.concatenate([triangles, fan if sign > 0 else fan[:, ::-1]])
+    return _mesh(positions, normals, uvs, triangles, material)
+
+
+def sphere(subdivisions: int, material: Material, tile: float = 1.0) -> Mesh:
+    """Return a unit icosphere: 20 triangles, four times as many with each subdivision."""
+    golden = (1 + 5**0.5) / 2
+    points = [
+        (-1, golden, 0), (1, golden, 0), (-1, -golden, 0), (1, -golden, 0),
+        (0, -1, golden), (0, 1, golden), (0, -1, -golden), (0, 1, -golden),
+        (golden, 0, -1), (golden, 0, 1), (-golden, 0, -1), (-golden, 0, 1),
+    ]  # fmt: skip
+    faces = np.array([
+        (0, 11, 5), (0, 5, 1), (0, 1, 7), (0, 7, 10), (0, 10, 11), (1, 5, 9), (5, 11, 4),
+        (11, 10, 2), (10, 7, 6), (7, 1, 8), (3, 9, 4), (3, 4, 2), (3, 2, 6), (3, 6, 8),
+        (3, 8, 9), (4, 9, 5), (2, 4, 11), (6, 2, 10), (8, 6, 7), (9, 8, 1),
+    ])  # fmt: skip
+    corners = np.array(points, np.float64)[faces]
+    for _ in range(subdivisions):
+        a, b, c = corners[:, 0], corners[:, 1], corners[:, 2]
+        ab, bc, ca = (a + b) / 2, (b + c) / 2, (c + a) / 2
+        cells = [(a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca)]
+        corners = np.concatenate([np.stack(cell, axis=1) for cell in cells])
+    corners /= np.linalg.norm(corners, axis=2, keepdims=True)
+    flat = corners.reshape(-1, 3)
+    _, first, index = np.unique(np.round(flat, 9), axis=0, return_index=True, return_inverse=True)
+    positions = flat[first]
+    uvs = np.column_stack([np.arctan2(positions[:, 1], positions[:, 0]), positions[:, 2]]) / tile
+    return _mesh(positions, positions, uvs, index.reshape(-1, 3), material)
+
+
+def _mesh(
+    positions: NDArray[np.floating],
+    normals: NDArray[np.floating],
+    uvs: NDArray[np.floating],
+    triangles: NDArray[np.integer],
+    material: Material,
+) -> Mesh:
+    return Mesh(
+        positions=np.ascontiguousarray(positions, np.float32),
+        normals=np.ascontiguousarray(normals, np.float32),
+        uvs=np.ascontiguousarray(uvs, np.float32),
+        triangles=np.ascontiguousarray(triangles, np.int32),
+        materials=np.zeros(len(triangles), np.int32),
+        palette=(material,),
+    )
