@@ -1,0 +1,180 @@
+"""Which routes are driven: random walks that never end, or groups that cross the map and leave."""
+
+import heapq
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+
+from eyas.core.errors import ConfigError
+from eyas.traffic.config import TrafficConfig
+
+__all__ = [
+    "RoadLinks",
+    "Route",
+    "departures",
+    "endless_walk",
+    "lasting_edges",
+    "random_trips",
+    "without_turnarounds",
+]
+
+Route = tuple[str, ...]
+"""Names of the edges, in driving order."""
+
+TRIES = 1000
+"""Pairs of edges that are tried for one route before giving up."""
+
+
+@dataclass(frozen=True, slots=True)
+class RoadLinks:
+    """Which edge leads to which, for one class of vehicles."""
+
+    successors: dict[str, Route]
+    """Edges that can be entered from each edge."""
+    length: dict[str, float]
+    """[m]"""
+
+
+def without_turnarounds(links: RoadLinks, ends: dict[str, tuple[str, str]]) -> RoadLinks:
+    """Return the links without those that lead straight back, but where there is no other way.
+
+    Long vehicles swing wildly in them, and few drivers turn round at each crossing.
+
+    Args:
+        links: All links.
+        ends: Junctions each edge leaves and reaches.
+    """
+    onward = {
+        edge: tuple(name for name in following if ends[name] != ends[edge][::-1])
+        for edge, following in links.successors.items()
+    }
+    successors = {edge: onward[edge] or links.successors[edge] for edge in onward}
+    return RoadLinks(successors, links.length)
+
+
+def lasting_edges(links: RoadLinks) -> Route:
+    """Return the edges of the largest part of the roads where each can be reached from each.
+
+    Raises:
+        ConfigError: There is none: every drive ends.
+    """
+    reach = {edge: _reachable(links, edge) for edge in links.successors}
+    unplaced = set(links.successors)
+    best: set[str] = set()
+    for edge in sorted(links.successors):
+        if edge in unplaced:
+            part = {other for other in reach[edge] if edge in reach[other]}
+            unplaced -= part | {edge}
+            best = max(best, part, key=len)
+    if not best:
+        raise ConfigError(
+            "traffic.demand: 'keep_alive' needs roads to drive on for ever, and this map's are "
+            "one-way and all lead out; use 'respawn'"
+        )
+    return tuple(sorted(best))
+
+
+def endless_walk(
+    links: RoadLinks, edges: Route, distance: float, rng: np.random.Generator
+) -> Route:
+    """Return a random walk of at least `distance` [m].
+
+    Args:
+        links: The roads.
+        edges: The part of them to stay in.
+        distance: More than can be driven in the whole recording [m].
+        rng: Draws the start and the turns.
+    """
+    inside = set(edges)
+    edge = edges[int(rng.integers(len(edges)))]
+    walk, length = [edge], links.length[edge]
+    while length < distance:
+        following = [name for name in links.successors[edge] if name in inside]
+        edge = following[int(rng.integers(len(following)))]
+        walk.append(edge)
+        length += links.length[edge]
+    return tuple(walk)
+
+
+def random_trips(
+    links: RoadLinks, lengths: tuple[float, float], rng: np.random.Generator
+) -> Iterator[Route]:
+    """Yield shortest routes between random edges, with a length between two limits [m].
+
+    Raises:
+        ConfigError: No such route was found.
+    """
+    edges = sorted(links.successors)
+    trees: dict[str, dict[str, str]] = {}
+    while True:
+        for _ in range(TRIES):
+            start, end = (edges[int(index)] for index in rng.integers(len(edges), size=2))
+            if start not in trees:
+                trees[start] = _shortest_tree(links, start)
+            route = _path(trees[start], start, end)
+            if route and lengths[0] <= sum(links.length[edge] for edge in route) <= lengths[1]:
+                break
+        else:
+            longest = sum(links.length.values())
+            raise ConfigError(
+                f"traffic.route_length: no route of {lengths[0]:g} to {lengths[1]:g} m found in "
+                f"{TRIES} tries; the map has {longest:.0f} m of roads"
+            )
+        yield route
+
+
+def departures(config: TrafficConfig, duration: float) -> Iterator[tuple[float, int]]:
+    """Yield when a group enters [s], and how many vehicles it has.
+
+    Args:
+        config: Its `group_size` is a number.
+        duration: Time from the first group [s].
+    """
+    size = config.group_size
+    assert size is not None
+    left = config.route_count
+    group = 0
+    while left > 0 and group * config.group_interval <= duration:
+        yield group * config.group_interval, min(size, left)
+        left -= size
+        group += 1
+
+
+def _reachable(links: RoadLinks, start: str) -> set[str]:
+    found: set[str] = set()
+    front = list(links.successors[start])
+    while front:
+        edge = front.pop()
+        if edge not in found:
+            found.add(edge)
+            front.extend(links.successors[edge])
+    return found
+
+
+def _shortest_tree(links: RoadLinks, start: str) -> dict[str, str]:
+    """Return the edge before each edge on the shortest route from `start` (Dijkstra)."""
+    distance = {start: links.length[start]}
+    before: dict[str, str] = {}
+    front = [(distance[start], start)]
+    while front:
+        so_far, edge = heapq.heappop(front)
+        if so_far > distance[edge]:
+            continue
+        for following in links.successors[edge]:
+            total = so_far + links.length[following]
+            if total < distance.get(following, float("inf")):
+                distance[following] = total
+                before[following] = edge
+                heapq.heappush(front, (total, following))
+    return before
+
+
+def _path(before: dict[str, str], start: str, end: str) -> Route:
+    """Return the edges from `start` to `end`, or none."""
+    route = [end]
+    while route[-1] != start:
+        if route[-1] not in before:
+            return ()
+        route.append(before[route[-1]])
+    return tuple(reversed(route))

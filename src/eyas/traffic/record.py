@@ -1,0 +1,171 @@
+"""Recording: real SUMO drives what the settings ask for."""
+
+from collections.abc import Callable, Iterator
+from importlib.metadata import version
+
+import numpy as np
+
+from eyas.core.errors import ConfigError
+from eyas.core.rng import stream
+from eyas.state.roads import RoadGraph
+from eyas.traffic.config import Demand, TrafficConfig
+from eyas.traffic.demand import (
+    RoadLinks,
+    Route,
+    departures,
+    endless_walk,
+    lasting_edges,
+    random_trips,
+)
+from eyas.traffic.network import graph_hash, network_xml
+from eyas.traffic.recording import (
+    ANGLE_UNIT,
+    POSITION_UNIT,
+    Provenance,
+    Recording,
+    quantised,
+    restored,
+)
+from eyas.traffic.smoothing import held
+from eyas.traffic.sumo import OPTIONS, RATE, Drive, Fleet, drive
+from eyas.traffic.sumo_install import sumo_version
+
+__all__ = ["GROUP_SHARE", "WARM_UP", "provenance", "record", "resolved"]
+
+WARM_UP = 60.0
+"""Time before the recording begins, in which vehicles spread over the map [s]."""
+
+GROUP_SHARE = 3
+"""Vehicles that enter together for each tracker where nothing else is set, as in the original."""
+
+
+def record(
+    map_name: str,
+    map_seed: int,
+    graph: RoadGraph,
+    config: TrafficConfig,
+    duration: float,
+    seed: int,
+    progress: Callable[[float], None] | None = None,
+) -> Recording:
+    """Return a new recording, the same for the same arguments and SUMO version.
+
+    Args:
+        map_name: Name of the map.
+        map_seed: Seed of the map.
+        graph: Its roads.
+        config: What drives.
+        duration: Length of the recording [s].
+        seed: Seed of SUMO and of the routes.
+        progress: Is told the share that is done, 0 to 1.
+
+    Raises:
+        MissingExtraError: SUMO is not installed.
+        ConfigError: The roads cannot carry what is asked for.
+    """
+    config = resolved(config, seed)
+    origin = provenance(map_name, map_seed, graph_hash(graph), config, duration)
+    span = (WARM_UP, WARM_UP + duration)
+    raw = drive(network_xml(graph), config, _fleet(config, span[1]), span, progress)
+    if config.demand is Demand.KEEP_ALIVE:
+        _check_all_there(raw)
+    return _as_recording(raw, origin)
+
+
+def resolved(config: TrafficConfig, seed: int, trackers: int = 1) -> TrafficConfig:
+    """Return the settings with all that SUMO sees filled in, and what it does not see left out.
+
+    Args:
+        config: The user's settings.
+        seed: Seed of SUMO and of the routes.
+        trackers: Number of trackers, which the size of a group follows.
+    """
+    seen: dict[str, object] = {
+        name: getattr(config, name)
+        for name in ("demand", "vehicle_type", "max_vehicles", "max_speed")
+    }
+    seen |= {
+        "max_acceleration": config.max_acceleration,
+        "max_deceleration": config.max_deceleration,
+        "seed": seed,
+    }
+    if config.demand is Demand.RESPAWN:
+        seen |= {
+            "group_size": config.group_size or GROUP_SHARE * trackers,
+            "group_interval": config.group_interval,
+            "route_length": config.route_length,
+            "route_count": config.route_count,
+        }
+    return TrafficConfig.model_validate(seen)
+
+
+def provenance(
+    map_name: str, map_seed: int, roads: str, config: TrafficConfig, duration: float
+) -> Provenance:
+    """Return what a recording made now would say about itself.
+
+    Args:
+        map_name: Name of the map.
+        map_seed: Seed of the map.
+        roads: Hash of its road graph.
+        config: From `resolved`.
+        duration: [s]
+
+    Raises:
+        MissingExtraError: SUMO is not installed.
+    """
+    return Provenance(
+        map_name=map_name,
+        map_seed=map_seed,
+        graph_hash=roads,
+        config=config,
+        duration=duration,
+        warm_up=WARM_UP,
+        options=OPTIONS,
+        sumo_version=sumo_version(),
+        eyas_version=version("eyas"),
+    )
+
+
+def _fleet(config: TrafficConfig, duration: float) -> Fleet:
+    assert config.seed is not None
+    rng = stream(config.seed, "traffic")
+
+    def keep_alive(links: RoadLinks) -> Iterator[tuple[float, Route]]:
+        edges = lasting_edges(links)
+        for _ in range(config.max_vehicles):
+            yield 0.0, endless_walk(links, edges, duration * config.max_speed, rng)
+
+    def respawn(links: RoadLinks) -> Iterator[tuple[float, Route]]:
+        trips = random_trips(links, config.route_length, rng)
+        for time, size in departures(config, duration):
+            for _ in range(size):
+                yield time, next(trips)
+
+    return keep_alive if config.demand is Demand.KEEP_ALIVE else respawn
+
+
+def _check_all_there(raw: Drive) -> None:
+    there = raw.present.all(axis=0)
+    if not there.all():
+        raise ConfigError(
+            f"traffic.max_vehicles: {there.size} is too many for the roads of this map; "
+            f"only {int(there.sum())} found room from start to end"
+        )
+
+
+def _as_recording(raw: Drive, origin: Provenance) -> Recording:
+    position = np.zeros_like(raw.position)
+    yaw = np.zeros_like(raw.yaw)
+    for actor in range(raw.present.shape[1]):
+        present = raw.present[:, actor]
+        position[:, actor] = held(raw.position[:, actor], present)
+        yaw[:, actor] = np.unwrap(held(raw.yaw[:, actor], present))
+    return Recording(
+        rate=float(RATE),
+        position=restored(quantised(position, POSITION_UNIT), POSITION_UNIT),
+        yaw=restored(quantised(yaw, ANGLE_UNIT), ANGLE_UNIT),
+        present=raw.present,
+        vehicle_length=raw.vehicle_length,
+        provenance=origin,
+    )

@@ -1,0 +1,115 @@
+"""A recording: what SUMO drove, in whole centimetres and milliradians, with where it came from."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.errors import DataFileError
+from eyas.traffic.config import TrafficConfig
+
+__all__ = [
+    "ANGLE_UNIT",
+    "POSITION_UNIT",
+    "Provenance",
+    "Recording",
+    "check_map",
+    "quantised",
+    "restored",
+]
+
+POSITION_UNIT = 0.01
+"""Positions are whole multiples of this [m]."""
+
+ANGLE_UNIT = 0.001
+"""Yaws are whole multiples of this [rad]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Provenance:
+    """Everything that went into a recording. Two recordings with equal provenance are equal."""
+
+    map_name: str
+    map_seed: int
+    graph_hash: str
+    """Hash of the road graph the vehicles drove on."""
+    config: TrafficConfig
+    """What was asked for; `group_size` and `seed` are numbers."""
+    duration: float
+    """[s]"""
+    warm_up: float
+    """Time that was driven before the recording began [s]."""
+    options: tuple[str, ...]
+    """SUMO's options."""
+    sumo_version: str
+    eyas_version: str
+
+
+@dataclass(slots=True)
+class Recording:
+    """Poses as SUMO gave them, at a fixed rate. S samples, A actors, world frame.
+
+    With `respawn` an actor stands for one vehicle after another, as the original reuses its nodes:
+    between two of them it is absent for at least one sample.
+    """
+
+    rate: float
+    """Samples in a second [Hz]; sample s is at time s / rate."""
+    position: NDArray[np.float64]
+    """Middle of the vehicle's length, east and north [m], shape (S, A, 2); held while absent."""
+    yaw: NDArray[np.float64]
+    """Heading without jumps at ±180° [rad], shape (S, A); held while absent."""
+    present: NDArray[np.bool_]
+    """Whether the actor is in the world, shape (S, A)."""
+    vehicle_length: float
+    """SUMO's length of the vehicle class [m]."""
+    provenance: Provenance
+    """Where it came from."""
+
+    @property
+    def actors(self) -> int:
+        """Number of actors."""
+        return int(self.present.shape[1])
+
+    @property
+    def duration(self) -> float:
+        """Time from the first to the last sample [s]."""
+        return (len(self.present) - 1) / self.rate
+
+
+def quantised(values: NDArray[np.float64], unit: float) -> NDArray[np.int64]:
+    """Return values [any unit] as whole multiples of `unit`."""
+    return np.rint(values / unit).astype(np.int64)
+
+
+def restored(multiples: NDArray[np.int64], unit: float) -> NDArray[np.float64]:
+    """Return the values [any unit] that `quantised` counted."""
+    return multiples.astype(np.float64) * unit
+
+
+def check_map(
+    recording: Recording, map_name: str, map_seed: int, graph_hash: str, source: str
+) -> None:
+    """Refuse a recording of other roads.
+
+    Args:
+        recording: The recording.
+        map_name: Name of the map that is used.
+        map_seed: Its seed.
+        graph_hash: Hash of its road graph.
+        source: What to call the recording in the message, for example its path.
+
+    Raises:
+        DataFileError: The recording was made on other roads.
+    """
+    origin = recording.provenance
+    if origin.graph_hash == graph_hash:
+        return
+    if (origin.map_name, origin.map_seed) == (map_name, map_seed):
+        reason = f"of an older '{map_name}' (roads {origin.graph_hash[:8]}, now {graph_hash[:8]})"
+    else:
+        reason = f"of map '{origin.map_name}' with seed {origin.map_seed}"
+    raise DataFileError(
+        f"{source}: the recording is {reason}, but the map is '{map_name}' with seed {map_seed}; "
+        "record this map or leave traffic.recording out"
+    )

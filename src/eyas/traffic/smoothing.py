@@ -1,0 +1,159 @@
+"""From SUMO's poses to smooth driving: filtered positions, and a heading that a car can have.
+
+SUMO moves a vehicle sideways and turns it in steps. A Gaussian takes the steps out of the path of
+the front axle; the rear axle follows it like a trailer (a tractrix), which gives the heading.
+"""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.jit import kernel
+from eyas.traffic.recording import Recording
+
+__all__ = ["Tracks", "held", "runs", "smooth"]
+
+SIGMA = 0.3
+"""Width of the Gaussian [s]: takes out SUMO's 0.1 s steps, moves the path by centimetres."""
+
+WHEELBASE = 0.54
+"""Axle distance as a share of the vehicle's length: 2.7 m for the 5 m car."""
+
+LONGEST_WHEELBASE = 6.0
+"""[m]; a longer one belongs to a bend in the vehicle, which turns more than its middle shows."""
+
+
+@dataclass(slots=True)
+class Tracks:
+    """Smooth motion of A actors at S samples, world frame. Held, with speed 0, while absent."""
+
+    rate: float
+    """Samples in a second [Hz]."""
+    position: NDArray[np.float64]
+    """Middle of the vehicle's length [m], shape (S, A, 2)."""
+    velocity: NDArray[np.float64]
+    """[m/s], shape (S, A, 2)."""
+    yaw: NDArray[np.float64]
+    """Heading without jumps at ±180° [rad], shape (S, A)."""
+    yaw_rate: NDArray[np.float64]
+    """[rad/s], shape (S, A)."""
+    travelled: NDArray[np.float64]
+    """Path length since the recording began [m], shape (S, A)."""
+    present: NDArray[np.bool_]
+    """Whether the actor is in the world, shape (S, A)."""
+
+
+def smooth(recording: Recording) -> Tracks:
+    """Return the smooth motion of a recording."""
+    shape = recording.present.shape
+    tracks = Tracks(
+        rate=recording.rate,
+        position=np.zeros((*shape, 2)),
+        velocity=np.zeros((*shape, 2)),
+        yaw=np.zeros(shape),
+        yaw_rate=np.zeros(shape),
+        travelled=np.zeros(shape),
+        present=recording.present.copy(),
+    )
+    wheelbase = min(WHEELBASE * recording.vehicle_length, LONGEST_WHEELBASE)
+    for actor in range(shape[1]):
+        for first, last in runs(recording.present[:, actor]):
+            _smooth_run(recording, tracks, actor, slice(first, last), wheelbase)
+        present = recording.present[:, actor]
+        tracks.position[:, actor] = held(tracks.position[:, actor], present)
+        tracks.yaw[:, actor] = held(tracks.yaw[:, actor], present)
+        step = np.hypot(*np.diff(tracks.position[:, actor], axis=0).T)
+        step[~(present[1:] & present[:-1])] = 0.0
+        tracks.travelled[1:, actor] = np.cumsum(step)
+    return tracks
+
+
+def runs(present: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """Return the first and one past the last sample of each stay in the world.
+
+    Args:
+        present: shape (S,).
+    """
+    edges = np.diff(np.concatenate([[False], present, [False]]).astype(np.int8))
+    return list(
+        zip(np.flatnonzero(edges == 1).tolist(), np.flatnonzero(edges == -1).tolist(), strict=True)
+    )
+
+
+def held(values: NDArray[np.float64], present: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """Return values whose absent samples repeat the last present one, or else the first.
+
+    Args:
+        values: shape (S, ...).
+        present: shape (S,).
+    """
+    if not present.any():
+        return np.zeros_like(values)
+    last = np.maximum.accumulate(np.where(present, np.arange(len(present)), -1))
+    source: NDArray[np.float64] = values[np.where(last < 0, int(np.argmax(present)), last)]
+    return source
+
+
+def _smooth_run(
+    recording: Recording, tracks: Tracks, actor: int, span: slice, wheelbase: float
+) -> None:
+    yaw = recording.yaw[span, actor]
+    ahead = 0.5 * wheelbase * np.stack([np.cos(yaw), np.sin(yaw)], axis=-1)
+    front = _filtered(recording.position[span, actor] + ahead, SIGMA * recording.rate)
+    heading = np.empty(len(yaw))
+    _follow(front, float(yaw[0]), wheelbase, heading)
+    centre = front - 0.5 * wheelbase * np.stack([np.cos(heading), np.sin(heading)], axis=-1)
+    tracks.position[span, actor] = centre
+    tracks.yaw[span, actor] = heading
+    if len(yaw) > 1:
+        tracks.velocity[span, actor] = _slope(centre, recording.rate)
+        tracks.yaw_rate[span, actor] = _slope(heading, recording.rate)
+
+
+def _filtered(points: NDArray[np.float64], sigma: float) -> NDArray[np.float64]:
+    """Return points (S, 2) after a Gaussian of `sigma` samples.
+
+    Past its ends the path is turned about its end point, so that even motion is left as it is.
+    """
+    reach = math.ceil(4 * sigma)
+    weight = np.exp(-0.5 * (np.arange(-reach, reach + 1) / sigma) ** 2)
+    weight /= weight.sum()
+    mirror = np.minimum(np.arange(1, reach + 1), len(points) - 1)
+    before = 2 * points[0] - points[mirror[::-1]]
+    after = 2 * points[-1] - points[len(points) - 1 - mirror]
+    padded = np.concatenate([before, points, after])
+    columns = [np.convolve(padded[:, axis], weight, "valid") for axis in range(2)]
+    return np.stack(columns, axis=-1)
+
+
+def _slope(values: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
+    """Return the change in a second: over both neighbours, at the ends over the one there is."""
+    slope = np.empty_like(values)
+    slope[1:-1] = (values[2:] - values[:-2]) * (0.5 * rate)
+    slope[0] = (values[1] - values[0]) * rate
+    slope[-1] = (values[-1] - values[-2]) * rate
+    return slope
+
+
+@kernel
+def _follow(
+    front: NDArray[np.float64], yaw: float, wheelbase: float, heading: NDArray[np.float64]
+) -> None:
+    """Write the heading (S,) of a body whose front axle is pulled along `front` (S, 2).
+
+    Between two points the pull is straight, and the angle a between heading and pull shrinks as
+    tan(a / 2) * exp(-distance / wheelbase), the tractrix in closed form.
+    """
+    heading[0] = yaw
+    for sample in range(1, front.shape[0]):
+        east = front[sample, 0] - front[sample - 1, 0]
+        north = front[sample, 1] - front[sample - 1, 1]
+        distance = math.hypot(east, north)
+        if distance > 1e-9:
+            angle = math.atan2(north, east) - yaw
+            angle -= 2.0 * math.pi * math.floor(angle / (2.0 * math.pi) + 0.5)
+            left = 2.0 * math.atan(math.tan(0.5 * angle) * math.exp(-distance / wheelbase))
+            yaw += angle - left
+        heading[sample] = yaw
