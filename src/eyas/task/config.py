@@ -1,17 +1,32 @@
 """Settings of the task: start, reward, end."""
 
+import math
+from collections.abc import Callable
 from enum import StrEnum
-from typing import Annotated
+from typing import Annotated, Self
 
-from pydantic import Field
+from pydantic import AfterValidator, Field, model_validator
 
 from eyas.core.config import Config
-from eyas.core.variation import Uniform, Variation
+from eyas.core.variation import Uniform, Variation, bounds
 
 __all__ = ["DoneConfig", "RewardConfig", "RewardMode", "RewardType", "StartConfig"]
 
-Positive = Annotated[float, Field(gt=0)]
+Positive = Annotated[float, Field(gt=0, le=1e9)]
+Height = Annotated[float, Field(ge=-1e6, le=1e6)]
 Steps = Annotated[int, Field(ge=0, le=2**31 - 1)]
+
+
+def _within(low: float, high: float) -> Callable[[Variation], Variation]:
+    """Return a check that all values a variation can give lie between two limits."""
+
+    def check(variation: Variation) -> Variation:
+        smallest, largest = bounds(variation)
+        if smallest < low or largest > high:
+            raise ValueError(f"it must stay within {low:g} and {high:g}")
+        return variation
+
+    return check
 
 
 class RewardType(StrEnum):
@@ -33,17 +48,18 @@ class RewardMode(StrEnum):
 class StartConfig(Config):
     """Where the tracker starts, relative to its target. Each is drawn anew at a reset."""
 
-    pitch: Variation = 1.0
-    """Camera pitch, positive down [rad]; held within 0.5 to 1.5."""
-    height: Variation = Uniform(uniform=(13.0, 25.0))
+    pitch: Annotated[Variation, AfterValidator(_within(0.1, 3.0))] = 1.0
+    """Camera pitch, positive down [rad]; the gimbal holds it within 0.5 to 1.5, the place is drawn
+    for the full value."""
+    height: Annotated[Variation, AfterValidator(_within(0.1, 1e4))] = Uniform(uniform=(13.0, 25.0))
     """Height above the target [m]."""
-    direction: Variation = 0.0
+    direction: Annotated[Variation, AfterValidator(_within(-2 * math.pi, 2 * math.pi))] = 0.0
     """Heading relative to the target's [rad]."""
-    horizontal_bias: Variation = 0.0
+    horizontal_bias: Annotated[Variation, AfterValidator(_within(-1e4, 1e4))] = 0.0
     """Sideways offset of the tracker, positive left, so that the target appears right [m]."""
-    vertical_bias: Variation = 0.0
+    vertical_bias: Annotated[Variation, AfterValidator(_within(-1e4, 1e4))] = 0.0
     """Forward offset of the tracker, so that the target appears lower [m]."""
-    warm_up_steps: Steps = 310
+    warm_up_steps: Annotated[int, Field(ge=0, le=5_000_000)] = 310
     """2 ms steps of traffic before the trackers start."""
 
 
@@ -55,26 +71,27 @@ class RewardConfig(Config):
     mode: RewardMode = RewardMode.CONTINUOUS
     """Which values the reward takes."""
     cut_off: Annotated[float, Field(ge=0, le=1)] = 0.001
-    """At or below this reward the no-reward counter runs."""
+    """0 to 1; at or below this reward the no-reward counter runs."""
     distance_scale: Positive = 0.01
     """Decay of the continuous distance reward [1/m^3]."""
     distance_range: Positive = 7.0
     """Largest rewarded distance [m]."""
     view_scale: Positive = 4.0
-    """Steepness of the continuous view reward."""
+    """Steepness of the continuous view reward, a factor without unit."""
     view_range: Annotated[float, Field(gt=0, le=10)] = 0.7
-    """Share of the picture's width and height within which the target is rewarded."""
+    """Share of the picture's width and height within which the target is rewarded; above 1 it
+    reaches beyond the picture."""
 
 
 class DoneConfig(Config):
     """When an episode ends."""
 
-    max_height: float = 50.0
+    max_height: Height = 50.0
     """Highest allowed position of the tracker [m]."""
-    min_height: float = 2.0
+    min_height: Height = 2.0
     """Lowest allowed position of the tracker [m]."""
     velocity: Positive = 10000.0
-    """Speed at which the episode ends [m/s]."""
+    """Horizontal speed from which on the episode ends [m/s]."""
     yaw_rate: Positive = 6.283
     """Highest allowed yaw rate [rad/s]."""
     roll: Positive = 1.22
@@ -82,10 +99,16 @@ class DoneConfig(Config):
     pitch: Positive = 1.22
     """Highest allowed pitch of the body [rad]."""
     distance_error: Positive = 50.0
-    """Largest allowed distance between commanded and true position [m]."""
+    """Largest allowed horizontal distance between commanded and true position [m]."""
     total_steps: Annotated[int, Field(ge=1, le=2**31 - 1)] = 1500
     """2 ms steps in an episode."""
     grace_steps: Steps = 100
     """2 ms steps after a reset in which no end is reported."""
     no_reward_steps: Steps = 100
     """2 ms steps without reward after which the episode ends."""
+
+    @model_validator(mode="after")
+    def _heights_in_order(self) -> Self:
+        if self.min_height >= self.max_height:
+            raise ValueError(f"min_height must be below max_height, which is {self.max_height:g} m")
+        return self

@@ -1,0 +1,186 @@
+"""The two packets that a client of the original receives, as named records.
+
+Basic packet, 22 numbers (the original's names): t, position 3, linear 3, acc 3, angular 3,
+orientation 4, angle 3, reward, done.
+
+Reward packet, 60 numbers and the name of the target's type (the original's names): cameraWidth,
+cameraHeight, Fov, focal length, pitch, trackerHeight, initDirection, T_ct 16, T_tw 16,
+cameraMidGlobalPos 3, carMidGlobalPos 3, cameraMidPos 3, carDronePosOri 4, relative velocity 3,
+relative acceleration 3, crash, carDir, typename. Its manual counts 59 and leaves out
+initDirection.
+"""
+
+from dataclasses import dataclass, fields
+from typing import ClassVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.task.direction import TargetDirection
+
+__all__ = ["BASIC_FIELDS", "REWARD_FIELDS", "BasicPacket", "RewardPacket"]
+
+Numbers = tuple[float, ...]
+
+
+def _named(name: str, parts: str) -> tuple[str, ...]:
+    return tuple(f"{name}_{part}" for part in parts)
+
+
+def _matrix(name: str) -> tuple[str, ...]:
+    return tuple(f"{name}_{row}{column}" for row in range(4) for column in range(4))
+
+
+BASIC_FIELDS = (
+    "step_count",
+    *_named("position", "xyz"),
+    *_named("velocity", "xyz"),
+    *_named("felt_acceleration", "xyz"),
+    *_named("angular_velocity", "xyz"),
+    *_named("orientation", "wxyz"),
+    *("roll", "pitch", "yaw"),
+    "reward",
+    "done",
+)
+"""Names of the columns of a basic packet."""
+
+REWARD_FIELDS = (
+    *("camera_width", "camera_height", "field_of_view", "focal_length"),
+    *("camera_pitch", "commanded_height", "start_direction"),
+    *_matrix("camera_pose"),
+    *_matrix("target_pose"),
+    *_named("view_centre", "xyz"),
+    *_named("target_centre", "xyz"),
+    *_named("camera_position", "xyz"),
+    "relative_yaw",
+    *_named("relative_position", "xyz"),
+    *_named("relative_velocity", "xyz"),
+    *_named("relative_acceleration", "xyz"),
+    "crash",
+    "target_direction",
+)
+"""Names of the columns of a reward packet; the target's type follows as a word."""
+
+
+@dataclass(frozen=True, slots=True)
+class BasicPacket:
+    """State, reward and end of one tracker."""
+
+    step_count: int
+    """2 ms steps since the reset; the original's `t`."""
+    position: Numbers
+    """Of the body, world frame [m], 3 numbers."""
+    velocity: Numbers
+    """World frame [m/s], 3 numbers; the original's `linear`."""
+    felt_acceleration: Numbers
+    """Accelerometer, body frame [m/s^2], 3 numbers, +9.81 up at rest; the original's `acc`."""
+    angular_velocity: Numbers
+    """Body frame [rad/s], 3 numbers; the original's `angular`."""
+    orientation: Numbers
+    """Body to world, w, x, y, z."""
+    euler: Numbers
+    """Roll, pitch, yaw [rad]; the original's `angle`."""
+    reward: float
+    """The built-in reward."""
+    done: bool
+    """Whether the episode has ended."""
+
+    names: ClassVar[tuple[str, ...]] = BASIC_FIELDS
+
+    @classmethod
+    def from_row(cls, row: NDArray[np.float64]) -> "BasicPacket":
+        """Return the packet of a row, shape (22,)."""
+        n = [float(number) for number in row]
+        return cls(
+            step_count=int(n[0]),
+            position=tuple(n[1:4]),
+            velocity=tuple(n[4:7]),
+            felt_acceleration=tuple(n[7:10]),
+            angular_velocity=tuple(n[10:13]),
+            orientation=tuple(n[13:17]),
+            euler=tuple(n[17:20]),
+            reward=n[20],
+            done=bool(n[21]),
+        )
+
+    def to_row(self) -> NDArray[np.float64]:
+        """Return the numbers, shape (22,)."""
+        return np.hstack([getattr(self, field.name) for field in fields(self)]).astype(np.float64)
+
+
+@dataclass(frozen=True, slots=True)
+class RewardPacket:
+    """What a reward of one's own needs. The land frame is the world with the floor at z = 0."""
+
+    camera_width: int
+    """[pixels]"""
+    camera_height: int
+    """[pixels]"""
+    field_of_view: float
+    """Horizontal [rad]."""
+    focal_length: float
+    """[pixels]"""
+    camera_pitch: float
+    """As commanded, positive down [rad]."""
+    commanded_height: float
+    """z of the tracker as commanded [m]; the original's `trackerHeight`."""
+    start_direction: float
+    """Heading at the start relative to the target's [rad]; the original's `initDirection`."""
+    camera_pose: Numbers
+    """Camera to land frame, 4x4 row by row; the original's `T_ct`."""
+    target_pose: Numbers
+    """Target to land frame at its centre, 4x4 row by row; the original's `T_tw`."""
+    view_centre: Numbers
+    """Ground point in the middle of the picture, world frame [m], or the one below the camera if
+    there is none; the original's `cameraMidGlobalPos`."""
+    target_centre: Numbers
+    """The point that is rewarded, land frame [m]; the original's `carMidGlobalPos`."""
+    camera_position: Numbers
+    """Optical centre, land frame [m]; the original's `cameraMidPos`."""
+    relative_yaw: float
+    """Heading of the target less that of the tracker [rad]; the original's `carDronePosOri.w`."""
+    relative_position: Numbers
+    """The target's centre in the tracker's body frame [m]; the original's `carDronePosOri`."""
+    relative_velocity: Numbers
+    """Change of `relative_position` in 2 ms [m/s]; 0 at a reset."""
+    relative_acceleration: Numbers
+    """Change of `relative_velocity` in 2 ms [m/s^2]; 0 at a reset and one step after."""
+    crash: bool
+    """Whether the tracker strays too far from its commands or turns too fast."""
+    target_direction: TargetDirection
+    """Which way the target goes; the original's `carDir`."""
+    target_type: str
+    """Name of the target's type; the original's `typename`."""
+
+    names: ClassVar[tuple[str, ...]] = REWARD_FIELDS
+
+    @classmethod
+    def from_row(cls, row: NDArray[np.float64], target_type: str) -> "RewardPacket":
+        """Return the packet of a row, shape (60,), and of the name of the target's type."""
+        n = [float(number) for number in row]
+        return cls(
+            camera_width=int(n[0]),
+            camera_height=int(n[1]),
+            field_of_view=n[2],
+            focal_length=n[3],
+            camera_pitch=n[4],
+            commanded_height=n[5],
+            start_direction=n[6],
+            camera_pose=tuple(n[7:23]),
+            target_pose=tuple(n[23:39]),
+            view_centre=tuple(n[39:42]),
+            target_centre=tuple(n[42:45]),
+            camera_position=tuple(n[45:48]),
+            relative_yaw=n[48],
+            relative_position=tuple(n[49:52]),
+            relative_velocity=tuple(n[52:55]),
+            relative_acceleration=tuple(n[55:58]),
+            crash=bool(n[58]),
+            target_direction=TargetDirection(int(n[59])),
+            target_type=target_type,
+        )
+
+    def to_row(self) -> NDArray[np.float64]:
+        """Return the numbers, shape (60,)."""
+        numbers = [getattr(self, field.name) for field in fields(self)[:-1]]
+        return np.hstack(numbers).astype(np.float64)

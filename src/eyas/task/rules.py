@@ -1,0 +1,73 @@
+"""The settings of reward and end as plain numbers that kernels take."""
+
+import math
+from typing import NamedTuple
+
+from eyas.sensors.config import CameraConfig
+from eyas.task.config import DoneConfig, RewardConfig, RewardMode, RewardType
+
+__all__ = ["Rules", "make_rules"]
+
+
+class Rules(NamedTuple):
+    """What the task's kernels need to know; lengths in metres, angles in radians."""
+
+    ground: float
+    """z of the plane that the reward uses."""
+    half_width: float
+    """Half the width of the rewarded part of the picture, 1 m before the camera."""
+    half_height: float
+    """Half the height of the rewarded part of the picture, 1 m before the camera."""
+    distance: bool
+    """Reward the distance instead of the view."""
+    discrete: bool
+    """Reward 0 or 1 instead of a share."""
+    cut_off: float
+    distance_scale: float
+    distance_range: float
+    view_scale: float
+    max_height: float
+    min_height: float
+    velocity: float
+    yaw_rate: float
+    roll: float
+    pitch: float
+    distance_error: float
+    total_steps: int
+    grace_steps: int
+    no_reward_steps: int
+
+
+def make_rules(
+    reward: RewardConfig, done: DoneConfig, camera: CameraConfig, ground_height: float
+) -> Rules:
+    """Return the settings as numbers.
+
+    Args:
+        reward: Which reward.
+        done: The limits.
+        camera: Whose picture the view reward is about.
+        ground_height: z of the floor [m].
+    """
+    half_width = reward.view_range * math.tan(0.5 * camera.field_of_view)
+    return Rules(
+        ground=float(ground_height),
+        half_width=half_width,
+        half_height=half_width * camera.height / camera.width,
+        distance=reward.type is RewardType.DISTANCE,
+        discrete=reward.mode is RewardMode.DISCRETE,
+        cut_off=reward.cut_off,
+        distance_scale=reward.distance_scale,
+        distance_range=reward.distance_range,
+        view_scale=reward.view_scale,
+        max_height=done.max_height,
+        min_height=done.min_height,
+        velocity=done.velocity,
+        yaw_rate=done.yaw_rate,
+        roll=done.roll,
+        pitch=done.pitch,
+        distance_error=done.distance_error,
+        total_steps=done.total_steps,
+        grace_steps=done.grace_steps,
+        no_reward_steps=done.no_reward_steps,
+    )

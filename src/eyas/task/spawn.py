@@ -1,0 +1,92 @@
+"""Where an episode starts: drawn, and placed relative to a target."""
+
+import math
+from collections.abc import Collection
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from eyas.core.errors import SpawnError
+from eyas.core.frames import wrap_angle
+from eyas.core.variation import draw
+from eyas.task.config import StartConfig
+from eyas.task.direction import TARGET_COMPENSATION
+
+__all__ = ["Start", "choose_target", "draw_start", "place"]
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """A drawn start, relative to the target; the fields of `StartConfig`."""
+
+    pitch: float
+    """Camera pitch as drawn, positive down [rad]; the gimbal holds it within its limits."""
+    height: float
+    """[m]"""
+    direction: float
+    """[rad]"""
+    horizontal_bias: float
+    """[m]"""
+    vertical_bias: float
+    """[m]"""
+
+
+def draw_start(config: StartConfig, rng: np.random.Generator) -> Start:
+    """Draw a start, in the original's order: pitch, the two biases, height, direction."""
+    pitch = draw(config.pitch, rng)
+    horizontal_bias = draw(config.horizontal_bias, rng)
+    vertical_bias = draw(config.vertical_bias, rng)
+    height = draw(config.height, rng)
+    direction = draw(config.direction, rng)
+    return Start(pitch, height, direction, horizontal_bias, vertical_bias)
+
+
+def place(
+    start: Start,
+    target_position: ArrayLike,
+    target_yaw: float,
+    ahead: float = TARGET_COMPENSATION,
+) -> tuple[NDArray[np.float64], float]:
+    """Return where the tracker's body starts [m], shape (3,), and its yaw [rad].
+
+    The tracker stands so far behind the target that, without biases, its optical axis would meet
+    the target's centre. As in the original that leaves out the place of the camera in the body
+    and the height of the reference point, and shifts to the centre along the tracker's heading.
+
+    Args:
+        start: The drawn start.
+        target_position: Reference point of the target [m], shape (3,).
+        target_yaw: Heading of the target [rad].
+        ahead: `TARGET_COMPENSATION` for vehicles, else 0 [m].
+    """
+    yaw = target_yaw + start.direction
+    forward = ahead + start.vertical_bias
+    forward -= math.tan(abs(0.5 * math.pi - start.pitch)) * start.height
+    left = start.horizontal_bias
+    east = math.cos(yaw) * forward - math.sin(yaw) * left
+    north = math.sin(yaw) * forward + math.cos(yaw) * left
+    offset = np.array([east, north, start.height])
+    return np.asarray(target_position, np.float64) + offset, wrap_angle(yaw)
+
+
+def choose_target(
+    available: NDArray[np.bool_], used: Collection[int], rng: np.random.Generator
+) -> int:
+    """Return an actor that is in the world and that no tracker follows, each as likely.
+
+    Args:
+        available: Whether each actor may be followed, shape (A,).
+        used: Actors that are followed already.
+        rng: Draws.
+
+    Raises:
+        SpawnError: There is none.
+    """
+    free = [int(actor) for actor in np.flatnonzero(available) if int(actor) not in used]
+    if not free:
+        raise SpawnError(
+            f"start: no target is free: {len(available)} known, {int(np.sum(available))} in the "
+            f"world, {len(used)} followed; allowed: at least as many vehicles as trackers"
+        )
+    return free[int(rng.integers(len(free)))]

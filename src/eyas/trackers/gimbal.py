@@ -1,0 +1,159 @@
+"""The gimbal: holds the camera at its commanded angles, however the body tilts."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.frames import rotate
+from eyas.core.jit import kernel
+from eyas.trackers.columns import (
+    GIMBAL_PITCH,
+    GIMBAL_PITCH_FILTER,
+    GIMBAL_ROLL_FILTER,
+    GIMBAL_YAW,
+    GIMBAL_YAW_FILTER,
+)
+from eyas.trackers.lowpass import low_pass, settle
+
+__all__ = ["advance_gimbal", "camera_pose", "held_pitch", "reset_gimbal"]
+
+_SIDEWAYS_LIMIT = 1.7
+"""Largest roll and yaw of the joints [rad]."""
+_PITCH_LIMITS = (-0.5, 1.5)
+"""Of the pitch joint [rad]."""
+_COMMAND_LIMITS = (0.5, 1.5)
+"""Within which a commanded pitch is held [rad]."""
+
+_YAW_JOINT = (0.13, -0.00469654, -0.013)
+"""Axis of the yaw joint, body frame [m]."""
+_PITCH_JOINT = (0.000625212, -0.00530346, -0.0207448)
+"""Axis of the pitch joint, frame of the yaw link [m]."""
+_ROLL_JOINT = (0.00754686, 0.0160388, -0.00586401)
+"""Axis of the roll joint, where the camera sits, frame of the pitch link [m]."""
+
+
+@kernel
+def held_pitch(pitch: float) -> float:
+    """Return a start's camera pitch held within what the original's command allows [rad]."""
+    return min(max(pitch, _COMMAND_LIMITS[0]), _COMMAND_LIMITS[1])
+
+
+@kernel
+def advance_gimbal(
+    memory: NDArray[np.float64], euler: NDArray[np.float64], gimbal: NDArray[np.float64]
+) -> None:
+    """Move one gimbal by one physics step of 2 ms.
+
+    Args:
+        memory: Row of the tracker, with the commands; the gimbal's filters change.
+        euler: Roll, pitch, yaw of the body [rad], shape (3,).
+        gimbal: Roll, pitch, yaw of the joints [rad], shape (3,); set.
+    """
+    roll, pitch, yaw = _desired(memory[GIMBAL_PITCH], memory[GIMBAL_YAW], euler[0], euler[1])
+    gimbal[0] = low_pass(memory, GIMBAL_ROLL_FILTER, roll)
+    gimbal[1] = low_pass(memory, GIMBAL_PITCH_FILTER, pitch)
+    gimbal[2] = low_pass(memory, GIMBAL_YAW_FILTER, yaw)
+
+
+@kernel
+def reset_gimbal(
+    pitch: float,
+    yaw: float,
+    memory: NDArray[np.float64],
+    euler: NDArray[np.float64],
+    gimbal: NDArray[np.float64],
+) -> None:
+    """Command new angles and be there at once.
+
+    The original's filters start at zero, so that its camera swings down from the horizon while
+    the first pictures of an episode are taken.
+
+    Args:
+        pitch: Commanded pitch, positive down, held within 0.5 to 1.5 [rad].
+        yaw: Commanded yaw relative to the body [rad].
+        memory: Row of the tracker; the gimbal's commands and filters are set.
+        euler: Roll, pitch, yaw of the body [rad], shape (3,).
+        gimbal: Roll, pitch, yaw of the joints [rad], shape (3,); set.
+    """
+    memory[GIMBAL_PITCH] = held_pitch(pitch)
+    memory[GIMBAL_YAW] = yaw
+    gimbal[0], gimbal[1], gimbal[2] = _desired(memory[GIMBAL_PITCH], yaw, euler[0], euler[1])
+    settle(memory, GIMBAL_ROLL_FILTER, gimbal[0])
+    settle(memory, GIMBAL_PITCH_FILTER, gimbal[1])
+    settle(memory, GIMBAL_YAW_FILTER, gimbal[2])
+
+
+@kernel
+def camera_pose(
+    position: NDArray[np.float64],
+    orientation: NDArray[np.float64],
+    gimbal: NDArray[np.float64],
+    camera_position: NDArray[np.float64],
+    camera_rotation: NDArray[np.float64],
+) -> None:
+    """Compute where the camera is: body, yaw link, pitch link, roll link.
+
+    Args:
+        position: Of the body, world frame [m], shape (3,).
+        orientation: Body to world, shape (4,).
+        gimbal: Roll, pitch, yaw of the joints [rad], shape (3,).
+        camera_position: Optical centre, world frame [m], shape (3,); set.
+        camera_rotation: Camera to world; columns forward, left, up, shape (3, 3); set.
+    """
+    sr, cr = math.sin(gimbal[0]), math.cos(gimbal[0])
+    sp, cp = math.sin(gimbal[1]), math.cos(gimbal[1])
+    sy, cy = math.sin(gimbal[2]), math.cos(gimbal[2])
+    x = _PITCH_JOINT[0] + cp * _ROLL_JOINT[0] + sp * _ROLL_JOINT[2]
+    y = _PITCH_JOINT[1] + _ROLL_JOINT[1]
+    z = _PITCH_JOINT[2] - sp * _ROLL_JOINT[0] + cp * _ROLL_JOINT[2]
+    x, y = _YAW_JOINT[0] + cy * x - sy * y, _YAW_JOINT[1] + sy * x + cy * y
+    x, y, z = rotate(orientation, x, y, _YAW_JOINT[2] + z)
+    camera_position[0] = position[0] + x
+    camera_position[1] = position[1] + y
+    camera_position[2] = position[2] + z
+    _set_column(camera_rotation, 0, rotate(orientation, cy * cp, sy * cp, -sp))
+    left = rotate(orientation, cy * sp * sr - sy * cr, sy * sp * sr + cy * cr, cp * sr)
+    _set_column(camera_rotation, 1, left)
+    up = rotate(orientation, cy * sp * cr + sy * sr, sy * sp * cr - cy * sr, cp * cr)
+    _set_column(camera_rotation, 2, up)
+
+
+@kernel
+def _set_column(
+    matrix: NDArray[np.float64], column: int, vector: tuple[float, float, float]
+) -> None:
+    matrix[0, column], matrix[1, column], matrix[2, column] = vector
+
+
+@kernel
+def _desired(
+    pitch: float, yaw: float, body_roll: float, body_pitch: float
+) -> tuple[float, float, float]:
+    """Return the roll, pitch and yaw of the joints that undo the tilt of the body, within limits.
+
+    By the original's Rx(-roll) Ry(-pitch) Rz(yaw) Ry(pitch), taken apart as yaw, pitch, roll.
+    """
+    roll = 0.0
+    # A supervised body is level: nothing to undo, and most of this function's time saved.
+    if body_roll != 0.0 or body_pitch != 0.0:
+        sp, cp = math.sin(pitch), math.cos(pitch)
+        sy, cy = math.sin(yaw), math.cos(yaw)
+        sb, cb = math.sin(body_pitch), math.cos(body_pitch)
+        sa, ca = math.sin(body_roll), math.cos(body_roll)
+        # mij: Rz(yaw) Ry(pitch) turned by Ry(-body pitch); rij: that turned by Rx(-body roll).
+        m00, m20 = cb * cy * cp + sb * sp, sb * cy * cp - cb * sp
+        m21 = -sb * sy
+        m22 = sb * cy * sp + cb * cp
+        r10 = ca * sy * cp + sa * m20
+        r20 = ca * m20 - sa * sy * cp
+        r21 = ca * m21 - sa * cy
+        r22 = ca * m22 - sa * sy * sp
+        roll = math.atan2(r21, r22)
+        pitch = math.atan2(-r20, math.sqrt(r21 * r21 + r22 * r22))
+        yaw = math.atan2(r10, m00)
+    return (
+        min(max(roll, -_SIDEWAYS_LIMIT), _SIDEWAYS_LIMIT),
+        min(max(pitch, _PITCH_LIMITS[0]), _PITCH_LIMITS[1]),
+        min(max(yaw, -_SIDEWAYS_LIMIT), _SIDEWAYS_LIMIT),
+    )

@@ -1,0 +1,44 @@
+"""The low-pass that commands and gimbal angles go through."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.clock import PHYSICS_STEP
+from eyas.core.jit import kernel
+
+__all__ = ["low_pass", "settle"]
+
+# A second-order 20 Hz Butterworth by the bilinear transform without pre-warping, as in the
+# original, where -3 dB therefore lies at 39 Hz.
+_K = 2.0 * math.pi * 20.0 * PHYSICS_STEP
+_D = _K * _K + math.sqrt(2.0) * _K + 1.0
+_B0 = _K * _K / _D
+_B1 = 2.0 * _B0
+_B2 = _B0
+_A1 = 2.0 * (_K * _K - 1.0) / _D
+_A2 = (_K * _K - math.sqrt(2.0) * _K + 1.0) / _D
+
+
+@kernel
+def low_pass(memory: NDArray[np.float64], column: int, value: float) -> float:
+    """Return the filtered value of one 2 ms step.
+
+    Args:
+        memory: Row of a tracker; the filter's two columns change.
+        column: First of the filter's columns.
+        value: What goes in.
+    """
+    # The transposed direct form II: the same response as the usual form with half the state.
+    result: float = _B0 * value + memory[column]
+    memory[column] = _B1 * value - _A1 * result + memory[column + 1]
+    memory[column + 1] = _B2 * value - _A2 * result
+    return result
+
+
+@kernel
+def settle(memory: NDArray[np.float64], column: int, value: float) -> None:
+    """Put the filter where it would be if `value` had gone in for ever."""
+    memory[column + 1] = (_B2 - _A2) * value
+    memory[column] = (_B1 - _A1) * value + memory[column + 1]
