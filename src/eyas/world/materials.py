@@ -2,7 +2,7 @@
 
 from eyas.state.mesh import Material, Surface
 
-__all__ = ["FACADES", "TEXTURES", "facade", "material"]
+__all__ = ["FACADES", "GROUND_FLOORS", "TEXTURES", "facade", "material"]
 
 FACADES = (
     "facade_concrete",
@@ -18,6 +18,9 @@ FACADES = (
 )
 """Walls with windows: one repeat is four floors of 3 m high and four bays of 3 m wide."""
 
+GROUND_FLOORS = ("ground_shop", "ground_lobby")
+"""Street-level fronts of the same grid: each of the four rows of a repeat is one ground floor."""
+
 TEXTURES: dict[str, float] = {
     "plain": 1.0,
     "asphalt": 8.0,
@@ -29,10 +32,11 @@ TEXTURES: dict[str, float] = {
     "bark": 2.0,
     "leaves": 3.0,
     "roof_tiles": 4.0,
+    "roof_terrace": 4.0,
     "bitumen": 8.0,
     "brick": 4.0,
     "stone": 4.0,
-    **dict.fromkeys(FACADES, 12.0),
+    **dict.fromkeys(FACADES + GROUND_FLOORS, 12.0),
 }
 """Metres that one repeat of each texture covers."""
 
@@ -43,5 +47,5 @@ def material(texture: str, tint: tuple[float, float, float] = (1.0, 1.0, 1.0)) -
 
 
 def facade(kind: str, tint: tuple[float, float, float] = (1.0, 1.0, 1.0)) -> Material:
-    """Return a wall with windows; `kind` is one of `FACADES`."""
+    """Return a wall with windows; `kind` is one of `FACADES` or `GROUND_FLOORS`."""
     return Material(texture=kind, tint=tint, surface=Surface.FACADE)

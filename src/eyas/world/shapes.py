@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from eyas.state.mesh import Material, Mesh
 
-__all__ = ["box", "cylinder", "flat_polygon", "quads", "sphere", "walls"]
+__all__ = ["box", "cylinder", "flat_polygon", "quads", "sphere", "tube", "walls"]
 
 
 def quads(corners: ArrayLike, uvs: ArrayLike, material: Material) -> Mesh:
@@ -23,7 +23,9 @@ def quads(corners: ArrayLike, uvs: ArrayLike, material: Material) -> Mesh:
     normals = np.cross(points[:, 2] - points[:, 0], points[:, 3] - points[:, 1])
     normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
     first = 4 * np.arange(len(points), dtype=np.int32)[:, None]
-    triangles = np.concatenate([first + [0, 1, 2], first + [0, 2, 3]], axis=1).reshape(-1, 3)
+    triangles = np.concatenate(
+        [first + np.array([0, 1, 2]), first + np.array([0, 2, 3])], axis=1
+    ).reshape(-1, 3)
     return _mesh(
         points.reshape(-1, 3),
         np.repeat(normals, 4, axis=0),
@@ -65,9 +67,7 @@ def flat_polygon(polygon: shapely.Geometry, z: float, material: Material, tile: 
     return _mesh(positions, up, points / tile, index.reshape(-1, 3), material)
 
 
-def walls(
-    outline: ArrayLike, bottom: float, top: float, material: Material, tile: float
-) -> Mesh:
+def walls(outline: ArrayLike, bottom: float, top: float, material: Material, tile: float) -> Mesh:
     """Return vertical walls around a closed counter-clockwise outline, shape (K, 2).
 
     The texture goes round with a whole number of bays (quarter tiles) on each wall, v from the
@@ -125,7 +125,10 @@ def cylinder(
     normal = np.column_stack([ring, np.full(sides + 1, slope)])
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
     positions = np.concatenate(
-        [np.column_stack([ring * r, np.full(sides + 1, z)]) for r, z in zip(radius, height, strict=True)]
+        [
+            np.column_stack([ring * r, np.full(sides + 1, z)])
+            for r, z in zip(radius, height, strict=True)
+        ]
     )
     along = angle * max(radius) / tile
     uvs = np.concatenate(
@@ -147,10 +150,51 @@ def cylinder(
             normals = np.concatenate([normals, np.tile([0.0, 0.0, sign], (sides, 1))])
             uvs = np.concatenate([uvs, disc / tile])
             fan = np.column_stack(
-                [np.full(sides - 2, first), first + np.arange(1, sides - 1), first + np.arange(2, sides)]
+                [
+                    np.full(sides - 2, first),
+                    first + np.arange(1, sides - 1),
+                    first + np.arange(2, sides),
+                ]
             )
             triangles = np.concatenate([triangles, fan if sign > 0 else fan[:, ::-1]])
     return _mesh(positions, normals, uvs, triangles, material)
+
+
+def tube(
+    path: ArrayLike, radii: Sequence[float], sides: int, material: Material, tile: float = 1.0
+) -> Mesh:
+    """Return a round pipe of changing thickness along points, open at its ends.
+
+    Args:
+        path: Points of its axis [m], shape (P, 3).
+        radii: At each point [m], P numbers.
+        sides: Number of sides.
+        material: Of all of it.
+        tile: Metres one repeat of the texture covers.
+    """
+    points = np.asarray(path, np.float64)
+    along = np.asarray(np.gradient(points, axis=0), np.float64)
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    # Any direction across will do, as long as it turns little from point to point.
+    across = np.cross(along, np.eye(3)[int(np.argmin(np.abs(along).sum(0)))])
+    across /= np.linalg.norm(across, axis=1, keepdims=True)
+    other = np.cross(along, across)
+    angle = np.arange(sides + 1) * (2 * np.pi / sides)
+    normals = across[:, None] * np.cos(angle)[:, None] + other[:, None] * np.sin(angle)[:, None]
+    radius = np.asarray(radii, np.float64)[:, None, None]
+    travelled = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    around = np.maximum(np.round(2 * np.pi * max(radii) / tile), 1) * angle / (2 * np.pi)
+    uvs = np.stack(np.broadcast_arrays(around[None], travelled[:, None] / tile), axis=2)
+    first = (np.arange(len(points) - 1)[:, None] * (sides + 1) + np.arange(sides)).reshape(-1, 1)
+    cells = first + np.array([0, 1, sides + 2, 0, sides + 2, sides + 1])
+    rings = points[:, None] + radius * normals
+    return _mesh(
+        rings.reshape(-1, 3),
+        normals.reshape(-1, 3),
+        uvs.reshape(-1, 2),
+        cells.reshape(-1, 3),
+        material,
+    )
 
 
 def sphere(subdivisions: int, material: Material, tile: float = 1.0) -> Mesh:
