@@ -2,8 +2,9 @@
 
 import hashlib
 import json
+import logging
 from collections.abc import Callable
-from dataclasses import asdict, dataclass
+from dataclasses import asdict
 from importlib.abc import Traversable
 from importlib.resources import files
 from pathlib import Path
@@ -21,12 +22,13 @@ from eyas.traffic.recording_file import FORMAT, load, save
 __all__ = [
     "CANONICAL_SEED",
     "STANDARD_DURATION",
-    "MapRoads",
     "cache_file",
     "find_recording",
     "record_canonical",
     "shipped_file",
 ]
+
+_LOG = logging.getLogger("eyas")
 
 CANONICAL_SEED = 1
 """Seed of the recordings that are shipped, and of those that say no other."""
@@ -35,32 +37,20 @@ STANDARD_DURATION = 1260.0
 """Length of a recording where nothing else is asked for: 21 minutes [s]."""
 
 
-@dataclass(frozen=True, slots=True)
-class MapRoads:
-    """The roads that traffic is wanted for."""
-
-    map_name: str
-    map_seed: int
-    graph_hash: str
-    """Hash of the road graph."""
-    graph: Callable[[], RoadGraph]
-    """Draws the road graph; called only to record."""
-
-
 def find_recording(
-    roads: MapRoads,
+    graph: RoadGraph,
     config: TrafficConfig,
-    notice: Callable[[str], None],
     *,
     trackers: int = 1,
     duration: float = STANDARD_DURATION,
 ) -> Recording:
     """Return the recording to replay: the one named, the shipped one, a cached or a new one.
 
+    That one has to be made first is said in one line of the log `eyas`, which Python prints.
+
     Args:
-        roads: Where to drive.
+        graph: Where to drive.
         config: What drives.
-        notice: Is told, in one line, when a recording has to be made first.
         trackers: Number of trackers, which the size of a group follows.
         duration: Shortest recording that will do [s].
 
@@ -72,11 +62,11 @@ def find_recording(
     if config.recording is not None:
         path = Path(config.recording).expanduser()
         named = load(path)
-        check_map(named, roads.map_name, roads.map_seed, roads.graph_hash, str(path))
+        check_map(named, graph.map_name, graph.seed, graph_hash(graph), str(path))
         return named
     seed = CANONICAL_SEED if config.seed is None else config.seed
     wanted = resolved(config, seed, trackers)
-    shipped = _shipped(roads, wanted)
+    shipped = _shipped(graph, wanted)
     if shipped is not None and shipped.duration >= duration:
         return shipped
     if not config.update_routes:
@@ -84,7 +74,7 @@ def find_recording(
             "traffic.update_routes: false, but no recording fits these settings; allowed: true, "
             "or the settings of the shipped recording, or traffic.recording"
         )
-    return _cached_or_new(roads, wanted, notice, duration)
+    return _cached_or_new(graph, wanted, duration)
 
 
 def shipped_file(map_name: str) -> Traversable:
@@ -120,36 +110,32 @@ def cache_file(origin: Provenance) -> Path:
     return folder / f"{origin.map_name}-{origin.map_seed}-{key}.npz"
 
 
-def _shipped(roads: MapRoads, wanted: TrafficConfig) -> Recording | None:
-    file = shipped_file(roads.map_name)
+def _shipped(graph: RoadGraph, wanted: TrafficConfig) -> Recording | None:
+    file = shipped_file(graph.map_name)
     if not file.is_file():
         return None
     recording = load(file)
     origin = recording.provenance
-    fits = (origin.graph_hash, origin.config) == (roads.graph_hash, wanted)
+    fits = (origin.graph_hash, origin.config) == (graph_hash(graph), wanted)
     return recording if fits else None
 
 
-def _cached_or_new(
-    roads: MapRoads, wanted: TrafficConfig, notice: Callable[[str], None], duration: float
-) -> Recording:
-    origin = provenance(roads.map_name, roads.map_seed, roads.graph_hash, wanted, duration)
+def _cached_or_new(graph: RoadGraph, wanted: TrafficConfig, duration: float) -> Recording:
+    origin = provenance(graph.map_name, graph.seed, graph_hash(graph), wanted, duration)
     path = cache_file(origin)
     try:
         return load(path)
     except DataFileError:
         pass  # not there, or damaged: record it again
-    notice(
-        f"recording {duration:.0f} s of traffic on '{roads.map_name}' with SUMO "
-        f"{origin.sumo_version}, once; kept in {path}"
+    _LOG.warning(
+        "recording %.0f s of traffic on '%s' with SUMO %s, once; kept in %s",
+        *(duration, graph.map_name, origin.sumo_version, path),
     )
-    graph = roads.graph()
-    assert graph_hash(graph) == roads.graph_hash
     assert wanted.seed is not None
-    made = record(roads.map_name, roads.map_seed, graph, wanted, duration, wanted.seed)
+    made = record(graph.map_name, graph.seed, graph, wanted, duration, wanted.seed)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         save(made, path)
     except (OSError, OutputError) as error:
-        notice(f"the recording is used but not kept: {error}")
+        _LOG.warning("the recording is used but not kept: %s", error)
     return made

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.errors import ConfigError
-from eyas.traffic.config import TrafficConfig
+from eyas.traffic.config import Demand, TrafficConfig
 from eyas.traffic.demand import RoadLinks, Route, without_turnarounds
 from eyas.traffic.slots import Slots
 from eyas.traffic.sumo_install import import_libsumo
@@ -83,7 +83,7 @@ def drive(
     with _simulation(network, config) as sumo:
         result.vehicle_length = sumo.vehicletype.getLength(TYPE)
         links = _read_links(sumo, config.vehicle_type)
-        entrance = _Entrance(sumo, fleet(links), config.max_vehicles)
+        entrance = _Entrance(sumo, fleet(links), config)
         slots = Slots(config.max_vehicles)
         for step in range(1, steps + 1):
             entrance.advance((step - 1) / RATE)
@@ -153,10 +153,14 @@ def _read_links(sumo: ModuleType, vehicle_type: str) -> RoadLinks:
 class _Entrance:
     """Lets vehicles into the simulation when it is their time and there is room for them."""
 
-    def __init__(self, sumo: ModuleType, fleet: Iterator[tuple[float, Route]], room: int) -> None:
+    def __init__(
+        self, sumo: ModuleType, fleet: Iterator[tuple[float, Route]], config: TrafficConfig
+    ) -> None:
         self._sumo = sumo
         self._fleet = fleet
-        self._room = room
+        self._room = config.max_vehicles
+        # Vehicles that stay for ever begin anywhere, those of a group where an edge begins.
+        self._place = "random_free" if config.demand is Demand.KEEP_ALIVE else "base"
         self._waiting: deque[tuple[float, Route]] = deque()
         self._entered = 0
 
@@ -166,7 +170,7 @@ class _Entrance:
         while self._room > 0 and self._next_time() <= time:
             name = str(self._entered)
             self._sumo.route.add(name, self._waiting.popleft()[1])
-            self._sumo.vehicle.add(name, name, TYPE, departLane="best", departPos=self._place(time))
+            self._sumo.vehicle.add(name, name, TYPE, departLane="best", departPos=self._place)
             self._entered += 1
             self._room -= 1
 
@@ -174,11 +178,6 @@ class _Entrance:
         if not self._waiting:
             self._waiting.extend(entry for entry in [next(self._fleet, None)] if entry)
         return self._waiting[0][0] if self._waiting else float("inf")
-
-    @staticmethod
-    def _place(time: float) -> str:
-        # Those that are there from the start stand anywhere; later ones enter where an edge begins.
-        return "random_free" if time == 0.0 else "base"
 
 
 def _read_poses(sumo: ModuleType, slots: Slots, result: Drive, sample: int) -> None:

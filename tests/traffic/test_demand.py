@@ -1,0 +1,68 @@
+from itertools import islice, pairwise
+
+import numpy as np
+import pytest
+
+from eyas.core.errors import ConfigError
+from eyas.traffic.config import Demand, TrafficConfig
+from eyas.traffic.demand import (
+    RoadLinks,
+    departures,
+    endless_walk,
+    lasting_edges,
+    random_trips,
+    without_turnarounds,
+)
+
+# A square a > b > c > d > a with a way in (i > a) and a way out (c > o).
+SQUARE = RoadLinks(
+    successors={"i": ("a",), "a": ("b",), "b": ("c",), "c": ("d", "o"), "d": ("a",), "o": ()},
+    length={"i": 10.0, "a": 100.0, "b": 100.0, "c": 100.0, "d": 100.0, "o": 50.0},
+)
+ONE_WAY = RoadLinks(successors={"i": ("o",), "o": ()}, length={"i": 10.0, "o": 20.0})
+
+
+def test_lasting_edges_are_those_of_the_square():
+    assert lasting_edges(SQUARE) == ("a", "b", "c", "d")
+
+
+def test_roads_that_all_lead_out_cannot_keep_cars_alive():
+    with pytest.raises(ConfigError, match="use 'respawn'"):
+        lasting_edges(ONE_WAY)
+
+
+def test_a_walk_is_long_enough_and_stays_inside():
+    walk = endless_walk(SQUARE, lasting_edges(SQUARE), 5000.0, np.random.default_rng(0))
+    assert sum(SQUARE.length[edge] for edge in walk) >= 5000.0
+    assert set(walk) == {"a", "b", "c", "d"}
+    assert all(after in SQUARE.successors[before] for before, after in pairwise(walk))
+
+
+def test_turnarounds_stay_only_in_dead_ends():
+    ends = {"up": ("s", "n"), "down": ("n", "s"), "on": ("n", "m"), "back": ("m", "n")}
+    links = RoadLinks(
+        {"up": ("down", "on"), "down": ("up",), "on": ("back",), "back": ("down",)},
+        dict.fromkeys(ends, 1.0),
+    )
+    onward = without_turnarounds(links, ends).successors
+    assert onward == {"up": ("on",), "down": ("up",), "on": ("back",), "back": ("down",)}
+
+
+def test_trips_are_shortest_routes_within_the_limits():
+    trips = list(islice(random_trips(SQUARE, (150.0, 320.0), np.random.default_rng(1)), 50))
+    for trip in trips:
+        assert 150.0 <= sum(SQUARE.length[edge] for edge in trip) <= 320.0
+        assert all(after in SQUARE.successors[before] for before, after in pairwise(trip))
+        assert len(set(trip)) == len(trip)
+    assert len(set(trips)) > 5
+
+
+def test_limits_that_no_route_meets_are_an_error():
+    with pytest.raises(ConfigError, match=r"traffic\.route_length: no route of 900 to 1000 m"):
+        next(random_trips(SQUARE, (900.0, 1000.0), np.random.default_rng(1)))
+
+
+def test_groups_enter_at_intervals_until_the_routes_are_used_up():
+    config = TrafficConfig(demand=Demand.RESPAWN, group_size=4, group_interval=10.0, route_count=10)
+    assert list(departures(config, 100.0)) == [(0.0, 4), (10.0, 4), (20.0, 2)]
+    assert list(departures(config, 15.0)) == [(0.0, 4), (10.0, 4)]

@@ -1,0 +1,73 @@
+import io
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from eyas.core.errors import DataFileError, OutputError
+from eyas.traffic.recording import Recording
+from eyas.traffic.recording_file import from_bytes, load, save, to_bytes
+
+
+def test_a_loaded_recording_equals_the_saved_one(wandering: Recording, tmp_path: Path):
+    save(wandering, tmp_path / "drive.npz")
+    back = load(tmp_path / "drive.npz")
+    np.testing.assert_allclose(back.position, wandering.position, rtol=0, atol=1e-9)
+    np.testing.assert_allclose(back.yaw, wandering.yaw, rtol=0, atol=1e-9)
+    np.testing.assert_array_equal(back.present, wandering.present)
+    assert back.provenance == wandering.provenance
+    assert (back.rate, back.vehicle_length) == (10.0, 5.0)
+    assert (back.actors, back.duration) == (3, 20.0)
+    assert [entry.name for entry in tmp_path.iterdir()] == ["drive.npz"]
+
+
+def test_equal_recordings_give_equal_bytes(wandering: Recording):
+    data = to_bytes(wandering)
+    assert to_bytes(from_bytes(data, "memory")) == data
+
+
+@pytest.mark.parametrize("share", [0.0, 0.01, 0.5, 0.99])
+def test_a_file_that_is_cut_off_is_refused(wandering: Recording, share: float):
+    data = to_bytes(wandering)
+    with pytest.raises(DataFileError, match=r"^drive\.npz: not a.* traffic recording"):
+        from_bytes(data[: int(share * len(data))], "drive.npz")
+
+
+def test_no_damaged_byte_goes_unnoticed(wandering: Recording):
+    data = to_bytes(wandering)
+    for place in range(0, len(data), 29):
+        broken = bytearray(data)
+        broken[place] ^= 0x55
+        try:  # bytes that only dress the archive may differ, the content may not
+            back = from_bytes(bytes(broken), "drive.npz")
+        except DataFileError:
+            continue
+        np.testing.assert_allclose(back.position, wandering.position, rtol=0, atol=1e-9)
+        assert back.provenance == wandering.provenance
+
+
+def test_changed_content_fails_the_checksum(wandering: Recording):
+    with np.load(io.BytesIO(to_bytes(wandering))) as file:
+        arrays = dict(file)
+    arrays["position_start"] = arrays["position_start"] + 1
+    buffer = io.BytesIO()
+    np.savez_compressed(buffer, **arrays)
+    with pytest.raises(DataFileError, match="damaged: its checksum"):
+        from_bytes(buffer.getvalue(), "drive.npz")
+
+
+def test_other_files_are_refused(tmp_path: Path):
+    np.savez(tmp_path / "other.npz", a=np.zeros(3))
+    np.save(tmp_path / "array.npy", np.zeros(3))
+    (tmp_path / "text.npz").write_text("not an archive")
+    for name in ("other.npz", "array.npy", "text.npz"):
+        with pytest.raises(DataFileError, match=rf"{name}: not a"):
+            load(tmp_path / name)
+    for name in ("missing.npz", "."):
+        with pytest.raises(DataFileError, match="cannot read"):
+            load(tmp_path / name)
+
+
+def test_a_folder_that_is_not_there_is_an_output_error(wandering: Recording, tmp_path: Path):
+    with pytest.raises(OutputError, match="cannot write"):
+        save(wandering, tmp_path / "missing" / "drive.npz")
