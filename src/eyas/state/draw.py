@@ -56,6 +56,8 @@ class Views:
     """Object id of the thing each view is about (its box is measured), or -1, shape (V,)."""
     field_of_view: float
     """Horizontal [rad]."""
+    vertical_field_of_view: float | None = None
+    """[rad]; None: pixels are square. Set it to squeeze a wide view into a square picture."""
 
 
 @dataclass(slots=True)

@@ -1,0 +1,143 @@
+"""The Gymnasium environment: one drone, one target."""
+
+from collections.abc import Mapping
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import gymnasium
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.clock import physics_steps
+from eyas.core.config import validated
+from eyas.core.errors import ConfigError
+from eyas.envs.actions import ContinuousActions, DiscreteActions, Speeds
+from eyas.sim.build import build_simulation
+from eyas.sim.config import EyasConfig
+from eyas.sim.settings_file import load_settings
+from eyas.state.draw import Picture
+from eyas.task.done import DoneReason
+
+__all__ = ["TrackingEnv"]
+
+Observation = NDArray[np.uint8]
+
+
+class TrackingEnv(gymnasium.Env[Observation, Any]):
+    """Keep a moving target in view.
+
+    The observation is what the camera sees, RGB uint8, shape (84, 84, 3): the configured 4:3 view
+    squeezed into a square, as in the original. `info` holds the reward packet by name
+    (`eyas.task.packets`), the reason of the end, and the step count.
+
+    Args:
+        config: Settings: an `EyasConfig`, nested dictionaries of native settings, or the path of a
+            JSON file (native or the original's `env_config.json`).
+        map: Name of the map; overrides the configuration.
+        weather: Name of the weather; overrides the configuration.
+        continuous: True: four numbers in -1 to 1; False: the seven discrete actions.
+        speeds: How fast the actions are.
+        observation_size: Width and height of the observation [pixels].
+        render_mode: `rgb_array` or None.
+
+    Raises:
+        EyasError: A setting is wrong, in one line.
+    """
+
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 125}  # noqa: RUF012  # Gymnasium's
+
+    def __init__(
+        self,
+        config: EyasConfig | Mapping[str, Any] | str | Path | None = None,
+        *,
+        map: str | None = None,  # noqa: A002  # the word users know
+        weather: str | None = None,
+        continuous: bool = False,
+        speeds: Speeds | None = None,
+        observation_size: tuple[int, int] = (84, 84),
+        render_mode: str | None = None,
+    ) -> None:
+        if render_mode not in (None, *self.metadata["render_modes"]):
+            raise ConfigError(f"render_mode: '{render_mode}' is not allowed: 'rgb_array' or None")
+        self.config = _settings(config, map, weather)
+        self.render_mode = render_mode
+        actions = ContinuousActions if continuous else DiscreteActions
+        self._actions = actions(speeds or Speeds())
+        self.action_space = self._actions.space
+        width, height = observation_size
+        self.observation_space = gymnasium.spaces.Box(0, 255, (height, width, 3), np.uint8)
+        self._steps_per_action = physics_steps(self.config.control.frequency)
+        self._simulation = build_simulation(self.config, 1, shared_world=False)
+        self._picture = Picture.create(1, height, width)
+        self._render_picture: Picture | None = None
+        self._tracker = np.zeros(1, np.int32)
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Observation, dict[str, Any]]:
+        """Start a new episode; the observation already shows its target.
+
+        Args:
+            seed: Begin the sequence of episodes of this seed; None goes on with the present one,
+                which is the configuration's at first.
+            options: Unused.
+        """
+        super().reset(seed=seed)
+        if seed is not None:
+            self._simulation.reseed(seed)
+        self._simulation.reset()
+        return self._observe(), self._info()
+
+    def step(self, action: Any) -> tuple[Observation, float, bool, bool, dict[str, Any]]:  # noqa: ANN401  # as in Gymnasium
+        """Hold an action for 500 // frequency physics steps of 2 ms."""
+        simulation = self._simulation
+        simulation.advance(self._actions.command(action), self._steps_per_action)
+        done = bool(simulation.done[0])
+        truncated = done and simulation.reason[0] == DoneReason.STEP_LIMIT
+        reward = float(simulation.reward[0])
+        return self._observe(), reward, done and not truncated, truncated, self._info()
+
+    def render(self) -> Observation | None:  # type: ignore[override]  # one frame, no list
+        """Return the camera's picture in its configured size, shape (H, W, 3)."""
+        if self.render_mode is None:
+            return None
+        if self._render_picture is None:
+            camera = self.config.camera
+            self._render_picture = Picture.create(1, camera.height, camera.width)
+        return self._draw(self._render_picture)
+
+    def _observe(self) -> Observation:
+        return self._draw(self._picture)
+
+    def _draw(self, picture: Picture) -> Observation:
+        self._simulation.draw(self._tracker, picture)
+        assert picture.rgb is not None
+        return picture.rgb[0].copy()
+
+    def _info(self) -> dict[str, Any]:
+        simulation = self._simulation
+        reason = DoneReason(int(simulation.reason[0]))
+        return {
+            **asdict(simulation.reward_packet(0)),
+            "step": int(simulation.step_count[0]),
+            "done_reason": reason.name.lower(),
+        }
+
+
+def _settings(
+    config: EyasConfig | Mapping[str, Any] | str | Path | None, map_name: str | None, weather: str | None
+) -> EyasConfig:
+    match config:
+        case None:
+            settings = EyasConfig()
+        case EyasConfig():
+            settings = config
+        case Mapping():
+            settings = validated(EyasConfig, dict(config))
+        case _:
+            settings = load_settings(Path(config), [])
+    changes = {key: value for key, value in (("map", map_name), ("weather", weather)) if value is not None}
+    if not changes:
+        return settings
+    return settings.model_copy(update={"world": settings.world.model_copy(update=changes)})

@@ -1,0 +1,25 @@
+"""The one place where the rooms are joined."""
+
+from eyas.sim.config import EyasConfig
+from eyas.sim.place import load_place
+from eyas.sim.simulation import Simulation
+from eyas.sim.version_check import require_supported
+
+__all__ = ["build_simulation"]
+
+
+def build_simulation(config: EyasConfig, count: int, *, shared_world: bool) -> Simulation:
+    """Return a simulation; call its `reset` first.
+
+    Args:
+        config: The settings.
+        count: Number of trackers.
+        shared_world: One world and one time for all trackers, each with a target of its own, or an
+            independent world for each.
+
+    Raises:
+        EyasError: A setting is not supported, or there is no traffic for it.
+    """
+    require_supported(config)
+    place = load_place(config.world, config.traffic)
+    return Simulation(config, place, count, shared_world=shared_world)

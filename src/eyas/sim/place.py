@@ -1,0 +1,62 @@
+"""What simulations of the same place share: scene, renderer, traffic, rigs."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+from eyas.render.renderer import Renderer
+from eyas.render.textures import build_textures
+from eyas.state.roads import RoadNetwork
+from eyas.state.scene import Scene
+from eyas.targets.rig import VehicleRigs
+from eyas.traffic.config import TrafficConfig
+from eyas.traffic.library import find_recording
+from eyas.traffic.network import build_network
+from eyas.traffic.replay import Replay
+from eyas.world.config import WorldConfig
+from eyas.world.maps import build_scene, road_graph, shipped_network
+from eyas.world.weather import lighting
+
+__all__ = ["Place", "load_place", "load_scene"]
+
+
+@dataclass(frozen=True, slots=True)
+class Place:
+    """A map in a weather with its traffic."""
+
+    scene: Scene
+    replay: Replay
+    renderer: Renderer
+    rigs: VehicleRigs
+
+
+def load_network(world: WorldConfig) -> RoadNetwork:
+    """Return the map's roads: shipped for seed 0, built by netconvert for other seeds.
+
+    Raises:
+        MissingExtraError: netconvert is needed and not installed.
+    """
+    shipped = shipped_network(world.map) if world.seed == 0 else None
+    return shipped or build_network(road_graph(world.map, world.seed))
+
+
+@lru_cache(maxsize=2)
+def load_scene(map_name: str, seed: int) -> Scene:
+    """Return everything of a map that stands still."""
+    world = WorldConfig(map=map_name, seed=seed)
+    return build_scene(map_name, load_network(world), seed)
+
+
+@lru_cache(maxsize=2)
+def load_place(world: WorldConfig, traffic: TrafficConfig) -> Place:
+    """Return a place, built once in a process for all simulations in it.
+
+    Raises:
+        EyasError: No such map or weather, or no traffic for it.
+    """
+    light = lighting(world.map, world.weather)
+    graph = road_graph(world.map, world.seed)
+    recording = find_recording(graph, traffic)
+    scene = load_scene(world.map, world.seed)
+    rigs = VehicleRigs(traffic.vehicle_type)
+    renderer = Renderer(scene, rigs.library, light, build_textures())
+    return Place(scene, Replay(recording), renderer, rigs)
