@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 
 import platformdirs
 
-__all__ = ["cache_folder", "kernel", "parallel_kernel"]
+__all__ = ["cache_folder", "inlined_kernel", "kernel", "parallel_kernel"]
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -43,6 +43,14 @@ import numba  # noqa: E402  # reads the settings above when imported
 def kernel(function: Function) -> Function:
     """Compile a scalar function without allocation, so that CUDA kernels can call it too."""
     compiled: Function = numba.njit(cache=True, error_model="numpy", fastmath=False)(function)
+    return compiled
+
+
+def inlined_kernel(function: Function) -> Function:
+    """Compile like `kernel`, and have LLVM put it into its callers: for what runs once a pixel."""
+    compiled: Function = numba.njit(
+        cache=True, error_model="numpy", fastmath=False, forceinline=True
+    )(function)
     return compiled
 
 

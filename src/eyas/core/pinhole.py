@@ -1,0 +1,79 @@
+"""The pinhole camera: optical axis through the middle of the picture."""
+
+import math
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["focal_length", "project", "rays"]
+
+
+def focal_length(width: int, fov: float) -> float:
+    """Return the focal length [pixels]; with a height and a vertical field, that along columns.
+
+    Args:
+        width: Of the picture [pixels].
+        fov: Horizontal field of view [rad].
+    """
+    return 0.5 * width / math.tan(0.5 * fov)
+
+
+def project(
+    points: ArrayLike,
+    position: ArrayLike,
+    rotation: ArrayLike,
+    width: int,
+    height: int,
+    fov: float,
+    vertical_fov: float | None = None,
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Return where points appear in a picture.
+
+    Args:
+        points: World frame [m], shape (..., 3).
+        position: Optical centre, world frame [m], shape (3,).
+        rotation: Camera to world; columns forward, left, up, shape (3, 3).
+        width: Of the picture [pixels].
+        height: Of the picture [pixels].
+        fov: Horizontal field of view [rad].
+        vertical_fov: Vertical field of view [rad]; None for square pixels.
+
+    Returns:
+        Column and row [pixels] (pixel (0, 0) has its centre at (0.5, 0.5)) and the distance along
+        the optical axis [m], each of shape (...). Column and row mean nothing where the distance
+        is not positive; they are not a number where it is 0.
+    """
+    offset = np.asarray(points, np.float64) - np.asarray(position, np.float64)
+    forward, left, up = np.moveaxis(offset @ np.asarray(rotation, np.float64), -1, 0)
+    focal = focal_length(width, fov)
+    focal_vertical = focal if vertical_fov is None else focal_length(height, vertical_fov)
+    distance = np.where(forward == 0.0, np.nan, forward)
+    column = 0.5 * width - focal * left / distance
+    row = 0.5 * height - focal_vertical * up / distance
+    return column, row, forward
+
+
+def rays(
+    rotation: ArrayLike, width: int, height: int, fov: float, vertical_fov: float | None = None
+) -> NDArray[np.float64]:
+    """Return the direction of each pixel's centre, so that `position + depth * ray` is what it shows.
+
+    Args:
+        rotation: Camera to world; columns forward, left, up, shape (3, 3).
+        width: Of the picture [pixels].
+        height: Of the picture [pixels].
+        fov: Horizontal field of view [rad].
+        vertical_fov: Vertical field of view [rad]; None for square pixels.
+
+    Returns:
+        World frame, of length 1 along the optical axis, shape (height, width, 3).
+    """
+    focal = focal_length(width, fov)
+    focal_vertical = focal if vertical_fov is None else focal_length(height, vertical_fov)
+    left = (0.5 * width - (np.arange(width) + 0.5)) / focal
+    up = (0.5 * height - (np.arange(height) + 0.5)) / focal_vertical
+    local = np.empty((height, width, 3))
+    local[..., 0] = 1.0
+    local[..., 1] = left
+    local[..., 2] = up[:, None]
+    return local @ np.asarray(rotation, np.float64).T

@@ -1,0 +1,168 @@
+"""The shadow map of everything that stands still, made once for a scene and a sun."""
+
+import hashlib
+import io
+import math
+import zipfile
+from dataclasses import dataclass
+from pathlib import Path
+
+import numba
+import numpy as np
+import platformdirs
+from numpy.typing import NDArray
+
+from eyas.core.errors import OutputError
+from eyas.core.files import write_atomic
+from eyas.render.kernels.bundles import Geometry
+from eyas.render.kernels.shadow_map import BAND, bake_rows
+
+__all__ = ["ShadowMap", "bake_shadows", "shadow_folder"]
+
+TEXEL = 0.2
+"""Side of a texel, where the map is not too large for that [m]."""
+
+LARGEST = 4096
+"""Most texels along a side."""
+
+_FORMAT = b"eyas shadow map 1"
+
+
+@dataclass(frozen=True, slots=True)
+class ShadowMap:
+    """Where the sun shines."""
+
+    heights: NDArray[np.uint16]
+    """How high towards the sun the first thing stands that sunlight meets, 0 for nothing,
+    shape (lines, columns)."""
+    rows: NDArray[np.float64]
+    """World [m] to column, line and height of the map, shape (3, 4)."""
+    texel: float
+    """Side of a texel [m]."""
+
+
+def shadow_folder() -> Path:
+    """Return where baked shadow maps are kept."""
+    return Path(platformdirs.user_cache_dir("eyas")) / "shadows"
+
+
+def bake_shadows(
+    geometry: Geometry,
+    sun: tuple[float, float, float],
+    ground: float,
+    folder: Path | None,
+) -> ShadowMap:
+    """Return the shadow map; made anew only if the cache has none.
+
+    Args:
+        geometry: The scene.
+        sun: Unit vector towards the sun.
+        ground: z of the floor [m].
+        folder: The cache, or None to use none. A file in it that cannot be read is made anew;
+            a folder that cannot be written to is left alone.
+    """
+    rows, lines, columns, texel = _frame(geometry, sun, ground)
+    path = folder / f"{_content_hash(geometry, rows)}.npz" if folder else None
+    heights = _load(path, (lines, columns)) if path else None
+    if heights is None:
+        heights = _bake(geometry, rows, lines, columns)
+        if path:
+            _save(path, heights)
+    return ShadowMap(heights, rows, texel)
+
+
+def _frame(
+    geometry: Geometry, sun: tuple[float, float, float], ground: float
+) -> tuple[NDArray[np.float64], int, int, float]:
+    """Return the map's rows, lines, columns and texel: it covers all that rises from the floor.
+
+    What lies flat throws no shadow, so however wide the floor is, it costs no texels.
+    """
+    toward = np.asarray(sun, np.float64) / np.linalg.norm(sun)
+    right = np.array([-toward[1], toward[0], 0.0])
+    right = right / np.linalg.norm(right) if np.linalg.norm(right) > 1e-6 else np.eye(3)[0]
+    axes = np.stack([right, np.cross(toward, right), toward])
+    points = _solid_points(geometry)
+    high = points[points[:, 2] > ground + 0.5]
+    flat = (high if len(high) else np.zeros((1, 3))) @ axes.T
+    low, top = flat.min(axis=0) - 1.0, flat.max(axis=0) + 1.0
+    texel = max(TEXEL, float((top - low)[:2].max()) / (LARGEST - 4))
+    size = np.ceil((top - low)[:2] / texel).astype(int) + 2
+    # Heights of 1 to 65535. The floor may reach lower than all that throws shadows: it ends at 1.
+    unit = 65000.0 / float(top[2] - low[2])
+    scale = np.array([1.0 / texel, 1.0 / texel, unit])
+    rows = np.concatenate(
+        [axes * scale[:, None], (-low * scale + [1.0, 1.0, 1.0])[:, None]], axis=1
+    )
+    return rows, int(size[1]), int(size[0]), texel
+
+
+def _solid_points(geometry: Geometry) -> NDArray[np.float64]:
+    """Return the vertices of the static mesh and the corners of the fixtures' boxes [m]."""
+    last = geometry.chunk_range[-1, 3] if len(geometry.chunk_range) else 0
+    static = geometry.positions[:last]
+    boxes = geometry.box[geometry.fixture_prototype]
+    corners = np.stack(
+        [boxes[:, (i, j, k)] for i in (0, 3) for j in (1, 4) for k in (2, 5)], axis=1
+    )
+    linear, offset = geometry.fixture_pose[:, :, :3], geometry.fixture_pose[:, :, 3]
+    posed = np.einsum("fij,fcj->fci", linear, corners) + offset[:, None]
+    return np.concatenate([static, posed.reshape(-1, 3)]).astype(np.float64)
+
+
+def _bake(
+    geometry: Geometry, rows: NDArray[np.float64], lines: int, columns: int
+) -> NDArray[np.uint16]:
+    heights = np.zeros((lines, columns), np.uint16)
+    workers = min(numba.get_num_threads(), math.ceil(lines / BAND))
+    ranges = np.concatenate([geometry.chunk_range, geometry.mesh_range])
+    most = int((ranges[:, 3] - ranges[:, 2]).max(initial=1))
+    bake_rows(
+        workers,
+        geometry,
+        rows,
+        np.empty((workers, most, 4)),
+        np.empty((workers, 3, 4)),
+        np.empty((workers, BAND, columns), np.float32),
+        np.empty((workers, BAND, columns), np.int64),
+        heights,
+    )
+    return heights
+
+
+def _content_hash(geometry: Geometry, rows: NDArray[np.float64]) -> str:
+    digest = hashlib.blake2b(_FORMAT, digest_size=16)
+    last = geometry.chunk_range[-1] if len(geometry.chunk_range) else np.zeros(4, np.int32)
+    fixtures = geometry.level_first[: geometry.part_first + 1]
+    meshes = geometry.mesh_range[: fixtures[-1]]
+    triangles, vertices = (meshes if len(meshes) else [last])[-1][[1, 3]]
+    for array in (
+        rows,
+        geometry.positions[:vertices],
+        geometry.corners[:triangles],
+        fixtures,
+        geometry.fixture_prototype,
+        geometry.fixture_pose,
+    ):
+        digest.update(np.ascontiguousarray(array).data)
+    return digest.hexdigest()
+
+
+def _load(path: Path, shape: tuple[int, int]) -> NDArray[np.uint16] | None:
+    """Return a cached map, or None if there is none or it is damaged (zip files carry a CRC)."""
+    try:
+        with np.load(path) as archive:
+            heights = archive["heights"]
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
+        return None
+    return heights if heights.shape == shape and heights.dtype == np.uint16 else None
+
+
+def _save(path: Path, heights: NDArray[np.uint16]) -> None:
+    buffer = io.BytesIO()
+    np.savez(buffer, heights=heights)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write_atomic(path, buffer.getvalue())
+    except (OSError, OutputError):
+        return  # the cache saves time only

@@ -1,0 +1,87 @@
+"""Which worker draws what: views, or bands of views where there are few."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.pinhole import focal_length
+from eyas.render.kernels.bundles import Job
+from eyas.state.draw import Picture, Views
+
+__all__ = ["build_jobs", "picture_size", "write_subject"]
+
+JOBS_PER_THREAD = 4
+"""Few views are cut into bands until there are so many: sky is drawn sooner than streets."""
+
+SMALLEST_BAND = 3_500
+"""Pixels below which cutting costs more than it gains."""
+
+
+def build_jobs(views: Views, height: int, width: int, side: int, threads: int) -> Job:
+    """Return the cameras and the bands to draw.
+
+    Args:
+        views: V cameras.
+        height: Of the pictures [pixels].
+        width: Of the pictures [pixels].
+        side: Samples along a side of each pixel.
+        threads: How many threads will share the work.
+    """
+    count = len(views.position)
+    bands = min(
+        math.ceil(JOBS_PER_THREAD * threads / max(count, 1)),
+        math.ceil(height * width / SMALLEST_BAND),
+        height,
+    )
+    bands = 1 if threads == 1 or count >= JOBS_PER_THREAD * threads else max(bands, 1)
+    edges = np.linspace(0, height, bands + 1).astype(np.int32)
+    view = np.empty((count, bands, 3), np.int32)
+    view[:, :, 0] = np.arange(count)[:, None]
+    view[:, :, 1] = edges[:-1]
+    view[:, :, 2] = edges[1:]
+    across = focal_length(width, views.field_of_view)
+    down = across
+    if views.vertical_field_of_view is not None:
+        down = focal_length(height, views.vertical_field_of_view)
+    lens = [across * side, width * side, height * side, math.sqrt(across * down), down * side]
+    return Job(
+        band=view.reshape(-1, 3),
+        eye=np.ascontiguousarray(views.position, np.float64),
+        axes=np.ascontiguousarray(np.swapaxes(views.rotation, 1, 2), np.float64),
+        world=np.ascontiguousarray(views.world, np.int32),
+        subject=np.ascontiguousarray(views.subject, np.int32),
+        lens=np.array(lens, np.float64),
+    )
+
+
+def picture_size(picture: Picture) -> tuple[int, int]:
+    """Return height and width [pixels].
+
+    Raises:
+        ValueError: No array with pixels is wanted, so there is no size.
+    """
+    for plane in (picture.rgb, picture.depth, picture.object_id):
+        if plane is not None:
+            return plane.shape[1], plane.shape[2]
+    raise ValueError("picture: one of rgb, depth, object_id is needed; it gives the size")
+
+
+def write_subject(bands: NDArray[np.int32], measured: NDArray[np.int32], picture: Picture) -> None:
+    """Join what was measured in the bands of each view.
+
+    Args:
+        bands: `Job.band`.
+        measured: `Output.subject`.
+        picture: Its subject's box and pixels are written, if wanted.
+    """
+    views = int(bands[-1, 0]) + 1 if len(bands) else 0
+    by_view = measured.reshape(views, -1, 6)
+    if picture.subject_box is not None:
+        far = np.iinfo(np.int32).max
+        low = np.where(by_view[:, :, 5:] > 0, by_view[:, :, :2], far).min(axis=1)
+        high = by_view[:, :, 2:4].max(axis=1)
+        box = np.concatenate([low, high], axis=1)
+        picture.subject_box[:] = np.where(by_view[:, :, 5].any(axis=1)[:, None], box, 0)
+    if picture.subject_pixels is not None:
+        picture.subject_pixels[:] = by_view[:, :, 4:].sum(axis=1)

@@ -1,0 +1,154 @@
+"""The arrays that the kernels share, in named bundles.
+
+V vertices, T triangles, C chunks, P prototypes (fixtures first, then parts), M meshes (levels of
+detail, grouped by prototype), F fixtures, K workers, J jobs (bands of views).
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["GROUP", "NEAR", "Geometry", "Job", "Light", "Movers", "Output", "Scratch"]
+
+NEAR = 0.08
+"""Distance of the near plane [m]."""
+
+GROUP = 16
+"""Chunks, or fixtures, that are culled together first."""
+
+
+class Geometry(NamedTuple):
+    """Everything that can be drawn, packed once for each scene."""
+
+    positions: NDArray[np.float32]
+    """[m], shape (V, 3); static chunks in the world frame, prototypes in their own."""
+    uvs: NDArray[np.float32]
+    """Texture coordinates [tiles], shape (V, 2)."""
+    corners: NDArray[np.int32]
+    """Vertices of each triangle, shape (T, 3)."""
+    gradients: NDArray[np.float32]
+    """What shading needs of each triangle, shape (T, 24): a corner; then gradient and value at
+    that corner of u and of v; normal at the corner; gradients of the three components of the
+    normal; texture tiles in a metre."""
+    material: NDArray[np.int32]
+    """Of each triangle, shape (T,)."""
+    object_id: NDArray[np.int32]
+    """Of each static triangle, -1 for prototypes, shape (T,)."""
+    chunk_box: NDArray[np.float32]
+    """Lower and upper corner [m], shape (C, 6)."""
+    chunk_group_box: NDArray[np.float32]
+    """Box around each `GROUP` chunks in a row, shape (., 6)."""
+    chunk_range: NDArray[np.int32]
+    """First and last + 1 triangle, first and last + 1 vertex, shape (C, 4)."""
+    mesh_range: NDArray[np.int32]
+    """The same for each mesh, shape (M, 4)."""
+    level_first: NDArray[np.int32]
+    """First mesh of each prototype, shape (P + 1,)."""
+    part_first: int
+    """Prototype of part 0."""
+    sphere: NDArray[np.float32]
+    """Centre and radius around each prototype [m], shape (P, 4)."""
+    box: NDArray[np.float32]
+    """Lower and upper corner of each prototype [m], shape (P, 6)."""
+    fixture_prototype: NDArray[np.int32]
+    """Shape (F,)."""
+    fixture_pose: NDArray[np.float32]
+    """Shape (F, 3, 4)."""
+    fixture_object: NDArray[np.int32]
+    """Shape (F,)."""
+    fixture_group_box: NDArray[np.float32]
+    """Box around each `GROUP` fixtures in a row, shape (., 6)."""
+    layer: NDArray[np.int32]
+    """Texture of each material."""
+    surface: NDArray[np.int32]
+    """`Surface` of each material."""
+    tint: NDArray[np.float32]
+    """Linear colour factor of each material, shape (., 3)."""
+    emission: NDArray[np.float32]
+    """Own light of each material."""
+    texture: NDArray[np.uint32]
+    """Texels of each layer, all mip levels in a row, row 0 at v = 0: square roots of linear red,
+    green, blue, and alpha, a byte each, the lowest byte first, shape (., 87381)."""
+
+
+class Light(NamedTuple):
+    """Light and air; linear colours, shape (3,) each."""
+
+    sun: NDArray[np.float32]
+    """Unit vector towards the sun."""
+    sun_colour: NDArray[np.float32]
+    zenith: NDArray[np.float32]
+    horizon: NDArray[np.float32]
+    ambient_up: NDArray[np.float32]
+    ambient_down: NDArray[np.float32]
+    fog: NDArray[np.float32]
+    air: NDArray[np.float32]
+    """Fog density [1/m] and power, exposure, offset of shadows [m], shape (4,)."""
+    shadow_map: NDArray[np.uint16]
+    """Height towards the sun of the first thing that sunlight meets, shape (rows, columns)."""
+    shadow_rows: NDArray[np.float32]
+    """World to column, row and height of the shadow map, shape (3, 4)."""
+    tone: NDArray[np.uint8]
+    """Byte of the picture for each step of exposed radiance."""
+
+
+class Movers(NamedTuple):
+    """The draw list of each world, see `eyas.state.draw.DrawList`."""
+
+    part: NDArray[np.int32]
+    pose: NDArray[np.float32]
+    colour: NDArray[np.float32]
+    object_id: NDArray[np.int32]
+
+
+class Job(NamedTuple):
+    """The cameras, and which rows of which view each job draws."""
+
+    band: NDArray[np.int32]
+    """View, first row, last row + 1, shape (J, 3)."""
+    eye: NDArray[np.float64]
+    """Optical centres [m], shape (V, 3)."""
+    axes: NDArray[np.float64]
+    """Forward, left, up as rows, shape (V, 3, 3)."""
+    world: NDArray[np.int32]
+    """Shape (V,)."""
+    subject: NDArray[np.int32]
+    """Shape (V,)."""
+    lens: NDArray[np.float64]
+    """Focal length along rows, width, height [samples], mean focal length [pixels], focal length
+    along columns [samples], shape (5,)."""
+
+
+class Scratch(NamedTuple):
+    """Working memory of each worker."""
+
+    depth: NDArray[np.float32]
+    """One over the distance along the optical axis, 0 for sky, shape (K, rows, columns)."""
+    owner: NDArray[np.int64]
+    """(instance + 1) << 32 | triangle, -1 for sky; instance -1 is the static mesh, then come
+    the fixtures, then the slots of the draw list. Shape (K, rows, columns)."""
+    shade: NDArray[np.uint8]
+    """Sun and sky light that moving things let through, 255 for all, shape (K, rows, columns, 2)."""
+    screen: NDArray[np.float64]
+    """Column, row, 1/distance, distance of a mesh's vertices, shape (K, ., 4)."""
+    order: NDArray[np.int64]
+    """Sort keys of visible chunks, shape (K, C)."""
+    planes: NDArray[np.float64]
+    """Left, right, top, bottom, near plane and the length of their normals, shape (K, 5, 5)."""
+    rows: NDArray[np.float64]
+    """World, then object, to screen, shape (K, 2, 3, 4)."""
+    polygon: NDArray[np.float64]
+    """A clipped triangle: column, row, 1/distance, u, v, shape (K, 4, 5)."""
+    caster: NDArray[np.float64]
+    """A moving thing's box, see `casters`, shape (K, 8)."""
+
+
+class Output(NamedTuple):
+    """What is written; arrays of length 0 are not wanted."""
+
+    rgb: NDArray[np.uint8]
+    depth: NDArray[np.float32]
+    object_id: NDArray[np.int32]
+    subject: NDArray[np.int32]
+    """Left, top, right, bottom, seen and covered pixels in each job, shape (J, 6)."""

@@ -1,0 +1,203 @@
+"""Soft shadows of moving things: each is one upright box, and a shadow is drawn where the way to
+the sun leads through it.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.jit import kernel
+from eyas.render.kernels.bundles import Geometry
+
+__all__ = ["cast_shadows"]
+
+f4 = np.float32
+
+SMALLEST = 1.0
+"""Things whose half length is smaller cast no shadow [pixels]."""
+
+
+@kernel
+def _set_caster(
+    geometry: Geometry,
+    parts: NDArray[np.int32],
+    poses: NDArray[np.float32],
+    first: int,
+    last: int,
+    caster: NDArray[np.float64],
+) -> None:
+    """Compute the box around slots `first` to `last`, turned like the largest part.
+
+    `caster`: centre x, y; direction of its length x, y; half length, half width; bottom, top.
+    """
+    largest, axis_x, axis_y, origin_x, origin_y = -1.0, 1.0, 0.0, 0.0, 0.0
+    for slot in range(first, last):
+        box = geometry.box[geometry.part_first + parts[slot]]
+        size = (box[3] - box[0]) * (box[4] - box[1]) * (box[5] - box[2])
+        flat = np.sqrt(float(poses[slot, 0, 0]) ** 2 + float(poses[slot, 1, 0]) ** 2)
+        if size > largest and flat > 1e-6:
+            largest = size
+            axis_x, axis_y = poses[slot, 0, 0] / flat, poses[slot, 1, 0] / flat
+            origin_x, origin_y = poses[slot, 0, 3], poses[slot, 1, 3]
+    front, back, left, right, low, high = -1e9, 1e9, -1e9, 1e9, 1e9, -1e9
+    for slot in range(first, last):
+        box = geometry.box[geometry.part_first + parts[slot]]
+        for corner in range(8):
+            x = box[3 * (corner & 1)]
+            y = box[1 + 3 * ((corner >> 1) & 1)]
+            z = box[2 + 3 * (corner >> 2)]
+            pose = poses[slot]
+            wx = pose[0, 0] * x + pose[0, 1] * y + pose[0, 2] * z + pose[0, 3] - origin_x
+            wy = pose[1, 0] * x + pose[1, 1] * y + pose[1, 2] * z + pose[1, 3] - origin_y
+            wz = pose[2, 0] * x + pose[2, 1] * y + pose[2, 2] * z + pose[2, 3]
+            along, aside = wx * axis_x + wy * axis_y, wy * axis_x - wx * axis_y
+            front, back = max(front, along), min(back, along)
+            left, right = max(left, aside), min(right, aside)
+            low, high = min(low, wz), max(high, wz)
+    along, aside = 0.5 * (front + back), 0.5 * (left + right)
+    caster[0] = origin_x + along * axis_x - aside * axis_y
+    caster[1] = origin_y + along * axis_y + aside * axis_x
+    caster[2], caster[3] = axis_x, axis_y
+    caster[4], caster[5] = 0.5 * (front - back), 0.5 * (left - right)
+    caster[6], caster[7] = low, high
+
+
+@kernel
+def _screen_box(
+    caster: NDArray[np.float64],
+    sun: NDArray[np.float32],
+    rows: NDArray[np.float64],
+    lens: NDArray[np.float64],
+) -> tuple[float, float, float, float]:
+    """Return left, top, right, bottom of the box and its shadow on the ground, in samples."""
+    left, top, right, bottom = 1e9, 1e9, -1e9, -1e9
+    height = caster[7] - caster[6]
+    # A sun near the horizon throws shadows without end; they fade out after four heights.
+    throw = min(1.0 / max(float(sun[2]), 1e-3), 4.0) * height
+    for corner in range(16):
+        along = (caster[4] + 0.5) * (1.0 if corner & 1 else -1.0)
+        aside = (caster[5] + 0.5) * (1.0 if corner & 2 else -1.0)
+        x = caster[0] + along * caster[2] - aside * caster[3]
+        y = caster[1] + along * caster[3] + aside * caster[2]
+        z = caster[7] if corner & 4 else caster[6] - 0.3
+        if corner & 8:
+            x -= throw * sun[0]
+            y -= throw * sun[1]
+            z = caster[6] - 0.3
+        w = rows[2, 0] * x + rows[2, 1] * y + rows[2, 2] * z + rows[2, 3]
+        if w < 0.1:
+            return 0.0, 0.0, lens[1], lens[2]
+        column = rows[0, 0] * x + rows[0, 1] * y + rows[0, 2] * z + rows[0, 3]
+        row = rows[1, 0] * x + rows[1, 1] * y + rows[1, 2] * z + rows[1, 3]
+        column, row = 0.5 * lens[1] + column / w, 0.5 * lens[2] + row / w
+        left, right = min(left, column), max(right, column)
+        top, bottom = min(top, row), max(bottom, row)
+    return left, top, right, bottom
+
+
+@kernel
+def _darken(
+    caster: NDArray[np.float64],
+    sun: NDArray[np.float32],
+    x: float,
+    y: float,
+    z: float,
+) -> tuple[float, float]:
+    """Return how much sun and sky a thing's box lets through to a point."""
+    dx, dy = x - caster[0], y - caster[1]
+    px, py = dx * caster[2] + dy * caster[3], dy * caster[2] - dx * caster[3]
+    sx = max(abs(sun[0] * caster[2] + sun[1] * caster[3]), 1e-4)
+    sy = max(abs(sun[1] * caster[2] - sun[0] * caster[3]), 1e-4)
+    # Turned so that the sun stands in the first quadrant.
+    px = px if sun[0] * caster[2] + sun[1] * caster[3] > 0.0 else -px
+    py = py if sun[1] * caster[2] - sun[0] * caster[3] > 0.0 else -py
+    sz = max(float(sun[2]), 1e-3)
+    enter = max((-caster[4] - px) / sx, (-caster[5] - py) / sy, (caster[6] - z) / sz, 0.0)
+    leave = min((caster[4] - px) / sx, (caster[5] - py) / sy, (caster[7] - z) / sz)
+    # The longer the way through the box, the deeper in the shadow: a soft edge.
+    deep = min(max((leave - enter) * 1.6, 0.0), 1.0)
+    out_x, out_y = max(abs(px) - caster[4] + 0.25, 0.0), max(abs(py) - caster[5] + 0.25, 0.0)
+    near = max(1.0 - 1.25 * np.sqrt(out_x * out_x + out_y * out_y), 0.0)
+    if z > caster[6] + 0.25:
+        near = 0.0
+    return 1.0 - deep, 1.0 - 0.55 * near * near
+
+
+@kernel
+def _cast_one(
+    caster: NDArray[np.float64],
+    sun: NDArray[np.float32],
+    fixtures: int,
+    first: int,
+    last: int,
+    eye: NDArray[np.float64],
+    axes: NDArray[np.float64],
+    lens: NDArray[np.float64],
+    top: int,
+    box: tuple[float, float, float, float],
+    depth: NDArray[np.float32],
+    owner: NDArray[np.int64],
+    shade: NDArray[np.uint8],
+) -> None:
+    """Darken the samples in `box` that slots `first` to `last` shade, but not these themselves."""
+    rows, width = depth.shape
+    for line in range(max(int(box[1]) - top, 0), min(int(box[3]) + 1 - top, rows)):
+        up = (0.5 * lens[2] - (line + top + 0.5)) / lens[4]
+        for column in range(max(int(box[0]), 0), min(int(box[2]) + 1, width)):
+            if depth[line, column] <= 0.0:
+                continue
+            slot = (owner[line, column] >> 32) - 1 - fixtures
+            if first <= slot < last:
+                continue
+            left = (0.5 * lens[1] - (column + 0.5)) / lens[0]
+            w = 1.0 / depth[line, column]
+            x = eye[0] + w * (axes[0, 0] + left * axes[1, 0] + up * axes[2, 0])
+            y = eye[1] + w * (axes[0, 1] + left * axes[1, 1] + up * axes[2, 1])
+            z = eye[2] + w * (axes[0, 2] + left * axes[1, 2] + up * axes[2, 2])
+            if z > caster[7]:
+                continue
+            direct, ambient = _darken(caster, sun, x, y, z)
+            shade[line, column, 0] = min(shade[line, column, 0], np.uint8(255.0 * direct))
+            shade[line, column, 1] = min(shade[line, column, 1], np.uint8(255.0 * ambient))
+
+
+@kernel
+def cast_shadows(
+    geometry: Geometry,
+    parts: NDArray[np.int32],
+    poses: NDArray[np.float32],
+    object_ids: NDArray[np.int32],
+    sun: NDArray[np.float32],
+    eye: NDArray[np.float64],
+    axes: NDArray[np.float64],
+    lens: NDArray[np.float64],
+    top: int,
+    rows: NDArray[np.float64],
+    caster: NDArray[np.float64],
+    depth: NDArray[np.float32],
+    owner: NDArray[np.int64],
+    shade: NDArray[np.uint8],
+) -> None:
+    """Write what moving things take of the light of each sample into `shade`.
+
+    Slots in a row with the same object id are one thing. See `Job` and `Scratch`.
+    """
+    shade[:] = 255
+    fixtures = len(geometry.fixture_prototype)
+    first = 0
+    while first < len(parts):
+        last = first + 1
+        if parts[first] < 0:
+            first = last
+            continue
+        while last < len(parts) and parts[last] >= 0 and object_ids[last] == object_ids[first]:
+            last += 1
+        _set_caster(geometry, parts, poses, first, last, caster)
+        w = rows[2, 0] * caster[0] + rows[2, 1] * caster[1] + rows[2, 2] * caster[6] + rows[2, 3]
+        if w > -20.0 and lens[0] * caster[4] > SMALLEST * w:
+            box = _screen_box(caster, sun, rows, lens)
+            if box[3] >= top and box[1] <= top + depth.shape[0]:
+                _cast_one(
+                    caster, sun, fixtures, first, last, eye, axes, lens, top, box,
+                    depth, owner, shade,
+                )  # fmt: skip
+        first = last

@@ -1,0 +1,251 @@
+"""Pictures: the loop over bands of views, and what is done in each."""
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.jit import kernel, parallel_kernel
+from eyas.render.kernels.bundles import Geometry, Job, Light, Movers, Output, Scratch
+from eyas.render.kernels.casters import cast_shadows
+from eyas.render.kernels.cull import set_planes
+from eyas.render.kernels.shade import shade_point
+from eyas.render.kernels.sky import sky
+from eyas.render.kernels.transform import set_world_rows
+from eyas.render.kernels.visibility import draw_moving, draw_static
+from eyas.state.scene import SKY_OBJECT
+
+__all__ = ["TONE_STEPS", "TONE_TOP", "draw_views"]
+
+f4 = np.float32
+
+TONE_STEPS = 16384
+"""Length of `Light.tone`."""
+
+TONE_TOP = 4.0
+"""Exposed radiance at its end."""
+
+_STEPS_PER_UNIT = f4(TONE_STEPS / TONE_TOP)
+_LAST_STEP = TONE_STEPS - 1
+
+
+@parallel_kernel
+def draw_views(
+    workers: int,
+    samples: int,
+    geometry: Geometry,
+    light: Light,
+    movers: Movers,
+    job: Job,
+    scratch: Scratch,
+    output: Output,
+) -> None:
+    """Draw all jobs. Each is drawn alone, so neither workers nor other jobs change its bytes.
+
+    Args:
+        workers: How many share the work; the leading axis of `scratch`.
+        samples: Samples along a side of each pixel, 1 or 2.
+        geometry: Everything that can be drawn.
+        light: Light and air.
+        movers: What moves.
+        job: Bands and cameras.
+        scratch: Working memory.
+        output: Written in place.
+    """
+    for worker in numba.prange(workers):
+        for index in range(worker, len(job.band), workers):
+            _draw_job(worker, index, samples, geometry, light, movers, job, scratch, output)
+
+
+@kernel
+def _draw_job(
+    worker: int,
+    index: int,
+    samples: int,
+    geometry: Geometry,
+    light: Light,
+    movers: Movers,
+    job: Job,
+    scratch: Scratch,
+    output: Output,
+) -> None:
+    view, top, bottom = job.band[index, 0], job.band[index, 1], job.band[index, 2]
+    first, last = top * samples, bottom * samples
+    eye, axes, world = job.eye[view], job.axes[view], job.world[view]
+    depth = scratch.depth[worker, : last - first]
+    owner = scratch.owner[worker, : last - first]
+    shade = scratch.shade[worker, : last - first]
+    rows, planes = scratch.rows[worker], scratch.planes[worker]
+    screen, polygon = scratch.screen[worker], scratch.polygon[worker]
+    depth[:] = f4(0.0)
+    owner[:] = -1
+    set_world_rows(eye, axes, job.lens, rows[0])
+    set_planes(rows[0], job.lens[1], job.lens[2], first, last, planes)
+    draw_static(
+        geometry, eye, job.lens, first, rows, planes, scratch.order[worker],
+        depth, owner, screen, polygon,
+    )  # fmt: skip
+    draw_moving(
+        geometry, movers.part[world], movers.pose[world], movers.object_id[world], -1, eye,
+        job.lens, first, rows, planes, depth, owner, screen, polygon,
+    )  # fmt: skip
+    if len(output.depth) > 0:
+        _write_depth(depth, output.depth[view, top:bottom])
+    if len(output.object_id) > 0:
+        _write_objects(geometry, movers.object_id[world], owner, output.object_id[view, top:bottom])
+    if len(output.rgb) > 0:
+        cast_shadows(
+            geometry, movers.part[world], movers.pose[world], movers.object_id[world],
+            light.sun, eye, axes, job.lens, first, rows[0], scratch.caster[worker],
+            depth, owner, shade,
+        )  # fmt: skip
+        _shade_band(
+            samples, top, geometry, light, movers.pose[world], movers.colour[world], eye, axes,
+            job.lens, depth, owner, shade, output.rgb[view, top:bottom],
+        )  # fmt: skip
+    if len(output.subject) > 0:
+        result = output.subject[index]
+        result[:] = 0
+        subject = job.subject[view]
+        if subject >= 0:
+            result[4] = _seen(geometry, movers.object_id[world], owner, subject)
+            depth[:] = f4(0.0)
+            owner[:] = -1
+            draw_moving(
+                geometry, movers.part[world], movers.pose[world], movers.object_id[world],
+                subject, eye, job.lens, first, rows, planes, depth, owner, screen, polygon,
+            )  # fmt: skip
+            _measure(owner, top, result)
+
+
+@kernel
+def _write_depth(depth: NDArray[np.float32], output: NDArray[np.float32]) -> None:
+    for row in range(depth.shape[0]):
+        for column in range(depth.shape[1]):
+            output[row, column] = f4(1.0) / depth[row, column]
+
+
+@kernel
+def _object_of(geometry: Geometry, object_ids: NDArray[np.int32], owner: int) -> int:
+    """Return the object id for an entry of `Scratch.owner`."""
+    if owner < 0:
+        return SKY_OBJECT
+    instance = (owner >> 32) - 1
+    if instance < 0:
+        return geometry.object_id[owner & 0xFFFFFFFF]
+    if instance < len(geometry.fixture_object):
+        return geometry.fixture_object[instance]
+    return object_ids[instance - len(geometry.fixture_object)]
+
+
+@kernel
+def _write_objects(
+    geometry: Geometry,
+    object_ids: NDArray[np.int32],
+    owner: NDArray[np.int64],
+    output: NDArray[np.int32],
+) -> None:
+    for row in range(owner.shape[0]):
+        for column in range(owner.shape[1]):
+            output[row, column] = _object_of(geometry, object_ids, owner[row, column])
+
+
+@kernel
+def _seen(
+    geometry: Geometry, object_ids: NDArray[np.int32], owner: NDArray[np.int64], subject: int
+) -> int:
+    """Return how many samples show the subject."""
+    count = 0
+    for row in range(owner.shape[0]):
+        for column in range(owner.shape[1]):
+            if _object_of(geometry, object_ids, owner[row, column]) == subject:
+                count += 1
+    return count
+
+
+@kernel
+def _measure(owner: NDArray[np.int64], top: int, result: NDArray[np.int32]) -> None:
+    """Write the box of what is drawn, and how many samples it covers."""
+    for row in range(owner.shape[0]):
+        for column in range(owner.shape[1]):
+            if owner[row, column] < 0:
+                continue
+            if result[5] == 0:
+                result[0], result[1] = column, top + row
+            result[0] = min(result[0], column)
+            result[2] = max(result[2], column + 1)
+            result[3] = top + row + 1
+            result[5] += 1
+
+
+@kernel
+def _shade_band(
+    samples: int,
+    top: int,
+    geometry: Geometry,
+    light: Light,
+    poses: NDArray[np.float32],
+    colours: NDArray[np.float32],
+    eye: NDArray[np.float64],
+    axes: NDArray[np.float64],
+    lens: NDArray[np.float64],
+    depth: NDArray[np.float32],
+    owner: NDArray[np.int64],
+    shade: NDArray[np.uint8],
+    output: NDArray[np.uint8],
+) -> None:
+    """Write the pixels of a band. Where all four samples show one triangle, one is computed."""
+    fixtures = len(geometry.fixture_object)
+    centre = f4(eye[0]), f4(eye[1]), f4(eye[2])
+    byte = f4(1.0 / 255.0)
+    quarter = samples * samples
+    exposure = light.air[2] * _STEPS_PER_UNIT
+    for row in range(output.shape[0]):
+        for column in range(output.shape[1]):
+            line, place = row * samples, column * samples
+            tag = owner[line, place]
+            inverse = depth[line, place]
+            sun_share, sky_share = f4(shade[line, place, 0]), f4(shade[line, place, 1])
+            count, step = 1, 0.5 * samples
+            if samples == 2:
+                if (
+                    owner[line, place + 1] == tag
+                    and owner[line + 1, place] == tag
+                    and owner[line + 1, place + 1] == tag
+                ):
+                    inverse += depth[line, place + 1] + depth[line + 1, place]
+                    inverse = (inverse + depth[line + 1, place + 1]) * f4(0.25)
+                else:
+                    count, step = quarter, 0.5
+            red, green, blue = 0, 0, 0
+            for k in range(count):
+                i, j = line + (k >> 1), place + (k & 1)
+                if count > 1:
+                    tag, inverse = owner[i, j], depth[i, j]
+                    sun_share, sky_share = f4(shade[i, j, 0]), f4(shade[i, j, 1])
+                left = (0.5 * lens[1] - (j + step)) / lens[0]
+                up = (0.5 * lens[2] - (i + top * samples + step)) / lens[4]
+                ray = (
+                    f4(axes[0, 0] + left * axes[1, 0] + up * axes[2, 0]),
+                    f4(axes[0, 1] + left * axes[1, 1] + up * axes[2, 1]),
+                    f4(axes[0, 2] + left * axes[1, 2] + up * axes[2, 2]),
+                )
+                if tag < 0:
+                    unit = f4(1.0) / np.sqrt(ray[0] * ray[0] + ray[1] * ray[1] + ray[2] * ray[2])
+                    colour = sky(light, ray[0] * unit, ray[1] * unit, ray[2] * unit)
+                else:
+                    instance = (tag >> 32) - 1
+                    pose = geometry.fixture_pose
+                    if instance >= fixtures:
+                        pose = poses
+                        instance -= fixtures
+                    colour = shade_point(
+                        geometry, light, tag & 0xFFFFFFFF, pose, instance, colours, centre, ray,
+                        f4(1.0) / inverse, f4(1.0 / lens[3]), sun_share * byte, sky_share * byte,
+                    )  # fmt: skip
+                red += light.tone[min(int(colour[0] * exposure), _LAST_STEP)]
+                green += light.tone[min(int(colour[1] * exposure), _LAST_STEP)]
+                blue += light.tone[min(int(colour[2] * exposure), _LAST_STEP)]
+            half = count >> 1
+            output[row, column, 0] = (red + half) // count
+            output[row, column, 1] = (green + half) // count
+            output[row, column, 2] = (blue + half) // count

@@ -1,0 +1,104 @@
+"""The shadow map: how high towards the sun the first thing stands that sunlight meets."""
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.jit import kernel, parallel_kernel
+from eyas.render.kernels.bundles import Geometry
+from eyas.render.kernels.rasterise import rasterise
+
+__all__ = ["BAND", "bake_rows"]
+
+BAND = 256
+"""Rows of the map that are drawn at a time."""
+
+f4 = np.float32
+
+
+@parallel_kernel
+def bake_rows(
+    workers: int,
+    geometry: Geometry,
+    rows: NDArray[np.float64],
+    screen: NDArray[np.float64],
+    object_rows: NDArray[np.float64],
+    depth: NDArray[np.float32],
+    owner: NDArray[np.int64],
+    shadow_map: NDArray[np.uint16],
+) -> None:
+    """Draw all static triangles and the finest level of all fixtures into `shadow_map`.
+
+    Args:
+        workers: How many share the work; the leading axis of the working memory.
+        geometry: Everything that can be drawn.
+        rows: World to column, row and height of the map, shape (3, 4); heights are 1 to 65535.
+        screen: Working memory, shape (K, vertices of the largest mesh, 4).
+        object_rows: Working memory, shape (K, 3, 4).
+        depth: Working memory, shape (K, BAND, columns).
+        owner: Working memory, shape (K, BAND, columns).
+        shadow_map: Filled, shape (lines, columns).
+    """
+    bands = (shadow_map.shape[0] + BAND - 1) // BAND
+    for worker in numba.prange(workers):
+        for band in range(worker, bands, workers):
+            depth[worker] = f4(0.0)
+            top = band * BAND
+            for chunk in range(len(geometry.chunk_range)):
+                _draw(
+                    geometry, rows, geometry.chunk_range[chunk], top,
+                    screen[worker], depth[worker], owner[worker],
+                )  # fmt: skip
+            for i in range(len(geometry.fixture_prototype)):
+                mesh = geometry.level_first[geometry.fixture_prototype[i]]
+                _set_object_rows(rows, geometry.fixture_pose[i], object_rows[worker])
+                _draw(
+                    geometry, object_rows[worker], geometry.mesh_range[mesh], top,
+                    screen[worker], depth[worker], owner[worker],
+                )  # fmt: skip
+            for line in range(min(BAND, shadow_map.shape[0] - top)):
+                for column in range(shadow_map.shape[1]):
+                    height = min(depth[worker, line, column], f4(65535.0))
+                    shadow_map[top + line, column] = np.uint16(height)
+
+
+@kernel
+def _set_object_rows(
+    rows: NDArray[np.float64], pose: NDArray[np.float32], product: NDArray[np.float64]
+) -> None:
+    for i in range(3):
+        for k in range(4):
+            product[i, k] = (
+                rows[i, 0] * pose[0, k] + rows[i, 1] * pose[1, k] + rows[i, 2] * pose[2, k]
+            )
+        product[i, 3] += rows[i, 3]
+
+
+@kernel
+def _draw(
+    geometry: Geometry,
+    rows: NDArray[np.float64],
+    ranges: NDArray[np.int32],
+    top: int,
+    screen: NDArray[np.float64],
+    depth: NDArray[np.float32],
+    owner: NDArray[np.int64],
+) -> None:
+    """Draw one mesh from above the sun; leaves have no holes here."""
+    lowest, highest = 1e9, -1e9
+    for i in range(ranges[3] - ranges[2]):
+        x = geometry.positions[ranges[2] + i, 0]
+        y = geometry.positions[ranges[2] + i, 1]
+        z = geometry.positions[ranges[2] + i, 2]
+        for k in range(3):
+            screen[i, k] = rows[k, 0] * x + rows[k, 1] * y + rows[k, 2] * z + rows[k, 3]
+        lowest, highest = min(lowest, screen[i, 1]), max(highest, screen[i, 1])
+    if lowest > top + BAND or highest < top:
+        return
+    for triangle in range(ranges[0], ranges[1]):
+        a = geometry.corners[triangle, 0] - ranges[2]
+        b = geometry.corners[triangle, 1] - ranges[2]
+        c = geometry.corners[triangle, 2] - ranges[2]
+        rasterise(
+            screen, a, b, c, top, depth, owner, np.int64(0), True, geometry.texture, 0, -1
+        )  # fmt: skip

@@ -1,0 +1,56 @@
+"""The sky in a direction, and the air between the camera and things."""
+
+import numpy as np
+
+from eyas.core.jit import inlined_kernel
+from eyas.render.kernels.bundles import Light
+
+__all__ = ["fog_share", "sky"]
+
+f4 = np.float32
+
+
+@inlined_kernel
+def sky(light: Light, x: float, y: float, z: float) -> tuple[float, float, float]:
+    """Return the radiance of the sky in a direction of length 1.
+
+    Paler towards the horizon, brighter round the sun, and below the horizon soft to the colour
+    of far ground.
+    """
+    one = f4(1.0)
+    climb = one - min(max(z, f4(0.0)), one)
+    low = climb * climb
+    low *= low
+    toward_sun = max(x * light.sun[0] + y * light.sun[1] + z * light.sun[2], f4(0.0))
+    glow = toward_sun * toward_sun
+    glow *= glow
+    wide = f4(0.07) * glow * glow
+    for _ in range(6):
+        glow *= glow
+    glow = wide + f4(0.35) * glow
+    below = min(max(f4(-6.0) * z, f4(0.0)), one)
+    below = below * below * (f4(3.0) - f4(2.0) * below)
+    # Thick air hides the sky too, most near the horizon.
+    veil = min(light.air[0] * f4(400.0), one) * (one - min(max(z, f4(0.0)) * f4(1.5), one))
+    glow *= one - veil
+    red = light.zenith[0] + low * (light.horizon[0] - light.zenith[0])
+    green = light.zenith[1] + low * (light.horizon[1] - light.zenith[1])
+    blue = light.zenith[2] + low * (light.horizon[2] - light.zenith[2])
+    red += veil * (light.fog[0] - red) + glow * light.sun_colour[0]
+    green += veil * (light.fog[1] - green) + glow * light.sun_colour[1]
+    blue += veil * (light.fog[2] - blue) + glow * light.sun_colour[2]
+    ground = f4(0.6) * below * (one - veil)
+    return (
+        red + ground * (light.ambient_down[0] - red),
+        green + ground * (light.ambient_down[1] - green),
+        blue + ground * (light.ambient_down[2] - blue),
+    )
+
+
+@inlined_kernel
+def fog_share(light: Light, distance: float) -> float:
+    """Return how much of what lies at a distance [m] the air hides, 0 to 1."""
+    thickness = distance * light.air[0]
+    if light.air[1] > f4(1.5):
+        thickness *= thickness
+    return f4(1.0) - np.exp(-thickness)

@@ -1,0 +1,48 @@
+"""Light and air as the kernels read them, and the curve from light to picture."""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from eyas.render.bake import ShadowMap
+from eyas.render.kernels.bundles import Light
+from eyas.render.kernels.draw import TONE_STEPS, TONE_TOP
+from eyas.state.scene import Lighting
+
+__all__ = ["build_light", "tone_table"]
+
+
+def build_light(lighting: Lighting, shadows: ShadowMap) -> Light:
+    """Return the light of a weather."""
+    sun = np.asarray(lighting.sun_direction, np.float64)
+    # A point is moved off its surface by what its shadow can be off the texel's middle.
+    offset = 1.1 * shadows.texel
+    air = [lighting.fog_density, lighting.fog_power, lighting.exposure, offset]
+    return Light(
+        sun=_row(sun / np.linalg.norm(sun)),
+        sun_colour=_row(lighting.sun_colour),
+        zenith=_row(lighting.zenith_colour),
+        horizon=_row(lighting.horizon_colour),
+        ambient_up=_row(lighting.ambient_up),
+        ambient_down=_row(lighting.ambient_down),
+        fog=_row(lighting.fog_colour),
+        air=_row(air),
+        shadow_map=shadows.heights,
+        shadow_rows=np.ascontiguousarray(shadows.rows, np.float32),
+        tone=tone_table(),
+    )
+
+
+def tone_table() -> NDArray[np.uint8]:
+    """Return the byte for each step of exposed radiance, 0 to `TONE_TOP`.
+
+    `1 - exp(-1.35 x)`, then sRGB (IEC 61966-2-1): nearly linear in the dark, and what is brighter
+    than white paper still has some shape.
+    """
+    radiance = (np.arange(TONE_STEPS) + 0.5) * (TONE_TOP / TONE_STEPS)
+    tone = 1.0 - np.exp(-1.35 * radiance)
+    encoded = np.where(tone <= 0.0031308, 12.92 * tone, 1.055 * tone ** (1 / 2.4) - 0.055)
+    return np.round(255.0 * np.clip(encoded, 0.0, 1.0)).astype(np.uint8)
+
+
+def _row(values: ArrayLike) -> NDArray[np.float32]:
+    return np.ascontiguousarray(values, np.float32)

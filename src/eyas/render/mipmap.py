@@ -1,0 +1,57 @@
+"""Textures as the kernels read them: linear light, mip levels, four bytes a texel."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.errors import UnknownNameError
+
+__all__ = ["SIDE", "linear", "packed_layers"]
+
+SIDE = 256
+"""Texels along a side of a texture."""
+
+
+def linear(values: NDArray[np.floating]) -> NDArray[np.float64]:
+    """Return linear values of sRGB values 0 to 1 (IEC 61966-2-1)."""
+    values = np.asarray(values, np.float64)
+    return np.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4)
+
+
+def packed_layers(
+    textures: Mapping[str, NDArray[np.uint8]], names: Sequence[str]
+) -> NDArray[np.uint32]:
+    """Return the named textures with their mip levels, see `Geometry.texture`.
+
+    Colours are stored as square roots of linear light: eight bits are then enough in the dark,
+    and one multiplication gives the light back.
+
+    Args:
+        textures: sRGB and alpha by name, row 0 on top, shape (256, 256, 4) each.
+        names: Which; the texture of each layer.
+
+    Raises:
+        UnknownNameError: There is no texture of that name.
+    """
+    layers = []
+    for name in names:
+        if name not in textures:
+            raise UnknownNameError("texture", name, textures)
+        layers.append(_packed(textures[name]))
+    return np.stack(layers)
+
+
+def _packed(image: NDArray[np.uint8]) -> NDArray[np.uint32]:
+    texels = image[::-1].astype(np.float64) / 255.0  # v grows upwards, rows grow downwards
+    texels[..., :3] = linear(texels[..., :3])
+    levels = []
+    while True:
+        encoded = np.concatenate([np.sqrt(texels[..., :3]), texels[..., 3:]], axis=-1)
+        levels.append(np.round(encoded * 255.0).astype(np.uint32).reshape(-1, 4))
+        if len(texels) == 1:
+            break
+        texels = (texels[::2] + texels[1::2]) / 2
+        texels = (texels[:, ::2] + texels[:, 1::2]) / 2
+    shifts = np.array([0, 8, 16, 24], np.uint32)
+    return np.bitwise_or.reduce(np.concatenate(levels) << shifts, axis=1)

@@ -1,0 +1,141 @@
+"""The renderer: pictures, depths, objects and the subject's measures of many views at once."""
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numba
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.errors import ConfigError
+from eyas.render.bake import bake_shadows, shadow_folder
+from eyas.render.geometry import build_geometry
+from eyas.render.jobs import build_jobs, picture_size, write_subject
+from eyas.render.kernels.bundles import Movers, Output, Scratch
+from eyas.render.kernels.draw import draw_views
+from eyas.render.lighting import build_light
+from eyas.state.draw import DrawList, PartLibrary, Picture, Views
+from eyas.state.scene import Lighting, Scene
+
+__all__ = ["Renderer"]
+
+
+class Renderer:
+    """Draws a scene and what moves in it.
+
+    What is drawn depends on nothing but the view: other views, their order, the number of threads
+    and the bands a view is cut into change no byte.
+
+    Args:
+        scene: What stands still.
+        parts: What moving things are made of.
+        lighting: Light and air.
+        textures: sRGB and alpha by name, row 0 on top, shape (256, 256, 4) each.
+        shadow_cache: Folder for baked shadows; None: the user's cache folder.
+
+    Raises:
+        UnknownNameError: A material asks for a texture that is not there.
+    """
+
+    def __init__(
+        self,
+        scene: Scene,
+        parts: PartLibrary,
+        lighting: Lighting,
+        textures: Mapping[str, NDArray[np.uint8]],
+        *,
+        shadow_cache: Path | None = None,
+    ) -> None:
+        self._geometry = build_geometry(scene, parts, textures)
+        shadows = bake_shadows(
+            self._geometry,
+            lighting.sun_direction,
+            scene.ground_height,
+            shadow_cache or shadow_folder(),
+        )
+        self._light = build_light(lighting, shadows)
+        ranges = np.concatenate([self._geometry.chunk_range, self._geometry.mesh_range])
+        self._most_vertices = int((ranges[:, 3] - ranges[:, 2]).max(initial=1))
+        self._scratch: dict[tuple[int, int, int], Scratch] = {}
+
+    def draw(self, views: Views, draw_list: DrawList, picture: Picture, samples: int = 1) -> None:
+        """Draw views into the arrays of a picture that are not None.
+
+        Args:
+            views: V cameras.
+            draw_list: What moves.
+            picture: Written in place.
+            samples: Of colour in each pixel, 1 or 4. Depth, objects and the subject's measures
+                are always those at the pixels' centres.
+
+        Raises:
+            ConfigError: `samples` is neither 1 nor 4.
+        """
+        if samples not in (1, 4):
+            raise ConfigError(f"camera.samples: {samples} is not allowed; allowed: 1, 4")
+        movers = Movers(draw_list.part, draw_list.pose, draw_list.colour, draw_list.object_id)
+        output = _output(picture)
+        if samples == 4 and picture.rgb is not None:
+            self._draw(views, movers, output._replace(**_NOTHING_BUT_RGB), picture, side=2)
+            output = output._replace(rgb=_NOTHING_RGB)
+        if any(len(array) for array in output):
+            self._draw(views, movers, output, picture, side=1)
+
+    def _draw(
+        self, views: Views, movers: Movers, output: Output, picture: Picture, side: int
+    ) -> None:
+        """Draw with `side` x `side` samples a pixel."""
+        height, width = picture_size(picture)
+        threads = numba.get_num_threads()
+        job = build_jobs(views, height, width, side, threads)
+        rows = int((job.band[:, 2] - job.band[:, 1]).max(initial=0))
+        workers = min(threads, len(job.band))
+        wanted = len(output.subject) > 0
+        if wanted:
+            output = output._replace(subject=np.zeros((len(job.band), 6), np.int32))
+        scratch = self._scratch_for(workers, rows * side, width * side)
+        draw_views(workers, side, self._geometry, self._light, movers, job, scratch, output)
+        if wanted:
+            write_subject(job.band, output.subject, picture)
+
+    def _scratch_for(self, workers: int, rows: int, width: int) -> Scratch:
+        """Return working memory, the same as last time for the same size."""
+        key = (workers, rows, width)
+        if key not in self._scratch:
+            if len(self._scratch) >= 4:  # sizes seldom change; forget the oldest
+                del self._scratch[next(iter(self._scratch))]
+            plane = (workers, rows, width)
+            self._scratch[key] = Scratch(
+                depth=np.empty(plane, np.float32),
+                owner=np.empty(plane, np.int64),
+                shade=np.empty((*plane, 2), np.uint8),
+                screen=np.empty((workers, self._most_vertices, 4)),
+                order=np.empty((workers, len(self._geometry.chunk_range)), np.int64),
+                planes=np.empty((workers, 5, 5)),
+                rows=np.empty((workers, 2, 3, 4)),
+                polygon=np.empty((workers, 4, 5)),
+                caster=np.empty((workers, 8)),
+            )
+        return self._scratch[key]
+
+
+_NOTHING_RGB = np.empty((0, 0, 0, 3), np.uint8)
+_NOTHING_DEPTH = np.empty((0, 0, 0), np.float32)
+_NOTHING_OBJECT = np.empty((0, 0, 0), np.int32)
+_NOTHING_SUBJECT = np.empty((0, 6), np.int32)
+_NOTHING_BUT_RGB = {
+    "depth": _NOTHING_DEPTH,
+    "object_id": _NOTHING_OBJECT,
+    "subject": _NOTHING_SUBJECT,
+}
+
+
+def _output(picture: Picture) -> Output:
+    """Return what is wanted; the subject's array is a mark only, jobs get their own."""
+    subject = picture.subject_box is not None or picture.subject_pixels is not None
+    return Output(
+        rgb=_NOTHING_RGB if picture.rgb is None else picture.rgb,
+        depth=_NOTHING_DEPTH if picture.depth is None else picture.depth,
+        object_id=_NOTHING_OBJECT if picture.object_id is None else picture.object_id,
+        subject=np.zeros((1, 6), np.int32) if subject else _NOTHING_SUBJECT,
+    )

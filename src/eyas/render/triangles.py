@@ -1,0 +1,61 @@
+"""What shading needs of each triangle, computed once."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.state.mesh import Mesh
+
+__all__ = ["gradients", "solid_triangles"]
+
+
+def solid_triangles(mesh: Mesh) -> NDArray[np.bool_]:
+    """Return which triangles have an area, shape (T,)."""
+    a, b, c = np.moveaxis(mesh.positions[mesh.triangles].astype(np.float64), 1, 0)
+    return np.linalg.norm(np.cross(b - a, c - a), axis=1) > 1e-10
+
+
+def gradients(
+    positions: NDArray[np.float32],
+    normals: NDArray[np.float32],
+    uvs: NDArray[np.float32],
+    triangles: NDArray[np.int32],
+) -> NDArray[np.float32]:
+    """Return `Geometry.gradients`, shape (T, 24).
+
+    What is linear over a triangle is `value + gradient @ (point - corner)`, with a gradient in
+    the triangle's plane.
+
+    Args:
+        positions: Vertices [m], shape (V, 3).
+        normals: Unit normals, shape (V, 3).
+        uvs: Texture coordinates [tiles], shape (V, 2).
+        triangles: Corners of triangles with an area, shape (T, 3).
+    """
+    corner, b, c = np.moveaxis(positions[triangles].astype(np.float64), 1, 0)
+    e1, e2 = b - corner, c - corner
+    d11, d12, d22 = _dot(e1, e1), _dot(e1, e2), _dot(e2, e2)
+    square = d11 * d22 - d12 * d12
+    toward_b = (d22 * e1 - d12 * e2) / square
+    toward_c = (d11 * e2 - d12 * e1) / square
+
+    uv = uvs[triangles].astype(np.float64)
+    uv -= np.floor(uv[:, :1])  # whole repeats change nothing, small numbers keep their digits
+    normal = normals[triangles].astype(np.float64)
+    du1, du2 = uv[:, 1] - uv[:, 0], uv[:, 2] - uv[:, 0]
+    dn1, dn2 = normal[:, 1] - normal[:, 0], normal[:, 2] - normal[:, 0]
+
+    table = np.empty((len(triangles), 24))
+    table[:, 0:3] = corner
+    for k in range(2):
+        table[:, 3 + 4 * k : 6 + 4 * k] = du1[:, k, None] * toward_b + du2[:, k, None] * toward_c
+        table[:, 6 + 4 * k] = uv[:, 0, k]
+    table[:, 11:14] = normal[:, 0]
+    for k in range(3):
+        table[:, 14 + 3 * k : 17 + 3 * k] = dn1[:, k, None] * toward_b + dn2[:, k, None] * toward_c
+    tiles = np.abs(du1[:, 0] * du2[:, 1] - du2[:, 0] * du1[:, 1])
+    table[:, 23] = np.sqrt(tiles / np.sqrt(square[:, 0]))
+    return table.astype(np.float32)
+
+
+def _dot(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.einsum("ij,ij->i", a, b)[:, None]
