@@ -1,1 +1,68 @@
 """The maps, one recipe a file."""
+
+from importlib.resources import as_file, files
+
+from eyas.core.errors import NotInThisVersionError, UnknownNameError
+from eyas.state.roads import RoadGraph, RoadNetwork
+from eyas.state.scene import Scene
+from eyas.world.maps import citystreet
+from eyas.world.network_file import load_network
+
+__all__ = ["LATER", "MAPS", "build_scene", "road_graph", "shipped_network"]
+
+MAPS = {citystreet.NAME: citystreet}
+"""The recipes by name; each offers `road_graph(seed)` and `build_scene(network, seed)`."""
+
+LATER = ("desert", "downtown", "farmland", "lake", "simpleway", "village")
+"""Maps of the original that this version does not have."""
+
+
+def road_graph(name: str, seed: int) -> RoadGraph:
+    """Return the roads of a map.
+
+    Raises:
+        UnknownNameError: No such map.
+        NotInThisVersionError: The map is not part of this version.
+    """
+    _check(name)
+    return MAPS[name].road_graph(seed)
+
+
+def build_scene(name: str, network: RoadNetwork, seed: int) -> Scene:
+    """Return everything of a map that stands still.
+
+    Args:
+        name: Of the map.
+        network: The processed roads of the same map and seed.
+        seed: Of the map, >= 0.
+
+    Raises:
+        UnknownNameError: No such map.
+        NotInThisVersionError: The map is not part of this version.
+    """
+    _check(name)
+    return MAPS[name].build_scene(network, seed)
+
+
+def shipped_network(name: str) -> RoadNetwork | None:
+    """Return the processed roads of a map's seed 0 that come with the package, if there are any.
+
+    Raises:
+        UnknownNameError: No such map.
+        NotInThisVersionError: The map is not part of this version.
+        DataFileError: The installation is damaged.
+    """
+    _check(name)
+    resource = files("eyas.world") / "data" / f"{name}.npz"
+    if not resource.is_file():
+        return None
+    with as_file(resource) as path:
+        return load_network(path)
+
+
+def _check(name: str) -> None:
+    if name in LATER:
+        have = ", ".join(sorted(MAPS))
+        raise NotInThisVersionError(f"world.map: '{name}' is not in this version; there is: {have}")
+    if name not in MAPS:
+        raise UnknownNameError("world.map", name, (*MAPS, *LATER))

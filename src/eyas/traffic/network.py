@@ -1,0 +1,139 @@
+"""Road networks: SUMO's netconvert makes lanes and junctions of the graph that a map draws."""
+
+import hashlib
+import subprocess
+import tempfile
+from pathlib import Path
+from xml.etree import ElementTree
+from xml.sax.saxutils import quoteattr
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.errors import ConfigError
+from eyas.state.roads import RoadEdge, RoadGraph, RoadNetwork, RoadNode
+from eyas.traffic.sumo_install import sumo_binary, sumo_environment, sumo_version
+
+__all__ = ["OPTIONS", "build_network", "graph_hash", "network_xml"]
+
+OPTIONS = (
+    # World coordinates stay as the map draws them.
+    *("--offset.disable-normalization", "true"),
+    # Smooth corners, wide enough for a crossing between the stop line and the junction's middle.
+    *("--junctions.corner-detail", "8"),
+    *("--junctions.internal-link-detail", "20"),
+    *("--default.junctions.radius", "7"),
+    # Cars slow down in turns: 5.5 m/s^2 sideways, as in the original's networks.
+    *("--junctions.limit-turn-speed", "5.5"),
+    # Nobody turns round at a junction; every road leads on, so nobody needs to.
+    *("--no-turnarounds", "true"),
+    *("--output.street-names", "false"),
+    *("--precision", "3"),
+)
+"""netconvert's options besides its files."""
+
+
+def graph_hash(graph: RoadGraph) -> str:
+    """Return the SHA-256 of all that netconvert is told about a graph."""
+    told = "\n".join([_node_xml(graph.nodes), _edge_xml(graph.edges), *OPTIONS])
+    return hashlib.sha256(told.encode()).hexdigest()
+
+
+def build_network(graph: RoadGraph) -> RoadNetwork:
+    """Return the network of a graph, made by netconvert.
+
+    Raises:
+        MissingExtraError: SUMO is not installed.
+        ConfigError: netconvert refuses the graph.
+    """
+    root = ElementTree.fromstring(network_xml(graph))
+    edges = {name: root.find(f"./edge[@id='{name}']") for name in (e.name for e in graph.edges)}
+    lanes = [
+        (index, lane)
+        for index, edge in enumerate(edges.values())
+        for lane in (edge.findall("lane") if edge is not None else [])
+    ]
+    junctions = [root.find(f"./junction[@id='{node.name}']") for node in graph.nodes]
+    lane_points, lane_first = _joined([_points(lane.get("shape", "")) for _, lane in lanes])
+    junction_points, junction_first = _joined(
+        [_points(found.get("shape", "") if found is not None else "") for found in junctions]
+    )
+    return RoadNetwork(
+        graph_hash=graph_hash(graph),
+        builder=f"netconvert {sumo_version()}",
+        lane_points=lane_points,
+        lane_first=lane_first,
+        lane_width=np.array([float(lane.get("width", "3.2")) for _, lane in lanes]),
+        lane_speed=np.array([float(lane.get("speed", "nan")) for _, lane in lanes]),
+        lane_edge=np.array([edge for edge, _ in lanes], np.int32),
+        lane_index=np.array([int(lane.get("index", "0")) for _, lane in lanes], np.int32),
+        edges=tuple(edges),
+        edge_start=tuple(edge.start for edge in graph.edges),
+        edge_end=tuple(edge.end for edge in graph.edges),
+        junction_points=junction_points,
+        junction_first=junction_first,
+        junctions=tuple(node.name for node in graph.nodes),
+    )
+
+
+def network_xml(graph: RoadGraph) -> bytes:
+    """Return SUMO's network file of a graph: the same bytes each time.
+
+    Raises:
+        MissingExtraError: SUMO is not installed.
+        ConfigError: netconvert refuses the graph.
+    """
+    netconvert = sumo_binary("netconvert")
+    with tempfile.TemporaryDirectory(prefix="eyas-roads-") as folder:
+        nodes, edges, out = (Path(folder) / name for name in ("nod.xml", "edg.xml", "net.xml"))
+        nodes.write_text(_node_xml(graph.nodes), encoding="utf-8")
+        edges.write_text(_edge_xml(graph.edges), encoding="utf-8")
+        files = ("-n", str(nodes), "-e", str(edges), "-o", str(out))
+        done = subprocess.run(
+            [str(netconvert), *files, *OPTIONS],
+            env=sumo_environment(),
+            capture_output=True,
+            text=True,
+            check=False,
+        )
+        if done.returncode != 0:
+            reason = (done.stderr.strip().splitlines() or ["no message"])[0]
+            raise ConfigError(f"roads of '{graph.map_name}': netconvert refuses them: {reason}")
+        return _without_comments(out.read_bytes())
+
+
+def _without_comments(xml: bytes) -> bytes:
+    """Drop the comment that holds the time and the temporary folder; the parser skips comments."""
+    return ElementTree.tostring(ElementTree.fromstring(xml), encoding="utf-8") + b"\n"
+
+
+def _node_xml(nodes: tuple[RoadNode, ...]) -> str:
+    lines = [
+        f'<node id={quoteattr(node.name)} x="{node.x:.3f}" y="{node.y:.3f}" type="priority"/>'
+        for node in nodes
+    ]
+    return "\n".join(["<nodes>", *lines, "</nodes>"])
+
+
+def _edge_xml(edges: tuple[RoadEdge, ...]) -> str:
+    lines = []
+    for edge in edges:
+        shape = " ".join(f"{x:.3f},{y:.3f}" for x, y in edge.shape)
+        middle = f' shape="{shape}"' if shape else ""
+        lines.append(
+            f"<edge id={quoteattr(edge.name)} from={quoteattr(edge.start)} "
+            f'to={quoteattr(edge.end)} numLanes="{edge.lanes}" width="{edge.lane_width:.3f}" '
+            f'speed="{edge.speed:.3f}"{middle}/>'
+        )
+    return "\n".join(["<edges>", *lines, "</edges>"])
+
+
+def _points(shape: str) -> NDArray[np.float64]:
+    return np.array([[float(v) for v in pair.split(",")[:2]] for pair in shape.split()])
+
+
+def _joined(
+    parts: list[NDArray[np.float64]],
+) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    first = np.cumsum([0, *(len(part) for part in parts)]).astype(np.int32)
+    return np.concatenate([np.zeros((0, 2)), *(part.reshape(-1, 2) for part in parts)]), first

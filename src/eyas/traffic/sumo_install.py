@@ -1,0 +1,77 @@
+"""Where SUMO is: the optional packages of the extra `sumo`, imported only when something asks."""
+
+import importlib
+import os
+import sys
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from types import ModuleType
+
+from eyas.core.errors import MissingExtraError
+
+__all__ = ["SYSTEM_PACKAGES", "import_libsumo", "sumo_binary", "sumo_environment", "sumo_version"]
+
+SYSTEM_PACKAGES = "libgl1 libx11-6 libxext6 libxrender1 libexpat1 libatomic1"
+"""What SUMO's wheels need of Debian and Ubuntu."""
+
+
+def sumo_binary(name: str) -> Path:
+    """Return the path of one of SUMO's programs, for example `netconvert`.
+
+    Raises:
+        MissingExtraError: SUMO is not installed.
+    """
+    path = _home() / "bin" / (f"{name}.exe" if sys.platform == "win32" else name)
+    if not path.exists():
+        raise missing_sumo(name)
+    return path
+
+
+def sumo_environment() -> dict[str, str]:
+    """Return the environment that SUMO's programs need when called by path.
+
+    Raises:
+        MissingExtraError: SUMO is not installed.
+    """
+    home = _home()
+    return {**os.environ, "SUMO_HOME": str(home), "PROJ_LIB": str(home / "data" / "proj")}
+
+
+def import_libsumo() -> ModuleType:
+    """Return the module that runs SUMO in this process.
+
+    Raises:
+        MissingExtraError: SUMO, or a system library it needs, is not installed.
+    """
+    os.environ.setdefault("SUMO_HOME", str(_home()))
+    return _imported("libsumo")
+
+
+def sumo_version() -> str:
+    """Return the installed version of SUMO, for example `1.28.0`.
+
+    Raises:
+        MissingExtraError: SUMO is not installed.
+    """
+    try:
+        return version("eclipse-sumo")
+    except PackageNotFoundError:
+        raise missing_sumo("traffic") from None
+
+
+def missing_sumo(purpose: str) -> MissingExtraError:
+    """Return the error that says how SUMO is installed."""
+    return MissingExtraError(
+        purpose, "sumo", f"(on Debian or Ubuntu also: apt-get install {SYSTEM_PACKAGES})"
+    )
+
+
+def _home() -> Path:
+    return Path(str(_imported("sumo").SUMO_HOME))
+
+
+def _imported(name: str) -> ModuleType:
+    try:
+        return importlib.import_module(name)
+    except ImportError:  # also raised where a system library is missing
+        raise missing_sumo("traffic") from None

@@ -1,0 +1,50 @@
+"""Light and air: what each weather of each map looks like."""
+
+import math
+
+from eyas.core.errors import NotInThisVersionError, UnknownNameError
+from eyas.state.scene import Lighting
+
+__all__ = ["WEATHERS", "lighting"]
+
+WEATHERS = ("day", "foggy", "night", "snow")
+"""The weathers of the original; this version has `day`."""
+
+_STEEP = 1.0 / math.sqrt(0.55**2 + 0.6**2 + 1.0)
+
+_CLEAR_DAY = Lighting(
+    # The original's sun: in the north-west, 50.9 degrees high.
+    sun_direction=(-0.55 * _STEEP, 0.6 * _STEEP, _STEEP),
+    sun_colour=(1.02, 0.96, 0.84),
+    zenith_colour=(0.075, 0.135, 0.34),
+    horizon_colour=(0.40, 0.46, 0.55),
+    ambient_up=(0.24, 0.29, 0.37),
+    ambient_down=(0.13, 0.125, 0.10),
+    fog_colour=(0.40, 0.46, 0.55),
+    # Clear air that turns the far edge of the map a little blue.
+    fog_density=1.0 / 4000.0,
+)
+
+_LIGHTINGS = {("citystreet", "day"): _CLEAR_DAY}
+
+
+def lighting(map_name: str, weather: str) -> Lighting:
+    """Return the light of a weather of a map.
+
+    Args:
+        map_name: A map of this version.
+        weather: One of `WEATHERS`.
+
+    Raises:
+        UnknownNameError: No such weather.
+        NotInThisVersionError: The weather is not part of this version.
+    """
+    if weather not in WEATHERS:
+        raise UnknownNameError("world.weather", weather, WEATHERS)
+    light = _LIGHTINGS.get((map_name, weather))
+    if light is None:
+        have = ", ".join(kind for name, kind in _LIGHTINGS if name == map_name)
+        raise NotInThisVersionError(
+            f"world.weather: '{weather}' of map '{map_name}' is not in this version; there is: {have}"
+        )
+    return light
