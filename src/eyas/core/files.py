@@ -7,10 +7,28 @@ from pathlib import Path
 
 from eyas.core.errors import OutputError
 
-__all__ = ["PART_SUFFIX", "atomic_path", "write_atomic"]
+__all__ = ["PART_SUFFIX", "atomic_path", "part_path", "refusals", "write_atomic"]
 
 PART_SUFFIX = ".part"
 """Ending of a file that is still being written; such a file may be deleted at any time."""
+
+
+def part_path(path: Path) -> Path:
+    """Return the hidden name beside `path` under which it is written until it is whole."""
+    return path.with_name(f".{path.name}{PART_SUFFIX}")
+
+
+@contextmanager
+def refusals(path: Path) -> Iterator[None]:
+    """Turn what the file system refuses inside the block into one line about `path`.
+
+    Raises:
+        OutputError: The file system refused (full disk, no permission, a folder in the way).
+    """
+    try:
+        yield
+    except OSError as error:
+        raise OutputError(f"{path}: cannot write: {error.strerror or error}") from error
 
 
 @contextmanager
@@ -20,16 +38,14 @@ def atomic_path(path: Path) -> Iterator[Path]:
     Raises:
         OutputError: The file system refused (full disk, no permission, a folder in the way).
     """
-    part = path.with_name(f".{path.name}{PART_SUFFIX}")
-    try:
-        yield part
-        os.replace(part, path)
-    except OSError as error:
-        part.unlink(missing_ok=True)
-        raise OutputError(f"{path}: cannot write: {error.strerror or error}") from error
-    except BaseException:
-        part.unlink(missing_ok=True)
-        raise
+    part = part_path(path)
+    with refusals(path):
+        try:
+            yield part
+            os.replace(part, path)
+        except BaseException:
+            part.unlink(missing_ok=True)
+            raise
 
 
 def write_atomic(path: Path, data: bytes) -> None:

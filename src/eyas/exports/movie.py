@@ -1,0 +1,87 @@
+"""Pictures as one MP4 file."""
+
+import os
+from contextlib import suppress
+from fractions import Fraction
+from pathlib import Path
+from typing import IO
+
+import av
+import numpy as np
+from av.video.stream import VideoStream
+from numpy.typing import NDArray
+
+from eyas.core.files import part_path, refusals
+
+__all__ = ["MovieWriter"]
+
+CODECS = {
+    "libx264": {"crf": "18", "preset": "medium"},
+    "mpeg4": {"qscale": "3"},
+}
+"""Encoders by preference, with settings of about the same, visually clean, quality."""
+
+LARGEST_DENOMINATOR = 1001
+"""Of the frame rate; 30000/1001 is the least round one in use."""
+
+
+class MovieWriter:
+    """Encodes pictures as they come; the file appears under its name when it is whole.
+
+    The same pictures give the same bytes: one encoder thread, no dates, no version tags.
+
+    Args:
+        path: Where to.
+        height: Of the pictures [pixels].
+        width: Of the pictures [pixels].
+        fps: Pictures in a second of the movie [Hz].
+
+    Raises:
+        OutputError: The file system refused; raised by every method.
+    """
+
+    def __init__(self, path: Path, height: int, width: int, fps: float) -> None:
+        self._path = path
+        self._part = part_path(path)
+        # yuv420p shares colours between 2 x 2 pixels, so sizes must be even.
+        self._padding = ((0, height % 2), (0, width % 2), (0, 0))
+        with refusals(path):
+            self._file: IO[bytes] = self._part.open("wb")
+        self._container = av.open(
+            self._file, "w", format="mp4", container_options={"fflags": "+bitexact"}
+        )
+        self._stream = self._video_stream(height, width, fps)
+
+    def _video_stream(self, height: int, width: int, fps: float) -> VideoStream:
+        codec = next(name for name in CODECS if name in av.codecs_available)
+        rate = max(
+            Fraction(fps).limit_denominator(LARGEST_DENOMINATOR), Fraction(1, LARGEST_DENOMINATOR)
+        )
+        stream = self._container.add_stream(codec, rate=rate, options=CODECS[codec])
+        assert isinstance(stream, VideoStream)
+        stream.height, stream.width = height + height % 2, width + width % 2
+        stream.pix_fmt = "yuv420p"
+        stream.codec_context.thread_count = 1
+        stream.codec_context.flags |= av.codec.context.Flags.bitexact
+        return stream
+
+    def add(self, rgb: NDArray[np.uint8]) -> None:
+        """Append one picture, shape (H, W, 3)."""
+        frame = av.VideoFrame.from_ndarray(np.pad(rgb, self._padding, mode="edge"), format="rgb24")
+        with refusals(self._path):
+            self._container.mux(self._stream.encode(frame))
+
+    def finish(self) -> None:
+        """Write what is left, and give the file its name."""
+        with refusals(self._path):
+            self._container.mux(self._stream.encode(None))
+            self._container.close()
+            self._file.close()
+            os.replace(self._part, self._path)
+
+    def abandon(self) -> None:
+        """Throw away what was written."""
+        with refusals(self._path):
+            self._part.unlink(missing_ok=True)
+        with suppress(OSError):  # the last buffer may find the disk full again
+            self._file.close()
