@@ -1,0 +1,69 @@
+"""What vehicles are made of."""
+
+from eyas.state.mesh import Material, Surface
+
+__all__ = [
+    "BLACK_PAINT",
+    "BRIGHT",
+    "CLOTH",
+    "GLASS",
+    "HEAD_LAMP",
+    "PAINT",
+    "PLATE",
+    "RIM",
+    "ROOF_GLASS",
+    "SKIN_WHITE",
+    "STEEL",
+    "TAIL_LAMP",
+    "TRIM",
+    "TYRE",
+    "plain",
+]
+
+
+def plain(red: float, green: float, blue: float) -> Material:
+    """Return a matt material, sRGB 0 to 1."""
+    return Material(tint=(red, green, blue))
+
+
+PAINT = Material(surface=Surface.PAINT)
+"""The body colour."""
+
+BLACK_PAINT = Material(tint=(0.2, 0.2, 0.2), surface=Surface.PAINT)
+"""A nearly black shade of the body colour."""
+
+GLASS = Material(tint=(0.11, 0.13, 0.15), surface=Surface.GLASS)
+"""Tinted windows."""
+
+ROOF_GLASS = Material(tint=(0.05, 0.055, 0.065), surface=Surface.GLASS)
+"""A glass roof."""
+
+HEAD_LAMP = Material(tint=(0.93, 0.94, 0.90), surface=Surface.LAMP, emission=0.25)
+"""Front lamps, bright enough to be told from paint by day and seen by night."""
+
+TAIL_LAMP = Material(tint=(0.72, 0.05, 0.04), surface=Surface.LAMP, emission=0.30)
+"""Rear lamps."""
+
+TRIM = plain(0.10, 0.10, 0.11)
+"""Grilles, bumpers, undersides."""
+
+TYRE = plain(0.12, 0.12, 0.12)
+"""Rubber."""
+
+RIM = plain(0.68, 0.69, 0.71)
+"""Wheel discs."""
+
+STEEL = plain(0.34, 0.35, 0.37)
+"""Frames and tanks below the body."""
+
+BRIGHT = plain(0.74, 0.75, 0.76)
+"""Polished metal."""
+
+PLATE = plain(0.88, 0.88, 0.84)
+"""Number plates."""
+
+SKIN_WHITE = plain(0.86, 0.87, 0.86)
+"""White panels of trailers and helmets."""
+
+CLOTH = plain(0.16, 0.18, 0.25)
+"""A rider's suit."""

@@ -1,0 +1,214 @@
+"""Collects the panels of a vehicle and turns them into a mesh: rounded where panels meet gently."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from eyas.state.mesh import Material, Mesh
+
+__all__ = ["Shell"]
+
+_CREASE = 0.75
+"""Panels that meet at a larger angle keep a hard edge [rad]."""
+
+
+class Shell:
+    """Panels so far. Corners are counter-clockwise seen from outside."""
+
+    def __init__(self) -> None:
+        self._corners: list[NDArray[np.float64]] = []
+        self._materials: list[Material] = []
+
+    def quads(self, corners: ArrayLike, material: Material, *, both_sides: bool = False) -> None:
+        """Add quadrilaterals, shape (Q, 4, 3) or (4, 3).
+
+        Args:
+            corners: In the model's frame [m].
+            material: Of all of them.
+            both_sides: Also add them mirrored, left for right.
+        """
+        points = np.asarray(corners, np.float64).reshape(-1, 4, 3)
+        triangles = np.concatenate([points[:, [0, 1, 2]], points[:, [0, 2, 3]]])
+        self.triangles(triangles, material)
+        if both_sides:
+            self.triangles(triangles[:, ::-1] * [1.0, -1.0, 1.0], material)
+
+    def triangles(self, corners: ArrayLike, material: Material) -> None:
+        """Add triangles, shape (T, 3, 3) [m]; those without area are left out."""
+        points = np.asarray(corners, np.float64).reshape(-1, 3, 3)
+        area = np.linalg.norm(_cross(points), axis=1)
+        points = points[area > 1e-7]
+        self._corners.append(points)
+        self._materials += [material] * len(points)
+
+    def box(
+        self,
+        low: Sequence[float],
+        high: Sequence[float],
+        material: Material,
+        *,
+        taper: float = 0.0,
+        both_sides: bool = False,
+    ) -> None:
+        """Add a box between two corners; `taper` draws the top in on all four sides [m]."""
+        (x0, y0, z0), (x1, y1, z1) = low, high
+        t = taper
+        bottom = [(x0, y0, z0), (x1, y0, z0), (x1, y1, z0), (x0, y1, z0)]
+        top = [
+            (x0 + t, y0 + t, z1),
+            (x1 - t, y0 + t, z1),
+            (x1 - t, y1 - t, z1),
+            (x0 + t, y1 - t, z1),
+        ]
+        faces = [bottom[::-1], top]
+        for i in range(4):
+            j = (i + 1) % 4
+            faces.append([bottom[i], bottom[j], top[j], top[i]])
+        self.quads(faces, material, both_sides=both_sides)
+
+    def prism(
+        self,
+        profile: ArrayLike,
+        y: tuple[float, float],
+        material: Material,
+        *,
+        both_sides: bool = False,
+    ) -> None:
+        """Add a convex side view (x, z), counter-clockwise seen from the right, made solid.
+
+        Args:
+            profile: Corners [m], shape (K, 2).
+            y: From right to left [m].
+            material: Of all faces.
+            both_sides: Also add it mirrored.
+        """
+        outline = np.asarray(profile, np.float64)
+        right = np.insert(outline, 1, y[0], axis=1)
+        left = np.insert(outline, 1, y[1], axis=1)
+        self.rings(np.stack([left, right]), material, both_sides=both_sides)
+
+    def rings(
+        self, rings: ArrayLike, material: Material, *, both_sides: bool = False, caps: bool = True
+    ) -> None:
+        """Add a skin over closed outlines, one after the other, and close both ends.
+
+        Args:
+            rings: Outlines of as many corners each, shape (R, K, 3); counter-clockwise seen from
+                where the rings lead to.
+            material: Of all faces.
+            both_sides: Also add it mirrored.
+            caps: Whether the ends are closed (the outlines are convex).
+        """
+        r = np.asarray(rings, np.float64)
+        follow = np.roll(r, -1, axis=1)
+        sides = np.stack([r[:-1], follow[:-1], follow[1:], r[1:]], axis=2).reshape(-1, 4, 3)
+        self.quads(sides, material, both_sides=both_sides)
+        if caps:
+            for ring in (r[0, ::-1], r[-1]):
+                fan = [[ring[0], ring[i], ring[i + 1]] for i in range(1, len(ring) - 1)]
+                self.triangles(fan, material)
+                if both_sides:
+                    self.triangles(np.array(fan)[:, ::-1] * [1.0, -1.0, 1.0], material)
+
+    def tube(
+        self,
+        path: ArrayLike,
+        radii: Sequence[float],
+        material: Material,
+        *,
+        sides: int = 6,
+        both_sides: bool = False,
+    ) -> None:
+        """Add a round rod along points, shape (R, 3), with a radius at each [m]."""
+        points = np.asarray(path, np.float64)
+        along = np.gradient(points, axis=0)
+        along /= np.linalg.norm(along, axis=1, keepdims=True)
+        helper = np.where(np.abs(along[:, 1:2]) < 0.9, [0.0, 1.0, 0.0], [1.0, 0.0, 0.0])
+        u = np.cross(helper, along)
+        u /= np.linalg.norm(u, axis=1, keepdims=True)
+        v = np.cross(along, u)
+        angle = np.arange(sides) * (2 * np.pi / sides)
+        circle = np.cos(angle)[:, None] * u[:, None] + np.sin(angle)[:, None] * v[:, None]
+        size = np.asarray(radii, np.float64)[:, None, None]
+        self.rings(points[:, None] + size * circle, material, both_sides=both_sides)
+
+    def ball(
+        self,
+        centre: Sequence[float],
+        radii: Sequence[float],
+        material: Material,
+        *,
+        rows: int = 5,
+        sides: int = 8,
+        both_sides: bool = False,
+    ) -> None:
+        """Add an upright ellipsoid [m]."""
+        upwards = np.linspace(-np.pi / 2, np.pi / 2, rows + 1)[:, None]
+        angle = np.arange(sides) * (2 * np.pi / sides)
+        unit = [np.cos(upwards) * np.cos(angle), np.cos(upwards) * np.sin(angle)]
+        unit.append(np.broadcast_to(np.sin(upwards), unit[0].shape))
+        rings = np.stack(unit, axis=-1) * np.asarray(radii) + np.asarray(centre)
+        self.rings(rings, material, both_sides=both_sides, caps=False)
+
+    def mesh(self) -> Mesh:
+        """Return all panels as one mesh."""
+        corners = np.concatenate(self._corners)
+        palette = {m: i for i, m in enumerate(dict.fromkeys(self._materials))}
+        material = np.array([palette[m] for m in self._materials], np.int32)
+        vertices = np.concatenate(
+            [corners.reshape(-1, 3), _normals(corners, material).reshape(-1, 3)], axis=1
+        )
+        _, first, index = np.unique(
+            np.round(vertices, 5), axis=0, return_index=True, return_inverse=True
+        )
+        kept = vertices[first]
+        return Mesh(
+            positions=np.ascontiguousarray(kept[:, :3], np.float32),
+            normals=np.ascontiguousarray(kept[:, 3:], np.float32),
+            uvs=np.zeros((len(kept), 2), np.float32),
+            triangles=np.ascontiguousarray(index.reshape(-1, 3), np.int32),
+            materials=material,
+            palette=tuple(palette),
+        )
+
+
+def _cross(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the normals of triangles, as long as twice their areas, shape (T, 3)."""
+    crossed: NDArray[np.float64] = np.cross(
+        corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    )
+    return crossed
+
+
+def _angles(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the inner angles of triangles at their corners [rad], shape (T, 3)."""
+    ahead = np.roll(corners, -1, axis=1) - corners
+    behind = np.roll(corners, 1, axis=1) - corners
+    length = np.linalg.norm(ahead, axis=2) * np.linalg.norm(behind, axis=2)
+    cosine = np.einsum("tci,tci->tc", ahead, behind) / length
+    return np.asarray(np.arccos(np.clip(cosine, -1.0, 1.0)), np.float64)
+
+
+def _normals(corners: NDArray[np.float64], material: NDArray[np.int32]) -> NDArray[np.float64]:
+    """Return unit normals of the corners, shape (T, 3, 3): the mean of the triangles of the same
+    material that meet there at less than the crease angle, weighted by their angle there, so that
+    long and short panels count alike.
+    """
+    flat = _cross(corners)
+    unit = np.repeat(flat / np.linalg.norm(flat, axis=1, keepdims=True), 3, axis=0)
+    weighted = unit * _angles(corners).reshape(-1, 1)
+    key = np.column_stack([np.round(corners.reshape(-1, 3), 4), np.repeat(material, 3)])
+    _, group, size = np.unique(key, axis=0, return_inverse=True, return_counts=True)
+    order = np.argsort(group.reshape(-1), kind="stable")
+    first = np.cumsum(size) - size
+    rank = np.arange(len(order)) - np.repeat(first, size)
+    member = np.full((len(size), size.max()), -1)
+    member[np.repeat(np.arange(len(size)), size), rank] = order
+    others = member[group.reshape(-1)]
+    cosine = np.einsum("ci,coi->co", unit, unit[others])
+    close = (others >= 0) & (cosine > np.cos(_CREASE))
+    total = np.einsum("co,coi->ci", close.astype(np.float64), weighted[others])
+    total /= np.linalg.norm(total, axis=1, keepdims=True)
+    smooth: NDArray[np.float64] = total.reshape(-1, 3, 3)
+    return smooth
