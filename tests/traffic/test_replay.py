@@ -105,5 +105,6 @@ def test_only_those_that_stay_are_available(replay: Replay):
 
 
 def test_times_that_were_not_recorded_are_an_error(replay: Replay):
+    assert replay.available(4.0, 20.0 + 1e-12)[0]
     with pytest.raises(ConfigError, match=r"lasts 20 s, but 20\.1 s was asked for"):
         replay.available(1.0, 20.1)

@@ -1,0 +1,62 @@
+"""The recording in the package fits the map in the package, without SUMO."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from eyas.core.errors import ConfigError
+from eyas.traffic.config import Demand, TrafficConfig, VehicleType
+from eyas.traffic.library import STANDARD_DURATION, find_recording
+from eyas.traffic.smoothing import smooth
+from eyas.world.maps.citystreet import road_graph
+
+WITHOUT_SUMO = """
+import sys
+sys.modules.update(dict.fromkeys(["libsumo", "sumo", "sumolib", "traci"]))
+from eyas.traffic.config import TrafficConfig
+from eyas.traffic.library import find_recording
+from eyas.world.maps.citystreet import road_graph
+print(find_recording(road_graph(0), TrafficConfig()).actors)
+"""
+
+
+def test_the_default_traffic_of_citystreet_is_shipped():
+    config = TrafficConfig(update_routes=False, colour=(1.0, 1.0, 1.0))
+    shipped = find_recording(road_graph(0), config)
+    assert shipped.duration == STANDARD_DURATION >= 20 * 60
+    assert shipped.provenance.map_name == "citystreet"
+    assert shipped.present.all()
+    assert shipped.present.shape[1] == 40
+    tracks = smooth(shipped)
+    # No jam: every car gets on, all the time.
+    assert (tracks.travelled[-1] > 7.0 * STANDARD_DURATION).all()
+    # No car stands in another: middles of cars 1.8 m wide are nearest side by side.
+    for position in tracks.position[::50]:
+        apart = np.hypot(*np.moveaxis(position[:, None] - position, -1, 0))
+        assert (apart + 100.0 * np.eye(40)).min() > 1.8
+
+
+def test_it_needs_no_sumo():
+    done = subprocess.run(
+        [sys.executable, "-c", WITHOUT_SUMO], capture_output=True, text=True, check=False
+    )
+    assert (done.stdout.strip(), done.stderr) == ("40", "")
+
+
+@pytest.mark.parametrize(
+    ("map_seed", "config"),
+    [
+        (1, TrafficConfig()),
+        (0, TrafficConfig(seed=2)),
+        (0, TrafficConfig(max_vehicles=39)),
+        (0, TrafficConfig(vehicle_type=VehicleType.BUS)),
+        (0, TrafficConfig(demand=Demand.RESPAWN)),
+        (0, TrafficConfig(max_speed=10.0)),
+    ],
+)
+def test_it_is_not_taken_for_anything_else(map_seed: int, config: TrafficConfig):
+    forbidden = config.model_copy(update={"update_routes": False})
+    with pytest.raises(ConfigError, match="no recording fits"):
+        find_recording(road_graph(map_seed), forbidden)
