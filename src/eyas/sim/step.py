@@ -1,7 +1,5 @@
 """The step: one kernel call moves, judges and reports all trackers for all physics steps of an action."""
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,7 +7,7 @@ from eyas.core.clock import PHYSICS_STEP
 from eyas.core.jit import kernel
 from eyas.sim.fleet import Fleet, Traffic
 from eyas.task.direction import TARGET_COMPENSATION, target_centre
-from eyas.task.done import broken_limit, judge
+from eyas.task.done import judge
 from eyas.task.observe import observe, start_episode
 from eyas.task.packet_rows import fill_basic, fill_reward
 from eyas.task.rules import Rules
@@ -180,16 +178,14 @@ def _look(n: int, fleet: Fleet, rules: Rules) -> None:
 def _look_and_judge(n: int, fleet: Fleet, rules: Rules) -> None:
     advance_gimbal(fleet.tracker_memory[n], fleet.euler[n], fleet.gimbal[n])
     _look(n, fleet, rules)
-    breach = broken_limit(
+    judge(
+        rules,
+        fleet.target_lost[n],
         fleet.position[n],
         fleet.velocity[n],
         fleet.angular_velocity[n],
         fleet.euler[n],
         fleet.commanded_position[n],
-        rules,
+        fleet.target_centre[n],
+        fleet.task_memory[n],
     )
-    finite = True
-    for axis in range(3):
-        finite = finite and math.isfinite(fleet.position[n, axis] + fleet.velocity[n, axis])
-    finite = finite and math.isfinite(fleet.euler[n, 2])
-    judge(breach, fleet.target_lost[n], finite, rules, fleet.task_memory[n])

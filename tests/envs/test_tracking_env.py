@@ -1,0 +1,98 @@
+"""The Gymnasium environment, against the checkers of the libraries that use it."""
+
+import warnings
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.utils.env_checker import check_env
+
+from eyas.core.errors import EyasError
+
+NAME = "eyas/citystreet-day-v0"
+
+
+@pytest.mark.parametrize("continuous", [False, True])
+def test_gymnasium_finds_nothing_wrong(continuous):
+    env = gymnasium.make(NAME, continuous=continuous, render_mode="rgb_array")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        check_env(env.unwrapped)
+
+
+@pytest.mark.parametrize("continuous", [False, True])
+def test_stable_baselines_finds_nothing_wrong(continuous):
+    checker = pytest.importorskip("stable_baselines3.common.env_checker")
+    env = gymnasium.make(NAME, continuous=continuous, render_mode="rgb_array")
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        checker.check_env(env.unwrapped)
+
+
+def test_a_seeded_episode_repeats_and_the_next_one_differs():
+    env = gymnasium.make(NAME)
+    first, _ = env.reset(seed=3)
+    second, _ = env.reset()
+    again, _ = env.reset(seed=3)
+    assert np.array_equal(first, again)
+    assert not np.array_equal(first, second)
+    assert first.shape == (84, 84, 3)
+    assert first.dtype == np.uint8
+
+
+def test_observations_share_no_memory():
+    env = gymnasium.make(NAME)
+    first, _ = env.reset(seed=0)
+    kept = first.copy()
+    env.step(0)
+    assert np.array_equal(first, kept)
+
+
+def test_an_episode_ends_truncated_at_the_step_limit():
+    done = {"total_steps": 40, "grace_steps": 0, "no_reward_steps": 10_000}
+    env = gymnasium.make(NAME, config={"done": done})
+    _, info = env.reset(seed=0)
+    assert info["step"] == 0
+    for _ in range(9):
+        *_, terminated, truncated, _ = env.step(6)
+        assert not (terminated or truncated)
+    *_, terminated, truncated, info = env.step(6)
+    assert truncated
+    assert not terminated
+    assert info["done_reason"] == "step_limit"
+
+
+def test_an_episode_ends_terminated_without_reward():
+    done = {"grace_steps": 0, "no_reward_steps": 20}
+    env = gymnasium.make(NAME, config={"done": done})
+    env.reset(seed=0)
+    for _ in range(300):
+        _, reward, terminated, truncated, info = env.step(1)  # backward: the target is left behind
+        if terminated or truncated:
+            break
+    assert terminated
+    assert reward == 0
+    assert info["done_reason"] == "no_reward"
+
+
+def test_the_reward_packet_comes_by_name():
+    env = gymnasium.make(NAME)
+    env.reset(seed=0)
+    *_, info = env.step(6)
+    assert info["camera_width"] == 320
+    assert len(info["camera_pose"]) == 16
+    assert info["target_type"].endswith("Simple")
+
+
+def test_render_gives_the_configured_camera():
+    env = gymnasium.make(NAME, render_mode="rgb_array")
+    env.reset(seed=0)
+    assert env.render().shape == (240, 320, 3)
+
+
+def test_wrong_settings_say_what_is_wrong_in_one_line():
+    with pytest.raises(EyasError, match="did you mean 'citystreet'") as caught:
+        gymnasium.make(NAME, map="citystret")
+    assert "\n" not in str(caught.value)
+    with pytest.raises(EyasError, match="render_mode"):
+        gymnasium.make(NAME, render_mode="human").reset()
