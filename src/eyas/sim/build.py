@@ -21,5 +21,5 @@ def build_simulation(config: EyasConfig, count: int, *, shared_world: bool) -> S
         EyasError: A setting is not supported, or there is no traffic for it.
     """
     require_supported(config)
-    place = load_place(config.world, config.traffic)
+    place = load_place(config.world, config.traffic, count)
     return Simulation(config, place, count, shared_world=shared_world)

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
-from eyas.core.errors import ConfigError
+from eyas.core.errors import ConfigError, SpawnError
 from eyas.core.rng import stream
 from eyas.sim.config import EyasConfig
 from eyas.sim.fleet import Fleet
@@ -15,6 +15,9 @@ from eyas.task.spawn import choose_target, draw_start, place
 from eyas.traffic.replay import Replay
 
 __all__ = ["Episodes"]
+
+_ATTEMPTS = 100
+"""Times at which a start is tried."""
 
 
 class Episodes:
@@ -69,11 +72,7 @@ class Episodes:
         episode = int(self.number[tracker])
         self._worlds.draw_looks(tracker, self._seed, episode)
         rng = stream(self._seed, "episode", tracker, episode)
-        tick = self._start_tick(tracker, fleet, rng)
-        end = min(tick + self._config.done.total_steps, self._last_tick)
-        available = self._replay.available(tick * PHYSICS_STEP, end * PHYSICS_STEP)
-        used = set(fleet.target_actor.tolist()) if self._worlds.shared else set()
-        actor = choose_target(available, used, rng)
+        tick, actor = self._choose(tracker, fleet, rng)
         start = draw_start(self._config.start, rng)
         # A target at the origin that heads so that the tracker heads east: what comes back is the
         # offset in the tracker's own heading frame.
@@ -86,6 +85,24 @@ class Episodes:
         fleet.offset[tracker, :3] = offset
         fleet.offset[tracker, 3] = start.direction
         return start.pitch
+
+    def _choose(self, tracker: int, fleet: Fleet, rng: np.random.Generator) -> tuple[int, int]:
+        """Return when an episode begins, and with which actor.
+
+        Where vehicles come and go there may be no one who stays for a whole episode; then other
+        times are tried, a bounded number of them.
+        """
+        used = set(fleet.target_actor.tolist()) if self._worlds.shared else set()
+        for attempt in range(_ATTEMPTS):
+            tick = self._start_tick(tracker, fleet, rng)
+            end = min(tick + self._config.done.total_steps, self._last_tick)
+            available = self._replay.available(tick * PHYSICS_STEP, end * PHYSICS_STEP)
+            try:
+                return tick, choose_target(available, used, rng)
+            except SpawnError:
+                if self._worlds.shared or attempt == _ATTEMPTS - 1:
+                    raise
+        raise AssertionError("the loop returns or raises")
 
     def _start_tick(self, tracker: int, fleet: Fleet, rng: np.random.Generator) -> int:
         """Return the time at which an episode begins: now in a shared world, else at random."""

@@ -8,7 +8,7 @@ from eyas.render.textures import build_textures
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import Scene
 from eyas.targets.rig import VehicleRigs
-from eyas.traffic.config import TrafficConfig
+from eyas.traffic.config import Demand, TrafficConfig
 from eyas.traffic.library import find_recording
 from eyas.traffic.network import build_network
 from eyas.traffic.replay import Replay
@@ -46,17 +46,26 @@ def load_scene(map_name: str, seed: int) -> Scene:
     return build_scene(map_name, load_network(world), seed)
 
 
-@lru_cache(maxsize=2)
-def load_place(world: WorldConfig, traffic: TrafficConfig) -> Place:
+def load_place(world: WorldConfig, traffic: TrafficConfig, trackers: int) -> Place:
     """Return a place, built once in a process for all simulations in it.
+
+    Args:
+        world: Map and weather.
+        traffic: What drives.
+        trackers: How many follow; groups of vehicles that enter together are three times as many.
 
     Raises:
         EyasError: No such map or weather, or no traffic for it.
     """
+    grouped = traffic.demand is Demand.RESPAWN and traffic.group_size is None
+    return _load_place(world, traffic, trackers if grouped else 1)
+
+
+@lru_cache(maxsize=2)
+def _load_place(world: WorldConfig, traffic: TrafficConfig, trackers: int) -> Place:
     light = lighting(world.map, world.weather)
-    graph = road_graph(world.map, world.seed)
-    recording = find_recording(graph, traffic)
+    recording = find_recording(road_graph(world.map, world.seed), traffic, trackers=trackers)
     scene = load_scene(world.map, world.seed)
-    rigs = VehicleRigs(traffic.vehicle_type)
+    rigs = VehicleRigs(recording.provenance.config.vehicle_type)
     renderer = Renderer(scene, rigs.library, light, build_textures())
     return Place(scene, Replay(recording), renderer, rigs)

@@ -30,7 +30,7 @@ class Worlds:
 
     def __init__(self, config: EyasConfig, place: Place, count: int, *, shared: bool) -> None:
         self.shared = shared
-        self._config = config
+        self._colour_of_all = config.traffic.colour
         self._place = place
         worlds, actors = (1 if shared else count), place.replay.actors
         self._model = np.zeros((worlds, actors), np.int32)
@@ -42,10 +42,9 @@ class Worlds:
         if self.shared and (tracker, episode) != (0, 0):
             return
         rng = stream(seed, "looks", tracker, episode)
-        traffic = self._config.traffic
-        model, colour = draw_looks(
-            rng, traffic.vehicle_type, self._place.replay.actors, traffic.colour
-        )
+        replay = self._place.replay
+        vehicle_type = replay.recording.provenance.config.vehicle_type
+        model, colour = draw_looks(rng, vehicle_type, replay.actors, self._colour_of_all)
         self._model[self._of(tracker)], self._colour[self._of(tracker)] = model, colour
 
     def model_of(self, tracker: int, actor: int) -> int:
