@@ -1,0 +1,82 @@
+import math
+
+import numpy as np
+import pytest
+
+from eyas.trackers.drone import accelerometer
+
+UNIT_STEP = np.array([0.0445, 0.1924, 0.4100, 0.6236, 0.7973, 0.9200, 0.9955, 1.0339])
+
+
+def test_reset_places_the_drone_at_rest(drone):
+    drone.advance(forward=10.0, up=0.1, yaw_rate=1.0, steps=20)
+    rows = drone.reset(1.0, 2.0, 3.0, 0.5)
+    assert list(rows.position) == list(rows.commanded_position) == [1.0, 2.0, 3.0]
+    assert list(rows.euler) == [0.0, 0.0, 0.5]
+    assert rows.orientation == pytest.approx([math.cos(0.25), 0.0, 0.0, math.sin(0.25)])
+    for still in (rows.velocity, rows.acceleration, rows.angular_velocity):
+        assert not still.any()
+    rows = drone.advance(steps=5)
+    assert list(rows.position) == [1.0, 2.0, 3.0]
+    assert rows.euler[2] == 0.5
+
+
+def test_forward_speed_answers_in_the_first_step_with_the_filter_s_response(drone):
+    drone.reset()
+    speeds = [drone.advance(forward=1.0).velocity[0] for _ in UNIT_STEP]
+    assert speeds == pytest.approx(UNIT_STEP, abs=5e-5)
+    assert drone.rows.position[0] == pytest.approx(0.002 * UNIT_STEP.sum(), abs=1e-6)
+
+
+def test_commands_are_in_the_heading_frame_with_left_positive(drone):
+    drone.reset(yaw=math.pi / 2)
+    assert drone.advance(forward=3.0, steps=200).velocity == pytest.approx([0, 3, 0], abs=1e-6)
+    drone.reset(yaw=math.pi / 2)
+    assert drone.advance(left=3.0, steps=200).velocity == pytest.approx([-3, 0, 0], abs=1e-6)
+
+
+def test_up_is_metres_in_each_step_and_not_filtered(drone):
+    drone.reset(z=20.0)
+    rows = drone.advance(up=0.01)
+    assert rows.position[2] == pytest.approx(20.01)
+    assert rows.velocity[2] == pytest.approx(5.0)
+    assert drone.advance(up=0.01, steps=3).position[2] == pytest.approx(20.04)
+
+
+def test_positive_yaw_rate_turns_counter_clockwise(drone):
+    drone.reset(yaw=3.0)
+    rows = drone.advance(yaw_rate=2.0, steps=500)
+    # The filter delays by 2.81 steps.
+    turned = 2.0 * 0.002 * (500 - 2.81)
+    assert rows.euler[2] == pytest.approx(3.0 + turned - 2 * math.pi, abs=1e-4)
+    assert rows.angular_velocity == pytest.approx([0, 0, 2], abs=1e-9)
+    assert math.atan2(rows.orientation[3], rows.orientation[0]) == pytest.approx(rows.euler[2] / 2)
+
+
+def test_forward_and_turn_together_drive_a_circle(drone):
+    drone.reset()
+    drone.advance(forward=10.0, yaw_rate=2.0, steps=100)
+    points = np.array(
+        [drone.advance(forward=10.0, yaw_rate=2.0).position.copy() for _ in range(1571)]
+    )
+    centre = (points.max(0) + points.min(0)) / 2
+    radius = np.linalg.norm(points[:, :2] - centre[:2], axis=1)
+    assert radius == pytest.approx(5.0, abs=2e-3)
+
+
+def test_velocity_and_acceleration_are_differences_over_a_step(drone):
+    drone.reset(yaw=0.7)
+    rng = np.random.default_rng(1)
+    last_position, last_velocity = drone.rows.position.copy(), drone.rows.velocity.copy()
+    for _ in range(30):
+        rows = drone.advance(*rng.uniform([-40, -40, -0.01, -2], [40, 40, 0.01, 2]))
+        assert rows.velocity == pytest.approx((rows.position - last_position) / 0.002)
+        assert rows.acceleration == pytest.approx((rows.velocity - last_velocity) / 0.002, abs=1e-6)
+        assert list(rows.position) == list(rows.commanded_position)
+        last_position, last_velocity = rows.position.copy(), rows.velocity.copy()
+
+
+def test_accelerometer_feels_gravity_and_motion_in_the_body_frame():
+    west = np.array([math.cos(math.pi / 2), 0.0, 0.0, math.sin(math.pi / 2)])
+    assert accelerometer(np.zeros(3), west) == pytest.approx((0.0, 0.0, 9.81))
+    assert accelerometer(np.array([-2.0, 3.0, 1.0]), west) == pytest.approx((2.0, -3.0, 10.81))
