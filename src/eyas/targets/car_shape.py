@@ -148,7 +148,9 @@ def sections(
     tucked = 0.06 if arches else 0.055  # without arches the wheels stand out of the sides
     sill = wide - np.where(floor > shape.clearance, 0.0, tucked)
     sill_top = np.maximum(floor, shape.clearance + 0.12) if arches else 0.65 * belt
-    waist = 0.8 * belt  # above the arches, so that its line runs straight over them
+    floor = np.minimum(floor, belt - 0.06)
+    # Mostly above the arches, so that its line runs straight over them.
+    waist = np.maximum(0.84 * belt, floor + 0.005)
     belt_y = wide - 0.045
     window_y = belt_y - 0.06 * np.minimum(rise / 0.3, 1.0) - shape.lean * 0.86 * rise
     window_y = np.minimum(window_y, 0.94 * belt_y)

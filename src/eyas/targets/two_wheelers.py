@@ -153,7 +153,7 @@ def _motorbike(shell: Shell, vehicle: VehicleModel, detail: int) -> None:
     shell.prism(cowl, (-0.17, 0.17), TRIM)
     tail = [(-1.1, 0.84), (-0.6, 0.66), (-0.12, 0.66), (-0.12, 0.74), (-0.7, 0.84), (-1.14, 0.94)]
     shell.prism(tail, (-0.13, 0.13), PAINT)
-    seat = [(-0.85, 0.85), (-0.12, 0.72), (-0.1, 0.82), (-0.5, 0.82), (-0.85, 0.92)]
+    seat = [(-0.85, 0.85), (-0.12, 0.72), (-0.1, 0.82), (-0.5, 0.86), (-0.85, 0.92)]
     shell.prism(seat, (-0.14, 0.14), _SEAT)
     _lamp(shell, (0.82, 0.0, 0.82), (0.12, 0.26, 0.12), front=True)
     _lamp(shell, (-1.13, 0.0, 0.89), (0.06, 0.22, 0.08), front=False)

@@ -1,0 +1,129 @@
+import functools
+import itertools
+
+import numpy as np
+import pytest
+
+from eyas.state.mesh import Surface, concatenate, transformed
+from eyas.targets.bodies import body_levels
+from eyas.targets.catalogue import VEHICLES, model_index
+from eyas.targets.finishes import BLACK_PAINT, ROOF_GLASS
+from eyas.targets.wheels import wheel_levels
+
+NAMES = [vehicle.name for vehicle in VEHICLES]
+
+
+@functools.cache
+def levels_of(name):
+    return body_levels(VEHICLES[model_index(name)])
+
+
+@functools.cache
+def whole(name):
+    """The finest body with its wheels."""
+    vehicle = VEHICLES[model_index(name)]
+    meshes = [levels_of(name)[0]]
+    for axle in vehicle.axles:
+        pose = np.eye(3, 4)
+        pose[:, 3] = axle.x, 0.0, vehicle.wheel_radius
+        wheels = wheel_levels(vehicle.wheel_radius, axle.width, axle.track)
+        meshes.append(transformed(wheels[0], pose))
+    return concatenate(meshes)
+
+
+def face_normals(mesh):
+    corners = mesh.positions.astype(np.float64)[mesh.triangles]
+    crossed = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return crossed / np.linalg.norm(crossed, axis=1, keepdims=True)
+
+
+def first_hits(mesh, axis, sign, rays=24):
+    """For a grid of rays along an axis: how the first panel that each meets is turned to it.
+
+    Returns the component of the panels' normals against the rays, for the rays that hit.
+    """
+    u, v = [k for k in range(3) if k != axis]
+    corners = mesh.positions.astype(np.float64)[mesh.triangles]
+    low, high = mesh.positions.min(0), mesh.positions.max(0)
+    grid_u = np.linspace(low[u], high[u], rays + 2)[1:-1] + 1.3e-4
+    grid_v = np.linspace(low[v], high[v], rays + 2)[1:-1] + 1.7e-4
+    point = np.stack(np.meshgrid(grid_u, grid_v), axis=-1).reshape(-1, 1, 2)
+    flat = corners[..., [u, v]]
+    edge_a, edge_b = flat[:, 1] - flat[:, 0], flat[:, 2] - flat[:, 0]
+    area = edge_a[:, 0] * edge_b[:, 1] - edge_a[:, 1] * edge_b[:, 0]
+    area = np.where(np.abs(area) < 1e-9, np.nan, area)
+    away = point - flat[:, 0]
+    b = (away[..., 0] * edge_b[:, 1] - away[..., 1] * edge_b[:, 0]) / area
+    c = (edge_a[:, 0] * away[..., 1] - edge_a[:, 1] * away[..., 0]) / area
+    inside = (b >= 0) & (c >= 0) & (b + c <= 1)
+    along = corners[:, 0, axis] + b * (corners[:, 1, axis] - corners[:, 0, axis])
+    along = sign * (along + c * (corners[:, 2, axis] - corners[:, 0, axis]))
+    reach = np.where(inside, along, -np.inf)
+    hit = inside.any(axis=1)
+    return (sign * face_normals(mesh)[reach.argmax(axis=1), axis])[hit]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_size_is_the_catalogues_within_five_centimetres(name):
+    mesh = whole(name)
+    low, high = mesh.positions.min(0), mesh.positions.max(0)
+    assert high - low == pytest.approx(VEHICLES[model_index(name)].size, abs=0.05)
+    assert low[2] == pytest.approx(0.0, abs=1e-6)
+    assert (low + high)[:2] / 2 == pytest.approx(np.zeros(2), abs=0.03)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_normals_agree_with_winding(name):
+    vehicle = VEHICLES[model_index(name)]
+    for mesh in (*levels_of(name), *wheel_levels(vehicle.wheel_radius, 0.2, 1.5)):
+        assert np.linalg.norm(mesh.normals, axis=1) == pytest.approx(1.0, abs=1e-4)
+        against = np.einsum("ti,tci->tc", face_normals(mesh), mesh.normals[mesh.triangles])
+        assert against.min() > 0.5
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_no_hole_shows_the_inside_of_the_finest_level(name):
+    mesh = whole(name)
+    for axis, sign in ((2, 1), (1, 1), (1, -1), (0, 1), (0, -1)):
+        turned = first_hits(mesh, axis, sign)
+        assert len(turned) > 100
+        assert turned.min() > -1e-3, (axis, sign)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_left_and_right_look_alike_from_above(name):
+    mesh = levels_of(name)[1]
+    area = np.linalg.norm(np.ptp(mesh.positions, axis=0)[:2])
+    assert abs(mesh.positions[:, 1].min() + mesh.positions[:, 1].max()) < 0.02 * area
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_paint_glass_and_lamps_are_there(name):
+    surfaces = {material.surface for material in levels_of(name)[0].palette}
+    assert {Surface.PAINT, Surface.GLASS, Surface.LAMP} <= surfaces
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_levels_get_coarser(name):
+    counts = [len(mesh.triangles) for mesh in levels_of(name)]
+    assert counts[0] <= 1100
+    assert all(fine > 1.15 * coarse for fine, coarse in itertools.pairwise(counts))
+
+
+def test_roofs_tell_the_range_rover_and_the_tesla_from_the_others():
+    for name in NAMES:
+        palette = levels_of(name)[0].palette
+        assert (BLACK_PAINT in palette) == (name == "RangeRoverSportSVRSimple")
+        assert (ROOF_GLASS in palette) == (name == "TeslaModel3Simple")
+
+
+def test_silhouettes_differ():
+    seen = set()
+    for name in NAMES:
+        mesh = whole(name)
+        bins = np.clip((mesh.positions[:, 0] + 7.2) / 0.6, 0, 23).astype(int)
+        line = tuple(
+            round(float(mesh.positions[bins == k, 2].max(initial=0)), 1) for k in range(24)
+        )
+        assert line not in seen
+        seen.add(line)

@@ -1,0 +1,52 @@
+import numpy as np
+import pytest
+
+from eyas.core.rng import stream
+from eyas.targets.catalogue import BODY_COLOURS, MOTORCYCLE_COLOURS, VEHICLES, models_of
+from eyas.targets.looks import DIMENSIONS, draw_looks
+from eyas.traffic.config import VehicleType
+
+PINK = (0.9, 0.3, 0.6)
+
+
+def drawn(vehicle_type, colour=None, seed=3):
+    return draw_looks(stream(seed, "targets"), vehicle_type, 400, colour)
+
+
+@pytest.mark.parametrize("vehicle_type", VehicleType)
+def test_all_models_and_colours_of_a_class_appear(vehicle_type):
+    model, colour = drawn(vehicle_type)
+    assert set(model) == set(models_of(vehicle_type))
+    palette = MOTORCYCLE_COLOURS if vehicle_type == VehicleType.MOTORCYCLE else BODY_COLOURS
+    assert set(map(tuple, colour)) == set(map(tuple, np.array(palette, np.float32)))
+    assert (model.dtype, colour.dtype) == (np.int32, np.float32)
+
+
+def test_models_are_about_equally_frequent():
+    model, _ = draw_looks(stream(0, "targets"), VehicleType.PASSENGER, 7000, None)
+    assert np.bincount(model, minlength=7)[:7] == pytest.approx(np.full(7, 1000), abs=130)
+
+
+def test_same_seed_same_looks_and_another_seed_other_looks():
+    first, again, other = drawn("passenger"), drawn("passenger"), drawn("passenger", seed=4)
+    assert np.array_equal(first[0], again[0])
+    assert np.array_equal(first[1], again[1])
+    assert not np.array_equal(first[0], other[0])
+
+
+def test_a_fixed_colour_holds_for_cars_and_changes_no_model():
+    model, colour = drawn(VehicleType.PASSENGER, PINK)
+    assert np.array_equal(model, drawn(VehicleType.PASSENGER)[0])
+    assert np.array_equal(colour, np.tile(np.float32(PINK), (400, 1)))
+
+
+def test_a_fixed_colour_does_not_hold_for_motorcycles():
+    fixed, free = drawn(VehicleType.MOTORCYCLE, PINK), drawn(VehicleType.MOTORCYCLE)
+    assert np.array_equal(fixed[1], free[1])
+
+
+def test_dimensions_are_those_of_the_models():
+    assert DIMENSIONS.shape == (len(VEHICLES), 3)
+    assert tuple(DIMENSIONS[0]) == (4.85, 1.9, 1.8)
+    with pytest.raises(ValueError, match="read-only"):
+        DIMENSIONS[0] = 0
