@@ -215,7 +215,7 @@ def facade_red_white() -> Texture:
         wall.rect(x + 12, y + 11, x + 52, y + 53, (232.0, 226.0, 212.0))
         wall.window(x, y, opening)
         wall.sill(x, y, opening, (222.0, 214.0, 198.0))
-        for k, row in enumerate(range(y + 9, y + BAY, 9)):
+        for k, row in enumerate(range(y + 9, y + BAY, 9) if x % (2 * BAY) == 0 else ()):
             wide = 5 if k % 2 else 3
             wall.rect(x - wide, row, x + wide, row + 7, (232.0, 226.0, 212.0))
     return wall.finished()

@@ -122,7 +122,7 @@ def masonry(
     row = np.floor(y).astype(np.int64)
     x = (np.arange(SIZE)[None] + 0.5) * columns / SIZE + bond * (row[:, None] % 2)
     column = np.floor(x).astype(np.int64) % columns
-    shades = rng.normal(size=(rows, columns))
+    shades = rng.uniform(-1.73, 1.73, (rows, columns))
     across = x - np.floor(x)
     down = np.broadcast_to((y - row)[:, None], (SIZE, SIZE))
     from_edge = np.minimum(
@@ -141,7 +141,7 @@ def painted(colour: Colour, brightness: Field) -> Picture:
     return np.asarray(np.array(colour) * (1.0 + brightness[..., None]), np.float64)
 
 
-def mixed(below: Picture, above: Picture | Colour, share: Field) -> Picture:
+def mixed(below: Picture, above: Picture | Colour, share: NDArray[np.floating]) -> Picture:
     """Return one picture with another laid over it where `share` is 1."""
     weight = np.clip(share, 0.0, 1.0)[..., None]
     return np.asarray(below * (1 - weight) + np.asarray(above) * weight, np.float64)

@@ -40,7 +40,11 @@ def _asphalt(name: str, colour: tuple[float, float, float], stones: float) -> Te
     picture = mixed(picture, (150.0, 147.0, 140.0), stones * (stone > 0.985))
     picture = mixed(picture, (28.0, 28.0, 31.0), 0.6 * (stone < 0.03))
     patch = np.clip((fractal(rng, 2.0, longest=110.0) - 1.55) * 2.5, 0, 1)
-    picture = mixed(picture, painted((44.0, 45.0, 49.0), 0.6 * grain), 0.55 * patch)
+    picture = mixed(
+        picture,
+        painted((0.7 * colour[0], 0.7 * colour[1], 0.72 * colour[2]), 0.6 * grain),
+        0.45 * patch,
+    )
     dust = np.clip((fractal(rng, 1.4, longest=120.0) - 0.9) * 0.6, 0, 1)
     picture = mixed(picture, (128.0, 122.0, 112.0), 0.14 * dust)
     picture = mixed(picture, (34.0, 34.0, 37.0), 0.55 * cracks(rng, 1.0, 0.16))

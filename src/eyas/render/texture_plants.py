@@ -49,16 +49,16 @@ def _cluster(
     picture: NDArray[np.float64], alpha: NDArray[np.float64], rng: np.random.Generator
 ) -> None:
     """Draw leaves along twigs that spread from the middle, the lowest first."""
-    for lightness in (0.62, 0.8, 1.0):
-        for twig in np.linspace(0, 2 * np.pi, 8, endpoint=False) + rng.uniform(0, 0.8):
-            reach = rng.uniform(34, 50)
+    for lightness in (0.6, 0.74, 0.88, 1.0):
+        for twig in np.linspace(0, 2 * np.pi, 8, endpoint=False) + rng.uniform(0, 1):
+            reach = rng.uniform(44, 58)
             bend = rng.uniform(-0.5, 0.5)
-            for step in np.arange(0.12, 1.0, 0.135):
+            for step in np.arange(0.1, 1.0, 0.1):
                 way = twig + bend * step
                 middle = 64 + step * reach * np.array([np.sin(way), np.cos(way)])
                 middle += rng.normal(0, 2.0, 2)
-                side = way + rng.choice([-1, 1]) * rng.uniform(0.3, 1.2)
-                length = rng.uniform(6.5, 9.5)
+                side = way + rng.choice([-1, 1]) * rng.uniform(0.3, 1.1)
+                length = rng.uniform(7.5, 10.5) * (1.1 - 0.3 * step)
                 shade = lightness * rng.uniform(0.84, 1.12)
                 _leaf(picture, alpha, middle, side, length, shade * _leaf_colour(rng))
 

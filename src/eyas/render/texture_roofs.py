@@ -29,7 +29,7 @@ def roof_terrace() -> Texture:
     rng = source("roof_terrace")
     slabs = masonry(rng, 8, 8, joint=1.3, bond=0.0)
     grain = 0.03 * white(rng) + 0.035 * fractal(rng, 0.8, longest=70.0)
-    picture = painted((203.0, 106.0, 67.0), grain + 0.05 * slabs.shade)
+    picture = painted((203.0, 106.0, 67.0), grain + 0.04 * slabs.shade)
     warm = masonry(rng, 8, 8, joint=0.0, bond=0.0).shade
     picture += warm[..., None] * np.array([3.0, 5.0, 5.0])
     soot = np.clip(0.6 * fractal(rng, 1.3, longest=120.0) - 0.2, 0, 1)
@@ -44,7 +44,7 @@ def bitumen() -> Texture:
     rng = source("bitumen")
     sheets = masonry(rng, 2, 8, joint=0.0)
     grit = 0.06 * white(rng) + 0.03 * fractal(rng, 0.7, longest=40.0)
-    picture = painted((112.0, 112.0, 112.0), grit + 0.035 * sheets.shade)
+    picture = painted((112.0, 112.0, 112.0), grit + 0.02 * sheets.shade)
     seam = (sheets.across < 0.07) | (sheets.down < 0.014)
     picture = mixed(picture, (78.0, 78.0, 80.0), 0.55 * seam)
     picture = mixed(
@@ -52,5 +52,5 @@ def bitumen() -> Texture:
     )
     puddle = fractal(rng, 1.9, longest=130.0)
     ring = np.clip(1 - np.abs(puddle - 1.0) * 7, 0, 1)
-    picture = mixed(picture, (84.0, 83.0, 80.0), 0.35 * np.clip((puddle - 1.0) * 2, 0, 1))
+    picture = mixed(picture, (84.0, 83.0, 80.0), 0.2 * np.clip((puddle - 1.0) * 2, 0, 1))
     return opaque(mixed(picture, (152.0, 149.0, 140.0), 0.3 * ring))

@@ -29,7 +29,7 @@ def brick() -> Texture:
     picture = painted((158.0, 82.0, 62.0), grain + 0.1 * bricks.shade)
     burnt = masonry(rng, 32, 16, joint=0.0).shade
     picture = mixed(picture, painted((98.0, 62.0, 56.0), grain), 0.6 * (burnt > 1.5))
-    picture = mixed(picture, painted((186.0, 116.0, 82.0), grain), 0.5 * (burnt < -1.4))
+    picture = mixed(picture, painted((186.0, 116.0, 82.0), grain), 0.5 * (burnt < -1.5))
     return opaque(mixed(picture, painted((178.0, 166.0, 150.0), grain), 0.85 * bricks.joint))
 
 
@@ -40,5 +40,5 @@ def stone() -> Texture:
     grain = 0.035 * white(rng) + 0.045 * fractal(rng, 0.9, longest=60.0)
     bed = 0.03 * fractal(rng, 1.0, longest=40.0, stretch=(0.6, 4.0))
     edge = 0.07 * (blocks.down < 0.08) - 0.09 * (blocks.down > 0.92)
-    picture = painted((194.0, 180.0, 154.0), grain + bed + edge + 0.06 * blocks.shade)
+    picture = painted((194.0, 180.0, 154.0), grain + bed + edge + 0.04 * blocks.shade)
     return opaque(mixed(picture, (112.0, 101.0, 86.0), 0.75 * blocks.joint))

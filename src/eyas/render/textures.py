@@ -1,4 +1,4 @@
-"""All textures, painted by formula when needed, so that no picture has to be shipped or licensed."""
+"""All textures, painted by formula: no picture has to be shipped or licensed."""
 
 from collections.abc import Callable
 
