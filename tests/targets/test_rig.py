@@ -5,7 +5,7 @@ from eyas.state.draw import DrawList
 from eyas.state.scene import ACTOR_OBJECT
 from eyas.state.tracker import ActorState
 from eyas.targets.catalogue import VEHICLES, models_of
-from eyas.targets.rig import CENTRE_OFFSET, LEAN_LIMIT, STEER_LIMIT, VehicleRigs
+from eyas.targets.rig import LEAN_LIMIT, STEER_LIMIT, VehicleRigs
 from eyas.traffic.config import VehicleType
 
 RIGS = {vehicle_type: VehicleRigs(vehicle_type) for vehicle_type in VehicleType}
@@ -45,7 +45,7 @@ def test_wheels_stand_on_the_road_and_the_middle_is_behind_the_reference(vehicle
     yaw, place = 0.7, np.array([30.0, -12.0])
     parts, poses = one(vehicle_type, model, position=place, yaw=yaw)
     heading = np.array([np.cos(yaw), np.sin(yaw)])
-    middle = place + CENTRE_OFFSET * heading
+    middle = place - 1.0 * heading  # the point that the original rewards
     assert poses[0, :2, 3] == pytest.approx(middle, abs=1e-5)
     assert poses[0, 2, 3] == 0.0
     lowest = []
