@@ -167,7 +167,13 @@ def test_a_camera_that_does_not_look_down_has_no_reward(rules_with, look, type_,
     reward, share, middle = evaluate(rules, (3, 4, 20), look(0.5, pitch), 3.1, 4.1)
     assert reward == share == 0.0
     assert middle == (3.0, 4.0)
-    assert evaluate(rules, (3, 4, -0.2), look(0.5, -0.5), 3.1, 4.1)[0] == 0.0
+
+
+@pytest.mark.parametrize("pitch", [-0.5, 0.5])
+def test_a_camera_below_the_ground_has_no_reward(rules_with, look, pitch):
+    reward, share, middle = evaluate(rules_with(), (3, 4, -0.2), look(0.5, pitch), 3.1, 4.1)
+    assert reward == share == 0.0
+    assert middle == (3.0, 4.0)
 
 
 def test_distance_reward_ends_at_its_range(rules_with, look):

@@ -28,11 +28,14 @@ def test_forward_speed_answers_in_the_first_step_with_the_filter_s_response(dron
     assert drone.rows.position[0] == pytest.approx(0.002 * UNIT_STEP.sum(), abs=1e-6)
 
 
-def test_commands_are_in_the_heading_frame_with_left_positive(drone):
-    drone.reset(yaw=math.pi / 2)
-    assert drone.advance(forward=3.0, steps=200).velocity == pytest.approx([0, 3, 0], abs=1e-6)
-    drone.reset(yaw=math.pi / 2)
-    assert drone.advance(left=3.0, steps=200).velocity == pytest.approx([-3, 0, 0], abs=1e-6)
+@pytest.mark.parametrize("yaw", [0.0, math.pi / 2, 2.5])
+def test_commands_are_in_the_heading_frame_with_left_positive(drone, yaw):
+    ahead = np.array([math.cos(yaw), math.sin(yaw), 0.0])
+    aside = np.array([-math.sin(yaw), math.cos(yaw), 0.0])
+    drone.reset(yaw=yaw)
+    assert drone.advance(forward=3.0, steps=200).velocity == pytest.approx(3 * ahead, abs=1e-6)
+    drone.reset(yaw=yaw)
+    assert drone.advance(left=3.0, steps=200).velocity == pytest.approx(3 * aside, abs=1e-6)
 
 
 def test_up_is_metres_in_each_step_and_not_filtered(drone):

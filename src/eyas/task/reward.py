@@ -35,7 +35,7 @@ def axis_depth(
     """
     height: float = position[2] - ground
     sinking: float = -rotation[2, 0]
-    if height > 0.0 and sinking > 0.0 and height < _FARTHEST * sinking:
+    if 0.0 < height < _FARTHEST * sinking:
         return height / sinking
     return 0.0
 
