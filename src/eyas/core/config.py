@@ -1,10 +1,14 @@
 """Configuration: frozen pydantic models whose errors are one line with the path."""
 
-from collections.abc import Sequence
+import json
+from collections.abc import Mapping
 from typing import Any, TypeVar
 
 from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic.fields import FieldInfo
+from pydantic_core import ErrorDetails
 
+from eyas.core.allowed import describe
 from eyas.core.errors import ConfigError, nearest
 
 __all__ = ["Config", "validated"]
@@ -13,54 +17,74 @@ Model = TypeVar("Model", bound="Config")
 
 
 class Config(BaseModel):
-    """Base of all settings: frozen, unknown keys refused, no silent conversion of types."""
+    """Base of all settings: frozen, unknown keys refused."""
 
     model_config = ConfigDict(
         frozen=True, extra="forbid", allow_inf_nan=False, use_attribute_docstrings=True
     )
 
 
-def validated(model: type[Model], values: dict[str, Any], root: str = "") -> Model:
-    """Return the settings that `values` give.
+def validated(model: type[Model], values: Mapping[str, Any]) -> Model:
+    """Return the settings that `values` give; types are not converted, but for int to float.
 
     Args:
         model: The settings' class.
         values: Nested dictionaries, as read from JSON.
-        root: Path to put before each key in messages.
 
     Raises:
         ConfigError: One line: path, value, what is allowed, the nearest known key.
     """
     try:
-        return model.model_validate(values)
+        # JSON mode is strict about types, and still takes lists for tuples and words for enums.
+        return model.model_validate_json(json.dumps(values), strict=True)
     except ValidationError as error:
-        raise ConfigError(_one_line(error, model, root)) from None
+        raise ConfigError(_one_line(error, model)) from None
+    except TypeError as error:
+        raise ConfigError(f"settings: {error}") from None
 
 
-def _one_line(error: ValidationError, model: type[BaseModel], root: str) -> str:
-    first = max(error.errors(), key=lambda entry: len(entry["loc"]) if entry["type"] != "missing" else 0)
-    if first["type"] != "extra_forbidden" and (extra := _first_of(error, "extra_forbidden")):
-        first = extra
-    path = ".".join([root] * bool(root) + [str(part) for part in first["loc"]])
-    if first["type"] == "extra_forbidden":
-        key = str(first["loc"][-1])
-        known = _keys_at(model, first["loc"][:-1])
-        return f"{path}: unknown key{nearest(key, known)}; known: {', '.join(known)}"
-    if first["type"] == "missing":
+def _one_line(error: ValidationError, model: type[BaseModel]) -> str:
+    """Return the message of the first error, unknown keys before all others."""
+    entries = sorted(error.errors(), key=lambda entry: entry["type"] != "extra_forbidden")
+    lines = [_message(entry, model) for entry in entries]
+    return lines[0]
+
+
+def _message(entry: ErrorDetails, model: type[BaseModel]) -> str:
+    owner, field, path = _find(entry["loc"], model)
+    if field is None and entry["type"] == "extra_forbidden":
+        known = sorted(owner.model_fields)
+        return f"{path}: unknown key{nearest(path.rpartition('.')[2], known)}; known: {', '.join(known)}"
+    if entry["type"] == "missing":
         return f"{path}: missing"
-    message = first["msg"].removeprefix("Value error, ")
-    return f"{path}: {first['input']!r} is not allowed: {message[0].lower()}{message[1:]}"
+    said = entry["msg"].removeprefix("Value error, ")
+    if entry["type"] == "model_type":
+        return f"{path}: {json.dumps(entry['input'])} is not allowed; allowed: an object in braces"
+    if field is None:  # a check of a whole group; its message begins with the key
+        return f"{path}.{said}" if path else said
+    value = json.dumps(entry["input"], default=str)
+    return f"{path}: {value} is not allowed; allowed: {_allowed(field, entry, said)}"
 
 
-def _first_of(error: ValidationError, kind: str) -> Any:  # noqa: ANN401  # pydantic's own record
-    return next((entry for entry in error.errors() if entry["type"] == kind), None)
-
-
-def _keys_at(model: type[BaseModel], loc: Sequence[int | str]) -> list[str]:
-    """Return the known keys of the model that `loc` leads to."""
+def _find(
+    loc: tuple[int | str, ...], model: type[BaseModel]
+) -> tuple[type[BaseModel], FieldInfo | None, str]:
+    """Return the group, the field and the dotted path that an error's place leads to."""
+    path: list[str] = []
     for part in loc:
         field = model.model_fields.get(str(part))
-        inner = field.annotation if field else None
-        if isinstance(inner, type) and issubclass(inner, BaseModel):
-            model = inner
-    return sorted(model.model_fields)
+        path.append(str(part))
+        if field is None:
+            break
+        inner = field.annotation
+        if not (isinstance(inner, type) and issubclass(inner, BaseModel)):
+            return model, field, ".".join(path)
+        model = inner
+    else:
+        return model, None, ".".join(path)
+    return model, None, ".".join(path)
+
+
+def _allowed(field: FieldInfo, entry: ErrorDetails, said: str) -> str:
+    """Return what a field takes, in words, or what its own check says."""
+    return said if entry["type"] == "value_error" else describe(field.annotation, field.metadata)

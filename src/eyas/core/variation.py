@@ -1,32 +1,36 @@
 """A setting that may be drawn anew for each episode."""
 
-from typing import Annotated
+from collections.abc import Callable
+from typing import Annotated, ClassVar
 
 import numpy as np
 from pydantic import Field
 
 from eyas.core.config import Config
 
-__all__ = ["Choice", "Mirrored", "Uniform", "Variation", "bounds", "draw"]
+__all__ = ["Choice", "Mirrored", "Uniform", "Variation", "bounds", "draw", "within"]
 
 
 class Uniform(Config):
     """A value drawn evenly between two limits: `{"uniform": [low, high]}`."""
 
+    written: ClassVar[str] = '{"uniform": [low, high]}'
     uniform: tuple[float, float]
-    """Lower and upper limit."""
+    """The two limits, in either order."""
 
 
 class Mirrored(Config):
     """A magnitude drawn evenly, with a random sign: `{"mirrored": [low, high]}`."""
 
+    written: ClassVar[str] = '{"mirrored": [low, high]}'
     mirrored: tuple[float, float]
-    """Smallest and largest magnitude."""
+    """Smallest and largest magnitude, in either order."""
 
 
 class Choice(Config):
     """One of several values, each as likely: `{"choice": [a, b, ...]}`."""
 
+    written: ClassVar[str] = '{"choice": [a, b, ...]}'
     choice: Annotated[tuple[float, ...], Field(min_length=1)]
     """The values."""
 
@@ -62,3 +66,20 @@ def bounds(variation: Variation) -> tuple[float, float]:
             return min(values), max(values)
         case _:
             return float(variation), float(variation)
+
+
+def within(low: float, high: float) -> Callable[[Variation], Variation]:
+    """Return a check, for `pydantic.AfterValidator`, that all values of a variation are in range.
+
+    Args:
+        low: Smallest allowed value.
+        high: Largest allowed value.
+    """
+
+    def check(variation: Variation) -> Variation:
+        smallest, largest = bounds(variation)
+        if smallest < low or largest > high:
+            raise ValueError(f"it must stay within {low:g} and {high:g}")
+        return variation
+
+    return check

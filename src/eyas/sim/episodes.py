@@ -90,17 +90,18 @@ class Episodes:
         """Return when an episode begins, and with which actor.
 
         Where vehicles come and go there may be no one who stays for a whole episode; then other
-        times are tried, a bounded number of them.
+        times are tried, or in a shared world, whose time is given, those who stay a shorter while.
         """
         used = set(fleet.target_actor.tolist()) if self._worlds.shared else set()
         for attempt in range(_ATTEMPTS):
             tick = self._start_tick(tracker, fleet, rng)
-            end = min(tick + self._config.done.total_steps, self._last_tick)
+            steps = self._config.done.total_steps >> (attempt if self._worlds.shared else 0)
+            end = min(tick + steps, self._last_tick)
             available = self._replay.available(tick * PHYSICS_STEP, end * PHYSICS_STEP)
             try:
                 return tick, choose_target(available, used, rng)
             except SpawnError:
-                if self._worlds.shared or attempt == _ATTEMPTS - 1:
+                if attempt == _ATTEMPTS - 1 or steps == 0:
                     raise
         raise AssertionError("the loop returns or raises")
 
