@@ -1,0 +1,225 @@
+"""The whole video mode: what it writes, and that it stops and continues without a trace."""
+
+import json
+import os
+import resource
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import av
+import numpy as np
+import pytest
+from PIL import Image
+
+from eyas.core.errors import ConfigError, OutputError
+from eyas.exports.labels import read_labels
+from eyas.modes import video
+from eyas.sensors.config import CameraConfig
+from eyas.sim.config import EyasConfig, VideoConfig
+from eyas.task.config import DoneConfig
+
+# Two trackers, three and a half episodes of 0.2 s each, a frame every 4 ms.
+CONFIG = EyasConfig(
+    seed=3,
+    camera=CameraConfig(width=64, height=48),
+    done=DoneConfig(total_steps=100, grace_steps=20),
+    video=VideoConfig(channels=2, fps=250.0, start_time=0.7, total_time=0.7, warm_up_steps=10),
+)
+RUN = """
+import sys
+from pathlib import Path
+from eyas.modes import video
+from eyas.sim.config import EyasConfig
+video.run(EyasConfig.model_validate_json(sys.argv[1]), Path(sys.argv[2]), quiet=True)
+"""
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory) -> Path:
+    path = tmp_path_factory.mktemp("video") / "out"
+    video.run(CONFIG, path, quiet=True)
+    return path
+
+
+def episodes_of(path: Path) -> list[Path]:
+    return sorted(path.glob("DRONE*/episode*"))
+
+
+def contents(path: Path) -> dict[str, bytes]:
+    return {
+        inside.relative_to(path).as_posix(): inside.read_bytes()
+        for inside in path.rglob("*")
+        if inside.is_file()
+    }
+
+
+def movie_length(path: Path) -> int:
+    with av.open(str(path)) as container:
+        return sum(1 for _ in container.decode(video=0))
+
+
+def test_every_description_counts_the_same_frames(recorded):
+    info = json.loads((recorded / "dir_info.json").read_text())
+    assert sorted(info) == ["DRONE0", "DRONE1"]
+    assert len(episodes_of(recorded)) == sum(len(episodes) for episodes in info.values()) == 8
+    for episode in episodes_of(recorded):
+        frames = info[episode.parent.name][episode.name]
+        names = [f"{frame:06d}" for frame in range(frames)]
+        assert frames > 10
+        assert sorted(path.stem for path in episode.glob("*.jpeg")) == names
+        assert list(json.loads((episode / "mark.json").read_text())) == names
+        assert [label.frame for label in read_labels(episode / "labels.jsonl")] == [*range(frames)]
+        assert movie_length(episode / "episode.mp4") == frames
+
+
+def test_pictures_have_the_cameras_size_and_show_something(recorded):
+    for episode in episodes_of(recorded):
+        with Image.open(episode / "000000.jpeg") as image:
+            assert image.size == (64, 48)
+            assert np.asarray(image).std() > 3
+
+
+def test_labels_agree_with_the_marks_and_the_geometry(recorded):
+    for episode in episodes_of(recorded):
+        marks = json.loads((episode / "mark.json").read_text())
+        for label in read_labels(episode / "labels.jsonl"):
+            assert marks[f"{label.frame:06d}"] == [label.reward, -1.0]
+            left, top, right, bottom = label.target_box
+            assert label.in_view
+            assert 0 <= left < right <= 64
+            assert 0 <= top < bottom <= 48
+            assert 0.0 <= label.visible_fraction <= 1.0
+            assert label.occluded == (label.visible_fraction < 1.0)
+            offset = np.subtract(label.target_centre, label.tracker_position)
+            assert np.linalg.norm(offset) == pytest.approx(np.linalg.norm(label.relative_position))
+
+
+def test_a_box_lies_where_the_camera_projects_the_target(recorded):
+    for episode in episodes_of(recorded):
+        label = read_labels(episode / "labels.jsonl")[-1]
+        offset = np.subtract(label.target_centre, label.camera_position)
+        forward, left, up = np.array(label.camera_rotation).T @ offset
+        focal = 32 / np.tan(CONFIG.camera.field_of_view / 2)
+        u, v = 32 - focal * left / forward, 24 - focal * up / forward
+        box = label.target_box
+        assert box[0] - 2 <= u <= box[2] + 2
+        assert box[1] - 2 <= v <= box[3] + 2
+
+
+def test_frames_come_at_the_asked_rate_and_time(recorded):
+    for episode in episodes_of(recorded):
+        times = [label.time for label in read_labels(episode / "labels.jsonl")]
+        assert np.diff(times) == pytest.approx(0.004)
+        assert times[0] >= 0.7
+        assert times[-1] <= 1.4
+
+
+def test_exact_following_keeps_the_target_in_its_place(recorded):
+    labels = read_labels(recorded / "DRONE0" / "episode0" / "labels.jsonl")
+    places = np.array([label.relative_position for label in labels])
+    assert np.ptp(places, axis=0).max() < 0.05
+
+
+def test_settings_lie_beside_the_recording(recorded):
+    assert json.loads((recorded / "config.json").read_text())["seed"] == 3
+
+
+def test_a_killed_recording_continues_to_the_same_bytes(recorded, tmp_path):
+    path = tmp_path / "out"
+    run = subprocess.Popen([sys.executable, "-c", RUN, CONFIG.model_dump_json(), str(path)])
+    while not (path / "DRONE0" / "episode1" / "000010.jpeg").exists():
+        assert run.poll() is None, "the recording ended before it could be killed"
+        time.sleep(0.001)
+    run.send_signal(signal.SIGKILL)
+    run.wait()
+    assert not (path / "dir_info.json").exists()
+    for picture in path.rglob("*.jpeg"):
+        Image.open(picture).load()
+    kept = path / "DRONE0" / "episode0" / "000000.jpeg"
+    drawn_at = kept.stat().st_mtime_ns
+    video.run(CONFIG, path, resume=True, quiet=True)
+    assert contents(path) == contents(recorded)
+    assert kept.stat().st_mtime_ns == drawn_at
+
+
+def test_control_c_leaves_whole_files_and_says_how_to_go_on(recorded, tmp_path, capfd):
+    path = tmp_path / "out"
+
+    def interrupt() -> None:
+        while not (path / "DRONE0" / "episode1" / "000005.jpeg").exists():
+            time.sleep(0.001)
+        os.kill(os.getpid(), signal.SIGINT)
+
+    user = threading.Thread(target=interrupt)
+    user.start()
+    with pytest.raises(KeyboardInterrupt):
+        video.run(CONFIG, path)
+    user.join()
+    assert "--resume" in capfd.readouterr().err
+    whole = contents(recorded)
+    assert all(whole[name] == data for name, data in contents(path).items())
+    video.run(CONFIG, path, resume=True, quiet=True)
+    assert contents(path) == whole
+
+
+def test_a_full_disk_is_one_line_and_nothing_is_half_written(recorded, tmp_path):
+    path = tmp_path / "out"
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    largest = max(len(data) for name, data in contents(recorded).items() if name.endswith("jpeg"))
+    smallest_movie = min(
+        len(data) for name, data in contents(recorded).items() if name.endswith("mp4")
+    )
+    assert largest < smallest_movie
+    resource.setrlimit(resource.RLIMIT_FSIZE, (smallest_movie - 1, hard))
+    try:
+        with pytest.raises(
+            OutputError, match=r"cannot write: File too large; continue with"
+        ) as caught:
+            video.run(CONFIG, path, quiet=True)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert "\n" not in str(caught.value)
+    whole = contents(recorded)
+    assert all(whole[name] == data for name, data in contents(path).items())
+    video.run(CONFIG, path, resume=True, quiet=True)
+    assert contents(path) == whole
+
+
+def test_random_actions_are_seeded_held_and_marked(tmp_path):
+    changed = CONFIG.video.model_copy(update={"random_action": True, "total_time": 0.4})
+    config = CONFIG.model_copy(update={"video": changed})
+    video.run(config, tmp_path / "a", quiet=True)
+    video.run(config, tmp_path / "b", quiet=True)
+    assert contents(tmp_path / "a") == contents(tmp_path / "b")
+    labels = read_labels(tmp_path / "a" / "DRONE0" / "episode0" / "labels.jsonl")
+    actions = {(label.step - 1) // 4: label.action for label in labels}
+    assert all(actions[(label.step - 1) // 4] == label.action for label in labels)
+    assert set(actions.values()) == {0, 1, 2, 3, 4, 5}
+
+
+def test_direction_replaces_the_marks(tmp_path):
+    changed = CONFIG.video.model_copy(update={"target_direction": True, "total_time": 0.1})
+    video.run(CONFIG.model_copy(update={"video": changed}), tmp_path / "a", quiet=True)
+    for episode in episodes_of(tmp_path / "a"):
+        marks = json.loads((episode / "mark.json").read_text())
+        assert set(marks.values()) <= {0, 1, 2, 3}
+
+
+def test_the_report_names_trackers_and_folder(tmp_path, capsys):
+    changed = CONFIG.video.model_copy(update={"total_time": 0.1})
+    video.run(CONFIG.model_copy(update={"video": changed}), tmp_path / "a")
+    said = capsys.readouterr()
+    assert "DRONE1" in said.out
+    assert str(tmp_path / "a") in said.out
+    assert said.err == ""
+
+
+def test_more_time_than_there_is_traffic_is_one_line_and_no_folder(tmp_path):
+    changed = CONFIG.video.model_copy(update={"total_time": 1e6})
+    with pytest.raises(ConfigError, match=r"video\.total_time: .*allowed: up to"):
+        video.run(CONFIG.model_copy(update={"video": changed}), tmp_path / "a", quiet=True)
+    assert not (tmp_path / "a").exists()

@@ -1,0 +1,109 @@
+import json
+from pathlib import Path
+
+import pytest
+
+from eyas.core.errors import ConfigError, OutputError
+from eyas.modes.video_folder import open_folder
+from eyas.sim.config import EyasConfig, VideoConfig
+
+CONFIG = EyasConfig()
+OTHER = EyasConfig(video=VideoConfig(fps=50.0))
+
+
+def recording(path: Path) -> Path:
+    """Make a folder that looks like a recording."""
+    open_folder(path, CONFIG, overwrite=False, resume=False)
+    episode = path / "DRONE0" / "episode0"
+    episode.mkdir(parents=True)
+    for name in ("000000.jpeg", "mark.json", "labels.jsonl", "episode.mp4", ".000001.jpeg.part"):
+        (episode / name).write_bytes(b"x")
+    (path / "dir_info.json").write_bytes(b"{}")
+    return path
+
+
+def tree(path: Path) -> list[str]:
+    return sorted(inside.relative_to(path).as_posix() for inside in path.rglob("*"))
+
+
+def test_a_new_folder_holds_the_settings(tmp_path):
+    folder = open_folder(tmp_path / "a" / "b", CONFIG, overwrite=False, resume=False)
+    assert json.loads((folder.path / "config.json").read_text())["video"]["fps"] == 25.0
+    assert folder.episode(3, 2) == tmp_path / "a" / "b" / "DRONE3" / "episode2"
+
+
+def test_a_recording_is_not_mixed_with_another(tmp_path):
+    with pytest.raises(OutputError, match=r"not empty.*--resume.*--overwrite"):
+        open_folder(recording(tmp_path / "a"), CONFIG, overwrite=False, resume=False)
+
+
+def test_a_file_is_no_folder(tmp_path):
+    (tmp_path / "a").write_text("mine")
+    for path in (tmp_path / "a", tmp_path / "a" / "b"):
+        with pytest.raises(OutputError, match="a"):
+            open_folder(path, CONFIG, overwrite=True, resume=False)
+    assert (tmp_path / "a").read_text() == "mine"
+
+
+def test_overwrite_deletes_a_recording(tmp_path):
+    open_folder(recording(tmp_path / "a"), OTHER, overwrite=True, resume=False)
+    assert [name for name in tree(tmp_path / "a") if name.startswith(("DRONE", "dir_info"))] == []
+    assert json.loads((tmp_path / "a" / "config.json").read_text())["video"]["fps"] == 50.0
+
+
+@pytest.mark.parametrize("name", ["thesis.txt", "DRONE0/notes.txt", "DRONE0/episode0/best.jpeg"])
+def test_overwrite_deletes_nothing_where_something_else_lies(tmp_path, name):
+    path = recording(tmp_path / "a")
+    (path / name).write_text("mine")
+    (path / "DRONE0/episode0/.000001.jpeg.part").unlink()
+    before = tree(path)
+    with pytest.raises(OutputError, match=name):
+        open_folder(path, CONFIG, overwrite=True, resume=False)
+    assert tree(path) == before
+
+
+def test_overwrite_deletes_no_folder_that_is_not_a_recording(tmp_path):
+    (tmp_path / "DRONE0").mkdir()
+    with pytest.raises(OutputError, match=r"not deleted.*config\.json"):
+        open_folder(tmp_path, CONFIG, overwrite=True, resume=False)
+    assert tree(tmp_path) == ["DRONE0"]
+
+
+def test_overwrite_does_not_follow_links(tmp_path):
+    path = recording(tmp_path / "a")
+    outside = tmp_path / "outside"
+    (outside / "episode0").mkdir(parents=True)
+    (outside / "episode0" / "000000.jpeg").write_text("mine")
+    (path / "DRONE1").symlink_to(outside)
+    with pytest.raises(OutputError):
+        open_folder(path, CONFIG, overwrite=True, resume=False)
+    assert (outside / "episode0" / "000000.jpeg").read_text() == "mine"
+
+
+def test_resume_names_the_first_setting_that_differs(tmp_path):
+    with pytest.raises(ConfigError, match=r"video\.fps was 25\.0, is 50\.0"):
+        open_folder(recording(tmp_path / "a"), OTHER, overwrite=False, resume=True)
+
+
+def test_resume_keeps_what_is_whole_and_drops_what_is_not(tmp_path):
+    path = recording(tmp_path / "a")
+    open_folder(path, CONFIG, overwrite=False, resume=True)
+    names = tree(path / "DRONE0" / "episode0")
+    assert names == ["000000.jpeg", "episode.mp4", "labels.jsonl", "mark.json"]
+
+
+def test_resume_refuses_a_folder_without_settings(tmp_path):
+    (tmp_path / "mine.txt").write_text("mine")
+    with pytest.raises(OutputError, match="nothing to continue"):
+        open_folder(tmp_path, CONFIG, overwrite=False, resume=True)
+
+
+def test_resume_of_nothing_begins(tmp_path):
+    open_folder(tmp_path / "a", CONFIG, overwrite=False, resume=True)
+    assert (tmp_path / "a" / "config.json").is_file()
+
+
+def test_overwrite_and_resume_exclude_each_other(tmp_path):
+    with pytest.raises(ConfigError, match="exclude each other"):
+        open_folder(tmp_path / "a", CONFIG, overwrite=True, resume=True)
+    assert not (tmp_path / "a").exists()
