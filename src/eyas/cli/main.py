@@ -1,0 +1,75 @@
+"""The command `eyas`."""
+
+import os
+import sys
+import warnings
+from typing import Annotated
+
+import typer
+
+from eyas import __version__
+from eyas.cli import bench, config, maps, traffic, video
+from eyas.core.errors import EyasError
+
+__all__ = ["app", "main"]
+
+# Typer brings its own copy of click in new versions and uses click in old ones.
+_UsageError: type[Exception] = typer.BadParameter.__mro__[1]
+
+app = typer.Typer(
+    name="eyas",
+    help="A fast, repeatable simulator and benchmark for drone visual active tracking.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+app.command("video")(video.command)
+app.command("bench")(bench.command)
+app.add_typer(config.app, name="config")
+app.add_typer(maps.app, name="maps")
+app.add_typer(traffic.app, name="traffic")
+
+
+def _print_version(value: bool) -> None:  # noqa: FBT001  # typer's callback
+    if value:
+        typer.echo(f"eyas {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[  # noqa: ARG001  # handled by its callback
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print it.")
+    ] = False,
+) -> None: ...
+
+
+def main() -> None:
+    """Run the command line: errors are one line on stderr and exit code 2, without a traceback."""
+    warnings.showwarning = lambda message, *_, **__: _say(f"warning: {message}")
+    try:
+        status = app(standalone_mode=False)
+    except EyasError as error:
+        _end(f"error: {error}", 2)
+    except _UsageError as error:
+        _end(f"error: {error}", 2)
+    except (KeyboardInterrupt, typer.Abort):
+        _end("interrupted", 130)
+    except BrokenPipeError:
+        # Whoever read our output has gone; nothing more can be said to them.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        sys.exit(1)
+    sys.exit(status or 0)
+
+
+def _say(line: str) -> None:
+    print(f"eyas: {line}", file=sys.stderr)
+
+
+def _end(line: str, status: int) -> None:
+    _say(" ".join(line.split("\n")))
+    sys.exit(status)
+
+
+if __name__ == "__main__":
+    main()

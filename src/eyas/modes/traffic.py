@@ -1,0 +1,64 @@
+"""Record traffic with SUMO."""
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from rich.console import Console
+from rich.progress import Progress
+
+from eyas.core.errors import ConfigError, OutputError
+from eyas.traffic.config import TrafficConfig
+from eyas.traffic.library import CANONICAL_SEED, record_canonical
+from eyas.traffic.record import record
+from eyas.traffic.recording_file import save
+from eyas.world.config import WorldConfig
+from eyas.world.maps import road_graph
+
+__all__ = ["run", "run_canonical"]
+
+
+def run(world: WorldConfig, config: TrafficConfig, duration: float, path: Path | None) -> None:
+    """Record traffic into a file.
+
+    Args:
+        world: Which map.
+        config: What drives.
+        duration: How long [s].
+        path: The file; None: `<map>-<seed>-<type>.npz` in this folder.
+
+    Raises:
+        ConfigError: The duration is not a time.
+        MissingExtraError: SUMO is not installed.
+        OutputError: The file cannot be written.
+    """
+    if not 1.0 <= duration <= 86_400.0:
+        raise ConfigError(f"--duration: {duration:g} is not allowed; allowed: 1 to 86400 s")
+    seed = CANONICAL_SEED if config.seed is None else config.seed
+    target = path or Path(f"{world.map}-{seed}-{config.vehicle_type}.npz")
+    if target.is_dir():
+        raise OutputError(f"{target}: is a folder, not a file")
+    graph = road_graph(world.map, world.seed)
+    with _progress() as progress:
+        recording = record(world.map, world.seed, graph, config, duration, seed, progress)
+    save(recording, target)
+    _report(target, f"{recording.actors} vehicles, {recording.duration:g} s")
+
+
+def run_canonical(world: WorldConfig) -> None:
+    """Record the traffic that ships with the package anew, in a source checkout."""
+    with _progress() as progress:
+        path = record_canonical(world.map, road_graph(world.map, 0), progress)
+    _report(path, "the shipped recording")
+
+
+@contextmanager
+def _progress() -> Iterator[Callable[[float], None]]:
+    """Show how far SUMO is, on stderr."""
+    with Progress(console=Console(stderr=True), transient=True) as bar:
+        task = bar.add_task("SUMO drives", total=1.0)
+        yield lambda share: bar.update(task, completed=share)
+
+
+def _report(path: Path, what: str) -> None:
+    Console(stderr=True).print(f"{path}: {what}, {path.stat().st_size / 1024:.0f} KiB")
