@@ -50,15 +50,15 @@ def _cluster(
 ) -> None:
     """Draw leaves along twigs that spread from the middle, the lowest first."""
     for lightness in (0.6, 0.74, 0.88, 1.0):
-        for twig in np.linspace(0, 2 * np.pi, 8, endpoint=False) + rng.uniform(0, 1):
+        for twig in np.linspace(0, 2 * np.pi, 10, endpoint=False) + rng.uniform(0, 1):
             reach = rng.uniform(44, 58)
             bend = rng.uniform(-0.5, 0.5)
-            for step in np.arange(0.1, 1.0, 0.1):
+            for step in np.arange(0.1, 1.0, 0.085):
                 way = twig + bend * step
                 middle = 64 + step * reach * np.array([np.sin(way), np.cos(way)])
                 middle += rng.normal(0, 2.0, 2)
                 side = way + rng.choice([-1, 1]) * rng.uniform(0.3, 1.1)
-                length = rng.uniform(7.5, 10.5) * (1.1 - 0.3 * step)
+                length = rng.uniform(5.8, 8.2) * (1.1 - 0.25 * step)
                 shade = lightness * rng.uniform(0.84, 1.12)
                 _leaf(picture, alpha, middle, side, length, shade * _leaf_colour(rng))
 
@@ -68,10 +68,10 @@ def _leaf_colour(rng: np.random.Generator) -> NDArray[np.float64]:
     kind = rng.random()
     if kind < 0.025:
         return np.array([196.0, 128.0, 52.0])
-    if kind < 0.16:
-        return np.array([150.0, 172.0, 78.0])
+    if kind < 0.13:
+        return np.array([140.0, 156.0, 84.0])
     olive = rng.random()
-    return (1 - olive) * np.array([84.0, 118.0, 48.0]) + olive * np.array([122.0, 134.0, 58.0])
+    return (1 - olive) * np.array([80.0, 105.0, 52.0]) + olive * np.array([110.0, 120.0, 62.0])
 
 
 def _leaf(

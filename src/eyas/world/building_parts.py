@@ -83,10 +83,19 @@ def pyramid_roof(outline: Outline, top: float, stone: Material, tiles: Material)
         offset - np.concatenate([u[..., None] * along[:, None], 0 * u[..., None]], axis=2), axis=2
     )
     slopes = quads(corners, np.stack([u, up], axis=2) / 4.0, tiles)
-    soffit = flat_polygon(shapely.Polygon(eaves), top - 0.02, stone, 6.0)
+    slopes.triangles = slopes.triangles[_areas(slopes) > 1e-6]
+    slopes.materials = slopes.materials[: len(slopes.triangles)]
+    soffit = flat_polygon(shapely.Polygon(eaves) - shape, top, stone, 6.0)
     soffit.triangles = np.ascontiguousarray(soffit.triangles[:, ::-1])
     soffit.normals = -soffit.normals
     return concatenate([slopes, soffit])
+
+
+def _areas(mesh: Mesh) -> NDArray[np.float64]:
+    """Return the areas of triangles; those of a slope that ends in a point include empty ones."""
+    corners = np.asarray(mesh.positions[mesh.triangles], np.float64)
+    face = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return np.asarray(np.linalg.norm(face, axis=1) / 2, np.float64)
 
 
 def rooftop(outline: Outline, top: float, stone: Material, rng: np.random.Generator) -> Mesh:
@@ -95,7 +104,7 @@ def rooftop(outline: Outline, top: float, stone: Material, rng: np.random.Genera
     free = shapely.buffer(shape, -2.2, join_style="mitre")
     axis = outline[1] - outline[0]
     turn = float(np.arctan2(axis[1], axis[0]))
-    count = int(np.clip(shape.area / 160, 0, 9))
+    count = int(np.clip(shape.area / 140, 0, 14))
     metal = material("concrete", (0.82, 0.86, 0.9))
     pieces: list[Mesh] = []
     for k in range(count):

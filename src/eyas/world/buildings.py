@@ -126,6 +126,21 @@ def _clear(shape: shapely.Polygon, angle: float, keep_free: shapely.Geometry) ->
         if local.intersects(shape):
             local = shapely.box(*local.bounds) if part.area <= _SMALL else local
             shape = largest(shapely.difference(shape, local))
+    return _without_courts(shape)
+
+
+def _without_courts(shape: shapely.Polygon) -> shapely.Polygon:
+    """Return a footprint whose holes are opened towards the nearest side: an outline has none."""
+    for hole in shape.interiors:
+        west, south, east, north = shape.bounds
+        left, low, right, high = hole.bounds
+        slots = {
+            left - west: (west - 1, low, right, high),
+            east - right: (left, low, east + 1, high),
+            low - south: (left, south - 1, right, high),
+            north - high: (left, low, right, north + 1),
+        }
+        shape = largest(shapely.difference(shape, shapely.box(*slots[min(slots)])))
     return shape
 
 

@@ -25,7 +25,7 @@ _GREENS: tuple[Tints, ...] = (
     ((0.46, 0.46, 0.32), (0.64, 0.63, 0.44), (0.84, 0.82, 0.56), (1.0, 0.98, 0.68)),
     ((0.40, 0.45, 0.38), (0.54, 0.60, 0.50), (0.70, 0.77, 0.60), (0.88, 0.94, 0.72)),
 )
-_CORE = (0.3, 0.34, 0.26)
+_CORE = (0.56, 0.6, 0.44)
 # Crown width as a share of the height: the original's are 15.5 to 31 m wide, 14.8 to 27 m tall.
 _WIDTHS = (1.1, 1.02, 1.16, 1.06)
 _PALE_BARK = (1.0, 0.98, 0.95)
@@ -60,7 +60,7 @@ def street_tree_levels(rng: np.random.Generator, variant: int) -> tuple[Mesh, ..
     coarse = concatenate(
         [
             _wood(crown, rng, limbs=0, sides=3),
-            shell(crown, 1, 0.96, greens[1]),
+            shell(crown, 1, 1.01, greens[1]),
             leaf_cards(crown, 16, (0.3, 0.4), greens, rng, bent=False),
         ]
     )
