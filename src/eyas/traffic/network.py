@@ -104,7 +104,8 @@ def network_xml(graph: RoadGraph) -> bytes:
 
 def _without_comments(xml: bytes) -> bytes:
     """Drop the comment that holds the time and the temporary folder; the parser skips comments."""
-    return ElementTree.tostring(ElementTree.fromstring(xml), encoding="utf-8") + b"\n"
+    root = ElementTree.fromstring(xml)
+    return bytes(ElementTree.tostring(root, encoding="utf-8")) + b"\n"
 
 
 def _node_xml(nodes: tuple[RoadNode, ...]) -> str:

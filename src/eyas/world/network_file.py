@@ -2,9 +2,9 @@
 
 import io
 import zipfile
+import zlib
 from dataclasses import fields
 from pathlib import Path
-from zlib import error as ZlibError
 
 import numpy as np
 
@@ -46,7 +46,7 @@ def load_network(path: Path) -> RoadNetwork:
     try:
         with np.load(path) as archive:
             values = {field.name: archive[field.name] for field in fields(RoadNetwork)}
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, ZlibError) as error:
+    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, zlib.error) as error:
         raise DataFileError(f"{path}: not a readable road network: {error}") from error
     for name in ("graph_hash", "builder"):
         values[name] = str(values[name])

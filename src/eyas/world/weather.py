@@ -45,6 +45,6 @@ def lighting(map_name: str, weather: str) -> Lighting:
     if light is None:
         have = ", ".join(kind for name, kind in _LIGHTINGS if name == map_name)
         raise NotInThisVersionError(
-            f"world.weather: '{weather}' of map '{map_name}' is not in this version; there is: {have}"
+            f"world.weather: '{weather}' of '{map_name}' is not in this version; there is: {have}"
         )
     return light

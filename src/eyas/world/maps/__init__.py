@@ -1,5 +1,7 @@
 """The maps, one recipe a file."""
 
+from collections.abc import Callable
+from dataclasses import dataclass
 from importlib.resources import as_file, files
 
 from eyas.core.errors import NotInThisVersionError, UnknownNameError
@@ -8,10 +10,21 @@ from eyas.state.scene import Scene
 from eyas.world.maps import citystreet
 from eyas.world.network_file import load_network
 
-__all__ = ["LATER", "MAPS", "build_scene", "road_graph", "shipped_network"]
+__all__ = ["LATER", "MAPS", "Recipe", "build_scene", "road_graph", "shipped_network"]
 
-MAPS = {citystreet.NAME: citystreet}
-"""The recipes by name; each offers `road_graph(seed)` and `build_scene(network, seed)`."""
+
+@dataclass(frozen=True, slots=True)
+class Recipe:
+    """How a map is made."""
+
+    road_graph: Callable[[int], RoadGraph]
+    """Draws the roads of a seed."""
+    build_scene: Callable[[RoadNetwork, int], Scene]
+    """Builds everything else of a seed around the processed roads."""
+
+
+MAPS = {citystreet.NAME: Recipe(citystreet.road_graph, citystreet.build_scene)}
+"""The recipes by name."""
 
 LATER = ("desert", "downtown", "farmland", "lake", "simpleway", "village")
 """Maps of the original that this version does not have."""

@@ -1,109 +1,205 @@
-"""The street city: a turned grid of avenues through lawn, mid-rise blocks and rows of great trees."""
+"""The street city: mid-rise blocks on lawn, rows of great trees, a road high above the roofs."""
 
-import math
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from eyas.core.rng import stream
-from eyas.state.roads import RoadEdge, RoadGraph, RoadNode
+from eyas.state.mesh import Material, Mesh, Surface
+from eyas.state.roads import RoadNetwork
+from eyas.state.scene import ObjectClass, Scene
+from eyas.world import buildings, ground, markings, overpass, trees
+from eyas.world.assembly import SceneBuilder
+from eyas.world.car_parks import CarPark, place_car_parks, place_rectangle
+from eyas.world.lots import turned
+from eyas.world.maps.citystreet_roads import NAME, road_graph
+from eyas.world.roads import Street, blocks, joints, road_area, streets, surface
 
-__all__ = ["FLOOR", "NAME", "road_graph"]
-
-NAME = "citystreet"
+__all__ = ["FLOOR", "NAME", "build_scene", "road_graph"]
 
 FLOOR = (900.0, 900.0)
 """Extent of the floor [m]."""
 
-_ROTATION = math.radians(40.0)
-_COLUMNS = (188.0, 126.0, 184.0)
-"""Width of the blocks, along the streets that run to the north-east [m]."""
-_ROWS = (126.0, 190.0, 178.0, 108.0)
-"""Depth of the blocks, along the streets that run to the north-west [m]."""
-_CORNERS = ((0, 0), (2, 0), (2, 3), (0, 3))
-"""Blocks at the corners of the grid: one is built, at the others the outer street cuts the corner."""
-_BENDS = 7
-"""Outer streets that bend a little halfway."""
-_BEND = (4.0, 9.0)
-"""How far the middle of such a street lies outside the straight line [m]."""
+_BUILDINGS = 83
+_TREES = 63
+_TREE_SPACING = (14.5, 19.5)
+_TREE_HEIGHTS = (14.8, 19.8, 27.0)
+_TREE_ODDS = (0.3, 0.5, 0.2)
+_BEYOND_KERB = 4.4
+"""From the kerb to the trunks [m]."""
+_TREE_STRIP = 10.0
+"""Beside a row of trees, from the kerb: no building [m]."""
+_CAR_PARKS = ((69.0, 34.0), (58.0, 34.0), (45.0, 34.0), (64.0, 17.0), (49.0, 17.0))
+_POOL = (30.0, 18.8)
+_WATER = Material("plain", (0.3, 0.5, 0.8), Surface.WATER)
 
-Point = NDArray[np.float64]
-Link = tuple[str, str]
+_HIGH = 53.5
+"""z of the elevated road [m]."""
+_PILLARS = 18
+_ASIDE = 17.0
+"""From the middle of a street to that of the elevated road beside it [m]."""
+_RAMP = ((0.0, -0.08), (0.02, 0.0), (0.09, 3.5), (0.27, 28.0), (0.42, _HIGH), (1.0, _HIGH))
+"""Share of the elevated road's length, and z [m]."""
+
+Points = NDArray[np.float64]
 
 
-def road_graph(seed: int) -> RoadGraph:
-    """Return the roads: nine blocks, six crossings, four T junctions, the rest corners and bends.
+@dataclass(frozen=True, slots=True)
+class _Plan:
+    """Where things are, in plan view."""
 
-    Seed 0 is the canonical city; other seeds change distances, rotation and outline.
+    roads: shapely.Geometry
+    blocks: list[shapely.Polygon]
+    deck: Points
+    pillars: list[overpass.Pillar]
+    car_parks: list[CarPark]
+    pools: list[shapely.Polygon]
+    trees: Points
+    buildings: list[buildings.Building]
+
+
+def build_scene(network: RoadNetwork, seed: int) -> Scene:
+    """Return the street city.
 
     Args:
+        network: Made of `road_graph(seed)`.
         seed: Of the map, >= 0.
     """
-    rng = stream(seed, "citystreet roads")
-    columns, rows, rotation, kept = np.array(_COLUMNS), np.array(_ROWS), _ROTATION, 0
-    if seed:
-        columns = np.clip(columns * rng.uniform(0.88, 1.12, 3), 105, 192)
-        rows = np.clip(rows * rng.uniform(0.88, 1.12, 4), 105, 192)
-        rotation += math.radians(rng.uniform(-7.0, 7.0))
-        kept = int(rng.integers(4))
-    missing = {corner for index, corner in enumerate(_CORNERS) if index != kept}
-    blocks = [(i, j) for i in range(3) for j in range(4) if (i, j) not in missing]
-    at = {
-        _name(i, j): np.array([columns[:i].sum(), rows[:j].sum()])
-        for i in range(4)
-        for j in range(5)
-    }
-    links = _bent(_links(blocks), at, rng)
-    return _graph(seed, at, links, rotation)
+    plan = _plan(network, seed)
+    builder = SceneBuilder()
+    _add_ground(builder, plan, network)
+    _add_overpass(builder, plan)
+    for building in plan.buildings:
+        owner = builder.add(ObjectClass.BUILDING, buildings.mesh_of(building))
+        builder.add_prism(*buildings.prism_of(building), owner)
+    levels = _add_trees(builder, plan, stream(seed, "citystreet trees", 1))
+    return builder.build(NAME, seed, FLOOR, ground.FLOOR_HEIGHT, levels, network)
 
 
-def _name(column: int, row: int) -> str:
-    return f"{'ABCD'[column]}{row + 1}"
+def _plan(network: RoadNetwork, seed: int) -> _Plan:
+    extent = shapely.box(*(-0.5 * np.array(FLOOR)), *(0.5 * np.array(FLOOR)))
+    roads = road_area(network)
+    closed, _ = blocks(network, extent)
+    middle = _overpass_path(seed)
+    pillars = overpass.pillars(middle, _PILLARS, ground.FLOOR_HEIGHT, roads)
+    deck = shapely.buffer(overpass.deck_area(middle), 3.0)
+    rng = stream(seed, "citystreet lots")
+    car_parks = place_car_parks(closed, _CAR_PARKS, rng, deck)
+    lots = [park.area for park in car_parks]
+    pools = _pools(closed, rng, shapely.union_all([deck, *lots]))
+    bases = [shapely.buffer(pillar.base, 3.0) for pillar in pillars]
+    taken = shapely.union_all([roads, *bases, *(shapely.buffer(lot, 2.0) for lot in lots)])
+    trunks, strips = _tree_rows(network, stream(seed, "citystreet trees"), taken)
+    aprons = [shapely.buffer(lot, 2.5, join_style="mitre") for lot in (*lots, *pools)]
+    free = shapely.union_all([deck, *aprons, *strips])
+    made = buildings.place_buildings(closed, _BUILDINGS, stream(seed, "citystreet buildings"), free)
+    return _Plan(roads, closed, middle, pillars, car_parks, pools, trunks, made)
 
 
-def _links(blocks: list[tuple[int, int]]) -> dict[Link, int]:
-    """Return the streets around all blocks, and how many blocks each borders."""
-    sides: dict[Link, int] = {}
-    for i, j in blocks:
-        south, north = (_name(i, j), _name(i + 1, j)), (_name(i, j + 1), _name(i + 1, j + 1))
-        west, east = (_name(i, j), _name(i, j + 1)), (_name(i + 1, j), _name(i + 1, j + 1))
-        for side in (south, north, west, east):
-            sides[side] = sides.get(side, 0) + 1
-    return sides
-
-
-def _bent(sides: dict[Link, int], at: dict[str, Point], rng: np.random.Generator) -> list[Link]:
-    """Return the links with a node more in the middle of some outer streets; adds it to `at`."""
-    middle = np.mean([at[name] for link in sides for name in link], axis=0)
-    outer = [link for link in sides if sides[link] == 1]
-    bent = {outer[int(i)] for i in rng.permutation(len(outer))[:_BENDS]}
-    links: list[Link] = []
-    for start, end in sides:
-        if (start, end) not in bent:
-            links.append((start, end))
-            continue
-        along = at[end] - at[start]
-        outwards = np.array([-along[1], along[0]]) / np.linalg.norm(along)
-        half = at[start] + rng.uniform(0.42, 0.58) * along
-        outwards *= np.sign(outwards @ (half - middle))
-        name = f"{start}{end}"
-        at[name] = half + rng.uniform(*_BEND) * outwards
-        links += [(start, name), (name, end)]
-    return links
-
-
-def _graph(seed: int, at: dict[str, Point], links: list[Link], rotation: float) -> RoadGraph:
-    names = sorted({name for link in links for name in link})
-    turn = np.array(
-        [[math.cos(rotation), -math.sin(rotation)], [math.sin(rotation), math.cos(rotation)]]
+def _overpass_path(seed: int) -> Points:
+    """Return the elevated road: up a ramp in the west, then beside three streets to the east."""
+    at = {node.name: np.array([node.x, node.y]) for node in road_graph(seed).nodes}
+    origin = at["B2"]
+    east = (at["C2"] - origin) / np.linalg.norm(at["C2"] - origin)
+    frame = np.stack([east, [-east[1], east[0]]])
+    west, third = frame @ (at["A4"] - origin)
+    second = frame[0] @ (at["C2"] - origin)
+    corners = np.array(
+        [
+            [west - 68.0, 70.0],
+            [west - 68.0, third + _ASIDE],
+            [second + _ASIDE, third + _ASIDE],
+            [second + _ASIDE, _ASIDE],
+            [second + 600.0, _ASIDE],
+        ]
     )
-    points = np.array([at[name] for name in names]) @ turn.T
-    points -= (points.min(axis=0) + points.max(axis=0)) / 2
-    # Millimetres, so that the last bits of sines, which differ between machines, do not show.
-    nodes = [
-        RoadNode(name, round(float(x), 3), round(float(y), 3))
-        for name, (x, y) in zip(names, points, strict=True)
-    ]
-    both = sorted(pair for a, b in links for pair in ((a, b), (b, a)))
-    edges = [RoadEdge(name=f"{start}-{end}", start=start, end=end) for start, end in both]
-    return RoadGraph(NAME, seed, tuple(nodes), tuple(edges))
+    world = corners @ frame + origin
+    # It leaves the map where the floor ends.
+    onwards = frame[0]
+    room = (np.sign(onwards) * 0.5 * np.array(FLOOR) - world[3]) / onwards
+    world[4] = world[3] + (room.min() - 2.0) * onwards
+    return overpass.path(world, (55.0, 70.0, 60.0), _RAMP)
+
+
+def _pools(
+    closed: Sequence[shapely.Polygon], rng: np.random.Generator, keep_free: shapely.Geometry
+) -> list[shapely.Polygon]:
+    """Return one pool, in the first block that has room for it."""
+    for index in rng.permutation(len(closed)):
+        found = place_rectangle(closed[int(index)], _POOL, rng, keep_free)
+        if found:
+            return [turned(found[0], found[1])]
+    return []
+
+
+def _tree_rows(
+    network: RoadNetwork, rng: np.random.Generator, keep_free: shapely.Geometry
+) -> tuple[Points, list[shapely.Polygon]]:
+    """Return trunks along both sides of inner streets, and the strips that their crowns need."""
+    meeting = joints(network)
+    every = streets(network)
+    rows: list[Street] = []
+    for index in rng.permutation(len(every)):
+        street = every[int(index)]
+        if street not in rows and min(meeting[street.start], meeting[street.end]) == 4:
+            rows += [s for s in every if {s.start, s.end} == {street.start, street.end}]
+    trunks, strips = np.zeros((0, 2)), []
+    for street in rows:
+        kerb = shapely.LineString(street.right)
+        line = shapely.offset_curve(kerb, -_BEYOND_KERB)
+        found = trees.place_along(line, _TREE_SPACING, rng, keep_free)[: _TREES - len(trunks)]
+        if len(found):
+            trunks = np.concatenate([trunks, found])
+            strips.append(shapely.buffer(kerb, -_TREE_STRIP, cap_style="flat", single_sided=True))
+    return trunks, strips
+
+
+def _add_ground(builder: SceneBuilder, plan: _Plan, network: RoadNetwork) -> None:
+    extent = shapely.box(*(-0.5 * np.array(FLOOR)), *(0.5 * np.array(FLOOR)))
+    lots = shapely.union_all([park.area for park in plan.car_parks])
+    pools = shapely.union_all(plan.pools)
+    pavement = ground.pavement_area(plan.blocks, lots)
+    covered = shapely.union_all([plan.roads, lots, pools, pavement])
+    builder.add(ObjectClass.GROUND, ground.lawn(extent, covered))
+    builder.add(ObjectClass.ROAD, ground.asphalt(plan.roads))
+    paint = markings.mesh_of(markings.road_paint(network))
+    builder.add(ObjectClass.MARKING, paint, *_bay_lines(plan.car_parks))
+    builder.add(ObjectClass.PAVEMENT, ground.pavement(pavement, plan.roads))
+    builder.add(ObjectClass.ROAD, ground.asphalt(lots, light=True))
+    if plan.pools:
+        builder.add(ObjectClass.WATER, surface(pools, -0.15, _WATER, 1.0))
+        rim = shapely.difference(shapely.buffer(pools, 0.8, join_style="mitre"), pools)
+        builder.add(ObjectClass.PAVEMENT, ground.pavement(rim, pools))
+
+
+def _bay_lines(car_parks: Sequence[CarPark]) -> list[Mesh]:
+    return [markings.painted(park.lines, markings.WHITE) for park in car_parks]
+
+
+def _add_overpass(builder: SceneBuilder, plan: _Plan) -> None:
+    floor = ground.FLOOR_HEIGHT
+    owner = builder.add(ObjectClass.STRUCTURE, overpass.deck_mesh(plan.deck, floor))
+    for outline, bottom, top in overpass.deck_prisms(plan.deck, floor):
+        builder.add_prism(outline, bottom, top, owner)
+    for pillar in plan.pillars:
+        owner = builder.add(ObjectClass.STRUCTURE, overpass.pillar_mesh(pillar, floor))
+        base = shapely.get_coordinates(pillar.base)[:-1]
+        builder.add_prism(base, floor, floor + overpass.BASE_HEIGHT, owner)
+        for column in pillar.columns:
+            builder.add_cylinder(column, overpass.COLUMN_RADIUS, floor, pillar.top, owner)
+
+
+def _add_trees(
+    builder: SceneBuilder, plan: _Plan, rng: np.random.Generator
+) -> list[tuple[Mesh, ...]]:
+    """Add a tree at each trunk; return the kinds of trees."""
+    for place in plan.trees:
+        height = rng.choice(_TREE_HEIGHTS, p=_TREE_ODDS) * rng.uniform(0.93, 1.0)
+        spot = (*place, ground.FLOOR_HEIGHT)
+        kind, turn = int(rng.integers(trees.VARIANTS)), rng.uniform(0, 2 * np.pi)
+        owner = builder.add_copy(ObjectClass.TREE, kind, spot, turn, height)
+        builder.add_cylinder(place, 0.022 * height, ground.FLOOR_HEIGHT, 0.3 * height, owner)
+    return [trees.street_tree_levels(rng, kind) for kind in range(trees.VARIANTS)]

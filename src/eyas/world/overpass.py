@@ -1,0 +1,265 @@
+"""An elevated road with walls, carried by pairs of slender columns."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from numpy.typing import ArrayLike, NDArray
+
+from eyas.state.mesh import Material, Mesh, concatenate, transformed
+from eyas.world.materials import TEXTURES, material
+from eyas.world.shapes import box, cylinder, quads
+
+__all__ = [
+    "BASE_HEIGHT",
+    "COLUMN_RADIUS",
+    "DECK_WIDTH",
+    "Pillar",
+    "deck_area",
+    "deck_mesh",
+    "deck_prisms",
+    "path",
+    "pillar_mesh",
+    "pillars",
+]
+
+DECK_WIDTH = 14.0
+"""Between the walls [m]."""
+
+COLUMN_RADIUS = 0.8
+"""At the top [m]."""
+
+BASE_HEIGHT = 1.4
+"""Of the stone below a pair of columns [m]."""
+
+_STATION = 4.5
+"""Distance of two cross-sections, the length of a dash and of a gap [m]."""
+_PRISM = 4
+"""Stations in a solid of the deck."""
+_WALL = 0.3
+_SOLID_BELOW = 7.0
+"""Height up to which a ramp has solid sides and no columns [m]."""
+_COLUMN_GAP = 5.0
+_BASE = (9.0, 3.6, BASE_HEIGHT)
+
+_HALF = DECK_WIDTH / 2
+_OUT = _HALF + _WALL
+# Right of the middle and above the surface [m], from the left edge of the surface round the walls.
+_SECTION = ((-_HALF, 0.0), (_HALF, 0.0), (_HALF, 2.0), (_OUT, 2.0), (_OUT, -0.5), (4.5, -1.5),
+            (-4.5, -1.5), (-_OUT, -0.5), (-_OUT, 2.0), (-_HALF, 2.0), (-_HALF, 0.0))  # fmt: skip
+
+_ASPHALT = material("asphalt")
+_CONCRETE = material("concrete", (0.9, 0.9, 0.9))
+_STONE = material("stone", (0.85, 0.83, 0.8))
+_WHITE = material("plain", (0.93, 0.93, 0.91))
+
+Points = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Pillar:
+    """Two columns on a base, below the deck."""
+
+    place: Points
+    """Middle on the ground [m], shape (2,)."""
+    across: Points
+    """Unit vector from the left to the right column, shape (2,)."""
+    top: float
+    """z of the underside of the deck [m]."""
+
+    @property
+    def base(self) -> shapely.Polygon:
+        """Outline of the base [m]."""
+        along = np.array([-self.across[1], self.across[0]])
+        x, y = _BASE[0] / 2 * self.across, _BASE[1] / 2 * along
+        return shapely.Polygon([self.place + x * a + y * b
+                                for a, b in ((-1, -1), (1, -1), (1, 1), (-1, 1))])  # fmt: skip
+
+    @property
+    def columns(self) -> Points:
+        """Middle of both columns [m], shape (2, 2)."""
+        return self.place + np.outer([-0.5, 0.5], _COLUMN_GAP * self.across)
+
+
+def path(
+    corners: ArrayLike, radii: Sequence[float], profile: Sequence[tuple[float, float]]
+) -> Points:
+    """Return the middle of a road of straight pieces and arcs, shape (K, 3).
+
+    Args:
+        corners: Where the straight pieces would meet [m], shape (C, 2).
+        radii: Of the arc at each corner but the first and last [m].
+        profile: Share of the whole length and z there [m]; between, z eases from one to the next.
+    """
+    points = np.asarray(corners, np.float64)
+    pieces = [points[:1]]
+    for before, corner, after, radius in zip(
+        points[:-2], points[1:-1], points[2:], radii, strict=True
+    ):
+        pieces.append(_arc(before, corner, after, radius))
+    line = shapely.LineString(np.concatenate([*pieces, points[-1:]]))
+    along = np.linspace(0.0, 1.0, round(line.length / _STATION) + 1)
+    flat = shapely.get_coordinates(shapely.line_interpolate_point(line, along, normalized=True))
+    share, height = np.array(profile).T
+    index = np.clip(np.searchsorted(share, along, side="right") - 1, 0, len(share) - 2)
+    t = (along - share[index]) / (share[index + 1] - share[index])
+    eased = t * t * (3.0 - 2.0 * t)
+    return np.column_stack([flat, height[index] + eased * (height[index + 1] - height[index])])
+
+
+def deck_area(middle: Points) -> shapely.Polygon:
+    """Return what the deck covers, in plan view."""
+    return shapely.buffer(shapely.LineString(middle[:, :2]), _OUT, cap_style="flat")
+
+
+def deck_mesh(middle: Points, floor: float) -> Mesh:
+    """Return the deck with its walls and lines; low parts stand on solid sides.
+
+    Args:
+        middle: From `path`.
+        floor: z of the ground [m].
+    """
+    pieces = [
+        _swept(middle, _SECTION[:2], _ASPHALT, TEXTURES["asphalt"]),
+        _swept(middle, _SECTION[1:], _CONCRETE, TEXTURES["concrete"]),
+        *(_line(middle, offset, 0.15) for offset in (-_HALF + 0.4, 0.0, _HALF - 0.4)),
+        *(_line(middle, offset, 0.15, dashed=True) for offset in (-_HALF / 2, _HALF / 2)),
+    ]
+    low = np.flatnonzero(middle[:, 2] < floor + _SOLID_BELOW)
+    if len(low) > 1:
+        sides = middle[low[0] : low[-1] + 1]
+        pieces += [_solid_side(sides, sign, floor) for sign in (1.0, -1.0)]
+    return concatenate(pieces)
+
+
+def deck_prisms(middle: Points, floor: float) -> list[tuple[Points, float, float]]:
+    """Return solids along the deck: outline, bottom and top of each [m]."""
+    across = _OUT * _across(middle)
+    made = []
+    for first in range(0, len(middle) - 1, _PRISM):
+        last = min(first + _PRISM, len(middle) - 1)
+        right = middle[first : last + 1, :2] + across[first : last + 1]
+        left = middle[first : last + 1, :2] - across[first : last + 1]
+        height = middle[first : last + 1, 2]
+        bottom = height.min() - 1.5
+        if bottom < floor + _SOLID_BELOW - 1.5:
+            bottom = floor
+        made.append((np.concatenate([right, left[::-1]]), float(bottom), float(height.max() + 2)))
+    return made
+
+
+def pillars(middle: Points, count: int, floor: float, roads: shapely.Geometry) -> list[Pillar]:
+    """Return pillars below the high part of the deck, evenly spaced where no road is in the way.
+
+    Args:
+        middle: From `path`.
+        count: How many; those that find no place beside a road are left out.
+        floor: z of the ground [m].
+        roads: Where none may stand.
+    """
+    high = np.flatnonzero(middle[:, 2] > floor + _SOLID_BELOW + 1.0)
+    if len(high) == 0:
+        return []
+    blocked = shapely.buffer(roads, 0.8)
+    shapely.prepare(blocked)
+    made = []
+    for wish in np.linspace(high[0] + 1, high[-1] - 2, count).round().astype(int):
+        for shift in (0, 1, -1, 2, -2, 3, -3, 4, -4):
+            pillar = _pillar(middle, int(np.clip(wish + shift, high[0], high[-1])))
+            if not shapely.intersects(blocked, pillar.base):
+                made.append(pillar)
+                break
+    return made
+
+
+def pillar_mesh(pillar: Pillar, floor: float) -> Mesh:
+    """Return a pillar with its base and the beam below the deck."""
+    x, y = pillar.across
+    pose = np.array([[x, -y, 0, pillar.place[0]], [y, x, 0, pillar.place[1]], [0, 0, 1, 0.0]])
+    column = cylinder(
+        (1.15 * COLUMN_RADIUS, COLUMN_RADIUS),
+        (floor + 1.0, pillar.top - 1.0),
+        14,
+        _CONCRETE,
+        tile=TEXTURES["concrete"],
+    )
+    parts = [
+        box(_BASE, (0, 0, floor + BASE_HEIGHT / 2), _STONE, TEXTURES["stone"]),
+        box((9.4, 2.2, 1.5), (0, 0, pillar.top - 0.5), _CONCRETE, TEXTURES["concrete"]),
+    ]
+    for side in (-0.5, 0.5):
+        aside = np.hstack([np.eye(3), [[side * _COLUMN_GAP], [0.0], [0.0]]])
+        parts.append(transformed(column, aside))
+    return transformed(concatenate(parts), pose)
+
+
+def _pillar(middle: Points, station: int) -> Pillar:
+    onwards = middle[station + 1, :2] - middle[station - 1, :2]
+    onwards /= np.linalg.norm(onwards)
+    across = np.array([onwards[1], -onwards[0]])
+    return Pillar(middle[station, :2].copy(), across, float(middle[station, 2] - 1.5))
+
+
+def _arc(before: Points, corner: Points, after: Points, radius: float) -> Points:
+    back, onwards = _unit(before - corner), _unit(after - corner)
+    half = 0.5 * np.arccos(np.clip(back @ onwards, -1.0, 1.0))
+    reach = radius / np.tan(half)
+    centre = corner + _unit(back + onwards) * radius / np.sin(half)
+    first, last = corner + reach * back - centre, corner + reach * onwards - centre
+    turn = np.arctan2(first[0] * last[1] - first[1] * last[0], first @ last)
+    angle = np.linspace(0.0, turn, 25)[:, None]
+    return np.asarray(centre + np.cos(angle) * first + np.sin(angle) * [-first[1], first[0]])
+
+
+def _across(middle: Points) -> Points:
+    """Return unit vectors to the right of the path, shape (K, 2)."""
+    onwards = np.gradient(middle[:, :2], axis=0)
+    onwards /= np.linalg.norm(onwards, axis=1, keepdims=True)
+    return np.column_stack([onwards[:, 1], -onwards[:, 0]])
+
+
+def _swept(
+    middle: Points, section: Sequence[tuple[float, float]], stuff: Material, tile: float
+) -> Mesh:
+    """Return the surface that a cross-section (right, up) makes along the path."""
+    outline = np.array(section)
+    across = _across(middle)
+    rows = np.empty((len(middle), len(outline), 3))
+    rows[..., :2] = middle[:, None, :2] + across[:, None] * outline[:, 0, None]
+    rows[..., 2] = middle[:, None, 2] + outline[:, 1]
+    corners = np.stack([rows[:-1, :-1], rows[:-1, 1:], rows[1:, 1:], rows[1:, :-1]], axis=2)
+    around = np.concatenate([[0.0], np.linalg.norm(np.diff(outline, axis=0), axis=1).cumsum()])
+    along = np.arange(len(middle)) * _STATION
+    u, v = np.meshgrid(around / tile, along / tile)
+    grid = np.stack([u, v], axis=-1)
+    uvs = np.stack([grid[:-1, :-1], grid[:-1, 1:], grid[1:, 1:], grid[1:, :-1]], axis=2)
+    return quads(corners.reshape(-1, 4, 3), uvs.reshape(-1, 4, 2), stuff)
+
+
+def _line(middle: Points, offset: float, width: float, *, dashed: bool = False) -> Mesh:
+    section = ((offset - width / 2, 0.02), (offset + width / 2, 0.02))
+    whole = _swept(middle, section, _WHITE, 1.0)
+    if not dashed:
+        return whole
+    dashes = [_swept(middle[k : k + 2], section, _WHITE, 1.0) for k in range(0, len(middle) - 1, 2)]
+    return concatenate(dashes)
+
+
+def _solid_side(middle: Points, sign: float, floor: float) -> Mesh:
+    line = middle[:, :2] + sign * (_OUT - 0.02) * _across(middle)
+    top = np.maximum(middle[:, 2] - 0.4, floor)
+    low = np.column_stack([line, np.full(len(line), floor)])
+    high = np.column_stack([line, top])
+    corners = np.stack([low[:-1], low[1:], high[1:], high[:-1]], axis=1)
+    along = np.arange(len(line)) * _STATION
+    flat = np.stack([np.column_stack([along, np.full(len(line), floor)]),
+                     np.column_stack([along, top])], axis=1)  # fmt: skip
+    uvs = np.stack([flat[:-1, 0], flat[1:, 0], flat[1:, 1], flat[:-1, 1]], axis=1)
+    if sign < 0:
+        corners, uvs = corners[:, ::-1], uvs[:, ::-1]
+    return quads(corners, uvs / TEXTURES["concrete"], _CONCRETE)
+
+
+def _unit(vector: Points) -> Points:
+    return np.asarray(vector / np.linalg.norm(vector))
