@@ -3,7 +3,7 @@
 import os
 import sys
 import warnings
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -14,7 +14,7 @@ from eyas.core.errors import EyasError
 __all__ = ["app", "main"]
 
 # Typer brings its own copy of click in new versions and uses click in old ones.
-_UsageError: type[Exception] = typer.BadParameter.__mro__[1]
+_UsageError: Any = typer.BadParameter.__mro__[1]
 
 app = typer.Typer(
     name="eyas",
@@ -52,7 +52,7 @@ def main() -> None:
     except EyasError as error:
         _end(f"error: {error}", 2)
     except _UsageError as error:
-        _end(f"error: {error}", 2)
+        _end(f"error: {error.format_message()}", 2)
     except (KeyboardInterrupt, typer.Abort):
         _end("interrupted", 130)
     except BrokenPipeError:

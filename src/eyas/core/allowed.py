@@ -4,7 +4,16 @@ import types
 from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import Enum
-from typing import Annotated, ClassVar, Literal, Protocol, Union, get_args, get_origin, runtime_checkable
+from typing import (
+    Annotated,
+    ClassVar,
+    Literal,
+    Protocol,
+    Union,
+    get_args,
+    get_origin,
+    runtime_checkable,
+)
 
 import annotated_types
 from pydantic.fields import FieldInfo
@@ -50,10 +59,10 @@ def describe(annotation: object, metadata: Sequence[object] = ()) -> str:
         return annotation.written
     simple = {bool: "true or false", str: "text", types.NoneType: "null"}
     if annotation in simple:
-        return simple[annotation]  # type: ignore[index]  # it is one of the keys
+        return simple[annotation]
     if annotation in (int, float):
         return _number(annotation, _limits(metadata))
-    return "an object in braces"
+    return "an object"
 
 
 def names_of(annotation: object) -> tuple[str, ...]:
@@ -68,6 +77,9 @@ def _quoted(value: object) -> str:
 
 
 def _either(parts: list[str]) -> str:
+    parts = sorted(
+        parts, key=lambda part: part != "null"
+    )  # first, not to be read as part of a list
     return " or ".join([", ".join(parts[:-1]), parts[-1]]) if len(parts) > 1 else parts[0]
 
 

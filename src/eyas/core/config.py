@@ -1,90 +1,195 @@
 """Configuration: frozen pydantic models whose errors are one line with the path."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
 from typing import Any, TypeVar
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler, ValidationError
 from pydantic.fields import FieldInfo
-from pydantic_core import ErrorDetails
+from pydantic_core import CoreSchema, ErrorDetails
 
-from eyas.core.allowed import describe
-from eyas.core.errors import ConfigError, nearest
+from eyas.core.allowed import describe, names_of
+from eyas.core.errors import ConfigError, UnknownNameError, nearest
 
-__all__ = ["Config", "validated"]
+__all__ = ["Config", "Problem", "group_of", "shown", "updated", "validated"]
 
-Model = TypeVar("Model", bound="Config")
+Path = tuple[str, ...]
+
+
+def _make_strict(schema: object) -> None:
+    """Let numbers and truth values be taken only from their own kind, at any depth."""
+    if isinstance(schema, dict):
+        if schema.get("type") in ("int", "float", "bool"):
+            schema["strict"] = True
+        for part in schema.values():
+            _make_strict(part)
+    elif isinstance(schema, list | tuple):
+        for part in schema:
+            _make_strict(part)
 
 
 class Config(BaseModel):
-    """Base of all settings: frozen, unknown keys refused."""
+    """Base of all settings: frozen, unknown keys refused, no silent conversion of types.
+
+    A whole number is taken where a number is wanted, a list where a tuple is, a name where an enum
+    is; `"1.5"`, `true` and `1.0` are not taken for 1.5, 1 and 1. A check between fields raises
+    `ValueError("<field to blame> <what it must be>")`.
+
+    Raises:
+        ConfigError: One line: key, value, what is allowed.
+    """
 
     model_config = ConfigDict(
         frozen=True, extra="forbid", allow_inf_nan=False, use_attribute_docstrings=True
     )
 
+    def __init__(self, **values: Any) -> None:  # noqa: ANN401  # as in pydantic
+        try:
+            super().__init__(**values)
+        except ValidationError as error:
+            raise _problem(error, type(self), values).error() from None
 
-def validated(model: type[Model], values: Mapping[str, Any]) -> Model:
-    """Return the settings that `values` give; types are not converted, but for int to float.
+    # Tells pydantic to go round this `__init__` for groups inside of others, so that the outermost
+    # settings meet the error and can tell the whole path.
+    __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
+
+    @classmethod
+    def __get_pydantic_core_schema__(
+        cls, source: type[BaseModel], handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        schema = handler(source)
+        _make_strict(schema)
+        return schema
+
+
+@dataclass(frozen=True, slots=True)
+class Problem:
+    """What is wrong with a setting."""
+
+    path: Path
+    """Keys that lead to it; none where the whole is wrong."""
+    value: object
+    """What it is."""
+    allowed: str
+    """What it may be."""
+    names: tuple[str, ...] = ()
+    """What it may be, where that is one of several names; the known keys where the key is wrong."""
+    unknown_key: bool = False
+    """Whether the key is wrong, not its value."""
+
+    def error(self) -> ConfigError:
+        """Return the one line to raise."""
+        path = ".".join(self.path) or "settings"
+        if self.unknown_key:
+            hint = nearest(self.path[-1], self.names)
+            return ConfigError(f"{path}: unknown key{hint}; known: {', '.join(self.names)}")
+        if self.names and isinstance(self.value, str):
+            return UnknownNameError(path, self.value, self.names)
+        return ConfigError(f"{path}: {shown(self.value)} is not allowed: {self.allowed}")
+
+
+Model = TypeVar("Model", bound=Config)
+
+
+def validated(model: type[Model], values: Mapping[str, Any], root: str = "") -> Model:
+    """Return the settings that `values` give.
 
     Args:
         model: The settings' class.
         values: Nested dictionaries, as read from JSON.
+        root: Path to put before each key in messages.
 
     Raises:
         ConfigError: One line: path, value, what is allowed, the nearest known key.
     """
     try:
-        # JSON mode is strict about types, and still takes lists for tuples and words for enums.
-        return model.model_validate_json(json.dumps(values), strict=True)
+        return model.model_validate(values)
     except ValidationError as error:
-        raise ConfigError(_one_line(error, model)) from None
-    except TypeError as error:
-        raise ConfigError(f"settings: {error}") from None
+        problem = _problem(error, model, values)
+        raise replace(problem, path=(*[root] * bool(root), *problem.path)).error() from None
 
 
-def _one_line(error: ValidationError, model: type[BaseModel]) -> str:
-    """Return the message of the first error, unknown keys before all others."""
-    entries = sorted(error.errors(), key=lambda entry: entry["type"] != "extra_forbidden")
-    lines = [_message(entry, model) for entry in entries]
-    return lines[0]
+def updated(
+    config: Model,
+    changes: Mapping[str, Any],
+    retell: Callable[[Problem], Problem] | None = None,
+) -> Model:
+    """Return the settings with some changed.
+
+    Args:
+        config: The settings.
+        changes: Nested dictionaries that hold only what changes.
+        retell: Returns a problem as the user should read it, in the words of another notation.
+
+    Raises:
+        ConfigError: One line, as from `validated`.
+    """
+    values = _merged(config, changes)
+    try:
+        return type(config).model_validate(values)
+    except ValidationError as error:
+        problem = _problem(error, type(config), values)
+        raise (retell(problem) if retell else problem).error() from None
 
 
-def _message(entry: ErrorDetails, model: type[BaseModel]) -> str:
-    owner, field, path = _find(entry["loc"], model)
-    if field is None and entry["type"] == "extra_forbidden":
-        known = sorted(owner.model_fields)
-        return f"{path}: unknown key{nearest(path.rpartition('.')[2], known)}; known: {', '.join(known)}"
-    if entry["type"] == "missing":
-        return f"{path}: missing"
-    said = entry["msg"].removeprefix("Value error, ")
-    if entry["type"] == "model_type":
-        return f"{path}: {json.dumps(entry['input'])} is not allowed; allowed: an object in braces"
-    if field is None:  # a check of a whole group; its message begins with the key
-        return f"{path}.{said}" if path else said
-    value = json.dumps(entry["input"], default=str)
-    return f"{path}: {value} is not allowed; allowed: {_allowed(field, entry, said)}"
+def shown(value: object) -> str:
+    """Return a value as messages show it: on one line, not too long."""
+    text = repr(value) if isinstance(value, str) else json.dumps(value, default=str)
+    return text if len(text) <= 80 else f"{text[:76]} ..."
 
 
-def _find(
-    loc: tuple[int | str, ...], model: type[BaseModel]
-) -> tuple[type[BaseModel], FieldInfo | None, str]:
-    """Return the group, the field and the dotted path that an error's place leads to."""
-    path: list[str] = []
-    for part in loc:
-        field = model.model_fields.get(str(part))
-        path.append(str(part))
+def group_of(field: FieldInfo | None) -> type[Config] | None:
+    """Return the settings class of a field that holds a group of settings."""
+    kind = field.annotation if field else None
+    return kind if isinstance(kind, type) and issubclass(kind, Config) else None
+
+
+def _merged(config: Config, changes: Mapping[str, Any]) -> dict[str, Any]:
+    fields = type(config).model_fields
+    values: dict[str, Any] = {name: getattr(config, name) for name in fields}
+    for name, change in changes.items():
+        whole = group_of(fields.get(name)) is None or not isinstance(change, Mapping)
+        values[name] = change if whole else _merged(values[name], change)
+    return values
+
+
+def _problem(error: ValidationError, model: type[Config], values: Mapping[str, Any]) -> Problem:
+    """Return the first problem, unknown keys before others: they may be its cause."""
+    problems = [_one_problem(entry, model, values) for entry in error.errors(include_url=False)]
+    return next((problem for problem in problems if problem.unknown_key), problems[0])
+
+
+def _one_problem(entry: ErrorDetails, model: type[Config], values: object) -> Problem:
+    """Return what one of pydantic's errors says about the field or group that it lies in."""
+    path: Path = ()
+    field: FieldInfo | None = None
+    group: type[Config] | None = model
+    for part in entry["loc"]:
+        if group is None:
+            break  # inside one field, where pydantic tells the variants of a union apart
+        field = group.model_fields.get(str(part))
+        path += (str(part),)
         if field is None:
-            break
-        inner = field.annotation
-        if not (isinstance(inner, type) and issubclass(inner, BaseModel)):
-            return model, field, ".".join(path)
-        model = inner
-    else:
-        return model, None, ".".join(path)
-    return model, None, ".".join(path)
+            return Problem(path, entry["input"], "", tuple(group.model_fields), unknown_key=True)
+        group, values = group_of(field), _value(values, str(part), field)
+    said = entry["msg"].removeprefix("Value error, ") if entry["type"] == "value_error" else ""
+    if group is not None:
+        return _group_problem(path, group, values, said)
+    assert field is not None
+    allowed = said or describe(field.annotation, field.metadata)
+    return Problem(path, values, allowed, names_of(field.annotation))
 
 
-def _allowed(field: FieldInfo, entry: ErrorDetails, said: str) -> str:
-    """Return what a field takes, in words, or what its own check says."""
-    return said if entry["type"] == "value_error" else describe(field.annotation, field.metadata)
+def _group_problem(path: Path, group: type[Config], values: object, said: str) -> Problem:
+    """Return what is wrong with a whole group: it is none, or its fields do not fit together."""
+    name, _, must = said.partition(" ")
+    if field := group.model_fields.get(name):
+        return Problem((*path, name), _value(values, name, field), must)
+    return Problem(path, values, said or f"an object with {', '.join(group.model_fields)}")
+
+
+def _value(values: object, key: str, field: FieldInfo) -> object:
+    if isinstance(values, Mapping):
+        return values.get(key, field.get_default())
+    return getattr(values, key, None)

@@ -59,4 +59,5 @@ class ContinuousActions:
 
     def command(self, action: NDArray[np.floating[Any]]) -> NDArray[np.float64]:
         """Return forward, left, up, yaw rate as one command, shape (1, 4)."""
-        return (np.clip(np.asarray(action, np.float64), -1.0, 1.0) * self._scale)[None]
+        shares: NDArray[np.float64] = np.clip(np.asarray(action, np.float64), -1.0, 1.0)
+        return np.atleast_2d(shares * self._scale)

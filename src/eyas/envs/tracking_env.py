@@ -98,7 +98,7 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
         reward = float(simulation.reward[0])
         return self._observe(), reward, done and not truncated, truncated, self._info()
 
-    def render(self) -> Observation | None:  # type: ignore[override]  # one frame, no list
+    def render(self) -> Observation | None:
         """Return the camera's picture in its configured size, shape (H, W, 3)."""
         if self.render_mode is None:
             return None
@@ -113,7 +113,7 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
     def _draw(self, picture: Picture) -> Observation:
         self._simulation.draw(self._tracker, picture)
         assert picture.rgb is not None
-        return picture.rgb[0].copy()
+        return np.array(picture.rgb[0])
 
     def _info(self) -> dict[str, Any]:
         simulation = self._simulation

@@ -134,7 +134,8 @@ def _median_rate(call: Callable[[], None], seconds: float) -> tuple[float, int]:
     """Return calls in a second, as the median over blocks of at least 50 ms, and their number."""
     call()
     call()
-    rates, end = [], time.perf_counter() + seconds
+    rates: list[float] = []
+    end = time.perf_counter() + seconds
     while time.perf_counter() < end or len(rates) < 3:
         start, calls = time.perf_counter(), 0
         while (elapsed := time.perf_counter() - start) < 0.05:

@@ -3,10 +3,10 @@
 from enum import StrEnum
 from typing import Annotated
 
-from pydantic import Field
+from pydantic import AfterValidator, Field
 
 from eyas.core.config import Config
-from eyas.core.variation import Variation
+from eyas.core.variation import Variation, within
 from eyas.sensors.config import CameraConfig
 from eyas.task.config import DoneConfig, RewardConfig, StartConfig
 from eyas.trackers.config import TrackerConfig
@@ -19,6 +19,7 @@ __all__ = [
     "LightConfig",
     "Mode",
     "ObjectsConfig",
+    "TargetName",
     "VideoConfig",
     "WireConfig",
 ]
@@ -30,6 +31,31 @@ class Mode(StrEnum):
     DEMO = "demo"
     VIDEO = "video"
     TRAIN = "train"
+
+
+class TargetName(StrEnum):
+    """What can be followed, as the original's `Tracking_Object` names it."""
+
+    SUMO_VEHICLE = "SUMO_VEHICLE"
+    PEDESTRIAN = "Pedestrian"
+    SHRIMP = "Shrimp"
+    CREATE = "Create"
+    SOJOURNER = "Sojourner"
+    MANTIS = "Mantis"
+    BB_8 = "BB-8"
+    AIBO_ERS7 = "AiboErs7"
+    BIOLOID_DOG = "BioloidDog"
+    FIRE_BIRD_6 = "FireBird6"
+    SCOUT = "Scout"
+    GHOST_DOG = "GhostDog"
+    HOAP_2 = "Hoap2"
+
+
+Speed = Annotated[float, Field(ge=-1e4, le=1e4)]
+TurnRate = Annotated[float, Field(ge=-1e3, le=1e3)]
+Brightness = Annotated[Variation, AfterValidator(within(-100.0, 100.0))]
+Visibility = Annotated[Variation, AfterValidator(within(0.1, 1e6))]
+Offset = Annotated[Variation, AfterValidator(within(-1e4, 1e4))]
 
 
 class ControlConfig(Config):
@@ -44,15 +70,15 @@ class LightConfig(Config):
 
     each_reset: bool = True
     """Whether they are drawn anew at each reset, or once at the start."""
-    background: Variation = 0.0
-    """Added to the brightness of the sky and its light."""
-    background_random: bool = False
-    """Whether `background` replaces the brightness instead of adding to it."""
-    sun: Variation = 0.0
-    """Added to the brightness of the sun."""
-    sun_random: bool = False
-    """Whether `sun` replaces the brightness instead of adding to it."""
-    visibility: Variation | None = None
+    background: Brightness = 0.0
+    """Brightness of the sky and its light, a factor without unit."""
+    background_replaces: bool = False
+    """True: `background` is the brightness; False: it is added to the weather's own."""
+    sun: Brightness = 0.0
+    """Brightness of the sun, a factor without unit."""
+    sun_replaces: bool = False
+    """True: `sun` is the brightness; False: it is added to the weather's own."""
+    visibility: Visibility | None = None
     """Visibility range in fog [m]; None: the weather's own."""
 
 
@@ -65,14 +91,14 @@ class ObjectsConfig(Config):
     """Time between groups [s]."""
     group_size: Annotated[int, Field(ge=1, le=1000)] = 4
     """Objects placed together."""
-    offset: Variation = 0.0
+    offset: Offset = 0.0
     """Distance from the middle of the road [m]."""
 
 
 class WireConfig(Config):
     """What the wire server of the original's protocol speaks."""
 
-    address: str = "127.0.0.1"
+    address: Annotated[str, Field(min_length=1)] = "127.0.0.1"
     """Network address to listen on."""
     port: Annotated[int, Field(ge=1, le=65535)] = 38711
     """UDP port on which the number of trackers is announced."""
@@ -89,27 +115,27 @@ class VideoConfig(Config):
     """Trackers that record side by side in one world."""
     fps: Annotated[float, Field(gt=0, le=500)] = 25.0
     """Pictures in a second of simulated time."""
-    start_time: Annotated[float, Field(ge=0)] = 1.0
+    start_time: Annotated[float, Field(ge=0, le=1e6)] = 1.0
     """Simulated time at which recording begins [s]."""
-    total_time: Annotated[float, Field(gt=0)] = 12.0
+    total_time: Annotated[float, Field(gt=0, le=1e6)] = 12.0
     """Simulated time that is recorded [s]."""
-    warm_up_steps: Annotated[int, Field(ge=0)] = 30
+    warm_up_steps: Annotated[int, Field(ge=0, le=5_000_000)] = 30
     """2 ms steps after each reset that are not recorded."""
     target_direction: bool = False
     """Whether `mark.json` holds the target's direction instead of reward and action."""
     random_action: bool = False
     """True: seeded random actions; False: the target is followed exactly."""
-    forward_speed: float = 40.0
+    forward_speed: Speed = 40.0
     """Random action 0 [m/s]."""
-    backward_speed: float = -40.0
+    backward_speed: Speed = -40.0
     """Random action 1 [m/s]."""
-    left_speed: float = 40.0
+    left_speed: Speed = 40.0
     """Random action 2 [m/s]."""
-    right_speed: float = -40.0
+    right_speed: Speed = -40.0
     """Random action 3 [m/s]."""
-    counter_clockwise_rate: float = 2.0
+    counter_clockwise_rate: TurnRate = 2.0
     """Random action 4 [rad/s]; the original's `cw_omega`, whose sign is named the wrong way."""
-    clockwise_rate: float = -2.0
+    clockwise_rate: TurnRate = -2.0
     """Random action 5 [rad/s]; the original's `ccw_omega`."""
 
 
@@ -122,7 +148,7 @@ class EyasConfig(Config):
     """What the configuration is meant for."""
     verbose: bool = False
     """Whether a log is written."""
-    target: str = "SUMO_VEHICLE"
+    target: TargetName = TargetName.SUMO_VEHICLE
     """What is followed."""
     world: WorldConfig = WorldConfig()
     traffic: TrafficConfig = TrafficConfig()

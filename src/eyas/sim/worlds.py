@@ -68,10 +68,9 @@ class Worlds:
         """
         if self.shared:
             rows, world = np.zeros(1, np.int64), np.zeros(len(trackers), np.int32)
-            time = tick[:1] * PHYSICS_STEP
         else:
-            rows, world = np.asarray(trackers), np.arange(len(trackers), dtype=np.int32)
-            time = tick[rows] * PHYSICS_STEP
+            rows, world = np.asarray(trackers, np.int64), np.arange(len(trackers), dtype=np.int32)
+        time = tick[rows].astype(np.float64) * PHYSICS_STEP
         actors, movers = self._buffer(len(rows))
         self._place.replay.at(time, actors)
         self._place.rigs.pose(actors, self._model[rows], self._colour[rows], movers)
