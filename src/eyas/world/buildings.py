@@ -28,13 +28,16 @@ _FOOT = -0.1
 _YARD = 0.8
 """Part of the set-back that `footprint_in` keeps from the edge of every lot [m]."""
 
+_SMALL = 200.0
+"""Larger parts of what is kept free shape the lots, smaller ones only notch footprints [m^2]."""
+
 _TINTS = (
     (1.0, 1.0, 1.0),
     (1.0, 0.97, 0.9),
     (0.93, 0.95, 1.0),
     (0.98, 0.92, 0.84),
     (0.88, 0.88, 0.87),
-    (0.95, 1.0, 0.95),
+    (0.96, 0.98, 0.95),
 )
 
 
@@ -113,10 +116,6 @@ def _shared(
         members[block_index].append(i)
         room[block_index] -= 1.6 * area + 400.0
     return [entry for entry in zip(grounds, angles, members, strict=True) if entry[2]]
-
-
-_SMALL = 200.0
-"""Larger parts of what is kept free shape the lots, smaller ones only notch footprints [m^2]."""
 
 
 def _clear(shape: shapely.Polygon, angle: float, keep_free: shapely.Geometry) -> shapely.Polygon:

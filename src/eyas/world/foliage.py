@@ -82,40 +82,44 @@ def leaf_cards(
     points, facing = crown.surface(count, rng)
     normals = crown.soft_normals(points, facing)
     side = rng.uniform(*size, count)
-    tilted = facing + 0.55 * rng.normal(size=(count, 3))
-    across = np.cross(tilted, rng.normal(size=(count, 3)))
-    across /= np.linalg.norm(across, axis=1, keepdims=True)
-    tilted /= np.linalg.norm(tilted, axis=1, keepdims=True)
-    up = np.cross(tilted, across)
-    columns = np.array([-0.5, 0.0, 0.5] if bent else [-0.5, 0.5])
-    drop = -0.22 * (np.abs(columns) * 2) ** 2 if bent else np.zeros(2)
-    grid_u, grid_v = np.meshgrid(columns, [-0.5, 0.5])
-    lift = np.tile(drop, 2)
     # Large cards would make the crown larger than it is.
     middle = points - 0.22 * side[:, None] * facing
-    shape = (
-        across[:, None] * grid_u.ravel()[:, None]
-        + up[:, None] * grid_v.ravel()[:, None]
-        + tilted[:, None] * lift[:, None]
-    )
-    positions = middle[:, None] + side[:, None, None] * shape
-    corner = rng.integers(0, _ATLAS, (count, 1, 2))
-    cell = np.column_stack([grid_u.ravel() + 0.5, grid_v.ravel() + 0.5])
-    uvs = (corner + cell) / _ATLAS
-    width = len(columns)
-    quad = np.array([[0, 1, width + 1], [0, width + 1, width]])
-    pattern = np.concatenate([quad + k for k in range(width - 1)])
-    triangles = (np.arange(count) * 2 * width)[:, None, None] + pattern
+    columns = 3 if bent else 2
+    positions = middle[:, None] + side[:, None, None] * _tilted_cards(facing, columns, rng)
+    cell = np.stack(np.meshgrid(np.linspace(0, 1, columns), [0, 1]), axis=2).reshape(-1, 2)
+    uvs = (rng.integers(0, _ATLAS, (count, 1, 2)) + cell) / _ATLAS
+    quad = np.array([[0, 1, columns + 1], [0, columns + 1, columns]])
+    pattern = np.concatenate([quad + k for k in range(columns - 1)])
+    triangles = (np.arange(count) * 2 * columns)[:, None, None] + pattern
     brightness = _brightness(crown, points, facing) + rng.normal(0, 0.1, count)
     level = np.clip(np.floor(brightness * len(tints)), 0, len(tints) - 1).astype(np.int32)
     return Mesh(
         positions=positions.reshape(-1, 3).astype(np.float32),
-        normals=np.repeat(normals, 2 * width, axis=0).astype(np.float32),
+        normals=np.repeat(normals, 2 * columns, axis=0).astype(np.float32),
         uvs=uvs.reshape(-1, 2).astype(np.float32),
         triangles=triangles.reshape(-1, 3).astype(np.int32),
         materials=np.repeat(level, len(pattern)),
         palette=tuple(Material("leaves", tint, Surface.FOLIAGE) for tint in tints),
     )
+
+
+def _tilted_cards(facing: Array, columns: int, rng: np.random.Generator) -> Array:
+    """Return the corners of cards of side 1 about the origin, shape (count, 2 columns, 3).
+
+    They face roughly outwards, each tilted and turned by chance; three columns make a fold.
+    """
+    count = len(facing)
+    tilted = facing + 0.55 * rng.normal(size=(count, 3))
+    across = np.cross(tilted, rng.normal(size=(count, 3)))
+    across /= np.linalg.norm(across, axis=1, keepdims=True)
+    tilted /= np.linalg.norm(tilted, axis=1, keepdims=True)
+    up = np.cross(tilted, across)
+    x, y = (a.ravel() for a in np.meshgrid(np.linspace(-0.5, 0.5, columns), [-0.5, 0.5]))
+    fold = -0.88 * x**2 if columns > 2 else 0 * x
+    corners = (
+        across[:, None] * x[:, None] + up[:, None] * y[:, None] + tilted[:, None] * fold[:, None]
+    )
+    return np.asarray(corners, np.float64)
 
 
 def _brightness(crown: Crown, points: Array, facing: Array) -> Array:
