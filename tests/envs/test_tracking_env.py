@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from gymnasium.utils.env_checker import check_env
 
+import eyas  # noqa: F401  # makes the environments known
 from eyas.core.errors import EyasError
 
 NAME = "eyas/citystreet-day-v0"

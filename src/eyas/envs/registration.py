@@ -8,7 +8,7 @@ _PLACES = (("citystreet", "day"),)
 
 
 def register() -> None:
-    """Register the environments; Gymnasium calls it through the package's entry point."""
+    """Register the environments; importing `eyas` does it."""
     for map_name, weather in _PLACES:
         name = f"eyas/{map_name}-{weather}-v0"
         if name in gymnasium.registry:
