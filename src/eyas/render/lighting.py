@@ -5,7 +5,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from eyas.render.bake import ShadowMap
 from eyas.render.kernels.bundles import Light
-from eyas.render.kernels.draw import TONE_STEPS, TONE_TOP
+from eyas.render.kernels.band import TONE_STEPS, TONE_TOP
 from eyas.state.scene import Lighting
 
 __all__ = ["build_light", "tone_table"]

@@ -114,6 +114,7 @@ class Renderer:
                 planes=np.empty((workers, 5, 5)),
                 rows=np.empty((workers, 2, 3, 4)),
                 polygon=np.empty((workers, 4, 5)),
+                frame=np.empty((workers, 16), np.float32),
                 caster=np.empty((workers, 8)),
             )
         return self._scratch[key]

@@ -140,6 +140,9 @@ class Scratch(NamedTuple):
     """World, then object, to screen, shape (K, 2, 3, 4)."""
     polygon: NDArray[np.float64]
     """A clipped triangle: column, row, 1/distance, u, v, shape (K, 4, 5)."""
+    frame: NDArray[np.float32]
+    """Pose of the instance that is being shaded row by row, its linear colour, one over its scale
+    squared, shape (K, 16)."""
     caster: NDArray[np.float64]
     """A moving thing's box, see `casters`, shape (K, 8)."""
 

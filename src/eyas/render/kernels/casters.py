@@ -7,13 +7,14 @@ from numpy.typing import NDArray
 
 from eyas.core.jit import kernel
 from eyas.render.kernels.bundles import Geometry
+from eyas.render.kernels.cull import sphere_is_visible
 
 __all__ = ["cast_shadows"]
 
 f4 = np.float32
 
 SMALLEST = 1.0
-"""Things whose half length is smaller cast no shadow [pixels]."""
+"""Things whose half diagonal is smaller cast no shadow [pixels]."""
 
 
 @kernel
@@ -62,6 +63,32 @@ def _set_caster(
 
 
 @kernel
+def _throw(caster: NDArray[np.float64], sun: NDArray[np.float32]) -> float:
+    """Return how far the shadow's end is off, for each unit of the sun's x and y.
+
+    A sun near the horizon would throw it without end: it is cut after four heights.
+    """
+    return min(1.0 / max(float(sun[2]), 1e-3), 4.0) * (caster[7] - caster[6])
+
+
+@kernel
+def _may_show(
+    caster: NDArray[np.float64],
+    sun: NDArray[np.float32],
+    planes: NDArray[np.float64],
+    focal: float,
+) -> bool:
+    """Return whether a shadow may be in the picture, and large enough to see."""
+    half = 0.5 * _throw(caster, sun)
+    x, y, z = caster[0] - half * sun[0], caster[1] - half * sun[1], 0.5 * (caster[6] + caster[7])
+    length = np.sqrt(caster[4] ** 2 + caster[5] ** 2)
+    w = planes[4, 0] * x + planes[4, 1] * y + planes[4, 2] * z + planes[4, 3]
+    if focal * length < SMALLEST * w:
+        return False
+    return sphere_is_visible(planes, x, y, z, length + half + 0.5 * (caster[7] - caster[6]) + 0.7)
+
+
+@kernel
 def _screen_box(
     caster: NDArray[np.float64],
     sun: NDArray[np.float32],
@@ -70,9 +97,7 @@ def _screen_box(
 ) -> tuple[float, float, float, float]:
     """Return left, top, right, bottom of the box and its shadow on the ground, in samples."""
     left, top, right, bottom = 1e9, 1e9, -1e9, -1e9
-    height = caster[7] - caster[6]
-    # A sun near the horizon throws shadows without end; they fade out after four heights.
-    throw = min(1.0 / max(float(sun[2]), 1e-3), 4.0) * height
+    throw = _throw(caster, sun)
     for corner in range(16):
         along = (caster[4] + 0.5) * (1.0 if corner & 1 else -1.0)
         aside = (caster[5] + 0.5) * (1.0 if corner & 2 else -1.0)
@@ -172,6 +197,7 @@ def cast_shadows(
     lens: NDArray[np.float64],
     top: int,
     rows: NDArray[np.float64],
+    planes: NDArray[np.float64],
     caster: NDArray[np.float64],
     depth: NDArray[np.float32],
     owner: NDArray[np.int64],
@@ -192,8 +218,7 @@ def cast_shadows(
         while last < len(parts) and parts[last] >= 0 and object_ids[last] == object_ids[first]:
             last += 1
         _set_caster(geometry, parts, poses, first, last, caster)
-        w = rows[2, 0] * caster[0] + rows[2, 1] * caster[1] + rows[2, 2] * caster[6] + rows[2, 3]
-        if w > -20.0 and lens[0] * caster[4] > SMALLEST * w:
+        if _may_show(caster, sun, planes, lens[3]):
             box = _screen_box(caster, sun, rows, lens)
             if box[3] >= top and box[1] <= top + depth.shape[0]:
                 _cast_one(

@@ -5,28 +5,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.jit import kernel, parallel_kernel
+from eyas.render.kernels.band import shade_band
 from eyas.render.kernels.bundles import Geometry, Job, Light, Movers, Output, Scratch
 from eyas.render.kernels.casters import cast_shadows
 from eyas.render.kernels.cull import set_planes
-from eyas.render.kernels.shade import shade_point
-from eyas.render.kernels.sky import sky
 from eyas.render.kernels.transform import set_world_rows
 from eyas.render.kernels.visibility import draw_moving, draw_static
 from eyas.state.scene import SKY_OBJECT
 
-__all__ = ["TONE_STEPS", "TONE_TOP", "draw_views"]
+__all__ = ["draw_views"]
 
 f4 = np.float32
-
-TONE_STEPS = 16384
-"""Length of `Light.tone`."""
-
-TONE_TOP = 4.0
-"""Exposed radiance at its end."""
-
-_STEPS_PER_UNIT = f4(TONE_STEPS / TONE_TOP)
-_LAST_STEP = TONE_STEPS - 1
-
 
 @parallel_kernel
 def draw_views(
@@ -95,12 +84,12 @@ def _draw_job(
     if len(output.rgb) > 0:
         cast_shadows(
             geometry, movers.part[world], movers.pose[world], movers.object_id[world],
-            light.sun, eye, axes, job.lens, first, rows[0], scratch.caster[worker],
+            light.sun, eye, axes, job.lens, first, rows[0], planes, scratch.caster[worker],
             depth, owner, shade,
         )  # fmt: skip
-        _shade_band(
+        shade_band(
             samples, top, geometry, light, movers.pose[world], movers.colour[world], eye, axes,
-            job.lens, depth, owner, shade, output.rgb[view, top:bottom],
+            job.lens, depth, owner, shade, scratch.frame[worker], output.rgb[view, top:bottom],
         )  # fmt: skip
     if len(output.subject) > 0:
         result = output.subject[index]
@@ -175,77 +164,3 @@ def _measure(owner: NDArray[np.int64], top: int, result: NDArray[np.int32]) -> N
             result[2] = max(result[2], column + 1)
             result[3] = top + row + 1
             result[5] += 1
-
-
-@kernel
-def _shade_band(
-    samples: int,
-    top: int,
-    geometry: Geometry,
-    light: Light,
-    poses: NDArray[np.float32],
-    colours: NDArray[np.float32],
-    eye: NDArray[np.float64],
-    axes: NDArray[np.float64],
-    lens: NDArray[np.float64],
-    depth: NDArray[np.float32],
-    owner: NDArray[np.int64],
-    shade: NDArray[np.uint8],
-    output: NDArray[np.uint8],
-) -> None:
-    """Write the pixels of a band. Where all four samples show one triangle, one is computed."""
-    fixtures = len(geometry.fixture_object)
-    centre = f4(eye[0]), f4(eye[1]), f4(eye[2])
-    byte = f4(1.0 / 255.0)
-    quarter = samples * samples
-    exposure = light.air[2] * _STEPS_PER_UNIT
-    for row in range(output.shape[0]):
-        for column in range(output.shape[1]):
-            line, place = row * samples, column * samples
-            tag = owner[line, place]
-            inverse = depth[line, place]
-            sun_share, sky_share = f4(shade[line, place, 0]), f4(shade[line, place, 1])
-            count, step = 1, 0.5 * samples
-            if samples == 2:
-                if (
-                    owner[line, place + 1] == tag
-                    and owner[line + 1, place] == tag
-                    and owner[line + 1, place + 1] == tag
-                ):
-                    inverse += depth[line, place + 1] + depth[line + 1, place]
-                    inverse = (inverse + depth[line + 1, place + 1]) * f4(0.25)
-                else:
-                    count, step = quarter, 0.5
-            red, green, blue = 0, 0, 0
-            for k in range(count):
-                i, j = line + (k >> 1), place + (k & 1)
-                if count > 1:
-                    tag, inverse = owner[i, j], depth[i, j]
-                    sun_share, sky_share = f4(shade[i, j, 0]), f4(shade[i, j, 1])
-                left = (0.5 * lens[1] - (j + step)) / lens[0]
-                up = (0.5 * lens[2] - (i + top * samples + step)) / lens[4]
-                ray = (
-                    f4(axes[0, 0] + left * axes[1, 0] + up * axes[2, 0]),
-                    f4(axes[0, 1] + left * axes[1, 1] + up * axes[2, 1]),
-                    f4(axes[0, 2] + left * axes[1, 2] + up * axes[2, 2]),
-                )
-                if tag < 0:
-                    unit = f4(1.0) / np.sqrt(ray[0] * ray[0] + ray[1] * ray[1] + ray[2] * ray[2])
-                    colour = sky(light, ray[0] * unit, ray[1] * unit, ray[2] * unit)
-                else:
-                    instance = (tag >> 32) - 1
-                    pose = geometry.fixture_pose
-                    if instance >= fixtures:
-                        pose = poses
-                        instance -= fixtures
-                    colour = shade_point(
-                        geometry, light, tag & 0xFFFFFFFF, pose, instance, colours, centre, ray,
-                        f4(1.0) / inverse, f4(1.0 / lens[3]), sun_share * byte, sky_share * byte,
-                    )  # fmt: skip
-                red += light.tone[min(int(colour[0] * exposure), _LAST_STEP)]
-                green += light.tone[min(int(colour[1] * exposure), _LAST_STEP)]
-                blue += light.tone[min(int(colour[2] * exposure), _LAST_STEP)]
-            half = count >> 1
-            output[row, column, 0] = (red + half) // count
-            output[row, column, 1] = (green + half) // count
-            output[row, column, 2] = (blue + half) // count

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inlined_kernel, kernel
+from eyas.core.jit import inlined_kernel
 from eyas.render.kernels.bundles import Geometry, Light
 from eyas.render.kernels.sky import fog_share, sky
 from eyas.render.kernels.texture import level_of, texel
@@ -44,12 +44,6 @@ def _sunlit(light: Light, x: float, y: float, z: float) -> float:
 
 
 @inlined_kernel
-def _linear(byte: float) -> float:
-    """Return the linear value of an sRGB value (cubic fit, within 0.003)."""
-    return byte * (byte * (byte * f4(0.305306011) + f4(0.682171111)) + f4(0.012522878))
-
-
-@inlined_kernel
 def _reflection(
     light: Light,
     ray: tuple[float, float, float],
@@ -87,14 +81,13 @@ def _reflection(
     )
 
 
-@kernel
+@inlined_kernel
 def shade_point(
     geometry: Geometry,
     light: Light,
     triangle: int,
-    pose: NDArray[np.float32],
-    instance: int,
-    colour: NDArray[np.float32],
+    moved: bool,
+    frame: NDArray[np.float32],
     eye: tuple[float, float, float],
     ray: tuple[float, float, float],
     distance: float,
@@ -108,9 +101,8 @@ def shade_point(
         geometry: Everything that can be drawn.
         light: Light and air.
         triangle: Which triangle.
-        pose: Poses of the kind of instance it belongs to, shape (., 3, 4).
-        instance: Row of `pose`, -1 for the static mesh.
-        colour: Body colours, sRGB, shape (., 3).
+        moved: Whether it belongs to a fixture or a part, not to the static mesh.
+        frame: Pose and colour of that, see `Scratch.frame`.
         eye: Optical centre [m].
         ray: From the eye, of length 1 along the optical axis.
         distance: Along the optical axis [m].
@@ -122,31 +114,30 @@ def shade_point(
     x = eye[0] + ray[0] * distance
     y = eye[1] + ray[1] * distance
     z = eye[2] + ray[2] * distance
-    g = geometry.gradients[triangle]
-    density = g[23]
+    g, t = geometry.gradients, np.uint32(triangle)
+    density = g[t, 23]
     px, py, pz = x, y, z
-    if instance >= 0:
-        m = pose[instance]
-        dx, dy, dz = x - m[0, 3], y - m[1, 3], z - m[2, 3]
-        inverse = one / (m[0, 0] * m[0, 0] + m[1, 0] * m[1, 0] + m[2, 0] * m[2, 0])
-        px = (m[0, 0] * dx + m[1, 0] * dy + m[2, 0] * dz) * inverse
-        py = (m[0, 1] * dx + m[1, 1] * dy + m[2, 1] * dz) * inverse
-        pz = (m[0, 2] * dx + m[1, 2] * dy + m[2, 2] * dz) * inverse
+    m = frame
+    if moved:
+        dx, dy, dz = x - m[3], y - m[7], z - m[11]
+        inverse = m[15]
+        px = (m[0] * dx + m[4] * dy + m[8] * dz) * inverse
+        py = (m[1] * dx + m[5] * dy + m[9] * dz) * inverse
+        pz = (m[2] * dx + m[6] * dy + m[10] * dz) * inverse
         density *= np.sqrt(inverse)
-    px -= g[0]
-    py -= g[1]
-    pz -= g[2]
-    u = g[3] * px + g[4] * py + g[5] * pz + g[6]
-    v = g[7] * px + g[8] * py + g[9] * pz + g[10]
-    nx = g[11] + g[14] * px + g[15] * py + g[16] * pz
-    ny = g[12] + g[17] * px + g[18] * py + g[19] * pz
-    nz = g[13] + g[20] * px + g[21] * py + g[22] * pz
-    if instance >= 0:
-        m = pose[instance]
+    px -= g[t, 0]
+    py -= g[t, 1]
+    pz -= g[t, 2]
+    u = g[t, 3] * px + g[t, 4] * py + g[t, 5] * pz + g[t, 6]
+    v = g[t, 7] * px + g[t, 8] * py + g[t, 9] * pz + g[t, 10]
+    nx = g[t, 11] + g[t, 14] * px + g[t, 15] * py + g[t, 16] * pz
+    ny = g[t, 12] + g[t, 17] * px + g[t, 18] * py + g[t, 19] * pz
+    nz = g[t, 13] + g[t, 20] * px + g[t, 21] * py + g[t, 22] * pz
+    if moved:
         nx, ny, nz = (
-            m[0, 0] * nx + m[0, 1] * ny + m[0, 2] * nz,
-            m[1, 0] * nx + m[1, 1] * ny + m[1, 2] * nz,
-            m[2, 0] * nx + m[2, 1] * ny + m[2, 2] * nz,
+            m[0] * nx + m[1] * ny + m[2] * nz,
+            m[4] * nx + m[5] * ny + m[6] * nz,
+            m[8] * nx + m[9] * ny + m[10] * nz,
         )
     length = one / np.sqrt(nx * nx + ny * ny + nz * nz + f4(1e-12))
     nx *= length
@@ -158,7 +149,7 @@ def shade_point(
     cosine = -(nx * rx + ny * ry + nz * rz)
     facing = min(max(cosine, zero), one)
 
-    material = geometry.material[triangle]
+    material = np.uint32(geometry.material[t])
     surface = geometry.surface[material]
     span = f4(256.0) * density * distance * pixel
     level = level_of(span * span / max(abs(cosine), f4(0.1)))
@@ -175,9 +166,9 @@ def shade_point(
     blue *= blue * geometry.tint[material, 2]
     mirror = zero
     if surface == PAINT:
-        red *= _linear(colour[instance, 0])
-        green *= _linear(colour[instance, 1])
-        blue *= _linear(colour[instance, 2])
+        red *= m[12]
+        green *= m[13]
+        blue *= m[14]
         mirror = f4(0.05)
     elif surface == GLASS:
         mirror = f4(0.12)
