@@ -2,11 +2,10 @@
 
 from typing import NamedTuple
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import kernel, parallel_kernel
+from eyas.core.jit import kernel
 from eyas.state.scene import ACTOR_OBJECT
 
 __all__ = ["CENTRE_OFFSET", "LEAN_LIMIT", "STEER_LIMIT", "RigTable", "pose_worlds"]
@@ -122,7 +121,7 @@ def _pose_actor(
         _pose_slot(pose[slot], base, origin, table.offset[model, slot], steer, turn)
 
 
-@parallel_kernel
+@kernel
 def pose_worlds(
     table: RigTable,
     moving: tuple[Numbers, Numbers, Numbers, Numbers, Numbers],
@@ -144,7 +143,8 @@ def pose_worlds(
     position, yaw, speed, yaw_rate, travelled = moving
     part, pose, tint, object_id = drawn
     slots = table.part.shape[1]
-    for w in numba.prange(model.shape[0]):
+    # One thread: waking a second one costs more than 64 worlds of 40 actors.
+    for w in range(model.shape[0]):
         for a in range(model.shape[1]):
             first = a * slots
             if not present[w, a]:

@@ -7,12 +7,11 @@ its own kernel.
 import math
 from typing import Final
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.errors import ConfigError
-from eyas.core.jit import kernel, parallel_kernel
+from eyas.core.jit import kernel
 from eyas.state.tracker import ActorState, TargetState
 from eyas.traffic.recording import Recording
 from eyas.traffic.smoothing import Tracks, runs, smooth
@@ -188,7 +187,7 @@ def _write_worlds(
             present[world, actor] = pose[6]
 
 
-@parallel_kernel
+@kernel
 def _write_all_worlds(
     table: NDArray[np.float32],
     rate: float,
@@ -200,7 +199,8 @@ def _write_all_worlds(
     travelled: NDArray[np.float64],
     present: NDArray[np.bool_],
 ) -> None:
-    for world in numba.prange(time.shape[0]):
+    # One thread: waking a second one costs more than 64 worlds of 40 actors.
+    for world in range(time.shape[0]):
         _write_worlds(
             table,
             rate,
