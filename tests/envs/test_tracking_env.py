@@ -9,6 +9,7 @@ from gymnasium.utils.env_checker import check_env
 
 import eyas  # noqa: F401  # makes the environments known
 from eyas.core.errors import EyasError
+from eyas.envs.tracking_env import TrackingEnv
 
 NAME = "eyas/citystreet-day-v0"
 
@@ -96,4 +97,4 @@ def test_wrong_settings_say_what_is_wrong_in_one_line():
         gymnasium.make(NAME, map="citystret")
     assert "\n" not in str(caught.value)
     with pytest.raises(EyasError, match="render_mode"):
-        gymnasium.make(NAME, render_mode="human").reset()
+        TrackingEnv(render_mode="human")
