@@ -57,7 +57,9 @@ def describe(annotation: object, metadata: Sequence[object] = ()) -> str:
         return _either([_quoted(member.value) for member in annotation])
     if isinstance(annotation, type) and isinstance(annotation, Written):
         return annotation.written
-    simple = {bool: "true or false", str: "text", types.NoneType: "null"}
+    empty = any(isinstance(entry, annotated_types.MinLen) for entry in metadata)
+    text = "text, not empty" if empty else "text"
+    simple = {bool: "true or false", str: text, types.NoneType: "null"}
     if annotation in simple:
         return simple[annotation]
     if annotation in (int, float):

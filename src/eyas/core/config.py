@@ -135,8 +135,12 @@ def updated(
 
 def shown(value: object) -> str:
     """Return a value as messages show it: on one line, not too long."""
-    text = repr(value) if isinstance(value, str) else json.dumps(value, default=str)
+    text = repr(value) if isinstance(value, str) else json.dumps(value, default=_plain)
     return text if len(text) <= 80 else f"{text[:76]} ..."
+
+
+def _plain(value: object) -> object:
+    return value.model_dump(mode="json") if isinstance(value, BaseModel) else str(value)
 
 
 def group_of(field: FieldInfo | None) -> type[Config] | None:

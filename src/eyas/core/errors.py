@@ -17,7 +17,7 @@ __all__ = [
 
 
 class EyasError(Exception):
-    """Base of every error that Eyas raises on purpose; the command line prints it and exits with 2."""
+    """Base of every error that Eyas raises on purpose; the command line prints it, exit code 2."""
 
 
 class ConfigError(EyasError):
@@ -65,7 +65,8 @@ class UnknownNameError(ConfigError):
 
     def __init__(self, path: str, name: str, known: Iterable[str]) -> None:
         names = sorted(known)
-        super().__init__(f"{path}: unknown name '{name}'{nearest(name, names)}; known: {', '.join(names)}")
+        hint = nearest(name, names)
+        super().__init__(f"{path}: {name!r} is not allowed{hint}; known: {', '.join(names)}")
 
 
 def nearest(name: str, known: Iterable[str]) -> str:

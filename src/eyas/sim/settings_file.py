@@ -1,40 +1,55 @@
 """Settings in files and on the command line."""
 
 import json
-import warnings
-from collections.abc import Sequence
+import logging
+from collections.abc import Mapping, Sequence
+from itertools import groupby
 from pathlib import Path
 from typing import Any
 
 from eyas.core.clock import PHYSICS_RATE
-from eyas.core.config import validated
+from eyas.core.config import updated, validated
 from eyas.core.errors import ConfigError, DataFileError
 from eyas.core.files import write_atomic
 from eyas.sim.config import EyasConfig
-from eyas.sim.legacy import from_legacy, is_legacy, to_legacy
-from eyas.sim.legacy_model import LegacyConfig
+from eyas.sim.legacy import from_legacy, is_legacy, with_legacy
 
-__all__ = ["load_settings", "save_settings"]
+__all__ = ["load_settings", "read_settings", "save_settings", "warn_about_rate"]
 
-Values = dict[str, Any]
+_LOG = logging.getLogger("eyas")
+
+Nested = dict[str, Any]
 
 
 def load_settings(path: Path | None, overrides: Sequence[str] = ()) -> EyasConfig:
     """Return the settings of a file with some changed.
 
+    A control frequency that does not divide 500 is told in one line of the log `eyas`.
+
     Args:
         path: JSON, native or the original's `env_config.json`; None: the defaults.
-        overrides: `key=value`, in this order; keys are dotted paths, native (`video.fps`) or the
+        overrides: `key=value`, a later one wins; keys are dotted paths, native (`video.fps`) or the
             original's (`Out_Video.fps`); values are JSON, or words as they stand.
 
     Raises:
-        DataFileError: The file cannot be read as JSON.
-        ConfigError: A key or value is wrong.
+        DataFileError: The file cannot be read, or is no JSON object.
+        ConfigError: A key or a value is wrong.
     """
-    config = EyasConfig() if path is None else _config_of(_read(path))
-    for override in overrides:
-        config = _changed(config, override)
-    _warn_of_rate(config)
+    values = {} if path is None else read_settings(path)
+    legacy = is_legacy(values)
+    config = from_legacy(values) if legacy else validated(EyasConfig, values)
+    inactive = values if legacy else {}
+    pairs = [_parsed(override) for override in overrides]
+    for capital, group in groupby(pairs, key=lambda pair: pair[0][0][:1].isupper()):
+        changes: Nested = {}
+        for keys, value in group:
+            _put(changes, keys, value)
+        if capital:
+            config = with_legacy(config, changes, inactive)
+            inactive = _overlaid(inactive, changes)
+        else:
+            config = updated(config, changes)
+    warn_about_rate(config)
     return config
 
 
@@ -47,62 +62,74 @@ def save_settings(config: EyasConfig, path: Path) -> None:
     write_atomic(path, (config.model_dump_json(indent=2) + "\n").encode())
 
 
-def _read(path: Path) -> Values:
+def read_settings(path: Path) -> Nested:
+    """Return the JSON object that a file holds.
+
+    Raises:
+        DataFileError: The file is not there, unreadable, cut off, or no object.
+    """
     try:
-        values = json.loads(path.read_text(encoding="utf-8"))
+        text = path.read_text(encoding="utf-8-sig")
+        values = json.loads(text, object_pairs_hook=_without_doubles)
     except OSError as error:
         raise DataFileError(f"{path}: cannot read: {error.strerror or error}") from error
     except UnicodeDecodeError as error:
         raise DataFileError(f"{path}: not a text file in UTF-8") from error
     except json.JSONDecodeError as error:
-        raise DataFileError(f"{path}: line {error.lineno}: not JSON: {error.msg}") from error
+        raise DataFileError(
+            f"{path}: line {error.lineno}, column {error.colno}: no JSON: {error.msg}"
+        ) from error
+    except (ValueError, RecursionError) as error:
+        raise DataFileError(f"{path}: no settings: {error}") from error
     if not isinstance(values, dict):
-        raise DataFileError(f"{path}: a {type(values).__name__}, not an object of settings")
+        raise DataFileError(f"{path}: line 1: no settings: not an object in braces")
     return values
 
 
-def _config_of(values: Values) -> EyasConfig:
-    return from_legacy(values) if is_legacy(values) else validated(EyasConfig, values)
-
-
-def _changed(config: EyasConfig, override: str) -> EyasConfig:
-    key, equals, text = override.partition("=")
-    if not equals or not key:
-        raise ConfigError(f"--set {override}: not of the form key=value")
-    path = key.strip().split(".")
-    value = _value_of(text)
-    if path[0] in LegacyConfig.model_fields:
-        values = to_legacy(config)
-        _put(values, path, value)
-        return from_legacy(values, config)
-    values = config.model_dump(mode="json")
-    _put(values, path, value)
-    return validated(EyasConfig, values)
-
-
-def _value_of(text: str) -> Any:  # noqa: ANN401  # JSON
-    try:
-        return json.loads(text)
-    except json.JSONDecodeError:
-        return text
-
-
-def _put(values: Values, path: Sequence[str], value: Any) -> None:  # noqa: ANN401  # JSON
-    """Set a value; an unknown key is set too, and refused with its path when validated."""
-    for group in path[:-1]:
-        inner = values.setdefault(group, {})
-        if not isinstance(inner, dict):
-            raise ConfigError(f"{'.'.join(path)}: unknown key; '{group}' has no keys of its own")
-        values = inner
-    values[path[-1]] = value
-
-
-def _warn_of_rate(config: EyasConfig) -> None:
+def warn_about_rate(config: EyasConfig) -> None:
+    """Log one line if the control frequency does not divide that of the physics."""
     frequency = config.control.frequency
-    if PHYSICS_RATE % frequency:
-        steps = PHYSICS_RATE // frequency
-        warnings.warn(
-            f"control.frequency: {frequency} does not divide {PHYSICS_RATE}: actions last {steps} "
-            f"steps of 2 ms, so there are {PHYSICS_RATE / steps:.4g} in a second",
-            stacklevel=3,
+    steps = PHYSICS_RATE // frequency
+    if steps * frequency != PHYSICS_RATE:
+        _LOG.warning(
+            "control.frequency: %d does not divide %d; an action lasts %d steps of 2 ms, "
+            "so the effective rate is %.4g Hz",
+            *(frequency, PHYSICS_RATE, steps, PHYSICS_RATE / steps),
         )
+
+
+def _without_doubles(pairs: list[tuple[str, Any]]) -> Nested:
+    values = dict(pairs)
+    if len(values) < len(pairs):
+        keys = [key for key, _ in pairs]
+        double = next(key for key in keys if keys.count(key) > 1)
+        raise ValueError(f"the key '{double}' stands twice in one object")
+    return values
+
+
+def _parsed(override: str) -> tuple[list[str], Any]:
+    key, equals, text = override.partition("=")
+    keys = key.strip().split(".")
+    if not equals or not all(keys):
+        raise ConfigError(f"--set {override!r}: not of the form key=value, such as video.fps=30")
+    try:
+        return keys, json.loads(text)
+    except (ValueError, RecursionError):
+        return keys, text.strip()
+
+
+def _put(values: Nested, keys: Sequence[str], value: Any) -> None:  # noqa: ANN401  # JSON
+    for key in keys[:-1]:
+        if not isinstance(values.get(key), dict):
+            values[key] = {}
+        values = values[key]
+    values[keys[-1]] = value
+
+
+def _overlaid(values: Nested, changes: Nested) -> Nested:
+    result = dict(values)
+    for key, change in changes.items():
+        old = result.get(key)
+        groups = isinstance(old, Mapping) and isinstance(change, Mapping)
+        result[key] = _overlaid(dict(old), change) if groups and old else change
+    return result

@@ -1,8 +1,11 @@
 """What can be set and is not in this version yet: said in one line instead of ignored."""
 
-from eyas.core.errors import NotInThisVersionError, UnknownNameError
-from eyas.sim.config import EyasConfig, LightConfig, ObjectsConfig
-from eyas.sim.legacy_model import TRACKING_OBJECTS
+from collections.abc import Iterator
+
+from eyas.core.config import Config, shown
+from eyas.core.errors import NotInThisVersionError
+from eyas.sim.config import EyasConfig, LightConfig, ObjectsConfig, TargetName
+from eyas.sim.legacy import legacy_keys_of
 from eyas.trackers.config import TrackerKind
 
 __all__ = ["require_supported"]
@@ -11,26 +14,37 @@ __all__ = ["require_supported"]
 def require_supported(config: EyasConfig) -> None:
     """Refuse settings that ask for a part that this version does not have.
 
+    Maps and weathers are refused where they are looked up.
+
     Raises:
-        NotInThisVersionError: One line that names the setting.
-        UnknownNameError: The target does not exist at all.
+        NotInThisVersionError: One line that names the setting, in both notations.
     """
-    if config.target not in TRACKING_OBJECTS:
-        raise UnknownNameError("target (Tracking_Object)", config.target, TRACKING_OBJECTS)
-    if config.target != "SUMO_VEHICLE":
-        _refuse("target (Tracking_Object)", config.target, "targets other than vehicles")
-    if config.tracker.kind is not TrackerKind.DRONE:
-        _refuse("tracker.kind (Tracker_Def)", config.tracker.kind, "the car tracker")
+    for path, value, part in _missing(config):
+        keys = legacy_keys_of(path)
+        theirs = f" ({keys[0]})" if keys else ""
+        raise NotInThisVersionError(
+            f"{path}{theirs}: {shown(value)}: {part} is not in this version yet"
+        )
+
+
+def _missing(config: EyasConfig) -> Iterator[tuple[str, object, str]]:
+    """Yield path, value and the part that it asks for."""
+    if config.target is not TargetName.SUMO_VEHICLE:
+        yield "target", config.target.value, "a target other than SUMO's vehicles"
+    if config.tracker.kind is TrackerKind.CAR:
+        yield "tracker.kind", config.tracker.kind.value, "the car as a tracker"
     if not config.tracker.supervised:
-        _refuse("tracker.supervised (Drone_Supervisor_Ctrl)", "false", "PID flight")
+        yield "tracker.supervised", False, "flying by a flight controller"
     if config.wire.lidar:
-        _refuse("wire.lidar (Lidar_Enable)", "true", "the lidar")
-    # When light is drawn does not matter while nothing is drawn.
-    if config.light != LightConfig(each_reset=config.light.each_reset):
-        _refuse("light (Env_Params)", "not the default", "changing light and fog")
-    if config.objects != ObjectsConfig():
-        _refuse("objects (Other_Params)", "not the default", "targets other than vehicles")
+        yield "wire.lidar", True, "the lidar"
+    for path, value in _changed("light", config.light, LightConfig()):
+        yield path, value, "changing light and fog"
+    for path, value in _changed("objects", config.objects, ObjectsConfig()):
+        yield path, value, "placing objects along the road"
 
 
-def _refuse(path: str, value: str, part: str) -> None:
-    raise NotInThisVersionError(f"{path}: {value}: not in this version yet: {part}")
+def _changed(group: str, config: Config, default: Config) -> Iterator[tuple[str, object]]:
+    for name in type(config).model_fields:
+        value = getattr(config, name)
+        if value != getattr(default, name):
+            yield f"{group}.{name}", value

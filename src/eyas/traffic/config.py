@@ -10,6 +10,8 @@ from eyas.core.config import Config
 __all__ = ["Demand", "TrafficConfig", "VehicleType"]
 
 Unit = Annotated[float, Field(ge=0, le=1)]
+Least = Annotated[float, Field(ge=0, le=1e9)]
+Most = Annotated[float, Field(gt=0, le=1e9)]
 
 
 class VehicleType(StrEnum):
@@ -50,10 +52,7 @@ class TrafficConfig(Config):
     """Vehicles that enter together (respawn); None: three for each tracker."""
     group_interval: Annotated[float, Field(gt=0, le=3600)] = 52.0
     """Time between groups (respawn) [s]."""
-    route_length: tuple[Annotated[float, Field(ge=0)], Annotated[float, Field(gt=0)]] = (
-        500.0,
-        7000.0,
-    )
+    route_length: tuple[Least, Most] = (500.0, 7000.0)
     """Shortest and longest route (respawn) [m]."""
     route_count: Annotated[int, Field(ge=1, le=10_000_000)] = 100_000
     """Most routes that are drawn (respawn)."""
@@ -70,5 +69,5 @@ class TrafficConfig(Config):
     def _ordered(self) -> "TrafficConfig":
         low, high = self.route_length
         if low >= high:
-            raise ValueError(f"route_length: the shortest ({low:g} m) must be below the longest ({high:g} m)")
+            raise ValueError("route_length must hold the shortest and then the longest")
         return self

@@ -12,9 +12,9 @@ __all__ = ["WorldConfig"]
 class WorldConfig(Config):
     """Which map, in which weather."""
 
-    map: str = "citystreet"
+    map: Annotated[str, Field(min_length=1)] = "citystreet"
     """Name of the map."""
-    weather: str = "day"
+    weather: Annotated[str, Field(min_length=1)] = "day"
     """Name of the weather."""
     seed: Annotated[int, Field(ge=0, lt=2**31)] = 0
     """Seed of the map: 0 is the canonical one, other seeds give other maps of its kind."""

@@ -1,0 +1,285 @@
+"""The ways in which keys of the original's `env_config.json` hold what our settings hold."""
+
+import logging
+import re
+from abc import ABC, abstractmethod
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from enum import Enum
+
+from typing_extensions import override
+
+from eyas.core.config import shown
+from eyas.core.errors import ConfigError
+from eyas.core.variation import Mirrored, Uniform
+
+__all__ = ["Entry", "Guess", "Optional", "Same", "Span", "Values", "Varied", "WorldPath"]
+
+_LOG = logging.getLogger("eyas")
+
+Values = Mapping[str, object]
+"""Values by dotted path: by the original's keys, or by ours."""
+
+
+@dataclass(frozen=True, slots=True)
+class Guess:
+    """A key that may be to blame when a field of ours is refused."""
+
+    key: str
+    trial: object = None
+    """A value of our field that is refused if this key's value is to blame; None: it is."""
+    allowed: str | None = None
+    """What the key may be; None: what our field may be."""
+
+
+class Entry(ABC):
+    """Keys of the original, and the fields of ours that say the same."""
+
+    __slots__ = ()
+
+    @property
+    @abstractmethod
+    def keys(self) -> tuple[str, ...]:
+        """The original's keys."""
+
+    @property
+    @abstractmethod
+    def paths(self) -> tuple[str, ...]:
+        """Our fields."""
+
+    @abstractmethod
+    def read(self, values: Values) -> Values:
+        """Return our fields from the original's keys, as JSON would hold them."""
+
+    @abstractmethod
+    def write(self, fields: Values) -> Values:
+        """Return the original's keys from our fields, without keys that have no effect then.
+
+        Raises:
+            ConfigError: The original has no words for a value.
+        """
+
+    @abstractmethod
+    def blame(self, values: Values) -> Iterator[Guess]:
+        """Yield the keys that may be to blame when a field is refused; if no other is, the last."""
+
+
+@dataclass(frozen=True, slots=True)
+class Same(Entry):
+    """A key that means what a field means."""
+
+    key: str
+    path: str
+    upper_case: bool = False
+    """Whether the original writes our names in upper case."""
+
+    @property
+    @override
+    def keys(self) -> tuple[str, ...]:
+        return (self.key,)
+
+    @property
+    @override
+    def paths(self) -> tuple[str, ...]:
+        return (self.path,)
+
+    @override
+    def read(self, values: Values) -> Values:
+        value = values[self.key]
+        # `swapcase`, so that a name that is not in upper case is refused, as by the original.
+        swapped = self.upper_case and isinstance(value, str)
+        return {self.path: str(value).swapcase() if swapped else value}
+
+    @override
+    def write(self, fields: Values) -> Values:
+        value = fields[self.path]
+        value = value.value if isinstance(value, Enum) else value
+        return {self.key: str(value).upper() if self.upper_case else value}
+
+    @override
+    def blame(self, values: Values) -> Iterator[Guess]:
+        yield Guess(self.key)
+
+
+@dataclass(frozen=True, slots=True)
+class Optional(Entry):
+    """A key that holds while a switch is true; else our field is None."""
+
+    switch: str
+    key: str
+    path: str
+
+    @property
+    @override
+    def keys(self) -> tuple[str, ...]:
+        return self.switch, self.key
+
+    @property
+    @override
+    def paths(self) -> tuple[str, ...]:
+        return (self.path,)
+
+    @override
+    def read(self, values: Values) -> Values:
+        return {self.path: values[self.key] if values[self.switch] else None}
+
+    @override
+    def write(self, fields: Values) -> Values:
+        value = fields[self.path]
+        if value is None:
+            return {self.switch: False}
+        return {self.switch: True, self.key: list(value) if isinstance(value, tuple) else value}
+
+    @override
+    def blame(self, values: Values) -> Iterator[Guess]:
+        yield Guess(self.key)
+
+
+@dataclass(frozen=True, slots=True)
+class Span(Entry):
+    """Two keys that are the ends of one field."""
+
+    least: str
+    most: str
+    path: str
+
+    @property
+    @override
+    def keys(self) -> tuple[str, ...]:
+        return self.least, self.most
+
+    @property
+    @override
+    def paths(self) -> tuple[str, ...]:
+        return (self.path,)
+
+    @override
+    def read(self, values: Values) -> Values:
+        return {self.path: [values[self.least], values[self.most]]}
+
+    @override
+    def write(self, fields: Values) -> Values:
+        ends = fields[self.path]
+        assert isinstance(ends, tuple)
+        return {self.least: ends[0], self.most: ends[1]}
+
+    @override
+    def blame(self, values: Values) -> Iterator[Guess]:
+        yield Guess(self.most, [0.0, values[self.most]], "a number above 0")
+        yield Guess(self.least, None, f"a number from 0 to below {self.most}")
+
+
+@dataclass(frozen=True, slots=True)
+class Varied(Entry):
+    """The four to six keys that say whether and how one value is drawn."""
+
+    random: str
+    """Switch: drawn between `least` and `most`; else it is `fixed`."""
+    fixed: str
+    least: str
+    most: str
+    path: str
+    sides: str | None = None
+    """Switch: what is drawn is a magnitude, with a random sign."""
+    default: str | None = None
+    """Switch: the other keys do not hold, and our field is None."""
+    replaces: str | None = None
+    """A second field of ours: true if drawn, since drawn values replace what fixed ones add to."""
+
+    @property
+    @override
+    def keys(self) -> tuple[str, ...]:
+        every = (self.default, self.random, self.sides, self.fixed, self.most, self.least)
+        return tuple(key for key in every if key)
+
+    @property
+    @override
+    def paths(self) -> tuple[str, ...]:
+        return tuple(path for path in (self.path, self.replaces) if path)
+
+    @override
+    def read(self, values: Values) -> Values:
+        random = values[self.random]
+        also = {self.replaces: random} if self.replaces else {}
+        if self.default and values[self.default]:
+            return {self.path: None, **also}
+        if not random:
+            return {self.path: values[self.fixed], **also}
+        kind = "mirrored" if self.sides and values[self.sides] else "uniform"
+        return {self.path: {kind: [values[self.least], values[self.most]]}, **also}
+
+    @override
+    def write(self, fields: Values) -> Values:
+        value = fields[self.path]
+        if self.default and value is None:
+            return {self.default: True}
+        said: dict[str, object] = {self.default: False} if self.default else {}
+        match value:
+            case int() | float():
+                said |= {self.random: False, self.fixed: value}
+            case Uniform(uniform=(least, most)):
+                said |= {self.random: True, self.least: least, self.most: most}
+                said |= {self.sides: False} if self.sides else {}
+            case Mirrored(mirrored=(least, most)) if self.sides:
+                said |= {self.random: True, self.least: least, self.most: most, self.sides: True}
+            case _:
+                raise ConfigError(f"{self.path}: {shown(value)} cannot be said in env_config.json")
+        if self.replaces and said[self.random] != fields[self.replaces]:
+            raise ConfigError(
+                f"{self.replaces}: {shown(fields[self.replaces])} with {self.path} "
+                f"{shown(value)} cannot be said in env_config.json"
+            )
+        return said
+
+    @override
+    def blame(self, values: Values) -> Iterator[Guess]:
+        active = (self.most, self.least) if values[self.random] else (self.fixed,)
+        for key in active:
+            yield Guess(key, values[key])
+
+
+@dataclass(frozen=True, slots=True)
+class WorldPath(Entry):
+    """The path of a world, `<map>-<weather>.wbt`, or `simpleway-<skin>_<weather>.wbt`."""
+
+    key: str
+    map: str
+    weather: str
+
+    @property
+    @override
+    def keys(self) -> tuple[str, ...]:
+        return (self.key,)
+
+    @property
+    @override
+    def paths(self) -> tuple[str, ...]:
+        return self.map, self.weather
+
+    @override
+    def read(self, values: Values) -> Values:
+        path = values[self.key]
+        if path is None:
+            return {}
+        if not isinstance(path, str):
+            raise ConfigError(f"{self.key}: {shown(path)} is not allowed: text")
+        found = re.fullmatch(
+            r"(?:.*[/\\])?(simpleway-[^-_/\\]+(?=_)|[^/\\]+)[-_]([^-_/\\]+)\.wbt", path
+        )
+        if found is None:
+            _LOG.warning("%s: %s names no map and weather; it is not used", self.key, shown(path))
+            return {}
+        return {self.map: found[1], self.weather: found[2]}
+
+    @override
+    def write(self, fields: Values) -> Values:
+        name, weather = fields[self.map], fields[self.weather]
+        dash = "_" if str(name).startswith("simpleway-") else "-"
+        said = {self.key: f"worlds/{name}{dash}{weather}.wbt"}
+        if self.read(said) != {self.map: name, self.weather: weather}:
+            raise ConfigError(f"{self.map}: {shown(name)} cannot be said in env_config.json")
+        return said
+
+    @override
+    def blame(self, values: Values) -> Iterator[Guess]:
+        yield Guess(self.key)
