@@ -38,6 +38,8 @@ _STATION = 4.5
 _PRISM = 4
 """Stations in a solid of the deck."""
 _WALL = 0.3
+_SKIRT = 0.4
+"""From the surface down to the top of the solid sides [m]."""
 _SOLID_BELOW = 7.0
 """Height up to which a ramp has solid sides and no columns [m]."""
 _COLUMN_GAP = 5.0
@@ -126,7 +128,9 @@ def deck_mesh(middle: Points, floor: float) -> Mesh:
         *(_line(middle, offset, 0.15) for offset in (-_HALF + 0.4, 0.0, _HALF - 0.4)),
         *(_line(middle, offset, 0.15, dashed=True) for offset in (-_HALF / 2, _HALF / 2)),
     ]
-    low = np.flatnonzero(middle[:, 2] < floor + _SOLID_BELOW)
+    # Where a ramp begins, the walls reach into the floor by themselves.
+    height = middle[:, 2] - floor
+    low = np.flatnonzero((height > _SKIRT) & (height < _SOLID_BELOW))
     if len(low) > 1:
         sides = middle[low[0] : low[-1] + 1]
         pieces += [_solid_side(sides, sign, floor) for sign in (1.0, -1.0)]
@@ -165,7 +169,7 @@ def pillars(middle: Points, count: int, floor: float, roads: shapely.Geometry) -
     shapely.prepare(blocked)
     made = []
     for wish in np.linspace(high[0] + 1, high[-1] - 2, count).round().astype(int):
-        for shift in (0, 1, -1, 2, -2, 3, -3, 4, -4):
+        for shift in (0, 1, -1, 2, -2, 3, -3, 4, -4, 5, -5, 6, -6):
             pillar = _pillar(middle, int(np.clip(wish + shift, high[0], high[-1])))
             if not shapely.intersects(blocked, pillar.base):
                 made.append(pillar)
@@ -248,7 +252,7 @@ def _line(middle: Points, offset: float, width: float, *, dashed: bool = False) 
 
 def _solid_side(middle: Points, sign: float, floor: float) -> Mesh:
     line = middle[:, :2] + sign * (_OUT - 0.02) * _across(middle)
-    top = np.maximum(middle[:, 2] - 0.4, floor)
+    top = middle[:, 2] - _SKIRT
     low = np.column_stack([line, np.full(len(line), floor)])
     high = np.column_stack([line, top])
     corners = np.stack([low[:-1], low[1:], high[1:], high[:-1]], axis=1)

@@ -16,7 +16,7 @@ _CLEAR_DAY = Lighting(
     # The original's sun: in the north-west, 50.9 degrees high.
     sun_direction=(-0.55 * _STEEP, 0.6 * _STEEP, _STEEP),
     sun_colour=(1.02, 0.96, 0.84),
-    zenith_colour=(0.075, 0.135, 0.34),
+    zenith_colour=(0.05, 0.08, 0.215),
     horizon_colour=(0.40, 0.46, 0.55),
     ambient_up=(0.24, 0.29, 0.37),
     ambient_down=(0.13, 0.125, 0.10),

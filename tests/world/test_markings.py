@@ -1,0 +1,79 @@
+"""Road paint: where it lies, how much of it there is, and that it is where traffic expects it."""
+
+import numpy as np
+import pytest
+import shapely
+
+from eyas.world.maps import shipped_network
+from eyas.world.markings import PAINT_HEIGHT, mesh_of, road_paint, stripes
+from eyas.world.roads import joints, road_area, streets
+
+
+@pytest.fixture(scope="module")
+def network():
+    return shipped_network("citystreet")
+
+
+@pytest.fixture(scope="module")
+def paint(network):
+    return road_paint(network)
+
+
+def test_every_arm_of_every_junction_has_a_crossing_of_the_originals_size(network, paint):
+    meeting = joints(network)
+    assert len(paint.zebras) == sum(roads for roads in meeting.values() if roads > 2) == 36
+    for bars in paint.zebras:
+        box = shapely.minimum_rotated_rectangle(shapely.MultiPolygon(bars))
+        ring = shapely.get_coordinates(box)
+        sides = sorted(np.linalg.norm(np.diff(ring, axis=0), axis=1)[:2])
+        assert sides[0] == pytest.approx(5.6, abs=0.01)
+        assert 12.0 < sides[1] < 14.0
+
+
+def test_paint_is_on_asphalt(network, paint):
+    road = road_area(network).buffer(0.02)
+    shapely.prepare(road)
+    on_road = [shapely.covers(road, shape) for shape in paint.white]
+    assert all(on_road)
+    assert all(shapely.covers(road, bar) for bars in paint.zebras for bar in bars)
+
+
+def test_crossings_do_not_overlap(paint):
+    every = [shapely.MultiPolygon(bars) for bars in paint.zebras]
+    assert shapely.union_all(every).area == pytest.approx(sum(z.area for z in every))
+
+
+def test_lane_lines_do_not_lie_where_wheels_roll(network, paint):
+    """The middles of all lanes, but for arrows and stop lines near their ends, are bare."""
+    white = shapely.union_all(paint.white)
+    for lane in range(len(network.lane_width)):
+        points = network.lane_points[network.lane_first[lane] : network.lane_first[lane + 1]]
+        line = shapely.LineString(points)
+        if line.length > 40:
+            middle = shapely.line_interpolate_point(line, [0.3, 0.5], normalized=True)
+            assert not shapely.intersects(white, middle).any()
+
+
+def test_the_middle_of_a_road_is_painted_through_and_between_lanes_there_are_dashes(network, paint):
+    white = shapely.union_all(paint.white)
+    shapely.prepare(white)
+    shares = []
+    for street in streets(network):
+        middle = shapely.LineString(street.left)
+        shares.append(shapely.LineString(street.dividers[0]).intersection(white).length)
+        assert middle.intersection(white).length == pytest.approx(middle.length, rel=0.02)
+    whole = sum(shapely.LineString(street.dividers[0]).length for street in streets(network))
+    assert sum(shares) / whole == pytest.approx(1 / 3, abs=0.05)
+
+
+def test_dashes_are_spread_evenly_over_a_line():
+    dashes = stripes(np.array([[0.0, 0.0], [100.0, 0.0]]), 0.2, (3.0, 6.0))
+    assert len(dashes) == 11
+    assert [dash.bounds[2] - dash.bounds[0] for dash in dashes] == pytest.approx([3.0] * 11)
+    assert dashes[0].bounds[0] == pytest.approx(100.0 - dashes[-1].bounds[2])
+
+
+def test_paint_lies_just_above_the_road(paint):
+    mesh = mesh_of(paint)
+    assert np.allclose(mesh.positions[:, 2], PAINT_HEIGHT)
+    assert {material.tint[2] < 0.3 for material in mesh.palette} == {True, False}

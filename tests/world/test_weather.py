@@ -1,0 +1,27 @@
+"""Light by map and weather."""
+
+import numpy as np
+import pytest
+
+from eyas.core.errors import NotInThisVersionError, UnknownNameError
+from eyas.world.weather import lighting
+
+
+def test_the_sun_of_the_street_city_stands_in_the_north_west_51_degrees_high():
+    sun = np.array(lighting("citystreet", "day").sun_direction)
+    assert np.linalg.norm(sun) == pytest.approx(1.0)
+    assert np.degrees(np.arcsin(sun[2])) == pytest.approx(50.9, abs=0.1)
+    assert sun[0] < 0 < sun[1]
+
+
+def test_an_unknown_weather_is_told_with_the_nearest_name():
+    with pytest.raises(UnknownNameError, match=r"world\.weather: .*'fogy'.*did you mean 'foggy'"):
+        lighting("citystreet", "fogy")
+
+
+@pytest.mark.parametrize("weather", ["night", "foggy", "snow"])
+def test_weathers_of_later_versions_are_told_in_one_line(weather):
+    with pytest.raises(NotInThisVersionError, match=weather) as caught:
+        lighting("citystreet", weather)
+    assert "\n" not in str(caught.value)
+    assert "day" in str(caught.value)
