@@ -1,0 +1,80 @@
+"""Three small pictures of citystreet, compared with ones that a person has looked at.
+
+They show what closed-form tests cannot: that the place looks as it did. After a change that is
+meant to show, look at the new pictures and keep them with `pytest tests/render/test_golden.py
+--regenerate`.
+"""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from eyas.sim.place import load_place
+from eyas.state.draw import DrawList, Picture, Views
+from eyas.state.tracker import ActorState
+from eyas.targets.looks import draw_looks
+from eyas.traffic.config import TrafficConfig, VehicleType
+from eyas.world.config import WorldConfig
+
+FOLDER = Path(__file__).parent / "golden"
+SIZE = (120, 160)
+
+# Mean difference, and share of pixels that may differ by more than 24 of 255: room for another
+# processor's last bits at edges, not for another picture.
+MEAN, SHARE = 1.0, 0.01
+
+VIEWS = {
+    # position, heading [rad], pitch down [rad], time of the traffic [s]
+    "down": (None, 0.0, 1.37, 100.0),
+    "ahead": (None, 0.0, 0.6, 300.0),
+    "overview": ((0.0, -420.0, 130.0), 1.57, 0.35, 500.0),
+}
+
+
+def look(yaw: float, pitch: float) -> np.ndarray:
+    """Return camera to world: columns forward, left, up."""
+    forward = [np.cos(yaw) * np.cos(pitch), np.sin(yaw) * np.cos(pitch), -np.sin(pitch)]
+    left = [-np.sin(yaw), np.cos(yaw), 0.0]
+    return np.stack([forward, left, np.cross(forward, left)], axis=1)
+
+
+def drawn(name: str) -> np.ndarray:
+    position, yaw, pitch, time = VIEWS[name]
+    place = load_place(WorldConfig(), TrafficConfig(), 1)
+    count = place.replay.actors
+    actors = ActorState.create(1, count)
+    place.replay.at(np.array([time]), actors)
+    model, colour = draw_looks(np.random.default_rng(1), VehicleType.PASSENGER, count, None)
+    movers = DrawList.create(1, count * place.rigs.slots_per_actor)
+    place.rigs.pose(actors, model[None], colour[None], movers)
+    if position is None:  # behind and above the first car
+        yaw = float(actors.yaw[0, 0])
+        back = 22.0 / np.tan(pitch)
+        behind = actors.position[0, 0] - back * np.array([np.cos(yaw), np.sin(yaw)])
+        position = (*behind, 22.0)
+    views = Views(
+        position=np.array([position]),
+        rotation=look(yaw, pitch)[None],
+        world=np.zeros(1, np.int32),
+        subject=np.full(1, -1, np.int32),
+        field_of_view=0.7854,
+    )
+    picture = Picture.create(1, *SIZE)
+    place.renderer.draw(views, movers, picture)
+    return picture.rgb[0]
+
+
+@pytest.mark.parametrize("name", VIEWS)
+def test_the_city_looks_as_it_did(name, regenerate, tmp_path):
+    path = FOLDER / f"{name}.png"
+    now = drawn(name)
+    if regenerate:
+        Image.fromarray(now).save(path, optimize=True)
+    then = np.asarray(Image.open(path))
+    difference = np.abs(now.astype(int) - then).max(axis=2)
+    if difference.mean() > MEAN or (difference > 24).mean() > SHARE:
+        shown = np.concatenate([then, now, np.repeat(difference[..., None], 3, 2)], axis=1)
+        Image.fromarray(shown.astype(np.uint8)).save(tmp_path / f"{name}.png")
+        pytest.fail(f"then, now and difference are in {tmp_path / f'{name}.png'}")
