@@ -8,6 +8,7 @@ import pytest
 
 from eyas.core.errors import ConfigError, MissingExtraError
 from eyas.state.roads import RoadEdge, RoadGraph, RoadNode
+from eyas.state.scene import ObjectClass
 from eyas.traffic import sumo_install
 from eyas.traffic.network import build_network, graph_hash, network_xml
 from eyas.world.maps import MAPS, build_scene, road_graph, shipped_network
@@ -93,8 +94,8 @@ def test_from_every_road_of_a_city_every_other_can_be_reached_without_turning_ro
 @pytest.mark.parametrize("seed", [1, 4])
 def test_other_seeds_become_whole_cities(seed):
     scene = build_scene("citystreet", build_network(road_graph("citystreet", seed)), seed)
-    assert len(scene.fixtures.pose) == 63
-    assert (scene.object_class == 4).sum() > 70
+    assert (scene.object_class == ObjectClass.TREE).sum() == 63
+    assert (scene.object_class == ObjectClass.BUILDING).sum() > 70
 
 
 @needs_sumo

@@ -94,11 +94,17 @@ def count(scene, kind):
 
 def test_as_much_stands_in_it_as_in_the_original(scene):
     assert 78 <= count(scene, ObjectClass.BUILDING) <= 83
-    assert count(scene, ObjectClass.TREE) == len(scene.fixtures.pose) == 63
+    assert count(scene, ObjectClass.TREE) == len(trunks_of(scene)) == 63
+    assert count(scene, ObjectClass.POLE) == 36
     assert count(scene, ObjectClass.WATER) == 1
     assert 17 <= count(scene, ObjectClass.STRUCTURE) - 1 <= 18
     assert scene.size == (900.0, 900.0)
     assert scene.ground_height == -0.1
+
+
+def trunks_of(scene):
+    kind = scene.object_class[scene.fixtures.object_id]
+    return scene.fixtures.pose[kind == ObjectClass.TREE]
 
 
 def test_buildings_are_as_high_and_as_far_from_the_kerb_as_the_originals(scene, network):
@@ -116,13 +122,13 @@ def test_buildings_are_as_high_and_as_far_from_the_kerb_as_the_originals(scene, 
 
 
 def test_trees_stand_in_rows_beside_roads(scene, network):
-    trunks = scene.fixtures.pose[:, :2, 3].astype(np.float64)
+    trunks = trunks_of(scene)[:, :2, 3].astype(np.float64)
     apart = np.linalg.norm(trunks[:, None] - trunks[None], axis=2) + 1e9 * np.eye(len(trunks))
     assert apart.min() > 12.0
     assert 14.5 <= np.median(apart.min(axis=1)) <= 19.5
     beside = [road_area(network).distance(shapely.Point(trunk)) for trunk in trunks]
     assert np.allclose(beside, 4.4, atol=0.3)
-    height = scene.fixtures.pose[:, 2, 2]
+    height = trunks_of(scene)[:, 2, 2]
     assert 13.5 < height.min()
     assert height.max() <= 27.0
     assert np.median(height) == pytest.approx(19.8, rel=0.1)

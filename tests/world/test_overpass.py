@@ -10,9 +10,8 @@ from eyas.world.overpass import (
     deck_mesh,
     deck_prisms,
     path,
-    pillar_mesh,
-    pillars,
 )
+from eyas.world.pillars import pillar_mesh, pillars
 
 FLOOR = -0.1
 

@@ -16,6 +16,8 @@ from eyas.world.assembly import SceneBuilder
 from eyas.world.car_parks import CarPark, place_car_parks, place_rectangle
 from eyas.world.lots import turned
 from eyas.world.maps.citystreet_roads import NAME, road_graph
+from eyas.world.pillars import BASE_HEIGHT, COLUMN_RADIUS, Pillar, pillar_mesh, pillars
+from eyas.world.poles import POLE_HEIGHT, POLE_RADIUS, signal_levels, signal_places
 from eyas.world.roads import Street, blocks, joints, road_area, streets, surface
 
 __all__ = ["FLOOR", "NAME", "build_scene", "road_graph"]
@@ -54,7 +56,7 @@ class _Plan:
     roads: shapely.Geometry
     blocks: list[shapely.Polygon]
     deck: Points
-    pillars: list[overpass.Pillar]
+    pillars: list[Pillar]
     car_parks: list[CarPark]
     pools: list[shapely.Polygon]
     trees: Points
@@ -76,6 +78,8 @@ def build_scene(network: RoadNetwork, seed: int) -> Scene:
         owner = builder.add(ObjectClass.BUILDING, buildings.mesh_of(building))
         builder.add_prism(*buildings.prism_of(building), owner)
     levels = _add_trees(builder, plan, stream(seed, "citystreet trees", 1))
+    _add_signals(builder, network, len(levels))
+    levels.append(signal_levels())
     return builder.build(NAME, seed, FLOOR, ground.FLOOR_HEIGHT, levels, network)
 
 
@@ -84,19 +88,19 @@ def _plan(network: RoadNetwork, seed: int) -> _Plan:
     roads = road_area(network)
     closed, _ = blocks(network, extent)
     middle = _overpass_path(seed)
-    pillars = overpass.pillars(middle, _PILLARS, ground.FLOOR_HEIGHT, roads)
+    columns = pillars(middle, _PILLARS, ground.FLOOR_HEIGHT, roads)
     deck = shapely.buffer(overpass.deck_area(middle), 3.0)
     rng = stream(seed, "citystreet lots")
     car_parks = place_car_parks(closed, _CAR_PARKS, rng, deck)
     lots = [park.area for park in car_parks]
     pools = _pools(closed, rng, shapely.union_all([deck, *lots]))
-    bases = [shapely.buffer(pillar.base, 3.0) for pillar in pillars]
+    bases = [shapely.buffer(pillar.base, 3.0) for pillar in columns]
     taken = shapely.union_all([roads, *bases, *(shapely.buffer(lot, 2.0) for lot in lots)])
     trunks, strips = _tree_rows(network, stream(seed, "citystreet trees"), taken)
     aprons = [shapely.buffer(lot, 2.5, join_style="mitre") for lot in (*lots, *pools)]
     free = shapely.union_all([deck, *aprons, *strips])
     made = buildings.place_buildings(closed, _BUILDINGS, stream(seed, "citystreet buildings"), free)
-    return _Plan(roads, closed, middle, pillars, car_parks, pools, trunks, made)
+    return _Plan(roads, closed, middle, columns, car_parks, pools, trunks, made)
 
 
 def _overpass_path(seed: int) -> Points:
@@ -185,11 +189,11 @@ def _add_overpass(builder: SceneBuilder, plan: _Plan) -> None:
     for outline, bottom, top in overpass.deck_prisms(plan.deck, floor):
         builder.add_prism(outline, bottom, top, owner)
     for pillar in plan.pillars:
-        owner = builder.add(ObjectClass.STRUCTURE, overpass.pillar_mesh(pillar, floor))
+        owner = builder.add(ObjectClass.STRUCTURE, pillar_mesh(pillar, floor))
         base = shapely.get_coordinates(pillar.base)[:-1]
-        builder.add_prism(base, floor, floor + overpass.BASE_HEIGHT, owner)
+        builder.add_prism(base, floor, floor + BASE_HEIGHT, owner)
         for column in pillar.columns:
-            builder.add_cylinder(column, overpass.COLUMN_RADIUS, floor, pillar.top, owner)
+            builder.add_cylinder(column, COLUMN_RADIUS, floor, pillar.top, owner)
 
 
 def _add_trees(
@@ -203,3 +207,11 @@ def _add_trees(
         owner = builder.add_copy(ObjectClass.TREE, kind, spot, turn, height)
         builder.add_cylinder(place, 0.022 * height, ground.FLOOR_HEIGHT, 0.3 * height, owner)
     return [trees.street_tree_levels(rng, kind) for kind in range(trees.VARIANTS)]
+
+
+def _add_signals(builder: SceneBuilder, network: RoadNetwork, prototype: int) -> None:
+    """Add a pole with an arm over the lanes at each arm of each junction."""
+    for place, turn in signal_places(network):
+        spot = (*place, 0.0)
+        owner = builder.add_copy(ObjectClass.POLE, prototype, spot, turn, 1.0)
+        builder.add_cylinder(spot, POLE_RADIUS, ground.FLOOR_HEIGHT, POLE_HEIGHT, owner)
