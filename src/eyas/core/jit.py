@@ -14,7 +14,14 @@ from typing import Any, TypeVar
 
 import platformdirs
 
-__all__ = ["cache_folder", "inlined_kernel", "kernel", "parallel_kernel"]
+__all__ = [
+    "cache_folder",
+    "inlined_kernel",
+    "kernel",
+    "parallel_kernel",
+    "prange",
+    "thread_count",
+]
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -37,7 +44,18 @@ os.environ.setdefault("NUMBA_CACHE_DIR", str(cache_folder()))
 # One layer on every system that is safe in forked and spawned workers.
 os.environ.setdefault("NUMBA_THREADING_LAYER", "workqueue")
 
-import numba  # noqa: E402  # reads the settings above when imported
+# numba reads the settings above when imported, so no other module of Eyas imports it: that might be first.
+import numba  # noqa: E402
+from numba import prange  # noqa: E402
+
+# If a user's program imported numba before, it has read its settings already.
+numba.config.CACHE_DIR = os.environ["NUMBA_CACHE_DIR"]
+numba.config.THREADING_LAYER = os.environ["NUMBA_THREADING_LAYER"]
+
+
+def thread_count() -> int:
+    """Return how many threads a parallel kernel will use."""
+    return int(numba.get_num_threads())
 
 
 # Kernels allocate nothing, so they need not count who uses an array. Numba would: two atomic

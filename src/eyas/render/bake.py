@@ -7,13 +7,13 @@ import zipfile
 from dataclasses import dataclass
 from pathlib import Path
 
-import numba
 import numpy as np
 import platformdirs
 from numpy.typing import NDArray
 
 from eyas.core.errors import OutputError
 from eyas.core.files import write_atomic
+from eyas.core.jit import thread_count
 from eyas.render.kernels.bundles import Geometry
 from eyas.render.kernels.shadow_map import BAND, bake_rows
 
@@ -114,7 +114,7 @@ def _bake(
     geometry: Geometry, rows: NDArray[np.float64], lines: int, columns: int
 ) -> NDArray[np.uint16]:
     heights = np.zeros((lines, columns), np.uint16)
-    workers = min(numba.get_num_threads(), math.ceil(lines / BAND))
+    workers = min(thread_count(), math.ceil(lines / BAND))
     ranges = np.concatenate([geometry.chunk_range, geometry.mesh_range])
     most = int((ranges[:, 3] - ranges[:, 2]).max(initial=1))
     bake_rows(

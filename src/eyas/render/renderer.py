@@ -3,11 +3,11 @@
 from collections.abc import Mapping
 from pathlib import Path
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.errors import ConfigError
+from eyas.core.jit import thread_count
 from eyas.render.bake import bake_shadows, shadow_folder
 from eyas.render.geometry import build_geometry
 from eyas.render.jobs import build_jobs, picture_size, write_subject
@@ -86,7 +86,7 @@ class Renderer:
     ) -> None:
         """Draw with `side` x `side` samples a pixel."""
         height, width = picture_size(picture)
-        threads = numba.get_num_threads()
+        threads = thread_count()
         job = build_jobs(views, height, width, side, threads)
         rows = int((job.band[:, 2] - job.band[:, 1]).max(initial=0))
         workers = min(threads, len(job.band))

@@ -1,10 +1,9 @@
 """Pictures: the loop over bands of views, and what is done in each."""
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import kernel, parallel_kernel
+from eyas.core.jit import kernel, parallel_kernel, prange
 from eyas.render.kernels.band import shade_band
 from eyas.render.kernels.bundles import Geometry, Job, Light, Movers, Output, Scratch
 from eyas.render.kernels.casters import cast_shadows
@@ -16,6 +15,7 @@ from eyas.state.scene import SKY_OBJECT
 __all__ = ["draw_views"]
 
 f4 = np.float32
+
 
 @parallel_kernel
 def draw_views(
@@ -40,7 +40,7 @@ def draw_views(
         scratch: Working memory.
         output: Written in place.
     """
-    for worker in numba.prange(workers):
+    for worker in prange(workers):
         for index in range(worker, len(job.band), workers):
             _draw_job(worker, index, samples, geometry, light, movers, job, scratch, output)
 

@@ -1,10 +1,9 @@
 """The shadow map: how high towards the sun the first thing stands that sunlight meets."""
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import kernel, parallel_kernel
+from eyas.core.jit import kernel, parallel_kernel, prange
 from eyas.render.kernels.bundles import Geometry
 from eyas.render.kernels.rasterise import rasterise
 
@@ -40,7 +39,7 @@ def bake_rows(
         shadow_map: Filled, shape (lines, columns).
     """
     bands = (shadow_map.shape[0] + BAND - 1) // BAND
-    for worker in numba.prange(workers):
+    for worker in prange(workers):
         for band in range(worker, bands, workers):
             depth[worker] = f4(0.0)
             top = band * BAND
