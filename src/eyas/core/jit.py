@@ -18,6 +18,7 @@ __all__ = [
     "cache_folder",
     "inlined_kernel",
     "kernel",
+    "nothing_compiled",
     "parallel_kernel",
     "prange",
     "thread_count",
@@ -40,11 +41,17 @@ def cache_folder() -> Path:
     return Path(platformdirs.user_cache_dir("eyas")) / "kernels" / _source_hash()
 
 
+def nothing_compiled() -> bool:
+    """Return whether the next kernels will have to be compiled: this version's first start."""
+    return not any(Path(os.environ["NUMBA_CACHE_DIR"]).rglob("*.nbc"))
+
+
 os.environ.setdefault("NUMBA_CACHE_DIR", str(cache_folder()))
 # One layer on every system that is safe in forked and spawned workers.
 os.environ.setdefault("NUMBA_THREADING_LAYER", "workqueue")
 
-# numba reads the settings above when imported, so no other module of Eyas imports it: that might be first.
+# numba reads the settings above when imported, so no other module of Eyas imports it: that might
+# be the first.
 import numba  # noqa: E402
 from numba import prange  # noqa: E402
 

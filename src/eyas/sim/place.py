@@ -1,8 +1,11 @@
 """What simulations of the same place share: scene, renderer, traffic, rigs."""
 
+import logging
+import os
 from dataclasses import dataclass
 from functools import lru_cache
 
+from eyas.core.jit import nothing_compiled
 from eyas.render.renderer import Renderer
 from eyas.render.textures import build_textures
 from eyas.state.roads import RoadNetwork
@@ -17,6 +20,8 @@ from eyas.world.maps import build_scene, road_graph, shipped_network
 from eyas.world.weather import lighting
 
 __all__ = ["Place", "load_place", "load_scene"]
+
+_log = logging.getLogger("eyas")
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +68,11 @@ def load_place(world: WorldConfig, traffic: TrafficConfig, trackers: int) -> Pla
 
 @lru_cache(maxsize=2)
 def _load_place(world: WorldConfig, traffic: TrafficConfig, trackers: int) -> Place:
+    if nothing_compiled():
+        _log.warning(
+            "first start of this version: compiling for about half a minute, once; kept in %s",
+            os.environ["NUMBA_CACHE_DIR"],
+        )
     graph = road_graph(world.map, world.seed)
     light = lighting(world.map, world.weather)
     recording = find_recording(graph, traffic, trackers=trackers)
