@@ -1,15 +1,19 @@
 """`eyas config`."""
 
 import json
-from typing import Annotated
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from eyas.cli.options import ConfigFile, Overrides, gathered
 
+if TYPE_CHECKING:
+    from eyas.sim.config import EyasConfig
+
 __all__ = ["app"]
 
-app = typer.Typer(help="Look at settings.", no_args_is_help=True)
+app = typer.Typer(help="Look at settings, and convert them.", no_args_is_help=True)
 
 
 @app.callback()
@@ -25,11 +29,33 @@ def show(
     ] = False,
 ) -> None:
     """Print settings as JSON, checked: every one and its value."""
-    from eyas.sim.legacy import to_legacy
     from eyas.sim.settings_file import load_settings
 
-    settings = load_settings(config, gathered(set_))
+    typer.echo(_text(load_settings(config, gathered(set_)), legacy=legacy))
+
+
+@app.command()
+def convert(
+    source: Annotated[Path, typer.Argument(help="Settings to read, in either notation.")],
+    target: Annotated[Path, typer.Argument(help="File to write; it must not be there.")],
+    set_: Overrides = None,
+) -> None:
+    """Write settings in the other notation: native for the DAT benchmark's, and the reverse."""
+    from eyas.core.errors import OutputError
+    from eyas.core.files import write_atomic
+    from eyas.sim.legacy import is_legacy
+    from eyas.sim.settings_file import load_settings, read_settings
+
+    if target.exists():
+        raise OutputError(f"{target}: is there already; a file of settings is never rewritten")
+    legacy = not is_legacy(read_settings(source))
+    text = _text(load_settings(source, gathered(set_)), legacy=legacy)
+    write_atomic(target, f"{text}\n".encode())
+
+
+def _text(settings: "EyasConfig", *, legacy: bool) -> str:
+    from eyas.sim.legacy import to_legacy
+
     if legacy:
-        typer.echo(json.dumps(to_legacy(settings), indent=4))
-    else:
-        typer.echo(settings.model_dump_json(indent=2))
+        return json.dumps(to_legacy(settings), indent=4)
+    return settings.model_dump_json(indent=2)

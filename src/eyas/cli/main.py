@@ -1,5 +1,6 @@
 """The command `eyas`."""
 
+import logging
 import os
 import sys
 import warnings
@@ -13,6 +14,7 @@ from eyas.core.errors import EyasError
 
 __all__ = ["app", "main"]
 
+_INTERRUPTED = 130
 # Typer brings its own copy of click in new versions and uses click in old ones.
 _UsageError: Any = typer.BadParameter.__mro__[1]
 
@@ -30,7 +32,7 @@ app.add_typer(maps.app, name="maps")
 app.add_typer(traffic.app, name="traffic")
 
 
-def _print_version(value: bool) -> None:  # noqa: FBT001  # typer's callback
+def _print_version(value: bool) -> None:  # typer's callback
     if value:
         typer.echo(f"eyas {__version__}")
         raise typer.Exit
@@ -38,7 +40,7 @@ def _print_version(value: bool) -> None:  # noqa: FBT001  # typer's callback
 
 @app.callback()
 def _options(
-    version: Annotated[  # noqa: ARG001  # handled by its callback
+    version: Annotated[  # handled by its callback
         bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print it.")
     ] = False,
 ) -> None: ...
@@ -47,28 +49,38 @@ def _options(
 def main() -> None:
     """Run the command line: errors are one line on stderr and exit code 2, without a traceback."""
     warnings.showwarning = lambda message, *_, **__: _say(f"warning: {message}")
+    logging.basicConfig(format="eyas: warning: %(message)s", level=logging.WARNING)
+    status = _run()
+    if status == _INTERRUPTED:
+        _say("interrupted")
+    sys.exit(status)
+
+
+def _run() -> int:
+    """Return the exit code."""
     try:
         status = app(standalone_mode=False)
+        sys.stdout.flush()  # here, where a reader that has gone can be met
     except EyasError as error:
-        _end(f"error: {error}", 2)
+        return _failed(str(error))
     except _UsageError as error:
-        _end(f"error: {error.format_message()}", 2)
+        return _failed(error.format_message())
     except (KeyboardInterrupt, typer.Abort):
-        _end("interrupted", 130)
+        return _INTERRUPTED
     except BrokenPipeError:
         # Whoever read our output has gone; nothing more can be said to them.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        sys.exit(1)
-    sys.exit(status or 0)
+        return 1
+    return status if isinstance(status, int) else 0
 
 
 def _say(line: str) -> None:
     print(f"eyas: {line}", file=sys.stderr)
 
 
-def _end(line: str, status: int) -> None:
-    _say(" ".join(line.split("\n")))
-    sys.exit(status)
+def _failed(line: str) -> int:
+    _say("error: " + " ".join(line.splitlines()))
+    return 2
 
 
 if __name__ == "__main__":

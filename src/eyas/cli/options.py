@@ -1,5 +1,6 @@
 """Options that several commands share."""
 
+import json
 from pathlib import Path
 from typing import Annotated
 
@@ -9,11 +10,15 @@ __all__ = ["ConfigFile", "MapName", "Overrides", "Seed", "Weather", "gathered"]
 
 ConfigFile = Annotated[
     Path | None,
-    typer.Option("--config", help="Settings in JSON: native, or the DAT benchmark's env_config.json."),
+    typer.Option(
+        "--config", help="Settings in JSON: native, or the DAT benchmark's env_config.json."
+    ),
 ]
 Overrides = Annotated[
     list[str] | None,
-    typer.Option("--set", metavar="KEY=VALUE", help="Change a setting; may be given several times."),
+    typer.Option(
+        "--set", metavar="KEY=VALUE", help="Change a setting; may be given several times."
+    ),
 ]
 MapName = Annotated[str | None, typer.Option("--map", help="Name of the map.")]
 Weather = Annotated[str | None, typer.Option("--weather", help="Name of the weather.")]
@@ -28,5 +33,5 @@ def gathered(
 ) -> list[str]:
     """Return all changes of settings as `key=value`, short options last, so that they win."""
     short = {"world.map": map_name, "world.weather": weather, "seed": seed}
-    said = [f"{key}={value}" for key, value in short.items() if value is not None]
+    said = [f"{key}={json.dumps(value)}" for key, value in short.items() if value is not None]
     return [*(overrides or []), *said]

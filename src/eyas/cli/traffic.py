@@ -1,11 +1,12 @@
 """`eyas traffic`."""
 
+import json
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from eyas.cli.options import ConfigFile, Overrides, gathered
+from eyas.cli.options import ConfigFile, MapName, Overrides, gathered
 
 __all__ = ["app"]
 
@@ -18,14 +19,17 @@ def _group() -> None: ...
 
 @app.command()
 def record(
-    map_name: Annotated[str, typer.Option("--map", help="Name of the map.")] = "citystreet",
-    map_seed: Annotated[int, typer.Option("--map-seed", help="Seed of the map.")] = 0,
-    seed: Annotated[int, typer.Option("--seed", help="Seed of SUMO and of the routes.")] = 1,
+    map_name: MapName = None,
+    map_seed: Annotated[int | None, typer.Option("--map-seed", help="Seed of the map.")] = None,
+    seed: Annotated[
+        int | None, typer.Option("--seed", help="Seed of SUMO and of the routes.")
+    ] = None,
     duration: Annotated[float, typer.Option("--duration", help="Time to record [s].")] = 1260.0,
     vehicle_type: Annotated[
         str | None, typer.Option("--type", help="passenger, bus, truck, trailer or motorcycle.")
     ] = None,
     out: Annotated[Path | None, typer.Option("--out", help="File to write.")] = None,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the file.")] = False,
     config: ConfigFile = None,
     set_: Overrides = None,
     canonical: Annotated[
@@ -36,11 +40,14 @@ def record(
     from eyas.modes import traffic
     from eyas.sim.settings_file import load_settings
 
-    short = [f"world.map={map_name}", f"world.seed={map_seed}", f"traffic.seed={seed}"]
-    if vehicle_type is not None:
-        short.append(f"traffic.vehicle_type={vehicle_type}")
-    settings = load_settings(config, [*gathered(set_), *short])
+    short = {
+        "world.seed": map_seed,
+        "traffic.seed": seed,
+        "traffic.vehicle_type": vehicle_type,
+    }
+    said = [f"{key}={json.dumps(value)}" for key, value in short.items() if value is not None]
+    settings = load_settings(config, [*gathered(set_, map_name), *said])
     if canonical:
         traffic.run_canonical(settings.world)
     else:
-        traffic.run(settings.world, settings.traffic, duration, out)
+        traffic.run(settings.world, settings.traffic, duration, out, overwrite=overwrite)

@@ -1,5 +1,6 @@
 """`eyas video`."""
 
+import logging
 from pathlib import Path
 from typing import Annotated
 
@@ -26,9 +27,17 @@ def command(
     quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
 ) -> None:
     """Record labelled pictures and films of trackers that follow their targets."""
+    from eyas.sim.config import Mode
     from eyas.sim.settings_file import load_settings
+    from eyas.sim.version_check import require_supported
 
+    if quiet:
+        logging.getLogger("eyas").setLevel(logging.ERROR)
     settings = load_settings(config, gathered(set_, map_name, weather, seed))
+    require_supported(settings)
+    if settings.mode is not Mode.VIDEO and not quiet:
+        said = f"mode (Simulation_Mode) is '{settings.mode}'; 'eyas video' records all the same"
+        typer.echo(f"eyas: note: {said}", err=True)
     from eyas.modes import video  # compiled kernels: slow to import, so only when all is well
 
     video.run(settings, out, overwrite=overwrite, resume=resume, quiet=quiet)

@@ -18,7 +18,14 @@ from eyas.world.maps import road_graph
 __all__ = ["run", "run_canonical"]
 
 
-def run(world: WorldConfig, config: TrafficConfig, duration: float, path: Path | None) -> None:
+def run(
+    world: WorldConfig,
+    config: TrafficConfig,
+    duration: float,
+    path: Path | None,
+    *,
+    overwrite: bool = False,
+) -> None:
     """Record traffic into a file.
 
     Args:
@@ -26,6 +33,7 @@ def run(world: WorldConfig, config: TrafficConfig, duration: float, path: Path |
         config: What drives.
         duration: How long [s].
         path: The file; None: `<map>-<seed>-<type>.npz` in this folder.
+        overwrite: Whether a file that is there is replaced.
 
     Raises:
         ConfigError: The duration is not a time.
@@ -36,13 +44,21 @@ def run(world: WorldConfig, config: TrafficConfig, duration: float, path: Path |
         raise ConfigError(f"--duration: {duration:g} is not allowed; allowed: 1 to 86400 s")
     seed = CANONICAL_SEED if config.seed is None else config.seed
     target = path or Path(f"{world.map}-{seed}-{config.vehicle_type}.npz")
-    if target.is_dir():
-        raise OutputError(f"{target}: is a folder, not a file")
+    _check_free(target, overwrite=overwrite)  # before SUMO has driven for minutes
     graph = road_graph(world.map, world.seed)
     with _progress() as progress:
         recording = record(world.map, world.seed, graph, config, duration, seed, progress)
     save(recording, target)
     _report(target, f"{recording.actors} vehicles, {recording.duration:g} s")
+
+
+def _check_free(path: Path, *, overwrite: bool) -> None:
+    if path.is_dir():
+        raise OutputError(f"{path}: is a folder, not a file")
+    if path.exists() and not overwrite:
+        raise OutputError(f"{path}: is there already; replace it with --overwrite")
+    if not path.parent.is_dir():
+        raise OutputError(f"{path}: cannot write: there is no folder '{path.parent}'")
 
 
 def run_canonical(world: WorldConfig) -> None:

@@ -240,7 +240,7 @@ class Varied(Entry):
 
 @dataclass(frozen=True, slots=True)
 class WorldPath(Entry):
-    """The path of a world, `<map>-<weather>.wbt`, or `simpleway-<skin>_<weather>.wbt`."""
+    """The path of a world, `<map>-<weather>.wbt`."""
 
     key: str
     map: str
@@ -263,9 +263,7 @@ class WorldPath(Entry):
             return {}
         if not isinstance(path, str):
             raise ConfigError(f"{self.key}: {shown(path)} is not allowed: text")
-        found = re.fullmatch(
-            r"(?:.*[/\\])?(simpleway-[^-_/\\]+(?=_)|[^/\\]+)[-_]([^-_/\\]+)\.wbt", path
-        )
+        found = re.fullmatch(r"(?:.*[/\\])?([^-/\\]+)-([^/\\]+)\.wbt", path)
         if found is None:
             _LOG.warning("%s: %s names no map and weather; it is not used", self.key, shown(path))
             return {}
@@ -274,8 +272,7 @@ class WorldPath(Entry):
     @override
     def write(self, fields: Values) -> Values:
         name, weather = fields[self.map], fields[self.weather]
-        dash = "_" if str(name).startswith("simpleway-") else "-"
-        said = {self.key: f"worlds/{name}{dash}{weather}.wbt"}
+        said = {self.key: f"worlds/{name}-{weather}.wbt"}
         if self.read(said) != {self.map: name, self.weather: weather}:
             raise ConfigError(f"{self.map}: {shown(name)} cannot be said in env_config.json")
         return said

@@ -1,0 +1,143 @@
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from eyas import __version__
+from eyas.cli.main import main
+from eyas.sim.config import EyasConfig
+from eyas.sim.legacy import to_legacy
+
+COMMAND = [sys.executable, "-m", "eyas.cli.main"]
+
+
+def run(monkeypatch, capsys, *arguments):
+    """Run in this process, which is quick; return exit code, stdout and the lines of stderr."""
+    monkeypatch.setattr(sys, "argv", ["eyas", *map(str, arguments)])
+    with pytest.raises(SystemExit) as caught:
+        main()
+    said = capsys.readouterr()
+    return caught.value.code or 0, said.out, said.err.splitlines()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "line"),
+    [
+        (["config", "show", "--config", "nowhere.json"], "nowhere.json: cannot read: "),
+        (["config", "show", "--set", "video.fsp=3"], "video.fsp: unknown key; did you mean 'fps'?"),
+        (
+            ["config", "show", "--set", "Control_Frequence=0"],
+            "Control_Frequence: 0 is not allowed: ",
+        ),
+        (["config", "show", "--set", "seed"], "--set 'seed': not of the form key=value"),
+        (["video", "--set", "Lidar_Enable=true"], "wire.lidar (Lidar_Enable): true: "),
+        (["video", "--seed", "-1"], "seed: -1 is not allowed: "),
+        (["video", "--seed", "x"], "Invalid value for '--seed'"),
+        (["video", "--foo"], "No such option: --foo"),
+        (["vidoe"], "No such command 'vidoe'"),
+        (
+            ["traffic", "record", "--type", "buss"],
+            "traffic.vehicle_type: 'buss' is not allowed; did you",
+        ),
+        (["traffic", "record", "--duration", "0"], "--duration: 0 is not allowed"),
+        (
+            ["traffic", "record", "--map", "citystret"],
+            "world.map: 'citystret' is not allowed; did you",
+        ),
+    ],
+)
+def test_what_a_user_gets_wrong_is_one_line_and_exit_code_2(
+    monkeypatch, capsys, tmp_path, arguments, line
+):
+    monkeypatch.chdir(tmp_path)
+    code, out, err = run(monkeypatch, capsys, *arguments)
+    assert (code, out, len(err)) == (2, "", 1)
+    assert err[0].startswith(f"eyas: error: {line}")
+    assert not list(tmp_path.iterdir())
+
+
+def test_a_line_break_in_a_name_stays_on_one_line(monkeypatch, capsys):
+    code, _, err = run(monkeypatch, capsys, "config", "show", "--set", "vi\ndeo.fps=3")
+    assert (code, len(err)) == (2, 1)
+
+
+def test_show_prints_the_settings_in_either_notation(monkeypatch, capsys):
+    config = EyasConfig(video={"fps": 9})
+    code, out, _ = run(monkeypatch, capsys, "config", "show", "--set", "video.fps=9")
+    assert (code, EyasConfig(**json.loads(out))) == (0, config)
+    _, out, _ = run(monkeypatch, capsys, "config", "show", "--legacy", "--set", "video.fps=9")
+    assert json.loads(out) == to_legacy(config)
+
+
+def test_convert_writes_the_other_notation_and_rewrites_nothing(monkeypatch, capsys, tmp_path):
+    legacy, native, again = (
+        tmp_path / name for name in ("legacy.json", "native.json", "again.json")
+    )
+    legacy.write_text(json.dumps(to_legacy(EyasConfig(video={"fps": 9}))))
+    assert run(monkeypatch, capsys, "config", "convert", legacy, native)[0] == 0
+    assert EyasConfig(**json.loads(native.read_text())) == EyasConfig(video={"fps": 9})
+    assert run(monkeypatch, capsys, "config", "convert", native, again)[0] == 0
+    assert json.loads(again.read_text()) == json.loads(legacy.read_text())
+    code, _, err = run(monkeypatch, capsys, "config", "convert", legacy, native)
+    assert (code, len(err)) == (2, 1)
+    assert "never rewritten" in err[0]
+
+
+def test_a_recording_of_traffic_is_not_replaced_unasked(monkeypatch, capsys, tmp_path):
+    path = tmp_path / "bus.npz"
+    path.write_bytes(b"precious")
+    code, _, err = run(monkeypatch, capsys, "traffic", "record", "--out", path)
+    assert (code, len(err)) == (2, 1)
+    assert path.read_bytes() == b"precious"
+
+
+def test_version_and_maps(monkeypatch, capsys):
+    assert run(monkeypatch, capsys, "--version")[:2] == (0, f"eyas {__version__}\n")
+    assert "citystreet\n" in run(monkeypatch, capsys, "maps", "list")[1]
+
+
+def test_warnings_are_one_line_on_stderr_and_stdout_stays_json():
+    command = [*COMMAND, "config", "show", "--set", "control.frequency=150"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert json.loads(done.stdout)["control"]["frequency"] == 150
+    assert done.stderr.startswith("eyas: warning: control.frequency: 150 does not divide 500")
+    assert done.stderr.count("\n") == 1
+
+
+def test_help_does_not_load_what_it_does_not_need():
+    code = (
+        "import sys; from eyas.cli.main import main; sys.argv = ['eyas', '--help']\n"
+        "try: main()\n"
+        "except SystemExit as end: assert not end.code\n"
+        "heavy = {'numba', 'pydantic', 'libsumo'}\n"
+        "print('loaded:', sorted(heavy & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.endswith("loaded: []\n")
+
+
+def test_an_interrupt_is_one_line_and_exit_code_130(tmp_path):
+    fifo = tmp_path / "fifo"
+    os.mkfifo(fifo)  # reading it waits for ever
+    command = [*COMMAND, "config", "show", "--config", str(fifo)]
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+    writer = os.open(fifo, os.O_WRONLY)  # waits until the command reads
+    time.sleep(0.2)
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=30)
+    os.close(writer)
+    assert (process.returncode, err) == (130, "eyas: interrupted\n")
+
+
+def test_a_reader_that_goes_away_is_no_error():
+    process = subprocess.Popen(
+        [*COMMAND, "config", "show"], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+    process.stdout.close()
+    assert process.stderr.read() == ""
+    process.stderr.close()
+    process.wait(timeout=30)

@@ -1,0 +1,320 @@
+import json
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from eyas.core.errors import ConfigError, UnknownNameError
+from eyas.core.variation import Mirrored, Uniform
+from eyas.sim.config import EyasConfig
+from eyas.sim.legacy import (
+    from_legacy,
+    is_legacy,
+    legacy_defaults,
+    save_legacy,
+    to_legacy,
+    with_legacy,
+)
+from eyas.sim.legacy_keys import ENTRIES
+from eyas.sim.version_check import require_supported
+
+DATA = Path(__file__).parent / "data"
+FILES = ("manual_example", "recommended", "shipped")
+
+
+def read(name):
+    return json.loads((DATA / f"{name}.json").read_text())
+
+
+def flat(values):
+    pairs = {}
+    for key, value in values.items():
+        inner = value if isinstance(value, dict) else {}
+        pairs |= {f"{key}.{name}": part for name, part in inner.items()} or {key: value}
+    return pairs
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_the_originals_files_load_and_are_supported(name):
+    config = from_legacy(read(name))
+    require_supported(config)
+    assert from_legacy(to_legacy(config)) == config
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_files_say_the_same_after_a_round_trip_but_for_keys_without_effect(name):
+    said, written = flat(read(name)), flat(to_legacy(from_legacy(read(name))))
+    for entry in ENTRIES:
+        active = entry.write(_fields(from_legacy(read(name)), entry))
+        for key in active.keys() & said.keys():
+            assert written[key] == said[key], key
+
+
+def _fields(config, entry):
+    values = json.loads(config.model_dump_json())
+    fields = {}
+    for path in entry.paths:
+        value = config
+        for part in path.split("."):
+            value = getattr(value, part)
+        fields[path] = value
+    assert values
+    return fields
+
+
+def test_the_table_has_every_key_once():
+    keys = [key for entry in ENTRIES for key in entry.keys]
+    assert sorted(keys) == sorted(flat(legacy_defaults()))
+
+
+def test_every_setting_is_reached_by_at_most_one_entry():
+    paths = [path for entry in ENTRIES for path in entry.paths]
+    assert len(paths) == len(set(paths))
+
+
+def test_missing_groups_and_keys_have_the_manuals_values():
+    example = read("manual_example")
+    assert from_legacy({}) == from_legacy(example)
+    assert from_legacy({"Out_Video": {"fps": 50.0}}) == from_legacy(example)
+
+
+def test_the_recommended_set_reads_as_meant():
+    config = from_legacy(read("recommended"))
+    assert config.mode == "train"
+    assert config.start.pitch == Uniform(uniform=(0.6, 1.38))
+    assert config.start.height == Uniform(uniform=(13.0, 22.0))
+    assert config.start.direction == Uniform(uniform=(-3.1415926535, 3.1415926535))
+    assert config.start.horizontal_bias == Mirrored(mirrored=(2.5, 4.5))
+    assert config.start.warm_up_steps == 510
+    assert (config.traffic.group_size, config.traffic.colour, config.traffic.seed) == (None,) * 3
+    assert config.traffic.route_length == (500.0, 7000.0)
+    assert config.done.velocity == 10000.0
+    assert config.video.counter_clockwise_rate == 2.0
+    assert config.wire.port == 35531
+
+
+def test_what_the_original_cannot_say_is_kept_from_the_base():
+    base = EyasConfig(
+        seed=5, camera={"width": 640}, traffic={"demand": "respawn"}, world={"seed": 3}
+    )
+    config = from_legacy(read("shipped"), base)
+    assert (config.seed, config.camera.width, config.world.seed) == (5, 640, 3)
+    assert config.traffic.demand == "respawn"
+
+
+variations = st.one_of(
+    st.floats(0.5, 1.5),
+    st.tuples(st.floats(0.5, 1.5), st.floats(0.5, 1.5)).map(lambda pair: Uniform(uniform=pair)),
+)
+two_sided = st.one_of(
+    variations,
+    st.tuples(st.floats(-3, 3), st.floats(-3, 3)).map(lambda pair: Mirrored(mirrored=pair)),
+)
+unit = st.floats(0, 1)
+configs = st.fixed_dictionaries(
+    {},
+    optional={
+        "seed": st.integers(0, 2**40),
+        "mode": st.sampled_from(["demo", "video", "train"]),
+        "target": st.sampled_from(["SUMO_VEHICLE", "BB-8"]),
+        "world": st.fixed_dictionaries(
+            {
+                "map": st.sampled_from(["citystreet", "lake", "simpleway"]),
+                "weather": st.sampled_from(["day", "foggy", "grass_foggy"]),
+                "seed": st.integers(0, 9),
+            }
+        ),
+        "tracker": st.fixed_dictionaries(
+            {"kind": st.sampled_from(["drone", "car"]), "supervised": st.booleans()}
+        ),
+        "control": st.fixed_dictionaries({"frequency": st.integers(1, 500)}),
+        "start": st.fixed_dictionaries(
+            {"pitch": variations, "height": variations},
+            optional={"direction": two_sided, "vertical_bias": two_sided},
+        ),
+        "traffic": st.fixed_dictionaries(
+            {},
+            optional={
+                "group_size": st.none() | st.integers(1, 9),
+                "colour": st.none() | st.tuples(unit, unit, unit),
+                "seed": st.none() | st.integers(0, 9),
+                "route_length": st.tuples(st.floats(0, 100), st.floats(200, 300)),
+                "vehicle_type": st.sampled_from(["bus", "passenger"]),
+            },
+        ),
+        "light": st.one_of(
+            st.fixed_dictionaries({"background": st.floats(-1, 1), "visibility": variations}),
+            st.builds(
+                lambda pair: {"sun": {"uniform": pair}, "sun_replaces": True},
+                st.tuples(unit, unit),
+            ),
+        ),
+        "objects": st.fixed_dictionaries({"offset": two_sided}),
+        "video": st.fixed_dictionaries({"fps": st.floats(1, 60), "random_action": st.booleans()}),
+    },
+).map(lambda values: EyasConfig(**values))
+
+
+@settings(max_examples=60, deadline=None)
+@given(configs)
+def test_native_to_legacy_and_back_loses_nothing(config):
+    written = json.loads(json.dumps(to_legacy(config)))
+    assert from_legacy(written, config) == config
+    again = from_legacy(written)
+    assert from_legacy(to_legacy(again)) == again
+    assert again.start == config.start
+    assert again.light == config.light
+    assert (again.world.map, again.world.weather) == (config.world.map, config.world.weather)
+
+
+@pytest.mark.parametrize(
+    ("values", "path"),
+    [
+        ({"start": {"pitch": {"choice": [1.0, 1.2]}}}, "start.pitch"),
+        ({"start": {"pitch": {"choice": [1.0]}}}, "start.pitch"),
+        ({"light": {"sun": {"uniform": [0, 1]}}}, "light.sun_replaces"),
+        ({"light": {"sun": 0.5, "sun_replaces": True}}, "light.sun_replaces"),
+        ({"world": {"map": "a-b"}}, "world.map"),
+    ],
+)
+def test_what_cannot_be_said_is_one_line(values, path, tmp_path, caplog):
+    config = EyasConfig(**values)
+    with pytest.raises(ConfigError, match=rf"^{path}: .* cannot be said in env_config.json$"):
+        to_legacy(config)
+    assert not save_legacy(config, tmp_path / "env_config.json")
+    assert not list(tmp_path.iterdir())
+    assert path in caplog.text
+
+
+def test_saved_files_load_back(tmp_path):
+    config = from_legacy(read("recommended"))
+    assert save_legacy(config, tmp_path / "env_config.json")
+    assert from_legacy(json.loads((tmp_path / "env_config.json").read_text())) == config
+
+
+@pytest.mark.parametrize(
+    ("values", "line"),
+    [
+        (
+            {"Control_Frequence": 0},
+            "Control_Frequence: 0 is not allowed: a whole number from 1 to 500",
+        ),
+        (
+            {"Control_Frequency": 9},
+            "Control_Frequency: unknown key; did you mean 'Control_Frequence'?",
+        ),
+        ({"Out_Vidoe": {}}, "Out_Vidoe: unknown key; did you mean 'Out_Video'?"),
+        ({"Out_Video": {"fsp": 1}}, "Out_Video.fsp: unknown key; did you mean 'fps'?"),
+        ({"Out_Video": 3}, "Out_Video: 3 is not allowed: an object with channels, fps"),
+        ({"Out_Video": {"fps": "50"}}, "Out_Video.fps: '50' is not allowed: a number"),
+        (
+            {"Out_Video": {"channels": 4.0}},
+            "Out_Video.channels: 4.0 is not allowed: a whole number",
+        ),
+        ({"Verbose": 1}, "Verbose: 1 is not allowed: true or false"),
+        ({"Tracker_Def": "DRON"}, "Tracker_Def: 'DRON' is not allowed; did you mean 'DRONE'?"),
+        ({"Tracker_Def": "drone"}, "Tracker_Def: 'drone' is not allowed; known: CAR, DRONE"),
+        ({"Tracker_Def": 3}, "Tracker_Def: 3 is not allowed: 'DRONE' or 'CAR'"),
+        (
+            {"Simulation_Mode": "vidoe"},
+            "Simulation_Mode: 'vidoe' is not allowed; did you mean 'video'?",
+        ),
+        ({"World_Path": 3}, "World_Path: 3 is not allowed: text"),
+    ],
+)
+def test_a_wrong_key_or_value_is_told_in_the_originals_words(values, line):
+    with pytest.raises(ConfigError) as caught:
+        from_legacy(values)
+    assert str(caught.value).startswith(line)
+
+
+@pytest.mark.parametrize(
+    ("group", "keys", "path"),
+    [
+        ("Drone_Random_Config", {"height_random_max": -3}, "height_random_max: -3"),
+        ("Drone_Random_Config", {"height_random_min": 0}, "height_random_min: 0"),
+        ("Drone_Random_Config", {"height_random": 1}, "height_random: 1"),
+        ("Drone_Random_Config", {"height_fixed": "a"}, "height_fixed: 'a'"),
+        ("Drone_Random_Config", {"view_pitch_fixed": True}, "view_pitch_fixed: true"),
+        ("Sumo_Params", {"min_rou_distance": 8000}, "min_rou_distance: 8000"),
+        ("Sumo_Params", {"max_rou_distance": 0}, "max_rou_distance: 0"),
+        ("Sumo_Params", {"car_group_num": 0}, "car_group_num: 0"),
+        (
+            "Sumo_Params",
+            {"fixed_color": True, "normalize_color": [1, 2, 0]},
+            "normalize_color: [1, 2, 0]",
+        ),
+        (
+            "Sumo_Params",
+            {"car_type": "buss"},
+            "car_type: 'buss' is not allowed; did you mean 'bus'?",
+        ),
+        ("Done_Range", {"min_height": 60}, "min_height: 60"),
+        (
+            "Env_Params",
+            {"foggy_use_default": False, "foggy_visibility_range_fixed": 0},
+            "foggy_visibility_range_fixed: 0",
+        ),
+    ],
+)
+def test_the_key_to_blame_is_found_among_several(group, keys, path):
+    with pytest.raises(ConfigError) as caught:
+        from_legacy({group: keys})
+    assert str(caught.value).startswith(f"{group}.{path}")
+    assert "\n" not in str(caught.value)
+
+
+def test_keys_without_effect_may_be_out_of_range():
+    assert from_legacy({"Drone_Random_Config": {"height_fixed": -1}}) == from_legacy({})
+
+
+def test_an_unknown_target_is_told_with_the_nearest():
+    with pytest.raises(UnknownNameError, match=r"^Tracking_Object: .* did you mean 'Pedestrian'"):
+        from_legacy({"Tracking_Object": "Pedestrain"})
+
+
+def test_fixed_luminosity_is_added_and_drawn_luminosity_replaces():
+    fixed = from_legacy({"Env_Params": {"bgl_incremental": 0.5}}).light
+    drawn = from_legacy({"Env_Params": {"background_luminosity_random": True}}).light
+    assert (fixed.background, fixed.background_replaces) == (0.5, False)
+    assert (drawn.background, drawn.background_replaces) == (Uniform(uniform=(0.0, 1.0)), True)
+
+
+def test_random_fog_is_drawn_between_both_limits():
+    keys = {"foggy_use_default": False, "foggy_visibility_range_random": True}
+    assert from_legacy({"Env_Params": keys}).light.visibility == Uniform(uniform=(300.0, 1000.0))
+
+
+@pytest.mark.parametrize(
+    ("path", "place"),
+    [
+        ("/home/me/worlds/lake-night.wbt", ("lake", "night")),
+        (r"C:\worlds\village-snow.wbt", ("village", "snow")),
+        ("simpleway-grass_foggy.wbt", ("simpleway", "grass_foggy")),
+    ],
+)
+def test_the_path_of_a_world_gives_map_and_weather(path, place):
+    world = from_legacy({"World_Path": path}).world
+    assert (world.map, world.weather) == place
+
+
+def test_the_path_of_an_unknown_world_is_told_and_not_used(caplog):
+    assert from_legacy({"World_Path": "la2.wbt"}).world == EyasConfig().world
+    assert "la2.wbt" in caplog.text
+
+
+def test_a_change_of_one_key_leaves_what_the_original_cannot_say():
+    config = EyasConfig(start={"pitch": {"choice": [1.0, 1.2]}})
+    assert with_legacy(config, {"Out_Video": {"fps": 9}}) == EyasConfig(
+        start=config.start, video={"fps": 9}
+    )
+    drawn = with_legacy(config, {"Drone_Random_Config": {"view_pitch_random": True}})
+    assert drawn.start.pitch == Uniform(uniform=(0.7, 1.57))
+
+
+def test_notation_is_told_by_capitals():
+    assert is_legacy({"Verbose": True})
+    assert is_legacy({"Vrebose": True})
+    assert not is_legacy({"verbose": True, "Video": {}})
+    assert not is_legacy({})

@@ -1,0 +1,36 @@
+import pytest
+
+from eyas.core.errors import NotInThisVersionError
+from eyas.sim.config import EyasConfig
+from eyas.sim.legacy import from_legacy
+from eyas.sim.version_check import require_supported
+
+
+@pytest.mark.parametrize(
+    ("values", "line"),
+    [
+        ({"Tracker_Def": "CAR"}, r"tracker\.kind \(Tracker_Def\): 'car': "),
+        (
+            {"Drone_Supervisor_Ctrl": False},
+            r"tracker\.supervised \(Drone_Supervisor_Ctrl\): false: ",
+        ),
+        ({"Tracking_Object": "Mantis"}, r"target \(Tracking_Object\): 'Mantis': "),
+        ({"Lidar_Enable": True}, r"wire\.lidar \(Lidar_Enable\): true: "),
+        ({"Env_Params": {"bgl_incremental": 0.1}}, r"light\.background \(Env_Params\..*\): 0\.1: "),
+        ({"Env_Params": {"foggy_use_default": False}}, r"light\.visibility \(Env_Params\."),
+        (
+            {"Other_Params": {"max_obj_num": 3}},
+            r"objects\.max_count \(Other_Params\.max_obj_num\): 3: ",
+        ),
+    ],
+)
+def test_parts_that_come_later_are_named_in_both_notations(values, line):
+    with pytest.raises(NotInThisVersionError, match=rf"^{line}.* is not in this version yet$"):
+        require_supported(from_legacy(values))
+
+
+def test_defaults_ports_and_modes_are_supported():
+    require_supported(EyasConfig())
+    require_supported(
+        from_legacy({"Simulation_Mode": "train", "Config_Agen_Num_Port": 35531, "Socket_Ip": "::1"})
+    )
