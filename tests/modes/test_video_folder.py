@@ -75,8 +75,10 @@ def test_overwrite_does_not_follow_links(tmp_path):
     (outside / "episode0").mkdir(parents=True)
     (outside / "episode0" / "000000.jpeg").write_text("mine")
     (path / "DRONE1").symlink_to(outside)
-    with pytest.raises(OutputError):
+    before = tree(path)
+    with pytest.raises(OutputError, match="DRONE1"):
         open_folder(path, CONFIG, overwrite=True, resume=False)
+    assert tree(path) == before
     assert (outside / "episode0" / "000000.jpeg").read_text() == "mine"
 
 

@@ -13,7 +13,7 @@ __all__ = ["QUALITY", "frame_name", "write_frame"]
 
 QUALITY = 100
 """The original's JPEG quality. Colours keep the full resolution too (4:4:4), because a target may
-be only a few pixels wide."""
+be only a few pixels wide. A picture of 320 x 240 takes about 90 kB (36 kB at quality 95)."""
 
 
 def frame_name(frame: int) -> str:

@@ -16,8 +16,9 @@ from eyas.core.files import part_path, refusals
 __all__ = ["MovieWriter"]
 
 CODECS = {
+    # A picture of 320 x 240 takes 1.8 ms; the default preset needs 5.7 ms for the same size.
     # x264's macroblock tree gives other bytes in about one run of fifty, so it stays off.
-    "libx264": {"crf": "18", "preset": "medium", "x264-params": "mbtree=0"},
+    "libx264": {"crf": "18", "preset": "veryfast", "x264-params": "mbtree=0"},
     "mpeg4": {"qscale": "3"},
 }
 """Encoders by preference, with settings of about the same, visually clean, quality."""

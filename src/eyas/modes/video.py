@@ -5,7 +5,7 @@ from pathlib import Path
 from eyas.core.clock import PHYSICS_RATE
 from eyas.core.errors import ConfigError, OutputError
 from eyas.modes.video_action import mover_of
-from eyas.modes.video_folder import open_folder
+from eyas.modes.video_folder import check_folder, open_folder
 from eyas.modes.video_grid import FrameGrid
 from eyas.modes.video_recorder import Recorder
 from eyas.modes.video_report import Progress, print_report, say
@@ -44,7 +44,9 @@ def run(
         EyasError: One line: what cannot be built, read or written.
         KeyboardInterrupt: The user stopped it; every file that is there is whole.
     """
-    # Built first, so that settings that do not work leave no folder and delete none.
+    # Building may take a minute, so the folder is looked at before; what cannot be built leaves no
+    # folder and deletes none, so it is made after.
+    check_folder(folder, config, overwrite=overwrite, resume=resume)
     sim = build_simulation(recording_rules(config), config.video.channels, shared_world=True)
     _require_traffic(config)
     place = open_folder(folder, config, overwrite=overwrite, resume=resume)

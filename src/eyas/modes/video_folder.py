@@ -15,7 +15,7 @@ from eyas.sim.config import EyasConfig
 from eyas.sim.legacy import save_legacy
 from eyas.sim.settings_file import save_settings
 
-__all__ = ["VideoFolder", "open_folder"]
+__all__ = ["VideoFolder", "check_folder", "open_folder"]
 
 SETTINGS, LEGACY_SETTINGS, DIR_INFO = "config.json", "env_config.json", "dir_info.json"
 
@@ -65,6 +65,40 @@ class VideoFolder:
         write_dir_info(self.path / DIR_INFO, frames)
 
 
+def check_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: bool) -> None:
+    """Refuse a folder that cannot be recorded into; change nothing.
+
+    Args:
+        path: The folder; need not be there.
+        config: What will be recorded.
+        overwrite: Whether a recording that lies there may be deleted.
+        resume: Whether a recording that lies there will be continued.
+
+    Raises:
+        OutputError: It is a file, or holds something.
+        ConfigError: The recording that lies there was made with other settings, or both
+            `overwrite` and `resume` are asked for.
+        DataFileError: The settings of the recording that lies there cannot be read.
+    """
+    if overwrite and resume:
+        raise ConfigError("--overwrite and --resume exclude each other: delete, or continue")
+    with refusals(path):
+        if not path.exists():
+            return
+        if not path.is_dir():
+            raise OutputError(f"{path}: is a file; name a folder")
+        used = any(not inside.name.endswith(PART_SUFFIX) for inside in path.iterdir())
+    if used and overwrite:
+        _require_recording(path)
+    elif used and resume:
+        _require_same_settings(path, config)
+    elif used:
+        raise OutputError(
+            f"{path}: not empty; continue its recording with --resume, replace it with"
+            " --overwrite, or name another folder"
+        )
+
+
 def open_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: bool) -> VideoFolder:
     """Make a folder ready to record into, with the settings in it.
 
@@ -75,23 +109,16 @@ def open_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: bool
         resume: Whether a recording that lies there is continued.
 
     Raises:
-        OutputError: The folder cannot be used: it is a file, it holds something, the file system
-            refused.
-        ConfigError: The recording that lies there was made with other settings, or both
-            `overwrite` and `resume` are asked for.
+        OutputError: As `check_folder`, or the file system refused.
+        ConfigError: As `check_folder`.
+        DataFileError: As `check_folder`.
     """
-    if overwrite and resume:
-        raise ConfigError("--overwrite and --resume exclude each other: delete, or continue")
-    if path.exists() and not path.is_dir():
-        raise OutputError(f"{path}: is a file; name a folder")
+    check_folder(path, config, overwrite=overwrite, resume=resume)
     with refusals(path):
         path.mkdir(parents=True, exist_ok=True)
-        _delete_parts(path)
-        used = any(path.iterdir())
-        if used and overwrite:
+        if overwrite:
             _delete_recording(path)
-        elif used:
-            _accept(path, config, resume=resume)
+        _delete_parts(path)
     save_settings(config, path / SETTINGS)
     save_legacy(config, path / LEGACY_SETTINGS)
     return VideoFolder(path, config)
@@ -106,40 +133,37 @@ def _delete_parts(path: Path) -> None:
                 part.unlink(missing_ok=True)
 
 
-def _delete_recording(path: Path) -> None:
-    """Delete a recording, and nothing that is not one."""
+def _require_recording(path: Path) -> None:
+    """Refuse to delete what is not a recording, or not only that."""
     if not (path / SETTINGS).is_file():
         raise OutputError(f"{path}: not deleted: it is no recording (it has no {SETTINGS})")
-    walked = list(os.walk(path, topdown=False))
-    for folder, folders, names in walked:
+    for folder, folders, names in os.walk(path):
         for name in sorted(folders + names):
             inside = Path(folder, name).relative_to(path).as_posix()
-            if not _OURS.fullmatch(inside):
+            if not _OURS.fullmatch(inside) or Path(folder, name).is_symlink():
                 raise OutputError(f"{path}: not deleted: '{inside}' is not part of a recording")
-    for folder, folders, names in walked:
+
+
+def _delete_recording(path: Path) -> None:
+    for folder, folders, names in os.walk(path, topdown=False):
         for name in names:
             if Path(folder, name) != path / SETTINGS:
                 Path(folder, name).unlink()
         for name in folders:
             Path(folder, name).rmdir()
     # Last, so that a deletion that was interrupted can be asked for again.
-    (path / SETTINGS).unlink()
+    (path / SETTINGS).unlink(missing_ok=True)
 
 
-def _accept(path: Path, config: EyasConfig, *, resume: bool) -> None:
-    """Refuse to continue in a folder unless that is asked for and gives the same recording."""
-    if not resume:
-        raise OutputError(
-            f"{path}: not empty; continue its recording with --resume, replace it with"
-            " --overwrite, or name another folder"
-        )
+def _require_same_settings(path: Path, config: EyasConfig) -> None:
+    """Refuse to continue a recording that was begun with other settings."""
     settings = path / SETTINGS
     if not settings.is_file():
         raise OutputError(f"{path}: nothing to continue: not empty, and it has no {SETTINGS}")
     try:
         recorded = json.loads(settings.read_text())
-    except ValueError:
-        raise DataFileError(f"{settings}: is not JSON; start anew with --overwrite") from None
+    except (OSError, ValueError):
+        raise DataFileError(f"{settings}: cannot be read; start anew with --overwrite") from None
     difference = _first_difference(recorded, json.loads(config.model_dump_json()), "")
     if difference:
         raise ConfigError(f"{settings}: other settings than asked for: {difference}")
