@@ -115,3 +115,4 @@ def _record(sim: Simulation, config: EyasConfig, recorder: Recorder, progress: P
             recorder.end(ended)
             sim.reset(ended)
             grid.restart(ended)
+    progress.show(1.0, recorder.drawn)
