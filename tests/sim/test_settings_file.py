@@ -142,3 +142,8 @@ def test_a_rate_that_does_not_divide_500_is_told_with_the_rate_in_effect(caplog)
         "control.frequency: 150 does not divide 500; an action lasts 3 steps of 2 ms, "
         "so the effective rate is 166.7 Hz"
     ]
+
+
+def test_a_log_that_is_not_written_is_told(caplog):
+    load_settings(None, ["Verbose=true"])
+    assert [record.getMessage()[:17] for record in caplog.records] == ["verbose (Verbose)"]

@@ -14,7 +14,7 @@ from eyas.core.files import write_atomic
 from eyas.sim.config import EyasConfig
 from eyas.sim.legacy import from_legacy, is_legacy, with_legacy
 
-__all__ = ["load_settings", "read_settings", "save_settings", "warn_about_rate"]
+__all__ = ["load_settings", "read_settings", "save_settings"]
 
 _LOG = logging.getLogger("eyas")
 
@@ -24,7 +24,8 @@ Nested = dict[str, Any]
 def load_settings(path: Path | None, overrides: Sequence[str] = ()) -> EyasConfig:
     """Return the settings of a file with some changed.
 
-    A control frequency that does not divide 500 is told in one line of the log `eyas`.
+    What is allowed and may surprise (a control frequency that does not divide 500, a log that is
+    not written) is told in one line of Python's log `eyas`.
 
     Args:
         path: JSON, native or the original's `env_config.json`; None: the defaults.
@@ -49,7 +50,7 @@ def load_settings(path: Path | None, overrides: Sequence[str] = ()) -> EyasConfi
             inactive = _overlaid(inactive, changes)
         else:
             config = updated(config, changes)
-    warn_about_rate(config)
+    _tell_surprises(config)
     return config
 
 
@@ -86,8 +87,7 @@ def read_settings(path: Path) -> Nested:
     return values
 
 
-def warn_about_rate(config: EyasConfig) -> None:
-    """Log one line if the control frequency does not divide that of the physics."""
+def _tell_surprises(config: EyasConfig) -> None:
     frequency = config.control.frequency
     steps = PHYSICS_RATE // frequency
     if steps * frequency != PHYSICS_RATE:
@@ -96,6 +96,8 @@ def warn_about_rate(config: EyasConfig) -> None:
             "so the effective rate is %.4g Hz",
             *(frequency, PHYSICS_RATE, steps, PHYSICS_RATE / steps),
         )
+    if config.verbose:
+        _LOG.warning("verbose (Verbose): true: its log is not in this version yet; none is written")
 
 
 def _without_doubles(pairs: list[tuple[str, Any]]) -> Nested:

@@ -1,0 +1,36 @@
+"""docs/configuration.md names every setting with its default, and every key of the original."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from eyas.core.config import group_of
+from eyas.sim.config import EyasConfig
+from eyas.sim.legacy import legacy_defaults
+from eyas.sim.legacy_keys import ENTRIES
+
+DOC = (Path(__file__).parents[2] / "docs" / "configuration.md").read_text().splitlines()
+
+
+def settings():
+    values = json.loads(EyasConfig().model_dump_json())
+    for name, field in EyasConfig.model_fields.items():
+        if group_of(field):
+            yield from ((f"{name}.{key}", value) for key, value in values[name].items())
+        else:
+            yield name, values[name]
+
+
+@pytest.mark.parametrize(("path", "default"), list(settings()))
+def test_the_page_has_every_setting_with_its_default(path, default):
+    assert any(line.startswith(f"| `{path}` | `{json.dumps(default)}` |") for line in DOC)
+
+
+@pytest.mark.parametrize("entry", ENTRIES, ids=lambda entry: entry.keys[0])
+def test_the_page_has_every_key_of_the_original(entry):
+    ours = ", ".join(f"`{path}`" for path in entry.paths)
+    for key in entry.keys:
+        group, _, name = key.rpartition(".")
+        default = legacy_defaults()[group][name] if group else legacy_defaults()[name]
+        assert f"| `{key}` | `{json.dumps(default)}` | {ours} |" in DOC
