@@ -1,6 +1,7 @@
 """Every key of the original's `env_config.json`, and the setting of ours that it is."""
 
-from eyas.sim.legacy_entries import Entry, Optional, Same, Span, Varied, WorldPath
+from eyas.sim.legacy_entries import Entry, Optional, Same, Span, Varied
+from eyas.sim.legacy_world import WorldPath
 
 __all__ = ["ENTRIES"]
 
