@@ -126,7 +126,9 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
 
 
 def _settings(
-    config: EyasConfig | Mapping[str, Any] | str | Path | None, map_name: str | None, weather: str | None
+    config: EyasConfig | Mapping[str, Any] | str | Path | None,
+    map_name: str | None,
+    weather: str | None,
 ) -> EyasConfig:
     match config:
         case None:
@@ -137,7 +139,9 @@ def _settings(
             settings = validated(EyasConfig, dict(config))
         case _:
             settings = load_settings(Path(config), [])
-    changes = {key: value for key, value in (("map", map_name), ("weather", weather)) if value is not None}
+    changes = {
+        key: value for key, value in (("map", map_name), ("weather", weather)) if value is not None
+    }
     if not changes:
         return settings
     return settings.model_copy(update={"world": settings.world.model_copy(update=changes)})

@@ -112,7 +112,9 @@ def _steps(count: int, seconds: float, *, camera: bool) -> Measurement:
 def _reset(seconds: float) -> Measurement:
     simulation = build_simulation(EyasConfig(), 1, shared_world=False)
     rate, repeats = _median_rate(simulation.reset, seconds)
-    return Measurement("reset of one tracker", 1e3 / rate, "ms", "target, start pose, looks", repeats)
+    return Measurement(
+        "reset of one tracker", 1e3 / rate, "ms", "target, start pose, looks", repeats
+    )
 
 
 def _first_picture(name: str, cache: str | None) -> Measurement:

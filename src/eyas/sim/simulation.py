@@ -41,9 +41,7 @@ class Simulation:
         shared_world: One world and one time for all, or one for each.
     """
 
-    def __init__(
-        self, config: EyasConfig, place: Place, count: int, *, shared_world: bool
-    ) -> None:
+    def __init__(self, config: EyasConfig, place: Place, count: int, *, shared_world: bool) -> None:
         self.config = config
         self.count = count
         self._place = place

@@ -1,4 +1,4 @@
-"""The step: one kernel call moves, judges and reports all trackers for all physics steps of an action."""
+"""The step: one kernel call moves and judges all trackers for all physics steps of an action."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -32,10 +32,18 @@ class TrackerState:
     @classmethod
     def create(cls, count: int) -> "TrackerState":
         """Return the state of `count` trackers at rest at the origin."""
-        three = [np.zeros((count, 3)) for _ in range(7)]
         orientation = np.zeros((count, 4))
         orientation[:, 0] = 1.0
-        return cls(three[0], three[1], three[2], orientation, *three[3:7])
+        return cls(
+            position=np.zeros((count, 3)),
+            velocity=np.zeros((count, 3)),
+            acceleration=np.zeros((count, 3)),
+            orientation=orientation,
+            euler=np.zeros((count, 3)),
+            angular_velocity=np.zeros((count, 3)),
+            commanded_position=np.zeros((count, 3)),
+            gimbal=np.zeros((count, 3)),
+        )
 
 
 @dataclass(slots=True)
@@ -104,5 +112,12 @@ class ActorState:
     @classmethod
     def create(cls, worlds: int, actors: int) -> "ActorState":
         """Return `actors` actors at the origin in each of `worlds` worlds."""
-        plane = [np.zeros((worlds, actors)) for _ in range(4)]
-        return cls(np.zeros((worlds, actors, 2)), *plane, np.zeros((worlds, actors), np.bool_))
+        plane = (worlds, actors)
+        return cls(
+            position=np.zeros((*plane, 2)),
+            yaw=np.zeros(plane),
+            speed=np.zeros(plane),
+            yaw_rate=np.zeros(plane),
+            travelled=np.zeros(plane),
+            present=np.zeros(plane, np.bool_),
+        )
