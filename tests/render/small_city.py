@@ -217,5 +217,6 @@ def _no_network() -> RoadNetwork:
     none, ids = np.zeros(0), np.zeros(0, np.int32)
     first = np.zeros(1, np.int32)
     return RoadNetwork(
-        "", "", np.zeros((0, 2)), first, none, none, ids, ids, (), (), (), np.zeros((0, 2)), first, ()
+        "", "", np.zeros((0, 2)), first, none, none, ids, ids,
+        (), (), (), np.zeros((0, 2)), first, (),
     )  # fmt: skip

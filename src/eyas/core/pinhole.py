@@ -56,7 +56,7 @@ def project(
 def rays(
     rotation: ArrayLike, width: int, height: int, fov: float, vertical_fov: float | None = None
 ) -> NDArray[np.float64]:
-    """Return the direction of each pixel's centre, so that `position + depth * ray` is what it shows.
+    """Return the direction of each pixel's centre: it shows the point `position + depth * ray`.
 
     Args:
         rotation: Camera to world; columns forward, left, up, shape (3, 3).

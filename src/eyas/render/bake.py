@@ -25,7 +25,7 @@ TEXEL = 0.2
 LARGEST = 4096
 """Most texels along a side."""
 
-_FORMAT = b"eyas shadow map 1"
+_FORMAT = b"eyas shadow map 2"
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,13 +82,11 @@ def _frame(
     right = np.array([-toward[1], toward[0], 0.0])
     right = right / np.linalg.norm(right) if np.linalg.norm(right) > 1e-6 else np.eye(3)[0]
     axes = np.stack([right, np.cross(toward, right), toward])
-    points = _solid_points(geometry)
-    high = points[points[:, 2] > ground + 0.5]
-    flat = (high if len(high) else np.zeros((1, 3))) @ axes.T
+    flat = _casting_points(geometry, ground + 0.5) @ axes.T
     low, top = flat.min(axis=0) - 1.0, flat.max(axis=0) + 1.0
     texel = max(TEXEL, float((top - low)[:2].max()) / (LARGEST - 4))
     size = np.ceil((top - low)[:2] / texel).astype(int) + 2
-    # Heights of 1 to 65535. The floor may reach lower than all that throws shadows: it ends at 1.
+    # The floor may reach lower than all that throws shadows; its height is then below 0.
     unit = 65000.0 / float(top[2] - low[2])
     scale = np.array([1.0 / texel, 1.0 / texel, unit])
     rows = np.concatenate(
@@ -97,17 +95,21 @@ def _frame(
     return rows, int(size[1]), int(size[0]), texel
 
 
-def _solid_points(geometry: Geometry) -> NDArray[np.float64]:
-    """Return the vertices of the static mesh and the corners of the fixtures' boxes [m]."""
-    last = geometry.chunk_range[-1, 3] if len(geometry.chunk_range) else 0
-    static = geometry.positions[:last]
+def _casting_points(geometry: Geometry, height: float) -> NDArray[np.float64]:
+    """Return all corners of static triangles and of fixtures' boxes that reach a height [m]."""
+    last = geometry.chunk_range[-1, 1] if len(geometry.chunk_range) else 0
+    static = geometry.positions[geometry.corners[:last]]
     boxes = geometry.box[geometry.fixture_prototype]
     corners = np.stack(
         [boxes[:, (i, j, k)] for i in (0, 3) for j in (1, 4) for k in (2, 5)], axis=1
     )
     linear, offset = geometry.fixture_pose[:, :, :3], geometry.fixture_pose[:, :, 3]
     posed = np.einsum("fij,fcj->fci", linear, corners) + offset[:, None]
-    return np.concatenate([static, posed.reshape(-1, 3)]).astype(np.float64)
+    points = [
+        things[things[:, :, 2].max(axis=1) > height].reshape(-1, 3) for things in (static, posed)
+    ]
+    found = np.concatenate(points).astype(np.float64)
+    return found if len(found) else np.zeros((1, 3))
 
 
 def _bake(

@@ -1,5 +1,6 @@
 """From a scene and a part library to the packed arrays of the kernels."""
 
+import itertools
 from collections.abc import Mapping
 
 import numpy as np
@@ -89,8 +90,8 @@ class _Pool:
     def add(self, mesh: Mesh, objects: NDArray[np.int32] | None) -> tuple[int, int, int, int]:
         """Append a mesh; return its ranges as in `Geometry.mesh_range`."""
         keep = np.flatnonzero(solid_triangles(mesh))
-        used, triangles = np.unique(mesh.triangles[keep], return_inverse=True)
-        triangles = triangles.reshape(-1, 3).astype(np.int32)
+        used, inverse = np.unique(mesh.triangles[keep], return_inverse=True)
+        triangles = inverse.reshape(-1, 3).astype(np.int32)
         lookup = np.array(
             [self.palette.setdefault(m, len(self.palette)) for m in mesh.palette], np.int32
         )
@@ -128,7 +129,7 @@ def _add_chunks(pool: _Pool, scene: Scene) -> tuple[NDArray[np.int32], NDArray[n
     order = np.argsort(key, kind="stable")
     starts = np.flatnonzero(np.diff(key[order], prepend=-2, append=-3) != 0)
     ranges, boxes = [], []
-    for first, last in zip(starts[:-1], starts[1:], strict=True):
+    for first, last in itertools.pairwise(starts):
         index = order[first:last]
         part = Mesh(
             positions=mesh.positions,

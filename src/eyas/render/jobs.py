@@ -82,6 +82,6 @@ def write_subject(bands: NDArray[np.int32], measured: NDArray[np.int32], picture
         low = np.where(by_view[:, :, 5:] > 0, by_view[:, :, :2], far).min(axis=1)
         high = by_view[:, :, 2:4].max(axis=1)
         box = np.concatenate([low, high], axis=1)
-        picture.subject_box[:] = np.where(by_view[:, :, 5].any(axis=1)[:, None], box, 0)
+        picture.subject_box[:] = np.where(by_view[:, :, 5].sum(axis=1, keepdims=True) > 0, box, 0)
     if picture.subject_pixels is not None:
         picture.subject_pixels[:] = by_view[:, :, 4:].sum(axis=1)

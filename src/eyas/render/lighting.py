@@ -4,8 +4,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from eyas.render.bake import ShadowMap
-from eyas.render.kernels.bundles import Light
 from eyas.render.kernels.band import TONE_STEPS, TONE_TOP
+from eyas.render.kernels.bundles import Light
 from eyas.state.scene import Lighting
 
 __all__ = ["build_light", "tone_table"]
@@ -41,7 +41,8 @@ def tone_table() -> NDArray[np.uint8]:
     radiance = (np.arange(TONE_STEPS) + 0.5) * (TONE_TOP / TONE_STEPS)
     tone = 1.0 - np.exp(-1.35 * radiance)
     encoded = np.where(tone <= 0.0031308, 12.92 * tone, 1.055 * tone ** (1 / 2.4) - 0.055)
-    return np.round(255.0 * np.clip(encoded, 0.0, 1.0)).astype(np.uint8)
+    table: NDArray[np.uint8] = np.round(255.0 * np.clip(encoded, 0.0, 1.0)).astype(np.uint8)
+    return table
 
 
 def _row(values: ArrayLike) -> NDArray[np.float32]:

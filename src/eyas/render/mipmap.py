@@ -54,4 +54,5 @@ def _packed(image: NDArray[np.uint8]) -> NDArray[np.uint32]:
         texels = (texels[::2] + texels[1::2]) / 2
         texels = (texels[:, ::2] + texels[:, 1::2]) / 2
     shifts = np.array([0, 8, 16, 24], np.uint32)
-    return np.bitwise_or.reduce(np.concatenate(levels) << shifts, axis=1)
+    packed: NDArray[np.uint32] = np.bitwise_or.reduce(np.concatenate(levels) << shifts, axis=1)
+    return packed

@@ -76,7 +76,8 @@ class Renderer:
         movers = Movers(draw_list.part, draw_list.pose, draw_list.colour, draw_list.object_id)
         output = _output(picture)
         if samples == 4 and picture.rgb is not None:
-            self._draw(views, movers, output._replace(**_NOTHING_BUT_RGB), picture, side=2)
+            colours = Output(output.rgb, _NOTHING_DEPTH, _NOTHING_OBJECT, _NOTHING_SUBJECT)
+            self._draw(views, movers, colours, picture, side=2)
             output = output._replace(rgb=_NOTHING_RGB)
         if any(len(array) for array in output):
             self._draw(views, movers, output, picture, side=1)
@@ -124,11 +125,6 @@ _NOTHING_RGB = np.empty((0, 0, 0, 3), np.uint8)
 _NOTHING_DEPTH = np.empty((0, 0, 0), np.float32)
 _NOTHING_OBJECT = np.empty((0, 0, 0), np.int32)
 _NOTHING_SUBJECT = np.empty((0, 6), np.int32)
-_NOTHING_BUT_RGB = {
-    "depth": _NOTHING_DEPTH,
-    "object_id": _NOTHING_OBJECT,
-    "subject": _NOTHING_SUBJECT,
-}
 
 
 def _output(picture: Picture) -> Output:

@@ -11,7 +11,8 @@ __all__ = ["gradients", "solid_triangles"]
 def solid_triangles(mesh: Mesh) -> NDArray[np.bool_]:
     """Return which triangles have an area, shape (T,)."""
     a, b, c = np.moveaxis(mesh.positions[mesh.triangles].astype(np.float64), 1, 0)
-    return np.linalg.norm(np.cross(b - a, c - a), axis=1) > 1e-10
+    solid: NDArray[np.bool_] = np.linalg.norm(np.cross(b - a, c - a), axis=1) > 1e-10
+    return solid
 
 
 def gradients(
@@ -58,4 +59,5 @@ def gradients(
 
 
 def _dot(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
-    return np.einsum("ij,ij->i", a, b)[:, None]
+    product: NDArray[np.float64] = np.einsum("ij,ij->i", a, b)
+    return product[:, None]

@@ -5,12 +5,12 @@ from numpy.typing import NDArray
 
 from eyas.core.jit import inlined_kernel, kernel
 from eyas.render.kernels.bundles import Geometry, Light
+from eyas.render.kernels.scalars import f4, i8, u4
 from eyas.render.kernels.shade import shade_point
 from eyas.render.kernels.sky import sky
 
 __all__ = ["TONE_STEPS", "TONE_TOP", "shade_band"]
 
-f4 = np.float32
 
 TONE_STEPS = 16384
 """Length of `Light.tone`."""
@@ -46,7 +46,7 @@ def _set_frame(
 @inlined_kernel
 def _byte(light: Light, radiance: float) -> int:
     step = min(max(radiance * light.air[2] * _STEPS_PER_UNIT, f4(0.0)), _LAST_STEP)
-    return light.tone[np.uint32(step)]
+    return i8(light.tone[u4(step)])
 
 
 @kernel

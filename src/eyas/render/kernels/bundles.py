@@ -129,7 +129,8 @@ class Scratch(NamedTuple):
     """(instance + 1) << 32 | triangle, -1 for sky; instance -1 is the static mesh, then come
     the fixtures, then the slots of the draw list. Shape (K, rows, columns)."""
     shade: NDArray[np.uint8]
-    """Sun and sky light that moving things let through, 255 for all, shape (K, rows, columns, 2)."""
+    """Sun and sky light that moving things let through, 255 for all,
+    shape (K, rows, columns, 2)."""
     screen: NDArray[np.float64]
     """Column, row, 1/distance, distance of a mesh's vertices, shape (K, ., 4)."""
     order: NDArray[np.int64]

@@ -11,7 +11,6 @@ from eyas.render.kernels.cull import sphere_is_visible
 
 __all__ = ["cast_shadows"]
 
-f4 = np.float32
 
 SMALLEST = 1.0
 """Things whose half diagonal is smaller cast no shadow [pixels]."""
@@ -68,7 +67,7 @@ def _throw(caster: NDArray[np.float64], sun: NDArray[np.float32]) -> float:
 
     A sun near the horizon would throw it without end: it is cut after four heights.
     """
-    return min(1.0 / max(float(sun[2]), 1e-3), 4.0) * (caster[7] - caster[6])
+    return float(min(1.0 / max(float(sun[2]), 1e-3), 4.0) * (caster[7] - caster[6]))
 
 
 @kernel

@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from eyas.core.jit import kernel
 from eyas.render.kernels.bundles import GROUP, NEAR
+from eyas.render.kernels.scalars import i8
 
 __all__ = ["box_is_visible", "set_planes", "sphere_is_visible", "visible_chunks"]
 
@@ -83,7 +84,7 @@ def visible_chunks(
             for axis in range(3):
                 gap = max(boxes[i, axis] - eye[axis], eye[axis] - boxes[i, 3 + axis], 0.0)
                 square += gap * gap
-            order[count] = (np.int64(1000.0 * np.sqrt(square)) << np.int64(32)) | np.int64(i)
+            order[count] = (i8(1000.0 * np.sqrt(square)) << i8(32)) | i8(i)
             count += 1
     _shell_sort(order, count)
     return count
@@ -91,7 +92,7 @@ def visible_chunks(
 
 @kernel
 def _shell_sort(values: NDArray[np.int64], count: int) -> None:
-    """Sort the first `count` values in place. (np.sort would allocate.)"""
+    """Sort the first `count` values in place; np.sort would allocate."""
     gap = 1
     while gap < count // 3:
         gap = 3 * gap + 1

@@ -8,13 +8,12 @@ from eyas.render.kernels.band import shade_band
 from eyas.render.kernels.bundles import Geometry, Job, Light, Movers, Output, Scratch
 from eyas.render.kernels.casters import cast_shadows
 from eyas.render.kernels.cull import set_planes
+from eyas.render.kernels.scalars import f4, i8
 from eyas.render.kernels.transform import set_world_rows
 from eyas.render.kernels.visibility import draw_moving, draw_static
 from eyas.state.scene import SKY_OBJECT
 
 __all__ = ["draw_views"]
-
-f4 = np.float32
 
 
 @parallel_kernel
@@ -120,10 +119,10 @@ def _object_of(geometry: Geometry, object_ids: NDArray[np.int32], owner: int) ->
         return SKY_OBJECT
     instance = (owner >> 32) - 1
     if instance < 0:
-        return geometry.object_id[owner & 0xFFFFFFFF]
+        return i8(geometry.object_id[owner & 0xFFFFFFFF])
     if instance < len(geometry.fixture_object):
-        return geometry.fixture_object[instance]
-    return object_ids[instance - len(geometry.fixture_object)]
+        return i8(geometry.fixture_object[instance])
+    return i8(object_ids[instance - len(geometry.fixture_object)])
 
 
 @kernel

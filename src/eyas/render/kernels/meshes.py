@@ -5,7 +5,8 @@ from numpy.typing import NDArray
 
 from eyas.core.jit import kernel
 from eyas.render.kernels.bundles import Geometry
-from eyas.render.kernels.rasterise import rasterise
+from eyas.render.kernels.rasterise import BOTH_SIDES, FRONT, rasterise
+from eyas.render.kernels.scalars import f4, i8
 from eyas.render.kernels.texture import level_of
 from eyas.render.kernels.transform import clip_near, to_screen
 from eyas.state.mesh import Surface
@@ -27,7 +28,7 @@ def level_of_detail(
 ) -> int:
     """Return the mesh to draw for a prototype of a radius [m] at a distance [m]."""
     size = 2.0 * radius * focal / max(distance - radius, 1e-3)
-    last = geometry.level_first[prototype + 1] - 1
+    last = i8(geometry.level_first[prototype + 1]) - 1
     for mesh in range(geometry.level_first[prototype], last):
         triangles = geometry.mesh_range[mesh, 1] - geometry.mesh_range[mesh, 0]
         if triangles * PIXELS_PER_TRIANGLE <= size * size:
@@ -71,7 +72,7 @@ def draw_mesh(
     middle_x, middle_y = 0.5 * width, 0.5 * height
     offset = ranges[index, 2]
     to_screen(rows, geometry.positions, offset, ranges[index, 3], middle_x, middle_y, screen)
-    base = (np.int64(instance) + 1) << np.int64(32)
+    base = (i8(instance) + 1) << i8(32)
     bottom = top + depth.shape[0]
     for triangle in range(ranges[index, 0], ranges[index, 1]):
         a = geometry.corners[triangle, 0] - offset
@@ -80,10 +81,10 @@ def draw_mesh(
         material = geometry.material[triangle]
         leafy = geometry.surface[material] == FOLIAGE
         clear = screen[a, 2] > 0.0 and screen[b, 2] > 0.0 and screen[c, 2] > 0.0
-        tag = base | np.int64(triangle)
+        tag = base | i8(triangle)
         if clear and not leafy:
             rasterise(
-                screen, a, b, c, top, depth, owner, tag, False, geometry.texture, 0, -1
+                screen, a, b, c, top, depth, owner, tag, FRONT, geometry.texture, 0, -1
             )  # fmt: skip
             continue
         if clear and max(screen[a, 1], screen[b, 1], screen[c, 1]) < top:
@@ -91,14 +92,14 @@ def draw_mesh(
         if clear and min(screen[a, 1], screen[b, 1], screen[c, 1]) > bottom:
             continue
         count = clip_near(screen, geometry.uvs, offset, a, b, c, middle_x, middle_y, polygon)
-        level = -1
+        level, sides = -1, BOTH_SIDES if leafy else FRONT
         if leafy and count > 0:
             span = 256.0 * geometry.gradients[triangle, 23] / (focal * polygon[0, 2])
-            level = level_of(np.float32(span * span))
+            level = level_of(f4(span * span))
             if level >= SMALLEST_HOLES:
                 level = -1
         for k in range(1, count - 1):
             rasterise(
-                polygon, 0, k, k + 1, top, depth, owner, tag, leafy, geometry.texture,
+                polygon, 0, k, k + 1, top, depth, owner, tag, sides, geometry.texture,
                 geometry.layer[material], level,
             )  # fmt: skip

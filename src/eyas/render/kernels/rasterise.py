@@ -4,11 +4,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.jit import kernel
+from eyas.render.kernels.scalars import f4
 from eyas.render.kernels.texture import coverage
 
-__all__ = ["rasterise"]
+__all__ = ["BOTH_SIDES", "FRONT", "rasterise"]
 
-f4 = np.float32
+FRONT = 0
+"""Draw only triangles seen from their front."""
+
+BOTH_SIDES = 1
+"""Draw all triangles."""
 
 
 @kernel
@@ -21,7 +26,7 @@ def rasterise(
     depth: NDArray[np.float32],
     owner: NDArray[np.int64],
     tag: int,
-    two_sided: bool,
+    sides: int,
     textures: NDArray[np.uint32],
     layer: int,
     level: int,
@@ -42,7 +47,7 @@ def rasterise(
         depth: Largest 1/w so far, shape (rows, columns).
         owner: Whose it is.
         tag: What to write into `owner`.
-        two_sided: Draw back faces too.
+        sides: `FRONT` or `BOTH_SIDES`.
         textures: Texels of all layers, see `Geometry`.
         layer: Texture whose alpha cuts holes.
         level: Its mip level, -1 for no holes.
@@ -50,7 +55,7 @@ def rasterise(
     ax, ay, bx, by = corners[a, 0], corners[a, 1], corners[b, 0], corners[b, 1]
     cx, cy = corners[c, 0], corners[c, 1]
     area = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
-    if area == 0.0 or (area > 0.0 and not two_sided):
+    if area == 0.0 or (area > 0.0 and sides == FRONT):
         return
     rows, width = depth.shape
     low, high = min(ay, by, cy), max(ay, by, cy)

@@ -5,13 +5,13 @@ from numpy.typing import NDArray
 
 from eyas.core.jit import inlined_kernel
 from eyas.render.kernels.bundles import Geometry, Light
+from eyas.render.kernels.scalars import f4, u4
 from eyas.render.kernels.sky import fog_share, sky
 from eyas.render.kernels.texture import level_of, texel
 from eyas.state.mesh import Surface
 
 __all__ = ["shade_point"]
 
-f4 = np.float32
 
 PAINT = int(Surface.PAINT)
 GLASS = int(Surface.GLASS)
@@ -30,17 +30,18 @@ def _sunlit(light: Light, x: float, y: float, z: float) -> float:
     height = rows[2, 0] * x + rows[2, 1] * y + rows[2, 2] * z + rows[2, 3]
     lines, columns = light.shadow_map.shape
     one, zero = f4(1.0), f4(0.0)
+    height = max(height, zero)  # the map's zero is nothing at all
     if not (column > zero and line > zero and column < f4(columns - 2) and line < f4(lines - 2)):
         return one
-    i, j = np.uint32(line), np.uint32(column)
+    i, j = u4(line), u4(column)
     across, down = column - f4(j), line - f4(i)
-    right, lower = j + np.uint32(1), i + np.uint32(1)
+    right, lower = j + u4(1), i + u4(1)
     a = one if f4(light.shadow_map[i, j]) <= height else zero
     b = one if f4(light.shadow_map[i, right]) <= height else zero
     c = one if f4(light.shadow_map[lower, j]) <= height else zero
     d = one if f4(light.shadow_map[lower, right]) <= height else zero
     upper = a + across * (b - a)
-    return upper + down * (c + across * (d - c) - upper)
+    return f4(upper + down * (c + across * (d - c) - upper))
 
 
 @inlined_kernel
@@ -114,7 +115,7 @@ def shade_point(
     x = eye[0] + ray[0] * distance
     y = eye[1] + ray[1] * distance
     z = eye[2] + ray[2] * distance
-    g, t = geometry.gradients, np.uint32(triangle)
+    g, t = geometry.gradients, u4(triangle)
     density = g[t, 23]
     px, py, pz = x, y, z
     m = frame
@@ -149,7 +150,7 @@ def shade_point(
     cosine = -(nx * rx + ny * ry + nz * rz)
     facing = min(max(cosine, zero), one)
 
-    material = np.uint32(geometry.material[t])
+    material = u4(geometry.material[t])
     surface = geometry.surface[material]
     span = f4(256.0) * density * distance * pixel
     level = level_of(span * span / max(abs(cosine), f4(0.1)))

@@ -5,14 +5,13 @@ from numpy.typing import NDArray
 
 from eyas.core.jit import kernel, parallel_kernel, prange
 from eyas.render.kernels.bundles import Geometry
-from eyas.render.kernels.rasterise import rasterise
+from eyas.render.kernels.rasterise import BOTH_SIDES, rasterise
+from eyas.render.kernels.scalars import f4, i8
 
 __all__ = ["BAND", "bake_rows"]
 
 BAND = 256
 """Rows of the map that are drawn at a time."""
-
-f4 = np.float32
 
 
 @parallel_kernel
@@ -99,5 +98,5 @@ def _draw(
         b = geometry.corners[triangle, 1] - ranges[2]
         c = geometry.corners[triangle, 2] - ranges[2]
         rasterise(
-            screen, a, b, c, top, depth, owner, np.int64(0), True, geometry.texture, 0, -1
+            screen, a, b, c, top, depth, owner, i8(0), BOTH_SIDES, geometry.texture, 0, -1
         )  # fmt: skip

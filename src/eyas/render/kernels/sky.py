@@ -4,10 +4,9 @@ import numpy as np
 
 from eyas.core.jit import inlined_kernel
 from eyas.render.kernels.bundles import Light
+from eyas.render.kernels.scalars import f4
 
 __all__ = ["fog_share", "sky"]
-
-f4 = np.float32
 
 
 @inlined_kernel
@@ -53,4 +52,4 @@ def fog_share(light: Light, distance: float) -> float:
     thickness = distance * light.air[0]
     if light.air[1] > f4(1.5):
         thickness *= thickness
-    return f4(1.0) - np.exp(-thickness)
+    return f4(f4(1.0) - np.exp(-thickness))

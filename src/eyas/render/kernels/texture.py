@@ -7,11 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.jit import inlined_kernel
+from eyas.render.kernels.scalars import f4, u4
 
 __all__ = ["coverage", "level_of", "texel"]
-
-f4 = np.float32
-u4 = np.uint32
 
 
 @inlined_kernel
@@ -64,7 +62,7 @@ def texel(textures: NDArray[np.uint32], layer: int, level: int, u: float, v: flo
         + w10 * ((c >> eight) & even)
         + both * ((d >> eight) & even)
     )
-    return ((low >> eight) & even) | (high & u4(0xFF00FF00))
+    return u4(((low >> eight) & even) | (high & u4(0xFF00FF00)))
 
 
 @inlined_kernel
@@ -75,4 +73,4 @@ def coverage(textures: NDArray[np.uint32], layer: int, level: int, u: float, v: 
     mask = (1 << bits) - 1
     column = int((u - np.floor(u)) * size) & mask
     row = int((v - np.floor(v)) * size) & mask
-    return textures[layer, _first_texel(level) + (row << bits) + column] >> u4(24)
+    return u4(textures[layer, _first_texel(level) + (row << bits) + column] >> u4(24))

@@ -7,6 +7,7 @@ from eyas.core.jit import kernel
 from eyas.render.kernels.bundles import GROUP, Geometry
 from eyas.render.kernels.cull import box_is_visible, sphere_is_visible, visible_chunks
 from eyas.render.kernels.meshes import draw_mesh, level_of_detail
+from eyas.render.kernels.scalars import i8
 from eyas.render.kernels.transform import set_object_rows
 
 __all__ = ["draw_moving", "draw_static"]
@@ -32,7 +33,7 @@ def draw_static(
     """Draw what stands still; see `Job` and `Scratch` for the arguments. `rows` is (2, 3, 4)."""
     count = visible_chunks(planes, eye, geometry.chunk_box, geometry.chunk_group_box, order)
     for k in range(count):
-        chunk = order[k] & np.int64(0xFFFFFFFF)
+        chunk = order[k] & i8(0xFFFFFFFF)
         draw_mesh(
             geometry, rows[0], geometry.chunk_range, chunk, -1, lens[3], lens[1], lens[2], top,
             depth, owner, screen, polygon,

@@ -1,0 +1,93 @@
+"""The same view gives the same bytes, whoever draws it and with whom."""
+
+import numba
+import numpy as np
+import pytest
+from .small_city import looking
+
+from eyas.render import jobs
+from eyas.state.draw import Views
+
+SUBJECT = (1 << 16) + 2
+
+
+def sixteen_views() -> Views:
+    rng = np.random.default_rng(5)
+    places = [(*rng.uniform(-80, 80, 2), float(rng.uniform(3, 30))) for _ in range(16)]
+    pitch = list(rng.uniform(0.0, 1.4, 16))
+    places[7:] = [(x, 0.3 * y / 8, z) for x, y, z in places[7:]]
+    places[7], pitch[7] = (-34.0, -2.0, 12.0), 1.4  # above the subject
+    views = looking(places, list(rng.uniform(-3, 3, 16)), pitch, fov=1.1, subject=SUBJECT)
+    views.world[:] = np.arange(16) % 2
+    return views
+
+
+def one_of(views: Views, k: int) -> Views:
+    part = slice(k, k + 1)
+    return Views(
+        views.position[part], views.rotation[part], views.world[part], views.subject[part],
+        views.field_of_view,
+    )  # fmt: skip
+
+
+def arrays(picture):
+    names = ("rgb", "depth", "object_id", "subject_box", "subject_pixels")
+    return {name: getattr(picture, name) for name in names}
+
+
+@pytest.fixture
+def threads():
+    before = numba.get_num_threads()
+    yield numba.set_num_threads
+    numba.set_num_threads(before)
+
+
+@pytest.mark.parametrize("samples", [1, 4])
+def test_threads_and_neighbours_change_no_byte(city, drawn, threads, samples):
+    renderer, traffic = city
+    views = sixteen_views()
+    threads(1)
+    reference = arrays(drawn(renderer, views, traffic, (60, 84), samples))
+    assert reference["subject_pixels"][:, 1].max() > 20
+    threads(min(2, numba.config.NUMBA_NUM_THREADS))
+    for name, array in arrays(drawn(renderer, views, traffic, (60, 84), samples)).items():
+        np.testing.assert_array_equal(array, reference[name], err_msg=name)
+    for k in (0, 7, 15):
+        alone = arrays(drawn(renderer, one_of(views, k), traffic, (60, 84), samples))
+        for name, array in alone.items():
+            np.testing.assert_array_equal(array[0], reference[name][k], err_msg=name)
+
+
+def test_bands_change_no_byte(city, drawn, threads, monkeypatch):
+    renderer, traffic = city
+    views = looking([(-60.0, -2.0, 7.0)], 0.1, 0.15, fov=1.2, subject=SUBJECT)
+    threads(1)
+    whole = arrays(drawn(renderer, views, traffic, (120, 160)))
+    assert (whole["subject_pixels"] > 0).all()
+    threads(min(2, numba.config.NUMBA_NUM_THREADS))
+    monkeypatch.setattr(jobs, "SMALLEST_BAND", 800)
+    monkeypatch.setattr(jobs, "JOBS_PER_THREAD", 12)
+    if numba.get_num_threads() == 2:
+        assert len(jobs.build_jobs(views, 120, 160, 1, 2).band) == 24
+    for name, array in arrays(drawn(renderer, views, traffic, (120, 160))).items():
+        np.testing.assert_array_equal(array, whole[name], err_msg=name)
+
+
+def test_what_is_not_wanted_changes_nothing(city, drawn):
+    renderer, traffic = city
+    views = sixteen_views()
+    full = drawn(renderer, views, traffic)
+    only = type(full).create(16, 96, 128)
+    renderer.draw(views, traffic, only)
+    np.testing.assert_array_equal(only.rgb, full.rgb)
+
+
+def test_worlds_are_kept_apart(city, drawn):
+    renderer, traffic = city
+    views = looking([(-40.0, 0.0, 30.0)] * 2, 0.0, 1.5, fov=1.0)
+    views.world[:] = (0, 1)
+    ids = drawn(renderer, views, traffic).object_id
+    assert (ids[0] != ids[1]).any()
+    views.world[:] = (1, 1)
+    ids = drawn(renderer, views, traffic).object_id
+    np.testing.assert_array_equal(ids[0], ids[1])

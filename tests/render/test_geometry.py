@@ -1,0 +1,104 @@
+"""Packed arrays hold what the scene holds."""
+
+import numpy as np
+from .small_city import GROUND, TREE_OBJECT, car_parts, city_scene, floor, scene_of
+
+from eyas.render.geometry import build_geometry
+from eyas.render.kernels.bundles import GROUP
+from eyas.render.kernels.texture import level_of, texel
+from eyas.render.mipmap import packed_layers
+from eyas.render.triangles import gradients
+from eyas.state.draw import PartLibrary
+
+
+def test_chunks_hold_each_triangle_once_and_lie_in_their_boxes(images):
+    scene = city_scene()
+    geometry = build_geometry(scene, car_parts(), images)
+    ranges = geometry.chunk_range
+    assert ranges[0, 0] == 0
+    np.testing.assert_array_equal(ranges[1:, 0], ranges[:-1, 1])
+    assert ranges[-1, 1] == len(scene.static.triangles)
+    packed = geometry.positions[geometry.corners[: ranges[-1, 1]]].reshape(-1, 9)
+    original = scene.static.positions[scene.static.triangles].reshape(-1, 9)
+    np.testing.assert_array_equal(np.sort(packed, axis=0), np.sort(original, axis=0))
+    for (first, last, low, high), box in zip(ranges, geometry.chunk_box, strict=True):
+        corners = geometry.corners[first:last]
+        assert corners.min() >= low
+        assert corners.max() < high
+        points = geometry.positions[corners].reshape(-1, 3)
+        np.testing.assert_array_equal(box, [*points.min(0), *points.max(0)])
+    for k, box in enumerate(geometry.chunk_box):
+        group = geometry.chunk_group_box[k // GROUP]
+        assert (group[:3] <= box[:3]).all()
+        assert (group[3:] >= box[3:]).all()
+
+
+def test_fixtures_and_parts_come_after_with_their_levels(images):
+    geometry = build_geometry(city_scene(), car_parts(), images)
+    assert geometry.part_first == 1
+    np.testing.assert_array_equal(geometry.level_first, [0, 3, 4, 5, 6])
+    assert set(geometry.fixture_object) == {TREE_OBJECT}
+    counts = geometry.mesh_range[:, 1] - geometry.mesh_range[:, 0]
+    assert (np.diff(counts[:3]) < 0).all()
+
+
+def test_gradients_give_back_normals_and_texture_coordinates():
+    rng = np.random.default_rng(0)
+    positions = rng.normal(0, 50, (30, 3)).astype(np.float32)
+    normals = rng.normal(0, 1, (30, 3)).astype(np.float32)
+    uvs = rng.uniform(0, 1, (30, 2)).astype(np.float32)
+    triangles = np.arange(30, dtype=np.int32).reshape(10, 3)
+    table = gradients(positions, normals, uvs, triangles).astype(np.float64)
+    for row, corners in zip(table, triangles, strict=True):
+        offset = positions[corners] - row[:3]
+        uv = np.stack([offset @ row[3:6] + row[6], offset @ row[7:10] + row[10]], axis=1)
+        np.testing.assert_allclose(uv, uvs[corners], atol=1e-4)
+        normal = row[11:14] + offset @ row[14:23].reshape(3, 3).T
+        np.testing.assert_allclose(normal, normals[corners], atol=1e-4)
+        e1, e2 = np.diff(positions[corners], axis=0)
+        area = np.linalg.norm(np.cross(e1, e2))
+        f1, f2 = np.diff(uvs[corners].astype(float), axis=0)
+        tiles = abs(f1[0] * f2[1] - f1[1] * f2[0])
+        np.testing.assert_allclose(row[23] ** 2, tiles / area, rtol=1e-3)
+
+
+def test_triangles_without_area_are_left_out(images):
+    mesh = floor()
+    mesh.triangles = np.concatenate([mesh.triangles, [[0, 0, 1]]]).astype(np.int32)
+    mesh.materials = np.zeros(len(mesh.triangles), np.int32)
+    geometry = build_geometry(scene_of([mesh], [GROUND]), PartLibrary(()), images)
+    assert len(geometry.corners) == len(mesh.triangles) - 1
+    assert np.isfinite(geometry.gradients).all()
+
+
+def test_an_empty_scene_can_be_drawn(images, renderer_of, drawn):
+    from .small_city import looking
+
+    picture = drawn(renderer_of(scene_of([], [])), looking([(0.0, 0.0, 5.0)]))
+    assert (picture.object_id == -1).all()
+    assert np.isinf(picture.depth).all()
+
+
+def test_texels_are_blended_between_their_centres_and_v_grows_upwards():
+    image = np.zeros((256, 256, 4), np.uint8)
+    image[0, :, 0], image[-1, :, 1], image[..., 3] = 255, 255, 255  # top row red, bottom row green
+    packed = packed_layers({"plain": image}, ["plain"])
+
+    def colour(level, u, v):
+        value = int(texel(packed, 0, level, np.float32(u), np.float32(v)))
+        return [(value >> shift) & 255 for shift in (0, 8, 16, 24)]
+
+    assert colour(0, 0.3, 0.5 / 256) == [0, 255, 0, 255]
+    assert colour(0, 0.3, 255.5 / 256) == [255, 0, 0, 255]
+    half = colour(0, -3.7, 1.0)  # between the last row and the first: it repeats
+    assert half[:2] == [127, 127]
+    mean = (1 / 256) ** 0.5 * 255
+    assert colour(8, 0.9, 0.1) == [round(mean), round(mean), 0, 255]
+
+
+def test_the_level_has_about_one_texel_in_a_pixel():
+    for level in range(9):
+        for factor in (0.8, 1.0, 1.3):
+            assert level_of(np.float32((factor * 2.0**level) ** 2)) == level
+    assert level_of(np.float32(0.0)) == 0
+    assert level_of(np.float32(1e12)) == 8

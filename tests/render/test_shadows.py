@@ -1,0 +1,103 @@
+"""Shadows fall where the sun says, and survive damaged caches."""
+
+import numpy as np
+import pytest
+from .small_city import DAY, GROUND, TOWER, car_parts, floor, looking, put_car, scene_of, tower
+
+from eyas.core.pinhole import rays
+from eyas.render.bake import bake_shadows
+from eyas.render.geometry import build_geometry
+from eyas.state.draw import DrawList, PartLibrary
+
+SUN = np.array(DAY.sun_direction)
+
+
+@pytest.fixture(scope="module")
+def geometry(images):
+    scene = scene_of([floor(), tower(0.0, 0.0, 10.0, 20.0)], [GROUND, TOWER])
+    return build_geometry(scene, PartLibrary(()), images)
+
+
+def in_tower_shadow(x: np.ndarray, y: np.ndarray, margin: float) -> np.ndarray:
+    """Whether the way from the ground to the sun meets the tower grown by a margin [m]."""
+    far = 20.0 / SUN[2]
+    steps = np.linspace(0.0, far, 400)[:, None]
+    px, py = x + SUN[0] * steps, y + SUN[1] * steps
+    return ((np.abs(px) < 5 + margin) & (np.abs(py) < 5 + margin)).any(axis=0)
+
+
+def test_the_shadow_of_a_tower_lies_where_the_sun_says(geometry):
+    shadows = bake_shadows(geometry, DAY.sun_direction, 0.0, None)
+    x, y = np.random.default_rng(0).uniform(-30, 30, (2, 4000))
+    points = np.column_stack([x, y, np.full(4000, 0.05)])
+    column, line, height = (points @ shadows.rows[:, :3].T + shadows.rows[:, 3]).T
+    lines, columns = shadows.heights.shape
+    on_map = (column > 0) & (column < columns - 1) & (line > 0) & (line < lines - 1)
+    lit = np.ones(4000, bool)
+    at = line[on_map].astype(int), column[on_map].astype(int)
+    lit[on_map] = shadows.heights[at] <= np.maximum(height[on_map], 0) + 65000 * 0.2 / 40
+    assert not lit[in_tower_shadow(x, y, -0.5)].any()
+    assert lit[~in_tower_shadow(x, y, 0.5)].all()
+    assert 0.05 < np.mean(~lit) < 0.5
+
+
+def test_pictures_are_dark_in_the_shadow_and_nowhere_else(renderer_of, drawn):
+    renderer = renderer_of(scene_of([floor(200.0, "plain"), tower(0, 0, 10, 20)], [GROUND, TOWER]))
+    views = looking([(0.0, 0.0, 80.0)], pitch=np.pi / 2, fov=0.9)
+    picture = drawn(renderer, views)
+    ray = rays(views.rotation[0], 128, 96, 0.9)
+    x, y = (80.0 / -ray[..., 2] * np.moveaxis(ray[..., :2], -1, 0)).reshape(2, -1)
+    ground = (picture.object_id[0] == GROUND).ravel()
+    light = picture.rgb[0].reshape(-1, 3).astype(int).sum(-1)
+    dark = light[ground & in_tower_shadow(x, y, -1.0)]
+    bright = light[ground & ~in_tower_shadow(x, y, 1.0)]
+    assert len(dark) > 100
+    assert dark.max() < 0.8 * bright.min()
+    assert bright.max() - bright.min() < 30  # no acne
+
+
+def test_cars_throw_shadows_away_from_the_sun(renderer_of, drawn):
+    renderer = renderer_of(scene_of([floor(200.0, "plain")], [GROUND]), car_parts())
+    draw_list = DrawList.create(1, 6)
+    put_car(draw_list, 0, 0, 0, 0.0, 0.0, 0.3)
+    views = looking([(0.0, 0.0, 25.0)], pitch=np.pi / 2, fov=0.5)
+    with_car, without = drawn(renderer, views, draw_list), drawn(renderer, views)
+    darker = without.rgb[0].astype(int).sum(-1) - with_car.rgb[0].astype(int).sum(-1)
+    darker[with_car.object_id[0] != GROUND] = 0
+    ray = rays(views.rotation[0], 128, 96, 0.5)
+    position = 25.0 / -ray[..., 2, None] * ray[..., :2]
+    middle = (position * darker[..., None]).sum((0, 1)) / darker.sum()
+    assert darker.max() > 100
+    assert middle @ SUN[:2] < -0.2  # on the far side
+    far = np.linalg.norm(position, axis=-1) > 5.0
+    assert not darker[far].any()
+
+
+def test_a_baked_map_is_kept_and_a_damaged_one_made_anew(geometry, tmp_path):
+    first = bake_shadows(geometry, DAY.sun_direction, 0.0, tmp_path)
+    (file,) = tmp_path.iterdir()
+    written = file.stat().st_mtime_ns
+    again = bake_shadows(geometry, DAY.sun_direction, 0.0, tmp_path)
+    assert file.stat().st_mtime_ns == written
+    np.testing.assert_array_equal(again.heights, first.heights)
+    whole = file.read_bytes()
+    flipped = bytearray(whole)
+    flipped[len(whole) // 2] ^= 0x55
+    for damaged in (b"", b"not a zip file", whole[: len(whole) // 2], bytes(flipped)):
+        file.write_bytes(damaged)
+        np.testing.assert_array_equal(
+            bake_shadows(geometry, DAY.sun_direction, 0.0, tmp_path).heights, first.heights
+        )
+        assert file.read_bytes() == whole
+
+
+def test_another_sun_has_another_map(geometry, tmp_path):
+    bake_shadows(geometry, DAY.sun_direction, 0.0, tmp_path)
+    bake_shadows(geometry, (0.6, 0.0, 0.8), 0.0, tmp_path)
+    assert len(list(tmp_path.iterdir())) == 2
+
+
+def test_a_cache_that_cannot_be_written_does_not_matter(geometry, tmp_path):
+    (tmp_path / "file").write_text("in the way")
+    shadows = bake_shadows(geometry, DAY.sun_direction, 0.0, tmp_path / "file" / "below")
+    assert shadows.heights.any()
