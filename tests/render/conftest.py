@@ -2,11 +2,12 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from .small_city import DAY, car_parts, city_scene, city_traffic, textures
 
 from eyas.render.renderer import Renderer
 from eyas.state.draw import DrawList, PartLibrary, Picture, Views
 from eyas.state.scene import Lighting, Scene
+
+from .small_city import DAY, car_parts, city_scene, city_traffic, textures
 
 
 @pytest.fixture(scope="session")

@@ -3,10 +3,11 @@
 import numba
 import numpy as np
 import pytest
-from .small_city import looking
 
 from eyas.render import jobs
 from eyas.state.draw import Views
+
+from .small_city import looking
 
 SUBJECT = (1 << 16) + 2
 

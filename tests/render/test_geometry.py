@@ -1,7 +1,6 @@
 """Packed arrays hold what the scene holds."""
 
 import numpy as np
-from .small_city import GROUND, TREE_OBJECT, car_parts, city_scene, floor, scene_of
 
 from eyas.render.geometry import build_geometry
 from eyas.render.kernels.bundles import GROUP
@@ -9,6 +8,8 @@ from eyas.render.kernels.texture import level_of, texel
 from eyas.render.mipmap import packed_layers
 from eyas.render.triangles import gradients
 from eyas.state.draw import PartLibrary
+
+from .small_city import GROUND, TREE_OBJECT, car_parts, city_scene, floor, scene_of
 
 
 def test_chunks_hold_each_triangle_once_and_lie_in_their_boxes(images):

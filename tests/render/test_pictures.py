@@ -5,6 +5,16 @@ import itertools
 
 import numpy as np
 import pytest
+
+from eyas.core.errors import ConfigError, UnknownNameError
+from eyas.core.pinhole import project, rays
+from eyas.render.renderer import Renderer
+from eyas.state.draw import DrawList, PartLibrary, Picture
+from eyas.state.mesh import Material, Surface, transformed
+from eyas.state.scene import ACTOR_OBJECT, SKY_OBJECT
+from eyas.world.materials import material
+from eyas.world.shapes import box, quads, sphere
+
 from .small_city import (
     DAY,
     GROUND,
@@ -18,15 +28,6 @@ from .small_city import (
     tower,
     trees_at,
 )
-
-from eyas.core.errors import ConfigError, UnknownNameError
-from eyas.core.pinhole import project, rays
-from eyas.render.renderer import Renderer
-from eyas.state.draw import DrawList, PartLibrary, Picture
-from eyas.state.mesh import Material, Surface, transformed
-from eyas.state.scene import ACTOR_OBJECT, SKY_OBJECT
-from eyas.world.materials import material
-from eyas.world.shapes import box, quads, sphere
 
 SIZE = (96, 128)
 FOV = 1.0
@@ -181,5 +182,5 @@ def test_wrong_arguments_are_refused_in_one_line(renderer_of, images):
     with pytest.raises(ConfigError, match="samples: 3 is not allowed; allowed: 1, 4"):
         renderer_of(scene).draw(views, DrawList.create(1, 1), Picture.create(1, 8, 8), 3)
     without = {name: image for name, image in images.items() if name != "lawn"}
-    with pytest.raises(UnknownNameError, match="texture.*'lawn'"):
+    with pytest.raises(UnknownNameError, match=r"texture.*'lawn'"):
         Renderer(scene, PartLibrary(()), DAY, without)

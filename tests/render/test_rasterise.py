@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
-from .small_city import looking, scene_of
 
 from eyas.core.pinhole import rays
 from eyas.render.kernels.rasterise import FRONT, rasterise
 from eyas.state.mesh import Mesh
 from eyas.world.materials import material
+
+from .small_city import looking, scene_of
 
 SIDE = 40
 

@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
-from .small_city import DAY, GROUND, TOWER, car_parts, floor, looking, put_car, scene_of, tower
 
 from eyas.core.pinhole import rays
 from eyas.render.bake import bake_shadows
 from eyas.render.geometry import build_geometry
 from eyas.state.draw import DrawList, PartLibrary
+
+from .small_city import DAY, GROUND, TOWER, car_parts, floor, looking, put_car, scene_of, tower
 
 SUN = np.array(DAY.sun_direction)
 

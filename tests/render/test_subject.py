@@ -1,13 +1,14 @@
 """How much of the subject is seen, and where it is."""
 
 import numpy as np
-from .small_city import GROUND, TOWER, car_parts, floor, looking, put_car, scene_of
 
 from eyas.core.pinhole import project
 from eyas.state.draw import DrawList
 from eyas.state.scene import ACTOR_OBJECT
 from eyas.world.materials import material
 from eyas.world.shapes import box
+
+from .small_city import GROUND, TOWER, car_parts, floor, looking, put_car, scene_of
 
 SIZE = (96, 128)
 
