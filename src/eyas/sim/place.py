@@ -68,14 +68,14 @@ def load_place(world: WorldConfig, traffic: TrafficConfig, trackers: int) -> Pla
 
 @lru_cache(maxsize=2)
 def _load_place(world: WorldConfig, traffic: TrafficConfig, trackers: int) -> Place:
+    graph = road_graph(world.map, world.seed)
+    light = lighting(world.map, world.weather)
+    recording = find_recording(graph, traffic, trackers=trackers)
     if nothing_compiled():
         _log.warning(
             "first start of this version: compiling for about half a minute, once; kept in %s",
             os.environ["NUMBA_CACHE_DIR"],
         )
-    graph = road_graph(world.map, world.seed)
-    light = lighting(world.map, world.weather)
-    recording = find_recording(graph, traffic, trackers=trackers)
     scene = load_scene(world.map, world.seed)
     rigs = VehicleRigs(recording.provenance.config.vehicle_type)
     renderer = Renderer(scene, rigs.library, light, build_textures())
