@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from eyas.core.jit import kernel
 from eyas.core.pinhole import rays
 from eyas.render.kernels.rasterise import FRONT, rasterise
 from eyas.state.mesh import Mesh
@@ -13,6 +14,12 @@ from .small_city import looking, scene_of
 SIDE = 40
 
 
+@kernel
+def draw(corners, a, b, c, top, depth, owner, tag, sides, textures, layer, level):
+    """Python's way in."""
+    rasterise(corners, a, b, c, top, depth, owner, tag, sides, textures, layer, level)
+
+
 def coverage(points: np.ndarray, triangles: np.ndarray, top: int = 0, rows: int = SIDE):
     """How often each pixel is drawn if every triangle is drawn alone."""
     count = np.zeros((rows, SIDE), int)
@@ -20,7 +27,7 @@ def coverage(points: np.ndarray, triangles: np.ndarray, top: int = 0, rows: int 
     texture = np.zeros((1, 1), np.uint32)
     for a, b, c in triangles:
         depth, owner = np.zeros((rows, SIDE), np.float32), np.full((rows, SIDE), -1)
-        rasterise(
+        draw(
             corners, int(a), int(b), int(c), top, depth, owner, 5, FRONT, texture, 0, -1
         )  # fmt: skip
         count += owner == 5

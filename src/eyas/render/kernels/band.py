@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inlined_kernel, kernel
+from eyas.core.jit import inlined_kernel, inner_kernel
 from eyas.render.kernels.bundles import Geometry, Light
 from eyas.render.kernels.scalars import f4, i8, u4
 from eyas.render.kernels.shade import shade_point
@@ -28,7 +28,7 @@ def _linear(value: float) -> float:
     return value * (value * (value * f4(0.305306011) + f4(0.682171111)) + f4(0.012522878))
 
 
-@kernel
+@inner_kernel
 def _set_frame(
     poses: NDArray[np.float32],
     colours: NDArray[np.float32],
@@ -49,7 +49,7 @@ def _byte(light: Light, radiance: float) -> int:
     return i8(light.tone[u4(step)])
 
 
-@kernel
+@inner_kernel
 def shade_band(
     samples: int,
     top: int,

@@ -5,7 +5,7 @@ the sun leads through it.
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import kernel
+from eyas.core.jit import inner_kernel
 from eyas.render.kernels.bundles import Geometry
 from eyas.render.kernels.cull import sphere_is_visible
 
@@ -16,7 +16,7 @@ SMALLEST = 1.0
 """Things whose half diagonal is smaller cast no shadow [pixels]."""
 
 
-@kernel
+@inner_kernel
 def _set_caster(
     geometry: Geometry,
     parts: NDArray[np.int32],
@@ -61,7 +61,7 @@ def _set_caster(
     caster[6], caster[7] = low, high
 
 
-@kernel
+@inner_kernel
 def _throw(caster: NDArray[np.float64], sun: NDArray[np.float32]) -> float:
     """Return how far the shadow's end is off, for each unit of the sun's x and y.
 
@@ -70,7 +70,7 @@ def _throw(caster: NDArray[np.float64], sun: NDArray[np.float32]) -> float:
     return float(min(1.0 / max(float(sun[2]), 1e-3), 4.0) * (caster[7] - caster[6]))
 
 
-@kernel
+@inner_kernel
 def _may_show(
     caster: NDArray[np.float64],
     sun: NDArray[np.float32],
@@ -87,7 +87,7 @@ def _may_show(
     return sphere_is_visible(planes, x, y, z, length + half + 0.5 * (caster[7] - caster[6]) + 0.7)
 
 
-@kernel
+@inner_kernel
 def _screen_box(
     caster: NDArray[np.float64],
     sun: NDArray[np.float32],
@@ -118,7 +118,7 @@ def _screen_box(
     return left, top, right, bottom
 
 
-@kernel
+@inner_kernel
 def _darken(
     caster: NDArray[np.float64],
     sun: NDArray[np.float32],
@@ -146,7 +146,7 @@ def _darken(
     return 1.0 - deep, 1.0 - 0.55 * near * near
 
 
-@kernel
+@inner_kernel
 def _cast_one(
     caster: NDArray[np.float64],
     sun: NDArray[np.float32],
@@ -184,7 +184,7 @@ def _cast_one(
             shade[line, column, 1] = min(shade[line, column, 1], np.uint8(255.0 * ambient))
 
 
-@kernel
+@inner_kernel
 def cast_shadows(
     geometry: Geometry,
     parts: NDArray[np.int32],

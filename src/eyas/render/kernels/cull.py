@@ -3,14 +3,14 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import kernel
+from eyas.core.jit import inner_kernel
 from eyas.render.kernels.bundles import GROUP, NEAR
 from eyas.render.kernels.scalars import i8
 
 __all__ = ["box_is_visible", "set_planes", "sphere_is_visible", "visible_chunks"]
 
 
-@kernel
+@inner_kernel
 def set_planes(
     rows: NDArray[np.float64],
     width: float,
@@ -35,7 +35,7 @@ def set_planes(
         planes[i, 4] = np.sqrt(planes[i, 0] ** 2 + planes[i, 1] ** 2 + planes[i, 2] ** 2)
 
 
-@kernel
+@inner_kernel
 def box_is_visible(planes: NDArray[np.float64], boxes: NDArray[np.float32], i: int) -> bool:
     """Return whether box `i` may reach inside all planes."""
     for k in range(5):
@@ -48,7 +48,7 @@ def box_is_visible(planes: NDArray[np.float64], boxes: NDArray[np.float32], i: i
     return True
 
 
-@kernel
+@inner_kernel
 def sphere_is_visible(
     planes: NDArray[np.float64], x: float, y: float, z: float, radius: float
 ) -> bool:
@@ -60,7 +60,7 @@ def sphere_is_visible(
     return True
 
 
-@kernel
+@inner_kernel
 def visible_chunks(
     planes: NDArray[np.float64],
     eye: NDArray[np.float64],
@@ -90,7 +90,7 @@ def visible_chunks(
     return count
 
 
-@kernel
+@inner_kernel
 def _shell_sort(values: NDArray[np.int64], count: int) -> None:
     """Sort the first `count` values in place; np.sort would allocate."""
     gap = 1

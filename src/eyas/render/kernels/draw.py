@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import kernel, parallel_kernel, prange
+from eyas.core.jit import inner_kernel, parallel_kernel, prange
 from eyas.render.kernels.band import shade_band
 from eyas.render.kernels.bundles import Geometry, Job, Light, Movers, Output, Scratch
 from eyas.render.kernels.casters import cast_shadows
@@ -44,7 +44,7 @@ def draw_views(
             _draw_job(worker, index, samples, geometry, light, movers, job, scratch, output)
 
 
-@kernel
+@inner_kernel
 def _draw_job(
     worker: int,
     index: int,
@@ -105,14 +105,14 @@ def _draw_job(
             _measure(owner, top, result)
 
 
-@kernel
+@inner_kernel
 def _write_depth(depth: NDArray[np.float32], output: NDArray[np.float32]) -> None:
     for row in range(depth.shape[0]):
         for column in range(depth.shape[1]):
             output[row, column] = f4(1.0) / depth[row, column]
 
 
-@kernel
+@inner_kernel
 def _object_of(geometry: Geometry, object_ids: NDArray[np.int32], owner: int) -> int:
     """Return the object id for an entry of `Scratch.owner`."""
     if owner < 0:
@@ -125,7 +125,7 @@ def _object_of(geometry: Geometry, object_ids: NDArray[np.int32], owner: int) ->
     return i8(object_ids[instance - len(geometry.fixture_object)])
 
 
-@kernel
+@inner_kernel
 def _write_objects(
     geometry: Geometry,
     object_ids: NDArray[np.int32],
@@ -137,7 +137,7 @@ def _write_objects(
             output[row, column] = _object_of(geometry, object_ids, owner[row, column])
 
 
-@kernel
+@inner_kernel
 def _seen(
     geometry: Geometry, object_ids: NDArray[np.int32], owner: NDArray[np.int64], subject: int
 ) -> int:
@@ -150,7 +150,7 @@ def _seen(
     return count
 
 
-@kernel
+@inner_kernel
 def _measure(owner: NDArray[np.int64], top: int, result: NDArray[np.int32]) -> None:
     """Write the box of what is drawn, and how many samples it covers."""
     for row in range(owner.shape[0]):

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import kernel
+from eyas.core.jit import inner_kernel
 from eyas.render.kernels.bundles import Geometry
 from eyas.render.kernels.rasterise import BOTH_SIDES, FRONT, rasterise
 from eyas.render.kernels.scalars import f4, i8
@@ -22,7 +22,7 @@ SMALLEST_HOLES = 4
 """Mip level from which on leaves have no holes: a leaf would be smaller than a pixel."""
 
 
-@kernel
+@inner_kernel
 def level_of_detail(
     geometry: Geometry, prototype: int, radius: float, distance: float, focal: float
 ) -> int:
@@ -36,7 +36,7 @@ def level_of_detail(
     return last
 
 
-@kernel
+@inner_kernel
 def draw_mesh(
     geometry: Geometry,
     rows: NDArray[np.float64],

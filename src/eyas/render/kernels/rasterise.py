@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import kernel
+from eyas.core.jit import inner_kernel
 from eyas.render.kernels.scalars import f4
 from eyas.render.kernels.texture import coverage
 
@@ -16,7 +16,7 @@ BOTH_SIDES = 1
 """Draw all triangles."""
 
 
-@kernel
+@inner_kernel
 def rasterise(
     corners: NDArray[np.float64],
     a: int,
@@ -114,7 +114,7 @@ def rasterise(
             )  # fmt: skip
 
 
-@kernel
+@inner_kernel
 def _leaves(
     corners: NDArray[np.float64],
     a: int,

@@ -6,7 +6,8 @@ from numpy.typing import NDArray
 from eyas.core.jit import inlined_kernel
 from eyas.render.kernels.bundles import Geometry, Light
 from eyas.render.kernels.scalars import f4, u4
-from eyas.render.kernels.sky import fog_share, sky
+from eyas.render.kernels.sky import fog_share, reflection
+from eyas.render.kernels.sunlight import sunlight
 from eyas.render.kernels.texture import level_of, texel
 from eyas.state.mesh import Surface
 
@@ -18,68 +19,77 @@ GLASS = int(Surface.GLASS)
 FOLIAGE = int(Surface.FOLIAGE)
 FACADE = int(Surface.FACADE)
 WATER = int(Surface.WATER)
-LAMP = int(Surface.LAMP)
 
 
 @inlined_kernel
-def _sunlit(light: Light, x: float, y: float, z: float) -> float:
-    """Return how much of the sun reaches a point, 0 to 1, blended over four texels."""
-    rows = light.shadow_rows
-    column = rows[0, 0] * x + rows[0, 1] * y + rows[0, 2] * z + rows[0, 3]
-    line = rows[1, 0] * x + rows[1, 1] * y + rows[1, 2] * z + rows[1, 3]
-    height = rows[2, 0] * x + rows[2, 1] * y + rows[2, 2] * z + rows[2, 3]
-    lines, columns = light.shadow_map.shape
-    one, zero = f4(1.0), f4(0.0)
-    height = max(height, zero)  # the map's zero is nothing at all
-    if not (column > zero and line > zero and column < f4(columns - 2) and line < f4(lines - 2)):
-        return one
-    i, j = u4(line), u4(column)
-    across, down = column - f4(j), line - f4(i)
-    right, lower = j + u4(1), i + u4(1)
-    a = one if f4(light.shadow_map[i, j]) <= height else zero
-    b = one if f4(light.shadow_map[i, right]) <= height else zero
-    c = one if f4(light.shadow_map[lower, j]) <= height else zero
-    d = one if f4(light.shadow_map[lower, right]) <= height else zero
-    upper = a + across * (b - a)
-    return f4(upper + down * (c + across * (d - c) - upper))
-
-
-@inlined_kernel
-def _reflection(
-    light: Light,
-    ray: tuple[float, float, float],
-    normal: tuple[float, float, float],
-    facing: float,
-    least: float,
-    sunlit: float,
-) -> tuple[float, float, float, float]:
-    """Return what a smooth surface mirrors, and the share of it (Schlick's formula).
-
-    Args:
-        light: Sky and sun.
-        ray: From the eye, of length 1.
-        normal: Of the surface, of length 1.
-        facing: Minus their dot product, 0 to 1.
-        least: Share that is mirrored when looking straight at it.
-        sunlit: How much of the sun reaches the surface.
-    """
-    x = ray[0] + f4(2.0) * facing * normal[0]
-    y = ray[1] + f4(2.0) * facing * normal[1]
-    z = ray[2] + f4(2.0) * facing * normal[2]
-    graze = f4(1.0) - facing
-    square = graze * graze
-    share = least + (f4(1.0) - least) * square * square * graze
-    red, green, blue = sky(light, x, y, z)
-    shine = max(x * light.sun[0] + y * light.sun[1] + z * light.sun[2], f4(0.0))
-    for _ in range(6):
-        shine *= shine
-    shine *= f4(6.0) * sunlit
+def _to_local(
+    frame: NDArray[np.float32], x: float, y: float, z: float
+) -> tuple[float, float, float]:
+    """Return a world point in the frame of an instance, see `Scratch.frame`."""
+    m = frame
+    x -= m[3]
+    y -= m[7]
+    z -= m[11]
     return (
-        red + shine * light.sun_colour[0],
-        green + shine * light.sun_colour[1],
-        blue + shine * light.sun_colour[2],
-        share,
+        (m[0] * x + m[4] * y + m[8] * z) * m[15],
+        (m[1] * x + m[5] * y + m[9] * z) * m[15],
+        (m[2] * x + m[6] * y + m[10] * z) * m[15],
     )
+
+
+@inlined_kernel
+def _attributes(
+    gradients: NDArray[np.float32], triangle: int, x: float, y: float, z: float
+) -> tuple[float, float, float, float, float]:
+    """Return u, v and the normal, not yet of length 1, see `Geometry.gradients`."""
+    g, t = gradients, triangle
+    x -= g[t, 0]
+    y -= g[t, 1]
+    z -= g[t, 2]
+    return (
+        g[t, 3] * x + g[t, 4] * y + g[t, 5] * z + g[t, 6],
+        g[t, 7] * x + g[t, 8] * y + g[t, 9] * z + g[t, 10],
+        g[t, 11] + g[t, 14] * x + g[t, 15] * y + g[t, 16] * z,
+        g[t, 12] + g[t, 17] * x + g[t, 18] * y + g[t, 19] * z,
+        g[t, 13] + g[t, 20] * x + g[t, 21] * y + g[t, 22] * z,
+    )
+
+
+@inlined_kernel
+def _unit(x: float, y: float, z: float) -> tuple[float, float, float]:
+    scale = f4(1.0) / np.sqrt(x * x + y * y + z * z + f4(1e-12))
+    return x * scale, y * scale, z * scale
+
+
+@inlined_kernel
+def _albedo(
+    geometry: Geometry, material: int, level: int, u: float, v: float
+) -> tuple[float, float, float, float]:
+    """Return the linear colour and the alpha, 0 to 1, of a material."""
+    packed = texel(geometry.texture, geometry.layer[material], level, u, v)
+    scale = f4(1.0 / 255.0)
+    red, green = f4(packed & 255) * scale, f4((packed >> 8) & 255) * scale
+    blue = f4((packed >> 16) & 255) * scale
+    return (
+        red * red * geometry.tint[material, 0],
+        green * green * geometry.tint[material, 1],
+        blue * blue * geometry.tint[material, 2],
+        f4(packed >> 24) * scale,
+    )
+
+
+@inlined_kernel
+def _smoothness(surface: int, alpha: float) -> float:
+    """Return the share of light that a surface mirrors when looked at straight."""
+    if surface == PAINT:
+        return f4(0.05)
+    if surface == GLASS:
+        return f4(0.12)
+    if surface == WATER:
+        return f4(0.04)
+    if surface == FACADE:
+        return f4(0.16) * (f4(1.0) - alpha)
+    return f4(0.0)
 
 
 @inlined_kernel
@@ -115,107 +125,66 @@ def shade_point(
     x = eye[0] + ray[0] * distance
     y = eye[1] + ray[1] * distance
     z = eye[2] + ray[2] * distance
-    g, t = geometry.gradients, u4(triangle)
-    density = g[t, 23]
+    t = u4(triangle)
+    density = geometry.gradients[t, 23]
     px, py, pz = x, y, z
-    m = frame
     if moved:
-        dx, dy, dz = x - m[3], y - m[7], z - m[11]
-        inverse = m[15]
-        px = (m[0] * dx + m[4] * dy + m[8] * dz) * inverse
-        py = (m[1] * dx + m[5] * dy + m[9] * dz) * inverse
-        pz = (m[2] * dx + m[6] * dy + m[10] * dz) * inverse
-        density *= np.sqrt(inverse)
-    px -= g[t, 0]
-    py -= g[t, 1]
-    pz -= g[t, 2]
-    u = g[t, 3] * px + g[t, 4] * py + g[t, 5] * pz + g[t, 6]
-    v = g[t, 7] * px + g[t, 8] * py + g[t, 9] * pz + g[t, 10]
-    nx = g[t, 11] + g[t, 14] * px + g[t, 15] * py + g[t, 16] * pz
-    ny = g[t, 12] + g[t, 17] * px + g[t, 18] * py + g[t, 19] * pz
-    nz = g[t, 13] + g[t, 20] * px + g[t, 21] * py + g[t, 22] * pz
+        px, py, pz = _to_local(frame, x, y, z)
+        density *= np.sqrt(frame[15])
+    u, v, nx, ny, nz = _attributes(geometry.gradients, t, px, py, pz)
     if moved:
         nx, ny, nz = (
-            m[0] * nx + m[1] * ny + m[2] * nz,
-            m[4] * nx + m[5] * ny + m[6] * nz,
-            m[8] * nx + m[9] * ny + m[10] * nz,
+            frame[0] * nx + frame[1] * ny + frame[2] * nz,
+            frame[4] * nx + frame[5] * ny + frame[6] * nz,
+            frame[8] * nx + frame[9] * ny + frame[10] * nz,
         )
-    length = one / np.sqrt(nx * nx + ny * ny + nz * nz + f4(1e-12))
-    nx *= length
-    ny *= length
-    nz *= length
+    normal = _unit(nx, ny, nz)
     stretch = np.sqrt(ray[0] * ray[0] + ray[1] * ray[1] + ray[2] * ray[2])
-    unit = one / stretch
-    rx, ry, rz = ray[0] * unit, ray[1] * unit, ray[2] * unit
-    cosine = -(nx * rx + ny * ry + nz * rz)
-    facing = min(max(cosine, zero), one)
+    way = (ray[0] / stretch, ray[1] / stretch, ray[2] / stretch)
+    cosine = -(normal[0] * way[0] + normal[1] * way[1] + normal[2] * way[2])
 
     material = u4(geometry.material[t])
     surface = geometry.surface[material]
     span = f4(256.0) * density * distance * pixel
     level = level_of(span * span / max(abs(cosine), f4(0.1)))
-    packed = texel(geometry.texture, geometry.layer[material], level, u, v)
-    byte = f4(1.0 / 255.0)
-    red, green, blue = (
-        f4(packed & 255) * byte,
-        f4((packed >> 8) & 255) * byte,
-        f4((packed >> 16) & 255) * byte,
-    )
-    alpha = f4(packed >> 24) * byte
-    red *= red * geometry.tint[material, 0]
-    green *= green * geometry.tint[material, 1]
-    blue *= blue * geometry.tint[material, 2]
-    mirror = zero
+    red, green, blue, alpha = _albedo(geometry, material, level, u, v)
     if surface == PAINT:
-        red *= m[12]
-        green *= m[13]
-        blue *= m[14]
-        mirror = f4(0.05)
-    elif surface == GLASS:
-        mirror = f4(0.12)
+        red *= frame[12]
+        green *= frame[13]
+        blue *= frame[14]
     elif surface == WATER:
-        mirror = f4(0.04)
-        nx += f4(0.025) * np.sin(f4(1.9) * x + f4(0.8) * y) + f4(0.02) * np.sin(f4(4.3) * y - x)
-        ny += f4(0.025) * np.sin(f4(2.3) * y - f4(0.6) * x) + f4(0.02) * np.sin(f4(3.7) * x + y)
-    elif surface == FACADE and alpha < f4(0.99):
-        mirror = f4(0.16) * (one - alpha)
+        nx = (
+            normal[0]
+            + f4(0.03) * np.sin(f4(1.9) * x + f4(0.8) * y)
+            + f4(0.02) * np.sin(f4(4.3) * y)
+        )
+        ny = (
+            normal[1]
+            + f4(0.03) * np.sin(f4(2.3) * y - f4(0.6) * x)
+            + f4(0.02) * np.sin(f4(3.7) * x)
+        )
+        normal = (nx, ny, normal[2])
 
-    lean = nx * light.sun[0] + ny * light.sun[1] + nz * light.sun[2]
-    offset = light.air[3]
+    direct, reaching = sunlight(light, x, y, z, normal, sun_share, surface == FOLIAGE)
+    tilt = f4(0.5) * normal[2]
     if surface == FOLIAGE:
-        lean = f4(0.2) + (f4(0.8) * lean if lean > zero else f4(-0.3) * lean)
-        offset += f4(0.7)
-    sunlit = zero
-    if lean > zero:
-        sunlit = sun_share * _sunlit(light, x + offset * nx, y + offset * ny, z + offset * nz)
-    direct = max(lean, zero) * sunlit
-    up = (f4(0.5) + f4(0.5) * nz) * sky_share
-    down = (f4(0.5) - f4(0.5) * nz) * sky_share
+        tilt = f4(0.2) + f4(0.5) * tilt  # leaves below get light through those above
+    up, down = (f4(0.5) + tilt) * sky_share, (f4(0.5) - tilt) * sky_share
     glow = geometry.emission[material]
     if surface == FACADE:
         glow *= one - alpha  # lit windows in a dark wall
-    red *= (
-        direct * light.sun_colour[0]
-        + up * light.ambient_up[0]
-        + down * light.ambient_down[0]
-        + glow
-    )
-    green *= (
-        direct * light.sun_colour[1]
-        + up * light.ambient_up[1]
-        + down * light.ambient_down[1]
-        + glow
-    )
-    blue *= (
-        direct * light.sun_colour[2]
-        + up * light.ambient_up[2]
-        + down * light.ambient_down[2]
-        + glow
-    )
+    sun, above, below = light.sun_colour, light.ambient_up, light.ambient_down
+    red *= direct * sun[0] + up * above[0] + down * below[0] + glow
+    green *= direct * sun[1] + up * above[1] + down * below[1] + glow
+    blue *= direct * sun[2] + up * above[2] + down * below[2] + glow
+    mirror = _smoothness(surface, alpha)
     if mirror > zero:
-        mr, mg, mb, share = _reflection(light, (rx, ry, rz), (nx, ny, nz), facing, mirror, sunlit)
+        facing = min(max(cosine, zero), one)
+        mr, mg, mb, share = reflection(light, way, normal, facing, mirror, reaching)
         if surface == FACADE:
             share *= one - alpha
+        elif surface == PAINT:
+            share *= f4(0.6)  # clear coat is no mirror, even seen along it
         red += share * (mr - red)
         green += share * (mg - green)
         blue += share * (mb - blue)

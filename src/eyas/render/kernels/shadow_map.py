@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import kernel, parallel_kernel, prange
+from eyas.core.jit import inner_kernel, parallel_kernel, prange
 from eyas.render.kernels.bundles import Geometry
 from eyas.render.kernels.rasterise import BOTH_SIDES, rasterise
 from eyas.render.kernels.scalars import f4, i8
@@ -60,7 +60,7 @@ def bake_rows(
                     shadow_map[top + line, column] = np.uint16(height)
 
 
-@kernel
+@inner_kernel
 def _set_object_rows(
     rows: NDArray[np.float64], pose: NDArray[np.float32], product: NDArray[np.float64]
 ) -> None:
@@ -72,7 +72,7 @@ def _set_object_rows(
         product[i, 3] += rows[i, 3]
 
 
-@kernel
+@inner_kernel
 def _draw(
     geometry: Geometry,
     rows: NDArray[np.float64],

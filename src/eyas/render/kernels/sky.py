@@ -6,7 +6,7 @@ from eyas.core.jit import inlined_kernel
 from eyas.render.kernels.bundles import Light
 from eyas.render.kernels.scalars import f4
 
-__all__ = ["fog_share", "sky"]
+__all__ = ["fog_share", "reflection", "sky"]
 
 
 @inlined_kernel
@@ -53,3 +53,42 @@ def fog_share(light: Light, distance: float) -> float:
     if light.air[1] > f4(1.5):
         thickness *= thickness
     return f4(f4(1.0) - np.exp(-thickness))
+
+
+@inlined_kernel
+def reflection(
+    light: Light,
+    ray: tuple[float, float, float],
+    normal: tuple[float, float, float],
+    facing: float,
+    least: float,
+    sunlit: float,
+) -> tuple[float, float, float, float]:
+    """Return what a smooth surface mirrors, and the share of it (Schlick's formula).
+
+    Args:
+        light: Sky and sun.
+        ray: From the eye, of length 1.
+        normal: Of the surface, of length 1.
+        facing: Minus their dot product, 0 to 1.
+        least: Share that is mirrored when looking straight at it.
+        sunlit: How much of the sun reaches the surface.
+    """
+    x = ray[0] + f4(2.0) * facing * normal[0]
+    y = ray[1] + f4(2.0) * facing * normal[1]
+    z = ray[2] + f4(2.0) * facing * normal[2]
+    graze = f4(1.0) - facing
+    square = graze * graze
+    share = least + (f4(1.0) - least) * square * square * graze
+    # Low things, not the pale horizon, are what upright surfaces mirror in a street.
+    red, green, blue = sky(light, x, y, z - f4(0.12))
+    shine = max(x * light.sun[0] + y * light.sun[1] + z * light.sun[2], f4(0.0))
+    for _ in range(6):
+        shine *= shine
+    shine *= f4(6.0) * sunlit
+    return (
+        red + shine * light.sun_colour[0],
+        green + shine * light.sun_colour[1],
+        blue + shine * light.sun_colour[2],
+        share,
+    )

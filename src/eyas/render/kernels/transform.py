@@ -3,13 +3,13 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import kernel
+from eyas.core.jit import inner_kernel
 from eyas.render.kernels.bundles import NEAR
 
 __all__ = ["clip_near", "set_object_rows", "set_world_rows", "to_screen"]
 
 
-@kernel
+@inner_kernel
 def set_world_rows(
     eye: NDArray[np.float64],
     axes: NDArray[np.float64],
@@ -25,7 +25,7 @@ def set_world_rows(
         rows[i, 3] = -(rows[i, 0] * eye[0] + rows[i, 1] * eye[1] + rows[i, 2] * eye[2])
 
 
-@kernel
+@inner_kernel
 def set_object_rows(
     world: NDArray[np.float64],
     poses: NDArray[np.float32],
@@ -43,7 +43,7 @@ def set_object_rows(
         rows[i, 3] += world[i, 3]
 
 
-@kernel
+@inner_kernel
 def to_screen(
     rows: NDArray[np.float64],
     positions: NDArray[np.float32],
@@ -76,7 +76,7 @@ def to_screen(
         screen[i, 3] = w
 
 
-@kernel
+@inner_kernel
 def clip_near(
     screen: NDArray[np.float64],
     uvs: NDArray[np.float32],

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import kernel
+from eyas.core.jit import inner_kernel
 from eyas.render.kernels.bundles import GROUP, Geometry
 from eyas.render.kernels.cull import box_is_visible, sphere_is_visible, visible_chunks
 from eyas.render.kernels.meshes import draw_mesh, level_of_detail
@@ -16,7 +16,7 @@ SMALLEST = 0.4
 """Things with a smaller radius are left out [pixels]."""
 
 
-@kernel
+@inner_kernel
 def draw_static(
     geometry: Geometry,
     eye: NDArray[np.float64],
@@ -49,7 +49,7 @@ def draw_static(
             )  # fmt: skip
 
 
-@kernel
+@inner_kernel
 def draw_moving(
     geometry: Geometry,
     parts: NDArray[np.int32],
@@ -77,7 +77,7 @@ def draw_moving(
         )  # fmt: skip
 
 
-@kernel
+@inner_kernel
 def _draw_instance(
     geometry: Geometry,
     prototype: int,
