@@ -102,3 +102,15 @@ def test_a_cache_that_cannot_be_written_does_not_matter(geometry, tmp_path):
     (tmp_path / "file").write_text("in the way")
     shadows = bake_shadows(geometry, DAY.sun_direction, 0.0, tmp_path / "file" / "below")
     assert shadows.heights.any()
+
+
+def test_a_car_does_not_shade_itself(renderer_of, drawn):
+    renderer = renderer_of(scene_of([floor()], [GROUND]), car_parts())
+    draw_list = DrawList.create(1, 6)
+    put_car(draw_list, 0, 0, 0, 0.0, 0.0, 0.0)
+    views = looking([(1.6, 0.0, 12.0)], pitch=np.pi / 2, fov=0.3)
+    whole = drawn(renderer, views, draw_list)
+    draw_list.part[0, 1:] = -1  # the body alone: nothing above the bonnet
+    np.testing.assert_array_equal(
+        whole.rgb[0, 48, 64], drawn(renderer, views, draw_list).rgb[0, 48, 64]
+    )
