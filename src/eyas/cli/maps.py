@@ -1,5 +1,8 @@
 """`eyas maps`."""
 
+from pathlib import Path
+from typing import Annotated
+
 import typer
 
 __all__ = ["app"]
@@ -20,3 +23,20 @@ def list_maps() -> None:
         typer.echo(name)
     for name in sorted(LATER):
         typer.echo(f"{name} (not in this version)")
+
+
+@app.command("gallery")
+def draw_gallery(
+    out: Annotated[Path, typer.Option("--out", help="Folder to write to.")] = Path("runs/gallery"),
+    map_name: Annotated[
+        list[str] | None, typer.Option("--map", help="Only this map; may be given several times.")
+    ] = None,
+    weather: Annotated[
+        list[str] | None,
+        typer.Option("--weather", help="Only this weather; may be given several times."),
+    ] = None,
+) -> None:
+    """Draw a page with pictures of each map in each weather."""
+    from eyas.modes import gallery
+
+    gallery.run(out, map_name or (), weather or ())

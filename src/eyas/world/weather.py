@@ -5,7 +5,7 @@ import math
 from eyas.core.errors import NotInThisVersionError, UnknownNameError
 from eyas.state.scene import Lighting
 
-__all__ = ["WEATHERS", "lighting"]
+__all__ = ["WEATHERS", "lighting", "weathers"]
 
 WEATHERS = ("day", "foggy", "night", "snow")
 """The weathers of the original; this version has `day`."""
@@ -28,6 +28,11 @@ _CLEAR_DAY = Lighting(
 _LIGHTINGS = {("citystreet", "day"): _CLEAR_DAY}
 
 
+def weathers(map_name: str) -> tuple[str, ...]:
+    """Return the weathers that this version has of a map, in the order of `WEATHERS`."""
+    return tuple(weather for weather in WEATHERS if (map_name, weather) in _LIGHTINGS)
+
+
 def lighting(map_name: str, weather: str) -> Lighting:
     """Return the light of a weather of a map.
 
@@ -43,7 +48,7 @@ def lighting(map_name: str, weather: str) -> Lighting:
         raise UnknownNameError("world.weather", weather, WEATHERS)
     light = _LIGHTINGS.get((map_name, weather))
     if light is None:
-        have = ", ".join(kind for name, kind in _LIGHTINGS if name == map_name)
+        have = ", ".join(weathers(map_name))
         raise NotInThisVersionError(
             f"world.weather: '{weather}' of '{map_name}' is not in this version; there is: {have}"
         )

@@ -1,0 +1,111 @@
+"""A place with its traffic standing still at a time, to be looked at from anywhere."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.sim.place import Place
+from eyas.state.draw import DrawList, Picture, Views
+from eyas.state.scene import ACTOR_OBJECT
+from eyas.state.tracker import ActorState
+from eyas.targets.looks import draw_looks
+
+__all__ = ["Stage", "Viewpoint"]
+
+
+@dataclass(frozen=True, slots=True)
+class Viewpoint:
+    """A camera at a time of the traffic."""
+
+    name: str
+    """Stem of the file."""
+    title: str
+    """A few words."""
+    caption: str
+    """What the picture shows."""
+    time: float
+    """Of the traffic [s]."""
+    position: tuple[float, float, float]
+    """Optical centre, world frame [m]."""
+    yaw: float
+    """Counter-clockwise from east [rad]."""
+    pitch: float
+    """Positive down [rad]."""
+    field_of_view: float
+    """Horizontal [rad]; the view is 4:3 whatever shape the picture has."""
+    actor: int = -1
+    """The car it is about, or -1."""
+    size: tuple[int, int] = (480, 640)
+    """Height and width of the picture [pixels]."""
+    samples: int = 4
+    """Samples for each pixel."""
+    enlarged: int = 1
+    """How many pixels wide and high each pixel is made, without smoothing."""
+
+
+class Stage:
+    """Draws viewpoints.
+
+    Args:
+        place: What is looked at.
+    """
+
+    def __init__(self, place: Place) -> None:
+        self.scene = place.scene
+        self.duration = place.replay.duration
+        self._place = place
+        vehicle_type = place.replay.recording.provenance.config.vehicle_type
+        looks = draw_looks(np.random.default_rng(1), vehicle_type, place.replay.actors, None)
+        self._model, self._colour = looks
+
+    def actors(self, time: float) -> ActorState:
+        """Return all actors at a time [s], one world."""
+        actors = ActorState.create(1, self._place.replay.actors)
+        self._place.replay.at(np.array([time]), actors)
+        return actors
+
+    def rgb(self, view: Viewpoint) -> NDArray[np.uint8]:
+        """Return the picture of a viewpoint, sRGB, shape (H, W, 3) times `enlarged`."""
+        picture = Picture.create(1, *view.size)
+        self._draw(view, picture, view.samples)
+        assert picture.rgb is not None  # asked for above
+        return np.repeat(np.repeat(picture.rgb[0], view.enlarged, 0), view.enlarged, 1)
+
+    def probe(self, view: Viewpoint) -> tuple[NDArray[np.float32], float]:
+        """Return what stands where, in a small picture.
+
+        Returns:
+            Depths [m], infinity for sky, shape (48, 64), and which share of the pixels that the
+            viewpoint's car covers shows it, 0 if it is outside the picture.
+        """
+        picture = Picture.create(1, 48, 64, rgb=False, depth=True, subject=True)
+        self._draw(view, picture, 1)
+        assert picture.depth is not None  # asked for above
+        assert picture.subject_pixels is not None
+        seen, covered = picture.subject_pixels[0]
+        return picture.depth[0], seen / covered if covered else 0.0
+
+    def _draw(self, view: Viewpoint, picture: Picture, samples: int) -> None:
+        rigs = self._place.rigs
+        movers = DrawList.create(1, self._place.replay.actors * rigs.slots_per_actor)
+        rigs.pose(self.actors(view.time), self._model[None], self._colour[None], movers)
+        subject = ACTOR_OBJECT + view.actor if view.actor >= 0 else -1
+        views = Views(
+            position=np.array([view.position]),
+            rotation=_look(view.yaw, view.pitch)[None],
+            world=np.zeros(1, np.int32),
+            subject=np.array([subject], np.int32),
+            field_of_view=view.field_of_view,
+            vertical_field_of_view=2 * math.atan(0.75 * math.tan(0.5 * view.field_of_view)),
+        )
+        self._place.renderer.draw(views, movers, picture, samples)
+
+
+def _look(yaw: float, pitch: float) -> NDArray[np.float64]:
+    """Return camera to world: columns forward, left, up."""
+    level = math.cos(pitch)
+    forward = np.array([math.cos(yaw) * level, math.sin(yaw) * level, -math.sin(pitch)])
+    left = np.array([-math.sin(yaw), math.cos(yaw), 0.0])
+    return np.stack([forward, left, np.cross(forward, left)], axis=1)

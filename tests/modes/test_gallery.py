@@ -1,0 +1,192 @@
+"""The gallery: what lies in its folder, and what it refuses to write over."""
+
+import re
+import sys
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from eyas.cli.main import main
+from eyas.core.errors import NotInThisVersionError, OutputError, UnknownNameError
+from eyas.modes import gallery
+from eyas.modes.gallery_page import Shown, page
+from eyas.modes.gallery_stage import Stage
+from eyas.modes.gallery_views import choose_viewpoints
+from eyas.sim.place import load_place
+from eyas.traffic.config import TrafficConfig
+from eyas.world.config import WorldConfig
+from eyas.world.weather import WEATHERS, lighting, weathers
+
+SUN = lighting("citystreet", "day").sun_direction
+
+
+class Pictures(HTMLParser):
+    """Collects the attributes of the page's pictures, and all tags."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.images, self.tags = [], set()
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        self.tags.add(tag)
+        if tag == "img":
+            self.images.append(dict(attributes))
+
+
+@pytest.fixture(scope="module")
+def stage():
+    return Stage(load_place(WorldConfig(), TrafficConfig(), 1))
+
+
+@pytest.fixture(scope="module")
+def views(stage):
+    return choose_viewpoints(stage, SUN)
+
+
+@pytest.fixture(scope="module")
+def drawn(tmp_path_factory):
+    out = tmp_path_factory.mktemp("drawn") / "gallery"
+    gallery.run(out)
+    return out
+
+
+def files(folder):
+    return {p.relative_to(folder): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
+
+
+def test_the_page_shows_each_viewpoint_and_says_what_it_is(drawn, views):
+    text = (drawn / gallery.INDEX).read_text()
+    shown = Pictures(text)
+    sources = [image["src"] for image in shown.images]
+    assert sources == [f"citystreet-day/{view.name}.png" for view in views]
+    for image, view in zip(shown.images, views, strict=True):
+        assert view.caption in image["alt"]
+        assert view.caption in text
+    assert set(files(drawn)) == {
+        (drawn / name).relative_to(drawn) for name in (gallery.INDEX, gallery.SHEET, *sources)
+    }
+
+
+def test_the_page_needs_no_script_and_no_network(drawn):
+    text = (drawn / gallery.INDEX).read_text()
+    assert not Pictures(text).tags & {"script", "link", "iframe"}
+    assert not re.search(r"https?:|url\(|@import", text)
+
+
+def test_every_picture_opens_at_the_size_that_the_page_says_and_is_not_flat(drawn):
+    for image in Pictures((drawn / gallery.INDEX).read_text()).images:
+        with Image.open(drawn / image["src"]) as picture:
+            pixels = np.asarray(picture.convert("RGB"))
+        assert (str(pixels.shape[1]), str(pixels.shape[0])) == (image["width"], image["height"])
+        assert pixels.std() > 15.0, image["src"]
+    with Image.open(drawn / gallery.SHEET) as sheet:
+        assert np.asarray(sheet).std() > 15.0
+
+
+def test_the_observation_is_84_pixels_wide_with_each_pixel_four_times_as_large(drawn):
+    pixels = np.asarray(Image.open(drawn / "citystreet-day" / "observation.png"))
+    assert pixels.shape == (336, 336, 3)
+    assert np.array_equal(pixels, np.kron(pixels[::4, ::4], np.ones((4, 4, 1), np.uint8)))
+
+
+def test_drone_views_have_their_car_in_the_middle_and_unhidden(stage, views):
+    about = [view for view in views if view.actor >= 0 and view.enlarged == 1]
+    assert {(view.position[2], view.pitch) for view in about} == {(22.0, 1.37), (15.0, 0.6)}
+    assert {view.name.split("-")[0] for view in about} == {"trees", "crossing", "towers"}
+    for view in about:
+        car = stage.actors(view.time).position[0, view.actor]
+        apart = np.linalg.norm(car - view.position[:2])
+        # 1.5 m: the drone looks at the middle of the body, not at the reference point.
+        assert apart == pytest.approx(view.position[2] / np.tan(view.pitch), abs=1.5)
+        assert stage.probe(view)[1] > 0.7
+
+
+def test_no_wall_fills_the_overview_and_all_streets_are_in_the_horizon_view(stage, views):
+    far = {view.name: view for view in views}
+    assert far["overview"].position[2] == 60.0
+    assert np.median(stage.probe(far["overview"])[0]) > 30.0
+    horizon = far["horizon"]
+    assert horizon.pitch == 0.3
+    points = stage.scene.network.lane_points - np.array(horizon.position[:2])
+    ahead = points @ [np.cos(horizon.yaw), np.sin(horizon.yaw)]
+    left = points @ [-np.sin(horizon.yaw), np.cos(horizon.yaw)]
+    assert np.all(np.abs(left) < ahead * np.tan(0.5 * horizon.field_of_view))
+    depth = stage.probe(horizon)[0]
+    assert np.isinf(depth[0]).all()
+    assert np.isfinite(depth[24:, 32]).all()
+
+
+def test_a_second_run_replaces_the_first_with_the_same_bytes(drawn):
+    before = files(drawn)
+    gallery.run(drawn)
+    assert files(drawn) == before
+
+
+def test_a_page_of_another_maker_or_any_foreign_file_is_refused_untouched(drawn, tmp_path):
+    foreign = tmp_path / "thesis"
+    foreign.mkdir()
+    (foreign / "index.html").write_text("<h1>My thesis</h1>")
+    with pytest.raises(OutputError, match=r"not a gallery: another made its index\.html"):
+        gallery.run(foreign)
+    (foreign / "index.html").rename(foreign / "chapter1.html")
+    with pytest.raises(OutputError, match=r"holds 'chapter1\.html'"):
+        gallery.run(foreign)
+    assert files(tmp_path) == {
+        (foreign / "chapter1.html").relative_to(tmp_path): b"<h1>My thesis</h1>"
+    }
+    with pytest.raises(OutputError, match="is a file"):
+        gallery.run(drawn / gallery.INDEX)
+
+
+def test_what_an_interrupted_run_has_left_may_be_drawn_over(tmp_path, monkeypatch):
+    (tmp_path / "citystreet-day").mkdir()
+    (tmp_path / "citystreet-day" / "horizon.png").write_bytes(b"")
+    (tmp_path / "citystreet-day" / ".overview.png.part").write_bytes(b"")
+
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(gallery, "contact_sheet", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        gallery.run(tmp_path)
+    assert not (tmp_path / gallery.INDEX).exists()
+    assert Image.open(tmp_path / "citystreet-day" / "horizon.png").size == (640, 480)
+
+
+def test_only_what_is_named_is_drawn_and_wrong_names_are_told():
+    assert gallery.conditions([], []) == [("citystreet", "day")]
+    assert gallery.conditions(["citystreet", "citystreet"], ["day"]) == [("citystreet", "day")]
+    with pytest.raises(UnknownNameError, match="did you mean 'citystreet'"):
+        gallery.conditions(["citystret"], [])
+    with pytest.raises(UnknownNameError, match="did you mean 'foggy'"):
+        gallery.conditions([], ["fogy"])
+    with pytest.raises(NotInThisVersionError, match="'night' of 'citystreet'"):
+        gallery.conditions([], ["night"])
+    with pytest.raises(NotInThisVersionError, match="lake"):
+        gallery.conditions(["lake"], [])
+
+
+def test_the_weathers_of_a_map_are_those_that_have_a_light():
+    assert weathers("citystreet") == ("day",)
+    assert set(weathers("citystreet")) <= set(WEATHERS)
+    assert weathers("atlantis") == ()
+
+
+def test_names_on_the_page_cannot_break_it(views):
+    odd = Shown('<b>"x"', "day", views[:1], [np.zeros((1, 1, 3), np.uint8)])
+    assert "<b>" not in page([odd], gallery.SHEET)
+
+
+def test_the_command_says_in_one_line_what_is_wrong(monkeypatch, capsys, tmp_path):
+    (tmp_path / "notes.txt").write_text("mine")
+    arguments = ["eyas", "maps", "gallery", "--out", str(tmp_path)]
+    for more, line in [([], "not a gallery"), (["--weather", "fogy"], "world.weather: 'fogy'")]:
+        monkeypatch.setattr(sys, "argv", arguments + more)
+        with pytest.raises(SystemExit) as caught:
+            main()
+        said = capsys.readouterr()
+        assert (caught.value.code, said.out, len(said.err.splitlines())) == (2, "", 1)
+        assert line in said.err
