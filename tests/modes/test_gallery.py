@@ -13,7 +13,7 @@ from eyas.core.errors import NotInThisVersionError, OutputError, UnknownNameErro
 from eyas.modes import gallery
 from eyas.modes.gallery_page import Shown, page
 from eyas.modes.gallery_stage import Stage
-from eyas.modes.gallery_views import choose_viewpoints
+from eyas.modes.gallery_views import _all_cars, _stop, choose_viewpoints
 from eyas.sim.place import load_place
 from eyas.traffic.config import TrafficConfig
 from eyas.world.config import WorldConfig
@@ -104,11 +104,29 @@ def test_drone_views_have_their_car_in_the_middle_and_unhidden(stage, views):
         assert stage.probe(view)[1] > 0.7
 
 
-def test_no_wall_fills_the_overview_and_all_streets_are_in_the_horizon_view(stage, views):
-    far = {view.name: view for view in views}
-    assert far["overview"].position[2] == 60.0
-    assert np.median(stage.probe(far["overview"])[0]) > 30.0
-    horizon = far["horizon"]
+@pytest.mark.parametrize("turn", range(0, 360, 45))
+def test_no_wall_fills_the_overview_wherever_the_sun_stands(stage, turn):
+    sun = (np.cos(np.radians(turn)), np.sin(np.radians(turn)), 1.0)
+    overview = next(view for view in choose_viewpoints(stage, sun) if view.name == "overview")
+    depth = stage.probe(overview)[0]
+    assert overview.position[2] == 60.0
+    assert np.median(depth) > 60.0
+    assert np.quantile(depth, 0.1) > 60.0
+
+
+def test_cars_that_a_drone_in_a_tree_would_look_at_are_passed_over(stage):
+    cars = _all_cars(stage)
+    back = 15.0 / np.tan(0.6) * np.stack([np.cos(cars.yaw), np.sin(cars.yaw)], axis=1)
+    crowns = stage.scene.fixtures.pose[:, :2, 3]
+    scale = np.linalg.norm(stage.scene.fixtures.pose[:, 0, :3], axis=1)  # a tree's height
+    crowns = crowns[scale > 17.0]
+    apart = np.linalg.norm((cars.position - back)[:, None] - crowns[None], axis=2).min(axis=1)
+    assert (apart < 6.0).sum() > 3
+    assert not list(_stop(stage, cars, "trees", "in a tree", (apart < 6.0).astype(float)))
+
+
+def test_all_streets_are_in_the_horizon_view(stage, views):
+    horizon = next(view for view in views if view.name == "horizon")
     assert horizon.pitch == 0.3
     points = stage.scene.network.lane_points - np.array(horizon.position[:2])
     ahead = points @ [np.cos(horizon.yaw), np.sin(horizon.yaw)]

@@ -95,7 +95,8 @@ def _stop(stage: Stage, cars: _Cars, name: str, where: str, score: Points) -> It
 
 def _in_sight(stage: Stage, view: Viewpoint) -> bool:
     depth, seen = stage.probe(view)
-    return seen > 0.7 and float(depth.min()) > 4.0
+    near = _is_inside(stage.scene.colliders, view.position) or float(depth.min()) < 4.0
+    return seen > 0.7 and not near
 
 
 def _drone_view(
