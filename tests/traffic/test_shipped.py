@@ -5,12 +5,17 @@ import sys
 
 import numpy as np
 import pytest
+import shapely
 
 from eyas.core.errors import ConfigError
+from eyas.state.tracker import ActorState
 from eyas.traffic.config import Demand, TrafficConfig, VehicleType
 from eyas.traffic.library import STANDARD_DURATION, find_recording
+from eyas.traffic.replay import Replay
 from eyas.traffic.smoothing import smooth
+from eyas.world.maps import shipped_network
 from eyas.world.maps.citystreet import road_graph
+from eyas.world.roads import road_area
 
 WITHOUT_SUMO = """
 import sys
@@ -36,6 +41,24 @@ def test_the_default_traffic_of_citystreet_is_shipped():
     for position in tracks.position[::50]:
         apart = np.hypot(*np.moveaxis(position[:, None] - position, -1, 0))
         assert (apart + 100.0 * np.eye(40)).min() > 1.8
+
+
+def test_no_car_leaves_the_asphalt():
+    """Nine tenths of its length and width stay on it, each second of the recording."""
+    replay = Replay(find_recording(road_graph(0), TrafficConfig(update_routes=False)))
+    time = np.arange(0.0, replay.duration, 1.0)
+    cars = ActorState.create(len(time), replay.actors)
+    replay.at(time, cars)
+    size = 0.9 * np.array([replay.recording.vehicle_length, 1.8])
+    corners = 0.5 * size * [[1, 1], [1, -1], [-1, -1], [-1, 1]]
+    cosine, sine = np.cos(cars.yaw)[..., None], np.sin(cars.yaw)[..., None]
+    east = cars.position[..., :1] + cosine * corners[:, 0] - sine * corners[:, 1]
+    north = cars.position[..., 1:] + sine * corners[:, 0] + cosine * corners[:, 1]
+    network = shipped_network("citystreet")
+    assert network is not None
+    asphalt = road_area(network)
+    shapely.prepare(asphalt)
+    assert shapely.contains_xy(asphalt, east.ravel(), north.ravel()).all()
 
 
 def test_it_needs_no_sumo():

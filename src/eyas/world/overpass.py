@@ -7,6 +7,7 @@ import shapely
 from numpy.typing import ArrayLike, NDArray
 
 from eyas.state.mesh import Material, Mesh, concatenate
+from eyas.world.curves import arc
 from eyas.world.materials import TEXTURES, material
 from eyas.world.shapes import quads
 
@@ -68,7 +69,7 @@ def path(
     for before, corner, after, radius in zip(
         points[:-2], points[1:-1], points[2:], radii, strict=True
     ):
-        pieces.append(_arc(before, corner, after, radius))
+        pieces.append(arc(before, corner, after, radius))
     line = shapely.LineString(np.concatenate([*pieces, points[-1:]]))
     along = np.linspace(0.0, 1.0, round(line.length / _STATION) + 1)
     flat = shapely.get_coordinates(shapely.line_interpolate_point(line, along, normalized=True))
@@ -122,17 +123,6 @@ def deck_prisms(middle: Points, floor: float) -> list[tuple[Points, float, float
     return made
 
 
-def _arc(before: Points, corner: Points, after: Points, radius: float) -> Points:
-    back, onwards = _unit(before - corner), _unit(after - corner)
-    half = 0.5 * np.arccos(np.clip(back @ onwards, -1.0, 1.0))
-    reach = radius / np.tan(half)
-    centre = corner + _unit(back + onwards) * radius / np.sin(half)
-    first, last = corner + reach * back - centre, corner + reach * onwards - centre
-    turn = np.arctan2(first[0] * last[1] - first[1] * last[0], first @ last)
-    angle = np.linspace(0.0, turn, 25)[:, None]
-    return np.asarray(centre + np.cos(angle) * first + np.sin(angle) * [-first[1], first[0]])
-
-
 def _across(middle: Points) -> Points:
     """Return unit vectors to the right of the path, shape (K, 2)."""
     onwards = np.gradient(middle[:, :2], axis=0)
@@ -180,7 +170,3 @@ def _solid_side(middle: Points, sign: float, floor: float) -> Mesh:
     if sign < 0:
         corners, uvs = corners[:, ::-1], uvs[:, ::-1]
     return quads(corners, uvs / TEXTURES["concrete"], _CONCRETE)
-
-
-def _unit(vector: Points) -> Points:
-    return np.asarray(vector / np.linalg.norm(vector))

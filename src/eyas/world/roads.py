@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from eyas.state.mesh import Material, Mesh, concatenate
 from eyas.state.roads import RoadNetwork
+from eyas.world.curves import rounded_kerbs
 from eyas.world.shapes import flat_polygon, quads
 
 __all__ = [
@@ -84,7 +85,7 @@ def joints(network: RoadNetwork) -> dict[str, int]:
 
 
 def road_area(network: RoadNetwork) -> shapely.MultiPolygon:
-    """Return what is paved for cars: all lanes and junctions."""
+    """Return what is paved for cars: all lanes and junctions, with room to turn at corners."""
     shapes: list[shapely.Geometry] = [
         shapely.buffer(
             shapely.LineString(_lane(network, lane)),
@@ -101,7 +102,8 @@ def road_area(network: RoadNetwork) -> shapely.MultiPolygon:
     # Millimetre gaps between lanes and junctions close; corners stay where they are.
     closed = shapely.buffer(shapely.union_all(shapes), 0.05, join_style="mitre")
     opened = shapely.buffer(closed, -0.05, join_style="mitre")
-    return shapely.MultiPolygon(polygons_of(shapely.simplify(opened, 0.01)))
+    rounded = rounded_kerbs(opened, _bends(network))
+    return shapely.MultiPolygon(polygons_of(shapely.simplify(rounded, 0.01)))
 
 
 def blocks(
@@ -187,6 +189,22 @@ def _wall(outline: Line, bottom: float, top: float, material: Material, tile: fl
     uvs[:, (1, 2), 0] = along[1:, None]
     uvs[:, 2:, 1] = rise
     return quads(corners, uvs, material)
+
+
+def _bends(network: RoadNetwork) -> list[tuple[Line, float]]:
+    """Return middle and angle of turn [rad] of each place where two roads meet."""
+    arriving: dict[str, list[Line]] = {}
+    for lane in np.flatnonzero(network.lane_index == 0):
+        end = network.edge_end[network.lane_edge[lane]]
+        arriving.setdefault(end, []).append(_lane(network, int(lane))[-2:])
+    bends = []
+    for one, *others in arriving.values():
+        if len(others) == 1:
+            onwards, back = np.diff(one, axis=0)[0], np.diff(others[0], axis=0)[0]
+            sine = onwards[0] * back[1] - onwards[1] * back[0]
+            angle = np.pi - abs(np.arctan2(sine, onwards @ back))
+            bends.append(((one[1] + others[0][1]) / 2, float(angle)))
+    return bends
 
 
 def _lane(network: RoadNetwork, lane: int) -> Line:
