@@ -61,10 +61,10 @@ def picture_size(picture: Picture) -> tuple[int, int]:
     Raises:
         ValueError: No array with pixels is wanted, so there is no size.
     """
-    for plane in (picture.rgb, picture.depth, picture.object_id):
+    for plane in (picture.rgb, picture.depth, picture.object_id, picture.class_id):
         if plane is not None:
             return plane.shape[1], plane.shape[2]
-    raise ValueError("picture: one of rgb, depth, object_id is needed; it gives the size")
+    raise ValueError("picture: rgb, depth, object_id or class_id is needed; it gives the size")
 
 
 def write_subject(bands: NDArray[np.int32], measured: NDArray[np.int32], picture: Picture) -> None:

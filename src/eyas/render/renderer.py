@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from eyas.core.errors import ConfigError
 from eyas.core.jit import thread_count
 from eyas.render.bake import bake_shadows, shadow_folder
+from eyas.render.classes import class_table, write_classes
 from eyas.render.geometry import build_geometry
 from eyas.render.jobs import build_jobs, picture_size, write_subject
 from eyas.render.kernels.bundles import Movers, Output, Scratch
@@ -57,6 +58,7 @@ class Renderer:
         ranges = np.concatenate([self._geometry.chunk_range, self._geometry.mesh_range])
         self._most_vertices = int((ranges[:, 3] - ranges[:, 2]).max(initial=1))
         self._scratch: dict[tuple[int, int, int], Scratch] = {}
+        self._classes = class_table(scene)
 
     def draw(self, views: Views, draw_list: DrawList, picture: Picture, samples: int = 1) -> None:
         """Draw views into the arrays of a picture that are not None.
@@ -81,6 +83,8 @@ class Renderer:
             output = output._replace(rgb=_NOTHING_RGB)
         if any(len(array) for array in output):
             self._draw(views, movers, output, picture, side=1)
+        if picture.class_id is not None:
+            write_classes(self._classes, output.object_id, picture.class_id)
 
     def _draw(
         self, views: Views, movers: Movers, output: Output, picture: Picture, side: int
@@ -127,12 +131,21 @@ _NOTHING_OBJECT = np.empty((0, 0, 0), np.int32)
 _NOTHING_SUBJECT = np.empty((0, 6), np.int32)
 
 
+def _objects(picture: Picture) -> NDArray[np.int32]:
+    """Return where object ids go; classes need them, wanted or not."""
+    if picture.object_id is not None:
+        return picture.object_id
+    if picture.class_id is not None:
+        return np.empty(picture.class_id.shape, np.int32)
+    return _NOTHING_OBJECT
+
+
 def _output(picture: Picture) -> Output:
     """Return what is wanted; the subject's array is a mark only, jobs get their own."""
     subject = picture.subject_box is not None or picture.subject_pixels is not None
     return Output(
         rgb=_NOTHING_RGB if picture.rgb is None else picture.rgb,
         depth=_NOTHING_DEPTH if picture.depth is None else picture.depth,
-        object_id=_NOTHING_OBJECT if picture.object_id is None else picture.object_id,
+        object_id=_objects(picture),
         subject=np.zeros((1, 6), np.int32) if subject else _NOTHING_SUBJECT,
     )

@@ -75,6 +75,8 @@ class Picture:
     all 0 where it is outside the picture, shape (V, 4)."""
     subject_pixels: NDArray[np.int32] | None
     """Pixels of the subject that are seen, and that it covers seen or hidden, shape (V, 2)."""
+    class_id: NDArray[np.uint8] | None = None
+    """`eyas.state.scene.ObjectClass` of each pixel's object, shape (V, H, W)."""
 
     @classmethod
     def create(  # every output is asked for by name
@@ -87,6 +89,7 @@ class Picture:
         depth: bool = False,
         object_id: bool = False,
         subject: bool = False,
+        class_id: bool = False,
     ) -> "Picture":
         """Return buffers for the outputs that are asked for."""
         plane = (views, height, width)
@@ -96,4 +99,5 @@ class Picture:
             object_id=np.zeros(plane, np.int32) if object_id else None,
             subject_box=np.zeros((views, 4), np.int32) if subject else None,
             subject_pixels=np.zeros((views, 2), np.int32) if subject else None,
+            class_id=np.zeros(plane, np.uint8) if class_id else None,
         )

@@ -27,7 +27,7 @@ ACTOR_OBJECT = 1 << 16
 
 
 class ObjectClass(IntEnum):
-    """What an object of the scene is."""
+    """What an object is; the values of `Picture.class_id`."""
 
     GROUND = 0
     ROAD = 1
@@ -38,6 +38,10 @@ class ObjectClass(IntEnum):
     STRUCTURE = 6
     POLE = 7
     WATER = 8
+    VEHICLE = 9
+    """An actor of the traffic; no object of the scene."""
+    SKY = 10
+    """Nothing; no object of the scene."""
 
 
 @dataclass(slots=True)
