@@ -8,10 +8,12 @@ from numpy.typing import NDArray
 from eyas.render import (
     texture_facades,
     texture_ground,
+    texture_land,
     texture_plants,
     texture_roofs,
     texture_shops,
     texture_walls,
+    texture_wear,
 )
 from eyas.world.materials import TEXTURES
 
@@ -19,6 +21,8 @@ __all__ = ["build_textures"]
 
 _ROOMS = (
     texture_ground,
+    texture_land,
+    texture_wear,
     texture_plants,
     texture_roofs,
     texture_walls,

@@ -12,7 +12,7 @@ from shapely.ops import substring
 from eyas.state.mesh import Material, Mesh, concatenate
 from eyas.state.roads import RoadNetwork
 from eyas.world.curves import joined
-from eyas.world.materials import material
+from eyas.world.materials import TEXTURES, material
 from eyas.world.roads import Street, joints, split_on_grid, streets
 from eyas.world.shapes import flat_polygon
 
@@ -30,8 +30,8 @@ __all__ = [
 PAINT_HEIGHT = 0.012
 """z of the paint: too little to see, enough to tell it from the asphalt at any distance [m]."""
 
-WHITE = material("plain", (0.93, 0.93, 0.91))
-YELLOW = material("plain", (0.93, 0.74, 0.16))
+WHITE = material("paint", (0.99, 0.99, 0.98))
+YELLOW = material("paint", (1.0, 0.79, 0.18))
 
 _DASH, _GAP = 3.0, 6.0
 _LINE = 0.18
@@ -116,7 +116,9 @@ def painted(shapes: Sequence[shapely.Polygon], paint: Material) -> Mesh:
         for shape in shapes
         for part in (split_on_grid(shape) if shape.length > 60.0 else [shape])
     ]
-    return concatenate([flat_polygon(piece, PAINT_HEIGHT, paint, 4.0) for piece in pieces])
+    return concatenate(
+        [flat_polygon(piece, PAINT_HEIGHT, paint, TEXTURES["paint"]) for piece in pieces]
+    )
 
 
 def _chains(all_streets: list[Street], meeting: dict[str, int]) -> list[list[tuple[Line, ...]]]:

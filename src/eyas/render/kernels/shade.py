@@ -9,6 +9,7 @@ from eyas.render.kernels.scalars import f4, u4
 from eyas.render.kernels.sky import fog_share, reflection
 from eyas.render.kernels.sunlight import sunlight
 from eyas.render.kernels.texture import level_of, texel
+from eyas.render.kernels.water import water_colour, water_slope
 from eyas.state.mesh import Surface
 
 __all__ = ["shade_point"]
@@ -153,17 +154,14 @@ def shade_point(
         green *= frame[13]
         blue *= frame[14]
     elif surface == WATER:
-        nx = (
-            normal[0]
-            + f4(0.03) * np.sin(f4(1.9) * x + f4(0.8) * y)
-            + f4(0.02) * np.sin(f4(4.3) * y)
-        )
-        ny = (
-            normal[1]
-            + f4(0.03) * np.sin(f4(2.3) * y - f4(0.6) * x)
-            + f4(0.02) * np.sin(f4(3.7) * x)
-        )
-        normal = (nx, ny, normal[2])
+        slope_x, slope_y = water_slope(geometry.texture, geometry.layer[material], level, u, v)
+        # Seen along the water, the far sides of waves are hidden: none mirrors the ground.
+        calm = min(max(f4(1.5) * cosine, f4(0.1)), one)
+        slope_x *= calm
+        slope_y *= calm
+        normal = _unit(normal[0] - slope_x, normal[1] - slope_y, normal[2])
+        cosine = -(normal[0] * way[0] + normal[1] * way[1] + normal[2] * way[2])
+        red, green, blue = water_colour(geometry.tint, material, slope_x + slope_y)
 
     direct, reaching = sunlight(light, x, y, z, normal, sun_share, surface == FOLIAGE)
     tilt = f4(0.5) * normal[2]

@@ -16,8 +16,10 @@ from eyas.world.assembly import SceneBuilder
 from eyas.world.car_parks import CarPark, place_car_parks, place_rectangle
 from eyas.world.lots import turned
 from eyas.world.maps.citystreet_roads import NAME, road_graph
+from eyas.world.materials import TEXTURES
 from eyas.world.pillars import BASE_HEIGHT, COLUMN_RADIUS, Pillar, pillar_mesh, pillars
 from eyas.world.poles import POLE_HEIGHT, POLE_RADIUS, signal_levels, signal_places
+from eyas.world.road_wear import road_wear
 from eyas.world.roads import Street, blocks, joints, road_area, streets, surface
 
 __all__ = ["FLOOR", "NAME", "build_scene", "road_graph"]
@@ -36,7 +38,7 @@ _TREE_STRIP = 10.0
 """Beside a row of trees, from the kerb: no building [m]."""
 _CAR_PARKS = ((69.0, 34.0), (58.0, 34.0), (45.0, 34.0), (64.0, 17.0), (49.0, 17.0))
 _POOL = (30.0, 18.8)
-_WATER = Material("plain", (0.3, 0.5, 0.8), Surface.WATER)
+_WATER = Material("water", (0.16, 0.42, 0.54), Surface.WATER)
 
 _HIGH = 53.5
 """z of the elevated road [m]."""
@@ -72,7 +74,7 @@ def build_scene(network: RoadNetwork, seed: int) -> Scene:
     """
     plan = _plan(network, seed)
     builder = SceneBuilder()
-    _add_ground(builder, plan, network)
+    _add_ground(builder, plan, network, seed)
     _add_overpass(builder, plan)
     for building in plan.buildings:
         owner = builder.add(ObjectClass.BUILDING, buildings.mesh_of(building))
@@ -161,20 +163,21 @@ def _tree_rows(
     return trunks, strips
 
 
-def _add_ground(builder: SceneBuilder, plan: _Plan, network: RoadNetwork) -> None:
+def _add_ground(builder: SceneBuilder, plan: _Plan, network: RoadNetwork, seed: int) -> None:
     extent = shapely.box(*(-0.5 * np.array(FLOOR)), *(0.5 * np.array(FLOOR)))
     lots = shapely.union_all([park.area for park in plan.car_parks])
     pools = shapely.union_all(plan.pools)
     pavement = ground.pavement_area(plan.blocks, lots)
     covered = shapely.union_all([plan.roads, lots, pools, pavement])
     builder.add(ObjectClass.GROUND, ground.lawn(extent, covered))
-    builder.add(ObjectClass.ROAD, ground.asphalt(plan.roads))
+    wear = road_wear(network, stream(seed, "citystreet road wear"))
+    builder.add(ObjectClass.ROAD, ground.asphalt(plan.roads), wear)
     paint = markings.mesh_of(markings.road_paint(network))
     builder.add(ObjectClass.MARKING, paint, *_bay_lines(plan.car_parks))
     builder.add(ObjectClass.PAVEMENT, ground.pavement(pavement, plan.roads))
     builder.add(ObjectClass.ROAD, ground.asphalt(lots, light=True))
     if plan.pools:
-        builder.add(ObjectClass.WATER, surface(pools, -0.15, _WATER, 1.0))
+        builder.add(ObjectClass.WATER, surface(pools, -0.15, _WATER, TEXTURES["water"]))
         rim = shapely.difference(shapely.buffer(pools, 0.8, join_style="mitre"), pools)
         builder.add(ObjectClass.PAVEMENT, ground.pavement(rim, pools))
 

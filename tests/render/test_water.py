@@ -1,0 +1,49 @@
+"""Water mirrors the sky when looked along, and is dark when looked into; it has waves."""
+
+import numpy as np
+import pytest
+import shapely
+
+from eyas.render.renderer import Renderer
+from eyas.render.textures import build_textures
+from eyas.state.draw import PartLibrary
+from eyas.state.mesh import Material, Surface
+from eyas.world.materials import TEXTURES
+from eyas.world.shapes import flat_polygon
+
+from .small_city import DAY, GROUND, looking, scene_of
+
+
+@pytest.fixture(scope="module")
+def lake(tmp_path_factory):
+    water = Material("water", (0.2, 0.48, 0.62), Surface.WATER)
+    mesh = flat_polygon(shapely.box(-400, -400, 400, 400), 0.0, water, TEXTURES["water"])
+    scene = scene_of([mesh], [GROUND])
+    folder = tmp_path_factory.mktemp("shadows")
+    return Renderer(scene, PartLibrary(()), DAY, build_textures(), shadow_cache=folder)
+
+
+def picture_of(lake, drawn, pitch):
+    # Away from the sun, so that its glitter is not in the picture.
+    return drawn(lake, looking([(0.0, 0.0, 8.0)], yaw=-0.8, pitch=pitch, fov=0.3)).rgb[0] / 255.0
+
+
+def test_water_is_brighter_along_than_straight_down(lake, drawn):
+    along, down = picture_of(lake, drawn, 0.16), picture_of(lake, drawn, 1.5)
+    assert along.mean() > 1.15 * down.mean()
+    horizon = np.array(DAY.horizon_colour) / max(DAY.horizon_colour)
+    tint = [np.abs(p.mean((0, 1)) / p.mean((0, 1)).max() - horizon).sum() for p in (along, down)]
+    assert tint[0] < 0.6 * tint[1]
+
+
+def test_water_has_waves_that_calm_down_with_distance(lake, drawn):
+    near, middle = picture_of(lake, drawn, 1.5), picture_of(lake, drawn, 0.3)
+    assert near.std(axis=(0, 1)).max() > 0.01
+    assert middle.std(axis=(0, 1)).max() > 0.01
+    far = drawn(lake, looking([(0.0, 0.0, 8.0)], yaw=-0.8, pitch=0.05, fov=0.05)).rgb[0] / 255.0
+    assert np.diff(far, axis=1).std() < np.diff(middle, axis=1).std()
+
+
+def test_slopes_of_the_waves_are_even(lake):
+    linear = (build_textures()["water"][..., :2] / 255.0 + 0.055) / 1.055
+    assert (linear**2.4).mean(axis=(0, 1)) == pytest.approx([0.5, 0.5], abs=0.01)
