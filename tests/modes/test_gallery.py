@@ -61,8 +61,13 @@ def test_the_page_shows_each_viewpoint_and_says_what_it_is(drawn, views):
     text = (drawn / gallery.INDEX).read_text()
     shown = Pictures(text)
     sources = [image["src"] for image in shown.images]
-    assert sources == [f"citystreet-day/{view.name}.png" for view in views]
-    for image, view in zip(shown.images, views, strict=True):
+    assert sources == [
+        f"citystreet-{weather}/{view.name}.png"
+        for weather in weathers("citystreet")
+        for view in views
+    ]
+    every = views * len(weathers("citystreet"))
+    for image, view in zip(shown.images, every, strict=True):
         assert view.caption in image["alt"]
         assert view.caption in text
     assert set(files(drawn)) == {
@@ -175,7 +180,8 @@ def test_what_an_interrupted_run_has_left_may_be_drawn_over(tmp_path, monkeypatc
 
 
 def test_only_what_is_named_is_drawn_and_wrong_names_are_told():
-    assert gallery.conditions([], []) == [("citystreet", "day")]
+    every = [("citystreet", weather) for weather in weathers("citystreet")]
+    assert gallery.conditions([], []) == every
     assert gallery.conditions(["citystreet", "citystreet"], ["day"]) == [("citystreet", "day")]
     with pytest.raises(UnknownNameError, match="did you mean 'citystreet'"):
         gallery.conditions(["citystret"], [])
@@ -188,7 +194,7 @@ def test_only_what_is_named_is_drawn_and_wrong_names_are_told():
 
 
 def test_the_weathers_of_a_map_are_those_that_have_a_light():
-    assert weathers("citystreet") == ("day",)
+    assert weathers("citystreet") == ("day", "foggy")
     assert set(weathers("citystreet")) <= set(WEATHERS)
     assert weathers("atlantis") == ()
 

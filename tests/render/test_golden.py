@@ -1,4 +1,4 @@
-"""Three small pictures of citystreet, compared with ones that a person has looked at.
+"""Small pictures of citystreet, compared with ones that a person has looked at.
 
 They show what closed-form tests cannot: that the place looks as it did. After a change that is
 meant to show, look at the new pictures and keep them with `pytest tests/render/test_golden.py
@@ -40,9 +40,9 @@ def look(yaw: float, pitch: float) -> np.ndarray:
     return np.stack([forward, left, np.cross(forward, left)], axis=1)
 
 
-def drawn(name: str) -> np.ndarray:
+def drawn(weather: str, name: str) -> np.ndarray:
     position, yaw, pitch, time = VIEWS[name]
-    place = load_place(WorldConfig(), TrafficConfig(), 1)
+    place = load_place(WorldConfig(weather=weather), TrafficConfig(), 1)
     count = place.replay.actors
     actors = ActorState.create(1, count)
     place.replay.at(np.array([time]), actors)
@@ -66,10 +66,16 @@ def drawn(name: str) -> np.ndarray:
     return picture.rgb[0]
 
 
-@pytest.mark.parametrize("name", VIEWS)
+PICTURES = {name: ("day", name) for name in VIEWS} | {
+    "foggy-ahead": ("foggy", "ahead"),
+    "foggy-overview": ("foggy", "overview"),
+}
+
+
+@pytest.mark.parametrize("name", PICTURES)
 def test_the_city_looks_as_it_did(name, regenerate, tmp_path):
     path = FOLDER / f"{name}.png"
-    now = drawn(name)
+    now = drawn(*PICTURES[name])
     if regenerate:
         Image.fromarray(now).save(path, optimize=True)
     then = np.asarray(Image.open(path))

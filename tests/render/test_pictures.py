@@ -8,6 +8,8 @@ import pytest
 
 from eyas.core.errors import ConfigError, UnknownNameError
 from eyas.core.pinhole import project, rays
+from eyas.render.kernels.band import TONE_STEPS, TONE_TOP
+from eyas.render.lighting import tone_table
 from eyas.render.renderer import Renderer
 from eyas.state.draw import DrawList, PartLibrary, Picture
 from eyas.state.mesh import Material, Surface, transformed
@@ -148,6 +150,26 @@ def test_far_things_fade_into_the_fog(renderer_of, drawn):
     assert np.abs(foggy[far].mean(axis=0) - haze).max() < 25
     assert np.abs(fine[far].mean(axis=0) - haze).max() > 50
     assert np.abs(foggy[near] - fine[near]).mean() < np.abs(foggy[far] - fine[far]).mean()
+
+
+@pytest.mark.parametrize("power", [1, 2])
+def test_the_veil_is_as_thick_as_webots_fog(renderer_of, drawn, power):
+    away, reach = 150.0, 400.0
+    corners = [[(away, 40, -30), (away, -40, -30), (away, -40, 50), (away, 40, 50)]]
+    wall = quads(corners, np.zeros((1, 4, 2)), material("plain", (0.3, 0.3, 0.3)))
+    scene = scene_of([wall], [TOWER])
+
+    def radiance(density):
+        light = dataclasses.replace(DAY, fog_density=density, fog_power=power)
+        picture = drawn(renderer_of(scene, lighting=light), looking([(0, 0, 4)], fov=0.2))
+        # The middle of the steps of radiance that make this byte.
+        made = [np.flatnonzero(tone_table() == byte).mean() for byte in picture.rgb[0, 48, 64]]
+        return (np.array(made) + 0.5) * TONE_TOP / TONE_STEPS
+
+    hidden = 1 - np.exp(-((away / reach) ** power))
+    clear = radiance(0.0)
+    expected = clear + hidden * (np.array(DAY.fog_colour) - clear)
+    np.testing.assert_allclose(radiance(1 / reach), expected, atol=0.006)
 
 
 def test_four_samples_smooth_edges_and_leave_depth_and_ids_alone(renderer_of, drawn):

@@ -4,7 +4,7 @@ import gymnasium
 
 __all__ = ["register"]
 
-_PLACES = (("citystreet", "day"),)
+_PLACES = (("citystreet", "day"), ("citystreet", "foggy"))
 
 
 def register() -> None:

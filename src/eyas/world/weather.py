@@ -1,6 +1,7 @@
 """Light and air: what each weather of each map looks like."""
 
 import math
+from dataclasses import replace
 
 from eyas.core.errors import NotInThisVersionError, UnknownNameError
 from eyas.state.scene import Lighting
@@ -8,7 +9,7 @@ from eyas.state.scene import Lighting
 __all__ = ["WEATHERS", "lighting", "weathers"]
 
 WEATHERS = ("day", "foggy", "night", "snow")
-"""The weathers of the original; this version has `day`."""
+"""The weathers of the original."""
 
 _STEEP = 1.0 / math.sqrt(0.55**2 + 0.6**2 + 1.0)
 
@@ -25,7 +26,22 @@ _CLEAR_DAY = Lighting(
     fog_density=1.0 / 4000.0,
 )
 
-_LIGHTINGS = {("citystreet", "day"): _CLEAR_DAY}
+# The original's plain grey sky (0.75, 0.75, 0.74) as radiance, and its weak bluish sun behind it.
+_OVERCAST = (0.545, 0.545, 0.53)
+
+_FOG = replace(
+    _CLEAR_DAY,
+    sun_colour=(0.07, 0.07, 0.08),
+    zenith_colour=_OVERCAST,
+    horizon_colour=(0.60, 0.60, 0.59),
+    ambient_up=(0.44, 0.44, 0.45),
+    ambient_down=(0.17, 0.165, 0.15),
+    fog_colour=(0.60, 0.60, 0.59),
+    # The original's visibility range: a wash near by, and the far edge of the map dissolves.
+    fog_density=1.0 / 1000.0,
+)
+
+_LIGHTINGS = {("citystreet", "day"): _CLEAR_DAY, ("citystreet", "foggy"): _FOG}
 
 
 def weathers(map_name: str) -> tuple[str, ...]:
