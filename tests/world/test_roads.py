@@ -39,7 +39,7 @@ def test_asphalt_is_one_piece_under_every_lane(network):
 
 def test_blocks_and_asphalt_share_the_floor_out(network):
     extent = shapely.box(-450, -450, 450, 450)
-    closed, outside = blocks(network, extent)
+    closed, outside = blocks(road_area(network), extent)
     assert len(closed) == 9
     whole = road_area(network).area + sum(part.area for part in closed + outside)
     assert whole == pytest.approx(extent.area, rel=1e-9)

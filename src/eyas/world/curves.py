@@ -6,14 +6,14 @@ from numpy.typing import NDArray
 
 __all__ = ["TURN", "arc", "joined", "rounded_kerbs", "turn_reach"]
 
-TURN = 8.0
+TURN = 7.5
 """Smallest radius of a kerb, which lets cars turn on asphalt, and reach of a slighter bend [m]."""
 
 Points = NDArray[np.float64]
 
 
 def arc(before: Points, corner: Points, after: Points, radius: float) -> Points:
-    """Return an arc that touches both sides of a corner, shape (25, 2) [m].
+    """Return an arc that touches both sides of a corner, in steps of 5° or less, shape (K, 2) [m].
 
     Args:
         before: Any point on the way to the corner.
@@ -27,7 +27,8 @@ def arc(before: Points, corner: Points, after: Points, radius: float) -> Points:
     centre = corner + _unit(back + onwards) * radius / np.sin(half)
     first, last = corner + reach * back - centre, corner + reach * onwards - centre
     turn = np.arctan2(first[0] * last[1] - first[1] * last[0], first @ last)
-    angle = np.linspace(0.0, turn, 25)[:, None]
+    steps = max(3, int(np.ceil(abs(turn) / np.radians(5.0))))
+    angle = np.linspace(0.0, turn, steps + 1)[:, None]
     return np.asarray(centre + np.cos(angle) * first + np.sin(angle) * [-first[1], first[0]])
 
 
@@ -74,7 +75,7 @@ def rounded_kerbs(area: shapely.Geometry, bends: list[tuple[Points, float]]) -> 
 
 
 def _closed(area: shapely.Geometry, radius: float) -> shapely.Geometry:
-    # Eight chords in a right angle of 8 m leave 4 cm to the arc; a wider arc needs more.
+    # Eight chords in a right angle leave 4 cm to the arc; a wider arc needs more.
     steps = int(max(8, radius))
     return shapely.buffer(shapely.buffer(area, radius, quad_segs=steps), -radius, quad_segs=steps)
 

@@ -2,13 +2,22 @@
 
 from collections.abc import Sequence
 
+import numpy as np
 import shapely
 
 from eyas.state.mesh import Mesh, concatenate
 from eyas.world.materials import TEXTURES, material
 from eyas.world.roads import skirt, surface
 
-__all__ = ["FLOOR_HEIGHT", "PAVEMENT_WIDTH", "asphalt", "lawn", "pavement", "pavement_area"]
+__all__ = [
+    "FLOOR_HEIGHT",
+    "PAVEMENT_WIDTH",
+    "asphalt",
+    "lawn",
+    "pavement",
+    "pavement_area",
+    "verge_area",
+]
 
 FLOOR_HEIGHT = -0.1
 """z of the lawn, the original's [m]."""
@@ -16,10 +25,21 @@ FLOOR_HEIGHT = -0.1
 PAVEMENT_WIDTH = 2.6
 """From the kerb to the lawn [m]."""
 
+_VERGE = 1.5
+"""Width of the pavement along the outer side of the outer streets [m]."""
+
 _KERB_WIDTH, _KERB_HEIGHT = 0.35, 0.15
 _KERB = material("stone", (1.0, 0.95, 0.92))
 _PAVING = material("paving")
 _CONCRETE = material("concrete")
+_GRASS = ((0.97, 0.98, 0.93), (0.98, 0.96, 0.87), (0.94, 0.97, 0.93), (0.89, 0.94, 0.87))
+"""Tints of a little drier, dry, a little lusher and lush grass."""
+_PATCHES = 34
+"""Dry or lush patches on the floor."""
+_PATCH = (12.0, 48.0)
+"""Mean radius of a patch [m]."""
+_FADE = 0.7
+"""Size of the inner, more different part of a patch."""
 
 
 def pavement_area(blocks: Sequence[shapely.Polygon], cut: shapely.Geometry) -> shapely.Geometry:
@@ -34,6 +54,17 @@ def pavement_area(blocks: Sequence[shapely.Polygon], cut: shapely.Geometry) -> s
         for block in blocks
     ]
     return shapely.difference(shapely.union_all(rings), cut)
+
+
+def verge_area(outside: Sequence[shapely.Polygon], paved: shapely.Geometry) -> shapely.Geometry:
+    """Return the narrow pavements between outer streets and open land.
+
+    Args:
+        outside: What lies outside of the outer streets [m].
+        paved: Asphalt [m].
+    """
+    beside = shapely.buffer(paved, _VERGE, quad_segs=4)
+    return shapely.difference(shapely.intersection(shapely.union_all(outside), beside), paved)
 
 
 def pavement(area: shapely.Geometry, road: shapely.Geometry) -> Mesh:
@@ -60,7 +91,33 @@ def asphalt(area: shapely.Geometry, *, light: bool = False) -> Mesh:
     )
 
 
-def lawn(extent: shapely.Polygon, covered: shapely.Geometry) -> Mesh:
-    """Return the floor where nothing else covers it."""
-    open_ground = shapely.difference(extent, covered)
-    return surface(open_ground, FLOOR_HEIGHT, material("lawn"), TEXTURES["lawn"])
+def lawn(extent: shapely.Polygon, covered: shapely.Geometry, rng: np.random.Generator) -> Mesh:
+    """Return the floor where nothing else covers it, with dry and lush patches."""
+    rest = shapely.difference(extent, covered)
+    parts = []
+    # Where patches overlap the stronger tint wins over the edge of its own patch.
+    for tint, patch in list(zip(_GRASS, _grass_patches(extent, rng), strict=True))[::-1]:
+        parts.append((tint, shapely.intersection(rest, patch)))
+        rest = shapely.difference(rest, patch)
+    tile = TEXTURES["lawn"]
+    made = [surface(part, FLOOR_HEIGHT, material("lawn", tint), tile) for tint, part in parts]
+    return concatenate([surface(rest, FLOOR_HEIGHT, material("lawn"), tile), *made])
+
+
+def _grass_patches(extent: shapely.Polygon, rng: np.random.Generator) -> list[shapely.Geometry]:
+    """Return where each of the tints may be: edges of patches and what is inside of them [m]."""
+    west, south, east, north = extent.bounds
+    angle = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
+    ring = np.stack([1.5 * np.cos(angle), 0.8 * np.sin(angle)], axis=1)
+    inner: list[list[shapely.Polygon]] = [[], []]
+    outer: list[list[shapely.Polygon]] = [[], []]
+    for index in range(_PATCHES):
+        middle = rng.uniform([west, south], [east, north])
+        phase, size = rng.uniform(0, 2 * np.pi, (3, 1)), rng.uniform(0.06, 0.18, (3, 1))
+        waves = (size * np.sin(angle * [[1], [2], [3]] + phase)).sum(axis=0)
+        outline = rng.uniform(*_PATCH) * (1 + waves)[:, None] * ring
+        outer[index % 2].append(shapely.Polygon(middle + outline))
+        inner[index % 2].append(shapely.Polygon(middle + _FADE * outline))
+    dry, lush = map(shapely.union_all, inner)
+    dry_edge, lush_edge = map(shapely.union_all, outer)
+    return [dry_edge, dry, lush_edge, lush]

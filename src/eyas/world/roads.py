@@ -17,6 +17,8 @@ __all__ = [
     "GRID",
     "Street",
     "blocks",
+    "corners",
+    "corridors",
     "joints",
     "polygons_of",
     "road_area",
@@ -28,6 +30,9 @@ __all__ = [
 
 GRID = 32.0
 """Side of the squares that large surfaces are cut along, so that unseen ones can be skipped [m]."""
+
+_AT_CORNER = 5.0
+"""From the middle of what a round corner adds, to houses [m]."""
 
 Line = NDArray[np.float64]
 
@@ -86,6 +91,12 @@ def joints(network: RoadNetwork) -> dict[str, int]:
 
 def road_area(network: RoadNetwork) -> shapely.MultiPolygon:
     """Return what is paved for cars: all lanes and junctions, with room to turn at corners."""
+    rounded = rounded_kerbs(corridors(network), _bends(network))
+    return shapely.MultiPolygon(polygons_of(shapely.simplify(rounded, 0.015)))
+
+
+def corridors(network: RoadNetwork) -> shapely.MultiPolygon:
+    """Return all lanes and junctions, with sharp corners: what lots are laid out around."""
     shapes: list[shapely.Geometry] = [
         shapely.buffer(
             shapely.LineString(_lane(network, lane)),
@@ -102,23 +113,33 @@ def road_area(network: RoadNetwork) -> shapely.MultiPolygon:
     # Millimetre gaps between lanes and junctions close; corners stay where they are.
     closed = shapely.buffer(shapely.union_all(shapes), 0.05, join_style="mitre")
     opened = shapely.buffer(closed, -0.05, join_style="mitre")
-    rounded = rounded_kerbs(opened, _bends(network))
-    return shapely.MultiPolygon(polygons_of(shapely.simplify(rounded, 0.01)))
+    return shapely.MultiPolygon(polygons_of(shapely.simplify(opened, 0.01)))
+
+
+def corners(roads: shapely.Geometry, sharp: shapely.Geometry) -> list[shapely.Polygon]:
+    """Return the surroundings of the round corners of asphalt, which lots do not know of.
+
+    Args:
+        roads: From `road_area` [m].
+        sharp: From `corridors` [m].
+    """
+    added = polygons_of(shapely.difference(roads, sharp))
+    return [shapely.buffer(part.centroid, _AT_CORNER) for part in added if part.area > 2.0]
 
 
 def blocks(
-    network: RoadNetwork, extent: shapely.Polygon
+    roads: shapely.Geometry, extent: shapely.Polygon
 ) -> tuple[list[shapely.Polygon], list[shapely.Polygon]]:
     """Return the ground between roads.
 
     Args:
-        network: The roads.
+        roads: Asphalt [m].
         extent: The whole floor [m].
 
     Returns:
         Blocks with roads all round, and what lies outside of the outer roads.
     """
-    left_over = polygons_of(shapely.difference(extent, road_area(network)))
+    left_over = polygons_of(shapely.difference(extent, roads))
     closed = [part for part in left_over if not part.exterior.intersects(extent.exterior)]
     return closed, [part for part in left_over if part.exterior.intersects(extent.exterior)]
 
@@ -163,7 +184,9 @@ def skirt(
     for part in polygons_of(shape):
         solid = shapely.geometry.polygon.orient(part)
         for ring in (solid.exterior, *solid.interiors):
-            outline = shapely.get_coordinates(shapely.segmentize(ring, GRID))
+            outline = shapely.get_coordinates(
+                shapely.segmentize(shapely.simplify(ring, 1e-3), GRID)
+            )
             pieces.append(_wall(outline, bottom, top, material, tile))
     return concatenate(pieces)
 

@@ -11,22 +11,31 @@ from eyas.core.rng import stream
 from eyas.state.mesh import Material, Mesh, Surface
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import ObjectClass, Scene
-from eyas.world import buildings, ground, markings, overpass, trees
+from eyas.world import buildings, ground, markings, materials, outskirts, overpass, road_wear, trees
 from eyas.world.assembly import SceneBuilder
 from eyas.world.car_parks import CarPark, place_car_parks, place_rectangle
 from eyas.world.lots import turned
 from eyas.world.maps.citystreet_roads import NAME, road_graph
-from eyas.world.materials import TEXTURES
 from eyas.world.pillars import BASE_HEIGHT, COLUMN_RADIUS, Pillar, pillar_mesh, pillars
 from eyas.world.poles import POLE_HEIGHT, POLE_RADIUS, signal_levels, signal_places
-from eyas.world.road_wear import road_wear
-from eyas.world.roads import Street, blocks, joints, road_area, streets, surface
+from eyas.world.roads import (
+    Street,
+    blocks,
+    corners,
+    corridors,
+    joints,
+    polygons_of,
+    road_area,
+    streets,
+    surface,
+)
 
 __all__ = ["FLOOR", "NAME", "build_scene", "road_graph"]
 
 FLOOR = (900.0, 900.0)
 """Extent of the floor [m]."""
 
+_EXTENT = shapely.box(*(-0.5 * np.array(FLOOR)), *(0.5 * np.array(FLOOR)))
 _BUILDINGS = 83
 _TREES = 63
 _TREE_SPACING = (15.0, 21.5)
@@ -43,9 +52,11 @@ _WATER = Material("water", (0.16, 0.42, 0.54), Surface.WATER)
 _HIGH = 53.5
 """z of the elevated road [m]."""
 _PILLARS = 18
+_LEGS = 9
+"""Pillars beyond the floor, where the elevated road comes down."""
 _ASIDE = 17.0
 """From the middle of a street to that of the elevated road beside it [m]."""
-_RAMP = ((0.0, -0.08), (0.02, 0.0), (0.09, 3.5), (0.27, 28.0), (0.42, _HIGH), (1.0, _HIGH))
+_RAMP = ((0.0, 0.0), (0.02, 0.1), (0.09, 3.5), (0.27, 28.0), (0.42, _HIGH), (1.0, _HIGH))
 """Share of the elevated road's length, and z [m]."""
 
 Points = NDArray[np.float64]
@@ -56,7 +67,9 @@ class _Plan:
     """Where things are, in plan view."""
 
     roads: shapely.Geometry
+    access: shapely.Geometry
     blocks: list[shapely.Polygon]
+    outside: list[shapely.Polygon]
     deck: Points
     pillars: list[Pillar]
     car_parks: list[CarPark]
@@ -86,10 +99,11 @@ def build_scene(network: RoadNetwork, seed: int) -> Scene:
 
 
 def _plan(network: RoadNetwork, seed: int) -> _Plan:
-    extent = shapely.box(*(-0.5 * np.array(FLOOR)), *(0.5 * np.array(FLOOR)))
     roads = road_area(network)
-    closed, _ = blocks(network, extent)
+    closed, _ = blocks(sharp := corridors(network), _EXTENT)
     middle = _overpass_path(seed)
+    onwards = (middle[1] - middle[0])[:2]
+    access = outskirts.access_road(middle[0, :2], onwards / np.linalg.norm(onwards), roads)
     columns = pillars(middle, _PILLARS, ground.FLOOR_HEIGHT, roads)
     deck = shapely.buffer(overpass.deck_area(middle), 3.0)
     rng = stream(seed, "citystreet lots")
@@ -101,8 +115,12 @@ def _plan(network: RoadNetwork, seed: int) -> _Plan:
     trunks, strips = _tree_rows(network, stream(seed, "citystreet trees"), taken)
     aprons = [shapely.buffer(lot, 2.5, join_style="mitre") for lot in (*lots, *pools)]
     free = shapely.union_all([deck, *aprons, *strips])
+    # Each corner by itself, so that it takes a corner off a building and moves none.
+    free = shapely.geometrycollections([*polygons_of(free), *corners(roads, sharp)])
     made = buildings.place_buildings(closed, _BUILDINGS, stream(seed, "citystreet buildings"), free)
-    return _Plan(roads, closed, middle, columns, car_parks, pools, trunks, made)
+    inside, outside = blocks(roads, _EXTENT)
+    plain = (roads, access, inside, outside, middle, columns, car_parks, pools)
+    return _Plan(*plain, trunks, made)
 
 
 def _overpass_path(seed: int) -> Points:
@@ -164,21 +182,28 @@ def _tree_rows(
 
 
 def _add_ground(builder: SceneBuilder, plan: _Plan, network: RoadNetwork, seed: int) -> None:
-    extent = shapely.box(*(-0.5 * np.array(FLOOR)), *(0.5 * np.array(FLOOR)))
+    rng = stream(seed, "citystreet lawn")
     lots = shapely.union_all([park.area for park in plan.car_parks])
     pools = shapely.union_all(plan.pools)
-    pavement = ground.pavement_area(plan.blocks, lots)
-    covered = shapely.union_all([plan.roads, lots, pools, pavement])
-    builder.add(ObjectClass.GROUND, ground.lawn(extent, covered))
-    wear = road_wear(network, stream(seed, "citystreet road wear"))
-    builder.add(ObjectClass.ROAD, ground.asphalt(plan.roads), wear)
+    paved = shapely.union_all([plan.roads, plan.access])
+    lots = shapely.difference(lots, plan.roads)
+    verge = ground.verge_area(plan.outside, paved)
+    foot = overpass.deck_area(plan.deck[:9])
+    pavement = shapely.union_all(
+        [ground.pavement_area(plan.blocks, lots), shapely.difference(verge, foot)]
+    )
+    rim = shapely.difference(shapely.buffer(pools, 0.8, join_style="mitre"), pools)
+    covered = shapely.union_all([paved, lots, pools, rim, pavement])
+    land = outskirts.fields(FLOOR, ground.FLOOR_HEIGHT, rng)
+    builder.add(ObjectClass.GROUND, ground.lawn(_EXTENT, covered, rng), land)
+    wear = road_wear.road_wear(network, stream(seed, "citystreet road wear"))
+    builder.add(ObjectClass.ROAD, ground.asphalt(paved), wear)
     paint = markings.mesh_of(markings.road_paint(network))
     builder.add(ObjectClass.MARKING, paint, *_bay_lines(plan.car_parks))
-    builder.add(ObjectClass.PAVEMENT, ground.pavement(pavement, plan.roads))
+    builder.add(ObjectClass.PAVEMENT, ground.pavement(pavement, paved))
     builder.add(ObjectClass.ROAD, ground.asphalt(lots, light=True))
     if plan.pools:
-        builder.add(ObjectClass.WATER, surface(pools, -0.15, _WATER, TEXTURES["water"]))
-        rim = shapely.difference(shapely.buffer(pools, 0.8, join_style="mitre"), pools)
+        builder.add(ObjectClass.WATER, surface(pools, -0.15, _WATER, materials.TEXTURES["water"]))
         builder.add(ObjectClass.PAVEMENT, ground.pavement(rim, pools))
 
 
@@ -188,7 +213,11 @@ def _bay_lines(car_parks: Sequence[CarPark]) -> list[Mesh]:
 
 def _add_overpass(builder: SceneBuilder, plan: _Plan) -> None:
     floor = ground.FLOOR_HEIGHT
-    owner = builder.add(ObjectClass.STRUCTURE, overpass.deck_mesh(plan.deck, floor))
+    # What is beyond the floor is not solid.
+    down = outskirts.descent(plan.deck, floor)
+    legs = [pillar_mesh(pillar, floor) for pillar in pillars(down, _LEGS, floor, plan.roads)]
+    deck = [overpass.deck_mesh(part, floor) for part in (plan.deck, down)]
+    owner = builder.add(ObjectClass.STRUCTURE, *deck, *legs)
     for outline, bottom, top in overpass.deck_prisms(plan.deck, floor):
         builder.add_prism(outline, bottom, top, owner)
     for pillar in plan.pillars:
