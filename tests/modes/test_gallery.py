@@ -194,7 +194,7 @@ def test_only_what_is_named_is_drawn_and_wrong_names_are_told():
 
 
 def test_the_weathers_of_a_map_are_those_that_have_a_light():
-    assert weathers("citystreet") == ("day", "foggy")
+    assert weathers("citystreet") == ("day", "foggy", "snow")
     assert set(weathers("citystreet")) <= set(WEATHERS)
     assert weathers("atlantis") == ()
 

@@ -4,7 +4,7 @@ import gymnasium
 
 __all__ = ["register"]
 
-_PLACES = (("citystreet", "day"), ("citystreet", "foggy"))
+_PLACES = (("citystreet", "day"), ("citystreet", "foggy"), ("citystreet", "snow"))
 
 
 def register() -> None:

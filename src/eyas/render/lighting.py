@@ -16,7 +16,7 @@ def build_light(lighting: Lighting, shadows: ShadowMap) -> Light:
     sun = np.asarray(lighting.sun_direction, np.float64)
     # A point is moved off its surface by what its shadow can be off the texel's middle.
     offset = 1.1 * shadows.texel
-    air = [lighting.fog_density, lighting.fog_power, lighting.exposure, offset]
+    air = [lighting.fog_density, lighting.fog_power, lighting.exposure, offset, lighting.snow]
     return Light(
         sun=_row(sun / np.linalg.norm(sun)),
         sun_colour=_row(lighting.sun_colour),

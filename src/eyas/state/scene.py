@@ -134,3 +134,5 @@ class Lighting:
     """1: exponential, 2: exponential squared."""
     exposure: float = 1.0
     """Factor on everything before it becomes a picture."""
+    snow: float = 0.0
+    """How much snow lies on what faces up: 0 none, 1 all covered."""

@@ -41,7 +41,25 @@ _FOG = replace(
     fog_density=1.0 / 1000.0,
 )
 
-_LIGHTINGS = {("citystreet", "day"): _CLEAR_DAY, ("citystreet", "foggy"): _FOG}
+# The original's plain blue sky (0.60, 0.757, 0.945), paler towards the horizon, and the day's sun.
+_WINTER = replace(
+    _CLEAR_DAY,
+    zenith_colour=(0.24, 0.42, 0.80),
+    horizon_colour=(0.50, 0.62, 0.80),
+    # Snow throws light back up.
+    ambient_up=(0.31, 0.36, 0.45),
+    ambient_down=(0.27, 0.29, 0.32),
+    fog_colour=(0.55, 0.64, 0.76),
+    fog_density=1.0 / 2500.0,
+    exposure=1.1,
+    snow=1.0,
+)
+
+_LIGHTINGS = {
+    ("citystreet", "day"): _CLEAR_DAY,
+    ("citystreet", "foggy"): _FOG,
+    ("citystreet", "snow"): _WINTER,
+}
 
 
 def weathers(map_name: str) -> tuple[str, ...]:

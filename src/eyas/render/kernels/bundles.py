@@ -67,6 +67,8 @@ class Geometry(NamedTuple):
     """Linear colour factor of each material, shape (., 3)."""
     emission: NDArray[np.float32]
     """Own light of each material."""
+    holds_snow: NDArray[np.float32]
+    """Share of the snow that stays on each material, 0 to 1."""
     texture: NDArray[np.uint32]
     """Texels of each layer, all mip levels in a row, row 0 at v = 0: square roots of linear red,
     green, blue, and alpha, a byte each, the lowest byte first, shape (., 87381)."""
@@ -84,7 +86,7 @@ class Light(NamedTuple):
     ambient_down: NDArray[np.float32]
     fog: NDArray[np.float32]
     air: NDArray[np.float32]
-    """Fog density [1/m] and power, exposure, offset of shadows [m], shape (4,)."""
+    """Fog density [1/m] and power, exposure, offset of shadows [m], snow 0 to 1, shape (5,)."""
     shadow_map: NDArray[np.uint16]
     """Height towards the sun of the first thing that sunlight meets, shape (rows, columns)."""
     shadow_rows: NDArray[np.float32]

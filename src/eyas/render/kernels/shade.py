@@ -7,6 +7,7 @@ from eyas.core.jit import inlined_kernel
 from eyas.render.kernels.bundles import Geometry, Light
 from eyas.render.kernels.scalars import f4, u4
 from eyas.render.kernels.sky import fog_share, reflection
+from eyas.render.kernels.snow import snowed
 from eyas.render.kernels.sunlight import sunlight
 from eyas.render.kernels.texture import level_of, texel
 from eyas.render.kernels.water import water_colour, water_slope
@@ -163,6 +164,10 @@ def shade_point(
         cosine = -(normal[0] * way[0] + normal[1] * way[1] + normal[2] * way[2])
         red, green, blue = water_colour(geometry.tint, material, slope_x + slope_y)
 
+    if light.air[4] > zero:
+        red, green, blue = snowed(
+            (red, green, blue), light.air[4], geometry.holds_snow, material, x, y, normal[2]
+        )
     direct, reaching = sunlight(light, x, y, z, normal, sun_share, surface == FOLIAGE)
     tilt = f4(0.5) * normal[2]
     if surface == FOLIAGE:
