@@ -57,7 +57,8 @@ def test_an_episode_ends_truncated_at_the_step_limit():
     assert info["step"] == 0
     for _ in range(9):
         *_, terminated, truncated, _ = env.step(6)
-        assert not (terminated or truncated)
+        assert not terminated
+        assert not truncated
     *_, terminated, truncated, info = env.step(6)
     assert truncated
     assert not terminated

@@ -1,1 +1,1 @@
-"""What every room needs: errors, names, configuration, random streams, clock, frames, compilation."""
+"""What every room needs: errors, names, settings, random streams, clock, frames, compilation."""

@@ -22,6 +22,7 @@ def physics_steps(control_frequency: int) -> int:
     """
     if not 1 <= control_frequency <= PHYSICS_RATE:
         raise ConfigError(
-            f"control.frequency: {control_frequency} is out of range; allowed: 1 to {PHYSICS_RATE} Hz"
+            f"control.frequency: {control_frequency} is out of range; "
+            f"allowed: 1 to {PHYSICS_RATE} Hz"
         )
     return PHYSICS_RATE // control_frequency

@@ -51,7 +51,7 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
         self,
         config: EyasConfig | Mapping[str, Any] | str | Path | None = None,
         *,
-        map: str | None = None,  # noqa: A002  # the word users know
+        map: str | None = None,  # the word users know
         weather: str | None = None,
         continuous: bool = False,
         speeds: Speeds | None = None,

@@ -11,8 +11,9 @@ from eyas.state.scene import ObjectClass, Scene
 
 __all__ = ["ON_ROADS", "snow_held"]
 
-ON_ROADS = 0.22
-"""Share of the snow that traffic and salt leave on roads and their paint."""
+ON_ROADS = 0.08
+"""Share of the snow that traffic and salt leave on roads and their paint: as in the original, roads
+stay black but for a thin dusting."""
 
 
 def snow_held(scene: Scene, parts: PartLibrary, palette: Iterable[Material]) -> NDArray[np.float32]:

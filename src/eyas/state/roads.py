@@ -49,7 +49,7 @@ class RoadGraph:
 
 @dataclass(slots=True)
 class RoadNetwork:
-    """Processed roads. L lanes, P lane points, J junctions, Q junction corners. World frame, z = 0."""
+    """Processed roads, world frame, z = 0. L lanes, P lane points, J junctions, Q their corners."""
 
     graph_hash: str
     """Hash of the road graph it was built from."""
