@@ -96,6 +96,12 @@ def _require_traffic(config: EyasConfig) -> None:
             f" is longer than the traffic's recording; allowed: up to"
             f" {known - config.video.start_time:g} s"
         )
+    begin = (config.start.warm_up_steps + config.video.warm_up_steps) / PHYSICS_RATE
+    if end <= begin:
+        raise ConfigError(
+            f"video.total_time: {config.video.total_time:g} s after {config.video.start_time:g} s "
+            f"ends before the trackers start and warm up, at {begin:g} s; allowed: more"
+        )
 
 
 def _record(sim: Simulation, config: EyasConfig, recorder: Recorder, progress: Progress) -> None:
