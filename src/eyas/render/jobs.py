@@ -18,7 +18,9 @@ SMALLEST_BAND = 3_500
 """Pixels below which cutting costs more than it gains."""
 
 
-def build_jobs(views: Views, height: int, width: int, side: int, threads: int) -> Job:
+def build_jobs(
+    views: Views, height: int, width: int, side: int, threads: int, density: float
+) -> Job:
     """Return the cameras and the bands to draw.
 
     Args:
@@ -27,6 +29,7 @@ def build_jobs(views: Views, height: int, width: int, side: int, threads: int) -
         width: Of the pictures [pixels].
         side: Samples along a side of each pixel.
         threads: How many threads will share the work.
+        density: Of the weather's fog [1/m], for views that do not say their own.
     """
     count = len(views.position)
     bands = min(
@@ -51,8 +54,15 @@ def build_jobs(views: Views, height: int, width: int, side: int, threads: int) -
         axes=np.ascontiguousarray(np.swapaxes(views.rotation, 1, 2), np.float64),
         world=np.ascontiguousarray(views.world, np.int32),
         subject=np.ascontiguousarray(views.subject, np.int32),
+        light=_light_of(views, density),
         lens=np.array(lens, np.float64),
     )
+
+
+def _light_of(views: Views, density: float) -> NDArray[np.float32]:
+    if views.light is not None:
+        return np.ascontiguousarray(views.light, np.float32)
+    return np.tile(np.array([1.0, 1.0, density], np.float32), (len(views.position), 1))
 
 
 def picture_size(picture: Picture) -> tuple[int, int]:

@@ -17,6 +17,7 @@ def build_light(lighting: Lighting, shadows: ShadowMap) -> Light:
     # A point is moved off its surface by what its shadow can be off the texel's middle.
     offset = 1.1 * shadows.texel
     air = [lighting.fog_density, lighting.fog_power, lighting.exposure, offset, lighting.snow]
+    air += [lighting.lamps, lighting.windows, lighting.clouds, lighting.flakes]
     return Light(
         sun=_row(sun / np.linalg.norm(sun)),
         sun_colour=_row(lighting.sun_colour),

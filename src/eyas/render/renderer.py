@@ -92,7 +92,8 @@ class Renderer:
         """Draw with `side` x `side` samples a pixel."""
         height, width = picture_size(picture)
         threads = thread_count()
-        job = build_jobs(views, height, width, side, threads)
+        density = float(self._light.air[0])
+        job = build_jobs(views, height, width, side, threads, density)
         rows = int((job.band[:, 2] - job.band[:, 1]).max(initial=0))
         workers = min(threads, len(job.band))
         wanted = len(output.subject) > 0
@@ -120,6 +121,7 @@ class Renderer:
                 rows=np.empty((workers, 2, 3, 4)),
                 polygon=np.empty((workers, 4, 5)),
                 frame=np.empty((workers, 16), np.float32),
+                light=np.empty((workers, 7, 9), np.float32),
                 caster=np.empty((workers, 8)),
             )
         return self._scratch[key]

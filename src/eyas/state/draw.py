@@ -58,6 +58,11 @@ class Views:
     """Horizontal [rad]."""
     vertical_field_of_view: float | None = None
     """[rad]; None: pixels are square. Set it to squeeze a wide view into a square picture."""
+    light: NDArray[np.float32] | None = None
+    """What each view changes of the light: factor on the sky and its light, factor on the sun,
+    and one over the visibility range [1/m], shape (V, 3); None: the weather as it is."""
+    instant: NDArray[np.float64] | None = None
+    """Time of what falls through the air [s], shape (V,); None: 0 for all."""
 
 
 @dataclass(slots=True)

@@ -26,7 +26,7 @@ class Surface(IntEnum):
     WATER = 5
     """Reflects the sky, with small waves."""
     LAMP = 6
-    """Emits its own light by `emission`, day and night."""
+    """Emits its own light by `emission` when the weather has lamps on."""
 
 
 @dataclass(frozen=True, slots=True)

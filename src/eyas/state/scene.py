@@ -1,6 +1,6 @@
 """The world that stands still, as plain arrays, and the light that falls on it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import IntEnum
 
 import numpy as np
@@ -14,6 +14,7 @@ __all__ = [
     "SKY_OBJECT",
     "Colliders",
     "Fixtures",
+    "Lamps",
     "Lighting",
     "ObjectClass",
     "Scene",
@@ -85,6 +86,21 @@ class Colliders:
 
 
 @dataclass(slots=True)
+class Lamps:
+    """Street lamps: spots that shine when the weather has them on. L lamps."""
+
+    position: NDArray[np.float32]
+    """Of the light [m], shape (L, 3)."""
+    axis: NDArray[np.float32]
+    """Unit vectors along the middle of the beams, shape (L, 3)."""
+
+    @classmethod
+    def none(cls) -> "Lamps":
+        """Return no lamps."""
+        return cls(np.zeros((0, 3), np.float32), np.zeros((0, 3), np.float32))
+
+
+@dataclass(slots=True)
 class Scene:
     """Everything of a map that stands still. T static triangles, O objects."""
 
@@ -108,6 +124,8 @@ class Scene:
     """Solid shapes."""
     network: RoadNetwork
     """The roads traffic drives on."""
+    lamps: Lamps = field(default_factory=Lamps.none)
+    """Street lamps."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,3 +154,11 @@ class Lighting:
     """Factor on everything before it becomes a picture."""
     snow: float = 0.0
     """How much snow lies on what faces up: 0 none, 1 all covered."""
+    lamps: float = 0.0
+    """How far street lamps and the lights of vehicles are on: 0 off, 1 on."""
+    windows: float = 0.0
+    """Share of the windows behind which there is light."""
+    clouds: float = 0.0
+    """Share of the sky that clouds cover."""
+    flakes: float = 0.0
+    """How thick snow falls: 0 none, 1 a heavy fall."""

@@ -86,7 +86,8 @@ class Light(NamedTuple):
     ambient_down: NDArray[np.float32]
     fog: NDArray[np.float32]
     air: NDArray[np.float32]
-    """Fog density [1/m] and power, exposure, offset of shadows [m], snow 0 to 1, shape (5,)."""
+    """Fog density [1/m] and power, exposure, offset of shadows [m], snow, lamps, windows, clouds
+    and flakes (0 to 1 each, see `eyas.state.scene.Lighting`), shape (9,)."""
     shadow_map: NDArray[np.uint16]
     """Height towards the sun of the first thing that sunlight meets, shape (rows, columns)."""
     shadow_rows: NDArray[np.float32]
@@ -117,6 +118,8 @@ class Job(NamedTuple):
     """Shape (V,)."""
     subject: NDArray[np.int32]
     """Shape (V,)."""
+    light: NDArray[np.float32]
+    """Factor on the sky and its light, factor on the sun, fog density [1/m], shape (V, 3)."""
     lens: NDArray[np.float64]
     """Focal length along rows, width, height [samples], mean focal length [pixels], focal length
     along columns [samples], shape (5,)."""
@@ -146,6 +149,8 @@ class Scratch(NamedTuple):
     frame: NDArray[np.float32]
     """Pose of the instance that is being shaded row by row, its linear colour, one over its scale
     squared, shape (K, 16)."""
+    light: NDArray[np.float32]
+    """The colours of `Light` for the view, then its air, shape (K, 7, 9)."""
     caster: NDArray[np.float64]
     """A moving thing's box, see `casters`, shape (K, 8)."""
 

@@ -10,6 +10,7 @@ from eyas.render.kernels.casters import cast_shadows
 from eyas.render.kernels.cull import set_planes
 from eyas.render.kernels.scalars import f4, i8
 from eyas.render.kernels.transform import set_world_rows
+from eyas.render.kernels.view_light import view_light
 from eyas.render.kernels.visibility import draw_moving, draw_static
 from eyas.state.scene import SKY_OBJECT
 
@@ -86,8 +87,9 @@ def _draw_job(
             light.sun, eye, axes, job.lens, first, rows[0], planes, scratch.caster[worker],
             depth, owner, shade,
         )  # fmt: skip
+        lit = view_light(light, job.light[view], scratch.light[worker])
         shade_band(
-            samples, top, geometry, light, movers.pose[world], movers.colour[world], eye, axes,
+            samples, top, geometry, lit, movers.pose[world], movers.colour[world], eye, axes,
             job.lens, depth, owner, shade, scratch.frame[worker], output.rgb[view, top:bottom],
         )  # fmt: skip
     if len(output.subject) > 0:
