@@ -1,13 +1,16 @@
 """The same view gives the same bytes, whoever draws it and with whom."""
 
+import dataclasses
+
 import numba
 import numpy as np
 import pytest
 
 from eyas.render import jobs
 from eyas.state.draw import Views
+from eyas.state.scene import Lamps
 
-from .small_city import looking
+from .small_city import DAY, car_parts, city_scene, looking
 
 SUBJECT = (1 << 16) + 2
 
@@ -19,6 +22,8 @@ def sixteen_views() -> Views:
     places[7:] = [(x, 0.3 * y / 8, z) for x, y, z in places[7:]]
     places[7], pitch[7] = (-34.0, -2.0, 12.0), 1.4  # above the subject
     views = looking(places, list(rng.uniform(-3, 3, 16)), pitch, fov=1.1, subject=SUBJECT)
+    views.light = rng.uniform((0.5, 0.5, 0.0), (1.5, 1.5, 0.005), (16, 3)).astype(np.float32)
+    views.instant = rng.uniform(0.0, 100.0, 16)
     views.world[:] = np.arange(16) % 2
     return views
 
@@ -27,7 +32,7 @@ def one_of(views: Views, k: int) -> Views:
     part = slice(k, k + 1)
     return Views(
         views.position[part], views.rotation[part], views.world[part], views.subject[part],
-        views.field_of_view,
+        views.field_of_view, None, views.light[part], views.instant[part],
     )  # fmt: skip
 
 
@@ -43,9 +48,25 @@ def threads():
     numba.set_num_threads(before)
 
 
+# What each weather adds to the day; all of it at once is no weather, but finds all.
+ALL_WEATHERS = dataclasses.replace(
+    DAY, fog_power=2, snow=1.0, lamps=1.0, windows=0.4, clouds=0.5, flakes=1.0
+)
+
+
+def in_all_weathers(renderer_of):
+    scene = city_scene()
+    places = np.array([(x, 8.5, 7.2) for x in range(-150, 151, 50)], np.float32)
+    scene.lamps = Lamps(places, np.tile(np.array([0, 0, -1], np.float32), (len(places), 1)))
+    return renderer_of(scene, car_parts(), ALL_WEATHERS)
+
+
 @pytest.mark.parametrize("samples", [1, 4])
-def test_threads_and_neighbours_change_no_byte(city, drawn, threads, samples):
+@pytest.mark.parametrize("weather", ["day", "all"])
+def test_threads_and_neighbours_change_no_byte(city, renderer_of, drawn, threads, samples, weather):
     renderer, traffic = city
+    if weather == "all":
+        renderer = in_all_weathers(renderer_of)
     views = sixteen_views()
     threads(1)
     reference = arrays(drawn(renderer, views, traffic, (60, 84), samples))
@@ -69,7 +90,7 @@ def test_bands_change_no_byte(city, drawn, threads, monkeypatch):
     monkeypatch.setattr(jobs, "SMALLEST_BAND", 800)
     monkeypatch.setattr(jobs, "JOBS_PER_THREAD", 12)
     if numba.get_num_threads() == 2:
-        assert len(jobs.build_jobs(views, 120, 160, 1, 2).band) == 24
+        assert len(jobs.build_jobs(views, 120, 160, 1, 2, 0.0).band) == 24
     for name, array in arrays(drawn(renderer, views, traffic, (120, 160))).items():
         np.testing.assert_array_equal(array, whole[name], err_msg=name)
 

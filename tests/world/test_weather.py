@@ -19,12 +19,17 @@ def test_an_unknown_weather_is_told_with_the_nearest_name():
         lighting("citystreet", "fogy")
 
 
-@pytest.mark.parametrize("weather", ["night"])
-def test_weathers_of_later_versions_are_told_in_one_line(weather):
-    with pytest.raises(NotInThisVersionError, match=weather) as caught:
-        lighting("citystreet", weather)
+def test_a_map_of_a_later_version_is_told_in_one_line():
+    with pytest.raises(NotInThisVersionError, match="'day' of 'lake'") as caught:
+        lighting("lake", "day")
     assert "\n" not in str(caught.value)
-    assert "day" in str(caught.value)
+
+
+def test_at_night_the_lamps_are_on_and_the_moon_is_weak():
+    night, day = lighting("citystreet", "night"), lighting("citystreet", "day")
+    assert (night.lamps, day.lamps, day.windows) == (1.0, 0.0, 0.0)
+    assert max(night.sun_colour) < 0.15 * max(day.sun_colour)
+    assert max(night.zenith_colour) < 0.02
 
 
 def test_fog_of_the_street_city_is_the_originals():

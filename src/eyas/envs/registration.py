@@ -4,7 +4,7 @@ import gymnasium
 
 __all__ = ["register"]
 
-_PLACES = (("citystreet", "day"), ("citystreet", "foggy"), ("citystreet", "snow"))
+_PLACES = tuple(("citystreet", weather) for weather in ("day", "foggy", "night", "snow"))
 
 
 def register() -> None:

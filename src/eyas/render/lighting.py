@@ -6,13 +6,15 @@ from numpy.typing import ArrayLike, NDArray
 from eyas.render.bake import ShadowMap
 from eyas.render.kernels.band import TONE_STEPS, TONE_TOP
 from eyas.render.kernels.bundles import Light
-from eyas.state.scene import Lighting
+from eyas.render.lamp_grid import lamp_grid
+from eyas.state.scene import Lamps, Lighting
 
 __all__ = ["build_light", "tone_table"]
 
 
-def build_light(lighting: Lighting, shadows: ShadowMap) -> Light:
+def build_light(lighting: Lighting, shadows: ShadowMap, lamps: Lamps) -> Light:
     """Return the light of a weather."""
+    lamp, lamp_cell, lamp_frame = lamp_grid(lamps)
     sun = np.asarray(lighting.sun_direction, np.float64)
     # A point is moved off its surface by what its shadow can be off the texel's middle.
     offset = 1.1 * shadows.texel
@@ -29,6 +31,9 @@ def build_light(lighting: Lighting, shadows: ShadowMap) -> Light:
         air=_row(air),
         shadow_map=shadows.heights,
         shadow_rows=np.ascontiguousarray(shadows.rows, np.float32),
+        lamp=lamp,
+        lamp_cell=lamp_cell,
+        lamp_frame=lamp_frame,
         tone=tone_table(),
     )
 

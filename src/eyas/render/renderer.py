@@ -54,7 +54,7 @@ class Renderer:
             scene.ground_height,
             shadow_cache or shadow_folder(),
         )
-        self._light = build_light(lighting, shadows)
+        self._light = build_light(lighting, shadows, scene.lamps)
         ranges = np.concatenate([self._geometry.chunk_range, self._geometry.mesh_range])
         self._most_vertices = int((ranges[:, 3] - ranges[:, 2]).max(initial=1))
         self._scratch: dict[tuple[int, int, int], Scratch] = {}
@@ -114,7 +114,7 @@ class Renderer:
             self._scratch[key] = Scratch(
                 depth=np.empty(plane, np.float32),
                 owner=np.empty(plane, np.int64),
-                shade=np.empty((*plane, 2), np.uint8),
+                shade=np.empty((*plane, 4), np.uint8),
                 screen=np.empty((workers, self._most_vertices, 4)),
                 order=np.empty((workers, len(self._geometry.chunk_range)), np.int64),
                 planes=np.empty((workers, 5, 5)),

@@ -40,7 +40,9 @@ def gradients(
     toward_c = (d11 * e2 - d12 * e1) / square
 
     uv = uvs[triangles].astype(np.float64)
-    uv -= np.floor(uv[:, :1])  # whole repeats change nothing, small numbers keep their digits
+    # Whole repeats change nothing, and small numbers keep their digits; 64 of them do not change
+    # which window of a facade is which either.
+    uv -= 64.0 * np.floor(uv[:, :1] / 64.0)
     normal = normals[triangles].astype(np.float64)
     du1, du2 = uv[:, 1] - uv[:, 0], uv[:, 2] - uv[:, 0]
     dn1, dn2 = normal[:, 1] - normal[:, 0], normal[:, 2] - normal[:, 0]

@@ -93,6 +93,10 @@ class Lamps:
     """Of the light [m], shape (L, 3)."""
     axis: NDArray[np.float32]
     """Unit vectors along the middle of the beams, shape (L, 3)."""
+    intensity: float = 30.0
+    """As the original's: its sun has 2.7, its lamps fall off with the square of metres."""
+    cut_off: float = 1.4
+    """Angle off the axis at which a beam ends [rad]."""
 
     @classmethod
     def none(cls) -> "Lamps":

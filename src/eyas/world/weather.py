@@ -55,9 +55,26 @@ _WINTER = replace(
     snow=1.0,
 )
 
+# All at a bit over a third of the day's brightness, as in the original: a high moon, a sky that is
+# not quite black, the glow of the town over the horizon; lamps and windows do the rest.
+_NIGHT = replace(
+    _CLEAR_DAY,
+    sun_direction=(0.48, -0.42, 0.77),
+    sun_colour=(0.070, 0.076, 0.092),
+    zenith_colour=(0.0035, 0.005, 0.012),
+    horizon_colour=(0.024, 0.024, 0.032),
+    ambient_up=(0.050, 0.054, 0.068),
+    ambient_down=(0.024, 0.023, 0.022),
+    fog_colour=(0.024, 0.024, 0.032),
+    fog_density=1.0 / 3000.0,
+    lamps=1.0,
+    windows=0.3,
+)
+
 _LIGHTINGS = {
     ("citystreet", "day"): _CLEAR_DAY,
     ("citystreet", "foggy"): _FOG,
+    ("citystreet", "night"): _NIGHT,
     ("citystreet", "snow"): _WINTER,
 }
 

@@ -89,7 +89,6 @@ def shade_band(
     """
     fixtures = len(geometry.fixture_object)
     centre = f4(eye[0]), f4(eye[1]), f4(eye[2])
-    share = f4(1.0 / 255.0)
     pixel = f4(1.0 / lens[3])
     across, down = 1.0 / lens[0], 1.0 / lens[4]
     framed = -1
@@ -131,7 +130,7 @@ def shade_band(
                     colour = shade_point(
                         geometry, light, tag & 0xFFFFFFFF, instance >= 0, frame, centre,
                         (rx, ry, rz), f4(1.0) / inverse, pixel,
-                        f4(shade[i, j, 0]) * share, f4(shade[i, j, 1]) * share,
+                        shade[i, j],
                     )  # fmt: skip
                 red += _byte(light, colour[0])
                 green += _byte(light, colour[1])

@@ -92,6 +92,13 @@ class Light(NamedTuple):
     """Height towards the sun of the first thing that sunlight meets, shape (rows, columns)."""
     shadow_rows: NDArray[np.float32]
     """World to column, row and height of the shadow map, shape (3, 4)."""
+    lamp: NDArray[np.float32]
+    """Position [m], axis and strength of each street lamp, shape (L, 7)."""
+    lamp_cell: NDArray[np.int32]
+    """Lamps that may light each square of a grid, the nearest first, -1 after the last,
+    shape (rows, columns, .)."""
+    lamp_frame: NDArray[np.float32]
+    """West and south edge of the grid [m], squares in a metre, cosine of the lamps' cut-off."""
     tone: NDArray[np.uint8]
     """Byte of the picture for each step of exposed radiance."""
 
@@ -134,8 +141,8 @@ class Scratch(NamedTuple):
     """(instance + 1) << 32 | triangle, -1 for sky; instance -1 is the static mesh, then come
     the fixtures, then the slots of the draw list. Shape (K, rows, columns)."""
     shade: NDArray[np.uint8]
-    """Sun and sky light that moving things let through, 255 for all,
-    shape (K, rows, columns, 2)."""
+    """Sun and sky light that moving things let through, 255 for all, and light of vehicles' head
+    and tail lamps, shape (K, rows, columns, 4)."""
     screen: NDArray[np.float64]
     """Column, row, 1/distance, distance of a mesh's vertices, shape (K, ., 4)."""
     order: NDArray[np.int64]

@@ -9,7 +9,7 @@ from eyas.core.jit import inner_kernel
 from eyas.render.kernels.bundles import Geometry
 from eyas.render.kernels.cull import sphere_is_visible
 
-__all__ = ["cast_shadows"]
+__all__ = ["cast_shadows", "set_caster"]
 
 
 SMALLEST = 1.0
@@ -17,7 +17,7 @@ SMALLEST = 1.0
 
 
 @inner_kernel
-def _set_caster(
+def set_caster(
     geometry: Geometry,
     parts: NDArray[np.int32],
     poses: NDArray[np.float32],
@@ -216,7 +216,7 @@ def cast_shadows(
             continue
         while last < len(parts) and parts[last] >= 0 and object_ids[last] == object_ids[first]:
             last += 1
-        _set_caster(geometry, parts, poses, first, last, caster)
+        set_caster(geometry, parts, poses, first, last, caster)
         if _may_show(caster, sun, planes, lens[3]):
             box = _screen_box(caster, sun, rows, lens)
             if box[3] >= top and box[1] <= top + depth.shape[0]:

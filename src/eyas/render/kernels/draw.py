@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from eyas.core.jit import inner_kernel, parallel_kernel, prange
 from eyas.render.kernels.band import shade_band
+from eyas.render.kernels.beams import cast_beams
 from eyas.render.kernels.bundles import Geometry, Job, Light, Movers, Output, Scratch
 from eyas.render.kernels.casters import cast_shadows
 from eyas.render.kernels.cull import set_planes
@@ -87,6 +88,11 @@ def _draw_job(
             light.sun, eye, axes, job.lens, first, rows[0], planes, scratch.caster[worker],
             depth, owner, shade,
         )  # fmt: skip
+        if light.air[5] > f4(0.0):
+            cast_beams(
+                geometry, movers.part[world], movers.pose[world], movers.object_id[world],
+                eye, axes, job.lens, first, rows[0], planes, scratch.caster[worker], depth, shade,
+            )  # fmt: skip
         lit = view_light(light, job.light[view], scratch.light[worker])
         shade_band(
             samples, top, geometry, lit, movers.pose[world], movers.colour[world], eye, axes,

@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from eyas.core.jit import inlined_kernel
 from eyas.render.kernels.bundles import Geometry, Light
+from eyas.render.kernels.lamps import night_light, window_light
 from eyas.render.kernels.scalars import f4, u4
 from eyas.render.kernels.sky import fog_share, reflection
 from eyas.render.kernels.snow import snowed
@@ -105,8 +106,7 @@ def shade_point(
     ray: tuple[float, float, float],
     distance: float,
     pixel: float,
-    sun_share: float,
-    sky_share: float,
+    shade: NDArray[np.uint8],
 ) -> tuple[float, float, float]:
     """Return the linear radiance of a point, air included.
 
@@ -120,10 +120,10 @@ def shade_point(
         ray: From the eye, of length 1 along the optical axis.
         distance: Along the optical axis [m].
         pixel: Angle that a pixel spans [rad].
-        sun_share: Sunlight that moving things let through, 0 to 1.
-        sky_share: The same for light of the sky.
+        shade: What moving things do to its light, see `Scratch.shade`.
     """
     one, zero = f4(1.0), f4(0.0)
+    sun_share, sky_share = f4(shade[0]) * f4(1.0 / 255.0), f4(shade[1]) * f4(1.0 / 255.0)
     x = eye[0] + ray[0] * distance
     y = eye[1] + ray[1] * distance
     z = eye[2] + ray[2] * distance
@@ -173,13 +173,29 @@ def shade_point(
     if surface == FOLIAGE:
         tilt = f4(0.2) + f4(0.5) * tilt  # leaves below get light through those above
     up, down = (f4(0.5) + tilt) * sky_share, (f4(0.5) - tilt) * sky_share
-    glow = geometry.emission[material]
-    if surface == FACADE:
-        glow *= one - alpha  # lit windows in a dark wall
     sun, above, below = light.sun_colour, light.ambient_up, light.ambient_down
-    red *= direct * sun[0] + up * above[0] + down * below[0] + glow
-    green *= direct * sun[1] + up * above[1] + down * below[1] + glow
-    blue *= direct * sun[2] + up * above[2] + down * below[2] + glow
+    light_r = direct * sun[0] + up * above[0] + down * below[0]
+    light_g = direct * sun[1] + up * above[1] + down * below[1]
+    light_b = direct * sun[2] + up * above[2] + down * below[2]
+    if light.air[5] > zero:
+        lamp_r, lamp_g, lamp_b = night_light(light, x, y, z, normal, shade)
+        glow = light.air[5] * geometry.emission[material]
+        light_r += lamp_r + glow
+        light_g += lamp_g + glow
+        light_b += lamp_b + glow
+    shown = zero
+    if surface == FACADE and light.air[6] > zero:
+        shown = one - alpha
+    window_r, window_g, window_b = zero, zero, zero
+    if shown > zero:
+        window_r, window_g, window_b = window_light(light, geometry.object_id, t, level, u, v)
+        # Through blinds and curtains, which are paler than dark rooms, more light comes out.
+        window_r *= shown * (f4(0.35) + shown * red)
+        window_g *= shown * (f4(0.35) + shown * green)
+        window_b *= shown * (f4(0.35) + shown * blue)
+    red = red * light_r + window_r
+    green = green * light_g + window_g
+    blue = blue * light_b + window_b
     mirror = _smoothness(surface, alpha)
     if mirror > zero:
         facing = min(max(cosine, zero), one)

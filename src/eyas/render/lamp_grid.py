@@ -1,0 +1,48 @@
+"""Which street lamps may light a place: a list for each square of a grid."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.state.scene import Lamps
+
+__all__ = ["lamp_grid"]
+
+CELL = 8.0
+"""Side of a square [m]."""
+
+REACH = 32.0
+"""Distance from which on a lamp's light is not seen [m]: below a 400th of that under it."""
+
+MOST = 8
+"""Longest list."""
+
+
+def lamp_grid(
+    lamps: Lamps, cell: float = CELL
+) -> tuple[NDArray[np.float32], NDArray[np.int32], NDArray[np.float32]]:
+    """Return `Light.lamp`, `Light.lamp_cell` and `Light.lamp_frame`.
+
+    Args:
+        lamps: L lamps.
+        cell: Side of a square [m].
+    """
+    count = len(lamps.position)
+    strength = np.full((count, 1), lamps.intensity / PAPER, np.float32)
+    lamp = np.concatenate([lamps.position, lamps.axis, strength], axis=1).astype(np.float32)
+    cut_off = float(np.cos(lamps.cut_off))
+    if count == 0:
+        return lamp, np.full((0, 0, 1), -1, np.int32), np.array([0, 0, 1 / cell, cut_off], "f4")
+    low = lamps.position[:, :2].min(axis=0).astype(np.float64) - REACH
+    high = lamps.position[:, :2].max(axis=0).astype(np.float64) + REACH
+    columns, rows = np.ceil((high - low) / cell).astype(int)
+    middle = np.stack(np.meshgrid(np.arange(columns), np.arange(rows)), axis=-1) + 0.5
+    apart = np.linalg.norm((low + cell * middle)[:, :, None] - lamps.position[:, :2], axis=3)
+    order = np.argsort(apart, axis=2, kind="stable")[:, :, :MOST]
+    near = np.take_along_axis(apart, order, axis=2) < REACH + cell * np.sqrt(0.5)
+    cells = np.where(near, order, -1).astype(np.int32)
+    return lamp, np.ascontiguousarray(cells), np.array([*low, 1 / cell, cut_off], np.float32)
+
+
+PAPER = 1.05
+"""Intensity over the square of metres that lights paper as the sun does: the original's lamps
+of intensity 30 then throw about half a sun on the road below."""
