@@ -14,8 +14,11 @@ def command(
     cold: Annotated[
         bool, typer.Option("--cold", help="Also the first picture with nothing compiled yet.")
     ] = False,
+    stages: Annotated[
+        bool, typer.Option("--stages", help="Also where the time of a picture goes.")
+    ] = False,
 ) -> None:
     """Measure how fast this machine runs Eyas; prints medians."""
     from eyas.modes import bench
 
-    bench.run(json, quick=quick, cold=cold)
+    bench.run(json, quick=quick, cold=cold, stages=stages)

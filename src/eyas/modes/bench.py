@@ -17,6 +17,7 @@ from rich.table import Table
 from eyas.core.files import write_atomic
 from eyas.core.machine import describe_machine, peak_memory
 from eyas.modes.bench_first_picture import FIRST_PICTURE
+from eyas.modes.bench_stages import measure_stages, stage_table
 from eyas.sim.build import build_simulation
 from eyas.sim.config import EyasConfig
 from eyas.state.draw import Picture
@@ -40,13 +41,16 @@ class Measurement:
     """How many timings the median is of."""
 
 
-def run(json_path: Path | None = None, *, quick: bool = False, cold: bool = False) -> None:
+def run(
+    json_path: Path | None = None, *, quick: bool = False, cold: bool = False, stages: bool = False
+) -> None:
     """Measure, print a table and write the figures.
 
     Args:
         json_path: Where to write machine and figures as JSON, or None.
         quick: A tenth of the time, for a first look.
         cold: Also time the first picture with nothing compiled yet.
+        stages: Also time the stages of a picture.
     """
     seconds = 0.3 if quick else 3.0
     console = Console()
@@ -55,10 +59,15 @@ def run(json_path: Path | None = None, *, quick: bool = False, cold: bool = Fals
         for measurement in _measurements(seconds, cold=cold):
             results.append(measurement)
             status.update(f"measured: {measurement.name}")
+        spent = measure_stages(seconds) if stages else []
     machine = describe_machine()
     console.print(_table(results, machine))
+    if stages:
+        console.print(stage_table(spent))
     if json_path is not None:
-        document = {"machine": machine, "results": [asdict(result) for result in results]}
+        document: dict[str, object] = {"machine": machine}
+        document["results"] = [asdict(result) for result in results]
+        document["stages"] = [asdict(time_) for time_ in spent]
         write_atomic(json_path, json.dumps(document, indent=2).encode())
 
 

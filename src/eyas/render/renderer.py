@@ -12,7 +12,7 @@ from eyas.render.bake import bake_shadows, shadow_folder
 from eyas.render.classes import class_table, write_classes
 from eyas.render.geometry import build_geometry
 from eyas.render.jobs import build_jobs, picture_size, write_subject
-from eyas.render.kernels.bundles import Movers, Output, Scratch
+from eyas.render.kernels.bundles import Movers, Output, Scratch, Stage
 from eyas.render.kernels.draw import draw_views
 from eyas.render.lighting import build_light
 from eyas.state.draw import DrawList, PartLibrary, Picture, Views
@@ -60,7 +60,14 @@ class Renderer:
         self._scratch: dict[tuple[int, int, int], Scratch] = {}
         self._classes = class_table(scene)
 
-    def draw(self, views: Views, draw_list: DrawList, picture: Picture, samples: int = 1) -> None:
+    def draw(
+        self,
+        views: Views,
+        draw_list: DrawList,
+        picture: Picture,
+        samples: int = 1,
+        until: Stage = Stage.SHADING,
+    ) -> None:
         """Draw views into the arrays of a picture that are not None.
 
         Args:
@@ -69,6 +76,7 @@ class Renderer:
             picture: Written in place.
             samples: Of colour in each pixel, 1 or 4. Depth, objects and the subject's measures
                 are always those at the pixels' centres.
+            until: Where to stop, to see what each stage costs.
 
         Raises:
             ConfigError: `samples` is neither 1 nor 4.
@@ -79,15 +87,21 @@ class Renderer:
         output = _output(picture)
         if samples == 4 and picture.rgb is not None:
             colours = Output(output.rgb, _NOTHING_DEPTH, _NOTHING_OBJECT, _NOTHING_SUBJECT)
-            self._draw(views, movers, colours, picture, side=2)
+            self._draw(views, movers, colours, picture, 2, until)
             output = output._replace(rgb=_NOTHING_RGB)
         if any(len(array) for array in output):
-            self._draw(views, movers, output, picture, side=1)
+            self._draw(views, movers, output, picture, 1, until)
         if picture.class_id is not None:
             write_classes(self._classes, output.object_id, picture.class_id)
 
     def _draw(
-        self, views: Views, movers: Movers, output: Output, picture: Picture, side: int
+        self,
+        views: Views,
+        movers: Movers,
+        output: Output,
+        picture: Picture,
+        side: int,
+        until: Stage,
     ) -> None:
         """Draw with `side` x `side` samples a pixel."""
         height, width = picture_size(picture)
@@ -100,7 +114,9 @@ class Renderer:
         if wanted:
             output = output._replace(subject=np.zeros((len(job.band), 6), np.int32))
         scratch = self._scratch_for(workers, rows * side, width * side)
-        draw_views(workers, side, self._geometry, self._light, movers, job, scratch, output)
+        draw_views(
+            workers, side, int(until), self._geometry, self._light, movers, job, scratch, output
+        )
         if wanted:
             write_subject(job.band, output.subject, picture)
 

@@ -5,6 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.render.kernels.bundles import Stage
 from eyas.render.renderer import Renderer
 from eyas.sensors.config import CameraConfig
 from eyas.state.draw import DrawList, Picture, Views
@@ -38,6 +39,7 @@ class Camera:
         subject: NDArray[np.int32],
         draw_list: DrawList,
         picture: Picture,
+        until: Stage = Stage.SHADING,
     ) -> None:
         """Draw into `picture`.
 
@@ -47,6 +49,7 @@ class Camera:
             subject: Object id each is about, or -1, shape (V,).
             draw_list: The moving parts.
             picture: Where to, of any size; what is None is not drawn.
+            until: Where to stop, see `Renderer.draw`.
         """
         views = Views(
             position=pose.position,
@@ -56,4 +59,4 @@ class Camera:
             field_of_view=self.config.field_of_view,
             vertical_field_of_view=self.vertical_field_of_view,
         )
-        self._renderer.draw(views, draw_list, picture, self.config.samples)
+        self._renderer.draw(views, draw_list, picture, self.config.samples, until)

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
+from eyas.render.kernels.bundles import Stage
 from eyas.sensors.camera import Camera
 from eyas.sim.config import EyasConfig
 from eyas.sim.episodes import Episodes
@@ -90,18 +91,21 @@ class Simulation:
         """Carry all trackers along at their start's offset from the target."""
         follow(physics_steps, self._fleet, self._traffic, self._rules)
 
-    def draw(self, trackers: NDArray[np.int32], picture: Picture) -> None:
+    def draw(
+        self, trackers: NDArray[np.int32], picture: Picture, until: Stage = Stage.SHADING
+    ) -> None:
         """Draw what the cameras of some trackers see.
 
         Args:
             trackers: Which, shape (V,).
             picture: V pictures; the subject is each tracker's target.
+            until: Where to stop, see `Renderer.draw`.
         """
         chosen = np.asarray(trackers)
         pose = CameraPose(self.cameras.position[chosen], self.cameras.rotation[chosen])
         world, movers = self._worlds.draw_list(chosen, self._fleet.tick)
         subject = self._worlds.object_ids(self.targets.actor[chosen])
-        self._camera.read(pose, world, subject, movers, picture)
+        self._camera.read(pose, world, subject, movers, picture, until)
 
     def packets(self) -> tuple[Floats, Floats]:
         """Return copies of the basic (N, 22) and the reward packets (N, 60)."""

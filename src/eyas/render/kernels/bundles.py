@@ -4,18 +4,34 @@ V vertices, T triangles, C chunks, P prototypes (fixtures first, then parts), M 
 detail, grouped by prototype), F fixtures, K workers, J jobs (bands of views).
 """
 
+from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["GROUP", "NEAR", "Geometry", "Job", "Light", "Movers", "Output", "Scratch"]
+__all__ = ["GROUP", "NEAR", "Geometry", "Job", "Light", "Movers", "Output", "Scratch", "Stage"]
 
 NEAR = 0.08
 """Distance of the near plane [m]."""
 
 GROUP = 16
 """Chunks, or fixtures, that are culled together first."""
+
+
+class Stage(IntEnum):
+    """What is done for a picture, in this order; `eyas bench --stages` stops after each."""
+
+    CULLING = 0
+    """Find what may be seen."""
+    VERTICES = 1
+    """Take it to the screen."""
+    RASTERISING = 2
+    """Find the nearest triangle in each pixel, and write what else is asked for than colours."""
+    MOVERS_LIGHT = 3
+    """Shadows of moving things and light of their lamps."""
+    SHADING = 4
+    """Colours: all is done."""
 
 
 class Geometry(NamedTuple):

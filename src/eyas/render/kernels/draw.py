@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from eyas.core.jit import inner_kernel, parallel_kernel, prange
 from eyas.render.kernels.band import shade_band
 from eyas.render.kernels.beams import cast_beams
-from eyas.render.kernels.bundles import Geometry, Job, Light, Movers, Output, Scratch
+from eyas.render.kernels.bundles import Geometry, Job, Light, Movers, Output, Scratch, Stage
 from eyas.render.kernels.casters import cast_shadows
 from eyas.render.kernels.cull import set_planes
 from eyas.render.kernels.scalars import f4, i8
@@ -17,11 +17,15 @@ from eyas.state.scene import SKY_OBJECT
 
 __all__ = ["draw_views"]
 
+RASTERISING = int(Stage.RASTERISING)
+MOVERS_LIGHT = int(Stage.MOVERS_LIGHT)
+
 
 @parallel_kernel
 def draw_views(
     workers: int,
     samples: int,
+    until: int,
     geometry: Geometry,
     light: Light,
     movers: Movers,
@@ -34,6 +38,7 @@ def draw_views(
     Args:
         workers: How many share the work; the leading axis of `scratch`.
         samples: Samples along a side of each pixel, 1 or 2.
+        until: The last `Stage`.
         geometry: Everything that can be drawn.
         light: Light and air.
         movers: What moves.
@@ -43,7 +48,7 @@ def draw_views(
     """
     for worker in prange(workers):
         for index in range(worker, len(job.band), workers):
-            _draw_job(worker, index, samples, geometry, light, movers, job, scratch, output)
+            _draw_job(worker, index, samples, until, geometry, light, movers, job, scratch, output)
 
 
 @inner_kernel
@@ -51,6 +56,7 @@ def _draw_job(
     worker: int,
     index: int,
     samples: int,
+    until: int,
     geometry: Geometry,
     light: Light,
     movers: Movers,
@@ -71,18 +77,18 @@ def _draw_job(
     set_world_rows(eye, axes, job.lens, rows[0])
     set_planes(rows[0], job.lens[1], job.lens[2], first, last, planes)
     draw_static(
-        geometry, eye, job.lens, first, rows, planes, scratch.order[worker],
+        until, geometry, eye, job.lens, first, rows, planes, scratch.order[worker],
         depth, owner, screen, polygon,
     )  # fmt: skip
     draw_moving(
-        geometry, movers.part[world], movers.pose[world], movers.object_id[world], -1, eye,
+        until, geometry, movers.part[world], movers.pose[world], movers.object_id[world], -1, eye,
         job.lens, first, rows, planes, depth, owner, screen, polygon,
     )  # fmt: skip
     if len(output.depth) > 0:
         _write_depth(depth, output.depth[view, top:bottom])
     if len(output.object_id) > 0:
         _write_objects(geometry, movers.object_id[world], owner, output.object_id[view, top:bottom])
-    if len(output.rgb) > 0:
+    if len(output.rgb) > 0 and until > RASTERISING:
         cast_shadows(
             geometry, movers.part[world], movers.pose[world], movers.object_id[world],
             light.sun, eye, axes, job.lens, first, rows[0], planes, scratch.caster[worker],
@@ -93,6 +99,7 @@ def _draw_job(
                 geometry, movers.part[world], movers.pose[world], movers.object_id[world],
                 eye, axes, job.lens, first, rows[0], planes, scratch.caster[worker], depth, shade,
             )  # fmt: skip
+    if len(output.rgb) > 0 and until > MOVERS_LIGHT:
         lit = view_light(light, job.light[view], scratch.light[worker])
         shade_band(
             samples, top, geometry, lit, movers.pose[world], movers.colour[world], eye, axes,
@@ -107,7 +114,7 @@ def _draw_job(
             depth[:] = f4(0.0)
             owner[:] = -1
             draw_moving(
-                geometry, movers.part[world], movers.pose[world], movers.object_id[world],
+                until, geometry, movers.part[world], movers.pose[world], movers.object_id[world],
                 subject, eye, job.lens, first, rows, planes, depth, owner, screen, polygon,
             )  # fmt: skip
             _measure(owner, top, result)

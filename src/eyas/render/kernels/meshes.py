@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.jit import inner_kernel
-from eyas.render.kernels.bundles import Geometry
+from eyas.render.kernels.bundles import Geometry, Stage
 from eyas.render.kernels.rasterise import BOTH_SIDES, FRONT, rasterise
 from eyas.render.kernels.scalars import f4, i8
 from eyas.render.kernels.texture import level_of
@@ -14,6 +14,7 @@ from eyas.state.mesh import Surface
 __all__ = ["draw_mesh", "level_of_detail"]
 
 FOLIAGE = int(Surface.FOLIAGE)
+VERTICES = int(Stage.VERTICES)
 
 PIXELS_PER_TRIANGLE = 1.5
 """A level of detail is fine enough if its triangles are about this large."""
@@ -38,6 +39,7 @@ def level_of_detail(
 
 @inner_kernel
 def draw_mesh(
+    until: int,
     geometry: Geometry,
     rows: NDArray[np.float64],
     ranges: NDArray[np.int32],
@@ -55,6 +57,7 @@ def draw_mesh(
     """Draw a chunk or a level of detail.
 
     Args:
+        until: See `Stage`.
         geometry: Everything that can be drawn.
         rows: Takes the mesh's vertices to the screen.
         ranges: `chunk_range` or `mesh_range`.
@@ -69,9 +72,13 @@ def draw_mesh(
         screen: See `Scratch`.
         polygon: See `Scratch`.
     """
+    if until < VERTICES:
+        return
     middle_x, middle_y = 0.5 * width, 0.5 * height
     offset = ranges[index, 2]
     to_screen(rows, geometry.positions, offset, ranges[index, 3], middle_x, middle_y, screen)
+    if until == VERTICES:
+        return
     base = (i8(instance) + 1) << i8(32)
     bottom = top + depth.shape[0]
     for triangle in range(ranges[index, 0], ranges[index, 1]):

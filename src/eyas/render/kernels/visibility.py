@@ -18,6 +18,7 @@ SMALLEST = 0.4
 
 @inner_kernel
 def draw_static(
+    until: int,
     geometry: Geometry,
     eye: NDArray[np.float64],
     lens: NDArray[np.float64],
@@ -35,8 +36,8 @@ def draw_static(
     for k in range(count):
         chunk = order[k] & i8(0xFFFFFFFF)
         draw_mesh(
-            geometry, rows[0], geometry.chunk_range, chunk, -1, lens[3], lens[1], lens[2], top,
-            depth, owner, screen, polygon,
+            until, geometry, rows[0], geometry.chunk_range, chunk, -1, lens[3], lens[1], lens[2],
+            top, depth, owner, screen, polygon,
         )  # fmt: skip
     fixtures = len(geometry.fixture_prototype)
     for group in range(len(geometry.fixture_group_box)):
@@ -44,13 +45,14 @@ def draw_static(
             continue
         for i in range(group * GROUP, min((group + 1) * GROUP, fixtures)):
             _draw_instance(
-                geometry, geometry.fixture_prototype[i], geometry.fixture_pose, i, i, eye, lens,
-                top, rows, planes, depth, owner, screen, polygon,
+                until, geometry, geometry.fixture_prototype[i], geometry.fixture_pose, i, i, eye,
+                lens, top, rows, planes, depth, owner, screen, polygon,
             )  # fmt: skip
 
 
 @inner_kernel
 def draw_moving(
+    until: int,
     geometry: Geometry,
     parts: NDArray[np.int32],
     poses: NDArray[np.float32],
@@ -72,13 +74,14 @@ def draw_moving(
         if parts[slot] < 0 or (only >= 0 and object_ids[slot] != only):
             continue
         _draw_instance(
-            geometry, geometry.part_first + parts[slot], poses, slot, fixtures + slot, eye, lens,
-            top, rows, planes, depth, owner, screen, polygon,
+            until, geometry, geometry.part_first + parts[slot], poses, slot, fixtures + slot, eye,
+            lens, top, rows, planes, depth, owner, screen, polygon,
         )  # fmt: skip
 
 
 @inner_kernel
 def _draw_instance(
+    until: int,
     geometry: Geometry,
     prototype: int,
     poses: NDArray[np.float32],
@@ -114,6 +117,6 @@ def _draw_instance(
     mesh = level_of_detail(geometry, prototype, radius, distance, lens[3])
     set_object_rows(rows[0], poses, index, rows[1])
     draw_mesh(
-        geometry, rows[1], geometry.mesh_range, mesh, instance, lens[3] * scale, lens[1], lens[2],
-        top, depth, owner, screen, polygon,
+        until, geometry, rows[1], geometry.mesh_range, mesh, instance, lens[3] * scale, lens[1],
+        lens[2], top, depth, owner, screen, polygon,
     )  # fmt: skip

@@ -1,0 +1,96 @@
+"""`eyas bench --stages`: where the time of a picture goes."""
+
+import statistics
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from rich.table import Table
+
+from eyas.render.kernels.bundles import Stage
+from eyas.sim.build import build_simulation
+from eyas.sim.config import EyasConfig
+from eyas.state.draw import Picture
+
+__all__ = ["SIZES", "StageTime", "measure_stages", "stage_table"]
+
+SIZES = ((64, 84, 84), (1, 84, 84), (1, 640, 480), (1, 1280, 720))
+"""Views, width and height that are measured."""
+
+_STAGES = (
+    (Stage.CULLING, "traffic, poses, culling"),
+    (Stage.VERTICES, "vertices"),
+    (Stage.RASTERISING, "rasterising"),
+    (Stage.MOVERS_LIGHT, "light of movers"),
+    (Stage.SHADING, "shading"),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class StageTime:
+    """How long one stage of a picture takes."""
+
+    pictures: str
+    """Size, and how many are drawn at once."""
+    stage: str
+    microseconds: float
+    """Median for one picture [us]."""
+    share: float
+    """Of the whole picture's time."""
+
+
+def measure_stages(seconds: float) -> list[StageTime]:
+    """Return the times of all stages for each of `SIZES`.
+
+    A stage's time is what drawing takes when it stops after it, less what it takes when it stops
+    before; the stops take turns, so that what else the machine does falls on all of them.
+
+    Args:
+        seconds: How long each size is measured.
+    """
+    times = []
+    for views, width, height in SIZES:
+        simulation = build_simulation(EyasConfig(), views, shared_world=False)
+        simulation.reset()
+        picture = Picture.create(views, height, width)
+        trackers = np.arange(views, dtype=np.int32)
+        calls: list[Callable[[], object]] = [
+            partial(simulation.draw, trackers, picture, stage) for stage, _ in _STAGES
+        ]
+        assert picture.rgb is not None  # created above
+        calls.append(picture.rgb.copy)
+        ends = _medians(calls, seconds)
+        spent = [*np.diff([0.0, *ends[:-1]]), ends[-1]]
+        name = f"{width}x{height}, {views} view{'s' * (views > 1)}"
+        for (_, stage), time_ in zip((*_STAGES, (None, "copying out")), spent, strict=True):
+            share = float(time_) / (ends[-2] + ends[-1])
+            times.append(StageTime(name, stage, 1e6 * float(time_) / views, share))
+    return times
+
+
+def _medians(calls: list[Callable[[], object]], seconds: float) -> list[float]:
+    """Return the median time of each call [s]."""
+    spent: list[list[float]] = [[] for _ in calls]
+    end = time.perf_counter() + seconds
+    while time.perf_counter() < end or len(spent[0]) < 5:
+        for call, times in zip(calls, spent, strict=True):
+            start = time.perf_counter()
+            call()
+            times.append(time.perf_counter() - start)
+    return [statistics.median(times[1:]) for times in spent]
+
+
+def stage_table(times: list[StageTime]) -> Table:
+    """Return the times as a table: stages down, sizes across."""
+    table = Table(title="where the time of a picture goes [us, share]", title_justify="left")
+    table.add_column("stage")
+    sizes = list(dict.fromkeys(time_.pictures for time_ in times))
+    for size in sizes:
+        table.add_column(size, justify="right")
+    for stage in dict.fromkeys(time_.stage for time_ in times):
+        found = {time_.pictures: time_ for time_ in times if time_.stage == stage}
+        cells = (f"{found[s].microseconds:,.0f}  {found[s].share:4.0%}" for s in sizes)
+        table.add_row(stage, *cells)
+    return table
