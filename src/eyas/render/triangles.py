@@ -57,6 +57,8 @@ def gradients(
         table[:, 14 + 3 * k : 17 + 3 * k] = dn1[:, k, None] * toward_b + dn2[:, k, None] * toward_c
     tiles = np.abs(du1[:, 0] * du2[:, 1] - du2[:, 0] * du1[:, 1])
     table[:, 23] = np.sqrt(tiles / np.sqrt(square[:, 0]))
+    bent = np.abs(table[:, 14:23]).max(axis=1) > 0.0
+    table[bent, 23] = -np.maximum(table[bent, 23], 1e-12)
     return table.astype(np.float32)
 
 

@@ -90,13 +90,17 @@ def shade_band(
     fixtures = len(geometry.fixture_object)
     centre = f4(eye[0]), f4(eye[1]), f4(eye[2])
     pixel = f4(1.0 / lens[3])
-    across, down = 1.0 / lens[0], 1.0 / lens[4]
+    across, down = f4(1.0 / lens[0]), f4(1.0 / lens[4])
+    middle, centre_line = f4(0.5 * lens[1]), f4(0.5 * lens[2] - top * samples)
+    ahead_x, ahead_y, ahead_z = f4(axes[0, 0]), f4(axes[0, 1]), f4(axes[0, 2])
+    left_x, left_y, left_z = f4(axes[1, 0]), f4(axes[1, 1]), f4(axes[1, 2])
+    up_x, up_y, up_z = f4(axes[2, 0]), f4(axes[2, 1]), f4(axes[2, 2])
     framed = -1
     for row in range(output.shape[0]):
         for column in range(output.shape[1]):
             line, place = row * samples, column * samples
             tag, inverse = owner[line, place], depth[line, place]
-            bits, step = 0, 0.5 * samples
+            bits, step = 0, f4(0.5) * f4(samples)
             if samples == 2:
                 inverse += depth[line, place + 1] + depth[line + 1, place]
                 inverse = (inverse + depth[line + 1, place + 1]) * f4(0.25)
@@ -105,17 +109,17 @@ def shade_band(
                     or owner[line + 1, place] != tag
                     or owner[line + 1, place + 1] != tag
                 ):
-                    bits, step = 2, 0.5
+                    bits, step = 2, f4(0.5)
             red, green, blue = 0, 0, 0
             for k in range(1 << bits):
                 i, j = line + (k >> 1), place + (k & 1)
                 if bits:
                     tag, inverse = owner[i, j], depth[i, j]
-                left = (0.5 * lens[1] - (j + step)) * across
-                up = (0.5 * lens[2] - (i + top * samples + step)) * down
-                rx = f4(axes[0, 0] + left * axes[1, 0] + up * axes[2, 0])
-                ry = f4(axes[0, 1] + left * axes[1, 1] + up * axes[2, 1])
-                rz = f4(axes[0, 2] + left * axes[1, 2] + up * axes[2, 2])
+                left = (middle - (f4(j) + step)) * across
+                up = (centre_line - (f4(i) + step)) * down
+                rx = ahead_x + left * left_x + up * up_x
+                ry = ahead_y + left * left_y + up * up_y
+                rz = ahead_z + left * left_z + up * up_z
                 if tag < 0:
                     unit = f4(1.0) / np.sqrt(rx * rx + ry * ry + rz * rz)
                     colour = sky(light, rx * unit, ry * unit, rz * unit)

@@ -46,7 +46,7 @@ class Geometry(NamedTuple):
     gradients: NDArray[np.float32]
     """What shading needs of each triangle, shape (T, 24): a corner; then gradient and value at
     that corner of u and of v; normal at the corner; gradients of the three components of the
-    normal; texture tiles in a metre."""
+    normal; texture tiles in a metre, negative where the normal is not the same all over."""
     material: NDArray[np.int32]
     """Of each triangle, shape (T,)."""
     object_id: NDArray[np.int32]

@@ -101,7 +101,7 @@ def draw_mesh(
         count = clip_near(screen, geometry.uvs, offset, a, b, c, middle_x, middle_y, polygon)
         level, sides = -1, BOTH_SIDES if leafy else FRONT
         if leafy and count > 0:
-            span = 256.0 * geometry.gradients[triangle, 23] / (focal * polygon[0, 2])
+            span = 256.0 * abs(geometry.gradients[triangle, 23]) / (focal * polygon[0, 2])
             level = level_of(f4(span * span))
             if level >= SMALLEST_HOLES:
                 level = -1

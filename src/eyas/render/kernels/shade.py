@@ -42,20 +42,21 @@ def _to_local(
 
 @inlined_kernel
 def _attributes(
-    gradients: NDArray[np.float32], triangle: int, x: float, y: float, z: float
+    gradients: NDArray[np.float32], triangle: int, x: float, y: float, z: float, bent: bool
 ) -> tuple[float, float, float, float, float]:
-    """Return u, v and the normal, not yet of length 1, see `Geometry.gradients`."""
+    """Return u, v and the normal, see `Geometry.gradients`; a bent one is not yet of length 1."""
     g, t = gradients, triangle
     x -= g[t, 0]
     y -= g[t, 1]
     z -= g[t, 2]
-    return (
-        g[t, 3] * x + g[t, 4] * y + g[t, 5] * z + g[t, 6],
-        g[t, 7] * x + g[t, 8] * y + g[t, 9] * z + g[t, 10],
-        g[t, 11] + g[t, 14] * x + g[t, 15] * y + g[t, 16] * z,
-        g[t, 12] + g[t, 17] * x + g[t, 18] * y + g[t, 19] * z,
-        g[t, 13] + g[t, 20] * x + g[t, 21] * y + g[t, 22] * z,
-    )
+    u = g[t, 3] * x + g[t, 4] * y + g[t, 5] * z + g[t, 6]
+    v = g[t, 7] * x + g[t, 8] * y + g[t, 9] * z + g[t, 10]
+    nx, ny, nz = g[t, 11], g[t, 12], g[t, 13]
+    if bent:
+        nx += g[t, 14] * x + g[t, 15] * y + g[t, 16] * z
+        ny += g[t, 17] * x + g[t, 18] * y + g[t, 19] * z
+        nz += g[t, 20] * x + g[t, 21] * y + g[t, 22] * z
+    return u, v, nx, ny, nz
 
 
 @inlined_kernel
@@ -133,16 +134,19 @@ def shade_point(
     if moved:
         px, py, pz = _to_local(frame, x, y, z)
         density *= np.sqrt(frame[15])
-    u, v, nx, ny, nz = _attributes(geometry.gradients, t, px, py, pz)
+    u, v, nx, ny, nz = _attributes(geometry.gradients, t, px, py, pz, density < zero)
     if moved:
         nx, ny, nz = (
             frame[0] * nx + frame[1] * ny + frame[2] * nz,
             frame[4] * nx + frame[5] * ny + frame[6] * nz,
             frame[8] * nx + frame[9] * ny + frame[10] * nz,
         )
-    normal = _unit(nx, ny, nz)
+    normal = (nx, ny, nz)
+    if moved or density < zero:
+        normal = _unit(nx, ny, nz)
     stretch = np.sqrt(ray[0] * ray[0] + ray[1] * ray[1] + ray[2] * ray[2])
-    way = (ray[0] / stretch, ray[1] / stretch, ray[2] / stretch)
+    shrink = one / stretch
+    way = (ray[0] * shrink, ray[1] * shrink, ray[2] * shrink)
     cosine = -(normal[0] * way[0] + normal[1] * way[1] + normal[2] * way[2])
 
     material = u4(geometry.material[t])

@@ -1,7 +1,5 @@
 """The sky in a direction, and the air between the camera and things."""
 
-import numpy as np
-
 from eyas.core.jit import inlined_kernel
 from eyas.render.kernels.bundles import Light
 from eyas.render.kernels.scalars import f4
@@ -52,7 +50,12 @@ def fog_share(light: Light, distance: float) -> float:
     thickness = distance * light.air[0]
     if light.air[1] > f4(1.5):
         thickness *= thickness
-    return f4(f4(1.0) - np.exp(-thickness))
+    # 1 - exp(-t) as (1 + t/8 + (t/8)^2 / 2)^-8: within 0.003 of it, and several times as fast.
+    eighth = f4(0.125) * thickness
+    power = f4(1.0) + eighth * (f4(1.0) + f4(0.5) * eighth)
+    power *= power
+    power *= power
+    return f4(f4(1.0) - f4(1.0) / (power * power))
 
 
 @inlined_kernel
