@@ -69,6 +69,8 @@ def drawn(weather: str, name: str) -> np.ndarray:
 PICTURES = {name: ("day", name) for name in VIEWS} | {
     "foggy-ahead": ("foggy", "ahead"),
     "foggy-overview": ("foggy", "overview"),
+    "night-ahead": ("night", "ahead"),
+    "night-overview": ("night", "overview"),
     "snow-ahead": ("snow", "ahead"),
     "snow-overview": ("snow", "overview"),
 }

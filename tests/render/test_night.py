@@ -141,13 +141,15 @@ def test_small_windows_fade_to_their_mean(drawn, renderer_of):
     assert means[1] == pytest.approx(means[0], rel=0.35)
 
 
-def test_the_street_city_at_night_has_a_third_of_the_days_brightness():
+def test_the_street_city_at_night_has_a_third_of_the_days_brightness_and_bright_pools():
     pictures = {}
     for weather in ("day", "night"):
         place = load_place(WorldConfig(weather=weather), TrafficConfig(), 1)
-        spots = [(*point, 22.0) for point in place.scene.network.lane_points[::97]]
+        spots = [(*point, 22.0) for point in place.scene.network.lane_points[::5]]
         picture = Picture.create(len(spots), 30, 40)
         movers = DrawList.create(1, place.rigs.slots_per_actor)
         place.renderer.draw(looking(spots, pitch=1.37), movers, picture)
         pictures[weather] = picture.rgb.astype(float)
     assert 0.3 < pictures["night"].mean() / pictures["day"].mean() < 0.5
+    by_view = pictures["night"].mean(axis=(1, 2, 3))
+    assert by_view.max() > 2.0 * by_view.min()

@@ -96,7 +96,7 @@ def count(scene, kind):
 def test_as_much_stands_in_it_as_in_the_original(scene):
     assert 78 <= count(scene, ObjectClass.BUILDING) <= 83
     assert count(scene, ObjectClass.TREE) == len(trunks_of(scene)) == 63
-    assert count(scene, ObjectClass.POLE) == 36
+    assert count(scene, ObjectClass.POLE) == 36 + 48  # traffic lights and street lamps
     assert count(scene, ObjectClass.WATER) == 1
     assert 17 <= count(scene, ObjectClass.STRUCTURE) - 1 <= 18
     assert scene.size == (900.0, 900.0)

@@ -38,11 +38,11 @@ GLASS = Material(tint=(0.11, 0.13, 0.15), surface=Surface.GLASS)
 ROOF_GLASS = Material(tint=(0.05, 0.055, 0.065), surface=Surface.GLASS)
 """A glass roof."""
 
-HEAD_LAMP = Material(tint=(0.93, 0.94, 0.90), surface=Surface.LAMP, emission=0.25)
-"""Front lamps, bright enough to be told from paint by day and seen by night."""
+HEAD_LAMP = Material(tint=(0.93, 0.94, 0.90), surface=Surface.LAMP, emission=4.5)
+"""Front lamps; they shine when the weather has lamps on."""
 
-TAIL_LAMP = Material(tint=(0.72, 0.05, 0.04), surface=Surface.LAMP, emission=0.30)
-"""Rear lamps."""
+TAIL_LAMP = Material(tint=(0.72, 0.05, 0.04), surface=Surface.LAMP, emission=1.8)
+"""Rear lamps; likewise."""
 
 TRIM = plain(0.10, 0.10, 0.11)
 """Grilles, bumpers, undersides."""

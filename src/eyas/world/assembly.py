@@ -7,7 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from eyas.state.mesh import Mesh, concatenate
 from eyas.state.roads import RoadNetwork
-from eyas.state.scene import Colliders, Fixtures, ObjectClass, Scene
+from eyas.state.scene import Colliders, Fixtures, Lamps, ObjectClass, Scene
 
 __all__ = ["SceneBuilder"]
 
@@ -74,6 +74,7 @@ class SceneBuilder:
         ground_height: float,
         levels: Sequence[tuple[Mesh, ...]],
         network: RoadNetwork,
+        lamps: Lamps | None = None,
     ) -> Scene:
         """Return the scene of all that was added; for the arguments see `Scene` and `Fixtures`."""
         counts = [len(mesh.triangles) for mesh in self._meshes]
@@ -94,6 +95,7 @@ class SceneBuilder:
             ),
             colliders=self._colliders(),
             network=network,
+            lamps=lamps or Lamps.none(),
         )
 
     def _colliders(self) -> Colliders:

@@ -6,11 +6,14 @@ from numpy.typing import NDArray
 
 from eyas.state.mesh import Mesh, concatenate
 from eyas.state.roads import RoadNetwork
+from eyas.state.scene import ObjectClass
+from eyas.world.assembly import SceneBuilder
+from eyas.world.ground import FLOOR_HEIGHT
 from eyas.world.materials import material
 from eyas.world.roads import joints, road_area, streets
 from eyas.world.shapes import box, tube
 
-__all__ = ["POLE_HEIGHT", "POLE_RADIUS", "signal_levels", "signal_places"]
+__all__ = ["POLE_HEIGHT", "POLE_RADIUS", "add_signals", "signal_levels", "signal_places"]
 
 POLE_HEIGHT = 6.6
 """Of the top of a pole above the road [m]."""
@@ -49,6 +52,19 @@ def signal_places(network: RoadNetwork) -> list[tuple[NDArray[np.float64], float
         if shapely.distance(road, shapely.Point(foot)) > POLE_RADIUS:
             places.append((foot, float(np.arctan2(leftwards[1], leftwards[0]))))
     return places
+
+
+def add_signals(builder: SceneBuilder, network: RoadNetwork, prototype: int) -> None:
+    """Add a pole with an arm over the lanes at each arm of each junction.
+
+    Args:
+        builder: Takes poles and solid shapes.
+        network: The roads.
+        prototype: Number of `signal_levels` among the fixtures.
+    """
+    for place, turn in signal_places(network):
+        owner = builder.add_copy(ObjectClass.POLE, prototype, (*place, 0.0), turn, 1.0)
+        builder.add_cylinder((place[0], place[1]), POLE_RADIUS, FLOOR_HEIGHT, POLE_HEIGHT, owner)
 
 
 def signal_levels() -> tuple[Mesh, ...]:

@@ -14,10 +14,11 @@ from eyas.state.scene import ObjectClass, Scene
 from eyas.world import buildings, ground, markings, materials, outskirts, overpass, road_wear, trees
 from eyas.world.assembly import SceneBuilder
 from eyas.world.car_parks import CarPark, place_car_parks, place_rectangle
+from eyas.world.lamps import add_lamps, lamp_levels
 from eyas.world.lots import turned
 from eyas.world.maps.citystreet_roads import NAME, road_graph
 from eyas.world.pillars import BASE_HEIGHT, COLUMN_RADIUS, Pillar, pillar_mesh, pillars
-from eyas.world.poles import POLE_HEIGHT, POLE_RADIUS, signal_levels, signal_places
+from eyas.world.poles import add_signals, signal_levels, signal_places
 from eyas.world.roads import (
     Street,
     blocks,
@@ -38,6 +39,7 @@ FLOOR = (900.0, 900.0)
 _EXTENT = shapely.box(*(-0.5 * np.array(FLOOR)), *(0.5 * np.array(FLOOR)))
 _BUILDINGS = 83
 _TREES = 63
+_LAMPS = 48
 _TREE_SPACING = (15.0, 21.5)
 _TREE_HEIGHTS = (14.8, 19.8, 27.0)
 _TREE_ODDS = (0.3, 0.5, 0.2)
@@ -93,9 +95,20 @@ def build_scene(network: RoadNetwork, seed: int) -> Scene:
         owner = builder.add(ObjectClass.BUILDING, buildings.mesh_of(building))
         builder.add_prism(*buildings.prism_of(building), owner)
     levels = _add_trees(builder, plan, stream(seed, "citystreet trees", 1))
-    _add_signals(builder, network, len(levels))
-    levels.append(signal_levels())
-    return builder.build(NAME, seed, FLOOR, ground.FLOOR_HEIGHT, levels, network)
+    add_signals(builder, network, len(levels))
+    levels += [signal_levels(), lamp_levels()]
+    rng = stream(seed, "citystreet lamps")
+    lights = add_lamps(builder, network, _LAMPS, _taken(plan, network), len(levels) - 1, rng)
+    return builder.build(NAME, seed, FLOOR, ground.FLOOR_HEIGHT, levels, network, lights)
+
+
+def _taken(plan: _Plan, network: RoadNetwork) -> shapely.Geometry:
+    """Return where something stands or drives already, in plan view."""
+    built = [shapely.Polygon(buildings.prism_of(building)[0]) for building in plan.buildings]
+    areas = [park.area for park in plan.car_parks] + [pillar.base for pillar in plan.pillars]
+    poles = [place for place, _ in signal_places(network)]
+    thin = shapely.buffer(shapely.points([*plan.trees, *poles]), 1.0)
+    return shapely.union_all([plan.roads, plan.access, *plan.pools, *built, *areas, *thin])
 
 
 def _plan(network: RoadNetwork, seed: int) -> _Plan:
@@ -199,7 +212,8 @@ def _add_ground(builder: SceneBuilder, plan: _Plan, network: RoadNetwork, seed: 
     wear = road_wear.road_wear(network, stream(seed, "citystreet road wear"))
     builder.add(ObjectClass.ROAD, ground.asphalt(paved), wear)
     paint = markings.mesh_of(markings.road_paint(network))
-    builder.add(ObjectClass.MARKING, paint, *_bay_lines(plan.car_parks))
+    bays = [markings.painted(park.lines, markings.WHITE) for park in plan.car_parks]
+    builder.add(ObjectClass.MARKING, paint, *bays)
     builder.add(ObjectClass.PAVEMENT, ground.pavement(pavement, paved))
     builder.add(ObjectClass.ROAD, ground.asphalt(lots, light=True))
     if plan.pools:
@@ -207,14 +221,9 @@ def _add_ground(builder: SceneBuilder, plan: _Plan, network: RoadNetwork, seed: 
         builder.add(ObjectClass.PAVEMENT, ground.pavement(rim, pools))
 
 
-def _bay_lines(car_parks: Sequence[CarPark]) -> list[Mesh]:
-    return [markings.painted(park.lines, markings.WHITE) for park in car_parks]
-
-
 def _add_overpass(builder: SceneBuilder, plan: _Plan) -> None:
     floor = ground.FLOOR_HEIGHT
-    # What is beyond the floor is not solid.
-    down = outskirts.descent(plan.deck, floor)
+    down = outskirts.descent(plan.deck, floor)  # beyond the floor; not solid
     legs = [pillar_mesh(pillar, floor) for pillar in pillars(down, _LEGS, floor, plan.roads)]
     deck = [overpass.deck_mesh(part, floor) for part in (plan.deck, down)]
     owner = builder.add(ObjectClass.STRUCTURE, *deck, *legs)
@@ -239,11 +248,3 @@ def _add_trees(
         owner = builder.add_copy(ObjectClass.TREE, kind, spot, turn, height)
         builder.add_cylinder(place, 0.022 * height, ground.FLOOR_HEIGHT, 0.3 * height, owner)
     return [trees.street_tree_levels(rng, kind) for kind in range(trees.VARIANTS)]
-
-
-def _add_signals(builder: SceneBuilder, network: RoadNetwork, prototype: int) -> None:
-    """Add a pole with an arm over the lanes at each arm of each junction."""
-    for place, turn in signal_places(network):
-        spot = (*place, 0.0)
-        owner = builder.add_copy(ObjectClass.POLE, prototype, spot, turn, 1.0)
-        builder.add_cylinder(spot, POLE_RADIUS, ground.FLOOR_HEIGHT, POLE_HEIGHT, owner)
