@@ -1,5 +1,7 @@
 """From who owns each sample to the bytes of the picture."""
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -121,7 +123,7 @@ def shade_band(
                 ry = ahead_y + left * left_y + up * up_y
                 rz = ahead_z + left * left_z + up * up_z
                 if tag < 0:
-                    unit = f4(1.0) / np.sqrt(rx * rx + ry * ry + rz * rz)
+                    unit = f4(1.0) / math.sqrt(rx * rx + ry * ry + rz * rz)
                     colour = sky(light, rx * unit, ry * unit, rz * unit)
                 else:
                     instance = (tag >> 32) - 1

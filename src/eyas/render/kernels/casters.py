@@ -2,6 +2,8 @@
 the sun leads through it.
 """
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -33,7 +35,7 @@ def set_caster(
     for slot in range(first, last):
         box = geometry.box[geometry.part_first + parts[slot]]
         size = (box[3] - box[0]) * (box[4] - box[1]) * (box[5] - box[2])
-        flat = np.sqrt(float(poses[slot, 0, 0]) ** 2 + float(poses[slot, 1, 0]) ** 2)
+        flat = math.sqrt(float(poses[slot, 0, 0]) ** 2 + float(poses[slot, 1, 0]) ** 2)
         if size > largest and flat > 1e-6:
             largest = size
             axis_x, axis_y = poses[slot, 0, 0] / flat, poses[slot, 1, 0] / flat
@@ -80,7 +82,7 @@ def _may_show(
     """Return whether a shadow may be in the picture, and large enough to see."""
     half = 0.5 * _throw(caster, sun)
     x, y, z = caster[0] - half * sun[0], caster[1] - half * sun[1], 0.5 * (caster[6] + caster[7])
-    length = np.sqrt(caster[4] ** 2 + caster[5] ** 2)
+    length = math.sqrt(caster[4] ** 2 + caster[5] ** 2)
     w = planes[4, 0] * x + planes[4, 1] * y + planes[4, 2] * z + planes[4, 3]
     if focal * length < SMALLEST * w:
         return False
@@ -140,7 +142,7 @@ def _darken(
     # The longer the way through the box, the deeper in the shadow: a soft edge.
     deep = min(max((leave - enter) * 1.6, 0.0), 1.0)
     out_x, out_y = max(abs(px) - caster[4] + 0.25, 0.0), max(abs(py) - caster[5] + 0.25, 0.0)
-    near = max(1.0 - 1.25 * np.sqrt(out_x * out_x + out_y * out_y), 0.0)
+    near = max(1.0 - 1.25 * math.sqrt(out_x * out_x + out_y * out_y), 0.0)
     if z > caster[6] + 0.25:
         near = 0.0
     return 1.0 - deep, 1.0 - 0.55 * near * near

@@ -1,5 +1,7 @@
 """What can be seen: boxes and spheres against the planes of a band of a view."""
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -32,7 +34,7 @@ def set_planes(
         planes[4, k] = rows[2, k]
     planes[4, 3] -= NEAR
     for i in range(5):
-        planes[i, 4] = np.sqrt(planes[i, 0] ** 2 + planes[i, 1] ** 2 + planes[i, 2] ** 2)
+        planes[i, 4] = math.sqrt(planes[i, 0] ** 2 + planes[i, 1] ** 2 + planes[i, 2] ** 2)
 
 
 @inner_kernel
@@ -84,7 +86,7 @@ def visible_chunks(
             for axis in range(3):
                 gap = max(boxes[i, axis] - eye[axis], eye[axis] - boxes[i, 3 + axis], 0.0)
                 square += gap * gap
-            order[count] = (i8(1000.0 * np.sqrt(square)) << i8(32)) | i8(i)
+            order[count] = (i8(1000.0 * math.sqrt(square)) << i8(32)) | i8(i)
             count += 1
     _shell_sort(order, count)
     return count

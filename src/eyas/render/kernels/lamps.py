@@ -1,5 +1,7 @@
 """Light of street lamps, of windows and of what else shines by itself."""
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -79,7 +81,7 @@ def _street_light(
         if lean <= zero:
             continue
         square = dx * dx + dy * dy + dz * dz + f4(0.25)
-        inverse = f4(1.0) / np.sqrt(square)
+        inverse = f4(1.0) / math.sqrt(square)
         cosine = -(lamp[3] * dx + lamp[4] * dy + lamp[5] * dz) * inverse
         spot = min((cosine - cut) / (_FULL - cut), f4(1.0))
         if spot > zero:

@@ -1,5 +1,7 @@
 """Triangles to pixels."""
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -61,12 +63,12 @@ def rasterise(
     low, high = min(ay, by, cy), max(ay, by, cy)
     if not (high >= top and low <= top + rows):
         return
-    first_row = int(np.ceil(max(low, float(top)) - 0.5))
-    last_row = int(np.ceil(min(high, float(top + rows)) - 0.5))
+    first_row = math.ceil(max(low, float(top)) - 0.5)
+    last_row = math.ceil(min(high, float(top + rows)) - 0.5)
     left, right = min(ax, bx, cx), max(ax, bx, cx)
     if first_row >= last_row or right < 0.5 or left > width - 0.5:
         return
-    if np.ceil(left - 0.5) > right - 0.5:  # between two columns of pixel centres
+    if math.ceil(max(left, 0.0) - 0.5) > right - 0.5:  # between two columns of pixel centres
         return
 
     ai = corners[a, 2]
@@ -95,8 +97,8 @@ def rasterise(
         if not long_is_left:
             start, end = end, start
         # Clamped before the conversion: an integer holds no millions of millions.
-        first = int(np.ceil(max(start, 0.0) - 0.5))
-        last = int(np.ceil(min(end, float(width)) - 0.5))
+        first = math.ceil(max(start, 0.0) - 0.5)
+        last = math.ceil(min(end, float(width)) - 0.5)
         if first >= last:
             continue
         value = f4(ai + (y - ay) * slope_y + (first + 0.5 - ax) * slope_x)

@@ -1,5 +1,7 @@
 """The colour of one point of a surface."""
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -61,7 +63,7 @@ def _attributes(
 
 @inlined_kernel
 def _unit(x: float, y: float, z: float) -> tuple[float, float, float]:
-    scale = f4(1.0) / np.sqrt(x * x + y * y + z * z + f4(1e-12))
+    scale = f4(1.0) / math.sqrt(x * x + y * y + z * z + f4(1e-12))
     return x * scale, y * scale, z * scale
 
 
@@ -133,7 +135,7 @@ def shade_point(
     px, py, pz = x, y, z
     if moved:
         px, py, pz = _to_local(frame, x, y, z)
-        density *= np.sqrt(frame[15])
+        density *= math.sqrt(frame[15])
     u, v, nx, ny, nz = _attributes(geometry.gradients, t, px, py, pz, density < zero)
     if moved:
         nx, ny, nz = (
@@ -144,7 +146,7 @@ def shade_point(
     normal = (nx, ny, nz)
     if moved or density < zero:
         normal = _unit(nx, ny, nz)
-    stretch = np.sqrt(ray[0] * ray[0] + ray[1] * ray[1] + ray[2] * ray[2])
+    stretch = math.sqrt(ray[0] * ray[0] + ray[1] * ray[1] + ray[2] * ray[2])
     shrink = one / stretch
     way = (ray[0] * shrink, ray[1] * shrink, ray[2] * shrink)
     cosine = -(normal[0] * way[0] + normal[1] * way[1] + normal[2] * way[2])

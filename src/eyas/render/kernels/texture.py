@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.jit import inlined_kernel
-from eyas.render.kernels.scalars import f4, u4
+from eyas.render.kernels.scalars import f4, i4, u4
 
 __all__ = ["coverage", "level_of", "texel"]
 
@@ -21,6 +21,13 @@ def level_of(texels_squared: float) -> int:
         level += 1
         limit *= f4(4.0)
     return level
+
+
+@inlined_kernel
+def _fraction(x: float) -> float:
+    """Return what is above the next lower whole number; rounding to zero is quicker than down."""
+    part = x - f4(i4(x))
+    return part + f4(1.0) if part < f4(0.0) else part
 
 
 @inlined_kernel
@@ -38,8 +45,8 @@ def texel(textures: NDArray[np.uint32], layer: int, level: int, u: float, v: flo
     """
     bits = 8 - level
     size = f4(1 << bits)
-    x = (u - np.floor(u)) * size + (size - f4(0.5))
-    y = (v - np.floor(v)) * size + (size - f4(0.5))
+    x = _fraction(u) * size + (size - f4(0.5))
+    y = _fraction(v) * size + (size - f4(0.5))
     column, row = u4(x), u4(y)
     across = u4((x - f4(column)) * f4(256.0))
     down = u4((y - f4(row)) * f4(256.0))
@@ -71,6 +78,6 @@ def coverage(textures: NDArray[np.uint32], layer: int, level: int, u: float, v: 
     bits = 8 - level
     size = f4(1 << bits)
     mask = (1 << bits) - 1
-    column = int((u - np.floor(u)) * size) & mask
-    row = int((v - np.floor(v)) * size) & mask
+    column = int(_fraction(u) * size) & mask
+    row = int(_fraction(v) * size) & mask
     return u4(textures[layer, _first_texel(level) + (row << bits) + column] >> u4(24))

@@ -1,5 +1,7 @@
 """What each pixel of a band shows: static chunks, fixtures, moving parts."""
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -107,11 +109,11 @@ def _draw_instance(
     px = pose[0, 0] * x + pose[0, 1] * y + pose[0, 2] * z + pose[0, 3]
     py = pose[1, 0] * x + pose[1, 1] * y + pose[1, 2] * z + pose[1, 3]
     pz = pose[2, 0] * x + pose[2, 1] * y + pose[2, 2] * z + pose[2, 3]
-    scale = np.sqrt(float(pose[0, 0]) ** 2 + float(pose[1, 0]) ** 2 + float(pose[2, 0]) ** 2)
+    scale = math.sqrt(float(pose[0, 0]) ** 2 + float(pose[1, 0]) ** 2 + float(pose[2, 0]) ** 2)
     radius = geometry.sphere[prototype, 3] * scale
     if not sphere_is_visible(planes, px, py, pz, radius):
         return
-    distance = np.sqrt((px - eye[0]) ** 2 + (py - eye[1]) ** 2 + (pz - eye[2]) ** 2)
+    distance = math.sqrt((px - eye[0]) ** 2 + (py - eye[1]) ** 2 + (pz - eye[2]) ** 2)
     if radius * lens[3] < SMALLEST * distance:
         return
     mesh = level_of_detail(geometry, prototype, radius, distance, lens[3])
