@@ -16,8 +16,6 @@ from eyas.sim.version_check import require_supported
         ),
         ({"Tracking_Object": "Mantis"}, r"target \(Tracking_Object\): 'Mantis': "),
         ({"Lidar_Enable": True}, r"wire\.lidar \(Lidar_Enable\): true: "),
-        ({"Env_Params": {"bgl_incremental": 0.1}}, r"light\.background \(Env_Params\..*\): 0\.1: "),
-        ({"Env_Params": {"foggy_use_default": False}}, r"light\.visibility \(Env_Params\."),
         (
             {"Other_Params": {"max_obj_num": 3}},
             r"objects\.max_count \(Other_Params\.max_obj_num\): 3: ",

@@ -29,7 +29,8 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
 
     The observation is what the camera sees, RGB uint8, shape (84, 84, 3): the configured 4:3 view
     squeezed into a square, as in the original. `info` holds the reward packet by name
-    (`eyas.task.packets`), the reason of the end, and the step count.
+    (`eyas.task.packets`), the reason of the end, the step count, and what `light` settings drew
+    (factor on the sky, factor on the sun, one over the visibility range [1/m]).
 
     Args:
         config: Settings: an `EyasConfig`, nested dictionaries of native settings, or the path of a
@@ -122,6 +123,7 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
             **asdict(simulation.reward_packet(0)),
             "step": int(simulation.step_count[0]),
             "done_reason": reason.name.lower(),
+            "light": simulation.light[0],
         }
 
 

@@ -37,6 +37,7 @@ class Camera:
         pose: CameraPose,
         world: NDArray[np.int32],
         subject: NDArray[np.int32],
+        light: NDArray[np.float32] | None,
         draw_list: DrawList,
         picture: Picture,
         until: Stage = Stage.SHADING,
@@ -47,6 +48,7 @@ class Camera:
             pose: V cameras.
             world: Which world of the draw list each sees, shape (V,).
             subject: Object id each is about, or -1, shape (V,).
+            light: What each changes of the weather's light, see `Views`.
             draw_list: The moving parts.
             picture: Where to, of any size; what is None is not drawn.
             until: Where to stop, see `Renderer.draw`.
@@ -58,5 +60,6 @@ class Camera:
             subject=subject,
             field_of_view=self.config.field_of_view,
             vertical_field_of_view=self.vertical_field_of_view,
+            light=light,
         )
         self._renderer.draw(views, draw_list, picture, self.config.samples, until)

@@ -79,7 +79,7 @@ class LightConfig(Config):
     sun_replaces: bool = False
     """True: `sun` is the brightness; False: it is added to the weather's own."""
     visibility: Visibility | None = None
-    """Visibility range in fog [m]; None: the weather's own."""
+    """Visibility range in foggy weather [m]; None: the weather's own. Others have no fog."""
 
 
 class ObjectsConfig(Config):

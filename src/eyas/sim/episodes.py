@@ -8,6 +8,7 @@ from eyas.core.errors import ConfigError, SpawnError
 from eyas.core.rng import stream
 from eyas.sim.config import EyasConfig
 from eyas.sim.fleet import Fleet
+from eyas.sim.light import LightChanges
 from eyas.sim.worlds import Worlds
 from eyas.targets.catalogue import VEHICLES
 from eyas.task.direction import TARGET_COMPENSATION
@@ -33,15 +34,19 @@ class Episodes:
         config: The settings.
         replay: The traffic.
         worlds: What moves around the trackers.
+        light: The light around them.
         count: N.
     """
 
-    def __init__(self, config: EyasConfig, replay: Replay, worlds: Worlds, count: int) -> None:
+    def __init__(
+        self, config: EyasConfig, replay: Replay, worlds: Worlds, light: LightChanges, count: int
+    ) -> None:
         self.number = np.full(count, -1, np.int64)
         self._config = config
         self._seed = config.seed
         self._replay = replay
         self._worlds = worlds
+        self._light = light
         self._last_tick = int(replay.duration / PHYSICS_STEP)
         first = config.start.warm_up_steps
         if first + config.done.total_steps > self._last_tick:
@@ -71,6 +76,7 @@ class Episodes:
     def _draw_one(self, tracker: int, fleet: Fleet) -> float:
         episode = int(self.number[tracker])
         self._worlds.draw_looks(tracker, self._seed, episode)
+        self._light.draw(tracker, self._seed, episode)
         rng = stream(self._seed, "episode", tracker, episode)
         tick, actor = self._choose(tracker, fleet, rng)
         start = draw_start(self._config.start, rng)

@@ -9,7 +9,7 @@ from eyas.core.jit import nothing_compiled
 from eyas.render.renderer import Renderer
 from eyas.render.textures import build_textures
 from eyas.state.roads import RoadNetwork
-from eyas.state.scene import Scene
+from eyas.state.scene import Lighting, Scene
 from eyas.targets.rig import VehicleRigs
 from eyas.traffic.config import Demand, TrafficConfig
 from eyas.traffic.library import find_recording
@@ -30,6 +30,7 @@ class Place:
 
     scene: Scene
     replay: Replay
+    lighting: Lighting
     renderer: Renderer
     rigs: VehicleRigs
 
@@ -79,4 +80,4 @@ def _load_place(world: WorldConfig, traffic: TrafficConfig, trackers: int) -> Pl
     scene = load_scene(world.map, world.seed)
     rigs = VehicleRigs(recording.provenance.config.vehicle_type)
     renderer = Renderer(scene, rigs.library, light, build_textures())
-    return Place(scene, Replay(recording), renderer, rigs)
+    return Place(scene, Replay(recording), light, renderer, rigs)

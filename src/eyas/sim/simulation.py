@@ -9,6 +9,7 @@ from eyas.sensors.camera import Camera
 from eyas.sim.config import EyasConfig
 from eyas.sim.episodes import Episodes
 from eyas.sim.fleet import Traffic, camera_view, create_fleet, target_view, tracker_view
+from eyas.sim.light import LightChanges
 from eyas.sim.place import Place
 from eyas.sim.step import begin_episodes, fill_packets, fly, follow
 from eyas.sim.worlds import Worlds
@@ -52,7 +53,11 @@ class Simulation:
         )
         self._traffic = Traffic(place.replay.table, float(place.replay.rate))
         self._worlds = Worlds(config, place, count, shared=shared_world)
-        self._episodes = Episodes(config, place.replay, self._worlds, count)
+        foggy = config.world.weather == "foggy"
+        self._light = LightChanges(
+            config.light, place.lighting, count, foggy=foggy, shared=shared_world
+        )
+        self._episodes = Episodes(config, place.replay, self._worlds, self._light, count)
         self._camera = Camera(config.camera, place.renderer)
         self.trackers = tracker_view(self._fleet)
         self.cameras = camera_view(self._fleet)
@@ -105,7 +110,12 @@ class Simulation:
         pose = CameraPose(self.cameras.position[chosen], self.cameras.rotation[chosen])
         world, movers = self._worlds.draw_list(chosen, self._fleet.tick)
         subject = self._worlds.object_ids(self.targets.actor[chosen])
-        self._camera.read(pose, world, subject, movers, picture, until)
+        self._camera.read(pose, world, subject, self._light.of(chosen), movers, picture, until)
+
+    @property
+    def light(self) -> NDArray[np.float32]:
+        """Factor on the sky and its light, factor on the sun, fog density [1/m], shape (N, 3)."""
+        return self._light.factors.copy()
 
     def packets(self) -> tuple[Floats, Floats]:
         """Return copies of the basic (N, 22) and the reward packets (N, 60)."""

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from eyas.core.config import Config, shown
 from eyas.core.errors import NotInThisVersionError
-from eyas.sim.config import EyasConfig, LightConfig, ObjectsConfig, TargetName
+from eyas.sim.config import EyasConfig, ObjectsConfig, TargetName
 from eyas.sim.legacy import legacy_keys_of
 from eyas.trackers.config import TrackerKind
 
@@ -37,8 +37,6 @@ def _missing(config: EyasConfig) -> Iterator[tuple[str, object, str]]:
         yield "tracker.supervised", False, "flying by a flight controller"
     if config.wire.lidar:
         yield "wire.lidar", True, "the lidar"
-    for path, value in _changed("light", config.light, LightConfig()):
-        yield path, value, "changing light and fog"
     for path, value in _changed("objects", config.objects, ObjectsConfig()):
         yield path, value, "placing objects along the road"
 

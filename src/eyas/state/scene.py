@@ -158,6 +158,8 @@ class Lighting:
     """Factor on everything before it becomes a picture."""
     snow: float = 0.0
     """How much snow lies on what faces up: 0 none, 1 all covered."""
+    luminosity: float = 1.0
+    """The original's of this weather's sky and of its sun: what settings of the light refer to."""
     lamps: float = 0.0
     """How far street lamps and the lights of vehicles are on: 0 off, 1 on."""
     windows: float = 0.0

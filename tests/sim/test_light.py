@@ -1,0 +1,93 @@
+"""Light and fog that vary: the original's `Env_Params`."""
+
+import numpy as np
+import pytest
+
+from eyas.envs.tracking_env import TrackingEnv
+from eyas.sim.build import build_simulation
+from eyas.sim.config import EyasConfig
+from eyas.sim.legacy import from_legacy
+from eyas.state.draw import Picture
+from eyas.world.weather import lighting
+
+RANDOM = {"background": {"uniform": [0.4, 1.6]}, "background_replaces": True,
+          "sun": {"uniform": [-0.5, 0.5]}}  # fmt: skip
+
+
+def started(light=None, *, weather="day", count=1, shared=False, seed=0):
+    settings = {"seed": seed, "world": {"weather": weather}, "light": light or {}}
+    simulation = build_simulation(EyasConfig(**settings), count, shared_world=shared)
+    simulation.reset()
+    return simulation
+
+
+def pictures(simulation):
+    picture = Picture.create(simulation.count, 24, 32)
+    simulation.draw(np.arange(simulation.count, dtype=np.int32), picture)
+    return picture.rgb.astype(float)
+
+
+def test_what_is_added_to_sky_and_sun_is_seen():
+    usual = pictures(started()).mean()
+    assert pictures(started({"background": 0.5})).mean() > usual + 5
+    assert pictures(started({"sun": -0.6})).mean() < usual - 4
+    assert pictures(started({"background": -5.0, "sun": -5.0})).max() < 10
+
+
+def test_luminosities_refer_to_the_originals_own():
+    night = started({"background": 0.3, "sun": 0.15, "sun_replaces": True}, weather="night")
+    np.testing.assert_allclose(night.light[0, :2], [2.0, 0.5], rtol=1e-6)
+    assert lighting("citystreet", "night").luminosity == 0.3
+
+
+def test_visibility_is_that_of_the_fog_and_only_foggy_weather_has_some():
+    thick = pictures(started({"visibility": 30.0}, weather="foggy"))
+    usual = pictures(started(weather="foggy"))
+    # At 22 m, 1 - exp(-22 / 30) = 52 % of everything is the grey of the air.
+    assert thick.std(axis=(1, 2)).mean() < 0.75 * usual.std(axis=(1, 2)).mean()
+    assert started({"visibility": 30.0}, weather="foggy").light[0, 2] == pytest.approx(1 / 30)
+    clear = started({"visibility": 30.0})
+    np.testing.assert_array_equal(pictures(clear), pictures(started()))
+
+
+def test_each_episode_draws_anew_within_the_limits_or_only_the_first():
+    simulation = started(RANDOM, count=3)
+    drawn = [simulation.light]
+    for _ in range(4):
+        simulation.reset()
+        drawn.append(simulation.light)
+    sky, sun = np.stack(drawn)[..., 0], np.stack(drawn)[..., 1]
+    assert len(np.unique(sky)) == sky.size
+    assert ((sky >= 0.4) & (sky <= 1.6) & (sun >= 0.5) & (sun <= 1.5)).all()
+    once = started(RANDOM | {"each_reset": False}, count=2)
+    first = once.light
+    once.reset()
+    np.testing.assert_array_equal(once.light, first)
+    np.testing.assert_array_equal(first, drawn[0][:2])
+
+
+def test_a_tracker_draws_the_same_alone_and_changes_nothing_else():
+    alone, among = started(RANDOM), started(RANDOM, count=5)
+    np.testing.assert_array_equal(alone.light[0], among.light[0])
+    np.testing.assert_array_equal(pictures(alone)[0], pictures(among)[0])
+    plain = started()
+    np.testing.assert_array_equal(plain.targets.position, alone.targets.position)
+    np.testing.assert_array_equal(plain.trackers.position, alone.trackers.position)
+
+
+def test_in_a_shared_world_all_see_one_light():
+    simulation = started(RANDOM, count=3, shared=True)
+    assert len(np.unique(simulation.light[:, 0])) == 1
+    before = simulation.light
+    simulation.reset(np.array([False, True, False]))
+    np.testing.assert_array_equal(simulation.light, before)
+    simulation.reset(np.array([True, False, False]))
+    assert (simulation.light[:, 0] != before[:, 0]).all()
+
+
+def test_env_params_of_the_original_work_and_are_told_in_info():
+    values = {"background_luminosity_random": True, "bgl_random_min": 0.2, "bgl_random_max": 0.3}
+    env = TrackingEnv(from_legacy({"Env_Params": values}))
+    _, info = env.reset(seed=1)
+    assert 0.2 <= info["light"][0] <= 0.3
+    assert info["light"][1] == 1.0
