@@ -1,23 +1,18 @@
 """The shadow map of everything that stands still, made once for a scene and a sun."""
 
-import hashlib
-import io
 import math
-import zipfile
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import platformdirs
 from numpy.typing import NDArray
 
-from eyas.core.errors import OutputError
-from eyas.core.files import write_atomic
 from eyas.core.jit import thread_count
+from eyas.render.bake_cache import baked, content_hash
 from eyas.render.kernels.bundles import Geometry
 from eyas.render.kernels.shadow_map import BAND, bake_rows
 
-__all__ = ["ShadowMap", "bake_shadows", "shadow_folder"]
+__all__ = ["ShadowMap", "bake_shadows"]
 
 TEXEL = 0.2
 """Side of a texel, where the map is not too large for that [m]."""
@@ -41,11 +36,6 @@ class ShadowMap:
     """Side of a texel [m]."""
 
 
-def shadow_folder() -> Path:
-    """Return where baked shadow maps are kept."""
-    return Path(platformdirs.user_cache_dir("eyas")) / "shadows"
-
-
 def bake_shadows(
     geometry: Geometry,
     sun: tuple[float, float, float],
@@ -58,16 +48,11 @@ def bake_shadows(
         geometry: The scene.
         sun: Unit vector towards the sun.
         ground: z of the floor [m].
-        folder: The cache, or None to use none. A file in it that cannot be read is made anew;
-            a folder that cannot be written to is left alone.
+        folder: The cache, or None to use none, see `baked`.
     """
     rows, lines, columns, texel = _frame(geometry, sun, ground)
-    path = folder / f"{_content_hash(geometry, rows)}.npz" if folder else None
-    heights = _load(path, (lines, columns)) if path else None
-    if heights is None:
-        heights = _bake(geometry, rows, lines, columns)
-        if path:
-            _save(path, heights)
+    name = _content_hash(geometry, rows)
+    heights = baked(folder, name, (lines, columns), lambda: _bake(geometry, rows, lines, columns))
     return ShadowMap(heights, rows, texel)
 
 
@@ -133,38 +118,16 @@ def _bake(
 
 
 def _content_hash(geometry: Geometry, rows: NDArray[np.float64]) -> str:
-    digest = hashlib.blake2b(_FORMAT, digest_size=16)
     last = geometry.chunk_range[-1] if len(geometry.chunk_range) else np.zeros(4, np.int32)
     fixtures = geometry.level_first[: geometry.part_first + 1]
     meshes = geometry.mesh_range[: fixtures[-1]]
     triangles, vertices = (meshes if len(meshes) else [last])[-1][[1, 3]]
-    for array in (
+    kept = (
         rows,
         geometry.positions[:vertices],
         geometry.corners[:triangles],
         fixtures,
         geometry.fixture_prototype,
         geometry.fixture_pose,
-    ):
-        digest.update(np.ascontiguousarray(array).data)
-    return digest.hexdigest()
-
-
-def _load(path: Path, shape: tuple[int, int]) -> NDArray[np.uint16] | None:
-    """Return a cached map, or None if there is none or it is damaged (zip files carry a CRC)."""
-    try:
-        with np.load(path) as archive:
-            heights = archive["heights"]
-    except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile):
-        return None
-    return heights if heights.shape == shape and heights.dtype == np.uint16 else None
-
-
-def _save(path: Path, heights: NDArray[np.uint16]) -> None:
-    buffer = io.BytesIO()
-    np.savez(buffer, heights=heights)
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        write_atomic(path, buffer.getvalue())
-    except (OSError, OutputError):
-        return  # the cache saves time only
+    )
+    return content_hash(_FORMAT, kept)

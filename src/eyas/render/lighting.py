@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from eyas.render.bake import ShadowMap
+from eyas.render.bake_ambient import AmbientMap
 from eyas.render.kernels.band import TONE_STEPS, TONE_TOP
 from eyas.render.kernels.bundles import Light
 from eyas.render.lamp_grid import lamp_grid
@@ -12,7 +13,7 @@ from eyas.state.scene import Lamps, Lighting
 __all__ = ["build_light", "tone_table"]
 
 
-def build_light(lighting: Lighting, shadows: ShadowMap, lamps: Lamps) -> Light:
+def build_light(lighting: Lighting, shadows: ShadowMap, ambient: AmbientMap, lamps: Lamps) -> Light:
     """Return the light of a weather."""
     lamp, lamp_cell, lamp_frame = lamp_grid(lamps)
     sun = np.asarray(lighting.sun_direction, np.float64)
@@ -31,6 +32,8 @@ def build_light(lighting: Lighting, shadows: ShadowMap, lamps: Lamps) -> Light:
         air=_row(air),
         shadow_map=shadows.heights,
         shadow_rows=np.ascontiguousarray(shadows.rows, np.float32),
+        ambient=ambient.openness,
+        ambient_frame=_row(ambient.frame),
         lamp=lamp,
         lamp_cell=lamp_cell,
         lamp_frame=lamp_frame,

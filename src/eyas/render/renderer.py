@@ -8,7 +8,9 @@ from numpy.typing import NDArray
 
 from eyas.core.errors import ConfigError
 from eyas.core.jit import thread_count
-from eyas.render.bake import bake_shadows, shadow_folder
+from eyas.render.bake import bake_shadows
+from eyas.render.bake_ambient import bake_ambient
+from eyas.render.bake_cache import shadow_folder
 from eyas.render.classes import class_table, write_classes
 from eyas.render.geometry import build_geometry
 from eyas.render.jobs import build_jobs, picture_size, write_subject
@@ -48,13 +50,9 @@ class Renderer:
         shadow_cache: Path | None = None,
     ) -> None:
         self._geometry = build_geometry(scene, parts, textures)
-        shadows = bake_shadows(
-            self._geometry,
-            lighting.sun_direction,
-            scene.ground_height,
-            shadow_cache or shadow_folder(),
-        )
-        self._light = build_light(lighting, shadows, scene.lamps)
+        folder = shadow_cache or shadow_folder()
+        shadows = bake_shadows(self._geometry, lighting.sun_direction, scene.ground_height, folder)
+        self._light = build_light(lighting, shadows, bake_ambient(scene, folder), scene.lamps)
         ranges = np.concatenate([self._geometry.chunk_range, self._geometry.mesh_range])
         self._most_vertices = int((ranges[:, 3] - ranges[:, 2]).max(initial=1))
         self._scratch: dict[tuple[int, int, int], Scratch] = {}

@@ -108,6 +108,10 @@ class Light(NamedTuple):
     """Height towards the sun of the first thing that sunlight meets, shape (rows, columns)."""
     shadow_rows: NDArray[np.float32]
     """World to column, row and height of the shadow map, shape (3, 4)."""
+    ambient: NDArray[np.uint16]
+    """Share of the sky's light on the ground and height of what hides it, see `AmbientMap`."""
+    ambient_frame: NDArray[np.float32]
+    """West and south edge of that map [m], texels in a metre, z of the ground [m]."""
     lamp: NDArray[np.float32]
     """Position [m], axis and strength of each street lamp, shape (L, 7)."""
     lamp_cell: NDArray[np.int32]

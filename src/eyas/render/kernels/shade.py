@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.jit import inlined_kernel
+from eyas.render.kernels.ambient import openness
 from eyas.render.kernels.bundles import Geometry, Light
 from eyas.render.kernels.lamps import night_light, window_light
 from eyas.render.kernels.scalars import f4, u4
@@ -178,6 +179,7 @@ def shade_point(
     tilt = f4(0.5) * normal[2]
     if surface == FOLIAGE:
         tilt = f4(0.2) + f4(0.5) * tilt  # leaves below get light through those above
+    sky_share *= openness(light, x, y, z, normal[0], normal[1])
     up, down = (f4(0.5) + tilt) * sky_share, (f4(0.5) - tilt) * sky_share
     sun, above, below = light.sun_colour, light.ambient_up, light.ambient_down
     light_r = direct * sun[0] + up * above[0] + down * below[0]

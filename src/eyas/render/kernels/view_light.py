@@ -44,6 +44,8 @@ def view_light(light: Light, change: NDArray[np.float32], rows: NDArray[np.float
         rows[6],
         light.shadow_map,
         light.shadow_rows,
+        light.ambient,
+        light.ambient_frame,
         light.lamp,
         light.lamp_cell,
         light.lamp_frame,

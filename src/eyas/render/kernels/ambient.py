@@ -1,0 +1,158 @@
+"""Ambient occlusion: how much light of the sky reaches a place, baked on the ground plane."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.jit import inlined_kernel, inner_kernel, parallel_kernel, prange
+from eyas.render.kernels.bundles import Light
+from eyas.render.kernels.scalars import f4, u4
+
+__all__ = ["BOUNCED", "LEAVES", "bake_openness", "openness"]
+
+DIRECTIONS = 16
+"""Ways in which the horizon is sought."""
+
+STEPS = 14
+"""Places that are looked at in each."""
+
+LEAVES = 0.6
+"""Share of the light that a crown keeps."""
+
+BOUNCED = 0.35
+"""Share of the sky's light that comes by way of walls and ground where the sky itself is hidden."""
+
+_ASIDE = f4(0.9)
+"""How far before a wall the light that falls on it is looked up [m]."""
+
+
+@inner_kernel
+def _distance(step: int) -> float:
+    """Return how far off a place is [m]: 1 to 70, each half as far again, about."""
+    return float(0.9 * (1.36**step))
+
+
+@inner_kernel
+def _open_share(
+    texel: float,
+    row: int,
+    column: int,
+    solid: NDArray[np.float32],
+    crowns: NDArray[np.float32],
+    result: NDArray[np.float64],
+) -> None:
+    """Compute the share of the sky's light on a texel's ground, and the height of what hides it.
+
+    A flat surface gets the share cos^2 of the horizon's angle from each way round, if the sky is
+    as bright everywhere.
+    """
+    rows, columns = solid.shape
+    total, height, weight = 0.0, 0.0, 1e-6
+    for k in range(DIRECTIONS):
+        angle = (k + 0.5) * (2.0 * math.pi / DIRECTIONS)
+        east, north = math.cos(angle) / texel, math.sin(angle) / texel
+        slope, leafy, high = 0.0, 0.0, 0.0
+        for step in range(STEPS):
+            far = _distance(step)
+            i, j = int(row + 0.5 + north * far), int(column + 0.5 + east * far)
+            if i < 0 or j < 0 or i >= rows or j >= columns:
+                break
+            if solid[i, j] > slope * far:
+                slope, high = solid[i, j] / far, max(high, float(solid[i, j]))
+            leafy = max(leafy, crowns[i, j] / far)
+        hidden = slope * slope / (1.0 + slope * slope)
+        leaves = max(leafy * leafy / (1.0 + leafy * leafy) - hidden, 0.0)
+        total += 1.0 - hidden - LEAVES * leaves
+        height += high * hidden
+        weight += hidden
+    share = total / DIRECTIONS
+    above = crowns[row, column]
+    if above > 0.0:  # a crown right overhead hides the zenith, the brightest part
+        share *= 1.0 - 0.5 * LEAVES
+        height, weight = height + 2.0 * above, weight + 2.0
+    result[0] = BOUNCED + (1.0 - BOUNCED) * share
+    result[1] = height / weight
+
+
+@parallel_kernel
+def bake_openness(
+    workers: int,
+    texel: float,
+    solid: NDArray[np.float32],
+    crowns: NDArray[np.float32],
+    result: NDArray[np.uint16],
+) -> None:
+    """Fill `AmbientMap.openness`.
+
+    Below houses the ground of the nearest texel outside is taken, up to 3 texels in: that is
+    where the feet of walls are looked up; what is farther in is open, for roofs.
+
+    Args:
+        workers: How many share the work.
+        texel: Side of a texel [m].
+        solid: Height of houses [m], shape (rows, columns).
+        crowns: Height of trees [m], shape (rows, columns).
+        result: Filled, shape (rows, columns).
+    """
+    rows, columns = solid.shape
+    for worker in prange(workers):
+        found = np.empty(2)
+        for row in range(worker, rows, workers):
+            for column in range(columns):
+                i, j = _outside(solid, row, column)
+                if i < 0:
+                    result[row, column] = np.uint16(255 | (1 << 8))
+                    continue
+                _open_share(texel, i, j, solid, crowns, found)
+                height = min(max(found[1], 1.0), 255.0)
+                result[row, column] = np.uint16(int(255.0 * found[0] + 0.5) | (int(height) << 8))
+
+
+@inner_kernel
+def _outside(solid: NDArray[np.float32], row: int, column: int) -> tuple[int, int]:
+    """Return the nearest texel without a house, or -1, -1 if there is none within 3."""
+    rows, columns = solid.shape
+    for reach in range(4):
+        best, bi, bj = 1 << 30, -1, -1
+        for i in range(max(row - reach, 0), min(row + reach + 1, rows)):
+            for j in range(max(column - reach, 0), min(column + reach + 1, columns)):
+                far = (i - row) ** 2 + (j - column) ** 2
+                if solid[i, j] == 0.0 and far < best:
+                    best, bi, bj = far, i, j
+        if bi >= 0:
+            return bi, bj
+    return -1, -1
+
+
+@inlined_kernel
+def openness(light: Light, x: float, y: float, z: float, normal_x: float, normal_y: float) -> float:
+    """Return the share of the sky's light that reaches a point, 0 to 1.
+
+    Args:
+        light: Its map.
+        x: The point [m].
+        y: The point [m].
+        z: The point [m].
+        normal_x: Of the surface: walls see what lies before them.
+        normal_y: Of the surface.
+    """
+    one = f4(1.0)
+    frame = light.ambient_frame
+    column = (x + _ASIDE * normal_x - frame[0]) * frame[2] - f4(0.5)
+    row = (y + _ASIDE * normal_y - frame[1]) * frame[2] - f4(0.5)
+    rows, columns = light.ambient.shape
+    if not (
+        column >= f4(0.0) and row >= f4(0.0) and column < f4(columns - 1) and row < f4(rows - 1)
+    ):
+        return one
+    i, j = u4(row), u4(column)
+    across, down = column - f4(j), row - f4(i)
+    a, b = light.ambient[i, j], light.ambient[i, j + u4(1)]
+    c, d = light.ambient[i + u4(1), j], light.ambient[i + u4(1), j + u4(1)]
+    a8, b8, c8, d8 = f4(a & 255), f4(b & 255), f4(c & 255), f4(d & 255)
+    upper = a8 + across * (b8 - a8)
+    hidden = one - f4(1.0 / 255.0) * (upper + down * (c8 + across * (d8 - c8) - upper))
+    # Higher up less is hidden; at the top of what hides it, nothing.
+    climb = min(max((z - frame[3]) / f4(a >> 8), f4(0.0)), one)
+    return f4(one - hidden * (one - climb) * (one - climb))

@@ -1,0 +1,91 @@
+"""Ambient occlusion: how much of the sky the ground sees."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from eyas.render.bake_ambient import bake_ambient
+from eyas.render.kernels.ambient import BOUNCED, bake_openness
+
+from .small_city import DAY, GROUND, TOWER, floor, looking, scene_of, tower, trees_at
+
+SHADE = dataclasses.replace(DAY, sun_colour=(0.0, 0.0, 0.0), fog_density=0.0)
+
+
+def open_shares(solid, crowns=None, workers=1) -> np.ndarray:
+    """Return the share of the sky that each texel's ground sees, light that bounces left out."""
+    result = np.empty(solid.shape, np.uint16)
+    crowns = np.zeros_like(solid) if crowns is None else crowns
+    bake_openness(workers, 1.0, solid, crowns, result)
+    return ((result & 255) / 255.0 - BOUNCED) / (1.0 - BOUNCED)
+
+
+def field() -> np.ndarray:
+    return np.zeros((81, 81), np.float32)
+
+
+def test_an_open_field_sees_all_of_the_sky_and_the_foot_of_a_long_high_wall_half():
+    assert open_shares(field()).min() > 0.995
+    wall = field()
+    wall[:, 40:60] = 1e6
+    assert open_shares(wall)[40, 39] == pytest.approx(0.5, abs=0.01)
+
+
+def test_a_wall_as_high_as_it_is_far_hides_what_the_formula_says():
+    # On the way that is turned by a the wall's top stands under h with tan h = cos a: the mean of
+    # sin^2 h = cos^2 a / (1 + cos^2 a) over the half circle, and nothing on the other half.
+    angle = np.linspace(-np.pi / 2, np.pi / 2, 2001)
+    hidden = 0.5 * (np.cos(angle) ** 2 / (1 + np.cos(angle) ** 2)).mean()
+    wall = field()
+    wall[:, 51:60] = 10.0  # its face is 10.5 m from the middle of column 40
+    assert open_shares(wall)[40, 40] == pytest.approx(1 - hidden, abs=0.05)
+
+
+def test_a_courtyard_is_darker_than_a_street_and_crowns_let_some_light_through():
+    court, street, crowns = field(), field(), field()
+    court[30:51, 30:51] = street[30:37, :] = street[44:51, :] = 20.0
+    court[37:44, 37:44] = 0.0
+    crowns[30:51, 30:51] = 12.0
+    middle = [open_shares(field(), crowns)[40, 40]]
+    middle += [open_shares(solid)[40, 40] for solid in (court, street)]
+    assert middle[1] < 0.6 * middle[2] < 0.6
+    assert 0.2 < middle[0] < 0.6
+
+
+def test_any_number_of_workers_bakes_the_same():
+    solid = np.where(np.random.default_rng(0).random((81, 81)) < 0.05, 15.0, 0.0)
+    solid = solid.astype(np.float32)
+    np.testing.assert_array_equal(open_shares(solid, workers=1), open_shares(solid, workers=3))
+
+
+def test_walls_darken_towards_their_feet_and_roofs_stay_bright(drawn, renderer_of):
+    scene = scene_of([floor(60.0, "plain"), tower(0, 0, 20, 30)], [GROUND, TOWER], size=120.0)
+    renderer = renderer_of(scene, lighting=SHADE)
+    down = [(10.6, 0.0, 30.0), (40.0, 0.0, 30.0), (0.0, 0.0, 60.0)]
+    foot, away, roof = (
+        drawn(renderer, looking(down, pitch=np.pi / 2, fov=0.02), size=(9, 9))
+        .rgb[:, 4, 4]
+        .astype(int)
+        .sum(axis=1)
+    )
+    assert foot < 0.9 * away
+    low, high = drawn(
+        renderer, looking([(40.0, 0.0, 1.0), (40.0, 0.0, 25.0)], yaw=np.pi, fov=0.02), size=(9, 9)
+    ).rgb.mean(axis=(1, 2, 3))
+    assert low < 0.9 * high
+    lone = scene_of([tower(0, 0, 20, 30)], [TOWER], size=1.0)  # no map reaches so far
+    alone = drawn(renderer_of(lone, lighting=SHADE), looking(down[2:], pitch=np.pi / 2, fov=0.02))
+    assert roof == pytest.approx(int(alone.rgb[0, 48, 64].astype(int).sum()), abs=6)
+
+
+def test_the_map_is_kept_and_follows_what_stands(tmp_path):
+    scene = scene_of([floor(), tower(0, 0, 10, 20)], [GROUND, TOWER])
+    first = bake_ambient(scene, tmp_path)
+    (file,) = tmp_path.iterdir()
+    file.write_bytes(b"no zip file")
+    np.testing.assert_array_equal(bake_ambient(scene, tmp_path).openness, first.openness)
+    assert len(list(tmp_path.iterdir())) == 1
+    scene.fixtures = trees_at([(30.0, 30.0)])
+    bake_ambient(scene, tmp_path)
+    assert len(list(tmp_path.iterdir())) == 2
