@@ -7,6 +7,8 @@ import pytest
 
 from eyas.render.bake_ambient import bake_ambient
 from eyas.render.kernels.ambient import BOUNCED, bake_openness
+from eyas.world.materials import material
+from eyas.world.shapes import box
 
 from .small_city import DAY, GROUND, TOWER, floor, looking, scene_of, tower, trees_at
 
@@ -60,7 +62,8 @@ def test_any_number_of_workers_bakes_the_same():
 
 
 def test_walls_darken_towards_their_feet_and_roofs_stay_bright(drawn, renderer_of):
-    scene = scene_of([floor(60.0, "plain"), tower(0, 0, 20, 30)], [GROUND, TOWER], size=120.0)
+    block = box((20.0, 20.0, 30.0), (0.0, 0.0, 15.0), material("plain"), 1.0)
+    scene = scene_of([floor(60.0, "plain"), block], [GROUND, TOWER], size=120.0)
     renderer = renderer_of(scene, lighting=SHADE)
     down = [(10.6, 0.0, 30.0), (40.0, 0.0, 30.0), (0.0, 0.0, 60.0)]
     foot, away, roof = (
@@ -74,7 +77,7 @@ def test_walls_darken_towards_their_feet_and_roofs_stay_bright(drawn, renderer_o
         renderer, looking([(40.0, 0.0, 1.0), (40.0, 0.0, 25.0)], yaw=np.pi, fov=0.02), size=(9, 9)
     ).rgb.mean(axis=(1, 2, 3))
     assert low < 0.9 * high
-    lone = scene_of([tower(0, 0, 20, 30)], [TOWER], size=1.0)  # no map reaches so far
+    lone = scene_of([block], [TOWER], size=1.0)  # no map reaches so far
     alone = drawn(renderer_of(lone, lighting=SHADE), looking(down[2:], pitch=np.pi / 2, fov=0.02))
     assert roof == pytest.approx(int(alone.rgb[0, 48, 64].astype(int).sum()), abs=6)
 

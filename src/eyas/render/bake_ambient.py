@@ -9,7 +9,7 @@ from PIL import Image, ImageDraw
 
 from eyas.core.jit import thread_count
 from eyas.render.bake_cache import baked, content_hash
-from eyas.render.kernels.ambient import bake_openness
+from eyas.render.kernels.ambient import BOUNCED, LEAVES, bake_openness
 from eyas.state.scene import ObjectClass, Scene
 
 __all__ = ["AmbientMap", "bake_ambient", "canopy_map", "height_map"]
@@ -50,6 +50,7 @@ def bake_ambient(scene: Scene, folder: Path | None) -> AmbientMap:
     frame = np.array([*(-0.5 * extent), 1.0 / texel, scene.ground_height])
     inputs = (
         frame,
+        np.array([BOUNCED, LEAVES]),
         scene.static.positions,
         scene.static.triangles,
         scene.object_class[scene.static_object],
