@@ -7,7 +7,7 @@ import pytest
 from eyas.state.mesh import Surface, concatenate, transformed
 from eyas.targets.bodies import body_levels
 from eyas.targets.catalogue import VEHICLES, model_index
-from eyas.targets.finishes import BLACK_PAINT, ROOF_GLASS
+from eyas.targets.finishes import BLACK_PAINT, HEAD_LAMP, ROOF_GLASS, TAIL_LAMP
 from eyas.targets.wheels import wheel_levels
 
 NAMES = [vehicle.name for vehicle in VEHICLES]
@@ -101,6 +101,22 @@ def test_left_and_right_look_alike_from_above(name):
 def test_paint_glass_and_lamps_are_there(name):
     surfaces = {material.surface for material in levels_of(name)[0].palette}
     assert {Surface.PAINT, Surface.GLASS, Surface.LAMP} <= surfaces
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_level_has_lamps_at_both_ends_on_both_sides(name):
+    """They are what shows a far vehicle at night, where the coarsest level is drawn."""
+    least = 0.008 if "bike" in name or "Scooter" in name else 0.02  # each side [m2]
+    for mesh in levels_of(name):
+        corners = mesh.positions[mesh.triangles].astype(np.float64)
+        normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
+        for lamp, sign in ((HEAD_LAMP, 1), (TAIL_LAMP, -1)):
+            shining = np.array([material == lamp for material in mesh.palette])[mesh.materials]
+            facing = np.where(shining, np.maximum(sign * normals[:, 0], 0), 0)
+            reach = (sign * corners[shining, :, 0]).max(initial=0.0)
+            assert reach > 0.29 * VEHICLES[model_index(name)].length
+            for side in (1, -1):
+                assert facing[side * corners[:, :, 1].mean(axis=1) > 0.01].sum() > least
 
 
 @pytest.mark.parametrize("name", NAMES)

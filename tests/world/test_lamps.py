@@ -33,6 +33,17 @@ def test_there_are_as_many_as_in_the_original_and_as_far_apart(scene):
     assert np.linalg.norm(scene.lamps.axis, axis=1) == pytest.approx(1.0)
 
 
+@pytest.mark.sumo
+@pytest.mark.parametrize("seed", [1, 2])
+def test_other_cities_have_as_many_also_where_there_is_less_room(seed):
+    lamps = load_scene("citystreet", seed).lamps
+    apart = np.linalg.norm(lamps.position[:, None] - lamps.position[None], axis=2)
+    np.fill_diagonal(apart, np.inf)
+    assert len(lamps.position) == 48
+    assert 30.0 < apart.min()
+    assert 50.0 < np.median(apart.min(axis=1)) < 66.0
+
+
 def test_poles_stand_beyond_the_kerb_with_their_lights_over_the_road(scene, feet):
     road = road_area(scene.network)
     away = shapely.distance(road, shapely.points(feet))

@@ -51,7 +51,8 @@ def _body(
     vehicle: VehicleModel, shape: CarShape, detail: _Detail, stations: NDArray[np.float64]
 ) -> Mesh:
     shell = Shell()
-    halves = sections(vehicle, shape, stations, arches=detail.arches)[:, detail.points]
+    every = sections(vehicle, shape, stations, arches=detail.arches)
+    halves = every[:, detail.points]
     for i in range(len(stations) - 1):
         middle = (stations[i] + stations[i + 1]) / 2
         rise = halves[i : i + 2, -1, 2].mean() - height_at(shape.belt, middle)
@@ -65,6 +66,9 @@ def _body(
             shell.quads(quad, _skin(shape, detail, middle, rise, (6, 7)))
     _end(shell, shape, detail, halves[0], front=False)
     _end(shell, shape, detail, halves[-1], front=True)
+    if 3 not in detail.points:
+        _lamp_panels(shell, shape, every[1], every[0])
+        _lamp_panels(shell, shape, every[-2], every[-1])
     if detail.arches:
         _trimmings(shell, vehicle, shape)
     return shell.mesh()
@@ -145,6 +149,28 @@ def _end_skin(shape: CarShape, strip: tuple[int, ...], *, outer: bool, front: bo
     if low == 4 and window:
         return GLASS
     return TRIM if low == 2 and front and not outer else PAINT
+
+
+def _lamp_panels(
+    shell: Shell, shape: CarShape, before: NDArray[np.float64], end: NDArray[np.float64]
+) -> None:
+    """Add the lamps of an end that is cut too coarsely to have them: 1 cm off, round the corner.
+
+    Args:
+        shell: Takes them.
+        shape: The car's.
+        before: All points of the section next to the end [m].
+        end: The same of the end.
+    """
+    front = end[0, 0] > before[0, 0]
+    material, reach = (HEAD_LAMP, shape.head_lamps) if front else (TAIL_LAMP, shape.tail_lamps)
+    low, high = end[3:5] + np.array([0.01 if front else -0.01, 0.0, 0.0])
+    inwards = [1.0, _FINE.columns[2], 1.0]
+    panels = [[low * inwards, low, high, high * inwards]]
+    if abs(end[0, 0] - before[0, 0]) < 2 * reach:
+        panels.append([low, before[3], before[4], high])
+    quads = np.array(panels)
+    shell.quads(quads if front else quads[:, ::-1], material, both_sides=True)
 
 
 def _trimmings(shell: Shell, vehicle: VehicleModel, shape: CarShape) -> None:

@@ -116,6 +116,9 @@ def _facing(x: float, y: tuple[float, float], z: tuple[float, float]) -> list[tu
 def _chassis(shell: Shell, vehicle: VehicleModel, detail: int) -> None:
     front, rear = vehicle.axles[0].x, vehicle.axles[1].x
     end = -vehicle.length / 2 if len(vehicle.axles) == 2 else rear - 1.0
+    if len(vehicle.axles) == 2:
+        shell.box((end, -1.2, 0.62), (end + 0.12, 1.2, 0.84), TRIM)
+        _tail_lamps(shell, end, 0.73)
     if detail == 0:
         shell.box((end, -0.52, 0.86), (front - 0.4, 0.52, 1.1), STEEL)
         return
@@ -125,9 +128,6 @@ def _chassis(shell: Shell, vehicle: VehicleModel, detail: int) -> None:
     shell.box((rear - 0.45, -0.55, 1.1), (rear + 0.45, 0.55, 1.25), TRIM)
     for x in (end, rear + 0.8, front - 1.6):
         shell.box((x, -0.3, 0.88), (x + 0.16, 0.3, 1.06), STEEL)
-    if len(vehicle.axles) == 2:
-        shell.box((end, -1.2, 0.62), (end + 0.12, 1.2, 0.84), TRIM)
-        _tail_lamps(shell, end, 0.73)
 
 
 def _tail_lamps(shell: Shell, x: float, z: float) -> None:

@@ -30,8 +30,11 @@ LIGHT = (3.1, 0.0, 7.2)
 _AXIS = (0.4, 0.0, -1.0)
 """Middle of the beam in the same frame, not of length 1; the original's in cities at night."""
 
-_APART = 53.0
-"""Least distance from one lamp to the next; the original's median is 58 [m]."""
+_APART = (53.0, 44.0, 35.0)
+"""Least distance from one lamp to the next [m]; the original's median is 58.
+
+The smaller ones are for cities in which that leaves too few places.
+"""
 _STEP = 3.0
 """Distance of the places that are tried along a kerb [m]."""
 _FROM_CROSSING = 7.0
@@ -81,11 +84,13 @@ def _places(
     blocked = shapely.buffer(keep_free, _CLEAR)
     shapely.prepare(blocked)
     free = ~shapely.intersects(blocked, shapely.points(feet))
+    order = rng.permutation(np.flatnonzero(free))
     chosen: list[int] = []
-    for index in rng.permutation(np.flatnonzero(free)):
-        apart = np.linalg.norm(feet[chosen] - feet[index], axis=1)
-        if len(chosen) < count and apart.min(initial=np.inf) >= _APART:
-            chosen.append(int(index))
+    for least in _APART:
+        for index in order:
+            apart = np.linalg.norm(feet[chosen] - feet[index], axis=1)
+            if len(chosen) < count and apart.min(initial=np.inf) >= least:
+                chosen.append(int(index))
     return [(feet[index], float(turns[index])) for index in sorted(chosen)]
 
 

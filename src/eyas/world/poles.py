@@ -1,4 +1,8 @@
-"""Traffic lights, dark as the original's: a pole at the kerb with an arm over the lanes."""
+"""Traffic lights, dark as the original's: a pole at the kerb with an arm over the lanes.
+
+They are decoration. No lens is lit, by night neither: cars give way at crossings but do not obey
+lights, so a fixed red or green would show cars that run red lights in every film.
+"""
 
 import numpy as np
 import shapely
