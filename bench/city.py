@@ -1,0 +1,167 @@
+"""What the peers draw: Eyas's own scene, cars and cameras as plain arrays."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from eyas.render.textures import build_textures
+from eyas.sim.build import build_simulation
+from eyas.sim.config import EyasConfig
+from eyas.sim.place import load_place
+from eyas.state.draw import Views
+from eyas.state.mesh import Mesh, Surface, concatenate, transformed
+
+CHUNK = 32.0
+"""Side of the squares that can be skipped [m]."""
+
+
+@dataclass
+class Batch:
+    """Triangles, three corners each, sorted by square. V corners."""
+
+    positions: np.ndarray
+    """[m], float32, shape (V, 3)."""
+    normals: np.ndarray
+    """float32, shape (V, 3)."""
+    uvs: np.ndarray
+    """Texture coordinates [tiles], float32, shape (V, 2)."""
+    colours: np.ndarray
+    """Tint, sRGB 0 to 1, float32, shape (V, 3)."""
+    layers: np.ndarray
+    """Texture, int32, shape (V,)."""
+    painted: np.ndarray
+    """Whether the colour of the instance counts, bool, shape (V,)."""
+    first: np.ndarray
+    """First corner of each square, and the end, shape (C + 1,)."""
+    boxes: np.ndarray
+    """Lower and upper corners of squares [m], shape (C, 6)."""
+
+
+@dataclass
+class City:
+    """The scene, and what N trackers in one world see of it at one time."""
+
+    static: Batch
+    """Streets, houses and trees."""
+    parts: list[Batch]
+    """Parts of cars."""
+    slots: list[np.ndarray]
+    """Poses of each part in the world, float32, shape (K, 3, 4)."""
+    slot_colours: list[np.ndarray]
+    """Their colours, sRGB 0 to 1, shape (K, 3)."""
+    textures: np.ndarray
+    """sRGB and alpha, row 0 on top, uint8, shape (layers, 256, 256, 4)."""
+    views: Views
+    """The cameras."""
+    sun: np.ndarray
+    """Unit vector."""
+
+
+def load_city(count: int) -> City:
+    """Return citystreet by day and the cameras of `count` trackers after a reset.
+
+    Cars are those of the first tracker's world in all views: peers then need not move them.
+    """
+    simulation = build_simulation(EyasConfig(), count, shared_world=False)
+    simulation.reset()
+    place = load_place(EyasConfig().world, EyasConfig().traffic, count)
+    scene, images = place.scene, build_textures()
+    names = list(images)
+    # Trees in their finest level, in which Eyas draws those that such views show.
+    fixtures = scene.fixtures
+    copies = [
+        transformed(fixtures.levels[kind][0], pose)
+        for kind, pose in zip(fixtures.prototype, fixtures.pose, strict=True)
+    ]
+    _, movers = simulation._worlds.draw_list(np.zeros(1, np.int64), simulation._fleet.tick)
+    parts = [levels[0] for levels in place.rigs.library.parts]
+    slots = [movers.pose[0][movers.part[0] == k].copy() for k in range(len(parts))]
+    colours = [movers.colour[0][movers.part[0] == k].copy() for k in range(len(parts))]
+    camera = simulation._camera
+    views = Views(
+        position=simulation.cameras.position.copy(),
+        rotation=simulation.cameras.rotation.copy(),
+        world=np.zeros(count, np.int32),
+        subject=np.full(count, -1, np.int32),
+        field_of_view=camera.config.field_of_view,
+        vertical_field_of_view=camera.vertical_field_of_view,
+    )
+    return City(
+        static=_batch(concatenate([scene.static, *copies]), names, CHUNK),
+        parts=[_batch(mesh, names, 1e9) for mesh in parts],
+        slots=slots,
+        slot_colours=colours,
+        textures=np.stack([images[name] for name in names]),
+        views=views,
+        sun=np.array(place.lighting.sun_direction),
+    )
+
+
+def _batch(mesh: Mesh, names: list[str], side: float) -> Batch:
+    corners = mesh.triangles
+    middle = mesh.positions[corners].mean(axis=1)
+    cell = np.floor(middle[:, :2] / side).astype(np.int64)
+    key = (cell[:, 0] - cell[:, 0].min()) * 100_000 + cell[:, 1] - cell[:, 1].min()
+    order = np.argsort(key, kind="stable")
+    flat = corners[order].ravel()
+    first = np.flatnonzero(np.diff(key[order], prepend=-1)) * 3
+    material = np.repeat(mesh.materials[order], 3)
+    positions = mesh.positions[flat]
+    ends = np.append(first, len(flat))
+    boxes = [
+        np.concatenate([positions[a:b].min(axis=0), positions[a:b].max(axis=0)])
+        for a, b in zip(ends[:-1], ends[1:], strict=True)
+    ]
+    return Batch(
+        positions=positions,
+        normals=mesh.normals[flat],
+        uvs=mesh.uvs[flat],
+        colours=np.array([m.tint for m in mesh.palette], np.float32)[material],
+        layers=np.array([names.index(m.texture) for m in mesh.palette], np.int32)[material],
+        painted=np.array([m.surface == Surface.PAINT for m in mesh.palette])[material],
+        first=ends,
+        boxes=np.array(boxes, np.float32),
+    )
+
+
+def projection(views: Views, width: int, height: int) -> np.ndarray:
+    """Return world to OpenGL clip coordinates for each view, shape (V, 4, 4)."""
+    near, far = 0.3, 3000.0
+    across = 1.0 / np.tan(views.field_of_view / 2)
+    assert views.vertical_field_of_view is not None
+    up = 1.0 / np.tan(views.vertical_field_of_view / 2)
+    lens = np.array(
+        [
+            [across, 0, 0, 0],
+            [0, up, 0, 0],
+            [0, 0, -(far + near) / (far - near), -2 * far * near / (far - near)],
+            [0, 0, -1, 0],
+        ]
+    )
+    # OpenGL's camera looks along -z with x to the right; ours has forward, left, up as columns.
+    axes = np.stack(
+        [-views.rotation[:, :, 1], views.rotation[:, :, 2], -views.rotation[:, :, 0]], axis=1
+    )
+    look = np.zeros((len(axes), 4, 4))
+    look[:, :3, :3] = axes
+    look[:, :3, 3] = -np.einsum("vij,vj->vi", axes, views.position)
+    look[:, 3, 3] = 1.0
+    return lens @ look
+
+
+def seen(boxes: np.ndarray, clip: np.ndarray) -> np.ndarray:
+    """Return which boxes may be in a view, shape (C,)."""
+    planes = np.stack([clip[3] + s * clip[k] for k in range(3) for s in (1, -1)])
+    far = np.where(planes[:, None, :3] > 0, boxes[None, :, 3:], boxes[None, :, :3])
+    inside: np.ndarray = (
+        (np.einsum("pcj,pj->pc", far, planes[:, :3]) + planes[:, 3:] > 0).all(axis=0)
+    )
+    return inside
+
+
+def runs(visible: np.ndarray) -> list[tuple[int, int]]:
+    """Return first and last + 1 of each run of squares in a row that are seen."""
+    edges = np.diff(np.concatenate([[0], visible.astype(np.int8), [0]]))
+    return list(
+        zip(np.flatnonzero(edges == 1).tolist(), np.flatnonzero(edges == -1).tolist(), strict=True)
+    )

@@ -1,0 +1,109 @@
+"""Eyas beside other renderers without a GPU: the same streets, cars and cameras, taking turns.
+
+    pip install -e '.[peers]'     (moderngl also needs Mesa's EGL: apt install libegl1 libgl1-mesa-dri)
+    python bench/peers.py [--views 64] [--seconds 10] [--pictures FOLDER]
+
+What each draws: textured, mip-mapped, lit, in haze. moderngl has a shadow map; panda3d's software
+pipe has no shadows. Eyas draws all that it draws by default. Reading back is included everywhere.
+"""
+
+import argparse
+import importlib
+import statistics
+import time
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+from city import City, load_city
+from PIL import Image
+
+from eyas.core.machine import describe_machine
+from eyas.sim.config import EyasConfig
+from eyas.sim.place import load_place
+from eyas.state.draw import DrawList, Picture
+
+SIDE = 84
+"""Of the pictures [pixels]."""
+
+
+class Drawer(Protocol):
+    """What is compared."""
+
+    name: str
+    rgb: np.ndarray
+
+    def draw(self) -> None:
+        """Draw all views into `rgb`."""
+
+
+class Ours:
+    """Eyas."""
+
+    name = "eyas"
+
+    def __init__(self, city: City, side: int) -> None:
+        place = load_place(EyasConfig().world, EyasConfig().traffic, 1)
+        self._renderer, self._views = place.renderer, city.views
+        count = sum(map(len, city.slots))
+        self._movers = DrawList.create(1, count)
+        parts = [np.full(len(poses), k) for k, poses in enumerate(city.slots)]
+        self._movers.part[0] = np.concatenate(parts)
+        self._movers.pose[0] = np.concatenate(city.slots)
+        self._movers.colour[0] = np.concatenate(city.slot_colours)
+        self._movers.object_id[0] = (1 << 16) + np.arange(count)
+        self._picture = Picture.create(len(city.views.position), side, side)
+
+    def draw(self) -> None:
+        """Draw all views into `rgb`."""
+        self._renderer.draw(self._views, self._movers, self._picture)
+        assert self._picture.rgb is not None
+        across = int(np.ceil(np.sqrt(len(self._picture.rgb))))
+        tiles = self._picture.rgb[: across * across]
+        rows = tiles.reshape(across, across, SIDE, SIDE, 3)[::-1]
+        self.rgb = rows.swapaxes(1, 2).reshape(across * SIDE, across * SIDE, 3)
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--views", type=int, default=64, help="a square number")
+    parser.add_argument("--seconds", type=float, default=10.0, help="in all, for each")
+    parser.add_argument("--pictures", type=Path, help="where to write what each drew")
+    arguments = parser.parse_args()
+    city = load_city(arguments.views)
+    drawers: list[Drawer] = [Ours(city, SIDE)]
+    for module in ("peer_moderngl", "peer_panda3d"):
+        try:
+            drawers.append(importlib.import_module(module).Peer(city, SIDE))
+        except Exception as error:  # whatever a driver that is not there raises
+            print(f"{module}: left out: {error}")
+    rates = _rates(drawers, arguments.seconds)
+    print(f"{arguments.views} pictures of {SIDE}x{SIDE}, {describe_machine()}")
+    for drawer, rate in zip(drawers, rates, strict=True):
+        print(f"{rate * arguments.views:8,.0f} /s  {rates[0] / rate:5.1f}x  {drawer.name}")
+    if arguments.pictures:
+        arguments.pictures.mkdir(parents=True, exist_ok=True)
+        for drawer in drawers:
+            rgb = np.ascontiguousarray(drawer.rgb[..., :3])
+            rgb = rgb if isinstance(drawer, Ours) else rgb[::-1]
+            Image.fromarray(rgb).save(arguments.pictures / f"{drawer.name.split()[0]}.png")
+
+
+def _rates(drawers: list[Drawer], seconds: float) -> list[float]:
+    """Return calls in a second of each, medians of turns of half a second."""
+    rates: list[list[float]] = [[] for _ in drawers]
+    for drawer in drawers:
+        drawer.draw()
+    for _ in range(max(int(seconds / 0.5), 3)):
+        for drawer, found in zip(drawers, rates, strict=True):
+            start, calls = time.perf_counter(), 0
+            while (elapsed := time.perf_counter() - start) < 0.5:
+                drawer.draw()
+                calls += 1
+            found.append(calls / elapsed)
+    return [statistics.median(found) for found in rates]
+
+
+if __name__ == "__main__":
+    main()
