@@ -1,6 +1,7 @@
 """What the peers draw: Eyas's own scene, cars and cameras as plain arrays."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -110,7 +111,7 @@ def _batch(mesh: Mesh, names: list[str], side: float) -> Batch:
     ends = np.append(first, len(flat))
     boxes = [
         np.concatenate([positions[a:b].min(axis=0), positions[a:b].max(axis=0)])
-        for a, b in zip(ends[:-1], ends[1:], strict=True)
+        for a, b in pairwise(ends)
     ]
     return Batch(
         positions=positions,
@@ -153,8 +154,8 @@ def seen(boxes: np.ndarray, clip: np.ndarray) -> np.ndarray:
     """Return which boxes may be in a view, shape (C,)."""
     planes = np.stack([clip[3] + s * clip[k] for k in range(3) for s in (1, -1)])
     far = np.where(planes[:, None, :3] > 0, boxes[None, :, 3:], boxes[None, :, :3])
-    inside: np.ndarray = (
-        (np.einsum("pcj,pj->pc", far, planes[:, :3]) + planes[:, 3:] > 0).all(axis=0)
+    inside: np.ndarray = (np.einsum("pcj,pj->pc", far, planes[:, :3]) + planes[:, 3:] > 0).all(
+        axis=0
     )
     return inside
 

@@ -35,7 +35,10 @@ void main() {
   colour = mix(vec3(0.4, 0.46, 0.55), colour, exp(-distance(at, eye) / 4000.0));
   pixel = vec4(pow(colour, vec3(1.0 / 2.2)), 1);
 }"""
-_SHADOW = "#version 330\nuniform mat4 clip; in vec3 position;\nvoid main() { gl_Position = clip * vec4(position, 1); }"
+_SHADOW = """
+#version 330
+uniform mat4 clip; in vec3 position;
+void main() { gl_Position = clip * vec4(position, 1); }"""
 
 
 class Peer:

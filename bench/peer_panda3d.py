@@ -82,13 +82,9 @@ class Peer:
         asked.setRgbaBits(8, 8, 8, 8)
         asked.setDepthBits(24)
         size = WindowProperties.size(across * side, across * side)
-        window = self._engine.makeOutput(
-            pipe, "views", 0, asked, size, GraphicsPipe.BFRefuseWindow
-        )
+        window = self._engine.makeOutput(pipe, "views", 0, asked, size, GraphicsPipe.BFRefuseWindow)
         self._picture = Texture()
-        window.addRenderTexture(
-            self._picture, GraphicsOutput.RTMCopyRam, GraphicsOutput.RTPColor
-        )
+        window.addRenderTexture(self._picture, GraphicsOutput.RTMCopyRam, GraphicsOutput.RTPColor)
         window.setClearColor((0.66, 0.71, 0.77, 1))
         for k in range(count):
             x, y = k % across / across, k // across / across

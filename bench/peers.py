@@ -1,6 +1,6 @@
 """Eyas beside other renderers without a GPU: the same streets, cars and cameras, taking turns.
 
-    pip install -e '.[peers]'     (moderngl also needs Mesa's EGL: apt install libegl1 libgl1-mesa-dri)
+    pip install -e '.[peers]'    (moderngl also needs Mesa: apt install libegl1 libgl1-mesa-dri)
     python bench/peers.py [--views 64] [--seconds 10] [--pictures FOLDER]
 
 What each draws: textured, mip-mapped, lit, in haze. moderngl has a shadow map; panda3d's software

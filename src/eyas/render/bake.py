@@ -11,6 +11,7 @@ from eyas.core.jit import thread_count
 from eyas.render.bake_cache import baked, content_hash
 from eyas.render.kernels.bundles import Geometry
 from eyas.render.kernels.shadow_map import BAND, bake_rows
+from eyas.state.mesh import Surface
 
 __all__ = ["ShadowMap", "bake_shadows"]
 
@@ -20,7 +21,7 @@ TEXEL = 0.2
 LARGEST = 4096
 """Most texels along a side."""
 
-_FORMAT = b"eyas shadow map 2"
+_FORMAT = b"eyas shadow map 3"
 
 
 @dataclass(frozen=True, slots=True)
@@ -108,7 +109,7 @@ def _bake(
         workers,
         geometry,
         rows,
-        np.empty((workers, most, 4)),
+        np.empty((workers, most, 5)),
         np.empty((workers, 3, 4)),
         np.empty((workers, BAND, columns), np.float32),
         np.empty((workers, BAND, columns), np.int64),
@@ -125,6 +126,9 @@ def _content_hash(geometry: Geometry, rows: NDArray[np.float64]) -> str:
     kept = (
         rows,
         geometry.positions[:vertices],
+        geometry.uvs[:vertices],
+        geometry.surface[geometry.material[:triangles]],
+        geometry.texture[np.unique(geometry.layer[geometry.surface == Surface.FOLIAGE])],
         geometry.corners[:triangles],
         fixtures,
         geometry.fixture_prototype,

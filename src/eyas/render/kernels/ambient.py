@@ -20,7 +20,7 @@ STEPS = 14
 LEAVES = 0.6
 """Share of the light that a crown keeps."""
 
-BOUNCED = 0.35
+BOUNCED = 0.42
 """Share of the sky's light that comes by way of walls and ground where the sky itself is hidden."""
 
 _ASIDE = f4(0.9)

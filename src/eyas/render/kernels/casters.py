@@ -141,11 +141,12 @@ def _darken(
     leave = min((caster[4] - px) / sx, (caster[5] - py) / sy, (caster[7] - z) / sz)
     # The longer the way through the box, the deeper in the shadow: a soft edge.
     deep = min(max((leave - enter) * 1.6, 0.0), 1.0)
-    out_x, out_y = max(abs(px) - caster[4] + 0.25, 0.0), max(abs(py) - caster[5] + 0.25, 0.0)
-    near = max(1.0 - 1.25 * math.sqrt(out_x * out_x + out_y * out_y), 0.0)
+    # Little light of the sky comes under a body and to the ground beside it.
+    out_x, out_y = max(abs(px) - caster[4] + 0.15, 0.0), max(abs(py) - caster[5] + 0.15, 0.0)
+    near = max(1.0 - 1.1 * math.sqrt(out_x * out_x + out_y * out_y), 0.0)
     if z > caster[6] + 0.25:
         near = 0.0
-    return 1.0 - deep, 1.0 - 0.55 * near * near
+    return 1.0 - deep, 1.0 - 0.8 * near * near
 
 
 @inner_kernel

@@ -7,11 +7,17 @@ from eyas.core.jit import inner_kernel, parallel_kernel, prange
 from eyas.render.kernels.bundles import Geometry
 from eyas.render.kernels.rasterise import BOTH_SIDES, rasterise
 from eyas.render.kernels.scalars import f4, i8
+from eyas.state.mesh import Surface
 
 __all__ = ["BAND", "bake_rows"]
 
 BAND = 256
 """Rows of the map that are drawn at a time."""
+
+LEAF_LEVEL = 3
+"""Mip level of the holes between leaves: of the size of the map's texels."""
+
+FOLIAGE = int(Surface.FOLIAGE)
 
 
 @parallel_kernel
@@ -31,7 +37,7 @@ def bake_rows(
         workers: How many share the work; the leading axis of the working memory.
         geometry: Everything that can be drawn.
         rows: World to column, row and height of the map, shape (3, 4); heights are 1 to 65535.
-        screen: Working memory, shape (K, vertices of the largest mesh, 4).
+        screen: Working memory, shape (K, vertices of the largest mesh, 5).
         object_rows: Working memory, shape (K, 3, 4).
         depth: Working memory, shape (K, BAND, columns).
         owner: Working memory, shape (K, BAND, columns).
@@ -82,7 +88,10 @@ def _draw(
     depth: NDArray[np.float32],
     owner: NDArray[np.int64],
 ) -> None:
-    """Draw one mesh from above the sun; leaves have no holes here."""
+    """Draw one mesh from above the sun, leaves with their holes.
+
+    Across a leaf heights differ little, so that `rasterise` may take them for 1/w.
+    """
     lowest, highest = 1e9, -1e9
     for i in range(ranges[3] - ranges[2]):
         x = geometry.positions[ranges[2] + i, 0]
@@ -90,6 +99,8 @@ def _draw(
         z = geometry.positions[ranges[2] + i, 2]
         for k in range(3):
             screen[i, k] = rows[k, 0] * x + rows[k, 1] * y + rows[k, 2] * z + rows[k, 3]
+        screen[i, 3] = geometry.uvs[ranges[2] + i, 0]
+        screen[i, 4] = geometry.uvs[ranges[2] + i, 1]
         lowest, highest = min(lowest, screen[i, 1]), max(highest, screen[i, 1])
     if lowest > top + BAND or highest < top:
         return
@@ -97,6 +108,9 @@ def _draw(
         a = geometry.corners[triangle, 0] - ranges[2]
         b = geometry.corners[triangle, 1] - ranges[2]
         c = geometry.corners[triangle, 2] - ranges[2]
+        material = geometry.material[triangle]
+        level = LEAF_LEVEL if geometry.surface[material] == FOLIAGE else -1
         rasterise(
-            screen, a, b, c, top, depth, owner, i8(0), BOTH_SIDES, geometry.texture, 0, -1
+            screen, a, b, c, top, depth, owner, i8(0), BOTH_SIDES, geometry.texture,
+            geometry.layer[material], level,
         )  # fmt: skip
