@@ -1,5 +1,7 @@
 """Shadows fall where the sun says, and survive damaged caches."""
 
+import dataclasses
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,8 @@ from eyas.core.pinhole import rays
 from eyas.render.bake import bake_shadows
 from eyas.render.geometry import build_geometry
 from eyas.state.draw import DrawList, PartLibrary
+from eyas.state.mesh import Material, concatenate
+from eyas.world.shapes import box
 
 from .small_city import DAY, GROUND, TOWER, car_parts, floor, looking, put_car, scene_of, tower
 
@@ -114,3 +118,21 @@ def test_a_car_does_not_shade_itself(renderer_of, drawn):
     np.testing.assert_array_equal(
         whole.rgb[0, 48, 64], drawn(renderer, views, draw_list).rgb[0, 48, 64]
     )
+
+
+def test_a_car_throws_the_shadow_of_a_body_and_a_shorter_cabin(renderer_of, drawn):
+    bonnet = box((4.0, 1.8, 0.8), (0, 0, 0.6), Material(), 1.0)
+    cabin = box((1.6, 1.6, 0.6), (0.0, 0, 1.3), Material(), 1.0)
+    parts = PartLibrary(((concatenate([bonnet, cabin]),),))
+    cars = DrawList.create(1, 1)
+    cars.part[0, 0], cars.object_id[0, 0] = 0, 1 << 16
+    cars.pose[0, 0] = np.eye(4)[:3]
+    low = np.array([0.0, -1.0, 1.0]) / np.sqrt(2)  # 45 degrees high, in the south
+    light = dataclasses.replace(DAY, sun_direction=tuple(low))
+    renderer = renderer_of(scene_of([floor(60.0, "plain")], [GROUND]), parts, light)
+    # The body's shadow reaches 1 m beside it, the cabin's 1.5 m.
+    places = [(x, 0.9 + y, 30.0) for y in (0.7, 1.25, 1.9) for x in (0.0, 1.7)]
+    views = looking(places, pitch=np.pi / 2, fov=0.004)
+    seen = drawn(renderer, views, cars, (9, 9)).rgb[:, 4, 4].astype(int).sum(axis=1)
+    lit = seen.max()
+    assert (seen > 0.8 * lit).tolist() == [False, False, False, True, True, True]

@@ -67,6 +67,9 @@ class Geometry(NamedTuple):
     """Centre and radius around each prototype [m], shape (P, 4)."""
     box: NDArray[np.float32]
     """Lower and upper corner of each prototype [m], shape (P, 6)."""
+    upper: NDArray[np.float32]
+    """What each prototype is above its waist: height of that, then back, front, right and left
+    end [m], shape (P, 5)."""
     fixture_prototype: NDArray[np.int32]
     """Shape (F,)."""
     fixture_pose: NDArray[np.float32]
@@ -179,7 +182,7 @@ class Scratch(NamedTuple):
     light: NDArray[np.float32]
     """The colours of `Light` for the view, then its air, shape (K, 7, 9)."""
     caster: NDArray[np.float64]
-    """A moving thing's box, see `casters`, shape (K, 8)."""
+    """A moving thing's boxes, see `casters`, shape (K, 13)."""
 
 
 class Output(NamedTuple):

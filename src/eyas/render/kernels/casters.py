@@ -1,5 +1,5 @@
-"""Soft shadows of moving things: each is one upright box, and a shadow is drawn where the way to
-the sun leads through it.
+"""Soft shadows of moving things: each is two upright boxes, as a car is a body and a cabin, and a
+shadow is drawn where the way to the sun leads through one.
 """
 
 import math
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from eyas.core.jit import inner_kernel
 from eyas.render.kernels.bundles import Geometry
 from eyas.render.kernels.cull import sphere_is_visible
+from eyas.render.kernels.shadow_boxes import darken
 
 __all__ = ["cast_shadows", "set_caster"]
 
@@ -29,15 +30,16 @@ def set_caster(
 ) -> None:
     """Compute the box around slots `first` to `last`, turned like the largest part.
 
-    `caster`: centre x, y; direction of its length x, y; half length, half width; bottom, top.
+    `caster`: centre x, y; direction of its length x, y; half length, half width; bottom, top; then
+    of its upper part the bottom, and back, front, right and left end from the centre.
     """
-    largest, axis_x, axis_y, origin_x, origin_y = -1.0, 1.0, 0.0, 0.0, 0.0
+    body, largest, axis_x, axis_y, origin_x, origin_y = first, -1.0, 1.0, 0.0, 0.0, 0.0
     for slot in range(first, last):
         box = geometry.box[geometry.part_first + parts[slot]]
         size = (box[3] - box[0]) * (box[4] - box[1]) * (box[5] - box[2])
         flat = math.sqrt(float(poses[slot, 0, 0]) ** 2 + float(poses[slot, 1, 0]) ** 2)
         if size > largest and flat > 1e-6:
-            largest = size
+            body, largest = slot, size
             axis_x, axis_y = poses[slot, 0, 0] / flat, poses[slot, 1, 0] / flat
             origin_x, origin_y = poses[slot, 0, 3], poses[slot, 1, 3]
     front, back, left, right, low, high = -1e9, 1e9, -1e9, 1e9, 1e9, -1e9
@@ -61,6 +63,10 @@ def set_caster(
     caster[2], caster[3] = axis_x, axis_y
     caster[4], caster[5] = 0.5 * (front - back), 0.5 * (left - right)
     caster[6], caster[7] = low, high
+    upper = geometry.upper[geometry.part_first + parts[body]]
+    caster[8] = poses[body, 2, 3] + upper[0]
+    caster[9], caster[10] = upper[1] - along, upper[2] - along
+    caster[11], caster[12] = upper[3] - aside, upper[4] - aside
 
 
 @inner_kernel
@@ -121,35 +127,6 @@ def _screen_box(
 
 
 @inner_kernel
-def _darken(
-    caster: NDArray[np.float64],
-    sun: NDArray[np.float32],
-    x: float,
-    y: float,
-    z: float,
-) -> tuple[float, float]:
-    """Return how much sun and sky a thing's box lets through to a point."""
-    dx, dy = x - caster[0], y - caster[1]
-    px, py = dx * caster[2] + dy * caster[3], dy * caster[2] - dx * caster[3]
-    sx = max(abs(sun[0] * caster[2] + sun[1] * caster[3]), 1e-4)
-    sy = max(abs(sun[1] * caster[2] - sun[0] * caster[3]), 1e-4)
-    # Turned so that the sun stands in the first quadrant.
-    px = px if sun[0] * caster[2] + sun[1] * caster[3] > 0.0 else -px
-    py = py if sun[1] * caster[2] - sun[0] * caster[3] > 0.0 else -py
-    sz = max(float(sun[2]), 1e-3)
-    enter = max((-caster[4] - px) / sx, (-caster[5] - py) / sy, (caster[6] - z) / sz, 0.0)
-    leave = min((caster[4] - px) / sx, (caster[5] - py) / sy, (caster[7] - z) / sz)
-    # The longer the way through the box, the deeper in the shadow: a soft edge.
-    deep = min(max((leave - enter) * 1.6, 0.0), 1.0)
-    # Little light of the sky comes under a body and to the ground beside it.
-    out_x, out_y = max(abs(px) - caster[4] + 0.15, 0.0), max(abs(py) - caster[5] + 0.15, 0.0)
-    near = max(1.0 - 1.1 * math.sqrt(out_x * out_x + out_y * out_y), 0.0)
-    if z > caster[6] + 0.25:
-        near = 0.0
-    return 1.0 - deep, 1.0 - 0.8 * near * near
-
-
-@inner_kernel
 def _cast_one(
     caster: NDArray[np.float64],
     sun: NDArray[np.float32],
@@ -182,7 +159,7 @@ def _cast_one(
             z = eye[2] + w * (axes[0, 2] + left * axes[1, 2] + up * axes[2, 2])
             if z > caster[7]:
                 continue
-            direct, ambient = _darken(caster, sun, x, y, z)
+            direct, ambient = darken(caster, sun, x, y, z)
             shade[line, column, 0] = min(shade[line, column, 0], np.uint8(255.0 * direct))
             shade[line, column, 1] = min(shade[line, column, 1], np.uint8(255.0 * ambient))
 

@@ -1,0 +1,60 @@
+"""Light that the two boxes of a moving thing keep from a point."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.jit import inlined_kernel, inner_kernel
+
+__all__ = ["darken"]
+
+
+@inlined_kernel
+def _between(place: float, step: float, low: float, high: float) -> tuple[float, float]:
+    """Return when a point that moves by `step` in each unit of time enters and leaves a range."""
+    speed = step if abs(step) > 1e-4 else 1e-4
+    first, last = (low - place) / speed, (high - place) / speed
+    return min(first, last), max(first, last)
+
+
+@inlined_kernel
+def _through(
+    at: tuple[float, float, float],
+    way: tuple[float, float, float],
+    ends: tuple[float, float, float, float],
+    bottom: float,
+    top: float,
+) -> float:
+    """Return the length of the way [m] to the sun, from a point, through a box."""
+    front, back = _between(at[0], way[0], ends[0], ends[1])
+    right, left = _between(at[1], way[1], ends[2], ends[3])
+    low, high = _between(at[2], way[2], bottom, top)
+    return float(max(min(back, left, high) - max(front, right, low, 0.0), 0.0))
+
+
+@inner_kernel
+def darken(
+    caster: NDArray[np.float64],
+    sun: NDArray[np.float32],
+    x: float,
+    y: float,
+    z: float,
+) -> tuple[float, float]:
+    """Return how much sun and sky a thing lets through to a point."""
+    dx, dy = x - caster[0], y - caster[1]
+    px, py = dx * caster[2] + dy * caster[3], dy * caster[2] - dx * caster[3]
+    sx, sy = sun[0] * caster[2] + sun[1] * caster[3], sun[1] * caster[2] - sun[0] * caster[3]
+    way = (float(sx), float(sy), max(float(sun[2]), 1e-3))
+    # The longer the way through it, the deeper in the shadow: a soft edge.
+    body = (-caster[4], caster[4], -caster[5], caster[5])
+    cabin = (caster[9], caster[10], caster[11], caster[12])
+    inside = _through((px, py, z), way, body, caster[6], caster[8])
+    inside += _through((px, py, z), way, cabin, caster[8], caster[7])
+    deep = min(inside * 2.2, 1.0)
+    # Little light of the sky comes under a body and to the ground beside it.
+    out_x, out_y = max(abs(px) - caster[4] + 0.15, 0.0), max(abs(py) - caster[5] + 0.15, 0.0)
+    near = max(1.0 - 1.1 * math.sqrt(out_x * out_x + out_y * out_y), 0.0)
+    if z > caster[6] + 0.25:
+        near = 0.0
+    return 1.0 - deep, 1.0 - 0.8 * near * near
