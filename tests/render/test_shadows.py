@@ -131,7 +131,7 @@ def test_a_car_throws_the_shadow_of_a_body_and_a_shorter_cabin(renderer_of, draw
     light = dataclasses.replace(DAY, sun_direction=tuple(low))
     renderer = renderer_of(scene_of([floor(60.0, "plain")], [GROUND]), parts, light)
     # The body's shadow reaches 1 m beside it, the cabin's 1.5 m.
-    places = [(x, 0.9 + y, 30.0) for y in (0.7, 1.25, 1.9) for x in (0.0, 1.7)]
+    places = [(x, 0.9 + y, 30.0) for y in (0.6, 1.12, 1.9) for x in (0.0, 1.7)]
     views = looking(places, pitch=np.pi / 2, fov=0.004)
     seen = drawn(renderer, views, cars, (9, 9)).rgb[:, 4, 4].astype(int).sum(axis=1)
     lit = seen.max()
