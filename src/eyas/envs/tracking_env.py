@@ -41,6 +41,8 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
         speeds: How fast the actions are.
         observation_size: Width and height of the observation [pixels].
         render_mode: `rgb_array` or None.
+        overlay: Whether `render` shows what the camera sees, is rewarded for and looks for;
+            observations never do.
 
     Raises:
         EyasError: A setting is wrong, in one line.
@@ -58,6 +60,7 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
         speeds: Speeds | None = None,
         observation_size: tuple[int, int] = (84, 84),
         render_mode: str | None = None,
+        overlay: bool = False,
     ) -> None:
         if render_mode not in (None, *self.metadata["render_modes"]):
             raise ConfigError(f"render_mode: '{render_mode}' is not allowed: 'rgb_array' or None")
@@ -72,6 +75,7 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
         self._simulation = build_simulation(self.config, 1, shared_world=False)
         self._picture = Picture.create(1, height, width)
         self._render_picture: Picture | None = None
+        self._overlay = overlay
         self._tracker = np.zeros(1, np.int32)
 
     def reset(
@@ -106,15 +110,15 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
         if self._render_picture is None:
             camera = self.config.camera
             self._render_picture = Picture.create(1, camera.height, camera.width)
-        return self._draw(self._render_picture)
+        if self._overlay:
+            self._simulation.draw_overlaid(self._tracker, self._render_picture)
+        else:
+            self._simulation.draw(self._tracker, self._render_picture)
+        return _copy(self._render_picture)
 
     def _observe(self) -> Observation:
-        return self._draw(self._picture)
-
-    def _draw(self, picture: Picture) -> Observation:
-        self._simulation.draw(self._tracker, picture)
-        assert picture.rgb is not None
-        return np.array(picture.rgb[0])
+        self._simulation.draw(self._tracker, self._picture)
+        return _copy(self._picture)
 
     def _info(self) -> dict[str, Any]:
         simulation = self._simulation
@@ -125,6 +129,11 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
             "done_reason": reason.name.lower(),
             "light": simulation.light[0],
         }
+
+
+def _copy(picture: Picture) -> Observation:
+    assert picture.rgb is not None
+    return np.array(picture.rgb[0])
 
 
 def _settings(

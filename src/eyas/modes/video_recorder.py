@@ -64,7 +64,10 @@ class Recorder:
         if not drawn.size:
             return
         picture = self._views(drawn.size)
-        self._sim.draw(drawn, picture)
+        if self._video.overlay:
+            self._sim.draw_overlaid(drawn, picture)
+        else:
+            self._sim.draw(drawn, picture)
         for view, tracker in enumerate(drawn.tolist()):
             self._write(tracker, picture, view, int(action[tracker]))
         self.drawn += drawn.size

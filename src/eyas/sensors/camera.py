@@ -41,8 +41,8 @@ class Camera:
         draw_list: DrawList,
         picture: Picture,
         until: Stage = Stage.SHADING,
-    ) -> None:
-        """Draw into `picture`.
+    ) -> Views:
+        """Draw into `picture`, and return the views that were drawn.
 
         Args:
             pose: V cameras.
@@ -63,3 +63,4 @@ class Camera:
             light=light,
         )
         self._renderer.draw(views, draw_list, picture, self.config.samples, until)
+        return views

@@ -123,6 +123,8 @@ class VideoConfig(Config):
     """2 ms steps after each reset that are not recorded."""
     target_direction: bool = False
     """Whether `mark.json` holds the target's direction instead of reward and action."""
+    overlay: bool = False
+    """Whether the pictures show what the camera sees, is rewarded for and looks for."""
     random_action: bool = False
     """True: seeded random actions; False: the target is followed exactly."""
     forward_speed: Speed = 40.0

@@ -5,15 +5,17 @@ from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
 from eyas.render.kernels.bundles import Stage
+from eyas.render.overlay import paint_overlays, with_depth
 from eyas.sensors.camera import Camera
 from eyas.sim.config import EyasConfig
 from eyas.sim.episodes import Episodes
 from eyas.sim.fleet import Traffic, camera_view, create_fleet, target_view, tracker_view
 from eyas.sim.light import LightChanges
+from eyas.sim.overlay import Projection
 from eyas.sim.place import Place
 from eyas.sim.step import begin_episodes, fill_packets, fly, follow
 from eyas.sim.worlds import Worlds
-from eyas.state.draw import Picture
+from eyas.state.draw import Picture, Views
 from eyas.state.tracker import CameraPose
 from eyas.targets.catalogue import VEHICLES
 from eyas.task.columns import DIRECTION, REASON, REWARD, STEP_COUNT
@@ -59,6 +61,7 @@ class Simulation:
         )
         self._episodes = Episodes(config, place.replay, self._worlds, self._light, count)
         self._camera = Camera(config.camera, place.renderer)
+        self._projection = Projection(self._fleet, self._rules, config.camera, self._worlds)
         self.trackers = tracker_view(self._fleet)
         self.cameras = camera_view(self._fleet)
         self.targets = target_view(self._fleet)
@@ -106,11 +109,64 @@ class Simulation:
             picture: V pictures; the subject is each tracker's target.
             until: Where to stop, see `Renderer.draw`.
         """
+        self._see(np.asarray(trackers), picture, until)
+
+    def draw_overlaid(self, trackers: NDArray[np.int32], picture: Picture) -> None:
+        """Draw like `draw`, and what each camera sees, rewards and looks for over its colours.
+
+        Args:
+            trackers: Which, shape (V,).
+            picture: V pictures with colours; whatever else is wanted stays without the overlay.
+        """
         chosen = np.asarray(trackers)
+        deep = with_depth(picture)
+        views = self._see(chosen, deep, Stage.SHADING)
+        paint_overlays(views, [self._projection.of(n) for n in chosen.tolist()], deep)
+
+    def draw_from(
+        self,
+        trackers: NDArray[np.int32],
+        viewpoint: CameraPose,
+        picture: Picture,
+        *,
+        field_of_view: float = 1.2,
+        overlay: bool = True,
+    ) -> None:
+        """Draw the worlds of some trackers from anywhere, such as from behind the drone.
+
+        Args:
+            trackers: Whose world each view shows, shape (V,); the subject is its target.
+            viewpoint: V cameras.
+            picture: V pictures with colours, of any size; pixels are square.
+            field_of_view: Horizontal [rad].
+            overlay: Whether all trackers of that world, and what their cameras see, reward and
+                look for, are drawn over the colours.
+        """
+        chosen = np.asarray(trackers)
+        world, movers = self._worlds.draw_list(chosen, self._fleet.tick)
+        subject = self._worlds.object_ids(self.targets.actor[chosen])
+        views = Views(
+            position=viewpoint.position,
+            rotation=viewpoint.rotation,
+            world=world,
+            subject=subject,
+            field_of_view=field_of_view,
+            light=self._light.of(chosen),
+        )
+        deep = with_depth(picture) if overlay else picture
+        self._place.renderer.draw(views, movers, deep, self.config.camera.samples)
+        if overlay:
+            together = range(self.count) if self._worlds.shared else None
+            paint_overlays(
+                views, [self._projection.of(n, together or (n,)) for n in chosen.tolist()], deep
+            )
+
+    def _see(self, chosen: NDArray[np.int32], picture: Picture, until: Stage) -> Views:
         pose = CameraPose(self.cameras.position[chosen], self.cameras.rotation[chosen])
         world, movers = self._worlds.draw_list(chosen, self._fleet.tick)
         subject = self._worlds.object_ids(self.targets.actor[chosen])
-        self._camera.read(pose, world, subject, self._light.of(chosen), movers, picture, until)
+        light = self._light.of(chosen)
+        return self._camera.read(pose, world, subject, light, movers, picture, until)
 
     @property
     def light(self) -> NDArray[np.float32]:

@@ -1,0 +1,94 @@
+"""The picture that an overlay is drawn on, and the camera that took it."""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from eyas.core.pinhole import focal_length, project
+from eyas.state.draw import Views
+
+__all__ = ["CASING", "NEAR", "Canvas", "cover"]
+
+NEAR = 0.1
+"""What is nearer to the camera than this is not drawn [m]."""
+
+CASING = (0.04, 0.05, 0.07)
+"""Colour around everything, so that it is seen on any ground."""
+
+
+class Canvas:
+    """Colours that are painted over, by picture number `v` of some views.
+
+    Attributes:
+        depth: Distance along the optical axis at the pixels' centres [m], shape (H, W).
+        unit: Width of the thinnest strokes [pixels], for a picture of this size.
+
+    Args:
+        views: The cameras.
+        v: Which of them.
+        rgb: What it saw, shape (H, W, 3); left alone.
+        depth: As above.
+    """
+
+    def __init__(
+        self, views: Views, v: int, rgb: NDArray[np.uint8], depth: NDArray[np.float32]
+    ) -> None:
+        self.depth = depth
+        self.height, self.width = depth.shape
+        self.position = np.asarray(views.position[v], np.float64)
+        self.rotation = np.asarray(views.rotation[v], np.float64)
+        self._fields = views.field_of_view, views.vertical_field_of_view
+        self.across = focal_length(self.width, views.field_of_view)
+        self.down = self.across
+        if views.vertical_field_of_view is not None:
+            self.down = focal_length(self.height, views.vertical_field_of_view)
+        self.unit = max(1.0, self.height / 360)
+        self._colour = rgb.astype(np.float32)
+
+    def project(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Return column, row [pixels] and depth [m] of points, shape (..., 3); see `pinhole`."""
+        size = self.width, self.height
+        return np.stack(project(points, self.position, self.rotation, *size, *self._fields), -1)
+
+    def window(self, low: ArrayLike, high: ArrayLike, margin: float) -> tuple[slice, slice]:
+        """Return the rows and columns that a box of columns and rows covers, in the picture."""
+        limit = (self.width, self.height)
+        first = np.clip(np.floor(np.asarray(low) - margin), 0, limit).astype(int)
+        last = np.clip(np.ceil(np.asarray(high) + margin), 0, limit).astype(int)
+        return slice(first[1], last[1]), slice(first[0], last[0])
+
+    def plane(self, normal: ArrayLike, where: tuple[slice, slice]) -> NDArray[np.float32]:
+        """Return normal times ray for each pixel of a window; a ray has length 1 along the axis.
+
+        Args:
+            normal: Camera frame: forward, left, up, shape (3,).
+            where: Rows and columns.
+        """
+        forward, left, up = np.asarray(normal, np.float64)
+        rows, columns = (np.arange(part.start, part.stop) + 0.5 for part in where)
+        row = forward + up * (0.5 * self.height - rows) / self.down
+        column = left * (0.5 * self.width - columns) / self.across
+        return row[:, None].astype(np.float32) + column.astype(np.float32)
+
+    def blend(
+        self,
+        where: tuple[slice, slice],
+        colour: ArrayLike,
+        share: NDArray[np.floating],
+    ) -> None:
+        """Mix a colour, sRGB 0 to 1, into a window's pixels by a share of 0 to 1 for each."""
+        below = self._colour[where]
+        above = np.asarray(colour, np.float32) * np.float32(255.0)
+        below += (above - below) * share[..., None].astype(np.float32)
+
+    def finished(self) -> NDArray[np.uint8]:
+        """Return the colours, shape (H, W, 3)."""
+        return np.rint(self._colour).astype(np.uint8)
+
+
+def cover(inside: NDArray[np.floating]) -> NDArray[np.floating]:
+    """Return how much of a pixel lies inside a straight edge, 0 to 1.
+
+    Args:
+        inside: Distance of its centre from the edge, positive inside [pixels].
+    """
+    return np.clip(inside + 0.5, 0.0, 1.0)
