@@ -99,3 +99,14 @@ def test_wrong_settings_say_what_is_wrong_in_one_line():
     assert "\n" not in str(caught.value)
     with pytest.raises(EyasError, match="render_mode"):
         TrackingEnv(render_mode="human")
+
+
+def test_the_overlay_is_rendered_and_never_observed():
+    plain, overlaid = (
+        gymnasium.make(NAME, render_mode="rgb_array", overlay=overlay) for overlay in (False, True)
+    )
+    for step in range(4):
+        seen = [env.reset(seed=5)[0] if step == 0 else env.step(6)[0] for env in (plain, overlaid)]
+        clean, drawn = plain.render(), overlaid.render()
+        assert np.array_equal(*seen)
+        assert (clean != drawn).any(axis=-1).mean() > 0.2

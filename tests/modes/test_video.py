@@ -226,3 +226,14 @@ def test_a_recording_that_ends_before_it_begins_is_refused_and_leaves_no_folder(
     with pytest.raises(ConfigError, match=r"video\.total_time: .*start and warm up, at 10\.02 s"):
         video.run(CONFIG.model_copy(update={"start": start}), tmp_path / "none", quiet=True)
     assert not (tmp_path / "none").exists()
+
+
+def test_an_overlay_changes_pictures_and_films_but_no_label_and_no_mark(recorded, tmp_path):
+    config = CONFIG.model_copy(update={"video": CONFIG.video.model_copy(update={"overlay": True})})
+    video.run(config, tmp_path / "out", quiet=True)
+    clean, overlaid = contents(recorded), contents(tmp_path / "out")
+    assert clean.keys() == overlaid.keys()
+    for name in clean:
+        drawn = name.endswith((".jpeg", ".mp4"))
+        settings = name == "config.json"
+        assert (clean[name] != overlaid[name]) == (drawn or settings), name

@@ -67,13 +67,14 @@ class Canvas:
         rows, columns = (np.arange(part.start, part.stop) + 0.5 for part in where)
         row = forward + up * (0.5 * self.height - rows) / self.down
         column = left * (0.5 * self.width - columns) / self.across
-        return row[:, None].astype(np.float32) + column.astype(np.float32)
+        plane: NDArray[np.float32] = row[:, None].astype(np.float32) + column.astype(np.float32)
+        return plane
 
     def blend(
         self,
         where: tuple[slice, slice],
         colour: ArrayLike,
-        share: NDArray[np.floating],
+        share: NDArray[np.floating] | NDArray[np.bool_],
     ) -> None:
         """Mix a colour, sRGB 0 to 1, into a window's pixels by a share of 0 to 1 for each."""
         below = self._colour[where]
@@ -91,4 +92,5 @@ def cover(inside: NDArray[np.floating]) -> NDArray[np.floating]:
     Args:
         inside: Distance of its centre from the edge, positive inside [pixels].
     """
-    return np.clip(inside + 0.5, 0.0, 1.0)
+    covered: NDArray[np.floating] = np.clip(inside + 0.5, 0.0, 1.0)
+    return covered

@@ -84,7 +84,8 @@ def _shaded(solid: Solid) -> NDArray[np.float64]:
     normal = np.cross(b - a, c - a)
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
     light = 0.5 + 0.5 * normal @ TOWARDS_LIGHT
-    return solid.colours * (SHADE + (1.0 - SHADE) * light)[:, None]
+    shaded: NDArray[np.float64] = solid.colours * (SHADE + (1.0 - SHADE) * light)[:, None]
+    return shaded
 
 
 def _grown(mask: NDArray[np.bool_], radius: int) -> NDArray[np.bool_]:

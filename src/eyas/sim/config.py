@@ -124,7 +124,8 @@ class VideoConfig(Config):
     target_direction: bool = False
     """Whether `mark.json` holds the target's direction instead of reward and action."""
     overlay: bool = False
-    """Whether the pictures show what the camera sees, is rewarded for and looks for."""
+    """Whether the pictures show what the camera sees, is rewarded for and looks for; labels stay
+    the same."""
     random_action: bool = False
     """True: seeded random actions; False: the target is followed exactly."""
     forward_speed: Speed = 40.0

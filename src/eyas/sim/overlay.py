@@ -1,7 +1,7 @@
 """What an overlay shows of a tracker: its view, its reward and its target, in the world."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,7 +57,7 @@ class Projection:
         self._whole = rules._replace(half_width=half_width, half_height=half_height)
         self._worlds = worlds
 
-    def of(self, main: int, trackers: Iterable[int] | None = None) -> Overlay:
+    def of(self, main: int, trackers: Sequence[int] | None = None) -> Overlay:
         """Return what to draw for trackers in one world.
 
         For each the ground that its camera sees, the ground on which a target is rewarded (its
@@ -68,30 +68,50 @@ class Projection:
             main: Whose reward is told even where its target is outside the picture.
             trackers: Which; None: `main`, without the drone, for the picture of its own camera.
         """
-        areas, lines, solids, labels = [], [], [], []
-        for n in (main,) if trackers is None else trackers:
-            eye, rotation = self._fleet.camera_position[n], self._fleet.camera_rotation[n]
-            reward = float(self._fleet.task_memory[n, REWARD])
-            seen = ground_corners(eye, rotation, self._whole, FARTHEST)
-            areas += [
-                GroundArea(self._rewarded(n), self._rules.ground, _colour_of(reward), fill=0.14),
-                GroundArea(seen, self._rules.ground, VIEW_COLOUR),
-            ]
-            top = self._top_of_target(n)
-            if not self._fleet.target_lost[n]:
-                turn = GEM_TURN * float(self._fleet.tick[n]) * PHYSICS_STEP
-                solids.append(gem(top + GEM_GAP * UP, GEM_HEIGHT, turn))
-            middle = top + (GEM_GAP + GEM_GIRDLE * GEM_HEIGHT) * UP
-            words = f"reward {reward:.2f}"
-            labels.append(
-                Label(middle, words, LABEL_COLOUR, clear=GEM_RADIUS * GEM_HEIGHT, always=n == main)
-            )
-            if trackers is None:
-                continue
-            ends = np.column_stack([seen, np.full(len(seen), self._rules.ground + 0.1)])
-            lines += [Line(eye.copy(), end, VIEW_COLOUR) for end in ends]
-            solids.append(drone(self._fleet.position[n], _rotation(self._fleet.orientation[n])))
-        return Overlay(tuple(areas), tuple(lines), tuple(solids), tuple(labels))
+        parts = [self._marks(n, always=n == main) for n in (trackers or (main,))]
+        parts += [self._drone(n) for n in trackers or ()]
+        return Overlay(
+            areas=tuple(area for part in parts for area in part.areas),
+            lines=tuple(line for part in parts for line in part.lines),
+            solids=tuple(solid for part in parts for solid in part.solids),
+            labels=tuple(label for part in parts for label in part.labels),
+        )
+
+    def _marks(self, n: int, *, always: bool) -> Overlay:
+        """Return view, range and target of a tracker, and its reward, seen `always`."""
+        reward = float(self._fleet.task_memory[n, REWARD])
+        ground, tip = self._rules.ground, self._top_of_target(n) + GEM_GAP * UP
+        turn = GEM_TURN * float(self._fleet.tick[n]) * PHYSICS_STEP
+        return Overlay(
+            areas=(
+                GroundArea(self._rewarded(n), ground, _colour_of(reward), fill=0.14),
+                GroundArea(self._seen(n), ground, VIEW_COLOUR),
+            ),
+            solids=() if self._fleet.target_lost[n] else (gem(tip, GEM_HEIGHT, turn),),
+            labels=(
+                Label(
+                    anchor=tip + GEM_GIRDLE * GEM_HEIGHT * UP,
+                    text=f"reward {reward:.2f}",
+                    colour=LABEL_COLOUR,
+                    clear=GEM_RADIUS * GEM_HEIGHT,
+                    always=always,
+                ),
+            ),
+        )
+
+    def _drone(self, n: int) -> Overlay:
+        """Return a drone, and the edges of its view."""
+        fleet, seen = self._fleet, self._seen(n)
+        ends = np.column_stack([seen, np.full(len(seen), self._rules.ground)])
+        return Overlay(
+            lines=tuple(Line(fleet.camera_position[n], end, VIEW_COLOUR) for end in ends),
+            solids=(drone(fleet.position[n], _rotation(fleet.orientation[n])),),
+        )
+
+    def _seen(self, n: int) -> NDArray[np.float64]:
+        """Return the corners of the ground that a camera sees [m], shape (K, 2)."""
+        eye, rotation = self._fleet.camera_position[n], self._fleet.camera_rotation[n]
+        return ground_corners(eye, rotation, self._whole, FARTHEST)
 
     def _rewarded(self, n: int) -> NDArray[np.float64]:
         """Return the corners of the ground on which a target is rewarded [m], shape (K, 2)."""
@@ -102,13 +122,16 @@ class Projection:
         if not self._rules.distance:
             return ground_corners(eye, rotation, self._rules, FARTHEST)
         angles = np.arange(CIRCLE) * (2.0 * np.pi / CIRCLE)
-        circle = self._rules.distance_range * np.column_stack([np.cos(angles), np.sin(angles)])
-        return circle + np.array(view_centre(eye, rotation, depth))
+        circle: NDArray[np.float64] = self._rules.distance_range * np.column_stack(
+            [np.cos(angles), np.sin(angles)]
+        )
+        circle += view_centre(eye, rotation, depth)
+        return circle
 
     def _top_of_target(self, n: int) -> NDArray[np.float64]:
         """Return the point on top of the middle of a target, world frame [m], shape (3,)."""
         model = VEHICLES[self._worlds.model_of(n, int(self._fleet.target_actor[n]))]
-        top = self._fleet.target_centre[n].copy()
+        top: NDArray[np.float64] = self._fleet.target_centre[n].copy()
         top[2] += model.size[2] - model.wheel_radius
         return top
 

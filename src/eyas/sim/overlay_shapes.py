@@ -8,13 +8,14 @@ from eyas.state.overlay import Solid
 __all__ = ["DRONE_SIZE", "GEM_GIRDLE", "GEM_RADIUS", "drone", "gem"]
 
 DRONE_SIZE = 0.5
-"""From one motor to that across from it [m]: a camera drone of a metre with its rotors."""
+"""Between neighbouring motors [m]; a little larger than life, so that it is seen from far."""
 
 GEM_SIDES = 6
 GEM_RADIUS, GEM_GIRDLE = 0.42, 0.7
 """Of its widest ring, and how high that lies, as shares of its height."""
 
 GEM_COLOUR = (1.0, 0.27, 0.5)
+TABLE_COLOUR = (1.0, 0.5, 0.66)
 BODY_COLOUR = (0.93, 0.94, 0.96)
 ARM_COLOUR = (0.25, 0.27, 0.3)
 ROTOR_COLOUR = (0.5, 0.54, 0.58)
@@ -33,14 +34,15 @@ def gem(tip: NDArray[np.float64], height: float, turn: float) -> Solid:
         turn: About its axis [rad].
     """
     angles = turn + np.arange(GEM_SIDES) * (2.0 * np.pi / GEM_SIDES)
-    girdle = np.column_stack(
-        [0.42 * np.cos(angles), 0.42 * np.sin(angles), np.full(GEM_SIDES, 0.7)]
-    )
-    table = girdle * (0.55, 0.55, 0.0) + (0.0, 0.0, 1.0)
-    return _solid([_fan((0.0, 0.0, 0.0), girdle[::-1], GEM_COLOUR),
-                   *_ring(girdle, table, GEM_COLOUR),
-                   _fan((0.0, 0.0, 1.0), table, (1.0, 0.5, 0.66))],
-                  np.eye(3) * height, tip)  # fmt: skip
+    girdle = np.column_stack([np.cos(angles), np.sin(angles), np.ones(GEM_SIDES)])
+    girdle *= GEM_RADIUS, GEM_RADIUS, GEM_GIRDLE
+    table = girdle * (0.55, 0.55, 1.0 / GEM_GIRDLE)
+    parts = [
+        _fan((0.0, 0.0, 0.0), girdle[::-1], GEM_COLOUR),
+        *_ring(girdle, table, GEM_COLOUR),
+        _fan((0.0, 0.0, 1.0), table, TABLE_COLOUR),
+    ]
+    return _solid(parts, np.eye(3) * height, tip)
 
 
 def drone(position: NDArray[np.float64], rotation: NDArray[np.float64]) -> Solid:
@@ -57,7 +59,7 @@ def drone(position: NDArray[np.float64], rotation: NDArray[np.float64]) -> Solid
     ]
     for x in (-1.0, 1.0):
         for y in (-1.0, 1.0):
-            motor = 0.5 * np.array([x, y]) / np.sqrt(2.0) * 1.4
+            motor = 0.5 * np.array([x, y])
             parts += _arm(motor, ARM_COLOUR)
             parts += _prism(8, tuple(motor), (0.05, 0.05), (-0.03, 0.1), ARM_COLOUR)
             parts += _prism(14, tuple(motor), (0.27, 0.27), (0.1, 0.115), ROTOR_COLOUR)

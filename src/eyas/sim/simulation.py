@@ -1,9 +1,12 @@
 """The simulation: N trackers, each with a target, in worlds of their own or in one."""
 
+from math import atan, tan
+
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
+from eyas.render.jobs import picture_size
 from eyas.render.kernels.bundles import Stage
 from eyas.render.overlay import paint_overlays, with_depth
 from eyas.sensors.camera import Camera
@@ -129,7 +132,7 @@ class Simulation:
         viewpoint: CameraPose,
         picture: Picture,
         *,
-        field_of_view: float = 1.2,
+        vertical_field_of_view: float = 0.95,
         overlay: bool = True,
     ) -> None:
         """Draw the worlds of some trackers from anywhere, such as from behind the drone.
@@ -138,19 +141,19 @@ class Simulation:
             trackers: Whose world each view shows, shape (V,); the subject is its target.
             viewpoint: V cameras.
             picture: V pictures with colours, of any size; pixels are square.
-            field_of_view: Horizontal [rad].
+            vertical_field_of_view: [rad].
             overlay: Whether all trackers of that world, and what their cameras see, reward and
                 look for, are drawn over the colours.
         """
         chosen = np.asarray(trackers)
         world, movers = self._worlds.draw_list(chosen, self._fleet.tick)
-        subject = self._worlds.object_ids(self.targets.actor[chosen])
+        height, width = picture_size(picture)
         views = Views(
             position=viewpoint.position,
             rotation=viewpoint.rotation,
             world=world,
-            subject=subject,
-            field_of_view=field_of_view,
+            subject=self._worlds.object_ids(self.targets.actor[chosen]),
+            field_of_view=2 * atan(tan(0.5 * vertical_field_of_view) * width / height),
             light=self._light.of(chosen),
         )
         deep = with_depth(picture) if overlay else picture
