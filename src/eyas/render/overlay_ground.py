@@ -29,7 +29,7 @@ Floats = NDArray[np.float32]
 
 def paint_area(canvas: Canvas, area: GroundArea) -> None:
     """Paint an area: casing, line and casing inside its edge, then its fill."""
-    if len(area.corners) < 3 or canvas.position[2] <= area.ground:
+    if len(area.corners) < 3 or canvas.position[2] <= area.ground + RISE:
         return
     corners = np.column_stack([area.corners, np.full(len(area.corners), area.ground)])
     where = _window(canvas, corners)
@@ -56,7 +56,7 @@ def _on_ground(canvas: Canvas, ground: float, where: Window) -> NDArray[np.bool_
     falling = canvas.plane(canvas.rotation[2], where)
     with np.errstate(invalid="ignore"):  # infinity * 0 where sky meets the horizon
         rise = canvas.depth[where] * falling + np.float32(canvas.position[2] - ground)
-    on: NDArray[np.bool_] = (np.abs(rise) < RISE) & (falling < 0.0)
+    on: NDArray[np.bool_] = np.abs(rise) < RISE
     return on
 
 
