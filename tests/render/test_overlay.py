@@ -119,8 +119,9 @@ def test_the_sky_stays_clear_where_an_area_reaches_the_horizon_and_behind(plain,
 
 def test_an_area_seen_from_below_or_without_corners_draws_nothing(plain, painted):
     views = looking([(0.0, 0.0, 5.0)], pitch=0.6, fov=FOV)
-    areas = GroundArea(SQUARE, 6.0, BLUE, 0.5), GroundArea(np.zeros((0, 2)), 0.0, BLUE, 0.5)
-    before, after = painted(plain, views, Overlay(areas=areas))
+    above, level = (GroundArea(SQUARE, height, BLUE, 0.5) for height in (6.0, 4.9))
+    empty = GroundArea(np.zeros((0, 2)), 0.0, BLUE, 0.5)
+    before, after = painted(plain, views, Overlay(areas=(above, level, empty)))
     assert not changed(before, after).any()
 
 

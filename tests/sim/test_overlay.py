@@ -118,12 +118,12 @@ def test_a_view_shows_every_drone_of_its_world_and_no_other():
         simulation = started(count=2, shared=shared)
         behind = chase_pose(CameraPose(simulation.cameras.position, simulation.cameras.rotation))
         second = CameraPose(behind.position[1:], behind.rotation[1:])
-        clean, overlaid = Picture.create(1, 60, 80), Picture.create(1, 60, 80)
+        clean, overlaid = Picture.create(1, 180, 240), Picture.create(1, 180, 240)
         simulation.draw_from(FIRST, second, clean, overlay=False)
         simulation.draw_from(FIRST, second, overlaid)
-        field = 2 * np.arctan(np.tan(0.475) * 80 / 60)
+        field = 2 * np.arctan(np.tan(0.475) * 240 / 180)
         pose = second.position[0], second.rotation[0]
-        column, row, _ = project(simulation.trackers.position[1], *pose, 80, 60, field)
+        column, row, _ = project(simulation.trackers.position[1], *pose, 240, 180, field)
         changed = (clean.rgb[0] != overlaid.rgb[0]).any(axis=-1)
         assert changed[int(row), int(column)] == shared
 

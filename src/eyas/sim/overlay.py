@@ -122,11 +122,8 @@ class Projection:
         if not self._rules.distance:
             return ground_corners(eye, rotation, self._rules, FARTHEST)
         angles = np.arange(CIRCLE) * (2.0 * np.pi / CIRCLE)
-        circle: NDArray[np.float64] = self._rules.distance_range * np.column_stack(
-            [np.cos(angles), np.sin(angles)]
-        )
-        circle += view_centre(eye, rotation, depth)
-        return circle
+        circle: NDArray[np.float64] = np.column_stack([np.cos(angles), np.sin(angles)])
+        return self._rules.distance_range * circle + view_centre(eye, rotation, depth)
 
     def _top_of_target(self, n: int) -> NDArray[np.float64]:
         """Return the point on top of the middle of a target, world frame [m], shape (3,)."""
