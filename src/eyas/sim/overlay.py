@@ -35,7 +35,7 @@ GEM_HEIGHT, GEM_GAP, GEM_TURN = 1.3, 0.4, 1.5
 
 UP = np.array([0.0, 0.0, 1.0])
 
-CIRCLE = 40
+CIRCLE = 72
 """Corners of the circle within which distances are rewarded."""
 
 
