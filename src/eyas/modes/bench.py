@@ -1,6 +1,7 @@
 """`eyas bench`: how fast this machine runs Eyas, as medians, each with what it includes."""
 
 import json
+import math
 import statistics
 import subprocess
 import sys
@@ -20,7 +21,11 @@ from eyas.modes.bench_first_picture import FIRST_PICTURE
 from eyas.modes.bench_stages import measure_stages, stage_table
 from eyas.sim.build import build_simulation
 from eyas.sim.config import EyasConfig
-from eyas.state.draw import Picture
+from eyas.sim.place import load_place
+from eyas.state.draw import DrawList, Picture, Views
+from eyas.state.tracker import ActorState
+from eyas.targets.catalogue import models_of
+from eyas.traffic.config import VehicleType
 
 __all__ = ["Measurement", "run"]
 
@@ -78,6 +83,7 @@ def _measurements(seconds: float, *, cold: bool) -> Iterator[Measurement]:
             yield _first_picture("first picture, nothing compiled", folder)
     for views, width, height in ((1, 84, 84), (64, 84, 84), (1, 640, 480), (1, 1280, 720)):
         yield _pictures(views, width, height, seconds)
+    yield _horizon(seconds)
     for count in (1, 64):
         yield _steps(count, seconds, camera=False)
         yield _steps(count, seconds, camera=True)
@@ -94,6 +100,39 @@ def _pictures(views: int, width: int, height: int, seconds: float) -> Measuremen
     includes = "traffic of each world, posing, culling, shading with shadows, RGB"
     name = f"pictures {width}x{height}, {views} view{'s' * (views > 1)}"
     return Measurement(name, rate * views, "/s", includes, repeats)
+
+
+def _horizon(seconds: float) -> Measurement:
+    """Time views from a ring outside the city that hold all of it."""
+    place = load_place(EyasConfig().world, EyasConfig().traffic, 1)
+    count, pitch, field_of_view = 64, 0.3, 1.2
+    points = place.scene.network.lane_points
+    centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
+    away = np.linalg.norm(points - centre, axis=1).max() / math.sin(0.5 * field_of_view)
+    turn = np.arange(count) * (math.tau / count)
+    out = np.stack([np.cos(turn), np.sin(turn)], axis=1)
+    level = np.stack([-out[:, 0], -out[:, 1], np.zeros(count)], axis=1)
+    forward = math.cos(pitch) * level - math.sin(pitch) * np.array([0.0, 0.0, 1.0])
+    left = np.cross([0.0, 0.0, 1.0], level)
+    views = Views(
+        position=np.column_stack(
+            [centre + away * out, np.full(count, away * math.tan(pitch))]
+        ),
+        rotation=np.stack([forward, left, np.cross(forward, left)], axis=2),
+        world=np.zeros(count, np.int32),
+        subject=np.full(count, -1, np.int32),
+        field_of_view=field_of_view,
+    )
+    actors = ActorState.create(1, place.replay.actors)
+    place.replay.at(np.array([300.0]), actors)
+    movers = DrawList.create(1, place.replay.actors * place.rigs.slots_per_actor)
+    model = np.full((1, place.replay.actors), models_of(VehicleType.PASSENGER)[0], np.int32)
+    colour = np.ones((1, place.replay.actors, 3), np.float32)
+    place.rigs.pose(actors, model, colour, movers)
+    picture = Picture.create(count, 84, 84)
+    rate, repeats = _median_rate(lambda: place.renderer.draw(views, movers, picture), seconds)
+    includes = f"all of the city from {away:.0f} m, pitch {pitch}: drawing alone"
+    return Measurement("pictures 84x84, 64 views, horizon", rate * count, "/s", includes, repeats)
 
 
 def _steps(count: int, seconds: float, *, camera: bool) -> Measurement:
