@@ -115,9 +115,7 @@ def _horizon(seconds: float) -> Measurement:
     forward = math.cos(pitch) * level - math.sin(pitch) * np.array([0.0, 0.0, 1.0])
     left = np.cross([0.0, 0.0, 1.0], level)
     views = Views(
-        position=np.column_stack(
-            [centre + away * out, np.full(count, away * math.tan(pitch))]
-        ),
+        position=np.column_stack([centre + away * out, np.full(count, away * math.tan(pitch))]),
         rotation=np.stack([forward, left, np.cross(forward, left)], axis=2),
         world=np.zeros(count, np.int32),
         subject=np.full(count, -1, np.int32),

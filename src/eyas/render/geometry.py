@@ -12,7 +12,7 @@ from eyas.render.snow import snow_held
 from eyas.render.triangles import gradients, solid_triangles
 from eyas.state.draw import PartLibrary
 from eyas.state.mesh import Material, Mesh
-from eyas.state.scene import Scene
+from eyas.state.scene import ObjectClass, Scene
 
 __all__ = ["CHUNK", "build_geometry"]
 
@@ -51,6 +51,7 @@ def build_geometry(
         corners=triangles,
         gradients=np.concatenate([np.zeros((0, 24), np.float32), *pool.gradients]),
         material=np.concatenate([np.zeros(0, np.int32), *pool.materials]),
+        size=np.concatenate([np.zeros(0, np.float32), *pool.sizes]),
         object_id=np.concatenate([np.zeros(0, np.int32), *pool.objects]),
         chunk_box=chunk_box,
         chunk_group_box=_group_boxes(chunk_box),
@@ -87,12 +88,20 @@ class _Pool:
         self.gradients: list[NDArray[np.float32]] = []
         self.materials: list[NDArray[np.int32]] = []
         self.objects: list[NDArray[np.int32]] = []
+        self.sizes: list[NDArray[np.float32]] = []
         self._vertex_count = 0
         self._triangle_count = 0
 
-    def add(self, mesh: Mesh, objects: NDArray[np.int32] | None) -> tuple[int, int, int, int]:
+    def add(
+        self,
+        mesh: Mesh,
+        objects: NDArray[np.int32] | None,
+        sizes: NDArray[np.float32] | None = None,
+    ) -> tuple[int, int, int, int]:
         """Append a mesh; return its ranges as in `Geometry.mesh_range`."""
         keep = np.flatnonzero(solid_triangles(mesh))
+        none = np.full(len(mesh.triangles), np.inf, np.float32)
+        self.sizes.append((none if sizes is None else sizes)[keep])
         used, inverse = np.unique(mesh.triangles[keep], return_inverse=True)
         triangles = inverse.reshape(-1, 3).astype(np.int32)
         lookup = np.array(
@@ -129,7 +138,8 @@ def _add_chunks(pool: _Pool, scene: Scene) -> tuple[NDArray[np.int32], NDArray[n
     # What is much larger than a square would make that square's box large: it goes by itself.
     span = (corners.max(axis=1) - corners.min(axis=1))[:, :2].max(axis=1, initial=0)
     key = np.where(span > 4 * CHUNK, -1, _morton(cell))
-    order = np.argsort(key, kind="stable")
+    size = _detail_sizes(scene, corners)
+    order = np.lexsort((-size, key))
     starts = np.flatnonzero(np.diff(key[order], prepend=-2, append=-3) != 0)
     ranges, boxes = [], []
     for first, last in itertools.pairwise(starts):
@@ -142,12 +152,22 @@ def _add_chunks(pool: _Pool, scene: Scene) -> tuple[NDArray[np.int32], NDArray[n
             materials=mesh.materials[index],
             palette=mesh.palette,
         )
-        ranges.append(pool.add(part, scene.static_object[index].astype(np.int32)))
+        objects = scene.static_object[index].astype(np.int32)
+        ranges.append(pool.add(part, objects, size[index]))
         boxes.append(_box(mesh.positions[part.triangles].reshape(-1, 3)))
     return (
         np.array(ranges, np.int32).reshape(-1, 4),
         np.array(boxes, np.float32).reshape(-1, 6),
     )
+
+
+def _detail_sizes(scene: Scene, corners: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Return `Geometry.size`: paint lies on roads, and behind parts of houses stand others."""
+    kind = scene.object_class[scene.static_object]
+    detail = np.isin(kind, (ObjectClass.MARKING, ObjectClass.BUILDING))
+    sides = corners[:, 1:] - corners[:, :1]
+    area = 0.5 * np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
+    return np.where(detail, np.sqrt(area), np.inf).astype(np.float32)
 
 
 def _box(positions: NDArray[np.float32]) -> NDArray[np.float32]:

@@ -49,6 +49,9 @@ class Geometry(NamedTuple):
     normal; texture tiles in a metre, negative where the normal is not the same all over."""
     material: NDArray[np.int32]
     """Of each triangle, shape (T,)."""
+    size: NDArray[np.float32]
+    """Root of the area [m] of each triangle that is a detail, seen before something larger, and
+    may be left out when it is small; infinite for others; falling in each chunk, shape (T,)."""
     object_id: NDArray[np.int32]
     """Of each static triangle, -1 for prototypes, shape (T,)."""
     chunk_box: NDArray[np.float32]

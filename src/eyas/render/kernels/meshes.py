@@ -46,6 +46,7 @@ def draw_mesh(
     index: int,
     instance: int,
     focal: float,
+    smallest: float,
     width: float,
     height: float,
     top: int,
@@ -64,6 +65,7 @@ def draw_mesh(
         index: Which row of `ranges`.
         instance: -1 for the static mesh, see `Scratch.owner`.
         focal: Focal length over the scale of the object [pixels].
+        smallest: Size of the smallest detail to draw, see `Geometry.size` [m].
         width: Of the picture [pixels].
         height: Of the picture [pixels].
         top: Row of the picture that is row 0 of `depth`.
@@ -82,6 +84,8 @@ def draw_mesh(
     base = (i8(instance) + 1) << i8(32)
     bottom = top + depth.shape[0]
     for triangle in range(ranges[index, 0], ranges[index, 1]):
+        if geometry.size[triangle] < smallest:
+            break  # and so are all that follow
         a = geometry.corners[triangle, 0] - offset
         b = geometry.corners[triangle, 1] - offset
         c = geometry.corners[triangle, 2] - offset

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inner_kernel
+from eyas.core.jit import inlined_kernel, inner_kernel
 from eyas.render.kernels.scalars import f4
 from eyas.render.kernels.texture import coverage
 
@@ -18,7 +18,35 @@ BOTH_SIDES = 1
 """Draw all triangles."""
 
 
-@inner_kernel
+@inlined_kernel
+def _misses(
+    corners: NDArray[np.float64],
+    a: int,
+    b: int,
+    c: int,
+    top: int,
+    rows: int,
+    width: int,
+    sides: int,
+) -> bool:
+    """Return whether a triangle is seen from behind, or its bounds hold no centre of a pixel."""
+    ax, ay, bx, by = corners[a, 0], corners[a, 1], corners[b, 0], corners[b, 1]
+    cx, cy = corners[c, 0], corners[c, 1]
+    area = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
+    if area == 0.0 or (area > 0.0 and sides == FRONT):
+        return True
+    low, high = min(ay, by, cy), max(ay, by, cy)
+    if not (high >= top and low <= top + rows):
+        return True
+    if math.ceil(max(low, float(top)) - 0.5) >= math.ceil(min(high, float(top + rows)) - 0.5):
+        return True
+    left, right = min(ax, bx, cx), max(ax, bx, cx)
+    if right < 0.5 or left > width - 0.5:
+        return True
+    return bool(math.ceil(max(left, 0.0) - 0.5) > right - 0.5)
+
+
+@inlined_kernel
 def rasterise(
     corners: NDArray[np.float64],
     a: int,
@@ -54,22 +82,34 @@ def rasterise(
         layer: Texture whose alpha cuts holes.
         level: Its mip level, -1 for no holes.
     """
+    # Most triangles end here: before a call, whose arguments cost more than the test.
+    if _misses(corners, a, b, c, top, depth.shape[0], depth.shape[1], sides):
+        return
+    _fill(corners, a, b, c, top, depth, owner, tag, textures, layer, level)
+
+
+@inner_kernel
+def _fill(
+    corners: NDArray[np.float64],
+    a: int,
+    b: int,
+    c: int,
+    top: int,
+    depth: NDArray[np.float32],
+    owner: NDArray[np.int64],
+    tag: int,
+    textures: NDArray[np.uint32],
+    layer: int,
+    level: int,
+) -> None:
+    """Draw a triangle that is not missed; for the arguments see `rasterise`."""
     ax, ay, bx, by = corners[a, 0], corners[a, 1], corners[b, 0], corners[b, 1]
     cx, cy = corners[c, 0], corners[c, 1]
     area = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
-    if area == 0.0 or (area > 0.0 and sides == FRONT):
-        return
     rows, width = depth.shape
     low, high = min(ay, by, cy), max(ay, by, cy)
-    if not (high >= top and low <= top + rows):
-        return
     first_row = math.ceil(max(low, float(top)) - 0.5)
     last_row = math.ceil(min(high, float(top + rows)) - 0.5)
-    left, right = min(ax, bx, cx), max(ax, bx, cx)
-    if first_row >= last_row or right < 0.5 or left > width - 0.5:
-        return
-    if math.ceil(max(left, 0.0) - 0.5) > right - 0.5:  # between two columns of pixel centres
-        return
 
     ai = corners[a, 2]
     scale = 1.0 / area

@@ -17,6 +17,9 @@ __all__ = ["draw_moving", "draw_static"]
 SMALLEST = 0.4
 """Things with a smaller radius are left out [pixels]."""
 
+SMALLEST_DETAIL = 0.35
+"""Details whose area has a smaller root are left out [pixels]."""
+
 
 @inner_kernel
 def draw_static(
@@ -37,9 +40,10 @@ def draw_static(
     count = visible_chunks(planes, eye, geometry.chunk_box, geometry.chunk_group_box, order)
     for k in range(count):
         chunk = order[k] & i8(0xFFFFFFFF)
+        smallest = SMALLEST_DETAIL * 0.001 * (order[k] >> i8(32)) / lens[3]
         draw_mesh(
-            until, geometry, rows[0], geometry.chunk_range, chunk, -1, lens[3], lens[1], lens[2],
-            top, depth, owner, screen, polygon,
+            until, geometry, rows[0], geometry.chunk_range, chunk, -1, lens[3], smallest, lens[1],
+            lens[2], top, depth, owner, screen, polygon,
         )  # fmt: skip
     fixtures = len(geometry.fixture_prototype)
     for group in range(len(geometry.fixture_group_box)):
@@ -119,6 +123,6 @@ def _draw_instance(
     mesh = level_of_detail(geometry, prototype, radius, distance, lens[3])
     set_object_rows(rows[0], poses, index, rows[1])
     draw_mesh(
-        until, geometry, rows[1], geometry.mesh_range, mesh, instance, lens[3] * scale, lens[1],
-        lens[2], top, depth, owner, screen, polygon,
+        until, geometry, rows[1], geometry.mesh_range, mesh, instance, lens[3] * scale, 0.0,
+        lens[1], lens[2], top, depth, owner, screen, polygon,
     )  # fmt: skip
