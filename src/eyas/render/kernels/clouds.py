@@ -1,0 +1,126 @@
+"""Clouds as a panorama: rays from the ground through heaps of cloud with flat bases."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.jit import inlined_kernel, parallel_kernel, prange
+from eyas.render.kernels.scalars import f4, i8
+
+__all__ = ["DEEPEST", "cloud_rays"]
+
+DEEPEST = 0.9
+"""Height of the highest heaps over their base [km]."""
+
+_BASE = f4(1.1)
+"""Height of all bases [km]."""
+_TOP = f4(1.1 + DEEPEST)
+
+_VEIL = f4(8.0)
+"""Height of the thin clouds above them [km]."""
+_EARTH = f4(2.0 * 6371.0)
+"""Its diameter [km]."""
+_TILE, _FINE, _THIN = f4(256.0 / 9.0), f4(256.0 / 2.1), f4(256.0 / 60.0)
+"""Texels in a km: of heaps, of their details, of the thin clouds."""
+_DENSE = f4(28.0)
+"""Extinction inside a heap [1/km]."""
+_BUMP = f4(0.13)
+"""How much details take away from a heap [km]."""
+
+
+@inlined_kernel
+def _smooth(field: NDArray[np.float32], x: float, y: float, channel: int) -> float:
+    """Return a value of a field that repeats, shape (256, 256, .), at texel (x, y)."""
+    left, low = np.floor(x), np.floor(y)
+    across, up = x - left, y - low
+    i, j = i8(left) & 255, i8(low) & 255
+    k, m = (i + 1) & 255, (j + 1) & 255
+    lower = field[j, i, channel] + across * (field[j, k, channel] - field[j, i, channel])
+    upper = field[m, i, channel] + across * (field[m, k, channel] - field[m, i, channel])
+    return lower + up * (upper - lower)
+
+
+@inlined_kernel
+def _reach(climb: float, height: float) -> float:
+    """Return how far away [km] a ray is at a height [km] over the round earth.
+
+    From `height = climb s + s^2 / diameter`; `climb` is its slope at the start.
+    """
+    return f4(2.0) * height / (climb + np.sqrt(climb * climb + f4(4.0) / _EARTH * height))
+
+
+@parallel_kernel
+def cloud_rays(
+    field: NDArray[np.float32],
+    sines: NDArray[np.float32],
+    directions: NDArray[np.float32],
+    output: NDArray[np.uint8],
+) -> None:
+    """Fill the panorama.
+
+    Light that is scattered often falls off as `1 / (1 + depth)`, not exponentially; `depth` is how
+    far below the sunlit surface of the clouds a point lies.
+
+    Args:
+        field: Height of the heaps' tops over their base or minus the distance to the next one, and height
+            of that surface [km], details 0 to 1, and opacity
+            of the thin clouds, repeating, shape (256, 256, 4).
+        sines: Of the elevation of each row.
+        directions: Unit vectors in plan of each column, shape (., 2).
+        output: Opacity, and brightness times opacity, 0 to 255, shape (rows, columns, 2).
+    """
+    for row in prange(len(sines)):
+        one = f4(1.0)
+        climb = sines[row] / np.sqrt(max(one - sines[row] * sines[row], f4(1e-6)))
+        thin_at = _reach(climb, _VEIL) * _THIN
+        for column in range(len(directions)):
+            x, y = directions[column, 0], directions[column, 1]
+            clear, bright = _heaps(field, x, y, climb)
+            thin = _smooth(field, x * thin_at, y * thin_at, 3)
+            bright += clear * thin
+            clear *= one - thin
+            output[row, column, 0] = i8(f4(255.0) * (one - clear) + f4(0.5))
+            output[row, column, 1] = i8(f4(255.0) * min(bright, one) + f4(0.5))
+
+
+@inlined_kernel
+def _heaps(
+    field: NDArray[np.float32], x: float, y: float, climb: float
+) -> tuple[float, float]:
+    """Return how much light passes the heaps along a ray, and how bright they are.
+
+    Long steps outside, short ones from a step before the first heap that is met.
+    """
+    one, zero = f4(1.0), f4(0.0)
+    away, last = _reach(climb, _BASE), _reach(climb, _TOP)
+    long = min(max((last - away) * f4(1.0 / 24.0), f4(0.04)), f4(0.16))
+    short = f4(0.2) * long
+    path = short * np.sqrt(one + climb * climb)
+    last = min(last, away + f4(14.0))
+    clear, bright, near = one, zero, 0
+    while away < last and clear > f4(0.01):
+        height = away * climb + away * away / _EARTH - _BASE
+        top = _smooth(field, x * away * _TILE, y * away * _TILE, 0)
+        if top <= height:
+            # Less than 0: the distance to the next heap.
+            away += max(short if near > 0 else long, -top)
+            near -= 1
+            continue
+        if near <= 0:
+            away -= long - short
+            near = 8
+            continue
+        near = 8
+        # Taken aslant, and in two ways, or they would be upright folds.
+        fine_x, fine_y, lean = x * away * _FINE, y * away * _FINE, f4(100.0) * height
+        bump = _smooth(field, fine_x + lean, fine_y - lean, 2)
+        bump += _smooth(field, fine_y - lean, fine_x - lean, 2) - f4(0.4)
+        inside = min((top - _BUMP * bump - height) * f4(20.0), one)
+        inside *= min(height * f4(20.0), one)
+        if inside > zero:
+            depth = _smooth(field, x * away * _TILE, y * away * _TILE, 1) - height
+            depth = max(depth, zero) + f4(0.1) * bump
+            passed = np.exp(-_DENSE * inside * path)
+            bright += clear * (one - passed) / (one + f4(5.0) * depth)
+            clear *= passed
+        away += short
+    return clear, bright
