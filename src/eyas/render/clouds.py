@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.render.kernels.clouds import DEEPEST, cloud_rays
-from eyas.render.kernels.sky import CLOUD_BEND
+from eyas.render.kernels.sky import CLOUD_BEND, CLOUDS_FROM
 from eyas.render.texture_fields import SIZE, Field, blurred, fractal, source
 
 __all__ = ["build_clouds", "plan_directions"]
@@ -30,7 +30,8 @@ def build_clouds(cover: float, sun: tuple[float, float, float]) -> NDArray[np.ui
     if cover <= 0.0:
         return np.zeros((1, 1, 2), np.uint8)
     place = (np.arange(_ROWS) + 0.5) / _ROWS
-    sines = CLOUD_BEND * place / (1.0 + CLOUD_BEND - place)
+    # What would be lower is not shown.
+    sines = np.maximum(CLOUD_BEND * place / (1.0 + CLOUD_BEND - place), CLOUDS_FROM)
     output = np.empty((_ROWS, _COLUMNS, 2), np.uint8)
     field = _field(cover, sun).astype(np.float32)
     cloud_rays(field, sines.astype(np.float32), plan_directions(_COLUMNS).astype(np.float32), output)
@@ -66,7 +67,7 @@ def _heap_heights(cover: float, rng: np.random.Generator) -> Field:
     layer = 1.2 * (cover - 0.75) + 0.12 * fractal(rng, 1.6, longest=120.0)
     heights = np.maximum(layer, 0.0)
     while (heights > 0.0).mean() < _SEEN * cover:
-        middle, radius = rng.uniform(0, SIZE, 2), rng.uniform(0.25, 1.0) ** 1.5 * 0.9
+        middle, radius = rng.uniform(0, SIZE, 2), rng.uniform(0.35, 1.0) ** 1.5 * 0.9
         lengthen = rng.uniform(1.0, 1.8)
         for _ in range(int(8 + 40 * radius)):
             share = math.sqrt(rng.random())
@@ -76,7 +77,7 @@ def _heap_heights(cover: float, rng: np.random.Generator) -> Field:
             lift = rng.uniform(-0.3, 0.9) * radius * (1.0 - share**2) * 0.6
             _put_ball(heights, middle + way * radius / _TEXEL, ball, lift)
     # Rounder than their texels.
-    return np.clip(blurred(heights, 0.7) - 0.06, 0.0, DEEPEST)
+    return np.clip(blurred(heights, 0.7), 0.0, DEEPEST)
 
 
 def _put_ball(

@@ -13,7 +13,7 @@ from eyas.render.texture_fields import SIZE, Field, blurred, fractal, source
 __all__ = ["build_hills", "far_ground"]
 
 _ROWS, _COLUMNS = 96, 4096
-_STEPS = 128
+_STEPS = 96
 _TEXEL = 9.0 / SIZE
 """Side of a texel of the land [km]."""
 _SLOPE = 0.055

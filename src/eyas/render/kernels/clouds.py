@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inlined_kernel, parallel_kernel, prange
+from eyas.core.jit import inlined_kernel, inner_kernel, parallel_kernel, prange
 from eyas.render.kernels.scalars import f4, i8
 
 __all__ = ["DEEPEST", "cloud_rays"]
@@ -19,11 +19,12 @@ _VEIL = f4(8.0)
 """Height of the thin clouds above them [km]."""
 _EARTH = f4(2.0 * 6371.0)
 """Its diameter [km]."""
+_WORKERS = 16
 _TILE, _FINE, _THIN = f4(256.0 / 9.0), f4(256.0 / 2.1), f4(256.0 / 60.0)
 """Texels in a km: of heaps, of their details, of the thin clouds."""
 _DENSE = f4(28.0)
 """Extinction inside a heap [1/km]."""
-_BUMP = f4(0.13)
+_BUMP = f4(0.15)
 """How much details take away from a heap [km]."""
 
 
@@ -68,18 +69,30 @@ def cloud_rays(
         directions: Unit vectors in plan of each column, shape (., 2).
         output: Opacity, and brightness times opacity, 0 to 255, shape (rows, columns, 2).
     """
-    for row in prange(len(sines)):
-        one = f4(1.0)
-        climb = sines[row] / np.sqrt(max(one - sines[row] * sines[row], f4(1e-6)))
-        thin_at = _reach(climb, _VEIL) * _THIN
-        for column in range(len(directions)):
-            x, y = directions[column, 0], directions[column, 1]
-            clear, bright = _heaps(field, x, y, climb)
-            thin = _smooth(field, x * thin_at, y * thin_at, 3)
-            bright += clear * thin
-            clear *= one - thin
-            output[row, column, 0] = i8(f4(255.0) * (one - clear) + f4(0.5))
-            output[row, column, 1] = i8(f4(255.0) * min(bright, one) + f4(0.5))
+    # Far clouds take longest, so no worker gets all of them.
+    for worker in prange(_WORKERS):
+        for row in range(worker, len(sines), _WORKERS):
+            climb = sines[row] / np.sqrt(max(f4(1.0) - sines[row] * sines[row], f4(1e-6)))
+            _cloud_row(field, climb, directions, output[row])
+
+
+@inner_kernel
+def _cloud_row(
+    field: NDArray[np.float32],
+    climb: float,
+    directions: NDArray[np.float32],
+    output: NDArray[np.uint8],
+) -> None:
+    one = f4(1.0)
+    thin_at = _reach(climb, _VEIL) * _THIN
+    for column in range(len(directions)):
+        x, y = directions[column, 0], directions[column, 1]
+        clear, bright = _heaps(field, x, y, climb)
+        thin = _smooth(field, x * thin_at, y * thin_at, 3)
+        bright += clear * thin
+        clear *= one - thin
+        output[column, 0] = i8(f4(255.0) * (one - clear) + f4(0.5))
+        output[column, 1] = i8(f4(255.0) * min(bright, one) + f4(0.5))
 
 
 @inlined_kernel
@@ -91,12 +104,12 @@ def _heaps(
     Long steps outside, short ones from a step before the first heap that is met.
     """
     one, zero = f4(1.0), f4(0.0)
-    away, last = _reach(climb, _BASE), _reach(climb, _TOP)
-    long = min(max((last - away) * f4(1.0 / 24.0), f4(0.04)), f4(0.16))
-    short = f4(0.2) * long
+    first, last = _reach(climb, _BASE), _reach(climb, _TOP)
+    long = min(max((last - first) * f4(1.0 / 24.0), f4(0.04)), f4(0.16))
+    short = max(f4(0.2) * long, f4(0.003) * first)
     path = short * np.sqrt(one + climb * climb)
-    last = min(last, away + f4(14.0))
-    clear, bright, near = one, zero, 0
+    last = min(last, first + f4(10.0))
+    clear, bright, away, near = one, zero, first, 0
     while away < last and clear > f4(0.01):
         height = away * climb + away * away / _EARTH - _BASE
         top = _smooth(field, x * away * _TILE, y * away * _TILE, 0)
@@ -106,21 +119,22 @@ def _heaps(
             near -= 1
             continue
         if near <= 0:
-            away -= long - short
+            away = max(away - long + short, first)
             near = 8
             continue
         near = 8
         # Taken aslant, and in two ways, or they would be upright folds.
         fine_x, fine_y, lean = x * away * _FINE, y * away * _FINE, f4(100.0) * height
         bump = _smooth(field, fine_x + lean, fine_y - lean, 2)
-        bump += _smooth(field, fine_y - lean, fine_x - lean, 2) - f4(0.4)
+        bump += _smooth(field, fine_y - lean, fine_x - lean, 2)
+        bump = max(bump - f4(0.4), f4(0.25))
         inside = min((top - _BUMP * bump - height) * f4(20.0), one)
-        inside *= min(height * f4(20.0), one)
+        inside *= min(max(height * f4(20.0), zero), one)
         if inside > zero:
             depth = _smooth(field, x * away * _TILE, y * away * _TILE, 1) - height
             depth = max(depth, zero) + f4(0.1) * bump
             passed = np.exp(-_DENSE * inside * path)
-            bright += clear * (one - passed) / (one + f4(5.0) * depth)
+            bright += clear * (one - passed) / (one + f4(7.5) * depth)
             clear *= passed
         away += short
     return clear, bright

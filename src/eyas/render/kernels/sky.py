@@ -5,10 +5,22 @@ from eyas.render.kernels.bundles import Light
 from eyas.render.kernels.panorama import azimuth, panorama
 from eyas.render.kernels.scalars import f4
 
-__all__ = ["CLOUD_BEND", "HAZE_END", "HILL_FARTHEST", "HILL_TOP", "fog_share", "reflection", "sky"]
+__all__ = [
+    "CLOUDS_FROM",
+    "CLOUD_BEND",
+    "HAZE_END",
+    "HILL_FARTHEST",
+    "HILL_TOP",
+    "fog_share",
+    "reflection",
+    "sky",
+]
 
 CLOUD_BEND = 0.8
 """Rows of the clouds' panorama lie at `z (1 + bend) / (z + bend)`: closer near the horizon."""
+
+CLOUDS_FROM = 0.02
+"""Sine of the elevation from which on clouds are seen."""
 
 HILL_TOP = 0.08
 """Sine of the elevation at which the hills' panorama ends."""
@@ -92,11 +104,11 @@ def _open_sky(
     if light.air[7] > f4(0.0):
         row = z * f4(1.0 + CLOUD_BEND) / (z + f4(CLOUD_BEND)) * f4(len(light.clouds)) - f4(0.5)
         # Far ones are lost in the haze.
-        near = min(z * f4(9.0), f4(1.0))
+        near = min(max((z - f4(CLOUDS_FROM)) * f4(11.0), f4(0.0)), f4(1.0))
         near *= near * (f4(3.0) - f4(2.0) * near) * clear
         cover = near * panorama(light.clouds, row, around, 0)
         bright = near * panorama(light.clouds, row, around, 1)
-        dim = f4(0.48) * cover + f4(0.35) * bright
+        dim = f4(0.45) * cover + f4(0.35) * bright
         lit = f4(1.1) * bright
         red += dim * light.horizon[0] + lit * light.sun_colour[0] - cover * red
         green += dim * light.horizon[1] + lit * light.sun_colour[1] - cover * green
