@@ -12,7 +12,7 @@ from eyas.render.texture_fields import SIZE, Field, blurred, fractal, source
 
 __all__ = ["build_clouds", "plan_directions"]
 
-_ROWS, _COLUMNS = 288, 2048
+_ROWS, _COLUMNS = 208, 2048
 _SEEN = 0.65
 """Clouds stand up: seen from the side they cover more than from below."""
 _TEXEL = 9.0 / SIZE
@@ -34,7 +34,9 @@ def build_clouds(cover: float, sun: tuple[float, float, float]) -> NDArray[np.ui
     sines = np.maximum(CLOUD_BEND * place / (1.0 + CLOUD_BEND - place), CLOUDS_FROM)
     output = np.empty((_ROWS, _COLUMNS, 2), np.uint8)
     field = _field(cover, sun).astype(np.float32)
-    cloud_rays(field, sines.astype(np.float32), plan_directions(_COLUMNS).astype(np.float32), output)
+    cloud_rays(
+        field, sines.astype(np.float32), plan_directions(_COLUMNS).astype(np.float32), output
+    )
     return output
 
 
@@ -64,9 +66,9 @@ def _heap_heights(cover: float, rng: np.random.Generator) -> Field:
     Each cloud is a heap of balls, larger and higher in its middle, filled down to the base; clouds
     are added until they cover enough. From three quarters on they grow into a layer.
     """
-    layer = 1.2 * (cover - 0.75) + 0.12 * fractal(rng, 1.6, longest=120.0)
+    layer = 2.0 * (cover - 0.75) + 0.1 * np.tanh(fractal(rng, 1.6, longest=120.0))
     heights = np.maximum(layer, 0.0)
-    while (heights > 0.0).mean() < _SEEN * cover:
+    while (heights > 0.1).mean() < _SEEN * cover:
         middle, radius = rng.uniform(0, SIZE, 2), rng.uniform(0.35, 1.0) ** 1.5 * 0.9
         lengthen = rng.uniform(1.0, 1.8)
         for _ in range(int(8 + 40 * radius)):
@@ -80,9 +82,7 @@ def _heap_heights(cover: float, rng: np.random.Generator) -> Field:
     return np.clip(blurred(heights, 0.7), 0.0, DEEPEST)
 
 
-def _put_ball(
-    heights: Field, middle: NDArray[np.float64], radius: float, lift: float
-) -> None:
+def _put_ball(heights: Field, middle: NDArray[np.float64], radius: float, lift: float) -> None:
     """Raise the heights to those of a ball [km] around a texel."""
     reach = int(radius / _TEXEL) + 1
     around = np.arange(-reach, reach + 1)

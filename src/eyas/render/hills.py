@@ -44,7 +44,12 @@ def build_hills(sun: tuple[float, float, float]) -> NDArray[np.uint8]:
     middle = (np.arange(_ROWS)[:, None] + 0.5) * HILL_TOP / _ROWS
     cover = np.clip((ridge[:, -1][None] - middle) * _ROWS / HILL_TOP + 0.5, 0.0, 1.0)
     seen = (place[0][who, step], place[1][who, step])
-    channels = [cover, sunlight[seen], woods[seen], (away[step] - HAZE_END) / (HILL_FARTHEST - HAZE_END)]
+    channels = [
+        cover,
+        sunlight[seen],
+        woods[seen],
+        (away[step] - HAZE_END) / (HILL_FARTHEST - HAZE_END),
+    ]
     return np.round(255.0 * np.stack(channels, axis=2)).astype(np.uint8)
 
 
@@ -58,7 +63,8 @@ def far_ground(geometry: Geometry) -> NDArray[np.float64]:
     # The last texel is the mean of the texture.
     packed = geometry.texture[geometry.layer, -1]
     root = np.stack([packed & 255, packed >> 8 & 255, packed >> 16 & 255], axis=1) / 255.0
-    return share @ (root**2 * geometry.tint) / max(share.sum(), 1e-9)
+    mean: NDArray[np.float64] = share @ (root**2 * geometry.tint) / max(share.sum(), 1e-9)
+    return mean
 
 
 def _first_seen(ridge: NDArray[np.float64]) -> NDArray[np.int64]:
@@ -74,7 +80,7 @@ def _first_seen(ridge: NDArray[np.float64]) -> NDArray[np.int64]:
     count = np.bincount(flat.ravel(), minlength=(_ROWS + 1) * _COLUMNS)
     below = count.reshape(_ROWS + 1, _COLUMNS).cumsum(axis=0)[:_ROWS]
     highest = np.argmax(ridge, axis=1)
-    return np.minimum(below, highest[None])
+    return np.asarray(np.minimum(below, highest[None]), np.int64)
 
 
 def _land(sun: tuple[float, float, float]) -> tuple[Field, Field, Field]:

@@ -17,11 +17,11 @@ _CLEAR_DAY = Lighting(
     # The original's sun: in the north-west, 50.9 degrees high.
     sun_direction=(-0.55 * _STEEP, 0.6 * _STEEP, _STEEP),
     sun_colour=(1.02, 0.96, 0.84),
-    zenith_colour=(0.055, 0.14, 0.40),
-    horizon_colour=(0.52, 0.67, 0.90),
+    zenith_colour=(0.042, 0.130, 0.42),
+    horizon_colour=(0.45, 0.64, 0.94),
     ambient_up=(0.24, 0.29, 0.37),
     ambient_down=(0.13, 0.125, 0.10),
-    fog_colour=(0.51, 0.63, 0.81),
+    fog_colour=(0.47, 0.61, 0.82),
     # Clear air that turns the far edge of the map a little blue.
     fog_density=1.0 / 7000.0,
     clouds=0.35,

@@ -5,11 +5,13 @@ Columns go round the horizon by a measure of azimuth that needs no trigonometry:
 or row's value is that of its middle.
 """
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.jit import inlined_kernel
-from eyas.render.kernels.scalars import f4, i8
+from eyas.render.kernels.scalars import f4
 
 __all__ = ["azimuth", "panorama"]
 
@@ -38,7 +40,7 @@ def panorama(values: NDArray[np.uint8], row: float, around: float, channel: int)
     rows, columns = values.shape[0], values.shape[1]
     row = min(max(row, f4(0.0)), f4(rows - 1))
     column = around * f4(0.25) * f4(columns) - f4(0.5)
-    low, left = i8(row), i8(np.floor(column))
+    low, left = math.floor(row), math.floor(column)
     up, across = row - f4(low), column - f4(left)
     high, right = min(low + 1, rows - 1), (left + 1) & (columns - 1)
     left &= columns - 1

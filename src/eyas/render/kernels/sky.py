@@ -32,6 +32,7 @@ hills, up to the horizon, looks as the end of the land does, however high the vi
 HILL_FARTHEST = 14.0
 """Distance of the farthest hills [km]."""
 
+_BEYOND = f4(1000.0 * (HILL_FARTHEST - HAZE_END))
 _HAZE_DEPTH = f4(0.25 * 150.0)
 """A quarter of how deep the haze would be if it were as thick all the way up [m]."""
 _FOOT = f4(0.012)
@@ -84,14 +85,14 @@ def sky(light: Light, x: float, y: float, z: float) -> tuple[float, float, float
         cover = f4(0.0)
         if z < f4(HILL_TOP):
             cover = panorama(light.hills, _hill_row(light, z), around, 0)
-        if cover <= f4(0.0):
-            return _open_sky(light, x, y, z, around)
-    red, green, blue = _hills(light, z, around)
+    red, green, blue = f4(0.0), f4(0.0), f4(0.0)
     if cover < f4(1.0):
-        behind = _open_sky(light, x, y, z, around)
-        red = behind[0] + cover * (red - behind[0])
-        green = behind[1] + cover * (green - behind[1])
-        blue = behind[2] + cover * (blue - behind[2])
+        red, green, blue = _open_sky(light, x, y, z, around)
+    if cover > f4(0.0):
+        front = _hills(light, z, around)
+        red += cover * (front[0] - red)
+        green += cover * (front[1] - green)
+        blue += cover * (front[2] - blue)
     return red, green, blue
 
 
@@ -143,7 +144,7 @@ def _hills(light: Light, z: float, around: float) -> tuple[float, float, float]:
         rise = min(z / _FOOT, one)
         direct += rise * (panorama(light.hills, row, around, 1) - direct)
         woods = rise * panorama(light.hills, row, around, 2)
-        away += rise * f4(1000.0 * (HILL_FARTHEST - HAZE_END)) * panorama(light.hills, row, around, 3)
+        away += rise * _BEYOND * panorama(light.hills, row, around, 3)
         red += woods * (f4(0.035) - red)
         green += woods * (f4(0.06) - green)
         blue += woods * (f4(0.025) - blue)

@@ -1,10 +1,12 @@
 """Snow: it lies on what faces up, in patches where it is thin."""
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.jit import inlined_kernel
-from eyas.render.kernels.scalars import f4, i8, u4
+from eyas.render.kernels.scalars import f4, u4
 
 __all__ = ["snowed"]
 
@@ -20,10 +22,10 @@ def _grain(column: int, row: int) -> float:
 @inlined_kernel
 def _noise(x: float, y: float) -> float:
     """Return smooth noise, 0 to 1, with cells of one unit."""
-    left, low = np.floor(x), np.floor(y)
-    across, down = x - left, y - low
-    # By way of signed ones, so that numbers below 0 wrap in the same way everywhere.
-    column, row = u4(i8(left)), u4(i8(low))
+    left, low = math.floor(x), math.floor(y)
+    across, down = x - f4(left), y - f4(low)
+    # Signed whole numbers, also those below 0, wrap in the same way everywhere.
+    column, row = u4(left), u4(low)
     across *= across * (f4(3.0) - f4(2.0) * across)
     down *= down * (f4(3.0) - f4(2.0) * down)
     right, lower = column + u4(1), row + u4(1)
