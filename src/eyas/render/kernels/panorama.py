@@ -5,13 +5,11 @@ Columns go round the horizon by a measure of azimuth that needs no trigonometry:
 or row's value is that of its middle.
 """
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.jit import inlined_kernel
-from eyas.render.kernels.scalars import f4
+from eyas.render.kernels.scalars import f4, u4
 
 __all__ = ["azimuth", "panorama"]
 
@@ -39,11 +37,13 @@ def panorama(values: NDArray[np.uint8], row: float, around: float, channel: int)
     """
     rows, columns = values.shape[0], values.shape[1]
     row = min(max(row, f4(0.0)), f4(rows - 1))
-    column = around * f4(0.25) * f4(columns) - f4(0.5)
-    low, left = math.floor(row), math.floor(column)
+    # One round on: above 0, where cutting off is rounding down.
+    column = (around * f4(0.25) + f4(1.0)) * f4(columns) - f4(0.5)
+    low, left = u4(row), u4(column)
     up, across = row - f4(low), column - f4(left)
-    high, right = min(low + 1, rows - 1), (left + 1) & (columns - 1)
-    left &= columns - 1
+    last, one = u4(rows - 1), u4(1)
+    high, mask = min(low + one, last), u4(columns - 1)
+    left, right = left & mask, (left + one) & mask
     a, b = f4(values[low, left, channel]), f4(values[low, right, channel])
     c, d = f4(values[high, left, channel]), f4(values[high, right, channel])
     lower, upper = a + across * (b - a), c + across * (d - c)

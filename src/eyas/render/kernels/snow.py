@@ -1,7 +1,5 @@
 """Snow: it lies on what faces up, in patches where it is thin."""
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -22,10 +20,10 @@ def _grain(column: int, row: int) -> float:
 @inlined_kernel
 def _noise(x: float, y: float) -> float:
     """Return smooth noise, 0 to 1, with cells of one unit."""
-    left, low = math.floor(x), math.floor(y)
-    across, down = x - f4(left), y - f4(low)
-    # Signed whole numbers, also those below 0, wrap in the same way everywhere.
-    column, row = u4(left), u4(low)
+    # Moved so that all cells of the land have numbers above 0, where cutting off is rounding down.
+    x, y = max(x + f4(32768.0), f4(0.0)), max(y + f4(32768.0), f4(0.0))
+    column, row = u4(x), u4(y)
+    across, down = x - f4(column), y - f4(row)
     across *= across * (f4(3.0) - f4(2.0) * across)
     down *= down * (f4(3.0) - f4(2.0) * down)
     right, lower = column + u4(1), row + u4(1)
