@@ -7,8 +7,8 @@ from eyas.render.bake import ShadowMap
 from eyas.render.bake_ambient import AmbientMap
 from eyas.render.clouds import build_clouds
 from eyas.render.hills import build_hills, far_ground
-from eyas.render.kernels.band import TONE_STEPS, TONE_TOP
 from eyas.render.kernels.bundles import Geometry, Light
+from eyas.render.kernels.tone import TONE_STEPS, TONE_TOP
 from eyas.render.lamp_grid import lamp_grid
 from eyas.state.scene import Lamps, Lighting
 
