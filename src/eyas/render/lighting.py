@@ -5,24 +5,34 @@ from numpy.typing import ArrayLike, NDArray
 
 from eyas.render.bake import ShadowMap
 from eyas.render.bake_ambient import AmbientMap
-from eyas.render.kernels.band import TONE_STEPS, TONE_TOP
-from eyas.render.kernels.bundles import Light
+from eyas.render.clouds import build_clouds
+from eyas.render.hills import build_hills, far_ground
+from eyas.render.kernels.bundles import Geometry, Light
+from eyas.render.kernels.tone import TONE_STEPS, TONE_TOP
 from eyas.render.lamp_grid import lamp_grid
 from eyas.state.scene import Lamps, Lighting
 
 __all__ = ["build_light", "tone_table"]
 
 
-def build_light(lighting: Lighting, shadows: ShadowMap, ambient: AmbientMap, lamps: Lamps) -> Light:
-    """Return the light of a weather."""
+def build_light(
+    lighting: Lighting,
+    shadows: ShadowMap,
+    ambient: AmbientMap,
+    lamps: Lamps,
+    geometry: Geometry,
+) -> Light:
+    """Return the light of a weather over a scene."""
     lamp, lamp_cell, lamp_frame = lamp_grid(lamps)
-    sun = np.asarray(lighting.sun_direction, np.float64)
+    sun = np.array(lighting.sun_direction, np.float64)
+    sun /= np.linalg.norm(sun)
+    toward = (float(sun[0]), float(sun[1]), float(sun[2]))
     # A point is moved off its surface by what its shadow can be off the texel's middle.
     offset = 1.1 * shadows.texel
     air = [lighting.fog_density, lighting.fog_power, lighting.exposure, offset, lighting.snow]
     air += [lighting.lamps, lighting.windows, lighting.clouds, lighting.flakes]
     return Light(
-        sun=_row(sun / np.linalg.norm(sun)),
+        sun=_row(sun),
         sun_colour=_row(lighting.sun_colour),
         zenith=_row(lighting.zenith_colour),
         horizon=_row(lighting.horizon_colour),
@@ -38,6 +48,9 @@ def build_light(lighting: Lighting, shadows: ShadowMap, ambient: AmbientMap, lam
         lamp_cell=lamp_cell,
         lamp_frame=lamp_frame,
         tone=tone_table(),
+        ground=_row(far_ground(geometry)),
+        clouds=build_clouds(lighting.clouds, toward),
+        hills=build_hills(toward),
     )
 
 

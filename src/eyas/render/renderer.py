@@ -52,7 +52,8 @@ class Renderer:
         self._geometry = build_geometry(scene, parts, textures)
         folder = shadow_cache or shadow_folder()
         shadows = bake_shadows(self._geometry, lighting.sun_direction, scene.ground_height, folder)
-        self._light = build_light(lighting, shadows, bake_ambient(scene, folder), scene.lamps)
+        ambient = bake_ambient(scene, folder)
+        self._light = build_light(lighting, shadows, ambient, scene.lamps, self._geometry)
         ranges = np.concatenate([self._geometry.chunk_range, self._geometry.mesh_range])
         self._most_vertices = int((ranges[:, 3] - ranges[:, 2]).max(initial=1))
         self._scratch: dict[tuple[int, int, int], Scratch] = {}

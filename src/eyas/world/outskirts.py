@@ -12,7 +12,7 @@ from eyas.world.shapes import quads
 
 __all__ = ["access_road", "descent", "fields"]
 
-_LINES = (450.0, 620.0, 860.0, 1200.0, 1700.0, 2300.0, 3000.0)
+_LINES = (450.0, 620.0, 860.0, 1200.0, 1700.0, 2300.0, 3000.0, 4200.0, 6500.0, 10000.0)
 """Borders of the fields, from the middle of a floor of 900 m; others scale with theirs [m]."""
 _SOIL = ((1.0, 1.0, 1.0), (0.93, 0.95, 0.88), (0.97, 0.94, 0.83), (0.86, 0.91, 0.82))
 """Tints of the lawn for different crops."""

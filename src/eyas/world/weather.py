@@ -17,13 +17,14 @@ _CLEAR_DAY = Lighting(
     # The original's sun: in the north-west, 50.9 degrees high.
     sun_direction=(-0.55 * _STEEP, 0.6 * _STEEP, _STEEP),
     sun_colour=(1.02, 0.96, 0.84),
-    zenith_colour=(0.05, 0.08, 0.215),
-    horizon_colour=(0.40, 0.46, 0.55),
+    zenith_colour=(0.042, 0.130, 0.42),
+    horizon_colour=(0.45, 0.64, 0.94),
     ambient_up=(0.24, 0.29, 0.37),
     ambient_down=(0.13, 0.125, 0.10),
-    fog_colour=(0.40, 0.46, 0.55),
+    fog_colour=(0.47, 0.61, 0.82),
     # Clear air that turns the far edge of the map a little blue.
-    fog_density=1.0 / 4000.0,
+    fog_density=1.0 / 7000.0,
+    clouds=0.35,
 )
 
 # The original's plain grey sky (0.75, 0.75, 0.74) as radiance, and its weak bluish sun behind it.
@@ -39,6 +40,7 @@ _FOG = replace(
     fog_colour=(0.60, 0.60, 0.59),
     # The original's visibility range: a wash near by, and the far edge of the map dissolves.
     fog_density=1.0 / 1000.0,
+    clouds=1.0,
 )
 
 # The original's plain blue sky (0.60, 0.757, 0.945), paler towards the horizon, and the day's sun.
@@ -50,7 +52,8 @@ _WINTER = replace(
     ambient_up=(0.31, 0.36, 0.45),
     ambient_down=(0.27, 0.29, 0.32),
     fog_colour=(0.55, 0.64, 0.76),
-    fog_density=1.0 / 2500.0,
+    fog_density=1.0 / 6000.0,
+    clouds=0.45,
     exposure=1.1,
     snow=1.0,
 )

@@ -1,27 +1,15 @@
 """From who owns each sample to the bytes of the picture."""
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.jit import inlined_kernel, inner_kernel
 from eyas.render.kernels.bundles import Geometry, Light
-from eyas.render.kernels.scalars import f4, i8, u4
+from eyas.render.kernels.scalars import f4
 from eyas.render.kernels.shade import shade_point
-from eyas.render.kernels.sky import sky
+from eyas.render.kernels.tone import tone_byte
 
-__all__ = ["TONE_STEPS", "TONE_TOP", "shade_band"]
-
-
-TONE_STEPS = 16384
-"""Length of `Light.tone`."""
-
-TONE_TOP = 4.0
-"""Exposed radiance at its end."""
-
-_STEPS_PER_UNIT = f4(TONE_STEPS / TONE_TOP)
-_LAST_STEP = f4(TONE_STEPS - 1)
+__all__ = ["shade_band"]
 
 
 @inlined_kernel
@@ -45,12 +33,6 @@ def _set_frame(
     frame[15] = f4(1.0) / (frame[0] * frame[0] + frame[4] * frame[4] + frame[8] * frame[8])
 
 
-@inlined_kernel
-def _byte(light: Light, radiance: float) -> int:
-    step = min(max(radiance * light.air[2] * _STEPS_PER_UNIT, f4(0.0)), _LAST_STEP)
-    return i8(light.tone[u4(step)])
-
-
 @inner_kernel
 def shade_band(
     samples: int,
@@ -68,7 +50,7 @@ def shade_band(
     frame: NDArray[np.float32],
     output: NDArray[np.uint8],
 ) -> None:
-    """Write the pixels of a band.
+    """Write the pixels of a band; those of the sky are there, see `draw_backdrop`.
 
     A pixel of four samples is computed once where all show one triangle, at its centre: 1/w is
     linear on the screen, so there it is the mean of the four.
@@ -117,30 +99,30 @@ def shade_band(
                 i, j = line + (k >> 1), place + (k & 1)
                 if bits:
                     tag, inverse = owner[i, j], depth[i, j]
+                if tag < 0:
+                    red += output[row, column, 0]
+                    green += output[row, column, 1]
+                    blue += output[row, column, 2]
+                    continue
                 left = (middle - (f4(j) + step)) * across
                 up = (centre_line - (f4(i) + step)) * down
                 rx = ahead_x + left * left_x + up * up_x
                 ry = ahead_y + left * left_y + up * up_y
                 rz = ahead_z + left * left_z + up * up_z
-                if tag < 0:
-                    unit = f4(1.0) / math.sqrt(rx * rx + ry * ry + rz * rz)
-                    colour = sky(light, rx * unit, ry * unit, rz * unit)
-                else:
-                    instance = (tag >> 32) - 1
-                    if instance != framed:
-                        framed = instance
-                        if instance >= fixtures:
-                            _set_frame(poses, colours, instance - fixtures, frame)
-                        elif instance >= 0:
-                            _set_frame(geometry.fixture_pose, colours[:0], instance, frame)
-                    colour = shade_point(
-                        geometry, light, tag & 0xFFFFFFFF, instance >= 0, frame, centre,
-                        (rx, ry, rz), f4(1.0) / inverse, pixel,
-                        shade[i, j],
-                    )  # fmt: skip
-                red += _byte(light, colour[0])
-                green += _byte(light, colour[1])
-                blue += _byte(light, colour[2])
+                instance = (tag >> 32) - 1
+                if instance != framed:
+                    framed = instance
+                    if instance >= fixtures:
+                        _set_frame(poses, colours, instance - fixtures, frame)
+                    elif instance >= 0:
+                        _set_frame(geometry.fixture_pose, colours[:0], instance, frame)
+                colour = shade_point(
+                    geometry, light, tag & 0xFFFFFFFF, instance >= 0, frame, centre,
+                    (rx, ry, rz), f4(1.0) / inverse, pixel, shade[i, j],
+                )  # fmt: skip
+                red += tone_byte(light, colour[0])
+                green += tone_byte(light, colour[1])
+                blue += tone_byte(light, colour[2])
             half = (1 << bits) >> 1
             output[row, column, 0] = (red + half) >> bits
             output[row, column, 1] = (green + half) >> bits

@@ -127,6 +127,12 @@ class Light(NamedTuple):
     """West and south edge of the grid [m], squares in a metre, cosine of the lamps' cut-off."""
     tone: NDArray[np.uint8]
     """Byte of the picture for each step of exposed radiance."""
+    ground: NDArray[np.float32]
+    """Colour of far land without snow, see `eyas.render.hills`."""
+    clouds: NDArray[np.uint8]
+    """Opacity, and brightness times opacity, see `eyas.render.clouds`, shape (rows, columns, 2)."""
+    hills: NDArray[np.uint8]
+    """Cover, sunlight, woods and farness, see `eyas.render.hills`, shape (rows, columns, 4)."""
 
 
 class Movers(NamedTuple):

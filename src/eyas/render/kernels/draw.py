@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.jit import inner_kernel, parallel_kernel, prange
+from eyas.render.kernels.backdrop import draw_backdrop
 from eyas.render.kernels.band import shade_band
 from eyas.render.kernels.beams import cast_beams
 from eyas.render.kernels.bundles import Geometry, Job, Light, Movers, Output, Scratch, Stage
@@ -101,9 +102,11 @@ def _draw_job(
             )  # fmt: skip
     if len(output.rgb) > 0 and until > MOVERS_LIGHT:
         lit = view_light(light, job.light[view], scratch.light[worker])
+        pixels = output.rgb[view, top:bottom]
+        draw_backdrop(samples, top, lit, axes, job.lens, owner, pixels)
         shade_band(
             samples, top, geometry, lit, movers.pose[world], movers.colour[world], eye, axes,
-            job.lens, depth, owner, shade, scratch.frame[worker], output.rgb[view, top:bottom],
+            job.lens, depth, owner, shade, scratch.frame[worker], pixels,
         )  # fmt: skip
     if len(output.subject) > 0:
         result = output.subject[index]

@@ -20,8 +20,8 @@ def _grain(column: int, row: int) -> float:
 @inlined_kernel
 def _noise(x: float, y: float) -> float:
     """Return smooth noise, 0 to 1, with cells of one unit."""
-    # Moved so that all cells have numbers above 0: unsigned ones wrap in the same way everywhere.
-    x, y = x + f4(8192.0), y + f4(8192.0)
+    # Moved so that all cells of the land have numbers above 0, where cutting off is rounding down.
+    x, y = max(x + f4(32768.0), f4(0.0)), max(y + f4(32768.0), f4(0.0))
     column, row = u4(x), u4(y)
     across, down = x - f4(column), y - f4(row)
     across *= across * (f4(3.0) - f4(2.0) * across)

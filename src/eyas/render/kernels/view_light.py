@@ -50,4 +50,7 @@ def view_light(light: Light, change: NDArray[np.float32], rows: NDArray[np.float
         light.lamp_cell,
         light.lamp_frame,
         light.tone,
+        light.ground,
+        light.clouds,
+        light.hills,
     )
