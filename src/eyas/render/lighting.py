@@ -8,12 +8,15 @@ from eyas.render.bake_ambient import AmbientMap
 from eyas.render.kernels.band import TONE_STEPS, TONE_TOP
 from eyas.render.kernels.bundles import Light
 from eyas.render.lamp_grid import lamp_grid
+from eyas.render.tracks import TrackMap
 from eyas.state.scene import Lamps, Lighting
 
 __all__ = ["build_light", "tone_table"]
 
 
-def build_light(lighting: Lighting, shadows: ShadowMap, ambient: AmbientMap, lamps: Lamps) -> Light:
+def build_light(
+    lighting: Lighting, shadows: ShadowMap, ambient: AmbientMap, lamps: Lamps, tracks: TrackMap
+) -> Light:
     """Return the light of a weather."""
     lamp, lamp_cell, lamp_frame = lamp_grid(lamps)
     sun = np.asarray(lighting.sun_direction, np.float64)
@@ -37,6 +40,8 @@ def build_light(lighting: Lighting, shadows: ShadowMap, ambient: AmbientMap, lam
         lamp=lamp,
         lamp_cell=lamp_cell,
         lamp_frame=lamp_frame,
+        tracks=tracks.worn,
+        track_frame=_row(tracks.frame),
         tone=tone_table(),
     )
 

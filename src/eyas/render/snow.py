@@ -1,32 +1,42 @@
-"""How much snow stays on each material: on roads little, on what moves none."""
+"""What snow does on each material: it lies, is driven on, clings to leaves or does not stay."""
 
 from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.render.kernels.snow import Bed
 from eyas.state.draw import PartLibrary
 from eyas.state.mesh import Material, Surface
 from eyas.state.scene import ObjectClass, Scene
 
-__all__ = ["ON_ROADS", "snow_held"]
-
-ON_ROADS = 0.08
-"""Share of the snow that traffic and salt leave on roads and their paint: as in the original, roads
-stay black but for a thin dusting."""
+__all__ = ["snow_beds"]
 
 
-def snow_held(scene: Scene, parts: PartLibrary, palette: Iterable[Material]) -> NDArray[np.float32]:
-    """Return the share of fallen snow that stays on each material of a palette, 0 to 1."""
+def snow_beds(scene: Scene, parts: PartLibrary, palette: Iterable[Material]) -> NDArray[np.int32]:
+    """Return the `Bed` of each material of a palette."""
     driven_on = _road_materials(scene)
+    leaves = _leaf_materials(scene)
     moving = {material for levels in parts.parts for mesh in levels for material in mesh.palette}
 
-    def share(material: Material) -> float:
-        if material in moving or material.surface in (Surface.WATER, Surface.LAMP):
-            return 0.0
-        return ON_ROADS if material in driven_on else 1.0
+    def bed(material: Material) -> Bed:
+        if material in moving:
+            return Bed.VEHICLE if material.surface == Surface.PAINT else Bed.BARE
+        if material.surface in (Surface.WATER, Surface.LAMP):
+            return Bed.BARE
+        if material in leaves:
+            return Bed.LEAVES
+        return Bed.DRIVEN if material in driven_on else Bed.OPEN
 
-    return np.array([share(material) for material in palette], np.float32)
+    return np.array([bed(material) for material in palette], np.int32)
+
+
+def _leaf_materials(scene: Scene) -> set[Material]:
+    """Return what the crowns of trees are made of, outside and inside."""
+    meshes = [mesh for levels in scene.fixtures.levels for mesh in levels]
+    palettes = [material for mesh in meshes for material in mesh.palette]
+    clusters = {material.texture for material in palettes if material.surface == Surface.FOLIAGE}
+    return {material for material in palettes if material.texture in clusters}
 
 
 def _road_materials(scene: Scene) -> set[Material]:

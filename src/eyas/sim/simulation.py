@@ -169,7 +169,9 @@ class Simulation:
         world, movers = self._worlds.draw_list(chosen, self._fleet.tick)
         subject = self._worlds.object_ids(self.targets.actor[chosen])
         light = self._light.of(chosen)
-        return self._camera.read(pose, world, subject, light, movers, picture, until)
+        times = np.asarray(self._fleet.tick[chosen] * PHYSICS_STEP, np.float64)
+        instant = times if self.config.light.flakes else None
+        return self._camera.read(pose, world, subject, light, instant, movers, picture, until)
 
     @property
     def light(self) -> NDArray[np.float32]:

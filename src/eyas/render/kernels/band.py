@@ -11,7 +11,7 @@ from eyas.render.kernels.scalars import f4, i8, u4
 from eyas.render.kernels.shade import shade_point
 from eyas.render.kernels.sky import sky
 
-__all__ = ["TONE_STEPS", "TONE_TOP", "shade_band"]
+__all__ = ["TONE_STEPS", "TONE_TOP", "shade_band", "tone_byte"]
 
 
 TONE_STEPS = 16384
@@ -46,7 +46,8 @@ def _set_frame(
 
 
 @inlined_kernel
-def _byte(light: Light, radiance: float) -> int:
+def tone_byte(light: Light, radiance: float) -> int:
+    """Return the byte of the picture for a radiance."""
     step = min(max(radiance * light.air[2] * _STEPS_PER_UNIT, f4(0.0)), _LAST_STEP)
     return i8(light.tone[u4(step)])
 
@@ -138,9 +139,9 @@ def shade_band(
                         (rx, ry, rz), f4(1.0) / inverse, pixel,
                         shade[i, j],
                     )  # fmt: skip
-                red += _byte(light, colour[0])
-                green += _byte(light, colour[1])
-                blue += _byte(light, colour[2])
+                red += tone_byte(light, colour[0])
+                green += tone_byte(light, colour[1])
+                blue += tone_byte(light, colour[2])
             half = (1 << bits) >> 1
             output[row, column, 0] = (red + half) >> bits
             output[row, column, 1] = (green + half) >> bits
