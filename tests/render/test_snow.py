@@ -110,8 +110,8 @@ def test_tracks_lead_over_junctions():
 def test_far_pixels_see_the_mean_of_the_tracks(seen):
     scene = with_lanes(scene_with(plate("asphalt"), ObjectClass.ROAD), [(-38, 0), (38, 0)])
     views = looking([(0, 0, 120.0)], pitch=1.5707, fov=0.5)
-    lane = seen(scene, SNOW, views, size=(60, 60)).mean(axis=2)[10:50, 29:31]
-    assert np.abs(np.diff(lane, axis=0)).mean() < 5
+    # Pixels of a metre; without the mean, those on tracks are as dark as wet asphalt, 78.
+    assert seen(scene, SNOW, views, size=(60, 60))[10:50, 29:31].mean() > 95
 
 
 def test_walls_hold_none_above_their_feet(drawn, renderer_of):
@@ -134,7 +134,7 @@ def test_crowns_are_white_above_and_green_below(seen):
         return (picture[..., 1] - picture[..., 2]).mean() / picture.mean()
 
     above = greenness((0.0, 0.0, 40.0), 1.5707)
-    below = greenness((-12.0, 0.0, 0.5), -0.3)
+    below = greenness((-14.0, 0.0, 0.5), -0.24)
     assert above < below - 0.1
 
 
@@ -142,7 +142,8 @@ def test_each_material_is_a_bed_of_its_own_kind():
     road, roof = material("asphalt"), material("bitumen")
     water, lamp = Material(surface=Surface.WATER), Material(surface=Surface.LAMP)
     car, pane = Material(surface=Surface.PAINT), Material(surface=Surface.GLASS)
-    parts = PartLibrary(((box((1, 1, 1), (0, 0, 0), car, 1.0), box((1, 1, 1), (0, 0, 0), pane)),))
+    sides = [box((1, 1, 1), (0, 0, 0), what, 1.0) for what in (car, pane)]
+    parts = PartLibrary((tuple(sides),))
     scene = scene_with(plate("asphalt"), ObjectClass.ROAD)
     scene.fixtures = trees_at([(0.0, 0.0)])
     leaves = scene.fixtures.levels[0][0].palette[-1]

@@ -10,7 +10,10 @@ from eyas.state.draw import PartLibrary
 from eyas.state.mesh import Material, Surface
 from eyas.state.scene import ObjectClass, Scene
 
-__all__ = ["snow_beds"]
+__all__ = ["crown_middles", "snow_beds"]
+
+_MIDDLE = 0.3
+"""Where the middle of a crown is between its lower end and its top: crowns are flat below."""
 
 
 def snow_beds(scene: Scene, parts: PartLibrary, palette: Iterable[Material]) -> NDArray[np.int32]:
@@ -29,6 +32,19 @@ def snow_beds(scene: Scene, parts: PartLibrary, palette: Iterable[Material]) -> 
         return Bed.DRIVEN if material in driven_on else Bed.OPEN
 
     return np.array([bed(material) for material in palette], np.int32)
+
+
+def crown_middles(scene: Scene, palette: Iterable[Material]) -> NDArray[np.float32]:
+    """Return z of the middle of the crowns of each material of a palette, in their own frame."""
+    middle: dict[Material, float] = {}
+    for mesh, *_ in scene.fixtures.levels:
+        leafy = np.array([material.surface == Surface.FOLIAGE for material in mesh.palette])
+        leaves = mesh.triangles[leafy[mesh.materials]]
+        if len(leaves):
+            z = mesh.positions[leaves, 2]
+            height = float(z.min() + _MIDDLE * np.ptp(z))
+            middle |= dict.fromkeys(mesh.palette, height)
+    return np.array([middle.get(material, 0.0) for material in palette], np.float32)
 
 
 def _leaf_materials(scene: Scene) -> set[Material]:

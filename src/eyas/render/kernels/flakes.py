@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from eyas.core.jit import inlined_kernel, inner_kernel
 from eyas.render.kernels.band import tone_byte
 from eyas.render.kernels.bundles import Light
+from eyas.render.kernels.chance import scrambled, tenth
 from eyas.render.kernels.scalars import f4, i8, u4
 
 __all__ = ["Canvas", "let_flakes_fall"]
@@ -21,26 +22,23 @@ __all__ = ["Canvas", "let_flakes_fall"]
 SHELLS = 3
 """Shells around the camera; each reaches `GROWTH` times as far as the one before."""
 
-NEAREST = 0.6
+NEAREST = 0.7
 """Distance of the first shell [m]; nearer flakes would be blurs."""
 
 GROWTH = 2.6
-CELLS = 6.0
-"""Cells from the camera to the end of a shell."""
-
-MOST = 10.0
-"""Flakes in a cell in a heavy fall."""
+CELLS, MOST = 6.0, 10.0
+"""Cells from the camera to the end of a shell; flakes in a cell in a heavy fall."""
 
 WIND_X, WIND_Y, SINKING = 0.55, 0.3, 1.25
 """Speed of flakes [m/s]."""
 
-SWAY = 0.1
+SWAY = 0.06
 """How far they sway aside [m]."""
 
 EXPOSED = 1.0 / 110.0
 """How long the picture takes: flakes are streaks [s]."""
 
-SMALLEST = 0.2
+SMALLEST = 0.35
 """Radius below which flakes are not seen [pixels]."""
 
 
@@ -56,11 +54,9 @@ class Canvas(NamedTuple):
     instant: float
     """[s]"""
     eye: NDArray[np.float64]
-    """See `Job`."""
     axes: NDArray[np.float64]
-    """See `Job`."""
     lens: NDArray[np.float64]
-    """See `Job`."""
+    """These three: see `Job`."""
     depth: NDArray[np.float32]
     """See `Scratch`."""
     output: NDArray[np.uint8]
@@ -68,17 +64,16 @@ class Canvas(NamedTuple):
 
 
 @inlined_kernel
-def _mixed(value: int) -> int:
-    """Return a number that looks random, for a number."""
-    value = u4((value ^ (value >> u4(16))) * u4(0x7FEB352D))
-    value = u4((value ^ (value >> u4(15))) * u4(0x846CA68B))
-    return u4(value ^ (value >> u4(16)))
+def _wave(turn: float) -> float:
+    """Return about the sine of so many turns: parabolas."""
+    part = turn - math.floor(turn) - 0.5
+    return float(16.0 * part * (abs(part) - 0.5))
 
 
 @inlined_kernel
-def _tenth(number: int, bits: int) -> float:
-    """Return ten bits of a number as 0 to 1."""
-    return float((number >> u4(bits)) & u4(1023)) / 1023.0
+def _white(light: Light, k: int) -> int:
+    """Return a flake's byte: it is lit by the sky and, as the sun shines through, a bit by it."""
+    return tone_byte(light, f4(1.1) * light.ambient_up[k] + f4(0.35) * light.sun_colour[k])
 
 
 @inner_kernel
@@ -136,10 +131,10 @@ def _fill_shell(shell: int, begin: float, end: float, canvas: Canvas) -> None:
                 middle = (i + 0.5) * side - x, (j + 0.5) * side - y, (k + 0.5) * side - z
                 if not _in_band(middle, begin, end, low, high, canvas):
                     continue
-                cell = _mixed(u4(u4(i + 32768) * u4(0x9E3779B1)) ^ u4(j + 32768))
-                cell = _mixed(cell ^ u4(u4(k + 32768) * u4(0x85EBCA77)) ^ u4(shell << 28))
+                cell = scrambled(u4(u4(i + 32768) * u4(0x9E3779B1)) ^ u4(j + 32768))
+                cell = scrambled(cell ^ u4(u4(k + 32768) * u4(0x85EBCA77)) ^ u4(shell << 28))
                 for flake in range(flakes):
-                    _draw_flake(_mixed(u4(cell + u4(flake))), middle, begin, end, canvas)
+                    _draw_flake(scrambled(u4(cell + u4(flake))), middle, begin, end, canvas)
 
 
 @inlined_kernel
@@ -164,7 +159,7 @@ def _in_band(
     canvas: Canvas,
 ) -> bool:
     """Return whether a ball round a cell and the sway of its flakes may be seen."""
-    ball = 0.87 * end / CELLS + 0.16
+    ball = 0.87 * end / CELLS + 0.1
     wide = 0.5 * canvas.lens[1] / canvas.lens[0]
     ahead, left, up = _seen_from(canvas.axes, middle[0], middle[1], middle[2])
     if ahead < begin - ball or ahead > end + ball:
@@ -181,22 +176,26 @@ def _draw_flake(
     number: int, middle: tuple[float, float, float], begin: float, end: float, canvas: Canvas
 ) -> None:
     """Draw the flake of a number in a cell whose middle lies there from the eye [m]."""
-    other, side, axes, lens = _mixed(number), end / CELLS, canvas.axes, canvas.lens
-    turn = 6.2832 * _tenth(other, 0) + canvas.instant * (1.4 + 1.6 * _tenth(other, 10))
-    x = middle[0] + (_tenth(number, 0) - 0.5) * side + SWAY * math.sin(turn)
-    y = middle[1] + (_tenth(number, 10) - 0.5) * side + SWAY * math.cos(turn)
-    z = middle[2] + (_tenth(number, 20) - 0.5) * side
+    other, side, axes, lens = scrambled(number), end / CELLS, canvas.axes, canvas.lens
+    size = tenth(other, 20) ** 2
+    if _radius(size, begin) * lens[3] < SMALLEST * begin:
+        return
+    turn = tenth(other, 0) + canvas.instant * (0.22 + 0.25 * tenth(other, 10))
+    x = middle[0] + (tenth(number, 0) - 0.5) * side + SWAY * _wave(turn)
+    y = middle[1] + (tenth(number, 10) - 0.5) * side + SWAY * _wave(turn + 0.25)
+    z = middle[2] + (tenth(number, 20) - 0.5) * side
     ahead, left, up = _seen_from(axes, x, y, z)
     if ahead < begin or ahead > end:
         return
     # From where it came while the picture was taken.
     _, aside, above = _seen_from(axes, -WIND_X * EXPOSED, -WIND_Y * EXPOSED, SINKING * EXPOSED)
+    radius = _radius(size, ahead) * lens[3] / ahead
+    if radius < SMALLEST:
+        return
     across = lens[0] / (ahead * canvas.samples)
     down = lens[4] / (ahead * canvas.samples)
     column = 0.5 * lens[1] / canvas.samples - left * across
     row = 0.5 * lens[2] / canvas.samples - up * down
-    size = _tenth(other, 20)
-    radius = _radius(size * size, ahead) * lens[3] / ahead
     _smear(column, row, -aside * across, -above * down, radius, 1.0 / ahead, canvas)
 
 
@@ -214,18 +213,14 @@ def _smear(
 
     Args:
         column: Of its end [pixels].
-        row: Of its end [pixels].
+        row: Likewise.
         to_column: From there to its beginning [pixels].
-        to_row: From there to its beginning [pixels].
+        to_row: Likewise.
         radius: Half its width [pixels].
         inverse: One over its distance, as in `Scratch.depth` [1/m].
         canvas: Where to.
     """
     drawn = max(radius, 0.6)
-    length = math.sqrt(to_column * to_column + to_row * to_row)
-    # A small one covers part of a pixel, a moving one is in each place for part of the time.
-    strength = (radius / drawn) ** 2 * min(1.0, 2.6 * drawn / (drawn + length))
-    strength *= 0.9 / (1.0 + 0.09 * max(radius - 2.0, 0.0))
     soft = 0.5 + 0.35 * drawn
     reach = drawn + soft
     light, output, step = canvas.light, canvas.output, canvas.samples
@@ -233,6 +228,13 @@ def _smear(
     last = min(i8(math.ceil(max(row, row + to_row) + reach)) - canvas.top, output.shape[0])
     start = max(i8(math.floor(min(column, column + to_column) - reach)), 0)
     stop = min(i8(math.ceil(max(column, column + to_column) + reach)), output.shape[1])
+    if first >= last or start >= stop:
+        return
+    length = math.sqrt(to_column * to_column + to_row * to_row)
+    # A small one covers part of a pixel, a moving one is in each place for part of the time.
+    strength = (radius / drawn) ** 2 * min(1.0, 2.6 * drawn / (drawn + length))
+    strength *= 0.9 / (1.0 + 0.09 * max(radius - 2.0, 0.0))
+    red, green, blue = _white(light, 0), _white(light, 1), _white(light, 2)
     for i in range(first, last):
         for j in range(start, stop):
             if canvas.depth[i * step, j * step] > inverse:
@@ -243,8 +245,6 @@ def _smear(
             x, y = x - share * to_column, y - share * to_row
             cover = (reach - math.sqrt(x * x + y * y)) / (2.0 * soft)
             cover = strength * min(max(cover, 0.0), 1.0)
-            for k in range(3):
-                # Lit by the sky and, as the sun shines through, a little by it.
-                glow = f4(1.1) * light.ambient_up[k] + f4(0.35) * light.sun_colour[k]
-                white = tone_byte(light, glow)
-                output[i, j, k] = i8(output[i, j, k] + cover * (white - output[i, j, k]) + 0.5)
+            output[i, j, 0] = i8(output[i, j, 0] + cover * (red - output[i, j, 0]) + 0.5)
+            output[i, j, 1] = i8(output[i, j, 1] + cover * (green - output[i, j, 1]) + 0.5)
+            output[i, j, 2] = i8(output[i, j, 2] + cover * (blue - output[i, j, 2]) + 0.5)

@@ -175,7 +175,7 @@ def shade_point(
         footprint = distance * pixel / max(abs(cosine), f4(0.1))
         red, green, blue = snowed(
             (red, green, blue), light, geometry.snow_bed[material],
-            (x, y, z), (px, py, pz), normal[2], footprint,
+            geometry.crown_middle[material], (x, y, z), (px, py, pz), normal[2], footprint,
         )  # fmt: skip
     direct, reaching = sunlight(light, x, y, z, normal, sun_share, surface == FOLIAGE)
     tilt = f4(0.5) * normal[2]

@@ -5,6 +5,7 @@ from enum import IntEnum
 
 from eyas.core.jit import inlined_kernel
 from eyas.render.kernels.bundles import Light
+from eyas.render.kernels.chance import noise
 from eyas.render.kernels.scalars import f4, u4
 
 __all__ = ["Bed", "snowed"]
@@ -30,30 +31,6 @@ LEAVES, VEHICLE = int(Bed.LEAVES), int(Bed.VEHICLE)
 
 
 @inlined_kernel
-def _grain(column: int, row: int) -> float:
-    """Return a number, 0 to 1, that looks random, for a cell of the plane."""
-    mixed = u4(u4(column) * u4(0x9E3779B1)) ^ u4(u4(row) * u4(0x85EBCA77))
-    mixed = u4((mixed ^ (mixed >> u4(15))) * u4(0x2C1B3C6D))
-    return f4((mixed ^ (mixed >> u4(13))) & u4(0xFFFF)) * f4(1.0 / 65535.0)
-
-
-@inlined_kernel
-def _noise(x: float, y: float) -> float:
-    """Return smooth noise, 0 to 1, with cells of one unit."""
-    # Moved so that all cells have numbers above 0: unsigned ones wrap in the same way everywhere.
-    x, y = x + f4(8192.0), y + f4(8192.0)
-    column, row = u4(x), u4(y)
-    across, down = x - f4(column), y - f4(row)
-    across *= across * (f4(3.0) - f4(2.0) * across)
-    down *= down * (f4(3.0) - f4(2.0) * down)
-    right, lower = column + u4(1), row + u4(1)
-    a, b = _grain(column, row), _grain(right, row)
-    c, d = _grain(column, lower), _grain(right, lower)
-    upper = a + across * (b - a)
-    return f4(upper + down * (c + across * (d - c) - upper))
-
-
-@inlined_kernel
 def _clip(value: float) -> float:
     """Return a value brought into 0 to 1."""
     return min(max(value, f4(0.0)), f4(1.0))
@@ -65,7 +42,7 @@ def _seen_noise(x: float, y: float, cells: float, footprint: float) -> float:
     sharp = f4(1.6) - f4(2.0) * cells * footprint
     if sharp <= f4(0.0):
         return f4(0.5)
-    return f4(0.5) + min(sharp, f4(1.0)) * (_noise(cells * x, cells * y) - f4(0.5))
+    return f4(0.5) + min(sharp, f4(1.0)) * (noise(cells * x, cells * y) - f4(0.5))
 
 
 @inlined_kernel
@@ -98,7 +75,7 @@ def _texel(light: Light, row: int, column: int, far: float) -> float:
 def _on_leaves(
     colour: tuple[float, float, float],
     place: tuple[float, float, float],
-    own: tuple[float, float, float],
+    above: tuple[float, float, float],
     rise: float,
     footprint: float,
 ) -> tuple[float, float]:
@@ -110,15 +87,14 @@ def _on_leaves(
     Args:
         colour: Of the leaves.
         place: The point [m].
-        own: The point in the frame of the tree, which is 1 high.
+        above: The point from the middle of the crown, in the frame of the tree.
         rise: Upward component of its normal.
         footprint: What a pixel covers [m].
     """
     x, y, z = place
-    height = own[2] - f4(0.45)
-    away = math.sqrt(own[0] * own[0] + own[1] * own[1] + height * height + f4(1e-6))
+    away = math.sqrt(above[0] * above[0] + above[1] * above[1] + above[2] * above[2] + f4(1e-6))
     # A cluster of leaves is flat and has one normal; the crown's roundness changes smoothly.
-    open_ = f4(0.7) * height / away + f4(0.3) * rise
+    open_ = f4(0.7) * above[2] / away + f4(0.3) * rise
     # The second axis runs down the crown's sides too, faster: boughs are wider than high.
     bough = _seen_noise(x + f4(0.3) * y, y + f4(1.7) * z - f4(0.3) * x, f4(0.75), footprint)
     leaf = _clip(f4(5.5) * colour[1])
@@ -128,21 +104,20 @@ def _on_leaves(
 
 @inlined_kernel
 def _on_road(
-    colour: tuple[float, float, float], worn: float, patch: float, grain: float, fine: float
+    colour: tuple[float, float, float], worn: float, grain: float, fine: float
 ) -> tuple[float, float, float]:
     """Return the colour of a road with snow: white beside the lanes, wet and dark in the tracks.
 
     Args:
         colour: Without snow.
         worn: How far wheels have worn it, 0 to 1.
-        patch: Noise of a few metres, 0 to 1.
         grain: Noise of a third of a metre, 0 to 1.
         fine: Noise of a tenth of a metre, 0 to 1.
     """
-    ragged = worn * (f4(0.42) + f4(0.35) * patch + f4(0.35) * grain + f4(0.46) * fine)
+    ragged = worn * (f4(0.5) + f4(0.54) * grain + f4(0.46) * fine)
     share = f4(0.9) * max(_clip(f4(1.3) - f4(1.75) * ragged), f4(0.06))
     # Wheels press and soil what they do not push away.
-    light = f4(0.96) - f4(0.52) * _clip(f4(1.3) * ragged) + f4(0.06) * (patch - f4(0.5))
+    light = f4(0.96) - f4(0.52) * _clip(f4(1.3) * ragged) + f4(0.06) * (grain - f4(0.5))
     wet = f4(1.0) - f4(0.34) * _clip(f4(1.6) * ragged)
     return _mixed((wet * colour[0], wet * colour[1], wet * colour[2]), share, light)
 
@@ -163,6 +138,7 @@ def snowed(
     colour: tuple[float, float, float],
     light: Light,
     bed: int,
+    middle: float,
     place: tuple[float, float, float],
     own: tuple[float, float, float],
     rise: float,
@@ -174,17 +150,19 @@ def snowed(
         colour: Without snow.
         light: Says how much has fallen, where the sun is, and where wheels have gone.
         bed: A `Bed`.
+        middle: z of the middle of the crown in the frame of its tree, if it is one.
         place: The point [m].
         own: The point in the frame of the fixture or part it belongs to.
         rise: Upward component of its normal.
         footprint: What a pixel covers [m].
     """
     x, y = place[0], place[1]
-    half, depth = f4(0.5), light.air[4]
+    one, depth = f4(1.0), light.air[4]
     if bed == BARE or rise < f4(-0.6):
         return colour
     if bed == LEAVES:
-        share, white = _on_leaves(colour, place, own, rise, footprint)
+        above = own[0], own[1], own[2] - middle
+        share, white = _on_leaves(colour, place, above, rise, footprint)
         return _mixed(colour, depth * share, white)
     if bed == VEHICLE:
         grain = _seen_noise(own[0], own[1], f4(9.0), footprint)
@@ -194,20 +172,22 @@ def snowed(
     foot = _clip(f4(1.6) - f4(5.0) * place[2])
     if rise < f4(0.1) and foot <= f4(0.0):
         return colour
-    patch = _seen_noise(x, y, f4(0.45), footprint)
-    grain = _seen_noise(x, y, f4(2.9), footprint)
     if bed == DRIVEN and rise > f4(0.9):
-        worn = f4(0.42)  # no lane of the map leads over bridges
+        worn = f4(0.45)  # no lane of the map leads over bridges
         if place[2] < f4(1.0):
             worn = _worn(light, x, y, footprint)
+        grain = _seen_noise(x, y, f4(2.3), footprint)
         fine = _seen_noise(x, y, f4(9.0), footprint)
-        return _on_road(colour, worn + f4(1.2) * (f4(1.0) - depth), patch, grain, fine)
-    # Steep faces are bare; where little has fallen, it lies in the hollows.
-    lies = _clip((rise - f4(0.45) + half * (patch - half)) * f4(4.0))
-    lies = max(lies, foot * _clip(half + patch))
-    hollow = _clip((f4(0.6) * patch + f4(0.4) * grain + depth - f4(0.76)) * f4(4.0))
-    # Drifts: the wind's long, low waves face the sun or turn away from it.
-    ahead_x, ahead_y = x + f4(3.5) * light.sun[0], y + f4(3.5) * light.sun[1]
-    slope = _noise(f4(0.085) * x, f4(0.14) * y) - _noise(f4(0.085) * ahead_x, f4(0.14) * ahead_y)
-    white = f4(0.94) + f4(0.5) * slope + f4(0.035) * (patch - half)
-    return _mixed(colour, lies * hollow * (f4(0.12) + f4(0.85) * depth), white)
+        return _on_road(colour, worn + f4(1.2) * (one - depth), grain, fine)
+    # Low, wide drifts, in rows across the wind.
+    drift = noise(f4(0.075) * x + f4(0.03) * y, f4(0.13) * y - f4(0.06) * x)
+    lies = one
+    if rise < f4(0.97) or depth < one:
+        # Steep faces are bare; where little has fallen, it lies in the hollows.
+        patch = _seen_noise(x, y, f4(0.9), footprint)
+        lies = _clip((rise - f4(0.45) + f4(0.5) * (patch - f4(0.5))) * f4(4.0))
+        lies = max(lies, foot * _clip(f4(0.5) + patch))
+        lies *= _clip(
+            (patch + depth - f4(0.76)) * f4(4.0) + max(depth - f4(0.9), f4(0.0)) * f4(40.0)
+        )
+    return _mixed(colour, lies * (f4(0.12) + f4(0.85) * depth), f4(0.88) + f4(0.1) * drift)
