@@ -155,5 +155,6 @@ def _blurred(values: NDArray[np.float32], texels: int) -> NDArray[np.float32]:
         sums = np.cumsum(np.pad(values, before), axis=axis, dtype=np.float64)
         count = values.shape[axis]
         high = np.take(sums, np.arange(texels, texels + count), axis=axis)
-        values = (high - np.take(sums, np.arange(count), axis=axis)).astype(np.float32) / texels
+        mean = (high - np.take(sums, np.arange(count), axis=axis)) / texels
+        values = mean.astype(np.float32)
     return np.clip(values, 0.0, 1.0)

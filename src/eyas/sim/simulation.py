@@ -171,6 +171,8 @@ class Simulation:
         light = self._light.of(chosen)
         times = np.asarray(self._fleet.tick[chosen] * PHYSICS_STEP, np.float64)
         instant = times if self.config.light.flakes else None
+        times = np.asarray(self._fleet.tick[chosen] * PHYSICS_STEP, np.float64)
+        instant = times if self.config.light.flakes else None
         return self._camera.read(pose, world, subject, light, instant, movers, picture, until)
 
     @property

@@ -29,11 +29,8 @@ GROWTH = 2.6
 CELLS, MOST = 6.0, 10.0
 """Cells from the camera to the end of a shell; flakes in a cell in a heavy fall."""
 
-WIND_X, WIND_Y, SINKING = 0.55, 0.3, 1.25
-"""Speed of flakes [m/s]."""
-
-SWAY = 0.06
-"""How far they sway aside [m]."""
+WIND_X, WIND_Y, SINKING, SWAY = 0.55, 0.3, 1.25, 0.06
+"""Speed of flakes [m/s], and how far they sway aside [m]."""
 
 EXPOSED = 1.0 / 110.0
 """How long the picture takes: flakes are streaks [s]."""
@@ -213,7 +210,7 @@ def _smear(
 
     Args:
         column: Of its end [pixels].
-        row: Likewise.
+        row: Of its end [pixels].
         to_column: From there to its beginning [pixels].
         to_row: Likewise.
         radius: Half its width [pixels].
