@@ -8,7 +8,7 @@ import pytest
 
 from eyas.core.errors import ConfigError, UnknownNameError
 from eyas.core.pinhole import project, rays
-from eyas.render.kernels.band import TONE_STEPS, TONE_TOP
+from eyas.render.kernels.tone import TONE_STEPS, TONE_TOP
 from eyas.render.lighting import tone_table
 from eyas.render.renderer import Renderer
 from eyas.state.draw import DrawList, PartLibrary, Picture

@@ -91,3 +91,18 @@ def test_env_params_of_the_original_work_and_are_told_in_info():
     _, info = env.reset(seed=1)
     assert 0.2 <= info["light"][0] <= 0.3
     assert info["light"][1] == 1.0
+
+
+def test_flakes_fall_with_the_simulation_unless_they_are_turned_off():
+    falling = started({}, weather="snow")
+    clear = started({"flakes": False}, weather="snow")
+    pictures = []
+    for simulation in (falling, clear):
+        picture = Picture.create(1, 240, 320)
+        for _ in range(2):
+            simulation.draw(np.zeros(1, np.int32), picture)
+            pictures.append(picture.rgb.copy())
+            # Nothing but the time changes: the traffic stands, and so does the camera.
+            simulation._fleet.tick[:] += 1
+    assert (pictures[0] != pictures[2]).any()
+    assert (pictures[0] != pictures[1]).sum() > (pictures[2] != pictures[3]).sum()

@@ -99,6 +99,7 @@ class Stage:
             subject=np.array([subject], np.int32),
             field_of_view=view.field_of_view,
             vertical_field_of_view=2 * math.atan(0.75 * math.tan(0.5 * view.field_of_view)),
+            instant=np.array([view.time]),
         )
         self._place.renderer.draw(views, movers, picture, samples)
 

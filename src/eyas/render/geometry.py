@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from eyas.render.kernels.bundles import GROUP, Geometry
 from eyas.render.mipmap import linear, packed_layers
-from eyas.render.snow import snow_held
+from eyas.render.snow import crown_middles, snow_beds
 from eyas.render.triangles import gradients, solid_triangles
 from eyas.state.draw import PartLibrary
 from eyas.state.mesh import Material, Mesh
@@ -72,7 +72,8 @@ def build_geometry(
             np.float32
         ),
         emission=np.array([material.emission for material in palette], np.float32),
-        holds_snow=snow_held(scene, parts, palette),
+        snow_bed=snow_beds(scene, parts, palette),
+        crown_middle=crown_middles(scene, palette),
         texture=packed_layers(textures, names),
     )
 

@@ -55,6 +55,7 @@ def build_jobs(
         world=np.ascontiguousarray(views.world, np.int32),
         subject=np.ascontiguousarray(views.subject, np.int32),
         light=_light_of(views, density),
+        instant=np.array([] if views.instant is None else views.instant, np.float64),
         lens=np.array(lens, np.float64),
     )
 

@@ -10,6 +10,7 @@ from eyas.render.hills import build_hills, far_ground
 from eyas.render.kernels.bundles import Geometry, Light
 from eyas.render.kernels.tone import TONE_STEPS, TONE_TOP
 from eyas.render.lamp_grid import lamp_grid
+from eyas.render.tracks import TrackMap
 from eyas.state.scene import Lamps, Lighting
 
 __all__ = ["build_light", "tone_table"]
@@ -20,6 +21,7 @@ def build_light(
     shadows: ShadowMap,
     ambient: AmbientMap,
     lamps: Lamps,
+    tracks: TrackMap,
     geometry: Geometry,
 ) -> Light:
     """Return the light of a weather over a scene."""
@@ -47,6 +49,8 @@ def build_light(
         lamp=lamp,
         lamp_cell=lamp_cell,
         lamp_frame=lamp_frame,
+        tracks=tracks.worn,
+        track_frame=_row(tracks.frame),
         tone=tone_table(),
         ground=_row(far_ground(geometry)),
         clouds=build_clouds(lighting.clouds, toward),

@@ -17,6 +17,7 @@ from eyas.render.jobs import build_jobs, picture_size, write_subject
 from eyas.render.kernels.bundles import Movers, Output, Scratch, Stage
 from eyas.render.kernels.draw import draw_views
 from eyas.render.lighting import build_light
+from eyas.render.tracks import TrackMap, track_map
 from eyas.state.draw import DrawList, PartLibrary, Picture, Views
 from eyas.state.scene import Lighting, Scene
 
@@ -52,8 +53,9 @@ class Renderer:
         self._geometry = build_geometry(scene, parts, textures)
         folder = shadow_cache or shadow_folder()
         shadows = bake_shadows(self._geometry, lighting.sun_direction, scene.ground_height, folder)
+        tracks = track_map(scene.network) if lighting.snow > 0 else TrackMap.none()
         ambient = bake_ambient(scene, folder)
-        self._light = build_light(lighting, shadows, ambient, scene.lamps, self._geometry)
+        self._light = build_light(lighting, shadows, ambient, scene.lamps, tracks, self._geometry)
         ranges = np.concatenate([self._geometry.chunk_range, self._geometry.mesh_range])
         self._most_vertices = int((ranges[:, 3] - ranges[:, 2]).max(initial=1))
         self._scratch: dict[tuple[int, int, int], Scratch] = {}

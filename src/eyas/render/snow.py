@@ -1,32 +1,58 @@
-"""How much snow stays on each material: on roads little, on what moves none."""
+"""What snow does on each material: it lies, is driven on, clings to leaves or does not stay."""
 
 from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.render.kernels.snow import Bed
 from eyas.state.draw import PartLibrary
 from eyas.state.mesh import Material, Surface
 from eyas.state.scene import ObjectClass, Scene
 
-__all__ = ["ON_ROADS", "snow_held"]
+__all__ = ["crown_middles", "snow_beds"]
 
-ON_ROADS = 0.08
-"""Share of the snow that traffic and salt leave on roads and their paint: as in the original, roads
-stay black but for a thin dusting."""
+_MIDDLE = 0.3
+"""Where the middle of a crown is between its lower end and its top: crowns are flat below."""
 
 
-def snow_held(scene: Scene, parts: PartLibrary, palette: Iterable[Material]) -> NDArray[np.float32]:
-    """Return the share of fallen snow that stays on each material of a palette, 0 to 1."""
+def snow_beds(scene: Scene, parts: PartLibrary, palette: Iterable[Material]) -> NDArray[np.int32]:
+    """Return the `Bed` of each material of a palette."""
     driven_on = _road_materials(scene)
+    leaves = _leaf_materials(scene)
     moving = {material for levels in parts.parts for mesh in levels for material in mesh.palette}
 
-    def share(material: Material) -> float:
-        if material in moving or material.surface in (Surface.WATER, Surface.LAMP):
-            return 0.0
-        return ON_ROADS if material in driven_on else 1.0
+    def bed(material: Material) -> Bed:
+        if material in moving:
+            return Bed.VEHICLE if material.surface == Surface.PAINT else Bed.BARE
+        if material.surface in (Surface.WATER, Surface.LAMP):
+            return Bed.BARE
+        if material in leaves:
+            return Bed.LEAVES
+        return Bed.DRIVEN if material in driven_on else Bed.OPEN
 
-    return np.array([share(material) for material in palette], np.float32)
+    return np.array([bed(material) for material in palette], np.int32)
+
+
+def crown_middles(scene: Scene, palette: Iterable[Material]) -> NDArray[np.float32]:
+    """Return z of the middle of the crowns of each material of a palette, in their own frame."""
+    middle: dict[Material, float] = {}
+    for mesh, *_ in scene.fixtures.levels:
+        leafy = np.array([material.surface == Surface.FOLIAGE for material in mesh.palette])
+        leaves = mesh.triangles[leafy[mesh.materials]]
+        if len(leaves):
+            z = mesh.positions[leaves, 2]
+            height = float(z.min() + _MIDDLE * np.ptp(z))
+            middle |= dict.fromkeys(mesh.palette, height)
+    return np.array([middle.get(material, 0.0) for material in palette], np.float32)
+
+
+def _leaf_materials(scene: Scene) -> set[Material]:
+    """Return what the crowns of trees are made of, outside and inside."""
+    meshes = [mesh for levels in scene.fixtures.levels for mesh in levels]
+    palettes = [material for mesh in meshes for material in mesh.palette]
+    clusters = {material.texture for material in palettes if material.surface == Surface.FOLIAGE}
+    return {material for material in palettes if material.texture in clusters}
 
 
 def _road_materials(scene: Scene) -> set[Material]:

@@ -38,6 +38,7 @@ class Camera:
         world: NDArray[np.int32],
         subject: NDArray[np.int32],
         light: NDArray[np.float32] | None,
+        instant: NDArray[np.float64] | None,
         draw_list: DrawList,
         picture: Picture,
         until: Stage = Stage.SHADING,
@@ -49,6 +50,7 @@ class Camera:
             world: Which world of the draw list each sees, shape (V,).
             subject: Object id each is about, or -1, shape (V,).
             light: What each changes of the weather's light, see `Views`.
+            instant: Time of what falls through the air [s], see `Views`.
             draw_list: The moving parts.
             picture: Where to, of any size; what is None is not drawn.
             until: Where to stop, see `Renderer.draw`.
@@ -61,6 +63,7 @@ class Camera:
             field_of_view=self.config.field_of_view,
             vertical_field_of_view=self.vertical_field_of_view,
             light=light,
+            instant=instant,
         )
         self._renderer.draw(views, draw_list, picture, self.config.samples, until)
         return views

@@ -80,6 +80,8 @@ class LightConfig(Config):
     """True: `sun` is the brightness; False: it is added to the weather's own."""
     visibility: Visibility | None = None
     """Visibility range in foggy weather [m]; None: the weather's own. Others have no fog."""
+    flakes: bool = True
+    """Whether flakes fall through the picture in snow."""
 
 
 class ObjectsConfig(Config):

@@ -155,6 +155,7 @@ class Simulation:
             subject=self._worlds.object_ids(self.targets.actor[chosen]),
             field_of_view=2 * atan(tan(0.5 * vertical_field_of_view) * width / height),
             light=self._light.of(chosen),
+            instant=self._times(chosen),
         )
         deep = with_depth(picture) if overlay else picture
         self._place.renderer.draw(views, movers, deep, self.config.camera.samples)
@@ -169,7 +170,14 @@ class Simulation:
         world, movers = self._worlds.draw_list(chosen, self._fleet.tick)
         subject = self._worlds.object_ids(self.targets.actor[chosen])
         light = self._light.of(chosen)
-        return self._camera.read(pose, world, subject, light, movers, picture, until)
+        instant = self._times(chosen)
+        return self._camera.read(pose, world, subject, light, instant, movers, picture, until)
+
+    def _times(self, chosen: NDArray[np.int32]) -> Floats | None:
+        """Return times in the recording for what falls through the air [s], None for nothing."""
+        if not self.config.light.flakes:
+            return None
+        return np.asarray(self._fleet.tick[chosen] * PHYSICS_STEP, np.float64)
 
     @property
     def light(self) -> NDArray[np.float32]:

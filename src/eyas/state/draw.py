@@ -62,7 +62,7 @@ class Views:
     """What each view changes of the light: factor on the sky and its light, factor on the sun,
     and one over the visibility range [1/m], shape (V, 3); None: the weather as it is."""
     instant: NDArray[np.float64] | None = None
-    """Time of what falls through the air [s], shape (V,); None: 0 for all."""
+    """Time of what falls through the air [s], shape (V,); None: nothing falls."""
 
 
 @dataclass(slots=True)

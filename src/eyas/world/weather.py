@@ -56,6 +56,7 @@ _WINTER = replace(
     clouds=0.45,
     exposure=1.1,
     snow=1.0,
+    flakes=0.5,
 )
 
 # All at a bit over a third of the day's brightness, as in the original: a high moon, a sky that is

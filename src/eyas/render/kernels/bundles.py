@@ -89,8 +89,10 @@ class Geometry(NamedTuple):
     """Linear colour factor of each material, shape (., 3)."""
     emission: NDArray[np.float32]
     """Own light of each material."""
-    holds_snow: NDArray[np.float32]
-    """Share of the snow that stays on each material, 0 to 1."""
+    snow_bed: NDArray[np.int32]
+    """`eyas.render.kernels.snow.Bed` of each material."""
+    crown_middle: NDArray[np.float32]
+    """z of the middle of the crowns made of each material, in the frame of their trees."""
     texture: NDArray[np.uint32]
     """Texels of each layer, all mip levels in a row, row 0 at v = 0: square roots of linear red,
     green, blue, and alpha, a byte each, the lowest byte first, shape (., 87381)."""
@@ -125,6 +127,10 @@ class Light(NamedTuple):
     shape (rows, columns, .)."""
     lamp_frame: NDArray[np.float32]
     """West and south edge of the grid [m], squares in a metre, cosine of the lamps' cut-off."""
+    tracks: NDArray[np.uint8]
+    """How far wheels have worn the snow on roads, see `eyas.render.tracks.TrackMap`."""
+    track_frame: NDArray[np.float32]
+    """West and south edge of that map [m], texels in a metre."""
     tone: NDArray[np.uint8]
     """Byte of the picture for each step of exposed radiance."""
     ground: NDArray[np.float32]
@@ -159,6 +165,8 @@ class Job(NamedTuple):
     """Shape (V,)."""
     light: NDArray[np.float32]
     """Factor on the sky and its light, factor on the sun, fog density [1/m], shape (V, 3)."""
+    instant: NDArray[np.float64]
+    """Time of what falls through the air [s], shape (V,), or (0,) where nothing falls."""
     lens: NDArray[np.float64]
     """Focal length along rows, width, height [samples], mean focal length [pixels], focal length
     along columns [samples], shape (5,)."""

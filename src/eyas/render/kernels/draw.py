@@ -10,6 +10,7 @@ from eyas.render.kernels.beams import cast_beams
 from eyas.render.kernels.bundles import Geometry, Job, Light, Movers, Output, Scratch, Stage
 from eyas.render.kernels.casters import cast_shadows
 from eyas.render.kernels.cull import set_planes
+from eyas.render.kernels.flakes import Canvas, let_flakes_fall
 from eyas.render.kernels.scalars import f4, i8
 from eyas.render.kernels.transform import set_world_rows
 from eyas.render.kernels.view_light import view_light
@@ -108,6 +109,12 @@ def _draw_job(
             samples, top, geometry, lit, movers.pose[world], movers.colour[world], eye, axes,
             job.lens, depth, owner, shade, scratch.frame[worker], pixels,
         )  # fmt: skip
+        if len(job.instant) > 0 and light.air[8] > f4(0.0):
+            air = Canvas(
+                samples, top, lit, job.instant[view], eye, axes, job.lens, depth,
+                output.rgb[view, top:bottom],
+            )  # fmt: skip
+            let_flakes_fall(air)
     if len(output.subject) > 0:
         result = output.subject[index]
         result[:] = 0

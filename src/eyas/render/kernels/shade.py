@@ -172,9 +172,11 @@ def shade_point(
         red, green, blue = water_colour(geometry.tint, material, slope_x + slope_y)
 
     if light.air[4] > zero:
+        footprint = distance * pixel / max(abs(cosine), f4(0.1))
         red, green, blue = snowed(
-            (red, green, blue), light.air[4], geometry.holds_snow, material, x, y, normal[2]
-        )
+            (red, green, blue), light, geometry.snow_bed[material],
+            geometry.crown_middle[material], (x, y, z), (px, py, pz), normal[2], footprint,
+        )  # fmt: skip
     direct, reaching = sunlight(light, x, y, z, normal, sun_share, surface == FOLIAGE)
     tilt = f4(0.5) * normal[2]
     if surface == FOLIAGE:

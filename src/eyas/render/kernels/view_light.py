@@ -49,6 +49,8 @@ def view_light(light: Light, change: NDArray[np.float32], rows: NDArray[np.float
         light.lamp,
         light.lamp_cell,
         light.lamp_frame,
+        light.tracks,
+        light.track_frame,
         light.tone,
         light.ground,
         light.clouds,

@@ -1,0 +1,160 @@
+"""Where wheels have pushed snow off the roads: a map of the tracks they leave."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.state.roads import RoadNetwork
+
+__all__ = ["TEXEL", "TRACK_ASIDE", "TrackMap", "track_map"]
+
+TEXEL = 0.3
+"""Side of a texel [m]."""
+
+TRACK_ASIDE = 0.78
+"""Distance of a track from the middle of the lane [m]; that of the dark tracks in the asphalt."""
+
+_STEP = 0.2
+"""Distance of the places along and across a lane whose texels are marked [m]: none is missed."""
+
+_HALF = 1.7
+"""How far from the middle of a lane snow is driven on [m]."""
+
+_OTHERS = ((0.0, 1.0), (0.26, 0.5), (-0.3, 0.4))
+"""Ways that cars take: how far beside the usual one [m], and how much they have worn it."""
+
+_STRAIGHT, _BACK = np.radians(50.0), np.radians(150.0)
+"""Up to which angle a way over a junction leads straight on, and from which it turns back."""
+
+_FAR = 8
+"""Texels over which the map is blurred for what is seen from afar: one lane's tracks and a bit."""
+
+_MARGIN = 6.0
+"""Between the lanes and the edges of the map [m]."""
+
+Line = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class TrackMap:
+    """How far the snow on roads is worn off."""
+
+    worn: NDArray[np.uint8]
+    """0 as it fell, 255 down to the wet asphalt; and the same blurred, for pixels that are larger
+    than tracks; shape (rows, columns, 2)."""
+    frame: NDArray[np.float64]
+    """West and south edge [m], texels in a metre."""
+
+    @classmethod
+    def none(cls) -> "TrackMap":
+        """Return a map without tracks."""
+        return cls(np.zeros((2, 2, 2), np.uint8), np.array([0.0, 0.0, 1.0]))
+
+
+def track_map(network: RoadNetwork) -> TrackMap:
+    """Return the tracks of all lanes, and of the ways from lane to lane over junctions."""
+    if len(network.lane_points) == 0:
+        return TrackMap.none()
+    low = network.lane_points.min(axis=0) - _MARGIN
+    size = np.ceil((network.lane_points.max(axis=0) + _MARGIN - low) / TEXEL).astype(int)
+    worn = np.zeros((size[1], size[0]), np.float32)
+    ways = [(line, 1.0) for line in _lanes(network)] + [(way, 0.75) for way in _crossings(network)]
+    stations = [_stations(line) for line, _ in ways]
+    middle = np.concatenate([points for points, _ in stations])
+    left = np.concatenate([normal for _, normal in stations])
+    strength = np.repeat([much for _, much in ways], [len(points) for points, _ in stations])
+    # Ways sway a little and are worn more here than there; what is near by agrees.
+    sway, uneven = _waves(middle, 11.0, 1), _waves(middle, 23.0, 2)
+    for aside in np.arange(-_HALF, _HALF + _STEP, _STEP):
+        place = ((middle + aside * left - low) / TEXEL).astype(int)
+        inside = ((place >= 0) & (place < size)).all(axis=1)
+        much = strength * (0.86 + 0.16 * uneven) * _profile(aside + 0.1 * sway)
+        np.maximum.at(worn, (place[inside, 1], place[inside, 0]), much[inside].astype(np.float32))
+    near = _blurred(worn, 3)
+    both = np.stack([near, _blurred(near, _FAR)], axis=2)
+    return TrackMap(np.round(255.0 * both).astype(np.uint8), np.array([*low, 1.0 / TEXEL]))
+
+
+def _profile(aside: Line) -> Line:
+    """Return how far the snow is worn off beside the middle of a lane [m], 0 to 1."""
+    worn = 0.42 * np.clip((_HALF - np.abs(aside)) / 0.7, 0.0, 1.0)
+    for other, much in _OTHERS:
+        off = np.abs(np.abs(aside + other) - TRACK_ASIDE)
+        worn = np.maximum(worn, much * np.clip((0.5 - off) / 0.26, 0.0, 1.0))
+    return worn
+
+
+def _lanes(network: RoadNetwork) -> list[Line]:
+    return [network.lane_points[low:high] for low, high in pairwise(network.lane_first)]
+
+
+def _crossings(network: RoadNetwork) -> Iterator[Line]:
+    """Yield the ways over junctions: straight on in each lane, and turns from the outer lanes."""
+    lines = _lanes(network)
+    lanes = [np.flatnonzero(network.lane_edge == edge) for edge in range(len(network.edges))]
+    for here, end in enumerate(network.edge_end):
+        for there, start in enumerate(network.edge_start):
+            if start != end:
+                continue
+            from_, onto = np.diff(lines[lanes[here][0]][-2:], axis=0)[0], lines[lanes[there][0]]
+            ahead = onto[1] - onto[0]
+            angle = np.arctan2(from_[0] * ahead[1] - from_[1] * ahead[0], from_ @ ahead)
+            if abs(angle) > _BACK:
+                continue
+            ins, outs = lanes[here], lanes[there]
+            count = min(len(ins), len(outs))
+            if abs(angle) < _STRAIGHT:
+                pairs = list(zip(ins[:count], outs[:count], strict=True))
+            else:
+                pairs = [(ins[-1], outs[-1]) if angle > 0 else (ins[0], outs[0])]
+            for one, other in pairs:
+                yield _bent(lines[one], lines[other])
+
+
+def _bent(arriving: Line, leaving: Line) -> Line:
+    """Return a cubic Bezier curve from the end of one lane to the start of another."""
+    start, end = arriving[-1], leaving[0]
+    reach = 0.45 * np.linalg.norm(end - start)
+    toward, away = np.diff(arriving[-2:], axis=0)[0], leaving[1] - leaving[0]
+    one = start + reach * toward / np.linalg.norm(toward)
+    other = end - reach * away / np.linalg.norm(away)
+    t = np.linspace(0.0, 1.0, 12)[:, None]
+    s = 1.0 - t
+    return np.asarray(s**3 * start + 3 * s**2 * t * one + 3 * s * t**2 * other + t**3 * end)
+
+
+def _stations(line: Line) -> tuple[Line, Line]:
+    """Return points every `_STEP` along a line, and directions to its left, shape (K, 2) each."""
+    pieces = np.diff(line, axis=0)
+    length = np.linalg.norm(pieces, axis=1)
+    along = np.concatenate([[0.0], np.cumsum(length)])
+    at = np.arange(0.0, along[-1], _STEP)
+    points = np.column_stack([np.interp(at, along, line[:, k]) for k in range(2)])
+    ahead = pieces / np.maximum(length, 1e-9)[:, None]
+    way = ahead[np.clip(np.searchsorted(along, at, "right") - 1, 0, len(ahead) - 1)]
+    return points, np.column_stack([-way[:, 1], way[:, 0]])
+
+
+def _waves(points: Line, length: float, seed: int) -> Line:
+    """Return smooth noise, about -1 to 1, with features of some length [m]: a sum of waves."""
+    rng = np.random.default_rng(seed)
+    angle, phase = rng.uniform(0, 2 * np.pi, 6), rng.uniform(0, 2 * np.pi, 6)
+    number = 2 * np.pi / (length * rng.uniform(0.7, 1.6, 6))
+    way = np.stack([np.cos(angle), np.sin(angle)]) * number
+    return np.asarray(np.sin(points @ way + phase).sum(axis=1) / 2.5)
+
+
+def _blurred(values: NDArray[np.float32], texels: int) -> NDArray[np.float32]:
+    """Return means over squares of some texels; beyond the edges all is 0."""
+    for axis in (0, 1):
+        before = [(0, 0), (0, 0)]
+        before[axis] = (texels // 2 + 1, texels - texels // 2)
+        sums = np.cumsum(np.pad(values, before), axis=axis, dtype=np.float64)
+        count = values.shape[axis]
+        high = np.take(sums, np.arange(texels, texels + count), axis=axis)
+        mean = (high - np.take(sums, np.arange(count), axis=axis)) / texels
+        values = mean.astype(np.float32)
+    return np.clip(values, 0.0, 1.0)
