@@ -99,7 +99,9 @@ def front_of(drawn, renderer_of, house, number, lighting):
 
 
 def test_some_windows_are_lit_others_in_other_houses(drawn, renderer_of):
-    lit = dataclasses.replace(DARK, windows=0.4, zenith_colour=(0, 0, 0), horizon_colour=(0, 0, 0))
+    lit = dataclasses.replace(
+        DARK, windows=0.4, zenith_colour=(0, 0, 0), horizon_colour=(0, 0, 0), fog_colour=(0, 0, 0)
+    )
     house = tower(0.0, 0.0, 24.0, 30.0)
     first = front_of(drawn, renderer_of, house, 5, lit)
     other = front_of(drawn, renderer_of, house, 6, lit)
@@ -130,7 +132,9 @@ def test_cars_throw_white_light_ahead_and_red_behind(drawn, renderer_of):
 
 
 def test_small_windows_fade_to_their_mean(drawn, renderer_of):
-    lit = dataclasses.replace(DARK, windows=0.4, zenith_colour=(0, 0, 0), horizon_colour=(0, 0, 0))
+    lit = dataclasses.replace(
+        DARK, windows=0.4, zenith_colour=(0, 0, 0), horizon_colour=(0, 0, 0), fog_colour=(0, 0, 0)
+    )
     scene = city_scene()
     means = []
     for size in ((400, 400), (40, 40)):

@@ -117,7 +117,7 @@ def test_far_pixels_see_the_mean_of_the_tracks(seen):
 def test_walls_hold_none_above_their_feet(drawn, renderer_of):
     corners = [[(10, 8, 0.5), (10, -8, 0.5), (10, -8, 8), (10, 8, 8)]]
     wall = quads(corners, np.zeros((1, 4, 2)), material("plain", (0.6, 0.2, 0.2)))
-    views = looking([(0, 0, 2)], fov=0.6)
+    views = looking([(0, 0, 4)], fov=0.4)  # nothing but the wall
     snowy, dry = [
         drawn(renderer_of(scene_of([wall], [0]), lighting=light), views).rgb
         for light in (SNOW, bare(SNOW))
