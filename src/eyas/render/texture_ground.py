@@ -24,15 +24,17 @@ Texture = NDArray[np.uint8]
 
 def asphalt() -> Texture:
     """Return a dark blue-grey road surface: aggregate, sealed cracks, a few darker patches."""
-    return _asphalt("asphalt", (63.0, 64.5, 69.0), stones=0.5)
+    return _asphalt("asphalt", (63.0, 64.5, 69.0), stones=0.5, cracked=0.16)
 
 
 def asphalt_light() -> Texture:
     """Return the worn, light surface of car parks."""
-    return _asphalt("asphalt_light", (122.0, 121.0, 117.0), stones=0.3)
+    return _asphalt("asphalt_light", (122.0, 121.0, 117.0), stones=0.3, cracked=0.03)
 
 
-def _asphalt(name: str, colour: tuple[float, float, float], stones: float) -> Texture:
+def _asphalt(
+    name: str, colour: tuple[float, float, float], stones: float, cracked: float
+) -> Texture:
     rng = source(name)
     grain = 0.085 * white(rng) + 0.05 * blurred(white(rng), 1.0) / 0.28
     cloud = 0.035 * fractal(rng, 1.0, longest=90.0)
@@ -49,7 +51,7 @@ def _asphalt(name: str, colour: tuple[float, float, float], stones: float) -> Te
     )
     dust = np.clip((fractal(rng, 1.4, longest=120.0) - 0.9) * 0.6, 0, 1)
     picture = mixed(picture, (128.0, 122.0, 112.0), 0.14 * dust)
-    picture = mixed(picture, (34.0, 34.0, 37.0), 0.55 * cracks(rng, 1.0, 0.16))
+    picture = mixed(picture, (34.0, 34.0, 37.0), 0.55 * cracks(rng, 1.0, cracked))
     return opaque(picture)
 
 

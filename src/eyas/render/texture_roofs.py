@@ -17,7 +17,7 @@ def roof_tiles() -> Texture:
     curve = np.cos((tiles.across - 0.42) * 2 * np.pi)
     light = 0.16 * curve - 0.38 * (tiles.down > 0.86) + 0.1 * (tiles.down < 0.14)
     grain = 0.03 * white(rng) + 0.035 * fractal(rng, 0.9, longest=60.0)
-    picture = painted((196.0, 105.0, 71.0), light + grain + 0.075 * tiles.shade)
+    picture = painted((188.0, 106.0, 76.0), light + grain + 0.075 * tiles.shade)
     warm = masonry(rng, 16, 16, joint=0.0, bond=0.0).shade
     picture += warm[..., None] * np.array([3.0, 5.0, 4.0])
     moss = np.clip((fractal(rng, 1.1, longest=60.0) - 1.1) * 0.9, 0, 1)
@@ -29,7 +29,7 @@ def roof_terrace() -> Texture:
     rng = source("roof_terrace")
     slabs = masonry(rng, 16, 16, joint=0.9, bond=0.0)
     grain = 0.03 * white(rng) + 0.035 * fractal(rng, 0.8, longest=70.0)
-    picture = painted((194.0, 110.0, 76.0), grain + 0.05 * slabs.shade)
+    picture = painted((188.0, 110.0, 80.0), grain + 0.05 * slabs.shade)
     warm = masonry(rng, 16, 16, joint=0.0, bond=0.0).shade
     picture += warm[..., None] * np.array([3.0, 5.0, 5.0])
     soot = np.clip(0.6 * fractal(rng, 1.4, longest=130.0) - 0.15, 0, 1)

@@ -46,12 +46,16 @@ def asphalt_lane() -> Texture:
     across = (np.arange(SIZE)[None] + 0.5) / SIZE * 2 - 1
     sway = 0.03 * fractal(rng, 1.5, longest=100.0)
     track = np.exp(-(((np.abs(across + sway) - 0.5) / 0.17) ** 2))
-    # Twice as many texels in a metre across as along: grain that is round on the road.
-    grain = fractal(rng, 0.25, longest=14.0, stretch=(0.5, 1.0))
+    # Twice as many texels in a metre across as along: two make one grain of the road's asphalt.
+    grain = np.repeat(rng.normal(size=(SIZE, SIZE // 2)), 2, axis=1)
+    lumps = fractal(rng, 0.8, longest=14.0, stretch=(0.5, 1.0))
     cloud = fractal(rng, 1.0, longest=70.0, stretch=(0.5, 1.0))
-    picture = painted((63.0, 64.5, 69.0), (1 - 0.35 * track) * 0.12 * grain + 0.03 * cloud)
-    stone = rng.random(grain.shape)
-    picture = mixed(picture, (150.0, 147.0, 140.0), (1 - 0.6 * track) * 0.4 * (stone > 0.985))
+    picture = painted(
+        (63.0, 64.5, 69.0), (1 - 0.3 * track) * (0.1 * grain + 0.06 * lumps) + 0.04 * cloud
+    )
+    stone = np.repeat(rng.random((SIZE, SIZE // 2)), 2, axis=1)
+    picture = mixed(picture, (28.0, 28.0, 31.0), 0.5 * (stone < 0.03))
+    picture = mixed(picture, (150.0, 147.0, 140.0), (1 - 0.5 * track) * 0.5 * (stone > 0.985))
     picture = mixed(picture, (46.0, 47.0, 50.0), 0.55 * track * (1 + 0.25 * cloud))
     drip = np.exp(-((across / 0.12) ** 2)) * np.clip(0.5 + 0.4 * cloud, 0, 1)
     return opaque(mixed(picture, (42.0, 42.0, 44.0), 0.3 * drip))
@@ -63,11 +67,11 @@ def asphalt_oil() -> Texture:
     across = (np.arange(SIZE)[None] + 0.5) / SIZE * 2 - 1
     grain = 0.09 * white(rng) + 0.05 * fractal(rng, 0.8, longest=30.0)
     picture = painted((62.0, 63.0, 66.0), grain)
-    where = np.clip(1.25 - 1.35 * np.abs(across), 0, 1)
+    where = np.clip(1.0 - np.abs(across), 0, 1)
     cloud = np.clip(0.55 + 0.45 * fractal(rng, 1.2, longest=60.0), 0, 1)
-    picture = mixed(picture, painted((34.0, 34.0, 36.0), 0.5 * grain), 0.75 * where * cloud)
+    picture = mixed(picture, painted((40.0, 40.0, 42.0), 0.6 * grain), 0.7 * where * cloud)
     drops = fractal(rng, 1.3, longest=16.0) * where
-    return opaque(mixed(picture, (22.0, 22.0, 24.0), 0.8 * np.clip((drops - 1.1) * 4, 0, 1)))
+    return opaque(mixed(picture, (22.0, 22.0, 24.0), 0.6 * np.clip((drops - 1.2) * 3, 0, 1)))
 
 
 def manhole() -> Texture:

@@ -14,7 +14,7 @@ __all__ = ["KINDS", "furniture_levels"]
 KINDS = ("bench", "bin", "hydrant", "shelter", "post_box", "tub")
 """The prototypes, in the order of `furniture_levels`."""
 
-_WOOD = material("bark", (0.86, 0.62, 0.42))
+_WOOD = material("bark", (0.70, 0.54, 0.42))
 _IRON = material("plain", (0.22, 0.23, 0.24))
 _STEEL = material("plain", (0.58, 0.60, 0.62))
 _GREEN = material("plain", (0.20, 0.34, 0.25))

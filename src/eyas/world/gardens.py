@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from eyas.state.scene import ObjectClass
 from eyas.world.assembly import SceneBuilder
-from eyas.world.plants import HEDGE_LENGTH, KINDS
+from eyas.world.plants import KINDS, PIECE
 
-__all__ = ["add_borders", "add_hedge", "add_small_trees", "paved_yards", "scattered"]
+__all__ = ["add_borders", "add_row", "add_small_trees", "clustered", "paved_yards", "scattered"]
 
 _APRON = 0.9
 """Width of the paving at the foot of walls [m]."""
@@ -22,12 +22,14 @@ _DOOR_WALL = 7.0
 
 _BORDER = 1.85
 """From a wall to the plants along it [m]."""
-_PLANTED = 0.6
+_PLANTED = 0.55
 """Share of the walls with plants along them."""
+_CLIPPED = 0.4
+"""Share of those with a hedge."""
 _ROOM = 0.9
 """Radius of what a plant takes up [m]."""
 
-_SHRUBS = ("round", "wide", "tall")
+_BORDERS = ("border", "low_border", "tall_border")
 
 Points = NDArray[np.float64]
 
@@ -95,6 +97,7 @@ def add_borders(
         rng: Of the gardens.
     """
     free = shapely.buffer(room, -_ROOM / 2)
+    shapely.prepare(free)
     for corners in footprints:
         for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
             length = float(np.linalg.norm(end - start))
@@ -102,53 +105,42 @@ def add_borders(
                 continue
             along = (end - start) / length
             line = np.stack([start, end]) + _BORDER * np.array([along[1], -along[0]])
-            if rng.random() < 0.45:
-                add_hedge(builder, line, free, floor, first, rng)
-            else:
-                _add_shrubs(builder, line, free, floor, first, rng)
+            kinds = ("hedge",) if rng.random() < _CLIPPED else _BORDERS
+            add_row(builder, kinds, line, free, floor, first, rng)
 
 
-def add_hedge(
+def add_row(
     builder: SceneBuilder,
+    kinds: Sequence[str],
     line: Points,
     room: shapely.Geometry,
     floor: float,
     first: int,
     rng: np.random.Generator,
 ) -> None:
-    """Plant a hedge along a line, shape (2, 2), where there is room; see `add_borders`."""
+    """Plant pieces of hedge or border along a line where there is room.
+
+    Args:
+        builder: Takes the plants.
+        kinds: Of `plants.KINDS`; one is drawn for each piece.
+        line: Both ends [m], shape (2, 2).
+        room: Where pieces may stand, whole [m].
+        floor: z of the lawn [m].
+        first: Number of the first of `plant_levels` among the fixtures.
+        rng: Of the gardens.
+    """
     length = float(np.linalg.norm(line[1] - line[0]))
     along = (line[1] - line[0]) / length
     turn = float(np.arctan2(along[1], along[0]))
-    for at in np.arange(HEDGE_LENGTH / 2, length, 0.93 * HEDGE_LENGTH):
-        place = line[0] + at * along
-        if shapely.contains_xy(room, *place):
-            flip = np.pi * float(rng.integers(2))
-            _plant(builder, "hedge", place, turn + flip, rng.uniform(0.95, 1.06), floor, first)
-
-
-def _add_shrubs(
-    builder: SceneBuilder,
-    line: Points,
-    room: shapely.Geometry,
-    floor: float,
-    first: int,
-    rng: np.random.Generator,
-) -> None:
-    """Plant shrubs of two kinds along a line."""
-    length = float(np.linalg.norm(line[1] - line[0]))
-    kinds = rng.choice(_SHRUBS, 2)
-    for at in np.cumsum(rng.uniform(1.2, 3.4, int(length / 1.2))):
-        place = line[0] + (line[1] - line[0]) * min(at / length, 2.0) + rng.normal(0, 0.18, 2)
-        if at < length and shapely.contains_xy(room, *place):
-            kind, turn = str(kinds[int(rng.integers(2))]), rng.uniform(0, 2 * np.pi)
-            _plant(builder, kind, place, turn, rng.uniform(0.75, 1.25), floor, first)
-
-
-def _plant(builder: SceneBuilder, kind: str, place: Points, turn: float, scale: float,
-           floor: float, first: int) -> None:  # fmt: skip
-    spot = (float(place[0]), float(place[1]), floor)
-    builder.add_copy(ObjectClass.TREE, first + KINDS.index(kind), spot, turn, scale)
+    step = length / max(round(length / PIECE), 1)
+    for at in np.arange(step / 2, length, step):
+        middle = line[0] + at * along
+        ends = middle + np.outer([-0.5, 0.5], PIECE * along)
+        if shapely.contains(room, shapely.LineString(ends)):
+            number = first + KINDS.index(str(rng.choice(kinds)))
+            spot = (float(middle[0]), float(middle[1]), floor)
+            way = turn + np.pi * float(rng.integers(2))
+            builder.add_copy(ObjectClass.TREE, number, spot, way, rng.uniform(0.97, 1.06))
 
 
 def scattered(
@@ -174,6 +166,27 @@ def scattered(
             if np.linalg.norm(chosen - point, axis=1).min(initial=np.inf) > apart:
                 chosen = np.concatenate([chosen, point[None]])
     return chosen
+
+
+def clustered(
+    centres: Points,
+    spread: float,
+    count: tuple[int, int],
+    room: shapely.Geometry,
+    rng: np.random.Generator,
+) -> Points:
+    """Return points in groups, shape (K, 2) [m].
+
+    Args:
+        centres: Of the groups [m], shape (C, 2).
+        spread: Standard deviation about them [m].
+        count: Least and largest number in a group.
+        room: Where they may be [m].
+        rng: Of the points.
+    """
+    groups = [c + rng.normal(0, spread, (int(rng.integers(*count)), 2)) for c in centres]
+    points = np.concatenate([np.zeros((0, 2)), *groups])
+    return points[shapely.contains_xy(room, points)]
 
 
 def add_small_trees(

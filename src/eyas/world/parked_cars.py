@@ -59,17 +59,15 @@ def _hull(outline: Points, paint: Material) -> Mesh:
     x, half, z = outline.T
     left, right = np.stack([x, half, z], axis=1), np.stack([x, -half, z], axis=1)
     top = np.stack([left[:-1], right[:-1], right[1:], left[1:]], axis=1)
-    top = np.flip(top, axis=1) if _faces_down(top) else top
     sill = float(z.min())
     low_left, low_right = (np.column_stack([side[:, :2], np.full(len(x), sill)])
                            for side in (left, right))  # fmt: skip
     sides = [
-        np.stack([left[:-1], left[1:], low_left[1:], low_left[:-1]], axis=1)[:, ::-1],
-        np.stack([right[:-1], low_right[:-1], low_right[1:], right[1:]], axis=1)[:, ::-1],
+        np.stack([side[:-1], side[1:], low[1:], low[:-1]], axis=1)
+        for side, low in ((left, low_left), (right, low_right))
     ]
-    faces = np.concatenate([top, *(_outwards(side) for side in sides)])
-    mesh = quads(faces, np.zeros((len(faces), 4, 2)), paint)
-    return mesh
+    faces = np.concatenate([_outwards(side) for side in (top, *sides)])
+    return quads(faces, np.zeros((len(faces), 4, 2)), paint)
 
 
 def _cabin(outline: Points, paint: Material) -> Mesh:
@@ -90,11 +88,6 @@ def _outwards(faces: Points) -> Points:
     normal = np.cross(faces[:, 2] - faces[:, 0], faces[:, 3] - faces[:, 1])
     inwards = np.einsum("qi,qi->q", normal, faces.mean(axis=1) - middle) < 0
     return np.where(inwards[:, None, None], faces[:, ::-1], faces)
-
-
-def _faces_down(faces: Points) -> bool:
-    normal = np.cross(faces[:, 2] - faces[:, 0], faces[:, 3] - faces[:, 1])
-    return bool(normal[len(faces) // 2, 2] < 0)
 
 
 def _lamps(body: Points) -> Mesh:

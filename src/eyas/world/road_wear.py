@@ -21,7 +21,12 @@ __all__ = ["WEAR_HEIGHTS", "road_wear"]
 WEAR_HEIGHTS = (0.003, 0.006, 0.009)
 """z of tracks; of patches and oil; of lids and seals: between the asphalt and the paint [m]."""
 
-_LANE = material("asphalt_lane")
+_LANES = (
+    material("asphalt_lane"),
+    material("asphalt_lane", (0.95, 0.95, 0.96)),
+    material("asphalt_lane", (1.0, 0.98, 0.96)),
+)
+"""Lanes were not all paved in one year."""
 _LANE_HALF = 1.6
 """Half the width of the strip in which tyres run [m]."""
 
@@ -32,7 +37,7 @@ _PATCH_LENGTH, _PATCH_WIDTH = (1.5, 6.5), (0.9, 2.6)
 _WAITING = (0.5, 13.0)
 """Where cars wait, from the end of a lane back [m]."""
 _OIL = material("asphalt_oil")
-_OIL_HALF = 0.62
+_OIL_HALF = 0.8
 
 _LID = material("manhole")
 _LID_EVERY = 62.0
@@ -58,7 +63,8 @@ def road_wear(network: RoadNetwork, rng: np.random.Generator) -> Mesh:
     meshes, patches, lids, oil = [], [], [], []
     for low, high in pairwise(network.lane_first):
         lane = shapely.LineString(network.lane_points[low:high])
-        meshes.append(_tracks(lane, float(rng.random())))
+        paved = _LANES[int(rng.integers(len(_LANES)))]
+        meshes.append(_tracks(lane, float(rng.random()), paved))
         for start in _places(lane.length, _PATCH_EVERY, rng):
             half_width = rng.uniform(*_PATCH_WIDTH) / 2
             end = start + rng.uniform(*_PATCH_LENGTH)
@@ -95,12 +101,13 @@ def _beside(lane: shapely.LineString, start: float, end: float, right: float, le
     return np.array([from_ + x * along + y * across for x, y in corners])
 
 
-def _tracks(lane: shapely.LineString, start: float) -> Mesh:
+def _tracks(lane: shapely.LineString, start: float, paved: Material) -> Mesh:
     """Return the strip of a lane in which tyres run, its texture across it once.
 
     Args:
         lane: Middle of the lane [m].
         start: Where in the texture it begins [tiles].
+        paved: What it is made of.
     """
     middle = shapely.get_coordinates(shapely.segmentize(lane, GRID))
     along = np.gradient(middle, axis=0)
@@ -112,7 +119,7 @@ def _tracks(lane: shapely.LineString, start: float) -> Mesh:
     gone = np.linalg.norm(np.diff(middle, axis=0), axis=1).cumsum() / TEXTURES["asphalt_lane"]
     v = np.stack([np.append(0.0, gone[:-1]), gone, gone, np.append(0.0, gone[:-1])], axis=1)
     u = np.broadcast_to([0.0, 0.0, 1.0, 1.0], v.shape)
-    return quads(corners, np.stack([u, v + start], axis=2), _LANE)
+    return quads(corners, np.stack([u, v + start], axis=2), paved)
 
 
 def _seal(lane: shapely.LineString, at: float, rng: np.random.Generator) -> Mesh:

@@ -1,5 +1,7 @@
 """What grows between the houses of the street city, and the cars that stand in its car parks."""
 
+from itertools import pairwise
+
 import numpy as np
 import shapely
 
@@ -15,9 +17,10 @@ from eyas.world.trees import VARIANTS
 
 __all__ = ["add_greenery", "add_parked"]
 
-_GARDEN_TREES = ((4.5, 8.5), 9.0, 0.004)
+_GARDEN_TREES = ((4.5, 8.5), 11.0, 0.0022)
 """Heights and least distance [m], and how many are tried on a square metre."""
-_MEADOW_TREES = ((5.0, 11.0), 13.0, 0.0009)
+_MEADOW_TREES = ((4.0, 11.0), 70.0, 0.0004)
+"""The same for the groups of trees beyond the outer streets."""
 _FROM_WALL = 4.5
 _FROM_STREET = 14.0
 """Of the trees beyond the outer streets [m]."""
@@ -45,12 +48,13 @@ def add_greenery(
     """
     deck = shapely.buffer(overpass.deck_area(plan.deck), 2.0)
     inside = shapely.difference(shapely.union_all(plan.blocks), shapely.union(taken, deck))
+    shapely.prepare(inside)
     gardens.add_borders(builder, plan.footprints, inside, FLOOR_HEIGHT, first, rng)
     built = shapely.union_all([shapely.Polygon(corners) for corners in plan.footprints])
     for park in plan.car_parks:
         ring = shapely.get_coordinates(shapely.buffer(park.area, 1.2, join_style="mitre"))
-        for side in zip(ring[:-1], ring[1:], strict=True):
-            gardens.add_hedge(builder, np.array(side), inside, FLOOR_HEIGHT, first, rng)
+        for side in pairwise(ring):
+            gardens.add_row(builder, ("hedge",), np.array(side), inside, FLOOR_HEIGHT, first, rng)
     heights, apart, density = _GARDEN_TREES
     room = shapely.difference(shapely.buffer(inside, -1.6), shapely.buffer(built, _FROM_WALL))
     spots = gardens.scattered(room, apart, density, rng)
@@ -60,7 +64,8 @@ def add_greenery(
     room = shapely.difference(
         shapely.buffer(EXTENT, -8.0), shapely.union_all([streets, *plan.blocks])
     )
-    spots = gardens.scattered(room, apart, density, rng)
+    groups = gardens.scattered(room, apart, density, rng)
+    spots = gardens.clustered(groups, 7.0, (1, 6), room, rng)
     gardens.add_small_trees(builder, spots, heights, FLOOR_HEIGHT, VARIANTS, rng)
     return plant_levels(rng)
 
