@@ -16,7 +16,7 @@ __all__ = ["chance_of", "mesh_of"]
 _TALL = 10
 """Storeys from which on a building has a base and a top [storeys]."""
 
-_BAND = 7
+_BAND = 11
 """Storeys after which a high wall starts at other bays."""
 
 _CROWNS = {

@@ -22,7 +22,7 @@ _DOOR_WALL = 7.0
 
 _BORDER = 1.85
 """From a wall to the plants along it [m]."""
-_PLANTED = 0.55
+_PLANTED = 0.45
 """Share of the walls with plants along them."""
 _CLIPPED = 0.4
 """Share of those with a hedge."""

@@ -63,8 +63,8 @@ def _hedge(rng: np.random.Generator) -> Levels:
     cut = box((PIECE, 0.74, 0.9), (0.0, 0.0, 0.43), core, 3.0)
     inner = box((PIECE, 0.6, 0.8), (0.0, 0.0, 0.4), Material("leaves", _CORE), 3.0)
     return (
-        concatenate([inner, leaf_cards(crown, 150, (0.3, 0.45), _DARK, rng, bent=False)]),
-        concatenate([inner, leaf_cards(crown, 44, (0.5, 0.7), _DARK, rng, bent=False)]),
+        concatenate([inner, leaf_cards(crown, 330, (0.24, 0.38), _DARK, rng, bent=False)]),
+        concatenate([inner, leaf_cards(crown, 190, (0.32, 0.46), _DARK, rng, bent=False)]),
         cut,
     )
 

@@ -45,26 +45,26 @@ _LID_HALF = 0.48
 """Half the side of a lid with the asphalt around it [m]."""
 
 _SEAL = material("asphalt_patch", (0.62, 0.62, 0.64))
-_SEAL_EVERY = 75.0
+_SEAL_EVERY = 120.0
 """Mean distance of two sealed cracks along a lane [m]."""
 _SEAL_HALF = 0.045
-_SEAL_STEPS = 7
+_SEAL_STEPS = 6
 
 Line = NDArray[np.float64]
 
 
 def road_wear(network: RoadNetwork, rng: np.random.Generator) -> Mesh:
-    """Return the wear of all lanes.
+    """Return the wear of all lanes, the upper layers first.
 
     Args:
         network: The roads.
         rng: Of the map; says where patches, seals and lids are.
     """
-    meshes, patches, lids, oil = [], [], [], []
+    tracks, seals, patches, lids, oil = [], [], [], [], []
     for low, high in pairwise(network.lane_first):
         lane = shapely.LineString(network.lane_points[low:high])
         paved = _LANES[int(rng.integers(len(_LANES)))]
-        meshes.append(_tracks(lane, float(rng.random()), paved))
+        tracks.append(_tracks(lane, float(rng.random()), paved))
         for start in _places(lane.length, _PATCH_EVERY, rng):
             half_width = rng.uniform(*_PATCH_WIDTH) / 2
             end = start + rng.uniform(*_PATCH_LENGTH)
@@ -77,12 +77,13 @@ def road_wear(network: RoadNetwork, rng: np.random.Generator) -> Mesh:
             aside = rng.uniform(-0.5, 0.5)
             sides = (at - _LID_HALF, at + _LID_HALF, aside - _LID_HALF, aside + _LID_HALF)
             lids.append(_beside(lane, *sides))
-        meshes += [_seal(lane, at, rng) for at in _places(lane.length, _SEAL_EVERY, rng)]
+        seals += [_seal(lane, at, rng) for at in _places(lane.length, _SEAL_EVERY, rng)]
     flat = _slabs(patches, WEAR_HEIGHTS[1], _PATCH)
     flat.uvs = (flat.positions[:, :2] / TEXTURES["asphalt_patch"]).astype(np.float32)
     stains = _slabs(oil, WEAR_HEIGHTS[1], _OIL)
     stains.uvs[:, 1] *= (_WAITING[1] - _WAITING[0]) / TEXTURES["asphalt_oil"]
-    return concatenate([*meshes, flat, stains, _slabs(lids, WEAR_HEIGHTS[2], _LID)])
+    top_down = [*seals, _slabs(lids, WEAR_HEIGHTS[2], _LID), flat, stains, *tracks]
+    return concatenate(top_down)
 
 
 def _places(length: float, every: float, rng: np.random.Generator) -> Line:

@@ -92,7 +92,7 @@ def joints(network: RoadNetwork) -> dict[str, int]:
 def road_area(network: RoadNetwork) -> shapely.MultiPolygon:
     """Return what is paved for cars: all lanes and junctions, with room to turn at corners."""
     rounded = rounded_kerbs(corridors(network), _bends(network))
-    return shapely.MultiPolygon(polygons_of(shapely.simplify(rounded, 0.015)))
+    return shapely.MultiPolygon(polygons_of(shapely.simplify(rounded, 0.035)))
 
 
 def corridors(network: RoadNetwork) -> shapely.MultiPolygon:

@@ -50,10 +50,11 @@ def build_scene(network: RoadNetwork, seed: int) -> Scene:
     plan = make_plan(network, seed)
     builder = SceneBuilder()
     yards = gardens.paved_yards(plan.footprints, plan.pavement, _no_lawn(plan))
-    _add_ground(builder, plan, network, yards, seed)
-    _add_overpass(builder, plan)
     levels = _add_trees(builder, plan, stream(seed, "citystreet trees", 1))
+    # What hides most comes first: it is drawn first, and nobody draws over it.
     _add_buildings(builder, plan, len(levels))
+    _add_overpass(builder, plan)
+    _add_ground(builder, plan, network, yards, seed)
     levels += rooftops.rooftop_levels()
     add_signals(builder, network, len(levels))
     levels += [signal_levels(), lamp_levels()]
@@ -113,15 +114,15 @@ def _add_ground(
     covered = shapely.union_all([_no_lawn(plan), *yards])
     land = outskirts.fields(FLOOR, ground.FLOOR_HEIGHT, rng)
     mown = shapely.union_all(plan.blocks)
-    builder.add(ObjectClass.GROUND, ground.lawn(EXTENT, covered, rng, mown, turn), land)
-    wear = road_wear.road_wear(network, stream(seed, "citystreet road wear"))
-    builder.add(ObjectClass.ROAD, ground.asphalt(paved), wear)
     paint = markings.mesh_of(markings.road_paint(network))
     bays = [markings.painted(park.lines, markings.WHITE) for park in plan.car_parks]
     builder.add(ObjectClass.MARKING, paint, *bays)
+    wear = road_wear.road_wear(network, stream(seed, "citystreet road wear"))
+    builder.add(ObjectClass.ROAD, wear, ground.asphalt(paved))
     builder.add(ObjectClass.PAVEMENT, ground.pavement(plan.pavement, paved, turn))
     builder.add(ObjectClass.PAVEMENT, ground.yards(yards, turn, rng))
     builder.add(ObjectClass.ROAD, ground.asphalt(plan.lots, light=True))
+    builder.add(ObjectClass.GROUND, ground.lawn(EXTENT, covered, rng, mown, turn), land)
     if plan.pools:
         rim = shapely.difference(shapely.buffer(pools, 0.8, join_style="mitre"), pools)
         builder.add(ObjectClass.WATER, surface(pools, -0.15, _WATER, materials.TEXTURES["water"]))
