@@ -19,6 +19,12 @@ __all__ = ["CHUNK", "build_geometry"]
 CHUNK = 32.0
 """Side of the squares that static triangles are sorted into [m]."""
 
+_FIXTURE_CELL = 6.0
+"""Side of the squares by which fixtures are sorted, so that groups of them are small [m]."""
+
+_HIGH = 4.0
+"""What stands higher than this is in a group with other such things [m]."""
+
 
 def build_geometry(
     scene: Scene, parts: PartLibrary, textures: Mapping[str, NDArray[np.uint8]]
@@ -39,7 +45,7 @@ def build_geometry(
     mesh_range = [pool.add(mesh, None) for levels in prototypes for mesh in levels]
     box = np.array([_box(levels[0].positions) for levels in prototypes], np.float32).reshape(-1, 6)
     sphere = [_sphere(levels[0].positions) for levels in prototypes]
-    order = _morton_order(scene.fixtures.pose[:, :2, 3])
+    order = _fixture_order(scene.fixtures.pose[:, :, 3])
     pose = np.ascontiguousarray(scene.fixtures.pose[order], np.float32)
     prototype = scene.fixtures.prototype[order].astype(np.int32)
     palette = tuple(pool.palette)
@@ -212,10 +218,11 @@ def _group_boxes(boxes: NDArray[np.float32]) -> NDArray[np.float32]:
     return np.ascontiguousarray(np.concatenate([low, high], axis=1), np.float32)
 
 
-def _morton_order(points: NDArray[np.float32]) -> NDArray[np.intp]:
-    """Return an order in which neighbours in the plane are neighbours in the list."""
-    cell = np.floor(points / CHUNK).astype(np.int64)
-    return np.argsort(_morton(cell - cell.min(axis=0, initial=0)), kind="stable")
+def _fixture_order(points: NDArray[np.float32]) -> NDArray[np.intp]:
+    """Return an order in which neighbours are neighbours in the list, high things apart."""
+    cell = np.floor(points[:, :2] / _FIXTURE_CELL).astype(np.int64)
+    key = _morton(cell - cell.min(axis=0, initial=0))
+    return np.lexsort((key, points[:, 2] > _HIGH))
 
 
 def _morton(cell: NDArray[np.int64]) -> NDArray[np.int64]:

@@ -4,6 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.render.texture_fields import (
+    SIZE,
+    Picture,
     blurred,
     cracks,
     fractal,
@@ -15,22 +17,24 @@ from eyas.render.texture_fields import (
     white,
 )
 
-__all__ = ["asphalt", "asphalt_light", "lawn", "paving", "soil"]
+__all__ = ["asphalt", "asphalt_light", "lawn", "lawn_mown", "paving", "soil"]
 
 Texture = NDArray[np.uint8]
 
 
 def asphalt() -> Texture:
     """Return a dark blue-grey road surface: aggregate, sealed cracks, a few darker patches."""
-    return _asphalt("asphalt", (63.0, 64.5, 69.0), stones=0.5)
+    return _asphalt("asphalt", (63.0, 64.5, 69.0), stones=0.5, cracked=0.16)
 
 
 def asphalt_light() -> Texture:
     """Return the worn, light surface of car parks."""
-    return _asphalt("asphalt_light", (122.0, 121.0, 117.0), stones=0.3)
+    return _asphalt("asphalt_light", (122.0, 121.0, 117.0), stones=0.3, cracked=0.03)
 
 
-def _asphalt(name: str, colour: tuple[float, float, float], stones: float) -> Texture:
+def _asphalt(
+    name: str, colour: tuple[float, float, float], stones: float, cracked: float
+) -> Texture:
     rng = source(name)
     grain = 0.085 * white(rng) + 0.05 * blurred(white(rng), 1.0) / 0.28
     cloud = 0.035 * fractal(rng, 1.0, longest=90.0)
@@ -47,7 +51,7 @@ def _asphalt(name: str, colour: tuple[float, float, float], stones: float) -> Te
     )
     dust = np.clip((fractal(rng, 1.4, longest=120.0) - 0.9) * 0.6, 0, 1)
     picture = mixed(picture, (128.0, 122.0, 112.0), 0.14 * dust)
-    picture = mixed(picture, (34.0, 34.0, 37.0), 0.55 * cracks(rng, 1.0, 0.16))
+    picture = mixed(picture, (34.0, 34.0, 37.0), 0.55 * cracks(rng, 1.0, cracked))
     return opaque(picture)
 
 
@@ -69,18 +73,31 @@ def paving() -> Texture:
 
 def lawn() -> Texture:
     """Return yellow-green grass, lively near by and even from far, as in the original."""
-    rng = source("lawn")
+    return opaque(_grass(source("lawn"), dryness=0.6))
+
+
+def lawn_mown() -> Texture:
+    """Return grass that was mown to and fro along u: four pairs of a light and a dark swath."""
+    rng = source("lawn_mown")
+    picture = _grass(rng, dryness=0.4)
+    y = (np.arange(SIZE)[:, None] + 0.5) / SIZE
+    wander = 0.1 * fractal(rng, 1.6, longest=120.0)
+    swath = np.clip(5.0 * np.sin(2 * np.pi * (4 * y) + wander), -1, 1)
+    return opaque(picture * (1.0 + 0.035 * swath[..., None] * np.array([1.0, 0.9, 1.1])))
+
+
+def _grass(rng: np.random.Generator, dryness: float) -> Picture:
+    """Return grass; `dryness` is how far its dry spots differ."""
     blades = fractal(rng, 0.35, longest=10.0, stretch=(1.5, 0.8))
     tufts = fractal(rng, 0.9, longest=28.0)
     cloud = fractal(rng, 1.2, longest=70.0)
     picture = painted((143.0, 178.0, 88.0), 0.13 * blades + 0.06 * tufts + 0.018 * cloud)
     dry = np.clip(0.5 * fractal(rng, 0.9, longest=34.0) - 0.35, 0, 1)
-    picture = mixed(picture, painted((186.0, 188.0, 106.0), 0.1 * blades), 0.6 * dry)
+    picture = mixed(picture, painted((186.0, 188.0, 106.0), 0.1 * blades), dryness * dry)
     deep = np.clip(0.6 * tufts - 0.5 + 0.35 * white(rng), 0, 1)
     picture = mixed(picture, painted((88.0, 128.0, 52.0), 0.12 * blades), 0.55 * deep)
     flower = rng.random(blades.shape)
-    picture = mixed(picture, (226.0, 222.0, 150.0), 0.5 * (flower > 0.996))
-    return opaque(picture)
+    return mixed(picture, (226.0, 222.0, 150.0), 0.5 * (flower > 0.996))
 
 
 def soil() -> Texture:

@@ -49,16 +49,16 @@ def _cluster(
     picture: NDArray[np.float64], alpha: NDArray[np.float64], rng: np.random.Generator
 ) -> None:
     """Draw leaves along twigs that spread from the middle, the lowest first."""
-    for lightness in (0.6, 0.74, 0.88, 1.0):
-        for twig in np.linspace(0, 2 * np.pi, 10, endpoint=False) + rng.uniform(0, 1):
+    for lightness in (0.56, 0.7, 0.85, 1.0):
+        for twig in np.linspace(0, 2 * np.pi, 12, endpoint=False) + rng.uniform(0, 1):
             reach = rng.uniform(44, 58)
             bend = rng.uniform(-0.5, 0.5)
-            for step in np.arange(0.1, 1.0, 0.085):
+            for step in np.arange(0.1, 1.0, 0.058):
                 way = twig + bend * step
                 middle = 64 + step * reach * np.array([np.sin(way), np.cos(way)])
-                middle += rng.normal(0, 2.0, 2)
+                middle += rng.normal(0, 2.6, 2)
                 side = way + rng.choice([-1, 1]) * rng.uniform(0.3, 1.1)
-                length = rng.uniform(5.8, 8.2) * (1.1 - 0.25 * step)
+                length = rng.uniform(4.0, 5.8) * (1.1 - 0.25 * step)
                 shade = lightness * rng.uniform(0.84, 1.12)
                 _leaf(picture, alpha, middle, side, length, shade * _leaf_colour(rng))
 
@@ -66,8 +66,8 @@ def _cluster(
 def _leaf_colour(rng: np.random.Generator) -> NDArray[np.float64]:
     """Return dark to olive green, now and then light green or an orange-brown speck."""
     kind = rng.random()
-    if kind < 0.025:
-        return np.array([196.0, 128.0, 52.0])
+    if kind < 0.006:
+        return np.array([184.0, 132.0, 60.0])
     if kind < 0.13:
         return np.array([140.0, 156.0, 84.0])
     olive = rng.random()

@@ -31,7 +31,13 @@ class SceneBuilder:
         return len(self._classes) - 1
 
     def add_copy(
-        self, kind: ObjectClass, prototype: int, place: Sequence[float], turn: float, scale: float
+        self,
+        kind: ObjectClass,
+        prototype: int,
+        place: Sequence[float],
+        turn: float,
+        scale: float,
+        owner: int | None = None,
     ) -> int:
         """Add a copy of one of the fixtures that `build` is given; return its id.
 
@@ -41,6 +47,7 @@ class SceneBuilder:
             place: Where its origin stands [m], 3 numbers.
             turn: Counter-clockwise about z [rad].
             scale: Factor on its size.
+            owner: The object that it is part of; None: it is one of its own, of class `kind`.
         """
         cosine, sine = scale * np.cos(turn), scale * np.sin(turn)
         pose = np.array(
@@ -51,9 +58,11 @@ class SceneBuilder:
             ],
             np.float32,
         )
-        self._classes.append(kind)
-        self._copies.append((prototype, pose, len(self._classes) - 1))
-        return len(self._classes) - 1
+        if owner is None:
+            self._classes.append(kind)
+            owner = len(self._classes) - 1
+        self._copies.append((prototype, pose, owner))
+        return owner
 
     def add_prism(self, outline: ArrayLike, bottom: float, top: float, owner: int) -> None:
         """Add a solid with a counter-clockwise outline, shape (K, 2) [m]."""

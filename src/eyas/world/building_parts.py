@@ -4,11 +4,11 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from eyas.state.mesh import Material, Mesh, concatenate, transformed
-from eyas.world.materials import material
-from eyas.world.shapes import box, cylinder, flat_polygon, quads, walls
+from eyas.state.mesh import Material, Mesh, concatenate
+from eyas.world.materials import TEXTURES
+from eyas.world.shapes import flat_polygon, quads, walls
 
-__all__ = ["flat_roof", "ledge", "pyramid_rise", "pyramid_roof", "rooftop", "window_wall"]
+__all__ = ["flat_roof", "ledge", "pyramid_rise", "pyramid_roof", "window_wall"]
 
 Outline = NDArray[np.float64]
 
@@ -54,7 +54,7 @@ def flat_roof(
         walls(_ring(part)[::-1], top, top + parapet, stone, 6.0)
         for part in shapely.get_parts(inside)
     ]
-    pieces.append(flat_polygon(inside, top, cover, 4.0 if "roof" in cover.texture else 8.0))
+    pieces.append(flat_polygon(inside, top, cover, TEXTURES[cover.texture]))
     return concatenate(pieces)
 
 
@@ -96,50 +96,6 @@ def _areas(mesh: Mesh) -> NDArray[np.float64]:
     corners = np.asarray(mesh.positions[mesh.triangles], np.float64)
     face = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     return np.asarray(np.linalg.norm(face, axis=1) / 2, np.float64)
-
-
-def rooftop(outline: Outline, top: float, stone: Material, rng: np.random.Generator) -> Mesh:
-    """Return what stands on a flat roof: stair heads, plant rooms, fans, pipes, tanks."""
-    shape = shapely.Polygon(outline)
-    free = shapely.buffer(shape, -2.2, join_style="mitre")
-    axis = outline[1] - outline[0]
-    turn = float(np.arctan2(axis[1], axis[0]))
-    count = int(np.clip(shape.area / 140, 0, 14))
-    metal = material("concrete", (0.82, 0.86, 0.9))
-    pieces: list[Mesh] = []
-    for k in range(count):
-        size = rng.uniform((1.2, 1.2, 0.8), (3.4, 2.6, 1.7))
-        if k == 0:
-            size = rng.uniform((4.0, 3.0, 2.6), (8.0, 5.5, 3.4))
-        spot = _spot(free, float(np.hypot(size[0], size[1]) / 2), rng)
-        if spot is None:
-            continue
-        free = free - shapely.Point(spot).buffer(float(np.hypot(size[0], size[1]) / 2) + 0.8)
-        if k > 1 and rng.random() < 0.3:
-            tank = cylinder((0.9, 0.9), (0.0, 1.6), 10, metal, cap=True, tile=6.0)
-            pieces.append(_set_down(tank, 0.0, spot, top))
-        else:
-            block = box(size.tolist(), (0, 0, size[2] / 2), stone if k == 0 else metal, 6.0)
-            pieces.append(_set_down(block, turn, spot, top))
-    return concatenate(pieces)
-
-
-def _set_down(mesh: Mesh, turn: float, spot: Outline, top: float) -> Mesh:
-    c, s = np.cos(turn), np.sin(turn)
-    return transformed(mesh, np.array([[c, -s, 0, spot[0]], [s, c, 0, spot[1]], [0, 0, 1, top]]))
-
-
-def _spot(free: shapely.Geometry, radius: float, rng: np.random.Generator) -> Outline | None:
-    """Return a point at least `radius` within a shape, or None if a few tries find none."""
-    room = shapely.buffer(free, -radius)
-    if room.is_empty:
-        return None
-    west, south, east, north = room.bounds
-    for _ in range(12):
-        point = rng.uniform((west, south), (east, north))
-        if room.contains(shapely.Point(point)):
-            return np.asarray(point, np.float64)
-    return None
 
 
 def _ridge(outline: Outline, centre: Outline) -> Outline:

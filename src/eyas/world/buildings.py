@@ -1,6 +1,5 @@
 """Buildings: where they stand in city blocks, and what they look like."""
 
-import zlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -8,13 +7,14 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from eyas.state.mesh import Material, Mesh, concatenate
+from eyas.state.mesh import Material
 from eyas.world import building_parts as parts
+from eyas.world.building_looks import roof_cover, wall_tint
 from eyas.world.lots import divide, footprint_in, frame_angle, largest, turned
-from eyas.world.materials import FACADES, GROUND_FLOORS, facade, material
+from eyas.world.materials import FACADES
 from eyas.world.skyline import FLOOR, TOWER_SHARE, evenly, ground_areas, storeys
 
-__all__ = ["PARAPET", "SETBACK", "Building", "mesh_of", "place_buildings", "prism_of"]
+__all__ = ["FOOT", "PARAPET", "SETBACK", "Building", "place_buildings", "prism_of"]
 
 PARAPET = 0.9
 """Height of the wall around a flat roof [m]."""
@@ -22,7 +22,7 @@ PARAPET = 0.9
 SETBACK = 4.4
 """Least distance between a kerb and a building [m]."""
 
-_FOOT = -0.1
+FOOT = -0.1
 """z of the floor that buildings stand on [m]."""
 
 _YARD = 0.8
@@ -30,15 +30,6 @@ _YARD = 0.8
 
 _SMALL = 200.0
 """Larger parts of what is kept free shape the lots, smaller ones only notch footprints [m^2]."""
-
-_TINTS = (
-    (1.0, 1.0, 1.0),
-    (1.0, 0.97, 0.9),
-    (0.93, 0.95, 1.0),
-    (0.98, 0.92, 0.84),
-    (0.88, 0.88, 0.87),
-    (0.96, 0.98, 0.95),
-)
 
 
 @dataclass(frozen=True)
@@ -182,26 +173,15 @@ def _furnished(
         made.append(
             Building(
                 footprint=_corners(shape),
-                bottom=float(_FOOT + foot),
+                bottom=float(FOOT + foot),
                 height=float(top[i] - foot),
                 facade=kinds[i],
-                tint=_TINTS[int(rng.integers(len(_TINTS)))],
+                tint=wall_tint(rng),
                 roof="pyramid" if pyramid else "flat",
-                roof_material=_roof(top[i], rng, pyramid=pyramid),
+                roof_material=roof_cover(float(top[i]), rng, pyramid=pyramid),
             )
         )
     return made
-
-
-def _roof(top: float, rng: np.random.Generator, *, pyramid: bool) -> Material:
-    """Return what covers a roof: terracotta on most low ones, more often grey up high."""
-    shade = float(rng.uniform(0.86, 1.0))
-    tint = (1.0, shade, shade)
-    if pyramid:
-        return material("roof_tiles", tint)
-    if rng.random() < np.interp(top, [20.0, 90.0], [0.92, 0.35]):
-        return material("roof_terrace", tint)
-    return material("bitumen", (shade, shade, shade))
 
 
 def _corners(shape: shapely.Polygon) -> NDArray[np.float64]:
@@ -216,26 +196,3 @@ def prism_of(building: Building) -> tuple[NDArray[np.float64], float, float]:
         return building.footprint, building.bottom, top + PARAPET
     rise = parts.pyramid_rise(building.footprint)
     return building.footprint, building.bottom, top + rise / 2
-
-
-def mesh_of(building: Building) -> Mesh:
-    """Return what a building looks like from outside; the same building always looks the same."""
-    seed = zlib.crc32(building.footprint.tobytes())
-    rng = np.random.Generator(np.random.PCG64(seed))
-    foot, outline = building.bottom, building.footprint
-    top = foot + building.height
-    street = min(FLOOR, building.height - FLOOR) if foot <= _FOOT else 0.0
-    front = facade(GROUND_FLOORS[int(rng.integers(len(GROUND_FLOORS)))], building.tint)
-    stone = material("concrete", building.tint)
-    meshes = [
-        parts.window_wall(outline, foot + street, top, facade(building.facade, building.tint), rng)
-    ]
-    if street > 0:
-        meshes.append(parts.window_wall(outline, foot, foot + street, front, rng))
-        meshes.append(parts.ledge(outline, foot + street, stone))
-    if building.roof == "flat":
-        meshes.append(parts.flat_roof(outline, top, PARAPET, stone, building.roof_material))
-        meshes.append(parts.rooftop(outline, top, stone, rng))
-    else:
-        meshes.append(parts.pyramid_roof(outline, top, stone, building.roof_material))
-    return concatenate(meshes)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
 from eyas.world.ground import PAVEMENT_WIDTH
 from eyas.world.lots import frame_angle, turned
@@ -29,6 +30,8 @@ class CarPark:
     """Where cars stand, and the driveway [m]."""
     lines: list[shapely.Polygon]
     """Paint between the bays [m]."""
+    bays: NDArray[np.float64]
+    """Middle of each bay [m] and which way a car in it may look [rad], shape (K, 3)."""
 
 
 def place_car_parks(
@@ -108,9 +111,22 @@ def _placed(
     drive = shapely.box(middle - _DRIVEWAY / 2, street[0], middle + _DRIVEWAY / 2, street[1])
     way = shapely.intersection(drive, turned(block, -angle))
     entrance = shapely.buffer(way, _BAY_LENGTH + 0.3, join_style="mitre")
-    bays = [line for line in _bays(rectangle) if not line.intersects(entrance)]
+    lines = [line for line in _bays(rectangle) if not line.intersects(entrance)]
     area = turned(shapely.union(rectangle, way), angle)
-    return CarPark(area, [turned(line, angle) for line in bays])
+    bays = _between(lines)
+    cosine, sine = np.cos(angle), np.sin(angle)
+    bays[:, :2] = bays[:, :2] @ np.array([[cosine, sine], [-sine, cosine]])
+    bays[:, 2] += angle
+    return CarPark(area, [turned(line, angle) for line in lines], bays)
+
+
+def _between(lines: Sequence[shapely.Polygon]) -> NDArray[np.float64]:
+    """Return the bays between each line and the next of the same row, in the block's frame."""
+    middles = shapely.get_coordinates([line.centroid for line in lines]).reshape(-1, 2)
+    step = np.diff(middles, axis=0)
+    together = np.hypot(step[:, 0] - _BAY_WIDTH, step[:, 1]) < 0.01
+    middle = (middles[:-1] + step / 2)[together]
+    return np.column_stack([middle, np.full(len(middle), np.pi / 2)])
 
 
 def _bays(rectangle: shapely.Polygon) -> list[shapely.Polygon]:

@@ -8,15 +8,18 @@ import shapely
 from eyas.state.mesh import Mesh, concatenate
 from eyas.world.materials import TEXTURES, material
 from eyas.world.roads import skirt, surface
+from eyas.world.shapes import flat_polygon
 
 __all__ = [
     "FLOOR_HEIGHT",
+    "KERB_HEIGHT",
     "PAVEMENT_WIDTH",
     "asphalt",
     "lawn",
     "pavement",
     "pavement_area",
     "verge_area",
+    "yards",
 ]
 
 FLOOR_HEIGHT = -0.1
@@ -28,11 +31,19 @@ PAVEMENT_WIDTH = 2.6
 _VERGE = 1.5
 """Width of the pavement along the outer side of the outer streets [m]."""
 
-_KERB_WIDTH, _KERB_HEIGHT = 0.35, 0.15
+KERB_HEIGHT = 0.15
+"""z of the pavements [m]."""
+
+_KERB_WIDTH = 0.35
 _KERB = material("stone", (1.0, 0.95, 0.92))
 _PAVING = material("paving")
 _CONCRETE = material("concrete")
-_GRASS = ((0.97, 0.98, 0.93), (0.98, 0.96, 0.87), (0.94, 0.97, 0.93), (0.89, 0.94, 0.87))
+_YARDS = (
+    material("paving", (0.92, 0.92, 0.93)),
+    material("concrete", (0.95, 0.94, 0.92)),
+    material("clinker", (1.0, 0.98, 0.96)),
+)
+_GRASS = ((0.96, 0.97, 0.90), (0.97, 0.93, 0.80), (0.92, 0.96, 0.91), (0.84, 0.91, 0.83))
 """Tints of a little drier, dry, a little lusher and lush grass."""
 _PATCHES = 34
 """Dry or lush patches on the floor."""
@@ -67,15 +78,21 @@ def verge_area(outside: Sequence[shapely.Polygon], paved: shapely.Geometry) -> s
     return shapely.difference(shapely.intersection(shapely.union_all(outside), beside), paved)
 
 
-def pavement(area: shapely.Geometry, road: shapely.Geometry) -> Mesh:
-    """Return raised pavements with kerb stones where they meet the road."""
+def pavement(area: shapely.Geometry, road: shapely.Geometry, turn: float = 0.0) -> Mesh:
+    """Return raised pavements with kerb stones where they meet the road.
+
+    Args:
+        area: Pavements [m].
+        road: What they meet [m].
+        turn: Direction of the streets, along which slabs are laid [rad].
+    """
     kerb = shapely.intersection(area, shapely.buffer(road, _KERB_WIDTH))
     slabs = shapely.difference(area, kerb)
     return concatenate(
         [
-            surface(kerb, _KERB_HEIGHT, _KERB, TEXTURES["stone"]),
-            surface(slabs, _KERB_HEIGHT, _PAVING, TEXTURES["paving"]),
-            skirt(area, FLOOR_HEIGHT, _KERB_HEIGHT, _KERB, TEXTURES["stone"]),
+            surface(kerb, KERB_HEIGHT, _KERB, TEXTURES["stone"]),
+            surface(slabs, KERB_HEIGHT, _PAVING, TEXTURES["paving"], turn),
+            skirt(area, FLOOR_HEIGHT, KERB_HEIGHT, _KERB, TEXTURES["stone"]),
         ]
     )
 
@@ -91,8 +108,39 @@ def asphalt(area: shapely.Geometry, *, light: bool = False) -> Mesh:
     )
 
 
-def lawn(extent: shapely.Polygon, covered: shapely.Geometry, rng: np.random.Generator) -> Mesh:
-    """Return the floor where nothing else covers it, with dry and lush patches."""
+def yards(areas: Sequence[shapely.Geometry], turn: float, rng: np.random.Generator) -> Mesh:
+    """Return the paving around buildings, level with the lawn.
+
+    Args:
+        areas: Of each building [m].
+        turn: Direction of the streets [rad].
+        rng: Chooses what each is paved with.
+    """
+    return concatenate(
+        [
+            flat_polygon(area, FLOOR_HEIGHT, kind, TEXTURES[kind.texture], turn)
+            for area, kind in zip(areas, rng.choice(len(_YARDS), len(areas)), strict=True)
+            for kind in [_YARDS[int(kind)]]
+        ]
+    )
+
+
+def lawn(
+    extent: shapely.Polygon,
+    covered: shapely.Geometry,
+    rng: np.random.Generator,
+    mown: shapely.Geometry,
+    turn: float,
+) -> Mesh:
+    """Return the floor where nothing else covers it, with dry and lush patches.
+
+    Args:
+        extent: The floor [m].
+        covered: What is no lawn [m].
+        rng: Of the lawn.
+        mown: Where it is mown in swaths [m].
+        turn: Direction of the swaths [rad].
+    """
     rest = shapely.difference(extent, covered)
     parts = []
     # Where patches overlap the stronger tint wins over the edge of its own patch.
@@ -100,8 +148,12 @@ def lawn(extent: shapely.Polygon, covered: shapely.Geometry, rng: np.random.Gene
         parts.append((tint, shapely.intersection(rest, patch)))
         rest = shapely.difference(rest, patch)
     tile = TEXTURES["lawn"]
-    made = [surface(part, FLOOR_HEIGHT, material("lawn", tint), tile) for tint, part in parts]
-    return concatenate([surface(rest, FLOOR_HEIGHT, material("lawn"), tile), *made])
+    made = []
+    for tint, part in [((1.0, 1.0, 1.0), rest), *parts]:
+        inside, outside = shapely.intersection(part, mown), shapely.difference(part, mown)
+        made.append(surface(inside, FLOOR_HEIGHT, material("lawn_mown", tint), tile, turn))
+        made.append(surface(outside, FLOOR_HEIGHT, material("lawn", tint), tile))
+    return concatenate(made)
 
 
 def _grass_patches(extent: shapely.Polygon, rng: np.random.Generator) -> list[shapely.Geometry]:

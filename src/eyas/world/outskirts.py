@@ -14,8 +14,15 @@ __all__ = ["access_road", "descent", "fields"]
 
 _LINES = (450.0, 620.0, 860.0, 1200.0, 1700.0, 2300.0, 3000.0, 4200.0, 6500.0, 10000.0)
 """Borders of the fields, from the middle of a floor of 900 m; others scale with theirs [m]."""
-_SOIL = ((1.0, 1.0, 1.0), (0.93, 0.95, 0.88), (0.97, 0.94, 0.83), (0.86, 0.91, 0.82))
-"""Tints of the lawn for different crops."""
+_CROPS = (
+    material("lawn", (0.99, 0.99, 0.97)),
+    material("lawn", (0.92, 0.95, 0.86)),
+    material("lawn", (0.84, 0.91, 0.80)),
+    material("crops", (0.98, 1.0, 0.92)),
+    material("crops_ripe", (0.90, 0.92, 0.82)),
+    material("soil", (0.98, 0.94, 0.88)),
+)
+_CROP_ODDS = (0.26, 0.22, 0.2, 0.14, 0.12, 0.06)
 _BELOW = 0.05
 """From the floor down to the fields, so that no rounding lets them shine through its edge [m]."""
 
@@ -49,11 +56,11 @@ def fields(size: tuple[float, float], floor: float, rng: np.random.Generator) ->
     ).reshape(-1, 4, 3)
     inner = np.abs(half[:-1] + half[1:]) / 2 < _LINES[0]
     outside = ~(inner[:, None] & inner[None]).ravel()
-    kind = rng.integers(len(_SOIL), size=steps * steps)
+    kind = rng.choice(len(_CROPS), size=steps * steps, p=_CROP_ODDS)
     made = []
-    for index, tint in enumerate(_SOIL):
+    for index, crop in enumerate(_CROPS):
         some = cells[outside & (kind == index)]
-        made.append(quads(some, some[..., :2] / TEXTURES["lawn"], material("lawn", tint)))
+        made.append(quads(some, some[..., :2] / TEXTURES[crop.texture], crop))
     return concatenate(made)
 
 

@@ -92,7 +92,7 @@ def joints(network: RoadNetwork) -> dict[str, int]:
 def road_area(network: RoadNetwork) -> shapely.MultiPolygon:
     """Return what is paved for cars: all lanes and junctions, with room to turn at corners."""
     rounded = rounded_kerbs(corridors(network), _bends(network))
-    return shapely.MultiPolygon(polygons_of(shapely.simplify(rounded, 0.015)))
+    return shapely.MultiPolygon(polygons_of(shapely.simplify(rounded, 0.035)))
 
 
 def corridors(network: RoadNetwork) -> shapely.MultiPolygon:
@@ -164,7 +164,9 @@ def split_on_grid(shape: shapely.Geometry, cell: float = GRID) -> list[shapely.P
     return parts
 
 
-def surface(shape: shapely.Geometry, z: float, material: Material, tile: float) -> Mesh:
+def surface(
+    shape: shapely.Geometry, z: float, material: Material, tile: float, turn: float = 0.0
+) -> Mesh:
     """Return a large horizontal surface, cut along the grid.
 
     Args:
@@ -172,8 +174,10 @@ def surface(shape: shapely.Geometry, z: float, material: Material, tile: float) 
         z: Height [m].
         material: Of all of it.
         tile: Metres one repeat of the texture covers.
+        turn: Of the texture, counter-clockwise [rad].
     """
-    return concatenate([flat_polygon(part, z, material, tile) for part in split_on_grid(shape)])
+    parts = split_on_grid(shape)
+    return concatenate([flat_polygon(part, z, material, tile, turn) for part in parts])
 
 
 def skirt(

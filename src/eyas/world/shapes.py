@@ -52,8 +52,13 @@ def box(size: Sequence[float], centre: Sequence[float], material: Material, tile
     return quads(corners, uvs, material)
 
 
-def flat_polygon(polygon: shapely.Geometry, z: float, material: Material, tile: float) -> Mesh:
-    """Return a horizontal polygon (holes and several parts allowed) that faces up."""
+def flat_polygon(
+    polygon: shapely.Geometry, z: float, material: Material, tile: float, turn: float = 0.0
+) -> Mesh:
+    """Return a horizontal polygon (holes and several parts allowed) that faces up.
+
+    The texture lies along the world's axes, or turned counter-clockwise by `turn` [rad].
+    """
     cells = shapely.get_parts(shapely.constrained_delaunay_triangles(polygon))
     if len(cells) == 0:
         return quads(np.zeros((0, 4, 3)), np.zeros((0, 4, 2)), material)
@@ -64,7 +69,9 @@ def flat_polygon(polygon: shapely.Geometry, z: float, material: Material, tile: 
     points, index = np.unique(flat.reshape(-1, 2), axis=0, return_inverse=True)
     positions = np.column_stack([points, np.full(len(points), z)])
     up = np.tile([0.0, 0.0, 1.0], (len(points), 1))
-    return _mesh(positions, up, points / tile, index.reshape(-1, 3), material)
+    cosine, sine = np.cos(turn), np.sin(turn)
+    uvs = points @ np.array([[cosine, -sine], [sine, cosine]]) / tile
+    return _mesh(positions, up, uvs, index.reshape(-1, 3), material)
 
 
 def walls(outline: ArrayLike, bottom: float, top: float, material: Material, tile: float) -> Mesh:

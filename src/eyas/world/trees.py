@@ -34,7 +34,7 @@ _PALE_BARK = (1.0, 0.98, 0.95)
 def street_tree_levels(rng: np.random.Generator, variant: int) -> tuple[Mesh, ...]:
     """Return a tree of height 1 that stands on the origin, the finest level of detail first.
 
-    The levels have about 3,200, 600 and 120 triangles. Multiply by 15 to 27 for metres.
+    The levels have about 2,700, 530 and 120 triangles. Multiply by 15 to 27 for metres.
 
     Args:
         rng: Of the trees.
@@ -47,20 +47,20 @@ def street_tree_levels(rng: np.random.Generator, variant: int) -> tuple[Mesh, ..
         [
             _wood(crown, rng, limbs=7, sides=8),
             shell(crown, 2, 0.86, _CORE),
-            leaf_cards(crown, 680, (0.11, 0.17), greens, rng, bent=True),
+            leaf_cards(crown, 540, (0.12, 0.19), greens, rng, bent=True),
         ]
     )
     middle = concatenate(
         [
             _wood(crown, rng, limbs=2, sides=5),
             shell(crown, 1, 0.88, _CORE),
-            leaf_cards(crown, 235, (0.18, 0.26), greens, rng, bent=False),
+            leaf_cards(crown, 195, (0.19, 0.28), greens, rng, bent=False),
         ]
     )
     coarse = concatenate(
         [
             _wood(crown, rng, limbs=0, sides=3),
-            shell(crown, 1, 1.01, greens[1]),
+            shell(crown, 1, 1.01, greens[2]),
             leaf_cards(crown, 16, (0.3, 0.4), greens, rng, bent=False),
         ]
     )
