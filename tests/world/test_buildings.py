@@ -5,7 +5,8 @@ import pytest
 import shapely
 
 from eyas.state.mesh import Surface
-from eyas.world.buildings import PARAPET, SETBACK, Building, mesh_of, place_buildings, prism_of
+from eyas.world.building_mesh import mesh_of
+from eyas.world.buildings import PARAPET, SETBACK, Building, place_buildings, prism_of
 from eyas.world.lots import turned
 from eyas.world.materials import FACADES, TEXTURES, material
 
@@ -173,3 +174,24 @@ def test_materials_are_known_and_solids_cover_the_parapet():
     assert {m.texture for m in mesh_of(building).palette} <= set(TEXTURES)
     _, bottom, top = prism_of(building)
     assert (bottom, top) == (0.0, 24.0 + PARAPET)
+
+
+def test_a_high_building_has_a_base_a_shaft_and_a_top_and_keeps_its_storeys():
+    mesh = mesh_of(a_building(bottom=-0.1, height=60.0))
+    looks = {m for m in mesh.palette if m.surface == Surface.FACADE}
+    assert len({m.texture for m in looks}) == 3  # street level, shaft and base, top
+    assert len({m.tint for m in looks if m.texture == "facade_brick"}) == 2
+    walls = np.array([m.surface == Surface.FACADE for m in mesh.palette])[mesh.materials]
+    heights = mesh.positions[mesh.triangles[walls].ravel(), 2] + 0.1
+    assert np.abs(heights / 3 - np.round(heights / 3)).max() < 1e-4
+    quarter = mesh.uvs[mesh.triangles[walls].ravel()] * 4
+    assert np.abs(quarter - np.round(quarter)).max() < 1e-4
+
+
+def test_most_roofs_are_terracotta_but_no_two_alike(buildings):
+    covers = [b.roof_material for b in buildings]
+    kinds = [material.texture for material in covers]
+    assert 0.5 < np.mean([kind in ("roof_terrace", "roof_tiles") for kind in kinds]) < 0.9
+    assert {"bitumen", "roof_gravel", "roof_membrane"} < set(kinds)
+    assert len(set(covers)) > 0.9 * len(covers)
+    assert len({b.tint for b in buildings}) > 0.9 * len(buildings)

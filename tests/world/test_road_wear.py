@@ -32,9 +32,19 @@ def test_layers_are_apart_from_each_other_the_asphalt_and_the_paint():
     assert min(np.diff(levels)) >= 0.0029  # what a picture from 100 m tells apart, many times over
 
 
-def test_there_is_some_of_all_but_little_enough(wear):
+def test_there_is_some_of_all_but_little_enough(network, wear):
     kinds = [wear.palette[index].texture for index in wear.materials]
-    lids, patches = kinds.count("manhole") / 10, kinds.count("asphalt_patch") / 2
+    tints = [wear.palette[index].tint for index in wear.materials]
+    patched = [
+        t == (1.0, 1.0, 1.0) for k, t in zip(kinds, tints, strict=True) if k == "asphalt_patch"
+    ]
+    lids, patches, sealed = (
+        kinds.count("manhole") / 2,
+        sum(patched) / 2,
+        len(patched) - sum(patched),
+    )
+    assert 200 < sealed < 3000
+    assert 40 < kinds.count("asphalt_oil") <= 2 * len(network.lane_width)
     assert 20 < lids < 300
     assert 40 < patches < 500
     assert len(kinds) < 8000

@@ -24,6 +24,8 @@ _TIMES = (60.0, 20.0)
 """First time that is looked at, and the step to the next [s]."""
 _TRIES = 40
 """Cars that are tried at each stop."""
+_TREE = 12.0
+"""Height of a street tree, whose mesh is 1 m high [m]."""
 _TALL = 30.0
 """Height of a tower [m]."""
 
@@ -125,6 +127,7 @@ def _near_trees(scene: Scene, cars: _Cars) -> Points:
     """Return how many trunks stand within 14 m of each car, shape (K,)."""
     fixtures = scene.fixtures
     trees = scene.object_class[fixtures.object_id] == ObjectClass.TREE
+    trees &= fixtures.pose[:, 2, 2] > _TREE  # shrubs and garden trees hide no car
     trunks = fixtures.pose[trees, :2, 3].astype(np.float64)
     apart = np.linalg.norm(cars.position[:, None] - trunks[None], axis=2)
     count: Points = (apart < 14.0).sum(axis=1).astype(np.float64)

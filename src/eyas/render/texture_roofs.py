@@ -53,13 +53,13 @@ def roof_gravel() -> Texture:
 def roof_membrane() -> Texture:
     """Return a pale plastic membrane in sheets of two metres, dirty where water stands."""
     rng = source("roof_membrane")
-    sheets = masonry(rng, 1, 4, joint=0.0, bond=0.0)
+    sheets = masonry(rng, 2, 4, joint=0.0, bond=0.0)
     dirt = fractal(rng, 1.4, longest=110.0)
     picture = painted(
         (205.0, 204.0, 199.0), 0.012 * white(rng) + 0.02 * dirt + 0.012 * sheets.shade
     )
     picture = mixed(picture, (150.0, 147.0, 138.0), 0.45 * np.clip(0.7 * dirt - 0.3, 0, 1))
-    seam = (sheets.across < 0.02) | (sheets.down < 0.006)
+    seam = (sheets.across < 0.02) | (sheets.down < 0.012)
     picture = mixed(picture, (160.0, 159.0, 155.0), 0.7 * seam)
     scuff = np.clip((fractal(rng, 0.9, longest=50.0) - 1.5) * 1.2, 0, 1)
     return opaque(mixed(picture, (128.0, 126.0, 120.0), 0.4 * scuff))

@@ -186,7 +186,7 @@ def clustered(
     """
     groups = [c + rng.normal(0, spread, (int(rng.integers(*count)), 2)) for c in centres]
     points = np.concatenate([np.zeros((0, 2)), *groups])
-    return points[shapely.contains_xy(room, points)]
+    return np.asarray(points[shapely.contains_xy(room, points)], np.float64)
 
 
 def add_small_trees(

@@ -44,7 +44,7 @@ def parked_car_levels() -> list[tuple[Mesh, ...]]:
 
     They stand on the origin and look along x; in metres.
     """
-    made = []
+    made: list[tuple[Mesh, ...]] = []
     for number, colour in enumerate(_COLOURS):
         paint = Material(tint=colour, surface=Surface.PAINT)
         body, cabin = (np.array(part) for part in (_SALOON, _ESTATE)[number % 2])

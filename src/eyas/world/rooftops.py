@@ -1,7 +1,5 @@
 """What stands on flat roofs: stair heads, cooling units, ducts, skylights, tanks, masts."""
 
-from collections.abc import Sequence
-
 import numpy as np
 import shapely
 from numpy.typing import NDArray
@@ -103,7 +101,7 @@ def rooftop_levels() -> list[tuple[Mesh, ...]]:
         "coolers": _levels(
             concatenate([_cooler(x) for x in (-2.1, 0.0, 2.1)]), _block(6.1, 1.7, 1.5, _SHEET)
         ),
-        "duct": _levels(_duct(), _block(7.6, 0.8, 1.1, _ZINC)),
+        "duct": _levels(_duct(), _far_duct()),
         "skylights": _levels(_skylights(), _block(4.6, 3.0, 0.5, _GLASS)),
         "tank": _levels(_tank(10), _tank(5)),
         "vents": _levels(_vents(6), _vents(3)),
@@ -164,6 +162,11 @@ def _duct() -> Mesh:
     return concatenate([run, bend, inlet, *feet])
 
 
+def _far_duct() -> Mesh:
+    run = _at(_block(7.5, 0.8, 1.0, _ZINC), -0.4, 0.0)
+    return concatenate([run, _at(_block(0.8, 2.6, 1.0, _ZINC), 3.0, 0.9)])
+
+
 def _skylights() -> Mesh:
     """Return two by two domes on kerbs."""
     pieces = []
@@ -195,6 +198,7 @@ def _pipe(x: float, y: float, height: float, sides: int) -> Mesh:
 
 def _mast(sides: int) -> Mesh:
     """Return a mast with a few aerials."""
-    spars: Sequence[tuple[float, float]] = ((3.6, 0.7), (5.0, 0.5), (5.8, 0.35))
-    arms = [tube([[-half, 0, z], [half, 0, z]], [0.03, 0.03], 3, _DARK) for z, half in spars]
-    return concatenate([tube([[0, 0, 0], [0, 0, 7.0]], [0.09, 0.04], sides, _ZINC), *arms])
+    spars = np.array([(3.6, 0.7), (5.0, 0.5), (5.8, 0.35)])
+    ends = np.array([[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
+    arms = [tube(ends * half + np.array([0, 0, z]), [0.03, 0.03], 3, _DARK) for z, half in spars]
+    return concatenate([tube(np.diag([0, 0, 7.0])[[0, 2]], [0.09, 0.04], sides, _ZINC), *arms])

@@ -50,11 +50,11 @@ def build_scene(network: RoadNetwork, seed: int) -> Scene:
     plan = make_plan(network, seed)
     builder = SceneBuilder()
     yards = gardens.paved_yards(plan.footprints, plan.pavement, _no_lawn(plan))
-    levels = _add_trees(builder, plan, stream(seed, "citystreet trees", 1))
     # What hides most comes first: it is drawn first, and nobody draws over it.
-    _add_buildings(builder, plan, len(levels))
+    _add_buildings(builder, plan, trees.VARIANTS)
     _add_overpass(builder, plan)
     _add_ground(builder, plan, network, yards, seed)
+    levels = _add_trees(builder, plan, stream(seed, "citystreet trees", 1))
     levels += rooftops.rooftop_levels()
     add_signals(builder, network, len(levels))
     levels += [signal_levels(), lamp_levels()]
