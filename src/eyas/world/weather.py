@@ -19,8 +19,8 @@ _CLEAR_DAY = Lighting(
     sun_colour=(1.02, 0.96, 0.84),
     zenith_colour=(0.042, 0.130, 0.42),
     horizon_colour=(0.45, 0.64, 0.94),
-    ambient_up=(0.24, 0.29, 0.37),
-    ambient_down=(0.13, 0.125, 0.10),
+    ambient_up=(0.31, 0.35, 0.43),
+    ambient_down=(0.16, 0.155, 0.13),
     fog_colour=(0.47, 0.61, 0.82),
     # Clear air that turns the far edge of the map a little blue.
     fog_density=1.0 / 7000.0,
@@ -32,7 +32,7 @@ _OVERCAST = (0.545, 0.545, 0.53)
 
 _FOG = replace(
     _CLEAR_DAY,
-    sun_colour=(0.07, 0.07, 0.08),
+    sun_colour=(0.035, 0.035, 0.04),
     zenith_colour=_OVERCAST,
     horizon_colour=(0.60, 0.60, 0.59),
     ambient_up=(0.44, 0.44, 0.45),
