@@ -190,8 +190,8 @@ def test_land_goes_on_to_the_horizon_without_being_solid(scene):
     edges = far[:, 1:, :2] - far[:, :1, :2]
     area = (edges[:, 0, 0] * edges[:, 1, 1] - edges[:, 0, 1] * edges[:, 1, 0]) / 2
     assert np.all(area > 0.0)
-    assert area.sum() == pytest.approx(6000**2 - 900**2, rel=1e-5)
-    assert len(far) < 500
+    assert area.sum() == pytest.approx(20_000**2 - 900**2, rel=1e-5)
+    assert len(far) < 1000
     assert np.abs(scene.colliders.prism_points).max() < 455
 
 
