@@ -35,8 +35,8 @@ _FOG = replace(
     sun_colour=(0.035, 0.035, 0.04),
     zenith_colour=_OVERCAST,
     horizon_colour=(0.60, 0.60, 0.59),
-    ambient_up=(0.44, 0.44, 0.45),
-    ambient_down=(0.17, 0.165, 0.15),
+    ambient_up=(0.54, 0.54, 0.55),
+    ambient_down=(0.22, 0.215, 0.20),
     fog_colour=(0.60, 0.60, 0.59),
     # The original's visibility range: a wash near by, and the far edge of the map dissolves.
     fog_density=1.0 / 1000.0,
