@@ -18,6 +18,7 @@ from PIL import Image
 from eyas.core.errors import ConfigError, OutputError
 from eyas.exports.labels import read_labels
 from eyas.modes import video
+from eyas.modes.video_lock import recording_lock
 from eyas.sensors.config import CameraConfig
 from eyas.sim.config import EyasConfig, VideoConfig
 from eyas.task.config import DoneConfig
@@ -183,6 +184,11 @@ def test_a_full_disk_is_one_line_and_nothing_is_half_written(recorded, tmp_path,
     assert all(whole[name] == data for name, data in contents(path).items())
     video.run(CONFIG, path, resume=True, quiet=True)
     assert contents(path) == whole
+
+
+def test_two_recorders_do_not_share_a_folder(tmp_path):
+    with recording_lock(tmp_path), pytest.raises(OutputError, match="is recording into it"):
+        video.run(CONFIG, tmp_path, quiet=True)
 
 
 def test_random_actions_are_seeded_held_and_marked(tmp_path):

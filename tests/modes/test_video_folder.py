@@ -3,6 +3,7 @@ from pathlib import Path
 
 import pytest
 
+from eyas import __version__
 from eyas.core.errors import ConfigError, OutputError
 from eyas.modes.video_folder import open_folder
 from eyas.sim.config import EyasConfig, VideoConfig
@@ -85,6 +86,21 @@ def test_overwrite_does_not_follow_links(tmp_path):
 def test_resume_names_the_first_setting_that_differs(tmp_path):
     with pytest.raises(ConfigError, match=r"video\.fps was 25\.0, is 50\.0"):
         open_folder(recording(tmp_path / "a"), OTHER, overwrite=False, resume=True)
+
+
+@pytest.mark.parametrize("recorded", ['{"eyas": "0.0.1"}', "{", "[]", None])
+def test_resume_refuses_a_recording_of_another_version(tmp_path, recorded):
+    path = recording(tmp_path / "a")
+    if recorded is None:
+        (path / "version.json").unlink()
+    else:
+        (path / "version.json").write_text(recorded)
+    said = r"0\.0\.1" if recorded and "0.0.1" in recorded else "unknown"
+    with pytest.raises(OutputError, match=rf"Eyas .*{said}.* this is {__version__}") as caught:
+        open_folder(path, OTHER, overwrite=False, resume=True)
+    assert "\n" not in str(caught.value)
+    open_folder(path, OTHER, overwrite=True, resume=False)
+    open_folder(path, OTHER, overwrite=False, resume=True)
 
 
 def test_resume_keeps_what_is_whole_and_drops_what_is_not(tmp_path):

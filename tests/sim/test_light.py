@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from eyas.core.pinhole import rays
 from eyas.envs.tracking_env import TrackingEnv
 from eyas.sim.build import build_simulation
 from eyas.sim.config import EyasConfig
@@ -48,6 +49,41 @@ def test_visibility_is_that_of_the_fog_and_only_foggy_weather_has_some():
     assert started({"visibility": 30.0}, weather="foggy").light[0, 2] == pytest.approx(1 / 30)
     clear = started({"visibility": 30.0})
     np.testing.assert_array_equal(pictures(clear), pictures(started()))
+
+
+def test_the_air_veils_what_lies_at_a_distance_as_one_over_the_visibility_says():
+    """What is left of the difference to the air's own light is `exp(-distance / visibility)`."""
+    seen, depth = [], []
+    for visibility in (1e6, 40.0):
+        simulation = started({"visibility": visibility}, weather="foggy")
+        picture = Picture.create(1, 60, 80, depth=True)
+        simulation.draw(np.zeros(1, np.int32), picture)
+        seen.append(radiance(picture.rgb[0]))
+        depth.append(picture.depth[0])
+    np.testing.assert_array_equal(*depth)
+    air = lighting("citystreet", "foggy").fog_colour
+    left = ((seen[1] - air) / (seen[0] - air))[..., 1]
+    distance = depth[0] * np.linalg.norm(rays(np.eye(3), 80, 60, 0.7854), axis=-1)
+    far = np.abs(seen[0] - air)[..., 1] > 0.2
+    assert far.sum() > 1000
+    assert np.median(left[far] / np.exp(-distance[far] / 40.0)) == pytest.approx(1.0, abs=0.02)
+
+
+def radiance(rgb):
+    """Undo sRGB and `tone_table`."""
+    encoded = rgb / 255.0
+    tone = np.where(encoded <= 0.04045, encoded / 12.92, ((encoded + 0.055) / 1.055) ** 2.4)
+    return -np.log(1.0 - tone) / 1.35
+
+
+def test_visibility_where_there_is_no_fog_is_told_to_have_no_effect(caplog):
+    started({"visibility": 30.0}, weather="foggy")
+    assert not caplog.records
+    started({"visibility": 30.0})
+    assert [record.getMessage() for record in caplog.records] == [
+        "light.visibility (Env_Params.foggy_use_default): without effect in the weather 'day'; "
+        "only 'foggy' has fog"
+    ]
 
 
 def test_each_episode_draws_anew_within_the_limits_or_only_the_first():

@@ -5,8 +5,9 @@ from pathlib import Path
 from eyas.core.clock import PHYSICS_RATE
 from eyas.core.errors import ConfigError, OutputError
 from eyas.modes.video_action import mover_of
-from eyas.modes.video_folder import check_folder, open_folder
+from eyas.modes.video_folder import VideoFolder, check_folder, open_folder
 from eyas.modes.video_grid import FrameGrid
+from eyas.modes.video_lock import recording_lock
 from eyas.modes.video_recorder import Recorder
 from eyas.modes.video_report import Progress, print_report, say
 from eyas.sim.build import build_simulation
@@ -41,7 +42,8 @@ def run(
         quiet: Whether nothing is printed.
 
     Raises:
-        EyasError: One line: what cannot be built, read or written.
+        EyasError: One line: what cannot be built, read or written; also when another process
+            records into the folder.
         KeyboardInterrupt: The user stopped it; every file that is there is whole.
     """
     # Building may take a minute, so the folder is looked at before; what cannot be built leaves no
@@ -49,21 +51,27 @@ def run(
     check_folder(folder, config, overwrite=overwrite, resume=resume)
     sim = build_simulation(recording_rules(config), config.video.channels, shared_world=True)
     _require_traffic(config)
-    place = open_folder(folder, config, overwrite=overwrite, resume=resume)
-    recorder = Recorder(sim, config, place)
+    with recording_lock(folder):
+        place = open_folder(folder, config, overwrite=overwrite, resume=resume)
+        _record(sim, config, place, quiet=quiet)
+
+
+def _record(sim: Simulation, config: EyasConfig, folder: VideoFolder, *, quiet: bool) -> None:
+    recorder = Recorder(sim, config, folder)
     progress = Progress(quiet=quiet)
     try:
         with progress:
-            _record(sim, config, recorder, progress)
+            _run_episodes(sim, config, recorder, progress)
         recorder.finish()
     except BaseException as error:
         recorder.stop()
         if isinstance(error, KeyboardInterrupt):
-            say(f"stopped; every file in {folder} is whole; continue with --resume", quiet=quiet)
+            line = f"stopped; every file in {folder.path} is whole; continue with --resume"
+            say(line, quiet=quiet)
         if isinstance(error, OutputError):
             raise OutputError(f"{error}; continue with --resume") from error
         raise
-    print_report(place, recorder, progress, quiet=quiet)
+    print_report(folder, recorder, progress, quiet=quiet)
 
 
 def recording_rules(config: EyasConfig) -> EyasConfig:
@@ -104,7 +112,9 @@ def _require_traffic(config: EyasConfig) -> None:
         )
 
 
-def _record(sim: Simulation, config: EyasConfig, recorder: Recorder, progress: Progress) -> None:
+def _run_episodes(
+    sim: Simulation, config: EyasConfig, recorder: Recorder, progress: Progress
+) -> None:
     count = config.video.channels
     grid, mover = FrameGrid(config.video, count), mover_of(config, count)
     sim.reset()

@@ -6,11 +6,13 @@ import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from eyas import __version__
 from eyas.core.errors import ConfigError, DataFileError, OutputError
-from eyas.core.files import PART_SUFFIX, refusals
+from eyas.core.files import PART_SUFFIX, refusals, write_atomic
 from eyas.exports.labels import FrameLabel
 from eyas.exports.mark import write_dir_info
 from eyas.modes.video_episode import LABELS, MARK, MOVIE
+from eyas.modes.video_lock import LOCK
 from eyas.sim.config import EyasConfig
 from eyas.sim.legacy import save_legacy
 from eyas.sim.settings_file import save_settings
@@ -18,6 +20,9 @@ from eyas.sim.settings_file import save_settings
 __all__ = ["VideoFolder", "check_folder", "open_folder"]
 
 SETTINGS, LEGACY_SETTINGS, DIR_INFO = "config.json", "env_config.json", "dir_info.json"
+
+VERSION = "version.json"
+"""Which version of Eyas records: `{"eyas": "0.1.0"}`. Another one may draw other bytes."""
 
 
 def _any_of(*names: str) -> str:
@@ -27,7 +32,7 @@ def _any_of(*names: str) -> str:
 
 _OURS = re.compile(
     rf"(DRONE|CAR)\d+(/episode\d+(/(\d{{6,}}\.jpeg|{_any_of(MARK, LABELS, MOVIE)}))?)?"
-    rf"|{_any_of(SETTINGS, LEGACY_SETTINGS, DIR_INFO)}"
+    rf"|{_any_of(SETTINGS, LEGACY_SETTINGS, DIR_INFO, VERSION, LOCK)}"
 )
 """Every path that a recording can hold, relative to its folder."""
 
@@ -75,7 +80,8 @@ def check_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: boo
         resume: Whether a recording that lies there will be continued.
 
     Raises:
-        OutputError: It is a file, or holds something.
+        OutputError: It is a file, or holds something, or what will be continued was recorded by
+            another version of Eyas.
         ConfigError: The recording that lies there was made with other settings, or both
             `overwrite` and `resume` are asked for.
         DataFileError: The settings of the recording that lies there cannot be read.
@@ -87,10 +93,12 @@ def check_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: boo
             return
         if not path.is_dir():
             raise OutputError(f"{path}: is a file; name a folder")
-        used = any(not inside.name.endswith(PART_SUFFIX) for inside in path.iterdir())
+        names = [inside.name for inside in path.iterdir()]
+    used = any(name != LOCK and not name.endswith(PART_SUFFIX) for name in names)
     if used and overwrite:
         _require_recording(path)
     elif used and resume:
+        _require_same_version(path)
         _require_same_settings(path, config)
     elif used:
         raise OutputError(
@@ -100,7 +108,7 @@ def check_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: boo
 
 
 def open_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: bool) -> VideoFolder:
-    """Make a folder ready to record into, with the settings in it.
+    """Make a folder ready to record into, with the settings in it; `recording_lock` is held.
 
     Args:
         path: The folder; made if it is not there.
@@ -121,6 +129,7 @@ def open_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: bool
         _delete_parts(path)
     save_settings(config, path / SETTINGS)
     save_legacy(config, path / LEGACY_SETTINGS)
+    write_atomic(path / VERSION, (json.dumps({"eyas": __version__}) + "\n").encode())
     return VideoFolder(path, config)
 
 
@@ -147,12 +156,25 @@ def _require_recording(path: Path) -> None:
 def _delete_recording(path: Path) -> None:
     for folder, folders, names in os.walk(path, topdown=False):
         for name in names:
-            if Path(folder, name) != path / SETTINGS:
+            if Path(folder, name) not in (path / SETTINGS, path / LOCK):
                 Path(folder, name).unlink()
         for name in folders:
             Path(folder, name).rmdir()
     # Last, so that a deletion that was interrupted can be asked for again.
     (path / SETTINGS).unlink(missing_ok=True)
+
+
+def _require_same_version(path: Path) -> None:
+    """Refuse to continue what another version began: one recording would hold two looks."""
+    try:
+        recorded = json.loads((path / VERSION).read_text())["eyas"]
+    except (OSError, ValueError, TypeError, LookupError):
+        recorded = "of an unknown version"
+    if (path / SETTINGS).is_file() and recorded != __version__:
+        raise OutputError(
+            f"{path}: recorded by Eyas {recorded}, and this is {__version__}, which may draw"
+            " otherwise; continue with that version, or start anew with --overwrite"
+        )
 
 
 def _require_same_settings(path: Path, config: EyasConfig) -> None:

@@ -1,11 +1,15 @@
 """The one place where the rooms are joined."""
 
+import logging
+
 from eyas.sim.config import EyasConfig
 from eyas.sim.place import load_place
 from eyas.sim.simulation import Simulation
 from eyas.sim.version_check import require_supported
 
 __all__ = ["build_simulation"]
+
+_LOG = logging.getLogger("eyas")
 
 
 def build_simulation(config: EyasConfig, count: int, *, shared_world: bool) -> Simulation:
@@ -21,5 +25,11 @@ def build_simulation(config: EyasConfig, count: int, *, shared_world: bool) -> S
         EyasError: A setting is not supported, or there is no traffic for it.
     """
     require_supported(config)
+    if config.light.visibility is not None and config.world.weather != "foggy":
+        _LOG.warning(
+            "light.visibility (Env_Params.foggy_use_default): without effect in the weather '%s'; "
+            "only 'foggy' has fog",
+            config.world.weather,
+        )
     place = load_place(config.world, config.traffic, count)
     return Simulation(config, place, count, shared_world=shared_world)

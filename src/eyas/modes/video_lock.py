@@ -1,0 +1,72 @@
+"""Only one process at a time records into a folder."""
+
+import fcntl
+import logging
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TextIO
+
+from eyas.core.errors import OutputError
+from eyas.core.files import refusals
+
+__all__ = ["LOCK", "recording_lock"]
+
+LOCK = ".lock"
+"""File that is there, with the recorder's process id in it, while a folder is recorded into."""
+
+_LOG = logging.getLogger("eyas")
+
+
+@contextmanager
+def recording_lock(folder: Path) -> Iterator[None]:
+    """Keep a folder for this process; the folder is made if it is not there.
+
+    The system drops the lock with the process that holds it, however that ends: a file that a
+    killed recorder has left locks nobody out.
+
+    Raises:
+        OutputError: Another process records into it, or the file system refused.
+    """
+    path = folder / LOCK
+    with refusals(path):
+        folder.mkdir(parents=True, exist_ok=True)
+        file = _locked(path)
+    with file:
+        try:
+            yield
+        finally:
+            # Before it is unlocked, or a file could go that another process has locked by then.
+            path.unlink(missing_ok=True)
+
+
+def _locked(path: Path) -> TextIO:
+    while True:
+        file = path.open("a+")
+        try:
+            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            file.seek(0)
+            owner = file.read() or "that just began"
+            file.close()
+            raise OutputError(
+                f"{path.parent}: process {owner} is recording into it;"
+                " wait for it to end, or name another folder"
+            ) from None
+        except OSError as error:  # network file systems may have no locks
+            _LOG.warning("%s: cannot lock, so start only one recorder: %s", path, error.strerror)
+            return file
+        if _is_at(file, path):
+            file.truncate(0)
+            file.write(str(os.getpid()))
+            file.flush()
+            return file
+        file.close()  # its owner has deleted it since it was opened
+
+
+def _is_at(file: TextIO, path: Path) -> bool:
+    try:
+        return os.path.samestat(os.fstat(file.fileno()), path.stat())
+    except FileNotFoundError:
+        return False

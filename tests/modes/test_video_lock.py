@@ -1,0 +1,69 @@
+import os
+import re
+import signal
+import subprocess
+import sys
+
+import pytest
+
+from eyas.core.errors import OutputError
+from eyas.modes.video_folder import check_folder, open_folder
+from eyas.modes.video_lock import recording_lock
+from eyas.sim.config import EyasConfig
+
+HOLD = """
+import sys, time
+from pathlib import Path
+from eyas.modes.video_lock import recording_lock
+with recording_lock(Path(sys.argv[1])):
+    print("locked", flush=True)
+    time.sleep(60)
+"""
+
+
+@pytest.fixture
+def other(tmp_path):
+    """Another process that holds the folder's lock."""
+    command = [sys.executable, "-c", HOLD, str(tmp_path / "a")]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as process:
+        assert process.stdout.readline() == "locked\n"
+        yield process
+        process.kill()
+
+
+def test_a_second_recorder_is_refused_in_one_line_that_names_the_first(tmp_path, other):
+    line = f"{tmp_path / 'a'}: process {other.pid} is recording into it; "
+    with pytest.raises(OutputError, match=f"^{re.escape(line)}"), recording_lock(tmp_path / "a"):
+        raise AssertionError("both record")
+    assert (tmp_path / "a" / ".lock").read_text() == str(other.pid)
+
+
+def test_what_a_killed_recorder_leaves_locks_nobody_out(tmp_path, other):
+    other.send_signal(signal.SIGKILL)
+    other.wait()
+    assert (tmp_path / "a" / ".lock").exists()
+    check_folder(tmp_path / "a", EyasConfig(), overwrite=False, resume=False)
+    with recording_lock(tmp_path / "a"):
+        assert (tmp_path / "a" / ".lock").read_text() == str(os.getpid())
+    assert not list((tmp_path / "a").iterdir())
+
+
+def test_the_lock_goes_with_the_recorder_even_one_that_fails(tmp_path):
+    with pytest.raises(ZeroDivisionError), recording_lock(tmp_path / "a"):
+        raise ZeroDivisionError
+    assert not list((tmp_path / "a").iterdir())
+
+
+def test_overwriting_a_recording_keeps_the_lock(tmp_path):
+    path = tmp_path / "a"
+    with recording_lock(path):
+        open_folder(path, EyasConfig(), overwrite=False, resume=False)
+        open_folder(path, EyasConfig(), overwrite=True, resume=False)
+        with pytest.raises(OutputError, match=f"process {os.getpid()}"), recording_lock(path):
+            raise AssertionError("both record")
+
+
+def test_a_file_where_the_folder_should_be_is_one_line(tmp_path):
+    (tmp_path / "a").write_text("mine")
+    with pytest.raises(OutputError, match="cannot write"), recording_lock(tmp_path / "a"):
+        raise AssertionError("there is no folder")
