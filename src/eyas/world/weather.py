@@ -34,7 +34,7 @@ _FOG = replace(
     _CLEAR_DAY,
     sun_colour=(0.035, 0.035, 0.04),
     zenith_colour=_OVERCAST,
-    horizon_colour=(0.60, 0.60, 0.59),
+    horizon_colour=(0.86, 0.86, 0.85),
     ambient_up=(0.44, 0.44, 0.45),
     ambient_down=(0.17, 0.165, 0.15),
     fog_colour=(0.60, 0.60, 0.59),
