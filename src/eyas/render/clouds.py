@@ -66,7 +66,7 @@ def _heap_heights(cover: float, rng: np.random.Generator) -> Field:
     Each cloud is a heap of balls, larger and higher in its middle, filled down to the base; clouds
     are added until they cover enough. From three quarters on they grow into a layer.
     """
-    layer = 2.0 * (cover - 0.75) + 0.1 * np.tanh(fractal(rng, 1.6, longest=120.0))
+    layer = 2.5 * (cover - 0.75) + 0.26 * np.tanh(1.5 * fractal(rng, 1.6, longest=120.0))
     heights = np.maximum(layer, 0.0)
     while (heights > 0.1).mean() < _SEEN * cover:
         middle, radius = rng.uniform(0, SIZE, 2), rng.uniform(0.35, 1.0) ** 1.5 * 0.9

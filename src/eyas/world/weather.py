@@ -34,7 +34,7 @@ _FOG = replace(
     _CLEAR_DAY,
     sun_colour=(0.035, 0.035, 0.04),
     zenith_colour=_OVERCAST,
-    horizon_colour=(0.60, 0.60, 0.59),
+    horizon_colour=(0.86, 0.86, 0.85),
     ambient_up=(0.54, 0.54, 0.55),
     ambient_down=(0.22, 0.215, 0.20),
     fog_colour=(0.60, 0.60, 0.59),

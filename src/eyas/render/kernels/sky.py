@@ -109,7 +109,7 @@ def _open_sky(
         near *= near * (f4(3.0) - f4(2.0) * near) * clear
         cover = near * panorama(light.clouds, row, around, 0)
         bright = near * panorama(light.clouds, row, around, 1)
-        dim = f4(0.45) * cover + f4(0.35) * bright
+        dim = f4(0.38) * cover + f4(0.7) * bright
         lit = f4(1.1) * bright
         red += dim * light.horizon[0] + lit * light.sun_colour[0] - cover * red
         green += dim * light.horizon[1] + lit * light.sun_colour[1] - cover * green
