@@ -20,5 +20,6 @@ _LAST_STEP = f4(TONE_STEPS - 1)
 @inlined_kernel
 def tone_byte(light: Light, radiance: float) -> int:
     """Return the byte of the picture for a radiance."""
-    step = min(max(radiance * light.air[2] * _STEPS_PER_UNIT, f4(0.0)), _LAST_STEP)
-    return i8(light.tone[u4(step)])
+    step = radiance * light.air[2] * _STEPS_PER_UNIT
+    # So that what is no number, which compares with nothing, ends as black, not beyond the table.
+    return i8(light.tone[u4(min(step, _LAST_STEP))]) if step > f4(0.0) else i8(light.tone[0])
