@@ -5,7 +5,10 @@ import os
 from dataclasses import dataclass
 from functools import lru_cache
 
+import shapely
+
 from eyas.core.jit import nothing_compiled
+from eyas.core.kept import kept
 from eyas.render.renderer import Renderer
 from eyas.render.textures import build_textures
 from eyas.state.roads import RoadNetwork
@@ -48,8 +51,13 @@ def load_network(world: WorldConfig) -> RoadNetwork:
 @lru_cache(maxsize=2)
 def load_scene(map_name: str, seed: int) -> Scene:
     """Return everything of a map that stands still."""
-    world = WorldConfig(map=map_name, seed=seed)
-    return build_scene(map_name, load_network(world), seed)
+    network = load_network(WorldConfig(map=map_name, seed=seed))
+    return kept(
+        "scene",
+        ("world", "state", "core/rng.py"),
+        (map_name, seed, network.graph_hash, network.builder, shapely.__version__),
+        lambda: build_scene(map_name, network, seed),
+    )
 
 
 def load_place(world: WorldConfig, traffic: TrafficConfig, trackers: int) -> Place:
@@ -79,5 +87,6 @@ def _load_place(world: WorldConfig, traffic: TrafficConfig, trackers: int) -> Pl
         )
     scene = load_scene(world.map, world.seed)
     rigs = VehicleRigs(recording.provenance.config.vehicle_type)
-    renderer = Renderer(scene, rigs.library, light, build_textures())
+    textures = kept("textures", ("render", "world/materials.py"), (), build_textures)
+    renderer = Renderer(scene, rigs.library, light, textures)
     return Place(scene, Replay(recording), light, renderer, rigs)
