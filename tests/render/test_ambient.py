@@ -5,8 +5,9 @@ import dataclasses
 import numpy as np
 import pytest
 
+from eyas.core.parallel import Held
 from eyas.render.bake_ambient import bake_ambient
-from eyas.render.kernels.ambient import BOUNCED, bake_openness
+from eyas.render.kernels.ambient import BOUNCED, OpennessBake, bake_openness
 from eyas.world.materials import material
 from eyas.world.shapes import box
 
@@ -19,7 +20,7 @@ def open_shares(solid, crowns=None, workers=1) -> np.ndarray:
     """Return the share of the sky that each texel's ground sees, light that bounces left out."""
     result = np.empty(solid.shape, np.uint16)
     crowns = np.zeros_like(solid) if crowns is None else crowns
-    bake_openness(workers, 1.0, solid, crowns, result)
+    bake_openness(workers, Held(OpennessBake(1.0, solid, crowns, result)))
     return ((result & 255) / 255.0 - BOUNCED) / (1.0 - BOUNCED)
 
 

@@ -4,23 +4,21 @@ numba's own cache notices a change of the function's file, not of a function it 
 file. So the cache folder is named after a hash of every source file that holds kernels.
 """
 
-import functools
 import hashlib
 import os
-import threading
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
 import platformdirs
 
 __all__ = [
+    "KERNEL_SETTINGS",
     "cache_folder",
     "inlined_kernel",
     "inner_kernel",
     "kernel",
     "nothing_compiled",
-    "parallel_kernel",
     "prange",
     "thread_count",
 ]
@@ -69,46 +67,46 @@ def thread_count() -> int:
 # Kernels allocate nothing, so they need not count who uses an array. Numba would: two atomic
 # operations for each array handed on, which threads that share the arrays pay for dearly
 # (pictures took three times as long).
-_SETTINGS = {"cache": True, "error_model": "numpy", "fastmath": False, "_nrt": False}
+KERNEL_SETTINGS = {"cache": True, "error_model": "numpy", "fastmath": False, "_nrt": False}
+
+
+def _compiled(function: Function, **settings: object) -> Function:
+    """Return the function as numba will compile it, once for whole numbers of any kind.
+
+    For calls `f(0)`, `f(1)` and `f(i)` in other kernels numba would compile `f` three times, and
+    once more where `i` has 32 bits.
+    """
+    dispatcher = numba.njit(**KERNEL_SETTINGS, **settings)(function)
+    template = dispatcher.get_call_template
+
+    def template_for_any(args: tuple[object, ...], kws: dict[str, object]) -> object:
+        return template(tuple(map(_widened, args)), {name: _widened(kws[name]) for name in kws})
+
+    dispatcher.get_call_template = template_for_any
+    return cast(Function, dispatcher)
+
+
+def _widened(kind: object) -> object:
+    kind = numba.types.unliteral(kind)
+    signed = isinstance(kind, numba.types.Integer) and kind.signed
+    return numba.types.int64 if signed else kind
 
 
 def kernel(function: Function) -> Function:
     """Compile a scalar function without allocation, so that CUDA kernels can call it too."""
-    compiled: Function = numba.njit(**_SETTINGS)(function)
-    return compiled
+    return _compiled(function)
 
 
 # What only kernels call needs no way in from Python; leaving it out saves a quarter of the time
 # that compiling the renderer takes.
-_INNER = {**_SETTINGS, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+_INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 
 def inner_kernel(function: Function) -> Function:
     """Compile like `kernel`, for calls from other kernels only; Python cannot call it."""
-    compiled: Function = numba.njit(**_INNER)(function)
-    return compiled
+    return _compiled(function, **_INNER)
 
 
 def inlined_kernel(function: Function) -> Function:
     """Compile like `inner_kernel`, and have LLVM put it into its callers: for once a pixel."""
-    compiled: Function = numba.njit(**_INNER, forceinline=True)(function)
-    return compiled
-
-
-_ONE_AT_A_TIME = threading.Lock()
-
-
-def parallel_kernel(function: Function) -> Function:
-    """Compile a loop over trackers, views or bands (`numba.prange`).
-
-    numba's workqueue layer, the one that survives forking, must not be entered from two Python
-    threads at once, so calls wait for each other.
-    """
-    compiled = numba.njit(cache=True, error_model="numpy", fastmath=False, parallel=True)(function)
-
-    @functools.wraps(function)
-    def guarded(*args: Any) -> Any:  # noqa: ANN401  # same signature as the function
-        with _ONE_AT_A_TIME:
-            return compiled(*args)
-
-    return guarded  # type: ignore[return-value]
+    return _compiled(function, **_INNER, forceinline=True)

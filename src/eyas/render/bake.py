@@ -8,9 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.jit import thread_count
+from eyas.core.parallel import Held
 from eyas.render.bake_cache import baked, content_hash
 from eyas.render.kernels.bundles import Geometry
-from eyas.render.kernels.shadow_map import BAND, bake_rows
+from eyas.render.kernels.shadow_map import BAND, ShadowBake, bake_rows
 from eyas.state.mesh import Surface
 
 __all__ = ["ShadowMap", "bake_shadows"]
@@ -105,8 +106,7 @@ def _bake(
     workers = min(thread_count(), math.ceil(lines / BAND))
     ranges = np.concatenate([geometry.chunk_range, geometry.mesh_range])
     most = int((ranges[:, 3] - ranges[:, 2]).max(initial=1))
-    bake_rows(
-        workers,
+    bake = ShadowBake(
         geometry,
         rows,
         np.empty((workers, most, 5)),
@@ -115,6 +115,7 @@ def _bake(
         np.empty((workers, BAND, columns), np.int64),
         heights,
     )
+    bake_rows(workers, Held(bake))
     return heights
 
 

@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from eyas.core.jit import thread_count
+from eyas.core.parallel import Held
 from eyas.render.bake_cache import baked, content_hash
-from eyas.render.kernels.ambient import BOUNCED, LEAVES, bake_openness
+from eyas.render.kernels.ambient import BOUNCED, LEAVES, OpennessBake, bake_openness
 from eyas.state.scene import ObjectClass, Scene
 
 __all__ = ["AmbientMap", "bake_ambient", "canopy_map", "height_map"]
@@ -62,7 +63,7 @@ def bake_ambient(scene: Scene, folder: Path | None) -> AmbientMap:
         openness = np.empty((rows, columns), np.uint16)
         solid = height_map(scene, frame, (rows, columns))
         crowns = canopy_map(scene, frame, (rows, columns))
-        bake_openness(thread_count(), texel, solid, crowns, openness)
+        bake_openness(thread_count(), Held(OpennessBake(texel, solid, crowns, openness)))
         return openness
 
     name = content_hash(_FORMAT, inputs)

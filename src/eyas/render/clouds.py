@@ -6,7 +6,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.render.kernels.clouds import DEEPEST, cloud_rays
+from eyas.core.jit import thread_count
+from eyas.core.parallel import Held
+from eyas.render.kernels.clouds import DEEPEST, CloudRays, cloud_rays
 from eyas.render.kernels.sky import CLOUD_BEND, CLOUDS_FROM
 from eyas.render.texture_fields import SIZE, Field, blurred, fractal, source
 
@@ -33,10 +35,13 @@ def build_clouds(cover: float, sun: tuple[float, float, float]) -> NDArray[np.ui
     # What would be lower is not shown.
     sines = np.maximum(CLOUD_BEND * place / (1.0 + CLOUD_BEND - place), CLOUDS_FROM)
     output = np.empty((_ROWS, _COLUMNS, 2), np.uint8)
-    field = _field(cover, sun).astype(np.float32)
-    cloud_rays(
-        field, sines.astype(np.float32), plan_directions(_COLUMNS).astype(np.float32), output
+    rays = CloudRays(
+        _field(cover, sun).astype(np.float32),
+        sines.astype(np.float32),
+        plan_directions(_COLUMNS).astype(np.float32),
+        output,
     )
+    cloud_rays(thread_count(), Held(rays))
     return output
 
 

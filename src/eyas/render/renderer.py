@@ -8,13 +8,14 @@ from numpy.typing import NDArray
 
 from eyas.core.errors import ConfigError
 from eyas.core.jit import thread_count
+from eyas.core.parallel import Held
 from eyas.render.bake import bake_shadows
 from eyas.render.bake_ambient import bake_ambient
 from eyas.render.bake_cache import shadow_folder
 from eyas.render.classes import class_table, write_classes
 from eyas.render.geometry import build_geometry
 from eyas.render.jobs import build_jobs, picture_size, write_subject
-from eyas.render.kernels.bundles import Movers, Output, Scratch, Stage
+from eyas.render.kernels.bundles import Movers, Output, Scratch, Stage, Still, Task
 from eyas.render.kernels.draw import draw_views
 from eyas.render.lighting import build_light
 from eyas.render.tracks import TrackMap, track_map
@@ -58,7 +59,8 @@ class Renderer:
         self._light = build_light(lighting, shadows, ambient, scene.lamps, tracks, self._geometry)
         ranges = np.concatenate([self._geometry.chunk_range, self._geometry.mesh_range])
         self._most_vertices = int((ranges[:, 3] - ranges[:, 2]).max(initial=1))
-        self._scratch: dict[tuple[int, int, int], Scratch] = {}
+        self._still = Held(Still(self._geometry, self._light))
+        self._scratch: dict[tuple[int, int, int], Held[Scratch]] = {}
         self._classes = class_table(scene)
 
     def draw(
@@ -115,20 +117,19 @@ class Renderer:
         if wanted:
             output = output._replace(subject=np.zeros((len(job.band), 6), np.int32))
         scratch = self._scratch_for(workers, rows * side, width * side)
-        draw_views(
-            workers, side, int(until), self._geometry, self._light, movers, job, scratch, output
-        )
+        task = Task(side, int(until), movers, job, output)
+        draw_views(workers, self._still, scratch, Held(task))
         if wanted:
             write_subject(job.band, output.subject, picture)
 
-    def _scratch_for(self, workers: int, rows: int, width: int) -> Scratch:
+    def _scratch_for(self, workers: int, rows: int, width: int) -> Held[Scratch]:
         """Return working memory, the same as last time for the same size."""
         key = (workers, rows, width)
         if key not in self._scratch:
             if len(self._scratch) >= 4:  # sizes seldom change; forget the oldest
                 del self._scratch[next(iter(self._scratch))]
             plane = (workers, rows, width)
-            self._scratch[key] = Scratch(
+            scratch = Scratch(
                 depth=np.empty(plane, np.float32),
                 owner=np.empty(plane, np.int64),
                 shade=np.empty((*plane, 4), np.uint8),
@@ -141,6 +142,7 @@ class Renderer:
                 light=np.empty((workers, 7, 9), np.float32),
                 caster=np.empty((workers, 13)),
             )
+            self._scratch[key] = Held(scratch)
         return self._scratch[key]
 
 

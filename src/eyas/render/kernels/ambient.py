@@ -1,15 +1,17 @@
 """Ambient occlusion: how much light of the sky reaches a place, baked on the ground plane."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inlined_kernel, inner_kernel, parallel_kernel, prange
+from eyas.core.jit import inlined_kernel, inner_kernel
+from eyas.core.parallel import Pointer, parallel_kernel
 from eyas.render.kernels.bundles import Light
 from eyas.render.kernels.scalars import f4, u4
 
-__all__ = ["BOUNCED", "LEAVES", "bake_openness", "openness"]
+__all__ = ["BOUNCED", "LEAVES", "OpennessBake", "bake_openness", "openness"]
 
 DIRECTIONS = 16
 """Ways in which the horizon is sought."""
@@ -40,9 +42,8 @@ def _open_share(
     column: int,
     solid: NDArray[np.float32],
     crowns: NDArray[np.float32],
-    result: NDArray[np.float64],
-) -> None:
-    """Compute the share of the sky's light on a texel's ground, and the height of what hides it.
+) -> tuple[float, float]:
+    """Return the share of the sky's light on a texel's ground, and the height of what hides it.
 
     A flat surface gets the share cos^2 of the horizon's angle from each way round, if the sky is
     as bright everywhere.
@@ -71,42 +72,39 @@ def _open_share(
     if above > 0.0:  # a crown right overhead hides the zenith, the brightest part
         share *= 1.0 - 0.5 * LEAVES
         height, weight = height + 2.0 * above, weight + 2.0
-    result[0] = BOUNCED + (1.0 - BOUNCED) * share
-    result[1] = height / weight
+    return BOUNCED + (1.0 - BOUNCED) * share, height / weight
+
+
+class OpennessBake(NamedTuple):
+    """What `bake_openness` reads and writes."""
+
+    texel: float
+    """Side of a texel [m]."""
+    solid: NDArray[np.float32]
+    """Height of houses [m], shape (rows, columns)."""
+    crowns: NDArray[np.float32]
+    """Height of trees [m], shape (rows, columns)."""
+    result: NDArray[np.uint16]
+    """`AmbientMap.openness`, filled, shape (rows, columns)."""
 
 
 @parallel_kernel
-def bake_openness(
-    workers: int,
-    texel: float,
-    solid: NDArray[np.float32],
-    crowns: NDArray[np.float32],
-    result: NDArray[np.uint16],
-) -> None:
+def bake_openness(parts: Pointer[tuple[Pointer[OpennessBake]]], worker: int, workers: int) -> None:
     """Fill `AmbientMap.openness`.
 
     Below houses the ground of the nearest texel outside is taken, up to 3 texels in: that is
     where the feet of walls are looked up; what is farther in is open, for roofs.
-
-    Args:
-        workers: How many share the work.
-        texel: Side of a texel [m].
-        solid: Height of houses [m], shape (rows, columns).
-        crowns: Height of trees [m], shape (rows, columns).
-        result: Filled, shape (rows, columns).
     """
-    rows, columns = solid.shape
-    for worker in prange(workers):
-        found = np.empty(2)
-        for row in range(worker, rows, workers):
-            for column in range(columns):
-                i, j = _outside(solid, row, column)
-                if i < 0:
-                    result[row, column] = np.uint16(255 | (1 << 8))
-                    continue
-                _open_share(texel, i, j, solid, crowns, found)
-                height = min(max(found[1], 1.0), 255.0)
-                result[row, column] = np.uint16(int(255.0 * found[0] + 0.5) | (int(height) << 8))
+    texel, solid, crowns, result = parts[0][0][0]
+    for row in range(worker, solid.shape[0], workers):
+        for column in range(solid.shape[1]):
+            i, j = _outside(solid, row, column)
+            if i < 0:
+                result[row, column] = np.uint16(255 | (1 << 8))
+                continue
+            share, height = _open_share(texel, i, j, solid, crowns)
+            height = min(max(height, 1.0), 255.0)
+            result[row, column] = np.uint16(int(255.0 * share + 0.5) | (int(height) << 8))
 
 
 @inner_kernel

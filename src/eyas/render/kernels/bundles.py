@@ -10,7 +10,19 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["GROUP", "NEAR", "Geometry", "Job", "Light", "Movers", "Output", "Scratch", "Stage"]
+__all__ = [
+    "GROUP",
+    "NEAR",
+    "Geometry",
+    "Job",
+    "Light",
+    "Movers",
+    "Output",
+    "Scratch",
+    "Stage",
+    "Still",
+    "Task",
+]
 
 NEAR = 0.08
 """Distance of the near plane [m]."""
@@ -210,3 +222,22 @@ class Output(NamedTuple):
     object_id: NDArray[np.int32]
     subject: NDArray[np.int32]
     """Left, top, right, bottom, seen and covered pixels in each job, shape (J, 6)."""
+
+
+class Still(NamedTuple):
+    """What stays from picture to picture."""
+
+    geometry: Geometry
+    light: Light
+
+
+class Task(NamedTuple):
+    """What is to be drawn this time."""
+
+    samples: int
+    """Samples along a side of each pixel, 1 or 2."""
+    until: int
+    """The last `Stage`."""
+    movers: Movers
+    job: Job
+    output: Output

@@ -37,7 +37,7 @@ def noise(x: float, y: float) -> float:
     across, down = x - f4(column), y - f4(row)
     across *= across * (f4(3.0) - f4(2.0) * across)
     down *= down * (f4(3.0) - f4(2.0) * down)
-    right, lower = column + u4(1), row + u4(1)
+    right, lower = u4(column + u4(1)), u4(row + u4(1))
     a, b = _grain(column, row), _grain(right, row)
     c, d = _grain(column, lower), _grain(right, lower)
     upper = a + across * (b - a)

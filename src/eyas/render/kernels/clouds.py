@@ -1,14 +1,16 @@
 """Clouds as a panorama: rays from the ground through heaps of cloud with flat bases."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inlined_kernel, inner_kernel, parallel_kernel, prange
+from eyas.core.jit import inlined_kernel, inner_kernel
+from eyas.core.parallel import Pointer, parallel_kernel
 from eyas.render.kernels.scalars import f4, u4
 
-__all__ = ["DEEPEST", "cloud_rays"]
+__all__ = ["DEEPEST", "CloudRays", "cloud_rays"]
 
 DEEPEST = 0.9
 """Height of the highest heaps over their base [km]."""
@@ -21,7 +23,6 @@ _VEIL = f4(8.0)
 """Height of the thin clouds above them [km]."""
 _CURVE = f4(0.5 / 6371.0)
 """One over the diameter of the earth [1/km]."""
-_WORKERS = 16
 _TILE, _FINE, _THIN = f4(256.0 / 9.0), f4(256.0 / 2.1), f4(256.0 / 60.0)
 """Texels in a km: of heaps, of their details, of the thin clouds."""
 _DENSE = f4(50.0)
@@ -54,31 +55,33 @@ def _reach(climb: float, height: float) -> float:
     return f4(2.0) * height / (climb + root)
 
 
+class CloudRays(NamedTuple):
+    """What `cloud_rays` reads and writes."""
+
+    field: NDArray[np.float32]
+    """Height of the heaps' tops over their base, or minus the distance to the next heap, and height
+    of the clouds' sunlit surface [km], details 0 to 1, and opacity of the thin clouds, 0 to 1; it
+    repeats; shape (256, 256, 4)."""
+    sines: NDArray[np.float32]
+    """Of the elevation of each row."""
+    directions: NDArray[np.float32]
+    """Unit vectors in plan of each column, shape (., 2)."""
+    output: NDArray[np.uint8]
+    """Opacity, and brightness times opacity, 0 to 255, shape (rows, columns, 2)."""
+
+
 @parallel_kernel
-def cloud_rays(
-    field: NDArray[np.float32],
-    sines: NDArray[np.float32],
-    directions: NDArray[np.float32],
-    output: NDArray[np.uint8],
-) -> None:
+def cloud_rays(parts: Pointer[tuple[Pointer[CloudRays]]], worker: int, workers: int) -> None:
     """Fill the panorama.
 
     Light that is scattered often falls off as `1 / (1 + depth)`, not exponentially; `depth` is how
     far below the sunlit surface of the clouds a point lies.
-
-    Args:
-        field: Height of the heaps' tops over their base, or minus the distance to the next heap,
-            and height of that surface [km], details 0 to 1, and opacity of the thin clouds, 0 to
-            1; it repeats; shape (256, 256, 4).
-        sines: Of the elevation of each row.
-        directions: Unit vectors in plan of each column, shape (., 2).
-        output: Opacity, and brightness times opacity, 0 to 255, shape (rows, columns, 2).
     """
+    field, sines, directions, output = parts[0][0][0]
     # Far clouds take longest, so no worker gets all of them.
-    for worker in prange(_WORKERS):
-        for row in range(worker, len(sines), _WORKERS):
-            climb = sines[row] / math.sqrt(max(f4(1.0) - sines[row] * sines[row], f4(1e-6)))
-            _cloud_row(field, climb, directions, output[row])
+    for row in range(worker, len(sines), workers):
+        climb = sines[row] / math.sqrt(max(f4(1.0) - sines[row] * sines[row], f4(1e-6)))
+        _cloud_row(field, climb, directions, output[row])
 
 
 @inner_kernel

@@ -3,11 +3,12 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inner_kernel, parallel_kernel, prange
+from eyas.core.jit import inner_kernel
+from eyas.core.parallel import Pointer, parallel_kernel
 from eyas.render.kernels.backdrop import draw_backdrop
 from eyas.render.kernels.band import shade_band
 from eyas.render.kernels.beams import cast_beams
-from eyas.render.kernels.bundles import Geometry, Job, Light, Movers, Output, Scratch, Stage
+from eyas.render.kernels.bundles import Geometry, Job, Light, Movers, Output, Scratch, Stage, Still, Task
 from eyas.render.kernels.casters import cast_shadows
 from eyas.render.kernels.cull import set_planes
 from eyas.render.kernels.flakes import Canvas, let_flakes_fall
@@ -25,32 +26,18 @@ MOVERS_LIGHT = int(Stage.MOVERS_LIGHT)
 
 @parallel_kernel
 def draw_views(
+    parts: Pointer[tuple[Pointer[Still], Pointer[Scratch], Pointer[Task]]],
+    worker: int,
     workers: int,
-    samples: int,
-    until: int,
-    geometry: Geometry,
-    light: Light,
-    movers: Movers,
-    job: Job,
-    scratch: Scratch,
-    output: Output,
 ) -> None:
-    """Draw all jobs. Each is drawn alone, so neither workers nor other jobs change its bytes.
-
-    Args:
-        workers: How many share the work; the leading axis of `scratch`.
-        samples: Samples along a side of each pixel, 1 or 2.
-        until: The last `Stage`.
-        geometry: Everything that can be drawn.
-        light: Light and air.
-        movers: What moves.
-        job: Bands and cameras.
-        scratch: Working memory.
-        output: Written in place.
-    """
-    for worker in prange(workers):
-        for index in range(worker, len(job.band), workers):
-            _draw_job(worker, index, samples, until, geometry, light, movers, job, scratch, output)
+    """Draw all jobs. Each is drawn alone, so neither workers nor other jobs change its bytes."""
+    still, scratch, task = parts[0]
+    geometry, light = still[0]
+    samples, until, movers, job, output = task[0]
+    for index in range(worker, len(job.band), workers):
+        _draw_job(
+            worker, index, samples, until, geometry, light, movers, job, scratch[0], output
+        )  # fmt: skip
 
 
 @inner_kernel

@@ -1,15 +1,18 @@
 """The shadow map: how high towards the sun the first thing stands that sunlight meets."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inner_kernel, parallel_kernel, prange
+from eyas.core.jit import inner_kernel
+from eyas.core.parallel import Pointer, parallel_kernel
 from eyas.render.kernels.bundles import Geometry
 from eyas.render.kernels.rasterise import BOTH_SIDES, rasterise
 from eyas.render.kernels.scalars import f4, i8
 from eyas.state.mesh import Surface
 
-__all__ = ["BAND", "bake_rows"]
+__all__ = ["BAND", "ShadowBake", "bake_rows"]
 
 BAND = 256
 """Rows of the map that are drawn at a time."""
@@ -20,50 +23,43 @@ LEAF_LEVEL = 3
 FOLIAGE = int(Surface.FOLIAGE)
 
 
-@parallel_kernel
-def bake_rows(
-    workers: int,
-    geometry: Geometry,
-    rows: NDArray[np.float64],
-    screen: NDArray[np.float64],
-    object_rows: NDArray[np.float64],
-    depth: NDArray[np.float32],
-    owner: NDArray[np.int64],
-    shadow_map: NDArray[np.uint16],
-) -> None:
-    """Draw all static triangles and the finest level of all fixtures into `shadow_map`.
+class ShadowBake(NamedTuple):
+    """What `bake_rows` reads and writes, K workers."""
 
-    Args:
-        workers: How many share the work; the leading axis of the working memory.
-        geometry: Everything that can be drawn.
-        rows: World to column, row and height of the map, shape (3, 4); heights are 1 to 65535.
-        screen: Working memory, shape (K, vertices of the largest mesh, 5).
-        object_rows: Working memory, shape (K, 3, 4).
-        depth: Working memory, shape (K, BAND, columns).
-        owner: Working memory, shape (K, BAND, columns).
-        shadow_map: Filled, shape (lines, columns).
-    """
-    bands = (shadow_map.shape[0] + BAND - 1) // BAND
-    for worker in prange(workers):
-        for band in range(worker, bands, workers):
-            depth[worker] = f4(0.0)
-            top = band * BAND
-            for chunk in range(len(geometry.chunk_range)):
-                _draw(
-                    geometry, rows, geometry.chunk_range[chunk], top,
-                    screen[worker], depth[worker], owner[worker],
-                )  # fmt: skip
-            for i in range(len(geometry.fixture_prototype)):
-                mesh = geometry.level_first[geometry.fixture_prototype[i]]
-                _set_object_rows(rows, geometry.fixture_pose[i], object_rows[worker])
-                _draw(
-                    geometry, object_rows[worker], geometry.mesh_range[mesh], top,
-                    screen[worker], depth[worker], owner[worker],
-                )  # fmt: skip
-            for line in range(min(BAND, shadow_map.shape[0] - top)):
-                for column in range(shadow_map.shape[1]):
-                    height = min(depth[worker, line, column], f4(65535.0))
-                    shadow_map[top + line, column] = np.uint16(height)
+    geometry: Geometry
+    rows: NDArray[np.float64]
+    """World to column, row and height of the map, shape (3, 4); heights are 1 to 65535."""
+    screen: NDArray[np.float64]
+    """Working memory, shape (K, vertices of the largest mesh, 5)."""
+    object_rows: NDArray[np.float64]
+    """Working memory, shape (K, 3, 4)."""
+    depth: NDArray[np.float32]
+    """Working memory, shape (K, BAND, columns)."""
+    owner: NDArray[np.int64]
+    """Working memory, shape (K, BAND, columns)."""
+    shadow_map: NDArray[np.uint16]
+    """Filled, shape (lines, columns)."""
+
+
+@parallel_kernel
+def bake_rows(parts: Pointer[tuple[Pointer[ShadowBake]]], worker: int, workers: int) -> None:
+    """Draw all static triangles and the finest level of all fixtures into the shadow map."""
+    geometry, rows, all_screens, all_rows, depths, owners, shadow_map = parts[0][0][0]
+    screen, object_rows = all_screens[worker], all_rows[worker]
+    depth, owner = depths[worker], owners[worker]
+    for band in range(worker, (shadow_map.shape[0] + BAND - 1) // BAND, workers):
+        depth[:] = f4(0.0)
+        top = band * BAND
+        for chunk in range(len(geometry.chunk_range)):
+            _draw(geometry, rows, geometry.chunk_range[chunk], top, screen, depth, owner)
+        for i in range(len(geometry.fixture_prototype)):
+            mesh = geometry.level_first[geometry.fixture_prototype[i]]
+            _set_object_rows(rows, geometry.fixture_pose[i], object_rows)
+            _draw(geometry, object_rows, geometry.mesh_range[mesh], top, screen, depth, owner)
+        for line in range(min(BAND, shadow_map.shape[0] - top)):
+            for column in range(shadow_map.shape[1]):
+                height = min(depth[line, column], f4(65535.0))
+                shadow_map[top + line, column] = np.uint16(height)
 
 
 @inner_kernel

@@ -58,7 +58,7 @@ def _worn(light: Light, x: float, y: float, footprint: float) -> float:
     i, j = u4(row), u4(column)
     across, down = column - f4(j), row - f4(i)
     far = _clip(f4(1.7) * footprint - f4(0.25))
-    lower, right = i + u4(1), j + u4(1)
+    lower, right = u4(i + u4(1)), u4(j + u4(1))
     a, b = _texel(light, i, j, far), _texel(light, i, right, far)
     c, d = _texel(light, lower, j, far), _texel(light, lower, right, far)
     upper = a + across * (b - a)
