@@ -1,13 +1,14 @@
 """A small city for tests: plain shapes whose pictures can be computed by hand."""
 
+import dataclasses
+
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
 from eyas.state.draw import DrawList, PartLibrary, Views
 from eyas.state.mesh import Material, Mesh, Surface, concatenate, transformed
-from eyas.state.roads import RoadNetwork
-from eyas.state.scene import Colliders, Fixtures, Lighting, Scene
+from eyas.state.scene import Fixtures, Lighting, Scene
 from eyas.world.materials import TEXTURES, facade, material
 from eyas.world.shapes import box, cylinder, flat_polygon, sphere, walls
 
@@ -101,27 +102,14 @@ def scene_of(
 ) -> Scene:
     """A scene of world-space meshes, an object id for each."""
     ids = [np.full(len(m.triangles), o, np.int32) for m, o in zip(meshes, objects, strict=True)]
-    return Scene(
-        name="small",
-        seed=0,
+    scene = Scene.empty()
+    return dataclasses.replace(
+        scene,
         size=(size, size),
-        ground_height=0.0,
         static=concatenate(meshes),
         static_object=np.concatenate([np.zeros(0, np.int32), *ids]),
         object_class=np.zeros(128, np.int32),
-        fixtures=fixtures or no_fixtures(),
-        colliders=_no_colliders(),
-        network=_no_network(),
-    )
-
-
-def no_fixtures() -> Fixtures:
-    """Nothing repeated."""
-    return Fixtures(
-        levels=(),
-        prototype=np.zeros(0, np.int32),
-        pose=np.zeros((0, 3, 4), np.float32),
-        object_id=np.zeros(0, np.int32),
+        fixtures=fixtures or scene.fixtures,
     )
 
 
@@ -204,19 +192,3 @@ def looking(
         subject=np.full(count, subject, np.int32),
         field_of_view=fov,
     )
-
-
-def _no_colliders() -> Colliders:
-    none, first, ids = np.zeros(0), np.zeros(1, np.int32), np.zeros(0, np.int32)
-    return Colliders(
-        np.zeros((0, 2)), first, none, none, ids, np.zeros((0, 2)), none, none, none, ids
-    )
-
-
-def _no_network() -> RoadNetwork:
-    none, ids = np.zeros(0), np.zeros(0, np.int32)
-    first = np.zeros(1, np.int32)
-    return RoadNetwork(
-        "", "", np.zeros((0, 2)), first, none, none, ids, ids,
-        (), (), (), np.zeros((0, 2)), first, (),
-    )  # fmt: skip

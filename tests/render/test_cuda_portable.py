@@ -5,10 +5,11 @@ from types import SimpleNamespace
 import numba
 import numpy as np
 import pytest
+from numba.types import CPointer, Tuple, intp
 
 from eyas.render.jobs import build_jobs
-from eyas.render.kernels import draw
-from eyas.render.kernels.bundles import Movers, Output, Stage
+from eyas.render.kernels.bundles import Movers, Output, Stage, Task
+from eyas.render.kernels.draw import draw_views
 from eyas.sim.build import build_simulation
 from eyas.sim.config import EyasConfig
 from eyas.sim.step import fly
@@ -28,8 +29,7 @@ def ptx_of(monkeypatch):
     monkeypatch.setattr(dispatcher, "get_current_device", lambda: no_gpu)
     monkeypatch.setattr(api, "get_current_device", lambda: no_gpu, raising=False)
 
-    def compiled(function, *values) -> str:
-        types = tuple(numba.typeof(value) for value in values)
+    def compiled(function, *types) -> str:
         signature = numba.void(*types)
         text, _ = cuda.compile(
             function, signature, cc=CAPABILITY, device=False, abi="numba", output="ptx"
@@ -37,6 +37,10 @@ def ptx_of(monkeypatch):
         return text
 
     return compiled
+
+
+def pointer_to(bundle) -> CPointer:
+    return CPointer(numba.typeof(bundle))
 
 
 def test_drawing_a_band_with_all_weathers_compiles_for_cuda(ptx_of, renderer_of):
@@ -50,12 +54,9 @@ def test_drawing_a_band_with_all_weathers_compiles_for_cuda(ptx_of, renderer_of)
         np.zeros((1, 24, 32, 3), np.uint8), np.zeros((1, 24, 32), np.float32),
         np.zeros((1, 24, 32), np.int32), np.zeros((1, 6), np.int32),
     )  # fmt: skip
-    draw_job, until = draw._draw_job, int(Stage.SHADING)
-
-    def one_band(geometry, light, movers, job, scratch, output):
-        draw_job(0, 0, 1, until, geometry, light, movers, job, scratch, output)
-
-    text = ptx_of(one_band, renderer._geometry, renderer._light, movers, job, scratch, output)
+    task = Task(1, int(Stage.SHADING), movers, job, output)
+    parts = [pointer_to(part) for part in (renderer._still.bundle, scratch, task)]
+    text = ptx_of(draw_views.function, CPointer(Tuple(parts)), intp, intp)
     assert ".visible .entry" in text
     assert "sqrt.rn.f32" in text
 
@@ -66,5 +67,6 @@ def test_the_fused_step_compiles_for_cuda(ptx_of):
     def step(actions, fleet, traffic, rules):
         fly(4, actions, fleet, traffic, rules)
 
-    text = ptx_of(step, np.zeros((2, 4)), simulation._fleet, simulation._traffic, simulation._rules)
+    values = (np.zeros((2, 4)), simulation._fleet, simulation._traffic, simulation._rules)
+    text = ptx_of(step, *map(numba.typeof, values))
     assert ".visible .entry" in text

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from eyas.render.kernels.snow import Bed
-from eyas.render.renderer import Renderer
+from eyas.render.renderer import build_renderer
 from eyas.render.snow import snow_beds
 from eyas.render.tracks import TRACK_ASIDE, track_map
 from eyas.state.draw import PartLibrary
@@ -52,7 +52,7 @@ def with_lanes(scene, *lanes):
 @pytest.fixture
 def seen(drawn, images, tmp_path):
     def see(scene, lighting, views=None, size=(96, 128), parts=None):
-        renderer = Renderer(scene, PartLibrary(()), lighting, images, shadow_cache=tmp_path)
+        renderer = build_renderer(scene, PartLibrary(()), lighting, images, shadow_cache=tmp_path)
         views = views or looking([(0.3, 0.2, 20.0)], pitch=1.5707, fov=1.0)
         return drawn(renderer, views, size=size).rgb[0].astype(float)
 

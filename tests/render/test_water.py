@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import shapely
 
-from eyas.render.renderer import Renderer
+from eyas.render.renderer import build_renderer
 from eyas.render.textures import build_textures
 from eyas.state.draw import PartLibrary
 from eyas.state.mesh import Material, Surface
@@ -20,7 +20,7 @@ def lake(tmp_path_factory):
     mesh = flat_polygon(shapely.box(-400, -400, 400, 400), 0.0, water, TEXTURES["water"])
     scene = scene_of([mesh], [GROUND])
     folder = tmp_path_factory.mktemp("shadows")
-    return Renderer(scene, PartLibrary(()), DAY, build_textures(), shadow_cache=folder)
+    return build_renderer(scene, PartLibrary(()), DAY, build_textures(), shadow_cache=folder)
 
 
 def picture_of(lake, drawn, pitch):

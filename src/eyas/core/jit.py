@@ -49,12 +49,10 @@ os.environ.setdefault("NUMBA_CACHE_DIR", str(cache_folder()))
 # One layer on every system that is safe in forked and spawned workers.
 os.environ.setdefault("NUMBA_THREADING_LAYER", "workqueue")
 
-# numba reads the settings above when imported, so no other module of Eyas imports it: that might
-# be the first.
+# numba reads the settings above when it is imported, and may have been before.
 import numba  # noqa: E402
 from numba import prange  # noqa: E402
 
-# If a user's program imported numba before, it has read its settings already.
 numba.config.CACHE_DIR = os.environ["NUMBA_CACHE_DIR"]
 numba.config.THREADING_LAYER = os.environ["NUMBA_THREADING_LAYER"]
 
@@ -83,7 +81,7 @@ def _compiled(function: Function, **settings: object) -> Function:
         return template(tuple(map(_widened, args)), {name: _widened(kws[name]) for name in kws})
 
     dispatcher.get_call_template = template_for_any
-    return cast(Function, dispatcher)
+    return cast("Function", dispatcher)
 
 
 def _widened(kind: object) -> object:

@@ -5,17 +5,15 @@ numba's own way, `parallel=True` on each kernel, compiles all that the kernel ca
 picture's time). Here the parallel loop is compiled alone and knows a kernel by its address only.
 """
 
-import hashlib
 import threading
 from collections.abc import Callable
 from typing import Any, Generic, Protocol, TypeVar
 
 import numba
 import numpy as np
-from llvmlite import ir
-from numba.core import cgutils
-from numba.extending import intrinsic
+from numpy.typing import NDArray
 
+from eyas.core.intrinsics import call, layout_of, size_of, store
 from eyas.core.jit import KERNEL_SETTINGS, kernel, prange
 
 __all__ = ["Held", "Pointer", "parallel_kernel"]
@@ -65,7 +63,7 @@ class parallel_kernel(Generic[Bundle]):  # noqa: N801  # a decorator like `kerne
 
     def __init__(self, function: Callable[[Pointer[Bundle], int, int], None]) -> None:
         self.__doc__ = function.__doc__
-        self._function = function
+        self.function = function
         self._compiled: dict[tuple[int, ...], Any] = {}
 
     def __call__(self, workers: int, *parts: Held[Any]) -> None:
@@ -81,66 +79,21 @@ class parallel_kernel(Generic[Bundle]):  # noqa: N801  # a decorator like `kerne
         pointers = [numba.types.CPointer(numba.typeof(part.bundle)) for part in parts]
         table = numba.types.CPointer(numba.types.Tuple(pointers))
         signature = numba.void(table, numba.intp, numba.intp)
-        return numba.cfunc(signature, **KERNEL_SETTINGS)(self._function)
-
-
-@intrinsic  # type: ignore[untyped-decorator]
-def _size_of(typing_context, value):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202, ARG001
-    """Return how many bytes a value takes."""
-
-    def generate(context, builder, signature, arguments):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202, ARG001
-        size = context.get_abi_sizeof(context.get_data_type(value))
-        return context.get_constant(numba.intp, size)
-
-    return numba.intp(value), generate
-
-
-@intrinsic  # type: ignore[untyped-decorator]
-def _layout_of(typing_context, value):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202, ARG001
-    """Return a number that is the same for values of one type only, in every process."""
-    number = int.from_bytes(hashlib.sha256(str(value).encode()).digest()[:7])
-
-    def generate(context, builder, signature, arguments):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202, ARG001
-        return context.get_constant(numba.intp, number)
-
-    return numba.intp(value), generate
-
-
-@intrinsic  # type: ignore[untyped-decorator]
-def _store(typing_context, memory, value):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202, ARG001
-    """Write a value into memory, as `CPointer` reads it."""
-
-    def generate(context, builder, signature, arguments):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
-        array = context.make_array(memory)(context, builder, arguments[0])
-        kind = context.get_data_type(value).as_pointer()
-        context.pack_value(builder, value, arguments[1], builder.bitcast(array.data, kind))
-        return context.get_dummy_value()
-
-    return numba.void(memory, value), generate
-
-
-@intrinsic  # type: ignore[untyped-decorator]
-def _call(typing_context, function, table, worker, workers):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202, ARG001
-    """Call a compiled kernel by its address."""
-
-    def generate(context, builder, signature, arguments):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202, ARG001
-        kind = ir.FunctionType(ir.VoidType(), [cgutils.intp_t] * 3)
-        builder.call(builder.inttoptr(arguments[0], kind.as_pointer()), arguments[1:])
-        return context.get_dummy_value()
-
-    return numba.void(*[numba.intp] * 4), generate
+        return numba.cfunc(signature, **KERNEL_SETTINGS)(self.function)
 
 
 @kernel
-def _lay_out(bundle, memory):  # type: ignore[no-untyped-def]  # noqa: ANN001, ANN202
+def _lay_out(bundle: object, memory: NDArray[np.uint8]) -> int:
     """Write a bundle into memory and return its layout, or minus the bytes it needs."""
-    if len(memory) < _size_of(bundle):
-        return -_size_of(bundle)
-    _store(memory, bundle)
-    return _layout_of(bundle)
+    size: int = size_of(bundle)
+    if len(memory) < size:
+        return -size
+    store(memory, bundle)
+    layout: int = layout_of(bundle)
+    return layout
 
 
-@numba.njit(cache=True, parallel=True)  # type: ignore[untyped-decorator]
+@numba.njit(cache=True, parallel=True)
 def _run(function: int, table: int, workers: int) -> None:
     for worker in prange(workers):
-        _call(function, table, worker, workers)
+        call(function, table, worker, workers)

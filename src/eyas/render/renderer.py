@@ -1,6 +1,6 @@
 """The renderer: pictures, depths, objects and the subject's measures of many views at once."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -15,14 +15,23 @@ from eyas.render.bake_cache import shadow_folder
 from eyas.render.classes import class_table, write_classes
 from eyas.render.geometry import build_geometry
 from eyas.render.jobs import build_jobs, picture_size, write_subject
-from eyas.render.kernels.bundles import Movers, Output, Scratch, Stage, Still, Task
+from eyas.render.kernels.bundles import (
+    Geometry,
+    Light,
+    Movers,
+    Output,
+    Scratch,
+    Stage,
+    Still,
+    Task,
+)
 from eyas.render.kernels.draw import draw_views
 from eyas.render.lighting import build_light
 from eyas.render.tracks import TrackMap, track_map
 from eyas.state.draw import DrawList, PartLibrary, Picture, Views
 from eyas.state.scene import Lighting, Scene
 
-__all__ = ["Renderer"]
+__all__ = ["Renderer", "build_renderer"]
 
 
 class Renderer:
@@ -32,36 +41,25 @@ class Renderer:
     and the bands a view is cut into change no byte.
 
     Args:
-        scene: What stands still.
-        parts: What moving things are made of.
-        lighting: Light and air.
-        textures: sRGB and alpha by name, row 0 on top, shape (256, 256, 4) each.
-        shadow_cache: Folder for baked shadows; None: the user's cache folder.
-
-    Raises:
-        UnknownNameError: A material asks for a texture that is not there.
+        geometry: Everything that can be drawn.
+        light: Light and air.
+        classes: Of each object, see `class_table`.
+        ready: Called before anything is drawn; returns when the kernels are compiled.
     """
 
     def __init__(
         self,
-        scene: Scene,
-        parts: PartLibrary,
-        lighting: Lighting,
-        textures: Mapping[str, NDArray[np.uint8]],
-        *,
-        shadow_cache: Path | None = None,
+        geometry: Geometry,
+        light: Light,
+        classes: NDArray[np.uint8],
+        ready: Callable[[], object] | None = None,
     ) -> None:
-        self._geometry = build_geometry(scene, parts, textures)
-        folder = shadow_cache or shadow_folder()
-        shadows = bake_shadows(self._geometry, lighting.sun_direction, scene.ground_height, folder)
-        tracks = track_map(scene.network) if lighting.snow > 0 else TrackMap.none()
-        ambient = bake_ambient(scene, folder)
-        self._light = build_light(lighting, shadows, ambient, scene.lamps, tracks, self._geometry)
+        self._geometry, self._light = geometry, light
+        self._classes, self._ready = classes, ready
         ranges = np.concatenate([self._geometry.chunk_range, self._geometry.mesh_range])
         self._most_vertices = int((ranges[:, 3] - ranges[:, 2]).max(initial=1))
         self._still = Held(Still(self._geometry, self._light))
         self._scratch: dict[tuple[int, int, int], Held[Scratch]] = {}
-        self._classes = class_table(scene)
 
     def draw(
         self,
@@ -86,6 +84,8 @@ class Renderer:
         """
         if samples not in (1, 4):
             raise ConfigError(f"camera.samples: {samples} is not allowed; allowed: 1, 4")
+        if self._ready is not None:
+            self._ready()
         movers = Movers(draw_list.part, draw_list.pose, draw_list.colour, draw_list.object_id)
         output = _output(picture)
         if samples == 4 and picture.rgb is not None:
@@ -144,6 +144,37 @@ class Renderer:
             )
             self._scratch[key] = Held(scratch)
         return self._scratch[key]
+
+
+def build_renderer(
+    scene: Scene,
+    parts: PartLibrary,
+    lighting: Lighting,
+    textures: Mapping[str, NDArray[np.uint8]],
+    *,
+    shadow_cache: Path | None = None,
+    ready: Callable[[], object] | None = None,
+) -> Renderer:
+    """Return a renderer of a scene, its shadows baked.
+
+    Args:
+        scene: What stands still.
+        parts: What moving things are made of.
+        lighting: Light and air.
+        textures: sRGB and alpha by name, row 0 on top, shape (256, 256, 4) each.
+        shadow_cache: Folder for baked shadows; None: the user's cache folder.
+        ready: See `Renderer`.
+
+    Raises:
+        UnknownNameError: A material asks for a texture that is not there.
+    """
+    geometry = build_geometry(scene, parts, textures)
+    folder = shadow_cache or shadow_folder()
+    shadows = bake_shadows(geometry, lighting.sun_direction, scene.ground_height, folder)
+    tracks = track_map(scene.network) if lighting.snow > 0 else TrackMap.none()
+    ambient = bake_ambient(scene, folder)
+    light = build_light(lighting, shadows, ambient, scene.lamps, tracks, geometry)
+    return Renderer(geometry, light, class_table(scene), ready)
 
 
 _NOTHING_RGB = np.empty((0, 0, 0, 3), np.uint8)

@@ -1,15 +1,13 @@
 """What simulations of the same place share: scene, renderer, traffic, rigs."""
 
-import logging
-import os
 from dataclasses import dataclass
 from functools import lru_cache
 
 import shapely
 
-from eyas.core.jit import nothing_compiled
 from eyas.core.kept import kept
-from eyas.render.renderer import Renderer
+from eyas.render.ahead import compile_ahead
+from eyas.render.renderer import Renderer, build_renderer
 from eyas.render.textures import build_textures
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import Lighting, Scene
@@ -23,8 +21,6 @@ from eyas.world.maps import build_scene, road_graph, shipped_network
 from eyas.world.weather import lighting
 
 __all__ = ["Place", "load_place", "load_scene"]
-
-_log = logging.getLogger("eyas")
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,13 +76,9 @@ def _load_place(world: WorldConfig, traffic: TrafficConfig, trackers: int) -> Pl
     graph = road_graph(world.map, world.seed)
     light = lighting(world.map, world.weather)
     recording = find_recording(graph, traffic, trackers=trackers)
-    if nothing_compiled():
-        _log.warning(
-            "first start of this version: compiling for about half a minute, once; kept in %s",
-            os.environ["NUMBA_CACHE_DIR"],
-        )
+    ready = compile_ahead()
     scene = load_scene(world.map, world.seed)
     rigs = VehicleRigs(recording.provenance.config.vehicle_type)
     textures = kept("textures", ("render", "world/materials.py"), (), build_textures)
-    renderer = Renderer(scene, rigs.library, light, textures)
+    renderer = build_renderer(scene, rigs.library, light, textures, ready=ready)
     return Place(scene, Replay(recording), light, renderer, rigs)

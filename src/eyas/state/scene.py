@@ -6,7 +6,7 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.state.mesh import Mesh
+from eyas.state.mesh import Mesh, concatenate
 from eyas.state.roads import RoadNetwork
 
 __all__ = [
@@ -130,6 +130,26 @@ class Scene:
     """The roads traffic drives on."""
     lamps: Lamps = field(default_factory=Lamps.none)
     """Street lamps."""
+
+    @classmethod
+    def empty(cls) -> "Scene":
+        """Return a scene of nothing; its floor is 100 m wide, at z = 0."""
+        none, flat, ids = np.zeros(0), np.zeros((0, 2)), np.zeros(0, np.int32)
+        first = np.zeros(1, np.int32)
+        return cls(
+            name="empty",
+            seed=0,
+            size=(100.0, 100.0),
+            ground_height=0.0,
+            static=concatenate([]),
+            static_object=ids,
+            object_class=ids,
+            fixtures=Fixtures((), ids, np.zeros((0, 3, 4), np.float32), ids),
+            colliders=Colliders(flat, first, none, none, ids, flat, none, none, none, ids),
+            network=RoadNetwork(
+                "", "", flat, first, none, none, ids, ids, (), (), (), flat, first, ()
+            ),
+        )
 
 
 @dataclass(frozen=True, slots=True)

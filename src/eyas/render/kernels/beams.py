@@ -4,12 +4,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.jit import inlined_kernel, inner_kernel
-from eyas.render.kernels.bundles import Geometry
-from eyas.render.kernels.casters import set_caster
+from eyas.render.kernels.bundles import View
 from eyas.render.kernels.cull import sphere_is_visible
+from eyas.render.kernels.samples import around, nowhere, place_of
 from eyas.render.kernels.scalars import f4
 
-__all__ = ["cast_beams"]
+__all__ = ["cast_beam"]
 
 _REACH = 34.0
 """How far ahead of a vehicle its lamps light the road [m]."""
@@ -48,96 +48,39 @@ def _tail(behind: float, aside: float, rise: float) -> float:
 
 
 @inner_kernel
-def _screen_box(
-    caster: NDArray[np.float64], rows: NDArray[np.float64], lens: NDArray[np.float64]
-) -> tuple[float, float, float, float]:
-    """Return left, top, right, bottom of all that a vehicle's lamps may light, in samples."""
-    left, top, right, bottom = 1e9, 1e9, -1e9, -1e9
+def _screen_box(caster: NDArray[np.float64], view: View) -> tuple[float, float, float, float]:
+    """Return the box around all that a vehicle's lamps may light, see `around`."""
+    box = nowhere()
     for corner in range(8):
         ahead = caster[4] + _REACH if corner & 1 else -caster[4] - _BEHIND
         wide = 0.9 + 0.30 * _REACH if corner & 1 else 3.0
         aside = wide if corner & 2 else -wide
         x = caster[0] + ahead * caster[2] - aside * caster[3]
         y = caster[1] + ahead * caster[3] + aside * caster[2]
-        z = caster[6] + (1.3 if corner & 4 else -0.4)
-        w = rows[2, 0] * x + rows[2, 1] * y + rows[2, 2] * z + rows[2, 3]
-        if w < 0.1:
-            return 0.0, 0.0, lens[1], lens[2]
-        column = rows[0, 0] * x + rows[0, 1] * y + rows[0, 2] * z + rows[0, 3]
-        row = rows[1, 0] * x + rows[1, 1] * y + rows[1, 2] * z + rows[1, 3]
-        column, row = 0.5 * lens[1] + column / w, 0.5 * lens[2] + row / w
-        left, right = min(left, column), max(right, column)
-        top, bottom = min(top, row), max(bottom, row)
-    return left, top, right, bottom
+        box = around(box, view, x, y, caster[6] + (1.3 if corner & 4 else -0.4))
+    return box
 
 
 @inner_kernel
-def _cast_one(
-    caster: NDArray[np.float64],
-    eye: NDArray[np.float64],
-    axes: NDArray[np.float64],
-    lens: NDArray[np.float64],
-    top: int,
-    box: tuple[float, float, float, float],
-    depth: NDArray[np.float32],
-    shade: NDArray[np.uint8],
-) -> None:
-    """Brighten the samples in `box` that one vehicle's lamps light.
+def cast_beam(caster: NDArray[np.float64], view: View, shade: NDArray[np.uint8]) -> None:
+    """Brighten the samples that one vehicle's lamps light, channels 2 and 3 of `Scratch.shade`.
 
     Its own body lies neither ahead of its front nor behind its back.
     """
-    rows, width = depth.shape
-    for line in range(max(int(box[1]) - top, 0), min(int(box[3]) + 1 - top, rows)):
-        up = (0.5 * lens[2] - (line + top + 0.5)) / lens[4]
+    half = 0.5 * (_REACH - _BEHIND)
+    x, y = caster[0] + half * caster[2], caster[1] + half * caster[3]
+    if not sphere_is_visible(view.planes, x, y, caster[6], caster[4] + half + 0.5 * _REACH):
+        return
+    box = _screen_box(caster, view)
+    rows, width = view.depth.shape
+    for line in range(max(int(box[1]) - view.top, 0), min(int(box[3]) + 1 - view.top, rows)):
         for column in range(max(int(box[0]), 0), min(int(box[2]) + 1, width)):
-            if depth[line, column] <= f4(0.0):
+            if view.depth[line, column] <= f4(0.0):
                 continue
-            left = (0.5 * lens[1] - (column + 0.5)) / lens[0]
-            w = 1.0 / depth[line, column]
-            dx = eye[0] + w * (axes[0, 0] + left * axes[1, 0] + up * axes[2, 0]) - caster[0]
-            dy = eye[1] + w * (axes[0, 1] + left * axes[1, 1] + up * axes[2, 1]) - caster[1]
-            rise = eye[2] + w * (axes[0, 2] + left * axes[1, 2] + up * axes[2, 2]) - caster[6]
+            x, y, z = place_of(view, line, column)
+            dx, dy, rise = x - caster[0], y - caster[1], z - caster[6]
             along, aside = dx * caster[2] + dy * caster[3], dy * caster[2] - dx * caster[3]
             head = 255.0 * _head(along - caster[4], aside, rise)
             tail = 255.0 * _tail(-along - caster[4], aside, rise)
             shade[line, column, 2] = min(int(shade[line, column, 2]) + int(head), 255)
             shade[line, column, 3] = min(int(shade[line, column, 3]) + int(tail), 255)
-
-
-@inner_kernel
-def cast_beams(
-    geometry: Geometry,
-    parts: NDArray[np.int32],
-    poses: NDArray[np.float32],
-    object_ids: NDArray[np.int32],
-    eye: NDArray[np.float64],
-    axes: NDArray[np.float64],
-    lens: NDArray[np.float64],
-    top: int,
-    rows: NDArray[np.float64],
-    planes: NDArray[np.float64],
-    caster: NDArray[np.float64],
-    depth: NDArray[np.float32],
-    shade: NDArray[np.uint8],
-) -> None:
-    """Write the light of all vehicles' lamps on each sample into channels 2 and 3 of `shade`.
-
-    Slots in a row with the same object id are one vehicle. See `Job` and `Scratch`.
-    """
-    shade[:, :, 2:] = 0
-    first = 0
-    half = 0.5 * (_REACH - _BEHIND)
-    while first < len(parts):
-        last = first + 1
-        if parts[first] < 0:
-            first = last
-            continue
-        while last < len(parts) and parts[last] >= 0 and object_ids[last] == object_ids[first]:
-            last += 1
-        set_caster(geometry, parts, poses, first, last, caster)
-        x, y = caster[0] + half * caster[2], caster[1] + half * caster[3]
-        if sphere_is_visible(planes, x, y, caster[6], caster[4] + half + 0.5 * _REACH):
-            box = _screen_box(caster, rows, lens)
-            if box[3] >= top and box[1] <= top + depth.shape[0]:
-                _cast_one(caster, eye, axes, lens, top, box, depth, shade)
-        first = last

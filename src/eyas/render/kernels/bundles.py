@@ -22,6 +22,7 @@ __all__ = [
     "Stage",
     "Still",
     "Task",
+    "View",
 ]
 
 NEAR = 0.08
@@ -184,6 +185,27 @@ class Job(NamedTuple):
     along columns [samples], shape (5,)."""
 
 
+class View(NamedTuple):
+    """A band of a view: where its samples are in the world, and what they show."""
+
+    eye: NDArray[np.float64]
+    """Of the view, see `Job`, shape (3,)."""
+    axes: NDArray[np.float64]
+    """Of the view, see `Job`, shape (3, 3)."""
+    lens: NDArray[np.float64]
+    """See `Job`."""
+    top: int
+    """Row of samples of the view that is row 0 of the band."""
+    rows: NDArray[np.float64]
+    """World to screen, see `Scratch`, shape (3, 4)."""
+    planes: NDArray[np.float64]
+    """See `Scratch`, shape (5, 5)."""
+    depth: NDArray[np.float32]
+    """See `Scratch`, shape (rows, columns)."""
+    owner: NDArray[np.int64]
+    """See `Scratch`, shape (rows, columns)."""
+
+
 class Scratch(NamedTuple):
     """Working memory of each worker."""
 
@@ -211,7 +233,7 @@ class Scratch(NamedTuple):
     light: NDArray[np.float32]
     """The colours of `Light` for the view, then its air, shape (K, 7, 9)."""
     caster: NDArray[np.float64]
-    """A moving thing's boxes, see `casters`, shape (K, 13)."""
+    """A moving thing's boxes, see `_set_caster`, shape (K, 13)."""
 
 
 class Output(NamedTuple):

@@ -1,5 +1,7 @@
-"""Soft shadows of moving things: each is two upright boxes, as a car is a body and a cabin, and a
-shadow is drawn where the way to the sun leads through one.
+"""Soft shadows of moving things, and the light of their lamps.
+
+Each is two upright boxes, as a car is a body and a cabin, and a shadow is drawn where the way to
+the sun leads through one.
 """
 
 import math
@@ -8,19 +10,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.jit import inner_kernel
-from eyas.render.kernels.bundles import Geometry
+from eyas.render.kernels.beams import cast_beam
+from eyas.render.kernels.bundles import Geometry, View
 from eyas.render.kernels.cull import sphere_is_visible
+from eyas.render.kernels.samples import around, nowhere, place_of
+from eyas.render.kernels.scalars import f4
 from eyas.render.kernels.shadow_boxes import darken
 
-__all__ = ["cast_shadows", "set_caster"]
-
+__all__ = ["cast_light"]
 
 SMALLEST = 1.0
 """Things whose half diagonal is smaller cast no shadow [pixels]."""
 
 
 @inner_kernel
-def set_caster(
+def _set_caster(
     geometry: Geometry,
     parts: NDArray[np.int32],
     poses: NDArray[np.float32],
@@ -82,28 +86,25 @@ def _throw(caster: NDArray[np.float64], sun: NDArray[np.float32]) -> float:
 def _may_show(
     caster: NDArray[np.float64],
     sun: NDArray[np.float32],
-    planes: NDArray[np.float64],
-    focal: float,
+    view: View,
 ) -> bool:
     """Return whether a shadow may be in the picture, and large enough to see."""
     half = 0.5 * _throw(caster, sun)
     x, y, z = caster[0] - half * sun[0], caster[1] - half * sun[1], 0.5 * (caster[6] + caster[7])
     length = math.sqrt(caster[4] ** 2 + caster[5] ** 2)
-    w = planes[4, 0] * x + planes[4, 1] * y + planes[4, 2] * z + planes[4, 3]
-    if focal * length < SMALLEST * w:
+    near = view.planes[4]
+    if view.lens[3] * length < SMALLEST * (near[0] * x + near[1] * y + near[2] * z + near[3]):
         return False
-    return sphere_is_visible(planes, x, y, z, length + half + 0.5 * (caster[7] - caster[6]) + 0.7)
+    reach = length + half + 0.5 * (caster[7] - caster[6]) + 0.7
+    return sphere_is_visible(view.planes, x, y, z, reach)
 
 
 @inner_kernel
 def _screen_box(
-    caster: NDArray[np.float64],
-    sun: NDArray[np.float32],
-    rows: NDArray[np.float64],
-    lens: NDArray[np.float64],
+    caster: NDArray[np.float64], sun: NDArray[np.float32], view: View
 ) -> tuple[float, float, float, float]:
-    """Return left, top, right, bottom of the box and its shadow on the ground, in samples."""
-    left, top, right, bottom = 1e9, 1e9, -1e9, -1e9
+    """Return the box around a thing and its shadow on the ground, see `around`."""
+    box = nowhere()
     throw = _throw(caster, sun)
     for corner in range(16):
         along = (caster[4] + 0.5) * (1.0 if corner & 1 else -1.0)
@@ -115,48 +116,30 @@ def _screen_box(
             x -= throw * sun[0]
             y -= throw * sun[1]
             z = caster[6] - 0.3
-        w = rows[2, 0] * x + rows[2, 1] * y + rows[2, 2] * z + rows[2, 3]
-        if w < 0.1:
-            return 0.0, 0.0, lens[1], lens[2]
-        column = rows[0, 0] * x + rows[0, 1] * y + rows[0, 2] * z + rows[0, 3]
-        row = rows[1, 0] * x + rows[1, 1] * y + rows[1, 2] * z + rows[1, 3]
-        column, row = 0.5 * lens[1] + column / w, 0.5 * lens[2] + row / w
-        left, right = min(left, column), max(right, column)
-        top, bottom = min(top, row), max(bottom, row)
-    return left, top, right, bottom
+        box = around(box, view, x, y, z)
+    return box
 
 
 @inner_kernel
-def _cast_one(
+def _cast_shadow(
     caster: NDArray[np.float64],
     sun: NDArray[np.float32],
-    fixtures: int,
     first: int,
     last: int,
-    eye: NDArray[np.float64],
-    axes: NDArray[np.float64],
-    lens: NDArray[np.float64],
-    top: int,
-    box: tuple[float, float, float, float],
-    depth: NDArray[np.float32],
-    owner: NDArray[np.int64],
+    view: View,
     shade: NDArray[np.uint8],
 ) -> None:
-    """Darken the samples in `box` that slots `first` to `last` shade, but not these themselves."""
-    rows, width = depth.shape
-    for line in range(max(int(box[1]) - top, 0), min(int(box[3]) + 1 - top, rows)):
-        up = (0.5 * lens[2] - (line + top + 0.5)) / lens[4]
+    """Darken the samples that instances `first` to `last` shade, but not these themselves."""
+    box = _screen_box(caster, sun, view)
+    rows, width = view.depth.shape
+    for line in range(max(int(box[1]) - view.top, 0), min(int(box[3]) + 1 - view.top, rows)):
         for column in range(max(int(box[0]), 0), min(int(box[2]) + 1, width)):
-            if depth[line, column] <= 0.0:
+            if view.depth[line, column] <= f4(0.0):
                 continue
-            slot = (owner[line, column] >> 32) - 1 - fixtures
-            if first <= slot < last:
+            instance = (view.owner[line, column] >> 32) - 1
+            if first <= instance < last:
                 continue
-            left = (0.5 * lens[1] - (column + 0.5)) / lens[0]
-            w = 1.0 / depth[line, column]
-            x = eye[0] + w * (axes[0, 0] + left * axes[1, 0] + up * axes[2, 0])
-            y = eye[1] + w * (axes[0, 1] + left * axes[1, 1] + up * axes[2, 1])
-            z = eye[2] + w * (axes[0, 2] + left * axes[1, 2] + up * axes[2, 2])
+            x, y, z = place_of(view, line, column)
             if z > caster[7]:
                 continue
             direct, ambient = darken(caster, sun, x, y, z)
@@ -165,28 +148,35 @@ def _cast_one(
 
 
 @inner_kernel
-def cast_shadows(
+def cast_light(
     geometry: Geometry,
     parts: NDArray[np.int32],
     poses: NDArray[np.float32],
     object_ids: NDArray[np.int32],
     sun: NDArray[np.float32],
-    eye: NDArray[np.float64],
-    axes: NDArray[np.float64],
-    lens: NDArray[np.float64],
-    top: int,
-    rows: NDArray[np.float64],
-    planes: NDArray[np.float64],
+    lamps: float,
+    view: View,
     caster: NDArray[np.float64],
-    depth: NDArray[np.float32],
-    owner: NDArray[np.int64],
     shade: NDArray[np.uint8],
 ) -> None:
-    """Write what moving things take of the light of each sample into `shade`.
+    """Write what moving things take of the light of each sample, and what they add.
 
-    Slots in a row with the same object id are one thing. See `Job` and `Scratch`.
+    Slots in a row with the same object id are one thing.
+
+    Args:
+        geometry: Everything that can be drawn.
+        parts: See `DrawList`.
+        poses: See `DrawList`.
+        object_ids: See `DrawList`.
+        sun: Unit vector towards it.
+        lamps: Greater than 0: those of vehicles are on.
+        view: The samples.
+        caster: See `Scratch`.
+        shade: See `Scratch`; its last two channels are not written while lamps are off.
     """
-    shade[:] = 255
+    shade[:, :, :2] = 255
+    if lamps > f4(0.0):
+        shade[:, :, 2:] = 0
     fixtures = len(geometry.fixture_prototype)
     first = 0
     while first < len(parts):
@@ -196,12 +186,9 @@ def cast_shadows(
             continue
         while last < len(parts) and parts[last] >= 0 and object_ids[last] == object_ids[first]:
             last += 1
-        set_caster(geometry, parts, poses, first, last, caster)
-        if _may_show(caster, sun, planes, lens[3]):
-            box = _screen_box(caster, sun, rows, lens)
-            if box[3] >= top and box[1] <= top + depth.shape[0]:
-                _cast_one(
-                    caster, sun, fixtures, first, last, eye, axes, lens, top, box,
-                    depth, owner, shade,
-                )  # fmt: skip
+        _set_caster(geometry, parts, poses, first, last, caster)
+        if _may_show(caster, sun, view):
+            _cast_shadow(caster, sun, fixtures + first, fixtures + last, view, shade)
+        if lamps > f4(0.0):
+            cast_beam(caster, view, shade)
         first = last

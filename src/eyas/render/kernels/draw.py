@@ -7,9 +7,8 @@ from eyas.core.jit import inner_kernel
 from eyas.core.parallel import Pointer, parallel_kernel
 from eyas.render.kernels.backdrop import draw_backdrop
 from eyas.render.kernels.band import shade_band
-from eyas.render.kernels.beams import cast_beams
-from eyas.render.kernels.bundles import Geometry, Job, Light, Movers, Output, Scratch, Stage, Still, Task
-from eyas.render.kernels.casters import cast_shadows
+from eyas.render.kernels.bundles import Geometry, Scratch, Stage, Still, Task, View
+from eyas.render.kernels.casters import cast_light
 from eyas.render.kernels.cull import set_planes
 from eyas.render.kernels.flakes import Canvas, let_flakes_fall
 from eyas.render.kernels.scalars import f4, i8
@@ -33,88 +32,63 @@ def draw_views(
     """Draw all jobs. Each is drawn alone, so neither workers nor other jobs change its bytes."""
     still, scratch, task = parts[0]
     geometry, light = still[0]
+    memory = scratch[0]
     samples, until, movers, job, output = task[0]
+    lens = job.lens
+    rows, planes = memory.rows[worker], memory.planes[worker]
+    screen, polygon = memory.screen[worker], memory.polygon[worker]
     for index in range(worker, len(job.band), workers):
-        _draw_job(
-            worker, index, samples, until, geometry, light, movers, job, scratch[0], output
+        view, top, bottom = job.band[index, 0], job.band[index, 1], job.band[index, 2]
+        first, last = top * samples, bottom * samples
+        eye, axes, world = job.eye[view], job.axes[view], job.world[view]
+        part, pose, object_id = movers.part[world], movers.pose[world], movers.object_id[world]
+        depth = memory.depth[worker, : last - first]
+        owner = memory.owner[worker, : last - first]
+        shade = memory.shade[worker, : last - first]
+        depth[:], owner[:] = f4(0.0), -1
+        set_world_rows(eye, axes, lens, rows[0])
+        set_planes(rows[0], lens[1], lens[2], first, last, planes)
+        draw_static(
+            until, geometry, eye, lens, first, rows, planes, memory.order[worker], depth, owner,
+            screen, polygon,
         )  # fmt: skip
-
-
-@inner_kernel
-def _draw_job(
-    worker: int,
-    index: int,
-    samples: int,
-    until: int,
-    geometry: Geometry,
-    light: Light,
-    movers: Movers,
-    job: Job,
-    scratch: Scratch,
-    output: Output,
-) -> None:
-    view, top, bottom = job.band[index, 0], job.band[index, 1], job.band[index, 2]
-    first, last = top * samples, bottom * samples
-    eye, axes, world = job.eye[view], job.axes[view], job.world[view]
-    depth = scratch.depth[worker, : last - first]
-    owner = scratch.owner[worker, : last - first]
-    shade = scratch.shade[worker, : last - first]
-    rows, planes = scratch.rows[worker], scratch.planes[worker]
-    screen, polygon = scratch.screen[worker], scratch.polygon[worker]
-    depth[:] = f4(0.0)
-    owner[:] = -1
-    set_world_rows(eye, axes, job.lens, rows[0])
-    set_planes(rows[0], job.lens[1], job.lens[2], first, last, planes)
-    draw_static(
-        until, geometry, eye, job.lens, first, rows, planes, scratch.order[worker],
-        depth, owner, screen, polygon,
-    )  # fmt: skip
-    draw_moving(
-        until, geometry, movers.part[world], movers.pose[world], movers.object_id[world], -1, eye,
-        job.lens, first, rows, planes, depth, owner, screen, polygon,
-    )  # fmt: skip
-    if len(output.depth) > 0:
-        _write_depth(depth, output.depth[view, top:bottom])
-    if len(output.object_id) > 0:
-        _write_objects(geometry, movers.object_id[world], owner, output.object_id[view, top:bottom])
-    if len(output.rgb) > 0 and until > RASTERISING:
-        cast_shadows(
-            geometry, movers.part[world], movers.pose[world], movers.object_id[world],
-            light.sun, eye, axes, job.lens, first, rows[0], planes, scratch.caster[worker],
-            depth, owner, shade,
+        draw_moving(
+            until, geometry, part, pose, object_id, -1, eye, lens, first, rows, planes, depth,
+            owner, screen, polygon,
         )  # fmt: skip
-        if light.air[5] > f4(0.0):
-            cast_beams(
-                geometry, movers.part[world], movers.pose[world], movers.object_id[world],
-                eye, axes, job.lens, first, rows[0], planes, scratch.caster[worker], depth, shade,
+        if len(output.depth) > 0:
+            _write_depth(depth, output.depth[view, top:bottom])
+        if len(output.object_id) > 0:
+            _write_objects(geometry, object_id, owner, output.object_id[view, top:bottom])
+        if len(output.rgb) > 0 and until > RASTERISING:
+            band = View(eye, axes, lens, first, rows[0], planes, depth, owner)
+            cast_light(
+                geometry, part, pose, object_id, light.sun, light.air[5], band,
+                memory.caster[worker], shade,
             )  # fmt: skip
-    if len(output.rgb) > 0 and until > MOVERS_LIGHT:
-        lit = view_light(light, job.light[view], scratch.light[worker])
-        pixels = output.rgb[view, top:bottom]
-        draw_backdrop(samples, top, lit, axes, job.lens, owner, pixels)
-        shade_band(
-            samples, top, geometry, lit, movers.pose[world], movers.colour[world], eye, axes,
-            job.lens, depth, owner, shade, scratch.frame[worker], pixels,
-        )  # fmt: skip
-        if len(job.instant) > 0 and light.air[8] > f4(0.0):
-            air = Canvas(
-                samples, top, lit, job.instant[view], eye, axes, job.lens, depth,
-                output.rgb[view, top:bottom],
+        if len(output.rgb) > 0 and until > MOVERS_LIGHT:
+            lit = view_light(light, job.light[view], memory.light[worker])
+            pixels = output.rgb[view, top:bottom]
+            draw_backdrop(samples, top, lit, axes, lens, owner, pixels)
+            shade_band(
+                samples, top, geometry, lit, pose, movers.colour[world], eye, axes, lens, depth,
+                owner, shade, memory.frame[worker], pixels,
             )  # fmt: skip
-            let_flakes_fall(air)
-    if len(output.subject) > 0:
-        result = output.subject[index]
-        result[:] = 0
-        subject = job.subject[view]
-        if subject >= 0:
-            result[4] = _seen(geometry, movers.object_id[world], owner, subject)
-            depth[:] = f4(0.0)
-            owner[:] = -1
-            draw_moving(
-                until, geometry, movers.part[world], movers.pose[world], movers.object_id[world],
-                subject, eye, job.lens, first, rows, planes, depth, owner, screen, polygon,
-            )  # fmt: skip
-            _measure(owner, top, result)
+            if len(job.instant) > 0 and light.air[8] > f4(0.0):
+                air = Canvas(samples, top, lit, job.instant[view], eye, axes, lens, depth, pixels)
+                let_flakes_fall(air)
+        if len(output.subject) > 0:
+            result = output.subject[index]
+            result[:] = 0
+            subject = job.subject[view]
+            if subject >= 0:
+                result[4] = _seen(geometry, object_id, owner, subject)
+                depth[:], owner[:] = f4(0.0), -1
+                draw_moving(
+                    until, geometry, part, pose, object_id, subject, eye, lens, first, rows,
+                    planes, depth, owner, screen, polygon,
+                )  # fmt: skip
+                _measure(owner, top, result)
 
 
 @inner_kernel

@@ -1,0 +1,57 @@
+"""What Python cannot say in a kernel: to lay values out in memory, and to call an address."""
+
+import hashlib
+
+import numba
+from llvmlite import ir
+from numba.extending import intrinsic
+
+__all__ = ["call", "layout_of", "size_of", "store"]
+
+
+@intrinsic
+def size_of(typing_context, value):
+    """Return how many bytes a value takes."""
+
+    def generate(context, builder, signature, arguments):
+        size = context.get_abi_sizeof(context.get_data_type(value))
+        return context.get_constant(numba.intp, size)
+
+    return numba.intp(value), generate
+
+
+@intrinsic
+def layout_of(typing_context, value):
+    """Return a positive number that only values of the same type have, in every process."""
+    number = int.from_bytes(hashlib.sha256(str(value).encode()).digest()[:7])
+
+    def generate(context, builder, signature, arguments):
+        return context.get_constant(numba.intp, number)
+
+    return numba.intp(value), generate
+
+
+@intrinsic
+def store(typing_context, memory, value):
+    """Write a value into an array of bytes, as `CPointer` reads it."""
+
+    def generate(context, builder, signature, arguments):
+        array = context.make_array(memory)(context, builder, arguments[0])
+        kind = context.get_data_type(value).as_pointer()
+        context.pack_value(builder, value, arguments[1], builder.bitcast(array.data, kind))
+        return context.get_dummy_value()
+
+    return numba.void(memory, value), generate
+
+
+@intrinsic
+def call(typing_context, function, table, worker, workers):
+    """Call a parallel kernel by its address."""
+
+    def generate(context, builder, signature, arguments):
+        whole = context.get_value_type(numba.intp)
+        kind = ir.FunctionType(ir.VoidType(), [whole] * 3)
+        builder.call(builder.inttoptr(arguments[0], kind.as_pointer()), arguments[1:])
+        return context.get_dummy_value()
+
+    return numba.void(*[numba.intp] * 4), generate

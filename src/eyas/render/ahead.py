@@ -1,0 +1,79 @@
+"""The first start: a second process compiles what draws while the first builds the world."""
+
+import logging
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from eyas.core.jit import nothing_compiled
+from eyas.render.bake import ShadowMap
+from eyas.render.bake_ambient import AmbientMap
+from eyas.render.classes import class_table
+from eyas.render.geometry import build_geometry
+from eyas.render.lighting import build_light
+from eyas.render.renderer import Renderer
+from eyas.render.tracks import TrackMap
+from eyas.state.draw import DrawList, PartLibrary, Picture, Views
+from eyas.state.scene import Lamps, Lighting, Scene
+
+__all__ = ["compile_ahead"]
+
+_log = logging.getLogger("eyas")
+
+_PROGRAM = "from eyas.render.ahead import draw_nothing; draw_nothing()"
+
+
+def compile_ahead() -> Callable[[], object] | None:
+    """Tell the user if this is a first start, and use a second core for it if there is one.
+
+    Returns:
+        What waits until the kernels that draw can be loaded from the cache, if there is anything
+        to wait for. It never fails: what is not compiled then, the first picture compiles.
+    """
+    if not nothing_compiled():
+        return None
+    cache = Path(os.environ["NUMBA_CACHE_DIR"])
+    _log.warning(
+        "first start of this version: compiling for about half a minute, once; kept in %s", cache
+    )
+    # A program that was frozen has no interpreter to start.
+    if (os.cpu_count() or 1) < 2 or getattr(sys, "frozen", False):
+        return None
+    try:
+        cache.mkdir(parents=True, exist_ok=True)
+        (cache / "started").touch(exist_ok=False)  # by one of many processes that start together
+        path = os.pathsep.join(filter(None, sys.path))
+        process = subprocess.Popen(
+            [sys.executable, "-c", _PROGRAM],
+            env={**os.environ, "PYTHONPATH": path},
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+    except OSError:
+        return None
+    return process.wait
+
+
+def draw_nothing() -> None:
+    """Draw a view of an empty scene, which compiles every kernel that draws."""
+    scene = Scene.empty()
+    geometry = build_geometry(scene, PartLibrary(()), {"plain": np.zeros((256, 256, 4), np.uint8)})
+    shadows = ShadowMap(np.zeros((1, 1), np.uint16), np.zeros((3, 4)), 1.0)
+    ambient = AmbientMap(np.zeros((1, 1), np.uint16), np.zeros(4))
+    black = (0.0, 0.0, 0.0)
+    lighting = Lighting((0.0, 0.0, 1.0), black, black, black, black, black, black, 0.0)
+    light = build_light(lighting, shadows, ambient, Lamps.none(), TrackMap.none(), geometry)
+    views = Views(
+        position=np.zeros((1, 3)),
+        rotation=np.eye(3)[None],
+        world=np.zeros(1, np.int32),
+        subject=np.zeros(1, np.int32),
+        field_of_view=1.0,
+    )
+    renderer = Renderer(geometry, light, class_table(scene))
+    renderer.draw(views, DrawList.create(1, 1), Picture.create(1, 8, 8))

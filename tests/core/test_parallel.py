@@ -1,0 +1,84 @@
+"""Parallel kernels: every worker does its share, and bundles are found whatever their kind."""
+
+import multiprocessing
+import threading
+from typing import NamedTuple
+
+import numpy as np
+
+from eyas.core.parallel import Held, parallel_kernel
+
+
+class Sums(NamedTuple):
+    factor: float
+    values: np.ndarray
+    sums: np.ndarray
+
+
+@parallel_kernel
+def add_up(parts, worker, workers):
+    first, others = parts[0]
+    factor, values, sums = first[0]
+    for row in range(worker, len(values), workers):
+        for column in range(values.shape[1]):
+            sums[row] += factor * values[row, column] + others[0][0]
+
+
+def summed(values, workers=3, more=0) -> np.ndarray:
+    sums = np.zeros(len(values))
+    add_up(workers, Held(Sums(2.0, values, sums)), Held((more,)))
+    return sums
+
+
+def test_each_row_is_added_up_once_whatever_the_number_of_workers():
+    values = np.arange(20.0).reshape(10, 2)
+    for workers in (1, 2, 7, 50):
+        np.testing.assert_array_equal(summed(values, workers), 2.0 * values.sum(axis=1))
+
+
+def test_arrays_of_other_kinds_are_read_as_what_they_are():
+    whole = np.arange(40, dtype=np.int32).reshape(10, 4)
+    still = whole.astype(np.float32)
+    still.flags.writeable = False
+    for values in (whole, still, whole[:, ::2], whole.T.astype(np.float64)):
+        np.testing.assert_array_equal(summed(values), 2.0 * values.sum(axis=1))
+    np.testing.assert_array_equal(summed(whole, more=1), 2.0 * whole.sum(axis=1) + 4)
+    np.testing.assert_array_equal(summed(whole, more=0.5), 2.0 * whole.sum(axis=1) + 2)
+
+
+def test_what_is_written_into_a_held_array_later_is_seen():
+    values, sums = np.ones((4, 2)), np.zeros(4)
+    held, none = Held(Sums(1.0, values, sums)), Held((0,))
+    values[:] = 5.0
+    add_up(2, held, none)
+    np.testing.assert_array_equal(sums, 10.0)
+
+
+def test_a_bundle_of_many_arrays_is_held_whole():
+    many = tuple(np.full(1, float(i)) for i in range(120))
+    held = Held(many)
+    assert len(held._memory) > 4096
+    last = np.zeros((1, 1))
+
+    @parallel_kernel
+    def take_last(parts, worker, workers):
+        bundle, out = parts[0]
+        out[0][0][0, 0] = bundle[0][119][0]
+
+    take_last(1, held, Held((last,)))
+    assert last[0, 0] == 119.0
+
+
+def test_threads_and_forked_processes_may_call_at_once():
+    values = np.ones((300, 50))
+    results = []
+    threads = [threading.Thread(target=lambda: results.append(summed(values))) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    with multiprocessing.get_context("fork").Pool(2) as pool:
+        results += pool.map(summed, [values] * 2)
+    assert len(results) == 6
+    for result in results:
+        np.testing.assert_array_equal(result, 100.0)
