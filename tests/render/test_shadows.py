@@ -136,3 +136,44 @@ def test_a_car_throws_the_shadow_of_a_body_and_a_shorter_cabin(renderer_of, draw
     seen = drawn(renderer, views, cars, (9, 9)).rgb[:, 4, 4].astype(int).sum(axis=1)
     lit = seen.max()
     assert (seen > 0.8 * lit).tolist() == [False, False, False, True, True, True]
+
+
+def ground_beside(renderer_of, drawn, reach, *, shaded, with_bus=True):
+    """Return the brightness of the ground at distances [m] from the long side of a bus.
+
+    The bus is 3 m high, the sun stands in the south and the places in the north.
+    """
+    bus = PartLibrary(((box((9.0, 2.4, 3.0), (0, 0, 1.6), Material(), 1.0),),))
+    list_ = DrawList.create(1, 1)
+    if with_bus:
+        list_.part[0, 0], list_.object_id[0, 0] = 0, 1 << 16
+        list_.pose[0, 0] = np.eye(4)[:3]
+    light = dataclasses.replace(DAY, sun_direction=(0.0, -np.sqrt(0.5), np.sqrt(0.5)))
+    things = [floor(200.0, "plain"), tower(0, -40.0 if shaded else -140.0, 60, 60)]
+    renderer = renderer_of(scene_of(things, [GROUND, TOWER]), bus, light)
+    views = looking([(0.0, 1.2 + y, 40.0) for y in reach], pitch=np.pi / 2, fov=0.004)
+    return drawn(renderer, views, list_, (9, 9)).rgb[:, 4, 4].astype(int).sum(axis=1)
+
+
+def test_the_ground_beside_a_body_is_darker_in_shade_too(renderer_of, drawn):
+    reach = (0.05, 0.3, 0.6, 1.6, 2.4)  # the last two in the shadow that the sun would throw
+    bare = ground_beside(renderer_of, drawn, reach, shaded=True, with_bus=False)
+    seen = ground_beside(renderer_of, drawn, reach, shaded=True)
+    ratio = seen / bare
+    assert ratio[0] < 0.75
+    assert ratio[0] < ratio[1] - 0.05 < ratio[2] - 0.1
+    assert ratio[2] < 0.97
+    np.testing.assert_array_equal(seen[3:], bare[3:])  # no second shadow there
+
+
+def test_the_shadow_of_a_body_ends_where_the_sun_says(renderer_of, drawn):
+    reach = np.arange(2.0, 4.0, 0.05)
+    bare = ground_beside(renderer_of, drawn, reach, shaded=False, with_bus=False)
+    seen = ground_beside(renderer_of, drawn, reach, shaded=False)
+    # Its top is 3.1 m high; the last 1 / 2.2 m of the way through are the soft edge.
+    soft = np.sqrt(0.5) / 2.2
+    assert (seen[reach > 3.12] == bare[reach > 3.12]).all()
+    assert (seen[reach < 3.08] < bare[reach < 3.08]).all()
+    dark = seen[reach < 3.1 - soft - 0.05]
+    assert np.ptp(dark) <= 3
+    assert (dark < 0.75 * bare[: len(dark)]).all()

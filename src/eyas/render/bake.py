@@ -19,10 +19,14 @@ __all__ = ["ShadowMap", "bake_shadows"]
 TEXEL = 0.2
 """Side of a texel, where the map is not too large for that [m]."""
 
-LARGEST = 4096
+LARGEST = 6144
 """Most texels along a side."""
 
-_FORMAT = b"eyas shadow map 3"
+CARDS = 4
+"""One leaf card in so many throws a shadow: they overlap so often that all would let no light
+through, and crowns are dappled."""
+
+_FORMAT = b"eyas shadow map 6"
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,11 +107,18 @@ def _bake(
     geometry: Geometry, rows: NDArray[np.float64], lines: int, columns: int
 ) -> NDArray[np.uint16]:
     heights = np.zeros((lines, columns), np.uint16)
+    cards = _cards(geometry)
+    solid = [
+        not cards[geometry.material[first:last]].any()
+        for first, last in geometry.mesh_range[geometry.level_first[: geometry.part_first], :2]
+    ]
     workers = min(thread_count(), math.ceil(lines / BAND))
     ranges = np.concatenate([geometry.chunk_range, geometry.mesh_range])
     most = int((ranges[:, 3] - ranges[:, 2]).max(initial=1))
     bake = ShadowBake(
         geometry,
+        cards,
+        np.array(solid, np.bool_),
         rows,
         np.empty((workers, most, 5)),
         np.empty((workers, 3, 4)),
@@ -119,7 +130,18 @@ def _bake(
     return heights
 
 
+def _cards(geometry: Geometry) -> NDArray[np.int32]:
+    """Return how the leaves of each material are drawn, see `ShadowBake`.
+
+    What is not foliage and looks like it is the dark inside of a crown, which stops no light.
+    """
+    foliage = geometry.surface == Surface.FOLIAGE
+    inside = np.isin(geometry.layer, geometry.layer[foliage]) & ~foliage
+    return np.where(foliage, CARDS, np.where(inside, -1, 0)).astype(np.int32)
+
+
 def _content_hash(geometry: Geometry, rows: NDArray[np.float64]) -> str:
+    cards = _cards(geometry)
     last = geometry.chunk_range[-1] if len(geometry.chunk_range) else np.zeros(4, np.int32)
     fixtures = geometry.level_first[: geometry.part_first + 1]
     meshes = geometry.mesh_range[: fixtures[-1]]
@@ -128,8 +150,8 @@ def _content_hash(geometry: Geometry, rows: NDArray[np.float64]) -> str:
         rows,
         geometry.positions[:vertices],
         geometry.uvs[:vertices],
-        geometry.surface[geometry.material[:triangles]],
-        geometry.texture[np.unique(geometry.layer[geometry.surface == Surface.FOLIAGE])],
+        cards[geometry.material[:triangles]],
+        geometry.texture[np.unique(geometry.layer[cards > 0])] >> 24,
         geometry.corners[:triangles],
         fixtures,
         geometry.fixture_prototype,

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from eyas.render.kernels.bundles import GROUP, Geometry
 from eyas.render.mipmap import linear, packed_layers
+from eyas.render.silhouette import silhouette
 from eyas.render.snow import crown_middles, snow_beds
 from eyas.render.triangles import gradients, solid_triangles
 from eyas.state.draw import PartLibrary
@@ -67,7 +68,7 @@ def build_geometry(
         part_first=len(scene.fixtures.levels),
         sphere=np.array(sphere, np.float32).reshape(-1, 4),
         box=box,
-        upper=np.array([_upper(m[0].positions) for m in prototypes], np.float32).reshape(-1, 5),
+        silhouette=np.array([silhouette(m[0]) for m in prototypes], np.float32).reshape(-1, 7),
         fixture_prototype=prototype,
         fixture_pose=pose,
         fixture_object=scene.fixtures.object_id[order].astype(np.int32),
@@ -189,15 +190,6 @@ def _sphere(positions: NDArray[np.float32]) -> NDArray[np.float32]:
     centre = (box[:3] + box[3:]) / 2
     radius = np.linalg.norm(positions - centre, axis=1).max(initial=0.0)
     return np.append(centre, np.float32(radius * 1.0001))
-
-
-def _upper(positions: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Return what is above the waist, as a car's cabin, see `Geometry.upper`, shape (5,)."""
-    x, y, z = positions.T if len(positions) else np.zeros((3, 1), np.float32)
-    foot, tall = z.min(), np.ptp(z)
-    high = z >= foot + 0.75 * tall
-    waist = foot + 0.6 * tall
-    return np.array([waist, x[high].min(), x[high].max(), y[high].min(), y[high].max()])
 
 
 def _posed_boxes(boxes: NDArray[np.float32], poses: NDArray[np.float32]) -> NDArray[np.float32]:

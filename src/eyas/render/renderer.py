@@ -140,7 +140,7 @@ class Renderer:
                 polygon=np.empty((workers, 4, 5)),
                 frame=np.empty((workers, 16), np.float32),
                 light=np.empty((workers, 7, 9), np.float32),
-                caster=np.empty((workers, 13)),
+                caster=np.empty((workers, 16)),
             )
             self._scratch[key] = Held(scratch)
         return self._scratch[key]

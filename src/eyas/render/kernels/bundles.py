@@ -83,9 +83,9 @@ class Geometry(NamedTuple):
     """Centre and radius around each prototype [m], shape (P, 4)."""
     box: NDArray[np.float32]
     """Lower and upper corner of each prototype [m], shape (P, 6)."""
-    upper: NDArray[np.float32]
-    """What each prototype is above its waist: height of that, then back, front, right and left
-    end [m], shape (P, 5)."""
+    silhouette: NDArray[np.float32]
+    """Two boxes for the shadow of each prototype: height of the waist between them; back, front,
+    right and left end of the upper one; right and left end of the lower one [m], shape (P, 7)."""
     fixture_prototype: NDArray[np.int32]
     """Shape (F,)."""
     fixture_pose: NDArray[np.float32]
@@ -233,7 +233,7 @@ class Scratch(NamedTuple):
     light: NDArray[np.float32]
     """The colours of `Light` for the view, then its air, shape (K, 7, 9)."""
     caster: NDArray[np.float64]
-    """A moving thing's boxes, see `_set_caster`, shape (K, 13)."""
+    """A moving thing's boxes, see `_set_caster`, shape (K, 16)."""
 
 
 class Output(NamedTuple):

@@ -34,8 +34,9 @@ def _set_caster(
 ) -> None:
     """Compute the box around slots `first` to `last`, turned like the largest part.
 
-    `caster`: centre x, y; direction of its length x, y; half length, half width; bottom, top; then
-    of its upper part the bottom, and back, front, right and left end from the centre.
+    `caster`: centre x, y; direction of its length x, y; half length, half width; bottom, top; of
+    its upper box the bottom, and back, front, right and left end from the centre; right and left
+    end of its lower box; how far from that it keeps light of the sky from the ground.
     """
     body, largest, axis_x, axis_y, origin_x, origin_y = first, -1.0, 1.0, 0.0, 0.0, 0.0
     for slot in range(first, last):
@@ -67,10 +68,12 @@ def _set_caster(
     caster[2], caster[3] = axis_x, axis_y
     caster[4], caster[5] = 0.5 * (front - back), 0.5 * (left - right)
     caster[6], caster[7] = low, high
-    upper = geometry.upper[geometry.part_first + parts[body]]
-    caster[8] = poses[body, 2, 3] + upper[0]
-    caster[9], caster[10] = upper[1] - along, upper[2] - along
-    caster[11], caster[12] = upper[3] - aside, upper[4] - aside
+    boxes = geometry.silhouette[geometry.part_first + parts[body]]
+    caster[8] = poses[body, 2, 3] + boxes[0]
+    caster[9], caster[10] = boxes[1] - along, boxes[2] - along
+    for k in range(4):
+        caster[11 + k] = boxes[3 + k] - aside
+    caster[15] = 0.55 + 0.2 * (high - low)
 
 
 @inner_kernel
@@ -95,7 +98,7 @@ def _may_show(
     near = view.planes[4]
     if view.lens[3] * length < SMALLEST * (near[0] * x + near[1] * y + near[2] * z + near[3]):
         return False
-    reach = length + half + 0.5 * (caster[7] - caster[6]) + 0.7
+    reach = length + half + 0.5 * (caster[7] - caster[6]) + caster[15]
     return sphere_is_visible(view.planes, x, y, z, reach)
 
 
@@ -107,8 +110,8 @@ def _screen_box(
     box = nowhere()
     throw = _throw(caster, sun)
     for corner in range(16):
-        along = (caster[4] + 0.5) * (1.0 if corner & 1 else -1.0)
-        aside = (caster[5] + 0.5) * (1.0 if corner & 2 else -1.0)
+        along = (caster[4] + caster[15]) * (1.0 if corner & 1 else -1.0)
+        aside = (caster[5] + caster[15]) * (1.0 if corner & 2 else -1.0)
         x = caster[0] + along * caster[2] - aside * caster[3]
         y = caster[1] + along * caster[3] + aside * caster[2]
         z = caster[7] if corner & 4 else caster[6] - 0.3

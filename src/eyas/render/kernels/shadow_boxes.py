@@ -9,6 +9,12 @@ from eyas.core.jit import inlined_kernel, inner_kernel
 
 __all__ = ["darken"]
 
+_UNDER = 0.88
+"""Share of the sky's light that a car keeps from the ground under it."""
+
+_INSET = 0.3
+"""How far inside the edge of a body that begins [m]."""
+
 
 @inlined_kernel
 def _between(place: float, step: float, low: float, high: float) -> tuple[float, float]:
@@ -47,14 +53,17 @@ def darken(
     sx, sy = sun[0] * caster[2] + sun[1] * caster[3], sun[1] * caster[2] - sun[0] * caster[3]
     way = (float(sx), float(sy), max(float(sun[2]), 1e-3))
     # The longer the way through it, the deeper in the shadow: a soft edge.
-    body = (-caster[4], caster[4], -caster[5], caster[5])
+    body = (-caster[4], caster[4], caster[13], caster[14])
     cabin = (caster[9], caster[10], caster[11], caster[12])
     inside = _through((px, py, z), way, body, caster[6], caster[8])
     inside += _through((px, py, z), way, cabin, caster[8], caster[7])
     deep = min(inside * 2.2, 1.0)
     # Little light of the sky comes under a body and to the ground beside it.
-    out_x, out_y = max(abs(px) - caster[4] + 0.15, 0.0), max(abs(py) - caster[5] + 0.15, 0.0)
-    near = max(1.0 - 1.1 * math.sqrt(out_x * out_x + out_y * out_y), 0.0)
-    if z > caster[6] + 0.25:
+    half, side = 0.5 * (caster[14] - caster[13]), py - 0.5 * (caster[14] + caster[13])
+    out_x = max(abs(px) - caster[4] + _INSET, 0.0)
+    out_y = max(abs(side) - half + min(_INSET, half), 0.0)
+    near = max(1.0 - math.sqrt(out_x * out_x + out_y * out_y) / (caster[15] + _INSET), 0.0)
+    if abs(z - caster[6]) > 0.3:
         near = 0.0
-    return 1.0 - deep, 1.0 - 0.8 * near * near
+    most = _UNDER * min(half + 0.35, 1.0)  # light comes under a motorbike from both sides
+    return 1.0 - deep, 1.0 - most * near * near * (3.0 - 2.0 * near)

@@ -10,7 +10,6 @@ from eyas.core.parallel import Pointer, parallel_kernel
 from eyas.render.kernels.bundles import Geometry
 from eyas.render.kernels.rasterise import BOTH_SIDES, rasterise
 from eyas.render.kernels.scalars import f4, i8
-from eyas.state.mesh import Surface
 
 __all__ = ["BAND", "ShadowBake", "bake_rows"]
 
@@ -20,13 +19,20 @@ BAND = 256
 LEAF_LEVEL = 3
 """Mip level of the holes between leaves: of the size of the map's texels."""
 
-FOLIAGE = int(Surface.FOLIAGE)
+THICKER = 0.3
+"""What thin things are widened by on all sides [texels]: narrower than a texel, the shadow of a
+pole would break into pieces."""
 
 
 class ShadowBake(NamedTuple):
     """What `bake_rows` reads and writes, K workers."""
 
     geometry: Geometry
+    cards: NDArray[np.int32]
+    """Of each material: 0 if it is solid; n if one leaf card in n is drawn, with its holes; -1 if
+    none is."""
+    thin: NDArray[np.bool_]
+    """Whether each prototype of the fixtures may be narrower than a texel."""
     rows: NDArray[np.float64]
     """World to column, row and height of the map, shape (3, 4); heights are 1 to 65535."""
     screen: NDArray[np.float64]
@@ -44,18 +50,24 @@ class ShadowBake(NamedTuple):
 @parallel_kernel
 def bake_rows(parts: Pointer[tuple[Pointer[ShadowBake]]], worker: int, workers: int) -> None:
     """Draw all static triangles and the finest level of all fixtures into the shadow map."""
-    geometry, rows, all_screens, all_rows, depths, owners, shadow_map = parts[0][0][0]
+    bake = parts[0][0][0]
+    geometry, cards, thin, rows, all_screens, all_rows, depths, owners, shadow_map = bake
     screen, object_rows = all_screens[worker], all_rows[worker]
     depth, owner = depths[worker], owners[worker]
     for band in range(worker, (shadow_map.shape[0] + BAND - 1) // BAND, workers):
         depth[:] = f4(0.0)
         top = band * BAND
         for chunk in range(len(geometry.chunk_range)):
-            _draw(geometry, rows, geometry.chunk_range[chunk], top, screen, depth, owner)
+            _draw(geometry, cards, rows, geometry.chunk_range[chunk], top, screen, depth, owner)
         for i in range(len(geometry.fixture_prototype)):
-            mesh = geometry.level_first[geometry.fixture_prototype[i]]
-            _set_object_rows(rows, geometry.fixture_pose[i], object_rows)
-            _draw(geometry, object_rows, geometry.mesh_range[mesh], top, screen, depth, owner)
+            prototype = geometry.fixture_prototype[i]
+            ranges = geometry.mesh_range[geometry.level_first[prototype]]
+            for side in range(4 if thin[prototype] else 1):
+                _set_object_rows(rows, geometry.fixture_pose[i], object_rows)
+                if thin[prototype]:
+                    object_rows[0, 3] += THICKER if side & 1 else -THICKER
+                    object_rows[1, 3] += THICKER if side & 2 else -THICKER
+                _draw(geometry, cards, object_rows, ranges, top, screen, depth, owner)
         for line in range(min(BAND, shadow_map.shape[0] - top)):
             for column in range(shadow_map.shape[1]):
                 height = min(depth[line, column], f4(65535.0))
@@ -77,6 +89,7 @@ def _set_object_rows(
 @inner_kernel
 def _draw(
     geometry: Geometry,
+    cards: NDArray[np.int32],
     rows: NDArray[np.float64],
     ranges: NDArray[np.int32],
     top: int,
@@ -105,7 +118,11 @@ def _draw(
         b = geometry.corners[triangle, 1] - ranges[2]
         c = geometry.corners[triangle, 2] - ranges[2]
         material = geometry.material[triangle]
-        level = LEAF_LEVEL if geometry.surface[material] == FOLIAGE else -1
+        drawn, level = cards[material], -1
+        if drawn != 0:
+            level = LEAF_LEVEL
+            if drawn < 0 or (triangle >> 2) % drawn != 0:  # a card has four triangles, or two
+                continue
         rasterise(
             screen, a, b, c, top, depth, owner, i8(0), BOTH_SIDES, geometry.texture,
             geometry.layer[material], level,

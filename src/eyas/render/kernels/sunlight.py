@@ -11,8 +11,8 @@ __all__ = ["sunlight"]
 def _sunlit(light: Light, x: float, y: float, z: float) -> float:
     """Return how much of the sun reaches a point, 0 to 1, blended over four texels."""
     rows = light.shadow_rows
-    column = rows[0, 0] * x + rows[0, 1] * y + rows[0, 2] * z + rows[0, 3]
-    line = rows[1, 0] * x + rows[1, 1] * y + rows[1, 2] * z + rows[1, 3]
+    column = rows[0, 0] * x + rows[0, 1] * y + rows[0, 2] * z + rows[0, 3] - f4(0.5)
+    line = rows[1, 0] * x + rows[1, 1] * y + rows[1, 2] * z + rows[1, 3] - f4(0.5)
     height = rows[2, 0] * x + rows[2, 1] * y + rows[2, 2] * z + rows[2, 3]
     lines, columns = light.shadow_map.shape
     one, zero = f4(1.0), f4(0.0)
