@@ -46,10 +46,21 @@ def _options(
 ) -> None: ...
 
 
+class _Line(logging.Formatter):
+    """Shows a record as one of our lines; what is less than a warning has no word for it."""
+
+    def format(self, record: logging.LogRecord) -> str:
+        word = "warning: " if record.levelno >= logging.WARNING else ""
+        return f"eyas: {word}{record.getMessage()}"
+
+
 def main() -> None:
     """Run the command line: errors are one line on stderr and exit code 2, without a traceback."""
     warnings.showwarning = lambda message, *_, **__: _say(f"warning: {message}")
-    logging.basicConfig(format="eyas: warning: %(message)s", level=logging.WARNING)
+    lines = logging.StreamHandler()
+    lines.setFormatter(_Line())
+    logging.basicConfig(handlers=[lines], level=logging.WARNING)
+    logging.getLogger("eyas").setLevel(logging.INFO)
     status = _run()
     if status == _INTERRUPTED:
         _say("interrupted")

@@ -58,7 +58,9 @@ def bake_shadows(
     """
     rows, lines, columns, texel = _frame(geometry, sun, ground)
     name = _content_hash(geometry, rows)
-    heights = baked(folder, name, (lines, columns), lambda: _bake(geometry, rows, lines, columns))
+    heights = baked(
+        "shadows", folder, name, (lines, columns), lambda: _bake(geometry, rows, lines, columns)
+    )
     return ShadowMap(heights, rows, texel)
 
 

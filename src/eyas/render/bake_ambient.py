@@ -67,7 +67,7 @@ def bake_ambient(scene: Scene, folder: Path | None) -> AmbientMap:
         return openness
 
     name = content_hash(_FORMAT, inputs)
-    return AmbientMap(baked(folder, name, (rows, columns), make), frame)
+    return AmbientMap(baked("light of the sky", folder, name, (rows, columns), make), frame)
 
 
 def height_map(

@@ -1,6 +1,8 @@
 """Baked arrays that are kept from run to run, by a hash of all that went into them."""
 
 import io
+import logging
+import time
 import zipfile
 from collections.abc import Callable, Iterable
 from hashlib import blake2b
@@ -14,6 +16,8 @@ from eyas.core.errors import OutputError
 from eyas.core.files import write_atomic
 
 __all__ = ["baked", "content_hash", "shadow_folder"]
+
+_log = logging.getLogger("eyas")
 
 
 def shadow_folder() -> Path:
@@ -30,6 +34,7 @@ def content_hash(name: bytes, arrays: Iterable[NDArray[np.generic]]) -> str:
 
 
 def baked(
+    what: str,
     folder: Path | None,
     name: str,
     shape: tuple[int, ...],
@@ -38,6 +43,7 @@ def baked(
     """Return an array from the cache; made anew only if the cache has none.
 
     Args:
+        what: What it is, for the log.
         folder: The cache, or None to use none. A file in it that cannot be read is made anew; a
             folder that cannot be written to is left alone.
         name: Of the file, without its ending: what `content_hash` returned.
@@ -48,7 +54,9 @@ def baked(
     kept = _load(path, shape) if path else None
     if kept is not None:
         return kept
+    start = time.perf_counter()
     made = make()
+    _log.info("baked %s in %.1f s, once for this map and sun", what, time.perf_counter() - start)
     if path:
         _save(path, made)
     return made
@@ -66,7 +74,7 @@ def _load(path: Path, shape: tuple[int, ...]) -> NDArray[np.uint16] | None:
 
 def _save(path: Path, made: NDArray[np.uint16]) -> None:
     buffer = io.BytesIO()
-    np.savez(buffer, heights=made)
+    np.savez_compressed(buffer, heights=made)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         write_atomic(path, buffer.getvalue())
