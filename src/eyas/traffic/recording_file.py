@@ -8,7 +8,7 @@ import hashlib
 import io
 import json
 from dataclasses import asdict
-from importlib.abc import Traversable
+from importlib.resources.abc import Traversable
 from pathlib import Path
 
 import numpy as np
