@@ -1,5 +1,6 @@
 """The first start: a second process compiles what draws while the first builds the world."""
 
+import contextlib
 import logging
 import os
 import subprocess
@@ -23,6 +24,12 @@ from eyas.state.scene import Lamps, Lighting, Scene
 __all__ = ["compile_ahead"]
 
 _log = logging.getLogger("eyas")
+
+_PATIENCE = 300.0
+"""How long a first picture waits for the second process at most [s]."""
+
+_started: list[subprocess.Popen[bytes]] = []
+"""Kept here, as Python warns of processes that are forgotten before they end."""
 
 _PROGRAM = "from eyas.render.ahead import draw_nothing; draw_nothing()"
 
@@ -48,7 +55,7 @@ def compile_ahead() -> Callable[[], object] | None:
         (cache / "started").touch(exist_ok=False)  # by one of many processes that start together
         path = os.pathsep.join(filter(None, sys.path))
         process = subprocess.Popen(
-            [sys.executable, "-c", _PROGRAM],
+            [sys.executable, "-P", "-c", _PROGRAM],
             env={**os.environ, "PYTHONPATH": path},
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
@@ -56,7 +63,14 @@ def compile_ahead() -> Callable[[], object] | None:
         )
     except OSError:
         return None
-    return process.wait
+    _started.append(process)
+    return _wait
+
+
+def _wait() -> None:
+    for process in _started:
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            process.wait(_PATIENCE)
 
 
 def draw_nothing() -> None:

@@ -5,8 +5,8 @@ import json
 import logging
 from collections.abc import Callable
 from dataclasses import asdict
-from importlib.resources.abc import Traversable
 from importlib.resources import files
+from importlib.resources.abc import Traversable
 from pathlib import Path
 
 import platformdirs
