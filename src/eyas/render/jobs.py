@@ -1,6 +1,7 @@
 """Which worker draws what: views, or bands of views where there are few."""
 
 import math
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,7 +32,26 @@ def build_jobs(
         threads: How many threads will share the work.
         density: Of the weather's fog [1/m], for views that do not say their own.
     """
-    count = len(views.position)
+    across = focal_length(width, views.field_of_view)
+    down = across
+    if views.vertical_field_of_view is not None:
+        down = focal_length(height, views.vertical_field_of_view)
+    lens = [across * side, width * side, height * side, math.sqrt(across * down), down * side]
+    return Job(
+        band=_bands(len(views.position), height, width, threads),
+        eye=np.ascontiguousarray(views.position, np.float64),
+        axes=np.ascontiguousarray(np.swapaxes(views.rotation, 1, 2), np.float64),
+        world=np.ascontiguousarray(views.world, np.int32),
+        subject=np.ascontiguousarray(views.subject, np.int32),
+        light=_light_of(views, density),
+        instant=np.array([] if views.instant is None else views.instant, np.float64),
+        lens=np.array(lens, np.float64),
+    )
+
+
+@lru_cache(maxsize=8)  # a fifth of what a small picture costs outside the kernels
+def _bands(count: int, height: int, width: int, threads: int) -> NDArray[np.int32]:
+    """Return `Job.band`, which nobody writes to."""
     bands = min(
         math.ceil(JOBS_PER_THREAD * threads / max(count, 1)),
         math.ceil(height * width / SMALLEST_BAND),
@@ -43,27 +63,15 @@ def build_jobs(
     view[:, :, 0] = np.arange(count)[:, None]
     view[:, :, 1] = edges[:-1]
     view[:, :, 2] = edges[1:]
-    across = focal_length(width, views.field_of_view)
-    down = across
-    if views.vertical_field_of_view is not None:
-        down = focal_length(height, views.vertical_field_of_view)
-    lens = [across * side, width * side, height * side, math.sqrt(across * down), down * side]
-    return Job(
-        band=view.reshape(-1, 3),
-        eye=np.ascontiguousarray(views.position, np.float64),
-        axes=np.ascontiguousarray(np.swapaxes(views.rotation, 1, 2), np.float64),
-        world=np.ascontiguousarray(views.world, np.int32),
-        subject=np.ascontiguousarray(views.subject, np.int32),
-        light=_light_of(views, density),
-        instant=np.array([] if views.instant is None else views.instant, np.float64),
-        lens=np.array(lens, np.float64),
-    )
+    return view.reshape(-1, 3)
 
 
 def _light_of(views: Views, density: float) -> NDArray[np.float32]:
     if views.light is not None:
         return np.ascontiguousarray(views.light, np.float32)
-    return np.tile(np.array([1.0, 1.0, density], np.float32), (len(views.position), 1))
+    light = np.ones((len(views.position), 3), np.float32)
+    light[:, 2] = density
+    return light
 
 
 def picture_size(picture: Picture) -> tuple[int, int]:
