@@ -3,6 +3,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
+from eyas.render.geometry import build_geometry
 from eyas.render.renderer import Renderer, build_renderer
 from eyas.state.draw import DrawList, PartLibrary, Picture, Views
 from eyas.state.scene import Lighting, Scene
@@ -20,9 +21,8 @@ def renderer_of(tmp_path_factory, images) -> Callable[..., Renderer]:
     folder = tmp_path_factory.mktemp("shadows")
 
     def build(scene: Scene, parts: PartLibrary | None = None, lighting: Lighting = DAY) -> Renderer:
-        return build_renderer(
-            scene, parts or PartLibrary(()), lighting, images, shadow_cache=folder
-        )
+        geometry = build_geometry(scene, parts or PartLibrary(()), images)
+        return build_renderer(scene, geometry, lighting, shadow_cache=folder)
 
     return build
 

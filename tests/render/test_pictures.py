@@ -8,6 +8,7 @@ import pytest
 
 from eyas.core.errors import ConfigError, UnknownNameError
 from eyas.core.pinhole import project, rays
+from eyas.render.geometry import build_geometry
 from eyas.render.kernels.tone import TONE_STEPS, TONE_TOP
 from eyas.render.lighting import tone_table
 from eyas.render.renderer import build_renderer
@@ -118,9 +119,8 @@ def test_holes_between_leaves_show_what_is_behind_in_all_outputs(renderer_of, im
     card = quads(corners, [[(0, 0), (1, 0), (1, 1), (0, 1)]], leaves)
     wall = quads(np.add(corners, (10, 0, 0)), np.zeros((1, 4, 2)), material("plain"))
     scene = scene_of([card, wall], [4, 5])
-    picture = drawn(
-        build_renderer(scene, PartLibrary(()), DAY, striped), looking([(0, 0, 4)], fov=FOV)
-    )
+    geometry = build_geometry(scene, PartLibrary(()), striped)
+    picture = drawn(build_renderer(scene, geometry, DAY), looking([(0, 0, 4)], fov=FOV))
     left, hole = (0, 48, 45), (0, 48, 80)
     assert picture.object_id[left] == 4
     assert picture.depth[left] == pytest.approx(10.0)
@@ -207,4 +207,4 @@ def test_wrong_arguments_are_refused_in_one_line(renderer_of, images):
         renderer_of(scene).draw(views, DrawList.create(1, 1), Picture.create(1, 8, 8), 3)
     without = {name: image for name, image in images.items() if name != "lawn"}
     with pytest.raises(UnknownNameError, match=r"texture.*'lawn'"):
-        build_renderer(scene, PartLibrary(()), DAY, without)
+        build_geometry(scene, PartLibrary(()), without)

@@ -5,6 +5,7 @@ import dataclasses
 import numpy as np
 import pytest
 
+from eyas.render.geometry import build_geometry
 from eyas.render.kernels.snow import Bed
 from eyas.render.renderer import build_renderer
 from eyas.render.snow import snow_beds
@@ -52,7 +53,8 @@ def with_lanes(scene, *lanes):
 @pytest.fixture
 def seen(drawn, images, tmp_path):
     def see(scene, lighting, views=None, size=(96, 128), parts=None):
-        renderer = build_renderer(scene, PartLibrary(()), lighting, images, shadow_cache=tmp_path)
+        geometry = build_geometry(scene, PartLibrary(()), images)
+        renderer = build_renderer(scene, geometry, lighting, shadow_cache=tmp_path)
         views = views or looking([(0.3, 0.2, 20.0)], pitch=1.5707, fov=1.0)
         return drawn(renderer, views, size=size).rgb[0].astype(float)
 

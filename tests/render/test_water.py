@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 import shapely
 
+from eyas.render.geometry import build_geometry
 from eyas.render.renderer import build_renderer
 from eyas.render.textures import build_textures
 from eyas.state.draw import PartLibrary
@@ -20,7 +21,8 @@ def lake(tmp_path_factory):
     mesh = flat_polygon(shapely.box(-400, -400, 400, 400), 0.0, water, TEXTURES["water"])
     scene = scene_of([mesh], [GROUND])
     folder = tmp_path_factory.mktemp("shadows")
-    return build_renderer(scene, PartLibrary(()), DAY, build_textures(), shadow_cache=folder)
+    geometry = build_geometry(scene, PartLibrary(()), build_textures())
+    return build_renderer(scene, geometry, DAY, shadow_cache=folder)
 
 
 def picture_of(lake, drawn, pitch):

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from eyas.core.kept import kept
 from eyas.render.bake import ShadowMap
 from eyas.render.bake_ambient import AmbientMap
 from eyas.render.clouds import build_clouds
@@ -29,6 +30,12 @@ def build_light(
     sun = np.array(lighting.sun_direction, np.float64)
     sun /= np.linalg.norm(sun)
     toward = (float(sun[0]), float(sun[1]), float(sun[2]))
+    clouds, hills = kept(
+        "sky",
+        ("render",),
+        (lighting.clouds, toward),
+        lambda: (build_clouds(lighting.clouds, toward), build_hills(toward)),
+    )
     # A point is moved off its surface by what its shadow can be off the texel's middle.
     offset = 1.1 * shadows.texel
     air = [lighting.fog_density, lighting.fog_power, lighting.exposure, offset, lighting.snow]
@@ -53,8 +60,8 @@ def build_light(
         track_frame=_row(tracks.frame),
         tone=tone_table(),
         ground=_row(far_ground(geometry)),
-        clouds=build_clouds(lighting.clouds, toward),
-        hills=build_hills(toward),
+        clouds=clouds,
+        hills=hills,
     )
 
 

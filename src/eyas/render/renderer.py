@@ -1,6 +1,6 @@
 """The renderer: pictures, depths, objects and the subject's measures of many views at once."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +13,6 @@ from eyas.render.bake import bake_shadows
 from eyas.render.bake_ambient import bake_ambient
 from eyas.render.bake_cache import shadow_folder
 from eyas.render.classes import class_table, write_classes
-from eyas.render.geometry import build_geometry
 from eyas.render.jobs import build_jobs, picture_size, write_subject
 from eyas.render.kernels.bundles import (
     Geometry,
@@ -28,7 +27,7 @@ from eyas.render.kernels.bundles import (
 from eyas.render.kernels.draw import draw_views
 from eyas.render.lighting import build_light
 from eyas.render.tracks import TrackMap, track_map
-from eyas.state.draw import DrawList, PartLibrary, Picture, Views
+from eyas.state.draw import DrawList, Picture, Views
 from eyas.state.scene import Lighting, Scene
 
 __all__ = ["Renderer", "build_renderer"]
@@ -148,9 +147,8 @@ class Renderer:
 
 def build_renderer(
     scene: Scene,
-    parts: PartLibrary,
+    geometry: Geometry,
     lighting: Lighting,
-    textures: Mapping[str, NDArray[np.uint8]],
     *,
     shadow_cache: Path | None = None,
     ready: Callable[[], object] | None = None,
@@ -159,16 +157,11 @@ def build_renderer(
 
     Args:
         scene: What stands still.
-        parts: What moving things are made of.
+        geometry: The scene and what moves in it, see `build_geometry`.
         lighting: Light and air.
-        textures: sRGB and alpha by name, row 0 on top, shape (256, 256, 4) each.
         shadow_cache: Folder for baked shadows; None: the user's cache folder.
         ready: See `Renderer`.
-
-    Raises:
-        UnknownNameError: A material asks for a texture that is not there.
     """
-    geometry = build_geometry(scene, parts, textures)
     folder = shadow_cache or shadow_folder()
     shadows = bake_shadows(geometry, lighting.sun_direction, scene.ground_height, folder)
     tracks = track_map(scene.network) if lighting.snow > 0 else TrackMap.none()

@@ -3,10 +3,13 @@
 from dataclasses import dataclass
 from functools import lru_cache
 
+import numpy as np
 import shapely
+from numpy.typing import NDArray
 
 from eyas.core.kept import kept
 from eyas.render.ahead import compile_ahead
+from eyas.render.geometry import build_geometry
 from eyas.render.renderer import Renderer, build_renderer
 from eyas.render.textures import build_textures
 from eyas.state.roads import RoadNetwork
@@ -50,10 +53,18 @@ def load_scene(map_name: str, seed: int) -> Scene:
     network = load_network(WorldConfig(map=map_name, seed=seed))
     return kept(
         "scene",
-        ("world", "state", "core/rng.py"),
-        (map_name, seed, network.graph_hash, network.builder, shapely.__version__),
+        _SCENE_MAKERS,
+        _inputs(map_name, seed, network),
         lambda: build_scene(map_name, network, seed),
     )
+
+
+_SCENE_MAKERS = ("world", "state", "core/rng.py")
+
+
+def _inputs(map_name: str, seed: int, network: RoadNetwork) -> tuple[object, ...]:
+    """Return what tells one scene from another."""
+    return map_name, seed, network.graph_hash, network.builder, shapely.__version__
 
 
 def load_place(world: WorldConfig, traffic: TrafficConfig, trackers: int) -> Place:
@@ -71,6 +82,10 @@ def load_place(world: WorldConfig, traffic: TrafficConfig, trackers: int) -> Pla
     return _load_place(world, traffic, trackers if grouped else 1)
 
 
+def _textures() -> dict[str, NDArray[np.uint8]]:
+    return kept("textures", ("render", "world/materials.py"), (), build_textures)
+
+
 @lru_cache(maxsize=2)
 def _load_place(world: WorldConfig, traffic: TrafficConfig, trackers: int) -> Place:
     graph = road_graph(world.map, world.seed)
@@ -78,7 +93,13 @@ def _load_place(world: WorldConfig, traffic: TrafficConfig, trackers: int) -> Pl
     recording = find_recording(graph, traffic, trackers=trackers)
     ready = compile_ahead()
     scene = load_scene(world.map, world.seed)
-    rigs = VehicleRigs(recording.provenance.config.vehicle_type)
-    textures = kept("textures", ("render", "world/materials.py"), (), build_textures)
-    renderer = build_renderer(scene, rigs.library, light, textures, ready=ready)
+    vehicle_type = recording.provenance.config.vehicle_type
+    rigs = kept("rigs", ("targets", "state"), (vehicle_type,), lambda: VehicleRigs(vehicle_type))
+    geometry = kept(
+        "geometry",
+        ("render", "targets", *_SCENE_MAKERS),
+        (vehicle_type, *_inputs(world.map, world.seed, scene.network)),
+        lambda: build_geometry(scene, rigs.library, _textures()),
+    )
+    renderer = build_renderer(scene, geometry, light, ready=ready)
     return Place(scene, Replay(recording), light, renderer, rigs)

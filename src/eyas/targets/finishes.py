@@ -32,7 +32,7 @@ PAINT = Material(surface=Surface.PAINT)
 BLACK_PAINT = Material(tint=(0.2, 0.2, 0.2), surface=Surface.PAINT)
 """A nearly black shade of the body colour."""
 
-GLASS = Material(tint=(0.11, 0.13, 0.15), surface=Surface.GLASS)
+GLASS = Material(tint=(0.115, 0.12, 0.125), surface=Surface.GLASS)
 """Tinted windows."""
 
 ROOF_GLASS = Material(tint=(0.05, 0.055, 0.065), surface=Surface.GLASS)

@@ -21,7 +21,7 @@ _COLOURS = (
     (0.74, 0.70, 0.60),
     (0.16, 0.28, 0.22),
 )
-_GLASS = Material(tint=(0.10, 0.12, 0.14), surface=Surface.GLASS)
+_GLASS = Material(tint=(0.105, 0.11, 0.115), surface=Surface.GLASS)
 _RUBBER = material("plain", (0.09, 0.09, 0.09))
 _LIGHT = material("plain", (0.86, 0.86, 0.82))
 _REAR = material("plain", (0.55, 0.06, 0.05))

@@ -60,7 +60,7 @@ def street_tree_levels(rng: np.random.Generator, variant: int) -> tuple[Mesh, ..
     coarse = concatenate(
         [
             _wood(crown, rng, limbs=0, sides=3),
-            shell(crown, 1, 1.01, greens[2]),
+            shell(crown, 1, 1.1, greens[3]),
             leaf_cards(crown, 16, (0.3, 0.4), greens, rng, bent=False),
         ]
     )

@@ -71,6 +71,7 @@ _NIGHT = replace(
     ambient_down=(0.030, 0.029, 0.028),
     fog_colour=(0.024, 0.024, 0.032),
     fog_density=1.0 / 3000.0,
+    clouds=0.15,
     luminosity=0.3,
     lamps=1.0,
     windows=0.3,
