@@ -42,7 +42,14 @@ class Replay:
         self.rate: Final = recording.rate
         self.duration: Final = recording.duration
         self.actors: Final = recording.actors
-        self._stays = [runs(tracks.present[:, actor]) for actor in range(self.actors)]
+        stays = [
+            (actor, *stay)
+            for actor in range(self.actors)
+            for stay in runs(tracks.present[:, actor])
+        ]
+        self._who, enters, leaves = np.array(stays, np.int64).reshape(-1, 3).T
+        # Times of the first and the last sample of each stay in the world [s].
+        self._enters, self._leaves = enters / self.rate, (leaves - 1) / self.rate
 
     def at(self, time: NDArray[np.float64], out: ActorState) -> None:
         """Write all actors of W worlds at the worlds' own times [s], shape (W,)."""
@@ -67,15 +74,14 @@ class Replay:
         """
         self.check_time(start)
         self.check_time(end)
-        until = [self.present_until(start, actor) for actor in range(self.actors)]
-        there = [self._stay(start, actor) is not None for actor in range(self.actors)]
-        available: NDArray[np.bool_] = np.array(there) & (np.array(until) >= end - ROUNDING)
+        available = np.zeros(self.actors, np.bool_)
+        available[self._who[self._staying(start) & (self._leaves >= end - ROUNDING)]] = True
         return available
 
     def present_until(self, time: float, actor: int) -> float:
         """Return when an actor that is there at `time` leaves [s]; `time` if it is not there."""
-        stay = self._stay(time, actor)
-        return time if stay is None else (stay[1] - 1) / self.rate
+        until = self._leaves[self._staying(time) & (self._who == actor)]
+        return float(until[0]) if len(until) else time
 
     def check_time(self, time: float) -> None:
         """Refuse a time that the recording does not reach.
@@ -89,12 +95,9 @@ class Replay:
                 "shorten the episode or record more (eyas traffic record --duration)"
             )
 
-    def _stay(self, time: float, actor: int) -> tuple[int, int] | None:
-        sample = time * self.rate
-        stays = self._stays[actor]
-        slack = ROUNDING * self.rate
-        found = (stay for stay in stays if stay[0] - slack <= sample <= stay[1] - 1 + slack)
-        return next(found, None)
+    def _staying(self, time: float) -> NDArray[np.bool_]:
+        """Return which of the stays go on at a time [s]."""
+        return (self._enters - ROUNDING <= time) & (time <= self._leaves + ROUNDING)
 
 
 def packed(tracks: Tracks) -> NDArray[np.float32]:
