@@ -91,7 +91,7 @@ def _smoothness(surface: int, alpha: float) -> float:
     if surface == PAINT:
         return f4(0.05)
     if surface == GLASS:
-        return f4(0.12)
+        return f4(0.08)
     if surface == WATER:
         return f4(0.04)
     if surface == FACADE:
