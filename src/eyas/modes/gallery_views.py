@@ -51,13 +51,13 @@ def choose_viewpoints(stage: Stage, sun: tuple[float, float, float]) -> list[Vie
 
     Args:
         stage: The place.
-        sun: Direction to the sun; views from afar have it at their side, so that walls are lit.
+        sun: Direction to the sun; views from afar have it behind them, so that walls are lit.
     """
     cars = _all_cars(stage)
     chosen: list[Viewpoint] = []
     for name, where, score in _STOPS:
         chosen += _stop(stage, cars, name, where, score(stage.scene, cars))
-    side = math.atan2(sun[1], sun[0]) + math.radians(60.0)
+    side = math.atan2(sun[1], sun[0]) + math.radians(15.0)
     chosen += [_overview(stage, side), _horizon(stage.scene, side)]
     first = chosen[0]
     small = replace(
