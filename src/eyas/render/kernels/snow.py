@@ -114,8 +114,8 @@ def _on_road(
         grain: Noise of a third of a metre, 0 to 1.
         fine: Noise of a tenth of a metre, 0 to 1.
     """
-    ragged = worn * (f4(0.5) + f4(0.54) * grain + f4(0.46) * fine)
-    share = f4(0.9) * max(_clip(f4(1.3) - f4(1.75) * ragged), f4(0.06))
+    ragged = worn * (f4(0.56) + f4(0.56) * grain + f4(0.36) * fine)
+    share = f4(0.9) * max(_clip(f4(1.22) - f4(1.5) * ragged), f4(0.06))
     # Wheels press and soil what they do not push away.
     light = f4(0.96) - f4(0.52) * _clip(f4(1.3) * ragged) + f4(0.06) * (grain - f4(0.5))
     wet = f4(1.0) - f4(0.34) * _clip(f4(1.6) * ragged)
@@ -176,8 +176,9 @@ def snowed(
         worn = f4(0.45)  # no lane of the map leads over bridges
         if place[2] < f4(1.0):
             worn = _worn(light, x, y, footprint)
-        grain = _seen_noise(x, y, f4(2.3), footprint)
-        fine = _seen_noise(x, y, f4(9.0), footprint)
+        # Turned, each another way: the squares of noise are not to be seen.
+        grain = _seen_noise(x + f4(0.5) * y, y - f4(0.5) * x, f4(1.9), footprint)
+        fine = _seen_noise(x - f4(0.7) * y, y + f4(0.7) * x, f4(7.5), footprint)
         return _on_road(colour, worn + f4(1.2) * (one - depth), grain, fine)
     # Low, wide drifts, in rows across the wind.
     drift = noise(f4(0.075) * x + f4(0.03) * y, f4(0.13) * y - f4(0.06) * x)
