@@ -58,7 +58,8 @@ def tree(subdivisions: int) -> Mesh:
     """A trunk and a crown of two shells, the outer one with holes."""
     leaves = Material("leaves", surface=Surface.FOLIAGE)
     shells = []
-    for radius, what in ((2.2, material("leaves", (0.5, 0.55, 0.5))), (2.6, leaves)):
+    inside = Material("leaves", (0.5, 0.55, 0.5), Surface.CROWN)
+    for radius, what in ((2.2, inside), (2.6, leaves)):
         pose = np.array([[radius, 0, 0, 0], [0, radius, 0, 0], [0, 0, radius, 5.5]])
         shells.append(transformed(sphere(subdivisions, what, tile=0.8), pose))
     trunk = cylinder((0.25, 0.18), (0.0, 4.0), 8, material("bark"))

@@ -8,13 +8,14 @@ import pytest
 from eyas.render.geometry import build_geometry
 from eyas.render.kernels.snow import Bed
 from eyas.render.renderer import build_renderer
-from eyas.render.snow import snow_beds
+from eyas.render.snow import crown_middles, snow_beds
 from eyas.render.tracks import TRACK_ASIDE, track_map
 from eyas.state.draw import PartLibrary
 from eyas.state.mesh import Material, Surface
 from eyas.state.scene import ObjectClass
 from eyas.world.materials import material
 from eyas.world.shapes import box, quads
+from eyas.world.trees import street_tree_levels
 
 from .small_city import DAY, city_scene, looking, scene_of, trees_at
 
@@ -138,6 +139,16 @@ def test_crowns_are_white_above_and_green_below(seen):
     above = greenness((0.0, 0.0, 40.0), 1.5707)
     below = greenness((-14.0, 0.0, 0.5), -0.24)
     assert above < below - 0.1
+
+
+def test_crowns_have_the_same_middle_near_by_and_far_away():
+    levels = street_tree_levels(np.random.default_rng(1), 0)
+    scene = scene_of([], [], dataclasses.replace(trees_at([(0.0, 0.0)]), levels=(levels,)))
+    palettes = [mesh.palette for mesh in levels]
+    near, *_ = crown_middles(scene, palettes[0])
+    assert 0.3 < near < 0.7
+    for palette in palettes:
+        assert (crown_middles(scene, palette) == near).all()
 
 
 def test_each_material_is_a_bed_of_its_own_kind():

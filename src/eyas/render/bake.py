@@ -133,13 +133,11 @@ def _bake(
 
 
 def _cards(geometry: Geometry) -> NDArray[np.int32]:
-    """Return how the leaves of each material are drawn, see `ShadowBake`.
-
-    What is not foliage and looks like it is the dark inside of a crown, which stops no light.
-    """
-    foliage = geometry.surface == Surface.FOLIAGE
-    inside = np.isin(geometry.layer, geometry.layer[foliage]) & ~foliage
-    return np.where(foliage, CARDS, np.where(inside, -1, 0)).astype(np.int32)
+    """Return how the leaves of each material are drawn, see `ShadowBake`."""
+    surface = geometry.surface
+    return np.where(
+        surface == Surface.FOLIAGE, CARDS, np.where(surface == Surface.CROWN, -1, 0)
+    ).astype(np.int32)
 
 
 def _content_hash(geometry: Geometry, rows: NDArray[np.float64]) -> str:

@@ -19,7 +19,6 @@ _MIDDLE = 0.3
 def snow_beds(scene: Scene, parts: PartLibrary, palette: Iterable[Material]) -> NDArray[np.int32]:
     """Return the `Bed` of each material of a palette."""
     driven_on = _road_materials(scene)
-    leaves = _leaf_materials(scene)
     moving = {material for levels in parts.parts for mesh in levels for material in mesh.palette}
 
     def bed(material: Material) -> Bed:
@@ -27,7 +26,7 @@ def snow_beds(scene: Scene, parts: PartLibrary, palette: Iterable[Material]) -> 
             return Bed.VEHICLE if material.surface == Surface.PAINT else Bed.BARE
         if material.surface in (Surface.WATER, Surface.LAMP):
             return Bed.BARE
-        if material in leaves:
+        if material.surface in (Surface.FOLIAGE, Surface.CROWN):
             return Bed.LEAVES
         return Bed.DRIVEN if material in driven_on else Bed.OPEN
 
@@ -37,22 +36,15 @@ def snow_beds(scene: Scene, parts: PartLibrary, palette: Iterable[Material]) -> 
 def crown_middles(scene: Scene, palette: Iterable[Material]) -> NDArray[np.float32]:
     """Return z of the middle of the crowns of each material of a palette, in their own frame."""
     middle: dict[Material, float] = {}
-    for mesh, *_ in scene.fixtures.levels:
+    for levels in scene.fixtures.levels:
+        mesh = levels[0]
         leafy = np.array([material.surface == Surface.FOLIAGE for material in mesh.palette])
         leaves = mesh.triangles[leafy[mesh.materials]]
         if len(leaves):
             z = mesh.positions[leaves, 2]
             height = float(z.min() + _MIDDLE * np.ptp(z))
-            middle |= dict.fromkeys(mesh.palette, height)
+            middle |= {material: height for level in levels for material in level.palette}
     return np.array([middle.get(material, 0.0) for material in palette], np.float32)
-
-
-def _leaf_materials(scene: Scene) -> set[Material]:
-    """Return what the crowns of trees are made of, outside and inside."""
-    meshes = [mesh for levels in scene.fixtures.levels for mesh in levels]
-    palettes = [material for mesh in meshes for material in mesh.palette]
-    clusters = {material.texture for material in palettes if material.surface == Surface.FOLIAGE}
-    return {material for material in palettes if material.texture in clusters}
 
 
 def _road_materials(scene: Scene) -> set[Material]:

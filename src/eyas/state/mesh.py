@@ -27,6 +27,8 @@ class Surface(IntEnum):
     """Reflects the sky, with small waves."""
     LAMP = 6
     """Emits its own light by `emission` when the weather has lamps on."""
+    CROWN = 7
+    """What is behind leaves: matt. It throws no shadow of its own; the leaves in front do."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -133,7 +133,13 @@ def _brightness(crown: Crown, points: Array, facing: Array) -> Array:
     )
 
 
-def shell(crown: Crown, subdivisions: int, shrink: float, tint: tuple[float, float, float]) -> Mesh:
+def shell(
+    crown: Crown,
+    subdivisions: int,
+    shrink: float,
+    tint: tuple[float, float, float],
+    tiles: float = 2.0,
+) -> Mesh:
     """Return the dark inside of a crown: one closed skin, seen through gaps between the cards.
 
     Args:
@@ -141,8 +147,9 @@ def shell(crown: Crown, subdivisions: int, shrink: float, tint: tuple[float, flo
         subdivisions: Of the icosphere it is made of.
         shrink: Share of the way from the middle to the outside.
         tint: Factor on the leaves' colour.
+        tiles: Repeats of the texture in the radius.
     """
-    mesh = sphere(subdivisions, Material("leaves", tint))
+    mesh = sphere(subdivisions, Material("foliage", tint, Surface.CROWN))
     way = np.asarray(mesh.positions, np.float64)
     reach = np.zeros(len(way))
     for step in np.linspace(0.05, 1.0, 60):
@@ -151,5 +158,5 @@ def shell(crown: Crown, subdivisions: int, shrink: float, tint: tuple[float, flo
     positions = crown.middle + shrink * reach[:, None] * way
     mesh.positions = positions.astype(np.float32)
     mesh.normals = crown.soft_normals(positions, way).astype(np.float32)
-    mesh.uvs = (2.0 * mesh.uvs).astype(np.float32)
+    mesh.uvs = (tiles * mesh.uvs).astype(np.float32)
     return mesh

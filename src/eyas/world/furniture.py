@@ -22,7 +22,7 @@ _RED = material("plain", (0.72, 0.16, 0.12))
 _BLUE = material("plain", (0.13, 0.26, 0.50))
 _PANE = Material(tint=(0.42, 0.50, 0.52), surface=Surface.GLASS)
 _STONE = material("concrete", (0.92, 0.9, 0.88))
-_LEAVES = material("leaves", (0.8, 0.9, 0.6))
+_LEAVES = material("foliage", (0.8, 0.9, 0.6))
 
 
 def furniture_levels() -> list[tuple[Mesh, ...]]:

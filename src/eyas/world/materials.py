@@ -44,6 +44,7 @@ TEXTURES: dict[str, float] = {
     "concrete": 6.0,
     "bark": 2.0,
     "leaves": 3.0,
+    "foliage": 3.0,
     "roof_tiles": 4.0,
     "roof_terrace": 8.0,
     "roof_gravel": 8.0,

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.state.mesh import Material, Mesh, concatenate
+from eyas.state.mesh import Material, Mesh, Surface, concatenate
 from eyas.world.foliage import Crown, leaf_cards, shell
 from eyas.world.materials import material
 from eyas.world.shapes import box
@@ -25,7 +25,7 @@ Tints = tuple[tuple[float, float, float], ...]
 _OLIVE: Tints = ((0.62, 0.68, 0.50), (0.82, 0.88, 0.62), (1.0, 1.0, 0.76))
 _DARK: Tints = ((0.50, 0.60, 0.50), (0.66, 0.78, 0.62), (0.84, 0.96, 0.76))
 _BRIGHT: Tints = ((0.72, 0.76, 0.44), (0.92, 0.96, 0.54), (1.0, 1.0, 0.66))
-_CORE = (0.6, 0.7, 0.5)
+_CORE = (0.51, 0.6, 0.43)
 _KERB = material("stone", (0.95, 0.92, 0.9))
 _MULCH = material("soil", (0.62, 0.56, 0.52))
 
@@ -59,9 +59,9 @@ def _hedge(rng: np.random.Generator) -> Levels:
     row = np.linspace(-PIECE / 2 + 0.2, PIECE / 2 - 0.2, 11)
     centres = np.array([(x, y, z) for x in row for y, z in ((-0.1, 0.36), (0.1, 0.62))])
     crown = Crown(centres, np.full(len(centres), 0.34), np.array([0.0, 0.0, 0.1]))
-    core = Material("leaves", _DARK[1])
+    core = Material("foliage", _DARK[1], Surface.CROWN)
     cut = box((PIECE, 0.74, 0.9), (0.0, 0.0, 0.43), core, 3.0)
-    inner = box((PIECE, 0.6, 0.8), (0.0, 0.0, 0.4), Material("leaves", _CORE), 3.0)
+    inner = box((PIECE, 0.6, 0.8), (0.0, 0.0, 0.4), Material("foliage", _CORE, Surface.CROWN), 3.0)
     return (
         concatenate([inner, leaf_cards(crown, 330, (0.24, 0.38), _DARK, rng, bent=False)]),
         concatenate([inner, leaf_cards(crown, 190, (0.32, 0.46), _DARK, rng, bent=False)]),

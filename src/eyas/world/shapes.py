@@ -205,7 +205,10 @@ def tube(
 
 
 def sphere(subdivisions: int, material: Material, tile: float = 1.0) -> Mesh:
-    """Return a unit icosphere: 20 triangles, four times as many with each subdivision."""
+    """Return a unit icosphere: 20 triangles, four times as many with each subdivision.
+
+    Six tiles go round the equator and two from pole to pole, if `tile` is 1.
+    """
     golden = (1 + 5**0.5) / 2
     points = [
         (-1, golden, 0), (1, golden, 0), (-1, -golden, 0), (1, -golden, 0),
@@ -224,10 +227,12 @@ def sphere(subdivisions: int, material: Material, tile: float = 1.0) -> Mesh:
         cells = [(a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca)]
         corners = np.concatenate([np.stack(cell, axis=1) for cell in cells])
     corners /= np.linalg.norm(corners, axis=2, keepdims=True)
-    flat = corners.reshape(-1, 3)
+    around = np.arctan2(corners[..., 1], corners[..., 0]) * (3.0 / np.pi)
+    # Triangles over the seam go on beyond it, not all the way back.
+    around += 6.0 * ((around < 0.0) & (around.max(axis=1, keepdims=True) > around + 3.0))
+    flat = np.stack([*np.moveaxis(corners, -1, 0), around, corners[..., 2]], -1).reshape(-1, 5)
     _, first, index = np.unique(np.round(flat, 9), axis=0, return_index=True, return_inverse=True)
-    positions = flat[first]
-    uvs = np.column_stack([np.arctan2(positions[:, 1], positions[:, 0]), positions[:, 2]]) / tile
+    positions, uvs = flat[first, :3], flat[first, 3:] / tile
     return _mesh(positions, positions, uvs, index.reshape(-1, 3), material)
 
 

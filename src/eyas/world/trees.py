@@ -25,7 +25,8 @@ _GREENS: tuple[Tints, ...] = (
     ((0.46, 0.46, 0.32), (0.64, 0.63, 0.44), (0.84, 0.82, 0.56), (1.0, 0.98, 0.68)),
     ((0.40, 0.45, 0.38), (0.54, 0.60, 0.50), (0.70, 0.77, 0.60), (0.88, 0.94, 0.72)),
 )
-_CORE = (0.56, 0.6, 0.44)
+_CORE = (0.48, 0.51, 0.38)
+_FAR = (0.74, 0.755, 0.58)
 # Crown width as a share of the height: the original's are 15.5 to 31 m wide, 14.8 to 27 m tall.
 _WIDTHS = (1.1, 1.02, 1.16, 1.06)
 _PALE_BARK = (1.0, 0.98, 0.95)
@@ -34,7 +35,7 @@ _PALE_BARK = (1.0, 0.98, 0.95)
 def street_tree_levels(rng: np.random.Generator, variant: int) -> tuple[Mesh, ...]:
     """Return a tree of height 1 that stands on the origin, the finest level of detail first.
 
-    The levels have about 2,700, 530 and 120 triangles. Multiply by 15 to 27 for metres.
+    The levels have about 2,700, 530 and 150 triangles. Multiply by 15 to 27 for metres.
 
     Args:
         rng: Of the trees.
@@ -60,8 +61,8 @@ def street_tree_levels(rng: np.random.Generator, variant: int) -> tuple[Mesh, ..
     coarse = concatenate(
         [
             _wood(crown, rng, limbs=0, sides=3),
-            shell(crown, 1, 1.1, greens[3]),
-            leaf_cards(crown, 16, (0.3, 0.4), greens, rng, bent=False),
+            shell(crown, 1, 1.06, _FAR, 1.0),
+            leaf_cards(crown, 30, (0.26, 0.36), greens, rng, bent=False),
         ]
     )
     return fine, middle, coarse
