@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable, Iterator
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 from rich.console import Console
@@ -19,6 +20,7 @@ from eyas.core.files import write_atomic
 from eyas.core.machine import describe_machine, peak_memory
 from eyas.modes.bench_first_picture import FIRST_PICTURE
 from eyas.modes.bench_stages import measure_stages, stage_table
+from eyas.sensors.config import CameraConfig
 from eyas.sim.build import build_simulation
 from eyas.sim.config import EyasConfig
 from eyas.sim.place import load_place
@@ -83,22 +85,28 @@ def _measurements(seconds: float, *, cold: bool) -> Iterator[Measurement]:
             yield _first_picture("first picture, nothing compiled", folder)
     for views, width, height in ((1, 84, 84), (64, 84, 84), (1, 640, 480), (1, 1280, 720)):
         yield _pictures(views, width, height, seconds)
+    yield _pictures(64, 84, 84, seconds, samples=4)
     yield _horizon(seconds)
     for count in (1, 64):
         yield _steps(count, seconds, camera=False)
         yield _steps(count, seconds, camera=True)
     yield _reset(seconds)
     yield Measurement("peak memory", peak_memory() / 2**20, "MiB", "this whole benchmark", 1)
+    yield _textures()
 
 
-def _pictures(views: int, width: int, height: int, seconds: float) -> Measurement:
-    simulation = build_simulation(EyasConfig(), views, shared_world=False)
+def _pictures(
+    views: int, width: int, height: int, seconds: float, samples: Literal[1, 4] = 1
+) -> Measurement:
+    config = EyasConfig(camera=CameraConfig(samples=samples))
+    simulation = build_simulation(config, views, shared_world=False)
     simulation.reset()
     picture = Picture.create(views, height, width)
     trackers = np.arange(views, dtype=np.int32)
     rate, repeats = _median_rate(lambda: simulation.draw(trackers, picture), seconds)
     includes = "traffic of each world, posing, culling, shading with shadows, RGB"
     name = f"pictures {width}x{height}, {views} view{'s' * (views > 1)}"
+    name += f", {samples} samples" * (samples > 1)
     return Measurement(name, rate * views, "/s", includes, repeats)
 
 
@@ -161,6 +169,12 @@ def _reset(seconds: float) -> Measurement:
     return Measurement(
         "reset of one tracker", 1e3 / rate, "ms", "target, start pose, looks", repeats
     )
+
+
+def _textures() -> Measurement:
+    texels = load_place(EyasConfig().world, EyasConfig().traffic, 1).renderer.textures
+    includes = f"{len(texels)} textures with their mip levels, of the peak memory"
+    return Measurement("textures", texels.nbytes / 2**20, "MiB", includes, 1)
 
 
 def _first_picture(name: str, cache: str | None) -> Measurement:

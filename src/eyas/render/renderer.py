@@ -60,6 +60,11 @@ class Renderer:
         self._still = Held(Still(self._geometry, self._light))
         self._scratch: dict[tuple[int, int, int], Held[Scratch]] = {}
 
+    @property
+    def textures(self) -> NDArray[np.uint32]:
+        """All textures with their mip levels, see `Geometry.texture`."""
+        return self._geometry.texture
+
     def draw(
         self,
         views: Views,
