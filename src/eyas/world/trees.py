@@ -35,7 +35,7 @@ _PALE_BARK = (1.0, 0.98, 0.95)
 def street_tree_levels(rng: np.random.Generator, variant: int) -> tuple[Mesh, ...]:
     """Return a tree of height 1 that stands on the origin, the finest level of detail first.
 
-    The levels have about 2,700, 530 and 150 triangles. Multiply by 15 to 27 for metres.
+    The levels have about 2,700, 530 and 130 triangles. Multiply by 15 to 27 for metres.
 
     Args:
         rng: Of the trees.
@@ -62,7 +62,7 @@ def street_tree_levels(rng: np.random.Generator, variant: int) -> tuple[Mesh, ..
         [
             _wood(crown, rng, limbs=0, sides=3),
             shell(crown, 1, 1.06, _FAR, 1.0),
-            leaf_cards(crown, 30, (0.26, 0.36), greens, rng, bent=False),
+            leaf_cards(crown, 20, (0.28, 0.38), greens, rng, bent=False),
         ]
     )
     return fine, middle, coarse
