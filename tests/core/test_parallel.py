@@ -78,7 +78,7 @@ def test_threads_and_forked_processes_may_call_at_once():
     for thread in threads:
         thread.join()
     with multiprocessing.get_context("fork").Pool(2) as pool:
-        results += pool.map(summed, [values] * 2)
+        results += pool.map_async(summed, [values] * 2).get(timeout=60)
     assert len(results) == 6
     for result in results:
         np.testing.assert_array_equal(result, 100.0)

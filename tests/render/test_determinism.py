@@ -1,6 +1,7 @@
 """The same view gives the same bytes, whoever draws it and with whom."""
 
 import dataclasses
+from functools import partial
 
 import numba
 import numpy as np
@@ -42,10 +43,8 @@ def arrays(picture):
 
 
 @pytest.fixture
-def threads():
-    before = numba.get_num_threads()
-    yield numba.set_num_threads
-    numba.set_num_threads(before)
+def threads(monkeypatch):
+    return partial(monkeypatch.setattr, numba.config, "NUMBA_NUM_THREADS")
 
 
 # What each weather adds to the day; all of it at once is no weather, but finds all.
@@ -71,7 +70,7 @@ def test_threads_and_neighbours_change_no_byte(city, renderer_of, drawn, threads
     threads(1)
     reference = arrays(drawn(renderer, views, traffic, (60, 84), samples))
     assert reference["subject_pixels"][:, 1].max() > 20
-    threads(min(2, numba.config.NUMBA_NUM_THREADS))
+    threads(2)
     for name, array in arrays(drawn(renderer, views, traffic, (60, 84), samples)).items():
         np.testing.assert_array_equal(array, reference[name], err_msg=name)
     for k in (0, 7, 15):
@@ -86,11 +85,10 @@ def test_bands_change_no_byte(city, drawn, threads, monkeypatch):
     threads(1)
     whole = arrays(drawn(renderer, views, traffic, (120, 160)))
     assert (whole["subject_pixels"] > 0).all()
-    threads(min(2, numba.config.NUMBA_NUM_THREADS))
+    threads(2)
     monkeypatch.setattr(jobs, "SMALLEST_BAND", 800)
     monkeypatch.setattr(jobs, "JOBS_PER_THREAD", 12)
-    if numba.get_num_threads() == 2:
-        assert len(jobs.build_jobs(views, 120, 160, 1, 2, 0.0).band) == 24
+    assert len(jobs.build_jobs(views, 120, 160, 1, 2, 0.0).band) == 24
     for name, array in arrays(drawn(renderer, views, traffic, (120, 160))).items():
         np.testing.assert_array_equal(array, whole[name], err_msg=name)
 

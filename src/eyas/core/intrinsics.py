@@ -1,12 +1,11 @@
-"""What Python cannot say in a kernel: to lay values out in memory, and to call an address."""
+"""What Python cannot say in a kernel: how to lay values out in memory."""
 
 import hashlib
 
 import numba
-from llvmlite import ir
 from numba.extending import intrinsic
 
-__all__ = ["call", "layout_of", "size_of", "store"]
+__all__ = ["layout_of", "size_of", "store"]
 
 
 @intrinsic
@@ -42,16 +41,3 @@ def store(typing_context, memory, value):
         return context.get_dummy_value()
 
     return numba.void(memory, value), generate
-
-
-@intrinsic
-def call(typing_context, function, table, worker, workers):
-    """Call a parallel kernel by its address."""
-
-    def generate(context, builder, signature, arguments):
-        whole = context.get_value_type(numba.intp)
-        kind = ir.FunctionType(ir.VoidType(), [whole] * 3)
-        builder.call(builder.inttoptr(arguments[0], kind.as_pointer()), arguments[1:])
-        return context.get_dummy_value()
-
-    return numba.void(*[numba.intp] * 4), generate

@@ -19,7 +19,6 @@ __all__ = [
     "inner_kernel",
     "kernel",
     "nothing_compiled",
-    "prange",
     "thread_count",
 ]
 
@@ -46,20 +45,16 @@ def nothing_compiled() -> bool:
 
 
 os.environ.setdefault("NUMBA_CACHE_DIR", str(cache_folder()))
-# One layer on every system that is safe in forked and spawned workers.
-os.environ.setdefault("NUMBA_THREADING_LAYER", "workqueue")
 
-# numba reads the settings above when it is imported, and may have been before.
+# numba reads the setting above when it is imported, and may have been before.
 import numba  # noqa: E402
-from numba import prange  # noqa: E402
 
 numba.config.CACHE_DIR = os.environ["NUMBA_CACHE_DIR"]
-numba.config.THREADING_LAYER = os.environ["NUMBA_THREADING_LAYER"]
 
 
 def thread_count() -> int:
-    """Return how many threads a parallel kernel will use."""
-    return int(numba.get_num_threads())
+    """Return how many threads draw: all cores, or what `NUMBA_NUM_THREADS` says."""
+    return int(numba.config.NUMBA_NUM_THREADS)
 
 
 # Kernels allocate nothing, so they need not count who uses an array. Numba would: two atomic

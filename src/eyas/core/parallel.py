@@ -1,20 +1,23 @@
-"""Parallel kernels: one loop over workers for all of them, and arguments that are found by address.
+"""Parallel kernels: each worker's share in a thread, and arguments that are found by address.
 
 numba's own way, `parallel=True` on each kernel, compiles all that the kernel calls three times
-(half a minute for the renderer), and unpacks every array at every call (a tenth of a small
-picture's time). Here the parallel loop is compiled alone and knows a kernel by its address only.
+(half a minute for the renderer), unpacks every array at every call (a tenth of a small picture's
+time), and wakes a thread for each worker while the one that calls it waits (another tenth).
 """
 
+import os
 import threading
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor, wait
+from dataclasses import dataclass
 from typing import Any, Generic, Protocol, TypeVar
 
 import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.intrinsics import call, layout_of, size_of, store
-from eyas.core.jit import KERNEL_SETTINGS, kernel, prange
+from eyas.core.intrinsics import layout_of, size_of, store
+from eyas.core.jit import KERNEL_SETTINGS, kernel, thread_count
 
 __all__ = ["Held", "Pointer", "parallel_kernel"]
 
@@ -47,14 +50,49 @@ class Held(Generic[Bundle]):
         self.address = self._memory.ctypes.data
 
 
-_ONE_AT_A_TIME = threading.Lock()
+class _Crew:
+    """The threads that help the one that calls; a forked process gets its own.
+
+    Attributes:
+        busy: Held while they work: what a kernel uses as working memory is there once.
+    """
+
+    def __init__(self) -> None:
+        self._begin()
+        if hasattr(os, "register_at_fork"):
+            os.register_at_fork(after_in_child=self._begin)
+
+    def _begin(self) -> None:
+        self.busy = threading.Lock()
+        self._threads: ThreadPoolExecutor | None = None
+
+    @property
+    def threads(self) -> ThreadPoolExecutor:
+        if self._threads is None:
+            self._threads = ThreadPoolExecutor(max(thread_count() - 1, 1), "eyas-kernel")
+        return self._threads
+
+
+_CREW = _Crew()
+
+
+@dataclass(frozen=True, slots=True)
+class _Share:
+    """A call, with all that it reads and writes: kept until the last worker is done."""
+
+    kernel: Callable[[int, int, int], None]
+    parts: tuple[Held[Any], ...]
+    table: NDArray[np.int64]
+    workers: int
+
+    def __call__(self, worker: int) -> None:
+        self.kernel(self.table.ctypes.data, worker, self.workers)
 
 
 class parallel_kernel(Generic[Bundle]):  # noqa: N801  # a decorator like `kernel`
     """Compile a function that does the share of one worker, and call it for all workers at once.
 
-    numba's workqueue layer, the one that survives forking, must not be entered from two Python
-    threads at once, so calls wait for each other.
+    Calls from several Python threads wait for each other.
 
     Args:
         function: Called with `parts`, `worker` and `workers`; `parts[0]` has a pointer for each
@@ -70,10 +108,16 @@ class parallel_kernel(Generic[Bundle]):  # noqa: N801  # a decorator like `kerne
         """Run the shares of all workers and wait for them."""
         layouts = tuple([part.layout for part in parts])
         table = np.array([part.address for part in parts], np.int64)
-        with _ONE_AT_A_TIME:
+        with _CREW.busy:
             if layouts not in self._compiled:
                 self._compiled[layouts] = self._compile(parts)
-            _run(self._compiled[layouts].address, table.ctypes.data, workers)
+            # What ctypes calls runs without the interpreter's lock.
+            share = _Share(self._compiled[layouts].ctypes, parts, table, workers)
+            others = [_CREW.threads.submit(share, worker) for worker in range(1, workers)]
+            try:
+                share(0)
+            finally:
+                wait(others)
 
     def _compile(self, parts: tuple[Held[Any], ...]) -> Any:  # noqa: ANN401  # numba has no types
         pointers = [numba.types.CPointer(numba.typeof(part.bundle)) for part in parts]
@@ -91,9 +135,3 @@ def _lay_out(bundle: object, memory: NDArray[np.uint8]) -> int:
     store(memory, bundle)
     layout: int = layout_of(bundle)
     return layout
-
-
-@numba.njit(cache=True, parallel=True)
-def _run(function: int, table: int, workers: int) -> None:
-    for worker in prange(workers):
-        call(function, table, worker, workers)

@@ -54,7 +54,7 @@ def _bands(count: int, height: int, width: int, threads: int) -> NDArray[np.int3
     """Return `Job.band`, which nobody writes to."""
     bands = min(
         math.ceil(JOBS_PER_THREAD * threads / max(count, 1)),
-        math.ceil(height * width / SMALLEST_BAND),
+        height * width // SMALLEST_BAND,
         height,
     )
     bands = 1 if threads == 1 or count >= JOBS_PER_THREAD * threads else max(bands, 1)

@@ -24,9 +24,6 @@ COLUMNS: Final = 8
 ROUNDING: Final = 1e-9
 """A time that is a multiple of 2 ms may be off by this [s]."""
 
-PARALLEL_WORLDS: Final = 64
-"""From this many worlds on, threads gain more than the 0.1 ms that waking them costs."""
-
 
 class Replay:
     """Traffic that was recorded before. Time 0 is the beginning of the recording.
@@ -54,10 +51,7 @@ class Replay:
     def at(self, time: NDArray[np.float64], out: ActorState) -> None:
         """Write all actors of W worlds at the worlds' own times [s], shape (W,)."""
         motion = out.position, out.yaw, out.speed, out.yaw_rate, out.travelled, out.present
-        if len(time) < PARALLEL_WORLDS:
-            _write_worlds(self.table, self.rate, time, 0, len(time), *motion)
-        else:
-            _write_all_worlds(self.table, self.rate, time, *motion)
+        _write_worlds(self.table, self.rate, time, *motion)
 
     def actor_at(self, time: NDArray[np.float64], out: TargetState) -> None:
         """Write east, north, yaw and speed of `out.actor` at N times [s], shape (N,).
@@ -169,8 +163,6 @@ def _write_worlds(
     table: NDArray[np.float32],
     rate: float,
     time: NDArray[np.float64],
-    first: int,
-    last: int,
     position: NDArray[np.float64],
     yaw: NDArray[np.float64],
     speed: NDArray[np.float64],
@@ -178,7 +170,8 @@ def _write_worlds(
     travelled: NDArray[np.float64],
     present: NDArray[np.bool_],
 ) -> None:
-    for world in range(first, last):
+    # One thread: waking a second one costs more than 64 worlds of 40 actors.
+    for world in range(len(time)):
         for actor in range(table.shape[1]):
             pose = interpolate_actor(table, rate, actor, time[world])
             position[world, actor, 0] = pose[0]
@@ -188,35 +181,6 @@ def _write_worlds(
             yaw_rate[world, actor] = pose[4]
             travelled[world, actor] = pose[5]
             present[world, actor] = pose[6]
-
-
-@kernel
-def _write_all_worlds(
-    table: NDArray[np.float32],
-    rate: float,
-    time: NDArray[np.float64],
-    position: NDArray[np.float64],
-    yaw: NDArray[np.float64],
-    speed: NDArray[np.float64],
-    yaw_rate: NDArray[np.float64],
-    travelled: NDArray[np.float64],
-    present: NDArray[np.bool_],
-) -> None:
-    # One thread: waking a second one costs more than 64 worlds of 40 actors.
-    for world in range(time.shape[0]):
-        _write_worlds(
-            table,
-            rate,
-            time,
-            world,
-            world + 1,
-            position,
-            yaw,
-            speed,
-            yaw_rate,
-            travelled,
-            present,
-        )
 
 
 @kernel
