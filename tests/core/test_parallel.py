@@ -32,6 +32,7 @@ def summed(values, workers=3, more=0) -> np.ndarray:
 
 def test_each_row_is_added_up_once_whatever_the_number_of_workers():
     values = np.arange(20.0).reshape(10, 2)
+    np.testing.assert_array_equal(summed(values, 0), 0.0)
     for workers in (1, 2, 7, 50):
         np.testing.assert_array_equal(summed(values, workers), 2.0 * values.sum(axis=1))
 

@@ -1,11 +1,11 @@
-"""What Python cannot say in a kernel: how to lay values out in memory."""
+"""What Python cannot say in a kernel: to lay values out in memory, to share a counter."""
 
 import hashlib
 
 import numba
 from numba.extending import intrinsic
 
-__all__ = ["layout_of", "size_of", "store"]
+__all__ = ["claim", "layout_of", "size_of", "store"]
 
 
 @intrinsic
@@ -41,3 +41,15 @@ def store(typing_context, memory, value):
         return context.get_dummy_value()
 
     return numba.void(memory, value), generate
+
+
+@intrinsic
+def claim(typing_context, counter):
+    """Return the first number of an array of int64 and add one to it, as no other thread can."""
+
+    def generate(context, builder, signature, arguments):
+        array = context.make_array(counter)(context, builder, arguments[0])
+        one = context.get_constant(numba.int64, 1)
+        return builder.atomic_rmw("add", array.data, one, "monotonic")
+
+    return numba.int64(counter), generate

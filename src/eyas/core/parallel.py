@@ -106,6 +106,8 @@ class parallel_kernel(Generic[Bundle]):  # noqa: N801  # a decorator like `kerne
 
     def __call__(self, workers: int, *parts: Held[Any]) -> None:
         """Run the shares of all workers and wait for them."""
+        if workers == 0:
+            return
         layouts = tuple([part.layout for part in parts])
         table = np.array([part.address for part in parts], np.int64)
         with _CREW.busy:

@@ -37,8 +37,10 @@ def build_jobs(
     if views.vertical_field_of_view is not None:
         down = focal_length(height, views.vertical_field_of_view)
     lens = [across * side, width * side, height * side, math.sqrt(across * down), down * side]
+    band = _bands(len(views.position), height, width, threads)
     return Job(
-        band=_bands(len(views.position), height, width, threads),
+        band=band,
+        begun=np.array([min(threads, len(band))], np.int64),
         eye=np.ascontiguousarray(views.position, np.float64),
         axes=np.ascontiguousarray(np.swapaxes(views.rotation, 1, 2), np.float64),
         world=np.ascontiguousarray(views.world, np.int32),

@@ -116,7 +116,7 @@ class Renderer:
         density = float(self._light.air[0])
         job = build_jobs(views, height, width, side, threads, density)
         rows = int((job.band[:, 2] - job.band[:, 1]).max(initial=0))
-        workers = min(threads, len(job.band))
+        workers = int(job.begun[0])
         wanted = len(output.subject) > 0
         if wanted:
             output = output._replace(subject=np.zeros((len(job.band), 6), np.int32))

@@ -168,6 +168,8 @@ class Job(NamedTuple):
 
     band: NDArray[np.int32]
     """View, first row, last row + 1, shape (J, 3)."""
+    begun: NDArray[np.int64]
+    """How many jobs have been begun; at first one for each worker, shape (1,)."""
     eye: NDArray[np.float64]
     """Optical centres [m], shape (V, 3)."""
     axes: NDArray[np.float64]

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.intrinsics import claim
 from eyas.core.jit import inner_kernel
 from eyas.core.parallel import Pointer, parallel_kernel
 from eyas.render.kernels.backdrop import draw_backdrop
@@ -37,7 +38,8 @@ def draw_views(
     lens = job.lens
     rows, planes = memory.rows[worker], memory.planes[worker]
     screen, polygon = memory.screen[worker], memory.polygon[worker]
-    for index in range(worker, len(job.band), workers):
+    index = i8(worker)
+    while index < len(job.band):
         view, top, bottom = job.band[index, 0], job.band[index, 1], job.band[index, 2]
         first, last = top * samples, bottom * samples
         eye, axes, world = job.eye[view], job.axes[view], job.world[view]
@@ -89,6 +91,7 @@ def draw_views(
                     planes, depth, owner, screen, polygon,
                 )  # fmt: skip
                 _measure(owner, top, result)
+        index = claim(job.begun)
 
 
 @inner_kernel
