@@ -2,19 +2,14 @@
 
 import multiprocessing
 import threading
-from typing import NamedTuple
 
 import numpy as np
 
 from eyas.core.parallel import Held, parallel_kernel
 
 
-class Sums(NamedTuple):
-    factor: float
-    values: np.ndarray
-    sums: np.ndarray
-
-
+# Bundles are plain tuples here: numba keeps the types of what it compiled with Eyas's kernels, and
+# one of a test's own could not be loaded by who runs Eyas from elsewhere.
 @parallel_kernel
 def add_up(parts, worker, workers):
     first, others = parts[0]
@@ -26,7 +21,7 @@ def add_up(parts, worker, workers):
 
 def summed(values, workers=3, more=0) -> np.ndarray:
     sums = np.zeros(len(values))
-    add_up(workers, Held(Sums(2.0, values, sums)), Held((more,)))
+    add_up(workers, Held((2.0, values, sums)), Held((more,)))
     return sums
 
 
@@ -49,7 +44,7 @@ def test_arrays_of_other_kinds_are_read_as_what_they_are():
 
 def test_what_is_written_into_a_held_array_later_is_seen():
     values, sums = np.ones((4, 2)), np.zeros(4)
-    held, none = Held(Sums(1.0, values, sums)), Held((0,))
+    held, none = Held((1.0, values, sums)), Held((0,))
     values[:] = 5.0
     add_up(2, held, none)
     np.testing.assert_array_equal(sums, 10.0)
