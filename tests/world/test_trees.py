@@ -15,14 +15,15 @@ def levels(request):
 
 
 def test_levels_have_the_promised_number_of_triangles(levels):
-    fine, middle, coarse = (len(mesh.triangles) for mesh in levels)
+    fine, middle, coarse, tiny = (len(mesh.triangles) for mesh in levels)
     assert 2500 <= fine <= 4000
     assert 450 <= middle <= 750
     assert 80 <= coarse <= 160
+    assert tiny <= 40
 
 
 def test_a_tree_has_height_one_and_is_about_as_wide_as_the_originals(levels):
-    for mesh, slack in zip(levels, (0.05, 0.1, 0.15), strict=True):
+    for mesh, slack in zip(levels, (0.05, 0.1, 0.15, 0.3), strict=True):
         low, high = mesh.positions.min(0), mesh.positions.max(0)
         assert high[2] == pytest.approx(1.0, abs=slack)
         assert low[2] <= 0.0
@@ -69,6 +70,7 @@ def hidden_share(mesh, radius, holes, cells=48):
 
 
 def test_a_crown_hides_what_stands_under_it_at_every_level(levels):
+    levels = levels[:3]  # under the last one a car is a pixel
     half_width = np.abs(levels[0].positions[:, :2]).max()
     holes = leaves()[..., 3] == 0
     shares = [hidden_share(mesh, 0.75 * half_width, holes) for mesh in levels]

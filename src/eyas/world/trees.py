@@ -35,7 +35,8 @@ _PALE_BARK = (1.0, 0.98, 0.95)
 def street_tree_levels(rng: np.random.Generator, variant: int) -> tuple[Mesh, ...]:
     """Return a tree of height 1 that stands on the origin, the finest level of detail first.
 
-    The levels have about 2,700, 530 and 130 triangles. Multiply by 15 to 27 for metres.
+    The levels have about 2,700, 530, 130 and 30 triangles; the last is for crowns of a few pixels.
+    Multiply by 15 to 27 for metres.
 
     Args:
         rng: Of the trees.
@@ -58,14 +59,16 @@ def street_tree_levels(rng: np.random.Generator, variant: int) -> tuple[Mesh, ..
             leaf_cards(crown, 195, (0.19, 0.28), greens, rng, bent=False),
         ]
     )
+    trunk = _wood(crown, rng, limbs=0, sides=3)
     coarse = concatenate(
         [
-            _wood(crown, rng, limbs=0, sides=3),
+            trunk,
             shell(crown, 1, 1.06, _FAR, 1.0),
             leaf_cards(crown, 20, (0.28, 0.38), greens, rng, bent=False),
         ]
     )
-    return fine, middle, coarse
+    tiny = concatenate([trunk, shell(crown, 0, 1.25, _FAR, 1.0)])
+    return fine, middle, coarse, tiny
 
 
 def _crown(half_width: float, rng: np.random.Generator) -> Crown:
