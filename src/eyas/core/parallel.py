@@ -8,7 +8,7 @@ time), and wakes a thread for each worker while the one that calls it waits (ano
 import os
 import threading
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor, wait
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any, Generic, Protocol, TypeVar
 
@@ -118,8 +118,13 @@ class parallel_kernel(Generic[Bundle]):  # noqa: N801  # a decorator like `kerne
             others = [_CREW.threads.submit(share, worker) for worker in range(1, workers)]
             try:
                 share(0)
+                for worker, other in enumerate(others, 1):
+                    if other.cancel():  # its thread is still waking up
+                        share(worker)
             finally:
-                wait(others)
+                for other in others:
+                    if not other.cancel():
+                        other.exception()  # waits for its end
 
     def _compile(self, parts: tuple[Held[Any], ...]) -> Any:  # noqa: ANN401  # numba has no types
         pointers = [numba.types.CPointer(numba.typeof(part.bundle)) for part in parts]
