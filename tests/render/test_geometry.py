@@ -3,6 +3,8 @@
 import numpy as np
 
 from eyas.core.jit import kernel
+from eyas.core.kept import kept
+from eyas.core.parallel import Held
 from eyas.render.geometry import build_geometry
 from eyas.render.kernels.bundles import GROUP
 from eyas.render.kernels.texture import level_of, texel
@@ -21,6 +23,16 @@ def texel_at(textures, layer, level, u, v):
 @kernel
 def level_at(square):
     return level_of(square)
+
+
+def test_a_kept_geometry_is_read_by_the_same_kernels_as_a_new_one(images, tmp_path):
+    new = build_geometry(city_scene(), car_parts(), images)
+    for _ in range(2):
+        old = kept("geometry", (), (), lambda: new, tmp_path)
+    assert old is not new
+    assert Held(old).layout == Held(new).layout
+    for name, array in new._asdict().items():
+        np.testing.assert_array_equal(getattr(old, name), array, err_msg=name)
 
 
 def test_chunks_hold_each_triangle_once_and_lie_in_their_boxes(images):
