@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from eyas.render.textures import build_textures
+from eyas.render.textures.library import build_textures
 from eyas.sim.build import build_simulation
 from eyas.sim.config import EyasConfig
 from eyas.sim.place import load_place

@@ -17,7 +17,7 @@ import gymnasium
 import numpy as np
 
 import eyas  # noqa: F401  # registers the environments
-from eyas.modes.video import run as record
+from eyas.modes.video.run import run as record
 from eyas.sim.config import EyasConfig
 
 WEATHERS = ("day", "foggy", "night", "snow")
@@ -74,7 +74,9 @@ def fingerprint() -> dict[str, str]:
         parts[f"env {fleet}"] = flown("eyas/citystreet-night-v0", 20, config={"traffic": traffic})
     for name, settings in RECORDINGS.items():
         parts[f"video {name}"] = recorded(settings)
-    return {f"{part}: {kind}": text for part, hashes in parts.items() for kind, text in hashes.items()}
+    return {
+        f"{part}: {kind}": text for part, hashes in parts.items() for kind, text in hashes.items()
+    }
 
 
 def main() -> None:

@@ -10,7 +10,7 @@ import pytest
 from eyas import __version__
 from eyas.cli.main import main
 from eyas.sim.config import EyasConfig
-from eyas.sim.legacy import to_legacy
+from eyas.sim.legacy.adapter import to_legacy
 
 COMMAND = [sys.executable, "-m", "eyas.cli.main"]
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from eyas.modes import bench_stages
+from eyas.modes.bench import stages as bench_stages
 from eyas.render.kernels.bundles import Stage
 from eyas.sim.place import load_place
 from eyas.state.draw import DrawList, Picture, Views

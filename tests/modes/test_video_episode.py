@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from eyas.exports.labels import FrameLabel
-from eyas.modes.video_episode import EpisodeWriter, read_complete
+from eyas.modes.video.episode import EpisodeWriter, read_complete
 
 
 def label(frame: int) -> FrameLabel:

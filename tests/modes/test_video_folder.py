@@ -5,7 +5,7 @@ import pytest
 
 from eyas import __version__
 from eyas.core.errors import ConfigError, OutputError
-from eyas.modes.video_folder import open_folder
+from eyas.modes.video.folder import open_folder
 from eyas.sim.config import EyasConfig, VideoConfig
 
 CONFIG = EyasConfig()

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from eyas.modes.video_grid import FrameGrid
+from eyas.modes.video.grid import FrameGrid
 from eyas.sim.config import VideoConfig
 
 

@@ -7,14 +7,14 @@ import sys
 import pytest
 
 from eyas.core.errors import OutputError
-from eyas.modes.video_folder import check_folder, open_folder
-from eyas.modes.video_lock import recording_lock
+from eyas.modes.video.folder import check_folder, open_folder
+from eyas.modes.video.lock import recording_lock
 from eyas.sim.config import EyasConfig
 
 HOLD = """
 import sys, time
 from pathlib import Path
-from eyas.modes.video_lock import recording_lock
+from eyas.modes.video.lock import recording_lock
 with recording_lock(Path(sys.argv[1])):
     print("locked", flush=True)
     time.sleep(60)

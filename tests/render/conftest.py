@@ -3,7 +3,7 @@ from collections.abc import Callable
 import numpy as np
 import pytest
 
-from eyas.render.geometry import build_geometry
+from eyas.render.pack.geometry import build_geometry
 from eyas.render.renderer import Renderer, build_renderer
 from eyas.state.draw import DrawList, PartLibrary, Picture, Views
 from eyas.state.scene import Lighting, Scene

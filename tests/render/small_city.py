@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 from eyas.state.draw import DrawList, PartLibrary, Views
 from eyas.state.mesh import Material, Mesh, Surface, concatenate, transformed
 from eyas.state.scene import Fixtures, Lighting, Scene
-from eyas.world.materials import TEXTURES, facade, material
-from eyas.world.shapes import box, cylinder, flat_polygon, sphere, walls
+from eyas.world.build.materials import TEXTURES, facade, material
+from eyas.world.build.shapes import box, cylinder, flat_polygon, sphere, walls
 
 GROUND, ROAD, TOWER, TREE = 0, 1, 2, 3
 TREE_OBJECT = 90

@@ -5,11 +5,11 @@ import numpy as np
 from eyas.core.jit import kernel
 from eyas.core.kept import kept
 from eyas.core.parallel import Held
-from eyas.render.geometry import build_geometry
 from eyas.render.kernels.bundles import GROUP
-from eyas.render.kernels.texture import level_of, texel
-from eyas.render.mipmap import packed_layers
-from eyas.render.triangles import gradients
+from eyas.render.kernels.surface.texture import level_of, texel
+from eyas.render.pack.geometry import build_geometry
+from eyas.render.pack.triangles import gradients
+from eyas.render.textures.mipmap import packed_layers
 from eyas.state.draw import PartLibrary
 
 from .small_city import GROUND, TREE_OBJECT, car_parts, city_scene, floor, scene_of

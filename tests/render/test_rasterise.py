@@ -5,9 +5,9 @@ import pytest
 
 from eyas.core.jit import kernel
 from eyas.core.pinhole import rays
-from eyas.render.kernels.rasterise import FRONT, rasterise
+from eyas.render.kernels.visibility.rasterise import FRONT, rasterise
 from eyas.state.mesh import Mesh
-from eyas.world.materials import material
+from eyas.world.build.materials import material
 
 from .small_city import looking, scene_of
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 
 from eyas.core.pinhole import rays
-from eyas.render.bake import bake_shadows
-from eyas.render.geometry import build_geometry
+from eyas.render.bake.shadows import bake_shadows
+from eyas.render.pack.geometry import build_geometry
 from eyas.state.draw import DrawList, PartLibrary
 from eyas.state.mesh import Material, concatenate
-from eyas.world.shapes import box
+from eyas.world.build.shapes import box
 
 from .small_city import DAY, GROUND, TOWER, car_parts, floor, looking, put_car, scene_of, tower
 

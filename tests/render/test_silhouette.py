@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from eyas.render.silhouette import silhouette
+from eyas.render.pack.silhouette import silhouette
 from eyas.state.mesh import Material, concatenate
-from eyas.world.shapes import box
+from eyas.world.build.shapes import box
 
 
 def test_a_box_is_found_as_it_is():

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from eyas.render.clouds import build_clouds, plan_directions
-from eyas.render.hills import build_hills
-from eyas.render.kernels.panorama import azimuth
-from eyas.render.kernels.sky import HILL_TOP
-from eyas.render.lighting import tone_table
+from eyas.render.bake.clouds import build_clouds, plan_directions
+from eyas.render.bake.hills import build_hills
+from eyas.render.kernels.sky.panorama import azimuth
+from eyas.render.kernels.sky.radiance import HILL_TOP
+from eyas.render.pack.light import tone_table
 from eyas.world.weather import lighting
 
 from .small_city import DAY, GROUND, floor, looking, scene_of

@@ -5,17 +5,17 @@ import dataclasses
 import numpy as np
 import pytest
 
-from eyas.render.geometry import build_geometry
-from eyas.render.kernels.snow import Bed
+from eyas.render.bake.tracks import TRACK_ASIDE, track_map
+from eyas.render.kernels.surface.snow import Bed
+from eyas.render.pack.geometry import build_geometry
+from eyas.render.pack.snow import crown_middles, snow_beds
 from eyas.render.renderer import build_renderer
-from eyas.render.snow import crown_middles, snow_beds
-from eyas.render.tracks import TRACK_ASIDE, track_map
 from eyas.state.draw import PartLibrary
 from eyas.state.mesh import Material, Surface
 from eyas.state.scene import ObjectClass
-from eyas.world.materials import material
-from eyas.world.shapes import box, quads
-from eyas.world.trees import street_tree_levels
+from eyas.world.build.materials import material
+from eyas.world.build.shapes import box, quads
+from eyas.world.plants.trees import street_tree_levels
 
 from .small_city import DAY, city_scene, looking, scene_of, trees_at
 

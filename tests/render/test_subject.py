@@ -5,8 +5,8 @@ import numpy as np
 from eyas.core.pinhole import project
 from eyas.state.draw import DrawList
 from eyas.state.scene import ACTOR_OBJECT
-from eyas.world.materials import material
-from eyas.world.shapes import box
+from eyas.world.build.materials import material
+from eyas.world.build.shapes import box
 
 from .small_city import GROUND, TOWER, car_parts, floor, looking, put_car, scene_of
 

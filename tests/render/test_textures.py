@@ -5,9 +5,9 @@ import hashlib
 import numpy as np
 import pytest
 
-from eyas.render.texture_fields import fractal, source
-from eyas.render.textures import build_textures
-from eyas.world.materials import FACADES, GROUND_FLOORS, TEXTURES
+from eyas.render.textures.fields import fractal, source
+from eyas.render.textures.library import build_textures
+from eyas.world.build.materials import FACADES, GROUND_FLOORS, TEXTURES
 
 
 @pytest.fixture(scope="module")

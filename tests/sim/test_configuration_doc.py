@@ -7,8 +7,8 @@ import pytest
 
 from eyas.core.config import group_of
 from eyas.sim.config import EyasConfig
-from eyas.sim.legacy import legacy_defaults
-from eyas.sim.legacy_keys import ENTRIES
+from eyas.sim.legacy.adapter import legacy_defaults
+from eyas.sim.legacy.keys import ENTRIES
 
 DOC = (Path(__file__).parents[2] / "docs" / "configuration.md").read_text().splitlines()
 

@@ -7,7 +7,7 @@ from eyas.core.pinhole import rays
 from eyas.envs.tracking_env import TrackingEnv
 from eyas.sim.build import build_simulation
 from eyas.sim.config import EyasConfig
-from eyas.sim.legacy import from_legacy
+from eyas.sim.legacy.adapter import from_legacy
 from eyas.state.draw import Picture
 from eyas.world.weather import lighting
 

@@ -5,7 +5,7 @@ import pytest
 from eyas.core.errors import ConfigError, DataFileError
 from eyas.core.variation import Mirrored, Uniform
 from eyas.sim.config import EyasConfig
-from eyas.sim.legacy import from_legacy
+from eyas.sim.legacy.adapter import from_legacy
 from eyas.sim.settings_file import load_settings, save_settings
 
 CONFIG = EyasConfig(

@@ -2,7 +2,7 @@ import pytest
 
 from eyas.core.errors import NotInThisVersionError
 from eyas.sim.config import EyasConfig
-from eyas.sim.legacy import from_legacy
+from eyas.sim.legacy.adapter import from_legacy
 from eyas.sim.version_check import require_supported
 
 

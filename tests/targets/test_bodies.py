@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 
 from eyas.state.mesh import Surface, concatenate, transformed
-from eyas.targets.bodies import body_levels
 from eyas.targets.catalogue import VEHICLES, model_index
-from eyas.targets.finishes import BLACK_PAINT, HEAD_LAMP, ROOF_GLASS, TAIL_LAMP
-from eyas.targets.wheels import wheel_levels
+from eyas.targets.vehicles.bodies import body_levels
+from eyas.targets.vehicles.finishes import BLACK_PAINT, HEAD_LAMP, ROOF_GLASS, TAIL_LAMP
+from eyas.targets.vehicles.wheels import wheel_levels
 
 NAMES = [vehicle.name for vehicle in VEHICLES]
 

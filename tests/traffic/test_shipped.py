@@ -14,15 +14,15 @@ from eyas.traffic.library import STANDARD_DURATION, find_recording
 from eyas.traffic.replay import Replay
 from eyas.traffic.smoothing import smooth
 from eyas.world.maps import shipped_network
-from eyas.world.maps.citystreet import road_graph
-from eyas.world.roads import road_area
+from eyas.world.maps.citystreet.recipe import road_graph
+from eyas.world.roads.areas import road_area
 
 WITHOUT_SUMO = """
 import sys
 sys.modules.update(dict.fromkeys(["libsumo", "sumo", "sumolib", "traci"]))
 from eyas.traffic.config import TrafficConfig
 from eyas.traffic.library import find_recording
-from eyas.world.maps.citystreet import road_graph
+from eyas.world.maps.citystreet.recipe import road_graph
 print(find_recording(road_graph(0), TrafficConfig()).actors)
 """
 

@@ -5,10 +5,10 @@ import pytest
 import shapely
 
 from eyas.state.mesh import Surface
-from eyas.world.building_mesh import mesh_of
-from eyas.world.buildings import PARAPET, SETBACK, Building, place_buildings, prism_of
-from eyas.world.lots import turned
-from eyas.world.materials import FACADES, TEXTURES, material
+from eyas.world.build.materials import FACADES, TEXTURES, material
+from eyas.world.buildings.facades import mesh_of
+from eyas.world.buildings.lots import turned
+from eyas.world.buildings.placing import PARAPET, SETBACK, Building, place_buildings, prism_of
 
 COUNT = 83
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import shapely
 
-from eyas.world.car_parks import place_car_parks
+from eyas.world.street.car_parks import place_car_parks
 
 BLOCKS = [shapely.box(0, 0, 160, 120), shapely.box(200, 0, 330, 150)]
 

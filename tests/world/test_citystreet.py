@@ -8,8 +8,8 @@ import shapely
 
 from eyas.state.scene import ObjectClass
 from eyas.world.maps import build_scene, road_graph, shipped_network
-from eyas.world.road_wear import WEAR_HEIGHTS
-from eyas.world.roads import road_area
+from eyas.world.roads.areas import road_area
+from eyas.world.roads.wear import WEAR_HEIGHTS
 
 SEEDS = range(6)
 

@@ -5,11 +5,13 @@ import pytest
 import shapely
 
 from eyas.state.scene import ObjectClass
-from eyas.world import furniture, parked_cars, plants, rooftops
-from eyas.world.ground import FLOOR_HEIGHT, KERB_HEIGHT
+from eyas.world.buildings import rooftops
+from eyas.world.land.ground import FLOOR_HEIGHT, KERB_HEIGHT
 from eyas.world.maps import build_scene, shipped_network
-from eyas.world.maps.citystreet_plan import make_plan
-from eyas.world.trees import VARIANTS
+from eyas.world.maps.citystreet.plan import make_plan
+from eyas.world.plants import shrubs as plants
+from eyas.world.plants.trees import VARIANTS
+from eyas.world.street import furniture, parked_cars
 
 CARS = len(parked_cars.parked_car_levels())
 ROOF = VARIANTS

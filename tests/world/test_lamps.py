@@ -7,8 +7,8 @@ import shapely
 from eyas.sim.place import load_scene
 from eyas.state.mesh import Surface
 from eyas.state.scene import ObjectClass
-from eyas.world.lamps import BEYOND_KERB, LIGHT, POLE_HEIGHT, lamp_levels
-from eyas.world.roads import road_area
+from eyas.world.roads.areas import road_area
+from eyas.world.street.lamps import BEYOND_KERB, LIGHT, POLE_HEIGHT, lamp_levels
 
 
 @pytest.fixture(scope="module")

@@ -6,8 +6,8 @@ import shapely
 from shapely.ops import substring
 
 from eyas.world.maps import shipped_network
-from eyas.world.markings import PAINT_HEIGHT, mesh_of, road_paint, stripes
-from eyas.world.roads import joints, road_area, streets
+from eyas.world.roads.areas import joints, road_area, streets
+from eyas.world.roads.markings import PAINT_HEIGHT, mesh_of, road_paint, stripes
 
 
 @pytest.fixture(scope="module")

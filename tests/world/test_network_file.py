@@ -7,7 +7,7 @@ import pytest
 
 from eyas.core.errors import DataFileError
 from eyas.world.maps import shipped_network
-from eyas.world.network_file import load_network, save_network
+from eyas.world.roads.network_file import load_network, save_network
 
 
 def test_a_network_comes_back_as_it_was(tmp_path):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import shapely
 
-from eyas.world.outskirts import access_road, descent
+from eyas.world.land.outskirts import access_road, descent
 
 
 def test_an_access_road_joins_the_street_and_meets_the_ramp_in_full_width():

@@ -4,14 +4,14 @@ import numpy as np
 import pytest
 import shapely
 
-from eyas.world.overpass import (
+from eyas.world.roads.overpass import (
     DECK_WIDTH,
     deck_area,
     deck_mesh,
     deck_prisms,
     path,
 )
-from eyas.world.pillars import pillar_mesh, pillars
+from eyas.world.roads.pillars import pillar_mesh, pillars
 
 FLOOR = -0.1
 

@@ -5,8 +5,8 @@ import pytest
 import shapely
 
 from eyas.world.maps import shipped_network
-from eyas.world.poles import POLE_HEIGHT, signal_levels, signal_places
-from eyas.world.roads import road_area, streets
+from eyas.world.roads.areas import road_area, streets
+from eyas.world.street.signals import POLE_HEIGHT, signal_levels, signal_places
 
 
 @pytest.fixture(scope="module")

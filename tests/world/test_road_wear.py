@@ -6,9 +6,9 @@ import shapely
 
 from eyas.core.rng import stream
 from eyas.world.maps import shipped_network
-from eyas.world.markings import PAINT_HEIGHT
-from eyas.world.road_wear import WEAR_HEIGHTS, road_wear
-from eyas.world.roads import road_area
+from eyas.world.roads.areas import road_area
+from eyas.world.roads.markings import PAINT_HEIGHT
+from eyas.world.roads.wear import WEAR_HEIGHTS, road_wear
 
 
 @pytest.fixture(scope="module")

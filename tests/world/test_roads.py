@@ -6,7 +6,7 @@ import shapely
 
 from eyas.state.mesh import Material
 from eyas.world.maps import shipped_network
-from eyas.world.roads import blocks, joints, road_area, skirt, split_on_grid, streets, surface
+from eyas.world.roads.areas import blocks, joints, road_area, skirt, split_on_grid, streets, surface
 
 
 @pytest.fixture(scope="module")

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 import shapely
 
-from eyas.render.texture_plants import leaves
+from eyas.render.textures.plants import leaves
 from eyas.state.mesh import Surface
-from eyas.world.trees import VARIANTS, place_along, street_tree_levels
+from eyas.world.plants.trees import VARIANTS, place_along, street_tree_levels
 
 
 @pytest.fixture(scope="module", params=range(VARIANTS))

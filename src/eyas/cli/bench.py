@@ -19,6 +19,6 @@ def command(
     ] = False,
 ) -> None:
     """Measure how fast this machine runs Eyas; prints medians."""
-    from eyas.modes import bench
+    from eyas.modes.bench import run as bench
 
     bench.run(json, quick=quick, cold=cold, stages=stages)

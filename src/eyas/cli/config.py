@@ -43,7 +43,7 @@ def convert(
     """Write settings in the other notation: native for the DAT benchmark's, and the reverse."""
     from eyas.core.errors import OutputError
     from eyas.core.files import write_atomic
-    from eyas.sim.legacy import is_legacy
+    from eyas.sim.legacy.adapter import is_legacy
     from eyas.sim.settings_file import load_settings, read_settings
 
     if target.exists():
@@ -54,7 +54,7 @@ def convert(
 
 
 def _text(settings: "EyasConfig", *, legacy: bool) -> str:
-    from eyas.sim.legacy import to_legacy
+    from eyas.sim.legacy.adapter import to_legacy
 
     if legacy:
         return json.dumps(to_legacy(settings), indent=4)

@@ -37,6 +37,6 @@ def draw_gallery(
     ] = None,
 ) -> None:
     """Draw a page with pictures of each map in each weather."""
-    from eyas.modes import gallery
+    from eyas.modes.gallery import run as gallery
 
     gallery.run(out, map_name or (), weather or ())

@@ -38,6 +38,8 @@ def command(
     if settings.mode is not Mode.VIDEO and not quiet:
         said = f"mode (Simulation_Mode) is '{settings.mode}'; 'eyas video' records all the same"
         typer.echo(f"eyas: note: {said}", err=True)
-    from eyas.modes import video  # compiled kernels: slow to import, so only when all is well
+    from eyas.modes.video import (
+        run as video,  # compiled kernels: slow to import, so only when all is well
+    )
 
     video.run(settings, out, overwrite=overwrite, resume=resume, quiet=quiet)

@@ -11,13 +11,13 @@ from pathlib import Path
 import numpy as np
 
 from eyas.core.jit import nothing_compiled
-from eyas.render.bake import ShadowMap
-from eyas.render.bake_ambient import AmbientMap
+from eyas.render.bake.ambient import AmbientMap
+from eyas.render.bake.shadows import ShadowMap
+from eyas.render.bake.tracks import TrackMap
 from eyas.render.classes import class_table
-from eyas.render.geometry import build_geometry
-from eyas.render.lighting import build_light
+from eyas.render.pack.geometry import build_geometry
+from eyas.render.pack.light import build_light
 from eyas.render.renderer import Renderer
-from eyas.render.tracks import TrackMap
 from eyas.state.draw import DrawList, PartLibrary, Picture, Views
 from eyas.state.scene import Lamps, Lighting, Scene
 

@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 from eyas.core.errors import ConfigError
 from eyas.core.jit import thread_count
 from eyas.core.parallel import Held
-from eyas.render.bake import bake_shadows
-from eyas.render.bake_ambient import bake_ambient
-from eyas.render.bake_cache import shadow_folder
+from eyas.render.bake.ambient import bake_ambient
+from eyas.render.bake.cache import shadow_folder
+from eyas.render.bake.shadows import bake_shadows
+from eyas.render.bake.tracks import TrackMap, track_map
 from eyas.render.classes import class_table, write_classes
 from eyas.render.jobs import build_jobs, picture_size, write_subject
 from eyas.render.kernels.bundles import (
@@ -25,8 +26,7 @@ from eyas.render.kernels.bundles import (
     Task,
 )
 from eyas.render.kernels.draw import draw_views
-from eyas.render.lighting import build_light
-from eyas.render.tracks import TrackMap, track_map
+from eyas.render.pack.light import build_light
 from eyas.state.draw import DrawList, Picture, Views
 from eyas.state.scene import Lighting, Scene
 

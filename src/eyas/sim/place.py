@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from eyas.core.kept import kept
 from eyas.render.ahead import compile_ahead
-from eyas.render.geometry import build_geometry
+from eyas.render.pack.geometry import build_geometry
 from eyas.render.renderer import Renderer, build_renderer
-from eyas.render.textures import build_textures
+from eyas.render.textures.library import build_textures
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import Lighting, Scene
 from eyas.targets.rig import VehicleRigs
@@ -83,7 +83,7 @@ def load_place(world: WorldConfig, traffic: TrafficConfig, trackers: int) -> Pla
 
 
 def _textures() -> dict[str, NDArray[np.uint8]]:
-    return kept("textures", ("render", "world/materials.py"), (), build_textures)
+    return kept("textures", ("render", "world/build/materials.py"), (), build_textures)
 
 
 @lru_cache(maxsize=2)

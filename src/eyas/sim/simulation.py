@@ -6,15 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
+from eyas.overlay.marks import Projection
+from eyas.overlay.paint import paint_overlays, with_depth
 from eyas.render.jobs import picture_size
 from eyas.render.kernels.bundles import Stage
-from eyas.render.overlay import paint_overlays, with_depth
 from eyas.sensors.camera import Camera
 from eyas.sim.config import EyasConfig
 from eyas.sim.episodes import Episodes
 from eyas.sim.fleet import Traffic, camera_view, create_fleet, target_view, tracker_view
 from eyas.sim.light import LightChanges
-from eyas.sim.overlay import Projection
 from eyas.sim.place import Place
 from eyas.sim.step import begin_episodes, fill_packets, fly, follow
 from eyas.sim.worlds import Worlds

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from eyas.core.config import Config, shown
 from eyas.core.errors import NotInThisVersionError
 from eyas.sim.config import EyasConfig, ObjectsConfig, TargetName
-from eyas.sim.legacy import legacy_keys_of
+from eyas.sim.legacy.adapter import legacy_keys_of
 from eyas.trackers.config import TrackerKind
 
 __all__ = ["require_supported"]

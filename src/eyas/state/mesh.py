@@ -36,7 +36,7 @@ class Material:
     """What a triangle is made of."""
 
     texture: str = "plain"
-    """Name of a texture of `eyas.world.materials.TEXTURES`; `plain` is white."""
+    """Name of a texture of `eyas.world.build.materials.TEXTURES`; `plain` is white."""
     tint: tuple[float, float, float] = (1.0, 1.0, 1.0)
     """Factor on the texture, sRGB, each 0 to 1."""
     surface: Surface = Surface.MATT

@@ -79,7 +79,7 @@ def find_recording(
 
 def shipped_file(map_name: str) -> Traversable:
     """Return where the package keeps the canonical recording of a map; it need not be there."""
-    return files("eyas.traffic") / "data" / f"{map_name}.npz"
+    return files("eyas.world.maps") / map_name / "traffic.npz"
 
 
 def record_canonical(

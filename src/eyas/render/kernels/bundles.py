@@ -103,7 +103,7 @@ class Geometry(NamedTuple):
     emission: NDArray[np.float32]
     """Own light of each material."""
     snow_bed: NDArray[np.int32]
-    """`eyas.render.kernels.snow.Bed` of each material."""
+    """`eyas.render.kernels.surface.snow.Bed` of each material."""
     crown_middle: NDArray[np.float32]
     """z of the middle of the crowns made of each material, in the frame of their trees."""
     texture: NDArray[np.uint32]
@@ -141,17 +141,19 @@ class Light(NamedTuple):
     lamp_frame: NDArray[np.float32]
     """West and south edge of the grid [m], squares in a metre, cosine of the lamps' cut-off."""
     tracks: NDArray[np.uint8]
-    """How far wheels have worn the snow on roads, see `eyas.render.tracks.TrackMap`."""
+    """How far wheels have worn the snow on roads, see `eyas.render.bake.tracks.TrackMap`."""
     track_frame: NDArray[np.float32]
     """West and south edge of that map [m], texels in a metre."""
     tone: NDArray[np.uint8]
     """Byte of the picture for each step of exposed radiance."""
     ground: NDArray[np.float32]
-    """Colour of far land without snow, see `eyas.render.hills`."""
+    """Colour of far land without snow, see `eyas.render.bake.hills`."""
     clouds: NDArray[np.uint8]
-    """Opacity, and brightness times opacity, see `eyas.render.clouds`, shape (rows, columns, 2)."""
+    """Opacity, and brightness times opacity, see `eyas.render.bake.clouds`,
+    shape (rows, columns, 2)."""
     hills: NDArray[np.uint8]
-    """Cover, sunlight, woods and farness, see `eyas.render.hills`, shape (rows, columns, 4)."""
+    """Cover, sunlight, woods and farness, see `eyas.render.bake.hills`,
+    shape (rows, columns, 4)."""
 
 
 class Movers(NamedTuple):

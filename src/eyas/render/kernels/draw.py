@@ -6,16 +6,16 @@ from numpy.typing import NDArray
 from eyas.core.intrinsics import claim
 from eyas.core.jit import inner_kernel
 from eyas.core.parallel import Pointer, parallel_kernel
-from eyas.render.kernels.backdrop import draw_backdrop
-from eyas.render.kernels.band import shade_band
 from eyas.render.kernels.bundles import Geometry, Scratch, Stage, Still, Task, View
-from eyas.render.kernels.casters import cast_light
-from eyas.render.kernels.cull import set_planes
-from eyas.render.kernels.flakes import Canvas, let_flakes_fall
+from eyas.render.kernels.light.casters import cast_light
+from eyas.render.kernels.light.view_light import view_light
 from eyas.render.kernels.scalars import f4, i8
-from eyas.render.kernels.transform import set_world_rows
-from eyas.render.kernels.view_light import view_light
-from eyas.render.kernels.visibility import draw_moving, draw_static
+from eyas.render.kernels.sky.backdrop import draw_backdrop
+from eyas.render.kernels.sky.flakes import Canvas, let_flakes_fall
+from eyas.render.kernels.surface.band import shade_band
+from eyas.render.kernels.visibility.cull import set_planes
+from eyas.render.kernels.visibility.passes import draw_moving, draw_static
+from eyas.render.kernels.visibility.transform import set_world_rows
 from eyas.state.scene import SKY_OBJECT
 
 __all__ = ["draw_views"]

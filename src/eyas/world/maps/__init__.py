@@ -7,8 +7,8 @@ from importlib.resources import as_file, files
 from eyas.core.errors import NotInThisVersionError, UnknownNameError
 from eyas.state.roads import RoadGraph, RoadNetwork
 from eyas.state.scene import Scene
-from eyas.world.maps import citystreet
-from eyas.world.network_file import load_network
+from eyas.world.maps.citystreet import recipe as citystreet
+from eyas.world.roads.network_file import load_network
 
 __all__ = ["LATER", "MAPS", "Recipe", "build_scene", "road_graph", "shipped_network"]
 
@@ -66,7 +66,7 @@ def shipped_network(name: str) -> RoadNetwork | None:
         DataFileError: The installation is damaged.
     """
     _check(name)
-    resource = files("eyas.world") / "data" / f"{name}.npz"
+    resource = files("eyas.world.maps") / name / "network.npz"
     if not resource.is_file():
         return None
     with as_file(resource) as path:

@@ -1,0 +1,1 @@
+"""The gallery: a page of pictures of every map and weather."""

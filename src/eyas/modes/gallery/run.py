@@ -1,0 +1,109 @@
+"""A page with pictures of every map in every weather, for people who want to see them."""
+
+import re
+from collections.abc import Sequence
+from pathlib import Path
+
+from rich.console import Console
+from rich.progress import Progress
+
+from eyas.core.errors import OutputError
+from eyas.core.files import PART_SUFFIX, refusals, write_atomic
+from eyas.modes.gallery.page import MARK, Shown, contact_sheet, page, png
+from eyas.modes.gallery.still import Stage
+from eyas.modes.gallery.views import choose_viewpoints
+from eyas.sim.place import load_place
+from eyas.traffic.config import TrafficConfig
+from eyas.world.config import WorldConfig
+from eyas.world.maps import MAPS, road_graph
+from eyas.world.weather import lighting, weathers
+
+__all__ = ["INDEX", "SHEET", "conditions", "run"]
+
+INDEX, SHEET = "index.html", "contact.png"
+
+_OURS = re.compile(
+    rf"{re.escape(INDEX)}|{re.escape(SHEET)}|\w+-\w+(/[a-z]+(-[a-z]+)?\.png)?"
+    rf"|(\w+-\w+/)?\.[\w.-]+{re.escape(PART_SUFFIX)}"
+)
+"""Every path that a gallery can hold, relative to its folder."""
+
+
+def run(out: Path, map_names: Sequence[str] = (), weather_names: Sequence[str] = ()) -> None:
+    """Draw a gallery; the same version draws the same bytes.
+
+    Args:
+        out: The folder; a gallery that is there is replaced.
+        map_names: Which maps; none: all.
+        weather_names: Which weathers; none: all.
+
+    Raises:
+        ConfigError: No such map or weather.
+        OutputError: The folder holds something else, or the file system refused.
+    """
+    wanted = conditions(map_names, weather_names)
+    _check_folder(out)
+    console = Console(stderr=True)
+    with refusals(out):
+        out.mkdir(parents=True, exist_ok=True)
+        # The page stands for a complete gallery: it goes first and comes last.
+        (out / INDEX).unlink(missing_ok=True)
+    with Progress(console=console, transient=True) as progress:
+        shown = [_draw(out, *condition, progress) for condition in wanted]
+    write_atomic(out / SHEET, png(contact_sheet(shown)))
+    write_atomic(out / INDEX, page(shown, SHEET).encode())
+    pictures = sum(len(one.views) for one in shown)
+    console.print(f"{out / INDEX}: {pictures} pictures", highlight=False, markup=False)
+
+
+def conditions(map_names: Sequence[str], weather_names: Sequence[str]) -> list[tuple[str, str]]:
+    """Return the maps and weathers to draw, each pair once.
+
+    Where only weathers are named, maps that lack one of them are left out.
+
+    Raises:
+        UnknownNameError: No such map or weather.
+        NotInThisVersionError: This version has no such map, or not in that weather.
+    """
+    have = [name for name in sorted(MAPS) if set(weather_names) <= set(weathers(name))]
+    names = dict.fromkeys(map_names or have or sorted(MAPS))
+    for name in names:
+        road_graph(name, 0)  # refuses maps that are not there
+    pairs = [(name, kind) for name in names for kind in weather_names or weathers(name)]
+    for pair in pairs:
+        lighting(*pair)  # refuses weathers that are not there
+    return list(dict.fromkeys(pairs))
+
+
+def _draw(out: Path, map_name: str, weather: str, progress: Progress) -> Shown:
+    """Draw a map in a weather into the folder."""
+    task = progress.add_task(f"{map_name}, {weather}", total=None)
+    world = WorldConfig(map=map_name, weather=weather)
+    stage = Stage(load_place(world, TrafficConfig(), 1))
+    views = choose_viewpoints(stage, lighting(map_name, weather).sun_direction)
+    shown = Shown(map_name, weather, views, [stage.rgb(view) for view in views])
+    folder = out / shown.folder
+    with refusals(folder):
+        folder.mkdir(exist_ok=True)
+    for view, picture in zip(views, shown.pictures, strict=True):
+        write_atomic(folder / f"{view.name}.png", png(picture))
+    progress.update(task, total=1, completed=1)
+    return shown
+
+
+def _check_folder(out: Path) -> None:
+    """Refuse a folder that holds anything but a gallery, or what is left of one."""
+    with refusals(out):
+        if not out.exists():
+            return
+        if not out.is_dir():
+            raise OutputError(f"{out}: is a file; name a folder")
+        for inside in sorted(out.rglob("*")):
+            name = inside.relative_to(out).as_posix()
+            if not _OURS.fullmatch(name) or inside.is_symlink():
+                raise OutputError(f"{out}: not a gallery: it holds '{name}'; name another folder")
+        index = out / INDEX
+        if index.exists() and MARK not in index.read_text(errors="replace"):
+            raise OutputError(
+                f"{out}: not a gallery: another made its {INDEX}; name another folder"
+            )

@@ -1,0 +1,1 @@
+"""Recording videos with labels."""

@@ -1,0 +1,103 @@
+"""What a recording tells its user: progress on stderr, a table at the end."""
+
+import time
+from collections.abc import Sequence
+from types import TracebackType
+
+from rich import progress as bar
+from rich.console import Console
+from rich.table import Table
+
+from eyas.exports.labels import FrameLabel
+from eyas.modes.video.folder import VideoFolder
+from eyas.modes.video.recorder import Recorder
+
+__all__ = ["Progress", "print_report", "say"]
+
+
+class Progress:
+    """A bar on stderr with frames per second; nothing where no person looks.
+
+    Args:
+        quiet: Whether nothing is shown anywhere.
+    """
+
+    def __init__(self, *, quiet: bool) -> None:
+        console = Console(stderr=True)
+        self._bar = bar.Progress(
+            bar.TextColumn("recording"),
+            bar.BarColumn(),
+            bar.TaskProgressColumn(),
+            bar.TextColumn("{task.fields[frames]} frames, {task.fields[rate]:.0f}/s"),
+            bar.TimeRemainingColumn(),
+            console=console,
+            disable=quiet or not console.is_terminal,
+        )
+        self._task = self._bar.add_task("", total=1.0, frames=0, rate=0.0)
+        self._start = time.perf_counter()
+        self.frames = 0
+
+    def __enter__(self) -> "Progress":
+        self._start = time.perf_counter()
+        self._bar.start()
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._bar.stop()
+
+    @property
+    def rate(self) -> float:
+        """Frames drawn in a second of wall time [Hz]."""
+        return self.frames / max(time.perf_counter() - self._start, 1e-9)
+
+    def show(self, share: float, frames: int) -> None:
+        """Show how much is done.
+
+        Args:
+            share: Of the simulated time, 0 to 1.
+            frames: Frames drawn.
+        """
+        self.frames = frames
+        self._bar.update(self._task, completed=share, frames=frames, rate=self.rate)
+
+
+def say(line: str, *, quiet: bool) -> None:
+    """Print a line on stderr."""
+    if not quiet:
+        Console(stderr=True).print(line, highlight=False, markup=False, soft_wrap=True)
+
+
+def print_report(
+    folder: VideoFolder, recorder: Recorder, progress: Progress, *, quiet: bool
+) -> None:
+    """Print a row for each tracker, and where the recording lies."""
+    if quiet:
+        return
+    rate = progress.rate
+    table = Table()
+    table.add_column("tracker")
+    for title in ("episodes", "frames", "mean reward", "in sight"):
+        table.add_column(title, justify="right")
+    for tracker, episodes in enumerate(recorder.episodes):
+        labels = [label for episode in episodes for label in episode]
+        row = [str(len(episodes)), str(len(labels)), *_means(labels)]
+        table.add_row(folder.tracker_name(tracker), *row)
+    console = Console()
+    console.print(table)
+    total = sum(len(labels) for episodes in recorder.episodes for labels in episodes)
+    line = f"{total} frames in {folder.path} ({recorder.drawn} drawn now, {rate:.0f} a second)"
+    console.print(line, highlight=False, markup=False, soft_wrap=True)
+
+
+def _means(labels: Sequence[FrameLabel]) -> tuple[str, str]:
+    """Return the mean reward, and the share of frames in which the target is seen."""
+    rewards = [label.reward for label in labels if label.reward is not None]
+    if not rewards:
+        return "-", "-"
+    seen = sum(label.visible_fraction > 0.0 for label in labels)
+    return f"{sum(rewards) / len(rewards):.3f}", f"{seen / len(labels):.1%}"

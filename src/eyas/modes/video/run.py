@@ -1,0 +1,134 @@
+"""Record videos with labels: `channels` trackers follow their targets side by side in one world."""
+
+from pathlib import Path
+
+from eyas.core.clock import PHYSICS_RATE
+from eyas.core.errors import ConfigError, OutputError
+from eyas.modes.video.action import mover_of
+from eyas.modes.video.folder import VideoFolder, check_folder, open_folder
+from eyas.modes.video.grid import FrameGrid
+from eyas.modes.video.lock import recording_lock
+from eyas.modes.video.recorder import Recorder
+from eyas.modes.video.report import Progress, print_report, say
+from eyas.sim.build import build_simulation
+from eyas.sim.config import EyasConfig
+from eyas.sim.place import load_place
+from eyas.sim.simulation import Simulation
+from eyas.task.config import DoneConfig
+
+__all__ = ["run"]
+
+_NEVER = 1e6
+"""A limit that no drone reaches."""
+
+
+def run(
+    config: EyasConfig,
+    folder: Path,
+    *,
+    overwrite: bool = False,
+    resume: bool = False,
+    quiet: bool = False,
+) -> None:
+    """Record into `folder`: pictures, movies, labels and marks of each episode.
+
+    The same settings give the same bytes, also when the recording was interrupted and continued.
+
+    Args:
+        config: What to record.
+        folder: Where to; holds `DRONE<i>/episode<j>/` afterwards.
+        overwrite: Whether a recording that lies there is deleted.
+        resume: Whether a recording that lies there is continued.
+        quiet: Whether nothing is printed.
+
+    Raises:
+        EyasError: One line: what cannot be built, read or written; also when another process
+            records into the folder.
+        KeyboardInterrupt: The user stopped it; every file that is there is whole.
+    """
+    # Building may take a minute, so the folder is looked at before; what cannot be built leaves no
+    # folder and deletes none, so it is made after.
+    check_folder(folder, config, overwrite=overwrite, resume=resume)
+    sim = build_simulation(recording_rules(config), config.video.channels, shared_world=True)
+    _require_traffic(config)
+    with recording_lock(folder):
+        place = open_folder(folder, config, overwrite=overwrite, resume=resume)
+        _record(sim, config, place, quiet=quiet)
+
+
+def _record(sim: Simulation, config: EyasConfig, folder: VideoFolder, *, quiet: bool) -> None:
+    recorder = Recorder(sim, config, folder)
+    progress = Progress(quiet=quiet)
+    try:
+        with progress:
+            _run_episodes(sim, config, recorder, progress)
+        recorder.finish()
+    except BaseException as error:
+        recorder.stop()
+        if isinstance(error, KeyboardInterrupt):
+            line = f"stopped; every file in {folder.path} is whole; continue with --resume"
+            say(line, quiet=quiet)
+        if isinstance(error, OutputError):
+            raise OutputError(f"{error}; continue with --resume") from error
+        raise
+    print_report(folder, recorder, progress, quiet=quiet)
+
+
+def recording_rules(config: EyasConfig) -> EyasConfig:
+    """Return the settings with the original's ends of a recorded episode.
+
+    Only a lost target, the number of steps, and not-a-number end one: neither limits of the body
+    nor a missing reward do.
+    """
+    done = DoneConfig(
+        max_height=_NEVER,
+        min_height=-_NEVER,
+        velocity=_NEVER,
+        yaw_rate=_NEVER,
+        roll=_NEVER,
+        pitch=_NEVER,
+        distance_error=_NEVER,
+        total_steps=config.done.total_steps,
+        grace_steps=config.done.grace_steps,
+        no_reward_steps=2**31 - 1,
+    )
+    return config.model_copy(update={"done": done})
+
+
+def _require_traffic(config: EyasConfig) -> None:
+    end = config.video.start_time + config.video.total_time
+    known = load_place(config.world, config.traffic, config.video.channels).replay.duration
+    if end > known:
+        raise ConfigError(
+            f"video.total_time: {config.video.total_time:g} s after {config.video.start_time:g} s"
+            f" is longer than the traffic's recording; allowed: up to"
+            f" {known - config.video.start_time:g} s"
+        )
+    begin = (config.start.warm_up_steps + config.video.warm_up_steps) / PHYSICS_RATE
+    if end <= begin:
+        raise ConfigError(
+            f"video.total_time: {config.video.total_time:g} s after {config.video.start_time:g} s "
+            f"ends before the trackers start and warm up, at {begin:g} s; allowed: more"
+        )
+
+
+def _run_episodes(
+    sim: Simulation, config: EyasConfig, recorder: Recorder, progress: Progress
+) -> None:
+    count = config.video.channels
+    grid, mover = FrameGrid(config.video, count), mover_of(config, count)
+    sim.reset()
+    tick = begin = round(sim.time * PHYSICS_RATE)
+    while tick < grid.last_tick:
+        mover.move(sim)
+        tick += 1
+        due = grid.due(tick, sim.step_count)
+        if due.size:
+            recorder.take(due, mover.action)
+            progress.show((tick - begin) / (grid.last_tick - begin), recorder.drawn)
+        if sim.done.any():
+            ended = sim.done.copy()
+            recorder.end(ended)
+            sim.reset(ended)
+            grid.restart(ended)
+    progress.show(1.0, recorder.drawn)

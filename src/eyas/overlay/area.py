@@ -1,0 +1,93 @@
+"""Convex areas, painted on the ground that a picture shows.
+
+The ground is what the depths say: pixels whose surface is about as high as the ground, so walls
+and cars hide the paint. A line on the ground and the optical centre span a plane, so the line is a
+straight one in the picture too, and a pixel's distance from it is that plane's equation over the
+length of its gradient. So lines are smooth, and as wide as wished, at any distance and slant.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.overlay.canvas import CASING, NEAR, Canvas, cover
+from eyas.overlay.items import GroundArea
+
+__all__ = ["paint_area"]
+
+RISE = 0.3
+"""How much higher or lower than the ground paint still lies [m]: roads and kerbs are higher."""
+
+WIDTH = 0.14
+"""Of the line [m]."""
+
+THINNEST = 1.75
+"""Width of the line below which it gets no thinner, in strokes of the canvas."""
+
+Window = tuple[slice, slice]
+Floats = NDArray[np.float32]
+
+
+def paint_area(canvas: Canvas, area: GroundArea) -> None:
+    """Paint an area: casing, line and casing inside its edge, then its fill."""
+    if len(area.corners) < 3 or canvas.position[2] <= area.ground + RISE:
+        return
+    corners = np.column_stack([area.corners, np.full(len(area.corners), area.ground)])
+    where = _window(canvas, corners)
+    outer, inner = _inside(canvas, corners, where)
+    casing = canvas.unit
+    shape, fill = cover(outer), cover(inner - 2.0 * casing)
+    line = cover(outer - casing) - cover(inner - casing)
+    on = _on_ground(canvas, area.ground, where)
+    canvas.blend(where, area.colour, on * fill * area.fill)
+    canvas.blend(where, CASING, on * (shape - fill - line) * 0.6)
+    canvas.blend(where, area.colour, on * line)
+
+
+def _window(canvas: Canvas, corners: NDArray[np.float64]) -> Window:
+    """Return the rows and columns of the area; all, if some of it is behind the camera."""
+    places = canvas.project(corners)
+    if (places[:, 2] < NEAR).any():
+        return slice(0, canvas.height), slice(0, canvas.width)
+    return canvas.window(places[:, :2].min(axis=0), places[:, :2].max(axis=0), 1.0)
+
+
+def _on_ground(canvas: Canvas, ground: float, where: Window) -> NDArray[np.bool_]:
+    """Return which pixels of a window show something about as high as the ground."""
+    falling = canvas.plane(canvas.rotation[2], where)
+    with np.errstate(invalid="ignore"):  # infinity * 0 where sky meets the horizon
+        rise = canvas.depth[where] * falling + np.float32(canvas.position[2] - ground)
+    on: NDArray[np.bool_] = np.abs(rise) < RISE
+    return on
+
+
+def _inside(canvas: Canvas, corners: NDArray[np.float64], where: Window) -> tuple[Floats, Floats]:
+    """Return how far pixels lie inside the edge, and inside the line along it [pixels].
+
+    Args:
+        canvas: The camera, above the ground.
+        corners: On the ground, counter-clockwise seen from above [m], shape (K, 3).
+        where: Of which rows and columns.
+    """
+    outer = inner = np.full((1, 1), np.inf, np.float32)
+    for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        along = end - start
+        length = float(np.hypot(along[0], along[1]))
+        if length < 1e-9:
+            continue
+        inwards = np.array([-along[1], along[0], 0.0]) / length
+        edge = _beyond(canvas, start, along, where)
+        line = _beyond(canvas, start + WIDTH * inwards, along, where)
+        outer = np.minimum(outer, edge)
+        thinnest = np.float32(THINNEST * canvas.unit)
+        inner = np.minimum(inner, np.minimum(line, edge - thinnest))
+    return outer, inner
+
+
+def _beyond(
+    canvas: Canvas, point: NDArray[np.float64], along: NDArray[np.float64], where: Window
+) -> Floats:
+    """Return how far pixels lie to the left of a line on the ground, in the picture [pixels]."""
+    offset = point - canvas.position
+    normal = canvas.rotation.T @ np.cross(along, offset)
+    slope = float(np.hypot(normal[1] / canvas.across, normal[2] / canvas.down))
+    return canvas.plane(normal / max(slope, 1e-12), where)

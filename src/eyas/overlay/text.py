@@ -1,0 +1,58 @@
+"""Words in the picture."""
+
+import math
+from collections.abc import Sequence
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, ImageDraw, ImageFont
+
+from eyas.overlay.canvas import CASING, NEAR, Canvas
+from eyas.overlay.items import Label
+
+__all__ = ["paint_labels"]
+
+SMALLEST, OF_HEIGHT = 9, 0.042
+"""Size of letters: so many pixels at least, else this share of the picture's height."""
+
+
+def paint_labels(canvas: Canvas, labels: Sequence[Label]) -> None:
+    """Paint labels beside their points, moved so that they are wholly in the picture."""
+    size = max(SMALLEST, round(OF_HEIGHT * canvas.height))
+    gap = 0.5 * size
+    for label in labels:
+        letters, around = _masks(label.text, size)
+        height, width = letters.shape
+        column, row, depth = canvas.project(label.anchor)
+        inside = depth >= NEAR and 0 <= column < canvas.width and 0 <= row < canvas.height
+        if inside:
+            beside = label.clear * canvas.across / depth
+            left, top = column + beside + gap, row - 0.5 * height
+        elif label.always:
+            left, top = float(gap), float(gap)
+        else:
+            continue
+        left = int(np.clip(round(left), 0, max(canvas.width - width, 0)))
+        top = int(np.clip(round(top), 0, max(canvas.height - height, 0)))
+        bottom, right = min(top + height, canvas.height), min(left + width, canvas.width)
+        where = slice(top, bottom), slice(left, right)
+        part = np.s_[: bottom - top, : right - left]
+        canvas.blend(where, CASING, around[part] * 0.85)
+        canvas.blend(where, label.colour, letters[part])
+
+
+@lru_cache(maxsize=64)
+def _masks(text: str, size: int) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Return how much of each pixel letters cover, without and with a stroke around them."""
+    font = ImageFont.load_default(size)
+    stroke = max(1, round(size / 8))
+    left, top, right, bottom = font.getbbox(text)
+    box = math.ceil(right - left) + 2 * stroke, math.ceil(bottom - top) + 2 * stroke
+    at = stroke - left, stroke - top
+    masks = []
+    for width in (0, stroke):
+        image = Image.new("L", box)
+        ImageDraw.Draw(image).text(at, text, fill=255, font=font, stroke_width=width)
+        masks.append(np.asarray(image, np.float32) / np.float32(255.0))
+    return masks[0], masks[1]

@@ -1,0 +1,108 @@
+"""How much of the sky the ground sees: less at the feet of walls, in courtyards, under trees."""
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image, ImageDraw
+
+from eyas.core.jit import thread_count
+from eyas.core.parallel import Held
+from eyas.render.bake.cache import baked, content_hash
+from eyas.render.kernels.light.ambient import BOUNCED, LEAVES, OpennessBake, bake_openness
+from eyas.state.scene import ObjectClass, Scene
+
+__all__ = ["AmbientMap", "bake_ambient", "canopy_map", "height_map"]
+
+TEXEL = 1.0
+"""Side of a texel [m]."""
+
+LARGEST = 2048
+"""Most texels along a side."""
+
+_LOWEST = 1.5
+"""What rises less over the ground hides no sky [m]."""
+
+_FORMAT = b"eyas ambient map 1"
+
+
+@dataclass(frozen=True, slots=True)
+class AmbientMap:
+    """What the ground sees of the sky."""
+
+    openness: NDArray[np.uint16]
+    """Share of the sky's light that reaches the ground, 0 to 255, and above that byte the height
+    of what hides it [m], shape (rows, columns)."""
+    frame: NDArray[np.float64]
+    """West and south edge [m], texels in a metre, z of the ground [m]."""
+
+
+def bake_ambient(scene: Scene, folder: Path | None) -> AmbientMap:
+    """Return the map of a scene; made anew only if the cache has none.
+
+    Args:
+        scene: What stands still. Bridges and other structures hide little and are left out.
+        folder: The cache, or None to use none, see `baked`.
+    """
+    extent = np.array(scene.size)
+    texel = max(TEXEL, float(extent.max()) / LARGEST)
+    columns, rows = np.ceil(extent / texel).astype(int)
+    frame = np.array([*(-0.5 * extent), 1.0 / texel, scene.ground_height])
+    inputs = (
+        frame,
+        np.array([BOUNCED, LEAVES]),
+        scene.static.positions,
+        scene.static.triangles,
+        scene.object_class[scene.static_object],
+        scene.fixtures.prototype,
+        scene.fixtures.pose,
+    )
+
+    def make() -> NDArray[np.uint16]:
+        openness = np.empty((rows, columns), np.uint16)
+        solid = height_map(scene, frame, (rows, columns))
+        crowns = canopy_map(scene, frame, (rows, columns))
+        bake_openness(thread_count(), Held(OpennessBake(texel, solid, crowns, openness)))
+        return openness
+
+    name = content_hash(_FORMAT, inputs)
+    return AmbientMap(baked("light of the sky", folder, name, (rows, columns), make), frame)
+
+
+def height_map(
+    scene: Scene, frame: NDArray[np.float64], shape: tuple[int, int]
+) -> NDArray[np.float32]:
+    """Return how high over the ground the highest solid thing in each texel is [m]."""
+    mesh = scene.static
+    corners = mesh.positions[mesh.triangles].astype(np.float64)
+    kind = scene.object_class[scene.static_object]
+    rise = corners[:, :, 2].max(axis=1, initial=0.0) - frame[3]
+    level = mesh.normals[mesh.triangles, 2].mean(axis=1) > 0.2
+    chosen = np.flatnonzero(level & (kind != ObjectClass.STRUCTURE) & (rise > _LOWEST))
+    flat = (corners[:, :, :2] - frame[:2]) * frame[2]
+    picture = Image.new("F", (shape[1], shape[0]), 0.0)
+    pen = ImageDraw.Draw(picture)
+    for index in chosen[np.argsort(rise[chosen], kind="stable")]:
+        pen.polygon(flat[index].ravel().tolist(), fill=float(rise[index]))
+    return np.array(picture, np.float32)
+
+
+def canopy_map(
+    scene: Scene, frame: NDArray[np.float64], shape: tuple[int, int]
+) -> NDArray[np.float32]:
+    """Return how high over the ground the top of the crown over each texel is, 0 for none [m]."""
+    fixtures = scene.fixtures
+    picture = Image.new("F", (shape[1], shape[0]), 0.0)
+    pen = ImageDraw.Draw(picture)
+    for index in np.flatnonzero(scene.object_class[fixtures.object_id] == ObjectClass.TREE):
+        points = fixtures.levels[fixtures.prototype[index]][0].positions
+        pose = fixtures.pose[index].astype(np.float64)
+        scale = float(np.cbrt(np.linalg.det(pose[:, :3])))
+        # Its outermost leaves are few: the crown is a disc of the mean reach.
+        reach = 0.9 * scale * float(np.abs(points[:, :2]).max())
+        x, y = (pose[:2, 3] - frame[:2]) * frame[2]
+        r = reach * frame[2]
+        top = scale * float(points[:, 2].max()) + pose[2, 3] - frame[3]
+        pen.ellipse((x - r, y - r, x + r, y + r), fill=float(top))
+    return np.array(picture, np.float32)

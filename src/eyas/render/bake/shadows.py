@@ -1,0 +1,160 @@
+"""The shadow map of everything that stands still, made once for a scene and a sun."""
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.jit import thread_count
+from eyas.core.parallel import Held
+from eyas.render.bake.cache import baked, content_hash
+from eyas.render.kernels.bundles import Geometry
+from eyas.render.kernels.light.shadow_map import BAND, ShadowBake, bake_rows
+from eyas.state.mesh import Surface
+
+__all__ = ["ShadowMap", "bake_shadows"]
+
+TEXEL = 0.2
+"""Side of a texel, where the map is not too large for that [m]."""
+
+LARGEST = 6144
+"""Most texels along a side."""
+
+CARDS = 4
+"""One leaf card in so many throws a shadow: they overlap so often that all would let no light
+through, and crowns are dappled."""
+
+_FORMAT = b"eyas shadow map 6"
+
+
+@dataclass(frozen=True, slots=True)
+class ShadowMap:
+    """Where the sun shines."""
+
+    heights: NDArray[np.uint16]
+    """How high towards the sun the first thing stands that sunlight meets, 0 for nothing,
+    shape (lines, columns)."""
+    rows: NDArray[np.float64]
+    """World [m] to column, line and height of the map, shape (3, 4)."""
+    texel: float
+    """Side of a texel [m]."""
+
+
+def bake_shadows(
+    geometry: Geometry,
+    sun: tuple[float, float, float],
+    ground: float,
+    folder: Path | None,
+) -> ShadowMap:
+    """Return the shadow map; made anew only if the cache has none.
+
+    Args:
+        geometry: The scene.
+        sun: Unit vector towards the sun.
+        ground: z of the floor [m].
+        folder: The cache, or None to use none, see `baked`.
+    """
+    rows, lines, columns, texel = _frame(geometry, sun, ground)
+    name = _content_hash(geometry, rows)
+    heights = baked(
+        "shadows", folder, name, (lines, columns), lambda: _bake(geometry, rows, lines, columns)
+    )
+    return ShadowMap(heights, rows, texel)
+
+
+def _frame(
+    geometry: Geometry, sun: tuple[float, float, float], ground: float
+) -> tuple[NDArray[np.float64], int, int, float]:
+    """Return the map's rows, lines, columns and texel: it covers all that rises from the floor.
+
+    What lies flat throws no shadow, so however wide the floor is, it costs no texels.
+    """
+    toward = np.asarray(sun, np.float64) / np.linalg.norm(sun)
+    right = np.array([-toward[1], toward[0], 0.0])
+    right = right / np.linalg.norm(right) if np.linalg.norm(right) > 1e-6 else np.eye(3)[0]
+    axes = np.stack([right, np.cross(toward, right), toward])
+    flat = _casting_points(geometry, ground + 0.5) @ axes.T
+    low, top = flat.min(axis=0) - 1.0, flat.max(axis=0) + 1.0
+    texel = max(TEXEL, float((top - low)[:2].max()) / (LARGEST - 4))
+    size = np.ceil((top - low)[:2] / texel).astype(int) + 2
+    # The floor may reach lower than all that throws shadows; its height is then below 0.
+    unit = 65000.0 / float(top[2] - low[2])
+    scale = np.array([1.0 / texel, 1.0 / texel, unit])
+    rows = np.concatenate(
+        [axes * scale[:, None], (-low * scale + [1.0, 1.0, 1.0])[:, None]], axis=1
+    )
+    return rows, int(size[1]), int(size[0]), texel
+
+
+def _casting_points(geometry: Geometry, height: float) -> NDArray[np.float64]:
+    """Return all corners of static triangles and of fixtures' boxes that reach a height [m]."""
+    last = geometry.chunk_range[-1, 1] if len(geometry.chunk_range) else 0
+    static = geometry.positions[geometry.corners[:last]]
+    boxes = geometry.box[geometry.fixture_prototype]
+    corners = np.stack(
+        [boxes[:, (i, j, k)] for i in (0, 3) for j in (1, 4) for k in (2, 5)], axis=1
+    )
+    linear, offset = geometry.fixture_pose[:, :, :3], geometry.fixture_pose[:, :, 3]
+    posed = np.einsum("fij,fcj->fci", linear, corners) + offset[:, None]
+    points = [
+        things[things[:, :, 2].max(axis=1) > height].reshape(-1, 3) for things in (static, posed)
+    ]
+    found = np.concatenate(points).astype(np.float64)
+    return found if len(found) else np.zeros((1, 3))
+
+
+def _bake(
+    geometry: Geometry, rows: NDArray[np.float64], lines: int, columns: int
+) -> NDArray[np.uint16]:
+    heights = np.zeros((lines, columns), np.uint16)
+    cards = _cards(geometry)
+    solid = [
+        not cards[geometry.material[first:last]].any()
+        for first, last in geometry.mesh_range[geometry.level_first[: geometry.part_first], :2]
+    ]
+    workers = min(thread_count(), math.ceil(lines / BAND))
+    ranges = np.concatenate([geometry.chunk_range, geometry.mesh_range])
+    most = int((ranges[:, 3] - ranges[:, 2]).max(initial=1))
+    bake = ShadowBake(
+        geometry,
+        cards,
+        np.array(solid, np.bool_),
+        rows,
+        np.empty((workers, most, 5)),
+        np.empty((workers, 3, 4)),
+        np.empty((workers, BAND, columns), np.float32),
+        np.empty((workers, BAND, columns), np.int64),
+        heights,
+    )
+    bake_rows(workers, Held(bake))
+    return heights
+
+
+def _cards(geometry: Geometry) -> NDArray[np.int32]:
+    """Return how the leaves of each material are drawn, see `ShadowBake`."""
+    surface = geometry.surface
+    return np.where(
+        surface == Surface.FOLIAGE, CARDS, np.where(surface == Surface.CROWN, -1, 0)
+    ).astype(np.int32)
+
+
+def _content_hash(geometry: Geometry, rows: NDArray[np.float64]) -> str:
+    cards = _cards(geometry)
+    last = geometry.chunk_range[-1] if len(geometry.chunk_range) else np.zeros(4, np.int32)
+    fixtures = geometry.level_first[: geometry.part_first + 1]
+    meshes = geometry.mesh_range[: fixtures[-1]]
+    triangles, vertices = (meshes if len(meshes) else [last])[-1][[1, 3]]
+    kept = (
+        rows,
+        geometry.positions[:vertices],
+        geometry.uvs[:vertices],
+        cards[geometry.material[:triangles]],
+        geometry.texture[np.unique(geometry.layer[cards > 0])] >> 24,
+        geometry.corners[:triangles],
+        fixtures,
+        geometry.fixture_prototype,
+        geometry.fixture_pose,
+    )
+    return content_hash(_FORMAT, kept)

@@ -1,0 +1,1 @@
+"""Sun, shadows, ambient light, lamps, and the tone curve."""

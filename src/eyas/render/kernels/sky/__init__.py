@@ -1,0 +1,1 @@
+"""Sky, clouds, horizon and falling snow."""

@@ -1,0 +1,1 @@
+"""Shading of surfaces: texture, snow, water."""

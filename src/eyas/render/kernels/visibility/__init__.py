@@ -1,0 +1,1 @@
+"""From triangles to the visibility buffer: culling, transforming, rasterising."""

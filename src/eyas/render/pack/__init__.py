@@ -1,0 +1,1 @@
+"""Scene, parts and light packed into the arrays that the kernels read."""

@@ -1,0 +1,226 @@
+"""From a scene and a part library to the packed arrays of the kernels."""
+
+import itertools
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.render.kernels.bundles import GROUP, Geometry
+from eyas.render.pack.silhouette import silhouette
+from eyas.render.pack.snow import crown_middles, snow_beds
+from eyas.render.pack.triangles import gradients, solid_triangles
+from eyas.render.textures.mipmap import linear, packed_layers
+from eyas.state.draw import PartLibrary
+from eyas.state.mesh import Material, Mesh
+from eyas.state.scene import ObjectClass, Scene
+
+__all__ = ["CHUNK", "build_geometry"]
+
+CHUNK = 32.0
+"""Side of the squares that static triangles are sorted into [m]."""
+
+_FIXTURE_CELL = 6.0
+"""Side of the squares by which fixtures are sorted, so that groups of them are small [m]."""
+
+_HIGH = 4.0
+"""What stands higher than this is in a group with other such things [m]."""
+
+
+def build_geometry(
+    scene: Scene, parts: PartLibrary, textures: Mapping[str, NDArray[np.uint8]]
+) -> Geometry:
+    """Return everything that can be drawn.
+
+    Args:
+        scene: What stands still.
+        parts: What moving things are made of.
+        textures: sRGB and alpha by name, shape (256, 256, 4) each.
+
+    Raises:
+        UnknownNameError: A material asks for a texture that is not there.
+    """
+    pool = _Pool()
+    chunk_range, chunk_box = _add_chunks(pool, scene)
+    prototypes = (*scene.fixtures.levels, *parts.parts)
+    mesh_range = [pool.add(mesh, None) for levels in prototypes for mesh in levels]
+    box = np.array([_box(levels[0].positions) for levels in prototypes], np.float32).reshape(-1, 6)
+    sphere = [_sphere(levels[0].positions) for levels in prototypes]
+    order = _fixture_order(scene.fixtures.pose[:, :, 3])
+    pose = np.ascontiguousarray(scene.fixtures.pose[order], np.float32)
+    prototype = scene.fixtures.prototype[order].astype(np.int32)
+    palette = tuple(pool.palette)
+    names = sorted({material.texture for material in palette} | {"plain"})
+    triangles, positions, uvs = pool.joined()
+    return Geometry(
+        positions=positions,
+        uvs=uvs,
+        corners=triangles,
+        gradients=np.concatenate([np.zeros((0, 24), np.float32), *pool.gradients]),
+        material=np.concatenate([np.zeros(0, np.int32), *pool.materials]),
+        size=np.concatenate([np.zeros(0, np.float32), *pool.sizes]),
+        object_id=np.concatenate([np.zeros(0, np.int32), *pool.objects]),
+        chunk_box=chunk_box,
+        chunk_group_box=_group_boxes(chunk_box),
+        chunk_range=chunk_range,
+        mesh_range=np.array(mesh_range, np.int32).reshape(-1, 4),
+        level_first=np.cumsum([0, *[len(levels) for levels in prototypes]]).astype(np.int32),
+        part_first=len(scene.fixtures.levels),
+        sphere=np.array(sphere, np.float32).reshape(-1, 4),
+        box=box,
+        silhouette=np.array([silhouette(m[0]) for m in prototypes], np.float32).reshape(-1, 7),
+        fixture_prototype=prototype,
+        fixture_pose=pose,
+        fixture_object=scene.fixtures.object_id[order].astype(np.int32),
+        fixture_group_box=_group_boxes(_posed_boxes(box[prototype], pose)),
+        layer=np.array([names.index(material.texture) for material in palette], np.int32),
+        surface=np.array([material.surface for material in palette], np.int32),
+        tint=linear(np.array([material.tint for material in palette]).reshape(-1, 3)).astype(
+            np.float32
+        ),
+        emission=np.array([material.emission for material in palette], np.float32),
+        snow_bed=snow_beds(scene, parts, palette),
+        crown_middle=crown_middles(scene, palette),
+        texture=packed_layers(textures, names),
+    )
+
+
+class _Pool:
+    """All vertices and triangles, one mesh after the other, with one palette."""
+
+    def __init__(self) -> None:
+        self.palette: dict[Material, int] = {}
+        self.positions: list[NDArray[np.float32]] = []
+        self.uvs: list[NDArray[np.float32]] = []
+        self.triangles: list[NDArray[np.int32]] = []
+        self.gradients: list[NDArray[np.float32]] = []
+        self.materials: list[NDArray[np.int32]] = []
+        self.objects: list[NDArray[np.int32]] = []
+        self.sizes: list[NDArray[np.float32]] = []
+        self._vertex_count = 0
+        self._triangle_count = 0
+
+    def add(
+        self,
+        mesh: Mesh,
+        objects: NDArray[np.int32] | None,
+        sizes: NDArray[np.float32] | None = None,
+    ) -> tuple[int, int, int, int]:
+        """Append a mesh; return its ranges as in `Geometry.mesh_range`."""
+        keep = np.flatnonzero(solid_triangles(mesh))
+        none = np.full(len(mesh.triangles), np.inf, np.float32)
+        self.sizes.append((none if sizes is None else sizes)[keep])
+        used, inverse = np.unique(mesh.triangles[keep], return_inverse=True)
+        triangles = inverse.reshape(-1, 3).astype(np.int32)
+        lookup = np.array(
+            [self.palette.setdefault(m, len(self.palette)) for m in mesh.palette], np.int32
+        )
+        positions, uvs = mesh.positions[used], mesh.uvs[used]
+        self.positions.append(positions)
+        self.uvs.append(uvs)
+        self.gradients.append(gradients(positions, mesh.normals[used], uvs, triangles))
+        self.triangles.append(triangles + np.int32(self._vertex_count))
+        self.materials.append(lookup[mesh.materials[keep]])
+        self.objects.append(np.full(len(keep), -1, np.int32) if objects is None else objects[keep])
+        first = self._triangle_count, self._vertex_count
+        self._triangle_count += len(keep)
+        self._vertex_count += len(used)
+        return first[0], self._triangle_count, first[1], self._vertex_count
+
+    def joined(self) -> tuple[NDArray[np.int32], NDArray[np.float32], NDArray[np.float32]]:
+        """Return all triangles, positions and texture coordinates."""
+        return (
+            np.concatenate([np.zeros((0, 3), np.int32), *self.triangles]),
+            np.concatenate([np.zeros((0, 3), np.float32), *self.positions]),
+            np.concatenate([np.zeros((0, 2), np.float32), *self.uvs]),
+        )
+
+
+def _add_chunks(pool: _Pool, scene: Scene) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
+    """Add the static mesh square by square; return `chunk_range` and `chunk_box`."""
+    mesh = scene.static
+    corners = mesh.positions[mesh.triangles]
+    middle = (corners.min(axis=1) + corners.max(axis=1))[:, :2] / 2
+    cell = np.floor(middle / CHUNK).astype(np.int64)
+    cell -= cell.min(axis=0, initial=0)
+    # What is much larger than a square would make that square's box large: it goes by itself.
+    span = (corners.max(axis=1) - corners.min(axis=1))[:, :2].max(axis=1, initial=0)
+    key = np.where(span > 4 * CHUNK, -1, _morton(cell))
+    size = _detail_sizes(scene, corners)
+    order = np.lexsort((-size, key))
+    starts = np.flatnonzero(np.diff(key[order], prepend=-2, append=-3) != 0)
+    ranges, boxes = [], []
+    for first, last in itertools.pairwise(starts):
+        index = order[first:last]
+        part = Mesh(
+            positions=mesh.positions,
+            normals=mesh.normals,
+            uvs=mesh.uvs,
+            triangles=mesh.triangles[index],
+            materials=mesh.materials[index],
+            palette=mesh.palette,
+        )
+        objects = scene.static_object[index].astype(np.int32)
+        ranges.append(pool.add(part, objects, size[index]))
+        boxes.append(_box(mesh.positions[part.triangles].reshape(-1, 3)))
+    return (
+        np.array(ranges, np.int32).reshape(-1, 4),
+        np.array(boxes, np.float32).reshape(-1, 6),
+    )
+
+
+def _detail_sizes(scene: Scene, corners: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Return `Geometry.size`: paint lies on roads, and behind parts of houses stand others."""
+    kind = scene.object_class[scene.static_object]
+    detail = np.isin(kind, (ObjectClass.MARKING, ObjectClass.BUILDING))
+    sides = corners[:, 1:] - corners[:, :1]
+    area = 0.5 * np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
+    return np.where(detail, np.sqrt(area), np.inf).astype(np.float32)
+
+
+def _box(positions: NDArray[np.float32]) -> NDArray[np.float32]:
+    if len(positions) == 0:
+        return np.zeros(6, np.float32)
+    return np.concatenate([positions.min(axis=0), positions.max(axis=0)])
+
+
+def _sphere(positions: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Return centre and radius of a sphere around all points, shape (4,)."""
+    box = _box(positions)
+    centre = (box[:3] + box[3:]) / 2
+    radius = np.linalg.norm(positions - centre, axis=1).max(initial=0.0)
+    return np.append(centre, np.float32(radius * 1.0001))
+
+
+def _posed_boxes(boxes: NDArray[np.float32], poses: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Return boxes around boxes that were moved by poses, shape (F, 6)."""
+    centre, half = (boxes[:, :3] + boxes[:, 3:]) / 2, (boxes[:, 3:] - boxes[:, :3]) / 2
+    middle = np.einsum("fij,fj->fi", poses[:, :, :3], centre) + poses[:, :, 3]
+    reach = np.einsum("fij,fj->fi", np.abs(poses[:, :, :3]), half)
+    return np.concatenate([middle - reach, middle + reach], axis=1)
+
+
+def _group_boxes(boxes: NDArray[np.float32]) -> NDArray[np.float32]:
+    """Return the box around each `GROUP` boxes in a row."""
+    starts = np.arange(0, len(boxes), GROUP)
+    if len(starts) == 0:
+        return np.zeros((0, 6), np.float32)
+    low = np.minimum.reduceat(boxes[:, :3], starts, axis=0)
+    high = np.maximum.reduceat(boxes[:, 3:], starts, axis=0)
+    return np.ascontiguousarray(np.concatenate([low, high], axis=1), np.float32)
+
+
+def _fixture_order(points: NDArray[np.float32]) -> NDArray[np.intp]:
+    """Return an order in which neighbours are neighbours in the list, high things apart."""
+    cell = np.floor(points[:, :2] / _FIXTURE_CELL).astype(np.int64)
+    key = _morton(cell - cell.min(axis=0, initial=0))
+    return np.lexsort((key, points[:, 2] > _HIGH))
+
+
+def _morton(cell: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return numbers that interleave the bits of x and y (G. M. Morton, 1966)."""
+    number = np.zeros(len(cell), np.int64)
+    for bit in range(16):
+        for axis in range(2):
+            number |= ((cell[:, axis] >> bit) & 1) << (2 * bit + axis)
+    return number

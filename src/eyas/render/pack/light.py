@@ -1,0 +1,82 @@
+"""Light and air as the kernels read them, and the curve from light to picture."""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from eyas.core.kept import kept
+from eyas.render.bake.ambient import AmbientMap
+from eyas.render.bake.clouds import build_clouds
+from eyas.render.bake.hills import build_hills, far_ground
+from eyas.render.bake.shadows import ShadowMap
+from eyas.render.bake.tracks import TrackMap
+from eyas.render.kernels.bundles import Geometry, Light
+from eyas.render.kernels.light.tone import TONE_STEPS, TONE_TOP
+from eyas.render.pack.lamp_grid import lamp_grid
+from eyas.state.scene import Lamps, Lighting
+
+__all__ = ["build_light", "tone_table"]
+
+
+def build_light(
+    lighting: Lighting,
+    shadows: ShadowMap,
+    ambient: AmbientMap,
+    lamps: Lamps,
+    tracks: TrackMap,
+    geometry: Geometry,
+) -> Light:
+    """Return the light of a weather over a scene."""
+    lamp, lamp_cell, lamp_frame = lamp_grid(lamps)
+    sun = np.array(lighting.sun_direction, np.float64)
+    sun /= np.linalg.norm(sun)
+    toward = (float(sun[0]), float(sun[1]), float(sun[2]))
+    clouds, hills = kept(
+        "sky",
+        ("render",),
+        (lighting.clouds, toward),
+        lambda: (build_clouds(lighting.clouds, toward), build_hills(toward)),
+    )
+    # A point is moved off its surface by what its shadow can be off the texel's middle.
+    offset = 1.1 * shadows.texel
+    air = [lighting.fog_density, lighting.fog_power, lighting.exposure, offset, lighting.snow]
+    air += [lighting.lamps, lighting.windows, lighting.clouds, lighting.flakes]
+    return Light(
+        sun=_row(sun),
+        sun_colour=_row(lighting.sun_colour),
+        zenith=_row(lighting.zenith_colour),
+        horizon=_row(lighting.horizon_colour),
+        ambient_up=_row(lighting.ambient_up),
+        ambient_down=_row(lighting.ambient_down),
+        fog=_row(lighting.fog_colour),
+        air=_row(air),
+        shadow_map=shadows.heights,
+        shadow_rows=np.ascontiguousarray(shadows.rows, np.float32),
+        ambient=ambient.openness,
+        ambient_frame=_row(ambient.frame),
+        lamp=lamp,
+        lamp_cell=lamp_cell,
+        lamp_frame=lamp_frame,
+        tracks=tracks.worn,
+        track_frame=_row(tracks.frame),
+        tone=tone_table(),
+        ground=_row(far_ground(geometry)),
+        clouds=clouds,
+        hills=hills,
+    )
+
+
+def tone_table() -> NDArray[np.uint8]:
+    """Return the byte for each step of exposed radiance, 0 to `TONE_TOP`.
+
+    `1 - exp(-1.35 x)`, then sRGB (IEC 61966-2-1): nearly linear in the dark, and what is brighter
+    than white paper still has some shape.
+    """
+    radiance = (np.arange(TONE_STEPS) + 0.5) * (TONE_TOP / TONE_STEPS)
+    tone = 1.0 - np.exp(-1.35 * radiance)
+    encoded = np.where(tone <= 0.0031308, 12.92 * tone, 1.055 * tone ** (1 / 2.4) - 0.055)
+    table: NDArray[np.uint8] = np.round(255.0 * np.clip(encoded, 0.0, 1.0)).astype(np.uint8)
+    return table
+
+
+def _row(values: ArrayLike) -> NDArray[np.float32]:
+    return np.ascontiguousarray(values, np.float32)

@@ -1,0 +1,60 @@
+"""The original's path of a world, which says map and weather."""
+
+import logging
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from typing_extensions import override
+
+from eyas.core.config import shown
+from eyas.core.errors import ConfigError
+from eyas.sim.legacy.entries import Entry, Guess, Values
+
+__all__ = ["WorldPath"]
+
+_LOG = logging.getLogger("eyas")
+
+
+@dataclass(frozen=True, slots=True)
+class WorldPath(Entry):
+    """The path of a world, `<map>-<weather>.wbt`."""
+
+    key: str
+    map: str
+    weather: str
+
+    @property
+    @override
+    def keys(self) -> tuple[str, ...]:
+        return (self.key,)
+
+    @property
+    @override
+    def paths(self) -> tuple[str, ...]:
+        return self.map, self.weather
+
+    @override
+    def read(self, values: Values) -> Values:
+        path = values[self.key]
+        if path is None:
+            return {}
+        if not isinstance(path, str):
+            raise ConfigError(f"{self.key}: {shown(path)} is not allowed: text")
+        found = re.fullmatch(r"(?:.*[/\\])?([^-/\\]+)-([^/\\]+)\.wbt", path)
+        if found is None:
+            _LOG.warning("%s: %s names no map and weather; it is not used", self.key, shown(path))
+            return {}
+        return {self.map: found[1], self.weather: found[2]}
+
+    @override
+    def write(self, fields: Values) -> Values:
+        name, weather = fields[self.map], fields[self.weather]
+        said = {self.key: f"worlds/{name}-{weather}.wbt"}
+        if self.read(said) != {self.map: name, self.weather: weather}:
+            raise ConfigError(f"{self.map}: {shown(name)} cannot be said in env_config.json")
+        return said
+
+    @override
+    def blame(self, values: Values) -> Iterator[Guess]:
+        yield Guess(self.key)

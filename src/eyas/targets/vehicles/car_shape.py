@@ -1,0 +1,168 @@
+"""The lines of a car, and the cross-sections that follow from them.
+
+Every section has the same points on its left half, from below to above: 0 middle of the floor,
+1 sill, 2 top of the sill, 3 widest, 4 belt line, 5 upper edge of the side window, 6 edge of the
+roof, 7 middle of the roof. Ahead of and behind the cabin points 4 to 7 form the bonnet and boot.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.state.mesh import Material
+from eyas.targets.catalogue import VehicleModel
+from eyas.targets.vehicles.finishes import PAINT
+
+__all__ = [
+    "CarShape",
+    "arch_radius",
+    "coarse_stations",
+    "fine_stations",
+    "height_at",
+    "middle_stations",
+    "sections",
+]
+
+Points = tuple[tuple[float, float], ...]
+Range = tuple[float, float]
+
+_WIDE_OF_BODY = 0.04
+"""The body is narrower than the mirrors by this on each side [m]."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class CarShape:
+    """Lines of a car. x forward from the middle [m], in rising order."""
+
+    top: Points
+    """Middle of boot, roof and bonnet (x, z)."""
+    belt: Points
+    """Lower edge of the side windows (x, z)."""
+    plan: Points
+    """Half width as a share of the body's (x, share)."""
+    windscreen: Range
+    """From the roof to the bonnet."""
+    rear_window: Range
+    """From its lower edge to the roof."""
+    windows: tuple[Range, ...]
+    """Side windows; pillars are between them."""
+    lean: float = 0.28
+    """How much the side windows lean inwards."""
+    clearance: float = 0.2
+    """z of the floor."""
+    head_lamps: float = 0.3
+    """How far the front lamps reach round the corner."""
+    tail_lamps: float = 0.2
+    """How far the rear lamps reach round the corner."""
+    tall_tail_lamps: bool = False
+    """Whether the rear lamps reach up beside the rear window."""
+    tail_window: bool = False
+    """Whether the rear end has a window (it is upright)."""
+    nose_window: bool = False
+    """Whether the front end has one."""
+    roof: Material = PAINT
+    """Of the roof."""
+    rails: Material = PAINT
+    """Of the edges of the roof and the pillars at its corners."""
+    sill: Material = PAINT
+    """Of the lowest part of the sides."""
+    pods: tuple[tuple[float, float, float], ...] = ()
+    """Boxes on the roof: from, to (x) and top (z)."""
+
+
+def middle_stations(shape: CarShape) -> NDArray[np.float64]:
+    """Return where the sections of the middle level are [m]: the kinks of the roof line."""
+    plan = np.array(shape.plan)[:, 0]
+    ends = (plan[0], plan[1], plan[-2], plan[-1])
+    return _merged([*(x for x, _ in shape.top), *ends], 0.12)
+
+
+def coarse_stations(shape: CarShape) -> NDArray[np.float64]:
+    """Return where the sections of the coarsest level are [m]."""
+    tail, nose, bend = shape.top[0][0], shape.top[-1][0], shape.plan[-2][0]
+    return _merged([tail, *shape.rear_window, *shape.windscreen, bend, nose], 0.1)
+
+
+def fine_stations(vehicle: VehicleModel, shape: CarShape) -> NDArray[np.float64]:
+    """Return where the sections of the finest level are [m]: wherever a panel ends."""
+    tail, nose = shape.top[0][0], shape.top[-1][0]
+    reach = arch_radius(vehicle.wheel_radius)
+    cuts = np.array([-1.0, -0.96, -0.6, 0.6, 0.96, 1.0]) * reach
+    arches = [float(axle.x + cut) for axle in vehicle.axles for cut in cuts]
+    lamps = [tail + shape.tail_lamps, nose - shape.head_lamps]
+    windows = [x for pair in shape.windows for x in pair]
+    edges = [*windows, *lamps, *arches, *shape.windscreen, *shape.rear_window, tail, nose]
+    # Kinks of the outline may move a little to where panels end anyway.
+    kinks = [x for line in (shape.top, shape.plan) for x, _ in line]
+    kinks = [x for x in kinks if min(abs(x - edge) for edge in edges) > 0.07]
+    return _merged([*edges, *kinks], 0.004)
+
+
+def _merged(places: list[float], least: float) -> NDArray[np.float64]:
+    """Return the places in order without those that are nearer than `least` to the one before."""
+    kept: list[float] = []
+    ordered = sorted(places)
+    for x in ordered:
+        if not kept or x - kept[-1] > least:
+            kept.append(x)
+    kept[-1] = ordered[-1]
+    return np.array(kept)
+
+
+def arch_radius(wheel_radius: float) -> float:
+    """Return the radius of the cut round a wheel [m]."""
+    return 1.14 * wheel_radius + 0.02
+
+
+def _line(points: Points, x: NDArray[np.float64]) -> NDArray[np.float64]:
+    table = np.array(points)
+    return np.asarray(np.interp(x, table[:, 0], table[:, 1]), np.float64)
+
+
+def height_at(points: Points, x: float) -> float:
+    """Return the height of a line (x, z) at a place [m]."""
+    return float(_line(points, np.array([x]))[0])
+
+
+def _floor(vehicle: VehicleModel, shape: CarShape, x: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the lower edge of the sides, cut out round the wheels [m]."""
+    z = np.full(len(x), shape.clearance)
+    reach = arch_radius(vehicle.wheel_radius)
+    for axle in vehicle.axles:
+        away = np.abs(x - axle.x) / reach
+        arch = vehicle.wheel_radius + reach * np.sqrt(np.maximum(1.0 - away**2, 0.0))
+        z = np.where(away < 0.99, np.maximum(z, arch), z)
+    return z
+
+
+def sections(
+    vehicle: VehicleModel, shape: CarShape, x: NDArray[np.float64], *, arches: bool
+) -> NDArray[np.float64]:
+    """Return the left halves of the sections, all eight points, shape (S, 8, 3)."""
+    wide = (vehicle.width / 2 - _WIDE_OF_BODY) * _line(shape.plan, x)
+    top = _line(shape.top, x)
+    belt = np.minimum(_line(shape.belt, x), top - 0.012)
+    rise = top - belt
+    floor = _floor(vehicle, shape, x) if arches else np.full(len(x), shape.clearance)
+    tucked = 0.06 if arches else 0.055  # without arches the wheels stand out of the sides
+    sill = wide - np.where(floor > shape.clearance, 0.0, tucked)
+    sill_top = np.maximum(floor, shape.clearance + 0.12) if arches else 0.65 * belt
+    floor = np.minimum(floor, belt - 0.06)
+    # Mostly above the arches, so that its line runs straight over them.
+    waist = np.maximum(0.84 * belt, floor + 0.005)
+    belt_y = wide - 0.045
+    window_y = belt_y - 0.06 * np.minimum(rise / 0.3, 1.0) - shape.lean * 0.86 * rise
+    window_y = np.minimum(window_y, 0.94 * belt_y)
+    roof_y = window_y - 0.085
+    halves = [
+        (np.zeros(len(x)), floor),
+        (sill, floor),
+        (wide if arches else sill, sill_top),
+        (wide, waist),
+        (belt_y, belt),
+        (window_y, belt + 0.84 * rise),
+        (roof_y, belt + 0.94 * rise),
+        (np.zeros(len(x)), top),
+    ]
+    return np.stack([np.column_stack([x, y, z]) for y, z in halves], axis=1)

@@ -1,0 +1,65 @@
+"""Wheels: dark tyres with light discs, turning about the y axis."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.state.mesh import Mesh
+from eyas.targets.vehicles.finishes import RIM, TRIM, TYRE
+from eyas.targets.vehicles.shell import Shell
+
+__all__ = ["wheel_levels"]
+
+_DISC = 0.66
+"""Radius of the disc, as a share of the wheel's."""
+
+_SHOULDER = 0.92
+"""Radius where the tread begins to bend into the side, the same."""
+
+
+def wheel_levels(radius: float, width: float, pair: float) -> tuple[Mesh, ...]:
+    """Return the levels of detail of one wheel, or of two on an axle, centred at the origin.
+
+    Args:
+        radius: [m]
+        width: Of the tyre [m].
+        pair: Between the middles of two wheels [m]; 0 for one wheel.
+    """
+    places = (pair / 2, -pair / 2) if pair else (0.0,)
+    fine, coarse = Shell(), Shell()
+    for y in places:
+        _fine(fine, radius, width, y)
+        _coarse(coarse, radius, width, y)
+    return fine.mesh(), coarse.mesh()
+
+
+def _ring(radius: float, y: float, sides: int) -> NDArray[np.float64]:
+    """Return a circle, counter-clockwise seen from the right, with a lowest corner."""
+    angle = np.arange(sides) * (2 * np.pi / sides) - np.pi / 2
+    return np.column_stack([radius * np.cos(angle), np.full(sides, y), radius * np.sin(angle)])
+
+
+def _fine(shell: Shell, radius: float, width: float, y: float) -> None:
+    sides, half = 15, width / 2
+    # From the left to the right, so that the rings lead to where they are counter-clockwise.
+    sections = [
+        (_DISC, half), (_SHOULDER, half), (1.0, 0.7 * half),
+        (1.0, -0.7 * half), (_SHOULDER, -half), (_DISC, -half),
+    ]  # fmt: skip
+    rings = np.stack([_ring(radius * r, y + place, sides) for r, place in sections])
+    shell.rings(rings, TYRE, caps=False)
+    for side in (1.0, -1.0):
+        rim = _ring(radius * _DISC, y + side * half, sides)[:: -int(side)]
+        hub = [0.0, y + side * (half + 0.01), 0.0]
+        follow = np.roll(rim, -1, axis=0)
+        fan = np.stack([rim, follow, np.broadcast_to(hub, rim.shape)], axis=1)
+        gap = np.arange(sides) % 3 == 2  # five spokes
+        shell.triangles(fan[~gap], RIM)
+        shell.triangles(fan[gap], TRIM)
+
+
+def _coarse(shell: Shell, radius: float, width: float, y: float) -> None:
+    sides, half = 8, width / 2
+    shell.rings([_ring(radius, y + half, sides), _ring(radius, y - half, sides)], TYRE)
+    for side in (1.0, -1.0):
+        disc = _ring(0.62 * radius, y + side * (half + 0.006), sides)[:: -int(side)]
+        shell.triangles([[disc[0], disc[i], disc[i + 1]] for i in range(1, sides - 1)], RIM)

@@ -1,0 +1,1 @@
+"""Buildings: lots, heights, facades, roofs."""

@@ -1,0 +1,80 @@
+"""What a building looks like: street level, base, shaft and top, roof."""
+
+import zlib
+from itertools import pairwise
+
+import numpy as np
+
+from eyas.state.mesh import Material, Mesh, concatenate
+from eyas.world.build.materials import GROUND_FLOORS, facade, material
+from eyas.world.buildings import parts
+from eyas.world.buildings.placing import FOOT, PARAPET, Building
+from eyas.world.buildings.skyline import FLOOR
+
+__all__ = ["chance_of", "mesh_of"]
+
+_TALL = 10
+"""Storeys from which on a building has a base and a top [storeys]."""
+
+_BAND = 11
+"""Storeys after which a high wall starts at other bays."""
+
+_CROWNS = {
+    "facade_brick": "facade_stone",
+    "facade_plaster": "facade_old",
+    "facade_office": "facade_glass",
+    "facade_highrise": "facade_glass",
+    "facade_concrete": "facade_bands",
+    "facade_red_white": "facade_plaster",
+}
+"""What the top storeys of a high building show, where that is not its own facade."""
+
+
+def mesh_of(building: Building) -> Mesh:
+    """Return what a building looks like from outside; the same building always looks the same."""
+    rng = chance_of(building)
+    foot, outline = building.bottom, building.footprint
+    top = foot + building.height
+    street = min(FLOOR, building.height - FLOOR) if foot <= FOOT else 0.0
+    front = facade(GROUND_FLOORS[int(rng.integers(len(GROUND_FLOORS)))], building.tint)
+    stone = material("concrete", building.tint)
+    meshes = _shaft_walls(building, foot + street, top, stone, rng)
+    if street > 0:
+        meshes.append(parts.window_wall(outline, foot, foot + street, front, rng))
+        meshes.append(parts.ledge(outline, foot + street, stone))
+    if building.roof == "flat":
+        meshes.append(parts.flat_roof(outline, top, PARAPET, stone, building.roof_material))
+    else:
+        meshes.append(parts.pyramid_roof(outline, top, stone, building.roof_material))
+    return concatenate(meshes)
+
+
+def chance_of(building: Building) -> np.random.Generator:
+    """Return the random numbers of a building's looks."""
+    return np.random.Generator(np.random.PCG64(zlib.crc32(building.footprint.tobytes())))
+
+
+def _shaft_walls(
+    building: Building, low: float, top: float, stone: Material, rng: np.random.Generator
+) -> list[Mesh]:
+    """Return the walls above the street: high ones in a base, a shaft of bands, and a top.
+
+    Each band starts at bays of its own, so that a pattern of blinds does not climb the wall.
+    """
+    made = []
+    walled = facade(building.facade, building.tint)
+    floors = round((top - low) / FLOOR)
+    cuts = [low, top]
+    if floors >= _TALL:
+        base, crown = (int(n) for n in rng.integers(1, 4, 2))
+        dark = (0.8 * building.tint[0], 0.8 * building.tint[1], 0.8 * building.tint[2])
+        crowned = facade(_CROWNS.get(building.facade, building.facade), building.tint)
+        between = np.arange(base, floors - crown - _BAND // 2, _BAND) * FLOOR + low
+        cuts = [low, *between.tolist(), top - crown * FLOOR, top]
+        made += [parts.ledge(building.footprint, z, stone) for z in (cuts[1], cuts[-2])]
+    for k, (bottom, upper) in enumerate(pairwise(cuts)):
+        look = walled
+        if floors >= _TALL and k in (0, len(cuts) - 2):
+            look = crowned if k else facade(building.facade, dark)
+        made.append(parts.window_wall(building.footprint, bottom, upper, look, rng))
+    return made

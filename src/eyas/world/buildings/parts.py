@@ -1,0 +1,121 @@
+"""Walls, ledges and roofs of buildings. Outlines are counter-clockwise, lengths in metres."""
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from eyas.state.mesh import Material, Mesh, concatenate
+from eyas.world.build.materials import TEXTURES
+from eyas.world.build.shapes import flat_polygon, quads, walls
+
+__all__ = ["flat_roof", "ledge", "pyramid_rise", "pyramid_roof", "window_wall"]
+
+Outline = NDArray[np.float64]
+
+_TILE = 12.0
+"""Metres one repeat of a facade covers: four bays, four storeys."""
+
+
+def window_wall(
+    outline: Outline, bottom: float, top: float, wall: Material, rng: np.random.Generator
+) -> Mesh:
+    """Return walls whose windows meet corners and storeys in whole bays.
+
+    Each wall starts at a bay and a storey of its own, so that blinds differ from wall to wall;
+    walls too short for a window show the pier between two.
+    """
+    mesh = walls(outline, bottom, top, wall, _TILE)
+    length = np.linalg.norm(np.roll(outline, -1, axis=0) - outline, axis=1)
+    uv = mesh.uvs.reshape(-1, 4, 2)
+    short = length < 1.8
+    uv[short, 1:3, 0] = 0.012
+    uv[short, 0, 0] = uv[short, 3, 0] = -0.012
+    uv += rng.integers(0, 4, (len(outline), 1, 2)).astype(np.float32) / 4
+    return mesh
+
+
+def ledge(outline: Outline, z: float, stone: Material) -> Mesh:
+    """Return a thin band around a building that stands out from its wall."""
+    shape = shapely.Polygon(outline)
+    out = _ring(shapely.buffer(shape, 0.22, join_style="mitre"))
+    band = walls(out, z - 0.18, z + 0.12, stone, 6.0)
+    return concatenate([band, flat_polygon(shapely.Polygon(out) - shape, z + 0.12, stone, 6.0)])
+
+
+def flat_roof(
+    outline: Outline, top: float, parapet: float, stone: Material, cover: Material
+) -> Mesh:
+    """Return a roof with a parapet around it."""
+    shape = shapely.Polygon(outline)
+    inside = shapely.buffer(shape, -0.35, join_style="mitre")
+    pieces = [walls(outline, top, top + parapet, stone, 6.0)]
+    pieces.append(flat_polygon(shape - inside, top + parapet, stone, 6.0))
+    pieces += [
+        walls(_ring(part)[::-1], top, top + parapet, stone, 6.0)
+        for part in shapely.get_parts(inside)
+    ]
+    pieces.append(flat_polygon(inside, top, cover, TEXTURES[cover.texture]))
+    return concatenate(pieces)
+
+
+def pyramid_rise(outline: Outline) -> float:
+    """Return how high a pyramid roof rises above its eaves [m]."""
+    return float(np.clip(0.3 * _short_side(outline), 2.5, 7.0))
+
+
+def pyramid_roof(outline: Outline, top: float, stone: Material, tiles: Material) -> Mesh:
+    """Return a tiled roof with eaves, rising to a point, or to a ridge over a long rectangle."""
+    shape = shapely.Polygon(outline)
+    eaves = _ring(shapely.buffer(shape, 0.6, join_style="mitre"))
+    peak = top + pyramid_rise(outline)
+    centre = shapely.get_coordinates(shape.centroid)[0]
+    start, end = eaves, np.roll(eaves, -1, axis=0)
+    ridge = _ridge(outline, centre)
+    near = [ridge[np.argmin(np.linalg.norm(ridge - p, axis=1))] for p in start]
+    apex = np.column_stack([np.array(near), np.full(len(eaves), peak)])
+    apex_end = np.roll(apex, -1, axis=0)
+    low = np.full((len(eaves), 1), top)
+    corners = np.stack([np.hstack([start, low]), np.hstack([end, low]), apex_end, apex], axis=1)
+    along = (end - start) / np.linalg.norm(end - start, axis=1, keepdims=True)
+    offset = corners - corners[:, :1]
+    u = np.einsum("qki,qi->qk", offset[:, :, :2], along)
+    up = np.linalg.norm(
+        offset - np.concatenate([u[..., None] * along[:, None], 0 * u[..., None]], axis=2), axis=2
+    )
+    slopes = quads(corners, np.stack([u, up], axis=2) / 4.0, tiles)
+    slopes.triangles = slopes.triangles[_areas(slopes) > 1e-6]
+    slopes.materials = slopes.materials[: len(slopes.triangles)]
+    soffit = flat_polygon(shapely.Polygon(eaves) - shape, top, stone, 6.0)
+    soffit.triangles = np.ascontiguousarray(soffit.triangles[:, ::-1])
+    soffit.normals = -soffit.normals
+    return concatenate([slopes, soffit])
+
+
+def _areas(mesh: Mesh) -> NDArray[np.float64]:
+    """Return the areas of triangles; those of a slope that ends in a point include empty ones."""
+    corners = np.asarray(mesh.positions[mesh.triangles], np.float64)
+    face = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return np.asarray(np.linalg.norm(face, axis=1) / 2, np.float64)
+
+
+def _ridge(outline: Outline, centre: Outline) -> Outline:
+    """Return the end points of the ridge, one point for anything that is no long rectangle."""
+    if len(outline) != 4:
+        return centre[None]
+    sides = np.roll(outline, -1, axis=0) - outline
+    lengths = np.linalg.norm(sides, axis=1)
+    half = max(float(lengths.max() - lengths.min()) / 2, 0.0)
+    if half < 0.15 * lengths.max():
+        return centre[None]
+    along = sides[int(np.argmax(lengths))] / lengths.max()
+    return np.array([centre - half * along, centre + half * along])
+
+
+def _short_side(outline: Outline) -> float:
+    ring = shapely.get_coordinates(shapely.minimum_rotated_rectangle(shapely.Polygon(outline)))
+    return float(np.linalg.norm(np.diff(ring, axis=0)[:2], axis=1).min())
+
+
+def _ring(shape: shapely.Polygon) -> Outline:
+    ring = shapely.get_coordinates(shapely.geometry.polygon.orient(shape).exterior)[:-1]
+    return np.ascontiguousarray(ring, np.float64)

@@ -1,0 +1,198 @@
+"""Buildings: where they stand in city blocks, and what they look like."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from eyas.state.mesh import Material
+from eyas.world.build.materials import FACADES
+from eyas.world.buildings import parts
+from eyas.world.buildings.looks import roof_cover, wall_tint
+from eyas.world.buildings.lots import divide, footprint_in, frame_angle, largest, turned
+from eyas.world.buildings.skyline import FLOOR, TOWER_SHARE, evenly, ground_areas, storeys
+
+__all__ = ["FOOT", "PARAPET", "SETBACK", "Building", "place_buildings", "prism_of"]
+
+PARAPET = 0.9
+"""Height of the wall around a flat roof [m]."""
+
+SETBACK = 4.4
+"""Least distance between a kerb and a building [m]."""
+
+FOOT = -0.1
+"""z of the floor that buildings stand on [m]."""
+
+_YARD = 0.8
+"""Part of the set-back that `footprint_in` keeps from the edge of every lot [m]."""
+
+_SMALL = 200.0
+"""Larger parts of what is kept free shape the lots, smaller ones only notch footprints [m^2]."""
+
+
+@dataclass(frozen=True)
+class Building:
+    """A building, or a part of one that stands on another."""
+
+    footprint: NDArray[np.float64]
+    """Corners, counter-clockwise [m], shape (K, 2)."""
+    bottom: float
+    """z of its foot [m]."""
+    height: float
+    """From the foot to the eaves, whole storeys [m]."""
+    facade: str
+    """One of `FACADES`."""
+    tint: tuple[float, float, float]
+    """Factor on the facade's colour, sRGB."""
+    roof: str
+    """`flat` with a parapet, or `pyramid`."""
+    roof_material: Material
+    """What covers it."""
+
+
+def place_buildings(
+    blocks: Sequence[shapely.Polygon],
+    count: int,
+    rng: np.random.Generator,
+    keep_free: shapely.Geometry,
+) -> list[Building]:
+    """Fill city blocks with buildings whose sizes are spread as in the original's street city.
+
+    About a fifth are towers that stand on other buildings. No two share space.
+
+    Args:
+        blocks: Ground between streets, bounded by the kerbs, world frame [m].
+        count: How many buildings, towers included; a few less where there is no room.
+        rng: Of the buildings.
+        keep_free: Where nothing may stand.
+    """
+    towers = round(TOWER_SHARE * count)
+    areas = np.sort(ground_areas(count - towers, rng))[::-1]
+    # Every third of the larger ones carries a tower; the very largest are halls and malls.
+    large = np.flatnonzero((areas > 700) & (np.arange(len(areas)) >= 2))
+    carriers = set(rng.permutation(large)[:towers].tolist())
+    shapes: list[shapely.Polygon] = []
+    base: list[int] = []
+    for ground, angle, members in _shared(blocks, areas, keep_free):
+        wanted = [(float(areas[i]), i in carriers) for i in members]
+        for lot, carrier in divide(ground, wanted):
+            shape = _clear(footprint_in(lot, rng, plain=carrier), angle, keep_free)
+            if shape.area >= 6.0:
+                shapes.append(turned(shape, angle))
+                base.append(-1)
+                if carrier and shape.area > 500:
+                    shapes.append(turned(_shaft(shape, rng), angle))
+                    base.append(len(shapes) - 2)
+    return _furnished(shapes, np.array(base, np.int64), rng)
+
+
+def _shared(
+    blocks: Sequence[shapely.Polygon], areas: NDArray[np.float64], keep_free: shapely.Geometry
+) -> list[tuple[shapely.Polygon, float, list[int]]]:
+    """Return for each block its free ground, turned to its streets, its angle and its buildings."""
+    wide = [part for part in shapely.get_parts(keep_free) if part.area > _SMALL]
+    grounds, angles = [], []
+    for block in blocks:
+        inner = shapely.buffer(block, _YARD - SETBACK, join_style="mitre")
+        inner = largest(shapely.difference(inner, shapely.union_all(wide)))
+        if inner.area > 200:
+            angles.append(frame_angle(inner))
+            grounds.append(turned(inner, -angles[-1]))
+    room = np.array([ground.area for ground in grounds])
+    members: list[list[int]] = [[] for _ in grounds]
+    for i, area in enumerate(areas) if grounds else ():
+        block_index = int(np.argmax(room))
+        members[block_index].append(i)
+        room[block_index] -= 1.6 * area + 400.0
+    return [entry for entry in zip(grounds, angles, members, strict=True) if entry[2]]
+
+
+def _clear(shape: shapely.Polygon, angle: float, keep_free: shapely.Geometry) -> shapely.Polygon:
+    """Return a footprint less the boxes around what is to be kept free in it."""
+    for part in shapely.get_parts(keep_free):
+        local = turned(part, -angle)
+        if local.intersects(shape):
+            local = shapely.box(*local.bounds) if part.area <= _SMALL else local
+            shape = largest(shapely.difference(shape, local))
+    return _without_courts(shape)
+
+
+def _without_courts(shape: shapely.Polygon) -> shapely.Polygon:
+    """Return a footprint whose holes are opened towards the nearest side: an outline has none."""
+    for hole in shape.interiors:
+        west, south, east, north = shape.bounds
+        left, low, right, high = hole.bounds
+        slots = {
+            left - west: (west - 1, low, right, high),
+            east - right: (left, low, east + 1, high),
+            low - south: (left, south - 1, right, high),
+            north - high: (left, low, right, north + 1),
+        }
+        shape = largest(shapely.difference(shape, shapely.box(*slots[min(slots)])))
+    return shape
+
+
+def _shaft(podium: shapely.Polygon, rng: np.random.Generator) -> shapely.Polygon:
+    """Return the footprint of a tower on a podium, both in the block's frame."""
+    west, south, east, north = podium.bounds
+    size = np.array([east - west, north - south]) * rng.uniform(0.5, 0.78, 2)
+    size = np.maximum(9.0, 3.0 * np.round(size / 3.0))
+    corner = (
+        np.array([west, south])
+        + 2
+        + rng.random(2) * (np.array([east - west, north - south]) - 4 - size)
+    )
+    shape = shapely.box(*corner, *(corner + size))
+    if rng.random() < 0.3:
+        bevel = 0.25 * size.min()
+        octagon = shapely.buffer(
+            shapely.buffer(shape, -bevel), bevel, join_style="bevel", quad_segs=1
+        )
+        shape = octagon
+    return largest(shapely.intersection(shape, shapely.buffer(podium, -1.5, join_style="mitre")))
+
+
+def _furnished(
+    shapes: Sequence[shapely.Polygon], base: NDArray[np.int64], rng: np.random.Generator
+) -> list[Building]:
+    """Give footprints their heights, facades and roofs."""
+    area = np.array([shape.area for shape in shapes])
+    top = FLOOR * storeys(np.sqrt(area), base, rng)
+    kinds = evenly(FACADES, len(shapes), rng)
+    carries = set(base.tolist())
+    made = []
+    for i, shape in enumerate(shapes):
+        foot = top[base[i]] if base[i] >= 0 else 0.0
+        compact = (
+            area[i] > 0.97 * shapely.convex_hull(shape).area and len(shape.exterior.coords) < 8
+        )
+        eligible = compact and area[i] < 1600 and top[i] <= 36 and i not in carries
+        pyramid = bool(eligible and base[i] < 0 and rng.random() < 0.55)
+        made.append(
+            Building(
+                footprint=_corners(shape),
+                bottom=float(FOOT + foot),
+                height=float(top[i] - foot),
+                facade=kinds[i],
+                tint=wall_tint(rng),
+                roof="pyramid" if pyramid else "flat",
+                roof_material=roof_cover(float(top[i]), rng, pyramid=pyramid),
+            )
+        )
+    return made
+
+
+def _corners(shape: shapely.Polygon) -> NDArray[np.float64]:
+    ring = shapely.get_coordinates(shapely.geometry.polygon.orient(shape))[:-1]
+    return np.ascontiguousarray(ring, np.float64)
+
+
+def prism_of(building: Building) -> tuple[NDArray[np.float64], float, float]:
+    """Return footprint, bottom and top of the solid that stands for a building [m]."""
+    top = building.bottom + building.height
+    if building.roof == "flat":
+        return building.footprint, building.bottom, top + PARAPET
+    rise = parts.pyramid_rise(building.footprint)
+    return building.footprint, building.bottom, top + rise / 2

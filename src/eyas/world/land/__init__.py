@@ -1,0 +1,1 @@
+"""The ground: lawn, asphalt and pavements, and the land beyond the map."""

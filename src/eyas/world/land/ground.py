@@ -1,0 +1,175 @@
+"""What lies flat: lawn, asphalt, pavements. Each is cut out of the others, so nothing overlaps."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import shapely
+
+from eyas.state.mesh import Mesh, concatenate
+from eyas.world.build.materials import TEXTURES, material
+from eyas.world.build.shapes import flat_polygon
+from eyas.world.roads.areas import skirt, surface
+
+__all__ = [
+    "FLOOR_HEIGHT",
+    "KERB_HEIGHT",
+    "PAVEMENT_WIDTH",
+    "asphalt",
+    "lawn",
+    "pavement",
+    "pavement_area",
+    "verge_area",
+    "yards",
+]
+
+FLOOR_HEIGHT = -0.1
+"""z of the lawn, the original's [m]."""
+
+PAVEMENT_WIDTH = 2.6
+"""From the kerb to the lawn [m]."""
+
+_VERGE = 1.5
+"""Width of the pavement along the outer side of the outer streets [m]."""
+
+KERB_HEIGHT = 0.15
+"""z of the pavements [m]."""
+
+_KERB_WIDTH = 0.35
+_KERB = material("stone", (1.0, 0.95, 0.92))
+_PAVING = material("paving")
+_CONCRETE = material("concrete")
+_YARDS = (
+    material("paving", (0.92, 0.92, 0.93)),
+    material("concrete", (0.95, 0.94, 0.92)),
+    material("clinker", (1.0, 0.98, 0.96)),
+)
+_GRASS = ((0.96, 0.97, 0.90), (0.97, 0.93, 0.80), (0.92, 0.96, 0.91), (0.84, 0.91, 0.83))
+"""Tints of a little drier, dry, a little lusher and lush grass."""
+_PATCHES = 34
+"""Dry or lush patches on the floor."""
+_PATCH = (12.0, 48.0)
+"""Mean radius of a patch [m]."""
+_FADE = 0.7
+"""Size of the inner, more different part of a patch."""
+
+
+def pavement_area(blocks: Sequence[shapely.Polygon], cut: shapely.Geometry) -> shapely.Geometry:
+    """Return the pavements along the inner side of the kerbs of blocks.
+
+    Args:
+        blocks: Ground between kerbs [m].
+        cut: Driveways and the like, which interrupt pavements.
+    """
+    rings = [
+        shapely.difference(block, shapely.buffer(block, -PAVEMENT_WIDTH, join_style="mitre"))
+        for block in blocks
+    ]
+    return shapely.difference(shapely.union_all(rings), cut)
+
+
+def verge_area(outside: Sequence[shapely.Polygon], paved: shapely.Geometry) -> shapely.Geometry:
+    """Return the narrow pavements between outer streets and open land.
+
+    Args:
+        outside: What lies outside of the outer streets [m].
+        paved: Asphalt [m].
+    """
+    beside = shapely.buffer(paved, _VERGE, quad_segs=4)
+    return shapely.difference(shapely.intersection(shapely.union_all(outside), beside), paved)
+
+
+def pavement(area: shapely.Geometry, road: shapely.Geometry, turn: float = 0.0) -> Mesh:
+    """Return raised pavements with kerb stones where they meet the road.
+
+    Args:
+        area: Pavements [m].
+        road: What they meet [m].
+        turn: Direction of the streets, along which slabs are laid [rad].
+    """
+    kerb = shapely.intersection(area, shapely.buffer(road, _KERB_WIDTH))
+    slabs = shapely.difference(area, kerb)
+    return concatenate(
+        [
+            surface(kerb, KERB_HEIGHT, _KERB, TEXTURES["stone"]),
+            surface(slabs, KERB_HEIGHT, _PAVING, TEXTURES["paving"], turn),
+            skirt(area, FLOOR_HEIGHT, KERB_HEIGHT, _KERB, TEXTURES["stone"]),
+        ]
+    )
+
+
+def asphalt(area: shapely.Geometry, *, light: bool = False) -> Mesh:
+    """Return a road surface at z = 0 with its edge down to the floor."""
+    kind = "asphalt_light" if light else "asphalt"
+    return concatenate(
+        [
+            surface(area, 0.0, material(kind), TEXTURES[kind]),
+            skirt(area, FLOOR_HEIGHT, 0.0, _CONCRETE, TEXTURES["concrete"]),
+        ]
+    )
+
+
+def yards(areas: Sequence[shapely.Geometry], turn: float, rng: np.random.Generator) -> Mesh:
+    """Return the paving around buildings, level with the lawn.
+
+    Args:
+        areas: Of each building [m].
+        turn: Direction of the streets [rad].
+        rng: Chooses what each is paved with.
+    """
+    return concatenate(
+        [
+            flat_polygon(area, FLOOR_HEIGHT, kind, TEXTURES[kind.texture], turn)
+            for area, kind in zip(areas, rng.choice(len(_YARDS), len(areas)), strict=True)
+            for kind in [_YARDS[int(kind)]]
+        ]
+    )
+
+
+def lawn(
+    extent: shapely.Polygon,
+    covered: shapely.Geometry,
+    rng: np.random.Generator,
+    mown: shapely.Geometry,
+    turn: float,
+) -> Mesh:
+    """Return the floor where nothing else covers it, with dry and lush patches.
+
+    Args:
+        extent: The floor [m].
+        covered: What is no lawn [m].
+        rng: Of the lawn.
+        mown: Where it is mown in swaths [m].
+        turn: Direction of the swaths [rad].
+    """
+    rest = shapely.difference(extent, covered)
+    parts = []
+    # Where patches overlap the stronger tint wins over the edge of its own patch.
+    for tint, patch in list(zip(_GRASS, _grass_patches(extent, rng), strict=True))[::-1]:
+        parts.append((tint, shapely.intersection(rest, patch)))
+        rest = shapely.difference(rest, patch)
+    tile = TEXTURES["lawn"]
+    made = []
+    for tint, part in [((1.0, 1.0, 1.0), rest), *parts]:
+        inside, outside = shapely.intersection(part, mown), shapely.difference(part, mown)
+        made.append(surface(inside, FLOOR_HEIGHT, material("lawn_mown", tint), tile, turn))
+        made.append(surface(outside, FLOOR_HEIGHT, material("lawn", tint), tile))
+    return concatenate(made)
+
+
+def _grass_patches(extent: shapely.Polygon, rng: np.random.Generator) -> list[shapely.Geometry]:
+    """Return where each of the tints may be: edges of patches and what is inside of them [m]."""
+    west, south, east, north = extent.bounds
+    angle = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
+    ring = np.stack([1.5 * np.cos(angle), 0.8 * np.sin(angle)], axis=1)
+    inner: list[list[shapely.Polygon]] = [[], []]
+    outer: list[list[shapely.Polygon]] = [[], []]
+    for index in range(_PATCHES):
+        middle = rng.uniform([west, south], [east, north])
+        phase, size = rng.uniform(0, 2 * np.pi, (3, 1)), rng.uniform(0.06, 0.18, (3, 1))
+        waves = (size * np.sin(angle * [[1], [2], [3]] + phase)).sum(axis=0)
+        outline = rng.uniform(*_PATCH) * (1 + waves)[:, None] * ring
+        outer[index % 2].append(shapely.Polygon(middle + outline))
+        inner[index % 2].append(shapely.Polygon(middle + _FADE * outline))
+    dry, lush = map(shapely.union_all, inner)
+    dry_edge, lush_edge = map(shapely.union_all, outer)
+    return [dry_edge, dry, lush_edge, lush]

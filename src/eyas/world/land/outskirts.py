@@ -1,0 +1,103 @@
+"""Beyond the streets: fields up to the horizon, and where an elevated road comes down to them."""
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from eyas.state.mesh import Mesh, concatenate
+from eyas.world.build.materials import TEXTURES, material
+from eyas.world.build.shapes import quads
+from eyas.world.roads.curves import TURN, arc
+from eyas.world.roads.overpass import DECK_WIDTH, path
+
+__all__ = ["access_road", "descent", "fields"]
+
+_LINES = (450.0, 620.0, 860.0, 1200.0, 1700.0, 2300.0, 3000.0, 4200.0, 6500.0, 10000.0)
+"""Borders of the fields, from the middle of a floor of 900 m; others scale with theirs [m]."""
+_CROPS = (
+    material("lawn", (0.99, 0.99, 0.97)),
+    material("lawn", (0.92, 0.95, 0.86)),
+    material("lawn", (0.84, 0.91, 0.80)),
+    material("crops", (0.98, 1.0, 0.92)),
+    material("crops_ripe", (0.90, 0.92, 0.82)),
+    material("soil", (0.98, 0.94, 0.88)),
+)
+_CROP_ODDS = (0.26, 0.22, 0.2, 0.14, 0.12, 0.06)
+_BELOW = 0.05
+"""From the floor down to the fields, so that no rounding lets them shine through its edge [m]."""
+
+_BACK = 26.0
+"""From the foot of a ramp back to where its access road turns to the street [m]."""
+_BEND = 19.0
+"""Radius of that turn [m]."""
+_TAIL = 621.0
+"""Length of the way down from an elevated road, a slope of 9 % on average [m]."""
+
+Points = NDArray[np.float64]
+
+
+def fields(size: tuple[float, float], floor: float, rng: np.random.Generator) -> Mesh:
+    """Return land around the floor up to the horizon, in a patchwork of large fields.
+
+    Args:
+        size: Extent of the floor [m].
+        floor: z of the floor [m].
+        rng: Of the fields.
+    """
+    half = np.array([*(-np.array(_LINES[::-1])), -150.0, 150.0, *_LINES])
+    steps = len(half) - 1
+    x, y = np.meshgrid(half * size[0] / 900.0, half * size[1] / 900.0, indexing="ij")
+    corner = np.stack([x, y, np.full_like(x, floor - _BELOW)], axis=-1)
+    loose = np.maximum(np.abs(half)[:, None], np.abs(half)[None]) > _LINES[0]
+    loose[[0, -1]], loose[:, [0, -1]] = False, False
+    corner[..., :2] *= 1.0 + loose[..., None] * rng.uniform(-0.08, 0.08, (*x.shape, 2))
+    cells = np.stack(
+        [corner[:-1, :-1], corner[1:, :-1], corner[1:, 1:], corner[:-1, 1:]], axis=2
+    ).reshape(-1, 4, 3)
+    inner = np.abs(half[:-1] + half[1:]) / 2 < _LINES[0]
+    outside = ~(inner[:, None] & inner[None]).ravel()
+    kind = rng.choice(len(_CROPS), size=steps * steps, p=_CROP_ODDS)
+    made = []
+    for index, crop in enumerate(_CROPS):
+        some = cells[outside & (kind == index)]
+        made.append(quads(some, some[..., :2] / TEXTURES[crop.texture], crop))
+    return concatenate(made)
+
+
+def access_road(foot: Points, onwards: Points, roads: shapely.Geometry) -> shapely.Geometry:
+    """Return the asphalt from a street to the foot of a ramp, in plan view.
+
+    Args:
+        foot: Middle of the ramp's beginning [m], shape (2,).
+        onwards: Unit vector up the ramp, shape (2,).
+        roads: Asphalt of the streets [m].
+    """
+    corner = foot - _BACK * onwards
+    street = shapely.get_coordinates(shapely.shortest_line(shapely.Point(corner), roads))[-1]
+    bend = arc(foot, corner, street, _BEND)
+    beyond = street + (street - corner) / np.linalg.norm(street - corner)
+    line = shapely.LineString(np.concatenate([foot[None], bend, beyond[None]]))
+    strip = shapely.buffer(line, DECK_WIDTH / 2, cap_style="flat", quad_segs=24)
+    near = shapely.intersection(roads, shapely.buffer(strip, 40.0))
+    both = shapely.union(near, strip)
+    closed = shapely.buffer(shapely.buffer(both, TURN), -TURN)
+    mouth = shapely.intersection(closed, shapely.Point(street).buffer(2.0 * DECK_WIDTH))
+    return shapely.difference(shapely.union(strip, mouth), roads)
+
+
+def descent(middle: Points, floor: float) -> Points:
+    """Return how an elevated road goes on from its end, straight and down to the ground.
+
+    Args:
+        middle: Of the road so far, shape (K, 3) [m].
+        floor: z of the ground [m].
+
+    Returns:
+        Middle of the way down, shape (K, 3) [m].
+    """
+    onwards = middle[-1, :2] - middle[-2, :2]
+    onwards /= np.linalg.norm(onwards)
+    line = [middle[-1, :2], middle[-1, :2] + _TAIL * onwards]
+    profile = ((0.0, middle[-1, 2]), (0.96, floor + 0.1), (1.0, floor))
+    # Far away every third cross-section is enough.
+    return path(line, (), profile)[::3]

@@ -1,0 +1,99 @@
+"""What grows between the houses of the street city, and the cars that stand in its car parks."""
+
+from itertools import pairwise
+
+import numpy as np
+import shapely
+
+from eyas.state.mesh import Mesh
+from eyas.state.scene import ObjectClass
+from eyas.world.build.scene_builder import SceneBuilder
+from eyas.world.land.ground import FLOOR_HEIGHT
+from eyas.world.maps.citystreet.plan import EXTENT, Plan
+from eyas.world.plants import gardens
+from eyas.world.plants.shrubs import KINDS, plant_levels
+from eyas.world.plants.trees import VARIANTS
+from eyas.world.roads import overpass
+from eyas.world.street.parked_cars import parked_car_levels
+
+__all__ = ["add_greenery", "add_parked"]
+
+_GARDEN_TREES = ((4.5, 8.5), 11.0, 0.0022)
+"""Heights and least distance [m], and how many are tried on a square metre."""
+_MEADOW_TREES = ((4.0, 11.0), 70.0, 0.0004)
+"""The same for the groups of trees beyond the outer streets."""
+_FROM_WALL = 4.5
+_FROM_STREET = 14.0
+"""Of the trees beyond the outer streets [m]."""
+_OCCUPIED = 0.62
+"""Share of the bays with a car."""
+_ISLAND_EVERY = 9
+"""Bays from one planted island to the next."""
+
+
+def add_greenery(
+    builder: SceneBuilder,
+    plan: Plan,
+    taken: shapely.Geometry,
+    first: int,
+    rng: np.random.Generator,
+) -> list[tuple[Mesh, ...]]:
+    """Plant borders along walls, hedges around car parks, and small trees; return the prototypes.
+
+    Args:
+        builder: Takes the plants.
+        plan: Where everything is.
+        taken: Where something stands, or is paved [m].
+        first: Number that the first prototype will have among the fixtures.
+        rng: Of the gardens.
+    """
+    deck = shapely.buffer(overpass.deck_area(plan.deck), 2.0)
+    inside = shapely.difference(shapely.union_all(plan.blocks), shapely.union(taken, deck))
+    shapely.prepare(inside)
+    gardens.add_borders(builder, plan.footprints, inside, FLOOR_HEIGHT, first, rng)
+    built = shapely.union_all([shapely.Polygon(corners) for corners in plan.footprints])
+    for park in plan.car_parks:
+        ring = shapely.get_coordinates(shapely.buffer(park.area, 1.2, join_style="mitre"))
+        for side in pairwise(ring):
+            gardens.add_row(builder, ("hedge",), np.array(side), inside, FLOOR_HEIGHT, first, rng)
+    heights, apart, density = _GARDEN_TREES
+    room = shapely.difference(shapely.buffer(inside, -1.6), shapely.buffer(built, _FROM_WALL))
+    spots = gardens.scattered(room, apart, density, rng)
+    gardens.add_small_trees(builder, spots, heights, FLOOR_HEIGHT, VARIANTS, rng)
+    heights, apart, density = _MEADOW_TREES
+    streets = shapely.buffer(shapely.union_all([plan.roads, plan.access, deck]), _FROM_STREET)
+    room = shapely.difference(
+        shapely.buffer(EXTENT, -8.0), shapely.union_all([streets, *plan.blocks])
+    )
+    groups = gardens.scattered(room, apart, density, rng)
+    spots = gardens.clustered(groups, 7.0, (1, 6), room, rng)
+    gardens.add_small_trees(builder, spots, heights, FLOOR_HEIGHT, VARIANTS, rng)
+    return plant_levels(rng)
+
+
+def add_parked(
+    builder: SceneBuilder, plan: Plan, first: int, rng: np.random.Generator
+) -> list[tuple[Mesh, ...]]:
+    """Fill bays of the car parks with islands, small trees and cars; return the cars' prototypes.
+
+    Args:
+        builder: Takes them.
+        plan: Where everything is.
+        first: Number of the first car; the kinds of `plant_levels` come before it.
+        rng: Of the car parks.
+    """
+    cars = parked_car_levels()
+    island = first - len(KINDS) + KINDS.index("island")
+    for park in plan.car_parks:
+        for index, (x, y, turn) in enumerate(park.bays):
+            if index % _ISLAND_EVERY == _ISLAND_EVERY // 2:
+                builder.add_copy(ObjectClass.STRUCTURE, island, (x, y, 0.0), turn, 1.0)
+                spot, heights = np.array([[x, y]]), (4.0, 6.0)
+                gardens.add_small_trees(builder, spot, heights, 0.1, VARIANTS, rng)
+            elif rng.random() < _OCCUPIED:
+                ahead = np.pi * float(rng.random() < 0.35)
+                slip = (x + rng.normal(0, 0.06), y + rng.normal(0, 0.06), 0.0)
+                way = turn + ahead + rng.normal(0, 0.015)
+                number = first + int(rng.integers(len(cars)))
+                builder.add_copy(ObjectClass.STRUCTURE, number, slip, way, rng.uniform(0.94, 1.04))
+    return cars

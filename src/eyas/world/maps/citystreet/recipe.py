@@ -1,0 +1,153 @@
+"""The street city: mid-rise blocks on lawn, rows of great trees, a road high above the roofs."""
+
+import numpy as np
+import shapely
+
+from eyas.core.rng import stream
+from eyas.state.mesh import Material, Mesh, Surface
+from eyas.state.roads import RoadNetwork
+from eyas.state.scene import ObjectClass, Scene
+from eyas.world.build import materials
+from eyas.world.build.scene_builder import SceneBuilder
+from eyas.world.buildings import placing as buildings
+from eyas.world.buildings import rooftops
+from eyas.world.buildings.facades import chance_of, mesh_of
+from eyas.world.land import ground, outskirts
+from eyas.world.maps.citystreet.greenery import add_greenery, add_parked
+from eyas.world.maps.citystreet.plan import EXTENT, FLOOR, Plan, make_plan
+from eyas.world.maps.citystreet.roads import NAME, road_graph
+from eyas.world.plants import gardens, trees
+from eyas.world.roads import markings, overpass
+from eyas.world.roads import wear as road_wear
+from eyas.world.roads.areas import surface
+from eyas.world.roads.pillars import BASE_HEIGHT, COLUMN_RADIUS, pillar_mesh, pillars
+from eyas.world.street.furnishing import add_furniture
+from eyas.world.street.lamps import add_lamps, lamp_levels
+from eyas.world.street.signals import add_signals, signal_levels, signal_places
+
+__all__ = ["FLOOR", "NAME", "build_scene", "road_graph"]
+
+_LAMPS = 48
+_TREE_HEIGHTS = (14.8, 19.8, 27.0)
+_TREE_ODDS = (0.3, 0.5, 0.2)
+_WATER = Material("water", (0.16, 0.42, 0.54), Surface.WATER)
+_LEGS = 9
+"""Pillars beyond the floor, where the elevated road comes down."""
+
+
+def build_scene(network: RoadNetwork, seed: int) -> Scene:
+    """Return the street city.
+
+    Args:
+        network: Made of `road_graph(seed)`.
+        seed: Of the map, >= 0.
+    """
+    plan = make_plan(network, seed)
+    builder = SceneBuilder()
+    yards = gardens.paved_yards(plan.footprints, plan.pavement, _no_lawn(plan))
+    # What hides most comes first: it is drawn first, and nobody draws over it.
+    _add_buildings(builder, plan, trees.VARIANTS)
+    _add_overpass(builder, plan)
+    _add_ground(builder, plan, network, yards, seed)
+    levels = _add_trees(builder, plan, stream(seed, "citystreet trees", 1))
+    levels += rooftops.rooftop_levels()
+    add_signals(builder, network, len(levels))
+    levels += [signal_levels(), lamp_levels()]
+    taken = _taken(plan, network)
+    rng = stream(seed, "citystreet lamps")
+    lights = add_lamps(builder, network, _LAMPS, taken, len(levels) - 1, rng)
+    feet = shapely.buffer(shapely.points(lights.position[:, :2].astype(float)), 4.0)
+    taken = shapely.union_all([taken, *feet])
+    rng = stream(seed, "citystreet furniture")
+    height = ground.KERB_HEIGHT
+    levels += add_furniture(builder, network, plan.pavement, taken, height, len(levels), rng)
+    taken = shapely.union_all([taken, plan.pavement, *yards])
+    levels += add_greenery(builder, plan, taken, len(levels), stream(seed, "citystreet gardens"))
+    levels += add_parked(builder, plan, len(levels), stream(seed, "citystreet parked cars"))
+    return builder.build(NAME, seed, FLOOR, ground.FLOOR_HEIGHT, levels, network, lights)
+
+
+def _add_buildings(builder: SceneBuilder, plan: Plan, first: int) -> None:
+    """Add buildings and what stands on their roofs."""
+    towers = [shapely.Polygon(b.footprint) for b in plan.buildings if b.bottom > buildings.FOOT]
+    above = shapely.union_all(towers)
+    for building in plan.buildings:
+        owner = builder.add(ObjectClass.BUILDING, mesh_of(building))
+        builder.add_prism(*buildings.prism_of(building), owner)
+        if building.roof == "flat":
+            top = building.bottom + building.height
+            free = above if building.bottom <= buildings.FOOT else shapely.Polygon()
+            rng = chance_of(building)
+            rooftops.add_rooftop(builder, building.footprint, top, owner, first, free, rng)
+
+
+def _no_lawn(plan: Plan) -> shapely.Geometry:
+    """Return roads, pavements, car parks and pools with their rims [m]."""
+    rims = [shapely.buffer(pool, 0.8, join_style="mitre") for pool in plan.pools]
+    return shapely.union_all([plan.roads, plan.access, plan.lots, plan.pavement, *rims])
+
+
+def _taken(plan: Plan, network: RoadNetwork) -> shapely.Geometry:
+    """Return where something stands or drives already, in plan view."""
+    built = [shapely.Polygon(buildings.prism_of(building)[0]) for building in plan.buildings]
+    areas = [park.area for park in plan.car_parks] + [pillar.base for pillar in plan.pillars]
+    poles = [place for place, _ in signal_places(network)]
+    thin = shapely.buffer(shapely.points([*plan.trees, *poles]), 1.0)
+    return shapely.union_all([plan.roads, plan.access, *plan.pools, *built, *areas, *thin])
+
+
+def _add_ground(
+    builder: SceneBuilder,
+    plan: Plan,
+    network: RoadNetwork,
+    yards: list[shapely.Geometry],
+    seed: int,
+) -> None:
+    rng = stream(seed, "citystreet lawn")
+    pools, turn = shapely.union_all(plan.pools), plan.turn
+    paved = shapely.union_all([plan.roads, plan.access])
+    covered = shapely.union_all([_no_lawn(plan), *yards])
+    land = outskirts.fields(FLOOR, ground.FLOOR_HEIGHT, rng)
+    mown = shapely.union_all(plan.blocks)
+    paint = markings.mesh_of(markings.road_paint(network))
+    bays = [markings.painted(park.lines, markings.WHITE) for park in plan.car_parks]
+    builder.add(ObjectClass.MARKING, paint, *bays)
+    wear = road_wear.road_wear(network, stream(seed, "citystreet road wear"))
+    builder.add(ObjectClass.ROAD, wear, ground.asphalt(paved))
+    builder.add(ObjectClass.PAVEMENT, ground.pavement(plan.pavement, paved, turn))
+    builder.add(ObjectClass.PAVEMENT, ground.yards(yards, turn, rng))
+    builder.add(ObjectClass.ROAD, ground.asphalt(plan.lots, light=True))
+    builder.add(ObjectClass.GROUND, ground.lawn(EXTENT, covered, rng, mown, turn), land)
+    if plan.pools:
+        rim = shapely.difference(shapely.buffer(pools, 0.8, join_style="mitre"), pools)
+        builder.add(ObjectClass.WATER, surface(pools, -0.15, _WATER, materials.TEXTURES["water"]))
+        builder.add(ObjectClass.PAVEMENT, ground.pavement(rim, pools))
+
+
+def _add_overpass(builder: SceneBuilder, plan: Plan) -> None:
+    floor = ground.FLOOR_HEIGHT
+    down = outskirts.descent(plan.deck, floor)  # beyond the floor; not solid
+    legs = [pillar_mesh(pillar, floor) for pillar in pillars(down, _LEGS, floor, plan.roads)]
+    deck = [overpass.deck_mesh(part, floor) for part in (plan.deck, down)]
+    owner = builder.add(ObjectClass.STRUCTURE, *deck, *legs)
+    for outline, bottom, top in overpass.deck_prisms(plan.deck, floor):
+        builder.add_prism(outline, bottom, top, owner)
+    for pillar in plan.pillars:
+        owner = builder.add(ObjectClass.STRUCTURE, pillar_mesh(pillar, floor))
+        base = shapely.get_coordinates(pillar.base)[:-1]
+        builder.add_prism(base, floor, floor + BASE_HEIGHT, owner)
+        for column in pillar.columns:
+            builder.add_cylinder(column, COLUMN_RADIUS, floor, pillar.top, owner)
+
+
+def _add_trees(
+    builder: SceneBuilder, plan: Plan, rng: np.random.Generator
+) -> list[tuple[Mesh, ...]]:
+    """Add a tree at each trunk; return the kinds of trees."""
+    for place in plan.trees:
+        height = rng.choice(_TREE_HEIGHTS, p=_TREE_ODDS) * rng.uniform(0.93, 1.0)
+        spot = (*place, ground.FLOOR_HEIGHT)
+        kind, turn = int(rng.integers(trees.VARIANTS)), rng.uniform(0, 2 * np.pi)
+        owner = builder.add_copy(ObjectClass.TREE, kind, spot, turn, height)
+        builder.add_cylinder(place, 0.022 * height, ground.FLOOR_HEIGHT, 0.3 * height, owner)
+    return [trees.street_tree_levels(rng, kind) for kind in range(trees.VARIANTS)]

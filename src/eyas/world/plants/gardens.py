@@ -1,0 +1,214 @@
+"""Ground between buildings: paved feet of walls, paths to doors, hedges, shrubs, small trees."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from eyas.state.scene import ObjectClass
+from eyas.world.build.scene_builder import SceneBuilder
+from eyas.world.plants.shrubs import KINDS, PIECE
+
+__all__ = ["add_borders", "add_row", "add_small_trees", "clustered", "paved_yards", "scattered"]
+
+_APRON = 0.9
+"""Width of the paving at the foot of walls [m]."""
+_PATH = 2.2
+"""Width of a path to a door [m]."""
+_LONGEST_PATH = 16.0
+_DOOR_WALL = 7.0
+"""Walls shorter than this have no door [m]."""
+
+_BORDER = 1.85
+"""From a wall to the plants along it [m]."""
+_PLANTED = 0.45
+"""Share of the walls with plants along them."""
+_CLIPPED = 0.4
+"""Share of those with a hedge."""
+_ROOM = 0.9
+"""Radius of what a plant takes up [m]."""
+
+_BORDERS = ("border", "low_border", "tall_border")
+
+Points = NDArray[np.float64]
+
+
+def paved_yards(
+    footprints: Sequence[Points], pavement: shapely.Geometry, keep_free: shapely.Geometry
+) -> list[shapely.Geometry]:
+    """Return what is paved around each building, its own ground included [m].
+
+    Args:
+        footprints: Corners of the buildings that stand on the ground, counter-clockwise.
+        pavement: Where paths lead to.
+        keep_free: What is no lawn: roads, pavements, car parks, pools.
+    """
+    solid = shapely.union_all([shapely.Polygon(corners) for corners in footprints])
+    made = []
+    done: shapely.Geometry = shapely.Polygon()
+    for corners in footprints:
+        shape = shapely.Polygon(corners)
+        others = shapely.difference(solid, shape)
+        paths = sorted(_paths(corners, pavement, others), key=lambda path: float(path.area))
+        yard = shapely.union_all([shapely.buffer(shape, _APRON, join_style="mitre"), *paths[:2]])
+        yard = shapely.difference(yard, shapely.union_all([keep_free, others, done]))
+        done = shapely.union(done, yard)
+        made.append(shapely.simplify(yard, 0.02))
+    return made
+
+
+def _paths(
+    corners: Points, pavement: shapely.Geometry, others: shapely.Geometry
+) -> Iterator[shapely.Polygon]:
+    """Yield straight paths from the middle of walls to a pavement that nothing stands in."""
+    for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+        length = float(np.linalg.norm(end - start))
+        if length < _DOOR_WALL:
+            continue
+        along = (end - start) / length
+        outwards = np.array([along[1], -along[0]])
+        door = (start + end) / 2
+        ray = shapely.LineString([door, door + _LONGEST_PATH * outwards])
+        hit = shapely.intersection(ray, pavement)
+        if not hit.is_empty and not ray.intersects(others):
+            reach = shapely.distance(shapely.Point(door), hit) + 0.3
+            side = _PATH / 2 * along
+            far = door + reach * outwards
+            yield shapely.Polygon([door - side, far - side, far + side, door + side])
+
+
+def add_borders(
+    builder: SceneBuilder,
+    footprints: Sequence[Points],
+    room: shapely.Geometry,
+    floor: float,
+    first: int,
+    rng: np.random.Generator,
+) -> None:
+    """Plant hedges and shrubs along walls.
+
+    Args:
+        builder: Takes the plants.
+        footprints: Corners of buildings, counter-clockwise [m].
+        room: Lawn on which plants may stand [m].
+        floor: z of the lawn [m].
+        first: Number of the first of `plant_levels` among the fixtures.
+        rng: Of the gardens.
+    """
+    free = shapely.buffer(room, -_ROOM / 2)
+    shapely.prepare(free)
+    for corners in footprints:
+        for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
+            length = float(np.linalg.norm(end - start))
+            if length < 5.0 or rng.random() > _PLANTED:
+                continue
+            along = (end - start) / length
+            line = np.stack([start, end]) + _BORDER * np.array([along[1], -along[0]])
+            kinds = ("hedge",) if rng.random() < _CLIPPED else _BORDERS
+            add_row(builder, kinds, line, free, floor, first, rng)
+
+
+def add_row(
+    builder: SceneBuilder,
+    kinds: Sequence[str],
+    line: Points,
+    room: shapely.Geometry,
+    floor: float,
+    first: int,
+    rng: np.random.Generator,
+) -> None:
+    """Plant pieces of hedge or border along a line where there is room.
+
+    Args:
+        builder: Takes the plants.
+        kinds: Of `plants.KINDS`; one is drawn for each piece.
+        line: Both ends [m], shape (2, 2).
+        room: Where pieces may stand, whole [m].
+        floor: z of the lawn [m].
+        first: Number of the first of `plant_levels` among the fixtures.
+        rng: Of the gardens.
+    """
+    length = float(np.linalg.norm(line[1] - line[0]))
+    along = (line[1] - line[0]) / length
+    turn = float(np.arctan2(along[1], along[0]))
+    step = length / max(round(length / PIECE), 1)
+    for at in np.arange(step / 2, length, step):
+        middle = line[0] + at * along
+        ends = middle + np.outer([-0.5, 0.5], PIECE * along)
+        if shapely.contains(room, shapely.LineString(ends)):
+            number = first + KINDS.index(str(rng.choice(kinds)))
+            spot = (float(middle[0]), float(middle[1]), floor)
+            way = turn + np.pi * float(rng.integers(2))
+            builder.add_copy(ObjectClass.TREE, number, spot, way, rng.uniform(0.97, 1.06))
+
+
+def scattered(
+    room: shapely.Geometry, apart: float, density: float, rng: np.random.Generator
+) -> Points:
+    """Return points within a shape.
+
+    Args:
+        room: Where [m].
+        apart: Least distance of two [m].
+        density: How many are tried on each square metre.
+        rng: Of the points.
+
+    Returns:
+        Shape (K, 2) [m].
+    """
+    chosen = np.zeros((0, 2))
+    for part in shapely.get_parts(room):
+        west, south, east, north = part.bounds
+        tries = rng.poisson(density * (east - west) * (north - south))
+        points = rng.uniform((west, south), (east, north), (tries, 2))
+        for point in points[shapely.contains_xy(part, points)]:
+            if np.linalg.norm(chosen - point, axis=1).min(initial=np.inf) > apart:
+                chosen = np.concatenate([chosen, point[None]])
+    return chosen
+
+
+def clustered(
+    centres: Points,
+    spread: float,
+    count: tuple[int, int],
+    room: shapely.Geometry,
+    rng: np.random.Generator,
+) -> Points:
+    """Return points in groups, shape (K, 2) [m].
+
+    Args:
+        centres: Of the groups [m], shape (C, 2).
+        spread: Standard deviation about them [m].
+        count: Least and largest number in a group.
+        room: Where they may be [m].
+        rng: Of the points.
+    """
+    groups = [c + rng.normal(0, spread, (int(rng.integers(*count)), 2)) for c in centres]
+    points = np.concatenate([np.zeros((0, 2)), *groups])
+    return np.asarray(points[shapely.contains_xy(room, points)], np.float64)
+
+
+def add_small_trees(
+    builder: SceneBuilder,
+    places: Points,
+    heights: tuple[float, float],
+    floor: float,
+    kinds: int,
+    rng: np.random.Generator,
+) -> None:
+    """Plant small trees.
+
+    Args:
+        builder: Takes trees and trunks.
+        places: Shape (K, 2) [m].
+        heights: Least and largest [m].
+        floor: z of the ground [m].
+        kinds: The first so many fixtures are trees.
+        rng: Of the gardens.
+    """
+    for place in places:
+        height, turn = float(rng.uniform(*heights)), float(rng.uniform(0, 2 * np.pi))
+        spot = (float(place[0]), float(place[1]), floor)
+        owner = builder.add_copy(ObjectClass.TREE, int(rng.integers(kinds)), spot, turn, height)
+        builder.add_cylinder(spot[:2], 0.022 * height, floor, floor + 0.3 * height, owner)

@@ -1,0 +1,1 @@
+"""Roads: networks, areas, paint, wear, and the elevated road."""

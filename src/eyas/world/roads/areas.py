@@ -1,0 +1,244 @@
+"""From a road network to plan shapes: asphalt, streets with their lines, blocks between them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from eyas.state.mesh import Material, Mesh, concatenate
+from eyas.state.roads import RoadNetwork
+from eyas.world.build.shapes import flat_polygon, quads
+from eyas.world.roads.curves import rounded_kerbs
+
+__all__ = [
+    "GRID",
+    "Street",
+    "blocks",
+    "corners",
+    "corridors",
+    "joints",
+    "polygons_of",
+    "road_area",
+    "skirt",
+    "split_on_grid",
+    "streets",
+    "surface",
+]
+
+GRID = 32.0
+"""Side of the squares that large surfaces are cut along, so that unseen ones can be skipped [m]."""
+
+_AT_CORNER = 5.0
+"""From the middle of what a round corner adds, to houses [m]."""
+
+Line = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Street:
+    """One direction of a road between two junctions. Lines run with the traffic, shape (K, 2)."""
+
+    start: str
+    """Node it leaves."""
+    end: str
+    """Node it reaches."""
+    left: Line
+    """Middle of the road, where the other direction begins [m]."""
+    dividers: tuple[Line, ...]
+    """Between its lanes, the rightmost first [m]."""
+    right: Line
+    """Kerb [m]."""
+
+    @property
+    def lines(self) -> tuple[Line, ...]:
+        """Its lines from left to right."""
+        return (self.left, *self.dividers[::-1], self.right)
+
+
+def streets(network: RoadNetwork) -> list[Street]:
+    """Return all directions of all roads, in the order of `network.edges`."""
+    made = []
+    for edge in range(len(network.edges)):
+        lanes = np.flatnonzero(network.lane_edge == edge)
+        lanes = lanes[np.argsort(network.lane_index[lanes])]
+        centre = [_lane(network, int(lane)) for lane in lanes]
+        half = network.lane_width[lanes] / 2
+        made.append(
+            Street(
+                start=network.edge_start[edge],
+                end=network.edge_end[edge],
+                left=_beside(centre[-1], half[-1]),
+                dividers=tuple(
+                    _beside(line, width) for line, width in zip(centre[:-1], half[:-1], strict=True)
+                ),
+                right=_beside(centre[0], -half[0]),
+            )
+        )
+    return made
+
+
+def joints(network: RoadNetwork) -> dict[str, int]:
+    """Return for each node how many roads meet there: 2 for a bend, 3 for a T junction."""
+    neighbours: dict[str, set[str]] = {name: set() for name in network.junctions}
+    for start, end in zip(network.edge_start, network.edge_end, strict=True):
+        neighbours[start].add(end)
+        neighbours[end].add(start)
+    return {name: len(others) for name, others in neighbours.items()}
+
+
+def road_area(network: RoadNetwork) -> shapely.MultiPolygon:
+    """Return what is paved for cars: all lanes and junctions, with room to turn at corners."""
+    rounded = rounded_kerbs(corridors(network), _bends(network))
+    return shapely.MultiPolygon(polygons_of(shapely.simplify(rounded, 0.035)))
+
+
+def corridors(network: RoadNetwork) -> shapely.MultiPolygon:
+    """Return all lanes and junctions, with sharp corners: what lots are laid out around."""
+    shapes: list[shapely.Geometry] = [
+        shapely.buffer(
+            shapely.LineString(_lane(network, lane)),
+            network.lane_width[lane] / 2,
+            cap_style="flat",
+            join_style="mitre",
+        )
+        for lane in range(len(network.lane_width))
+    ]
+    first = network.junction_first
+    for low, high in pairwise(first):
+        if high - low >= 3:
+            shapes.append(shapely.make_valid(shapely.Polygon(network.junction_points[low:high])))
+    # Millimetre gaps between lanes and junctions close; corners stay where they are.
+    closed = shapely.buffer(shapely.union_all(shapes), 0.05, join_style="mitre")
+    opened = shapely.buffer(closed, -0.05, join_style="mitre")
+    return shapely.MultiPolygon(polygons_of(shapely.simplify(opened, 0.01)))
+
+
+def corners(roads: shapely.Geometry, sharp: shapely.Geometry) -> list[shapely.Polygon]:
+    """Return the surroundings of the round corners of asphalt, which lots do not know of.
+
+    Args:
+        roads: From `road_area` [m].
+        sharp: From `corridors` [m].
+    """
+    added = polygons_of(shapely.difference(roads, sharp))
+    return [shapely.buffer(part.centroid, _AT_CORNER) for part in added if part.area > 2.0]
+
+
+def blocks(
+    roads: shapely.Geometry, extent: shapely.Polygon
+) -> tuple[list[shapely.Polygon], list[shapely.Polygon]]:
+    """Return the ground between roads.
+
+    Args:
+        roads: Asphalt [m].
+        extent: The whole floor [m].
+
+    Returns:
+        Blocks with roads all round, and what lies outside of the outer roads.
+    """
+    left_over = polygons_of(shapely.difference(extent, roads))
+    closed = [part for part in left_over if not part.exterior.intersects(extent.exterior)]
+    return closed, [part for part in left_over if part.exterior.intersects(extent.exterior)]
+
+
+def split_on_grid(shape: shapely.Geometry, cell: float = GRID) -> list[shapely.Polygon]:
+    """Return a shape cut along the lines of a square grid through the origin.
+
+    Args:
+        shape: Polygons [m].
+        cell: Distance of the lines [m].
+    """
+    west, south, east, north = shape.bounds
+    shapely.prepare(shape)
+    parts: list[shapely.Polygon] = []
+    for x in np.arange(np.floor(west / cell), np.ceil(east / cell)) * cell:
+        for y in np.arange(np.floor(south / cell), np.ceil(north / cell)) * cell:
+            square = shapely.box(x, y, x + cell, y + cell)
+            if shapely.contains_properly(shape, square):
+                parts.append(square)
+            elif shapely.intersects(shape, square):
+                parts.extend(polygons_of(shapely.intersection(shape, square)))
+    return parts
+
+
+def surface(
+    shape: shapely.Geometry, z: float, material: Material, tile: float, turn: float = 0.0
+) -> Mesh:
+    """Return a large horizontal surface, cut along the grid.
+
+    Args:
+        shape: Polygons [m].
+        z: Height [m].
+        material: Of all of it.
+        tile: Metres one repeat of the texture covers.
+        turn: Of the texture, counter-clockwise [rad].
+    """
+    parts = split_on_grid(shape)
+    return concatenate([flat_polygon(part, z, material, tile, turn) for part in parts])
+
+
+def skirt(
+    shape: shapely.Geometry, bottom: float, top: float, material: Material, tile: float
+) -> Mesh:
+    """Return the vertical sides of a slab, round its outlines and its holes."""
+    pieces = []
+    for part in polygons_of(shape):
+        solid = shapely.geometry.polygon.orient(part)
+        for ring in (solid.exterior, *solid.interiors):
+            outline = shapely.get_coordinates(
+                shapely.segmentize(shapely.simplify(ring, 1e-3), GRID)
+            )
+            pieces.append(_wall(outline, bottom, top, material, tile))
+    return concatenate(pieces)
+
+
+def polygons_of(shape: shapely.Geometry | Sequence[shapely.Geometry]) -> list[shapely.Polygon]:
+    """Return the polygons within any shape, without slivers below a square centimetre."""
+    parts = shapely.get_parts(shapely.get_parts(shape))
+    return [part for part in parts if isinstance(part, shapely.Polygon) and part.area > 1e-4]
+
+
+def _wall(outline: Line, bottom: float, top: float, material: Material, tile: float) -> Mesh:
+    """Return the wall along a line whose outside is on its right."""
+    start, end = outline[:-1], outline[1:]
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(end - start, axis=1))]) / tile
+    count, rise = len(start), (top - bottom) / tile
+    corners = np.empty((count, 4, 3))
+    corners[:, (0, 3), :2] = start[:, None]
+    corners[:, (1, 2), :2] = end[:, None]
+    corners[:, :2, 2] = bottom
+    corners[:, 2:, 2] = top
+    uvs = np.zeros((count, 4, 2))
+    uvs[:, (0, 3), 0] = along[:-1, None]
+    uvs[:, (1, 2), 0] = along[1:, None]
+    uvs[:, 2:, 1] = rise
+    return quads(corners, uvs, material)
+
+
+def _bends(network: RoadNetwork) -> list[tuple[Line, float]]:
+    """Return middle and angle of turn [rad] of each place where two roads meet."""
+    arriving: dict[str, list[Line]] = {}
+    for lane in np.flatnonzero(network.lane_index == 0):
+        end = network.edge_end[network.lane_edge[lane]]
+        arriving.setdefault(end, []).append(_lane(network, int(lane))[-2:])
+    bends = []
+    for one, *others in arriving.values():
+        if len(others) == 1:
+            onwards, back = np.diff(one, axis=0)[0], np.diff(others[0], axis=0)[0]
+            sine = onwards[0] * back[1] - onwards[1] * back[0]
+            angle = np.pi - abs(np.arctan2(sine, onwards @ back))
+            bends.append(((one[1] + others[0][1]) / 2, float(angle)))
+    return bends
+
+
+def _lane(network: RoadNetwork, lane: int) -> Line:
+    return network.lane_points[network.lane_first[lane] : network.lane_first[lane + 1]]
+
+
+def _beside(line: Line, distance: float) -> Line:
+    """Return a line that runs beside another, on its left for a positive distance [m]."""
+    moved = shapely.offset_curve(shapely.LineString(line), distance, join_style="mitre")
+    return np.asarray(shapely.get_coordinates(moved), np.float64)

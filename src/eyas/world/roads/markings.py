@@ -1,0 +1,218 @@
+"""Paint on roads, a little above the asphalt: lane and stop lines, zebra crossings, arrows."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import reduce
+
+import numpy as np
+import shapely
+from numpy.typing import ArrayLike, NDArray
+from shapely.ops import substring
+
+from eyas.state.mesh import Material, Mesh, concatenate
+from eyas.state.roads import RoadNetwork
+from eyas.world.build.materials import TEXTURES, material
+from eyas.world.build.shapes import flat_polygon
+from eyas.world.roads.areas import Street, joints, split_on_grid, streets
+from eyas.world.roads.curves import joined
+
+__all__ = [
+    "PAINT_HEIGHT",
+    "WHITE",
+    "YELLOW",
+    "RoadPaint",
+    "mesh_of",
+    "painted",
+    "road_paint",
+    "stripes",
+]
+
+PAINT_HEIGHT = 0.012
+"""z of the paint: too little to see, enough to tell it from the asphalt at any distance [m]."""
+
+WHITE = material("paint", (0.99, 0.99, 0.98))
+YELLOW = material("paint", (1.0, 0.79, 0.18))
+
+_DASH, _GAP = 3.0, 6.0
+_LINE = 0.18
+"""Width of a lane line: nearly a pixel of the small pictures a policy sees from 22 m [m]."""
+_CENTRE_LINE = 0.2
+_EDGE_LINE = 0.2
+_EDGE = 0.3
+"""From the kerb to the edge line [m]."""
+_STOP_LINE = 0.4
+"""Width of a stop line [m]."""
+_ZEBRA_START, _ZEBRA_LENGTH = 0.7, 5.6
+"""From the stop line to a crossing, and its size along the road, as in the original [m]."""
+_BAR = 0.55
+"""Width of a bar of a zebra crossing, and nearly that of the gap to the next [m]."""
+
+Line = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class RoadPaint:
+    """What is painted on roads, in plan view."""
+
+    white: list[shapely.Polygon]
+    """Lines and arrows."""
+    zebras: list[list[shapely.Polygon]]
+    """Yellow bars of each crossing."""
+
+
+def road_paint(network: RoadNetwork) -> RoadPaint:
+    """Return the paint of all roads, with zebra crossings where three or more roads meet."""
+    meeting = joints(network)
+    white: list[shapely.Polygon] = []
+    all_streets = streets(network)
+    for chain in _chains(all_streets, meeting):
+        middle, *dividers, kerb = (reduce(joined, parts) for parts in zip(*chain, strict=True))
+        white += stripes(middle, _CENTRE_LINE) if _comes_first(middle) else []
+        for divider in dividers:
+            white += stripes(divider, _LINE, (_DASH, _GAP))
+        edge = shapely.offset_curve(shapely.LineString(kerb), _EDGE)
+        white += stripes(shapely.get_coordinates(edge), _EDGE_LINE)
+    zebras = []
+    for street in all_streets:
+        if meeting[street.end] >= 3:
+            leaving = [other for other in all_streets if other.start == street.end]
+            white += [_stop_line(street), *_arrows(street, leaving)]
+            zebras.append(_zebra(street))
+    return RoadPaint(white, zebras)
+
+
+def mesh_of(paint: RoadPaint) -> Mesh:
+    """Return the paint as triangles."""
+    bars = [bar for zebra in paint.zebras for bar in zebra]
+    return concatenate([painted(paint.white, WHITE), painted(bars, YELLOW)])
+
+
+def stripes(
+    line: Line, width: float, dashes: tuple[float, float] | None = None
+) -> list[shapely.Polygon]:
+    """Return a painted line.
+
+    Args:
+        line: Its middle, shape (K, 2) [m].
+        width: [m]
+        dashes: Length of a dash and of the gap between two; None: a solid line.
+    """
+    path = shapely.LineString(line)
+    starts, length = np.zeros(1), path.length
+    if dashes:
+        length = dashes[0]
+        count = int((path.length + dashes[1]) // sum(dashes))
+        spare = path.length - (count * sum(dashes) - dashes[1])
+        starts = spare / 2 + np.arange(count) * sum(dashes)
+    pieces = [substring(path, start, start + length) for start in starts]
+    return [shapely.buffer(piece, width / 2, cap_style="flat") for piece in pieces]
+
+
+def painted(shapes: Sequence[shapely.Polygon], paint: Material) -> Mesh:
+    """Return painted shapes on a road at z = 0."""
+    # Long lines are cut, so that a piece of them belongs to one square of the map only.
+    pieces = [
+        part
+        for shape in shapes
+        for part in (split_on_grid(shape) if shape.length > 60.0 else [shape])
+    ]
+    return concatenate(
+        [flat_polygon(piece, PAINT_HEIGHT, paint, TEXTURES["paint"]) for piece in pieces]
+    )
+
+
+def _chains(all_streets: list[Street], meeting: dict[str, int]) -> list[list[tuple[Line, ...]]]:
+    """Return the lines of streets that follow each other through bends, from joint to joint."""
+    leaving: dict[str, list[Street]] = {}
+    for street in all_streets:
+        leaving.setdefault(street.start, []).append(street)
+    chains = []
+    for street in all_streets:
+        if meeting[street.start] == 2:
+            continue
+        chain = [street]
+        while meeting[chain[-1].end] == 2:
+            last = chain[-1]
+            chain += [s for s in leaving[last.end] if s.end != last.start]
+        chains.append([link.lines for link in chain])
+    return chains
+
+
+def _comes_first(line: Line) -> bool:
+    """Tell the one direction of a road that draws the line in the middle from the other."""
+    return tuple(line[0]) < tuple(line[-1])
+
+
+def _frame(street: Street) -> tuple[Line, Line, Line, float]:
+    """Return right end of the stop line, directions onwards and to the left, and the width."""
+    onwards = _unit(street.right[-1] - street.right[-2])
+    leftwards = np.array([-onwards[1], onwards[0]])
+    width = float((street.left[-1] - street.right[-1]) @ leftwards)
+    return street.right[-1], onwards, leftwards, width
+
+
+def _placed(street: Street, outline: ArrayLike) -> shapely.Polygon:
+    """Return a shape given from the stop line's right end onwards and to the left [m]."""
+    origin, onwards, leftwards, _ = _frame(street)
+    return shapely.Polygon(np.asarray(outline) @ np.stack([onwards, leftwards]) + origin)
+
+
+def _stop_line(street: Street) -> shapely.Polygon:
+    width = _frame(street)[3]
+    low, high = -_STOP_LINE, 0.0
+    return _placed(street, _rectangle(low, high, _EDGE, width - 0.15))
+
+
+def _zebra(street: Street) -> list[shapely.Polygon]:
+    """Return the bars of the crossing beyond a stop line, over both directions of the road."""
+    road = 2 * _frame(street)[3]
+    count = int((road - 0.5) // (2 * _BAR))
+    first = (road - (2 * count - 1) * _BAR) / 2
+    low, high = _ZEBRA_START, _ZEBRA_START + _ZEBRA_LENGTH
+    return [
+        _placed(street, _rectangle(low, high, y, y + _BAR))
+        for y in first + 2 * _BAR * np.arange(count)
+    ]
+
+
+_TAIL = [(-5.0, -0.08), (-3.2, -0.08), (-3.2, 0.08), (-5.0, 0.08)]
+_HEAD = [(-3.4, -0.08), (-2.2, -0.08), (-2.2, -0.3), (-1.0, 0.0), (-2.2, 0.3), (-2.2, 0.08),
+         (-3.4, 0.08)]  # fmt: skip
+_HOOK = [(-4.2, 0.0), (-3.4, 0.0), (-2.9, 0.55), (-2.65, 0.4), (-2.6, 1.05), (-3.2, 0.95),
+         (-3.05, 0.72), (-3.5, 0.16), (-4.2, 0.16)]  # fmt: skip
+_ARROW_BACK = 4.0
+"""From the stop line to the tip of an arrow, 1 m before it [m]."""
+
+
+def _arrows(street: Street, leaving: Sequence[Street]) -> list[shapely.Polygon]:
+    """Return arrows before the stop line: right from the rightmost lane, left from the leftmost.
+
+    Args:
+        street: What leads to the stop line.
+        leaving: The streets that begin behind it; arrows point to no others.
+    """
+    _, onwards, leftwards, width = _frame(street)
+    turns = [
+        _unit(other.right[1] - other.right[0]) for other in leaving if other.end != street.start
+    ]
+    ahead = any(turn @ onwards > 0.7 for turn in turns)
+    lanes = len(street.dividers) + 1
+    made = []
+    for lane in range(lanes):
+        parts = [_TAIL, *([_HEAD] if ahead else [])]
+        for outermost, side in ((0, -1.0), (lanes - 1, 1.0)):
+            if lane == outermost and any(side * (turn @ leftwards) > 0.7 for turn in turns):
+                parts.append([(x, side * y) for x, y in _HOOK])
+        if len(parts) > 1:
+            arrow = shapely.union_all([shapely.Polygon(part) for part in parts])
+            shift = [-_ARROW_BACK, width * (lane + 0.5) / lanes]
+            made.append(_placed(street, shapely.get_coordinates(arrow) + shift))
+    return made
+
+
+def _rectangle(x0: float, x1: float, y0: float, y1: float) -> list[tuple[float, float]]:
+    return [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
+
+
+def _unit(vector: Line) -> Line:
+    return np.asarray(vector / np.linalg.norm(vector))

@@ -1,0 +1,148 @@
+"""What age leaves on roads: tyre tracks, repaired patches, sealed cracks, oil, lids of manholes.
+
+All of it lies in thin layers above the asphalt and below the paint.
+"""
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from eyas.state.mesh import Material, Mesh, concatenate
+from eyas.state.roads import RoadNetwork
+from eyas.world.build.materials import TEXTURES, material
+from eyas.world.build.shapes import quads
+from eyas.world.roads.areas import GRID
+
+__all__ = ["WEAR_HEIGHTS", "road_wear"]
+
+WEAR_HEIGHTS = (0.003, 0.006, 0.009)
+"""z of tracks; of patches and oil; of lids and seals: between the asphalt and the paint [m]."""
+
+_LANES = (
+    material("asphalt_lane"),
+    material("asphalt_lane", (0.95, 0.95, 0.96)),
+    material("asphalt_lane", (1.0, 0.98, 0.96)),
+)
+"""Lanes were not all paved in one year."""
+_LANE_HALF = 1.6
+"""Half the width of the strip in which tyres run [m]."""
+
+_PATCH = material("asphalt_patch")
+_PATCH_EVERY = 46.0
+"""Mean distance of two patches along a lane [m]."""
+_PATCH_LENGTH, _PATCH_WIDTH = (1.5, 6.5), (0.9, 2.6)
+_WAITING = (0.5, 13.0)
+"""Where cars wait, from the end of a lane back [m]."""
+_OIL = material("asphalt_oil")
+_OIL_HALF = 0.8
+
+_LID = material("manhole")
+_LID_EVERY = 62.0
+_LID_HALF = 0.48
+"""Half the side of a lid with the asphalt around it [m]."""
+
+_SEAL = material("asphalt_patch", (0.62, 0.62, 0.64))
+_SEAL_EVERY = 120.0
+"""Mean distance of two sealed cracks along a lane [m]."""
+_SEAL_HALF = 0.045
+_SEAL_STEPS = 6
+
+Line = NDArray[np.float64]
+
+
+def road_wear(network: RoadNetwork, rng: np.random.Generator) -> Mesh:
+    """Return the wear of all lanes, the upper layers first.
+
+    Args:
+        network: The roads.
+        rng: Of the map; says where patches, seals and lids are.
+    """
+    tracks, seals, patches, lids, oil = [], [], [], [], []
+    for low, high in pairwise(network.lane_first):
+        lane = shapely.LineString(network.lane_points[low:high])
+        paved = _LANES[int(rng.integers(len(_LANES)))]
+        tracks.append(_tracks(lane, float(rng.random()), paved))
+        for start in _places(lane.length, _PATCH_EVERY, rng):
+            half_width = rng.uniform(*_PATCH_WIDTH) / 2
+            end = start + rng.uniform(*_PATCH_LENGTH)
+            middle = rng.uniform(-1.5 + half_width, 1.5 - half_width)
+            patches.append(_beside(lane, start, end, middle - half_width, middle + half_width))
+        if lane.length > 3 * _WAITING[1]:
+            start, end = lane.length - _WAITING[1], lane.length - _WAITING[0]
+            oil.append(_beside(lane, start, end, -_OIL_HALF, _OIL_HALF))
+        for at in _places(lane.length, _LID_EVERY, rng):
+            aside = rng.uniform(-0.5, 0.5)
+            sides = (at - _LID_HALF, at + _LID_HALF, aside - _LID_HALF, aside + _LID_HALF)
+            lids.append(_beside(lane, *sides))
+        seals += [_seal(lane, at, rng) for at in _places(lane.length, _SEAL_EVERY, rng)]
+    flat = _slabs(patches, WEAR_HEIGHTS[1], _PATCH)
+    flat.uvs = (flat.positions[:, :2] / TEXTURES["asphalt_patch"]).astype(np.float32)
+    stains = _slabs(oil, WEAR_HEIGHTS[1], _OIL)
+    stains.uvs[:, 1] *= (_WAITING[1] - _WAITING[0]) / TEXTURES["asphalt_oil"]
+    top_down = [*seals, _slabs(lids, WEAR_HEIGHTS[2], _LID), flat, stains, *tracks]
+    return concatenate(top_down)
+
+
+def _places(length: float, every: float, rng: np.random.Generator) -> Line:
+    """Return places along a lane, not near its ends [m]."""
+    count = rng.poisson(length / every)
+    return np.sort(rng.uniform(5.0, max(length - 22.0, 5.0), count))
+
+
+def _beside(lane: shapely.LineString, start: float, end: float, right: float, left: float) -> Line:
+    """Return the corners of a rectangle along a lane, counter-clockwise, shape (4, 2) [m]."""
+    from_, onward = (shapely.get_coordinates(lane.interpolate(s))[0] for s in (start, start + 0.5))
+    along = (onward - from_) / np.linalg.norm(onward - from_)
+    across = np.array([-along[1], along[0]])
+    reach = end - start
+    corners = [(0.0, right), (reach, right), (reach, left), (0.0, left)]
+    return np.array([from_ + x * along + y * across for x, y in corners])
+
+
+def _tracks(lane: shapely.LineString, start: float, paved: Material) -> Mesh:
+    """Return the strip of a lane in which tyres run, its texture across it once.
+
+    Args:
+        lane: Middle of the lane [m].
+        start: Where in the texture it begins [tiles].
+        paved: What it is made of.
+    """
+    middle = shapely.get_coordinates(shapely.segmentize(lane, GRID))
+    along = np.gradient(middle, axis=0)
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    across = _LANE_HALF * np.stack([-along[:, 1], along[:, 0]], axis=1)
+    right, left = middle - across, middle + across
+    outline = np.stack([right[:-1], right[1:], left[1:], left[:-1]], axis=1)
+    corners = np.concatenate([outline, np.full((len(outline), 4, 1), WEAR_HEIGHTS[0])], axis=2)
+    gone = np.linalg.norm(np.diff(middle, axis=0), axis=1).cumsum() / TEXTURES["asphalt_lane"]
+    v = np.stack([np.append(0.0, gone[:-1]), gone, gone, np.append(0.0, gone[:-1])], axis=1)
+    u = np.broadcast_to([0.0, 0.0, 1.0, 1.0], v.shape)
+    return quads(corners, np.stack([u, v + start], axis=2), paved)
+
+
+def _seal(lane: shapely.LineString, at: float, rng: np.random.Generator) -> Mesh:
+    """Return a crack that was sealed with tar: a thin line that wanders across or along a lane."""
+    here, there = (shapely.get_coordinates(lane.interpolate(s))[0] for s in (at, at + 0.5))
+    onwards = (there - here) / np.linalg.norm(there - here)
+    leftwards = np.array([-onwards[1], onwards[0]])
+    crossing = rng.random() < 0.6
+    way, aside = (leftwards, onwards) if crossing else (onwards, leftwards)
+    reach = rng.uniform(1.1, 1.6) if crossing else rng.uniform(2.0, 4.5)
+    steps = np.linspace(-reach, reach, _SEAL_STEPS)
+    wander = np.clip(np.cumsum(rng.normal(0.0, 0.16, _SEAL_STEPS)), -1.0, 1.0)
+    line = here + steps[:, None] * way + (wander - wander.mean())[:, None] * aside
+    width = _SEAL_HALF * rng.uniform(0.7, 1.3, _SEAL_STEPS)[:, None] * aside
+    one, other = line - width, line + width
+    strip = np.stack([one[:-1], one[1:], other[1:], other[:-1]], axis=1)
+    return _slabs(strip if not crossing else strip[:, ::-1], WEAR_HEIGHTS[2], _SEAL)
+
+
+def _slabs(rectangles: Sequence[Line] | Line, z: float, kind: Material) -> Mesh:
+    """Return flat quadrilaterals, u across them and v along, the whole texture on each."""
+    flat = np.asarray(rectangles).reshape(-1, 4, 2)
+    corners = np.concatenate([flat, np.full((len(flat), 4, 1), z)], axis=2)
+    uvs = np.broadcast_to([(0.0, 0.0), (0.0, 1.0), (1.0, 1.0), (1.0, 0.0)], flat.shape)
+    return quads(corners, uvs, kind)

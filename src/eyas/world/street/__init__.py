@@ -1,0 +1,1 @@
+"""Street furniture: signals, lamps, benches, car parks and parked cars."""

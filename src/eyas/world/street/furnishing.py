@@ -1,0 +1,99 @@
+"""Where street furniture stands: on the pavements beside kerbs, never on a road."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from eyas.state.mesh import Mesh
+from eyas.state.roads import RoadNetwork
+from eyas.state.scene import ObjectClass
+from eyas.world.build.scene_builder import SceneBuilder
+from eyas.world.roads.areas import streets
+from eyas.world.street.furniture import KINDS, furniture_levels
+
+__all__ = ["add_furniture"]
+
+_CLEAR = 0.5
+"""Room around each thing [m]."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Rule:
+    """How one kind is spread along a kerb."""
+
+    beyond_kerb: float
+    """From the kerb to its middle [m]."""
+    every: float
+    """Mean distance to the next [m]."""
+    room: float
+    """Radius of what it takes up [m]."""
+    from_end: float
+    """Least distance to the end of the street [m]."""
+
+
+_RULES = {
+    "shelter": _Rule(1.75, 190.0, 2.4, 24.0),
+    "bench": _Rule(2.05, 42.0, 1.1, 9.0),
+    "tub": _Rule(2.0, 60.0, 0.8, 9.0),
+    "post_box": _Rule(0.75, 170.0, 0.5, 8.0),
+    "bin": _Rule(0.65, 55.0, 0.4, 6.0),
+    "hydrant": _Rule(0.6, 85.0, 0.4, 6.0),
+}
+"""The largest first: they find room more easily."""
+
+
+def add_furniture(
+    builder: SceneBuilder,
+    network: RoadNetwork,
+    pavement: shapely.Geometry,
+    keep_free: shapely.Geometry,
+    height: float,
+    first: int,
+    rng: np.random.Generator,
+) -> list[tuple[Mesh, ...]]:
+    """Furnish the pavements beside kerbs; return the prototypes.
+
+    Args:
+        builder: Takes the things.
+        network: The roads.
+        pavement: Where furniture may stand [m].
+        keep_free: Where something else stands, or where people walk and cars drive [m].
+        height: z of the pavement [m].
+        first: Number that the first prototype will have among the fixtures.
+        rng: Of the furniture.
+    """
+    room = shapely.difference(pavement, shapely.buffer(keep_free, _CLEAR))
+    shapely.prepare(room)
+    taken = np.zeros((0, 3))
+    for kind, rule in _RULES.items():
+        for place, turn in _places(network, rule, rng):
+            apart = np.linalg.norm(taken[:, :2] - place, axis=1) - taken[:, 2]
+            # Legs may reach over the back edge of the pavement, on to the lawn.
+            if apart.min(initial=np.inf) > rule.room and shapely.contains_xy(room, *place):
+                taken = np.concatenate([taken, [[*place, rule.room + _CLEAR]]])
+                spot = (float(place[0]), float(place[1]), height)
+                number = first + KINDS.index(kind)
+                builder.add_copy(ObjectClass.STRUCTURE, number, spot, turn, 1.0)
+    return furniture_levels()
+
+
+def _places(
+    network: RoadNetwork, rule: _Rule, rng: np.random.Generator
+) -> list[tuple[NDArray[np.float64], float]]:
+    """Return places beside all kerbs [m] and turns that make y face the road [rad]."""
+    made = []
+    for street in streets(network):
+        kerb = shapely.LineString(street.right)
+        low, high = rule.from_end, kerb.length - rule.from_end
+        count = rng.poisson(max(high - low, 0.0) / rule.every)
+        for along in np.sort(rng.uniform(low, max(high, low), count)):
+            here, there = (
+                shapely.get_coordinates(kerb.interpolate(s))[0] for s in (along, along + 0.1)
+            )
+            onwards = (there - here) / np.linalg.norm(there - here)
+            leftwards = np.array([-onwards[1], onwards[0]])
+            turn = float(np.arctan2(leftwards[1], leftwards[0]) - np.pi / 2)
+            made.append((here - rule.beyond_kerb * leftwards, turn))
+    return made

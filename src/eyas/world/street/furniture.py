@@ -1,0 +1,107 @@
+"""Street furniture as fixtures: benches, bins, hydrants, bus shelters, post boxes, tree tubs.
+
+Origins are on the ground; the side that faces the road looks along y. In metres.
+"""
+
+import numpy as np
+
+from eyas.state.mesh import Material, Mesh, Surface, concatenate, transformed
+from eyas.world.build.materials import material
+from eyas.world.build.shapes import box, cylinder, sphere
+
+__all__ = ["KINDS", "furniture_levels"]
+
+KINDS = ("bench", "bin", "hydrant", "shelter", "post_box", "tub")
+"""The prototypes, in the order of `furniture_levels`."""
+
+_WOOD = material("bark", (0.70, 0.54, 0.42))
+_IRON = material("plain", (0.22, 0.23, 0.24))
+_STEEL = material("plain", (0.58, 0.60, 0.62))
+_GREEN = material("plain", (0.20, 0.34, 0.25))
+_RED = material("plain", (0.72, 0.16, 0.12))
+_BLUE = material("plain", (0.13, 0.26, 0.50))
+_PANE = Material(tint=(0.42, 0.50, 0.52), surface=Surface.GLASS)
+_STONE = material("concrete", (0.92, 0.9, 0.88))
+_LEAVES = material("foliage", (0.8, 0.9, 0.6))
+
+
+def furniture_levels() -> list[tuple[Mesh, ...]]:
+    """Return each kind, the finest level of detail first."""
+    made = {
+        "bench": (_bench(), _part((1.8, 0.5, 0.45), (0, 0, 0.22), _WOOD)),
+        "bin": (_bin(10), _bin(4)),
+        "hydrant": (_hydrant(8), _part((0.24, 0.24, 0.75), (0, 0, 0.37), _RED)),
+        "shelter": (_shelter(), _far_shelter()),
+        "post_box": (_post_box(), _part((0.5, 0.45, 1.3), (0, 0, 0.65), _BLUE)),
+        "tub": (_tub(10, 1), _tub(5, 0)),
+    }
+    return [made[kind] for kind in KINDS]
+
+
+def _part(
+    size: tuple[float, float, float], centre: tuple[float, float, float], cover: Material
+) -> Mesh:
+    return box(size, centre, cover, 1.0)
+
+
+def _bench() -> Mesh:
+    """Return a seat and a back of slats on two iron feet; whoever sits looks along y."""
+    seat = [_part((1.8, 0.11, 0.04), (0, y, 0.45), _WOOD) for y in (-0.13, 0.01, 0.15)]
+    back = [_part((1.8, 0.04, 0.1), (0, -0.24, z), _WOOD) for z in (0.62, 0.78)]
+    feet = [_part((0.06, 0.45, 0.43), (x, 0, 0.21), _IRON) for x in (-0.75, 0.75)]
+    arms = [_part((0.05, 0.05, 0.42), (x, -0.22, 0.62), _IRON) for x in (-0.75, 0.75)]
+    return concatenate([*seat, *back, *feet, *arms])
+
+
+def _bin(sides: int) -> Mesh:
+    drum = cylinder((0.24, 0.27), (0.0, 0.82), sides, _GREEN, tile=1.0)
+    lid = cylinder((0.29, 0.22), (0.82, 0.96), sides, _IRON, cap=True)
+    return concatenate([drum, lid])
+
+
+def _hydrant(sides: int) -> Mesh:
+    return concatenate(
+        [
+            cylinder((0.16, 0.16), (0.0, 0.06), sides, _RED, cap=True),
+            cylinder((0.11, 0.11), (0.06, 0.6), sides, _RED),
+            cylinder((0.14, 0.05), (0.6, 0.78), sides, _RED, cap=True),
+            _part((0.42, 0.1, 0.1), (0, 0, 0.46), _STEEL),
+            _part((0.12, 0.3, 0.12), (0, 0.05, 0.42), _STEEL),
+        ]
+    )
+
+
+def _shelter() -> Mesh:
+    """Return a bus shelter: posts, glass behind and at one side, a roof, a bench, a poster."""
+    posts = [
+        _part((0.08, 0.08, 2.35), (x, y, 1.17), _IRON)
+        for x in (-1.9, 0.0, 1.9)
+        for y in (-0.55, 0.5)
+        if x or y < 0
+    ]
+    panes = [_part((1.8, 0.03, 1.9), (x, -0.55, 1.25), _PANE) for x in (-0.95, 0.95)]
+    side = _part((0.03, 0.95, 1.9), (1.9, -0.03, 1.25), _PANE)
+    poster = _part((0.14, 0.9, 1.8), (-1.9, -0.03, 1.2), _STONE)
+    roof = _part((4.2, 1.6, 0.1), (0, 0, 2.4), _STEEL)
+    edge = _part((4.3, 0.06, 0.2), (0, 0.8, 2.4), _IRON)
+    seat = _part((2.4, 0.4, 0.05), (0.4, -0.28, 0.47), _WOOD)
+    return concatenate([*posts, *panes, side, poster, roof, edge, seat])
+
+
+def _far_shelter() -> Mesh:
+    roof = _part((4.2, 1.6, 0.1), (0, 0, 2.4), _STEEL)
+    return concatenate([roof, _part((3.8, 0.08, 2.35), (0, -0.55, 1.17), _PANE)])
+
+
+def _post_box() -> Mesh:
+    legs = [_part((0.06, 0.36, 0.3), (x, 0, 0.15), _IRON) for x in (-0.2, 0.2)]
+    body = _part((0.5, 0.45, 0.9), (0, 0, 0.75), _BLUE)
+    return concatenate([*legs, body, _part((0.5, 0.3, 0.14), (0, 0.02, 1.25), _BLUE)])
+
+
+def _tub(sides: int, subdivisions: int) -> Mesh:
+    """Return a round concrete tub with a clipped bush."""
+    tub = cylinder((0.5, 0.62), (0.0, 0.6), sides, _STONE, cap=True, tile=3.0)
+    ball = sphere(subdivisions, _LEAVES)
+    pose = np.array([[0.55, 0, 0, 0], [0, 0.55, 0, 0], [0, 0, 0.55, 0.95]])
+    return concatenate([tub, transformed(ball, pose)])

@@ -1,0 +1,134 @@
+"""Street lamps: a dark pole beyond the kerb, and an arm with the light over the road."""
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from eyas.state.mesh import Material, Mesh, Surface, concatenate
+from eyas.state.roads import RoadNetwork
+from eyas.state.scene import Lamps, ObjectClass
+from eyas.world.build.materials import material
+from eyas.world.build.scene_builder import SceneBuilder
+from eyas.world.build.shapes import box, tube
+from eyas.world.land.ground import FLOOR_HEIGHT
+from eyas.world.roads.areas import streets
+
+__all__ = ["BEYOND_KERB", "LIGHT", "POLE_HEIGHT", "POLE_RADIUS", "add_lamps", "lamp_levels"]
+
+POLE_HEIGHT = 7.35
+"""The original's [m]."""
+
+POLE_RADIUS = 0.12
+"""At the foot [m]."""
+
+BEYOND_KERB = 2.0
+"""From the kerb to the poles, the median of the original's [m]."""
+
+LIGHT = (3.1, 0.0, 7.2)
+"""Place of the light before the pole, which is also the original's [m]."""
+
+_AXIS = (0.4, 0.0, -1.0)
+"""Middle of the beam in the same frame, not of length 1; the original's in cities at night."""
+
+_APART = (53.0, 44.0, 35.0)
+"""Least distance from one lamp to the next [m]; the original's median is 58.
+
+The smaller ones are for cities in which that leaves too few places.
+"""
+_STEP = 3.0
+"""Distance of the places that are tried along a kerb [m]."""
+_FROM_CROSSING = 7.0
+"""From the end of a street [m]."""
+_CLEAR = 1.2
+"""Room around a pole [m]."""
+_STEEL = material("plain", (0.20, 0.21, 0.22))
+_LENS = Material(tint=(1.0, 0.90, 0.72), surface=Surface.LAMP, emission=6.0)
+
+
+def add_lamps(
+    builder: SceneBuilder,
+    network: RoadNetwork,
+    count: int,
+    keep_free: shapely.Geometry,
+    prototype: int,
+    rng: np.random.Generator,
+) -> Lamps:
+    """Add street lamps on both sides of the roads; return their lights.
+
+    Args:
+        builder: Takes poles and solid shapes.
+        network: The roads.
+        count: How many, if there is room.
+        keep_free: Where no pole may stand.
+        prototype: Number of `lamp_levels` among the fixtures.
+        rng: Of the lamps.
+    """
+    position, axis = [], []
+    lean = np.array(_AXIS) / np.linalg.norm(_AXIS)
+    for foot, turn in _places(network, count, keep_free, rng):
+        owner = builder.add_copy(ObjectClass.POLE, prototype, (*foot, 0.0), turn, 1.0)
+        builder.add_cylinder((foot[0], foot[1]), POLE_RADIUS, FLOOR_HEIGHT, POLE_HEIGHT, owner)
+        onto_road = np.array([np.cos(turn), np.sin(turn)])
+        position.append([*(foot + LIGHT[0] * onto_road), LIGHT[2]])
+        axis.append([*(lean[0] * onto_road), lean[2]])
+    return Lamps(
+        np.array(position, np.float32).reshape(-1, 3), np.array(axis, np.float32).reshape(-1, 3)
+    )
+
+
+def _places(
+    network: RoadNetwork, count: int, keep_free: shapely.Geometry, rng: np.random.Generator
+) -> list[tuple[NDArray[np.float64], float]]:
+    """Return foot [m] and direction of the arm [rad] of each lamp."""
+    feet, turns = _candidates(network)
+    blocked = shapely.buffer(keep_free, _CLEAR)
+    shapely.prepare(blocked)
+    free = ~shapely.intersects(blocked, shapely.points(feet))
+    order = rng.permutation(np.flatnonzero(free))
+    chosen: list[int] = []
+    for least in _APART:
+        for index in order:
+            apart = np.linalg.norm(feet[chosen] - feet[index], axis=1)
+            if len(chosen) < count and apart.min(initial=np.inf) >= least:
+                chosen.append(int(index))
+    return [(feet[index], float(turns[index])) for index in sorted(chosen)]
+
+
+def _candidates(network: RoadNetwork) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return places beside kerbs [m], shape (K, 2), and the direction to the road, shape (K,)."""
+    feet, turns = [np.zeros((0, 2))], [np.zeros(0)]
+    for street in streets(network):
+        kerb = shapely.LineString(street.right)
+        along = np.arange(_FROM_CROSSING, kerb.length - _FROM_CROSSING, _STEP)
+        here = shapely.get_coordinates(shapely.line_interpolate_point(kerb, along))
+        there = shapely.get_coordinates(shapely.line_interpolate_point(kerb, along + 0.1))
+        onwards = (there - here) / 0.1
+        leftwards = np.stack([-onwards[:, 1], onwards[:, 0]], axis=1)
+        feet.append(here - BEYOND_KERB * leftwards)
+        turns.append(np.arctan2(leftwards[:, 1], leftwards[:, 0]))
+    return np.concatenate(feet), np.concatenate(turns)
+
+
+def lamp_levels() -> tuple[Mesh, ...]:
+    """Return a street lamp, the finest level of detail first.
+
+    The foot is at the origin, the arm along x.
+    """
+    return tuple(_lamp(sides, bends) for sides, bends in ((8, 5), (4, 3), (3, 2)))
+
+
+def _lamp(sides: int, bends: int) -> Mesh:
+    x, _, z = LIGHT
+    pole = np.array([[0, 0, -0.15], [0, 0, 3.5], [0, 0, POLE_HEIGHT - 0.55]])
+    # The arm leaves the pole upwards and ends level: a quarter of an ellipse.
+    angle = np.linspace(0.0, np.pi / 2, bends)
+    top = POLE_HEIGHT - 0.6
+    arm = np.stack([(x - 0.3) * (1 - np.cos(angle)), 0 * angle, top + 0.5 * np.sin(angle)], axis=1)
+    return concatenate(
+        [
+            tube(pole, [POLE_RADIUS, 0.09, 0.07], sides, _STEEL),
+            tube(arm, [0.05] * bends, sides, _STEEL),
+            box((0.85, 0.28, 0.12), (x, 0.0, z + 0.06), _STEEL, 1.0),
+            box((0.62, 0.20, 0.03), (x, 0.0, z - 0.01), _LENS, 1.0),
+        ]
+    )

@@ -1,0 +1,101 @@
+"""Traffic lights, dark as the original's: a pole at the kerb with an arm over the lanes.
+
+They are decoration. No lens is lit, by night neither: cars give way at crossings but do not obey
+lights, so a fixed red or green would show cars that run red lights in every film.
+"""
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from eyas.state.mesh import Mesh, concatenate
+from eyas.state.roads import RoadNetwork
+from eyas.state.scene import ObjectClass
+from eyas.world.build.materials import material
+from eyas.world.build.scene_builder import SceneBuilder
+from eyas.world.build.shapes import box, tube
+from eyas.world.land.ground import FLOOR_HEIGHT
+from eyas.world.roads.areas import joints, road_area, streets
+
+__all__ = ["POLE_HEIGHT", "POLE_RADIUS", "add_signals", "signal_levels", "signal_places"]
+
+POLE_HEIGHT = 6.6
+"""Of the top of a pole above the road [m]."""
+
+POLE_RADIUS = 0.13
+"""At the foot [m]."""
+
+_ARM = 5.6
+_ARM_HEIGHT = 6.1
+_HEADS = (2.6, 5.3)
+"""How far along the arm its heads hang [m]."""
+_BEYOND_KERB = 0.9
+_BEFORE_LINE = 0.6
+"""From the stop line back to the pole [m]."""
+_STEEL = material("plain", (0.55, 0.56, 0.57))
+_CASE = material("plain", (0.13, 0.14, 0.14))
+_LENSES = (
+    material("plain", (0.34, 0.09, 0.08)),
+    material("plain", (0.36, 0.27, 0.08)),
+    material("plain", (0.08, 0.26, 0.16)),
+)
+
+
+def signal_places(network: RoadNetwork) -> list[tuple[NDArray[np.float64], float]]:
+    """Return foot [m] and direction of the arm [rad] of each pole: one at each stop line."""
+    meeting = joints(network)
+    road = road_area(network)
+    places = []
+    for street in streets(network):
+        if meeting[street.end] < 3:
+            continue
+        onwards = street.right[-1] - street.right[-2]
+        onwards /= np.linalg.norm(onwards)
+        leftwards = np.array([-onwards[1], onwards[0]])
+        foot = street.right[-1] - _BEYOND_KERB * leftwards - _BEFORE_LINE * onwards
+        if shapely.distance(road, shapely.Point(foot)) > POLE_RADIUS:
+            places.append((foot, float(np.arctan2(leftwards[1], leftwards[0]))))
+    return places
+
+
+def add_signals(builder: SceneBuilder, network: RoadNetwork, prototype: int) -> None:
+    """Add a pole with an arm over the lanes at each arm of each junction.
+
+    Args:
+        builder: Takes poles and solid shapes.
+        network: The roads.
+        prototype: Number of `signal_levels` among the fixtures.
+    """
+    for place, turn in signal_places(network):
+        owner = builder.add_copy(ObjectClass.POLE, prototype, (*place, 0.0), turn, 1.0)
+        builder.add_cylinder((place[0], place[1]), POLE_RADIUS, FLOOR_HEIGHT, POLE_HEIGHT, owner)
+
+
+def signal_levels() -> tuple[Mesh, ...]:
+    """Return a traffic light, the finest level of detail first.
+
+    The foot is at the origin, the arm along x, the lights face along y.
+    """
+    heads = [_head((x, 0.16, _ARM_HEIGHT - 0.35)) for x in _HEADS]
+    low = _head((0.0, 0.24, 3.1))
+    return concatenate([_steel(8), *heads, low]), concatenate([_steel(3), *heads])
+
+
+def _steel(sides: int) -> Mesh:
+    pole = np.array([[0, 0, -0.15], [0, 0, 3.0], [0, 0, POLE_HEIGHT]])
+    arm = np.array([[0, 0, _ARM_HEIGHT], [_ARM, 0, _ARM_HEIGHT + 0.25]])
+    return concatenate(
+        [
+            tube(pole, [POLE_RADIUS, 0.1, 0.08], sides, _STEEL),
+            tube(arm, [0.07, 0.05], sides, _STEEL),
+            box((0.3, 0.3, 0.12), (0, 0, POLE_HEIGHT), _STEEL, 1.0),
+        ]
+    )
+
+
+def _head(centre: tuple[float, float, float]) -> Mesh:
+    x, y, z = centre
+    parts = [box((0.36, 0.22, 1.05), centre, _CASE, 1.0)]
+    for lens, rise in zip(_LENSES, (0.33, 0.0, -0.33), strict=True):
+        parts.append(box((0.24, 0.04, 0.24), (x, y + 0.12, z + rise), lens, 1.0))
+    return concatenate(parts)
