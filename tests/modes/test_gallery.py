@@ -10,8 +10,8 @@ from PIL import Image
 
 from eyas.cli.main import main
 from eyas.core.errors import NotInThisVersionError, OutputError, UnknownNameError
+from eyas.modes.gallery import run as gallery
 from eyas.modes.gallery.page import Shown, page
-from eyas.modes.gallery.run import run as gallery
 from eyas.modes.gallery.still import Stage
 from eyas.modes.gallery.views import _all_cars, _stop, choose_viewpoints
 from eyas.sim.place import load_place

@@ -17,8 +17,8 @@ from PIL import Image
 
 from eyas.core.errors import ConfigError, OutputError
 from eyas.exports.labels import read_labels
+from eyas.modes.video import run as video
 from eyas.modes.video.lock import recording_lock
-from eyas.modes.video.run import run as video
 from eyas.sensors.config import CameraConfig
 from eyas.sim.config import EyasConfig, VideoConfig
 from eyas.task.config import DoneConfig
@@ -33,7 +33,7 @@ CONFIG = EyasConfig(
 RUN = """
 import sys
 from pathlib import Path
-from eyas.modes.video.run import run as video
+from eyas.modes.video import run as video
 from eyas.sim.config import EyasConfig
 video.run(EyasConfig.model_validate_json(sys.argv[1]), Path(sys.argv[2]), quiet=True)
 """

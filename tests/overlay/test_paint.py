@@ -10,7 +10,7 @@ from eyas.overlay.items import GroundArea, Label, Line, Overlay, Solid
 from eyas.overlay.paint import paint_overlays, with_depth
 from eyas.state.draw import DrawList, Picture
 
-from .small_city import GROUND, TOWER, floor, looking, scene_of, tower
+from ..render.small_city import GROUND, TOWER, floor, looking, scene_of, tower
 
 SIZE = (96, 128)
 FOV = 1.0

@@ -1,0 +1,137 @@
+"""The state of a simulation, as one record of arrays that kernels, rewards and writers read.
+
+Every array has a leading axis of N trackers. The simulation writes in place; `Snapshot.copy` gives
+one that stays as it is.
+"""
+
+from copy import deepcopy
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = [
+    "CameraState",
+    "EpisodeState",
+    "Snapshot",
+    "TargetState",
+    "TrackerState",
+]
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+
+
+class TrackerState(NamedTuple):
+    """N trackers, world frame (east, north, up)."""
+
+    position: Floats
+    """Centre of the body [m], shape (N, 3)."""
+    velocity: Floats
+    """Difference of the last two positions over 2 ms [m/s], shape (N, 3)."""
+    acceleration: Floats
+    """Difference of the last two velocities over 2 ms [m/s^2], shape (N, 3)."""
+    orientation: Floats
+    """Body to world, quaternion w, x, y, z, shape (N, 4)."""
+    euler: Floats
+    """Roll, pitch, yaw [rad], shape (N, 3)."""
+    angular_velocity: Floats
+    """Body frame [rad/s], shape (N, 3)."""
+    commanded_position: Floats
+    """Where the commands integrate to [m], shape (N, 3)."""
+    commanded_yaw: Floats
+    """What the commanded yaw rates add up to, not wrapped [rad], shape (N,)."""
+    gimbal: Floats
+    """Roll, pitch, yaw of the gimbal's joints [rad], shape (N, 3)."""
+    commanded_gimbal: Floats
+    """Commanded pitch of the camera, positive down, and its yaw relative to the body [rad],
+    shape (N, 2)."""
+
+
+class CameraState(NamedTuple):
+    """N cameras."""
+
+    position: Floats
+    """Optical centre, world frame [m], shape (N, 3)."""
+    rotation: Floats
+    """Camera to world; columns are the camera's forward, left and up axes, shape (N, 3, 3)."""
+
+
+class TargetState(NamedTuple):
+    """The targets of N trackers."""
+
+    actor: NDArray[np.int32]
+    """Which actor of the tracker's world, -1 before the first reset, shape (N,)."""
+    model: NDArray[np.int32]
+    """Index into `eyas.targets.catalogue.MODELS`, shape (N,)."""
+    size: Floats
+    """Length, width, height [m], shape (N, 3)."""
+    rise: Floats
+    """Height of the reference point over the road [m], shape (N,)."""
+    ahead: Floats
+    """How far the centre lies ahead of the reference point [m], shape (N,)."""
+    position: Floats
+    """Reference point: middle of its SUMO length, z the wheel radius over the road [m],
+    shape (N, 3)."""
+    yaw: Floats
+    """Heading, counter-clockwise from east [rad], shape (N,)."""
+    speed: Floats
+    """[m/s], shape (N,)."""
+    centre: Floats
+    """The point that the reward looks for [m], shape (N, 3): the visible middle of the target."""
+    lost: NDArray[np.bool_]
+    """The target has left the world; stays true until the next reset, shape (N,)."""
+
+
+class EpisodeState(NamedTuple):
+    """The episodes of N trackers: what the task knows and says."""
+
+    number: Integers
+    """Of the episode, from 0; -1 before the first reset, shape (N,)."""
+    tick: Integers
+    """Time in the traffic, in physics steps of 2 ms, shape (N,)."""
+    step_count: Integers
+    """2 ms steps since the reset, shape (N,)."""
+    no_reward_count: Integers
+    """2 ms steps since there was a reward, shape (N,)."""
+    reward: Floats
+    """The built-in reward of this instant, shape (N,)."""
+    reason: Integers
+    """`eyas.task.done.DoneReason`, 0 while the episode goes on, shape (N,)."""
+    breach: Integers
+    """`DoneReason` of the limit that the body breaks now, whether or not it ends the episode,
+    shape (N,)."""
+    not_a_number: NDArray[np.bool_]
+    """A value has not been a finite number, shape (N,)."""
+    direction: Integers
+    """`eyas.task.direction.TargetDirection`, shape (N,)."""
+    observations: Integers
+    """How often the target has been observed since the reset, at most 3, shape (N,)."""
+    start_offset: Floats
+    """Start relative to the target: forward, left, up [m], heading [rad], shape (N, 4)."""
+    view_centre: Floats
+    """Ground point that the camera looks at, east and north [m], shape (N, 2)."""
+    last_target: Floats
+    """Where the target was a step ago: east, north [m] and heading [rad], shape (N, 3)."""
+    relative_position: Floats
+    """The target's centre in the tracker's body frame [m], shape (N, 3)."""
+    relative_velocity: Floats
+    """Change of `relative_position` [m/s], shape (N, 3)."""
+    relative_acceleration: Floats
+    """Change of `relative_velocity` [m/s^2], shape (N, 3)."""
+
+
+class Snapshot(NamedTuple):
+    """Everything that is known of N trackers at one instant."""
+
+    trackers: TrackerState
+    cameras: CameraState
+    targets: TargetState
+    episodes: EpisodeState
+    light: NDArray[np.float32]
+    """Factor on the sky and its light, factor on the sun, one over the visibility range [1/m],
+    shape (N, 3)."""
+
+    def copy(self) -> "Snapshot":
+        """Return a snapshot that later steps leave alone."""
+        return deepcopy(self)

@@ -1,0 +1,89 @@
+"""The height of the ground, as data that kernels read."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.jit import kernel
+
+__all__ = ["Terrain", "ground_at", "relief_at", "slope_at"]
+
+
+class Terrain(NamedTuple):
+    """The ground of a map: a floor, and the relief that rises from it.
+
+    Roads and everything built on the ground rise with the relief. A map without hills has an empty
+    raster, and asking for its height costs one comparison.
+    """
+
+    floor: float
+    """z of the floor, where the relief is 0 [m]."""
+    relief: NDArray[np.float32]
+    """Height over the floor at the points of a square grid [m], row 0 in the south, column 0 in
+    the west, shape (R, C); (0, 0) for a flat map."""
+    west: float
+    """East coordinate of column 0 [m]."""
+    south: float
+    """North coordinate of row 0 [m]."""
+    spacing: float
+    """Distance between neighbouring points of the grid [m]."""
+
+    @classmethod
+    def flat(cls, floor: float) -> "Terrain":
+        """Return a plane at a height [m]."""
+        return cls(float(floor), np.zeros((0, 0), np.float32), 0.0, 0.0, 1.0)
+
+
+@kernel
+def relief_at(terrain: Terrain, x: float, y: float) -> float:
+    """Return the height over the floor at a point [m], linear between the points of the grid.
+
+    Beyond the raster the height of its edge goes on.
+
+    Args:
+        terrain: The ground.
+        x: East [m].
+        y: North [m].
+    """
+    if terrain.relief.shape[0] == 0:
+        return 0.0
+    row, column, up, across = _cell(terrain, x, y)
+    raster = terrain.relief
+    south = (1.0 - across) * raster[row, column] + across * raster[row, column + 1]
+    north = (1.0 - across) * raster[row + 1, column] + across * raster[row + 1, column + 1]
+    return float((1.0 - up) * south + up * north)
+
+
+@kernel
+def ground_at(terrain: Terrain, x: float, y: float) -> float:
+    """Return z of the ground at a point [m]; arguments as in `relief_at`."""
+    return terrain.floor + relief_at(terrain, x, y)
+
+
+@kernel
+def slope_at(terrain: Terrain, x: float, y: float) -> tuple[float, float]:
+    """Return how much the ground rises for each metre east and north; 0 beyond the raster."""
+    if terrain.relief.shape[0] == 0:
+        return 0.0, 0.0
+    row, column, up, across = _cell(terrain, x, y)
+    raster = terrain.relief
+    south = raster[row, column + 1] - raster[row, column]
+    north = raster[row + 1, column + 1] - raster[row + 1, column]
+    west = raster[row + 1, column] - raster[row, column]
+    east = raster[row + 1, column + 1] - raster[row, column + 1]
+    rise_x = ((1.0 - up) * south + up * north) / terrain.spacing
+    rise_y = ((1.0 - across) * west + across * east) / terrain.spacing
+    on_x = 0.0 <= x - terrain.west <= (raster.shape[1] - 1) * terrain.spacing
+    on_y = 0.0 <= y - terrain.south <= (raster.shape[0] - 1) * terrain.spacing
+    return float(rise_x) if on_x else 0.0, float(rise_y) if on_y else 0.0
+
+
+@kernel
+def _cell(terrain: Terrain, x: float, y: float) -> tuple[int, int, float, float]:
+    """Return row and column of the grid's square around a point, and the point's place in it."""
+    rows, columns = terrain.relief.shape
+    across = min(max((x - terrain.west) / terrain.spacing, 0.0), float(columns - 1))
+    up = min(max((y - terrain.south) / terrain.spacing, 0.0), float(rows - 1))
+    column, row = min(int(across), columns - 2), min(int(up), rows - 2)
+    return row, column, up - row, across - column
