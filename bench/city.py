@@ -7,7 +7,7 @@ import numpy as np
 
 from eyas.render.textures.library import build_textures
 from eyas.sim.build import build_simulation
-from eyas.sim.config import EyasConfig
+from eyas.sim.config import SimConfig
 from eyas.sim.place import load_place
 from eyas.state.draw import Views
 from eyas.state.mesh import Mesh, Surface, concatenate, transformed
@@ -63,9 +63,9 @@ def load_city(count: int) -> City:
 
     Cars are those of the first tracker's world in all views: peers then need not move them.
     """
-    simulation = build_simulation(EyasConfig(), count, shared_world=False)
+    simulation = build_simulation(SimConfig(), count, shared_world=False)
     simulation.reset()
-    place = load_place(EyasConfig().world, EyasConfig().traffic, count)
+    place = load_place(SimConfig().world, SimConfig().traffic, count)
     scene, images = place.scene, build_textures()
     names = list(images)
     # Trees in their finest level, in which Eyas draws those that such views show.

@@ -18,7 +18,7 @@ import numpy as np
 
 import eyas  # noqa: F401  # registers the environments
 from eyas.modes.video.run import run as record
-from eyas.sim.config import EyasConfig
+from eyas.settings.config import EyasConfig
 
 WEATHERS = ("day", "foggy", "night", "snow")
 SHORT = {"channels": 3, "total_time": 4.0, "fps": 12.5}

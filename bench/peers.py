@@ -19,7 +19,7 @@ from city import City, load_city
 from PIL import Image
 
 from eyas.core.machine import describe_machine
-from eyas.sim.config import EyasConfig
+from eyas.sim.config import SimConfig
 from eyas.sim.place import load_place
 from eyas.state.draw import DrawList, Picture
 
@@ -43,7 +43,7 @@ class Ours:
     name = "eyas"
 
     def __init__(self, city: City, side: int) -> None:
-        place = load_place(EyasConfig().world, EyasConfig().traffic, 1)
+        place = load_place(SimConfig().world, SimConfig().traffic, 1)
         self._renderer, self._views = place.renderer, city.views
         count = sum(map(len, city.slots))
         self._movers = DrawList.create(1, count)

@@ -9,8 +9,8 @@ import pytest
 
 from eyas import __version__
 from eyas.cli.main import main
-from eyas.sim.config import EyasConfig
-from eyas.sim.legacy.adapter import to_legacy
+from eyas.settings.config import EyasConfig
+from eyas.settings.legacy.adapter import to_legacy
 
 COMMAND = [sys.executable, "-m", "eyas.cli.main"]
 

@@ -18,9 +18,10 @@ from PIL import Image
 from eyas.core.errors import ConfigError, OutputError
 from eyas.exports.labels import read_labels
 from eyas.modes.video import run as video
+from eyas.modes.video.config import VideoConfig
 from eyas.modes.video.lock import recording_lock
 from eyas.sensors.config import CameraConfig
-from eyas.sim.config import EyasConfig, VideoConfig
+from eyas.settings.config import EyasConfig
 from eyas.task.config import DoneConfig
 
 # Two trackers, three and a half episodes of 0.2 s each, a frame every 4 ms.
@@ -34,7 +35,7 @@ RUN = """
 import sys
 from pathlib import Path
 from eyas.modes.video import run as video
-from eyas.sim.config import EyasConfig
+from eyas.settings.config import EyasConfig
 video.run(EyasConfig.model_validate_json(sys.argv[1]), Path(sys.argv[2]), quiet=True)
 """
 

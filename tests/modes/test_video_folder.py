@@ -4,9 +4,10 @@ from pathlib import Path
 import pytest
 
 from eyas import __version__
-from eyas.core.errors import ConfigError, OutputError
+from eyas.core.errors import ConfigError, DataFileError, OutputError
+from eyas.modes.video.config import VideoConfig
 from eyas.modes.video.folder import open_folder
-from eyas.sim.config import EyasConfig, VideoConfig
+from eyas.settings.config import EyasConfig
 
 CONFIG = EyasConfig()
 OTHER = EyasConfig(video=VideoConfig(fps=50.0))
@@ -86,6 +87,22 @@ def test_overwrite_does_not_follow_links(tmp_path):
 def test_resume_names_the_first_setting_that_differs(tmp_path):
     with pytest.raises(ConfigError, match=r"video\.fps was 25\.0, is 50\.0"):
         open_folder(recording(tmp_path / "a"), OTHER, overwrite=False, resume=True)
+
+
+def test_resume_takes_settings_that_a_file_does_not_have_for_their_defaults(tmp_path):
+    path = recording(tmp_path / "a")
+    values = json.loads((path / "config.json").read_text())
+    del values["env"]
+    (path / "config.json").write_text(json.dumps(values))
+    open_folder(path, CONFIG, overwrite=False, resume=True)
+
+
+@pytest.mark.parametrize("text", ["{", "[]", '{"video": {"fsp": 1}}'])
+def test_resume_refuses_settings_that_cannot_be_read(tmp_path, text):
+    path = recording(tmp_path / "a")
+    (path / "config.json").write_text(text)
+    with pytest.raises(DataFileError, match=r"config\.json: cannot be read"):
+        open_folder(path, CONFIG, overwrite=False, resume=True)
 
 
 @pytest.mark.parametrize("recorded", ['{"eyas": "0.0.1"}', "{", "[]", None])

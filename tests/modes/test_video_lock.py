@@ -9,7 +9,7 @@ import pytest
 from eyas.core.errors import OutputError
 from eyas.modes.video.folder import check_folder, open_folder
 from eyas.modes.video.lock import recording_lock
-from eyas.sim.config import EyasConfig
+from eyas.settings.config import EyasConfig
 
 HOLD = """
 import sys, time

@@ -6,17 +6,17 @@ import pytest
 from eyas.core.pinhole import project
 from eyas.overlay.marks import chase_pose
 from eyas.sim.build import build_simulation
-from eyas.sim.config import EyasConfig
+from eyas.sim.config import SimConfig
 from eyas.state.draw import Picture
 from eyas.state.tracker import CameraPose
 from eyas.task.config import RewardConfig, RewardType, StartConfig
 from eyas.task.reward import axis_depth, view_centre, view_share
 
-CONFIG = EyasConfig(start=StartConfig(pitch=1.2, height=22.0))
+CONFIG = SimConfig(start=StartConfig(pitch=1.2, height=22.0))
 FIRST = np.zeros(1, np.int32)
 
 
-def started(config: EyasConfig = CONFIG, count: int = 1, *, shared: bool = False):
+def started(config: SimConfig = CONFIG, count: int = 1, *, shared: bool = False):
     simulation = build_simulation(config, count, shared_world=shared)
     simulation.reset()
     return simulation

@@ -11,7 +11,7 @@ from eyas.render.jobs import build_jobs
 from eyas.render.kernels.bundles import Movers, Output, Stage, Task
 from eyas.render.kernels.draw import draw_views
 from eyas.sim.build import build_simulation
-from eyas.sim.config import EyasConfig
+from eyas.sim.config import SimConfig
 from eyas.sim.step import fly
 
 from .small_city import car_parts, city_scene, city_traffic, looking
@@ -62,7 +62,7 @@ def test_drawing_a_band_with_all_weathers_compiles_for_cuda(ptx_of, renderer_of)
 
 
 def test_the_fused_step_compiles_for_cuda(ptx_of):
-    simulation = build_simulation(EyasConfig(), 2, shared_world=False)
+    simulation = build_simulation(SimConfig(), 2, shared_world=False)
 
     def step(actions, fleet, traffic, rules):
         fly(4, actions, fleet, traffic, rules)

@@ -5,9 +5,9 @@ import pytest
 
 from eyas.core.pinhole import rays
 from eyas.envs.tracking_env import TrackingEnv
+from eyas.settings.legacy.adapter import from_legacy
 from eyas.sim.build import build_simulation
-from eyas.sim.config import EyasConfig
-from eyas.sim.legacy.adapter import from_legacy
+from eyas.sim.config import SimConfig
 from eyas.state.draw import Picture
 from eyas.world.weather import lighting
 
@@ -17,7 +17,7 @@ RANDOM = {"background": {"uniform": [0.4, 1.6]}, "background_replaces": True,
 
 def started(light=None, *, weather="day", count=1, shared=False, seed=0):
     settings = {"seed": seed, "world": {"weather": weather}, "light": light or {}}
-    simulation = build_simulation(EyasConfig(**settings), count, shared_world=shared)
+    simulation = build_simulation(SimConfig(**settings), count, shared_world=shared)
     simulation.reset()
     return simulation
 

@@ -5,17 +5,17 @@ import pytest
 
 from eyas.core.errors import ConfigError
 from eyas.sim.build import build_simulation
-from eyas.sim.config import EyasConfig
+from eyas.sim.config import SimConfig
 from eyas.state.draw import Picture
 from eyas.task.config import DoneConfig, StartConfig
 from eyas.task.done import DoneReason
 
-CONFIG = EyasConfig(
+CONFIG = SimConfig(
     start=StartConfig(pitch=1.37, height=22.0), done=DoneConfig(no_reward_steps=10_000)
 )
 
 
-def started(count: int = 1, *, shared: bool = False, config: EyasConfig = CONFIG):
+def started(count: int = 1, *, shared: bool = False, config: SimConfig = CONFIG):
     simulation = build_simulation(config, count, shared_world=shared)
     simulation.reset()
     return simulation

@@ -9,7 +9,7 @@ import typer
 from eyas.cli.options import ConfigFile, Overrides, gathered
 
 if TYPE_CHECKING:
-    from eyas.sim.config import EyasConfig
+    from eyas.settings.config import EyasConfig
 
 __all__ = ["app"]
 
@@ -29,7 +29,7 @@ def show(
     ] = False,
 ) -> None:
     """Print settings as JSON, checked: every one and its value."""
-    from eyas.sim.settings_file import load_settings
+    from eyas.settings.file import load_settings
 
     typer.echo(_text(load_settings(config, gathered(set_)), legacy=legacy))
 
@@ -43,8 +43,8 @@ def convert(
     """Write settings in the other notation: native for the DAT benchmark's, and the reverse."""
     from eyas.core.errors import OutputError
     from eyas.core.files import write_atomic
-    from eyas.sim.legacy.adapter import is_legacy
-    from eyas.sim.settings_file import load_settings, read_settings
+    from eyas.settings.file import load_settings, read_settings
+    from eyas.settings.legacy.adapter import is_legacy
 
     if target.exists():
         raise OutputError(f"{target}: is there already; a file of settings is never rewritten")
@@ -54,7 +54,7 @@ def convert(
 
 
 def _text(settings: "EyasConfig", *, legacy: bool) -> str:
-    from eyas.sim.legacy.adapter import to_legacy
+    from eyas.settings.legacy.adapter import to_legacy
 
     if legacy:
         return json.dumps(to_legacy(settings), indent=4)

@@ -38,7 +38,7 @@ def record(
 ) -> None:
     """Record traffic; use it with --set traffic.recording=FILE."""
     from eyas.modes import traffic
-    from eyas.sim.settings_file import load_settings
+    from eyas.settings.file import load_settings
 
     short = {
         "world.seed": map_seed,

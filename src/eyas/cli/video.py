@@ -27,9 +27,9 @@ def command(
     quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
 ) -> None:
     """Record labelled pictures and films of trackers that follow their targets."""
-    from eyas.sim.config import Mode
-    from eyas.sim.settings_file import load_settings
-    from eyas.sim.version_check import require_supported
+    from eyas.settings.config import Mode
+    from eyas.settings.file import load_settings
+    from eyas.settings.version_check import require_supported
 
     if quiet:
         logging.getLogger("eyas").setLevel(logging.ERROR)

@@ -12,10 +12,12 @@ from numpy.typing import NDArray
 from eyas.core.clock import physics_steps
 from eyas.core.config import validated
 from eyas.core.errors import ConfigError
-from eyas.envs.actions import ContinuousActions, DiscreteActions, Speeds
+from eyas.envs.actions import ContinuousActions, DiscreteActions
+from eyas.envs.config import EnvSpeeds
+from eyas.settings.config import EyasConfig
+from eyas.settings.file import load_settings
+from eyas.settings.version_check import require_supported
 from eyas.sim.build import build_simulation
-from eyas.sim.config import EyasConfig
-from eyas.sim.settings_file import load_settings
 from eyas.state.draw import Picture
 from eyas.task.done import DoneReason
 
@@ -38,7 +40,7 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
         map: Name of the map; overrides the configuration.
         weather: Name of the weather; overrides the configuration.
         continuous: True: four numbers in -1 to 1; False: the seven discrete actions.
-        speeds: How fast the actions are.
+        speeds: How fast the actions are; overrides the configuration.
         observation_size: Width and height of the observation [pixels].
         render_mode: `rgb_array` or None.
         overlay: Whether `render` shows what the camera sees, is rewarded for and looks for;
@@ -57,17 +59,18 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
         map: str | None = None,  # the word users know
         weather: str | None = None,
         continuous: bool = False,
-        speeds: Speeds | None = None,
+        speeds: EnvSpeeds | None = None,
         observation_size: tuple[int, int] = (84, 84),
         render_mode: str | None = None,
         overlay: bool = False,
     ) -> None:
         if render_mode not in (None, *self.metadata["render_modes"]):
             raise ConfigError(f"render_mode: '{render_mode}' is not allowed: 'rgb_array' or None")
-        self.config = _settings(config, map, weather)
+        self.config = _settings(config, map, weather, speeds)
+        require_supported(self.config)
         self.render_mode = render_mode
         actions = ContinuousActions if continuous else DiscreteActions
-        self._actions = actions(speeds or Speeds())
+        self._actions = actions(self.config.env.speeds)
         self.action_space = self._actions.space
         width, height = observation_size
         self.observation_space = gymnasium.spaces.Box(0, 255, (height, width, 3), np.uint8)
@@ -140,6 +143,7 @@ def _settings(
     config: EyasConfig | Mapping[str, Any] | str | Path | None,
     map_name: str | None,
     weather: str | None,
+    speeds: EnvSpeeds | None,
 ) -> EyasConfig:
     match config:
         case None:
@@ -150,9 +154,11 @@ def _settings(
             settings = validated(EyasConfig, dict(config))
         case _:
             settings = load_settings(Path(config), [])
-    changes = {
-        key: value for key, value in (("map", map_name), ("weather", weather)) if value is not None
-    }
-    if not changes:
-        return settings
-    return settings.model_copy(update={"world": settings.world.model_copy(update=changes)})
+    place = {"map": map_name, "weather": weather}
+    changed = {key: value for key, value in place.items() if value is not None}
+    changes: dict[str, object] = {}
+    if changed:
+        changes["world"] = settings.world.model_copy(update=changed)
+    if speeds is not None:
+        changes["env"] = settings.env.model_copy(update={"speeds": speeds})
+    return settings.model_copy(update=changes)

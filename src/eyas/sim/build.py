@@ -2,17 +2,17 @@
 
 import logging
 
-from eyas.sim.config import EyasConfig
+from eyas.sim.config import SimConfig
 from eyas.sim.place import load_place
 from eyas.sim.simulation import Simulation
-from eyas.sim.version_check import require_supported
+from eyas.sim.supported import require_parts
 
 __all__ = ["build_simulation"]
 
 _LOG = logging.getLogger("eyas")
 
 
-def build_simulation(config: EyasConfig, count: int, *, shared_world: bool) -> Simulation:
+def build_simulation(config: SimConfig, count: int, *, shared_world: bool) -> Simulation:
     """Return a simulation; call its `reset` first.
 
     Args:
@@ -24,7 +24,7 @@ def build_simulation(config: EyasConfig, count: int, *, shared_world: bool) -> S
     Raises:
         EyasError: A setting is not supported, or there is no traffic for it.
     """
-    require_supported(config)
+    require_parts(config)
     if config.light.visibility is not None and config.world.weather != "foggy":
         _LOG.warning(
             "light.visibility (Env_Params.foggy_use_default): without effect in the weather '%s'; "

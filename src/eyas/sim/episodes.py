@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.errors import ConfigError, SpawnError
 from eyas.core.rng import stream
-from eyas.sim.config import EyasConfig
+from eyas.sim.config import SimConfig
 from eyas.sim.fleet import Fleet
 from eyas.sim.light import LightChanges
 from eyas.sim.worlds import Worlds
@@ -39,7 +39,7 @@ class Episodes:
     """
 
     def __init__(
-        self, config: EyasConfig, replay: Replay, worlds: Worlds, light: LightChanges, count: int
+        self, config: SimConfig, replay: Replay, worlds: Worlds, light: LightChanges, count: int
     ) -> None:
         self.number = np.full(count, -1, np.int64)
         self._config = config

@@ -5,8 +5,8 @@ from numpy.typing import NDArray
 
 from eyas.core.rng import stream
 from eyas.core.variation import draw
-from eyas.sim.config import LightConfig
 from eyas.state.scene import Lighting
+from eyas.world.config import LightConfig
 
 __all__ = ["LightChanges"]
 

@@ -11,7 +11,7 @@ from eyas.overlay.paint import paint_overlays, with_depth
 from eyas.render.jobs import picture_size
 from eyas.render.kernels.bundles import Stage
 from eyas.sensors.camera import Camera
-from eyas.sim.config import EyasConfig
+from eyas.sim.config import SimConfig
 from eyas.sim.episodes import Episodes
 from eyas.sim.fleet import Traffic, camera_view, create_fleet, target_view, tracker_view
 from eyas.sim.light import LightChanges
@@ -48,7 +48,7 @@ class Simulation:
         shared_world: One world and one time for all, or one for each.
     """
 
-    def __init__(self, config: EyasConfig, place: Place, count: int, *, shared_world: bool) -> None:
+    def __init__(self, config: SimConfig, place: Place, count: int, *, shared_world: bool) -> None:
         self.config = config
         self.count = count
         self._place = place

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.rng import stream
-from eyas.sim.config import EyasConfig
+from eyas.sim.config import SimConfig
 from eyas.sim.place import Place
 from eyas.state.draw import DrawList
 from eyas.state.scene import ACTOR_OBJECT
@@ -28,7 +28,7 @@ class Worlds:
         shared: One world for all, or one for each.
     """
 
-    def __init__(self, config: EyasConfig, place: Place, count: int, *, shared: bool) -> None:
+    def __init__(self, config: SimConfig, place: Place, count: int, *, shared: bool) -> None:
         self.shared = shared
         self._colour_of_all = config.traffic.colour
         self._place = place

@@ -2,11 +2,15 @@
 
 from typing import Annotated
 
-from pydantic import Field
+from pydantic import AfterValidator, Field
 
 from eyas.core.config import Config
+from eyas.core.variation import Variation, within
 
-__all__ = ["WorldConfig"]
+__all__ = ["LightConfig", "WorldConfig"]
+
+Brightness = Annotated[Variation, AfterValidator(within(-100.0, 100.0))]
+Visibility = Annotated[Variation, AfterValidator(within(0.1, 1e6))]
 
 
 class WorldConfig(Config):
@@ -18,3 +22,22 @@ class WorldConfig(Config):
     """Name of the weather."""
     seed: Annotated[int, Field(ge=0, lt=2**31)] = 0
     """Seed of the map: 0 is the canonical one, other seeds give other maps of its kind."""
+
+
+class LightConfig(Config):
+    """Changes of light and fog; the original's `Env_Params`."""
+
+    each_reset: bool = True
+    """Whether they are drawn anew at each reset, or once at the start."""
+    background: Brightness = 0.0
+    """Brightness of the sky and its light, a factor without unit."""
+    background_replaces: bool = False
+    """True: `background` is the brightness; False: it is added to the weather's own."""
+    sun: Brightness = 0.0
+    """Brightness of the sun, a factor without unit."""
+    sun_replaces: bool = False
+    """True: `sun` is the brightness; False: it is added to the weather's own."""
+    visibility: Visibility | None = None
+    """Visibility range in foggy weather [m]; None: the weather's own. Others have no fog."""
+    flakes: bool = True
+    """Whether flakes fall through the picture in snow."""

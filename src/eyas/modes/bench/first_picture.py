@@ -9,9 +9,9 @@ if sys.argv[1]:  # an empty cache folder for kernels and shadows
     os.environ["NUMBA_CACHE_DIR"] = sys.argv[1] + "/kernels"
 import numpy as np
 from eyas.sim.build import build_simulation
-from eyas.sim.config import EyasConfig
+from eyas.sim.config import SimConfig
 from eyas.state.draw import Picture
-simulation = build_simulation(EyasConfig(), 1, shared_world=False)
+simulation = build_simulation(SimConfig(), 1, shared_world=False)
 simulation.reset()
 simulation.draw(np.zeros(1, np.int32), Picture.create(1, 84, 84))
 """

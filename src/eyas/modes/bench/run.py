@@ -22,7 +22,7 @@ from eyas.modes.bench.first_picture import FIRST_PICTURE
 from eyas.modes.bench.stages import measure_stages, stage_table
 from eyas.sensors.config import CameraConfig
 from eyas.sim.build import build_simulation
-from eyas.sim.config import EyasConfig
+from eyas.sim.config import SimConfig
 from eyas.sim.place import load_place
 from eyas.state.draw import DrawList, Picture, Views
 from eyas.state.tracker import ActorState
@@ -98,7 +98,7 @@ def _measurements(seconds: float, *, cold: bool) -> Iterator[Measurement]:
 def _pictures(
     views: int, width: int, height: int, seconds: float, samples: Literal[1, 4] = 1
 ) -> Measurement:
-    config = EyasConfig(camera=CameraConfig(samples=samples))
+    config = SimConfig(camera=CameraConfig(samples=samples))
     simulation = build_simulation(config, views, shared_world=False)
     simulation.reset()
     picture = Picture.create(views, height, width)
@@ -112,7 +112,7 @@ def _pictures(
 
 def _horizon(seconds: float) -> Measurement:
     """Time views from a ring outside the city that hold all of it."""
-    place = load_place(EyasConfig().world, EyasConfig().traffic, 1)
+    place = load_place(SimConfig().world, SimConfig().traffic, 1)
     count, pitch, field_of_view = 64, 0.3, 1.2
     points = place.scene.network.lane_points
     centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
@@ -142,7 +142,7 @@ def _horizon(seconds: float) -> Measurement:
 
 
 def _steps(count: int, seconds: float, *, camera: bool) -> Measurement:
-    simulation = build_simulation(EyasConfig(), count, shared_world=False)
+    simulation = build_simulation(SimConfig(), count, shared_world=False)
     simulation.reset()
     picture = Picture.create(count, 84, 84)
     trackers = np.arange(count, dtype=np.int32)
@@ -164,7 +164,7 @@ def _steps(count: int, seconds: float, *, camera: bool) -> Measurement:
 
 
 def _reset(seconds: float) -> Measurement:
-    simulation = build_simulation(EyasConfig(), 1, shared_world=False)
+    simulation = build_simulation(SimConfig(), 1, shared_world=False)
     rate, repeats = _median_rate(simulation.reset, seconds)
     return Measurement(
         "reset of one tracker", 1e3 / rate, "ms", "target, start pose, looks", repeats
@@ -172,7 +172,7 @@ def _reset(seconds: float) -> Measurement:
 
 
 def _textures() -> Measurement:
-    texels = load_place(EyasConfig().world, EyasConfig().traffic, 1).renderer.textures
+    texels = load_place(SimConfig().world, SimConfig().traffic, 1).renderer.textures
     includes = f"{len(texels)} textures with their mip levels, of the peak memory"
     return Measurement("textures", texels.nbytes / 2**20, "MiB", includes, 1)
 

@@ -11,7 +11,7 @@ from rich.table import Table
 
 from eyas.render.kernels.bundles import Stage
 from eyas.sim.build import build_simulation
-from eyas.sim.config import EyasConfig
+from eyas.sim.config import SimConfig
 from eyas.state.draw import Picture
 
 __all__ = ["SIZES", "StageTime", "measure_stages", "stage_table"]
@@ -52,7 +52,7 @@ def measure_stages(seconds: float) -> list[StageTime]:
     """
     times = []
     for views, width, height in SIZES:
-        simulation = build_simulation(EyasConfig(), views, shared_world=False)
+        simulation = build_simulation(SimConfig(), views, shared_world=False)
         simulation.reset()
         picture = Picture.create(views, height, width)
         trackers = np.arange(views, dtype=np.int32)

@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from eyas.core.clock import physics_steps
 from eyas.core.rng import stream
-from eyas.sim.config import EyasConfig, VideoConfig
+from eyas.envs.actions import action_table
+from eyas.settings.config import EyasConfig
 from eyas.sim.simulation import Simulation
 
 __all__ = ["FOLLOWING", "Following", "Mover", "RandomActions", "mover_of"]
@@ -49,7 +50,7 @@ class RandomActions:
         self.action = np.zeros(count, np.int32)
         self._seed = config.seed
         self._period = physics_steps(config.control.frequency)
-        self._vectors = action_vectors(config.video)
+        self._vectors = action_table(config.video)
         self._streams: list[np.random.Generator | None] = [None] * count
 
     def move(self, sim: Simulation) -> None:
@@ -64,15 +65,6 @@ class RandomActions:
             rng = stream(self._seed, "video", tracker, int(sim.episode[tracker]))
             self._streams[tracker] = rng
         return int(rng.integers(len(self._vectors)))
-
-
-def action_vectors(video: VideoConfig) -> NDArray[np.float64]:
-    """Return what each action number tells the tracker, shape (6, 4)."""
-    vectors = np.zeros((6, 4))
-    vectors[0:2, 0] = video.forward_speed, video.backward_speed
-    vectors[2:4, 1] = video.left_speed, video.right_speed
-    vectors[4:6, 3] = video.counter_clockwise_rate, video.clockwise_rate
-    return vectors
 
 
 def mover_of(config: EyasConfig, count: int) -> Mover:

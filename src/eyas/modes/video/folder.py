@@ -7,15 +7,16 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from eyas import __version__
+from eyas.core.config import validated
 from eyas.core.errors import ConfigError, DataFileError, OutputError
 from eyas.core.files import PART_SUFFIX, refusals, write_atomic
 from eyas.exports.labels import FrameLabel
 from eyas.exports.mark import write_dir_info
 from eyas.modes.video.episode import LABELS, MARK, MOVIE
 from eyas.modes.video.lock import LOCK
-from eyas.sim.config import EyasConfig
-from eyas.sim.legacy.adapter import save_legacy
-from eyas.sim.settings_file import save_settings
+from eyas.settings.config import EyasConfig
+from eyas.settings.file import read_settings, save_settings
+from eyas.settings.legacy.adapter import save_legacy
 
 __all__ = ["VideoFolder", "check_folder", "open_folder"]
 
@@ -183,10 +184,11 @@ def _require_same_settings(path: Path, config: EyasConfig) -> None:
     if not settings.is_file():
         raise OutputError(f"{path}: nothing to continue: not empty, and it has no {SETTINGS}")
     try:
-        recorded = json.loads(settings.read_text())
-    except (OSError, ValueError):
+        recorded = validated(EyasConfig, read_settings(settings))
+    except (DataFileError, ConfigError):
         raise DataFileError(f"{settings}: cannot be read; start anew with --overwrite") from None
-    difference = _first_difference(recorded, json.loads(config.model_dump_json()), "")
+    was, asked = recorded.model_dump(mode="json"), config.model_dump(mode="json")
+    difference = _first_difference(was, asked, "")
     if difference:
         raise ConfigError(f"{settings}: other settings than asked for: {difference}")
 

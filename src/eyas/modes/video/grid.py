@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_RATE
-from eyas.sim.config import VideoConfig
+from eyas.modes.video.config import VideoConfig
 
 __all__ = ["FrameGrid"]
 

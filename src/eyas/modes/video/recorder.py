@@ -8,7 +8,7 @@ from eyas.modes.video.episode import EpisodeWriter, read_complete
 from eyas.modes.video.folder import VideoFolder
 from eyas.modes.video.label import label_of
 from eyas.modes.video.writers import WriterLanes
-from eyas.sim.config import EyasConfig
+from eyas.settings.config import EyasConfig
 from eyas.sim.simulation import Simulation
 from eyas.state.draw import Picture
 

@@ -10,8 +10,8 @@ from eyas.modes.video.grid import FrameGrid
 from eyas.modes.video.lock import recording_lock
 from eyas.modes.video.recorder import Recorder
 from eyas.modes.video.report import Progress, print_report, say
+from eyas.settings.config import EyasConfig
 from eyas.sim.build import build_simulation
-from eyas.sim.config import EyasConfig
 from eyas.sim.place import load_place
 from eyas.sim.simulation import Simulation
 from eyas.task.config import DoneConfig

@@ -12,9 +12,9 @@ from typing import Any
 from eyas.core.config import Problem, updated
 from eyas.core.errors import ConfigError
 from eyas.core.files import write_atomic
-from eyas.sim.config import EyasConfig
-from eyas.sim.legacy.entries import Entry, Values
-from eyas.sim.legacy.keys import ENTRIES
+from eyas.settings.config import EyasConfig
+from eyas.settings.legacy.entries import Entry, Values
+from eyas.settings.legacy.keys import ENTRIES
 
 __all__ = [
     "from_legacy",
@@ -113,7 +113,7 @@ def legacy_keys_of(path: str) -> tuple[str, ...]:
 def legacy_defaults() -> Nested:
     """Return the values of all keys where a file does not say them."""
     values: dict[str, Any] = json.loads(
-        files("eyas.sim.legacy").joinpath("defaults.json").read_text()
+        files("eyas.settings.legacy").joinpath("defaults.json").read_text()
     )
     return values
 

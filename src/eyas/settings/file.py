@@ -11,8 +11,8 @@ from eyas.core.clock import PHYSICS_RATE
 from eyas.core.config import updated, validated
 from eyas.core.errors import ConfigError, DataFileError
 from eyas.core.files import write_atomic
-from eyas.sim.config import EyasConfig
-from eyas.sim.legacy.adapter import from_legacy, is_legacy, with_legacy
+from eyas.settings.config import EyasConfig
+from eyas.settings.legacy.adapter import from_legacy, is_legacy, with_legacy
 
 __all__ = ["load_settings", "read_settings", "save_settings"]
 

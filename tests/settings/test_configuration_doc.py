@@ -6,20 +6,20 @@ from pathlib import Path
 import pytest
 
 from eyas.core.config import group_of
-from eyas.sim.config import EyasConfig
-from eyas.sim.legacy.adapter import legacy_defaults
-from eyas.sim.legacy.keys import ENTRIES
+from eyas.settings.config import EyasConfig
+from eyas.settings.legacy.adapter import legacy_defaults
+from eyas.settings.legacy.keys import ENTRIES
 
 DOC = (Path(__file__).parents[2] / "docs" / "configuration.md").read_text().splitlines()
 
 
-def settings():
-    values = json.loads(EyasConfig().model_dump_json())
-    for name, field in EyasConfig.model_fields.items():
-        if group_of(field):
-            yield from ((f"{name}.{key}", value) for key, value in values[name].items())
+def settings(group=EyasConfig, path=""):
+    values = json.loads(group().model_dump_json())
+    for name, field in group.model_fields.items():
+        if inner := group_of(field):
+            yield from settings(inner, f"{path}{name}.")
         else:
-            yield name, values[name]
+            yield f"{path}{name}", values[name]
 
 
 @pytest.mark.parametrize(("path", "default"), list(settings()))

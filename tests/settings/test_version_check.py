@@ -1,9 +1,9 @@
 import pytest
 
 from eyas.core.errors import NotInThisVersionError
-from eyas.sim.config import EyasConfig
-from eyas.sim.legacy.adapter import from_legacy
-from eyas.sim.version_check import require_supported
+from eyas.settings.config import EyasConfig
+from eyas.settings.legacy.adapter import from_legacy
+from eyas.settings.version_check import require_supported
 
 
 @pytest.mark.parametrize(

@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 
 from eyas.core.errors import ConfigError, UnknownNameError
 from eyas.core.variation import Mirrored, Uniform
-from eyas.sim.config import EyasConfig
-from eyas.sim.legacy.adapter import (
+from eyas.settings.config import EyasConfig
+from eyas.settings.legacy.adapter import (
     from_legacy,
     is_legacy,
     legacy_defaults,
@@ -16,8 +16,8 @@ from eyas.sim.legacy.adapter import (
     to_legacy,
     with_legacy,
 )
-from eyas.sim.legacy.keys import ENTRIES
-from eyas.sim.version_check import require_supported
+from eyas.settings.legacy.keys import ENTRIES
+from eyas.settings.version_check import require_supported
 
 DATA = Path(__file__).parent / "data"
 FILES = ("manual_example", "recommended", "shipped")

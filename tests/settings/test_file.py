@@ -4,9 +4,9 @@ import pytest
 
 from eyas.core.errors import ConfigError, DataFileError
 from eyas.core.variation import Mirrored, Uniform
-from eyas.sim.config import EyasConfig
-from eyas.sim.legacy.adapter import from_legacy
-from eyas.sim.settings_file import load_settings, save_settings
+from eyas.settings.config import EyasConfig
+from eyas.settings.file import load_settings, save_settings
+from eyas.settings.legacy.adapter import from_legacy
 
 CONFIG = EyasConfig(
     seed=3,

@@ -1,7 +1,7 @@
 """Every key of the original's `env_config.json`, and the setting of ours that it is."""
 
-from eyas.sim.legacy.entries import Entry, Optional, Same, Span, Varied
-from eyas.sim.legacy.world_path import WorldPath
+from eyas.settings.legacy.entries import Entry, Optional, Same, Span, Varied
+from eyas.settings.legacy.world_path import WorldPath
 
 __all__ = ["ENTRIES"]
 

@@ -9,7 +9,7 @@ from typing_extensions import override
 
 from eyas.core.config import shown
 from eyas.core.errors import ConfigError
-from eyas.sim.legacy.entries import Entry, Guess, Values
+from eyas.settings.legacy.entries import Entry, Guess, Values
 
 __all__ = ["WorldPath"]
 

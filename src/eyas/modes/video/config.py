@@ -1,0 +1,31 @@
+"""Settings of recordings."""
+
+from typing import Annotated
+
+from pydantic import Field
+
+from eyas.envs.config import ActionSpeeds
+
+__all__ = ["VideoConfig"]
+
+
+class VideoConfig(ActionSpeeds):
+    """What is recorded; the speeds are those of random actions."""
+
+    channels: Annotated[int, Field(ge=1, le=1024)] = 4
+    """Trackers that record side by side in one world."""
+    fps: Annotated[float, Field(gt=0, le=500)] = 25.0
+    """Pictures in a second of simulated time."""
+    start_time: Annotated[float, Field(ge=0, le=1e6)] = 1.0
+    """Simulated time at which recording begins [s]."""
+    total_time: Annotated[float, Field(gt=0, le=1e6)] = 12.0
+    """Simulated time that is recorded [s]."""
+    warm_up_steps: Annotated[int, Field(ge=0, le=5_000_000)] = 30
+    """2 ms steps after each reset that are not recorded."""
+    target_direction: bool = False
+    """Whether `mark.json` holds the target's direction instead of reward and action."""
+    overlay: bool = False
+    """Whether the pictures show what the camera sees, is rewarded for and looks for; labels stay
+    the same."""
+    random_action: bool = False
+    """True: seeded random actions; False: the target is followed exactly."""

@@ -1,0 +1,29 @@
+"""What can be set and is not in this version yet: said in one line instead of ignored."""
+
+from collections.abc import Iterator
+
+from eyas.settings.config import EyasConfig
+from eyas.settings.legacy.adapter import legacy_keys_of
+from eyas.sim.supported import Missing, missing_parts
+
+__all__ = ["require_supported"]
+
+
+def require_supported(config: EyasConfig) -> None:
+    """Refuse settings that ask for a part that this version does not have.
+
+    A simulation refuses by itself what it cannot do; here, the setting is named in both notations.
+    Maps and weathers are refused where they are looked up.
+
+    Raises:
+        NotInThisVersionError: One line that names the setting, in both notations.
+    """
+    for missing in _missing(config):
+        keys = legacy_keys_of(missing.path)
+        raise missing.error(keys[0] if keys else "")
+
+
+def _missing(config: EyasConfig) -> Iterator[Missing]:
+    yield from missing_parts(config)
+    if config.wire.lidar:
+        yield Missing("wire.lidar", value=True, part="the lidar")

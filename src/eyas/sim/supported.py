@@ -1,0 +1,64 @@
+"""What a simulation can be asked for and is not in this version yet."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from eyas.core.config import Config, shown
+from eyas.core.errors import NotInThisVersionError
+from eyas.sim.config import SimConfig
+from eyas.targets.config import ObjectsConfig, TargetName
+from eyas.trackers.config import TrackerKind
+
+__all__ = ["Missing", "missing_parts", "require_parts"]
+
+
+@dataclass(frozen=True, slots=True)
+class Missing:
+    """A setting that asks for a part that this version does not have."""
+
+    path: str
+    """Dotted path of the setting."""
+    value: object
+    """What it is set to."""
+    part: str
+    """The part that is missing, in words."""
+
+    def error(self, other_name: str = "") -> NotInThisVersionError:
+        """Return the one line to raise, with the setting's name in another notation if given."""
+        also = f" ({other_name})" if other_name else ""
+        return NotInThisVersionError(
+            f"{self.path}{also}: {shown(self.value)}: {self.part} is not in this version yet"
+        )
+
+
+def require_parts(config: SimConfig) -> None:
+    """Refuse settings that ask for a part that this version does not have.
+
+    Maps and weathers are refused where they are looked up.
+
+    Raises:
+        NotInThisVersionError: One line that names the setting.
+    """
+    for missing in missing_parts(config):
+        raise missing.error()
+
+
+def missing_parts(config: SimConfig) -> Iterator[Missing]:
+    """Yield what of a simulation's settings asks for a part that this version does not have."""
+    if config.target is not TargetName.SUMO_VEHICLE:
+        part = "a target other than SUMO's vehicles"
+        yield Missing("target", config.target.value, part)
+    if config.tracker.kind is TrackerKind.CAR:
+        yield Missing("tracker.kind", config.tracker.kind.value, "the car as a tracker")
+    if not config.tracker.supervised:
+        part = "flying by a flight controller"
+        yield Missing("tracker.supervised", value=False, part=part)
+    for path, value in _changed("objects", config.objects, ObjectsConfig()):
+        yield Missing(path, value, "placing objects along the road")
+
+
+def _changed(group: str, config: Config, default: Config) -> Iterator[tuple[str, object]]:
+    for name in type(config).model_fields:
+        value = getattr(config, name)
+        if value != getattr(default, name):
+            yield f"{group}.{name}", value

@@ -1,0 +1,45 @@
+"""Settings of targets."""
+
+from enum import StrEnum
+from typing import Annotated
+
+from pydantic import AfterValidator, Field
+
+from eyas.core.config import Config
+from eyas.core.variation import Variation, within
+
+__all__ = ["ObjectsConfig", "TargetName"]
+
+
+class TargetName(StrEnum):
+    """What can be followed, as the original's `Tracking_Object` names it."""
+
+    SUMO_VEHICLE = "SUMO_VEHICLE"
+    PEDESTRIAN = "Pedestrian"
+    SHRIMP = "Shrimp"
+    CREATE = "Create"
+    SOJOURNER = "Sojourner"
+    MANTIS = "Mantis"
+    BB_8 = "BB-8"
+    AIBO_ERS7 = "AiboErs7"
+    BIOLOID_DOG = "BioloidDog"
+    FIRE_BIRD_6 = "FireBird6"
+    SCOUT = "Scout"
+    GHOST_DOG = "GhostDog"
+    HOAP_2 = "Hoap2"
+
+
+Offset = Annotated[Variation, AfterValidator(within(-1e4, 1e4))]
+
+
+class ObjectsConfig(Config):
+    """How targets other than vehicles are placed; the original's `Other_Params`."""
+
+    max_count: Annotated[int, Field(ge=1, le=1000)] = 10
+    """Most objects at a time."""
+    interval: Annotated[float, Field(gt=0, le=3600)] = 0.5
+    """Time between groups [s]."""
+    group_size: Annotated[int, Field(ge=1, le=1000)] = 4
+    """Objects placed together."""
+    offset: Offset = 0.0
+    """Distance from the middle of the road [m]."""

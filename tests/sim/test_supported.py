@@ -1,0 +1,19 @@
+import pytest
+
+from eyas.core.errors import NotInThisVersionError
+from eyas.sim.build import build_simulation
+from eyas.sim.config import SimConfig
+
+
+@pytest.mark.parametrize(
+    ("values", "line"),
+    [
+        ({"tracker": {"kind": "car"}}, r"tracker\.kind: 'car': the car as a tracker"),
+        ({"tracker": {"supervised": False}}, r"tracker\.supervised: false: "),
+        ({"target": "Mantis"}, r"target: 'Mantis': "),
+        ({"objects": {"group_size": 3}}, r"objects\.group_size: 3: "),
+    ],
+)
+def test_a_simulation_refuses_what_it_would_ignore(values, line):
+    with pytest.raises(NotInThisVersionError, match=rf"^{line}.* is not in this version yet$"):
+        build_simulation(SimConfig(**values), 1, shared_world=False)
