@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from eyas.render.textures.fields import fractal, source
-from eyas.render.textures.library import build_textures
+from eyas.render.textures.library import PAINTERS, build_textures
 from eyas.world.build.materials import FACADES, GROUND_FLOORS, TEXTURES
 
 
@@ -20,6 +20,10 @@ def test_every_name_has_a_texture_of_the_right_kind(textures):
     for image in textures.values():
         assert image.shape == (256, 256, 4)
         assert image.dtype == np.uint8
+
+
+def test_the_names_of_materials_and_painters_are_the_same():
+    assert PAINTERS.keys() == TEXTURES.keys()
 
 
 def test_textures_are_always_the_same(textures):

@@ -5,28 +5,61 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.render.textures import facades as texture_facades
-from eyas.render.textures import ground as texture_ground
-from eyas.render.textures import land as texture_land
-from eyas.render.textures import plants as texture_plants
-from eyas.render.textures import roofs as texture_roofs
-from eyas.render.textures import shops as texture_shops
-from eyas.render.textures import walls as texture_walls
-from eyas.render.textures import wear as texture_wear
+from eyas.render.textures import facades, ground, land, plants, roofs, shops, walls, wear
 from eyas.world.build.materials import TEXTURES
 
-__all__ = ["build_textures"]
+__all__ = ["PAINTERS", "build_textures"]
 
-_ROOMS = (
-    texture_ground,
-    texture_land,
-    texture_wear,
-    texture_plants,
-    texture_roofs,
-    texture_walls,
-    texture_facades,
-    texture_shops,
-)
+
+def _plain() -> NDArray[np.uint8]:
+    return np.full((256, 256, 4), 255, np.uint8)
+
+
+PAINTERS: dict[str, Callable[[], NDArray[np.uint8]]] = {
+    "plain": _plain,
+    "asphalt": ground.asphalt,
+    "asphalt_light": ground.asphalt_light,
+    "paving": ground.paving,
+    "lawn": ground.lawn,
+    "lawn_mown": ground.lawn_mown,
+    "soil": ground.soil,
+    "sand": land.sand,
+    "crops": land.crops,
+    "crops_ripe": land.crops_ripe,
+    "dry_leaves": land.dry_leaves,
+    "snow": land.snow,
+    "clinker": land.clinker,
+    "water": land.water,
+    "paint": wear.paint,
+    "asphalt_patch": wear.asphalt_patch,
+    "asphalt_lane": wear.asphalt_lane,
+    "asphalt_oil": wear.asphalt_oil,
+    "manhole": wear.manhole,
+    "concrete": walls.concrete,
+    "bark": plants.bark,
+    "leaves": plants.leaves,
+    "foliage": plants.foliage,
+    "roof_tiles": roofs.roof_tiles,
+    "roof_terrace": roofs.roof_terrace,
+    "roof_gravel": roofs.roof_gravel,
+    "roof_membrane": roofs.roof_membrane,
+    "bitumen": roofs.bitumen,
+    "brick": walls.brick,
+    "stone": walls.stone,
+    "facade_concrete": facades.facade_concrete,
+    "facade_brick": facades.facade_brick,
+    "facade_plaster": facades.facade_plaster,
+    "facade_stone": facades.facade_stone,
+    "facade_office": facades.facade_office,
+    "facade_glass": facades.facade_glass,
+    "facade_highrise": facades.facade_highrise,
+    "facade_old": facades.facade_old,
+    "facade_bands": facades.facade_bands,
+    "facade_red_white": facades.facade_red_white,
+    "ground_shop": shops.ground_shop,
+    "ground_lobby": shops.ground_lobby,
+}
+"""The function that paints each texture of `eyas.world.build.materials.TEXTURES`."""
 
 
 def build_textures() -> dict[str, NDArray[np.uint8]]:
@@ -36,17 +69,4 @@ def build_textures() -> dict[str, NDArray[np.uint8]]:
     the **top** of the tile, v = 1: who samples with v upwards flips the rows. Alpha is 255 but for
     the holes of `leaves` and the glass of facades, where it is 0.
     """
-    return {name: _painter(name)() for name in TEXTURES}
-
-
-def _painter(name: str) -> Callable[[], NDArray[np.uint8]]:
-    """Return the function that is called as the texture is."""
-    if name == "plain":
-        return _plain
-    painters = [getattr(room, name) for room in _ROOMS if hasattr(room, name)]
-    painter: Callable[[], NDArray[np.uint8]] = painters[0]
-    return painter
-
-
-def _plain() -> NDArray[np.uint8]:
-    return np.full((256, 256, 4), 255, np.uint8)
+    return {name: PAINTERS[name]() for name in TEXTURES}
