@@ -5,8 +5,8 @@ import pytest
 import shapely
 
 from eyas.state.scene import ObjectClass
+from eyas.world.build.heights import FLOOR_HEIGHT, KERB_HEIGHT
 from eyas.world.buildings import rooftops
-from eyas.world.land.ground import FLOOR_HEIGHT, KERB_HEIGHT
 from eyas.world.maps import build_scene, shipped_network
 from eyas.world.maps.citystreet.plan import make_plan
 from eyas.world.plants import shrubs as plants

@@ -1,32 +1,19 @@
 """Settings of the task: start, reward, end."""
 
 import math
-from collections.abc import Callable
 from enum import StrEnum
 from typing import Annotated, Self
 
 from pydantic import AfterValidator, Field, model_validator
 
 from eyas.core.config import Config
-from eyas.core.variation import Uniform, Variation, bounds
+from eyas.core.variation import Uniform, Variation, within
 
 __all__ = ["DoneConfig", "RewardConfig", "RewardMode", "RewardType", "StartConfig"]
 
 Positive = Annotated[float, Field(gt=0, le=1e9)]
 Height = Annotated[float, Field(ge=-1e6, le=1e6)]
 Steps = Annotated[int, Field(ge=0, le=2**31 - 1)]
-
-
-def _within(low: float, high: float) -> Callable[[Variation], Variation]:
-    """Return a check that all values a variation can give lie between two limits."""
-
-    def check(variation: Variation) -> Variation:
-        smallest, largest = bounds(variation)
-        if smallest < low or largest > high:
-            raise ValueError(f"it must stay within {low:g} and {high:g}")
-        return variation
-
-    return check
 
 
 class RewardType(StrEnum):
@@ -48,16 +35,16 @@ class RewardMode(StrEnum):
 class StartConfig(Config):
     """Where the tracker starts, relative to its target. Each is drawn anew at a reset."""
 
-    pitch: Annotated[Variation, AfterValidator(_within(0.1, 3.0))] = 1.0
+    pitch: Annotated[Variation, AfterValidator(within(0.1, 3.0))] = 1.0
     """Camera pitch, positive down [rad]; the gimbal holds it within 0.5 to 1.5, the place is drawn
     for the full value."""
-    height: Annotated[Variation, AfterValidator(_within(0.1, 1e4))] = Uniform(uniform=(13.0, 25.0))
+    height: Annotated[Variation, AfterValidator(within(0.1, 1e4))] = Uniform(uniform=(13.0, 25.0))
     """Height above the target [m]."""
-    direction: Annotated[Variation, AfterValidator(_within(-2 * math.pi, 2 * math.pi))] = 0.0
+    direction: Annotated[Variation, AfterValidator(within(-2 * math.pi, 2 * math.pi))] = 0.0
     """Heading relative to the target's [rad]."""
-    horizontal_bias: Annotated[Variation, AfterValidator(_within(-1e4, 1e4))] = 0.0
+    horizontal_bias: Annotated[Variation, AfterValidator(within(-1e4, 1e4))] = 0.0
     """Sideways offset of the tracker, positive left, so that the target appears right [m]."""
-    vertical_bias: Annotated[Variation, AfterValidator(_within(-1e4, 1e4))] = 0.0
+    vertical_bias: Annotated[Variation, AfterValidator(within(-1e4, 1e4))] = 0.0
     """Forward offset of the tracker, so that the target appears lower [m]."""
     warm_up_steps: Annotated[int, Field(ge=0, le=5_000_000)] = 310
     """2 ms steps of traffic before the trackers start."""

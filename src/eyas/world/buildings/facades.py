@@ -6,9 +6,10 @@ from itertools import pairwise
 import numpy as np
 
 from eyas.state.mesh import Material, Mesh, concatenate
+from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.materials import GROUND_FLOORS, facade, material
 from eyas.world.buildings import parts
-from eyas.world.buildings.placing import FOOT, PARAPET, Building
+from eyas.world.buildings.placing import PARAPET, Building
 from eyas.world.buildings.skyline import FLOOR
 
 __all__ = ["chance_of", "mesh_of"]
@@ -35,7 +36,7 @@ def mesh_of(building: Building) -> Mesh:
     rng = chance_of(building)
     foot, outline = building.bottom, building.footprint
     top = foot + building.height
-    street = min(FLOOR, building.height - FLOOR) if foot <= FOOT else 0.0
+    street = min(FLOOR, building.height - FLOOR) if foot <= FLOOR_HEIGHT else 0.0
     front = facade(GROUND_FLOORS[int(rng.integers(len(GROUND_FLOORS)))], building.tint)
     stone = material("concrete", building.tint)
     meshes = _shaft_walls(building, foot + street, top, stone, rng)

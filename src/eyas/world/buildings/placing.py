@@ -8,22 +8,20 @@ import shapely
 from numpy.typing import NDArray
 
 from eyas.state.mesh import Material
+from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.materials import FACADES
 from eyas.world.buildings import parts
 from eyas.world.buildings.looks import roof_cover, wall_tint
 from eyas.world.buildings.lots import divide, footprint_in, frame_angle, largest, turned
 from eyas.world.buildings.skyline import FLOOR, TOWER_SHARE, evenly, ground_areas, storeys
 
-__all__ = ["FOOT", "PARAPET", "SETBACK", "Building", "place_buildings", "prism_of"]
+__all__ = ["PARAPET", "SETBACK", "Building", "place_buildings", "prism_of"]
 
 PARAPET = 0.9
 """Height of the wall around a flat roof [m]."""
 
 SETBACK = 4.4
 """Least distance between a kerb and a building [m]."""
-
-FOOT = -0.1
-"""z of the floor that buildings stand on [m]."""
 
 _YARD = 0.8
 """Part of the set-back that `footprint_in` keeps from the edge of every lot [m]."""
@@ -173,7 +171,7 @@ def _furnished(
         made.append(
             Building(
                 footprint=_corners(shape),
-                bottom=float(FOOT + foot),
+                bottom=float(FLOOR_HEIGHT + foot),
                 height=float(top[i] - foot),
                 facade=kinds[i],
                 tint=wall_tint(rng),

@@ -6,13 +6,12 @@ import numpy as np
 import shapely
 
 from eyas.state.mesh import Mesh, concatenate
+from eyas.world.build.heights import FLOOR_HEIGHT, KERB_HEIGHT
 from eyas.world.build.materials import TEXTURES, material
 from eyas.world.build.shapes import flat_polygon
 from eyas.world.roads.areas import skirt, surface
 
 __all__ = [
-    "FLOOR_HEIGHT",
-    "KERB_HEIGHT",
     "PAVEMENT_WIDTH",
     "asphalt",
     "lawn",
@@ -22,17 +21,11 @@ __all__ = [
     "yards",
 ]
 
-FLOOR_HEIGHT = -0.1
-"""z of the lawn, the original's [m]."""
-
 PAVEMENT_WIDTH = 2.6
 """From the kerb to the lawn [m]."""
 
 _VERGE = 1.5
 """Width of the pavement along the outer side of the outer streets [m]."""
-
-KERB_HEIGHT = 0.15
-"""z of the pavements [m]."""
 
 _KERB_WIDTH = 0.35
 _KERB = material("stone", (1.0, 0.95, 0.92))

@@ -7,10 +7,10 @@ from numpy.typing import NDArray
 from eyas.state.mesh import Material, Mesh, Surface, concatenate
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import Lamps, ObjectClass
+from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.materials import material
 from eyas.world.build.scene_builder import SceneBuilder
 from eyas.world.build.shapes import box, tube
-from eyas.world.land.ground import FLOOR_HEIGHT
 from eyas.world.roads.areas import streets
 
 __all__ = ["BEYOND_KERB", "LIGHT", "POLE_HEIGHT", "POLE_RADIUS", "add_lamps", "lamp_levels"]

@@ -7,8 +7,8 @@ import shapely
 
 from eyas.state.mesh import Mesh
 from eyas.state.scene import ObjectClass
+from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.scene_builder import SceneBuilder
-from eyas.world.land.ground import FLOOR_HEIGHT
 from eyas.world.maps.citystreet.plan import EXTENT, Plan
 from eyas.world.plants import gardens
 from eyas.world.plants.shrubs import KINDS, plant_levels

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from eyas.core.rng import stream
 from eyas.state.roads import RoadNetwork
+from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.buildings import placing as buildings
 from eyas.world.buildings.lots import frame_angle, turned
 from eyas.world.land import ground, outskirts
@@ -96,7 +97,7 @@ class Plan:
     @property
     def footprints(self) -> list[Points]:
         """Corners of the buildings that stand on the ground [m]."""
-        return [b.footprint for b in self.buildings if b.bottom <= buildings.FOOT]
+        return [b.footprint for b in self.buildings if b.bottom <= FLOOR_HEIGHT]
 
 
 def make_plan(network: RoadNetwork, seed: int) -> Plan:
@@ -111,7 +112,7 @@ def make_plan(network: RoadNetwork, seed: int) -> Plan:
     middle = _overpass_path(seed)
     onwards = (middle[1] - middle[0])[:2]
     access = outskirts.access_road(middle[0, :2], onwards / np.linalg.norm(onwards), roads)
-    columns = pillars(middle, _PILLARS, ground.FLOOR_HEIGHT, roads)
+    columns = pillars(middle, _PILLARS, FLOOR_HEIGHT, roads)
     deck = shapely.buffer(overpass.deck_area(middle), 3.0)
     rng = stream(seed, "citystreet lots")
     car_parks = place_car_parks(closed, _CAR_PARKS, rng, deck)

@@ -8,6 +8,7 @@ from eyas.state.mesh import Material, Mesh, Surface
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import ObjectClass, Scene
 from eyas.world.build import materials
+from eyas.world.build.heights import FLOOR_HEIGHT, KERB_HEIGHT
 from eyas.world.build.scene_builder import SceneBuilder
 from eyas.world.buildings import placing as buildings
 from eyas.world.buildings import rooftops
@@ -59,24 +60,24 @@ def build_scene(network: RoadNetwork, seed: int) -> Scene:
     feet = shapely.buffer(shapely.points(lights.position[:, :2].astype(float)), 4.0)
     taken = shapely.union_all([taken, *feet])
     rng = stream(seed, "citystreet furniture")
-    height = ground.KERB_HEIGHT
+    height = KERB_HEIGHT
     levels += add_furniture(builder, network, plan.pavement, taken, height, len(levels), rng)
     taken = shapely.union_all([taken, plan.pavement, *yards])
     levels += add_greenery(builder, plan, taken, len(levels), stream(seed, "citystreet gardens"))
     levels += add_parked(builder, plan, len(levels), stream(seed, "citystreet parked cars"))
-    return builder.build(NAME, seed, FLOOR, ground.FLOOR_HEIGHT, levels, network, lights)
+    return builder.build(NAME, seed, FLOOR, FLOOR_HEIGHT, levels, network, lights)
 
 
 def _add_buildings(builder: SceneBuilder, plan: Plan, first: int) -> None:
     """Add buildings and what stands on their roofs."""
-    towers = [shapely.Polygon(b.footprint) for b in plan.buildings if b.bottom > buildings.FOOT]
+    towers = [shapely.Polygon(b.footprint) for b in plan.buildings if b.bottom > FLOOR_HEIGHT]
     above = shapely.union_all(towers)
     for building in plan.buildings:
         owner = builder.add(ObjectClass.BUILDING, mesh_of(building))
         builder.add_prism(*buildings.prism_of(building), owner)
         if building.roof == "flat":
             top = building.bottom + building.height
-            free = above if building.bottom <= buildings.FOOT else shapely.Polygon()
+            free = above if building.bottom <= FLOOR_HEIGHT else shapely.Polygon()
             rng = chance_of(building)
             rooftops.add_rooftop(builder, building.footprint, top, owner, first, free, rng)
 
@@ -107,7 +108,7 @@ def _add_ground(
     pools, turn = shapely.union_all(plan.pools), plan.turn
     paved = shapely.union_all([plan.roads, plan.access])
     covered = shapely.union_all([_no_lawn(plan), *yards])
-    land = outskirts.fields(FLOOR, ground.FLOOR_HEIGHT, rng)
+    land = outskirts.fields(FLOOR, FLOOR_HEIGHT, rng)
     mown = shapely.union_all(plan.blocks)
     paint = markings.mesh_of(markings.road_paint(network))
     bays = [markings.painted(park.lines, markings.WHITE) for park in plan.car_parks]
@@ -125,7 +126,7 @@ def _add_ground(
 
 
 def _add_overpass(builder: SceneBuilder, plan: Plan) -> None:
-    floor = ground.FLOOR_HEIGHT
+    floor = FLOOR_HEIGHT
     down = outskirts.descent(plan.deck, floor)  # beyond the floor; not solid
     legs = [pillar_mesh(pillar, floor) for pillar in pillars(down, _LEGS, floor, plan.roads)]
     deck = [overpass.deck_mesh(part, floor) for part in (plan.deck, down)]
@@ -146,8 +147,8 @@ def _add_trees(
     """Add a tree at each trunk; return the kinds of trees."""
     for place in plan.trees:
         height = rng.choice(_TREE_HEIGHTS, p=_TREE_ODDS) * rng.uniform(0.93, 1.0)
-        spot = (*place, ground.FLOOR_HEIGHT)
+        spot = (*place, FLOOR_HEIGHT)
         kind, turn = int(rng.integers(trees.VARIANTS)), rng.uniform(0, 2 * np.pi)
         owner = builder.add_copy(ObjectClass.TREE, kind, spot, turn, height)
-        builder.add_cylinder(place, 0.022 * height, ground.FLOOR_HEIGHT, 0.3 * height, owner)
+        builder.add_cylinder(place, 0.022 * height, FLOOR_HEIGHT, 0.3 * height, owner)
     return [trees.street_tree_levels(rng, kind) for kind in range(trees.VARIANTS)]

@@ -1,0 +1,9 @@
+"""Heights that all parts of a flat map share."""
+
+__all__ = ["FLOOR_HEIGHT", "KERB_HEIGHT"]
+
+FLOOR_HEIGHT = -0.1
+"""z of the lawn, on which buildings, trees and poles stand; the original's [m]."""
+
+KERB_HEIGHT = 0.15
+"""z of the pavements [m]."""
