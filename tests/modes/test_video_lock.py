@@ -1,3 +1,5 @@
+import errno
+import logging
 import os
 import re
 import signal
@@ -8,7 +10,7 @@ import pytest
 
 from eyas.core.errors import OutputError
 from eyas.modes.video.folder import check_folder, open_folder
-from eyas.modes.video.lock import recording_lock
+from eyas.modes.video.lock import fcntl, recording_lock
 from eyas.settings.config import EyasConfig
 
 HOLD = """
@@ -18,6 +20,16 @@ from eyas.modes.video.lock import recording_lock
 with recording_lock(Path(sys.argv[1])):
     print("locked", flush=True)
     time.sleep(60)
+"""
+
+
+WITHOUT_LOCKS = """
+import sys
+sys.modules["fcntl"] = None
+from pathlib import Path
+from eyas.modes.video.lock import recording_lock
+with recording_lock(Path(sys.argv[1])):
+    print("records", flush=True)
 """
 
 
@@ -67,3 +79,22 @@ def test_a_file_where_the_folder_should_be_is_one_line(tmp_path):
     (tmp_path / "a").write_text("mine")
     with pytest.raises(OutputError, match="cannot write"), recording_lock(tmp_path / "a"):
         raise AssertionError("there is no folder")
+
+
+def test_without_locks_of_the_file_system_there_is_a_warning(tmp_path, monkeypatch, caplog):
+    def refuse(file, operation):
+        raise OSError(errno.ENOLCK, "No locks available")
+
+    monkeypatch.setattr(fcntl, "flock", refuse)
+    with caplog.at_level(logging.WARNING, "eyas"), recording_lock(tmp_path / "a"):
+        (line,) = caplog.messages
+    assert "cannot lock, so start only one recorder: No locks available" in line
+    assert not list((tmp_path / "a").iterdir())
+
+
+def test_without_locks_of_the_system_it_records_too(tmp_path):
+    command = [sys.executable, "-c", WITHOUT_LOCKS, str(tmp_path / "a")]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    assert done.stdout == "records\n"
+    assert "cannot lock, so start only one recorder" in done.stderr
+    assert not list((tmp_path / "a").iterdir())

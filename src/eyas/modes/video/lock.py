@@ -1,15 +1,20 @@
 """Only one process at a time records into a folder."""
 
-import fcntl
+import errno
 import logging
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TextIO
 
 from eyas.core.errors import OutputError
 from eyas.core.files import refusals
+
+try:
+    import fcntl
+except ImportError:  # Windows
+    fcntl = None  # type: ignore[assignment]
 
 __all__ = ["LOCK", "recording_lock"]
 
@@ -24,7 +29,8 @@ def recording_lock(folder: Path) -> Iterator[None]:
     """Keep a folder for this process; the folder is made if it is not there.
 
     The system drops the lock with the process that holds it, however that ends: a file that a
-    killed recorder has left locks nobody out.
+    killed recorder has left locks nobody out. Where there are no locks (on Windows and on some
+    network file systems), a warning is logged instead.
 
     Raises:
         OutputError: Another process records into it, or the file system refused.
@@ -38,14 +44,15 @@ def recording_lock(folder: Path) -> Iterator[None]:
             yield
         finally:
             # Before it is unlocked, or a file could go that another process has locked by then.
-            path.unlink(missing_ok=True)
+            with suppress(PermissionError):  # Windows deletes no open file
+                path.unlink(missing_ok=True)
 
 
 def _locked(path: Path) -> TextIO:
     while True:
         file = path.open("a+")
         try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            _lock(file)
         except BlockingIOError:
             file.seek(0)
             owner = file.read() or "that just began"
@@ -54,7 +61,7 @@ def _locked(path: Path) -> TextIO:
                 f"{path.parent}: process {owner} is recording into it;"
                 " wait for it to end, or name another folder"
             ) from None
-        except OSError as error:  # network file systems may have no locks
+        except OSError as error:
             _LOG.warning("%s: cannot lock, so start only one recorder: %s", path, error.strerror)
             return file
         if _is_at(file, path):
@@ -63,6 +70,18 @@ def _locked(path: Path) -> TextIO:
             file.flush()
             return file
         file.close()  # its owner has deleted it since it was opened
+
+
+def _lock(file: TextIO) -> None:
+    """Lock a file.
+
+    Raises:
+        BlockingIOError: Another process has locked it.
+        OSError: There are no locks here.
+    """
+    if fcntl is None:
+        raise OSError(errno.ENOLCK, os.strerror(errno.ENOLCK))
+    fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
 
 
 def _is_at(file: TextIO, path: Path) -> bool:
