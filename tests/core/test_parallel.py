@@ -1,9 +1,14 @@
 """Parallel kernels: every worker does its share, and bundles are found whatever their kind."""
 
 import multiprocessing
+import os
+import signal
 import threading
+import time
+from types import SimpleNamespace
 
 import numpy as np
+import pytest
 
 from eyas.core.parallel import Held, parallel_kernel
 
@@ -78,3 +83,75 @@ def test_threads_and_forked_processes_may_call_at_once():
     assert len(results) == 6
     for result in results:
         np.testing.assert_array_equal(result, 100.0)
+
+
+class SlowWorker:
+    """Stands for a compiled kernel whose worker 1, in another thread, does not end until told."""
+
+    def __init__(self, monkeypatch):
+        self.told, self.begun, self.ended = (threading.Event() for _ in range(3))
+        compiled = SimpleNamespace(ctypes=self.work)
+        monkeypatch.setattr(parallel_kernel, "_compile", lambda kernel, parts: compiled)
+        self.kernel = parallel_kernel(None)
+
+    def work(self, table, worker, workers):
+        if worker == 0:  # so that a thread, not this one, takes the other share
+            assert self.begun.wait(10)
+            return
+        self.begun.set()
+        assert self.told.wait(10)
+        time.sleep(0.2)
+        self.ended.set()
+
+    def call_and_interrupt(self, times, then=lambda: None):
+        """Call, and press Ctrl-C while the call waits for the worker."""
+
+        def press():
+            self.begun.wait(10)
+            for _ in range(times):
+                time.sleep(0.2)
+                os.kill(os.getpid(), signal.SIGINT)
+            then()
+
+        presser = threading.Thread(target=press)
+        presser.start()
+        with pytest.raises(KeyboardInterrupt):
+            self.kernel(2, Held((0,)))
+        presser.join()
+
+
+def test_an_interrupted_call_ends_after_its_workers(monkeypatch):
+    slow = SlowWorker(monkeypatch)
+    slow.call_and_interrupt(times=1, then=slow.told.set)
+    assert slow.ended.is_set()
+
+
+def test_after_two_interrupts_the_next_call_waits_for_the_first_ones_workers(monkeypatch):
+    slow = SlowWorker(monkeypatch)
+    slow.call_and_interrupt(times=2)
+    assert not slow.ended.is_set()  # or there would be nothing to wait for
+
+    seen = []
+    compiled = SimpleNamespace(ctypes=lambda *_: seen.append(slow.ended.is_set()))
+    monkeypatch.setattr(parallel_kernel, "_compile", lambda kernel, parts: compiled)
+    threading.Timer(0.2, slow.told.set).start()
+    parallel_kernel(None)(3, Held((0,)))
+    assert seen == [True] * 3
+
+
+def test_an_interrupt_before_a_share_begins_leaves_it_undone(monkeypatch):
+    done = []
+
+    def work(table, worker, workers):
+        if worker == 0:
+            raise KeyboardInterrupt
+        time.sleep(0.1)  # or the threads could keep up with the one that hands out shares
+        done.append(worker)
+
+    compiled = SimpleNamespace(ctypes=work)
+    monkeypatch.setattr(parallel_kernel, "_compile", lambda kernel, parts: compiled)
+    with pytest.raises(KeyboardInterrupt):
+        parallel_kernel(None)(2000, Held((0,)))
+    count = len(done)
+    time.sleep(0.2)
+    assert len(done) == count < 1999

@@ -9,7 +9,6 @@ import os
 import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from typing import Any, Generic, Protocol, TypeVar
 
 import numba
@@ -50,11 +49,60 @@ class Held(Generic[Bundle]):
         self.address = self._memory.ctypes.data
 
 
+class _Call:
+    """A call with all that it reads and writes, kept until the last worker is done.
+
+    Attributes:
+        turns: Each held while that worker's share is being done.
+        left: Workers whose share nobody has begun.
+    """
+
+    __slots__ = ("_kernel", "_parts", "_table", "left", "turns")
+
+    def __init__(
+        self, kernel: Callable[[int, int, int], None], parts: tuple[Held[Any], ...], workers: int
+    ) -> None:
+        self._kernel = kernel
+        self._parts = parts
+        self._table = np.array([part.address for part in parts], np.int64)
+        self.turns = [threading.Lock() for _ in range(workers)]
+        self.left = set(range(workers))
+
+    def do(self, worker: int) -> None:
+        """Do a worker's share if it is left; return when it is done, whoever does it."""
+        with self.turns[worker]:
+            if worker in self.left:
+                self.left.discard(worker)
+                self._kernel(self._table.ctypes.data, worker, len(self.turns))
+
+    def do_all(self, threads: ThreadPoolExecutor | None) -> None:
+        """Do all shares with the help of threads; return when they are done."""
+        workers = range(1, len(self.turns))
+        if threads is not None:
+            for worker in workers:
+                threads.submit(self.do, worker)
+        self.do(0)
+        for worker in workers:
+            if not self.turns[worker].locked():  # its thread is still waking up, or it is done
+                self.do(worker)
+        for worker in workers:
+            self.do(worker)
+
+    def end(self) -> None:
+        """Let no more shares begin and wait for those that have."""
+        self.left.clear()
+        for turn in self.turns:
+            with turn:
+                pass
+
+
 class _Crew:
     """The threads that help the one that calls; a forked process gets its own.
 
     Attributes:
-        busy: Held while they work: what a kernel uses as working memory is there once.
+        busy: Held by the thread that calls: what a kernel uses as working memory is there once.
+        call: The one under way, or one that a signal (Ctrl-C) broke off while it waited for its
+            workers; the next call waits for them first.
     """
 
     def __init__(self) -> None:
@@ -64,6 +112,7 @@ class _Crew:
 
     def _begin(self) -> None:
         self.busy = threading.Lock()
+        self.call: _Call | None = None
         self._threads: ThreadPoolExecutor | None = None
 
     @property
@@ -72,21 +121,19 @@ class _Crew:
             self._threads = ThreadPoolExecutor(max(thread_count() - 1, 1), "eyas-kernel")
         return self._threads
 
+    def run(self, call: _Call) -> None:
+        """Do all shares of a call; `busy` is held."""
+        if self.call is not None:
+            self.call.end()
+        self.call = call
+        try:
+            call.do_all(self.threads if len(call.turns) > 1 else None)
+        finally:
+            call.end()
+            self.call = None
+
 
 _CREW = _Crew()
-
-
-@dataclass(frozen=True, slots=True)
-class _Share:
-    """A call, with all that it reads and writes: kept until the last worker is done."""
-
-    kernel: Callable[[int, int, int], None]
-    parts: tuple[Held[Any], ...]
-    table: NDArray[np.int64]
-    workers: int
-
-    def __call__(self, worker: int) -> None:
-        self.kernel(self.table.ctypes.data, worker, self.workers)
 
 
 class parallel_kernel(Generic[Bundle]):  # noqa: N801  # a decorator like `kernel`
@@ -109,22 +156,11 @@ class parallel_kernel(Generic[Bundle]):  # noqa: N801  # a decorator like `kerne
         if workers == 0:
             return
         layouts = tuple([part.layout for part in parts])
-        table = np.array([part.address for part in parts], np.int64)
         with _CREW.busy:
             if layouts not in self._compiled:
                 self._compiled[layouts] = self._compile(parts)
-            # What ctypes calls runs without the interpreter's lock.
-            share = _Share(self._compiled[layouts].ctypes, parts, table, workers)
-            others = [_CREW.threads.submit(share, worker) for worker in range(1, workers)]
-            try:
-                share(0)
-                for worker, other in enumerate(others, 1):
-                    if other.cancel():  # its thread is still waking up
-                        share(worker)
-            finally:
-                for other in others:
-                    if not other.cancel():
-                        other.exception()  # waits for its end
+            # A function of ctypes runs without the interpreter's lock.
+            _CREW.run(_Call(self._compiled[layouts].ctypes, parts, workers))
 
     def _compile(self, parts: tuple[Held[Any], ...]) -> Any:  # noqa: ANN401  # numba has no types
         pointers = [numba.types.CPointer(numba.typeof(part.bundle)) for part in parts]
