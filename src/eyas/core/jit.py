@@ -5,7 +5,9 @@ file. So the cache folder is named after a hash of every source file that holds 
 """
 
 import hashlib
+import inspect
 import os
+import types
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar, cast
@@ -19,6 +21,8 @@ __all__ = [
     "inner_kernel",
     "kernel",
     "nothing_compiled",
+    "specialised",
+    "step_kernel",
     "thread_count",
 ]
 
@@ -90,6 +94,15 @@ def kernel(function: Function) -> Function:
     return _compiled(function)
 
 
+def step_kernel(function: Function) -> Function:
+    """Compile like `kernel`, and have LLVM put it into its callers.
+
+    For parts of the simulation's step: they take records of dozens of arrays, which would
+    otherwise be copied at each call.
+    """
+    return _compiled(function, forceinline=True)
+
+
 # What only kernels call needs no way in from Python; leaving it out saves a quarter of the time
 # that compiling the renderer takes.
 _INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
@@ -103,3 +116,33 @@ def inner_kernel(function: Function) -> Function:
 def inlined_kernel(function: Function) -> Function:
     """Compile like `inner_kernel`, and have LLVM put it into its callers: for once a pixel."""
     return _compiled(function, **_INNER, forceinline=True)
+
+
+def specialised(function: Function, **kernels: Callable[..., Any]) -> Function:
+    """Return a function with other kernels in the place of some that its module names.
+
+    Which kernels a step is made of is decided when it is built, not in each step. Compiled, the
+    result is kept on disk like any kernel, apart from others by the names and sources of what it
+    is made of.
+
+    Args:
+        function: A plain function of this package, to be compiled.
+        kernels: The kernels to call instead, by the names of those in the function's module.
+    """
+    if all(function.__globals__[name] is kernel for name, kernel in kernels.items()):
+        return function
+    names = {**function.__globals__, **kernels}
+    made = types.FunctionType(function.__code__, names, function.__name__)
+    parts = [_identity(kernel) for _, kernel in sorted(kernels.items())]
+    digest = hashlib.sha256("".join(parts).encode()).hexdigest()[:16]
+    made.__module__ = function.__module__
+    made.__qualname__ = f"{function.__qualname__}_{digest}"
+    return cast("Function", made)
+
+
+def _identity(kernel: Callable[..., Any]) -> str:
+    """Return a text that only this kernel of exactly these sources has."""
+    function = kernel.py_func  # type: ignore[attr-defined]  # numba's dispatcher
+    source = Path(inspect.getsourcefile(function) or "")
+    text = source.read_text() if source.is_file() else repr(function.__code__.co_code)
+    return f"{function.__module__}.{function.__qualname__} {text}"

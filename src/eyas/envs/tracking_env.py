@@ -18,8 +18,11 @@ from eyas.settings.config import EyasConfig
 from eyas.settings.file import load_settings
 from eyas.settings.version_check import require_supported
 from eyas.sim.build import build_simulation
+from eyas.sim.worlds import each_alone
 from eyas.state.draw import Picture
+from eyas.targets.catalogue import VEHICLES
 from eyas.task.done import DoneReason
+from eyas.task.packets import RewardPacket
 
 __all__ = ["TrackingEnv"]
 
@@ -75,7 +78,7 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
         width, height = observation_size
         self.observation_space = gymnasium.spaces.Box(0, 255, (height, width, 3), np.uint8)
         self._steps_per_action = physics_steps(self.config.control.frequency)
-        self._simulation = build_simulation(self.config, 1, shared_world=False)
+        self._simulation = build_simulation(self.config, each_alone(1))
         self._picture = Picture.create(1, height, width)
         self._render_picture: Picture | None = None
         self._overlay = overlay
@@ -99,12 +102,13 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
 
     def step(self, action: Any) -> tuple[Observation, float, bool, bool, dict[str, Any]]:  # noqa: ANN401  # as in Gymnasium
         """Hold an action for 500 // frequency physics steps of 2 ms."""
-        simulation = self._simulation
-        simulation.advance(self._actions.command(action), self._steps_per_action)
-        done = bool(simulation.done[0])
-        truncated = done and simulation.reason[0] == DoneReason.STEP_LIMIT
-        reward = float(simulation.reward[0])
-        return self._observe(), reward, done and not truncated, truncated, self._info()
+        command = self._actions.command(action)
+        result = self._simulation.advance(command, self._steps_per_action)
+        done, reason = bool(result.done[0]), result.reason[0]
+        truncated = done and reason == DoneReason.STEP_LIMIT
+        info = self._info()
+        info["reward_terms"] = {name: float(term[0]) for name, term in result.terms.items()}
+        return self._observe(), float(result.reward[0]), done and not truncated, truncated, info
 
     def render(self) -> Observation | None:
         """Return the camera's picture in its configured size, shape (H, W, 3)."""
@@ -113,10 +117,7 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
         if self._render_picture is None:
             camera = self.config.camera
             self._render_picture = Picture.create(1, camera.height, camera.width)
-        if self._overlay:
-            self._simulation.draw_overlaid(self._tracker, self._render_picture)
-        else:
-            self._simulation.draw(self._tracker, self._render_picture)
+        self._simulation.draw(self._tracker, self._render_picture, overlay=self._overlay)
         return _copy(self._render_picture)
 
     def _observe(self) -> Observation:
@@ -124,13 +125,14 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
         return _copy(self._picture)
 
     def _info(self) -> dict[str, Any]:
-        simulation = self._simulation
-        reason = DoneReason(int(simulation.reason[0]))
+        snapshot = self._simulation.snapshot
+        _, packets = self._simulation.packets()
+        model = VEHICLES[snapshot.targets.model[0]]
         return {
-            **asdict(simulation.reward_packet(0)),
-            "step": int(simulation.step_count[0]),
-            "done_reason": reason.name.lower(),
-            "light": simulation.light[0],
+            **asdict(RewardPacket.from_row(packets[0], model.name)),
+            "step": int(snapshot.episodes.step_count[0]),
+            "done_reason": DoneReason(int(snapshot.episodes.reason[0])).name.lower(),
+            "light": snapshot.light[0].copy(),
         }
 
 

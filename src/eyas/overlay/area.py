@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from eyas.overlay.canvas import CASING, NEAR, Canvas, cover
 from eyas.overlay.items import GroundArea
+from eyas.state.terrain import Plane, height_over
 
 __all__ = ["paint_area"]
 
@@ -29,11 +30,10 @@ Floats = NDArray[np.float32]
 
 def paint_area(canvas: Canvas, area: GroundArea) -> None:
     """Paint an area: casing, line and casing inside its edge, then its fill."""
-    if len(area.corners) < 3 or canvas.position[2] <= area.ground + RISE:
+    if len(area.corners) < 3 or height_over(area.ground, *canvas.position) <= RISE:
         return
-    corners = np.column_stack([area.corners, np.full(len(area.corners), area.ground)])
-    where = _window(canvas, corners)
-    outer, inner = _inside(canvas, corners, where)
+    where = _window(canvas, area.corners)
+    outer, inner = _inside(canvas, area.corners, where)
     casing = canvas.unit
     shape, fill = cover(outer), cover(inner - 2.0 * casing)
     line = cover(outer - casing) - cover(inner - casing)
@@ -51,11 +51,16 @@ def _window(canvas: Canvas, corners: NDArray[np.float64]) -> Window:
     return canvas.window(places[:, :2].min(axis=0), places[:, :2].max(axis=0), 1.0)
 
 
-def _on_ground(canvas: Canvas, ground: float, where: Window) -> NDArray[np.bool_]:
+def _on_ground(canvas: Canvas, ground: Plane, where: Window) -> NDArray[np.bool_]:
     """Return which pixels of a window show something about as high as the ground."""
-    falling = canvas.plane(canvas.rotation[2], where)
+    upwards = (
+        canvas.rotation[2]
+        - ground.rise_east * canvas.rotation[0]
+        - ground.rise_north * canvas.rotation[1]
+    )
+    falling = canvas.plane(upwards, where)
     with np.errstate(invalid="ignore"):  # infinity * 0 where sky meets the horizon
-        rise = canvas.depth[where] * falling + np.float32(canvas.position[2] - ground)
+        rise = canvas.depth[where] * falling + np.float32(height_over(ground, *canvas.position))
     on: NDArray[np.bool_] = np.abs(rise) < RISE
     return on
 

@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.state.terrain import Plane
+
 __all__ = ["GroundArea", "Label", "Line", "Overlay", "Solid"]
 
 Colour = tuple[float, float, float]
@@ -16,9 +18,9 @@ class GroundArea:
     """A convex area, painted on whatever lies on the ground."""
 
     corners: NDArray[np.float64]
-    """East and north [m], counter-clockwise seen from above, shape (K, 2)."""
-    ground: float
-    """z of the ground [m]."""
+    """On the ground [m], counter-clockwise seen from above, shape (K, 3)."""
+    ground: Plane
+    """The ground there, taken for a plane."""
     colour: Colour
     """Of the line along its edge, which lies inside."""
     fill: float = 0.0

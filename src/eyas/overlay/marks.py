@@ -11,16 +11,13 @@ from eyas.core.frames import rotate
 from eyas.overlay.bodies import GEM_GIRDLE, GEM_RADIUS, drone, gem
 from eyas.overlay.items import GroundArea, Label, Line, Overlay
 from eyas.sensors.config import CameraConfig
-from eyas.sim.fleet import Fleet
-from eyas.sim.worlds import Worlds
-from eyas.state.tracker import CameraPose
-from eyas.targets.catalogue import VEHICLES
-from eyas.task.columns import REWARD
-from eyas.task.ground import ground_corners
+from eyas.state.snapshot import Snapshot
+from eyas.state.terrain import Plane, Terrain, plane_at
+from eyas.task.ground import ground_corners, on_plane
 from eyas.task.reward import axis_depth, view_centre
-from eyas.task.rules import Rules
+from eyas.task.rules import BuiltinReward, Rules
 
-__all__ = ["Projection", "chase_pose"]
+__all__ = ["Marks"]
 
 VIEW_COLOUR = (0.25, 0.8, 1.0)
 LABEL_COLOUR = (1.0, 1.0, 1.0)
@@ -39,25 +36,22 @@ CIRCLE = 72
 """Corners of the circle within which distances are rewarded."""
 
 
-class Projection:
+class Marks:
     """Tells what to draw for trackers as they are now.
 
     Args:
-        fleet: The trackers.
-        rules: Of the reward.
+        snapshot: The trackers and their targets.
+        terrain: The ground.
         camera: Of each tracker.
-        worlds: Knows what the targets are.
     """
 
-    def __init__(self, fleet: Fleet, rules: Rules, camera: CameraConfig, worlds: Worlds) -> None:
-        half_width = math.tan(0.5 * camera.field_of_view)
-        half_height = half_width * camera.height / camera.width
-        self._fleet = fleet
-        self._rules = rules
-        self._whole = rules._replace(half_width=half_width, half_height=half_height)
-        self._worlds = worlds
+    def __init__(self, snapshot: Snapshot, terrain: Terrain, camera: CameraConfig) -> None:
+        self._snapshot = snapshot
+        self._terrain = terrain
+        self._half_width = math.tan(0.5 * camera.field_of_view)
+        self._half_height = self._half_width * camera.height / camera.width
 
-    def of(self, main: int, trackers: Sequence[int] | None = None) -> Overlay:
+    def of(self, main: int, rules: Rules, trackers: Sequence[int] | None = None) -> Overlay:
         """Return what to draw for trackers in one world.
 
         For each the ground that its camera sees, the ground on which a target is rewarded (its
@@ -66,10 +60,11 @@ class Projection:
 
         Args:
             main: Whose reward is told even where its target is outside the picture.
+            rules: Of the reward.
             trackers: Which; None: `main`, without the drone, for the picture of its own camera.
         """
-        parts = [self._marks(n, always=n == main) for n in (trackers or (main,))]
-        parts += [self._drone(n) for n in trackers or ()]
+        parts = [self._marks(n, rules, always=n == main) for n in (trackers or (main,))]
+        parts += [self._drone(n, rules) for n in trackers or ()]
         return Overlay(
             areas=tuple(area for part in parts for area in part.areas),
             lines=tuple(line for part in parts for line in part.lines),
@@ -77,17 +72,18 @@ class Projection:
             labels=tuple(label for part in parts for label in part.labels),
         )
 
-    def _marks(self, n: int, *, always: bool) -> Overlay:
+    def _marks(self, n: int, rules: Rules, *, always: bool) -> Overlay:
         """Return view, range and target of a tracker, and its reward, seen `always`."""
-        reward = float(self._fleet.task_memory[n, REWARD])
-        ground, tip = self._rules.ground, self._top_of_target(n) + GEM_GAP * UP
-        turn = GEM_TURN * float(self._fleet.tick[n]) * PHYSICS_STEP
+        episodes, targets = self._snapshot.episodes, self._snapshot.targets
+        reward = float(episodes.reward[n])
+        ground, tip = self._ground(n), self._top_of_target(n) + GEM_GAP * UP
+        turn = GEM_TURN * float(episodes.tick[n]) * PHYSICS_STEP
         return Overlay(
             areas=(
-                GroundArea(self._rewarded(n), ground, _colour_of(reward), fill=0.14),
-                GroundArea(self._seen(n), ground, VIEW_COLOUR),
+                GroundArea(self._rewarded(n, rules), ground, _colour_of(reward), fill=0.14),
+                GroundArea(self._seen(n, rules), ground, VIEW_COLOUR),
             ),
-            solids=() if self._fleet.target_lost[n] else (gem(tip, GEM_HEIGHT, turn),),
+            solids=() if targets.lost[n] else (gem(tip, GEM_HEIGHT, turn),),
             labels=(
                 Label(
                     anchor=tip + GEM_GIRDLE * GEM_HEIGHT * UP,
@@ -99,62 +95,49 @@ class Projection:
             ),
         )
 
-    def _drone(self, n: int) -> Overlay:
+    def _drone(self, n: int, rules: Rules) -> Overlay:
         """Return a drone, and the edges of its view."""
-        fleet, seen = self._fleet, self._seen(n)
-        ends = np.column_stack([seen, np.full(len(seen), self._rules.ground)])
+        trackers, eye = self._snapshot.trackers, self._snapshot.cameras.position[n]
         return Overlay(
-            lines=tuple(Line(fleet.camera_position[n], end, VIEW_COLOUR) for end in ends),
-            solids=(drone(fleet.position[n], _rotation(fleet.orientation[n])),),
+            lines=tuple(Line(eye, end, VIEW_COLOUR) for end in self._seen(n, rules)),
+            solids=(drone(trackers.position[n], _rotation(trackers.orientation[n])),),
         )
 
-    def _seen(self, n: int) -> NDArray[np.float64]:
-        """Return the corners of the ground that a camera sees [m], shape (K, 2)."""
-        eye, rotation = self._fleet.camera_position[n], self._fleet.camera_rotation[n]
-        return ground_corners(eye, rotation, self._whole, FARTHEST)
+    def _ground(self, n: int) -> Plane:
+        """Return the plane that touches the ground under a target."""
+        x, y, _ = self._snapshot.targets.centre[n]
+        return plane_at(self._terrain, x, y)
 
-    def _rewarded(self, n: int) -> NDArray[np.float64]:
-        """Return the corners of the ground on which a target is rewarded [m], shape (K, 2)."""
-        eye, rotation = self._fleet.camera_position[n], self._fleet.camera_rotation[n]
-        depth = axis_depth(eye, rotation, self._rules.ground)
+    def _seen(self, n: int, rules: Rules) -> NDArray[np.float64]:
+        """Return the corners of the ground that a camera sees [m], shape (K, 3)."""
+        whole = rules._replace(half_width=self._half_width, half_height=self._half_height)
+        return self._corners(n, whole)
+
+    def _corners(self, n: int, rules: Rules) -> NDArray[np.float64]:
+        cameras = self._snapshot.cameras
+        return ground_corners(
+            cameras.position[n], cameras.rotation[n], rules, self._ground(n), FARTHEST
+        )
+
+    def _rewarded(self, n: int, rules: Rules) -> NDArray[np.float64]:
+        """Return the corners of the ground on which a target is rewarded [m], shape (K, 3)."""
+        eye, rotation = self._snapshot.cameras.position[n], self._snapshot.cameras.rotation[n]
+        ground = self._ground(n)
+        depth = axis_depth(eye, rotation, ground)
         if depth <= 0.0:
-            return np.zeros((0, 2))
-        if not self._rules.distance:
-            return ground_corners(eye, rotation, self._rules, FARTHEST)
+            return np.zeros((0, 3))
+        if rules.reward not in (BuiltinReward.DISTANCE_CONTINUOUS, BuiltinReward.DISTANCE_DISCRETE):
+            return self._corners(n, rules)
         angles = np.arange(CIRCLE) * (2.0 * np.pi / CIRCLE)
         circle: NDArray[np.float64] = np.column_stack([np.cos(angles), np.sin(angles)])
-        return self._rules.distance_range * circle + view_centre(eye, rotation, depth)
+        return on_plane(ground, rules.distance_range * circle + view_centre(eye, rotation, depth))
 
     def _top_of_target(self, n: int) -> NDArray[np.float64]:
         """Return the point on top of the middle of a target, world frame [m], shape (3,)."""
-        model = VEHICLES[self._worlds.model_of(n, int(self._fleet.target_actor[n]))]
-        top: NDArray[np.float64] = self._fleet.target_centre[n].copy()
-        top[2] += model.size[2] - model.wheel_radius
+        targets = self._snapshot.targets
+        top: NDArray[np.float64] = targets.centre[n].copy()
+        top[2] += targets.size[n, 2] - targets.rise[n]
         return top
-
-
-def chase_pose(
-    trackers: CameraPose, back: float = 6.0, up: float = 2.5, pitch: float = 0.78
-) -> CameraPose:
-    """Return viewpoints behind and above cameras, from which they and their ground are seen.
-
-    Walls between are not avoided.
-
-    Args:
-        trackers: The cameras that are followed, N of them.
-        back: How far behind, against their heading [m].
-        up: How far above [m].
-        pitch: Of the viewpoint, positive down [rad].
-    """
-    level = trackers.rotation[:, :2, 0] + 1e-9 * trackers.rotation[:, :2, 2]
-    level = level / np.linalg.norm(level, axis=1, keepdims=True)
-    ahead = np.pad(level, ((0, 0), (0, 1)))
-    left = np.cross(UP, ahead)
-    forward = math.cos(pitch) * ahead - math.sin(pitch) * UP
-    return CameraPose(
-        position=trackers.position - back * ahead + up * UP,
-        rotation=np.stack([forward, left, np.cross(forward, left)], axis=2),
-    )
 
 
 def _colour_of(reward: float) -> tuple[float, float, float]:

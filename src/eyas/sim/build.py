@@ -1,25 +1,33 @@
 """The one place where the rooms are joined."""
 
 import logging
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
 
 from eyas.sim.config import SimConfig
 from eyas.sim.place import load_place
 from eyas.sim.simulation import Simulation
 from eyas.sim.supported import require_parts
+from eyas.trackers.config import TrackerKind
+from eyas.trackers.drone import DRONE
+from eyas.trackers.tracker import Tracker
 
 __all__ = ["build_simulation"]
 
 _LOG = logging.getLogger("eyas")
 
+TRACKERS: Mapping[TrackerKind, Tracker] = {TrackerKind.DRONE: DRONE}
 
-def build_simulation(config: SimConfig, count: int, *, shared_world: bool) -> Simulation:
+
+def build_simulation(config: SimConfig, world_of: NDArray[np.integer]) -> Simulation:
     """Return a simulation; call its `reset` first.
 
     Args:
         config: The settings.
-        count: Number of trackers.
-        shared_world: One world and one time for all trackers, each with a target of its own, or an
-            independent world for each.
+        world_of: The world of each tracker, shape (N,): `each_alone(N)`, `together(N)`, or any
+            numbers; see `eyas.sim.worlds.Worlds`.
 
     Raises:
         EyasError: A setting is not supported, or there is no traffic for it.
@@ -31,5 +39,5 @@ def build_simulation(config: SimConfig, count: int, *, shared_world: bool) -> Si
             "only 'foggy' has fog",
             config.world.weather,
         )
-    place = load_place(config.world, config.traffic, count)
-    return Simulation(config, place, count, shared_world=shared_world)
+    place = load_place(config.world, config.traffic, len(world_of))
+    return Simulation(config, place, TRACKERS[config.tracker.kind], world_of)

@@ -7,12 +7,12 @@ from eyas.core.clock import PHYSICS_STEP
 from eyas.core.errors import ConfigError, SpawnError
 from eyas.core.rng import stream
 from eyas.sim.config import SimConfig
-from eyas.sim.fleet import Fleet
 from eyas.sim.light import LightChanges
 from eyas.sim.worlds import Worlds
+from eyas.state.snapshot import Snapshot
 from eyas.targets.catalogue import VEHICLES
 from eyas.task.direction import TARGET_COMPENSATION
-from eyas.task.spawn import choose_target, draw_start, place
+from eyas.task.spawn import choose_target, sample_start, start_pose
 from eyas.traffic.replay import Replay
 
 __all__ = ["Episodes"]
@@ -25,28 +25,31 @@ class Episodes:
     """Draws the episodes of N trackers.
 
     What an episode draws depends only on the seed, the tracker and the episode's number (and, in a
-    shared world, on which targets the others follow), never on how many trackers there are.
-
-    Attributes:
-        number: Of each tracker's episode, -1 before the first, shape (N,).
+    world of several trackers, on which targets the others follow), never on how many trackers there
+    are.
 
     Args:
         config: The settings.
         replay: The traffic.
-        worlds: What moves around the trackers.
+        worlds: Who is in which world.
         light: The light around them.
-        count: N.
+        snapshot: Of N trackers; episodes and targets are set here.
     """
 
     def __init__(
-        self, config: SimConfig, replay: Replay, worlds: Worlds, light: LightChanges, count: int
+        self,
+        config: SimConfig,
+        replay: Replay,
+        worlds: Worlds,
+        light: LightChanges,
+        snapshot: Snapshot,
     ) -> None:
-        self.number = np.full(count, -1, np.int64)
         self._config = config
         self._seed = config.seed
         self._replay = replay
         self._worlds = worlds
         self._light = light
+        self._episodes, self._targets = snapshot.episodes, snapshot.targets
         self._last_tick = int(replay.duration / PHYSICS_STEP)
         first = config.start.warm_up_steps
         if first + config.done.total_steps > self._last_tick:
@@ -58,50 +61,60 @@ class Episodes:
     def reseed(self, seed: int) -> None:
         """Begin the sequence of episodes of another seed."""
         self._seed = seed
-        self.number[:] = -1
+        self._episodes.number[:] = -1
 
-    def draw(self, trackers: NDArray[np.int64], fleet: Fleet) -> NDArray[np.float64]:
+    def begin(self, trackers: NDArray[np.int64]) -> NDArray[np.float64]:
         """Set target, time and offset of trackers; return their camera pitches [rad].
 
         Raises:
             SpawnError: No target is free.
         """
-        fleet.target_actor[trackers] = -1
+        self._targets.actor[trackers] = -1
         pitch = np.zeros(len(trackers))
-        for k, tracker in enumerate(trackers):
-            self.number[tracker] += 1
-            pitch[k] = self._draw_one(int(tracker), fleet)
+        for k, tracker in enumerate(trackers.tolist()):
+            self._episodes.number[tracker] += 1
+            pitch[k] = self._begin_one(tracker)
         return pitch
 
-    def _draw_one(self, tracker: int, fleet: Fleet) -> float:
-        episode = int(self.number[tracker])
-        self._worlds.draw_looks(tracker, self._seed, episode)
-        self._light.draw(tracker, self._seed, episode)
+    def follow(self, tracker: int, actor: int) -> None:
+        """Make an actor the target of a tracker."""
+        targets = self._targets
+        model = self._worlds.model_of(tracker, actor)
+        targets.actor[tracker] = actor
+        targets.model[tracker] = model
+        targets.size[tracker] = VEHICLES[model].size
+        targets.rise[tracker] = VEHICLES[model].wheel_radius
+        targets.ahead[tracker] = TARGET_COMPENSATION
+
+    def _begin_one(self, tracker: int) -> float:
+        episode = int(self._episodes.number[tracker])
+        self._worlds.sample_looks(tracker, self._seed, episode)
+        self._light.sample(tracker, self._seed, episode)
         rng = stream(self._seed, "episode", tracker, episode)
-        tick, actor = self._choose(tracker, fleet, rng)
-        start = draw_start(self._config.start, rng)
+        tick, actor = self._choose(tracker, rng)
+        self._episodes.tick[tracker] = tick
+        self.follow(tracker, actor)
+        start = sample_start(self._config.start, rng)
         # A target at the origin that heads so that the tracker heads east: what comes back is the
         # offset in the tracker's own heading frame.
-        offset, _ = place(start, np.zeros(3), -start.direction, TARGET_COMPENSATION)
-        fleet.tick[tracker] = tick
-        fleet.target_actor[tracker] = actor
-        fleet.target_position[tracker, 2] = VEHICLES[
-            self._worlds.model_of(tracker, actor)
-        ].wheel_radius
-        fleet.offset[tracker, :3] = offset
-        fleet.offset[tracker, 3] = start.direction
+        ahead = float(self._targets.ahead[tracker])
+        offset, _ = start_pose(start, np.zeros(3), -start.direction, ahead)
+        self._episodes.start_offset[tracker] = *offset, start.direction
         return start.pitch
 
-    def _choose(self, tracker: int, fleet: Fleet, rng: np.random.Generator) -> tuple[int, int]:
+    def _choose(self, tracker: int, rng: np.random.Generator) -> tuple[int, int]:
         """Return when an episode begins, and with which actor.
 
         Where vehicles come and go there may be no one who stays for a whole episode; then other
-        times are tried, or in a shared world, whose time is given, those who stay a shorter while.
+        times are tried, or in a lasting world, whose time is given, those who stay a shorter
+        while.
         """
-        used = set(fleet.target_actor.tolist()) if self._worlds.shared else set()
+        others = self._worlds.trackers_of(tracker)
+        lasting = bool(self._worlds.lasting[self._worlds.of[tracker]])
+        used = set(self._targets.actor[others].tolist()) if lasting else set()
         for attempt in range(_ATTEMPTS):
-            tick = self._start_tick(tracker, fleet, rng)
-            steps = self._config.done.total_steps >> (attempt if self._worlds.shared else 0)
+            tick = self._now(others) if lasting else self._any_time(rng)
+            steps = self._config.done.total_steps >> (attempt if lasting else 0)
             end = min(tick + steps, self._last_tick)
             available = self._replay.available(tick * PHYSICS_STEP, end * PHYSICS_STEP)
             try:
@@ -111,9 +124,11 @@ class Episodes:
                     raise
         raise AssertionError("the loop returns or raises")
 
-    def _start_tick(self, tracker: int, fleet: Fleet, rng: np.random.Generator) -> int:
-        """Return the time at which an episode begins: now in a shared world, else at random."""
+    def _any_time(self, rng: np.random.Generator) -> int:
+        """Return a time at random from which on a whole episode fits."""
         first = self._config.start.warm_up_steps
-        if not self._worlds.shared:
-            return int(rng.integers(first, self._last_tick - self._config.done.total_steps + 1))
-        return max(first, int(fleet.tick[tracker]))
+        return int(rng.integers(first, self._last_tick - self._config.done.total_steps + 1))
+
+    def _now(self, trackers: NDArray[np.int64]) -> int:
+        """Return the time of a world with these trackers, or the first one."""
+        return max(self._config.start.warm_up_steps, int(self._episodes.tick[trackers].max()))

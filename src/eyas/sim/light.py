@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from eyas.core.rng import stream
 from eyas.core.variation import draw
+from eyas.sim.worlds import Worlds
 from eyas.state.scene import Lighting
 from eyas.world.config import LightConfig
 
@@ -20,31 +21,34 @@ class LightChanges:
     added to that or takes its place, and none falls below 0. Unlike there, changes do not pile up
     from reset to reset.
 
-    Attributes:
-        factors: For each tracker the factor on the sky and its light, the factor on the sun, and
-            one over the visibility range [1/m], shape (N, 3).
-
     Args:
         config: The settings.
         weather: The weather's own light.
+        worlds: Who shares a world, and so its light.
+        factors: `Snapshot.light`, shape (N, 3); set here.
         foggy: Whether the weather has a visibility range to change.
-        count: N.
-        shared: One world for all trackers, or one for each.
     """
 
     def __init__(
-        self, config: LightConfig, weather: Lighting, count: int, *, foggy: bool, shared: bool
+        self,
+        config: LightConfig,
+        weather: Lighting,
+        worlds: Worlds,
+        factors: NDArray[np.float32],
+        *,
+        foggy: bool,
     ) -> None:
         self._config = config
         self._weather = weather
+        self._worlds = worlds
         self._foggy = foggy
-        self._shared = shared
-        self.factors = np.tile(np.array([1.0, 1.0, weather.fog_density], np.float32), (count, 1))
+        self._factors = factors
+        factors[:] = 1.0, 1.0, weather.fog_density
 
-    def draw(self, tracker: int, seed: int, episode: int) -> None:
-        """Draw the light around a tracker; in a shared world tracker 0 draws for all."""
+    def sample(self, tracker: int, seed: int, episode: int) -> None:
+        """Draw the light around a tracker; the leader of a world draws for all in it."""
         fixed = episode > 0 and not self._config.each_reset
-        if fixed or (self._shared and tracker > 0):
+        if fixed or tracker != self._worlds.leader[self._worlds.of[tracker]]:
             return
         rng = stream(seed, "light", tracker, episode)
         config, weather = self._config, self._weather
@@ -53,12 +57,11 @@ class LightChanges:
         density = weather.fog_density
         if self._foggy and config.visibility is not None:
             density = 1.0 / draw(config.visibility, rng)
-        rows = slice(None) if self._shared else tracker
-        self.factors[rows] = sky, sun, density
+        self._factors[self._worlds.trackers_of(tracker)] = sky, sun, density
 
     def of(self, trackers: NDArray[np.integer]) -> NDArray[np.float32] | None:
         """Return `Views.light` of trackers, None where the weather is left as it is."""
-        return self.factors.take(trackers, axis=0) if self._config != _UNCHANGED else None
+        return self._factors.take(trackers, axis=0) if self._config != _UNCHANGED else None
 
 
 def _changed(value: float, replaces: bool, own: float) -> float:

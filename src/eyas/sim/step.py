@@ -1,191 +1,170 @@
-"""The step: one kernel call moves and judges all trackers for all physics steps of an action."""
+"""The step: one kernel call moves and judges all trackers for all physics steps of a command.
+
+Its kernels find their arguments by address (`eyas.core.parallel`): unpacking some fifty arrays at
+each call would take four times as long as a step of one tracker.
+"""
+
+from functools import lru_cache
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
-from eyas.core.jit import kernel
-from eyas.sim.fleet import Fleet, Traffic
-from eyas.task.direction import TARGET_COMPENSATION, target_centre
+from eyas.core.jit import specialised, step_kernel
+from eyas.core.parallel import Pointer, parallel_kernel
+from eyas.state.snapshot import EpisodeState, Snapshot, TargetState
+from eyas.state.terrain import Terrain
+from eyas.task.direction import target_centre
 from eyas.task.done import judge
-from eyas.task.observe import observe, start_episode
-from eyas.task.packet_rows import fill_basic, fill_reward
+from eyas.task.observe import clear_episode, observe
+from eyas.task.offset import offset_pose
 from eyas.task.rules import Rules
-from eyas.trackers.carry import carry_drone, offset_pose
-from eyas.trackers.drone import advance_drone, reset_drone
-from eyas.trackers.gimbal import advance_gimbal, camera_pose, reset_gimbal
+
+# The kernels and the memory of the tracker: the drone's, unless `step_of` puts others in their
+# place.
+from eyas.trackers.drone import advance, aim, carry, start
+from eyas.trackers.tracker import Tracker
 from eyas.traffic.replay import interpolate_actor
 
-__all__ = ["begin_episodes", "fill_packets", "fly", "follow"]
+__all__ = ["Orders", "Step", "StepState", "Surroundings", "step_of"]
 
 
-@kernel
-def fly(
-    steps: int, actions: NDArray[np.float64], fleet: Fleet, traffic: Traffic, rules: Rules
-) -> None:
-    """Fly all trackers by their actions, shape (N, 4), for a number of physics steps."""
-    for n in range(fleet.tick.shape[0]):
-        for _ in range(steps):
-            advance_drone(
-                actions[n],
-                fleet.tracker_memory[n],
-                fleet.position[n],
-                fleet.velocity[n],
-                fleet.acceleration[n],
-                fleet.orientation[n],
-                fleet.euler[n],
-                fleet.angular_velocity[n],
-                fleet.commanded_position[n],
+class Surroundings(NamedTuple):
+    """Everything around the trackers that a step reads."""
+
+    table: NDArray[np.float32]
+    rate: float
+    terrain: Terrain
+    """The ground."""
+
+
+class StepState(NamedTuple):
+    """Everything that a step reads and writes."""
+
+    snapshot: Snapshot
+    memory: Any
+    """Of the trackers: whatever record their kernels use."""
+    around: Surroundings
+    rules: Rules
+
+
+class Orders(NamedTuple):
+    """What a call of the step is asked to do."""
+
+    steps: NDArray[np.int64]
+    """Physics steps to take, shape (1,)."""
+    commands: NDArray[np.float64]
+    """Of each tracker, see `Tracker.advance`, shape (N, 4)."""
+    starts: NDArray[np.int64]
+    """How many trackers begin anew, K, shape (1,)."""
+    chosen: NDArray[np.int64]
+    """Which, in the first K of N elements."""
+    pitch: NDArray[np.float64]
+    """Commanded pitch of their cameras, positive down [rad], likewise."""
+
+    @classmethod
+    def create(cls, trackers: int) -> "Orders":
+        """Return orders to do nothing."""
+        return cls(
+            steps=np.zeros(1, np.int64),
+            commands=np.zeros((trackers, 4)),
+            starts=np.zeros(1, np.int64),
+            chosen=np.zeros(trackers, np.int64),
+            pitch=np.zeros(trackers),
+        )
+
+
+Parts = Pointer[tuple[Pointer[StepState], Pointer[Orders]]]
+
+
+class Step(NamedTuple):
+    """The kernels of a step, for one kind of tracker; each takes a `StepState` and `Orders`."""
+
+    fly: parallel_kernel[Any]
+    """Flies all trackers by their commands."""
+    carry: parallel_kernel[Any]
+    """Carries all trackers along with their targets."""
+    begin: parallel_kernel[Any]
+    """Puts some trackers at their starts."""
+
+
+@lru_cache(maxsize=16)
+def step_of(tracker: Tracker) -> Step:
+    """Return the step of a kind of tracker."""
+    return Step(
+        fly=parallel_kernel(specialised(_fly, advance=tracker.advance, aim=tracker.aim)),
+        carry=parallel_kernel(specialised(_carry, carry=tracker.carry, aim=tracker.aim)),
+        begin=parallel_kernel(specialised(_begin, start=tracker.start, aim=tracker.aim)),
+    )
+
+
+def _fly(parts: Parts, worker: int, workers: int) -> None:
+    state, orders = parts[0]
+    snapshot, memory, around, rules = state[0]
+    trackers, cameras, targets, episodes, _ = snapshot
+    steps, commands, _, _, _ = orders[0]
+    for n in range(commands.shape[0]):
+        for _step in range(steps[0]):
+            advance(trackers, memory, n, commands[n])
+            episodes.tick[n] += 1
+            _move_target(targets, episodes, n, around)
+            aim(trackers, memory, cameras, n)
+            observe(trackers, cameras, targets, episodes, n, around.terrain, rules)
+            judge(trackers, targets, episodes, n, around.terrain, rules)
+
+
+def _carry(parts: Parts, worker: int, workers: int) -> None:
+    state, orders = parts[0]
+    snapshot, memory, around, rules = state[0]
+    trackers, cameras, targets, episodes, _ = snapshot
+    steps = orders[0].steps
+    for n in range(episodes.tick.shape[0]):
+        for _step in range(steps[0]):
+            episodes.tick[n] += 1
+            _move_target(targets, episodes, n, around)
+            x, y, z, yaw = offset_pose(
+                targets.position[n], targets.yaw[n], episodes.start_offset[n]
             )
-            fleet.tick[n] += 1
-            _move_target(n, fleet, traffic)
-            _look_and_judge(n, fleet, rules)
+            carry(trackers, memory, n, x, y, z, yaw)
+            aim(trackers, memory, cameras, n)
+            observe(trackers, cameras, targets, episodes, n, around.terrain, rules)
+            judge(trackers, targets, episodes, n, around.terrain, rules)
 
 
-@kernel
-def follow(steps: int, fleet: Fleet, traffic: Traffic, rules: Rules) -> None:
-    """Carry all trackers along with their targets for a number of physics steps."""
-    for n in range(fleet.tick.shape[0]):
-        for _ in range(steps):
-            fleet.tick[n] += 1
-            _move_target(n, fleet, traffic)
-            carry_drone(
-                offset_pose(fleet.target_position[n], fleet.target_yaw[n], fleet.offset[n]),
-                fleet.tracker_memory[n],
-                fleet.position[n],
-                fleet.velocity[n],
-                fleet.acceleration[n],
-                fleet.orientation[n],
-                fleet.euler[n],
-                fleet.angular_velocity[n],
-                fleet.commanded_position[n],
-            )
-            _look_and_judge(n, fleet, rules)
+def _begin(parts: Parts, worker: int, workers: int) -> None:
+    """Put trackers at their starts, their target, tick and offset being set; look once."""
+    state, orders = parts[0]
+    snapshot, memory, around, rules = state[0]
+    trackers, cameras, targets, episodes, _ = snapshot
+    _, _, starts, chosen, pitch = orders[0]
+    for k in range(starts[0]):
+        n = chosen[k]
+        targets.lost[n] = False
+        _move_target(targets, episodes, n, around)
+        x, y, z, yaw = offset_pose(targets.position[n], targets.yaw[n], episodes.start_offset[n])
+        start(trackers, memory, n, x, y, z, yaw, pitch[k])
+        clear_episode(episodes, n)
+        aim(trackers, memory, cameras, n)
+        observe(trackers, cameras, targets, episodes, n, around.terrain, rules)
 
 
-@kernel
-def begin_episodes(
-    trackers: NDArray[np.int64],
-    pitch: NDArray[np.float64],
-    fleet: Fleet,
-    traffic: Traffic,
-    rules: Rules,
+@step_kernel
+def _move_target(
+    targets: TargetState, episodes: EpisodeState, n: int, around: Surroundings
 ) -> None:
-    """Put trackers at their starts, gimbals in place, and take the first look.
-
-    Args:
-        trackers: Which, shape (K,); their target, tick and offset are set.
-        pitch: Commanded camera pitch of each, positive down [rad], shape (K,).
-        fleet: Changes.
-        traffic: Where the targets are.
-        rules: Of the task.
-    """
-    for k in range(trackers.shape[0]):
-        n = trackers[k]
-        fleet.target_lost[n] = False
-        _move_target(n, fleet, traffic)
-        x, y, z, yaw = offset_pose(fleet.target_position[n], fleet.target_yaw[n], fleet.offset[n])
-        reset_drone(
-            x,
-            y,
-            z,
-            yaw,
-            fleet.tracker_memory[n],
-            fleet.position[n],
-            fleet.velocity[n],
-            fleet.acceleration[n],
-            fleet.orientation[n],
-            fleet.euler[n],
-            fleet.angular_velocity[n],
-            fleet.commanded_position[n],
-        )
-        reset_gimbal(pitch[k], 0.0, fleet.tracker_memory[n], fleet.euler[n], fleet.gimbal[n])
-        start_episode(fleet.offset[n, 3], fleet.task_memory[n])
-        _look(n, fleet, rules)
-
-
-@kernel
-def fill_packets(fleet: Fleet, rules: Rules) -> None:
-    """Fill the basic and the reward packets of all trackers."""
-    for n in range(fleet.tick.shape[0]):
-        fill_basic(
-            fleet.position[n],
-            fleet.velocity[n],
-            fleet.acceleration[n],
-            fleet.orientation[n],
-            fleet.euler[n],
-            fleet.angular_velocity[n],
-            fleet.task_memory[n],
-            fleet.basic[n],
-        )
-        fill_reward(
-            rules.ground,
-            fleet.tracker_memory[n],
-            fleet.commanded_position[n],
-            fleet.euler[n],
-            fleet.camera_position[n],
-            fleet.camera_rotation[n],
-            fleet.target_yaw[n],
-            fleet.target_centre[n],
-            fleet.task_memory[n],
-            fleet.reward[n],
-        )
-
-
-@kernel
-def _move_target(n: int, fleet: Fleet, traffic: Traffic) -> None:
     """Read where the target of tracker n is; a target that has left stays where it was."""
-    time = fleet.tick[n] * PHYSICS_STEP
+    time = episodes.tick[n] * PHYSICS_STEP
     x, y, yaw, speed, _, _, present = interpolate_actor(
-        traffic.table, traffic.rate, fleet.target_actor[n], time
+        around.table, around.rate, targets.actor[n], time
     )
     if not present:
-        fleet.target_lost[n] = True
-        fleet.target_speed[n] = 0.0
+        targets.lost[n] = True
+        targets.speed[n] = 0.0
         return
-    fleet.target_position[n, 0], fleet.target_position[n, 1] = x, y
-    fleet.target_yaw[n] = yaw
-    fleet.target_speed[n] = speed
-    fleet.target_centre[n, 0], fleet.target_centre[n, 1] = target_centre(
-        x, y, yaw, TARGET_COMPENSATION
-    )
-    fleet.target_centre[n, 2] = fleet.target_position[n, 2]
-
-
-@kernel
-def _look(n: int, fleet: Fleet, rules: Rules) -> None:
-    camera_pose(
-        fleet.position[n],
-        fleet.orientation[n],
-        fleet.gimbal[n],
-        fleet.camera_position[n],
-        fleet.camera_rotation[n],
-    )
-    observe(
-        rules,
-        fleet.camera_position[n],
-        fleet.camera_rotation[n],
-        fleet.position[n],
-        fleet.orientation[n],
-        fleet.target_position[n],
-        fleet.target_yaw[n],
-        fleet.target_centre[n],
-        fleet.task_memory[n],
-    )
-
-
-@kernel
-def _look_and_judge(n: int, fleet: Fleet, rules: Rules) -> None:
-    advance_gimbal(fleet.tracker_memory[n], fleet.euler[n], fleet.gimbal[n])
-    _look(n, fleet, rules)
-    judge(
-        rules,
-        fleet.target_lost[n],
-        fleet.position[n],
-        fleet.velocity[n],
-        fleet.angular_velocity[n],
-        fleet.euler[n],
-        fleet.commanded_position[n],
-        fleet.target_centre[n],
-        fleet.task_memory[n],
-    )
+    position, centre = targets.position[n], targets.centre[n]
+    position[0], position[1], position[2] = x, y, targets.rise[n]
+    targets.yaw[n] = yaw
+    targets.speed[n] = speed
+    centre[0], centre[1] = target_centre(x, y, yaw, targets.ahead[n])
+    centre[2] = position[2]

@@ -1,4 +1,4 @@
-"""The worlds of N trackers: one each or one for all; what moves in them and how it looks."""
+"""The worlds of N trackers: who is in which, and the models and colours of what moves there."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,77 +12,110 @@ from eyas.state.scene import ACTOR_OBJECT
 from eyas.state.tracker import ActorState
 from eyas.targets.looks import draw_looks
 
-__all__ = ["Worlds"]
+__all__ = ["ALONE", "Worlds", "each_alone", "together"]
+
+Integers = NDArray[np.int64]
+
+
+ALONE = -1
+"""World number of a tracker that has a world to itself, which begins anew with each episode."""
+
+
+def each_alone(count: int) -> NDArray[np.int32]:
+    """Return world numbers for trackers of which each has a world to itself, shape (N,)."""
+    return np.full(count, ALONE, np.int32)
+
+
+def together(count: int) -> NDArray[np.int32]:
+    """Return world numbers for trackers that are all in one world, shape (N,)."""
+    return np.zeros(count, np.int32)
 
 
 class Worlds:
-    """What moves around each tracker.
+    """The worlds around N trackers. All trackers of a world see the same traffic at one time.
 
     Attributes:
-        shared: Whether all trackers are in one world.
+        of: World of each tracker, shape (N,).
+        leader: First tracker of each world, shape (W,): its random streams are the world's.
+        lasting: Whether the time of each world goes on when an episode ends, shape (W,).
 
     Args:
         config: The settings.
         place: Map and traffic.
-        count: Number of trackers, N.
-        shared: One world for all, or one for each.
+        world_of: A number for each tracker, shape (N,): those with the same one share a world,
+            whose time goes on from episode to episode; `ALONE` for a world of its own.
+
+    Raises:
+        ValueError: `world_of` is no list of whole numbers from -1 on.
     """
 
-    def __init__(self, config: SimConfig, place: Place, count: int, *, shared: bool) -> None:
-        self.shared = shared
+    def __init__(self, config: SimConfig, place: Place, world_of: NDArray[np.integer]) -> None:
+        given = np.asarray(world_of)
+        if given.ndim != 1 or given.dtype.kind not in "iu" or (given < ALONE).any():
+            raise ValueError("world_of: a whole number from -1 on is wanted for each tracker")
+        # Worlds are counted in the order of their first trackers.
+        own = np.where(given == ALONE, given.max(initial=0) + 1 + np.arange(len(given)), given)
+        _, first, numbered = np.unique(own, return_index=True, return_inverse=True)
+        order = np.argsort(np.argsort(first))
+        self.of: NDArray[np.int32] = order[numbered].astype(np.int32)
+        self.leader: Integers = np.sort(first)
+        self.lasting: NDArray[np.bool_] = given[self.leader] != ALONE
         self._colour_of_all = config.traffic.colour
         self._place = place
-        worlds, actors = (1 if shared else count), place.replay.actors
+        worlds, actors = len(self.leader), place.replay.actors
         self._model = np.zeros((worlds, actors), np.int32)
         self._colour = np.ones((worlds, actors, 3), np.float32)
-        self._buffers: dict[int, tuple[ActorState, DrawList]] = {}
+        self._actors = ActorState.create(0, actors)
+        self._movers = DrawList.create(0, 0)
 
-    def draw_looks(self, tracker: int, seed: int, episode: int) -> None:
-        """Draw models and colours of the actors around a tracker; in a shared world once."""
-        if self.shared and (tracker, episode) != (0, 0):
+    def trackers_of(self, tracker: int) -> Integers:
+        """Return all trackers in the world of one, shape (K,)."""
+        return np.flatnonzero(self.of == self.of[tracker])
+
+    def sample_looks(self, tracker: int, seed: int, episode: int) -> None:
+        """Draw models and colours of the actors around a tracker, where its world begins anew."""
+        world = self.of[tracker]
+        if self.lasting[world] and (tracker != self.leader[world] or episode > 0):
             return
         rng = stream(seed, "looks", tracker, episode)
         replay = self._place.replay
         vehicle_type = replay.recording.provenance.config.vehicle_type
         model, colour = draw_looks(rng, vehicle_type, replay.actors, self._colour_of_all)
-        self._model[self._of(tracker)], self._colour[self._of(tracker)] = model, colour
+        self._model[world], self._colour[world] = model, colour
 
     def model_of(self, tracker: int, actor: int) -> int:
-        """Return which of `VEHICLES` an actor around a tracker is."""
-        return int(self._model[self._of(tracker), actor])
+        """Return the model of an actor around a tracker, an index into the catalogue."""
+        return int(self._model[self.of[tracker], actor])
 
     def object_ids(self, actors: NDArray[np.int32]) -> NDArray[np.int32]:
         """Return the object ids of actors."""
         return (actors + ACTOR_OBJECT).astype(np.int32)
 
     def draw_list(
-        self, trackers: NDArray[np.integer], tick: NDArray[np.int64]
+        self, trackers: NDArray[np.integer], tick: Integers
     ) -> tuple[NDArray[np.int32], DrawList]:
-        """Return the world of each of V trackers in a list of moving parts, and that list.
+        """Return the row of each of V trackers in a list of moving parts, and that list.
 
-        The list is overwritten by the next call for as many worlds.
+        The list is overwritten by the next call.
 
         Args:
             trackers: Which, shape (V,).
             tick: Time of all N trackers in physics steps, shape (N,).
         """
-        if self.shared:
-            rows, world = np.zeros(1, np.int64), np.zeros(len(trackers), np.int32)
-        else:
-            rows, world = np.asarray(trackers, np.int64), np.arange(len(trackers), dtype=np.int32)
-        time = tick[rows].astype(np.float64) * PHYSICS_STEP
-        actors, movers = self._buffer(len(rows))
+        worlds, rows = self.of[trackers], np.arange(len(trackers))
+        if self.lasting.any():
+            worlds, rows = np.unique(worlds, return_inverse=True)
+        time = tick[self.leader[worlds]].astype(np.float64) * PHYSICS_STEP
+        actors, movers = self._buffers(len(worlds))
         self._place.replay.at(time, actors)
-        self._place.rigs.pose(actors, self._model[rows], self._colour[rows], movers)
-        return world, movers
+        self._place.rigs.pose(actors, self._model[worlds], self._colour[worlds], movers)
+        return rows.astype(np.int32), movers
 
-    def _buffer(self, worlds: int) -> tuple[ActorState, DrawList]:
-        if worlds not in self._buffers:
-            actors = self._place.replay.actors
+    def _buffers(self, worlds: int) -> tuple[ActorState, DrawList]:
+        """Return room for some worlds; it grows to the most that were asked for, and no further."""
+        actors = self._place.replay.actors
+        if len(self._movers.part) < worlds:
             slots = actors * self._place.rigs.slots_per_actor
-            pair = ActorState.create(worlds, actors), DrawList.create(worlds, slots)
-            self._buffers[worlds] = pair
-        return self._buffers[worlds]
-
-    def _of(self, tracker: int) -> int:
-        return 0 if self.shared else tracker
+            self._actors = ActorState.create(worlds, actors)
+            self._movers = DrawList.create(worlds, slots)
+        return self._actors.first(worlds), self._movers.first(worlds)

@@ -1,6 +1,6 @@
 """What the renderer is asked for, and what it gives."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -40,6 +40,10 @@ class DrawList:
             colour=np.ones((worlds, slots, 3), np.float32),
             object_id=np.full((worlds, slots), -1, np.int32),
         )
+
+    def first(self, worlds: int) -> "DrawList":
+        """Return the lists of the first worlds; the arrays are shared."""
+        return DrawList(*(getattr(self, array.name)[:worlds] for array in fields(self)))
 
 
 @dataclass(slots=True)

@@ -47,6 +47,25 @@ class TrackerState(NamedTuple):
     """Commanded pitch of the camera, positive down, and its yaw relative to the body [rad],
     shape (N, 2)."""
 
+    @classmethod
+    def create(cls, count: int) -> "TrackerState":
+        """Return trackers at rest at the origin."""
+        orientation = np.zeros((count, 4))
+        orientation[:, 0] = 1.0
+        vector = (count, 3)
+        return cls(
+            position=np.zeros(vector),
+            velocity=np.zeros(vector),
+            acceleration=np.zeros(vector),
+            orientation=orientation,
+            euler=np.zeros(vector),
+            angular_velocity=np.zeros(vector),
+            commanded_position=np.zeros(vector),
+            commanded_yaw=np.zeros(count),
+            gimbal=np.zeros(vector),
+            commanded_gimbal=np.zeros((count, 2)),
+        )
+
 
 class CameraState(NamedTuple):
     """N cameras."""
@@ -55,6 +74,11 @@ class CameraState(NamedTuple):
     """Optical centre, world frame [m], shape (N, 3)."""
     rotation: Floats
     """Camera to world; columns are the camera's forward, left and up axes, shape (N, 3, 3)."""
+
+    @classmethod
+    def create(cls, count: int) -> "CameraState":
+        """Return cameras at the origin that look east."""
+        return cls(np.zeros((count, 3)), np.tile(np.eye(3), (count, 1, 1)))
 
 
 class TargetState(NamedTuple):
@@ -81,6 +105,22 @@ class TargetState(NamedTuple):
     """The point that the reward looks for [m], shape (N, 3): the visible middle of the target."""
     lost: NDArray[np.bool_]
     """The target has left the world; stays true until the next reset, shape (N,)."""
+
+    @classmethod
+    def create(cls, count: int) -> "TargetState":
+        """Return targets at the origin that stand for no actor yet."""
+        return cls(
+            actor=np.full(count, -1, np.int32),
+            model=np.zeros(count, np.int32),
+            size=np.zeros((count, 3)),
+            rise=np.zeros(count),
+            ahead=np.zeros(count),
+            position=np.zeros((count, 3)),
+            yaw=np.zeros(count),
+            speed=np.zeros(count),
+            centre=np.zeros((count, 3)),
+            lost=np.zeros(count, np.bool_),
+        )
 
 
 class EpisodeState(NamedTuple):
@@ -110,7 +150,7 @@ class EpisodeState(NamedTuple):
     start_offset: Floats
     """Start relative to the target: forward, left, up [m], heading [rad], shape (N, 4)."""
     view_centre: Floats
-    """Ground point that the camera looks at, east and north [m], shape (N, 2)."""
+    """Ground point that the camera looks at, or the one below it [m], shape (N, 3)."""
     last_target: Floats
     """Where the target was a step ago: east, north [m] and heading [rad], shape (N, 3)."""
     relative_position: Floats
@@ -119,6 +159,34 @@ class EpisodeState(NamedTuple):
     """Change of `relative_position` [m/s], shape (N, 3)."""
     relative_acceleration: Floats
     """Change of `relative_velocity` [m/s^2], shape (N, 3)."""
+
+    @classmethod
+    def create(cls, count: int) -> "EpisodeState":
+        """Return episodes before the first reset."""
+        vector = (count, 3)
+        return cls(
+            number=np.full(count, -1, np.int64),
+            tick=np.zeros(count, np.int64),
+            step_count=np.zeros(count, np.int64),
+            no_reward_count=np.zeros(count, np.int64),
+            reward=np.zeros(count),
+            reason=np.zeros(count, np.int64),
+            breach=np.zeros(count, np.int64),
+            not_a_number=np.zeros(count, np.bool_),
+            direction=np.zeros(count, np.int64),
+            observations=np.zeros(count, np.int64),
+            start_offset=np.zeros((count, 4)),
+            view_centre=np.zeros(vector),
+            last_target=np.zeros(vector),
+            relative_position=np.zeros(vector),
+            relative_velocity=np.zeros(vector),
+            relative_acceleration=np.zeros(vector),
+        )
+
+    @property
+    def done(self) -> NDArray[np.bool_]:
+        """Whether each episode has ended, shape (N,)."""
+        return self.reason > 0
 
 
 class Snapshot(NamedTuple):
@@ -131,6 +199,17 @@ class Snapshot(NamedTuple):
     light: NDArray[np.float32]
     """Factor on the sky and its light, factor on the sun, one over the visibility range [1/m],
     shape (N, 3)."""
+
+    @classmethod
+    def create(cls, count: int) -> "Snapshot":
+        """Return the state of `count` trackers before their first reset."""
+        return cls(
+            TrackerState.create(count),
+            CameraState.create(count),
+            TargetState.create(count),
+            EpisodeState.create(count),
+            np.ones((count, 3), np.float32),
+        )
 
     def copy(self) -> "Snapshot":
         """Return a snapshot that later steps leave alone."""

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from eyas.core.jit import kernel
 
-__all__ = ["Terrain", "ground_at", "relief_at", "slope_at"]
+__all__ = ["Plane", "Terrain", "ground_at", "height_over", "plane_at", "relief_at", "slope_at"]
 
 
 class Terrain(NamedTuple):
@@ -33,6 +33,21 @@ class Terrain(NamedTuple):
     def flat(cls, floor: float) -> "Terrain":
         """Return a plane at a height [m]."""
         return cls(float(floor), np.zeros((0, 0), np.float32), 0.0, 0.0, 1.0)
+
+
+class Plane(NamedTuple):
+    """The plane that touches the ground at a point."""
+
+    x: float
+    """East coordinate of the point [m]."""
+    y: float
+    """North coordinate of the point [m]."""
+    z: float
+    """Height of the ground there [m]."""
+    rise_east: float
+    """How much the plane rises for each metre east."""
+    rise_north: float
+    """How much the plane rises for each metre north."""
 
 
 @kernel
@@ -87,3 +102,16 @@ def _cell(terrain: Terrain, x: float, y: float) -> tuple[int, int, float, float]
     up = min(max((y - terrain.south) / terrain.spacing, 0.0), float(rows - 1))
     column, row = min(int(across), columns - 2), min(int(up), rows - 2)
     return row, column, up - row, across - column
+
+
+@kernel
+def plane_at(terrain: Terrain, x: float, y: float) -> Plane:
+    """Return the plane that touches the ground at a point; arguments as in `relief_at`."""
+    rise_east, rise_north = slope_at(terrain, x, y)
+    return Plane(x, y, ground_at(terrain, x, y), rise_east, rise_north)
+
+
+@kernel
+def height_over(plane: Plane, x: float, y: float, z: float) -> float:
+    """Return how far above a plane a point is, measured vertically [m]."""
+    return z - plane.z - (plane.rise_east * (x - plane.x) + plane.rise_north * (y - plane.y))

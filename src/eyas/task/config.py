@@ -13,6 +13,7 @@ __all__ = ["DoneConfig", "RewardConfig", "RewardMode", "RewardType", "StartConfi
 
 Positive = Annotated[float, Field(gt=0, le=1e9)]
 Height = Annotated[float, Field(ge=-1e6, le=1e6)]
+Weight = Annotated[float, Field(ge=-1e9, le=1e9)]
 Steps = Annotated[int, Field(ge=0, le=2**31 - 1)]
 
 
@@ -57,6 +58,11 @@ class RewardConfig(Config):
     """Which error is rewarded."""
     mode: RewardMode = RewardMode.CONTINUOUS
     """Which values the reward takes."""
+    weight: Weight = 1.0
+    """Factor on the built-in reward."""
+    terms: dict[str, Weight] = Field(default_factory=dict)
+    """Terms of your own that are added: the path of a function, `package.module:function`, which
+    takes a `Snapshot` and returns a number for each tracker, and the factor on it."""
     cut_off: Annotated[float, Field(ge=0, le=1)] = 0.001
     """0 to 1; at or below this reward the no-reward counter runs."""
     distance_scale: Positive = 0.01

@@ -1,115 +1,95 @@
-"""What one tracker sees of its target in one physics step: reward, direction, relative motion."""
+"""One tracker's view of its target in one physics step: reward, direction, relative motion."""
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.frames import rotate_back
-from eyas.core.jit import kernel
-from eyas.task.columns import (
-    DIRECTION,
-    LAST_TARGET,
-    LAST_TARGET_YAW,
-    MEMORY_COLUMNS,
-    RELATIVE_ACCELERATION,
-    RELATIVE_POSITION,
-    RELATIVE_VELOCITY,
-    REWARD,
-    SAMPLES,
-    START_DIRECTION,
-    VIEW_CENTRE,
-)
+from eyas.core.jit import step_kernel
+from eyas.state.snapshot import CameraState, EpisodeState, TargetState, TrackerState
+from eyas.state.terrain import Terrain, height_over, plane_at
 from eyas.task.direction import target_direction
 from eyas.task.reward import axis_depth, reward_value, view_centre, view_share
 from eyas.task.rules import Rules
 
-__all__ = ["observe", "start_episode"]
+__all__ = ["clear_episode", "observe"]
 
 
-@kernel
-def start_episode(direction: float, memory: NDArray[np.float64]) -> None:
-    """Forget the episode before; `observe` then gives what the first observation says.
+@step_kernel
+def clear_episode(episodes: EpisodeState, n: int) -> None:
+    """Forget the episode before; `observe` then gives what the first observation says."""
+    episodes.step_count[n] = 0
+    episodes.no_reward_count[n] = 0
+    episodes.reward[n] = 0.0
+    episodes.reason[n] = 0
+    episodes.breach[n] = 0
+    episodes.not_a_number[n] = False
+    episodes.direction[n] = 0
+    episodes.observations[n] = 0
+    for axis in range(3):
+        episodes.relative_velocity[n, axis] = 0.0
+        episodes.relative_acceleration[n, axis] = 0.0
 
-    Args:
-        direction: Heading at the start relative to the target's [rad].
-        memory: Row of the task's memory; set.
-    """
-    for column in range(MEMORY_COLUMNS):
-        memory[column] = 0.0
-    memory[START_DIRECTION] = direction
 
-
-@kernel
+@step_kernel
 def observe(
+    trackers: TrackerState,
+    cameras: CameraState,
+    targets: TargetState,
+    episodes: EpisodeState,
+    n: int,
+    terrain: Terrain,
     rules: Rules,
-    camera_position: NDArray[np.float64],
-    camera_rotation: NDArray[np.float64],
-    position: NDArray[np.float64],
-    orientation: NDArray[np.float64],
-    target_position: NDArray[np.float64],
-    target_yaw: float,
-    target_centre: NDArray[np.float64],
-    memory: NDArray[np.float64],
 ) -> None:
-    """Compute what is seen of the target; once at a reset and once in each physics step after.
+    """Compute what tracker `n` sees of its target; at a reset and in each physics step after.
 
-    Args:
-        rules: Which reward.
-        camera_position: Optical centre, world frame [m], shape (3,).
-        camera_rotation: Camera to world, shape (3, 3).
-        position: Of the tracker's body, world frame [m], shape (3,).
-        orientation: Of the tracker's body, shape (4,).
-        target_position: Reference point of the target [m], shape (3,).
-        target_yaw: Heading of the target [rad].
-        target_centre: The point that the reward looks for [m], shape (3,).
-        memory: Row of the task's memory; changes.
+    The reward uses the plane that touches the ground under the target.
     """
-    x, y = target_centre[0], target_centre[1]
-    depth = axis_depth(camera_position, camera_rotation, rules.ground)
-    middle_x, middle_y = view_centre(camera_position, camera_rotation, depth)
-    share = view_share(camera_position, camera_rotation, depth, x, y, rules)
+    position, rotation = cameras.position[n], cameras.rotation[n]
+    x, y = targets.centre[n, 0], targets.centre[n, 1]
+    ground = plane_at(terrain, x, y)
+    depth = axis_depth(position, rotation, ground)
+    middle_x, middle_y = view_centre(position, rotation, depth)
+    share = view_share(position, rotation, depth, ground, rules)
     distance = math.sqrt((x - middle_x) ** 2 + (y - middle_y) ** 2)
-    memory[REWARD] = reward_value(share, distance, depth, rules)
-    memory[VIEW_CENTRE], memory[VIEW_CENTRE + 1] = middle_x, middle_y
-    _follow_target(target_position[0], target_position[1], target_yaw, memory)
-    _follow_relative(position, orientation, target_centre, memory)
-    memory[SAMPLES] = min(memory[SAMPLES] + 1.0, 3.0)
+    episodes.reward[n] = reward_value(share, distance, depth, rules)
+    centre = episodes.view_centre[n]
+    centre[0], centre[1] = middle_x, middle_y
+    centre[2] = -height_over(ground, middle_x, middle_y, 0.0)
+    _follow_target(targets, episodes, n)
+    _follow_relative(trackers, targets, episodes, n)
+    episodes.observations[n] = min(episodes.observations[n] + 1, 3)
 
 
-@kernel
-def _follow_target(x: float, y: float, yaw: float, memory: NDArray[np.float64]) -> None:
-    if memory[SAMPLES] > 0.0:
-        dx, dy = x - memory[LAST_TARGET], y - memory[LAST_TARGET + 1]
-        memory[DIRECTION] = target_direction(dx, dy, yaw, memory[LAST_TARGET_YAW])
-    memory[LAST_TARGET], memory[LAST_TARGET + 1] = x, y
-    memory[LAST_TARGET_YAW] = yaw
+@step_kernel
+def _follow_target(targets: TargetState, episodes: EpisodeState, n: int) -> None:
+    x, y, yaw = targets.position[n, 0], targets.position[n, 1], targets.yaw[n]
+    last = episodes.last_target[n]
+    if episodes.observations[n] > 0:
+        episodes.direction[n] = target_direction(x - last[0], y - last[1], yaw, last[2])
+    last[0], last[1], last[2] = x, y, yaw
 
 
-@kernel
+@step_kernel
 def _follow_relative(
-    position: NDArray[np.float64],
-    orientation: NDArray[np.float64],
-    target_centre: NDArray[np.float64],
-    memory: NDArray[np.float64],
+    trackers: TrackerState, targets: TargetState, episodes: EpisodeState, n: int
 ) -> None:
-    """Differentiate the target's place in the turning body frame.
+    """Differentiate the target's position in the turning body frame.
 
     Velocity is 0 until there are two positions, acceleration until there are two velocities. (The
     original divides its first sample by the absolute time.)
     """
-    place = rotate_back(
-        orientation,
-        target_centre[0] - position[0],
-        target_centre[1] - position[1],
-        target_centre[2] - position[2],
+    position, centre = trackers.position[n], targets.centre[n]
+    relative = rotate_back(
+        trackers.orientation[n],
+        centre[0] - position[0],
+        centre[1] - position[1],
+        centre[2] - position[2],
     )
     for axis in range(3):
-        if memory[SAMPLES] > 0.0:
-            speed = (place[axis] - memory[RELATIVE_POSITION + axis]) / PHYSICS_STEP
-            if memory[SAMPLES] > 1.0:
-                change = speed - memory[RELATIVE_VELOCITY + axis]
-                memory[RELATIVE_ACCELERATION + axis] = change / PHYSICS_STEP
-            memory[RELATIVE_VELOCITY + axis] = speed
-        memory[RELATIVE_POSITION + axis] = place[axis]
+        if episodes.observations[n] > 0:
+            speed = (relative[axis] - episodes.relative_position[n, axis]) / PHYSICS_STEP
+            if episodes.observations[n] > 1:
+                change = speed - episodes.relative_velocity[n, axis]
+                episodes.relative_acceleration[n, axis] = change / PHYSICS_STEP
+            episodes.relative_velocity[n, axis] = speed
+        episodes.relative_position[n, axis] = relative[axis]

@@ -3,28 +3,22 @@
 Nothing is cut to six digits, as the original's text streams do.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.frames import wrap_angle
-from eyas.core.jit import kernel
+from eyas.core.jit import step_kernel
+from eyas.core.parallel import Held, Pointer, parallel_kernel
 from eyas.core.pinhole import focal_length
 from eyas.sensors.config import CameraConfig
-from eyas.task.columns import (
-    BREACH,
-    DIRECTION,
-    REASON,
-    RELATIVE_POSITION,
-    REWARD,
-    START_DIRECTION,
-    STEP_COUNT,
-    VIEW_CENTRE,
-)
+from eyas.state.snapshot import CameraState, EpisodeState, Snapshot, TargetState, TrackerState
+from eyas.state.terrain import Terrain
 from eyas.task.done import is_crash
-from eyas.trackers.columns import GIMBAL_PITCH
 from eyas.trackers.drone import accelerometer
 
-__all__ = ["BASIC_COLUMNS", "REWARD_COLUMNS", "fill_basic", "fill_reward", "reward_rows"]
+__all__ = ["BASIC_COLUMNS", "REWARD_COLUMNS", "PacketRows"]
 
 BASIC_COLUMNS = 22
 REWARD_COLUMNS = 60
@@ -34,102 +28,103 @@ _VIEW_CENTRE, _TARGET_CENTRE, _CAMERA_POSITION = 39, 42, 45
 _RELATIVE = 49
 
 
-def reward_rows(count: int, camera: CameraConfig) -> NDArray[np.float64]:
-    """Return reward packets, shape (count, 60), in which all is set that never changes."""
-    rows = np.zeros((count, REWARD_COLUMNS))
-    rows[:, 0], rows[:, 1] = camera.width, camera.height
-    rows[:, 2] = camera.field_of_view
-    rows[:, 3] = focal_length(camera.width, camera.field_of_view)
-    rows[:, _CAMERA_POSE + 15] = rows[:, _TARGET_POSE + 15] = 1.0
-    rows[:, _TARGET_POSE + 10] = 1.0
-    return rows
-
-
-@kernel
-def fill_basic(
-    position: NDArray[np.float64],
-    velocity: NDArray[np.float64],
-    acceleration: NDArray[np.float64],
-    orientation: NDArray[np.float64],
-    euler: NDArray[np.float64],
-    angular_velocity: NDArray[np.float64],
-    memory: NDArray[np.float64],
-    row: NDArray[np.float64],
-) -> None:
-    """Fill one basic packet.
+class PacketRows:
+    """Packets of N trackers as rows of numbers.
 
     Args:
-        position: Of the body, world frame [m], shape (3,).
-        velocity: World frame [m/s], shape (3,).
-        acceleration: World frame [m/s^2], shape (3,).
-        orientation: Body to world, shape (4,).
-        euler: Roll, pitch, yaw [rad], shape (3,).
-        angular_velocity: Body frame [rad/s], shape (3,).
-        memory: Row of the task's memory.
-        row: Set, shape (22,).
+        snapshot: Of N trackers; read at each call.
+        camera: Told in each reward packet.
+        terrain: Its floor is where the land frame has z = 0.
     """
-    row[0] = memory[STEP_COUNT]
-    row[7], row[8], row[9] = accelerometer(acceleration, orientation)
+
+    def __init__(self, snapshot: Snapshot, camera: CameraConfig, terrain: Terrain) -> None:
+        count = len(snapshot.episodes.number)
+        self._basic = np.zeros((count, BASIC_COLUMNS))
+        rows = self._reward = np.zeros((count, REWARD_COLUMNS))
+        rows[:, 0], rows[:, 1] = camera.width, camera.height
+        rows[:, 2] = camera.field_of_view
+        rows[:, 3] = focal_length(camera.width, camera.field_of_view)
+        rows[:, _CAMERA_POSE + 15] = rows[:, _TARGET_POSE + 15] = 1.0
+        rows[:, _TARGET_POSE + 10] = 1.0
+        self._held = Held(_Packets(snapshot, terrain.floor, self._basic, self._reward))
+
+    def now(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Return the basic, shape (N, 22), and the reward packets, shape (N, 60)."""
+        _fill_packets(1, self._held)
+        return self._basic.copy(), self._reward.copy()
+
+
+class _Packets(NamedTuple):
+    """What the kernel reads and writes."""
+
+    snapshot: Snapshot
+    floor: float
+    """z of the land frame's ground [m]."""
+    basic: NDArray[np.float64]
+    reward: NDArray[np.float64]
+
+
+@parallel_kernel
+def _fill_packets(parts: Pointer[tuple[Pointer[_Packets]]], worker: int, workers: int) -> None:
+    """Fill the packets of all trackers."""
+    snapshot, floor, basic, reward = parts[0][0][0]
+    trackers, cameras, targets, episodes, _ = snapshot
+    for n in range(basic.shape[0]):
+        _fill_basic(trackers, episodes, n, basic[n])
+        _fill_reward(trackers, cameras, targets, episodes, n, floor, reward[n])
+
+
+@step_kernel
+def _fill_basic(
+    trackers: TrackerState, episodes: EpisodeState, n: int, row: NDArray[np.float64]
+) -> None:
+    row[0] = episodes.step_count[n]
+    row[7], row[8], row[9] = accelerometer(trackers.acceleration[n], trackers.orientation[n])
     for axis in range(3):
-        row[1 + axis] = position[axis]
-        row[4 + axis] = velocity[axis]
-        row[10 + axis] = angular_velocity[axis]
-        row[17 + axis] = euler[axis]
+        row[1 + axis] = trackers.position[n, axis]
+        row[4 + axis] = trackers.velocity[n, axis]
+        row[10 + axis] = trackers.angular_velocity[n, axis]
+        row[17 + axis] = trackers.euler[n, axis]
     for part in range(4):
-        row[13 + part] = orientation[part]
-    row[20] = memory[REWARD]
-    row[21] = 1.0 if memory[REASON] > 0.0 else 0.0
+        row[13 + part] = trackers.orientation[n, part]
+    row[20] = episodes.reward[n]
+    row[21] = 1.0 if episodes.reason[n] > 0 else 0.0
 
 
-@kernel
-def fill_reward(
-    ground: float,
-    tracker_memory: NDArray[np.float64],
-    commanded_position: NDArray[np.float64],
-    euler: NDArray[np.float64],
-    camera_position: NDArray[np.float64],
-    camera_rotation: NDArray[np.float64],
-    target_yaw: float,
-    target_centre: NDArray[np.float64],
-    memory: NDArray[np.float64],
+@step_kernel
+def _fill_reward(
+    trackers: TrackerState,
+    cameras: CameraState,
+    targets: TargetState,
+    episodes: EpisodeState,
+    n: int,
+    floor: float,
     row: NDArray[np.float64],
 ) -> None:
     """Fill what changes in one reward packet.
 
     Poses and points are in the land frame, the world lifted so that the floor is z = 0, but for
     the view centre, which is in the world frame: that is how the original has it.
-
-    Args:
-        ground: z of the floor [m].
-        tracker_memory: Row of the tracker's memory.
-        commanded_position: Of the tracker's body, world frame [m], shape (3,).
-        euler: Roll, pitch, yaw of the body [rad], shape (3,).
-        camera_position: Optical centre, world frame [m], shape (3,).
-        camera_rotation: Camera to world, shape (3, 3).
-        target_yaw: Heading of the target [rad].
-        target_centre: The point that the reward looks for, world frame [m], shape (3,).
-        memory: Row of the task's memory.
-        row: From `reward_rows`, shape (60,); set.
     """
-    row[4] = tracker_memory[GIMBAL_PITCH]
-    row[5] = commanded_position[2]
-    row[6] = memory[START_DIRECTION]
-    cosine, sine = np.cos(target_yaw), np.sin(target_yaw)
+    centre, rotation = targets.centre[n], cameras.rotation[n]
+    row[4] = trackers.commanded_gimbal[n, 0]
+    row[5] = trackers.commanded_position[n, 2]
+    row[6] = episodes.start_offset[n, 3]
+    cosine, sine = np.cos(targets.yaw[n]), np.sin(targets.yaw[n])
     row[_TARGET_POSE], row[_TARGET_POSE + 1] = cosine, -sine
     row[_TARGET_POSE + 4], row[_TARGET_POSE + 5] = sine, cosine
     for axis in range(3):
-        lift = -ground if axis == 2 else 0.0
+        lift = -floor if axis == 2 else 0.0
         for column in range(3):
-            row[_CAMERA_POSE + 4 * axis + column] = camera_rotation[axis, column]
-        row[_CAMERA_POSE + 4 * axis + 3] = camera_position[axis] + lift
-        row[_TARGET_POSE + 4 * axis + 3] = target_centre[axis] + lift
-        row[_TARGET_CENTRE + axis] = target_centre[axis] + lift
-        row[_CAMERA_POSITION + axis] = camera_position[axis] + lift
-    row[_VIEW_CENTRE], row[_VIEW_CENTRE + 1] = memory[VIEW_CENTRE], memory[VIEW_CENTRE + 1]
-    row[_VIEW_CENTRE + 2] = ground
-    row[48] = wrap_angle(target_yaw - euler[2])
-    # Position, velocity and acceleration lie side by side, in the memory as in the packet.
-    for column in range(9):
-        row[_RELATIVE + column] = memory[RELATIVE_POSITION + column]
-    row[58] = 1.0 if is_crash(memory[BREACH]) else 0.0
-    row[59] = memory[DIRECTION]
+            row[_CAMERA_POSE + 4 * axis + column] = rotation[axis, column]
+        row[_CAMERA_POSE + 4 * axis + 3] = cameras.position[n, axis] + lift
+        row[_TARGET_POSE + 4 * axis + 3] = centre[axis] + lift
+        row[_TARGET_CENTRE + axis] = centre[axis] + lift
+        row[_CAMERA_POSITION + axis] = cameras.position[n, axis] + lift
+        row[_VIEW_CENTRE + axis] = episodes.view_centre[n, axis]
+        row[_RELATIVE + axis] = episodes.relative_position[n, axis]
+        row[_RELATIVE + 3 + axis] = episodes.relative_velocity[n, axis]
+        row[_RELATIVE + 6 + axis] = episodes.relative_acceleration[n, axis]
+    row[48] = wrap_angle(targets.yaw[n] - trackers.euler[n, 2])
+    row[58] = 1.0 if is_crash(episodes.breach[n]) else 0.0
+    row[59] = episodes.direction[n]

@@ -1,27 +1,41 @@
 """The settings of reward and end as plain numbers that kernels take."""
 
 import math
+from enum import IntEnum
 from typing import NamedTuple
 
 from eyas.sensors.config import CameraConfig
 from eyas.task.config import DoneConfig, RewardConfig, RewardMode, RewardType
 
-__all__ = ["Rules", "make_rules"]
+__all__ = ["BuiltinReward", "Rules", "make_rules"]
+
+
+class BuiltinReward(IntEnum):
+    """The built-in rewards; each is a function of its name in `eyas.task.reward`."""
+
+    VIEW_CONTINUOUS = 0
+    VIEW_DISCRETE = 1
+    DISTANCE_CONTINUOUS = 2
+    DISTANCE_DISCRETE = 3
+
+
+BUILTIN_REWARDS = {
+    (RewardType.VIEW, RewardMode.CONTINUOUS): BuiltinReward.VIEW_CONTINUOUS,
+    (RewardType.VIEW, RewardMode.DISCRETE): BuiltinReward.VIEW_DISCRETE,
+    (RewardType.DISTANCE, RewardMode.CONTINUOUS): BuiltinReward.DISTANCE_CONTINUOUS,
+    (RewardType.DISTANCE, RewardMode.DISCRETE): BuiltinReward.DISTANCE_DISCRETE,
+}
 
 
 class Rules(NamedTuple):
     """What the task's kernels need to know; lengths in metres, angles in radians."""
 
-    ground: float
-    """z of the plane that the reward uses."""
     half_width: float
     """Half the width of the rewarded part of the picture, 1 m before the camera."""
     half_height: float
     """Half the height of the rewarded part of the picture, 1 m before the camera."""
-    distance: bool
-    """Reward the distance instead of the view."""
-    discrete: bool
-    """Reward 0 or 1 instead of a share."""
+    reward: int
+    """`BuiltinReward`."""
     cut_off: float
     distance_scale: float
     distance_range: float
@@ -38,24 +52,19 @@ class Rules(NamedTuple):
     no_reward_steps: int
 
 
-def make_rules(
-    reward: RewardConfig, done: DoneConfig, camera: CameraConfig, ground_height: float
-) -> Rules:
+def make_rules(reward: RewardConfig, done: DoneConfig, camera: CameraConfig) -> Rules:
     """Return the settings as numbers.
 
     Args:
         reward: Which reward.
         done: The limits.
         camera: Whose picture the view reward is about.
-        ground_height: z of the floor [m].
     """
     half_width = reward.view_range * math.tan(0.5 * camera.field_of_view)
     return Rules(
-        ground=float(ground_height),
         half_width=half_width,
         half_height=half_width * camera.height / camera.width,
-        distance=reward.type is RewardType.DISTANCE,
-        discrete=reward.mode is RewardMode.DISCRETE,
+        reward=int(BUILTIN_REWARDS[reward.type, reward.mode]),
         cut_off=reward.cut_off,
         distance_scale=reward.distance_scale,
         distance_range=reward.distance_range,

@@ -13,7 +13,7 @@ from eyas.core.variation import draw
 from eyas.task.config import StartConfig
 from eyas.task.direction import TARGET_COMPENSATION
 
-__all__ = ["Start", "choose_target", "draw_start", "place"]
+__all__ = ["Start", "choose_target", "sample_start", "start_pose"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -32,8 +32,8 @@ class Start:
     """[m]"""
 
 
-def draw_start(config: StartConfig, rng: np.random.Generator) -> Start:
-    """Draw a start, in the original's order: pitch, the two biases, height, direction."""
+def sample_start(config: StartConfig, rng: np.random.Generator) -> Start:
+    """Sample a start, in the original's order: pitch, the two biases, height, direction."""
     pitch = draw(config.pitch, rng)
     horizontal_bias = draw(config.horizontal_bias, rng)
     vertical_bias = draw(config.vertical_bias, rng)
@@ -42,7 +42,7 @@ def draw_start(config: StartConfig, rng: np.random.Generator) -> Start:
     return Start(pitch, height, direction, horizontal_bias, vertical_bias)
 
 
-def place(
+def start_pose(
     start: Start,
     target_position: ArrayLike,
     target_yaw: float,

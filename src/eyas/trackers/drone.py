@@ -1,115 +1,119 @@
-"""The supervised drone: a level body that obeys its commands exactly, but for their low-pass."""
+"""The supervised drone: a level body that follows its commands exactly, after a low-pass."""
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.frames import rotate_back, wrap_angle
-from eyas.core.jit import kernel
-from eyas.trackers.columns import (
-    COMMANDED_YAW,
-    FORWARD_FILTER,
-    LATERAL_FILTER,
-    YAW_RATE_FILTER,
-)
+from eyas.core.jit import kernel, step_kernel
+from eyas.state.snapshot import CameraState, TrackerState
+from eyas.trackers.gimbal import advance_gimbal, camera_pose, reset_gimbal
 from eyas.trackers.lowpass import low_pass, settle
+from eyas.trackers.tracker import Tracker
 
-__all__ = ["GRAVITY", "accelerometer", "advance_drone", "reset_drone"]
+__all__ = ["DRONE", "GRAVITY", "DroneMemory", "accelerometer", "advance", "aim", "carry", "start"]
 
 GRAVITY = 9.81
 """[m/s^2]"""
 
 
-@kernel
-def advance_drone(
-    action: NDArray[np.float64],
-    memory: NDArray[np.float64],
-    position: NDArray[np.float64],
-    velocity: NDArray[np.float64],
-    acceleration: NDArray[np.float64],
-    orientation: NDArray[np.float64],
-    euler: NDArray[np.float64],
-    angular_velocity: NDArray[np.float64],
-    commanded_position: NDArray[np.float64],
+class DroneMemory(NamedTuple):
+    """Low-passes of N drones."""
+
+    forward: NDArray[np.float64]
+    """Of the forward command, shape (N, 2)."""
+    left: NDArray[np.float64]
+    """Of the sideways command, shape (N, 2)."""
+    yaw_rate: NDArray[np.float64]
+    """Of the turning command, shape (N, 2)."""
+    gimbal: NDArray[np.float64]
+    """Of the gimbal's roll, pitch and yaw, shape (N, 3, 2)."""
+
+    @classmethod
+    def create(cls, count: int) -> "DroneMemory":
+        """Return the memory of drones at rest."""
+        pair = (count, 2)
+        return cls(np.zeros(pair), np.zeros(pair), np.zeros(pair), np.zeros((count, 3, 2)))
+
+
+@step_kernel
+def advance(
+    trackers: TrackerState, memory: DroneMemory, n: int, command: NDArray[np.float64]
 ) -> None:
-    """Move one drone by one physics step of 2 ms.
+    """Move drone `n` by one physics step of 2 ms, see `Tracker.advance`.
 
     The commands add up to a pose (in the heading frame of the pose before), and the body takes
     that pose in every step. The original meant to, but skipped about half of the steps in a race.
-    All but the action are rows of the tracker's state and change.
-
-    Args:
-        action: Forward [m/s], left [m/s], up [m per 2 ms], yaw rate [rad/s], shape (4,).
-        memory: Columns of `eyas.trackers.columns`.
-        position: World frame [m], shape (3,).
-        velocity: Difference of the last two positions over 2 ms [m/s], shape (3,).
-        acceleration: Difference of the last two velocities over 2 ms [m/s^2], shape (3,).
-        orientation: Body to world, shape (4,).
-        euler: Roll, pitch, yaw [rad], shape (3,).
-        angular_velocity: Body frame [rad/s], shape (3,).
-        commanded_position: What the commands add up to [m], shape (3,).
     """
-    forward = low_pass(memory, FORWARD_FILTER, action[0])
-    left = low_pass(memory, LATERAL_FILTER, action[1])
-    yaw_rate = low_pass(memory, YAW_RATE_FILTER, action[3])
-    east, north = _heading(orientation)
-    commanded_position[0] += (east * forward - north * left) * PHYSICS_STEP
-    commanded_position[1] += (north * forward + east * left) * PHYSICS_STEP
-    commanded_position[2] += action[2]
-    memory[COMMANDED_YAW] += yaw_rate * PHYSICS_STEP
-    for axis in range(3):
-        speed = (commanded_position[axis] - position[axis]) / PHYSICS_STEP
-        acceleration[axis] = (speed - velocity[axis]) / PHYSICS_STEP
-        velocity[axis] = speed
-        position[axis] = commanded_position[axis]
-    angular_velocity[2] = yaw_rate
-    _stand_level(memory[COMMANDED_YAW], orientation, euler)
+    forward = low_pass(memory.forward[n], command[0])
+    left = low_pass(memory.left[n], command[1])
+    yaw_rate = low_pass(memory.yaw_rate[n], command[3])
+    east, north = _heading(trackers.orientation[n])
+    commanded = trackers.commanded_position[n]
+    commanded[0] += (east * forward - north * left) * PHYSICS_STEP
+    commanded[1] += (north * forward + east * left) * PHYSICS_STEP
+    commanded[2] += command[2]
+    trackers.commanded_yaw[n] += yaw_rate * PHYSICS_STEP
+    _move_to(trackers, n, commanded[0], commanded[1], commanded[2])
+    trackers.angular_velocity[n, 2] = yaw_rate
+    _stand_level(trackers, n, wrap_angle(trackers.commanded_yaw[n]))
+    advance_gimbal(trackers, memory.gimbal, n)
 
 
-@kernel
-def reset_drone(
+@step_kernel
+def carry(
+    trackers: TrackerState, memory: DroneMemory, n: int, x: float, y: float, z: float, yaw: float
+) -> None:
+    """Put a level drone at a pose, one physics step of 2 ms after the pose it has."""
+    commanded = trackers.commanded_position[n]
+    commanded[0], commanded[1], commanded[2] = x, y, z
+    _move_to(trackers, n, x, y, z)
+    trackers.angular_velocity[n, 2] = wrap_angle(yaw - trackers.euler[n, 2]) / PHYSICS_STEP
+    trackers.commanded_yaw[n] = yaw
+    _stand_level(trackers, n, yaw)
+    advance_gimbal(trackers, memory.gimbal, n)
+
+
+@step_kernel
+def start(
+    trackers: TrackerState,
+    memory: DroneMemory,
+    n: int,
     x: float,
     y: float,
     z: float,
     yaw: float,
-    memory: NDArray[np.float64],
-    position: NDArray[np.float64],
-    velocity: NDArray[np.float64],
-    acceleration: NDArray[np.float64],
-    orientation: NDArray[np.float64],
-    euler: NDArray[np.float64],
-    angular_velocity: NDArray[np.float64],
-    commanded_position: NDArray[np.float64],
+    pitch: float,
 ) -> None:
-    """Place one drone at rest; rows as in `advance_drone`.
-
-    Args:
-        x: East [m].
-        y: North [m].
-        z: Up [m].
-        yaw: Heading [rad].
-        memory: The filters of the commands and the commanded yaw change; the gimbal's stay.
-        position: Set.
-        velocity: Set to zero.
-        acceleration: Set to zero.
-        orientation: Set.
-        euler: Set.
-        angular_velocity: Set to zero.
-        commanded_position: Set.
-    """
-    settle(memory, FORWARD_FILTER, 0.0)
-    settle(memory, LATERAL_FILTER, 0.0)
-    settle(memory, YAW_RATE_FILTER, 0.0)
-    memory[COMMANDED_YAW] = yaw
-    position[0], position[1], position[2] = x, y, z
+    """Place drone `n` at rest, its gimbal at a commanded pitch, see `Tracker.start`."""
+    settle(memory.forward[n], 0.0)
+    settle(memory.left[n], 0.0)
+    settle(memory.yaw_rate[n], 0.0)
+    trackers.commanded_yaw[n] = yaw
+    point = (x, y, z)
     for axis in range(3):
-        commanded_position[axis] = position[axis]
-        velocity[axis] = 0.0
-        acceleration[axis] = 0.0
-        angular_velocity[axis] = 0.0
-    _stand_level(yaw, orientation, euler)
+        trackers.position[n, axis] = point[axis]
+        trackers.commanded_position[n, axis] = point[axis]
+        trackers.velocity[n, axis] = 0.0
+        trackers.acceleration[n, axis] = 0.0
+        trackers.angular_velocity[n, axis] = 0.0
+    _stand_level(trackers, n, wrap_angle(yaw))
+    reset_gimbal(trackers, memory.gimbal, n, pitch, 0.0)
+
+
+@step_kernel
+def aim(trackers: TrackerState, memory: DroneMemory, cameras: CameraState, n: int) -> None:
+    """Write where the camera on the gimbal is and looks."""
+    camera_pose(
+        trackers.position[n],
+        trackers.orientation[n],
+        trackers.gimbal[n],
+        cameras.position[n],
+        cameras.rotation[n],
+    )
 
 
 @kernel
@@ -124,7 +128,18 @@ def accelerometer(
     return rotate_back(orientation, acceleration[0], acceleration[1], acceleration[2] + GRAVITY)
 
 
-@kernel
+@step_kernel
+def _move_to(trackers: TrackerState, n: int, x: float, y: float, z: float) -> None:
+    """Move within one physics step; velocity and acceleration are what that takes."""
+    goal = (x, y, z)
+    for axis in range(3):
+        speed = (goal[axis] - trackers.position[n, axis]) / PHYSICS_STEP
+        trackers.acceleration[n, axis] = (speed - trackers.velocity[n, axis]) / PHYSICS_STEP
+        trackers.velocity[n, axis] = speed
+        trackers.position[n, axis] = goal[axis]
+
+
+@step_kernel
 def _heading(orientation: NDArray[np.float64]) -> tuple[float, float]:
     """Return the horizontal direction of the body's x axis, of length 1."""
     w, x, y, z = orientation[0], orientation[1], orientation[2], orientation[3]
@@ -133,9 +148,14 @@ def _heading(orientation: NDArray[np.float64]) -> tuple[float, float]:
     return east / length, north / length
 
 
-@kernel
-def _stand_level(yaw: float, orientation: NDArray[np.float64], euler: NDArray[np.float64]) -> None:
-    wrapped = wrap_angle(yaw)
-    euler[0], euler[1], euler[2] = 0.0, 0.0, wrapped
-    orientation[0], orientation[1], orientation[2] = math.cos(0.5 * wrapped), 0.0, 0.0
-    orientation[3] = math.sin(0.5 * wrapped)
+@step_kernel
+def _stand_level(trackers: TrackerState, n: int, yaw: float) -> None:
+    """Set the attitude of a level body; the yaw is wrapped [rad]."""
+    euler, orientation = trackers.euler[n], trackers.orientation[n]
+    euler[0], euler[1], euler[2] = 0.0, 0.0, yaw
+    orientation[0], orientation[1], orientation[2] = math.cos(0.5 * yaw), 0.0, 0.0
+    orientation[3] = math.sin(0.5 * yaw)
+
+
+DRONE = Tracker("drone", DroneMemory.create, start, advance, carry, aim)
+"""The drone that its supervisor moves."""

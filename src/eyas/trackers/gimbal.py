@@ -6,14 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.frames import rotate
-from eyas.core.jit import kernel
-from eyas.trackers.columns import (
-    GIMBAL_PITCH,
-    GIMBAL_PITCH_FILTER,
-    GIMBAL_ROLL_FILTER,
-    GIMBAL_YAW,
-    GIMBAL_YAW_FILTER,
-)
+from eyas.core.jit import kernel, step_kernel
+from eyas.state.snapshot import TrackerState
 from eyas.trackers.lowpass import low_pass, settle
 
 __all__ = ["advance_gimbal", "camera_pose", "held_pitch", "reset_gimbal"]
@@ -39,30 +33,25 @@ def held_pitch(pitch: float) -> float:
     return min(max(pitch, _COMMAND_LIMITS[0]), _COMMAND_LIMITS[1])
 
 
-@kernel
-def advance_gimbal(
-    memory: NDArray[np.float64], euler: NDArray[np.float64], gimbal: NDArray[np.float64]
-) -> None:
-    """Move one gimbal by one physics step of 2 ms.
+@step_kernel
+def advance_gimbal(trackers: TrackerState, memory: NDArray[np.float64], n: int) -> None:
+    """Move gimbal `n` by one physics step of 2 ms.
 
     Args:
-        memory: Row of the tracker, with the commands; the gimbal's filters change.
-        euler: Roll, pitch, yaw of the body [rad], shape (3,).
-        gimbal: Roll, pitch, yaw of the joints [rad], shape (3,); set.
+        trackers: The attitude of the body and the commanded angles are read, the joints set.
+        memory: Low-passes of roll, pitch and yaw, shape (N, 3, 2); change.
+        n: Which.
     """
-    roll, pitch, yaw = _desired(memory[GIMBAL_PITCH], memory[GIMBAL_YAW], euler[0], euler[1])
-    gimbal[0] = low_pass(memory, GIMBAL_ROLL_FILTER, roll)
-    gimbal[1] = low_pass(memory, GIMBAL_PITCH_FILTER, pitch)
-    gimbal[2] = low_pass(memory, GIMBAL_YAW_FILTER, yaw)
+    commanded, euler, gimbal = trackers.commanded_gimbal[n], trackers.euler[n], trackers.gimbal[n]
+    roll, pitch, yaw = _desired(commanded[0], commanded[1], euler[0], euler[1])
+    gimbal[0] = low_pass(memory[n, 0], roll)
+    gimbal[1] = low_pass(memory[n, 1], pitch)
+    gimbal[2] = low_pass(memory[n, 2], yaw)
 
 
-@kernel
+@step_kernel
 def reset_gimbal(
-    pitch: float,
-    yaw: float,
-    memory: NDArray[np.float64],
-    euler: NDArray[np.float64],
-    gimbal: NDArray[np.float64],
+    trackers: TrackerState, memory: NDArray[np.float64], n: int, pitch: float, yaw: float
 ) -> None:
     """Command new angles and be there at once.
 
@@ -70,18 +59,17 @@ def reset_gimbal(
     the first pictures of an episode are taken.
 
     Args:
+        trackers: The attitude of the body is read, commanded angles and joints are set.
+        memory: Low-passes of roll, pitch and yaw, shape (N, 3, 2); set.
+        n: Which.
         pitch: Commanded pitch, positive down, held within 0.5 to 1.5 [rad].
         yaw: Commanded yaw relative to the body [rad].
-        memory: Row of the tracker; the gimbal's commands and filters are set.
-        euler: Roll, pitch, yaw of the body [rad], shape (3,).
-        gimbal: Roll, pitch, yaw of the joints [rad], shape (3,); set.
     """
-    memory[GIMBAL_PITCH] = held_pitch(pitch)
-    memory[GIMBAL_YAW] = yaw
-    gimbal[0], gimbal[1], gimbal[2] = _desired(memory[GIMBAL_PITCH], yaw, euler[0], euler[1])
-    settle(memory, GIMBAL_ROLL_FILTER, gimbal[0])
-    settle(memory, GIMBAL_PITCH_FILTER, gimbal[1])
-    settle(memory, GIMBAL_YAW_FILTER, gimbal[2])
+    commanded, euler, gimbal = trackers.commanded_gimbal[n], trackers.euler[n], trackers.gimbal[n]
+    commanded[0], commanded[1] = held_pitch(pitch), yaw
+    gimbal[0], gimbal[1], gimbal[2] = _desired(commanded[0], yaw, euler[0], euler[1])
+    for axis in range(3):
+        settle(memory[n, axis], gimbal[axis])
 
 
 @kernel

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
-from eyas.core.jit import kernel
+from eyas.core.jit import step_kernel
 
 __all__ = ["low_pass", "settle"]
 
@@ -21,24 +21,23 @@ _A1 = 2.0 * (_K * _K - 1.0) / _D
 _A2 = (_K * _K - math.sqrt(2.0) * _K + 1.0) / _D
 
 
-@kernel
-def low_pass(memory: NDArray[np.float64], column: int, value: float) -> float:
+@step_kernel
+def low_pass(memory: NDArray[np.float64], value: float) -> float:
     """Return the filtered value of one 2 ms step.
 
     Args:
-        memory: Row of a tracker; the filter's two columns change.
-        column: First of the filter's columns.
+        memory: Of one filter, shape (2,); changes.
         value: What goes in.
     """
     # The transposed direct form II: the same response as the usual form with half the state.
-    result: float = _B0 * value + memory[column]
-    memory[column] = _B1 * value - _A1 * result + memory[column + 1]
-    memory[column + 1] = _B2 * value - _A2 * result
+    result: float = _B0 * value + memory[0]
+    memory[0] = _B1 * value - _A1 * result + memory[1]
+    memory[1] = _B2 * value - _A2 * result
     return result
 
 
-@kernel
-def settle(memory: NDArray[np.float64], column: int, value: float) -> None:
+@step_kernel
+def settle(memory: NDArray[np.float64], value: float) -> None:
     """Put the filter where it would be if `value` had gone in for ever."""
-    memory[column + 1] = (_B2 - _A2) * value
-    memory[column] = (_B1 - _A1) * value + memory[column + 1]
+    memory[1] = (_B2 - _A2) * value
+    memory[0] = (_B1 - _A1) * value + memory[1]

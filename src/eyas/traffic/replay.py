@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from eyas.core.errors import ConfigError
 from eyas.core.jit import kernel
-from eyas.state.tracker import ActorState, TargetState
+from eyas.state.tracker import ActorState
 from eyas.traffic.recording import Recording
 from eyas.traffic.smoothing import Tracks, runs, smooth
 
@@ -52,13 +52,6 @@ class Replay:
         """Write all actors of W worlds at the worlds' own times [s], shape (W,)."""
         motion = out.position, out.yaw, out.speed, out.yaw_rate, out.travelled, out.present
         _write_worlds(self.table, self.rate, time, *motion)
-
-    def actor_at(self, time: NDArray[np.float64], out: TargetState) -> None:
-        """Write east, north, yaw and speed of `out.actor` at N times [s], shape (N,).
-
-        Heights, centres and the lost flag are left as they are.
-        """
-        _write_targets(self.table, self.rate, time, out.actor, out.position, out.yaw, out.speed)
 
     def available(self, start: float, end: float) -> NDArray[np.bool_]:
         """Return which actors stay in the world from `start` to `end` [s], shape (A,).
@@ -181,21 +174,3 @@ def _write_worlds(
             yaw_rate[world, actor] = pose[4]
             travelled[world, actor] = pose[5]
             present[world, actor] = pose[6]
-
-
-@kernel
-def _write_targets(
-    table: NDArray[np.float32],
-    rate: float,
-    time: NDArray[np.float64],
-    actor: NDArray[np.int32],
-    position: NDArray[np.float64],
-    yaw: NDArray[np.float64],
-    speed: NDArray[np.float64],
-) -> None:
-    for tracker in range(time.shape[0]):
-        pose = interpolate_actor(table, rate, actor[tracker], time[tracker])
-        position[tracker, 0] = pose[0]
-        position[tracker, 1] = pose[1]
-        yaw[tracker] = pose[2]
-        speed[tracker] = pose[3]

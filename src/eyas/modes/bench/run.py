@@ -24,6 +24,7 @@ from eyas.sensors.config import CameraConfig
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
 from eyas.sim.place import load_place
+from eyas.sim.worlds import each_alone
 from eyas.state.draw import DrawList, Picture, Views
 from eyas.state.tracker import ActorState
 from eyas.targets.catalogue import models_of
@@ -99,7 +100,7 @@ def _pictures(
     views: int, width: int, height: int, seconds: float, samples: Literal[1, 4] = 1
 ) -> Measurement:
     config = SimConfig(camera=CameraConfig(samples=samples))
-    simulation = build_simulation(config, views, shared_world=False)
+    simulation = build_simulation(config, each_alone(views))
     simulation.reset()
     picture = Picture.create(views, height, width)
     trackers = np.arange(views, dtype=np.int32)
@@ -142,19 +143,19 @@ def _horizon(seconds: float) -> Measurement:
 
 
 def _steps(count: int, seconds: float, *, camera: bool) -> Measurement:
-    simulation = build_simulation(SimConfig(), count, shared_world=False)
+    simulation = build_simulation(SimConfig(), each_alone(count))
     simulation.reset()
     picture = Picture.create(count, 84, 84)
     trackers = np.arange(count, dtype=np.int32)
     commands = np.zeros((count, 4))
 
     def step() -> None:
-        simulation.advance(commands, _PHYSICS_STEPS)
+        done = simulation.advance(commands, _PHYSICS_STEPS).done
         if camera:
             simulation.draw(trackers, picture)
         simulation.packets()
-        if simulation.done.any():
-            simulation.reset(simulation.done)
+        if done.any():
+            simulation.reset(done)
 
     rate, repeats = _median_rate(step, seconds)
     drawn = "84x84 pictures" if camera else "no camera"
@@ -164,7 +165,7 @@ def _steps(count: int, seconds: float, *, camera: bool) -> Measurement:
 
 
 def _reset(seconds: float) -> Measurement:
-    simulation = build_simulation(SimConfig(), 1, shared_world=False)
+    simulation = build_simulation(SimConfig(), each_alone(1))
     rate, repeats = _median_rate(simulation.reset, seconds)
     return Measurement(
         "reset of one tracker", 1e3 / rate, "ms", "target, start pose, looks", repeats

@@ -12,6 +12,7 @@ from rich.table import Table
 from eyas.render.kernels.bundles import Stage
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
+from eyas.sim.worlds import each_alone
 from eyas.state.draw import Picture
 
 __all__ = ["SIZES", "StageTime", "measure_stages", "stage_table"]
@@ -52,12 +53,12 @@ def measure_stages(seconds: float) -> list[StageTime]:
     """
     times = []
     for views, width, height in SIZES:
-        simulation = build_simulation(SimConfig(), views, shared_world=False)
+        simulation = build_simulation(SimConfig(), each_alone(views))
         simulation.reset()
         picture = Picture.create(views, height, width)
         trackers = np.arange(views, dtype=np.int32)
         calls: list[Callable[[], object]] = [
-            partial(simulation.draw, trackers, picture, stage) for stage, _ in _STAGES
+            partial(simulation.draw, trackers, picture, until=stage) for stage, _ in _STAGES
         ]
         assert picture.rgb is not None  # created above
         calls.append(picture.rgb.copy)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from eyas.modes.gallery.still import Stage, Viewpoint
 from eyas.state.scene import Colliders, ObjectClass, Scene
-from eyas.task.spawn import Start, place
+from eyas.task.spawn import Start, start_pose
 
 __all__ = ["choose_viewpoints"]
 
@@ -105,7 +105,7 @@ def _drone_view(
     cars: _Cars, car: int, name: str, where: str, pose: tuple[float, float, str]
 ) -> Viewpoint:
     height, pitch, kind = pose
-    position, yaw = place(
+    position, yaw = start_pose(
         Start(pitch, height, 0.0, 0.0, 0.0), [*cars.position[car], 0.0], float(cars.yaw[car])
     )
     time = float(cars.time[car])

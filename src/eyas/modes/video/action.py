@@ -35,7 +35,7 @@ class Following:
 
     def move(self, sim: Simulation) -> None:
         """Advance the simulation by one 2 ms step."""
-        sim.follow(1)
+        sim.carry(1)
 
 
 class RandomActions:
@@ -55,14 +55,16 @@ class RandomActions:
 
     def move(self, sim: Simulation) -> None:
         """Advance the simulation by one 2 ms step."""
-        for tracker in np.flatnonzero(sim.step_count % self._period == 0).tolist():
+        for tracker in np.flatnonzero(
+            sim.snapshot.episodes.step_count % self._period == 0
+        ).tolist():
             self.action[tracker] = self._draw(sim, tracker)
         sim.advance(self._vectors[self.action], 1)
 
     def _draw(self, sim: Simulation, tracker: int) -> int:
         rng = self._streams[tracker]
-        if rng is None or sim.step_count[tracker] == 0:
-            rng = stream(self._seed, "video", tracker, int(sim.episode[tracker]))
+        if rng is None or sim.snapshot.episodes.step_count[tracker] == 0:
+            rng = stream(self._seed, "video", tracker, int(sim.snapshot.episodes.number[tracker]))
             self._streams[tracker] = rng
         return int(rng.integers(len(self._vectors)))
 

@@ -7,6 +7,7 @@ from eyas.core.frames import rotate_back
 from eyas.exports.labels import FrameLabel, rounded, rounded_list
 from eyas.sim.simulation import Simulation
 from eyas.state.draw import Picture
+from eyas.targets.catalogue import VEHICLES
 
 __all__ = ["label_of"]
 
@@ -27,13 +28,13 @@ def label_of(
     assert picture.subject_box is not None
     assert picture.subject_pixels is not None
     seen, covered = (int(pixels) for pixels in picture.subject_pixels[view])
-    trackers, cameras, targets = sim.trackers, sim.cameras, sim.targets
+    trackers, cameras, targets, episodes, _ = sim.snapshot
     yaw, speed = float(targets.yaw[tracker]), float(targets.speed[tracker])
     offset = targets.centre[tracker] - trackers.position[tracker]
-    step = int(sim.step_count[tracker])
+    step = int(episodes.step_count[tracker])
     return FrameLabel(
         frame=frame,
-        time=round(sim.time, 6),
+        time=round(float(episodes.tick[tracker]) * PHYSICS_STEP, 6),
         step=step,
         episode_time=round(step * PHYSICS_STEP, 6),
         target_box=picture.subject_box[view].tolist(),
@@ -45,15 +46,15 @@ def label_of(
         tracker_orientation=rounded_list(trackers.orientation[tracker]),
         camera_position=rounded_list(cameras.position[tracker]),
         camera_rotation=[rounded_list(row) for row in cameras.rotation[tracker]],
-        target_type=sim.target_type(tracker),
-        target_size=rounded_list(sim.target_size(tracker)),
+        target_type=VEHICLES[targets.model[tracker]].name,
+        target_size=rounded_list(targets.size[tracker]),
         target_position=rounded_list(targets.position[tracker]),
         target_centre=rounded_list(targets.centre[tracker]),
         target_velocity=rounded_list([speed * math.cos(yaw), speed * math.sin(yaw), 0.0]),
         target_yaw=rounded(yaw),
         relative_position=rounded_list(rotate_back(trackers.orientation[tracker], *offset)),
-        reward=rounded(sim.reward[tracker]),
+        reward=rounded(episodes.reward[tracker]),
         action=action,
-        direction=int(sim.direction[tracker]),
-        done=bool(sim.done[tracker]),
+        direction=int(episodes.direction[tracker]),
+        done=bool(episodes.reason[tracker] > 0),
     )

@@ -64,10 +64,7 @@ class Recorder:
         if not drawn.size:
             return
         picture = self._views(drawn.size)
-        if self._video.overlay:
-            self._sim.draw_overlaid(drawn, picture)
-        else:
-            self._sim.draw(drawn, picture)
+        self._sim.draw(drawn, picture, overlay=self._video.overlay)
         for view, tracker in enumerate(drawn.tolist()):
             self._write(tracker, picture, view, int(action[tracker]))
         self.drawn += drawn.size

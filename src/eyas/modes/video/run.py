@@ -14,6 +14,7 @@ from eyas.settings.config import EyasConfig
 from eyas.sim.build import build_simulation
 from eyas.sim.place import load_place
 from eyas.sim.simulation import Simulation
+from eyas.sim.worlds import together
 from eyas.task.config import DoneConfig
 
 __all__ = ["run"]
@@ -49,7 +50,7 @@ def run(
     # Building may take a minute, so the folder is looked at before; what cannot be built leaves no
     # folder and deletes none, so it is made after.
     check_folder(folder, config, overwrite=overwrite, resume=resume)
-    sim = build_simulation(recording_rules(config), config.video.channels, shared_world=True)
+    sim = build_simulation(recording_rules(config), together(config.video.channels))
     _require_traffic(config)
     with recording_lock(folder):
         place = open_folder(folder, config, overwrite=overwrite, resume=resume)
@@ -118,16 +119,17 @@ def _run_episodes(
     count = config.video.channels
     grid, mover = FrameGrid(config.video, count), mover_of(config, count)
     sim.reset()
-    tick = begin = round(sim.time * PHYSICS_RATE)
+    episodes = sim.snapshot.episodes
+    tick = begin = int(episodes.tick[0])
     while tick < grid.last_tick:
         mover.move(sim)
         tick += 1
-        due = grid.due(tick, sim.step_count)
+        due = grid.due(tick, episodes.step_count)
         if due.size:
             recorder.take(due, mover.action)
             progress.show((tick - begin) / (grid.last_tick - begin), recorder.drawn)
-        if sim.done.any():
-            ended = sim.done.copy()
+        ended = episodes.done
+        if ended.any():
             recorder.end(ended)
             sim.reset(ended)
             grid.restart(ended)

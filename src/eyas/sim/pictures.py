@@ -1,0 +1,127 @@
+"""Pictures of the worlds of a simulation: from its trackers' cameras, or from anywhere."""
+
+from math import atan, tan
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.clock import PHYSICS_STEP
+from eyas.overlay.marks import Marks
+from eyas.overlay.paint import paint_overlays, with_depth
+from eyas.render.jobs import picture_size
+from eyas.render.kernels.bundles import Stage
+from eyas.sensors.camera import Camera
+from eyas.sim.config import SimConfig
+from eyas.sim.light import LightChanges
+from eyas.sim.place import Place
+from eyas.sim.worlds import Worlds
+from eyas.state.draw import DrawList, Picture, Views
+from eyas.state.snapshot import CameraState, Snapshot
+from eyas.state.terrain import Terrain
+from eyas.task.rules import Rules
+
+__all__ = ["Pictures"]
+
+Chosen = NDArray[np.int32]
+
+
+class Pictures:
+    """Draws the worlds around N trackers.
+
+    Args:
+        config: The settings.
+        place: Scene and renderer.
+        worlds: What moves.
+        light: The light around each tracker.
+        snapshot: Of the trackers.
+    """
+
+    def __init__(
+        self,
+        config: SimConfig,
+        place: Place,
+        worlds: Worlds,
+        light: LightChanges,
+        snapshot: Snapshot,
+    ) -> None:
+        self._worlds = worlds
+        self._light = light
+        self._snapshot = snapshot
+        self._flakes = config.light.flakes
+        self._samples = config.camera.samples
+        self._renderer = place.renderer
+        self._camera = Camera(config.camera, place.renderer)
+        self._marks = Marks(snapshot, Terrain.flat(place.scene.ground_height), config.camera)
+
+    def draw(self, chosen: Chosen, picture: Picture, until: Stage) -> Views:
+        """Draw what the cameras of trackers see; return the views that were drawn.
+
+        Args:
+            chosen: Which trackers, shape (V,).
+            picture: V pictures; the subject is each tracker's target.
+            until: Where to stop, see `Renderer.draw`.
+        """
+        cameras = CameraState(*(array[chosen] for array in self._snapshot.cameras))
+        views, movers = self._views(
+            chosen, cameras, self._camera.field_of_view, self._camera.vertical_field_of_view
+        )
+        self._camera.read(views, movers, picture, until)
+        return views
+
+    def draw_overlaid(self, chosen: Chosen, picture: Picture, rules: Rules, until: Stage) -> None:
+        """Draw like `draw`, and what each camera sees, rewards and looks for over its colours."""
+        deep = with_depth(picture)
+        views = self.draw(chosen, deep, until)
+        paint_overlays(views, [self._marks.of(n, rules) for n in chosen.tolist()], deep)
+
+    def draw_from(
+        self,
+        chosen: Chosen,
+        cameras: CameraState,
+        picture: Picture,
+        vertical_field_of_view: float,
+        rules: Rules | None,
+    ) -> None:
+        """Draw the worlds of trackers from other cameras.
+
+        Args:
+            chosen: Whose world each view shows, shape (V,); the subject is its target.
+            cameras: V cameras.
+            picture: V pictures with colours, of any size; pixels are square.
+            vertical_field_of_view: [rad].
+            rules: Those of the overlay of all trackers of that world, or None for no overlay.
+        """
+        height, width = picture_size(picture)
+        field_of_view = 2 * atan(tan(0.5 * vertical_field_of_view) * width / height)
+        views, movers = self._views(chosen, cameras, field_of_view, None)
+        deep = picture if rules is None else with_depth(picture)
+        self._renderer.draw(views, movers, deep, self._samples)
+        if rules is not None:
+            worlds = [self._worlds.trackers_of(n).tolist() for n in chosen.tolist()]
+            marks = [
+                self._marks.of(n, rules, seen)
+                for n, seen in zip(chosen.tolist(), worlds, strict=True)
+            ]
+            paint_overlays(views, marks, deep)
+
+    def _views(
+        self,
+        chosen: Chosen,
+        cameras: CameraState,
+        field_of_view: float,
+        vertical_field_of_view: float | None,
+    ) -> tuple[Views, DrawList]:
+        """Return cameras that look at the worlds of trackers, and what moves there."""
+        ticks = self._snapshot.episodes.tick
+        world, movers = self._worlds.draw_list(chosen, ticks)
+        views = Views(
+            position=cameras.position,
+            rotation=cameras.rotation,
+            world=world,
+            subject=self._worlds.object_ids(self._snapshot.targets.actor[chosen]),
+            field_of_view=field_of_view,
+            vertical_field_of_view=vertical_field_of_view,
+            light=self._light.of(chosen),
+            instant=np.multiply(ticks[chosen], PHYSICS_STEP) if self._flakes else None,
+        )
+        return views, movers
