@@ -1,0 +1,3 @@
+from ..render.conftest import drawn, images, renderer_of
+
+__all__ = ["drawn", "images", "renderer_of"]
