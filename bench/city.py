@@ -5,12 +5,13 @@ from itertools import pairwise
 
 import numpy as np
 
+from eyas.mesh.assembly import concatenate, transformed
 from eyas.render.textures.library import build_textures
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
 from eyas.sim.place import load_place
 from eyas.state.draw import Views
-from eyas.state.mesh import Mesh, Surface, concatenate, transformed
+from eyas.state.mesh import Mesh, Surface
 
 CHUNK = 32.0
 """Side of the squares that can be skipped [m]."""

@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
+from eyas.mesh.shell import Shell
 from eyas.state.mesh import Material
-from eyas.targets.vehicles.shell import Shell
 
 RED = Material(tint=(1.0, 0.0, 0.0))
 BLUE = Material(tint=(0.0, 0.0, 1.0))

@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from eyas.mesh.solids import sphere
 from eyas.world.build.materials import material
-from eyas.world.build.shapes import sphere
 
 
 def test_no_triangle_of_a_sphere_takes_the_texture_back_round_it():

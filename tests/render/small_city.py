@@ -6,11 +6,13 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.mesh.assembly import concatenate, transformed
+from eyas.mesh.flat import flat_polygon, walls
+from eyas.mesh.solids import box, cylinder, sphere
 from eyas.state.draw import DrawList, PartLibrary, Views
-from eyas.state.mesh import Material, Mesh, Surface, concatenate, transformed
+from eyas.state.mesh import Material, Mesh, Surface
 from eyas.state.scene import Fixtures, Lighting, Scene
 from eyas.world.build.materials import TEXTURES, facade, material
-from eyas.world.build.shapes import box, cylinder, flat_polygon, sphere, walls
 
 GROUND, ROAD, TOWER, TREE = 0, 1, 2, 3
 TREE_OBJECT = 90

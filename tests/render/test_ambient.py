@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from eyas.core.parallel import Held
+from eyas.mesh.solids import box
 from eyas.render.bake.ambient import bake_ambient
 from eyas.render.kernels.light.ambient import BOUNCED, OpennessBake, bake_openness
 from eyas.world.build.materials import material
-from eyas.world.build.shapes import box
 
 from .small_city import DAY, GROUND, TOWER, floor, looking, scene_of, tower, trees_at
 

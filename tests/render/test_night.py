@@ -6,13 +6,13 @@ import numpy as np
 import pytest
 import shapely
 
+from eyas.mesh.flat import flat_polygon
 from eyas.render.pack.lamp_grid import lamp_grid
 from eyas.sim.place import load_place
 from eyas.state.draw import DrawList, Picture
 from eyas.state.scene import Lamps
 from eyas.traffic.config import TrafficConfig
 from eyas.world.build.materials import material
-from eyas.world.build.shapes import flat_polygon
 from eyas.world.config import WorldConfig
 
 from .small_city import DAY, car_parts, city_scene, floor, looking, put_car, scene_of, tower

@@ -8,15 +8,17 @@ import pytest
 
 from eyas.core.errors import ConfigError, UnknownNameError
 from eyas.core.pinhole import project, rays
+from eyas.mesh.assembly import transformed
+from eyas.mesh.flat import quads
+from eyas.mesh.solids import box, sphere
 from eyas.render.kernels.light.tone import TONE_STEPS, TONE_TOP
 from eyas.render.pack.geometry import build_geometry
 from eyas.render.pack.light import tone_table
 from eyas.render.renderer import build_renderer
 from eyas.state.draw import DrawList, PartLibrary, Picture
-from eyas.state.mesh import Material, Surface, transformed
+from eyas.state.mesh import Material, Surface
 from eyas.state.scene import ACTOR_OBJECT, SKY_OBJECT
 from eyas.world.build.materials import material
-from eyas.world.build.shapes import box, quads, sphere
 
 from .small_city import (
     DAY,

@@ -6,13 +6,13 @@ import math
 import numpy as np
 import pytest
 
+from eyas.mesh.solids import cylinder
 from eyas.render.bake.shadows import CARDS, bake_shadows
 from eyas.render.pack.geometry import build_geometry
 from eyas.render.pack.light import tone_table
 from eyas.state.draw import PartLibrary
 from eyas.state.mesh import Material, Mesh, Surface
 from eyas.state.scene import Fixtures
-from eyas.world.build.shapes import cylinder
 
 from .small_city import DAY, GROUND, TOWER, floor, looking, scene_of, tower
 

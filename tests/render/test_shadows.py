@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 
 from eyas.core.pinhole import rays
+from eyas.mesh.assembly import concatenate
+from eyas.mesh.solids import box
 from eyas.render.bake.shadows import bake_shadows
 from eyas.render.pack.geometry import build_geometry
 from eyas.state.draw import DrawList, PartLibrary
-from eyas.state.mesh import Material, concatenate
-from eyas.world.build.shapes import box
+from eyas.state.mesh import Material
 
 from .small_city import DAY, GROUND, TOWER, car_parts, floor, looking, put_car, scene_of, tower
 

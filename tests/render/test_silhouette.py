@@ -2,9 +2,10 @@
 
 import numpy as np
 
+from eyas.mesh.assembly import concatenate
+from eyas.mesh.solids import box
 from eyas.render.pack.silhouette import silhouette
-from eyas.state.mesh import Material, concatenate
-from eyas.world.build.shapes import box
+from eyas.state.mesh import Material
 
 
 def test_a_box_is_found_as_it_is():

@@ -5,6 +5,8 @@ import dataclasses
 import numpy as np
 import pytest
 
+from eyas.mesh.flat import quads
+from eyas.mesh.solids import box
 from eyas.render.bake.tracks import TRACK_ASIDE, track_map
 from eyas.render.kernels.surface.snow import Bed
 from eyas.render.pack.geometry import build_geometry
@@ -14,7 +16,6 @@ from eyas.state.draw import PartLibrary
 from eyas.state.mesh import Material, Surface
 from eyas.state.scene import ObjectClass
 from eyas.world.build.materials import material
-from eyas.world.build.shapes import box, quads
 from eyas.world.plants.trees import street_tree_levels
 
 from .small_city import DAY, city_scene, looking, scene_of, trees_at

@@ -3,10 +3,10 @@
 import numpy as np
 
 from eyas.core.pinhole import project
+from eyas.mesh.solids import box
 from eyas.state.draw import DrawList
 from eyas.state.scene import ACTOR_OBJECT
 from eyas.world.build.materials import material
-from eyas.world.build.shapes import box
 
 from .small_city import GROUND, TOWER, car_parts, floor, looking, put_car, scene_of
 

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 import shapely
 
+from eyas.mesh.flat import flat_polygon
 from eyas.render.pack.geometry import build_geometry
 from eyas.render.renderer import build_renderer
 from eyas.render.textures.library import build_textures
 from eyas.state.draw import PartLibrary
 from eyas.state.mesh import Material, Surface
 from eyas.world.build.materials import TEXTURES
-from eyas.world.build.shapes import flat_polygon
 
 from .small_city import DAY, GROUND, looking, scene_of
 

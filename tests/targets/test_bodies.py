@@ -4,7 +4,8 @@ import itertools
 import numpy as np
 import pytest
 
-from eyas.state.mesh import Surface, concatenate, transformed
+from eyas.mesh.assembly import concatenate, transformed
+from eyas.state.mesh import Surface
 from eyas.targets.catalogue import VEHICLES, model_index
 from eyas.targets.vehicles.bodies import body_levels
 from eyas.targets.vehicles.finishes import BLACK_PAINT, HEAD_LAMP, ROOF_GLASS, TAIL_LAMP

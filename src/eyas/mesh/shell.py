@@ -1,10 +1,11 @@
-"""Collects the panels of a vehicle and turns them into a mesh: rounded where panels meet gently."""
+"""Panels that become one mesh, rounded where they meet gently: bodies of vehicles."""
 
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from eyas.mesh.panels import box_panels, cells, closed, fan, halves, mirrored
 from eyas.state.mesh import Material, Mesh
 
 __all__ = ["Shell"]
@@ -28,19 +29,20 @@ class Shell:
             material: Of all of them.
             both_sides: Also add them mirrored, left for right.
         """
-        points = np.asarray(corners, np.float64).reshape(-1, 4, 3)
-        triangles = np.concatenate([points[:, [0, 1, 2]], points[:, [0, 2, 3]]])
-        self.triangles(triangles, material)
-        if both_sides:
-            self.triangles(triangles[:, ::-1] * [1.0, -1.0, 1.0], material)
+        triangles = halves(np.asarray(corners, np.float64).reshape(-1, 4, 3))
+        self.triangles(triangles, material, both_sides=both_sides)
 
-    def triangles(self, corners: ArrayLike, material: Material) -> None:
+    def triangles(
+        self, corners: ArrayLike, material: Material, *, both_sides: bool = False
+    ) -> None:
         """Add triangles, shape (T, 3, 3) [m]; those without area are left out."""
         points = np.asarray(corners, np.float64).reshape(-1, 3, 3)
         area = np.linalg.norm(_cross(points), axis=1)
         points = points[area > 1e-7]
         self._corners.append(points)
         self._materials += [material] * len(points)
+        if both_sides:
+            self.triangles(mirrored(points), material)
 
     def box(
         self,
@@ -52,20 +54,7 @@ class Shell:
         both_sides: bool = False,
     ) -> None:
         """Add a box between two corners; `taper` draws the top in on all four sides [m]."""
-        (x0, y0, z0), (x1, y1, z1) = low, high
-        t = taper
-        bottom = [(x0, y0, z0), (x1, y0, z0), (x1, y1, z0), (x0, y1, z0)]
-        top = [
-            (x0 + t, y0 + t, z1),
-            (x1 - t, y0 + t, z1),
-            (x1 - t, y1 - t, z1),
-            (x0 + t, y1 - t, z1),
-        ]
-        faces = [bottom[::-1], top]
-        for i in range(4):
-            j = (i + 1) % 4
-            faces.append([bottom[i], bottom[j], top[j], top[i]])
-        self.quads(faces, material, both_sides=both_sides)
+        self.quads(box_panels(low, high, taper), material, both_sides=both_sides)
 
     def prism(
         self,
@@ -101,15 +90,10 @@ class Shell:
             caps: Whether the ends are closed (the outlines are convex).
         """
         r = np.asarray(rings, np.float64)
-        follow = np.roll(r, -1, axis=1)
-        sides = np.stack([r[:-1], follow[:-1], follow[1:], r[1:]], axis=2).reshape(-1, 4, 3)
-        self.quads(sides, material, both_sides=both_sides)
+        self.quads(cells(closed(r)), material, both_sides=both_sides)
         if caps:
-            for ring in (r[0, ::-1], r[-1]):
-                fan = [[ring[0], ring[i], ring[i + 1]] for i in range(1, len(ring) - 1)]
-                self.triangles(fan, material)
-                if both_sides:
-                    self.triangles(np.array(fan)[:, ::-1] * [1.0, -1.0, 1.0], material)
+            self.triangles(fan(r[0, ::-1]), material, both_sides=both_sides)
+            self.triangles(fan(r[-1]), material, both_sides=both_sides)
 
     def tube(
         self,

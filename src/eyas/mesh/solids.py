@@ -1,38 +1,15 @@
-"""Meshes of simple shapes. Angles in radians, lengths in metres, z up."""
+"""Meshes of simple solids. Angles in radians, lengths in metres, z up."""
 
 from collections.abc import Sequence
 
 import numpy as np
-import shapely
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from eyas.mesh.assembly import of_one_material
+from eyas.mesh.flat import quads
 from eyas.state.mesh import Material, Mesh
 
-__all__ = ["box", "cylinder", "flat_polygon", "quads", "sphere", "tube", "walls"]
-
-
-def quads(corners: ArrayLike, uvs: ArrayLike, material: Material) -> Mesh:
-    """Return flat-shaded quadrilaterals.
-
-    Args:
-        corners: Counter-clockwise seen from outside [m], shape (Q, 4, 3).
-        uvs: Texture coordinates in tiles, shape (Q, 4, 2).
-        material: Of all of them.
-    """
-    points = np.asarray(corners, np.float64).reshape(-1, 4, 3)
-    normals = np.cross(points[:, 2] - points[:, 0], points[:, 3] - points[:, 1])
-    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
-    first = 4 * np.arange(len(points), dtype=np.int32)[:, None]
-    triangles = np.concatenate(
-        [first + np.array([0, 1, 2]), first + np.array([0, 2, 3])], axis=1
-    ).reshape(-1, 3)
-    return _mesh(
-        points.reshape(-1, 3),
-        np.repeat(normals, 4, axis=0),
-        np.asarray(uvs).reshape(-1, 2),
-        triangles,
-        material,
-    )
+__all__ = ["box", "cylinder", "sphere", "tube"]
 
 
 def box(size: Sequence[float], centre: Sequence[float], material: Material, tile: float) -> Mesh:
@@ -49,61 +26,6 @@ def box(size: Sequence[float], centre: Sequence[float], material: Material, tile
             flat = face[:, (u, v)] if v == 2 or axis == 2 else face[:, (v, u)]
             corners.append(face + np.asarray(centre))
             uvs.append((flat - flat.min(0)) / tile)
-    return quads(corners, uvs, material)
-
-
-def flat_polygon(
-    polygon: shapely.Geometry, z: float, material: Material, tile: float, turn: float = 0.0
-) -> Mesh:
-    """Return a horizontal polygon (holes and several parts allowed) that faces up.
-
-    The texture lies along the world's axes, or turned counter-clockwise by `turn` [rad].
-    """
-    cells = shapely.get_parts(shapely.constrained_delaunay_triangles(polygon))
-    if len(cells) == 0:
-        return quads(np.zeros((0, 4, 3)), np.zeros((0, 4, 2)), material)
-    flat = np.array([shapely.get_coordinates(cell)[:3] for cell in cells])
-    edge = flat[:, 1:] - flat[:, :1]
-    backwards = edge[:, 0, 0] * edge[:, 1, 1] - edge[:, 0, 1] * edge[:, 1, 0] < 0
-    flat[backwards] = flat[backwards][:, ::-1]
-    points, index = np.unique(flat.reshape(-1, 2), axis=0, return_inverse=True)
-    positions = np.column_stack([points, np.full(len(points), z)])
-    up = np.tile([0.0, 0.0, 1.0], (len(points), 1))
-    cosine, sine = np.cos(turn), np.sin(turn)
-    uvs = points @ np.array([[cosine, -sine], [sine, cosine]]) / tile
-    return _mesh(positions, up, uvs, index.reshape(-1, 3), material)
-
-
-def walls(outline: ArrayLike, bottom: float, top: float, material: Material, tile: float) -> Mesh:
-    """Return vertical walls around a closed counter-clockwise outline, shape (K, 2).
-
-    The texture goes round with a whole number of bays (quarter tiles) on each wall, v from the
-    bottom.
-    """
-    start = np.asarray(outline, np.float64)
-    end = np.roll(start, -1, axis=0)
-    length = np.linalg.norm(end - start, axis=1)
-    repeats = np.maximum(np.round(length / tile * 4), 1) / 4
-    low, high = np.full(len(start), bottom), np.full(len(start), top)
-    corners = np.stack(
-        [
-            np.column_stack([start, low]),
-            np.column_stack([end, low]),
-            np.column_stack([end, high]),
-            np.column_stack([start, high]),
-        ],
-        axis=1,
-    )
-    zero, rise = np.zeros(len(start)), np.full(len(start), (top - bottom) / tile)
-    uvs = np.stack(
-        [
-            np.column_stack([zero, zero]),
-            np.column_stack([repeats, zero]),
-            np.column_stack([repeats, rise]),
-            np.column_stack([zero, rise]),
-        ],
-        axis=1,
-    )
     return quads(corners, uvs, material)
 
 
@@ -164,7 +86,7 @@ def cylinder(
                 ]
             )
             triangles = np.concatenate([triangles, fan if sign > 0 else fan[:, ::-1]])
-    return _mesh(positions, normals, uvs, triangles, material)
+    return of_one_material(positions, normals, uvs, triangles, material)
 
 
 def tube(
@@ -195,7 +117,7 @@ def tube(
     first = (np.arange(len(points) - 1)[:, None] * (sides + 1) + np.arange(sides)).reshape(-1, 1)
     cells = first + np.array([0, 1, sides + 2, 0, sides + 2, sides + 1])
     rings = points[:, None] + radius * normals
-    return _mesh(
+    return of_one_material(
         rings.reshape(-1, 3),
         normals.reshape(-1, 3),
         uvs.reshape(-1, 2),
@@ -233,21 +155,4 @@ def sphere(subdivisions: int, material: Material, tile: float = 1.0) -> Mesh:
     flat = np.stack([*np.moveaxis(corners, -1, 0), around, corners[..., 2]], -1).reshape(-1, 5)
     _, first, index = np.unique(np.round(flat, 9), axis=0, return_index=True, return_inverse=True)
     positions, uvs = flat[first, :3], flat[first, 3:] / tile
-    return _mesh(positions, positions, uvs, index.reshape(-1, 3), material)
-
-
-def _mesh(
-    positions: NDArray[np.floating],
-    normals: NDArray[np.floating],
-    uvs: NDArray[np.floating],
-    triangles: NDArray[np.integer],
-    material: Material,
-) -> Mesh:
-    return Mesh(
-        positions=np.ascontiguousarray(positions, np.float32),
-        normals=np.ascontiguousarray(normals, np.float32),
-        uvs=np.ascontiguousarray(uvs, np.float32),
-        triangles=np.ascontiguousarray(triangles, np.int32),
-        materials=np.zeros(len(triangles), np.int32),
-        palette=(material,),
-    )
+    return of_one_material(positions, positions, uvs, index.reshape(-1, 3), material)

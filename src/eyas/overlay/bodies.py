@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.mesh.panels import cells, closed, fan, halves
 from eyas.overlay.items import Solid
 
 __all__ = ["DRONE_SIZE", "GEM_GIRDLE", "GEM_RADIUS", "drone", "gem"]
@@ -38,9 +39,9 @@ def gem(tip: NDArray[np.float64], height: float, turn: float) -> Solid:
     girdle *= GEM_RADIUS, GEM_RADIUS, GEM_GIRDLE
     table = girdle * (0.55, 0.55, 1.0 / GEM_GIRDLE)
     parts = [
-        _fan((0.0, 0.0, 0.0), girdle[::-1], GEM_COLOUR),
-        *_ring(girdle, table, GEM_COLOUR),
-        _fan((0.0, 0.0, 1.0), table, TABLE_COLOUR),
+        _coloured(fan(girdle[::-1], (0.0, 0.0, 0.0)), GEM_COLOUR),
+        _coloured(_skin(girdle, table), GEM_COLOUR),
+        _coloured(fan(table, (0.0, 0.0, 1.0)), TABLE_COLOUR),
     ]
     return _solid(parts, np.eye(3) * height, tip)
 
@@ -53,16 +54,16 @@ def drone(position: NDArray[np.float64], rotation: NDArray[np.float64]) -> Solid
         rotation: Body to world, shape (3, 3).
     """
     parts = [
-        *_prism(8, (0.0, 0.0), (0.3, 0.17), (-0.09, 0.07), BODY_COLOUR),
-        *_prism(8, (0.24, 0.0), (0.07, 0.08), (-0.05, 0.03), NOSE_COLOUR),
-        *_prism(6, (0.16, 0.0), (0.06, 0.06), (-0.2, -0.09), ARM_COLOUR),
+        _prism(8, (0.0, 0.0), (0.3, 0.17), (-0.09, 0.07), BODY_COLOUR),
+        _prism(8, (0.24, 0.0), (0.07, 0.08), (-0.05, 0.03), NOSE_COLOUR),
+        _prism(6, (0.16, 0.0), (0.06, 0.06), (-0.2, -0.09), ARM_COLOUR),
     ]
     for x in (-1.0, 1.0):
         for y in (-1.0, 1.0):
             motor = 0.5 * np.array([x, y])
-            parts += _arm(motor, ARM_COLOUR)
-            parts += _prism(8, tuple(motor), (0.05, 0.05), (-0.03, 0.1), ARM_COLOUR)
-            parts += _prism(14, tuple(motor), (0.27, 0.27), (0.1, 0.115), ROTOR_COLOUR)
+            parts.append(_arm(motor, ARM_COLOUR))
+            parts.append(_prism(8, tuple(motor), (0.05, 0.05), (-0.03, 0.1), ARM_COLOUR))
+            parts.append(_prism(14, tuple(motor), (0.27, 0.27), (0.1, 0.115), ROTOR_COLOUR))
     return _solid(parts, rotation * DRONE_SIZE, position)
 
 
@@ -81,33 +82,13 @@ def _coloured(corners: NDArray[np.float64], colour: tuple[float, float, float]) 
     return corners, np.tile(colour, (len(corners), 1))
 
 
-def _fan(
-    middle: tuple[float, float, float],
-    ring: NDArray[np.float64],
-    colour: tuple[float, float, float],
-) -> Triangles:
-    """Return triangles from a point to a ring, counter-clockwise seen from outside."""
-    corners = np.stack([np.tile(middle, (len(ring), 1)), ring, np.roll(ring, -1, axis=0)], axis=1)
-    return _coloured(corners, colour)
-
-
-def _ring(
-    low: NDArray[np.float64], high: NDArray[np.float64], colour: tuple[float, float, float]
-) -> list[Triangles]:
-    """Return the wall between two rings that run counter-clockwise seen from above."""
-    next_low, next_high = np.roll(low, -1, axis=0), np.roll(high, -1, axis=0)
-    lower = np.stack([low, next_low, next_high], axis=1)
-    upper = np.stack([low, next_high, high], axis=1)
-    return [_coloured(lower, colour), _coloured(upper, colour)]
-
-
 def _prism(
     sides: int,
     middle: tuple[float, ...],
     radius: tuple[float, float],
     span: tuple[float, float],
     colour: tuple[float, float, float],
-) -> list[Triangles]:
+) -> Triangles:
     """Return an upright prism: middle and radii along x and y, lowest and highest z."""
     angles = (np.arange(sides) + 0.5) * (2.0 * np.pi / sides)
     ring = np.column_stack(
@@ -120,7 +101,7 @@ def _prism(
     return _closed(ring, span[1] - span[0], colour)
 
 
-def _arm(motor: NDArray[np.float64], colour: tuple[float, float, float]) -> list[Triangles]:
+def _arm(motor: NDArray[np.float64], colour: tuple[float, float, float]) -> Triangles:
     """Return a bar from the middle to a motor."""
     along = motor / np.hypot(*motor)
     side = 0.035 * np.array([-along[1], along[0]])
@@ -132,13 +113,15 @@ def _arm(motor: NDArray[np.float64], colour: tuple[float, float, float]) -> list
 
 def _closed(
     ring: NDArray[np.float64], height: float, colour: tuple[float, float, float]
-) -> list[Triangles]:
+) -> Triangles:
     """Return what stands on a convex ring, with lid and floor."""
     lid = ring.copy()
     lid[:, 2] += height
     low, high = ring.mean(axis=0), lid.mean(axis=0)
-    return [
-        *_ring(ring, lid, colour),
-        _fan(tuple(high), lid, colour),
-        _fan(tuple(low), ring[::-1], colour),
-    ]
+    faces = [_skin(ring, lid), fan(lid, tuple(high)), fan(ring[::-1], tuple(low))]
+    return _coloured(np.concatenate(faces), colour)
+
+
+def _skin(low: NDArray[np.float64], high: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the wall between two rings that run counter-clockwise seen from above."""
+    return halves(cells(closed([low, high])))

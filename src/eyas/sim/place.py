@@ -59,7 +59,7 @@ def load_scene(map_name: str, seed: int) -> Scene:
     )
 
 
-_SCENE_MAKERS = ("world", "state", "core/rng.py")
+_SCENE_MAKERS = ("world", "mesh", "state", "core/rng.py")
 
 
 def _inputs(map_name: str, seed: int, network: RoadNetwork) -> tuple[object, ...]:
@@ -94,7 +94,9 @@ def _load_place(world: WorldConfig, traffic: TrafficConfig, trackers: int) -> Pl
     ready = compile_ahead()
     scene = load_scene(world.map, world.seed)
     vehicle_type = recording.provenance.config.vehicle_type
-    rigs = kept("rigs", ("targets", "state"), (vehicle_type,), lambda: VehicleRigs(vehicle_type))
+    rigs = kept(
+        "rigs", ("targets", "mesh", "state"), (vehicle_type,), lambda: VehicleRigs(vehicle_type)
+    )
     geometry = kept(
         "geometry",
         ("render", "targets", *_SCENE_MAKERS),

@@ -1,13 +1,12 @@
 """Triangles and what they are made of."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Material", "Mesh", "Surface", "concatenate", "transformed"]
+__all__ = ["Material", "Mesh", "Surface"]
 
 
 class Surface(IntEnum):
@@ -62,45 +61,14 @@ class Mesh:
     palette: tuple[Material, ...]
     """The materials used."""
 
-
-def concatenate(meshes: Sequence[Mesh]) -> Mesh:
-    """Return one mesh of all, with one palette without repeats."""
-    palette: dict[Material, int] = {}
-    triangles, materials, offset = [], [], 0
-    for mesh in meshes:
-        lookup = np.array([palette.setdefault(m, len(palette)) for m in mesh.palette], np.int32)
-        triangles.append(mesh.triangles + np.int32(offset))
-        materials.append(lookup[mesh.materials])
-        offset += len(mesh.positions)
-    return Mesh(
-        positions=_joined([m.positions for m in meshes], (0, 3), np.float32),
-        normals=_joined([m.normals for m in meshes], (0, 3), np.float32),
-        uvs=_joined([m.uvs for m in meshes], (0, 2), np.float32),
-        triangles=_joined(triangles, (0, 3), np.int32),
-        materials=_joined(materials, (0,), np.int32),
-        palette=tuple(palette),
-    )
-
-
-def transformed(mesh: Mesh, pose: NDArray[np.floating]) -> Mesh:
-    """Return the mesh moved by a pose.
-
-    Args:
-        mesh: What to move.
-        pose: Rotation (times a uniform scale) and translation, shape (3, 4).
-    """
-    linear = np.asarray(pose[:, :3], np.float64)
-    positions = mesh.positions @ linear.T + pose[:, 3]
-    normals = mesh.normals @ (linear / np.cbrt(np.linalg.det(linear))).T
-    return Mesh(
-        positions=positions.astype(np.float32),
-        normals=normals.astype(np.float32),
-        uvs=mesh.uvs,
-        triangles=mesh.triangles,
-        materials=mesh.materials,
-        palette=mesh.palette,
-    )
-
-
-def _joined(parts: list, empty: tuple[int, ...], dtype: type) -> NDArray:  # type: ignore[type-arg]
-    return np.ascontiguousarray(np.concatenate([np.zeros(empty, dtype), *parts]), dtype=dtype)
+    @classmethod
+    def none(cls) -> "Mesh":
+        """Return a mesh without triangles."""
+        return cls(
+            positions=np.zeros((0, 3), np.float32),
+            normals=np.zeros((0, 3), np.float32),
+            uvs=np.zeros((0, 2), np.float32),
+            triangles=np.zeros((0, 3), np.int32),
+            materials=np.zeros(0, np.int32),
+            palette=(),
+        )

@@ -6,7 +6,7 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.state.mesh import Mesh, concatenate
+from eyas.state.mesh import Mesh
 from eyas.state.roads import RoadNetwork
 
 __all__ = [
@@ -141,7 +141,7 @@ class Scene:
             seed=0,
             size=(100.0, 100.0),
             ground_height=0.0,
-            static=concatenate([]),
+            static=Mesh.none(),
             static_object=ids,
             object_class=ids,
             fixtures=Fixtures((), ids, np.zeros((0, 3, 4), np.float32), ids),

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.mesh.shell import Shell
 from eyas.state.mesh import Material, Mesh
 from eyas.targets.catalogue import VehicleModel
 from eyas.targets.vehicles.car_shape import (
@@ -25,7 +26,6 @@ from eyas.targets.vehicles.finishes import (
     TAIL_LAMP,
     TRIM,
 )
-from eyas.targets.vehicles.shell import Shell
 
 __all__ = ["car_levels"]
 

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from eyas.mesh.shell import Shell
 from eyas.state.mesh import Material, Mesh
 from eyas.targets.catalogue import VehicleModel
 from eyas.targets.vehicles.finishes import (
@@ -17,7 +18,6 @@ from eyas.targets.vehicles.finishes import (
     TRIM,
     plain,
 )
-from eyas.targets.vehicles.shell import Shell
 
 __all__ = ["truck_levels"]
 

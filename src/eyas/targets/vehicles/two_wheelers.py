@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from eyas.mesh.shell import Shell
 from eyas.state.mesh import Mesh
 from eyas.targets.catalogue import VehicleModel
 from eyas.targets.vehicles.finishes import (
@@ -18,7 +19,6 @@ from eyas.targets.vehicles.finishes import (
     TRIM,
     plain,
 )
-from eyas.targets.vehicles.shell import Shell
 
 __all__ = ["two_wheeler_levels"]
 

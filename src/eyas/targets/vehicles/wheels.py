@@ -3,9 +3,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.mesh.shell import Shell
 from eyas.state.mesh import Mesh
 from eyas.targets.vehicles.finishes import RIM, TRIM, TYRE
-from eyas.targets.vehicles.shell import Shell
 
 __all__ = ["wheel_levels"]
 

@@ -1,1 +1,1 @@
-"""Tools that every map is built with: the scene builder, simple shapes, materials."""
+"""Tools that every map is built with: the scene builder, heights, materials."""

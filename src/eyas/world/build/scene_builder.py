@@ -5,7 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from eyas.state.mesh import Mesh, concatenate
+from eyas.mesh.assembly import concatenate
+from eyas.state.mesh import Mesh
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import Colliders, Fixtures, Lamps, ObjectClass, Scene
 

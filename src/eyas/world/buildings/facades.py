@@ -5,7 +5,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from eyas.state.mesh import Material, Mesh, concatenate
+from eyas.mesh.assembly import concatenate
+from eyas.state.mesh import Material, Mesh
 from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.materials import GROUND_FLOORS, facade, material
 from eyas.world.buildings import parts

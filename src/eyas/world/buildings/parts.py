@@ -4,9 +4,10 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from eyas.state.mesh import Material, Mesh, concatenate
+from eyas.mesh.assembly import concatenate
+from eyas.mesh.flat import flat_polygon, quads, walls
+from eyas.state.mesh import Material, Mesh
 from eyas.world.build.materials import TEXTURES
-from eyas.world.build.shapes import flat_polygon, quads, walls
 
 __all__ = ["flat_roof", "ledge", "pyramid_rise", "pyramid_roof", "window_wall"]
 

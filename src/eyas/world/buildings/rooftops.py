@@ -4,11 +4,12 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from eyas.state.mesh import Material, Mesh, concatenate, transformed
+from eyas.mesh.assembly import concatenate, transformed
+from eyas.mesh.solids import box, cylinder, tube
+from eyas.state.mesh import Material, Mesh
 from eyas.state.scene import ObjectClass
 from eyas.world.build.materials import material
 from eyas.world.build.scene_builder import SceneBuilder
-from eyas.world.build.shapes import box, cylinder, tube
 
 __all__ = ["KINDS", "add_rooftop", "rooftop_levels"]
 

@@ -5,10 +5,11 @@ from collections.abc import Sequence
 import numpy as np
 import shapely
 
-from eyas.state.mesh import Mesh, concatenate
+from eyas.mesh.assembly import concatenate
+from eyas.mesh.flat import flat_polygon
+from eyas.state.mesh import Mesh
 from eyas.world.build.heights import FLOOR_HEIGHT, KERB_HEIGHT
 from eyas.world.build.materials import TEXTURES, material
-from eyas.world.build.shapes import flat_polygon
 from eyas.world.roads.areas import skirt, surface
 
 __all__ = [

@@ -4,9 +4,10 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from eyas.state.mesh import Mesh, concatenate
+from eyas.mesh.assembly import concatenate
+from eyas.mesh.flat import quads
+from eyas.state.mesh import Mesh
 from eyas.world.build.materials import TEXTURES, material
-from eyas.world.build.shapes import quads
 from eyas.world.roads.curves import TURN, arc
 from eyas.world.roads.overpass import DECK_WIDTH, path
 

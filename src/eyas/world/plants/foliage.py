@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.mesh.solids import sphere
 from eyas.state.mesh import Material, Mesh, Surface
-from eyas.world.build.shapes import sphere
 
 __all__ = ["Crown", "leaf_cards", "shell"]
 

@@ -5,9 +5,10 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.state.mesh import Material, Mesh, Surface, concatenate
+from eyas.mesh.assembly import concatenate
+from eyas.mesh.solids import box
+from eyas.state.mesh import Material, Mesh, Surface
 from eyas.world.build.materials import material
-from eyas.world.build.shapes import box
 from eyas.world.plants.foliage import Crown, leaf_cards, shell
 
 __all__ = ["KINDS", "PIECE", "plant_levels"]

@@ -4,9 +4,10 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from eyas.state.mesh import Mesh, concatenate
+from eyas.mesh.assembly import concatenate
+from eyas.mesh.solids import tube
+from eyas.state.mesh import Mesh
 from eyas.world.build.materials import material
-from eyas.world.build.shapes import tube
 from eyas.world.plants.foliage import Crown, leaf_cards, shell
 
 __all__ = ["VARIANTS", "place_along", "street_tree_levels"]

@@ -8,9 +8,10 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from eyas.state.mesh import Material, Mesh, concatenate
+from eyas.mesh.assembly import concatenate
+from eyas.mesh.flat import flat_polygon, wall_along
+from eyas.state.mesh import Material, Mesh
 from eyas.state.roads import RoadNetwork
-from eyas.world.build.shapes import flat_polygon, quads
 from eyas.world.roads.curves import rounded_kerbs
 
 __all__ = [
@@ -191,7 +192,7 @@ def skirt(
             outline = shapely.get_coordinates(
                 shapely.segmentize(shapely.simplify(ring, 1e-3), GRID)
             )
-            pieces.append(_wall(outline, bottom, top, material, tile))
+            pieces.append(wall_along(outline, bottom, top, material, tile))
     return concatenate(pieces)
 
 
@@ -199,23 +200,6 @@ def polygons_of(shape: shapely.Geometry | Sequence[shapely.Geometry]) -> list[sh
     """Return the polygons within any shape, without slivers below a square centimetre."""
     parts = shapely.get_parts(shapely.get_parts(shape))
     return [part for part in parts if isinstance(part, shapely.Polygon) and part.area > 1e-4]
-
-
-def _wall(outline: Line, bottom: float, top: float, material: Material, tile: float) -> Mesh:
-    """Return the wall along a line whose outside is on its right."""
-    start, end = outline[:-1], outline[1:]
-    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(end - start, axis=1))]) / tile
-    count, rise = len(start), (top - bottom) / tile
-    corners = np.empty((count, 4, 3))
-    corners[:, (0, 3), :2] = start[:, None]
-    corners[:, (1, 2), :2] = end[:, None]
-    corners[:, :2, 2] = bottom
-    corners[:, 2:, 2] = top
-    uvs = np.zeros((count, 4, 2))
-    uvs[:, (0, 3), 0] = along[:-1, None]
-    uvs[:, (1, 2), 0] = along[1:, None]
-    uvs[:, 2:, 1] = rise
-    return quads(corners, uvs, material)
 
 
 def _bends(network: RoadNetwork) -> list[tuple[Line, float]]:

@@ -9,10 +9,11 @@ import shapely
 from numpy.typing import ArrayLike, NDArray
 from shapely.ops import substring
 
-from eyas.state.mesh import Material, Mesh, concatenate
+from eyas.mesh.assembly import concatenate
+from eyas.mesh.flat import flat_polygon
+from eyas.state.mesh import Material, Mesh
 from eyas.state.roads import RoadNetwork
 from eyas.world.build.materials import TEXTURES, material
-from eyas.world.build.shapes import flat_polygon
 from eyas.world.roads.areas import Street, joints, split_on_grid, streets
 from eyas.world.roads.curves import joined
 

@@ -6,9 +6,10 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
 
-from eyas.state.mesh import Material, Mesh, concatenate
+from eyas.mesh.assembly import concatenate
+from eyas.mesh.flat import quads
+from eyas.state.mesh import Material, Mesh
 from eyas.world.build.materials import TEXTURES, material
-from eyas.world.build.shapes import quads
 from eyas.world.roads.curves import arc
 
 __all__ = [

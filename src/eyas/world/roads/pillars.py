@@ -6,9 +6,10 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from eyas.state.mesh import Mesh, concatenate, transformed
+from eyas.mesh.assembly import concatenate, transformed
+from eyas.mesh.solids import box, cylinder
+from eyas.state.mesh import Mesh
 from eyas.world.build.materials import TEXTURES, material
-from eyas.world.build.shapes import box, cylinder
 from eyas.world.roads.overpass import DECK_DEPTH, SOLID_BELOW
 
 __all__ = ["BASE_HEIGHT", "COLUMN_RADIUS", "Pillar", "pillar_mesh", "pillars"]

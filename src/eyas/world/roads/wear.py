@@ -10,10 +10,11 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from eyas.state.mesh import Material, Mesh, concatenate
+from eyas.mesh.assembly import concatenate
+from eyas.mesh.flat import quads
+from eyas.state.mesh import Material, Mesh
 from eyas.state.roads import RoadNetwork
 from eyas.world.build.materials import TEXTURES, material
-from eyas.world.build.shapes import quads
 from eyas.world.roads.areas import GRID
 
 __all__ = ["WEAR_HEIGHTS", "road_wear"]

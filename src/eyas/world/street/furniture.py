@@ -5,9 +5,10 @@ Origins are on the ground; the side that faces the road looks along y. In metres
 
 import numpy as np
 
-from eyas.state.mesh import Material, Mesh, Surface, concatenate, transformed
+from eyas.mesh.assembly import concatenate, transformed
+from eyas.mesh.solids import box, cylinder, sphere
+from eyas.state.mesh import Material, Mesh, Surface
 from eyas.world.build.materials import material
-from eyas.world.build.shapes import box, cylinder, sphere
 
 __all__ = ["KINDS", "furniture_levels"]
 

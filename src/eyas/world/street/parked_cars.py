@@ -3,9 +3,11 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.state.mesh import Material, Mesh, Surface, concatenate, transformed
+from eyas.mesh.assembly import concatenate, transformed
+from eyas.mesh.flat import quads
+from eyas.mesh.solids import box, cylinder
+from eyas.state.mesh import Material, Mesh, Surface
 from eyas.world.build.materials import material
-from eyas.world.build.shapes import box, cylinder, quads
 
 __all__ = ["parked_car_levels"]
 

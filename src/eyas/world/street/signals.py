@@ -8,13 +8,14 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from eyas.state.mesh import Mesh, concatenate
+from eyas.mesh.assembly import concatenate
+from eyas.mesh.solids import box, tube
+from eyas.state.mesh import Mesh
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import ObjectClass
 from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.materials import material
 from eyas.world.build.scene_builder import SceneBuilder
-from eyas.world.build.shapes import box, tube
 from eyas.world.roads.areas import joints, road_area, streets
 
 __all__ = ["POLE_HEIGHT", "POLE_RADIUS", "add_signals", "signal_levels", "signal_places"]

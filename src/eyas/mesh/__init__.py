@@ -1,0 +1,1 @@
+"""The mesh kit: what maps, vehicles and overlays are modelled with."""

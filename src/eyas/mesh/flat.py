@@ -1,0 +1,91 @@
+"""Meshes of flat faces: quadrilaterals, polygons on the ground, walls. Lengths in metres, z up."""
+
+import numpy as np
+import shapely
+from numpy.typing import ArrayLike, NDArray
+
+from eyas.mesh.assembly import of_one_material
+from eyas.mesh.panels import cells
+from eyas.state.mesh import Material, Mesh
+
+__all__ = ["flat_polygon", "quads", "wall_along", "walls"]
+
+
+def quads(corners: ArrayLike, uvs: ArrayLike, material: Material) -> Mesh:
+    """Return flat-shaded quadrilaterals.
+
+    Args:
+        corners: Counter-clockwise seen from outside [m], shape (Q, 4, 3).
+        uvs: Texture coordinates in tiles, shape (Q, 4, 2).
+        material: Of all of them.
+    """
+    points = np.asarray(corners, np.float64).reshape(-1, 4, 3)
+    normals = np.cross(points[:, 2] - points[:, 0], points[:, 3] - points[:, 1])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+    first = 4 * np.arange(len(points), dtype=np.int32)[:, None]
+    triangles = np.concatenate(
+        [first + np.array([0, 1, 2]), first + np.array([0, 2, 3])], axis=1
+    ).reshape(-1, 3)
+    return of_one_material(
+        points.reshape(-1, 3),
+        np.repeat(normals, 4, axis=0),
+        np.asarray(uvs).reshape(-1, 2),
+        triangles,
+        material,
+    )
+
+
+def flat_polygon(
+    polygon: shapely.Geometry, z: float, material: Material, tile: float, turn: float = 0.0
+) -> Mesh:
+    """Return a horizontal polygon (holes and several parts allowed) that faces up.
+
+    The texture lies along the world's axes, or turned counter-clockwise by `turn` [rad].
+    """
+    cells = shapely.get_parts(shapely.constrained_delaunay_triangles(polygon))
+    if len(cells) == 0:
+        return quads(np.zeros((0, 4, 3)), np.zeros((0, 4, 2)), material)
+    flat = np.array([shapely.get_coordinates(cell)[:3] for cell in cells])
+    edge = flat[:, 1:] - flat[:, :1]
+    backwards = edge[:, 0, 0] * edge[:, 1, 1] - edge[:, 0, 1] * edge[:, 1, 0] < 0
+    flat[backwards] = flat[backwards][:, ::-1]
+    points, index = np.unique(flat.reshape(-1, 2), axis=0, return_inverse=True)
+    positions = np.column_stack([points, np.full(len(points), z)])
+    up = np.tile([0.0, 0.0, 1.0], (len(points), 1))
+    cosine, sine = np.cos(turn), np.sin(turn)
+    uvs = points @ np.array([[cosine, -sine], [sine, cosine]]) / tile
+    return of_one_material(positions, up, uvs, index.reshape(-1, 3), material)
+
+
+def walls(outline: ArrayLike, bottom: float, top: float, material: Material, tile: float) -> Mesh:
+    """Return vertical walls around a closed counter-clockwise outline, shape (K, 2).
+
+    The texture goes round with a whole number of bays (quarter tiles) on each wall, v from the
+    bottom.
+    """
+    start = np.asarray(outline, np.float64)
+    length = np.linalg.norm(np.roll(start, -1, axis=0) - start, axis=1)
+    repeats = np.maximum(np.round(length / tile * 4), 1) / 4
+    uvs = np.zeros((len(start), 4, 2))
+    uvs[:, 1:3, 0] = repeats[:, None]
+    uvs[:, 2:, 1] = (top - bottom) / tile
+    ring = np.concatenate([start, start[:1]])
+    return quads(_upright(ring, bottom, top), uvs, material)
+
+
+def wall_along(line: ArrayLike, bottom: float, top: float, material: Material, tile: float) -> Mesh:
+    """Return the vertical wall along a line, shape (K, 2), whose outside is on its right.
+
+    The texture runs on along the line, v from the bottom.
+    """
+    points = np.asarray(line, np.float64)
+    along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
+    low = np.column_stack([along / tile, np.zeros(len(along))])
+    high = np.column_stack([along / tile, np.full(len(along), (top - bottom) / tile)])
+    return quads(_upright(points, bottom, top), cells([low, high]), material)
+
+
+def _upright(line: NDArray[np.float64], bottom: float, top: float) -> NDArray[np.float64]:
+    """Return the panels of a wall along a line, shape (K - 1, 4, 3)."""
+    low, high = (np.column_stack([line, np.full(len(line), z)]) for z in (bottom, top))
+    return cells([low, high])
