@@ -12,7 +12,7 @@ from eyas.render.kernels.bundles import Movers, Output, Stage, Task
 from eyas.render.kernels.draw import draw_views
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
-from eyas.sim.step import fly
+from eyas.sim.worlds import each_alone
 
 from .small_city import car_parts, city_scene, city_traffic, looking
 
@@ -62,11 +62,8 @@ def test_drawing_a_band_with_all_weathers_compiles_for_cuda(ptx_of, renderer_of)
 
 
 def test_the_fused_step_compiles_for_cuda(ptx_of):
-    simulation = build_simulation(SimConfig(), 2, shared_world=False)
-
-    def step(actions, fleet, traffic, rules):
-        fly(4, actions, fleet, traffic, rules)
-
-    values = (np.zeros((2, 4)), simulation._fleet, simulation._traffic, simulation._rules)
-    text = ptx_of(step, *map(numba.typeof, values))
-    assert ".visible .entry" in text
+    simulation = build_simulation(SimConfig(), each_alone(2))
+    parts = [pointer_to(held.bundle) for held in (simulation._state, simulation._held_orders)]
+    for function in simulation._step:
+        text = ptx_of(function.function, CPointer(Tuple(parts)), intp, intp)
+        assert ".visible .entry" in text

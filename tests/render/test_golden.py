@@ -13,9 +13,9 @@ from PIL import Image
 
 from eyas.sim.place import load_place
 from eyas.state.draw import DrawList, Picture, Views
-from eyas.state.tracker import ActorState
-from eyas.targets.looks import draw_looks
-from eyas.traffic.config import TrafficConfig, VehicleType
+from eyas.state.motion import ActorState
+from eyas.targets.looks import Looks
+from eyas.traffic.config import TrafficConfig
 from eyas.world.config import WorldConfig
 
 FOLDER = Path(__file__).parent / "golden"
@@ -43,16 +43,16 @@ def look(yaw: float, pitch: float) -> np.ndarray:
 def drawn(weather: str, name: str) -> np.ndarray:
     position, yaw, pitch, time = VIEWS[name]
     place = load_place(WorldConfig(weather=weather), TrafficConfig(), 1)
-    count = place.replay.actors
+    count = place.traffic.actors
     actors = ActorState.create(1, count)
-    place.replay.at(np.array([time]), actors)
-    model, colour = draw_looks(np.random.default_rng(1), VehicleType.PASSENGER, count, None)
+    place.traffic.at(np.array([time]), actors)
+    model, colour = Looks(place.traffic.motion.kind).draw(np.random.default_rng(1))
     movers = DrawList.create(1, count * place.rigs.slots_per_actor)
     place.rigs.pose(actors, model[None], colour[None], movers)
     if position is None:  # behind and above the first car
         yaw = float(actors.yaw[0, 0])
         back = 22.0 / np.tan(pitch)
-        behind = actors.position[0, 0] - back * np.array([np.cos(yaw), np.sin(yaw)])
+        behind = actors.position[0, 0, :2] - back * np.array([np.cos(yaw), np.sin(yaw)])
         position = (*behind, 22.0)
     views = Views(
         position=np.array([position]),

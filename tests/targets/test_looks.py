@@ -2,15 +2,21 @@ import numpy as np
 import pytest
 
 from eyas.core.rng import stream
-from eyas.targets.catalogue import BODY_COLOURS, MOTORCYCLE_COLOURS, VEHICLES, models_of
-from eyas.targets.looks import DIMENSIONS, draw_looks
+from eyas.targets.catalogue import (
+    BODY_COLOURS,
+    MOTORCYCLE_COLOURS,
+    kind_index,
+    models_of,
+)
+from eyas.targets.looks import Looks
 from eyas.traffic.config import VehicleType
 
 PINK = (0.9, 0.3, 0.6)
 
 
 def drawn(vehicle_type, colour=None, seed=3):
-    return draw_looks(stream(seed, "targets"), vehicle_type, 400, colour)
+    kind = np.full(400, kind_index(vehicle_type))
+    return Looks(kind, colour).draw(stream(seed, "targets"))
 
 
 @pytest.mark.parametrize("vehicle_type", VehicleType)
@@ -23,7 +29,7 @@ def test_all_models_and_colours_of_a_class_appear(vehicle_type):
 
 
 def test_models_are_about_equally_frequent():
-    model, _ = draw_looks(stream(0, "targets"), VehicleType.PASSENGER, 7000, None)
+    model, _ = Looks(np.zeros(7000, int)).draw(stream(0, "targets"))
     assert np.bincount(model, minlength=7)[:7] == pytest.approx(np.full(7, 1000), abs=130)
 
 
@@ -45,8 +51,18 @@ def test_a_fixed_colour_does_not_hold_for_motorcycles():
     assert np.array_equal(fixed[1], free[1])
 
 
-def test_dimensions_are_those_of_the_models():
-    assert DIMENSIONS.shape == (len(VEHICLES), 3)
-    assert tuple(DIMENSIONS[0]) == (4.85, 1.9, 1.8)
-    with pytest.raises(ValueError, match="read-only"):
-        DIMENSIONS[0] = 0
+def test_a_mixed_fleet_has_models_and_colours_of_each_actors_kind():
+    kind = np.tile([kind_index(t) for t in VehicleType], 80)
+    model, colour = Looks(kind, PINK).draw(stream(1, "targets"))
+    for vehicle_type in VehicleType:
+        of_kind = kind == kind_index(vehicle_type)
+        assert set(model[of_kind]) == set(models_of(vehicle_type))
+        pink = (colour[of_kind] == np.float32(PINK)).all(axis=1)
+        assert pink.all() == (vehicle_type != VehicleType.MOTORCYCLE)
+
+
+def test_other_kinds_that_join_change_no_look_of_the_first():
+    alone = Looks(np.zeros(30, int)).draw(stream(1, "targets"))
+    joined = Looks(np.repeat([0, 2], [30, 5])).draw(stream(1, "targets"))
+    assert np.array_equal(alone[0], joined[0][:30])
+    assert np.array_equal(alone[1], joined[1][:30])

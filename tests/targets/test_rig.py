@@ -2,8 +2,8 @@ import numpy as np
 import pytest
 
 from eyas.state.draw import DrawList
+from eyas.state.motion import ActorState
 from eyas.state.scene import ACTOR_OBJECT
-from eyas.state.tracker import ActorState
 from eyas.targets.catalogue import VEHICLES, models_of
 from eyas.targets.rig import LEAN_LIMIT, STEER_LIMIT, VehicleRigs
 from eyas.traffic.config import VehicleType
@@ -43,7 +43,7 @@ def every_model():
 @pytest.mark.parametrize(("vehicle_type", "model"), every_model())
 def test_wheels_stand_on_the_road_and_the_middle_is_behind_the_reference(vehicle_type, model):
     yaw, place = 0.7, np.array([30.0, -12.0])
-    parts, poses = one(vehicle_type, model, position=place, yaw=yaw)
+    parts, poses = one(vehicle_type, model, position=[*place, 0.0], yaw=yaw)
     heading = np.array([np.cos(yaw), np.sin(yaw)])
     middle = place - 1.0 * heading  # the point that the original rewards
     assert poses[0, :2, 3] == pytest.approx(middle, abs=1e-5)
@@ -62,7 +62,7 @@ def test_wheels_stand_on_the_road_and_the_middle_is_behind_the_reference(vehicle
 def test_wheels_roll_without_slip(vehicle_type, model):
     step = 1e-3
     _, before = one(vehicle_type, model, travelled=123.456)
-    _, after = one(vehicle_type, model, travelled=123.456 + step, position=[step, 0.0])
+    _, after = one(vehicle_type, model, travelled=123.456 + step, position=[step, 0.0, 0.0])
     assert after[0, 0, 3] - before[0, 0, 3] == pytest.approx(step, abs=1e-6)
     for a, b in zip(before[1:], after[1:], strict=True):
         contact = a[:, :3].T @ [0.0, 0.0, -VEHICLES[model].wheel_radius]
@@ -115,7 +115,7 @@ def test_poses_are_rotations(vehicle_type):
 def random_actors(worlds, count):
     rng = np.random.default_rng(5)
     actors = ActorState.create(worlds, count)
-    actors.position[:] = rng.uniform(-200, 200, (worlds, count, 2))
+    actors.position[..., :2] = rng.uniform(-200, 200, (worlds, count, 2))
     actors.yaw[:] = rng.uniform(-4, 4, (worlds, count))
     actors.speed[:] = rng.uniform(0, 20, (worlds, count))
     actors.yaw_rate[:] = rng.uniform(-1, 1, (worlds, count))
@@ -168,7 +168,7 @@ def test_order_of_worlds_changes_no_byte():
     shuffled = ActorState(
         actors.position[order].copy(), *(
             getattr(actors, name)[order].copy()
-            for name in ("yaw", "speed", "yaw_rate", "travelled", "present")
+            for name in ("yaw", "slope", "speed", "yaw_rate", "travelled", "present")
         )
     )  # fmt: skip
     again, _ = posed(VehicleType.PASSENGER, shuffled)

@@ -5,8 +5,11 @@ import pytest
 from numpy.typing import NDArray
 
 from eyas.core.errors import MissingExtraError
+from eyas.state.motion import Motion
 from eyas.state.roads import RoadEdge, RoadGraph, RoadNode
+from eyas.state.terrain import Terrain
 from eyas.traffic.config import TrafficConfig
+from eyas.traffic.recorded import recorded_motion
 from eyas.traffic.recording import Provenance, Recording
 from eyas.traffic.sumo_install import import_libsumo
 
@@ -74,6 +77,16 @@ def wandering(make_recording: MakeRecording) -> Recording:
     yaw = np.stack([drift, np.arctan2(0.4 * time, -5.0), drift], axis=-1)
     yaw[:, 2] = np.where(time < 5.5, drift, yaw[:, 1])
     return make_recording(np.stack([first, second, third], axis=1), yaw, present)
+
+
+@pytest.fixture(scope="session")
+def flat_motion() -> Callable[[Recording], Motion]:
+    """Makes motion of a recording on a flat map, all actors of kind 0."""
+
+    def make(recording: Recording) -> Motion:
+        return recorded_motion(recording, Terrain.flat(0.0), np.zeros(recording.actors, np.int32))
+
+    return make
 
 
 @pytest.fixture(scope="session")

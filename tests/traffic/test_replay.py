@@ -2,16 +2,15 @@ import numpy as np
 import pytest
 
 from eyas.core.errors import ConfigError
-from eyas.state.tracker import ActorState, TargetState
+from eyas.state.motion import ActorState
 from eyas.traffic.recording import Recording
-from eyas.traffic.replay import Replay, interpolate_actor, packed
+from eyas.traffic.replay import Replay
 from eyas.traffic.smoothing import smooth
-from eyas.traffic.source import TrafficSource
 
 
 @pytest.fixture(scope="module")
-def replay(wandering: Recording) -> Replay:
-    return Replay(wandering)
+def replay(wandering: Recording, flat_motion) -> Replay:
+    return Replay(flat_motion(wandering))
 
 
 def _at(replay: Replay, time: np.ndarray) -> ActorState:
@@ -20,15 +19,14 @@ def _at(replay: Replay, time: np.ndarray) -> ActorState:
     return out
 
 
-def test_it_is_a_traffic_source(replay: Replay):
-    source: TrafficSource = replay
-    assert (source.actors, source.duration, source.rate) == (3, 20.0, 10.0)
+def test_actors_and_duration_are_those_of_the_recording(replay: Replay, wandering: Recording):
+    assert (replay.actors, replay.duration) == (wandering.actors, wandering.duration) == (3, 20.0)
 
 
 def test_samples_are_met(replay: Replay, wandering: Recording):
     tracks = smooth(wandering)
     out = _at(replay, np.arange(201) / 10.0)
-    np.testing.assert_allclose(out.position, tracks.position, atol=1e-4)
+    np.testing.assert_allclose(out.position[..., :2], tracks.position, atol=1e-4)
     np.testing.assert_allclose(out.yaw, tracks.yaw, atol=1e-5)
     np.testing.assert_allclose(out.yaw_rate, tracks.yaw_rate, atol=1e-4)
     np.testing.assert_allclose(out.travelled, tracks.travelled, atol=1e-4)
@@ -40,45 +38,12 @@ def test_samples_are_met(replay: Replay, wandering: Recording):
 def test_motion_has_no_seams(replay: Replay):
     time = np.arange(0.0, 20.0, 0.002)
     out = _at(replay, time)
-    step = np.diff(out.position[:, :2], axis=0) / 0.002
+    step = np.diff(out.position[:, :2, :2], axis=0) / 0.002
     speed = 0.5 * (out.speed[1:, :2] + out.speed[:-1, :2])
     np.testing.assert_allclose(np.hypot(*np.moveaxis(step, -1, 0)), speed, atol=0.02)
     assert np.abs(np.diff(out.speed[:, :2], axis=0)).max() < 0.01
     assert np.abs(np.diff(out.yaw[:, :2], axis=0) / 0.002 - out.yaw_rate[1:, :2]).max() < 0.02
     assert (np.diff(out.travelled[:, :2], axis=0) > 0.0).all()
-
-
-def test_half_the_samples_give_the_same_motion(wandering: Recording):
-    tracks = smooth(wandering)
-    half = packed(tracks)[::2].copy()
-    for actor in range(2):
-        for sample in range(1, 201, 2):
-            x, y, *_ = interpolate_actor(half, 5.0, actor, sample / 10.0)
-            # A curve of 10 Hz is off by a sixteenth of this.
-            error = np.hypot(*(tracks.position[sample, actor] - (x, y)))
-            assert error < 0.01, f"actor {actor} at sample {sample}"
-
-
-def test_many_times_at_once_equal_one_by_one(replay: Replay):
-    time = np.random.default_rng(5).uniform(0.0, 20.0, 4096)
-    out = _at(replay, time)
-    actor = np.arange(4096) % 3
-    for world in range(4096):
-        pose = interpolate_actor(replay.table, replay.rate, int(actor[world]), time[world])
-        here = world, actor[world]
-        same = (*out.position[here], out.yaw[here], out.speed[here], out.yaw_rate[here])
-        assert pose == (*same, out.travelled[here], out.present[here])
-
-
-def test_tracked_actors_alone_equal_all_actors(replay: Replay):
-    time = np.random.default_rng(6).uniform(0.0, 20.0, 64)
-    out, targets = _at(replay, time), TargetState.create(64)
-    targets.actor[:] = np.arange(64) % 3
-    replay.actor_at(time, targets)
-    worlds = np.arange(64)
-    np.testing.assert_array_equal(targets.position[:, :2], out.position[worlds, targets.actor])
-    np.testing.assert_array_equal(targets.yaw, out.yaw[worlds, targets.actor])
-    np.testing.assert_array_equal(targets.speed, out.speed[worlds, targets.actor])
 
 
 def test_times_outside_are_held_at_the_ends(replay: Replay):
@@ -99,9 +64,6 @@ def test_only_those_that_stay_are_available(replay: Replay):
     assert replay.available(4.0, 7.0).tolist() == [True, True, False]
     assert replay.available(5.5, 5.6).tolist() == [True, True, False]
     assert replay.available(6.0, 15.0).tolist() == [True, True, True]
-    assert replay.present_until(0.0, 0) == 20.0
-    assert replay.present_until(7.3, 2) == 15.0
-    assert replay.present_until(5.5, 2) == 5.5
 
 
 def test_times_that_were_not_recorded_are_an_error(replay: Replay):

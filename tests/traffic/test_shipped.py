@@ -8,7 +8,7 @@ import pytest
 import shapely
 
 from eyas.core.errors import ConfigError
-from eyas.state.tracker import ActorState
+from eyas.state.motion import ActorState
 from eyas.traffic.config import Demand, TrafficConfig, VehicleType
 from eyas.traffic.library import STANDARD_DURATION, find_recording
 from eyas.traffic.replay import Replay
@@ -43,17 +43,18 @@ def test_the_default_traffic_of_citystreet_is_shipped():
         assert (apart + 100.0 * np.eye(40)).min() > 1.8
 
 
-def test_no_car_leaves_the_asphalt():
+def test_no_car_leaves_the_asphalt(flat_motion):
     """Nine tenths of its length and width stay on it, each second of the recording."""
-    replay = Replay(find_recording(road_graph(0), TrafficConfig(update_routes=False)))
+    recording = find_recording(road_graph(0), TrafficConfig(update_routes=False))
+    replay = Replay(flat_motion(recording))
     time = np.arange(0.0, replay.duration, 1.0)
     cars = ActorState.create(len(time), replay.actors)
     replay.at(time, cars)
-    size = 0.9 * np.array([replay.recording.vehicle_length, 1.8])
+    size = 0.9 * np.array([recording.vehicle_length, 1.8])
     corners = 0.5 * size * [[1, 1], [1, -1], [-1, -1], [-1, 1]]
     cosine, sine = np.cos(cars.yaw)[..., None], np.sin(cars.yaw)[..., None]
     east = cars.position[..., :1] + cosine * corners[:, 0] - sine * corners[:, 1]
-    north = cars.position[..., 1:] + sine * corners[:, 0] + cosine * corners[:, 1]
+    north = cars.position[..., 1:2] + sine * corners[:, 0] + cosine * corners[:, 1]
     network = shipped_network("citystreet")
     assert network is not None
     asphalt = road_area(network)

@@ -13,7 +13,7 @@ from eyas.state.snapshot import Snapshot
 from eyas.targets.catalogue import VEHICLES
 from eyas.task.direction import TARGET_COMPENSATION
 from eyas.task.spawn import choose_target, sample_start, start_pose
-from eyas.traffic.replay import Replay
+from eyas.traffic.source import TrafficSource
 
 __all__ = ["Episodes"]
 
@@ -30,7 +30,7 @@ class Episodes:
 
     Args:
         config: The settings.
-        replay: The traffic.
+        traffic: What may be followed.
         worlds: Who is in which world.
         light: The light around them.
         snapshot: Of N trackers; episodes and targets are set here.
@@ -39,18 +39,18 @@ class Episodes:
     def __init__(
         self,
         config: SimConfig,
-        replay: Replay,
+        traffic: TrafficSource,
         worlds: Worlds,
         light: LightChanges,
         snapshot: Snapshot,
     ) -> None:
         self._config = config
         self._seed = config.seed
-        self._replay = replay
+        self._traffic = traffic
         self._worlds = worlds
         self._light = light
         self._episodes, self._targets = snapshot.episodes, snapshot.targets
-        self._last_tick = int(replay.duration / PHYSICS_STEP)
+        self._last_tick = int(traffic.duration / PHYSICS_STEP)
         first = config.start.warm_up_steps
         if first + config.done.total_steps > self._last_tick:
             raise ConfigError(
@@ -116,7 +116,7 @@ class Episodes:
             tick = self._now(others) if lasting else self._any_time(rng)
             steps = self._config.done.total_steps >> (attempt if lasting else 0)
             end = min(tick + steps, self._last_tick)
-            available = self._replay.available(tick * PHYSICS_STEP, end * PHYSICS_STEP)
+            available = self._traffic.available(tick * PHYSICS_STEP, end * PHYSICS_STEP)
             try:
                 return tick, choose_target(available, used, rng)
             except SpawnError:

@@ -14,11 +14,15 @@ from eyas.render.renderer import Renderer, build_renderer
 from eyas.render.textures.library import build_textures
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import Lighting, Scene
+from eyas.state.terrain import Terrain
+from eyas.targets.catalogue import KINDS, kind_index
 from eyas.targets.rig import VehicleRigs
 from eyas.traffic.config import Demand, TrafficConfig
 from eyas.traffic.library import find_recording
 from eyas.traffic.network import build_network
+from eyas.traffic.recorded import recorded_motion
 from eyas.traffic.replay import Replay
+from eyas.traffic.source import TrafficSource
 from eyas.world.config import WorldConfig
 from eyas.world.maps import build_scene, road_graph, shipped_network
 from eyas.world.weather import lighting
@@ -31,7 +35,7 @@ class Place:
     """A map in a weather with its traffic."""
 
     scene: Scene
-    replay: Replay
+    traffic: TrafficSource
     lighting: Lighting
     renderer: Renderer
     rigs: VehicleRigs
@@ -93,7 +97,8 @@ def _load_place(world: WorldConfig, traffic: TrafficConfig, trackers: int) -> Pl
     recording = find_recording(graph, traffic, trackers=trackers)
     ready = compile_ahead()
     scene = load_scene(world.map, world.seed)
-    vehicle_type = recording.provenance.config.vehicle_type
+    kind = np.array([kind_index(name) for name in recording.vehicle_types], np.int32)
+    vehicle_type = KINDS[kind[0]]
     rigs = kept(
         "rigs", ("targets", "mesh", "state"), (vehicle_type,), lambda: VehicleRigs(vehicle_type)
     )
@@ -104,4 +109,6 @@ def _load_place(world: WorldConfig, traffic: TrafficConfig, trackers: int) -> Pl
         lambda: build_geometry(scene, rigs.library, _textures()),
     )
     renderer = build_renderer(scene, geometry, light, ready=ready)
-    return Place(scene, Replay(recording), light, renderer, rigs)
+    ground = Terrain.flat(scene.ground_height)
+    replay = Replay(recorded_motion(recording, ground, kind))
+    return Place(scene, replay, light, renderer, rigs)

@@ -70,11 +70,11 @@ class Simulation:
             self.snapshot.light,
             foggy=config.world.weather == "foggy",
         )
-        self._episodes = Episodes(config, place.replay, worlds, light, self.snapshot)
+        self._episodes = Episodes(config, place.traffic, worlds, light, self.snapshot)
         self._pictures = Pictures(config, place, worlds, light, self.snapshot)
         self._step = step_of(tracker)
         self._memory = tracker.memory(self.count)
-        self._around = Surroundings(place.replay.table, place.replay.rate, terrain)
+        self._around = Surroundings(place.traffic.motion, terrain)
         self._orders = Orders.create(self.count)
         self._held_orders = Held(self._orders)
         self.rules = make_rules(config.reward, config.done, config.camera)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.jit import specialised, step_kernel
 from eyas.core.parallel import Pointer, parallel_kernel
+from eyas.state.motion import Motion
 from eyas.state.snapshot import EpisodeState, Snapshot, TargetState
 from eyas.state.terrain import Terrain
 from eyas.task.direction import target_centre
@@ -25,7 +26,7 @@ from eyas.task.rules import Rules
 # place.
 from eyas.trackers.drone import advance, aim, carry, start
 from eyas.trackers.tracker import Tracker
-from eyas.traffic.replay import interpolate_actor
+from eyas.traffic.interpolation import interpolate_actor
 
 __all__ = ["Orders", "Step", "StepState", "Surroundings", "step_of"]
 
@@ -33,8 +34,8 @@ __all__ = ["Orders", "Step", "StepState", "Surroundings", "step_of"]
 class Surroundings(NamedTuple):
     """Everything around the trackers that a step reads."""
 
-    table: NDArray[np.float32]
-    rate: float
+    motion: Motion
+    """Of all actors."""
     terrain: Terrain
     """The ground."""
 
@@ -155,16 +156,14 @@ def _move_target(
 ) -> None:
     """Read where the target of tracker n is; a target that has left stays where it was."""
     time = episodes.tick[n] * PHYSICS_STEP
-    x, y, yaw, speed, _, _, present = interpolate_actor(
-        around.table, around.rate, targets.actor[n], time
-    )
-    if not present:
+    pose = interpolate_actor(around.motion, targets.actor[n], time)
+    if not pose.present:
         targets.lost[n] = True
         targets.speed[n] = 0.0
         return
     position, centre = targets.position[n], targets.centre[n]
-    position[0], position[1], position[2] = x, y, targets.rise[n]
-    targets.yaw[n] = yaw
-    targets.speed[n] = speed
-    centre[0], centre[1] = target_centre(x, y, yaw, targets.ahead[n])
+    position[0], position[1], position[2] = pose.x, pose.y, pose.z + targets.rise[n]
+    targets.yaw[n] = pose.yaw
+    targets.speed[n] = pose.speed
+    centre[0], centre[1] = target_centre(pose.x, pose.y, pose.yaw, targets.ahead[n])
     centre[2] = position[2]

@@ -8,9 +8,9 @@ from eyas.core.rng import stream
 from eyas.sim.config import SimConfig
 from eyas.sim.place import Place
 from eyas.state.draw import DrawList
+from eyas.state.motion import ActorState
 from eyas.state.scene import ACTOR_OBJECT
-from eyas.state.tracker import ActorState
-from eyas.targets.looks import draw_looks
+from eyas.targets.looks import Looks
 
 __all__ = ["ALONE", "Worlds", "each_alone", "together"]
 
@@ -60,9 +60,9 @@ class Worlds:
         self.of: NDArray[np.int32] = order[numbered].astype(np.int32)
         self.leader: Integers = np.sort(first)
         self.lasting: NDArray[np.bool_] = given[self.leader] != ALONE
-        self._colour_of_all = config.traffic.colour
         self._place = place
-        worlds, actors = len(self.leader), place.replay.actors
+        self._looks = Looks(place.traffic.motion.kind, config.traffic.colour)
+        worlds, actors = len(self.leader), place.traffic.actors
         self._model = np.zeros((worlds, actors), np.int32)
         self._colour = np.ones((worlds, actors, 3), np.float32)
         self._actors = ActorState.create(0, actors)
@@ -78,10 +78,7 @@ class Worlds:
         if self.lasting[world] and (tracker != self.leader[world] or episode > 0):
             return
         rng = stream(seed, "looks", tracker, episode)
-        replay = self._place.replay
-        vehicle_type = replay.recording.provenance.config.vehicle_type
-        model, colour = draw_looks(rng, vehicle_type, replay.actors, self._colour_of_all)
-        self._model[world], self._colour[world] = model, colour
+        self._model[world], self._colour[world] = self._looks.draw(rng)
 
     def model_of(self, tracker: int, actor: int) -> int:
         """Return the model of an actor around a tracker, an index into the catalogue."""
@@ -107,13 +104,13 @@ class Worlds:
             worlds, rows = np.unique(worlds, return_inverse=True)
         time = tick[self.leader[worlds]].astype(np.float64) * PHYSICS_STEP
         actors, movers = self._buffers(len(worlds))
-        self._place.replay.at(time, actors)
+        self._place.traffic.at(time, actors)
         self._place.rigs.pose(actors, self._model[worlds], self._colour[worlds], movers)
         return rows.astype(np.int32), movers
 
     def _buffers(self, worlds: int) -> tuple[ActorState, DrawList]:
         """Return room for some worlds; it grows to the most that were asked for, and no further."""
-        actors = self._place.replay.actors
+        actors = self._place.traffic.actors
         if len(self._movers.part) < worlds:
             slots = actors * self._place.rigs.slots_per_actor
             self._actors = ActorState.create(worlds, actors)

@@ -1,11 +1,13 @@
 """The motion of everything that moves by itself: one table, whoever fills it."""
 
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["SAMPLE", "Motion"]
+__all__ = ["SAMPLE", "ActorState", "Motion", "joined"]
 
 SAMPLE: Final = np.dtype(
     [
@@ -20,27 +22,92 @@ SAMPLE: Final = np.dtype(
         ("slope", np.float32),
         ("travelled", np.float32),
         ("present", np.float32),
-    ]
+    ],
+    align=True,  # else kernels read each number byte by byte on CUDA
 )
 """One actor at one instant.
 
 x, y, z: reference point on the road, world frame [m]; velocity: its change [m/s]; yaw: heading,
 counter-clockwise from east, without jumps at ±180° [rad]; yaw_rate [rad/s]; slope: pitch of the
-road along the heading, positive up [rad]; travelled: path length since the first sample [m];
-present: 1 while the actor is in the world, else 0.
+road along the heading, positive up [rad]; travelled: path length on the map since the first sample
+[m]; present: 1 while the actor is in the world, else 0.
 
 32 bits keep positions to 0.03 mm and halve the memory that each world's step touches.
 """
 
 
 class Motion(NamedTuple):
-    """Sampled motion of A actors: what kernels interpolate (`eyas.traffic.replay`)."""
+    """Sampled motion of A actors: what kernels interpolate (`eyas.traffic.interpolation`)."""
 
     table: NDArray[np.void]
-    """Of dtype `SAMPLE`, shape (S, A)."""
+    """Of dtype `SAMPLE`, shape (S, A), at least two samples."""
     kind: NDArray[np.int32]
     """What each actor is: index into `eyas.targets.catalogue.KINDS`, shape (A,)."""
     rate: float
     """Samples in a second [Hz]."""
     first_time: float
     """Time of sample 0 [s]; 0 for a recording, later for traffic that is simulated live."""
+
+
+@dataclass(slots=True)
+class ActorState:
+    """A actors in each of W worlds."""
+
+    position: NDArray[np.float64]
+    """Reference point on the road: of a vehicle the middle of its SUMO length, world frame [m],
+    shape (W, A, 3)."""
+    yaw: NDArray[np.float64]
+    """Heading, counter-clockwise from east [rad], shape (W, A)."""
+    slope: NDArray[np.float64]
+    """Pitch of the road along the heading, positive up [rad], shape (W, A)."""
+    speed: NDArray[np.float64]
+    """On the map [m/s], shape (W, A)."""
+    yaw_rate: NDArray[np.float64]
+    """[rad/s], shape (W, A)."""
+    travelled: NDArray[np.float64]
+    """Path length since the motion began, which turns the wheels [m], shape (W, A)."""
+    present: NDArray[np.bool_]
+    """Whether the actor is in the world, shape (W, A)."""
+
+    @classmethod
+    def create(cls, worlds: int, actors: int) -> "ActorState":
+        """Return `actors` actors at the origin in each of `worlds` worlds."""
+        plane = (worlds, actors)
+        return cls(
+            position=np.zeros((*plane, 3)),
+            yaw=np.zeros(plane),
+            slope=np.zeros(plane),
+            speed=np.zeros(plane),
+            yaw_rate=np.zeros(plane),
+            travelled=np.zeros(plane),
+            present=np.zeros(plane, np.bool_),
+        )
+
+    def first(self, worlds: int) -> "ActorState":
+        """Return the first worlds; the arrays are shared."""
+        return ActorState(*(getattr(self, field.name)[:worlds] for field in fields(self)))
+
+
+def joined(motions: Sequence[Motion]) -> Motion:
+    """Return the actors of several motions in one, in that order.
+
+    Args:
+        motions: At least one, all with the same samples: rate, first time and number.
+
+    Raises:
+        ValueError: Their samples are not at the same times.
+    """
+    first = motions[0]
+    for other in motions[1:]:
+        times = [(len(m.table), m.rate, m.first_time) for m in (first, other)]
+        if times[0] != times[1]:
+            raise ValueError(
+                "motions: samples, rate [Hz] and first time [s] are {} and {}; "
+                "allowed: the same in all".format(*times)
+            )
+    return Motion(
+        table=np.concatenate([motion.table for motion in motions], axis=1),
+        kind=np.concatenate([motion.kind for motion in motions]),
+        rate=first.rate,
+        first_time=first.first_time,
+    )

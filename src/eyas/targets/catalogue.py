@@ -10,10 +10,12 @@ from eyas.traffic.config import VehicleType
 
 __all__ = [
     "BODY_COLOURS",
+    "KINDS",
     "MOTORCYCLE_COLOURS",
     "VEHICLES",
     "Axle",
     "VehicleModel",
+    "kind_index",
     "model_index",
     "models_of",
 ]
@@ -137,6 +139,15 @@ VEHICLES: tuple[VehicleModel, ...] = (
     _two_wheeler("MotorbikeSimple", (2.48, 1.1, 1.55), (1.78, 0.25, 0.94)),
 )
 """All models. The index into this table is what the other rooms call `model`."""
+
+
+KINDS: tuple[VehicleType, ...] = tuple(VehicleType)
+"""All kinds of movers. The index into this table is what the other rooms call `kind`."""
+
+
+def kind_index(name: str) -> int:
+    """Return the index of a kind in `KINDS`."""
+    return KINDS.index(VehicleType(name))
 
 
 def models_of(vehicle_type: VehicleType) -> tuple[int, ...]:

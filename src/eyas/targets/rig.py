@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from eyas.state.draw import DrawList, PartLibrary
 from eyas.state.mesh import Mesh
-from eyas.state.tracker import ActorState
+from eyas.state.motion import ActorState
 from eyas.targets.catalogue import VEHICLES, Axle, VehicleModel, models_of
 from eyas.targets.pose import CENTRE_OFFSET, LEAN_LIMIT, STEER_LIMIT, RigTable, pose_worlds
 from eyas.targets.vehicles.bodies import body_levels

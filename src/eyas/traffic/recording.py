@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.errors import DataFileError
-from eyas.traffic.config import TrafficConfig
+from eyas.traffic.config import TrafficConfig, VehicleType
 
 __all__ = [
     "ANGLE_UNIT",
@@ -70,6 +70,11 @@ class Recording:
     def actors(self) -> int:
         """Number of actors."""
         return int(self.present.shape[1])
+
+    @property
+    def vehicle_types(self) -> tuple[VehicleType, ...]:
+        """Class of each actor; that of the vehicles it stands for one after another."""
+        return (self.provenance.config.vehicle_type,) * self.actors
 
     @property
     def duration(self) -> float:

@@ -5,13 +5,22 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.state.tracker import ActorState
+from eyas.state.motion import ActorState, Motion
 
 __all__ = ["TrafficSource"]
 
 
 class TrafficSource(Protocol):
-    """Where the actors are at any time. All worlds share the source; each has its own time."""
+    """Where the actors are at any time. All worlds share the source; each has its own time.
+
+    An actor keeps its kind (`Motion.kind`) for ever, also where it stands for one vehicle after
+    another.
+    """
+
+    @property
+    def motion(self) -> Motion:
+        """What kernels read (`eyas.traffic.interpolation.interpolate_actor`)."""
+        ...
 
     @property
     def actors(self) -> int:
@@ -21,16 +30,6 @@ class TrafficSource(Protocol):
     @property
     def duration(self) -> float:
         """Last time that can be asked for [s]; the first is 0."""
-        ...
-
-    @property
-    def table(self) -> NDArray[np.float32]:
-        """What `eyas.traffic.replay.interpolate_actor` reads, shape (S, A, 8)."""
-        ...
-
-    @property
-    def rate(self) -> float:
-        """Rows of the table in a second [Hz]."""
         ...
 
     def at(self, time: NDArray[np.float64], out: ActorState) -> None:
@@ -47,12 +46,5 @@ class TrafficSource(Protocol):
 
         Returns:
             shape (A,).
-        """
-        ...
-
-    def present_until(self, time: float, actor: int) -> float:
-        """Return when an actor that is there at `time` leaves [s]; `time` if it is not there.
-
-        An actor that stays to the end gives the duration.
         """
         ...

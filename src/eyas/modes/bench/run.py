@@ -26,7 +26,7 @@ from eyas.sim.config import SimConfig
 from eyas.sim.place import load_place
 from eyas.sim.worlds import each_alone
 from eyas.state.draw import DrawList, Picture, Views
-from eyas.state.tracker import ActorState
+from eyas.state.motion import ActorState
 from eyas.targets.catalogue import models_of
 from eyas.traffic.config import VehicleType
 
@@ -130,11 +130,11 @@ def _horizon(seconds: float) -> Measurement:
         subject=np.full(count, -1, np.int32),
         field_of_view=field_of_view,
     )
-    actors = ActorState.create(1, place.replay.actors)
-    place.replay.at(np.array([300.0]), actors)
-    movers = DrawList.create(1, place.replay.actors * place.rigs.slots_per_actor)
-    model = np.full((1, place.replay.actors), models_of(VehicleType.PASSENGER)[0], np.int32)
-    colour = np.ones((1, place.replay.actors, 3), np.float32)
+    actors = ActorState.create(1, place.traffic.actors)
+    place.traffic.at(np.array([300.0]), actors)
+    movers = DrawList.create(1, place.traffic.actors * place.rigs.slots_per_actor)
+    model = np.full((1, place.traffic.actors), models_of(VehicleType.PASSENGER)[0], np.int32)
+    colour = np.ones((1, place.traffic.actors, 3), np.float32)
     place.rigs.pose(actors, model, colour, movers)
     picture = Picture.create(count, 84, 84)
     rate, repeats = _median_rate(lambda: place.renderer.draw(views, movers, picture), seconds)

@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 
 from eyas.sim.place import Place
 from eyas.state.draw import DrawList, Picture, Views
+from eyas.state.motion import ActorState
 from eyas.state.scene import ACTOR_OBJECT
-from eyas.state.tracker import ActorState
-from eyas.targets.looks import draw_looks
+from eyas.targets.looks import Looks
 
 __all__ = ["Stage", "Viewpoint"]
 
@@ -54,16 +54,15 @@ class Stage:
 
     def __init__(self, place: Place) -> None:
         self.scene = place.scene
-        self.duration = place.replay.duration
+        self.duration = place.traffic.duration
         self._place = place
-        vehicle_type = place.replay.recording.provenance.config.vehicle_type
-        looks = draw_looks(np.random.default_rng(1), vehicle_type, place.replay.actors, None)
-        self._model, self._colour = looks
+        looks = Looks(place.traffic.motion.kind)
+        self._model, self._colour = looks.draw(np.random.default_rng(1))
 
     def actors(self, time: float) -> ActorState:
         """Return all actors at a time [s], one world."""
-        actors = ActorState.create(1, self._place.replay.actors)
-        self._place.replay.at(np.array([time]), actors)
+        actors = ActorState.create(1, self._place.traffic.actors)
+        self._place.traffic.at(np.array([time]), actors)
         return actors
 
     def rgb(self, view: Viewpoint) -> NDArray[np.uint8]:
@@ -89,7 +88,7 @@ class Stage:
 
     def _draw(self, view: Viewpoint, picture: Picture, samples: int) -> None:
         rigs = self._place.rigs
-        movers = DrawList.create(1, self._place.replay.actors * rigs.slots_per_actor)
+        movers = DrawList.create(1, self._place.traffic.actors * rigs.slots_per_actor)
         rigs.pose(self.actors(view.time), self._model[None], self._colour[None], movers)
         subject = ACTOR_OBJECT + view.actor if view.actor >= 0 else -1
         views = Views(

@@ -79,8 +79,8 @@ def _all_cars(stage: Stage) -> _Cars:
     for time in np.arange(_TIMES[0], stage.duration, _TIMES[1]):
         actors = stage.actors(time)
         for actor in np.flatnonzero(actors.present[0]):
-            position = actors.position[0, actor]
-            rows.append((time, int(actor), *position, actors.yaw[0, actor]))
+            x, y, _ = actors.position[0, actor]
+            rows.append((time, int(actor), x, y, actors.yaw[0, actor]))
     table = np.array(rows, np.float64).reshape(-1, 5)
     return _Cars(table[:, 0], table[:, 1].astype(np.int64), table[:, 2:4], table[:, 4])
 

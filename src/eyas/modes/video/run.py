@@ -98,7 +98,7 @@ def recording_rules(config: EyasConfig) -> EyasConfig:
 
 def _require_traffic(config: EyasConfig) -> None:
     end = config.video.start_time + config.video.total_time
-    known = load_place(config.world, config.traffic, config.video.channels).replay.duration
+    known = load_place(config.world, config.traffic, config.video.channels).traffic.duration
     if end > known:
         raise ConfigError(
             f"video.total_time: {config.video.total_time:g} s after {config.video.start_time:g} s"

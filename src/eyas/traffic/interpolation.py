@@ -1,0 +1,104 @@
+"""Actors at any time: cubic Hermite curves between the samples of a table of motion."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.jit import kernel
+from eyas.state.motion import ActorState, Motion
+
+__all__ = ["ActorPose", "interpolate_actor", "interpolate_actors"]
+
+
+class ActorPose(NamedTuple):
+    """One actor at one time; fields as in `eyas.state.motion.ActorState`."""
+
+    x: float
+    y: float
+    z: float
+    yaw: float
+    slope: float
+    speed: float
+    yaw_rate: float
+    travelled: float
+    present: bool
+
+
+@kernel
+def interpolate_actor(motion: Motion, actor: int, time: float) -> ActorPose:
+    """Return one actor at one time; times before and after the samples are held at their ends.
+
+    Args:
+        motion: Of all actors.
+        actor: Which.
+        time: [s]
+    """
+    last = motion.table.shape[0] - 1
+    place = min(max((time - motion.first_time) * motion.rate, 0.0), float(last))
+    row = min(int(place), last - 1)
+    f = place - row
+    a = motion.table[row, actor]
+    b = motion.table[row + 1, actor]
+    step = 1.0 / motion.rate
+    x, speed_x = _hermite(a.x, b.x, a.velocity_x, b.velocity_x, step, f)
+    y, speed_y = _hermite(a.y, b.y, a.velocity_y, b.velocity_y, step, f)
+    z, _ = _hermite(a.z, b.z, a.velocity_z, b.velocity_z, step, f)
+    yaw, yaw_rate = _hermite(a.yaw, b.yaw, a.yaw_rate, b.yaw_rate, step, f)
+    speed_a = math.hypot(a.velocity_x, a.velocity_y)
+    speed_b = math.hypot(b.velocity_x, b.velocity_y)
+    travelled, _ = _hermite(a.travelled, b.travelled, speed_a, speed_b, step, f)
+    slope = a.slope + f * (b.slope - a.slope)
+    speed = math.hypot(speed_x, speed_y)
+    present = (a.present > 0.0 or f == 1.0) and (b.present > 0.0 or f == 0.0)
+    return ActorPose(x, y, z, yaw, slope, speed, yaw_rate, travelled, present)
+
+
+@kernel
+def _hermite(
+    a: float, b: float, slope_a: float, slope_b: float, step: float, f: float
+) -> tuple[float, float]:
+    """Return value and slope at share `f` of a step [s] of the cubic with given ends and slopes."""
+    start = float(a)
+    rise = float(b) - start
+    lift_a = float(slope_a) * step
+    lift_b = float(slope_b) * step
+    square = lift_a + lift_b - 2.0 * rise
+    bend = 3.0 * rise - 2.0 * lift_a - lift_b
+    value = start + f * (lift_a + f * (bend + f * square))
+    slope = (lift_a + f * (2.0 * bend + f * 3.0 * square)) / step
+    return value, slope
+
+
+def interpolate_actors(motion: Motion, time: NDArray[np.float64], out: ActorState) -> None:
+    """Write all actors of W worlds at the worlds' own times [s], shape (W,)."""
+    pose = out.position, out.yaw, out.slope, out.speed, out.yaw_rate, out.travelled, out.present
+    _write_worlds(motion, time, *pose)
+
+
+@kernel
+def _write_worlds(
+    motion: Motion,
+    time: NDArray[np.float64],
+    position: NDArray[np.float64],
+    yaw: NDArray[np.float64],
+    slope: NDArray[np.float64],
+    speed: NDArray[np.float64],
+    yaw_rate: NDArray[np.float64],
+    travelled: NDArray[np.float64],
+    present: NDArray[np.bool_],
+) -> None:
+    # One thread: waking a second one costs more than 64 worlds of 40 actors.
+    for world in range(len(time)):
+        for actor in range(motion.table.shape[1]):
+            pose = interpolate_actor(motion, actor, time[world])
+            position[world, actor, 0] = pose.x
+            position[world, actor, 1] = pose.y
+            position[world, actor, 2] = pose.z
+            yaw[world, actor] = pose.yaw
+            slope[world, actor] = pose.slope
+            speed[world, actor] = pose.speed
+            yaw_rate[world, actor] = pose.yaw_rate
+            travelled[world, actor] = pose.travelled
+            present[world, actor] = pose.present

@@ -1,0 +1,53 @@
+"""From a recording to a table of motion."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.jit import kernel
+from eyas.state.motion import SAMPLE, Motion
+from eyas.state.terrain import Terrain, relief_at, slope_at
+from eyas.traffic.recording import Recording
+from eyas.traffic.smoothing import Tracks, smooth
+
+__all__ = ["recorded_motion", "table_of"]
+
+
+def recorded_motion(recording: Recording, terrain: Terrain, kind: NDArray[np.int32]) -> Motion:
+    """Return the smooth motion of what SUMO drove, on the ground of its map.
+
+    Args:
+        recording: What SUMO drove.
+        terrain: The ground; roads follow its relief.
+        kind: What each actor is, see `Motion`, shape (A,).
+    """
+    assert kind.shape == (recording.actors,), f"kind: shape {kind.shape}"
+    return Motion(table_of(smooth(recording), terrain), kind, float(recording.rate), 0.0)
+
+
+def table_of(tracks: Tracks, terrain: Terrain) -> NDArray[np.void]:
+    """Return `Motion.table` of tracks on a terrain."""
+    table = np.zeros(tracks.present.shape, SAMPLE)
+    table["x"], table["y"] = np.moveaxis(tracks.position, -1, 0)
+    table["velocity_x"], table["velocity_y"] = np.moveaxis(tracks.velocity, -1, 0)
+    table["yaw"] = tracks.yaw
+    table["yaw_rate"] = tracks.yaw_rate
+    table["travelled"] = tracks.travelled
+    table["present"] = tracks.present
+    if terrain.relief.size:  # on flat ground all heights and slopes are 0 already
+        _lay(table, terrain)
+    return table
+
+
+@kernel
+def _lay(table: NDArray[np.void], terrain: Terrain) -> None:
+    """Lay the motion on the ground."""
+    for row in range(table.shape[0]):
+        for actor in range(table.shape[1]):
+            sample = table[row, actor]
+            east, north = slope_at(terrain, sample.x, sample.y)
+            sample.z = relief_at(terrain, sample.x, sample.y)
+            sample.velocity_z = east * sample.velocity_x + north * sample.velocity_y
+            along = east * math.cos(sample.yaw) + north * math.sin(sample.yaw)
+            sample.slope = math.atan(along)
