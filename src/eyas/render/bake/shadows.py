@@ -76,9 +76,11 @@ def _frame(
     right = right / np.linalg.norm(right) if np.linalg.norm(right) > 1e-6 else np.eye(3)[0]
     axes = np.stack([right, np.cross(toward, right), toward])
     flat = _casting_points(geometry, ground + 0.5) @ axes.T
-    low, top = flat.min(axis=0) - 1.0, flat.max(axis=0) + 1.0
+    # Rounded, because last bits differ between processors: the longer side may be a whole number
+    # of texels, and one more of them moves nothing but would make another map.
+    low, top = np.round(flat.min(axis=0) - 1.0, 3), np.round(flat.max(axis=0) + 1.0, 3)
     texel = max(TEXEL, float((top - low)[:2].max()) / (LARGEST - 4))
-    size = np.ceil((top - low)[:2] / texel).astype(int) + 2
+    size = np.ceil(np.round((top - low)[:2] / texel, 6)).astype(int) + 2
     # The floor may reach lower than all that throws shadows; its height is then below 0.
     unit = 65000.0 / float(top[2] - low[2])
     scale = np.array([1.0 / texel, 1.0 / texel, unit])

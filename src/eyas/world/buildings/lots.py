@@ -1,5 +1,6 @@
 """City blocks cut into lots, and footprints shaped to fill them. Lengths in metres, plan view."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -7,6 +8,8 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 from shapely import affinity
+
+from eyas.world.build.millimetres import snapped
 
 __all__ = ["BAY", "Lot", "divide", "footprint_in", "frame_angle", "largest", "turned"]
 
@@ -27,11 +30,17 @@ class Lot:
 
 
 def frame_angle(block: shapely.Polygon) -> float:
-    """Return the direction of the longer side of the block's tightest rectangle [rad]."""
+    """Return the direction of the longer side of the block's tightest rectangle [rad].
+
+    Within -22.5° to 157.5°: of the two directions of a side the same one always, however the
+    rectangle's corners are ordered.
+    """
     corners = shapely.get_coordinates(shapely.minimum_rotated_rectangle(block))
     sides = np.diff(corners, axis=0)[:2]
     longest = sides[int(np.argmax(np.linalg.norm(sides, axis=1)))]
-    return float(np.arctan2(longest[1], longest[0]))
+    angle = math.atan2(longest[1], longest[0])
+    # Streets along an axis are common, so the range must not begin or end there.
+    return round((angle + math.pi / 8) % math.pi - math.pi / 8, 9)
 
 
 def divide(ground: shapely.Polygon, wanted: Sequence[tuple[float, bool]]) -> list[tuple[Lot, bool]]:
@@ -207,5 +216,5 @@ def largest(shape: shapely.Geometry) -> shapely.Polygon:
 
 
 def turned(shape: shapely.Geometry, angle: float) -> shapely.Geometry:
-    """Return a shape turned counter-clockwise about the origin [rad]."""
-    return affinity.rotate(shape, angle, origin=(0, 0), use_radians=True)
+    """Return a shape turned counter-clockwise about the origin [rad], in whole millimetres."""
+    return snapped(affinity.rotate(shape, angle, origin=(0, 0), use_radians=True))

@@ -10,6 +10,7 @@ from eyas.mesh.flat import flat_polygon
 from eyas.state.mesh import Mesh
 from eyas.world.build.heights import FLOOR_HEIGHT, KERB_HEIGHT
 from eyas.world.build.materials import TEXTURES, material
+from eyas.world.build.millimetres import rounded
 from eyas.world.roads.areas import skirt, surface
 
 __all__ = [
@@ -162,8 +163,8 @@ def _grass_patches(extent: shapely.Polygon, rng: np.random.Generator) -> list[sh
         phase, size = rng.uniform(0, 2 * np.pi, (3, 1)), rng.uniform(0.06, 0.18, (3, 1))
         waves = (size * np.sin(angle * [[1], [2], [3]] + phase)).sum(axis=0)
         outline = rng.uniform(*_PATCH) * (1 + waves)[:, None] * ring
-        outer[index % 2].append(shapely.Polygon(middle + outline))
-        inner[index % 2].append(shapely.Polygon(middle + _FADE * outline))
+        outer[index % 2].append(shapely.Polygon(rounded(middle + outline)))
+        inner[index % 2].append(shapely.Polygon(rounded(middle + _FADE * outline)))
     dry, lush = map(shapely.union_all, inner)
     dry_edge, lush_edge = map(shapely.union_all, outer)
     return [dry_edge, dry, lush_edge, lush]

@@ -8,6 +8,7 @@ from eyas.mesh.assembly import concatenate
 from eyas.mesh.flat import quads
 from eyas.state.mesh import Mesh
 from eyas.world.build.materials import TEXTURES, material
+from eyas.world.build.millimetres import rounded, snapped, unit
 from eyas.world.roads.curves import TURN, arc
 from eyas.world.roads.overpass import DECK_WIDTH, path
 
@@ -73,17 +74,19 @@ def access_road(foot: Points, onwards: Points, roads: shapely.Geometry) -> shape
         onwards: Unit vector up the ramp, shape (2,).
         roads: Asphalt of the streets [m].
     """
-    corner = foot - _BACK * onwards
+    corner = rounded(foot - _BACK * onwards)
     street = shapely.get_coordinates(shapely.shortest_line(shapely.Point(corner), roads))[-1]
     bend = arc(foot, corner, street, _BEND)
-    beyond = street + (street - corner) / np.linalg.norm(street - corner)
+    beyond = rounded(street + unit(street - corner))
     line = shapely.LineString(np.concatenate([foot[None], bend, beyond[None]]))
-    strip = shapely.buffer(line, DECK_WIDTH / 2, cap_style="flat", quad_segs=24)
+    strip = snapped(shapely.buffer(line, DECK_WIDTH / 2, cap_style="flat", quad_segs=24))
     near = shapely.intersection(roads, shapely.buffer(strip, 40.0))
     both = shapely.union(near, strip)
-    closed = shapely.buffer(shapely.buffer(both, TURN), -TURN)
+    closed = snapped(shapely.buffer(shapely.buffer(both, TURN), -TURN))
     mouth = shapely.intersection(closed, shapely.Point(street).buffer(2.0 * DECK_WIDTH))
-    return shapely.difference(shapely.union(strip, mouth), roads)
+    # Rounding leaves slivers along the edge of the street.
+    parts = shapely.get_parts(shapely.difference(shapely.union(strip, mouth), roads))
+    return max(parts, key=shapely.area)
 
 
 def descent(middle: Points, floor: float) -> Points:
@@ -96,8 +99,7 @@ def descent(middle: Points, floor: float) -> Points:
     Returns:
         Middle of the way down, shape (K, 3) [m].
     """
-    onwards = middle[-1, :2] - middle[-2, :2]
-    onwards /= np.linalg.norm(onwards)
+    onwards = unit(middle[-1, :2] - middle[-2, :2])
     line = [middle[-1, :2], middle[-1, :2] + _TAIL * onwards]
     profile = ((0.0, middle[-1, 2]), (0.96, floor + 0.1), (1.0, floor))
     # Far away every third cross-section is enough.

@@ -7,6 +7,7 @@ import shapely
 from numpy.typing import NDArray
 
 from eyas.state.scene import ObjectClass
+from eyas.world.build.millimetres import length, unit
 from eyas.world.build.scene_builder import SceneBuilder
 from eyas.world.plants.shrubs import KINDS, PIECE
 
@@ -63,10 +64,9 @@ def _paths(
 ) -> Iterator[shapely.Polygon]:
     """Yield straight paths from the middle of walls to a pavement that nothing stands in."""
     for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-        length = float(np.linalg.norm(end - start))
-        if length < _DOOR_WALL:
+        if length(end - start) < _DOOR_WALL:
             continue
-        along = (end - start) / length
+        along = unit(end - start)
         outwards = np.array([along[1], -along[0]])
         door = (start + end) / 2
         ray = shapely.LineString([door, door + _LONGEST_PATH * outwards])
@@ -100,10 +100,9 @@ def add_borders(
     shapely.prepare(free)
     for corners in footprints:
         for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
-            length = float(np.linalg.norm(end - start))
-            if length < 5.0 or rng.random() > _PLANTED:
+            if length(end - start) < 5.0 or rng.random() > _PLANTED:
                 continue
-            along = (end - start) / length
+            along = unit(end - start)
             line = np.stack([start, end]) + _BORDER * np.array([along[1], -along[0]])
             kinds = ("hedge",) if rng.random() < _CLIPPED else _BORDERS
             add_row(builder, kinds, line, free, floor, first, rng)
@@ -129,11 +128,10 @@ def add_row(
         first: Number of the first of `plant_levels` among the fixtures.
         rng: Of the gardens.
     """
-    length = float(np.linalg.norm(line[1] - line[0]))
-    along = (line[1] - line[0]) / length
+    whole, along = length(line[1] - line[0]), unit(line[1] - line[0])
     turn = float(np.arctan2(along[1], along[0]))
-    step = length / max(round(length / PIECE), 1)
-    for at in np.arange(step / 2, length, step):
+    step = whole / max(round(whole / PIECE), 1)
+    for at in np.arange(step / 2, whole, step):
         middle = line[0] + at * along
         ends = middle + np.outer([-0.5, 0.5], PIECE * along)
         if shapely.contains(room, shapely.LineString(ends)):

@@ -12,6 +12,7 @@ from eyas.mesh.assembly import concatenate
 from eyas.mesh.flat import flat_polygon, wall_along
 from eyas.state.mesh import Material, Mesh
 from eyas.state.roads import RoadNetwork
+from eyas.world.build.millimetres import dot, snapped
 from eyas.world.roads.curves import rounded_kerbs
 
 __all__ = [
@@ -93,7 +94,7 @@ def joints(network: RoadNetwork) -> dict[str, int]:
 def road_area(network: RoadNetwork) -> shapely.MultiPolygon:
     """Return what is paved for cars: all lanes and junctions, with room to turn at corners."""
     rounded = rounded_kerbs(corridors(network), _bends(network))
-    return shapely.MultiPolygon(polygons_of(shapely.simplify(rounded, 0.035)))
+    return shapely.MultiPolygon(polygons_of(snapped(shapely.simplify(rounded, 0.035))))
 
 
 def corridors(network: RoadNetwork) -> shapely.MultiPolygon:
@@ -114,7 +115,7 @@ def corridors(network: RoadNetwork) -> shapely.MultiPolygon:
     # Millimetre gaps between lanes and junctions close; corners stay where they are.
     closed = shapely.buffer(shapely.union_all(shapes), 0.05, join_style="mitre")
     opened = shapely.buffer(closed, -0.05, join_style="mitre")
-    return shapely.MultiPolygon(polygons_of(shapely.simplify(opened, 0.01)))
+    return shapely.MultiPolygon(polygons_of(snapped(shapely.simplify(opened, 0.01))))
 
 
 def corners(roads: shapely.Geometry, sharp: shapely.Geometry) -> list[shapely.Polygon]:
@@ -124,7 +125,8 @@ def corners(roads: shapely.Geometry, sharp: shapely.Geometry) -> list[shapely.Po
         roads: From `road_area` [m].
         sharp: From `corridors` [m].
     """
-    added = polygons_of(shapely.difference(roads, sharp))
+    # Both are rounded to millimetres: without slivers between, which would join two corners.
+    added = polygons_of(shapely.difference(roads, shapely.buffer(sharp, 0.02, join_style="mitre")))
     return [shapely.buffer(part.centroid, _AT_CORNER) for part in added if part.area > 2.0]
 
 
@@ -213,7 +215,7 @@ def _bends(network: RoadNetwork) -> list[tuple[Line, float]]:
         if len(others) == 1:
             onwards, back = np.diff(one, axis=0)[0], np.diff(others[0], axis=0)[0]
             sine = onwards[0] * back[1] - onwards[1] * back[0]
-            angle = np.pi - abs(np.arctan2(sine, onwards @ back))
+            angle = np.pi - abs(np.arctan2(sine, dot(onwards, back)))
             bends.append(((one[1] + others[0][1]) / 2, float(angle)))
     return bends
 

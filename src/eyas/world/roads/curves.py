@@ -4,6 +4,8 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.world.build.millimetres import dot, rounded, snapped, unit
+
 __all__ = ["TURN", "arc", "joined", "rounded_kerbs", "turn_reach"]
 
 TURN = 7.5
@@ -15,21 +17,23 @@ Points = NDArray[np.float64]
 def arc(before: Points, corner: Points, after: Points, radius: float) -> Points:
     """Return an arc that touches both sides of a corner, in steps of 5° or less, shape (K, 2) [m].
 
+    Its points are at whole millimetres.
+
     Args:
         before: Any point on the way to the corner.
         corner: Where the straight pieces would meet.
         after: Any point on the way from the corner.
         radius: Of the arc [m].
     """
-    back, onwards = _unit(before - corner), _unit(after - corner)
-    half = 0.5 * np.arccos(np.clip(back @ onwards, -1.0, 1.0))
+    back, onwards = unit(before - corner), unit(after - corner)
+    half = 0.5 * np.arccos(np.clip(dot(back, onwards), -1.0, 1.0))
     reach = radius / np.tan(half)
-    centre = corner + _unit(back + onwards) * radius / np.sin(half)
+    centre = corner + unit(back + onwards) * radius / np.sin(half)
     first, last = corner + reach * back - centre, corner + reach * onwards - centre
-    turn = np.arctan2(first[0] * last[1] - first[1] * last[0], first @ last)
+    turn = np.arctan2(first[0] * last[1] - first[1] * last[0], dot(first, last))
     steps = max(3, int(np.ceil(abs(turn) / np.radians(5.0))))
     angle = np.linspace(0.0, turn, steps + 1)[:, None]
-    return np.asarray(centre + np.cos(angle) * first + np.sin(angle) * [-first[1], first[0]])
+    return rounded(centre + np.cos(angle) * first + np.sin(angle) * [-first[1], first[0]])
 
 
 def turn_reach(angle: float) -> float:
@@ -44,7 +48,7 @@ def joined(before: Points, after: Points) -> Points:
         before: Up to the bend, shape (K, 2) [m].
         after: From the bend on, shape (K, 2) [m].
     """
-    onwards, further = _unit(before[-1] - before[-2]), _unit(after[1] - after[0])
+    onwards, further = unit(before[-1] - before[-2]), unit(after[1] - after[0])
     sine = _cross(onwards, further)
     if abs(sine) < 1e-3:
         return np.concatenate([before, after])
@@ -52,7 +56,7 @@ def joined(before: Points, after: Points) -> Points:
     # From the ends of both lines to the point where they would meet, below zero if they cross.
     left, right = _cross(gap, further) / sine, _cross(onwards, gap) / sine
     corner = before[-1] + left * onwards
-    angle = float(np.arctan2(abs(sine), onwards @ further))
+    angle = float(np.arctan2(abs(sine), dot(onwards, further)))
     reach = max(left, right, turn_reach(angle))
     bend = arc(corner - onwards, corner, corner + further, reach / np.tan(angle / 2))
     return np.concatenate([before[:-1], bend, after[1:]])
@@ -67,8 +71,8 @@ def rounded_kerbs(area: shapely.Geometry, bends: list[tuple[Points, float]]) -> 
     """
     parts = [area, _closed(area, TURN)]
     for place, angle in bends:
-        radius = turn_reach(angle) / max(np.tan(angle / 2), 1e-3)
-        if radius > TURN + 1e-6:
+        radius = round(float(turn_reach(angle) / max(np.tan(angle / 2), 1e-3)), 3)
+        if radius > TURN:
             near = shapely.intersection(area, _disc(place, 45.0))
             parts.append(shapely.intersection(_closed(near, radius), _disc(place, 30.0)))
     return shapely.union_all(parts)
@@ -77,7 +81,8 @@ def rounded_kerbs(area: shapely.Geometry, bends: list[tuple[Points, float]]) -> 
 def _closed(area: shapely.Geometry, radius: float) -> shapely.Geometry:
     # Eight chords in a right angle leave 4 cm to the arc; a wider arc needs more.
     steps = int(max(8, radius))
-    return shapely.buffer(shapely.buffer(area, radius, quad_segs=steps), -radius, quad_segs=steps)
+    grown = shapely.buffer(area, radius, quad_segs=steps)
+    return snapped(shapely.buffer(grown, -radius, quad_segs=steps))
 
 
 def _disc(place: Points, radius: float) -> shapely.Polygon:
@@ -86,7 +91,3 @@ def _disc(place: Points, radius: float) -> shapely.Polygon:
 
 def _cross(a: Points, b: Points) -> float:
     return float(a[0] * b[1] - a[1] * b[0])
-
-
-def _unit(vector: Points) -> Points:
-    return np.asarray(vector / np.linalg.norm(vector))

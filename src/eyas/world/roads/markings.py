@@ -14,6 +14,7 @@ from eyas.mesh.flat import flat_polygon
 from eyas.state.mesh import Material, Mesh
 from eyas.state.roads import RoadNetwork
 from eyas.world.build.materials import TEXTURES, material
+from eyas.world.build.millimetres import dot, rounded, unit
 from eyas.world.roads.areas import Street, joints, split_on_grid, streets
 from eyas.world.roads.curves import joined
 
@@ -146,16 +147,16 @@ def _comes_first(line: Line) -> bool:
 
 def _frame(street: Street) -> tuple[Line, Line, Line, float]:
     """Return right end of the stop line, directions onwards and to the left, and the width."""
-    onwards = _unit(street.right[-1] - street.right[-2])
+    onwards = unit(street.right[-1] - street.right[-2])
     leftwards = np.array([-onwards[1], onwards[0]])
-    width = float((street.left[-1] - street.right[-1]) @ leftwards)
+    width = dot(street.left[-1] - street.right[-1], leftwards)
     return street.right[-1], onwards, leftwards, width
 
 
 def _placed(street: Street, outline: ArrayLike) -> shapely.Polygon:
     """Return a shape given from the stop line's right end onwards and to the left [m]."""
     origin, onwards, leftwards, _ = _frame(street)
-    return shapely.Polygon(np.asarray(outline) @ np.stack([onwards, leftwards]) + origin)
+    return shapely.Polygon(rounded(np.asarray(outline) @ np.stack([onwards, leftwards]) + origin))
 
 
 def _stop_line(street: Street) -> shapely.Polygon:
@@ -194,15 +195,15 @@ def _arrows(street: Street, leaving: Sequence[Street]) -> list[shapely.Polygon]:
     """
     _, onwards, leftwards, width = _frame(street)
     turns = [
-        _unit(other.right[1] - other.right[0]) for other in leaving if other.end != street.start
+        unit(other.right[1] - other.right[0]) for other in leaving if other.end != street.start
     ]
-    ahead = any(turn @ onwards > 0.7 for turn in turns)
+    ahead = any(dot(turn, onwards) > 0.7 for turn in turns)
     lanes = len(street.dividers) + 1
     made = []
     for lane in range(lanes):
         parts = [_TAIL, *([_HEAD] if ahead else [])]
         for outermost, side in ((0, -1.0), (lanes - 1, 1.0)):
-            if lane == outermost and any(side * (turn @ leftwards) > 0.7 for turn in turns):
+            if lane == outermost and any(side * dot(turn, leftwards) > 0.7 for turn in turns):
                 parts.append([(x, side * y) for x, y in _HOOK])
         if len(parts) > 1:
             arrow = shapely.union_all([shapely.Polygon(part) for part in parts])
@@ -213,7 +214,3 @@ def _arrows(street: Street, leaving: Sequence[Street]) -> list[shapely.Polygon]:
 
 def _rectangle(x0: float, x1: float, y0: float, y1: float) -> list[tuple[float, float]]:
     return [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]
-
-
-def _unit(vector: Line) -> Line:
-    return np.asarray(vector / np.linalg.norm(vector))

@@ -10,6 +10,7 @@ from eyas.mesh.assembly import concatenate
 from eyas.mesh.flat import quads
 from eyas.state.mesh import Material, Mesh
 from eyas.world.build.materials import TEXTURES, material
+from eyas.world.build.millimetres import rounded
 from eyas.world.roads.curves import arc
 
 __all__ = [
@@ -65,7 +66,7 @@ def path(
         radii: Of the arc at each corner but the first and last [m].
         profile: Share of the whole length and z there [m]; between, z eases from one to the next.
     """
-    points = np.asarray(corners, np.float64)
+    points = rounded(corners)
     pieces = [points[:1]]
     for before, corner, after, radius in zip(
         points[:-2], points[1:-1], points[2:], radii, strict=True

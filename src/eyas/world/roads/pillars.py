@@ -10,6 +10,7 @@ from eyas.mesh.assembly import concatenate, transformed
 from eyas.mesh.solids import box, cylinder
 from eyas.state.mesh import Mesh
 from eyas.world.build.materials import TEXTURES, material
+from eyas.world.build.millimetres import unit
 from eyas.world.roads.overpass import DECK_DEPTH, SOLID_BELOW
 
 __all__ = ["BASE_HEIGHT", "COLUMN_RADIUS", "Pillar", "pillar_mesh", "pillars"]
@@ -99,7 +100,6 @@ def pillar_mesh(pillar: Pillar, floor: float) -> Mesh:
 
 
 def _pillar(middle: Points, station: int) -> Pillar:
-    onwards = middle[station + 1, :2] - middle[station - 1, :2]
-    onwards /= np.linalg.norm(onwards)
+    onwards = unit(middle[station + 1, :2] - middle[station - 1, :2])
     across = np.array([onwards[1], -onwards[0]])
     return Pillar(middle[station, :2].copy(), across, float(middle[station, 2] - DECK_DEPTH))

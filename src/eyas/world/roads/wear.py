@@ -15,6 +15,7 @@ from eyas.mesh.flat import quads
 from eyas.state.mesh import Material, Mesh
 from eyas.state.roads import RoadNetwork
 from eyas.world.build.materials import TEXTURES, material
+from eyas.world.build.millimetres import unit
 from eyas.world.roads.areas import GRID
 
 __all__ = ["WEAR_HEIGHTS", "road_wear"]
@@ -96,7 +97,7 @@ def _places(length: float, every: float, rng: np.random.Generator) -> Line:
 def _beside(lane: shapely.LineString, start: float, end: float, right: float, left: float) -> Line:
     """Return the corners of a rectangle along a lane, counter-clockwise, shape (4, 2) [m]."""
     from_, onward = (shapely.get_coordinates(lane.interpolate(s))[0] for s in (start, start + 0.5))
-    along = (onward - from_) / np.linalg.norm(onward - from_)
+    along = unit(onward - from_)
     across = np.array([-along[1], along[0]])
     reach = end - start
     corners = [(0.0, right), (reach, right), (reach, left), (0.0, left)]
@@ -127,7 +128,7 @@ def _tracks(lane: shapely.LineString, start: float, paved: Material) -> Mesh:
 def _seal(lane: shapely.LineString, at: float, rng: np.random.Generator) -> Mesh:
     """Return a crack that was sealed with tar: a thin line that wanders across or along a lane."""
     here, there = (shapely.get_coordinates(lane.interpolate(s))[0] for s in (at, at + 0.5))
-    onwards = (there - here) / np.linalg.norm(there - here)
+    onwards = unit(there - here)
     leftwards = np.array([-onwards[1], onwards[0]])
     crossing = rng.random() < 0.6
     way, aside = (leftwards, onwards) if crossing else (onwards, leftwards)

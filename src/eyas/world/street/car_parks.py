@@ -7,6 +7,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.world.build.millimetres import rounded
 from eyas.world.buildings.lots import frame_angle, turned
 from eyas.world.land.ground import PAVEMENT_WIDTH
 
@@ -27,7 +28,7 @@ class CarPark:
     """A car park in plan view."""
 
     area: shapely.Polygon
-    """Where cars stand, and the driveway [m]."""
+    """Where cars stand, and the driveway, which ends a little beyond the kerb [m]."""
     lines: list[shapely.Polygon]
     """Paint between the bays [m]."""
     bays: NDArray[np.float64]
@@ -109,13 +110,16 @@ def _placed(
     middle = (west + east) / 2
     street = (south - 25.0, south + 0.5) if side == 0 else (north - 0.5, north + 25.0)
     drive = shapely.box(middle - _DRIVEWAY / 2, street[0], middle + _DRIVEWAY / 2, street[1])
-    way = shapely.intersection(drive, turned(block, -angle))
+    # A little beyond the kerb: rounding leaves no gap to the road, whose edge counts.
+    way = shapely.intersection(
+        drive, shapely.buffer(turned(block, -angle), 0.05, join_style="mitre")
+    )
     entrance = shapely.buffer(way, _BAY_LENGTH + 0.3, join_style="mitre")
     lines = [line for line in _bays(rectangle) if not line.intersects(entrance)]
     area = turned(shapely.union(rectangle, way), angle)
     bays = _between(lines)
     cosine, sine = np.cos(angle), np.sin(angle)
-    bays[:, :2] = bays[:, :2] @ np.array([[cosine, sine], [-sine, cosine]])
+    bays[:, :2] = rounded(bays[:, :2] @ np.array([[cosine, sine], [-sine, cosine]]))
     bays[:, 2] += angle
     return CarPark(area, [turned(line, angle) for line in lines], bays)
 
@@ -134,7 +138,7 @@ def _bays(rectangle: shapely.Polygon) -> list[shapely.Polygon]:
     count = int((east - west - 1.0) // _BAY_WIDTH)
     first = (west + east - count * _BAY_WIDTH) / 2
     lines = []
-    for module in range(int((north - south) // _MODULE)):
+    for module in range(int(round(north - south, 3) // _MODULE)):
         low = south + module * _MODULE
         for y in (low + 0.3, low + _MODULE - 0.3 - _BAY_LENGTH):
             lines += [

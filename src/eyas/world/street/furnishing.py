@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from eyas.state.mesh import Mesh
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import ObjectClass
+from eyas.world.build.millimetres import unit
 from eyas.world.build.scene_builder import SceneBuilder
 from eyas.world.roads.areas import streets
 from eyas.world.street.furniture import KINDS, furniture_levels
@@ -92,7 +93,7 @@ def _places(
             here, there = (
                 shapely.get_coordinates(kerb.interpolate(s))[0] for s in (along, along + 0.1)
             )
-            onwards = (there - here) / np.linalg.norm(there - here)
+            onwards = unit(there - here)
             leftwards = np.array([-onwards[1], onwards[0]])
             turn = float(np.arctan2(leftwards[1], leftwards[0]) - np.pi / 2)
             made.append((here - rule.beyond_kerb * leftwards, turn))

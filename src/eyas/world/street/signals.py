@@ -15,6 +15,7 @@ from eyas.state.roads import RoadNetwork
 from eyas.state.scene import ObjectClass
 from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.materials import material
+from eyas.world.build.millimetres import unit
 from eyas.world.build.scene_builder import SceneBuilder
 from eyas.world.roads.areas import joints, road_area, streets
 
@@ -50,8 +51,7 @@ def signal_places(network: RoadNetwork) -> list[tuple[NDArray[np.float64], float
     for street in streets(network):
         if meeting[street.end] < 3:
             continue
-        onwards = street.right[-1] - street.right[-2]
-        onwards /= np.linalg.norm(onwards)
+        onwards = unit(street.right[-1] - street.right[-2])
         leftwards = np.array([-onwards[1], onwards[0]])
         foot = street.right[-1] - _BEYOND_KERB * leftwards - _BEFORE_LINE * onwards
         if shapely.distance(road, shapely.Point(foot)) > POLE_RADIUS:

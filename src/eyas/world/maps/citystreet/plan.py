@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from eyas.core.rng import stream
 from eyas.state.roads import RoadNetwork
 from eyas.world.build.heights import FLOOR_HEIGHT
+from eyas.world.build.millimetres import unit
 from eyas.world.buildings import placing as buildings
 from eyas.world.buildings.lots import frame_angle, turned
 from eyas.world.land import ground, outskirts
@@ -110,8 +111,8 @@ def make_plan(network: RoadNetwork, seed: int) -> Plan:
     roads = road_area(network)
     closed, _ = blocks(sharp := corridors(network), EXTENT)
     middle = _overpass_path(seed)
-    onwards = (middle[1] - middle[0])[:2]
-    access = outskirts.access_road(middle[0, :2], onwards / np.linalg.norm(onwards), roads)
+    onwards = unit((middle[1] - middle[0])[:2])
+    access = outskirts.access_road(middle[0, :2], onwards, roads)
     columns = pillars(middle, _PILLARS, FLOOR_HEIGHT, roads)
     deck = shapely.buffer(overpass.deck_area(middle), 3.0)
     rng = stream(seed, "citystreet lots")
@@ -154,7 +155,9 @@ def _pavement(
     """Return the pavements, without what driveways and the foot of the ramp take."""
     lanes = shapely.difference(shapely.union_all(lots), roads)
     verge = ground.verge_area(outside, shapely.union(roads, access))
-    verge = shapely.difference(verge, overpass.deck_area(deck[:9]))
+    # A little more than the ramp: rounding leaves a sliver between it and the access road.
+    ramp = shapely.buffer(overpass.deck_area(deck[:9]), 0.01, join_style="mitre")
+    verge = shapely.difference(verge, ramp)
     return shapely.union(ground.pavement_area(inside, lanes), verge)
 
 
@@ -162,7 +165,7 @@ def _overpass_path(seed: int) -> Points:
     """Return the elevated road: up a ramp in the west, then beside three streets to the east."""
     at = {node.name: np.array([node.x, node.y]) for node in road_graph(seed).nodes}
     origin = at["B2"]
-    east = (at["C2"] - origin) / np.linalg.norm(at["C2"] - origin)
+    east = unit(at["C2"] - origin)
     frame = np.stack([east, [-east[1], east[0]]])
     west, third = frame @ (at["A4"] - origin)
     second = frame[0] @ (at["C2"] - origin)

@@ -1,0 +1,98 @@
+"""A map comes out the same on a processor with other instructions.
+
+The other processor is this one, in a process of its own in which numpy, BLAS and the C library are
+told to do without its newer instructions: their sines, logarithms and products of matrices then
+differ in the last bits.
+"""
+
+import dataclasses
+import os
+import pickle
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+import shapely
+
+from eyas.core.rng import stream
+from eyas.world.buildings.facades import mesh_of
+from eyas.world.maps import build_scene, shipped_network
+from eyas.world.maps.citystreet.plan import make_plan
+from eyas.world.plants.shrubs import plant_levels
+from eyas.world.plants.trees import street_tree_levels
+
+
+def of_the_plan():
+    plan = make_plan(shipped_network("citystreet"), 0)
+    rng = stream(0, "test")
+    plants = [street_tree_levels(rng, 0), *plant_levels(rng)]
+    return plan, [mesh_of(building) for building in plan.buildings[:20]], plants
+
+
+def of_the_scene():
+    return build_scene("citystreet", shipped_network("citystreet"), 0)
+
+
+def of_the_processor():
+    return [float(value) for value in np.exp(np.linspace(0.0, 9.0, 9999))]
+
+
+MAKERS = {"plan": of_the_plan, "scene": of_the_scene, "processor": of_the_processor}
+NEWER = np.show_config(mode="dicts")["SIMD Extensions"].get("found", [])
+
+
+def elsewhere(name):
+    """Return what a maker makes on the other processor."""
+    other = {
+        "NPY_DISABLE_CPU_FEATURES": " ".join(NEWER),
+        "OPENBLAS_CORETYPE": "Nehalem",
+        "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX512F",
+    }
+    run = subprocess.run(
+        [sys.executable, "-W", "ignore", __file__, name],
+        env=os.environ | other,
+        capture_output=True,
+        check=False,
+    )
+    assert run.returncode == 0, run.stderr.decode()
+    return pickle.loads(run.stdout)
+
+
+def differences(here, there, path=""):
+    """Yield where two things differ: numbers by more than last bits, all else at all."""
+    if dataclasses.is_dataclass(here):
+        for field in dataclasses.fields(here):
+            name = field.name
+            yield from differences(getattr(here, name), getattr(there, name), f"{path}.{name}")
+    elif isinstance(here, (list, tuple)) and len(here) == len(there):
+        for index, (one, other) in enumerate(zip(here, there, strict=True)):
+            yield from differences(one, other, f"{path}[{index}]")
+    elif isinstance(here, shapely.Geometry):
+        if not shapely.equals_exact(here, there, 1e-9):
+            yield path
+    elif isinstance(here, (np.ndarray, float)):
+        # Single precision: last bits of coordinates of a few hundred metres.
+        exact = np.asarray(here).dtype.kind in "iub"
+        if np.shape(here) != np.shape(there) or not np.allclose(
+            here, there, rtol=0.0, atol=0.0 if exact else 1e-4
+        ):
+            yield path
+    elif here != there:
+        yield path
+
+
+@pytest.mark.parametrize("name", ["plan", pytest.param("scene", marks=pytest.mark.slow)])
+def test_a_map_is_the_same_on_another_processor(name):
+    assert list(differences(MAKERS[name](), elsewhere(name))) == []
+
+
+@pytest.mark.skipif(not NEWER, reason="this processor has no newer instructions to do without")
+def test_the_other_processor_computes_other_last_bits():
+    here, there = np.array(of_the_processor()), np.array(elsewhere("processor"))
+    assert (here != there).any()
+    np.testing.assert_allclose(here, there, rtol=1e-12)
+
+
+if __name__ == "__main__":
+    sys.stdout.buffer.write(pickle.dumps(MAKERS[sys.argv[1]]()))
