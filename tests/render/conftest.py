@@ -22,7 +22,7 @@ def renderer_of(tmp_path_factory, images) -> Callable[..., Renderer]:
 
     def build(scene: Scene, parts: PartLibrary | None = None, lighting: Lighting = DAY) -> Renderer:
         geometry = build_geometry(scene, parts or PartLibrary(()), images)
-        return build_renderer(scene, geometry, lighting, shadow_cache=folder)
+        return build_renderer(scene, geometry, lighting, cache=folder)
 
     return build
 

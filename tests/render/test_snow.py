@@ -56,7 +56,7 @@ def with_lanes(scene, *lanes):
 def seen(drawn, images, tmp_path):
     def see(scene, lighting, views=None, size=(96, 128), parts=None):
         geometry = build_geometry(scene, PartLibrary(()), images)
-        renderer = build_renderer(scene, geometry, lighting, shadow_cache=tmp_path)
+        renderer = build_renderer(scene, geometry, lighting, cache=tmp_path)
         views = views or looking([(0.3, 0.2, 20.0)], pitch=1.5707, fov=1.0)
         return drawn(renderer, views, size=size).rgb[0].astype(float)
 

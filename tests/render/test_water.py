@@ -22,7 +22,7 @@ def lake(tmp_path_factory):
     scene = scene_of([mesh], [GROUND])
     folder = tmp_path_factory.mktemp("shadows")
     geometry = build_geometry(scene, PartLibrary(()), build_textures())
-    return build_renderer(scene, geometry, DAY, shadow_cache=folder)
+    return build_renderer(scene, geometry, DAY, cache=folder)
 
 
 def picture_of(lake, drawn, pitch):

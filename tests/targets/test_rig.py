@@ -5,10 +5,10 @@ from eyas.state.draw import DrawList
 from eyas.state.motion import ActorState
 from eyas.state.scene import ACTOR_OBJECT
 from eyas.targets.catalogue import VEHICLES, models_of
-from eyas.targets.rig import LEAN_LIMIT, STEER_LIMIT, VehicleRigs
+from eyas.targets.rig import LEAN_LIMIT, STEER_LIMIT, build_rigs
 from eyas.traffic.config import VehicleType
 
-RIGS = {vehicle_type: VehicleRigs(vehicle_type) for vehicle_type in VehicleType}
+RIGS = {vehicle_type: build_rigs(vehicle_type) for vehicle_type in VehicleType}
 TYPES = list(VehicleType)
 
 

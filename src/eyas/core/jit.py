@@ -1,7 +1,7 @@
 """How kernels are compiled: one set of numba settings, cached on disk by a hash of the sources.
 
 numba's own cache notices a change of the function's file, not of a function it calls in another
-file. So the cache folder is named after a hash of every source file that holds kernels.
+file. So the folder of kernels is named after a hash of every source file that holds kernels.
 """
 
 import hashlib
@@ -12,14 +12,14 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
-import platformdirs
+from eyas.core.cache.folder import Kind, cache_folder, touch
 
 __all__ = [
     "KERNEL_SETTINGS",
-    "cache_folder",
     "inlined_kernel",
     "inner_kernel",
     "kernel",
+    "kernel_folder",
     "nothing_compiled",
     "specialised",
     "step_kernel",
@@ -38,9 +38,17 @@ def _source_hash() -> str:
     return digest.hexdigest()[:16]
 
 
-def cache_folder() -> Path:
+def kernel_folder() -> Path:
     """Return the folder where compiled kernels of exactly these sources are kept."""
-    return Path(platformdirs.user_cache_dir("eyas")) / "kernels" / _source_hash()
+    return cache_folder() / Kind.KERNELS / _source_hash()
+
+
+def _can_be_written(folder: Path) -> bool:
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return False
+    return os.access(folder, os.W_OK)
 
 
 def nothing_compiled() -> bool:
@@ -48,7 +56,8 @@ def nothing_compiled() -> bool:
     return not any(Path(os.environ["NUMBA_CACHE_DIR"]).rglob("*.nbc"))
 
 
-os.environ.setdefault("NUMBA_CACHE_DIR", str(cache_folder()))
+os.environ.setdefault("NUMBA_CACHE_DIR", str(kernel_folder()))
+touch(Path(os.environ["NUMBA_CACHE_DIR"]))
 
 # numba reads the setting above when it is imported, and may have been before.
 import numba  # noqa: E402
@@ -64,7 +73,15 @@ def thread_count() -> int:
 # Kernels allocate nothing, so they need not count who uses an array. Numba would: two atomic
 # operations for each array handed on, which threads that share the arrays pay for dearly
 # (pictures took three times as long).
-KERNEL_SETTINGS = {"cache": True, "error_model": "numpy", "fastmath": False, "_nrt": False}
+#
+# Without a folder of ours numba would keep kernels beside their sources, and then use old ones
+# after a change of what they call.
+KERNEL_SETTINGS = {
+    "cache": _can_be_written(Path(os.environ["NUMBA_CACHE_DIR"])),
+    "error_model": "numpy",
+    "fastmath": False,
+    "_nrt": False,
+}
 
 
 def _compiled(function: Function, **settings: object) -> Function:

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from eyas.core.jit import nothing_compiled
+from eyas.core.jit import KERNEL_SETTINGS, nothing_compiled
 from eyas.render.bake.ambient import AmbientMap
 from eyas.render.bake.shadows import ShadowMap
 from eyas.render.bake.tracks import TrackMap
@@ -44,6 +44,9 @@ def compile_ahead() -> Callable[[], object] | None:
     if not nothing_compiled():
         return None
     cache = Path(os.environ["NUMBA_CACHE_DIR"])
+    if not KERNEL_SETTINGS["cache"]:
+        _log.warning("compiling for about half a minute, at each start: cannot write to %s", cache)
+        return None
     _log.warning(
         "first start of this version: compiling for about half a minute, once; kept in %s", cache
     )

@@ -10,7 +10,6 @@ from eyas.core.errors import ConfigError
 from eyas.core.jit import thread_count
 from eyas.core.parallel import Held
 from eyas.render.bake.ambient import bake_ambient
-from eyas.render.bake.cache import shadow_folder
 from eyas.render.bake.shadows import bake_shadows
 from eyas.render.bake.tracks import TrackMap, track_map
 from eyas.render.classes import class_table, write_classes
@@ -155,7 +154,7 @@ def build_renderer(
     geometry: Geometry,
     lighting: Lighting,
     *,
-    shadow_cache: Path | None = None,
+    cache: Path | None = None,
     ready: Callable[[], object] | None = None,
 ) -> Renderer:
     """Return a renderer of a scene, its shadows baked.
@@ -164,13 +163,12 @@ def build_renderer(
         scene: What stands still.
         geometry: The scene and what moves in it, see `build_geometry`.
         lighting: Light and air.
-        shadow_cache: Folder for baked shadows; None: the user's cache folder.
+        cache: Folder of the cache; None: the user's.
         ready: See `Renderer`.
     """
-    folder = shadow_cache or shadow_folder()
-    shadows = bake_shadows(geometry, lighting.sun_direction, scene.ground_height, folder)
+    shadows = bake_shadows(geometry, lighting.sun_direction, scene.ground_height, cache)
     tracks = track_map(scene.network) if lighting.snow > 0 else TrackMap.none()
-    ambient = bake_ambient(scene, folder)
+    ambient = bake_ambient(scene, cache)
     light = build_light(lighting, shadows, ambient, scene.lamps, tracks, geometry)
     return Renderer(geometry, light, class_table(scene), ready)
 

@@ -7,8 +7,10 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from eyas.core.kept import kept
+from eyas.core.cache.cached import cached
+from eyas.core.cache.folder import Kind
 from eyas.render.ahead import compile_ahead
+from eyas.render.kernels.bundles import Geometry
 from eyas.render.pack.geometry import build_geometry
 from eyas.render.renderer import Renderer, build_renderer
 from eyas.render.textures.library import build_textures
@@ -16,7 +18,7 @@ from eyas.state.roads import RoadNetwork
 from eyas.state.scene import Lighting, Scene
 from eyas.state.terrain import Terrain
 from eyas.targets.catalogue import KINDS, kind_index
-from eyas.targets.rig import VehicleRigs
+from eyas.targets.rig import VehicleRigs, build_rigs
 from eyas.traffic.config import Demand, TrafficConfig
 from eyas.traffic.library import find_recording
 from eyas.traffic.network import build_network
@@ -55,11 +57,12 @@ def load_network(world: WorldConfig) -> RoadNetwork:
 def load_scene(map_name: str, seed: int) -> Scene:
     """Return everything of a map that stands still."""
     network = load_network(WorldConfig(map=map_name, seed=seed))
-    return kept(
-        "scene",
+    return cached(
+        Kind.SCENE,
         _SCENE_MAKERS,
         _inputs(map_name, seed, network),
         lambda: build_scene(map_name, network, seed),
+        of=Scene,
     )
 
 
@@ -87,7 +90,13 @@ def load_place(world: WorldConfig, traffic: TrafficConfig, trackers: int) -> Pla
 
 
 def _textures() -> dict[str, NDArray[np.uint8]]:
-    return kept("textures", ("render", "world/build/materials.py"), (), build_textures)
+    return cached(
+        Kind.TEXTURES,
+        ("render", "world/build/materials.py"),
+        (),
+        build_textures,
+        of=dict[str, NDArray[np.uint8]],
+    )
 
 
 @lru_cache(maxsize=2)
@@ -99,14 +108,19 @@ def _load_place(world: WorldConfig, traffic: TrafficConfig, trackers: int) -> Pl
     scene = load_scene(world.map, world.seed)
     kind = np.array([kind_index(name) for name in recording.vehicle_types], np.int32)
     vehicle_type = KINDS[kind[0]]
-    rigs = kept(
-        "rigs", ("targets", "mesh", "state"), (vehicle_type,), lambda: VehicleRigs(vehicle_type)
+    rigs = cached(
+        Kind.RIGS,
+        ("targets", "mesh", "state"),
+        (vehicle_type,),
+        lambda: build_rigs(vehicle_type),
+        of=VehicleRigs,
     )
-    geometry = kept(
-        "geometry",
+    geometry = cached(
+        Kind.GEOMETRY,
         ("render", "targets", *_SCENE_MAKERS),
         (vehicle_type, *_inputs(world.map, world.seed, scene.network)),
         lambda: build_geometry(scene, rigs.library, _textures()),
+        of=Geometry,
     )
     renderer = build_renderer(scene, geometry, light, ready=ready)
     ground = Terrain.flat(scene.ground_height)

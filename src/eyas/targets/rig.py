@@ -1,5 +1,6 @@
 """Rigs: where the parts of every vehicle are, from where it is and how far it has driven."""
 
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -14,26 +15,19 @@ from eyas.targets.vehicles.bodies import body_levels
 from eyas.targets.vehicles.wheels import wheel_levels
 from eyas.traffic.config import VehicleType
 
-__all__ = ["CENTRE_OFFSET", "LEAN_LIMIT", "STEER_LIMIT", "VehicleRigs"]
+__all__ = ["CENTRE_OFFSET", "LEAN_LIMIT", "STEER_LIMIT", "VehicleRigs", "build_rigs"]
 
 
+@dataclass(frozen=True, slots=True)
 class VehicleRigs:
-    """The parts of all models of a SUMO class, and where they are.
-
-    Attributes:
-        library: The parts.
-        slots_per_actor: Slots of the draw list that each actor takes, S.
-    """
+    """The parts of all models of a SUMO class, and where they are."""
 
     library: PartLibrary
+    """The parts."""
     slots_per_actor: int
-
-    def __init__(self, vehicle_type: VehicleType) -> None:
-        parts: dict[tuple[object, ...], tuple[Mesh, ...]] = {}
-        layouts = {m: _layout(VEHICLES[m], parts) for m in models_of(vehicle_type)}
-        self.slots_per_actor = max(len(layout) for layout in layouts.values())
-        self.library = PartLibrary(tuple(parts.values()))
-        self._table = _tabulate(layouts, self.slots_per_actor)
+    """Slots of the draw list that each actor takes, S."""
+    table: RigTable
+    """Where the parts are."""
 
     def pose(
         self,
@@ -54,7 +48,15 @@ class VehicleRigs:
         assert out.part.shape[1] >= model.shape[1] * self.slots_per_actor
         moving = (actors.position, actors.yaw, actors.speed, actors.yaw_rate, actors.travelled)
         drawn = (out.part, out.pose, out.colour, out.object_id)
-        pose_worlds(self._table, moving, actors.present, model, colour, drawn)
+        pose_worlds(self.table, moving, actors.present, model, colour, drawn)
+
+
+def build_rigs(vehicle_type: VehicleType) -> VehicleRigs:
+    """Return the rigs of a SUMO class."""
+    parts: dict[tuple[object, ...], tuple[Mesh, ...]] = {}
+    layouts = {m: _layout(VEHICLES[m], parts) for m in models_of(vehicle_type)}
+    slots = max(len(layout) for layout in layouts.values())
+    return VehicleRigs(PartLibrary(tuple(parts.values())), slots, _tabulate(layouts, slots))
 
 
 class _Slot(NamedTuple):

@@ -3,26 +3,27 @@
 import hashlib
 import json
 import logging
+import re
 from collections.abc import Callable
-from dataclasses import asdict
 from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
 
-import platformdirs
-
-from eyas.core.errors import ConfigError, DataFileError, OutputError
+from eyas.core.cache.entries import write_entry
+from eyas.core.cache.folder import Kind, cache_folder, cache_limit, touch
+from eyas.core.errors import ConfigError, DataFileError
 from eyas.state.roads import RoadGraph
 from eyas.traffic.config import TrafficConfig
 from eyas.traffic.network import graph_hash
-from eyas.traffic.record import provenance, record, resolved
-from eyas.traffic.recording import Provenance, Recording, check_map
-from eyas.traffic.recording_file import FORMAT, load, save
+from eyas.traffic.record import WARM_UP, record, resolved
+from eyas.traffic.recording import Recording, check_map
+from eyas.traffic.recording_file import FORMAT, load, save, to_bytes
+from eyas.traffic.sumo import OPTIONS
+from eyas.traffic.sumo_install import sumo_version
 
 __all__ = [
     "CANONICAL_SEED",
     "STANDARD_DURATION",
-    "cache_file",
     "find_recording",
     "record_canonical",
     "shipped_file",
@@ -35,6 +36,9 @@ CANONICAL_SEED = 1
 
 STANDARD_DURATION = 1260.0
 """Length of a recording where nothing else is asked for: 21 minutes [s]."""
+
+_RECORDER = 1
+"""Raised by 1 when the same settings give other traffic: recordings in caches are made anew."""
 
 
 def find_recording(
@@ -102,12 +106,28 @@ def record_canonical(
     return path
 
 
-def cache_file(origin: Provenance) -> Path:
-    """Return where a recording with this provenance is cached."""
-    content = {**asdict(origin), "config": origin.config.model_dump(mode="json"), "format": FORMAT}
-    key = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
-    folder = Path(platformdirs.user_cache_dir("eyas")) / "traffic"
-    return folder / f"{origin.map_name}-{origin.map_seed}-{key}.npz"
+def _cache_file(graph: RoadGraph, wanted: TrafficConfig, duration: float) -> Path:
+    """Return where a recording is cached, whichever version of SUMO made it.
+
+    So that who has no SUMO can use a recording that somebody else made.
+
+    Args:
+        graph: Where to drive.
+        wanted: What drives, from `resolved`.
+        duration: [s]
+    """
+    content = {
+        "roads": graph_hash(graph),
+        "config": wanted.model_dump(mode="json"),
+        "duration": duration,
+        "warm_up": WARM_UP,
+        "options": OPTIONS,
+        "recorder": _RECORDER,
+        "format": FORMAT,
+    }
+    key = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:32]
+    name = re.sub(r"[^\w.-]", "_", graph.map_name)
+    return cache_folder() / Kind.TRAFFIC / f"{name}-{graph.seed}-{key}.npz"
 
 
 def _shipped(graph: RoadGraph, wanted: TrafficConfig) -> Recording | None:
@@ -115,27 +135,36 @@ def _shipped(graph: RoadGraph, wanted: TrafficConfig) -> Recording | None:
     if not file.is_file():
         return None
     recording = load(file)
+    return recording if _fits(recording, graph, wanted) else None
+
+
+def _fits(recording: Recording, graph: RoadGraph, wanted: TrafficConfig) -> bool:
     origin = recording.provenance
-    fits = (origin.graph_hash, origin.config) == (graph_hash(graph), wanted)
-    return recording if fits else None
+    return (origin.graph_hash, origin.config) == (graph_hash(graph), wanted)
 
 
 def _cached_or_new(graph: RoadGraph, wanted: TrafficConfig, duration: float) -> Recording:
-    origin = provenance(graph.map_name, graph.seed, graph_hash(graph), wanted, duration)
-    path = cache_file(origin)
-    try:
-        return load(path)
-    except DataFileError:
-        pass  # not there, or damaged: record it again
+    limit, path = cache_limit(), _cache_file(graph, wanted, duration)
+    kept = _cached(path)
+    if kept is not None and _fits(kept, graph, wanted):
+        touch(path)
+        return kept
     _LOG.warning(
         "recording %.0f s of traffic on '%s' with SUMO %s, once; kept in %s",
-        *(duration, graph.map_name, origin.sumo_version, path),
+        *(duration, graph.map_name, sumo_version(), path),
     )
     assert wanted.seed is not None
     made = record(graph.map_name, graph.seed, graph, wanted, duration, wanted.seed)
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        save(made, path)
-    except (OSError, OutputError) as error:
-        _LOG.warning("the recording is used but not kept: %s", error)
+        write_entry(path, [to_bytes(made)], limit)
+    except OSError as error:
+        _LOG.warning("the recording is used but not kept: %s: %s", path, error.strerror)
     return made
+
+
+def _cached(path: Path) -> Recording | None:
+    """Return a recording from the cache, None if it is not there or damaged."""
+    try:
+        return load(path)
+    except DataFileError:
+        return None

@@ -4,9 +4,9 @@ __all__ = ["FIRST_PICTURE"]
 
 FIRST_PICTURE = """
 import os, sys
-if sys.argv[1]:  # an empty cache folder for kernels and shadows
-    os.environ["XDG_CACHE_HOME"] = sys.argv[1]
-    os.environ["NUMBA_CACHE_DIR"] = sys.argv[1] + "/kernels"
+if sys.argv[1]:  # an empty folder for the cache, compiled kernels too
+    os.environ["EYAS_CACHE_DIR"] = sys.argv[1]
+    os.environ.pop("NUMBA_CACHE_DIR", None)
 import numpy as np
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig

@@ -7,9 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
+from eyas.core.cache.cached import cached
+from eyas.core.cache.folder import Kind
 from eyas.core.jit import thread_count
 from eyas.core.parallel import Held
-from eyas.render.bake.cache import baked, content_hash
 from eyas.render.kernels.light.ambient import BOUNCED, LEAVES, OpennessBake, bake_openness
 from eyas.state.scene import ObjectClass, Scene
 
@@ -24,7 +25,8 @@ LARGEST = 2048
 _LOWEST = 1.5
 """What rises less over the ground hides no sky [m]."""
 
-_FORMAT = b"eyas ambient map 1"
+_FORMAT = "eyas ambient map 1"
+"""Raised by 1 when the same scene comes out otherwise."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,18 +40,20 @@ class AmbientMap:
     """West and south edge [m], texels in a metre, z of the ground [m]."""
 
 
-def bake_ambient(scene: Scene, folder: Path | None) -> AmbientMap:
+def bake_ambient(scene: Scene, folder: Path | None = None) -> AmbientMap:
     """Return the map of a scene; made anew only if the cache has none.
 
     Args:
         scene: What stands still. Bridges and other structures hide little and are left out.
-        folder: The cache, or None to use none, see `baked`.
+        folder: The cache; None: the user's.
     """
     extent = np.array(scene.size)
     texel = max(TEXEL, float(extent.max()) / LARGEST)
     columns, rows = np.ceil(extent / texel).astype(int)
     frame = np.array([*(-0.5 * extent), 1.0 / texel, scene.ground_height])
     inputs = (
+        _FORMAT,
+        (rows, columns),
         frame,
         np.array([BOUNCED, LEAVES]),
         scene.static.positions,
@@ -66,8 +70,8 @@ def bake_ambient(scene: Scene, folder: Path | None) -> AmbientMap:
         bake_openness(thread_count(), Held(OpennessBake(texel, solid, crowns, openness)))
         return openness
 
-    name = content_hash(_FORMAT, inputs)
-    return AmbientMap(baked("light of the sky", folder, name, (rows, columns), make), frame)
+    openness = cached(Kind.AMBIENT, (), inputs, make, of=NDArray[np.uint16], folder=folder)
+    return AmbientMap(openness, frame)
 
 
 def height_map(

@@ -7,9 +7,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.cache.cached import cached
+from eyas.core.cache.folder import Kind
 from eyas.core.jit import thread_count
 from eyas.core.parallel import Held
-from eyas.render.bake.cache import baked, content_hash
 from eyas.render.kernels.bundles import Geometry
 from eyas.render.kernels.light.shadow_map import BAND, ShadowBake, bake_rows
 from eyas.state.mesh import Surface
@@ -26,7 +27,8 @@ CARDS = 4
 """One leaf card in so many throws a shadow: they overlap so often that all would let no light
 through, and crowns are dappled."""
 
-_FORMAT = b"eyas shadow map 6"
+_FORMAT = "eyas shadow map 6"
+"""Raised by 1 when shadows of the same things come out otherwise."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +48,7 @@ def bake_shadows(
     geometry: Geometry,
     sun: tuple[float, float, float],
     ground: float,
-    folder: Path | None,
+    folder: Path | None = None,
 ) -> ShadowMap:
     """Return the shadow map; made anew only if the cache has none.
 
@@ -54,12 +56,16 @@ def bake_shadows(
         geometry: The scene.
         sun: Unit vector towards the sun.
         ground: z of the floor [m].
-        folder: The cache, or None to use none, see `baked`.
+        folder: The cache; None: the user's.
     """
     rows, lines, columns, texel = _frame(geometry, sun, ground)
-    name = _content_hash(geometry, rows)
-    heights = baked(
-        "shadows", folder, name, (lines, columns), lambda: _bake(geometry, rows, lines, columns)
+    heights = cached(
+        Kind.SHADOWS,
+        (),
+        (_FORMAT, rows, lines, columns, *_casters(geometry)),
+        lambda: _bake(geometry, rows, lines, columns),
+        of=NDArray[np.uint16],
+        folder=folder,
     )
     return ShadowMap(heights, rows, texel)
 
@@ -142,14 +148,14 @@ def _cards(geometry: Geometry) -> NDArray[np.int32]:
     ).astype(np.int32)
 
 
-def _content_hash(geometry: Geometry, rows: NDArray[np.float64]) -> str:
+def _casters(geometry: Geometry) -> tuple[NDArray[np.generic], ...]:
+    """Return all that a shadow map is made of."""
     cards = _cards(geometry)
     last = geometry.chunk_range[-1] if len(geometry.chunk_range) else np.zeros(4, np.int32)
     fixtures = geometry.level_first[: geometry.part_first + 1]
     meshes = geometry.mesh_range[: fixtures[-1]]
     triangles, vertices = (meshes if len(meshes) else [last])[-1][[1, 3]]
-    kept = (
-        rows,
+    return (
         geometry.positions[:vertices],
         geometry.uvs[:vertices],
         cards[geometry.material[:triangles]],
@@ -159,4 +165,3 @@ def _content_hash(geometry: Geometry, rows: NDArray[np.float64]) -> str:
         geometry.fixture_prototype,
         geometry.fixture_pose,
     )
-    return content_hash(_FORMAT, kept)

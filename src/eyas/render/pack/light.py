@@ -3,7 +3,8 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from eyas.core.kept import kept
+from eyas.core.cache.cached import cached
+from eyas.core.cache.folder import Kind
 from eyas.render.bake.ambient import AmbientMap
 from eyas.render.bake.clouds import build_clouds
 from eyas.render.bake.hills import build_hills, far_ground
@@ -30,11 +31,12 @@ def build_light(
     sun = np.array(lighting.sun_direction, np.float64)
     sun /= np.linalg.norm(sun)
     toward = (float(sun[0]), float(sun[1]), float(sun[2]))
-    clouds, hills = kept(
-        "sky",
+    clouds, hills = cached(
+        Kind.SKY,
         ("render",),
         (lighting.clouds, toward),
         lambda: (build_clouds(lighting.clouds, toward), build_hills(toward)),
+        of=tuple[NDArray[np.uint8], NDArray[np.uint8]],
     )
     # A point is moved off its surface by what its shadow can be off the texel's middle.
     offset = 1.1 * shadows.texel

@@ -1,0 +1,1 @@
+"""What Eyas keeps on disk from run to run, in one folder with one limit."""

@@ -1,0 +1,98 @@
+"""Values that take long to make and always come out the same, kept from run to run."""
+
+import contextlib
+import logging
+import time
+from collections.abc import Callable
+from functools import cache
+from hashlib import blake2b
+from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+
+from eyas.core.cache.array_file import Content, array_file, map_arrays
+from eyas.core.cache.entries import write_entry
+from eyas.core.cache.flat import flatten, restore
+from eyas.core.cache.folder import Kind, cache_folder, cache_limit, touch
+
+__all__ = ["cached"]
+
+Thing = TypeVar("Thing")
+
+_LOG = logging.getLogger("eyas")
+
+_ROOT = Path(__file__).parents[2]
+
+_LONG = 1.0
+"""What took longer to make is told in the log [s]."""
+
+
+def cached(
+    kind: Kind,
+    makers: tuple[str, ...],
+    inputs: tuple[object, ...],
+    make: Callable[[], Thing],
+    *,
+    of: type[Thing],
+    folder: Path | None = None,
+) -> Thing:
+    """Return a value from the cache; made anew if its makers' sources or inputs are others.
+
+    Args:
+        kind: What it is.
+        makers: Packages of Eyas, and files in them, whose sources make it.
+        inputs: What they make it of: arrays, and values whose `repr` tells them apart.
+        make: Makes it.
+        of: Its type, of what `eyas.core.cache.flat` can flatten.
+        folder: The cache; None: the user's. It saves time only: where it cannot be written to, it
+            is left alone, and what is damaged is made anew.
+
+    Raises:
+        ConfigError: `EYAS_CACHE_LIMIT` is no size.
+    """
+    limit = cache_limit()
+    path = (folder or cache_folder()) / kind / f"eyas-{_key(makers, inputs)}.npy"
+    with contextlib.suppress(OSError, ValueError):
+        found = restore(of, *map_arrays(path))
+        touch(path)
+        return found
+    start = time.perf_counter()
+    made = make()
+    taken = time.perf_counter() - start
+    flat, arrays = flatten(made)
+    content = Content(flat, [np.asarray(array, order="C") for array in arrays])
+    # What is made and what is read later take the same way, so that they have the same types.
+    restored = restore(of, *content)
+    with contextlib.suppress(OSError):
+        write_entry(path, array_file(content), limit)
+    if taken > _LONG:
+        _LOG.info("made %s in %.1f s, once", kind, taken)
+    return restored
+
+
+def _key(makers: tuple[str, ...], inputs: tuple[object, ...]) -> str:
+    digest = blake2b(np.__version__.encode(), digest_size=16)
+    for maker in makers:
+        digest.update(_sources(maker))
+    for value in inputs:
+        if isinstance(value, np.ndarray):
+            digest.update(repr((value.dtype.str, value.shape)).encode())
+            digest.update(np.ascontiguousarray(value).data)
+        else:
+            digest.update(repr(value).encode())
+        digest.update(b"\0")
+    return digest.hexdigest()
+
+
+@cache
+def _sources(maker: str) -> bytes:
+    """Return a hash of the sources of a package, or of one file."""
+    digest = blake2b(maker.encode(), digest_size=16)
+    path = _ROOT / maker
+    files = sorted(path.rglob("*.py")) if path.is_dir() else [path]
+    assert files, f"no sources: {path}"
+    for file in files:
+        digest.update(file.relative_to(_ROOT).as_posix().encode())
+        digest.update(file.read_bytes())
+    return digest.digest()

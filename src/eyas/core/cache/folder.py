@@ -1,0 +1,77 @@
+"""The folder of the cache: where it is, how large it may become, and what lies in it.
+
+    <folder>/<kind>/eyas-<key>.npy             arrays, see `eyas.core.cache.array_file`
+    <folder>/traffic/<map>-<seed>-<key>.npz    recordings of traffic
+    <folder>/kernels/<key>/                    compiled kernels, written by numba
+
+The time of change of an entry is that of its last use.
+"""
+
+import os
+import re
+from enum import StrEnum
+from pathlib import Path
+
+import platformdirs
+
+from eyas.core.errors import ConfigError
+
+__all__ = ["FOLDER_VARIABLE", "LIMIT_VARIABLE", "Kind", "cache_folder", "cache_limit", "touch"]
+
+FOLDER_VARIABLE = "EYAS_CACHE_DIR"
+"""Environment variable: the folder of the cache, in place of the user's."""
+
+LIMIT_VARIABLE = "EYAS_CACHE_LIMIT"
+"""Environment variable: how large the cache may become."""
+
+_DEFAULT_LIMIT = 2 << 30
+
+_UNITS = {"": 0, "K": 10, "M": 20, "G": 30, "T": 40}
+
+
+class Kind(StrEnum):
+    """What is kept; the value is the name of the folder in the cache."""
+
+    SCENE = "scene"
+    TEXTURES = "textures"
+    RIGS = "rigs"
+    GEOMETRY = "geometry"
+    SKY = "sky"
+    SHADOWS = "shadows"
+    AMBIENT = "ambient"
+    TRAFFIC = "traffic"
+    KERNELS = "kernels"
+    OLD = "old"
+    """What versions of Eyas left that had another layout; it has no folder of its own."""
+
+
+def cache_folder() -> Path:
+    """Return the folder of the cache; it need not be there."""
+    named = os.environ.get(FOLDER_VARIABLE)
+    return Path(named or platformdirs.user_cache_dir("eyas")).expanduser().absolute()
+
+
+def cache_limit() -> int:
+    """Return how large the cache may become [bytes].
+
+    Raises:
+        ConfigError: `EYAS_CACHE_LIMIT` is no size.
+    """
+    text = os.environ.get(LIMIT_VARIABLE)
+    if not text:
+        return _DEFAULT_LIMIT
+    size = re.fullmatch(r"\s*(\d+(?:\.\d+)?)\s*([KMGT]?)(?:i?B)?\s*", text, re.IGNORECASE)
+    if size is None:
+        raise ConfigError(
+            f"{LIMIT_VARIABLE}: {text!r} is not allowed; allowed: bytes, or a number with "
+            "K, M, G or T, for example 500M"
+        )
+    return int(float(size[1]) * (1 << _UNITS[size[2].upper()]))
+
+
+def touch(path: Path) -> None:
+    """Remember that an entry was used just now, if the cache can be written to."""
+    try:
+        os.utime(path)
+    except OSError:
+        pass
