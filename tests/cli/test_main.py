@@ -38,6 +38,7 @@ def run(monkeypatch, capsys, *arguments):
         (["video", "--seed", "-1"], "seed: -1 is not allowed: "),
         (["video", "--seed", "x"], "Invalid value for '--seed'"),
         (["video", "--foo"], "No such option: --foo"),
+        (["cache", "clear", "--kind", "maps"], "--kind: 'maps' is not allowed; known: ambient, "),
         (["vidoe"], "No such command 'vidoe'"),
         (
             ["traffic", "record", "--type", "buss"],

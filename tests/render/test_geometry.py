@@ -2,10 +2,11 @@
 
 import numpy as np
 
+from eyas.core.cache.cached import cached
+from eyas.core.cache.folder import Kind
 from eyas.core.jit import kernel
-from eyas.core.kept import kept
 from eyas.core.parallel import Held
-from eyas.render.kernels.bundles import GROUP
+from eyas.render.kernels.bundles import GROUP, Geometry
 from eyas.render.kernels.surface.texture import level_of, texel
 from eyas.render.pack.geometry import build_geometry
 from eyas.render.pack.triangles import gradients
@@ -28,7 +29,7 @@ def level_at(square):
 def test_a_kept_geometry_is_read_by_the_same_kernels_as_a_new_one(images, tmp_path):
     new = build_geometry(city_scene(), car_parts(), images)
     for _ in range(2):
-        old = kept("geometry", (), (), lambda: new, tmp_path)
+        old = cached(Kind.GEOMETRY, (), (), lambda: new, of=Geometry, folder=tmp_path)
     assert old is not new
     assert Held(old).layout == Held(new).layout
     for name, array in new._asdict().items():

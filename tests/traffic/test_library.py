@@ -1,15 +1,20 @@
 import logging
+import os
+import sys
 from dataclasses import replace
 from pathlib import Path
 
-import platformdirs
 import pytest
 
-from eyas.core.errors import ConfigError, DataFileError
+from eyas.core.cache.entries import entries
+from eyas.core.cache.folder import Kind
+from eyas.core.errors import ConfigError, DataFileError, MissingExtraError
 from eyas.state.roads import RoadGraph
+from eyas.traffic import library
 from eyas.traffic.config import TrafficConfig
-from eyas.traffic.library import find_recording
+from eyas.traffic.library import CANONICAL_SEED, find_recording
 from eyas.traffic.network import graph_hash
+from eyas.traffic.record import resolved
 from eyas.traffic.recording import Recording
 from eyas.traffic.recording_file import save, to_bytes
 
@@ -18,8 +23,8 @@ CARS = TrafficConfig(max_vehicles=5)
 
 @pytest.fixture(autouse=True)
 def cache(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    monkeypatch.setattr(platformdirs, "user_cache_dir", lambda name: str(tmp_path / name))
-    return tmp_path / "eyas" / "traffic"
+    monkeypatch.setenv("EYAS_CACHE_DIR", str(tmp_path / "cache"))
+    return tmp_path / "cache" / "traffic"
 
 
 @pytest.mark.sumo
@@ -47,6 +52,68 @@ def test_other_settings_are_another_recording(
     find_recording(grid, CARS, duration=5.0)
     find_recording(grid, CARS.model_copy(update=change), duration=5.0)
     assert len(list(cache.iterdir())) == 2
+
+
+def without_sumo(purpose: str = "") -> str:
+    raise MissingExtraError("traffic", "sumo")
+
+
+@pytest.fixture
+def copied(
+    grid: RoadGraph, wandering: Recording, cache: Path, monkeypatch: pytest.MonkeyPatch
+) -> Path:
+    """A recording of `CARS` that some other SUMO made, in the cache of a machine without SUMO."""
+    origin = replace(
+        wandering.provenance,
+        graph_hash=graph_hash(grid),
+        config=resolved(CARS, CANONICAL_SEED),
+        sumo_version="0.1.2",
+        eyas_version="0.0.0",
+    )
+    made = replace(wandering, provenance=origin)
+    with monkeypatch.context() as elsewhere:
+        elsewhere.setattr(library, "sumo_version", lambda: "0.1.2")
+        elsewhere.setattr(library, "record", lambda *_: made)
+        find_recording(grid, CARS, duration=5.0)
+    monkeypatch.setattr(library, "sumo_version", without_sumo)
+    monkeypatch.setattr(library, "record", without_sumo)
+    monkeypatch.setitem(sys.modules, "sumo", None)
+    monkeypatch.setitem(sys.modules, "libsumo", None)
+    (file,) = cache.iterdir()
+    return file
+
+
+def test_a_cached_recording_needs_no_sumo_and_not_its_version(grid: RoadGraph, copied: Path):
+    os.utime(copied, (0, 0))
+    found = find_recording(grid, CARS, duration=5.0)
+    assert found.provenance.sumo_version == "0.1.2"
+    assert copied.stat().st_mtime > 0  # it was used
+    assert [entry.kind for entry in entries(copied.parents[1])] == [Kind.TRAFFIC]
+    with pytest.raises(MissingExtraError):
+        find_recording(grid, CARS, duration=6.0)
+
+
+def test_a_recording_under_the_name_of_another_is_not_used(grid: RoadGraph, copied: Path):
+    with pytest.raises(MissingExtraError):
+        find_recording(grid, CARS.model_copy(update={"max_speed": 9.0}), duration=5.0)
+    other = resolved(CARS.model_copy(update={"max_speed": 9.0}), CANONICAL_SEED)
+    copied.rename(library._cache_file(grid, other, 5.0))
+    with pytest.raises(MissingExtraError):
+        find_recording(grid, CARS.model_copy(update={"max_speed": 9.0}), duration=5.0)
+
+
+def test_a_recording_is_used_where_the_cache_cannot_be_written(
+    grid: RoadGraph,
+    wandering: Recording,
+    cache: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    caplog: pytest.LogCaptureFixture,
+):
+    cache.parent.write_text("in the way")
+    monkeypatch.setattr(library, "sumo_version", lambda: "0.1.2")
+    monkeypatch.setattr(library, "record", lambda *_: wandering)
+    assert find_recording(grid, CARS, duration=5.0) is wandering
+    assert caplog.messages[-1].startswith("the recording is used but not kept: ")
 
 
 def test_recording_can_be_forbidden(grid: RoadGraph, cache: Path):

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from eyas import __version__
-from eyas.cli import bench, config, maps, traffic, video
+from eyas.cli import bench, cache, config, maps, traffic, video
 from eyas.core.errors import EyasError
 
 __all__ = ["app", "main"]
@@ -27,6 +27,7 @@ app = typer.Typer(
 )
 app.command("video")(video.command)
 app.command("bench")(bench.command)
+app.add_typer(cache.app, name="cache")
 app.add_typer(config.app, name="config")
 app.add_typer(maps.app, name="maps")
 app.add_typer(traffic.app, name="traffic")

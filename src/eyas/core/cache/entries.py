@@ -13,6 +13,7 @@ import time
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from stat import S_ISDIR, S_ISREG
 
 from eyas.core.cache.folder import Kind
 from eyas.core.files import PART_SUFFIX
@@ -59,10 +60,10 @@ class Entry:
 def entries(folder: Path) -> list[Entry]:
     """Return all entries of a cache, the ones not used for longest first."""
     found = [
-        Entry(kind, path, _size(path), status.st_mtime)
+        Entry(kind, path, _size(path, status), status.st_mtime)
         for kind, name, form in _FORMS
         for path, status in _named(folder / name, form)
-        if path.is_dir() == (kind == Kind.KERNELS)
+        if (S_ISDIR if kind == Kind.KERNELS else S_ISREG)(status.st_mode)
     ]
     return sorted(found, key=lambda entry: entry.used)
 
@@ -153,10 +154,11 @@ def _named(folder: Path, form: str) -> Iterator[tuple[Path, os.stat_result]]:
                 yield folder / name, os.lstat(folder / name)
 
 
-def _size(path: Path) -> int:
-    files = _kernel_files(path) if path.is_dir() else [path]
+def _size(path: Path, status: os.stat_result) -> int:
+    if S_ISREG(status.st_mode):
+        return status.st_size
     size = 0
-    for file in files:
+    for file in _kernel_files(path):
         with contextlib.suppress(OSError):
             size += file.lstat().st_size
     return size

@@ -1,0 +1,108 @@
+"""Files of arrays: mapped, shared, and read only if not a bit is wrong."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from eyas.core.cache.array_file import Content, array_file, map_arrays
+
+ARRAYS = [
+    np.arange(12, dtype=np.float32).reshape(3, 4),
+    np.zeros((0, 2), np.int64),
+    np.array([[True], [False]]),
+    np.array(7, np.uint16),
+    np.random.default_rng(0).normal(size=(5, 2, 3)),
+]
+CONTENT = Content({"name": "town", "size": [1, 2.5, None]}, ARRAYS)
+
+
+@pytest.fixture
+def file(tmp_path):
+    path = tmp_path / "arrays.npy"
+    path.write_bytes(b"".join(array_file(CONTENT)))
+    return path
+
+
+def test_what_was_written_is_read_as_numba_wants_it(file):
+    flat, arrays = map_arrays(file)
+    assert flat == CONTENT.flat
+    for read, written in zip(arrays, ARRAYS, strict=True):
+        assert type(read) is np.ndarray
+        assert (read.dtype, read.shape) == (written.dtype, written.shape)
+        np.testing.assert_array_equal(read, written)
+        assert read.flags.writeable
+        assert read.flags.aligned
+        assert read.flags.c_contiguous
+        assert read.ctypes.data % 64 == 0
+
+
+def test_the_file_is_one_that_numpy_reads(file):
+    whole = np.load(file, allow_pickle=False)
+    assert whole.dtype == np.uint8
+    assert len(whole) == file.stat().st_size - 128
+
+
+def test_what_is_written_into_an_array_stays_in_the_process(file):
+    before = file.read_bytes()
+    _, (first, *_) = map_arrays(file)
+    first[:] = -1.0
+    assert file.read_bytes() == before
+    np.testing.assert_array_equal(map_arrays(file).arrays[0], ARRAYS[0])
+
+
+def test_arrays_stay_readable_after_their_file_is_removed(file):
+    _, arrays = map_arrays(file)
+    file.unlink()
+    for read, written in zip(arrays, ARRAYS, strict=True):
+        np.testing.assert_array_equal(read, written)
+
+
+def test_every_flipped_byte_and_every_cut_is_noticed(file):
+    good = file.read_bytes()
+    for place in range(len(good)):
+        damaged = bytearray(good)
+        damaged[place] ^= 0x10
+        file.write_bytes(damaged)
+        with pytest.raises(ValueError, match=r"damaged|cut off"):
+            map_arrays(file)
+    for length in range(len(good)):
+        file.write_bytes(good[:length])
+        with pytest.raises(ValueError, match=r"damaged|cut off|empty|unpack"):
+            map_arrays(file)
+    file.write_bytes(good + b"\0")
+    with pytest.raises(ValueError, match="cut off"):
+        map_arrays(file)
+
+
+SHARES = """
+import sys
+from pathlib import Path
+from eyas.core.cache.array_file import map_arrays
+array = map_arrays(Path(sys.argv[1])).arrays[0]
+assert array.sum() > 0
+if sys.argv[2] == "write":
+    array[0] = 0
+print(*(int(line.split()[1])
+    for part in Path("/proc/self/smaps").read_text().split("VmFlags")
+    if sys.argv[1] in part
+    for line in part.splitlines() if line.startswith(("Private_Dirty", "Anonymous"))))
+"""
+
+
+@pytest.mark.skipif(not Path("/proc/self/smaps").exists(), reason="Linux tells what is shared")
+def test_processes_share_the_memory_of_what_they_only_read(tmp_path):
+    path = tmp_path / "large.npy"
+    with path.open("wb") as written:
+        written.writelines(array_file(Content(None, [np.ones(1 << 20)])))
+        os.fsync(written.fileno())  # what is not yet on the disk counts as changed
+
+    def own(action):
+        command = [sys.executable, "-c", SHARES, str(path), action]
+        return subprocess.run(command, check=True, capture_output=True, text=True).stdout.split()
+
+    assert own("read") == ["0", "0"]
+    assert set(own("write")) == {"4"}  # one page of 8 MiB, in KiB

@@ -1,0 +1,291 @@
+"""Values that are kept from run to run, by real processes too."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import eyas
+from eyas.core.cache import cached as module
+from eyas.core.cache.cached import cached
+from eyas.core.cache.flat import FlatError
+from eyas.core.cache.folder import Kind
+from eyas.core.errors import ConfigError
+
+
+class Town(NamedTuple):
+    name: str
+    ground: NDArray[np.float32]
+
+
+class Maker:
+    def __init__(self):
+        self.calls = 0
+
+    def __call__(self):
+        self.calls += 1
+        return Town("town", np.arange(1000, dtype=np.float32))
+
+
+def town(make, folder, inputs=(1,), makers=("core/rng.py",), of=Town):
+    return cached(Kind.SCENE, makers, inputs, make, of=of, folder=folder)
+
+
+def files_in(folder):
+    return sorted(path for path in folder.rglob("*") if path.is_file())
+
+
+def test_a_value_is_made_once(tmp_path):
+    make = Maker()
+    first, again = town(make, tmp_path), town(make, tmp_path)
+    assert make.calls == 1
+    assert first.name == again.name == "town"
+    np.testing.assert_array_equal(first.ground, again.ground)
+    (file,) = files_in(tmp_path)
+    assert file.parent == tmp_path / "scene"
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        {"inputs": (2,)},
+        {"inputs": ("1",)},
+        {"inputs": (1, np.zeros(3))},
+        {"makers": ("core/rng.py", "core/clock.py")},
+        {"makers": ("core",)},
+    ],
+)
+def test_other_inputs_and_other_sources_are_another_entry(tmp_path, other):
+    make = Maker()
+    town(make, tmp_path)
+    town(make, tmp_path, **other)
+    assert make.calls == len(files_in(tmp_path)) == 2
+
+
+def test_arrays_are_told_apart_by_what_is_in_them(tmp_path):
+    make = Maker()
+    large = np.zeros(5000)
+    changed = large.copy()
+    changed[2500] = 1.0  # which the array's `repr` leaves out
+    for array in (large, changed, large.reshape(2, -1), large.astype(np.float32), large.copy()):
+        town(make, tmp_path, (array,))
+    assert make.calls == 4
+
+
+def test_a_change_of_a_source_makes_the_value_anew(tmp_path, monkeypatch):
+    sources = tmp_path / "sources"
+    (sources / "room").mkdir(parents=True)
+    monkeypatch.setattr(module, "_ROOT", sources)
+    make = Maker()
+    for calls, text in enumerate(("a = 1", "a = 2"), start=1):
+        (sources / "room" / "makes.py").write_text(text)
+        module._sources.cache_clear()
+        town(make, tmp_path / "cache", makers=("room",))
+        assert make.calls == calls
+    module._sources.cache_clear()
+    with pytest.raises((OSError, AssertionError)):
+        town(make, tmp_path / "cache", makers=("rom",))
+    module._sources.cache_clear()
+
+
+def test_a_damaged_entry_is_made_anew_and_mended(tmp_path):
+    make = Maker()
+    whole = town(make, tmp_path)
+    (file,) = files_in(tmp_path)
+    good = file.read_bytes()
+    flipped = bytearray(good)
+    flipped[-200] ^= 1
+    for calls, damaged in enumerate((b"", b"no arrays", good[:-7], bytes(flipped)), start=2):
+        file.write_bytes(damaged)
+        np.testing.assert_array_equal(town(make, tmp_path).ground, whole.ground)
+        assert make.calls == calls
+        assert file.read_bytes() == good
+
+
+class Larger(NamedTuple):
+    name: str
+    ground: NDArray[np.float32]
+    trees: int
+
+
+class Renamed(NamedTuple):
+    title: str
+    ground: NDArray[np.float32]
+
+
+class Precise(NamedTuple):
+    name: str
+    ground: NDArray[np.float64]
+
+
+@pytest.mark.parametrize("kind", [Larger, Renamed, Precise])
+def test_an_entry_of_another_type_is_made_anew(tmp_path, kind):
+    town(Maker(), tmp_path)
+    made = kind(
+        "town",
+        np.zeros(3, kind.__annotations__["ground"].__args__[1].__args__[0]),
+        *([4] if kind is Larger else []),
+    )
+    assert len(town(lambda: made, tmp_path, of=kind).ground) == 3
+    assert len(town(None, tmp_path, of=kind).ground) == 3  # kept, so that no one is asked
+
+
+def test_what_is_new_has_the_types_of_what_is_read(tmp_path):
+    def make():
+        return Town("town", np.arange(6, dtype=np.float32).reshape(2, 3).T)
+
+    for town_ in (town(make, tmp_path), town(make, tmp_path)):
+        assert town_.ground.flags.c_contiguous
+        np.testing.assert_array_equal(town_.ground, [[0, 3], [1, 4], [2, 5]])
+
+
+def test_a_maker_that_makes_something_else_is_told_at_once(tmp_path):
+    with pytest.raises(FlatError):
+        town(lambda: Precise("town", np.zeros(3)), tmp_path)
+
+
+def test_a_folder_that_cannot_be_written_to_costs_only_time(tmp_path):
+    make = Maker()
+    (tmp_path / "file").write_text("in the way")
+    for _ in range(2):
+        assert town(make, tmp_path / "file" / "cache").name == "town"
+    assert make.calls == 2
+    assert len(files_in(tmp_path)) == 1
+
+
+def test_a_full_disk_costs_only_time_and_leaves_nothing(tmp_path, monkeypatch):
+    def full(self, target):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Path, "replace", full)
+    assert town(Maker(), tmp_path).name == "town"
+    assert files_in(tmp_path) == []
+
+
+PROGRAM = """
+import os, sys, time
+from pathlib import Path
+import numpy as np
+from numpy.typing import NDArray
+from eyas.core.cache.cached import cached
+from eyas.core.cache.folder import Kind
+{before}
+def make():
+    print("making", flush=True)
+    sys.stdin.readline()
+    return np.arange(1 << 16)
+value = cached(Kind.SKY, (), (), make, of=NDArray[np.int64])
+print(int(value.sum()), flush=True)
+"""
+TOTAL = str(sum(range(1 << 16)))
+
+
+def start(cache, before="", **kwargs):
+    """Start a process that uses an entry; it waits for a line before it makes one."""
+    return subprocess.Popen(
+        [sys.executable, "-c", PROGRAM.format(before=before)],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+        env={**os.environ, "EYAS_CACHE_DIR": str(cache)},
+        **kwargs,
+    )
+
+
+def told(process):
+    """Let a process go on to its end; return what it says."""
+    said = process.communicate("\n", timeout=60)[0].split()
+    assert process.returncode == 0
+    return said
+
+
+def test_processes_that_make_the_same_at_once_do_not_disturb_each_other(tmp_path):
+    both = [start(tmp_path) for _ in range(2)]
+    for process in both:
+        assert process.stdout.readline() == "making\n"  # both have found nothing
+    for process in both:
+        process.stdin.write("\n")
+        process.stdin.flush()
+    assert [told(process) for process in both] == [[TOTAL], [TOTAL]]
+    assert len(files_in(tmp_path)) == 1
+    assert told(start(tmp_path)) == [TOTAL]
+
+
+def test_a_process_that_is_killed_while_it_writes_leaves_no_entry(tmp_path):
+    waits = "Path.replace = lambda *_: (print('written', flush=True), time.sleep(60))"
+    process = start(tmp_path, before=waits)
+    process.stdin.write("\n")
+    process.stdin.flush()
+    assert [process.stdout.readline() for _ in range(2)] == ["making\n", "written\n"]
+    process.kill()
+    process.communicate()
+    (part,) = files_in(tmp_path)
+    assert part.name.endswith(".part")
+    assert told(start(tmp_path)) == ["making", TOTAL]
+    assert told(start(tmp_path)) == [TOTAL]
+    assert len(files_in(tmp_path)) == 2  # the part may be of one that still writes ...
+    os.utime(part, (0, 0))
+    town(Maker(), tmp_path)
+    assert part not in files_in(tmp_path)  # ... but not for a day
+
+
+@pytest.fixture
+def open_folder():
+    """Return a folder that other users can reach."""
+    folder = Path(tempfile.mkdtemp(prefix="eyas-test-"))
+    folder.chmod(0o755)
+    yield folder
+    shutil.rmtree(folder)
+
+
+def test_a_cache_that_only_others_may_write_to_is_read(open_folder):
+    assert told(start(open_folder)) == ["making", TOTAL]
+    (file,) = files_in(open_folder)
+    content, used = file.read_bytes(), file.stat().st_mtime_ns
+    for path in (*open_folder.rglob("*"), open_folder):
+        path.chmod(0o555 if path.is_dir() else 0o444)
+    demoted = "os.setuid(65534) if os.geteuid() == 0 else None"
+    assert told(start(open_folder, demoted)) == [TOTAL]
+    assert told(start(open_folder, demoted + "; Kind = type('', (), {'SKY': 'rigs'})")) == [
+        "making",
+        TOTAL,
+    ]
+    assert files_in(open_folder) == [file]
+    assert (file.read_bytes(), file.stat().st_mtime_ns) == (content, used)
+    for path in (open_folder, *open_folder.rglob("*")):
+        path.chmod(0o755)
+
+
+def test_use_is_remembered(tmp_path):
+    town(Maker(), tmp_path)
+    (file,) = files_in(tmp_path)
+    os.utime(file, (0, 0))
+    town(Maker(), tmp_path)
+    assert time.time() - file.stat().st_mtime < 100
+
+
+def test_the_limit_is_read_before_anything_is_made(tmp_path, monkeypatch):
+    monkeypatch.setenv("EYAS_CACHE_LIMIT", "plenty")
+    make = Maker()
+    with pytest.raises(ConfigError, match=r"^EYAS_CACHE_LIMIT: 'plenty' is not allowed; allowed: "):
+        town(make, tmp_path)
+    assert make.calls == 0
+
+
+def test_nothing_of_ours_is_unpickled():
+    unpickles = re.compile(
+        r"^\s*(import|from) +(pickle|cloudpickle|dill|joblib|shelve|marshal)\b|allow_pickle=True",
+        re.M,
+    )
+    sources = list(Path(eyas.__file__).parent.rglob("*.py"))
+    assert len(sources) > 100
+    assert [path.name for path in sources if unpickles.search(path.read_text())] == []
