@@ -4,7 +4,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from eyas.core.errors import ConfigError
-from eyas.core.variation import Choice, Mirrored, Uniform, bounds, draw
+from eyas.core.variation import Choice, Mirrored, Uniform, bounds, sample
 
 numbers = st.floats(-1e6, 1e6)
 pairs = st.tuples(numbers, numbers)
@@ -19,29 +19,29 @@ variations = st.one_of(
 @given(variations, st.integers(0, 2**32))
 def test_every_draw_is_within_the_bounds(variation, seed):
     low, high = bounds(variation)
-    assert low <= draw(variation, np.random.default_rng(seed)) <= high
+    assert low <= sample(variation, np.random.default_rng(seed)) <= high
 
 
 def test_a_number_is_drawn_as_it_is():
-    assert draw(2.5, np.random.default_rng(0)) == 2.5
+    assert sample(2.5, np.random.default_rng(0)) == 2.5
 
 
 def test_mirrored_draws_both_signs_and_never_what_lies_between():
     rng = np.random.default_rng(0)
-    drawn = np.array([draw(Mirrored(mirrored=(2.5, 4.5)), rng) for _ in range(200)])
+    drawn = np.array([sample(Mirrored(mirrored=(2.5, 4.5)), rng) for _ in range(200)])
     assert ((np.abs(drawn) >= 2.5) & (np.abs(drawn) <= 4.5)).all()
     assert 60 < (drawn > 0).sum() < 140
 
 
 def test_uniform_reaches_both_halves():
     rng = np.random.default_rng(0)
-    drawn = np.array([draw(Uniform(uniform=(22.0, 13.0)), rng) for _ in range(200)])
+    drawn = np.array([sample(Uniform(uniform=(22.0, 13.0)), rng) for _ in range(200)])
     assert 60 < (drawn > 17.5).sum() < 140
 
 
 def test_choice_takes_each_value():
     rng = np.random.default_rng(0)
-    drawn = {draw(Choice(choice=(1.0, 2.0, 5.0)), rng) for _ in range(100)}
+    drawn = {sample(Choice(choice=(1.0, 2.0, 5.0)), rng) for _ in range(100)}
     assert drawn == {1.0, 2.0, 5.0}
 
 

@@ -12,7 +12,7 @@ from eyas.cli.main import main
 from eyas.core.errors import NotInThisVersionError, OutputError, UnknownNameError
 from eyas.modes.gallery import run as gallery
 from eyas.modes.gallery.page import Shown, page
-from eyas.modes.gallery.still import Stage
+from eyas.modes.gallery.still import StillScene
 from eyas.modes.gallery.views import _all_cars, _stop, choose_viewpoints
 from eyas.sim.place import load_place
 from eyas.traffic.config import TrafficConfig
@@ -37,13 +37,13 @@ class Pictures(HTMLParser):
 
 
 @pytest.fixture(scope="module")
-def stage():
-    return Stage(load_place(WorldConfig(), TrafficConfig(), 1))
+def still():
+    return StillScene(load_place(WorldConfig(), TrafficConfig(), 1))
 
 
 @pytest.fixture(scope="module")
-def views(stage):
-    return choose_viewpoints(stage, SUN)
+def views(still):
+    return choose_viewpoints(still, SUN)
 
 
 @pytest.fixture(scope="module")
@@ -97,47 +97,47 @@ def test_the_observation_is_84_pixels_wide_with_each_pixel_four_times_as_large(d
     assert np.array_equal(pixels, np.kron(pixels[::4, ::4], np.ones((4, 4, 1), np.uint8)))
 
 
-def test_drone_views_have_their_car_in_the_middle_and_unhidden(stage, views):
+def test_drone_views_have_their_car_in_the_middle_and_unhidden(still, views):
     about = [view for view in views if view.actor >= 0 and view.enlarged == 1]
     assert {(view.position[2], view.pitch) for view in about} == {(22.0, 1.37), (15.0, 0.6)}
     assert {view.name.split("-")[0] for view in about} == {"trees", "crossing", "towers"}
     for view in about:
-        car = stage.actors(view.time).position[0, view.actor]
+        car = still.actors(view.time).position[0, view.actor]
         apart = np.linalg.norm(car - view.position[:2])
         # 1.5 m: the drone looks at the middle of the body, not at the reference point.
         assert apart == pytest.approx(view.position[2] / np.tan(view.pitch), abs=1.5)
-        assert stage.probe(view)[1] > 0.7
+        assert still.probe(view)[1] > 0.7
 
 
 @pytest.mark.parametrize("turn", range(0, 360, 45))
-def test_no_wall_fills_the_overview_wherever_the_sun_stands(stage, turn):
+def test_no_wall_fills_the_overview_wherever_the_sun_stands(still, turn):
     sun = (np.cos(np.radians(turn)), np.sin(np.radians(turn)), 1.0)
-    overview = next(view for view in choose_viewpoints(stage, sun) if view.name == "overview")
-    depth = stage.probe(overview)[0]
+    overview = next(view for view in choose_viewpoints(still, sun) if view.name == "overview")
+    depth = still.probe(overview)[0]
     assert overview.position[2] == 60.0
     assert np.median(depth) > 60.0
     assert np.quantile(depth, 0.1) > 60.0
 
 
-def test_cars_that_a_drone_in_a_tree_would_look_at_are_passed_over(stage):
-    cars = _all_cars(stage)
+def test_cars_that_a_drone_in_a_tree_would_look_at_are_passed_over(still):
+    cars = _all_cars(still)
     back = 15.0 / np.tan(0.6) * np.stack([np.cos(cars.yaw), np.sin(cars.yaw)], axis=1)
-    crowns = stage.scene.fixtures.pose[:, :2, 3]
-    scale = np.linalg.norm(stage.scene.fixtures.pose[:, 0, :3], axis=1)  # a tree's height
+    crowns = still.scene.fixtures.pose[:, :2, 3]
+    scale = np.linalg.norm(still.scene.fixtures.pose[:, 0, :3], axis=1)  # a tree's height
     crowns = crowns[scale > 17.0]
     apart = np.linalg.norm((cars.position - back)[:, None] - crowns[None], axis=2).min(axis=1)
     assert (apart < 6.0).sum() > 3
-    assert not list(_stop(stage, cars, "trees", "in a tree", (apart < 6.0).astype(float)))
+    assert not list(_stop(still, cars, "trees", "in a tree", (apart < 6.0).astype(float)))
 
 
-def test_all_streets_are_in_the_horizon_view(stage, views):
+def test_all_streets_are_in_the_horizon_view(still, views):
     horizon = next(view for view in views if view.name == "horizon")
     assert horizon.pitch == 0.3
-    points = stage.scene.network.lane_points - np.array(horizon.position[:2])
+    points = still.scene.network.lane_points - np.array(horizon.position[:2])
     ahead = points @ [np.cos(horizon.yaw), np.sin(horizon.yaw)]
     left = points @ [-np.sin(horizon.yaw), np.cos(horizon.yaw)]
     assert np.all(np.abs(left) < ahead * np.tan(0.5 * horizon.field_of_view))
-    depth = stage.probe(horizon)[0]
+    depth = still.probe(horizon)[0]
     assert np.isinf(depth[0]).all()
     assert np.isfinite(depth[24:, 32]).all()
 

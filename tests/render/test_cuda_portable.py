@@ -8,11 +8,12 @@ import pytest
 from numba.types import CPointer, Tuple, intp
 
 from eyas.render.jobs import build_jobs
-from eyas.render.kernels.bundles import Movers, Output, Stage, Task
+from eyas.render.kernels.bundles import Movers, Output, Task
 from eyas.render.kernels.draw import draw_views
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
-from eyas.sim.worlds import each_alone
+from eyas.sim.step import fly
+from eyas.state.draw import DrawStage
 
 from .small_city import car_parts, city_scene, city_traffic, looking
 
@@ -54,7 +55,7 @@ def test_drawing_a_band_with_all_weathers_compiles_for_cuda(ptx_of, renderer_of)
         np.zeros((1, 24, 32, 3), np.uint8), np.zeros((1, 24, 32), np.float32),
         np.zeros((1, 24, 32), np.int32), np.zeros((1, 6), np.int32),
     )  # fmt: skip
-    task = Task(1, int(Stage.SHADING), movers, job, output)
+    task = Task(1, int(DrawStage.SHADING), movers, job, output)
     parts = [pointer_to(part) for part in (renderer._still.bundle, scratch, task)]
     text = ptx_of(draw_views.function, CPointer(Tuple(parts)), intp, intp)
     assert ".visible .entry" in text
@@ -62,8 +63,11 @@ def test_drawing_a_band_with_all_weathers_compiles_for_cuda(ptx_of, renderer_of)
 
 
 def test_the_fused_step_compiles_for_cuda(ptx_of):
-    simulation = build_simulation(SimConfig(), each_alone(2))
-    parts = [pointer_to(held.bundle) for held in (simulation._state, simulation._held_orders)]
-    for function in simulation._step:
-        text = ptx_of(function.function, CPointer(Tuple(parts)), intp, intp)
-        assert ".visible .entry" in text
+    simulation = build_simulation(SimConfig(), 2, shared_world=False)
+
+    def step(actions, fleet, traffic, rules):
+        fly(4, actions, fleet, traffic, rules)
+
+    values = (np.zeros((2, 4)), simulation._fleet, simulation._traffic, simulation._rules)
+    text = ptx_of(step, *map(numba.typeof, values))
+    assert ".visible .entry" in text

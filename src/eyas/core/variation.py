@@ -8,7 +8,7 @@ from pydantic import Field
 
 from eyas.core.config import Config
 
-__all__ = ["Choice", "Mirrored", "Uniform", "Variation", "bounds", "draw", "within"]
+__all__ = ["Choice", "Mirrored", "Uniform", "Variation", "bounds", "sample", "within"]
 
 
 class Uniform(Config):
@@ -39,8 +39,8 @@ Variation = float | Uniform | Mirrored | Choice
 """A number, or how to draw one."""
 
 
-def draw(variation: Variation, rng: np.random.Generator) -> float:
-    """Return one value of a variation."""
+def sample(variation: Variation, rng: np.random.Generator) -> float:
+    """Return one value of a variation, drawn at random."""
     match variation:
         case Uniform(uniform=(low, high)):
             return float(rng.uniform(min(low, high), max(low, high)))

@@ -156,8 +156,8 @@ def _settings(
             settings = validated(EyasConfig, dict(config))
         case _:
             settings = load_settings(Path(config), [])
-    place = {"map": map_name, "weather": weather}
-    changed = {key: value for key, value in place.items() if value is not None}
+    world = {"map": map_name, "weather": weather}
+    changed = {key: value for key, value in world.items() if value is not None}
     changes: dict[str, object] = {}
     if changed:
         changes["world"] = settings.world.model_copy(update=changed)

@@ -20,13 +20,12 @@ from eyas.render.kernels.bundles import (
     Movers,
     Output,
     Scratch,
-    Stage,
     Still,
     Task,
 )
 from eyas.render.kernels.draw import draw_views
 from eyas.render.pack.light import build_light
-from eyas.state.draw import DrawList, Picture, Views
+from eyas.state.draw import DrawList, DrawStage, Picture, Views
 from eyas.state.scene import Lighting, Scene
 
 __all__ = ["Renderer", "build_renderer"]
@@ -70,7 +69,7 @@ class Renderer:
         draw_list: DrawList,
         picture: Picture,
         samples: int = 1,
-        until: Stage = Stage.SHADING,
+        until: DrawStage = DrawStage.SHADING,
     ) -> None:
         """Draw views into the arrays of a picture that are not None.
 
@@ -107,7 +106,7 @@ class Renderer:
         output: Output,
         picture: Picture,
         side: int,
-        until: Stage,
+        until: DrawStage,
     ) -> None:
         """Draw with `side` x `side` samples a pixel."""
         height, width = picture_size(picture)

@@ -2,10 +2,9 @@
 
 import math
 
-from eyas.render.kernels.bundles import Stage
 from eyas.render.renderer import Renderer
 from eyas.sensors.config import CameraConfig
-from eyas.state.draw import DrawList, Picture, Views
+from eyas.state.draw import DrawList, DrawStage, Picture, Views
 
 __all__ = ["Camera"]
 
@@ -34,7 +33,7 @@ class Camera:
         views: Views,
         draw_list: DrawList,
         picture: Picture,
-        until: Stage = Stage.SHADING,
+        until: DrawStage = DrawStage.SHADING,
     ) -> None:
         """Draw into `picture`.
 

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.rng import stream
-from eyas.core.variation import draw
+from eyas.core.variation import sample
 from eyas.sim.worlds import Worlds
 from eyas.state.scene import Lighting
 from eyas.world.config import LightConfig
@@ -52,11 +52,13 @@ class LightChanges:
             return
         rng = stream(seed, "light", tracker, episode)
         config, weather = self._config, self._weather
-        sky = _changed(draw(config.background, rng), config.background_replaces, weather.luminosity)
-        sun = _changed(draw(config.sun, rng), config.sun_replaces, weather.luminosity)
+        sky = _changed(
+            sample(config.background, rng), config.background_replaces, weather.luminosity
+        )
+        sun = _changed(sample(config.sun, rng), config.sun_replaces, weather.luminosity)
         density = weather.fog_density
         if self._foggy and config.visibility is not None:
-            density = 1.0 / draw(config.visibility, rng)
+            density = 1.0 / sample(config.visibility, rng)
         self._factors[self._worlds.trackers_of(tracker)] = sky, sun, density
 
     def of(self, trackers: NDArray[np.integer]) -> NDArray[np.float32] | None:

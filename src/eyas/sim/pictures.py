@@ -9,13 +9,12 @@ from eyas.core.clock import PHYSICS_STEP
 from eyas.overlay.marks import Marks
 from eyas.overlay.paint import paint_overlays, with_depth
 from eyas.render.jobs import picture_size
-from eyas.render.kernels.bundles import Stage
 from eyas.sensors.camera import Camera
 from eyas.sim.config import SimConfig
 from eyas.sim.light import LightChanges
 from eyas.sim.place import Place
 from eyas.sim.worlds import Worlds
-from eyas.state.draw import DrawList, Picture, Views
+from eyas.state.draw import DrawList, DrawStage, Picture, Views
 from eyas.state.snapshot import CameraState, Snapshot
 from eyas.state.terrain import Terrain
 from eyas.task.rules import Rules
@@ -53,7 +52,7 @@ class Pictures:
         self._camera = Camera(config.camera, place.renderer)
         self._marks = Marks(snapshot, Terrain.flat(place.scene.ground_height), config.camera)
 
-    def draw(self, chosen: Chosen, picture: Picture, until: Stage) -> Views:
+    def draw(self, chosen: Chosen, picture: Picture, until: DrawStage) -> Views:
         """Draw what the cameras of trackers see; return the views that were drawn.
 
         Args:
@@ -68,7 +67,9 @@ class Pictures:
         self._camera.read(views, movers, picture, until)
         return views
 
-    def draw_overlaid(self, chosen: Chosen, picture: Picture, rules: Rules, until: Stage) -> None:
+    def draw_overlaid(
+        self, chosen: Chosen, picture: Picture, rules: Rules, until: DrawStage
+    ) -> None:
         """Draw like `draw`, and what each camera sees, rewards and looks for over its colours."""
         deep = with_depth(picture)
         views = self.draw(chosen, deep, until)

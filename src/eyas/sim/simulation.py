@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.parallel import Held
-from eyas.render.kernels.bundles import Stage
 from eyas.sim.config import SimConfig
 from eyas.sim.episodes import Episodes
 from eyas.sim.light import LightChanges
@@ -14,7 +13,7 @@ from eyas.sim.pictures import Pictures
 from eyas.sim.place import Place
 from eyas.sim.step import Orders, StepState, Surroundings, step_of
 from eyas.sim.worlds import Worlds
-from eyas.state.draw import Picture
+from eyas.state.draw import DrawStage, Picture
 from eyas.state.snapshot import CameraState, Snapshot
 from eyas.state.terrain import Terrain
 from eyas.task.packet_rows import PacketRows
@@ -145,7 +144,7 @@ class Simulation:
         picture: Picture,
         *,
         overlay: bool = False,
-        until: Stage = Stage.SHADING,
+        until: DrawStage = DrawStage.SHADING,
     ) -> None:
         """Draw what the cameras of some trackers see.
 

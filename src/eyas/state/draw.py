@@ -1,13 +1,29 @@
 """What the renderer is asked for, and what it gives."""
 
 from dataclasses import dataclass, fields
+from enum import IntEnum
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.state.mesh import Mesh
 
-__all__ = ["DrawList", "PartLibrary", "Picture", "Views"]
+__all__ = ["DrawList", "DrawStage", "PartLibrary", "Picture", "Views"]
+
+
+class DrawStage(IntEnum):
+    """What is done for a picture, in this order; `eyas bench --stages` stops after each."""
+
+    CULLING = 0
+    """Find what may be seen."""
+    VERTICES = 1
+    """Take it to the screen."""
+    RASTERISING = 2
+    """Find the nearest triangle in each pixel, and write what else is asked for than colours."""
+    MOVERS_LIGHT = 3
+    """Shadows of moving things and light of their lamps."""
+    SHADING = 4
+    """Colours: all is done."""
 
 
 @dataclass(slots=True)

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from eyas.core.errors import SpawnError
 from eyas.core.frames import wrap_angle
-from eyas.core.variation import draw
+from eyas.core.variation import sample
 from eyas.task.config import StartConfig
 from eyas.task.direction import TARGET_COMPENSATION
 
@@ -34,11 +34,11 @@ class Start:
 
 def sample_start(config: StartConfig, rng: np.random.Generator) -> Start:
     """Sample a start, in the original's order: pitch, the two biases, height, direction."""
-    pitch = draw(config.pitch, rng)
-    horizontal_bias = draw(config.horizontal_bias, rng)
-    vertical_bias = draw(config.vertical_bias, rng)
-    height = draw(config.height, rng)
-    direction = draw(config.direction, rng)
+    pitch = sample(config.pitch, rng)
+    horizontal_bias = sample(config.horizontal_bias, rng)
+    vertical_bias = sample(config.vertical_bias, rng)
+    height = sample(config.height, rng)
+    direction = sample(config.direction, rng)
     return Start(pitch, height, direction, horizontal_bias, vertical_bias)
 
 

@@ -9,11 +9,10 @@ from functools import partial
 import numpy as np
 from rich.table import Table
 
-from eyas.render.kernels.bundles import Stage
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
 from eyas.sim.worlds import each_alone
-from eyas.state.draw import Picture
+from eyas.state.draw import DrawStage, Picture
 
 __all__ = ["SIZES", "StageTime", "measure_stages", "stage_table"]
 
@@ -21,11 +20,11 @@ SIZES = ((64, 84, 84), (1, 84, 84), (1, 640, 480), (1, 1280, 720))
 """Views, width and height that are measured."""
 
 _STAGES = (
-    (Stage.CULLING, "traffic, poses, culling"),
-    (Stage.VERTICES, "vertices"),
-    (Stage.RASTERISING, "rasterising"),
-    (Stage.MOVERS_LIGHT, "light of movers"),
-    (Stage.SHADING, "shading"),
+    (DrawStage.CULLING, "traffic, poses, culling"),
+    (DrawStage.VERTICES, "vertices"),
+    (DrawStage.RASTERISING, "rasterising"),
+    (DrawStage.MOVERS_LIGHT, "light of movers"),
+    (DrawStage.SHADING, "shading"),
 )
 
 

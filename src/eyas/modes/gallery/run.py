@@ -10,7 +10,7 @@ from rich.progress import Progress
 from eyas.core.errors import OutputError
 from eyas.core.files import PART_SUFFIX, refusals, write_atomic
 from eyas.modes.gallery.page import MARK, Shown, contact_sheet, page, png
-from eyas.modes.gallery.still import Stage
+from eyas.modes.gallery.still import StillScene
 from eyas.modes.gallery.views import choose_viewpoints
 from eyas.sim.place import load_place
 from eyas.traffic.config import TrafficConfig
@@ -79,9 +79,9 @@ def _draw(out: Path, map_name: str, weather: str, progress: Progress) -> Shown:
     """Draw a map in a weather into the folder."""
     task = progress.add_task(f"{map_name}, {weather}", total=None)
     world = WorldConfig(map=map_name, weather=weather)
-    stage = Stage(load_place(world, TrafficConfig(), 1))
-    views = choose_viewpoints(stage, lighting(map_name, weather).sun_direction)
-    shown = Shown(map_name, weather, views, [stage.rgb(view) for view in views])
+    still = StillScene(load_place(world, TrafficConfig(), 1))
+    views = choose_viewpoints(still, lighting(map_name, weather).sun_direction)
+    shown = Shown(map_name, weather, views, [still.rgb(view) for view in views])
     folder = out / shown.folder
     with refusals(folder):
         folder.mkdir(exist_ok=True)

@@ -12,7 +12,7 @@ from eyas.state.motion import ActorState
 from eyas.state.scene import ACTOR_OBJECT
 from eyas.targets.looks import Looks
 
-__all__ = ["Stage", "Viewpoint"]
+__all__ = ["StillScene", "Viewpoint"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,7 +45,7 @@ class Viewpoint:
     """How many pixels wide and high each pixel is made, without smoothing."""
 
 
-class Stage:
+class StillScene:
     """Draws viewpoints.
 
     Args:

@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from eyas.modes.gallery.still import Stage, Viewpoint
+from eyas.modes.gallery.still import StillScene, Viewpoint
 from eyas.state.scene import Colliders, ObjectClass, Scene
 from eyas.task.spawn import Start, start_pose
 
@@ -46,19 +46,19 @@ class _Cars:
     """[rad], shape (K,)."""
 
 
-def choose_viewpoints(stage: Stage, sun: tuple[float, float, float]) -> list[Viewpoint]:
+def choose_viewpoints(still: StillScene, sun: tuple[float, float, float]) -> list[Viewpoint]:
     """Return the viewpoints of a place; those for which it has nothing to show are left out.
 
     Args:
-        stage: The place.
+        still: What is looked at.
         sun: Direction to the sun; views from afar have it behind them, so that walls are lit.
     """
-    cars = _all_cars(stage)
+    cars = _all_cars(still)
     chosen: list[Viewpoint] = []
     for name, where, score in _STOPS:
-        chosen += _stop(stage, cars, name, where, score(stage.scene, cars))
+        chosen += _stop(still, cars, name, where, score(still.scene, cars))
     side = math.atan2(sun[1], sun[0]) + math.radians(15.0)
-    chosen += [_overview(stage, side), _horizon(stage.scene, side)]
+    chosen += [_overview(still, side), _horizon(still.scene, side)]
     first = chosen[0]
     small = replace(
         first,
@@ -73,11 +73,11 @@ def choose_viewpoints(stage: Stage, sun: tuple[float, float, float]) -> list[Vie
     return [*chosen, small]
 
 
-def _all_cars(stage: Stage) -> _Cars:
+def _all_cars(still: StillScene) -> _Cars:
     """Return every car that is there at one of the times."""
     rows: list[tuple[float, int, float, float, float]] = []
-    for time in np.arange(_TIMES[0], stage.duration, _TIMES[1]):
-        actors = stage.actors(time)
+    for time in np.arange(_TIMES[0], still.duration, _TIMES[1]):
+        actors = still.actors(time)
         for actor in np.flatnonzero(actors.present[0]):
             x, y, _ = actors.position[0, actor]
             rows.append((time, int(actor), x, y, actors.yaw[0, actor]))
@@ -85,19 +85,21 @@ def _all_cars(stage: Stage) -> _Cars:
     return _Cars(table[:, 0], table[:, 1].astype(np.int64), table[:, 2:4], table[:, 4])
 
 
-def _stop(stage: Stage, cars: _Cars, name: str, where: str, score: Points) -> Iterator[Viewpoint]:
+def _stop(
+    still: StillScene, cars: _Cars, name: str, where: str, score: Points
+) -> Iterator[Viewpoint]:
     """Yield the views of the drone's starts above the best car that is seen in all of them."""
     order = np.argsort(-score, kind="stable")[:_TRIES]
     for car in order[score[order] > 0]:
         views = [_drone_view(cars, int(car), name, where, pose) for pose in _POSES]
-        if all(_in_sight(stage, view) for view in views):
+        if all(_in_sight(still, view) for view in views):
             yield from views
             return
 
 
-def _in_sight(stage: Stage, view: Viewpoint) -> bool:
-    depth, seen = stage.probe(view)
-    near = _is_inside(stage.scene.colliders, view.position) or float(depth.min()) < 4.0
+def _in_sight(still: StillScene, view: Viewpoint) -> bool:
+    depth, seen = still.probe(view)
+    near = _is_inside(still.scene.colliders, view.position) or float(depth.min()) < 4.0
     return seen > 0.7 and not near
 
 
@@ -179,10 +181,10 @@ def _solids(colliders: Colliders) -> Iterator[tuple[shapely.Polygon, float, floa
         yield shapely.Polygon(corners), float(bottom), float(colliders.prism_top[index])
 
 
-def _overview(stage: Stage, side: float) -> Viewpoint:
+def _overview(still: StillScene, side: float) -> Viewpoint:
     """Return the first view on a ring of 60 m height that no wall fills, else the farthest."""
     height, pitch = 60.0, 0.25
-    centre, reach = _streets(stage.scene)
+    centre, reach = _streets(still.scene)
     best, farthest = None, -1.0
     for turn in range(24):
         # Away from the lit side step by step, to the left and to the right.
@@ -198,9 +200,9 @@ def _overview(stage: Stage, side: float) -> Viewpoint:
             pitch=pitch,
             field_of_view=_CAMERA,
         )
-        depth, _ = stage.probe(view)
+        depth, _ = still.probe(view)
         median = float(np.median(depth))
-        if not _is_inside(stage.scene.colliders, view.position):
+        if not _is_inside(still.scene.colliders, view.position):
             if median > 100.0 and float(np.quantile(depth, 0.1)) > 70.0:
                 return view
             if median > farthest:

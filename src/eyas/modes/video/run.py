@@ -53,8 +53,8 @@ def run(
     sim = build_simulation(recording_rules(config), together(config.video.channels))
     _require_traffic(config)
     with recording_lock(folder):
-        place = open_folder(folder, config, overwrite=overwrite, resume=resume)
-        _record(sim, config, place, quiet=quiet)
+        recording = open_folder(folder, config, overwrite=overwrite, resume=resume)
+        _record(sim, config, recording, quiet=quiet)
 
 
 def _record(sim: Simulation, config: EyasConfig, folder: VideoFolder, *, quiet: bool) -> None:

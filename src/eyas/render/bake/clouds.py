@@ -23,7 +23,7 @@ _TEXEL = 9.0 / SIZE
 
 @functools.lru_cache(maxsize=4)
 def build_clouds(cover: float, sun: tuple[float, float, float]) -> NDArray[np.uint8]:
-    """Return the clouds' panorama, see `eyas.render.kernels.sky.clouds`; one empty place for none.
+    """Return the clouds' panorama, see `eyas.render.kernels.sky.clouds`; one empty texel for none.
 
     Args:
         cover: Share of the sky that clouds cover, 0 to 1.
@@ -31,9 +31,9 @@ def build_clouds(cover: float, sun: tuple[float, float, float]) -> NDArray[np.ui
     """
     if cover <= 0.0:
         return np.zeros((1, 1, 2), np.uint8)
-    place = (np.arange(_ROWS) + 0.5) / _ROWS
+    height = (np.arange(_ROWS) + 0.5) / _ROWS
     # What would be lower is not shown.
-    sines = np.maximum(CLOUD_BEND * place / (1.0 + CLOUD_BEND - place), CLOUDS_FROM)
+    sines = np.maximum(CLOUD_BEND * height / (1.0 + CLOUD_BEND - height), CLOUDS_FROM)
     output = np.empty((_ROWS, _COLUMNS, 2), np.uint8)
     rays = CloudRays(
         _field(cover, sun).astype(np.float32),
@@ -47,8 +47,8 @@ def build_clouds(cover: float, sun: tuple[float, float, float]) -> NDArray[np.ui
 
 def plan_directions(columns: int) -> NDArray[np.float64]:
     """Return the unit vectors in plan of a panorama's columns, shape (columns, 2)."""
-    place = (np.arange(columns) + 0.5) * 4 / columns
-    x, y = np.abs(place - 2.0) - 1.0, 1.0 - np.abs((place + 1.0) % 4.0 - 2.0)
+    turn = (np.arange(columns) + 0.5) * 4 / columns
+    x, y = np.abs(turn - 2.0) - 1.0, 1.0 - np.abs((turn + 1.0) % 4.0 - 2.0)
     # On |x| + |y| = 1: x falls from 1 to -1 and comes back, y is a quarter of that behind.
     return np.stack([x, y], axis=1) / np.hypot(x, y)[:, None]
 
@@ -96,8 +96,8 @@ def _put_ball(heights: Field, middle: NDArray[np.float64], radius: float, lift: 
     off = (around[None] + (whole - middle)[:, None]) * _TEXEL
     square = radius**2 - off[0][:, None] ** 2 - off[1][None] ** 2
     top = lift + np.sqrt(np.maximum(square, 0.0))
-    place = np.ix_(row, column)
-    heights[place] = np.maximum(heights[place], np.where(square > 0, top, 0.0))
+    texels = np.ix_(row, column)
+    heights[texels] = np.maximum(heights[texels], np.where(square > 0, top, 0.0))
 
 
 def _apart(tops: Field) -> Field:

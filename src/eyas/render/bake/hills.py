@@ -33,7 +33,7 @@ def build_hills(sun: tuple[float, float, float]) -> NDArray[np.uint8]:
     """
     away = np.geomspace(HAZE_END, HILL_FARTHEST, _STEPS)
     column, row = np.divide(plan_directions(_COLUMNS), _TEXEL).T[..., None] * away
-    place = (np.floor(row).astype(int) % SIZE, np.floor(column).astype(int) % SIZE)
+    texel = (np.floor(row).astype(int) % SIZE, np.floor(column).astype(int) % SIZE)
     land, sunlight, woods = _land(sun)
     rise = np.clip((away - HAZE_END) / (0.45 * HILL_FARTHEST), 0.0, 1.0)
     slope = _SLOPE * rise * _between(land, row, column)
@@ -43,7 +43,7 @@ def build_hills(sun: tuple[float, float, float]) -> NDArray[np.uint8]:
     who = np.arange(_COLUMNS)[None]
     middle = (np.arange(_ROWS)[:, None] + 0.5) * HILL_TOP / _ROWS
     cover = np.clip((ridge[:, -1][None] - middle) * _ROWS / HILL_TOP + 0.5, 0.0, 1.0)
-    seen = (place[0][who, step], place[1][who, step])
+    seen = (texel[0][who, step], texel[1][who, step])
     channels = [
         cover,
         sunlight[seen],

@@ -69,10 +69,10 @@ def track_map(network: RoadNetwork) -> TrackMap:
     # Ways sway a little and are worn more here than there; what is near by agrees.
     sway, uneven = _waves(middle, 11.0, 1), _waves(middle, 23.0, 2)
     for aside in np.arange(-_HALF, _HALF + _STEP, _STEP):
-        place = ((middle + aside * left - low) / TEXEL).astype(int)
-        inside = ((place >= 0) & (place < size)).all(axis=1)
+        texel = ((middle + aside * left - low) / TEXEL).astype(int)
+        inside = ((texel >= 0) & (texel < size)).all(axis=1)
         much = strength * (0.86 + 0.16 * uneven) * _profile(aside + 0.1 * sway)
-        np.maximum.at(worn, (place[inside, 1], place[inside, 0]), much[inside].astype(np.float32))
+        np.maximum.at(worn, (texel[inside, 1], texel[inside, 0]), much[inside].astype(np.float32))
     near = _blurred(worn, 3)
     both = np.stack([near, _blurred(near, _FAR)], axis=2)
     return TrackMap(np.round(255.0 * both).astype(np.uint8), np.array([*low, 1.0 / TEXEL]))

@@ -4,7 +4,6 @@ V vertices, T triangles, C chunks, P prototypes (fixtures first, then parts), M 
 detail, grouped by prototype), F fixtures, K workers, J jobs (bands of views).
 """
 
-from enum import IntEnum
 from typing import NamedTuple
 
 import numpy as np
@@ -19,7 +18,6 @@ __all__ = [
     "Movers",
     "Output",
     "Scratch",
-    "Stage",
     "Still",
     "Task",
     "View",
@@ -30,21 +28,6 @@ NEAR = 0.08
 
 GROUP = 16
 """Chunks, or fixtures, that are culled together first."""
-
-
-class Stage(IntEnum):
-    """What is done for a picture, in this order; `eyas bench --stages` stops after each."""
-
-    CULLING = 0
-    """Find what may be seen."""
-    VERTICES = 1
-    """Take it to the screen."""
-    RASTERISING = 2
-    """Find the nearest triangle in each pixel, and write what else is asked for than colours."""
-    MOVERS_LIGHT = 3
-    """Shadows of moving things and light of their lamps."""
-    SHADING = 4
-    """Colours: all is done."""
 
 
 class Geometry(NamedTuple):
@@ -263,7 +246,7 @@ class Task(NamedTuple):
     samples: int
     """Samples along a side of each pixel, 1 or 2."""
     until: int
-    """The last `Stage`."""
+    """The last `eyas.state.draw.DrawStage`."""
     movers: Movers
     job: Job
     output: Output

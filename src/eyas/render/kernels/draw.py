@@ -6,22 +6,23 @@ from numpy.typing import NDArray
 from eyas.core.intrinsics import claim
 from eyas.core.jit import inner_kernel
 from eyas.core.parallel import Pointer, parallel_kernel
-from eyas.render.kernels.bundles import Geometry, Scratch, Stage, Still, Task, View
+from eyas.render.kernels.bundles import Geometry, Scratch, Still, Task, View
 from eyas.render.kernels.light.casters import cast_light
 from eyas.render.kernels.light.view_light import view_light
 from eyas.render.kernels.scalars import f4, i8
 from eyas.render.kernels.sky.backdrop import draw_backdrop
-from eyas.render.kernels.sky.flakes import Canvas, let_flakes_fall
+from eyas.render.kernels.sky.flakes import FlakeView, let_flakes_fall
 from eyas.render.kernels.surface.band import shade_band
 from eyas.render.kernels.visibility.cull import set_planes
 from eyas.render.kernels.visibility.passes import draw_moving, draw_static
 from eyas.render.kernels.visibility.transform import set_world_rows
+from eyas.state.draw import DrawStage
 from eyas.state.scene import SKY_OBJECT
 
 __all__ = ["draw_views"]
 
-RASTERISING = int(Stage.RASTERISING)
-MOVERS_LIGHT = int(Stage.MOVERS_LIGHT)
+RASTERISING = int(DrawStage.RASTERISING)
+MOVERS_LIGHT = int(DrawStage.MOVERS_LIGHT)
 
 
 @parallel_kernel
@@ -77,8 +78,10 @@ def draw_views(
                 owner, shade, memory.frame[worker], pixels,
             )  # fmt: skip
             if len(job.instant) > 0 and light.air[8] > f4(0.0):
-                air = Canvas(samples, top, lit, job.instant[view], eye, axes, lens, depth, pixels)
-                let_flakes_fall(air)
+                falling = FlakeView(
+                    samples, top, lit, job.instant[view], eye, axes, lens, depth, pixels
+                )
+                let_flakes_fall(falling)
         if len(output.subject) > 0:
             result = output.subject[index]
             result[:] = 0

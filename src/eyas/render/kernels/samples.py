@@ -1,9 +1,9 @@
-"""From places in the world to samples of a view, and back."""
+"""From points in the world to samples of a view, and back."""
 
 from eyas.core.jit import inlined_kernel
 from eyas.render.kernels.bundles import View
 
-__all__ = ["around", "nowhere", "place_of"]
+__all__ = ["around", "nowhere", "point_of"]
 
 
 @inlined_kernel
@@ -16,7 +16,7 @@ def nowhere() -> tuple[float, float, float, float]:
 def around(
     box: tuple[float, float, float, float], view: View, x: float, y: float, z: float
 ) -> tuple[float, float, float, float]:
-    """Return a box on the screen with one more place in it, endless if that is not ahead."""
+    """Return a box on the screen with one more point in it, endless if that is not ahead."""
     rows, lens = view.rows, view.lens
     w = rows[2, 0] * x + rows[2, 1] * y + rows[2, 2] * z + rows[2, 3]
     if w < 0.1:
@@ -28,8 +28,8 @@ def around(
 
 
 @inlined_kernel
-def place_of(view: View, line: int, column: int) -> tuple[float, float, float]:
-    """Return the place that a sample shows [m]; it must not be sky."""
+def point_of(view: View, line: int, column: int) -> tuple[float, float, float]:
+    """Return the point that a sample shows [m]; it must not be sky."""
     eye, axes, lens = view.eye, view.axes, view.lens
     left = (0.5 * lens[1] - (column + 0.5)) / lens[0]
     up = (0.5 * lens[2] - (line + view.top + 0.5)) / lens[4]

@@ -45,14 +45,14 @@ def _points(mesh: Mesh) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     return points, np.repeat(area, len(share))
 
 
-def _ends(places: NDArray[np.float64], weight: NDArray[np.float64]) -> tuple[float, float]:
-    """Return the ends of the box that is spread as the places are.
+def _ends(positions: NDArray[np.float64], weight: NDArray[np.float64]) -> tuple[float, float]:
+    """Return the ends of the box that is spread as the positions are.
 
     The deviation of a uniform range is its half over the root of 3, that of a box's surface is
     larger: boxes are found as they are. Mirrors and handlebars, of little area, add little.
     """
     if not weight.sum() > 0.0:
         return 0.0, 0.0
-    middle = float(np.average(places, weights=weight))
-    half = float(np.sqrt(3.0 * np.average((places - middle) ** 2, weights=weight)))
-    return max(float(places.min()), middle - half), min(float(places.max()), middle + half)
+    middle = float(np.average(positions, weights=weight))
+    half = float(np.sqrt(3.0 * np.average((positions - middle) ** 2, weights=weight)))
+    return max(float(positions.min()), middle - half), min(float(positions.max()), middle + half)

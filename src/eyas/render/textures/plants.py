@@ -127,5 +127,5 @@ def _leaf(
 
 def _paste(leaf: _Leaf, picture: NDArray[np.float64]) -> None:
     """Draw a leaf; what sticks out on one side comes in on the other."""
-    place = np.ix_(leaf.rows % len(picture), leaf.columns % len(picture))
-    picture[place] = np.where(leaf.inside[..., None], leaf.colour, picture[place])
+    texels = np.ix_(leaf.rows % len(picture), leaf.columns % len(picture))
+    picture[texels] = np.where(leaf.inside[..., None], leaf.colour, picture[texels])

@@ -99,10 +99,10 @@ def fine_stations(vehicle: VehicleModel, shape: CarShape) -> NDArray[np.float64]
     return _merged([*edges, *kinks], 0.004)
 
 
-def _merged(places: list[float], least: float) -> NDArray[np.float64]:
-    """Return the places in order without those that are nearer than `least` to the one before."""
+def _merged(stations: list[float], least: float) -> NDArray[np.float64]:
+    """Return the stations in order without those that are nearer than `least` to the one before."""
     kept: list[float] = []
-    ordered = sorted(places)
+    ordered = sorted(stations)
     for x in ordered:
         if not kept or x - kept[-1] > least:
             kept.append(x)

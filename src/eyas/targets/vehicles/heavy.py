@@ -189,9 +189,9 @@ def _tank_trailer(shell: Shell, vehicle: VehicleModel, detail: int) -> None:
         return np.column_stack([np.full(sides, x), y, z])
 
     _trailer_frame(shell, vehicle, 1.5, detail)
-    places = [(0.05, 0.5), (0.18, 0.82), (0.45, 1.0)] if detail else [(0.05, 0.7), (0.45, 1.0)]
-    rings = [ring(end + x, size) for x, size in places]
-    rings += [ring(front - x, size) for x, size in places[::-1]]
+    sections = [(0.05, 0.5), (0.18, 0.82), (0.45, 1.0)] if detail else [(0.05, 0.7), (0.45, 1.0)]
+    rings = [ring(end + x, size) for x, size in sections]
+    rings += [ring(front - x, size) for x, size in sections[::-1]]
     shell.rings(rings, BRIGHT)
     for x in np.linspace(end + 1.3, front - 1.3, 5) if detail else ():
         shell.rings([ring(x - 0.05, 1.012), ring(x + 0.05, 1.012)], STEEL, caps=False)

@@ -103,10 +103,10 @@ def _rider(shell: Shell, posture: _Posture, detail: int) -> None:
         )
 
 
-def _lamp(shell: Shell, place: Sequence[float], size: Sequence[float], *, front: bool) -> None:
+def _lamp(shell: Shell, centre: Sequence[float], size: Sequence[float], *, front: bool) -> None:
     """Add a lamp: a box with its middle at a place."""
-    low = [p - s / 2 for p, s in zip(place, size, strict=True)]
-    high = [p + s / 2 for p, s in zip(place, size, strict=True)]
+    low = [p - s / 2 for p, s in zip(centre, size, strict=True)]
+    high = [p + s / 2 for p, s in zip(centre, size, strict=True)]
     shell.box(low, high, HEAD_LAMP if front else TAIL_LAMP)
 
 

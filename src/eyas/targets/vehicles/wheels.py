@@ -24,9 +24,9 @@ def wheel_levels(radius: float, width: float, pair: float) -> tuple[Mesh, ...]:
         width: Of the tyre [m].
         pair: Between the middles of two wheels [m]; 0 for one wheel.
     """
-    places = (pair / 2, -pair / 2) if pair else (0.0,)
+    centres = (pair / 2, -pair / 2) if pair else (0.0,)
     fine, coarse = Shell(), Shell()
-    for y in places:
+    for y in centres:
         _fine(fine, radius, width, y)
         _coarse(coarse, radius, width, y)
     return fine.mesh(), coarse.mesh()
@@ -45,7 +45,7 @@ def _fine(shell: Shell, radius: float, width: float, y: float) -> None:
         (_DISC, half), (_SHOULDER, half), (1.0, 0.7 * half),
         (1.0, -0.7 * half), (_SHOULDER, -half), (_DISC, -half),
     ]  # fmt: skip
-    rings = np.stack([_ring(radius * r, y + place, sides) for r, place in sections])
+    rings = np.stack([_ring(radius * r, y + offset, sides) for r, offset in sections])
     shell.rings(rings, TYRE, caps=False)
     for side in (1.0, -1.0):
         rim = _ring(radius * _DISC, y + side * half, sides)[:: -int(side)]

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from eyas.core.jit import inlined_kernel, inner_kernel
 from eyas.render.kernels.bundles import View
-from eyas.render.kernels.samples import around, nowhere, place_of
+from eyas.render.kernels.samples import around, nowhere, point_of
 from eyas.render.kernels.scalars import f4
 from eyas.render.kernels.visibility.cull import sphere_is_visible
 
@@ -77,7 +77,7 @@ def cast_beam(caster: NDArray[np.float64], view: View, shade: NDArray[np.uint8])
         for column in range(max(int(box[0]), 0), min(int(box[2]) + 1, width)):
             if view.depth[line, column] <= f4(0.0):
                 continue
-            x, y, z = place_of(view, line, column)
+            x, y, z = point_of(view, line, column)
             dx, dy, rise = x - caster[0], y - caster[1], z - caster[6]
             along, aside = dx * caster[2] + dy * caster[3], dy * caster[2] - dx * caster[3]
             head = 255.0 * _head(along - caster[4], aside, rise)

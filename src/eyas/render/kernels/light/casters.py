@@ -13,7 +13,7 @@ from eyas.core.jit import inner_kernel
 from eyas.render.kernels.bundles import Geometry, View
 from eyas.render.kernels.light.beams import cast_beam
 from eyas.render.kernels.light.shadow_boxes import darken
-from eyas.render.kernels.samples import around, nowhere, place_of
+from eyas.render.kernels.samples import around, nowhere, point_of
 from eyas.render.kernels.scalars import f4
 from eyas.render.kernels.visibility.cull import sphere_is_visible
 
@@ -142,7 +142,7 @@ def _cast_shadow(
             instance = (view.owner[line, column] >> 32) - 1
             if first <= instance < last:
                 continue
-            x, y, z = place_of(view, line, column)
+            x, y, z = point_of(view, line, column)
             if z > caster[7]:
                 continue
             direct, ambient = darken(caster, sun, x, y, z)

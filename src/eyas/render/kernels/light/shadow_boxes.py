@@ -17,10 +17,10 @@ _INSET = 0.3
 
 
 @inlined_kernel
-def _between(place: float, step: float, low: float, high: float) -> tuple[float, float]:
+def _between(start: float, step: float, low: float, high: float) -> tuple[float, float]:
     """Return when a point that moves by `step` in each unit of time enters and leaves a range."""
     speed = step if abs(step) > 1e-4 else 1e-4
-    first, last = (low - place) / speed, (high - place) / speed
+    first, last = (low - start) / speed, (high - start) / speed
     return min(first, last), max(first, last)
 
 

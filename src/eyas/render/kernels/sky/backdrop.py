@@ -57,14 +57,14 @@ def draw_backdrop(
         if not (_shows_sky(owner[line]) or _shows_sky(owner[line + samples - 1])):
             continue
         for column in range(output.shape[1]):
-            place = column * samples
-            first = owner[line, place]
+            sample = column * samples
+            first = owner[line, sample]
             if samples == 2:
-                first = min(first, owner[line, place + 1])
-                first = min(first, min(owner[line + 1, place], owner[line + 1, place + 1]))
+                first = min(first, owner[line, sample + 1])
+                first = min(first, min(owner[line + 1, sample], owner[line + 1, sample + 1]))
             if first >= 0:
                 continue
-            left = (middle - (f4(place) + half)) * across
+            left = (middle - (f4(sample) + half)) * across
             up = (centre_line - (f4(line) + half)) * down
             x = ahead_x + left * left_x + up * up_x
             y = ahead_y + left * left_y + up * up_y

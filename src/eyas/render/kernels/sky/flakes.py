@@ -17,7 +17,7 @@ from eyas.render.kernels.chance import scrambled, tenth
 from eyas.render.kernels.light.tone import tone_byte
 from eyas.render.kernels.scalars import f4, i8, u4
 
-__all__ = ["Canvas", "let_flakes_fall"]
+__all__ = ["FlakeView", "let_flakes_fall"]
 
 SHELLS = 3
 """Shells around the camera; each reaches `GROWTH` times as far as the one before."""
@@ -39,8 +39,8 @@ SMALLEST = 0.35
 """Radius below which flakes are not seen [pixels]."""
 
 
-class Canvas(NamedTuple):
-    """What is drawn on, and for which view."""
+class FlakeView(NamedTuple):
+    """A view that flakes are drawn into, and its picture."""
 
     samples: int
     """Samples along a side of each pixel."""
@@ -74,13 +74,13 @@ def _white(light: Light, k: int) -> int:
 
 
 @inner_kernel
-def let_flakes_fall(canvas: Canvas) -> None:
+def let_flakes_fall(view: FlakeView) -> None:
     """Draw flakes into a band."""
     begin = NEAREST
     for shell in range(SHELLS):
         end = begin * GROWTH
-        if _radius(1.0, begin) * canvas.lens[3] / begin > SMALLEST:
-            _fill_shell(shell, begin, end, canvas)
+        if _radius(1.0, begin) * view.lens[3] / begin > SMALLEST:
+            _fill_shell(shell, begin, end, view)
         begin = end
 
 
@@ -91,16 +91,16 @@ def _radius(size: float, distance: float) -> float:
 
 
 @inner_kernel
-def _cells(axis: int, end: float, origin: float, canvas: Canvas) -> tuple[int, int]:
+def _cells(axis: int, end: float, origin: float, view: FlakeView) -> tuple[int, int]:
     """Return the first cell along an axis of the world that the view reaches, and after the last.
 
     Args:
         axis: 0 to 2.
         end: How far the view goes [m].
         origin: The eye in the lattice [m].
-        canvas: Says where the camera looks.
+        view: Says where the camera looks.
     """
-    axes, lens = canvas.axes, canvas.lens
+    axes, lens = view.axes, view.lens
     middle, side = axes[0, axis], end / CELLS
     aside = abs(axes[1, axis]) * 0.5 * lens[1] / lens[0]
     aside += abs(axes[2, axis]) * 0.5 * lens[2] / lens[4]
@@ -110,28 +110,28 @@ def _cells(axis: int, end: float, origin: float, canvas: Canvas) -> tuple[int, i
 
 
 @inner_kernel
-def _fill_shell(shell: int, begin: float, end: float, canvas: Canvas) -> None:
+def _fill_shell(shell: int, begin: float, end: float, view: FlakeView) -> None:
     """Draw the flakes of all cells that the band may show."""
-    lens, eye, side = canvas.lens, canvas.eye, end / CELLS
-    flakes = math.ceil(MOST * canvas.light.air[8])
-    x = eye[0] - WIND_X * canvas.instant
-    y = eye[1] - WIND_Y * canvas.instant
-    z = eye[2] + SINKING * canvas.instant
-    high = (0.5 * lens[2] - canvas.top * canvas.samples) / lens[4]
-    low = high - canvas.output.shape[0] * canvas.samples / lens[4]
-    first_x, last_x = _cells(0, end, x, canvas)
-    first_y, last_y = _cells(1, end, y, canvas)
-    first_z, last_z = _cells(2, end, z, canvas)
+    lens, eye, side = view.lens, view.eye, end / CELLS
+    flakes = math.ceil(MOST * view.light.air[8])
+    x = eye[0] - WIND_X * view.instant
+    y = eye[1] - WIND_Y * view.instant
+    z = eye[2] + SINKING * view.instant
+    high = (0.5 * lens[2] - view.top * view.samples) / lens[4]
+    low = high - view.output.shape[0] * view.samples / lens[4]
+    first_x, last_x = _cells(0, end, x, view)
+    first_y, last_y = _cells(1, end, y, view)
+    first_z, last_z = _cells(2, end, z, view)
     for i in range(first_x, last_x):
         for j in range(first_y, last_y):
             for k in range(first_z, last_z):
                 middle = (i + 0.5) * side - x, (j + 0.5) * side - y, (k + 0.5) * side - z
-                if not _in_band(middle, begin, end, low, high, canvas):
+                if not _in_band(middle, begin, end, low, high, view):
                     continue
                 cell = scrambled(u4(u4(i + 32768) * u4(0x9E3779B1)) ^ u4(j + 32768))
                 cell = scrambled(cell ^ u4(u4(k + 32768) * u4(0x85EBCA77)) ^ u4(shell << 28))
                 for flake in range(flakes):
-                    _draw_flake(scrambled(u4(cell + u4(flake))), middle, begin, end, canvas)
+                    _draw_flake(scrambled(u4(cell + u4(flake))), middle, begin, end, view)
 
 
 @inlined_kernel
@@ -153,12 +153,12 @@ def _in_band(
     end: float,
     low: float,
     high: float,
-    canvas: Canvas,
+    view: FlakeView,
 ) -> bool:
     """Return whether a ball round a cell and the sway of its flakes may be seen."""
     ball = 0.87 * end / CELLS + 0.1
-    wide = 0.5 * canvas.lens[1] / canvas.lens[0]
-    ahead, left, up = _seen_from(canvas.axes, middle[0], middle[1], middle[2])
+    wide = 0.5 * view.lens[1] / view.lens[0]
+    ahead, left, up = _seen_from(view.axes, middle[0], middle[1], middle[2])
     if ahead < begin - ball or ahead > end + ball:
         return False
     if abs(left) > wide * ahead + ball * math.sqrt(1.0 + wide * wide):
@@ -170,14 +170,14 @@ def _in_band(
 
 @inner_kernel
 def _draw_flake(
-    number: int, middle: tuple[float, float, float], begin: float, end: float, canvas: Canvas
+    number: int, middle: tuple[float, float, float], begin: float, end: float, view: FlakeView
 ) -> None:
     """Draw the flake of a number in a cell whose middle lies there from the eye [m]."""
-    other, side, axes, lens = scrambled(number), end / CELLS, canvas.axes, canvas.lens
+    other, side, axes, lens = scrambled(number), end / CELLS, view.axes, view.lens
     size = tenth(other, 20) ** 2
     if _radius(size, begin) * lens[3] < SMALLEST * begin:
         return
-    turn = tenth(other, 0) + canvas.instant * (0.22 + 0.25 * tenth(other, 10))
+    turn = tenth(other, 0) + view.instant * (0.22 + 0.25 * tenth(other, 10))
     x = middle[0] + (tenth(number, 0) - 0.5) * side + SWAY * _wave(turn)
     y = middle[1] + (tenth(number, 10) - 0.5) * side + SWAY * _wave(turn + 0.25)
     z = middle[2] + (tenth(number, 20) - 0.5) * side
@@ -189,11 +189,11 @@ def _draw_flake(
     radius = _radius(size, ahead) * lens[3] / ahead
     if radius < SMALLEST:
         return
-    across = lens[0] / (ahead * canvas.samples)
-    down = lens[4] / (ahead * canvas.samples)
-    column = 0.5 * lens[1] / canvas.samples - left * across
-    row = 0.5 * lens[2] / canvas.samples - up * down
-    _smear(column, row, -aside * across, -above * down, radius, 1.0 / ahead, canvas)
+    across = lens[0] / (ahead * view.samples)
+    down = lens[4] / (ahead * view.samples)
+    column = 0.5 * lens[1] / view.samples - left * across
+    row = 0.5 * lens[2] / view.samples - up * down
+    _smear(column, row, -aside * across, -above * down, radius, 1.0 / ahead, view)
 
 
 @inner_kernel
@@ -204,7 +204,7 @@ def _smear(
     to_row: float,
     radius: float,
     inverse: float,
-    canvas: Canvas,
+    view: FlakeView,
 ) -> None:
     """Draw a soft streak.
 
@@ -215,14 +215,14 @@ def _smear(
         to_row: Likewise.
         radius: Half its width [pixels].
         inverse: One over its distance, as in `Scratch.depth` [1/m].
-        canvas: Where to.
+        view: Where to.
     """
     drawn = max(radius, 0.6)
     soft = 0.5 + 0.35 * drawn
     reach = drawn + soft
-    light, output, step = canvas.light, canvas.output, canvas.samples
-    first = max(i8(math.floor(min(row, row + to_row) - reach)) - canvas.top, 0)
-    last = min(i8(math.ceil(max(row, row + to_row) + reach)) - canvas.top, output.shape[0])
+    light, output, step = view.light, view.output, view.samples
+    first = max(i8(math.floor(min(row, row + to_row) - reach)) - view.top, 0)
+    last = min(i8(math.ceil(max(row, row + to_row) + reach)) - view.top, output.shape[0])
     start = max(i8(math.floor(min(column, column + to_column) - reach)), 0)
     stop = min(i8(math.ceil(max(column, column + to_column) + reach)), output.shape[1])
     if first >= last or start >= stop:
@@ -234,9 +234,9 @@ def _smear(
     red, green, blue = _white(light, 0), _white(light, 1), _white(light, 2)
     for i in range(first, last):
         for j in range(start, stop):
-            if canvas.depth[i * step, j * step] > inverse:
+            if view.depth[i * step, j * step] > inverse:
                 continue
-            y, x = i + canvas.top + 0.5 - row, j + 0.5 - column
+            y, x = i + view.top + 0.5 - row, j + 0.5 - column
             share = (x * to_column + y * to_row) / (length * length + 1e-9)
             share = min(max(share, 0.0), 1.0)
             x, y = x - share * to_column, y - share * to_row

@@ -82,21 +82,21 @@ def shade_band(
     framed = -1
     for row in range(output.shape[0]):
         for column in range(output.shape[1]):
-            line, place = row * samples, column * samples
-            tag, inverse = owner[line, place], depth[line, place]
+            line, sample = row * samples, column * samples
+            tag, inverse = owner[line, sample], depth[line, sample]
             bits, step = 0, f4(0.5) * f4(samples)
             if samples == 2:
-                inverse += depth[line, place + 1] + depth[line + 1, place]
-                inverse = (inverse + depth[line + 1, place + 1]) * f4(0.25)
+                inverse += depth[line, sample + 1] + depth[line + 1, sample]
+                inverse = (inverse + depth[line + 1, sample + 1]) * f4(0.25)
                 if (
-                    owner[line, place + 1] != tag
-                    or owner[line + 1, place] != tag
-                    or owner[line + 1, place + 1] != tag
+                    owner[line, sample + 1] != tag
+                    or owner[line + 1, sample] != tag
+                    or owner[line + 1, sample + 1] != tag
                 ):
                     bits, step = 2, f4(0.5)
             red, green, blue = 0, 0, 0
             for k in range(1 << bits):
-                i, j = line + (k >> 1), place + (k & 1)
+                i, j = line + (k >> 1), sample + (k & 1)
                 if bits:
                     tag, inverse = owner[i, j], depth[i, j]
                 if tag < 0:

@@ -47,7 +47,7 @@ def _seen_noise(x: float, y: float, cells: float, footprint: float) -> float:
 
 @inlined_kernel
 def _worn(light: Light, x: float, y: float, footprint: float) -> float:
-    """Return how far wheels have worn the snow at a place, 0 to 1, see `tracks.TrackMap`."""
+    """Return how far wheels have worn the snow at a point, 0 to 1, see `tracks.TrackMap`."""
     per = light.track_frame[2]
     column, row = (x - light.track_frame[0]) * per, (y - light.track_frame[1]) * per
     column, row = column - f4(0.5), row - f4(0.5)
@@ -74,7 +74,7 @@ def _texel(light: Light, row: int, column: int, far: float) -> float:
 @inlined_kernel
 def _on_leaves(
     colour: tuple[float, float, float],
-    place: tuple[float, float, float],
+    point: tuple[float, float, float],
     above: tuple[float, float, float],
     rise: float,
     footprint: float,
@@ -86,12 +86,12 @@ def _on_leaves(
 
     Args:
         colour: Of the leaves.
-        place: The point [m].
+        point: The point [m].
         above: The point from the middle of the crown, in the frame of the tree.
         rise: Upward component of its normal.
         footprint: What a pixel covers [m].
     """
-    x, y, z = place
+    x, y, z = point
     away = math.sqrt(above[0] * above[0] + above[1] * above[1] + above[2] * above[2] + f4(1e-6))
     # A cluster of leaves is flat and has one normal; the crown's roundness changes smoothly.
     open_ = f4(0.7) * above[2] / away + f4(0.3) * rise
@@ -139,7 +139,7 @@ def snowed(
     light: Light,
     bed: int,
     middle: float,
-    place: tuple[float, float, float],
+    point: tuple[float, float, float],
     own: tuple[float, float, float],
     rise: float,
     footprint: float,
@@ -151,30 +151,30 @@ def snowed(
         light: Says how much has fallen, where the sun is, and where wheels have gone.
         bed: A `Bed`.
         middle: z of the middle of the crown in the frame of its tree, if it is one.
-        place: The point [m].
+        point: The point [m].
         own: The point in the frame of the fixture or part it belongs to.
         rise: Upward component of its normal.
         footprint: What a pixel covers [m].
     """
-    x, y = place[0], place[1]
+    x, y = point[0], point[1]
     one, depth = f4(1.0), light.air[4]
     if bed == BARE or rise < f4(-0.6):
         return colour
     if bed == LEAVES:
         above = own[0], own[1], own[2] - middle
-        share, white = _on_leaves(colour, place, above, rise, footprint)
+        share, white = _on_leaves(colour, point, above, rise, footprint)
         return _mixed(colour, depth * share, white)
     if bed == VEHICLE:
         grain = _seen_noise(own[0], own[1], f4(9.0), footprint)
         share = depth * _clip(f4(9.0) * (rise - f4(0.9))) * (f4(0.1) + f4(0.1) * grain)
         return _mixed(colour, share, f4(0.9))
     # It is blown against kerbs and the feet of walls.
-    foot = _clip(f4(1.6) - f4(5.0) * place[2])
+    foot = _clip(f4(1.6) - f4(5.0) * point[2])
     if rise < f4(0.1) and foot <= f4(0.0):
         return colour
     if bed == DRIVEN and rise > f4(0.9):
         worn = f4(0.45)  # no lane of the map leads over bridges
-        if place[2] < f4(1.0):
+        if point[2] < f4(1.0):
             worn = _worn(light, x, y, footprint)
         # Turned, each another way: the squares of noise are not to be seen.
         grain = _seen_noise(x + f4(0.5) * y, y - f4(0.5) * x, f4(1.9), footprint)

@@ -4,17 +4,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.jit import inner_kernel
-from eyas.render.kernels.bundles import Geometry, Stage
+from eyas.render.kernels.bundles import Geometry
 from eyas.render.kernels.scalars import f4, i8
 from eyas.render.kernels.surface.texture import level_of
 from eyas.render.kernels.visibility.rasterise import BOTH_SIDES, FRONT, rasterise
 from eyas.render.kernels.visibility.transform import clip_near, to_screen
+from eyas.state.draw import DrawStage
 from eyas.state.mesh import Surface
 
 __all__ = ["draw_mesh", "level_of_detail"]
 
 FOLIAGE = int(Surface.FOLIAGE)
-VERTICES = int(Stage.VERTICES)
+VERTICES = int(DrawStage.VERTICES)
 
 PIXELS_PER_TRIANGLE = 1.5
 """A level of detail is fine enough if its triangles are about this large."""
@@ -58,7 +59,7 @@ def draw_mesh(
     """Draw a chunk or a level of detail.
 
     Args:
-        until: See `Stage`.
+        until: See `DrawStage`.
         geometry: Everything that can be drawn.
         rows: Takes the mesh's vertices to the screen.
         ranges: `chunk_range` or `mesh_range`.
