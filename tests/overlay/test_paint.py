@@ -9,6 +9,8 @@ from eyas.core.pinhole import project, rays
 from eyas.overlay.items import GroundArea, Label, Line, Overlay, Solid
 from eyas.overlay.paint import paint_overlays, with_depth
 from eyas.state.draw import DrawList, Picture
+from eyas.state.terrain import Plane
+from eyas.task.ground import on_plane
 
 from ..render.small_city import GROUND, TOWER, floor, looking, scene_of, tower
 
@@ -45,7 +47,13 @@ def changed(before: Picture, after: Picture) -> np.ndarray:
     return (before.rgb[0] != after.rgb[0]).any(axis=-1)
 
 
-def on_plane(views, size=SIZE) -> tuple[np.ndarray, np.ndarray]:
+def ground_area(corners, height=0.0, fill=0.0) -> GroundArea:
+    """A blue area on level ground."""
+    ground = Plane(0.0, 0.0, height, 0.0, 0.0)
+    return GroundArea(on_plane(ground, np.asarray(corners)), ground, BLUE, fill)
+
+
+def shown_ground(views, size=SIZE) -> tuple[np.ndarray, np.ndarray]:
     """Return where each pixel's centre meets z = 0."""
     ray = rays(views.rotation[0], size[1], size[0], FOV)
     with np.errstate(divide="ignore"):
@@ -61,9 +69,9 @@ def octahedron(middle, radius: float) -> Solid:
 
 def test_an_area_covers_the_ground_inside_its_corners_and_nothing_else(plain, painted):
     views = looking([(0.0, 0.0, 20.0)], pitch=0.8, fov=FOV)
-    area = GroundArea(SQUARE, 0.0, BLUE, fill=0.5)
+    area = ground_area(SQUARE, fill=0.5)
     before, after = painted(plain, views, Overlay(areas=(area,)))
-    x, y = on_plane(views)
+    x, y = shown_ground(views)
     margin = 0.35  # a pixel covers up to 0.35 m there
     inside = (x > 12 + margin) & (x < 22 - margin) & (np.abs(y) < 4 - margin)
     outside = (x < 12 - margin) | (x > 22 + margin) | (np.abs(y) > 4 + margin)
@@ -85,7 +93,7 @@ def test_an_area_covers_the_ground_inside_its_corners_and_nothing_else(plain, pa
 def test_a_line_far_away_keeps_its_width(plain, painted):
     views = looking([(0.0, 0.0, 6.0)], pitch=0.1, fov=FOV)
     far = np.array([[150.0, -200.0], [3000.0, -200.0], [3000.0, 200.0], [150.0, 200.0]])
-    before, after = painted(plain, views, Overlay(areas=(GroundArea(far, 0.0, BLUE),)))
+    before, after = painted(plain, views, Overlay(areas=(ground_area(far),)))
     assert 150 * 0.14 / 6 < 20  # the line, 0.14 m wide, would be a thirtieth of a pixel
     ink = (after.rgb[0, ..., 2].astype(float) - before.rgb[0, ..., 2])[:, 64]
     full = 255.0 - before.rgb[0, 60, 64, 2]
@@ -95,7 +103,7 @@ def test_a_line_far_away_keeps_its_width(plain, painted):
 @pytest.mark.parametrize("ground", [0.0, -0.1])
 def test_a_wall_hides_the_ground_behind_it(ground, walled, painted):
     views = looking([(0.0, 0.0, 8.0)], pitch=0.4, fov=FOV)
-    area = GroundArea(SQUARE, ground, BLUE, fill=0.5)
+    area = ground_area(SQUARE, ground, fill=0.5)
     before, after = painted(walled, views, Overlay(areas=(area,)))
     ray = rays(views.rotation[0], SIZE[1], SIZE[0], FOV)
     with np.errstate(invalid="ignore"):
@@ -109,18 +117,18 @@ def test_a_wall_hides_the_ground_behind_it(ground, walled, painted):
 def test_the_sky_stays_clear_where_an_area_reaches_the_horizon_and_behind(plain, painted):
     views = looking([(0.0, 0.0, 10.0)], pitch=0.05, fov=FOV)
     around = np.array([[-300.0, -300.0], [2500.0, -300.0], [2500.0, 300.0], [-300.0, 300.0]])
-    before, after = painted(plain, views, Overlay(areas=(GroundArea(around, 0.0, BLUE, 0.5),)))
+    before, after = painted(plain, views, Overlay(areas=(ground_area(around, fill=0.5),)))
     sky = np.isinf(before.depth[0])
     assert sky.any()
     assert not changed(before, after)[sky].any()
-    x, y = on_plane(views)
+    x, y = shown_ground(views)
     assert changed(before, after)[~sky & (x < 2000) & (np.abs(y) < 200)].all()
 
 
 def test_an_area_seen_from_below_or_without_corners_draws_nothing(plain, painted):
     views = looking([(0.0, 0.0, 5.0)], pitch=0.6, fov=FOV)
-    above, level = (GroundArea(SQUARE, height, BLUE, 0.5) for height in (6.0, 4.9))
-    empty = GroundArea(np.zeros((0, 2)), 0.0, BLUE, 0.5)
+    above, level = (ground_area(SQUARE, height, 0.5) for height in (6.0, 4.9))
+    empty = ground_area(np.zeros((0, 2)), fill=0.5)
     before, after = painted(plain, views, Overlay(areas=(above, level, empty)))
     assert not changed(before, after).any()
 
@@ -215,7 +223,7 @@ def test_labels_stand_beside_their_point_or_in_the_corner(plain, painted):
 def test_the_same_bytes_twice_and_in_any_company(plain, painted):
     one, other = (0.0, 0.0, 20.0), (3.0, 1.0, 15.0)
     overlay = Overlay(
-        areas=(GroundArea(SQUARE, 0.0, BLUE, 0.2),),
+        areas=(ground_area(SQUARE, fill=0.2),),
         lines=(Line(np.array([5.0, 0.0, 9.0]), np.array([22.0, 4.0, 0.0]), RED),),
         solids=(octahedron((17.0, 0.0, 2.0), 1.0),),
         labels=(Label(np.array([17.0, 0.0, 3.0]), "reward 0.50", RED),),

@@ -8,9 +8,9 @@ from eyas.trackers.drone import accelerometer
 UNIT_STEP = np.array([0.0445, 0.1924, 0.4100, 0.6236, 0.7973, 0.9200, 0.9955, 1.0339])
 
 
-def test_reset_places_the_drone_at_rest(drone):
+def test_a_start_places_the_drone_at_rest(drone):
     drone.advance(forward=10.0, up=0.1, yaw_rate=1.0, steps=20)
-    rows = drone.reset(1.0, 2.0, 3.0, 0.5)
+    rows = drone.start(1.0, 2.0, 3.0, 0.5)
     assert list(rows.position) == list(rows.commanded_position) == [1.0, 2.0, 3.0]
     assert list(rows.euler) == [0.0, 0.0, 0.5]
     assert rows.orientation == pytest.approx([math.cos(0.25), 0.0, 0.0, math.sin(0.25)])
@@ -21,8 +21,30 @@ def test_reset_places_the_drone_at_rest(drone):
     assert rows.euler[2] == 0.5
 
 
+def test_a_drone_leaves_the_others_alone(drone):
+    for array in drone.arrays():
+        array[...] = 7.0
+    before = [array.copy() for array in drone.arrays()]
+    drone.start(1.0, 2.0, 3.0, 0.5)
+    drone.advance(forward=3.0, left=2.0, up=0.1, yaw_rate=1.0, steps=3)
+    drone.carry(1.0, 1.0, 1.0, 1.0)
+    drone.aim()
+    for array, old in zip(drone.arrays(), before, strict=True):
+        np.testing.assert_array_equal(array[[0, 2]], old[[0, 2]])
+        assert (array[1] != old[1]).any()
+
+
+def test_each_command_passes_a_low_pass_of_its_own(drone):
+    commands = {"forward": {"forward": 1.0}, "left": {"left": 1.0}, "yaw_rate": {"yaw_rate": 1.0}}
+    for name, command in commands.items():
+        drone.start()
+        drone.advance(**command)
+        used = {field for field in commands if getattr(drone.memory, field)[1].any()}
+        assert used == {name}
+
+
 def test_forward_speed_answers_in_the_first_step_with_the_filter_s_response(drone):
-    drone.reset()
+    drone.start()
     speeds = [drone.advance(forward=1.0).velocity[0] for _ in UNIT_STEP]
     assert speeds == pytest.approx(UNIT_STEP, abs=5e-5)
     assert drone.rows.position[0] == pytest.approx(0.002 * UNIT_STEP.sum(), abs=1e-6)
@@ -32,14 +54,14 @@ def test_forward_speed_answers_in_the_first_step_with_the_filter_s_response(dron
 def test_commands_are_in_the_heading_frame_with_left_positive(drone, yaw):
     ahead = np.array([math.cos(yaw), math.sin(yaw), 0.0])
     aside = np.array([-math.sin(yaw), math.cos(yaw), 0.0])
-    drone.reset(yaw=yaw)
+    drone.start(yaw=yaw)
     assert drone.advance(forward=3.0, steps=200).velocity == pytest.approx(3 * ahead, abs=1e-6)
-    drone.reset(yaw=yaw)
+    drone.start(yaw=yaw)
     assert drone.advance(left=3.0, steps=200).velocity == pytest.approx(3 * aside, abs=1e-6)
 
 
 def test_up_is_metres_in_each_step_and_not_filtered(drone):
-    drone.reset(z=20.0)
+    drone.start(z=20.0)
     rows = drone.advance(up=0.01)
     assert rows.position[2] == pytest.approx(20.01)
     assert rows.velocity[2] == pytest.approx(5.0)
@@ -47,7 +69,7 @@ def test_up_is_metres_in_each_step_and_not_filtered(drone):
 
 
 def test_positive_yaw_rate_turns_counter_clockwise(drone):
-    drone.reset(yaw=3.0)
+    drone.start(yaw=3.0)
     rows = drone.advance(yaw_rate=2.0, steps=500)
     # The filter delays by 2.81 steps.
     turned = 2.0 * 0.002 * (500 - 2.81)
@@ -57,7 +79,7 @@ def test_positive_yaw_rate_turns_counter_clockwise(drone):
 
 
 def test_forward_and_turn_together_drive_a_circle(drone):
-    drone.reset()
+    drone.start()
     drone.advance(forward=10.0, yaw_rate=2.0, steps=100)
     points = np.array(
         [drone.advance(forward=10.0, yaw_rate=2.0).position.copy() for _ in range(1571)]
@@ -68,7 +90,7 @@ def test_forward_and_turn_together_drive_a_circle(drone):
 
 
 def test_velocity_and_acceleration_are_differences_over_a_step(drone):
-    drone.reset(yaw=0.7)
+    drone.start(yaw=0.7)
     rng = np.random.default_rng(1)
     last_position, last_velocity = drone.rows.position.copy(), drone.rows.velocity.copy()
     for _ in range(30):
@@ -83,3 +105,12 @@ def test_accelerometer_feels_gravity_and_motion_in_the_body_frame():
     west = np.array([math.cos(math.pi / 2), 0.0, 0.0, math.sin(math.pi / 2)])
     assert accelerometer(np.zeros(3), west) == pytest.approx((0.0, 0.0, 9.81))
     assert accelerometer(np.array([-2.0, 3.0, 1.0]), west) == pytest.approx((2.0, -3.0, 10.81))
+
+
+def test_the_camera_looks_along_the_heading_and_down_by_its_pitch(drone):
+    yaw, pitch = 2.0, 1.1
+    drone.start(5.0, 6.0, 7.0, yaw, pitch)
+    position, rotation = drone.aim()
+    forward = [math.cos(yaw) * math.cos(pitch), math.sin(yaw) * math.cos(pitch), -math.sin(pitch)]
+    assert rotation[:, 0] == pytest.approx(forward)
+    assert np.linalg.norm(position - [5.0, 6.0, 7.0]) < 0.2

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from eyas.trackers.columns import GIMBAL_PITCH, MEMORY_COLUMNS
+from eyas.state.snapshot import TrackerState
 from eyas.trackers.gimbal import advance_gimbal, camera_pose, held_pitch, reset_gimbal
 
 
@@ -35,9 +35,10 @@ def quaternion(roll, pitch, yaw):
 
 
 def settled(pitch, yaw=0.0, euler=(0.0, 0.0, 0.0)):
-    memory, gimbal = np.zeros(MEMORY_COLUMNS), np.zeros(3)
-    reset_gimbal(pitch, yaw, memory, np.array(euler), gimbal)
-    return memory, gimbal
+    trackers, memory = TrackerState.create(1), np.zeros((1, 3, 2))
+    trackers.euler[0] = euler
+    reset_gimbal(trackers, memory, 0, pitch, yaw)
+    return trackers, memory
 
 
 def pose(position, orientation, gimbal):
@@ -47,34 +48,34 @@ def pose(position, orientation, gimbal):
 
 
 def test_gimbal_is_in_place_at_a_reset_and_stays():
-    memory, gimbal = settled(1.37)
-    assert list(gimbal) == [0.0, 1.37, 0.0]
+    trackers, memory = settled(1.37)
+    assert list(trackers.gimbal[0]) == [0.0, 1.37, 0.0]
     for _ in range(200):
-        advance_gimbal(memory, np.zeros(3), gimbal)
-        assert gimbal == pytest.approx([0.0, 1.37, 0.0], abs=1e-12)
+        advance_gimbal(trackers, memory, 0)
+        assert trackers.gimbal[0] == pytest.approx([0.0, 1.37, 0.0], abs=1e-12)
 
 
 def test_a_new_command_passes_the_low_pass():
-    memory, gimbal = settled(0.5)
-    memory[GIMBAL_PITCH] = 1.5
-    advance_gimbal(memory, np.zeros(3), gimbal)
-    assert gimbal[1] == pytest.approx(0.5 + 0.0445, abs=5e-5)
-    advance_gimbal(memory, np.zeros(3), gimbal)
-    assert gimbal[1] == pytest.approx(0.5 + 0.1924, abs=5e-5)
+    trackers, memory = settled(0.5)
+    trackers.commanded_gimbal[0] = 1.5, -0.7
+    advance_gimbal(trackers, memory, 0)
+    assert trackers.gimbal[0] == pytest.approx([0.0, 0.5 + 0.0445, -0.7 * 0.0445], abs=5e-5)
+    advance_gimbal(trackers, memory, 0)
+    assert trackers.gimbal[0] == pytest.approx([0.0, 0.5 + 0.1924, -0.7 * 0.1924], abs=5e-5)
 
 
 @pytest.mark.parametrize(("asked", "held"), [(0.2, 0.5), (0.5, 0.5), (1.2, 1.2), (1.57, 1.5)])
 def test_commanded_pitch_is_held_within_limits(asked, held):
     assert held_pitch(asked) == held
-    memory, gimbal = settled(asked)
-    assert memory[GIMBAL_PITCH] == gimbal[1] == held
+    trackers, _ = settled(asked)
+    assert trackers.commanded_gimbal[0, 0] == trackers.gimbal[0, 1] == held
 
 
 def test_joints_stop_at_their_limits():
-    assert settled(1.0, yaw=2.5)[1][2] == 1.7
-    assert settled(1.0, yaw=-2.5)[1][2] == -1.7
-    assert settled(0.5, euler=(0.0, 1.2, 0.0))[1][1] == -0.5
-    assert settled(1.3, euler=(0.0, -0.23, 0.0))[1][1] == 1.5
+    assert settled(1.0, yaw=2.5)[0].gimbal[0, 2] == 1.7
+    assert settled(1.0, yaw=-2.5)[0].gimbal[0, 2] == -1.7
+    assert settled(0.5, euler=(0.0, 1.2, 0.0))[0].gimbal[0, 1] == -0.5
+    assert settled(1.3, euler=(0.0, -0.23, 0.0))[0].gimbal[0, 1] == 1.5
 
 
 @settings(deadline=None, max_examples=60)
@@ -83,8 +84,9 @@ def test_joints_stop_at_their_limits():
     st.floats(0.5, 1.0), st.floats(-0.5, 0.5),
 )  # fmt: skip
 def test_camera_looks_where_commanded_however_the_body_tilts(roll, body_pitch, heading, pitch, yaw):
-    _, gimbal = settled(pitch, yaw, (roll, body_pitch, heading))
-    _, rotation = pose([0, 0, 20], quaternion(roll, body_pitch, heading), gimbal)
+    trackers, _ = settled(pitch, yaw, (roll, body_pitch, heading))
+    attitude = quaternion(roll, body_pitch, heading)
+    _, rotation = pose([0.0, 0.0, 20.0], attitude, trackers.gimbal[0])
     assert rotation == pytest.approx(about_z(heading + yaw) @ about_y(pitch), abs=1e-9)
 
 
@@ -92,7 +94,7 @@ def test_camera_of_a_level_drone_sits_where_the_original_s_does():
     theta = 1.1
     expected = np.array([0.130625212, -0.01, -0.0337448])
     expected += about_y(theta) @ [0.00754686, 0.0160388, -0.00586401]
-    position, rotation = pose([5.0, 6.0, 7.0], quaternion(0, 0, 0), [0, theta, 0])
+    position, rotation = pose([5.0, 6.0, 7.0], quaternion(0, 0, 0), [0.0, theta, 0.0])
     assert position == pytest.approx(expected + np.array([5, 6, 7]), abs=1e-12)
     assert rotation[:, 0] == pytest.approx([math.cos(theta), 0, -math.sin(theta)])
 
