@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from eyas.sensors.config import CameraConfig
+from eyas.state.snapshot import Snapshot
 from eyas.task.config import DoneConfig, RewardConfig
 from eyas.task.rules import make_rules
 
@@ -11,7 +12,7 @@ def rules_with():
     """Build rules from settings of the reward and of the end, for the original's camera."""
 
     def build(done=None, **reward):
-        return make_rules(RewardConfig(**reward), DoneConfig(**(done or {})), CameraConfig(), -0.1)
+        return make_rules(RewardConfig(**reward), DoneConfig(**(done or {})), CameraConfig())
 
     return build
 
@@ -29,3 +30,9 @@ def look():
         return np.ascontiguousarray(turn @ nod @ lean)
 
     return rotation
+
+
+@pytest.fixture
+def snapshot():
+    """Three trackers; tests use number 1."""
+    return Snapshot.create(3)

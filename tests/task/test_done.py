@@ -1,9 +1,13 @@
 import numpy as np
 import pytest
 
-from eyas.task.columns import BREACH, MEMORY_COLUMNS, NO_REWARD_COUNT, REWARD, STEP_COUNT
+from eyas.state.snapshot import Snapshot
+from eyas.state.terrain import Terrain
 from eyas.task.done import DoneReason, is_crash, judge
 
+N = 1
+# Heights are over the roads, whatever the floor is.
+FLAT = Terrain.flat(-0.1)
 CALM = {
     "lost": False,
     "position": [0.0, 0.0, 20.0],
@@ -37,16 +41,26 @@ def rules(rules_with):
     return rules_with(done=LIMITS)
 
 
-def fresh(step_count=500, reward=1.0):
-    memory = np.zeros(MEMORY_COLUMNS)
-    memory[STEP_COUNT], memory[REWARD] = step_count, reward
-    return memory
+def fresh(step_count=500, reward=1.0, no_reward_count=0):
+    """Return three trackers, of which number 1 is in the middle of an episode."""
+    snapshot = Snapshot.create(3)
+    episodes = snapshot.episodes
+    episodes.step_count[N], episodes.reward[N] = step_count, reward
+    episodes.no_reward_count[N] = no_reward_count
+    return snapshot
 
 
-def step(rules, memory, **changes):
+def step(rules, snapshot, **changes):
+    """Judge tracker 1 in a state that differs from a calm one; return its reason."""
     values = {**CALM, **changes}
-    arrays = [np.array(values[name], np.float64) for name in CALM if name != "lost"]
-    return judge(rules, values["lost"], *arrays, memory)
+    trackers, _, targets, episodes, _ = snapshot
+    for name in CALM.keys() - {"lost", "target_centre"}:
+        getattr(trackers, name)[N] = values[name]
+    targets.centre[N], targets.lost[N] = values["target_centre"], values["lost"]
+    reason = judge(trackers, targets, episodes, N, FLAT, rules)
+    assert episodes.reason.tolist() == [0, reason, 0]
+    assert episodes.done.tolist() == [False, reason > 0, False]
+    return reason
 
 
 def test_a_calm_tracker_goes_on(rules):
@@ -64,76 +78,67 @@ def test_what_no_limit_is_about_ends_nothing(rules, what, value):
 
 
 def test_reasons_come_in_the_original_s_order(rules):
-    memory = fresh(step_count=5000, reward=0.0)
-    memory[NO_REWARD_COUNT] = 500
+    snapshot = fresh(step_count=5000, reward=0.0, no_reward_count=500)
     wrong = {
         "position": [0.0, 0.0, 0.0], "commanded_position": [99.0, 0.0, 0.0],
         "velocity": [99.0, 0.0, 0.0], "angular_velocity": [0.0, 0.0, 9.0],
         "euler": [2.0, 0.0, 0.0], "lost": True,
     }  # fmt: skip
-    seen = [step(rules, memory, **wrong)]
-    for what in list(wrong)[:-1]:
+    seen = [step(rules, snapshot, **wrong)]
+    for what in wrong:
         wrong[what] = CALM[what]
-        seen.append(step(rules, memory, **wrong))
-    assert seen == list(range(DoneReason.HEIGHT, DoneReason.TARGET_LOST + 1))
-    memory = fresh(step_count=5000, reward=0.0)
-    memory[NO_REWARD_COUNT] = 500
-    assert step(rules, memory) == DoneReason.NO_REWARD
-    memory[REWARD] = 1.0
-    assert step(rules, memory) == DoneReason.STEP_LIMIT
+        seen.append(step(rules, snapshot, **wrong))
+    assert seen == list(range(DoneReason.HEIGHT, DoneReason.NO_REWARD + 1))
+    snapshot.episodes.reward[N] = 1.0
+    assert step(rules, snapshot) == DoneReason.STEP_LIMIT
 
 
 def test_a_limit_that_is_kept_again_is_forgotten(rules):
-    memory = fresh()
-    assert step(rules, memory, euler=[2.0, 0.0, 0.0]) == DoneReason.TILT
-    assert step(rules, memory) == DoneReason.NONE
-    assert memory[BREACH] == DoneReason.NONE
-
-
-def test_a_lost_target_stays_lost(rules):
-    memory = fresh()
-    assert step(rules, memory, lost=True) == DoneReason.TARGET_LOST
-    assert step(rules, memory, lost=False) == DoneReason.TARGET_LOST
+    snapshot = fresh()
+    assert step(rules, snapshot, euler=[2.0, 0.0, 0.0]) == DoneReason.TILT
+    assert step(rules, snapshot) == DoneReason.NONE
+    assert snapshot.episodes.breach[N] == DoneReason.NONE
 
 
 def test_young_episodes_do_not_end_but_count_and_remember(rules):
-    memory = fresh(step_count=98, reward=0.0)
-    assert step(rules, memory, euler=[2.0, 0.0, 0.0], lost=True) == DoneReason.NONE
-    assert memory[BREACH] == DoneReason.TILT
-    assert memory[NO_REWARD_COUNT] == 1
-    assert memory[STEP_COUNT] == 99
-    assert step(rules, memory) == DoneReason.TARGET_LOST
+    snapshot = fresh(step_count=98, reward=0.0)
+    episodes = snapshot.episodes
+    assert step(rules, snapshot, euler=[2.0, 0.0, 0.0], lost=True) == DoneReason.NONE
+    assert episodes.breach.tolist() == [0, DoneReason.TILT, 0]
+    assert episodes.no_reward_count.tolist() == [0, 1, 0]
+    assert episodes.step_count.tolist() == [0, 99, 0]
+    assert step(rules, snapshot, lost=True) == DoneReason.TARGET_LOST
 
 
 def test_no_reward_ends_after_its_steps_and_starts_anew_with_a_reward(rules):
-    memory = fresh(reward=0.001)
-    reasons = [step(rules, memory) for _ in range(101)]
+    snapshot = fresh(reward=0.001)
+    reasons = [step(rules, snapshot) for _ in range(101)]
     assert reasons == [DoneReason.NONE] * 100 + [DoneReason.NO_REWARD]
-    memory[REWARD] = 0.0011
-    assert step(rules, memory) == DoneReason.NONE
-    assert memory[NO_REWARD_COUNT] == 0
+    snapshot.episodes.reward[N] = 0.0011
+    assert step(rules, snapshot) == DoneReason.NONE
+    assert snapshot.episodes.no_reward_count[N] == 0
 
 
 def test_no_reward_counts_during_grace(rules):
-    memory = fresh(step_count=0, reward=0.0)
-    reasons = [step(rules, memory) for _ in range(101)]
+    snapshot = fresh(step_count=0, reward=0.0)
+    reasons = [step(rules, snapshot) for _ in range(101)]
     assert reasons == [DoneReason.NONE] * 100 + [DoneReason.NO_REWARD]
 
 
 def test_episodes_last_their_number_of_steps(rules):
-    memory = fresh(step_count=0)
-    reasons = [step(rules, memory) for _ in range(1001)]
+    snapshot = fresh(step_count=0)
+    reasons = [step(rules, snapshot) for _ in range(1001)]
     assert reasons == [DoneReason.NONE] * 999 + [DoneReason.STEP_LIMIT] * 2
 
 
 @pytest.mark.parametrize("what", sorted(set(CALM) - {"lost", "commanded_position"}))
 @pytest.mark.parametrize("value", [float("nan"), float("inf")])
 def test_not_a_number_ends_at_once_and_for_good(rules, what, value):
-    memory = fresh(step_count=3)
+    snapshot = fresh(step_count=3)
     broken = [*CALM[what]]
     broken[2] = value
-    assert step(rules, memory, **{what: broken}) == DoneReason.NOT_A_NUMBER
-    assert step(rules, memory) == DoneReason.NOT_A_NUMBER
+    assert step(rules, snapshot, **{what: broken}) == DoneReason.NOT_A_NUMBER
+    assert step(rules, snapshot) == DoneReason.NOT_A_NUMBER
 
 
 def test_a_reward_that_is_not_a_number_ends_too(rules):
@@ -141,7 +146,7 @@ def test_a_reward_that_is_not_a_number_ends_too(rules):
 
 
 def test_crashes_are_what_the_original_calls_so():
-    crashes = [reason for reason in DoneReason if is_crash(float(reason))]
+    crashes = [reason for reason in DoneReason if is_crash(int(reason))]
     assert crashes == [DoneReason.DISTANCE, DoneReason.YAW_RATE]
 
 

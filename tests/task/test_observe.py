@@ -1,85 +1,85 @@
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
-from eyas.task.columns import (
-    DIRECTION,
-    MEMORY_COLUMNS,
-    RELATIVE_ACCELERATION,
-    RELATIVE_POSITION,
-    RELATIVE_VELOCITY,
-    REWARD,
-    START_DIRECTION,
-    VIEW_CENTRE,
-)
+from eyas.state.snapshot import EpisodeState
+from eyas.state.terrain import Terrain
 from eyas.task.direction import TargetDirection
-from eyas.task.observe import observe, start_episode
+from eyas.task.observe import clear_episode, observe
 
+N = 1
+FLAT = Terrain.flat(-0.1)
 
-def triple(memory, column):
-    return memory[column : column + 3]
+# Known when an episode begins, before its first observation.
+KNOWN_BEFORE = {"number", "tick", "start_offset"}
+# Said by every observation.
+SAID_ANEW = {"view_centre", "last_target", "relative_position"}
 
 
 @pytest.fixture
-def see(rules_with, look):
+def see(snapshot, rules_with, look):
     """Observe a target from a drone at a place and a heading, with a camera 1 m above it."""
     rules = rules_with()
-    memory = np.full(MEMORY_COLUMNS, 7.0)
-    start_episode(0.25, memory)
+    trackers, cameras, targets, episodes, _ = snapshot
+    clear_episode(episodes, N)
 
     def observed(target, target_yaw=0.0, position=(0.0, 0.0, 20.0), yaw=0.0):
-        position = np.array(position)
-        orientation = np.array([math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2)])
-        target = np.array(target, np.float64)
-        camera = position + np.array([0.0, 0.0, 1.0])
-        rotation = look(yaw, 1.0)
-        observe(rules, camera, rotation, position, orientation, target, target_yaw, target, memory)
-        return memory
+        trackers.position[N] = position
+        trackers.orientation[N] = math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2)
+        cameras.position[N] = trackers.position[N] + (0.0, 0.0, 1.0)
+        cameras.rotation[N] = look(yaw, 1.0)
+        targets.position[N] = targets.centre[N] = target
+        targets.yaw[N] = target_yaw
+        observe(trackers, cameras, targets, episodes, N, FLAT, rules)
+        return SimpleNamespace(**{name: array[N] for name, array in episodes._asdict().items()})
 
     return observed
 
 
-def test_a_new_episode_remembers_only_its_start_direction(see):
-    memory = np.full(MEMORY_COLUMNS, 7.0)
-    start_episode(0.25, memory)
-    assert memory[START_DIRECTION] == 0.25
-    assert np.count_nonzero(memory) == 1
+def test_a_new_episode_forgets_the_one_before_and_no_other_tracker_s():
+    episodes = EpisodeState(*(np.full_like(array, 7) for array in EpisodeState.create(3)))
+    clear_episode(episodes, N)
+    forgotten = {name for name, array in episodes._asdict().items() if not array[N].any()}
+    assert forgotten == set(EpisodeState._fields) - KNOWN_BEFORE - SAID_ANEW
+    for array in episodes:
+        assert (array[[0, 2]] == np.full_like(array, 7)[[0, 2]]).all()
 
 
 def test_reward_and_middle_of_the_view(see):
     reach = 21.1 / math.tan(1.0)
-    memory = see((reach, 0.0, 0.3))
-    assert memory[REWARD] == pytest.approx(math.tanh(4.0))
-    assert memory[VIEW_CENTRE : VIEW_CENTRE + 2] == pytest.approx([reach, 0.0])
-    assert see((-reach, 0.0, 0.3))[REWARD] == 0.0
+    episode = see((reach, 0.0, 0.3))
+    assert episode.reward == pytest.approx(math.tanh(4.0))
+    assert episode.view_centre == pytest.approx([reach, 0.0, -0.1])
+    assert see((-reach, 0.0, 0.3)).reward == 0.0
 
 
 def test_relative_position_is_in_the_body_frame(see):
-    memory = see((1.0, 5.0, 0.5), position=(1.0, 2.0, 20.0), yaw=math.pi / 2)
-    assert triple(memory, RELATIVE_POSITION) == pytest.approx([3.0, 0.0, -19.5])
+    episode = see((1.0, 5.0, 0.5), position=(1.0, 2.0, 20.0), yaw=math.pi / 2)
+    assert episode.relative_position == pytest.approx([3.0, 0.0, -19.5])
 
 
 def test_first_sample_has_no_velocity_and_second_no_acceleration(see):
-    memory = see((5.0, 0.0, 0.0))
-    assert not triple(memory, RELATIVE_VELOCITY).any()
-    memory = see((5.02, 0.0, 0.0))
-    assert triple(memory, RELATIVE_VELOCITY) == pytest.approx([10.0, 0.0, 0.0])
-    assert not triple(memory, RELATIVE_ACCELERATION).any()
-    memory = see((5.05, 0.0, 0.0))
-    assert triple(memory, RELATIVE_VELOCITY) == pytest.approx([15.0, 0.0, 0.0])
-    assert triple(memory, RELATIVE_ACCELERATION) == pytest.approx([2500.0, 0.0, 0.0], abs=1e-6)
+    episode = see((5.0, 0.0, 0.0))
+    assert not episode.relative_velocity.any()
+    episode = see((5.02, 0.0, 0.0))
+    assert episode.relative_velocity == pytest.approx([10.0, 0.0, 0.0])
+    assert not episode.relative_acceleration.any()
+    episode = see((5.05, 0.0, 0.0))
+    assert episode.relative_velocity == pytest.approx([15.0, 0.0, 0.0])
+    assert episode.relative_acceleration == pytest.approx([2500.0, 0.0, 0.0], abs=1e-6)
 
 
 def test_relative_velocity_feels_the_turning_frame(see):
     see((5.0, 0.0, 0.0))
-    memory = see((5.0, 0.0, 0.0), yaw=0.002)
-    assert triple(memory, RELATIVE_VELOCITY) == pytest.approx([0.0, -5.0, 0.0], abs=6e-3)
+    episode = see((5.0, 0.0, 0.0), yaw=0.002)
+    assert episode.relative_velocity == pytest.approx([0.0, -5.0, 0.0], abs=6e-3)
 
 
 def test_direction_is_known_from_the_second_sample(see):
-    assert see((5.0, 0.0, 0.0), 3.0)[DIRECTION] == TargetDirection.STOP
-    assert see((5.02, 0.0, 0.0), 3.0)[DIRECTION] == TargetDirection.STRAIGHT
-    assert see((5.04, 0.0, 0.0), 3.001)[DIRECTION] == TargetDirection.LEFT
-    assert see((5.06, 0.0, 0.0), 3.0)[DIRECTION] == TargetDirection.RIGHT
-    assert see((5.06, 0.0, 0.0), 3.0)[DIRECTION] == TargetDirection.STOP
+    assert see((5.0, 0.0, 0.0), 3.0).direction == TargetDirection.STOP
+    assert see((5.02, 0.0, 0.0), 3.0).direction == TargetDirection.STRAIGHT
+    assert see((5.04, 0.0, 0.0), 3.001).direction == TargetDirection.LEFT
+    assert see((5.06, 0.0, 0.0), 3.0).direction == TargetDirection.RIGHT
+    assert see((5.06, 0.0, 0.0), 3.0).direction == TargetDirection.STOP

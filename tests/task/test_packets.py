@@ -4,70 +4,59 @@ import numpy as np
 import pytest
 
 from eyas.sensors.config import CameraConfig
-from eyas.task import columns
+from eyas.state.terrain import Terrain
 from eyas.task.direction import TargetDirection
 from eyas.task.done import DoneReason
-from eyas.task.packet_rows import (
-    BASIC_COLUMNS,
-    REWARD_COLUMNS,
-    fill_basic,
-    fill_reward,
-    reward_rows,
-)
+from eyas.task.packet_rows import BASIC_COLUMNS, REWARD_COLUMNS, PacketRows
 from eyas.task.packets import BASIC_FIELDS, REWARD_FIELDS, BasicPacket, RewardPacket
-from eyas.trackers.columns import GIMBAL_PITCH
-from eyas.trackers.columns import MEMORY_COLUMNS as TRACKER_COLUMNS
 
+N = 1
 YAW = 0.6
 
 
 @pytest.fixture
-def memory():
-    row = np.zeros(columns.MEMORY_COLUMNS)
-    row[columns.STEP_COUNT] = 12
-    row[columns.REWARD] = 0.123456789
-    row[columns.START_DIRECTION] = -0.3
-    row[columns.VIEW_CENTRE : columns.VIEW_CENTRE + 2] = [31.0, 32.0]
-    row[columns.RELATIVE_POSITION : columns.RELATIVE_ACCELERATION + 3] = np.arange(1, 10)
-    row[columns.DIRECTION] = TargetDirection.LEFT
-    return row
+def told(snapshot, look):
+    """A tracker of which every number is told: its snapshot."""
+    trackers, cameras, targets, episodes, _ = snapshot
+    trackers.position[N], trackers.velocity[N] = (1.0, 2.0, 3.0), (4.0, 5.0, 6.0)
+    trackers.orientation[N] = math.cos(YAW / 2), 0.0, 0.0, math.sin(YAW / 2)
+    trackers.euler[N, 2] = YAW
+    trackers.angular_velocity[N] = 0.1, 0.2, 0.3
+    trackers.commanded_position[N] = 1.0, 2.0, 22.5
+    trackers.commanded_gimbal[N, 0] = 1.37
+    cameras.position[N], cameras.rotation[N] = (1.1, 2.1, 22.0), look(YAW, 1.37)
+    targets.centre[N], targets.yaw[N] = (7.0, 8.0, 0.3), -2.0
+    episodes.step_count[N] = 12
+    episodes.reward[N] = 0.123456789
+    episodes.start_offset[N, 3] = -0.3
+    episodes.view_centre[N] = 31.0, 32.0, -0.1
+    episodes.relative_position[N] = 1, 2, 3
+    episodes.relative_velocity[N] = 4, 5, 6
+    episodes.relative_acceleration[N] = 7, 8, 9
+    episodes.direction[N] = TargetDirection.LEFT
+    return snapshot
 
 
-def basic(memory):
-    row = np.full(BASIC_COLUMNS, np.nan)
-    orientation = np.array([math.cos(YAW / 2), 0.0, 0.0, math.sin(YAW / 2)])
-    fill_basic(
-        np.array([1.0, 2.0, 3.0]), np.array([4.0, 5.0, 6.0]), np.zeros(3), orientation,
-        np.array([0.0, 0.0, YAW]), np.array([0.1, 0.2, 0.3]), memory, row,
-    )  # fmt: skip
-    return row
+def packets(snapshot):
+    """Return the basic and the reward packet of tracker 1."""
+    basic, reward = PacketRows(snapshot, CameraConfig(), Terrain.flat(-0.1)).now()
+    assert (basic.shape, reward.shape) == ((3, BASIC_COLUMNS), (3, REWARD_COLUMNS))
+    return basic[N], reward[N]
 
 
-def reward(memory, look, euler_yaw=YAW, target_yaw=-2.0):
-    row = reward_rows(2, CameraConfig())[1]
-    tracker_memory = np.zeros(TRACKER_COLUMNS)
-    tracker_memory[GIMBAL_PITCH] = 1.37
-    fill_reward(
-        -0.1, tracker_memory, np.array([1.0, 2.0, 22.5]), np.array([0.0, 0.0, euler_yaw]),
-        np.array([1.1, 2.1, 22.0]), look(YAW, 1.37), target_yaw, np.array([7.0, 8.0, 0.3]),
-        memory, row,
-    )  # fmt: skip
-    return row
-
-
-def test_basic_packet_has_the_original_s_22_numbers(memory):
-    row = basic(memory)
+def test_basic_packet_has_the_original_s_22_numbers(told):
+    row, _ = packets(told)
     expected = [
         12, 1, 2, 3, 4, 5, 6, 0, 0, 9.81, 0.1, 0.2, 0.3, math.cos(0.3), 0, 0, math.sin(0.3),
         0, 0, 0.6, 0.123456789, 0,
     ]  # fmt: skip
     assert row == pytest.approx(expected, abs=1e-12)
-    memory[columns.REASON] = DoneReason.NO_REWARD
-    assert basic(memory)[21] == 1.0
+    told.episodes.reason[N] = DoneReason.NO_REWARD
+    assert packets(told)[0][21] == 1.0
 
 
-def test_reward_packet_has_the_original_s_60_numbers(memory, look):
-    row = reward(memory, look)
+def test_reward_packet_has_the_original_s_60_numbers(told, look):
+    _, row = packets(told)
     assert row[:4] == pytest.approx([320, 240, 0.7854, 386.27], abs=5e-3)
     assert list(row[4:7]) == [1.37, 22.5, -0.3]
     camera_pose = np.eye(4)
@@ -84,37 +73,52 @@ def test_reward_packet_has_the_original_s_60_numbers(memory, look):
     assert list(row[58:]) == [0.0, TargetDirection.LEFT]
 
 
-def test_relative_yaw_is_wrapped(memory, look):
-    row = reward(memory, look, euler_yaw=3.0, target_yaw=-3.0)
-    assert row[48] == pytest.approx(2 * math.pi - 6.0)
+def test_relative_yaw_is_wrapped(told):
+    told.trackers.euler[N, 2], told.targets.yaw[N] = 3.0, -3.0
+    assert packets(told)[1][48] == pytest.approx(2 * math.pi - 6.0)
 
 
 @pytest.mark.parametrize("breach", DoneReason)
-def test_crash_is_told_though_the_episode_goes_on(memory, look, breach):
-    memory[columns.BREACH] = breach
+def test_crash_is_told_though_the_episode_goes_on(told, breach):
+    told.episodes.breach[N] = breach
     crash = breach in (DoneReason.DISTANCE, DoneReason.YAW_RATE)
-    assert reward(memory, look)[58] == crash
+    assert packets(told)[1][58] == crash
 
 
-def test_every_column_has_its_own_name(memory, look):
+def test_every_column_has_its_own_name(told):
     assert len(set(BASIC_FIELDS)) == len(BASIC_FIELDS) == BASIC_COLUMNS
     assert len(set(REWARD_FIELDS)) == len(REWARD_FIELDS) == REWARD_COLUMNS
-    row = dict(zip(REWARD_FIELDS, reward(memory, look), strict=True))
+    basic, reward = packets(told)
+    row = dict(zip(REWARD_FIELDS, reward, strict=True))
     assert row["camera_pose_23"] == pytest.approx(22.1)
     assert row["relative_velocity_y"] == 5.0
     assert row["target_centre_z"] == pytest.approx(0.4)
-    assert dict(zip(BASIC_FIELDS, basic(memory), strict=True))["yaw"] == YAW
+    assert dict(zip(BASIC_FIELDS, basic, strict=True))["yaw"] == YAW
 
 
-def test_records_hold_what_the_rows_hold(memory, look):
-    packet = BasicPacket.from_row(basic(memory))
+def test_records_hold_what_the_rows_hold(told):
+    basic, reward = packets(told)
+    packet = BasicPacket.from_row(basic)
     assert packet.step_count == 12
     assert packet.euler == (0.0, 0.0, YAW)
     assert packet.done is False
-    other = RewardPacket.from_row(reward(memory, look), "BmwX5Simple")
+    other = RewardPacket.from_row(reward, "BmwX5Simple")
     assert other.relative_velocity == (4.0, 5.0, 6.0)
     assert other.target_direction is TargetDirection.LEFT
     assert other.target_type == "BmwX5Simple"
+
+
+def test_packets_tell_the_state_as_it_is_now_and_later_ones_leave_them_alone(told):
+    rows = PacketRows(told, CameraConfig(), Terrain.flat(-0.1))
+    before = rows.now()
+    kept = [array.copy() for array in before]
+    told.trackers.position[N] += 1.0
+    told.targets.centre[N] += 1.0
+    after = rows.now()
+    assert after[0][N, 1:4] == pytest.approx([2.0, 3.0, 4.0])
+    assert after[1][N, 42:45] == pytest.approx([8.0, 9.0, 1.4])
+    for array, copy in zip(before, kept, strict=True):
+        np.testing.assert_array_equal(array, copy)
 
 
 def test_rows_pass_through_records_unchanged():

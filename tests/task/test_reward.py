@@ -7,10 +7,13 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
+from eyas.state.terrain import Plane
 from eyas.task.config import RewardMode, RewardType
 from eyas.task.ground import ground_corners
 from eyas.task.reward import axis_depth, reward_value, view_centre, view_share
 
+FLOOR = -0.1
+LEVEL = Plane(0.0, 0.0, FLOOR, 0.0, 0.0)
 VECTORS = Path(__file__).parent / "data" / "reward_vectors.csv"
 
 # Camera, yaw, pitch, target, view range, centre, share, continuous reward.
@@ -34,12 +37,14 @@ in_picture = st.floats(-0.99, 0.99)
 anything = st.floats(allow_nan=False, allow_infinity=False)
 
 
-def evaluate(rules, position, rotation, x, y):
-    """Return the reward, the share and the middle of the view."""
+def evaluate(rules, position, rotation, x, y, ground=LEVEL):
+    """Return the reward, the share and the middle of the view for a target on a plane."""
     position = np.array(position, np.float64)
-    depth = axis_depth(position, rotation, rules.ground)
+    z = ground.z + ground.rise_east * (x - ground.x) + ground.rise_north * (y - ground.y)
+    below = Plane(float(x), float(y), float(z), ground.rise_east, ground.rise_north)
+    depth = axis_depth(position, rotation, below)
     middle = view_centre(position, rotation, depth)
-    share = view_share(position, rotation, depth, x, y, rules)
+    share = view_share(position, rotation, depth, below, rules)
     distance = math.hypot(x - middle[0], y - middle[1])
     return reward_value(share, distance, depth, rules), share, middle
 
@@ -76,6 +81,7 @@ def test_view_rewards_equal_the_published_table(case, rules_with, look):
 
 def inside(polygon, x, y):
     """How far inside a convex counter-clockwise polygon a point is; negative outside [m]."""
+    polygon = polygon[:, :2]
     edges = np.roll(polygon, -1, axis=0) - polygon
     offset = np.array([x, y]) - polygon
     cross = edges[:, 0] * offset[:, 1] - edges[:, 1] * offset[:, 0]
@@ -88,7 +94,7 @@ def test_a_target_is_rewarded_exactly_where_the_picture_shows_ground(
     rules_with, look, yaw, pitch, view_range, x, y
 ):
     rules, rotation = rules_with(view_range=view_range), look(yaw, pitch)
-    margin = inside(ground_corners((0, 0, 20), rotation, rules), x, y)
+    margin = inside(ground_corners((0, 0, 20), rotation, rules, LEVEL), x, y)
     assume(abs(margin) > 1e-6)
     _, share, _ = evaluate(rules, (0, 0, 20), rotation, x, y)
     assert (share > 0) == (margin > 0)
@@ -97,7 +103,7 @@ def test_a_target_is_rewarded_exactly_where_the_picture_shows_ground(
 def shown_at(rules, camera, rotation, column, row):
     """Return the ground point at a place of the rewarded rectangle, whose sides are at -1 and 1."""
     ray = rotation @ [1.0, column * rules.half_width, row * rules.half_height]
-    return np.array(camera)[:2] - ray[:2] * (camera[2] - rules.ground) / ray[2]
+    return np.array(camera)[:2] - ray[:2] * (camera[2] - FLOOR) / ray[2]
 
 
 @settings(deadline=None, max_examples=50)
@@ -187,17 +193,18 @@ def test_distance_reward_ends_at_its_range(rules_with, look):
 
 
 def test_ground_corners_are_the_published_ones_in_order(rules_with, look):
-    corners = ground_corners((0, 0, 22), look(0.3, 1.37), rules_with(view_range=1.0))
+    corners = ground_corners((0, 0, 22), look(0.3, 1.37), rules_with(view_range=1.0), LEVEL)
     expected = [(8.6420, 13.1119), (-4.7237, 7.7358), (0.4694, -9.0518), (14.5361, -5.9421)]
-    assert corners == pytest.approx(np.array(expected), abs=1e-4)
+    assert corners[:, :2] == pytest.approx(np.array(expected), abs=1e-4)
+    assert (corners[:, 2] == FLOOR).all()
 
 
 def test_ground_is_cut_off_where_the_picture_shows_the_horizon(rules_with, look):
     rules, rotation = rules_with(view_range=1.0), look(0.5, 0.1)
-    corners = ground_corners((3, 4, 20), rotation, rules, reach=500.0)
-    offset = np.column_stack([corners - (3, 4), np.full(4, -20.1)])
+    corners = ground_corners((3, 4, 20), rotation, rules, LEVEL, reach=500.0)
     # Depth in the sense of the rays: 1 m along the axis for each share of the way down.
-    depth = offset @ rotation[:, 0]
+    depth = (corners - (3, 4, 20)) @ rotation[:, 0]
     assert sorted(depth)[2:] == pytest.approx([500.0, 500.0])
     assert inside(corners, *(np.array([3, 4]) + 100 * rotation[:2, 0])) > 0
-    assert len(ground_corners((3, 4, 20), look(0.5, -1.0), rules)) == 0
+    assert len(ground_corners((3, 4, 20), look(0.5, -1.0), rules, LEVEL)) == 0
+    assert len(ground_corners((3, 4, -0.2), look(0.5, 1.0), rules, LEVEL)) == 0

@@ -4,15 +4,14 @@ import pytest
 
 from eyas.sensors.config import CameraConfig
 from eyas.task.config import DoneConfig, RewardConfig, RewardMode, RewardType
-from eyas.task.rules import make_rules
+from eyas.task.rules import BuiltinReward, make_rules
 
 
 def test_rewarded_rectangle_is_the_share_of_the_picture():
     camera = CameraConfig(width=640, height=320, field_of_view=1.0)
-    rules = make_rules(RewardConfig(view_range=0.5), DoneConfig(), camera, -0.1)
+    rules = make_rules(RewardConfig(view_range=0.5), DoneConfig(), camera)
     assert rules.half_width == pytest.approx(0.5 * math.tan(0.5))
     assert rules.half_height == pytest.approx(0.25 * math.tan(0.5))
-    assert rules.ground == -0.1
 
 
 def test_every_limit_is_taken_from_the_field_of_its_name():
@@ -24,9 +23,16 @@ def test_every_limit_is_taken_from_the_field_of_its_name():
         type=RewardType.DISTANCE, mode=RewardMode.DISCRETE,
         cut_off=0.1, distance_scale=0.2, distance_range=0.3, view_scale=0.4,
     )  # fmt: skip
-    rules = make_rules(reward, done, CameraConfig(), 0.0)
-    assert rules.distance is rules.discrete is True
+    rules = make_rules(reward, done, CameraConfig())
+    assert rules.reward == BuiltinReward.DISTANCE_DISCRETE
     for settings in (done, reward):
         for name in type(settings).model_fields:
-            if name not in ("type", "mode", "view_range"):
+            if name not in ("type", "mode", "view_range", "weight", "terms"):
                 assert getattr(rules, name) == getattr(settings, name), name
+
+
+@pytest.mark.parametrize("type_", RewardType)
+@pytest.mark.parametrize("mode", RewardMode)
+def test_each_reward_is_the_one_of_its_name(type_, mode):
+    rules = make_rules(RewardConfig(type=type_, mode=mode), DoneConfig(), CameraConfig())
+    assert BuiltinReward(rules.reward).name.lower() == f"{type_}_{mode}"

@@ -6,7 +6,7 @@ import pytest
 from eyas.core.errors import SpawnError
 from eyas.core.variation import Mirrored, Uniform
 from eyas.task.config import StartConfig
-from eyas.task.spawn import Start, choose_target, draw_start, place
+from eyas.task.spawn import Start, choose_target, sample_start, start_pose
 
 PLAIN = {
     "pitch": 1.37,
@@ -33,7 +33,7 @@ def in_drone_frame(position, yaw, target):
 def test_target_is_seen_ahead_right_and_below(target_yaw, direction, pitch, share):
     drawn = start(pitch=pitch, direction=direction, horizontal_bias=3.0, vertical_bias=2.0)
     target = (10.0, -5.0, 0.4)
-    position, yaw = place(drawn, target, target_yaw)
+    position, yaw = start_pose(drawn, target, target_yaw)
     ahead = share * 22.0 + 1.0 - 2.0
     assert in_drone_frame(position, yaw, target) == pytest.approx([ahead, -3.0, -22.0], abs=3e-3)
     assert math.cos(yaw - target_yaw - direction) == pytest.approx(1.0)
@@ -41,12 +41,12 @@ def test_target_is_seen_ahead_right_and_below(target_yaw, direction, pitch, shar
 
 
 def test_targets_that_are_no_vehicles_have_no_compensation():
-    position, _ = place(start(), (0.0, 0.0, 0.0), 0.0, ahead=0.0)
+    position, _ = start_pose(start(), (0.0, 0.0, 0.0), 0.0, ahead=0.0)
     assert position == pytest.approx([-math.tan(math.pi / 2 - 1.37) * 22.0, 0.0, 22.0])
 
 
 def test_the_place_is_for_the_pitch_as_drawn_even_beyond_the_gimbal_s_limit():
-    position, _ = place(start(pitch=math.pi / 2), (0.0, 0.0, 0.0), 0.0)
+    position, _ = start_pose(start(pitch=math.pi / 2), (0.0, 0.0, 0.0), 0.0)
     assert position == pytest.approx([-1.0, 0.0, 22.0])
 
 
@@ -58,7 +58,7 @@ def test_draws_come_in_the_original_s_order():
         horizontal_bias=Uniform(uniform=(-4.0, 4.0)),
         vertical_bias=Mirrored(mirrored=(2.5, 4.5)),
     )
-    drawn = draw_start(config, np.random.default_rng(5))
+    drawn = sample_start(config, np.random.default_rng(5))
     rng = np.random.default_rng(5)
     assert drawn.pitch == rng.uniform(0.6, 1.38)
     assert drawn.horizontal_bias == rng.uniform(-4.0, 4.0)
