@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from eyas.core.intrinsics import layout_of, size_of, store
 from eyas.core.jit import KERNEL_SETTINGS, kernel, thread_count
 
-__all__ = ["Held", "Pointer", "parallel_kernel"]
+__all__ = ["BoundKernel", "Held", "Pointer", "parallel_kernel"]
 
 Bundle = TypeVar("Bundle")
 Pointee = TypeVar("Pointee", covariant=True)
@@ -136,6 +136,28 @@ class _Crew:
 _CREW = _Crew()
 
 
+class BoundKernel:
+    """A kernel with its bundles: for short calls that come again and again.
+
+    A call costs a microsecond instead of eight. It waits for no other call, so nothing else may
+    write into its bundles meanwhile.
+    """
+
+    __slots__ = ("_address", "_function", "_kept")
+
+    def __init__(
+        self, function: Callable[[int, int, int], None], parts: tuple[Held[Any], ...]
+    ) -> None:
+        table = np.array([part.address for part in parts], np.int64)
+        self._function = function
+        self._address = table.ctypes.data
+        self._kept = table, parts
+
+    def __call__(self) -> None:
+        """Do all shares."""
+        self._function(self._address, 0, 1)
+
+
 class parallel_kernel(Generic[Bundle]):  # noqa: N801  # a decorator like `kernel`
     """Compile a function that does the share of one worker, and call it for all workers at once.
 
@@ -155,12 +177,22 @@ class parallel_kernel(Generic[Bundle]):  # noqa: N801  # a decorator like `kerne
         """Run the shares of all workers and wait for them."""
         if workers == 0:
             return
-        layouts = tuple([part.layout for part in parts])
         with _CREW.busy:
-            if layouts not in self._compiled:
-                self._compiled[layouts] = self._compile(parts)
-            # A function of ctypes runs without the interpreter's lock.
-            _CREW.run(_Call(self._compiled[layouts].ctypes, parts, workers))
+            _CREW.run(_Call(self._function(parts), parts, workers))
+
+    def bound(self, *parts: Held[Any]) -> "BoundKernel":
+        """Return a call with these bundles, all of it done in the thread that calls."""
+        return BoundKernel(self._function(parts), parts)
+
+    def _function(self, parts: tuple[Held[Any], ...]) -> Callable[[int, int, int], None]:
+        """Return the function for bundles of these layouts; being of ctypes, it lets go of the
+        interpreter's lock.
+        """
+        layouts = tuple([part.layout for part in parts])
+        if layouts not in self._compiled:
+            self._compiled[layouts] = self._compile(parts)
+        function: Callable[[int, int, int], None] = self._compiled[layouts].ctypes
+        return function
 
     def _compile(self, parts: tuple[Held[Any], ...]) -> Any:  # noqa: ANN401  # numba has no types
         pointers = [numba.types.CPointer(numba.typeof(part.bundle)) for part in parts]

@@ -71,7 +71,7 @@ class Simulation:
         )
         self._episodes = Episodes(config, place.traffic, worlds, light, self.snapshot)
         self._pictures = Pictures(config, place, worlds, light, self.snapshot)
-        self._step = step_of(tracker)
+        self._kernels = step_of(tracker)
         self._memory = tracker.memory(self.count)
         self._around = Surroundings(place.traffic.motion, terrain)
         self._orders = Orders.create(self.count)
@@ -88,7 +88,8 @@ class Simulation:
     @rules.setter
     def rules(self, rules: Rules) -> None:
         self._rules = rules
-        self._state = Held(StepState(self.snapshot, self._memory, self._around, rules))
+        state = Held(StepState(self.snapshot, self._memory, self._around, rules))
+        self._step = self._kernels.bound(state, self._held_orders)
 
     def reseed(self, seed: int) -> None:
         """Begin the sequence of episodes of another seed; takes effect at the next reset."""
@@ -109,7 +110,7 @@ class Simulation:
         self._orders.pitch[:count] = self._episodes.begin(chosen)
         self._orders.chosen[:count] = chosen
         self._orders.starts[0] = count
-        self._step.begin(1, self._state, self._held_orders)
+        self._step.begin()
 
     def advance(self, commands: Floats, physics_steps: int = 1) -> StepResult:
         """Hold commands for some physics steps of 2 ms, each of which is judged.
@@ -121,13 +122,13 @@ class Simulation:
         assert commands.shape == (self.count, 4), f"commands: shape {commands.shape}, not (N, 4)"
         self._orders.commands[:] = commands
         self._orders.steps[0] = physics_steps
-        self._step.fly(1, self._state, self._held_orders)
+        self._step.fly()
         return self._result()
 
     def carry(self, physics_steps: int = 1) -> StepResult:
         """Carry all trackers along with their targets, at the offsets of their starts."""
         self._orders.steps[0] = physics_steps
-        self._step.carry(1, self._state, self._held_orders)
+        self._step.carry()
         return self._result()
 
     def follow(self, tracker: int, actor: int) -> None:

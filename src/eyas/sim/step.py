@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.jit import specialised, step_kernel
-from eyas.core.parallel import Pointer, parallel_kernel
+from eyas.core.parallel import BoundKernel, Held, Pointer, parallel_kernel
 from eyas.state.motion import Motion
 from eyas.state.snapshot import EpisodeState, Snapshot, TargetState
 from eyas.state.terrain import Terrain
@@ -28,7 +28,7 @@ from eyas.trackers.drone import advance, aim, carry, start
 from eyas.trackers.tracker import Tracker
 from eyas.traffic.interpolation import interpolate_actor
 
-__all__ = ["Orders", "Step", "StepState", "Surroundings", "step_of"]
+__all__ = ["Orders", "Step", "StepKernels", "StepState", "Surroundings", "step_of"]
 
 
 class Surroundings(NamedTuple):
@@ -80,20 +80,32 @@ Parts = Pointer[tuple[Pointer[StepState], Pointer[Orders]]]
 
 
 class Step(NamedTuple):
-    """The kernels of a step, for one kind of tracker; each takes a `StepState` and `Orders`."""
+    """The calls of a step for a simulation."""
+
+    fly: BoundKernel
+    """Flies all trackers by their commands."""
+    carry: BoundKernel
+    """Carries all trackers along with their targets."""
+    begin: BoundKernel
+    """Puts the chosen trackers at their starts."""
+
+
+class StepKernels(NamedTuple):
+    """The kernels of a step, for one kind of tracker."""
 
     fly: parallel_kernel[Any]
-    """Flies all trackers by their commands."""
     carry: parallel_kernel[Any]
-    """Carries all trackers along with their targets."""
     begin: parallel_kernel[Any]
-    """Puts some trackers at their starts."""
+
+    def bound(self, state: Held[StepState], orders: Held[Orders]) -> Step:
+        """Return the calls that work on a state."""
+        return Step(*(kernel.bound(state, orders) for kernel in self))
 
 
 @lru_cache(maxsize=16)
-def step_of(tracker: Tracker) -> Step:
+def step_of(tracker: Tracker) -> StepKernels:
     """Return the step of a kind of tracker."""
-    return Step(
+    return StepKernels(
         fly=parallel_kernel(specialised(_fly, advance=tracker.advance, aim=tracker.aim)),
         carry=parallel_kernel(specialised(_carry, carry=tracker.carry, aim=tracker.aim)),
         begin=parallel_kernel(specialised(_begin, start=tracker.start, aim=tracker.aim)),

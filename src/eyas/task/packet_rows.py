@@ -46,11 +46,12 @@ class PacketRows:
         rows[:, 3] = focal_length(camera.width, camera.field_of_view)
         rows[:, _CAMERA_POSE + 15] = rows[:, _TARGET_POSE + 15] = 1.0
         rows[:, _TARGET_POSE + 10] = 1.0
-        self._held = Held(_Packets(snapshot, terrain.floor, self._basic, self._reward))
+        packets = _Packets(snapshot, terrain.floor, self._basic, self._reward)
+        self._fill = _fill_packets.bound(Held(packets))
 
     def now(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return the basic, shape (N, 22), and the reward packets, shape (N, 60)."""
-        _fill_packets(1, self._held)
+        self._fill()
         return self._basic.copy(), self._reward.copy()
 
 
