@@ -4,32 +4,49 @@ import numpy as np
 import pytest
 
 from eyas.core.pinhole import project
-from eyas.overlay.marks import chase_pose
+from eyas.overlay.marks import Marks
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
+from eyas.sim.worlds import each_alone, together
 from eyas.state.draw import Picture
-from eyas.state.tracker import CameraPose
+from eyas.state.snapshot import CameraState
+from eyas.state.terrain import Plane, Terrain, height_over
 from eyas.task.config import RewardConfig, RewardType, StartConfig
 from eyas.task.reward import axis_depth, view_centre, view_share
 
 CONFIG = SimConfig(start=StartConfig(pitch=1.2, height=22.0))
 FIRST = np.zeros(1, np.int32)
+FLAT = Terrain.flat(-0.1)
 
 
 def started(config: SimConfig = CONFIG, count: int = 1, *, shared: bool = False):
-    simulation = build_simulation(config, count, shared_world=shared)
+    simulation = build_simulation(config, (together if shared else each_alone)(count))
     simulation.reset()
     return simulation
 
 
-def overlay_of(simulation, trackers=None):
-    return simulation._projection.of(0, trackers)
+def overlay_of(simulation, trackers=None, terrain=FLAT):
+    marks = Marks(simulation.snapshot, terrain, simulation.config.camera)
+    return marks.of(0, simulation.rules, trackers)
+
+
+def behind(cameras: CameraState) -> CameraState:
+    """Cameras 6 m behind and 2.5 m above others, that look down on them and their ground."""
+    ahead = cameras.rotation[:, :, 0] * (1.0, 1.0, 0.0)
+    ahead /= np.linalg.norm(ahead, axis=1, keepdims=True)
+    up = np.array([0.0, 0.0, 1.0])
+    forward = np.cos(0.78) * ahead - np.sin(0.78) * up
+    left = np.cross(up, ahead)
+    return CameraState(
+        position=cameras.position - 6.0 * ahead + 2.5 * up,
+        rotation=np.stack([forward, left, np.cross(forward, left)], axis=2),
+    )
 
 
 def chased(simulation, size=(120, 160), *, overlay=True) -> Picture:
     picture = Picture.create(1, *size)
-    viewpoint = chase_pose(CameraPose(simulation.cameras.position, simulation.cameras.rotation))
-    one = CameraPose(viewpoint.position[:1], viewpoint.rotation[:1])
+    viewpoint = behind(simulation.snapshot.cameras)
+    one = CameraState(*(array[:1] for array in viewpoint))
     simulation.draw_from(FIRST, one, picture, overlay=overlay)
     return picture
 
@@ -39,7 +56,7 @@ def test_only_the_colours_change_and_draw_stays_clean():
     wanted = {"depth": True, "object_id": True, "subject": True, "class_id": True}
     clean, overlaid, again = (Picture.create(1, 60, 80, **wanted) for _ in range(3))
     simulation.draw(FIRST, clean)
-    simulation.draw_overlaid(FIRST, overlaid)
+    simulation.draw(FIRST, overlaid, overlay=True)
     simulation.draw(FIRST, again)
     for name in ("depth", "object_id", "subject_box", "subject_pixels", "class_id"):
         assert np.array_equal(getattr(clean, name), getattr(overlaid, name))
@@ -49,50 +66,65 @@ def test_only_the_colours_change_and_draw_stays_clean():
 
 def test_a_camera_sees_its_own_view_at_the_edge_of_its_picture():
     simulation = started()
-    _, view = overlay_of(simulation).areas
-    corners = np.column_stack([view.corners, np.full(len(view.corners), view.ground)])
-    column, row, _ = project(
-        corners, simulation.cameras.position[0], simulation.cameras.rotation[0], 320, 240, 0.7854
-    )
-    assert column == pytest.approx([0, 0, 320, 320], abs=1e-6)
-    assert row == pytest.approx([0, 240, 240, 0], abs=1e-6)
+    cameras = simulation.snapshot.cameras
+    for terrain in (FLAT, hill_below(simulation)):
+        _, view = overlay_of(simulation, terrain=terrain).areas
+        column, row, _ = project(
+            view.corners, cameras.position[0], cameras.rotation[0], 320, 240, 0.7854
+        )
+        assert column == pytest.approx([0, 0, 320, 320], abs=1e-6)
+        assert row == pytest.approx([0, 240, 240, 0], abs=1e-6)
+        for corner in view.corners.tolist():
+            assert height_over(view.ground, *corner) == pytest.approx(0.0, abs=1e-9)
+
+
+def hill_below(simulation) -> Terrain:
+    """A hill of constant slope that is at z = 0 under the target."""
+    x, y, _ = simulation.snapshot.targets.centre[0]
+    at = np.arange(-200.0, 201.0, 100.0)
+    relief = 200.0 + 0.2 * at - 0.1 * at[:, None]
+    return Terrain(-200.0, relief.astype(np.float32), x - 200.0, y - 200.0, 100.0)
 
 
 def test_the_range_is_where_the_view_is_rewarded():
     simulation = started()
-    area, _ = overlay_of(simulation).areas
-    rules, position = simulation._rules, simulation.cameras.position[0]
-    rotation = simulation.cameras.rotation[0]
-    depth = axis_depth(position, rotation, rules.ground)
-    middle = area.corners.mean(axis=0)
-    for factor, rewarded in ((0.98, True), (1.02, False)):
-        for x, y in middle + factor * (area.corners - middle):
-            assert (view_share(position, rotation, depth, x, y, rules) > 0) == rewarded
+    rules, cameras = simulation.rules, simulation.snapshot.cameras
+    position, rotation = cameras.position[0], cameras.rotation[0]
+    for terrain in (FLAT, hill_below(simulation)):
+        area, _ = overlay_of(simulation, terrain=terrain).areas
+        middle = area.corners.mean(axis=0)
+        for factor, rewarded in ((0.98, True), (1.02, False)):
+            for x, y, z in (middle + factor * (area.corners - middle)).tolist():
+                below = Plane(x, y, z, area.ground.rise_east, area.ground.rise_north)
+                depth = axis_depth(position, rotation, below)
+                assert (view_share(position, rotation, depth, below, rules) > 0) == rewarded
 
 
 def test_the_range_of_a_distance_reward_is_a_circle():
     reward = RewardConfig(type=RewardType.DISTANCE, distance_range=5.0)
     simulation = started(CONFIG.model_copy(update={"reward": reward}))
     area, _ = overlay_of(simulation).areas
-    position, rotation = simulation.cameras.position[0], simulation.cameras.rotation[0]
+    cameras = simulation.snapshot.cameras
+    position, rotation = cameras.position[0], cameras.rotation[0]
     middle = view_centre(position, rotation, axis_depth(position, rotation, area.ground))
-    assert np.hypot(*(area.corners - middle).T) == pytest.approx(5.0)
+    assert np.hypot(*(area.corners[:, :2] - middle).T) == pytest.approx(5.0)
+    assert area.corners[:, 2] == pytest.approx(-0.1)
     assert len(area.corners) >= 24
 
 
 def test_the_gem_stands_over_the_target_and_turns_and_the_reward_is_told():
     simulation = started()
+    targets = simulation.snapshot.targets
     before = overlay_of(simulation)
-    simulation.follow(100)
+    simulation.carry(100)
     after = overlay_of(simulation)
     gem = after.solids[0].positions
-    middle = simulation.targets.centre[0]
-    assert gem[:, :2].mean(axis=0) == pytest.approx(middle[:2], abs=0.05)
-    assert gem[:, 2].min() > simulation.target_size(0)[2]
+    assert gem[:, :2].mean(axis=0) == pytest.approx(targets.centre[0, :2], abs=0.05)
+    assert gem[:, 2].min() > targets.size[0, 2]
     moved = gem - before.solids[0].positions
     assert not np.allclose(moved, moved[0], atol=0.02)
-    assert after.labels[0].text == f"reward {simulation.reward[0]:.2f}"
-    simulation.targets.lost[0] = True
+    assert after.labels[0].text == f"reward {simulation.snapshot.episodes.reward[0]:.2f}"
+    targets.lost[0] = True
     assert not overlay_of(simulation).solids
 
 
@@ -101,13 +133,13 @@ def test_a_chase_view_shows_the_drone_and_its_view_and_the_same_bytes_twice():
     clean, first, again = chased(simulation, overlay=False), chased(simulation), chased(simulation)
     assert np.array_equal(first.rgb, again.rgb)
     assert first.depth is None
-    viewpoint = chase_pose(CameraPose(simulation.cameras.position, simulation.cameras.rotation))
+    viewpoint = behind(simulation.snapshot.cameras)
     pose = viewpoint.position[0], viewpoint.rotation[0]
     field = 2 * np.arctan(np.tan(0.475) * 160 / 120)
-    column, row, _ = project(simulation.trackers.position[0], *pose, 160, 120, field)
+    column, row, _ = project(simulation.snapshot.trackers.position[0], *pose, 160, 120, field)
     changed = (clean.rgb[0] != first.rgb[0]).any(axis=-1)
     assert changed[round(row) - 2 : round(row) + 3, round(column) - 2 : round(column) + 3].all()
-    below = np.append(overlay_of(simulation).areas[0].corners.mean(axis=0), 0.0)
+    below = overlay_of(simulation).areas[0].corners.mean(axis=0)
     column, row, _ = project(below, *pose, 160, 120, field)
     assert 0 < column < 160
     assert 0 < row < 120
@@ -116,22 +148,13 @@ def test_a_chase_view_shows_the_drone_and_its_view_and_the_same_bytes_twice():
 def test_a_view_shows_every_drone_of_its_world_and_no_other():
     for shared in (True, False):
         simulation = started(count=2, shared=shared)
-        behind = chase_pose(CameraPose(simulation.cameras.position, simulation.cameras.rotation))
-        second = CameraPose(behind.position[1:], behind.rotation[1:])
+        both = behind(simulation.snapshot.cameras)
+        second = CameraState(*(array[1:] for array in both))
         clean, overlaid = Picture.create(1, 180, 240), Picture.create(1, 180, 240)
         simulation.draw_from(FIRST, second, clean, overlay=False)
         simulation.draw_from(FIRST, second, overlaid)
         field = 2 * np.arctan(np.tan(0.475) * 240 / 180)
         pose = second.position[0], second.rotation[0]
-        column, row, _ = project(simulation.trackers.position[1], *pose, 240, 180, field)
+        column, row, _ = project(simulation.snapshot.trackers.position[1], *pose, 240, 180, field)
         changed = (clean.rgb[0] != overlaid.rgb[0]).any(axis=-1)
         assert changed[int(row), int(column)] == shared
-
-
-def test_a_chase_camera_of_one_that_looks_straight_down_is_upright():
-    down = np.array([[[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]]])
-    pose = chase_pose(CameraPose(np.array([[5.0, 6.0, 20.0]]), down), back=6.0, up=2.5)
-    assert pose.position[0] == pytest.approx([-1.0, 6.0, 22.5])
-    assert pose.rotation[0].T @ pose.rotation[0] == pytest.approx(np.eye(3), abs=1e-12)
-    assert np.linalg.det(pose.rotation[0]) == pytest.approx(1.0)
-    assert pose.rotation[0, 0, 0] > 0

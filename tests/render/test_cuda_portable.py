@@ -10,10 +10,15 @@ from numba.types import CPointer, Tuple, intp
 from eyas.render.jobs import build_jobs
 from eyas.render.kernels.bundles import Movers, Output, Task
 from eyas.render.kernels.draw import draw_views
-from eyas.sim.build import build_simulation
-from eyas.sim.config import SimConfig
-from eyas.sim.step import fly
+from eyas.sensors.config import CameraConfig
+from eyas.sim.step import Orders, StepState, Surroundings, step_of
+from eyas.state.snapshot import Snapshot
+from eyas.state.terrain import Terrain
+from eyas.task.config import DoneConfig, RewardConfig
+from eyas.task.rules import make_rules
+from eyas.trackers.drone import DRONE
 from eyas.state.draw import DrawStage
+from eyas.state.motion import SAMPLE, Motion
 
 from .small_city import car_parts, city_scene, city_traffic, looking
 
@@ -62,12 +67,13 @@ def test_drawing_a_band_with_all_weathers_compiles_for_cuda(ptx_of, renderer_of)
     assert "sqrt.rn.f32" in text
 
 
-def test_the_fused_step_compiles_for_cuda(ptx_of):
-    simulation = build_simulation(SimConfig(), 2, shared_world=False)
-
-    def step(actions, fleet, traffic, rules):
-        fly(4, actions, fleet, traffic, rules)
-
-    values = (np.zeros((2, 4)), simulation._fleet, simulation._traffic, simulation._rules)
-    text = ptx_of(step, *map(numba.typeof, values))
+@pytest.mark.parametrize("kernel", ["fly", "carry", "begin"])
+def test_the_step_compiles_for_cuda(ptx_of, kernel):
+    motion = Motion(np.zeros((2, 1), SAMPLE), np.zeros(1, np.int32), 10.0, 0.0)
+    around = Surroundings(motion, Terrain.flat(0.0))
+    rules = make_rules(RewardConfig(), DoneConfig(), CameraConfig())
+    state = StepState(Snapshot.create(2), DRONE.memory(2), around, rules)
+    parts = [pointer_to(part) for part in (state, Orders.create(2))]
+    step = getattr(step_of(DRONE), kernel)
+    text = ptx_of(step.function, CPointer(Tuple(parts)), intp, intp)
     assert ".visible .entry" in text

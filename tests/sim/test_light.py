@@ -8,6 +8,7 @@ from eyas.envs.tracking_env import TrackingEnv
 from eyas.settings.legacy.adapter import from_legacy
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
+from eyas.sim.worlds import each_alone, together
 from eyas.state.draw import Picture
 from eyas.world.weather import lighting
 
@@ -17,7 +18,9 @@ RANDOM = {"background": {"uniform": [0.4, 1.6]}, "background_replaces": True,
 
 def started(light=None, *, weather="day", count=1, shared=False, seed=0):
     settings = {"seed": seed, "world": {"weather": weather}, "light": light or {}}
-    simulation = build_simulation(SimConfig(**settings), count, shared_world=shared)
+    simulation = build_simulation(
+        SimConfig(**settings), together(count) if shared else each_alone(count)
+    )
     simulation.reset()
     return simulation
 
@@ -37,7 +40,7 @@ def test_what_is_added_to_sky_and_sun_is_seen():
 
 def test_luminosities_refer_to_the_originals_own():
     night = started({"background": 0.3, "sun": 0.15, "sun_replaces": True}, weather="night")
-    np.testing.assert_allclose(night.light[0, :2], [2.0, 0.5], rtol=1e-6)
+    np.testing.assert_allclose(night.snapshot.light[0, :2], [2.0, 0.5], rtol=1e-6)
     assert lighting("citystreet", "night").luminosity == 0.3
 
 
@@ -46,7 +49,9 @@ def test_visibility_is_that_of_the_fog_and_only_foggy_weather_has_some():
     usual = pictures(started(weather="foggy"))
     # At 22 m, 1 - exp(-22 / 30) = 52 % of everything is the grey of the air.
     assert thick.std(axis=(1, 2)).mean() < 0.75 * usual.std(axis=(1, 2)).mean()
-    assert started({"visibility": 30.0}, weather="foggy").light[0, 2] == pytest.approx(1 / 30)
+    assert started({"visibility": 30.0}, weather="foggy").snapshot.light[0, 2] == pytest.approx(
+        1 / 30
+    )
     clear = started({"visibility": 30.0})
     np.testing.assert_array_equal(pictures(clear), pictures(started()))
 
@@ -88,37 +93,40 @@ def test_visibility_where_there_is_no_fog_is_told_to_have_no_effect(caplog):
 
 def test_each_episode_draws_anew_within_the_limits_or_only_the_first():
     simulation = started(RANDOM, count=3)
-    drawn = [simulation.light]
+    drawn = [simulation.snapshot.light.copy()]
     for _ in range(4):
         simulation.reset()
-        drawn.append(simulation.light)
+        drawn.append(simulation.snapshot.light.copy())
     sky, sun = np.stack(drawn)[..., 0], np.stack(drawn)[..., 1]
     assert len(np.unique(sky)) == sky.size
     assert ((sky >= 0.4) & (sky <= 1.6) & (sun >= 0.5) & (sun <= 1.5)).all()
     once = started(RANDOM | {"each_reset": False}, count=2)
-    first = once.light
+    first = once.snapshot.light.copy()
     once.reset()
-    np.testing.assert_array_equal(once.light, first)
+    np.testing.assert_array_equal(once.snapshot.light, first)
     np.testing.assert_array_equal(first, drawn[0][:2])
 
 
 def test_a_tracker_draws_the_same_alone_and_changes_nothing_else():
     alone, among = started(RANDOM), started(RANDOM, count=5)
-    np.testing.assert_array_equal(alone.light[0], among.light[0])
+    np.testing.assert_array_equal(alone.snapshot.light[0], among.snapshot.light[0])
     np.testing.assert_array_equal(pictures(alone)[0], pictures(among)[0])
     plain = started()
-    np.testing.assert_array_equal(plain.targets.position, alone.targets.position)
-    np.testing.assert_array_equal(plain.trackers.position, alone.trackers.position)
+    for part in ("trackers", "cameras", "targets", "episodes"):
+        for same, array in zip(
+            getattr(plain.snapshot, part), getattr(alone.snapshot, part), strict=True
+        ):
+            np.testing.assert_array_equal(same, array)
 
 
 def test_in_a_shared_world_all_see_one_light():
     simulation = started(RANDOM, count=3, shared=True)
-    assert len(np.unique(simulation.light[:, 0])) == 1
-    before = simulation.light
+    assert len(np.unique(simulation.snapshot.light[:, 0])) == 1
+    before = simulation.snapshot.light.copy()
     simulation.reset(np.array([False, True, False]))
-    np.testing.assert_array_equal(simulation.light, before)
+    np.testing.assert_array_equal(simulation.snapshot.light, before)
     simulation.reset(np.array([True, False, False]))
-    assert (simulation.light[:, 0] != before[:, 0]).all()
+    assert (simulation.snapshot.light[:, 0] != before[:, 0]).all()
 
 
 def test_env_params_of_the_original_work_and_are_told_in_info():
@@ -139,6 +147,6 @@ def test_flakes_fall_with_the_simulation_unless_they_are_turned_off():
             simulation.draw(np.zeros(1, np.int32), picture)
             pictures.append(picture.rgb.copy())
             # Nothing but the time changes: the traffic stands, and so does the camera.
-            simulation._fleet.tick[:] += 1
+            simulation.snapshot.episodes.tick[:] += 1
     assert (pictures[0] != pictures[2]).any()
     assert (pictures[0] != pictures[1]).sum() > (pictures[2] != pictures[3]).sum()

@@ -6,6 +6,7 @@ import pytest
 from eyas.core.errors import ConfigError
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
+from eyas.sim.worlds import each_alone, together
 from eyas.state.draw import Picture
 from eyas.task.config import DoneConfig, StartConfig
 from eyas.task.done import DoneReason
@@ -16,7 +17,7 @@ CONFIG = SimConfig(
 
 
 def started(count: int = 1, *, shared: bool = False, config: SimConfig = CONFIG):
-    simulation = build_simulation(config, count, shared_world=shared)
+    simulation = build_simulation(config, (together if shared else each_alone)(count))
     simulation.reset()
     return simulation
 
@@ -40,11 +41,11 @@ def test_the_target_is_in_the_middle_after_a_reset_and_the_picture_shows_it():
     simulation = started(4)
     picture = Picture.create(4, 120, 160, subject=True)
     simulation.draw(np.arange(4, dtype=np.int32), picture)
-    assert (simulation.reward > 0.8).all()
+    assert (simulation.snapshot.episodes.reward > 0.8).all()
     left, top, right, bottom = picture.subject_box.T
     assert (np.abs((left + right) / 2 - 80) < 12).all()
     assert (np.abs((top + bottom) / 2 - 60) < 12).all()
-    assert simulation.trackers.gimbal[:, 1] == pytest.approx(1.37)
+    assert simulation.snapshot.trackers.gimbal[:, 1] == pytest.approx(1.37)
 
 
 def test_one_tracker_does_the_same_alone_and_among_sixteen():
@@ -64,29 +65,35 @@ def test_resetting_one_tracker_leaves_the_others_alone():
     simulation, untouched = started(3), started(3)
     simulation.reset(np.array([True, False, False]))
     assert rollout(simulation, 1) == rollout(untouched, 1)
-    assert simulation.episode.tolist() == [1, 0, 0]
+    assert simulation.snapshot.episodes.number.tolist() == [1, 0, 0]
 
 
-def test_following_keeps_the_offset_and_the_reward():
+def test_carrying_keeps_the_offset_and_the_reward():
     simulation = started(2, shared=True)
-    before = simulation.reward
-    simulation.follow(500)
-    assert simulation.reward == pytest.approx(before, abs=0.05)
-    assert simulation.time == pytest.approx(0.62 + 1.0)
-    assert (simulation.step_count == 500).all()
+    episodes, before = simulation.snapshot.episodes, simulation.snapshot.copy()
+    result = simulation.carry(500)
+    assert result.reward == pytest.approx(before.episodes.reward, abs=0.05)
+    assert (episodes.tick == before.episodes.tick + 500).all()
+    assert (before.episodes.tick * 0.002 == 0.62).all()
+    assert (episodes.step_count == 500).all()
+    offset = np.linalg.norm(
+        simulation.snapshot.trackers.position - simulation.snapshot.targets.position, axis=1
+    )
+    asked = np.linalg.norm(episodes.start_offset[:, :3], axis=1)
+    assert offset == pytest.approx(asked, abs=1e-9)
 
 
 def test_trackers_in_one_world_follow_different_cars():
     simulation = started(8, shared=True)
-    assert len(set(simulation.targets.actor.tolist())) == 8
+    assert len(set(simulation.snapshot.targets.actor.tolist())) == 8
 
 
 def test_flying_forward_for_a_second_moves_as_far_as_the_filtered_command_says():
     simulation = started(1)
-    start = simulation.trackers.position[0].copy()
+    start = simulation.snapshot.trackers.position[0].copy()
     actions = np.array([[10.0, 0.0, 0.0, 0.0]])
     simulation.advance(actions, 500)
-    moved = np.linalg.norm(simulation.trackers.position[0] - start)
+    moved = np.linalg.norm(simulation.snapshot.trackers.position[0] - start)
     # The low-pass delays a command by 2.81 samples of 2 ms.
     assert moved == pytest.approx(10.0 * (1.0 - 2.81 * 0.002), abs=1e-3)
 
@@ -94,24 +101,26 @@ def test_flying_forward_for_a_second_moves_as_far_as_the_filtered_command_says()
 def test_the_episode_ends_at_its_number_of_steps():
     config = CONFIG.model_copy(update={"done": DoneConfig(total_steps=200, no_reward_steps=10_000)})
     simulation = started(1, config=config)
-    simulation.follow(199)
-    assert not simulation.done[0]
-    simulation.follow(1)
-    assert simulation.reason[0] == DoneReason.STEP_LIMIT
+    before = simulation.carry(199)
+    assert not before.done[0]
+    assert before.reason[0] == DoneReason.NONE
+    after = simulation.carry(1)
+    assert after.done[0]
+    assert after.reason[0] == DoneReason.STEP_LIMIT
 
 
 def test_an_episode_longer_than_the_recording_is_refused_in_one_line():
     config = CONFIG.model_copy(update={"done": DoneConfig(total_steps=2_000_000)})
     with pytest.raises(ConfigError, match=r"done\.total_steps: 2000000"):
-        build_simulation(config, 1, shared_world=False)
+        build_simulation(config, each_alone(1))
 
 
 def test_depth_at_the_target_is_its_distance_along_the_axis():
     simulation = started(1)
     picture = Picture.create(1, 240, 320, depth=True, object_id=True, subject=True)
     simulation.draw(np.zeros(1, np.int32), picture)
-    seen = picture.object_id[0] == 65536 + simulation.targets.actor[0]
+    seen = picture.object_id[0] == 65536 + simulation.snapshot.targets.actor[0]
     assert seen.sum() == picture.subject_pixels[0, 0]
-    offset = simulation.targets.centre[0] - simulation.cameras.position[0]
-    along = offset @ simulation.cameras.rotation[0, :, 0]
+    offset = simulation.snapshot.targets.centre[0] - simulation.snapshot.cameras.position[0]
+    along = offset @ simulation.snapshot.cameras.rotation[0, :, 0]
     assert np.median(picture.depth[0][seen]) == pytest.approx(along, abs=1.5)

@@ -54,8 +54,10 @@ def seen(rules, position, rotation, ground):
     """Return depth, middle and share for a target where the plane touches the ground."""
     rotation = np.ascontiguousarray(rotation)
     depth = axis_depth(position, rotation, ground)
-    return depth, view_centre(position, rotation, depth), view_share(
-        position, rotation, depth, ground, rules
+    return (
+        depth,
+        view_centre(position, rotation, depth),
+        view_share(position, rotation, depth, ground, rules),
     )
 
 
