@@ -10,6 +10,7 @@ from eyas.render.textures.library import build_textures
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
 from eyas.sim.place import load_place
+from eyas.sim.worlds import each_alone
 from eyas.state.draw import Views
 from eyas.state.mesh import Mesh, Surface
 
@@ -64,7 +65,7 @@ def load_city(count: int) -> City:
 
     Cars are those of the first tracker's world in all views: peers then need not move them.
     """
-    simulation = build_simulation(SimConfig(), count, shared_world=False)
+    simulation = build_simulation(SimConfig(), each_alone(count))
     simulation.reset()
     place = load_place(SimConfig().world, SimConfig().traffic, count)
     scene, images = place.scene, build_textures()
@@ -75,14 +76,15 @@ def load_city(count: int) -> City:
         transformed(fixtures.levels[kind][0], pose)
         for kind, pose in zip(fixtures.prototype, fixtures.pose, strict=True)
     ]
-    _, movers = simulation._worlds.draw_list(np.zeros(1, np.int64), simulation._fleet.tick)
+    pictures, snapshot = simulation._pictures, simulation.snapshot
+    _, movers = pictures._worlds.draw_list(np.zeros(1, np.int64), snapshot.episodes.tick)
     parts = [levels[0] for levels in place.rigs.library.parts]
     slots = [movers.pose[0][movers.part[0] == k].copy() for k in range(len(parts))]
     colours = [movers.colour[0][movers.part[0] == k].copy() for k in range(len(parts))]
-    camera = simulation._camera
+    camera = pictures._camera
     views = Views(
-        position=simulation.cameras.position.copy(),
-        rotation=simulation.cameras.rotation.copy(),
+        position=snapshot.cameras.position.copy(),
+        rotation=snapshot.cameras.rotation.copy(),
         world=np.zeros(count, np.int32),
         subject=np.full(count, -1, np.int32),
         field_of_view=camera.config.field_of_view,
