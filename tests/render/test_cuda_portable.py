@@ -12,13 +12,13 @@ from eyas.render.kernels.bundles import Movers, Output, Task
 from eyas.render.kernels.draw import draw_views
 from eyas.sensors.config import CameraConfig
 from eyas.sim.step import Orders, StepState, Surroundings, step_of
+from eyas.state.draw import DrawStage
+from eyas.state.motion import SAMPLE, Motion
 from eyas.state.snapshot import Snapshot
 from eyas.state.terrain import Terrain
 from eyas.task.config import DoneConfig, RewardConfig
 from eyas.task.rules import make_rules
 from eyas.trackers.drone import DRONE
-from eyas.state.draw import DrawStage
-from eyas.state.motion import SAMPLE, Motion
 
 from .small_city import car_parts, city_scene, city_traffic, looking
 
