@@ -18,7 +18,7 @@ def _group() -> None: ...
 
 
 @app.command()
-def record(
+def record(  # noqa: PLR0913  # an option each
     map_name: MapName = None,
     map_seed: Annotated[int | None, typer.Option("--map-seed", help="Seed of the map.")] = None,
     seed: Annotated[

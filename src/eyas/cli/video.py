@@ -11,7 +11,7 @@ from eyas.cli.options import ConfigFile, MapName, Overrides, Seed, Weather, gath
 __all__ = ["command"]
 
 
-def command(
+def command(  # noqa: PLR0913  # an option each
     out: Annotated[Path, typer.Option("--out", help="Folder to write to.")] = Path("runs/video"),
     config: ConfigFile = None,
     map_name: MapName = None,

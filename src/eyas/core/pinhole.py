@@ -18,7 +18,7 @@ def focal_length(width: int, fov: float) -> float:
     return 0.5 * width / math.tan(0.5 * fov)
 
 
-def project(
+def project(  # noqa: PLR0913  # a pose and a lens, as they come
     points: ArrayLike,
     position: ArrayLike,
     rotation: ArrayLike,

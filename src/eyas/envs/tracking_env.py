@@ -55,7 +55,7 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": 125}  # noqa: RUF012  # Gymnasium's
 
-    def __init__(
+    def __init__(  # noqa: PLR0913  # `gymnasium.make` takes them by name
         self,
         config: EyasConfig | Mapping[str, Any] | str | Path | None = None,
         *,

@@ -104,7 +104,7 @@ class Picture:
     """`eyas.state.scene.ObjectClass` of each pixel's object, shape (V, H, W)."""
 
     @classmethod
-    def create(  # every output is asked for by name
+    def create(  # noqa: PLR0913  # every output is asked for by name
         cls,
         views: int,
         height: int,

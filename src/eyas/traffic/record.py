@@ -39,7 +39,7 @@ GROUP_SHARE = 3
 """Vehicles that enter together for each tracker where nothing else is set, as in the original."""
 
 
-def record(
+def record(  # noqa: PLR0913  # all that a recording depends on
     map_name: str,
     map_seed: int,
     graph: RoadGraph,
