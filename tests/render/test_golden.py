@@ -46,7 +46,7 @@ def drawn(weather: str, name: str) -> np.ndarray:
     count = place.traffic.actors
     actors = ActorState.create(1, count)
     place.traffic.at(np.array([time]), actors)
-    model, colour = Looks(place.traffic.motion.kind).draw(np.random.default_rng(1))
+    model, colour = Looks(place.traffic.motion.kind).sample(np.random.default_rng(1))
     movers = DrawList.create(1, count * place.rigs.slots_per_actor)
     place.rigs.pose(actors, model[None], colour[None], movers)
     if position is None:  # behind and above the first car

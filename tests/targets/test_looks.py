@@ -16,7 +16,7 @@ PINK = (0.9, 0.3, 0.6)
 
 def drawn(vehicle_type, colour=None, seed=3):
     kind = np.full(400, kind_index(vehicle_type))
-    return Looks(kind, colour).draw(stream(seed, "targets"))
+    return Looks(kind, colour).sample(stream(seed, "targets"))
 
 
 @pytest.mark.parametrize("vehicle_type", VehicleType)
@@ -29,7 +29,7 @@ def test_all_models_and_colours_of_a_class_appear(vehicle_type):
 
 
 def test_models_are_about_equally_frequent():
-    model, _ = Looks(np.zeros(7000, int)).draw(stream(0, "targets"))
+    model, _ = Looks(np.zeros(7000, int)).sample(stream(0, "targets"))
     assert np.bincount(model, minlength=7)[:7] == pytest.approx(np.full(7, 1000), abs=130)
 
 
@@ -53,7 +53,7 @@ def test_a_fixed_colour_does_not_hold_for_motorcycles():
 
 def test_a_mixed_fleet_has_models_and_colours_of_each_actors_kind():
     kind = np.tile([kind_index(t) for t in VehicleType], 80)
-    model, colour = Looks(kind, PINK).draw(stream(1, "targets"))
+    model, colour = Looks(kind, PINK).sample(stream(1, "targets"))
     for vehicle_type in VehicleType:
         of_kind = kind == kind_index(vehicle_type)
         assert set(model[of_kind]) == set(models_of(vehicle_type))
@@ -62,7 +62,7 @@ def test_a_mixed_fleet_has_models_and_colours_of_each_actors_kind():
 
 
 def test_other_kinds_that_join_change_no_look_of_the_first():
-    alone = Looks(np.zeros(30, int)).draw(stream(1, "targets"))
-    joined = Looks(np.repeat([0, 2], [30, 5])).draw(stream(1, "targets"))
+    alone = Looks(np.zeros(30, int)).sample(stream(1, "targets"))
+    joined = Looks(np.repeat([0, 2], [30, 5])).sample(stream(1, "targets"))
     assert np.array_equal(alone[0], joined[0][:30])
     assert np.array_equal(alone[1], joined[1][:30])

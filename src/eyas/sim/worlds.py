@@ -78,7 +78,7 @@ class Worlds:
         if self.lasting[world] and (tracker != self.leader[world] or episode > 0):
             return
         rng = stream(seed, "looks", tracker, episode)
-        self._model[world], self._colour[world] = self._looks.draw(rng)
+        self._model[world], self._colour[world] = self._looks.sample(rng)
 
     def model_of(self, tracker: int, actor: int) -> int:
         """Return the model of an actor around a tracker, an index into the catalogue."""

@@ -39,7 +39,7 @@ class Looks:
         self._count, self._colour = len(kind), colour
         self._groups = [_group(int(k), np.flatnonzero(kind == k)) for k in np.unique(kind)]
 
-    def draw(self, rng: np.random.Generator) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
+    def sample(self, rng: np.random.Generator) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
         """Draw model and colour of each actor, kind by kind.
 
         The model is uniform among those of the kind, the colour uniform among the original's. The

@@ -57,7 +57,7 @@ class StillScene:
         self.duration = place.traffic.duration
         self._place = place
         looks = Looks(place.traffic.motion.kind)
-        self._model, self._colour = looks.draw(np.random.default_rng(1))
+        self._model, self._colour = looks.sample(np.random.default_rng(1))
 
     def actors(self, time: float) -> ActorState:
         """Return all actors at a time [s], one world."""
