@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["focal_length", "project", "rays"]
+__all__ = ["focal_length", "intrinsics", "project", "rays"]
 
 
 def focal_length(width: int, fov: float) -> float:
@@ -16,6 +16,20 @@ def focal_length(width: int, fov: float) -> float:
         fov: Horizontal field of view [rad].
     """
     return 0.5 * width / math.tan(0.5 * fov)
+
+
+def intrinsics(width: int, height: int, fov: float) -> NDArray[np.float64]:
+    """Return the camera matrix of computer vision: x right, y down, z forward, shape (3, 3).
+
+    Pixels are square, and pixel (0, 0) has its centre at (0.5, 0.5), as in `project`.
+
+    Args:
+        width: Of the picture [pixels].
+        height: Of the picture [pixels].
+        fov: Horizontal field of view [rad].
+    """
+    focal = focal_length(width, fov)
+    return np.array([[focal, 0.0, 0.5 * width], [0.0, focal, 0.5 * height], [0.0, 0.0, 1.0]])
 
 
 def project(  # noqa: PLR0913  # a pose and a lens, as they come

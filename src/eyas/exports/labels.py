@@ -1,20 +1,24 @@
 """`labels.jsonl`: everything that is known about each frame, one JSON object a line."""
 
 import json
+import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import ArrayLike
-
 from eyas.core.errors import DataFileError
-from eyas.core.files import write_atomic
+from eyas.core.frames import rotate_back
+from eyas.exports.files import Files
+from eyas.exports.frame import Frame
+from eyas.exports.gather import Gather
+from eyas.exports.rounding import rounded, rounded_list
+from eyas.exports.summary import Scores, Summary
+from eyas.exports.writer import Episode, Writer
+from eyas.task.done import DoneReason
 
-__all__ = ["FrameLabel", "read_labels", "rounded", "rounded_list", "write_labels"]
+__all__ = ["FrameLabel", "LabelWriter", "label_of", "read_labels"]
 
-DECIMALS = 6
-"""Decimals of every number: micrometres, microradians; few enough that bytes repeat."""
+LABELS = "labels.jsonl"
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,24 +76,63 @@ class FrameLabel:
     """Whether the episode ends with this instant."""
 
 
-def rounded(value: float) -> float | None:
-    """Return a number with fixed decimals, without a negative zero; None if it is not finite."""
-    return round(float(value), DECIMALS) + 0.0 if np.isfinite(value) else None
+class LabelWriter(Writer):
+    """`labels.jsonl`."""
+
+    files = Files(episode=(LABELS,))
+
+    def begin(self, episode: Episode) -> Gather[FrameLabel]:
+        """Return what writes an episode's labels."""
+        return Gather(episode.folder / LABELS, label_of, _encoded)
+
+    def read(self, folder: Path) -> Summary | None:
+        """Return what the labels tell; None if they are missing or cut off."""
+        try:
+            labels = read_labels(folder / LABELS)
+        except DataFileError:
+            return None
+        scores = Scores()
+        for label in labels:
+            reward = math.nan if label.reward is None else label.reward
+            scores = scores.plus(reward, seen=label.visible_fraction > 0.0)
+        return Summary(len(labels), scores)
 
 
-def rounded_list(values: ArrayLike) -> list[float | None]:
-    """Return `rounded` of each value, shape (K,)."""
-    return [rounded(value) for value in np.asarray(values, np.float64)]
+def label_of(frame: Frame) -> FrameLabel:
+    """Return the label of a frame."""
+    tracker, camera, target = frame.tracker, frame.camera, frame.target
+    offset = target.centre - tracker.position
+    return FrameLabel(
+        frame=frame.number,
+        time=round(frame.time, 6),
+        step=frame.step,
+        episode_time=round(frame.episode_time, 6),
+        target_box=target.box.tolist(),
+        visible_fraction=round(target.visible_fraction, 6),
+        occluded=target.seen_pixels < target.covered_pixels,
+        in_view=target.covered_pixels > 0,
+        tracker_position=rounded_list(tracker.position),
+        tracker_velocity=rounded_list(tracker.velocity),
+        tracker_orientation=rounded_list(tracker.orientation),
+        camera_position=rounded_list(camera.position),
+        camera_rotation=[rounded_list(row) for row in camera.rotation],
+        target_type=target.type,
+        target_size=rounded_list(target.size),
+        target_position=rounded_list(target.position),
+        target_centre=rounded_list(target.centre),
+        target_velocity=rounded_list(target.velocity),
+        target_yaw=rounded(target.yaw),
+        relative_position=rounded_list(rotate_back(tracker.orientation, *offset)),
+        reward=rounded(frame.reward),
+        action=frame.action.number,
+        direction=int(frame.direction),
+        done=frame.reason is not DoneReason.NONE,
+    )
 
 
-def write_labels(path: Path, labels: Sequence[FrameLabel]) -> None:
-    """Write the labels of an episode, whole or not at all.
-
-    Raises:
-        OutputError: The file system refused.
-    """
+def _encoded(labels: Sequence[FrameLabel]) -> bytes:
     lines = (json.dumps(asdict(label), allow_nan=False) + "\n" for label in labels)
-    write_atomic(path, "".join(lines).encode())
+    return "".join(lines).encode()
 
 
 def read_labels(path: Path) -> list[FrameLabel]:

@@ -1,46 +1,64 @@
 """`mark.json` and `dir_info.json`, as the original writes them."""
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from eyas.core.files import write_atomic
-from eyas.exports.frames import frame_name
-from eyas.exports.labels import FrameLabel
+from eyas.exports.files import Files
+from eyas.exports.frame import Frame
+from eyas.exports.gather import Gather
+from eyas.exports.rounding import rounded
+from eyas.exports.summary import Summary
+from eyas.exports.writer import EndedEpisode, Episode, Run, Writer
 
-__all__ = ["write_dir_info", "write_mark"]
+__all__ = ["MarkWriter"]
+
+MARK, DIR_INFO = "mark.json", "dir_info.json"
+
+Mark = int | list[float | None]
 
 
-def write_mark(path: Path, labels: Sequence[FrameLabel], *, target_direction: bool) -> None:
-    """Write the marks of an episode: `{"000000": [reward, action], ...}`.
+class MarkWriter(Writer):
+    """A mark for each frame, and how many frames each episode of each tracker has.
+
+    A mark is `[reward, action]`, or the target's direction (0 stop, 1 straight, 2 left, 3 right).
 
     Args:
-        path: Where to.
-        labels: The frames in their order.
-        target_direction: Whether a mark is the target's direction (0 stop, 1 straight, 2 left,
-            3 right) instead of reward and action.
-
-    Raises:
-        OutputError: The file system refused.
+        run: The recording.
     """
-    marks: dict[str, object] = {}
-    for label in labels:
+
+    files = Files(episode=(MARK,), run=(DIR_INFO,))
+
+    def __init__(self, run: Run) -> None:
+        self._run = run
+
+    def begin(self, episode: Episode) -> Gather[tuple[str, Mark]]:
+        """Return what writes `mark.json`: `{"000000": [reward, action], ...}`."""
+        return Gather(episode.folder / MARK, self._marked, _encoded)
+
+    def _marked(self, frame: Frame) -> tuple[str, Mark]:
         # The original writes both as C++ doubles, so an action is 3.0 and following is -1.0.
-        pair = [label.reward, float(label.action)]
-        marks[frame_name(label.frame)] = label.direction if target_direction else pair
-    write_atomic(path, json.dumps(marks, indent=4).encode())
+        pair = [rounded(frame.reward), float(frame.action.number)]
+        return f"{frame.number:06d}", int(frame.direction) if self._run.target_direction else pair
+
+    def read(self, folder: Path) -> Summary | None:
+        """Return how many marks there are."""
+        try:
+            return Summary(len(json.loads((folder / MARK).read_text())))
+        except (OSError, ValueError):
+            return None
+
+    def finish(self, episodes: Sequence[EndedEpisode]) -> None:
+        """Write `dir_info.json`.
+
+        The original counts the files of an episode's folder less `mark.json`, which is the same.
+        """
+        info: dict[str, dict[str, int]] = {tracker: {} for tracker in self._run.trackers}
+        for episode, summary in episodes:
+            info[episode.tracker][f"episode{episode.number}"] = summary.frames
+        write_atomic(self._run.folder / DIR_INFO, json.dumps(info, indent=4).encode())
 
 
-def write_dir_info(path: Path, frames: Mapping[str, Mapping[str, int]]) -> None:
-    """Write how many frames each episode of each tracker has.
-
-    Args:
-        path: Where to.
-        frames: Tracker folder to episode folder to number of frames. The original counts the
-            files of the episode's folder less `mark.json`, which is the same number.
-
-    Raises:
-        OutputError: The file system refused.
-    """
-    info = {tracker: dict(episodes) for tracker, episodes in frames.items()}
-    write_atomic(path, json.dumps(info, indent=4).encode())
+def _encoded(marks: Sequence[tuple[str, Mark]]) -> bytes:
+    return json.dumps(dict(marks), indent=4).encode()

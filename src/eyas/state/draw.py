@@ -126,3 +126,8 @@ class Picture:
             subject_pixels=np.zeros((views, 2), np.int32) if subject else None,
             class_id=np.zeros(plane, np.uint8) if class_id else None,
         )
+
+    def first(self, views: int) -> "Picture":
+        """Return the first views; the arrays are shared."""
+        arrays = (getattr(self, array.name) for array in fields(self))
+        return Picture(*(None if array is None else array[:views] for array in arrays))

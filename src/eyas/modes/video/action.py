@@ -3,39 +3,39 @@
 from typing import Protocol
 
 import numpy as np
-from numpy.typing import NDArray
 
 from eyas.core.clock import physics_steps
 from eyas.core.rng import stream
 from eyas.envs.actions import action_table
+from eyas.exports.frame import Action
 from eyas.settings.config import EyasConfig
 from eyas.sim.simulation import Simulation
 
-__all__ = ["FOLLOWING", "Following", "Mover", "RandomActions", "mover_of"]
+__all__ = ["Following", "Mover", "RandomActions", "mover_of"]
 
-FOLLOWING = -1
-"""Action number in the marks when a target is followed exactly."""
+_FOLLOWING = Action(number=-1, command=None)
 
 
 class Mover(Protocol):
     """Moves all trackers by one 2 ms step."""
 
-    action: NDArray[np.int32]
-    """Number of each tracker's action, shape (N,)."""
-
     def move(self, sim: Simulation) -> None:
         """Advance the simulation by one 2 ms step."""
+
+    def action(self, tracker: int) -> Action:
+        """Return what a tracker was told in the last step."""
 
 
 class Following:
     """Each tracker keeps its place relative to its target."""
 
-    def __init__(self, count: int) -> None:
-        self.action = np.full(count, FOLLOWING, np.int32)
-
     def move(self, sim: Simulation) -> None:
         """Advance the simulation by one 2 ms step."""
         sim.carry(1)
+
+    def action(self, tracker: int) -> Action:
+        """Return that no command was given."""
+        return _FOLLOWING
 
 
 class RandomActions:
@@ -47,7 +47,7 @@ class RandomActions:
     """
 
     def __init__(self, config: EyasConfig, count: int) -> None:
-        self.action = np.zeros(count, np.int32)
+        self._numbers = np.zeros(count, np.int32)
         self._seed = config.seed
         self._period = physics_steps(config.control.frequency)
         self._vectors = action_table(config.video)
@@ -58,8 +58,13 @@ class RandomActions:
         for tracker in np.flatnonzero(
             sim.snapshot.episodes.step_count % self._period == 0
         ).tolist():
-            self.action[tracker] = self._draw(sim, tracker)
-        sim.advance(self._vectors[self.action], 1)
+            self._numbers[tracker] = self._draw(sim, tracker)
+        sim.advance(self._vectors[self._numbers], 1)
+
+    def action(self, tracker: int) -> Action:
+        """Return what a tracker was told in the last step."""
+        number = int(self._numbers[tracker])
+        return Action(number, self._vectors[number])
 
     def _draw(self, sim: Simulation, tracker: int) -> int:
         rng = self._streams[tracker]
@@ -71,4 +76,4 @@ class RandomActions:
 
 def mover_of(config: EyasConfig, count: int) -> Mover:
     """Return the mover that the settings ask for."""
-    return RandomActions(config, count) if config.video.random_action else Following(count)
+    return RandomActions(config, count) if config.video.random_action else Following()

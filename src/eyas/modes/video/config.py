@@ -2,11 +2,17 @@
 
 from typing import Annotated
 
-from pydantic import Field
+from pydantic import AfterValidator, Field
 
 from eyas.envs.config import ActionSpeeds
 
 __all__ = ["VideoConfig"]
+
+
+def _some(names: tuple[str, ...]) -> tuple[str, ...]:
+    if not names:
+        raise ValueError("a list of at least one name of a writer")
+    return names
 
 
 class VideoConfig(ActionSpeeds):
@@ -29,3 +35,6 @@ class VideoConfig(ActionSpeeds):
     the same."""
     random_action: bool = False
     """True: seeded random actions; False: the target is followed exactly."""
+    writers: Annotated[tuple[str, ...], AfterValidator(_some)] = ("jpeg", "mp4", "labels", "mark")
+    """Formats that are written: `jpeg`, `mp4`, `labels`, `mark`, or your own as
+    `my_package.module:Class`."""

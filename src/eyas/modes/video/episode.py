@@ -1,86 +1,84 @@
-"""The files of one recorded episode."""
+"""The files of one recorded episode, whatever writers write them."""
 
+from collections.abc import Sequence
+from contextlib import ExitStack
 from pathlib import Path
 
-import numpy as np
-from numpy.typing import NDArray
-
-from eyas.core.errors import DataFileError
 from eyas.core.files import refusals
-from eyas.exports.frames import frame_name, write_frame
-from eyas.exports.labels import FrameLabel, read_labels, write_labels
-from eyas.exports.mark import write_mark
-from eyas.exports.movie import MovieWriter
+from eyas.exports.files import joined
+from eyas.exports.frame import Frame
+from eyas.exports.summary import Summary
+from eyas.exports.writer import Episode, EpisodeWriter, Writer
+from eyas.modes.video.contents import Contents, paths_below
 
-__all__ = ["LABELS", "MARK", "MOVIE", "EpisodeWriter", "read_complete"]
-
-LABELS, MARK, MOVIE = "labels.jsonl", "mark.json", "episode.mp4"
-"""Files beside the pictures. They appear when the episode has ended: all three mean it is whole."""
+__all__ = ["EpisodeFiles", "read_complete"]
 
 
-class EpisodeWriter:
+class EpisodeFiles:
     """Writes an episode as its frames come. Every method may raise `OutputError`.
 
     Args:
-        folder: The episode's folder; made if it is not there, and emptied of pictures.
-        fps: Pictures in a second of simulated time [Hz].
-        target_direction: Whether the marks are the target's direction.
+        writers: Of the recording.
+        episode: Which. Its folder is made if it is not there; what writers left there is deleted.
     """
 
     finished: bool
     """Whether every file of the episode is there."""
 
-    def __init__(self, folder: Path, fps: float, *, target_direction: bool) -> None:
-        self._folder = folder
-        self._fps = fps
-        self._target_direction = target_direction
-        self._labels: list[FrameLabel] = []
-        self._movie: MovieWriter | None = None
+    def __init__(self, writers: Sequence[Writer], episode: Episode) -> None:
+        self._writers = writers
+        self._episode = episode
+        self._parts: list[EpisodeWriter] = []
         self.finished = False
 
-    def add(self, label: FrameLabel, rgb: NDArray[np.uint8]) -> None:
-        """Write the next frame; `rgb` has shape (H, W, 3) and is no longer changed by anyone."""
-        if self._movie is None:
-            self._begin(rgb.shape[0], rgb.shape[1])
-        assert self._movie is not None
-        write_frame(self._folder / f"{frame_name(label.frame)}.jpeg", rgb)
-        self._movie.add(rgb)
-        self._labels.append(label)
+    def add(self, frame: Frame) -> None:
+        """Write the next frame."""
+        if not self._parts:
+            self._begin()
+        for part in self._parts:
+            part.add(frame)
 
-    def _begin(self, height: int, width: int) -> None:
-        with refusals(self._folder):
-            self._folder.mkdir(parents=True, exist_ok=True)
-            for left in [*self._folder.glob("*.jpeg"), *self._beside_pictures()]:
-                left.unlink(missing_ok=True)
-        self._movie = MovieWriter(self._folder / MOVIE, height, width, self._fps)
+    def _begin(self) -> None:
+        folder = self._episode.folder
+        with refusals(folder):
+            folder.mkdir(parents=True, exist_ok=True)
+            self._clear(folder)
+        for writer in self._writers:
+            self._parts.append(writer.begin(self._episode))
 
-    def _beside_pictures(self) -> list[Path]:
-        return [self._folder / name for name in (LABELS, MARK, MOVIE)]
+    def _clear(self, folder: Path) -> None:
+        contents = Contents(joined(writer.files for writer in self._writers))
+        for inside, path in list(paths_below(folder)):
+            if contents.in_episode(inside) and not path.is_dir():
+                path.unlink(missing_ok=True)
 
     def finish(self) -> None:
         """Write what describes the whole episode."""
-        assert self._movie is not None, "an episode without frames has no writer"
-        self._movie.finish()
-        self._movie = None
-        write_labels(self._folder / LABELS, self._labels)
-        mark = self._folder / MARK
-        write_mark(mark, self._labels, target_direction=self._target_direction)
+        while self._parts:
+            self._parts[0].finish()
+            del self._parts[0]
         self.finished = True
 
     def abandon(self) -> None:
-        """Stop in the middle: pictures stay, the begun movie goes."""
-        if self._movie is not None:
-            self._movie.abandon()
-            self._movie = None
+        """Stop in the middle."""
+        with ExitStack() as all_of_them:  # whatever one of them raises
+            for part in self._parts:
+                all_of_them.callback(part.abandon)
+        self._parts.clear()
 
 
-def read_complete(folder: Path) -> list[FrameLabel] | None:
-    """Return the labels of an episode of which every file is there, else None."""
-    if not ((folder / MOVIE).is_file() and (folder / MARK).is_file()):
+def read_complete(writers: Sequence[Writer], folder: Path) -> Summary | None:
+    """Return what an episode holds of which every file is there, else None.
+
+    Files that appear while an episode goes on do not tell whether it has ended: it counts as
+    complete only if one of the writers writes a file at its end.
+    """
+    if not any(writer.files.episode for writer in writers):
         return None
-    try:
-        labels = read_labels(folder / LABELS)
-    except DataFileError:
-        return None
-    pictures = {path.stem for path in folder.glob("*.jpeg")}
-    return labels if pictures == {frame_name(label.frame) for label in labels} else None
+    found: list[Summary] = []
+    for writer in writers:
+        summary = writer.read(folder)
+        if summary is None or (found and summary.frames != found[0].frames):
+            return None
+        found.append(summary)
+    return next((summary for summary in found if summary.scores is not None), found[0])

@@ -2,17 +2,20 @@
 
 import json
 import os
-import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import asdict
 from pathlib import Path
 
 from eyas import __version__
 from eyas.core.config import validated
 from eyas.core.errors import ConfigError, DataFileError, OutputError
 from eyas.core.files import PART_SUFFIX, refusals, write_atomic
-from eyas.exports.labels import FrameLabel
-from eyas.exports.mark import write_dir_info
-from eyas.modes.video.episode import LABELS, MARK, MOVIE
+from eyas.core.pinhole import intrinsics
+from eyas.exports.files import Files, joined
+from eyas.exports.registry import WRITERS, chosen_writers
+from eyas.exports.writer import Episode, Run
+from eyas.modes.video.contents import Contents, paths_below
 from eyas.modes.video.lock import LOCK
 from eyas.settings.config import EyasConfig
 from eyas.settings.file import read_settings, save_settings
@@ -20,26 +23,21 @@ from eyas.settings.legacy.adapter import save_legacy
 
 __all__ = ["VideoFolder", "check_folder", "open_folder"]
 
-SETTINGS, LEGACY_SETTINGS, DIR_INFO = "config.json", "env_config.json", "dir_info.json"
+SETTINGS, LEGACY_SETTINGS = "config.json", "env_config.json"
 
-VERSION = "version.json"
-"""Which version of Eyas records: `{"eyas": "0.1.0"}`. Another one may draw other bytes."""
-
-
-def _any_of(*names: str) -> str:
-    """Return a pattern of these file names, and of any that is still being written."""
-    return "|".join([re.escape(name) for name in names] + [rf"\.[\w.]+{re.escape(PART_SUFFIX)}"])
-
-
-_OURS = re.compile(
-    rf"(DRONE|CAR)\d+(/episode\d+(/(\d{{6,}}\.jpeg|{_any_of(MARK, LABELS, MOVIE)}))?)?"
-    rf"|{_any_of(SETTINGS, LEGACY_SETTINGS, DIR_INFO, VERSION, LOCK)}"
-)
-"""Every path that a recording can hold, relative to its folder."""
+ORIGIN = "version.json"
+"""Which version of Eyas records, and the files of its writers: `{"eyas": "0.1.0", "files": {...}}`.
+Another version may draw other bytes; the files may be deleted (`--overwrite`), even where the
+package of a user's own writer has gone."""
 
 
 class VideoFolder:
-    """Where each file of a recording lies.
+    """Where each episode of a recording lies, and who writes it.
+
+    Attributes:
+        path: The recording's folder.
+        trackers: Names of the trackers, which their folders have.
+        writers: One for each format.
 
     Args:
         path: The recording's folder.
@@ -48,27 +46,25 @@ class VideoFolder:
 
     def __init__(self, path: Path, config: EyasConfig) -> None:
         self.path = path
-        self._kind = config.tracker.kind.value.upper()
+        self._fps = config.video.fps
+        self._camera = config.camera
+        kind = config.tracker.kind.value.upper()
+        self.trackers = tuple(f"{kind}{tracker}" for tracker in range(config.video.channels))
+        run = Run(path, self.trackers, config, config.video.target_direction)
+        self.writers = tuple(writer(run) for writer in chosen_writers(config.video.writers))
 
-    def tracker_name(self, tracker: int) -> str:
-        """Return the name of a tracker's folder."""
-        return f"{self._kind}{tracker}"
-
-    def episode(self, tracker: int, episode: int) -> Path:
-        """Return the folder of an episode."""
-        return self.path / self.tracker_name(tracker) / f"episode{episode}"
-
-    def write_info(self, episodes: Sequence[Sequence[Sequence[FrameLabel]]]) -> None:
-        """Write `dir_info.json`: the number of frames of each tracker's complete episodes.
-
-        Raises:
-            OutputError: The file system refused.
-        """
-        frames = {
-            self.tracker_name(tracker): {f"episode{j}": len(labels) for j, labels in enumerate(own)}
-            for tracker, own in enumerate(episodes)
-        }
-        write_dir_info(self.path / DIR_INFO, frames)
+    def episode(self, tracker: int, number: int) -> Episode:
+        """Return the description of an episode."""
+        name, camera = self.trackers[tracker], self._camera
+        return Episode(
+            folder=self.path / name / f"episode{number}",
+            tracker=name,
+            number=number,
+            width=camera.width,
+            height=camera.height,
+            intrinsics=intrinsics(camera.width, camera.height, camera.field_of_view),
+            fps=self._fps,
+        )
 
 
 def check_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: bool) -> None:
@@ -97,7 +93,7 @@ def check_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: boo
         names = [inside.name for inside in path.iterdir()]
     used = any(name != LOCK and not name.endswith(PART_SUFFIX) for name in names)
     if used and overwrite:
-        _require_recording(path)
+        _require_recording(path, _contents(path, config))
     elif used and resume:
         _require_same_version(path)
         _require_same_settings(path, config)
@@ -127,48 +123,59 @@ def open_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: bool
         path.mkdir(parents=True, exist_ok=True)
         if overwrite:
             _delete_recording(path)
-        _delete_parts(path)
+        _delete_parts(path, _contents(path, config))
     save_settings(config, path / SETTINGS)
     save_legacy(config, path / LEGACY_SETTINGS)
-    write_atomic(path / VERSION, (json.dumps({"eyas": __version__}) + "\n").encode())
-    return VideoFolder(path, config)
+    folder = VideoFolder(path, config)
+    files = joined(writer.files for writer in folder.writers)
+    origin = {"eyas": __version__, "files": asdict(files)}
+    write_atomic(path / ORIGIN, (json.dumps(origin) + "\n").encode())
+    return folder
 
 
-def _delete_parts(path: Path) -> None:
+def _contents(path: Path, config: EyasConfig) -> Contents:
+    """Return what belongs to a recording of these settings, and to the one that lies there."""
+    names = dict.fromkeys((*WRITERS.built_in, *config.video.writers))
+    files = [WRITERS.get(name).files for name in names]
+    with suppress(OSError, ValueError, TypeError, KeyError):
+        recorded = json.loads((path / ORIGIN).read_text())["files"]
+        files.append(Files(**{kind: tuple(recorded[kind]) for kind in recorded}))
+    return Contents(joined(files), [SETTINGS, LEGACY_SETTINGS, ORIGIN, LOCK])
+
+
+def _delete_parts(path: Path, contents: Contents) -> None:
     """Delete what an interrupted run has left half-written."""
-    for folder, _, names in os.walk(path):
-        for name in names:
-            part = Path(folder, name)
-            if name.endswith(PART_SUFFIX) and _OURS.fullmatch(part.relative_to(path).as_posix()):
-                part.unlink(missing_ok=True)
+    for inside, part in list(paths_below(path)):
+        if part.name.endswith(PART_SUFFIX) and contents.in_run(inside):
+            part.unlink(missing_ok=True)
 
 
-def _require_recording(path: Path) -> None:
+def _require_recording(path: Path, contents: Contents) -> None:
     """Refuse to delete what is not a recording, or not only that."""
     if not (path / SETTINGS).is_file():
         raise OutputError(f"{path}: not deleted: it is no recording (it has no {SETTINGS})")
-    for folder, folders, names in os.walk(path):
-        for name in sorted(folders + names):
-            inside = Path(folder, name).relative_to(path).as_posix()
-            if not _OURS.fullmatch(inside) or Path(folder, name).is_symlink():
-                raise OutputError(f"{path}: not deleted: '{inside}' is not part of a recording")
+    for inside, found in paths_below(path):
+        if not contents.in_run(inside) or found.is_symlink():
+            raise OutputError(f"{path}: not deleted: '{inside}' is not part of a recording")
 
 
 def _delete_recording(path: Path) -> None:
+    # These last, so that a deletion that was interrupted can be asked for again.
+    last = (path / ORIGIN, path / SETTINGS)
     for folder, folders, names in os.walk(path, topdown=False):
         for name in names:
-            if Path(folder, name) not in (path / SETTINGS, path / LOCK):
+            if Path(folder, name) not in (*last, path / LOCK):
                 Path(folder, name).unlink()
         for name in folders:
             Path(folder, name).rmdir()
-    # Last, so that a deletion that was interrupted can be asked for again.
-    (path / SETTINGS).unlink(missing_ok=True)
+    for kept in last:
+        kept.unlink(missing_ok=True)
 
 
 def _require_same_version(path: Path) -> None:
     """Refuse to continue what another version began: one recording would hold two looks."""
     try:
-        recorded = json.loads((path / VERSION).read_text())["eyas"]
+        recorded = json.loads((path / ORIGIN).read_text())["eyas"]
     except (OSError, ValueError, TypeError, LookupError):
         recorded = "of an unknown version"
     if (path / SETTINGS).is_file() and recorded != __version__:

@@ -1,18 +1,33 @@
-"""Turns due trackers into drawn, labelled and written frames, and keeps what was recorded."""
+"""Turns due trackers into drawn and written frames, and keeps count of them."""
+
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.exports.labels import FrameLabel
-from eyas.modes.video.episode import EpisodeWriter, read_complete
+from eyas.exports.frame import frame_of
+from eyas.exports.summary import Scores, Summary
+from eyas.exports.writer import EndedEpisode, Episode
+from eyas.modes.video.action import Mover
+from eyas.modes.video.episode import EpisodeFiles, read_complete
 from eyas.modes.video.folder import VideoFolder
-from eyas.modes.video.label import label_of
-from eyas.modes.video.writers import WriterLanes
+from eyas.modes.video.lanes import WriterLanes
 from eyas.settings.config import EyasConfig
 from eyas.sim.simulation import Simulation
 from eyas.state.draw import Picture
 
 __all__ = ["Recorder"]
+
+
+@dataclass(slots=True)
+class _Going:
+    """An episode that goes on."""
+
+    episode: Episode
+    files: EpisodeFiles | None
+    """None: it lies there complete."""
+    summary: Summary
+    """Of the frames up to now, or of all that lie there."""
 
 
 class Recorder:
@@ -26,75 +41,78 @@ class Recorder:
         folder: Where to.
     """
 
-    episodes: list[list[list[FrameLabel]]]
-    """For each tracker the labels of its ended episodes, those that have frames."""
+    episodes: list[list[EndedEpisode]]
+    """For each tracker its ended episodes, those that have frames."""
     drawn: int
     """Frames that were drawn."""
 
     def __init__(self, sim: Simulation, config: EyasConfig, folder: VideoFolder) -> None:
         count = config.video.channels
         self._sim = sim
-        self._video = config.video
         self._folder = folder
         self._lanes = WriterLanes(count)
+        wanted = {output for writer in folder.writers for output in writer.wants}
+        self._overlay = config.video.overlay and "rgb" in wanted
         self._picture = Picture.create(
-            count, config.camera.height, config.camera.width, subject=True
+            count,
+            config.camera.height,
+            config.camera.width,
+            rgb="rgb" in wanted,
+            # A picture needs one array with pixels; this is the one that costs least.
+            depth="depth" in wanted or not wanted,
+            object_id="object_id" in wanted,
+            class_id="class_id" in wanted,
+            subject=True,
         )
-        self._labels: list[list[FrameLabel]] = [[] for _ in range(count)]
-        self._writers: list[EpisodeWriter | None] = [None] * count
-        self._complete = [False] * count
-        self._begun: list[EpisodeWriter] = []
+        self._going: list[_Going | None] = [None] * count
+        self._begun: list[EpisodeFiles] = []
         self.episodes = [[] for _ in range(count)]
         self.drawn = 0
 
-    def take(self, due: NDArray[np.int32], action: NDArray[np.int32]) -> None:
+    def take(self, due: NDArray[np.int32], mover: Mover) -> None:
         """Record one frame of each of these trackers.
 
         Args:
             due: Trackers, shape (V,).
-            action: Number of each tracker's action, shape (N,).
+            mover: What moves them.
 
         Raises:
             OutputError: The file system refused this frame or an earlier one.
         """
-        for tracker in due.tolist():
-            if self._writers[tracker] is None and not self._complete[tracker]:
-                self._begin(tracker)
-        drawn = np.array([n for n in due.tolist() if not self._complete[n]], np.int32)
-        if not drawn.size:
+        drawn = [tracker for tracker in due.tolist() if self._begin(tracker).files]
+        if not drawn:
             return
-        picture = self._views(drawn.size)
-        self._sim.draw(drawn, picture, overlay=self._video.overlay)
-        for view, tracker in enumerate(drawn.tolist()):
-            self._write(tracker, picture, view, int(action[tracker]))
-        self.drawn += drawn.size
+        picture = self._picture.first(len(drawn))
+        self._sim.draw(np.array(drawn, np.int32), picture, overlay=self._overlay)
+        for view, tracker in enumerate(drawn):
+            self._write(tracker, picture, view, mover)
+        self.drawn += len(drawn)
 
-    def _begin(self, tracker: int) -> None:
-        path = self._folder.episode(tracker, len(self.episodes[tracker]))
-        found = read_complete(path)
+    def _begin(self, tracker: int) -> _Going:
+        """Return the episode of a tracker; begin it if it has not begun."""
+        going = self._going[tracker]
+        if going is None:
+            going = self._going[tracker] = self._found_or_new(tracker)
+        return going
+
+    def _found_or_new(self, tracker: int) -> _Going:
+        writers = self._folder.writers
+        episode = self._folder.episode(tracker, len(self.episodes[tracker]))
+        found = read_complete(writers, episode.folder)
         if found is not None:
-            self._labels[tracker] = found
-            self._complete[tracker] = True
-            return
-        writer = EpisodeWriter(path, self._video.fps, target_direction=self._video.target_direction)
-        self._writers[tracker] = writer
-        self._begun = [begun for begun in self._begun if not begun.finished] + [writer]
+            return _Going(episode, None, found)
+        files = EpisodeFiles(writers, episode)
+        self._begun = [begun for begun in self._begun if not begun.finished] + [files]
+        return _Going(episode, files, Summary(0, Scores()))
 
-    def _views(self, count: int) -> Picture:
-        whole = self._picture
-        assert whole.rgb is not None
-        assert whole.subject_box is not None
-        assert whole.subject_pixels is not None
-        box, pixels = whole.subject_box[:count], whole.subject_pixels[:count]
-        return Picture(whole.rgb[:count], None, None, box, pixels)
-
-    def _write(self, tracker: int, picture: Picture, view: int, action: int) -> None:
-        writer, labels = self._writers[tracker], self._labels[tracker]
-        assert writer is not None
-        assert picture.rgb is not None
-        label = label_of(self._sim, tracker, picture, view, len(labels), action)
-        labels.append(label)
-        self._lanes.submit(tracker, writer.add, label, picture.rgb[view].copy())
+    def _write(self, tracker: int, picture: Picture, view: int, mover: Mover) -> None:
+        going = self._going[tracker]
+        assert going is not None
+        assert going.files is not None
+        number, action = going.summary.frames, mover.action(tracker)
+        frame = frame_of(self._sim.snapshot, tracker, picture, view, number, action)
+        going.summary = going.summary.plus(frame)
+        self._lanes.submit(tracker, going.files.add, frame)
 
     def end(self, trackers: NDArray[np.bool_]) -> None:
         """End the episodes of some trackers, shape (N,); those without frames leave nothing.
@@ -103,27 +121,26 @@ class Recorder:
             OutputError: The file system refused.
         """
         for tracker in np.flatnonzero(trackers).tolist():
-            writer = self._writers[tracker]
-            if writer is not None:
-                self._lanes.submit(tracker, writer.finish)
-            if self._labels[tracker]:
-                self.episodes[tracker].append(self._labels[tracker])
-            self._writers[tracker] = None
-            self._labels[tracker] = []
-            self._complete[tracker] = False
+            going = self._going[tracker]
+            if going is not None:
+                if going.files is not None:
+                    self._lanes.submit(tracker, going.files.finish)
+                self.episodes[tracker].append(EndedEpisode(going.episode, going.summary))
+            self._going[tracker] = None
 
     def finish(self) -> None:
-        """End all episodes, and describe the whole folder.
+        """End all episodes, and describe the whole recording.
 
         Raises:
             OutputError: The file system refused.
         """
-        self.end(np.ones(len(self._writers), np.bool_))
+        self.end(np.ones(len(self._going), np.bool_))
         self._lanes.finish()
-        self._folder.write_info(self.episodes)
+        for writer in self._folder.writers:
+            writer.finish([ended for own in self.episodes for ended in own])
 
     def stop(self) -> None:
-        """Leave in the middle: every file that is there is whole, begun episodes have no marks."""
+        """Leave in the middle: every file that is there is whole."""
         self._lanes.stop()
-        for writer in self._begun:
-            writer.abandon()
+        for files in self._begun:
+            files.abandon()

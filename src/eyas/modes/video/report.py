@@ -1,14 +1,13 @@
 """What a recording tells its user: progress on stderr, a table at the end."""
 
 import time
-from collections.abc import Sequence
 from types import TracebackType
 
 from rich import progress as bar
 from rich.console import Console
 from rich.table import Table
 
-from eyas.exports.labels import FrameLabel
+from eyas.exports.summary import Summary, total
 from eyas.modes.video.folder import VideoFolder
 from eyas.modes.video.recorder import Recorder
 
@@ -83,21 +82,19 @@ def print_report(
     table.add_column("tracker")
     for title in ("episodes", "frames", "mean reward", "in sight"):
         table.add_column(title, justify="right")
-    for tracker, episodes in enumerate(recorder.episodes):
-        labels = [label for episode in episodes for label in episode]
-        row = [str(len(episodes)), str(len(labels)), *_means(labels)]
-        table.add_row(folder.tracker_name(tracker), *row)
+    for tracker, episodes in zip(folder.trackers, recorder.episodes, strict=True):
+        whole = total(summary for _, summary in episodes)
+        table.add_row(tracker, str(len(episodes)), str(whole.frames), *_means(whole))
     console = Console()
     console.print(table)
-    total = sum(len(labels) for episodes in recorder.episodes for labels in episodes)
-    line = f"{total} frames in {folder.path} ({recorder.drawn} drawn now, {rate:.0f} a second)"
+    frames = total(summary for episodes in recorder.episodes for _, summary in episodes).frames
+    line = f"{frames} frames in {folder.path} ({recorder.drawn} drawn now, {rate:.0f} a second)"
     console.print(line, highlight=False, markup=False, soft_wrap=True)
 
 
-def _means(labels: Sequence[FrameLabel]) -> tuple[str, str]:
+def _means(whole: Summary) -> tuple[str, str]:
     """Return the mean reward, and the share of frames in which the target is seen."""
-    rewards = [label.reward for label in labels if label.reward is not None]
-    if not rewards:
+    scores = whole.scores
+    if scores is None or not scores.rewarded:
         return "-", "-"
-    seen = sum(label.visible_fraction > 0.0 for label in labels)
-    return f"{sum(rewards) / len(rewards):.3f}", f"{seen / len(labels):.1%}"
+    return f"{scores.reward / scores.rewarded:.3f}", f"{scores.sightings / whole.frames:.1%}"

@@ -4,6 +4,7 @@ from pathlib import Path
 
 from eyas.core.clock import PHYSICS_RATE
 from eyas.core.errors import ConfigError, OutputError
+from eyas.exports.registry import chosen_writers
 from eyas.modes.video.action import mover_of
 from eyas.modes.video.folder import VideoFolder, check_folder, open_folder
 from eyas.modes.video.grid import FrameGrid
@@ -31,7 +32,7 @@ def run(
     resume: bool = False,
     quiet: bool = False,
 ) -> None:
-    """Record into `folder`: pictures, movies, labels and marks of each episode.
+    """Record into `folder` what the writers of the settings write of each episode.
 
     The same settings give the same bytes, also when the recording was interrupted and continued.
 
@@ -47,8 +48,9 @@ def run(
             records into the folder.
         KeyboardInterrupt: The user stopped it; every file that is there is whole.
     """
-    # Building may take a minute, so the folder is looked at before; what cannot be built leaves no
-    # folder and deletes none, so it is made after.
+    # Building may take a minute, so writers and folder are looked at before; what cannot be built
+    # leaves no folder and deletes none, so it is made after.
+    chosen_writers(config.video.writers)
     check_folder(folder, config, overwrite=overwrite, resume=resume)
     sim = build_simulation(recording_rules(config), together(config.video.channels))
     _require_traffic(config)
@@ -126,7 +128,7 @@ def _run_episodes(
         tick += 1
         due = grid.due(tick, episodes.step_count)
         if due.size:
-            recorder.take(due, mover.action)
+            recorder.take(due, mover)
             progress.show((tick - begin) / (grid.last_tick - begin), recorder.drawn)
         ended = episodes.done
         if ended.any():

@@ -9,11 +9,16 @@ from typing import IO
 import av
 import numpy as np
 from av.video.stream import VideoStream
-from numpy.typing import NDArray
 
 from eyas.core.files import part_path, refusals
+from eyas.exports.files import Files
+from eyas.exports.frame import Frame
+from eyas.exports.summary import Summary
+from eyas.exports.writer import Episode, EpisodeWriter, Writer
 
-__all__ = ["MovieWriter"]
+__all__ = ["Mp4Episode", "Mp4Writer"]
+
+MOVIE = "episode.mp4"
 
 CODECS = {
     # A picture of 320 x 240 takes 1.8 ms; the default preset needs 5.7 ms for the same size.
@@ -27,7 +32,27 @@ LARGEST_DENOMINATOR = 1001
 """Of the frame rate; 30000/1001 is the least round one in use."""
 
 
-class MovieWriter:
+class Mp4Writer(Writer):
+    """`episode.mp4`."""
+
+    wants = frozenset({"rgb"})
+    files = Files(episode=(MOVIE,))
+
+    def begin(self, episode: Episode) -> "Mp4Episode":
+        """Return what writes an episode's movie."""
+        path = episode.folder / MOVIE
+        return Mp4Episode(path, episode.height, episode.width, episode.fps)
+
+    def read(self, folder: Path) -> Summary | None:
+        """Return how many pictures the movie says that it has."""
+        try:
+            with av.open(str(folder / MOVIE)) as container:
+                return Summary(container.streams.video[0].frames)
+        except (OSError, ValueError, IndexError):
+            return None
+
+
+class Mp4Episode(EpisodeWriter):
     """Encodes pictures as they come; the file appears under its name when it is whole.
 
     The same pictures give the same bytes: one encoder thread, no dates, no version tags.
@@ -67,11 +92,13 @@ class MovieWriter:
         stream.codec_context.flags |= av.codec.context.Flags.bitexact
         return stream
 
-    def add(self, rgb: NDArray[np.uint8]) -> None:
-        """Append one picture, shape (H, W, 3)."""
-        frame = av.VideoFrame.from_ndarray(np.pad(rgb, self._padding, mode="edge"), format="rgb24")
+    def add(self, frame: Frame) -> None:
+        """Append the next picture."""
+        assert frame.rgb is not None
+        padded = np.pad(frame.rgb, self._padding, mode="edge")
+        image = av.VideoFrame.from_ndarray(padded, format="rgb24")
         with refusals(self._path):
-            self._container.mux(self._stream.encode(frame))
+            self._container.mux(self._stream.encode(image))
 
     def finish(self) -> None:
         """Write what is left, and give the file its name."""

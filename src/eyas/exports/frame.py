@@ -1,0 +1,214 @@
+"""A frame: everything that writers are told about one picture of one tracker."""
+
+import math
+from dataclasses import dataclass
+from typing import Literal, TypeAlias, get_args
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.clock import PHYSICS_STEP
+from eyas.state.draw import Picture
+from eyas.state.scene import ACTOR_OBJECT
+from eyas.state.snapshot import CameraState, Snapshot, TargetState, TrackerState
+from eyas.targets.catalogue import VEHICLES
+from eyas.task.direction import TargetDirection
+from eyas.task.done import DoneReason
+
+__all__ = [
+    "OUTPUTS",
+    "Action",
+    "Body",
+    "CameraPose",
+    "Frame",
+    "Output",
+    "Subject",
+    "frame_of",
+]
+
+Floats: TypeAlias = NDArray[np.float64]
+
+Output = Literal["rgb", "depth", "object_id", "class_id"]
+"""A picture that can be drawn of a frame; each is the field of its name in `Frame`."""
+
+OUTPUTS: tuple[Output, ...] = get_args(Output)
+"""All of them."""
+
+
+@dataclass(frozen=True, slots=True)
+class Action:
+    """What the tracker is told."""
+
+    number: int
+    """Of the action: 0 to 5 for a random one, -1 when the target is followed exactly."""
+    command: Floats | None
+    """Forward [m/s], left [m/s], up [m per 2 ms], yaw rate [rad/s], shape (4,); None when the
+    target is followed exactly."""
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """The body of a tracker. World frame, east-north-up, unless it says otherwise."""
+
+    position: Floats
+    """Centre [m], shape (3,)."""
+    velocity: Floats
+    """[m/s], shape (3,)."""
+    acceleration: Floats
+    """[m/s^2], shape (3,)."""
+    orientation: Floats
+    """Body to world, quaternion w, x, y, z, shape (4,)."""
+    angular_velocity: Floats
+    """Body frame [rad/s], shape (3,)."""
+    gimbal: Floats
+    """Roll, pitch, yaw of the gimbal's joints [rad], shape (3,)."""
+
+
+@dataclass(frozen=True, slots=True)
+class CameraPose:
+    """Where the camera is and looks."""
+
+    position: Floats
+    """Optical centre, world frame [m], shape (3,)."""
+    rotation: Floats
+    """Camera to world; columns are the camera's forward, left and up axes, shape (3, 3)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Subject:
+    """Something that moves, and where the picture shows it. World frame, east-north-up."""
+
+    object_id: int
+    """Its value in `Frame.object_id`; the same in all frames of an episode."""
+    type: str
+    """Name of its model."""
+    size: Floats
+    """Length, width, height [m], shape (3,)."""
+    position: Floats
+    """Reference point on the road [m], shape (3,)."""
+    centre: Floats
+    """Middle of its visible body, which the reward looks for [m], shape (3,)."""
+    velocity: Floats
+    """[m/s], shape (3,)."""
+    yaw: float
+    """Heading, counter-clockwise from east [rad]."""
+    box: NDArray[np.int32]
+    """Extent in the picture, hidden parts included, clipped to the picture: left, top, right,
+    bottom [pixels], the last two exclusive; all 0 outside the picture; shape (4,)."""
+    seen_pixels: int
+    """Pixels that show it."""
+    covered_pixels: int
+    """Pixels that would show it if nothing hid it; 0 outside the picture."""
+
+    @property
+    def visible_fraction(self) -> float:
+        """Share of its pixels that are seen, 0 to 1; 0 outside the picture."""
+        return self.seen_pixels / self.covered_pixels if self.covered_pixels else 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class Frame:
+    """One picture of one tracker with all that is known. Numbers are as computed, not rounded.
+
+    Nobody writes into its arrays, so writers may keep them.
+    """
+
+    number: int
+    """In its episode, from 0."""
+    time: float
+    """Simulated time since the start of the run [s]."""
+    step: int
+    """2 ms steps since the reset."""
+    tracker: Body
+    camera: CameraPose
+    target: Subject
+    """What the tracker follows."""
+    others: tuple[Subject, ...]
+    """Whatever else moves in the picture; empty in this version, which measures only the target."""
+    action: Action
+    reward: float
+    """Reward of this instant."""
+    direction: TargetDirection
+    """Which way the target goes."""
+    reason: DoneReason
+    """Why the episode ends with this instant; `NONE` while it goes on."""
+    rgb: NDArray[np.uint8] | None
+    """sRGB, row 0 on top, shape (H, W, 3); like the next three None where no writer wants it."""
+    depth: NDArray[np.float32] | None
+    """Distance along the optical axis [m], infinity for the sky, shape (H, W)."""
+    object_id: NDArray[np.int32] | None
+    """Object of each pixel, `SKY_OBJECT` for the sky, shape (H, W)."""
+    class_id: NDArray[np.uint8] | None
+    """`ObjectClass` of each pixel's object, shape (H, W)."""
+
+    @property
+    def episode_time(self) -> float:
+        """Simulated time since the reset [s]."""
+        return self.step * PHYSICS_STEP
+
+
+def frame_of(
+    snapshot: Snapshot, tracker: int, picture: Picture, view: int, number: int, action: Action
+) -> Frame:
+    """Return a frame that later steps and pictures leave alone.
+
+    Args:
+        snapshot: The state at the instant of the frame.
+        tracker: Whose frame it is.
+        picture: What was drawn, with the subject's box and pixels; the subject is the target.
+        view: The tracker's row in `picture`.
+        number: Of the frame in its episode.
+        action: The tracker's.
+    """
+    episodes = snapshot.episodes
+    return Frame(
+        number=number,
+        time=float(episodes.tick[tracker]) * PHYSICS_STEP,
+        step=int(episodes.step_count[tracker]),
+        tracker=_body(snapshot.trackers, tracker),
+        camera=_camera(snapshot.cameras, tracker),
+        target=_target(snapshot.targets, tracker, picture, view),
+        others=(),
+        action=action,
+        reward=float(episodes.reward[tracker]),
+        direction=TargetDirection(episodes.direction[tracker]),
+        reason=DoneReason(episodes.reason[tracker]),
+        rgb=None if picture.rgb is None else picture.rgb[view].copy(),
+        depth=None if picture.depth is None else picture.depth[view].copy(),
+        object_id=None if picture.object_id is None else picture.object_id[view].copy(),
+        class_id=None if picture.class_id is None else picture.class_id[view].copy(),
+    )
+
+
+def _body(trackers: TrackerState, tracker: int) -> Body:
+    return Body(
+        position=trackers.position[tracker].copy(),
+        velocity=trackers.velocity[tracker].copy(),
+        acceleration=trackers.acceleration[tracker].copy(),
+        orientation=trackers.orientation[tracker].copy(),
+        angular_velocity=trackers.angular_velocity[tracker].copy(),
+        gimbal=trackers.gimbal[tracker].copy(),
+    )
+
+
+def _camera(cameras: CameraState, tracker: int) -> CameraPose:
+    return CameraPose(cameras.position[tracker].copy(), cameras.rotation[tracker].copy())
+
+
+def _target(targets: TargetState, tracker: int, picture: Picture, view: int) -> Subject:
+    assert picture.subject_box is not None
+    assert picture.subject_pixels is not None
+    seen, covered = (int(pixels) for pixels in picture.subject_pixels[view])
+    yaw, speed = float(targets.yaw[tracker]), float(targets.speed[tracker])
+    return Subject(
+        object_id=ACTOR_OBJECT + int(targets.actor[tracker]),
+        type=VEHICLES[targets.model[tracker]].name,
+        size=targets.size[tracker].copy(),
+        position=targets.position[tracker].copy(),
+        centre=targets.centre[tracker].copy(),
+        velocity=np.array([speed * math.cos(yaw), speed * math.sin(yaw), 0.0]),
+        yaw=yaw,
+        box=picture.subject_box[view].copy(),
+        seen_pixels=seen,
+        covered_pixels=covered,
+    )

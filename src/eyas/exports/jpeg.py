@@ -1,0 +1,73 @@
+"""Pictures as JPEG files."""
+
+import io
+import re
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from eyas.core.files import write_atomic
+from eyas.exports.files import Files, pattern_of
+from eyas.exports.frame import Frame
+from eyas.exports.summary import Summary
+from eyas.exports.writer import Episode, EpisodeWriter, Writer
+
+__all__ = ["QUALITY", "JpegWriter", "write_picture"]
+
+QUALITY = 100
+"""The original's JPEG quality. Colours keep the full resolution too (4:4:4), because a target may
+be only a few pixels wide. A picture of 320 x 240 takes about 90 kB (36 kB at quality 95)."""
+
+PICTURE = "{:06d}.jpeg"
+"""Name of a frame's file."""
+
+
+class JpegWriter(Writer):
+    """`NNNNNN.jpeg` for each frame."""
+
+    wants = frozenset({"rgb"})
+    files = Files(frame=(PICTURE,))
+
+    def begin(self, episode: Episode) -> "JpegEpisode":
+        """Return what writes an episode's pictures."""
+        return JpegEpisode(episode.folder)
+
+    def read(self, folder: Path) -> Summary | None:
+        """Return how many pictures there are; None if one is missing."""
+        ours = re.compile(pattern_of(PICTURE))
+        names = {path.name for path in folder.glob("*") if ours.fullmatch(path.name)}
+        whole = names == {PICTURE.format(number) for number in range(len(names))}
+        return Summary(len(names)) if whole else None
+
+
+class JpegEpisode(EpisodeWriter):
+    """The pictures of one episode.
+
+    Args:
+        folder: Where to.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._folder = folder
+
+    def add(self, frame: Frame) -> None:
+        """Write the next picture."""
+        assert frame.rgb is not None
+        write_picture(self._folder / PICTURE.format(frame.number), frame.rgb)
+
+
+def write_picture(path: Path, rgb: NDArray[np.uint8]) -> None:
+    """Write one picture, whole or not at all; the same picture gives the same bytes.
+
+    Args:
+        path: Where to.
+        rgb: The picture, shape (H, W, 3).
+
+    Raises:
+        OutputError: The file system refused.
+    """
+    buffer = io.BytesIO()
+    Image.fromarray(rgb).save(buffer, "JPEG", quality=QUALITY, subsampling=0)
+    write_atomic(path, buffer.getvalue())

@@ -1,0 +1,65 @@
+"""The writers by name, and those that a recording chooses."""
+
+from collections.abc import Sequence
+from typing import Any, cast
+
+from eyas.core.errors import ConfigError
+from eyas.core.registry import Registry
+from eyas.exports.files import Files
+from eyas.exports.frame import OUTPUTS
+from eyas.exports.writer import Writer
+
+__all__ = ["WRITERS", "chosen_writers"]
+
+SETTING = "video.writers"
+
+WRITERS: Registry[type[Any]] = Registry(
+    SETTING,
+    type,
+    {
+        "jpeg": "eyas.exports.jpeg:JpegWriter",
+        "mp4": "eyas.exports.mp4:Mp4Writer",
+        "labels": "eyas.exports.labels:LabelWriter",
+        "mark": "eyas.exports.mark:MarkWriter",
+    },
+    group="eyas.writers",
+)
+"""All writers; a user's own is chosen by its path, `my_package.module:Class`."""
+
+
+def chosen_writers(names: Sequence[str]) -> tuple[type[Writer], ...]:
+    """Return the classes of writers by their names or paths.
+
+    Raises:
+        ConfigError: There is no such writer, it is not a writer, or two write the same file.
+    """
+    writers = tuple(_checked(name, WRITERS.get(name)) for name in names)
+    taken: dict[tuple[str, str], str] = {}
+    for name, writer in zip(names, writers, strict=True):
+        files = writer.files
+        of_episodes = [("episode", file) for file in (*files.frame, *files.episode)]
+        for place in [*of_episodes, *(("run", file) for file in files.run)]:
+            if place in taken:
+                raise ConfigError(
+                    f"{SETTING}: {taken[place]!r} and {name!r} both write '{place[1]}'"
+                )
+            taken[place] = name
+    return writers
+
+
+def _checked(name: str, found: type[Any]) -> type[Writer]:
+    """Return a class that has all that a writer needs."""
+    needed = ("wants", "files", "begin", "read", "finish")
+    abstract = getattr(found, "__abstractmethods__", ())
+    missing = [name for name in needed if not hasattr(found, name) or name in abstract]
+    if missing:
+        raise ConfigError(f"{SETTING}: {name!r} is not a writer: it has no '{missing[0]}'")
+    writer = cast("type[Writer]", found)
+    unknown = [repr(output) for output in writer.wants if output not in OUTPUTS]
+    if unknown:
+        known = ", ".join(OUTPUTS)
+        raise ConfigError(f"{SETTING}: {name!r} wants {unknown[0]}; there is only: {known}")
+    if not isinstance(writer.files, Files):
+        kind = type(writer.files).__name__
+        raise ConfigError(f"{SETTING}: the files of {name!r} are a {kind}, not a Files")
+    return writer
