@@ -1,41 +1,71 @@
 from collections.abc import Callable
+from pathlib import Path
 
+import numpy as np
 import pytest
 
-from eyas.exports.labels import FrameLabel
+from eyas.core.pinhole import intrinsics
+from eyas.exports.frame import Action, Body, CameraPose, Frame, Subject
+from eyas.exports.writer import Episode, Run
+from eyas.sim.config import SimConfig
+from eyas.task.direction import TargetDirection
+from eyas.task.done import DoneReason
+
+TARGET = Subject(
+    object_id=65536 + 3,
+    type="BmwX5Simple",
+    size=np.array([4.6, 1.9, 1.7]),
+    position=np.array([14.0, 2.0, 0.37]),
+    centre=np.array([13.0, 2.0, 0.37]),
+    velocity=np.array([13.0, 0.0, 0.0]),
+    yaw=0.0,
+    box=np.array([10, 11, 20, 17], np.int32),
+    seen_pixels=45,
+    covered_pixels=60,
+)
 
 
-def made(frame: int, **changes: object) -> FrameLabel:
+def made(number: int, **changes: object) -> Frame:
     values: dict[str, object] = {
-        "frame": frame,
-        "time": 1.0 + 0.04 * frame,
-        "step": 20 * frame + 31,
-        "episode_time": 0.04 * frame + 0.062,
-        "target_box": [10, 11, 20, 17],
-        "visible_fraction": 0.75,
-        "occluded": True,
-        "in_view": True,
-        "tracker_position": [1.0, 2.0, 22.0],
-        "tracker_velocity": [13.0, 0.0, 0.0],
-        "tracker_orientation": [1.0, 0.0, 0.0, 0.0],
-        "camera_position": [1.1, 2.0, 21.9],
-        "camera_rotation": [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-        "target_type": "BmwX5Simple",
-        "target_size": [4.6, 1.9, 1.7],
-        "target_position": [14.0, 2.0, 0.37],
-        "target_centre": [13.0, 2.0, 0.37],
-        "target_velocity": [13.0, 0.0, 0.0],
-        "target_yaw": 0.0,
-        "relative_position": [12.0, 0.0, -21.63],
+        "number": number,
+        "time": 1.0 + 0.04 * number,
+        "step": 20 * number + 31,
+        "tracker": Body(
+            position=np.array([1.0, 2.0, 22.0]),
+            velocity=np.array([13.0, 0.0, 0.0]),
+            acceleration=np.zeros(3),
+            orientation=np.array([1.0, 0.0, 0.0, 0.0]),
+            angular_velocity=np.zeros(3),
+            gimbal=np.zeros(3),
+        ),
+        "camera": CameraPose(np.array([1.1, 2.0, 21.9]), np.eye(3)),
+        "target": TARGET,
+        "others": (),
+        "action": Action(-1, None),
         "reward": 0.5,
-        "action": -1,
-        "direction": 1,
-        "done": False,
+        "direction": TargetDirection.STRAIGHT,
+        "reason": DoneReason.NONE,
+        "rgb": np.full((48, 64, 3), 40 * number % 256, np.uint8),
+        "depth": None,
+        "object_id": None,
+        "class_id": None,
     }
-    return FrameLabel(**{**values, **changes})  # type: ignore[arg-type]
+    return Frame(**{**values, **changes})  # type: ignore[arg-type]
 
 
 @pytest.fixture
-def frame_label() -> Callable[..., FrameLabel]:
-    """Makes the label of a frame; keywords change single fields."""
+def frame() -> Callable[..., Frame]:
+    """Makes a frame by its number; keywords change single fields."""
     return made
+
+
+@pytest.fixture
+def episode(tmp_path: Path) -> Episode:
+    """An episode of pictures of 64 x 48 in an empty folder."""
+    return Episode(tmp_path, "DRONE0", 0, 64, 48, intrinsics(64, 48, 0.8), 25.0)
+
+
+@pytest.fixture
+def run(tmp_path: Path) -> Run:
+    """A recording of two trackers in an empty folder."""
+    return Run(tmp_path, ("DRONE0", "DRONE1"), SimConfig(), target_direction=False)

@@ -7,7 +7,8 @@ import pytest
 from PIL import Image
 
 from eyas.core.errors import OutputError
-from eyas.exports.frames import frame_name, write_frame
+from eyas.exports.jpeg import JpegWriter, write_picture
+from eyas.exports.summary import Summary
 
 
 def picture() -> np.ndarray:
@@ -17,7 +18,7 @@ def picture() -> np.ndarray:
 
 
 def test_a_frame_reads_back_nearly_as_it_was(tmp_path):
-    write_frame(tmp_path / "a.jpeg", picture())
+    write_picture(tmp_path / "a.jpeg", picture())
     with Image.open(tmp_path / "a.jpeg") as image:
         assert image.format == "JPEG"
         shown = np.asarray(image).astype(int)
@@ -26,17 +27,23 @@ def test_a_frame_reads_back_nearly_as_it_was(tmp_path):
 
 
 def test_the_same_picture_gives_the_same_bytes(tmp_path):
-    write_frame(tmp_path / "a.jpeg", picture())
-    write_frame(tmp_path / "b.jpeg", picture())
+    write_picture(tmp_path / "a.jpeg", picture())
+    write_picture(tmp_path / "b.jpeg", picture())
     assert (tmp_path / "a.jpeg").read_bytes() == (tmp_path / "b.jpeg").read_bytes()
 
 
-def test_frames_are_named_with_six_digits():
-    assert [frame_name(0), frame_name(123), frame_name(1_234_567)] == [
-        "000000",
-        "000123",
-        "1234567",
-    ]
+def test_pictures_are_named_with_six_digits_and_counted(run, episode, frame):
+    writer = JpegWriter(run)
+    part = writer.begin(episode)
+    for number in range(3):
+        part.add(frame(number))
+    part.finish()
+    names = sorted(path.name for path in episode.folder.iterdir())
+    assert names == ["000000.jpeg", "000001.jpeg", "000002.jpeg"]
+    (episode.folder / "best.jpeg").write_text("mine")
+    assert writer.read(episode.folder) == Summary(3)
+    (episode.folder / "000001.jpeg").unlink()
+    assert writer.read(episode.folder) is None
 
 
 LIMITED = """
@@ -44,21 +51,22 @@ import resource, sys
 from pathlib import Path
 import numpy as np
 from eyas.core.errors import OutputError
-from eyas.exports.frames import write_frame
-from eyas.exports.movie import MovieWriter
+from types import SimpleNamespace
+from eyas.exports.jpeg import write_picture
+from eyas.exports.mp4 import Mp4Episode
 folder = Path(sys.argv[1])
 resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))
 noise = np.random.default_rng(0).integers(0, 255, (48, 64, 3), dtype=np.uint8)
 def movie():
-    writer = MovieWriter(folder / "a.mp4", 48, 64, 25.0)
+    writer = Mp4Episode(folder / "a.mp4", 48, 64, 25.0)
     try:
         for _ in range(100):
-            writer.add(noise)
+            writer.add(SimpleNamespace(rgb=noise))
         writer.finish()
     except OutputError:
         writer.abandon()
         raise
-for write in (lambda: write_frame(folder / "a.jpeg", noise), movie):
+for write in (lambda: write_picture(folder / "a.jpeg", noise), movie):
     try:
         write()
     except OutputError as error:
@@ -81,5 +89,5 @@ def test_a_file_that_does_not_fit_is_one_line_and_leaves_nothing(tmp_path):
 def test_a_folder_in_the_way_is_one_line(tmp_path):
     os.mkdir(tmp_path / "a.jpeg")
     with pytest.raises(OutputError, match=r"a\.jpeg: cannot write"):
-        write_frame(tmp_path / "a.jpeg", picture())
+        write_picture(tmp_path / "a.jpeg", picture())
     assert [path.name for path in tmp_path.iterdir()] == ["a.jpeg"]

@@ -1,29 +1,67 @@
 import json
 import math
+from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from eyas.core.errors import DataFileError
-from eyas.exports.labels import read_labels, rounded, rounded_list, write_labels
+from eyas.exports.frame import Action
+from eyas.exports.labels import LabelWriter, label_of, read_labels
+from eyas.exports.summary import Scores, Summary
+from eyas.task.done import DoneReason
 
 
-def test_labels_read_back_equal(tmp_path, frame_label):
-    labels = [frame_label(0), frame_label(1, reward=None, done=True)]
-    write_labels(tmp_path / "labels.jsonl", labels)
-    assert read_labels(tmp_path / "labels.jsonl") == labels
+@pytest.fixture
+def written(run, episode, frame):
+    """Writes frames; returns the file."""
+
+    def write(*frames):
+        part = LabelWriter(run).begin(episode)
+        for each in frames:
+            part.add(each)
+        part.finish()
+        return episode.folder / "labels.jsonl"
+
+    return write
 
 
-def test_each_line_is_a_record_that_any_reader_understands(tmp_path, frame_label):
-    write_labels(tmp_path / "labels.jsonl", [frame_label(frame) for frame in range(3)])
-    records = [json.loads(line) for line in (tmp_path / "labels.jsonl").read_text().splitlines()]
+def test_labels_read_back_equal(written, frame):
+    frames = [frame(0), frame(1, reward=math.nan, reason=DoneReason.STEP_LIMIT)]
+    assert read_labels(written(*frames)) == [label_of(each) for each in frames]
+
+
+def test_each_line_is_a_record_that_any_reader_understands(written, frame):
+    path = written(*(frame(number) for number in range(3)))
+    records = [json.loads(line) for line in path.read_text().splitlines()]
     assert [record["frame"] for record in records] == [0, 1, 2]
     assert records[2]["target_box"] == [10, 11, 20, 17]
 
 
-def test_numbers_have_fixed_decimals_and_no_negative_zero():
-    assert rounded(1.23456749) == 1.234567
-    assert json.dumps(rounded(-1e-9)) == "0.0"
-    assert rounded_list([math.nan, math.inf, 2]) == [None, None, 2.0]
+def test_a_label_says_what_the_frame_holds(frame):
+    label = label_of(frame(7, action=Action(3, np.zeros(4)), reason=DoneReason.HEIGHT))
+    assert (label.frame, label.step, label.time) == (7, 171, 1.28)
+    assert label.episode_time == 0.342
+    assert (label.action, label.direction, label.done, label.reward) == (3, 1, True, 0.5)
+    assert (label.visible_fraction, label.occluded, label.in_view) == (0.75, True, True)
+    assert label.relative_position == [12.0, 0.0, -21.63]
+    assert label.target_velocity == [13.0, 0.0, 0.0]
+
+
+def test_a_target_outside_the_picture_is_not_occluded(frame):
+    target = replace(frame(0).target, box=np.zeros(4, np.int32), seen_pixels=0, covered_pixels=0)
+    label = label_of(frame(0, target=target))
+    assert (label.visible_fraction, label.occluded, label.in_view) == (0.0, False, False)
+
+
+def test_labels_tell_what_an_episode_came_to(run, written, frame):
+    unseen = replace(frame(1).target, seen_pixels=0)
+    path = written(frame(0, reward=0.25), frame(1, target=unseen), frame(2, reward=math.inf))
+    assert LabelWriter(run).read(path.parent) == Summary(3, Scores(2, 0.75, 2))
+
+
+def test_labels_that_are_not_there_tell_nothing(run, tmp_path):
+    assert LabelWriter(run).read(tmp_path) is None
 
 
 @pytest.mark.parametrize(
@@ -33,9 +71,9 @@ def test_numbers_have_fixed_decimals_and_no_negative_zero():
         (lambda text: text.replace('"reward"', '"rewind"'), "line 1 is not the label of a frame"),
     ],
 )
-def test_damaged_labels_say_where(tmp_path, frame_label, damage, line):
-    path = tmp_path / "labels.jsonl"
-    write_labels(path, [frame_label(0), frame_label(1)])
+def test_damaged_labels_say_where(run, written, frame, damage, line):
+    path = written(frame(0), frame(1))
     path.write_text(damage(path.read_text()))
     with pytest.raises(DataFileError, match=line):
         read_labels(path)
+    assert LabelWriter(run).read(path.parent) is None

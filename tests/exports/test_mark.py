@@ -1,34 +1,56 @@
+from dataclasses import replace
+
+import numpy as np
 import pytest
 
-from eyas.exports.mark import write_dir_info, write_mark
+from eyas.exports.frame import Action
+from eyas.exports.mark import MarkWriter
+from eyas.exports.summary import Summary
+from eyas.exports.writer import EndedEpisode
+from eyas.task.direction import TargetDirection
 
 
 @pytest.fixture
-def labels(frame_label):
-    return [
-        frame_label(0, reward=0.25, action=-1),
-        frame_label(1, reward=1.0, action=3, direction=2),
-    ]
+def frames(frame):
+    turn = {"action": Action(3, np.zeros(4)), "direction": TargetDirection.LEFT}
+    return [frame(0, reward=0.25), frame(1, reward=1.0, **turn)]
 
 
-def test_marks_are_the_originals_text(tmp_path, labels):
-    write_mark(tmp_path / "mark.json", labels, target_direction=False)
-    assert (tmp_path / "mark.json").read_text() == (
+def write(run, episode, frames) -> str:
+    part = MarkWriter(run).begin(episode)
+    for frame in frames:
+        part.add(frame)
+    part.finish()
+    return (episode.folder / "mark.json").read_text()
+
+
+def test_marks_are_the_originals_text(run, episode, frames):
+    assert write(run, episode, frames) == (
         '{\n    "000000": [\n        0.25,\n        -1.0\n    ],\n'
         '    "000001": [\n        1.0,\n        3.0\n    ]\n}'
     )
+    assert MarkWriter(run).read(episode.folder) == Summary(2)
 
 
-def test_marks_of_the_direction_are_whole_numbers(tmp_path, labels):
-    write_mark(tmp_path / "mark.json", labels, target_direction=True)
-    assert (tmp_path / "mark.json").read_text() == '{\n    "000000": 1,\n    "000001": 2\n}'
+def test_marks_of_the_direction_are_whole_numbers(run, episode, frames):
+    text = write(replace(run, target_direction=True), episode, frames)
+    assert text == '{\n    "000000": 1,\n    "000001": 2\n}'
 
 
-def test_dir_info_counts_frames_of_each_episode(tmp_path):
-    write_dir_info(
-        tmp_path / "dir_info.json", {"DRONE0": {"episode0": 38, "episode1": 7}, "DRONE1": {}}
-    )
-    assert (tmp_path / "dir_info.json").read_text() == (
+@pytest.mark.parametrize("text", [None, '{\n    "000000": [\n'])
+def test_marks_that_are_missing_or_cut_off_are_not_whole(run, episode, text):
+    if text is not None:
+        (episode.folder / "mark.json").write_text(text)
+    assert MarkWriter(run).read(episode.folder) is None
+
+
+def test_dir_info_counts_frames_of_each_episode(run, episode):
+    ended = [
+        EndedEpisode(episode, Summary(38)),
+        EndedEpisode(replace(episode, number=1), Summary(7)),
+    ]
+    MarkWriter(run).finish(ended)
+    assert (run.folder / "dir_info.json").read_text() == (
         '{\n    "DRONE0": {\n        "episode0": 38,\n        "episode1": 7\n    },\n'
         '    "DRONE1": {}\n}'
     )

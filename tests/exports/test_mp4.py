@@ -4,7 +4,8 @@ import av
 import numpy as np
 import pytest
 
-from eyas.exports.movie import MovieWriter
+from eyas.exports.mp4 import Mp4Episode, Mp4Writer
+from eyas.exports.summary import Summary
 
 
 def gradient(frame: int, height: int, width: int) -> np.ndarray:
@@ -15,17 +16,23 @@ def gradient(frame: int, height: int, width: int) -> np.ndarray:
     return rgb
 
 
-def write(path: Path, height: int, width: int, fps: float, frames: int = 7) -> None:
-    movie = MovieWriter(path, height, width, fps)
-    for frame in range(frames):
-        movie.add(gradient(frame, height, width))
-    movie.finish()
+@pytest.fixture
+def write(frame):
+    """Writes a movie of seven pictures."""
+
+    def written(path: Path, height: int, width: int, fps: float) -> None:
+        movie = Mp4Episode(path, height, width, fps)
+        for number in range(7):
+            movie.add(frame(number, rgb=gradient(number, height, width)))
+        movie.finish()
+
+    return written
 
 
 @pytest.mark.parametrize(
     ("height", "width", "fps"), [(48, 64, 25.0), (9, 33, 29.97), (8, 8, 0.0004)]
 )
-def test_a_movie_holds_every_picture_at_the_asked_rate(tmp_path, height, width, fps):
+def test_a_movie_holds_every_picture_at_the_asked_rate(tmp_path, write, height, width, fps):
     write(tmp_path / "a.mp4", height, width, fps)
     with av.open(str(tmp_path / "a.mp4")) as container:
         stream = container.streams.video[0]
@@ -37,15 +44,27 @@ def test_a_movie_holds_every_picture_at_the_asked_rate(tmp_path, height, width, 
         assert np.abs(shown - gradient(frame, height, width)).mean() < 12
 
 
-def test_the_same_pictures_give_the_same_bytes(tmp_path):
+def test_the_same_pictures_give_the_same_bytes(tmp_path, write):
     write(tmp_path / "a.mp4", 48, 64, 25.0)
     write(tmp_path / "b.mp4", 48, 64, 25.0)
     assert (tmp_path / "a.mp4").read_bytes() == (tmp_path / "b.mp4").read_bytes()
 
 
-def test_a_movie_appears_only_when_it_is_whole(tmp_path):
-    movie = MovieWriter(tmp_path / "a.mp4", 48, 64, 25.0)
-    movie.add(gradient(0, 48, 64))
-    assert not (tmp_path / "a.mp4").exists()
-    movie.abandon()
-    assert list(tmp_path.iterdir()) == []
+def test_a_movie_tells_how_many_pictures_it_has(run, episode, frame):
+    writer = Mp4Writer(run)
+    part = writer.begin(episode)
+    part.add(frame(0))
+    assert writer.read(episode.folder) is None
+    part.add(frame(1))
+    part.finish()
+    assert writer.read(episode.folder) == Summary(2)
+    (episode.folder / "episode.mp4").write_bytes(b"cut off")
+    assert writer.read(episode.folder) is None
+
+
+def test_an_abandoned_movie_leaves_nothing(run, episode, frame):
+    part = Mp4Writer(run).begin(episode)
+    part.add(frame(0))
+    assert not (episode.folder / "episode.mp4").exists()
+    part.abandon()
+    assert list(episode.folder.iterdir()) == []

@@ -3,6 +3,7 @@
 import json
 import os
 import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -16,7 +17,12 @@ import pytest
 from PIL import Image
 
 from eyas.core.errors import ConfigError, OutputError
+from eyas.exports.files import Files
+from eyas.exports.frame import Frame
+from eyas.exports.gather import Gather
 from eyas.exports.labels import read_labels
+from eyas.exports.summary import Summary
+from eyas.exports.writer import Episode, Writer
 from eyas.modes.video import run as video
 from eyas.modes.video.config import VideoConfig
 from eyas.modes.video.lock import recording_lock
@@ -244,3 +250,81 @@ def test_an_overlay_changes_pictures_and_films_but_no_label_and_no_mark(recorded
         drawn = name.endswith((".jpeg", ".mp4"))
         settings = name == "config.json"
         assert (clean[name] != overlaid[name]) == (drawn or settings), name
+
+
+class Probe(Writer):
+    """Compares the ids of all pixels with what is said about the target."""
+
+    wants = frozenset({"object_id", "depth"})
+    files = Files(episode=("pixels.json",))
+
+    def begin(self, episode: Episode) -> Gather[tuple[int, int, float, float]]:
+        return Gather(
+            episode.folder / "pixels.json", self._compared, lambda rows: json.dumps(rows).encode()
+        )
+
+    @staticmethod
+    def _compared(frame: Frame) -> tuple[int, int, float, float]:
+        assert frame.rgb is None
+        assert frame.class_id is None
+        shown = frame.object_id == frame.target.object_id
+        near = np.linalg.norm(frame.target.centre - frame.camera.position)
+        return (
+            int(shown.sum()),
+            frame.target.seen_pixels,
+            float(np.median(frame.depth[shown])),
+            near,
+        )
+
+    def read(self, folder: Path) -> Summary | None:
+        path = folder / "pixels.json"
+        return Summary(len(json.loads(path.read_text()))) if path.exists() else None
+
+
+def with_writers(*names: str, **changes: object) -> EyasConfig:
+    video = CONFIG.video.model_copy(update={"writers": names, **changes})
+    return CONFIG.model_copy(update={"video": video})
+
+
+def test_writers_are_chosen_and_none_changes_what_another_writes(recorded, tmp_path):
+    video.run(with_writers("labels", overlay=True), tmp_path / "out", quiet=True)
+    found, whole = contents(tmp_path / "out"), contents(recorded)
+    labels = {name for name in whole if name.endswith("labels.jsonl")}
+    assert found.keys() == labels | {"config.json", "env_config.json", "version.json"}
+    assert all(found[name] == whole[name] for name in labels)
+
+
+def test_a_writer_gets_the_pictures_that_it_wants_and_no_others(tmp_path):
+    video.run(with_writers(f"{__name__}:Probe", total_time=0.1), tmp_path / "out", quiet=True)
+    files = sorted(tmp_path.rglob("pixels.json"))
+    assert len(files) == 2
+    for file in files:
+        for shown, seen, depth, near in json.loads(file.read_text()):
+            assert shown == seen > 0
+            assert depth == pytest.approx(near, rel=0.1)
+
+
+def test_an_unknown_writer_is_one_line_and_no_folder(tmp_path):
+    with pytest.raises(ConfigError, match=r"video\.writers: 'jpg' .*did you mean 'jpeg'"):
+        video.run(with_writers("jpg"), tmp_path / "out", quiet=True)
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("labels", [(), ("labels",)], ids=["without labels", "with labels"])
+def test_a_resumed_recording_reports_of_episodes_on_disk_what_they_tell(tmp_path, capsys, labels):
+    config = with_writers("mark", *labels, total_time=0.1)
+    video.run(config, tmp_path / "out")
+    unbroken = rows_of(capsys.readouterr().out)
+    (tmp_path / "out" / "DRONE0" / "episode0" / "mark.json").unlink()
+    video.run(config, tmp_path / "out", resume=True)
+    resumed = rows_of(capsys.readouterr().out)
+    assert resumed["DRONE0"] == unbroken["DRONE0"]
+    assert "-" not in unbroken["DRONE1"]
+    known = unbroken["DRONE1"] if labels else [*unbroken["DRONE1"][:2], "-", "-"]
+    assert resumed["DRONE1"] == known
+
+
+def rows_of(report: str) -> dict[str, list[str]]:
+    """Return the cells of each tracker's row of a report."""
+    lines = [[cell.strip() for cell in line.split("│")[1:-1]] for line in report.splitlines()]
+    return {name: cells for name, *cells in (line for line in lines if len(line) == 5)}

@@ -3,71 +3,117 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eyas.exports.labels import FrameLabel
-from eyas.modes.video.episode import EpisodeWriter, read_complete
+from eyas.core.errors import OutputError
+from eyas.exports.files import Files
+from eyas.exports.frame import Action, frame_of
+from eyas.exports.registry import WRITERS, chosen_writers
+from eyas.exports.summary import Scores, Summary
+from eyas.exports.writer import Episode, EpisodeWriter, Run, Writer
+from eyas.modes.video.episode import EpisodeFiles, read_complete
+from eyas.sim.config import SimConfig
+from eyas.state.draw import Picture
+from eyas.state.snapshot import Snapshot
+
+RUN = Run(Path("unused"), ("DRONE0",), SimConfig(), target_direction=False)
 
 
-def label(frame: int) -> FrameLabel:
-    return FrameLabel(
-        frame=frame,
-        time=1.0,
-        step=31,
-        episode_time=0.062,
-        target_box=[10, 11, 20, 17],
-        visible_fraction=1.0,
-        occluded=False,
-        in_view=True,
-        tracker_position=[0.0, 0.0, 22.0],
-        tracker_velocity=[0.0, 0.0, 0.0],
-        tracker_orientation=[1.0, 0.0, 0.0, 0.0],
-        camera_position=[0.1, 0.0, 22.0],
-        camera_rotation=[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-        target_type="BmwX5Simple",
-        target_size=[4.6, 1.9, 1.7],
-        target_position=[14.0, 2.0, 0.37],
-        target_centre=[13.0, 2.0, 0.37],
-        target_velocity=[13.0, 0.0, 0.0],
-        target_yaw=0.0,
-        relative_position=[13.0, 2.0, -21.63],
-        reward=0.5,
-        action=-1,
-        direction=1,
-        done=False,
-    )
+def writers_of(*names: str) -> list[Writer]:
+    return [writer(RUN) for writer in chosen_writers(names or WRITERS.built_in)]
 
 
-def write(folder: Path, frames: int) -> EpisodeWriter:
-    writer = EpisodeWriter(folder, 25.0, target_direction=False)
-    for frame in range(frames):
-        writer.add(label(frame), np.full((48, 64, 3), 40 * frame, np.uint8))
-    return writer
+def write(folder: Path, frames: int, writers: list[Writer] | None = None) -> EpisodeFiles:
+    episode = Episode(folder, "DRONE0", 0, 64, 48, np.eye(3), 25.0)
+    files = EpisodeFiles(writers or writers_of(), episode)
+    snapshot, picture = Snapshot.create(1), Picture.create(1, 48, 64, subject=True)
+    snapshot.episodes.reward[:] = 0.5
+    picture.subject_pixels[:] = 4, 5
+    for number in range(frames):
+        picture.rgb[:] = 40 * number
+        files.add(frame_of(snapshot, 0, picture, 0, number, Action(-1, None)))
+    return files
 
 
 def test_a_finished_episode_is_complete(tmp_path):
     write(tmp_path / "episode0", 3).finish()
-    assert read_complete(tmp_path / "episode0") == [label(frame) for frame in range(3)]
+    found = read_complete(writers_of(), tmp_path / "episode0")
+    assert found == Summary(3, Scores(3, 1.5, 3))
 
 
 @pytest.mark.parametrize("name", ["mark.json", "labels.jsonl", "episode.mp4", "000001.jpeg"])
 def test_an_episode_that_misses_a_file_is_not_complete(tmp_path, name):
     write(tmp_path / "episode0", 3).finish()
     (tmp_path / "episode0" / name).unlink()
-    assert read_complete(tmp_path / "episode0") is None
+    assert read_complete(writers_of(), tmp_path / "episode0") is None
+
+
+@pytest.mark.parametrize("name", ["mark.json", "labels.jsonl", "episode.mp4", "000002.jpeg"])
+def test_an_episode_whose_files_hold_different_numbers_of_frames_is_not_complete(tmp_path, name):
+    write(tmp_path / "episode0", 2).finish()
+    write(tmp_path / "other", 3).finish()
+    (tmp_path / "other" / name).replace(tmp_path / "episode0" / name)
+    assert read_complete(writers_of(), tmp_path / "episode0") is None
+
+
+@pytest.mark.parametrize("name", ["mark", "mp4"])
+def test_without_labels_an_episode_is_complete_and_its_rewards_are_unknown(tmp_path, name):
+    writers = writers_of(name, "jpeg")
+    write(tmp_path / "episode0", 3, writers).finish()
+    assert read_complete(writers, tmp_path / "episode0") == Summary(3, None)
+
+
+def test_pictures_alone_do_not_tell_that_an_episode_has_ended(tmp_path):
+    writers = writers_of("jpeg")
+    write(tmp_path / "episode0", 3, writers).finish()
+    assert read_complete(writers, tmp_path / "episode0") is None
 
 
 def test_an_abandoned_episode_keeps_its_pictures_only(tmp_path):
     write(tmp_path / "episode0", 2).abandon()
     names = sorted(path.name for path in (tmp_path / "episode0").iterdir())
     assert names == ["000000.jpeg", "000001.jpeg"]
-    assert read_complete(tmp_path / "episode0") is None
+    assert read_complete(writers_of(), tmp_path / "episode0") is None
 
 
 def test_an_episode_that_is_drawn_anew_leaves_nothing_of_the_old(tmp_path):
     write(tmp_path / "episode0", 5).finish()
-    write(tmp_path / "episode0", 2).finish()
-    assert len(list((tmp_path / "episode0").glob("*.jpeg"))) == 2
+    (tmp_path / "episode0" / "notes.txt").write_text("mine")
+    files = write(tmp_path / "episode0", 2)
+    names = sorted(path.name for path in (tmp_path / "episode0").iterdir())
+    assert names == [".episode.mp4.part", "000000.jpeg", "000001.jpeg", "notes.txt"]
+    files.finish()
 
 
 def test_an_episode_without_frames_leaves_no_folder(tmp_path):
     write(tmp_path / "episode0", 0).abandon()
     assert list(tmp_path.iterdir()) == []
+
+
+class Refusing(Writer):
+    """Its part cannot be finished."""
+
+    files = Files(episode=("never.txt",))
+
+    def begin(self, episode: Episode) -> EpisodeWriter:
+        return RefusingEpisode()
+
+    def read(self, folder: Path) -> None: ...
+
+
+class RefusingEpisode(EpisodeWriter):
+    def add(self, frame) -> None: ...
+
+    def finish(self) -> None:
+        raise OutputError("full")
+
+    def abandon(self) -> None:
+        raise OutputError("still full")
+
+
+def test_what_one_writer_cannot_close_the_others_still_do(tmp_path):
+    files = write(tmp_path / "episode0", 2, [Refusing(RUN), *writers_of("mp4")])
+    with pytest.raises(OutputError, match="full"):
+        files.finish()
+    assert not files.finished
+    with pytest.raises(OutputError, match="still full"):
+        files.abandon()
+    assert list((tmp_path / "episode0").iterdir()) == []

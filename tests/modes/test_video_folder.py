@@ -31,7 +31,7 @@ def tree(path: Path) -> list[str]:
 def test_a_new_folder_holds_the_settings(tmp_path):
     folder = open_folder(tmp_path / "a" / "b", CONFIG, overwrite=False, resume=False)
     assert json.loads((folder.path / "config.json").read_text())["video"]["fps"] == 25.0
-    assert folder.episode(3, 2) == tmp_path / "a" / "b" / "DRONE3" / "episode2"
+    assert folder.episode(3, 2).folder == tmp_path / "a" / "b" / "DRONE3" / "episode2"
 
 
 def test_a_recording_is_not_mixed_with_another(tmp_path):
@@ -51,6 +51,39 @@ def test_overwrite_deletes_a_recording(tmp_path):
     open_folder(recording(tmp_path / "a"), OTHER, overwrite=True, resume=False)
     assert [name for name in tree(tmp_path / "a") if name.startswith(("DRONE", "dir_info"))] == []
     assert json.loads((tmp_path / "a" / "config.json").read_text())["video"]["fps"] == 50.0
+
+
+def test_overwrite_deletes_what_a_writer_wrote_that_has_gone(tmp_path):
+    path = recording(tmp_path / "a")
+    files = {"frame": ["masks/{:04d}.png"], "episode": ["gone.csv"], "run": ["all/gone.csv"]}
+    (path / "version.json").write_text(json.dumps({"eyas": __version__, "files": files}))
+    episode = path / "DRONE0" / "episode0"
+    for folder in (path / "all", episode / "masks"):
+        folder.mkdir()
+    for file in (path / "all/gone.csv", episode / "gone.csv", episode / "masks/0012.png"):
+        file.write_text("x")
+    (episode / "masks/12.png").write_text("mine")
+    with pytest.raises(OutputError, match=r"masks/12\.png' is not part of a recording"):
+        open_folder(path, OTHER, overwrite=True, resume=False)
+    (episode / "masks/12.png").unlink()
+    open_folder(path, OTHER, overwrite=True, resume=False)
+    assert tree(path) == ["config.json", "env_config.json", "version.json"]
+
+
+@pytest.mark.parametrize("files", ['"x"', '{"frame": 3}', '{"film": []}', '{"run": ["{x}"]}'])
+def test_a_damaged_list_of_files_is_no_list(tmp_path, files):
+    path = recording(tmp_path / "a")
+    (path / "version.json").write_text(f'{{"eyas": "{__version__}", "files": {files}}}')
+    open_folder(path, OTHER, overwrite=True, resume=False)
+
+
+def test_a_recording_says_which_files_its_writers_write(tmp_path):
+    config = EyasConfig(video=VideoConfig(writers=("labels", "mark")))
+    open_folder(tmp_path, config, overwrite=False, resume=False)
+    origin = json.loads((tmp_path / "version.json").read_text())
+    episode = ["labels.jsonl", "mark.json"]
+    files = {"frame": [], "episode": episode, "run": ["dir_info.json"]}
+    assert origin == {"eyas": __version__, "files": files}
 
 
 @pytest.mark.parametrize("name", ["thesis.txt", "DRONE0/notes.txt", "DRONE0/episode0/best.jpeg"])

@@ -3,7 +3,7 @@ import threading
 import pytest
 
 from eyas.core.errors import OutputError
-from eyas.modes.video.writers import WriterLanes
+from eyas.modes.video.lanes import WriterLanes
 
 
 def test_calls_of_a_key_keep_their_order():
