@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from eyas.core.pinhole import focal_length, project, rays
+from eyas.core.pinhole import focal_length, intrinsics, project, rays
 
 WIDTH, HEIGHT, FOV = 64, 48, 1.1
 
@@ -41,6 +41,13 @@ def test_a_vertical_field_of_view_reaches_from_top_to_bottom():
     top = [math.cos(0.3), 0.0, math.sin(0.3)]
     _, row, _ = project(top, np.zeros(3), np.eye(3), WIDTH, HEIGHT, FOV, 0.6)
     assert row == pytest.approx(0.0, abs=1e-9)
+
+
+def test_the_camera_matrix_projects_as_project_does():
+    forward, left, up = point = np.array([8.0, 1.5, -2.5])
+    column, row, _ = project(point, np.zeros(3), np.eye(3), WIDTH, HEIGHT, FOV)
+    x, y, z = intrinsics(WIDTH, HEIGHT, FOV) @ [-left, -up, forward]
+    assert (x / z, y / z) == pytest.approx((float(column), float(row)))
 
 
 def test_the_original_camera_covers_a_car_with_80_pixels():
