@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import shapely
 
+from eyas.render.pack.triangles import gradients
 from eyas.state.scene import ObjectClass
 from eyas.world.maps import build_scene, road_graph, shipped_network
 from eyas.world.roads.areas import road_area
@@ -215,3 +216,10 @@ def test_building_again_gives_the_same_bytes(scene, network):
     assert again.static.positions.tobytes() == scene.static.positions.tobytes()
     assert again.fixtures.pose.tobytes() == scene.fixtures.pose.tobytes()
     assert again.colliders.prism_points.tobytes() == scene.colliders.prism_points.tobytes()
+
+
+def test_every_static_triangle_can_be_shaded(scene):
+    mesh = scene.static
+    with np.errstate(all="raise"):
+        table = gradients(mesh.positions, mesh.normals, mesh.uvs, mesh.triangles)
+    assert np.isfinite(table).all()

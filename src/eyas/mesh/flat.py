@@ -47,8 +47,10 @@ def flat_polygon(
         return quads(np.zeros((0, 4, 3)), np.zeros((0, 4, 2)), material)
     flat = np.array([shapely.get_coordinates(cell)[:3] for cell in cells])
     edge = flat[:, 1:] - flat[:, :1]
-    backwards = edge[:, 0, 0] * edge[:, 1, 1] - edge[:, 0, 1] * edge[:, 1, 0] < 0
-    flat[backwards] = flat[backwards][:, ::-1]
+    area = edge[:, 0, 0] * edge[:, 1, 1] - edge[:, 0, 1] * edge[:, 1, 0]
+    flat[area < 0] = flat[area < 0][:, ::-1]
+    # Corners in one line make triangles narrower than a micrometre, which cannot be shaded.
+    flat = flat[np.abs(area) > 1e-6 * np.abs(edge).max(axis=(1, 2))]
     points, index = np.unique(flat.reshape(-1, 2), axis=0, return_inverse=True)
     positions = np.column_stack([points, np.full(len(points), z)])
     up = np.tile([0.0, 0.0, 1.0], (len(points), 1))

@@ -27,7 +27,7 @@ CARDS = 4
 """One leaf card in so many throws a shadow: they overlap so often that all would let no light
 through, and crowns are dappled."""
 
-_FORMAT = "eyas shadow map 6"
+_FORMAT = "eyas shadow map 7"
 """Raised by 1 when shadows of the same things come out otherwise."""
 
 

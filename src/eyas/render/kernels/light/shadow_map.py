@@ -121,7 +121,9 @@ def _draw(
         drawn, level = cards[material], -1
         if drawn != 0:
             level = LEAF_LEVEL
-            if drawn < 0 or (triangle >> 2) % drawn != 0:  # a card has four triangles, or two
+            # A card has four triangles, or two. Counted in its mesh, so that the shade of a tree
+            # does not change with what else stands in the map.
+            if drawn < 0 or ((triangle - ranges[0]) >> 2) % drawn != 0:
                 continue
         rasterise(
             screen, a, b, c, top, depth, owner, i8(0), BOTH_SIDES, geometry.texture,
