@@ -98,7 +98,10 @@ def test_a_recording_of_traffic_is_not_replaced_unasked(monkeypatch, capsys, tmp
 
 def test_version_and_maps(monkeypatch, capsys):
     assert run(monkeypatch, capsys, "--version")[:2] == (0, f"eyas {__version__}\n")
-    assert "citystreet\n" in run(monkeypatch, capsys, "maps", "list")[1]
+    listed = run(monkeypatch, capsys, "maps", "list")[1].splitlines()
+    assert listed[0].startswith("citystreet: ")
+    assert listed[0].endswith("(day, foggy, night, snow)")
+    assert "lake (not in this version)" in listed
 
 
 def test_warnings_are_one_line_on_stderr_and_stdout_stays_json():

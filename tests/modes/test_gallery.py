@@ -2,6 +2,7 @@
 
 import re
 import sys
+from dataclasses import replace
 from html.parser import HTMLParser
 
 import numpy as np
@@ -17,9 +18,10 @@ from eyas.modes.gallery.views import _all_cars, _stop, choose_viewpoints
 from eyas.sim.place import load_place
 from eyas.traffic.config import TrafficConfig
 from eyas.world.config import WorldConfig
-from eyas.world.weather import WEATHERS, lighting, weathers
+from eyas.world.maps.citystreet import CITYSTREET
+from eyas.world.weather import DAY
 
-SUN = lighting("citystreet", "day").sun_direction
+SUN = CITYSTREET.light("day").sun_direction
 
 
 class Pictures(HTMLParser):
@@ -62,11 +64,9 @@ def test_the_page_shows_each_viewpoint_and_says_what_it_is(drawn, views):
     shown = Pictures(text)
     sources = [image["src"] for image in shown.images]
     assert sources == [
-        f"citystreet-{weather}/{view.name}.png"
-        for weather in weathers("citystreet")
-        for view in views
+        f"citystreet-{weather}/{view.name}.png" for weather in CITYSTREET.weathers for view in views
     ]
-    every = views * len(weathers("citystreet"))
+    every = views * len(CITYSTREET.weathers)
     for image, view in zip(shown.images, every, strict=True):
         assert view.caption in image["alt"]
         assert view.caption in text
@@ -180,7 +180,7 @@ def test_what_an_interrupted_run_has_left_may_be_drawn_over(tmp_path, monkeypatc
 
 
 def test_only_what_is_named_is_drawn_and_wrong_names_are_told():
-    every = [("citystreet", weather) for weather in weathers("citystreet")]
+    every = [("citystreet", weather) for weather in CITYSTREET.weathers]
     assert gallery.conditions([], []) == every
     assert gallery.conditions(["citystreet", "citystreet"], ["day"]) == [("citystreet", "day")]
     with pytest.raises(UnknownNameError, match="did you mean 'citystreet'"):
@@ -191,10 +191,13 @@ def test_only_what_is_named_is_drawn_and_wrong_names_are_told():
         gallery.conditions(["lake"], [])
 
 
-def test_the_weathers_of_a_map_are_those_that_have_a_light():
-    assert weathers("citystreet") == ("day", "foggy", "night", "snow")
-    assert set(weathers("citystreet")) <= set(WEATHERS)
-    assert weathers("atlantis") == ()
+def test_maps_that_lack_a_named_weather_are_left_out_unless_they_are_named(monkeypatch):
+    bare = replace(CITYSTREET, name="bare-land", lighting={DAY: CITYSTREET.light("day")})
+    monkeypatch.setattr(gallery.MAPS, "_table", {"citystreet": CITYSTREET, "bare-land": bare})
+    assert gallery.conditions([], ["snow"]) == [("citystreet", "snow")]
+    assert gallery.conditions([], ["day"]) == [("bare-land", "day"), ("citystreet", "day")]
+    with pytest.raises(UnknownNameError, match="on the map 'bare-land'; known: day"):
+        gallery.conditions(["bare-land"], ["snow"])
 
 
 def test_names_on_the_page_cannot_break_it(views):

@@ -6,7 +6,8 @@ import pytest
 from eyas.render.pack.geometry import build_geometry
 from eyas.render.renderer import Renderer, build_renderer
 from eyas.state.draw import DrawList, PartLibrary, Picture, Views
-from eyas.state.scene import Lighting, Scene
+from eyas.state.lighting import Lighting
+from eyas.state.scene import Scene
 
 from .small_city import DAY, car_parts, city_scene, city_traffic, textures
 

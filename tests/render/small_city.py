@@ -10,8 +10,9 @@ from eyas.mesh.assembly import concatenate, transformed
 from eyas.mesh.flat import flat_polygon, walls
 from eyas.mesh.solids import box, cylinder, sphere
 from eyas.state.draw import DrawList, PartLibrary, Views
+from eyas.state.lighting import Lighting
 from eyas.state.mesh import Material, Mesh, Surface
-from eyas.state.scene import Fixtures, Lighting, Scene
+from eyas.state.scene import Fixtures, Scene
 from eyas.world.build.materials import TEXTURES, facade, material
 
 GROUND, ROAD, TOWER, TREE = 0, 1, 2, 3

@@ -10,7 +10,8 @@ from eyas.render.bake.hills import build_hills
 from eyas.render.kernels.sky.panorama import azimuth
 from eyas.render.kernels.sky.radiance import HILL_TOP
 from eyas.render.pack.light import tone_table
-from eyas.world.weather import lighting
+from eyas.state.lighting import Horizon
+from eyas.world.maps.citystreet import CITYSTREET
 
 from .small_city import DAY, GROUND, floor, looking, scene_of
 
@@ -99,7 +100,9 @@ def test_columns_of_panoramas_go_round_by_azimuth():
     assert found == pytest.approx((np.arange(64) + 0.5) / 16, abs=1e-5)
 
 
-@pytest.mark.parametrize("build", [lambda: build_clouds(0.4, SUN), lambda: build_hills(SUN)])
+@pytest.mark.parametrize(
+    "build", [lambda: build_clouds(0.4, SUN), lambda: build_hills(Horizon(), SUN)]
+)
 def test_panoramas_close_without_a_seam(build):
     values = build().astype(int)
     steps = np.abs(np.diff(values, axis=1)).mean(axis=(0, 2))
@@ -107,7 +110,7 @@ def test_panoramas_close_without_a_seam(build):
 
 
 def test_hills_stand_on_the_horizon_and_end_below_their_top():
-    cover = build_hills(SUN)[..., 0].astype(int)
+    cover = build_hills(Horizon(), SUN)[..., 0].astype(int)
     assert (cover[0] == 255).all()
     assert cover[-1].max() == 0
     # Solid from the ground up: a ridge has sky above it only.
@@ -117,18 +120,36 @@ def test_hills_stand_on_the_horizon_and_end_below_their_top():
     assert ridge.std() > 0.003
 
 
+def ridge_of(hills) -> np.ndarray:
+    """The sine of the elevation of the highest hill in each direction."""
+    return (hills[..., 0] > 127).sum(axis=0) * HILL_TOP / len(hills)
+
+
+def test_each_map_has_hills_of_its_own():
+    usual = build_hills(Horizon(), SUN)
+    low, others, dunes, bare = (
+        build_hills(Horizon(**changed), SUN)
+        for changed in ({"height": 0.01}, {"name": "dunes"}, {"ridges": 0.0}, {"woods": 0.0})
+    )
+    assert ridge_of(low).max() < 0.4 * ridge_of(usual).max()
+    assert abs(np.corrcoef(ridge_of(others), ridge_of(usual))[0, 1]) < 0.6
+    assert np.abs(np.diff(ridge_of(dunes))).sum() < np.abs(np.diff(ridge_of(usual))).sum()
+    assert (bare[..., 2].max(), usual[..., 2].max()) == (0, 255)
+    assert build_hills(Horizon(height=0.0), SUN)[2:, :, 0].max() == 0  # a plain to the horizon
+
+
 def test_fog_hides_the_hills(sky_of):
-    fog = replace(lighting("citystreet", "foggy"), clouds=0.0)
+    fog = replace(CITYSTREET.light("foggy"), clouds=0.0)
     thick = sky_of(replace(fog, fog_density=1 / 300))
     assert np.ptp(thick[55:85].reshape(-1, 3), axis=0).max() <= 2
-    clear = sky_of(lighting("citystreet", "day"))
+    clear = sky_of(CITYSTREET.light("day"))
     assert np.ptp(clear[55:85].reshape(-1, 3), axis=0).max() > 20
 
 
 @pytest.mark.parametrize("range_m", [300.0, 1000.0])
 @pytest.mark.parametrize("height", [20.0, 300.0])
 def test_an_endless_plain_meets_the_sky_in_fog_without_an_edge(sky_of, range_m, height):
-    fog = replace(lighting("citystreet", "foggy"), fog_density=1.0 / range_m)
+    fog = replace(CITYSTREET.light("foggy"), fog_density=1.0 / range_m)
     land = scene_of([floor(12000.0)], [GROUND])
     picture = sky_of(fog, scene=land, height=height)
     around = picture[77:83].mean(axis=1)
@@ -136,7 +157,7 @@ def test_an_endless_plain_meets_the_sky_in_fog_without_an_edge(sky_of, range_m, 
 
 
 def test_land_ends_without_an_edge_in_clear_air(sky_of):
-    light = lighting("citystreet", "day")
+    light = CITYSTREET.light("day")
     land = scene_of([floor(9000.0)], [GROUND])
     picture = sky_of(light, scene=land, height=300.0)
     # The plain ends 1.9 degrees under the horizon; there the sky goes on with its colour.

@@ -10,7 +10,7 @@ from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
 from eyas.sim.worlds import each_alone, together
 from eyas.state.draw import Picture
-from eyas.world.weather import lighting
+from eyas.world.maps.citystreet import CITYSTREET
 
 RANDOM = {"background": {"uniform": [0.4, 1.6]}, "background_replaces": True,
           "sun": {"uniform": [-0.5, 0.5]}}  # fmt: skip
@@ -41,7 +41,7 @@ def test_what_is_added_to_sky_and_sun_is_seen():
 def test_luminosities_refer_to_the_originals_own():
     night = started({"background": 0.3, "sun": 0.15, "sun_replaces": True}, weather="night")
     np.testing.assert_allclose(night.snapshot.light[0, :2], [2.0, 0.5], rtol=1e-6)
-    assert lighting("citystreet", "night").luminosity == 0.3
+    assert CITYSTREET.light("night").luminosity == 0.3
 
 
 def test_visibility_is_that_of_the_fog_and_only_foggy_weather_has_some():
@@ -66,7 +66,7 @@ def test_the_air_veils_what_lies_at_a_distance_as_one_over_the_visibility_says()
         seen.append(radiance(picture.rgb[0]))
         depth.append(picture.depth[0])
     np.testing.assert_array_equal(*depth)
-    air = lighting("citystreet", "foggy").fog_colour
+    air = CITYSTREET.light("foggy").fog_colour
     left = ((seen[1] - air) / (seen[0] - air))[..., 1]
     distance = depth[0] * np.linalg.norm(rays(np.eye(3), 80, 60, 0.7854), axis=-1)
     far = np.abs(seen[0] - air)[..., 1] > 0.2
@@ -86,8 +86,8 @@ def test_visibility_where_there_is_no_fog_is_told_to_have_no_effect(caplog):
     assert not caplog.records
     started({"visibility": 30.0})
     assert [record.getMessage() for record in caplog.records] == [
-        "light.visibility (Env_Params.foggy_use_default): without effect in the weather 'day'; "
-        "only 'foggy' has fog"
+        "light.visibility (Env_Params.foggy_use_default): without effect in the weather 'day', "
+        "which has no fog"
     ]
 
 

@@ -11,7 +11,9 @@ from eyas.state.roads import RoadEdge, RoadGraph, RoadNode
 from eyas.state.scene import ObjectClass
 from eyas.traffic import sumo_install
 from eyas.traffic.network import build_network, graph_hash, network_xml
-from eyas.world.maps import MAPS, build_scene, road_graph, shipped_network
+from eyas.world.maps import MAPS
+from eyas.world.maps.citystreet import CITYSTREET
+from eyas.world.weather import Season
 
 needs_sumo = pytest.mark.sumo
 
@@ -24,15 +26,17 @@ def test_the_hash_follows_what_netconvert_is_told(grid):
     assert graph_hash(grid) != graph_hash(replace(grid, edges=faster))
 
 
-@pytest.mark.parametrize("name", MAPS)
+@pytest.mark.parametrize("name", MAPS.built_in)
 def test_shipped_networks_belong_to_their_graphs(name):
-    assert shipped_network(name).graph_hash == graph_hash(road_graph(name, 0))
+    recipe = MAPS.get(name)
+    assert recipe.shipped_network().graph_hash == graph_hash(recipe.roads(0))
 
 
 @needs_sumo
-@pytest.mark.parametrize("name", MAPS)
+@pytest.mark.parametrize("name", MAPS.built_in)
 def test_shipped_networks_are_what_netconvert_makes(name):
-    shipped, built = shipped_network(name), build_network(road_graph(name, 0))
+    recipe = MAPS.get(name)
+    shipped, built = recipe.shipped_network(), build_network(recipe.roads(0))
     if shipped.builder != built.builder:
         pytest.skip(f"shipped by {shipped.builder}, here is {built.builder}")
     for field in fields(shipped):
@@ -75,7 +79,7 @@ def test_the_file_is_the_same_each_time_and_names_no_time_or_folder(grid):
 @needs_sumo
 @pytest.mark.parametrize("seed", range(4))
 def test_from_every_road_of_a_city_every_other_can_be_reached_without_turning_round(seed):
-    root = ElementTree.fromstring(network_xml(road_graph("citystreet", seed)))
+    root = ElementTree.fromstring(network_xml(CITYSTREET.roads(seed)))
     onwards: dict[str, set[str]] = {}
     for link in root.findall("connection"):
         if not link.attrib["from"].startswith(":"):
@@ -93,7 +97,7 @@ def test_from_every_road_of_a_city_every_other_can_be_reached_without_turning_ro
 @needs_sumo
 @pytest.mark.parametrize("seed", [1, 4])
 def test_other_seeds_become_whole_cities(seed):
-    scene = build_scene("citystreet", build_network(road_graph("citystreet", seed)), seed)
+    scene = CITYSTREET.scene(build_network(CITYSTREET.roads(seed)), seed, Season.SUMMER)
     assert (np.linalg.norm(scene.fixtures.pose[:, 0, :2], axis=1) > 12.0).sum() == 63
     assert (scene.object_class == ObjectClass.BUILDING).sum() > 70
 

@@ -13,8 +13,8 @@ from eyas.traffic.config import Demand, TrafficConfig, VehicleType
 from eyas.traffic.library import STANDARD_DURATION, find_recording
 from eyas.traffic.replay import Replay
 from eyas.traffic.smoothing import smooth
-from eyas.world.maps import shipped_network
-from eyas.world.maps.citystreet.recipe import road_graph
+from eyas.world.maps.citystreet import CITYSTREET
+from eyas.world.maps.recipe import TRAFFIC_FILE
 from eyas.world.roads.areas import road_area
 
 WITHOUT_SUMO = """
@@ -22,14 +22,20 @@ import sys
 sys.modules.update(dict.fromkeys(["libsumo", "sumo", "sumolib", "traci"]))
 from eyas.traffic.config import TrafficConfig
 from eyas.traffic.library import find_recording
-from eyas.world.maps.citystreet.recipe import road_graph
-print(find_recording(road_graph(0), TrafficConfig()).actors)
+from eyas.world.maps.citystreet import CITYSTREET
+shipped = CITYSTREET.shipped("traffic.npz")
+print(find_recording(CITYSTREET.roads(0), TrafficConfig(), shipped=shipped).actors)
 """
+
+
+def recording(map_seed, config):
+    shipped = CITYSTREET.shipped(TRAFFIC_FILE)
+    return find_recording(CITYSTREET.roads(map_seed), config, shipped=shipped)
 
 
 def test_the_default_traffic_of_citystreet_is_shipped():
     config = TrafficConfig(update_routes=False, colour=(1.0, 1.0, 1.0))
-    shipped = find_recording(road_graph(0), config)
+    shipped = recording(0, config)
     assert shipped.duration == STANDARD_DURATION >= 20 * 60
     assert shipped.provenance.map_name == "citystreet"
     assert shipped.present.all()
@@ -45,17 +51,17 @@ def test_the_default_traffic_of_citystreet_is_shipped():
 
 def test_no_car_leaves_the_asphalt(flat_motion):
     """Nine tenths of its length and width stay on it, each second of the recording."""
-    recording = find_recording(road_graph(0), TrafficConfig(update_routes=False))
-    replay = Replay(flat_motion(recording))
+    shipped = recording(0, TrafficConfig(update_routes=False))
+    replay = Replay(flat_motion(shipped))
     time = np.arange(0.0, replay.duration, 1.0)
     cars = ActorState.create(len(time), replay.actors)
     replay.at(time, cars)
-    size = 0.9 * np.array([recording.vehicle_length, 1.8])
+    size = 0.9 * np.array([shipped.vehicle_length, 1.8])
     corners = 0.5 * size * [[1, 1], [1, -1], [-1, -1], [-1, 1]]
     cosine, sine = np.cos(cars.yaw)[..., None], np.sin(cars.yaw)[..., None]
     east = cars.position[..., :1] + cosine * corners[:, 0] - sine * corners[:, 1]
     north = cars.position[..., 1:2] + sine * corners[:, 0] + cosine * corners[:, 1]
-    network = shipped_network("citystreet")
+    network = CITYSTREET.shipped_network()
     assert network is not None
     asphalt = road_area(network)
     shapely.prepare(asphalt)
@@ -83,4 +89,4 @@ def test_it_needs_no_sumo():
 def test_it_is_not_taken_for_anything_else(map_seed: int, config: TrafficConfig):
     forbidden = config.model_copy(update={"update_routes": False})
     with pytest.raises(ConfigError, match="no recording fits"):
-        find_recording(road_graph(map_seed), forbidden)
+        recording(map_seed, forbidden)

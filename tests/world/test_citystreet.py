@@ -8,21 +8,22 @@ import shapely
 
 from eyas.render.pack.triangles import gradients
 from eyas.state.scene import ObjectClass
-from eyas.world.maps import build_scene, road_graph, shipped_network
+from eyas.world.maps.citystreet import CITYSTREET
 from eyas.world.roads.areas import road_area
 from eyas.world.roads.wear import WEAR_HEIGHTS
+from eyas.world.weather import Season
 
 SEEDS = range(6)
 
 
 @pytest.fixture(scope="module")
 def network():
-    return shipped_network("citystreet")
+    return CITYSTREET.shipped_network()
 
 
 @pytest.fixture(scope="module")
 def scene(network):
-    return build_scene("citystreet", network, 0)
+    return CITYSTREET.scene(network, 0, Season.SUMMER)
 
 
 def positions(graph):
@@ -36,7 +37,7 @@ def road_length(graph):
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_roads_have_the_originals_figures(seed):
-    graph = road_graph("citystreet", seed)
+    graph = CITYSTREET.roads(seed)
     at = positions(graph)
     assert len(graph.nodes) == 24
     assert len(graph.edges) == 64
@@ -51,12 +52,12 @@ def test_roads_have_the_originals_figures(seed):
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_every_road_is_two_way(seed):
-    ends = {(edge.start, edge.end) for edge in road_graph("citystreet", seed).edges}
+    ends = {(edge.start, edge.end) for edge in CITYSTREET.roads(seed).edges}
     assert ends == {(end, start) for start, end in ends}
 
 
 def test_streets_run_at_forty_degrees():
-    graph = road_graph("citystreet", 0)
+    graph = CITYSTREET.roads(0)
     at = positions(graph)
     straight = [e for e in graph.edges if len(e.start) == len(e.end) == 2]
     bearing = [math.atan2(*(at[e.end] - at[e.start])[::-1]) for e in straight]
@@ -64,13 +65,13 @@ def test_streets_run_at_forty_degrees():
 
 
 def test_seeds_differ_and_repeat():
-    graphs = [road_graph("citystreet", seed) for seed in SEEDS]
+    graphs = [CITYSTREET.roads(seed) for seed in SEEDS]
     assert len({graph.nodes for graph in graphs}) == len(graphs)
-    assert graphs[3] == road_graph("citystreet", 3)
+    assert graphs[3] == CITYSTREET.roads(3)
 
 
 def test_the_shipped_roads_are_those_of_the_graph(network):
-    graph = road_graph("citystreet", 0)
+    graph = CITYSTREET.roads(0)
     assert network.edges == tuple(edge.name for edge in graph.edges)
     assert network.junctions == tuple(node.name for node in graph.nodes)
     first = network.junction_first
@@ -102,7 +103,8 @@ def test_as_much_stands_in_it_as_in_the_original(scene):
     made = np.unique(scene.static_object)  # pillars and the elevated road, no street furniture
     assert 17 <= (scene.object_class[made] == ObjectClass.STRUCTURE).sum() - 1 <= 18
     assert scene.size == (900.0, 900.0)
-    assert scene.ground_height == -0.1
+    assert scene.terrain.floor == -0.1
+    assert scene.terrain.relief.size == 0
 
 
 def trunks_of(scene):
@@ -212,7 +214,7 @@ def test_triangles_are_few_enough_for_small_machines(scene):
 
 
 def test_building_again_gives_the_same_bytes(scene, network):
-    again = build_scene("citystreet", network, 0)
+    again = CITYSTREET.scene(network, 0, Season.SUMMER)
     assert again.static.positions.tobytes() == scene.static.positions.tobytes()
     assert again.fixtures.pose.tobytes() == scene.fixtures.pose.tobytes()
     assert again.colliders.prism_points.tobytes() == scene.colliders.prism_points.tobytes()

@@ -1,5 +1,7 @@
 """Street furniture, plants, parked cars and roof units: where they stand, and what they are."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 import shapely
@@ -7,22 +9,21 @@ import shapely
 from eyas.state.scene import ObjectClass
 from eyas.world.build.heights import FLOOR_HEIGHT, KERB_HEIGHT
 from eyas.world.buildings import rooftops
-from eyas.world.maps import build_scene, shipped_network
+from eyas.world.maps.citystreet import CITYSTREET
 from eyas.world.maps.citystreet.plan import make_plan
 from eyas.world.plants import shrubs as plants
-from eyas.world.plants.trees import VARIANTS
 from eyas.world.street import furniture, parked_cars
+from eyas.world.weather import Season
 
-CARS = len(parked_cars.parked_car_levels())
-ROOF = VARIANTS
-FURNITURE = ROOF + len(rooftops.KINDS) + 2  # after traffic lights and street lamps
-PLANTS = FURNITURE + len(furniture.KINDS)
-PARKED = PLANTS + len(plants.KINDS)
+FURNITURE = tuple(furniture.FURNITURE)
+PLANTS = tuple(plants.plant_makers(np.random.default_rng(0)))
+CARS = tuple(f"parked car {k}" for k in range(parked_cars.VARIANTS))
+UNITS = tuple(f"roof {kind}" for kind in rooftops.UNITS)
 
 
 @pytest.fixture(scope="module")
 def scene():
-    return build_scene("citystreet", shipped_network("citystreet"), 0)
+    return CITYSTREET.scene(CITYSTREET.shipped_network(), 0, Season.SUMMER)
 
 
 @pytest.fixture(scope="module")
@@ -30,10 +31,10 @@ def plan(scene):
     return make_plan(scene.network, 0)
 
 
-def some(scene, first, count):
-    """Which fixtures are of prototypes `first` to `first + count`."""
-    return np.flatnonzero((scene.fixtures.prototype >= first)
-                          & (scene.fixtures.prototype < first + count))  # fmt: skip
+def some(scene, names):
+    """Which fixtures are copies of prototypes with one of these names."""
+    wanted = [scene.fixtures.names.index(name) for name in names]
+    return np.flatnonzero(np.isin(scene.fixtures.prototype, wanted))
 
 
 def outlines(scene, indices):
@@ -48,9 +49,9 @@ def outlines(scene, indices):
 
 
 def test_furniture_stands_on_pavements_and_not_in_the_way_of_cars(scene, plan):
-    indices = some(scene, FURNITURE, len(furniture.KINDS))
+    indices = some(scene, FURNITURE)
     assert len(indices) > 200
-    assert set(scene.fixtures.prototype[indices] - FURNITURE) == set(range(len(furniture.KINDS)))
+    assert len(set(scene.fixtures.prototype[indices])) == len(FURNITURE)
     pose = scene.fixtures.pose[indices]
     assert shapely.contains_xy(plan.pavement, *pose[:, :2, 3].T.astype(float)).all()
     assert np.allclose(pose[:, 2, 3], KERB_HEIGHT)
@@ -62,14 +63,14 @@ def test_furniture_stands_on_pavements_and_not_in_the_way_of_cars(scene, plan):
 
 
 def test_furniture_faces_the_road(scene, plan):
-    for index in some(scene, FURNITURE, 1):  # benches
+    for index in some(scene, ["bench"]):
         pose = scene.fixtures.pose[index].astype(float)
         there, behind = (shapely.Point(pose[:2, 3] + s * pose[:2, 1]) for s in (1.0, -1.0))
         assert plan.roads.distance(there) < plan.roads.distance(behind)
 
 
 def test_plants_stand_on_lawn_clear_of_roads_and_walls(scene, plan):
-    indices = some(scene, PLANTS, len(plants.KINDS) - 1)
+    indices = some(scene, set(PLANTS) - {"island"})
     assert len(indices) > 300
     solid = shapely.union_all([shapely.Polygon(corners) for corners in plan.footprints])
     middle = scene.fixtures.pose[indices][:, :2, 3].astype(float)
@@ -80,7 +81,7 @@ def test_plants_stand_on_lawn_clear_of_roads_and_walls(scene, plan):
 
 
 def test_parked_cars_stand_in_bays_and_are_part_of_the_scene(scene, plan):
-    indices = some(scene, PARKED, CARS)
+    indices = some(scene, CARS)
     assert len(indices) > 80
     bays = np.concatenate([park.bays for park in plan.car_parks])
     spots = scene.fixtures.pose[indices][:, :2, 3]
@@ -94,7 +95,7 @@ def test_parked_cars_stand_in_bays_and_are_part_of_the_scene(scene, plan):
 
 
 def test_roof_units_belong_to_their_building_and_stay_on_its_roof(scene):
-    indices = some(scene, ROOF, len(rooftops.KINDS))
+    indices = some(scene, UNITS)
     assert len(indices) > 200
     owner = scene.fixtures.object_id[indices]
     assert (scene.object_class[owner] == ObjectClass.BUILDING).all()
@@ -108,16 +109,16 @@ def test_roof_units_belong_to_their_building_and_stay_on_its_roof(scene):
 
 
 @pytest.mark.parametrize(
-    "made",
+    "makers",
     [
-        furniture.furniture_levels,
-        rooftops.rooftop_levels,
-        parked_cars.parked_car_levels,
-        lambda: plants.plant_levels(np.random.default_rng(0)),
+        furniture.FURNITURE,
+        rooftops.UNITS,
+        {k: partial(parked_cars.parked_car, k) for k in range(parked_cars.VARIANTS)},
+        plants.plant_makers(np.random.default_rng(0)),
     ],
 )
-def test_coarser_levels_have_fewer_triangles_and_the_same_size(made):
-    for levels in made():
+def test_coarser_levels_have_fewer_triangles_and_the_same_size(makers):
+    for levels in (make() for make in makers.values()):
         counts = [len(mesh.triangles) for mesh in levels]
         assert counts == sorted(counts, reverse=True)
         assert counts[-1] <= 80
@@ -126,8 +127,8 @@ def test_coarser_levels_have_fewer_triangles_and_the_same_size(made):
 
 
 def test_car_bodies_face_outwards():
-    for fine, coarse in parked_cars.parked_car_levels():
-        for mesh in (fine, coarse):
+    for variant in range(parked_cars.VARIANTS):
+        for mesh in parked_cars.parked_car(variant):
             corners = mesh.positions[mesh.triangles].astype(float)
             face = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
             up = face[:, 2] / np.maximum(np.linalg.norm(face, axis=1), 1e-12)

@@ -1,29 +1,98 @@
-"""Maps by name."""
+"""The table of maps, and what each map in it must have."""
+
+import subprocess
+import sys
+from dataclasses import replace
 
 import pytest
 
-from eyas.core.errors import NotInThisVersionError, UnknownNameError
-from eyas.world.maps import LATER, MAPS, build_scene, road_graph, shipped_network
+from eyas.core.errors import ConfigError, NotInThisVersionError, UnknownNameError
+from eyas.world.maps import MAPS
+from eyas.world.maps.citystreet import CITYSTREET
+from eyas.world.maps.recipe import TRAFFIC_FILE
+from eyas.world.weather import DAY, SNOW, WEATHERS, Season, Weather
 
 
 def test_an_unknown_map_is_told_with_the_nearest_name():
     with pytest.raises(UnknownNameError, match=r"world\.map: .*'citystret'.*mean 'citystreet'"):
-        road_graph("citystret", 0)
+        MAPS.get("citystret")
 
 
-@pytest.mark.parametrize("name", LATER)
+@pytest.mark.parametrize("name", MAPS.later)
 def test_maps_of_later_versions_are_told_in_one_line(name):
-    network = shipped_network("citystreet")
-    for ask in (
-        lambda: road_graph(name, 0),
-        lambda: shipped_network(name),
-        lambda: build_scene(name, network, 0),
-    ):
-        with pytest.raises(NotInThisVersionError, match=name) as caught:
-            ask()
-        assert "\n" not in str(caught.value)
+    with pytest.raises(NotInThisVersionError, match=rf"^world\.map: '{name}' .*citystreet$"):
+        MAPS.get(name)
 
 
-@pytest.mark.parametrize("name", MAPS)
-def test_the_roads_of_seed_0_are_shipped(name):
-    assert shipped_network(name) is not None
+@pytest.mark.parametrize("name", MAPS.built_in)
+def test_a_map_ships_the_roads_and_the_traffic_of_seed_0(name):
+    recipe = MAPS.get(name)
+    assert recipe.name == name
+    assert recipe.shipped_network() is not None
+    assert recipe.shipped(TRAFFIC_FILE) is not None
+    assert recipe.shipped("no such file") is None
+
+
+@pytest.mark.parametrize("name", MAPS.built_in)
+def test_a_maps_weathers_come_in_the_order_of_the_table(name):
+    names = [weather.name for weather in WEATHERS]
+    assert sorted(MAPS.get(name).weathers, key=names.index) == list(MAPS.get(name).weathers)
+
+
+def test_knowing_the_maps_imports_nothing_that_builds_one():
+    code = "import sys, eyas; print(*sorted({'numba', 'shapely', 'pydantic'} & set(sys.modules)))"
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout.strip() == ""
+
+
+def test_a_weather_that_a_map_lacks_is_told_with_those_it_has():
+    with pytest.raises(UnknownNameError, match=r"world\.weather: .*'fogy'.*did you mean 'foggy'"):
+        CITYSTREET.light("fogy")
+    bare = replace(CITYSTREET, name="bare-land", lighting={DAY: CITYSTREET.light("day")})
+    for ask in (bare.light, bare.season):
+        with pytest.raises(UnknownNameError) as caught:
+            ask("snow")
+        line = "world.weather: 'snow' is not allowed on the map 'bare-land'; known: day"
+        assert str(caught.value) == line
+
+
+def test_a_map_can_have_a_weather_of_its_own():
+    dusk = Weather("dusk", Season.WINTER)
+    recipe = replace(CITYSTREET, lighting={dusk: CITYSTREET.light("night")}, seasons=True)
+    assert recipe.weathers == ("dusk",)
+    assert recipe.light("dusk").lamps == 1.0
+    assert recipe.season("dusk") is Season.WINTER
+
+
+def test_a_map_without_seasons_has_one_scene_for_all_weathers():
+    assert {CITYSTREET.season(weather) for weather in CITYSTREET.weathers} == {Season.SUMMER}
+    seasonal = replace(CITYSTREET, seasons=True)
+    assert seasonal.season(DAY.name) is Season.SUMMER
+    assert seasonal.season(SNOW.name) is Season.WINTER
+
+
+@pytest.mark.parametrize("name", ["", "a map", "a/b", "-lake", "../lake"])
+def test_the_name_of_a_map_can_name_a_folder(name):
+    with pytest.raises(ConfigError, match=r"MapRecipe\.name: .*words joined by hyphens"):
+        replace(CITYSTREET, name=name)
+
+
+def test_a_map_outside_of_a_package_ships_nothing():
+    loose = replace(CITYSTREET, package=None)
+    assert loose.shipped_network() is None
+    assert loose.shipped(TRAFFIC_FILE) is None
+    assert loose.source_hash() is None
+
+
+def test_a_change_of_a_maps_source_shows_in_its_hash(tmp_path, monkeypatch):
+    package = tmp_path / "fields_of_the_test"
+    (package / "parts").mkdir(parents=True)
+    for path in ("__init__.py", "parts/__init__.py", "parts/hedge.py"):
+        (package / path).write_text("")
+    monkeypatch.syspath_prepend(tmp_path)
+    recipe = replace(CITYSTREET, package=package.name)
+    first = recipe.source_hash()
+    (package / "notes.txt").write_text("no source")
+    assert recipe.source_hash() == first
+    (package / "parts" / "hedge.py").write_text("HEIGHT = 2.0")
+    assert recipe.source_hash() != first

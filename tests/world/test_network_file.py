@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from eyas.core.errors import DataFileError
-from eyas.world.maps import shipped_network
+from eyas.world.maps.citystreet import CITYSTREET
 from eyas.world.roads.network_file import load_network, save_network
 
 
 def test_a_network_comes_back_as_it_was(tmp_path):
-    network = shipped_network("citystreet")
+    network = CITYSTREET.shipped_network()
     save_network(tmp_path / "roads.npz", network)
     loaded = load_network(tmp_path / "roads.npz")
     for field in fields(network):
@@ -22,7 +22,7 @@ def test_a_network_comes_back_as_it_was(tmp_path):
 
 
 def test_the_same_network_gives_the_same_bytes(tmp_path):
-    network = shipped_network("citystreet")
+    network = CITYSTREET.shipped_network()
     for name in ("a.npz", "b.npz"):
         save_network(tmp_path / name, network)
     assert (tmp_path / "a.npz").read_bytes() == (tmp_path / "b.npz").read_bytes()
@@ -31,7 +31,7 @@ def test_the_same_network_gives_the_same_bytes(tmp_path):
 @pytest.mark.parametrize("damage", ["missing", "empty", "cut", "other"])
 def test_what_cannot_be_read_is_told_in_one_line(tmp_path, damage):
     path = tmp_path / "roads.npz"
-    save_network(path, shipped_network("citystreet"))
+    save_network(path, CITYSTREET.shipped_network())
     whole = path.read_bytes()
     match damage:
         case "missing":

@@ -17,21 +17,22 @@ import shapely
 
 from eyas.core.rng import stream
 from eyas.world.buildings.facades import mesh_of
-from eyas.world.maps import build_scene, shipped_network
+from eyas.world.maps.citystreet import CITYSTREET
 from eyas.world.maps.citystreet.plan import make_plan
-from eyas.world.plants.shrubs import plant_levels
+from eyas.world.plants.shrubs import plant_makers
 from eyas.world.plants.trees import street_tree_levels
+from eyas.world.weather import Season
 
 
 def of_the_plan():
-    plan = make_plan(shipped_network("citystreet"), 0)
+    plan = make_plan(CITYSTREET.shipped_network(), 0)
     rng = stream(0, "test")
-    plants = [street_tree_levels(rng, 0), *plant_levels(rng)]
+    plants = [street_tree_levels(rng, 0), *(make() for make in plant_makers(rng).values())]
     return plan, [mesh_of(building) for building in plan.buildings[:20]], plants
 
 
 def of_the_scene():
-    return build_scene("citystreet", shipped_network("citystreet"), 0)
+    return CITYSTREET.scene(CITYSTREET.shipped_network(), 0, Season.SUMMER)
 
 
 def of_the_processor():

@@ -5,7 +5,7 @@ import pytest
 import shapely
 
 from eyas.core.rng import stream
-from eyas.world.maps import shipped_network
+from eyas.world.maps.citystreet import CITYSTREET
 from eyas.world.roads.areas import road_area
 from eyas.world.roads.markings import PAINT_HEIGHT
 from eyas.world.roads.wear import WEAR_HEIGHTS, road_wear
@@ -13,7 +13,7 @@ from eyas.world.roads.wear import WEAR_HEIGHTS, road_wear
 
 @pytest.fixture(scope="module")
 def network():
-    return shipped_network("citystreet")
+    return CITYSTREET.shipped_network()
 
 
 @pytest.fixture(scope="module")

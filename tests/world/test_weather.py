@@ -3,37 +3,25 @@
 import numpy as np
 import pytest
 
-from eyas.core.errors import NotInThisVersionError, UnknownNameError
-from eyas.world.weather import lighting
+from eyas.world.maps.citystreet import CITYSTREET
 
 
 def test_the_sun_of_the_street_city_stands_in_the_north_west_51_degrees_high():
-    sun = np.array(lighting("citystreet", "day").sun_direction)
+    sun = np.array(CITYSTREET.light("day").sun_direction)
     assert np.linalg.norm(sun) == pytest.approx(1.0)
     assert np.degrees(np.arcsin(sun[2])) == pytest.approx(50.9, abs=0.1)
     assert sun[0] < 0 < sun[1]
 
 
-def test_an_unknown_weather_is_told_with_the_nearest_name():
-    with pytest.raises(UnknownNameError, match=r"world\.weather: .*'fogy'.*did you mean 'foggy'"):
-        lighting("citystreet", "fogy")
-
-
-def test_a_map_of_a_later_version_is_told_in_one_line():
-    with pytest.raises(NotInThisVersionError, match="'day' of 'lake'") as caught:
-        lighting("lake", "day")
-    assert "\n" not in str(caught.value)
-
-
 def test_at_night_the_lamps_are_on_and_the_moon_is_weak():
-    night, day = lighting("citystreet", "night"), lighting("citystreet", "day")
+    night, day = CITYSTREET.light("night"), CITYSTREET.light("day")
     assert (night.lamps, day.lamps, day.windows) == (1.0, 0.0, 0.0)
     assert max(night.sun_colour) < 0.15 * max(day.sun_colour)
     assert max(night.zenith_colour) < 0.02
 
 
 def test_fog_of_the_street_city_is_the_originals():
-    fog = lighting("citystreet", "foggy")
+    fog = CITYSTREET.light("foggy")
     assert 1 / fog.fog_density == pytest.approx(1000.0)
     assert fog.fog_power == 1
     # Grey: no colour stands out, and the sun hardly adds to what the sky gives.

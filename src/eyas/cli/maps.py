@@ -16,12 +16,13 @@ def _group() -> None: ...
 
 @app.command("list")
 def list_maps() -> None:
-    """Print the names of the maps, and which come later."""
-    from eyas.world.maps import LATER, MAPS
+    """Print the maps with their weathers, and which come later."""
+    from eyas.world.maps import MAPS
 
-    for name in sorted(MAPS):
-        typer.echo(name)
-    for name in sorted(LATER):
+    for name in sorted(MAPS.names()):
+        recipe = MAPS.get(name)
+        typer.echo(f"{name}: {recipe.title} ({', '.join(recipe.weathers)})")
+    for name in sorted(MAPS.later):
         typer.echo(f"{name} (not in this version)")
 
 

@@ -33,7 +33,8 @@ def record(  # noqa: PLR0913  # an option each
     config: ConfigFile = None,
     set_: Overrides = None,
     canonical: Annotated[
-        bool, typer.Option("--canonical", help="Make the recording that ships with the package.")
+        bool,
+        typer.Option("--canonical", help="Make what ships with the map: its roads and recording."),
     ] = False,
 ) -> None:
     """Record traffic; use it with --set traffic.recording=FILE."""

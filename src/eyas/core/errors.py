@@ -61,12 +61,13 @@ class UnknownNameError(ConfigError):
         path: Where the name stands, for example `world.map`.
         name: The unknown name.
         known: The names that exist.
+        where: What knows them, for example `on the map 'lake'`, where others know others.
     """
 
-    def __init__(self, path: str, name: str, known: Iterable[str]) -> None:
+    def __init__(self, path: str, name: str, known: Iterable[str], where: str = "") -> None:
         names = sorted(known)
-        hint = nearest(name, names)
-        super().__init__(f"{path}: {name!r} is not allowed{hint}; known: {', '.join(names)}")
+        refused = f"{path}: {name!r} is not allowed {where}".rstrip()
+        super().__init__(f"{refused}{nearest(name, names)}; known: {', '.join(names)}")
 
 
 def nearest(name: str, known: Iterable[str]) -> str:

@@ -1,20 +1,34 @@
-"""Names for `gymnasium.make`: one for each map and weather of this version."""
+"""Names for `gymnasium.make`: one for each map and weather."""
 
 import gymnasium
 
-__all__ = ["register"]
+from eyas.world.maps import MAPS
 
-_PLACES = tuple(("citystreet", weather) for weather in ("day", "foggy", "night", "snow"))
+__all__ = ["register", "register_map"]
 
 
 def register() -> None:
-    """Register the environments; importing `eyas` does it."""
-    for map_name, weather in _PLACES:
-        name = f"eyas/{map_name}-{weather}-v0"
-        if name in gymnasium.registry:
+    """Register the maps that come with Eyas; importing `eyas` does it."""
+    for name in MAPS.built_in:
+        register_map(name)
+
+
+def register_map(name: str) -> None:
+    """Register `eyas/<map>-<weather>-v0` for each weather of a map; again does nothing.
+
+    Args:
+        name: Of the map, or the path of a user's own, as `world.map` takes it.
+
+    Raises:
+        ConfigError: There is no such map.
+    """
+    recipe = MAPS.get(name)
+    for weather in recipe.weathers:
+        identifier = f"eyas/{recipe.name}-{weather}-v0"
+        if identifier in gymnasium.registry:
             continue
         gymnasium.register(
-            id=name,
+            id=identifier,
             entry_point="eyas.envs.tracking_env:TrackingEnv",
-            kwargs={"map": map_name, "weather": weather},
+            kwargs={"map": name, "weather": weather},
         )

@@ -10,10 +10,13 @@ from rich.progress import Progress
 from eyas.core.errors import ConfigError, OutputError
 from eyas.traffic.config import TrafficConfig
 from eyas.traffic.library import CANONICAL_SEED, record_canonical
+from eyas.traffic.network import build_network
 from eyas.traffic.record import record
 from eyas.traffic.recording_file import save
 from eyas.world.config import WorldConfig
-from eyas.world.maps import road_graph
+from eyas.world.maps import MAPS
+from eyas.world.maps.recipe import NETWORK_FILE, TRAFFIC_FILE
+from eyas.world.roads.network_file import save_network
 
 __all__ = ["run", "run_canonical"]
 
@@ -43,11 +46,11 @@ def run(
     if not 1.0 <= duration <= 86_400.0:
         raise ConfigError(f"--duration: {duration:g} is not allowed; allowed: 1 to 86400 s")
     seed = CANONICAL_SEED if config.seed is None else config.seed
-    target = path or Path(f"{world.map}-{seed}-{config.vehicle_type}.npz")
+    graph = MAPS.get(world.map).roads(world.seed)
+    target = path or Path(f"{graph.map_name}-{seed}-{config.vehicle_type}.npz")
     _check_free(target, overwrite=overwrite)  # before SUMO has driven for minutes
-    graph = road_graph(world.map, world.seed)
     with _progress() as progress:
-        recording = record(world.map, world.seed, graph, config, duration, seed, progress)
+        recording = record(graph.map_name, graph.seed, graph, config, duration, seed, progress)
     save(recording, target)
     _report(target, f"{recording.actors} vehicles, {recording.duration:g} s")
 
@@ -62,10 +65,21 @@ def _check_free(path: Path, *, overwrite: bool) -> None:
 
 
 def run_canonical(world: WorldConfig) -> None:
-    """Record the traffic that ships with the package anew, in a source checkout."""
+    """Make anew what ships with a map, in the source of its package: roads and recording.
+
+    Raises:
+        ConfigError: The map is in no package.
+        MissingExtraError: SUMO is not installed.
+        OutputError: The package's folder cannot be written to.
+    """
+    recipe = MAPS.get(world.map)
+    if recipe.folder is None:
+        raise ConfigError(f"world.map: {world.map!r} is in no package that could ship traffic")
+    folder, graph = Path(str(recipe.folder)), recipe.roads(0)
+    save_network(folder / NETWORK_FILE, build_network(graph))
     with _progress() as progress:
-        path = record_canonical(world.map, road_graph(world.map, 0), progress)
-    _report(path, "the shipped recording")
+        record_canonical(graph, folder / TRAFFIC_FILE, progress)
+    _report(folder / TRAFFIC_FILE, "the shipped recording")
 
 
 @contextmanager

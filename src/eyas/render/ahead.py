@@ -19,7 +19,8 @@ from eyas.render.pack.geometry import build_geometry
 from eyas.render.pack.light import build_light
 from eyas.render.renderer import Renderer
 from eyas.state.draw import DrawList, PartLibrary, Picture, Views
-from eyas.state.scene import Lamps, Lighting, Scene
+from eyas.state.lighting import Lighting
+from eyas.state.scene import Scene
 
 __all__ = ["compile_ahead"]
 
@@ -84,7 +85,7 @@ def draw_nothing() -> None:
     ambient = AmbientMap(np.zeros((1, 1), np.uint16), np.zeros(4))
     black = (0.0, 0.0, 0.0)
     lighting = Lighting((0.0, 0.0, 1.0), black, black, black, black, black, black, 0.0)
-    light = build_light(lighting, shadows, ambient, Lamps.none(), TrackMap.none(), geometry)
+    light = build_light(scene, lighting, shadows, ambient, TrackMap.none(), geometry)
     views = Views(
         position=np.zeros((1, 3)),
         rotation=np.eye(3)[None],

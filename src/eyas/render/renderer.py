@@ -26,7 +26,8 @@ from eyas.render.kernels.bundles import (
 from eyas.render.kernels.draw import draw_views
 from eyas.render.pack.light import build_light
 from eyas.state.draw import DrawList, DrawStage, Picture, Views
-from eyas.state.scene import Lighting, Scene
+from eyas.state.lighting import Lighting
+from eyas.state.scene import Scene
 
 __all__ = ["Renderer", "build_renderer"]
 
@@ -165,10 +166,10 @@ def build_renderer(
         cache: Folder of the cache; None: the user's.
         ready: See `Renderer`.
     """
-    shadows = bake_shadows(geometry, lighting.sun_direction, scene.ground_height, cache)
+    shadows = bake_shadows(geometry, lighting.sun_direction, scene.terrain.floor, cache)
     tracks = track_map(scene.network) if lighting.snow > 0 else TrackMap.none()
     ambient = bake_ambient(scene, cache)
-    light = build_light(lighting, shadows, ambient, scene.lamps, tracks, geometry)
+    light = build_light(scene, lighting, shadows, ambient, tracks, geometry)
     return Renderer(geometry, light, class_table(scene), ready)
 
 

@@ -33,11 +33,11 @@ def build_simulation(config: SimConfig, world_of: NDArray[np.integer]) -> Simula
         EyasError: A setting is not supported, or there is no traffic for it.
     """
     require_parts(config)
-    if config.light.visibility is not None and config.world.weather != "foggy":
+    place = load_place(config.world, config.traffic, len(world_of))
+    if config.light.visibility is not None and not place.lighting.foggy:
         _LOG.warning(
-            "light.visibility (Env_Params.foggy_use_default): without effect in the weather '%s'; "
-            "only 'foggy' has fog",
+            "light.visibility (Env_Params.foggy_use_default): without effect in the weather '%s', "
+            "which has no fog",
             config.world.weather,
         )
-    place = load_place(config.world, config.traffic, len(world_of))
     return Simulation(config, place, TRACKERS[config.tracker.kind], world_of)

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from eyas.core.rng import stream
 from eyas.core.variation import sample
 from eyas.sim.worlds import Worlds
-from eyas.state.scene import Lighting
+from eyas.state.lighting import Lighting
 from eyas.world.config import LightConfig
 
 __all__ = ["LightChanges"]

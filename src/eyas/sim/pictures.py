@@ -16,7 +16,6 @@ from eyas.sim.place import Place
 from eyas.sim.worlds import Worlds
 from eyas.state.draw import DrawList, DrawStage, Picture, Views
 from eyas.state.snapshot import CameraState, Snapshot
-from eyas.state.terrain import Terrain
 from eyas.task.rules import Rules
 
 __all__ = ["Pictures"]
@@ -50,7 +49,7 @@ class Pictures:
         self._samples = config.camera.samples
         self._renderer = place.renderer
         self._camera = Camera(config.camera, place.renderer)
-        self._marks = Marks(snapshot, Terrain.flat(place.scene.ground_height), config.camera)
+        self._marks = Marks(snapshot, place.scene.terrain, config.camera)
 
     def draw(self, chosen: Chosen, picture: Picture, until: DrawStage) -> Views:
         """Draw what the cameras of trackers see; return the views that were drawn.

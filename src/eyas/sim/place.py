@@ -1,7 +1,9 @@
 """What simulations of the same place share: scene, renderer, traffic, rigs."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TypeVar
 
 import numpy as np
 import shapely
@@ -14,9 +16,9 @@ from eyas.render.kernels.bundles import Geometry
 from eyas.render.pack.geometry import build_geometry
 from eyas.render.renderer import Renderer, build_renderer
 from eyas.render.textures.library import build_textures
+from eyas.state.lighting import Lighting
 from eyas.state.roads import RoadNetwork
-from eyas.state.scene import Lighting, Scene
-from eyas.state.terrain import Terrain
+from eyas.state.scene import Scene
 from eyas.targets.catalogue import KINDS, kind_index
 from eyas.targets.rig import VehicleRigs, build_rigs
 from eyas.traffic.config import Demand, TrafficConfig
@@ -26,8 +28,9 @@ from eyas.traffic.recorded import recorded_motion
 from eyas.traffic.replay import Replay
 from eyas.traffic.source import TrafficSource
 from eyas.world.config import WorldConfig
-from eyas.world.maps import build_scene, road_graph, shipped_network
-from eyas.world.weather import lighting
+from eyas.world.maps import MAPS, MapRecipe
+from eyas.world.maps.recipe import TRAFFIC_FILE
+from eyas.world.weather import Season
 
 __all__ = ["Place", "load_place", "load_scene"]
 
@@ -49,29 +52,55 @@ def load_network(world: WorldConfig) -> RoadNetwork:
     Raises:
         MissingExtraError: netconvert is needed and not installed.
     """
-    shipped = shipped_network(world.map) if world.seed == 0 else None
-    return shipped or build_network(road_graph(world.map, world.seed))
+    recipe = MAPS.get(world.map)
+    shipped = recipe.shipped_network() if world.seed == 0 else None
+    return shipped or build_network(recipe.roads(world.seed))
 
 
 @lru_cache(maxsize=2)
-def load_scene(map_name: str, seed: int) -> Scene:
+def load_scene(map_name: str, seed: int, season: Season = Season.SUMMER) -> Scene:
     """Return everything of a map that stands still."""
+    recipe = MAPS.get(map_name)
     network = load_network(WorldConfig(map=map_name, seed=seed))
-    return cached(
+    return _cached_of_map(
         Kind.SCENE,
-        _SCENE_MAKERS,
-        _inputs(map_name, seed, network),
-        lambda: build_scene(map_name, network, seed),
+        recipe,
+        (),
+        _inputs(seed, season, network),
+        lambda: recipe.scene(network, seed, season),
         of=Scene,
     )
 
 
+Thing = TypeVar("Thing")
+
 _SCENE_MAKERS = ("world", "mesh", "state", "core/rng.py")
 
 
-def _inputs(map_name: str, seed: int, network: RoadNetwork) -> tuple[object, ...]:
-    """Return what tells one scene from another."""
-    return map_name, seed, network.graph_hash, network.builder, shapely.__version__
+def _cached_of_map(
+    kind: Kind,
+    recipe: MapRecipe,
+    makers: tuple[str, ...],
+    inputs: tuple[object, ...],
+    make: Callable[[], Thing],
+    *,
+    of: type[Thing],
+) -> Thing:
+    """Return a value that is made of a map from the cache, see `cached`.
+
+    Of a map without a package nothing is kept: no source tells one version of it from another.
+    """
+    sources = recipe.source_hash()
+    if sources is None:
+        return make()
+    told = (recipe.name, sources, *inputs)
+    return cached(kind, (*makers, *_SCENE_MAKERS), told, make, of=of)
+
+
+def _inputs(seed: int, season: Season, network: RoadNetwork) -> tuple[object, ...]:
+    """Return what tells one scene of a map from another."""
+    roads = network.graph_hash, network.builder
+    return seed, season.value, *roads, shapely.__version__
 
 
 def load_place(world: WorldConfig, traffic: TrafficConfig, trackers: int) -> Place:
@@ -101,11 +130,16 @@ def _textures() -> dict[str, NDArray[np.uint8]]:
 
 @lru_cache(maxsize=2)
 def _load_place(world: WorldConfig, traffic: TrafficConfig, trackers: int) -> Place:
-    graph = road_graph(world.map, world.seed)
-    light = lighting(world.map, world.weather)
-    recording = find_recording(graph, traffic, trackers=trackers)
+    recipe = MAPS.get(world.map)
+    light, season = recipe.light(world.weather), recipe.season(world.weather)
+    recording = find_recording(
+        recipe.roads(world.seed),
+        traffic,
+        trackers=trackers,
+        shipped=recipe.shipped(TRAFFIC_FILE),
+    )
     ready = compile_ahead()
-    scene = load_scene(world.map, world.seed)
+    scene = load_scene(world.map, world.seed, season)
     kind = np.array([kind_index(name) for name in recording.vehicle_types], np.int32)
     vehicle_type = KINDS[kind[0]]
     rigs = cached(
@@ -115,14 +149,14 @@ def _load_place(world: WorldConfig, traffic: TrafficConfig, trackers: int) -> Pl
         lambda: build_rigs(vehicle_type),
         of=VehicleRigs,
     )
-    geometry = cached(
+    geometry = _cached_of_map(
         Kind.GEOMETRY,
-        ("render", "targets", *_SCENE_MAKERS),
-        (vehicle_type, *_inputs(world.map, world.seed, scene.network)),
+        recipe,
+        ("render", "targets"),
+        (vehicle_type, *_inputs(world.seed, season, scene.network)),
         lambda: build_geometry(scene, rigs.library, _textures()),
         of=Geometry,
     )
     renderer = build_renderer(scene, geometry, light, ready=ready)
-    ground = Terrain.flat(scene.ground_height)
-    replay = Replay(recorded_motion(recording, ground, kind))
+    replay = Replay(recorded_motion(recording, scene.terrain, kind))
     return Place(scene, replay, light, renderer, rigs)

@@ -15,7 +15,6 @@ from eyas.sim.step import Orders, StepState, Surroundings, step_of
 from eyas.sim.worlds import Worlds
 from eyas.state.draw import DrawStage, Picture
 from eyas.state.snapshot import CameraState, Snapshot
-from eyas.state.terrain import Terrain
 from eyas.task.packet_rows import PacketRows
 from eyas.task.rules import Rules, make_rules
 from eyas.task.terms import RewardTerms
@@ -58,7 +57,7 @@ class Simulation:
         self, config: SimConfig, place: Place, tracker: Tracker, world_of: NDArray[np.integer]
     ) -> None:
         worlds = Worlds(config, place, world_of)
-        terrain = Terrain.flat(place.scene.ground_height)
+        terrain = place.scene.terrain
         self.config = config
         self.count = len(worlds.of)
         self.snapshot = Snapshot.create(self.count)
@@ -67,7 +66,7 @@ class Simulation:
             place.lighting,
             worlds,
             self.snapshot.light,
-            foggy=config.world.weather == "foggy",
+            foggy=place.lighting.foggy,
         )
         self._episodes = Episodes(config, place.traffic, worlds, light, self.snapshot)
         self._pictures = Pictures(config, place, worlds, light, self.snapshot)

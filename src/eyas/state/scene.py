@@ -1,4 +1,4 @@
-"""The world that stands still, as plain arrays, and the light that falls on it."""
+"""The world that stands still, as plain arrays."""
 
 from dataclasses import dataclass, field
 from enum import IntEnum
@@ -6,8 +6,10 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.state.lighting import Horizon
 from eyas.state.mesh import Mesh
 from eyas.state.roads import RoadNetwork
+from eyas.state.terrain import Terrain
 
 __all__ = [
     "ACTOR_OBJECT",
@@ -15,7 +17,6 @@ __all__ = [
     "Colliders",
     "Fixtures",
     "Lamps",
-    "Lighting",
     "ObjectClass",
     "Scene",
 ]
@@ -57,6 +58,8 @@ class Fixtures:
     """Rotation times scale, and translation [m], shape (F, 3, 4)."""
     object_id: NDArray[np.int32]
     """Object of the scene, shape (F,)."""
+    names: tuple[str, ...] = ()
+    """Name of each prototype, for people and for tests; nothing draws by it."""
 
 
 @dataclass(slots=True)
@@ -114,8 +117,8 @@ class Scene:
     """Seed of the map."""
     size: tuple[float, float]
     """Extent of the floor, centred on the origin [m]."""
-    ground_height: float
-    """z of the floor, the plane that the reward uses [m]."""
+    terrain: Terrain
+    """Height of the ground; roads and everything built on it rise with it."""
     static: Mesh
     """World-space triangles."""
     static_object: NDArray[np.int32]
@@ -130,6 +133,8 @@ class Scene:
     """The roads traffic drives on."""
     lamps: Lamps = field(default_factory=Lamps.none)
     """Street lamps."""
+    horizon: Horizon = field(default_factory=Horizon)
+    """Hills all round the map, far beyond its edge."""
 
     @classmethod
     def empty(cls) -> "Scene":
@@ -140,7 +145,7 @@ class Scene:
             name="empty",
             seed=0,
             size=(100.0, 100.0),
-            ground_height=0.0,
+            terrain=Terrain.flat(0.0),
             static=Mesh.none(),
             static_object=ids,
             object_class=ids,
@@ -150,41 +155,3 @@ class Scene:
                 "", "", flat, first, none, none, ids, ids, (), (), (), flat, first, ()
             ),
         )
-
-
-@dataclass(frozen=True, slots=True)
-class Lighting:
-    """Light and air of a weather. Colours are linear RGB radiance, white paper in sun about 1."""
-
-    sun_direction: tuple[float, float, float]
-    """Unit vector towards the sun."""
-    sun_colour: tuple[float, float, float]
-    """Sunlight on a surface that faces the sun."""
-    zenith_colour: tuple[float, float, float]
-    """Sky overhead."""
-    horizon_colour: tuple[float, float, float]
-    """Sky at the horizon."""
-    ambient_up: tuple[float, float, float]
-    """Sky light on a surface that faces up."""
-    ambient_down: tuple[float, float, float]
-    """Bounced light on a surface that faces down."""
-    fog_colour: tuple[float, float, float]
-    """What distance turns into."""
-    fog_density: float
-    """One over the visibility range [1/m]; 0 for clear air."""
-    fog_power: int = 1
-    """1: exponential, 2: exponential squared."""
-    exposure: float = 1.0
-    """Factor on everything before it becomes a picture."""
-    snow: float = 0.0
-    """How much snow lies on what faces up: 0 none, 1 all covered."""
-    luminosity: float = 1.0
-    """The original's of this weather's sky and of its sun: what settings of the light refer to."""
-    lamps: float = 0.0
-    """How far street lamps and the lights of vehicles are on: 0 off, 1 on."""
-    windows: float = 0.0
-    """Share of the windows behind which there is light."""
-    clouds: float = 0.0
-    """Share of the sky that clouds cover."""
-    flakes: float = 0.0
-    """How thick snow falls: 0 none, 1 a heavy fall."""

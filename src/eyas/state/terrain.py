@@ -7,7 +7,16 @@ from numpy.typing import NDArray
 
 from eyas.core.jit import kernel
 
-__all__ = ["Plane", "Terrain", "ground_at", "height_over", "plane_at", "relief_at", "slope_at"]
+__all__ = [
+    "Plane",
+    "Terrain",
+    "ground_at",
+    "height_over",
+    "plane_at",
+    "relief_at",
+    "reliefs",
+    "slope_at",
+]
 
 
 class Terrain(NamedTuple):
@@ -21,7 +30,7 @@ class Terrain(NamedTuple):
     """z of the floor, where the relief is 0 [m]."""
     relief: NDArray[np.float32]
     """Height over the floor at the points of a square grid [m], row 0 in the south, column 0 in
-    the west, shape (R, C); (0, 0) for a flat map."""
+    the west, shape (R, C), at least (2, 2); (0, 0) for a flat map."""
     west: float
     """East coordinate of column 0 [m]."""
     south: float
@@ -48,6 +57,30 @@ class Plane(NamedTuple):
     """How much the plane rises for each metre east."""
     rise_north: float
     """How much the plane rises for each metre north."""
+
+
+def reliefs(terrain: Terrain, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the height over the floor at points, as `relief_at` does.
+
+    Args:
+        terrain: The ground.
+        points: East and north [m], shape (..., 2).
+
+    Returns:
+        [m], shape (...).
+    """
+    raster = terrain.relief
+    if raster.size == 0:
+        return np.zeros(points.shape[:-1])
+    corner = np.array([terrain.west, terrain.south])
+    last = np.array([raster.shape[1] - 1, raster.shape[0] - 1])
+    place = np.clip((points - corner) / terrain.spacing, 0.0, last)
+    cell = np.minimum(place.astype(np.intp), last - 1)
+    across, up = np.moveaxis(place - cell, -1, 0)
+    column, row = np.moveaxis(cell, -1, 0)
+    south = (1.0 - across) * raster[row, column] + across * raster[row, column + 1]
+    north = (1.0 - across) * raster[row + 1, column] + across * raster[row + 1, column + 1]
+    return np.asarray((1.0 - up) * south + up * north, np.float64)
 
 
 @kernel

@@ -5,7 +5,6 @@ import json
 import logging
 import re
 from collections.abc import Callable
-from importlib.resources import files
 from importlib.resources.abc import Traversable
 from pathlib import Path
 
@@ -26,7 +25,6 @@ __all__ = [
     "STANDARD_DURATION",
     "find_recording",
     "record_canonical",
-    "shipped_file",
 ]
 
 _LOG = logging.getLogger("eyas")
@@ -47,6 +45,7 @@ def find_recording(
     *,
     trackers: int = 1,
     duration: float = STANDARD_DURATION,
+    shipped: Traversable | None = None,
 ) -> Recording:
     """Return the recording to replay: the one named, the shipped one, a cached or a new one.
 
@@ -57,6 +56,7 @@ def find_recording(
         config: What drives.
         trackers: Number of trackers, which the size of a group follows.
         duration: Shortest recording that will do [s].
+        shipped: The file of the recording that comes with the map, if there is one.
 
     Raises:
         DataFileError: The named recording cannot be read or is of another map.
@@ -70,9 +70,9 @@ def find_recording(
         return named
     seed = CANONICAL_SEED if config.seed is None else config.seed
     wanted = resolved(config, seed, trackers)
-    shipped = _shipped(graph, wanted)
-    if shipped is not None and shipped.duration >= duration:
-        return shipped
+    found = _fitting(shipped, graph, wanted) if shipped is not None else None
+    if found is not None and found.duration >= duration:
+        return found
     if not config.update_routes:
         raise ConfigError(
             "traffic.update_routes: false, but no recording fits these settings; allowed: true, "
@@ -81,29 +81,20 @@ def find_recording(
     return _cached_or_new(graph, wanted, duration)
 
 
-def shipped_file(map_name: str) -> Traversable:
-    """Return where the package keeps the canonical recording of a map; it need not be there."""
-    return files("eyas.world.maps") / map_name / "traffic.npz"
-
-
 def record_canonical(
-    map_name: str, graph: RoadGraph, progress: Callable[[float], None] | None = None
-) -> Path:
-    """Record the canonical traffic of a map (its seed 0) into the package; return the file.
+    graph: RoadGraph, path: Path, progress: Callable[[float], None] | None = None
+) -> None:
+    """Record the canonical traffic of a map (its seed 0), to be shipped with it.
 
-    For developers, after a change of the map's roads.
+    For developers of a map, after a change of its roads.
 
     Raises:
         MissingExtraError: SUMO is not installed.
-        OutputError: The package's folder cannot be written to.
+        OutputError: The file cannot be written.
     """
-    made = record(
-        map_name, graph.seed, graph, TrafficConfig(), STANDARD_DURATION, CANONICAL_SEED, progress
-    )
-    path = Path(str(shipped_file(map_name)))
-    path.parent.mkdir(exist_ok=True)
+    name, seed = graph.map_name, graph.seed
+    made = record(name, seed, graph, TrafficConfig(), STANDARD_DURATION, CANONICAL_SEED, progress)
     save(made, path)
-    return path
 
 
 def _cache_file(graph: RoadGraph, wanted: TrafficConfig, duration: float) -> Path:
@@ -130,10 +121,8 @@ def _cache_file(graph: RoadGraph, wanted: TrafficConfig, duration: float) -> Pat
     return cache_folder() / Kind.TRAFFIC / f"{name}-{graph.seed}-{key}.npz"
 
 
-def _shipped(graph: RoadGraph, wanted: TrafficConfig) -> Recording | None:
-    file = shipped_file(graph.map_name)
-    if not file.is_file():
-        return None
+def _fitting(file: Traversable, graph: RoadGraph, wanted: TrafficConfig) -> Recording | None:
+    """Return a shipped recording if it is what the settings ask for."""
     recording = load(file)
     return recording if _fits(recording, graph, wanted) else None
 

@@ -1,19 +1,56 @@
-"""Light and air: what each weather of each map looks like."""
+"""The weathers, and the light and air that maps share in them."""
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from enum import StrEnum
 
-from eyas.core.errors import NotInThisVersionError, UnknownNameError
-from eyas.state.scene import Lighting
+from eyas.state.lighting import Lighting
 
-__all__ = ["WEATHERS", "lighting", "weathers"]
+__all__ = [
+    "CLEAR_DAY",
+    "CLEAR_NIGHT",
+    "DAY",
+    "FOG",
+    "FOGGY",
+    "NIGHT",
+    "SNOW",
+    "WEATHERS",
+    "WINTER_DAY",
+    "Season",
+    "Weather",
+]
 
-WEATHERS = ("day", "foggy", "night", "snow")
+
+class Season(StrEnum):
+    """What decides how plants, roofs and fields look."""
+
+    SUMMER = "summer"
+    WINTER = "winter"
+
+
+@dataclass(frozen=True, slots=True)
+class Weather:
+    """A weather that maps can have; a user's map may have its own."""
+
+    name: str
+    """What `world.weather` says."""
+    season: Season
+    """The season in which it comes."""
+
+
+DAY = Weather("day", Season.SUMMER)
+FOGGY = Weather("foggy", Season.SUMMER)
+NIGHT = Weather("night", Season.SUMMER)
+SNOW = Weather("snow", Season.WINTER)
+
+WEATHERS = (DAY, FOGGY, NIGHT, SNOW)
 """The weathers of the original."""
+
+# Light and air. A map takes these, or its own made of them with `dataclasses.replace`.
 
 _STEEP = 1.0 / math.sqrt(0.55**2 + 0.6**2 + 1.0)
 
-_CLEAR_DAY = Lighting(
+CLEAR_DAY = Lighting(
     # The original's sun: in the north-west, 50.9 degrees high.
     sun_direction=(-0.55 * _STEEP, 0.6 * _STEEP, _STEEP),
     sun_colour=(1.02, 0.96, 0.84),
@@ -30,8 +67,8 @@ _CLEAR_DAY = Lighting(
 # The original's plain grey sky (0.75, 0.75, 0.74) as radiance, and its weak bluish sun behind it.
 _OVERCAST = (0.545, 0.545, 0.53)
 
-_FOG = replace(
-    _CLEAR_DAY,
+FOG = replace(
+    CLEAR_DAY,
     sun_colour=(0.035, 0.035, 0.04),
     zenith_colour=_OVERCAST,
     horizon_colour=(0.86, 0.86, 0.85),
@@ -40,12 +77,13 @@ _FOG = replace(
     fog_colour=(0.60, 0.60, 0.59),
     # The original's visibility range: a wash near by, and the far edge of the map dissolves.
     fog_density=1.0 / 1000.0,
+    foggy=True,
     clouds=1.0,
 )
 
 # The original's plain blue sky (0.60, 0.757, 0.945), paler towards the horizon, and the day's sun.
-_WINTER = replace(
-    _CLEAR_DAY,
+WINTER_DAY = replace(
+    CLEAR_DAY,
     zenith_colour=(0.24, 0.42, 0.80),
     horizon_colour=(0.50, 0.62, 0.80),
     # Snow throws light back up.
@@ -61,8 +99,8 @@ _WINTER = replace(
 
 # All at a bit over a third of the day's brightness, as in the original: a high moon, a sky that is
 # not quite black, the glow of the town over the horizon; lamps and windows do the rest.
-_NIGHT = replace(
-    _CLEAR_DAY,
+CLEAR_NIGHT = replace(
+    CLEAR_DAY,
     sun_direction=(0.48, -0.42, 0.77),
     sun_colour=(0.086, 0.092, 0.108),
     zenith_colour=(0.0035, 0.005, 0.012),
@@ -76,37 +114,3 @@ _NIGHT = replace(
     lamps=1.0,
     windows=0.3,
 )
-
-_LIGHTINGS = {
-    ("citystreet", "day"): _CLEAR_DAY,
-    ("citystreet", "foggy"): _FOG,
-    ("citystreet", "night"): _NIGHT,
-    ("citystreet", "snow"): _WINTER,
-}
-
-
-def weathers(map_name: str) -> tuple[str, ...]:
-    """Return the weathers that this version has of a map, in the order of `WEATHERS`."""
-    return tuple(weather for weather in WEATHERS if (map_name, weather) in _LIGHTINGS)
-
-
-def lighting(map_name: str, weather: str) -> Lighting:
-    """Return the light of a weather of a map.
-
-    Args:
-        map_name: A map of this version.
-        weather: One of `WEATHERS`.
-
-    Raises:
-        UnknownNameError: No such weather.
-        NotInThisVersionError: The weather is not part of this version.
-    """
-    if weather not in WEATHERS:
-        raise UnknownNameError("world.weather", weather, WEATHERS)
-    light = _LIGHTINGS.get((map_name, weather))
-    if light is None:
-        have = ", ".join(weathers(map_name))
-        raise NotInThisVersionError(
-            f"world.weather: '{weather}' of '{map_name}' is not in this version; there is: {have}"
-        )
-    return light

@@ -15,16 +15,15 @@ from eyas.modes.gallery.views import choose_viewpoints
 from eyas.sim.place import load_place
 from eyas.traffic.config import TrafficConfig
 from eyas.world.config import WorldConfig
-from eyas.world.maps import MAPS, road_graph
-from eyas.world.weather import lighting, weathers
+from eyas.world.maps import MAPS
 
 __all__ = ["INDEX", "SHEET", "conditions", "run"]
 
 INDEX, SHEET = "index.html", "contact.png"
 
 _OURS = re.compile(
-    rf"{re.escape(INDEX)}|{re.escape(SHEET)}|\w+-\w+(/[a-z]+(-[a-z]+)?\.png)?"
-    rf"|(\w+-\w+/)?\.[\w.-]+{re.escape(PART_SUFFIX)}"
+    rf"{re.escape(INDEX)}|{re.escape(SHEET)}|\w+(-\w+)+(/[a-z]+(-[a-z]+)?\.png)?"
+    rf"|(\w+(-\w+)+/)?\.[\w.-]+{re.escape(PART_SUFFIX)}"
 )
 """Every path that a gallery can hold, relative to its folder."""
 
@@ -59,19 +58,18 @@ def run(out: Path, map_names: Sequence[str] = (), weather_names: Sequence[str] =
 def conditions(map_names: Sequence[str], weather_names: Sequence[str]) -> list[tuple[str, str]]:
     """Return the maps and weathers to draw, each pair once.
 
-    Where only weathers are named, maps that lack one of them are left out.
+    Where no map is named, all are drawn, but for those that lack one of the named weathers.
 
     Raises:
         UnknownNameError: No such map or weather.
         NotInThisVersionError: This version has no such map, or not in that weather.
     """
-    have = [name for name in sorted(MAPS) if set(weather_names) <= set(weathers(name))]
-    names = dict.fromkeys(map_names or have or sorted(MAPS))
-    for name in names:
-        road_graph(name, 0)  # refuses maps that are not there
-    pairs = [(name, kind) for name in names for kind in weather_names or weathers(name)]
-    for pair in pairs:
-        lighting(*pair)  # refuses weathers that are not there
+    every = sorted(MAPS.names())
+    have = [name for name in every if set(weather_names) <= set(MAPS.get(name).weathers)]
+    names = map_names or have or every
+    pairs = [(name, kind) for name in names for kind in weather_names or MAPS.get(name).weathers]
+    for name, weather in pairs:
+        MAPS.get(name).light(weather)  # refuses weathers that are not there
     return list(dict.fromkeys(pairs))
 
 
@@ -80,8 +78,9 @@ def _draw(out: Path, map_name: str, weather: str, progress: Progress) -> Shown:
     task = progress.add_task(f"{map_name}, {weather}", total=None)
     world = WorldConfig(map=map_name, weather=weather)
     still = StillScene(load_place(world, TrafficConfig(), 1))
-    views = choose_viewpoints(still, lighting(map_name, weather).sun_direction)
-    shown = Shown(map_name, weather, views, [still.rgb(view) for view in views])
+    recipe = MAPS.get(map_name)
+    views = choose_viewpoints(still, recipe.light(weather).sun_direction)
+    shown = Shown(recipe.name, weather, views, [still.rgb(view) for view in views])
     folder = out / shown.folder
     with refusals(folder):
         folder.mkdir(exist_ok=True)

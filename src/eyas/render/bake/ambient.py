@@ -13,6 +13,7 @@ from eyas.core.jit import thread_count
 from eyas.core.parallel import Held
 from eyas.render.kernels.light.ambient import BOUNCED, LEAVES, OpennessBake, bake_openness
 from eyas.state.scene import ObjectClass, Scene
+from eyas.state.terrain import reliefs
 
 __all__ = ["AmbientMap", "bake_ambient", "canopy_map", "height_map"]
 
@@ -50,11 +51,14 @@ def bake_ambient(scene: Scene, folder: Path | None = None) -> AmbientMap:
     extent = np.array(scene.size)
     texel = max(TEXEL, float(extent.max()) / LARGEST)
     columns, rows = np.ceil(extent / texel).astype(int)
-    frame = np.array([*(-0.5 * extent), 1.0 / texel, scene.ground_height])
+    terrain = scene.terrain
+    frame = np.array([*(-0.5 * extent), 1.0 / texel, terrain.floor])
     inputs = (
         _FORMAT,
         (rows, columns),
         frame,
+        np.array([terrain.west, terrain.south, terrain.spacing]),
+        terrain.relief,
         np.array([BOUNCED, LEAVES]),
         scene.static.positions,
         scene.static.triangles,
@@ -77,11 +81,15 @@ def bake_ambient(scene: Scene, folder: Path | None = None) -> AmbientMap:
 def height_map(
     scene: Scene, frame: NDArray[np.float64], shape: tuple[int, int]
 ) -> NDArray[np.float32]:
-    """Return how high over the ground the highest solid thing in each texel is [m]."""
+    """Return how high over the ground the highest solid thing in each texel is [m].
+
+    The ground itself is none, however steep it is: hills are no walls.
+    """
     mesh = scene.static
     corners = mesh.positions[mesh.triangles].astype(np.float64)
     kind = scene.object_class[scene.static_object]
-    rise = corners[:, :, 2].max(axis=1, initial=0.0) - frame[3]
+    ground = frame[3] + reliefs(scene.terrain, corners[:, :, :2])
+    rise = (corners[:, :, 2] - ground).max(axis=1)
     level = mesh.normals[mesh.triangles, 2].mean(axis=1) > 0.2
     chosen = np.flatnonzero(level & (kind != ObjectClass.STRUCTURE) & (rise > _LOWEST))
     flat = (corners[:, :, :2] - frame[:2]) * frame[2]
@@ -107,6 +115,7 @@ def canopy_map(
         reach = 0.9 * scale * float(np.abs(points[:, :2]).max())
         x, y = (pose[:2, 3] - frame[:2]) * frame[2]
         r = reach * frame[2]
-        top = scale * float(points[:, 2].max()) + pose[2, 3] - frame[3]
+        ground = frame[3] + float(reliefs(scene.terrain, pose[:2, 3]))
+        top = scale * float(points[:, 2].max()) + pose[2, 3] - ground
         pen.ellipse((x - r, y - r, x + r, y + r), fill=float(top))
     return np.array(picture, np.float32)

@@ -1,4 +1,4 @@
-"""Hills all round the horizon, as a panorama: made once for a sun, the same ones every time."""
+"""Hills all round the horizon, as a panorama: made once for a map's hills and a sun."""
 
 import functools
 
@@ -9,6 +9,7 @@ from eyas.render.bake.clouds import plan_directions
 from eyas.render.kernels.bundles import Geometry
 from eyas.render.kernels.sky.radiance import HAZE_END, HILL_FARTHEST, HILL_TOP
 from eyas.render.textures.fields import SIZE, Field, blurred, fractal, source
+from eyas.state.lighting import Horizon
 
 __all__ = ["build_hills", "far_ground"]
 
@@ -16,15 +17,14 @@ _ROWS, _COLUMNS = 96, 4096
 _STEPS = 96
 _TEXEL = 9.0 / SIZE
 """Side of a texel of the land [km]."""
-_SLOPE = 0.055
-"""Height of the highest hill at a distance, as a share of it."""
 
 
 @functools.lru_cache(maxsize=4)
-def build_hills(sun: tuple[float, float, float]) -> NDArray[np.uint8]:
+def build_hills(horizon: Horizon, sun: tuple[float, float, float]) -> NDArray[np.uint8]:
     """Return the hills as seen from the middle of the map.
 
     Args:
+        horizon: What kind of hills.
         sun: Unit vector towards the sun.
 
     Returns:
@@ -34,9 +34,9 @@ def build_hills(sun: tuple[float, float, float]) -> NDArray[np.uint8]:
     away = np.geomspace(HAZE_END, HILL_FARTHEST, _STEPS)
     column, row = np.divide(plan_directions(_COLUMNS), _TEXEL).T[..., None] * away
     texel = (np.floor(row).astype(int) % SIZE, np.floor(column).astype(int) % SIZE)
-    land, sunlight, woods = _land(sun)
+    land, sunlight, woods = _land(horizon, sun)
     rise = np.clip((away - HAZE_END) / (0.45 * HILL_FARTHEST), 0.0, 1.0)
-    slope = _SLOPE * rise * _between(land, row, column)
+    slope = horizon.height * rise * _between(land, row, column)
     sine = slope / np.hypot(1.0, slope)
     ridge = np.maximum.accumulate(sine, axis=1)
     step = _first_seen(ridge)
@@ -83,19 +83,20 @@ def _first_seen(ridge: NDArray[np.float64]) -> NDArray[np.int64]:
     return np.asarray(np.minimum(below, highest[None]), np.int64)
 
 
-def _land(sun: tuple[float, float, float]) -> tuple[Field, Field, Field]:
+def _land(horizon: Horizon, sun: tuple[float, float, float]) -> tuple[Field, Field, Field]:
     """Return height, sunlight and woods of a tile of land, each 0 to 1."""
-    rng = source("hills")
+    rng = source(horizon.name)
     rough = fractal(rng, 1.9, longest=110.0)
     ridged = -np.abs(fractal(rng, 1.9, longest=90.0))
-    land = rough / rough.std() + 0.9 * ridged / ridged.std()
+    land = rough / rough.std() + horizon.ridges * ridged / ridged.std()
     land = (land - land.min()) / (land.max() - land.min())
     land = blurred(land, 0.6)
     east = (np.roll(land, -1, 1) - np.roll(land, 1, 1)) * 4.5
     north = (np.roll(land, -1, 0) - np.roll(land, 1, 0)) * 4.5
     facing = (sun[2] - east * sun[0] - north * sun[1]) / np.sqrt(1.0 + east**2 + north**2)
     woods = fractal(rng, 1.5, longest=60.0) + 1.5 * (land - 0.4)
-    return land, np.clip(facing, 0.0, 1.0), np.clip(0.5 + 1.5 * woods, 0.0, 1.0)
+    cover = np.clip(horizon.woods * (0.5 + 1.5 * woods), 0.0, 1.0)
+    return land, np.clip(facing, 0.0, 1.0), cover
 
 
 def _between(field: Field, row: Field, column: Field) -> Field:

@@ -13,29 +13,30 @@ from eyas.render.bake.tracks import TrackMap
 from eyas.render.kernels.bundles import Geometry, Light
 from eyas.render.kernels.light.tone import TONE_STEPS, TONE_TOP
 from eyas.render.pack.lamp_grid import lamp_grid
-from eyas.state.scene import Lamps, Lighting
+from eyas.state.lighting import Lighting
+from eyas.state.scene import Scene
 
 __all__ = ["build_light", "tone_table"]
 
 
 def build_light(
+    scene: Scene,
     lighting: Lighting,
     shadows: ShadowMap,
     ambient: AmbientMap,
-    lamps: Lamps,
     tracks: TrackMap,
     geometry: Geometry,
 ) -> Light:
     """Return the light of a weather over a scene."""
-    lamp, lamp_cell, lamp_frame = lamp_grid(lamps)
+    lamp, lamp_cell, lamp_frame = lamp_grid(scene.lamps)
     sun = np.array(lighting.sun_direction, np.float64)
     sun /= np.linalg.norm(sun)
     toward = (float(sun[0]), float(sun[1]), float(sun[2]))
     clouds, hills = cached(
         Kind.SKY,
         ("render",),
-        (lighting.clouds, toward),
-        lambda: (build_clouds(lighting.clouds, toward), build_hills(toward)),
+        (lighting.clouds, scene.horizon, toward),
+        lambda: (build_clouds(lighting.clouds, toward), build_hills(scene.horizon, toward)),
         of=tuple[NDArray[np.uint8], NDArray[np.uint8]],
     )
     # A point is moved off its surface by what its shadow can be off the texel's middle.

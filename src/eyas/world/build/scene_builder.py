@@ -1,50 +1,88 @@
 """Putting a scene together: triangles, object ids, solid shapes."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from eyas.core.errors import ConfigError
 from eyas.mesh.assembly import concatenate
+from eyas.state.lighting import Horizon
 from eyas.state.mesh import Mesh
 from eyas.state.roads import RoadNetwork
-from eyas.state.scene import Colliders, Fixtures, Lamps, ObjectClass, Scene
+from eyas.state.scene import ACTOR_OBJECT, Colliders, Fixtures, Lamps, ObjectClass, Scene
+from eyas.state.terrain import Terrain
 
-__all__ = ["SceneBuilder"]
+__all__ = ["Levels", "Prototype", "SceneBuilder"]
+
+Levels = tuple[Mesh, ...]
+"""A shape in levels of detail, the finest first."""
+
+
+@dataclass(frozen=True, slots=True)
+class Prototype:
+    """A shape of which a scene has copies; made by `SceneBuilder.prototype`."""
+
+    name: str
+    number: int
+    """Place among the scene's fixtures."""
 
 
 class SceneBuilder:
-    """Collects what stands in a map; ids are given in the order in which objects are added."""
+    """Collects what stands in a map; ids are given in the order in which objects are added.
 
-    def __init__(self) -> None:
+    Args:
+        name: Of the map.
+        seed: Of the map.
+        size: Extent of the floor, centred on the origin [m].
+        terrain: The ground.
+    """
+
+    def __init__(self, name: str, seed: int, size: tuple[float, float], terrain: Terrain) -> None:
+        self.terrain = terrain
+        self._name, self._seed, self._size = name, seed, size
+        self._prototypes: dict[str, tuple[Prototype, Callable[[], Levels]]] = {}
         self._classes: list[ObjectClass] = []
         self._meshes: list[Mesh] = []
         self._objects: list[int] = []
         self._prisms: list[tuple[NDArray[np.float64], float, float, int]] = []
         self._cylinders: list[tuple[tuple[float, float], float, float, float, int]] = []
-        self._copies: list[tuple[int, NDArray[np.float32], int]] = []
+        self._copies: list[tuple[Prototype, NDArray[np.float32], int]] = []
+
+    def prototype(self, name: str, make: Callable[[], Levels]) -> Prototype:
+        """Return the prototype with a name; the first to ask for it says how it is made.
+
+        Args:
+            name: For example `bench`.
+            make: Returns its meshes. It is called by `build`, after all copies have been placed,
+                and in the order of the first calls: so shapes and places may share a generator.
+        """
+        if name not in self._prototypes:
+            self._prototypes[name] = Prototype(name, len(self._prototypes)), make
+        return self._prototypes[name][0]
 
     def add(self, kind: ObjectClass, *meshes: Mesh) -> int:
         """Add an object of static triangles; return its id."""
-        self._classes.append(kind)
+        owner = self._new_object(kind)
         self._meshes += meshes
-        self._objects += [len(self._classes) - 1] * len(meshes)
-        return len(self._classes) - 1
+        self._objects += [owner] * len(meshes)
+        return owner
 
     def add_copy(
         self,
         kind: ObjectClass,
-        prototype: int,
+        prototype: Prototype,
         place: Sequence[float],
         turn: float,
         scale: float,
         owner: int | None = None,
     ) -> int:
-        """Add a copy of one of the fixtures that `build` is given; return its id.
+        """Add a copy of a prototype; return the id of its object.
 
         Args:
             kind: What it is.
-            prototype: Which fixture.
+            prototype: Of this builder.
             place: Where its origin stands [m], 3 numbers.
             turn: Counter-clockwise about z [rad].
             scale: Factor on its size.
@@ -60,8 +98,7 @@ class SceneBuilder:
             np.float32,
         )
         if owner is None:
-            self._classes.append(kind)
-            owner = len(self._classes) - 1
+            owner = self._new_object(kind)
         self._copies.append((prototype, pose, owner))
         return owner
 
@@ -77,36 +114,47 @@ class SceneBuilder:
         self._cylinders.append((place, radius, bottom, top, owner))
 
     def build(
-        self,
-        name: str,
-        seed: int,
-        size: tuple[float, float],
-        ground_height: float,
-        levels: Sequence[tuple[Mesh, ...]],
-        network: RoadNetwork,
-        lamps: Lamps | None = None,
+        self, network: RoadNetwork, lamps: Lamps | None = None, horizon: Horizon | None = None
     ) -> Scene:
-        """Return the scene of all that was added; for the arguments see `Scene` and `Fixtures`."""
+        """Return the scene of all that was added.
+
+        Args:
+            network: The roads.
+            lamps: Street lamps; None: none.
+            horizon: Hills beyond the map; None: those of most maps.
+        """
         counts = [len(mesh.triangles) for mesh in self._meshes]
         poses = [pose for _, pose, _ in self._copies]
         return Scene(
-            name=name,
-            seed=seed,
-            size=size,
-            ground_height=ground_height,
+            name=self._name,
+            seed=self._seed,
+            size=self._size,
+            terrain=self.terrain,
             static=concatenate(self._meshes),
             static_object=np.repeat(np.array(self._objects, np.int32), counts),
             object_class=np.array(self._classes, np.int32),
             fixtures=Fixtures(
-                levels=tuple(levels),
-                prototype=np.array([kind for kind, _, _ in self._copies], np.int32),
+                levels=tuple(make() for _, make in self._prototypes.values()),
+                prototype=np.array([one.number for one, _, _ in self._copies], np.int32),
                 pose=np.array(poses, np.float32).reshape(-1, 3, 4),
                 object_id=np.array([owner for _, _, owner in self._copies], np.int32),
+                names=tuple(self._prototypes),
             ),
             colliders=self._colliders(),
             network=network,
             lamps=lamps or Lamps.none(),
+            horizon=horizon or Horizon(),
         )
+
+    def _new_object(self, kind: ObjectClass) -> int:
+        """Return the id of a new object."""
+        if len(self._classes) >= ACTOR_OBJECT:
+            raise ConfigError(
+                f"world.map: '{self._name}' has more than {ACTOR_OBJECT:,} objects; make one of "
+                "several: larger ids are those of what moves"
+            )
+        self._classes.append(kind)
+        return len(self._classes) - 1
 
     def _colliders(self) -> Colliders:
         outlines, bottoms, tops, owners = _columns(self._prisms, 4)

@@ -1,5 +1,7 @@
 """What stands on flat roofs: stair heads, cooling units, ducts, skylights, tanks, masts."""
 
+from collections.abc import Callable
+
 import numpy as np
 import shapely
 from numpy.typing import NDArray
@@ -9,12 +11,9 @@ from eyas.mesh.solids import box, cylinder, tube
 from eyas.state.mesh import Material, Mesh
 from eyas.state.scene import ObjectClass
 from eyas.world.build.materials import material
-from eyas.world.build.scene_builder import SceneBuilder
+from eyas.world.build.scene_builder import Levels, SceneBuilder
 
-__all__ = ["KINDS", "add_rooftop", "rooftop_levels"]
-
-KINDS = ("stairs", "plant", "cooler", "coolers", "duct", "skylights", "tank", "vents", "mast")
-"""The prototypes, in the order of `rooftop_levels`."""
+__all__ = ["UNITS", "add_rooftop"]
 
 _ROOM = {"stairs": 3.6, "plant": 5.2, "cooler": 1.8, "coolers": 3.4, "duct": 4.6,
          "skylights": 3.4, "tank": 2.0, "vents": 1.6, "mast": 1.2}  # fmt: skip
@@ -37,7 +36,7 @@ _GLASS = material("plain", (0.44, 0.54, 0.60))
 Outline = NDArray[np.float64]
 
 
-def add_rooftop(builder: SceneBuilder, outline: Outline, top: float, owner: int, first: int,
+def add_rooftop(builder: SceneBuilder, outline: Outline, top: float, owner: int,
                 keep_free: shapely.Geometry, rng: np.random.Generator) -> None:  # fmt: skip
     """Furnish a flat roof; what stands there is part of the building.
 
@@ -46,10 +45,10 @@ def add_rooftop(builder: SceneBuilder, outline: Outline, top: float, owner: int,
         outline: Corners of the roof [m], shape (K, 2).
         top: z of the roof [m].
         owner: The building's object.
-        first: Number of the first of `rooftop_levels` among the fixtures.
         keep_free: Where a tower stands on the roof [m].
         rng: Of the building.
     """
+    units = {kind: builder.prototype(f"roof {kind}", make) for kind, make in UNITS.items()}
     shape = shapely.Polygon(outline)
     free = shapely.buffer(shape, -_FROM_PARAPET, join_style="mitre")
     free = shapely.difference(free, shapely.buffer(keep_free, 1.0))
@@ -62,8 +61,8 @@ def add_rooftop(builder: SceneBuilder, outline: Outline, top: float, owner: int,
             quarter = float(rng.integers(4)) * np.pi / 2
             scale = float(rng.uniform(0.85, 1.15))
             place = (float(spot[0]), float(spot[1]), top)
-            number = first + KINDS.index(kind)
-            builder.add_copy(ObjectClass.BUILDING, number, place, turn + quarter, scale, owner)
+            way = turn + quarter
+            builder.add_copy(ObjectClass.BUILDING, units[kind], place, way, scale, owner)
 
 
 def _wanted(area: float, top: float, rng: np.random.Generator) -> list[str]:
@@ -91,28 +90,6 @@ def _spot(free: shapely.Geometry, radius: float, rng: np.random.Generator) -> Ou
         if room.contains(shapely.Point(point)):
             return np.asarray(point, np.float64)
     return None
-
-
-def rooftop_levels() -> list[tuple[Mesh, ...]]:
-    """Return each kind, the finest level of detail first; origin on the roof, in metres."""
-    made = {
-        "stairs": _levels(_stairs(), _block(4.6, 3.4, 2.7, _PLASTER)),
-        "plant": _levels(_plant(), _block(7.6, 5.2, 3.2, _SHEET)),
-        "cooler": _levels(_cooler(0.0), _block(1.9, 1.7, 1.5, _SHEET)),
-        "coolers": _levels(
-            concatenate([_cooler(x) for x in (-2.1, 0.0, 2.1)]), _block(6.1, 1.7, 1.5, _SHEET)
-        ),
-        "duct": _levels(_duct(), _far_duct()),
-        "skylights": _levels(_skylights(), _block(4.6, 3.0, 0.5, _GLASS)),
-        "tank": _levels(_tank(10), _tank(5)),
-        "vents": _levels(_vents(6), _vents(3)),
-        "mast": _levels(_mast(5), _mast(3)),
-    }
-    return [made[kind] for kind in KINDS]
-
-
-def _levels(fine: Mesh, coarse: Mesh) -> tuple[Mesh, ...]:
-    return fine, coarse
 
 
 def _block(x: float, y: float, z: float, cover: Material, foot: float = 0.0) -> Mesh:
@@ -146,6 +123,10 @@ def _plant() -> Mesh:
     louvres = [_at(_block(0.08, 3.6, 1.4, _DARK), side * 3.82, 0.0, 0.9) for side in (-1, 1)]
     fans = [_fan(x, 0.0, 3.2, 1.2) for x in (-1.8, 1.8)]
     return concatenate([_block(7.6, 5.2, 3.2, _SHEET), *louvres, *fans])
+
+
+def _coolers() -> Mesh:
+    return concatenate([_cooler(x) for x in (-2.1, 0.0, 2.1)])
 
 
 def _cooler(x: float) -> Mesh:
@@ -203,3 +184,17 @@ def _mast(sides: int) -> Mesh:
     ends = np.array([[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
     arms = [tube(ends * half + np.array([0, 0, z]), [0.03, 0.03], 3, _DARK) for z, half in spars]
     return concatenate([tube(np.diag([0, 0, 7.0])[[0, 2]], [0.09, 0.04], sides, _ZINC), *arms])
+
+
+UNITS: dict[str, Callable[[], Levels]] = {
+    "stairs": lambda: (_stairs(), _block(4.6, 3.4, 2.7, _PLASTER)),
+    "plant": lambda: (_plant(), _block(7.6, 5.2, 3.2, _SHEET)),
+    "cooler": lambda: (_cooler(0.0), _block(1.9, 1.7, 1.5, _SHEET)),
+    "coolers": lambda: (_coolers(), _block(6.1, 1.7, 1.5, _SHEET)),
+    "duct": lambda: (_duct(), _far_duct()),
+    "skylights": lambda: (_skylights(), _block(4.6, 3.0, 0.5, _GLASS)),
+    "tank": lambda: (_tank(10), _tank(5)),
+    "vents": lambda: (_vents(6), _vents(3)),
+    "mast": lambda: (_mast(5), _mast(3)),
+}
+"""How each kind is made; origin on the roof, in metres."""

@@ -1,6 +1,7 @@
 """Ground between buildings: paved feet of walls, paths to doors, hedges, shrubs, small trees."""
 
-from collections.abc import Iterator, Sequence
+import math
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 import shapely
@@ -8,8 +9,8 @@ from numpy.typing import NDArray
 
 from eyas.state.scene import ObjectClass
 from eyas.world.build.millimetres import length, unit
-from eyas.world.build.scene_builder import SceneBuilder
-from eyas.world.plants.shrubs import KINDS, PIECE
+from eyas.world.build.scene_builder import Prototype, SceneBuilder
+from eyas.world.plants.shrubs import PIECE
 
 __all__ = ["add_borders", "add_row", "add_small_trees", "clustered", "paved_yards", "scattered"]
 
@@ -30,7 +31,7 @@ _CLIPPED = 0.4
 _ROOM = 0.9
 """Radius of what a plant takes up [m]."""
 
-_BORDERS = ("border", "low_border", "tall_border")
+_BORDERS = ("border", "low border", "tall border")
 
 Points = NDArray[np.float64]
 
@@ -83,7 +84,7 @@ def add_borders(
     footprints: Sequence[Points],
     room: shapely.Geometry,
     floor: float,
-    first: int,
+    plants: Mapping[str, Prototype],
     rng: np.random.Generator,
 ) -> None:
     """Plant hedges and shrubs along walls.
@@ -93,7 +94,7 @@ def add_borders(
         footprints: Corners of buildings, counter-clockwise [m].
         room: Lawn on which plants may stand [m].
         floor: z of the lawn [m].
-        first: Number of the first of `plant_levels` among the fixtures.
+        plants: By the names of `plant_makers`.
         rng: Of the gardens.
     """
     free = shapely.buffer(room, -_ROOM / 2)
@@ -104,28 +105,26 @@ def add_borders(
                 continue
             along = unit(end - start)
             line = np.stack([start, end]) + _BORDER * np.array([along[1], -along[0]])
-            kinds = ("hedge",) if rng.random() < _CLIPPED else _BORDERS
-            add_row(builder, kinds, line, free, floor, first, rng)
+            names = ("hedge",) if rng.random() < _CLIPPED else _BORDERS
+            add_row(builder, [plants[name] for name in names], line, free, floor, rng)
 
 
 def add_row(
     builder: SceneBuilder,
-    kinds: Sequence[str],
+    plants: Sequence[Prototype],
     line: Points,
     room: shapely.Geometry,
     floor: float,
-    first: int,
     rng: np.random.Generator,
 ) -> None:
     """Plant pieces of hedge or border along a line where there is room.
 
     Args:
         builder: Takes the plants.
-        kinds: Of `plants.KINDS`; one is drawn for each piece.
+        plants: One is drawn for each piece.
         line: Both ends [m], shape (2, 2).
         room: Where pieces may stand, whole [m].
         floor: z of the lawn [m].
-        first: Number of the first of `plant_levels` among the fixtures.
         rng: Of the gardens.
     """
     whole, along = length(line[1] - line[0]), unit(line[1] - line[0])
@@ -135,10 +134,10 @@ def add_row(
         middle = line[0] + at * along
         ends = middle + np.outer([-0.5, 0.5], PIECE * along)
         if shapely.contains(room, shapely.LineString(ends)):
-            number = first + KINDS.index(str(rng.choice(kinds)))
+            plant = plants[int(rng.integers(len(plants)))]
             spot = (float(middle[0]), float(middle[1]), floor)
             way = turn + np.pi * float(rng.integers(2))
-            builder.add_copy(ObjectClass.TREE, number, spot, way, rng.uniform(0.97, 1.06))
+            builder.add_copy(ObjectClass.TREE, plant, spot, way, rng.uniform(0.97, 1.06))
 
 
 def scattered(
@@ -155,15 +154,41 @@ def scattered(
     Returns:
         Shape (K, 2) [m].
     """
-    chosen = np.zeros((0, 2))
+    chosen = _Apart(apart)
     for part in shapely.get_parts(room):
+        if part.is_empty:
+            continue
         west, south, east, north = part.bounds
         tries = rng.poisson(density * (east - west) * (north - south))
         points = rng.uniform((west, south), (east, north), (tries, 2))
-        for point in points[shapely.contains_xy(part, points)]:
-            if np.linalg.norm(chosen - point, axis=1).min(initial=np.inf) > apart:
-                chosen = np.concatenate([chosen, point[None]])
-    return chosen
+        for x, y in points[shapely.contains_xy(part, points)].tolist():
+            chosen.add(x, y)
+    return np.array(chosen.points, np.float64).reshape(-1, 2)
+
+
+class _Apart:
+    """Points that keep their distance; only those in the squares around a new one are looked at.
+
+    Args:
+        apart: Least distance of two [m].
+    """
+
+    def __init__(self, apart: float) -> None:
+        self.points: list[tuple[float, float]] = []
+        self._apart = apart
+        self._side = 1.001 * apart  # a little more: rounding leaves no neighbour out
+        self._squares: dict[tuple[int, int], list[tuple[float, float]]] = {}
+
+    def add(self, x: float, y: float) -> None:
+        """Add a point if no other is near."""
+        column, row = int(x // self._side), int(y // self._side)
+        for i in (column - 1, column, column + 1):
+            for j in (row - 1, row, row + 1):
+                for east, north in self._squares.get((i, j), ()):
+                    if math.sqrt((east - x) ** 2 + (north - y) ** 2) <= self._apart:
+                        return
+        self.points.append((x, y))
+        self._squares.setdefault((column, row), []).append((x, y))
 
 
 def clustered(
@@ -192,7 +217,7 @@ def add_small_trees(
     places: Points,
     heights: tuple[float, float],
     floor: float,
-    kinds: int,
+    kinds: Sequence[Prototype],
     rng: np.random.Generator,
 ) -> None:
     """Plant small trees.
@@ -202,11 +227,12 @@ def add_small_trees(
         places: Shape (K, 2) [m].
         heights: Least and largest [m].
         floor: z of the ground [m].
-        kinds: The first so many fixtures are trees.
+        kinds: One is drawn for each tree.
         rng: Of the gardens.
     """
     for place in places:
         height, turn = float(rng.uniform(*heights)), float(rng.uniform(0, 2 * np.pi))
         spot = (float(place[0]), float(place[1]), floor)
-        owner = builder.add_copy(ObjectClass.TREE, int(rng.integers(kinds)), spot, turn, height)
+        kind = kinds[int(rng.integers(len(kinds)))]
+        owner = builder.add_copy(ObjectClass.TREE, kind, spot, turn, height)
         builder.add_cylinder(spot[:2], 0.022 * height, floor, floor + 0.3 * height, owner)

@@ -1,26 +1,23 @@
 """Shrubs, hedges and planted islands as fixtures. Origins on the ground, lengths in metres."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.mesh.assembly import concatenate
 from eyas.mesh.solids import box
-from eyas.state.mesh import Material, Mesh, Surface
+from eyas.state.mesh import Material, Surface
 from eyas.world.build.materials import material
+from eyas.world.build.scene_builder import Levels
 from eyas.world.plants.foliage import Crown, leaf_cards, shell
 
-__all__ = ["KINDS", "PIECE", "plant_levels"]
-
-KINDS = ("border", "low_border", "tall_border", "hedge", "island")
-"""The prototypes, in the order of `plant_levels`."""
+__all__ = ["PIECE", "plant_makers"]
 
 PIECE = 4.0
 """Length of a piece of a hedge or of a border of shrubs, along x [m]."""
 
 Array = NDArray[np.float64]
-Levels = tuple[Mesh, ...]
 Tints = tuple[tuple[float, float, float], ...]
 
 _OLIVE: Tints = ((0.62, 0.68, 0.50), (0.82, 0.88, 0.62), (1.0, 1.0, 0.76))
@@ -31,17 +28,17 @@ _KERB = material("stone", (0.95, 0.92, 0.9))
 _MULCH = material("soil", (0.62, 0.56, 0.52))
 
 
-def plant_levels(rng: np.random.Generator) -> list[tuple[Mesh, ...]]:
-    """Return each kind, the finest level of detail first."""
+def plant_makers(rng: np.random.Generator) -> dict[str, Callable[[], Levels]]:
+    """Return how each kind is made: borders of shrubs along walls, hedges, beds in car parks."""
     low, tall = (1.0, 0.5, _BRIGHT), (0.6, 0.95, _DARK)
     middle = (0.75, 0.62, _OLIVE)
-    return [
-        _border((middle, tall, middle), rng),
-        _border((low, low, middle), rng),
-        _border((tall, low, tall), rng),
-        _hedge(rng),
-        _island(rng),
-    ]
+    return {
+        "border": lambda: _border((middle, tall, middle), rng),
+        "low border": lambda: _border((low, low, middle), rng),
+        "tall border": lambda: _border((tall, low, tall), rng),
+        "hedge": lambda: _hedge(rng),
+        "island": lambda: _island(rng),
+    }
 
 
 def _border(shrubs: Sequence[tuple[float, float, Tints]], rng: np.random.Generator) -> Levels:

@@ -6,13 +6,12 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from eyas.state.mesh import Mesh
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import ObjectClass
 from eyas.world.build.millimetres import unit
 from eyas.world.build.scene_builder import SceneBuilder
 from eyas.world.roads.areas import streets
-from eyas.world.street.furniture import KINDS, furniture_levels
+from eyas.world.street.furniture import FURNITURE
 
 __all__ = ["add_furniture"]
 
@@ -51,10 +50,9 @@ def add_furniture(
     pavement: shapely.Geometry,
     keep_free: shapely.Geometry,
     height: float,
-    first: int,
     rng: np.random.Generator,
-) -> list[tuple[Mesh, ...]]:
-    """Furnish the pavements beside kerbs; return the prototypes.
+) -> None:
+    """Furnish the pavements beside kerbs.
 
     Args:
         builder: Takes the things.
@@ -62,9 +60,9 @@ def add_furniture(
         pavement: Where furniture may stand [m].
         keep_free: Where something else stands, or where people walk and cars drive [m].
         height: z of the pavement [m].
-        first: Number that the first prototype will have among the fixtures.
         rng: Of the furniture.
     """
+    kinds = {kind: builder.prototype(kind, make) for kind, make in FURNITURE.items()}
     room = shapely.difference(pavement, shapely.buffer(keep_free, _CLEAR))
     shapely.prepare(room)
     taken = np.zeros((0, 3))
@@ -75,9 +73,7 @@ def add_furniture(
             if apart.min(initial=np.inf) > rule.room and shapely.contains_xy(room, *place):
                 taken = np.concatenate([taken, [[*place, rule.room + _CLEAR]]])
                 spot = (float(place[0]), float(place[1]), height)
-                number = first + KINDS.index(kind)
-                builder.add_copy(ObjectClass.STRUCTURE, number, spot, turn, 1.0)
-    return furniture_levels()
+                builder.add_copy(ObjectClass.STRUCTURE, kinds[kind], spot, turn, 1.0)
 
 
 def _places(

@@ -3,17 +3,17 @@
 Origins are on the ground; the side that faces the road looks along y. In metres.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 
 from eyas.mesh.assembly import concatenate, transformed
 from eyas.mesh.solids import box, cylinder, sphere
 from eyas.state.mesh import Material, Mesh, Surface
 from eyas.world.build.materials import material
+from eyas.world.build.scene_builder import Levels
 
-__all__ = ["KINDS", "furniture_levels"]
-
-KINDS = ("bench", "bin", "hydrant", "shelter", "post_box", "tub")
-"""The prototypes, in the order of `furniture_levels`."""
+__all__ = ["FURNITURE"]
 
 _WOOD = material("bark", (0.70, 0.54, 0.42))
 _IRON = material("plain", (0.22, 0.23, 0.24))
@@ -24,19 +24,6 @@ _BLUE = material("plain", (0.13, 0.26, 0.50))
 _PANE = Material(tint=(0.42, 0.50, 0.52), surface=Surface.GLASS)
 _STONE = material("concrete", (0.92, 0.9, 0.88))
 _LEAVES = material("foliage", (0.8, 0.9, 0.6))
-
-
-def furniture_levels() -> list[tuple[Mesh, ...]]:
-    """Return each kind, the finest level of detail first."""
-    made = {
-        "bench": (_bench(), _part((1.8, 0.5, 0.45), (0, 0, 0.22), _WOOD)),
-        "bin": (_bin(10), _bin(4)),
-        "hydrant": (_hydrant(8), _part((0.24, 0.24, 0.75), (0, 0, 0.37), _RED)),
-        "shelter": (_shelter(), _far_shelter()),
-        "post_box": (_post_box(), _part((0.5, 0.45, 1.3), (0, 0, 0.65), _BLUE)),
-        "tub": (_tub(10, 1), _tub(5, 0)),
-    }
-    return [made[kind] for kind in KINDS]
 
 
 def _part(
@@ -106,3 +93,14 @@ def _tub(sides: int, subdivisions: int) -> Mesh:
     ball = sphere(subdivisions, _LEAVES)
     pose = np.array([[0.55, 0, 0, 0], [0, 0.55, 0, 0], [0, 0, 0.55, 0.95]])
     return concatenate([tub, transformed(ball, pose)])
+
+
+FURNITURE: dict[str, Callable[[], Levels]] = {
+    "bench": lambda: (_bench(), _part((1.8, 0.5, 0.45), (0, 0, 0.22), _WOOD)),
+    "bin": lambda: (_bin(10), _bin(4)),
+    "hydrant": lambda: (_hydrant(8), _part((0.24, 0.24, 0.75), (0, 0, 0.37), _RED)),
+    "shelter": lambda: (_shelter(), _far_shelter()),
+    "post_box": lambda: (_post_box(), _part((0.5, 0.45, 1.3), (0, 0, 0.65), _BLUE)),
+    "tub": lambda: (_tub(10, 1), _tub(5, 0)),
+}
+"""How each kind is made."""

@@ -51,7 +51,6 @@ def add_lamps(
     network: RoadNetwork,
     count: int,
     keep_free: shapely.Geometry,
-    prototype: int,
     rng: np.random.Generator,
 ) -> Lamps:
     """Add street lamps on both sides of the roads; return their lights.
@@ -61,9 +60,9 @@ def add_lamps(
         network: The roads.
         count: How many, if there is room.
         keep_free: Where no pole may stand.
-        prototype: Number of `lamp_levels` among the fixtures.
         rng: Of the lamps.
     """
+    prototype = builder.prototype("street lamp", lamp_levels)
     position, axis = [], []
     lean = np.array(_AXIS) / np.linalg.norm(_AXIS)
     for foot, turn in _places(network, count, keep_free, rng):

@@ -8,8 +8,9 @@ from eyas.mesh.flat import quads
 from eyas.mesh.solids import box, cylinder
 from eyas.state.mesh import Material, Mesh, Surface
 from eyas.world.build.materials import material
+from eyas.world.build.scene_builder import Levels
 
-__all__ = ["parked_car_levels"]
+__all__ = ["VARIANTS", "parked_car"]
 
 Points = NDArray[np.float64]
 
@@ -23,6 +24,9 @@ _COLOURS = (
     (0.74, 0.70, 0.60),
     (0.16, 0.28, 0.22),
 )
+VARIANTS = len(_COLOURS)
+"""How many kinds of cars there are."""
+
 _GLASS = Material(tint=(0.105, 0.11, 0.115), surface=Surface.GLASS)
 _RUBBER = material("plain", (0.09, 0.09, 0.09))
 _LIGHT = material("plain", (0.86, 0.86, 0.82))
@@ -41,19 +45,19 @@ _ESTATE = (
 )  # fmt: skip
 
 
-def parked_car_levels() -> list[tuple[Mesh, ...]]:
-    """Return cars of several shapes and colours, the finest level of detail first.
+def parked_car(variant: int) -> Levels:
+    """Return a car, the finest level of detail first.
 
-    They stand on the origin and look along x; in metres.
+    It stands on the origin and looks along x; in metres.
+
+    Args:
+        variant: Which shape and colour, below `VARIANTS`.
     """
-    made: list[tuple[Mesh, ...]] = []
-    for number, colour in enumerate(_COLOURS):
-        paint = Material(tint=colour, surface=Surface.PAINT)
-        body, cabin = (np.array(part) for part in (_SALOON, _ESTATE)[number % 2])
-        fine = concatenate([_hull(body, paint), _cabin(cabin, paint), _lamps(body), *_wheels()])
-        coarse = concatenate([_hull(body[[0, 2, 5, 7]], paint), _cabin(cabin, paint)])
-        made.append((fine, coarse))
-    return made
+    paint = Material(tint=_COLOURS[variant], surface=Surface.PAINT)
+    body, cabin = (np.array(part) for part in (_SALOON, _ESTATE)[variant % 2])
+    fine = concatenate([_hull(body, paint), _cabin(cabin, paint), _lamps(body), *_wheels()])
+    coarse = concatenate([_hull(body[[0, 2, 5, 7]], paint), _cabin(cabin, paint)])
+    return fine, coarse
 
 
 def _hull(outline: Points, paint: Material) -> Mesh:

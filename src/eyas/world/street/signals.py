@@ -59,14 +59,9 @@ def signal_places(network: RoadNetwork) -> list[tuple[NDArray[np.float64], float
     return places
 
 
-def add_signals(builder: SceneBuilder, network: RoadNetwork, prototype: int) -> None:
-    """Add a pole with an arm over the lanes at each arm of each junction.
-
-    Args:
-        builder: Takes poles and solid shapes.
-        network: The roads.
-        prototype: Number of `signal_levels` among the fixtures.
-    """
+def add_signals(builder: SceneBuilder, network: RoadNetwork) -> None:
+    """Add a pole with an arm over the lanes at each arm of each junction."""
+    prototype = builder.prototype("traffic light", signal_levels)
     for place, turn in signal_places(network):
         owner = builder.add_copy(ObjectClass.POLE, prototype, (*place, 0.0), turn, 1.0)
         builder.add_cylinder((place[0], place[1]), POLE_RADIUS, FLOOR_HEIGHT, POLE_HEIGHT, owner)

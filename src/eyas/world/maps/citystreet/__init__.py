@@ -1,1 +1,45 @@
-"""The map citystreet."""
+"""The street city: mid-rise blocks on lawn, rows of great trees, a road high above the roofs."""
+
+from typing import TYPE_CHECKING
+
+from eyas.world.maps.recipe import MapRecipe
+from eyas.world.weather import (
+    CLEAR_DAY,
+    CLEAR_NIGHT,
+    DAY,
+    FOG,
+    FOGGY,
+    NIGHT,
+    SNOW,
+    WINTER_DAY,
+    Season,
+)
+
+if TYPE_CHECKING:
+    from eyas.state.roads import RoadGraph, RoadNetwork
+    from eyas.state.scene import Scene
+
+__all__ = ["CITYSTREET"]
+
+
+def _roads(seed: int) -> "RoadGraph":
+    from eyas.world.maps.citystreet.roads import road_graph
+
+    return road_graph(seed)
+
+
+def _scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
+    """Build the city; in winter it is the same one, and snow lies on it."""
+    from eyas.world.maps.citystreet.scene import build_scene
+
+    return build_scene(network, seed)
+
+
+CITYSTREET = MapRecipe(
+    name="citystreet",
+    title="Mid-rise city blocks with rows of great trees",
+    roads=_roads,
+    scene=_scene,
+    lighting={DAY: CLEAR_DAY, FOGGY: FOG, NIGHT: CLEAR_NIGHT, SNOW: WINTER_DAY},
+    package=__name__,
+)

@@ -1,22 +1,22 @@
 """What grows between the houses of the street city, and the cars that stand in its car parks."""
 
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 
 import numpy as np
 import shapely
 
-from eyas.state.mesh import Mesh
 from eyas.state.scene import ObjectClass
 from eyas.world.build.heights import FLOOR_HEIGHT
-from eyas.world.build.scene_builder import SceneBuilder
+from eyas.world.build.scene_builder import Prototype, SceneBuilder
 from eyas.world.maps.citystreet.plan import EXTENT, Plan
 from eyas.world.plants import gardens
-from eyas.world.plants.shrubs import KINDS, plant_levels
-from eyas.world.plants.trees import VARIANTS
 from eyas.world.roads import overpass
-from eyas.world.street.parked_cars import parked_car_levels
+from eyas.world.street.parked_cars import VARIANTS, parked_car
 
-__all__ = ["add_greenery", "add_parked"]
+__all__ = ["Flora", "add_greenery", "add_parked"]
 
 _GARDEN_TREES = ((4.5, 8.5), 11.0, 0.0022)
 """Heights and least distance [m], and how many are tried on a square metre."""
@@ -31,35 +31,46 @@ _ISLAND_EVERY = 9
 """Bays from one planted island to the next."""
 
 
+@dataclass(frozen=True, slots=True)
+class Flora:
+    """What grows in the city."""
+
+    trees: Sequence[Prototype]
+    """1 m high."""
+    plants: Mapping[str, Prototype]
+    """By the names of `plant_makers`."""
+
+
 def add_greenery(
     builder: SceneBuilder,
     plan: Plan,
     taken: shapely.Geometry,
-    first: int,
+    flora: Flora,
     rng: np.random.Generator,
-) -> list[tuple[Mesh, ...]]:
-    """Plant borders along walls, hedges around car parks, and small trees; return the prototypes.
+) -> None:
+    """Plant borders along walls, hedges around car parks, and small trees.
 
     Args:
         builder: Takes the plants.
         plan: Where everything is.
         taken: Where something stands, or is paved [m].
-        first: Number that the first prototype will have among the fixtures.
+        flora: What is planted.
         rng: Of the gardens.
     """
     deck = shapely.buffer(overpass.deck_area(plan.deck), 2.0)
     inside = shapely.difference(shapely.union_all(plan.blocks), shapely.union(taken, deck))
     shapely.prepare(inside)
-    gardens.add_borders(builder, plan.footprints, inside, FLOOR_HEIGHT, first, rng)
+    gardens.add_borders(builder, plan.footprints, inside, FLOOR_HEIGHT, flora.plants, rng)
     built = shapely.union_all([shapely.Polygon(corners) for corners in plan.footprints])
+    hedge = [flora.plants["hedge"]]
     for park in plan.car_parks:
         ring = shapely.get_coordinates(shapely.buffer(park.area, 1.2, join_style="mitre"))
         for side in pairwise(ring):
-            gardens.add_row(builder, ("hedge",), np.array(side), inside, FLOOR_HEIGHT, first, rng)
+            gardens.add_row(builder, hedge, np.array(side), inside, FLOOR_HEIGHT, rng)
     heights, apart, density = _GARDEN_TREES
     room = shapely.difference(shapely.buffer(inside, -1.6), shapely.buffer(built, _FROM_WALL))
     spots = gardens.scattered(room, apart, density, rng)
-    gardens.add_small_trees(builder, spots, heights, FLOOR_HEIGHT, VARIANTS, rng)
+    gardens.add_small_trees(builder, spots, heights, FLOOR_HEIGHT, flora.trees, rng)
     heights, apart, density = _MEADOW_TREES
     streets = shapely.buffer(shapely.union_all([plan.roads, plan.access, deck]), _FROM_STREET)
     room = shapely.difference(
@@ -67,33 +78,29 @@ def add_greenery(
     )
     groups = gardens.scattered(room, apart, density, rng)
     spots = gardens.clustered(groups, 7.0, (1, 6), room, rng)
-    gardens.add_small_trees(builder, spots, heights, FLOOR_HEIGHT, VARIANTS, rng)
-    return plant_levels(rng)
+    gardens.add_small_trees(builder, spots, heights, FLOOR_HEIGHT, flora.trees, rng)
 
 
-def add_parked(
-    builder: SceneBuilder, plan: Plan, first: int, rng: np.random.Generator
-) -> list[tuple[Mesh, ...]]:
-    """Fill bays of the car parks with islands, small trees and cars; return the cars' prototypes.
+def add_parked(builder: SceneBuilder, plan: Plan, flora: Flora, rng: np.random.Generator) -> None:
+    """Fill bays of the car parks with islands, small trees and cars.
 
     Args:
         builder: Takes them.
         plan: Where everything is.
-        first: Number of the first car; the kinds of `plant_levels` come before it.
+        flora: What is planted.
         rng: Of the car parks.
     """
-    cars = parked_car_levels()
-    island = first - len(KINDS) + KINDS.index("island")
+    cars = [builder.prototype(f"parked car {k}", partial(parked_car, k)) for k in range(VARIANTS)]
+    island = flora.plants["island"]
     for park in plan.car_parks:
         for index, (x, y, turn) in enumerate(park.bays):
             if index % _ISLAND_EVERY == _ISLAND_EVERY // 2:
                 builder.add_copy(ObjectClass.STRUCTURE, island, (x, y, 0.0), turn, 1.0)
                 spot, heights = np.array([[x, y]]), (4.0, 6.0)
-                gardens.add_small_trees(builder, spot, heights, 0.1, VARIANTS, rng)
+                gardens.add_small_trees(builder, spot, heights, 0.1, flora.trees, rng)
             elif rng.random() < _OCCUPIED:
                 ahead = np.pi * float(rng.random() < 0.35)
                 slip = (x + rng.normal(0, 0.06), y + rng.normal(0, 0.06), 0.0)
                 way = turn + ahead + rng.normal(0, 0.015)
-                number = first + int(rng.integers(len(cars)))
-                builder.add_copy(ObjectClass.STRUCTURE, number, slip, way, rng.uniform(0.94, 1.04))
-    return cars
+                car = cars[int(rng.integers(len(cars)))]
+                builder.add_copy(ObjectClass.STRUCTURE, car, slip, way, rng.uniform(0.94, 1.04))

@@ -1,32 +1,37 @@
-"""The street city: mid-rise blocks on lawn, rows of great trees, a road high above the roofs."""
+"""The scene of the street city."""
+
+from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 import shapely
 
 from eyas.core.rng import stream
-from eyas.state.mesh import Material, Mesh, Surface
+from eyas.state.mesh import Material, Surface
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import ObjectClass, Scene
+from eyas.state.terrain import Terrain
 from eyas.world.build import materials
 from eyas.world.build.heights import FLOOR_HEIGHT, KERB_HEIGHT
-from eyas.world.build.scene_builder import SceneBuilder
+from eyas.world.build.scene_builder import Prototype, SceneBuilder
 from eyas.world.buildings import placing as buildings
 from eyas.world.buildings import rooftops
 from eyas.world.buildings.facades import chance_of, mesh_of
 from eyas.world.land import ground, outskirts
-from eyas.world.maps.citystreet.greenery import add_greenery, add_parked
+from eyas.world.maps.citystreet.greenery import Flora, add_greenery, add_parked
 from eyas.world.maps.citystreet.plan import EXTENT, FLOOR, Plan, make_plan
-from eyas.world.maps.citystreet.roads import NAME, road_graph
+from eyas.world.maps.citystreet.roads import NAME
 from eyas.world.plants import gardens, trees
+from eyas.world.plants.shrubs import plant_makers
 from eyas.world.roads import markings, overpass
 from eyas.world.roads import wear as road_wear
 from eyas.world.roads.areas import surface
 from eyas.world.roads.pillars import BASE_HEIGHT, COLUMN_RADIUS, pillar_mesh, pillars
 from eyas.world.street.furnishing import add_furniture
-from eyas.world.street.lamps import add_lamps, lamp_levels
-from eyas.world.street.signals import add_signals, signal_levels, signal_places
+from eyas.world.street.lamps import add_lamps
+from eyas.world.street.signals import add_signals, signal_places
 
-__all__ = ["FLOOR", "NAME", "build_scene", "road_graph"]
+__all__ = ["build_scene"]
 
 _LAMPS = 48
 _TREE_HEIGHTS = (14.8, 19.8, 27.0)
@@ -44,31 +49,34 @@ def build_scene(network: RoadNetwork, seed: int) -> Scene:
         seed: Of the map, >= 0.
     """
     plan = make_plan(network, seed)
-    builder = SceneBuilder()
+    builder = SceneBuilder(NAME, seed, FLOOR, Terrain.flat(FLOOR_HEIGHT))
     yards = gardens.paved_yards(plan.footprints, plan.pavement, _no_lawn(plan))
+    trunks, beds = stream(seed, "citystreet trees", 1), stream(seed, "citystreet gardens")
+    kinds = [
+        builder.prototype(f"street tree {k}", partial(trees.street_tree_levels, trunks, k))
+        for k in range(trees.VARIANTS)
+    ]
     # What hides most comes first: it is drawn first, and nobody draws over it.
-    _add_buildings(builder, plan, trees.VARIANTS)
+    _add_buildings(builder, plan)
     _add_overpass(builder, plan)
     _add_ground(builder, plan, network, yards, seed)
-    levels = _add_trees(builder, plan, stream(seed, "citystreet trees", 1))
-    levels += rooftops.rooftop_levels()
-    add_signals(builder, network, len(levels))
-    levels += [signal_levels(), lamp_levels()]
+    _add_trees(builder, plan, kinds, trunks)
+    add_signals(builder, network)
     taken = _taken(plan, network)
-    rng = stream(seed, "citystreet lamps")
-    lights = add_lamps(builder, network, _LAMPS, taken, len(levels) - 1, rng)
+    lights = add_lamps(builder, network, _LAMPS, taken, stream(seed, "citystreet lamps"))
     feet = shapely.buffer(shapely.points(lights.position[:, :2].astype(float)), 4.0)
     taken = shapely.union_all([taken, *feet])
     rng = stream(seed, "citystreet furniture")
-    height = KERB_HEIGHT
-    levels += add_furniture(builder, network, plan.pavement, taken, height, len(levels), rng)
+    add_furniture(builder, network, plan.pavement, taken, KERB_HEIGHT, rng)
     taken = shapely.union_all([taken, plan.pavement, *yards])
-    levels += add_greenery(builder, plan, taken, len(levels), stream(seed, "citystreet gardens"))
-    levels += add_parked(builder, plan, len(levels), stream(seed, "citystreet parked cars"))
-    return builder.build(NAME, seed, FLOOR, FLOOR_HEIGHT, levels, network, lights)
+    plants = {name: builder.prototype(name, make) for name, make in plant_makers(beds).items()}
+    flora = Flora(kinds, plants)
+    add_greenery(builder, plan, taken, flora, beds)
+    add_parked(builder, plan, flora, stream(seed, "citystreet parked cars"))
+    return builder.build(network, lights)
 
 
-def _add_buildings(builder: SceneBuilder, plan: Plan, first: int) -> None:
+def _add_buildings(builder: SceneBuilder, plan: Plan) -> None:
     """Add buildings and what stands on their roofs."""
     towers = [shapely.Polygon(b.footprint) for b in plan.buildings if b.bottom > FLOOR_HEIGHT]
     above = shapely.union_all(towers)
@@ -79,7 +87,7 @@ def _add_buildings(builder: SceneBuilder, plan: Plan, first: int) -> None:
             top = building.bottom + building.height
             free = above if building.bottom <= FLOOR_HEIGHT else shapely.Polygon()
             rng = chance_of(building)
-            rooftops.add_rooftop(builder, building.footprint, top, owner, first, free, rng)
+            rooftops.add_rooftop(builder, building.footprint, top, owner, free, rng)
 
 
 def _no_lawn(plan: Plan) -> shapely.Geometry:
@@ -142,13 +150,12 @@ def _add_overpass(builder: SceneBuilder, plan: Plan) -> None:
 
 
 def _add_trees(
-    builder: SceneBuilder, plan: Plan, rng: np.random.Generator
-) -> list[tuple[Mesh, ...]]:
-    """Add a tree at each trunk; return the kinds of trees."""
+    builder: SceneBuilder, plan: Plan, kinds: Sequence[Prototype], rng: np.random.Generator
+) -> None:
+    """Add a tree of one of the kinds at each trunk."""
     for place in plan.trees:
         height = rng.choice(_TREE_HEIGHTS, p=_TREE_ODDS) * rng.uniform(0.93, 1.0)
         spot = (*place, FLOOR_HEIGHT)
-        kind, turn = int(rng.integers(trees.VARIANTS)), rng.uniform(0, 2 * np.pi)
+        kind, turn = kinds[int(rng.integers(len(kinds)))], rng.uniform(0, 2 * np.pi)
         owner = builder.add_copy(ObjectClass.TREE, kind, spot, turn, height)
         builder.add_cylinder(place, 0.022 * height, FLOOR_HEIGHT, 0.3 * height, owner)
-    return [trees.street_tree_levels(rng, kind) for kind in range(trees.VARIANTS)]

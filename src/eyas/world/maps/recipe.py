@@ -1,0 +1,125 @@
+"""One object for each map: everything that makes it what it is."""
+
+import re
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from hashlib import blake2b
+from importlib.resources.abc import Traversable
+from typing import TYPE_CHECKING
+
+from eyas.core.errors import ConfigError, UnknownNameError
+from eyas.state.lighting import Lighting
+from eyas.world.weather import Season, Weather
+
+if TYPE_CHECKING:  # every map is imported with `eyas`: what builds a scene is imported when it does
+    from eyas.state.roads import RoadGraph, RoadNetwork
+    from eyas.state.scene import Scene
+
+__all__ = ["NETWORK_FILE", "TRAFFIC_FILE", "MapRecipe"]
+
+NETWORK_FILE = "network.npz"
+"""File in a map's package with the processed roads of its seed 0."""
+
+TRAFFIC_FILE = "traffic.npz"
+"""File in a map's package with the canonical recording of its traffic."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapRecipe:
+    """A map: its roads, its scene for a season, its light for each weather."""
+
+    name: str
+    """Word or words joined by hyphens; names folders and environments."""
+    title: str
+    """A few words for people."""
+    roads: Callable[[int], "RoadGraph"]
+    """Draws the roads of a seed; seed 0 is the canonical map."""
+    scene: Callable[["RoadNetwork", int, Season], "Scene"]
+    """Builds everything else around the processed roads of the same seed."""
+    lighting: Mapping[Weather, Lighting]
+    """Light and air of each weather that the map has."""
+    seasons: bool = False
+    """Whether the scene of winter is another one than that of summer: other trees, roofs or crops.
+    Snow that falls on what is there is part of the light (`Lighting.snow`) and needs no other."""
+    package: str | None = None
+    """Package that the map is in, mostly `__name__`: it may hold `NETWORK_FILE` and `TRAFFIC_FILE`,
+    and a change of its source makes the scene anew. None: nothing is shipped, and the scene is not
+    kept from run to run."""
+
+    def __post_init__(self) -> None:
+        if not re.fullmatch(r"\w+(-\w+)*", self.name):
+            raise ConfigError(
+                f"MapRecipe.name: {self.name!r} is not allowed; allowed: words joined by hyphens"
+            )
+
+    @property
+    def weathers(self) -> tuple[str, ...]:
+        """Names of the weathers that the map has."""
+        return tuple(weather.name for weather in self.lighting)
+
+    def light(self, weather: str) -> Lighting:
+        """Return light and air of a weather.
+
+        Raises:
+            UnknownNameError: The map has no such weather.
+        """
+        return self.lighting[self._weather(weather)]
+
+    def season(self, weather: str) -> Season:
+        """Return whose scene a weather shows; a map without seasons has one for all.
+
+        Raises:
+            UnknownNameError: The map has no such weather.
+        """
+        season = self._weather(weather).season
+        return season if self.seasons else Season.SUMMER
+
+    @property
+    def folder(self) -> Traversable | None:
+        """Folder of the map's package; None without a package."""
+        if self.package is None:
+            return None
+        from importlib.resources import files  # not needed to know the map
+
+        return files(self.package)
+
+    def shipped(self, file: str) -> Traversable | None:
+        """Return a file that comes with the map's package; None if there is none."""
+        path = self.folder / file if self.folder is not None else None
+        return path if path is not None and path.is_file() else None
+
+    def source_hash(self) -> str | None:
+        """Return a hash of the sources of the map's package; None without a package."""
+        return None if self.folder is None else _source_hash(self.folder)
+
+    def shipped_network(self) -> "RoadNetwork | None":
+        """Return the processed roads of seed 0 that come with the package, if there are any.
+
+        Raises:
+            DataFileError: The installation is damaged.
+        """
+        from importlib.resources import as_file
+
+        from eyas.world.roads.network_file import load_network
+
+        found = self.shipped(NETWORK_FILE)
+        if found is None:
+            return None
+        with as_file(found) as path:
+            return load_network(path)
+
+    def _weather(self, name: str) -> Weather:
+        for weather in self.lighting:
+            if weather.name == name:
+                return weather
+        raise UnknownNameError("world.weather", name, self.weathers, f"on the map '{self.name}'")
+
+
+def _source_hash(folder: Traversable) -> str:
+    digest = blake2b(digest_size=16)
+    for path in sorted(folder.iterdir(), key=lambda path: path.name):
+        if path.is_dir():
+            digest.update(f"{path.name}/{_source_hash(path)}".encode())
+        elif path.name.endswith(".py"):
+            digest.update(path.name.encode() + path.read_bytes())
+    return digest.hexdigest()

@@ -1,0 +1,45 @@
+"""Points that are scattered within shapes: how far apart they are, and how long it takes."""
+
+import time
+
+import numpy as np
+import pytest
+import shapely
+
+from eyas.world.plants.gardens import scattered
+
+YARD = shapely.box(-40.0, -25.0, 60.0, 30.0)
+ISLES = shapely.MultiPolygon([shapely.box(0, 0, 30, 30), shapely.box(33, 0, 60, 30)])
+
+
+def one_by_one(room, apart, density, rng):
+    """The same points, each compared with all before it."""
+    chosen = np.zeros((0, 2))
+    for part in shapely.get_parts(room):
+        west, south, east, north = part.bounds
+        tries = rng.poisson(density * (east - west) * (north - south))
+        points = rng.uniform((west, south), (east, north), (tries, 2))
+        for point in points[shapely.contains_xy(part, points)]:
+            if np.linalg.norm(chosen - point, axis=1).min(initial=np.inf) > apart:
+                chosen = np.concatenate([chosen, point[None]])
+    return chosen
+
+
+@pytest.mark.parametrize("room", [YARD, ISLES, YARD.buffer(-3).difference(shapely.Point(0, 0))])
+@pytest.mark.parametrize("apart", [0.7, 4.0, 11.0, 500.0])
+def test_a_point_stands_where_no_earlier_one_is_near(room, apart):
+    found = scattered(room, apart, 0.4, np.random.default_rng(5))
+    np.testing.assert_array_equal(found, one_by_one(room, apart, 0.4, np.random.default_rng(5)))
+    assert len(found) > 0
+
+
+def test_a_shape_without_room_holds_none():
+    assert scattered(shapely.Polygon(), 2.0, 1.0, np.random.default_rng(0)).shape == (0, 2)
+
+
+def test_the_forests_of_a_lake_take_no_time():
+    start = time.process_time()
+    found = scattered(shapely.box(0, 0, 400, 400), 2.0, 0.2, np.random.default_rng(1))
+    assert len(found) > 13_500
+    # Each compared with all before it would take half a minute.
+    assert time.process_time() - start < 3.0
