@@ -7,11 +7,14 @@ import pytest
 
 from eyas.core.parallel import Held
 from eyas.mesh.solids import box
-from eyas.render.bake.ambient import bake_ambient
+from eyas.render.bake.ambient import bake_ambient, canopy_map, height_map
 from eyas.render.kernels.light.ambient import BOUNCED, OpennessBake, bake_openness
+from eyas.state.scene import ObjectClass
+from eyas.state.terrain import Terrain, ground_at
 from eyas.world.build.materials import material
+from eyas.world.land.hills import Hill, hilly, relief_mesh
 
-from .small_city import DAY, GROUND, TOWER, floor, looking, scene_of, tower, trees_at
+from .small_city import DAY, GROUND, TOWER, TREE_OBJECT, floor, looking, scene_of, tower, trees_at
 
 SHADE = dataclasses.replace(DAY, sun_colour=(0.0, 0.0, 0.0), fog_density=0.0)
 
@@ -81,6 +84,27 @@ def test_walls_darken_towards_their_feet_and_roofs_stay_bright(drawn, renderer_o
     lone = scene_of([block], [TOWER], size=1.0)  # no map reaches so far
     alone = drawn(renderer_of(lone, lighting=SHADE), looking(down[2:], pitch=np.pi / 2, fov=0.02))
     assert roof == pytest.approx(int(alone.rgb[0, 48, 64].astype(int).sum()), abs=6)
+
+
+def test_a_hill_is_no_wall_and_what_stands_on_it_is_as_high_as_it_is():
+    terrain = hilly((120.0, 120.0), 0.0, [Hill(0.0, 0.0, 50.0, 30.0)])
+    hill = relief_mesh(terrain, material("plain"))
+    top = tower(0.0, 0.0, 10.0, 12.0)
+    top.positions[:, 2] += np.where(top.positions[:, 2] > 0, 30.0, 0.0)
+    scene = scene_of([hill, top], [GROUND, TOWER], size=120.0)
+    scene.terrain = terrain
+    scene.fixtures = trees_at([(25.0, 0.0)])
+    scene.object_class[TREE_OBJECT] = ObjectClass.TREE
+    scene.fixtures.pose[:, 2, 3] = ground_at(terrain, 25.0, 0.0)
+    frame = np.array([-60.0, -60.0, 1.0, 0.0])
+    solid, crowns = (make(scene, frame, (120, 120)) for make in (height_map, canopy_map))
+    corner = 42.0 - ground_at(terrain, 5.0, 5.0)  # of the roof, where it is highest
+    assert solid[60, 60] == pytest.approx(corner, abs=0.01)
+    solid[54:67, 54:67] = 0.0
+    assert solid.max() == 0.0
+    assert 5.0 < crowns.max() < 10.0
+    bare = bake_ambient(dataclasses.replace(scene, terrain=Terrain.flat(0.0)), None)
+    assert (bake_ambient(scene, None).openness != bare.openness).any()
 
 
 def test_the_map_is_kept_and_follows_what_stands(tmp_path):

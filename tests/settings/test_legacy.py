@@ -175,7 +175,7 @@ def test_native_to_legacy_and_back_loses_nothing(config):
         ({"start": {"pitch": {"choice": [1.0]}}}, "start.pitch"),
         ({"light": {"sun": {"uniform": [0, 1]}}}, "light.sun_replaces"),
         ({"light": {"sun": 0.5, "sun_replaces": True}}, "light.sun_replaces"),
-        ({"world": {"map": "a-b"}}, "world.map"),
+        ({"world": {"map": "a/b"}}, "world.map"),
     ],
 )
 def test_what_cannot_be_said_is_one_line(values, path, tmp_path, caplog):
@@ -292,6 +292,7 @@ def test_random_fog_is_drawn_between_both_limits():
         ("/home/me/worlds/lake-night.wbt", ("lake", "night")),
         (r"C:\worlds\village-snow.wbt", ("village", "snow")),
         ("simpleway-grass_foggy.wbt", ("simpleway", "grass_foggy")),
+        ("worlds/old-town-day.wbt", ("old-town", "day")),
     ],
 )
 def test_the_path_of_a_world_gives_map_and_weather(path, place):

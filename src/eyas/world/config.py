@@ -17,7 +17,7 @@ class WorldConfig(Config):
     """Which map, in which weather."""
 
     map: Annotated[str, Field(min_length=1)] = "citystreet"
-    """Name of the map."""
+    """Name of the map, or the path of a user's own, `package.module:attribute`."""
     weather: Annotated[str, Field(min_length=1)] = "day"
     """Name of the weather."""
     seed: Annotated[int, Field(ge=0, lt=2**31)] = 0

@@ -41,7 +41,7 @@ class WorldPath(Entry):
             return {}
         if not isinstance(path, str):
             raise ConfigError(f"{self.key}: {shown(path)} is not allowed: text")
-        found = re.fullmatch(r"(?:.*[/\\])?([^-/\\]+)-([^/\\]+)\.wbt", path)
+        found = re.fullmatch(r"(?:.*[/\\])?([^/\\]+)-([^-/\\]+)\.wbt", path)
         if found is None:
             _LOG.warning("%s: %s names no map and weather; it is not used", self.key, shown(path))
             return {}

@@ -1,0 +1,79 @@
+"""A map of your own: a field with a ring road around a hill. Nothing in Eyas knows of it.
+
+    PYTHONPATH=examples python examples/own_map.py
+
+In an installed package such a file needs no registration: `world.map` takes its path,
+`own_map:FIELD`. `MAPS.register("field", FIELD)` gives it a short name in a process, an entry point
+in the group `eyas.maps` gives it one wherever the package is installed. Roads and traffic are made
+with SUMO on first use; `eyas traffic record --map own_map:FIELD --canonical` puts them into the
+map's package, to be shipped with it.
+"""
+
+import math
+
+import gymnasium
+
+from eyas.envs.registration import register_map
+from eyas.state.roads import RoadEdge, RoadGraph, RoadNetwork, RoadNode
+from eyas.state.scene import ObjectClass, Scene
+from eyas.world.build.heights import FLOOR_HEIGHT
+from eyas.world.build.materials import material
+from eyas.world.build.scene_builder import SceneBuilder
+from eyas.world.land.ground import asphalt
+from eyas.world.land.hills import Hill, hilly, relief_mesh
+from eyas.world.maps import MapRecipe
+from eyas.world.roads.areas import road_area
+from eyas.world.weather import CLEAR_DAY, DAY, FOG, FOGGY, Season
+
+SIZE = (400.0, 400.0)
+HILL = Hill(x=0.0, y=0.0, radius=75.0, height=30.0)
+CORNERS = 8
+
+
+def roads(seed: int) -> RoadGraph:
+    """Return a ring of two lanes each way; other seeds make it wider."""
+    radius = 110.0 + 5.0 * (seed % 5)
+    angles = [2 * math.pi * k / CORNERS for k in range(CORNERS)]
+    nodes = tuple(
+        RoadNode(f"n{k}", round(radius * math.cos(a), 3), round(radius * math.sin(a), 3))
+        for k, a in enumerate(angles)
+    )
+    links = [(f"n{k}", f"n{(k + 1) % CORNERS}") for k in range(CORNERS)]
+    both = [pair for a, b in links for pair in ((a, b), (b, a))]
+    edges = tuple(RoadEdge(name=f"{a}-{b}", start=a, end=b) for a, b in both)
+    return RoadGraph("field", seed, nodes, edges)
+
+
+def scene(network: RoadNetwork, seed: int, season: Season) -> Scene:
+    """Return grass, the hill and the road."""
+    terrain = hilly(SIZE, FLOOR_HEIGHT, [HILL])
+    builder = SceneBuilder("field", seed, SIZE, terrain)
+    builder.add(ObjectClass.ROAD, asphalt(road_area(network)))
+    builder.add(ObjectClass.GROUND, relief_mesh(terrain, material("lawn")))
+    return builder.build(network)
+
+
+FIELD = MapRecipe(
+    name="field",
+    title="A field with a hill",
+    roads=roads,
+    scene=scene,
+    lighting={DAY: CLEAR_DAY, FOGGY: FOG},
+    package=__package__ or None,
+)
+
+
+def main() -> None:
+    """Fly over the field for a second."""
+    register_map("own_map:FIELD")
+    env = gymnasium.make("eyas/field-day-v0", config={"traffic": {"max_vehicles": 3}})
+    observation, _ = env.reset(seed=1)
+    for _ in range(125):
+        observation, reward, ended, cut, _ = env.step(env.action_space.sample())
+        if ended or cut:
+            break
+    print(f"{observation.shape} pixels, reward {reward:.2f}")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,107 @@
+"""A map in a package of the user's own: found, built, driven and drawn without an edit in Eyas."""
+
+import shutil
+import sys
+from pathlib import Path
+
+import gymnasium
+import numpy as np
+import pytest
+
+from eyas.core.errors import MissingExtraError, UnknownNameError
+from eyas.envs.registration import register_map
+from eyas.sim import place
+from eyas.state.draw import DrawList, Picture, Views
+from eyas.state.terrain import ground_at
+from eyas.traffic import library
+from eyas.traffic.config import TrafficConfig
+from eyas.traffic.network import build_network
+from eyas.traffic.record import record
+from eyas.traffic.recording_file import save
+from eyas.traffic.sumo_install import import_libsumo
+from eyas.world.config import WorldConfig
+from eyas.world.maps import MAPS
+from eyas.world.maps.recipe import NETWORK_FILE, TRAFFIC_FILE
+from eyas.world.roads.network_file import save_network
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "own_map.py"
+NAME = "field_of_a_user:FIELD"
+CARS = TrafficConfig(max_vehicles=3)
+
+pytestmark = [pytest.mark.sumo, pytest.mark.usefixtures("shipped")]
+
+
+@pytest.fixture(scope="module")
+def shipped(tmp_path_factory):
+    """The example as a package that ships its roads and its traffic; SUMO is not asked again."""
+    try:
+        import_libsumo()
+    except MissingExtraError as error:
+        pytest.skip(str(error))
+    folder = tmp_path_factory.mktemp("packages")
+    package = folder / NAME.partition(":")[0]
+    package.mkdir()
+    shutil.copy(EXAMPLE, package / "__init__.py")
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(folder)
+        graph = MAPS.get(NAME).roads(0)
+        save_network(package / NETWORK_FILE, build_network(graph))
+        made = record("field", 0, graph, CARS, library.STANDARD_DURATION, library.CANONICAL_SEED)
+        save(made, package / TRAFFIC_FILE)
+        for module, name in ((library, "_cached_or_new"), (place, "build_network")):
+            patch.setattr(module, name, lambda *args: pytest.fail("what is shipped was made again"))
+        yield package
+    del sys.modules[package.name]
+
+
+def test_it_is_an_environment_for_each_of_its_weathers():
+    register_map(NAME)
+    ids = {name for name in gymnasium.registry if name.startswith("eyas/field-")}
+    assert ids == {"eyas/field-day-v0", "eyas/field-foggy-v0"}
+
+
+def test_an_environment_runs_in_it(shipped):
+    register_map(NAME)
+    env = gymnasium.make("eyas/field-day-v0", config={"traffic": CARS.model_dump()})
+    first, _ = env.reset(seed=3)
+    again, _ = env.reset(seed=3)
+    np.testing.assert_array_equal(first, again)
+    assert first.std() > 5.0  # a car on a road in the grass
+    for _ in range(10):
+        later, _, ended, cut, _ = env.step(env.action_space.sample())
+        assert not cut
+        assert not ended
+    assert (later != first).any()
+    with pytest.raises(UnknownNameError, match="on the map 'field'; known: day, foggy"):
+        gymnasium.make("eyas/field-day-v0", weather="snow").reset()
+
+
+def test_its_hill_is_what_the_camera_sees_and_what_the_terrain_says():
+    there = place.load_place(WorldConfig(map=NAME), CARS, 1)
+    spots = [(0.0, 0.0), (30.0, -12.0), (110.0, 0.0)]
+    picture = Picture.create(len(spots), 9, 9, depth=True)
+    views = Views(
+        position=np.array([(*spot, 100.0) for spot in spots]),
+        rotation=np.tile([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]], (len(spots), 1, 1)),
+        world=np.zeros(len(spots), np.int32),
+        subject=np.full(len(spots), -1, np.int32),
+        field_of_view=0.02,
+    )
+    there.renderer.draw(views, DrawList.create(1, 1), picture)
+    seen = 100.0 - picture.depth[:, 4, 4]
+    said = [ground_at(there.scene.terrain, *spot) for spot in spots]
+    assert said[0] == pytest.approx(29.9, abs=0.01)
+    assert seen[:2] == pytest.approx(said[:2], abs=0.3)
+    assert seen[2] == pytest.approx(0.0, abs=0.02)  # the road lies on the floor
+
+
+def test_its_scene_is_kept_until_its_source_changes(shipped, monkeypatch):
+    made = []
+    monkeypatch.setattr(place, "kept", lambda name, rooms, inputs, make: made.append(inputs))
+    for text in ("", "", "# another hill\n"):
+        source = shipped / "__init__.py"
+        source.write_text(source.read_text() + text)
+        place.load_scene.cache_clear()
+        place.load_scene(NAME, 0)
+    place.load_scene.cache_clear()
+    assert made[0] == made[1] != made[2]
