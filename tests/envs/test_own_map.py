@@ -97,7 +97,7 @@ def test_its_hill_is_what_the_camera_sees_and_what_the_terrain_says():
 
 def test_its_scene_is_kept_until_its_source_changes(shipped, monkeypatch):
     made = []
-    monkeypatch.setattr(place, "kept", lambda name, rooms, inputs, make: made.append(inputs))
+    monkeypatch.setattr(place, "cached", lambda *args, of: made.append(args[:3]))
     for text in ("", "", "# another hill\n"):
         source = shipped / "__init__.py"
         source.write_text(source.read_text() + text)
