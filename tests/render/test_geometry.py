@@ -1,5 +1,7 @@
 """Packed arrays hold what the scene holds."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from eyas.core.cache.cached import cached
@@ -9,7 +11,7 @@ from eyas.core.parallel import Held
 from eyas.render.kernels.bundles import GROUP, Geometry
 from eyas.render.kernels.surface.texture import level_of, texel
 from eyas.render.pack.geometry import build_geometry
-from eyas.render.pack.triangles import gradients
+from eyas.render.pack.triangles import gradients, solid_triangles
 from eyas.render.textures.mipmap import packed_layers
 from eyas.state.draw import PartLibrary
 
@@ -127,3 +129,22 @@ def test_the_level_has_about_one_texel_in_a_pixel():
             assert level_at(np.float32((factor * 2.0**level) ** 2)) == level
     assert level_at(np.float32(0.0)) == 0
     assert level_at(np.float32(1e12)) == 8
+
+
+def test_a_sliver_without_width_is_left_out_and_gives_no_number_that_is_none():
+    """Its corners lie on a line but for the last bits, as polygons of roads may leave them."""
+    sliver = [[0.0, -35.74767, 0.15], [23.706552, -64.0, 0.15], [17.931557, -57.117638, 0.15]]
+    corners = np.array([*sliver, [0, 0, 0], [1, 0, 0], [0, 1, 0]], np.float32)
+    up = np.tile(np.array([0, 0, 1], np.float32), (6, 1))
+    triangles = np.arange(6, dtype=np.int32).reshape(2, 3)
+    mesh = replace(
+        floor(),
+        positions=corners,
+        normals=up,
+        uvs=corners[:, :2],
+        triangles=triangles,
+        materials=np.zeros(2, np.int32),
+    )
+    solid = solid_triangles(mesh)
+    assert np.isfinite(gradients(corners, up, corners[:, :2], triangles[solid])).all()
+    assert solid[1]

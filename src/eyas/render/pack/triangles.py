@@ -11,8 +11,11 @@ __all__ = ["gradients", "solid_triangles"]
 def solid_triangles(mesh: Mesh) -> NDArray[np.bool_]:
     """Return which triangles have an area, shape (T,)."""
     a, b, c = np.moveaxis(mesh.positions[mesh.triangles].astype(np.float64), 1, 0)
-    solid: NDArray[np.bool_] = np.linalg.norm(np.cross(b - a, c - a), axis=1) > 1e-10
-    return solid
+    e1, e2 = b - a, c - a
+    solid: NDArray[np.bool_] = np.linalg.norm(np.cross(e1, e2), axis=1) > 1e-10
+    # `gradients` divides by this; of long slivers it may be 0 though they have a tiny area.
+    square = _dot(e1, e1) * _dot(e2, e2) - _dot(e1, e2) ** 2
+    return solid & (square[:, 0] > 0.0)
 
 
 def gradients(
