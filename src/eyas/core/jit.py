@@ -8,7 +8,7 @@ import hashlib
 import inspect
 import os
 import types
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Any, TypeVar, cast
 
@@ -20,6 +20,7 @@ __all__ = [
     "inner_kernel",
     "kernel",
     "kernel_folder",
+    "may_be_kept",
     "nothing_compiled",
     "specialised",
     "step_kernel",
@@ -97,7 +98,35 @@ def _compiled(function: Function, **settings: object) -> Function:
         return template(tuple(map(_widened, args)), {name: _widened(kws[name]) for name in kws})
 
     dispatcher.get_call_template = template_for_any
+    cache = dispatcher._cache
+    save = cache.save_overload
+
+    def save_for_all(kinds: tuple[object, ...], compiled: object) -> None:
+        if may_be_kept(function, kinds):
+            save(kinds, compiled)
+
+    cache.save_overload = save_for_all
     return cast("Function", dispatcher)
+
+
+def may_be_kept(function: Callable[..., Any], kinds: Iterable[object]) -> bool:
+    """Return whether a function compiled for arguments of some types may be kept on disk.
+
+    numba notes the types of all that was compiled from a function in one file. A program without
+    the class of one of them, such as the memory of somebody's own tracker, could not read it.
+    """
+    own = not function.__module__.startswith("eyas.") or hasattr(function, "specialised")
+    return own or all(map(_known_to_all, kinds))
+
+
+def _known_to_all(kind: object) -> bool:
+    """Return whether every program that runs Eyas has the classes in a type."""
+    if isinstance(kind, numba.types.CPointer):
+        return _known_to_all(kind.dtype)
+    if isinstance(kind, numba.types.BaseNamedTuple):
+        if not kind.instance_class.__module__.startswith("eyas."):
+            return False
+    return not isinstance(kind, numba.types.BaseTuple) or all(map(_known_to_all, kind.types))
 
 
 def _widened(kind: object) -> object:
@@ -154,6 +183,7 @@ def specialised(function: Function, **kernels: Callable[..., Any]) -> Function:
     digest = hashlib.sha256("".join(parts).encode()).hexdigest()[:16]
     made.__module__ = function.__module__
     made.__qualname__ = f"{function.__qualname__}_{digest}"
+    made.__dict__["specialised"] = digest
     return cast("Function", made)
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.intrinsics import layout_of, size_of, store
-from eyas.core.jit import KERNEL_SETTINGS, kernel, thread_count
+from eyas.core.jit import KERNEL_SETTINGS, kernel, may_be_kept, thread_count
 
 __all__ = ["BoundKernel", "Held", "Pointer", "parallel_kernel"]
 
@@ -198,7 +198,8 @@ class parallel_kernel(Generic[Bundle]):  # noqa: N801  # a decorator like `kerne
         pointers = [numba.types.CPointer(numba.typeof(part.bundle)) for part in parts]
         table = numba.types.CPointer(numba.types.Tuple(pointers))
         signature = numba.void(table, numba.intp, numba.intp)
-        return numba.cfunc(signature, **KERNEL_SETTINGS)(self.function)
+        settings = {**KERNEL_SETTINGS, "cache": may_be_kept(self.function, pointers)}
+        return numba.cfunc(signature, **settings)(self.function)
 
 
 @kernel
