@@ -81,6 +81,7 @@ class Episodes:
         targets = self._targets
         model = self._worlds.model_of(tracker, actor)
         targets.actor[tracker] = actor
+        targets.lost[tracker] = False
         targets.model[tracker] = model
         targets.size[tracker] = VEHICLES[model].size
         targets.rise[tracker] = VEHICLES[model].wheel_radius

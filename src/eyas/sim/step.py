@@ -169,7 +169,7 @@ def _move_target(
     """Read where the target of tracker n is; a target that has left stays where it was."""
     time = episodes.tick[n] * PHYSICS_STEP
     pose = interpolate_actor(around.motion, targets.actor[n], time)
-    if not pose.present:
+    if targets.lost[n] or not pose.present:
         targets.lost[n] = True
         targets.speed[n] = 0.0
         return

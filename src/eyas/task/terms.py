@@ -44,7 +44,7 @@ class RewardTerms:
         terms = {BUILTIN: snapshot.episodes.reward.copy()}
         total = self._weight * terms[BUILTIN]
         for name, term, weight in self._terms:
-            values = np.asarray(term(snapshot), np.float64)
+            values = np.array(term(snapshot), np.float64)
             if values.shape != total.shape:
                 raise ConfigError(
                     f"reward.terms.{name}: it returned an array of shape {values.shape}; "
