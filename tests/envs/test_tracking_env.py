@@ -110,3 +110,32 @@ def test_the_overlay_is_rendered_and_never_observed():
         clean, drawn = plain.render(), overlaid.render()
         assert np.array_equal(*seen)
         assert (clean != drawn).any(axis=-1).mean() > 0.2
+
+
+def test_terms_of_one_s_own_are_rewarded_and_told_by_name(tmp_path, monkeypatch):
+    (tmp_path / "speed_term.py").write_text(
+        "def speed(snapshot):\n    return snapshot.targets.speed"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    reward = {"weight": 0.5, "terms": {"speed_term:speed": 0.25}}
+    env, plain = TrackingEnv({"reward": reward}), TrackingEnv()
+    for each in (env, plain):
+        _, info = each.reset(seed=5)
+        assert "reward_terms" not in info
+    for _ in range(3):
+        _, total, *_, info = env.step(6)
+        _, builtin, *_, told = plain.step(6)
+        speed = info["reward_terms"]["speed_term:speed"]
+        assert speed > 0.0
+        assert told["reward_terms"] == {"builtin": builtin}
+        assert info["reward_terms"] == {"builtin": builtin, "speed_term:speed": speed}
+        assert total == pytest.approx(0.5 * builtin + 0.25 * speed)
+        assert isinstance(total, float)
+
+
+def test_a_term_that_is_not_there_is_one_line():
+    with pytest.raises(
+        EyasError, match=r"^reward\.terms: 'nowhere:f' cannot be imported"
+    ) as caught:
+        TrackingEnv({"reward": {"terms": {"nowhere:f": 1.0}}})
+    assert "\n" not in str(caught.value)

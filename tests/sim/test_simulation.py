@@ -124,3 +124,39 @@ def test_depth_at_the_target_is_its_distance_along_the_axis():
     offset = simulation.snapshot.targets.centre[0] - simulation.snapshot.cameras.position[0]
     along = offset @ simulation.snapshot.cameras.rotation[0, :, 0]
     assert np.median(picture.depth[0][seen]) == pytest.approx(along, abs=1.5)
+
+
+def arrays_of(snapshot):
+    """All arrays of a snapshot by path."""
+    parts = {"light": snapshot.light}
+    for part in ("trackers", "cameras", "targets", "episodes"):
+        named = getattr(snapshot, part)._asdict().items()
+        parts |= {f"{part}.{name}": array for name, array in named}
+    return parts
+
+
+def test_a_copied_snapshot_is_left_alone_by_later_steps():
+    simulation = started(2)
+    simulation.advance(np.full((2, 4), 0.5), 8)
+    live, kept = simulation.snapshot, simulation.snapshot.copy()
+    before = {name: array.copy() for name, array in arrays_of(kept).items()}
+    simulation.advance(np.full((2, 4), -0.5), 300)
+    simulation.reset(np.array([True, False]))
+    for name, array in arrays_of(kept).items():
+        np.testing.assert_array_equal(array, before[name], err_msg=name)
+    changed = {name for name, array in arrays_of(live).items() if (array != before[name]).any()}
+    assert {"trackers.position", "cameras.position", "targets.centre", "episodes.tick"} <= changed
+
+
+def test_results_of_a_step_are_left_alone_by_later_ones():
+    done = DoneConfig(total_steps=200, grace_steps=0)
+    simulation = started(2, config=CONFIG.model_copy(update={"done": done}))
+    result = simulation.advance(np.zeros((2, 4)), 4)
+    flat = [result.reward, *result.terms.values(), result.reason, result.done]
+    before = [array.copy() for array in flat]
+    later = simulation.advance(np.full((2, 4), 3.0), 300)
+    for array, kept in zip(flat, before, strict=True):
+        np.testing.assert_array_equal(array, kept)
+    assert (later.reward != result.reward).all()
+    assert later.done.all()
+    assert not result.done.any()

@@ -1,0 +1,51 @@
+"""Where compiled kernels are kept, in processes of their own."""
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import eyas
+
+TELLS = """
+import os
+from eyas.core.jit import KERNEL_SETTINGS, kernel_folder
+print(KERNEL_SETTINGS["cache"], kernel_folder(), os.environ["NUMBA_CACHE_DIR"])
+"""
+
+COMPILES = """
+from eyas.core.frames import wrap_angle
+from eyas.core.jit import KERNEL_SETTINGS
+from eyas.render import ahead
+assert ahead.compile_ahead() is None
+print(KERNEL_SETTINGS["cache"], wrap_angle(1.0))
+"""
+
+
+def run(program, cache):
+    """Run a program with a cache of its own; return what it says and what it warns of."""
+    environment = {**os.environ, "EYAS_CACHE_DIR": str(cache)}
+    environment.pop("NUMBA_CACHE_DIR", None)
+    command = [sys.executable, "-c", program]
+    done = subprocess.run(command, check=True, capture_output=True, text=True, env=environment)
+    return done.stdout.split(), done.stderr
+
+
+def test_kernels_are_kept_in_the_cache_and_their_use_is_remembered(tmp_path):
+    (kept, folder, used_by_numba), _ = run(TELLS, tmp_path)
+    assert kept == "True"
+    assert folder == used_by_numba
+    assert Path(folder).parent == tmp_path / "kernels"
+    os.utime(folder, (0, 0))
+    run(TELLS, tmp_path)
+    assert time.time() - Path(folder).stat().st_mtime < 100
+
+
+def test_where_nothing_can_be_kept_kernels_are_not_kept_beside_their_sources(tmp_path):
+    (tmp_path / "file").write_text("in the way")
+    beside = set(Path(eyas.__file__).parent.rglob("*.nb[ci]"))
+    said, warned = run(COMPILES, tmp_path / "file" / "cache")
+    assert said == ["False", "1.0"]
+    assert "compiling for about half a minute, at each start: cannot write to" in warned
+    assert set(Path(eyas.__file__).parent.rglob("*.nb[ci]")) == beside

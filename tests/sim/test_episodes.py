@@ -1,0 +1,155 @@
+"""Targets that leave, targets that are changed, rules that are changed."""
+
+import numpy as np
+import pytest
+
+from eyas.core.errors import SpawnError
+from eyas.sim.build import build_simulation
+from eyas.sim.simulation import Simulation
+from eyas.sim.worlds import each_alone, together
+from eyas.state.tracker import ActorState
+from eyas.targets.catalogue import VEHICLES
+from eyas.task.config import DoneConfig, RewardConfig, RewardMode, RewardType
+from eyas.task.done import DoneReason
+from eyas.task.rules import BuiltinReward, make_rules
+from eyas.trackers.drone import DRONE
+
+HOVER = np.zeros((1, 4))
+
+
+def started(config, count=1):
+    simulation = build_simulation(config, each_alone(count))
+    simulation.reset()
+    return simulation
+
+
+def actors_at(replay, tick) -> ActorState:
+    actors = ActorState.create(1, replay.actors)
+    replay.at(np.array([tick * 0.002]), actors)
+    return actors
+
+
+def test_the_target_is_where_the_traffic_has_it(config, place):
+    simulation = started(config, 3)
+    simulation.advance(np.zeros((3, 4)), 777)
+    _, _, targets, episodes, _ = simulation.snapshot
+    for n in range(3):
+        actors = actors_at(place.replay, episodes.tick[n])
+        here = 0, targets.actor[n]
+        assert np.array_equal(targets.position[n, :2], actors.position[here])
+        assert (targets.yaw[n], targets.speed[n]) == (actors.yaw[here], actors.speed[here])
+        model = VEHICLES[targets.model[n]]
+        assert targets.size[n].tolist() == list(model.size)
+        assert targets.position[n, 2] == targets.rise[n] == model.wheel_radius
+
+
+def test_a_target_that_leaves_ends_the_episode_and_stays_where_it_was(config, place_where):
+    place = place_where((2.0, 3.0))
+    # In a lasting world the time is given: a shorter stay will do if there is none for the whole.
+    simulation = Simulation(config, place, DRONE, together(1))
+    simulation.reset()
+    _, _, targets, episodes, _ = simulation.snapshot
+    assert episodes.tick[0] == 310
+    there = simulation.carry(1000 - 310)
+    assert (there.reason[0], targets.lost[0]) == (DoneReason.NONE, False)
+    last = targets.position[0].copy()
+    gone = simulation.carry(1)
+    assert (gone.reason[0], gone.done[0]) == (DoneReason.TARGET_LOST, True)
+    assert targets.lost[0]
+    assert targets.speed[0] == 0.0
+    assert np.array_equal(targets.position[0], last)
+    # Other vehicles come at 3 s, with the same numbers; the target stays lost.
+    later = simulation.carry(700)
+    assert later.reason[0] == DoneReason.TARGET_LOST
+    assert np.array_equal(targets.position[0], last)
+    simulation.reset()
+    assert not targets.lost[0]
+    assert simulation.carry(1).reason[0] == DoneReason.NONE
+    assert not np.array_equal(targets.position[0], last)
+
+
+def test_who_follows_another_target_has_lost_none(config, place_where):
+    simulation = Simulation(config, place_where((2.0, 3.0)), DRONE, together(1))
+    simulation.reset()
+    assert simulation.carry(691).reason[0] == DoneReason.TARGET_LOST
+    simulation.carry(600)
+    actor = int(simulation.snapshot.targets.actor[0] + 1) % 40
+    simulation.follow(0, actor)
+    assert simulation.advance(HOVER).reason[0] == DoneReason.NONE
+    assert simulation.snapshot.targets.speed[0] > 0.0
+
+
+def test_a_lost_target_is_not_told_in_the_grace_of_a_young_episode(config, place_where):
+    simulation = Simulation(config, place_where((0.7, 3.0)), DRONE, together(1))
+    simulation.reset()
+    reasons = [simulation.advance(HOVER).reason[0] for _ in range(100)]
+    assert simulation.snapshot.targets.lost[0]
+    assert reasons == [DoneReason.NONE] * 99 + [DoneReason.TARGET_LOST]
+
+
+def test_where_nobody_is_there_is_no_start_and_one_line_says_so(config, place_where):
+    simulation = Simulation(config, place_where((0.0, 13.0)), DRONE, together(1))
+    with pytest.raises(SpawnError, match="no target is free: 40 known, 0 in the world") as caught:
+        simulation.reset()
+    assert "\n" not in str(caught.value)
+
+
+def test_another_actor_can_be_followed_in_the_middle_of_an_episode(config, place):
+    simulation, untouched = started(config, 2), started(config, 2)
+    _, _, targets, episodes, _ = simulation.snapshot
+    commands = np.zeros((2, 4))
+    simulation.advance(commands, 20)
+    untouched.advance(commands, 20)
+    actor = int(targets.actor[0] + 1) % 40
+    simulation.follow(0, actor)
+    after, other = simulation.advance(commands, 4), untouched.advance(commands, 4)
+    actors = actors_at(place.replay, episodes.tick[0])
+    assert targets.actor[0] == actor
+    assert np.array_equal(targets.position[0, :2], actors.position[0, actor])
+    assert targets.size[0].tolist() == list(VEHICLES[targets.model[0]].size)
+    assert episodes.step_count.tolist() == [24, 24]
+    # The new target is somewhere else: the camera looks at the old one.
+    assert after.reward[0] == 0.0 < other.reward[0]
+    assert after.reward[1] == other.reward[1]
+    same = untouched.snapshot.trackers
+    for array, as_before in zip(simulation.snapshot.trackers, same, strict=True):
+        assert np.array_equal(array, as_before)
+
+
+@pytest.mark.parametrize("type_", RewardType)
+@pytest.mark.parametrize("mode", RewardMode)
+def test_rules_replaced_between_steps_are_those_of_the_next(config, type_, mode):
+    """From then on all is as in a simulation that was built with these rules."""
+    reward = RewardConfig(type=type_, mode=mode, view_range=0.9)
+    built = started(config.model_copy(update={"reward": reward}))
+    replaced = started(config)
+    commands = np.array([[6.0, 2.0, 0.0, 0.3]])
+    for step in range(40):
+        if step == 20:
+            replaced.rules = make_rules(reward, config.done, config.camera)
+        expected, got = built.advance(commands, 4), replaced.advance(commands, 4)
+        if step >= 20:
+            assert got.reward == expected.reward
+    replaced.reset()
+    built.reset()
+    assert replaced.advance(commands, 4).reward == built.advance(commands, 4).reward
+
+
+def test_a_continuous_reward_becomes_a_discrete_one_in_the_next_step(config):
+    simulation = started(config)
+    commands = np.array([[3.0, 0.0, 0.0, 0.0]])
+    assert 0.0 < simulation.advance(commands, 4).reward[0] < 1.0
+    rules = simulation.rules._replace(reward=int(BuiltinReward.VIEW_DISCRETE))
+    simulation.rules = rules
+    assert simulation.advance(commands, 4).reward[0] == 1.0
+    assert simulation.rules is rules
+
+
+def test_another_step_limit_ends_a_running_episode(config):
+    simulation = started(config)
+    assert simulation.advance(HOVER, 150).reason[0] == DoneReason.NONE
+    simulation.rules = make_rules(
+        config.reward, DoneConfig(total_steps=152, no_reward_steps=10_000), config.camera
+    )
+    assert simulation.advance(HOVER).reason[0] == DoneReason.NONE
+    assert simulation.advance(HOVER).reason[0] == DoneReason.STEP_LIMIT
