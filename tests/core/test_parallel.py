@@ -1,5 +1,6 @@
 """Parallel kernels: every worker does its share, and bundles are found whatever their kind."""
 
+import gc
 import multiprocessing
 import os
 import signal
@@ -53,6 +54,18 @@ def test_what_is_written_into_a_held_array_later_is_seen():
     values[:] = 5.0
     add_up(2, held, none)
     np.testing.assert_array_equal(sums, 10.0)
+
+
+def test_a_bound_kernel_does_all_shares_and_keeps_what_it_works_on():
+    values, sums = np.ones((5, 2)), np.zeros(5)
+    add = add_up.bound(Held((2.0, values, sums)), Held((1.0,)))
+    gc.collect()
+    filler = [np.full(4096, 7, np.uint8) for _ in range(50)]  # where a lost bundle would have been
+    add()
+    values[:] = 3.0
+    add()
+    np.testing.assert_array_equal(sums, (2.0 + 1.0) * 2 + (6.0 + 1.0) * 2)
+    assert len(filler) == 50
 
 
 def test_a_bundle_of_many_arrays_is_held_whole():
