@@ -25,20 +25,14 @@ def place(config) -> Place:
 @pytest.fixture(scope="session")
 def place_where(place):
     """Build the place with 12 s of its traffic, in which vehicles are away at times [s]."""
-    recording = place.replay.recording
-    rows = slice(0, 1 + round(12.0 * recording.rate))
+    motion = place.traffic.motion
+    table = motion.table[: 1 + round(12.0 * motion.rate)]
 
     def build(*away: tuple[float, float]) -> Place:
-        present = recording.present[rows].copy()
+        cut = table.copy()
         for leaves, comes_back in away:
-            first, last = round(leaves * recording.rate) + 1, round(comes_back * recording.rate)
-            present[first:last] = False
-        cut = dataclasses.replace(
-            recording,
-            position=recording.position[rows],
-            yaw=recording.yaw[rows],
-            present=present,
-        )
-        return dataclasses.replace(place, replay=Replay(cut))
+            first, last = round(leaves * motion.rate) + 1, round(comes_back * motion.rate)
+            cut["present"][first:last] = 0.0
+        return dataclasses.replace(place, traffic=Replay(motion._replace(table=cut)))
 
     return build

@@ -7,7 +7,7 @@ from eyas.core.errors import SpawnError
 from eyas.sim.build import build_simulation
 from eyas.sim.simulation import Simulation
 from eyas.sim.worlds import each_alone, together
-from eyas.state.tracker import ActorState
+from eyas.state.motion import ActorState
 from eyas.targets.catalogue import VEHICLES
 from eyas.task.config import DoneConfig, RewardConfig, RewardMode, RewardType
 from eyas.task.done import DoneReason
@@ -34,9 +34,9 @@ def test_the_target_is_where_the_traffic_has_it(config, place):
     simulation.advance(np.zeros((3, 4)), 777)
     _, _, targets, episodes, _ = simulation.snapshot
     for n in range(3):
-        actors = actors_at(place.replay, episodes.tick[n])
+        actors = actors_at(place.traffic, episodes.tick[n])
         here = 0, targets.actor[n]
-        assert np.array_equal(targets.position[n, :2], actors.position[here])
+        assert np.array_equal(targets.position[n, :2], actors.position[here][:2])
         assert (targets.yaw[n], targets.speed[n]) == (actors.yaw[here], actors.speed[here])
         model = VEHICLES[targets.model[n]]
         assert targets.size[n].tolist() == list(model.size)
@@ -103,7 +103,7 @@ def test_another_actor_can_be_followed_in_the_middle_of_an_episode(config, place
     actor = int(targets.actor[0] + 1) % 40
     simulation.follow(0, actor)
     after, other = simulation.advance(commands, 4), untouched.advance(commands, 4)
-    actors = actors_at(place.replay, episodes.tick[0])
+    actors = actors_at(place.traffic, episodes.tick[0])
     assert targets.actor[0] == actor
     assert np.array_equal(targets.position[0, :2], actors.position[0, actor])
     assert targets.size[0].tolist() == list(VEHICLES[targets.model[0]].size)
