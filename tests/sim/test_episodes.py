@@ -105,7 +105,7 @@ def test_another_actor_can_be_followed_in_the_middle_of_an_episode(config, place
     after, other = simulation.advance(commands, 4), untouched.advance(commands, 4)
     actors = actors_at(place.traffic, episodes.tick[0])
     assert targets.actor[0] == actor
-    assert np.array_equal(targets.position[0, :2], actors.position[0, actor])
+    assert np.array_equal(targets.position[0, :2], actors.position[0, actor, :2])
     assert targets.size[0].tolist() == list(VEHICLES[targets.model[0]].size)
     assert episodes.step_count.tolist() == [24, 24]
     # The new target is somewhere else: the camera looks at the old one.
