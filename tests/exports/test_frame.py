@@ -5,7 +5,7 @@ from eyas.exports.frame import Action, frame_of
 from eyas.state.draw import Picture
 from eyas.state.scene import ACTOR_OBJECT
 from eyas.state.snapshot import Snapshot
-from eyas.targets.catalogue import VEHICLES
+from eyas.targets.catalogue import MODELS
 from eyas.task.direction import TargetDirection
 from eyas.task.done import DoneReason
 
@@ -55,7 +55,7 @@ def test_a_frame_holds_the_rows_of_its_tracker_and_of_its_view(snapshot, picture
     for name in ("size", "position", "centre"):
         assert np.array_equal(getattr(frame.target, name), getattr(targets, name)[TRACKER]), name
     assert frame.target.object_id == ACTOR_OBJECT + targets.actor[TRACKER]
-    assert frame.target.type == VEHICLES[4].name
+    assert frame.target.type == MODELS[4].name
     assert np.array_equal(frame.target.box, picture.subject_box[VIEW])
     assert frame.target.visible_fraction == 0.75
     assert np.array_equal(frame.rgb, picture.rgb[VIEW])
