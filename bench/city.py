@@ -7,9 +7,9 @@ import numpy as np
 
 from eyas.mesh.assembly import concatenate, transformed
 from eyas.render.textures.library import build_textures
+from eyas.sim.assets import load_assets
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
-from eyas.sim.place import load_place
 from eyas.sim.worlds import each_alone
 from eyas.state.draw import Views
 from eyas.state.mesh import Mesh, Surface
@@ -67,8 +67,8 @@ def load_city(count: int) -> City:
     """
     simulation = build_simulation(SimConfig(), each_alone(count))
     simulation.reset()
-    place = load_place(SimConfig().world, SimConfig().traffic, count)
-    scene, images = place.scene, build_textures()
+    assets = load_assets(SimConfig().world, SimConfig().traffic, count)
+    scene, images = assets.scene, build_textures()
     names = list(images)
     # Trees in their finest level, in which Eyas draws those that such views show.
     fixtures = scene.fixtures
@@ -78,7 +78,7 @@ def load_city(count: int) -> City:
     ]
     pictures, snapshot = simulation._pictures, simulation.snapshot
     _, movers = pictures._worlds.draw_list(np.zeros(1, np.int64), snapshot.episodes.tick)
-    parts = [levels[0] for levels in place.rigs.library.parts]
+    parts = [levels[0] for levels in assets.rigs.library.parts]
     slots = [movers.pose[0][movers.part[0] == k].copy() for k in range(len(parts))]
     colours = [movers.colour[0][movers.part[0] == k].copy() for k in range(len(parts))]
     camera = pictures._camera
@@ -97,7 +97,7 @@ def load_city(count: int) -> City:
         slot_colours=colours,
         textures=np.stack([images[name] for name in names]),
         views=views,
-        sun=np.array(place.lighting.sun_direction),
+        sun=np.array(assets.lighting.sun_direction),
     )
 
 

@@ -19,8 +19,8 @@ from city import City, load_city
 from PIL import Image
 
 from eyas.core.machine import describe_machine
+from eyas.sim.assets import load_assets
 from eyas.sim.config import SimConfig
-from eyas.sim.place import load_place
 from eyas.state.draw import DrawList, Picture
 
 SIDE = 84
@@ -43,8 +43,8 @@ class Ours:
     name = "eyas"
 
     def __init__(self, city: City, side: int) -> None:
-        place = load_place(SimConfig().world, SimConfig().traffic, 1)
-        self._renderer, self._views = place.renderer, city.views
+        assets = load_assets(SimConfig().world, SimConfig().traffic, 1)
+        self._renderer, self._views = assets.renderer, city.views
         count = sum(map(len, city.slots))
         self._movers = DrawList.create(1, count)
         parts = [np.full(len(poses), k) for k, poses in enumerate(city.slots)]

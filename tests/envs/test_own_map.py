@@ -10,7 +10,8 @@ import pytest
 
 from eyas.core.errors import MissingExtraError, UnknownNameError
 from eyas.envs.registration import register_map
-from eyas.sim import place
+from eyas.sim import scenes
+from eyas.sim.assets import load_assets
 from eyas.state.draw import DrawList, Picture, Views
 from eyas.state.terrain import ground_at
 from eyas.traffic import library
@@ -48,7 +49,7 @@ def shipped(tmp_path_factory):
         save_network(package / NETWORK_FILE, build_network(graph))
         made = record("field", 0, graph, CARS, library.STANDARD_DURATION, library.CANONICAL_SEED)
         save(made, package / TRAFFIC_FILE)
-        for module, name in ((library, "_cached_or_new"), (place, "build_network")):
+        for module, name in ((library, "_cached_or_new"), (scenes, "build_network")):
             patch.setattr(module, name, lambda *args: pytest.fail("what is shipped was made again"))
         yield package
     del sys.modules[package.name]
@@ -77,7 +78,7 @@ def test_an_environment_runs_in_it(shipped):
 
 
 def test_its_hill_is_what_the_camera_sees_and_what_the_terrain_says():
-    there = place.load_place(WorldConfig(map=NAME), CARS, 1)
+    there = load_assets(WorldConfig(map=NAME), CARS, 1)
     spots = [(0.0, 0.0), (30.0, -12.0), (110.0, 0.0)]
     picture = Picture.create(len(spots), 9, 9, depth=True)
     views = Views(
@@ -97,11 +98,13 @@ def test_its_hill_is_what_the_camera_sees_and_what_the_terrain_says():
 
 def test_its_scene_is_kept_until_its_source_changes(shipped, monkeypatch):
     made = []
-    monkeypatch.setattr(place, "cached", lambda *args, of: made.append(args[:3]))
+    monkeypatch.setattr(
+        scenes, "cached", lambda kind, makers, inputs, *_, **__: made.append(inputs)
+    )
     for text in ("", "", "# another hill\n"):
         source = shipped / "__init__.py"
         source.write_text(source.read_text() + text)
-        place.load_scene.cache_clear()
-        place.load_scene(NAME, 0)
-    place.load_scene.cache_clear()
+        scenes.load_scene.cache_clear()
+        scenes.load_scene(NAME, 0)
+    scenes.load_scene.cache_clear()
     assert made[0] == made[1] != made[2]

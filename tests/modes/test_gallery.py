@@ -15,7 +15,7 @@ from eyas.modes.gallery import run as gallery
 from eyas.modes.gallery.page import Shown, page
 from eyas.modes.gallery.still import StillScene
 from eyas.modes.gallery.views import _all_cars, _stop, choose_viewpoints
-from eyas.sim.place import load_place
+from eyas.sim.assets import load_assets
 from eyas.traffic.config import TrafficConfig
 from eyas.world.config import WorldConfig
 from eyas.world.maps.citystreet import CITYSTREET
@@ -40,7 +40,7 @@ class Pictures(HTMLParser):
 
 @pytest.fixture(scope="module")
 def still():
-    return StillScene(load_place(WorldConfig(), TrafficConfig(), 1))
+    return StillScene(load_assets(WorldConfig(), TrafficConfig(), 1))
 
 
 @pytest.fixture(scope="module")

@@ -82,7 +82,7 @@ def car_parts() -> PartLibrary:
         wheel.positions @ scale[:, :3].T.astype(np.float32), wheel.normals, wheel.uvs,
         wheel.triangles, wheel.materials, wheel.palette,
     )  # fmt: skip
-    return PartLibrary(parts=((body,), (cabin,), (wheel,)))
+    return PartLibrary(parts=((body,), (cabin,), (wheel,)), lamps=(True, True, True))
 
 
 def put_car(draw_list: DrawList, world: int, slot: int, actor: int, x: float, y: float, yaw: float):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from eyas.state.draw import DrawList, Picture
+from eyas.state.draw import DrawList, Picture, Views
 from eyas.state.scene import ACTOR_OBJECT, SKY_OBJECT, ObjectClass
 
 from .small_city import (
@@ -44,11 +44,28 @@ def test_class_of_every_pixel_agrees_with_its_object(stage):
         GROUND: ObjectClass.GROUND,
         TOWER: ObjectClass.BUILDING,
         TREE_OBJECT: ObjectClass.TREE,
-        ACTOR_OBJECT + 3: ObjectClass.VEHICLE,
+        ACTOR_OBJECT + 3: ObjectClass.CAR,
     }
     assert set(np.unique(picture.object_id)) == set(expected)
     for thing, kind in expected.items():
         assert set(picture.class_id[picture.object_id == thing]) == {kind}
+
+
+def test_movers_have_the_classes_of_their_own_world(stage):
+    renderer, _, views = stage
+    movers = DrawList.create(2, 6)
+    movers.object_class[:, 3] = ObjectClass.ROBOT, ObjectClass.BUS
+    for world in (0, 1):
+        put_car(movers, world, 0, 3, 20.0, 0.0, 1.2)
+    both = Views(
+        np.repeat(views.position, 3, 0), np.repeat(views.rotation, 3, 0),
+        np.array([1, 0, 1], np.int32), np.repeat(views.subject, 3, 0), views.field_of_view,
+    )  # fmt: skip
+    picture = Picture.create(3, *SIZE, object_id=True, class_id=True)
+    renderer.draw(both, movers, picture)
+    for view, expected in enumerate((ObjectClass.BUS, ObjectClass.ROBOT, ObjectClass.BUS)):
+        mover = picture.object_id[view] == ACTOR_OBJECT + 3
+        assert set(picture.class_id[view][mover]) == {expected}
 
 
 def test_classes_need_no_other_output_and_change_none(stage):
@@ -66,6 +83,9 @@ def test_classes_need_no_other_output_and_change_none(stage):
 
 def test_numbers_of_classes_stay_as_they_are():
     # People's data sets hold them.
-    names = "GROUND ROAD MARKING PAVEMENT BUILDING TREE STRUCTURE POLE WATER VEHICLE SKY"
+    names = (
+        "GROUND ROAD MARKING PAVEMENT BUILDING TREE STRUCTURE POLE WATER CAR SKY "
+        "TRUCK BUS MOTORCYCLE PERSON ROBOT"
+    )
     assert [kind.name for kind in sorted(ObjectClass)] == names.split()
-    assert sorted(ObjectClass) == list(range(11))
+    assert sorted(ObjectClass) == list(range(16))

@@ -1,6 +1,6 @@
 """Small pictures of citystreet, compared with ones that a person has looked at.
 
-They show what closed-form tests cannot: that the place looks as it did. After a change that is
+They show what closed-form tests cannot: that the city looks as it did. After a change that is
 meant to show, look at the new pictures and keep them with `pytest tests/render/test_golden.py
 --regenerate`.
 """
@@ -11,10 +11,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from eyas.sim.place import load_place
-from eyas.state.draw import DrawList, Picture, Views
-from eyas.state.motion import ActorState
-from eyas.targets.looks import Looks
+from eyas.sim.assets import load_assets
+from eyas.sim.still import StillWorld
+from eyas.state.draw import Picture, Views
 from eyas.traffic.config import TrafficConfig
 from eyas.world.config import WorldConfig
 
@@ -42,13 +41,8 @@ def look(yaw: float, pitch: float) -> np.ndarray:
 
 def drawn(weather: str, name: str) -> np.ndarray:
     position, yaw, pitch, time = VIEWS[name]
-    place = load_place(WorldConfig(weather=weather), TrafficConfig(), 1)
-    count = place.traffic.actors
-    actors = ActorState.create(1, count)
-    place.traffic.at(np.array([time]), actors)
-    model, colour = Looks(place.traffic.motion.kind).sample(np.random.default_rng(1))
-    movers = DrawList.create(1, count * place.rigs.slots_per_actor)
-    place.rigs.pose(actors, model[None], colour[None], movers)
+    world = StillWorld(load_assets(WorldConfig(weather=weather), TrafficConfig()))
+    actors = world.actors(time)
     if position is None:  # behind and above the first car
         yaw = float(actors.yaw[0, 0])
         back = 22.0 / np.tan(pitch)
@@ -62,7 +56,7 @@ def drawn(weather: str, name: str) -> np.ndarray:
         field_of_view=0.7854,
     )
     picture = Picture.create(1, *SIZE)
-    place.renderer.draw(views, movers, picture)
+    world.draw(views, time, picture)
     return picture.rgb[0]
 
 

@@ -8,8 +8,8 @@ import shapely
 
 from eyas.mesh.flat import flat_polygon
 from eyas.render.pack.lamp_grid import lamp_grid
-from eyas.sim.place import load_place
-from eyas.state.draw import DrawList, Picture
+from eyas.sim.assets import load_assets
+from eyas.state.draw import DrawList, PartLibrary, Picture
 from eyas.state.scene import Lamps
 from eyas.traffic.config import TrafficConfig
 from eyas.world.build.materials import material
@@ -131,6 +131,22 @@ def test_cars_throw_white_light_ahead_and_red_behind(drawn, renderer_of):
     assert drawn(off, views, cars, (9, 9)).rgb.max() <= 1
 
 
+def test_movers_without_lamps_throw_no_light(drawn, renderer_of):
+    """A car that has them lights the road beside one that has none."""
+    lit = car_parts()
+    parts = PartLibrary((*lit.parts, *lit.parts), (True,) * 3 + (False,) * 3)
+    renderer = renderer_of(scene_of([paper()], [0]), parts, lighting=DARK)
+    cars = DrawList.create(1, 12)
+    put_car(cars, 0, 0, 0, 0.0, 0.0, 0.0)
+    put_car(cars, 0, 6, 1, 0.0, 50.0, 0.0)
+    cars.part[0, 6:] += 3
+    places = [(x, y, 40.0) for y in (0.0, 50.0) for x in (8.0, -3.2)]
+    views = looking(places, pitch=np.pi / 2, fov=0.02)
+    seen = radiance(drawn(renderer, views, cars, (9, 9)).rgb[:, 4, 4]).max(axis=1)
+    assert seen[:2].min() > 0.02
+    assert seen[2:].max() < 0.001
+
+
 def test_small_windows_fade_to_their_mean(drawn, renderer_of):
     lit = dataclasses.replace(
         DARK, windows=0.4, zenith_colour=(0, 0, 0), horizon_colour=(0, 0, 0), fog_colour=(0, 0, 0)
@@ -148,11 +164,11 @@ def test_small_windows_fade_to_their_mean(drawn, renderer_of):
 def test_the_street_city_at_night_has_a_third_of_the_days_brightness_and_bright_pools():
     pictures = {}
     for weather in ("day", "night"):
-        place = load_place(WorldConfig(weather=weather), TrafficConfig(), 1)
-        spots = [(*point, 22.0) for point in place.scene.network.lane_points[::5]]
+        assets = load_assets(WorldConfig(weather=weather), TrafficConfig(), 1)
+        spots = [(*point, 22.0) for point in assets.scene.network.lane_points[::5]]
         picture = Picture.create(len(spots), 30, 40)
-        movers = DrawList.create(1, place.rigs.slots_per_actor)
-        place.renderer.draw(looking(spots, pitch=1.37), movers, picture)
+        movers = DrawList.create(1, 1)
+        assets.renderer.draw(looking(spots, pitch=1.37), movers, picture)
         pictures[weather] = picture.rgb.astype(float)
     assert 0.3 < pictures["night"].mean() / pictures["day"].mean() < 0.5
     by_view = pictures["night"].mean(axis=(1, 2, 3))

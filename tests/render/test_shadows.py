@@ -139,6 +139,28 @@ def test_a_car_throws_the_shadow_of_a_body_and_a_shorter_cabin(renderer_of, draw
     assert (seen > 0.8 * lit).tolist() == [False, False, False, True, True, True]
 
 
+def test_a_person_throws_the_shadow_of_a_person(renderer_of, drawn):
+    """Thin, as long as the person is high, and of nobody's legs apart."""
+    torso = box((0.3, 0.46, 0.6), (0, 0, 1.1), Material(), 1.0)
+    head = box((0.2, 0.18, 0.26), (0, 0, 1.58), Material(), 1.0)
+    leg = box((0.16, 0.16, 0.82), (0, 0, 0.41), Material(), 1.0)
+    walker = DrawList.create(1, 4)
+    walker.part[0] = 0, 1, 2, 2
+    walker.object_id[0] = 1 << 16
+    walker.pose[0] = np.eye(4)[:3]
+    walker.pose[0, 2:, :, 3] = [(0.2, 0.1, 0.0), (-0.2, -0.1, 0.0)]
+    low = np.array([0.0, -1.0, 1.0]) / np.sqrt(2)  # 45 degrees high, in the south
+    light = dataclasses.replace(DAY, sun_direction=tuple(low))
+    parts = PartLibrary(((torso,), (head,), (leg,)))
+    renderer = renderer_of(scene_of([floor(60.0, "plain")], [GROUND]), parts, light)
+    middle = [(0.0, north, 30.0) for north in (0.5, 1.0, 1.4, 2.2)]
+    aside = [(east, north, 30.0) for east in (-0.5, 0.5) for north in (0.7, 1.2)]
+    views = looking(middle + aside, pitch=np.pi / 2, fov=0.003)
+    seen = drawn(renderer, views, walker, (9, 9)).rgb[:, 4, 4].astype(int).sum(axis=1)
+    shaded = seen < 0.8 * seen.max()
+    assert shaded.tolist() == [True, True, True, False] + [False] * 4
+
+
 def ground_beside(renderer_of, drawn, reach, *, shaded, with_bus=True):
     """Return the brightness of the ground at distances [m] from the long side of a bus.
 

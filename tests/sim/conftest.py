@@ -1,11 +1,11 @@
-"""Simulations on the shipped map; building one takes 20 ms once the place is there."""
+"""Simulations on the shipped map; building one takes 20 ms once the assets are there."""
 
 import dataclasses
 
 import pytest
 
+from eyas.sim.assets import Assets, load_assets
 from eyas.sim.config import SimConfig
-from eyas.sim.place import Place, load_place
 from eyas.task.config import DoneConfig, StartConfig
 from eyas.traffic.replay import Replay
 
@@ -18,21 +18,21 @@ def config():
 
 
 @pytest.fixture(scope="session")
-def place(config) -> Place:
-    return load_place(config.world, config.traffic, 1)
+def place(config) -> Assets:
+    return load_assets(config.world, config.traffic, 1)
 
 
 @pytest.fixture(scope="session")
-def place_where(place):
-    """Build the place with 12 s of its traffic, in which vehicles are away at times [s]."""
-    motion = place.traffic.motion
+def assets_where(assets):
+    """Build the assets with 12 s of its traffic, in which vehicles are away at times [s]."""
+    motion = assets.traffic.motion
     table = motion.table[: 1 + round(12.0 * motion.rate)]
 
-    def build(*away: tuple[float, float]) -> Place:
+    def build(*away: tuple[float, float]) -> Assets:
         cut = table.copy()
         for leaves, comes_back in away:
             first, last = round(leaves * motion.rate) + 1, round(comes_back * motion.rate)
             cut["present"][first:last] = 0.0
-        return dataclasses.replace(place, traffic=Replay(motion._replace(table=cut)))
+        return dataclasses.replace(assets, traffic=Replay(motion._replace(table=cut)))
 
     return build

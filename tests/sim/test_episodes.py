@@ -43,10 +43,10 @@ def test_the_target_is_where_the_traffic_has_it(config, place):
         assert targets.position[n, 2] == targets.rise[n] == model.wheel_radius
 
 
-def test_a_target_that_leaves_ends_the_episode_and_stays_where_it_was(config, place_where):
-    place = place_where((2.0, 3.0))
+def test_a_target_that_leaves_ends_the_episode_and_stays_where_it_was(config, assets_where):
+    assets = assets_where((2.0, 3.0))
     # In a lasting world the time is given: a shorter stay will do if there is none for the whole.
-    simulation = Simulation(config, place, DRONE, together(1))
+    simulation = Simulation(config, assets, DRONE, together(1))
     simulation.reset()
     _, _, targets, episodes, _ = simulation.snapshot
     assert episodes.tick[0] == 310
@@ -68,8 +68,8 @@ def test_a_target_that_leaves_ends_the_episode_and_stays_where_it_was(config, pl
     assert not np.array_equal(targets.position[0], last)
 
 
-def test_who_follows_another_target_has_lost_none(config, place_where):
-    simulation = Simulation(config, place_where((2.0, 3.0)), DRONE, together(1))
+def test_who_follows_another_target_has_lost_none(config, assets_where):
+    simulation = Simulation(config, assets_where((2.0, 3.0)), DRONE, together(1))
     simulation.reset()
     assert simulation.carry(691).reason[0] == DoneReason.TARGET_LOST
     simulation.carry(600)
@@ -79,16 +79,16 @@ def test_who_follows_another_target_has_lost_none(config, place_where):
     assert simulation.snapshot.targets.speed[0] > 0.0
 
 
-def test_a_lost_target_is_not_told_in_the_grace_of_a_young_episode(config, place_where):
-    simulation = Simulation(config, place_where((0.7, 3.0)), DRONE, together(1))
+def test_a_lost_target_is_not_told_in_the_grace_of_a_young_episode(config, assets_where):
+    simulation = Simulation(config, assets_where((0.7, 3.0)), DRONE, together(1))
     simulation.reset()
     reasons = [simulation.advance(HOVER).reason[0] for _ in range(100)]
     assert simulation.snapshot.targets.lost[0]
     assert reasons == [DoneReason.NONE] * 99 + [DoneReason.TARGET_LOST]
 
 
-def test_where_nobody_is_there_is_no_start_and_one_line_says_so(config, place_where):
-    simulation = Simulation(config, place_where((0.0, 13.0)), DRONE, together(1))
+def test_where_nobody_is_there_is_no_start_and_one_line_says_so(config, assets_where):
+    simulation = Simulation(config, assets_where((0.0, 13.0)), DRONE, together(1))
     with pytest.raises(SpawnError, match="no target is free: 40 known, 0 in the world") as caught:
         simulation.reset()
     assert "\n" not in str(caught.value)

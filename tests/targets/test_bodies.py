@@ -6,9 +6,10 @@ import pytest
 
 from eyas.mesh.assembly import concatenate, transformed
 from eyas.state.mesh import Surface
-from eyas.targets.catalogue import VEHICLES, model_index
+from eyas.targets.catalogue import MODELS, model_index
 from eyas.targets.vehicles.bodies import body_levels
 from eyas.targets.vehicles.finishes import BLACK_PAINT, HEAD_LAMP, ROOF_GLASS, TAIL_LAMP
+from eyas.targets.vehicles.models import VEHICLES
 from eyas.targets.vehicles.wheels import wheel_levels
 
 NAMES = [vehicle.name for vehicle in VEHICLES]
@@ -16,13 +17,13 @@ NAMES = [vehicle.name for vehicle in VEHICLES]
 
 @functools.cache
 def levels_of(name):
-    return body_levels(VEHICLES[model_index(name)])
+    return body_levels(MODELS[model_index(name)])
 
 
 @functools.cache
 def whole(name):
     """The finest body with its wheels."""
-    vehicle = VEHICLES[model_index(name)]
+    vehicle = MODELS[model_index(name)]
     meshes = [levels_of(name)[0]]
     for axle in vehicle.axles:
         pose = np.eye(3, 4)
@@ -68,14 +69,14 @@ def first_hits(mesh, axis, sign, rays=24):
 def test_size_is_the_catalogues_within_five_centimetres(name):
     mesh = whole(name)
     low, high = mesh.positions.min(0), mesh.positions.max(0)
-    assert high - low == pytest.approx(VEHICLES[model_index(name)].size, abs=0.05)
+    assert high - low == pytest.approx(MODELS[model_index(name)].size, abs=0.05)
     assert low[2] == pytest.approx(0.0, abs=1e-6)
     assert (low + high)[:2] / 2 == pytest.approx(np.zeros(2), abs=0.03)
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_normals_agree_with_winding(name):
-    vehicle = VEHICLES[model_index(name)]
+    vehicle = MODELS[model_index(name)]
     for mesh in (*levels_of(name), *wheel_levels(vehicle.wheel_radius, 0.2, 1.5)):
         assert np.linalg.norm(mesh.normals, axis=1) == pytest.approx(1.0, abs=1e-4)
         against = np.einsum("ti,tci->tc", face_normals(mesh), mesh.normals[mesh.triangles])
@@ -115,7 +116,7 @@ def test_every_level_has_lamps_at_both_ends_on_both_sides(name):
             shining = np.array([material == lamp for material in mesh.palette])[mesh.materials]
             facing = np.where(shining, np.maximum(sign * normals[:, 0], 0), 0)
             reach = (sign * corners[shining, :, 0]).max(initial=0.0)
-            assert reach > 0.29 * VEHICLES[model_index(name)].length
+            assert reach > 0.29 * MODELS[model_index(name)].length
             for side in (1, -1):
                 assert facing[side * corners[:, :, 1].mean(axis=1) > 0.01].sum() > least
 

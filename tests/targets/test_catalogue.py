@@ -1,6 +1,16 @@
 import pytest
 
-from eyas.targets.catalogue import BODY_COLOURS, VEHICLES, model_index, models_of
+from eyas.state.scene import ObjectClass
+from eyas.targets.catalogue import (
+    KINDS,
+    MODELS,
+    kind_index,
+    kind_of,
+    model_index,
+    models_of,
+    register,
+)
+from eyas.targets.vehicles.models import BODY_COLOURS, VEHICLES
 from eyas.traffic.config import VehicleType
 
 ORIGINAL = {
@@ -23,18 +33,55 @@ ORIGINAL = {
 
 @pytest.mark.parametrize("name", ORIGINAL)
 def test_sizes_and_wheels_are_those_of_the_original(name):
-    vehicle = VEHICLES[model_index(name)]
+    vehicle = MODELS[model_index(name)]
     wheels = sum(2 if axle.track else 1 for axle in vehicle.axles)
     assert (*vehicle.size, vehicle.wheelbase, vehicle.wheel_radius, wheels) == ORIGINAL[name]
     assert vehicle.axles[0].x - vehicle.axles[1].x == pytest.approx(vehicle.wheelbase)
 
 
-def test_every_model_is_driven_by_one_class():
+def test_every_model_is_of_one_kind():
+    assert MODELS == [model for kind in KINDS for model in kind.models]
+    assert [model for k in range(len(KINDS)) for model in models_of(k)] == list(range(len(MODELS)))
+    for index in range(len(MODELS)):
+        assert MODELS[index] in kind_of(index).models
+    for k, kind in enumerate(KINDS):
+        assert kind_index(kind.name) == k
+        assert [MODELS[m] for m in models_of(k)] == list(kind.models)
+
+
+def test_every_class_that_sumo_drives_is_a_kind():
     assert len(VEHICLES) == len(ORIGINAL)
-    driven = [model for vehicle_type in VehicleType for model in models_of(vehicle_type)]
-    assert sorted(driven) == list(range(len(VEHICLES)))
-    counts = {vehicle_type.value: len(models_of(vehicle_type)) for vehicle_type in VehicleType}
+    counts = {name.value: len(models_of(kind_index(name))) for name in VehicleType}
     assert counts == {"passenger": 7, "bus": 1, "truck": 1, "trailer": 2, "motorcycle": 2}
+    classes = [KINDS[kind_index(name)].object_class.name for name in VehicleType]
+    assert classes == ["CAR", "BUS", "TRUCK", "TRUCK", "MOTORCYCLE"]
+
+
+@pytest.mark.parametrize("model", range(len(MODELS)))
+def test_what_the_reward_looks_for_is_a_metre_behind_a_vehicles_reference(model):
+    assert kind_of(model).ahead == -1.0
+    assert kind_of(model).lamps
+    assert MODELS[model].rise == MODELS[model].wheel_radius
+
+
+def test_a_kind_is_added_behind_the_others(walker):
+    before = list(MODELS)
+    register(walker)
+    assert MODELS[: len(before)] == before
+    assert MODELS[len(before) :] == list(walker.models)
+    assert kind_of(len(before)) is walker
+    assert KINDS[kind_index("walker")].object_class is ObjectClass.PERSON
+
+
+def test_names_are_taken_once_and_models_are_their_kinds(walker):
+    register(walker)
+    with pytest.raises(ValueError, match=r"\['walker', 'walker of 2 parts'\] are in the catalogue"):
+        register(walker)
+    stranger = type(walker)(**{f: getattr(walker, f) for f in walker.__slots__} | {"name": "bus 2"})
+    KINDS.pop()
+    del MODELS[-1:]
+    with pytest.raises(ValueError, match="'bus 2' needs models of its own"):
+        register(stranger)
 
 
 def test_there_are_the_eight_body_colours_of_the_original():

@@ -2,13 +2,9 @@ import numpy as np
 import pytest
 
 from eyas.core.rng import stream
-from eyas.targets.catalogue import (
-    BODY_COLOURS,
-    MOTORCYCLE_COLOURS,
-    kind_index,
-    models_of,
-)
-from eyas.targets.looks import Looks
+from eyas.targets.catalogue import kind_index, models_of
+from eyas.targets.looks import LookSampler
+from eyas.targets.vehicles.models import BODY_COLOURS, MOTORCYCLE_COLOURS
 from eyas.traffic.config import VehicleType
 
 PINK = (0.9, 0.3, 0.6)
@@ -16,20 +12,20 @@ PINK = (0.9, 0.3, 0.6)
 
 def drawn(vehicle_type, colour=None, seed=3):
     kind = np.full(400, kind_index(vehicle_type))
-    return Looks(kind, colour).sample(stream(seed, "targets"))
+    return LookSampler(kind, colour).sample(stream(seed, "targets"))
 
 
 @pytest.mark.parametrize("vehicle_type", VehicleType)
 def test_all_models_and_colours_of_a_class_appear(vehicle_type):
     model, colour = drawn(vehicle_type)
-    assert set(model) == set(models_of(vehicle_type))
+    assert set(model) == set(models_of(kind_index(vehicle_type)))
     palette = MOTORCYCLE_COLOURS if vehicle_type == VehicleType.MOTORCYCLE else BODY_COLOURS
     assert set(map(tuple, colour)) == set(map(tuple, np.array(palette, np.float32)))
     assert (model.dtype, colour.dtype) == (np.int32, np.float32)
 
 
 def test_models_are_about_equally_frequent():
-    model, _ = Looks(np.zeros(7000, int)).sample(stream(0, "targets"))
+    model, _ = LookSampler(np.zeros(7000, int)).sample(stream(0, "targets"))
     assert np.bincount(model, minlength=7)[:7] == pytest.approx(np.full(7, 1000), abs=130)
 
 
@@ -53,16 +49,16 @@ def test_a_fixed_colour_does_not_hold_for_motorcycles():
 
 def test_a_mixed_fleet_has_models_and_colours_of_each_actors_kind():
     kind = np.tile([kind_index(t) for t in VehicleType], 80)
-    model, colour = Looks(kind, PINK).sample(stream(1, "targets"))
+    model, colour = LookSampler(kind, PINK).sample(stream(1, "targets"))
     for vehicle_type in VehicleType:
         of_kind = kind == kind_index(vehicle_type)
-        assert set(model[of_kind]) == set(models_of(vehicle_type))
+        assert set(model[of_kind]) == set(models_of(kind_index(vehicle_type)))
         pink = (colour[of_kind] == np.float32(PINK)).all(axis=1)
         assert pink.all() == (vehicle_type != VehicleType.MOTORCYCLE)
 
 
 def test_other_kinds_that_join_change_no_look_of_the_first():
-    alone = Looks(np.zeros(30, int)).sample(stream(1, "targets"))
-    joined = Looks(np.repeat([0, 2], [30, 5])).sample(stream(1, "targets"))
+    alone = LookSampler(np.zeros(30, int)).sample(stream(1, "targets"))
+    joined = LookSampler(np.repeat([0, 2], [30, 5])).sample(stream(1, "targets"))
     assert np.array_equal(alone[0], joined[0][:30])
     assert np.array_equal(alone[1], joined[1][:30])

@@ -3,7 +3,6 @@ import math
 import pytest
 
 from eyas.task.direction import (
-    TARGET_COMPENSATION,
     TargetDirection,
     target_centre,
     target_direction,
@@ -31,5 +30,5 @@ def test_moving_begins_at_half_a_metre_a_second():
 
 
 def test_centre_of_a_vehicle_is_a_metre_behind_its_reference_point():
-    assert target_centre(5.0, 6.0, math.pi / 2, TARGET_COMPENSATION) == pytest.approx((5.0, 5.0))
+    assert target_centre(5.0, 6.0, math.pi / 2, -1.0) == pytest.approx((5.0, 5.0))
     assert target_centre(5.0, 6.0, 1.0, 0.0) == (5.0, 6.0)

@@ -33,7 +33,7 @@ def in_drone_frame(position, yaw, target):
 def test_target_is_seen_ahead_right_and_below(target_yaw, direction, pitch, share):
     drawn = start(pitch=pitch, direction=direction, horizontal_bias=3.0, vertical_bias=2.0)
     target = (10.0, -5.0, 0.4)
-    position, yaw = start_pose(drawn, target, target_yaw)
+    position, yaw = start_pose(drawn, target, target_yaw, -1.0)
     ahead = share * 22.0 + 1.0 - 2.0
     assert in_drone_frame(position, yaw, target) == pytest.approx([ahead, -3.0, -22.0], abs=3e-3)
     assert math.cos(yaw - target_yaw - direction) == pytest.approx(1.0)
@@ -46,7 +46,7 @@ def test_targets_that_are_no_vehicles_have_no_compensation():
 
 
 def test_the_place_is_for_the_pitch_as_drawn_even_beyond_the_gimbal_s_limit():
-    position, _ = start_pose(start(pitch=math.pi / 2), (0.0, 0.0, 0.0), 0.0)
+    position, _ = start_pose(start(pitch=math.pi / 2), (0.0, 0.0, 0.0), 0.0, -1.0)
     assert position == pytest.approx([-1.0, 0.0, 22.0])
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import shapely
 
-from eyas.sim.place import load_scene
+from eyas.sim.scenes import load_scene
 from eyas.state.mesh import Surface
 from eyas.state.scene import ObjectClass
 from eyas.world.roads.areas import road_area

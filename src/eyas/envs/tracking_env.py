@@ -20,7 +20,7 @@ from eyas.settings.version_check import require_supported
 from eyas.sim.build import build_simulation
 from eyas.sim.worlds import each_alone
 from eyas.state.draw import Picture
-from eyas.targets.catalogue import VEHICLES
+from eyas.targets.catalogue import MODELS
 from eyas.task.done import DoneReason
 from eyas.task.packets import RewardPacket
 
@@ -127,7 +127,7 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
     def _info(self) -> dict[str, Any]:
         snapshot = self._simulation.snapshot
         _, packets = self._simulation.packets()
-        model = VEHICLES[snapshot.targets.model[0]]
+        model = MODELS[snapshot.targets.model[0]]
         return {
             **asdict(RewardPacket.from_row(packets[0], model.name)),
             "step": int(snapshot.episodes.step_count[0]),

@@ -11,7 +11,7 @@ from eyas.core.clock import PHYSICS_STEP
 from eyas.state.draw import Picture
 from eyas.state.scene import ACTOR_OBJECT
 from eyas.state.snapshot import CameraState, Snapshot, TargetState, TrackerState
-from eyas.targets.catalogue import VEHICLES
+from eyas.targets.catalogue import MODELS
 from eyas.task.direction import TargetDirection
 from eyas.task.done import DoneReason
 
@@ -202,7 +202,7 @@ def _target(targets: TargetState, tracker: int, picture: Picture, view: int) -> 
     yaw, speed = float(targets.yaw[tracker]), float(targets.speed[tracker])
     return Subject(
         object_id=ACTOR_OBJECT + int(targets.actor[tracker]),
-        type=VEHICLES[targets.model[tracker]].name,
+        type=MODELS[targets.model[tracker]].name,
         size=targets.size[tracker].copy(),
         position=targets.position[tracker].copy(),
         centre=targets.centre[tracker].copy(),

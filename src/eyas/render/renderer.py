@@ -41,7 +41,7 @@ class Renderer:
     Args:
         geometry: Everything that can be drawn.
         light: Light and air.
-        classes: Of each object, see `class_table`.
+        classes: Of each object of the scene, see `class_table`.
         ready: Called before anything is drawn; returns when the kernels are compiled.
     """
 
@@ -98,7 +98,7 @@ class Renderer:
         if any(len(array) for array in output):
             self._draw(views, movers, output, picture, 1, until)
         if picture.class_id is not None:
-            write_classes(self._classes, output.object_id, picture.class_id)
+            write_classes(self._classes, draw_list, views.world, output.object_id, picture.class_id)
 
     def _draw(
         self,

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.sim.assets import load_assets
 from eyas.sim.config import SimConfig
-from eyas.sim.place import load_place
 from eyas.sim.simulation import Simulation
 from eyas.sim.supported import require_parts
 from eyas.trackers.config import TrackerKind
@@ -33,11 +33,11 @@ def build_simulation(config: SimConfig, world_of: NDArray[np.integer]) -> Simula
         EyasError: A setting is not supported, or there is no traffic for it.
     """
     require_parts(config)
-    place = load_place(config.world, config.traffic, len(world_of))
-    if config.light.visibility is not None and not place.lighting.foggy:
+    assets = load_assets(config.world, config.traffic, len(world_of))
+    if config.light.visibility is not None and not assets.lighting.foggy:
         _LOG.warning(
             "light.visibility (Env_Params.foggy_use_default): without effect in the weather '%s', "
             "which has no fog",
             config.world.weather,
         )
-    return Simulation(config, place, TRACKERS[config.tracker.kind], world_of)
+    return Simulation(config, assets, TRACKERS[config.tracker.kind], world_of)

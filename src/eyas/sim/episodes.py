@@ -10,8 +10,7 @@ from eyas.sim.config import SimConfig
 from eyas.sim.light import LightChanges
 from eyas.sim.worlds import Worlds
 from eyas.state.snapshot import Snapshot
-from eyas.targets.catalogue import VEHICLES
-from eyas.task.direction import TARGET_COMPENSATION
+from eyas.targets.catalogue import MODELS, kind_of
 from eyas.task.spawn import choose_target, sample_start, start_pose
 from eyas.traffic.source import TrafficSource
 
@@ -83,9 +82,9 @@ class Episodes:
         targets.actor[tracker] = actor
         targets.lost[tracker] = False
         targets.model[tracker] = model
-        targets.size[tracker] = VEHICLES[model].size
-        targets.rise[tracker] = VEHICLES[model].wheel_radius
-        targets.ahead[tracker] = TARGET_COMPENSATION
+        targets.size[tracker] = MODELS[model].size
+        targets.rise[tracker] = MODELS[model].rise
+        targets.ahead[tracker] = kind_of(model).ahead
 
     def _begin_one(self, tracker: int) -> float:
         episode = int(self._episodes.number[tracker])

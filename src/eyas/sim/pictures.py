@@ -10,9 +10,9 @@ from eyas.overlay.marks import Marks
 from eyas.overlay.paint import paint_overlays, with_depth
 from eyas.render.jobs import picture_size
 from eyas.sensors.camera import Camera
+from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.light import LightChanges
-from eyas.sim.place import Place
 from eyas.sim.worlds import Worlds
 from eyas.state.draw import DrawList, DrawStage, Picture, Views
 from eyas.state.snapshot import CameraState, Snapshot
@@ -28,7 +28,7 @@ class Pictures:
 
     Args:
         config: The settings.
-        place: Scene and renderer.
+        assets: Scene and renderer.
         worlds: What moves.
         light: The light around each tracker.
         snapshot: Of the trackers.
@@ -37,7 +37,7 @@ class Pictures:
     def __init__(
         self,
         config: SimConfig,
-        place: Place,
+        assets: Assets,
         worlds: Worlds,
         light: LightChanges,
         snapshot: Snapshot,
@@ -47,9 +47,9 @@ class Pictures:
         self._snapshot = snapshot
         self._flakes = config.light.flakes
         self._samples = config.camera.samples
-        self._renderer = place.renderer
-        self._camera = Camera(config.camera, place.renderer)
-        self._marks = Marks(snapshot, place.scene.terrain, config.camera)
+        self._renderer = assets.renderer
+        self._camera = Camera(config.camera, assets.renderer)
+        self._marks = Marks(snapshot, assets.scene.terrain, config.camera)
 
     def draw(self, chosen: Chosen, picture: Picture, until: DrawStage) -> Views:
         """Draw what the cameras of trackers see; return the views that were drawn.

@@ -6,11 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.parallel import Held
+from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.episodes import Episodes
 from eyas.sim.light import LightChanges
 from eyas.sim.pictures import Pictures
-from eyas.sim.place import Place
 from eyas.sim.step import Orders, StepState, Surroundings, step_of
 from eyas.sim.worlds import Worlds
 from eyas.state.draw import DrawStage, Picture
@@ -48,31 +48,31 @@ class Simulation:
 
     Args:
         config: The settings.
-        place: Map, traffic and renderer.
+        assets: Map, traffic and renderer.
         tracker: The kind of the trackers.
         world_of: Who shares a world, shape (N,); see `Worlds`.
     """
 
     def __init__(
-        self, config: SimConfig, place: Place, tracker: Tracker, world_of: NDArray[np.integer]
+        self, config: SimConfig, assets: Assets, tracker: Tracker, world_of: NDArray[np.integer]
     ) -> None:
-        worlds = Worlds(config, place, world_of)
-        terrain = place.scene.terrain
+        worlds = Worlds(config, assets, world_of)
+        terrain = assets.scene.terrain
         self.config = config
         self.count = len(worlds.of)
         self.snapshot = Snapshot.create(self.count)
         light = LightChanges(
             config.light,
-            place.lighting,
+            assets.lighting,
             worlds,
             self.snapshot.light,
-            foggy=place.lighting.foggy,
+            foggy=assets.lighting.foggy,
         )
-        self._episodes = Episodes(config, place.traffic, worlds, light, self.snapshot)
-        self._pictures = Pictures(config, place, worlds, light, self.snapshot)
+        self._episodes = Episodes(config, assets.traffic, worlds, light, self.snapshot)
+        self._pictures = Pictures(config, assets, worlds, light, self.snapshot)
         self._kernels = step_of(tracker)
         self._memory = tracker.memory(self.count)
-        self._around = Surroundings(place.traffic.motion, terrain)
+        self._around = Surroundings(assets.traffic.motion, terrain)
         self._orders = Orders.create(self.count)
         self._held_orders = Held(self._orders)
         self.rules = make_rules(config.reward, config.done, config.camera)

@@ -5,12 +5,13 @@ from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.rng import stream
+from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
-from eyas.sim.place import Place
 from eyas.state.draw import DrawList
 from eyas.state.motion import ActorState
 from eyas.state.scene import ACTOR_OBJECT
-from eyas.targets.looks import Looks
+from eyas.targets.kind import Looks
+from eyas.targets.looks import LookSampler
 
 __all__ = ["ALONE", "Worlds", "each_alone", "together"]
 
@@ -41,7 +42,7 @@ class Worlds:
 
     Args:
         config: The settings.
-        place: Map and traffic.
+        assets: Map and traffic.
         world_of: A number for each tracker, shape (N,): those with the same one share a world,
             whose time goes on from episode to episode; `ALONE` for a world of its own.
 
@@ -49,7 +50,7 @@ class Worlds:
         ValueError: `world_of` is no list of whole numbers from -1 on.
     """
 
-    def __init__(self, config: SimConfig, place: Place, world_of: NDArray[np.integer]) -> None:
+    def __init__(self, config: SimConfig, assets: Assets, world_of: NDArray[np.integer]) -> None:
         given = np.asarray(world_of)
         if given.ndim != 1 or given.dtype.kind not in "iu" or (given < ALONE).any():
             raise ValueError("world_of: a whole number from -1 on is wanted for each tracker")
@@ -60,11 +61,12 @@ class Worlds:
         self.of: NDArray[np.int32] = order[numbered].astype(np.int32)
         self.leader: Integers = np.sort(first)
         self.lasting: NDArray[np.bool_] = given[self.leader] != ALONE
-        self._place = place
-        self._looks = Looks(place.traffic.motion.kind, config.traffic.colour)
-        worlds, actors = len(self.leader), place.traffic.actors
-        self._model = np.zeros((worlds, actors), np.int32)
-        self._colour = np.ones((worlds, actors, 3), np.float32)
+        self._assets = assets
+        self._sampler = LookSampler(assets.traffic.motion.kind, config.traffic.colour)
+        worlds, actors = len(self.leader), assets.traffic.actors
+        self._looks = Looks(
+            np.zeros((worlds, actors), np.int32), np.ones((worlds, actors, 3), np.float32)
+        )
         self._actors = ActorState.create(0, actors)
         self._movers = DrawList.create(0, 0)
 
@@ -78,11 +80,11 @@ class Worlds:
         if self.lasting[world] and (tracker != self.leader[world] or episode > 0):
             return
         rng = stream(seed, "looks", tracker, episode)
-        self._model[world], self._colour[world] = self._looks.sample(rng)
+        self._looks.model[world], self._looks.colour[world] = self._sampler.sample(rng)
 
     def model_of(self, tracker: int, actor: int) -> int:
         """Return the model of an actor around a tracker, an index into the catalogue."""
-        return int(self._model[self.of[tracker], actor])
+        return int(self._looks.model[self.of[tracker], actor])
 
     def object_ids(self, actors: NDArray[np.int32]) -> NDArray[np.int32]:
         """Return the object ids of actors."""
@@ -104,15 +106,14 @@ class Worlds:
             worlds, rows = np.unique(worlds, return_inverse=True)
         time = tick[self.leader[worlds]].astype(np.float64) * PHYSICS_STEP
         actors, movers = self._buffers(len(worlds))
-        self._place.traffic.at(time, actors)
-        self._place.rigs.pose(actors, self._model[worlds], self._colour[worlds], movers)
+        self._assets.traffic.at(time, actors)
+        looks = Looks(*(array[worlds] for array in self._looks))
+        self._assets.rigs.pose(actors, looks, movers)
         return rows.astype(np.int32), movers
 
     def _buffers(self, worlds: int) -> tuple[ActorState, DrawList]:
         """Return room for some worlds; it grows to the most that were asked for, and no further."""
-        actors = self._place.traffic.actors
         if len(self._movers.part) < worlds:
-            slots = actors * self._place.rigs.slots_per_actor
-            self._actors = ActorState.create(worlds, actors)
-            self._movers = DrawList.create(worlds, slots)
+            self._actors = ActorState.create(worlds, self._assets.traffic.actors)
+            self._movers = self._assets.rigs.draw_list(worlds)
         return self._actors.first(worlds), self._movers.first(worlds)

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.state.mesh import Mesh
+from eyas.state.scene import ObjectClass
 
 __all__ = ["DrawList", "DrawStage", "PartLibrary", "Picture", "Views"]
 
@@ -32,6 +33,9 @@ class PartLibrary:
 
     parts: tuple[tuple[Mesh, ...], ...]
     """For each part its meshes, the finest first, in the part's own frame."""
+    lamps: tuple[bool, ...] = ()
+    """For each part whether a thing of which it is the largest part has head and tail lamps that
+    light the road; empty: none has."""
 
 
 @dataclass(slots=True)
@@ -46,15 +50,18 @@ class DrawList:
     """Body colour, sRGB 0 to 1, shape (W, I, 3)."""
     object_id: NDArray[np.int32]
     """Object id, `ACTOR_OBJECT + actor`, shape (W, I)."""
+    object_class: NDArray[np.uint8]
+    """`eyas.state.scene.ObjectClass` of each actor, shape (W, A)."""
 
     @classmethod
     def create(cls, worlds: int, slots: int) -> "DrawList":
-        """Return a list with only empty slots."""
+        """Return a list with only empty slots, for at most as many actors; these are cars."""
         return cls(
             part=np.full((worlds, slots), -1, np.int32),
             pose=np.zeros((worlds, slots, 3, 4), np.float32),
             colour=np.ones((worlds, slots, 3), np.float32),
             object_id=np.full((worlds, slots), -1, np.int32),
+            object_class=np.full((worlds, slots), ObjectClass.CAR, np.uint8),
         )
 
     def first(self, worlds: int) -> "DrawList":

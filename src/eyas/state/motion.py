@@ -1,7 +1,6 @@
 """The motion of everything that moves by itself: one table, whoever fills it."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -49,8 +48,7 @@ class Motion(NamedTuple):
     """Time of sample 0 [s]; 0 for a recording, later for traffic that is simulated live."""
 
 
-@dataclass(slots=True)
-class ActorState:
+class ActorState(NamedTuple):
     """A actors in each of W worlds."""
 
     position: NDArray[np.float64]
@@ -85,7 +83,7 @@ class ActorState:
 
     def first(self, worlds: int) -> "ActorState":
         """Return the first worlds; the arrays are shared."""
-        return ActorState(*(getattr(self, field.name)[:worlds] for field in fields(self)))
+        return ActorState._make(array[:worlds] for array in self)
 
 
 def joined(motions: Sequence[Motion]) -> Motion:

@@ -40,10 +40,17 @@ class ObjectClass(IntEnum):
     STRUCTURE = 6
     POLE = 7
     WATER = 8
-    VEHICLE = 9
-    """An actor of the traffic; no object of the scene."""
+    CAR = 9
+    """This and the other classes of movers are of actors, not of objects of the scene."""
     SKY = 10
-    """Nothing; no object of the scene."""
+    """Nothing."""
+    TRUCK = 11
+    """With its trailer."""
+    BUS = 12
+    MOTORCYCLE = 13
+    """With its rider."""
+    PERSON = 14
+    ROBOT = 15
 
 
 @dataclass(slots=True)

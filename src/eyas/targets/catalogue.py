@@ -1,160 +1,57 @@
-"""The vehicles: names, classes, sizes and axles.
+"""The catalogue: all kinds of targets and all their models.
 
-Sizes are the overall sizes of the original's simplified vehicle models. Model frame: x forward,
-y left, z up, origin on the ground in the middle of the overall length and width.
+A new kind is a file with its shapes and its rig, and one call of `register`.
 """
 
-from dataclasses import dataclass
+from eyas.targets.kind import Kind, Model
+from eyas.targets.vehicles.kinds import VEHICLE_KINDS
 
-from eyas.traffic.config import VehicleType
+__all__ = ["KINDS", "MODELS", "kind_index", "kind_of", "model_index", "models_of", "register"]
 
-__all__ = [
-    "BODY_COLOURS",
-    "KINDS",
-    "MOTORCYCLE_COLOURS",
-    "VEHICLES",
-    "Axle",
-    "VehicleModel",
-    "kind_index",
-    "model_index",
-    "models_of",
-]
+KINDS: list[Kind] = []
+"""All kinds. The index into this table is what the other rooms call `kind`."""
 
-Colour = tuple[float, float, float]
-
-BODY_COLOURS: tuple[Colour, ...] = (
-    (0.43, 0.11, 0.10),
-    (0.85, 0.85, 0.05),
-    (0.10, 0.15, 0.18),
-    (0.14, 0.29, 0.16),
-    (0.18, 0.28, 0.64),
-    (0.62, 0.62, 0.62),
-    (0.72, 0.52, 0.18),
-    (0.18, 0.50, 0.72),
-)
-"""The original's body colours of cars, buses and trucks, sRGB: dark red, yellow, blue-black, dark
-green, blue, grey, ochre, sky blue."""
-
-MOTORCYCLE_COLOURS: tuple[Colour, ...] = (
-    (0.66, 0.10, 0.09),
-    (0.13, 0.25, 0.62),
-    (0.08, 0.45, 0.46),
-    (0.72, 0.50, 0.16),
-    (0.16, 0.40, 0.17),
-    (0.40, 0.14, 0.36),
-)
-"""The main colour of the original's six pairs for two-wheelers, sRGB: red, blue, teal, ochre,
-green, plum."""
+MODELS: list[Model] = []
+"""All models, kind by kind. The index into this table is what the other rooms call `model`."""
 
 
-@dataclass(frozen=True, slots=True)
-class Axle:
-    """One or two wheels that turn together."""
+def register(kind: Kind) -> None:
+    """Add a kind and its models; those that are there keep their indices.
 
-    x: float
-    """Place along the vehicle [m]."""
-    track: float
-    """Between the middles of the two wheels [m]; 0 for a single wheel."""
-    width: float
-    """Of a tyre [m]."""
-    steered: bool = False
-    """Whether the wheels follow the curve."""
-
-
-@dataclass(frozen=True, slots=True)
-class VehicleModel:
-    """One model of vehicle."""
-
-    name: str
-    """The original's name of the model."""
-    vehicle_type: VehicleType
-    """SUMO class that drives it."""
-    length: float
-    """Overall [m]."""
-    width: float
-    """Overall, mirrors included [m]."""
-    height: float
-    """Overall [m]."""
-    wheelbase: float
-    """From the steered axle to the driven one [m]."""
-    wheel_radius: float
-    """Of all wheels [m]."""
-    axles: tuple[Axle, ...]
-    """The front one first."""
-
-    @property
-    def size(self) -> tuple[float, float, float]:
-        """Length, width and height [m]."""
-        return self.length, self.width, self.height
-
-
-def _car(
-    name: str, size: tuple[float, float, float], wheels: tuple[float, float, float]
-) -> VehicleModel:
-    """Return a car; `wheels` are wheelbase, radius and place of the front axle [m]."""
-    wheelbase, radius, front = wheels
-    track = size[1] - 0.36
-    axles = (Axle(front, track, 0.23, steered=True), Axle(front - wheelbase, track, 0.23))
-    return VehicleModel(name, VehicleType.PASSENGER, *size, wheelbase, radius, axles)
-
-
-def _truck(
-    name: str, vehicle_type: VehicleType, length: float, rear: tuple[float, ...]
-) -> VehicleModel:
-    """Return a truck 4.5 m high; `rear` are the places of the trailer's axles [m]."""
-    front = length / 2 - 1.35
-    axles = (
-        Axle(front, 2.14, 0.32, steered=True),
-        Axle(front - 5.25, 1.9, 0.56),
-        *(Axle(x, 2.1, 0.38) for x in rear),
-    )
-    return VehicleModel(name, vehicle_type, length, 2.8, 4.5, 5.25, 0.5, axles)
-
-
-def _two_wheeler(
-    name: str, size: tuple[float, float, float], wheels: tuple[float, float, float]
-) -> VehicleModel:
-    """Return a two-wheeler; `wheels` as for a car."""
-    wheelbase, radius, front = wheels
-    axles = (Axle(front, 0.0, 0.12, steered=True), Axle(front - wheelbase, 0.0, 0.15))
-    return VehicleModel(name, VehicleType.MOTORCYCLE, *size, wheelbase, radius, axles)
-
-
-_BUS_AXLES = (Axle(2.3, 2.2, 0.3, steered=True), Axle(-2.2, 1.96, 0.54))
-_TRAILER_AXLES = (-3.4, -4.7, -6.0)
-
-VEHICLES: tuple[VehicleModel, ...] = (
-    _car("BmwX5Simple", (4.85, 1.9, 1.8), (3.0, 0.374, 1.53)),
-    _car("CitroenCZeroSimple", (3.5, 1.5, 1.6), (2.55, 0.285, 1.26)),
-    _car("ToyotaPriusSimple", (4.5, 1.8, 1.5), (2.8, 0.317, 1.37)),
-    _car("LincolnMKZSimple", (5.0, 1.85, 1.5), (2.94, 0.358, 1.52)),
-    _car("RangeRoverSportSVRSimple", (4.7, 1.95, 1.7), (2.71, 0.358, 1.45)),
-    _car("TeslaModel3Simple", (4.8, 1.85, 1.5), (2.94, 0.36, 1.53)),
-    _car("MercedesBenzSprinterSimple", (6.9, 2.0, 2.7), (4.33, 0.40, 2.45)),
-    VehicleModel("BusSimple", VehicleType.BUS, 9.73, 2.64, 3.36, 4.5, 0.56, _BUS_AXLES),
-    _truck("TruckSimple", VehicleType.TRUCK, 7.7, ()),
-    _truck("TruckTrailerSimple", VehicleType.TRAILER, 14.3, _TRAILER_AXLES),
-    _truck("TruckTankSimple", VehicleType.TRAILER, 14.3, _TRAILER_AXLES),
-    _two_wheeler("ScooterSimple", (1.95, 0.66, 1.7), (1.48, 0.23, 0.745)),
-    _two_wheeler("MotorbikeSimple", (2.48, 1.1, 1.55), (1.78, 0.25, 0.94)),
-)
-"""All models. The index into this table is what the other rooms call `model`."""
-
-
-KINDS: tuple[VehicleType, ...] = tuple(VehicleType)
-"""All kinds of movers. The index into this table is what the other rooms call `kind`."""
+    Raises:
+        ValueError: A name is taken, or a model belongs to another kind.
+    """
+    taken = {known.name for known in KINDS} & {kind.name}
+    taken |= {known.name for known in MODELS} & {model.name for model in kind.models}
+    if taken:
+        raise ValueError(f"targets: {sorted(taken)} are in the catalogue already")
+    strangers = [model.name for model in kind.models if model.kind != kind.name]
+    if strangers or not kind.models:
+        raise ValueError(f"targets: {kind.name!r} needs models of its own, not {strangers}")
+    KINDS.append(kind)
+    MODELS.extend(kind.models)
 
 
 def kind_index(name: str) -> int:
     """Return the index of a kind in `KINDS`."""
-    return KINDS.index(VehicleType(name))
+    return next(i for i, kind in enumerate(KINDS) if kind.name == name)
 
 
-def models_of(vehicle_type: VehicleType) -> tuple[int, ...]:
-    """Return the models that a SUMO class drives, as indices into `VEHICLES`."""
-    return tuple(i for i, vehicle in enumerate(VEHICLES) if vehicle.vehicle_type == vehicle_type)
+def kind_of(model: int) -> Kind:
+    """Return the kind of a model, given by its index in `MODELS`."""
+    return KINDS[kind_index(MODELS[model].kind)]
 
 
 def model_index(name: str) -> int:
-    """Return the index of a model in `VEHICLES`."""
-    return next(i for i, vehicle in enumerate(VEHICLES) if vehicle.name == name)
+    """Return the index of a model in `MODELS`."""
+    return next(i for i, model in enumerate(MODELS) if model.name == name)
+
+
+def models_of(kind: int) -> range:
+    """Return the models of a kind, given by its index in `KINDS`, as indices into `MODELS`."""
+    first = model_index(KINDS[kind].models[0].name)
+    return range(first, first + len(KINDS[kind].models))
+
+
+for _kind in VEHICLE_KINDS:
+    register(_kind)

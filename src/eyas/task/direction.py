@@ -6,11 +6,7 @@ from enum import IntEnum
 from eyas.core.frames import wrap_angle
 from eyas.core.jit import kernel
 
-__all__ = ["TARGET_COMPENSATION", "TargetDirection", "target_centre", "target_direction"]
-
-TARGET_COMPENSATION = -1.0
-"""How far the point that is rewarded lies ahead of a vehicle's reference point [m]; other targets
-have 0."""
+__all__ = ["TargetDirection", "target_centre", "target_direction"]
 
 _TURNING = 1e-4
 """Change of heading in 2 ms above which the target turns [rad]."""
@@ -60,6 +56,6 @@ def target_centre(x: float, y: float, yaw: float, ahead: float) -> tuple[float, 
         x: Reference point of the target, east [m].
         y: Reference point of the target, north [m].
         yaw: Heading of the target [rad].
-        ahead: `TARGET_COMPENSATION` for vehicles, else 0 [m].
+        ahead: How far the point lies ahead of it, see `eyas.targets.kind.Kind` [m].
     """
     return x + ahead * math.cos(yaw), y + ahead * math.sin(yaw)

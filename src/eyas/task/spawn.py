@@ -11,7 +11,6 @@ from eyas.core.errors import SpawnError
 from eyas.core.frames import wrap_angle
 from eyas.core.variation import sample
 from eyas.task.config import StartConfig
-from eyas.task.direction import TARGET_COMPENSATION
 
 __all__ = ["Start", "choose_target", "sample_start", "start_pose"]
 
@@ -43,10 +42,7 @@ def sample_start(config: StartConfig, rng: np.random.Generator) -> Start:
 
 
 def start_pose(
-    start: Start,
-    target_position: ArrayLike,
-    target_yaw: float,
-    ahead: float = TARGET_COMPENSATION,
+    start: Start, target_position: ArrayLike, target_yaw: float, ahead: float
 ) -> tuple[NDArray[np.float64], float]:
     """Return where the tracker's body starts [m], shape (3,), and its yaw [rad].
 
@@ -58,7 +54,7 @@ def start_pose(
         start: The drawn start.
         target_position: Reference point of the target [m], shape (3,).
         target_yaw: Heading of the target [rad].
-        ahead: `TARGET_COMPENSATION` for vehicles, else 0 [m].
+        ahead: How far the target's middle lies ahead of that, see `eyas.targets.kind.Kind` [m].
     """
     yaw = target_yaw + start.direction
     forward = ahead + start.vertical_bias

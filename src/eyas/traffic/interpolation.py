@@ -71,34 +71,19 @@ def _hermite(
     return value, slope
 
 
+@kernel
 def interpolate_actors(motion: Motion, time: NDArray[np.float64], out: ActorState) -> None:
     """Write all actors of W worlds at the worlds' own times [s], shape (W,)."""
-    pose = out.position, out.yaw, out.slope, out.speed, out.yaw_rate, out.travelled, out.present
-    _write_worlds(motion, time, *pose)
-
-
-@kernel
-def _write_worlds(
-    motion: Motion,
-    time: NDArray[np.float64],
-    position: NDArray[np.float64],
-    yaw: NDArray[np.float64],
-    slope: NDArray[np.float64],
-    speed: NDArray[np.float64],
-    yaw_rate: NDArray[np.float64],
-    travelled: NDArray[np.float64],
-    present: NDArray[np.bool_],
-) -> None:
     # One thread: waking a second one costs more than 64 worlds of 40 actors.
     for world in range(len(time)):
         for actor in range(motion.table.shape[1]):
             pose = interpolate_actor(motion, actor, time[world])
-            position[world, actor, 0] = pose.x
-            position[world, actor, 1] = pose.y
-            position[world, actor, 2] = pose.z
-            yaw[world, actor] = pose.yaw
-            slope[world, actor] = pose.slope
-            speed[world, actor] = pose.speed
-            yaw_rate[world, actor] = pose.yaw_rate
-            travelled[world, actor] = pose.travelled
-            present[world, actor] = pose.present
+            out.position[world, actor, 0] = pose.x
+            out.position[world, actor, 1] = pose.y
+            out.position[world, actor, 2] = pose.z
+            out.yaw[world, actor] = pose.yaw
+            out.slope[world, actor] = pose.slope
+            out.speed[world, actor] = pose.speed
+            out.yaw_rate[world, actor] = pose.yaw_rate
+            out.travelled[world, actor] = pose.travelled
+            out.present[world, actor] = pose.present

@@ -255,7 +255,7 @@ def test_a_cache_that_only_others_may_write_to_is_read(open_folder):
         path.chmod(0o555 if path.is_dir() else 0o444)
     demoted = "os.setuid(65534) if os.geteuid() == 0 else None"
     assert told(start(open_folder, demoted)) == [TOTAL]
-    assert told(start(open_folder, demoted + "; Kind = type('', (), {'SKY': 'rigs'})")) == [
+    assert told(start(open_folder, demoted + "; Kind = type('', (), {'SKY': 'parts'})")) == [
         "making",
         TOTAL,
     ]

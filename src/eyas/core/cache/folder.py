@@ -34,7 +34,7 @@ class Kind(StrEnum):
 
     SCENE = "scene"
     TEXTURES = "textures"
-    RIGS = "rigs"
+    PARTS = "parts"
     GEOMETRY = "geometry"
     SKY = "sky"
     SHADOWS = "shadows"

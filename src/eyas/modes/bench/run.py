@@ -21,14 +21,12 @@ from eyas.core.machine import describe_machine, peak_memory
 from eyas.modes.bench.first_picture import FIRST_PICTURE
 from eyas.modes.bench.stages import measure_stages, stage_table
 from eyas.sensors.config import CameraConfig
+from eyas.sim.assets import load_assets
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
-from eyas.sim.place import load_place
+from eyas.sim.still import StillWorld
 from eyas.sim.worlds import each_alone
-from eyas.state.draw import DrawList, Picture, Views
-from eyas.state.motion import ActorState
-from eyas.targets.catalogue import models_of
-from eyas.traffic.config import VehicleType
+from eyas.state.draw import Picture, Views
 
 __all__ = ["Measurement", "run"]
 
@@ -113,9 +111,9 @@ def _pictures(
 
 def _horizon(seconds: float) -> Measurement:
     """Time views from a ring outside the city that hold all of it."""
-    place = load_place(SimConfig().world, SimConfig().traffic, 1)
+    assets = load_assets(SimConfig().world, SimConfig().traffic, 1)
     count, pitch, field_of_view = 64, 0.3, 1.2
-    points = place.scene.network.lane_points
+    points = assets.scene.network.lane_points
     centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
     away = np.linalg.norm(points - centre, axis=1).max() / math.sin(0.5 * field_of_view)
     turn = np.arange(count) * (math.tau / count)
@@ -130,14 +128,9 @@ def _horizon(seconds: float) -> Measurement:
         subject=np.full(count, -1, np.int32),
         field_of_view=field_of_view,
     )
-    actors = ActorState.create(1, place.traffic.actors)
-    place.traffic.at(np.array([300.0]), actors)
-    movers = DrawList.create(1, place.traffic.actors * place.rigs.slots_per_actor)
-    model = np.full((1, place.traffic.actors), models_of(VehicleType.PASSENGER)[0], np.int32)
-    colour = np.ones((1, place.traffic.actors, 3), np.float32)
-    place.rigs.pose(actors, model, colour, movers)
+    movers = StillWorld(assets).movers(300.0)
     picture = Picture.create(count, 84, 84)
-    rate, repeats = _median_rate(lambda: place.renderer.draw(views, movers, picture), seconds)
+    rate, repeats = _median_rate(lambda: assets.renderer.draw(views, movers, picture), seconds)
     includes = f"all of the city from {away:.0f} m, pitch {pitch}: drawing alone"
     return Measurement("pictures 84x84, 64 views, horizon", rate * count, "/s", includes, repeats)
 
@@ -173,7 +166,7 @@ def _reset(seconds: float) -> Measurement:
 
 
 def _textures() -> Measurement:
-    texels = load_place(SimConfig().world, SimConfig().traffic, 1).renderer.textures
+    texels = load_assets(SimConfig().world, SimConfig().traffic, 1).renderer.textures
     includes = f"{len(texels)} textures with their mip levels, of the peak memory"
     return Measurement("textures", texels.nbytes / 2**20, "MiB", includes, 1)
 

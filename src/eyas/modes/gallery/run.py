@@ -12,7 +12,7 @@ from eyas.core.files import PART_SUFFIX, refusals, write_atomic
 from eyas.modes.gallery.page import MARK, Shown, contact_sheet, page, png
 from eyas.modes.gallery.still import StillScene
 from eyas.modes.gallery.views import choose_viewpoints
-from eyas.sim.place import load_place
+from eyas.sim.assets import load_assets
 from eyas.traffic.config import TrafficConfig
 from eyas.world.config import WorldConfig
 from eyas.world.maps import MAPS
@@ -77,7 +77,7 @@ def _draw(out: Path, map_name: str, weather: str, progress: Progress) -> Shown:
     """Draw a map in a weather into the folder."""
     task = progress.add_task(f"{map_name}, {weather}", total=None)
     world = WorldConfig(map=map_name, weather=weather)
-    still = StillScene(load_place(world, TrafficConfig(), 1))
+    still = StillScene(load_assets(world, TrafficConfig(), 1))
     recipe = MAPS.get(map_name)
     views = choose_viewpoints(still, recipe.light(weather).sun_direction)
     shown = Shown(recipe.name, weather, views, [still.rgb(view) for view in views])

@@ -1,4 +1,4 @@
-"""A place with its traffic standing still at a time, to be looked at from anywhere."""
+"""Viewpoints of the gallery, and their pictures."""
 
 import math
 from dataclasses import dataclass
@@ -6,11 +6,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.sim.place import Place
-from eyas.state.draw import DrawList, Picture, Views
+from eyas.sim.assets import Assets
+from eyas.sim.still import StillWorld
+from eyas.state.draw import Picture, Views
 from eyas.state.motion import ActorState
 from eyas.state.scene import ACTOR_OBJECT
-from eyas.targets.looks import Looks
 
 __all__ = ["StillScene", "Viewpoint"]
 
@@ -49,21 +49,17 @@ class StillScene:
     """Draws viewpoints.
 
     Args:
-        place: What is looked at.
+        assets: What is looked at.
     """
 
-    def __init__(self, place: Place) -> None:
-        self.scene = place.scene
-        self.duration = place.traffic.duration
-        self._place = place
-        looks = Looks(place.traffic.motion.kind)
-        self._model, self._colour = looks.sample(np.random.default_rng(1))
+    def __init__(self, assets: Assets) -> None:
+        self.scene = assets.scene
+        self.duration = assets.traffic.duration
+        self._world = StillWorld(assets)
 
     def actors(self, time: float) -> ActorState:
         """Return all actors at a time [s], one world."""
-        actors = ActorState.create(1, self._place.traffic.actors)
-        self._place.traffic.at(np.array([time]), actors)
-        return actors
+        return self._world.actors(time)
 
     def rgb(self, view: Viewpoint) -> NDArray[np.uint8]:
         """Return the picture of a viewpoint, sRGB, shape (H, W, 3) times `enlarged`."""
@@ -87,9 +83,6 @@ class StillScene:
         return picture.depth[0], seen / covered if covered else 0.0
 
     def _draw(self, view: Viewpoint, picture: Picture, samples: int) -> None:
-        rigs = self._place.rigs
-        movers = DrawList.create(1, self._place.traffic.actors * rigs.slots_per_actor)
-        rigs.pose(self.actors(view.time), self._model[None], self._colour[None], movers)
         subject = ACTOR_OBJECT + view.actor if view.actor >= 0 else -1
         views = Views(
             position=np.array([view.position]),
@@ -100,7 +93,7 @@ class StillScene:
             vertical_field_of_view=2 * math.atan(0.75 * math.tan(0.5 * view.field_of_view)),
             instant=np.array([view.time]),
         )
-        self._place.renderer.draw(views, movers, picture, samples)
+        self._world.draw(views, view.time, picture, samples)
 
 
 def _look(yaw: float, pitch: float) -> NDArray[np.float64]:

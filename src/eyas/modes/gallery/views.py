@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from eyas.modes.gallery.still import StillScene, Viewpoint
 from eyas.state.scene import Colliders, ObjectClass, Scene
+from eyas.targets.vehicles.models import VEHICLE_AHEAD
 from eyas.task.spawn import Start, start_pose
 
 __all__ = ["choose_viewpoints"]
@@ -107,9 +108,8 @@ def _drone_view(
     cars: _Cars, car: int, name: str, where: str, pose: tuple[float, float, str]
 ) -> Viewpoint:
     height, pitch, kind = pose
-    position, yaw = start_pose(
-        Start(pitch, height, 0.0, 0.0, 0.0), [*cars.position[car], 0.0], float(cars.yaw[car])
-    )
+    start, spot = Start(pitch, height, 0.0, 0.0, 0.0), [*cars.position[car], 0.0]
+    position, yaw = start_pose(start, spot, float(cars.yaw[car]), VEHICLE_AHEAD)
     time = float(cars.time[car])
     return Viewpoint(
         name=f"{name}-{kind}",

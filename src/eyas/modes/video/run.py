@@ -12,8 +12,8 @@ from eyas.modes.video.lock import recording_lock
 from eyas.modes.video.recorder import Recorder
 from eyas.modes.video.report import Progress, print_report, say
 from eyas.settings.config import EyasConfig
+from eyas.sim.assets import load_assets
 from eyas.sim.build import build_simulation
-from eyas.sim.place import load_place
 from eyas.sim.simulation import Simulation
 from eyas.sim.worlds import together
 from eyas.task.config import DoneConfig
@@ -100,7 +100,7 @@ def recording_rules(config: EyasConfig) -> EyasConfig:
 
 def _require_traffic(config: EyasConfig) -> None:
     end = config.video.start_time + config.video.total_time
-    known = load_place(config.world, config.traffic, config.video.channels).traffic.duration
+    known = load_assets(config.world, config.traffic, config.video.channels).traffic.duration
     if end > known:
         raise ConfigError(
             f"video.total_time: {config.video.total_time:g} s after {config.video.start_time:g} s"

@@ -69,6 +69,9 @@ class Geometry(NamedTuple):
     silhouette: NDArray[np.float32]
     """Two boxes for the shadow of each prototype: height of the waist between them; back, front,
     right and left end of the upper one; right and left end of the lower one [m], shape (P, 7)."""
+    lamps: NDArray[np.bool_]
+    """Whether things of which each prototype is the largest part have head and tail lamps, shape
+    (P,)."""
     fixture_prototype: NDArray[np.int32]
     """Shape (F,)."""
     fixture_pose: NDArray[np.float32]

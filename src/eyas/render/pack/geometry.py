@@ -69,6 +69,7 @@ def build_geometry(
         sphere=np.array(sphere, np.float32).reshape(-1, 4),
         box=box,
         silhouette=np.array([silhouette(m[0]) for m in prototypes], np.float32).reshape(-1, 7),
+        lamps=_lamps(scene, parts),
         fixture_prototype=prototype,
         fixture_pose=pose,
         fixture_object=scene.fixtures.object_id[order].astype(np.int32),
@@ -83,6 +84,13 @@ def build_geometry(
         crown_middle=crown_middles(scene, palette),
         texture=packed_layers(textures, names),
     )
+
+
+def _lamps(scene: Scene, parts: PartLibrary) -> NDArray[np.bool_]:
+    """Return `Geometry.lamps`."""
+    of_parts = parts.lamps or (False,) * len(parts.parts)
+    assert len(of_parts) == len(parts.parts), "lamps: one flag for each part is wanted"
+    return np.array((False,) * len(scene.fixtures.levels) + of_parts, np.bool_)
 
 
 class _Pool:

@@ -7,7 +7,6 @@ from numpy.typing import NDArray
 
 from eyas.mesh.shell import Shell
 from eyas.state.mesh import Material, Mesh
-from eyas.targets.catalogue import VehicleModel
 from eyas.targets.vehicles.car_shape import (
     CarShape,
     arch_radius,
@@ -26,6 +25,7 @@ from eyas.targets.vehicles.finishes import (
     TAIL_LAMP,
     TRIM,
 )
+from eyas.targets.vehicles.models import VehicleModel
 
 __all__ = ["car_levels"]
 

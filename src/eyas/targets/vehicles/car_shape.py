@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.state.mesh import Material
-from eyas.targets.catalogue import VehicleModel
 from eyas.targets.vehicles.finishes import PAINT
+from eyas.targets.vehicles.models import VehicleModel
 
 __all__ = [
     "CarShape",

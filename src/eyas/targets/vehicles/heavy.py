@@ -5,7 +5,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from eyas.mesh.shell import Shell
 from eyas.state.mesh import Material, Mesh
-from eyas.targets.catalogue import VehicleModel
 from eyas.targets.vehicles.finishes import (
     BRIGHT,
     GLASS,
@@ -18,6 +17,7 @@ from eyas.targets.vehicles.finishes import (
     TRIM,
     plain,
 )
+from eyas.targets.vehicles.models import VehicleModel
 
 __all__ = ["truck_levels"]
 

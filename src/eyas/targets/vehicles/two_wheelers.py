@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 from eyas.mesh.shell import Shell
 from eyas.state.mesh import Mesh
-from eyas.targets.catalogue import VehicleModel
 from eyas.targets.vehicles.finishes import (
     BRIGHT,
     CLOTH,
@@ -19,6 +18,7 @@ from eyas.targets.vehicles.finishes import (
     TRIM,
     plain,
 )
+from eyas.targets.vehicles.models import VehicleModel
 
 __all__ = ["two_wheeler_levels"]
 

@@ -31,8 +31,10 @@ def _set_caster(
     first: int,
     last: int,
     caster: NDArray[np.float64],
-) -> None:
+) -> bool:
     """Compute the box around slots `first` to `last`, turned like the largest part.
+
+    Returns whether the thing has head and tail lamps.
 
     `caster`: centre x, y; direction of its length x, y; half length, half width; bottom, top; of
     its upper box the bottom, and back, front, right and left end from the centre; right and left
@@ -74,6 +76,7 @@ def _set_caster(
     for k in range(4):
         caster[11 + k] = boxes[3 + k] - aside
     caster[15] = 0.55 + 0.2 * (high - low)
+    return bool(geometry.lamps[geometry.part_first + parts[body]])
 
 
 @inner_kernel
@@ -189,9 +192,9 @@ def cast_light(
             continue
         while last < len(parts) and parts[last] >= 0 and object_ids[last] == object_ids[first]:
             last += 1
-        _set_caster(geometry, parts, poses, first, last, caster)
+        has_lamps = _set_caster(geometry, parts, poses, first, last, caster)
         if _may_show(caster, sun, view):
             _cast_shadow(caster, sun, fixtures + first, fixtures + last, view, shade)
-        if lamps > f4(0.0):
+        if has_lamps and lamps > f4(0.0):
             cast_beam(caster, view, shade)
         first = last

@@ -1,0 +1,83 @@
+"""What simulations of the same map, weather and traffic share, made once in a process."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from eyas.render.ahead import compile_ahead
+from eyas.render.renderer import Renderer, build_renderer
+from eyas.sim.scenes import load_geometry, load_scene
+from eyas.state.lighting import Lighting
+from eyas.state.scene import Scene
+from eyas.targets.catalogue import kind_index
+from eyas.targets.rig import Rigs
+from eyas.traffic.config import Demand, TrafficConfig
+from eyas.traffic.library import find_recording
+from eyas.traffic.recorded import recorded_motion
+from eyas.traffic.replay import Replay
+from eyas.traffic.source import TrafficSource
+from eyas.world.config import WorldConfig
+from eyas.world.maps import MAPS
+from eyas.world.maps.recipe import TRAFFIC_FILE
+
+__all__ = ["Assets", "load_assets"]
+
+
+@dataclass(frozen=True, slots=True)
+class Assets:
+    """A map in a weather, with its traffic."""
+
+    scene: Scene
+    traffic: TrafficSource
+    lighting: Lighting
+    renderer: Renderer
+    rigs: Rigs
+
+
+def load_assets(world: WorldConfig, traffic: TrafficConfig, trackers: int = 1) -> Assets:
+    """Return what a simulation needs; it shares each part with all others that need the same.
+
+    Weathers of one season share their scene and geometry, whatever drives shares the scene, and
+    whatever the weather shares the traffic.
+
+    Args:
+        world: Map and weather.
+        traffic: What drives.
+        trackers: How many follow; groups of vehicles that enter together are three times as many.
+
+    Raises:
+        EyasError: No such map or weather, or no traffic for it.
+    """
+    recipe = MAPS.get(world.map)
+    lighting, season = recipe.light(world.weather), recipe.season(world.weather)
+    grouped = traffic.demand is Demand.RESPAWN and traffic.group_size is None
+    source = _traffic(world.map, world.seed, traffic, trackers if grouped else 1)
+    renderer = _renderer(world, tuple(np.unique(source.motion.kind).tolist()))
+    scene = load_scene(world.map, world.seed, season)
+    return Assets(scene, source, lighting, renderer, Rigs(source.motion.kind))
+
+
+@lru_cache(maxsize=4)
+def _traffic(map_name: str, seed: int, config: TrafficConfig, trackers: int) -> TrafficSource:
+    recipe = MAPS.get(map_name)
+    recording = find_recording(
+        recipe.roads(seed), config, trackers=trackers, shipped=recipe.shipped(TRAFFIC_FILE)
+    )
+    # A scene depends on the season, its ground does not.
+    scene = load_scene(map_name, seed)
+    kind = np.array([kind_index(name) for name in recording.vehicle_types], np.int32)
+    return Replay(recorded_motion(recording, scene.terrain, kind))
+
+
+@lru_cache(maxsize=8)
+def _renderer(world: WorldConfig, kinds: tuple[int, ...]) -> Renderer:
+    recipe = MAPS.get(world.map)
+    season = recipe.season(world.weather)
+    ready = compile_ahead()
+    return build_renderer(
+        load_scene(world.map, world.seed, season),
+        load_geometry(world.map, world.seed, season, kinds),
+        recipe.light(world.weather),
+        ready=ready,
+    )

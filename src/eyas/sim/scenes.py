@@ -1,0 +1,121 @@
+"""Scenes and their packed geometry: made once, kept on disk, shared by all weathers of a season."""
+
+from collections.abc import Callable
+from functools import lru_cache
+from typing import TypeVar
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from eyas.core.cache.cached import cached
+from eyas.core.cache.folder import Kind
+from eyas.render.kernels.bundles import Geometry
+from eyas.render.pack.geometry import build_geometry
+from eyas.render.textures.library import build_textures
+from eyas.state.draw import PartLibrary
+from eyas.state.roads import RoadNetwork
+from eyas.state.scene import Scene
+from eyas.targets.catalogue import KINDS
+from eyas.targets.rig import part_library
+from eyas.traffic.network import build_network
+from eyas.world.maps import MAPS
+from eyas.world.weather import Season
+
+__all__ = ["load_geometry", "load_network", "load_scene"]
+
+Thing = TypeVar("Thing")
+
+_MAKERS = ("world", "mesh", "state", "core/rng.py")
+"""Rooms whose sources make a scene."""
+
+
+def load_network(map_name: str, seed: int) -> RoadNetwork:
+    """Return a map's roads: shipped for seed 0, built by netconvert for other seeds.
+
+    Raises:
+        MissingExtraError: netconvert is needed and not installed.
+    """
+    recipe = MAPS.get(map_name)
+    shipped = recipe.shipped_network() if seed == 0 else None
+    return shipped or build_network(recipe.roads(seed))
+
+
+@lru_cache(maxsize=4)
+def load_scene(map_name: str, seed: int = 0, season: Season = Season.SUMMER) -> Scene:
+    """Return everything of a map that stands still."""
+    recipe, network = MAPS.get(map_name), load_network(map_name, seed)
+
+    def make() -> Scene:
+        return recipe.scene(network, seed, season)
+
+    return _cached(Kind.SCENE, (), _origin(map_name, seed, season, network), make, Scene)
+
+
+@lru_cache(maxsize=4)
+def load_geometry(map_name: str, seed: int, season: Season, kinds: tuple[int, ...]) -> Geometry:
+    """Return a scene and the parts of moving things as the kernels read them.
+
+    Args:
+        map_name: The map.
+        seed: Of the map.
+        season: Which the scene depends on.
+        kinds: Of moving things, indices into `KINDS`.
+    """
+    scene = load_scene(map_name, seed, season)
+    names = tuple(KINDS[kind].name for kind in kinds)
+    origin = _origin(map_name, seed, season, scene.network)
+
+    def make() -> Geometry:
+        return build_geometry(scene, _parts(kinds), _textures())
+
+    inputs = None if origin is None else (*origin, names)
+    return _cached(Kind.GEOMETRY, ("render", "targets"), inputs, make, Geometry)
+
+
+def _origin(
+    map_name: str, seed: int, season: Season, network: RoadNetwork
+) -> tuple[object, ...] | None:
+    """Return what tells one scene from another.
+
+    None for a map without a package: it has no sources that tell its versions apart, so what is
+    made of its scenes is not kept on disk.
+    """
+    recipe = MAPS.get(map_name)
+    sources = recipe.source_hash()
+    if sources is None:
+        return None
+    roads = network.graph_hash, network.builder, shapely.__version__
+    return (recipe.name, sources, seed, season.value, *roads)
+
+
+def _cached(
+    kind: Kind,
+    makers: tuple[str, ...],
+    inputs: tuple[object, ...] | None,
+    make: Callable[[], Thing],
+    of: type[Thing],
+) -> Thing:
+    return make() if inputs is None else cached(kind, (*makers, *_MAKERS), inputs, make, of=of)
+
+
+def _parts(kinds: tuple[int, ...]) -> PartLibrary:
+    chosen = tuple(KINDS[kind] for kind in kinds)
+    names = tuple(kind.name for kind in chosen)
+    return cached(
+        Kind.PARTS,
+        ("targets", "mesh", "state"),
+        names,
+        lambda: part_library(chosen),
+        of=PartLibrary,
+    )
+
+
+def _textures() -> dict[str, NDArray[np.uint8]]:
+    return cached(
+        Kind.TEXTURES,
+        ("render", "world/build/materials.py"),
+        (),
+        build_textures,
+        of=dict[str, NDArray[np.uint8]],
+    )

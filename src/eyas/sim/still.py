@@ -1,0 +1,41 @@
+"""A world whose traffic stands still at a time, to be looked at from anywhere."""
+
+import numpy as np
+
+from eyas.sim.assets import Assets
+from eyas.state.draw import DrawList, Picture, Views
+from eyas.state.motion import ActorState
+from eyas.targets.kind import Looks
+from eyas.targets.looks import LookSampler
+
+__all__ = ["StillWorld"]
+
+
+class StillWorld:
+    """One world without trackers: for galleries, benchmarks and tests of pictures.
+
+    Args:
+        assets: Map, traffic and renderer.
+        seed: Of the actors' models and colours.
+    """
+
+    def __init__(self, assets: Assets, seed: int = 1) -> None:
+        self.assets = assets
+        model, colour = LookSampler(assets.traffic.motion.kind).sample(np.random.default_rng(seed))
+        self._looks = Looks(model[None], colour[None])
+
+    def actors(self, time: float) -> ActorState:
+        """Return all actors at a time [s], one world."""
+        actors = ActorState.create(1, self.assets.traffic.actors)
+        self.assets.traffic.at(np.array([time]), actors)
+        return actors
+
+    def movers(self, time: float) -> DrawList:
+        """Return what is drawn of the actors at a time [s], one world."""
+        movers = self.assets.rigs.draw_list(1)
+        self.assets.rigs.pose(self.actors(time), self._looks, movers)
+        return movers
+
+    def draw(self, views: Views, time: float, picture: Picture, samples: int = 1) -> None:
+        """Draw views of the world at a time [s]; see `eyas.render.renderer.Renderer.draw`."""
+        self.assets.renderer.draw(views, self.movers(time), picture, samples)

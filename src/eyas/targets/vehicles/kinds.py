@@ -1,0 +1,41 @@
+"""The kinds of vehicles: one for each SUMO class that drives them."""
+
+from eyas.state.scene import ObjectClass
+from eyas.targets.kind import Kind
+from eyas.targets.vehicles.models import (
+    BODY_COLOURS,
+    MOTORCYCLE_COLOURS,
+    VEHICLE_AHEAD,
+    VEHICLES,
+)
+from eyas.targets.vehicles.rig import VehicleRig
+from eyas.traffic.config import VehicleType
+
+__all__ = ["VEHICLE_KINDS"]
+
+_CLASSES = {
+    VehicleType.PASSENGER: ObjectClass.CAR,
+    VehicleType.BUS: ObjectClass.BUS,
+    VehicleType.TRUCK: ObjectClass.TRUCK,
+    VehicleType.TRAILER: ObjectClass.TRUCK,
+    VehicleType.MOTORCYCLE: ObjectClass.MOTORCYCLE,
+}
+
+
+def _kind(vehicle_type: VehicleType) -> Kind:
+    models = tuple(model for model in VEHICLES if model.kind == vehicle_type)
+    two_wheeled = vehicle_type is VehicleType.MOTORCYCLE
+    return Kind(
+        name=vehicle_type.value,
+        models=models,
+        colours=MOTORCYCLE_COLOURS if two_wheeled else BODY_COLOURS,
+        object_class=_CLASSES[vehicle_type],
+        rig=lambda: VehicleRig(models),
+        ahead=VEHICLE_AHEAD,
+        lamps=True,
+        keeps_colours=two_wheeled,
+    )
+
+
+VEHICLE_KINDS: tuple[Kind, ...] = tuple(_kind(vehicle_type) for vehicle_type in VehicleType)
+"""In the order of `VehicleType`."""

@@ -1,0 +1,152 @@
+"""Where the parts of vehicles are: the loop over all vehicles of a kind in all worlds."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.jit import kernel
+from eyas.state.motion import ActorState
+from eyas.targets.kind import Group, Looks
+from eyas.targets.vehicles.models import VEHICLE_AHEAD
+
+__all__ = ["STEER_LIMIT", "RigTable", "Slots", "pose_vehicles"]
+
+STEER_LIMIT = 0.6
+"""Most that wheels steer [rad]."""
+
+_SLOWEST = 1.0
+"""Speed below which the curve is not told from the yaw rate any more [m/s]."""
+
+
+class Slots(NamedTuple):
+    """What is written of a `DrawList`."""
+
+    part: NDArray[np.int32]
+    pose: NDArray[np.float32]
+    colour: NDArray[np.float32]
+
+
+class RigTable(NamedTuple):
+    """What the kernel knows of M models with S slots each; slot 0 is the body."""
+
+    part: NDArray[np.int32]
+    """Index of the part among those of the kind, -1 for an unused slot, shape (M, S)."""
+    offset: NDArray[np.float64]
+    """Place of the part in the model's frame [m], shape (M, S, 3)."""
+    steered: NDArray[np.bool_]
+    """Whether the part follows the curve, shape (M, S)."""
+    radius: NDArray[np.float64]
+    """Of the wheels [m], shape (M,)."""
+    wheelbase: NDArray[np.float64]
+    """[m], shape (M,)."""
+    lean: NDArray[np.float64]
+    """Most that the model leans [rad], shape (M,)."""
+
+
+class _Base(NamedTuple):
+    """Where a vehicle is: its rotation, row by row, and the middle of its length on the road."""
+
+    xx: float
+    xy: float
+    xz: float
+    yx: float
+    yy: float
+    yz: float
+    zx: float
+    zy: float
+    zz: float
+    x: float
+    y: float
+    z: float
+
+
+@kernel
+def _base_of(actors: ActorState, w: int, a: int, most_lean: float) -> _Base:
+    """Return where the vehicle a of world w is, on its road and leaning into the curve."""
+    yaw, slope = actors.yaw[w, a], actors.slope[w, a]
+    c, s, cp, sp = np.cos(yaw), np.sin(yaw), np.cos(slope), np.sin(slope)
+    lean = min(max(actors.yaw_rate[w, a], -most_lean), most_lean)
+    cr, sr = np.cos(lean), -np.sin(lean)  # a roll to the left is negative about x
+    return _Base(
+        c * cp, -s * cr - c * sp * sr, s * sr - c * sp * cr,
+        s * cp, c * cr - s * sp * sr, -c * sr - s * sp * cr,
+        sp, cp * sr, cp * cr,
+        actors.position[w, a, 0] + VEHICLE_AHEAD * c * cp,
+        actors.position[w, a, 1] + VEHICLE_AHEAD * s * cp,
+        actors.position[w, a, 2] + VEHICLE_AHEAD * sp,
+    )  # fmt: skip
+
+
+@kernel
+def _pose_slot(
+    pose: NDArray[np.float32],
+    base: _Base,
+    offset: NDArray[np.float64],
+    steer: tuple[float, float],
+    spin: tuple[float, float],
+) -> None:
+    """Write the pose of one part.
+
+    Args:
+        pose: What is written, shape (3, 4).
+        base: Of the vehicle.
+        offset: Place of the part in the model's frame [m], shape (3,).
+        steer: Cosine and sine of the part's turn about its own upward axis.
+        spin: Cosine and sine of its turn about its own left axis, after that.
+    """
+    w00, w01, w02 = steer[0] * spin[0], -steer[1], steer[0] * spin[1]
+    w10, w11, w12 = steer[1] * spin[0], steer[0], steer[1] * spin[1]
+    w20, w22 = -spin[1], spin[0]
+    x, y, z = offset
+    pose[0, 0] = base.xx * w00 + base.xy * w10 + base.xz * w20
+    pose[0, 1] = base.xx * w01 + base.xy * w11
+    pose[0, 2] = base.xx * w02 + base.xy * w12 + base.xz * w22
+    pose[0, 3] = base.xx * x + base.xy * y + base.xz * z + base.x
+    pose[1, 0] = base.yx * w00 + base.yy * w10 + base.yz * w20
+    pose[1, 1] = base.yx * w01 + base.yy * w11
+    pose[1, 2] = base.yx * w02 + base.yy * w12 + base.yz * w22
+    pose[1, 3] = base.yx * x + base.yy * y + base.yz * z + base.y
+    pose[2, 0] = base.zx * w00 + base.zy * w10 + base.zz * w20
+    pose[2, 1] = base.zx * w01 + base.zy * w11
+    pose[2, 2] = base.zx * w02 + base.zy * w12 + base.zz * w22
+    pose[2, 3] = base.zx * x + base.zy * y + base.zz * z + base.z
+
+
+@kernel
+def _wheels_of(
+    table: RigTable, model: int, actors: ActorState, w: int, a: int
+) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Return cosine and sine of how far the wheels steer, and of how far they have rolled."""
+    # Curvature of a bicycle model: tan(steer) = wheelbase * yaw rate / speed.
+    most = np.tan(STEER_LIMIT)
+    curve = table.wheelbase[model] * actors.yaw_rate[w, a] / max(actors.speed[w, a], _SLOWEST)
+    turn = min(max(curve, -most), most)
+    cosine = 1.0 / np.sqrt(1.0 + turn * turn)
+    angle = actors.travelled[w, a] / table.radius[model]
+    return (cosine, turn * cosine), (np.cos(angle), np.sin(angle))
+
+
+@kernel
+def pose_vehicles(
+    table: RigTable, group: Group, actors: ActorState, looks: Looks, out: Slots
+) -> None:
+    """Write the slots of the vehicles of one kind in all worlds, see `Rig`."""
+    # One thread: waking a second one costs more than 64 worlds of 40 actors.
+    for w in range(looks.model.shape[0]):
+        for g in range(group.actor.shape[0]):
+            a, first = group.actor[g], group.slot[g]
+            model = looks.model[w, a] - group.first_model
+            base = _base_of(actors, w, a, table.lean[model])
+            steered, rolled = _wheels_of(table, model, actors, w, a)
+            for k in range(table.part.shape[1]):
+                slot = first + k
+                if table.part[model, k] < 0 or not actors.present[w, a]:
+                    out.part[w, slot] = -1
+                    continue
+                out.part[w, slot] = group.first_part + table.part[model, k]
+                steer = steered if table.steered[model, k] else (1.0, 0.0)
+                spin = rolled if k > 0 else (1.0, 0.0)
+                _pose_slot(out.pose[w, slot], base, table.offset[model, k], steer, spin)
+                for channel in range(3):
+                    out.colour[w, slot, channel] = looks.colour[w, a, channel]

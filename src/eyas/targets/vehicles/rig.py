@@ -1,0 +1,114 @@
+"""The rig of vehicles: a body, and wheels that roll and steer."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from eyas.state.draw import DrawList
+from eyas.state.mesh import Mesh
+from eyas.state.motion import ActorState
+from eyas.targets.kind import Group, Looks
+from eyas.targets.vehicles.bodies import body_levels
+from eyas.targets.vehicles.models import Axle, VehicleModel
+from eyas.targets.vehicles.pose import RigTable, Slots, pose_vehicles
+from eyas.targets.vehicles.wheels import wheel_levels
+
+__all__ = ["VehicleRig"]
+
+
+class VehicleRig:
+    """The parts of some models of vehicles, and where they are.
+
+    Attributes:
+        slots: See `Rig`.
+
+    Args:
+        models: All models of a kind.
+    """
+
+    slots: int
+
+    def __init__(self, models: Sequence[VehicleModel]) -> None:
+        self._parts: list[_Part] = []
+        layouts = [_layout(model, self._parts) for model in models]
+        self.slots = max(len(layout) for layout in layouts)
+        self._table = _tabulate(models, layouts, self.slots)
+
+    @property
+    def part_count(self) -> int:
+        """Number of parts of all models."""
+        return len(self._parts)
+
+    def part_levels(self) -> list[tuple[Mesh, ...]]:
+        """Return the meshes of each part, the finest first."""
+        return [_levels(part) for part in self._parts]
+
+    def pose(self, group: Group, actors: ActorState, looks: Looks, out: DrawList) -> None:
+        """Write all slots of the kind's actors, see `Rig`."""
+        pose_vehicles(self._table, group, actors, looks, Slots(out.part, out.pose, out.colour))
+
+
+class _Wheels(NamedTuple):
+    radius: float
+    width: float
+    track: float
+    """Between the two of an axle, 0 for a single wheel [m]."""
+
+
+_Part = VehicleModel | _Wheels
+"""The body of a model, or wheels that several models may share."""
+
+
+def _levels(part: _Part) -> tuple[Mesh, ...]:
+    return wheel_levels(*part) if isinstance(part, _Wheels) else body_levels(part)
+
+
+class _Slot(NamedTuple):
+    part: int
+    offset: tuple[float, float, float]
+    steered: bool
+
+
+def _layout(vehicle: VehicleModel, parts: list[_Part]) -> list[_Slot]:
+    """Return the slots of a model: its body, then its wheels; add what is new to `parts`."""
+    slots = [_Slot(_index(vehicle, parts), (0.0, 0.0, 0.0), steered=False)]
+    for axle in vehicle.axles:
+        # Wheels that steer turn about their own middles; the others share a part with their axle.
+        pair = 0.0 if axle.steered else axle.track
+        part = _index(_Wheels(vehicle.wheel_radius, axle.width, pair), parts)
+        slots += [
+            _Slot(part, (axle.x, y, vehicle.wheel_radius), axle.steered) for y in _places(axle)
+        ]
+    return slots
+
+
+def _index(part: _Part, parts: list[_Part]) -> int:
+    if part not in parts:
+        parts.append(part)
+    return parts.index(part)
+
+
+def _places(axle: Axle) -> tuple[float, ...]:
+    """Return the sideways places of an axle's parts [m]."""
+    return (axle.track / 2, -axle.track / 2) if axle.steered and axle.track else (0.0,)
+
+
+def _tabulate(
+    models: Sequence[VehicleModel], layouts: Sequence[list[_Slot]], slots: int
+) -> RigTable:
+    shape = (len(models), slots)
+    table = RigTable(
+        part=np.full(shape, -1, np.int32),
+        offset=np.zeros((*shape, 3)),
+        steered=np.zeros(shape, np.bool_),
+        radius=np.array([model.wheel_radius for model in models]),
+        wheelbase=np.array([model.wheelbase for model in models]),
+        lean=np.array([model.lean for model in models]),
+    )
+    for model, layout in enumerate(layouts):
+        for s, slot in enumerate(layout):
+            table.part[model, s] = slot.part
+            table.offset[model, s] = slot.offset
+            table.steered[model, s] = slot.steered
+    return table
