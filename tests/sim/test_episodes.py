@@ -8,7 +8,7 @@ from eyas.sim.build import build_simulation
 from eyas.sim.simulation import Simulation
 from eyas.sim.worlds import each_alone, together
 from eyas.state.motion import ActorState
-from eyas.targets.catalogue import VEHICLES
+from eyas.targets.catalogue import MODELS
 from eyas.task.config import DoneConfig, RewardConfig, RewardMode, RewardType
 from eyas.task.done import DoneReason
 from eyas.task.rules import BuiltinReward, make_rules
@@ -38,9 +38,9 @@ def test_the_target_is_where_the_traffic_has_it(config, place):
         here = 0, targets.actor[n]
         assert np.array_equal(targets.position[n, :2], actors.position[here][:2])
         assert (targets.yaw[n], targets.speed[n]) == (actors.yaw[here], actors.speed[here])
-        model = VEHICLES[targets.model[n]]
+        model = MODELS[targets.model[n]]
         assert targets.size[n].tolist() == list(model.size)
-        assert targets.position[n, 2] == targets.rise[n] == model.wheel_radius
+        assert targets.position[n, 2] == targets.rise[n] == model.rise
 
 
 def test_a_target_that_leaves_ends_the_episode_and_stays_where_it_was(config, assets_where):
@@ -106,7 +106,7 @@ def test_another_actor_can_be_followed_in_the_middle_of_an_episode(config, place
     actors = actors_at(place.traffic, episodes.tick[0])
     assert targets.actor[0] == actor
     assert np.array_equal(targets.position[0, :2], actors.position[0, actor, :2])
-    assert targets.size[0].tolist() == list(VEHICLES[targets.model[0]].size)
+    assert targets.size[0].tolist() == list(MODELS[targets.model[0]].size)
     assert episodes.step_count.tolist() == [24, 24]
     # The new target is somewhere else: the camera looks at the old one.
     assert after.reward[0] == 0.0 < other.reward[0]
