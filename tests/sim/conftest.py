@@ -18,7 +18,7 @@ def config():
 
 
 @pytest.fixture(scope="session")
-def place(config) -> Assets:
+def assets(config) -> Assets:
     return load_assets(config.world, config.traffic, 1)
 
 

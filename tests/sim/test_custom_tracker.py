@@ -70,10 +70,10 @@ ROVER = Tracker("rover", RoverMemory.create, start, advance, carry, aim)
 
 
 @pytest.fixture
-def rovers(config, place):
+def rovers(config, assets):
     on_the_ground = DoneConfig(min_height=-1.0, no_reward_steps=10_000)
     settings = config.model_copy(update={"done": on_the_ground})
-    simulation = Simulation(settings, place, ROVER, each_alone(2))
+    simulation = Simulation(settings, assets, ROVER, each_alone(2))
     simulation.reset()
     return simulation
 

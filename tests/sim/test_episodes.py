@@ -29,12 +29,12 @@ def actors_at(replay, tick) -> ActorState:
     return actors
 
 
-def test_the_target_is_where_the_traffic_has_it(config, place):
+def test_the_target_is_where_the_traffic_has_it(config, assets):
     simulation = started(config, 3)
     simulation.advance(np.zeros((3, 4)), 777)
     _, _, targets, episodes, _ = simulation.snapshot
     for n in range(3):
-        actors = actors_at(place.traffic, episodes.tick[n])
+        actors = actors_at(assets.traffic, episodes.tick[n])
         here = 0, targets.actor[n]
         assert np.array_equal(targets.position[n, :2], actors.position[here][:2])
         assert (targets.yaw[n], targets.speed[n]) == (actors.yaw[here], actors.speed[here])
@@ -94,7 +94,7 @@ def test_where_nobody_is_there_is_no_start_and_one_line_says_so(config, assets_w
     assert "\n" not in str(caught.value)
 
 
-def test_another_actor_can_be_followed_in_the_middle_of_an_episode(config, place):
+def test_another_actor_can_be_followed_in_the_middle_of_an_episode(config, assets):
     simulation, untouched = started(config, 2), started(config, 2)
     _, _, targets, episodes, _ = simulation.snapshot
     commands = np.zeros((2, 4))
@@ -103,7 +103,7 @@ def test_another_actor_can_be_followed_in_the_middle_of_an_episode(config, place
     actor = int(targets.actor[0] + 1) % 40
     simulation.follow(0, actor)
     after, other = simulation.advance(commands, 4), untouched.advance(commands, 4)
-    actors = actors_at(place.traffic, episodes.tick[0])
+    actors = actors_at(assets.traffic, episodes.tick[0])
     assert targets.actor[0] == actor
     assert np.array_equal(targets.position[0, :2], actors.position[0, actor, :2])
     assert targets.size[0].tolist() == list(MODELS[targets.model[0]].size)

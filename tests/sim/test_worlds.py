@@ -119,31 +119,31 @@ def test_a_tracker_in_a_lasting_world_does_the_same_whoever_is_in_other_worlds(c
     assert flown(started(config, [ALONE, ALONE, 0]), 2) == flown(started(config, GROUPS), 2)
 
 
-def test_worlds_are_counted_in_the_order_of_their_first_trackers(config, place):
-    worlds = Worlds(config, place, np.array([7, 3, ALONE, 7, ALONE, 3]))
+def test_worlds_are_counted_in_the_order_of_their_first_trackers(config, assets):
+    worlds = Worlds(config, assets, np.array([7, 3, ALONE, 7, ALONE, 3]))
     assert worlds.of.tolist() == [0, 1, 2, 0, 3, 1]
     assert worlds.leader.tolist() == [0, 1, 2, 4]
     assert worlds.lasting.tolist() == [True, True, False, False]
     assert worlds.trackers_of(3).tolist() == [0, 3]
-    assert Worlds(config, place, together(3)).of.tolist() == [0, 0, 0]
-    assert Worlds(config, place, each_alone(3)).of.tolist() == [0, 1, 2]
+    assert Worlds(config, assets, together(3)).of.tolist() == [0, 0, 0]
+    assert Worlds(config, assets, each_alone(3)).of.tolist() == [0, 1, 2]
 
 
 @pytest.mark.parametrize("world_of", [[-2], [0, -7], [0.0, 1.0], [[0, 1]], ["a"], [True, False], 3])
-def test_other_numbers_are_refused_in_one_line(config, place, world_of):
+def test_other_numbers_are_refused_in_one_line(config, assets, world_of):
     with pytest.raises(ValueError, match=r"^world_of: a whole number from -1 on .*\Z"):
-        Worlds(config, place, np.array(world_of))
+        Worlds(config, assets, np.array(world_of))
 
 
-def test_drawing_other_subsets_takes_no_more_memory_than_drawing_all(config, place):
+def test_drawing_other_subsets_takes_no_more_memory_than_drawing_all(config, assets):
     """One tracker fewer at each draw must not leave a buffer for each number behind."""
     count = 8
     tick = np.full(count, 500, np.int64)
-    worlds = Worlds(config, place, each_alone(count))
+    worlds = Worlds(config, assets, each_alone(count))
     for tracker in range(count):
         worlds.sample_looks(tracker, 0, 0)
     _, movers = worlds.draw_list(np.arange(count), tick)
-    one_world = sum(getattr(movers, name)[:1].nbytes for name in ("part", "pose", "colour"))
+    two_worlds = movers.pose[:2].nbytes
     tracemalloc.start()
     try:
         before, _ = tracemalloc.get_traced_memory()
@@ -155,4 +155,4 @@ def test_drawing_other_subsets_takes_no_more_memory_than_drawing_all(config, pla
         after, _ = tracemalloc.get_traced_memory()
     finally:
         tracemalloc.stop()
-    assert after - before < one_world
+    assert after - before < two_worlds
