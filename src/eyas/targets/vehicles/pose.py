@@ -1,6 +1,6 @@
 """Where the parts of vehicles are: the loop over all vehicles of a kind in all worlds."""
 
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +10,7 @@ from eyas.state.motion import ActorState
 from eyas.targets.kind import Group, Looks
 from eyas.targets.vehicles.models import VEHICLE_AHEAD
 
-__all__ = ["STEER_LIMIT", "RigTable", "Slots", "pose_vehicles"]
+__all__ = ["AXLES", "SLOT", "STEER_LIMIT", "RigTable", "Slots", "pose_vehicles"]
 
 STEER_LIMIT = 0.6
 """Most that wheels steer [rad]."""
@@ -27,21 +27,29 @@ class Slots(NamedTuple):
     colour: NDArray[np.float32]
 
 
+SLOT: Final = np.dtype(
+    [("part", np.int64), ("x", np.float64), ("y", np.float64), ("z", np.float64), ("steered", "?")],
+    align=True,
+)
+"""A part in the frame of its model.
+
+part: index among those of the kind, -1 for an unused slot; x, y, z: place [m]; steered: whether it
+follows the curve.
+"""
+
+AXLES: Final = np.dtype(
+    [("radius", np.float64), ("wheelbase", np.float64), ("lean", np.float64)], align=True
+)
+"""What moves a model's parts: radius of the wheels and wheelbase [m], most that it leans [rad]."""
+
+
 class RigTable(NamedTuple):
     """What the kernel knows of M models with S slots each; slot 0 is the body."""
 
-    part: NDArray[np.int32]
-    """Index of the part among those of the kind, -1 for an unused slot, shape (M, S)."""
-    offset: NDArray[np.float64]
-    """Place of the part in the model's frame [m], shape (M, S, 3)."""
-    steered: NDArray[np.bool_]
-    """Whether the part follows the curve, shape (M, S)."""
-    radius: NDArray[np.float64]
-    """Of the wheels [m], shape (M,)."""
-    wheelbase: NDArray[np.float64]
-    """[m], shape (M,)."""
-    lean: NDArray[np.float64]
-    """Most that the model leans [rad], shape (M,)."""
+    slot: NDArray[np.void]
+    """Of dtype `SLOT`, shape (M, S)."""
+    axles: NDArray[np.void]
+    """Of dtype `AXLES`, shape (M,)."""
 
 
 class _Base(NamedTuple):
@@ -65,7 +73,8 @@ class _Base(NamedTuple):
 def _base_of(actors: ActorState, w: int, a: int, most_lean: float) -> _Base:
     """Return where the vehicle a of world w is, on its road and leaning into the curve."""
     yaw, slope = actors.yaw[w, a], actors.slope[w, a]
-    c, s, cp, sp = np.cos(yaw), np.sin(yaw), np.cos(slope), np.sin(slope)
+    c, s = np.cos(yaw), np.sin(yaw)
+    cp, sp = (np.cos(slope), np.sin(slope)) if slope != 0.0 else (1.0, 0.0)  # a fifth of the time
     lean = min(max(actors.yaw_rate[w, a], -most_lean), most_lean)
     cr, sr = np.cos(lean), -np.sin(lean)  # a roll to the left is negative about x
     return _Base(
@@ -82,7 +91,7 @@ def _base_of(actors: ActorState, w: int, a: int, most_lean: float) -> _Base:
 def _pose_slot(
     pose: NDArray[np.float32],
     base: _Base,
-    offset: NDArray[np.float64],
+    offset: tuple[float, float, float],
     steer: tuple[float, float],
     spin: tuple[float, float],
 ) -> None:
@@ -91,7 +100,7 @@ def _pose_slot(
     Args:
         pose: What is written, shape (3, 4).
         base: Of the vehicle.
-        offset: Place of the part in the model's frame [m], shape (3,).
+        offset: Place of the part in the model's frame [m].
         steer: Cosine and sine of the part's turn about its own upward axis.
         spin: Cosine and sine of its turn about its own left axis, after that.
     """
@@ -115,15 +124,15 @@ def _pose_slot(
 
 @kernel
 def _wheels_of(
-    table: RigTable, model: int, actors: ActorState, w: int, a: int
+    radius: float, wheelbase: float, actors: ActorState, w: int, a: int
 ) -> tuple[tuple[float, float], tuple[float, float]]:
     """Return cosine and sine of how far the wheels steer, and of how far they have rolled."""
     # Curvature of a bicycle model: tan(steer) = wheelbase * yaw rate / speed.
     most = np.tan(STEER_LIMIT)
-    curve = table.wheelbase[model] * actors.yaw_rate[w, a] / max(actors.speed[w, a], _SLOWEST)
+    curve = wheelbase * actors.yaw_rate[w, a] / max(actors.speed[w, a], _SLOWEST)
     turn = min(max(curve, -most), most)
     cosine = 1.0 / np.sqrt(1.0 + turn * turn)
-    angle = actors.travelled[w, a] / table.radius[model]
+    angle = actors.travelled[w, a] / radius
     return (cosine, turn * cosine), (np.cos(angle), np.sin(angle))
 
 
@@ -137,16 +146,17 @@ def pose_vehicles(
         for g in range(group.actor.shape[0]):
             a, first = group.actor[g], group.slot[g]
             model = looks.model[w, a] - group.first_model
-            base = _base_of(actors, w, a, table.lean[model])
-            steered, rolled = _wheels_of(table, model, actors, w, a)
-            for k in range(table.part.shape[1]):
-                slot = first + k
-                if table.part[model, k] < 0 or not actors.present[w, a]:
+            axles = table.axles[model]
+            base = _base_of(actors, w, a, axles.lean)
+            steered, rolled = _wheels_of(axles.radius, axles.wheelbase, actors, w, a)
+            for k in range(table.slot.shape[1]):
+                slot, part = first + k, table.slot[model, k]
+                if part.part < 0 or not actors.present[w, a]:
                     out.part[w, slot] = -1
                     continue
-                out.part[w, slot] = group.first_part + table.part[model, k]
-                steer = steered if table.steered[model, k] else (1.0, 0.0)
+                out.part[w, slot] = group.first_part + part.part
+                steer = steered if part.steered else (1.0, 0.0)
                 spin = rolled if k > 0 else (1.0, 0.0)
-                _pose_slot(out.pose[w, slot], base, table.offset[model, k], steer, spin)
+                _pose_slot(out.pose[w, slot], base, (part.x, part.y, part.z), steer, spin)
                 for channel in range(3):
                     out.colour[w, slot, channel] = looks.colour[w, a, channel]

@@ -11,7 +11,7 @@ from eyas.state.motion import ActorState
 from eyas.targets.kind import Group, Looks
 from eyas.targets.vehicles.bodies import body_levels
 from eyas.targets.vehicles.models import Axle, VehicleModel
-from eyas.targets.vehicles.pose import RigTable, Slots, pose_vehicles
+from eyas.targets.vehicles.pose import AXLES, SLOT, RigTable, Slots, pose_vehicles
 from eyas.targets.vehicles.wheels import wheel_levels
 
 __all__ = ["VehicleRig"]
@@ -97,18 +97,12 @@ def _places(axle: Axle) -> tuple[float, ...]:
 def _tabulate(
     models: Sequence[VehicleModel], layouts: Sequence[list[_Slot]], slots: int
 ) -> RigTable:
-    shape = (len(models), slots)
     table = RigTable(
-        part=np.full(shape, -1, np.int32),
-        offset=np.zeros((*shape, 3)),
-        steered=np.zeros(shape, np.bool_),
-        radius=np.array([model.wheel_radius for model in models]),
-        wheelbase=np.array([model.wheelbase for model in models]),
-        lean=np.array([model.lean for model in models]),
+        slot=np.zeros((len(models), slots), SLOT),
+        axles=np.array([(m.wheel_radius, m.wheelbase, m.lean) for m in models], AXLES),
     )
+    table.slot["part"] = -1
     for model, layout in enumerate(layouts):
         for s, slot in enumerate(layout):
-            table.part[model, s] = slot.part
-            table.offset[model, s] = slot.offset
-            table.steered[model, s] = slot.steered
+            table.slot[model, s] = (slot.part, *slot.offset, slot.steered)
     return table
