@@ -142,7 +142,7 @@ def test_a_continuous_reward_becomes_a_discrete_one_in_the_next_step(config):
     rules = simulation.rules._replace(reward=int(BuiltinReward.VIEW_DISCRETE))
     simulation.rules = rules
     assert simulation.advance(commands, 4).reward[0] == 1.0
-    assert simulation.rules is rules
+    assert simulation.rules == rules
 
 
 def test_another_step_limit_ends_a_running_episode(config):
@@ -153,3 +153,10 @@ def test_another_step_limit_ends_a_running_episode(config):
     )
     assert simulation.advance(HOVER).reason[0] == DoneReason.NONE
     assert simulation.advance(HOVER).reason[0] == DoneReason.STEP_LIMIT
+
+
+@pytest.mark.parametrize("actor", [-1, 40, 999])
+def test_an_actor_that_is_not_there_cannot_be_followed(config, actor):
+    simulation = started(config)
+    with pytest.raises(SpawnError, match=f"^target: there is no actor {actor}; allowed: 0 to 39$"):
+        simulation.follow(0, actor)

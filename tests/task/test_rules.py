@@ -4,7 +4,7 @@ import pytest
 
 from eyas.sensors.config import CameraConfig
 from eyas.task.config import DoneConfig, RewardConfig, RewardMode, RewardType
-from eyas.task.rules import BuiltinReward, make_rules
+from eyas.task.rules import BuiltinReward, exact, make_rules
 
 
 def test_rewarded_rectangle_is_the_share_of_the_picture():
@@ -36,3 +36,10 @@ def test_every_limit_is_taken_from_the_field_of_its_name():
 def test_each_reward_is_the_one_of_its_name(type_, mode):
     rules = make_rules(RewardConfig(type=type_, mode=mode), DoneConfig(), CameraConfig())
     assert BuiltinReward(rules.reward).name.lower() == f"{type_}_{mode}"
+
+
+def test_exact_rules_have_the_types_that_kernels_are_compiled_for():
+    rules = make_rules(RewardConfig(), DoneConfig(), CameraConfig())
+    changed = exact(rules._replace(max_height=30, total_steps=5.0))
+    assert [type(value) for value in changed] == [type(value) for value in rules]
+    assert (changed.max_height, changed.total_steps) == (30.0, 5)

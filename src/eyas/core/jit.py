@@ -187,9 +187,22 @@ def specialised(function: Function, **kernels: Callable[..., Any]) -> Function:
     return cast("Function", made)
 
 
-def _identity(kernel: Callable[..., Any]) -> str:
-    """Return a text that only this kernel of exactly these sources has."""
+def _identity(kernel: Callable[..., Any], seen: frozenset[str] = frozenset()) -> str:
+    """Return a text that only this kernel of exactly these sources has.
+
+    Kernels of other modules outside Eyas that it calls count too; those of Eyas are in the name of
+    the folder.
+    """
     function = kernel.py_func  # type: ignore[attr-defined]  # numba's dispatcher
+    name = f"{function.__module__}.{function.__qualname__}"
     source = Path(inspect.getsourcefile(function) or "")
     text = source.read_text() if source.is_file() else repr(function.__code__.co_code)
-    return f"{function.__module__}.{function.__qualname__} {text}"
+    called = [function.__globals__.get(name) for name in function.__code__.co_names]
+    others = [
+        _identity(other, seen | {name})
+        for other in called
+        if hasattr(other, "py_func")
+        and not other.py_func.__module__.startswith("eyas.")
+        and f"{other.py_func.__module__}.{other.py_func.__qualname__}" not in seen | {name}
+    ]
+    return " ".join([name, text, *others])

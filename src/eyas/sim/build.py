@@ -21,13 +21,16 @@ _LOG = logging.getLogger("eyas")
 TRACKERS: Mapping[TrackerKind, Tracker] = {TrackerKind.DRONE: DRONE}
 
 
-def build_simulation(config: SimConfig, world_of: NDArray[np.integer]) -> Simulation:
+def build_simulation(
+    config: SimConfig, world_of: NDArray[np.integer], *, tracker: Tracker | None = None
+) -> Simulation:
     """Return a simulation; call its `reset` first.
 
     Args:
         config: The settings.
         world_of: The world of each tracker, shape (N,): `each_alone(N)`, `together(N)`, or any
             numbers; see `eyas.sim.worlds.Worlds`.
+        tracker: A kind of tracker of your own; None: the one that `tracker.kind` names.
 
     Raises:
         EyasError: A setting is not supported, or there is no traffic for it.
@@ -40,4 +43,5 @@ def build_simulation(config: SimConfig, world_of: NDArray[np.integer]) -> Simula
             "which has no fog",
             config.world.weather,
         )
-    return Simulation(config, assets, TRACKERS[config.tracker.kind], world_of)
+    chosen = TRACKERS[config.tracker.kind] if tracker is None else tracker
+    return Simulation(config, assets, chosen, world_of)

@@ -76,8 +76,19 @@ class Episodes:
         return pitch
 
     def follow(self, tracker: int, actor: int) -> None:
-        """Make an actor the target of a tracker."""
-        targets = self._targets
+        """Make an actor the target of a tracker.
+
+        Raises:
+            SpawnError: There is no such actor.
+        """
+        if not 0 <= actor < self._traffic.actors:
+            raise SpawnError(
+                f"target: there is no actor {actor}; allowed: 0 to {self._traffic.actors - 1}"
+            )
+        targets, episodes = self._targets, self._episodes
+        # Relative motion begins anew: a change of target is no motion.
+        episodes.observations[tracker] = 0
+        episodes.relative_velocity[tracker] = episodes.relative_acceleration[tracker] = 0.0
         model = self._worlds.model_of(tracker, actor)
         targets.actor[tracker] = actor
         targets.lost[tracker] = False

@@ -16,7 +16,7 @@ from eyas.sim.worlds import Worlds
 from eyas.state.draw import DrawStage, Picture
 from eyas.state.snapshot import CameraState, Snapshot
 from eyas.task.packet_rows import PacketRows
-from eyas.task.rules import Rules, make_rules
+from eyas.task.rules import Rules, exact, make_rules
 from eyas.task.terms import RewardTerms
 from eyas.trackers.tracker import Tracker
 
@@ -86,7 +86,7 @@ class Simulation:
 
     @rules.setter
     def rules(self, rules: Rules) -> None:
-        self._rules = rules
+        self._rules = rules = exact(rules)
         state = Held(StepState(self.snapshot, self._memory, self._around, rules))
         self._step = self._kernels.bound(state, self._held_orders)
 

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from eyas.sensors.config import CameraConfig
 from eyas.task.config import DoneConfig, RewardConfig, RewardMode, RewardType
 
-__all__ = ["BuiltinReward", "Rules", "make_rules"]
+__all__ = ["BuiltinReward", "Rules", "exact", "make_rules"]
 
 
 class BuiltinReward(IntEnum):
@@ -50,6 +50,15 @@ class Rules(NamedTuple):
     total_steps: int
     grace_steps: int
     no_reward_steps: int
+
+
+def exact(rules: Rules) -> Rules:
+    """Return rules whose whole numbers stand only where they belong.
+
+    Kernels are compiled for the types of the fields: `max_height=30` would compile them anew.
+    """
+    types = Rules.__annotations__.values()
+    return Rules(*(kind(value) for kind, value in zip(types, rules, strict=True)))
 
 
 def make_rules(reward: RewardConfig, done: DoneConfig, camera: CameraConfig) -> Rules:
