@@ -6,6 +6,7 @@ import os
 import signal
 import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 from types import SimpleNamespace
 
 import numpy as np
@@ -83,17 +84,11 @@ def test_a_bundle_of_many_arrays_is_held_whole():
     assert last[0, 0] == 119.0
 
 
-def test_threads_and_forked_processes_may_call_at_once():
+def test_threads_may_call_at_once():
     values = np.ones((300, 50))
-    results = []
-    threads = [threading.Thread(target=lambda: results.append(summed(values))) for _ in range(4)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    with multiprocessing.get_context("fork").Pool(2) as pool:
-        results += pool.map_async(summed, [values] * 2).get(timeout=60)
-    assert len(results) == 6
+    with ThreadPoolExecutor(4) as threads:
+        results = list(threads.map(summed, [values] * 16))
+    assert len(results) == 16
     for result in results:
         np.testing.assert_array_equal(result, 100.0)
 
@@ -131,6 +126,24 @@ class SlowWorker:
         with pytest.raises(KeyboardInterrupt):
             self.kernel(2, Held((0,)))
         presser.join()
+
+
+def test_a_process_that_is_forked_during_a_call_may_call_too(monkeypatch):
+    values = np.ones((300, 50))
+    summed(values)  # compiled, before the kernel of the slow call takes the place of what compiles
+    slow = SlowWorker(monkeypatch)
+    call = threading.Thread(target=slow.kernel, args=(2, Held((0,))))
+    call.start()
+    try:
+        assert slow.begun.wait(10)
+        with multiprocessing.get_context("fork").Pool(2) as pool:
+            results = pool.map_async(summed, [values] * 2).get(timeout=20)
+        assert not slow.ended.is_set()  # or nothing was under way
+    finally:
+        slow.told.set()
+        call.join()
+    for result in results:
+        np.testing.assert_array_equal(result, 100.0)
 
 
 def test_an_interrupted_call_ends_after_its_workers(monkeypatch):

@@ -1,5 +1,7 @@
 """Where the time of a picture goes."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -10,12 +12,48 @@ from eyas.traffic.config import TrafficConfig
 from eyas.world.config import WorldConfig
 
 
-def test_the_shares_of_all_stages_make_one(monkeypatch):
+class Clockwork:
+    """A simulation, its picture and a clock: drawing as far as a stage takes a known time [s]."""
+
+    UNTIL = (0.001, 0.003, 0.006, 0.010, 0.015)
+    COPYING = 0.005
+
+    def __init__(self, monkeypatch):
+        self.now = 0.0
+        self.rgb = SimpleNamespace(copy=lambda: self.spend(self.COPYING))
+        picture = SimpleNamespace(create=lambda *_: self)
+        monkeypatch.setattr(bench_stages, "time", SimpleNamespace(perf_counter=lambda: self.now))
+        monkeypatch.setattr(bench_stages, "build_simulation", lambda *_: self)
+        monkeypatch.setattr(bench_stages, "Picture", picture)
+
+    def spend(self, seconds):
+        self.now += seconds
+
+    def reset(self):
+        self.spend(100.0)
+
+    def draw(self, trackers, picture, until):
+        assert picture is self
+        self.spend(self.UNTIL[until])
+
+
+def test_a_stage_takes_what_it_adds_to_the_stages_before_it(monkeypatch):
+    Clockwork(monkeypatch)
     monkeypatch.setattr(bench_stages, "SIZES", ((2, 16, 12),))
+    times = bench_stages.measure_stages(1.0)
+    assert [time.microseconds for time in times] == pytest.approx(
+        [500, 1000, 1500, 2000, 2500, 2500]
+    )
+    assert [time.share for time in times] == pytest.approx([0.05, 0.1, 0.15, 0.2, 0.25, 0.25])
+    assert times[-1].stage == "copying out"
+
+
+def test_the_table_has_a_row_for_each_stage_and_a_column_for_each_size(monkeypatch):
+    monkeypatch.setattr(bench_stages, "SIZES", ((2, 16, 12), (1, 12, 8)))
     times = bench_stages.measure_stages(0.0)
-    assert sum(time.share for time in times) == pytest.approx(1.0)
-    assert {time.pictures for time in times} == {"16x12, 2 views"}
-    assert bench_stages.stage_table(times).row_count == len(times) == len(DrawStage) + 1
+    assert {time.pictures for time in times} == {"16x12, 2 views", "12x8, 1 view"}
+    table = bench_stages.stage_table(times)
+    assert (table.row_count, len(table.columns)) == (len(DrawStage) + 1, 3)
 
 
 def test_a_picture_that_stops_early_has_depths_but_no_colours():

@@ -15,11 +15,12 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from eyas.cli.main import main
 from eyas.core.errors import ConfigError, OutputError
 from eyas.exports.files import Files
 from eyas.exports.frame import Frame
 from eyas.exports.gather import Gather
-from eyas.exports.labels import read_labels
+from eyas.exports.labels import FrameLabel, read_labels
 from eyas.exports.summary import Summary
 from eyas.exports.writer import Episode, Writer
 from eyas.modes.video import run as video
@@ -28,6 +29,7 @@ from eyas.modes.video.lock import recording_lock
 from eyas.sensors.config import CameraConfig
 from eyas.settings.config import EyasConfig
 from eyas.task.config import DoneConfig
+from eyas.task.direction import TargetDirection
 
 # Two trackers, three and a half episodes of 0.2 s each, a frame every 4 ms.
 CONFIG = EyasConfig(
@@ -131,8 +133,14 @@ def test_exact_following_keeps_the_target_in_its_place(recorded):
     assert np.ptp(places, axis=0).max() < 0.05
 
 
-def test_settings_lie_beside_the_recording(recorded):
-    assert json.loads((recorded / "config.json").read_text())["seed"] == 3
+def test_the_settings_beside_a_recording_repeat_it_to_the_byte(recorded, tmp_path, monkeypatch):
+    settings, again = recorded / "config.json", tmp_path / "again"
+    command = ["eyas", "video", "--config", str(settings), "--out", str(again)]
+    monkeypatch.setattr(sys, "argv", command)
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert not ended.value.code
+    assert contents(again) == contents(recorded)
 
 
 def test_a_killed_recording_continues_to_the_same_bytes(recorded, tmp_path):
@@ -209,12 +217,33 @@ def test_random_actions_are_seeded_held_and_marked(tmp_path):
     assert set(actions.values()) == {0, 1, 2, 3, 4, 5}
 
 
-def test_direction_replaces_the_marks(tmp_path):
-    changed = CONFIG.video.model_copy(update={"target_direction": True, "total_time": 0.1})
+def test_direction_replaces_the_marks(recorded, tmp_path):
+    changed = CONFIG.video.model_copy(update={"target_direction": True})
     video.run(CONFIG.model_copy(update={"video": changed}), tmp_path / "a", quiet=True)
-    for episode in episodes_of(tmp_path / "a"):
-        marks = json.loads((episode / "mark.json").read_text())
-        assert set(marks.values()) <= {0, 1, 2, 3}
+    episodes, found = episodes_of(tmp_path / "a"), set()
+    assert len(episodes) == len(episodes_of(recorded))
+    for episode in episodes:
+        same = recorded / episode.relative_to(tmp_path / "a") / "labels.jsonl"
+        marked = np.array(list(json.loads((episode / "mark.json").read_text()).values()))
+        expected, clear = directions(read_labels(same))
+        assert len(marked) == len(expected) + 1
+        assert clear.sum() > 0.5 * len(clear)
+        np.testing.assert_array_equal(marked[1:][clear], expected[clear])
+        found |= {*marked.tolist()}
+    assert len(found) > 1  # some turn, some drive straight on
+
+
+def directions(labels: list[FrameLabel]) -> tuple[np.ndarray, np.ndarray]:
+    """Return which way the target goes in each frame but the first, and where that is beyond doubt.
+
+    A frame is two steps; between the limits of turning, one step may differ from the other.
+    """
+    turn = np.diff([label.target_yaw for label in labels]) / 2.0
+    speed = np.linalg.norm([label.target_velocity for label in labels], axis=1)[1:]
+    along = np.where(speed > 0.5, TargetDirection.STRAIGHT, TargetDirection.STOP)
+    aside = np.where(turn > 0.0, TargetDirection.LEFT, TargetDirection.RIGHT)
+    clear = np.abs(np.abs(turn) - 1e-4) > 0.5e-4
+    return np.where(np.abs(turn) < 1e-4, along, aside), clear
 
 
 def test_the_report_names_trackers_and_folder(tmp_path, capsys):
