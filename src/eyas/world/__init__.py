@@ -1,1 +1,1 @@
-"""What does not move: roads, buildings, trees, the maps and the weather."""
+"""The static world: roads, buildings, trees, the maps and the weather."""

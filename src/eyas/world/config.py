@@ -14,30 +14,30 @@ Visibility = Annotated[Variation, AfterValidator(within(0.1, 1e6))]
 
 
 class WorldConfig(Config):
-    """Which map, in which weather."""
+    """The map and its weather."""
 
     map: Annotated[str, Field(min_length=1)] = "citystreet"
     """Name of the map, or the path of a user's own, `package.module:attribute`."""
     weather: Annotated[str, Field(min_length=1)] = "day"
     """Name of the weather."""
     seed: Annotated[int, Field(ge=0, lt=2**31)] = 0
-    """Seed of the map: 0 is the canonical one, other seeds give other maps of its kind."""
+    """Seed of the map: 0 is the canonical map, other seeds give other maps of the same kind."""
 
 
 class LightConfig(Config):
     """Changes of light and fog; the original's `Env_Params`."""
 
     each_reset: bool = True
-    """Whether they are drawn anew at each reset, or once at the start."""
+    """Whether the changes are drawn anew at each reset, or only once at the start."""
     background: Brightness = 0.0
-    """Brightness of the sky and its light, a factor without unit."""
+    """Brightness of the sky and its light, a factor."""
     background_replaces: bool = False
     """True: `background` is the brightness; False: it is added to the weather's own."""
     sun: Brightness = 0.0
-    """Brightness of the sun, a factor without unit."""
+    """Brightness of the sun, a factor."""
     sun_replaces: bool = False
     """True: `sun` is the brightness; False: it is added to the weather's own."""
     visibility: Visibility | None = None
-    """Visibility range in foggy weather [m]; None: the weather's own. Others have no fog."""
+    """Visibility range in foggy weather [m]; None: the weather's own. No effect elsewhere."""
     flakes: bool = True
-    """Whether flakes fall through the picture in snow."""
+    """Whether falling flakes are drawn in snow."""

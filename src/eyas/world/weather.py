@@ -1,4 +1,4 @@
-"""The weathers, and the light and air that maps share in them."""
+"""The weathers, and their light and air as shared by maps."""
 
 import math
 from dataclasses import dataclass, replace
@@ -22,7 +22,7 @@ __all__ = [
 
 
 class Season(StrEnum):
-    """What decides how plants, roofs and fields look."""
+    """The state of plants, roofs and fields."""
 
     SUMMER = "summer"
     WINTER = "winter"
@@ -30,12 +30,12 @@ class Season(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Weather:
-    """A weather that maps can have; a user's map may have its own."""
+    """A weather that maps can have; a user's map may define its own."""
 
     name: str
-    """What `world.weather` says."""
+    """Value of `world.weather`."""
     season: Season
-    """The season in which it comes."""
+    """Season in which it occurs."""
 
 
 DAY = Weather("day", Season.SUMMER)
@@ -46,7 +46,7 @@ SNOW = Weather("snow", Season.WINTER)
 WEATHERS = (DAY, FOGGY, NIGHT, SNOW)
 """The weathers of the original."""
 
-# Light and air. A map takes these, or its own made of them with `dataclasses.replace`.
+# Light and air. A map uses these, or variants made from them with `dataclasses.replace`.
 
 _STEEP = 1.0 / math.sqrt(0.55**2 + 0.6**2 + 1.0)
 
@@ -59,7 +59,7 @@ CLEAR_DAY = Lighting(
     ambient_up=(0.31, 0.35, 0.43),
     ambient_down=(0.16, 0.155, 0.13),
     fog_colour=(0.47, 0.61, 0.82),
-    # Clear air that turns the far edge of the map a little blue.
+    # Clear air that tints the far edge of the map slightly blue.
     fog_density=1.0 / 7000.0,
     clouds=0.35,
 )
@@ -75,7 +75,7 @@ FOG = replace(
     ambient_up=(0.54, 0.54, 0.55),
     ambient_down=(0.22, 0.215, 0.20),
     fog_colour=(0.60, 0.60, 0.59),
-    # The original's visibility range: a wash near by, and the far edge of the map dissolves.
+    # The original's visibility range: pale even near by, and the far edge of the map disappears.
     fog_density=1.0 / 1000.0,
     foggy=True,
     clouds=1.0,
@@ -86,7 +86,7 @@ WINTER_DAY = replace(
     CLEAR_DAY,
     zenith_colour=(0.24, 0.42, 0.80),
     horizon_colour=(0.50, 0.62, 0.80),
-    # Snow throws light back up.
+    # Snow reflects light upwards.
     ambient_up=(0.31, 0.36, 0.45),
     ambient_down=(0.27, 0.29, 0.32),
     fog_colour=(0.55, 0.64, 0.76),
@@ -97,8 +97,8 @@ WINTER_DAY = replace(
     flakes=0.5,
 )
 
-# All at a bit over a third of the day's brightness, as in the original: a high moon, a sky that is
-# not quite black, the glow of the town over the horizon; lamps and windows do the rest.
+# All at slightly more than a third of the day's brightness, as in the original: a high moon, a sky
+# that is not quite black, the glow of the town at the horizon; lamps and windows add the rest.
 CLEAR_NIGHT = replace(
     CLEAR_DAY,
     sun_direction=(0.48, -0.42, 0.77),

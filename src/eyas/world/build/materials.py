@@ -1,4 +1,4 @@
-"""The materials of the maps: names of the textures, and how many metres one repeat covers."""
+"""Materials of the maps: the names of their textures and the size of one repeat in metres."""
 
 from eyas.state.mesh import Material, Surface
 
@@ -16,10 +16,10 @@ FACADES = (
     "facade_bands",
     "facade_red_white",
 )
-"""Walls with windows: one repeat is four floors of 3 m high and four bays of 3 m wide."""
+"""Walls with windows: one repeat shows four storeys and four bays, each 3 m high and wide."""
 
 GROUND_FLOORS = ("ground_shop", "ground_lobby")
-"""Street-level fronts of the same grid: each of the four rows of a repeat is one ground floor."""
+"""Street-level fronts on the same grid: each of the four rows of a repeat is one ground floor."""
 
 TEXTURES: dict[str, float] = {
     "plain": 1.0,
@@ -54,7 +54,7 @@ TEXTURES: dict[str, float] = {
     "stone": 4.0,
     **dict.fromkeys(FACADES + GROUND_FLOORS, 12.0),
 }
-"""Metres that one repeat of each texture covers."""
+"""Size of one repeat of each texture [m]."""
 
 
 def material(texture: str, tint: tuple[float, float, float] = (1.0, 1.0, 1.0)) -> Material:

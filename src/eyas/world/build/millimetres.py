@@ -1,9 +1,9 @@
-"""Plan geometry in whole millimetres, so that a map comes out the same on every processor.
+"""Plan geometry in whole millimetres, so that a map is the same on every processor.
 
-Sines, logarithms and products of matrices differ in their last bits from one processor to the
-next, because numpy and BLAS choose their kernels by what the processor can do. A last bit decides
-whether a point lies on a line, and after the first different decision all random numbers are
-different ones. So what such functions made is rounded before anything is decided by it.
+Sines, logarithms and matrix products differ in their last bits from one processor to the next,
+because numpy and BLAS choose their kernels by the features of the processor. A last bit can decide
+whether a point lies on a line, and after the first different decision all random numbers differ.
+So the results of such functions are rounded before any decision depends on them.
 """
 
 import math
@@ -23,14 +23,14 @@ def rounded(points: ArrayLike) -> NDArray[np.float64]:
 
 
 def snapped(shape: shapely.Geometry) -> shapely.Geometry:
-    """Return a valid shape whose corners are at whole millimetres [m]; slivers are left out."""
+    """Return a valid shape whose corners are at whole millimetres [m], without slivers."""
     whole = shapely.set_precision(shape, 10.0**-_DIGITS)
-    # Shapes that are cut out of this one later must not be rounded: they would no longer meet.
+    # Shapes that are cut out of this one later must not be rounded: the edges would no longer meet.
     return shapely.set_precision(whole, 0.0)
 
 
 def dot(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:
-    """Return the product of two vectors in a plane, without BLAS."""
+    """Return the dot product of two vectors in a plane, without BLAS."""
     return float(a[0] * b[0] + a[1] * b[1])
 
 

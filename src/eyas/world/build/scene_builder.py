@@ -1,4 +1,4 @@
-"""Putting a scene together: triangles, object ids, solid shapes."""
+"""Assembly of a scene: triangles, object ids, solid shapes."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -22,19 +22,19 @@ Levels = tuple[Mesh, ...]
 
 @dataclass(frozen=True, slots=True)
 class Prototype:
-    """A shape of which a scene has copies; made by `SceneBuilder.prototype`."""
+    """A shape that is copied within a scene; made by `SceneBuilder.prototype`."""
 
     name: str
     number: int
-    """Place among the scene's fixtures."""
+    """Index among the scene's fixtures."""
 
 
 class SceneBuilder:
-    """Collects what stands in a map; ids are given in the order in which objects are added.
+    """Collects the objects of a map; ids are given in the order in which objects are added.
 
     Args:
-        name: Of the map.
-        seed: Of the map.
+        name: Name of the map.
+        seed: Seed of the map.
         size: Extent of the floor, centred on the origin [m].
         terrain: The ground.
     """
@@ -51,12 +51,12 @@ class SceneBuilder:
         self._copies: list[tuple[Prototype, NDArray[np.float32], int]] = []
 
     def prototype(self, name: str, make: Callable[[], Levels]) -> Prototype:
-        """Return the prototype with a name; the first to ask for it says how it is made.
+        """Return the prototype with a name; only the first call for a name uses its `make`.
 
         Args:
-            name: For example `bench`.
-            make: Returns its meshes. It is called by `build`, after all copies have been placed,
-                and in the order of the first calls: so shapes and places may share a generator.
+            name: Name of the prototype, for example `bench`.
+            make: Returns the levels. `build` calls it after all copies have been placed, in the
+                order of the first calls: so shapes and positions may share a random generator.
         """
         if name not in self._prototypes:
             self._prototypes[name] = Prototype(name, len(self._prototypes)), make
@@ -81,12 +81,12 @@ class SceneBuilder:
         """Add a copy of a prototype; return the id of its object.
 
         Args:
-            kind: What it is.
-            prototype: Of this builder.
-            place: Where its origin stands [m], 3 numbers.
-            turn: Counter-clockwise about z [rad].
+            kind: Class of the object.
+            prototype: Prototype of this builder.
+            place: Position of its origin [m], 3 numbers.
+            turn: Angle, counter-clockwise about z [rad].
             scale: Factor on its size.
-            owner: The object that it is part of; None: it is one of its own, of class `kind`.
+            owner: Object that the copy is part of; None: a new object of class `kind`.
         """
         cosine, sine = scale * np.cos(turn), scale * np.sin(turn)
         pose = np.array(
@@ -116,7 +116,7 @@ class SceneBuilder:
     def build(
         self, network: RoadNetwork, lamps: Lamps | None = None, horizon: Horizon | None = None
     ) -> Scene:
-        """Return the scene of all that was added.
+        """Return the scene of everything that was added.
 
         Args:
             network: The roads.

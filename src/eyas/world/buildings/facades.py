@@ -1,4 +1,4 @@
-"""What a building looks like: street level, base, shaft and top, roof."""
+"""Appearance of a building: street level, base, shaft and top, roof."""
 
 import zlib
 from itertools import pairwise
@@ -16,10 +16,10 @@ from eyas.world.buildings.skyline import FLOOR
 __all__ = ["chance_of", "mesh_of"]
 
 _TALL = 10
-"""Storeys from which on a building has a base and a top [storeys]."""
+"""Number of storeys from which a building has a base and a top."""
 
 _BAND = 11
-"""Storeys after which a high wall starts at other bays."""
+"""Number of storeys after which the windows of a high wall start at another bay."""
 
 _CROWNS = {
     "facade_brick": "facade_stone",
@@ -29,11 +29,11 @@ _CROWNS = {
     "facade_concrete": "facade_bands",
     "facade_red_white": "facade_plaster",
 }
-"""What the top storeys of a high building show, where that is not its own facade."""
+"""Facades of the top storeys of high buildings, where they differ from the rest."""
 
 
 def mesh_of(building: Building) -> Mesh:
-    """Return what a building looks like from outside; the same building always looks the same."""
+    """Return the outside of a building; the same building always looks the same."""
     rng = chance_of(building)
     foot, outline = building.bottom, building.footprint
     top = foot + building.height
@@ -52,8 +52,8 @@ def mesh_of(building: Building) -> Mesh:
 
 
 def chance_of(building: Building) -> np.random.Generator:
-    """Return the random numbers of a building's looks."""
-    # Of whole millimetres: the last bits of the corners differ from processor to processor.
+    """Return the random numbers for the appearance of a building."""
+    # Seeded by whole millimetres: the last bits of the corners differ between processors.
     corners = np.rint(1000.0 * building.footprint).astype("<i8")
     return np.random.Generator(np.random.PCG64(zlib.crc32(corners.tobytes())))
 
@@ -63,7 +63,7 @@ def _shaft_walls(
 ) -> list[Mesh]:
     """Return the walls above the street: high ones in a base, a shaft of bands, and a top.
 
-    Each band starts at bays of its own, so that a pattern of blinds does not climb the wall.
+    Each band starts at its own bay, so that the pattern of blinds does not repeat up the wall.
     """
     made = []
     walled = facade(building.facade, building.tint)

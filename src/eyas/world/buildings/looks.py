@@ -1,4 +1,4 @@
-"""What buildings are painted and covered with, drawn so that neighbours differ."""
+"""Paint and roof covers of buildings, drawn so that neighbours differ."""
 
 import numpy as np
 
@@ -27,7 +27,7 @@ _SLOPES: tuple[tuple[float, Tint], ...] = (
     (0.2, (0.72, 0.74, 0.76)),
     (0.15, (0.56, 0.70, 0.84)),
 )
-"""Share, and factor on bright terracotta: fresh, weathered, brown, dark."""
+"""Share of sloping roofs, and factor on terracotta: fresh, weathered, brown, dark."""
 
 _FLATS: tuple[tuple[float, str, Tint], ...] = (
     (0.36, "roof_terrace", (1.0, 0.98, 0.97)),
@@ -37,13 +37,13 @@ _FLATS: tuple[tuple[float, str, Tint], ...] = (
     (0.10, "roof_membrane", (0.97, 0.97, 0.97)),
     (0.10, "bitumen", (0.97, 0.97, 0.97)),
 )
-"""Share, texture and tint of flat roofs; up high the grey ones are three times as frequent."""
+"""Share, texture and tint of flat roofs; high up, grey ones are three times as frequent."""
 
 _HIGH = (20.0, 90.0)
 """Heights between which grey roofs become more frequent [m]."""
 _GREYER = 3.0
 _FADED = 0.92
-"""Darkest chance factor on all of a roof."""
+"""Least random factor on the brightness of a whole roof."""
 
 
 def wall_tint(rng: np.random.Generator) -> Tint:
@@ -54,12 +54,12 @@ def wall_tint(rng: np.random.Generator) -> Tint:
 
 
 def roof_cover(top: float, rng: np.random.Generator, *, pyramid: bool) -> Material:
-    """Return what covers a roof: terracotta on most, as in the original, each a little different.
+    """Return the cover of a roof: mostly terracotta, as in the original, each a little different.
 
     Args:
         top: z of the roof [m].
-        rng: Of the buildings.
-        pyramid: Whether it slopes.
+        rng: Random numbers of the buildings.
+        pyramid: Whether the roof slopes.
     """
     age = float(rng.uniform(_FADED, 1.0))
     if pyramid:

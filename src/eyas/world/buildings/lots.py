@@ -19,38 +19,38 @@ BAY = 3.0
 
 @dataclass(frozen=True, slots=True)
 class Lot:
-    """A piece of a block in the block's own frame, whose x axis runs along its longest street."""
+    """A part of a block in the block's frame, whose x axis runs along its longest street."""
 
     shape: shapely.Polygon
     """Ground of the lot."""
     street: tuple[bool, bool, bool, bool]
     """Whether the west, east, south and north side lies on the block's boundary."""
     area: float
-    """Ground the building should cover [m^2]."""
+    """Ground area that the building should cover [m^2]."""
 
 
 def frame_angle(block: shapely.Polygon) -> float:
     """Return the direction of the longer side of the block's tightest rectangle [rad].
 
-    Within -22.5° to 157.5°: of the two directions of a side the same one always, however the
-    rectangle's corners are ordered.
+    Within -22.5° to 157.5°, so that a side has one direction, however the corners of the rectangle
+    are ordered.
     """
     corners = shapely.get_coordinates(shapely.minimum_rotated_rectangle(block))
     sides = np.diff(corners, axis=0)[:2]
     longest = sides[int(np.argmax(np.linalg.norm(sides, axis=1)))]
     angle = math.atan2(longest[1], longest[0])
-    # Streets along an axis are common, so the range must not begin or end there.
+    # Streets along an axis are common, so they must lie inside the range, not at its ends.
     return round((angle + math.pi / 8) % math.pi - math.pi / 8, 9)
 
 
 def divide(ground: shapely.Polygon, wanted: Sequence[tuple[float, bool]]) -> list[tuple[Lot, bool]]:
     """Cut a block into lots, one for each building.
 
-    Each cut crosses the longer side and shares the ground in proportion to what is to be built.
+    Each cut crosses the longer side and divides the ground in proportion to the wanted areas.
 
     Args:
-        ground: The block less its set-back, in its own frame.
-        wanted: Ground that each building should cover [m^2], and a mark that goes with it.
+        ground: The block without its set-back, in its own frame.
+        wanted: Ground area of each building [m^2], and a flag that is returned with its lot.
     """
     outline = shapely.boundary(ground)
     lots = []
@@ -74,7 +74,7 @@ def _cut(
         return []
     if len(wanted) == 1:
         return [(shape, wanted[0])]
-    # Even small buildings need some ground around them.
+    # Small buildings, too, need some ground around them.
     weights = np.array([area for area, _ in wanted]) + 150.0
     first = 1 + int(np.argmin(np.abs(np.cumsum(weights)[:-1] / weights.sum() - 0.5)))
     share = weights[:first].sum() / weights.sum()
@@ -96,12 +96,12 @@ def _cut(
 
 
 def footprint_in(lot: Lot, rng: np.random.Generator, *, plain: bool = False) -> shapely.Polygon:
-    """Return a footprint within a lot, drawn up to the street, in the lot's frame.
+    """Return a footprint within a lot, close to the street, in the lot's frame.
 
     Args:
-        lot: Where it stands.
-        rng: Of the buildings.
-        plain: A rectangle, as a tower needs under it.
+        lot: Lot of the building.
+        rng: Random numbers of the buildings.
+        plain: Whether it must be a rectangle, as below a tower.
     """
     kind = "box" if plain or lot.area < 350 else str(rng.choice(_KINDS, p=_ODDS))
     fill = _FILL[kind]
@@ -130,7 +130,7 @@ _FILL = {
 
 
 def _free_box(lot: Lot, rng: np.random.Generator) -> tuple[float, float, float, float]:
-    """Return the lot's box less a front yard on streets and an alley beside neighbours."""
+    """Return the lot's box without front yards at streets and alleys beside neighbours."""
     yards = np.where(lot.street, rng.uniform(0.8, 4.0, 4), rng.uniform(1.5, 4.5, 4))
     west, south, east, north = lot.shape.bounds
     if east - west < 16 or north - south < 16:
@@ -139,7 +139,7 @@ def _free_box(lot: Lot, rng: np.random.Generator) -> tuple[float, float, float, 
 
 
 def _size(lot: Lot, width: float, depth: float, area: float) -> tuple[float, float]:
-    """Return the sides of a box of about `area` that fits, shortened away from the street."""
+    """Return the sides of a box of about `area` that fits, shortened on the side away from the street."""
     if area < width * depth:
         facing_x = lot.street[0] or lot.street[1]
         facing_y = lot.street[2] or lot.street[3]
@@ -160,7 +160,7 @@ def _size(lot: Lot, width: float, depth: float, area: float) -> tuple[float, flo
 
 
 def _snapped(length: float) -> float:
-    """Return a whole number of bays near a length that has at least four."""
+    """Return a length close to the given one: whole bays if it has at least four of them."""
     return BAY * float(np.floor(length / BAY + 0.3)) if length >= 4 * BAY else length
 
 
@@ -175,7 +175,7 @@ def _anchored(low: float, high: float, size: float, at_low: bool, at_high: bool)
 def _outline(
     kind: str, width: float, depth: float, rng: np.random.Generator
 ) -> NDArray[np.float64]:
-    """Return counter-clockwise corners within (0, 0) to (width, depth), turned at random."""
+    """Return counter-clockwise corners within (0, 0) to (width, depth), in a random rotation."""
     wing = [max(_snapped(0.4 * side), 0.3 * side) for side in (width, depth)]
     notch = [max(BAY, _snapped(0.2 * side)) for side in (width, depth)]
     across = (width - wing[0]) / 2

@@ -14,7 +14,7 @@ __all__ = ["flat_roof", "ledge", "pyramid_rise", "pyramid_roof", "window_wall"]
 Outline = NDArray[np.float64]
 
 _TILE = 12.0
-"""Metres one repeat of a facade covers: four bays, four storeys."""
+"""Size of one repeat of a facade, four bays and four storeys [m]."""
 
 
 def window_wall(
@@ -22,8 +22,8 @@ def window_wall(
 ) -> Mesh:
     """Return walls whose windows meet corners and storeys in whole bays.
 
-    Each wall starts at a bay and a storey of its own, so that blinds differ from wall to wall;
-    walls too short for a window show the pier between two.
+    Each wall starts at its own bay and storey, so that blinds differ from wall to wall; walls too
+    short for a window show only the pier between two windows.
     """
     mesh = walls(outline, bottom, top, wall, _TILE)
     length = np.linalg.norm(np.roll(outline, -1, axis=0) - outline, axis=1)
@@ -60,7 +60,7 @@ def flat_roof(
 
 
 def pyramid_rise(outline: Outline) -> float:
-    """Return how high a pyramid roof rises above its eaves [m]."""
+    """Return the height of a pyramid roof above its eaves [m]."""
     return float(np.clip(0.3 * _short_side(outline), 2.5, 7.0))
 
 
@@ -93,14 +93,14 @@ def pyramid_roof(outline: Outline, top: float, stone: Material, tiles: Material)
 
 
 def _areas(mesh: Mesh) -> NDArray[np.float64]:
-    """Return the areas of triangles; those of a slope that ends in a point include empty ones."""
+    """Return the areas of triangles; some triangles of a slope that ends in a point are empty."""
     corners = np.asarray(mesh.positions[mesh.triangles], np.float64)
     face = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     return np.asarray(np.linalg.norm(face, axis=1) / 2, np.float64)
 
 
 def _ridge(outline: Outline, centre: Outline) -> Outline:
-    """Return the end points of the ridge, one point for anything that is no long rectangle."""
+    """Return the ends of the ridge: one point unless the outline is a long rectangle."""
     if len(outline) != 4:
         return centre[None]
     sides = np.roll(outline, -1, axis=0) - outline

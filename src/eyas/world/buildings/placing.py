@@ -1,4 +1,4 @@
-"""Buildings: where they stand in city blocks, and what they look like."""
+"""Buildings: their positions in city blocks, and their appearance."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -24,10 +24,10 @@ SETBACK = 4.4
 """Least distance between a kerb and a building [m]."""
 
 _YARD = 0.8
-"""Part of the set-back that `footprint_in` keeps from the edge of every lot [m]."""
+"""Part of the set-back that `footprint_in` itself keeps from the edge of every lot [m]."""
 
 _SMALL = 200.0
-"""Larger parts of what is kept free shape the lots, smaller ones only notch footprints [m^2]."""
+"""Larger parts of the kept-free area shape the lots, smaller ones only the footprints [m^2]."""
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Building:
     bottom: float
     """z of its foot [m]."""
     height: float
-    """From the foot to the eaves, whole storeys [m]."""
+    """From the foot to the eaves, a whole number of storeys [m]."""
     facade: str
     """One of `FACADES`."""
     tint: tuple[float, float, float]
@@ -47,7 +47,7 @@ class Building:
     roof: str
     """`flat` with a parapet, or `pyramid`."""
     roof_material: Material
-    """What covers it."""
+    """Cover of the roof."""
 
 
 def place_buildings(
@@ -62,9 +62,9 @@ def place_buildings(
 
     Args:
         blocks: Ground between streets, bounded by the kerbs, world frame [m].
-        count: How many buildings, towers included; a few less where there is no room.
-        rng: Of the buildings.
-        keep_free: Where nothing may stand.
+        count: Number of buildings, towers included; a few fewer are placed if there is no room.
+        rng: Random numbers of the buildings.
+        keep_free: Area where nothing may stand.
     """
     towers = round(TOWER_SHARE * count)
     areas = np.sort(ground_areas(count - towers, rng))[::-1]
@@ -89,7 +89,7 @@ def place_buildings(
 def _shared(
     blocks: Sequence[shapely.Polygon], areas: NDArray[np.float64], keep_free: shapely.Geometry
 ) -> list[tuple[shapely.Polygon, float, list[int]]]:
-    """Return for each block its free ground, turned to its streets, its angle and its buildings."""
+    """Return for each block its free ground in its own frame, its angle and its buildings."""
     wide = [part for part in shapely.get_parts(keep_free) if part.area > _SMALL]
     grounds, angles = [], []
     for block in blocks:
@@ -108,7 +108,7 @@ def _shared(
 
 
 def _clear(shape: shapely.Polygon, angle: float, keep_free: shapely.Geometry) -> shapely.Polygon:
-    """Return a footprint less the boxes around what is to be kept free in it."""
+    """Return a footprint without the boxes around the kept-free areas in it."""
     for part in shapely.get_parts(keep_free):
         local = turned(part, -angle)
         if local.intersects(shape):
@@ -188,7 +188,7 @@ def _corners(shape: shapely.Polygon) -> NDArray[np.float64]:
 
 
 def prism_of(building: Building) -> tuple[NDArray[np.float64], float, float]:
-    """Return footprint, bottom and top of the solid that stands for a building [m]."""
+    """Return footprint, bottom and top of the solid that represents a building [m]."""
     top = building.bottom + building.height
     if building.roof == "flat":
         return building.footprint, building.bottom, top + PARAPET

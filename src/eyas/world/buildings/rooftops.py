@@ -1,4 +1,4 @@
-"""What stands on flat roofs: stair heads, cooling units, ducts, skylights, tanks, masts."""
+"""Equipment of flat roofs: stair heads, cooling units, ducts, skylights, tanks, masts."""
 
 from collections.abc import Callable
 
@@ -17,11 +17,11 @@ __all__ = ["UNITS", "add_rooftop"]
 
 _ROOM = {"stairs": 3.6, "plant": 5.2, "cooler": 1.8, "coolers": 3.4, "duct": 4.6,
          "skylights": 3.4, "tank": 2.0, "vents": 1.6, "mast": 1.2}  # fmt: skip
-"""Radius of the free circle that each needs [m]."""
+"""Radius of the free circle that each unit needs [m]."""
 _SMALL = ("cooler", "vents", "skylights", "cooler", "vents")
 _LARGE = ("coolers", "duct", "skylights", "cooler", "vents", "tank", "coolers", "duct")
 _AREA_EACH = 130.0
-"""Roof for each thing that stands on it [m^2]."""
+"""Roof area for each unit [m^2]."""
 _MOST = 16
 _HIGH = 45.0
 """Roofs above this height have a mast [m]."""
@@ -38,15 +38,15 @@ Outline = NDArray[np.float64]
 
 def add_rooftop(builder: SceneBuilder, outline: Outline, top: float, owner: int,
                 keep_free: shapely.Geometry, rng: np.random.Generator) -> None:  # fmt: skip
-    """Furnish a flat roof; what stands there is part of the building.
+    """Furnish a flat roof; its equipment is part of the building.
 
     Args:
-        builder: Takes the things.
+        builder: The builder to add to.
         outline: Corners of the roof [m], shape (K, 2).
         top: z of the roof [m].
-        owner: The building's object.
-        keep_free: Where a tower stands on the roof [m].
-        rng: Of the building.
+        owner: Object of the building.
+        keep_free: Area where a tower stands on the roof [m].
+        rng: Random numbers of the building.
     """
     units = {kind: builder.prototype(f"roof {kind}", make) for kind, make in UNITS.items()}
     shape = shapely.Polygon(outline)
@@ -66,7 +66,7 @@ def add_rooftop(builder: SceneBuilder, outline: Outline, top: float, owner: int,
 
 
 def _wanted(area: float, top: float, rng: np.random.Generator) -> list[str]:
-    """Return what is to stand on a roof, the largest first."""
+    """Return the units for a roof, the largest first."""
     count = int(np.clip(area / _AREA_EACH, 1 if area > 20.0 else 0, _MOST))
     choice = _LARGE if area > 250.0 else _SMALL
     things = [choice[int(k)] for k in rng.integers(len(choice), size=count)]
@@ -105,14 +105,14 @@ def _at(mesh: Mesh, x: float, y: float, z: float = 0.0) -> Mesh:
 
 
 def _fan(x: float, y: float, z: float, radius: float) -> Mesh:
-    """Return a dark round opening with a rim, as cooling units blow through."""
+    """Return a dark round opening with a rim: the fan of a cooling unit."""
     rim = cylinder((radius, radius), (z, z + 0.12), 8, _ZINC, cap=False)
     hole = cylinder((radius * 0.9, radius * 0.9), (z, z + 0.07), 8, _DARK, cap=True)
     return concatenate([_at(rim, x, y), _at(hole, x, y)])
 
 
 def _stairs() -> Mesh:
-    """Return the head of a staircase: a door, a roof that overhangs, a ladder of grey steps."""
+    """Return the head of a staircase: a door, an overhanging roof, a ladder of grey steps."""
     door = _at(_block(0.06, 1.0, 2.1, _DARK), 2.31, 0.0)
     slab = _at(_block(5.0, 3.8, 0.16, _ZINC), 0.0, 0.0, 2.7)
     return concatenate([_block(4.6, 3.4, 2.7, _PLASTER), door, slab])
@@ -150,7 +150,7 @@ def _far_duct() -> Mesh:
 
 
 def _skylights() -> Mesh:
-    """Return two by two domes on kerbs."""
+    """Return four domes on kerbs, two by two."""
     pieces = []
     for x in (-1.4, 1.4):
         for y in (-0.9, 0.9):
@@ -167,7 +167,7 @@ def _tank(sides: int) -> Mesh:
 
 
 def _vents(sides: int) -> Mesh:
-    """Return a handful of pipes with caps."""
+    """Return a few pipes with caps."""
     spots = ((-0.8, -0.3, 0.9), (0.0, 0.5, 0.7), (0.7, -0.2, 1.1))
     return concatenate([_pipe(*spot, sides) for spot in spots])
 
@@ -197,4 +197,4 @@ UNITS: dict[str, Callable[[], Levels]] = {
     "vents": lambda: (_vents(6), _vents(3)),
     "mast": lambda: (_mast(5), _mast(3)),
 }
-"""How each kind is made; origin on the roof, in metres."""
+"""Maker of each kind of unit; origin on the roof, in metres."""

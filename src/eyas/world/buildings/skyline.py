@@ -1,4 +1,4 @@
-"""How large and how high the buildings of a city are, drawn to the original's statistics."""
+"""Ground areas and heights of the buildings of a city, drawn to the original's statistics."""
 
 from collections.abc import Sequence
 
@@ -28,13 +28,13 @@ def storeys(
 ) -> NDArray[np.int64]:
     """Return the number of storeys of each building, counted from the ground.
 
-    The drawn heights go to the buildings by a lottery in which wide ones and towers have better
-    tickets; a building that carries a tower is low, and none is slimmer than 1 to 7.
+    The drawn heights are assigned at random, with better chances for wide buildings and towers; a
+    building that carries a tower is low, and none is more than 7 times as high as wide.
 
     Args:
         side: Square root of the footprints' areas [m], shape (B,).
-        base: Index of the building that each stands on, or -1, shape (B,).
-        rng: Of the buildings.
+        base: Index of the building that each one stands on, or -1, shape (B,).
+        rng: Random numbers of the buildings.
     """
     is_tower = base >= 0
     carries = np.isin(np.arange(len(side)), base[is_tower])
@@ -49,7 +49,7 @@ def storeys(
 
 
 def evenly(names: Sequence[str], count: int, rng: np.random.Generator) -> list[str]:
-    """Return `count` of the names in random order, each as often as the others."""
+    """Return `count` of the names in random order, each about as often as the others."""
     return [names[i % len(names)] for i in rng.permutation(count)]
 
 

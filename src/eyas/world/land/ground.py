@@ -1,4 +1,4 @@
-"""What lies flat: lawn, asphalt, pavements. Each is cut out of the others, so nothing overlaps."""
+"""Flat ground: lawn, asphalt, pavements. Each is cut out of the others, so nothing overlaps."""
 
 from collections.abc import Sequence
 
@@ -39,13 +39,13 @@ _YARDS = (
     material("clinker", (1.0, 0.98, 0.96)),
 )
 _GRASS = ((0.96, 0.97, 0.90), (0.97, 0.93, 0.80), (0.92, 0.96, 0.91), (0.84, 0.91, 0.83))
-"""Tints of a little drier, dry, a little lusher and lush grass."""
+"""Tints of slightly drier, dry, slightly lusher and lush grass."""
 _PATCHES = 34
-"""Dry or lush patches on the floor."""
+"""Number of dry or lush patches on the floor."""
 _PATCH = (12.0, 48.0)
 """Mean radius of a patch [m]."""
 _FADE = 0.7
-"""Size of the inner, more different part of a patch."""
+"""Size of the inner part of a patch, whose tint is stronger, as a share of the patch."""
 
 
 def pavement_area(blocks: Sequence[shapely.Polygon], cut: shapely.Geometry) -> shapely.Geometry:
@@ -53,7 +53,7 @@ def pavement_area(blocks: Sequence[shapely.Polygon], cut: shapely.Geometry) -> s
 
     Args:
         blocks: Ground between kerbs [m].
-        cut: Driveways and the like, which interrupt pavements.
+        cut: Driveways and other areas that interrupt pavements.
     """
     rings = [
         shapely.difference(block, shapely.buffer(block, -PAVEMENT_WIDTH, join_style="mitre"))
@@ -66,7 +66,7 @@ def verge_area(outside: Sequence[shapely.Polygon], paved: shapely.Geometry) -> s
     """Return the narrow pavements between outer streets and open land.
 
     Args:
-        outside: What lies outside of the outer streets [m].
+        outside: Ground outside the outer streets [m].
         paved: Asphalt [m].
     """
     beside = shapely.buffer(paved, _VERGE, quad_segs=4)
@@ -78,8 +78,8 @@ def pavement(area: shapely.Geometry, road: shapely.Geometry, turn: float = 0.0) 
 
     Args:
         area: Pavements [m].
-        road: What they meet [m].
-        turn: Direction of the streets, along which slabs are laid [rad].
+        road: Asphalt that they meet [m].
+        turn: Direction of the streets, along which the slabs are laid [rad].
     """
     kerb = shapely.intersection(area, shapely.buffer(road, _KERB_WIDTH))
     slabs = shapely.difference(area, kerb)
@@ -93,7 +93,7 @@ def pavement(area: shapely.Geometry, road: shapely.Geometry, turn: float = 0.0) 
 
 
 def asphalt(area: shapely.Geometry, *, light: bool = False) -> Mesh:
-    """Return a road surface at z = 0 with its edge down to the floor."""
+    """Return a road surface at z = 0 with its sides down to the floor."""
     kind = "asphalt_light" if light else "asphalt"
     return concatenate(
         [
@@ -107,9 +107,9 @@ def yards(areas: Sequence[shapely.Geometry], turn: float, rng: np.random.Generat
     """Return the paving around buildings, level with the lawn.
 
     Args:
-        areas: Of each building [m].
+        areas: Paving of each building [m].
         turn: Direction of the streets [rad].
-        rng: Chooses what each is paved with.
+        rng: Random numbers for the choice of the paving.
     """
     return concatenate(
         [

@@ -20,21 +20,21 @@ class Hill(NamedTuple):
     y: float
     """North [m]."""
     radius: float
-    """Of its foot [m]."""
+    """Radius of its foot [m]."""
     height: float
-    """Over the floor [m]."""
+    """Height above the floor [m]."""
 
 
 def hilly(
     size: tuple[float, float], floor: float, hills: Sequence[Hill], spacing: float = 5.0
 ) -> Terrain:
-    """Return the ground with hills; where two meet, the higher one counts.
+    """Return the ground with hills; where two overlap, the higher one counts.
 
     Args:
         size: Extent of the floor, centred on the origin [m].
         floor: z of the floor [m].
-        hills: Where they stand.
-        spacing: Distance between neighbouring points of the raster, at most [m].
+        hills: The hills.
+        spacing: Largest distance between neighbouring points of the raster [m].
     """
     columns, rows = (max(int(np.ceil(side / spacing)), 1) + 1 for side in size)
     spacing = max(size[0] / (columns - 1), size[1] / (rows - 1))
@@ -50,11 +50,11 @@ def hilly(
 
 
 def relief_mesh(terrain: Terrain, material: Material) -> Mesh:
-    """Return the surface of a raster, two triangles for each of its squares, smoothly shaded.
+    """Return the smooth-shaded surface of a raster, two triangles for each of its squares.
 
     Args:
         terrain: The ground; not flat.
-        material: Of all of it.
+        material: Material of the whole surface.
     """
     rows, columns = terrain.relief.shape
     relief, spacing = terrain.relief.astype(np.float64), terrain.spacing

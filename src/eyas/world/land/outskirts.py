@@ -1,4 +1,4 @@
-"""Beyond the streets: fields up to the horizon, and where an elevated road comes down to them."""
+"""Land beyond the streets: fields up to the horizon, and the end of an elevated road."""
 
 import numpy as np
 import shapely
@@ -15,7 +15,7 @@ from eyas.world.roads.overpass import DECK_WIDTH, path
 __all__ = ["access_road", "descent", "fields"]
 
 _LINES = (450.0, 620.0, 860.0, 1200.0, 1700.0, 2300.0, 3000.0, 4200.0, 6500.0, 10000.0)
-"""Borders of the fields, from the middle of a floor of 900 m; others scale with theirs [m]."""
+"""Borders of the fields from the centre of a floor of 900 m; scaled with the floor [m]."""
 _CROPS = (
     material("lawn", (0.99, 0.99, 0.97)),
     material("lawn", (0.92, 0.95, 0.86)),
@@ -26,25 +26,25 @@ _CROPS = (
 )
 _CROP_ODDS = (0.26, 0.22, 0.2, 0.14, 0.12, 0.06)
 _BELOW = 0.05
-"""From the floor down to the fields, so that no rounding lets them shine through its edge [m]."""
+"""Depth of the fields below the floor, so that rounding never makes them show through [m]."""
 
 _BACK = 26.0
-"""From the foot of a ramp back to where its access road turns to the street [m]."""
+"""From the foot of a ramp back to the bend of its access road towards the street [m]."""
 _BEND = 19.0
-"""Radius of that turn [m]."""
+"""Radius of that bend [m]."""
 _TAIL = 621.0
-"""Length of the way down from an elevated road, a slope of 9 % on average [m]."""
+"""Length of an elevated road's descent, a slope of 9 % on average [m]."""
 
 Points = NDArray[np.float64]
 
 
 def fields(size: tuple[float, float], floor: float, rng: np.random.Generator) -> Mesh:
-    """Return land around the floor up to the horizon, in a patchwork of large fields.
+    """Return the land around the floor up to the horizon, a patchwork of large fields.
 
     Args:
         size: Extent of the floor [m].
         floor: z of the floor [m].
-        rng: Of the fields.
+        rng: Random numbers of the fields.
     """
     half = np.array([*(-np.array(_LINES[::-1])), -150.0, 150.0, *_LINES])
     steps = len(half) - 1
@@ -70,7 +70,7 @@ def access_road(foot: Points, onwards: Points, roads: shapely.Geometry) -> shape
     """Return the asphalt from a street to the foot of a ramp, in plan view.
 
     Args:
-        foot: Middle of the ramp's beginning [m], shape (2,).
+        foot: Middle of the lower end of the ramp [m], shape (2,).
         onwards: Unit vector up the ramp, shape (2,).
         roads: Asphalt of the streets [m].
     """
@@ -90,14 +90,14 @@ def access_road(foot: Points, onwards: Points, roads: shapely.Geometry) -> shape
 
 
 def descent(middle: Points, floor: float) -> Points:
-    """Return how an elevated road goes on from its end, straight and down to the ground.
+    """Return the continuation of an elevated road from its end, straight and down to the ground.
 
     Args:
-        middle: Of the road so far, shape (K, 3) [m].
+        middle: Centre line of the road so far, shape (K, 3) [m].
         floor: z of the ground [m].
 
     Returns:
-        Middle of the way down, shape (K, 3) [m].
+        Centre line of the descent, shape (K, 3) [m].
     """
     onwards = unit(middle[-1, :2] - middle[-2, :2])
     line = [middle[-1, :2], middle[-1, :2] + _TAIL * onwards]

@@ -1,8 +1,8 @@
-"""The maps: one folder each, and one line in this table.
+"""The maps: one folder and one line in this table each.
 
-A user's own map is a `MapRecipe` in a package of its own. It is found by its path
-(`my_package.field:FIELD`), by the name it is given with `MAPS.register`, or by that of an entry
-point in the group `eyas.maps`.
+A user's own map is a `MapRecipe` in another package. It is found by its path
+(`my_package.field:FIELD`), by the name given to `MAPS.register`, or by the name of an entry point
+in the group `eyas.maps`.
 """
 
 from eyas.core.registry import Registry

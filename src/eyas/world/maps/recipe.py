@@ -1,4 +1,4 @@
-"""One object for each map: everything that makes it what it is."""
+"""The definition of a map, one object for each."""
 
 import re
 from collections.abc import Callable, Mapping
@@ -11,7 +11,7 @@ from eyas.core.errors import ConfigError, UnknownNameError
 from eyas.state.lighting import Lighting
 from eyas.world.weather import Season, Weather
 
-if TYPE_CHECKING:  # every map is imported with `eyas`: what builds a scene is imported when it does
+if TYPE_CHECKING:  # maps load with `eyas`; the scene modules only when a scene is built
     from eyas.state.roads import RoadGraph, RoadNetwork
     from eyas.state.scene import Scene
 
@@ -26,25 +26,25 @@ TRAFFIC_FILE = "traffic.npz"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MapRecipe:
-    """A map: its roads, its scene for a season, its light for each weather."""
+    """A map: its roads, its scene for each season, its light for each weather."""
 
     name: str
-    """Word or words joined by hyphens; names folders and environments."""
+    """Words joined by hyphens; used in the names of folders and environments."""
     title: str
-    """A few words for people."""
+    """Name for people, a few words."""
     roads: Callable[[int], "RoadGraph"]
-    """Draws the roads of a seed; seed 0 is the canonical map."""
+    """Returns the roads of a seed; seed 0 is the canonical map."""
     scene: Callable[["RoadNetwork", int, Season], "Scene"]
     """Builds everything else around the processed roads of the same seed."""
     lighting: Mapping[Weather, Lighting]
-    """Light and air of each weather that the map has."""
+    """Light and air of each weather of the map."""
     seasons: bool = False
-    """Whether the scene of winter is another one than that of summer: other trees, roofs or crops.
-    Snow that falls on what is there is part of the light (`Lighting.snow`) and needs no other."""
+    """Whether the winter scene differs from that of summer: other trees, roofs or crops. Snow on an
+    unchanged scene is part of the light (`Lighting.snow`) and needs no scene of its own."""
     package: str | None = None
-    """Package that the map is in, mostly `__name__`: it may hold `NETWORK_FILE` and `TRAFFIC_FILE`,
-    and a change of its source makes the scene anew. None: nothing is shipped, and the scene is not
-    kept from run to run."""
+    """Package that contains the map, mostly `__name__`: it may hold `NETWORK_FILE` and
+    `TRAFFIC_FILE`, and a change of its source rebuilds the scene. None: nothing is shipped, and the
+    scene is not cached between runs."""
 
     def __post_init__(self) -> None:
         if not re.fullmatch(r"\w+(-\w+)*", self.name):
@@ -54,7 +54,7 @@ class MapRecipe:
 
     @property
     def weathers(self) -> tuple[str, ...]:
-        """Names of the weathers that the map has."""
+        """Names of the weathers of the map."""
         return tuple(weather.name for weather in self.lighting)
 
     def light(self, weather: str) -> Lighting:
@@ -66,7 +66,7 @@ class MapRecipe:
         return self.lighting[self._weather(weather)]
 
     def season(self, weather: str) -> Season:
-        """Return whose scene a weather shows; a map without seasons has one for all.
+        """Return the season of the scene in a weather; summer on a map without seasons.
 
         Raises:
             UnknownNameError: The map has no such weather.
@@ -79,7 +79,7 @@ class MapRecipe:
         """Folder of the map's package; None without a package."""
         if self.package is None:
             return None
-        from importlib.resources import files  # not needed to know the map
+        from importlib.resources import files  # not needed to describe a map
 
         return files(self.package)
 

@@ -25,15 +25,15 @@ class Crown:
     radii: Array
     """Shape (B,)."""
     middle: Array
-    """Where light seems to come out of, for soft shading, shape (3,)."""
+    """Centre from which shading normals point outwards, shape (3,)."""
 
     def depth(self, points: Array) -> Array:
-        """Return how deep points lie within the crown, negative outside, shape (P,)."""
+        """Return the depth of points within the crown, negative outside, shape (P,)."""
         distance = np.linalg.norm(points[:, None] - self.centres, axis=2)
         return np.asarray((self.radii - distance).max(axis=1), np.float64)
 
     def surface(self, count: int, rng: np.random.Generator) -> tuple[Array, Array]:
-        """Return points spread over the outside and the directions that face outwards.
+        """Return points spread over the outside of the crown, and unit vectors that face outwards.
 
         Shapes (count, 3).
         """
@@ -53,7 +53,7 @@ class Crown:
         return np.concatenate(kept)[:count], np.concatenate(facing)[:count]
 
     def soft_normals(self, points: Array, facing: Array) -> Array:
-        """Return shading normals: half the ball's, half the whole crown's, so light wraps round."""
+        """Return shading normals: half the ball's, half the whole crown's, for soft edges."""
         away = points - self.middle
         away /= np.maximum(np.linalg.norm(away, axis=1, keepdims=True), 1e-9)
         blend = 0.55 * away + 0.45 * facing + np.array([0.0, 0.0, 0.12])
@@ -72,11 +72,11 @@ def leaf_cards(
     """Return cards with clusters of leaves on the outside of a crown.
 
     Args:
-        crown: What they cover.
+        crown: Crown to cover.
         count: Number of cards.
         size: Least and largest side of a card.
         tints: Factors on the leaves' colour, from the darkest (below, in clefts) to the lightest.
-        rng: Of the tree.
+        rng: Random numbers of the tree.
         bent: Fold each card along its middle (4 triangles); otherwise flat (2 triangles).
     """
     points, facing = crown.surface(count, rng)
@@ -106,7 +106,7 @@ def leaf_cards(
 def _tilted_cards(facing: Array, columns: int, rng: np.random.Generator) -> Array:
     """Return the corners of cards of side 1 about the origin, shape (count, 2 columns, 3).
 
-    They face roughly outwards, each tilted and turned by chance; three columns make a fold.
+    They face roughly outwards, each tilted and turned at random; three columns make a fold.
     """
     count = len(facing)
     tilted = facing + 0.55 * rng.normal(size=(count, 3))
@@ -140,12 +140,12 @@ def shell(
     tint: tuple[float, float, float],
     tiles: float = 2.0,
 ) -> Mesh:
-    """Return the dark inside of a crown: one closed skin, seen through gaps between the cards.
+    """Return the dark inside of a crown: one closed surface, seen through gaps between the cards.
 
     Args:
-        crown: Whose inside.
-        subdivisions: Of the icosphere it is made of.
-        shrink: Share of the way from the middle to the outside.
+        crown: The crown.
+        subdivisions: Subdivisions of its icosphere.
+        shrink: Size of the inside, as a share of the crown.
         tint: Factor on the leaves' colour.
         tiles: Repeats of the texture in the radius.
     """

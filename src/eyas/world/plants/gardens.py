@@ -23,13 +23,13 @@ _DOOR_WALL = 7.0
 """Walls shorter than this have no door [m]."""
 
 _BORDER = 1.85
-"""From a wall to the plants along it [m]."""
+"""Distance of the plants along a wall from it [m]."""
 _PLANTED = 0.45
 """Share of the walls with plants along them."""
 _CLIPPED = 0.4
-"""Share of those with a hedge."""
+"""Share of those walls with a hedge instead of shrubs."""
 _ROOM = 0.9
-"""Radius of what a plant takes up [m]."""
+"""Radius of the space that a plant needs [m]."""
 
 _BORDERS = ("border", "low border", "tall border")
 
@@ -39,12 +39,12 @@ Points = NDArray[np.float64]
 def paved_yards(
     footprints: Sequence[Points], pavement: shapely.Geometry, keep_free: shapely.Geometry
 ) -> list[shapely.Geometry]:
-    """Return what is paved around each building, its own ground included [m].
+    """Return the paving around each building, its own ground included [m].
 
     Args:
         footprints: Corners of the buildings that stand on the ground, counter-clockwise.
-        pavement: Where paths lead to.
-        keep_free: What is no lawn: roads, pavements, car parks, pools.
+        pavement: Pavements, to which paths lead [m].
+        keep_free: Roads, pavements, car parks and pools [m].
     """
     solid = shapely.union_all([shapely.Polygon(corners) for corners in footprints])
     made = []
@@ -63,7 +63,7 @@ def paved_yards(
 def _paths(
     corners: Points, pavement: shapely.Geometry, others: shapely.Geometry
 ) -> Iterator[shapely.Polygon]:
-    """Yield straight paths from the middle of walls to a pavement that nothing stands in."""
+    """Yield straight paths from the middle of walls to a pavement, where nothing is in the way."""
     for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
         if length(end - start) < _DOOR_WALL:
             continue
@@ -90,12 +90,12 @@ def add_borders(
     """Plant hedges and shrubs along walls.
 
     Args:
-        builder: Takes the plants.
+        builder: The builder to add to.
         footprints: Corners of buildings, counter-clockwise [m].
         room: Lawn on which plants may stand [m].
         floor: z of the lawn [m].
-        plants: By the names of `plant_makers`.
-        rng: Of the gardens.
+        plants: Prototypes by the names of `plant_makers`.
+        rng: Random numbers of the gardens.
     """
     free = shapely.buffer(room, -_ROOM / 2)
     shapely.prepare(free)
@@ -120,12 +120,12 @@ def add_row(
     """Plant pieces of hedge or border along a line where there is room.
 
     Args:
-        builder: Takes the plants.
-        plants: One is drawn for each piece.
+        builder: The builder to add to.
+        plants: Prototypes; one is drawn for each piece.
         line: Both ends [m], shape (2, 2).
-        room: Where pieces may stand, whole [m].
+        room: Area in which pieces must lie [m].
         floor: z of the lawn [m].
-        rng: Of the gardens.
+        rng: Random numbers of the gardens.
     """
     whole, along = length(line[1] - line[0]), unit(line[1] - line[0])
     turn = float(np.arctan2(along[1], along[0]))
@@ -146,10 +146,10 @@ def scattered(
     """Return points within a shape.
 
     Args:
-        room: Where [m].
-        apart: Least distance of two [m].
-        density: How many are tried on each square metre.
-        rng: Of the points.
+        room: The shape [m].
+        apart: Least distance between two points [m].
+        density: Number of attempts on each square metre.
+        rng: Random numbers of the points.
 
     Returns:
         Shape (K, 2) [m].
@@ -167,16 +167,16 @@ def scattered(
 
 
 class _Apart:
-    """Points that keep their distance; only those in the squares around a new one are looked at.
+    """Points that keep a distance; a new one is compared only with those in the squares around it.
 
     Args:
-        apart: Least distance of two [m].
+        apart: Least distance between two points [m].
     """
 
     def __init__(self, apart: float) -> None:
         self.points: list[tuple[float, float]] = []
         self._apart = apart
-        self._side = 1.001 * apart  # a little more: rounding leaves no neighbour out
+        self._side = 1.001 * apart  # slightly larger, so that rounding hides no neighbour
         self._squares: dict[tuple[int, int], list[tuple[float, float]]] = {}
 
     def add(self, x: float, y: float) -> None:
@@ -201,11 +201,11 @@ def clustered(
     """Return points in groups, shape (K, 2) [m].
 
     Args:
-        centres: Of the groups [m], shape (C, 2).
-        spread: Standard deviation about them [m].
+        centres: Centres of the groups [m], shape (C, 2).
+        spread: Standard deviation about the centres [m].
         count: Least and largest number in a group.
-        room: Where they may be [m].
-        rng: Of the points.
+        room: Area within which the points must lie [m].
+        rng: Random numbers of the points.
     """
     groups = [c + rng.normal(0, spread, (int(rng.integers(*count)), 2)) for c in centres]
     points = np.concatenate([np.zeros((0, 2)), *groups])
@@ -223,12 +223,12 @@ def add_small_trees(
     """Plant small trees.
 
     Args:
-        builder: Takes trees and trunks.
-        places: Shape (K, 2) [m].
-        heights: Least and largest [m].
+        builder: The builder to add to.
+        places: Positions of the trunks, shape (K, 2) [m].
+        heights: Least and largest height [m].
         floor: z of the ground [m].
-        kinds: One is drawn for each tree.
-        rng: Of the gardens.
+        kinds: Prototypes; one is drawn for each tree.
+        rng: Random numbers of the gardens.
     """
     for place in places:
         height, turn = float(rng.uniform(*heights)), float(rng.uniform(0, 2 * np.pi))

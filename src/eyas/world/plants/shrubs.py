@@ -29,7 +29,7 @@ _MULCH = material("soil", (0.62, 0.56, 0.52))
 
 
 def plant_makers(rng: np.random.Generator) -> dict[str, Callable[[], Levels]]:
-    """Return how each kind is made: borders of shrubs along walls, hedges, beds in car parks."""
+    """Return the makers of all kinds: borders of shrubs along walls, hedges, beds in car parks."""
     low, tall = (1.0, 0.5, _BRIGHT), (0.6, 0.95, _DARK)
     middle = (0.75, 0.62, _OLIVE)
     return {
@@ -42,7 +42,7 @@ def plant_makers(rng: np.random.Generator) -> dict[str, Callable[[], Levels]]:
 
 
 def _border(shrubs: Sequence[tuple[float, float, Tints]], rng: np.random.Generator) -> Levels:
-    """Return shrubs in a row; each is a half width, a height and greens."""
+    """Return a row of shrubs; each is given by half its width, its height and its greens."""
     made = []
     for x, (wide, tall, tints) in zip((-1.35, 0.0, 1.3), shrubs, strict=True):
         centres, radii = _clump(wide * rng.uniform(0.8, 1.1), tall * rng.uniform(0.8, 1.15), rng)
@@ -53,7 +53,7 @@ def _border(shrubs: Sequence[tuple[float, float, Tints]], rng: np.random.Generat
 
 
 def _hedge(rng: np.random.Generator) -> Levels:
-    """Return a clipped hedge: a box of leaves, ruffled."""
+    """Return a clipped hedge: a box with an uneven surface of leaves."""
     row = np.linspace(-PIECE / 2 + 0.2, PIECE / 2 - 0.2, 11)
     centres = np.array([(x, y, z) for x in row for y, z in ((-0.1, 0.36), (0.1, 0.62))])
     crown = Crown(centres, np.full(len(centres), 0.34), np.array([0.0, 0.0, 0.1]))
@@ -91,7 +91,7 @@ def _bush(centres: Array, radii: Array, tints: Tints, rng: np.random.Generator) 
 
 
 def _island(rng: np.random.Generator) -> Levels:
-    """Return a bed with a kerb, as long and wide as a bay of a car park, with low plants."""
+    """Return a bed with a kerb and low plants, of the size of a bay of a car park."""
     kerb = box((5.0, 2.3, 0.2), (0.0, 0.0, 0.05), _KERB, 4.0)
     bed = box((4.7, 2.0, 0.05), (0.0, 0.0, 0.16), _MULCH, 8.0)
     centres = np.array([(x, rng.uniform(-0.4, 0.4), 0.25) for x in (-1.8, -1.2, 1.1, 1.8)])

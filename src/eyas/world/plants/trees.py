@@ -1,4 +1,4 @@
-"""Street trees: big, bushy, wider than high, so that their crowns hide cars; and rows of them."""
+"""Street trees, wide and bushy so that their crowns hide cars; and rows of them."""
 
 import numpy as np
 import shapely
@@ -13,13 +13,13 @@ from eyas.world.plants.foliage import Crown, leaf_cards, shell
 __all__ = ["VARIANTS", "place_along", "street_tree_levels"]
 
 VARIANTS = 4
-"""How many kinds of shape there are; variant k and k + 4 differ only by chance."""
+"""Number of shapes; variants k and k + 4 differ only by chance."""
 
 Array = NDArray[np.float64]
 Tints = tuple[tuple[float, float, float], ...]
 
-# Factors on the leaf texture from the dark underside to the sunlit top; the original's trees are
-# dark olive green.
+# Factors on the leaf texture from the dark underside to the sunlit top; the original's trees
+# are dark olive green.
 _GREENS: tuple[Tints, ...] = (
     ((0.42, 0.46, 0.36), (0.58, 0.62, 0.48), (0.76, 0.8, 0.6), (0.95, 0.98, 0.74)),
     ((0.42, 0.48, 0.40), (0.56, 0.64, 0.52), (0.72, 0.82, 0.64), (0.86, 0.98, 0.76)),
@@ -28,7 +28,7 @@ _GREENS: tuple[Tints, ...] = (
 )
 _CORE = (0.48, 0.51, 0.38)
 _FAR = 0.92
-"""A skin of leaves has no clefts: darker by this, it is as bright as the cards it stands for."""
+"""Factor that makes a closed surface of leaves as dark as the cards with clefts it replaces."""
 # Crown width as a share of the height: the original's are 15.5 to 31 m wide, 14.8 to 27 m tall.
 _WIDTHS = (1.1, 1.02, 1.16, 1.06)
 _PALE_BARK = (1.0, 0.98, 0.95)
@@ -41,8 +41,8 @@ def street_tree_levels(rng: np.random.Generator, variant: int) -> tuple[Mesh, ..
     Multiply by 15 to 27 for metres.
 
     Args:
-        rng: Of the trees.
-        variant: Which shape and green.
+        rng: Random numbers of the trees.
+        variant: Index of the shape and the green.
     """
     kind = variant % VARIANTS
     crown = _crown(_WIDTHS[kind] / 2, rng)
@@ -71,7 +71,7 @@ def street_tree_levels(rng: np.random.Generator, variant: int) -> tuple[Mesh, ..
 
 
 def _crown(half_width: float, rng: np.random.Generator) -> Crown:
-    """Return balls around a flat ring and above it, between a quarter and all of the height."""
+    """Return balls in a flat ring and above it, from a quarter of the height to the top."""
     ring = 8
     turn = rng.uniform(0, 2 * np.pi)
     angle = turn + (np.arange(ring) + rng.uniform(-0.25, 0.25, ring)) * (2 * np.pi / ring)
@@ -94,7 +94,7 @@ def _crown(half_width: float, rng: np.random.Generator) -> Crown:
 
 
 def _wood(crown: Crown, rng: np.random.Generator, *, limbs: int, sides: int) -> Mesh:
-    """Return the trunk and the limbs that lead to the lower balls of a crown."""
+    """Return the trunk, and limbs that lead to the lower balls of a crown."""
     bark = material("bark", _PALE_BARK)
     lean = rng.uniform(-0.02, 0.02, 2)
     trunk = np.array(
@@ -119,13 +119,13 @@ def place_along(
     rng: np.random.Generator,
     keep_free: shapely.Geometry,
 ) -> Array:
-    """Return where the trees of a row stand, shape (K, 2).
+    """Return the positions of the trees of a row, shape (K, 2) [m].
 
     Args:
-        line: Along which they stand [m].
-        spacing: Least and largest distance from one to the next [m].
-        rng: Of the trees.
-        keep_free: Where no trunk may stand; such trees are left out.
+        line: Line of the row [m].
+        spacing: Least and largest distance from one tree to the next [m].
+        rng: Random numbers of the trees.
+        keep_free: Area without trunks; trees there are left out.
     """
     gaps = rng.uniform(*spacing, int(line.length / spacing[0]) + 2)
     along = np.cumsum(gaps) - gaps[0] * rng.uniform(0.3, 0.9)

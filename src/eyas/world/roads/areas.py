@@ -1,4 +1,4 @@
-"""From a road network to plan shapes: asphalt, streets with their lines, blocks between them."""
+"""Plan shapes of a road network: asphalt, streets with their lines, blocks between them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -31,10 +31,10 @@ __all__ = [
 ]
 
 GRID = 32.0
-"""Side of the squares that large surfaces are cut along, so that unseen ones can be skipped [m]."""
+"""Side of the squares into which large surfaces are cut, so that unseen ones are skipped [m]."""
 
 _AT_CORNER = 5.0
-"""From the middle of what a round corner adds, to houses [m]."""
+"""From the centre of the asphalt that a round corner adds, to buildings [m]."""
 
 Line = NDArray[np.float64]
 
@@ -92,13 +92,13 @@ def joints(network: RoadNetwork) -> dict[str, int]:
 
 
 def road_area(network: RoadNetwork) -> shapely.MultiPolygon:
-    """Return what is paved for cars: all lanes and junctions, with room to turn at corners."""
+    """Return the asphalt for cars: all lanes and junctions, with room to turn at corners."""
     rounded = rounded_kerbs(corridors(network), _bends(network))
     return shapely.MultiPolygon(polygons_of(snapped(shapely.simplify(rounded, 0.035))))
 
 
 def corridors(network: RoadNetwork) -> shapely.MultiPolygon:
-    """Return all lanes and junctions, with sharp corners: what lots are laid out around."""
+    """Return all lanes and junctions with sharp corners; lots are laid out around them."""
     shapes: list[shapely.Geometry] = [
         shapely.buffer(
             shapely.LineString(_lane(network, lane)),
@@ -112,20 +112,20 @@ def corridors(network: RoadNetwork) -> shapely.MultiPolygon:
     for low, high in pairwise(first):
         if high - low >= 3:
             shapes.append(shapely.make_valid(shapely.Polygon(network.junction_points[low:high])))
-    # Millimetre gaps between lanes and junctions close; corners stay where they are.
+    # Closes gaps of millimetres between lanes and junctions; corners stay where they are.
     closed = shapely.buffer(shapely.union_all(shapes), 0.05, join_style="mitre")
     opened = shapely.buffer(closed, -0.05, join_style="mitre")
     return shapely.MultiPolygon(polygons_of(snapped(shapely.simplify(opened, 0.01))))
 
 
 def corners(roads: shapely.Geometry, sharp: shapely.Geometry) -> list[shapely.Polygon]:
-    """Return the surroundings of the round corners of asphalt, which lots do not know of.
+    """Return the surroundings of the asphalt's round corners, which lots do not take into account.
 
     Args:
         roads: From `road_area` [m].
         sharp: From `corridors` [m].
     """
-    # Both are rounded to millimetres: without slivers between, which would join two corners.
+    # Both are rounded to millimetres, so that no slivers between them join two corners.
     added = polygons_of(shapely.difference(roads, shapely.buffer(sharp, 0.02, join_style="mitre")))
     return [shapely.buffer(part.centroid, _AT_CORNER) for part in added if part.area > 2.0]
 
@@ -140,7 +140,7 @@ def blocks(
         extent: The whole floor [m].
 
     Returns:
-        Blocks with roads all round, and what lies outside of the outer roads.
+        Blocks with roads all round, and the ground outside the outer roads.
     """
     left_over = polygons_of(shapely.difference(extent, roads))
     closed = [part for part in left_over if not part.exterior.intersects(extent.exterior)]
@@ -152,7 +152,7 @@ def split_on_grid(shape: shapely.Geometry, cell: float = GRID) -> list[shapely.P
 
     Args:
         shape: Polygons [m].
-        cell: Distance of the lines [m].
+        cell: Distance between the lines [m].
     """
     west, south, east, north = shape.bounds
     shapely.prepare(shape)
@@ -175,9 +175,9 @@ def surface(
     Args:
         shape: Polygons [m].
         z: Height [m].
-        material: Of all of it.
-        tile: Metres one repeat of the texture covers.
-        turn: Of the texture, counter-clockwise [rad].
+        material: Material of the whole surface.
+        tile: Size of one repeat of the texture [m].
+        turn: Angle of the texture, counter-clockwise [rad].
     """
     parts = split_on_grid(shape)
     return concatenate([flat_polygon(part, z, material, tile, turn) for part in parts])
@@ -205,7 +205,7 @@ def polygons_of(shape: shapely.Geometry | Sequence[shapely.Geometry]) -> list[sh
 
 
 def _bends(network: RoadNetwork) -> list[tuple[Line, float]]:
-    """Return middle and angle of turn [rad] of each place where two roads meet."""
+    """Return the middle [m] and the angle [rad] of each bend, where two roads meet."""
     arriving: dict[str, list[Line]] = {}
     for lane in np.flatnonzero(network.lane_index == 0):
         end = network.edge_end[network.lane_edge[lane]]

@@ -1,4 +1,4 @@
-"""Where streets turn: arcs instead of corners, for kerbs, lines and the elevated road alike."""
+"""Arcs where streets turn, for kerbs, lines and the elevated road alike."""
 
 import numpy as np
 import shapely
@@ -9,7 +9,7 @@ from eyas.world.build.millimetres import dot, rounded, snapped, unit
 __all__ = ["TURN", "arc", "joined", "rounded_kerbs", "turn_reach"]
 
 TURN = 7.5
-"""Smallest radius of a kerb, which lets cars turn on asphalt, and reach of a slighter bend [m]."""
+"""Smallest radius of a kerb, so that cars turn on asphalt; also the reach of slight bends [m]."""
 
 Points = NDArray[np.float64]
 
@@ -20,10 +20,10 @@ def arc(before: Points, corner: Points, after: Points, radius: float) -> Points:
     Its points are at whole millimetres.
 
     Args:
-        before: Any point on the way to the corner.
+        before: Any point on the straight piece before the corner.
         corner: Where the straight pieces would meet.
-        after: Any point on the way from the corner.
-        radius: Of the arc [m].
+        after: Any point on the straight piece after the corner.
+        radius: Radius of the arc [m].
     """
     back, onwards = unit(before - corner), unit(after - corner)
     half = 0.5 * np.arccos(np.clip(dot(back, onwards), -1.0, 1.0))
@@ -37,23 +37,23 @@ def arc(before: Points, corner: Points, after: Points, radius: float) -> Points:
 
 
 def turn_reach(angle: float) -> float:
-    """Return from where before a bend by an angle [rad] the inner kerb is an arc [m]."""
+    """Return how far before a bend by an angle [rad] the arc of the inner kerb begins [m]."""
     return TURN * max(1.0, float(np.tan(angle / 2)))
 
 
 def joined(before: Points, after: Points) -> Points:
-    """Return two lines that follow each other through a bend as one, with an arc between.
+    """Return two lines that meet in a bend as one line with an arc between them.
 
     Args:
-        before: Up to the bend, shape (K, 2) [m].
-        after: From the bend on, shape (K, 2) [m].
+        before: Line up to the bend, shape (K, 2) [m].
+        after: Line after the bend, shape (K, 2) [m].
     """
     onwards, further = unit(before[-1] - before[-2]), unit(after[1] - after[0])
     sine = _cross(onwards, further)
     if abs(sine) < 1e-3:
         return np.concatenate([before, after])
     gap = after[0] - before[-1]
-    # From the ends of both lines to the point where they would meet, below zero if they cross.
+    # From the ends of both lines to the point where they would meet; negative if they cross.
     left, right = _cross(gap, further) / sine, _cross(onwards, gap) / sine
     corner = before[-1] + left * onwards
     angle = float(np.arctan2(abs(sine), dot(onwards, further)))
@@ -67,7 +67,7 @@ def rounded_kerbs(area: shapely.Geometry, bends: list[tuple[Points, float]]) -> 
 
     Args:
         area: Asphalt with sharp corners [m].
-        bends: Middle [m] and angle [rad] of each place where two roads meet.
+        bends: Middle [m] and angle [rad] of each bend, where two roads meet.
     """
     parts = [area, _closed(area, TURN)]
     for place, angle in bends:
@@ -79,7 +79,7 @@ def rounded_kerbs(area: shapely.Geometry, bends: list[tuple[Points, float]]) -> 
 
 
 def _closed(area: shapely.Geometry, radius: float) -> shapely.Geometry:
-    # Eight chords in a right angle leave 4 cm to the arc; a wider arc needs more.
+    # Eight chords in a right angle deviate 4 cm from the arc; a larger radius needs more.
     steps = int(max(8, radius))
     grown = shapely.buffer(area, radius, quad_segs=steps)
     return snapped(shapely.buffer(grown, -radius, quad_segs=steps))

@@ -1,4 +1,4 @@
-"""Paint on roads, a little above the asphalt: lane and stop lines, zebra crossings, arrows."""
+"""Paint on roads, slightly above the asphalt: lane and stop lines, zebra crossings, arrows."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -30,14 +30,14 @@ __all__ = [
 ]
 
 PAINT_HEIGHT = 0.012
-"""z of the paint: too little to see, enough to tell it from the asphalt at any distance [m]."""
+"""z of the paint: invisible, but enough to separate it from the asphalt at any distance [m]."""
 
 WHITE = material("paint", (0.99, 0.99, 0.98))
 YELLOW = material("paint", (1.0, 0.79, 0.18))
 
 _DASH, _GAP = 3.0, 6.0
 _LINE = 0.18
-"""Width of a lane line: nearly a pixel of the small pictures a policy sees from 22 m [m]."""
+"""Width of a lane line: nearly a pixel of a policy's small image, from 22 m away [m]."""
 _CENTRE_LINE = 0.2
 _EDGE_LINE = 0.2
 _EDGE = 0.3
@@ -45,16 +45,16 @@ _EDGE = 0.3
 _STOP_LINE = 0.4
 """Width of a stop line [m]."""
 _ZEBRA_START, _ZEBRA_LENGTH = 0.7, 5.6
-"""From the stop line to a crossing, and its size along the road, as in the original [m]."""
+"""From the stop line to a crossing, and its extent along the road, as in the original [m]."""
 _BAR = 0.55
-"""Width of a bar of a zebra crossing, and nearly that of the gap to the next [m]."""
+"""Width of a bar of a zebra crossing, nearly that of the gap to the next bar [m]."""
 
 Line = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
 class RoadPaint:
-    """What is painted on roads, in plan view."""
+    """Paint on roads, in plan view."""
 
     white: list[shapely.Polygon]
     """Lines and arrows."""
@@ -95,8 +95,8 @@ def stripes(
     """Return a painted line.
 
     Args:
-        line: Its middle, shape (K, 2) [m].
-        width: [m]
+        line: Centre line, shape (K, 2) [m].
+        width: Width [m].
         dashes: Length of a dash and of the gap between two; None: a solid line.
     """
     path = shapely.LineString(line)
@@ -112,7 +112,7 @@ def stripes(
 
 def painted(shapes: Sequence[shapely.Polygon], paint: Material) -> Mesh:
     """Return painted shapes on a road at z = 0."""
-    # Long lines are cut, so that a piece of them belongs to one square of the map only.
+    # Long lines are cut, so that each piece belongs to one square of the map only.
     pieces = [
         part
         for shape in shapes
@@ -124,7 +124,7 @@ def painted(shapes: Sequence[shapely.Polygon], paint: Material) -> Mesh:
 
 
 def _chains(all_streets: list[Street], meeting: dict[str, int]) -> list[list[tuple[Line, ...]]]:
-    """Return the lines of streets that follow each other through bends, from joint to joint."""
+    """Return the lines of streets that are joined by bends, from junction to junction."""
     leaving: dict[str, list[Street]] = {}
     for street in all_streets:
         leaving.setdefault(street.start, []).append(street)
@@ -141,12 +141,12 @@ def _chains(all_streets: list[Street], meeting: dict[str, int]) -> list[list[tup
 
 
 def _comes_first(line: Line) -> bool:
-    """Tell the one direction of a road that draws the line in the middle from the other."""
+    """Return whether this direction of a road is the one that draws the line in the middle."""
     return tuple(line[0]) < tuple(line[-1])
 
 
 def _frame(street: Street) -> tuple[Line, Line, Line, float]:
-    """Return right end of the stop line, directions onwards and to the left, and the width."""
+    """Return the right end of the stop line, the directions onwards and left, and the width."""
     onwards = unit(street.right[-1] - street.right[-2])
     leftwards = np.array([-onwards[1], onwards[0]])
     width = dot(street.left[-1] - street.right[-1], leftwards)
@@ -154,7 +154,7 @@ def _frame(street: Street) -> tuple[Line, Line, Line, float]:
 
 
 def _placed(street: Street, outline: ArrayLike) -> shapely.Polygon:
-    """Return a shape given from the stop line's right end onwards and to the left [m]."""
+    """Return a shape given onwards and leftwards from the stop line's right end [m]."""
     origin, onwards, leftwards, _ = _frame(street)
     return shapely.Polygon(rounded(np.asarray(outline) @ np.stack([onwards, leftwards]) + origin))
 
@@ -183,15 +183,15 @@ _HEAD = [(-3.4, -0.08), (-2.2, -0.08), (-2.2, -0.3), (-1.0, 0.0), (-2.2, 0.3), (
 _HOOK = [(-4.2, 0.0), (-3.4, 0.0), (-2.9, 0.55), (-2.65, 0.4), (-2.6, 1.05), (-3.2, 0.95),
          (-3.05, 0.72), (-3.5, 0.16), (-4.2, 0.16)]  # fmt: skip
 _ARROW_BACK = 4.0
-"""From the stop line to the tip of an arrow, 1 m before it [m]."""
+"""From the stop line back to the origin of an arrow, 1 m ahead of its tip [m]."""
 
 
 def _arrows(street: Street, leaving: Sequence[Street]) -> list[shapely.Polygon]:
     """Return arrows before the stop line: right from the rightmost lane, left from the leftmost.
 
     Args:
-        street: What leads to the stop line.
-        leaving: The streets that begin behind it; arrows point to no others.
+        street: Street that leads to the stop line.
+        leaving: Streets that begin beyond it; arrows point only to these.
     """
     _, onwards, leftwards, width = _frame(street)
     turns = [

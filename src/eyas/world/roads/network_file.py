@@ -1,4 +1,4 @@
-"""Road networks as files: small, with the same bytes each time."""
+"""Files of road networks: small, and identical whenever the same network is written."""
 
 import io
 import zipfile
@@ -15,14 +15,14 @@ from eyas.state.roads import RoadNetwork
 __all__ = ["load_network", "save_network"]
 
 _EPOCH = (1980, 1, 1, 0, 0, 0)
-"""Time of every member: zip files hold one, and it must not differ from run to run."""
+"""Timestamp of every member of the zip file, so that it does not differ from run to run."""
 
 
 def save_network(path: Path, network: RoadNetwork) -> None:
     """Write a network as npz with fixed timestamps.
 
     Raises:
-        OutputError: The file system refused.
+        OutputError: The file cannot be written.
     """
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
@@ -41,7 +41,7 @@ def load_network(path: Path) -> RoadNetwork:
     """Read a network.
 
     Raises:
-        DataFileError: The file is missing, cut off or something else.
+        DataFileError: The file is missing, truncated or of another kind.
     """
     try:
         with np.load(path) as archive:

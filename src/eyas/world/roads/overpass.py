@@ -24,25 +24,25 @@ __all__ = [
 ]
 
 DECK_WIDTH = 14.0
-"""Between the walls [m]."""
+"""Distance between the walls [m]."""
 
 DECK_DEPTH = 1.5
 """From the surface down to the underside [m]."""
 
 SOLID_BELOW = 7.0
-"""Height up to which a ramp has solid sides and no columns [m]."""
+"""Height up to which a ramp has solid sides instead of columns [m]."""
 
 _STATION = 4.5
-"""Distance of two cross-sections, the length of a dash and of a gap [m]."""
+"""Distance between two cross-sections, and length of a dash and of a gap [m]."""
 _PRISM = 4
-"""Stations in a solid of the deck."""
+"""Number of stations in each solid of the deck."""
 _WALL = 0.3
 _SKIRT = 0.4
 """From the surface down to the top of the solid sides [m]."""
 
 _HALF = DECK_WIDTH / 2
 _OUT = _HALF + _WALL
-# Right of the middle and above the surface [m], from the left edge of the surface round the walls.
+# To the right of the centre and above the surface [m], from the left edge round the walls.
 _SECTION = (
     *((-_HALF, 0.0), (_HALF, 0.0), (_HALF, 2.0), (_OUT, 2.0), (_OUT, -0.5)),
     *((4.5, -DECK_DEPTH), (-4.5, -DECK_DEPTH)),
@@ -59,12 +59,12 @@ Points = NDArray[np.float64]
 def path(
     corners: ArrayLike, radii: Sequence[float], profile: Sequence[tuple[float, float]]
 ) -> Points:
-    """Return the middle of a road of straight pieces and arcs, shape (K, 3).
+    """Return the centre line of a road of straight pieces and arcs, shape (K, 3).
 
     Args:
         corners: Where the straight pieces would meet [m], shape (C, 2).
-        radii: Of the arc at each corner but the first and last [m].
-        profile: Share of the whole length and z there [m]; between, z eases from one to the next.
+        radii: Radius of the arc at each corner except the first and last [m].
+        profile: Share of the whole length and z there [m], with smooth transitions between.
     """
     points = rounded(corners)
     pieces = [points[:1]]
@@ -83,7 +83,7 @@ def path(
 
 
 def deck_area(middle: Points) -> shapely.Polygon:
-    """Return what the deck covers, in plan view."""
+    """Return the area below the deck, in plan view."""
     return shapely.buffer(shapely.LineString(middle[:, :2]), _OUT, cap_style="flat")
 
 
@@ -91,7 +91,7 @@ def deck_mesh(middle: Points, floor: float) -> Mesh:
     """Return the deck with its walls and lines; low parts stand on solid sides.
 
     Args:
-        middle: From `path`.
+        middle: Centre line from `path`.
         floor: z of the ground [m].
     """
     pieces = [
@@ -100,7 +100,7 @@ def deck_mesh(middle: Points, floor: float) -> Mesh:
         *(_line(middle, offset, 0.15) for offset in (-_HALF + 0.4, 0.0, _HALF - 0.4)),
         *(_line(middle, offset, 0.15, dashed=True) for offset in (-_HALF / 2, _HALF / 2)),
     ]
-    # Where a ramp begins, the walls reach into the floor by themselves.
+    # Where a ramp begins, the walls themselves reach into the floor.
     height = middle[:, 2] - floor
     low = np.flatnonzero((height > _SKIRT) & (height < SOLID_BELOW))
     if len(low) > 1:
@@ -135,7 +135,7 @@ def _across(middle: Points) -> Points:
 def _swept(
     middle: Points, section: Sequence[tuple[float, float]], stuff: Material, tile: float
 ) -> Mesh:
-    """Return the surface that a cross-section (right, up) makes along the path."""
+    """Return the surface that a cross-section (right, up) sweeps along the path."""
     outline = np.array(section)
     across = _across(middle)
     rows = np.empty((len(middle), len(outline), 3))

@@ -16,10 +16,10 @@ from eyas.world.roads.overpass import DECK_DEPTH, SOLID_BELOW
 __all__ = ["BASE_HEIGHT", "COLUMN_RADIUS", "Pillar", "pillar_mesh", "pillars"]
 
 COLUMN_RADIUS = 0.8
-"""At the top [m]."""
+"""Radius of a column at the top [m]."""
 
 BASE_HEIGHT = 1.4
-"""Of the stone below a pair of columns [m]."""
+"""Height of the stone base below a pair of columns [m]."""
 
 _COLUMN_GAP = 5.0
 _BASE = (9.0, 3.6, BASE_HEIGHT)
@@ -50,7 +50,7 @@ class Pillar:
 
     @property
     def columns(self) -> Points:
-        """Middle of both columns [m], shape (2, 2)."""
+        """Centres of both columns [m], shape (2, 2)."""
         return self.place + np.outer([-0.5, 0.5], _COLUMN_GAP * self.across)
 
 
@@ -58,10 +58,10 @@ def pillars(middle: Points, count: int, floor: float, roads: shapely.Geometry) -
     """Return pillars below the high part of the deck, evenly spaced where no road is in the way.
 
     Args:
-        middle: From `path`.
-        count: How many; those that find no place beside a road are left out.
+        middle: Centre line from `path`.
+        count: Number of pillars; those without room beside a road are left out.
         floor: z of the ground [m].
-        roads: Where none may stand.
+        roads: Area where none may stand.
     """
     high = np.flatnonzero(middle[:, 2] > floor + SOLID_BELOW + 1.0)
     if len(high) == 0:

@@ -1,4 +1,4 @@
-"""What age leaves on roads: tyre tracks, repaired patches, sealed cracks, oil, lids of manholes.
+"""Traces of age on roads: tyre tracks, repaired patches, sealed cracks, oil, manhole lids.
 
 All of it lies in thin layers above the asphalt and below the paint.
 """
@@ -28,16 +28,16 @@ _LANES = (
     material("asphalt_lane", (0.95, 0.95, 0.96)),
     material("asphalt_lane", (1.0, 0.98, 0.96)),
 )
-"""Lanes were not all paved in one year."""
+"""Asphalt of the lanes, which were not all paved in the same year."""
 _LANE_HALF = 1.6
 """Half the width of the strip in which tyres run [m]."""
 
 _PATCH = material("asphalt_patch")
 _PATCH_EVERY = 46.0
-"""Mean distance of two patches along a lane [m]."""
+"""Mean distance between two patches along a lane [m]."""
 _PATCH_LENGTH, _PATCH_WIDTH = (1.5, 6.5), (0.9, 2.6)
 _WAITING = (0.5, 13.0)
-"""Where cars wait, from the end of a lane back [m]."""
+"""Range in which cars wait, backwards from the end of a lane [m]."""
 _OIL = material("asphalt_oil")
 _OIL_HALF = 0.8
 
@@ -48,7 +48,7 @@ _LID_HALF = 0.48
 
 _SEAL = material("asphalt_patch", (0.62, 0.62, 0.64))
 _SEAL_EVERY = 120.0
-"""Mean distance of two sealed cracks along a lane [m]."""
+"""Mean distance between two sealed cracks along a lane [m]."""
 _SEAL_HALF = 0.045
 _SEAL_STEPS = 6
 
@@ -60,7 +60,7 @@ def road_wear(network: RoadNetwork, rng: np.random.Generator) -> Mesh:
 
     Args:
         network: The roads.
-        rng: Of the map; says where patches, seals and lids are.
+        rng: Random numbers of the map, for the positions of patches, seals and lids.
     """
     tracks, seals, patches, lids, oil = [], [], [], [], []
     for low, high in pairwise(network.lane_first):
@@ -89,7 +89,7 @@ def road_wear(network: RoadNetwork, rng: np.random.Generator) -> Mesh:
 
 
 def _places(length: float, every: float, rng: np.random.Generator) -> Line:
-    """Return places along a lane, not near its ends [m]."""
+    """Return positions along a lane, away from its ends [m]."""
     count = rng.poisson(length / every)
     return np.sort(rng.uniform(5.0, max(length - 22.0, 5.0), count))
 
@@ -105,12 +105,12 @@ def _beside(lane: shapely.LineString, start: float, end: float, right: float, le
 
 
 def _tracks(lane: shapely.LineString, start: float, paved: Material) -> Mesh:
-    """Return the strip of a lane in which tyres run, its texture across it once.
+    """Return the strip of a lane in which tyres run; it is one texture wide.
 
     Args:
         lane: Middle of the lane [m].
-        start: Where in the texture it begins [tiles].
-        paved: What it is made of.
+        start: Start of the strip in the texture [repeats].
+        paved: Material of the lane.
     """
     middle = shapely.get_coordinates(shapely.segmentize(lane, GRID))
     along = np.gradient(middle, axis=0)
@@ -126,7 +126,7 @@ def _tracks(lane: shapely.LineString, start: float, paved: Material) -> Mesh:
 
 
 def _seal(lane: shapely.LineString, at: float, rng: np.random.Generator) -> Mesh:
-    """Return a crack that was sealed with tar: a thin line that wanders across or along a lane."""
+    """Return a crack sealed with tar: a thin, wandering line across or along a lane."""
     here, there = (shapely.get_coordinates(lane.interpolate(s))[0] for s in (at, at + 0.5))
     onwards = unit(there - here)
     leftwards = np.array([-onwards[1], onwards[0]])

@@ -18,9 +18,9 @@ _MODULE = 17.0
 _BAY_LENGTH, _BAY_WIDTH = 5.2, 2.6
 _DRIVEWAY = 6.5
 _LAWN = 2.5
-"""Between the pavement and the car park [m]."""
+"""Width of the lawn between the pavement and the car park [m]."""
 _SPOTS = ((0.12, 0), (0.88, 0), (0.5, 0), (0.12, 1), (0.88, 1), (0.5, 1))
-"""Share of the free length along the block at which to try, and which of its long sides."""
+"""Positions to try: share of the free length along the block, and which of its long sides."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,11 +28,11 @@ class CarPark:
     """A car park in plan view."""
 
     area: shapely.Polygon
-    """Where cars stand, and the driveway, which ends a little beyond the kerb [m]."""
+    """Asphalt for the cars and the driveway, which ends slightly beyond the kerb [m]."""
     lines: list[shapely.Polygon]
     """Paint between the bays [m]."""
     bays: NDArray[np.float64]
-    """Middle of each bay [m] and which way a car in it may look [rad], shape (K, 3)."""
+    """Centre of each bay [m] and heading of a car in it [rad], shape (K, 3)."""
 
 
 def place_car_parks(
@@ -45,9 +45,9 @@ def place_car_parks(
 
     Args:
         blocks: Ground between kerbs [m].
-        sizes: Length along the street and depth of each; what fits nowhere is left out [m].
-        rng: Of the car parks.
-        keep_free: Where none may be.
+        sizes: Length along the street and depth of each; those that fit nowhere are left out [m].
+        rng: Random numbers of the car parks.
+        keep_free: Area where none may be.
     """
     order = [blocks[int(index)] for index in rng.permutation(len(blocks))]
     made = []
@@ -71,13 +71,13 @@ def place_rectangle(
 
     Args:
         block: Ground between kerbs [m].
-        size: Along the side and away from it [m].
-        rng: Decides which side and where.
-        keep_free: Where it may not be.
+        size: Lengths along the side and away from it [m].
+        rng: Random numbers for the choice of the position.
+        keep_free: Area that it may not touch.
 
     Returns:
         The rectangle, the direction of the block's frame [rad], and the side: 0 south, 1 north;
-        None where nothing fits.
+        None if nothing fits.
     """
     angle = frame_angle(block)
     margin = PAVEMENT_WIDTH + _LAWN
@@ -87,7 +87,7 @@ def place_rectangle(
     for index in rng.permutation(len(_SPOTS)):
         share, side = _SPOTS[int(index)]
         x = west + share * (east - west - size[0])
-        # A block's side may bend: come in from it until all of the rectangle is inside.
+        # A block's side may bend: move inwards until the whole rectangle is inside.
         for inset in (0.1, 1.0, 2.0, 4.0, 6.0, 9.0):
             y = south + inset if side == 0 else north - inset - size[1]
             rectangle = shapely.box(x, y, x + size[0], y + size[1])
@@ -110,7 +110,7 @@ def _placed(
     middle = (west + east) / 2
     street = (south - 25.0, south + 0.5) if side == 0 else (north - 0.5, north + 25.0)
     drive = shapely.box(middle - _DRIVEWAY / 2, street[0], middle + _DRIVEWAY / 2, street[1])
-    # A little beyond the kerb: rounding leaves no gap to the road, whose edge counts.
+    # Slightly beyond the kerb, so that rounding leaves no gap to the road.
     way = shapely.intersection(
         drive, shapely.buffer(turned(block, -angle), 0.05, join_style="mitre")
     )

@@ -1,4 +1,4 @@
-"""Where street furniture stands: on the pavements beside kerbs, never on a road."""
+"""Positions of street furniture: on the pavements beside kerbs, never on a road."""
 
 from dataclasses import dataclass
 
@@ -21,14 +21,14 @@ _CLEAR = 0.5
 
 @dataclass(frozen=True, slots=True)
 class _Rule:
-    """How one kind is spread along a kerb."""
+    """Spacing of one kind of furniture along a kerb."""
 
     beyond_kerb: float
-    """From the kerb to its middle [m]."""
+    """From the kerb to its centre [m]."""
     every: float
     """Mean distance to the next [m]."""
     room: float
-    """Radius of what it takes up [m]."""
+    """Radius of the space that it needs [m]."""
     from_end: float
     """Least distance to the end of the street [m]."""
 
@@ -41,7 +41,7 @@ _RULES = {
     "bin": _Rule(0.65, 55.0, 0.4, 6.0),
     "hydrant": _Rule(0.6, 85.0, 0.4, 6.0),
 }
-"""The largest first: they find room more easily."""
+"""The kinds of furniture, the largest first, because small ones find room more easily."""
 
 
 def add_furniture(
@@ -55,12 +55,12 @@ def add_furniture(
     """Furnish the pavements beside kerbs.
 
     Args:
-        builder: Takes the things.
+        builder: The builder to add to.
         network: The roads.
         pavement: Where furniture may stand [m].
-        keep_free: Where something else stands, or where people walk and cars drive [m].
+        keep_free: Area where something else stands, people walk or cars drive [m].
         height: z of the pavement [m].
-        rng: Of the furniture.
+        rng: Random numbers of the furniture.
     """
     kinds = {kind: builder.prototype(kind, make) for kind, make in FURNITURE.items()}
     room = shapely.difference(pavement, shapely.buffer(keep_free, _CLEAR))
@@ -79,7 +79,7 @@ def add_furniture(
 def _places(
     network: RoadNetwork, rule: _Rule, rng: np.random.Generator
 ) -> list[tuple[NDArray[np.float64], float]]:
-    """Return places beside all kerbs [m] and turns that make y face the road [rad]."""
+    """Return positions beside all kerbs [m], and angles that make y face the road [rad]."""
     made = []
     for street in streets(network):
         kerb = shapely.LineString(street.right)

@@ -1,6 +1,6 @@
 """Street furniture as fixtures: benches, bins, hydrants, bus shelters, post boxes, tree tubs.
 
-Origins are on the ground; the side that faces the road looks along y. In metres.
+Origins are on the ground; the side towards the road faces along y. Lengths are in metres.
 """
 
 from collections.abc import Callable
@@ -33,7 +33,7 @@ def _part(
 
 
 def _bench() -> Mesh:
-    """Return a seat and a back of slats on two iron feet; whoever sits looks along y."""
+    """Return a seat and a back of slats on two iron feet; a person on it looks along y."""
     seat = [_part((1.8, 0.11, 0.04), (0, y, 0.45), _WOOD) for y in (-0.13, 0.01, 0.15)]
     back = [_part((1.8, 0.04, 0.1), (0, -0.24, z), _WOOD) for z in (0.62, 0.78)]
     feet = [_part((0.06, 0.45, 0.43), (x, 0, 0.21), _IRON) for x in (-0.75, 0.75)]
@@ -103,4 +103,4 @@ FURNITURE: dict[str, Callable[[], Levels]] = {
     "post_box": lambda: (_post_box(), _part((0.5, 0.45, 1.3), (0, 0, 0.65), _BLUE)),
     "tub": lambda: (_tub(10, 1), _tub(5, 0)),
 }
-"""How each kind is made."""
+"""Maker of each kind."""

@@ -17,29 +17,29 @@ from eyas.world.roads.areas import streets
 __all__ = ["BEYOND_KERB", "LIGHT", "POLE_HEIGHT", "POLE_RADIUS", "add_lamps", "lamp_levels"]
 
 POLE_HEIGHT = 7.35
-"""The original's [m]."""
+"""Height of the poles, as in the original [m]."""
 
 POLE_RADIUS = 0.12
-"""At the foot [m]."""
+"""Radius at the foot [m]."""
 
 BEYOND_KERB = 2.0
-"""From the kerb to the poles, the median of the original's [m]."""
+"""From the kerb to the poles; the median of the original [m]."""
 
 LIGHT = (3.1, 0.0, 7.2)
-"""Place of the light before the pole, which is also the original's [m]."""
+"""Position of the light relative to the foot of its pole, as in the original [m]."""
 
 _AXIS = (0.4, 0.0, -1.0)
-"""Middle of the beam in the same frame, not of length 1; the original's in cities at night."""
+"""Axis of the beam in the same frame, not of length 1; as in the original's cities at night."""
 
 _APART = (53.0, 44.0, 35.0)
-"""Least distance from one lamp to the next [m]; the original's median is 58.
+"""Least distances from one lamp to the next [m]; the original's median is 58.
 
-The smaller ones are for cities in which that leaves too few places.
+The smaller ones are for cities in which the first leaves room for too few lamps.
 """
 _STEP = 3.0
-"""Distance of the places that are tried along a kerb [m]."""
+"""Distance between the candidate positions along a kerb [m]."""
 _FROM_CROSSING = 7.0
-"""From the end of a street [m]."""
+"""Least distance from the end of a street [m]."""
 _CLEAR = 1.2
 """Room around a pole [m]."""
 _STEEL = material("plain", (0.20, 0.21, 0.22))
@@ -56,11 +56,11 @@ def add_lamps(
     """Add street lamps on both sides of the roads; return their lights.
 
     Args:
-        builder: Takes poles and solid shapes.
+        builder: The builder to add to.
         network: The roads.
-        count: How many, if there is room.
-        keep_free: Where no pole may stand.
-        rng: Of the lamps.
+        count: Number of lamps, if there is room.
+        keep_free: Area where no pole may stand.
+        rng: Random numbers of the lamps.
     """
     prototype = builder.prototype("street lamp", lamp_levels)
     position, axis = [], []
@@ -79,7 +79,7 @@ def add_lamps(
 def _places(
     network: RoadNetwork, count: int, keep_free: shapely.Geometry, rng: np.random.Generator
 ) -> list[tuple[NDArray[np.float64], float]]:
-    """Return foot [m] and direction of the arm [rad] of each lamp."""
+    """Return the foot [m] of each lamp and the direction of its arm [rad]."""
     feet, turns = _candidates(network)
     blocked = shapely.buffer(keep_free, _CLEAR)
     shapely.prepare(blocked)
@@ -95,7 +95,7 @@ def _places(
 
 
 def _candidates(network: RoadNetwork) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return places beside kerbs [m], shape (K, 2), and the direction to the road, shape (K,)."""
+    """Return positions beside kerbs [m], shape (K, 2), and directions to the road, shape (K,)."""
     feet, turns = [np.zeros((0, 2))], [np.zeros(0)]
     for street in streets(network):
         kerb = shapely.LineString(street.right)
@@ -120,7 +120,7 @@ def lamp_levels() -> tuple[Mesh, ...]:
 def _lamp(sides: int, bends: int) -> Mesh:
     x, _, z = LIGHT
     pole = np.array([[0, 0, -0.15], [0, 0, 3.5], [0, 0, POLE_HEIGHT - 0.55]])
-    # The arm leaves the pole upwards and ends level: a quarter of an ellipse.
+    # The arm rises from the pole and ends level: a quarter of an ellipse.
     angle = np.linspace(0.0, np.pi / 2, bends)
     top = POLE_HEIGHT - 0.6
     arm = np.stack([(x - 0.3) * (1 - np.cos(angle)), 0 * angle, top + 0.5 * np.sin(angle)], axis=1)

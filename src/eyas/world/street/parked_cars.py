@@ -1,4 +1,4 @@
-"""Cars that stand in car parks for good: simple shapes, part of the scene, not of the traffic."""
+"""Cars that never leave their car parks: simple shapes, part of the scene, not of the traffic."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,7 +25,7 @@ _COLOURS = (
     (0.16, 0.28, 0.22),
 )
 VARIANTS = len(_COLOURS)
-"""How many kinds of cars there are."""
+"""Number of kinds of cars."""
 
 _GLASS = Material(tint=(0.105, 0.11, 0.115), surface=Surface.GLASS)
 _RUBBER = material("plain", (0.09, 0.09, 0.09))
@@ -48,10 +48,10 @@ _ESTATE = (
 def parked_car(variant: int) -> Levels:
     """Return a car, the finest level of detail first.
 
-    It stands on the origin and looks along x; in metres.
+    It stands on the origin and faces along x; lengths are in metres.
 
     Args:
-        variant: Which shape and colour, below `VARIANTS`.
+        variant: Index of the shape and colour, below `VARIANTS`.
     """
     paint = Material(tint=_COLOURS[variant], surface=Surface.PAINT)
     body, cabin = (np.array(part) for part in (_SALOON, _ESTATE)[variant % 2])
@@ -61,7 +61,7 @@ def parked_car(variant: int) -> Levels:
 
 
 def _hull(outline: Points, paint: Material) -> Mesh:
-    """Return the skin over an outline from tail to nose and its two sides down to the sills."""
+    """Return the body over an outline from tail to nose, with its two sides down to the sills."""
     x, half, z = outline.T
     left, right = np.stack([x, half, z], axis=1), np.stack([x, -half, z], axis=1)
     top = np.stack([left[:-1], right[:-1], right[1:], left[1:]], axis=1)

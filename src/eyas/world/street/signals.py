@@ -1,7 +1,7 @@
-"""Traffic lights, dark as the original's: a pole at the kerb with an arm over the lanes.
+"""Traffic lights, dark as in the original: a pole at the kerb with an arm over the lanes.
 
-They are decoration. No lens is lit, by night neither: cars give way at crossings but do not obey
-lights, so a fixed red or green would show cars that run red lights in every film.
+They are decoration. Lenses stay dark, at night too: cars give way at crossings but ignore
+lights, so a fixed red or green would show cars running red lights in every film.
 """
 
 import numpy as np
@@ -22,15 +22,15 @@ from eyas.world.roads.areas import joints, road_area, streets
 __all__ = ["POLE_HEIGHT", "POLE_RADIUS", "add_signals", "signal_levels", "signal_places"]
 
 POLE_HEIGHT = 6.6
-"""Of the top of a pole above the road [m]."""
+"""Height of the top of a pole above the road [m]."""
 
 POLE_RADIUS = 0.13
-"""At the foot [m]."""
+"""Radius at the foot [m]."""
 
 _ARM = 5.6
 _ARM_HEIGHT = 6.1
 _HEADS = (2.6, 5.3)
-"""How far along the arm its heads hang [m]."""
+"""Distances of the heads along the arm [m]."""
 _BEYOND_KERB = 0.9
 _BEFORE_LINE = 0.6
 """From the stop line back to the pole [m]."""
@@ -44,7 +44,7 @@ _LENSES = (
 
 
 def signal_places(network: RoadNetwork) -> list[tuple[NDArray[np.float64], float]]:
-    """Return foot [m] and direction of the arm [rad] of each pole: one at each stop line."""
+    """Return the foot [m] and the direction of the arm [rad] of the pole at each stop line."""
     meeting = joints(network)
     road = road_area(network)
     places = []
@@ -60,7 +60,7 @@ def signal_places(network: RoadNetwork) -> list[tuple[NDArray[np.float64], float
 
 
 def add_signals(builder: SceneBuilder, network: RoadNetwork) -> None:
-    """Add a pole with an arm over the lanes at each arm of each junction."""
+    """Add a pole with an arm over the lanes on each road into each junction."""
     prototype = builder.prototype("traffic light", signal_levels)
     for place, turn in signal_places(network):
         owner = builder.add_copy(ObjectClass.POLE, prototype, (*place, 0.0), turn, 1.0)
@@ -70,7 +70,7 @@ def add_signals(builder: SceneBuilder, network: RoadNetwork) -> None:
 def signal_levels() -> tuple[Mesh, ...]:
     """Return a traffic light, the finest level of detail first.
 
-    The foot is at the origin, the arm along x, the lights face along y.
+    The foot is at the origin, the arm along x; the lights face along y.
     """
     heads = [_head((x, 0.16, _ARM_HEIGHT - 0.35)) for x in _HEADS]
     low = _head((0.0, 0.24, 3.1))

@@ -1,4 +1,4 @@
-"""The street city: mid-rise blocks on lawn, rows of great trees, a road high above the roofs."""
+"""The street city: mid-rise blocks on lawn, rows of large trees, a road high above the roofs."""
 
 from typing import TYPE_CHECKING
 
@@ -29,7 +29,7 @@ def _roads(seed: int) -> "RoadGraph":
 
 
 def _scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
-    """Build the city; in winter it is the same one, and snow lies on it."""
+    """Build the city; in winter it is the same, and the weather's light adds the snow."""
     from eyas.world.maps.citystreet.scene import build_scene
 
     return build_scene(network, seed)

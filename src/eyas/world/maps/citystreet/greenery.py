@@ -1,4 +1,4 @@
-"""What grows between the houses of the street city, and the cars that stand in its car parks."""
+"""Plants between the buildings of the street city, and the cars in its car parks."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -19,12 +19,12 @@ from eyas.world.street.parked_cars import VARIANTS, parked_car
 __all__ = ["Flora", "add_greenery", "add_parked"]
 
 _GARDEN_TREES = ((4.5, 8.5), 11.0, 0.0022)
-"""Heights and least distance [m], and how many are tried on a square metre."""
+"""Heights and least distance [m], and number of attempts on a square metre."""
 _MEADOW_TREES = ((4.0, 11.0), 70.0, 0.0004)
 """The same for the groups of trees beyond the outer streets."""
 _FROM_WALL = 4.5
 _FROM_STREET = 14.0
-"""Of the trees beyond the outer streets [m]."""
+"""Least distance of the trees beyond the outer streets from a street [m]."""
 _OCCUPIED = 0.62
 """Share of the bays with a car."""
 _ISLAND_EVERY = 9
@@ -33,12 +33,12 @@ _ISLAND_EVERY = 9
 
 @dataclass(frozen=True, slots=True)
 class Flora:
-    """What grows in the city."""
+    """Prototypes of the city's plants."""
 
     trees: Sequence[Prototype]
-    """1 m high."""
+    """Trees 1 m high."""
     plants: Mapping[str, Prototype]
-    """By the names of `plant_makers`."""
+    """Other plants, by the names of `plant_makers`."""
 
 
 def add_greenery(
@@ -51,11 +51,11 @@ def add_greenery(
     """Plant borders along walls, hedges around car parks, and small trees.
 
     Args:
-        builder: Takes the plants.
-        plan: Where everything is.
-        taken: Where something stands, or is paved [m].
-        flora: What is planted.
-        rng: Of the gardens.
+        builder: The builder to add to.
+        plan: The plan of the city.
+        taken: Area that is paved or where something stands [m].
+        flora: The plants.
+        rng: Random numbers of the gardens.
     """
     deck = shapely.buffer(overpass.deck_area(plan.deck), 2.0)
     inside = shapely.difference(shapely.union_all(plan.blocks), shapely.union(taken, deck))
@@ -85,10 +85,10 @@ def add_parked(builder: SceneBuilder, plan: Plan, flora: Flora, rng: np.random.G
     """Fill bays of the car parks with islands, small trees and cars.
 
     Args:
-        builder: Takes them.
-        plan: Where everything is.
-        flora: What is planted.
-        rng: Of the car parks.
+        builder: The builder to add to.
+        plan: The plan of the city.
+        flora: The plants.
+        rng: Random numbers of the car parks.
     """
     cars = [builder.prototype(f"parked car {k}", partial(parked_car, k)) for k in range(VARIANTS)]
     island = flora.plants["island"]

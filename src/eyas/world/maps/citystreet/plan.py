@@ -1,4 +1,4 @@
-"""Where everything of the street city is, in plan view."""
+"""Plan of the street city: the position of everything in it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -44,7 +44,7 @@ _TREE_SPACING = (15.0, 21.5)
 _BEYOND_KERB = 4.4
 """From the kerb to the trunks [m]."""
 _TREE_STRIP = 10.0
-"""Beside a row of trees, from the kerb: no building [m]."""
+"""Strip without buildings beside a row of trees, from the kerb [m]."""
 _CAR_PARKS = ((69.0, 34.0), (58.0, 34.0), (45.0, 34.0), (64.0, 17.0), (49.0, 17.0))
 _POOL = (30.0, 18.8)
 
@@ -52,16 +52,16 @@ _HIGH = 53.5
 """z of the elevated road [m]."""
 _PILLARS = 18
 _ASIDE = 17.0
-"""From the middle of a street to that of the elevated road beside it [m]."""
+"""From the middle of a street to the middle of the elevated road beside it [m]."""
 _RAMP = ((0.0, 0.0), (0.02, 0.1), (0.09, 3.5), (0.27, 28.0), (0.42, _HIGH), (1.0, _HIGH))
-"""Share of the elevated road's length, and z [m]."""
+"""Profile of the elevated road: share of its length, and z [m]."""
 
 Points = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
 class Plan:
-    """Where things are, in plan view."""
+    """Positions in plan view."""
 
     roads: shapely.Geometry
     """Asphalt of the streets [m]."""
@@ -74,19 +74,19 @@ class Plan:
     turn: float
     """Direction of the streets [rad]."""
     deck: Points
-    """Middle of the elevated road [m], shape (K, 3)."""
+    """Centre line of the elevated road [m], shape (K, 3)."""
     pillars: list[Pillar]
-    """What carries it."""
+    """Pillars below the elevated road."""
     car_parks: list[CarPark]
-    """With their driveways."""
+    """Car parks with their driveways."""
     pools: list[shapely.Polygon]
     """Water [m]."""
     pavement: shapely.Geometry
-    """Raised, beside the streets [m]."""
+    """Raised pavements beside the streets [m]."""
     trees: Points
     """Trunks of the street trees [m], shape (K, 2)."""
     buildings: list[buildings.Building]
-    """Towers included."""
+    """Buildings, towers included."""
 
     @property
     def lots(self) -> shapely.Geometry:
@@ -102,11 +102,11 @@ class Plan:
 
 
 def make_plan(network: RoadNetwork, seed: int) -> Plan:
-    """Return where everything is.
+    """Return the plan of a city.
 
     Args:
         network: Made of `road_graph(seed)`.
-        seed: Of the map, >= 0.
+        seed: Seed of the map, >= 0.
     """
     roads = road_area(network)
     closed, _ = blocks(sharp := corridors(network), EXTENT)
@@ -124,7 +124,7 @@ def make_plan(network: RoadNetwork, seed: int) -> Plan:
     trunks, strips = _tree_rows(network, stream(seed, "citystreet trees"), taken)
     aprons = [shapely.buffer(lot, 2.5, join_style="mitre") for lot in (*lots, *pools)]
     free = shapely.union_all([deck, *aprons, *strips])
-    # Each corner by itself, so that it takes a corner off a building and moves none.
+    # One by one, so that each cuts a corner off a building instead of moving the building.
     free = shapely.geometrycollections([*polygons_of(free), *corners(roads, sharp)])
     made = buildings.place_buildings(closed, _BUILDINGS, stream(seed, "citystreet buildings"), free)
     inside, outside = blocks(roads, EXTENT)
@@ -152,10 +152,10 @@ def _pavement(
     lots: Sequence[shapely.Polygon],
     deck: Points,
 ) -> shapely.Geometry:
-    """Return the pavements, without what driveways and the foot of the ramp take."""
+    """Return the pavements without the driveways and the foot of the ramp."""
     lanes = shapely.difference(shapely.union_all(lots), roads)
     verge = ground.verge_area(outside, shapely.union(roads, access))
-    # A little more than the ramp: rounding leaves a sliver between it and the access road.
+    # Slightly larger than the ramp: rounding leaves a sliver between it and the access road.
     ramp = shapely.buffer(overpass.deck_area(deck[:9]), 0.01, join_style="mitre")
     verge = shapely.difference(verge, ramp)
     return shapely.union(ground.pavement_area(inside, lanes), verge)

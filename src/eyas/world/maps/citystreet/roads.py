@@ -14,15 +14,15 @@ NAME = "citystreet"
 
 _ROTATION = math.radians(40.0)
 _COLUMNS = (188.0, 126.0, 184.0)
-"""Width of the blocks, along the streets that run to the north-east [m]."""
+"""Width of the blocks, along the streets that run north-east [m]."""
 _ROWS = (126.0, 190.0, 178.0, 108.0)
-"""Depth of the blocks, along the streets that run to the north-west [m]."""
+"""Depth of the blocks, along the streets that run north-west [m]."""
 _CORNERS = ((0, 0), (2, 0), (2, 3), (0, 3))
-"""Blocks at the corners of the grid: one is built, the outer streets pass inside of the others."""
+"""Blocks at the corners of the grid: one is built; the outer streets leave the others out."""
 _BENDS = 7
-"""Outer streets that bend a little halfway."""
+"""Number of outer streets that bend slightly in the middle."""
 _BEND = (4.0, 9.0)
-"""How far the middle of such a street lies outside the straight line [m]."""
+"""Distance of that bend from the straight line, outwards [m]."""
 
 Point = NDArray[np.float64]
 Link = tuple[str, str]
@@ -34,7 +34,7 @@ def road_graph(seed: int) -> RoadGraph:
     Seed 0 is the canonical city; other seeds change distances, rotation and outline.
 
     Args:
-        seed: Of the map, >= 0.
+        seed: Seed of the map, >= 0.
     """
     rng = stream(seed, "citystreet roads")
     columns, rows, rotation, kept = np.array(_COLUMNS), np.array(_ROWS), _ROTATION, 0
@@ -59,7 +59,7 @@ def _name(column: int, row: int) -> str:
 
 
 def _links(blocks: list[tuple[int, int]]) -> dict[Link, int]:
-    """Return the streets around all blocks, and how many blocks each borders."""
+    """Return the streets around all blocks, and the number of blocks at each."""
     sides: dict[Link, int] = {}
     for i, j in blocks:
         south, north = (_name(i, j), _name(i + 1, j)), (_name(i, j + 1), _name(i + 1, j + 1))
@@ -70,7 +70,7 @@ def _links(blocks: list[tuple[int, int]]) -> dict[Link, int]:
 
 
 def _bent(sides: dict[Link, int], at: dict[str, Point], rng: np.random.Generator) -> list[Link]:
-    """Return the links with a node more in the middle of some outer streets; adds it to `at`."""
+    """Return the links with an extra node in the middle of some outer streets; add it to `at`."""
     middle = np.mean([at[name] for link in sides for name in link], axis=0)
     outer = [link for link in sides if sides[link] == 1]
     bent = {outer[int(i)] for i in rng.permutation(len(outer))[:_BENDS]}
@@ -96,7 +96,7 @@ def _graph(seed: int, at: dict[str, Point], links: list[Link], rotation: float) 
     )
     points = np.array([at[name] for name in names]) @ turn.T
     points -= (points.min(axis=0) + points.max(axis=0)) / 2
-    # Millimetres, so that the last bits of sines, which differ between machines, do not show.
+    # In millimetres: the last bits of sines differ between processors.
     nodes = [
         RoadNode(name, round(float(x), 3), round(float(y), 3))
         for name, (x, y) in zip(names, points, strict=True)

@@ -38,7 +38,7 @@ _TREE_HEIGHTS = (14.8, 19.8, 27.0)
 _TREE_ODDS = (0.3, 0.5, 0.2)
 _WATER = Material("water", (0.16, 0.42, 0.54), Surface.WATER)
 _LEGS = 9
-"""Pillars beyond the floor, where the elevated road comes down."""
+"""Number of pillars beyond the floor, below the descent of the elevated road."""
 
 
 def build_scene(network: RoadNetwork, seed: int) -> Scene:
@@ -46,7 +46,7 @@ def build_scene(network: RoadNetwork, seed: int) -> Scene:
 
     Args:
         network: Made of `road_graph(seed)`.
-        seed: Of the map, >= 0.
+        seed: Seed of the map, >= 0.
     """
     plan = make_plan(network, seed)
     builder = SceneBuilder(NAME, seed, FLOOR, Terrain.flat(FLOOR_HEIGHT))
@@ -56,7 +56,7 @@ def build_scene(network: RoadNetwork, seed: int) -> Scene:
         builder.prototype(f"street tree {k}", partial(trees.street_tree_levels, trunks, k))
         for k in range(trees.VARIANTS)
     ]
-    # What hides most comes first: it is drawn first, and nobody draws over it.
+    # The largest occluders come first: they are drawn first, so less is drawn twice.
     _add_buildings(builder, plan)
     _add_overpass(builder, plan)
     _add_ground(builder, plan, network, yards, seed)
@@ -77,7 +77,7 @@ def build_scene(network: RoadNetwork, seed: int) -> Scene:
 
 
 def _add_buildings(builder: SceneBuilder, plan: Plan) -> None:
-    """Add buildings and what stands on their roofs."""
+    """Add buildings and the equipment of their roofs."""
     towers = [shapely.Polygon(b.footprint) for b in plan.buildings if b.bottom > FLOOR_HEIGHT]
     above = shapely.union_all(towers)
     for building in plan.buildings:
@@ -97,7 +97,7 @@ def _no_lawn(plan: Plan) -> shapely.Geometry:
 
 
 def _taken(plan: Plan, network: RoadNetwork) -> shapely.Geometry:
-    """Return where something stands or drives already, in plan view."""
+    """Return the area where something already stands or drives, in plan view."""
     built = [shapely.Polygon(buildings.prism_of(building)[0]) for building in plan.buildings]
     areas = [park.area for park in plan.car_parks] + [pillar.base for pillar in plan.pillars]
     poles = [place for place, _ in signal_places(network)]
@@ -152,7 +152,7 @@ def _add_overpass(builder: SceneBuilder, plan: Plan) -> None:
 def _add_trees(
     builder: SceneBuilder, plan: Plan, kinds: Sequence[Prototype], rng: np.random.Generator
 ) -> None:
-    """Add a tree of one of the kinds at each trunk."""
+    """Add a tree of a random kind at each trunk."""
     for place in plan.trees:
         height = rng.choice(_TREE_HEIGHTS, p=_TREE_ODDS) * rng.uniform(0.93, 1.0)
         spot = (*place, FLOOR_HEIGHT)
