@@ -1,4 +1,4 @@
-"""The first start: a second process compiles what draws while the first builds the world."""
+"""The first start: a second process compiles kernels while the first builds the world."""
 
 import contextlib
 import logging
@@ -27,20 +27,20 @@ __all__ = ["compile_ahead"]
 _log = logging.getLogger("eyas")
 
 _PATIENCE = 300.0
-"""How long a first picture waits for the second process at most [s]."""
+"""Longest time that a first picture waits for the second process [s]."""
 
 _started: list[subprocess.Popen[bytes]] = []
-"""Kept here, as Python warns of processes that are forgotten before they end."""
+"""Kept here, because Python warns of processes that are forgotten before they end."""
 
 _PROGRAM = "from eyas.render.ahead import draw_nothing; draw_nothing()"
 
 
 def compile_ahead() -> Callable[[], object] | None:
-    """Tell the user if this is a first start, and use a second core for it if there is one.
+    """Report a first start to the user, and use a second core for it if there is one.
 
     Returns:
-        What waits until the kernels that draw can be loaded from the cache, if there is anything
-        to wait for. It never fails: what is not compiled then, the first picture compiles.
+        A function that waits until the drawing kernels can be loaded from the cache; None if there
+        is nothing to wait for. It never fails: the first picture compiles what is missing by then.
     """
     if not nothing_compiled():
         return None
@@ -51,12 +51,12 @@ def compile_ahead() -> Callable[[], object] | None:
     _log.warning(
         "first start of this version: compiling for about half a minute, once; kept in %s", cache
     )
-    # A program that was frozen has no interpreter to start.
+    # A frozen program has no interpreter to start.
     if (os.cpu_count() or 1) < 2 or getattr(sys, "frozen", False):
         return None
     try:
         cache.mkdir(parents=True, exist_ok=True)
-        (cache / "started").touch(exist_ok=False)  # by one of many processes that start together
+        (cache / "started").touch(exist_ok=False)  # exactly one of several processes succeeds
         path = os.pathsep.join(filter(None, sys.path))
         process = subprocess.Popen(
             [sys.executable, "-P", "-c", _PROGRAM],
@@ -78,7 +78,7 @@ def _wait() -> None:
 
 
 def draw_nothing() -> None:
-    """Draw a view of an empty scene, which compiles every kernel that draws."""
+    """Draw a view of an empty scene, which compiles every drawing kernel."""
     scene = Scene.empty()
     geometry = build_geometry(scene, PartLibrary(()), {"plain": np.zeros((256, 256, 4), np.uint8)})
     shadows = ShadowMap(np.zeros((1, 1), np.uint16), np.zeros((3, 4)), 1.0)

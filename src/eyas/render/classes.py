@@ -1,4 +1,4 @@
-"""What each pixel is, looked up from the object it shows."""
+"""The class of each pixel, looked up from the object that it shows."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ __all__ = ["class_table", "write_classes"]
 def class_table(scene: Scene) -> NDArray[np.uint8]:
     """Return the class of each of the scene's O objects, and of the sky, shape (O + 1,).
 
-    The sky comes last: its object id, -1, counts from the end.
+    The sky comes last: its object id, -1, indexes from the end.
     """
     return np.append(scene.object_class, ObjectClass.SKY).astype(np.uint8)
 
@@ -27,9 +27,9 @@ def write_classes(
     """Write the class of each pixel.
 
     Args:
-        table: See `class_table`.
-        movers: Their classes.
-        world: Whose movers each view shows, shape (V,).
+        table: From `class_table`.
+        movers: Classes of the moving objects.
+        world: World whose movers each view shows, shape (V,).
         object_id: Object of each pixel, shape (V, H, W).
         class_id: Written in place, same shape.
     """

@@ -1,4 +1,4 @@
-"""Which worker draws what: views, or bands of views where there are few."""
+"""Division of the work: views, or bands of views if there are few."""
 
 import math
 from functools import lru_cache
@@ -13,10 +13,10 @@ from eyas.state.draw import Picture, Views
 __all__ = ["build_jobs", "picture_size", "write_subject"]
 
 JOBS_PER_THREAD = 4
-"""Few views are cut into bands until there are so many: sky is drawn sooner than streets."""
+"""Few views are cut into bands until there are this many: sky is drawn faster than streets."""
 
 SMALLEST_BAND = 3_500
-"""Pixels below which cutting costs more than it gains."""
+"""Number of pixels below which cutting costs more than it gains."""
 
 
 def build_jobs(
@@ -26,11 +26,11 @@ def build_jobs(
 
     Args:
         views: V cameras.
-        height: Of the pictures [pixels].
-        width: Of the pictures [pixels].
+        height: Height of the pictures [pixels].
+        width: Width of the pictures [pixels].
         side: Samples along a side of each pixel.
-        threads: How many threads will share the work.
-        density: Of the weather's fog [1/m], for views that do not say their own.
+        threads: Number of threads that share the work.
+        density: Density of the weather's fog [1/m], for views without their own.
     """
     across = focal_length(width, views.field_of_view)
     down = across
@@ -51,9 +51,9 @@ def build_jobs(
     )
 
 
-@lru_cache(maxsize=8)  # a fifth of what a small picture costs outside the kernels
+@lru_cache(maxsize=8)  # saves a fifth of a small picture's cost outside the kernels
 def _bands(count: int, height: int, width: int, threads: int) -> NDArray[np.int32]:
-    """Return `Job.band`, which nobody writes to."""
+    """Return `Job.band`, which must not be modified."""
     bands = min(
         math.ceil(JOBS_PER_THREAD * threads / max(count, 1)),
         height * width // SMALLEST_BAND,
@@ -80,7 +80,7 @@ def picture_size(picture: Picture) -> tuple[int, int]:
     """Return height and width [pixels].
 
     Raises:
-        ValueError: No array with pixels is wanted, so there is no size.
+        ValueError: No array with pixels is wanted, so the size is unknown.
     """
     for plane in (picture.rgb, picture.depth, picture.object_id, picture.class_id):
         if plane is not None:
@@ -89,12 +89,12 @@ def picture_size(picture: Picture) -> tuple[int, int]:
 
 
 def write_subject(bands: NDArray[np.int32], measured: NDArray[np.int32], picture: Picture) -> None:
-    """Join what was measured in the bands of each view.
+    """Combine the measurements from the bands of each view.
 
     Args:
-        bands: `Job.band`.
-        measured: `Output.subject`.
-        picture: Its subject's box and pixels are written, if wanted.
+        bands: From `Job.band`.
+        measured: From `Output.subject`.
+        picture: Its subject boxes and pixel counts are written, if wanted.
     """
     views = int(bands[-1, 0]) + 1 if len(bands) else 0
     by_view = measured.reshape(views, -1, 6)

@@ -1,4 +1,4 @@
-"""The renderer: pictures, depths, objects and the subject's measures of many views at once."""
+"""The renderer: pictures, depths, object ids and subject measurements of many views at once."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -33,15 +33,15 @@ __all__ = ["Renderer", "build_renderer"]
 
 
 class Renderer:
-    """Draws a scene and what moves in it.
+    """Draws a scene and the things that move in it.
 
-    What is drawn depends on nothing but the view: other views, their order, the number of threads
-    and the bands a view is cut into change no byte.
+    A picture depends on nothing but its view: other views, their order, the number of threads
+    and the division into bands do not change a byte.
 
     Args:
         geometry: Everything that can be drawn.
         light: Light and air.
-        classes: Of each object of the scene, see `class_table`.
+        classes: Class of each object of the scene, see `class_table`.
         ready: Called before anything is drawn; returns when the kernels are compiled.
     """
 
@@ -76,11 +76,11 @@ class Renderer:
 
         Args:
             views: V cameras.
-            draw_list: What moves.
+            draw_list: The moving things.
             picture: Written in place.
-            samples: Of colour in each pixel, 1 or 4. Depth, objects and the subject's measures
-                are always those at the pixels' centres.
-            until: Where to stop, to see what each stage costs.
+            samples: Colour samples per pixel, 1 or 4. Depth, objects and the subject's
+                measurements are always those at the pixels' centres.
+            until: Last stage to run, to measure the cost of each stage.
 
         Raises:
             ConfigError: `samples` is neither 1 nor 4.
@@ -109,7 +109,7 @@ class Renderer:
         side: int,
         until: DrawStage,
     ) -> None:
-        """Draw with `side` x `side` samples a pixel."""
+        """Draw with `side` x `side` samples per pixel."""
         height, width = picture_size(picture)
         threads = thread_count()
         density = float(self._light.air[0])
@@ -160,8 +160,8 @@ def build_renderer(
     """Return a renderer of a scene, its shadows baked.
 
     Args:
-        scene: What stands still.
-        geometry: The scene and what moves in it, see `build_geometry`.
+        scene: The static scene.
+        geometry: The scene and the moving things, see `build_geometry`.
         lighting: Light and air.
         cache: Folder of the cache; None: the user's.
         ready: See `Renderer`.
@@ -180,7 +180,7 @@ _NOTHING_SUBJECT = np.empty((0, 6), np.int32)
 
 
 def _objects(picture: Picture) -> NDArray[np.int32]:
-    """Return where object ids go; classes need them, wanted or not."""
+    """Return the array for object ids; classes need them even if they are not wanted."""
     if picture.object_id is not None:
         return picture.object_id
     if picture.class_id is not None:
@@ -189,7 +189,7 @@ def _objects(picture: Picture) -> NDArray[np.int32]:
 
 
 def _output(picture: Picture) -> Output:
-    """Return what is wanted; the subject's array is a mark only, jobs get their own."""
+    """Return the wanted arrays; the subject's array is only a flag, jobs get their own."""
     subject = picture.subject_box is not None or picture.subject_pixels is not None
     return Output(
         rgb=_NOTHING_RGB if picture.rgb is None else picture.rgb,

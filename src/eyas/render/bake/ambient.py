@@ -1,4 +1,4 @@
-"""How much of the sky the ground sees: less at the feet of walls, in courtyards, under trees."""
+"""Share of the sky seen from the ground: less beside walls, in courtyards, under trees."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,32 +21,32 @@ TEXEL = 1.0
 """Side of a texel [m]."""
 
 LARGEST = 2048
-"""Most texels along a side."""
+"""Largest number of texels along a side."""
 
 _LOWEST = 1.5
-"""What rises less over the ground hides no sky [m]."""
+"""Things less high than this above the ground hide no sky [m]."""
 
 _FORMAT = "eyas ambient map 1"
-"""Raised by 1 when the same scene comes out otherwise."""
+"""Raise its number by 1 whenever the same scene gives a different result."""
 
 
 @dataclass(frozen=True, slots=True)
 class AmbientMap:
-    """What the ground sees of the sky."""
+    """Share of the sky seen from the ground."""
 
     openness: NDArray[np.uint16]
-    """Share of the sky's light that reaches the ground, 0 to 255, and above that byte the height
-    of what hides it [m], shape (rows, columns)."""
+    """Low byte: share of the sky's light that reaches the ground, 0 to 255; high byte: height of
+    what hides the rest [m]; shape (rows, columns)."""
     frame: NDArray[np.float64]
-    """West and south edge [m], texels in a metre, z of the ground [m]."""
+    """West and south edge [m], texels per metre, z of the ground [m]."""
 
 
 def bake_ambient(scene: Scene, folder: Path | None = None) -> AmbientMap:
-    """Return the map of a scene; made anew only if the cache has none.
+    """Return the map of a scene; computed only if the cache has none.
 
     Args:
-        scene: What stands still. Bridges and other structures hide little and are left out.
-        folder: The cache; None: the user's.
+        scene: The static scene. Bridges and other structures hide little and are left out.
+        folder: Folder of the cache; None: the user's.
     """
     extent = np.array(scene.size)
     texel = max(TEXEL, float(extent.max()) / LARGEST)
@@ -81,9 +81,9 @@ def bake_ambient(scene: Scene, folder: Path | None = None) -> AmbientMap:
 def height_map(
     scene: Scene, frame: NDArray[np.float64], shape: tuple[int, int]
 ) -> NDArray[np.float32]:
-    """Return how high over the ground the highest solid thing in each texel is [m].
+    """Return the height of the highest solid above the ground in each texel [m].
 
-    The ground itself is none, however steep it is: hills are no walls.
+    The ground itself does not count, however steep it is: hills are not walls.
     """
     mesh = scene.static
     corners = mesh.positions[mesh.triangles].astype(np.float64)
@@ -103,7 +103,7 @@ def height_map(
 def canopy_map(
     scene: Scene, frame: NDArray[np.float64], shape: tuple[int, int]
 ) -> NDArray[np.float32]:
-    """Return how high over the ground the top of the crown over each texel is, 0 for none [m]."""
+    """Return the height above the ground of the crown's top over each texel, 0 for none [m]."""
     fixtures = scene.fixtures
     picture = Image.new("F", (shape[1], shape[0]), 0.0)
     pen = ImageDraw.Draw(picture)
@@ -111,7 +111,7 @@ def canopy_map(
         points = fixtures.levels[fixtures.prototype[index]][0].positions
         pose = fixtures.pose[index].astype(np.float64)
         scale = float(np.cbrt(np.linalg.det(pose[:, :3])))
-        # Its outermost leaves are few: the crown is a disc of the mean reach.
+        # The outermost leaves are few: the crown is a disc of the mean radius.
         reach = 0.9 * scale * float(np.abs(points[:, :2]).max())
         x, y = (pose[:2, 3] - frame[:2]) * frame[2]
         r = reach * frame[2]

@@ -1,4 +1,4 @@
-"""Which clouds stand in the sky: made once for a cover and a sun, the same ones every time."""
+"""Clouds of the sky: computed once for a cover and a sun, always the same ones."""
 
 import functools
 import math
@@ -16,9 +16,9 @@ __all__ = ["build_clouds", "plan_directions"]
 
 _ROWS, _COLUMNS = 208, 2048
 _SEEN = 0.65
-"""Clouds stand up: seen from the side they cover more than from below."""
+"""Correction of the cover: clouds hide more when seen from the side than from below."""
 _TEXEL = 9.0 / SIZE
-"""Side of a texel of the heaps [km]."""
+"""Side of a texel of the cloud heights [km]."""
 
 
 @functools.lru_cache(maxsize=4)
@@ -32,7 +32,7 @@ def build_clouds(cover: float, sun: tuple[float, float, float]) -> NDArray[np.ui
     if cover <= 0.0:
         return np.zeros((1, 1, 2), np.uint8)
     height = (np.arange(_ROWS) + 0.5) / _ROWS
-    # What would be lower is not shown.
+    # Lower rows are not shown.
     sines = np.maximum(CLOUD_BEND * height / (1.0 + CLOUD_BEND - height), CLOUDS_FROM)
     output = np.empty((_ROWS, _COLUMNS, 2), np.uint8)
     rays = CloudRays(
@@ -46,15 +46,15 @@ def build_clouds(cover: float, sun: tuple[float, float, float]) -> NDArray[np.ui
 
 
 def plan_directions(columns: int) -> NDArray[np.float64]:
-    """Return the unit vectors in plan of a panorama's columns, shape (columns, 2)."""
+    """Return the horizontal unit vectors of a panorama's columns, shape (columns, 2)."""
     turn = (np.arange(columns) + 0.5) * 4 / columns
     x, y = np.abs(turn - 2.0) - 1.0, 1.0 - np.abs((turn + 1.0) % 4.0 - 2.0)
-    # On |x| + |y| = 1: x falls from 1 to -1 and comes back, y is a quarter of that behind.
+    # On |x| + |y| = 1: x falls from 1 to -1 and rises again; y is a quarter turn behind.
     return np.stack([x, y], axis=1) / np.hypot(x, y)[:, None]
 
 
 def _field(cover: float, sun: tuple[float, float, float]) -> Field:
-    """Return what `cloud_rays` reads."""
+    """Return the input of `cloud_rays`."""
     rng = source("clouds")
     tops = _heap_heights(cover, rng)
     details = _billows(rng, 40.0)
@@ -66,10 +66,10 @@ def _field(cover: float, sun: tuple[float, float, float]) -> Field:
 
 
 def _heap_heights(cover: float, rng: np.random.Generator) -> Field:
-    """Return how high clouds stand above their base [km], 0 where there is none.
+    """Return the height of the clouds above their base [km], 0 where there is none.
 
-    Each cloud is a heap of balls, larger and higher in its middle, filled down to the base; clouds
-    are added until they cover enough. From three quarters on they grow into a layer.
+    Each cloud is a heap of balls, larger and higher in the middle, filled down to the base.
+    Clouds are added until they cover enough; from a cover of three quarters on they form a layer.
     """
     layer = 2.5 * (cover - 0.75) + 0.26 * np.tanh(1.5 * fractal(rng, 1.6, longest=120.0))
     heights = np.maximum(layer, 0.0)
@@ -83,12 +83,12 @@ def _heap_heights(cover: float, rng: np.random.Generator) -> Field:
             ball = radius * rng.uniform(0.2, 0.45) * (1.2 - 0.6 * share)
             lift = rng.uniform(-0.3, 0.9) * radius * (1.0 - share**2) * 0.6
             _put_ball(heights, middle + way * radius / _TEXEL, ball, lift)
-    # Rounder than their texels.
+    # Blurred, so that single texels do not show.
     return np.clip(blurred(heights, 0.7), 0.0, DEEPEST)
 
 
 def _put_ball(heights: Field, middle: NDArray[np.float64], radius: float, lift: float) -> None:
-    """Raise the heights to those of a ball [km] around a texel."""
+    """Raise the heights to those of a ball [km] centred on a texel."""
     reach = int(radius / _TEXEL) + 1
     around = np.arange(-reach, reach + 1)
     whole = np.floor(middle).astype(int)
@@ -101,7 +101,7 @@ def _put_ball(heights: Field, middle: NDArray[np.float64], radius: float, lift: 
 
 
 def _apart(tops: Field) -> Field:
-    """Return how far away the nearest cloud is at least [km], 0 in clouds and beside them."""
+    """Return a lower bound of the distance to the nearest cloud [km], 0 in and beside clouds."""
     near = tops > 0.0
     apart = np.zeros_like(tops)
     for _ in range(12):
@@ -118,7 +118,7 @@ def _billows(rng: np.random.Generator, longest: float) -> Field:
 
 
 def _sunlit(tops: Field, sun: tuple[float, float, float]) -> Field:
-    """Return the lowest height over the base that the sun shines on [km]."""
+    """Return the lowest height above the base that is in sunlight [km]."""
     plan = math.hypot(sun[0], sun[1])
     if plan < 1e-3:
         return tops

@@ -1,4 +1,4 @@
-"""Hills all round the horizon, as a panorama: made once for a map's hills and a sun."""
+"""Hills all round the horizon, as a panorama: computed once for a map's hills and a sun."""
 
 import functools
 
@@ -21,10 +21,10 @@ _TEXEL = 9.0 / SIZE
 
 @functools.lru_cache(maxsize=4)
 def build_hills(horizon: Horizon, sun: tuple[float, float, float]) -> NDArray[np.uint8]:
-    """Return the hills as seen from the middle of the map.
+    """Return the hills as seen from the centre of the map.
 
     Args:
-        horizon: What kind of hills.
+        horizon: Kind of hills.
         sun: Unit vector towards the sun.
 
     Returns:
@@ -54,7 +54,7 @@ def build_hills(horizon: Horizon, sun: tuple[float, float, float]) -> NDArray[np
 
 
 def far_ground(geometry: Geometry) -> NDArray[np.float64]:
-    """Return the mean colour of all land, linear, shape (3,): what far land looks like."""
+    """Return the mean colour of all land, linear, shape (3,): the colour of far land."""
     last = geometry.chunk_range[-1, 1] if len(geometry.chunk_range) else 0
     corner = geometry.positions[geometry.corners[:last], :2].astype(np.float64)
     one, two = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
@@ -68,9 +68,9 @@ def far_ground(geometry: Geometry) -> NDArray[np.float64]:
 
 
 def _first_seen(ridge: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Return at which step the ray of each row and column meets the land, shape (rows, columns).
+    """Return the step at which each row and column's ray meets the land, shape (rows, columns).
 
-    A ray that meets none gets the step of the highest ridge.
+    A ray that meets no land gets the step of the highest ridge.
 
     Args:
         ridge: Sine of the elevation of the highest land up to each step, shape (columns, steps).
@@ -100,7 +100,7 @@ def _land(horizon: Horizon, sun: tuple[float, float, float]) -> tuple[Field, Fie
 
 
 def _between(field: Field, row: Field, column: Field) -> Field:
-    """Return a repeating field between its texels."""
+    """Return values of a repeating field between its texels."""
     low, left = np.floor(row), np.floor(column)
     up, across = row - low, column - left
     j, i = low.astype(int) % SIZE, left.astype(int) % SIZE

@@ -1,4 +1,4 @@
-"""The shadow map of everything that stands still, made once for a scene and a sun."""
+"""The shadow map of everything static, computed once for a scene and a sun."""
 
 import math
 from dataclasses import dataclass
@@ -18,25 +18,25 @@ from eyas.state.mesh import Surface
 __all__ = ["ShadowMap", "bake_shadows"]
 
 TEXEL = 0.2
-"""Side of a texel, where the map is not too large for that [m]."""
+"""Side of a texel, unless the map would become too large [m]."""
 
 LARGEST = 6144
-"""Most texels along a side."""
+"""Largest number of texels along a side."""
 
 CARDS = 4
-"""One leaf card in so many throws a shadow: they overlap so often that all would let no light
-through, and crowns are dappled."""
+"""One in this many leaf cards casts a shadow: they overlap so much that all of them would
+stop all light, but the shade below crowns is dappled."""
 
 _FORMAT = "eyas shadow map 7"
-"""Raised by 1 when shadows of the same things come out otherwise."""
+"""Raise its number by 1 whenever the same scene gives different shadows."""
 
 
 @dataclass(frozen=True, slots=True)
 class ShadowMap:
-    """Where the sun shines."""
+    """Shadows of the static scene."""
 
     heights: NDArray[np.uint16]
-    """How high towards the sun the first thing stands that sunlight meets, 0 for nothing,
+    """Height towards the sun of the first surface that sunlight meets, 0 for none,
     shape (lines, columns)."""
     rows: NDArray[np.float64]
     """World [m] to column, line and height of the map, shape (3, 4)."""
@@ -50,13 +50,13 @@ def bake_shadows(
     ground: float,
     folder: Path | None = None,
 ) -> ShadowMap:
-    """Return the shadow map; made anew only if the cache has none.
+    """Return the shadow map; computed only if the cache has none.
 
     Args:
         geometry: The scene.
         sun: Unit vector towards the sun.
         ground: z of the floor [m].
-        folder: The cache; None: the user's.
+        folder: Folder of the cache; None: the user's.
     """
     rows, lines, columns, texel = _frame(geometry, sun, ground)
     heights = cached(
@@ -73,21 +73,21 @@ def bake_shadows(
 def _frame(
     geometry: Geometry, sun: tuple[float, float, float], ground: float
 ) -> tuple[NDArray[np.float64], int, int, float]:
-    """Return the map's rows, lines, columns and texel: it covers all that rises from the floor.
+    """Return the map's rows, lines, columns and texel: it covers everything above the floor.
 
-    What lies flat throws no shadow, so however wide the floor is, it costs no texels.
+    Flat ground casts no shadow, so even a very wide floor costs no texels.
     """
     toward = np.asarray(sun, np.float64) / np.linalg.norm(sun)
     right = np.array([-toward[1], toward[0], 0.0])
     right = right / np.linalg.norm(right) if np.linalg.norm(right) > 1e-6 else np.eye(3)[0]
     axes = np.stack([right, np.cross(toward, right), toward])
     flat = _casting_points(geometry, ground + 0.5) @ axes.T
-    # Rounded, because last bits differ between processors: the longer side may be a whole number
-    # of texels, and one more of them moves nothing but would make another map.
+    # Rounded, because last bits differ between processors: where the longer side is a whole
+    # number of texels, one processor would otherwise make a map of one texel more.
     low, top = np.round(flat.min(axis=0) - 1.0, 3), np.round(flat.max(axis=0) + 1.0, 3)
     texel = max(TEXEL, float((top - low)[:2].max()) / (LARGEST - 4))
     size = np.ceil(np.round((top - low)[:2] / texel, 6)).astype(int) + 2
-    # The floor may reach lower than all that throws shadows; its height is then below 0.
+    # The floor may reach lower than all casters; its height is then below 0.
     unit = 65000.0 / float(top[2] - low[2])
     scale = np.array([1.0 / texel, 1.0 / texel, unit])
     rows = np.concatenate(
@@ -141,7 +141,7 @@ def _bake(
 
 
 def _cards(geometry: Geometry) -> NDArray[np.int32]:
-    """Return how the leaves of each material are drawn, see `ShadowBake`."""
+    """Return how the leaves of each material are drawn, see `ShadowBake.cards`."""
     surface = geometry.surface
     return np.where(
         surface == Surface.FOLIAGE, CARDS, np.where(surface == Surface.CROWN, -1, 0)
@@ -149,7 +149,7 @@ def _cards(geometry: Geometry) -> NDArray[np.int32]:
 
 
 def _casters(geometry: Geometry) -> tuple[NDArray[np.generic], ...]:
-    """Return all that a shadow map is made of."""
+    """Return all inputs of a shadow map."""
     cards = _cards(geometry)
     last = geometry.chunk_range[-1] if len(geometry.chunk_range) else np.zeros(4, np.int32)
     fixtures = geometry.level_first[: geometry.part_first + 1]

@@ -1,4 +1,4 @@
-"""Where wheels have pushed snow off the roads: a map of the tracks they leave."""
+"""Map of the tracks that wheels leave in the snow on roads."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -15,22 +15,22 @@ TEXEL = 0.3
 """Side of a texel [m]."""
 
 TRACK_ASIDE = 0.78
-"""Distance of a track from the middle of the lane [m]; that of the dark tracks in the asphalt."""
+"""Distance of a track from the middle of the lane [m]; same as the dark tracks in the asphalt."""
 
 _STEP = 0.2
-"""Distance of the places along and across a lane whose texels are marked [m]: none is missed."""
+"""Distance between the points of a lane whose texels are marked [m]; small enough to miss none."""
 
 _HALF = 1.7
-"""How far from the middle of a lane snow is driven on [m]."""
+"""Distance from the middle of a lane up to which cars drive on the snow [m]."""
 
 _OTHERS = ((0.0, 1.0), (0.26, 0.5), (-0.3, 0.4))
-"""Ways that cars take: how far beside the usual one [m], and how much they have worn it."""
+"""Paths of cars: distance to the left of the usual path [m], and relative wear."""
 
 _STRAIGHT, _BACK = np.radians(50.0), np.radians(150.0)
-"""Up to which angle a way over a junction leads straight on, and from which it turns back."""
+"""Angles up to which a path over a junction leads straight on, and from which it turns back."""
 
 _FAR = 8
-"""Texels over which the map is blurred for what is seen from afar: one lane's tracks and a bit."""
+"""Texels over which the map is blurred for distant views: slightly more than a lane's tracks."""
 
 _MARGIN = 6.0
 """Between the lanes and the edges of the map [m]."""
@@ -40,13 +40,13 @@ Line = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class TrackMap:
-    """How far the snow on roads is worn off."""
+    """Wear of the snow on roads."""
 
     worn: NDArray[np.uint8]
-    """0 as it fell, 255 down to the wet asphalt; and the same blurred, for pixels that are larger
+    """0 for fresh snow to 255 for wet asphalt; then the same blurred, for pixels that are larger
     than tracks; shape (rows, columns, 2)."""
     frame: NDArray[np.float64]
-    """West and south edge [m], texels in a metre."""
+    """West and south edge [m], texels per metre."""
 
     @classmethod
     def none(cls) -> "TrackMap":
@@ -55,7 +55,7 @@ class TrackMap:
 
 
 def track_map(network: RoadNetwork) -> TrackMap:
-    """Return the tracks of all lanes, and of the ways from lane to lane over junctions."""
+    """Return the tracks of all lanes, and of the paths from lane to lane over junctions."""
     if len(network.lane_points) == 0:
         return TrackMap.none()
     low = network.lane_points.min(axis=0) - _MARGIN
@@ -66,7 +66,7 @@ def track_map(network: RoadNetwork) -> TrackMap:
     middle = np.concatenate([points for points, _ in stations])
     left = np.concatenate([normal for _, normal in stations])
     strength = np.repeat([much for _, much in ways], [len(points) for points, _ in stations])
-    # Ways sway a little and are worn more here than there; what is near by agrees.
+    # Paths sway a little and their wear varies; neighbouring points agree.
     sway, uneven = _waves(middle, 11.0, 1), _waves(middle, 23.0, 2)
     for aside in np.arange(-_HALF, _HALF + _STEP, _STEP):
         texel = ((middle + aside * left - low) / TEXEL).astype(int)
@@ -79,7 +79,7 @@ def track_map(network: RoadNetwork) -> TrackMap:
 
 
 def _profile(aside: Line) -> Line:
-    """Return how far the snow is worn off beside the middle of a lane [m], 0 to 1."""
+    """Return the wear of the snow beside the middle of a lane [m], 0 to 1."""
     worn = 0.42 * np.clip((_HALF - np.abs(aside)) / 0.7, 0.0, 1.0)
     for other, much in _OTHERS:
         off = np.abs(np.abs(aside + other) - TRACK_ASIDE)
@@ -92,7 +92,7 @@ def _lanes(network: RoadNetwork) -> list[Line]:
 
 
 def _crossings(network: RoadNetwork) -> Iterator[Line]:
-    """Yield the ways over junctions: straight on in each lane, and turns from the outer lanes."""
+    """Yield the paths over junctions: straight on in each lane, and turns from the outer lanes."""
     lines = _lanes(network)
     lanes = [np.flatnonzero(network.lane_edge == edge) for edge in range(len(network.edges))]
     for here, end in enumerate(network.edge_end):
@@ -139,7 +139,7 @@ def _stations(line: Line) -> tuple[Line, Line]:
 
 
 def _waves(points: Line, length: float, seed: int) -> Line:
-    """Return smooth noise, about -1 to 1, with features of some length [m]: a sum of waves."""
+    """Return smooth noise, about -1 to 1, with features of a given length [m]: a sum of waves."""
     rng = np.random.default_rng(seed)
     angle, phase = rng.uniform(0, 2 * np.pi, 6), rng.uniform(0, 2 * np.pi, 6)
     number = 2 * np.pi / (length * rng.uniform(0.7, 1.6, 6))
@@ -148,7 +148,7 @@ def _waves(points: Line, length: float, seed: int) -> Line:
 
 
 def _blurred(values: NDArray[np.float32], texels: int) -> NDArray[np.float32]:
-    """Return means over squares of some texels; beyond the edges all is 0."""
+    """Return means over squares of so many texels; all values beyond the edges are 0."""
     for axis in (0, 1):
         before = [(0, 0), (0, 0)]
         before[axis] = (texels // 2 + 1, texels - texels // 2)

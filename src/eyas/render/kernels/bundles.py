@@ -40,7 +40,7 @@ class Geometry(NamedTuple):
     corners: NDArray[np.int32]
     """Vertices of each triangle, shape (T, 3)."""
     gradients: NDArray[np.float32]
-    """What shading needs of each triangle, shape (T, 24): a corner; then gradient and value at
+    """Data of each triangle for shading, shape (T, 24): a corner; then gradient and value at
     that corner of u and of v; normal at the corner; gradients of the three components of the
     normal; texture tiles in a metre, negative where the normal is not the same all over."""
     material: NDArray[np.int32]
@@ -118,18 +118,18 @@ class Light(NamedTuple):
     ambient: NDArray[np.uint16]
     """Share of the sky's light on the ground and height of what hides it, see `AmbientMap`."""
     ambient_frame: NDArray[np.float32]
-    """West and south edge of that map [m], texels in a metre, z of the ground [m]."""
+    """West and south edge of that map [m], texels per metre, z of the ground [m]."""
     lamp: NDArray[np.float32]
     """Position [m], axis and strength of each street lamp, shape (L, 7)."""
     lamp_cell: NDArray[np.int32]
     """Lamps that may light each square of a grid, the nearest first, -1 after the last,
     shape (rows, columns, .)."""
     lamp_frame: NDArray[np.float32]
-    """West and south edge of the grid [m], squares in a metre, cosine of the lamps' cut-off."""
+    """West and south edge of the grid [m], squares per metre, cosine of the lamps' cut-off."""
     tracks: NDArray[np.uint8]
     """How far wheels have worn the snow on roads, see `eyas.render.bake.tracks.TrackMap`."""
     track_frame: NDArray[np.float32]
-    """West and south edge of that map [m], texels in a metre."""
+    """West and south edge of that map [m], texels per metre."""
     tone: NDArray[np.uint8]
     """Byte of the picture for each step of exposed radiance."""
     ground: NDArray[np.float32]
@@ -169,7 +169,7 @@ class Job(NamedTuple):
     light: NDArray[np.float32]
     """Factor on the sky and its light, factor on the sun, fog density [1/m], shape (V, 3)."""
     instant: NDArray[np.float64]
-    """Time of what falls through the air [s], shape (V,), or (0,) where nothing falls."""
+    """Time for falling snow [s], shape (V,), or (0,) if none falls."""
     lens: NDArray[np.float64]
     """Focal length along rows, width, height [samples], mean focal length [pixels], focal length
     along columns [samples], shape (5,)."""
@@ -227,7 +227,7 @@ class Scratch(NamedTuple):
 
 
 class Output(NamedTuple):
-    """What is written; arrays of length 0 are not wanted."""
+    """Arrays to write; those of length 0 are not wanted."""
 
     rgb: NDArray[np.uint8]
     depth: NDArray[np.float32]
@@ -237,14 +237,14 @@ class Output(NamedTuple):
 
 
 class Still(NamedTuple):
-    """What stays from picture to picture."""
+    """Inputs that stay the same from picture to picture."""
 
     geometry: Geometry
     light: Light
 
 
 class Task(NamedTuple):
-    """What is to be drawn this time."""
+    """Inputs that change from picture to picture."""
 
     samples: int
     """Samples along a side of each pixel, 1 or 2."""

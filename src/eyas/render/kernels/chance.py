@@ -1,4 +1,4 @@
-"""Numbers that look random and always are the same: for cells, and smooth ones for places."""
+"""Hash-based noise: numbers that look random but are always the same."""
 
 from eyas.core.jit import inlined_kernel
 from eyas.render.kernels.scalars import f4, u4

@@ -1,4 +1,4 @@
-"""Pictures: the loop over bands of views, and what is done in each."""
+"""Pictures: the loop over bands of views, and the steps of each."""
 
 import numpy as np
 from numpy.typing import NDArray

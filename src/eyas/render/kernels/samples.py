@@ -1,4 +1,4 @@
-"""From points in the world to samples of a view, and back."""
+"""Conversion between points in the world and samples of a view."""
 
 from eyas.core.jit import inlined_kernel
 from eyas.render.kernels.bundles import View
@@ -8,7 +8,7 @@ __all__ = ["around", "nowhere", "point_of"]
 
 @inlined_kernel
 def nowhere() -> tuple[float, float, float, float]:
-    """Return a box with nothing in it: left, top, right, bottom [samples]."""
+    """Return an empty box: left, top, right, bottom [samples]."""
     return 1e9, 1e9, -1e9, -1e9
 
 
@@ -16,7 +16,7 @@ def nowhere() -> tuple[float, float, float, float]:
 def around(
     box: tuple[float, float, float, float], view: View, x: float, y: float, z: float
 ) -> tuple[float, float, float, float]:
-    """Return a box on the screen with one more point in it, endless if that is not ahead."""
+    """Return a screen box extended by a point; unbounded if the point is not in front."""
     rows, lens = view.rows, view.lens
     w = rows[2, 0] * x + rows[2, 1] * y + rows[2, 2] * z + rows[2, 3]
     if w < 0.1:

@@ -1,4 +1,4 @@
-"""From a scene and a part library to the packed arrays of the kernels."""
+"""Packing of a scene and a part library into the arrays of the kernels."""
 
 import itertools
 from collections.abc import Mapping
@@ -18,13 +18,13 @@ from eyas.state.scene import ObjectClass, Scene
 __all__ = ["CHUNK", "build_geometry"]
 
 CHUNK = 32.0
-"""Side of the squares that static triangles are sorted into [m]."""
+"""Side of the squares into which static triangles are sorted [m]."""
 
 _FIXTURE_CELL = 6.0
 """Side of the squares by which fixtures are sorted, so that groups of them are small [m]."""
 
 _HIGH = 4.0
-"""What stands higher than this is in a group with other such things [m]."""
+"""Height above which things are grouped separately [m]."""
 
 
 def build_geometry(
@@ -33,12 +33,12 @@ def build_geometry(
     """Return everything that can be drawn.
 
     Args:
-        scene: What stands still.
-        parts: What moving things are made of.
+        scene: The static scene.
+        parts: Parts of the moving things.
         textures: sRGB and alpha by name, shape (256, 256, 4) each.
 
     Raises:
-        UnknownNameError: A material asks for a texture that is not there.
+        UnknownNameError: A material names a missing texture.
     """
     pool = _Pool()
     chunk_range, chunk_box = _add_chunks(pool, scene)
@@ -151,7 +151,7 @@ def _add_chunks(pool: _Pool, scene: Scene) -> tuple[NDArray[np.int32], NDArray[n
     middle = (corners.min(axis=1) + corners.max(axis=1))[:, :2] / 2
     cell = np.floor(middle / CHUNK).astype(np.int64)
     cell -= cell.min(axis=0, initial=0)
-    # What is much larger than a square would make that square's box large: it goes by itself.
+    # A triangle much larger than a square would enlarge that square's box, so it is kept apart.
     span = (corners.max(axis=1) - corners.min(axis=1))[:, :2].max(axis=1, initial=0)
     key = np.where(span > 4 * CHUNK, -1, _morton(cell))
     size = _detail_sizes(scene, corners)
@@ -178,7 +178,7 @@ def _add_chunks(pool: _Pool, scene: Scene) -> tuple[NDArray[np.int32], NDArray[n
 
 
 def _detail_sizes(scene: Scene, corners: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Return `Geometry.size`: paint lies on roads, and behind parts of houses stand others."""
+    """Return `Geometry.size`: details are paint on roads, and parts of buildings before others."""
     kind = scene.object_class[scene.static_object]
     detail = np.isin(kind, (ObjectClass.MARKING, ObjectClass.BUILDING))
     sides = corners[:, 1:] - corners[:, :1]
@@ -219,7 +219,7 @@ def _group_boxes(boxes: NDArray[np.float32]) -> NDArray[np.float32]:
 
 
 def _fixture_order(points: NDArray[np.float32]) -> NDArray[np.intp]:
-    """Return an order in which neighbours are neighbours in the list, high things apart."""
+    """Return an order that keeps neighbours together and high things apart."""
     cell = np.floor(points[:, :2] / _FIXTURE_CELL).astype(np.int64)
     key = _morton(cell - cell.min(axis=0, initial=0))
     return np.lexsort((key, points[:, 2] > _HIGH))

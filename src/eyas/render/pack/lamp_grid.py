@@ -1,4 +1,4 @@
-"""Which street lamps may light a place: a list for each square of a grid."""
+"""Street lamps that may light a point: a list for each square of a grid."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,10 +11,10 @@ CELL = 8.0
 """Side of a square [m]."""
 
 REACH = 32.0
-"""Distance from which on a lamp's light is not seen [m]: below a 400th of that under it."""
+"""Distance beyond which a lamp's light is negligible [m]: below 1/400 of that under it."""
 
 MOST = 8
-"""Longest list."""
+"""Length of the longest list."""
 
 
 def lamp_grid(
@@ -44,5 +44,5 @@ def lamp_grid(
 
 
 PAPER = 1.05
-"""Intensity over the square of metres that lights paper as the sun does: the original's lamps
-of intensity 30 then throw about half a sun on the road below."""
+"""Intensity over squared distance [m] that lights paper as the sun does: the original's lamps of
+intensity 30 then give the road below about half the light of the sun."""

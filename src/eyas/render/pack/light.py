@@ -1,4 +1,4 @@
-"""Light and air as the kernels read them, and the curve from light to picture."""
+"""Light and air as the kernels read them, and the tone curve."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -39,7 +39,7 @@ def build_light(
         lambda: (build_clouds(lighting.clouds, toward), build_hills(scene.horizon, toward)),
         of=tuple[NDArray[np.uint8], NDArray[np.uint8]],
     )
-    # A point is moved off its surface by what its shadow can be off the texel's middle.
+    # A point is moved off its surface by the largest error of the shadow map within a texel.
     offset = 1.1 * shadows.texel
     air = [lighting.fog_density, lighting.fog_power, lighting.exposure, offset, lighting.snow]
     air += [lighting.lamps, lighting.windows, lighting.clouds, lighting.flakes]
@@ -71,8 +71,8 @@ def build_light(
 def tone_table() -> NDArray[np.uint8]:
     """Return the byte for each step of exposed radiance, 0 to `TONE_TOP`.
 
-    `1 - exp(-1.35 x)`, then sRGB (IEC 61966-2-1): nearly linear in the dark, and what is brighter
-    than white paper still has some shape.
+    `1 - exp(-1.35 x)`, then sRGB (IEC 61966-2-1): nearly linear in the dark, and still with some
+    contrast above the brightness of white paper.
     """
     radiance = (np.arange(TONE_STEPS) + 0.5) * (TONE_TOP / TONE_STEPS)
     tone = 1.0 - np.exp(-1.35 * radiance)

@@ -1,4 +1,4 @@
-"""The outline of a part in two boxes, one on the other: what its shadow is cast by."""
+"""Outline of a part as two boxes, one on the other, which cast its shadow."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,13 +8,13 @@ from eyas.state.mesh import Mesh
 __all__ = ["silhouette"]
 
 WAIST = 0.6
-"""Where the lower box ends, of the height."""
+"""Upper end of the lower box, as a share of the height."""
 
 CHEST = 0.75
-"""Above which the upper box is measured, of the height: cabins grow narrower upwards."""
+"""Height above which the upper box is measured, as a share: cabins grow narrower upwards."""
 
 _GRID = 6
-"""Points along the edge of a triangle."""
+"""Number of points along the edge of a triangle."""
 
 
 def silhouette(mesh: Mesh) -> NDArray[np.float32]:
@@ -34,7 +34,7 @@ def silhouette(mesh: Mesh) -> NDArray[np.float32]:
 
 
 def _points(mesh: Mesh) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Return points spread over all triangles, and the area around each."""
+    """Return points spread over all triangles, and the area that each represents."""
     first, second = (a.ravel() for a in np.mgrid[: _GRID + 1, : _GRID + 1])
     inside = first + second <= _GRID
     share = np.stack([first, second, _GRID - first - second], axis=1)[inside] / _GRID
@@ -46,10 +46,11 @@ def _points(mesh: Mesh) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 
 
 def _ends(positions: NDArray[np.float64], weight: NDArray[np.float64]) -> tuple[float, float]:
-    """Return the ends of the box that is spread as the positions are.
+    """Return the ends of the box whose surface has the same spread as the positions.
 
-    The deviation of a uniform range is its half over the root of 3, that of a box's surface is
-    larger: boxes are found as they are. Mirrors and handlebars, of little area, add little.
+    The standard deviation of a uniform range is half its length over the root of 3. That of a
+    box's surface is larger; clipped to the outermost points, it gives the box itself. Mirrors and
+    handlebars, of little area, have little effect.
     """
     if not weight.sum() > 0.0:
         return 0.0, 0.0

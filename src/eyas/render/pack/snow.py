@@ -1,4 +1,4 @@
-"""What snow does on each material: it lies, is driven on, clings to leaves or does not stay."""
+"""Behaviour of snow on each material: it lies, is driven on, clings to leaves or does not stay."""
 
 from collections.abc import Iterable
 
@@ -13,7 +13,7 @@ from eyas.state.scene import ObjectClass, Scene
 __all__ = ["crown_middles", "snow_beds"]
 
 _MIDDLE = 0.3
-"""Where the middle of a crown is between its lower end and its top: crowns are flat below."""
+"""Height of a crown's middle between its lower end and its top: crowns are flat below."""
 
 
 def snow_beds(scene: Scene, parts: PartLibrary, palette: Iterable[Material]) -> NDArray[np.int32]:
@@ -48,7 +48,7 @@ def crown_middles(scene: Scene, palette: Iterable[Material]) -> NDArray[np.float
 
 
 def _road_materials(scene: Scene) -> set[Material]:
-    """Return what faces up on roads: their edges may be of what is elsewhere a roof."""
+    """Return the upward-facing materials of roads; their edges may share materials with roofs."""
     mesh = scene.static
     if len(mesh.triangles) == 0:
         return set()

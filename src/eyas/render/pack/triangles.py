@@ -1,4 +1,4 @@
-"""What shading needs of each triangle, computed once."""
+"""Data of each triangle for shading, computed once."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +13,7 @@ def solid_triangles(mesh: Mesh) -> NDArray[np.bool_]:
     a, b, c = np.moveaxis(mesh.positions[mesh.triangles].astype(np.float64), 1, 0)
     e1, e2 = b - a, c - a
     solid: NDArray[np.bool_] = np.linalg.norm(np.cross(e1, e2), axis=1) > 1e-10
-    # `gradients` divides by this; of long slivers it may be 0 though they have a tiny area.
+    # `gradients` divides by this; it may be 0 for long slivers although their area is not.
     square = _dot(e1, e1) * _dot(e2, e2) - _dot(e1, e2) ** 2
     return solid & (square[:, 0] > 0.0)
 
@@ -26,7 +26,7 @@ def gradients(
 ) -> NDArray[np.float32]:
     """Return `Geometry.gradients`, shape (T, 24).
 
-    What is linear over a triangle is `value + gradient @ (point - corner)`, with a gradient in
+    A linear quantity on a triangle is `value + gradient @ (point - corner)`, with a gradient in
     the triangle's plane.
 
     Args:
@@ -43,8 +43,8 @@ def gradients(
     toward_c = (d11 * e2 - d12 * e1) / square
 
     uv = uvs[triangles].astype(np.float64)
-    # Whole repeats change nothing, and small numbers keep their digits; 64 of them do not change
-    # which window of a facade is which either.
+    # Whole repeats have no effect, and small numbers keep their precision; a shift of 64 repeats
+    # does not change the choice of lit windows either.
     uv -= 64.0 * np.floor(uv[:, :1] / 64.0)
     normal = normals[triangles].astype(np.float64)
     du1, du2 = uv[:, 1] - uv[:, 0], uv[:, 2] - uv[:, 0]

@@ -1,4 +1,4 @@
-"""Textures of walls with windows: ten kinds of house fronts, four storeys by four bays each."""
+"""Textures of walls with windows: ten kinds of facades, four storeys by four bays each."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,13 +38,13 @@ _WHITE = (228.0, 225.0, 217.0)
 
 
 def _plain(rng: np.random.Generator, colour: Colour, stain: float = 0.03) -> Picture:
-    """Return render or concrete with a little weather on it."""
+    """Return render or concrete, slightly weathered."""
     cloud = fractal(rng, 1.1, longest=120.0)
     return painted(colour, 0.02 * white(rng) + stain * cloud)
 
 
 def _bricks(rng: np.random.Generator, colour: Colour, mortar: Colour) -> Picture:
-    """Return bricks two pixels larger than true, so that they still show as bricks."""
+    """Return bricks two pixels larger than true, so that they are still visible as bricks."""
     courses = masonry(rng, 64, 32, joint=0.9)
     picture = painted(colour, 0.03 * white(rng) + 0.075 * courses.shade)
     return mixed(picture, mortar, 0.55 * courses.joint)
@@ -97,7 +97,7 @@ def facade_plaster() -> Texture:
 
 
 def facade_stone() -> Texture:
-    """Return courses of sandstone with framed windows, as banks and town halls have."""
+    """Return courses of sandstone with framed windows, like those of banks and town halls."""
     rng = source("facade_stone")
     blocks = masonry(rng, 32, 8, joint=1.2)
     grain = 0.025 * white(rng) + 0.03 * fractal(rng, 1.0, longest=100.0)

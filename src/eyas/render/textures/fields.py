@@ -39,7 +39,7 @@ def source(name: str) -> np.random.Generator:
 
 
 def white(rng: np.random.Generator) -> Field:
-    """Return a value for each pixel on its own, mean 0, deviation 1."""
+    """Return an independent value for each pixel, mean 0, deviation 1."""
     return rng.normal(size=(SIZE, SIZE))
 
 
@@ -53,10 +53,10 @@ def fractal(
     """Return cloudy noise, mean 0, deviation 1: amplitude falls as frequency to the minus `slope`.
 
     Args:
-        rng: Of the texture.
+        rng: Random numbers of the texture.
         slope: 0 is white noise, 1 is cloudy, 2 is smooth.
-        longest: Longest wave kept [pixels]; short ones hide that the texture repeats.
-        stretch: Longer features in y and x by these factors.
+        longest: Longest wave [pixels]; a short limit hides that the texture repeats.
+        stretch: Factors on the length of features in y and x.
     """
     frequency_y = np.fft.fftfreq(SIZE)[:, None] * stretch[0]
     frequency_x = np.fft.rfftfreq(SIZE)[None] * stretch[1]
@@ -69,7 +69,7 @@ def fractal(
 
 
 def blurred(field: Field, radius: float) -> Field:
-    """Return a field smoothed by a round bell of standard deviation `radius` [pixels]."""
+    """Return a field smoothed by a Gaussian of standard deviation `radius` [pixels]."""
     y = np.fft.fftfreq(SIZE)[:, None]
     x = np.fft.rfftfreq(SIZE)[None]
     gain = np.exp(-2 * (np.pi * radius) ** 2 * (x**2 + y**2))
@@ -80,9 +80,9 @@ def cracks(rng: np.random.Generator, width: float, share: float) -> Field:
     """Return thin wandering lines, 0 to 1.
 
     Args:
-        rng: Of the texture.
+        rng: Random numbers of the texture.
         width: About half the width of a line [pixels].
-        share: Share of the ground in which there are lines, 0 to 1.
+        share: Share of the area that has lines, 0 to 1.
     """
     hills = fractal(rng, 1.7, longest=140.0)
     steep = np.hypot(hills - np.roll(hills, 1, 0), hills - np.roll(hills, 1, 1)) + 1e-3
@@ -101,9 +101,9 @@ class Masonry:
     joint: Field
     """1 in the joints, 0 on the pieces."""
     across: Field
-    """Place within the piece from left to right, 0 to 1."""
+    """Position within the piece from left to right, 0 to 1."""
     down: Field
-    """Place within the piece from top to bottom, 0 to 1."""
+    """Position within the piece from top to bottom, 0 to 1."""
 
 
 def masonry(
@@ -112,7 +112,7 @@ def masonry(
     """Return rows of pieces.
 
     Args:
-        rng: Of the texture.
+        rng: Random numbers of the texture.
         rows: Rows in the tile; even if `bond` is not 0.
         columns: Pieces in a row.
         joint: Width of the joints [pixels].
@@ -137,12 +137,12 @@ def masonry(
 
 
 def painted(colour: Colour, brightness: Field) -> Picture:
-    """Return a colour made lighter and darker: 0 leaves it, 0.1 is a tenth lighter."""
+    """Return a colour varied in brightness: 0 leaves it unchanged, 0.1 is a tenth lighter."""
     return np.asarray(np.array(colour) * (1.0 + brightness[..., None]), np.float64)
 
 
 def mixed(below: Picture, above: Picture | Colour, share: NDArray[np.floating]) -> Picture:
-    """Return one picture with another laid over it where `share` is 1."""
+    """Return one picture blended with another by `share`: 1 shows only the upper one."""
     weight = np.clip(share, 0.0, 1.0)[..., None]
     return np.asarray(below * (1 - weight) + np.asarray(above) * weight, np.float64)
 

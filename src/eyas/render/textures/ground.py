@@ -72,7 +72,7 @@ def paving() -> Texture:
 
 
 def lawn() -> Texture:
-    """Return yellow-green grass, lively near by and even from far, as in the original."""
+    """Return yellow-green grass, lively from near and even from far, as in the original."""
     return opaque(_grass(source("lawn"), dryness=0.6))
 
 
@@ -87,7 +87,7 @@ def lawn_mown() -> Texture:
 
 
 def _grass(rng: np.random.Generator, dryness: float) -> Picture:
-    """Return grass; `dryness` is how far its dry spots differ."""
+    """Return grass; `dryness` is the difference of its dry spots."""
     blades = fractal(rng, 0.35, longest=10.0, stretch=(1.5, 0.8))
     tufts = fractal(rng, 0.9, longest=28.0)
     cloud = fractal(rng, 1.2, longest=70.0)

@@ -22,13 +22,13 @@ Texture = NDArray[np.uint8]
 
 
 def sand() -> Texture:
-    """Return pale sand with ripples that the wind made, crest lines wandering and forking."""
+    """Return pale sand with wind ripples, whose crest lines wander and fork."""
     rng = source("sand")
     y = np.arange(SIZE)[:, None] / SIZE
     x = np.arange(SIZE)[None] / SIZE
     bend = 0.9 * fractal(rng, 1.8, longest=110.0, stretch=(1.4, 0.8))
     phase = 2 * np.pi * (22 * y + 3 * x) + bend
-    # Steep on the lee side, as blown sand lies.
+    # Steeper on the lee side, as in blown sand.
     ripple = np.sin(phase + 0.5 * np.sin(phase))
     strength = np.clip(0.6 + 0.3 * fractal(rng, 1.6, longest=90.0), 0.1, 1.0)
     grain = 0.03 * white(rng) + 0.018 * fractal(rng, 0.8, longest=60.0)
@@ -77,7 +77,7 @@ def dry_leaves() -> Texture:
         height = fractal(rng, 0.9, longest=9.0)
         leaf = np.clip((height - 0.9) * 5.0, 0, 1)
         picture = mixed(picture, painted(colour, 0.09 * fractal(rng, 0.5, longest=8.0)), leaf)
-        # The lower edge of a leaf lies in its own shade.
+        # The lower edge of a leaf is shaded.
         edge = np.clip((np.roll(height, 1, 0) - 0.9) * 5.0, 0, 1) * (1 - leaf)
         picture *= 1 - 0.25 * edge[..., None]
     moss = np.clip(0.5 * fractal(rng, 1.2, longest=40.0) - 0.55, 0, 1)
@@ -85,7 +85,7 @@ def dry_leaves() -> Texture:
 
 
 def snow() -> Texture:
-    """Return fresh snow: nearly even, faint drifts, a little blue in the hollows, glints."""
+    """Return fresh snow: nearly even, faint drifts, slightly blue hollows, glints."""
     rng = source("snow")
     drift = fractal(rng, 1.2, longest=36.0, stretch=(1.0, 0.8))
     fine = fractal(rng, 0.7, longest=20.0)

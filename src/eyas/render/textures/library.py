@@ -66,7 +66,7 @@ def build_textures() -> dict[str, NDArray[np.uint8]]:
     """Return every texture of `eyas.world.build.materials.TEXTURES`, always the same bytes.
 
     Each is sRGB and alpha, shape (256, 256, 4), and repeats without a seam. Row 0 of an array is
-    the **top** of the tile, v = 1: who samples with v upwards flips the rows. Alpha is 255 but for
-    the holes of `leaves` and the glass of facades, where it is 0.
+    the **top** of the tile, v = 1: code that samples with v upwards flips the rows. Alpha is 255
+    except for the holes of `leaves` and the glass of facades, where it is 0.
     """
     return {name: PAINTERS[name]() for name in TEXTURES}

@@ -1,4 +1,4 @@
-"""Textures as the kernels read them: linear light, mip levels, four bytes a texel."""
+"""Textures as the kernels read them: linear light, mip levels, four bytes per texel."""
 
 from collections.abc import Mapping, Sequence
 
@@ -24,12 +24,12 @@ def packed_layers(
 ) -> NDArray[np.uint32]:
     """Return the named textures with their mip levels, see `Geometry.texture`.
 
-    Colours are stored as square roots of linear light: eight bits are then enough in the dark,
-    and one multiplication gives the light back.
+    Colours are stored as square roots of linear light: eight bits then suffice in the dark, and
+    one multiplication restores the light.
 
     Args:
         textures: sRGB and alpha by name, row 0 on top, shape (256, 256, 4) each.
-        names: Which; the texture of each layer.
+        names: Names of the textures, one for each layer.
 
     Raises:
         UnknownNameError: There is no texture of that name.

@@ -1,4 +1,4 @@
-"""Textures of plants: bark, clusters of leaves with holes between them, and leaves without."""
+"""Textures of plants: bark, clusters of leaves with holes between them, and closed foliage."""
 
 from typing import NamedTuple
 
@@ -13,7 +13,7 @@ _CLUSTER = 128
 """Side of one cluster of leaves; the texture holds two by two [pixels]."""
 
 _BEHIND = (46.0, 60.0, 28.0)
-"""Colour under the holes, which small levels of detail mix in."""
+"""Colour under the holes, which is mixed in at coarse levels of detail."""
 
 
 def bark() -> NDArray[np.uint8]:
@@ -46,7 +46,7 @@ def leaves() -> NDArray[np.uint8]:
 
 
 def foliage() -> NDArray[np.uint8]:
-    """Return leaves over leaves without a hole: clipped hedges, and what is inside of crowns."""
+    """Return leaves without holes: for clipped hedges and the inside of crowns."""
     rng = source("foliage")
     picture = _shade_of_leaves(rng)
     for lightness in (0.56, 0.7, 0.85, 1.0):
@@ -54,13 +54,13 @@ def foliage() -> NDArray[np.uint8]:
             middle, way = rng.uniform(0, SIZE, 2), rng.uniform(0, 2 * np.pi)
             colour = lightness * rng.uniform(0.84, 1.12) * _leaf_colour(rng)
             _paste(_leaf(middle, way, rng.uniform(4.0, 5.8), colour), picture)
-    # Clusters and the clefts between them, still to be seen where single leaves are not.
+    # Clusters and the clefts between them, visible even where single leaves are not.
     clusters = 1.0 + 0.3 * fractal(rng, 1.2, longest=70.0)
     return opaque(picture[..., :3] * np.clip(clusters, 0.35, 1.5)[..., None])
 
 
 def _shade_of_leaves(rng: np.random.Generator) -> NDArray[np.float64]:
-    """Return the dark between leaves, RGBA."""
+    """Return the dark colour between leaves, RGBA."""
     return opaque(painted(_BEHIND, 0.12 * fractal(rng, 0.6, longest=20.0))).astype(np.float64)
 
 
@@ -85,7 +85,7 @@ def _cluster(picture: NDArray[np.float64], rng: np.random.Generator) -> None:
 
 
 def _leaf_colour(rng: np.random.Generator) -> NDArray[np.float64]:
-    """Return dark to olive green, now and then light green or an orange-brown speck."""
+    """Return dark to olive green, occasionally light green or orange-brown."""
     kind = rng.random()
     if kind < 0.006:
         return np.array([184.0, 132.0, 60.0])
@@ -99,9 +99,9 @@ class _Leaf(NamedTuple):
     """A leaf within R x C pixels."""
 
     rows: NDArray[np.int64]
-    """Which, shape (R,)."""
+    """Row indices, shape (R,)."""
     columns: NDArray[np.int64]
-    """Shape (C,)."""
+    """Column indices, shape (C,)."""
     inside: NDArray[np.bool_]
     """Pixels of the leaf, shape (R, C)."""
     colour: NDArray[np.float64]
@@ -126,6 +126,6 @@ def _leaf(
 
 
 def _paste(leaf: _Leaf, picture: NDArray[np.float64]) -> None:
-    """Draw a leaf; what sticks out on one side comes in on the other."""
+    """Draw a leaf; parts beyond one edge reappear at the opposite edge."""
     texels = np.ix_(leaf.rows % len(picture), leaf.columns % len(picture))
     picture[texels] = np.where(leaf.inside[..., None], leaf.colour, picture[texels])

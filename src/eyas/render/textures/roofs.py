@@ -40,7 +40,7 @@ def roof_terrace() -> Texture:
 
 
 def roof_gravel() -> Texture:
-    """Return pale gravel on felt, blown thin in places, moss in others."""
+    """Return pale gravel on felt, thin in some spots, with moss in others."""
     rng = source("roof_gravel")
     stones = 0.13 * white(rng) + 0.05 * fractal(rng, 0.8, longest=40.0)
     picture = painted((164.0, 158.0, 147.0), stones)
@@ -51,7 +51,7 @@ def roof_gravel() -> Texture:
 
 
 def roof_membrane() -> Texture:
-    """Return a pale plastic membrane in sheets of two metres, dirty where water stands."""
+    """Return a pale plastic membrane in sheets of two metres, dirty where water collects."""
     rng = source("roof_membrane")
     sheets = masonry(rng, 2, 4, joint=0.0, bond=0.0)
     dirt = fractal(rng, 1.4, longest=110.0)

@@ -58,6 +58,6 @@ def ground_lobby() -> Texture:
 
 
 def _plinth(wall: Wall) -> None:
-    """Darken the foot of the walls, where rain splashes, but not the doors."""
+    """Darken the feet of the walls, where rain splashes, except at doors."""
     for y in range(0, SIZE, BAY):
         wall.shade(0, y + 58, SIZE, y + BAY, 0.86)

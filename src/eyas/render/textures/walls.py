@@ -11,7 +11,7 @@ Texture = NDArray[np.uint8]
 
 
 def concrete() -> Texture:
-    """Return cast concrete: clouds, pores, streaks that water left."""
+    """Return cast concrete: clouds, pores, streaks left by water."""
     rng = source("concrete")
     cloud = 0.035 * fractal(rng, 1.1, longest=90.0) + 0.03 * white(rng)
     streaks = fractal(rng, 1.0, longest=60.0, stretch=(7.0, 1.0))

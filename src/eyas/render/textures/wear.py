@@ -1,4 +1,4 @@
-"""Textures of what age leaves on roads: worn paint, tyre tracks, oil, repaired asphalt, lids."""
+"""Textures of aged roads: worn paint, tyre tracks, oil, repaired asphalt, manhole lids."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,15 +38,15 @@ def asphalt_patch() -> Texture:
 
 
 def asphalt_lane() -> Texture:
-    """Return the asphalt of one lane, u across it: two tracks that tyres made darker and smoother.
+    """Return the asphalt of one lane, u across it, with two tracks darkened and smoothed by tyres.
 
-    At both edges it is as the texture `asphalt` is.
+    At both edges it equals the texture `asphalt`.
     """
     rng = source("asphalt_lane")
     across = (np.arange(SIZE)[None] + 0.5) / SIZE * 2 - 1
     sway = 0.03 * fractal(rng, 1.5, longest=100.0)
     track = np.exp(-(((np.abs(across + sway) - 0.5) / 0.17) ** 2))
-    # Twice as many texels in a metre across as along: two make one grain of the road's asphalt.
+    # Twice as many texels per metre across as along: two make one grain of the road's asphalt.
     grain = np.repeat(rng.normal(size=(SIZE, SIZE // 2)), 2, axis=1)
     lumps = fractal(rng, 0.8, longest=14.0, stretch=(0.5, 1.0))
     cloud = fractal(rng, 1.0, longest=70.0, stretch=(0.5, 1.0))

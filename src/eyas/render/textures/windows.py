@@ -1,4 +1,4 @@
-"""How windows are painted into walls: a grid of four storeys and four bays, 64 pixels each.
+"""Painting of windows into walls: a grid of four storeys and four bays, 64 pixels each.
 
 Rows grow downwards; row 0 of a storey is its top.
 """
@@ -39,9 +39,9 @@ class Opening:
     thick: int = 2
     """Width of the frame."""
     upright: int = 1
-    """Bars from top to bottom."""
+    """Number of vertical bars."""
     level: int = 0
-    """Bars from side to side."""
+    """Number of horizontal bars."""
     glass: Colour = (46.0, 56.0, 66.0)
     """Colour of a dark room behind it."""
     curtained: float = 0.45
@@ -49,7 +49,7 @@ class Opening:
 
 
 class Wall:
-    """A wall that is being painted: colours, and where there is glass."""
+    """A wall that is being painted: its colours, and the areas of glass."""
 
     def __init__(self, surface: Picture, rng: np.random.Generator) -> None:
         self.picture = surface.copy()
@@ -58,7 +58,7 @@ class Wall:
         self._grain = 1 + 0.02 * white(rng)
 
     def rect(self, left: int, top: int, right: int, bottom: int, colour: Colour) -> None:
-        """Paint an opaque rectangle; parts beyond the edges come in on the other side."""
+        """Paint an opaque rectangle; parts beyond one edge reappear at the opposite edge."""
         rows = np.arange(top, bottom) % SIZE
         columns = np.arange(left, right) % SIZE
         box = np.ix_(rows, columns)
@@ -91,12 +91,12 @@ class Wall:
         for k in range(1, opening.level + 1):
             at = top + round(k * (bottom - top) / (opening.level + 1))
             self.rect(left + t, at - 1, right - t, at + 1, opening.frame)
-        # The wall's own depth throws a shadow on the window's head and one side.
+        # The wall's own depth casts a shadow on the window's top and one side.
         self.shade(left, top, right, top + 3, 0.55)
         self.shade(left, top + 3, left + 2, bottom, 0.75)
 
     def _room(self, left: int, top: int, right: int, bottom: int, opening: Opening) -> None:
-        """Paint what is seen through a pane: a dark room, and perhaps a blind or curtains."""
+        """Paint the view through a pane: a dark room, and perhaps a blind or curtains."""
         rng, height, width = self._rng, bottom - top, right - left
         dark = np.array(opening.glass) * rng.uniform(0.75, 1.25)
         fade = np.linspace(1.2, 0.8, height)[:, None, None]

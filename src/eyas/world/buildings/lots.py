@@ -139,7 +139,7 @@ def _free_box(lot: Lot, rng: np.random.Generator) -> tuple[float, float, float, 
 
 
 def _size(lot: Lot, width: float, depth: float, area: float) -> tuple[float, float]:
-    """Return the sides of a box of about `area` that fits, shortened on the side away from the street."""
+    """Return the sides of a fitting box of about `area`, shortened away from the street."""
     if area < width * depth:
         facing_x = lot.street[0] or lot.street[1]
         facing_y = lot.street[2] or lot.street[3]
@@ -175,7 +175,7 @@ def _anchored(low: float, high: float, size: float, at_low: bool, at_high: bool)
 def _outline(
     kind: str, width: float, depth: float, rng: np.random.Generator
 ) -> NDArray[np.float64]:
-    """Return counter-clockwise corners within (0, 0) to (width, depth), in a random rotation."""
+    """Return counter-clockwise corners within (0, 0) to (width, depth), mirrored at random."""
     wing = [max(_snapped(0.4 * side), 0.3 * side) for side in (width, depth)]
     notch = [max(BAY, _snapped(0.2 * side)) for side in (width, depth)]
     across = (width - wing[0]) / 2

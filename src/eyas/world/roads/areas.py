@@ -125,7 +125,7 @@ def corners(roads: shapely.Geometry, sharp: shapely.Geometry) -> list[shapely.Po
         roads: From `road_area` [m].
         sharp: From `corridors` [m].
     """
-    # Both are rounded to millimetres, so that no slivers between them join two corners.
+    # Both are rounded to millimetres; the 2 cm remove slivers, which would join two corners.
     added = polygons_of(shapely.difference(roads, shapely.buffer(sharp, 0.02, join_style="mitre")))
     return [shapely.buffer(part.centroid, _AT_CORNER) for part in added if part.area > 2.0]
 

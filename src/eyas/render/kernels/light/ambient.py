@@ -1,4 +1,4 @@
-"""Ambient occlusion: how much light of the sky reaches a place, baked on the ground plane."""
+"""Ambient occlusion: the share of the sky's light that reaches a point, baked on the ground."""
 
 import math
 from typing import NamedTuple
@@ -14,24 +14,24 @@ from eyas.render.kernels.scalars import f4, u4
 __all__ = ["BOUNCED", "LEAVES", "OpennessBake", "bake_openness", "openness"]
 
 DIRECTIONS = 16
-"""Ways in which the horizon is sought."""
+"""Number of directions in which the horizon is searched."""
 
 STEPS = 14
-"""Places that are looked at in each."""
+"""Number of points examined in each direction."""
 
 LEAVES = 0.6
-"""Share of the light that a crown keeps."""
+"""Share of the light that a crown absorbs."""
 
 BOUNCED = 0.42
-"""Share of the sky's light that comes by way of walls and ground where the sky itself is hidden."""
+"""Share of the sky's light that arrives by way of walls and ground where the sky is hidden."""
 
 _ASIDE = f4(0.9)
-"""How far before a wall the light that falls on it is looked up [m]."""
+"""Distance in front of a wall at which its light is looked up [m]."""
 
 
 @inner_kernel
 def _distance(step: int) -> float:
-    """Return how far off a place is [m]: 1 to 70, each half as far again, about."""
+    """Return the distance of a point [m]: 1 to 70, each about half as far again as the last."""
     return float(0.9 * (1.36**step))
 
 
@@ -45,8 +45,8 @@ def _open_share(
 ) -> tuple[float, float]:
     """Return the share of the sky's light on a texel's ground, and the height of what hides it.
 
-    A flat surface gets the share cos^2 of the horizon's angle from each way round, if the sky is
-    as bright everywhere.
+    Each direction contributes cos^2 of the horizon's angle, the share on a flat surface below
+    a uniformly bright sky.
     """
     rows, columns = solid.shape
     total, height, weight = 0.0, 0.0, 1e-6
@@ -76,7 +76,7 @@ def _open_share(
 
 
 class OpennessBake(NamedTuple):
-    """What `bake_openness` reads and writes."""
+    """Input and output of `bake_openness`."""
 
     texel: float
     """Side of a texel [m]."""
@@ -92,8 +92,8 @@ class OpennessBake(NamedTuple):
 def bake_openness(parts: Pointer[tuple[Pointer[OpennessBake]]], worker: int, workers: int) -> None:
     """Fill `AmbientMap.openness`.
 
-    Below houses the ground of the nearest texel outside is taken, up to 3 texels in: that is
-    where the feet of walls are looked up; what is farther in is open, for roofs.
+    Below buildings it copies the nearest texel outside, up to 3 texels in, where the feet of
+    walls are looked up; farther in, the map is open, for roofs.
     """
     texel, solid, crowns, result = parts[0][0][0]
     for row in range(worker, solid.shape[0], workers):

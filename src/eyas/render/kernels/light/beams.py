@@ -1,4 +1,4 @@
-"""What the head and tail lamps of vehicles throw on the road."""
+"""Light of vehicles' head and tail lamps on the road."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,18 +12,18 @@ from eyas.render.kernels.visibility.cull import sphere_is_visible
 __all__ = ["cast_beam"]
 
 _REACH = 34.0
-"""How far ahead of a vehicle its lamps light the road [m]."""
+"""Distance ahead of a vehicle up to which its lamps light the road [m]."""
 
 _BEHIND = 5.0
-"""How far behind it its tail lamps do [m]."""
+"""The same for its tail lamps, behind it [m]."""
 
 
 @inlined_kernel
 def _head(ahead: float, aside: float, rise: float) -> float:
     """Return the light at a point ahead of a vehicle's front [m], 0 to 1.
 
-    A dipped beam as its pattern on the road is: a fan that starts under the bumper, is brightest a
-    car's length ahead, fades with distance and is cut off above the lamps.
+    The pattern of a dipped beam on the road: a fan that starts under the bumper, is brightest
+    a car's length ahead, fades with distance and is cut off above the lamps.
     """
     if ahead <= 0.0 or ahead >= _REACH or rise > 1.2:
         return 0.0

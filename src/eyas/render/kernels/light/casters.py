@@ -1,7 +1,7 @@
 """Soft shadows of moving things, and the light of their lamps.
 
-Each is two upright boxes, as a car is a body and a cabin, and a shadow is drawn where the way to
-the sun leads through one.
+Each thing is represented by two upright boxes, like the body and cabin of a car; a point is in
+shadow where its line to the sun passes through one of them.
 """
 
 import math
@@ -165,7 +165,7 @@ def cast_light(
     caster: NDArray[np.float64],
     shade: NDArray[np.uint8],
 ) -> None:
-    """Write what moving things take of the light of each sample, and what they add.
+    """Write the share of light that moving things let through to each sample, and their own light.
 
     Slots in a row with the same object id are one thing.
 

@@ -1,4 +1,4 @@
-"""Light of street lamps, of windows and of what else shines by itself."""
+"""Light of street lamps, windows and other sources."""
 
 import math
 
@@ -12,13 +12,13 @@ from eyas.render.kernels.scalars import f4, u4
 __all__ = ["night_light", "window_light"]
 
 _HEAD = f4(0.95 / 255.0)
-"""Light of head lamps where it is brightest, for each step of `Scratch.shade`."""
+"""Brightest light of head lamps, for each step of `Scratch.shade`."""
 
 _TAIL = f4(0.16 / 255.0)
-"""The same of tail lamps."""
+"""The same for tail lamps."""
 
 _FULL = f4(0.4536)
-"""Cosine of the angle to which a beam is even: the original's 1.1 rad."""
+"""Cosine of the angle up to which a beam is even: the original's 1.1 rad."""
 
 _BAYS = f4(4.0)
 """Windows along a side of one repeat of a facade's texture."""
@@ -109,8 +109,8 @@ def window_light(
 ) -> tuple[float, float, float]:
     """Return the light behind the window at (u, v) of a facade: dark, or one of a few lights.
 
-    Which rooms are lit is drawn from the building and the window's place, so it is the same in
-    every picture. Where windows are smaller than a pixel, their mean is returned.
+    The building and the position of the window determine which rooms are lit, so the result is
+    the same in every picture. For windows smaller than a pixel, their mean is returned.
 
     Args:
         light: Its share of lit windows.

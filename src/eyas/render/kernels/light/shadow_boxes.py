@@ -1,4 +1,4 @@
-"""Light that the two boxes of a moving thing keep from a point."""
+"""Light that the two boxes of a moving thing block."""
 
 import math
 
@@ -10,10 +10,10 @@ from eyas.core.jit import inlined_kernel, inner_kernel
 __all__ = ["darken"]
 
 _UNDER = 0.88
-"""Share of the sky's light that a car keeps from the ground under it."""
+"""Share of the sky's light that a car blocks on the ground under it."""
 
 _INSET = 0.3
-"""How far inside the edge of a body that begins [m]."""
+"""Distance from the edge of a body inwards at which the blocking begins [m]."""
 
 
 @inlined_kernel

@@ -1,4 +1,4 @@
-"""The shadow map: how high towards the sun the first thing stands that sunlight meets."""
+"""The shadow map: height towards the sun of the first surface that sunlight meets."""
 
 from typing import NamedTuple
 
@@ -17,20 +17,20 @@ BAND = 256
 """Rows of the map that are drawn at a time."""
 
 LEAF_LEVEL = 3
-"""Mip level of the holes between leaves: of the size of the map's texels."""
+"""Mip level of the holes between leaves, matched to the size of the map's texels."""
 
 THICKER = 0.3
-"""What thin things are widened by on all sides [texels]: narrower than a texel, the shadow of a
-pole would break into pieces."""
+"""Margin added to all sides of thin things [texels]: the shadow of a pole narrower than a
+texel would break into pieces."""
 
 
 class ShadowBake(NamedTuple):
-    """What `bake_rows` reads and writes, K workers."""
+    """Input and output of `bake_rows`, K workers."""
 
     geometry: Geometry
     cards: NDArray[np.int32]
-    """Of each material: 0 if it is solid; n if one leaf card in n is drawn, with its holes; -1 if
-    none is."""
+    """For each material: 0 if it is solid; n if one leaf card in n is drawn, with its holes; -1
+    if none is drawn."""
     thin: NDArray[np.bool_]
     """Whether each prototype of the fixtures may be narrower than a texel."""
     rows: NDArray[np.float64]
@@ -99,7 +99,7 @@ def _draw(
 ) -> None:
     """Draw one mesh from above the sun, leaves with their holes.
 
-    Across a leaf heights differ little, so that `rasterise` may take them for 1/w.
+    Heights differ little across a leaf, so `rasterise` may use them in place of 1/w.
     """
     lowest, highest = 1e9, -1e9
     for i in range(ranges[3] - ranges[2]):

@@ -1,4 +1,4 @@
-"""The light of one view: the weather's, changed by what the view asks for."""
+"""The light of one view: the weather's, with the changes of the view."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,11 +14,11 @@ __all__ = ["view_light"]
 def view_light(light: Light, change: NDArray[np.float32], rows: NDArray[np.float32]) -> Light:
     """Return the light of a view, kept in working memory.
 
-    The air's colour is light of the sky that it scatters; what comes back from the ground is
-    light of both.
+    The air's colour is scattered light of the sky; light reflected by the ground comes from both
+    sky and sun.
 
     Args:
-        light: Of the weather.
+        light: Light of the weather.
         change: Factor on the sky, factor on the sun, fog density [1/m], shape (3,).
         rows: Working memory, see `Scratch.light`.
     """

@@ -1,4 +1,4 @@
-"""The sky's pixels: what is behind all things."""
+"""Pixels of the sky, behind all things."""
 
 import math
 
@@ -16,7 +16,7 @@ __all__ = ["draw_backdrop"]
 
 @inlined_kernel
 def _shows_sky(owners: NDArray[np.int64]) -> bool:
-    """Return whether any is negative, without a branch for each: most rows show no sky."""
+    """Return whether any owner is negative, without a branch for each: most rows show no sky."""
     signs = i8(0)
     for k in range(len(owners)):
         signs |= owners[k]
@@ -33,9 +33,9 @@ def draw_backdrop(
     owner: NDArray[np.int64],
     output: NDArray[np.uint8],
 ) -> None:
-    """Write the sky at the middle of each pixel in which any sample shows it.
+    """Write the sky at the centre of each pixel in which any sample shows it.
 
-    Apart from `shade_band`, so that what shades surfaces stays small.
+    Separate from `shade_band`, so that the code that shades surfaces stays small.
 
     Args:
         samples: Samples along a side of each pixel, 1 or 2.

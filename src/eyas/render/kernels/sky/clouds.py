@@ -28,7 +28,7 @@ _TILE, _FINE, _THIN = f4(256.0 / 9.0), f4(256.0 / 2.1), f4(256.0 / 60.0)
 _DENSE = f4(50.0)
 """Extinction inside a heap [1/km]."""
 _BUMP = f4(0.15)
-"""How much details take away from a heap [km]."""
+"""Depth by which details reduce a heap [km]."""
 
 
 @inlined_kernel
@@ -56,16 +56,16 @@ def _reach(climb: float, height: float) -> float:
 
 
 class CloudRays(NamedTuple):
-    """What `cloud_rays` reads and writes."""
+    """Input and output of `cloud_rays`."""
 
     field: NDArray[np.float32]
     """Height of the heaps' tops over their base, or minus the distance to the next heap, and height
     of the clouds' sunlit surface [km], details 0 to 1, and opacity of the thin clouds, 0 to 1; it
     repeats; shape (256, 256, 4)."""
     sines: NDArray[np.float32]
-    """Of the elevation of each row."""
+    """Sine of the elevation of each row."""
     directions: NDArray[np.float32]
-    """Unit vectors in plan of each column, shape (., 2)."""
+    """Horizontal unit vector of each column, shape (., 2)."""
     output: NDArray[np.uint8]
     """Opacity, and brightness times opacity, 0 to 255, shape (rows, columns, 2)."""
 
@@ -74,11 +74,11 @@ class CloudRays(NamedTuple):
 def cloud_rays(parts: Pointer[tuple[Pointer[CloudRays]]], worker: int, workers: int) -> None:
     """Fill the panorama.
 
-    Light that is scattered often falls off as `1 / (1 + depth)`, not exponentially; `depth` is how
-    far below the sunlit surface of the clouds a point lies.
+    Multiply scattered light falls off as `1 / (1 + depth)`, not exponentially; `depth` is the
+    distance of a point below the sunlit surface of the clouds.
     """
     field, sines, directions, output = parts[0][0][0]
-    # Far clouds take longest, so no worker gets all of them.
+    # Far clouds take longest, so they are spread over all workers.
     for row in range(worker, len(sines), workers):
         climb = sines[row] / math.sqrt(max(f4(1.0) - sines[row] * sines[row], f4(1e-6)))
         _cloud_row(field, climb, directions, output[row])
@@ -105,9 +105,9 @@ def _cloud_row(
 
 @inlined_kernel
 def _heaps(field: NDArray[np.float32], x: float, y: float, climb: float) -> tuple[float, float]:
-    """Return how much light passes the heaps along a ray, and how bright they are.
+    """Return the share of light that passes the heaps along a ray, and their brightness.
 
-    Long steps outside, short ones from a step before the first heap that is met.
+    Steps are long outside clouds, and short from one step before the first heap.
     """
     one, zero = f4(1.0), f4(0.0)
     first, last = _reach(climb, _BASE), _reach(climb, _TOP)
@@ -120,7 +120,7 @@ def _heaps(field: NDArray[np.float32], x: float, y: float, climb: float) -> tupl
         height = away * climb + away * away * _CURVE - _BASE
         top = _smooth(field, x * away * _TILE, y * away * _TILE, 0)
         if top <= height:
-            # Less than 0: the distance to the next heap.
+            # Negative: minus the distance to the next heap.
             away += max(short if near > 0 else long, -top)
             near -= 1
             continue
@@ -129,7 +129,7 @@ def _heaps(field: NDArray[np.float32], x: float, y: float, climb: float) -> tupl
             near = 8
             continue
         near = 8
-        # Taken aslant, and in two ways, or details would be upright folds.
+        # Sampled at a slant, and in two ways; otherwise details would form vertical folds.
         fine_x, fine_y, lean = x * away * _FINE, y * away * _FINE, f4(90.0) * height
         bump = f4(2.2) * _smooth(field, fine_x + lean, fine_y - lean, 2)
         bump = max(bump * _smooth(field, fine_y - lean, f4(128.0) - fine_x, 2), f4(0.25))

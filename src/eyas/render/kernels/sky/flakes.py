@@ -1,8 +1,8 @@
-"""Snow that falls through the air, drawn over a finished band.
+"""Falling snow, drawn over a finished band.
 
-Flakes hang in a lattice of cells that sinks with the wind: where each is depends on its cell and
-the time only, so they pass the camera as real ones do, and one instant always looks the same.
-Around the camera are shells, the farther with larger cells: flakes far off would be too many.
+Flakes lie in a lattice of cells that sinks with the wind. The position of each depends only on
+its cell and the time, so flakes pass the camera as real ones do, and one instant always looks the
+same. Around the camera are shells, the farther with larger cells, to limit the number of flakes.
 """
 
 import math
@@ -27,29 +27,29 @@ NEAREST = 0.7
 
 GROWTH = 2.6
 CELLS, MOST = 6.0, 10.0
-"""Cells from the camera to the end of a shell; flakes in a cell in a heavy fall."""
+"""Cells from the camera to the end of a shell; largest number of flakes in a cell."""
 
 WIND_X, WIND_Y, SINKING, SWAY = 0.55, 0.3, 1.25, 0.06
-"""Speed of flakes [m/s], and how far they sway aside [m]."""
+"""Velocity of flakes [m/s], and amplitude of their sway [m]."""
 
 EXPOSED = 1.0 / 110.0
-"""How long the picture takes: flakes are streaks [s]."""
+"""Exposure time of the picture, which turns flakes into streaks [s]."""
 
 SMALLEST = 0.35
-"""Radius below which flakes are not seen [pixels]."""
+"""Radius below which flakes are invisible [pixels]."""
 
 
 class FlakeView(NamedTuple):
-    """A view that flakes are drawn into, and its picture."""
+    """A view and its picture, into which flakes are drawn."""
 
     samples: int
     """Samples along a side of each pixel."""
     top: int
     """Row of the picture that is row 0 of `output`."""
     light: Light
-    """Of the view; says how thick it snows."""
+    """Light of the view; contains the strength of the snowfall."""
     instant: float
-    """[s]"""
+    """Time [s]."""
     eye: NDArray[np.float64]
     axes: NDArray[np.float64]
     lens: NDArray[np.float64]
@@ -62,14 +62,14 @@ class FlakeView(NamedTuple):
 
 @inlined_kernel
 def _wave(turn: float) -> float:
-    """Return about the sine of so many turns: parabolas."""
+    """Return approximately the sine of an angle given in turns, made of parabolas."""
     part = turn - math.floor(turn) - 0.5
     return float(16.0 * part * (abs(part) - 0.5))
 
 
 @inlined_kernel
 def _white(light: Light, k: int) -> int:
-    """Return a flake's byte: it is lit by the sky and, as the sun shines through, a bit by it."""
+    """Return a flake's byte: it is lit by the sky and, a little, by sunlight shining through."""
     return tone_byte(light, f4(1.1) * light.ambient_up[k] + f4(0.35) * light.sun_colour[k])
 
 
@@ -86,7 +86,7 @@ def let_flakes_fall(view: FlakeView) -> None:
 
 @inlined_kernel
 def _radius(size: float, distance: float) -> float:
-    """Return the radius of a flake [m]; the far ones stand for some more."""
+    """Return the radius of a flake [m]; a distant flake represents several."""
     return (0.4 + 0.6 * size) * (0.0035 + 0.0007 * distance)
 
 
@@ -184,7 +184,7 @@ def _draw_flake(
     ahead, left, up = _seen_from(axes, x, y, z)
     if ahead < begin or ahead > end:
         return
-    # From where it came while the picture was taken.
+    # From its position at the start of the exposure.
     _, aside, above = _seen_from(axes, -WIND_X * EXPOSED, -WIND_Y * EXPOSED, SINKING * EXPOSED)
     radius = _radius(size, ahead) * lens[3] / ahead
     if radius < SMALLEST:
@@ -228,7 +228,7 @@ def _smear(
     if first >= last or start >= stop:
         return
     length = math.sqrt(to_column * to_column + to_row * to_row)
-    # A small one covers part of a pixel, a moving one is in each place for part of the time.
+    # A small flake covers part of a pixel; a moving one is in each pixel part of the time.
     strength = (radius / drawn) ** 2 * min(1.0, 2.6 * drawn / (drawn + length))
     strength *= 0.9 / (1.0 + 0.09 * max(radius - 2.0, 0.0))
     red, green, blue = _white(light, 0), _white(light, 1), _white(light, 2)

@@ -1,8 +1,8 @@
 """Pictures of the whole sky round a viewer, looked up by direction.
 
-Columns go round the horizon by a measure of azimuth that needs no trigonometry: along the square
-|x| + |y| = 1, from 0 in the east over 1 in the north to 4. Rows start at the horizon. A column's
-or row's value is that of its middle.
+Columns go round the horizon by a measure of azimuth that needs no trigonometry: along the
+square |x| + |y| = 1, from 0 in the east over 1 in the north to 4. Rows start at the horizon. The
+value of a column or row is that at its centre.
 """
 
 import numpy as np
@@ -16,7 +16,7 @@ __all__ = ["azimuth", "panorama"]
 
 @inlined_kernel
 def azimuth(x: float, y: float) -> float:
-    """Return where around the horizon the direction (x, y) lies, 0 to 4."""
+    """Return the azimuth of the direction (x, y), 0 to 4."""
     share = y / (abs(x) + abs(y) + f4(1e-9))
     if x < f4(0.0):
         share = f4(2.0) - share
@@ -27,7 +27,7 @@ def azimuth(x: float, y: float) -> float:
 
 @inlined_kernel
 def panorama(values: NDArray[np.uint8], row: float, around: float, channel: int) -> float:
-    """Return a channel, 0 to 1, blended from the four values around a place.
+    """Return a channel, 0 to 1, interpolated between the four nearest values.
 
     Args:
         values: Shape (rows, columns, channels); the number of columns is a power of 2.

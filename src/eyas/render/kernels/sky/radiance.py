@@ -20,28 +20,28 @@ CLOUD_BEND = 0.8
 """Rows of the clouds' panorama lie at `z (1 + bend) / (z + bend)`: closer near the horizon."""
 
 CLOUDS_FROM = 0.02
-"""Sine of the elevation from which on clouds are seen."""
+"""Sine of the elevation above which clouds are visible."""
 
 HILL_TOP = 0.08
 """Sine of the elevation at which the hills' panorama ends."""
 
 HAZE_END = 4.0
-"""Distance from which on land gets no hazier, and at which the hills begin [km]. So the foot of the
-hills, up to the horizon, looks as the end of the land does, however high the viewer is."""
+"""Distance beyond which land gets no hazier, and at which the hills begin [km]. So the foot of
+the hills matches the end of the land, however high the viewer is."""
 
 HILL_FARTHEST = 14.0
 """Distance of the farthest hills [km]."""
 
 _BEYOND = f4(1000.0 * (HILL_FARTHEST - HAZE_END))
 _HAZE_DEPTH = f4(0.25 * 150.0)
-"""A quarter of how deep the haze would be if it were as thick all the way up [m]."""
+"""A quarter of the depth of the haze if it were equally thick all the way up [m]."""
 _FOOT = f4(0.012)
-"""Sine of the elevation in which plain turns into hills."""
+"""Sine of the elevation over which the plain turns into hills."""
 
 
 @inlined_kernel
 def _air(light: Light, x: float, y: float, z: float) -> tuple[float, float, float, float, float]:
-    """Return the radiance of a cloudless sky, how clear the view out of the haze is, and glow.
+    """Return the radiance of a cloudless sky, the transparency of the haze, and the sun's glow.
 
     Paler towards the horizon, and brighter round the sun.
     """
@@ -75,9 +75,9 @@ def _air(light: Light, x: float, y: float, z: float) -> tuple[float, float, floa
 
 @inlined_kernel
 def sky(light: Light, x: float, y: float, z: float) -> tuple[float, float, float]:
-    """Return what is seen in a direction of length 1 in which no thing stands.
+    """Return the colour of a direction of length 1 in which nothing stands.
 
-    Air, the sun or the moon, clouds before them, hills before all, and below them far land.
+    Air, the sun or the moon, clouds in front of them, hills in front of all, far land below.
     """
     around = azimuth(x, y)
     cover = f4(1.0)
@@ -208,7 +208,7 @@ def reflection(
     graze = f4(1.0) - facing
     square = graze * graze
     share = least + (f4(1.0) - least) * square * square * graze
-    # Low things, not the pale horizon, are what upright surfaces mirror in a street.
+    # In a street, upright surfaces mirror low things, not the pale horizon.
     z -= f4(0.12)
     red, green, blue, _, _ = _air(light, x, y, z)
     below = min(max(f4(-6.0) * z, f4(0.0)), f4(1.0))

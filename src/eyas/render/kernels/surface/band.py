@@ -1,4 +1,4 @@
-"""From who owns each sample to the bytes of the picture."""
+"""Shading of a band: from the owner of each sample to the bytes of the picture."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,10 +50,10 @@ def shade_band(
     frame: NDArray[np.float32],
     output: NDArray[np.uint8],
 ) -> None:
-    """Write the pixels of a band; those of the sky are there, see `draw_backdrop`.
+    """Write the pixels of a band except the sky, which `draw_backdrop` has already written.
 
-    A pixel of four samples is computed once where all show one triangle, at its centre: 1/w is
-    linear on the screen, so there it is the mean of the four.
+    A pixel whose four samples show one triangle is computed once, at its centre: 1/w is linear
+    on the screen, so its value there is the mean of the four.
 
     Args:
         samples: Samples along a side of each pixel, 1 or 2.

@@ -87,7 +87,7 @@ def _albedo(
 
 @inlined_kernel
 def _smoothness(surface: int, alpha: float) -> float:
-    """Return the share of light that a surface mirrors when looked at straight."""
+    """Return the share of light that a surface mirrors at normal incidence."""
     if surface == PAINT:
         return f4(0.05)
     if surface == GLASS:
@@ -163,7 +163,7 @@ def shade_point(
         blue *= frame[14]
     elif surface == WATER:
         slope_x, slope_y = water_slope(geometry.texture, geometry.layer[material], level, u, v)
-        # Seen along the water, the far sides of waves are hidden: none mirrors the ground.
+        # Seen at a grazing angle, the far sides of waves are hidden: none mirrors the ground.
         calm = min(max(f4(1.5) * cosine, f4(0.1)), one)
         slope_x *= calm
         slope_y *= calm
@@ -199,7 +199,7 @@ def shade_point(
     window_r, window_g, window_b = zero, zero, zero
     if shown > zero:
         window_r, window_g, window_b = window_light(light, geometry.object_id, t, level, u, v)
-        # Through blinds and curtains, which are paler than dark rooms, more light comes out.
+        # Blinds and curtains are paler than dark rooms, so more light comes out through them.
         window_r *= shown * (f4(0.35) + shown * red)
         window_g *= shown * (f4(0.35) + shown * green)
         window_b *= shown * (f4(0.35) + shown * blue)
@@ -213,7 +213,7 @@ def shade_point(
         if surface == FACADE:
             share *= one - alpha
         elif surface == PAINT:
-            share *= f4(0.6)  # clear coat is no mirror, even seen along it
+            share *= f4(0.6)  # clear coat is no mirror, even at a grazing angle
         red += share * (mr - red)
         green += share * (mg - green)
         blue += share * (mb - blue)

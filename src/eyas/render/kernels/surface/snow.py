@@ -1,4 +1,4 @@
-"""Snow: it lies on what faces up, in patches where it is thin, and wheels push it off roads."""
+"""Snow: on surfaces that face up, in patches where thin, pushed off roads by wheels."""
 
 import math
 from enum import IntEnum
@@ -12,18 +12,18 @@ __all__ = ["Bed", "snowed"]
 
 
 class Bed(IntEnum):
-    """What snow does on a material."""
+    """Behaviour of snow on a material."""
 
     BARE = 0
-    """None stays."""
+    """No snow stays."""
     OPEN = 1
-    """It lies as it fell."""
+    """Snow lies as it fell."""
     DRIVEN = 2
-    """Roads and their paint: wheels wear it off."""
+    """Roads and their paint: wheels wear the snow off."""
     LEAVES = 3
-    """Crowns of trees: clumps on boughs."""
+    """Crowns of trees: clumps on branches."""
     VEHICLE = 4
-    """Painted sheets of vehicles: dust on what is level."""
+    """Painted body of vehicles: a thin layer on level surfaces."""
 
 
 BARE, DRIVEN = int(Bed.BARE), int(Bed.DRIVEN)
@@ -81,8 +81,8 @@ def _on_leaves(
 ) -> tuple[float, float]:
     """Return the share of a crown that snow hides, and how bright that is.
 
-    It lies in clumps on boughs, less at the sides and hardly below, and on the upper leaves, which
-    are the bright ones of the texture: the dark gaps between them stay.
+    It lies in clumps on branches, less at the sides and hardly below, and on the upper leaves,
+    which are the bright ones of the texture: the dark gaps between them stay.
 
     Args:
         colour: Of the leaves.
@@ -116,7 +116,7 @@ def _on_road(
     """
     ragged = worn * (f4(0.56) + f4(0.56) * grain + f4(0.36) * fine)
     share = f4(0.9) * max(_clip(f4(1.22) - f4(1.5) * ragged), f4(0.06))
-    # Wheels press and soil what they do not push away.
+    # Wheels compress and soil the snow that they do not push away.
     light = f4(0.96) - f4(0.52) * _clip(f4(1.3) * ragged) + f4(0.06) * (grain - f4(0.5))
     wet = f4(1.0) - f4(0.34) * _clip(f4(1.6) * ragged)
     return _mixed((wet * colour[0], wet * colour[1], wet * colour[2]), share, light)
@@ -168,15 +168,15 @@ def snowed(
         grain = _seen_noise(own[0], own[1], f4(9.0), footprint)
         share = depth * _clip(f4(9.0) * (rise - f4(0.9))) * (f4(0.1) + f4(0.1) * grain)
         return _mixed(colour, share, f4(0.9))
-    # It is blown against kerbs and the feet of walls.
+    # Wind piles it up against kerbs and the feet of walls.
     foot = _clip(f4(1.6) - f4(5.0) * point[2])
     if rise < f4(0.1) and foot <= f4(0.0):
         return colour
     if bed == DRIVEN and rise > f4(0.9):
-        worn = f4(0.45)  # no lane of the map leads over bridges
+        worn = f4(0.45)  # the map of tracks does not cover bridges
         if point[2] < f4(1.0):
             worn = _worn(light, x, y, footprint)
-        # Turned, each another way: the squares of noise are not to be seen.
+        # Each turned differently, to hide the square cells of the noise.
         grain = _seen_noise(x + f4(0.5) * y, y - f4(0.5) * x, f4(1.9), footprint)
         fine = _seen_noise(x - f4(0.7) * y, y + f4(0.7) * x, f4(7.5), footprint)
         return _on_road(colour, worn + f4(1.2) * (one - depth), grain, fine)

@@ -1,4 +1,4 @@
-"""Textures: the level of detail, and smooth look-up.
+"""Textures: level of detail and smooth lookup.
 
 A layer holds 256 x 256 texels, then its mip levels down to one texel, in one row.
 """
@@ -14,7 +14,7 @@ __all__ = ["coverage", "level_of", "texel"]
 
 @inlined_kernel
 def level_of(texels_squared: float) -> int:
-    """Return the mip level, 0 to 8, for how many texels, squared, one pixel spans."""
+    """Return the mip level, 0 to 8, from the squared number of texels that a pixel spans."""
     level = 0
     limit = f4(2.0)
     while level < 8 and texels_squared > limit:
@@ -25,14 +25,14 @@ def level_of(texels_squared: float) -> int:
 
 @inlined_kernel
 def _fraction(x: float) -> float:
-    """Return what is above the next lower whole number; rounding to zero is quicker than down."""
+    """Return the fractional part of a number; truncation is faster than rounding down."""
     part = x - f4(i4(x))
     return part + f4(1.0) if part < f4(0.0) else part
 
 
 @inlined_kernel
 def _first_texel(level: int) -> int:
-    """Return where a level starts: 65536 + 16384 + ... = (4^9 - 4^(9 - level)) / 3."""
+    """Return the first texel of a level: 65536 + 16384 + ... = (4^9 - 4^(9 - level)) / 3."""
     return (262144 - (262144 >> (2 * level))) // 3
 
 

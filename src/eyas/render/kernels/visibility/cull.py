@@ -1,4 +1,4 @@
-"""What can be seen: boxes and spheres against the planes of a band of a view."""
+"""Culling: boxes and spheres against the planes of a band of a view."""
 
 import math
 
@@ -21,7 +21,7 @@ def set_planes(
     bottom: float,
     planes: NDArray[np.float64],
 ) -> None:
-    """Compute the planes around what rows `top` to `bottom` of a picture show.
+    """Compute the planes around the space that rows `top` to `bottom` of a picture show.
 
     A point is inside a plane if `plane[:3] @ point + plane[3] >= 0`; `plane[4]` is the length
     of the normal.
@@ -72,7 +72,7 @@ def visible_chunks(
 ) -> int:
     """List the chunks to draw in `order`, nearest first; return how many there are.
 
-    The chunk is in the low 32 bits of each entry. Above stands its distance in millimetres, so
+    The low 32 bits of each entry hold the chunk, the bits above its distance in millimetres, so
     that no two entries are equal and the order does not depend on the band.
     """
     count = 0

@@ -1,4 +1,4 @@
-"""Meshes into the visibility buffer."""
+"""Drawing of meshes into the visibility buffer."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +18,7 @@ FOLIAGE = int(Surface.FOLIAGE)
 VERTICES = int(DrawStage.VERTICES)
 
 PIXELS_PER_TRIANGLE = 1.5
-"""A level of detail is fine enough if its triangles are about this large."""
+"""Size of the triangles for which a level of detail is fine enough [pixels]."""
 
 SMALLEST_HOLES = 4
 """Mip level from which on leaves have no holes: a leaf would be smaller than a pixel."""
@@ -86,7 +86,7 @@ def draw_mesh(
     bottom = top + depth.shape[0]
     for triangle in range(ranges[index, 0], ranges[index, 1]):
         if geometry.size[triangle] < smallest:
-            break  # and so are all that follow
+            break  # all that follow are small, too
         a = geometry.corners[triangle, 0] - offset
         b = geometry.corners[triangle, 1] - offset
         c = geometry.corners[triangle, 2] - offset

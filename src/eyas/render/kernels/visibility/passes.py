@@ -1,4 +1,4 @@
-"""What each pixel of a band shows: static chunks, fixtures, moving parts."""
+"""Visibility of a band: static chunks, fixtures, moving parts."""
 
 import math
 

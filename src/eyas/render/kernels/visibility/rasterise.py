@@ -1,4 +1,4 @@
-"""Triangles to pixels."""
+"""Rasterisation of triangles."""
 
 import math
 
@@ -61,7 +61,7 @@ def rasterise(
     layer: int,
     level: int,
 ) -> None:
-    """Draw a triangle wherever it is nearer than what is there.
+    """Draw a triangle wherever it is nearer than what was drawn before.
 
     A pixel belongs to a triangle if its centre does. On each row the crossing of an edge is
     computed from the edge's upper end, so the two triangles at an edge get the same number: no
@@ -75,8 +75,8 @@ def rasterise(
         c: Third corner.
         top: Row of the picture that is row 0 of `depth`.
         depth: Largest 1/w so far, shape (rows, columns).
-        owner: Whose it is.
-        tag: What to write into `owner`.
+        owner: Owner of each sample.
+        tag: Value to write into `owner`.
         sides: `FRONT` or `BOTH_SIDES`.
         textures: Texels of all layers, see `Geometry`.
         layer: Texture whose alpha cuts holes.
@@ -136,7 +136,7 @@ def _fill(
         end = x0 + (y - y0) * upper_slope if y < y1 else x1 + (y - y1) * lower_slope
         if not long_is_left:
             start, end = end, start
-        # Clamped before the conversion: an integer holds no millions of millions.
+        # Clamped before the conversion: larger values would overflow an integer.
         first = math.ceil(max(start, 0.0) - 0.5)
         last = math.ceil(min(end, float(width)) - 0.5)
         if first >= last:

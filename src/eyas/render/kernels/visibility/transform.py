@@ -1,4 +1,4 @@
-"""From the world to the screen: cameras, poses, the near plane."""
+"""Transformation from the world to the screen: cameras, poses, the near plane."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +16,7 @@ def set_world_rows(
     lens: NDArray[np.float64],
     rows: NDArray[np.float64],
 ) -> None:
-    """Compute the rows that take a world point to column * w, row * w (from the middle) and w."""
+    """Compute the rows that map a world point to column * w, row * w (from the centre) and w."""
     for k in range(3):
         rows[0, k] = -lens[0] * axes[1, k]
         rows[1, k] = -lens[4] * axes[2, k]
@@ -32,7 +32,7 @@ def set_object_rows(
     index: int,
     rows: NDArray[np.float64],
 ) -> None:
-    """Compute the rows that do the same for points in the frame of pose `index`."""
+    """Compute the same rows for points in the frame of pose `index`."""
     for i in range(3):
         for k in range(4):
             rows[i, k] = (
