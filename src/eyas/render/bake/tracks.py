@@ -24,7 +24,7 @@ _HALF = 1.7
 """Distance from the middle of a lane up to which cars drive on the snow [m]."""
 
 _OTHERS = ((0.0, 1.0), (0.26, 0.5), (-0.3, 0.4))
-"""Paths of cars: distance to the left of the usual path [m], and relative wear."""
+"""Paths of cars: distance beside the usual path [m], and relative wear."""
 
 _STRAIGHT, _BACK = np.radians(50.0), np.radians(150.0)
 """Angles up to which a path over a junction leads straight on, and from which it turns back."""

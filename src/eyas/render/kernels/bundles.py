@@ -44,12 +44,12 @@ class Geometry(NamedTuple):
     that corner of u and of v; normal at the corner; gradients of the three components of the
     normal; texture tiles in a metre, negative where the normal is not the same all over."""
     material: NDArray[np.int32]
-    """Of each triangle, shape (T,)."""
+    """Material of each triangle, shape (T,)."""
     size: NDArray[np.float32]
     """Root of the area [m] of each triangle that is a detail, seen before something larger, and
     may be left out when it is small; infinite for others; falling in each chunk, shape (T,)."""
     object_id: NDArray[np.int32]
-    """Of each static triangle, -1 for prototypes, shape (T,)."""
+    """Object id of each static triangle, -1 for prototypes, shape (T,)."""
     chunk_box: NDArray[np.float32]
     """Lower and upper corner [m], shape (C, 6)."""
     chunk_group_box: NDArray[np.float32]
@@ -127,7 +127,7 @@ class Light(NamedTuple):
     lamp_frame: NDArray[np.float32]
     """West and south edge of the grid [m], squares per metre, cosine of the lamps' cut-off."""
     tracks: NDArray[np.uint8]
-    """How far wheels have worn the snow on roads, see `eyas.render.bake.tracks.TrackMap`."""
+    """Wear of the snow on roads, see `eyas.render.bake.tracks.TrackMap`."""
     track_frame: NDArray[np.float32]
     """West and south edge of that map [m], texels per metre."""
     tone: NDArray[np.uint8]
@@ -157,7 +157,7 @@ class Job(NamedTuple):
     band: NDArray[np.int32]
     """View, first row, last row + 1, shape (J, 3)."""
     begun: NDArray[np.int64]
-    """How many jobs have been begun; at first one for each worker, shape (1,)."""
+    """Number of jobs begun, at first one for each worker, shape (1,)."""
     eye: NDArray[np.float64]
     """Optical centres [m], shape (V, 3)."""
     axes: NDArray[np.float64]
@@ -179,9 +179,9 @@ class View(NamedTuple):
     """A band of a view: where its samples are in the world, and what they show."""
 
     eye: NDArray[np.float64]
-    """Of the view, see `Job`, shape (3,)."""
+    """Optical centre, see `Job`, shape (3,)."""
     axes: NDArray[np.float64]
-    """Of the view, see `Job`, shape (3, 3)."""
+    """Axes of the camera, see `Job`, shape (3, 3)."""
     lens: NDArray[np.float64]
     """See `Job`."""
     top: int

@@ -131,14 +131,14 @@ def lawn(
 
     Args:
         extent: The floor [m].
-        covered: What is no lawn [m].
-        rng: Of the lawn.
-        mown: Where it is mown in swaths [m].
+        covered: Area that is not lawn [m].
+        rng: Random numbers of the lawn.
+        mown: Area mown in swaths [m].
         turn: Direction of the swaths [rad].
     """
     rest = shapely.difference(extent, covered)
     parts = []
-    # Where patches overlap the stronger tint wins over the edge of its own patch.
+    # Where patches overlap, the stronger tint wins over the edge of a patch.
     for tint, patch in list(zip(_GRASS, _grass_patches(extent, rng), strict=True))[::-1]:
         parts.append((tint, shapely.intersection(rest, patch)))
         rest = shapely.difference(rest, patch)

@@ -21,7 +21,7 @@ def arc(before: Points, corner: Points, after: Points, radius: float) -> Points:
 
     Args:
         before: Any point on the straight piece before the corner.
-        corner: Where the straight pieces would meet.
+        corner: Point where the straight pieces would meet.
         after: Any point on the straight piece after the corner.
         radius: Radius of the arc [m].
     """

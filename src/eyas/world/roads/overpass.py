@@ -62,7 +62,7 @@ def path(
     """Return the centre line of a road of straight pieces and arcs, shape (K, 3).
 
     Args:
-        corners: Where the straight pieces would meet [m], shape (C, 2).
+        corners: Points where the straight pieces would meet [m], shape (C, 2).
         radii: Radius of the arc at each corner except the first and last [m].
         profile: Share of the whole length and z there [m], with smooth transitions between.
     """

@@ -57,7 +57,7 @@ def add_furniture(
     Args:
         builder: The builder to add to.
         network: The roads.
-        pavement: Where furniture may stand [m].
+        pavement: Area where furniture may stand [m].
         keep_free: Area where something else stands, people walk or cars drive [m].
         height: z of the pavement [m].
         rng: Random numbers of the furniture.

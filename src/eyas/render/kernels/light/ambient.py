@@ -81,7 +81,7 @@ class OpennessBake(NamedTuple):
     texel: float
     """Side of a texel [m]."""
     solid: NDArray[np.float32]
-    """Height of houses [m], shape (rows, columns)."""
+    """Height of buildings [m], shape (rows, columns)."""
     crowns: NDArray[np.float32]
     """Height of trees [m], shape (rows, columns)."""
     result: NDArray[np.uint16]
@@ -109,7 +109,7 @@ def bake_openness(parts: Pointer[tuple[Pointer[OpennessBake]]], worker: int, wor
 
 @inner_kernel
 def _outside(solid: NDArray[np.float32], row: int, column: int) -> tuple[int, int]:
-    """Return the nearest texel without a house, or -1, -1 if there is none within 3."""
+    """Return the nearest texel without a building, or -1, -1 if there is none within 3."""
     rows, columns = solid.shape
     for reach in range(4):
         best, bi, bj = 1 << 30, -1, -1
@@ -132,8 +132,8 @@ def openness(light: Light, x: float, y: float, z: float, normal_x: float, normal
         x: The point [m].
         y: The point [m].
         z: The point [m].
-        normal_x: Of the surface: walls see what lies before them.
-        normal_y: Of the surface.
+        normal_x: Eastward component of the normal: walls see the sky in front of them.
+        normal_y: Northward component of the normal.
     """
     one = f4(1.0)
     frame = light.ambient_frame

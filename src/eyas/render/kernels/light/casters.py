@@ -38,7 +38,7 @@ def _set_caster(
 
     `caster`: centre x, y; direction of its length x, y; half length, half width; bottom, top; of
     its upper box the bottom, and back, front, right and left end from the centre; right and left
-    end of its lower box; how far from that it keeps light of the sky from the ground.
+    end of its lower box; reach beyond it to which it blocks the sky's light on the ground.
     """
     body, largest, axis_x, axis_y, origin_x, origin_y = first, -1.0, 1.0, 0.0, 0.0, 0.0
     for slot in range(first, last):
@@ -81,9 +81,9 @@ def _set_caster(
 
 @inner_kernel
 def _throw(caster: NDArray[np.float64], sun: NDArray[np.float32]) -> float:
-    """Return how far the shadow's end is off, for each unit of the sun's x and y.
+    """Return the distance of the shadow's end, per unit of the sun's x and y.
 
-    A sun near the horizon would throw it without end: it is cut after four heights.
+    With the sun near the horizon a shadow would be endless: it is cut after four heights.
     """
     return float(min(1.0 / max(float(sun[2]), 1e-3), 4.0) * (caster[7] - caster[6]))
 

@@ -40,7 +40,7 @@ def night_light(
         x: The point [m].
         y: The point [m].
         z: The point [m].
-        normal: Of the surface, of length 1.
+        normal: Unit normal of the surface.
         shade: Light of vehicles there, see `Scratch.shade`.
     """
     on = light.air[5]
@@ -114,8 +114,8 @@ def window_light(
 
     Args:
         light: Its share of lit windows.
-        object_ids: Of static triangles.
-        triangle: Which.
+        object_ids: Object ids of static triangles.
+        triangle: Index of the triangle.
         level: Mip level of the facade's texture; a window has 64 texels along a side.
         u: Texture coordinates [tiles].
         v: Texture coordinates [tiles].

@@ -32,7 +32,7 @@ def _through(
     bottom: float,
     top: float,
 ) -> float:
-    """Return the length of the way [m] to the sun, from a point, through a box."""
+    """Return the length [m] inside a box of the ray from a point to the sun."""
     front, back = _between(at[0], way[0], ends[0], ends[1])
     right, left = _between(at[1], way[1], ends[2], ends[3])
     low, high = _between(at[2], way[2], bottom, top)
@@ -47,18 +47,18 @@ def darken(
     y: float,
     z: float,
 ) -> tuple[float, float]:
-    """Return how much sun and sky a thing lets through to a point."""
+    """Return the shares of sun and sky light that a thing lets through to a point."""
     dx, dy = x - caster[0], y - caster[1]
     px, py = dx * caster[2] + dy * caster[3], dy * caster[2] - dx * caster[3]
     sx, sy = sun[0] * caster[2] + sun[1] * caster[3], sun[1] * caster[2] - sun[0] * caster[3]
     way = (float(sx), float(sy), max(float(sun[2]), 1e-3))
-    # The longer the way through it, the deeper in the shadow: a soft edge.
+    # The longer the ray through it, the darker the shadow: this gives a soft edge.
     body = (-caster[4], caster[4], caster[13], caster[14])
     cabin = (caster[9], caster[10], caster[11], caster[12])
     inside = _through((px, py, z), way, body, caster[6], caster[8])
     inside += _through((px, py, z), way, cabin, caster[8], caster[7])
     deep = min(inside * 2.2, 1.0)
-    # Little light of the sky comes under a body and to the ground beside it.
+    # Little light of the sky reaches the ground under a body and beside it.
     half, side = 0.5 * (caster[14] - caster[13]), py - 0.5 * (caster[14] + caster[13])
     out_x = max(abs(px) - caster[4] + _INSET, 0.0)
     out_y = max(abs(side) - half + min(_INSET, half), 0.0)

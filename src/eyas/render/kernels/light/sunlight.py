@@ -40,14 +40,14 @@ def sunlight(
     sun_share: float,
     leafy: bool,
 ) -> tuple[float, float]:
-    """Return how much sunlight a surface gets, and how much reaches the place.
+    """Return the sunlight on a surface, and the share of the sun's light that reaches it.
 
     Args:
         light: Sun and shadow map.
         x: The point [m].
         y: The point [m].
         z: The point [m].
-        normal: Of the surface, of length 1.
+        normal: Unit normal of the surface.
         sun_share: Sunlight that moving things let through, 0 to 1.
         leafy: Whether light goes through the surface.
     """

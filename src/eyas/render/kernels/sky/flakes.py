@@ -96,7 +96,7 @@ def _cells(axis: int, end: float, origin: float, view: FlakeView) -> tuple[int, 
 
     Args:
         axis: 0 to 2.
-        end: How far the view goes [m].
+        end: Distance up to which the view reaches [m].
         origin: The eye in the lattice [m].
         view: Says where the camera looks.
     """
@@ -209,13 +209,13 @@ def _smear(
     """Draw a soft streak.
 
     Args:
-        column: Of its end [pixels].
-        row: Of its end [pixels].
-        to_column: From there to its beginning [pixels].
-        to_row: Likewise.
+        column: Column of its end [pixels].
+        row: Row of its end [pixels].
+        to_column: Columns from there to its start [pixels].
+        to_row: Rows from there to its start [pixels].
         radius: Half its width [pixels].
         inverse: One over its distance, as in `Scratch.depth` [1/m].
-        view: Where to.
+        view: View to draw into.
     """
     drawn = max(radius, 0.6)
     soft = 0.5 + 0.35 * drawn

@@ -33,7 +33,7 @@ def panorama(values: NDArray[np.uint8], row: float, around: float, channel: int)
         values: Shape (rows, columns, channels); the number of columns is a power of 2.
         row: From -0.5; below the first and above the last row it is the row's.
         around: See `azimuth`.
-        channel: Which.
+        channel: Index of the channel.
     """
     rows, columns = values.shape[0], values.shape[1]
     row = min(max(row, f4(0.0)), f4(rows - 1))

@@ -197,10 +197,10 @@ def reflection(
     Args:
         light: Sky and sun.
         ray: From the eye, of length 1.
-        normal: Of the surface, of length 1.
+        normal: Unit normal of the surface.
         facing: Minus their dot product, 0 to 1.
         least: Share that is mirrored when looking straight at it.
-        sunlit: How much of the sun reaches the surface.
+        sunlit: Share of the sun that reaches the surface.
     """
     x = ray[0] + f4(2.0) * facing * normal[0]
     y = ray[1] + f4(2.0) * facing * normal[1]

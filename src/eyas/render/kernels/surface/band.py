@@ -60,8 +60,8 @@ def shade_band(
         top: Row of the picture that is row 0 of `output`.
         geometry: Everything that can be drawn.
         light: Light and air.
-        poses: Of the world's draw list, shape (I, 3, 4).
-        colours: Of the world's draw list, shape (I, 3).
+        poses: Poses of the world's draw list, shape (I, 3, 4).
+        colours: Colours of the world's draw list, shape (I, 3).
         eye: See `Job`.
         axes: See `Job`.
         lens: See `Job`.

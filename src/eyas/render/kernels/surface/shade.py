@@ -117,14 +117,14 @@ def shade_point(
     Args:
         geometry: Everything that can be drawn.
         light: Light and air.
-        triangle: Which triangle.
+        triangle: Index of the triangle.
         moved: Whether it belongs to a fixture or a part, not to the static mesh.
         frame: Pose and colour of that, see `Scratch.frame`.
         eye: Optical centre [m].
         ray: From the eye, of length 1 along the optical axis.
         distance: Along the optical axis [m].
         pixel: Angle that a pixel spans [rad].
-        shade: What moving things do to its light, see `Scratch.shade`.
+        shade: Effect of moving things on its light, see `Scratch.shade`.
     """
     one, zero = f4(1.0), f4(0.0)
     sun_share, sky_share = f4(shade[0]) * f4(1.0 / 255.0), f4(shade[1]) * f4(1.0 / 255.0)

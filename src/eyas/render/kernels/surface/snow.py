@@ -85,11 +85,11 @@ def _on_leaves(
     which are the bright ones of the texture: the dark gaps between them stay.
 
     Args:
-        colour: Of the leaves.
+        colour: Colour of the leaves.
         point: The point [m].
         above: The point from the middle of the crown, in the frame of the tree.
         rise: Upward component of its normal.
-        footprint: What a pixel covers [m].
+        footprint: Size of a pixel on the surface [m].
     """
     x, y, z = point
     away = math.sqrt(above[0] * above[0] + above[1] * above[1] + above[2] * above[2] + f4(1e-6))
@@ -110,7 +110,7 @@ def _on_road(
 
     Args:
         colour: Without snow.
-        worn: How far wheels have worn it, 0 to 1.
+        worn: Wear of the snow by wheels, 0 to 1.
         grain: Noise of a third of a metre, 0 to 1.
         fine: Noise of a tenth of a metre, 0 to 1.
     """
@@ -154,7 +154,7 @@ def snowed(
         point: The point [m].
         own: The point in the frame of the fixture or part it belongs to.
         rise: Upward component of its normal.
-        footprint: What a pixel covers [m].
+        footprint: Size of a pixel on the surface [m].
     """
     x, y = point[0], point[1]
     one, depth = f4(1.0), light.air[4]

@@ -61,14 +61,14 @@ def draw_mesh(
     Args:
         until: See `DrawStage`.
         geometry: Everything that can be drawn.
-        rows: Takes the mesh's vertices to the screen.
+        rows: Maps the mesh's vertices to the screen.
         ranges: `chunk_range` or `mesh_range`.
-        index: Which row of `ranges`.
+        index: Row of `ranges`.
         instance: -1 for the static mesh, see `Scratch.owner`.
         focal: Focal length over the scale of the object [pixels].
         smallest: Size of the smallest detail to draw, see `Geometry.size` [m].
-        width: Of the picture [pixels].
-        height: Of the picture [pixels].
+        width: Width of the picture [pixels].
+        height: Height of the picture [pixels].
         top: Row of the picture that is row 0 of `depth`.
         depth: See `Scratch`.
         owner: See `Scratch`.

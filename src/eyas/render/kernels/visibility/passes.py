@@ -36,7 +36,7 @@ def draw_static(
     screen: NDArray[np.float64],
     polygon: NDArray[np.float64],
 ) -> None:
-    """Draw what stands still; see `Job` and `Scratch` for the arguments. `rows` is (2, 3, 4)."""
+    """Draw the static scene; see `Job` and `Scratch` for the arguments. `rows` is (2, 3, 4)."""
     count = visible_chunks(planes, eye, geometry.chunk_box, geometry.chunk_group_box, order)
     for k in range(count):
         chunk = order[k] & i8(0xFFFFFFFF)

@@ -94,7 +94,7 @@ def clip_near(
     at an edge get the very same point.
 
     Args:
-        screen: What `to_screen` wrote.
+        screen: Output of `to_screen`.
         uvs: Texture coordinates of all vertices.
         offset: Index in `uvs` of the first row of `screen`.
         a: First corner, a row of `screen`.
