@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import kernel
+from eyas.core.jit import kernel, step_kernel
 from eyas.state.motion import ActorState, Motion
 
 __all__ = ["ActorPose", "interpolate_actor", "interpolate_actors"]
@@ -26,7 +26,7 @@ class ActorPose(NamedTuple):
     present: bool
 
 
-@kernel
+@step_kernel
 def interpolate_actor(motion: Motion, actor: int, time: float) -> ActorPose:
     """Return one actor at one time; times before and after the samples are held at their ends.
 
@@ -55,7 +55,7 @@ def interpolate_actor(motion: Motion, actor: int, time: float) -> ActorPose:
     return ActorPose(x, y, z, yaw, slope, speed, yaw_rate, travelled, present)
 
 
-@kernel
+@step_kernel
 def _hermite(
     a: float, b: float, slope_a: float, slope_b: float, step: float, f: float
 ) -> tuple[float, float]:
