@@ -10,8 +10,9 @@ if sys.argv[1]:  # an empty folder for the cache, compiled kernels too
 import numpy as np
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
+from eyas.sim.worlds import each_alone
 from eyas.state.draw import Picture
-simulation = build_simulation(SimConfig(), 1, shared_world=False)
+simulation = build_simulation(SimConfig(), each_alone(1))
 simulation.reset()
 simulation.draw(np.zeros(1, np.int32), Picture.create(1, 84, 84))
 """

@@ -1,0 +1,29 @@
+"""`eyas bench` from end to end: it measures, prints and writes. How fast is not asked here."""
+
+import json
+import subprocess
+import sys
+
+import pytest
+
+UNITS = {"s", "/s", "steps/s", "ms", "MiB"}
+
+
+@pytest.mark.slow
+def test_bench_prints_and_writes_what_it_has_measured(tmp_path):
+    path = tmp_path / "bench.json"
+    command = [sys.executable, "-m", "eyas.cli.main", "bench", "--quick", "--stages"]
+    done = subprocess.run([*command, "--json", str(path)], capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
+    document = json.loads(path.read_text())
+    names = [result["name"] for result in document["results"]]
+    assert len(set(names)) == len(names) >= 14
+    starts = {name.split()[0] for name in names}
+    assert starts >= {"first", "pictures", "steps,", "reset", "peak", "textures"}
+    for result in document["results"]:
+        assert result["value"] > 0
+        assert result["unit"] in UNITS
+        assert result["repeats"] >= 1
+    assert document["machine"] in done.stdout.replace("\n", " ")
+    stages = {(row["pictures"], row["stage"]) for row in document["stages"]}
+    assert len(stages) == len(document["stages"]) == 4 * 6
