@@ -30,14 +30,14 @@ class LightConfig(Config):
     each_reset: bool = True
     """Whether the changes are drawn anew at each reset, or only once at the start."""
     background: Brightness = 0.0
-    """Brightness of the sky and its light, a factor."""
+    """Brightness of the sky and its light, a factor without unit."""
     background_replaces: bool = False
     """True: `background` is the brightness; False: it is added to the weather's own."""
     sun: Brightness = 0.0
-    """Brightness of the sun, a factor."""
+    """Brightness of the sun, a factor without unit."""
     sun_replaces: bool = False
     """True: `sun` is the brightness; False: it is added to the weather's own."""
     visibility: Visibility | None = None
-    """Visibility range in foggy weather [m]; None: the weather's own. No effect elsewhere."""
+    """Visibility range in foggy weather [m]; None: the weather's own. No effect in others."""
     flakes: bool = True
     """Whether falling flakes are drawn in snow."""
