@@ -9,16 +9,20 @@ __all__ = ["command"]
 
 
 def command(
-    json: Annotated[Path | None, typer.Option("--json", help="Write the figures here too.")] = None,
-    quick: Annotated[bool, typer.Option("--quick", help="A tenth of the time.")] = False,
+    json: Annotated[
+        Path | None, typer.Option("--json", help="Also write the figures to this file.")
+    ] = None,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="Measure for a tenth of the time.")
+    ] = False,
     cold: Annotated[
-        bool, typer.Option("--cold", help="Also the first picture with nothing compiled yet.")
+        bool, typer.Option("--cold", help="Also time a first picture with an empty cache.")
     ] = False,
     stages: Annotated[
-        bool, typer.Option("--stages", help="Also where the time of a picture goes.")
+        bool, typer.Option("--stages", help="Also time each stage of drawing a picture.")
     ] = False,
 ) -> None:
-    """Measure how fast this machine runs Eyas; prints medians."""
+    """Measure the speed of Eyas on this machine, as medians."""
     from eyas.modes.bench import run as bench
 
     bench.run(json, quick=quick, cold=cold, stages=stages)

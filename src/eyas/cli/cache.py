@@ -6,12 +6,12 @@ import typer
 
 __all__ = ["app"]
 
-app = typer.Typer(help="Look at what is kept on disk, and remove it.", no_args_is_help=True)
+app = typer.Typer(help="Show or delete the files that Eyas keeps on disk.", no_args_is_help=True)
 
 
 @app.command()
 def info() -> None:
-    """Print where the cache is, how large it is and may become, and what is in it."""
+    """Print the folder, size, size limit and contents of the cache."""
     from eyas.modes import cache
 
     cache.run_info()
@@ -23,7 +23,7 @@ def clear(
         str | None, typer.Option("--kind", help="Only this kind, as `eyas cache info` names it.")
     ] = None,
 ) -> None:
-    """Remove what is in the cache; it is made anew when it is needed."""
+    """Delete the contents of the cache; they are made again when they are needed."""
     from eyas.modes import cache
 
     cache.run_clear(kind)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 __all__ = ["app"]
 
-app = typer.Typer(help="Look at settings, and convert them.", no_args_is_help=True)
+app = typer.Typer(help="Show and convert settings.", no_args_is_help=True)
 
 
 @app.callback()
@@ -25,10 +25,10 @@ def show(
     config: ConfigFile = None,
     set_: Overrides = None,
     legacy: Annotated[
-        bool, typer.Option("--legacy", help="As the DAT benchmark's env_config.json.")
+        bool, typer.Option("--legacy", help="In the format of the DAT benchmark's env_config.json.")
     ] = False,
 ) -> None:
-    """Print settings as JSON, checked: every one and its value."""
+    """Check the settings, and print all of them as JSON."""
     from eyas.settings.file import load_settings
 
     typer.echo(_text(load_settings(config, gathered(set_)), legacy=legacy))
@@ -37,10 +37,10 @@ def show(
 @app.command()
 def convert(
     source: Annotated[Path, typer.Argument(help="Settings to read, in either notation.")],
-    target: Annotated[Path, typer.Argument(help="File to write; it must not be there.")],
+    target: Annotated[Path, typer.Argument(help="File to write; it must not exist.")],
     set_: Overrides = None,
 ) -> None:
-    """Write settings in the other notation: native for the DAT benchmark's, and the reverse."""
+    """Convert settings between the native and the DAT benchmark's notation."""
     from eyas.core.errors import OutputError
     from eyas.core.files import write_atomic
     from eyas.settings.file import load_settings, read_settings

@@ -41,14 +41,17 @@ def _print_version(value: bool) -> None:  # typer's callback
 
 @app.callback()
 def _options(
-    version: Annotated[  # handled by its callback
-        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="Print it.")
+    version: Annotated[  # used by its callback
+        bool,
+        typer.Option(
+            "--version", callback=_print_version, is_eager=True, help="Print the version."
+        ),
     ] = False,
 ) -> None: ...
 
 
 class _Line(logging.Formatter):
-    """Shows a record as one of our lines; what is less than a warning has no word for it."""
+    """Formats a log record as `eyas: message`, with `warning:` from that level on."""
 
     def format(self, record: logging.LogRecord) -> str:
         word = "warning: " if record.levelno >= logging.WARNING else ""
@@ -72,7 +75,7 @@ def _run() -> int:
     """Return the exit code."""
     try:
         status = app(standalone_mode=False)
-        sys.stdout.flush()  # here, where a reader that has gone can be met
+        sys.stdout.flush()  # here, so that a closed pipe is caught below
     except EyasError as error:
         return _failed(str(error))
     except _UsageError as error:
@@ -80,7 +83,7 @@ def _run() -> int:
     except (KeyboardInterrupt, typer.Abort):
         return _INTERRUPTED
     except BrokenPipeError:
-        # Whoever read our output has gone; nothing more can be said to them.
+        # The reader of our output has closed the pipe, so nothing more can be printed.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 1
     return status if isinstance(status, int) else 0

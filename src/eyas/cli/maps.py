@@ -7,7 +7,7 @@ import typer
 
 __all__ = ["app"]
 
-app = typer.Typer(help="Look at the maps.", no_args_is_help=True)
+app = typer.Typer(help="List and draw the maps.", no_args_is_help=True)
 
 
 @app.callback()
@@ -16,7 +16,7 @@ def _group() -> None: ...
 
 @app.command("list")
 def list_maps() -> None:
-    """Print the maps with their weathers, and which come later."""
+    """Print the maps with their weathers, and the maps planned for later versions."""
     from eyas.world.maps import MAPS
 
     for name in sorted(MAPS.names()):
@@ -37,7 +37,7 @@ def draw_gallery(
         typer.Option("--weather", help="Only this weather; may be given several times."),
     ] = None,
 ) -> None:
-    """Draw a page with pictures of each map in each weather."""
+    """Draw a page of pictures of each map in each weather."""
     from eyas.modes.gallery import run as gallery
 
     gallery.run(out, map_name or (), weather or ())

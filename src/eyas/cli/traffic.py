@@ -10,7 +10,7 @@ from eyas.cli.options import ConfigFile, MapName, Overrides, gathered
 
 __all__ = ["app"]
 
-app = typer.Typer(help="Make traffic with SUMO.", no_args_is_help=True)
+app = typer.Typer(help="Record traffic with SUMO.", no_args_is_help=True)
 
 
 @app.callback()
@@ -18,7 +18,7 @@ def _group() -> None: ...
 
 
 @app.command()
-def record(  # noqa: PLR0913  # an option each
+def record(  # noqa: PLR0913  # one parameter for each option
     map_name: MapName = None,
     map_seed: Annotated[int | None, typer.Option("--map-seed", help="Seed of the map.")] = None,
     seed: Annotated[
@@ -34,7 +34,10 @@ def record(  # noqa: PLR0913  # an option each
     set_: Overrides = None,
     canonical: Annotated[
         bool,
-        typer.Option("--canonical", help="Make what ships with the map: its roads and recording."),
+        typer.Option(
+            "--canonical",
+            help="Regenerate the files that ship with the map: its roads and its recording.",
+        ),
     ] = False,
 ) -> None:
     """Record traffic; use it with --set traffic.recording=FILE."""

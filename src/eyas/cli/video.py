@@ -11,7 +11,7 @@ from eyas.cli.options import ConfigFile, MapName, Overrides, Seed, Weather, gath
 __all__ = ["command"]
 
 
-def command(  # noqa: PLR0913  # an option each
+def command(  # noqa: PLR0913  # one parameter for each option
     out: Annotated[Path, typer.Option("--out", help="Folder to write to.")] = Path("runs/video"),
     config: ConfigFile = None,
     map_name: MapName = None,
@@ -19,14 +19,14 @@ def command(  # noqa: PLR0913  # an option each
     seed: Seed = None,
     set_: Overrides = None,
     resume: Annotated[
-        bool, typer.Option("--resume", help="Go on with an interrupted recording.")
+        bool, typer.Option("--resume", help="Continue an interrupted recording.")
     ] = False,
     overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="Delete a recording that is in the folder.")
+        bool, typer.Option("--overwrite", help="First delete a recording that is in the folder.")
     ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
 ) -> None:
-    """Record labelled pictures and films of trackers that follow their targets."""
+    """Record labelled pictures and videos of trackers that follow their targets."""
     from eyas.settings.config import Mode
     from eyas.settings.file import load_settings
     from eyas.settings.version_check import require_supported
@@ -39,7 +39,7 @@ def command(  # noqa: PLR0913  # an option each
         said = f"mode (Simulation_Mode) is '{settings.mode}'; 'eyas video' records all the same"
         typer.echo(f"eyas: note: {said}", err=True)
     from eyas.modes.video import (
-        run as video,  # compiled kernels: slow to import, so only when all is well
+        run as video,  # compiled kernels: slow to import, so only after all checks
     )
 
     video.run(settings, out, overwrite=overwrite, resume=resume, quiet=quiet)

@@ -1,1 +1,1 @@
-"""What a user can run, one file a mode."""
+"""The modes that a user can run, one file or folder each."""

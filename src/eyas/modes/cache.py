@@ -1,4 +1,4 @@
-"""Show what the cache holds, and empty it."""
+"""Show and delete the contents of the cache."""
 
 import time
 from collections.abc import Iterable
@@ -14,10 +14,10 @@ __all__ = ["run_clear", "run_info"]
 
 
 def run_info() -> None:
-    """Print where the cache is, how large it is and may become, and what is in it by kind.
+    """Print the folder, size and size limit of the cache, and its contents by kind.
 
     Raises:
-        ConfigError: `EYAS_CACHE_LIMIT` is no size.
+        ConfigError: `EYAS_CACHE_LIMIT` is not a size.
     """
     limit, found = cache_limit(), entries(cache_folder())
     print(f"{cache_folder()} ({FOLDER_VARIABLE} moves it)")
@@ -34,14 +34,14 @@ def run_info() -> None:
 
 
 def run_clear(kind: str | None) -> None:
-    """Remove what is in the cache, and say how much that was.
+    """Delete the contents of the cache, and print how much space that freed.
 
     Args:
-        kind: Only entries of this kind.
+        kind: Delete only entries of this kind; None: all.
 
     Raises:
         UnknownNameError: There is no such kind.
-        OutputError: Something could not be removed.
+        OutputError: An entry could not be deleted.
     """
     if kind is not None and kind not in list(Kind):
         raise UnknownNameError("--kind", kind, Kind)

@@ -32,14 +32,14 @@ def run(
     """Record traffic into a file.
 
     Args:
-        world: Which map.
-        config: What drives.
-        duration: How long [s].
-        path: The file; None: `<map>-<seed>-<type>.npz` in this folder.
-        overwrite: Whether a file that is there is replaced.
+        world: The map.
+        config: The traffic.
+        duration: Time to record [s].
+        path: The file; None: `<map>-<seed>-<type>.npz` in the current folder.
+        overwrite: Whether an existing file is replaced.
 
     Raises:
-        ConfigError: The duration is not a time.
+        ConfigError: The duration is out of range.
         MissingExtraError: SUMO is not installed.
         OutputError: The file cannot be written.
     """
@@ -48,7 +48,7 @@ def run(
     seed = CANONICAL_SEED if config.seed is None else config.seed
     graph = MAPS.get(world.map).roads(world.seed)
     target = path or Path(f"{graph.map_name}-{seed}-{config.vehicle_type}.npz")
-    _check_free(target, overwrite=overwrite)  # before SUMO has driven for minutes
+    _check_free(target, overwrite=overwrite)  # before SUMO runs for minutes
     with _progress() as progress:
         recording = record(graph.map_name, graph.seed, graph, config, duration, seed, progress)
     save(recording, target)
@@ -65,7 +65,7 @@ def _check_free(path: Path, *, overwrite: bool) -> None:
 
 
 def run_canonical(world: WorldConfig) -> None:
-    """Make anew what ships with a map, in the source of its package: roads and recording.
+    """Regenerate the roads and the recording that ship with a map, in its package's source.
 
     Raises:
         ConfigError: The map is in no package.
@@ -84,7 +84,7 @@ def run_canonical(world: WorldConfig) -> None:
 
 @contextmanager
 def _progress() -> Iterator[Callable[[float], None]]:
-    """Show how far SUMO is, on stderr."""
+    """Show the progress of SUMO on stderr."""
     with Progress(console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task("SUMO drives", total=1.0)
         yield lambda share: bar.update(task, completed=share)

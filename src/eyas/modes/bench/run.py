@@ -1,4 +1,4 @@
-"""`eyas bench`: how fast this machine runs Eyas, as medians, each with what it includes."""
+"""`eyas bench`: the speed of Eyas on this machine, as medians, each with what it covers."""
 
 import json
 import math
@@ -44,7 +44,7 @@ class Measurement:
     includes: str
     """What the figure covers."""
     repeats: int
-    """How many timings the median is of."""
+    """Number of timings of which it is the median."""
 
 
 def run(
@@ -53,10 +53,10 @@ def run(
     """Measure, print a table and write the figures.
 
     Args:
-        json_path: Where to write machine and figures as JSON, or None.
-        quick: A tenth of the time, for a first look.
-        cold: Also time the first picture with nothing compiled yet.
-        stages: Also time the stages of a picture.
+        json_path: File for the machine and the figures as JSON, or None.
+        quick: Whether to measure for a tenth of the time.
+        cold: Whether to time the first picture with an empty cache too.
+        stages: Whether to time the stages of a picture too.
     """
     seconds = 0.3 if quick else 3.0
     console = Console()
@@ -110,7 +110,7 @@ def _pictures(
 
 
 def _horizon(seconds: float) -> Measurement:
-    """Time views from a ring outside the city that hold all of it."""
+    """Time views from a ring outside the city, each of which shows all of it."""
     assets = load_assets(SimConfig().world, SimConfig().traffic, 1)
     count, pitch, field_of_view = 64, 0.3, 1.2
     points = assets.scene.network.lane_points
@@ -175,7 +175,7 @@ def _first_picture(name: str, cache: str | None) -> Measurement:
     """Time a fresh process from its start to its first picture."""
     repeats = 1 if cache else 3
     times = []
-    for _ in range(repeats + (cache is None)):  # once more at first, to fill the cache
+    for _ in range(repeats + (cache is None)):  # one more at the start, to fill the cache
         start = time.perf_counter()
         command = [sys.executable, "-c", FIRST_PICTURE, cache or ""]
         subprocess.run(command, check=True, capture_output=True)
@@ -187,7 +187,7 @@ def _first_picture(name: str, cache: str | None) -> Measurement:
 
 
 def _median_rate(call: Callable[[], None], seconds: float) -> tuple[float, int]:
-    """Return calls in a second, as the median over blocks of at least 50 ms, and their number."""
+    """Return calls per second, the median over blocks of at least 50 ms, and their number."""
     call()
     call()
     rates: list[float] = []

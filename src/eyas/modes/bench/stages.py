@@ -1,4 +1,4 @@
-"""`eyas bench --stages`: where the time of a picture goes."""
+"""`eyas bench --stages`: the time that each stage of drawing a picture takes."""
 
 import statistics
 import time
@@ -17,7 +17,7 @@ from eyas.state.draw import DrawStage, Picture
 __all__ = ["SIZES", "StageTime", "measure_stages", "stage_table"]
 
 SIZES = ((64, 84, 84), (1, 84, 84), (1, 640, 480), (1, 1280, 720))
-"""Views, width and height that are measured."""
+"""Number of views, width and height of the measured pictures."""
 
 _STAGES = (
     (DrawStage.CULLING, "traffic, poses, culling"),
@@ -30,25 +30,25 @@ _STAGES = (
 
 @dataclass(frozen=True, slots=True)
 class StageTime:
-    """How long one stage of a picture takes."""
+    """The time that one stage of drawing a picture takes."""
 
     pictures: str
-    """Size, and how many are drawn at once."""
+    """Size of the pictures, and how many are drawn at once."""
     stage: str
     microseconds: float
     """Median for one picture [us]."""
     share: float
-    """Of the whole picture's time."""
+    """Share of the time of the whole picture."""
 
 
 def measure_stages(seconds: float) -> list[StageTime]:
     """Return the times of all stages for each of `SIZES`.
 
-    A stage's time is what drawing takes when it stops after it, less what it takes when it stops
-    before; the stops take turns, so that what else the machine does falls on all of them.
+    A stage's time is the time to draw up to its end, less the time to draw up to its start.
+    The measurements alternate, so that other load on the machine affects all of them alike.
 
     Args:
-        seconds: How long each size is measured.
+        seconds: Time to measure each size [s].
     """
     times = []
     for views, width, height in SIZES:

@@ -1,4 +1,4 @@
-"""The page of a gallery: HTML without scripts, and one picture with all pictures small."""
+"""The page of a gallery: HTML without scripts, and a contact sheet of all pictures."""
 
 import io
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ from eyas.modes.gallery.still import Viewpoint
 __all__ = ["MARK", "Shown", "contact_sheet", "page", "png"]
 
 MARK = '<meta name="generator" content="eyas maps gallery">'
-"""What tells a gallery's page from other pages."""
+"""Text by which the page of a gallery is recognised."""
 
 _THUMBNAIL = (320, 240)
 _COLUMNS = 3
@@ -42,7 +42,7 @@ figcaption strong { display: block; font-size: 1rem; font-weight: 600; color: #e
 
 @dataclass(frozen=True, slots=True)
 class Shown:
-    """A map in a weather, and what was drawn of it."""
+    """A map in a weather, and its pictures."""
 
     map_name: str
     weather: str
@@ -57,11 +57,11 @@ class Shown:
 
 
 def page(shown: Sequence[Shown], sheet: str) -> str:
-    """Return the page, which needs nothing but the pictures beside it.
+    """Return the page, which needs only the pictures beside it.
 
     Args:
         shown: Every map and weather.
-        sheet: Name of the file with all pictures small.
+        sheet: Name of the file of the contact sheet.
     """
     what = " &middot; ".join(f'<a href="#{_id(one)}">{_heading(one)}</a>' for one in shown)
     sections = "\n".join(_section(one) for one in shown)
@@ -117,7 +117,7 @@ def _heading(one: Shown) -> str:
 
 
 def contact_sheet(shown: Sequence[Shown]) -> NDArray[np.uint8]:
-    """Return all pictures small, with names under them, sRGB, shape (H, W, 3)."""
+    """Return small versions of all pictures, with names under them, sRGB, shape (H, W, 3)."""
     rows = sum(-(-len(one.views) // _COLUMNS) for one in shown)
     wide, high = _THUMBNAIL[0] + _MARGIN, _THUMBNAIL[1] + _LABEL
     size = (_MARGIN + _COLUMNS * wide, _MARGIN + len(shown) * _LABEL + rows * high)

@@ -1,4 +1,4 @@
-"""A page with pictures of every map in every weather, for people who want to see them."""
+"""Draw the gallery: a page of pictures of every map in every weather."""
 
 import re
 from collections.abc import Sequence
@@ -32,20 +32,20 @@ def run(out: Path, map_names: Sequence[str] = (), weather_names: Sequence[str] =
     """Draw a gallery; the same version draws the same bytes.
 
     Args:
-        out: The folder; a gallery that is there is replaced.
-        map_names: Which maps; none: all.
-        weather_names: Which weathers; none: all.
+        out: The folder; an existing gallery in it is replaced.
+        map_names: The maps; empty: all.
+        weather_names: The weathers; empty: all.
 
     Raises:
         ConfigError: No such map or weather.
-        OutputError: The folder holds something else, or the file system refused.
+        OutputError: The folder holds other files, or writing failed.
     """
     wanted = conditions(map_names, weather_names)
     _check_folder(out)
     console = Console(stderr=True)
     with refusals(out):
         out.mkdir(parents=True, exist_ok=True)
-        # The page stands for a complete gallery: it goes first and comes last.
+        # The page marks a complete gallery, so it is deleted first and written last.
         (out / INDEX).unlink(missing_ok=True)
     with Progress(console=console, transient=True) as progress:
         shown = [_draw(out, *condition, progress) for condition in wanted]
@@ -58,7 +58,7 @@ def run(out: Path, map_names: Sequence[str] = (), weather_names: Sequence[str] =
 def conditions(map_names: Sequence[str], weather_names: Sequence[str]) -> list[tuple[str, str]]:
     """Return the maps and weathers to draw, each pair once.
 
-    Where no map is named, all are drawn, but for those that lack one of the named weathers.
+    If no map is named, all maps are drawn except those that lack one of the named weathers.
 
     Raises:
         UnknownNameError: No such map or weather.
@@ -69,7 +69,7 @@ def conditions(map_names: Sequence[str], weather_names: Sequence[str]) -> list[t
     names = map_names or have or every
     pairs = [(name, kind) for name in names for kind in weather_names or MAPS.get(name).weathers]
     for name, weather in pairs:
-        MAPS.get(name).light(weather)  # refuses weathers that are not there
+        MAPS.get(name).light(weather)  # raises if the map lacks the weather
     return list(dict.fromkeys(pairs))
 
 
@@ -91,7 +91,7 @@ def _draw(out: Path, map_name: str, weather: str, progress: Progress) -> Shown:
 
 
 def _check_folder(out: Path) -> None:
-    """Refuse a folder that holds anything but a gallery, or what is left of one."""
+    """Refuse a folder that holds anything except a gallery, or parts of one."""
     with refusals(out):
         if not out.exists():
             return

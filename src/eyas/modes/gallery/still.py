@@ -17,16 +17,16 @@ __all__ = ["StillScene", "Viewpoint"]
 
 @dataclass(frozen=True, slots=True)
 class Viewpoint:
-    """A camera at a time of the traffic."""
+    """A camera and the time of the traffic that it shows."""
 
     name: str
-    """Stem of the file."""
+    """Name of the picture file, without its extension."""
     title: str
-    """A few words."""
+    """Short title."""
     caption: str
-    """What the picture shows."""
+    """Description of the picture."""
     time: float
-    """Of the traffic [s]."""
+    """Time of the traffic [s]."""
     position: tuple[float, float, float]
     """Optical centre, world frame [m]."""
     yaw: float
@@ -36,20 +36,20 @@ class Viewpoint:
     field_of_view: float
     """Horizontal [rad]; the view is 4:3 whatever shape the picture has."""
     actor: int = -1
-    """The car it is about, or -1."""
+    """The car that the picture is meant to show, or -1."""
     size: tuple[int, int] = (480, 640)
     """Height and width of the picture [pixels]."""
     samples: int = 4
     """Samples for each pixel."""
     enlarged: int = 1
-    """How many pixels wide and high each pixel is made, without smoothing."""
+    """Factor by which the finished picture is enlarged, without smoothing."""
 
 
 class StillScene:
     """Draws viewpoints.
 
     Args:
-        assets: What is looked at.
+        assets: Map, traffic and renderer.
     """
 
     def __init__(self, assets: Assets) -> None:
@@ -65,19 +65,19 @@ class StillScene:
         """Return the picture of a viewpoint, sRGB, shape (H, W, 3) times `enlarged`."""
         picture = Picture.create(1, *view.size)
         self._draw(view, picture, view.samples)
-        assert picture.rgb is not None  # asked for above
+        assert picture.rgb is not None  # set above
         return np.repeat(np.repeat(picture.rgb[0], view.enlarged, 0), view.enlarged, 1)
 
     def probe(self, view: Viewpoint) -> tuple[NDArray[np.float32], float]:
-        """Return what stands where, in a small picture.
+        """Return depths and the visibility of the car, from a small picture.
 
         Returns:
-            Depths [m], infinity for sky, shape (48, 64), and which share of the pixels that the
-            viewpoint's car covers shows it, 0 if it is outside the picture.
+            Depths [m], infinity for sky, shape (48, 64), and the visible share of the
+            viewpoint's car, 0 to 1; 0 if it is outside the picture.
         """
         picture = Picture.create(1, 48, 64, rgb=False, depth=True, subject=True)
         self._draw(view, picture, 1)
-        assert picture.depth is not None  # asked for above
+        assert picture.depth is not None  # set above
         assert picture.subject_pixels is not None
         seen, covered = picture.subject_pixels[0]
         return picture.depth[0], seen / covered if covered else 0.0
@@ -97,7 +97,7 @@ class StillScene:
 
 
 def _look(yaw: float, pitch: float) -> NDArray[np.float64]:
-    """Return camera to world: columns forward, left, up."""
+    """Return the rotation camera to world; columns are forward, left, up."""
     level = math.cos(pitch)
     forward = np.array([math.cos(yaw) * level, math.sin(yaw) * level, -math.sin(pitch)])
     left = np.array([-math.sin(yaw), math.cos(yaw), 0.0])

@@ -18,13 +18,13 @@ __all__ = ["choose_viewpoints"]
 _CAMERA = 0.7854
 """Horizontal field of view of the drone's camera [rad]."""
 _WIDE = 1.2
-"""Of the horizon view: at its pitch the camera's own view would end at the horizon [rad]."""
+"""Field of view of the horizon view; the drone camera's would end at the horizon [rad]."""
 _POSES = ((22.0, 1.37, "down"), (15.0, 0.6, "ahead"))
 """Height [m], pitch [rad] and name of the drone's starts."""
 _TIMES = (60.0, 20.0)
-"""First time that is looked at, and the step to the next [s]."""
+"""First time at which cars are looked for, and the step to the next [s]."""
 _TRIES = 40
-"""Cars that are tried at each stop."""
+"""Number of cars tried for each stop."""
 _TREE = 12.0
 """Height of a street tree, whose mesh is 1 m high [m]."""
 _TALL = 30.0
@@ -48,11 +48,11 @@ class _Cars:
 
 
 def choose_viewpoints(still: StillScene, sun: tuple[float, float, float]) -> list[Viewpoint]:
-    """Return the viewpoints of a place; those for which it has nothing to show are left out.
+    """Return the viewpoints of a map, without those for which it has no suitable place.
 
     Args:
-        still: What is looked at.
-        sun: Direction to the sun; views from afar have it behind them, so that walls are lit.
+        still: The world.
+        sun: Direction to the sun; distant views have it behind the camera, so that walls are lit.
     """
     cars = _all_cars(still)
     chosen: list[Viewpoint] = []
@@ -75,7 +75,7 @@ def choose_viewpoints(still: StillScene, sun: tuple[float, float, float]) -> lis
 
 
 def _all_cars(still: StillScene) -> _Cars:
-    """Return every car that is there at one of the times."""
+    """Return every car that is on the map at one of the times."""
     rows: list[tuple[float, int, float, float, float]] = []
     for time in np.arange(_TIMES[0], still.duration, _TIMES[1]):
         actors = still.actors(time)
@@ -89,7 +89,7 @@ def _all_cars(still: StillScene) -> _Cars:
 def _stop(
     still: StillScene, cars: _Cars, name: str, where: str, score: Points
 ) -> Iterator[Viewpoint]:
-    """Yield the views of the drone's starts above the best car that is seen in all of them."""
+    """Yield the drone's views at its starts, of the best car that is visible in all of them."""
     order = np.argsort(-score, kind="stable")[:_TRIES]
     for car in order[score[order] > 0]:
         views = [_drone_view(cars, int(car), name, where, pose) for pose in _POSES]
@@ -129,7 +129,7 @@ def _near_trees(scene: Scene, cars: _Cars) -> Points:
     """Return how many trunks stand within 14 m of each car, shape (K,)."""
     fixtures = scene.fixtures
     trees = scene.object_class[fixtures.object_id] == ObjectClass.TREE
-    trees &= fixtures.pose[:, 2, 2] > _TREE  # shrubs and garden trees hide no car
+    trees &= fixtures.pose[:, 2, 2] > _TREE  # shrubs and garden trees are too low
     trunks = fixtures.pose[trees, :2, 3].astype(np.float64)
     apart = np.linalg.norm(cars.position[:, None] - trunks[None], axis=2)
     count: Points = (apart < 14.0).sum(axis=1).astype(np.float64)
@@ -137,7 +137,7 @@ def _near_trees(scene: Scene, cars: _Cars) -> Points:
 
 
 def _on_crossings(scene: Scene, cars: _Cars) -> Points:
-    """Return how many cars are within 30 m of each car on a crossing, shape (K,)."""
+    """Return the number of cars within 30 m of each car that is on a crossing, shape (K,)."""
     network = scene.network
     first = network.junction_first
     score = np.zeros(len(cars.time))
@@ -152,7 +152,7 @@ def _on_crossings(scene: Scene, cars: _Cars) -> Points:
 
 
 def _between_towers(scene: Scene, cars: _Cars) -> Points:
-    """Return how many towers stand within 30 m on the poorer side of each car, shape (K,)."""
+    """Return the number of towers within 30 m of each car, on the side with fewer, shape (K,)."""
     spots = shapely.points(cars.position)
     sides = np.zeros((2, len(cars.time)))
     for outline, bottom, top in _solids(scene.colliders):
@@ -170,7 +170,7 @@ _STOPS: tuple[tuple[str, str, Callable[[Scene, _Cars], Points]], ...] = (
     ("crossing", "on a crossing", _on_crossings),
     ("towers", "between towers", _between_towers),
 )
-"""Name, words, and what makes a car fit, where more is better and 0 does not fit."""
+"""Name, title, and the function that rates cars: higher is better, 0 is unsuitable."""
 
 
 def _solids(colliders: Colliders) -> Iterator[tuple[shapely.Polygon, float, float]]:
@@ -182,12 +182,12 @@ def _solids(colliders: Colliders) -> Iterator[tuple[shapely.Polygon, float, floa
 
 
 def _overview(still: StillScene, side: float) -> Viewpoint:
-    """Return the first view on a ring of 60 m height that no wall fills, else the farthest."""
+    """Return the first view on a ring at 60 m height that no wall blocks, else the farthest."""
     height, pitch = 60.0, 0.25
     centre, reach = _streets(still.scene)
     best, farthest = None, -1.0
     for turn in range(24):
-        # Away from the lit side step by step, to the left and to the right.
+        # Start at the lit side and move away step by step, left and right.
         angle = side + (turn + 1) // 2 * (-1) ** turn * math.tau / 24
         out = reach * np.array([math.cos(angle), math.sin(angle)])
         view = Viewpoint(
@@ -211,7 +211,7 @@ def _overview(still: StillScene, side: float) -> Viewpoint:
 
 
 def _horizon(scene: Scene, side: float) -> Viewpoint:
-    """Return a view from so far outside that all streets are in it."""
+    """Return a view from outside that shows all streets."""
     pitch = 0.3
     centre, reach = _streets(scene)
     away = reach / math.sin(0.5 * _WIDE)

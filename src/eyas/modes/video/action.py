@@ -1,4 +1,4 @@
-"""What moves the trackers of a recording: exact following, or seeded random actions."""
+"""Movement of the trackers of a recording: exact following, or seeded random actions."""
 
 from typing import Protocol
 
@@ -23,7 +23,7 @@ class Mover(Protocol):
         """Advance the simulation by one 2 ms step."""
 
     def action(self, tracker: int) -> Action:
-        """Return what a tracker was told in the last step."""
+        """Return a tracker's action in the last step."""
 
 
 class Following:
@@ -34,12 +34,12 @@ class Following:
         sim.carry(1)
 
     def action(self, tracker: int) -> Action:
-        """Return that no command was given."""
+        """Return an action without a command."""
         return _FOLLOWING
 
 
 class RandomActions:
-    """One of six actions, drawn anew at each control period and held in between.
+    """One of six actions, drawn at the start of each control period and held during it.
 
     Args:
         config: Seed, control frequency and the six speeds.
@@ -62,7 +62,7 @@ class RandomActions:
         sim.advance(self._vectors[self._numbers], 1)
 
     def action(self, tracker: int) -> Action:
-        """Return what a tracker was told in the last step."""
+        """Return a tracker's action in the last step."""
         number = int(self._numbers[tracker])
         return Action(number, self._vectors[number])
 
@@ -75,5 +75,5 @@ class RandomActions:
 
 
 def mover_of(config: EyasConfig, count: int) -> Mover:
-    """Return the mover that the settings ask for."""
+    """Return the mover that the settings select."""
     return RandomActions(config, count) if config.video.random_action else Following()

@@ -16,25 +16,25 @@ def _some(names: tuple[str, ...]) -> tuple[str, ...]:
 
 
 class VideoConfig(ActionSpeeds):
-    """What is recorded; the speeds are those of random actions."""
+    """Settings of recordings; the speeds are those of random actions."""
 
     channels: Annotated[int, Field(ge=1, le=1024)] = 4
-    """Trackers that record side by side in one world."""
+    """Number of trackers that record together in one world."""
     fps: Annotated[float, Field(gt=0, le=500)] = 25.0
-    """Pictures in a second of simulated time."""
+    """Pictures per second of simulated time [Hz]."""
     start_time: Annotated[float, Field(ge=0, le=1e6)] = 1.0
     """Simulated time at which recording begins [s]."""
     total_time: Annotated[float, Field(gt=0, le=1e6)] = 12.0
-    """Simulated time that is recorded [s]."""
+    """Duration of the recording in simulated time [s]."""
     warm_up_steps: Annotated[int, Field(ge=0, le=5_000_000)] = 30
-    """2 ms steps after each reset that are not recorded."""
+    """Steps of 2 ms after each reset that are not recorded."""
     target_direction: bool = False
     """Whether `mark.json` holds the target's direction instead of reward and action."""
     overlay: bool = False
-    """Whether the pictures show what the camera sees, is rewarded for and looks for; labels stay
-    the same."""
+    """Whether the pictures show the overlay: the ground that the camera sees, the area in which the
+    target is rewarded, and a marker over the target; labels stay the same."""
     random_action: bool = False
     """True: seeded random actions; False: the target is followed exactly."""
     writers: Annotated[tuple[str, ...], AfterValidator(_some)] = ("jpeg", "mp4", "labels", "mark")
-    """Formats that are written: `jpeg`, `mp4`, `labels`, `mark`, or your own as
+    """Output formats: `jpeg`, `mp4`, `labels`, `mark`, or your own as
     `my_package.module:Class`."""

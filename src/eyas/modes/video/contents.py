@@ -1,4 +1,4 @@
-"""Which paths in a recording's folder are the recording's own."""
+"""Decides which paths in a recording's folder belong to the recording."""
 
 import os
 import re
@@ -15,11 +15,11 @@ _EPISODE = rf"{_TRACKER}/episode\d+"
 
 
 class Contents:
-    """Knows the files of writers, the folders they lie in, and those that are still being written.
+    """Knows the files of writers, their folders, and the names of unfinished files.
 
     Args:
-        files: Of all writers.
-        others: Names of other files that lie in the recording's folder.
+        files: The files of all writers.
+        others: Names of other files in the recording's folder.
     """
 
     def __init__(self, files: Files, others: Iterable[str] = ()) -> None:

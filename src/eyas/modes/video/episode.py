@@ -1,4 +1,4 @@
-"""The files of one recorded episode, whatever writers write them."""
+"""The files of one recorded episode, of all writers."""
 
 from collections.abc import Sequence
 from contextlib import ExitStack
@@ -15,15 +15,15 @@ __all__ = ["EpisodeFiles", "read_complete"]
 
 
 class EpisodeFiles:
-    """Writes an episode as its frames come. Every method may raise `OutputError`.
+    """Writes an episode frame by frame. Every method may raise `OutputError`.
 
     Args:
-        writers: Of the recording.
-        episode: Which. Its folder is made if it is not there; what writers left there is deleted.
+        writers: The writers of the recording.
+        episode: The episode. Its folder is made if needed; old files of writers are deleted.
     """
 
     finished: bool
-    """Whether every file of the episode is there."""
+    """Whether every file of the episode exists."""
 
     def __init__(self, writers: Sequence[Writer], episode: Episode) -> None:
         self._writers = writers
@@ -53,24 +53,24 @@ class EpisodeFiles:
                 path.unlink(missing_ok=True)
 
     def finish(self) -> None:
-        """Write what describes the whole episode."""
+        """Write the files that describe the whole episode."""
         while self._parts:
             self._parts[0].finish()
             del self._parts[0]
         self.finished = True
 
     def abandon(self) -> None:
-        """Stop in the middle."""
-        with ExitStack() as all_of_them:  # whatever one of them raises
+        """Stop before the end of the episode."""
+        with ExitStack() as all_of_them:  # also if one of them raises
             for part in self._parts:
                 all_of_them.callback(part.abandon)
         self._parts.clear()
 
 
 def read_complete(writers: Sequence[Writer], folder: Path) -> Summary | None:
-    """Return what an episode holds of which every file is there, else None.
+    """Return the summary of an episode if it is complete, else None.
 
-    Files that appear while an episode goes on do not tell whether it has ended: it counts as
+    Files that are written during an episode do not show that it has ended: it counts as
     complete only if one of the writers writes a file at its end.
     """
     if not any(writer.files.episode for writer in writers):

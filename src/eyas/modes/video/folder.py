@@ -1,4 +1,4 @@
-"""The folder of a recording: `DRONE<i>/episode<j>/NNNNNN.jpeg` and what describes it."""
+"""The folder of a recording: `DRONE<i>/episode<j>/NNNNNN.jpeg` and its settings."""
 
 import json
 import os
@@ -26,22 +26,22 @@ __all__ = ["VideoFolder", "check_folder", "open_folder"]
 SETTINGS, LEGACY_SETTINGS = "config.json", "env_config.json"
 
 ORIGIN = "version.json"
-"""Which version of Eyas records, and the files of its writers: `{"eyas": "0.1.0", "files": {...}}`.
-Another version may draw other bytes; the files may be deleted (`--overwrite`), even where the
-package of a user's own writer has gone."""
+"""Version of Eyas and the files of the writers: `{"eyas": "0.1.0", "files": {...}}`. The version,
+since another one may draw different pictures; the files, so that `--overwrite` can delete them even
+if the package of a user's own writer is no longer installed."""
 
 
 class VideoFolder:
-    """Where each episode of a recording lies, and who writes it.
+    """The folders and the writers of the episodes of a recording.
 
     Attributes:
         path: The recording's folder.
-        trackers: Names of the trackers, which their folders have.
+        trackers: Names of the trackers and of their folders.
         writers: One for each format.
 
     Args:
         path: The recording's folder.
-        config: What is recorded.
+        config: The settings.
     """
 
     def __init__(self, path: Path, config: EyasConfig) -> None:
@@ -71,17 +71,17 @@ def check_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: boo
     """Refuse a folder that cannot be recorded into; change nothing.
 
     Args:
-        path: The folder; need not be there.
-        config: What will be recorded.
-        overwrite: Whether a recording that lies there may be deleted.
-        resume: Whether a recording that lies there will be continued.
+        path: The folder; it need not exist.
+        config: The settings.
+        overwrite: Whether an existing recording may be deleted.
+        resume: Whether an existing recording will be continued.
 
     Raises:
-        OutputError: It is a file, or holds something, or what will be continued was recorded by
-            another version of Eyas.
-        ConfigError: The recording that lies there was made with other settings, or both
-            `overwrite` and `resume` are asked for.
-        DataFileError: The settings of the recording that lies there cannot be read.
+        OutputError: It is a file, or not empty, or the recording to continue was made by another
+            version of Eyas.
+        ConfigError: The existing recording was made with other settings, or both `overwrite`
+            and `resume` are given.
+        DataFileError: The settings of the existing recording cannot be read.
     """
     if overwrite and resume:
         raise ConfigError("--overwrite and --resume exclude each other: delete, or continue")
@@ -105,16 +105,16 @@ def check_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: boo
 
 
 def open_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: bool) -> VideoFolder:
-    """Make a folder ready to record into, with the settings in it; `recording_lock` is held.
+    """Prepare a folder for recording and write the settings; call it under `recording_lock`.
 
     Args:
-        path: The folder; made if it is not there.
-        config: What will be recorded.
-        overwrite: Whether a recording that lies there is deleted.
-        resume: Whether a recording that lies there is continued.
+        path: The folder; made if it does not exist.
+        config: The settings.
+        overwrite: Whether an existing recording is deleted.
+        resume: Whether an existing recording is continued.
 
     Raises:
-        OutputError: As `check_folder`, or the file system refused.
+        OutputError: As `check_folder`, or writing failed.
         ConfigError: As `check_folder`.
         DataFileError: As `check_folder`.
     """
@@ -134,7 +134,7 @@ def open_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: bool
 
 
 def _contents(path: Path, config: EyasConfig) -> Contents:
-    """Return what belongs to a recording of these settings, and to the one that lies there."""
+    """Return the paths of a recording with these settings, and of the existing one."""
     names = dict.fromkeys((*WRITERS.built_in, *config.video.writers))
     files = [WRITERS.get(name).files for name in names]
     with suppress(OSError, ValueError, TypeError, KeyError):
@@ -144,14 +144,14 @@ def _contents(path: Path, config: EyasConfig) -> Contents:
 
 
 def _delete_parts(path: Path, contents: Contents) -> None:
-    """Delete what an interrupted run has left half-written."""
+    """Delete the unfinished files of an interrupted run."""
     for inside, part in list(paths_below(path)):
         if part.name.endswith(PART_SUFFIX) and contents.in_run(inside):
             part.unlink(missing_ok=True)
 
 
 def _require_recording(path: Path, contents: Contents) -> None:
-    """Refuse to delete what is not a recording, or not only that."""
+    """Refuse to delete a folder that is not a recording or holds other files."""
     if not (path / SETTINGS).is_file():
         raise OutputError(f"{path}: not deleted: it is no recording (it has no {SETTINGS})")
     for inside, found in paths_below(path):
@@ -160,7 +160,7 @@ def _require_recording(path: Path, contents: Contents) -> None:
 
 
 def _delete_recording(path: Path) -> None:
-    # These last, so that a deletion that was interrupted can be asked for again.
+    # These last, so that an interrupted deletion can be repeated.
     last = (path / ORIGIN, path / SETTINGS)
     for folder, folders, names in os.walk(path, topdown=False):
         for name in names:
@@ -173,7 +173,7 @@ def _delete_recording(path: Path) -> None:
 
 
 def _require_same_version(path: Path) -> None:
-    """Refuse to continue what another version began: one recording would hold two looks."""
+    """Refuse to continue a recording of another version, whose pictures may differ."""
     try:
         recorded = json.loads((path / ORIGIN).read_text())["eyas"]
     except (OSError, ValueError, TypeError, LookupError):

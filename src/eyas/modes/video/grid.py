@@ -1,4 +1,4 @@
-"""Which 2 ms ticks of a recording have a frame."""
+"""The 2 ms ticks of a recording that have a frame."""
 
 import math
 
@@ -11,15 +11,15 @@ from eyas.modes.video.config import VideoConfig
 __all__ = ["FrameGrid"]
 
 _SLACK = 1e-6
-"""Ticks by which a time in seconds may miss a whole tick through rounding."""
+"""Largest rounding error of a time in seconds, in ticks."""
 
 
 class FrameGrid:
-    """Frame k of an episode lies at the tick nearest to its first frame + k / fps.
+    """Frame k of an episode is at the tick nearest to the time of its first frame + k / fps.
 
-    The original compares with the time of the last frame, and starts each later episode as if
-    that had been long ago, so that its second frame follows 2 ms after the first; here the grid
-    begins anew with each episode.
+    The original compares with the time of the last frame, which it does not set at the start of
+    later episodes, so that their second frame follows 2 ms after the first. Here each episode has
+    its own grid.
 
     Args:
         video: When to record.
@@ -41,12 +41,12 @@ class FrameGrid:
         self._frames = np.zeros(count, np.int64)
 
     def restart(self, trackers: NDArray[np.bool_]) -> None:
-        """Begin a new episode for some trackers, shape (N,)."""
+        """Begin a new episode for the trackers of a mask, shape (N,)."""
         self._origin[trackers] = -1
         self._frames[trackers] = 0
 
     def due(self, tick: int, step_count: NDArray[np.integer]) -> NDArray[np.int32]:
-        """Return the trackers that have a frame at this tick, and count the frame.
+        """Return the trackers that have a frame at this tick, and count these frames.
 
         Args:
             tick: 2 ms steps since the start of the run.

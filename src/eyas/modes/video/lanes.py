@@ -1,4 +1,4 @@
-"""Writers beside the simulation: a few threads, each of which keeps the order of its work."""
+"""Threads in which writers run beside the simulation; each keeps the order of its calls."""
 
 import os
 from collections import deque
@@ -11,17 +11,17 @@ __all__ = ["WriterLanes"]
 Arguments = ParamSpec("Arguments")
 
 MOST_WAITING = 8
-"""Calls that may wait in a lane; more would only pile up pictures in memory."""
+"""Most calls that may wait in a lane; it limits the pictures held in memory."""
 
 
 class WriterLanes:
-    """Runs calls in threads; calls of the same key run one after the other, in their order.
+    """Runs calls in threads; calls with the same key run one after the other, in order.
 
-    JPEG and movie encoding let go of Python's lock, so lanes use cores that drawing leaves free:
-    four pictures of 320 x 240 took 22 ms instead of 31 with one such core.
+    JPEG and video encoding release Python's global lock, so lanes use cores that drawing leaves
+    idle: with one such core, four pictures of 320 x 240 took 22 ms instead of 31.
 
     Args:
-        count: Most keys that are used.
+        count: Largest number of keys.
     """
 
     def __init__(self, count: int) -> None:
@@ -37,7 +37,7 @@ class WriterLanes:
         *args: Arguments.args,
         **kwargs: Arguments.kwargs,
     ) -> None:
-        """Run a call in the key's lane; raise what an earlier call of the lane raised."""
+        """Run a call in the key's lane; raise the error of an earlier call of that lane."""
         lane = key % len(self._threads)
         waiting = self._waiting[lane]
         while waiting and (len(waiting) >= MOST_WAITING or waiting[0].done()):
@@ -45,7 +45,7 @@ class WriterLanes:
         waiting.append(self._threads[lane].submit(self._run, lane, lambda: call(*args, **kwargs)))
 
     def _run(self, lane: int, call: Callable[[], None]) -> None:
-        # After a frame that failed, an episode must not be finished as if it were whole.
+        # After a frame has failed, its episode must not be finished as if it were complete.
         if self._failed[lane]:
             return
         try:
@@ -55,13 +55,13 @@ class WriterLanes:
             raise
 
     def finish(self) -> None:
-        """Wait for all calls; raise what one of them raised."""
+        """Wait for all calls; raise the error of one that failed."""
         for waiting in self._waiting:
             while waiting:
                 waiting.popleft().result()
         self.stop()
 
     def stop(self) -> None:
-        """Wait for all calls, whatever becomes of them."""
+        """Wait for all calls, and ignore their errors."""
         for thread in self._threads:
             thread.shutdown(wait=True)

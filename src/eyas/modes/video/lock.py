@@ -1,4 +1,4 @@
-"""Only one process at a time records into a folder."""
+"""The lock by which only one process at a time records into a folder."""
 
 import errno
 import logging
@@ -19,21 +19,21 @@ except ImportError:  # Windows
 __all__ = ["LOCK", "recording_lock"]
 
 LOCK = ".lock"
-"""File that is there, with the recorder's process id in it, while a folder is recorded into."""
+"""File that exists during a recording; it holds the process id of the recorder."""
 
 _LOG = logging.getLogger("eyas")
 
 
 @contextmanager
 def recording_lock(folder: Path) -> Iterator[None]:
-    """Keep a folder for this process; the folder is made if it is not there.
+    """Lock a folder for this process; the folder is made if it does not exist.
 
-    The system drops the lock with the process that holds it, however that ends: a file that a
-    killed recorder has left locks nobody out. Where there are no locks (on Windows and on some
-    network file systems), a warning is logged instead.
+    The system releases the lock when the process ends for any reason, so the file of a killed
+    recorder blocks no other process. Without file locks (on Windows and on some network file
+    systems), a warning is logged instead.
 
     Raises:
-        OutputError: Another process records into it, or the file system refused.
+        OutputError: Another process records into it, or writing failed.
     """
     path = folder / LOCK
     with refusals(path):
@@ -43,8 +43,8 @@ def recording_lock(folder: Path) -> Iterator[None]:
         try:
             yield
         finally:
-            # Before it is unlocked, or a file could go that another process has locked by then.
-            with suppress(PermissionError):  # Windows deletes no open file
+            # Before unlocking: afterwards another process may have locked the file.
+            with suppress(PermissionError):  # Windows cannot delete an open file
                 path.unlink(missing_ok=True)
 
 
@@ -77,7 +77,7 @@ def _lock(file: TextIO) -> None:
 
     Raises:
         BlockingIOError: Another process has locked it.
-        OSError: There are no locks here.
+        OSError: The file system has no locks.
     """
     if fcntl is None:
         raise OSError(errno.ENOLCK, os.strerror(errno.ENOLCK))

@@ -1,4 +1,4 @@
-"""Turns due trackers into drawn and written frames, and keeps count of them."""
+"""Draws and writes the frames of a recording, and counts them."""
 
 from dataclasses import dataclass
 
@@ -21,28 +21,28 @@ __all__ = ["Recorder"]
 
 @dataclass(slots=True)
 class _Going:
-    """An episode that goes on."""
+    """An episode in progress."""
 
     episode: Episode
     files: EpisodeFiles | None
-    """None: it lies there complete."""
+    """None: an earlier run has recorded it completely."""
     summary: Summary
-    """Of the frames up to now, or of all that lie there."""
+    """Of the frames up to now, or of all frames of an earlier run."""
 
 
 class Recorder:
     """Records the episodes of all trackers into a folder.
 
-    An episode that lies there complete is taken as it is and not drawn again.
+    An episode that an earlier run has recorded completely is kept and not drawn again.
 
     Args:
         sim: What is recorded.
         config: Its settings.
-        folder: Where to.
+        folder: The folder of the recording.
     """
 
     episodes: list[list[EndedEpisode]]
-    """For each tracker its ended episodes, those that have frames."""
+    """The ended episodes of each tracker that have frames."""
     drawn: int
     """Frames that were drawn."""
 
@@ -58,7 +58,7 @@ class Recorder:
             config.camera.height,
             config.camera.width,
             rgb="rgb" in wanted,
-            # A picture needs one array with pixels; this is the one that costs least.
+            # A picture needs at least one array of pixels; this one is the fastest.
             depth="depth" in wanted or not wanted,
             object_id="object_id" in wanted,
             class_id="class_id" in wanted,
@@ -74,10 +74,10 @@ class Recorder:
 
         Args:
             due: Trackers, shape (V,).
-            mover: What moves them.
+            mover: The mover of the trackers.
 
         Raises:
-            OutputError: The file system refused this frame or an earlier one.
+            OutputError: This frame or an earlier one could not be written.
         """
         drawn = [tracker for tracker in due.tolist() if self._begin(tracker).files]
         if not drawn:
@@ -89,7 +89,7 @@ class Recorder:
         self.drawn += len(drawn)
 
     def _begin(self, tracker: int) -> _Going:
-        """Return the episode of a tracker; begin it if it has not begun."""
+        """Return the episode of a tracker, after beginning it if needed."""
         going = self._going[tracker]
         if going is None:
             going = self._going[tracker] = self._found_or_new(tracker)
@@ -115,10 +115,10 @@ class Recorder:
         self._lanes.submit(tracker, going.files.add, frame)
 
     def end(self, trackers: NDArray[np.bool_]) -> None:
-        """End the episodes of some trackers, shape (N,); those without frames leave nothing.
+        """End the episodes of the trackers of a mask, shape (N,); those without frames are dropped.
 
         Raises:
-            OutputError: The file system refused.
+            OutputError: Writing failed.
         """
         for tracker in np.flatnonzero(trackers).tolist():
             going = self._going[tracker]
@@ -132,7 +132,7 @@ class Recorder:
         """End all episodes, and describe the whole recording.
 
         Raises:
-            OutputError: The file system refused.
+            OutputError: Writing failed.
         """
         self.end(np.ones(len(self._going), np.bool_))
         self._lanes.finish()
@@ -140,7 +140,7 @@ class Recorder:
             writer.finish([ended for own in self.episodes for ended in own])
 
     def stop(self) -> None:
-        """Leave in the middle: every file that is there is whole."""
+        """Stop before the end; every file that exists is complete."""
         self._lanes.stop()
         for files in self._begun:
             files.abandon()

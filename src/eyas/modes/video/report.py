@@ -1,4 +1,4 @@
-"""What a recording tells its user: progress on stderr, a table at the end."""
+"""Messages of a recording: progress on stderr, a table at the end."""
 
 import time
 from types import TracebackType
@@ -15,7 +15,7 @@ __all__ = ["Progress", "print_report", "say"]
 
 
 class Progress:
-    """A bar on stderr with frames per second; nothing where no person looks.
+    """A progress bar on stderr with frames per second; only on a terminal.
 
     Args:
         quiet: Whether nothing is shown anywhere.
@@ -51,15 +51,15 @@ class Progress:
 
     @property
     def rate(self) -> float:
-        """Frames drawn in a second of wall time [Hz]."""
+        """Frames drawn per second of wall time [Hz]."""
         return self.frames / max(time.perf_counter() - self._start, 1e-9)
 
     def show(self, share: float, frames: int) -> None:
-        """Show how much is done.
+        """Show the progress.
 
         Args:
-            share: Of the simulated time, 0 to 1.
-            frames: Frames drawn.
+            share: Share of the simulated time that is done, 0 to 1.
+            frames: Number of frames drawn.
         """
         self.frames = frames
         self._bar.update(self._task, completed=share, frames=frames, rate=self.rate)
@@ -74,7 +74,7 @@ def say(line: str, *, quiet: bool) -> None:
 def print_report(
     folder: VideoFolder, recorder: Recorder, progress: Progress, *, quiet: bool
 ) -> None:
-    """Print a row for each tracker, and where the recording lies."""
+    """Print a row for each tracker, and the folder of the recording."""
     if quiet:
         return
     rate = progress.rate
@@ -93,7 +93,7 @@ def print_report(
 
 
 def _means(whole: Summary) -> tuple[str, str]:
-    """Return the mean reward, and the share of frames in which the target is seen."""
+    """Return the mean reward, and the share of frames in which the target is visible."""
     scores = whole.scores
     if scores is None or not scores.rewarded:
         return "-", "-"

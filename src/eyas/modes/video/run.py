@@ -1,4 +1,4 @@
-"""Record videos with labels: `channels` trackers follow their targets side by side in one world."""
+"""Record videos with labels: `channels` trackers follow their targets together in one world."""
 
 from pathlib import Path
 
@@ -21,7 +21,7 @@ from eyas.task.config import DoneConfig
 __all__ = ["run"]
 
 _NEVER = 1e6
-"""A limit that no drone reaches."""
+"""A limit that no tracker reaches."""
 
 
 def run(
@@ -32,24 +32,24 @@ def run(
     resume: bool = False,
     quiet: bool = False,
 ) -> None:
-    """Record into `folder` what the writers of the settings write of each episode.
+    """Record episodes into `folder`, in the formats of `video.writers`.
 
     The same settings give the same bytes, also when the recording was interrupted and continued.
 
     Args:
-        config: What to record.
-        folder: Where to; holds `DRONE<i>/episode<j>/` afterwards.
-        overwrite: Whether a recording that lies there is deleted.
-        resume: Whether a recording that lies there is continued.
+        config: The settings.
+        folder: The folder; holds `DRONE<i>/episode<j>/` afterwards.
+        overwrite: Whether an existing recording is deleted.
+        resume: Whether an existing recording is continued.
         quiet: Whether nothing is printed.
 
     Raises:
-        EyasError: One line: what cannot be built, read or written; also when another process
-            records into the folder.
-        KeyboardInterrupt: The user stopped it; every file that is there is whole.
+        EyasError: Something cannot be built, read or written, or another process records into
+            the folder.
+        KeyboardInterrupt: The user stopped it; every file that exists is complete.
     """
-    # Building may take a minute, so writers and folder are looked at before; what cannot be built
-    # leaves no folder and deletes none, so it is made after.
+    # Building may take a minute, so writers and folder are checked first. The folder is changed
+    # only after building, so that a failed build neither makes nor deletes one.
     chosen_writers(config.video.writers)
     check_folder(folder, config, overwrite=overwrite, resume=resume)
     sim = build_simulation(recording_rules(config), together(config.video.channels))
@@ -78,10 +78,10 @@ def _record(sim: Simulation, config: EyasConfig, folder: VideoFolder, *, quiet: 
 
 
 def recording_rules(config: EyasConfig) -> EyasConfig:
-    """Return the settings with the original's ends of a recorded episode.
+    """Return the settings with the end conditions of the original's video mode.
 
-    Only a lost target, the number of steps, and not-a-number end one: neither limits of the body
-    nor a missing reward do.
+    Only a lost target, the step limit and NaN end an episode; the limits of height, distance,
+    speed and tilt, and missing reward, do not.
     """
     done = DoneConfig(
         max_height=_NEVER,
