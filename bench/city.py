@@ -1,4 +1,4 @@
-"""What the peers draw: Eyas's own scene, cars and cameras as plain arrays."""
+"""The input of the peers: Eyas's scene, cars and cameras as plain arrays."""
 
 from dataclasses import dataclass
 from itertools import pairwise
@@ -15,7 +15,7 @@ from eyas.state.draw import Views
 from eyas.state.mesh import Mesh, Surface
 
 CHUNK = 32.0
-"""Side of the squares that can be skipped [m]."""
+"""Side of the squares that are skipped if not in view [m]."""
 
 
 @dataclass
@@ -33,7 +33,7 @@ class Batch:
     layers: np.ndarray
     """Texture, int32, shape (V,)."""
     painted: np.ndarray
-    """Whether the colour of the instance counts, bool, shape (V,)."""
+    """Whether the colour of the instance applies, bool, shape (V,)."""
     first: np.ndarray
     """First corner of each square, and the end, shape (C + 1,)."""
     boxes: np.ndarray
@@ -42,7 +42,7 @@ class Batch:
 
 @dataclass
 class City:
-    """The scene, and what N trackers in one world see of it at one time."""
+    """The scene and the cars at one time, and the cameras of N trackers in one world."""
 
     static: Batch
     """Streets, houses and trees."""
@@ -63,14 +63,14 @@ class City:
 def load_city(count: int) -> City:
     """Return citystreet by day and the cameras of `count` trackers after a reset.
 
-    Cars are those of the first tracker's world in all views: peers then need not move them.
+    All views show the cars of the first tracker's world, so that peers need not move them.
     """
     simulation = build_simulation(SimConfig(), each_alone(count))
     simulation.reset()
     assets = load_assets(SimConfig().world, SimConfig().traffic, count)
     scene, images = assets.scene, build_textures()
     names = list(images)
-    # Trees in their finest level, in which Eyas draws those that such views show.
+    # Trees at their finest level, which Eyas uses in such views.
     fixtures = scene.fixtures
     copies = [
         transformed(fixtures.levels[kind][0], pose)
@@ -142,7 +142,7 @@ def projection(views: Views, width: int, height: int) -> np.ndarray:
             [0, 0, -1, 0],
         ]
     )
-    # OpenGL's camera looks along -z with x to the right; ours has forward, left, up as columns.
+    # OpenGL's camera looks along -z with x to the right; our columns are forward, left, up.
     axes = np.stack(
         [-views.rotation[:, :, 1], views.rotation[:, :, 2], -views.rotation[:, :, 0]], axis=1
     )
@@ -164,7 +164,7 @@ def seen(boxes: np.ndarray, clip: np.ndarray) -> np.ndarray:
 
 
 def runs(visible: np.ndarray) -> list[tuple[int, int]]:
-    """Return first and last + 1 of each run of squares in a row that are seen."""
+    """Return first and last + 1 of each run of consecutive visible squares."""
     edges = np.diff(np.concatenate([[0], visible.astype(np.int8), [0]]))
     return list(
         zip(np.flatnonzero(edges == 1).tolist(), np.flatnonzero(edges == -1).tolist(), strict=True)

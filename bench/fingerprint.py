@@ -1,10 +1,10 @@
-"""Hash what Eyas produces, to show whether a change of the code changed a byte of it.
+"""Hash the output of Eyas, to show whether a change of the code changed any byte of it.
 
     python bench/fingerprint.py before.json          # on the commit before
     python bench/fingerprint.py after.json before.json
 
-Pictures of all weathers, rewards and packets under random actions, other fleets, and whole
-recordings of `eyas video`. The second call lists the hashes that differ.
+It covers pictures in all weathers, rewards and packets under random actions, other vehicle types,
+and complete recordings of `eyas video`. The second call lists the hashes that differ.
 """
 
 import hashlib

@@ -89,7 +89,7 @@ class Peer:
         return self._gl.vertex_array(self._program, content)
 
     def _bake(self) -> None:
-        """Draw the shadow map of what stands still, once."""
+        """Draw the shadow map of the static scene, once."""
         sun = self._city.sun
         right = np.cross([0.0, 0.0, 1.0], sun)
         right /= np.linalg.norm(right)

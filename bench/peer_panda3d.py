@@ -1,4 +1,4 @@
-"""panda3d's software pipe: the same scene, without shadows, as it has none."""
+"""panda3d's software renderer: the same scene, without shadows, which it does not support."""
 
 import numpy as np
 from city import Batch, City
@@ -99,7 +99,7 @@ class Peer:
         up = 1 / np.tan(views.vertical_field_of_view / 2)
         near, far = 0.3, 3000.0
         a, b = (far + near) / (far - near), -2 * far * near / (far - near)
-        # Row vectors; panda3d's camera looks along y with z up, as `MatrixLens` leaves it.
+        # Row vectors; panda3d's camera looks along y with z up, which `MatrixLens` keeps.
         lens.setUserMat(LMatrix4(across, 0, 0, 0, 0, 0, a, 1, 0, up, 0, 0, 0, 0, b, 0))
         node = self._root.attachNewNode(Camera("camera", lens))
         forward, left, upward = views.rotation[k].T

@@ -1,10 +1,11 @@
-"""Eyas beside other renderers without a GPU: the same streets, cars and cameras, taking turns.
+"""Compare Eyas with other renderers without a GPU: the same streets, cars and cameras, in turns.
 
     pip install -e '.[peers]'    (moderngl also needs Mesa: apt install libegl1 libgl1-mesa-dri)
     python bench/peers.py [--views 64] [--seconds 10] [--pictures FOLDER]
 
-What each draws: textured, mip-mapped, lit, in haze. moderngl has a shadow map; panda3d's software
-pipe has no shadows. Eyas draws all that it draws by default. Reading back is included everywhere.
+All draw the scene textured, mip-mapped, lit and in haze. moderngl has a shadow map; panda3d's
+software renderer has no shadows. Eyas draws everything that it draws by default. All times include
+reading the pictures back.
 """
 
 import argparse
@@ -24,11 +25,11 @@ from eyas.sim.config import SimConfig
 from eyas.state.draw import DrawList, Picture
 
 SIDE = 84
-"""Of the pictures [pixels]."""
+"""Size of the pictures [pixels]."""
 
 
 class Drawer(Protocol):
-    """What is compared."""
+    """A renderer to compare."""
 
     name: str
     rgb: np.ndarray
@@ -76,7 +77,7 @@ def main() -> None:
     for module in ("peer_moderngl", "peer_panda3d"):
         try:
             drawers.append(importlib.import_module(module).Peer(city, SIDE))
-        except Exception as error:  # whatever a driver that is not there raises
+        except Exception as error:  # a missing driver may raise anything
             print(f"{module}: left out: {error}")
     rates = _rates(drawers, arguments.seconds)
     print(f"{arguments.views} pictures of {SIDE}x{SIDE}, {describe_machine()}")
@@ -91,7 +92,7 @@ def main() -> None:
 
 
 def _rates(drawers: list[Drawer], seconds: float) -> list[float]:
-    """Return calls in a second of each, medians of turns of half a second."""
+    """Return calls per second of each, medians over turns of half a second."""
     rates: list[list[float]] = [[] for _ in drawers]
     for drawer in drawers:
         drawer.draw()

@@ -1,12 +1,12 @@
-"""A map of your own: a field with a ring road around a hill. Nothing in Eyas knows of it.
+"""A map of your own, added without changes to Eyas: a field with a ring road around a hill.
 
     PYTHONPATH=examples python examples/own_map.py
 
-In an installed package such a file needs no registration: `world.map` takes its path,
-`own_map:FIELD`. `MAPS.register("field", FIELD)` gives it a short name in a process, an entry point
-in the group `eyas.maps` gives it one wherever the package is installed. Roads and traffic are made
-with SUMO on first use; `eyas traffic record --map own_map:FIELD --canonical` puts them into the
-map's package, to be shipped with it.
+A map that Python can import needs no registration: `world.map` takes its path, `own_map:FIELD`. To
+give it a short name, call `MAPS.register("field", FIELD)` (for one process), or define an entry
+point in the group `eyas.maps` (wherever the package is installed). Roads and traffic are made with
+SUMO on first use; `eyas traffic record --map own_map:FIELD --canonical` writes them into the map's
+package, so that they ship with it.
 """
 
 import math

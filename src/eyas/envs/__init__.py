@@ -1,1 +1,1 @@
-"""Faces of the simulation for reinforcement-learning libraries."""
+"""Interfaces of the simulation for reinforcement-learning libraries."""

@@ -1,4 +1,4 @@
-"""What an agent may say, and the command that it means."""
+"""The actions of an agent, and the commands that they mean."""
 
 from typing import Any
 
@@ -14,7 +14,8 @@ __all__ = ["ContinuousActions", "DiscreteActions", "action_table"]
 def action_table(speeds: ActionSpeeds) -> NDArray[np.float64]:
     """Return the command that each action number means, shape (6, 4).
 
-    Forward, left, up, yaw rate; the original's table, where 4 and 5 carry each other's names.
+    Columns: forward, left, up, yaw rate. It is the original's table, in which the names of actions
+    4 and 5 are swapped.
     """
     table = np.zeros((6, 4))
     table[0:2, 0] = speeds.forward_speed, speeds.backward_speed
@@ -29,7 +30,7 @@ class DiscreteActions:
     0 forward, 1 backward, 2 left, 3 right, 4 turn counter-clockwise, 5 turn clockwise, 6 hover.
 
     Args:
-        speeds: How fast.
+        speeds: The speeds of the actions.
     """
 
     def __init__(self, speeds: ActionSpeeds) -> None:
@@ -46,7 +47,7 @@ class ContinuousActions:
     """Four numbers in -1 to 1: forward, left, up, turn counter-clockwise, as shares of the speeds.
 
     Args:
-        speeds: What -1 and 1 mean.
+        speeds: The speeds that -1 and 1 mean.
     """
 
     def __init__(self, speeds: EnvSpeeds) -> None:

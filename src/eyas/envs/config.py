@@ -13,7 +13,7 @@ TurnRate = Annotated[float, Field(ge=-1e3, le=1e3)]
 
 
 class ActionSpeeds(Config):
-    """How fast each of the six actions is that move along one axis."""
+    """Speeds of the six actions, each of which moves along or turns about one axis."""
 
     forward_speed: Speed = 40.0
     """Action 0 [m/s]."""
@@ -24,19 +24,20 @@ class ActionSpeeds(Config):
     right_speed: Speed = -40.0
     """Action 3 [m/s]."""
     counter_clockwise_rate: TurnRate = 2.0
-    """Action 4 [rad/s]; the original's `cw_omega`, whose sign is named the wrong way."""
+    """Action 4 [rad/s]; the original's `cw_omega`, whose name states the opposite
+    direction."""
     clockwise_rate: TurnRate = -2.0
     """Action 5 [rad/s]; the original's `ccw_omega`."""
 
 
 class EnvSpeeds(ActionSpeeds):
-    """How fast the actions are. Defaults are those of the original's algorithm side."""
+    """Speeds of the actions. The defaults are those of the original's algorithm code."""
 
     vertical_speed: Speed = 0.01
-    """Up and down [m per 2 ms step]; only continuous actions use it."""
+    """Speed up and down [m per 2 ms step]; used by continuous actions only."""
 
 
 class EnvConfig(Config):
-    """How the environments read an agent's actions."""
+    """Meaning of an agent's actions in the environments."""
 
     speeds: EnvSpeeds = EnvSpeeds()

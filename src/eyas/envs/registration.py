@@ -14,13 +14,13 @@ def register() -> None:
 
 
 def register_map(name: str) -> None:
-    """Register `eyas/<map>-<weather>-v0` for each weather of a map; again does nothing.
+    """Register `eyas/<map>-<weather>-v0` for each weather of a map, unless it is registered.
 
     Args:
-        name: Of the map, or the path of a user's own, as `world.map` takes it.
+        name: Name of the map, or the path of a user's own map, as in `world.map`.
 
     Raises:
-        ConfigError: There is no such map.
+        ConfigError: The map does not exist.
     """
     recipe = MAPS.get(name)
     for weather in recipe.weathers:

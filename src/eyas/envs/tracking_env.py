@@ -33,9 +33,9 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
     """Keep a moving target in view.
 
     The observation is what the camera sees, RGB uint8, shape (84, 84, 3): the configured 4:3 view
-    squeezed into a square, as in the original. `info` holds the reward packet by name
-    (`eyas.task.packets`), the reason of the end, the step count, and what `light` settings drew
-    (factor on the sky, factor on the sun, one over the visibility range [1/m]).
+    scaled to a square, as in the original. `info` holds the reward packet by name
+    (`eyas.task.packets`), the reason of the end, the step count, and the values drawn from the
+    `light` settings (factor on the sky, factor on the sun, one over the visibility range [1/m]).
 
     Args:
         config: Settings: an `EyasConfig`, nested dictionaries of native settings, or the path of a
@@ -43,14 +43,14 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
         map: Name of the map; overrides the configuration.
         weather: Name of the weather; overrides the configuration.
         continuous: True: four numbers in -1 to 1; False: the seven discrete actions.
-        speeds: How fast the actions are; overrides the configuration.
+        speeds: Speeds of the actions; overrides the configuration.
         observation_size: Width and height of the observation [pixels].
         render_mode: `rgb_array` or None.
-        overlay: Whether `render` shows what the camera sees, is rewarded for and looks for;
-            observations never do.
+        overlay: Whether `render` draws the overlay: the ground that the camera sees, the area in
+            which the target is rewarded, and a marker over the target. Observations never show it.
 
     Raises:
-        EyasError: A setting is wrong, in one line.
+        EyasError: A setting is wrong; the message is one line.
     """
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": 125}  # noqa: RUF012  # Gymnasium's
@@ -59,7 +59,7 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
         self,
         config: EyasConfig | Mapping[str, Any] | str | Path | None = None,
         *,
-        map: str | None = None,  # the word users know
+        map: str | None = None,  # the word that users know
         weather: str | None = None,
         continuous: bool = False,
         speeds: EnvSpeeds | None = None,
@@ -87,11 +87,11 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Observation, dict[str, Any]]:
-        """Start a new episode; the observation already shows its target.
+        """Start a new episode; the returned observation shows its target.
 
         Args:
-            seed: Begin the sequence of episodes of this seed; None goes on with the present one,
-                which is the configuration's at first.
+            seed: Begin the sequence of episodes of this seed; None continues the current sequence,
+                at first that of the configuration's seed.
             options: Unused.
         """
         super().reset(seed=seed)

@@ -10,15 +10,15 @@ __all__ = ["Files", "joined", "pattern_of"]
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Files:
-    """Names of files. A number in a name is written `{:06d}`; `/` leads into folders."""
+    """Names of files. `{:06d}` stands for a number; `/` separates folders."""
 
     frame: tuple[str, ...] = ()
-    """Those of each frame, relative to the episode's folder, such as `{:06d}.jpeg`. They appear
-    while the episode goes on, so they cannot tell whether it has ended."""
+    """Those of each frame, relative to the episode's folder, such as `{:06d}.jpeg`. They are
+    written during the episode, so they do not show whether it has ended."""
     episode: tuple[str, ...] = ()
-    """Those that appear when the episode has ended, relative to its folder."""
+    """Those written at the end of an episode, relative to its folder."""
     run: tuple[str, ...] = ()
-    """Those that appear when the recording has ended, relative to its folder."""
+    """Those written at the end of the recording, relative to its folder."""
 
     def __post_init__(self) -> None:
         for name in (*self.frame, *self.episode, *self.run):

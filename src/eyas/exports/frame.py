@@ -1,4 +1,4 @@
-"""A frame: everything that writers are told about one picture of one tracker."""
+"""A frame: all data that writers get about one picture of one tracker."""
 
 import math
 from dataclasses import dataclass
@@ -29,18 +29,18 @@ __all__ = [
 Floats: TypeAlias = NDArray[np.float64]
 
 Output = Literal["rgb", "depth", "object_id", "class_id"]
-"""A picture that can be drawn of a frame; each is the field of its name in `Frame`."""
+"""Name of a picture of a frame, and of its field in `Frame`."""
 
 OUTPUTS: tuple[Output, ...] = get_args(Output)
-"""All of them."""
+"""All names of pictures."""
 
 
 @dataclass(frozen=True, slots=True)
 class Action:
-    """What the tracker is told."""
+    """The action of a tracker."""
 
     number: int
-    """Of the action: 0 to 5 for a random one, -1 when the target is followed exactly."""
+    """Number of the action: 0 to 5 for a random one, -1 when the target is followed exactly."""
     command: Floats | None
     """Forward [m/s], left [m/s], up [m per 2 ms], yaw rate [rad/s], shape (4,); None when the
     target is followed exactly."""
@@ -66,7 +66,7 @@ class Body:
 
 @dataclass(frozen=True, slots=True)
 class CameraPose:
-    """Where the camera is and looks."""
+    """Position and orientation of the camera."""
 
     position: Floats
     """Optical centre, world frame [m], shape (3,)."""
@@ -76,7 +76,7 @@ class CameraPose:
 
 @dataclass(frozen=True, slots=True)
 class Subject:
-    """Something that moves, and where the picture shows it. World frame, east-north-up."""
+    """A moving object and its place in the picture. World frame, east-north-up."""
 
     object_id: int
     """Its value in `Frame.object_id`; the same in all frames of an episode."""
@@ -87,7 +87,7 @@ class Subject:
     position: Floats
     """Reference point on the road [m], shape (3,)."""
     centre: Floats
-    """Middle of its visible body, which the reward looks for [m], shape (3,)."""
+    """Middle of its visible body, the point that is rewarded [m], shape (3,)."""
     velocity: Floats
     """[m/s], shape (3,)."""
     yaw: float
@@ -102,38 +102,38 @@ class Subject:
 
     @property
     def visible_fraction(self) -> float:
-        """Share of its pixels that are seen, 0 to 1; 0 outside the picture."""
+        """Visible share of its pixels, 0 to 1; 0 outside the picture."""
         return self.seen_pixels / self.covered_pixels if self.covered_pixels else 0.0
 
 
 @dataclass(frozen=True, slots=True)
 class Frame:
-    """One picture of one tracker with all that is known. Numbers are as computed, not rounded.
+    """One picture of one tracker with all its data. Numbers are not rounded.
 
-    Nobody writes into its arrays, so writers may keep them.
+    Its arrays are never changed, so writers may keep them.
     """
 
     number: int
-    """In its episode, from 0."""
+    """Number in its episode, from 0."""
     time: float
     """Simulated time since the start of the run [s]."""
     step: int
-    """2 ms steps since the reset."""
+    """Steps of 2 ms since the reset."""
     tracker: Body
     camera: CameraPose
     target: Subject
-    """What the tracker follows."""
+    """The target of the tracker."""
     others: tuple[Subject, ...]
-    """Whatever else moves in the picture; empty in this version, which measures only the target."""
+    """Other moving objects in the picture; empty in this version, which measures only targets."""
     action: Action
     reward: float
-    """Reward of this instant."""
+    """Reward at this time."""
     direction: TargetDirection
-    """Which way the target goes."""
+    """The turn of the target."""
     reason: DoneReason
-    """Why the episode ends with this instant; `NONE` while it goes on."""
+    """Why the episode ends with this frame; `NONE` if it does not."""
     rgb: NDArray[np.uint8] | None
-    """sRGB, row 0 on top, shape (H, W, 3); like the next three None where no writer wants it."""
+    """sRGB, row 0 on top, shape (H, W, 3). This and the next three: None if no writer wants it."""
     depth: NDArray[np.float32] | None
     """Distance along the optical axis [m], infinity for the sky, shape (H, W)."""
     object_id: NDArray[np.int32] | None
@@ -150,15 +150,15 @@ class Frame:
 def frame_of(
     snapshot: Snapshot, tracker: int, picture: Picture, view: int, number: int, action: Action
 ) -> Frame:
-    """Return a frame that later steps and pictures leave alone.
+    """Return a frame that later steps and pictures do not change.
 
     Args:
-        snapshot: The state at the instant of the frame.
-        tracker: Whose frame it is.
-        picture: What was drawn, with the subject's box and pixels; the subject is the target.
+        snapshot: The state at the time of the frame.
+        tracker: The tracker of the frame.
+        picture: The picture, with the box and pixels of the target.
         view: The tracker's row in `picture`.
-        number: Of the frame in its episode.
-        action: The tracker's.
+        number: Number of the frame in its episode.
+        action: The tracker's action.
     """
     episodes = snapshot.episodes
     return Frame(

@@ -1,4 +1,4 @@
-"""A file of an episode that is written at its end, from a record of each frame."""
+"""A writer that keeps a record of each frame and writes one file at the end of an episode."""
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -14,12 +14,12 @@ Record = TypeVar("Record")
 
 
 class Gather(EpisodeWriter, Generic[Record]):
-    """The `EpisodeWriter` of such a file.
+    """Keeps a record of each frame and writes one file at the end of the episode.
 
     Args:
         path: The file.
-        record: Returns what is kept of a frame.
-        encode: Returns the file's bytes.
+        record: Returns the record of a frame.
+        encode: Returns the bytes of the file, from all records.
     """
 
     def __init__(
@@ -38,9 +38,9 @@ class Gather(EpisodeWriter, Generic[Record]):
         self._records.append(self._record(frame))
 
     def finish(self) -> None:
-        """Write the file, whole or not at all.
+        """Write the file, completely or not at all.
 
         Raises:
-            OutputError: The file system refused.
+            OutputError: The file cannot be written.
         """
         write_atomic(self._path, self._encode(self._records))

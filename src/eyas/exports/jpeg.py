@@ -17,7 +17,7 @@ from eyas.exports.writer import Episode, EpisodeWriter, Writer
 __all__ = ["QUALITY", "JpegWriter", "write_picture"]
 
 QUALITY = 100
-"""The original's JPEG quality. Colours keep the full resolution too (4:4:4), because a target may
+"""The original's JPEG quality. Colours have the full resolution too (4:4:4), because a target may
 be only a few pixels wide. A picture of 320 x 240 takes about 90 kB (36 kB at quality 95)."""
 
 PICTURE = "{:06d}.jpeg"
@@ -31,11 +31,11 @@ class JpegWriter(Writer):
     files = Files(frame=(PICTURE,))
 
     def begin(self, episode: Episode) -> "JpegEpisode":
-        """Return what writes an episode's pictures."""
+        """Return the writer of an episode's pictures."""
         return JpegEpisode(episode.folder)
 
     def read(self, folder: Path) -> Summary | None:
-        """Return how many pictures there are; None if one is missing."""
+        """Return the number of pictures; None if one is missing."""
         ours = re.compile(pattern_of(PICTURE))
         names = {path.name for path in folder.glob("*") if ours.fullmatch(path.name)}
         whole = names == {PICTURE.format(number) for number in range(len(names))}
@@ -46,7 +46,7 @@ class JpegEpisode(EpisodeWriter):
     """The pictures of one episode.
 
     Args:
-        folder: Where to.
+        folder: The episode's folder.
     """
 
     def __init__(self, folder: Path) -> None:
@@ -59,14 +59,14 @@ class JpegEpisode(EpisodeWriter):
 
 
 def write_picture(path: Path, rgb: NDArray[np.uint8]) -> None:
-    """Write one picture, whole or not at all; the same picture gives the same bytes.
+    """Write one picture, completely or not at all; the same picture gives the same bytes.
 
     Args:
-        path: Where to.
+        path: The file.
         rgb: The picture, shape (H, W, 3).
 
     Raises:
-        OutputError: The file system refused.
+        OutputError: The file cannot be written.
     """
     buffer = io.BytesIO()
     Image.fromarray(rgb).save(buffer, "JPEG", quality=QUALITY, subsampling=0)

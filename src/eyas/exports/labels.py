@@ -1,4 +1,4 @@
-"""`labels.jsonl`: everything that is known about each frame, one JSON object a line."""
+"""`labels.jsonl`: the data of each frame, one JSON object per line."""
 
 import json
 import math
@@ -23,25 +23,25 @@ LABELS = "labels.jsonl"
 
 @dataclass(frozen=True, slots=True)
 class FrameLabel:
-    """What one frame shows. World frame east-north-up; numbers that are not finite are None."""
+    """The label of one frame. World frame, east-north-up; numbers that are not finite are None."""
 
     frame: int
     """Number of the frame in its episode, from 0; its picture is `NNNNNN.jpeg`."""
     time: float
     """Simulated time since the start of the run [s]."""
     step: int
-    """2 ms steps since the reset."""
+    """Steps of 2 ms since the reset."""
     episode_time: float
     """Simulated time since the reset [s]."""
     target_box: list[int]
     """Extent of the target in the picture, hidden parts included, clipped to the picture: left,
     top, right, bottom [pixels], the last two exclusive; all 0 outside the picture."""
     visible_fraction: float
-    """Seen pixels of the target over the pixels it would cover if nothing hid it, 0 to 1."""
+    """Visible pixels of the target over those that it would cover if nothing hid it, 0 to 1."""
     occluded: bool
-    """Whether something hides a part of the target that lies in the picture."""
+    """Whether a part of the target inside the picture is hidden."""
     in_view: bool
-    """Whether a part of the target lies in the picture, seen or hidden."""
+    """Whether a part of the target, visible or hidden, is inside the picture."""
     tracker_position: list[float | None]
     """[m]"""
     tracker_velocity: list[float | None]
@@ -59,7 +59,7 @@ class FrameLabel:
     target_position: list[float | None]
     """Reference point of the target on the road [m]."""
     target_centre: list[float | None]
-    """The point that the reward looks for [m]."""
+    """Middle of the target's visible body, the point that is rewarded [m]."""
     target_velocity: list[float | None]
     """[m/s]"""
     target_yaw: float | None
@@ -67,13 +67,13 @@ class FrameLabel:
     relative_position: list[float | None]
     """`target_centre` in the tracker's body frame: forward, left, up [m]."""
     reward: float | None
-    """Reward of this instant."""
+    """Reward at this time."""
     action: int
     """Number of the random action, 0 to 5; -1 when the target is followed exactly."""
     direction: int
-    """What the target does: 0 stop, 1 straight, 2 left, 3 right."""
+    """Turn of the target: 0 stop, 1 straight, 2 left, 3 right."""
     done: bool
-    """Whether the episode ends with this instant."""
+    """Whether the episode ends with this frame."""
 
 
 class LabelWriter(Writer):
@@ -82,11 +82,11 @@ class LabelWriter(Writer):
     files = Files(episode=(LABELS,))
 
     def begin(self, episode: Episode) -> Gather[FrameLabel]:
-        """Return what writes an episode's labels."""
+        """Return the writer of an episode's labels."""
         return Gather(episode.folder / LABELS, label_of, _encoded)
 
     def read(self, folder: Path) -> Summary | None:
-        """Return what the labels tell; None if they are missing or cut off."""
+        """Return the summary of the labels; None if they are missing or cut off."""
         try:
             labels = read_labels(folder / LABELS)
         except DataFileError:
@@ -139,7 +139,7 @@ def read_labels(path: Path) -> list[FrameLabel]:
     """Return the labels of an episode.
 
     Raises:
-        DataFileError: The file is missing, cut off, or holds other records.
+        DataFileError: The file is missing, cut off, or does not hold labels.
     """
     known = {field.name for field in fields(FrameLabel)}
     labels = []

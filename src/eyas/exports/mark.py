@@ -20,7 +20,7 @@ Mark = int | list[float | None]
 
 
 class MarkWriter(Writer):
-    """A mark for each frame, and how many frames each episode of each tracker has.
+    """Writes a mark for each frame, and the number of frames of each episode of each tracker.
 
     A mark is `[reward, action]`, or the target's direction (0 stop, 1 straight, 2 left, 3 right).
 
@@ -34,16 +34,16 @@ class MarkWriter(Writer):
         self._run = run
 
     def begin(self, episode: Episode) -> Gather[tuple[str, Mark]]:
-        """Return what writes `mark.json`: `{"000000": [reward, action], ...}`."""
+        """Return the writer of `mark.json`: `{"000000": [reward, action], ...}`."""
         return Gather(episode.folder / MARK, self._marked, _encoded)
 
     def _marked(self, frame: Frame) -> tuple[str, Mark]:
-        # The original writes both as C++ doubles, so an action is 3.0 and following is -1.0.
+        # The original writes both as C++ doubles: an action as 3.0, exact following as -1.0.
         pair = [rounded(frame.reward), float(frame.action.number)]
         return f"{frame.number:06d}", int(frame.direction) if self._run.target_direction else pair
 
     def read(self, folder: Path) -> Summary | None:
-        """Return how many marks there are."""
+        """Return the number of marks."""
         try:
             return Summary(len(json.loads((folder / MARK).read_text())))
         except (OSError, ValueError):
@@ -52,7 +52,8 @@ class MarkWriter(Writer):
     def finish(self, episodes: Sequence[EndedEpisode]) -> None:
         """Write `dir_info.json`.
 
-        The original counts the files of an episode's folder less `mark.json`, which is the same.
+        The original counts the files in an episode's folder without `mark.json`, which gives the
+        same numbers.
         """
         info: dict[str, dict[str, int]] = {tracker: {} for tracker in self._run.trackers}
         for episode, summary in episodes:

@@ -22,14 +22,14 @@ MOVIE = "episode.mp4"
 
 CODECS = {
     # A picture of 320 x 240 takes 1.8 ms; the default preset needs 5.7 ms for the same size.
-    # x264's macroblock tree gives other bytes in about one run of fifty, so it stays off.
+    # x264's macroblock tree gives different bytes in about one run of fifty, so it is off.
     "libx264": {"crf": "18", "preset": "veryfast", "x264-params": "mbtree=0"},
     "mpeg4": {"qscale": "3"},
 }
-"""Encoders by preference, with settings of about the same, visually clean, quality."""
+"""Encoders in order of preference, with settings of about equal, visually clean quality."""
 
 LARGEST_DENOMINATOR = 1001
-"""Of the frame rate; 30000/1001 is the least round one in use."""
+"""Largest denominator of the frame rate; 30000/1001 is a common rate."""
 
 
 class Mp4Writer(Writer):
@@ -39,12 +39,12 @@ class Mp4Writer(Writer):
     files = Files(episode=(MOVIE,))
 
     def begin(self, episode: Episode) -> "Mp4Episode":
-        """Return what writes an episode's movie."""
+        """Return the writer of an episode's video."""
         path = episode.folder / MOVIE
         return Mp4Episode(path, episode.height, episode.width, episode.fps)
 
     def read(self, folder: Path) -> Summary | None:
-        """Return how many pictures the movie says that it has."""
+        """Return the number of pictures that the video's header states."""
         try:
             with av.open(str(folder / MOVIE)) as container:
                 return Summary(container.streams.video[0].frames)
@@ -53,24 +53,24 @@ class Mp4Writer(Writer):
 
 
 class Mp4Episode(EpisodeWriter):
-    """Encodes pictures as they come; the file appears under its name when it is whole.
+    """Encodes pictures one by one; the file gets its final name when it is complete.
 
     The same pictures give the same bytes: one encoder thread, no dates, no version tags.
 
     Args:
-        path: Where to.
-        height: Of the pictures [pixels].
-        width: Of the pictures [pixels].
-        fps: Pictures in a second of the movie [Hz].
+        path: The file.
+        height: Height of the pictures [pixels].
+        width: Width of the pictures [pixels].
+        fps: Pictures per second of the video [Hz].
 
     Raises:
-        OutputError: The file system refused; raised by every method.
+        OutputError: The file cannot be written; raised by every method.
     """
 
     def __init__(self, path: Path, height: int, width: int, fps: float) -> None:
         self._path = path
         self._part = part_path(path)
-        # yuv420p shares colours between 2 x 2 pixels, so sizes must be even.
+        # yuv420p shares colours among 2 x 2 pixels, so sizes must be even.
         self._padding = ((0, height % 2), (0, width % 2), (0, 0))
         with refusals(path):
             self._file: IO[bytes] = self._part.open("wb")
@@ -101,7 +101,7 @@ class Mp4Episode(EpisodeWriter):
             self._container.mux(self._stream.encode(image))
 
     def finish(self) -> None:
-        """Write what is left, and give the file its name."""
+        """Write the remaining pictures, and give the file its final name."""
         with refusals(self._path):
             self._container.mux(self._stream.encode(None))
             self._container.close()
@@ -109,8 +109,8 @@ class Mp4Episode(EpisodeWriter):
             os.replace(self._part, self._path)
 
     def abandon(self) -> None:
-        """Throw away what was written."""
+        """Delete the unfinished file."""
         with refusals(self._path):
             self._part.unlink(missing_ok=True)
-        with suppress(OSError):  # the last buffer may find the disk full again
+        with suppress(OSError):  # writing the last buffer may fail again
             self._file.close()

@@ -1,4 +1,4 @@
-"""The writers by name, and those that a recording chooses."""
+"""The writers by name, and the selection of those of a recording."""
 
 from collections.abc import Sequence
 from typing import Any, cast
@@ -24,14 +24,14 @@ WRITERS: Registry[type[Any]] = Registry(
     },
     group="eyas.writers",
 )
-"""All writers; a user's own is chosen by its path, `my_package.module:Class`."""
+"""All writers; a user's own is selected by its path, `my_package.module:Class`."""
 
 
 def chosen_writers(names: Sequence[str]) -> tuple[type[Writer], ...]:
     """Return the classes of writers by their names or paths.
 
     Raises:
-        ConfigError: There is no such writer, it is not a writer, or two write the same file.
+        ConfigError: A writer does not exist, is not a writer, or two write the same file.
     """
     writers = tuple(_checked(name, WRITERS.get(name)) for name in names)
     taken: dict[tuple[str, str], str] = {}
@@ -48,7 +48,7 @@ def chosen_writers(names: Sequence[str]) -> tuple[type[Writer], ...]:
 
 
 def _checked(name: str, found: type[Any]) -> type[Writer]:
-    """Return a class that has all that a writer needs."""
+    """Return a class after checking that it has everything that a writer needs."""
     needed = ("wants", "files", "begin", "read", "finish")
     abstract = getattr(found, "__abstractmethods__", ())
     missing = [name for name in needed if not hasattr(found, name) or name in abstract]

@@ -1,4 +1,4 @@
-"""Numbers as files show them."""
+"""Rounding of numbers for files."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -6,7 +6,7 @@ from numpy.typing import ArrayLike
 __all__ = ["rounded", "rounded_list"]
 
 DECIMALS = 6
-"""Decimals of every number: micrometres, microradians; few enough that bytes repeat."""
+"""Decimals of every number (micrometres, microradians); few enough for identical bytes."""
 
 
 def rounded(value: float) -> float | None:

@@ -1,4 +1,4 @@
-"""What frames come to: their number, their rewards, how often the target is seen."""
+"""Summary of frames: their number, their rewards, how often the target is visible."""
 
 import math
 from collections.abc import Iterable
@@ -18,10 +18,10 @@ class Scores:
     reward: float = 0.0
     """Sum of those rewards."""
     sightings: int = 0
-    """Frames in which a pixel of the target is seen."""
+    """Frames in which a pixel of the target is visible."""
 
     def plus(self, reward: float, *, seen: bool) -> "Scores":
-        """Return the sums with one more frame."""
+        """Return the sums including one more frame."""
         finite = math.isfinite(reward)
         return Scores(
             self.rewarded + finite,
@@ -32,22 +32,22 @@ class Scores:
 
 @dataclass(frozen=True, slots=True)
 class Summary:
-    """What some frames come to."""
+    """Summary of some frames."""
 
     frames: int
-    """How many."""
+    """Number of frames."""
     scores: Scores | None = None
-    """None where files do not tell."""
+    """None if the files do not contain them."""
 
     def plus(self, frame: Frame) -> "Summary":
-        """Return the summary with one more frame."""
+        """Return the summary including one more frame."""
         seen = frame.target.seen_pixels > 0
         scores = self.scores and self.scores.plus(frame.reward, seen=seen)
         return Summary(self.frames + 1, scores)
 
 
 def total(summaries: Iterable[Summary]) -> Summary:
-    """Return the sum of some episodes; its scores are None if those of one episode are."""
+    """Return the summary of some episodes; its scores are None if those of any episode are."""
     listed = list(summaries)
     scores = [summary.scores for summary in listed if summary.scores is not None]
     whole = Scores(

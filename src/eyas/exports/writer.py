@@ -3,11 +3,12 @@
     Writer(run)                            once
       begin(episode) -> EpisodeWriter      for each episode of each tracker
         add(frame) ...                     for each of its frames, in their order
-        finish() | abandon()               it has ended | the recording was stopped in the middle
+        finish() | abandon()               when it has ended | when the recording is stopped early
       finish(episodes)                     once, when all episodes have ended
 
-A file is written under another name and renamed when it is whole (`eyas.core.files.write_atomic`),
-so that an interrupted recording can be continued. Whoever writes may raise `OutputError`.
+A file is written under another name and renamed when it is complete
+(`eyas.core.files.write_atomic`), so that an interrupted recording can be continued. Every method
+that writes may raise `OutputError`.
 """
 
 from abc import abstractmethod
@@ -30,10 +31,10 @@ __all__ = ["EndedEpisode", "Episode", "EpisodeWriter", "Run", "Writer"]
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """A recording, as its writers are told about it."""
+    """The description of a recording that its writers get."""
 
     folder: Path
-    """Where everything lies."""
+    """The folder of the recording."""
     trackers: tuple[str, ...]
     """Names of all trackers: `DRONE0`, `DRONE1`, ..."""
     config: SimConfig
@@ -51,29 +52,29 @@ class Episode:
     tracker: str
     """Name of the tracker."""
     number: int
-    """Of the episode among those of its tracker that have frames, from 0."""
+    """Number among the episodes of its tracker that have frames, from 0."""
     width: int
-    """Of the pictures [pixels]."""
+    """Width of the pictures [pixels]."""
     height: int
-    """Of the pictures [pixels]."""
+    """Height of the pictures [pixels]."""
     intrinsics: NDArray[np.float64]
     """Camera matrix of computer vision (x right, y down, z forward), pixel (0, 0) has its centre at
     (0.5, 0.5) [pixels], shape (3, 3)."""
     fps: float
-    """Frames in a second of simulated time [Hz]."""
+    """Frames per second of simulated time [Hz]."""
 
 
 class EndedEpisode(NamedTuple):
-    """An episode of which everything is written, now or by an earlier, interrupted run."""
+    """An episode that is completely written, now or by an earlier, interrupted run."""
 
     episode: Episode
     summary: Summary
 
 
 class EpisodeWriter(Protocol):
-    """Writes one episode. Its methods are called one after the other, in a thread of the tracker.
+    """Writes one episode. Its methods are called in order, in the thread of its tracker.
 
-    A class that inherits from this one need not have a method that would do nothing.
+    A subclass may omit methods that would do nothing.
     """
 
     @abstractmethod
@@ -81,25 +82,26 @@ class EpisodeWriter(Protocol):
         """Write the next frame."""
 
     def finish(self) -> None:
-        """Write what describes the whole episode; nothing by default."""
+        """Write the files that describe the whole episode; nothing by default."""
         return
 
     def abandon(self) -> None:
-        """Close what is open: the recording was stopped in the middle of the episode."""
+        """Close open files: the recording was stopped before the end of the episode."""
         return
 
 
 class Writer(Protocol):
-    """Writes one format. `begin` is called in the threads of all trackers, the rest in one.
+    """Writes one format. `begin` is called in the threads of all trackers, the rest in one
+    thread.
 
-    A class that inherits from this one need have neither `__init__` nor `finish`.
+    A subclass may omit `__init__` and `finish`.
 
     Args:
         run: The recording.
     """
 
     wants: ClassVar[AbstractSet[Output]] = frozenset()
-    """Pictures that it needs. What no writer wants is not drawn; boxes and pixels always are."""
+    """Pictures that it needs. Others are not drawn; boxes and pixel counts always exist."""
     files: ClassVar[Files]
     """All files that it writes."""
 
@@ -108,27 +110,27 @@ class Writer(Protocol):
 
     @abstractmethod
     def begin(self, episode: Episode) -> EpisodeWriter:
-        """Return what writes an episode; its folder is there, without any of this writer's files.
+        """Return the writer of an episode, whose folder exists, without files of this writer.
 
         Not called for an episode without frames.
         """
 
     @abstractmethod
     def read(self, folder: Path) -> Summary | None:
-        """Return what this writer's part of an episode holds; None if it is not whole.
+        """Return the summary of this writer's part of an episode; None if it is incomplete.
 
-        An interrupted recording is continued (`--resume`) after an episode of which all parts are
-        whole and hold the same number of frames; any other is drawn anew.
+        When a recording is continued (`--resume`), an episode is kept if all parts are complete and
+        hold the same number of frames; any other is drawn again.
 
         Args:
-            folder: Of the episode.
+            folder: The folder of the episode.
         """
 
     def finish(self, episodes: Sequence[EndedEpisode]) -> None:
-        """Write what describes the whole recording; nothing by default.
+        """Write the files that describe the whole recording; nothing by default.
 
         Args:
-            episodes: All of them, tracker by tracker. Those that an earlier run has written were
-                neither begun nor added to now: what is needed of them must lie in their folders.
+            episodes: All episodes, tracker by tracker. For those of an earlier run, `begin` and
+                `add` were not called now: their data must be read from their folders.
         """
         return

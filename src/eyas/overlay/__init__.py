@@ -1,1 +1,1 @@
-"""Marks over finished pictures: what a camera sees, what is rewarded, where the target is."""
+"""Overlays on finished pictures: the view of a camera, the rewarded area, the target."""

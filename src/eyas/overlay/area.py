@@ -1,9 +1,9 @@
 """Convex areas, painted on the ground that a picture shows.
 
-The ground is what the depths say: pixels whose surface is about as high as the ground, so walls
-and cars hide the paint. A line on the ground and the optical centre span a plane, so the line is a
-straight one in the picture too, and a pixel's distance from it is that plane's equation over the
-length of its gradient. So lines are smooth, and as wide as wished, at any distance and slant.
+Ground pixels are found by their depth: their surface is about as high as the ground. So walls and
+cars hide the paint. A line on the ground and the optical centre span a plane, so the line is
+straight in the picture too, and a pixel's distance from it is that plane's equation over the length
+of its gradient. This makes lines smooth and of constant width at any distance and angle.
 """
 
 import numpy as np
@@ -16,13 +16,13 @@ from eyas.state.terrain import Plane, height_over
 __all__ = ["paint_area"]
 
 RISE = 0.3
-"""How much higher or lower than the ground paint still lies [m]: roads and kerbs are higher."""
+"""Tolerance in height within which a surface counts as ground [m]: roads and kerbs are higher."""
 
 WIDTH = 0.14
 """Of the line [m]."""
 
 THINNEST = 1.75
-"""Width of the line below which it gets no thinner, in strokes of the canvas."""
+"""Smallest width of the line, in strokes of the canvas."""
 
 Window = tuple[slice, slice]
 Floats = NDArray[np.float32]
@@ -44,7 +44,7 @@ def paint_area(canvas: Canvas, area: GroundArea) -> None:
 
 
 def _window(canvas: Canvas, corners: NDArray[np.float64]) -> Window:
-    """Return the rows and columns of the area; all, if some of it is behind the camera."""
+    """Return the rows and columns of the area; all if a part of it is behind the camera."""
     places = canvas.project(corners)
     if (places[:, 2] < NEAR).any():
         return slice(0, canvas.height), slice(0, canvas.width)
@@ -52,26 +52,26 @@ def _window(canvas: Canvas, corners: NDArray[np.float64]) -> Window:
 
 
 def _on_ground(canvas: Canvas, ground: Plane, where: Window) -> NDArray[np.bool_]:
-    """Return which pixels of a window show something about as high as the ground."""
+    """Return which pixels of a window show a surface about as high as the ground."""
     upwards = (
         canvas.rotation[2]
         - ground.rise_east * canvas.rotation[0]
         - ground.rise_north * canvas.rotation[1]
     )
     falling = canvas.plane(upwards, where)
-    with np.errstate(invalid="ignore"):  # infinity * 0 where sky meets the horizon
+    with np.errstate(invalid="ignore"):  # infinity * 0 for sky pixels at the horizon
         rise = canvas.depth[where] * falling + np.float32(height_over(ground, *canvas.position))
     on: NDArray[np.bool_] = np.abs(rise) < RISE
     return on
 
 
 def _inside(canvas: Canvas, corners: NDArray[np.float64], where: Window) -> tuple[Floats, Floats]:
-    """Return how far pixels lie inside the edge, and inside the line along it [pixels].
+    """Return how far pixels are inside the edge, and inside the line along it [pixels].
 
     Args:
         canvas: The camera, above the ground.
         corners: On the ground, counter-clockwise seen from above [m], shape (K, 3).
-        where: Of which rows and columns.
+        where: Rows and columns of the window.
     """
     outer = inner = np.full((1, 1), np.inf, np.float32)
     for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
@@ -91,7 +91,7 @@ def _inside(canvas: Canvas, corners: NDArray[np.float64], where: Window) -> tupl
 def _beyond(
     canvas: Canvas, point: NDArray[np.float64], along: NDArray[np.float64], where: Window
 ) -> Floats:
-    """Return how far pixels lie to the left of a line on the ground, in the picture [pixels]."""
+    """Return how far pixels are to the left of a line on the ground, in the picture [pixels]."""
     offset = point - canvas.position
     normal = canvas.rotation.T @ np.cross(along, offset)
     slope = float(np.hypot(normal[1] / canvas.across, normal[2] / canvas.down))

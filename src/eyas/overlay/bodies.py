@@ -9,11 +9,11 @@ from eyas.overlay.items import Solid
 __all__ = ["DRONE_SIZE", "GEM_GIRDLE", "GEM_RADIUS", "drone", "gem"]
 
 DRONE_SIZE = 0.5
-"""Between neighbouring motors [m]; a little larger than life, so that it is seen from far."""
+"""Distance between neighbouring motors [m]; larger than the real one, to be visible from far."""
 
 GEM_SIDES = 6
 GEM_RADIUS, GEM_GIRDLE = 0.42, 0.7
-"""Of its widest ring, and how high that lies, as shares of its height."""
+"""Radius and height of its widest ring, as shares of its height."""
 
 GEM_COLOUR = (1.0, 0.27, 0.5)
 TABLE_COLOUR = (1.0, 0.5, 0.66)
@@ -27,12 +27,12 @@ Triangles = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
 def gem(tip: NDArray[np.float64], height: float, turn: float) -> Solid:
-    """Return a cut gem that stands on its tip.
+    """Return a cut gem, standing on its tip.
 
     Args:
         tip: Its lowest point, world frame [m], shape (3,).
-        height: Of it [m].
-        turn: About its axis [rad].
+        height: Height of the gem [m].
+        turn: Rotation about its axis [rad].
     """
     angles = turn + np.arange(GEM_SIDES) * (2.0 * np.pi / GEM_SIDES)
     girdle = np.column_stack([np.cos(angles), np.sin(angles), np.ones(GEM_SIDES)])
@@ -89,7 +89,7 @@ def _prism(
     span: tuple[float, float],
     colour: tuple[float, float, float],
 ) -> Triangles:
-    """Return an upright prism: middle and radii along x and y, lowest and highest z."""
+    """Return an upright prism, given middle and radii along x and y, lowest and highest z."""
     angles = (np.arange(sides) + 0.5) * (2.0 * np.pi / sides)
     ring = np.column_stack(
         [
@@ -114,7 +114,7 @@ def _arm(motor: NDArray[np.float64], colour: tuple[float, float, float]) -> Tria
 def _closed(
     ring: NDArray[np.float64], height: float, colour: tuple[float, float, float]
 ) -> Triangles:
-    """Return what stands on a convex ring, with lid and floor."""
+    """Return the closed body on a convex ring, with lid and floor."""
     lid = ring.copy()
     lid[:, 2] += height
     low, high = ring.mean(axis=0), lid.mean(axis=0)

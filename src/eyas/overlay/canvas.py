@@ -1,4 +1,4 @@
-"""The picture that an overlay is drawn on, and the camera that took it."""
+"""The picture on which an overlay is drawn, and its camera."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -9,14 +9,14 @@ from eyas.state.draw import Views
 __all__ = ["CASING", "NEAR", "Canvas", "cover"]
 
 NEAR = 0.1
-"""What is nearer to the camera than this is not drawn [m]."""
+"""Nearer parts than this are not drawn [m]."""
 
 CASING = (0.04, 0.05, 0.07)
-"""Colour around everything, so that it is seen on any ground."""
+"""Colour of the outlines, which make marks visible on any ground."""
 
 
 class Canvas:
-    """Colours that are painted over, by picture number `v` of some views.
+    """The colours of picture `v` of some views, to paint on.
 
     Attributes:
         depth: Distance along the optical axis at the pixels' centres [m], shape (H, W).
@@ -24,8 +24,8 @@ class Canvas:
 
     Args:
         views: The cameras.
-        v: Which of them.
-        rgb: What it saw, shape (H, W, 3); left alone.
+        v: Index of the view.
+        rgb: Its picture, shape (H, W, 3); not changed.
         depth: As above.
     """
 
@@ -50,14 +50,14 @@ class Canvas:
         return np.stack(project(points, self.position, self.rotation, *size, *self._fields), -1)
 
     def window(self, low: ArrayLike, high: ArrayLike, margin: float) -> tuple[slice, slice]:
-        """Return the rows and columns that a box of columns and rows covers, in the picture."""
+        """Return the rows and columns in the picture that a box of columns and rows covers."""
         limit = (self.width, self.height)
         first = np.clip(np.floor(np.asarray(low) - margin), 0, limit).astype(int)
         last = np.clip(np.ceil(np.asarray(high) + margin), 0, limit).astype(int)
         return slice(first[1], last[1]), slice(first[0], last[0])
 
     def plane(self, normal: ArrayLike, where: tuple[slice, slice]) -> NDArray[np.float32]:
-        """Return normal times ray for each pixel of a window; a ray has length 1 along the axis.
+        """Return normal times ray for each pixel of a window; rays have length 1 along the axis.
 
         Args:
             normal: Camera frame: forward, left, up, shape (3,).
@@ -76,7 +76,7 @@ class Canvas:
         colour: ArrayLike,
         share: NDArray[np.floating] | NDArray[np.bool_],
     ) -> None:
-        """Mix a colour, sRGB 0 to 1, into a window's pixels by a share of 0 to 1 for each."""
+        """Mix a colour, sRGB 0 to 1, into a window's pixels, with a share of 0 to 1 for each."""
         below = self._colour[where]
         above = np.asarray(colour, np.float32) * np.float32(255.0)
         below += (above - below) * share[..., None].astype(np.float32)

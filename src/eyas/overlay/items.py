@@ -1,4 +1,4 @@
-"""What is drawn over a finished picture, as things that stand in its world."""
+"""The items of an overlay, placed in the world of the picture."""
 
 from dataclasses import dataclass
 
@@ -15,16 +15,16 @@ Colour = tuple[float, float, float]
 
 @dataclass(frozen=True, slots=True)
 class GroundArea:
-    """A convex area, painted on whatever lies on the ground."""
+    """A convex area, painted on the ground."""
 
     corners: NDArray[np.float64]
-    """On the ground [m], counter-clockwise seen from above, shape (K, 3)."""
+    """Corners on the ground [m], counter-clockwise seen from above, shape (K, 3)."""
     ground: Plane
-    """The ground there, taken for a plane."""
+    """The ground there, approximated by a plane."""
     colour: Colour
-    """Of the line along its edge, which lies inside."""
+    """Colour of the fill and of the line along the inside of the edge."""
     fill: float = 0.0
-    """How much of the colour covers the area, 0 to 1."""
+    """Opacity of the fill, 0 to 1."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -40,33 +40,33 @@ class Line:
 
 @dataclass(frozen=True, slots=True)
 class Solid:
-    """A small closed body of flat faces, with an outline round its picture. V vertices."""
+    """A small closed body of flat faces, drawn with an outline. V vertices."""
 
     positions: NDArray[np.float64]
     """World frame [m], shape (V, 3)."""
     triangles: NDArray[np.int32]
     """Vertices, counter-clockwise seen from outside, shape (T, 3)."""
     colours: NDArray[np.float64]
-    """Of each triangle, sRGB 0 to 1, shape (T, 3)."""
+    """Colour of each triangle, sRGB 0 to 1, shape (T, 3)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Label:
-    """Words to the right of a point; nothing hides them."""
+    """Text to the right of a point; nothing hides it."""
 
     anchor: NDArray[np.float64]
     """World frame [m], shape (3,)."""
     text: str
     colour: Colour
     clear: float = 0.0
-    """Radius round the point that the words stay out of [m]."""
+    """Radius around the point that the text keeps clear [m]."""
     always: bool = False
-    """Whether the words are in the upper left corner if the point is not in the picture."""
+    """Whether the text is in the upper left corner if the point is outside the picture."""
 
 
 @dataclass(frozen=True, slots=True)
 class Overlay:
-    """All that is drawn over one view: the ground first, then lines, solids and words."""
+    """All items of one view, drawn in this order: ground areas, lines, solids, text."""
 
     areas: tuple[GroundArea, ...] = ()
     lines: tuple[Line, ...] = ()

@@ -8,13 +8,13 @@ from eyas.overlay.items import Line
 __all__ = ["paint_line"]
 
 WIDTH = 1.5
-"""In strokes of the canvas."""
+"""Width, in strokes of the canvas."""
 
 OPACITY = 0.85
 
 
 def paint_line(canvas: Canvas, line: Line) -> None:
-    """Paint what of a line is before the camera and before what the picture shows."""
+    """Paint the part of a line that is in front of the camera and of the picture's surfaces."""
     ends = _before_the_camera(canvas, line)
     if ends is None:
         return
@@ -30,7 +30,7 @@ def paint_line(canvas: Canvas, line: Line) -> None:
     right, below = columns - start[0], rows - start[1]
     share = np.clip((right * along[0] + below * along[1]) / length**2, 0.0, 1.0)
     away = np.hypot(right - share * along[0], below - share * along[1])
-    # One over the depth, not the depth, is linear in the picture.
+    # One over the depth is linear in the picture; the depth is not.
     depth = 1.0 / ((1.0 - share) / start[2] + share / end[2])
     seen = (depth <= canvas.depth[where]) * OPACITY
     half = 0.5 * WIDTH * canvas.unit
@@ -39,7 +39,7 @@ def paint_line(canvas: Canvas, line: Line) -> None:
 
 
 def _before_the_camera(canvas: Canvas, line: Line) -> np.ndarray | None:
-    """Return the ends of what is farther than the near plane, shape (2, 3), or None."""
+    """Return the ends of the part beyond the near plane, shape (2, 3), or None."""
     ends = np.stack([line.start, line.end]).astype(np.float64)
     depth = (ends - canvas.position) @ canvas.rotation[:, 0]
     near = depth < NEAR

@@ -1,4 +1,4 @@
-"""What an overlay shows of a tracker: its view, its reward and its target, in the world."""
+"""The overlay of a tracker: its view, its reward and its target, placed in the world."""
 
 import math
 from collections.abc import Sequence
@@ -22,27 +22,27 @@ __all__ = ["Marks"]
 VIEW_COLOUR = (0.25, 0.8, 1.0)
 LABEL_COLOUR = (1.0, 1.0, 1.0)
 REWARD_COLOURS = ((0.95, 0.26, 0.2), (1.0, 0.78, 0.12), (0.35, 0.9, 0.3))
-"""For a reward of 0, 0.5 and 1."""
+"""Colours for a reward of 0, 0.5 and 1."""
 
 FARTHEST = 400.0
-"""Depth at which a view that reaches above the horizon is cut off [m]."""
+"""Depth at which a view that extends above the horizon is cut off [m]."""
 
 GEM_HEIGHT, GEM_GAP, GEM_TURN = 1.3, 0.4, 1.5
-"""Of the marker and of the gap below it [m]; how fast it turns [rad/s]."""
+"""Heights of the marker and of the gap below it [m]; turn rate of the marker [rad/s]."""
 
 UP = np.array([0.0, 0.0, 1.0])
 
 CIRCLE = 72
-"""Corners of the circle within which distances are rewarded."""
+"""Number of corners of the circle within which distances are rewarded."""
 
 
 class Marks:
-    """Tells what to draw for trackers as they are now.
+    """Makes the overlays of trackers in their current state.
 
     Args:
         snapshot: The trackers and their targets.
         terrain: The ground.
-        camera: Of each tracker.
+        camera: The camera of each tracker.
     """
 
     def __init__(self, snapshot: Snapshot, terrain: Terrain, camera: CameraConfig) -> None:
@@ -52,16 +52,16 @@ class Marks:
         self._half_height = self._half_width * camera.height / camera.width
 
     def of(self, main: int, rules: Rules, trackers: Sequence[int] | None = None) -> Overlay:
-        """Return what to draw for trackers in one world.
+        """Return the overlay of trackers in one world.
 
-        For each the ground that its camera sees, the ground on which a target is rewarded (its
-        colour tells the reward), a gem over its target with the reward beside it, and the drone
-        itself with the edges of its view.
+        For each tracker it shows the ground that the camera sees, the ground on which a target is
+        rewarded (the colour shows the reward), a gem over the target with the reward beside it, and
+        the drone with the edges of its view.
 
         Args:
-            main: Whose reward is told even where its target is outside the picture.
-            rules: Of the reward.
-            trackers: Which; None: `main`, without the drone, for the picture of its own camera.
+            main: The tracker whose reward is shown even if its target is outside the picture.
+            rules: Rules of the reward.
+            trackers: The trackers; None: `main` without its drone, for its own camera's picture.
         """
         parts = [self._marks(n, rules, always=n == main) for n in (trackers or (main,))]
         parts += [self._drone(n, rules) for n in trackers or ()]
@@ -73,7 +73,7 @@ class Marks:
         )
 
     def _marks(self, n: int, rules: Rules, *, always: bool) -> Overlay:
-        """Return view, range and target of a tracker, and its reward, seen `always`."""
+        """Return view, rewarded area, target and reward of a tracker; the reward `always` shown."""
         episodes, targets = self._snapshot.episodes, self._snapshot.targets
         reward = float(episodes.reward[n])
         ground, tip = self._ground(n), self._top_of_target(n) + GEM_GAP * UP
@@ -104,7 +104,7 @@ class Marks:
         )
 
     def _ground(self, n: int) -> Plane:
-        """Return the plane that touches the ground under a target."""
+        """Return the plane tangent to the ground under a target."""
         x, y, _ = self._snapshot.targets.centre[n]
         return plane_at(self._terrain, x, y)
 
@@ -148,5 +148,5 @@ def _colour_of(reward: float) -> tuple[float, float, float]:
 
 
 def _rotation(quaternion: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return body to world, shape (3, 3), of a quaternion w, x, y, z."""
+    """Return the rotation body to world, shape (3, 3), of a quaternion w, x, y, z."""
     return np.stack([np.array(rotate(quaternion, *axis)) for axis in np.eye(3)], axis=1)

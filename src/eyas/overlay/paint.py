@@ -1,4 +1,4 @@
-"""Draws an overlay over finished pictures: in the world, hidden by what the depths say."""
+"""Draws an overlay over finished pictures; nearer surfaces hide it, by their depths."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -17,10 +17,10 @@ __all__ = ["paint_overlays", "with_depth"]
 
 
 def with_depth(picture: Picture) -> Picture:
-    """Return the picture with an array for depths; all other arrays are the same ones.
+    """Return the picture with an array for depths; the other arrays are shared.
 
     Raises:
-        ValueError: No colours are wanted, so nothing can be drawn over them.
+        ValueError: The picture has no colours to draw over.
     """
     if picture.rgb is None:
         raise ValueError("picture: rgb is needed; the overlay is drawn over it")
@@ -30,10 +30,10 @@ def with_depth(picture: Picture) -> Picture:
 
 
 def paint_overlays(views: Views, overlays: Sequence[Overlay], picture: Picture) -> None:
-    """Draw over the colours of a picture; nothing else of it changes.
+    """Draw over the colours of a picture; its other arrays do not change.
 
     Args:
-        views: V cameras, those that the picture was drawn with.
+        views: The V cameras with which the picture was drawn.
         overlays: One for each view.
         picture: With colours and depths.
     """

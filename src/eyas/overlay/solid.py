@@ -9,14 +9,14 @@ from eyas.overlay.items import Solid
 __all__ = ["paint_solid"]
 
 SIDE = 4
-"""Samples along a side of each pixel."""
+"""Number of samples along each side of a pixel."""
 
 OUTLINE = 1.25
 """Width of the outline, which lies outside the body, in strokes of the canvas."""
 
 TOWARDS_LIGHT = np.array([0.36, 0.48, 0.8])
 SHADE = 0.55
-"""Brightness of a face that is turned away from the light; 1 towards it."""
+"""Brightness of a face that is turned away from the light; a face towards it has 1."""
 
 
 def paint_solid(canvas: Canvas, solid: Solid) -> None:
@@ -33,7 +33,7 @@ def paint_solid(canvas: Canvas, solid: Solid) -> None:
     near, face = _sample(vertices, solid.triangles, where)
     scene = np.repeat(np.repeat(canvas.depth[where], SIDE, 0), SIDE, 1)
     body = face >= 0
-    # The outline is as near as the body's nearest point, else the ground under it would cut it.
+    # The outline has the depth of the body's nearest point; else the ground would cut it off.
     edge = _grown(body, round(outline * SIDE)) & ~body & (scene > vertices[:, 2].min())
     body &= near >= 1.0 / scene
     colours = _shaded(solid)[np.where(body, face, -1)] * body[..., None]
@@ -46,7 +46,7 @@ def paint_solid(canvas: Canvas, solid: Solid) -> None:
 def _sample(
     vertices: NDArray[np.float64], triangles: NDArray[np.int32], where: tuple[slice, slice]
 ) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Return one over the depth, and the triangle or -1, of each sample of a window.
+    """Return one over the depth, and the triangle (or -1), of each sample of a window.
 
     Args:
         vertices: Column, row [pixels] and depth [m], shape (V, 3).
@@ -57,7 +57,7 @@ def _sample(
     shape = (rows.stop - rows.start) * SIDE, (columns.stop - columns.start) * SIDE
     near, face = np.zeros(shape), np.full(shape, -1, np.int64)
     on_grid = np.array([columns.start, rows.start])
-    corners = (vertices[:, :2] - on_grid) * SIDE - 0.5  # sample k lies at k
+    corners = (vertices[:, :2] - on_grid) * SIDE - 0.5  # sample k is at k
     for t, triangle in enumerate(triangles):
         (ax, ay), (bx, by), (cx, cy) = corners[triangle]
         area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
@@ -89,14 +89,14 @@ def _shaded(solid: Solid) -> NDArray[np.float64]:
 
 
 def _grown(mask: NDArray[np.bool_], radius: int) -> NDArray[np.bool_]:
-    """Return which samples are at most `radius` away from one of a mask."""
+    """Return which samples are at most `radius` away from a sample in a mask."""
     height, width = mask.shape
     padded = np.pad(mask, radius)
     grown = np.zeros_like(mask)
     for dy in range(-radius, radius + 1):
         reach = int((radius**2 - dy**2) ** 0.5)
         row = padded[radius + dy : radius + dy + height]
-        # Runs of a row are found with sums, not sample by sample.
+        # Runs in a row are found with cumulative sums.
         sums = np.pad(np.cumsum(row, axis=1), ((0, 0), (1, 0)))
         grown |= (
             sums[:, radius + reach + 1 : radius + reach + 1 + width]

@@ -1,4 +1,4 @@
-"""Words in the picture."""
+"""Text in the picture."""
 
 import math
 from collections.abc import Sequence
@@ -14,11 +14,11 @@ from eyas.overlay.items import Label
 __all__ = ["paint_labels"]
 
 SMALLEST, OF_HEIGHT = 9, 0.042
-"""Size of letters: so many pixels at least, else this share of the picture's height."""
+"""Size of letters: a share of the picture's height, but at least this many pixels."""
 
 
 def paint_labels(canvas: Canvas, labels: Sequence[Label]) -> None:
-    """Paint labels beside their points, moved so that they are wholly in the picture."""
+    """Paint labels beside their points, moved if needed to be fully inside the picture."""
     size = max(SMALLEST, round(OF_HEIGHT * canvas.height))
     gap = 0.5 * size
     for label in labels:
@@ -44,7 +44,7 @@ def paint_labels(canvas: Canvas, labels: Sequence[Label]) -> None:
 
 @lru_cache(maxsize=64)
 def _masks(text: str, size: int) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
-    """Return how much of each pixel letters cover, without and with a stroke around them."""
+    """Return the share of each pixel that letters cover, without and with an outline."""
     font = ImageFont.load_default(size)
     stroke = max(1, round(size / 8))
     left, top, right, bottom = font.getbbox(text)

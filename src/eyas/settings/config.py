@@ -1,4 +1,4 @@
-"""The root of all settings: those of the simulation, and those of each use of it."""
+"""The root of all settings: those of the simulation and those of each mode and interface."""
 
 from enum import StrEnum
 from typing import Annotated
@@ -14,7 +14,7 @@ __all__ = ["EyasConfig", "Mode", "WireConfig"]
 
 
 class Mode(StrEnum):
-    """What a configuration is meant for; the original's `Simulation_Mode`."""
+    """Intended use of a configuration; the original's `Simulation_Mode`."""
 
     DEMO = "demo"
     VIDEO = "video"
@@ -22,7 +22,7 @@ class Mode(StrEnum):
 
 
 class WireConfig(Config):
-    """What the wire server of the original's protocol speaks."""
+    """Settings of the server for the original's network protocol."""
 
     address: Annotated[str, Field(min_length=1)] = "127.0.0.1"
     """Network address to listen on."""
@@ -35,14 +35,14 @@ class WireConfig(Config):
 
 
 class EyasConfig(SimConfig):
-    """Everything that decides a run.
+    """All settings of a run.
 
-    A new mode or environment keeps its settings in a `config.py` beside its code, which imports
-    nothing but settings, and adds one line here.
+    A new mode or environment has its settings in a `config.py` beside its code, which imports
+    only settings, and one line here.
     """
 
     mode: Mode = Mode.VIDEO
-    """What the configuration is meant for."""
+    """Intended use of the configuration."""
     verbose: bool = False
     """Whether a log is written."""
     env: EnvConfig = EnvConfig()

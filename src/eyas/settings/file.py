@@ -22,18 +22,18 @@ Nested = dict[str, Any]
 
 
 def load_settings(path: Path | None, overrides: Sequence[str] = ()) -> EyasConfig:
-    """Return the settings of a file with some changed.
+    """Return the settings of a file, with some of them changed.
 
-    What is allowed and may surprise (a control frequency that does not divide 500, a log that is
-    not written) is told in one line of Python's log `eyas`.
+    Allowed settings that may have an unexpected effect (a control frequency that does not divide
+    500, a log that is not written) give a warning in Python's logger `eyas`.
 
     Args:
         path: JSON, native or the original's `env_config.json`; None: the defaults.
-        overrides: `key=value`, a later one wins; keys are dotted paths, native (`video.fps`) or the
-            original's (`Out_Video.fps`); values are JSON, or words as they stand.
+        overrides: `key=value`; a later one wins; keys are dotted paths, native (`video.fps`) or the
+            original's (`Out_Video.fps`); values are JSON, or else text.
 
     Raises:
-        DataFileError: The file cannot be read, or is no JSON object.
+        DataFileError: The file cannot be read, or is not a JSON object.
         ConfigError: A key or a value is wrong.
     """
     values = {} if path is None else read_settings(path)
@@ -58,7 +58,7 @@ def save_settings(config: EyasConfig, path: Path) -> None:
     """Write settings that load back to an equal value.
 
     Raises:
-        OutputError: The file system refused.
+        OutputError: The file cannot be written.
     """
     write_atomic(path, (config.model_dump_json(indent=2) + "\n").encode())
 
@@ -67,7 +67,7 @@ def read_settings(path: Path) -> Nested:
     """Return the JSON object that a file holds.
 
     Raises:
-        DataFileError: The file is not there, unreadable, cut off, or no object.
+        DataFileError: The file is missing, unreadable, cut off, or not a JSON object.
     """
     try:
         text = path.read_text(encoding="utf-8-sig")

@@ -1,4 +1,4 @@
-"""What can be set and is not in this version yet: said in one line instead of ignored."""
+"""Refusal of settings that need a part that is not in this version yet."""
 
 from collections.abc import Iterator
 
@@ -10,10 +10,10 @@ __all__ = ["require_supported"]
 
 
 def require_supported(config: EyasConfig) -> None:
-    """Refuse settings that ask for a part that this version does not have.
+    """Refuse settings that need a part that this version does not have.
 
-    A simulation refuses by itself what it cannot do; here, the setting is named in both notations.
-    Maps and weathers are refused where they are looked up.
+    A simulation also refuses them; here, the error names the setting in both notations. Maps and
+    weathers are refused when they are looked up.
 
     Raises:
         NotInThisVersionError: One line that names the setting, in both notations.

@@ -1,1 +1,1 @@
-"""The simulation: joins the rooms, owns the clock and the step."""
+"""The simulation: joins the other packages, and owns the clock and the step."""

@@ -1,4 +1,4 @@
-"""What simulations of the same map, weather and traffic share, made once in a process."""
+"""Data shared by simulations of the same map, weather and traffic; made once per process."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -36,18 +36,18 @@ class Assets:
 
 
 def load_assets(world: WorldConfig, traffic: TrafficConfig, trackers: int = 1) -> Assets:
-    """Return what a simulation needs; it shares each part with all others that need the same.
+    """Return the data of a simulation; simulations that need the same part share it.
 
-    Weathers of one season share their scene and geometry, whatever drives shares the scene, and
-    whatever the weather shares the traffic.
+    Weathers of one season share scene and geometry; different traffic shares the scene; all
+    weathers share the traffic.
 
     Args:
         world: Map and weather.
-        traffic: What drives.
-        trackers: How many follow; groups of vehicles that enter together are three times as many.
+        traffic: The traffic.
+        trackers: Number of trackers; three times as many vehicles enter together in a group.
 
     Raises:
-        EyasError: No such map or weather, or no traffic for it.
+        EyasError: The map or weather does not exist, or has no traffic.
     """
     recipe = MAPS.get(world.map)
     lighting, season = recipe.light(world.weather), recipe.season(world.weather)
@@ -64,7 +64,7 @@ def _traffic(map_name: str, seed: int, config: TrafficConfig, trackers: int) -> 
     recording = find_recording(
         recipe.roads(seed), config, trackers=trackers, shipped=recipe.shipped(TRAFFIC_FILE)
     )
-    # A scene depends on the season, its ground does not.
+    # A scene depends on the season, but its ground does not.
     scene = load_scene(map_name, seed)
     kind = np.array([kind_index(name) for name in recording.vehicle_types], np.int32)
     return Replay(recorded_motion(recording, scene.terrain, kind))

@@ -1,4 +1,4 @@
-"""The one place where the rooms are joined."""
+"""Builds a simulation from its settings."""
 
 import logging
 from collections.abc import Mapping
@@ -24,16 +24,16 @@ TRACKERS: Mapping[TrackerKind, Tracker] = {TrackerKind.DRONE: DRONE}
 def build_simulation(
     config: SimConfig, world_of: NDArray[np.integer], *, tracker: Tracker | None = None
 ) -> Simulation:
-    """Return a simulation; call its `reset` first.
+    """Return a simulation; call its `reset` before anything else.
 
     Args:
         config: The settings.
-        world_of: The world of each tracker, shape (N,): `each_alone(N)`, `together(N)`, or any
-            numbers; see `eyas.sim.worlds.Worlds`.
-        tracker: A kind of tracker of your own; None: the one that `tracker.kind` names.
+        world_of: Number of the world of each tracker, shape (N,): `each_alone(N)`, `together(N)`,
+            or other numbers; see `eyas.sim.worlds.Worlds`.
+        tracker: A kind of tracker of your own; None: the kind in `tracker.kind`.
 
     Raises:
-        EyasError: A setting is not supported, or there is no traffic for it.
+        EyasError: A setting is not supported, or no traffic matches the settings.
     """
     require_parts(config)
     assets = load_assets(config.world, config.traffic, len(world_of))

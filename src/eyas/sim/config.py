@@ -1,4 +1,4 @@
-"""Settings of a simulation, composed of those of its rooms."""
+"""Settings of a simulation, composed of those of the packages below it."""
 
 from typing import Annotated
 
@@ -16,19 +16,19 @@ __all__ = ["ControlConfig", "SimConfig"]
 
 
 class ControlConfig(Config):
-    """How often actions come."""
+    """The rate of actions."""
 
     frequency: Annotated[int, Field(ge=1, le=500)] = 125
-    """Actions in a second [Hz]; each lasts 500 // frequency physics steps of 2 ms."""
+    """Actions per second [Hz]; each lasts 500 // frequency physics steps of 2 ms."""
 
 
 class SimConfig(Config):
-    """All that a simulation needs, whatever it is used for."""
+    """All settings of a simulation, for any use of it."""
 
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
     """The one seed of the run."""
     target: TargetName = TargetName.SUMO_VEHICLE
-    """What is followed."""
+    """Kind of target to follow."""
     world: WorldConfig = WorldConfig()
     traffic: TrafficConfig = TrafficConfig()
     tracker: TrackerConfig = TrackerConfig()

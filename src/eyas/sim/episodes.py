@@ -1,4 +1,4 @@
-"""Episodes: when, with which target and from where each begins."""
+"""Episodes: the start time, target and start pose of each."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,22 +17,22 @@ from eyas.traffic.source import TrafficSource
 __all__ = ["Episodes"]
 
 _ATTEMPTS = 100
-"""Times at which a start is tried."""
+"""Number of start times that are tried."""
 
 
 class Episodes:
     """Draws the episodes of N trackers.
 
-    What an episode draws depends only on the seed, the tracker and the episode's number (and, in a
-    world of several trackers, on which targets the others follow), never on how many trackers there
-    are.
+    The random values of an episode depend only on the seed, the tracker and the episode's number
+    (and, in a world of several trackers, on the targets of the others), not on the number of
+    trackers.
 
     Args:
         config: The settings.
-        traffic: What may be followed.
-        worlds: Who is in which world.
+        traffic: The traffic with the possible targets.
+        worlds: The worlds of the trackers.
         light: The light around them.
-        snapshot: Of N trackers; episodes and targets are set here.
+        snapshot: State of N trackers; this class sets its episodes and targets.
     """
 
     def __init__(
@@ -106,19 +106,18 @@ class Episodes:
         self._episodes.tick[tracker] = tick
         self.follow(tracker, actor)
         start = sample_start(self._config.start, rng)
-        # A target at the origin that heads so that the tracker heads east: what comes back is the
-        # offset in the tracker's own heading frame.
+        # The target is at the origin, with a heading for which the tracker heads east, so that the
+        # result is the offset in the tracker's heading frame.
         ahead = float(self._targets.ahead[tracker])
         offset, _ = start_pose(start, np.zeros(3), -start.direction, ahead)
         self._episodes.start_offset[tracker] = *offset, start.direction
         return start.pitch
 
     def _choose(self, tracker: int, rng: np.random.Generator) -> tuple[int, int]:
-        """Return when an episode begins, and with which actor.
+        """Return the start time of an episode, and its target.
 
-        Where vehicles come and go there may be no one who stays for a whole episode; then other
-        times are tried, or in a lasting world, whose time is given, those who stay a shorter
-        while.
+        If vehicles come and go, none may stay for a whole episode. Then other times are tried or,
+        in a lasting world, whose time is given, vehicles that stay for a shorter time.
         """
         others = self._worlds.trackers_of(tracker)
         lasting = bool(self._worlds.lasting[self._worlds.of[tracker]])
@@ -136,10 +135,10 @@ class Episodes:
         raise AssertionError("the loop returns or raises")
 
     def _any_time(self, rng: np.random.Generator) -> int:
-        """Return a time at random from which on a whole episode fits."""
+        """Return a random time that leaves enough of the recording for a whole episode."""
         first = self._config.start.warm_up_steps
         return int(rng.integers(first, self._last_tick - self._config.done.total_steps + 1))
 
     def _now(self, trackers: NDArray[np.int64]) -> int:
-        """Return the time of a world with these trackers, or the first one."""
+        """Return the current time of the world of these trackers, or the first time."""
         return max(self._config.start.warm_up_steps, int(self._episodes.tick[trackers].max()))

@@ -1,4 +1,4 @@
-"""What each tracker's world changes of the weather's light and fog, drawn by `LightConfig`."""
+"""Changes of the weather's light and fog in each tracker's world, drawn from `LightConfig`."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,16 +17,16 @@ _UNCHANGED = LightConfig()
 class LightChanges:
     """Draws light and fog for N trackers.
 
-    As in the original, luminosities are those of its worlds: 1 by day, 0.3 at night; a change is
-    added to that or takes its place, and none falls below 0. Unlike there, changes do not pile up
-    from reset to reset.
+    As in the original, the luminosity of a world is 1 by day and 0.3 at night; a change is added to
+    it or replaces it, and the result is at least 0. Unlike in the original, changes do not
+    accumulate over resets.
 
     Args:
         config: The settings.
         weather: The weather's own light.
-        worlds: Who shares a world, and so its light.
+        worlds: The worlds of the trackers; those in one world share its light.
         factors: `Snapshot.light`, shape (N, 3); set here.
-        foggy: Whether the weather has a visibility range to change.
+        foggy: Whether the weather has fog, so that its visibility range can change.
     """
 
     def __init__(
@@ -46,7 +46,7 @@ class LightChanges:
         factors[:] = 1.0, 1.0, weather.fog_density
 
     def sample(self, tracker: int, seed: int, episode: int) -> None:
-        """Draw the light around a tracker; the leader of a world draws for all in it."""
+        """Draw the light around a tracker; the leader of a world draws for all its trackers."""
         fixed = episode > 0 and not self._config.each_reset
         if fixed or tracker != self._worlds.leader[self._worlds.of[tracker]]:
             return
@@ -62,7 +62,7 @@ class LightChanges:
         self._factors[self._worlds.trackers_of(tracker)] = sky, sun, density
 
     def of(self, trackers: NDArray[np.integer]) -> NDArray[np.float32] | None:
-        """Return `Views.light` of trackers, None where the weather is left as it is."""
+        """Return `Views.light` of trackers; None if the light of the weather is unchanged."""
         return self._factors.take(trackers, axis=0) if self._config != _UNCHANGED else None
 
 

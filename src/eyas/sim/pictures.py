@@ -1,4 +1,4 @@
-"""Pictures of the worlds of a simulation: from its trackers' cameras, or from anywhere."""
+"""Pictures of the worlds of a simulation, from its trackers' cameras or from any others."""
 
 from math import atan, tan
 
@@ -29,9 +29,9 @@ class Pictures:
     Args:
         config: The settings.
         assets: Scene and renderer.
-        worlds: What moves.
+        worlds: The worlds, with their moving objects.
         light: The light around each tracker.
-        snapshot: Of the trackers.
+        snapshot: State of the trackers.
     """
 
     def __init__(
@@ -52,12 +52,12 @@ class Pictures:
         self._marks = Marks(snapshot, assets.scene.terrain, config.camera)
 
     def draw(self, chosen: Chosen, picture: Picture, until: DrawStage) -> Views:
-        """Draw what the cameras of trackers see; return the views that were drawn.
+        """Draw the pictures of trackers' cameras; return the drawn views.
 
         Args:
-            chosen: Which trackers, shape (V,).
-            picture: V pictures; the subject is each tracker's target.
-            until: Where to stop, see `Renderer.draw`.
+            chosen: The trackers, shape (V,).
+            picture: V pictures to draw into; the subject of each is its tracker's target.
+            until: The stage at which to stop; see `Renderer.draw`.
         """
         cameras = CameraState(*(array[chosen] for array in self._snapshot.cameras))
         views, movers = self._views(
@@ -69,7 +69,7 @@ class Pictures:
     def draw_overlaid(
         self, chosen: Chosen, picture: Picture, rules: Rules, until: DrawStage
     ) -> None:
-        """Draw like `draw`, and what each camera sees, rewards and looks for over its colours."""
+        """Draw like `draw`, with the overlay of each tracker over the colours."""
         deep = with_depth(picture)
         views = self.draw(chosen, deep, until)
         paint_overlays(views, [self._marks.of(n, rules) for n in chosen.tolist()], deep)
@@ -85,11 +85,11 @@ class Pictures:
         """Draw the worlds of trackers from other cameras.
 
         Args:
-            chosen: Whose world each view shows, shape (V,); the subject is its target.
+            chosen: The tracker whose world each view shows, shape (V,); the subject is its target.
             cameras: V cameras.
             picture: V pictures with colours, of any size; pixels are square.
             vertical_field_of_view: [rad].
-            rules: Those of the overlay of all trackers of that world, or None for no overlay.
+            rules: Rules for the overlay of all trackers of that world; None: no overlay.
         """
         height, width = picture_size(picture)
         field_of_view = 2 * atan(tan(0.5 * vertical_field_of_view) * width / height)
@@ -111,7 +111,7 @@ class Pictures:
         field_of_view: float,
         vertical_field_of_view: float | None,
     ) -> tuple[Views, DrawList]:
-        """Return cameras that look at the worlds of trackers, and what moves there."""
+        """Return views of the worlds of trackers: cameras and moving objects."""
         ticks = self._snapshot.episodes.tick
         world, movers = self._worlds.draw_list(chosen, ticks)
         views = Views(

@@ -27,14 +27,14 @@ __all__ = ["load_geometry", "load_network", "load_scene"]
 Thing = TypeVar("Thing")
 
 _MAKERS = ("world", "mesh", "state", "core/rng.py")
-"""Rooms whose sources make a scene."""
+"""Packages whose source files determine a scene."""
 
 
 def load_network(map_name: str, seed: int) -> RoadNetwork:
     """Return a map's roads: shipped for seed 0, built by netconvert for other seeds.
 
     Raises:
-        MissingExtraError: netconvert is needed and not installed.
+        MissingExtraError: netconvert is needed but not installed.
     """
     recipe = MAPS.get(map_name)
     shipped = recipe.shipped_network() if seed == 0 else None
@@ -43,7 +43,7 @@ def load_network(map_name: str, seed: int) -> RoadNetwork:
 
 @lru_cache(maxsize=4)
 def load_scene(map_name: str, seed: int = 0, season: Season = Season.SUMMER) -> Scene:
-    """Return everything of a map that stands still."""
+    """Return everything on a map that does not move."""
     recipe, network = MAPS.get(map_name), load_network(map_name, seed)
 
     def make() -> Scene:
@@ -54,13 +54,13 @@ def load_scene(map_name: str, seed: int = 0, season: Season = Season.SUMMER) -> 
 
 @lru_cache(maxsize=4)
 def load_geometry(map_name: str, seed: int, season: Season, kinds: tuple[int, ...]) -> Geometry:
-    """Return a scene and the parts of moving things as the kernels read them.
+    """Return the geometry of a scene and of the parts of moving objects, for the kernels.
 
     Args:
-        map_name: The map.
-        seed: Of the map.
-        season: Which the scene depends on.
-        kinds: Of moving things, indices into `KINDS`.
+        map_name: Name of the map.
+        seed: Seed of the map.
+        season: Season of the weather.
+        kinds: Kinds of the moving objects, indices into `KINDS`.
     """
     scene = load_scene(map_name, seed, season)
     names = tuple(KINDS[kind].name for kind in kinds)
@@ -76,10 +76,10 @@ def load_geometry(map_name: str, seed: int, season: Season, kinds: tuple[int, ..
 def _origin(
     map_name: str, seed: int, season: Season, network: RoadNetwork
 ) -> tuple[object, ...] | None:
-    """Return what tells one scene from another.
+    """Return the key that identifies a scene in the cache.
 
-    None for a map without a package: it has no sources that tell its versions apart, so what is
-    made of its scenes is not kept on disk.
+    None for a map without a package: there are no source files to tell its versions apart, so
+    data made from its scenes is not kept on disk.
     """
     recipe = MAPS.get(map_name)
     sources = recipe.source_hash()

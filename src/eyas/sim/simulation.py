@@ -1,4 +1,4 @@
-"""The simulation: N trackers, each with a target, in worlds of their own or together."""
+"""The simulation: N trackers, each with a target, in separate or shared worlds."""
 
 from typing import NamedTuple
 
@@ -26,7 +26,7 @@ Floats = NDArray[np.float64]
 
 
 class StepResult(NamedTuple):
-    """The outcome of a step for N trackers, in arrays that later steps leave alone."""
+    """The result of a step for N trackers, in arrays that later steps do not change."""
 
     reward: Floats
     """Weighted sum of the terms, shape (N,)."""
@@ -50,7 +50,7 @@ class Simulation:
         config: The settings.
         assets: Map, traffic and renderer.
         tracker: The kind of the trackers.
-        world_of: Who shares a world, shape (N,); see `Worlds`.
+        world_of: Number of the world of each tracker, shape (N,); see `Worlds`.
     """
 
     def __init__(
@@ -81,7 +81,7 @@ class Simulation:
 
     @property
     def rules(self) -> Rules:
-        """Reward and ends of episodes; may be replaced between steps."""
+        """Rules for reward and end of episodes; may be replaced between steps."""
         return self._rules
 
     @rules.setter
@@ -98,10 +98,10 @@ class Simulation:
         """Begin a new episode.
 
         Args:
-            trackers: Which, shape (N,); None for all.
+            trackers: Mask of the trackers to reset, shape (N,); None: all.
 
         Raises:
-            SpawnError: There is no target for one of them.
+            SpawnError: A tracker has no possible target.
             ConfigError: The recording is too short for an episode.
         """
         chosen = np.arange(self.count) if trackers is None else np.flatnonzero(trackers)
@@ -112,11 +112,11 @@ class Simulation:
         self._step.begin()
 
     def advance(self, commands: Floats, physics_steps: int = 1) -> StepResult:
-        """Hold commands for some physics steps of 2 ms, each of which is judged.
+        """Hold commands for some physics steps of 2 ms, each with reward and end conditions.
 
         Args:
             commands: Forward [m/s], left [m/s], up [m per 2 ms], yaw rate [rad/s], shape (N, 4).
-            physics_steps: How many.
+            physics_steps: Number of steps.
         """
         assert commands.shape == (self.count, 4), f"commands: shape {commands.shape}, not (N, 4)"
         self._orders.commands[:] = commands
@@ -125,7 +125,7 @@ class Simulation:
         return self._result()
 
     def carry(self, physics_steps: int = 1) -> StepResult:
-        """Carry all trackers along with their targets, at the offsets of their starts."""
+        """Move all trackers with their targets, at their start offsets."""
         self._orders.steps[0] = physics_steps
         self._step.carry()
         return self._result()
@@ -135,7 +135,7 @@ class Simulation:
         self._episodes.follow(tracker, actor)
 
     def packets(self) -> tuple[Floats, Floats]:
-        """Return copies of the basic (N, 22) and the reward packets (N, 60)."""
+        """Return copies of the basic packets (N, 22) and the reward packets (N, 60)."""
         return self._packets.now()
 
     def draw(
@@ -146,14 +146,14 @@ class Simulation:
         overlay: bool = False,
         until: DrawStage = DrawStage.SHADING,
     ) -> None:
-        """Draw what the cameras of some trackers see.
+        """Draw the pictures of some trackers' cameras.
 
         Args:
-            trackers: Which, shape (V,).
-            picture: V pictures; the subject is each tracker's target.
-            overlay: Whether what each camera sees, is rewarded for and looks for is drawn over the
-                colours; all else that the picture wants stays without it.
-            until: Where to stop, see `Renderer.draw`.
+            trackers: The trackers, shape (V,).
+            picture: V pictures to draw into; the subject of each is its tracker's target.
+            overlay: Whether to draw the overlay of each tracker over the colours; the other arrays
+                of the picture do not change.
+            until: The stage at which to stop; see `Renderer.draw`.
         """
         chosen = np.asarray(trackers, np.int32)
         if overlay:
@@ -170,15 +170,15 @@ class Simulation:
         vertical_field_of_view: float = 0.95,
         overlay: bool = True,
     ) -> None:
-        """Draw the worlds of some trackers from anywhere, such as from behind the drone.
+        """Draw the worlds of some trackers from any camera, for example from behind the drone.
 
         Args:
-            trackers: Whose world each view shows, shape (V,); the subject is its target.
+            trackers: The tracker whose world each view shows, shape (V,); the subject is its
+                target.
             cameras: V cameras.
             picture: V pictures with colours, of any size; pixels are square.
             vertical_field_of_view: [rad].
-            overlay: Whether all trackers of that world, and what their cameras see, reward and
-                look for, are drawn over the colours.
+            overlay: Whether to draw all trackers of that world and their overlays over the colours.
         """
         chosen, rules = np.asarray(trackers, np.int32), self.rules if overlay else None
         self._pictures.draw_from(chosen, cameras, picture, vertical_field_of_view, rules)

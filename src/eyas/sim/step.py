@@ -1,7 +1,8 @@
-"""The step: one kernel call moves and judges all trackers for all physics steps of a command.
+"""The step: one kernel call moves all trackers and computes their rewards and ends, for all
+physics steps of a command.
 
-Its kernels find their arguments by address (`eyas.core.parallel`): unpacking some fifty arrays at
-each call would take four times as long as a step of one tracker.
+Its kernels get the address of their arguments (`eyas.core.parallel`): unpacking about fifty arrays
+at each call would take four times as long as a step of one tracker.
 """
 
 from functools import lru_cache
@@ -22,8 +23,7 @@ from eyas.task.observe import clear_episode, observe
 from eyas.task.offset import offset_pose
 from eyas.task.rules import Rules
 
-# The kernels and the memory of the tracker: the drone's, unless `step_of` puts others in their
-# place.
+# The kernels and the memory of the tracker: those of the drone, unless `step_of` replaces them.
 from eyas.trackers.drone import advance, aim, carry, start
 from eyas.trackers.tracker import Tracker
 from eyas.traffic.interpolation import interpolate_actor
@@ -32,10 +32,10 @@ __all__ = ["Orders", "Step", "StepKernels", "StepState", "Surroundings", "step_o
 
 
 class Surroundings(NamedTuple):
-    """Everything around the trackers that a step reads."""
+    """Everything outside the trackers that a step reads."""
 
     motion: Motion
-    """Of all actors."""
+    """Motion of all actors."""
     terrain: Terrain
     """The ground."""
 
@@ -45,28 +45,28 @@ class StepState(NamedTuple):
 
     snapshot: Snapshot
     memory: Any
-    """Of the trackers: whatever record their kernels use."""
+    """Memory of the trackers: the record that their kernels use."""
     around: Surroundings
     rules: Rules
 
 
 class Orders(NamedTuple):
-    """What a call of the step is asked to do."""
+    """The input of one call of the step."""
 
     steps: NDArray[np.int64]
     """Physics steps to take, shape (1,)."""
     commands: NDArray[np.float64]
-    """Of each tracker, see `Tracker.advance`, shape (N, 4)."""
+    """Command of each tracker, see `Tracker.advance`, shape (N, 4)."""
     starts: NDArray[np.int64]
-    """How many trackers begin anew, K, shape (1,)."""
+    """Number of trackers that begin an episode, K, shape (1,)."""
     chosen: NDArray[np.int64]
-    """Which, in the first K of N elements."""
+    """Those trackers, in the first K of N elements."""
     pitch: NDArray[np.float64]
-    """Commanded pitch of their cameras, positive down [rad], likewise."""
+    """Commanded pitch of their cameras, positive down [rad], in the first K of N elements."""
 
     @classmethod
     def create(cls, trackers: int) -> "Orders":
-        """Return orders to do nothing."""
+        """Return an input that does nothing."""
         return cls(
             steps=np.zeros(1, np.int64),
             commands=np.zeros((trackers, 4)),
@@ -80,14 +80,14 @@ Parts = Pointer[tuple[Pointer[StepState], Pointer[Orders]]]
 
 
 class Step(NamedTuple):
-    """The calls of a step for a simulation."""
+    """The calls of the step, bound to the state of a simulation."""
 
     fly: BoundKernel
-    """Flies all trackers by their commands."""
+    """Moves all trackers by their commands."""
     carry: BoundKernel
-    """Carries all trackers along with their targets."""
+    """Moves all trackers with their targets."""
     begin: BoundKernel
-    """Puts the chosen trackers at their starts."""
+    """Puts the chosen trackers at their start poses."""
 
 
 class StepKernels(NamedTuple):
@@ -98,7 +98,7 @@ class StepKernels(NamedTuple):
     begin: parallel_kernel[Any]
 
     def bound(self, state: Held[StepState], orders: Held[Orders]) -> Step:
-        """Return the calls that work on a state."""
+        """Return the calls, bound to a state."""
         return Step(*(kernel.bound(state, orders) for kernel in self))
 
 
@@ -146,7 +146,7 @@ def _carry(parts: Parts, worker: int, workers: int) -> None:
 
 
 def _begin(parts: Parts, worker: int, workers: int) -> None:
-    """Put trackers at their starts, their target, tick and offset being set; look once."""
+    """Put trackers at their start poses and aim their cameras; target, tick and offset are set."""
     state, orders = parts[0]
     snapshot, memory, around, rules = state[0]
     trackers, cameras, targets, episodes, _ = snapshot
@@ -166,7 +166,7 @@ def _begin(parts: Parts, worker: int, workers: int) -> None:
 def _move_target(
     targets: TargetState, episodes: EpisodeState, n: int, around: Surroundings
 ) -> None:
-    """Read where the target of tracker n is; a target that has left stays where it was."""
+    """Read the pose of tracker n's target; a target that has left keeps its last pose."""
     time = episodes.tick[n] * PHYSICS_STEP
     pose = interpolate_actor(around.motion, targets.actor[n], time)
     if targets.lost[n] or not pose.present:

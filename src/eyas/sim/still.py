@@ -1,4 +1,4 @@
-"""A world whose traffic stands still at a time, to be looked at from anywhere."""
+"""A world without trackers, drawn at any time of its traffic and from any camera."""
 
 import numpy as np
 
@@ -16,7 +16,7 @@ class StillWorld:
 
     Args:
         assets: Map, traffic and renderer.
-        seed: Of the actors' models and colours.
+        seed: Seed of the actors' models and colours.
     """
 
     def __init__(self, assets: Assets, seed: int = 1) -> None:
@@ -31,7 +31,7 @@ class StillWorld:
         return actors
 
     def movers(self, time: float) -> DrawList:
-        """Return what is drawn of the actors at a time [s], one world."""
+        """Return the drawn parts of the actors at a time [s], one world."""
         movers = self.assets.rigs.draw_list(1)
         self.assets.rigs.pose(self.actors(time), self._looks, movers)
         return movers

@@ -1,4 +1,4 @@
-"""What a simulation can be asked for and is not in this version yet."""
+"""Refusal of settings of a simulation that need a part missing from this version."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -14,17 +14,17 @@ __all__ = ["Missing", "missing_parts", "require_parts"]
 
 @dataclass(frozen=True, slots=True)
 class Missing:
-    """A setting that asks for a part that this version does not have."""
+    """A setting that needs a part that this version does not have."""
 
     path: str
     """Dotted path of the setting."""
     value: object
-    """What it is set to."""
+    """Value of the setting."""
     part: str
     """The part that is missing, in words."""
 
     def error(self, other_name: str = "") -> NotInThisVersionError:
-        """Return the one line to raise, with the setting's name in another notation if given."""
+        """Return the error to raise, with the setting's name in another notation if given."""
         also = f" ({other_name})" if other_name else ""
         return NotInThisVersionError(
             f"{self.path}{also}: {shown(self.value)}: {self.part} is not in this version yet"
@@ -32,9 +32,9 @@ class Missing:
 
 
 def require_parts(config: SimConfig) -> None:
-    """Refuse settings that ask for a part that this version does not have.
+    """Refuse settings that need a part that this version does not have.
 
-    Maps and weathers are refused where they are looked up.
+    Maps and weathers are refused when they are looked up.
 
     Raises:
         NotInThisVersionError: One line that names the setting.
@@ -44,7 +44,7 @@ def require_parts(config: SimConfig) -> None:
 
 
 def missing_parts(config: SimConfig) -> Iterator[Missing]:
-    """Yield what of a simulation's settings asks for a part that this version does not have."""
+    """Yield the settings of a simulation that need a part that this version does not have."""
     if config.target is not TargetName.SUMO_VEHICLE:
         part = "a target other than SUMO's vehicles"
         yield Missing("target", config.target.value, part)

@@ -1,4 +1,4 @@
-"""The worlds of N trackers: who is in which, and the models and colours of what moves there."""
+"""The worlds of N trackers: which tracker is in which, and models and colours of the actors."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,11 +19,11 @@ Integers = NDArray[np.int64]
 
 
 ALONE = -1
-"""World number of a tracker that has a world to itself, which begins anew with each episode."""
+"""World number of a tracker with a world of its own, which starts again with each episode."""
 
 
 def each_alone(count: int) -> NDArray[np.int32]:
-    """Return world numbers for trackers of which each has a world to itself, shape (N,)."""
+    """Return world numbers for trackers that each have a world of their own, shape (N,)."""
     return np.full(count, ALONE, np.int32)
 
 
@@ -38,23 +38,23 @@ class Worlds:
     Attributes:
         of: World of each tracker, shape (N,).
         leader: First tracker of each world, shape (W,): its random streams are the world's.
-        lasting: Whether the time of each world goes on when an episode ends, shape (W,).
+        lasting: Whether the time of each world continues when an episode ends, shape (W,).
 
     Args:
         config: The settings.
         assets: Map and traffic.
-        world_of: A number for each tracker, shape (N,): those with the same one share a world,
-            whose time goes on from episode to episode; `ALONE` for a world of its own.
+        world_of: A number for each tracker, shape (N,): those with the same number share a world, whose
+            time continues from episode to episode; `ALONE` for a world of its own.
 
     Raises:
-        ValueError: `world_of` is no list of whole numbers from -1 on.
+        ValueError: `world_of` is not a list of whole numbers from -1 up.
     """
 
     def __init__(self, config: SimConfig, assets: Assets, world_of: NDArray[np.integer]) -> None:
         given = np.asarray(world_of)
         if given.ndim != 1 or given.dtype.kind not in "iu" or (given < ALONE).any():
             raise ValueError("world_of: a whole number from -1 on is wanted for each tracker")
-        # Worlds are counted in the order of their first trackers.
+        # Worlds are numbered in the order of their first trackers.
         own = np.where(given == ALONE, given.max(initial=0) + 1 + np.arange(len(given)), given)
         _, first, numbered = np.unique(own, return_index=True, return_inverse=True)
         order = np.argsort(np.argsort(first))
@@ -71,11 +71,11 @@ class Worlds:
         self._movers = DrawList.create(0, 0)
 
     def trackers_of(self, tracker: int) -> Integers:
-        """Return all trackers in the world of one, shape (K,)."""
+        """Return all trackers in the world of a tracker, shape (K,)."""
         return np.flatnonzero(self.of == self.of[tracker])
 
     def sample_looks(self, tracker: int, seed: int, episode: int) -> None:
-        """Draw models and colours of the actors around a tracker, where its world begins anew."""
+        """Draw models and colours of the actors around a tracker, if its world starts again."""
         world = self.of[tracker]
         if self.lasting[world] and (tracker != self.leader[world] or episode > 0):
             return
@@ -98,7 +98,7 @@ class Worlds:
         The list is overwritten by the next call.
 
         Args:
-            trackers: Which, shape (V,).
+            trackers: The trackers, shape (V,).
             tick: Time of all N trackers in physics steps, shape (N,).
         """
         worlds, rows = self.of[trackers], np.arange(len(trackers))
@@ -112,7 +112,7 @@ class Worlds:
         return rows.astype(np.int32), movers
 
     def _buffers(self, worlds: int) -> tuple[ActorState, DrawList]:
-        """Return room for some worlds; it grows to the most that were asked for, and no further."""
+        """Return buffers for some worlds; they grow to the largest number ever requested."""
         if len(self._movers.part) < worlds:
             self._actors = ActorState.create(worlds, self._assets.traffic.actors)
             self._movers = self._assets.rigs.draw_list(worlds)

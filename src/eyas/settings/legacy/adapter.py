@@ -1,4 +1,4 @@
-"""The one adapter between our settings and the original's `env_config.json`."""
+"""The adapter between our settings and the original's `env_config.json`."""
 
 import json
 import logging
@@ -33,18 +33,18 @@ Nested = Mapping[str, Any]
 
 
 def is_legacy(values: Nested) -> bool:
-    """Return whether settings read from JSON are the original's: its keys begin with a capital."""
+    """Return whether settings are the original's, whose keys begin with a capital letter."""
     capitals = sum(key[:1].isupper() for key in values)
     return 2 * capitals > len(values)
 
 
 def from_legacy(values: Nested, base: EyasConfig | None = None) -> EyasConfig:
-    """Return settings with what an `env_config.json` says.
+    """Return the settings of an `env_config.json`.
 
     Args:
         values: Its content; groups and keys that are missing have the manual's defaults, or, where
             the manual leaves them out, the values that the original ships with.
-        base: Where what it cannot say comes from (camera, seed, demand, ...); None: our defaults.
+        base: Settings that it cannot express (camera, seed, demand, ...); None: our defaults.
 
     Raises:
         ConfigError: An unknown key, a wrong type or a value that is not allowed: one line with the
@@ -60,8 +60,8 @@ def with_legacy(config: EyasConfig, changes: Nested, inactive: Nested | None = N
     Args:
         config: The settings.
         changes: The keys that change.
-        inactive: An `env_config.json` that tells the keys which had no effect so far, and may now;
-            None: they have the manual's defaults.
+        inactive: An `env_config.json` with values for keys that had no effect so far and may have
+            one now; None: the manual's defaults.
 
     Raises:
         ConfigError: As from `from_legacy`.
@@ -73,7 +73,7 @@ def with_legacy(config: EyasConfig, changes: Nested, inactive: Nested | None = N
         try:
             values |= entry.write(_fields(config, entry))
         except ConfigError:
-            continue  # what cannot be said in these keys is replaced by what they say
+            continue  # a value that these keys cannot express is replaced by theirs
     return _with(config, values | said, touched)
 
 
@@ -81,7 +81,7 @@ def to_legacy(config: EyasConfig) -> dict[str, Any]:
     """Return settings as an `env_config.json` with all groups and keys.
 
     Raises:
-        ConfigError: A value that the original has no words for, such as a choice among values.
+        ConfigError: The original's keys cannot express a value, such as a choice among values.
     """
     values = dict(_flat(legacy_defaults()))
     for entry in ENTRIES:
@@ -90,10 +90,10 @@ def to_legacy(config: EyasConfig) -> dict[str, Any]:
 
 
 def save_legacy(config: EyasConfig, path: Path) -> bool:
-    """Write an `env_config.json`, unless it cannot say all; return whether it is written.
+    """Write an `env_config.json` if it can express the settings; return whether it is written.
 
     Raises:
-        OutputError: The file system refused.
+        OutputError: The file cannot be written.
     """
     try:
         text = json.dumps(to_legacy(config), indent=4)
@@ -105,13 +105,13 @@ def save_legacy(config: EyasConfig, path: Path) -> bool:
 
 
 def legacy_keys_of(path: str) -> tuple[str, ...]:
-    """Return the original's keys that a field of ours is, or none."""
+    """Return the original's keys for a field of ours; empty if there are none."""
     return next((entry.keys for entry in ENTRIES if path in entry.paths), ())
 
 
 @cache
 def legacy_defaults() -> Nested:
-    """Return the values of all keys where a file does not say them."""
+    """Return the values that keys have if a file does not contain them."""
     values: dict[str, Any] = json.loads(
         files("eyas.settings.legacy").joinpath("defaults.json").read_text()
     )
@@ -127,7 +127,7 @@ def _with(config: EyasConfig, values: Values, entries: Iterable[Entry]) -> EyasC
 
 
 def _check_kinds(entry: Entry, values: Values) -> None:
-    """Refuse switches and numbers that are none; a key that is one field is left to that field."""
+    """Refuse switches and numbers of a wrong type; a key for one field is checked by that field."""
     if len(entry.keys) == 1:
         return
     for key in entry.keys:
@@ -144,7 +144,7 @@ def _check_kinds(entry: Entry, values: Values) -> None:
 
 
 def _retold(problem: Problem, values: Values) -> Problem:
-    """Return a problem of one of our fields as one of the original's keys."""
+    """Return the problem of one of our fields as a problem of the original's key."""
     path = ".".join(problem.path)
     entry = next(entry for entry in ENTRIES if path in entry.paths)
     for guess in entry.blame(values):
@@ -179,7 +179,7 @@ def _flat(values: Nested) -> dict[str, object]:
     """Return values by dotted path.
 
     Raises:
-        ConfigError: A key that the original does not have, or something else than a group.
+        ConfigError: A key that the original does not have, or a value that should be a group.
     """
     defaults = legacy_defaults()
     flat: dict[str, object] = {}

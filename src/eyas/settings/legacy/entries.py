@@ -1,4 +1,4 @@
-"""The ways in which keys of the original's `env_config.json` hold what our settings hold."""
+"""The relations between keys of the original's `env_config.json` and our settings."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
@@ -19,17 +19,17 @@ Values = Mapping[str, object]
 
 @dataclass(frozen=True, slots=True)
 class Guess:
-    """A key that may be to blame when a field of ours is refused."""
+    """A key that may have caused the refusal of a field of ours."""
 
     key: str
     trial: object = None
-    """A value of our field that is refused if this key's value is to blame; None: it is."""
+    """A value of our field that is refused if this key is the cause; None: the key is the cause."""
     allowed: str | None = None
-    """What the key may be; None: what our field may be."""
+    """Allowed values of the key; None: those of our field."""
 
 
 class Entry(ABC):
-    """Keys of the original, and the fields of ours that say the same."""
+    """Keys of the original, and our fields with the same meaning."""
 
     __slots__ = ()
 
@@ -45,19 +45,19 @@ class Entry(ABC):
 
     @abstractmethod
     def read(self, values: Values) -> Values:
-        """Return our fields from the original's keys, as JSON would hold them."""
+        """Return our fields from the original's keys, as JSON values."""
 
     @abstractmethod
     def write(self, fields: Values) -> Values:
-        """Return the original's keys from our fields, without keys that have no effect then.
+        """Return the original's keys from our fields, without keys that then have no effect.
 
         Raises:
-            ConfigError: The original has no words for a value.
+            ConfigError: The original's keys cannot express a value.
         """
 
     @abstractmethod
     def blame(self, values: Values) -> Iterator[Guess]:
-        """Yield the keys that may be to blame when a field is refused; if no other is, the last."""
+        """Yield the keys that may have caused the refusal of a field; if no other did, the last."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +67,7 @@ class Same(Entry):
     key: str
     path: str
     upper_case: bool = False
-    """Whether the original writes our names in upper case."""
+    """Whether the original has our names in upper case."""
 
     @property
     @override
@@ -82,7 +82,7 @@ class Same(Entry):
     @override
     def read(self, values: Values) -> Values:
         value = values[self.key]
-        # `swapcase`, so that a name that is not in upper case is refused, as by the original.
+        # `swapcase`, so that a name in lower case is refused, as by the original.
         swapped = self.upper_case and isinstance(value, str)
         return {self.path: str(value).swapcase() if swapped else value}
 
@@ -99,7 +99,7 @@ class Same(Entry):
 
 @dataclass(frozen=True, slots=True)
 class Optional(Entry):
-    """A key that holds while a switch is true; else our field is None."""
+    """A key that applies if a switch is true; otherwise our field is None."""
 
     switch: str
     key: str
@@ -133,7 +133,7 @@ class Optional(Entry):
 
 @dataclass(frozen=True, slots=True)
 class Span(Entry):
-    """Two keys that are the ends of one field."""
+    """Two keys that are the limits of one field."""
 
     least: str
     most: str
@@ -167,7 +167,7 @@ class Span(Entry):
 
 @dataclass(frozen=True, slots=True)
 class Varied(Entry):
-    """The four to six keys that say whether and how one value is drawn."""
+    """The four to six keys that define whether and how one value is drawn."""
 
     random: str
     """Switch: drawn between `least` and `most`; else it is `fixed`."""
@@ -176,11 +176,11 @@ class Varied(Entry):
     most: str
     path: str
     sides: str | None = None
-    """Switch: what is drawn is a magnitude, with a random sign."""
+    """Switch: a magnitude is drawn, with a random sign."""
     default: str | None = None
-    """Switch: the other keys do not hold, and our field is None."""
+    """Switch: the other keys have no effect, and our field is None."""
     replaces: str | None = None
-    """A second field of ours: true if drawn, since drawn values replace what fixed ones add to."""
+    """A second field of ours: true if drawn, as drawn values replace and fixed ones are added."""
 
     @property
     @override

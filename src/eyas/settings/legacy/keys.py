@@ -1,4 +1,4 @@
-"""Every key of the original's `env_config.json`, and the setting of ours that it is."""
+"""Every key of the original's `env_config.json`, and our setting for it."""
 
 from eyas.settings.legacy.entries import Entry, Optional, Same, Span, Varied
 from eyas.settings.legacy.world_path import WorldPath
@@ -137,4 +137,4 @@ _LIGHT = (
 )
 
 ENTRIES: tuple[Entry, ...] = (*_BASIC, *_TASK, *_SUMO, *_OBJECTS, *_VIDEO, *_START, *_LIGHT)
-"""Every key stands in exactly one entry."""
+"""Every key is in exactly one entry."""

@@ -1,4 +1,4 @@
-"""The original's path of a world, which says map and weather."""
+"""The original's path of a world file, which contains map and weather."""
 
 import logging
 import re
@@ -18,7 +18,7 @@ _LOG = logging.getLogger("eyas")
 
 @dataclass(frozen=True, slots=True)
 class WorldPath(Entry):
-    """The path of a world, `<map>-<weather>.wbt`."""
+    """The path of a world file, `<map>-<weather>.wbt`."""
 
     key: str
     map: str
