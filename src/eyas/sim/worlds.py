@@ -43,8 +43,8 @@ class Worlds:
     Args:
         config: The settings.
         assets: Map and traffic.
-        world_of: A number for each tracker, shape (N,): those with the same number share a world, whose
-            time continues from episode to episode; `ALONE` for a world of its own.
+        world_of: A number for each tracker, shape (N,): those with the same number share a world,
+            whose time continues from episode to episode; `ALONE` for a world of its own.
 
     Raises:
         ValueError: `world_of` is not a list of whole numbers from -1 up.
