@@ -86,7 +86,7 @@ class Episodes:
                 f"target: there is no actor {actor}; allowed: 0 to {self._traffic.actors - 1}"
             )
         targets, episodes = self._targets, self._episodes
-        # Relative motion begins anew: a change of target is no motion.
+        # Relative motion restarts here, since a change of target is not a motion.
         episodes.observations[tracker] = 0
         episodes.relative_velocity[tracker] = episodes.relative_acceleration[tracker] = 0.0
         model = self._worlds.model_of(tracker, actor)
