@@ -1,1 +1,1 @@
-"""What every room needs: errors, names, settings, random streams, clock, frames, compilation."""
+"""Foundations of all rooms: errors, names, settings, random streams, clock, frames, compilation."""

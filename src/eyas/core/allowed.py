@@ -1,4 +1,4 @@
-"""What a setting may be, in words: made from its type and its limits."""
+"""Descriptions in words of the values a setting allows, made from its type and its limits."""
 
 import types
 from collections.abc import Sequence
@@ -23,10 +23,10 @@ __all__ = ["Written", "describe", "names_of"]
 
 @runtime_checkable
 class Written(Protocol):
-    """A type that tells how its values are written in JSON."""
+    """A type that describes how its values are written in JSON."""
 
     written: ClassVar[str]
-    """For example `{"uniform": [low, high]}`."""
+    """The notation, for example `{"uniform": [low, high]}`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,7 +38,7 @@ class _Limits:
 
 
 def describe(annotation: object, metadata: Sequence[object] = ()) -> str:
-    """Return what values a field of this type takes, for example `a whole number from 1 to 500`.
+    """Describe the values a field of this type takes, for example `a whole number from 1 to 500`.
 
     Args:
         annotation: The type, as in `FieldInfo.annotation`.
@@ -68,7 +68,7 @@ def describe(annotation: object, metadata: Sequence[object] = ()) -> str:
 
 
 def names_of(annotation: object) -> tuple[str, ...]:
-    """Return the names to choose from where a field wants one of several names, else nothing."""
+    """Return the names a field can choose from; empty if it is not a choice of names."""
     if isinstance(annotation, type) and issubclass(annotation, Enum):
         return tuple(str(member.value) for member in annotation)
     return ()
@@ -81,7 +81,7 @@ def _quoted(value: object) -> str:
 def _either(parts: list[str]) -> str:
     parts = sorted(
         parts, key=lambda part: part != "null"
-    )  # first, not to be read as part of a list
+    )  # null comes first, so that it does not read as part of a list
     return " or ".join([", ".join(parts[:-1]), parts[-1]]) if len(parts) > 1 else parts[0]
 
 
@@ -108,7 +108,7 @@ def _limits(metadata: Sequence[object]) -> _Limits:
                 high = limit
             case annotated_types.Lt(lt=limit):
                 below = limit
-    return _Limits(low, above, high, below)  # type: ignore[arg-type]  # ours are all numbers
+    return _Limits(low, above, high, below)  # type: ignore[arg-type]  # limits of settings are numbers
 
 
 def _number(kind: object, limits: _Limits) -> str:

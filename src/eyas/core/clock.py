@@ -5,7 +5,7 @@ from eyas.core.errors import ConfigError
 __all__ = ["PHYSICS_RATE", "PHYSICS_STEP", "physics_steps"]
 
 PHYSICS_RATE = 500
-"""Physics steps in a second [Hz]."""
+"""Physics steps per second [Hz]."""
 
 PHYSICS_STEP = 1.0 / PHYSICS_RATE
 """Length of a physics step [s]."""
@@ -15,7 +15,7 @@ def physics_steps(control_frequency: int) -> int:
     """Return how many physics steps one action lasts: `500 // control_frequency`.
 
     Args:
-        control_frequency: Actions in a second [Hz], 1 to 500.
+        control_frequency: Actions per second [Hz], 1 to 500.
 
     Raises:
         ConfigError: The frequency is out of range.

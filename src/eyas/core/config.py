@@ -1,4 +1,4 @@
-"""Configuration: frozen pydantic models whose errors are one line with the path."""
+"""Configuration: frozen pydantic models whose errors are one line with the path of the setting."""
 
 import json
 from collections.abc import Callable, Mapping
@@ -18,7 +18,7 @@ Path = tuple[str, ...]
 
 
 def _make_strict(schema: object) -> None:
-    """Let numbers and truth values be taken only from their own kind, at any depth."""
+    """Accept only numbers as numbers and only truth values as truth values, at any depth."""
     if isinstance(schema, dict):
         if schema.get("type") in ("int", "float", "bool"):
             schema["strict"] = True
@@ -32,12 +32,12 @@ def _make_strict(schema: object) -> None:
 class Config(BaseModel):
     """Base of all settings: frozen, unknown keys refused, no silent conversion of types.
 
-    A whole number is taken where a number is wanted, a list where a tuple is, a name where an enum
-    is; `"1.5"`, `true` and `1.0` are not taken for 1.5, 1 and 1. A check between fields raises
-    `ValueError("<field to blame> <what it must be>")`.
+    A whole number is accepted as a number, a list as a tuple, a name as an enum; `"1.5"`, `true`
+    and `1.0` are not accepted as 1.5, 1 and 1. A check between fields raises
+    `ValueError("<wrong field> <what it must be>")`.
 
     Raises:
-        ConfigError: One line: key, value, what is allowed.
+        ConfigError: One line: key, value, allowed values.
     """
 
     model_config = ConfigDict(
@@ -50,8 +50,8 @@ class Config(BaseModel):
         except ValidationError as error:
             raise _problem(error, type(self), values).error() from None
 
-    # Tells pydantic to go round this `__init__` for groups inside of others, so that the outermost
-    # settings meet the error and can tell the whole path.
+    # Makes pydantic bypass this `__init__` for nested groups, so that the outermost settings raise
+    # the error and can give the whole path.
     __init__.__pydantic_base_init__ = True  # type: ignore[attr-defined]
 
     @classmethod
@@ -65,21 +65,21 @@ class Config(BaseModel):
 
 @dataclass(frozen=True, slots=True)
 class Problem:
-    """What is wrong with a setting."""
+    """An error in a setting."""
 
     path: Path
-    """Keys that lead to it; none where the whole is wrong."""
+    """Keys that lead to the setting; empty if the settings as a whole are wrong."""
     value: object
-    """What it is."""
+    """Value of the setting."""
     allowed: str
-    """What it may be."""
+    """Allowed values, in words."""
     names: tuple[str, ...] = ()
-    """What it may be, where that is one of several names; the known keys where the key is wrong."""
+    """Allowed values of a choice of names; for an unknown key, the known keys."""
     unknown_key: bool = False
     """Whether the key is wrong, not its value."""
 
     def error(self) -> ConfigError:
-        """Return the one line to raise."""
+        """Return the error to raise, one line."""
         path = ".".join(self.path) or "settings"
         if self.unknown_key:
             hint = nearest(self.path[-1], self.names)
@@ -93,15 +93,15 @@ Model = TypeVar("Model", bound=Config)
 
 
 def validated(model: type[Model], values: Mapping[str, Any], root: str = "") -> Model:
-    """Return the settings that `values` give.
+    """Return the settings with the given values.
 
     Args:
-        model: The settings' class.
+        model: Class of the settings.
         values: Nested dictionaries, as read from JSON.
         root: Path to put before each key in messages.
 
     Raises:
-        ConfigError: One line: path, value, what is allowed, the nearest known key.
+        ConfigError: One line: path, value, allowed values, the nearest known key.
     """
     try:
         return model.model_validate(values)
@@ -115,12 +115,12 @@ def updated(
     changes: Mapping[str, Any],
     retell: Callable[[Problem], Problem] | None = None,
 ) -> Model:
-    """Return the settings with some changed.
+    """Return the settings with some values changed.
 
     Args:
         config: The settings.
-        changes: Nested dictionaries that hold only what changes.
-        retell: Returns a problem as the user should read it, in the words of another notation.
+        changes: Nested dictionaries that hold only the changes.
+        retell: Rewrites a problem in the names of another notation, for the user to read.
 
     Raises:
         ConfigError: One line, as from `validated`.
@@ -134,7 +134,7 @@ def updated(
 
 
 def shown(value: object) -> str:
-    """Return a value as messages show it: on one line, not too long."""
+    """Return a value as error messages show it: on one line, shortened to 80 characters."""
     text = repr(value) if isinstance(value, str) else json.dumps(value, default=_plain)
     return text if len(text) <= 80 else f"{text[:76]} ..."
 
@@ -144,7 +144,7 @@ def _plain(value: object) -> object:
 
 
 def group_of(field: FieldInfo | None) -> type[Config] | None:
-    """Return the settings class of a field that holds a group of settings."""
+    """Return the class of a field that holds a group of settings; None for other fields."""
     kind = field.annotation if field else None
     return kind if isinstance(kind, type) and issubclass(kind, Config) else None
 
@@ -159,19 +159,19 @@ def _merged(config: Config, changes: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _problem(error: ValidationError, model: type[Config], values: Mapping[str, Any]) -> Problem:
-    """Return the first problem, unknown keys before others: they may be its cause."""
+    """Return the first problem; unknown keys come first, for they may cause the others."""
     problems = [_one_problem(entry, model, values) for entry in error.errors(include_url=False)]
     return next((problem for problem in problems if problem.unknown_key), problems[0])
 
 
 def _one_problem(entry: ErrorDetails, model: type[Config], values: object) -> Problem:
-    """Return what one of pydantic's errors says about the field or group that it lies in."""
+    """Return one of pydantic's errors as a problem of the field or group that it concerns."""
     path: Path = ()
     field: FieldInfo | None = None
     group: type[Config] | None = model
     for part in entry["loc"]:
         if group is None:
-            break  # inside one field, where pydantic tells the variants of a union apart
+            break  # inside one field: pydantic appends the variant of a union
         field = group.model_fields.get(str(part))
         path += (str(part),)
         if field is None:
@@ -186,7 +186,7 @@ def _one_problem(entry: ErrorDetails, model: type[Config], values: object) -> Pr
 
 
 def _group_problem(path: Path, group: type[Config], values: object, said: str) -> Problem:
-    """Return what is wrong with a whole group: it is none, or its fields do not fit together."""
+    """Return the problem of a whole group: it is not a group, or its fields contradict."""
     name, _, must = said.partition(" ")
     if field := group.model_fields.get(name):
         return Problem((*path, name), _value(values, name, field), must)

@@ -1,4 +1,4 @@
-"""The errors that a user can cause. Each is one line: what, where, value, what is allowed."""
+"""Errors that a user can cause. Each is one line: what, where, value, allowed values."""
 
 import difflib
 from collections.abc import Iterable
@@ -17,7 +17,7 @@ __all__ = [
 
 
 class EyasError(Exception):
-    """Base of every error that Eyas raises on purpose; the command line prints it, exit code 2."""
+    """Base of all errors of Eyas; the command line prints the message and exits with code 2."""
 
 
 class ConfigError(EyasError):
@@ -29,11 +29,11 @@ class NotInThisVersionError(ConfigError):
 
 
 class DataFileError(EyasError):
-    """A file that should be read is unreadable, cut off, or belongs to something else."""
+    """An input file is unreadable, truncated, or not the file that was expected."""
 
 
 class OutputError(EyasError):
-    """Output cannot be written where it was asked for."""
+    """Output cannot be written to the given place."""
 
 
 class SpawnError(EyasError):
@@ -41,12 +41,12 @@ class SpawnError(EyasError):
 
 
 class MissingExtraError(EyasError):
-    """An optional part is needed and not installed.
+    """An optional dependency is needed but not installed.
 
     Args:
-        purpose: What needed it, as a noun phrase.
+        purpose: The feature that needs it, as a noun phrase.
         extra: Name of the extra of the `eyas` package.
-        detail: What else is needed, for example system packages.
+        detail: Other requirements, for example system packages.
     """
 
     def __init__(self, purpose: str, extra: str, detail: str = "") -> None:
@@ -58,10 +58,10 @@ class UnknownNameError(ConfigError):
     """A name is not one of the known ones.
 
     Args:
-        path: Where the name stands, for example `world.map`.
+        path: Path of the setting, for example `world.map`.
         name: The unknown name.
         known: The names that exist.
-        where: What knows them, for example `on the map 'lake'`, where others know others.
+        where: Where these names are the known ones, for example `on the map 'lake'`.
     """
 
     def __init__(self, path: str, name: str, known: Iterable[str], where: str = "") -> None:
@@ -71,6 +71,6 @@ class UnknownNameError(ConfigError):
 
 
 def nearest(name: str, known: Iterable[str]) -> str:
-    """Return `; did you mean 'x'?` for the nearest known name, or nothing."""
+    """Return `; did you mean 'x'?` for the nearest known name, or an empty string."""
     close = difflib.get_close_matches(name, list(known), n=1, cutoff=0.6)
     return f"; did you mean '{close[0]}'?" if close else ""

@@ -1,4 +1,4 @@
-"""Files that are whole or not there: written under a temporary name, then renamed."""
+"""Atomic writing of files: written under a temporary name, then renamed."""
 
 import os
 from collections.abc import Iterator
@@ -14,13 +14,13 @@ PART_SUFFIX = ".part"
 
 
 def part_path(path: Path) -> Path:
-    """Return the hidden name beside `path` under which it is written until it is whole."""
+    """Return the hidden temporary path, beside `path`, under which the file is written."""
     return path.with_name(f".{path.name}{PART_SUFFIX}")
 
 
 @contextmanager
 def refusals(path: Path) -> Iterator[None]:
-    """Turn what the file system refuses inside the block into one line about `path`.
+    """Turn errors of the file system inside the block into one line about `path`.
 
     Raises:
         OutputError: The file system refused (full disk, no permission, a folder in the way).
@@ -33,7 +33,7 @@ def refusals(path: Path) -> Iterator[None]:
 
 @contextmanager
 def atomic_path(path: Path) -> Iterator[Path]:
-    """Yield a temporary path beside `path`; rename it to `path` when the block ends well.
+    """Yield a temporary path beside `path`; rename it to `path` if the block succeeds.
 
     Raises:
         OutputError: The file system refused (full disk, no permission, a folder in the way).
@@ -49,10 +49,10 @@ def atomic_path(path: Path) -> Iterator[Path]:
 
 
 def write_atomic(path: Path, data: bytes) -> None:
-    """Write a whole file, or nothing.
+    """Write a file completely or not at all.
 
     Raises:
-        OutputError: The file system refused.
+        OutputError: The file cannot be written.
     """
     with atomic_path(path) as part:
         part.write_bytes(data)

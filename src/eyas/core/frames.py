@@ -14,7 +14,7 @@ _TURN = 2.0 * math.pi
 
 @kernel
 def wrap_angle(angle: float) -> float:
-    """Return the same direction within -pi to pi [rad]; what is within already stays as it is."""
+    """Return the same direction within -pi to pi [rad]; angles in that range are unchanged."""
     if -math.pi <= angle <= math.pi:
         return angle
     return angle - _TURN * math.floor((angle + math.pi) / _TURN)

@@ -1,4 +1,4 @@
-"""What Python cannot say in a kernel: to lay values out in memory, to share a counter."""
+"""Kernel operations that Python cannot express: memory layout of values, an atomic counter."""
 
 import hashlib
 
@@ -10,7 +10,7 @@ __all__ = ["claim", "layout_of", "size_of", "store"]
 
 @intrinsic
 def size_of(typing_context, value):
-    """Return how many bytes a value takes."""
+    """Return the size of a value in memory [bytes]."""
 
     def generate(context, builder, signature, arguments):
         size = context.get_abi_sizeof(context.get_data_type(value))
@@ -21,7 +21,7 @@ def size_of(typing_context, value):
 
 @intrinsic
 def layout_of(typing_context, value):
-    """Return a positive number that only values of the same type have, in every process."""
+    """Return a positive number that identifies the type of a value, the same in every process."""
     number = int.from_bytes(hashlib.sha256(str(value).encode()).digest()[:7])
 
     def generate(context, builder, signature, arguments):
@@ -32,7 +32,7 @@ def layout_of(typing_context, value):
 
 @intrinsic
 def store(typing_context, memory, value):
-    """Write a value into an array of bytes, as `CPointer` reads it."""
+    """Write a value into an array of bytes, in the layout that `CPointer` reads."""
 
     def generate(context, builder, signature, arguments):
         array = context.make_array(memory)(context, builder, arguments[0])
@@ -45,7 +45,7 @@ def store(typing_context, memory, value):
 
 @intrinsic
 def claim(typing_context, counter):
-    """Return the first number of an array of int64 and add one to it, as no other thread can."""
+    """Return the first number of an array of int64 and add one to it, atomically."""
 
     def generate(context, builder, signature, arguments):
         array = context.make_array(counter)(context, builder, arguments[0])

@@ -1,7 +1,7 @@
-"""How kernels are compiled: one set of numba settings, cached on disk by a hash of the sources.
+"""Compilation of kernels: one set of numba settings, cached on disk by a hash of the sources.
 
-numba's own cache notices a change of the function's file, not of a function it calls in another
-file. So the folder of kernels is named after a hash of every source file that holds kernels.
+numba's own cache notices a change in a function's file, but not in the files of the functions it
+calls. So the folder of kernels is named after a hash of every source file that holds kernels.
 """
 
 import hashlib
@@ -40,7 +40,7 @@ def _source_hash() -> str:
 
 
 def kernel_folder() -> Path:
-    """Return the folder where compiled kernels of exactly these sources are kept."""
+    """Return the folder of the kernels compiled from exactly these sources."""
     return cache_folder() / Kind.KERNELS / _source_hash()
 
 
@@ -53,30 +53,30 @@ def _can_be_written(folder: Path) -> bool:
 
 
 def nothing_compiled() -> bool:
-    """Return whether the next kernels will have to be compiled: this version's first start."""
+    """Return whether no kernel is cached yet, as at the first start of a version."""
     return not any(Path(os.environ["NUMBA_CACHE_DIR"]).rglob("*.nbc"))
 
 
 os.environ.setdefault("NUMBA_CACHE_DIR", str(kernel_folder()))
 touch(Path(os.environ["NUMBA_CACHE_DIR"]))
 
-# numba reads the setting above when it is imported, and may have been before.
+# numba reads the variable above when it is imported, and may have been imported before.
 import numba  # noqa: E402
 
 numba.config.CACHE_DIR = os.environ["NUMBA_CACHE_DIR"]
 
 
 def thread_count() -> int:
-    """Return how many threads draw: all cores, or what `NUMBA_NUM_THREADS` says."""
+    """Return the number of threads that draw: all cores, or `NUMBA_NUM_THREADS`."""
     return int(numba.config.NUMBA_NUM_THREADS)
 
 
-# Kernels allocate nothing, so they need not count who uses an array. Numba would: two atomic
-# operations for each array handed on, which threads that share the arrays pay for dearly
-# (pictures took three times as long).
+# Kernels allocate nothing, so they need no reference counting of arrays (`_nrt`). It costs two
+# atomic operations for each array passed on, which is slow when threads share the arrays: pictures
+# took three times as long.
 #
-# Without a folder of ours numba would keep kernels beside their sources, and then use old ones
-# after a change of what they call.
+# If the folder cannot be written to, nothing is cached: numba would otherwise keep kernels beside
+# their sources, and use outdated ones after a change in the functions they call.
 KERNEL_SETTINGS = {
     "cache": _can_be_written(Path(os.environ["NUMBA_CACHE_DIR"])),
     "error_model": "numpy",
@@ -86,10 +86,10 @@ KERNEL_SETTINGS = {
 
 
 def _compiled(function: Function, **settings: object) -> Function:
-    """Return the function as numba will compile it, once for whole numbers of any kind.
+    """Return the function for numba to compile, once for all types of signed whole numbers.
 
-    For calls `f(0)`, `f(1)` and `f(i)` in other kernels numba would compile `f` three times, and
-    once more where `i` has 32 bits.
+    For the calls `f(0)`, `f(1)` and `f(i)` in other kernels numba would compile `f` three times,
+    and once more if `i` has 32 bits.
     """
     dispatcher = numba.njit(**KERNEL_SETTINGS, **settings)(function)
     template = dispatcher.get_call_template
@@ -110,17 +110,18 @@ def _compiled(function: Function, **settings: object) -> Function:
 
 
 def may_be_kept(function: Callable[..., Any], kinds: Iterable[object]) -> bool:
-    """Return whether a function compiled for arguments of some types may be kept on disk.
+    """Return whether a function compiled for these argument types may be kept on disk.
 
-    numba notes the types of all that was compiled from a function in one file. A program without
-    the class of one of them, such as the memory of somebody's own tracker, could not read it.
+    numba lists the argument types of all compiled versions of a function in one file. A program
+    that lacks the class of one of them, such as the memory of a user-defined tracker, could not
+    read that file.
     """
     own = not function.__module__.startswith("eyas.") or hasattr(function, "specialised")
     return own or all(map(_known_to_all, kinds))
 
 
 def _known_to_all(kind: object) -> bool:
-    """Return whether every program that runs Eyas has the classes in a type."""
+    """Return whether every program that runs Eyas has the classes in the type."""
     if isinstance(kind, numba.types.CPointer):
         return _known_to_all(kind.dtype)
     if isinstance(kind, numba.types.BaseNamedTuple):
@@ -136,21 +137,21 @@ def _widened(kind: object) -> object:
 
 
 def kernel(function: Function) -> Function:
-    """Compile a scalar function without allocation, so that CUDA kernels can call it too."""
+    """Compile a scalar function that allocates nothing, so that CUDA kernels can call it too."""
     return _compiled(function)
 
 
 def step_kernel(function: Function) -> Function:
-    """Compile like `kernel`, and have LLVM put it into its callers.
+    """Compile like `kernel`, and have LLVM inline it into its callers.
 
-    For parts of the simulation's step: they take records of dozens of arrays, which would
-    otherwise be copied at each call.
+    For parts of the simulation's step: their arguments are records of dozens of arrays, which
+    would otherwise be copied at each call.
     """
     return _compiled(function, forceinline=True)
 
 
-# What only kernels call needs no way in from Python; leaving it out saves a quarter of the time
-# that compiling the renderer takes.
+# Functions that only kernels call need no wrapper for calls from Python; leaving it out saves a
+# quarter of the renderer's compile time.
 _INNER = {"no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 
@@ -160,20 +161,20 @@ def inner_kernel(function: Function) -> Function:
 
 
 def inlined_kernel(function: Function) -> Function:
-    """Compile like `inner_kernel`, and have LLVM put it into its callers: for once a pixel."""
+    """Compile like `inner_kernel` and inline, for functions that are called for each pixel."""
     return _compiled(function, **_INNER, forceinline=True)
 
 
 def specialised(function: Function, **kernels: Callable[..., Any]) -> Function:
-    """Return a function with other kernels in the place of some that its module names.
+    """Return a function that calls other kernels instead of some that its module names.
 
-    Which kernels a step is made of is decided when it is built, not in each step. Compiled, the
-    result is kept on disk like any kernel, apart from others by the names and sources of what it
-    is made of.
+    The kernels that a step calls are chosen when it is built, not in each step. The compiled
+    result is cached on disk like any kernel; the names and sources of the chosen kernels are part
+    of its name there.
 
     Args:
         function: A plain function of this package, to be compiled.
-        kernels: The kernels to call instead, by the names of those in the function's module.
+        kernels: The kernels to call, keyed by the names they replace in the function's module.
     """
     if all(function.__globals__[name] is kernel for name, kernel in kernels.items()):
         return function
@@ -188,10 +189,10 @@ def specialised(function: Function, **kernels: Callable[..., Any]) -> Function:
 
 
 def _identity(kernel: Callable[..., Any], seen: frozenset[str] = frozenset()) -> str:
-    """Return a text that only this kernel of exactly these sources has.
+    """Return a text that identifies a kernel and its source.
 
-    Kernels of other modules outside Eyas that it calls count too; those of Eyas are in the name of
-    the folder.
+    It includes the kernels outside Eyas that it calls; those of Eyas determine the name of the
+    folder.
     """
     function = kernel.py_func  # type: ignore[attr-defined]  # numba's dispatcher
     name = f"{function.__module__}.{function.__qualname__}"

@@ -1,4 +1,4 @@
-"""What machine this is, for the head of a table of timings."""
+"""Description of this machine, for the heading of a table of timings."""
 
 import os
 import platform
@@ -9,7 +9,7 @@ __all__ = ["describe_machine", "peak_memory"]
 
 
 def describe_machine() -> str:
-    """Return processor, usable cores, system and Python in one line."""
+    """Return the processor, usable cores, system and Python version in one line."""
     cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
     python = f"Python {platform.python_version()}"
     return f"{_processor()}, {cores} cores, {platform.system()} {platform.machine()}, {python}"
@@ -25,7 +25,7 @@ def _processor() -> str:
 
 
 def peak_memory() -> int:
-    """Return the largest resident memory of this process so far [bytes]; 0 where unknown."""
+    """Return the largest resident memory of this process so far [bytes]; 0 if unknown."""
     try:
         import resource
     except ImportError:  # Windows

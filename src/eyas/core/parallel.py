@@ -1,8 +1,8 @@
-"""Parallel kernels: each worker's share in a thread, and arguments that are found by address.
+"""Parallel kernels: each worker's share runs in a thread, and arguments are passed by address.
 
-numba's own way, `parallel=True` on each kernel, compiles all that the kernel calls three times
-(half a minute for the renderer), unpacks every array at every call (a tenth of a small picture's
-time), and wakes a thread for each worker while the one that calls it waits (another tenth).
+numba's own solution, `parallel=True` on each kernel, compiles everything that the kernel calls
+three times (half a minute for the renderer), unpacks every array at every call (a tenth of the time
+of a small picture), and wakes a thread for each worker while the caller waits (another tenth).
 """
 
 import os
@@ -25,16 +25,16 @@ Pointee = TypeVar("Pointee", covariant=True)
 
 
 class Pointer(Protocol[Pointee]):
-    """How a parallel kernel sees a bundle: `pointer[0]`."""
+    """Pointer through which a parallel kernel reads a bundle: `pointer[0]`."""
 
     def __getitem__(self, index: int) -> Pointee: ...
 
 
 class Held(Generic[Bundle]):
-    """A tuple of numbers, arrays and tuples of them, laid out once as kernels read it.
+    """A tuple of numbers, arrays and tuples of them, laid out once in the kernels' memory format.
 
     Args:
-        bundle: Its arrays are not copied: what is written into them later, kernels see.
+        bundle: The tuple. Its arrays are not copied: kernels see later changes.
     """
 
     __slots__ = ("_memory", "address", "bundle", "layout")
@@ -50,11 +50,11 @@ class Held(Generic[Bundle]):
 
 
 class _Call:
-    """A call with all that it reads and writes, kept until the last worker is done.
+    """A call with everything that it reads and writes, kept until the last worker is done.
 
     Attributes:
-        turns: Each held while that worker's share is being done.
-        left: Workers whose share nobody has begun.
+        turns: A lock for each worker, held while its share is being done.
+        left: Workers whose shares have not begun.
     """
 
     __slots__ = ("_kernel", "_parts", "_table", "left", "turns")
@@ -69,7 +69,7 @@ class _Call:
         self.left = set(range(workers))
 
     def do(self, worker: int) -> None:
-        """Do a worker's share if it is left; return when it is done, whoever does it."""
+        """Do a worker's share if it has not begun; return when it is done, in any thread."""
         with self.turns[worker]:
             if worker in self.left:
                 self.left.discard(worker)
@@ -83,13 +83,13 @@ class _Call:
                 threads.submit(self.do, worker)
         self.do(0)
         for worker in workers:
-            if not self.turns[worker].locked():  # its thread is still waking up, or it is done
+            if not self.turns[worker].locked():  # its thread is not awake yet, or has finished
                 self.do(worker)
         for worker in workers:
             self.do(worker)
 
     def end(self) -> None:
-        """Let no more shares begin and wait for those that have."""
+        """Let no more shares begin, and wait for those that have begun."""
         self.left.clear()
         for turn in self.turns:
             with turn:
@@ -97,12 +97,12 @@ class _Call:
 
 
 class _Crew:
-    """The threads that help the one that calls; a forked process gets its own.
+    """The threads that help the calling thread; a forked process gets its own.
 
     Attributes:
-        busy: Held by the thread that calls: what a kernel uses as working memory is there once.
-        call: The one under way, or one that a signal (Ctrl-C) broke off while it waited for its
-            workers; the next call waits for them first.
+        busy: Lock held by the calling thread: calls share the kernels' working memory.
+        call: The call in progress, or one that a signal (Ctrl-C) interrupted while it waited for
+            its workers; the next call waits for them first.
     """
 
     def __init__(self) -> None:
@@ -122,7 +122,7 @@ class _Crew:
         return self._threads
 
     def run(self, call: _Call) -> None:
-        """Do all shares of a call; `busy` is held."""
+        """Do all shares of a call; the caller must hold `busy`."""
         if self.call is not None:
             self.call.end()
         self.call = call
@@ -137,10 +137,10 @@ _CREW = _Crew()
 
 
 class BoundKernel:
-    """A kernel with its bundles: for short calls that come again and again.
+    """A kernel bound to its bundles, for short calls that are repeated often.
 
-    A call costs a microsecond instead of eight. It waits for no other call, so nothing else may
-    write into its bundles meanwhile.
+    A call takes one microsecond instead of eight. It does not wait for other calls, so nothing
+    else may write into its bundles meanwhile.
     """
 
     __slots__ = ("_address", "_function", "_kept")
@@ -159,13 +159,13 @@ class BoundKernel:
 
 
 class parallel_kernel(Generic[Bundle]):  # noqa: N801  # a decorator like `kernel`
-    """Compile a function that does the share of one worker, and call it for all workers at once.
+    """Compile a function that does the share of one worker, and run it for all workers in parallel.
 
     Calls from several Python threads wait for each other.
 
     Args:
-        function: Called with `parts`, `worker` and `workers`; `parts[0]` has a pointer for each
-            bundle, `parts[0][i][0]` is the bundle itself.
+        function: Called with `parts`, `worker` and `workers`; `parts[0]` holds a pointer to each
+            bundle, and `parts[0][i][0]` is bundle i.
     """
 
     def __init__(self, function: Callable[[Pointer[Bundle], int, int], None]) -> None:
@@ -181,11 +181,11 @@ class parallel_kernel(Generic[Bundle]):  # noqa: N801  # a decorator like `kerne
             _CREW.run(_Call(self._function(parts), parts, workers))
 
     def bound(self, *parts: Held[Any]) -> "BoundKernel":
-        """Return a call with these bundles, all of it done in the thread that calls."""
+        """Return the kernel bound to these bundles; it runs in the calling thread."""
         return BoundKernel(self._function(parts), parts)
 
     def _function(self, parts: tuple[Held[Any], ...]) -> Callable[[int, int, int], None]:
-        """Return the function for bundles of these layouts; being of ctypes, it lets go of the
+        """Return the function for bundles of these layouts; as a ctypes function, it releases the
         interpreter's lock.
         """
         layouts = tuple([part.layout for part in parts])
@@ -204,7 +204,7 @@ class parallel_kernel(Generic[Bundle]):  # noqa: N801  # a decorator like `kerne
 
 @kernel
 def _lay_out(bundle: object, memory: NDArray[np.uint8]) -> int:
-    """Write a bundle into memory and return its layout, or minus the bytes it needs."""
+    """Write a bundle into memory and return its layout; if too small, minus the bytes needed."""
     size: int = size_of(bundle)
     if len(memory) < size:
         return -size

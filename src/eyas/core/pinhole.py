@@ -1,4 +1,4 @@
-"""The pinhole camera: optical axis through the middle of the picture."""
+"""The pinhole camera; its optical axis passes through the middle of the picture."""
 
 import math
 
@@ -9,23 +9,23 @@ __all__ = ["focal_length", "intrinsics", "project", "rays"]
 
 
 def focal_length(width: int, fov: float) -> float:
-    """Return the focal length [pixels]; with a height and a vertical field, that along columns.
+    """Return the focal length [pixels]; a height and vertical field of view give the vertical one.
 
     Args:
-        width: Of the picture [pixels].
+        width: Width of the picture [pixels].
         fov: Horizontal field of view [rad].
     """
     return 0.5 * width / math.tan(0.5 * fov)
 
 
 def intrinsics(width: int, height: int, fov: float) -> NDArray[np.float64]:
-    """Return the camera matrix of computer vision: x right, y down, z forward, shape (3, 3).
+    """Return the camera matrix in computer vision axes: x right, y down, z forward, shape (3, 3).
 
     Pixels are square, and pixel (0, 0) has its centre at (0.5, 0.5), as in `project`.
 
     Args:
-        width: Of the picture [pixels].
-        height: Of the picture [pixels].
+        width: Width of the picture [pixels].
+        height: Height of the picture [pixels].
         fov: Horizontal field of view [rad].
     """
     focal = focal_length(width, fov)
@@ -47,15 +47,15 @@ def project(  # noqa: PLR0913  # a pose and a lens, as they come
         points: World frame [m], shape (..., 3).
         position: Optical centre, world frame [m], shape (3,).
         rotation: Camera to world; columns forward, left, up, shape (3, 3).
-        width: Of the picture [pixels].
-        height: Of the picture [pixels].
+        width: Width of the picture [pixels].
+        height: Height of the picture [pixels].
         fov: Horizontal field of view [rad].
         vertical_fov: Vertical field of view [rad]; None for square pixels.
 
     Returns:
         Column and row [pixels] (pixel (0, 0) has its centre at (0.5, 0.5)) and the distance along
-        the optical axis [m], each of shape (...). Column and row mean nothing where the distance
-        is not positive; they are not a number where it is 0.
+        the optical axis [m], each of shape (...). Column and row are meaningless where the
+        distance is not positive, and NaN where it is 0.
     """
     offset = np.asarray(points, np.float64) - np.asarray(position, np.float64)
     forward, left, up = np.moveaxis(offset @ np.asarray(rotation, np.float64), -1, 0)
@@ -74,13 +74,13 @@ def rays(
 
     Args:
         rotation: Camera to world; columns forward, left, up, shape (3, 3).
-        width: Of the picture [pixels].
-        height: Of the picture [pixels].
+        width: Width of the picture [pixels].
+        height: Height of the picture [pixels].
         fov: Horizontal field of view [rad].
         vertical_fov: Vertical field of view [rad]; None for square pixels.
 
     Returns:
-        World frame, of length 1 along the optical axis, shape (height, width, 3).
+        Directions, world frame, of length 1 along the optical axis, shape (height, width, 3).
     """
     focal = focal_length(width, fov)
     focal_vertical = focal if vertical_fov is None else focal_length(height, vertical_fov)

@@ -1,7 +1,7 @@
-"""Tables of names for what can be chosen: maps, trackers, rewards, writers.
+"""Tables of named objects that settings choose from: maps, trackers, rewards, writers.
 
 An object is found by its name in the table, or by its path `package.module:attribute`, so that a
-user's own needs no entry anywhere. Nothing is imported before it is asked for.
+user-defined object needs no entry in a table. An object is imported when it is first used.
 """
 
 import sys
@@ -18,17 +18,17 @@ T = TypeVar("T")
 
 
 class Registry(Generic[T]):
-    """Objects of one kind by name: those of Eyas, of installed packages, and a user's own.
+    """Objects of one kind by name: built-in, from installed packages, and user-defined.
 
     Attributes:
-        built_in: Names of those that come with Eyas, in the order of the table.
+        built_in: Names of the built-in objects, in the order of the table.
 
     Args:
-        setting: The setting that names one of them, for messages; for example `world.map`.
+        setting: The setting that names an object, for messages; for example `world.map`.
         kind: Class of the objects, or a protocol that can be checked at run time.
-        built_in: Those that come with Eyas, each as `package.module:attribute`.
-        group: Name of the entry points with which installed packages add theirs; None: they cannot.
-        later: Names of what a later version will have; to ask for them is an error of its own.
+        built_in: The built-in objects, each as `package.module:attribute`.
+        group: Entry point group with which installed packages add objects; None: they cannot.
+        later: Names planned for a later version; choosing one raises `NotInThisVersionError`.
     """
 
     def __init__(
@@ -54,7 +54,7 @@ class Registry(Generic[T]):
             what: The object, or its path `package.module:attribute`.
 
         Raises:
-            ConfigError: The name is taken by something else, or is none.
+            ConfigError: The name is taken by another object, or is not valid.
         """
         if not name or ":" in name:
             raise ConfigError(
@@ -67,10 +67,10 @@ class Registry(Generic[T]):
         self._table[name] = what
 
     def names(self) -> tuple[str, ...]:
-        """Return all names: of Eyas, then a user's own, then those of installed packages.
+        """Return all names: built-in, then user-defined, then of installed packages.
 
         Raises:
-            ConfigError: Two packages use one name.
+            ConfigError: Two packages use the same name.
         """
         return tuple({**self._table, **self._installed()})
 
@@ -79,8 +79,8 @@ class Registry(Generic[T]):
 
         Raises:
             UnknownNameError: There is no such name.
-            NotInThisVersionError: A later version will have it.
-            ConfigError: There is no such path, it leads to something else, or two packages use
+            NotInThisVersionError: The name is planned for a later version.
+            ConfigError: There is no such path, its object is of another kind, or two packages use
                 the name.
         """
         if name not in self._loaded:
@@ -88,7 +88,7 @@ class Registry(Generic[T]):
         return self._loaded[name]
 
     def _found(self, name: str) -> T | str:
-        """Return what the table has for a name: an object, or a path to it."""
+        """Return the table's entry for a name: an object, or a path to it."""
         if name in self._table:
             return self._table[name]
         if ":" in name:
@@ -105,8 +105,8 @@ class Registry(Generic[T]):
         return installed[name]
 
     def _installed(self) -> dict[str, str]:
-        """Return name and path of what installed packages add."""
-        from importlib.metadata import entry_points  # takes a while, and is seldom needed
+        """Return the names and paths of the objects that installed packages add."""
+        from importlib.metadata import entry_points  # slow to import, and rarely needed
 
         found: dict[str, str] = {}
         for point in entry_points(group=self._group) if self._group else ():
@@ -121,7 +121,7 @@ class Registry(Generic[T]):
         return found
 
     def _checked(self, name: str, found: T | str) -> T:
-        """Return what was found, imported if it is a path."""
+        """Return the object that was found, imported if it is a path."""
         what = self._imported(found) if isinstance(found, str) else found
         if not isinstance(what, self._kind):
             raise ConfigError(
@@ -130,7 +130,7 @@ class Registry(Generic[T]):
         return what
 
     def _imported(self, path: str) -> object:
-        """Return the object at a path; an error within its module is the module's own."""
+        """Return the object at a path; errors raised by its module pass through."""
         name, _, attribute = path.partition(":")
         if not name or not attribute.isidentifier():
             raise ConfigError(

@@ -1,4 +1,4 @@
-"""Random numbers: one seed, one named stream for each tracker and room."""
+"""Random numbers: one seed, and one named stream for each tracker and room."""
 
 import zlib
 
@@ -14,9 +14,9 @@ def stream(seed: int, room: str, *indices: int) -> np.random.Generator:
     changes nothing in another.
 
     Args:
-        seed: The one seed of the run, >= 0.
+        seed: Seed of the run, >= 0.
         room: Name of the room that draws.
-        *indices: Tracker, episode or other numbers that tell streams of a room apart.
+        *indices: Tracker, episode or other numbers that distinguish the streams of a room.
     """
     key = (zlib.crc32(room.encode()), *indices)
     return np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed, spawn_key=key)))

@@ -12,7 +12,7 @@ __all__ = ["Choice", "Mirrored", "Uniform", "Variation", "bounds", "sample", "wi
 
 
 class Uniform(Config):
-    """A value drawn evenly between two limits: `{"uniform": [low, high]}`."""
+    """A value drawn uniformly between two limits: `{"uniform": [low, high]}`."""
 
     written: ClassVar[str] = '{"uniform": [low, high]}'
     uniform: tuple[float, float]
@@ -20,7 +20,7 @@ class Uniform(Config):
 
 
 class Mirrored(Config):
-    """A magnitude drawn evenly, with a random sign: `{"mirrored": [low, high]}`."""
+    """A magnitude drawn uniformly, with a random sign: `{"mirrored": [low, high]}`."""
 
     written: ClassVar[str] = '{"mirrored": [low, high]}'
     mirrored: tuple[float, float]
@@ -28,7 +28,7 @@ class Mirrored(Config):
 
 
 class Choice(Config):
-    """One of several values, each as likely: `{"choice": [a, b, ...]}`."""
+    """One of several equally likely values: `{"choice": [a, b, ...]}`."""
 
     written: ClassVar[str] = '{"choice": [a, b, ...]}'
     choice: Annotated[tuple[float, ...], Field(min_length=1)]
@@ -36,7 +36,7 @@ class Choice(Config):
 
 
 Variation = float | Uniform | Mirrored | Choice
-"""A number, or how to draw one."""
+"""A number, or a rule for drawing one."""
 
 
 def sample(variation: Variation, rng: np.random.Generator) -> float:
@@ -69,7 +69,7 @@ def bounds(variation: Variation) -> tuple[float, float]:
 
 
 def within(low: float, high: float) -> Callable[[Variation], Variation]:
-    """Return a check, for `pydantic.AfterValidator`, that all values of a variation are in range.
+    """Return a check for `pydantic.AfterValidator` that all values of a variation are in range.
 
     Args:
         low: Smallest allowed value.

@@ -1,1 +1,1 @@
-"""The mesh kit: what maps, vehicles and overlays are modelled with."""
+"""Tools for modelling the meshes of maps, vehicles and overlays."""

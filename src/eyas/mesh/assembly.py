@@ -1,4 +1,4 @@
-"""Meshes of arrays, and of other meshes."""
+"""Meshes made from arrays and from other meshes."""
 
 from collections.abc import Sequence
 
@@ -17,7 +17,7 @@ def of_one_material(
     triangles: NDArray[np.integer],
     material: Material,
 ) -> Mesh:
-    """Return a mesh of arrays as `Mesh` has them."""
+    """Return a mesh from arrays, with one material; shapes as in `Mesh`."""
     return Mesh(
         positions=np.ascontiguousarray(positions, np.float32),
         normals=np.ascontiguousarray(normals, np.float32),
@@ -29,7 +29,7 @@ def of_one_material(
 
 
 def concatenate(meshes: Sequence[Mesh]) -> Mesh:
-    """Return one mesh of all, with one palette without repeats."""
+    """Return all meshes as one; its palette has no duplicates."""
     palette: dict[Material, int] = {}
     triangles, materials, offset = [], [], 0
     for mesh in meshes:
@@ -48,10 +48,10 @@ def concatenate(meshes: Sequence[Mesh]) -> Mesh:
 
 
 def transformed(mesh: Mesh, pose: NDArray[np.floating]) -> Mesh:
-    """Return the mesh moved by a pose.
+    """Return the mesh transformed by a pose.
 
     Args:
-        mesh: What to move.
+        mesh: The mesh.
         pose: Rotation (times a uniform scale) and translation, shape (3, 4).
     """
     linear = np.asarray(pose[:, :3], np.float64)

@@ -15,9 +15,9 @@ def quads(corners: ArrayLike, uvs: ArrayLike, material: Material) -> Mesh:
     """Return flat-shaded quadrilaterals.
 
     Args:
-        corners: Counter-clockwise seen from outside [m], shape (Q, 4, 3).
+        corners: Counter-clockwise as seen from outside [m], shape (Q, 4, 3).
         uvs: Texture coordinates in tiles, shape (Q, 4, 2).
-        material: Of all of them.
+        material: Material of all of them.
     """
     points = np.asarray(corners, np.float64).reshape(-1, 4, 3)
     normals = np.cross(points[:, 2] - points[:, 0], points[:, 3] - points[:, 1])
@@ -40,7 +40,7 @@ def flat_polygon(
 ) -> Mesh:
     """Return a horizontal polygon (holes and several parts allowed) that faces up.
 
-    The texture lies along the world's axes, or turned counter-clockwise by `turn` [rad].
+    The texture is aligned with the world's axes, or turned counter-clockwise by `turn` [rad].
     """
     cells = shapely.get_parts(shapely.constrained_delaunay_triangles(polygon))
     if len(cells) == 0:
@@ -49,7 +49,7 @@ def flat_polygon(
     edge = flat[:, 1:] - flat[:, :1]
     area = edge[:, 0, 0] * edge[:, 1, 1] - edge[:, 0, 1] * edge[:, 1, 0]
     flat[area < 0] = flat[area < 0][:, ::-1]
-    # Corners in one line make triangles narrower than a micrometre, which cannot be shaded.
+    # Collinear corners give triangles narrower than a micrometre, which cannot be shaded.
     flat = flat[np.abs(area) > 1e-6 * np.abs(edge).max(axis=(1, 2))]
     points, index = np.unique(flat.reshape(-1, 2), axis=0, return_inverse=True)
     positions = np.column_stack([points, np.full(len(points), z)])
@@ -62,8 +62,8 @@ def flat_polygon(
 def walls(outline: ArrayLike, bottom: float, top: float, material: Material, tile: float) -> Mesh:
     """Return vertical walls around a closed counter-clockwise outline, shape (K, 2).
 
-    The texture goes round with a whole number of bays (quarter tiles) on each wall, v from the
-    bottom.
+    Each wall has a whole number of window bays (quarter tiles of the texture); v is measured from
+    the bottom.
     """
     start = np.asarray(outline, np.float64)
     length = np.linalg.norm(np.roll(start, -1, axis=0) - start, axis=1)
@@ -76,9 +76,9 @@ def walls(outline: ArrayLike, bottom: float, top: float, material: Material, til
 
 
 def wall_along(line: ArrayLike, bottom: float, top: float, material: Material, tile: float) -> Mesh:
-    """Return the vertical wall along a line, shape (K, 2), whose outside is on its right.
+    """Return the vertical wall along a line, shape (K, 2), with its outside on the right.
 
-    The texture runs on along the line, v from the bottom.
+    The texture is continuous along the line; v is measured from the bottom.
     """
     points = np.asarray(line, np.float64)
     along = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])

@@ -1,4 +1,4 @@
-"""Corners of panels in space, before they have a material. Counter-clockwise seen from outside."""
+"""Corners of panels in space, without materials. Counter-clockwise as seen from outside."""
 
 from collections.abc import Sequence
 
@@ -11,11 +11,11 @@ Points = NDArray[np.float64]
 
 
 def cells(grid: ArrayLike) -> Points:
-    """Return the quadrilaterals between neighbours of a grid, row after row.
+    """Return the quadrilaterals between neighbouring points of a grid, row by row.
 
     Args:
-        grid: Points in space or of a texture, shape (R, K, D). Seen from outside, rows lie above
-            each other and their points run from left to right.
+        grid: Points in space or in a texture, shape (R, K, D). As seen from outside, each row lies
+            above the one before it, and its points run from left to right.
 
     Returns:
         Shape ((R - 1) (K - 1), 4, D).
@@ -26,13 +26,13 @@ def cells(grid: ArrayLike) -> Points:
 
 
 def closed(rings: ArrayLike) -> Points:
-    """Return rings that end with the point they begin with, shape (R, K + 1, D)."""
+    """Return rings with their first point repeated at the end, shape (R, K + 1, D)."""
     r = np.asarray(rings, np.float64)
     return np.concatenate([r, r[:, :1]], axis=1)
 
 
 def halves(quads: ArrayLike) -> Points:
-    """Return the triangles of quadrilaterals, shape (2 Q, 3, D): all first halves, then the others.
+    """Return the triangles of quadrilaterals, shape (2 Q, 3, D): all first halves, then all second.
 
     Args:
         quads: Shape (Q, 4, D).
@@ -46,7 +46,7 @@ def fan(ring: ArrayLike, middle: Sequence[float] | None = None) -> Points:
 
     Args:
         ring: Corners, shape (K, 3).
-        middle: Point where they all meet; None: the ring's first corner.
+        middle: Common corner of all triangles; None: the ring's first corner.
 
     Returns:
         Shape (K, 3, 3), or (K - 2, 3, 3) without a middle.
@@ -61,9 +61,9 @@ def box_panels(low: Sequence[float], high: Sequence[float], taper: float = 0.0) 
     """Return the faces of a box between two corners, shape (6, 4, 3).
 
     Args:
-        low: Least x, y and z.
+        low: Smallest x, y and z.
         high: Largest x, y and z.
-        taper: How far the top is drawn in on all four sides.
+        taper: Distance by which the top is inset on all four sides.
     """
     (x0, y0, z0), (x1, y1, z1), t = low, high, taper
     bottom = np.array([(x0, y0, z0), (x1, y0, z0), (x1, y1, z0), (x0, y1, z0)])
@@ -79,5 +79,5 @@ def box_panels(low: Sequence[float], high: Sequence[float], taper: float = 0.0) 
 
 
 def mirrored(triangles: ArrayLike) -> Points:
-    """Return triangles mirrored left for right, still counter-clockwise, shape (T, 3, 3)."""
+    """Return triangles mirrored left to right, still counter-clockwise, shape (T, 3, 3)."""
     return np.asarray(triangles, np.float64)[:, ::-1] * [1.0, -1.0, 1.0]

@@ -1,4 +1,4 @@
-"""Panels that become one mesh, rounded where they meet gently: bodies of vehicles."""
+"""Meshes of panels with smooth shading across gentle edges, for the bodies of vehicles."""
 
 from collections.abc import Sequence
 
@@ -15,7 +15,7 @@ _CREASE = 0.75
 
 
 class Shell:
-    """Panels so far. Corners are counter-clockwise seen from outside."""
+    """A mesh under construction. Corners are counter-clockwise as seen from outside."""
 
     def __init__(self) -> None:
         self._corners: list[NDArray[np.float64]] = []
@@ -26,8 +26,8 @@ class Shell:
 
         Args:
             corners: In the model's frame [m].
-            material: Of all of them.
-            both_sides: Also add them mirrored, left for right.
+            material: Material of all of them.
+            both_sides: Also add them mirrored left to right.
         """
         triangles = halves(np.asarray(corners, np.float64).reshape(-1, 4, 3))
         self.triangles(triangles, material, both_sides=both_sides)
@@ -35,7 +35,7 @@ class Shell:
     def triangles(
         self, corners: ArrayLike, material: Material, *, both_sides: bool = False
     ) -> None:
-        """Add triangles, shape (T, 3, 3) [m]; those without area are left out."""
+        """Add triangles, shape (T, 3, 3) [m]; triangles without area are skipped."""
         points = np.asarray(corners, np.float64).reshape(-1, 3, 3)
         area = np.linalg.norm(_cross(points), axis=1)
         points = points[area > 1e-7]
@@ -53,7 +53,7 @@ class Shell:
         taper: float = 0.0,
         both_sides: bool = False,
     ) -> None:
-        """Add a box between two corners; `taper` draws the top in on all four sides [m]."""
+        """Add a box between two corners; its top is inset by `taper` on all four sides [m]."""
         self.quads(box_panels(low, high, taper), material, both_sides=both_sides)
 
     def prism(
@@ -64,13 +64,13 @@ class Shell:
         *,
         both_sides: bool = False,
     ) -> None:
-        """Add a convex side view (x, z), counter-clockwise seen from the right, made solid.
+        """Add a prism with a convex side view (x, z), counter-clockwise as seen from the right.
 
         Args:
             profile: Corners [m], shape (K, 2).
-            y: From right to left [m].
-            material: Of all faces.
-            both_sides: Also add it mirrored.
+            y: Its right and left ends [m].
+            material: Material of all faces.
+            both_sides: Also add it mirrored left to right.
         """
         outline = np.asarray(profile, np.float64)
         right = np.insert(outline, 1, y[0], axis=1)
@@ -80,14 +80,14 @@ class Shell:
     def rings(
         self, rings: ArrayLike, material: Material, *, both_sides: bool = False, caps: bool = True
     ) -> None:
-        """Add a skin over closed outlines, one after the other, and close both ends.
+        """Add the surface through a sequence of closed outlines, and close both ends.
 
         Args:
-            rings: Outlines of as many corners each, shape (R, K, 3); counter-clockwise seen from
-                where the rings lead to.
-            material: Of all faces.
-            both_sides: Also add it mirrored.
-            caps: Whether the ends are closed (the outlines are convex).
+            rings: Outlines with K corners each, shape (R, K, 3); counter-clockwise as seen from
+                beyond the last one.
+            material: Material of all faces.
+            both_sides: Also add it mirrored left to right.
+            caps: Whether the ends are closed; their outlines must be convex.
         """
         r = np.asarray(rings, np.float64)
         self.quads(cells(closed(r)), material, both_sides=both_sides)
@@ -104,7 +104,7 @@ class Shell:
         sides: int = 6,
         both_sides: bool = False,
     ) -> None:
-        """Add a round rod along points, shape (R, 3), with a radius at each [m]."""
+        """Add a round rod along points, shape (R, 3), with a radius at each point [m]."""
         points = np.asarray(path, np.float64)
         along = np.gradient(points, axis=0)
         along /= np.linalg.norm(along, axis=1, keepdims=True)
@@ -127,7 +127,7 @@ class Shell:
         sides: int = 8,
         both_sides: bool = False,
     ) -> None:
-        """Add an upright ellipsoid [m]."""
+        """Add an ellipsoid with axes along x, y and z [m]."""
         upwards = np.linspace(-np.pi / 2, np.pi / 2, rows + 1)[:, None]
         angle = np.arange(sides) * (2 * np.pi / sides)
         unit = [np.cos(upwards) * np.cos(angle), np.cos(upwards) * np.sin(angle)]
@@ -158,7 +158,7 @@ class Shell:
 
 
 def _cross(corners: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the normals of triangles, as long as twice their areas, shape (T, 3)."""
+    """Return the normals of triangles, with lengths of twice their areas, shape (T, 3)."""
     crossed: NDArray[np.float64] = np.cross(
         corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
     )
@@ -175,9 +175,11 @@ def _angles(corners: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _normals(corners: NDArray[np.float64], material: NDArray[np.int32]) -> NDArray[np.float64]:
-    """Return unit normals of the corners, shape (T, 3, 3): the mean of the triangles of the same
-    material that meet there at less than the crease angle, weighted by their angle there, so that
-    long and short panels count alike.
+    """Return unit normals of the corners, shape (T, 3, 3).
+
+    A normal is the mean over the triangles of the same material that meet at the corner at less
+    than the crease angle, weighted by their angles there, so that long and short panels count
+    equally.
     """
     flat = _cross(corners)
     unit = np.repeat(flat / np.linalg.norm(flat, axis=1, keepdims=True), 3, axis=0)

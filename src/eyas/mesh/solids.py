@@ -13,7 +13,7 @@ __all__ = ["box", "cylinder", "sphere", "tube"]
 
 
 def box(size: Sequence[float], centre: Sequence[float], material: Material, tile: float) -> Mesh:
-    """Return a box with all six faces; textures repeat every `tile` metres."""
+    """Return a box with six faces; textures repeat every `tile` metres."""
     half = np.asarray(size, np.float64) / 2
     corners, uvs = [], []
     for axis in range(3):
@@ -38,15 +38,15 @@ def cylinder(
     cap: bool = False,
     tile: float = 1.0,
 ) -> Mesh:
-    """Return a cone stump about z.
+    """Return a truncated cone around z.
 
     Args:
-        radius: At the bottom and at the top [m].
+        radius: Radius at the bottom and at the top [m].
         height: z of the bottom and of the top [m].
         sides: Number of sides.
-        material: Of all of it.
-        cap: Close the top and the bottom.
-        tile: Metres one repeat of the texture covers.
+        material: Material of all faces.
+        cap: Whether to close the top and the bottom.
+        tile: Length that one repeat of the texture covers [m].
     """
     angle = np.arange(sides + 1) * (2 * np.pi / sides)
     ring = np.column_stack([np.cos(angle), np.sin(angle)])
@@ -92,19 +92,19 @@ def cylinder(
 def tube(
     path: ArrayLike, radii: Sequence[float], sides: int, material: Material, tile: float = 1.0
 ) -> Mesh:
-    """Return a round pipe of changing thickness along points, open at its ends.
+    """Return a round tube of varying thickness along points, open at its ends.
 
     Args:
         path: Points of its axis [m], shape (P, 3).
-        radii: At each point [m], P numbers.
+        radii: Radius at each point [m], P numbers.
         sides: Number of sides.
-        material: Of all of it.
-        tile: Metres one repeat of the texture covers.
+        material: Material of all faces.
+        tile: Length that one repeat of the texture covers [m].
     """
     points = np.asarray(path, np.float64)
     along = np.asarray(np.gradient(points, axis=0), np.float64)
     along /= np.linalg.norm(along, axis=1, keepdims=True)
-    # Any direction across will do, as long as it turns little from point to point.
+    # Any perpendicular direction works if it turns little from point to point.
     across = np.cross(along, np.eye(3)[int(np.argmin(np.abs(along).sum(0)))])
     across /= np.linalg.norm(across, axis=1, keepdims=True)
     other = np.cross(along, across)
@@ -129,7 +129,7 @@ def tube(
 def sphere(subdivisions: int, material: Material, tile: float = 1.0) -> Mesh:
     """Return a unit icosphere: 20 triangles, four times as many with each subdivision.
 
-    Six tiles go round the equator and two from pole to pole, if `tile` is 1.
+    If `tile` is 1, there are six tiles around the equator and two from pole to pole.
     """
     golden = (1 + 5**0.5) / 2
     points = [
@@ -150,7 +150,7 @@ def sphere(subdivisions: int, material: Material, tile: float = 1.0) -> Mesh:
         corners = np.concatenate([np.stack(cell, axis=1) for cell in cells])
     corners /= np.linalg.norm(corners, axis=2, keepdims=True)
     around = np.arctan2(corners[..., 1], corners[..., 0]) * (3.0 / np.pi)
-    # Triangles over the seam go on beyond it, not all the way back.
+    # Triangles across the seam continue beyond it instead of spanning the whole texture.
     around += 6.0 * ((around < 0.0) & (around.max(axis=1, keepdims=True) > around + 3.0))
     flat = np.stack([*np.moveaxis(corners, -1, 0), around, corners[..., 2]], -1).reshape(-1, 5)
     _, first, index = np.unique(np.round(flat, 9), axis=0, return_index=True, return_inverse=True)

@@ -1,1 +1,1 @@
-"""What the tracker measures."""
+"""Sensors of the tracker."""

@@ -1,4 +1,4 @@
-"""The camera: draws what N gimbals look at."""
+"""The camera: draws the views of N gimbals."""
 
 import math
 
@@ -12,8 +12,8 @@ __all__ = ["Camera"]
 class Camera:
     """A pinhole camera on each tracker.
 
-    The view has the shape of the configured picture. Pictures of another shape squeeze that view,
-    as the original's observations do: 320x240 resized to 84x84.
+    The view has the aspect ratio of the configured picture. Pictures with another aspect ratio show
+    the same view distorted, like the original's observations: 320x240 resized to 84x84.
 
     Args:
         config: Size, field of view, samples.
@@ -38,9 +38,9 @@ class Camera:
         """Draw into `picture`.
 
         Args:
-            views: V cameras with this one's fields of view.
+            views: V cameras with the fields of view of this camera.
             draw_list: The moving parts.
-            picture: Where to, of any size; what is None is not drawn.
-            until: Where to stop, see `Renderer.draw`.
+            picture: Buffers to draw into, of any size; outputs that are None are not drawn.
+            until: Last stage to run, see `Renderer.draw`.
         """
         self._renderer.draw(views, draw_list, picture, self.config.samples, until)

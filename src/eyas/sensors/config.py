@@ -19,4 +19,4 @@ class CameraConfig(Config):
     field_of_view: Annotated[float, Field(gt=0.05, lt=2.8)] = 0.7854
     """Horizontal [rad]."""
     samples: Literal[1, 4] = 1
-    """Samples for each pixel."""
+    """Samples per pixel."""

@@ -1,1 +1,1 @@
-"""Data only: dataclasses of arrays that the rooms hand to each other."""
+"""Data only: records of arrays that the rooms pass to each other."""

@@ -1,4 +1,4 @@
-"""What the renderer is asked for, and what it gives."""
+"""Inputs and outputs of the renderer."""
 
 from dataclasses import dataclass, fields
 from enum import IntEnum
@@ -13,18 +13,18 @@ __all__ = ["DrawList", "DrawStage", "PartLibrary", "Picture", "Views"]
 
 
 class DrawStage(IntEnum):
-    """What is done for a picture, in this order; `eyas bench --stages` stops after each."""
+    """Stages of drawing a picture, in order; `eyas bench --stages` stops after each."""
 
     CULLING = 0
-    """Find what may be seen."""
+    """Find the parts of the scene that may be visible."""
     VERTICES = 1
-    """Take it to the screen."""
+    """Project them to the screen."""
     RASTERISING = 2
-    """Find the nearest triangle in each pixel, and write what else is asked for than colours."""
+    """Find the nearest triangle in each pixel, and write all outputs except colours."""
     MOVERS_LIGHT = 3
-    """Shadows of moving things and light of their lamps."""
+    """Compute the shadows of moving things and the light of their lamps."""
     SHADING = 4
-    """Colours: all is done."""
+    """Compute the colours, the last stage."""
 
 
 @dataclass(slots=True)
@@ -32,15 +32,15 @@ class PartLibrary:
     """The rigid parts that moving things are made of. K parts, each with its levels of detail."""
 
     parts: tuple[tuple[Mesh, ...], ...]
-    """For each part its meshes, the finest first, in the part's own frame."""
+    """Meshes of each part, the finest first, in the part's own frame."""
     lamps: tuple[bool, ...] = ()
-    """For each part whether a thing of which it is the largest part has head and tail lamps that
-    light the road; empty: none has."""
+    """For each part, whether a moving thing with this as its largest part has head and tail lamps
+    that light the road; empty: none has."""
 
 
 @dataclass(slots=True)
 class DrawList:
-    """Moving parts in each of W worlds, I slots a world."""
+    """Moving parts in W worlds, I slots per world."""
 
     part: NDArray[np.int32]
     """Index into the part library, -1 for an empty slot, shape (W, I)."""
@@ -55,7 +55,7 @@ class DrawList:
 
     @classmethod
     def create(cls, worlds: int, slots: int) -> "DrawList":
-        """Return a list with only empty slots, for at most as many actors; these are cars."""
+        """Return a list of empty slots, for up to `slots` actors of class car."""
         return cls(
             part=np.full((worlds, slots), -1, np.int32),
             pose=np.zeros((worlds, slots, 3, 4), np.float32),
@@ -78,23 +78,23 @@ class Views:
     rotation: NDArray[np.float64]
     """Camera to world; columns forward, left, up, shape (V, 3, 3)."""
     world: NDArray[np.int32]
-    """Which world's moving parts each view sees, shape (V,)."""
+    """World whose moving parts each view shows, shape (V,)."""
     subject: NDArray[np.int32]
-    """Object id of the thing each view is about (its box is measured), or -1, shape (V,)."""
+    """Object id of each view's subject, whose box is measured, or -1, shape (V,)."""
     field_of_view: float
     """Horizontal [rad]."""
     vertical_field_of_view: float | None = None
     """[rad]; None: pixels are square. Set it to squeeze a wide view into a square picture."""
     light: NDArray[np.float32] | None = None
-    """What each view changes of the light: factor on the sky and its light, factor on the sun,
-    and one over the visibility range [1/m], shape (V, 3); None: the weather as it is."""
+    """Changes of the light for each view: factor on the sky and its light, factor on the sun, and
+    one over the visibility range [1/m], shape (V, 3); None: the weather's own light."""
     instant: NDArray[np.float64] | None = None
-    """Time of what falls through the air [s], shape (V,); None: nothing falls."""
+    """Time at which falling snow is shown [s], shape (V,); None: nothing falls."""
 
 
 @dataclass(slots=True)
 class Picture:
-    """What V views show. Arrays that are None are not wanted and cost nothing."""
+    """Outputs of V views. Arrays that are None were not requested and cost nothing."""
 
     rgb: NDArray[np.uint8] | None
     """sRGB, row 0 on top, shape (V, H, W, 3)."""
@@ -103,15 +103,15 @@ class Picture:
     object_id: NDArray[np.int32] | None
     """Object of each pixel, `SKY_OBJECT` for sky, shape (V, H, W)."""
     subject_box: NDArray[np.int32] | None
-    """Pixels the subject covers, seen or hidden: left, top, right, bottom, the last two exclusive,
-    all 0 where it is outside the picture, shape (V, 4)."""
+    """Box of the pixels that the subject covers, visible or hidden: left, top, right, bottom, the
+    last two exclusive; all 0 if it is outside the picture, shape (V, 4)."""
     subject_pixels: NDArray[np.int32] | None
-    """Pixels of the subject that are seen, and that it covers seen or hidden, shape (V, 2)."""
+    """Number of the subject's visible pixels, and of its visible and hidden ones, shape (V, 2)."""
     class_id: NDArray[np.uint8] | None = None
     """`eyas.state.scene.ObjectClass` of each pixel's object, shape (V, H, W)."""
 
     @classmethod
-    def create(  # noqa: PLR0913  # every output is asked for by name
+    def create(  # noqa: PLR0913  # every output is requested by name
         cls,
         views: int,
         height: int,
@@ -123,7 +123,7 @@ class Picture:
         subject: bool = False,
         class_id: bool = False,
     ) -> "Picture":
-        """Return buffers for the outputs that are asked for."""
+        """Return buffers for the requested outputs."""
         plane = (views, height, width)
         return cls(
             rgb=np.zeros((*plane, 3), np.uint8) if rgb else None,

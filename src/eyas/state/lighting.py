@@ -1,4 +1,4 @@
-"""Light and air of a weather, and the hills on the horizon: data that recipes give."""
+"""Light and air of a weather, and the hills on the horizon: data defined by recipes."""
 
 from dataclasses import dataclass
 
@@ -7,21 +7,21 @@ __all__ = ["Horizon", "Lighting"]
 
 @dataclass(frozen=True, slots=True)
 class Horizon:
-    """Hills all round a map, from 4 to 14 km away, and always in sight."""
+    """Hills all around a map, 4 to 14 km away and always visible."""
 
     name: str = "hills"
-    """Another name gives other hills with the same character."""
+    """Seed of the shapes: another name gives different hills of the same character."""
     height: float = 0.055
-    """Of the highest hill, as a share of its distance, at most 0.08; 0: a plain."""
+    """Height of the highest hill as a share of its distance, at most 0.08; 0: a plain."""
     ridges: float = 0.9
-    """How sharp they are: 0 round like dunes, 1 with ridges and valleys."""
+    """Sharpness of the hills: 0 round like dunes, 1 with ridges and valleys."""
     woods: float = 1.0
-    """How much wood grows on them: 0 none."""
+    """Amount of forest on the hills; 0: none."""
 
 
 @dataclass(frozen=True, slots=True)
 class Lighting:
-    """Light and air of a weather. Colours are linear RGB radiance, white paper in sun about 1."""
+    """Light and air of a weather. Colours: linear RGB radiance, about 1 for white paper in sun."""
 
     sun_direction: tuple[float, float, float]
     """Unit vector towards the sun."""
@@ -36,24 +36,24 @@ class Lighting:
     ambient_down: tuple[float, float, float]
     """Bounced light on a surface that faces down."""
     fog_colour: tuple[float, float, float]
-    """What distance turns into."""
+    """Colour that distant surfaces fade to."""
     fog_density: float
     """One over the visibility range [1/m]; 0 for clear air."""
     fog_power: int = 1
     """1: exponential, 2: exponential squared."""
     foggy: bool = False
-    """Whether the visibility range may be set (`light.visibility`); clear air has its own."""
+    """Whether the visibility range may be set (`light.visibility`); in clear air it is fixed."""
     exposure: float = 1.0
-    """Factor on everything before it becomes a picture."""
+    """Factor on all radiance before it is converted to a picture."""
     snow: float = 0.0
-    """How much snow lies on what faces up: 0 none, 1 all covered."""
+    """Snow on surfaces that face up: 0 none, 1 fully covered."""
     luminosity: float = 1.0
-    """The original's of this weather's sky and of its sun: what settings of the light refer to."""
+    """Luminosity of sky and sun in the original's weather, the reference of the light settings."""
     lamps: float = 0.0
-    """How far street lamps and the lights of vehicles are on: 0 off, 1 on."""
+    """Brightness of street lamps and vehicle lights: 0 off, 1 on."""
     windows: float = 0.0
-    """Share of the windows behind which there is light."""
+    """Share of the windows that are lit."""
     clouds: float = 0.0
     """Share of the sky that clouds cover."""
     flakes: float = 0.0
-    """How thick snow falls: 0 none, 1 a heavy fall."""
+    """Density of falling snow: 0 none, 1 heavy snowfall."""

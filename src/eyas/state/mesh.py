@@ -1,4 +1,4 @@
-"""Triangles and what they are made of."""
+"""Triangle meshes and their materials."""
 
 from dataclasses import dataclass
 from enum import IntEnum
@@ -10,7 +10,7 @@ __all__ = ["Material", "Mesh", "Surface"]
 
 
 class Surface(IntEnum):
-    """How light meets a material."""
+    """How a material reflects or emits light."""
 
     MATT = 0
     """Plain diffuse."""
@@ -19,34 +19,34 @@ class Surface(IntEnum):
     GLASS = 2
     """Reflects the sky."""
     FOLIAGE = 3
-    """Leaves: holes where the texture's alpha is low, lit from both sides."""
+    """Leaves: lit from both sides, with holes where the texture's alpha is low."""
     FACADE = 4
-    """A wall with windows: where the texture's alpha is low there is glass."""
+    """A wall with windows: glass where the texture's alpha is low."""
     WATER = 5
     """Reflects the sky, with small waves."""
     LAMP = 6
-    """Emits its own light by `emission` when the weather has lamps on."""
+    """Emits light (`emission`) when the weather has its lamps on."""
     CROWN = 7
-    """What is behind leaves: matt. It throws no shadow of its own; the leaves in front do."""
+    """Inside of a tree's crown: matt, and casts no shadow; the leaves in front of it do."""
 
 
 @dataclass(frozen=True, slots=True)
 class Material:
-    """What a triangle is made of."""
+    """Material of a triangle."""
 
     texture: str = "plain"
-    """Name of a texture of `eyas.world.build.materials.TEXTURES`; `plain` is white."""
+    """Name of a texture in `eyas.world.build.materials.TEXTURES`; `plain` is white."""
     tint: tuple[float, float, float] = (1.0, 1.0, 1.0)
     """Factor on the texture, sRGB, each 0 to 1."""
     surface: Surface = Surface.MATT
-    """How light meets it."""
+    """How it reflects or emits light."""
     emission: float = 0.0
-    """Own light, as a factor on the colour."""
+    """Emitted light, as a factor on the colour."""
 
 
 @dataclass(slots=True)
 class Mesh:
-    """Triangles, counter-clockwise seen from outside. V vertices, T triangles."""
+    """Triangles, counter-clockwise as seen from outside. V vertices, T triangles."""
 
     positions: NDArray[np.float32]
     """Vertices [m], shape (V, 3)."""

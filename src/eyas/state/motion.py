@@ -1,4 +1,4 @@
-"""The motion of everything that moves by itself: one table, whoever fills it."""
+"""The motion of all actors: one table, independent of its source."""
 
 from collections.abc import Sequence
 from typing import Final, NamedTuple
@@ -26,44 +26,44 @@ SAMPLE: Final = np.dtype(
 )
 """One actor at one instant.
 
-x, y, z: reference point on the road, world frame [m]; velocity: its change [m/s]; yaw: heading,
-counter-clockwise from east, without jumps at ±180° [rad]; yaw_rate [rad/s]; slope: pitch of the
-road along the heading, positive up [rad]; travelled: path length on the map since the first sample
-[m]; present: 1 while the actor is in the world, else 0.
+x, y, z: reference point on the road, world frame [m]; velocity_x, velocity_y, velocity_z: its
+velocity [m/s]; yaw: heading, counter-clockwise from east, without jumps at ±180° [rad]; yaw_rate
+[rad/s]; slope: pitch of the road along the heading, positive up [rad]; travelled: horizontal path
+length since the first sample [m]; present: 1 while the actor is in the world, else 0.
 
 32 bits keep positions to 0.03 mm and halve the memory that each world's step touches.
 """
 
 
 class Motion(NamedTuple):
-    """Sampled motion of A actors: what kernels interpolate (`eyas.traffic.interpolation`)."""
+    """Sampled motion of A actors, interpolated by kernels (`eyas.traffic.interpolation`)."""
 
     table: NDArray[np.void]
-    """Of dtype `SAMPLE`, shape (S, A), at least two samples."""
+    """Samples of dtype `SAMPLE`, shape (S, A), S at least 2."""
     kind: NDArray[np.int32]
-    """What each actor is: index into `eyas.targets.catalogue.KINDS`, shape (A,)."""
+    """Kind of each actor: index into `eyas.targets.catalogue.KINDS`, shape (A,)."""
     rate: float
-    """Samples in a second [Hz]."""
+    """Samples per second [Hz]."""
     first_time: float
     """Time of sample 0 [s]; 0 for a recording, later for traffic that is simulated live."""
 
 
 class ActorState(NamedTuple):
-    """A actors in each of W worlds."""
+    """State of A actors in each of W worlds."""
 
     position: NDArray[np.float64]
-    """Reference point on the road: of a vehicle the middle of its SUMO length, world frame [m],
+    """Reference point on the road, for a vehicle the middle of its SUMO length, world frame [m],
     shape (W, A, 3)."""
     yaw: NDArray[np.float64]
     """Heading, counter-clockwise from east [rad], shape (W, A)."""
     slope: NDArray[np.float64]
     """Pitch of the road along the heading, positive up [rad], shape (W, A)."""
     speed: NDArray[np.float64]
-    """On the map [m/s], shape (W, A)."""
+    """Horizontal speed [m/s], shape (W, A)."""
     yaw_rate: NDArray[np.float64]
     """[rad/s], shape (W, A)."""
     travelled: NDArray[np.float64]
-    """Path length since the motion began, which turns the wheels [m], shape (W, A)."""
+    """Path length since the motion began [m], shape (W, A); it gives the rotation of wheels."""
     present: NDArray[np.bool_]
     """Whether the actor is in the world, shape (W, A)."""
 
@@ -87,10 +87,10 @@ class ActorState(NamedTuple):
 
 
 def joined(motions: Sequence[Motion]) -> Motion:
-    """Return the actors of several motions in one, in that order.
+    """Return one motion with the actors of several, in order.
 
     Args:
-        motions: At least one, all with the same samples: rate, first time and number.
+        motions: At least one motion, all with the same rate, first time and number of samples.
 
     Raises:
         ValueError: Their samples are not at the same times.

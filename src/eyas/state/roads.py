@@ -1,4 +1,4 @@
-"""Roads: the plain graph a recipe draws, and the network that SUMO's netconvert makes of it."""
+"""Roads: the graph that a recipe draws, and the network that SUMO's netconvert builds from it."""
 
 from dataclasses import dataclass
 
@@ -39,7 +39,7 @@ class RoadEdge:
 
 @dataclass(frozen=True, slots=True)
 class RoadGraph:
-    """What a map recipe draws: the input of SUMO's netconvert."""
+    """The road graph that a map recipe draws: the input of SUMO's netconvert."""
 
     map_name: str
     seed: int
@@ -49,14 +49,14 @@ class RoadGraph:
 
 @dataclass(slots=True)
 class RoadNetwork:
-    """Processed roads, world frame, z = 0. L lanes, P lane points, J junctions, Q their corners."""
+    """Roads in the world frame, z = 0. L lanes with P points, J junctions with Q corners."""
 
     graph_hash: str
     """Hash of the road graph it was built from."""
     builder: str
-    """What built it, for example `netconvert 1.28.0`."""
+    """Program and version that built it, for example `netconvert 1.28.0`."""
     lane_points: NDArray[np.float64]
-    """Centre lines of the lanes, one after the other [m], shape (P, 2)."""
+    """Centre lines of the lanes, concatenated [m], shape (P, 2)."""
     lane_first: NDArray[np.int32]
     """Start of each lane in `lane_points`, shape (L + 1,)."""
     lane_width: NDArray[np.float64]
@@ -74,7 +74,7 @@ class RoadNetwork:
     edge_end: tuple[str, ...]
     """Node each edge reaches."""
     junction_points: NDArray[np.float64]
-    """Corners of the junction polygons, one after the other [m], shape (Q, 2)."""
+    """Corners of the junction polygons, concatenated [m], shape (Q, 2)."""
     junction_first: NDArray[np.int32]
     """Start of each polygon in `junction_points`, shape (J + 1,)."""
     junctions: tuple[str, ...]

@@ -1,4 +1,4 @@
-"""The world that stands still, as plain arrays."""
+"""The static world, as plain arrays."""
 
 from dataclasses import dataclass, field
 from enum import IntEnum
@@ -22,14 +22,14 @@ __all__ = [
 ]
 
 SKY_OBJECT = -1
-"""Object id of a pixel that shows nothing."""
+"""Object id of a pixel that shows the sky."""
 
 ACTOR_OBJECT = 1 << 16
-"""Object id of actor 0; actor a has `ACTOR_OBJECT + a`. Smaller ids are the scene's objects."""
+"""Object id of actor 0; actor a has `ACTOR_OBJECT + a`. Smaller ids are objects of the scene."""
 
 
 class ObjectClass(IntEnum):
-    """What an object is; the values of `Picture.class_id`."""
+    """Class of an object; the values of `Picture.class_id`."""
 
     GROUND = 0
     ROAD = 1
@@ -41,14 +41,14 @@ class ObjectClass(IntEnum):
     POLE = 7
     WATER = 8
     CAR = 9
-    """This and the other classes of movers are of actors, not of objects of the scene."""
+    """Only actors have this class and the other classes of movers."""
     SKY = 10
-    """Nothing."""
+    """No object."""
     TRUCK = 11
-    """With its trailer."""
+    """A truck, including its trailer."""
     BUS = 12
     MOTORCYCLE = 13
-    """With its rider."""
+    """A motorcycle, including its rider."""
     PERSON = 14
     ROBOT = 15
 
@@ -58,15 +58,15 @@ class Fixtures:
     """Copies of a few meshes that stand in the world (trees, poles). F copies."""
 
     levels: tuple[tuple[Mesh, ...], ...]
-    """For each prototype its meshes, the finest first."""
+    """Meshes of each prototype, the finest first."""
     prototype: NDArray[np.int32]
-    """Which prototype, shape (F,)."""
+    """Prototype of each copy, shape (F,)."""
     pose: NDArray[np.float32]
     """Rotation times scale, and translation [m], shape (F, 3, 4)."""
     object_id: NDArray[np.int32]
     """Object of the scene, shape (F,)."""
     names: tuple[str, ...] = ()
-    """Name of each prototype, for people and for tests; nothing draws by it."""
+    """Name of each prototype, for people and tests; drawing does not use it."""
 
 
 @dataclass(slots=True)
@@ -97,26 +97,26 @@ class Colliders:
 
 @dataclass(slots=True)
 class Lamps:
-    """Street lamps: spots that shine when the weather has them on. L lamps."""
+    """Street lamps: spotlights that shine when the weather has them on. L lamps."""
 
     position: NDArray[np.float32]
-    """Of the light [m], shape (L, 3)."""
+    """Position of the light [m], shape (L, 3)."""
     axis: NDArray[np.float32]
     """Unit vectors along the middle of the beams, shape (L, 3)."""
     intensity: float = 30.0
-    """As the original's: its sun has 2.7, its lamps fall off with the square of metres."""
+    """Intensity in the original's unit (its sun has 2.7), per squared distance in metres."""
     cut_off: float = 1.4
-    """Angle off the axis at which a beam ends [rad]."""
+    """Angle from the axis at which a beam ends [rad]."""
 
     @classmethod
     def none(cls) -> "Lamps":
-        """Return no lamps."""
+        """Return an empty set of lamps."""
         return cls(np.zeros((0, 3), np.float32), np.zeros((0, 3), np.float32))
 
 
 @dataclass(slots=True)
 class Scene:
-    """Everything of a map that stands still. T static triangles, O objects."""
+    """Everything static on a map. T static triangles, O objects."""
 
     name: str
     """Name of the map."""
@@ -125,7 +125,7 @@ class Scene:
     size: tuple[float, float]
     """Extent of the floor, centred on the origin [m]."""
     terrain: Terrain
-    """Height of the ground; roads and everything built on it rise with it."""
+    """Height of the ground; roads and buildings follow it."""
     static: Mesh
     """World-space triangles."""
     static_object: NDArray[np.int32]
@@ -141,11 +141,11 @@ class Scene:
     lamps: Lamps = field(default_factory=Lamps.none)
     """Street lamps."""
     horizon: Horizon = field(default_factory=Horizon)
-    """Hills all round the map, far beyond its edge."""
+    """Hills all around the map, far beyond its edge."""
 
     @classmethod
     def empty(cls) -> "Scene":
-        """Return a scene of nothing; its floor is 100 m wide, at z = 0."""
+        """Return a scene without objects; its floor is 100 m wide, at z = 0."""
         none, flat, ids = np.zeros(0), np.zeros((0, 2)), np.zeros(0, np.int32)
         first = np.zeros(1, np.int32)
         return cls(

@@ -1,7 +1,7 @@
 """The state of a simulation, as one record of arrays that kernels, rewards and writers read.
 
-Every array has a leading axis of N trackers. The simulation writes in place; `Snapshot.copy` gives
-one that stays as it is.
+Every array has a leading axis of N trackers. The simulation writes in place; `Snapshot.copy`
+returns a record that later steps do not change.
 """
 
 from copy import deepcopy
@@ -23,7 +23,7 @@ Integers = NDArray[np.int64]
 
 
 class TrackerState(NamedTuple):
-    """N trackers, world frame (east, north, up)."""
+    """State of N trackers, world frame (east, north, up)."""
 
     position: Floats
     """Centre of the body [m], shape (N, 3)."""
@@ -38,9 +38,9 @@ class TrackerState(NamedTuple):
     angular_velocity: Floats
     """Body frame [rad/s], shape (N, 3)."""
     commanded_position: Floats
-    """Where the commands integrate to [m], shape (N, 3)."""
+    """Integral of the commanded velocities [m], shape (N, 3)."""
     commanded_yaw: Floats
-    """What the commanded yaw rates add up to, not wrapped [rad], shape (N,)."""
+    """Integral of the commanded yaw rates, not wrapped [rad], shape (N,)."""
     gimbal: Floats
     """Roll, pitch, yaw of the gimbal's joints [rad], shape (N, 3)."""
     commanded_gimbal: Floats
@@ -68,7 +68,7 @@ class TrackerState(NamedTuple):
 
 
 class CameraState(NamedTuple):
-    """N cameras."""
+    """State of N cameras."""
 
     position: Floats
     """Optical centre, world frame [m], shape (N, 3)."""
@@ -85,30 +85,30 @@ class TargetState(NamedTuple):
     """The targets of N trackers."""
 
     actor: NDArray[np.int32]
-    """Which actor of the tracker's world, -1 before the first reset, shape (N,)."""
+    """Actor of the tracker's world, -1 before the first reset, shape (N,)."""
     model: NDArray[np.int32]
     """Index into `eyas.targets.catalogue.MODELS`, shape (N,)."""
     size: Floats
     """Length, width, height [m], shape (N, 3)."""
     rise: Floats
-    """Height of the reference point over the road [m], shape (N,)."""
+    """Height of the reference point above the road [m], shape (N,)."""
     ahead: Floats
-    """How far the centre lies ahead of the reference point [m], shape (N,)."""
+    """Distance of the centre ahead of the reference point [m], shape (N,)."""
     position: Floats
-    """Reference point: middle of its SUMO length, z the wheel radius over the road [m],
+    """Reference point: middle of the SUMO length, one wheel radius above the road [m],
     shape (N, 3)."""
     yaw: Floats
     """Heading, counter-clockwise from east [rad], shape (N,)."""
     speed: Floats
     """[m/s], shape (N,)."""
     centre: Floats
-    """The point that the reward looks for [m], shape (N, 3): the visible middle of the target."""
+    """Visible middle of the target, the point that the reward uses [m], shape (N, 3)."""
     lost: NDArray[np.bool_]
-    """The target has left the world; stays true until the next reset, shape (N,)."""
+    """Whether the target has left the world since the last reset, shape (N,)."""
 
     @classmethod
     def create(cls, count: int) -> "TargetState":
-        """Return targets at the origin that stand for no actor yet."""
+        """Return targets at the origin that belong to no actor yet."""
         return cls(
             actor=np.full(count, -1, np.int32),
             model=np.zeros(count, np.int32),
@@ -124,35 +124,35 @@ class TargetState(NamedTuple):
 
 
 class EpisodeState(NamedTuple):
-    """The episodes of N trackers: what the task knows and says."""
+    """The episodes of N trackers: state and results of the task."""
 
     number: Integers
-    """Of the episode, from 0; -1 before the first reset, shape (N,)."""
+    """Number of the episode, from 0; -1 before the first reset, shape (N,)."""
     tick: Integers
     """Time in the traffic, in physics steps of 2 ms, shape (N,)."""
     step_count: Integers
-    """2 ms steps since the reset, shape (N,)."""
+    """Physics steps since the reset, shape (N,)."""
     no_reward_count: Integers
-    """2 ms steps since there was a reward, shape (N,)."""
+    """Physics steps since the last reward, shape (N,)."""
     reward: Floats
     """The built-in reward of this instant, shape (N,)."""
     reason: Integers
     """`eyas.task.done.DoneReason`, 0 while the episode goes on, shape (N,)."""
     breach: Integers
-    """`DoneReason` of the limit that the body breaks now, whether or not it ends the episode,
+    """`DoneReason` of the limit that the body violates now, whether or not it ends the episode,
     shape (N,)."""
     not_a_number: NDArray[np.bool_]
-    """A value has not been a finite number, shape (N,)."""
+    """Whether a value was not a finite number, shape (N,)."""
     direction: Integers
     """`eyas.task.direction.TargetDirection`, shape (N,)."""
     observations: Integers
-    """How often the target has been observed since the reset, at most 3, shape (N,)."""
+    """Observations of the target since the reset, counted up to 3, shape (N,)."""
     start_offset: Floats
     """Start relative to the target: forward, left, up [m], heading [rad], shape (N, 4)."""
     view_centre: Floats
-    """Ground point that the camera looks at, or the one below it [m], shape (N, 3)."""
+    """Ground point that the camera looks at, or the point below it [m], shape (N, 3)."""
     last_target: Floats
-    """Where the target was a step ago: east, north [m] and heading [rad], shape (N, 3)."""
+    """Target one step ago: east, north [m] and heading [rad], shape (N, 3)."""
     relative_position: Floats
     """The target's centre in the tracker's body frame [m], shape (N, 3)."""
     relative_velocity: Floats
@@ -190,7 +190,7 @@ class EpisodeState(NamedTuple):
 
 
 class Snapshot(NamedTuple):
-    """Everything that is known of N trackers at one instant."""
+    """The complete state of N trackers at one instant."""
 
     trackers: TrackerState
     cameras: CameraState
@@ -212,5 +212,5 @@ class Snapshot(NamedTuple):
         )
 
     def copy(self) -> "Snapshot":
-        """Return a snapshot that later steps leave alone."""
+        """Return a snapshot that later steps do not change."""
         return deepcopy(self)

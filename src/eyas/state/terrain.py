@@ -1,4 +1,4 @@
-"""The height of the ground, as data that kernels read."""
+"""The height of the ground, in a form that kernels read."""
 
 from typing import NamedTuple
 
@@ -20,16 +20,16 @@ __all__ = [
 
 
 class Terrain(NamedTuple):
-    """The ground of a map: a floor, and the relief that rises from it.
+    """The ground of a map: a floor, and a relief above it.
 
-    Roads and everything built on the ground rise with the relief. A map without hills has an empty
-    raster, and asking for its height costs one comparison.
+    Roads and buildings follow the relief. A map without hills has an empty raster, and reading its
+    height costs one comparison.
     """
 
     floor: float
     """z of the floor, where the relief is 0 [m]."""
     relief: NDArray[np.float32]
-    """Height over the floor at the points of a square grid [m], row 0 in the south, column 0 in
+    """Height above the floor at the points of a square grid [m], row 0 in the south, column 0 in
     the west, shape (R, C), at least (2, 2); (0, 0) for a flat map."""
     west: float
     """East coordinate of column 0 [m]."""
@@ -40,7 +40,7 @@ class Terrain(NamedTuple):
 
     @classmethod
     def flat(cls, floor: float) -> "Terrain":
-        """Return a plane at a height [m]."""
+        """Return a flat terrain at a height [m]."""
         return cls(float(floor), np.zeros((0, 0), np.float32), 0.0, 0.0, 1.0)
 
 
@@ -54,20 +54,20 @@ class Plane(NamedTuple):
     z: float
     """Height of the ground there [m]."""
     rise_east: float
-    """How much the plane rises for each metre east."""
+    """Rise of the plane per metre east."""
     rise_north: float
-    """How much the plane rises for each metre north."""
+    """Rise of the plane per metre north."""
 
 
 def reliefs(terrain: Terrain, points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the height over the floor at points, as `relief_at` does.
+    """Return the height above the floor at points, as `relief_at` does.
 
     Args:
         terrain: The ground.
         points: East and north [m], shape (..., 2).
 
     Returns:
-        [m], shape (...).
+        Heights [m], shape (...).
     """
     raster = terrain.relief
     if raster.size == 0:
@@ -85,9 +85,9 @@ def reliefs(terrain: Terrain, points: NDArray[np.float64]) -> NDArray[np.float64
 
 @kernel
 def relief_at(terrain: Terrain, x: float, y: float) -> float:
-    """Return the height over the floor at a point [m], linear between the points of the grid.
+    """Return the height above the floor at a point [m], linear between the points of the grid.
 
-    Beyond the raster the height of its edge goes on.
+    Beyond the raster, the height of its nearest edge applies.
 
     Args:
         terrain: The ground.
@@ -111,7 +111,7 @@ def ground_at(terrain: Terrain, x: float, y: float) -> float:
 
 @kernel
 def slope_at(terrain: Terrain, x: float, y: float) -> tuple[float, float]:
-    """Return how much the ground rises for each metre east and north; 0 beyond the raster."""
+    """Return the rise of the ground per metre east and per metre north; 0 beyond the raster."""
     if terrain.relief.shape[0] == 0:
         return 0.0, 0.0
     row, column, up, across = _cell(terrain, x, y)
@@ -129,7 +129,7 @@ def slope_at(terrain: Terrain, x: float, y: float) -> tuple[float, float]:
 
 @kernel
 def _cell(terrain: Terrain, x: float, y: float) -> tuple[int, int, float, float]:
-    """Return row and column of the grid's square around a point, and the point's place in it."""
+    """Return row and column of the grid cell around a point, and its place in the cell, 0 to 1."""
     rows, columns = terrain.relief.shape
     across = min(max((x - terrain.west) / terrain.spacing, 0.0), float(columns - 1))
     up = min(max((y - terrain.south) / terrain.spacing, 0.0), float(rows - 1))
@@ -146,5 +146,5 @@ def plane_at(terrain: Terrain, x: float, y: float) -> Plane:
 
 @kernel
 def height_over(plane: Plane, x: float, y: float, z: float) -> float:
-    """Return how far above a plane a point is, measured vertically [m]."""
+    """Return the vertical height of a point above a plane [m]."""
     return z - plane.z - (plane.rise_east * (x - plane.x) + plane.rise_north * (y - plane.y))

@@ -1,1 +1,1 @@
-"""What may be followed: the catalogue of vehicles, their shapes and sizes."""
+"""Targets: the catalogue of their kinds and models, with shapes and sizes."""

@@ -9,14 +9,14 @@ from eyas.targets.vehicles.kinds import VEHICLE_KINDS
 __all__ = ["KINDS", "MODELS", "kind_index", "kind_of", "model_index", "models_of", "register"]
 
 KINDS: list[Kind] = []
-"""All kinds. The index into this table is what the other rooms call `kind`."""
+"""All kinds. In the other rooms, `kind` is the index into this table."""
 
 MODELS: list[Model] = []
-"""All models, kind by kind. The index into this table is what the other rooms call `model`."""
+"""All models, kind by kind. In the other rooms, `model` is the index into this table."""
 
 
 def register(kind: Kind) -> None:
-    """Add a kind and its models; those that are there keep their indices.
+    """Add a kind and its models; existing ones keep their indices.
 
     Raises:
         ValueError: A name is taken, or a model belongs to another kind.

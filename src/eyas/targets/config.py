@@ -12,7 +12,7 @@ __all__ = ["ObjectsConfig", "TargetName"]
 
 
 class TargetName(StrEnum):
-    """What can be followed, as the original's `Tracking_Object` names it."""
+    """Types of targets, with the names of the original's `Tracking_Object`."""
 
     SUMO_VEHICLE = "SUMO_VEHICLE"
     PEDESTRIAN = "Pedestrian"
@@ -33,10 +33,10 @@ Offset = Annotated[Variation, AfterValidator(within(-1e4, 1e4))]
 
 
 class ObjectsConfig(Config):
-    """How targets other than vehicles are placed; the original's `Other_Params`."""
+    """Placement of targets other than vehicles; the original's `Other_Params`."""
 
     max_count: Annotated[int, Field(ge=1, le=1000)] = 10
-    """Most objects at a time."""
+    """Largest number of objects at a time."""
     interval: Annotated[float, Field(gt=0, le=3600)] = 0.5
     """Time between groups [s]."""
     group_size: Annotated[int, Field(ge=1, le=1000)] = 4

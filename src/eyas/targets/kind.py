@@ -1,4 +1,4 @@
-"""What the other rooms know of a kind of target, and what each kind brings along."""
+"""Interface between a kind of target and the other rooms."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -38,17 +38,17 @@ class Model(Protocol):
 
     @property
     def rise(self) -> float:
-        """Height of the reference point over the road [m]."""
+        """Height of the reference point above the road [m]."""
         ...
 
 
 class Group(NamedTuple):
-    """The G actors of one kind, and where they are in a draw list."""
+    """The G actors of one kind, and their slots in a draw list."""
 
     actor: NDArray[np.int64]
-    """Which actors, shape (G,)."""
+    """Indices of the actors, shape (G,)."""
     slot: NDArray[np.int64]
-    """The first slot of each, shape (G,); it has as many as its kind needs."""
+    """First slot of each actor, shape (G,); `Rig.slots` is the number of its slots."""
     first_part: int
     """Index of the kind's first part in the part library."""
     first_model: int
@@ -59,7 +59,7 @@ class Looks(NamedTuple):
     """Models and colours of A actors in each of W worlds."""
 
     model: NDArray[np.int32]
-    """Index into `eyas.targets.catalogue.MODELS`, of the actor's kind, shape (W, A)."""
+    """Index into `eyas.targets.catalogue.MODELS`, shape (W, A); a model of the actor's kind."""
     colour: NDArray[np.float32]
     """Body colours, sRGB 0 to 1, shape (W, A, 3)."""
 
@@ -69,12 +69,12 @@ class Rig(Protocol):
 
     @property
     def slots(self) -> int:
-        """Slots of the draw list that an actor needs, whatever its model."""
+        """Number of draw list slots that each actor needs, the same for all models."""
         ...
 
     @property
     def part_count(self) -> int:
-        """Number of parts of all models."""
+        """Total number of parts of all models."""
         ...
 
     def part_levels(self) -> Sequence[tuple[Mesh, ...]]:
@@ -84,29 +84,28 @@ class Rig(Protocol):
     def pose(self, group: Group, actors: ActorState, looks: Looks, out: DrawList) -> None:
         """Write part, pose and colour of all slots of the kind's actors, in all worlds.
 
-        A slot that is not used, or whose actor is absent, gets part -1.
+        Unused slots and slots of absent actors get part -1.
         """
         ...
 
 
 @dataclass(frozen=True, slots=True)
 class Kind:
-    """A kind of target: all that tells it from other kinds."""
+    """A kind of target: everything that distinguishes it from other kinds."""
 
     name: str
-    """Of vehicles SUMO's class."""
+    """Name of the kind; for vehicles SUMO's class."""
     models: tuple[Model, ...]
-    """At least one."""
+    """At least one model."""
     colours: tuple[Colour, ...]
-    """Of which each actor has one."""
+    """Body colours to draw from for each actor."""
     object_class: ObjectClass
-    """What its pixels are."""
+    """Class of its pixels."""
     rig: Callable[[], Rig]
     """Returns the rig of all its models."""
     ahead: float = 0.0
-    """How far the middle, which is what the reward looks for, lies ahead of the reference point
-    [m]."""
+    """Distance of the middle, the point that the reward uses, ahead of the reference point [m]."""
     lamps: bool = False
     """Whether it has head and tail lamps that light the road."""
     keeps_colours: bool = False
-    """Whether `traffic.colour` leaves its colours alone, as the original does for motorcycles."""
+    """Whether `traffic.colour` does not change its colours, as for the original's motorcycles."""

@@ -1,4 +1,4 @@
-"""Which model and which colour each actor has."""
+"""Random choice of a model and a colour for each actor."""
 
 from typing import NamedTuple
 
@@ -12,24 +12,25 @@ __all__ = ["LookSampler"]
 
 
 class _Choice(NamedTuple):
-    """What the actors of one kind may look like."""
+    """Possible looks of the actors of one kind."""
 
     actors: NDArray[np.intp]
-    """Which, shape (G,)."""
+    """Indices of the actors, shape (G,)."""
     models: NDArray[np.int32]
-    """Of the kind, index into `MODELS`."""
+    """Models of the kind, as indices into `MODELS`."""
     colours: NDArray[np.float32]
-    """To draw from, sRGB 0 to 1, shape (., 3)."""
+    """Colours to draw from, sRGB 0 to 1, shape (., 3)."""
     fixed: Colour | None
-    """Colour of all of them, or None."""
+    """Colour of all actors; None: drawn."""
 
 
 class LookSampler:
     """Draws the looks of A actors.
 
     Args:
-        kind: What each actor is, index into `KINDS`, shape (A,).
-        colour: Colour of all, sRGB 0 to 1, but of kinds that keep their colours; None: drawn.
+        kind: Kind of each actor, index into `KINDS`, shape (A,).
+        colour: Colour of all actors except those of kinds that keep their colours, sRGB 0 to 1;
+            None: drawn.
     """
 
     def __init__(self, kind: NDArray[np.int32], colour: Colour | None = None) -> None:
@@ -45,13 +46,13 @@ class LookSampler:
         ]
 
     def sample(self, rng: np.random.Generator) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
-        """Draw model and colour of each actor, kind by kind.
+        """Draw the model and colour of each actor, kind by kind.
 
-        The model is uniform among those of the kind, the colour among the kind's colours. The
-        same draws are made whether or not the colour is fixed, so fixing it changes no model.
+        Both are uniform, over the models and over the colours of the kind. The same draws are made
+        whether or not the colour is fixed, so fixing it changes no model.
 
         Args:
-            rng: Stream of this room.
+            rng: Random stream of this room.
 
         Returns:
             Index into `MODELS`, shape (A,), and sRGB colour, shape (A, 3).

@@ -1,4 +1,4 @@
-"""Rigs: where the parts of all actors are, kind by kind."""
+"""Rigs: the poses of the parts of all actors, kind by kind."""
 
 from typing import NamedTuple
 
@@ -16,21 +16,21 @@ __all__ = ["Rigs", "part_library"]
 
 
 class _Cast(NamedTuple):
-    """The actors of one kind, and what poses them."""
+    """The actors of one kind, and the rig that poses them."""
 
     rig: Rig
     group: Group
 
 
 class Rigs:
-    """Poses the actors of a world: each has as many slots of a draw list as its kind needs.
+    """Poses the actors of a world; each has as many slots of a draw list as its kind needs.
 
     Attributes:
-        kinds: The kinds that are there, in the order of their parts in the library.
-        first_slot: Where each actor's slots begin, and the number of all, shape (A + 1,).
+        kinds: The kinds of the actors, in the order of their parts in the library.
+        first_slot: First slot of each actor, and the number of all slots, shape (A + 1,).
 
     Args:
-        kind: What each actor is, index into `KINDS`, shape (A,).
+        kind: Kind of each actor, index into `KINDS`, shape (A,).
     """
 
     def __init__(self, kind: NDArray[np.int32]) -> None:
@@ -61,16 +61,16 @@ class Rigs:
         """Fill a draw list in place.
 
         Args:
-            actors: A actors in each of W worlds.
-            looks: Of the same actors.
-            out: From `draw_list`.
+            actors: State of A actors in each of W worlds.
+            looks: Models and colours of the same actors.
+            out: A draw list from `draw_list`.
         """
         for rig, group in self._casts:
             rig.pose(group, actors, looks, out)
 
 
 def part_library(kinds: tuple[Kind, ...]) -> PartLibrary:
-    """Return the parts of some kinds, as `Rigs` counts them."""
+    """Return the parts of some kinds, in the order that `Rigs` uses."""
     parts: list[tuple[Mesh, ...]] = []
     lamps: list[bool] = []
     for kind in kinds:

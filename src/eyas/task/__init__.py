@@ -1,1 +1,1 @@
-"""What is asked: start poses, rewards, done reasons, direction, packets."""
+"""The task: start poses, rewards, done reasons, direction, packets."""

@@ -1,4 +1,4 @@
-"""Which way the target goes."""
+"""Direction of the target's motion."""
 
 import math
 from enum import IntEnum
@@ -11,11 +11,11 @@ __all__ = ["TargetDirection", "target_centre", "target_direction"]
 _TURNING = 1e-4
 """Change of heading in 2 ms above which the target turns [rad]."""
 _MOVING = 1e-3
-"""Way in 2 ms from which on the target moves [m]."""
+"""Smallest distance in 2 ms at which the target moves [m]."""
 
 
 class TargetDirection(IntEnum):
-    """Which way the target goes; the original's `carDir`."""
+    """Direction of the target's motion; the original's `carDir`."""
 
     STOP = 0
     STRAIGHT = 1
@@ -31,14 +31,14 @@ _LEFT, _RIGHT = int(TargetDirection.LEFT), int(TargetDirection.RIGHT)
 def target_direction(dx: float, dy: float, yaw: float, last_yaw: float) -> int:
     """Return the `TargetDirection` of one 2 ms step.
 
-    By the true sense of the turn; the original drops the sign of its rotation axis and so swaps
-    left and right for half of all headings.
+    Left and right follow the true turn; the original ignores the sign of its rotation axis and so
+    swaps them for half of all headings.
 
     Args:
-        dx: Way east [m].
-        dy: Way north [m].
+        dx: Motion east [m].
+        dy: Motion north [m].
         yaw: Heading [rad].
-        last_yaw: Heading a step ago [rad].
+        last_yaw: Heading one step ago [rad].
     """
     turn = wrap_angle(yaw - last_yaw)
     if turn > _TURNING:
@@ -50,12 +50,12 @@ def target_direction(dx: float, dy: float, yaw: float, last_yaw: float) -> int:
 
 @kernel
 def target_centre(x: float, y: float, yaw: float, ahead: float) -> tuple[float, float]:
-    """Return the point that the reward looks for, east and north [m].
+    """Return the point that the reward uses, east and north [m].
 
     Args:
         x: Reference point of the target, east [m].
         y: Reference point of the target, north [m].
         yaw: Heading of the target [rad].
-        ahead: How far the point lies ahead of it, see `eyas.targets.kind.Kind` [m].
+        ahead: Distance of the point ahead of the reference point, see `eyas.targets.kind.Kind` [m].
     """
     return x + ahead * math.cos(yaw), y + ahead * math.sin(yaw)

@@ -1,4 +1,4 @@
-"""When and why an episode ends."""
+"""The end of an episode and its reason."""
 
 import math
 from enum import IntEnum
@@ -27,12 +27,12 @@ class DoneReason(IntEnum):
 
     @property
     def sentence(self) -> str:
-        """For a person."""
+        """The reason as an English sentence."""
         return _SENTENCES[self]
 
     @property
     def original(self) -> str:
-        """What the original prints as its `doneState`; it has words for limits of the body only."""
+        """The original's `doneState`; only limits of the body have one, others give `none`."""
         return _ORIGINALS.get(self, "none")
 
 
@@ -72,10 +72,10 @@ _STEP_LIMIT, _NOT_A_NUMBER = int(DoneReason.STEP_LIMIT), int(DoneReason.NOT_A_NU
 
 @step_kernel
 def broken_limit(trackers: TrackerState, n: int, terrain: Terrain, rules: Rules) -> int:
-    """Return the `DoneReason` of the first limit that body `n` breaks, or `NONE`.
+    """Return the `DoneReason` of the first limit that body `n` violates, or `NONE`.
 
-    Heights are those over the roads: over z = 0 on flat land, as in the original, and over the
-    relief below the body on hills.
+    Heights are measured above z = 0 on flat land, as in the original, and above the relief below
+    the body on hills; roads have these heights.
     """
     position, commanded = trackers.position[n], trackers.commanded_position[n]
     velocity, euler = trackers.velocity[n], trackers.euler[n]
@@ -104,12 +104,12 @@ def judge(
     terrain: Terrain,
     rules: Rules,
 ) -> int:
-    """Count one physics step of tracker `n`, and return its `DoneReason`; after `observe`.
+    """Count one physics step of tracker `n` and return its `DoneReason`; call after `observe`.
 
-    The order is the original's: limits of the body, lost target, no reward, number of steps, all
-    masked while the episode is young; not-a-number never is. Two things are mended: a lost target
-    stays lost (the original says so for one step of 2 ms, which clients miss), and a limit that
-    is kept again is forgotten.
+    The order is the original's: limits of the body, lost target, no reward, number of steps. All
+    are ignored during the grace steps, but not-a-number never is. Two faults of the original are
+    corrected: a lost target stays lost (the original reports it for only one step of 2 ms, which
+    clients miss), and a limit that is no longer violated has no effect.
     """
     episodes.step_count[n] += 1
     episodes.breach[n] = broken_limit(trackers, n, terrain, rules)
@@ -126,7 +126,7 @@ def judge(
 
 @step_kernel
 def _total(trackers: TrackerState, targets: TargetState, episodes: EpisodeState, n: int) -> float:
-    """Return a sum that is finite if the state is; finite terms reach infinity only near 1e308."""
+    """Return a sum that is finite if the state is, unless its terms come near 1e308."""
     euler = trackers.euler[n]
     total: float = episodes.reward[n] + euler[0] + euler[1] + euler[2]
     total += trackers.angular_velocity[n, 2]
@@ -154,5 +154,5 @@ def _reason(targets: TargetState, episodes: EpisodeState, n: int, rules: Rules) 
 
 @kernel
 def is_crash(breach: int) -> bool:
-    """Return whether a broken limit is what the original calls a crash."""
+    """Return whether the original calls a violated limit a crash."""
     return breach == _DISTANCE or breach == _YAW_RATE

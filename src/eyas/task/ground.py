@@ -1,4 +1,4 @@
-"""The ground that a picture covers, to be drawn over it and to be looked at."""
+"""The ground that a picture covers, for overlays and for inspection."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,13 +22,13 @@ def ground_corners(
         position: Optical centre, world frame [m], shape (3,).
         rotation: Camera to world; columns forward, left, up, shape (3, 3).
         rules: `half_width`, `half_height` are used.
-        ground: The ground, taken for a plane.
-        reach: Depth at which the ground is cut off, if the picture shows more [m].
+        ground: The ground, approximated by a plane.
+        reach: Depth at which the ground is cut off [m].
 
     Returns:
-        Points on the ground [m], counter-clockwise seen from above, shape (K, 3): upper left, lower
-        left, lower right, upper right of the picture; up to one more where a corner is cut off,
-        and none if there is no ground to be seen.
+        Points on the ground [m], counter-clockwise as seen from above, shape (K, 3): upper left,
+        lower left, lower right, upper right of the picture; up to one more if a corner is cut off,
+        and none if no ground is visible.
     """
     centre, axes = np.asarray(position, np.float64), np.asarray(rotation, np.float64)
     height = height_over(ground, centre[0], centre[1], centre[2])
@@ -37,7 +37,7 @@ def ground_corners(
     rays = corners @ axes.T
     if height <= 0.0:
         return np.zeros((0, 3))
-    # How fast each ray nears the ground, as its height over the plane falls.
+    # Decrease of each ray's height above the plane per unit of depth.
     falling = ground.rise_east * rays[:, 0] + ground.rise_north * rays[:, 1] - rays[:, 2]
     # Positive where the ray meets the ground before `reach`; linear along the rectangle's sides.
     excess = falling - height / reach
@@ -56,7 +56,7 @@ def ground_corners(
 
 
 def on_plane(ground: Plane, points: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the points of a plane above or below points east and north, shape (K, 2) [m]."""
+    """Return the points of a plane at given points east and north, shape (K, 2) [m]."""
     offset = points - (ground.x, ground.y)
     rise = ground.rise_east * offset[:, 0] + ground.rise_north * offset[:, 1]
     return np.column_stack([points, ground.z + rise])

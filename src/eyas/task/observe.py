@@ -1,4 +1,4 @@
-"""One tracker's view of its target in one physics step: reward, direction, relative motion."""
+"""Observation of one target in one physics step: reward, direction, relative motion."""
 
 import math
 
@@ -16,7 +16,7 @@ __all__ = ["clear_episode", "observe"]
 
 @step_kernel
 def clear_episode(episodes: EpisodeState, n: int) -> None:
-    """Forget the episode before; `observe` then gives what the first observation says."""
+    """Clear the previous episode, so that the next `observe` is the first of a new one."""
     episodes.step_count[n] = 0
     episodes.no_reward_count[n] = 0
     episodes.reward[n] = 0.0
@@ -40,9 +40,9 @@ def observe(
     terrain: Terrain,
     rules: Rules,
 ) -> None:
-    """Compute what tracker `n` sees of its target; at a reset and in each physics step after.
+    """Compute tracker `n`'s observation of its target, at a reset and in each physics step.
 
-    The reward uses the plane that touches the ground under the target.
+    The reward uses the tangent plane of the ground under the target.
     """
     position, rotation = cameras.position[n], cameras.rotation[n]
     x, y = targets.centre[n, 0], targets.centre[n, 1]
@@ -73,10 +73,10 @@ def _follow_target(targets: TargetState, episodes: EpisodeState, n: int) -> None
 def _follow_relative(
     trackers: TrackerState, targets: TargetState, episodes: EpisodeState, n: int
 ) -> None:
-    """Differentiate the target's position in the turning body frame.
+    """Differentiate the target's position in the rotating body frame.
 
-    Velocity is 0 until there are two positions, acceleration until there are two velocities. (The
-    original divides its first sample by the absolute time.)
+    The velocity is 0 until there are two positions, the acceleration until there are two
+    velocities. (The original divides its first sample by the absolute time.)
     """
     position, centre = trackers.position[n], targets.centre[n]
     relative = rotate_back(

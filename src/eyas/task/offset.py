@@ -1,4 +1,4 @@
-"""Where a body is that keeps an offset from its target."""
+"""Pose of a body that keeps an offset from its target."""
 
 import math
 

@@ -1,6 +1,6 @@
-"""Fill the rows of the two packets. Their columns are named in `eyas.task.packets`.
+"""Rows of the two packets. Their columns are named in `eyas.task.packets`.
 
-Nothing is cut to six digits, as the original's text streams do.
+Numbers keep their full precision; the original's text streams round them to six digits.
 """
 
 from typing import NamedTuple
@@ -32,9 +32,9 @@ class PacketRows:
     """Packets of N trackers as rows of numbers.
 
     Args:
-        snapshot: Of N trackers; read at each call.
-        camera: Told in each reward packet.
-        terrain: Its floor is where the land frame has z = 0.
+        snapshot: State of N trackers; read at each call.
+        camera: Camera whose settings each reward packet holds.
+        terrain: Ground of the map; its floor is z = 0 of the land frame.
     """
 
     def __init__(self, snapshot: Snapshot, camera: CameraConfig, terrain: Terrain) -> None:
@@ -50,13 +50,13 @@ class PacketRows:
         self._fill = _fill_packets.bound(Held(packets))
 
     def now(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Return the basic, shape (N, 22), and the reward packets, shape (N, 60)."""
+        """Return the basic packets, shape (N, 22), and the reward packets, shape (N, 60)."""
         self._fill()
         return self._basic.copy(), self._reward.copy()
 
 
 class _Packets(NamedTuple):
-    """What the kernel reads and writes."""
+    """Inputs and outputs of the kernel."""
 
     snapshot: Snapshot
     floor: float
@@ -102,10 +102,10 @@ def _fill_reward(
     floor: float,
     row: NDArray[np.float64],
 ) -> None:
-    """Fill what changes in one reward packet.
+    """Fill the changing columns of one reward packet.
 
-    Poses and points are in the land frame, the world lifted so that the floor is z = 0, but for
-    the view centre, which is in the world frame: that is how the original has it.
+    Poses and points are in the land frame, the world raised so that the floor is z = 0, except for
+    the view centre, which is in the world frame, as in the original.
     """
     centre, rotation = targets.centre[n], cameras.rotation[n]
     row[4] = trackers.commanded_gimbal[n, 0]

@@ -6,7 +6,7 @@ orientation 4, angle 3, reward, done.
 Reward packet, 60 numbers and the name of the target's type (the original's names): cameraWidth,
 cameraHeight, Fov, focal length, pitch, trackerHeight, initDirection, T_ct 16, T_tw 16,
 cameraMidGlobalPos 3, carMidGlobalPos 3, cameraMidPos 3, carDronePosOri 4, relative velocity 3,
-relative acceleration 3, crash, carDir, typename. Its manual counts 59 and leaves out
+relative acceleration 3, crash, carDir, typename. The original's manual counts 59 numbers and omits
 initDirection.
 """
 
@@ -59,7 +59,7 @@ REWARD_FIELDS = (
     "crash",
     "target_direction",
 )
-"""Names of the columns of a reward packet; the target's type follows as a word."""
+"""Names of the columns of a reward packet; the name of the target's type follows."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,7 +69,7 @@ class BasicPacket:
     step_count: int
     """2 ms steps since the reset; the original's `t`."""
     position: Numbers
-    """Of the body, world frame [m], 3 numbers."""
+    """Centre of the body, world frame [m], 3 numbers."""
     velocity: Numbers
     """World frame [m/s], 3 numbers; the original's `linear`."""
     felt_acceleration: Numbers
@@ -110,7 +110,7 @@ class BasicPacket:
 
 @dataclass(frozen=True, slots=True)
 class RewardPacket:
-    """What a reward of one's own needs. The land frame is the world with the floor at z = 0."""
+    """Data for a user-defined reward. The land frame is the world with the floor at z = 0."""
 
     camera_width: int
     """[pixels]"""
@@ -121,9 +121,9 @@ class RewardPacket:
     focal_length: float
     """[pixels]"""
     camera_pitch: float
-    """As commanded, positive down [rad]."""
+    """Commanded pitch, positive down [rad]."""
     commanded_height: float
-    """z of the tracker as commanded [m]; the original's `trackerHeight`."""
+    """Commanded z of the tracker [m]; the original's `trackerHeight`."""
     start_direction: float
     """Heading at the start relative to the target's [rad]; the original's `initDirection`."""
     camera_pose: Numbers
@@ -131,14 +131,14 @@ class RewardPacket:
     target_pose: Numbers
     """Target to land frame at its centre, 4x4 row by row; the original's `T_tw`."""
     view_centre: Numbers
-    """Ground point in the middle of the picture, world frame [m], or the one below the camera if
+    """Ground point in the middle of the picture, world frame [m], or the point below the camera if
     there is none; the original's `cameraMidGlobalPos`."""
     target_centre: Numbers
-    """The point that is rewarded, land frame [m]; the original's `carMidGlobalPos`."""
+    """The point that the reward uses, land frame [m]; the original's `carMidGlobalPos`."""
     camera_position: Numbers
     """Optical centre, land frame [m]; the original's `cameraMidPos`."""
     relative_yaw: float
-    """Heading of the target less that of the tracker [rad]; the original's `carDronePosOri.w`."""
+    """Heading of the target minus that of the tracker [rad]; the original's `carDronePosOri.w`."""
     relative_position: Numbers
     """The target's centre in the tracker's body frame [m]; the original's `carDronePosOri`."""
     relative_velocity: Numbers
@@ -146,9 +146,9 @@ class RewardPacket:
     relative_acceleration: Numbers
     """Change of `relative_velocity` in 2 ms [m/s^2]; 0 at a reset and one step after."""
     crash: bool
-    """Whether the tracker strays too far from its commands or turns too fast."""
+    """Whether the tracker is too far from its commanded position or turns too fast."""
     target_direction: TargetDirection
-    """Which way the target goes; the original's `carDir`."""
+    """Direction of the target's motion; the original's `carDir`."""
     target_type: str
     """Name of the target's type; the original's `typename`."""
 
@@ -156,7 +156,7 @@ class RewardPacket:
 
     @classmethod
     def from_row(cls, row: NDArray[np.float64], target_type: str) -> "RewardPacket":
-        """Return the packet of a row, shape (60,), and of the name of the target's type."""
+        """Return the packet of a row, shape (60,), with the name of the target's type."""
         n = [float(number) for number in row]
         return cls(
             camera_width=int(n[0]),

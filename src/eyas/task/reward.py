@@ -1,11 +1,12 @@
 """The built-in rewards: how well the camera looks at the target.
 
-The view reward is the gauge of the ground quadrilateral that the rewarded part of the picture
-covers: 1 where the optical axis meets the ground, 0 on the edge and outside, linear between. The
-original gets it from slopes of lines on the ground and breaks on lines along y and at the horizon.
-Here each edge is the plane through the optical centre and a side of the rectangle. Height over
-that plane is affine on the ground and zero on the edge, so its share of the height of the middle
-is the same number, and there are no corners to lose.
+The view reward depends on the target's place in the ground quadrilateral that the rewarded part of
+the picture covers: a share of 1 where the optical axis meets the ground, 0 on the edges and
+outside, linear between. The original computes it from slopes of lines on the ground, which fails
+for lines along y and at the horizon. Here each edge is represented by the plane through the optical
+centre and a side of the rewarded rectangle. The distance from that plane is an affine function on
+the ground and 0 on the edge, so divided by its value in the middle it gives the same share, without
+computing the corners.
 """
 
 import math
@@ -29,7 +30,7 @@ __all__ = [
 ]
 
 _FARTHEST = 1e12
-"""A ground point farther than this along the optical axis counts as none [m]."""
+"""Largest depth of a ground point along the optical axis [m]."""
 
 _VIEW_CONTINUOUS, _VIEW_DISCRETE = (
     int(BuiltinReward.VIEW_CONTINUOUS),
@@ -42,7 +43,7 @@ _DISTANCE_CONTINUOUS = int(BuiltinReward.DISTANCE_CONTINUOUS)
 def axis_depth(
     position: NDArray[np.float64], rotation: NDArray[np.float64], ground: Plane
 ) -> float:
-    """Return how far along the optical axis the ground is [m]; 0 if the axis does not meet it.
+    """Return the depth of the ground along the optical axis [m]; 0 if they do not meet.
 
     Args:
         position: Optical centre, world frame [m], shape (3,).
@@ -77,7 +78,7 @@ def view_share(
     ground: Plane,
     rules: Rules,
 ) -> float:
-    """Return 1 for a target in the middle of the picture, 0 on the edge and outside.
+    """Return the target's share: 1 in the middle of the picture, 0 on the edge and outside.
 
     If the picture shows the horizon, the quadrilateral is open there, and the share is 1 along
     the optical axis from the middle to infinity.
@@ -85,8 +86,8 @@ def view_share(
     Args:
         position: Optical centre, world frame [m], shape (3,).
         rotation: Camera to world; columns forward, left, up, shape (3, 3).
-        depth: From `axis_depth`.
-        ground: The plane under the target, which it touches where the target is.
+        depth: Depth from `axis_depth`.
+        ground: The plane under the target; its point is the target's place.
         rules: `half_width`, `half_height` are used.
     """
     dx, dy, dz = ground.x - position[0], ground.y - position[1], ground.z - position[2]
@@ -94,7 +95,7 @@ def view_share(
     left = rotation[0, 1] * dx + rotation[1, 1] * dy + rotation[2, 1] * dz
     up = rotation[0, 2] * dx + rotation[1, 2] * dy + rotation[2, 2] * dz
     margin: float = forward - max(abs(left) / rules.half_width, abs(up) / rules.half_height)
-    # Written so that 0 / 0 and infinity - infinity, which only absurd inputs give, are no reward.
+    # The form of this condition gives no reward for NaN, which only absurd inputs produce.
     if depth > 0.0 and margin > 0.0:
         return min(margin / depth, 1.0)
     return 0.0
@@ -105,10 +106,10 @@ def reward_value(share: float, distance: float, depth: float, rules: Rules) -> f
     """Return the reward, 0 to 1; 0 if the optical axis does not meet the ground.
 
     Args:
-        share: From `view_share`.
-        distance: From the target to the ground point in the middle of the picture [m].
-        depth: From `axis_depth`.
-        rules: Which reward, and its constants.
+        share: Share from `view_share`.
+        distance: Distance from the target to the ground point in the middle of the picture [m].
+        depth: Depth from `axis_depth`.
+        rules: Type of the reward, and its constants.
     """
     if not depth > 0.0:
         return 0.0
@@ -123,7 +124,7 @@ def reward_value(share: float, distance: float, depth: float, rules: Rules) -> f
 
 @kernel
 def view_continuous(share: float, rules: Rules) -> float:
-    """Return the reward for a place in the picture that falls off smoothly."""
+    """Return the reward that decreases smoothly from the middle of the view to its edge."""
     return math.tanh(rules.view_scale * share * share * share)
 
 
@@ -135,7 +136,7 @@ def view_discrete(share: float) -> float:
 
 @kernel
 def distance_continuous(distance: float, rules: Rules) -> float:
-    """Return the reward for a distance [m] from the middle of the view that falls off smoothly."""
+    """Return the reward that decreases smoothly with the distance [m] from the view centre."""
     if not distance < rules.distance_range:
         return 0.0
     return 1.0 - math.tanh(rules.distance_scale * distance * distance * distance)
@@ -143,5 +144,5 @@ def distance_continuous(distance: float, rules: Rules) -> float:
 
 @kernel
 def distance_discrete(distance: float, rules: Rules) -> float:
-    """Return 1 within the rewarded distance [m] of the middle of the view, else 0."""
+    """Return 1 within the rewarded distance [m] from the view centre, else 0."""
     return 1.0 if distance < rules.distance_range else 0.0

@@ -1,4 +1,4 @@
-"""The settings of reward and end as plain numbers that kernels take."""
+"""The settings of the reward and the end of an episode, as plain numbers for kernels."""
 
 import math
 from enum import IntEnum
@@ -11,7 +11,7 @@ __all__ = ["BuiltinReward", "Rules", "exact", "make_rules"]
 
 
 class BuiltinReward(IntEnum):
-    """The built-in rewards; each is a function of its name in `eyas.task.reward`."""
+    """The built-in rewards; `eyas.task.reward` has a function of the same name for each."""
 
     VIEW_CONTINUOUS = 0
     VIEW_DISCRETE = 1
@@ -28,12 +28,12 @@ BUILTIN_REWARDS = {
 
 
 class Rules(NamedTuple):
-    """What the task's kernels need to know; lengths in metres, angles in radians."""
+    """Settings for the task's kernels; lengths in metres, angles in radians."""
 
     half_width: float
-    """Half the width of the rewarded part of the picture, 1 m before the camera."""
+    """Half the width of the rewarded part of the picture, at a depth of 1 m."""
     half_height: float
-    """Half the height of the rewarded part of the picture, 1 m before the camera."""
+    """Half the height of the rewarded part of the picture, at a depth of 1 m."""
     reward: int
     """`BuiltinReward`."""
     cut_off: float
@@ -53,9 +53,9 @@ class Rules(NamedTuple):
 
 
 def exact(rules: Rules) -> Rules:
-    """Return rules whose whole numbers stand only where they belong.
+    """Return the rules with each value converted to the type of its field.
 
-    Kernels are compiled for the types of the fields: `max_height=30` would compile them anew.
+    Kernels are compiled for the types of the values: `max_height=30` would compile them anew.
     """
     types = Rules.__annotations__.values()
     return Rules(*(kind(value) for kind, value in zip(types, rules, strict=True)))
@@ -65,9 +65,9 @@ def make_rules(reward: RewardConfig, done: DoneConfig, camera: CameraConfig) -> 
     """Return the settings as numbers.
 
     Args:
-        reward: Which reward.
-        done: The limits.
-        camera: Whose picture the view reward is about.
+        reward: Settings of the reward.
+        done: Settings of the end of an episode.
+        camera: Camera whose picture the view reward uses.
     """
     half_width = reward.view_range * math.tan(0.5 * camera.field_of_view)
     return Rules(

@@ -1,4 +1,4 @@
-"""Where an episode starts: drawn, and placed relative to a target."""
+"""Start of an episode: drawn at random, and placed relative to a target."""
 
 import math
 from collections.abc import Collection
@@ -20,7 +20,7 @@ class Start:
     """A drawn start, relative to the target; the fields of `StartConfig`."""
 
     pitch: float
-    """Camera pitch as drawn, positive down [rad]; the gimbal holds it within its limits."""
+    """Drawn camera pitch, positive down [rad], before the gimbal limits it."""
     height: float
     """[m]"""
     direction: float
@@ -32,7 +32,7 @@ class Start:
 
 
 def sample_start(config: StartConfig, rng: np.random.Generator) -> Start:
-    """Sample a start, in the original's order: pitch, the two biases, height, direction."""
+    """Draw a start, in the original's order: pitch, the two biases, height, direction."""
     pitch = sample(config.pitch, rng)
     horizontal_bias = sample(config.horizontal_bias, rng)
     vertical_bias = sample(config.vertical_bias, rng)
@@ -44,17 +44,18 @@ def sample_start(config: StartConfig, rng: np.random.Generator) -> Start:
 def start_pose(
     start: Start, target_position: ArrayLike, target_yaw: float, ahead: float
 ) -> tuple[NDArray[np.float64], float]:
-    """Return where the tracker's body starts [m], shape (3,), and its yaw [rad].
+    """Return the start position of the tracker's body [m], shape (3,), and its yaw [rad].
 
-    The tracker stands so far behind the target that, without biases, its optical axis would meet
-    the target's centre. As in the original that leaves out the place of the camera in the body
-    and the height of the reference point, and shifts to the centre along the tracker's heading.
+    The tracker starts so far behind the target that, without biases, its optical axis meets the
+    target's centre. As in the original, this neglects the place of the camera in the body and the
+    height of the reference point, and applies `ahead` along the tracker's heading.
 
     Args:
         start: The drawn start.
         target_position: Reference point of the target [m], shape (3,).
         target_yaw: Heading of the target [rad].
-        ahead: How far the target's middle lies ahead of that, see `eyas.targets.kind.Kind` [m].
+        ahead: Distance of the target's middle ahead of its reference point, see
+            `eyas.targets.kind.Kind` [m].
     """
     yaw = target_yaw + start.direction
     forward = ahead + start.vertical_bias
@@ -69,15 +70,15 @@ def start_pose(
 def choose_target(
     available: NDArray[np.bool_], used: Collection[int], rng: np.random.Generator
 ) -> int:
-    """Return an actor that is in the world and that no tracker follows, each as likely.
+    """Return an actor that is available and that no tracker follows, drawn uniformly.
 
     Args:
         available: Whether each actor may be followed, shape (A,).
-        used: Actors that are followed already.
-        rng: Draws.
+        used: Actors that are already followed.
+        rng: Random generator.
 
     Raises:
-        SpawnError: There is none.
+        SpawnError: There is no such actor.
     """
     free = [int(actor) for actor in np.flatnonzero(available) if int(actor) not in used]
     if not free:

@@ -1,4 +1,4 @@
-"""The reward as a weighted sum of named terms: the built-in one and those of one's own."""
+"""The reward as a weighted sum of named terms: the built-in term and user-defined ones."""
 
 from collections.abc import Callable
 from importlib import import_module
@@ -15,17 +15,17 @@ __all__ = ["BUILTIN", "RewardTerm", "RewardTerms"]
 Floats = NDArray[np.float64]
 
 RewardTerm = Callable[[Snapshot], Floats]
-"""Returns one number for each tracker of a snapshot, shape (N,)."""
+"""Function that returns one number for each tracker of a snapshot, shape (N,)."""
 
 BUILTIN = "builtin"
-"""Name of the term that the step's kernel computes, by `reward.type` and `reward.mode`."""
+"""Name of the term that the step's kernel computes, set by `reward.type` and `reward.mode`."""
 
 
 class RewardTerms:
-    """Evaluates the reward once for each step of control.
+    """Evaluates the reward once per control step.
 
     Args:
-        config: Which terms, with which weights.
+        config: Terms and their weights.
 
     Raises:
         ConfigError: A term cannot be imported.

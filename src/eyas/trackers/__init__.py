@@ -1,1 +1,1 @@
-"""What follows: the drone and its gimbal."""
+"""Trackers: the drone and its gimbal."""

@@ -8,7 +8,7 @@ __all__ = ["TrackerConfig", "TrackerKind"]
 
 
 class TrackerKind(StrEnum):
-    """What follows the target."""
+    """Kinds of trackers."""
 
     DRONE = "drone"
     """A quadrotor with a camera on a gimbal."""
@@ -17,9 +17,9 @@ class TrackerKind(StrEnum):
 
 
 class TrackerConfig(Config):
-    """What follows, and how it obeys."""
+    """Kind of the tracker, and how it follows its commands."""
 
     kind: TrackerKind = TrackerKind.DRONE
-    """What follows the target."""
+    """Kind of the tracker."""
     supervised: bool = True
-    """True: commands are obeyed exactly; False: a flight controller flies them."""
+    """True: commands are followed exactly; False: a flight controller carries them out."""

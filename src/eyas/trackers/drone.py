@@ -1,4 +1,4 @@
-"""The supervised drone: a level body that follows its commands exactly, after a low-pass."""
+"""The supervised drone: a level body that follows its low-pass filtered commands exactly."""
 
 import math
 from typing import NamedTuple
@@ -21,16 +21,16 @@ GRAVITY = 9.81
 
 
 class DroneMemory(NamedTuple):
-    """Low-passes of N drones."""
+    """States of the low-pass filters of N drones."""
 
     forward: NDArray[np.float64]
-    """Of the forward command, shape (N, 2)."""
+    """Filter of the forward command, shape (N, 2)."""
     left: NDArray[np.float64]
-    """Of the sideways command, shape (N, 2)."""
+    """Filter of the sideways command, shape (N, 2)."""
     yaw_rate: NDArray[np.float64]
-    """Of the turning command, shape (N, 2)."""
+    """Filter of the yaw rate command, shape (N, 2)."""
     gimbal: NDArray[np.float64]
-    """Of the gimbal's roll, pitch and yaw, shape (N, 3, 2)."""
+    """Filters of the gimbal's roll, pitch and yaw, shape (N, 3, 2)."""
 
     @classmethod
     def create(cls, count: int) -> "DroneMemory":
@@ -45,8 +45,9 @@ def advance(
 ) -> None:
     """Move drone `n` by one physics step of 2 ms, see `Tracker.advance`.
 
-    The commands add up to a pose (in the heading frame of the pose before), and the body takes
-    that pose in every step. The original meant to, but skipped about half of the steps in a race.
+    The commands are integrated to a pose (in the heading frame of the previous pose), and the body
+    takes that pose in every step. The original intends the same, but a race condition makes it skip
+    about half of the steps.
     """
     forward = low_pass(memory.forward[n], command[0])
     left = low_pass(memory.left[n], command[1])
@@ -67,7 +68,7 @@ def advance(
 def carry(
     trackers: TrackerState, memory: DroneMemory, n: int, x: float, y: float, z: float, yaw: float
 ) -> None:
-    """Put a level drone at a pose, one physics step of 2 ms after the pose it has."""
+    """Move a level drone to a pose within one physics step of 2 ms."""
     commanded = trackers.commanded_position[n]
     commanded[0], commanded[1], commanded[2] = x, y, z
     _move_to(trackers, n, x, y, z)
@@ -88,7 +89,7 @@ def start(
     yaw: float,
     pitch: float,
 ) -> None:
-    """Place drone `n` at rest, its gimbal at a commanded pitch, see `Tracker.start`."""
+    """Place drone `n` at rest with its gimbal at a commanded pitch, see `Tracker.start`."""
     settle(memory.forward[n], 0.0)
     settle(memory.left[n], 0.0)
     settle(memory.yaw_rate[n], 0.0)
@@ -106,7 +107,7 @@ def start(
 
 @step_kernel
 def aim(trackers: TrackerState, memory: DroneMemory, cameras: CameraState, n: int) -> None:
-    """Write where the camera on the gimbal is and looks."""
+    """Write the pose of the camera on the gimbal."""
     camera_pose(
         trackers.position[n],
         trackers.orientation[n],
@@ -120,17 +121,17 @@ def aim(trackers: TrackerState, memory: DroneMemory, cameras: CameraState, n: in
 def accelerometer(
     acceleration: NDArray[np.float64], orientation: NDArray[np.float64]
 ) -> tuple[float, float, float]:
-    """Return what an accelerometer in the body feels, body frame [m/s^2]: +9.81 up at rest.
+    """Return the reading of an accelerometer, body frame [m/s^2]: +9.81 up at rest.
 
-    The true motion is felt. The original reads a physics body that falls and is caught between
-    its teleports, so its readings have nothing to do with the motion that is seen.
+    It follows from the true motion. The original reads a physics body that falls between being
+    teleported, so its readings are unrelated to the visible motion.
     """
     return rotate_back(orientation, acceleration[0], acceleration[1], acceleration[2] + GRAVITY)
 
 
 @step_kernel
 def _move_to(trackers: TrackerState, n: int, x: float, y: float, z: float) -> None:
-    """Move within one physics step; velocity and acceleration are what that takes."""
+    """Move within one physics step, and set the velocity and acceleration of that motion."""
     goal = (x, y, z)
     for axis in range(3):
         speed = (goal[axis] - trackers.position[n, axis]) / PHYSICS_STEP
@@ -141,7 +142,7 @@ def _move_to(trackers: TrackerState, n: int, x: float, y: float, z: float) -> No
 
 @step_kernel
 def _heading(orientation: NDArray[np.float64]) -> tuple[float, float]:
-    """Return the horizontal direction of the body's x axis, of length 1."""
+    """Return the horizontal direction of the body's x axis, a unit vector."""
     w, x, y, z = orientation[0], orientation[1], orientation[2], orientation[3]
     east, north = 1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z)
     length = math.sqrt(east * east + north * north)
@@ -150,7 +151,7 @@ def _heading(orientation: NDArray[np.float64]) -> tuple[float, float]:
 
 @step_kernel
 def _stand_level(trackers: TrackerState, n: int, yaw: float) -> None:
-    """Set the attitude of a level body; the yaw is wrapped [rad]."""
+    """Set the attitude of a level body; `yaw` must be wrapped [rad]."""
     euler, orientation = trackers.euler[n], trackers.orientation[n]
     euler[0], euler[1], euler[2] = 0.0, 0.0, yaw
     orientation[0], orientation[1], orientation[2] = math.cos(0.5 * yaw), 0.0, 0.0
@@ -158,4 +159,4 @@ def _stand_level(trackers: TrackerState, n: int, yaw: float) -> None:
 
 
 DRONE = Tracker("drone", DroneMemory.create, start, advance, carry, aim)
-"""The drone that its supervisor moves."""
+"""The supervised drone."""

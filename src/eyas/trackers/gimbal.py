@@ -1,4 +1,4 @@
-"""The gimbal: holds the camera at its commanded angles, however the body tilts."""
+"""The gimbal: keeps the camera at its commanded angles when the body tilts."""
 
 import math
 
@@ -15,21 +15,21 @@ __all__ = ["advance_gimbal", "camera_pose", "held_pitch", "reset_gimbal"]
 _SIDEWAYS_LIMIT = 1.7
 """Largest roll and yaw of the joints [rad]."""
 _PITCH_LIMITS = (-0.5, 1.5)
-"""Of the pitch joint [rad]."""
+"""Limits of the pitch joint [rad]."""
 _COMMAND_LIMITS = (0.5, 1.5)
-"""Within which a commanded pitch is held [rad]."""
+"""Limits of the commanded pitch [rad]."""
 
 _YAW_JOINT = (0.13, -0.00469654, -0.013)
-"""Axis of the yaw joint, body frame [m]."""
+"""Position of the yaw joint, body frame [m]."""
 _PITCH_JOINT = (0.000625212, -0.00530346, -0.0207448)
-"""Axis of the pitch joint, frame of the yaw link [m]."""
+"""Position of the pitch joint, frame of the yaw link [m]."""
 _ROLL_JOINT = (0.00754686, 0.0160388, -0.00586401)
-"""Axis of the roll joint, where the camera sits, frame of the pitch link [m]."""
+"""Position of the roll joint and the camera, frame of the pitch link [m]."""
 
 
 @kernel
 def held_pitch(pitch: float) -> float:
-    """Return a start's camera pitch held within what the original's command allows [rad]."""
+    """Return a camera pitch limited to the range of the original's command [rad]."""
     return min(max(pitch, _COMMAND_LIMITS[0]), _COMMAND_LIMITS[1])
 
 
@@ -38,9 +38,9 @@ def advance_gimbal(trackers: TrackerState, memory: NDArray[np.float64], n: int) 
     """Move gimbal `n` by one physics step of 2 ms.
 
     Args:
-        trackers: The attitude of the body and the commanded angles are read, the joints set.
-        memory: Low-passes of roll, pitch and yaw, shape (N, 3, 2); change.
-        n: Which.
+        trackers: Source of the body's attitude and the commanded angles; its joint angles are set.
+        memory: Low-pass filters of roll, pitch and yaw, shape (N, 3, 2); updated.
+        n: Index of the tracker.
     """
     commanded, euler, gimbal = trackers.commanded_gimbal[n], trackers.euler[n], trackers.gimbal[n]
     roll, pitch, yaw = _desired(commanded[0], commanded[1], euler[0], euler[1])
@@ -53,16 +53,16 @@ def advance_gimbal(trackers: TrackerState, memory: NDArray[np.float64], n: int) 
 def reset_gimbal(
     trackers: TrackerState, memory: NDArray[np.float64], n: int, pitch: float, yaw: float
 ) -> None:
-    """Command new angles and be there at once.
+    """Command new angles and move the joints there at once.
 
-    The original's filters start at zero, so that its camera swings down from the horizon while
-    the first pictures of an episode are taken.
+    In the original, the filters start at zero, so the camera swings down from the horizon during
+    the first pictures of an episode.
 
     Args:
-        trackers: The attitude of the body is read, commanded angles and joints are set.
-        memory: Low-passes of roll, pitch and yaw, shape (N, 3, 2); set.
-        n: Which.
-        pitch: Commanded pitch, positive down, held within 0.5 to 1.5 [rad].
+        trackers: Source of the body's attitude; its commanded angles and joint angles are set.
+        memory: Low-pass filters of roll, pitch and yaw, shape (N, 3, 2); set.
+        n: Index of the tracker.
+        pitch: Commanded pitch, positive down, limited to 0.5 to 1.5 [rad].
         yaw: Commanded yaw relative to the body [rad].
     """
     commanded, euler, gimbal = trackers.commanded_gimbal[n], trackers.euler[n], trackers.gimbal[n]
@@ -80,10 +80,10 @@ def camera_pose(
     camera_position: NDArray[np.float64],
     camera_rotation: NDArray[np.float64],
 ) -> None:
-    """Compute where the camera is: body, yaw link, pitch link, roll link.
+    """Compute the pose of the camera through body, yaw link, pitch link and roll link.
 
     Args:
-        position: Of the body, world frame [m], shape (3,).
+        position: Centre of the body, world frame [m], shape (3,).
         orientation: Body to world, shape (4,).
         gimbal: Roll, pitch, yaw of the joints [rad], shape (3,).
         camera_position: Optical centre, world frame [m], shape (3,); set.
@@ -118,18 +118,18 @@ def _set_column(
 def _desired(
     pitch: float, yaw: float, body_roll: float, body_pitch: float
 ) -> tuple[float, float, float]:
-    """Return the roll, pitch and yaw of the joints that undo the tilt of the body, within limits.
+    """Return the joints' roll, pitch and yaw that compensate the tilt of the body, within limits.
 
-    By the original's Rx(-roll) Ry(-pitch) Rz(yaw) Ry(pitch), taken apart as yaw, pitch, roll.
+    From the original's Rx(-roll) Ry(-pitch) Rz(yaw) Ry(pitch), decomposed into yaw, pitch, roll.
     """
     roll = 0.0
-    # A supervised body is level: nothing to undo, and most of this function's time saved.
+    # A supervised body is level, which saves most of this function's time.
     if body_roll != 0.0 or body_pitch != 0.0:
         sp, cp = math.sin(pitch), math.cos(pitch)
         sy, cy = math.sin(yaw), math.cos(yaw)
         sb, cb = math.sin(body_pitch), math.cos(body_pitch)
         sa, ca = math.sin(body_roll), math.cos(body_roll)
-        # mij: Rz(yaw) Ry(pitch) turned by Ry(-body pitch); rij: that turned by Rx(-body roll).
+        # m = Ry(-body pitch) Rz(yaw) Ry(pitch); r = Rx(-body roll) m; mij, rij: row i, column j.
         m00, m20 = cb * cy * cp + sb * sp, sb * cy * cp - cb * sp
         m21 = -sb * sy
         m22 = sb * cy * sp + cb * cp

@@ -1,4 +1,4 @@
-"""The low-pass that commands and gimbal angles go through."""
+"""The low-pass filter of commands and gimbal angles."""
 
 import math
 
@@ -10,8 +10,8 @@ from eyas.core.jit import step_kernel
 
 __all__ = ["low_pass", "settle"]
 
-# A second-order 20 Hz Butterworth by the bilinear transform without pre-warping, as in the
-# original, where -3 dB therefore lies at 39 Hz.
+# A second-order Butterworth filter by the bilinear transform, as in the original. Its _K for 20 Hz
+# is twice pi * 20 Hz * step, so the -3 dB frequency is 39 Hz.
 _K = 2.0 * math.pi * 20.0 * PHYSICS_STEP
 _D = _K * _K + math.sqrt(2.0) * _K + 1.0
 _B0 = _K * _K / _D
@@ -26,10 +26,10 @@ def low_pass(memory: NDArray[np.float64], value: float) -> float:
     """Return the filtered value of one 2 ms step.
 
     Args:
-        memory: Of one filter, shape (2,); changes.
-        value: What goes in.
+        memory: State of one filter, shape (2,); updated.
+        value: Input value.
     """
-    # The transposed direct form II: the same response as the usual form with half the state.
+    # Transposed direct form II: the same response as direct form I with half the state.
     result: float = _B0 * value + memory[0]
     memory[0] = _B1 * value - _A1 * result + memory[1]
     memory[1] = _B2 * value - _A2 * result
@@ -38,6 +38,6 @@ def low_pass(memory: NDArray[np.float64], value: float) -> float:
 
 @step_kernel
 def settle(memory: NDArray[np.float64], value: float) -> None:
-    """Put the filter where it would be if `value` had gone in for ever."""
+    """Set the filter to its steady state for the input `value`."""
     memory[1] = (_B2 - _A2) * value
     memory[0] = (_B1 - _A1) * value + memory[1]

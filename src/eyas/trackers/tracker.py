@@ -11,10 +11,10 @@ Kernel = Callable[..., Any]
 
 @dataclass(frozen=True, slots=True)
 class Tracker:
-    """How trackers of a kind are moved. All kernels work on tracker `n` of N.
+    """Kernels of one kind of tracker. Each works on tracker `n` of N.
 
-    `trackers` is a `TrackerState`, `memory` whatever record of arrays `memory` creates: filters,
-    rotor speeds, anything that only this kind of tracker knows.
+    `trackers` is a `TrackerState`; `memory` is the record of arrays that the field `memory`
+    creates: filters, rotor speeds, and other state of this kind only.
     """
 
     name: str

@@ -1,1 +1,1 @@
-"""Who drives where: road networks through SUMO, recording and replay."""
+"""Traffic: road networks from SUMO, recording and replay."""

@@ -15,7 +15,7 @@ Most = Annotated[float, Field(gt=0, le=1e9)]
 
 
 class VehicleType(StrEnum):
-    """SUMO vehicle classes that drive."""
+    """SUMO vehicle classes."""
 
     PASSENGER = "passenger"
     BUS = "bus"
@@ -25,25 +25,25 @@ class VehicleType(StrEnum):
 
 
 class Demand(StrEnum):
-    """Who enters and leaves."""
+    """When vehicles enter and leave."""
 
     KEEP_ALIVE = "keep_alive"
-    """All vehicles are there from the start and drive on for ever."""
+    """All vehicles are present from the start and never leave."""
     RESPAWN = "respawn"
     """Groups of vehicles enter at intervals, drive a route and leave, as in the original."""
 
 
 class TrafficConfig(Config):
-    """What SUMO is asked to drive."""
+    """Settings of the traffic that SUMO simulates."""
 
     demand: Demand = Demand.KEEP_ALIVE
-    """Who enters and leaves."""
+    """When vehicles enter and leave."""
     vehicle_type: VehicleType = VehicleType.PASSENGER
     """Class of all vehicles."""
     max_vehicles: Annotated[int, Field(ge=1, le=1000)] = 40
-    """Most vehicles at a time."""
+    """Largest number of vehicles at a time."""
     max_speed: Annotated[float, Field(gt=0, le=100)] = 20.0
-    """Fastest that a vehicle can drive [m/s]; the roads' limit holds too."""
+    """Largest speed of a vehicle [m/s]; the speed limits of the roads apply too."""
     max_acceleration: Annotated[float, Field(gt=0, le=100)] = 25.0
     """[m/s^2]"""
     max_deceleration: Annotated[float, Field(gt=0, le=100)] = 25.0
@@ -55,15 +55,15 @@ class TrafficConfig(Config):
     route_length: tuple[Least, Most] = (500.0, 7000.0)
     """Shortest and longest route (respawn) [m]."""
     route_count: Annotated[int, Field(ge=1, le=10_000_000)] = 100_000
-    """Most routes that are drawn (respawn)."""
+    """Largest number of routes drawn (respawn)."""
     update_routes: bool = True
-    """Whether a fresh recording may be made when none fits; the original's `rou_update`."""
+    """Whether to make a new recording if none fits; the original's `rou_update`."""
     seed: Annotated[int, Field(ge=0, lt=2**31)] | None = None
     """Seed of SUMO and of the routes; None: the seed of the shipped recording."""
     colour: tuple[Unit, Unit, Unit] | None = None
-    """Body colour of every car, RGB 0 to 1; None: drawn for each."""
+    """Body colour of every car, RGB 0 to 1; None: drawn for each car."""
     recording: str | None = None
-    """Path of a recording to replay; None: the shipped or cached one that fits."""
+    """Path of a recording to replay; None: a shipped or cached recording that fits."""
 
     @model_validator(mode="after")
     def _ordered(self) -> "TrafficConfig":

@@ -1,4 +1,4 @@
-"""Which routes are driven: random walks that never end, or groups that cross the map and leave."""
+"""Routes of vehicles: endless random walks, or groups that cross the map and leave."""
 
 import heapq
 from collections.abc import Iterator
@@ -23,12 +23,12 @@ Route = tuple[str, ...]
 """Names of the edges, in driving order."""
 
 TRIES = 1000
-"""Pairs of edges that are tried for one route before giving up."""
+"""Number of edge pairs tried for one route before giving up."""
 
 
 @dataclass(frozen=True, slots=True)
 class RoadLinks:
-    """Which edge leads to which, for one class of vehicles."""
+    """Connections between edges, for one class of vehicles."""
 
     successors: dict[str, Route]
     """Edges that can be entered from each edge."""
@@ -37,13 +37,13 @@ class RoadLinks:
 
 
 def without_turnarounds(links: RoadLinks, ends: dict[str, tuple[str, str]]) -> RoadLinks:
-    """Return the links without those that lead straight back, but where there is no other way.
+    """Return the links without U-turns, except where there is no other way on.
 
-    Long vehicles swing wildly in them, and few drivers turn round at each crossing.
+    Long vehicles swing out widely in a U-turn, and drivers rarely turn around at a crossing.
 
     Args:
         links: All links.
-        ends: Junctions each edge leaves and reaches.
+        ends: Junctions that each edge leaves and reaches.
     """
     onward = {
         edge: tuple(name for name in following if ends[name] != ends[edge][::-1])
@@ -54,10 +54,10 @@ def without_turnarounds(links: RoadLinks, ends: dict[str, tuple[str, str]]) -> R
 
 
 def lasting_edges(links: RoadLinks) -> Route:
-    """Return the edges of the largest part of the roads where each can be reached from each.
+    """Return the edges of the largest part of the roads where all can be reached from each other.
 
     Raises:
-        ConfigError: There is none: every drive ends.
+        ConfigError: There is none: every route comes to an end.
     """
     reach = {edge: _reachable(links, edge) for edge in links.successors}
     unplaced = set(links.successors)
@@ -82,9 +82,9 @@ def endless_walk(
 
     Args:
         links: The roads.
-        edges: The part of them to stay in.
-        distance: More than can be driven in the whole recording [m].
-        rng: Draws the start and the turns.
+        edges: The edges to stay on.
+        distance: A distance longer than any vehicle can drive in the recording [m].
+        rng: Generator for the start and the turns.
     """
     inside = set(edges)
     edge = edges[int(rng.integers(len(edges)))]
@@ -125,11 +125,11 @@ def random_trips(
 
 
 def departures(config: TrafficConfig, duration: float) -> Iterator[tuple[float, int]]:
-    """Yield when a group enters [s], and how many vehicles it has.
+    """Yield the entry time [s] and the number of vehicles of each group.
 
     Args:
-        config: Its `group_size` is a number.
-        duration: Time from the first group [s].
+        config: Settings with a number as `group_size`.
+        duration: Time since the first group within which groups enter [s].
     """
     size = config.group_size
     assert size is not None
@@ -153,7 +153,7 @@ def _reachable(links: RoadLinks, start: str) -> set[str]:
 
 
 def _shortest_tree(links: RoadLinks, start: str) -> dict[str, str]:
-    """Return the edge before each edge on the shortest route from `start` (Dijkstra)."""
+    """Return the predecessor of each edge on the shortest route from `start` (Dijkstra)."""
     distance = {start: links.length[start]}
     before: dict[str, str] = {}
     front = [(distance[start], start)]
@@ -171,7 +171,7 @@ def _shortest_tree(links: RoadLinks, start: str) -> dict[str, str]:
 
 
 def _path(before: dict[str, str], start: str, end: str) -> Route:
-    """Return the edges from `start` to `end`, or none."""
+    """Return the edges from `start` to `end`; empty if there is no route."""
     route = [end]
     while route[-1] != start:
         if route[-1] not in before:

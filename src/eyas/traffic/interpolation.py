@@ -1,4 +1,4 @@
-"""Actors at any time: cubic Hermite curves between the samples of a table of motion."""
+"""Interpolation of actors: cubic Hermite curves between the samples of a motion."""
 
 import math
 from typing import NamedTuple
@@ -28,12 +28,12 @@ class ActorPose(NamedTuple):
 
 @step_kernel
 def interpolate_actor(motion: Motion, actor: int, time: float) -> ActorPose:
-    """Return one actor at one time; times before and after the samples are held at their ends.
+    """Return one actor at one time; times outside the samples are clamped to their ends.
 
     Args:
-        motion: Of all actors.
-        actor: Which.
-        time: [s]
+        motion: Motion of all actors.
+        actor: Index of the actor.
+        time: Time [s].
     """
     last = motion.table.shape[0] - 1
     place = min(max((time - motion.first_time) * motion.rate, 0.0), float(last))
@@ -59,7 +59,7 @@ def interpolate_actor(motion: Motion, actor: int, time: float) -> ActorPose:
 def _hermite(
     a: float, b: float, slope_a: float, slope_b: float, step: float, f: float
 ) -> tuple[float, float]:
-    """Return value and slope at share `f` of a step [s] of the cubic with given ends and slopes."""
+    """Return value and slope of a cubic with given ends and slopes, at share `f` of a step [s]."""
     start = float(a)
     rise = float(b) - start
     lift_a = float(slope_a) * step
@@ -74,7 +74,7 @@ def _hermite(
 @kernel
 def interpolate_actors(motion: Motion, time: NDArray[np.float64], out: ActorState) -> None:
     """Write all actors of W worlds at the worlds' own times [s], shape (W,)."""
-    # One thread: waking a second one costs more than 64 worlds of 40 actors.
+    # One thread: waking a second one takes longer than 64 worlds of 40 actors.
     for world in range(len(time)):
         for actor in range(motion.table.shape[1]):
             pose = interpolate_actor(motion, actor, time[world])

@@ -1,4 +1,4 @@
-"""Finding the recording that fits: the user's, the shipped one, a cached one, or a new one."""
+"""Selection of a recording: the one named by the user, the shipped, a cached or a new one."""
 
 import hashlib
 import json
@@ -30,13 +30,14 @@ __all__ = [
 _LOG = logging.getLogger("eyas")
 
 CANONICAL_SEED = 1
-"""Seed of the recordings that are shipped, and of those that say no other."""
+"""Seed of the shipped recordings, and the default seed of others."""
 
 STANDARD_DURATION = 1260.0
-"""Length of a recording where nothing else is asked for: 21 minutes [s]."""
+"""Default length of a recording: 21 minutes [s]."""
 
 _RECORDER = 1
-"""Raised by 1 when the same settings give other traffic: recordings in caches are made anew."""
+"""Increased by 1 when the same settings give different traffic, so that cached recordings are
+made anew."""
 
 
 def find_recording(
@@ -47,21 +48,21 @@ def find_recording(
     duration: float = STANDARD_DURATION,
     shipped: Traversable | None = None,
 ) -> Recording:
-    """Return the recording to replay: the one named, the shipped one, a cached or a new one.
+    """Return the recording to replay: the named, the shipped, a cached or a new one.
 
-    That one has to be made first is said in one line of the log `eyas`, which Python prints.
+    Before a new recording is made, one line in the log `eyas` says so; Python prints it.
 
     Args:
-        graph: Where to drive.
-        config: What drives.
-        trackers: Number of trackers, which the size of a group follows.
-        duration: Shortest recording that will do [s].
-        shipped: The file of the recording that comes with the map, if there is one.
+        graph: Roads to drive on.
+        config: Settings of the traffic.
+        trackers: Number of trackers, which determines the default size of a group.
+        duration: Smallest duration of the recording [s].
+        shipped: File of the recording that comes with the map, if there is one.
 
     Raises:
         DataFileError: The named recording cannot be read or is of another map.
-        ConfigError: None fits and `update_routes` forbids to record.
-        MissingExtraError: None fits and SUMO is not installed.
+        ConfigError: No recording fits, and `update_routes` forbids a new one.
+        MissingExtraError: No recording fits, and SUMO is not installed.
     """
     if config.recording is not None:
         path = Path(config.recording).expanduser()
@@ -86,7 +87,7 @@ def record_canonical(
 ) -> None:
     """Record the canonical traffic of a map (its seed 0), to be shipped with it.
 
-    For developers of a map, after a change of its roads.
+    For developers of a map, after a change in its roads.
 
     Raises:
         MissingExtraError: SUMO is not installed.
@@ -98,14 +99,15 @@ def record_canonical(
 
 
 def _cache_file(graph: RoadGraph, wanted: TrafficConfig, duration: float) -> Path:
-    """Return where a recording is cached, whichever version of SUMO made it.
+    """Return the path of a recording in the cache.
 
-    So that who has no SUMO can use a recording that somebody else made.
+    It does not depend on the version of SUMO, so that users without SUMO can use recordings made
+    by others.
 
     Args:
-        graph: Where to drive.
-        wanted: What drives, from `resolved`.
-        duration: [s]
+        graph: Roads to drive on.
+        wanted: Settings of the traffic, from `resolved`.
+        duration: Length of the recording [s].
     """
     content = {
         "roads": graph_hash(graph),
@@ -122,7 +124,7 @@ def _cache_file(graph: RoadGraph, wanted: TrafficConfig, duration: float) -> Pat
 
 
 def _fitting(file: Traversable, graph: RoadGraph, wanted: TrafficConfig) -> Recording | None:
-    """Return a shipped recording if it is what the settings ask for."""
+    """Return a shipped recording if it fits the settings, else None."""
     recording = load(file)
     return recording if _fits(recording, graph, wanted) else None
 
@@ -152,7 +154,7 @@ def _cached_or_new(graph: RoadGraph, wanted: TrafficConfig, duration: float) -> 
 
 
 def _cached(path: Path) -> Recording | None:
-    """Return a recording from the cache, None if it is not there or damaged."""
+    """Return a recording from the cache; None if it is missing or damaged."""
     try:
         return load(path)
     except DataFileError:

@@ -1,4 +1,4 @@
-"""Road networks: SUMO's netconvert makes lanes and junctions of the graph that a map draws."""
+"""Road networks: SUMO's netconvert builds lanes and junctions from the road graph of a map."""
 
 import hashlib
 import subprocess
@@ -17,7 +17,7 @@ from eyas.traffic.sumo_install import sumo_binary, sumo_environment, sumo_versio
 __all__ = ["OPTIONS", "build_network", "graph_hash", "network_xml"]
 
 OPTIONS = (
-    # World coordinates stay as the map draws them.
+    # Keep the world coordinates of the map.
     *("--offset.disable-normalization", "true"),
     # Smooth corners, wide enough for a crossing between the stop line and the junction's middle.
     *("--junctions.corner-detail", "8"),
@@ -25,26 +25,26 @@ OPTIONS = (
     *("--default.junctions.radius", "7"),
     # Cars slow down in turns: 5.5 m/s^2 sideways, as in the original's networks.
     *("--junctions.limit-turn-speed", "5.5"),
-    # Nobody turns round at a junction; every road leads on, so nobody needs to.
+    # No U-turns at junctions; every road leads on, so none are needed.
     *("--no-turnarounds", "true"),
     *("--output.street-names", "false"),
     *("--precision", "3"),
 )
-"""netconvert's options besides its files."""
+"""netconvert's options, except its files."""
 
 
 def graph_hash(graph: RoadGraph) -> str:
-    """Return the SHA-256 of all that netconvert is told about a graph."""
+    """Return the SHA-256 of netconvert's whole input for a graph, options included."""
     told = "\n".join([_node_xml(graph.nodes), _edge_xml(graph.edges), *OPTIONS])
     return hashlib.sha256(told.encode()).hexdigest()
 
 
 def build_network(graph: RoadGraph) -> RoadNetwork:
-    """Return the network of a graph, made by netconvert.
+    """Return the network of a graph, built by netconvert.
 
     Raises:
         MissingExtraError: SUMO is not installed.
-        ConfigError: netconvert refuses the graph.
+        ConfigError: netconvert rejects the graph.
     """
     root = ElementTree.fromstring(network_xml(graph))
     edges = {name: root.find(f"./edge[@id='{name}']") for name in (e.name for e in graph.edges)}
@@ -77,11 +77,11 @@ def build_network(graph: RoadGraph) -> RoadNetwork:
 
 
 def network_xml(graph: RoadGraph) -> bytes:
-    """Return SUMO's network file of a graph: the same bytes each time.
+    """Return SUMO's network file of a graph; equal graphs give equal bytes.
 
     Raises:
         MissingExtraError: SUMO is not installed.
-        ConfigError: netconvert refuses the graph.
+        ConfigError: netconvert rejects the graph.
     """
     netconvert = sumo_binary("netconvert")
     with tempfile.TemporaryDirectory(prefix="eyas-roads-") as folder:
@@ -103,7 +103,7 @@ def network_xml(graph: RoadGraph) -> bytes:
 
 
 def _without_comments(xml: bytes) -> bytes:
-    """Drop the comment that holds the time and the temporary folder; the parser skips comments."""
+    """Remove the comment with the time and temporary folder; the parser skips comments."""
     root = ElementTree.fromstring(xml)
     return bytes(ElementTree.tostring(root, encoding="utf-8")) + b"\n"
 

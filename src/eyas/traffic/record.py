@@ -1,4 +1,4 @@
-"""Recording: real SUMO drives what the settings ask for."""
+"""Recording of traffic that SUMO simulates according to the settings."""
 
 from collections.abc import Callable, Iterator
 from importlib.metadata import version
@@ -33,13 +33,13 @@ from eyas.traffic.sumo_install import sumo_version
 __all__ = ["GROUP_SHARE", "WARM_UP", "provenance", "record", "resolved"]
 
 WARM_UP = 60.0
-"""Time before the recording begins, in which vehicles spread over the map [s]."""
+"""Simulated time before the recording begins, in which vehicles spread over the map [s]."""
 
 GROUP_SHARE = 3
-"""Vehicles that enter together for each tracker where nothing else is set, as in the original."""
+"""Default number of vehicles in a group for each tracker, as in the original."""
 
 
-def record(  # noqa: PLR0913  # all that a recording depends on
+def record(  # noqa: PLR0913  # everything a recording depends on
     map_name: str,
     map_seed: int,
     graph: RoadGraph,
@@ -53,15 +53,15 @@ def record(  # noqa: PLR0913  # all that a recording depends on
     Args:
         map_name: Name of the map.
         map_seed: Seed of the map.
-        graph: Its roads.
-        config: What drives.
+        graph: Roads of the map.
+        config: Settings of the traffic.
         duration: Length of the recording [s].
         seed: Seed of SUMO and of the routes.
-        progress: Is told the share that is done, 0 to 1.
+        progress: Called with the completed share, 0 to 1.
 
     Raises:
         MissingExtraError: SUMO is not installed.
-        ConfigError: The roads cannot carry what is asked for.
+        ConfigError: The roads have no room for the requested traffic.
     """
     config = resolved(config, seed)
     origin = provenance(map_name, map_seed, graph_hash(graph), config, duration)
@@ -73,12 +73,12 @@ def record(  # noqa: PLR0913  # all that a recording depends on
 
 
 def resolved(config: TrafficConfig, seed: int, trackers: int = 1) -> TrafficConfig:
-    """Return the settings with all that SUMO sees filled in, and what it does not see left out.
+    """Return the settings that affect SUMO, with all values filled in; others at their defaults.
 
     Args:
         config: The user's settings.
         seed: Seed of SUMO and of the routes.
-        trackers: Number of trackers, which the size of a group follows.
+        trackers: Number of trackers, which determines the default size of a group.
     """
     seen: dict[str, object] = {
         name: getattr(config, name)
@@ -102,14 +102,14 @@ def resolved(config: TrafficConfig, seed: int, trackers: int = 1) -> TrafficConf
 def provenance(
     map_name: str, map_seed: int, roads: str, config: TrafficConfig, duration: float
 ) -> Provenance:
-    """Return what a recording made now would say about itself.
+    """Return the provenance of a recording made by this version.
 
     Args:
         map_name: Name of the map.
         map_seed: Seed of the map.
         roads: Hash of its road graph.
-        config: From `resolved`.
-        duration: [s]
+        config: Settings from `resolved`.
+        duration: Length of the recording [s].
 
     Raises:
         MissingExtraError: SUMO is not installed.

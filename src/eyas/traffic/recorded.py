@@ -1,4 +1,4 @@
-"""From a recording to a table of motion."""
+"""Conversion of a recording to a motion."""
 
 import math
 
@@ -15,19 +15,19 @@ __all__ = ["recorded_motion", "table_of"]
 
 
 def recorded_motion(recording: Recording, terrain: Terrain, kind: NDArray[np.int32]) -> Motion:
-    """Return the smooth motion of what SUMO drove, on the ground of its map.
+    """Return the smoothed motion of a recording, on the ground of its map.
 
     Args:
-        recording: What SUMO drove.
+        recording: The recording.
         terrain: The ground; roads follow its relief.
-        kind: What each actor is, see `Motion`, shape (A,).
+        kind: Kind of each actor, see `Motion`, shape (A,).
     """
     assert kind.shape == (recording.actors,), f"kind: shape {kind.shape}"
     return Motion(table_of(smooth(recording), terrain), kind, float(recording.rate), 0.0)
 
 
 def table_of(tracks: Tracks, terrain: Terrain) -> NDArray[np.void]:
-    """Return `Motion.table` of tracks on a terrain."""
+    """Return the `Motion.table` of tracks on a terrain."""
     table = np.zeros(tracks.present.shape, SAMPLE)
     table["x"], table["y"] = np.moveaxis(tracks.position, -1, 0)
     table["velocity_x"], table["velocity_y"] = np.moveaxis(tracks.velocity, -1, 0)
@@ -42,7 +42,7 @@ def table_of(tracks: Tracks, terrain: Terrain) -> NDArray[np.void]:
 
 @kernel
 def _lay(table: NDArray[np.void], terrain: Terrain) -> None:
-    """Lay the motion on the ground."""
+    """Set the heights and slopes of the samples to those of the ground."""
     for row in range(table.shape[0]):
         for actor in range(table.shape[1]):
             sample = table[row, actor]

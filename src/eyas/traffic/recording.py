@@ -1,4 +1,4 @@
-"""A recording: what SUMO drove, in whole centimetres and milliradians, with where it came from."""
+"""A recording: SUMO's vehicle poses in whole centimetres and milliradians, with provenance."""
 
 from dataclasses import dataclass
 
@@ -27,18 +27,18 @@ ANGLE_UNIT = 0.001
 
 @dataclass(frozen=True, slots=True)
 class Provenance:
-    """Everything that went into a recording. Two recordings with equal provenance are equal."""
+    """All inputs of a recording. Recordings with equal provenance are equal."""
 
     map_name: str
     map_seed: int
     graph_hash: str
     """Hash of the road graph the vehicles drove on."""
     config: TrafficConfig
-    """What was asked for; `group_size` and `seed` are numbers."""
+    """Settings of the traffic; `group_size` and `seed` are numbers."""
     duration: float
     """[s]"""
     warm_up: float
-    """Time that was driven before the recording began [s]."""
+    """Simulated time before the recording began [s]."""
     options: tuple[str, ...]
     """SUMO's options."""
     sumo_version: str
@@ -47,14 +47,14 @@ class Provenance:
 
 @dataclass(slots=True)
 class Recording:
-    """Poses as SUMO gave them, at a fixed rate. S samples, A actors, world frame.
+    """SUMO's poses at a fixed rate. S samples, A actors, world frame.
 
-    With `respawn` an actor stands for one vehicle after another, as the original reuses its nodes:
-    between two of them it is absent for at least one sample.
+    With `respawn`, an actor represents several vehicles one after another, as the original reuses
+    its nodes; between two vehicles it is absent for at least one sample.
     """
 
     rate: float
-    """Samples in a second [Hz]; sample s is at time s / rate."""
+    """Samples per second [Hz]; sample s is at time s / rate."""
     position: NDArray[np.float64]
     """Middle of the vehicle's length, east and north [m], shape (S, A, 2); held while absent."""
     yaw: NDArray[np.float64]
@@ -64,7 +64,7 @@ class Recording:
     vehicle_length: float
     """SUMO's length of the vehicle class [m]."""
     provenance: Provenance
-    """Where it came from."""
+    """Inputs it was made from."""
 
     @property
     def actors(self) -> int:
@@ -73,7 +73,7 @@ class Recording:
 
     @property
     def vehicle_types(self) -> tuple[VehicleType, ...]:
-        """Class of each actor; that of the vehicles it stands for one after another."""
+        """Class of each actor, which is the class of all vehicles it represents."""
         return (self.provenance.config.vehicle_type,) * self.actors
 
     @property
@@ -83,26 +83,26 @@ class Recording:
 
 
 def quantised(values: NDArray[np.float64], unit: float) -> NDArray[np.int64]:
-    """Return values [any unit] as whole multiples of `unit`."""
+    """Return values [any unit] rounded to whole multiples of `unit`."""
     return np.rint(values / unit).astype(np.int64)
 
 
 def restored(multiples: NDArray[np.int64], unit: float) -> NDArray[np.float64]:
-    """Return the values [any unit] that `quantised` counted."""
+    """Return the values [any unit] for multiples of `unit` from `quantised`."""
     return multiples.astype(np.float64) * unit
 
 
 def check_map(
     recording: Recording, map_name: str, map_seed: int, graph_hash: str, source: str
 ) -> None:
-    """Refuse a recording of other roads.
+    """Reject a recording of other roads.
 
     Args:
         recording: The recording.
-        map_name: Name of the map that is used.
-        map_seed: Its seed.
+        map_name: Name of the map in use.
+        map_seed: Seed of that map.
         graph_hash: Hash of its road graph.
-        source: What to call the recording in the message, for example its path.
+        source: Name of the recording for the message, for example its path.
 
     Raises:
         DataFileError: The recording was made on other roads.

@@ -1,7 +1,8 @@
-"""The file of a recording: a compressed npz of second differences, time last, with a checksum.
+"""The file of a recording: a compressed npz of second differences over time, with a checksum.
 
-Cars change their speed slowly, so second differences of whole centimetres are mostly 0 or ±1:
-about 0.4 MB for 20 minutes of 40 cars. Equal recordings give equal bytes.
+Cars change their speed slowly, so second differences of whole centimetres are mostly 0 or ±1: a
+file has about 0.4 MB for 20 minutes of 40 cars. Time is the last axis. Equal recordings give equal
+bytes.
 """
 
 import hashlib
@@ -30,16 +31,16 @@ from eyas.traffic.recording import (
 __all__ = ["FORMAT", "from_bytes", "load", "save", "to_bytes"]
 
 FORMAT = "eyas traffic recording 1"
-"""What a file begins its header with; another number is another layout."""
+"""Format in the header of a file; another layout gets another number."""
 
 Arrays = dict[str, NDArray[np.generic]]
 
 
 def save(recording: Recording, path: Path) -> None:
-    """Write a recording; the file is whole or not there.
+    """Write the file of a recording, completely or not at all.
 
     Raises:
-        OutputError: The file system refused.
+        OutputError: The file cannot be written.
     """
     write_atomic(path, to_bytes(recording))
 
@@ -48,7 +49,7 @@ def load(path: Path | Traversable) -> Recording:
     """Read a recording.
 
     Raises:
-        DataFileError: The file is not there, unreadable, cut off or something else.
+        DataFileError: The file is missing, unreadable, truncated or not a recording.
     """
     try:
         data = path.read_bytes()
@@ -84,14 +85,14 @@ def to_bytes(recording: Recording) -> bytes:
 
 
 def from_bytes(data: bytes, source: str) -> Recording:
-    """Return the recording that `to_bytes` gave.
+    """Return the recording from the content of its file.
 
     Args:
-        data: Content of the file.
-        source: What to call it in messages.
+        data: Content of the file, from `to_bytes`.
+        source: Name of the file for messages.
 
     Raises:
-        DataFileError: The content is cut off, damaged or something else.
+        DataFileError: The content is truncated, damaged or not a recording.
     """
     arrays = _read_arrays(data, source)
     header = json.loads(arrays["header"].tobytes())
@@ -115,7 +116,7 @@ def _read_arrays(data: bytes, source: str) -> Arrays:
     try:
         with np.load(io.BytesIO(data), allow_pickle=False) as file:
             arrays: Arrays = {name: file[name] for name in file.files}
-    except Exception as error:  # zipfile, zlib and numpy raise a dozen kinds on damaged bytes
+    except Exception as error:  # damaged bytes raise many kinds in zipfile, zlib, numpy
         raise DataFileError(f"{source}: not a whole traffic recording") from error
     if {"header", "checksum"} - set(arrays):
         raise DataFileError(f"{source}: not a traffic recording (allowed: '{FORMAT}')")
@@ -139,7 +140,7 @@ def _checksum(arrays: Arrays) -> NDArray[np.uint8]:
 def _differences(name: str, values: NDArray[np.int64]) -> Arrays:
     """Return the first two samples and the second differences along the last axis."""
     second = np.diff(values, n=2, axis=-1)
-    # Only a slot that is used again, far away, needs more than 16 bits.
+    # Only an actor that is reused far away needs more than 16 bits.
     small = bool((np.abs(second) < 2**15).all())
     return {
         f"{name}_start": values[..., :2].astype(np.int32),

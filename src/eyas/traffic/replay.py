@@ -1,4 +1,4 @@
-"""Traffic whose motion is known from its beginning to its end."""
+"""Traffic whose whole motion is known in advance."""
 
 from typing import Final
 
@@ -13,17 +13,17 @@ from eyas.traffic.smoothing import runs
 __all__ = ["Replay"]
 
 ROUNDING: Final = 1e-9
-"""A time that is a multiple of 2 ms may be off by this [s]."""
+"""Tolerance for rounding errors in times that are multiples of 2 ms [s]."""
 
 
 class Replay:
-    """A table of motion as a `TrafficSource`.
+    """A motion as a `TrafficSource`.
 
     Attributes:
-        motion: The table; its first time is 0.
+        motion: Motion of all actors.
 
     Args:
-        motion: Of all actors.
+        motion: Motion of all actors; its first time must be 0.
     """
 
     def __init__(self, motion: Motion) -> None:
@@ -32,7 +32,7 @@ class Replay:
         present = motion.table["present"] > 0.0
         stays = [(actor, *stay) for actor in range(self.actors) for stay in runs(present[:, actor])]
         self._who, enters, leaves = np.array(stays, np.int64).reshape(-1, 3).T
-        # Times of the first and the last sample of each stay in the world [s].
+        # Times of the first and last sample of each stay in the world [s].
         self._enters, self._leaves = enters / motion.rate, (leaves - 1) / motion.rate
 
     @property
@@ -42,15 +42,15 @@ class Replay:
 
     @property
     def duration(self) -> float:
-        """Last time that can be asked for [s]; the first is 0."""
+        """Last time of the traffic [s]; the first is 0."""
         return (len(self.motion.table) - 1) / self.motion.rate
 
     def at(self, time: NDArray[np.float64], out: ActorState) -> None:
-        """Write all actors of W worlds at the worlds' own times [s], shape (W,)."""
+        """Write all actors of W worlds at the time of each world [s], shape (W,)."""
         interpolate_actors(self.motion, time, out)
 
     def available(self, start: float, end: float) -> NDArray[np.bool_]:
-        """Return which actors stay in the world from `start` to `end` [s], shape (A,).
+        """Return whether each actor stays in the world from `start` to `end` [s], shape (A,).
 
         Raises:
             ConfigError: The motion does not last that long.

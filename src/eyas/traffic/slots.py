@@ -1,4 +1,4 @@
-"""Which actor stands for which vehicle."""
+"""Assignment of vehicles to actors."""
 
 from collections.abc import Iterable
 from typing import Final
@@ -7,12 +7,12 @@ __all__ = ["Slots"]
 
 
 class Slots:
-    """Gives each vehicle an actor, and the actor of one that left to a later one.
+    """Assignment of an actor to each vehicle; the actor of a vehicle that left is reused.
 
-    Between two vehicles an actor is absent for at least one step, so no motion joins them.
+    Between two vehicles an actor is absent for at least one step, so that no motion connects them.
 
     Args:
-        count: Number of actors; never fewer than vehicles.
+        count: Number of actors, at least the largest number of vehicles at a time.
     """
 
     def __init__(self, count: int) -> None:
@@ -21,10 +21,10 @@ class Slots:
         self._free = list(range(count))
 
     def advance(self, vehicles: Iterable[int]) -> None:
-        """Take note of the numbers of the vehicles that are in the world now."""
+        """Update the assignment to the vehicles that are in the world now, given by number."""
         here = set(vehicles)
         gone = sorted(self.taken.keys() - here)
-        # New ones come first: what this step sets free is given away in the next at the earliest.
+        # New vehicles first: an actor freed in this step is reused in the next at the earliest.
         for vehicle in sorted(here - self.taken.keys()):
             self.taken[vehicle] = self._free.pop(0)
         for vehicle in gone:

@@ -1,7 +1,8 @@
-"""From SUMO's poses to smooth driving: filtered positions, and a heading that a car can have.
+"""Smoothing of SUMO's poses: filtered positions, and a heading that a car can follow.
 
-SUMO moves a vehicle sideways and turns it in steps. A Gaussian takes the steps out of the path of
-the front axle; the rear axle follows it like a trailer (a tractrix), which gives the heading.
+SUMO moves a vehicle sideways and turns it in discrete steps. A Gaussian filter removes the steps
+from the path of the front axle; the rear axle follows like a trailer (a tractrix), which gives the
+heading.
 """
 
 import math
@@ -16,25 +17,25 @@ from eyas.traffic.recording import Recording
 __all__ = ["Tracks", "held", "runs", "smooth"]
 
 SIGMA = 0.3
-"""Width of the Gaussian [s]: takes out SUMO's 0.1 s steps, moves the path by centimetres."""
+"""Width of the Gaussian [s]: removes SUMO's 0.1 s steps and moves the path by centimetres only."""
 
 WHEELBASE = 0.54
 """Axle distance as a share of the vehicle's length: 2.7 m for the 5 m car."""
 
 LONGEST_WHEELBASE = 6.0
-"""[m]; a longer one belongs to a bend in the vehicle, which turns more than its middle shows."""
+"""Upper limit of the axle distance [m]: longer vehicles are articulated and turn more tightly."""
 
 
 @dataclass(slots=True)
 class Tracks:
-    """Smooth motion of A actors at S samples, world frame. Held, with speed 0, while absent."""
+    """Smooth motion of A actors at S samples, world frame. Poses are held while absent."""
 
     rate: float
-    """Samples in a second [Hz]."""
+    """Samples per second [Hz]."""
     position: NDArray[np.float64]
     """Middle of the vehicle's length [m], shape (S, A, 2)."""
     velocity: NDArray[np.float64]
-    """[m/s], shape (S, A, 2)."""
+    """[m/s], shape (S, A, 2); 0 while absent."""
     yaw: NDArray[np.float64]
     """Heading without jumps at ±180° [rad], shape (S, A)."""
     yaw_rate: NDArray[np.float64]
@@ -71,10 +72,10 @@ def smooth(recording: Recording) -> Tracks:
 
 
 def runs(present: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """Return the first and one past the last sample of each stay in the world.
+    """Return the first sample and one past the last sample of each stay in the world.
 
     Args:
-        present: shape (S,).
+        present: Whether the actor is in the world, shape (S,).
     """
     edges = np.diff(np.concatenate([[False], present, [False]]).astype(np.int8))
     return list(
@@ -83,11 +84,13 @@ def runs(present: NDArray[np.bool_]) -> list[tuple[int, int]]:
 
 
 def held(values: NDArray[np.float64], present: NDArray[np.bool_]) -> NDArray[np.float64]:
-    """Return values whose absent samples repeat the last present one, or else the first.
+    """Return values with each absent sample replaced by the last present one before it.
+
+    Samples before the first present one take its value.
 
     Args:
-        values: shape (S, ...).
-        present: shape (S,).
+        values: Values at the samples, shape (S, ...).
+        present: Whether the actor is in the world, shape (S,).
     """
     if not present.any():
         return np.zeros_like(values)
@@ -113,9 +116,9 @@ def _smooth_run(
 
 
 def _filtered(points: NDArray[np.float64], sigma: float) -> NDArray[np.float64]:
-    """Return points (S, 2) after a Gaussian of `sigma` samples.
+    """Return points (S, 2) after a Gaussian filter of `sigma` samples.
 
-    Past its ends the path is turned about its end point, so that even motion is left as it is.
+    Beyond its ends the path is continued by point reflection, so that uniform motion is unchanged.
     """
     reach = math.ceil(4 * sigma)
     weight = np.exp(-0.5 * (np.arange(-reach, reach + 1) / sigma) ** 2)
@@ -129,7 +132,7 @@ def _filtered(points: NDArray[np.float64], sigma: float) -> NDArray[np.float64]:
 
 
 def _slope(values: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
-    """Return the change in a second: over both neighbours, at the ends over the one there is."""
+    """Return the change per second, by central differences; one-sided at the ends."""
     slope = np.empty_like(values)
     slope[1:-1] = (values[2:] - values[:-2]) * (0.5 * rate)
     slope[0] = (values[1] - values[0]) * rate
@@ -143,8 +146,8 @@ def _follow(
 ) -> None:
     """Write the heading (S,) of a body whose front axle is pulled along `front` (S, 2).
 
-    Between two points the pull is straight, and the angle a between heading and pull shrinks as
-    tan(a / 2) * exp(-distance / wheelbase), the tractrix in closed form.
+    Between two points the pull is straight, and the angle a between heading and pull shrinks:
+    tan(a / 2) falls by the factor exp(-distance / wheelbase), the tractrix in closed form.
     """
     heading[0] = yaw
     for sample in range(1, front.shape[0]):

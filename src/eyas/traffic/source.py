@@ -1,4 +1,4 @@
-"""What the simulation asks of any traffic."""
+"""The interface between the simulation and any traffic."""
 
 from typing import Protocol
 
@@ -11,15 +11,15 @@ __all__ = ["TrafficSource"]
 
 
 class TrafficSource(Protocol):
-    """Where the actors are at any time. All worlds share the source; each has its own time.
+    """Motion of the actors over time. All worlds share the source; each has its own time.
 
-    An actor keeps its kind (`Motion.kind`) for ever, also where it stands for one vehicle after
-    another.
+    An actor never changes its kind (`Motion.kind`), even if it represents several vehicles one
+    after another.
     """
 
     @property
     def motion(self) -> Motion:
-        """What kernels read (`eyas.traffic.interpolation.interpolate_actor`)."""
+        """Motion for kernels to read (`eyas.traffic.interpolation.interpolate_actor`)."""
         ...
 
     @property
@@ -29,22 +29,18 @@ class TrafficSource(Protocol):
 
     @property
     def duration(self) -> float:
-        """Last time that can be asked for [s]; the first is 0."""
+        """Last time of the traffic [s]; the first is 0."""
         ...
 
     def at(self, time: NDArray[np.float64], out: ActorState) -> None:
         """Write all actors of W worlds.
 
         Args:
-            time: Time of each world [s], shape (W,); held at 0 and at the duration.
-            out: W worlds.
+            time: Time of each world [s], shape (W,); clamped to 0 and the duration.
+            out: Actors of W worlds.
         """
         ...
 
     def available(self, start: float, end: float) -> NDArray[np.bool_]:
-        """Return which actors are in the world, without a break, from `start` to `end` [s].
-
-        Returns:
-            shape (A,).
-        """
+        """Return whether each actor stays in the world from `start` to `end` [s], shape (A,)."""
         ...

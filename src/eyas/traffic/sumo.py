@@ -1,4 +1,4 @@
-"""The one file that drives SUMO: a simulation in this process, watched ten times a second."""
+"""Interface to SUMO: a simulation in this process, sampled ten times per second."""
 
 import tempfile
 from collections import deque
@@ -20,32 +20,32 @@ from eyas.traffic.sumo_install import import_libsumo
 __all__ = ["OPTIONS", "RATE", "Drive", "Fleet", "drive"]
 
 RATE = 10
-"""SUMO's steps and our samples in a second [Hz]; the original's is the same."""
+"""SUMO's steps and Eyas's samples per second [Hz], as in the original."""
 
 OPTIONS = (
-    # Vehicles slide over to the next lane instead of jumping 3.5 m in one step.
+    # Vehicles move gradually to the next lane instead of jumping 3.5 m in one step.
     *("--lateral-resolution", "0.8"),
     # Drivers decide twice a second: smoother, and several times faster.
     *("--default.action-step-length", "0.5"),
-    # Never lift a vehicle out of a jam or an accident and put it elsewhere.
+    # Never teleport a vehicle out of a jam or an accident.
     *("--time-to-teleport", "-1"),
     *("--collision.action", "none"),
     *("--no-warnings", "true"),
     *("--no-step-log", "true"),
     *("--duration-log.disable", "true"),
 )
-"""SUMO's options besides the network, the seed and the step."""
+"""SUMO's options, except the network, the seed and the step length."""
 
 TYPE = "eyas"
-"""Name of the one vehicle type."""
+"""Name of the only vehicle type."""
 
 Fleet = Callable[[RoadLinks], Iterator[tuple[float, Route]]]
-"""Gives, for the roads, the entry time [s] and the route of each vehicle, the earliest first."""
+"""Function of the roads that yields each vehicle's entry time [s] and route, the earliest first."""
 
 
 @dataclass(slots=True)
 class Drive:
-    """What SUMO drove, as it gave it. S samples, A actors."""
+    """SUMO's unprocessed output. S samples, A actors."""
 
     position: NDArray[np.float64]
     """Middle of the vehicle's length, east and north [m], shape (S, A, 2); 0 while absent."""
@@ -64,18 +64,18 @@ def drive(
     span: tuple[float, float],
     progress: Callable[[float], None] | None,
 ) -> Drive:
-    """Run SUMO and return where its vehicles were.
+    """Run SUMO and return the poses of its vehicles.
 
     Args:
         network: SUMO's network file.
-        config: The vehicle type, the seed (a number) and the most vehicles at a time.
-        fleet: Which vehicles enter when.
+        config: Settings of the traffic; the seed is a number.
+        fleet: Entry times and routes of the vehicles.
         span: First and last time of the samples [s].
-        progress: Is told the share that is done, each simulated second.
+        progress: Called with the completed share, 0 to 1, each simulated second.
 
     Raises:
         MissingExtraError: SUMO is not installed.
-        ConfigError: SUMO already runs something else in this process.
+        ConfigError: SUMO already runs another simulation in this process.
     """
     skipped, steps = round(span[0] * RATE), round(span[1] * RATE)
     shape = (steps - skipped + 1, config.max_vehicles)
@@ -117,8 +117,9 @@ def _simulation(network: bytes, config: TrafficConfig) -> Iterator[ModuleType]:
 
 
 def _type_xml(config: TrafficConfig) -> str:
-    # Everything else, the length too, is SUMO's default of the class, as in the original. Only
-    # sliding sideways while standing is forbidden, and limited to an angle of 17 degrees.
+    # Everything else, including the length, is SUMO's default for the class, as in the original,
+    # except that vehicles do not slide sideways while standing, and at most at an angle of 17
+    # degrees while driving.
     return (
         f'<additional><vType id="{TYPE}" vClass="{config.vehicle_type}" '
         f'maxSpeed="{config.max_speed}" accel="{config.max_acceleration}" '
@@ -151,7 +152,7 @@ def _read_links(sumo: ModuleType, vehicle_type: str) -> RoadLinks:
 
 
 class _Entrance:
-    """Lets vehicles into the simulation when it is their time and there is room for them."""
+    """Adds vehicles to the simulation when they are due and there is room for them."""
 
     def __init__(
         self, sumo: ModuleType, fleet: Iterator[tuple[float, Route]], config: TrafficConfig
@@ -159,7 +160,7 @@ class _Entrance:
         self._sumo = sumo
         self._fleet = fleet
         self._room = config.max_vehicles
-        # Vehicles that stay for ever begin anywhere, those of a group where an edge begins.
+        # Vehicles that never leave start anywhere; those of a group start where an edge begins.
         self._place = "random_free" if config.demand is Demand.KEEP_ALIVE else "base"
         self._waiting: deque[tuple[float, Route]] = deque()
         self._entered = 0
@@ -183,7 +184,7 @@ class _Entrance:
 def _read_poses(sumo: ModuleType, slots: Slots, result: Drive, sample: int) -> None:
     half = 0.5 * result.vehicle_length
     for vehicle, slot in slots.taken.items():
-        # SUMO's point is the middle of the front bumper, its angle clockwise from north.
+        # SUMO's position is the middle of the front bumper; its angle is clockwise from north.
         east, north = sumo.vehicle.getPosition(str(vehicle))
         yaw = np.radians(90.0 - sumo.vehicle.getAngle(str(vehicle)))
         result.position[sample, slot] = east - half * np.cos(yaw), north - half * np.sin(yaw)

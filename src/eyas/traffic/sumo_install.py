@@ -1,4 +1,4 @@
-"""Where SUMO is: the optional packages of the extra `sumo`, imported only when something asks."""
+"""Location of SUMO: the optional packages of the extra `sumo`, imported only when needed."""
 
 import importlib
 import os
@@ -12,7 +12,7 @@ from eyas.core.errors import MissingExtraError
 __all__ = ["SYSTEM_PACKAGES", "import_libsumo", "sumo_binary", "sumo_environment", "sumo_version"]
 
 SYSTEM_PACKAGES = "libgl1 libx11-6 libxext6 libxrender1 libexpat1 libatomic1"
-"""What SUMO's wheels need of Debian and Ubuntu."""
+"""Packages of Debian and Ubuntu that SUMO's wheels need."""
 
 
 def sumo_binary(name: str) -> Path:
@@ -60,7 +60,7 @@ def sumo_version() -> str:
 
 
 def missing_sumo(purpose: str) -> MissingExtraError:
-    """Return the error that says how SUMO is installed."""
+    """Return the error that explains how to install SUMO."""
     return MissingExtraError(
         purpose, "sumo", f"(on Debian or Ubuntu also: apt-get install {SYSTEM_PACKAGES})"
     )
@@ -73,5 +73,5 @@ def _home() -> Path:
 def _imported(name: str) -> ModuleType:
     try:
         return importlib.import_module(name)
-    except ImportError:  # also raised where a system library is missing
+    except ImportError:  # also raised if a system library is missing
         raise missing_sumo("traffic") from None

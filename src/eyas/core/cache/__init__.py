@@ -1,1 +1,1 @@
-"""What Eyas keeps on disk from run to run, in one folder with one limit."""
+"""The cache on disk, kept from run to run in one folder with one size limit."""

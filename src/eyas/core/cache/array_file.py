@@ -1,8 +1,8 @@
 """Files of arrays that are mapped into memory: processes that use the same file share its pages.
 
-A file is a `.npy` of bytes, which hold: CRC-32 of all that follows; length of the header; the
-header, JSON; the arrays, each at a multiple of 64 bytes. To map one file with hundreds of arrays
-takes a hundredth of the time that a file for each array would.
+A file is a `.npy` array of bytes, which hold: the CRC-32 of all bytes after it; the length of the
+header; the header, in JSON; the arrays, each at a multiple of 64 bytes. Mapping one file with
+hundreds of arrays takes a hundredth of the time of mapping one file for each array.
 """
 
 import io
@@ -24,15 +24,15 @@ _NUMBER = struct.Struct("<I")
 
 
 class Content(NamedTuple):
-    """What a file holds."""
+    """Content of a file."""
 
     flat: Json
-    """Everything but the arrays."""
+    """Everything except the arrays."""
     arrays: list[Array]
 
 
 def array_file(content: Content) -> list[bytes | memoryview]:
-    """Return the pieces of a file, one after the other."""
+    """Return the pieces of a file, in order."""
     table, size = [], 0
     for array in content.arrays:
         table.append([array.dtype.str, array.shape, size])
@@ -47,20 +47,20 @@ def array_file(content: Content) -> list[bytes | memoryview]:
 
 
 def map_arrays(path: Path) -> Content:
-    """Return what a file holds. What is written into its arrays stays in this process.
+    """Return the content of a file. Writes into its arrays are visible only in this process.
 
     Raises:
-        OSError: It is not there or cannot be read.
-        ValueError: It is damaged or something else.
+        OSError: The file does not exist or cannot be read.
+        ValueError: The file is damaged or not a file of arrays.
     """
-    # Mapped to be copied when written to: read-only arrays are another type to numba, for which it
-    # would compile all kernels again.
+    # Mapped copy-on-write: for numba, read-only arrays have a different type, and it would compile
+    # all kernels again.
     whole = np.asarray(np.memmap(path, np.uint8, mode="c"))
     first = len(_npy_header(0))
     if bytes(whole[:first]) != _npy_header(len(whole) - first):
         raise ValueError(f"{path}: not a file of arrays, or cut off")
     body = whole[first:].data
-    # Kernels read these arrays without a look at their bounds: not a bit may be wrong.
+    # Kernels index these arrays without checking bounds, so not a single bit may be wrong.
     if bytes(body[: _NUMBER.size]) != _NUMBER.pack(zlib.crc32(body[_NUMBER.size :])):
         raise ValueError(f"{path}: damaged")
     (length,) = _NUMBER.unpack_from(body, _NUMBER.size)
@@ -74,7 +74,7 @@ def map_arrays(path: Path) -> Content:
 
 
 def _npy_header(size: int) -> bytes:
-    """Return what a `.npy` of so many bytes begins with; its own length does not depend on it."""
+    """Return the header of a `.npy` of `size` bytes; its length is the same for every size."""
     header = io.BytesIO()
     layout = {"descr": "|u1", "fortran_order": False, "shape": (size,)}
     np.lib.format.write_array_header_1_0(header, layout)

@@ -1,4 +1,4 @@
-"""Values that take long to make and always come out the same, kept from run to run."""
+"""Values that take long to compute and are always the same, kept from run to run."""
 
 import contextlib
 import logging
@@ -25,7 +25,7 @@ _LOG = logging.getLogger("eyas")
 _ROOT = Path(__file__).parents[2]
 
 _LONG = 1.0
-"""What took longer to make is told in the log [s]."""
+"""Values that took longer than this to make are reported in the log [s]."""
 
 
 def cached(
@@ -37,19 +37,19 @@ def cached(
     of: type[Thing],
     folder: Path | None = None,
 ) -> Thing:
-    """Return a value from the cache; made anew if its makers' sources or inputs are others.
+    """Return a value from the cache; make it anew if its makers' sources or its inputs changed.
 
     Args:
-        kind: What it is.
-        makers: Packages of Eyas, and files in them, whose sources make it.
-        inputs: What they make it of: arrays, and values whose `repr` tells them apart.
-        make: Makes it.
-        of: Its type, of what `eyas.core.cache.flat` can flatten.
-        folder: The cache; None: the user's. It saves time only: where it cannot be written to, it
-            is left alone, and what is damaged is made anew.
+        kind: Kind of the value.
+        makers: Packages of Eyas, and files in them, whose sources make the value.
+        inputs: Inputs of the makers: arrays, and values that differ in their `repr`.
+        make: Returns the value.
+        of: Type of the value; `eyas.core.cache.flat` must be able to flatten it.
+        folder: The cache; None: the user's. The cache only saves time: one that cannot be written
+            to is not used, and a damaged entry is made anew.
 
     Raises:
-        ConfigError: `EYAS_CACHE_LIMIT` is no size.
+        ConfigError: `EYAS_CACHE_LIMIT` is not a size.
     """
     limit = cache_limit()
     path = (folder or cache_folder()) / kind / f"eyas-{_key(makers, inputs)}.npy"
@@ -62,7 +62,7 @@ def cached(
     taken = time.perf_counter() - start
     flat, arrays = flatten(made)
     content = Content(flat, [np.asarray(array, order="C") for array in arrays])
-    # What is made and what is read later take the same way, so that they have the same types.
+    # A value just made is restored like one read from the file, so that both have the same types.
     restored = restore(of, *content)
     with contextlib.suppress(OSError):
         write_entry(path, array_file(content), limit)
@@ -87,7 +87,7 @@ def _key(makers: tuple[str, ...], inputs: tuple[object, ...]) -> str:
 
 @cache
 def _sources(maker: str) -> bytes:
-    """Return a hash of the sources of a package, or of one file."""
+    """Return a hash of the sources of a package or of one file."""
     digest = blake2b(maker.encode(), digest_size=16)
     path = _ROOT / maker
     files = sorted(path.rglob("*.py")) if path.is_dir() else [path]

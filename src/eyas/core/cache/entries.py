@@ -1,7 +1,8 @@
-"""The entries of the cache: listing, writing, and removing the ones that were not used for long.
+"""The entries of the cache: listing, writing, and removing the least recently used ones.
 
-Only what Eyas made is counted or removed: files whose names have the forms below, and numba's
-files in folders of kernels. A file that another process has mapped stays readable for it.
+Only files that Eyas made are counted or removed: those whose names have the forms below, and
+numba's files in folders of kernels. A process that has mapped a file can still read it after the
+file is removed.
 """
 
 import contextlib
@@ -23,10 +24,10 @@ __all__ = ["Entry", "clear", "entries", "prune", "write_entry"]
 _DAY = 86_400.0
 
 _KERNELS_LAST = 30 * _DAY
-"""How long kernels are kept after their last use, if others are in use [s]."""
+"""Time for which kernels are kept after their last use [s]."""
 
 _PARTS_LAST = _DAY
-"""Longest time to write an entry [s]; an older part is of a process that was killed."""
+"""Longest time to write an entry [s]; an older part was left by a process that was killed."""
 
 _ARRAYS = r"eyas-[0-9a-f]{32}\.npy"
 _RECORDING = r".+-\d+-[0-9a-f]{32}\.npz"
@@ -54,11 +55,11 @@ class Entry:
     size: int
     """[bytes]"""
     used: float
-    """When it was used last [s since 1970]."""
+    """Time of the last use [s since 1970]."""
 
 
 def entries(folder: Path) -> list[Entry]:
-    """Return all entries of a cache, the ones not used for longest first."""
+    """Return all entries of a cache, the least recently used first."""
     found = [
         Entry(kind, path, _size(path, status), status.st_mtime)
         for kind, name, form in _FORMS
@@ -69,18 +70,18 @@ def entries(folder: Path) -> list[Entry]:
 
 
 def write_entry(path: Path, pieces: Iterable[bytes | memoryview], limit: int) -> None:
-    """Write an entry, whole or not at all, and remove others if the cache becomes too large.
+    """Write an entry completely or not at all; remove others if the cache becomes too large.
 
     Args:
         path: `<folder>/<kind>/<name>`, with a name of the form of its kind.
-        pieces: Its content.
-        limit: How large the cache may become [bytes].
+        pieces: Content of the entry.
+        limit: Largest size of the cache [bytes].
 
     Raises:
-        OSError: The file system refused.
+        OSError: The file cannot be written.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
-    # Processes may write the same entry at once; each has a part of its own.
+    # Several processes may write the same entry at once; each writes its own part.
     part = path.with_name(f".{path.name}.{secrets.token_hex(8)}{PART_SUFFIX}")
     try:
         with part.open("xb") as file:
@@ -93,10 +94,10 @@ def write_entry(path: Path, pieces: Iterable[bytes | memoryview], limit: int) ->
 
 
 def prune(folder: Path, limit: int) -> None:
-    """Remove what was not used for longest until the cache is no larger than its limit.
+    """Remove the least recently used entries until the cache is no larger than its limit.
 
-    Kernels that no one used for a month go in any case, and parts of processes that were killed.
-    The kernels of this process stay.
+    Kernels unused for a month, and parts left by processes that were killed, are always removed.
+    The kernels of this process are kept.
     """
     now = time.time()
     _remove_parts(folder, [kind.value for kind in Kind], now - _PARTS_LAST)
@@ -110,7 +111,7 @@ def prune(folder: Path, limit: int) -> None:
 
 
 def _remove(entry: Entry) -> int:
-    """Remove an entry; return how much that freed, 0 if it could not be removed [bytes]."""
+    """Remove an entry; return the size freed, 0 if it could not be removed [bytes]."""
     if entry.kind == Kind.KERNELS:
         return _remove_kernels(entry.path)
     with contextlib.suppress(OSError):
@@ -120,21 +121,21 @@ def _remove(entry: Entry) -> int:
 
 
 def clear(folder: Path, kind: Kind | None = None) -> int:
-    """Remove all entries, or those of one kind; return how much that freed [bytes].
+    """Remove all entries, or those of one kind; return the size freed [bytes].
 
-    A process that uses an entry goes on; one that is writing an entry will not keep it.
+    Processes that use an entry are not disturbed; an entry that is being written is lost.
     """
     chosen = [entry for entry in entries(folder) if kind in (None, entry.kind)]
     freed = sum(map(_remove, chosen))
     _remove_parts(folder, {name for of, name, _ in _FORMS if kind in (None, of)}, math.inf)
     for emptied in {entry.path.parent for entry in chosen}:
-        with contextlib.suppress(OSError):  # it holds something else
+        with contextlib.suppress(OSError):  # the folder is not empty
             emptied.rmdir()
     return freed
 
 
 def _remove_parts(folder: Path, names: Iterable[str], before: float) -> None:
-    """Remove what processes have begun to write in some folders, last before a time."""
+    """Remove the parts in some folders that were last written to before a time [s since 1970]."""
     for name in names:
         for path, status in _named(folder / name, _PARTS):
             if status.st_mtime < before:
@@ -143,14 +144,14 @@ def _remove_parts(folder: Path, names: Iterable[str], before: float) -> None:
 
 
 def _named(folder: Path, form: str) -> Iterator[tuple[Path, os.stat_result]]:
-    """Yield what lies in a folder and has a name of a form, with its status."""
+    """Yield the path and status of everything in a folder whose name has the form."""
     try:
         names = sorted(os.listdir(folder))
     except OSError:
         return
     for name in names:
         if re.fullmatch(form, name):
-            with contextlib.suppress(OSError):  # removed by another process just now
+            with contextlib.suppress(OSError):  # just removed by another process
                 yield folder / name, os.lstat(folder / name)
 
 
@@ -181,6 +182,6 @@ def _remove_kernels(folder: Path) -> int:
             file.unlink()
             freed += size
     for path, _, _ in os.walk(folder, topdown=False):
-        with contextlib.suppress(OSError):  # it holds something that is not ours
+        with contextlib.suppress(OSError):  # it holds files that are not numba's
             os.rmdir(path)
     return freed

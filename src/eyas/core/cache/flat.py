@@ -1,8 +1,8 @@
-"""Structured values as plain JSON and a list of arrays, and back by their type.
+"""Conversion of structured values to plain JSON and a list of arrays, and back.
 
-What may be flattened: arrays, dataclasses, named tuples, tuples, dicts with names as keys, enums,
-None, truth values, numbers and text, at any depth. A dataclass comes back by its constructor. An
-array that occurs twice comes back as one array.
+Values that can be flattened: arrays, dataclasses, named tuples, tuples, dicts with names as keys,
+enums, None, truth values, numbers and text, at any depth. A dataclass is restored by its
+constructor. An array that occurs twice is stored once and restored as one array.
 """
 
 import dataclasses
@@ -25,14 +25,14 @@ _ARRAY = "array"
 
 
 class FlatError(ValueError):
-    """A value cannot be flattened, or what was flattened is not of the expected type."""
+    """A value cannot be flattened, or a flattened value is not of the expected type."""
 
 
 def flatten(value: object) -> tuple[Json, list[Array]]:
     """Return a value as JSON, in which numbers stand for arrays, and the arrays.
 
     Raises:
-        FlatError: The value holds something of another kind than those above.
+        FlatError: The value holds something that cannot be flattened.
     """
     places: dict[int, tuple[int, Array]] = {}
     flat = _flatten(value, places)
@@ -57,10 +57,10 @@ def _flatten(value: object, places: dict[int, tuple[int, Array]]) -> Json:
 
 
 def restore(expected: type[Thing], flat: Json, arrays: Sequence[Array]) -> Thing:
-    """Return the value of an expected type that was flattened.
+    """Return a value of the expected type from its flattened form.
 
     Raises:
-        FlatError: It is not of that type: fields are missing or unknown, or of other types.
+        FlatError: It is not of that type: fields are missing, unknown or of other types.
     """
     return cast("Thing", _restore(expected, flat, arrays))
 
@@ -143,7 +143,7 @@ def _parts(value: object) -> dict[str, object] | None:
 
 @cache
 def _field_types(kind: type) -> dict[str, Any] | None:
-    """Return the types of the fields of a dataclass or named tuple, None for other types."""
+    """Return the types of the fields of a dataclass or named tuple; None for other types."""
     if dataclasses.is_dataclass(kind):
         names = [field.name for field in dataclasses.fields(kind)]
     elif isinstance(kind, type) and issubclass(kind, tuple) and hasattr(kind, "_fields"):

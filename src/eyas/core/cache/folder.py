@@ -1,10 +1,10 @@
-"""The folder of the cache: where it is, how large it may become, and what lies in it.
+"""The folder of the cache: its location, size limit and layout.
 
     <folder>/<kind>/eyas-<key>.npy             arrays, see `eyas.core.cache.array_file`
     <folder>/traffic/<map>-<seed>-<key>.npz    recordings of traffic
     <folder>/kernels/<key>/                    compiled kernels, written by numba
 
-The time of change of an entry is that of its last use.
+The modification time of an entry is the time of its last use.
 """
 
 import os
@@ -19,10 +19,10 @@ from eyas.core.errors import ConfigError
 __all__ = ["FOLDER_VARIABLE", "LIMIT_VARIABLE", "Kind", "cache_folder", "cache_limit", "touch"]
 
 FOLDER_VARIABLE = "EYAS_CACHE_DIR"
-"""Environment variable: the folder of the cache, in place of the user's."""
+"""Environment variable: the folder of the cache, instead of the user's default."""
 
 LIMIT_VARIABLE = "EYAS_CACHE_LIMIT"
-"""Environment variable: how large the cache may become."""
+"""Environment variable: largest size of the cache."""
 
 _DEFAULT_LIMIT = 2 << 30
 
@@ -30,7 +30,7 @@ _UNITS = {"": 0, "K": 10, "M": 20, "G": 30, "T": 40}
 
 
 class Kind(StrEnum):
-    """What is kept; the value is the name of the folder in the cache."""
+    """Kinds of entries; the value is the name of the folder in the cache."""
 
     SCENE = "scene"
     TEXTURES = "textures"
@@ -42,20 +42,20 @@ class Kind(StrEnum):
     TRAFFIC = "traffic"
     KERNELS = "kernels"
     OLD = "old"
-    """What versions of Eyas left that had another layout; it has no folder of its own."""
+    """Entries of older versions of Eyas with another layout; they have no common folder."""
 
 
 def cache_folder() -> Path:
-    """Return the folder of the cache; it need not be there."""
+    """Return the folder of the cache; it need not exist."""
     named = os.environ.get(FOLDER_VARIABLE)
     return Path(named or platformdirs.user_cache_dir("eyas")).expanduser().absolute()
 
 
 def cache_limit() -> int:
-    """Return how large the cache may become [bytes].
+    """Return the largest size of the cache [bytes].
 
     Raises:
-        ConfigError: `EYAS_CACHE_LIMIT` is no size.
+        ConfigError: `EYAS_CACHE_LIMIT` is not a size.
     """
     text = os.environ.get(LIMIT_VARIABLE)
     if not text:
@@ -70,7 +70,7 @@ def cache_limit() -> int:
 
 
 def touch(path: Path) -> None:
-    """Remember that an entry was used just now, if the cache can be written to."""
+    """Set the last use of an entry to now, if the cache can be written to."""
     try:
         os.utime(path)
     except OSError:

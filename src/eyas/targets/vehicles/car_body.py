@@ -1,4 +1,4 @@
-"""Car bodies: cross-sections along the length, skinned, with windows, lamps and wheel arches."""
+"""Car bodies: surfaces through cross-sections, with windows, lamps and wheel arches."""
 
 from dataclasses import dataclass
 
@@ -32,12 +32,12 @@ __all__ = ["car_levels"]
 
 @dataclass(frozen=True, slots=True)
 class _Detail:
-    """How finely a body is cut."""
+    """Resolution of a body."""
 
     points: tuple[int, ...]
-    """Which points of the sections are used."""
+    """Points of the sections that are used."""
     columns: tuple[float, ...]
-    """Where the ends are cut, as shares of the half width."""
+    """Limits of the columns of panels at the ends, as shares of the half width."""
     arches: bool
 
 
@@ -88,11 +88,11 @@ def _skin(
     """Return the material of a panel.
 
     Args:
-        shape: The car's.
-        detail: How finely it is cut.
-        x: Of the panel's middle [m].
+        shape: Shape of the car.
+        detail: Resolution of the body.
+        x: Position of the panel's middle [m].
         rise: Height of the roof above the belt line there [m].
-        strip: Its lower and upper point of the section.
+        strip: Lower and upper point of the section that the panel lies between.
     """
     low = strip[0]
     tail, nose = shape.top[0][0], shape.top[-1][0]
@@ -119,7 +119,7 @@ def _roof(shape: CarShape, x: float, *, edge: bool) -> Material:
 
 
 def _glazed(shape: CarShape, detail: _Detail, x: float) -> bool:
-    """Return whether there is a side window; only the finest level has pillars between them."""
+    """Return whether there is a side window at x; only the finest level has pillars."""
     if detail.arches:
         return any(start < x < end for start, end in shape.windows)
     return shape.windows[0][0] < x < shape.windows[-1][1]
@@ -128,7 +128,7 @@ def _glazed(shape: CarShape, detail: _Detail, x: float) -> bool:
 def _end(
     shell: Shell, shape: CarShape, detail: _Detail, half: NDArray[np.float64], *, front: bool
 ) -> None:
-    """Close one end with rows between the points of its section, each cut into columns."""
+    """Close one end with rows of panels between the points of its section."""
     columns = np.array(detail.columns)[:, None]
     for k in range(len(half) - 1):
         low, high = (half[j] * np.ones((len(columns), 1)) for j in (k, k + 1))
@@ -140,7 +140,7 @@ def _end(
             strip = detail.points[k : k + 2]
             material = _end_skin(shape, strip, outer=outer, front=front)
             if strip == (1, 2) and not detail.arches:
-                material = PAINT  # there the sills reach far up
+                material = PAINT  # at these levels the sills reach far up
             shell.quads(quad if front else quad[::-1], material)
 
 
@@ -162,13 +162,15 @@ def _end_skin(shape: CarShape, strip: tuple[int, ...], *, outer: bool, front: bo
 def _lamp_panels(
     shell: Shell, shape: CarShape, before: NDArray[np.float64], end: NDArray[np.float64]
 ) -> None:
-    """Add the lamps of an end that is cut too coarsely to have them: 1 cm off, round the corner.
+    """Add panels for the lamps, 1 cm off the body and around its corner, to a coarse end.
+
+    The coarsest sections have no points for lamps.
 
     Args:
-        shell: Takes them.
-        shape: The car's.
+        shell: Shell to add them to.
+        shape: Shape of the car.
         before: All points of the section next to the end [m].
-        end: The same of the end.
+        end: All points of the section at the end [m].
     """
     front = end[0, 0] > before[0, 0]
     material, reach = (HEAD_LAMP, shape.head_lamps) if front else (TAIL_LAMP, shape.tail_lamps)

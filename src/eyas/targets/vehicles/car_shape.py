@@ -1,8 +1,9 @@
 """The lines of a car, and the cross-sections that follow from them.
 
-Every section has the same points on its left half, from below to above: 0 middle of the floor,
-1 sill, 2 top of the sill, 3 widest, 4 belt line, 5 upper edge of the side window, 6 edge of the
-roof, 7 middle of the roof. Ahead of and behind the cabin points 4 to 7 form the bonnet and boot.
+Every section has the same points on its left half, from bottom to top: 0 middle of the floor,
+1 sill, 2 top of the sill, 3 widest point, 4 belt line, 5 upper edge of the side window, 6 edge of
+the roof, 7 middle of the roof. Ahead of and behind the cabin, points 4 to 7 form the bonnet and
+boot.
 """
 
 from dataclasses import dataclass
@@ -28,64 +29,64 @@ Points = tuple[tuple[float, float], ...]
 Range = tuple[float, float]
 
 _WIDE_OF_BODY = 0.04
-"""The body is narrower than the mirrors by this on each side [m]."""
+"""Distance by which the mirrors stand out from the body on each side [m]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class CarShape:
-    """Lines of a car. x forward from the middle [m], in rising order."""
+    """Lines of a car. x forward from the middle [m], in increasing order."""
 
     top: Points
-    """Middle of boot, roof and bonnet (x, z)."""
+    """Centre line of boot, roof and bonnet (x, z)."""
     belt: Points
     """Lower edge of the side windows (x, z)."""
     plan: Points
     """Half width as a share of the body's (x, share)."""
     windscreen: Range
-    """From the roof to the bonnet."""
+    """x at the roof and at the bonnet."""
     rear_window: Range
-    """From its lower edge to the roof."""
+    """x at its lower edge and at the roof."""
     windows: tuple[Range, ...]
     """Side windows; pillars are between them."""
     lean: float = 0.28
-    """How much the side windows lean inwards."""
+    """Inward lean of the side windows: width per height."""
     clearance: float = 0.2
-    """z of the floor."""
+    """z of the floor [m]."""
     head_lamps: float = 0.3
-    """How far the front lamps reach round the corner."""
+    """Length of the front lamps along the sides [m]."""
     tail_lamps: float = 0.2
-    """How far the rear lamps reach round the corner."""
+    """Length of the rear lamps along the sides [m]."""
     tall_tail_lamps: bool = False
     """Whether the rear lamps reach up beside the rear window."""
     tail_window: bool = False
-    """Whether the rear end has a window (it is upright)."""
+    """Whether the rear end is upright and has a window."""
     nose_window: bool = False
-    """Whether the front end has one."""
+    """Whether the front end is upright and has a window."""
     roof: Material = PAINT
-    """Of the roof."""
+    """Material of the roof."""
     rails: Material = PAINT
-    """Of the edges of the roof and the pillars at its corners."""
+    """Material of the edges of the roof and the pillars at its corners."""
     sill: Material = PAINT
-    """Of the lowest part of the sides."""
+    """Material of the lowest part of the sides."""
     pods: tuple[tuple[float, float, float], ...] = ()
-    """Boxes on the roof: from, to (x) and top (z)."""
+    """Boxes on the roof: rear and front end (x) and top (z) [m]."""
 
 
 def middle_stations(shape: CarShape) -> NDArray[np.float64]:
-    """Return where the sections of the middle level are [m]: the kinks of the roof line."""
+    """Return x of the sections of the middle level [m]: the kinks of the roof line."""
     plan = np.array(shape.plan)[:, 0]
     ends = (plan[0], plan[1], plan[-2], plan[-1])
     return _merged([*(x for x, _ in shape.top), *ends], 0.12)
 
 
 def coarse_stations(shape: CarShape) -> NDArray[np.float64]:
-    """Return where the sections of the coarsest level are [m]."""
+    """Return x of the sections of the coarsest level [m]."""
     tail, nose, bend = shape.top[0][0], shape.top[-1][0], shape.plan[-2][0]
     return _merged([tail, *shape.rear_window, *shape.windscreen, bend, nose], 0.1)
 
 
 def fine_stations(vehicle: VehicleModel, shape: CarShape) -> NDArray[np.float64]:
-    """Return where the sections of the finest level are [m]: wherever a panel ends."""
+    """Return x of the sections of the finest level [m]: one at each end of a panel."""
     tail, nose = shape.top[0][0], shape.top[-1][0]
     reach = arch_radius(vehicle.wheel_radius)
     cuts = np.array([-1.0, -0.96, -0.6, 0.6, 0.96, 1.0]) * reach
@@ -93,14 +94,14 @@ def fine_stations(vehicle: VehicleModel, shape: CarShape) -> NDArray[np.float64]
     lamps = [tail + shape.tail_lamps, nose - shape.head_lamps]
     windows = [x for pair in shape.windows for x in pair]
     edges = [*windows, *lamps, *arches, *shape.windscreen, *shape.rear_window, tail, nose]
-    # Kinks of the outline may move a little to where panels end anyway.
+    # Kinks of the outline may move slightly to the end of a panel nearby.
     kinks = [x for line in (shape.top, shape.plan) for x, _ in line]
     kinks = [x for x in kinks if min(abs(x - edge) for edge in edges) > 0.07]
     return _merged([*edges, *kinks], 0.004)
 
 
 def _merged(stations: list[float], least: float) -> NDArray[np.float64]:
-    """Return the stations in order without those that are nearer than `least` to the one before."""
+    """Return the stations sorted, without those closer than `least` to the one before."""
     kept: list[float] = []
     ordered = sorted(stations)
     for x in ordered:
@@ -111,7 +112,7 @@ def _merged(stations: list[float], least: float) -> NDArray[np.float64]:
 
 
 def arch_radius(wheel_radius: float) -> float:
-    """Return the radius of the cut round a wheel [m]."""
+    """Return the radius of the wheel arch [m]."""
     return 1.14 * wheel_radius + 0.02
 
 
@@ -121,12 +122,12 @@ def _line(points: Points, x: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def height_at(points: Points, x: float) -> float:
-    """Return the height of a line (x, z) at a place [m]."""
+    """Return the height of a line (x, z) at x [m]."""
     return float(_line(points, np.array([x]))[0])
 
 
 def _floor(vehicle: VehicleModel, shape: CarShape, x: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the lower edge of the sides, cut out round the wheels [m]."""
+    """Return z of the lower edge of the sides, with wheel arches [m]."""
     z = np.full(len(x), shape.clearance)
     reach = arch_radius(vehicle.wheel_radius)
     for axle in vehicle.axles:
@@ -145,11 +146,11 @@ def sections(
     belt = np.minimum(_line(shape.belt, x), top - 0.012)
     rise = top - belt
     floor = _floor(vehicle, shape, x) if arches else np.full(len(x), shape.clearance)
-    tucked = 0.06 if arches else 0.055  # without arches the wheels stand out of the sides
+    tucked = 0.06 if arches else 0.055  # without arches the wheels protrude from the sides
     sill = wide - np.where(floor > shape.clearance, 0.0, tucked)
     sill_top = np.maximum(floor, shape.clearance + 0.12) if arches else 0.65 * belt
     floor = np.minimum(floor, belt - 0.06)
-    # Mostly above the arches, so that its line runs straight over them.
+    # Mostly above the arches, so that its line runs straight above them.
     waist = np.maximum(0.84 * belt, floor + 0.005)
     belt_y = wide - 0.045
     window_y = belt_y - 0.06 * np.minimum(rise / 0.3, 1.0) - shape.lean * 0.86 * rise

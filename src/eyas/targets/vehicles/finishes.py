@@ -1,4 +1,4 @@
-"""What vehicles are made of."""
+"""Materials of vehicles."""
 
 from eyas.state.mesh import Material, Surface
 
@@ -42,7 +42,7 @@ HEAD_LAMP = Material(tint=(0.93, 0.94, 0.90), surface=Surface.LAMP, emission=4.5
 """Front lamps; they shine when the weather has lamps on."""
 
 TAIL_LAMP = Material(tint=(0.72, 0.05, 0.04), surface=Surface.LAMP, emission=1.8)
-"""Rear lamps; likewise."""
+"""Rear lamps; they shine when the weather has lamps on."""
 
 TRIM = plain(0.10, 0.10, 0.11)
 """Grilles, bumpers, undersides."""

@@ -1,4 +1,4 @@
-"""Trucks: a cab on a bare chassis, with a box trailer, or with a tank trailer."""
+"""Trucks: a cab on a bare chassis, with a box trailer or with a tank trailer."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -33,7 +33,7 @@ _SEAM = plain(0.52, 0.53, 0.54)
 
 
 def truck_levels(vehicle: VehicleModel) -> tuple[Mesh, Mesh, Mesh]:
-    """Return the levels of detail of a truck and what it pulls, the finest first."""
+    """Return the levels of detail of a truck and its trailer, the finest first."""
     levels = []
     for detail in (2, 1, 0):
         shell = Shell()
@@ -48,7 +48,7 @@ def truck_levels(vehicle: VehicleModel) -> tuple[Mesh, Mesh, Mesh]:
 
 
 def _slice(back: float, front: float, half: float, z: float) -> NDArray[np.float64]:
-    """Return a level cut of the cab: a rectangle with the front corners cut off."""
+    """Return a horizontal section of the cab: a rectangle with the front corners cut off."""
     cut = min(0.22, 0.3 * (front - back))
     return np.array([
         (back, -half, z), (front - cut, -half, z), (front, cut - half, z),
@@ -59,7 +59,7 @@ def _slice(back: float, front: float, half: float, z: float) -> NDArray[np.float
 def _pane(
     shell: Shell, corners: ArrayLike, material: Material, *, margin: float, both_sides: bool = False
 ) -> None:
-    """Add a panel that lies 1.5 cm above a face, drawn in by `margin` as a share of its size."""
+    """Add a panel 1.5 cm above a face, inset by `margin` as a share of its size."""
     face = np.asarray(corners, np.float64)
     normal = np.cross(face[2] - face[0], face[3] - face[1])
     lift = 0.015 * normal / np.linalg.norm(normal)
@@ -138,7 +138,7 @@ def _tail_lamps(shell: Shell, x: float, z: float) -> None:
 
 
 def _trailer_frame(shell: Shell, vehicle: VehicleModel, z: float, detail: int) -> None:
-    """Add what carries a trailer: frame, guards, legs, rear beam."""
+    """Add the frame of a trailer, with guards, legs and rear beam."""
     end, front = -vehicle.length / 2, vehicle.length / 2 - 3.15
     shell.box((end, -0.6, z - 0.22), (front - 0.3, 0.6, z), STEEL)
     shell.box((end, -1.2, 0.62), (end + 0.14, 1.2, 0.86), TRIM)

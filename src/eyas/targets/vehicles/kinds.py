@@ -1,4 +1,4 @@
-"""The kinds of vehicles: one for each SUMO class that drives them."""
+"""The kinds of vehicles: one for each SUMO class."""
 
 from eyas.state.scene import ObjectClass
 from eyas.targets.kind import Kind
@@ -38,4 +38,4 @@ def _kind(vehicle_type: VehicleType) -> Kind:
 
 
 VEHICLE_KINDS: tuple[Kind, ...] = tuple(_kind(vehicle_type) for vehicle_type in VehicleType)
-"""In the order of `VehicleType`."""
+"""All kinds of vehicles, in the order of `VehicleType`."""

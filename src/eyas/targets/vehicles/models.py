@@ -19,11 +19,11 @@ __all__ = [
 ]
 
 VEHICLE_AHEAD = -1.0
-"""How far the middle of a vehicle, which is what the reward looks for, lies ahead of the actor's
+"""Distance of the middle of a vehicle, the point that the reward uses, ahead of the actor's
 reference point [m]: the original rewards a point 1 m behind it."""
 
 LEAN_LIMIT = 0.2
-"""Most that two-wheelers lean into a curve [rad]; the original's clamp of the yaw rate [rad/s]."""
+"""Largest lean of two-wheelers in a curve [rad]; the original's limit of the yaw rate [rad/s]."""
 
 BODY_COLOURS: tuple[Colour, ...] = (
     (0.43, 0.11, 0.10),
@@ -46,8 +46,8 @@ MOTORCYCLE_COLOURS: tuple[Colour, ...] = (
     (0.16, 0.40, 0.17),
     (0.40, 0.14, 0.36),
 )
-"""The main colour of the original's six pairs for two-wheelers, sRGB: red, blue, teal, ochre,
-green, plum."""
+"""The main colours of the original's six colour pairs for two-wheelers, sRGB: red, blue, teal,
+ochre, green, plum."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,41 +55,41 @@ class Axle:
     """One or two wheels that turn together."""
 
     x: float
-    """Place along the vehicle [m]."""
+    """Position along the vehicle [m]."""
     track: float
-    """Between the middles of the two wheels [m]; 0 for a single wheel."""
+    """Distance between the middles of the two wheels [m]; 0 for a single wheel."""
     width: float
-    """Of a tyre [m]."""
+    """Width of a tyre [m]."""
     steered: bool = False
-    """Whether the wheels follow the curve."""
+    """Whether the wheels steer."""
 
 
 @dataclass(frozen=True, slots=True)
 class VehicleModel:
-    """One model of vehicle."""
+    """One model of a vehicle."""
 
     name: str
     """The original's name of the model."""
     kind: VehicleType
-    """SUMO class that drives it."""
+    """SUMO class of the vehicle."""
     length: float
-    """Overall [m]."""
+    """Overall length [m]."""
     width: float
-    """Overall, mirrors included [m]."""
+    """Overall width, including mirrors [m]."""
     height: float
-    """Overall [m]."""
+    """Overall height [m]."""
     wheelbase: float
-    """From the steered axle to the driven one [m]."""
+    """Distance from the steered axle to the driven one [m]."""
     wheel_radius: float
-    """Of all wheels [m]."""
+    """Radius of all wheels [m]."""
     axles: tuple[Axle, ...]
-    """The front one first."""
+    """Axles, the front one first."""
     lean: float = 0.0
-    """Most that it leans into a curve [rad]."""
+    """Largest lean in a curve [rad]."""
 
     @property
     def rise(self) -> float:
-        """Height of the reference point over the road [m]: that of the axles."""
+        """Height of the reference point, and of the axles, above the road [m]."""
         return self.wheel_radius
 
     @property
@@ -101,7 +101,7 @@ class VehicleModel:
 def _car(
     name: str, size: tuple[float, float, float], wheels: tuple[float, float, float]
 ) -> VehicleModel:
-    """Return a car; `wheels` are wheelbase, radius and place of the front axle [m]."""
+    """Return a car; `wheels` are wheelbase, wheel radius and x of the front axle [m]."""
     wheelbase, radius, front = wheels
     track = size[1] - 0.36
     axles = (Axle(front, track, 0.23, steered=True), Axle(front - wheelbase, track, 0.23))
@@ -109,7 +109,7 @@ def _car(
 
 
 def _truck(name: str, kind: VehicleType, length: float, rear: tuple[float, ...]) -> VehicleModel:
-    """Return a truck 4.5 m high; `rear` are the places of the trailer's axles [m]."""
+    """Return a truck, 4.5 m high; `rear` holds x of the trailer's axles [m]."""
     front = length / 2 - 1.35
     axles = (
         Axle(front, 2.14, 0.32, steered=True),

@@ -1,4 +1,4 @@
-"""Where the parts of vehicles are: the loop over all vehicles of a kind in all worlds."""
+"""Poses of the parts of vehicles: the loop over all vehicles of a kind in all worlds."""
 
 from typing import Final, NamedTuple
 
@@ -13,14 +13,14 @@ from eyas.targets.vehicles.models import VEHICLE_AHEAD
 __all__ = ["AXLES", "SLOT", "STEER_LIMIT", "RigTable", "Slots", "pose_vehicles"]
 
 STEER_LIMIT = 0.6
-"""Most that wheels steer [rad]."""
+"""Largest steering angle [rad]."""
 
 _SLOWEST = 1.0
-"""Speed below which the curve is not told from the yaw rate any more [m/s]."""
+"""Smallest speed used to compute the curvature from the yaw rate [m/s]."""
 
 
 class Slots(NamedTuple):
-    """What is written of a `DrawList`."""
+    """The arrays of a `DrawList` that the kernel writes."""
 
     part: NDArray[np.int32]
     pose: NDArray[np.float32]
@@ -33,27 +33,27 @@ SLOT: Final = np.dtype(
 )
 """A part in the frame of its model.
 
-part: index among those of the kind, -1 for an unused slot; x, y, z: place [m]; steered: whether it
-follows the curve.
+part: index among the parts of the kind, -1 for an unused slot; x, y, z: position [m]; steered:
+whether it steers.
 """
 
 AXLES: Final = np.dtype(
     [("radius", np.float64), ("wheelbase", np.float64), ("lean", np.float64)], align=True
 )
-"""What moves a model's parts: radius of the wheels and wheelbase [m], most that it leans [rad]."""
+"""Dimensions of a model: radius of the wheels and wheelbase [m], largest lean in a curve [rad]."""
 
 
 class RigTable(NamedTuple):
-    """What the kernel knows of M models with S slots each; slot 0 is the body."""
+    """Data of M models with S slots each, for the kernel; slot 0 is the body."""
 
     slot: NDArray[np.void]
-    """Of dtype `SLOT`, shape (M, S)."""
+    """Parts of dtype `SLOT`, shape (M, S)."""
     axles: NDArray[np.void]
-    """Of dtype `AXLES`, shape (M,)."""
+    """Dimensions of dtype `AXLES`, shape (M,)."""
 
 
 class _Base(NamedTuple):
-    """Where a vehicle is: its rotation, row by row, and the middle of its length on the road."""
+    """Pose of a vehicle: its rotation, row by row, and the middle of its length on the road."""
 
     xx: float
     xy: float
@@ -71,10 +71,11 @@ class _Base(NamedTuple):
 
 @kernel
 def _base_of(actors: ActorState, w: int, a: int, most_lean: float) -> _Base:
-    """Return where the vehicle a of world w is, on its road and leaning into the curve."""
+    """Return the pose of vehicle a of world w, on its road and leaning into the curve."""
     yaw, slope = actors.yaw[w, a], actors.slope[w, a]
     c, s = np.cos(yaw), np.sin(yaw)
-    cp, sp = (np.cos(slope), np.sin(slope)) if slope != 0.0 else (1.0, 0.0)  # a fifth of the time
+    # The shortcut for flat roads saves a fifth of the time.
+    cp, sp = (np.cos(slope), np.sin(slope)) if slope != 0.0 else (1.0, 0.0)
     lean = min(max(actors.yaw_rate[w, a], -most_lean), most_lean)
     cr, sr = np.cos(lean), -np.sin(lean)  # a roll to the left is negative about x
     return _Base(
@@ -98,11 +99,11 @@ def _pose_slot(
     """Write the pose of one part.
 
     Args:
-        pose: What is written, shape (3, 4).
-        base: Of the vehicle.
-        offset: Place of the part in the model's frame [m].
-        steer: Cosine and sine of the part's turn about its own upward axis.
-        spin: Cosine and sine of its turn about its own left axis, after that.
+        pose: Pose to write, shape (3, 4).
+        base: Pose of the vehicle.
+        offset: Position of the part in the model's frame [m].
+        steer: Cosine and sine of the rotation about the part's upward axis.
+        spin: Cosine and sine of the rotation about the part's left axis, as turned by `steer`.
     """
     w00, w01, w02 = steer[0] * spin[0], -steer[1], steer[0] * spin[1]
     w10, w11, w12 = steer[1] * spin[0], steer[0], steer[1] * spin[1]
@@ -126,7 +127,7 @@ def _pose_slot(
 def _wheels_of(
     radius: float, wheelbase: float, actors: ActorState, w: int, a: int
 ) -> tuple[tuple[float, float], tuple[float, float]]:
-    """Return cosine and sine of how far the wheels steer, and of how far they have rolled."""
+    """Return cosine and sine of the wheels' steering angle, and of their rolling angle."""
     # Curvature of a bicycle model: tan(steer) = wheelbase * yaw rate / speed.
     most = np.tan(STEER_LIMIT)
     curve = wheelbase * actors.yaw_rate[w, a] / max(actors.speed[w, a], _SLOWEST)
@@ -141,7 +142,7 @@ def pose_vehicles(
     table: RigTable, group: Group, actors: ActorState, looks: Looks, out: Slots
 ) -> None:
     """Write the slots of the vehicles of one kind in all worlds, see `Rig`."""
-    # One thread: waking a second one costs more than 64 worlds of 40 actors.
+    # One thread: waking a second one takes longer than 64 worlds of 40 actors.
     for w in range(looks.model.shape[0]):
         for g in range(group.actor.shape[0]):
             a, first = group.actor[g], group.slot[g]

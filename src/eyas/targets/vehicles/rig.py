@@ -18,10 +18,10 @@ __all__ = ["VehicleRig"]
 
 
 class VehicleRig:
-    """The parts of some models of vehicles, and where they are.
+    """The rig of the models of one kind of vehicle.
 
     Attributes:
-        slots: See `Rig`.
+        slots: As in `Rig`.
 
     Args:
         models: All models of a kind.
@@ -37,7 +37,7 @@ class VehicleRig:
 
     @property
     def part_count(self) -> int:
-        """Number of parts of all models."""
+        """Total number of parts of all models."""
         return len(self._parts)
 
     def part_levels(self) -> list[tuple[Mesh, ...]]:
@@ -53,11 +53,11 @@ class _Wheels(NamedTuple):
     radius: float
     width: float
     track: float
-    """Between the two of an axle, 0 for a single wheel [m]."""
+    """Distance between the two wheels of an axle [m]; 0 for a single wheel."""
 
 
 _Part = VehicleModel | _Wheels
-"""The body of a model, or wheels that several models may share."""
+"""The body of a model, or wheels, which several models may share."""
 
 
 def _levels(part: _Part) -> tuple[Mesh, ...]:
@@ -71,10 +71,10 @@ class _Slot(NamedTuple):
 
 
 def _layout(vehicle: VehicleModel, parts: list[_Part]) -> list[_Slot]:
-    """Return the slots of a model: its body, then its wheels; add what is new to `parts`."""
+    """Return the slots of a model: its body, then its wheels; add new parts to `parts`."""
     slots = [_Slot(_index(vehicle, parts), (0.0, 0.0, 0.0), steered=False)]
     for axle in vehicle.axles:
-        # Wheels that steer turn about their own middles; the others share a part with their axle.
+        # Steered wheels turn about their own middles, so each is a part; others are one per axle.
         pair = 0.0 if axle.steered else axle.track
         part = _index(_Wheels(vehicle.wheel_radius, axle.width, pair), parts)
         slots += [
@@ -90,7 +90,7 @@ def _index(part: _Part, parts: list[_Part]) -> int:
 
 
 def _places(axle: Axle) -> tuple[float, ...]:
-    """Return the sideways places of an axle's parts [m]."""
+    """Return y of an axle's parts [m]."""
     return (axle.track / 2, -axle.track / 2) if axle.steered and axle.track else (0.0,)
 
 

@@ -30,7 +30,7 @@ Point = tuple[float, float, float]
 
 @dataclass(frozen=True, slots=True)
 class _Posture:
-    """Where the rider's joints are [m]; y of limbs is on the left."""
+    """Positions of the rider's joints [m]; those of the limbs are for the left side."""
 
     hip: Point
     chest: Point
@@ -66,7 +66,7 @@ _CROUCHED = _Posture(
 
 
 def two_wheeler_levels(vehicle: VehicleModel) -> tuple[Mesh, Mesh, Mesh]:
-    """Return the levels of detail of machine and rider without the wheels, the finest first."""
+    """Return the levels of detail of two-wheeler and rider without wheels, the finest first."""
     scooter = vehicle.name == "ScooterSimple"
     levels = []
     for detail in (2, 1, 0):
@@ -104,7 +104,7 @@ def _rider(shell: Shell, posture: _Posture, detail: int) -> None:
 
 
 def _lamp(shell: Shell, centre: Sequence[float], size: Sequence[float], *, front: bool) -> None:
-    """Add a lamp: a box with its middle at a place."""
+    """Add a lamp: a box with its middle at `centre`."""
     low = [p - s / 2 for p, s in zip(centre, size, strict=True)]
     high = [p + s / 2 for p, s in zip(centre, size, strict=True)]
     shell.box(low, high, HEAD_LAMP if front else TAIL_LAMP)

@@ -1,4 +1,4 @@
-"""Wheels: dark tyres with light discs, turning about the y axis."""
+"""Wheels: dark tyres with light discs; they turn about the y axis."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,19 +10,19 @@ from eyas.targets.vehicles.finishes import RIM, TRIM, TYRE
 __all__ = ["wheel_levels"]
 
 _DISC = 0.66
-"""Radius of the disc, as a share of the wheel's."""
+"""Radius of the disc, as a share of the wheel's radius."""
 
 _SHOULDER = 0.92
-"""Radius where the tread begins to bend into the side, the same."""
+"""Radius where the tread begins to bend into the side, as a share of the wheel's radius."""
 
 
 def wheel_levels(radius: float, width: float, pair: float) -> tuple[Mesh, ...]:
     """Return the levels of detail of one wheel, or of two on an axle, centred at the origin.
 
     Args:
-        radius: [m]
-        width: Of the tyre [m].
-        pair: Between the middles of two wheels [m]; 0 for one wheel.
+        radius: Radius of the wheel [m].
+        width: Width of the tyre [m].
+        pair: Distance between the middles of two wheels [m]; 0 for one wheel.
     """
     centres = (pair / 2, -pair / 2) if pair else (0.0,)
     fine, coarse = Shell(), Shell()
@@ -33,14 +33,14 @@ def wheel_levels(radius: float, width: float, pair: float) -> tuple[Mesh, ...]:
 
 
 def _ring(radius: float, y: float, sides: int) -> NDArray[np.float64]:
-    """Return a circle, counter-clockwise seen from the right, with a lowest corner."""
+    """Return a circle, counter-clockwise as seen from the right; its first corner is the lowest."""
     angle = np.arange(sides) * (2 * np.pi / sides) - np.pi / 2
     return np.column_stack([radius * np.cos(angle), np.full(sides, y), radius * np.sin(angle)])
 
 
 def _fine(shell: Shell, radius: float, width: float, y: float) -> None:
     sides, half = 15, width / 2
-    # From the left to the right, so that the rings lead to where they are counter-clockwise.
+    # From left to right, because rings must be counter-clockwise as seen from beyond the last.
     sections = [
         (_DISC, half), (_SHOULDER, half), (1.0, 0.7 * half),
         (1.0, -0.7 * half), (_SHOULDER, -half), (_DISC, -half),
