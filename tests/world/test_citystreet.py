@@ -16,16 +16,6 @@ from eyas.world.weather import Season
 SEEDS = range(6)
 
 
-@pytest.fixture(scope="module")
-def network():
-    return CITYSTREET.shipped_network()
-
-
-@pytest.fixture(scope="module")
-def scene(network):
-    return CITYSTREET.scene(network, 0, Season.SUMMER)
-
-
 def positions(graph):
     return {node.name: np.array([node.x, node.y]) for node in graph.nodes}
 

@@ -9,21 +9,14 @@ import shapely
 from eyas.state.scene import ObjectClass
 from eyas.world.build.heights import FLOOR_HEIGHT, KERB_HEIGHT
 from eyas.world.buildings import rooftops
-from eyas.world.maps.citystreet import CITYSTREET
 from eyas.world.maps.citystreet.plan import make_plan
 from eyas.world.plants import shrubs as plants
 from eyas.world.street import furniture, parked_cars
-from eyas.world.weather import Season
 
 FURNITURE = tuple(furniture.FURNITURE)
 PLANTS = tuple(plants.plant_makers(np.random.default_rng(0)))
 CARS = tuple(f"parked car {k}" for k in range(parked_cars.VARIANTS))
 UNITS = tuple(f"roof {kind}" for kind in rooftops.UNITS)
-
-
-@pytest.fixture(scope="module")
-def scene():
-    return CITYSTREET.scene(CITYSTREET.shipped_network(), 0, Season.SUMMER)
 
 
 @pytest.fixture(scope="module")

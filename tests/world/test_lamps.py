@@ -12,11 +12,6 @@ from eyas.world.street.lamps import BEYOND_KERB, LIGHT, POLE_HEIGHT, lamp_levels
 
 
 @pytest.fixture(scope="module")
-def scene():
-    return load_scene("citystreet", 0)
-
-
-@pytest.fixture(scope="module")
 def feet(scene):
     """Lights are 3.1 m off their poles, towards the road."""
     lean = scene.lamps.axis[:, :2] / np.linalg.norm(scene.lamps.axis[:, :2], axis=1)[:, None]

@@ -5,14 +5,8 @@ import pytest
 import shapely
 from shapely.ops import substring
 
-from eyas.world.maps.citystreet import CITYSTREET
 from eyas.world.roads.areas import joints, road_area, streets
 from eyas.world.roads.markings import PAINT_HEIGHT, mesh_of, road_paint, stripes
-
-
-@pytest.fixture(scope="module")
-def network():
-    return CITYSTREET.shipped_network()
 
 
 @pytest.fixture(scope="module")

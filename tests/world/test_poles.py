@@ -4,14 +4,8 @@ import numpy as np
 import pytest
 import shapely
 
-from eyas.world.maps.citystreet import CITYSTREET
 from eyas.world.roads.areas import road_area, streets
 from eyas.world.street.signals import POLE_HEIGHT, signal_levels, signal_places
-
-
-@pytest.fixture(scope="module")
-def network():
-    return CITYSTREET.shipped_network()
 
 
 def test_every_arm_of_every_junction_has_one(network):

@@ -5,15 +5,9 @@ import pytest
 import shapely
 
 from eyas.core.rng import stream
-from eyas.world.maps.citystreet import CITYSTREET
 from eyas.world.roads.areas import road_area
 from eyas.world.roads.markings import PAINT_HEIGHT
 from eyas.world.roads.wear import WEAR_HEIGHTS, road_wear
-
-
-@pytest.fixture(scope="module")
-def network():
-    return CITYSTREET.shipped_network()
 
 
 @pytest.fixture(scope="module")

@@ -5,13 +5,7 @@ import pytest
 import shapely
 
 from eyas.state.mesh import Material
-from eyas.world.maps.citystreet import CITYSTREET
 from eyas.world.roads.areas import blocks, joints, road_area, skirt, split_on_grid, streets, surface
-
-
-@pytest.fixture(scope="module")
-def network():
-    return CITYSTREET.shipped_network()
 
 
 def test_a_street_is_two_lanes_wide_and_shares_its_middle_with_the_other_direction(network):
