@@ -85,7 +85,7 @@ def test_convert_writes_the_other_notation_and_rewrites_nothing(monkeypatch, cap
     assert json.loads(again.read_text()) == json.loads(legacy.read_text())
     code, _, err = run(monkeypatch, capsys, "config", "convert", legacy, native)
     assert (code, len(err)) == (2, 1)
-    assert "never rewritten" in err[0]
+    assert "never overwritten" in err[0]
 
 
 def test_a_recording_of_traffic_is_not_replaced_unasked(monkeypatch, capsys, tmp_path):

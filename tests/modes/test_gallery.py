@@ -152,7 +152,7 @@ def test_a_page_of_another_maker_or_any_foreign_file_is_refused_untouched(drawn,
     foreign = tmp_path / "thesis"
     foreign.mkdir()
     (foreign / "index.html").write_text("<h1>My thesis</h1>")
-    with pytest.raises(OutputError, match=r"not a gallery: another made its index\.html"):
+    with pytest.raises(OutputError, match=r"not a gallery: its index\.html was not made by Eyas"):
         gallery.run(foreign)
     (foreign / "index.html").rename(foreign / "chapter1.html")
     with pytest.raises(OutputError, match=r"holds 'chapter1\.html'"):

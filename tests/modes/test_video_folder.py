@@ -162,7 +162,7 @@ def test_resume_keeps_what_is_whole_and_drops_what_is_not(tmp_path):
 
 def test_resume_refuses_a_folder_without_settings(tmp_path):
     (tmp_path / "mine.txt").write_text("mine")
-    with pytest.raises(OutputError, match="nothing to continue"):
+    with pytest.raises(OutputError, match="not a recording: it has no"):
         open_folder(tmp_path, CONFIG, overwrite=False, resume=True)
 
 
@@ -172,6 +172,6 @@ def test_resume_of_nothing_begins(tmp_path):
 
 
 def test_overwrite_and_resume_exclude_each_other(tmp_path):
-    with pytest.raises(ConfigError, match="exclude each other"):
+    with pytest.raises(ConfigError, match="cannot be used together"):
         open_folder(tmp_path / "a", CONFIG, overwrite=True, resume=True)
     assert not (tmp_path / "a").exists()

@@ -88,7 +88,7 @@ def test_without_locks_of_the_file_system_there_is_a_warning(tmp_path, monkeypat
     monkeypatch.setattr(fcntl, "flock", refuse)
     with caplog.at_level(logging.WARNING, "eyas"), recording_lock(tmp_path / "a"):
         (line,) = caplog.messages
-    assert "cannot lock, so start only one recorder: No locks available" in line
+    assert "only one process records into this folder: No locks available" in line
     assert not list((tmp_path / "a").iterdir())
 
 
@@ -96,5 +96,5 @@ def test_without_locks_of_the_system_it_records_too(tmp_path):
     command = [sys.executable, "-c", WITHOUT_LOCKS, str(tmp_path / "a")]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     assert done.stdout == "records\n"
-    assert "cannot lock, so start only one recorder" in done.stderr
+    assert "make sure that only one process records into this folder" in done.stderr
     assert not list((tmp_path / "a").iterdir())

@@ -180,7 +180,7 @@ def test_native_to_legacy_and_back_loses_nothing(config):
 )
 def test_what_cannot_be_said_is_one_line(values, path, tmp_path, caplog):
     config = EyasConfig(**values)
-    with pytest.raises(ConfigError, match=rf"^{path}: .* cannot be said in env_config.json$"):
+    with pytest.raises(ConfigError, match=rf"^{path}: .* cannot be expressed in env_config.json$"):
         to_legacy(config)
     assert not save_legacy(config, tmp_path / "env_config.json")
     assert not list(tmp_path.iterdir())

@@ -131,7 +131,9 @@ def test_worlds_are_counted_in_the_order_of_their_first_trackers(config, assets)
 
 @pytest.mark.parametrize("world_of", [[-2], [0, -7], [0.0, 1.0], [[0, 1]], ["a"], [True, False], 3])
 def test_other_numbers_are_refused_in_one_line(config, assets, world_of):
-    with pytest.raises(ValueError, match=r"^world_of: a whole number from -1 on .*\Z"):
+    with pytest.raises(
+        ValueError, match=r"^world_of: must hold one whole number, at least -1, .*\Z"
+    ):
         Worlds(config, assets, np.array(world_of))
 
 

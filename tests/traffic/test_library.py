@@ -113,7 +113,7 @@ def test_a_recording_is_used_where_the_cache_cannot_be_written(
     monkeypatch.setattr(library, "sumo_version", lambda: "0.1.2")
     monkeypatch.setattr(library, "record", lambda *_: wandering)
     assert find_recording(grid, CARS, duration=5.0) is wandering
-    assert caplog.messages[-1].startswith("the recording is used but not kept: ")
+    assert caplog.messages[-1].startswith("the recording is used but could not be cached: ")
 
 
 def test_recording_can_be_forbidden(grid: RoadGraph, cache: Path):

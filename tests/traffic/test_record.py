@@ -179,7 +179,7 @@ def test_more_cars_than_fit_are_an_error(grid: RoadGraph):
 def test_keeping_alive_needs_a_way_round():
     nodes = (RoadNode("a", 0.0, 0.0), RoadNode("b", 200.0, 0.0), RoadNode("c", 400.0, 0.0))
     line = RoadGraph("line", 0, nodes, (RoadEdge("ab", "a", "b"), RoadEdge("bc", "b", "c")))
-    with pytest.raises(ConfigError, match="'keep_alive' needs roads to drive on for ever"):
+    with pytest.raises(ConfigError, match="'keep_alive' needs roads that form a loop"):
         record("line", 0, line, CARS, 1.0, 1)
     assert not import_libsumo().simulation.isLoaded()
 

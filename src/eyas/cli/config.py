@@ -47,7 +47,7 @@ def convert(
     from eyas.settings.legacy.adapter import is_legacy
 
     if target.exists():
-        raise OutputError(f"{target}: is there already; a file of settings is never rewritten")
+        raise OutputError(f"{target}: already exists; settings files are never overwritten")
     legacy = not is_legacy(read_settings(source))
     text = _text(load_settings(source, gathered(set_)), legacy=legacy)
     write_atomic(target, f"{text}\n".encode())

@@ -36,7 +36,7 @@ def command(  # noqa: PLR0913  # one parameter for each option
     settings = load_settings(config, gathered(set_, map_name, weather, seed))
     require_supported(settings)
     if settings.mode is not Mode.VIDEO and not quiet:
-        said = f"mode (Simulation_Mode) is '{settings.mode}'; 'eyas video' records all the same"
+        said = f"mode (Simulation_Mode) is '{settings.mode}'; 'eyas video' records anyway"
         typer.echo(f"eyas: note: {said}", err=True)
     from eyas.modes.video import (
         run as video,  # compiled kernels: slow to import, so only after all checks

@@ -58,7 +58,7 @@ class Registry(Generic[T]):
         """
         if not name or ":" in name:
             raise ConfigError(
-                f"{self._setting}: {name!r} is no name; allowed: text without a colon"
+                f"{self._setting}: {name!r} is not a name; allowed: text without a colon"
             )
         taken = self._table.get(name, what)
         same = taken is what or (isinstance(taken, str) and taken == what)
@@ -134,7 +134,7 @@ class Registry(Generic[T]):
         name, _, attribute = path.partition(":")
         if not name or not attribute.isidentifier():
             raise ConfigError(
-                f"{self._setting}: {path!r} is no path; allowed: package.module:attribute"
+                f"{self._setting}: {path!r} is not a path; allowed: package.module:attribute"
             )
         if not _exists(name):
             raise ConfigError(f"{self._setting}: {path!r}: there is no module '{name}'")

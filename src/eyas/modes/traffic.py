@@ -59,7 +59,7 @@ def _check_free(path: Path, *, overwrite: bool) -> None:
     if path.is_dir():
         raise OutputError(f"{path}: is a folder, not a file")
     if path.exists() and not overwrite:
-        raise OutputError(f"{path}: is there already; replace it with --overwrite")
+        raise OutputError(f"{path}: already exists; replace it with --overwrite")
     if not path.parent.is_dir():
         raise OutputError(f"{path}: cannot write: there is no folder '{path.parent}'")
 
@@ -68,13 +68,15 @@ def run_canonical(world: WorldConfig) -> None:
     """Regenerate the roads and the recording that ship with a map, in its package's source.
 
     Raises:
-        ConfigError: The map is in no package.
+        ConfigError: The map is not part of a package.
         MissingExtraError: SUMO is not installed.
         OutputError: The package's folder cannot be written to.
     """
     recipe = MAPS.get(world.map)
     if recipe.folder is None:
-        raise ConfigError(f"world.map: {world.map!r} is in no package that could ship traffic")
+        raise ConfigError(
+            f"world.map: {world.map!r} is not part of a package, so nothing can be shipped with it"
+        )
     folder, graph = Path(str(recipe.folder)), recipe.roads(0)
     save_network(folder / NETWORK_FILE, build_network(graph))
     with _progress() as progress:

@@ -46,10 +46,11 @@ def compile_ahead() -> Callable[[], object] | None:
         return None
     cache = Path(os.environ["NUMBA_CACHE_DIR"])
     if not KERNEL_SETTINGS["cache"]:
-        _log.warning("compiling for about half a minute, at each start: cannot write to %s", cache)
+        _log.warning("cannot write to %s, so every start compiles for about half a minute", cache)
         return None
     _log.warning(
-        "first start of this version: compiling for about half a minute, once; kept in %s", cache
+        "first start of this version: compiling takes about half a minute, once; cached in %s",
+        cache,
     )
     # A frozen program has no interpreter to start.
     if (os.cpu_count() or 1) < 2 or getattr(sys, "frozen", False):

@@ -78,12 +78,12 @@ def read_settings(path: Path) -> Nested:
         raise DataFileError(f"{path}: not a text file in UTF-8") from error
     except json.JSONDecodeError as error:
         raise DataFileError(
-            f"{path}: line {error.lineno}, column {error.colno}: no JSON: {error.msg}"
+            f"{path}: line {error.lineno}, column {error.colno}: not valid JSON: {error.msg}"
         ) from error
     except (ValueError, RecursionError) as error:
         raise DataFileError(f"{path}: no settings: {error}") from error
     if not isinstance(values, dict):
-        raise DataFileError(f"{path}: line 1: no settings: not an object in braces")
+        raise DataFileError(f"{path}: line 1: not a JSON object")
     return values
 
 
@@ -97,7 +97,7 @@ def _tell_surprises(config: EyasConfig) -> None:
             *(frequency, PHYSICS_RATE, steps, PHYSICS_RATE / steps),
         )
     if config.verbose:
-        _LOG.warning("verbose (Verbose): true: its log is not in this version yet; none is written")
+        _LOG.warning("verbose (Verbose): logging is not in this version yet; no log is written")
 
 
 def _without_doubles(pairs: list[tuple[str, Any]]) -> Nested:
@@ -105,7 +105,7 @@ def _without_doubles(pairs: list[tuple[str, Any]]) -> Nested:
     if len(values) < len(pairs):
         keys = [key for key, _ in pairs]
         double = next(key for key in keys if keys.count(key) > 1)
-        raise ValueError(f"the key '{double}' stands twice in one object")
+        raise ValueError(f"the key '{double}' appears twice in one object")
     return values
 
 

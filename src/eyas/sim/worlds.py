@@ -53,7 +53,7 @@ class Worlds:
     def __init__(self, config: SimConfig, assets: Assets, world_of: NDArray[np.integer]) -> None:
         given = np.asarray(world_of)
         if given.ndim != 1 or given.dtype.kind not in "iu" or (given < ALONE).any():
-            raise ValueError("world_of: a whole number from -1 on is wanted for each tracker")
+            raise ValueError("world_of: must hold one whole number, at least -1, for each tracker")
         # Worlds are numbered in the order of their first trackers.
         own = np.where(given == ALONE, given.max(initial=0) + 1 + np.arange(len(given)), given)
         _, first, numbered = np.unique(own, return_index=True, return_inverse=True)

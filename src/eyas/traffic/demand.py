@@ -69,8 +69,8 @@ def lasting_edges(links: RoadLinks) -> Route:
             best = max(best, part, key=len)
     if not best:
         raise ConfigError(
-            "traffic.demand: 'keep_alive' needs roads to drive on for ever, and this map's are "
-            "one-way and all lead out; use 'respawn'"
+            "traffic.demand: 'keep_alive' needs roads that form a loop, but all roads of this "
+            "map lead out of it; use 'respawn'"
         )
     return tuple(sorted(best))
 

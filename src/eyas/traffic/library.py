@@ -149,7 +149,7 @@ def _cached_or_new(graph: RoadGraph, wanted: TrafficConfig, duration: float) -> 
     try:
         write_entry(path, [to_bytes(made)], limit)
     except OSError as error:
-        _LOG.warning("the recording is used but not kept: %s: %s", path, error.strerror)
+        _LOG.warning("the recording is used but could not be cached: %s: %s", path, error.strerror)
     return made
 
 

@@ -150,7 +150,7 @@ def _check_all_there(raw: Drive) -> None:
     if not there.all():
         raise ConfigError(
             f"traffic.max_vehicles: {there.size} is too many for the roads of this map; "
-            f"only {int(there.sum())} found room from start to end"
+            f"only {int(there.sum())} vehicles fit for the whole recording"
         )
 
 

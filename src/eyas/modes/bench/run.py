@@ -203,7 +203,7 @@ def _median_rate(call: Callable[[], None], seconds: float) -> tuple[float, int]:
 
 def _table(results: list[Measurement], machine: str) -> Table:
     table = Table(title=f"eyas bench on {machine}", title_justify="left")
-    table.add_column("what")
+    table.add_column("measurement")
     table.add_column("median", justify="right")
     table.add_column("unit")
     table.add_column("includes")

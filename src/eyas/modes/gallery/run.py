@@ -104,5 +104,5 @@ def _check_folder(out: Path) -> None:
         index = out / INDEX
         if index.exists() and MARK not in index.read_text(errors="replace"):
             raise OutputError(
-                f"{out}: not a gallery: another made its {INDEX}; name another folder"
+                f"{out}: not a gallery: its {INDEX} was not made by Eyas; name another folder"
             )

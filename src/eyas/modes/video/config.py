@@ -11,7 +11,7 @@ __all__ = ["VideoConfig"]
 
 def _some(names: tuple[str, ...]) -> tuple[str, ...]:
     if not names:
-        raise ValueError("a list of at least one name of a writer")
+        raise ValueError("a list with at least one writer name")
     return names
 
 

@@ -84,7 +84,7 @@ def check_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: boo
         DataFileError: The settings of the existing recording cannot be read.
     """
     if overwrite and resume:
-        raise ConfigError("--overwrite and --resume exclude each other: delete, or continue")
+        raise ConfigError("--overwrite and --resume cannot be used together")
     with refusals(path):
         if not path.exists():
             return
@@ -180,8 +180,8 @@ def _require_same_version(path: Path) -> None:
         recorded = "of an unknown version"
     if (path / SETTINGS).is_file() and recorded != __version__:
         raise OutputError(
-            f"{path}: recorded by Eyas {recorded}, and this is {__version__}, which may draw"
-            " otherwise; continue with that version, or start anew with --overwrite"
+            f"{path}: recorded by Eyas {recorded}, but this is {__version__}, whose pictures may"
+            " differ; continue with that version, or start again with --overwrite"
         )
 
 
@@ -189,15 +189,17 @@ def _require_same_settings(path: Path, config: EyasConfig) -> None:
     """Refuse to continue a recording that was begun with other settings."""
     settings = path / SETTINGS
     if not settings.is_file():
-        raise OutputError(f"{path}: nothing to continue: not empty, and it has no {SETTINGS}")
+        raise OutputError(f"{path}: not a recording: it has no {SETTINGS}")
     try:
         recorded = validated(EyasConfig, read_settings(settings))
     except (DataFileError, ConfigError):
-        raise DataFileError(f"{settings}: cannot be read; start anew with --overwrite") from None
+        raise DataFileError(f"{settings}: cannot be read; start again with --overwrite") from None
     was, asked = recorded.model_dump(mode="json"), config.model_dump(mode="json")
     difference = _first_difference(was, asked, "")
     if difference:
-        raise ConfigError(f"{settings}: other settings than asked for: {difference}")
+        raise ConfigError(
+            f"{settings}: the recording was made with different settings: {difference}"
+        )
 
 
 def _first_difference(recorded: object, asked: object, key: str) -> str:

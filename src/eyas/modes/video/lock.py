@@ -62,7 +62,11 @@ def _locked(path: Path) -> TextIO:
                 " wait for it to end, or name another folder"
             ) from None
         except OSError as error:
-            _LOG.warning("%s: cannot lock, so start only one recorder: %s", path, error.strerror)
+            _LOG.warning(
+                "%s: no file locks here; make sure that only one process records into this "
+                "folder: %s",
+                *(path, error.strerror),
+            )
             return file
         if _is_at(file, path):
             file.truncate(0)

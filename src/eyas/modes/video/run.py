@@ -111,7 +111,7 @@ def _require_traffic(config: EyasConfig) -> None:
     if end <= begin:
         raise ConfigError(
             f"video.total_time: {config.video.total_time:g} s after {config.video.start_time:g} s "
-            f"ends before the trackers start and warm up, at {begin:g} s; allowed: more"
+            f"ends before the trackers start and warm up; allowed: end later than {begin:g} s"
         )
 
 

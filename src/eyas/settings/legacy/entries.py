@@ -219,11 +219,13 @@ class Varied(Entry):
             case Mirrored(mirrored=(least, most)) if self.sides:
                 said |= {self.random: True, self.least: least, self.most: most, self.sides: True}
             case _:
-                raise ConfigError(f"{self.path}: {shown(value)} cannot be said in env_config.json")
+                raise ConfigError(
+                    f"{self.path}: {shown(value)} cannot be expressed in env_config.json"
+                )
         if self.replaces and said[self.random] != fields[self.replaces]:
             raise ConfigError(
                 f"{self.replaces}: {shown(fields[self.replaces])} with {self.path} "
-                f"{shown(value)} cannot be said in env_config.json"
+                f"{shown(value)} cannot be expressed in env_config.json"
             )
         return said
 

@@ -43,7 +43,9 @@ class WorldPath(Entry):
             raise ConfigError(f"{self.key}: {shown(path)} is not allowed: text")
         found = re.fullmatch(r"(?:.*[/\\])?([^/\\]+)-([^-/\\]+)\.wbt", path)
         if found is None:
-            _LOG.warning("%s: %s names no map and weather; it is not used", self.key, shown(path))
+            _LOG.warning(
+                "%s: %s contains no map and weather, so it is ignored", self.key, shown(path)
+            )
             return {}
         return {self.map: found[1], self.weather: found[2]}
 
@@ -52,7 +54,7 @@ class WorldPath(Entry):
         name, weather = fields[self.map], fields[self.weather]
         said = {self.key: f"worlds/{name}-{weather}.wbt"}
         if self.read(said) != {self.map: name, self.weather: weather}:
-            raise ConfigError(f"{self.map}: {shown(name)} cannot be said in env_config.json")
+            raise ConfigError(f"{self.map}: {shown(name)} cannot be expressed in env_config.json")
         return said
 
     @override

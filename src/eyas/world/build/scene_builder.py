@@ -150,8 +150,8 @@ class SceneBuilder:
         """Return the id of a new object."""
         if len(self._classes) >= ACTOR_OBJECT:
             raise ConfigError(
-                f"world.map: '{self._name}' has more than {ACTOR_OBJECT:,} objects; make one of "
-                "several: larger ids are those of what moves"
+                f"world.map: '{self._name}' has more than {ACTOR_OBJECT:,} objects; merge some, "
+                "as larger ids are reserved for moving objects"
             )
         self._classes.append(kind)
         return len(self._classes) - 1
