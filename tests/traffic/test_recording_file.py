@@ -29,7 +29,7 @@ def test_equal_recordings_give_equal_bytes(wandering: Recording):
 @pytest.mark.parametrize("share", [0.0, 0.01, 0.5, 0.99])
 def test_a_file_that_is_cut_off_is_refused(wandering: Recording, share: float):
     data = to_bytes(wandering)
-    with pytest.raises(DataFileError, match=r"^drive\.npz: incomplete traffic recording"):
+    with pytest.raises(DataFileError, match=r"^drive\.npz: not a complete traffic recording"):
         from_bytes(data[: int(share * len(data))], "drive.npz")
 
 

@@ -81,7 +81,7 @@ def read_settings(path: Path) -> Nested:
             f"{path}: line {error.lineno}, column {error.colno}: not valid JSON: {error.msg}"
         ) from error
     except (ValueError, RecursionError) as error:
-        raise DataFileError(f"{path}: no settings: {error}") from error
+        raise DataFileError(f"{path}: not valid settings: {error}") from error
     if not isinstance(values, dict):
         raise DataFileError(f"{path}: line 1: not a JSON object")
     return values

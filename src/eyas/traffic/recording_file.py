@@ -117,7 +117,7 @@ def _read_arrays(data: bytes, source: str) -> Arrays:
         with np.load(io.BytesIO(data), allow_pickle=False) as file:
             arrays: Arrays = {name: file[name] for name in file.files}
     except Exception as error:  # damaged bytes raise many kinds in zipfile, zlib, numpy
-        raise DataFileError(f"{source}: incomplete traffic recording") from error
+        raise DataFileError(f"{source}: not a complete traffic recording") from error
     if {"header", "checksum"} - set(arrays):
         raise DataFileError(f"{source}: not a traffic recording (allowed: '{FORMAT}')")
     if not np.array_equal(arrays.pop("checksum"), _checksum(arrays)):

@@ -67,7 +67,7 @@ def cached(
     with contextlib.suppress(OSError):
         write_entry(path, array_file(content), limit)
     if taken > _LONG:
-        _LOG.info("made %s in %.1f s; it is now cached", kind, taken)
+        _LOG.info("made %s in %.1f s", kind, taken)
     return restored
 
 
