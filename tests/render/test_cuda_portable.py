@@ -49,6 +49,7 @@ def pointer_to(bundle) -> CPointer:
     return CPointer(numba.typeof(bundle))
 
 
+@pytest.mark.slow  # 36 s of compiling
 def test_drawing_a_band_with_all_weathers_compiles_for_cuda(ptx_of, renderer_of):
     renderer = renderer_of(city_scene(), car_parts())
     traffic = city_traffic(1)
