@@ -26,7 +26,6 @@ class LightChanges:
         weather: The weather's own light.
         worlds: The worlds of the trackers; those in one world share its light.
         factors: `Snapshot.light`, shape (N, 3); set here.
-        foggy: Whether the weather has fog, so that its visibility range can change.
     """
 
     def __init__(
@@ -35,13 +34,10 @@ class LightChanges:
         weather: Lighting,
         worlds: Worlds,
         factors: NDArray[np.float32],
-        *,
-        foggy: bool,
     ) -> None:
         self._config = config
         self._weather = weather
         self._worlds = worlds
-        self._foggy = foggy
         self._factors = factors
         factors[:] = 1.0, 1.0, weather.fog_density
 
@@ -57,7 +53,7 @@ class LightChanges:
         )
         sun = _changed(sample(config.sun, rng), config.sun_replaces, weather.luminosity)
         density = weather.fog_density
-        if self._foggy and config.visibility is not None:
+        if weather.foggy and config.visibility is not None:
             density = 1.0 / sample(config.visibility, rng)
         self._factors[self._worlds.trackers_of(tracker)] = sky, sun, density
 

@@ -61,13 +61,7 @@ class Simulation:
         self.config = config
         self.count = len(worlds.of)
         self.snapshot = Snapshot.create(self.count)
-        light = LightChanges(
-            config.light,
-            assets.lighting,
-            worlds,
-            self.snapshot.light,
-            foggy=assets.lighting.foggy,
-        )
+        light = LightChanges(config.light, assets.lighting, worlds, self.snapshot.light)
         self._episodes = Episodes(config, assets.traffic, worlds, light, self.snapshot)
         self._pictures = Pictures(config, assets, worlds, light, self.snapshot)
         self._kernels = step_of(tracker)
