@@ -2,6 +2,9 @@
 
 V vertices, T triangles, C chunks, P prototypes (fixtures first, then parts), M meshes (levels of
 detail, grouped by prototype), F fixtures, K workers, J jobs (bands of views).
+
+Kernels get bundles of arrays by pointer, see `eyas.core.pointers`, and read them like the bundles
+themselves. Numbers of a bundle are float32 if their names are those of light, else float64.
 """
 
 from typing import NamedTuple
@@ -12,13 +15,22 @@ from numpy.typing import NDArray
 __all__ = [
     "GROUP",
     "NEAR",
+    "Air",
+    "Direction",
     "Geometry",
+    "Illumination",
     "Job",
+    "LampFrame",
     "Light",
+    "MapFrame",
     "Movers",
     "Output",
+    "Plane",
+    "Planes",
+    "Point",
+    "Projection",
+    "Row",
     "Scratch",
-    "Still",
     "Task",
     "View",
 ]
@@ -39,10 +51,9 @@ class Geometry(NamedTuple):
     """Texture coordinates [tiles], shape (V, 2)."""
     corners: NDArray[np.int32]
     """Vertices of each triangle, shape (T, 3)."""
-    gradients: NDArray[np.float32]
-    """Data of each triangle for shading, shape (T, 24): a corner; then gradient and value at
-    that corner of u and of v; normal at the corner; gradients of the three components of the
-    normal; texture tiles in a metre, negative where the normal is not the same all over."""
+    shading: NDArray[np.float32]
+    """Data of each triangle for shading in one place, see `eyas.render.pack.triangles.SHADING`,
+    shape (T, 32)."""
     material: NDArray[np.int32]
     """Material of each triangle, shape (T,)."""
     size: NDArray[np.float32]
@@ -97,42 +108,95 @@ class Geometry(NamedTuple):
     green, blue, and alpha, a byte each, the lowest byte first, shape (., 87381)."""
 
 
-class Light(NamedTuple):
-    """Light and air; linear colours, shape (3,) each."""
+class Direction(NamedTuple):
+    """A vector, or a linear colour as red, green, blue, of float32."""
 
-    sun: NDArray[np.float32]
+    x: float
+    y: float
+    z: float
+
+
+class Air(NamedTuple):
+    """Numbers of the weather, of float32."""
+
+    density: float
+    """Of fog [1/m]."""
+    power: float
+    """1 or 2: how its thickness grows with distance."""
+    exposure: float
+    offset: float
+    """Distance by which points are moved off their surface for the shadow map [m]."""
+    snow: float
+    """This and the following: 0 to 1, see `eyas.state.lighting.Lighting`."""
+    lamps: float
+    windows: float
+    clouds: float
+    flakes: float
+
+
+class Illumination(NamedTuple):
+    """Light and air of one view; linear colours."""
+
+    sun: Direction
     """Unit vector towards the sun."""
-    sun_colour: NDArray[np.float32]
-    zenith: NDArray[np.float32]
-    horizon: NDArray[np.float32]
-    ambient_up: NDArray[np.float32]
-    ambient_down: NDArray[np.float32]
-    fog: NDArray[np.float32]
-    air: NDArray[np.float32]
-    """Fog density [1/m] and power, exposure, offset of shadows [m], snow, lamps, windows, clouds
-    and flakes (0 to 1 each, see `eyas.state.scene.Lighting`), shape (9,)."""
+    sun_colour: Direction
+    zenith: Direction
+    horizon: Direction
+    above: Direction
+    """Light of the sky on surfaces that face up."""
+    below: Direction
+    """Light from the ground on surfaces that face down."""
+    fog: Direction
+    air: Air
+
+
+class MapFrame(NamedTuple):
+    """Where a map of the ground lies, of float32."""
+
+    west: float
+    """x of its western edge [m]."""
+    south: float
+    """y of its southern edge [m]."""
+    per_metre: float
+    """Texels in a metre."""
+    ground: float
+    """z of the ground [m]."""
+
+
+class LampFrame(NamedTuple):
+    """Where the grid of street lamps lies, of float32."""
+
+    west: float
+    south: float
+    per_metre: float
+    """Squares in a metre."""
+    cut_off: float
+    """Cosine of the angle beyond which the lamps give no light."""
+
+
+class Light(NamedTuple):
+    """Light of a weather, and the maps that tell what reaches a point."""
+
+    weather: Illumination
     shadow_map: NDArray[np.uint16]
     """Height towards the sun of the first thing that sunlight meets, shape (rows, columns)."""
     shadow_rows: NDArray[np.float32]
     """World to column, row and height of the shadow map, shape (3, 4)."""
     ambient: NDArray[np.uint16]
     """Share of the sky's light on the ground and height of what hides it, see `AmbientMap`."""
-    ambient_frame: NDArray[np.float32]
-    """West and south edge of that map [m], texels per metre, z of the ground [m]."""
+    ambient_frame: MapFrame
     lamp: NDArray[np.float32]
-    """Position [m], axis and strength of each street lamp, shape (L, 7)."""
+    """Position [m], axis, strength and 0 for each street lamp, shape (L, 8)."""
     lamp_cell: NDArray[np.int32]
     """Lamps that may light each square of a grid, the nearest first, -1 after the last,
     shape (rows, columns, .)."""
-    lamp_frame: NDArray[np.float32]
-    """West and south edge of the grid [m], squares per metre, cosine of the lamps' cut-off."""
+    lamp_frame: LampFrame
     tracks: NDArray[np.uint8]
     """Wear of the snow on roads, see `eyas.render.bake.tracks.TrackMap`."""
-    track_frame: NDArray[np.float32]
-    """West and south edge of that map [m], texels per metre."""
+    track_frame: MapFrame
     tone: NDArray[np.uint8]
     """Byte of the picture for each step of exposed radiance."""
-    ground: NDArray[np.float32]
+    ground: Direction
     """Colour of far land without snow, see `eyas.render.bake.hills`."""
     clouds: NDArray[np.uint8]
     """Opacity, and brightness times opacity, see `eyas.render.bake.clouds`,
@@ -170,40 +234,95 @@ class Job(NamedTuple):
     """Factor on the sky and its light, factor on the sun, fog density [1/m], shape (V, 3)."""
     instant: NDArray[np.float64]
     """Time for falling snow [s], shape (V,), or (0,) if none falls."""
-    lens: NDArray[np.float64]
-    """Focal length along rows, width, height [samples], mean focal length [pixels], focal length
-    along columns [samples], shape (5,)."""
+    focal: NDArray[np.float64]
+    """Focal length along rows and along columns [pixels], shape (V, 2)."""
+
+
+class Point(NamedTuple):
+    """A point or a vector in the world, of float64 [m]."""
+
+    x: float
+    y: float
+    z: float
+
+
+class Row(NamedTuple):
+    """A row of a transformation: `x * px + y * py + z * pz + w`, of float64."""
+
+    x: float
+    y: float
+    z: float
+    w: float
+
+
+class Projection(NamedTuple):
+    """World, or an object's own frame, to the screen: column and row are those of a sample times
+    its distance, from the middle of the picture."""
+
+    column: Row
+    row: Row
+    distance: Row
+    """Along the optical axis [m]."""
+
+
+class Plane(NamedTuple):
+    """Points inside have `x * px + y * py + z * pz + w >= 0`; of float64."""
+
+    x: float
+    y: float
+    z: float
+    w: float
+    length: float
+    """Of the normal (x, y, z)."""
+
+
+class Planes(NamedTuple):
+    """Planes around the space that a band shows."""
+
+    left: Plane
+    right: Plane
+    top: Plane
+    bottom: Plane
+    near: Plane
 
 
 class View(NamedTuple):
-    """A band of a view: where its samples are in the world, and what they show."""
+    """A band of a view: where its samples are in the world."""
 
-    eye: NDArray[np.float64]
-    """Optical centre, see `Job`, shape (3,)."""
-    axes: NDArray[np.float64]
-    """Axes of the camera, see `Job`, shape (3, 3)."""
-    lens: NDArray[np.float64]
-    """See `Job`."""
+    eye: Point
+    """Optical centre."""
+    ahead: Point
+    """Unit vector along the optical axis; the next two are to the left and up."""
+    left: Point
+    up: Point
+    focal_x: float
+    """Focal length along rows [samples]."""
+    focal_y: float
+    """The same along columns."""
+    focal: float
+    """Mean of both [pixels]."""
+    width: int
+    """Size of the whole picture [samples]."""
+    height: int
     top: int
-    """Row of samples of the view that is row 0 of the band."""
-    rows: NDArray[np.float64]
-    """World to screen, see `Scratch`, shape (3, 4)."""
-    planes: NDArray[np.float64]
-    """See `Scratch`, shape (5, 5)."""
-    depth: NDArray[np.float32]
-    """See `Scratch`, shape (rows, columns)."""
-    owner: NDArray[np.int64]
-    """See `Scratch`, shape (rows, columns)."""
+    """First row of samples of the band."""
+    rows: int
+    """Number of rows of samples in the band."""
+    samples: int
+    """Samples along a side of each pixel, 1 or 2."""
+    screen: Projection
+    """World to screen."""
+    planes: Planes
 
 
 class Scratch(NamedTuple):
     """Working memory of each worker."""
 
-    depth: NDArray[np.float32]
-    """One over the distance along the optical axis, 0 for sky, shape (K, rows, columns)."""
-    owner: NDArray[np.int64]
-    """(instance + 1) << 32 | triangle, -1 for sky; instance -1 is the static mesh, then come
-    the fixtures, then the slots of the draw list. Shape (K, rows, columns)."""
+    key: NDArray[np.int64]
+    """What each sample shows, see `eyas.render.kernels.visibility.key`,
+    shape (K, rows, columns)."""
+    alone: NDArray[np.int64]
+    """The same for one actor without all else, shape (K, rows, columns), or (K, 0, 0)."""
     shade: NDArray[np.uint8]
     """Sun and sky light that moving things let through, 255 for all, and light of vehicles' head
     and tail lamps, shape (K, rows, columns, 4)."""
@@ -211,19 +330,11 @@ class Scratch(NamedTuple):
     """Column, row, 1/distance, distance of a mesh's vertices, shape (K, ., 4)."""
     order: NDArray[np.int64]
     """Sort keys of visible chunks, shape (K, C)."""
-    planes: NDArray[np.float64]
-    """Left, right, top, bottom, near plane and the length of their normals, shape (K, 5, 5)."""
-    rows: NDArray[np.float64]
-    """World, then object, to screen, shape (K, 2, 3, 4)."""
+    drawn: NDArray[np.int32]
+    """Visible instances: first triangle of the mesh, and the instance: a fixture, or F + a slot
+    of the draw list, shape (K, ., 2)."""
     polygon: NDArray[np.float64]
     """A clipped triangle: column, row, 1/distance, u, v, shape (K, 4, 5)."""
-    frame: NDArray[np.float32]
-    """Pose of the instance that is being shaded row by row, its linear colour, one over its scale
-    squared, shape (K, 16)."""
-    light: NDArray[np.float32]
-    """The colours of `Light` for the view, then its air, shape (K, 7, 9)."""
-    caster: NDArray[np.float64]
-    """A moving thing's boxes, see `_set_caster`, shape (K, 16)."""
 
 
 class Output(NamedTuple):
@@ -232,15 +343,9 @@ class Output(NamedTuple):
     rgb: NDArray[np.uint8]
     depth: NDArray[np.float32]
     object_id: NDArray[np.int32]
-    subject: NDArray[np.int32]
-    """Left, top, right, bottom, seen and covered pixels in each job, shape (J, 6)."""
-
-
-class Still(NamedTuple):
-    """Inputs that stay the same from picture to picture."""
-
-    geometry: Geometry
-    light: Light
+    actor: NDArray[np.int32]
+    """Left, top, right, bottom, seen and covered pixels of each actor in each job: of the view's
+    subject if A is 1, else of actor `a` of the world in row `a`, shape (J, A, 6)."""
 
 
 class Task(NamedTuple):
@@ -248,6 +353,9 @@ class Task(NamedTuple):
 
     samples: int
     """Samples along a side of each pixel, 1 or 2."""
+    width: int
+    """Size of the pictures [pixels]."""
+    height: int
     until: int
     """The last `eyas.state.draw.DrawStage`."""
     movers: Movers

@@ -1,0 +1,87 @@
+"""Lanes: eight numbers at once, in kernels that also run on one number.
+
+A kernel written with these functions handles eight pixels, triangles, boxes or vertices where its
+arguments are lanes, and one where they are numbers, as in a thread of a graphics processor: every
+function here takes either. `docs/lanes.md` tells how to write such a kernel.
+"""
+
+from eyas.core.lanes import operators as _operators  # noqa: F401  # registers them with numba
+from eyas.core.lanes.kinds import F4, I4, I8, MASK, U4, WIDTH, Lanes
+from eyas.core.lanes.memory import (
+    gather,
+    gather_column,
+    gather_pair,
+    load,
+    load_words,
+    store,
+    store_triples,
+    store_where,
+    store_words,
+    transposed,
+)
+from eyas.core.lanes.values import (
+    all_of,
+    any_of,
+    bit_pattern,
+    bits_of,
+    ceiling,
+    first_bit,
+    from_bits,
+    greater,
+    lane,
+    lane_numbers,
+    lesser,
+    like,
+    magnitude,
+    root,
+    select,
+    splat,
+    to_f4,
+    to_f8,
+    to_i4,
+    to_i8,
+    to_u4,
+    whole,
+)
+
+__all__ = [
+    "F4",
+    "I4",
+    "I8",
+    "MASK",
+    "U4",
+    "WIDTH",
+    "Lanes",
+    "all_of",
+    "any_of",
+    "bit_pattern",
+    "bits_of",
+    "ceiling",
+    "first_bit",
+    "from_bits",
+    "gather",
+    "gather_column",
+    "gather_pair",
+    "greater",
+    "lane",
+    "lane_numbers",
+    "lesser",
+    "like",
+    "load",
+    "load_words",
+    "magnitude",
+    "root",
+    "select",
+    "splat",
+    "store",
+    "store_triples",
+    "store_where",
+    "store_words",
+    "to_f4",
+    "to_f8",
+    "to_i4",
+    "to_i8",
+    "to_u4",
+    "transposed",
+    "whole",
+]
