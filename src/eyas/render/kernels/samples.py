@@ -1,41 +1,132 @@
 """Conversion between points in the world and samples of a view."""
 
+from typing import NamedTuple
+
 from eyas.core.jit import inlined_kernel
-from eyas.render.kernels.bundles import View
+from eyas.core.lanes import to_f4
+from eyas.render.kernels.bundles import Direction, View
+from eyas.render.kernels.scalars import f4
 
-__all__ = ["around", "nowhere", "point_of"]
+__all__ = [
+    "ScreenBox",
+    "Sight",
+    "around",
+    "nowhere",
+    "point_of",
+    "ray_of_row",
+    "sight_from",
+]
+
+
+class ScreenBox(NamedTuple):
+    """A box on the screen [samples], of float64; empty if its left is beyond its right."""
+
+    left: float
+    top: float
+    right: float
+    bottom: float
+
+
+class Sight(NamedTuple):
+    """A camera in the frame of a thing, see `sight_from`; of float32."""
+
+    eye: Direction
+    """Optical centre [m]."""
+    ahead: Direction
+    left: Direction
+    """To the left by one sample at distance 1; the next one upwards."""
+    up: Direction
 
 
 @inlined_kernel
-def nowhere() -> tuple[float, float, float, float]:
-    """Return an empty box: left, top, right, bottom [samples]."""
-    return 1e9, 1e9, -1e9, -1e9
+def nowhere() -> ScreenBox:
+    """Return an empty box."""
+    return ScreenBox(1e9, 1e9, -1e9, -1e9)
 
 
 @inlined_kernel
-def around(
-    box: tuple[float, float, float, float], view: View, x: float, y: float, z: float
-) -> tuple[float, float, float, float]:
+def around(box: ScreenBox, view: View, x: float, y: float, z: float) -> ScreenBox:
     """Return a screen box extended by a point; unbounded if the point is not in front."""
-    rows, lens = view.rows, view.lens
-    w = rows[2, 0] * x + rows[2, 1] * y + rows[2, 2] * z + rows[2, 3]
+    ahead, across, down = view.screen.distance, view.screen.column, view.screen.row
+    w = ahead.x * x + ahead.y * y + ahead.z * z + ahead.w
     if w < 0.1:
-        return -1e9, -1e9, 1e9, 1e9
-    column = rows[0, 0] * x + rows[0, 1] * y + rows[0, 2] * z + rows[0, 3]
-    row = rows[1, 0] * x + rows[1, 1] * y + rows[1, 2] * z + rows[1, 3]
-    column, row = 0.5 * lens[1] + column / w, 0.5 * lens[2] + row / w
-    return min(box[0], column), min(box[1], row), max(box[2], column), max(box[3], row)
+        return ScreenBox(-1e9, -1e9, 1e9, 1e9)
+    column = 0.5 * view.width + (across.x * x + across.y * y + across.z * z + across.w) / w
+    row = 0.5 * view.height + (down.x * x + down.y * y + down.z * z + down.w) / w
+    return ScreenBox(
+        min(box.left, column), min(box.top, row), max(box.right, column), max(box.bottom, row)
+    )
 
 
 @inlined_kernel
-def point_of(view: View, line: int, column: int) -> tuple[float, float, float]:
-    """Return the point that a sample shows [m]; it must not be sky."""
-    eye, axes, lens = view.eye, view.axes, view.lens
-    left = (0.5 * lens[1] - (column + 0.5)) / lens[0]
-    up = (0.5 * lens[2] - (line + view.top + 0.5)) / lens[4]
-    w = 1.0 / view.depth[line, column]
+def sight_from(view: View, origin: Direction, along_x: float, along_y: float) -> Sight:
+    """Return the camera of a view in an upright frame.
+
+    Distances within it are short, so float32 is enough for them.
+
+    Args:
+        view: The samples.
+        origin: Origin of the frame, world frame [m], of float64.
+        along_x: The frame's x axis, a horizontal unit vector.
+        along_y: The same.
+    """
+    eye, ahead, left, up = view.eye, view.ahead, view.left, view.up
+    x, y = eye.x - origin.x, eye.y - origin.y
+    across, down = 1.0 / view.focal_x, 1.0 / view.focal_y
+    return Sight(
+        Direction(
+            f4(x * along_x + y * along_y), f4(y * along_x - x * along_y), f4(eye.z - origin.z)
+        ),
+        Direction(
+            f4(ahead.x * along_x + ahead.y * along_y),
+            f4(ahead.y * along_x - ahead.x * along_y),
+            f4(ahead.z),
+        ),
+        Direction(
+            f4((left.x * along_x + left.y * along_y) * across),
+            f4((left.y * along_x - left.x * along_y) * across),
+            f4(left.z * across),
+        ),
+        Direction(
+            f4((up.x * along_x + up.y * along_y) * down),
+            f4((up.y * along_x - up.x * along_y) * down),
+            f4(up.z * down),
+        ),
+    )
+
+
+@inlined_kernel
+def ray_of_row(sight: Sight, view: View, line: int) -> Direction:
+    """Return the ray, of length 1 along the optical axis, to the middle of a row of samples.
+
+    Args:
+        sight: The camera in any frame.
+        view: The samples.
+        line: Row of the band.
+    """
+    rise = f4(0.5 * view.height - (line + view.top + 0.5))
+    ahead, up = sight.ahead, sight.up
+    return Direction(ahead.x + rise * up.x, ahead.y + rise * up.y, ahead.z + rise * up.z)
+
+
+@inlined_kernel
+def point_of(
+    sight: Sight, view: View, ray: Direction, column: int, inverse: float
+) -> tuple[float, float, float]:
+    """Return the points that samples show, in the frame of the camera [m].
+
+    Args:
+        sight: The camera in any frame.
+        view: The samples.
+        ray: From `ray_of_row`.
+        column: Columns of the samples.
+        inverse: 1/distance of what they show [1/m]; not 0.
+    """
+    w = f4(1.0) / inverse
+    shift = f4(0.5 * view.width - 0.5) - to_f4(column)
+    eye, left = sight.eye, sight.left
     return (
-        eye[0] + w * (axes[0, 0] + left * axes[1, 0] + up * axes[2, 0]),
-        eye[1] + w * (axes[0, 1] + left * axes[1, 1] + up * axes[2, 1]),
-        eye[2] + w * (axes[0, 2] + left * axes[1, 2] + up * axes[2, 2]),
+        eye.x + w * (ray.x + shift * left.x),
+        eye.y + w * (ray.y + shift * left.y),
+        eye.z + w * (ray.z + shift * left.z),
     )

@@ -4,12 +4,27 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.jit import inlined_kernel, inner_kernel
+from eyas.core.lanes import (
+    WIDTH,
+    any_of,
+    greater,
+    lane_numbers,
+    lesser,
+    load,
+    load_words,
+    magnitude,
+    select,
+    store_words,
+    to_u4,
+)
 from eyas.render.kernels.bundles import View
-from eyas.render.kernels.samples import around, nowhere, point_of
-from eyas.render.kernels.scalars import f4
+from eyas.render.kernels.light.caster import Caster, sight_of
+from eyas.render.kernels.samples import ScreenBox, around, nowhere, point_of, ray_of_row
+from eyas.render.kernels.scalars import f4, i4, u4
 from eyas.render.kernels.visibility.cull import sphere_is_visible
+from eyas.render.kernels.visibility.key import distance_inverse
 
-__all__ = ["cast_beam"]
+__all__ = ["BEAM_REACH", "cast_beam"]
 
 _REACH = 34.0
 """Distance ahead of a vehicle up to which its lamps light the road [m]."""
@@ -17,70 +32,89 @@ _REACH = 34.0
 _BEHIND = 5.0
 """The same for its tail lamps, behind it [m]."""
 
+_CUT_OFF = 1.2
+"""Height above the bottom of a vehicle up to which its lamps light things [m]."""
+
+_SPREAD = 0.9 + 0.30 * _REACH
+
+BEAM_REACH = _REACH + _SPREAD
+"""Distance from the end of a vehicle up to which its lamps may light things, at most [m]."""
+
 
 @inlined_kernel
 def _head(ahead: float, aside: float, rise: float) -> float:
-    """Return the light at a point ahead of a vehicle's front [m], 0 to 1.
+    """Return the light at points ahead of a vehicle's front [m], 0 to 1.
 
     The pattern of a dipped beam on the road: a fan that starts under the bumper, is brightest
     a car's length ahead, fades with distance and is cut off above the lamps.
     """
-    if ahead <= 0.0 or ahead >= _REACH or rise > 1.2:
-        return 0.0
-    wide = 0.9 + 0.30 * ahead
-    fan = 1.0 - (aside / wide) ** 2
-    if fan <= 0.0:
-        return 0.0
-    near = min(ahead * 0.4, 1.0)
-    far = 1.0 - ahead / _REACH
-    low = min(1.0, (1.2 - rise) * 2.0)
-    return float(fan * fan * near * near * far * far * low)
+    one, zero = f4(1.0), f4(0.0)
+    lit = (ahead > zero) & (ahead < f4(_REACH)) & (rise <= f4(_CUT_OFF))
+    across = aside / (f4(0.9) + f4(0.30) * ahead)
+    fan = greater(one - across * across, zero)
+    near = lesser(ahead * f4(0.4), one)
+    far = one - ahead * f4(1.0 / _REACH)
+    low = lesser((f4(_CUT_OFF) - rise) * f4(2.0), one)
+    return select(lit, fan * fan * near * near * far * far * low, zero)
 
 
 @inlined_kernel
 def _tail(behind: float, aside: float, rise: float) -> float:
-    """Return the red light at a point behind a vehicle's back [m], 0 to 1."""
-    if behind <= 0.0 or behind >= _BEHIND or rise > 1.2:
-        return 0.0
-    fan = 1.0 - (aside / (1.0 + 0.35 * behind)) ** 2
-    far = 1.0 - behind / _BEHIND
-    return float(max(fan, 0.0) * far * far)
+    """Return the red light at points behind a vehicle's back [m], 0 to 1."""
+    one, zero = f4(1.0), f4(0.0)
+    lit = (behind > zero) & (behind < f4(_BEHIND)) & (rise <= f4(_CUT_OFF))
+    across = aside / (one + f4(0.35) * behind)
+    far = one - behind * f4(1.0 / _BEHIND)
+    return select(lit, greater(one - across * across, zero) * far * far, zero)
 
 
 @inner_kernel
-def _screen_box(caster: NDArray[np.float64], view: View) -> tuple[float, float, float, float]:
+def _screen_box(caster: Caster, view: View) -> ScreenBox:
     """Return the box around all that a vehicle's lamps may light, see `around`."""
     box = nowhere()
     for corner in range(8):
-        ahead = caster[4] + _REACH if corner & 1 else -caster[4] - _BEHIND
-        wide = 0.9 + 0.30 * _REACH if corner & 1 else 3.0
+        ahead = caster.length + _REACH if corner & 1 else -caster.length - _BEHIND
+        wide = _SPREAD if corner & 1 else 3.0
         aside = wide if corner & 2 else -wide
-        x = caster[0] + ahead * caster[2] - aside * caster[3]
-        y = caster[1] + ahead * caster[3] + aside * caster[2]
-        box = around(box, view, x, y, caster[6] + (1.3 if corner & 4 else -0.4))
+        x = caster.x + ahead * caster.along_x - aside * caster.along_y
+        y = caster.y + ahead * caster.along_y + aside * caster.along_x
+        box = around(box, view, x, y, caster.bottom + (1.3 if corner & 4 else -0.4))
     return box
 
 
 @inner_kernel
-def cast_beam(caster: NDArray[np.float64], view: View, shade: NDArray[np.uint8]) -> None:
+def cast_beam(caster: Caster, view: View, key: NDArray[np.int64], shade: NDArray[np.uint8]) -> None:
     """Brighten the samples that one vehicle's lamps light, channels 2 and 3 of `Scratch.shade`.
 
     Its own body lies neither ahead of its front nor behind its back.
     """
     half = 0.5 * (_REACH - _BEHIND)
-    x, y = caster[0] + half * caster[2], caster[1] + half * caster[3]
-    if not sphere_is_visible(view.planes, x, y, caster[6], caster[4] + half + 0.5 * _REACH):
+    x, y = caster.x + half * caster.along_x, caster.y + half * caster.along_y
+    radius = caster.length + 0.5 * (_REACH + _BEHIND) + _SPREAD
+    if not sphere_is_visible(view.planes, x, y, caster.bottom, radius):
         return
     box = _screen_box(caster, view)
-    rows, width = view.depth.shape
-    for line in range(max(int(box[1]) - view.top, 0), min(int(box[3]) + 1 - view.top, rows)):
-        for column in range(max(int(box[0]), 0), min(int(box[2]) + 1, width)):
-            if view.depth[line, column] <= f4(0.0):
+    sight = sight_of(caster, view)
+    stride, length = key.shape[1], f4(caster.length)
+    begin, end = max(int(box.left), 0), min(int(box.right) + 1, view.width)
+    bottom = min(int(box.bottom) + 1 - view.top, view.rows)
+    for line in range(max(int(box.top) - view.top, 0), bottom):
+        ray = ray_of_row(sight, view, line)
+        for start in range(begin, end, WIDTH):
+            first = min(start, stride - WIDTH)
+            at = line * stride + first
+            columns = lane_numbers() + i4(first)
+            inverse = distance_inverse(load(key, at))
+            # Samples before `start` had their light from the lanes before.
+            seen = (inverse > f4(0.0)) & (columns >= i4(start)) & (columns < i4(end))
+            x, y, z = point_of(sight, view, ray, columns, select(seen, inverse, f4(1.0)))
+            seen &= (z <= f4(_CUT_OFF)) & (x < length + f4(_REACH)) & (x > -length - f4(_BEHIND))
+            seen &= magnitude(y) < f4(_SPREAD)
+            if not any_of(seen):
                 continue
-            x, y, z = point_of(view, line, column)
-            dx, dy, rise = x - caster[0], y - caster[1], z - caster[6]
-            along, aside = dx * caster[2] + dy * caster[3], dy * caster[2] - dx * caster[3]
-            head = 255.0 * _head(along - caster[4], aside, rise)
-            tail = 255.0 * _tail(-along - caster[4], aside, rise)
-            shade[line, column, 2] = min(int(shade[line, column, 2]) + int(head), 255)
-            shade[line, column, 3] = min(int(shade[line, column, 3]) + int(tail), 255)
+            head, tail = _head(x - length, y, z), _tail(-x - length, y, z)
+            words = load_words(shade, 4 * at)
+            white = ((words >> u4(16)) & u4(255)) + to_u4(head * f4(255.0))
+            red = (words >> u4(24)) + to_u4(tail * f4(255.0))
+            lit = (lesser(white, u4(255)) << u4(16)) | (lesser(red, u4(255)) << u4(24))
+            store_words(shade, 4 * at, select(seen, (words & u4(0xFFFF)) | lit, words))

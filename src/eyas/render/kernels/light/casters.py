@@ -9,160 +9,171 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inner_kernel
-from eyas.render.kernels.bundles import Geometry, View
-from eyas.render.kernels.light.beams import cast_beam
+from eyas.core.jit import inlined_kernel, inner_kernel
+from eyas.core.lanes import (
+    WIDTH,
+    any_of,
+    gather_column,
+    lane_numbers,
+    lesser,
+    load,
+    load_words,
+    select,
+    splat,
+    store_words,
+    to_u4,
+)
+from eyas.core.pointers import address_of
+from eyas.render.kernels.bundles import Direction, Geometry, Movers, View
+from eyas.render.kernels.light.beams import BEAM_REACH, cast_beam
+from eyas.render.kernels.light.caster import (
+    CORNER,
+    Caster,
+    beyond,
+    boxes_of,
+    caster_of,
+    has_lamps,
+    reach_of,
+    sight_of,
+)
 from eyas.render.kernels.light.shadow_boxes import darken
-from eyas.render.kernels.samples import around, nowhere, point_of
-from eyas.render.kernels.scalars import f4
+from eyas.render.kernels.samples import ScreenBox, around, nowhere, point_of, ray_of_row
+from eyas.render.kernels.scalars import f4, i4, u4
 from eyas.render.kernels.visibility.cull import sphere_is_visible
+from eyas.render.kernels.visibility.key import distance_inverse, drawn_of, tag_of
 
 __all__ = ["cast_light"]
 
 SMALLEST = 1.0
 """Things whose half diagonal is smaller cast no shadow [pixels]."""
 
+_LONGEST = 4.0
+"""Longest shadow, in heights: with the sun near the horizon it would be endless."""
 
-@inner_kernel
-def _set_caster(
-    geometry: Geometry,
-    parts: NDArray[np.int32],
-    poses: NDArray[np.float32],
-    first: int,
-    last: int,
-    caster: NDArray[np.float64],
-) -> bool:
-    """Compute the box around slots `first` to `last`, turned like the largest part.
+_BELOW = 0.3
+"""Distance below the bottom of a thing down to which its shadow falls [m]."""
 
-    Returns whether the thing has head and tail lamps.
 
-    `caster`: centre x, y; direction of its length x, y; half length, half width; bottom, top; of
-    its upper box the bottom, and back, front, right and left end from the centre; right and left
-    end of its lower box; reach beyond it to which it blocks the sky's light on the ground.
+@inlined_kernel
+def _throw(sun: Direction) -> float:
+    """Return the distance of a shadow's end, per metre of height and unit of the sun's x and y."""
+    return min(1.0 / max(float(sun.z), 1e-3), _LONGEST)
+
+
+@inlined_kernel
+def _may_reach(
+    geometry: Geometry, movers: Movers, world: int, first: int, last: int, sun: Direction,
+    lamps_on: bool, view: View,
+) -> bool:  # fmt: skip
+    """Return whether a thing, its shadow or its light may be in the picture.
+
+    This is tested first because it needs no box around the thing.
     """
-    body, largest, axis_x, axis_y, origin_x, origin_y = first, -1.0, 1.0, 0.0, 0.0, 0.0
-    for slot in range(first, last):
-        box = geometry.box[geometry.part_first + parts[slot]]
-        size = (box[3] - box[0]) * (box[4] - box[1]) * (box[5] - box[2])
-        flat = math.sqrt(float(poses[slot, 0, 0]) ** 2 + float(poses[slot, 1, 0]) ** 2)
-        if size > largest and flat > 1e-6:
-            body, largest = slot, size
-            axis_x, axis_y = poses[slot, 0, 0] / flat, poses[slot, 1, 0] / flat
-            origin_x, origin_y = poses[slot, 0, 3], poses[slot, 1, 3]
-    front, back, left, right, low, high = -1e9, 1e9, -1e9, 1e9, 1e9, -1e9
-    for slot in range(first, last):
-        box = geometry.box[geometry.part_first + parts[slot]]
-        for corner in range(8):
-            x = box[3 * (corner & 1)]
-            y = box[1 + 3 * ((corner >> 1) & 1)]
-            z = box[2 + 3 * (corner >> 2)]
-            pose = poses[slot]
-            wx = pose[0, 0] * x + pose[0, 1] * y + pose[0, 2] * z + pose[0, 3] - origin_x
-            wy = pose[1, 0] * x + pose[1, 1] * y + pose[1, 2] * z + pose[1, 3] - origin_y
-            wz = pose[2, 0] * x + pose[2, 1] * y + pose[2, 2] * z + pose[2, 3]
-            along, aside = wx * axis_x + wy * axis_y, wy * axis_x - wx * axis_y
-            front, back = max(front, along), min(back, along)
-            left, right = max(left, aside), min(right, aside)
-            low, high = min(low, wz), max(high, wz)
-    along, aside = 0.5 * (front + back), 0.5 * (left + right)
-    caster[0] = origin_x + along * axis_x - aside * axis_y
-    caster[1] = origin_y + along * axis_y + aside * axis_x
-    caster[2], caster[3] = axis_x, axis_y
-    caster[4], caster[5] = 0.5 * (front - back), 0.5 * (left - right)
-    caster[6], caster[7] = low, high
-    boxes = geometry.silhouette[geometry.part_first + parts[body]]
-    caster[8] = poses[body, 2, 3] + boxes[0]
-    caster[9], caster[10] = boxes[1] - along, boxes[2] - along
-    for k in range(4):
-        caster[11 + k] = boxes[3 + k] - aside
-    caster[15] = 0.55 + 0.2 * (high - low)
-    return bool(geometry.lamps[geometry.part_first + parts[body]])
+    reach = reach_of(geometry, movers, world, first, last)
+    height = 2.0 * reach
+    length = _throw(sun) * height * math.sqrt(sun.x * sun.x + sun.y * sun.y)
+    most = CORNER * (reach + beyond(height)) + _BELOW + length
+    if lamps_on:
+        most = max(most, CORNER * reach + BEAM_REACH)
+    origin = movers.pose[world, first]
+    return sphere_is_visible(
+        view.planes, float(origin[0, 3]), float(origin[1, 3]), float(origin[2, 3]), most
+    )
 
 
 @inner_kernel
-def _throw(caster: NDArray[np.float64], sun: NDArray[np.float32]) -> float:
-    """Return the distance of the shadow's end, per unit of the sun's x and y.
-
-    With the sun near the horizon a shadow would be endless: it is cut after four heights.
-    """
-    return float(min(1.0 / max(float(sun[2]), 1e-3), 4.0) * (caster[7] - caster[6]))
-
-
-@inner_kernel
-def _may_show(
-    caster: NDArray[np.float64],
-    sun: NDArray[np.float32],
-    view: View,
-) -> bool:
+def _may_show(caster: Caster, sun: Direction, view: View) -> bool:
     """Return whether a shadow may be in the picture, and large enough to see."""
-    half = 0.5 * _throw(caster, sun)
-    x, y, z = caster[0] - half * sun[0], caster[1] - half * sun[1], 0.5 * (caster[6] + caster[7])
-    length = math.sqrt(caster[4] ** 2 + caster[5] ** 2)
-    near = view.planes[4]
-    if view.lens[3] * length < SMALLEST * (near[0] * x + near[1] * y + near[2] * z + near[3]):
+    height = caster.top - caster.bottom
+    half = 0.5 * _throw(sun) * height
+    x, y, z = caster.x - half * sun.x, caster.y - half * sun.y, 0.5 * (caster.top + caster.bottom)
+    length = math.sqrt(caster.length**2 + caster.width**2)
+    ahead = view.screen.distance
+    if view.focal * length < SMALLEST * (ahead.x * x + ahead.y * y + ahead.z * z + ahead.w):
         return False
-    reach = length + half + 0.5 * (caster[7] - caster[6]) + caster[15]
+    reach = length + 1.5 * caster.beyond + half + 0.5 * height + _BELOW
     return sphere_is_visible(view.planes, x, y, z, reach)
 
 
 @inner_kernel
-def _screen_box(
-    caster: NDArray[np.float64], sun: NDArray[np.float32], view: View
-) -> tuple[float, float, float, float]:
+def _screen_box(caster: Caster, sun: Direction, view: View) -> ScreenBox:
     """Return the box around a thing and its shadow on the ground, see `around`."""
     box = nowhere()
-    throw = _throw(caster, sun)
+    throw = _throw(sun) * (caster.top - caster.bottom)
     for corner in range(16):
-        along = (caster[4] + caster[15]) * (1.0 if corner & 1 else -1.0)
-        aside = (caster[5] + caster[15]) * (1.0 if corner & 2 else -1.0)
-        x = caster[0] + along * caster[2] - aside * caster[3]
-        y = caster[1] + along * caster[3] + aside * caster[2]
-        z = caster[7] if corner & 4 else caster[6] - 0.3
+        along = (caster.length + caster.beyond) * (1.0 if corner & 1 else -1.0)
+        aside = (caster.width + caster.beyond) * (1.0 if corner & 2 else -1.0)
+        x = caster.x + along * caster.along_x - aside * caster.along_y
+        y = caster.y + along * caster.along_y + aside * caster.along_x
+        z = caster.top if corner & 4 else caster.bottom - _BELOW
         if corner & 8:
-            x -= throw * sun[0]
-            y -= throw * sun[1]
-            z = caster[6] - 0.3
+            x -= throw * sun.x
+            y -= throw * sun.y
+            z = caster.bottom - _BELOW
         box = around(box, view, x, y, z)
     return box
 
 
+@inlined_kernel
+def _belongs_to(tag: int, drawn: NDArray[np.int32], first: int, last: int) -> bool:
+    """Return which samples show instances `first` to `last`."""
+    moved = tag < i4(0)
+    if not any_of(moved):
+        return moved
+    # Other samples look at row 0.
+    instance = gather_column(drawn, select(moved, drawn_of(tag), i4(0)), 1, 2)
+    return moved & (instance >= i4(first)) & (instance < i4(last))
+
+
 @inner_kernel
 def _cast_shadow(
-    caster: NDArray[np.float64],
-    sun: NDArray[np.float32],
+    caster: Caster,
+    sun: Direction,
     first: int,
     last: int,
     view: View,
+    key: NDArray[np.int64],
+    drawn: NDArray[np.int32],
     shade: NDArray[np.uint8],
 ) -> None:
     """Darken the samples that instances `first` to `last` shade, but not these themselves."""
     box = _screen_box(caster, sun, view)
-    rows, width = view.depth.shape
-    for line in range(max(int(box[1]) - view.top, 0), min(int(box[3]) + 1 - view.top, rows)):
-        for column in range(max(int(box[0]), 0), min(int(box[2]) + 1, width)):
-            if view.depth[line, column] <= f4(0.0):
+    sight, boxes = sight_of(caster, view), boxes_of(caster, sun)
+    stride, top = key.shape[1], boxes.upper.top
+    begin, end = max(int(box.left), 0), min(int(box.right) + 1, view.width)
+    bottom = min(int(box.bottom) + 1 - view.top, view.rows)
+    for line in range(max(int(box.top) - view.top, 0), bottom):
+        ray = ray_of_row(sight, view, line)
+        for start in range(begin, end, WIDTH):
+            left = min(start, stride - WIDTH)
+            at = line * stride + left
+            columns, keys = lane_numbers() + i4(left), load(key, at)
+            inverse = distance_inverse(keys)
+            seen = (inverse > f4(0.0)) & (columns >= i4(begin)) & (columns < i4(end))
+            x, y, z = point_of(sight, view, ray, columns, select(seen, inverse, f4(1.0)))
+            seen &= z <= top
+            if any_of(seen):
+                seen &= ~_belongs_to(tag_of(keys), drawn, first, last)
+            if not any_of(seen):
                 continue
-            instance = (view.owner[line, column] >> 32) - 1
-            if first <= instance < last:
-                continue
-            x, y, z = point_of(view, line, column)
-            if z > caster[7]:
-                continue
-            direct, ambient = darken(caster, sun, x, y, z)
-            shade[line, column, 0] = min(shade[line, column, 0], np.uint8(255.0 * direct))
-            shade[line, column, 1] = min(shade[line, column, 1], np.uint8(255.0 * ambient))
+            direct, open_share = darken(boxes, x, y, z)
+            words = load_words(shade, 4 * at)
+            sunny = lesser(words & u4(255), to_u4(direct * f4(255.0)))
+            open_sky = lesser((words >> u4(8)) & u4(255), to_u4(open_share * f4(255.0)))
+            dark = (words & u4(0xFFFF0000)) | sunny | (open_sky << u4(8))
+            store_words(shade, 4 * at, select(seen, dark, words))
 
 
 @inner_kernel
 def cast_light(
     geometry: Geometry,
-    parts: NDArray[np.int32],
-    poses: NDArray[np.float32],
-    object_ids: NDArray[np.int32],
-    sun: NDArray[np.float32],
-    lamps: float,
+    movers: Movers,
+    world: int,
     view: View,
-    caster: NDArray[np.float64],
+    lamps_on: bool,
+    sun: Direction,
+    key: NDArray[np.int64],
+    drawn: NDArray[np.int32],
     shade: NDArray[np.uint8],
 ) -> None:
     """Write the share of light that moving things let through to each sample, and their own light.
@@ -171,18 +182,19 @@ def cast_light(
 
     Args:
         geometry: Everything that can be drawn.
-        parts: See `DrawList`.
-        poses: See `DrawList`.
-        object_ids: See `DrawList`.
-        sun: Unit vector towards it.
-        lamps: Greater than 0: those of vehicles are on.
+        movers: The moving things.
+        world: Which world's.
         view: The samples.
-        caster: See `Scratch`.
-        shade: See `Scratch`; its last two channels are not written while lamps are off.
+        lamps_on: Whether the lamps of vehicles are on.
+        sun: Unit vector towards it.
+        key: What each sample shows, see `Scratch.key`, shape (rows, at least 8 columns).
+        drawn: Instances of the keys, see `Scratch.drawn`.
+        shade: See `Scratch`.
     """
-    shade[:, :, :2] = 255
-    if lamps > f4(0.0):
-        shade[:, :, 2:] = 0
+    samples = key.shape[0] * key.shape[1]
+    for at in range(0, samples, WIDTH):
+        store_words(shade, 4 * min(at, samples - WIDTH), splat(u4(0xFFFF)))
+    parts, object_ids = movers.part[world], movers.object_id[world]
     fixtures = len(geometry.fixture_prototype)
     first = 0
     while first < len(parts):
@@ -192,9 +204,12 @@ def cast_light(
             continue
         while last < len(parts) and parts[last] >= 0 and object_ids[last] == object_ids[first]:
             last += 1
-        has_lamps = _set_caster(geometry, parts, poses, first, last, caster)
-        if _may_show(caster, sun, view):
-            _cast_shadow(caster, sun, fixtures + first, fixtures + last, view, shade)
-        if has_lamps and lamps > f4(0.0):
-            cast_beam(caster, view, shade)
+        if _may_reach(geometry, movers, world, first, last, sun, lamps_on, view):
+            caster = address_of(caster_of(geometry, movers, world, first, last))
+            if _may_show(caster, sun, view):
+                _cast_shadow(
+                    caster, sun, fixtures + first, fixtures + last, view, key, drawn, shade
+                )
+            if lamps_on and has_lamps(geometry, movers, world, first, last):
+                cast_beam(caster, view, key, shade)
         first = last

@@ -1,13 +1,13 @@
 """Light that the two boxes of a moving thing block."""
 
-import math
+from typing import NamedTuple
 
-import numpy as np
-from numpy.typing import NDArray
+from eyas.core.jit import inlined_kernel
+from eyas.core.lanes import greater, lesser, magnitude, root, select
+from eyas.render.kernels.bundles import Direction
+from eyas.render.kernels.scalars import f4
 
-from eyas.core.jit import inlined_kernel, inner_kernel
-
-__all__ = ["darken"]
+__all__ = ["Box", "ShadowBoxes", "darken", "shadow_boxes"]
 
 _UNDER = 0.88
 """Share of the sky's light that a car blocks on the ground under it."""
@@ -15,55 +15,99 @@ _UNDER = 0.88
 _INSET = 0.3
 """Distance from the edge of a body inwards at which the blocking begins [m]."""
 
+_EDGE = 0.15
+"""Length of the ray inside a box that hides all of the sun, for a point at the box [m]."""
+
+_WIDENING = 0.25
+"""Growth of that length with the distance of the box."""
+
+_STEEP = 1e-4
+"""Smallest step of a ray along an axis, so that its inverse is finite."""
+
+
+class Box(NamedTuple):
+    """An upright box in the frame of a moving thing [m]; of float32."""
+
+    back: float
+    front: float
+    right: float
+    left: float
+    bottom: float
+    top: float
+
+
+class ShadowBoxes(NamedTuple):
+    """What blocks light, in the thing's own frame: origin at the middle of its bottom [m]."""
+
+    lower: Box
+    """Like the body of a car."""
+    upper: Box
+    """Like its cabin."""
+    inverse: Direction
+    """1 over each part of the unit vector to the sun."""
+    reach: float
+    """Inverse of the distance over which the thing blocks the sky's light on the ground [1/m]."""
+    most: float
+    """Share of it that is blocked under the thing."""
+
 
 @inlined_kernel
-def _between(start: float, step: float, low: float, high: float) -> tuple[float, float]:
-    """Return when a point that moves by `step` in each unit of time enters and leaves a range."""
-    speed = step if abs(step) > 1e-4 else 1e-4
-    first, last = (low - start) / speed, (high - start) / speed
-    return min(first, last), max(first, last)
+def _inverse(step: float) -> float:
+    return f4(1.0 / (step if abs(step) > _STEEP else _STEEP))
 
 
 @inlined_kernel
-def _through(
-    at: tuple[float, float, float],
-    way: tuple[float, float, float],
-    ends: tuple[float, float, float, float],
-    bottom: float,
-    top: float,
-) -> float:
-    """Return the length [m] inside a box of the ray from a point to the sun."""
-    front, back = _between(at[0], way[0], ends[0], ends[1])
-    right, left = _between(at[1], way[1], ends[2], ends[3])
-    low, high = _between(at[2], way[2], bottom, top)
-    return float(max(min(back, left, high) - max(front, right, low, 0.0), 0.0))
+def shadow_boxes(lower: Box, upper: Box, sun: Direction, beyond: float) -> ShadowBoxes:
+    """Return what blocks light.
+
+    Args:
+        lower: See `ShadowBoxes`.
+        upper: See `ShadowBoxes`.
+        sun: Unit vector to it, in the thing's frame.
+        beyond: Distance from the thing up to which it blocks the sky's light on the ground [m].
+    """
+    half = 0.5 * (lower.left - lower.right)
+    return ShadowBoxes(
+        lower,
+        upper,
+        Direction(_inverse(sun.x), _inverse(sun.y), f4(1.0 / max(sun.z, 1e-3))),
+        f4(1.0 / (beyond + _INSET)),
+        f4(_UNDER * min(half + 0.35, 1.0)),  # light comes under a motorbike from both sides
+    )
 
 
-@inner_kernel
-def darken(
-    caster: NDArray[np.float64],
-    sun: NDArray[np.float32],
-    x: float,
-    y: float,
-    z: float,
-) -> tuple[float, float]:
-    """Return the shares of sun and sky light that a thing lets through to a point."""
-    dx, dy = x - caster[0], y - caster[1]
-    px, py = dx * caster[2] + dy * caster[3], dy * caster[2] - dx * caster[3]
-    sx, sy = sun[0] * caster[2] + sun[1] * caster[3], sun[1] * caster[2] - sun[0] * caster[3]
-    way = (float(sx), float(sy), max(float(sun[2]), 1e-3))
-    # The longer the ray through it, the darker the shadow: this gives a soft edge.
-    body = (-caster[4], caster[4], caster[13], caster[14])
-    cabin = (caster[9], caster[10], caster[11], caster[12])
-    inside = _through((px, py, z), way, body, caster[6], caster[8])
-    inside += _through((px, py, z), way, cabin, caster[8], caster[7])
-    deep = min(inside * 2.2, 1.0)
+@inlined_kernel
+def _between(start: float, inverse: float, low: float, high: float) -> tuple[float, float]:
+    """Return when a point enters and leaves a range; `inverse` is 1 over its speed."""
+    first, last = (low - start) * inverse, (high - start) * inverse
+    return lesser(first, last), greater(first, last)
+
+
+@inlined_kernel
+def _blocked(x: float, y: float, z: float, box: Box, inverse: Direction) -> float:
+    """Return how much of the sun a box hides from a point; 1 or more is all.
+
+    The longer the ray to the sun is inside the box, the more: this gives a soft edge, which is
+    the wider the farther the box is from the point.
+    """
+    front, back = _between(x, inverse.x, box.back, box.front)
+    right, left = _between(y, inverse.y, box.right, box.left)
+    low, high = _between(z, inverse.z, box.bottom, box.top)
+    enters = greater(greater(front, right), greater(low, f4(0.0)))
+    inside = greater(lesser(lesser(back, left), high) - enters, f4(0.0))
+    return inside / (f4(_EDGE) + f4(_WIDENING) * enters)
+
+
+@inlined_kernel
+def darken(boxes: ShadowBoxes, x: float, y: float, z: float) -> tuple[float, float]:
+    """Return the shares of sun and sky light that a thing lets through to points in its frame."""
+    zero, one = f4(0.0), f4(1.0)
+    lower, upper = boxes.lower, boxes.upper
+    hidden = _blocked(x, y, z, lower, boxes.inverse) + _blocked(x, y, z, upper, boxes.inverse)
     # Little light of the sky reaches the ground under a body and beside it.
-    half, side = 0.5 * (caster[14] - caster[13]), py - 0.5 * (caster[14] + caster[13])
-    out_x = max(abs(px) - caster[4] + _INSET, 0.0)
-    out_y = max(abs(side) - half + min(_INSET, half), 0.0)
-    near = max(1.0 - math.sqrt(out_x * out_x + out_y * out_y) / (caster[15] + _INSET), 0.0)
-    if abs(z - caster[6]) > 0.3:
-        near = 0.0
-    most = _UNDER * min(half + 0.35, 1.0)  # light comes under a motorbike from both sides
-    return 1.0 - deep, 1.0 - most * near * near * (3.0 - 2.0 * near)
+    half, middle = f4(0.5) * (lower.left - lower.right), f4(0.5) * (lower.left + lower.right)
+    out_x = greater(magnitude(x) - lower.front + f4(_INSET), zero)
+    out_y = greater(magnitude(y - middle) - half + lesser(f4(_INSET), half), zero)
+    near = greater(one - root(out_x * out_x + out_y * out_y) * boxes.reach, zero)
+    near = select(magnitude(z) > f4(0.3), zero, near)
+    return one - lesser(hidden, one), one - boxes.most * near * near * (f4(3.0) - f4(2.0) * near)

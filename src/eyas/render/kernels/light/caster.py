@@ -1,0 +1,171 @@
+"""The box around a moving thing, which casts a shadow and may have lamps."""
+
+import math
+from typing import NamedTuple
+
+from eyas.core.jit import inlined_kernel, inner_kernel
+from eyas.render.kernels.bundles import Direction, Geometry, Movers, View
+from eyas.render.kernels.light.shadow_boxes import Box, ShadowBoxes, shadow_boxes
+from eyas.render.kernels.samples import Sight, sight_from
+from eyas.render.kernels.scalars import f4
+
+__all__ = [
+    "CORNER",
+    "Caster",
+    "beyond",
+    "boxes_of",
+    "caster_of",
+    "has_lamps",
+    "reach_of",
+    "sight_of",
+]
+
+CORNER = 1.75
+"""Root of 3, and a little for rounding."""
+
+
+class Caster(NamedTuple):
+    """A moving thing as a box, turned like its largest part; of float64 [m]."""
+
+    x: float
+    """Its middle in the world."""
+    y: float
+    along_x: float
+    """Direction of its length, a unit vector."""
+    along_y: float
+    length: float
+    """Half its length."""
+    width: float
+    """Half its width."""
+    bottom: float
+    """z in the world."""
+    top: float
+    waist: float
+    """z where its upper box begins."""
+    back: float
+    """Ends of its upper box from the middle."""
+    front: float
+    right: float
+    left: float
+    lower_right: float
+    """Ends of its lower box, which is as long as the thing."""
+    lower_left: float
+    beyond: float
+    """Distance from the thing up to which it blocks the sky's light on the ground."""
+
+
+@inlined_kernel
+def beyond(height: float) -> float:
+    """Return the distance up to which a thing of a height blocks the sky's light [m]."""
+    return 0.55 + 0.2 * height
+
+
+@inner_kernel
+def reach_of(geometry: Geometry, movers: Movers, world: int, first: int, last: int) -> float:
+    """Return how far the parts in slots `first` to `last` are from the first's origin [m].
+
+    In any direction; the corners of a `Caster` may be farther by a factor of `CORNER`.
+    """
+    poses, parts = movers.pose[world], movers.part[world]
+    reach = 0.0
+    for slot in range(first, last):
+        pose, box = poses[slot], geometry.box[geometry.part_first + parts[slot]]
+        square, scale, away = 0.0, 0.0, 0.0
+        for axis in range(3):
+            far = float(max(-box[axis], box[3 + axis]))
+            square += far * far
+            scale += float(pose[axis, 0]) ** 2
+            away += float(pose[axis, 3] - poses[first, axis, 3]) ** 2
+        reach = max(reach, math.sqrt(away) + math.sqrt(square * scale))
+    return reach
+
+
+@inlined_kernel
+def _largest(geometry: Geometry, movers: Movers, world: int, first: int, last: int) -> int:
+    """Return the slot of the largest part that is not upright."""
+    poses, parts = movers.pose[world], movers.part[world]
+    body, largest = first, f4(-1.0)
+    for slot in range(first, last):
+        box = geometry.box[geometry.part_first + parts[slot]]
+        size = (box[3] - box[0]) * (box[4] - box[1]) * (box[5] - box[2])
+        if size > largest and poses[slot, 0, 0] ** 2 + poses[slot, 1, 0] ** 2 > f4(1e-12):
+            body, largest = slot, size
+    return body
+
+
+@inlined_kernel
+def has_lamps(geometry: Geometry, movers: Movers, world: int, first: int, last: int) -> bool:
+    """Return whether a thing has head and tail lamps."""
+    body = _largest(geometry, movers, world, first, last)
+    return bool(geometry.lamps[geometry.part_first + movers.part[world, body]])
+
+
+@inner_kernel
+def caster_of(geometry: Geometry, movers: Movers, world: int, first: int, last: int) -> Caster:
+    """Return the box around slots `first` to `last`."""
+    poses, parts = movers.pose[world], movers.part[world]
+    body = _largest(geometry, movers, world, first, last)
+    along_x, along_y = float(poses[body, 0, 0]), float(poses[body, 1, 0])
+    flat = math.sqrt(along_x * along_x + along_y * along_y)
+    along_x, along_y = (along_x / flat, along_y / flat) if flat > 1e-6 else (1.0, 0.0)
+    origin_x, origin_y = float(poses[body, 0, 3]), float(poses[body, 1, 3])
+    front, back, left, right, low, high = -1e9, 1e9, -1e9, 1e9, 1e9, -1e9
+    for slot in range(first, last):
+        pose, box = poses[slot], geometry.box[geometry.part_first + parts[slot]]
+        x, y, z = pose[0, 3] - origin_x, pose[1, 3] - origin_y, float(pose[2, 3])
+        along, aside = x * along_x + y * along_y, y * along_x - x * along_y
+        wide, deep, tall = 0.0, 0.0, 0.0
+        for axis in range(3):
+            middle, half = 0.5 * (box[3 + axis] + box[axis]), 0.5 * (box[3 + axis] - box[axis])
+            x = pose[0, axis] * along_x + pose[1, axis] * along_y
+            y = pose[1, axis] * along_x - pose[0, axis] * along_y
+            along, aside, z = along + x * middle, aside + y * middle, z + pose[2, axis] * middle
+            wide, deep = wide + abs(x) * half, deep + abs(y) * half
+            tall += abs(pose[2, axis]) * half
+        front, back = max(front, along + wide), min(back, along - wide)
+        left, right = max(left, aside + deep), min(right, aside - deep)
+        low, high = min(low, z - tall), max(high, z + tall)
+    along, aside = 0.5 * (front + back), 0.5 * (left + right)
+    ends = geometry.silhouette[geometry.part_first + parts[body]]
+    return Caster(
+        origin_x + along * along_x - aside * along_y,
+        origin_y + along * along_y + aside * along_x,
+        along_x,
+        along_y,
+        0.5 * (front - back),
+        0.5 * (left - right),
+        low,
+        high,
+        float(poses[body, 2, 3]) + ends[0],
+        ends[1] - along,
+        ends[2] - along,
+        ends[3] - aside,
+        ends[4] - aside,
+        ends[5] - aside,
+        ends[6] - aside,
+        beyond(high - low),
+    )
+
+
+@inlined_kernel
+def sight_of(caster: Caster, view: View) -> Sight:
+    """Return the camera in the thing's own frame: origin at the middle of its bottom."""
+    origin = Direction(caster.x, caster.y, caster.bottom)
+    return sight_from(view, origin, caster.along_x, caster.along_y)
+
+
+@inlined_kernel
+def boxes_of(caster: Caster, sun: Direction) -> ShadowBoxes:
+    """Return what blocks the light from a direction."""
+    waist, top = f4(caster.waist - caster.bottom), f4(caster.top - caster.bottom)
+    lower = Box(
+        f4(-caster.length), f4(caster.length), f4(caster.lower_right), f4(caster.lower_left),
+        f4(0.0), waist,
+    )  # fmt: skip
+    upper = Box(f4(caster.back), f4(caster.front), f4(caster.right), f4(caster.left), waist, top)
+    turned = Direction(
+        sun.x * caster.along_x + sun.y * caster.along_y,
+        sun.y * caster.along_x - sun.x * caster.along_y,
+        float(sun.z),
+    )
+    return shadow_boxes(lower, upper, turned, caster.beyond)
