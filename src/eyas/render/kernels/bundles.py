@@ -97,12 +97,6 @@ class Geometry(NamedTuple):
     """`Surface` of each material."""
     tint: NDArray[np.float32]
     """Linear colour factor of each material, shape (., 3)."""
-    emission: NDArray[np.float32]
-    """Own light of each material."""
-    snow_bed: NDArray[np.int32]
-    """`eyas.render.kernels.surface.snow.Bed` of each material."""
-    crown_middle: NDArray[np.float32]
-    """z of the middle of the crowns made of each material, in the frame of their trees."""
     texture: NDArray[np.uint32]
     """Texels of each layer, all mip levels in a row, row 0 at v = 0: square roots of linear red,
     green, blue, and alpha, a byte each, the lowest byte first, shape (., 87381)."""

@@ -9,7 +9,12 @@ from numpy.typing import NDArray
 from eyas.render.kernels.bundles import GROUP, Geometry
 from eyas.render.pack.silhouette import silhouette
 from eyas.render.pack.snow import crown_middles, snow_beds
-from eyas.render.pack.triangles import gradients, solid_triangles
+from eyas.render.pack.triangles import (
+    MaterialTable,
+    gradients,
+    shading_rows,
+    solid_triangles,
+)
 from eyas.render.textures.mipmap import linear, packed_layers
 from eyas.state.draw import PartLibrary
 from eyas.state.mesh import Material, Mesh
@@ -52,14 +57,26 @@ def build_geometry(
     palette = tuple(pool.palette)
     names = sorted({material.texture for material in palette} | {"plain"})
     triangles, positions, uvs = pool.joined()
+    tint = linear(np.array([material.tint for material in palette]).reshape(-1, 3))
+    materials = MaterialTable(
+        layer=np.array([names.index(material.texture) for material in palette], np.int32),
+        surface=np.array([material.surface for material in palette], np.int32),
+        tint=tint.astype(np.float32),
+        emission=np.array([material.emission for material in palette], np.float32),
+        snow_bed=snow_beds(scene, parts, palette),
+        crown_middle=crown_middles(scene, palette),
+    )
+    material = np.concatenate([np.zeros(0, np.int32), *pool.materials])
+    objects = np.concatenate([np.zeros(0, np.int32), *pool.objects])
+    slopes = np.concatenate([np.zeros((0, 24), np.float32), *pool.gradients])
     return Geometry(
         positions=positions,
         uvs=uvs,
         corners=triangles,
-        gradients=np.concatenate([np.zeros((0, 24), np.float32), *pool.gradients]),
-        material=np.concatenate([np.zeros(0, np.int32), *pool.materials]),
+        shading=shading_rows(slopes, objects, materials.of(material)),
+        material=material,
         size=np.concatenate([np.zeros(0, np.float32), *pool.sizes]),
-        object_id=np.concatenate([np.zeros(0, np.int32), *pool.objects]),
+        object_id=objects,
         chunk_box=chunk_box,
         chunk_group_box=_group_boxes(chunk_box),
         chunk_range=chunk_range,
@@ -74,14 +91,9 @@ def build_geometry(
         fixture_pose=pose,
         fixture_object=scene.fixtures.object_id[order].astype(np.int32),
         fixture_group_box=_group_boxes(_posed_boxes(box[prototype], pose)),
-        layer=np.array([names.index(material.texture) for material in palette], np.int32),
-        surface=np.array([material.surface for material in palette], np.int32),
-        tint=linear(np.array([material.tint for material in palette]).reshape(-1, 3)).astype(
-            np.float32
-        ),
-        emission=np.array([material.emission for material in palette], np.float32),
-        snow_bed=snow_beds(scene, parts, palette),
-        crown_middle=crown_middles(scene, palette),
+        layer=materials.layer,
+        surface=materials.surface,
+        tint=materials.tint,
         texture=packed_layers(textures, names),
     )
 

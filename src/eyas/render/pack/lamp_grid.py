@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.render.kernels.bundles import LampFrame
 from eyas.state.scene import Lamps
 
 __all__ = ["lamp_grid"]
@@ -19,7 +20,7 @@ MOST = 8
 
 def lamp_grid(
     lamps: Lamps, cell: float = CELL
-) -> tuple[NDArray[np.float32], NDArray[np.int32], NDArray[np.float32]]:
+) -> tuple[NDArray[np.float32], NDArray[np.int32], LampFrame]:
     """Return `Light.lamp`, `Light.lamp_cell` and `Light.lamp_frame`.
 
     Args:
@@ -28,10 +29,12 @@ def lamp_grid(
     """
     count = len(lamps.position)
     strength = np.full((count, 1), lamps.intensity / PAPER, np.float32)
-    lamp = np.concatenate([lamps.position, lamps.axis, strength], axis=1).astype(np.float32)
+    nothing = np.zeros((count, 1), np.float32)  # eight numbers, so that lanes can be loaded
+    lamp = np.concatenate([lamps.position, lamps.axis, strength, nothing], axis=1)
+    lamp = lamp.astype(np.float32)
     cut_off = float(np.cos(lamps.cut_off))
     if count == 0:
-        return lamp, np.full((0, 0, 1), -1, np.int32), np.array([0, 0, 1 / cell, cut_off], "f4")
+        return lamp, np.full((0, 0, 1), -1, np.int32), _frame(0.0, 0.0, cell, cut_off)
     low = lamps.position[:, :2].min(axis=0).astype(np.float64) - REACH
     high = lamps.position[:, :2].max(axis=0).astype(np.float64) + REACH
     columns, rows = np.ceil((high - low) / cell).astype(int)
@@ -40,7 +43,13 @@ def lamp_grid(
     order = np.argsort(apart, axis=2, kind="stable")[:, :, :MOST]
     near = np.take_along_axis(apart, order, axis=2) < REACH + cell * np.sqrt(0.5)
     cells = np.where(near, order, -1).astype(np.int32)
-    return lamp, np.ascontiguousarray(cells), np.array([*low, 1 / cell, cut_off], np.float32)
+    return lamp, np.ascontiguousarray(cells), _frame(low[0], low[1], cell, cut_off)
+
+
+def _frame(west: float, south: float, cell: float, cut_off: float) -> LampFrame:
+    return LampFrame(
+        np.float32(west), np.float32(south), np.float32(1 / cell), np.float32(cut_off)
+    )
 
 
 PAPER = 1.05

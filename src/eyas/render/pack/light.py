@@ -10,7 +10,7 @@ from eyas.render.bake.clouds import build_clouds
 from eyas.render.bake.hills import build_hills, far_ground
 from eyas.render.bake.shadows import ShadowMap
 from eyas.render.bake.tracks import TrackMap
-from eyas.render.kernels.bundles import Geometry, Light
+from eyas.render.kernels.bundles import Air, Direction, Geometry, Illumination, Light, MapFrame
 from eyas.render.kernels.light.tone import TONE_STEPS, TONE_TOP
 from eyas.render.pack.lamp_grid import lamp_grid
 from eyas.state.lighting import Lighting
@@ -39,32 +39,49 @@ def build_light(
         lambda: (build_clouds(lighting.clouds, toward), build_hills(scene.horizon, toward)),
         of=tuple[NDArray[np.uint8], NDArray[np.uint8]],
     )
-    # A point is moved off its surface by the largest error of the shadow map within a texel.
-    offset = 1.1 * shadows.texel
-    air = [lighting.fog_density, lighting.fog_power, lighting.exposure, offset, lighting.snow]
-    air += [lighting.lamps, lighting.windows, lighting.clouds, lighting.flakes]
     return Light(
-        sun=_row(sun),
-        sun_colour=_row(lighting.sun_colour),
-        zenith=_row(lighting.zenith_colour),
-        horizon=_row(lighting.horizon_colour),
-        ambient_up=_row(lighting.ambient_up),
-        ambient_down=_row(lighting.ambient_down),
-        fog=_row(lighting.fog_colour),
-        air=_row(air),
+        weather=_weather(lighting, toward, shadows),
         shadow_map=shadows.heights,
         shadow_rows=np.ascontiguousarray(shadows.rows, np.float32),
         ambient=ambient.openness,
-        ambient_frame=_row(ambient.frame),
+        ambient_frame=MapFrame(*_floats(ambient.frame)),
         lamp=lamp,
         lamp_cell=lamp_cell,
         lamp_frame=lamp_frame,
         tracks=tracks.worn,
-        track_frame=_row(tracks.frame),
+        track_frame=MapFrame(*_floats([*tracks.frame, 0.0])),
         tone=tone_table(),
-        ground=_row(far_ground(geometry)),
+        ground=_direction(far_ground(geometry)),
         clouds=clouds,
         hills=hills,
+    )
+
+
+def _weather(
+    lighting: Lighting, sun: tuple[float, float, float], shadows: ShadowMap
+) -> Illumination:
+    """Return the light of a weather; `sun` is of length 1."""
+    air = Air(
+        density=np.float32(lighting.fog_density),
+        power=np.float32(lighting.fog_power),
+        exposure=np.float32(lighting.exposure),
+        # The largest error of the shadow map within a texel.
+        offset=np.float32(1.1 * shadows.texel),
+        snow=np.float32(lighting.snow),
+        lamps=np.float32(lighting.lamps),
+        windows=np.float32(lighting.windows),
+        clouds=np.float32(lighting.clouds),
+        flakes=np.float32(lighting.flakes),
+    )
+    return Illumination(
+        sun=_direction(sun),
+        sun_colour=_direction(lighting.sun_colour),
+        zenith=_direction(lighting.zenith_colour),
+        horizon=_direction(lighting.horizon_colour),
+        above=_direction(lighting.ambient_up),
+        below=_direction(lighting.ambient_down),
+        fog=_direction(lighting.fog_colour),
+        air=air,
     )
 
 
@@ -81,5 +98,9 @@ def tone_table() -> NDArray[np.uint8]:
     return table
 
 
-def _row(values: ArrayLike) -> NDArray[np.float32]:
-    return np.ascontiguousarray(values, np.float32)
+def _floats(values: ArrayLike) -> tuple[np.float32, ...]:
+    return tuple(np.asarray(values, np.float32))
+
+
+def _direction(values: ArrayLike) -> Direction:
+    return Direction(*_floats(values))

@@ -1,11 +1,35 @@
 """Data of each triangle for shading, computed once."""
 
+from dataclasses import dataclass, fields
+
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.state.mesh import Mesh
 
-__all__ = ["gradients", "solid_triangles"]
+__all__ = ["SHADING", "MaterialTable", "gradients", "shading_rows", "solid_triangles"]
+
+
+@dataclass(frozen=True, slots=True)
+class MaterialTable:
+    """Materials, or those of each triangle; see the fields of `Geometry` with the same names."""
+
+    layer: NDArray[np.int32]
+    surface: NDArray[np.int32]
+    tint: NDArray[np.float32]
+    emission: NDArray[np.float32]
+    snow_bed: NDArray[np.int32]
+    crown_middle: NDArray[np.float32]
+
+    def of(self, index: NDArray[np.int32]) -> "MaterialTable":
+        """Return the rows of an index."""
+        return MaterialTable(*(getattr(self, array.name)[index] for array in fields(self)))
+
+
+SHADING = 32
+"""Columns of `Geometry.shading`: columns 0 to 13 of `gradients`; tiles in a metre, negative where
+the normal is not the same all over; texture; surface, and bed of snow times 256; tint; emission;
+middle of the crown; object id; gradients of the normal. Whole numbers lie there as int32."""
 
 
 def solid_triangles(mesh: Mesh) -> NDArray[np.bool_]:
@@ -24,7 +48,9 @@ def gradients(
     uvs: NDArray[np.float32],
     triangles: NDArray[np.int32],
 ) -> NDArray[np.float32]:
-    """Return `Geometry.gradients`, shape (T, 24).
+    """Return how texture coordinates and normals change on triangles, shape (T, 24): a corner;
+    then gradient and value at that corner of u and of v; normal at the corner; gradients of the
+    three components of the normal; texture tiles in a metre, negative where the normal is bent.
 
     A linear quantity on a triangle is `value + gradient @ (point - corner)`, with a gradient in
     the triangle's plane.
@@ -63,6 +89,30 @@ def gradients(
     bent = np.abs(table[:, 14:23]).max(axis=1) > 0.0
     table[bent, 23] = -np.maximum(table[bent, 23], 1e-12)
     return table.astype(np.float32)
+
+
+def shading_rows(
+    slopes: NDArray[np.float32], objects: NDArray[np.int32], materials: MaterialTable
+) -> NDArray[np.float32]:
+    """Return `Geometry.shading`: all that shading needs of a triangle, in two cache lines.
+
+    Args:
+        slopes: From `gradients`.
+        objects: Object ids, shape (T,).
+        materials: Of each triangle.
+    """
+    rows = np.empty((len(slopes), SHADING), np.float32)
+    whole = rows.view(np.int32)
+    rows[:, :14] = slopes[:, :14]
+    rows[:, 14] = slopes[:, 23]
+    whole[:, 15] = materials.layer
+    whole[:, 16] = materials.surface | (materials.snow_bed << 8)
+    rows[:, 17:20] = materials.tint
+    rows[:, 20] = materials.emission
+    rows[:, 21] = materials.crown_middle
+    whole[:, 22] = objects
+    rows[:, 23:] = slopes[:, 14:23]
+    return rows
 
 
 def _dot(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:

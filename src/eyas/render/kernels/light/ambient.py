@@ -7,9 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.jit import inlined_kernel, inner_kernel
+from eyas.core.lanes import gather_pair, greater, lesser, like, select, to_f4, to_i4
 from eyas.core.parallel import Pointer, parallel_kernel
 from eyas.render.kernels.bundles import Light
-from eyas.render.kernels.scalars import f4, u4
+from eyas.render.kernels.scalars import f4, i4, u4
 
 __all__ = ["BOUNCED", "LEAVES", "OpennessBake", "bake_openness", "openness"]
 
@@ -135,22 +136,25 @@ def openness(light: Light, x: float, y: float, z: float, normal_x: float, normal
         normal_x: Eastward component of the normal: walls see the sky in front of them.
         normal_y: Northward component of the normal.
     """
-    one = f4(1.0)
-    frame = light.ambient_frame
-    column = (x + _ASIDE * normal_x - frame[0]) * frame[2] - f4(0.5)
-    row = (y + _ASIDE * normal_y - frame[1]) * frame[2] - f4(0.5)
-    rows, columns = light.ambient.shape
-    if not (
-        column >= f4(0.0) and row >= f4(0.0) and column < f4(columns - 1) and row < f4(rows - 1)
-    ):
-        return one
-    i, j = u4(row), u4(column)
-    across, down = column - f4(j), row - f4(i)
-    a, b = light.ambient[i, j], light.ambient[i, j + u4(1)]
-    c, d = light.ambient[i + u4(1), j], light.ambient[i + u4(1), j + u4(1)]
-    a8, b8, c8, d8 = f4(a & 255), f4(b & 255), f4(c & 255), f4(d & 255)
-    upper = a8 + across * (b8 - a8)
-    hidden = one - f4(1.0 / 255.0) * (upper + down * (c8 + across * (d8 - c8) - upper))
+    frame, shares = light.ambient_frame, light.ambient
+    column = (x + _ASIDE * normal_x - frame.west) * frame.per_metre - f4(0.5)
+    row = (y + _ASIDE * normal_y - frame.south) * frame.per_metre - f4(0.5)
+    rows, columns = shares.shape
+    zero, one = f4(0.0), like(x, f4(1.0))
+    inside = (column >= zero) & (row >= zero)
+    inside &= (column < f4(columns - 1)) & (row < f4(rows - 1))
+    column, row = select(inside, column, zero), select(inside, row, zero)
+    i, j = to_i4(row), to_i4(column)
+    across, down = column - to_f4(j), row - to_f4(i)
+    at = i * i4(columns) + j
+    below = at + select(inside, i4(columns), i4(0))
+    upper, lower = gather_pair(shares, at), gather_pair(shares, below)
+    byte, half = u4(255), u4(16)
+    a, b = to_f4(upper & byte), to_f4((upper >> half) & byte)
+    c, d = to_f4(lower & byte), to_f4((lower >> half) & byte)
+    first, second = a + across * (b - a), c + across * (d - c)
+    hidden = one - f4(1.0 / 255.0) * (first + down * (second - first))
     # Higher up less is hidden; at the top of what hides it, nothing.
-    climb = min(max((z - frame[3]) / f4(a >> 8), f4(0.0)), one)
-    return f4(one - hidden * (one - climb) * (one - climb))
+    top = to_f4((upper >> u4(8)) & byte)
+    climb = one - lesser(greater((z - frame.ground) / top, zero), one)
+    return select(inside, one - hidden * climb * climb, one)

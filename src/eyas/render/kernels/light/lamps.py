@@ -1,13 +1,22 @@
 """Light of street lamps, windows and other sources."""
 
-import math
-
-import numpy as np
-from numpy.typing import NDArray
-
 from eyas.core.jit import inlined_kernel
+from eyas.core.lanes import (
+    any_of,
+    gather,
+    greater,
+    lesser,
+    like,
+    root,
+    select,
+    to_f4,
+    to_i4,
+    to_u4,
+    transposed,
+)
 from eyas.render.kernels.bundles import Light
-from eyas.render.kernels.scalars import f4, u4
+from eyas.render.kernels.chance import hashed
+from eyas.render.kernels.scalars import f4, i4, u4
 
 __all__ = ["night_light", "window_light"]
 
@@ -27,26 +36,24 @@ _BAYS = f4(4.0)
 @inlined_kernel
 def night_light(
     light: Light,
-    x: float,
-    y: float,
-    z: float,
+    on: float,
+    point: tuple[float, float, float],
     normal: tuple[float, float, float],
-    shade: NDArray[np.uint8],
+    head: float,
+    tail: float,
 ) -> tuple[float, float, float]:
     """Return the light of street lamps and vehicles on a surface; paper in the sun gets 1.
 
     Args:
         light: Its lamps.
-        x: The point [m].
-        y: The point [m].
-        z: The point [m].
+        on: Their strength, 0 to 1.
+        point: The point [m].
         normal: Unit normal of the surface.
-        shade: Light of vehicles there, see `Scratch.shade`.
+        head: Light of vehicles' head lamps there, see `Scratch.shade`.
+        tail: Light of their tail lamps.
     """
-    on = light.air[5]
-    street = on * _street_light(light, x, y, z, normal)
-    head = on * f4(shade[2]) * _HEAD
-    tail = on * f4(shade[3]) * _TAIL
+    street = on * _street_light(light, point, normal)
+    head, tail = head * (on * _HEAD), tail * (on * _TAIL)
     return (
         street + head + tail,
         f4(0.86) * street + f4(0.93) * head + f4(0.06) * tail,
@@ -56,56 +63,44 @@ def night_light(
 
 @inlined_kernel
 def _street_light(
-    light: Light, x: float, y: float, z: float, normal: tuple[float, float, float]
+    light: Light, point: tuple[float, float, float], normal: tuple[float, float, float]
 ) -> float:
     """Return how much light of street lamps a surface gets.
 
     A lamp is a spot without shadow, as in the original: even to 1.1 rad off its axis, nothing
     from the cut-off on, and less with the square of the distance.
     """
-    zero, total = f4(0.0), f4(0.0)
-    rows, columns, most = light.lamp_cell.shape
-    across = (x - light.lamp_frame[0]) * light.lamp_frame[2]
-    down = (y - light.lamp_frame[1]) * light.lamp_frame[2]
-    if not (across >= zero and down >= zero and across < f4(columns) and down < f4(rows)):
+    frame, cells, lamps = light.lamp_frame, light.lamp_cell, light.lamp
+    x, y, z = point
+    zero, one = f4(0.0), f4(1.0)
+    total = like(x, zero)
+    rows, columns, most = cells.shape
+    across, down = (x - frame.west) * frame.per_metre, (y - frame.south) * frame.per_metre
+    inside = (across >= zero) & (down >= zero) & (across < f4(columns)) & (down < f4(rows))
+    if not any_of(inside):
         return total
-    column, row = u4(across), u4(down)
-    cut = light.lamp_frame[3]
+    column, row = to_i4(select(inside, across, zero)), to_i4(select(inside, down, zero))
+    first = (row * i4(columns) + column) * i4(most)
     for k in range(most):
-        which = light.lamp_cell[row, column, k]
-        if which < 0:
-            break
-        lamp = light.lamp[which]
+        which = gather(cells, first + i4(k))
+        lit = inside & (which >= i4(0))
+        if not any_of(lit):
+            break  # lists end with the first empty place
+        lamp = transposed(lamps, to_i4(greater(which, i4(0))), 0, 8)
         dx, dy, dz = lamp[0] - x, lamp[1] - y, lamp[2] - z
         lean = normal[0] * dx + normal[1] * dy + normal[2] * dz
-        if lean <= zero:
-            continue
         square = dx * dx + dy * dy + dz * dz + f4(0.25)
-        inverse = f4(1.0) / math.sqrt(square)
+        inverse = one / root(square)
         cosine = -(lamp[3] * dx + lamp[4] * dy + lamp[5] * dz) * inverse
-        spot = min((cosine - cut) / (_FULL - cut), f4(1.0))
-        if spot > zero:
-            total += spot * spot * lean * inverse * lamp[6] / square
+        spot = lesser((cosine - frame.cut_off) / (_FULL - frame.cut_off), one)
+        lit &= (lean > zero) & (spot > zero)
+        total += select(lit, spot * spot * lean * inverse * lamp[6] / square, zero)
     return total
 
 
 @inlined_kernel
-def _hashed(a: int, b: int, c: int) -> int:
-    """Return 32 bits that look random."""
-    mixed = u4(u4(a) * u4(0x9E3779B1)) ^ u4(u4(b) * u4(0x85EBCA77)) ^ u4(u4(c) * u4(0xC2B2AE3D))
-    mixed = u4((mixed ^ (mixed >> u4(15))) * u4(0x2C1B3C6D))
-    mixed = u4((mixed ^ (mixed >> u4(12))) * u4(0x297A2D39))
-    return u4(mixed ^ (mixed >> u4(15)))
-
-
-@inlined_kernel
 def window_light(
-    light: Light,
-    object_ids: NDArray[np.int32],
-    triangle: int,
-    level: int,
-    u: float,
-    v: float,
+    share: float, building: int, level: int, u: float, v: float
 ) -> tuple[float, float, float]:
     """Return the light behind the window at (u, v) of a facade: dark, or one of a few lights.
 
@@ -113,29 +108,32 @@ def window_light(
     the same in every picture. For windows smaller than a pixel, their mean is returned.
 
     Args:
-        light: Its share of lit windows.
-        object_ids: Object ids of static triangles.
-        triangle: Index of the triangle.
+        share: Share of lit windows.
+        building: Object id.
         level: Mip level of the facade's texture; a window has 64 texels along a side.
         u: Texture coordinates [tiles].
         v: Texture coordinates [tiles].
     """
-    share = light.air[6]
-    if level > 5:
-        mean = f4(0.55) * share
-        return mean, f4(0.72) * mean, f4(0.46) * mean
     # Moved so that cells have numbers above 0: 64 whole repeats, see `gradients`.
-    column, row = u4(_BAYS * u + f4(1024.0)) & u4(255), u4(_BAYS * v + f4(1024.0)) & u4(255)
-    bits = _hashed(column, row, object_ids[triangle])
+    column = to_u4(to_i4(_BAYS * u + f4(1024.0))) & u4(255)
+    row = to_u4(to_i4(_BAYS * v + f4(1024.0))) & u4(255)
+    number = to_u4(building)
+    bits = hashed(column, row, number)
     # Whole storeys are busier than others, as offices are.
-    storey = _hashed(row, u4(7), object_ids[triangle])
-    odds = share * (f4(0.5) + f4(storey & u4(0xFFFF)) * f4(1.0 / 65535.0))
-    if f4(bits & u4(0xFFFF)) * f4(1.0 / 65535.0) >= odds:
-        return f4(0.0), f4(0.0), f4(0.0)
-    bright = f4(0.25) + f4((bits >> u4(16)) & u4(63)) * f4(0.7 / 63.0)
+    storey = hashed(row, like(row, u4(7)), number)
+    low, unit = u4(0xFFFF), f4(1.0 / 65535.0)
+    odds = share * (f4(0.5) + to_f4(storey & low) * unit)
+    bright = f4(0.25) + to_f4((bits >> u4(16)) & u4(63)) * f4(0.7 / 63.0)
+    bright = select(to_f4(bits & low) * unit < odds, bright, f4(0.0))
     kind = (bits >> u4(22)) & u4(15)
-    if kind < u4(9):  # lamps in homes
-        return bright, f4(0.68) * bright, f4(0.36) * bright
-    if kind < u4(14):  # tubes in offices
-        return bright, f4(0.92) * bright, f4(0.74) * bright
-    return f4(0.35) * bright, f4(0.5) * bright, f4(0.8) * bright  # a screen
+    # Lamps in homes, tubes in offices, the rest screens.
+    home, office = kind < u4(9), kind < u4(14)
+    red = select(office, bright, f4(0.35) * bright)
+    green = bright * select(home, like(u, f4(0.68)), select(office, like(u, f4(0.92)), f4(0.5)))
+    blue = bright * select(home, like(u, f4(0.36)), select(office, like(u, f4(0.74)), f4(0.8)))
+    far, mean = level > i4(5), f4(0.55) * share
+    return (
+        select(far, mean, red),
+        select(far, f4(0.72) * mean, green),
+        select(far, f4(0.46) * mean, blue),
+    )

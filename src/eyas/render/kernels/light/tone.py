@@ -1,10 +1,11 @@
 """Conversion of light to bytes."""
 
 from eyas.core.jit import inlined_kernel
+from eyas.core.lanes import gather, greater, lesser, to_i4
 from eyas.render.kernels.bundles import Light
-from eyas.render.kernels.scalars import f4, i8, u4
+from eyas.render.kernels.scalars import f4
 
-__all__ = ["TONE_STEPS", "TONE_TOP", "tone_byte"]
+__all__ = ["TONE_STEPS", "TONE_TOP", "tone_byte", "tone_bytes"]
 
 
 TONE_STEPS = 16384
@@ -18,8 +19,20 @@ _LAST_STEP = f4(TONE_STEPS - 1)
 
 
 @inlined_kernel
-def tone_byte(light: Light, radiance: float) -> int:
+def tone_byte(light: Light, exposure: float, radiance: float) -> int:
     """Return the byte of the picture for a radiance."""
-    step = radiance * light.air[2] * _STEPS_PER_UNIT
-    # Written so that NaN, for which every comparison is false, becomes black, not an index error.
-    return i8(light.tone[u4(min(step, _LAST_STEP))]) if step > f4(0.0) else i8(light.tone[0])
+    # In this order NaN, for which every comparison is false, becomes black, not an index error.
+    step = greater(radiance * (exposure * _STEPS_PER_UNIT), f4(0.0))
+    return gather(light.tone, to_i4(lesser(step, _LAST_STEP)))
+
+
+@inlined_kernel
+def tone_bytes(
+    light: Light, exposure: float, colour: tuple[float, float, float]
+) -> tuple[int, int, int]:
+    """Return the bytes of red, green and blue."""
+    return (
+        tone_byte(light, exposure, colour[0]),
+        tone_byte(light, exposure, colour[1]),
+        tone_byte(light, exposure, colour[2]),
+    )

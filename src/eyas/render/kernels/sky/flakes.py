@@ -12,12 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.jit import inlined_kernel, inner_kernel
-from eyas.render.kernels.bundles import Light
+from eyas.core.pointers import address_of
+from eyas.render.kernels.bundles import Illumination, Light, View
 from eyas.render.kernels.chance import scrambled, tenth
-from eyas.render.kernels.light.tone import tone_byte
+from eyas.render.kernels.light.tone import tone_bytes
 from eyas.render.kernels.scalars import f4, i8, u4
+from eyas.render.kernels.visibility.key import distance_inverse
 
-__all__ = ["FlakeView", "let_flakes_fall"]
+__all__ = ["Snowfall", "let_flakes_fall"]
 
 SHELLS = 3
 """Shells around the camera; each reaches `GROWTH` times as far as the one before."""
@@ -39,24 +41,19 @@ SMALLEST = 0.35
 """Radius below which flakes are invisible [pixels]."""
 
 
-class FlakeView(NamedTuple):
-    """A view and its picture, into which flakes are drawn."""
+class Snowfall(NamedTuple):
+    """A band, the air in it and its picture, into which flakes are drawn."""
 
-    samples: int
-    """Samples along a side of each pixel."""
-    top: int
-    """Row of the picture that is row 0 of `output`."""
-    light: Light
-    """Light of the view; contains the strength of the snowfall."""
+    band: View
     instant: float
     """Time [s]."""
-    eye: NDArray[np.float64]
-    axes: NDArray[np.float64]
-    lens: NDArray[np.float64]
-    """These three: see `Job`."""
-    depth: NDArray[np.float32]
+    most: int
+    """Largest number of flakes in a cell."""
+    white: tuple[int, int, int]
+    """Bytes of a flake."""
+    key: NDArray[np.int64]
     """See `Scratch`."""
-    output: NDArray[np.uint8]
+    pixels: NDArray[np.uint8]
     """sRGB, shape (rows, columns, 3)."""
 
 
@@ -68,19 +65,44 @@ def _wave(turn: float) -> float:
 
 
 @inlined_kernel
-def _white(light: Light, k: int) -> int:
-    """Return a flake's byte: it is lit by the sky and, a little, by sunlight shining through."""
-    return tone_byte(light, f4(1.1) * light.ambient_up[k] + f4(0.35) * light.sun_colour[k])
+def _white(light: Light, lit: Illumination) -> tuple[int, int, int]:
+    """Return a flake's bytes: it is lit by the sky and, a little, by sunlight shining through."""
+    above, sun = lit.above, lit.sun_colour
+    colour = (
+        f4(1.1) * above.x + f4(0.35) * sun.x,
+        f4(1.1) * above.y + f4(0.35) * sun.y,
+        f4(1.1) * above.z + f4(0.35) * sun.z,
+    )
+    red, green, blue = tone_bytes(light, lit.air.exposure, colour)
+    return i8(red), i8(green), i8(blue)
 
 
 @inner_kernel
-def let_flakes_fall(view: FlakeView) -> None:
-    """Draw flakes into a band."""
+def let_flakes_fall(
+    view: View,
+    light: Light,
+    lit: Illumination,
+    instant: float,
+    key: NDArray[np.int64],
+    pixels: NDArray[np.uint8],
+) -> None:
+    """Draw flakes into a band.
+
+    Args:
+        view: The band.
+        light: Its tone curve.
+        lit: Light and air.
+        instant: Time [s].
+        key: See `Scratch`, shape (rows, columns).
+        pixels: sRGB, shape (rows, columns, 3).
+    """
+    most = math.ceil(MOST * lit.air.flakes)
+    snowfall = Snowfall(view, instant, most, _white(light, lit), key, pixels)
     begin = NEAREST
     for shell in range(SHELLS):
         end = begin * GROWTH
-        if _radius(1.0, begin) * view.lens[3] / begin > SMALLEST:
-            _fill_shell(shell, begin, end, view)
+        if _radius(1.0, begin) * view.focal / begin > SMALLEST:
+            _fill_shell(shell, begin, end, address_of(snowfall))
         begin = end
 
 
@@ -90,38 +112,41 @@ def _radius(size: float, distance: float) -> float:
     return (0.4 + 0.6 * size) * (0.0035 + 0.0007 * distance)
 
 
-@inner_kernel
-def _cells(axis: int, end: float, origin: float, view: FlakeView) -> tuple[int, int]:
+@inlined_kernel
+def _cells(
+    ahead: float, left: float, up: float, end: float, origin: float, view: View
+) -> tuple[int, int]:
     """Return the first cell along an axis of the world that the view reaches, and after the last.
 
     Args:
-        axis: 0 to 2.
+        ahead: How far the camera's optical axis goes along that axis; then left and up.
+        left: The same.
+        up: The same.
         end: Distance up to which the view reaches [m].
         origin: The eye in the lattice [m].
         view: Says where the camera looks.
     """
-    axes, lens = view.axes, view.lens
-    middle, side = axes[0, axis], end / CELLS
-    aside = abs(axes[1, axis]) * 0.5 * lens[1] / lens[0]
-    aside += abs(axes[2, axis]) * 0.5 * lens[2] / lens[4]
-    first = math.floor((origin + end * min(middle - aside, 0.0)) / side)
-    last = math.floor((origin + end * max(middle + aside, 0.0)) / side)
+    side = end / CELLS
+    aside = abs(left) * 0.5 * view.width / view.focal_x
+    aside += abs(up) * 0.5 * view.height / view.focal_y
+    first = math.floor((origin + end * min(ahead - aside, 0.0)) / side)
+    last = math.floor((origin + end * max(ahead + aside, 0.0)) / side)
     return i8(first) - 1, i8(last) + 2
 
 
 @inner_kernel
-def _fill_shell(shell: int, begin: float, end: float, view: FlakeView) -> None:
+def _fill_shell(shell: int, begin: float, end: float, snowfall: Snowfall) -> None:
     """Draw the flakes of all cells that the band may show."""
-    lens, eye, side = view.lens, view.eye, end / CELLS
-    flakes = math.ceil(MOST * view.light.air[8])
-    x = eye[0] - WIND_X * view.instant
-    y = eye[1] - WIND_Y * view.instant
-    z = eye[2] + SINKING * view.instant
-    high = (0.5 * lens[2] - view.top * view.samples) / lens[4]
-    low = high - view.output.shape[0] * view.samples / lens[4]
-    first_x, last_x = _cells(0, end, x, view)
-    first_y, last_y = _cells(1, end, y, view)
-    first_z, last_z = _cells(2, end, z, view)
+    view, instant, side = snowfall.band, snowfall.instant, end / CELLS
+    ahead, left, up = view.ahead, view.left, view.up
+    x = view.eye.x - WIND_X * instant
+    y = view.eye.y - WIND_Y * instant
+    z = view.eye.z + SINKING * instant
+    high = (0.5 * view.height - view.top) / view.focal_y
+    low = high - view.rows / view.focal_y
+    first_x, last_x = _cells(ahead.x, left.x, up.x, end, x, view)
+    first_y, last_y = _cells(ahead.y, left.y, up.y, end, y, view)
+    first_z, last_z = _cells(ahead.z, left.z, up.z, end, z, view)
     for i in range(first_x, last_x):
         for j in range(first_y, last_y):
             for k in range(first_z, last_z):
@@ -130,19 +155,19 @@ def _fill_shell(shell: int, begin: float, end: float, view: FlakeView) -> None:
                     continue
                 cell = scrambled(u4(u4(i + 32768) * u4(0x9E3779B1)) ^ u4(j + 32768))
                 cell = scrambled(cell ^ u4(u4(k + 32768) * u4(0x85EBCA77)) ^ u4(shell << 28))
-                for flake in range(flakes):
-                    _draw_flake(scrambled(u4(cell + u4(flake))), middle, begin, end, view)
+                for flake in range(snowfall.most):
+                    number = scrambled(u4(cell + u4(flake)))
+                    _draw_flake(number, middle, begin, end, snowfall)
 
 
 @inlined_kernel
-def _seen_from(
-    axes: NDArray[np.float64], x: float, y: float, z: float
-) -> tuple[float, float, float]:
+def _seen_from(view: View, x: float, y: float, z: float) -> tuple[float, float, float]:
     """Return how far a direction goes forward, left and up."""
+    ahead, left, up = view.ahead, view.left, view.up
     return (
-        axes[0, 0] * x + axes[0, 1] * y + axes[0, 2] * z,
-        axes[1, 0] * x + axes[1, 1] * y + axes[1, 2] * z,
-        axes[2, 0] * x + axes[2, 1] * y + axes[2, 2] * z,
+        ahead.x * x + ahead.y * y + ahead.z * z,
+        left.x * x + left.y * y + left.z * z,
+        up.x * x + up.y * y + up.z * z,
     )
 
 
@@ -153,12 +178,12 @@ def _in_band(
     end: float,
     low: float,
     high: float,
-    view: FlakeView,
+    view: View,
 ) -> bool:
     """Return whether a ball round a cell and the sway of its flakes may be seen."""
     ball = 0.87 * end / CELLS + 0.1
-    wide = 0.5 * view.lens[1] / view.lens[0]
-    ahead, left, up = _seen_from(view.axes, middle[0], middle[1], middle[2])
+    wide = 0.5 * view.width / view.focal_x
+    ahead, left, up = _seen_from(view, middle[0], middle[1], middle[2])
     if ahead < begin - ball or ahead > end + ball:
         return False
     if abs(left) > wide * ahead + ball * math.sqrt(1.0 + wide * wide):
@@ -170,30 +195,31 @@ def _in_band(
 
 @inner_kernel
 def _draw_flake(
-    number: int, middle: tuple[float, float, float], begin: float, end: float, view: FlakeView
+    number: int, middle: tuple[float, float, float], begin: float, end: float, snowfall: Snowfall
 ) -> None:
     """Draw the flake of a number in a cell whose middle lies there from the eye [m]."""
-    other, side, axes, lens = scrambled(number), end / CELLS, view.axes, view.lens
+    view, instant = snowfall.band, snowfall.instant
+    other, side = scrambled(number), end / CELLS
     size = tenth(other, 20) ** 2
-    if _radius(size, begin) * lens[3] < SMALLEST * begin:
+    if _radius(size, begin) * view.focal < SMALLEST * begin:
         return
-    turn = tenth(other, 0) + view.instant * (0.22 + 0.25 * tenth(other, 10))
+    turn = tenth(other, 0) + instant * (0.22 + 0.25 * tenth(other, 10))
     x = middle[0] + (tenth(number, 0) - 0.5) * side + SWAY * _wave(turn)
     y = middle[1] + (tenth(number, 10) - 0.5) * side + SWAY * _wave(turn + 0.25)
     z = middle[2] + (tenth(number, 20) - 0.5) * side
-    ahead, left, up = _seen_from(axes, x, y, z)
+    ahead, left, up = _seen_from(view, x, y, z)
     if ahead < begin or ahead > end:
         return
     # From its position at the start of the exposure.
-    _, aside, above = _seen_from(axes, -WIND_X * EXPOSED, -WIND_Y * EXPOSED, SINKING * EXPOSED)
-    radius = _radius(size, ahead) * lens[3] / ahead
+    _, aside, above = _seen_from(view, -WIND_X * EXPOSED, -WIND_Y * EXPOSED, SINKING * EXPOSED)
+    radius = _radius(size, ahead) * view.focal / ahead
     if radius < SMALLEST:
         return
-    across = lens[0] / (ahead * view.samples)
-    down = lens[4] / (ahead * view.samples)
-    column = 0.5 * lens[1] / view.samples - left * across
-    row = 0.5 * lens[2] / view.samples - up * down
-    _smear(column, row, -aside * across, -above * down, radius, 1.0 / ahead, view)
+    across = view.focal_x / (ahead * view.samples)
+    down = view.focal_y / (ahead * view.samples)
+    column = 0.5 * view.width / view.samples - left * across
+    row = (0.5 * view.height - view.top) / view.samples - up * down
+    _smear(column, row, -aside * across, -above * down, radius, 1.0 / ahead, snowfall)
 
 
 @inner_kernel
@@ -204,44 +230,44 @@ def _smear(
     to_row: float,
     radius: float,
     inverse: float,
-    view: FlakeView,
+    snowfall: Snowfall,
 ) -> None:
     """Draw a soft streak.
 
     Args:
         column: Column of its end [pixels].
-        row: Row of its end [pixels].
+        row: Row of its end in the band [pixels].
         to_column: Columns from there to its start [pixels].
         to_row: Rows from there to its start [pixels].
         radius: Half its width [pixels].
-        inverse: One over its distance, as in `Scratch.depth` [1/m].
-        view: View to draw into.
+        inverse: One over its distance [1/m].
+        snowfall: Band to draw into.
     """
     drawn = max(radius, 0.6)
     soft = 0.5 + 0.35 * drawn
     reach = drawn + soft
-    light, output, step = view.light, view.output, view.samples
-    first = max(i8(math.floor(min(row, row + to_row) - reach)) - view.top, 0)
-    last = min(i8(math.ceil(max(row, row + to_row) + reach)) - view.top, output.shape[0])
+    pixels, step = snowfall.pixels, snowfall.band.samples
+    first = max(i8(math.floor(min(row, row + to_row) - reach)), 0)
+    last = min(i8(math.ceil(max(row, row + to_row) + reach)), pixels.shape[0])
     start = max(i8(math.floor(min(column, column + to_column) - reach)), 0)
-    stop = min(i8(math.ceil(max(column, column + to_column) + reach)), output.shape[1])
+    stop = min(i8(math.ceil(max(column, column + to_column) + reach)), pixels.shape[1])
     if first >= last or start >= stop:
         return
     length = math.sqrt(to_column * to_column + to_row * to_row)
     # A small flake covers part of a pixel; a moving one is in each pixel part of the time.
     strength = (radius / drawn) ** 2 * min(1.0, 2.6 * drawn / (drawn + length))
     strength *= 0.9 / (1.0 + 0.09 * max(radius - 2.0, 0.0))
-    red, green, blue = _white(light, 0), _white(light, 1), _white(light, 2)
+    red, green, blue = snowfall.white
     for i in range(first, last):
         for j in range(start, stop):
-            if view.depth[i * step, j * step] > inverse:
+            if distance_inverse(snowfall.key[i * step, j * step]) > inverse:
                 continue
-            y, x = i + view.top + 0.5 - row, j + 0.5 - column
+            y, x = i + 0.5 - row, j + 0.5 - column
             share = (x * to_column + y * to_row) / (length * length + 1e-9)
             share = min(max(share, 0.0), 1.0)
             x, y = x - share * to_column, y - share * to_row
             cover = (reach - math.sqrt(x * x + y * y)) / (2.0 * soft)
             cover = strength * min(max(cover, 0.0), 1.0)
-            output[i, j, 0] = i8(output[i, j, 0] + cover * (red - output[i, j, 0]) + 0.5)
-            output[i, j, 1] = i8(output[i, j, 1] + cover * (green - output[i, j, 1]) + 0.5)
-            output[i, j, 2] = i8(output[i, j, 2] + cover * (blue - output[i, j, 2]) + 0.5)
+            pixels[i, j, 0] = i8(pixels[i, j, 0] + cover * (red - pixels[i, j, 0]) + 0.5)
+            pixels[i, j, 1] = i8(pixels[i, j, 1] + cover * (green - pixels[i, j, 1]) + 0.5)
+            pixels[i, j, 2] = i8(pixels[i, j, 2] + cover * (blue - pixels[i, j, 2]) + 0.5)

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.jit import inlined_kernel
-from eyas.render.kernels.scalars import f4, u4
+from eyas.core.lanes import gather, greater, lesser, magnitude, select, to_f4, to_i4
+from eyas.render.kernels.scalars import f4, i4
 
 __all__ = ["azimuth", "panorama"]
 
@@ -17,12 +18,9 @@ __all__ = ["azimuth", "panorama"]
 @inlined_kernel
 def azimuth(x: float, y: float) -> float:
     """Return the azimuth of the direction (x, y), 0 to 4."""
-    share = y / (abs(x) + abs(y) + f4(1e-9))
-    if x < f4(0.0):
-        share = f4(2.0) - share
-    elif y < f4(0.0):
-        share += f4(4.0)
-    return share
+    share = y / (magnitude(x) + magnitude(y) + f4(1e-9))
+    south = select(y < f4(0.0), share + f4(4.0), share)
+    return select(x < f4(0.0), f4(2.0) - share, south)
 
 
 @inlined_kernel
@@ -35,16 +33,19 @@ def panorama(values: NDArray[np.uint8], row: float, around: float, channel: int)
         around: See `azimuth`.
         channel: Index of the channel.
     """
-    rows, columns = values.shape[0], values.shape[1]
-    row = min(max(row, f4(0.0)), f4(rows - 1))
+    rows, columns, channels = values.shape
+    row = lesser(greater(row, f4(0.0)), f4(rows - 1))
     # One round on: above 0, where cutting off is rounding down.
     column = (around * f4(0.25) + f4(1.0)) * f4(columns) - f4(0.5)
-    low, left = u4(row), u4(column)
-    up, across = row - f4(low), column - f4(left)
-    last, one = u4(rows - 1), u4(1)
-    high, mask = min(low + one, last), u4(columns - 1)
-    left, right = left & mask, (left + one) & mask
-    a, b = f4(values[low, left, channel]), f4(values[low, right, channel])
-    c, d = f4(values[high, left, channel]), f4(values[high, right, channel])
+    low, left = to_i4(row), to_i4(column)
+    up, across = row - to_f4(low), column - to_f4(left)
+    high, mask = to_i4(lesser(low + i4(1), i4(rows - 1))), i4(columns - 1)
+    left, right = left & mask, (left + i4(1)) & mask
+    step, first = i4(channels), i4(channel)
+    low, high = low * i4(columns), high * i4(columns)
+    a = to_f4(gather(values, (low + left) * step + first))
+    b = to_f4(gather(values, (low + right) * step + first))
+    c = to_f4(gather(values, (high + left) * step + first))
+    d = to_f4(gather(values, (high + right) * step + first))
     lower, upper = a + across * (b - a), c + across * (d - c)
-    return f4((lower + up * (upper - lower)) * f4(1.0 / 255.0))
+    return (lower + up * (upper - lower)) * f4(1.0 / 255.0)

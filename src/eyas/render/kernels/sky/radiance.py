@@ -1,7 +1,8 @@
 """The sky in a direction, and the air between the camera and things."""
 
 from eyas.core.jit import inlined_kernel
-from eyas.render.kernels.bundles import Light
+from eyas.core.lanes import any_of, greater, lesser, like, select
+from eyas.render.kernels.bundles import Direction, Illumination, Light
 from eyas.render.kernels.scalars import f4
 from eyas.render.kernels.sky.panorama import azimuth, panorama
 
@@ -11,6 +12,7 @@ __all__ = [
     "HAZE_END",
     "HILL_FARTHEST",
     "HILL_TOP",
+    "blended",
     "fog_share",
     "reflection",
     "sky",
@@ -35,97 +37,107 @@ HILL_FARTHEST = 14.0
 _BEYOND = f4(1000.0 * (HILL_FARTHEST - HAZE_END))
 _HAZE_DEPTH = f4(0.25 * 150.0)
 """A quarter of the depth of the haze if it were equally thick all the way up [m]."""
+_FARTHEST = f4(1000.0 * HAZE_END)
 _FOOT = f4(0.012)
 """Sine of the elevation over which the plain turns into hills."""
 
 
+Colour = tuple[float, float, float]
+
+
 @inlined_kernel
-def _air(light: Light, x: float, y: float, z: float) -> tuple[float, float, float, float, float]:
-    """Return the radiance of a cloudless sky, the transparency of the haze, and the sun's glow.
+def blended(a: Colour, b: Colour, share: float) -> Colour:
+    """Return a colour on the way from one to another."""
+    return a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1]), a[2] + share * (b[2] - a[2])
+
+
+@inlined_kernel
+def _dot(x: float, y: float, z: float, direction: Direction) -> float:
+    """Return the cosine of the angle to a direction, at least 0."""
+    return greater(x * direction.x + y * direction.y + z * direction.z, f4(0.0))
+
+
+@inlined_kernel
+def _air(lit: Illumination, z: float, toward_sun: float) -> tuple[float, float, float, float]:
+    """Return the radiance of a cloudless sky and the transparency of the haze.
 
     Paler towards the horizon, and brighter round the sun.
+
+    Args:
+        lit: Light and air.
+        z: Upward component of the direction, of length 1.
+        toward_sun: Cosine of its angle to the sun, at least 0.
     """
-    zero, one = f4(0.0), f4(1.0)
-    up = max(z, zero)
-    climb = one - up
+    zenith, horizon, fog, sun = lit.zenith, lit.horizon, lit.fog, lit.sun_colour
+    up = greater(z, f4(0.0))
+    climb = f4(1.0) - up
     low = climb * climb
     low *= low
-    toward_sun = max(x * light.sun[0] + y * light.sun[1] + z * light.sun[2], zero)
     glow = toward_sun * toward_sun
     glow *= glow
     wide = f4(0.07) * glow * glow
     for _ in range(6):
         glow *= glow
     # exp(-thickness / z), nearly: the path through a layer of haze.
-    clear = up / (up + light.air[0] * _HAZE_DEPTH + f4(1e-6))
+    clear = up / (up + (lit.air.density * _HAZE_DEPTH + f4(1e-6)))
     clear *= clear
     clear *= clear
     glow = (wide + f4(0.3) * glow) * clear
-    red = light.zenith[0] + low * (light.horizon[0] - light.zenith[0])
-    green = light.zenith[1] + low * (light.horizon[1] - light.zenith[1])
-    blue = light.zenith[2] + low * (light.horizon[2] - light.zenith[2])
-    return (
-        light.fog[0] + clear * (red - light.fog[0]) + glow * light.sun_colour[0],
-        light.fog[1] + clear * (green - light.fog[1]) + glow * light.sun_colour[1],
-        light.fog[2] + clear * (blue - light.fog[2]) + glow * light.sun_colour[2],
-        clear,
-        toward_sun,
-    )
+    red, green, blue = blended(zenith, horizon, low)
+    red, green, blue = blended(fog, (red, green, blue), clear)
+    return red + glow * sun.x, green + glow * sun.y, blue + glow * sun.z, clear
 
 
 @inlined_kernel
-def sky(light: Light, x: float, y: float, z: float) -> tuple[float, float, float]:
+def sky(light: Light, lit: Illumination, x: float, y: float, z: float) -> Colour:
     """Return the colour of a direction of length 1 in which nothing stands.
 
     Air, the sun or the moon, clouds in front of them, hills in front of all, far land below.
     """
+    zero, one = like(z, f4(0.0)), like(z, f4(1.0))
     around = azimuth(x, y)
-    cover = f4(1.0)
-    if z > f4(0.0):
-        cover = f4(0.0)
-        if z < f4(HILL_TOP):
-            cover = panorama(light.hills, _hill_row(light, z), around, 0)
-    red, green, blue = f4(0.0), f4(0.0), f4(0.0)
-    if cover < f4(1.0):
-        red, green, blue = _open_sky(light, x, y, z, around)
-    if cover > f4(0.0):
-        front = _hills(light, z, around)
-        red += cover * (front[0] - red)
-        green += cover * (front[1] - green)
-        blue += cover * (front[2] - blue)
-    return red, green, blue
+    cover = select(z > zero, zero, one)
+    hilly = (z > zero) & (z < f4(HILL_TOP))
+    if any_of(hilly):
+        hills = panorama(light.hills, _hill_row(light, z), around, 0)
+        cover = select(hilly, hills, cover)
+    colour = (zero, zero, zero)
+    if any_of(cover < one):
+        colour = _open_sky(light, lit, x, y, z, around)
+    if any_of(cover > zero):
+        colour = blended(colour, _hills(light, lit, z, around), cover)
+    return colour
 
 
 @inlined_kernel
 def _open_sky(
-    light: Light, x: float, y: float, z: float, around: float
-) -> tuple[float, float, float]:
+    light: Light, lit: Illumination, x: float, y: float, z: float, around: float
+) -> Colour:
     """Return the radiance of air, sun or moon, and clouds."""
-    red, green, blue, clear, toward_sun = _air(light, x, y, z)
-    if light.air[7] > f4(0.0):
-        row = z * f4(1.0 + CLOUD_BEND) / (z + f4(CLOUD_BEND)) * f4(len(light.clouds)) - f4(0.5)
+    zero, one, horizon, sun = f4(0.0), f4(1.0), lit.horizon, lit.sun_colour
+    toward_sun = _dot(x, y, z, lit.sun)
+    red, green, blue, clear = _air(lit, z, toward_sun)
+    if lit.air.clouds > zero:
+        rows = f4(len(light.clouds))
+        row = z * f4(1.0 + CLOUD_BEND) / (greater(z, zero) + f4(CLOUD_BEND)) * rows - f4(0.5)
         # Far ones are lost in the haze.
-        near = min(max((z - f4(CLOUDS_FROM)) * f4(11.0), f4(0.0)), f4(1.0))
+        near = lesser(greater((z - f4(CLOUDS_FROM)) * f4(11.0), zero), one)
         near *= near * (f4(3.0) - f4(2.0) * near) * clear
         cover = near * panorama(light.clouds, row, around, 0)
         bright = near * panorama(light.clouds, row, around, 1)
         dim = f4(0.38) * cover + f4(0.7) * bright
-        lit = f4(1.1) * bright
-        red += dim * light.horizon[0] + lit * light.sun_colour[0] - cover * red
-        green += dim * light.horizon[1] + lit * light.sun_colour[1] - cover * green
-        blue += dim * light.horizon[2] + lit * light.sun_colour[2] - cover * blue
-        clear *= (f4(1.0) - cover) * (f4(1.0) - cover)
+        shine = f4(1.1) * bright
+        red += dim * horizon.x + shine * sun.x - cover * red
+        green += dim * horizon.y + shine * sun.y - cover * green
+        blue += dim * horizon.z + shine * sun.z - cover * blue
+        clear *= (one - cover) * (one - cover)
     # A disc 0.7 degrees wide, softer than the real one, and the bright ring around it.
-    disc = min(max((toward_sun - f4(0.999981)) * f4(80000.0), f4(0.0)), f4(1.0)) * f4(30.0)
+    disc = lesser(greater((toward_sun - f4(0.999981)) * f4(80000.0), zero), one) * f4(30.0)
     ring = toward_sun * toward_sun
     for _ in range(10):
         ring *= ring
     disc = (disc + f4(1.5) * ring) * clear
-    return (
-        red + disc * light.sun_colour[0],
-        green + disc * light.sun_colour[1],
-        blue + disc * light.sun_colour[2],
-    )
+    return red + disc * sun.x, green + disc * sun.y, blue + disc * sun.z
 
 
 @inlined_kernel
@@ -134,97 +146,72 @@ def _hill_row(light: Light, z: float) -> float:
 
 
 @inlined_kernel
-def _hills(light: Light, z: float, around: float) -> tuple[float, float, float]:
+def _hills(light: Light, lit: Illumination, z: float, around: float) -> Colour:
     """Return the colour of the hills, and below the horizon of the far plain."""
-    one = f4(1.0)
-    red, green, blue = light.ground[0], light.ground[1], light.ground[2]
-    direct, away, white = light.sun[2], f4(1000.0 * HAZE_END), light.air[4]
-    if z > f4(0.0):
-        row = _hill_row(light, z)
-        rise = min(z / _FOOT, one)
-        direct += rise * (panorama(light.hills, row, around, 1) - direct)
-        woods = rise * panorama(light.hills, row, around, 2)
-        away += rise * _BEYOND * panorama(light.hills, row, around, 3)
-        red += woods * (f4(0.035) - red)
-        green += woods * (f4(0.06) - green)
-        blue += woods * (f4(0.025) - blue)
-        white *= one - f4(0.75) * woods
-    red += white * (f4(0.78) - red)
-    green += white * (f4(0.80) - green)
-    blue += white * (f4(0.83) - blue)
-    hidden = _hidden(light, away)
-    sun, above, air = light.sun_colour, light.ambient_up, light.fog
-    red *= direct * sun[0] + above[0]
-    green *= direct * sun[1] + above[1]
-    blue *= direct * sun[2] + above[2]
-    return (
-        red + hidden * (air[0] - red),
-        green + hidden * (air[1] - green),
-        blue + hidden * (air[2] - blue),
-    )
+    zero, one, hills = f4(0.0), f4(1.0), light.hills
+    row = _hill_row(light, z)
+    rise = lesser(greater(z / _FOOT, zero), one)
+    direct = lit.sun.z + rise * (panorama(hills, row, around, 1) - lit.sun.z)
+    woods = rise * panorama(hills, row, around, 2)
+    away = _FARTHEST + rise * _BEYOND * panorama(hills, row, around, 3)
+    colour = blended(light.ground, (f4(0.035), f4(0.06), f4(0.025)), woods)
+    white = lit.air.snow * (one - f4(0.75) * woods)
+    red, green, blue = blended(colour, (f4(0.78), f4(0.80), f4(0.83)), white)
+    sun, above = lit.sun_colour, lit.above
+    red *= direct * sun.x + above.x
+    green *= direct * sun.y + above.y
+    blue *= direct * sun.z + above.z
+    return blended((red, green, blue), lit.fog, _hidden(lit, away))
 
 
 @inlined_kernel
-def _hidden(light: Light, distance: float) -> float:
-    thickness = distance * light.air[0]
-    if light.air[1] > f4(1.5):
+def _hidden(lit: Illumination, distance: float) -> float:
+    thickness = distance * lit.air.density
+    if lit.air.power > f4(1.5):
         thickness *= thickness
     # 1 - exp(-t) as (1 + t/8 + (t/8)^2 / 2)^-8: within 0.003 of it, and several times as fast.
     eighth = f4(0.125) * thickness
     power = f4(1.0) + eighth * (f4(1.0) + f4(0.5) * eighth)
     power *= power
     power *= power
-    return f4(f4(1.0) - f4(1.0) / (power * power))
+    return f4(1.0) - f4(1.0) / (power * power)
 
 
 @inlined_kernel
-def fog_share(light: Light, distance: float) -> float:
+def fog_share(lit: Illumination, distance: float) -> float:
     """Return how much of what lies at a distance [m] the air hides, 0 to 1; see `HAZE_END`."""
-    return _hidden(light, min(distance, f4(1000.0 * HAZE_END)))
+    return _hidden(lit, lesser(distance, _FARTHEST))
 
 
 @inlined_kernel
 def reflection(
-    light: Light,
-    ray: tuple[float, float, float],
-    normal: tuple[float, float, float],
-    facing: float,
-    least: float,
-    sunlit: float,
-) -> tuple[float, float, float, float]:
+    lit: Illumination, ray: Colour, normal: Colour, facing: float, least: float, sunlit: float
+) -> tuple[Colour, float]:
     """Return what a smooth surface mirrors, and the share of it (Schlick's formula).
 
     Args:
-        light: Sky and sun.
+        lit: Sky and sun.
         ray: From the eye, of length 1.
         normal: Unit normal of the surface.
         facing: Minus their dot product, 0 to 1.
         least: Share that is mirrored when looking straight at it.
         sunlit: Share of the sun that reaches the surface.
     """
-    x = ray[0] + f4(2.0) * facing * normal[0]
-    y = ray[1] + f4(2.0) * facing * normal[1]
-    z = ray[2] + f4(2.0) * facing * normal[2]
-    graze = f4(1.0) - facing
+    zero, one, sun = f4(0.0), f4(1.0), lit.sun_colour
+    twice = f4(2.0) * facing
+    x, y, z = ray[0] + twice * normal[0], ray[1] + twice * normal[1], ray[2] + twice * normal[2]
+    graze = one - facing
     square = graze * graze
-    share = least + (f4(1.0) - least) * square * square * graze
+    share = least + (one - least) * square * square * graze
     # In a street, upright surfaces mirror low things, not the pale horizon.
-    z -= f4(0.12)
-    red, green, blue, _, _ = _air(light, x, y, z)
-    below = min(max(f4(-6.0) * z, f4(0.0)), f4(1.0))
+    lower = z - f4(0.12)
+    red, green, blue, _ = _air(lit, lower, _dot(x, y, lower, lit.sun))
+    below = lesser(greater(f4(-6.0) * lower, zero), one)
     below *= below * (f4(3.0) - f4(2.0) * below)
-    below *= f4(0.6) * (f4(1.0) - min(light.air[0] * f4(400.0), f4(1.0)))
-    red += below * (light.ambient_down[0] - red)
-    green += below * (light.ambient_down[1] - green)
-    blue += below * (light.ambient_down[2] - blue)
-    z += f4(0.12)
-    shine = max(x * light.sun[0] + y * light.sun[1] + z * light.sun[2], f4(0.0))
+    below *= f4(0.6) * (one - lesser(lit.air.density * f4(400.0), one))
+    red, green, blue = blended((red, green, blue), lit.below, below)
+    shine = _dot(x, y, z, lit.sun)
     for _ in range(6):
         shine *= shine
     shine *= f4(6.0) * sunlit
-    return (
-        red + shine * light.sun_colour[0],
-        green + shine * light.sun_colour[1],
-        blue + shine * light.sun_colour[2],
-        share,
-    )
+    return (red + shine * sun.x, green + shine * sun.y, blue + shine * sun.z), share

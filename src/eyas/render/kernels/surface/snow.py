@@ -1,14 +1,26 @@
 """Snow: on surfaces that face up, in patches where thin, pushed off roads by wheels."""
 
-import math
 from enum import IntEnum
 
 from eyas.core.jit import inlined_kernel
+from eyas.core.lanes import (
+    any_of,
+    gather,
+    greater,
+    lesser,
+    like,
+    root,
+    select,
+    to_f4,
+    to_i4,
+)
 from eyas.render.kernels.bundles import Light
 from eyas.render.kernels.chance import noise
-from eyas.render.kernels.scalars import f4, u4
+from eyas.render.kernels.scalars import f4, i4
 
 __all__ = ["Bed", "snowed"]
+
+Colour = tuple[float, float, float]
 
 
 class Bed(IntEnum):
@@ -26,58 +38,60 @@ class Bed(IntEnum):
     """Painted body of vehicles: a thin layer on level surfaces."""
 
 
-BARE, DRIVEN = int(Bed.BARE), int(Bed.DRIVEN)
-LEAVES, VEHICLE = int(Bed.LEAVES), int(Bed.VEHICLE)
+BARE, DRIVEN = i4(int(Bed.BARE)), i4(int(Bed.DRIVEN))
+LEAVES, VEHICLE = i4(int(Bed.LEAVES)), i4(int(Bed.VEHICLE))
 
 
 @inlined_kernel
 def _clip(value: float) -> float:
     """Return a value brought into 0 to 1."""
-    return min(max(value, f4(0.0)), f4(1.0))
+    return lesser(greater(value, f4(0.0)), f4(1.0))
 
 
 @inlined_kernel
 def _seen_noise(x: float, y: float, cells: float, footprint: float) -> float:
     """Return noise with some cells in a metre, faded to its mean where a pixel covers them [m]."""
-    sharp = f4(1.6) - f4(2.0) * cells * footprint
-    if sharp <= f4(0.0):
-        return f4(0.5)
-    return f4(0.5) + min(sharp, f4(1.0)) * (noise(cells * x, cells * y) - f4(0.5))
+    sharp = greater(f4(1.6) - f4(2.0) * cells * footprint, f4(0.0))
+    value = like(x, f4(0.5))
+    if any_of(sharp > f4(0.0)):
+        value += lesser(sharp, f4(1.0)) * (noise(cells * x, cells * y) - f4(0.5))
+    return value
 
 
 @inlined_kernel
 def _worn(light: Light, x: float, y: float, footprint: float) -> float:
     """Return how far wheels have worn the snow at a point, 0 to 1, see `tracks.TrackMap`."""
-    per = light.track_frame[2]
-    column, row = (x - light.track_frame[0]) * per, (y - light.track_frame[1]) * per
-    column, row = column - f4(0.5), row - f4(0.5)
-    rows, columns = light.tracks.shape[0], light.tracks.shape[1]
+    frame, tracks = light.track_frame, light.tracks
+    column = (x - frame.west) * frame.per_metre - f4(0.5)
+    row = (y - frame.south) * frame.per_metre - f4(0.5)
+    rows, columns = tracks.shape[0], tracks.shape[1]
     zero = f4(0.0)
-    if not (column > zero and row > zero and column < f4(columns - 2) and row < f4(rows - 2)):
-        return zero
-    i, j = u4(row), u4(column)
-    across, down = column - f4(j), row - f4(i)
+    inside = (column > zero) & (row > zero)
+    inside &= (column < f4(columns - 2)) & (row < f4(rows - 2))
+    if not any_of(inside):
+        return like(x, zero)
+    column, row = select(inside, column, zero), select(inside, row, zero)
+    i, j = to_i4(row), to_i4(column)
+    across, down = column - to_f4(j), row - to_f4(i)
     far = _clip(f4(1.7) * footprint - f4(0.25))
-    lower, right = u4(i + u4(1)), u4(j + u4(1))
-    a, b = _texel(light, i, j, far), _texel(light, i, right, far)
-    c, d = _texel(light, lower, j, far), _texel(light, lower, right, far)
+    step = i4(2 * columns)
+    at = (i * i4(columns) + j) * i4(2)
+    a, b = _texel(light, at, far), _texel(light, at + i4(2), far)
+    c, d = _texel(light, at + step, far), _texel(light, at + step + i4(2), far)
     upper = a + across * (b - a)
-    return f4(upper + down * (c + across * (d - c) - upper)) * f4(1.0 / 255.0)
+    worn = upper + down * (c + across * (d - c) - upper)
+    return select(inside, worn * f4(1.0 / 255.0), zero)
 
 
 @inlined_kernel
-def _texel(light: Light, row: int, column: int, far: float) -> float:
-    near = f4(light.tracks[row, column, 0])
-    return near + far * (f4(light.tracks[row, column, 1]) - near)
+def _texel(light: Light, at: int, far: float) -> float:
+    near = to_f4(gather(light.tracks, at))
+    return near + far * (to_f4(gather(light.tracks, at + i4(1))) - near)
 
 
 @inlined_kernel
 def _on_leaves(
-    colour: tuple[float, float, float],
-    point: tuple[float, float, float],
-    above: tuple[float, float, float],
-    rise: float,
-    footprint: float,
+    green: float, point: Colour, above: Colour, rise: float, footprint: float
 ) -> tuple[float, float]:
     """Return the share of a crown that snow hides, and how bright that is.
 
@@ -85,27 +99,25 @@ def _on_leaves(
     which are the bright ones of the texture: the dark gaps between them stay.
 
     Args:
-        colour: Colour of the leaves.
+        green: Green of the leaves.
         point: The point [m].
         above: The point from the middle of the crown, in the frame of the tree.
         rise: Upward component of its normal.
         footprint: Size of a pixel on the surface [m].
     """
     x, y, z = point
-    away = math.sqrt(above[0] * above[0] + above[1] * above[1] + above[2] * above[2] + f4(1e-6))
+    away = root(above[0] * above[0] + above[1] * above[1] + above[2] * above[2] + f4(1e-6))
     # A cluster of leaves is flat and has one normal; the crown's roundness changes smoothly.
     open_ = f4(0.7) * above[2] / away + f4(0.3) * rise
     # The second axis runs down the crown's sides too, faster: boughs are wider than high.
     bough = _seen_noise(x + f4(0.3) * y, y + f4(1.7) * z - f4(0.3) * x, f4(0.75), footprint)
-    leaf = _clip(f4(5.5) * colour[1])
-    cover = f4(0.8) * open_ + f4(1.0) * (bough - f4(0.5)) + f4(1.1) * (leaf - f4(0.5))
+    leaf = _clip(f4(5.5) * green)
+    cover = f4(0.8) * open_ + (bough - f4(0.5)) + f4(1.1) * (leaf - f4(0.5))
     return f4(0.92) * _clip(f4(1.7) * (cover - f4(0.1))), f4(0.78) + f4(0.2) * leaf
 
 
 @inlined_kernel
-def _on_road(
-    colour: tuple[float, float, float], worn: float, grain: float, fine: float
-) -> tuple[float, float, float]:
+def _on_road(colour: Colour, worn: float, grain: float, fine: float) -> Colour:
     """Return the colour of a road with snow: white beside the lanes, wet and dark in the tracks.
 
     Args:
@@ -115,7 +127,7 @@ def _on_road(
         fine: Noise of a tenth of a metre, 0 to 1.
     """
     ragged = worn * (f4(0.56) + f4(0.56) * grain + f4(0.36) * fine)
-    share = f4(0.9) * max(_clip(f4(1.22) - f4(1.5) * ragged), f4(0.06))
+    share = f4(0.9) * greater(_clip(f4(1.22) - f4(1.5) * ragged), f4(0.06))
     # Wheels compress and soil the snow that they do not push away.
     light = f4(0.96) - f4(0.52) * _clip(f4(1.3) * ragged) + f4(0.06) * (grain - f4(0.5))
     wet = f4(1.0) - f4(0.34) * _clip(f4(1.6) * ragged)
@@ -123,9 +135,7 @@ def _on_road(
 
 
 @inlined_kernel
-def _mixed(
-    colour: tuple[float, float, float], share: float, light: float
-) -> tuple[float, float, float]:
+def _mixed(colour: Colour, share: float, light: float) -> Colour:
     return (
         colour[0] + share * (f4(0.84) * light - colour[0]),
         colour[1] + share * (f4(0.86) * light - colour[1]),
@@ -134,21 +144,49 @@ def _mixed(
 
 
 @inlined_kernel
+def _where(mask: bool, a: Colour, b: Colour) -> Colour:
+    return select(mask, a[0], b[0]), select(mask, a[1], b[1]), select(mask, a[2], b[2])
+
+
+@inlined_kernel
+def _lying(
+    colour: Colour, depth: float, point: Colour, rise: float, foot: float, footprint: float
+) -> Colour:
+    """Return the colour of a surface on which snow lies as it fell, in low, wide drifts."""
+    x, y = point[0], point[1]
+    # In rows across the wind.
+    drift = noise(f4(0.075) * x + f4(0.03) * y, f4(0.13) * y - f4(0.06) * x)
+    lies = like(rise, f4(1.0))
+    partly = (rise < f4(0.97)) | like(rise < f4(0.97), depth < f4(1.0))
+    if any_of(partly):
+        # Steep faces are bare; where little has fallen, it lies in the hollows.
+        patch = _seen_noise(x, y, f4(0.9), footprint)
+        hollow = _clip((rise - f4(0.45) + f4(0.5) * (patch - f4(0.5))) * f4(4.0))
+        hollow = greater(hollow, foot * _clip(f4(0.5) + patch))
+        fallen = (patch + (depth - f4(0.76))) * f4(4.0) + greater(depth - f4(0.9), f4(0.0)) * f4(40.0)
+        lies = select(partly, hollow * _clip(fallen), lies)
+    share = lies * (f4(0.12) + f4(0.85) * depth)
+    return _mixed(colour, share, f4(0.88) + f4(0.1) * drift)
+
+
+@inlined_kernel
 def snowed(
-    colour: tuple[float, float, float],
+    colour: Colour,
     light: Light,
+    depth: float,
     bed: int,
     middle: float,
-    point: tuple[float, float, float],
-    own: tuple[float, float, float],
+    point: Colour,
+    own: Colour,
     rise: float,
     footprint: float,
-) -> tuple[float, float, float]:
+) -> Colour:
     """Return the colour of a surface with the snow that lies on it.
 
     Args:
         colour: Without snow.
-        light: Says how much has fallen, where the sun is, and where wheels have gone.
+        light: Says where wheels have gone.
+        depth: How much has fallen, 0 to 1.
         bed: A `Bed`.
         middle: z of the middle of the crown in the frame of its tree, if it is one.
         point: The point [m].
@@ -156,39 +194,31 @@ def snowed(
         rise: Upward component of its normal.
         footprint: Size of a pixel on the surface [m].
     """
-    x, y = point[0], point[1]
-    one, depth = f4(1.0), light.air[4]
-    if bed == BARE or rise < f4(-0.6):
-        return colour
-    if bed == LEAVES:
+    result = colour
+    white = (bed != BARE) & (rise >= f4(-0.6))
+    leaves, vehicle = white & (bed == LEAVES), white & (bed == VEHICLE)
+    if any_of(leaves):
         above = own[0], own[1], own[2] - middle
-        share, white = _on_leaves(colour, point, above, rise, footprint)
-        return _mixed(colour, depth * share, white)
-    if bed == VEHICLE:
+        share, bright = _on_leaves(colour[1], point, above, rise, footprint)
+        result = _where(leaves, _mixed(colour, depth * share, bright), result)
+    if any_of(vehicle):
         grain = _seen_noise(own[0], own[1], f4(9.0), footprint)
         share = depth * _clip(f4(9.0) * (rise - f4(0.9))) * (f4(0.1) + f4(0.1) * grain)
-        return _mixed(colour, share, f4(0.9))
+        result = _where(vehicle, _mixed(colour, share, f4(0.9)), result)
     # Wind piles it up against kerbs and the feet of walls.
     foot = _clip(f4(1.6) - f4(5.0) * point[2])
-    if rise < f4(0.1) and foot <= f4(0.0):
-        return colour
-    if bed == DRIVEN and rise > f4(0.9):
-        worn = f4(0.45)  # the map of tracks does not cover bridges
-        if point[2] < f4(1.0):
-            worn = _worn(light, x, y, footprint)
+    ground = white & (bed != LEAVES) & (bed != VEHICLE) & ((rise >= f4(0.1)) | (foot > f4(0.0)))
+    road = ground & (bed == DRIVEN) & (rise > f4(0.9))
+    if any_of(road):
+        x, y = point[0], point[1]
+        # The map of tracks does not cover bridges.
+        worn = select(point[2] < f4(1.0), _worn(light, x, y, footprint), f4(0.45))
         # Each turned differently, to hide the square cells of the noise.
         grain = _seen_noise(x + f4(0.5) * y, y - f4(0.5) * x, f4(1.9), footprint)
         fine = _seen_noise(x - f4(0.7) * y, y + f4(0.7) * x, f4(7.5), footprint)
-        return _on_road(colour, worn + f4(1.2) * (one - depth), grain, fine)
-    # Low, wide drifts, in rows across the wind.
-    drift = noise(f4(0.075) * x + f4(0.03) * y, f4(0.13) * y - f4(0.06) * x)
-    lies = one
-    if rise < f4(0.97) or depth < one:
-        # Steep faces are bare; where little has fallen, it lies in the hollows.
-        patch = _seen_noise(x, y, f4(0.9), footprint)
-        lies = _clip((rise - f4(0.45) + f4(0.5) * (patch - f4(0.5))) * f4(4.0))
-        lies = max(lies, foot * _clip(f4(0.5) + patch))
-        lies *= _clip(
-            (patch + depth - f4(0.76)) * f4(4.0) + max(depth - f4(0.9), f4(0.0)) * f4(40.0)
-        )
-    return _mixed(colour, lies * (f4(0.12) + f4(0.85) * depth), f4(0.88) + f4(0.1) * drift)
+        worn += f4(1.2) * (f4(1.0) - depth)
+        result = _where(road, _on_road(colour, worn, grain, fine), result)
+    lying = ground & ~road
+    if any_of(lying):
+        result = _where(lying, _lying(colour, depth, point, rise, foot, footprint), result)
+    return result

@@ -7,77 +7,102 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.jit import inlined_kernel
+from eyas.core.lanes import (
+    bit_pattern,
+    gather,
+    greater,
+    lesser,
+    like,
+    select,
+    to_f4,
+    to_i4,
+    to_u4,
+)
 from eyas.render.kernels.scalars import f4, i4, u4
 
-__all__ = ["coverage", "level_of", "texel"]
+__all__ = ["colour_of", "first_texel", "fraction", "level_of", "texel"]
+
+_LAYER = i4(87381)
+"""Texels of a layer with all its levels."""
+
+_THIRD = i4(-1431655765)
+"""Inverse of 3 for numbers of 32 bits: a product with it is exact where nothing is left over."""
 
 
 @inlined_kernel
 def level_of(texels_squared: float) -> int:
-    """Return the mip level, 0 to 8, from the squared number of texels that a pixel spans."""
-    level = 0
-    limit = f4(2.0)
-    while level < 8 and texels_squared > limit:
-        level += 1
-        limit *= f4(4.0)
-    return level
+    """Return the mip level, 0 to 8, from the squared number of texels that a pixel spans.
+
+    It rises at 2, 8, 32, ...: at every second step of the exponent.
+    """
+    exponent = ((bit_pattern(texels_squared) - i4(1)) >> i4(23)) - i4(127)
+    return to_i4(lesser((greater(exponent, i4(0)) + i4(1)) >> i4(1), i4(8)))
 
 
 @inlined_kernel
-def _fraction(x: float) -> float:
+def fraction(x: float) -> float:
     """Return the fractional part of a number; truncation is faster than rounding down."""
-    part = x - f4(i4(x))
-    return part + f4(1.0) if part < f4(0.0) else part
+    part = x - to_f4(to_i4(x))
+    return part + select(part < f4(0.0), like(x, f4(1.0)), f4(0.0))
 
 
 @inlined_kernel
-def _first_texel(level: int) -> int:
+def first_texel(level: int) -> int:
     """Return the first texel of a level: 65536 + 16384 + ... = (4^9 - 4^(9 - level)) / 3."""
-    return (262144 - (262144 >> (2 * level))) // 3
+    above = i4(262144) - (like(level, i4(262144)) >> (level + level))
+    return to_i4(above * _THIRD)
 
 
 @inlined_kernel
-def texel(textures: NDArray[np.uint32], layer: int, level: int, u: float, v: float) -> int:
-    """Return the texel at (u, v) [tiles], blended from the four around it, packed as they are.
+def texel(
+    textures: NDArray[np.uint32], layer: int, level: int, u: float, v: float
+) -> tuple[int, int]:
+    """Return the texel at (u, v) [tiles], blended from the four around it.
 
     Two bytes are blended with one multiplication: weights are 0 to 256 and sum to 256, so the
     lower product cannot reach the upper byte.
+
+    Returns:
+        Red and blue in bits 0 to 7 and 16 to 23 of a number, green and alpha in those of another;
+        the bits between are not zero.
     """
-    bits = 8 - level
-    size = f4(1 << bits)
-    x = _fraction(u) * size + (size - f4(0.5))
-    y = _fraction(v) * size + (size - f4(0.5))
-    column, row = u4(x), u4(y)
-    across = u4((x - f4(column)) * f4(256.0))
-    down = u4((y - f4(row)) * f4(256.0))
-    mask = u4((1 << bits) - 1)
-    first = u4(_first_texel(level))
-    upper = first + ((row & mask) << u4(bits))
-    lower = first + (((row + u4(1)) & mask) << u4(bits))
-    left, right = column & mask, (column + u4(1)) & mask
-    both = (across * down) >> u4(8)
+    bits = i4(8) - level
+    one = like(level, i4(1))
+    side = to_i4(one << bits)
+    size = to_f4(side)
+    x = fraction(u) * size + (size - f4(0.5))
+    y = fraction(v) * size + (size - f4(0.5))
+    column, row = to_i4(x), to_i4(y)
+    across = to_u4(to_i4((x - to_f4(column)) * f4(256.0)))
+    down = to_u4(to_i4((y - to_f4(row)) * f4(256.0)))
+    mask = side - i4(1)
+    first = first_texel(level) + layer * _LAYER
+    upper = first + ((row & mask) << bits)
+    lower = first + (((row + i4(1)) & mask) << bits)
+    left, right = column & mask, (column + i4(1)) & mask
+    a, b = gather(textures, upper + left), gather(textures, upper + right)
+    c, d = gather(textures, lower + left), gather(textures, lower + right)
+    even, eight = u4(0x00FF00FF), u4(8)
+    both = to_u4((across * down) >> eight)
     w01, w10 = across - both, down - both
-    w00 = u4(256) - across - down + both
-    a, b = textures[layer, upper + left], textures[layer, upper + right]
-    c, d = textures[layer, lower + left], textures[layer, lower + right]
-    even = u4(0x00FF00FF)
+    w00 = u4(256) - across - w10
     low = w00 * (a & even) + w01 * (b & even) + w10 * (c & even) + both * (d & even)
-    eight = u4(8)
     high = (
         w00 * ((a >> eight) & even)
         + w01 * ((b >> eight) & even)
         + w10 * ((c >> eight) & even)
         + both * ((d >> eight) & even)
     )
-    return u4(((low >> eight) & even) | (high & u4(0xFF00FF00)))
+    return to_u4(low >> eight), to_u4(high >> eight)
 
 
 @inlined_kernel
-def coverage(textures: NDArray[np.uint32], layer: int, level: int, u: float, v: float) -> int:
-    """Return the alpha, 0 to 255, of the texel at (u, v)."""
-    bits = 8 - level
-    size = f4(1 << bits)
-    mask = (1 << bits) - 1
-    column = int(_fraction(u) * size) & mask
-    row = int(_fraction(v) * size) & mask
-    return u4(textures[layer, _first_texel(level) + (row << bits) + column] >> u4(24))
+def colour_of(low: int, high: int) -> tuple[float, float, float, float]:
+    """Return the linear colour and the alpha, 0 to 1, of a texel as `texel` returns it.
+
+    Textures hold square roots of linear colours.
+    """
+    scale, byte, half = f4(1.0 / 255.0), u4(255), u4(16)
+    red, green = to_f4(low & byte) * scale, to_f4(high & byte) * scale
+    blue, alpha = to_f4((low >> half) & byte) * scale, to_f4((high >> half) & byte) * scale
+    return red * red, green * green, blue * blue, alpha

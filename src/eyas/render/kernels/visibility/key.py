@@ -7,16 +7,18 @@ order in which triangles are drawn changes no byte. A key of 0 is sky.
 """
 
 from eyas.core.jit import inlined_kernel
-from eyas.core.lanes import bit_pattern, from_bits, select, to_i4, to_i8, to_u4
-from eyas.render.kernels.scalars import i4, i8, u4
+from eyas.core.lanes import bit_pattern, from_bits, like, select, to_i4, to_i8
+from eyas.render.kernels.scalars import i4, i8
 
 __all__ = [
     "MOST_INSTANCES",
     "MOST_TRIANGLES",
     "distance_inverse",
+    "drawn_of",
     "instance_tag",
     "key_of",
     "tag_of",
+    "triangle_of",
 ]
 
 TRIANGLE_BITS = 17
@@ -51,3 +53,16 @@ def distance_inverse(key: int) -> float:
 def tag_of(key: int) -> int:
     """Return the lower half of a key, as int32: negative for instances."""
     return to_i4(key)
+
+
+@inlined_kernel
+def drawn_of(tag: int) -> int:
+    """Return the row of `Scratch.drawn` that a tag names, -1 for the static mesh."""
+    row = (tag >> i4(TRIANGLE_BITS)) & i4(MOST_INSTANCES - 1)
+    return to_i4(select(tag < i4(0), row, like(tag, i4(-1))))
+
+
+@inlined_kernel
+def triangle_of(tag: int) -> int:
+    """Return the triangle that a tag names: of the static mesh, or counted in its own mesh."""
+    return to_i4(select(tag < i4(0), tag & i4(MOST_TRIANGLES - 1), tag))

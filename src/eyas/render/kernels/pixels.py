@@ -1,0 +1,54 @@
+"""Reading and writing eight pixels of a row; rows of pictures may have any length."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.jit import inlined_kernel
+from eyas.core.lanes import (
+    WIDTH,
+    first_bit,
+    gather,
+    lane,
+    lane_numbers,
+    load,
+    store_triples,
+    to_u4,
+)
+from eyas.render.kernels.scalars import i4, i8, u4
+
+__all__ = ["keys_of", "pack", "write_pixels"]
+
+_ALL = (1 << WIDTH) - 1
+
+
+@inlined_kernel
+def pack(red: int, green: int, blue: int) -> int:
+    """Return three bytes in one number, red in the lowest."""
+    return to_u4(red | (green << u4(8)) | (blue << u4(16)))
+
+
+@inlined_kernel
+def write_pixels(
+    pixels: NDArray[np.uint8], row: int, first: int, chosen: int, packed: int
+) -> None:
+    """Write packed bytes to those of eight pixels, from column `first` on, whose bit is set."""
+    if chosen == _ALL:
+        store_triples(pixels, (row * pixels.shape[1] + first) * 3, packed)
+        return
+    while chosen != 0:
+        number = first_bit(chosen)
+        chosen &= chosen - 1
+        value = lane(packed, number)
+        column = first + number
+        pixels[row, column, 0] = value & u4(255)
+        pixels[row, column, 1] = (value >> u4(8)) & u4(255)
+        pixels[row, column, 2] = (value >> u4(16)) & u4(255)
+
+
+@inlined_kernel
+def keys_of(key: NDArray[np.int64], line: int, sample: int, step: int) -> int:
+    """Return eight keys of a line, from a sample on, `step` apart."""
+    at = i8(line) * key.shape[1] + sample
+    if step == 1:
+        return load(key, at)
+    return gather(key, lane_numbers() * i4(step) + i4(at))

@@ -1,0 +1,167 @@
+"""What a triangle has at a point: texture coordinates, normal, material."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.jit import inlined_kernel
+from eyas.core.lanes import any_of, bit_pattern, like, magnitude, root, select, transposed
+from eyas.render.kernels.scalars import f4, i4
+
+__all__ = ["Attributes", "Frame", "attributes_of", "frame_of", "no_frame"]
+
+Vector = tuple[float, float, float]
+
+_COLUMNS = 32
+"""Columns of `Geometry.shading`."""
+
+
+class Frame(NamedTuple):
+    """Pose and colour of an instance, of float32: `world = (xx xy xz; yx ...) own + (x, y, z)`."""
+
+    xx: float
+    xy: float
+    xz: float
+    x: float
+    yx: float
+    yy: float
+    yz: float
+    y: float
+    zx: float
+    zy: float
+    zz: float
+    z: float
+    red: float
+    """Linear."""
+    green: float
+    blue: float
+    shrink: float
+    """One over its scale squared."""
+
+
+class Attributes(NamedTuple):
+    """A point of a triangle."""
+
+    u: float
+    """Texture coordinates [tiles]."""
+    v: float
+    normal: Vector
+    """Unit normal, in the world."""
+    own: Vector
+    """The point in the frame of the instance [m]."""
+    density: float
+    """Texture tiles in a metre."""
+    layer: int
+    """Texture."""
+    surface: int
+    """A `Surface`."""
+    bed: int
+    """A `Bed`."""
+    tint: Vector
+    """Linear colour factor."""
+    emission: float
+    """Own light."""
+    crown_middle: float
+    """See `Geometry`."""
+    building: int
+    """Object id of static triangles."""
+
+
+@inlined_kernel
+def _linear(value: float) -> float:
+    """Return the linear value of an sRGB value (a cubic fit, within 0.003)."""
+    return f4(value * (value * (value * f4(0.305306011) + f4(0.682171111)) + f4(0.012522878)))
+
+
+@inlined_kernel
+def frame_of(poses: NDArray[np.float32], colours: NDArray[np.float32], index: int) -> Frame:
+    """Return row `index` of poses, shape (., 3, 4), and of colours if there are any, (., 3)."""
+    p, one = poses[index], f4(1.0)
+    red, green, blue = one, one, one
+    if len(colours) > 0:
+        red, green, blue = (
+            _linear(colours[index, 0]), _linear(colours[index, 1]), _linear(colours[index, 2])
+        )  # fmt: skip
+    square = p[0, 0] * p[0, 0] + p[1, 0] * p[1, 0] + p[2, 0] * p[2, 0]
+    return Frame(
+        p[0, 0], p[0, 1], p[0, 2], p[0, 3], p[1, 0], p[1, 1], p[1, 2], p[1, 3],
+        p[2, 0], p[2, 1], p[2, 2], p[2, 3], red, green, blue, one / square,
+    )  # fmt: skip
+
+
+@inlined_kernel
+def no_frame() -> Frame:
+    """Return what stands for the pose of the static mesh, and is not read."""
+    o, i = f4(0.0), f4(1.0)
+    return Frame(i, o, o, o, o, i, o, o, o, o, i, o, i, i, i, i)
+
+
+@inlined_kernel
+def _to_own(frame: Frame, point: Vector) -> Vector:
+    """Return a world point in the frame of an instance."""
+    f = frame
+    x, y, z = point[0] - f.x, point[1] - f.y, point[2] - f.z
+    return (
+        (x * f.xx + y * f.yx + z * f.zx) * f.shrink,
+        (x * f.xy + y * f.yy + z * f.zy) * f.shrink,
+        (x * f.xz + y * f.yz + z * f.zz) * f.shrink,
+    )
+
+
+@inlined_kernel
+def _turned(frame: Frame, v: Vector) -> Vector:
+    """Return a vector of an instance's frame in the world, longer by its scale."""
+    f = frame
+    return (
+        f.xx * v[0] + f.xy * v[1] + f.xz * v[2],
+        f.yx * v[0] + f.yy * v[1] + f.yz * v[2],
+        f.zx * v[0] + f.zy * v[1] + f.zz * v[2],
+    )
+
+
+@inlined_kernel
+def attributes_of(
+    shading: NDArray[np.float32], triangle: int, point: Vector, moved: bool, frame: Frame
+) -> Attributes:
+    """Return what a triangle has at a world point [m].
+
+    Args:
+        shading: See `eyas.render.pack.triangles.SHADING`.
+        triangle: Its row.
+        point: The point [m].
+        moved: Whether it belongs to an instance; one answer for all lanes.
+        frame: That instance's pose.
+    """
+    x0, y0, z0, u_x, u_y, u_z, u0, v_x = transposed(shading, triangle, 0, _COLUMNS)
+    v_y, v_z, v0, nx, ny, nz, density, layer = transposed(shading, triangle, 8, _COLUMNS)
+    kind, red, green, blue, emission, crown, building, nx_x = transposed(
+        shading, triangle, 16, _COLUMNS
+    )
+    own = point
+    if moved:
+        own = _to_own(frame, point)
+    x, y, z = own[0] - x0, own[1] - y0, own[2] - z0
+    u, v = u0 + u_x * x + u_y * y + u_z * z, v0 + v_x * x + v_y * y + v_z * z
+    bent = density < f4(0.0)
+    if any_of(bent):
+        nx_y, nx_z, ny_x, ny_y, ny_z, nz_x, nz_y, nz_z = transposed(
+            shading, triangle, 24, _COLUMNS
+        )
+        nx += nx_x * x + nx_y * y + nx_z * z
+        ny += ny_x * x + ny_y * y + ny_z * z
+        nz += nz_x * x + nz_y * y + nz_z * z
+    normal, density = (nx, ny, nz), magnitude(density)
+    if moved:
+        normal = _turned(frame, normal)
+        density *= root(frame.shrink)
+    if moved or any_of(bent):
+        nx, ny, nz = normal
+        scale = f4(1.0) / root(nx * nx + ny * ny + nz * nz + f4(1e-12))
+        scale = select(bent | like(bent, moved), scale, f4(1.0))
+        normal = (nx * scale, ny * scale, nz * scale)
+    kinds = bit_pattern(kind)
+    return Attributes(
+        u, v, normal, own, density, bit_pattern(layer), kinds & i4(255), kinds >> i4(8),
+        (red, green, blue), emission, crown, bit_pattern(building),
+    )  # fmt: skip
