@@ -38,7 +38,7 @@ def made(number: int, **changes: object) -> Frame:
             angular_velocity=np.zeros(3),
             gimbal=np.zeros(3),
         ),
-        "camera": CameraPose(np.array([1.1, 2.0, 21.9]), np.eye(3)),
+        "camera": CameraPose(np.array([1.1, 2.0, 21.9]), np.eye(3), 0.8),
         "target": TARGET,
         "others": (),
         "action": Action(-1, None),

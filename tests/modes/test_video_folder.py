@@ -31,7 +31,7 @@ def tree(path: Path) -> list[str]:
 def test_a_new_folder_holds_the_settings(tmp_path):
     folder = open_folder(tmp_path / "a" / "b", CONFIG, overwrite=False, resume=False)
     assert json.loads((folder.path / "config.json").read_text())["video"]["fps"] == 25.0
-    assert folder.episode(3, 2).folder == tmp_path / "a" / "b" / "DRONE3" / "episode2"
+    assert folder.episode(3, 2, 0.8).folder == tmp_path / "a" / "b" / "DRONE3" / "episode2"
 
 
 def test_a_recording_is_not_mixed_with_another(tmp_path):

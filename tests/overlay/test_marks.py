@@ -12,11 +12,13 @@ from eyas.state.draw import Picture
 from eyas.state.snapshot import CameraState
 from eyas.state.terrain import Plane, Terrain, height_over
 from eyas.task.config import RewardConfig, RewardType, StartConfig
-from eyas.task.reward import axis_depth, view_centre, view_share
+from eyas.task.reward import axis_depth, rewarded_size, view_centre, view_share
 
 CONFIG = SimConfig(start=StartConfig(pitch=1.2, height=22.0))
 FIRST = np.zeros(1, np.int32)
 FLAT = Terrain.flat(-0.1)
+CHASED = 1.2
+"""Field of view of the cameras that follow [rad]."""
 
 
 def started(config: SimConfig = CONFIG, count: int = 1, *, shared: bool = False):
@@ -40,6 +42,7 @@ def behind(cameras: CameraState) -> CameraState:
     return CameraState(
         position=cameras.position - 6.0 * ahead + 2.5 * up,
         rotation=np.stack([forward, left, np.cross(forward, left)], axis=2),
+        field_of_view=np.full(len(ahead), CHASED),
     )
 
 
@@ -90,6 +93,7 @@ def test_the_range_is_where_the_view_is_rewarded():
     simulation = started()
     rules, cameras = simulation.rules, simulation.snapshot.cameras
     position, rotation = cameras.position[0], cameras.rotation[0]
+    size = rewarded_size(cameras.field_of_view[0], rules)
     for terrain in (FLAT, hill_below(simulation)):
         area, _ = overlay_of(simulation, terrain=terrain).areas
         middle = area.corners.mean(axis=0)
@@ -97,7 +101,8 @@ def test_the_range_is_where_the_view_is_rewarded():
             for x, y, z in (middle + factor * (area.corners - middle)).tolist():
                 below = Plane(x, y, z, area.ground.rise_east, area.ground.rise_north)
                 depth = axis_depth(position, rotation, below)
-                assert (view_share(position, rotation, depth, below, rules) > 0) == rewarded
+                share = view_share(position, rotation, depth, below, size)
+                assert (share > 0) == rewarded
 
 
 def test_the_range_of_a_distance_reward_is_a_circle():
@@ -135,12 +140,11 @@ def test_a_chase_view_shows_the_drone_and_its_view_and_the_same_bytes_twice():
     assert first.depth is None
     viewpoint = behind(simulation.snapshot.cameras)
     pose = viewpoint.position[0], viewpoint.rotation[0]
-    field = 2 * np.arctan(np.tan(0.475) * 160 / 120)
-    column, row, _ = project(simulation.snapshot.trackers.position[0], *pose, 160, 120, field)
+    column, row, _ = project(simulation.snapshot.trackers.position[0], *pose, 160, 120, CHASED)
     changed = (clean.rgb[0] != first.rgb[0]).any(axis=-1)
     assert changed[round(row) - 2 : round(row) + 3, round(column) - 2 : round(column) + 3].all()
     below = overlay_of(simulation).areas[0].corners.mean(axis=0)
-    column, row, _ = project(below, *pose, 160, 120, field)
+    column, row, _ = project(below, *pose, 160, 120, CHASED)
     assert 0 < column < 160
     assert 0 < row < 120
 
@@ -153,8 +157,7 @@ def test_a_view_shows_every_drone_of_its_world_and_no_other():
         clean, overlaid = Picture.create(1, 180, 240), Picture.create(1, 180, 240)
         simulation.draw_from(FIRST, second, clean, overlay=False)
         simulation.draw_from(FIRST, second, overlaid)
-        field = 2 * np.arctan(np.tan(0.475) * 240 / 180)
         pose = second.position[0], second.rotation[0]
-        column, row, _ = project(simulation.snapshot.trackers.position[1], *pose, 240, 180, field)
+        column, row, _ = project(simulation.snapshot.trackers.position[1], *pose, 240, 180, CHASED)
         changed = (clean.rgb[0] != overlaid.rgb[0]).any(axis=-1)
         assert changed[int(row), int(column)] == shared

@@ -55,7 +55,7 @@ def test_drawing_a_band_with_all_weathers_compiles_for_cuda(ptx_of, renderer_of)
     traffic = city_traffic(1)
     movers = Movers(traffic.part, traffic.pose, traffic.colour, traffic.object_id)
     views = looking([(0.0, 0.0, 20.0)])
-    job = build_jobs(views, 24, 32, 1, 1, 0.0)
+    job = build_jobs(views, 24, 32, 1, 0.0)
     scratch = renderer._scratch_for(1, 24, 32).bundle
     output = Output(
         np.zeros((1, 24, 32, 3), np.uint8), np.zeros((1, 24, 32), np.float32),

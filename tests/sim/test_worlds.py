@@ -43,7 +43,9 @@ def seen_from_above(simulation, trackers) -> np.ndarray:
     down = np.array([[0.0, 0.0, 1.0], [0.0, 1.0, 0.0], [-1.0, 0.0, 0.0]])
     count = len(trackers)
     cameras = CameraState(
-        np.tile((x, y, 60.0), (count, 1)), np.ascontiguousarray(np.tile(down, (count, 1, 1)))
+        np.tile((x, y, 60.0), (count, 1)),
+        np.ascontiguousarray(np.tile(down, (count, 1, 1))),
+        np.full(count, 1.2),
     )
     picture = Picture.create(count, 96, 128, depth=True)
     simulation.draw_from(np.array(trackers, np.int32), cameras, picture, overlay=False)

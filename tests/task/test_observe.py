@@ -8,6 +8,7 @@ from eyas.state.snapshot import EpisodeState
 from eyas.state.terrain import Terrain
 from eyas.task.direction import TargetDirection
 from eyas.task.observe import clear_episode, observe
+from eyas.task.reward import rewarded_size
 
 N = 1
 FLAT = Terrain.flat(-0.1)
@@ -22,6 +23,7 @@ SAID_ANEW = {"view_centre", "last_target", "relative_position"}
 def see(snapshot, rules_with, look):
     """Observe a target from a drone at a place and a heading, with a camera 1 m above it."""
     rules = rules_with()
+    size = rewarded_size(0.7854, rules)
     trackers, cameras, targets, episodes, _ = snapshot
     clear_episode(episodes, N)
 
@@ -32,7 +34,7 @@ def see(snapshot, rules_with, look):
         cameras.rotation[N] = look(yaw, 1.0)
         targets.position[N] = targets.centre[N] = target
         targets.yaw[N] = target_yaw
-        observe(trackers, cameras, targets, episodes, N, FLAT, rules)
+        observe(trackers, cameras, targets, episodes, N, FLAT, rules, size)
         return SimpleNamespace(**{name: array[N] for name, array in episodes._asdict().items()})
 
     return observed

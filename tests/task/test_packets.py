@@ -25,6 +25,7 @@ def told(snapshot, look):
     trackers.commanded_position[N] = 1.0, 2.0, 22.5
     trackers.commanded_gimbal[N, 0] = 1.37
     cameras.position[N], cameras.rotation[N] = (1.1, 2.1, 22.0), look(YAW, 1.37)
+    cameras.field_of_view[N] = 0.7854
     targets.centre[N], targets.yaw[N] = (7.0, 8.0, 0.3), -2.0
     episodes.step_count[N] = 12
     episodes.reward[N] = 0.123456789

@@ -10,9 +10,12 @@ from hypothesis import strategies as st
 from eyas.state.terrain import Plane
 from eyas.task.config import RewardMode, RewardType
 from eyas.task.ground import ground_corners
-from eyas.task.reward import axis_depth, reward_value, view_centre, view_share
+from eyas.task.reward import axis_depth, reward_value, rewarded_size, view_centre, view_share
 
 FLOOR = -0.1
+FIELD = 0.7854
+"""The field of view of the original's camera."""
+
 LEVEL = Plane(0.0, 0.0, FLOOR, 0.0, 0.0)
 VECTORS = Path(__file__).parent / "data" / "reward_vectors.csv"
 
@@ -44,7 +47,7 @@ def evaluate(rules, position, rotation, x, y, ground=LEVEL):
     below = Plane(float(x), float(y), float(z), ground.rise_east, ground.rise_north)
     depth = axis_depth(position, rotation, below)
     middle = view_centre(position, rotation, depth)
-    share = view_share(position, rotation, depth, below, rules)
+    share = view_share(position, rotation, depth, below, rewarded_size(FIELD, rules))
     distance = math.hypot(x - middle[0], y - middle[1])
     return reward_value(share, distance, depth, rules), share, middle
 
@@ -94,7 +97,7 @@ def test_a_target_is_rewarded_exactly_where_the_picture_shows_ground(
     rules_with, look, yaw, pitch, view_range, x, y
 ):
     rules, rotation = rules_with(view_range=view_range), look(yaw, pitch)
-    margin = inside(ground_corners((0, 0, 20), rotation, rules, LEVEL), x, y)
+    margin = inside(ground_corners((0, 0, 20), rotation, rewarded_size(FIELD, rules), LEVEL), x, y)
     assume(abs(margin) > 1e-6)
     _, share, _ = evaluate(rules, (0, 0, 20), rotation, x, y)
     assert (share > 0) == (margin > 0)
@@ -102,7 +105,8 @@ def test_a_target_is_rewarded_exactly_where_the_picture_shows_ground(
 
 def shown_at(rules, camera, rotation, column, row):
     """Return the ground point at a place of the rewarded rectangle, whose sides are at -1 and 1."""
-    ray = rotation @ [1.0, column * rules.half_width, row * rules.half_height]
+    half_width, half_height = rewarded_size(FIELD, rules)
+    ray = rotation @ [1.0, column * half_width, row * half_height]
     return np.array(camera)[:2] - ray[:2] * (camera[2] - FLOOR) / ray[2]
 
 
@@ -193,18 +197,19 @@ def test_distance_reward_ends_at_its_range(rules_with, look):
 
 
 def test_ground_corners_are_the_published_ones_in_order(rules_with, look):
-    corners = ground_corners((0, 0, 22), look(0.3, 1.37), rules_with(view_range=1.0), LEVEL)
+    size = rewarded_size(FIELD, rules_with(view_range=1.0))
+    corners = ground_corners((0, 0, 22), look(0.3, 1.37), size, LEVEL)
     expected = [(8.6420, 13.1119), (-4.7237, 7.7358), (0.4694, -9.0518), (14.5361, -5.9421)]
     assert corners[:, :2] == pytest.approx(np.array(expected), abs=1e-4)
     assert (corners[:, 2] == FLOOR).all()
 
 
 def test_ground_is_cut_off_where_the_picture_shows_the_horizon(rules_with, look):
-    rules, rotation = rules_with(view_range=1.0), look(0.5, 0.1)
-    corners = ground_corners((3, 4, 20), rotation, rules, LEVEL, reach=500.0)
+    size, rotation = rewarded_size(FIELD, rules_with(view_range=1.0)), look(0.5, 0.1)
+    corners = ground_corners((3, 4, 20), rotation, size, LEVEL, reach=500.0)
     # Depth in the sense of the rays: 1 m along the axis for each share of the way down.
     depth = (corners - (3, 4, 20)) @ rotation[:, 0]
     assert sorted(depth)[2:] == pytest.approx([500.0, 500.0])
     assert inside(corners, *(np.array([3, 4]) + 100 * rotation[:2, 0])) > 0
-    assert len(ground_corners((3, 4, 20), look(0.5, -1.0), rules, LEVEL)) == 0
-    assert len(ground_corners((3, 4, -0.2), look(0.5, 1.0), rules, LEVEL)) == 0
+    assert len(ground_corners((3, 4, 20), look(0.5, -1.0), size, LEVEL)) == 0
+    assert len(ground_corners((3, 4, -0.2), look(0.5, 1.0), size, LEVEL)) == 0

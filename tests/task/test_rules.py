@@ -4,14 +4,16 @@ import pytest
 
 from eyas.sensors.config import CameraConfig
 from eyas.task.config import DoneConfig, RewardConfig, RewardMode, RewardType
+from eyas.task.reward import rewarded_size
 from eyas.task.rules import BuiltinReward, exact, make_rules
 
 
 def test_rewarded_rectangle_is_the_share_of_the_picture():
-    camera = CameraConfig(width=640, height=320, field_of_view=1.0)
+    camera = CameraConfig(width=640, height=320)
     rules = make_rules(RewardConfig(view_range=0.5), DoneConfig(), camera)
-    assert rules.half_width == pytest.approx(0.5 * math.tan(0.5))
-    assert rules.half_height == pytest.approx(0.25 * math.tan(0.5))
+    half_width, half_height = rewarded_size(1.0, rules)
+    assert half_width == pytest.approx(0.5 * math.tan(0.5))
+    assert half_height == pytest.approx(0.25 * math.tan(0.5))
 
 
 def test_every_limit_is_taken_from_the_field_of_its_name():

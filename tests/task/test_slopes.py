@@ -15,9 +15,10 @@ from eyas.task.done import DoneReason, judge
 from eyas.task.ground import ground_corners
 from eyas.task.observe import clear_episode, observe
 from eyas.task.packet_rows import PacketRows
-from eyas.task.reward import axis_depth, view_centre, view_share
+from eyas.task.reward import axis_depth, rewarded_size, view_centre, view_share
 
 N = 1
+FIELD = 0.7854
 FLOOR, EAST, NORTH = -0.1, 0.15, -0.25
 FLAT = Plane(0.0, 0.0, 0.0, 0.0, 0.0)
 
@@ -57,7 +58,7 @@ def seen(rules, position, rotation, ground):
     return (
         depth,
         view_centre(position, rotation, depth),
-        view_share(position, rotation, depth, ground, rules),
+        view_share(position, rotation, depth, ground, rewarded_size(FIELD, rules)),
     )
 
 
@@ -81,11 +82,11 @@ def test_tilting_the_whole_world_leaves_the_share_as_it_was(
 @settings(deadline=None, max_examples=60)
 @given(tilts, headings, st.floats(-0.2, 1.55))
 def test_tilting_the_whole_world_tilts_the_seen_ground_with_it(rules_with, look, world, yaw, pitch):
-    rules, turn = rules_with(view_range=1.0), tilt(*world)
+    size, turn = rewarded_size(FIELD, rules_with(view_range=1.0)), tilt(*world)
     camera, rotation = np.array([2.0, -3.0, 20.0]), look(yaw, pitch)
-    level = ground_corners(camera, rotation, rules, FLAT, reach=300.0)
+    level = ground_corners(camera, rotation, size, FLAT, reach=300.0)
     slope = tilted(turn, turn @ [5.0, 6.0, 0.0])
-    corners = ground_corners(turn @ camera, turn @ rotation, rules, slope, reach=300.0)
+    corners = ground_corners(turn @ camera, turn @ rotation, size, slope, reach=300.0)
     assert corners.shape == level.shape
     np.testing.assert_allclose(corners, level @ turn.T, atol=1e-6)
     assert corners.shape[1] == 3
@@ -96,8 +97,9 @@ def test_tilting_the_whole_world_tilts_the_seen_ground_with_it(rules_with, look,
 def test_corners_on_a_slope_lie_at_the_corners_of_the_picture(rules_with, look):
     ground, camera = Plane(3.0, 4.0, 60.0, EAST, NORTH), np.array([3.0, 4.0, 82.0])
     rotation = look(1.0, 1.2)
-    corners = ground_corners(camera, rotation, rules_with(view_range=1.0), ground)
-    column, row, _ = project(corners, camera, rotation, 320, 240, 0.7854)
+    size = rewarded_size(FIELD, rules_with(view_range=1.0))
+    corners = ground_corners(camera, rotation, size, ground)
+    column, row, _ = project(corners, camera, rotation, 320, 240, FIELD)
     assert column == pytest.approx([0, 0, 320, 320], abs=1e-6)
     assert row == pytest.approx([0, 240, 240, 0], abs=1e-6)
 
@@ -110,7 +112,8 @@ def watched(snapshot, hill, rules, look, x, y, height=20.0):
     cameras.rotation[N] = look(0.4, 1.1)
     targets.position[N] = targets.centre[N] = x, y, FLOOR + relief(x, y) + 0.3
     clear_episode(episodes, N)
-    observe(trackers, cameras, targets, episodes, N, hill, rules)
+    size = rewarded_size(FIELD, rules)
+    observe(trackers, cameras, targets, episodes, N, hill, rules, size)
     return episodes
 
 

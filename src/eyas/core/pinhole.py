@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["focal_length", "intrinsics", "project", "rays"]
+__all__ = ["field_along", "focal_length", "intrinsics", "project", "rays"]
 
 
 def focal_length(width: int, fov: float) -> float:
@@ -16,6 +16,16 @@ def focal_length(width: int, fov: float) -> float:
         fov: Horizontal field of view [rad].
     """
     return 0.5 * width / math.tan(0.5 * fov)
+
+
+def field_along(fov: float, ratio: float) -> float:
+    """Return the field of view along the other sides of a picture [rad].
+
+    Args:
+        fov: Field of view along two sides [rad].
+        ratio: Length of the other sides over the length of these.
+    """
+    return 2.0 * math.atan(math.tan(0.5 * fov) * ratio)
 
 
 def intrinsics(width: int, height: int, fov: float) -> NDArray[np.float64]:

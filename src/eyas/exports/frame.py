@@ -66,12 +66,14 @@ class Body:
 
 @dataclass(frozen=True, slots=True)
 class CameraPose:
-    """Position and orientation of the camera."""
+    """Position, orientation and lens of the camera."""
 
     position: Floats
     """Optical centre, world frame [m], shape (3,)."""
     rotation: Floats
     """Camera to world; columns are the camera's forward, left and up axes, shape (3, 3)."""
+    field_of_view: float
+    """Horizontal [rad]; the same in all frames of an episode."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -192,7 +194,11 @@ def _body(trackers: TrackerState, tracker: int) -> Body:
 
 
 def _camera(cameras: CameraState, tracker: int) -> CameraPose:
-    return CameraPose(cameras.position[tracker].copy(), cameras.rotation[tracker].copy())
+    return CameraPose(
+        position=cameras.position[tracker].copy(),
+        rotation=cameras.rotation[tracker].copy(),
+        field_of_view=float(cameras.field_of_view[tracker]),
+    )
 
 
 def _target(targets: TargetState, tracker: int, picture: Picture, view: int) -> Subject:

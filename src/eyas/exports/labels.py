@@ -52,6 +52,8 @@ class FrameLabel:
     """Optical centre [m]."""
     camera_rotation: list[list[float | None]]
     """Camera to world, three rows; columns are the camera's forward, left and up axes."""
+    field_of_view: float | None
+    """Horizontal field of view of the camera [rad]."""
     target_type: str
     """Name of the target's model."""
     target_size: list[float | None]
@@ -116,6 +118,7 @@ def label_of(frame: Frame) -> FrameLabel:
         tracker_orientation=rounded_list(tracker.orientation),
         camera_position=rounded_list(camera.position),
         camera_rotation=[rounded_list(row) for row in camera.rotation],
+        field_of_view=rounded(camera.field_of_view),
         target_type=target.type,
         target_size=rounded_list(target.size),
         target_position=rounded_list(target.position),

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from eyas.core.pinhole import focal_length, project
+from eyas.core.pinhole import project
 from eyas.state.draw import Views
 
 __all__ = ["CASING", "NEAR", "Canvas", "cover"]
@@ -36,11 +36,8 @@ class Canvas:
         self.height, self.width = depth.shape
         self.position = np.asarray(views.position[v], np.float64)
         self.rotation = np.asarray(views.rotation[v], np.float64)
-        self._fields = views.field_of_view, views.vertical_field_of_view
-        self.across = focal_length(self.width, views.field_of_view)
-        self.down = self.across
-        if views.vertical_field_of_view is not None:
-            self.down = focal_length(self.height, views.vertical_field_of_view)
+        self._fields = views.fields_of(v)
+        self.across, self.down = views.focal(self.height, self.width)[v].tolist()
         self.unit = max(1.0, self.height / 360)
         self._colour = rgb.astype(np.float32)
 

@@ -42,14 +42,13 @@ class Marks:
     Args:
         snapshot: The trackers and their targets.
         terrain: The ground.
-        camera: The camera of each tracker.
+        camera: Shape of the pictures.
     """
 
     def __init__(self, snapshot: Snapshot, terrain: Terrain, camera: CameraConfig) -> None:
         self._snapshot = snapshot
         self._terrain = terrain
-        self._half_width = math.tan(0.5 * camera.field_of_view)
-        self._half_height = self._half_width * camera.height / camera.width
+        self._aspect = camera.height / camera.width
 
     def of(self, main: int, rules: Rules, trackers: Sequence[int] | None = None) -> Overlay:
         """Return the overlay of trackers in one world.
@@ -64,7 +63,7 @@ class Marks:
             trackers: The trackers; None: `main` without its drone, for its own camera's picture.
         """
         parts = [self._marks(n, rules, always=n == main) for n in (trackers or (main,))]
-        parts += [self._drone(n, rules) for n in trackers or ()]
+        parts += [self._drone(n) for n in trackers or ()]
         return Overlay(
             areas=tuple(area for part in parts for area in part.areas),
             lines=tuple(line for part in parts for line in part.lines),
@@ -81,7 +80,7 @@ class Marks:
         return Overlay(
             areas=(
                 GroundArea(self._rewarded(n, rules), ground, _colour_of(reward), fill=0.14),
-                GroundArea(self._seen(n, rules), ground, VIEW_COLOUR),
+                GroundArea(self._seen(n), ground, VIEW_COLOUR),
             ),
             solids=() if targets.lost[n] else (gem(tip, GEM_HEIGHT, turn),),
             labels=(
@@ -95,11 +94,11 @@ class Marks:
             ),
         )
 
-    def _drone(self, n: int, rules: Rules) -> Overlay:
+    def _drone(self, n: int) -> Overlay:
         """Return a drone, and the edges of its view."""
         trackers, eye = self._snapshot.trackers, self._snapshot.cameras.position[n]
         return Overlay(
-            lines=tuple(Line(eye, end, VIEW_COLOUR) for end in self._seen(n, rules)),
+            lines=tuple(Line(eye, end, VIEW_COLOUR) for end in self._seen(n)),
             solids=(drone(trackers.position[n], _rotation(trackers.orientation[n])),),
         )
 
@@ -108,15 +107,17 @@ class Marks:
         x, y, _ = self._snapshot.targets.centre[n]
         return plane_at(self._terrain, x, y)
 
-    def _seen(self, n: int, rules: Rules) -> NDArray[np.float64]:
+    def _seen(self, n: int) -> NDArray[np.float64]:
         """Return the corners of the ground that a camera sees [m], shape (K, 3)."""
-        whole = rules._replace(half_width=self._half_width, half_height=self._half_height)
-        return self._corners(n, whole)
+        return self._corners(n, 1.0)
 
-    def _corners(self, n: int, rules: Rules) -> NDArray[np.float64]:
+    def _corners(self, n: int, share: float) -> NDArray[np.float64]:
+        """Return the corners of the ground that a share of a picture's sides shows."""
         cameras = self._snapshot.cameras
+        half_width = share * math.tan(0.5 * float(cameras.field_of_view[n]))
+        half_size = half_width, half_width * self._aspect
         return ground_corners(
-            cameras.position[n], cameras.rotation[n], rules, self._ground(n), FARTHEST
+            cameras.position[n], cameras.rotation[n], half_size, self._ground(n), FARTHEST
         )
 
     def _rewarded(self, n: int, rules: Rules) -> NDArray[np.float64]:
@@ -127,7 +128,7 @@ class Marks:
         if depth <= 0.0:
             return np.zeros((0, 3))
         if rules.reward not in (BuiltinReward.DISTANCE_CONTINUOUS, BuiltinReward.DISTANCE_DISCRETE):
-            return self._corners(n, rules)
+            return self._corners(n, rules.view_range)
         angles = np.arange(CIRCLE) * (2.0 * np.pi / CIRCLE)
         circle: NDArray[np.float64] = np.column_stack([np.cos(angles), np.sin(angles)])
         return on_plane(ground, rules.distance_range * circle + view_centre(eye, rotation, depth))

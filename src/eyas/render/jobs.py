@@ -6,7 +6,6 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.pinhole import focal_length
 from eyas.render.kernels.bundles import Job
 from eyas.state.draw import Picture, Views
 
@@ -20,7 +19,7 @@ SMALLEST_BAND = 3_500
 
 
 def build_jobs(
-    views: Views, height: int, width: int, side: int, threads: int, density: float
+    views: Views, height: int, width: int, threads: int, density: float
 ) -> Job:
     """Return the cameras and the bands to draw.
 
@@ -28,15 +27,9 @@ def build_jobs(
         views: V cameras.
         height: Height of the pictures [pixels].
         width: Width of the pictures [pixels].
-        side: Samples along a side of each pixel.
         threads: Number of threads that share the work.
         density: Density of the weather's fog [1/m], for views without their own.
     """
-    across = focal_length(width, views.field_of_view)
-    down = across
-    if views.vertical_field_of_view is not None:
-        down = focal_length(height, views.vertical_field_of_view)
-    lens = [across * side, width * side, height * side, math.sqrt(across * down), down * side]
     band = _bands(len(views.position), height, width, threads)
     return Job(
         band=band,
@@ -47,7 +40,7 @@ def build_jobs(
         subject=np.ascontiguousarray(views.subject, np.int32),
         light=_light_of(views, density),
         instant=np.array([] if views.instant is None else views.instant, np.float64),
-        lens=np.array(lens, np.float64),
+        focal=views.focal(height, width),
     )
 
 

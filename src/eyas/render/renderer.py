@@ -113,7 +113,7 @@ class Renderer:
         height, width = picture_size(picture)
         threads = thread_count()
         density = float(self._light.air[0])
-        job = build_jobs(views, height, width, side, threads, density)
+        job = build_jobs(views, height, width, threads, density)
         rows = int((job.band[:, 2] - job.band[:, 1]).max(initial=0))
         workers = int(job.begun[0])
         wanted = len(output.subject) > 0

@@ -1,7 +1,9 @@
 """The camera: draws the views of N gimbals."""
 
-import math
+import numpy as np
+from numpy.typing import NDArray
 
+from eyas.core.pinhole import field_along
 from eyas.render.renderer import Renderer
 from eyas.sensors.config import CameraConfig
 from eyas.state.draw import DrawList, DrawStage, Picture, Views
@@ -22,11 +24,12 @@ class Camera:
 
     def __init__(self, config: CameraConfig, renderer: Renderer) -> None:
         self.config = config
-        self.field_of_view = config.field_of_view
-        self.vertical_field_of_view = 2 * math.atan(
-            math.tan(config.field_of_view / 2) * config.height / config.width
-        )
         self._renderer = renderer
+
+    def vertical(self, fields: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the vertical field of view for each horizontal one [rad], shape (V,)."""
+        ratio = self.config.height / self.config.width
+        return np.array([field_along(field, ratio) for field in fields.tolist()])
 
     def read(
         self,
@@ -38,7 +41,7 @@ class Camera:
         """Draw into `picture`.
 
         Args:
-            views: V cameras with the fields of view of this camera.
+            views: V cameras, with the fields of view of their trackers.
             draw_list: The moving parts.
             picture: Buffers to draw into, of any size; outputs that are None are not drawn.
             until: Last stage to run, see `Renderer.draw`.

@@ -2,9 +2,10 @@
 
 from typing import Annotated, Literal
 
-from pydantic import Field
+from pydantic import AfterValidator, Field
 
 from eyas.core.config import Config
+from eyas.core.variation import Variation, within
 
 __all__ = ["CameraConfig"]
 
@@ -16,7 +17,7 @@ class CameraConfig(Config):
     """[pixels]"""
     height: Annotated[int, Field(ge=8, le=8192)] = 240
     """[pixels]"""
-    field_of_view: Annotated[float, Field(gt=0.05, lt=2.8)] = 0.7854
-    """Horizontal [rad]."""
+    field_of_view: Annotated[Variation, AfterValidator(within(0.05, 2.8))] = 0.7854
+    """Horizontal [rad]; a variation is drawn anew for each tracker at each reset."""
     samples: Literal[1, 4] = 1
     """Samples per pixel."""

@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.errors import ConfigError, SpawnError
 from eyas.core.rng import stream
+from eyas.core.variation import sample
 from eyas.sim.config import SimConfig
 from eyas.sim.light import LightChanges
 from eyas.sim.worlds import Worlds
@@ -32,7 +33,8 @@ class Episodes:
         traffic: The traffic with the possible targets.
         worlds: The worlds of the trackers.
         light: The light around them.
-        snapshot: State of N trackers; this class sets its episodes and targets.
+        snapshot: State of N trackers; this class sets its episodes and targets, and the
+            fields of view of its cameras.
     """
 
     def __init__(
@@ -49,6 +51,7 @@ class Episodes:
         self._worlds = worlds
         self._light = light
         self._episodes, self._targets = snapshot.episodes, snapshot.targets
+        self._fields = snapshot.cameras.field_of_view
         self._last_tick = int(traffic.duration / PHYSICS_STEP)
         first = config.start.warm_up_steps
         if first + config.done.total_steps > self._last_tick:
@@ -101,6 +104,8 @@ class Episodes:
         episode = int(self._episodes.number[tracker])
         self._worlds.sample_looks(tracker, self._seed, episode)
         self._light.sample(tracker, self._seed, episode)
+        lens = stream(self._seed, "camera", tracker, episode)
+        self._fields[tracker] = sample(self._config.camera.field_of_view, lens)
         rng = stream(self._seed, "episode", tracker, episode)
         tick, actor = self._choose(tracker, rng)
         self._episodes.tick[tracker] = tick

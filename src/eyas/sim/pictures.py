@@ -1,14 +1,11 @@
 """Pictures of the worlds of a simulation, from its trackers' cameras or from any others."""
 
-from math import atan, tan
-
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
 from eyas.overlay.marks import Marks
 from eyas.overlay.paint import paint_overlays, with_depth
-from eyas.render.jobs import picture_size
 from eyas.sensors.camera import Camera
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
@@ -60,9 +57,8 @@ class Pictures:
             until: The stage at which to stop; see `Renderer.draw`.
         """
         cameras = CameraState(*(array[chosen] for array in self._snapshot.cameras))
-        views, movers = self._views(
-            chosen, cameras, self._camera.field_of_view, self._camera.vertical_field_of_view
-        )
+        views, movers = self._views(chosen, cameras)
+        views.vertical_field_of_view = self._camera.vertical(cameras.field_of_view)
         self._camera.read(views, movers, picture, until)
         return views
 
@@ -79,7 +75,6 @@ class Pictures:
         chosen: Chosen,
         cameras: CameraState,
         picture: Picture,
-        vertical_field_of_view: float,
         rules: Rules | None,
     ) -> None:
         """Draw the worlds of trackers from other cameras.
@@ -88,12 +83,9 @@ class Pictures:
             chosen: The tracker whose world each view shows, shape (V,); the subject is its target.
             cameras: V cameras.
             picture: V pictures with colours, of any size; pixels are square.
-            vertical_field_of_view: [rad].
             rules: Rules for the overlay of all trackers of that world; None: no overlay.
         """
-        height, width = picture_size(picture)
-        field_of_view = 2 * atan(tan(0.5 * vertical_field_of_view) * width / height)
-        views, movers = self._views(chosen, cameras, field_of_view, None)
+        views, movers = self._views(chosen, cameras)
         deep = picture if rules is None else with_depth(picture)
         self._renderer.draw(views, movers, deep, self._samples)
         if rules is not None:
@@ -104,14 +96,8 @@ class Pictures:
             ]
             paint_overlays(views, marks, deep)
 
-    def _views(
-        self,
-        chosen: Chosen,
-        cameras: CameraState,
-        field_of_view: float,
-        vertical_field_of_view: float | None,
-    ) -> tuple[Views, DrawList]:
-        """Return views of the worlds of trackers: cameras and moving objects."""
+    def _views(self, chosen: Chosen, cameras: CameraState) -> tuple[Views, DrawList]:
+        """Return views of the worlds of trackers: cameras, with square pixels, and movers."""
         ticks = self._snapshot.episodes.tick
         world, movers = self._worlds.draw_list(chosen, ticks)
         views = Views(
@@ -119,8 +105,7 @@ class Pictures:
             rotation=cameras.rotation,
             world=world,
             subject=self._worlds.object_ids(self._snapshot.targets.actor[chosen]),
-            field_of_view=field_of_view,
-            vertical_field_of_view=vertical_field_of_view,
+            field_of_view=cameras.field_of_view,
             light=self._light.of(chosen),
             instant=np.multiply(ticks[chosen], PHYSICS_STEP) if self._flakes else None,
         )

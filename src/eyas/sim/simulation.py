@@ -161,7 +161,6 @@ class Simulation:
         cameras: CameraState,
         picture: Picture,
         *,
-        vertical_field_of_view: float = 0.95,
         overlay: bool = True,
     ) -> None:
         """Draw the worlds of some trackers from any camera, for example from behind the drone.
@@ -171,11 +170,10 @@ class Simulation:
                 target.
             cameras: V cameras.
             picture: V pictures with colours, of any size; pixels are square.
-            vertical_field_of_view: [rad].
             overlay: Whether to draw all trackers of that world and their overlays over the colours.
         """
         chosen, rules = np.asarray(trackers, np.int32), self.rules if overlay else None
-        self._pictures.draw_from(chosen, cameras, picture, vertical_field_of_view, rules)
+        self._pictures.draw_from(chosen, cameras, picture, rules)
 
     def _result(self) -> StepResult:
         episodes = self.snapshot.episodes

@@ -21,6 +21,7 @@ from eyas.task.direction import target_centre
 from eyas.task.done import judge
 from eyas.task.observe import clear_episode, observe
 from eyas.task.offset import offset_pose
+from eyas.task.reward import rewarded_size
 from eyas.task.rules import Rules
 
 # The kernels and the memory of the tracker: those of the drone, unless `step_of` replaces them.
@@ -118,12 +119,13 @@ def _fly(parts: Parts, worker: int, workers: int) -> None:
     trackers, cameras, targets, episodes, _ = snapshot
     steps, commands, _, _, _ = orders[0]
     for n in range(commands.shape[0]):
+        half_size = rewarded_size(cameras.field_of_view[n], rules)
         for _step in range(steps[0]):
             advance(trackers, memory, n, commands[n])
             episodes.tick[n] += 1
             _move_target(targets, episodes, n, around)
             aim(trackers, memory, cameras, n)
-            observe(trackers, cameras, targets, episodes, n, around.terrain, rules)
+            observe(trackers, cameras, targets, episodes, n, around.terrain, rules, half_size)
             judge(trackers, targets, episodes, n, around.terrain, rules)
 
 
@@ -133,6 +135,7 @@ def _carry(parts: Parts, worker: int, workers: int) -> None:
     trackers, cameras, targets, episodes, _ = snapshot
     steps = orders[0].steps
     for n in range(episodes.tick.shape[0]):
+        half_size = rewarded_size(cameras.field_of_view[n], rules)
         for _step in range(steps[0]):
             episodes.tick[n] += 1
             _move_target(targets, episodes, n, around)
@@ -141,7 +144,7 @@ def _carry(parts: Parts, worker: int, workers: int) -> None:
             )
             carry(trackers, memory, n, x, y, z, yaw)
             aim(trackers, memory, cameras, n)
-            observe(trackers, cameras, targets, episodes, n, around.terrain, rules)
+            observe(trackers, cameras, targets, episodes, n, around.terrain, rules, half_size)
             judge(trackers, targets, episodes, n, around.terrain, rules)
 
 
@@ -159,7 +162,8 @@ def _begin(parts: Parts, worker: int, workers: int) -> None:
         start(trackers, memory, n, x, y, z, yaw, pitch[k])
         clear_episode(episodes, n)
         aim(trackers, memory, cameras, n)
-        observe(trackers, cameras, targets, episodes, n, around.terrain, rules)
+        half_size = rewarded_size(cameras.field_of_view[n], rules)
+        observe(trackers, cameras, targets, episodes, n, around.terrain, rules, half_size)
 
 
 @step_kernel

@@ -6,6 +6,7 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.pinhole import focal_length
 from eyas.state.mesh import Mesh
 from eyas.state.scene import ObjectClass
 
@@ -81,15 +82,46 @@ class Views:
     """World whose moving parts each view shows, shape (V,)."""
     subject: NDArray[np.int32]
     """Object id of each view's subject, whose box is measured, or -1, shape (V,)."""
-    field_of_view: float
-    """Horizontal [rad]."""
-    vertical_field_of_view: float | None = None
-    """[rad]; None: pixels are square. Set it to squeeze a wide view into a square picture."""
+    field_of_view: float | NDArray[np.float64]
+    """Horizontal [rad], of all views, or shape (V,)."""
+    vertical_field_of_view: float | NDArray[np.float64] | None = None
+    """[rad], as above; None: pixels are square. Set it to squeeze a wide view into a square
+    picture."""
     light: NDArray[np.float32] | None = None
     """Changes of the light for each view: factor on the sky and its light, factor on the sun, and
     one over the visibility range [1/m], shape (V, 3); None: the weather's own light."""
     instant: NDArray[np.float64] | None = None
     """Time at which falling snow is shown [s], shape (V,); None: nothing falls."""
+
+    def fields_of(self, view: int) -> tuple[float, float | None]:
+        """Return the horizontal and the vertical field of view of one view [rad]."""
+        across, down = self.field_of_view, self.vertical_field_of_view
+        return (
+            float(across[view]) if isinstance(across, np.ndarray) else across,
+            float(down[view]) if isinstance(down, np.ndarray) else down,
+        )
+
+    def focal(self, height: int, width: int) -> NDArray[np.float64]:
+        """Return the focal length along rows and along columns [pixels], shape (V, 2).
+
+        Args:
+            height: Height of the pictures [pixels].
+            width: Width of the pictures [pixels].
+        """
+        focal = np.empty((len(self.position), 2))
+        focal[:, 0] = _focal_lengths(width, self.field_of_view)
+        focal[:, 1] = focal[:, 0]
+        if self.vertical_field_of_view is not None:
+            focal[:, 1] = _focal_lengths(height, self.vertical_field_of_view)
+        return focal
+
+
+def _focal_lengths(size: int, fields: float | NDArray[np.float64]) -> float | list[float]:
+    """Return the focal length, or that of each view [pixels]."""
+    if isinstance(fields, np.ndarray):
+        # One by one: numpy's own tangents differ between processors.
+        return [focal_length(size, field) for field in fields.tolist()]
+    return focal_length(size, fields)
 
 
 @dataclass(slots=True)

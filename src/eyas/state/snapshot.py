@@ -74,11 +74,13 @@ class CameraState(NamedTuple):
     """Optical centre, world frame [m], shape (N, 3)."""
     rotation: Floats
     """Camera to world; columns are the camera's forward, left and up axes, shape (N, 3, 3)."""
+    field_of_view: Floats
+    """Horizontal [rad], shape (N,); that of a tracker is drawn at its reset."""
 
     @classmethod
     def create(cls, count: int) -> "CameraState":
-        """Return cameras at the origin that look east."""
-        return cls(np.zeros((count, 3)), np.tile(np.eye(3), (count, 1, 1)))
+        """Return cameras at the origin that look east, with a field of view of 1 rad."""
+        return cls(np.zeros((count, 3)), np.tile(np.eye(3), (count, 1, 1)), np.ones(count))
 
 
 class TargetState(NamedTuple):

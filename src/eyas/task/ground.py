@@ -4,7 +4,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from eyas.state.terrain import Plane, height_over
-from eyas.task.rules import Rules
 
 __all__ = ["ground_corners", "on_plane"]
 
@@ -12,16 +11,16 @@ __all__ = ["ground_corners", "on_plane"]
 def ground_corners(
     position: ArrayLike,
     rotation: ArrayLike,
-    rules: Rules,
+    half_size: tuple[float, float],
     ground: Plane,
     reach: float = 1000.0,
 ) -> NDArray[np.float64]:
-    """Return the corners of the ground that the rewarded part of the picture covers.
+    """Return the corners of the ground that the middle part of a picture covers.
 
     Args:
         position: Optical centre, world frame [m], shape (3,).
         rotation: Camera to world; columns forward, left, up, shape (3, 3).
-        rules: `half_width`, `half_height` are used.
+        half_size: Half the width and height of a part of the picture, at a depth of 1 m.
         ground: The ground, approximated by a plane.
         reach: Depth at which the ground is cut off [m].
 
@@ -33,7 +32,7 @@ def ground_corners(
     centre, axes = np.asarray(position, np.float64), np.asarray(rotation, np.float64)
     height = height_over(ground, centre[0], centre[1], centre[2])
     signs = np.array([(1.0, 1.0), (1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0)])
-    corners = np.column_stack([np.ones(4), signs * (rules.half_width, rules.half_height)])
+    corners = np.column_stack([np.ones(4), signs * half_size])
     rays = corners @ axes.T
     if height <= 0.0:
         return np.zeros((0, 3))

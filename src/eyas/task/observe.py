@@ -39,17 +39,19 @@ def observe(
     n: int,
     terrain: Terrain,
     rules: Rules,
+    half_size: tuple[float, float],
 ) -> None:
     """Compute tracker `n`'s observation of its target, at a reset and in each physics step.
 
-    The reward uses the tangent plane of the ground under the target.
+    The reward uses the tangent plane of the ground under the target, and the part of the picture
+    of a size from `rewarded_size`.
     """
     position, rotation = cameras.position[n], cameras.rotation[n]
     x, y = targets.centre[n, 0], targets.centre[n, 1]
     ground = plane_at(terrain, x, y)
     depth = axis_depth(position, rotation, ground)
     middle_x, middle_y = view_centre(position, rotation, depth)
-    share = view_share(position, rotation, depth, ground, rules)
+    share = view_share(position, rotation, depth, ground, half_size)
     distance = math.sqrt((x - middle_x) ** 2 + (y - middle_y) ** 2)
     episodes.reward[n] = reward_value(share, distance, depth, rules)
     centre = episodes.view_centre[n]

@@ -3,6 +3,7 @@
 Numbers keep their full precision; the original's text streams round them to six digits.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -11,7 +12,6 @@ from numpy.typing import NDArray
 from eyas.core.frames import wrap_angle
 from eyas.core.jit import step_kernel
 from eyas.core.parallel import Held, Pointer, parallel_kernel
-from eyas.core.pinhole import focal_length
 from eyas.sensors.config import CameraConfig
 from eyas.state.snapshot import CameraState, EpisodeState, Snapshot, TargetState, TrackerState
 from eyas.state.terrain import Terrain
@@ -42,8 +42,6 @@ class PacketRows:
         self._basic = np.zeros((count, BASIC_COLUMNS))
         rows = self._reward = np.zeros((count, REWARD_COLUMNS))
         rows[:, 0], rows[:, 1] = camera.width, camera.height
-        rows[:, 2] = camera.field_of_view
-        rows[:, 3] = focal_length(camera.width, camera.field_of_view)
         rows[:, _CAMERA_POSE + 15] = rows[:, _TARGET_POSE + 15] = 1.0
         rows[:, _TARGET_POSE + 10] = 1.0
         packets = _Packets(snapshot, terrain.floor, self._basic, self._reward)
@@ -108,6 +106,8 @@ def _fill_reward(
     the view centre, which is in the world frame, as in the original.
     """
     centre, rotation = targets.centre[n], cameras.rotation[n]
+    row[2] = cameras.field_of_view[n]
+    row[3] = 0.5 * row[0] / math.tan(0.5 * row[2])
     row[4] = trackers.commanded_gimbal[n, 0]
     row[5] = trackers.commanded_position[n, 2]
     row[6] = episodes.start_offset[n, 3]

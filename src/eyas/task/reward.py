@@ -23,6 +23,7 @@ __all__ = [
     "distance_continuous",
     "distance_discrete",
     "reward_value",
+    "rewarded_size",
     "view_centre",
     "view_continuous",
     "view_discrete",
@@ -60,6 +61,18 @@ def axis_depth(
 
 
 @step_kernel
+def rewarded_size(field_of_view: float, rules: Rules) -> tuple[float, float]:
+    """Return half the width and height of the rewarded part of the picture, at a depth of 1 m.
+
+    Args:
+        field_of_view: Horizontal [rad].
+        rules: `view_range`, `aspect` are used.
+    """
+    half_width = rules.view_range * math.tan(0.5 * field_of_view)
+    return half_width, half_width * rules.aspect
+
+
+@step_kernel
 def view_centre(
     position: NDArray[np.float64], rotation: NDArray[np.float64], depth: float
 ) -> tuple[float, float]:
@@ -76,7 +89,7 @@ def view_share(
     rotation: NDArray[np.float64],
     depth: float,
     ground: Plane,
-    rules: Rules,
+    half_size: tuple[float, float],
 ) -> float:
     """Return the target's share: 1 in the middle of the picture, 0 on the edge and outside.
 
@@ -88,13 +101,13 @@ def view_share(
         rotation: Camera to world; columns forward, left, up, shape (3, 3).
         depth: Depth from `axis_depth`.
         ground: The plane under the target; its point is the target's place.
-        rules: `half_width`, `half_height` are used.
+        half_size: From `rewarded_size`.
     """
     dx, dy, dz = ground.x - position[0], ground.y - position[1], ground.z - position[2]
     forward = rotation[0, 0] * dx + rotation[1, 0] * dy + rotation[2, 0] * dz
     left = rotation[0, 1] * dx + rotation[1, 1] * dy + rotation[2, 1] * dz
     up = rotation[0, 2] * dx + rotation[1, 2] * dy + rotation[2, 2] * dz
-    margin: float = forward - max(abs(left) / rules.half_width, abs(up) / rules.half_height)
+    margin: float = forward - max(abs(left) / half_size[0], abs(up) / half_size[1])
     # The form of this condition gives no reward for NaN, which only absurd inputs produce.
     if depth > 0.0 and margin > 0.0:
         return min(margin / depth, 1.0)

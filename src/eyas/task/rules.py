@@ -1,6 +1,5 @@
 """The settings of the reward and the end of an episode, as plain numbers for kernels."""
 
-import math
 from enum import IntEnum
 from typing import NamedTuple
 
@@ -30,10 +29,10 @@ BUILTIN_REWARDS = {
 class Rules(NamedTuple):
     """Settings for the task's kernels; lengths in metres, angles in radians."""
 
-    half_width: float
-    """Half the width of the rewarded part of the picture, at a depth of 1 m."""
-    half_height: float
-    """Half the height of the rewarded part of the picture, at a depth of 1 m."""
+    view_range: float
+    """Share of the picture's width and height within which the target is rewarded."""
+    aspect: float
+    """Height of the picture over its width."""
     reward: int
     """`BuiltinReward`."""
     cut_off: float
@@ -69,10 +68,9 @@ def make_rules(reward: RewardConfig, done: DoneConfig, camera: CameraConfig) -> 
         done: Settings of the end of an episode.
         camera: Camera whose picture the view reward uses.
     """
-    half_width = reward.view_range * math.tan(0.5 * camera.field_of_view)
     return Rules(
-        half_width=half_width,
-        half_height=half_width * camera.height / camera.width,
+        view_range=reward.view_range,
+        aspect=camera.height / camera.width,
         reward=int(BUILTIN_REWARDS[reward.type, reward.mode]),
         cut_off=reward.cut_off,
         distance_scale=reward.distance_scale,

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.pinhole import field_along
 from eyas.sim.assets import Assets
 from eyas.sim.still import StillWorld
 from eyas.state.draw import Picture, Views
@@ -90,7 +91,7 @@ class StillScene:
             world=np.zeros(1, np.int32),
             subject=np.array([subject], np.int32),
             field_of_view=view.field_of_view,
-            vertical_field_of_view=2 * math.atan(0.75 * math.tan(0.5 * view.field_of_view)),
+            vertical_field_of_view=field_along(view.field_of_view, 0.75),
             instant=np.array([view.time]),
         )
         self._world.draw(views, view.time, picture, samples)

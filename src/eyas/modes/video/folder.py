@@ -53,8 +53,8 @@ class VideoFolder:
         run = Run(path, self.trackers, config, config.video.target_direction)
         self.writers = tuple(writer(run) for writer in chosen_writers(config.video.writers))
 
-    def episode(self, tracker: int, number: int) -> Episode:
-        """Return the description of an episode."""
+    def episode(self, tracker: int, number: int, field_of_view: float) -> Episode:
+        """Return the description of an episode; its camera's field of view is horizontal [rad]."""
         name, camera = self.trackers[tracker], self._camera
         return Episode(
             folder=self.path / name / f"episode{number}",
@@ -62,7 +62,7 @@ class VideoFolder:
             number=number,
             width=camera.width,
             height=camera.height,
-            intrinsics=intrinsics(camera.width, camera.height, camera.field_of_view),
+            intrinsics=intrinsics(camera.width, camera.height, field_of_view),
             fps=self._fps,
         )
 

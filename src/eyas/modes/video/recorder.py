@@ -97,7 +97,8 @@ class Recorder:
 
     def _found_or_new(self, tracker: int) -> _Going:
         writers = self._folder.writers
-        episode = self._folder.episode(tracker, len(self.episodes[tracker]))
+        field = float(self._sim.snapshot.cameras.field_of_view[tracker])
+        episode = self._folder.episode(tracker, len(self.episodes[tracker]), field)
         found = read_complete(writers, episode.folder)
         if found is not None:
             return _Going(episode, None, found)
