@@ -1,5 +1,6 @@
 """Packed arrays hold what the scene holds."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +11,15 @@ from eyas.core.jit import kernel
 from eyas.core.parallel import Held
 from eyas.render.kernels.bundles import GROUP, Geometry
 from eyas.render.kernels.surface.texture import level_of, texel
+from eyas.render.kernels.visibility.clusters import (
+    APEX,
+    AXIS,
+    CLUSTER,
+    CUT_OFF,
+    LARGEST,
+    SIZE,
+)
+from eyas.render.pack.clusters import corners_of
 from eyas.render.pack.geometry import build_geometry
 from eyas.render.pack.triangles import gradients, solid_triangles
 from eyas.render.textures.mipmap import packed_layers
@@ -42,22 +52,73 @@ def test_chunks_hold_each_triangle_once_and_lie_in_their_boxes(images):
     scene = city_scene()
     geometry = build_geometry(scene, car_parts(), images)
     ranges = geometry.chunk_range
-    assert ranges[0, 0] == 0
-    np.testing.assert_array_equal(ranges[1:, 0], ranges[:-1, 1])
-    assert ranges[-1, 1] == len(scene.static.triangles)
-    packed = geometry.positions[geometry.corners[: ranges[-1, 1]]].reshape(-1, 9)
+    starts = [CLUSTER * math.ceil(last / CLUSTER) for last in (0, *ranges[:, 1])]
+    np.testing.assert_array_equal(ranges[:, 0], starts[:-1])
+    corners = corners_of(geometry.cluster)
+    packed = np.concatenate([corners[first:last] for first, last, _ in ranges]).reshape(-1, 9)
     original = scene.static.positions[scene.static.triangles].reshape(-1, 9)
-    np.testing.assert_array_equal(np.sort(packed, axis=0), np.sort(original, axis=0))
-    for (first, last, low, high), box in zip(ranges, geometry.chunk_box, strict=True):
-        corners = geometry.corners[first:last]
-        assert corners.min() >= low
-        assert corners.max() < high
-        points = geometry.positions[corners].reshape(-1, 3)
-        np.testing.assert_array_equal(box, [*points.min(0), *points.max(0)])
-    for k, box in enumerate(geometry.chunk_box):
-        group = geometry.chunk_group_box[k // GROUP]
-        assert (group[:3] <= box[:3]).all()
-        assert (group[3:] >= box[3:]).all()
+    np.testing.assert_array_equal(in_order(packed), in_order(original))
+    boxes, groups = geometry.chunk_box.T, geometry.chunk_group_box.T
+    assert len(boxes) % GROUP == 0
+    assert len(groups) % 8 == 0
+    for k, (first, last, _) in enumerate(ranges):
+        points = corners[first:last].reshape(-1, 3)
+        np.testing.assert_array_equal(boxes[k], [*points.min(0), *points.max(0)])
+        assert (groups[k // GROUP, :3] <= boxes[k, :3]).all()
+        assert (groups[k // GROUP, 3:] >= boxes[k, 3:]).all()
+    assert (boxes[len(ranges) :, :3] > boxes[len(ranges) :, 3:]).all()
+
+
+def in_order(rows: np.ndarray) -> np.ndarray:
+    return rows[np.lexsort(rows.T)]
+
+
+def test_fixtures_lie_in_their_boxes(images):
+    geometry = build_geometry(city_scene(), car_parts(), images)
+    mesh = geometry.mesh_range[0]
+    corners = corners_of(geometry.cluster)[mesh[0] : mesh[1]].reshape(-1, 3)
+    for pose, box in zip(geometry.fixture_pose, geometry.fixture_box.T, strict=False):
+        points = corners @ pose[:, :3].T + pose[:, 3]
+        assert (points >= box[:3] - 1e-4).all()
+        assert (points <= box[3:] + 1e-4).all()
+
+
+def test_what_fills_clusters_up_is_never_drawn(images):
+    geometry = build_geometry(city_scene(), car_parts(), images)
+    size = geometry.cluster[:, SIZE].ravel()
+    real = np.zeros(len(size), np.bool_)
+    for first, last, _ in (*geometry.chunk_range, *geometry.mesh_range):
+        real[first:last] = True
+    assert not real.all()
+    np.testing.assert_array_equal(size >= 0.0, real)
+    corners = corners_of(geometry.cluster)[~real]
+    np.testing.assert_array_equal(corners, corners[:, :1].repeat(3, axis=1))
+
+
+def behind(corners: np.ndarray, eye: np.ndarray) -> np.ndarray:
+    """Which triangles are seen from behind."""
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    return np.einsum("tj,tj->t", normals, eye - corners[:, 0]) <= 0.0
+
+
+def test_from_places_in_a_cone_all_triangles_of_its_cluster_are_seen_from_behind(images):
+    geometry = build_geometry(city_scene(), car_parts(), images)
+    rng, inside = np.random.default_rng(0), 0
+    for first, last, row in (*geometry.chunk_range, *geometry.mesh_range):
+        for k, cluster in enumerate(geometry.cluster[first // 8 : -(-last // 8)]):
+            bounds = geometry.bounds[row + k // 8, :, k % 8].astype(float)
+            apex, axis = bounds[APEX : APEX + 3], bounds[AXIS : AXIS + 3]
+            corners = corners_of(cluster[None])[: last - first - 8 * k].astype(float)
+            assert (corners >= bounds[:3]).all()
+            assert (corners <= bounds[3:6]).all()
+            assert bounds[LARGEST] == cluster[SIZE].max()
+            eyes = rng.uniform(bounds[:3] - 20.0, bounds[3:6] + 20.0, (40, 3))
+            way = apex - eyes
+            deep = way @ axis - 0.02 > bounds[CUT_OFF] * np.linalg.norm(way, axis=1)
+            inside += deep.sum()
+            for eye in eyes[deep]:
+                assert behind(corners, eye).all()
+    assert inside > 300
 
 
 def test_fixtures_and_parts_come_after_with_their_levels(images):
@@ -94,8 +155,8 @@ def test_triangles_without_area_are_left_out(images):
     mesh.triangles = np.concatenate([mesh.triangles, [[0, 0, 1]]]).astype(np.int32)
     mesh.materials = np.zeros(len(mesh.triangles), np.int32)
     geometry = build_geometry(scene_of([mesh], [GROUND]), PartLibrary(()), images)
-    assert len(geometry.corners) == len(mesh.triangles) - 1
-    assert np.isfinite(geometry.gradients).all()
+    assert geometry.chunk_range[:, 1].tolist() == [len(mesh.triangles) - 1]
+    assert np.isfinite(geometry.shading[:, :15]).all()
 
 
 def test_an_empty_scene_can_be_drawn(images, renderer_of, drawn):

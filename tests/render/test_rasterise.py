@@ -1,11 +1,15 @@
 """No holes and no double pixels at shared edges; triangles through the camera."""
 
+import math
+
 import numpy as np
 import pytest
 
 from eyas.core.jit import kernel
 from eyas.core.pinhole import rays
-from eyas.render.kernels.visibility.rasterise import FRONT, rasterise
+from eyas.render.kernels.visibility.holes import no_holes
+from eyas.render.kernels.visibility.meshes import ASIDE
+from eyas.render.kernels.visibility.rasterise import BOTH_SIDES, FRONT, rasterise
 from eyas.state.mesh import Mesh
 from eyas.world.build.materials import material
 
@@ -15,24 +19,106 @@ SIDE = 40
 
 
 @kernel
-def draw(corners, a, b, c, top, depth, owner, tag, sides, textures, layer, level):
+def draw(polygon, a, b, c, top, width, key, tag, sides, texture):
     """Python's way in."""
-    rasterise(corners, a, b, c, top, depth, owner, tag, sides, textures, layer, level)
+    rasterise(polygon, a, b, c, top, width, key, tag, sides, ASIDE, no_holes(texture))
+
+
+def drawn_pixels(corners: np.ndarray, top: int = 0, rows: int = SIDE, sides: int = FRONT):
+    """Which pixels one triangle covers, from its corners [pixels], shape (3, 2)."""
+    key = np.zeros((rows, SIDE + 8), np.int64)  # 40 columns are shown
+    polygon = np.zeros((4, 5))
+    polygon[:3, :2], polygon[:3, 2] = corners, 0.25
+    draw(polygon, 0, 1, 2, top, SIDE, key, 5, sides, np.zeros((1, 1), np.uint32))
+    assert not key[:, SIDE:].any()
+    covered = key[:, :SIDE] != 0
+    inverse = (key >> 32).astype(np.int32).view(np.float32)[:, :SIDE]
+    np.testing.assert_array_equal(inverse, np.where(covered, np.float32(0.25), 0))
+    np.testing.assert_array_equal(key[:, :SIDE] & 0xFFFFFFFF, np.where(covered, 5, 0))
+    return covered
 
 
 def coverage(points: np.ndarray, triangles: np.ndarray, top: int = 0, rows: int = SIDE):
     """How often each pixel is drawn if every triangle is drawn alone."""
     count = np.zeros((rows, SIDE), int)
-    corners = np.column_stack([points, np.full(len(points), 0.25), np.zeros(len(points))])
-    texture = np.zeros((1, 1), np.uint32)
-    for a, b, c in triangles:
-        depth, owner = np.zeros((rows, SIDE), np.float32), np.full((rows, SIDE), -1)
-        draw(
-            corners, int(a), int(b), int(c), top, depth, owner, 5, FRONT, texture, 0, -1
-        )  # fmt: skip
-        count += owner == 5
-        np.testing.assert_array_equal(depth > 0, owner == 5)
+    for triangle in triangles:
+        count += drawn_pixels(points[list(triangle)], top, rows)
     return count
+
+
+def covered_by_integers(corners: np.ndarray) -> np.ndarray:
+    """What `drawn_pixels` must be: edge functions of Python's whole numbers, top-left rule."""
+    points = [(math.floor(x * 16 + 0.5), math.floor(y * 16 + 0.5)) for x, y in corners.tolist()]
+    (ax, ay), (bx, by), (cx, cy) = points
+    area = (bx - ax) * (cy - ay) - (cx - ax) * (by - ay)
+    covered = np.ones((SIDE, SIDE), np.bool_)
+    if area == 0:
+        return ~covered
+    if area < 0:
+        points.reverse()
+    for (x0, y0), (x1, y1) in zip(points, points[1:] + points[:1], strict=True):
+        dx, dy = x1 - x0, y1 - y0
+        belongs = dy < 0 or (dy == 0 and dx > 0)  # left, or top
+        for row, column in np.ndindex(SIDE, SIDE):
+            edge = dx * (16 * row + 8 - y0) - dy * (16 * column + 8 - x0)
+            covered[row, column] &= edge > 0 or (edge == 0 and belongs)
+    return covered
+
+
+def random_corners(rng: np.random.Generator) -> np.ndarray:
+    """Triangles of all kinds: large, slivers, with corners on centres of pixels, far outside."""
+    corners = rng.uniform(-12.0, SIDE + 12.0, (3, 2))
+    kind = rng.integers(6)
+    if kind == 1:
+        corners = np.round(corners - 0.5) + 0.5
+    if kind == 2:
+        corners = np.round(corners * 4) / 4
+    if kind == 3:  # a sliver
+        corners[2] = corners[0] + rng.uniform(0, 1) * (corners[1] - corners[0])
+        corners[2] += rng.normal(0.0, 0.2, 2)
+    if kind == 4:
+        corners[1] += 5e3 * rng.normal(size=2)
+    if kind == 5:  # smaller than a pixel or two
+        corners[1:] = corners[0] + rng.normal(0.0, 0.7, (2, 2))
+    return corners
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_the_same_pixels_are_covered_as_by_edges_in_whole_numbers(seed):
+    rng = np.random.default_rng(seed)
+    for _ in range(60):
+        corners = random_corners(rng)
+        expected = covered_by_integers(corners)
+        np.testing.assert_array_equal(drawn_pixels(corners, sides=BOTH_SIDES), expected)
+
+
+def test_triangles_that_reach_millions_of_pixels_outside_share_their_edges():
+    rng = np.random.default_rng(8)
+    for _ in range(100):
+        inside = rng.uniform(0.0, SIDE, 2)
+        ring = np.sort(rng.uniform(0.0, 2 * math.pi, 7))[::-1]  # clockwise where rows go down
+        if np.max(np.diff(ring, append=ring[0] - 2 * math.pi) * -1) > 2.5:
+            continue
+        far = 10.0 ** rng.uniform(3.0, 8.0, (7, 1))
+        points = np.concatenate(
+            [[inside], inside + far * np.column_stack([np.cos(ring), np.sin(ring)])]
+        )
+        fan = [(0, 1 + k, 1 + (k + 1) % 7) for k in range(7)]
+        assert (coverage(points, fan) == 1).all()
+
+
+def test_depth_is_that_of_the_corners_before_they_are_rounded():
+    polygon = np.zeros((4, 5))
+    polygon[:3, :2] = [(3.03, 2.03), (4.02, 33.04), (37.03, 8.01)]
+    slope = np.array([0.013, -0.007])
+    polygon[:3, 2] = 0.5 + polygon[:3, :2] @ slope
+    key = np.zeros((SIDE, SIDE), np.int64)
+    draw(polygon, 0, 1, 2, 0, SIDE, key, 5, FRONT, np.zeros((1, 1), np.uint32))
+    row, column = np.nonzero(key)
+    inverse = (key[row, column] >> 32).astype(np.int32).view(np.float32)
+    expected = 0.5 + np.column_stack([column + 0.5, row + 0.5]) @ slope
+    assert len(row) > 300
+    np.testing.assert_allclose(inverse, expected, rtol=2e-7)
 
 
 def jittered_grid(rng, cells: int, low: float, high: float, snap: bool):

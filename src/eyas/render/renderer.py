@@ -8,22 +8,17 @@ from numpy.typing import NDArray
 
 from eyas.core.errors import ConfigError
 from eyas.core.jit import thread_count
+from eyas.core.lanes import WIDTH
 from eyas.core.parallel import Held
 from eyas.render.bake.ambient import bake_ambient
 from eyas.render.bake.shadows import bake_shadows
 from eyas.render.bake.tracks import TrackMap, track_map
 from eyas.render.classes import class_table, write_classes
 from eyas.render.jobs import build_jobs, picture_size, write_subject
-from eyas.render.kernels.bundles import (
-    Geometry,
-    Light,
-    Movers,
-    Output,
-    Scratch,
-    Still,
-    Task,
-)
+from eyas.render.kernels.bundles import Geometry, Light, Movers, Output, Scratch, Task
 from eyas.render.kernels.draw import draw_views
+from eyas.render.kernels.visibility.clusters import CLUSTER
+from eyas.render.kernels.visibility.key import MOST_INSTANCES
 from eyas.render.pack.light import build_light
 from eyas.state.draw import DrawList, DrawStage, Picture, Views
 from eyas.state.lighting import Lighting
@@ -54,10 +49,8 @@ class Renderer:
     ) -> None:
         self._geometry, self._light = geometry, light
         self._classes, self._ready = classes, ready
-        ranges = np.concatenate([self._geometry.chunk_range, self._geometry.mesh_range])
-        self._most_vertices = int((ranges[:, 3] - ranges[:, 2]).max(initial=1))
-        self._still = Held(Still(self._geometry, self._light))
-        self._scratch: dict[tuple[int, int, int], Held[Scratch]] = {}
+        self._held = Held(geometry), Held(light)
+        self._scratch: dict[tuple[int, ...], Held[Scratch]] = {}
 
     @property
     def textures(self) -> NDArray[np.uint32]:
@@ -92,7 +85,7 @@ class Renderer:
         movers = Movers(draw_list.part, draw_list.pose, draw_list.colour, draw_list.object_id)
         output = _output(picture)
         if samples == 4 and picture.rgb is not None:
-            colours = Output(output.rgb, _NOTHING_DEPTH, _NOTHING_OBJECT, _NOTHING_SUBJECT)
+            colours = Output(output.rgb, _NOTHING_DEPTH, _NOTHING_OBJECT, _NOTHING_ACTOR)
             self._draw(views, movers, colours, picture, 2, until)
             output = output._replace(rgb=_NOTHING_RGB)
         if any(len(array) for array in output):
@@ -112,38 +105,39 @@ class Renderer:
         """Draw with `side` x `side` samples per pixel."""
         height, width = picture_size(picture)
         threads = thread_count()
-        density = float(self._light.air[0])
+        density = float(self._light.weather.air.density)
         job = build_jobs(views, height, width, threads, density)
         rows = int((job.band[:, 2] - job.band[:, 1]).max(initial=0))
         workers = int(job.begun[0])
-        wanted = len(output.subject) > 0
+        wanted = len(output.actor) > 0
         if wanted:
-            output = output._replace(subject=np.zeros((len(job.band), 6), np.int32))
-        scratch = self._scratch_for(workers, rows * side, width * side)
-        task = Task(side, int(until), movers, job, output)
-        draw_views(workers, self._still, scratch, Held(task))
+            output = output._replace(actor=np.zeros((len(job.band), 1, 6), np.int32))
+        scratch = self._scratch_for(workers, rows, width, side, movers.part.shape[1], wanted)
+        task = Task(side, width, height, int(until), movers, job, output)
+        draw_views(workers, *self._held, scratch, Held(task))
         if wanted:
-            write_subject(job.band, output.subject, picture)
+            write_subject(job.band, output.actor[:, 0], picture)
 
-    def _scratch_for(self, workers: int, rows: int, width: int) -> Held[Scratch]:
+    def _scratch_for(
+        self, workers: int, rows: int, width: int, side: int, slots: int, measured: bool
+    ) -> Held[Scratch]:
         """Return working memory, the same as last time for the same size."""
-        key = (workers, rows, width)
+        key = (workers, rows, width, side, slots, measured)
         if key not in self._scratch:
             if len(self._scratch) >= 4:  # sizes seldom change; forget the oldest
                 del self._scratch[next(iter(self._scratch))]
-            plane = (workers, rows, width)
+            plane = (workers, rows * side, (width + -width % WIDTH) * side)
+            chunks, fixtures = len(self._geometry.chunk_range), len(self._geometry.fixture_object)
+            instances = min(fixtures + slots, MOST_INSTANCES)
             scratch = Scratch(
-                depth=np.empty(plane, np.float32),
-                owner=np.empty(plane, np.int64),
+                key=np.zeros(plane, np.int64),
+                alone=np.zeros(plane if measured else (workers, 0, 0), np.int64),
                 shade=np.empty((*plane, 4), np.uint8),
-                screen=np.empty((workers, self._most_vertices, 4)),
-                order=np.empty((workers, len(self._geometry.chunk_range)), np.int64),
-                planes=np.empty((workers, 5, 5)),
-                rows=np.empty((workers, 2, 3, 4)),
+                drawn=np.empty((workers, instances, 2), np.int32),
+                mesh=np.empty((workers, instances), np.int32),
+                order=np.empty((workers, chunks + instances), np.int64),
+                projected=np.empty((workers, 9, CLUSTER)),
                 polygon=np.empty((workers, 4, 5)),
-                frame=np.empty((workers, 16), np.float32),
-                light=np.empty((workers, 7, 9), np.float32),
-                caster=np.empty((workers, 16)),
             )
             self._scratch[key] = Held(scratch)
         return self._scratch[key]
@@ -176,7 +170,7 @@ def build_renderer(
 _NOTHING_RGB = np.empty((0, 0, 0, 3), np.uint8)
 _NOTHING_DEPTH = np.empty((0, 0, 0), np.float32)
 _NOTHING_OBJECT = np.empty((0, 0, 0), np.int32)
-_NOTHING_SUBJECT = np.empty((0, 6), np.int32)
+_NOTHING_ACTOR = np.empty((0, 0, 6), np.int32)
 
 
 def _objects(picture: Picture) -> NDArray[np.int32]:
@@ -189,11 +183,11 @@ def _objects(picture: Picture) -> NDArray[np.int32]:
 
 
 def _output(picture: Picture) -> Output:
-    """Return the wanted arrays; the subject's array is only a flag, jobs get their own."""
+    """Return the wanted arrays; that of actors is only a flag, jobs get their own."""
     subject = picture.subject_box is not None or picture.subject_pixels is not None
     return Output(
         rgb=_NOTHING_RGB if picture.rgb is None else picture.rgb,
         depth=_NOTHING_DEPTH if picture.depth is None else picture.depth,
         object_id=_objects(picture),
-        subject=np.zeros((1, 6), np.int32) if subject else _NOTHING_SUBJECT,
+        actor=np.zeros((1, 1, 6), np.int32) if subject else _NOTHING_ACTOR,
     )

@@ -19,7 +19,7 @@ class DrawStage(IntEnum):
     CULLING = 0
     """Find the parts of the scene that may be visible."""
     VERTICES = 1
-    """Project them to the screen."""
+    """Project them to the screen, and leave out the triangles that are not seen."""
     RASTERISING = 2
     """Find the nearest triangle in each pixel, and write all outputs except colours."""
     MOVERS_LIGHT = 3

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from eyas.render.bake.clouds import plan_directions
 from eyas.render.kernels.bundles import Geometry
 from eyas.render.kernels.sky.radiance import HAZE_END, HILL_FARTHEST, HILL_TOP
+from eyas.render.pack.clusters import corners_of
 from eyas.render.textures.fields import SIZE, Field, blurred, fractal, source
 from eyas.state.lighting import Horizon
 
@@ -56,7 +57,7 @@ def build_hills(horizon: Horizon, sun: tuple[float, float, float]) -> NDArray[np
 def far_ground(geometry: Geometry) -> NDArray[np.float64]:
     """Return the mean colour of all land, linear, shape (3,): the colour of far land."""
     last = geometry.chunk_range[-1, 1] if len(geometry.chunk_range) else 0
-    corner = geometry.positions[geometry.corners[:last], :2].astype(np.float64)
+    corner = corners_of(geometry.cluster)[:last, :, :2].astype(np.float64)
     one, two = corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]
     area = np.maximum(one[:, 0] * two[:, 1] - one[:, 1] * two[:, 0], 0.0)
     share = np.bincount(geometry.material[:last], area, len(geometry.layer))

@@ -10,9 +10,12 @@ from numpy.typing import NDArray
 from eyas.core.cache.cached import cached
 from eyas.core.cache.folder import Kind
 from eyas.core.jit import thread_count
+from eyas.core.lanes import WIDTH
 from eyas.core.parallel import Held
-from eyas.render.kernels.bundles import Geometry
+from eyas.render.kernels.bundles import Geometry, Projection, Row
 from eyas.render.kernels.light.shadow_map import BAND, ShadowBake, bake_rows
+from eyas.render.kernels.visibility.clusters import CLUSTER
+from eyas.render.pack.clusters import corners_of
 from eyas.state.mesh import Surface
 
 __all__ = ["ShadowMap", "bake_shadows"]
@@ -27,7 +30,7 @@ CARDS = 4
 """One in this many leaf cards casts a shadow: they overlap so much that all of them would
 stop all light, but the shade below crowns is dappled."""
 
-_FORMAT = "eyas shadow map 7"
+_FORMAT = "eyas shadow map 8"
 """Raise its number by 1 whenever the same scene gives different shadows."""
 
 
@@ -99,7 +102,7 @@ def _frame(
 def _casting_points(geometry: Geometry, height: float) -> NDArray[np.float64]:
     """Return all corners of static triangles and of fixtures' boxes that reach a height [m]."""
     last = geometry.chunk_range[-1, 1] if len(geometry.chunk_range) else 0
-    static = geometry.positions[geometry.corners[:last]]
+    static = corners_of(geometry.cluster)[:last]
     boxes = geometry.box[geometry.fixture_prototype]
     corners = np.stack(
         [boxes[:, (i, j, k)] for i in (0, 3) for j in (1, 4) for k in (2, 5)], axis=1
@@ -123,20 +126,16 @@ def _bake(
         for first, last in geometry.mesh_range[geometry.level_first[: geometry.part_first], :2]
     ]
     workers = min(thread_count(), math.ceil(lines / BAND))
-    ranges = np.concatenate([geometry.chunk_range, geometry.mesh_range])
-    most = int((ranges[:, 3] - ranges[:, 2]).max(initial=1))
     bake = ShadowBake(
-        geometry,
-        cards,
-        np.array(solid, np.bool_),
-        rows,
-        np.empty((workers, most, 5)),
-        np.empty((workers, 3, 4)),
-        np.empty((workers, BAND, columns), np.float32),
-        np.empty((workers, BAND, columns), np.int64),
-        heights,
+        cards=cards,
+        thin=np.array(solid, np.bool_),
+        sun=Projection(*[Row(*row) for row in rows.tolist()]),
+        projected=np.empty((workers, 9, CLUSTER)),
+        polygon=np.empty((workers, 4, 5)),
+        key=np.empty((workers, BAND, columns + -columns % WIDTH), np.int64),
+        shadow_map=heights,
     )
-    bake_rows(workers, Held(bake))
+    bake_rows(workers, Held(geometry), Held(bake))
     return heights
 
 
@@ -151,16 +150,15 @@ def _cards(geometry: Geometry) -> NDArray[np.int32]:
 def _casters(geometry: Geometry) -> tuple[NDArray[np.generic], ...]:
     """Return all inputs of a shadow map."""
     cards = _cards(geometry)
-    last = geometry.chunk_range[-1] if len(geometry.chunk_range) else np.zeros(4, np.int32)
     fixtures = geometry.level_first[: geometry.part_first + 1]
-    meshes = geometry.mesh_range[: fixtures[-1]]
-    triangles, vertices = (meshes if len(meshes) else [last])[-1][[1, 3]]
+    ranges = np.concatenate([geometry.chunk_range, geometry.mesh_range[: fixtures[-1]]])
+    last = int(ranges[:, 1].max(initial=0))
     return (
-        geometry.positions[:vertices],
-        geometry.uvs[:vertices],
-        cards[geometry.material[:triangles]],
+        ranges,
+        corners_of(geometry.cluster)[:last],
+        geometry.corner_uv[:last],
+        cards[geometry.material[:last]],
         geometry.texture[np.unique(geometry.layer[cards > 0])] >> 24,
-        geometry.corners[:triangles],
         fixtures,
         geometry.fixture_prototype,
         geometry.fixture_pose,

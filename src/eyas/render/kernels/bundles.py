@@ -1,7 +1,9 @@
 """The arrays that the kernels share, in named bundles.
 
-V vertices, T triangles, C chunks, P prototypes (fixtures first, then parts), M meshes (levels of
-detail, grouped by prototype), F fixtures, K workers, J jobs (bands of views).
+T triangles, C chunks, P prototypes (fixtures first, then parts), M meshes (levels of detail,
+grouped by prototype), F fixtures, I instances, K workers, J jobs (bands of views). Each chunk and
+mesh begins with a triangle whose number is a multiple of 8: eight triangles in a row are a cluster,
+which is drawn at once. What fills its last cluster up has no area.
 
 Kernels get bundles of arrays by pointer, see `eyas.core.pointers`, and read them like the bundles
 themselves. Numbers of a bundle are float32 if their names are those of light, else float64.
@@ -45,30 +47,31 @@ GROUP = 16
 class Geometry(NamedTuple):
     """Everything that can be drawn, packed once for each scene."""
 
-    positions: NDArray[np.float32]
-    """[m], shape (V, 3); static chunks in the world frame, prototypes in their own."""
-    uvs: NDArray[np.float32]
-    """Texture coordinates [tiles], shape (V, 2)."""
-    corners: NDArray[np.int32]
-    """Vertices of each triangle, shape (T, 3)."""
+    cluster: NDArray[np.float32]
+    """Eight triangles in each cluster, see `eyas.render.kernels.visibility.clusters`: corners [m],
+    those of static chunks in the world frame, of prototypes in their own; size; tiles in a metre of
+    leaves; shape (T / 8, 11, 8)."""
+    bounds: NDArray[np.float32]
+    """Eight clusters of a mesh in each row, see the same: box, cone of the normals, size,
+    shape (., 14, 8)."""
+    corner_uv: NDArray[np.float32]
+    """Texture coordinates of the corners of each triangle [tiles], shape (T, 6)."""
     shading: NDArray[np.float32]
     """Data of each triangle for shading in one place, see `eyas.render.pack.triangles.SHADING`,
     shape (T, 32)."""
     material: NDArray[np.int32]
     """Material of each triangle, shape (T,)."""
-    size: NDArray[np.float32]
-    """Root of the area [m] of each triangle that is a detail, seen before something larger, and
-    may be left out when it is small; infinite for others; falling in each chunk, shape (T,)."""
     object_id: NDArray[np.int32]
     """Object id of each static triangle, -1 for prototypes, shape (T,)."""
     chunk_box: NDArray[np.float32]
-    """Lower and upper corner [m], shape (C, 6)."""
+    """Lower and upper corner [m] of each chunk in a column, then of boxes that are nowhere, up to
+    a multiple of `GROUP`, shape (6, .)."""
     chunk_group_box: NDArray[np.float32]
-    """Box around each `GROUP` chunks in a row, shape (., 6)."""
+    """Box around each `GROUP` chunks in a row, likewise up to a multiple of 8, shape (6, .)."""
     chunk_range: NDArray[np.int32]
-    """First and last + 1 triangle, first and last + 1 vertex, shape (C, 4)."""
+    """First and last + 1 triangle, first row of `bounds`, shape (C, 3)."""
     mesh_range: NDArray[np.int32]
-    """The same for each mesh, shape (M, 4)."""
+    """The same for each mesh, shape (M, 3)."""
     level_first: NDArray[np.int32]
     """First mesh of each prototype, shape (P + 1,)."""
     part_first: int
@@ -89,8 +92,10 @@ class Geometry(NamedTuple):
     """Shape (F, 3, 4)."""
     fixture_object: NDArray[np.int32]
     """Shape (F,)."""
+    fixture_box: NDArray[np.float32]
+    """Boxes around the fixtures, like `chunk_box`, shape (6, .)."""
     fixture_group_box: NDArray[np.float32]
-    """Box around each `GROUP` fixtures in a row, shape (., 6)."""
+    """Box around each `GROUP` fixtures in a row, like `chunk_group_box`, shape (6, .)."""
     layer: NDArray[np.int32]
     """Texture of each material."""
     surface: NDArray[np.int32]
@@ -251,7 +256,8 @@ class Row(NamedTuple):
 
 class Projection(NamedTuple):
     """World, or an object's own frame, to the screen: column and row are those of a sample times
-    its distance, from the middle of the picture."""
+    its distance, from the middle of the picture.
+    """
 
     column: Row
     row: Row
@@ -310,7 +316,9 @@ class View(NamedTuple):
 
 
 class Scratch(NamedTuple):
-    """Working memory of each worker."""
+    """Working memory of each worker. Its planes have as many columns as a picture whose width is a
+    multiple of 8 pixels; those beyond the width of the picture stay sky.
+    """
 
     key: NDArray[np.int64]
     """What each sample shows, see `eyas.render.kernels.visibility.key`,
@@ -320,13 +328,16 @@ class Scratch(NamedTuple):
     shade: NDArray[np.uint8]
     """Sun and sky light that moving things let through, 255 for all, and light of vehicles' head
     and tail lamps, shape (K, rows, columns, 4)."""
-    screen: NDArray[np.float64]
-    """Column, row, 1/distance, distance of a mesh's vertices, shape (K, ., 4)."""
-    order: NDArray[np.int64]
-    """Sort keys of visible chunks, shape (K, C)."""
     drawn: NDArray[np.int32]
     """Visible instances: first triangle of the mesh, and the instance: a fixture, or F + a slot
-    of the draw list, shape (K, ., 2)."""
+    of the draw list, shape (K, I, 2)."""
+    mesh: NDArray[np.int32]
+    """Mesh of each of them, shape (K, I)."""
+    order: NDArray[np.int64]
+    """What to draw, the nearest first: sort keys of visible chunks and instances,
+    shape (K, C + I)."""
+    projected: NDArray[np.float64]
+    """Column, row [samples] and 1/distance [1/m] of the corners of a cluster, shape (K, 9, 8)."""
     polygon: NDArray[np.float64]
     """A clipped triangle: column, row, 1/distance, u, v, shape (K, 4, 5)."""
 

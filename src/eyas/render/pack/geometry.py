@@ -7,6 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.render.kernels.bundles import GROUP, Geometry
+from eyas.render.kernels.visibility.clusters import BOUNDS_ROWS, CLUSTER, CLUSTER_ROWS
+from eyas.render.pack.clusters import NOWHERE, bounds_of, clusters_of, filled_up
 from eyas.render.pack.silhouette import silhouette
 from eyas.render.pack.snow import crown_middles, snow_beds
 from eyas.render.pack.triangles import (
@@ -17,7 +19,7 @@ from eyas.render.pack.triangles import (
 )
 from eyas.render.textures.mipmap import linear, packed_layers
 from eyas.state.draw import PartLibrary
-from eyas.state.mesh import Material, Mesh
+from eyas.state.mesh import Material, Mesh, Surface
 from eyas.state.scene import ObjectClass, Scene
 
 __all__ = ["CHUNK", "build_geometry"]
@@ -46,7 +48,7 @@ def build_geometry(
         UnknownNameError: A material names a missing texture.
     """
     pool = _Pool()
-    chunk_range, chunk_box = _add_chunks(pool, scene)
+    chunk_range, chunk_boxes = _add_chunks(pool, scene)
     prototypes = (*scene.fixtures.levels, *parts.parts)
     mesh_range = [pool.add(mesh, None) for levels in prototypes for mesh in levels]
     box = np.array([_box(levels[0].positions) for levels in prototypes], np.float32).reshape(-1, 6)
@@ -56,7 +58,7 @@ def build_geometry(
     prototype = scene.fixtures.prototype[order].astype(np.int32)
     palette = tuple(pool.palette)
     names = sorted({material.texture for material in palette} | {"plain"})
-    triangles, positions, uvs = pool.joined()
+    fixture_boxes = _posed_boxes(box[prototype], pose)
     tint = linear(np.array([material.tint for material in palette]).reshape(-1, 3))
     materials = MaterialTable(
         layer=np.array([names.index(material.texture) for material in palette], np.int32),
@@ -70,17 +72,16 @@ def build_geometry(
     objects = np.concatenate([np.zeros(0, np.int32), *pool.objects])
     slopes = np.concatenate([np.zeros((0, 24), np.float32), *pool.gradients])
     return Geometry(
-        positions=positions,
-        uvs=uvs,
-        corners=triangles,
+        cluster=np.concatenate([np.zeros((0, CLUSTER_ROWS, CLUSTER), np.float32), *pool.clusters]),
+        bounds=np.concatenate([np.zeros((0, BOUNDS_ROWS, CLUSTER), np.float32), *pool.bounds]),
+        corner_uv=np.concatenate([np.zeros((0, 6), np.float32), *pool.corner_uvs]),
         shading=shading_rows(slopes, objects, materials.of(material)),
         material=material,
-        size=np.concatenate([np.zeros(0, np.float32), *pool.sizes]),
         object_id=objects,
-        chunk_box=chunk_box,
-        chunk_group_box=_group_boxes(chunk_box),
+        chunk_box=_columns(chunk_boxes, GROUP),
+        chunk_group_box=_columns(_group_boxes(chunk_boxes), CLUSTER),
         chunk_range=chunk_range,
-        mesh_range=np.array(mesh_range, np.int32).reshape(-1, 4),
+        mesh_range=np.array(mesh_range, np.int32).reshape(-1, 3),
         level_first=np.cumsum([0, *[len(levels) for levels in prototypes]]).astype(np.int32),
         part_first=len(scene.fixtures.levels),
         sphere=np.array(sphere, np.float32).reshape(-1, 4),
@@ -90,7 +91,8 @@ def build_geometry(
         fixture_prototype=prototype,
         fixture_pose=pose,
         fixture_object=scene.fixtures.object_id[order].astype(np.int32),
-        fixture_group_box=_group_boxes(_posed_boxes(box[prototype], pose)),
+        fixture_box=_columns(fixture_boxes, GROUP),
+        fixture_group_box=_columns(_group_boxes(fixture_boxes), CLUSTER),
         layer=materials.layer,
         surface=materials.surface,
         tint=materials.tint,
@@ -106,58 +108,54 @@ def _lamps(scene: Scene, parts: PartLibrary) -> NDArray[np.bool_]:
 
 
 class _Pool:
-    """All vertices and triangles, one mesh after the other, with one palette."""
+    """All triangles, one mesh after the other, with one palette."""
 
     def __init__(self) -> None:
         self.palette: dict[Material, int] = {}
-        self.positions: list[NDArray[np.float32]] = []
-        self.uvs: list[NDArray[np.float32]] = []
-        self.triangles: list[NDArray[np.int32]] = []
+        self.clusters: list[NDArray[np.float32]] = []
+        self.bounds: list[NDArray[np.float32]] = []
+        self.corner_uvs: list[NDArray[np.float32]] = []
         self.gradients: list[NDArray[np.float32]] = []
         self.materials: list[NDArray[np.int32]] = []
         self.objects: list[NDArray[np.int32]] = []
-        self.sizes: list[NDArray[np.float32]] = []
-        self._vertex_count = 0
-        self._triangle_count = 0
+        self._cluster_count = 0
+        self._bounds_count = 0
 
     def add(
         self,
         mesh: Mesh,
         objects: NDArray[np.int32] | None,
         sizes: NDArray[np.float32] | None = None,
-    ) -> tuple[int, int, int, int]:
+    ) -> tuple[int, int, int]:
         """Append a mesh; return its ranges as in `Geometry.mesh_range`."""
         keep = np.flatnonzero(solid_triangles(mesh))
-        none = np.full(len(mesh.triangles), np.inf, np.float32)
-        self.sizes.append((none if sizes is None else sizes)[keep])
-        used, inverse = np.unique(mesh.triangles[keep], return_inverse=True)
-        triangles = inverse.reshape(-1, 3).astype(np.int32)
+        triangles, material = mesh.triangles[keep], mesh.materials[keep]
         lookup = np.array(
             [self.palette.setdefault(m, len(self.palette)) for m in mesh.palette], np.int32
         )
-        positions, uvs = mesh.positions[used], mesh.uvs[used]
-        self.positions.append(positions)
-        self.uvs.append(uvs)
-        self.gradients.append(gradients(positions, mesh.normals[used], uvs, triangles))
-        self.triangles.append(triangles + np.int32(self._vertex_count))
-        self.materials.append(lookup[mesh.materials[keep]])
-        self.objects.append(np.full(len(keep), -1, np.int32) if objects is None else objects[keep])
-        first = self._triangle_count, self._vertex_count
-        self._triangle_count += len(keep)
-        self._vertex_count += len(used)
-        return first[0], self._triangle_count, first[1], self._vertex_count
-
-    def joined(self) -> tuple[NDArray[np.int32], NDArray[np.float32], NDArray[np.float32]]:
-        """Return all triangles, positions and texture coordinates."""
-        return (
-            np.concatenate([np.zeros((0, 3), np.int32), *self.triangles]),
-            np.concatenate([np.zeros((0, 3), np.float32), *self.positions]),
-            np.concatenate([np.zeros((0, 2), np.float32), *self.uvs]),
+        leafy = np.array([m.surface == Surface.FOLIAGE for m in mesh.palette], np.bool_)
+        slopes = gradients(mesh.positions, mesh.normals, mesh.uvs, triangles)
+        clusters = clusters_of(
+            mesh.positions[triangles],
+            np.full(len(keep), np.inf, np.float32) if sizes is None else sizes[keep],
+            np.where(leafy[material], np.abs(slopes[:, 23]), 0.0),
         )
+        bounds = bounds_of(clusters)
+        self.clusters.append(clusters)
+        self.bounds.append(bounds)
+        self.corner_uvs.append(filled_up(mesh.uvs[triangles].reshape(-1, 6)))
+        self.gradients.append(filled_up(slopes))
+        self.materials.append(filled_up(lookup[material]))
+        none = np.full(len(keep), -1, np.int32)
+        self.objects.append(filled_up(none if objects is None else objects[keep]))
+        first, row = CLUSTER * self._cluster_count, self._bounds_count
+        self._cluster_count += len(clusters)
+        self._bounds_count += len(bounds)
+        return first, first + len(keep), row
 
 
 def _add_chunks(pool: _Pool, scene: Scene) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
-    """Add the static mesh square by square; return `chunk_range` and `chunk_box`."""
+    """Add the static mesh square by square; return `chunk_range` and boxes, shape (C, 6)."""
     mesh = scene.static
     corners = mesh.positions[mesh.triangles]
     middle = (corners.min(axis=1) + corners.max(axis=1))[:, :2] / 2
@@ -184,7 +182,7 @@ def _add_chunks(pool: _Pool, scene: Scene) -> tuple[NDArray[np.int32], NDArray[n
         ranges.append(pool.add(part, objects, size[index]))
         boxes.append(_box(mesh.positions[part.triangles].reshape(-1, 3)))
     return (
-        np.array(ranges, np.int32).reshape(-1, 4),
+        np.array(ranges, np.int32).reshape(-1, 3),
         np.array(boxes, np.float32).reshape(-1, 6),
     )
 
@@ -228,6 +226,14 @@ def _group_boxes(boxes: NDArray[np.float32]) -> NDArray[np.float32]:
     low = np.minimum.reduceat(boxes[:, :3], starts, axis=0)
     high = np.maximum.reduceat(boxes[:, 3:], starts, axis=0)
     return np.ascontiguousarray(np.concatenate([low, high], axis=1), np.float32)
+
+
+def _columns(boxes: NDArray[np.float32], group: int) -> NDArray[np.float32]:
+    """Return boxes as columns, filled up to a multiple of `group`, see `Geometry.chunk_box`."""
+    columns = np.empty((6, len(boxes) + -len(boxes) % group), np.float32)
+    columns[:3], columns[3:] = NOWHERE, -NOWHERE
+    columns[:, : len(boxes)] = boxes.T
+    return columns
 
 
 def _fixture_order(points: NDArray[np.float32]) -> NDArray[np.intp]:

@@ -5,11 +5,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inner_kernel
+from eyas.core.jit import inlined_kernel, inner_kernel
+from eyas.core.lanes import bits_of, first_bit, greater, lesser, load, splat, store, to_f8
 from eyas.core.parallel import Pointer, parallel_kernel
-from eyas.render.kernels.bundles import Geometry
+from eyas.render.kernels.bundles import Geometry, Projection, Row
 from eyas.render.kernels.scalars import f4, i8
+from eyas.render.kernels.visibility.clusters import CLUSTER, CLUSTER_ROWS
+from eyas.render.kernels.visibility.holes import holes_of, no_holes
+from eyas.render.kernels.visibility.key import distance_inverse
 from eyas.render.kernels.visibility.rasterise import BOTH_SIDES, rasterise
+from eyas.render.kernels.visibility.transform import object_projection
 
 __all__ = ["BAND", "ShadowBake", "bake_rows"]
 
@@ -27,105 +32,118 @@ texel would break into pieces."""
 class ShadowBake(NamedTuple):
     """Input and output of `bake_rows`, K workers."""
 
-    geometry: Geometry
     cards: NDArray[np.int32]
     """For each material: 0 if it is solid; n if one leaf card in n is drawn, with its holes; -1
     if none is drawn."""
     thin: NDArray[np.bool_]
     """Whether each prototype of the fixtures may be narrower than a texel."""
-    rows: NDArray[np.float64]
-    """World to column, row and height of the map, shape (3, 4); heights are 1 to 65535."""
-    screen: NDArray[np.float64]
-    """Working memory, shape (K, vertices of the largest mesh, 5)."""
-    object_rows: NDArray[np.float64]
-    """Working memory, shape (K, 3, 4)."""
-    depth: NDArray[np.float32]
-    """Working memory, shape (K, BAND, columns)."""
-    owner: NDArray[np.int64]
-    """Working memory, shape (K, BAND, columns)."""
+    sun: Projection
+    """World to column and row of the map and, in place of the distance, height, 1 to 65535."""
+    projected: NDArray[np.float64]
+    """Working memory, see `Scratch`, shape (K, 9, 8)."""
+    polygon: NDArray[np.float64]
+    """Working memory, see `Scratch`, shape (K, 4, 5)."""
+    key: NDArray[np.int64]
+    """Working memory, see `Scratch`, with heights in place of 1/distance; shape (K, BAND, at least
+    as many columns as the map has)."""
     shadow_map: NDArray[np.uint16]
     """Filled, shape (lines, columns)."""
 
 
 @parallel_kernel
-def bake_rows(parts: Pointer[tuple[Pointer[ShadowBake]]], worker: int, workers: int) -> None:
+def bake_rows(parts: Pointer[tuple[Geometry, ShadowBake]], worker: int, workers: int) -> None:
     """Draw all static triangles and the finest level of all fixtures into the shadow map."""
-    bake = parts[0][0][0]
-    geometry, cards, thin, rows, all_screens, all_rows, depths, owners, shadow_map = bake
-    screen, object_rows = all_screens[worker], all_rows[worker]
-    depth, owner = depths[worker], owners[worker]
+    geometry, bake = parts[0]
+    key, shadow_map, thin = bake.key[worker], bake.shadow_map, bake.thin
     for band in range(worker, (shadow_map.shape[0] + BAND - 1) // BAND, workers):
-        depth[:] = f4(0.0)
+        key[:] = 0
         top = band * BAND
         for chunk in range(len(geometry.chunk_range)):
-            _draw(geometry, cards, rows, geometry.chunk_range[chunk], top, screen, depth, owner)
+            _draw(geometry, bake, geometry.chunk_range[chunk], bake.sun, 0.0, 0.0, top, worker)
         for i in range(len(geometry.fixture_prototype)):
             prototype = geometry.fixture_prototype[i]
-            ranges = geometry.mesh_range[geometry.level_first[prototype]]
+            mesh = geometry.mesh_range[geometry.level_first[prototype]]
+            screen = object_projection(bake.sun, geometry.fixture_pose, i)
             for side in range(4 if thin[prototype] else 1):
-                _set_object_rows(rows, geometry.fixture_pose[i], object_rows)
+                right, down = 0.0, 0.0
                 if thin[prototype]:
-                    object_rows[0, 3] += THICKER if side & 1 else -THICKER
-                    object_rows[1, 3] += THICKER if side & 2 else -THICKER
-                _draw(geometry, cards, object_rows, ranges, top, screen, depth, owner)
+                    right = THICKER if side & 1 else -THICKER
+                    down = THICKER if side & 2 else -THICKER
+                _draw(geometry, bake, mesh, screen, right, down, top, worker)
         for line in range(min(BAND, shadow_map.shape[0] - top)):
             for column in range(shadow_map.shape[1]):
-                height = min(depth[line, column], f4(65535.0))
+                height = min(distance_inverse(key[line, column]), f4(65535.0))
                 shadow_map[top + line, column] = np.uint16(height)
 
 
-@inner_kernel
-def _set_object_rows(
-    rows: NDArray[np.float64], pose: NDArray[np.float32], product: NDArray[np.float64]
-) -> None:
-    for i in range(3):
-        for k in range(4):
-            product[i, k] = (
-                rows[i, 0] * pose[0, k] + rows[i, 1] * pose[1, k] + rows[i, 2] * pose[2, k]
-            )
-        product[i, 3] += rows[i, 3]
+@inlined_kernel
+def _along(row: Row, x: float, y: float, z: float) -> float:
+    return row.x * x + row.y * y + row.z * z + row.w
+
+
+@inlined_kernel
+def _project(
+    cluster: NDArray[np.float32],
+    number: int,
+    screen: Projection,
+    right: float,
+    down: float,
+    top: int,
+    projected: NDArray[np.float64],
+) -> int:
+    """Project eight triangles; return which may be in the band, a bit each."""
+    at = number * CLUSTER_ROWS * CLUSTER
+    low, high = splat(1e9), splat(-1e9)
+    for corner in range(3):
+        x = to_f8(load(cluster, at + 3 * corner * CLUSTER))
+        y = to_f8(load(cluster, at + (3 * corner + 1) * CLUSTER))
+        z = to_f8(load(cluster, at + (3 * corner + 2) * CLUSTER))
+        row = _along(screen.row, x, y, z) + down
+        store(projected, 3 * corner * CLUSTER, _along(screen.column, x, y, z) + right)
+        store(projected, (3 * corner + 1) * CLUSTER, row)
+        store(projected, (3 * corner + 2) * CLUSTER, _along(screen.distance, x, y, z))
+        low, high = lesser(low, row), greater(high, row)
+    return bits_of((high >= float(top)) & (low <= float(top + BAND)))
 
 
 @inner_kernel
 def _draw(
     geometry: Geometry,
-    cards: NDArray[np.int32],
-    rows: NDArray[np.float64],
-    ranges: NDArray[np.int32],
+    bake: ShadowBake,
+    mesh: NDArray[np.int32],
+    screen: Projection,
+    right: float,
+    down: float,
     top: int,
-    screen: NDArray[np.float64],
-    depth: NDArray[np.float32],
-    owner: NDArray[np.int64],
+    worker: int,
 ) -> None:
-    """Draw one mesh from above the sun, leaves with their holes.
+    """Draw one mesh from above the sun, moved by some texels, leaves with their holes.
 
     Heights differ little across a leaf, so `rasterise` may use them in place of 1/w.
     """
-    lowest, highest = 1e9, -1e9
-    for i in range(ranges[3] - ranges[2]):
-        x = geometry.positions[ranges[2] + i, 0]
-        y = geometry.positions[ranges[2] + i, 1]
-        z = geometry.positions[ranges[2] + i, 2]
-        for k in range(3):
-            screen[i, k] = rows[k, 0] * x + rows[k, 1] * y + rows[k, 2] * z + rows[k, 3]
-        screen[i, 3] = geometry.uvs[ranges[2] + i, 0]
-        screen[i, 4] = geometry.uvs[ranges[2] + i, 1]
-        lowest, highest = min(lowest, screen[i, 1]), max(highest, screen[i, 1])
-    if lowest > top + BAND or highest < top:
-        return
-    for triangle in range(ranges[0], ranges[1]):
-        a = geometry.corners[triangle, 0] - ranges[2]
-        b = geometry.corners[triangle, 1] - ranges[2]
-        c = geometry.corners[triangle, 2] - ranges[2]
-        material = geometry.material[triangle]
-        drawn, level = cards[material], -1
-        if drawn != 0:
-            level = LEAF_LEVEL
-            # A card has four triangles, or two. Counted in its mesh, so that the shade of a tree
-            # does not change with what else stands in the map.
-            if drawn < 0 or ((triangle - ranges[0]) >> 2) % drawn != 0:
-                continue
-        rasterise(
-            screen, a, b, c, top, depth, owner, i8(0), BOTH_SIDES, geometry.texture,
-            geometry.layer[material], level,
-        )  # fmt: skip
+    projected, polygon, key = bake.projected[worker], bake.polygon[worker], bake.key[worker]
+    for first in range(mesh[0], mesh[1], CLUSTER):
+        left = _project(geometry.cluster, first // CLUSTER, screen, right, down, top, projected)
+        if mesh[1] - first < CLUSTER:
+            left &= (1 << (mesh[1] - first)) - 1
+        while left != 0:
+            number = first_bit(left)
+            left &= left - 1
+            triangle = first + number
+            material = geometry.material[triangle]
+            drawn, holes = bake.cards[material], no_holes(geometry.texture)
+            if drawn != 0:
+                # A card has four triangles, or two. Counted in its mesh, so that the shade of a
+                # tree does not change with what else stands in the map.
+                if drawn < 0 or ((triangle - mesh[0]) >> 2) % drawn != 0:
+                    continue
+                holes = holes_of(geometry.texture, geometry.layer[material], LEAF_LEVEL)
+            for corner in range(3):
+                for k in range(3):
+                    polygon[corner, k] = projected[3 * corner + k, number]
+                for k in range(2):
+                    polygon[corner, 3 + k] = geometry.corner_uv[triangle, 2 * corner + k]
+            rasterise(
+                polygon, 0, 1, 2, top, bake.shadow_map.shape[1], key, i8(0), BOTH_SIDES, 0.0,
+                holes,
+            )  # fmt: skip

@@ -1,109 +1,122 @@
-"""Culling: boxes and spheres against the planes of a band of a view."""
+"""Culling: boxes and spheres against the planes of a band of a view, eight at once.
+
+What is left out is certainly outside; what is kept may be. The tests are computed in float32, and
+allow for its rounding.
+"""
 
 import math
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inner_kernel
-from eyas.render.kernels.bundles import GROUP, NEAR
-from eyas.render.kernels.scalars import i8
+from eyas.core.jit import inlined_kernel
+from eyas.core.lanes import bits_of, load
+from eyas.render.kernels.bundles import NEAR, Plane, Planes, Projection, Row
+from eyas.render.kernels.scalars import f4
 
-__all__ = ["box_is_visible", "set_planes", "sphere_is_visible", "visible_chunks"]
+__all__ = ["boxes_seen", "in_boxes", "planes_of", "sphere_is_visible", "spheres_seen"]
+
+SLACK = 0.05
+"""How far outside a plane things are still kept [m]: more than float32 rounds places off."""
 
 
-@inner_kernel
-def set_planes(
-    rows: NDArray[np.float64],
-    width: float,
-    height: float,
-    top: float,
-    bottom: float,
-    planes: NDArray[np.float64],
-) -> None:
-    """Compute the planes around the space that rows `top` to `bottom` of a picture show.
+@inlined_kernel
+def _plane(x: float, y: float, z: float, w: float) -> Plane:
+    return Plane(x, y, z, w, math.sqrt(x * x + y * y + z * z))
 
-    A point is inside a plane if `plane[:3] @ point + plane[3] >= 0`; `plane[4]` is the length
-    of the normal.
+
+@inlined_kernel
+def _border(row: Row, sign: float, distance: Row, share: float) -> Plane:
+    """Return the plane `sign * row + share * distance`."""
+    return _plane(
+        sign * row.x + share * distance.x,
+        sign * row.y + share * distance.y,
+        sign * row.z + share * distance.z,
+        sign * row.w + share * distance.w,
+    )
+
+
+@inlined_kernel
+def planes_of(screen: Projection, width: float, height: float, top: float, bottom: float) -> Planes:
+    """Return the planes around the space that rows `top` to `bottom` of a picture show."""
+    column, row, distance = screen.column, screen.row, screen.distance
+    middle_x, middle_y = 0.5 * width, 0.5 * height
+    return Planes(
+        _border(column, 1.0, distance, middle_x),
+        _border(column, -1.0, distance, middle_x),
+        _border(row, 1.0, distance, middle_y - top),
+        _border(row, -1.0, distance, bottom - middle_y),
+        _plane(distance.x, distance.y, distance.z, distance.w - NEAR),
+    )
+
+
+@inlined_kernel
+def _box_reaches(plane: Plane, boxes: NDArray[np.float32], at: int, step: int) -> bool:
+    """Return which of eight boxes may reach inside a plane."""
+    x, y, z = f4(plane.x), f4(plane.y), f4(plane.z)
+    reach = x * load(boxes, at + (3 * step if x > f4(0.0) else 0))
+    reach += y * load(boxes, at + (4 * step if y > f4(0.0) else step))
+    reach += z * load(boxes, at + (5 * step if z > f4(0.0) else 2 * step))
+    return reach > f4(-plane.w - SLACK * plane.length)
+
+
+@inlined_kernel
+def in_boxes(planes: Planes, boxes: NDArray[np.float32], at: int, step: int) -> bool:
+    """Return which of eight boxes may reach inside all planes.
+
+    Args:
+        planes: The planes.
+        boxes: Lower corner x, y, z and upper corner x, y, z of boxes, a row each.
+        at: Index of the first number of the first box.
+        step: Length of the rows.
     """
-    for k in range(4):
-        planes[0, k] = rows[0, k] + 0.5 * width * rows[2, k]
-        planes[1, k] = 0.5 * width * rows[2, k] - rows[0, k]
-        planes[2, k] = rows[1, k] + (0.5 * height - top) * rows[2, k]
-        planes[3, k] = (bottom - 0.5 * height) * rows[2, k] - rows[1, k]
-        planes[4, k] = rows[2, k]
-    planes[4, 3] -= NEAR
-    for i in range(5):
-        planes[i, 4] = math.sqrt(planes[i, 0] ** 2 + planes[i, 1] ** 2 + planes[i, 2] ** 2)
+    return (
+        _box_reaches(planes.left, boxes, at, step)
+        & _box_reaches(planes.right, boxes, at, step)
+        & _box_reaches(planes.top, boxes, at, step)
+        & _box_reaches(planes.bottom, boxes, at, step)
+        & _box_reaches(planes.near, boxes, at, step)
+    )
 
 
-@inner_kernel
-def box_is_visible(planes: NDArray[np.float64], boxes: NDArray[np.float32], i: int) -> bool:
-    """Return whether box `i` may reach inside all planes."""
-    for k in range(5):
-        reach = planes[k, 3]
-        for axis in range(3):
-            normal = planes[k, axis]
-            reach += normal * (boxes[i, 3 + axis] if normal > 0.0 else boxes[i, axis])
-        if reach < 0.0:
-            return False
-    return True
-
-
-@inner_kernel
-def sphere_is_visible(
-    planes: NDArray[np.float64], x: float, y: float, z: float, radius: float
-) -> bool:
-    """Return whether a sphere reaches inside all planes."""
-    for k in range(5):
-        height = planes[k, 0] * x + planes[k, 1] * y + planes[k, 2] * z + planes[k, 3]
-        if height < -radius * planes[k, 4]:
-            return False
-    return True
-
-
-@inner_kernel
-def visible_chunks(
-    planes: NDArray[np.float64],
-    eye: NDArray[np.float64],
-    boxes: NDArray[np.float32],
-    groups: NDArray[np.float32],
-    order: NDArray[np.int64],
-) -> int:
-    """List the chunks to draw in `order`, nearest first; return how many there are.
-
-    The low 32 bits of each entry hold the chunk, the bits above its distance in millimetres, so
-    that no two entries are equal and the order does not depend on the band.
+@inlined_kernel
+def boxes_seen(planes: Planes, boxes: NDArray[np.float32], first: int) -> int:
+    """Return which of the eight boxes from column `first` on may reach inside all planes, a bit
+    each.
     """
-    count = 0
-    for group in range(len(groups)):
-        if not box_is_visible(planes, groups, group):
-            continue
-        for i in range(group * GROUP, min((group + 1) * GROUP, len(boxes))):
-            if not box_is_visible(planes, boxes, i):
-                continue
-            square = 0.0
-            for axis in range(3):
-                gap = max(boxes[i, axis] - eye[axis], eye[axis] - boxes[i, 3 + axis], 0.0)
-                square += gap * gap
-            order[count] = (i8(1000.0 * math.sqrt(square)) << i8(32)) | i8(i)
-            count += 1
-    _shell_sort(order, count)
-    return count
+    return bits_of(in_boxes(planes, boxes, first, boxes.shape[1]))
 
 
-@inner_kernel
-def _shell_sort(values: NDArray[np.int64], count: int) -> None:
-    """Sort the first `count` values in place; np.sort would allocate."""
-    gap = 1
-    while gap < count // 3:
-        gap = 3 * gap + 1
-    while gap > 0:
-        for i in range(gap, count):
-            value = values[i]
-            j = i
-            while j >= gap and values[j - gap] > value:
-                values[j] = values[j - gap]
-                j -= gap
-            values[j] = value
-        gap //= 3
+@inlined_kernel
+def _sphere_reaches(plane: Plane, x: float, y: float, z: float, radius: float) -> bool:
+    height = f4(plane.x) * x + f4(plane.y) * y + f4(plane.z) * z + f4(plane.length) * radius
+    return height > f4(-plane.w - SLACK * plane.length)
+
+
+@inlined_kernel
+def spheres_seen(planes: Planes, x: float, y: float, z: float, radius: float) -> bool:
+    """Return which spheres, of float32, may reach inside all planes."""
+    return (
+        _sphere_reaches(planes.left, x, y, z, radius)
+        & _sphere_reaches(planes.right, x, y, z, radius)
+        & _sphere_reaches(planes.top, x, y, z, radius)
+        & _sphere_reaches(planes.bottom, x, y, z, radius)
+        & _sphere_reaches(planes.near, x, y, z, radius)
+    )
+
+
+@inlined_kernel
+def _height(plane: Plane, x: float, y: float, z: float) -> float:
+    return plane.x * x + plane.y * y + plane.z * z + plane.w
+
+
+@inlined_kernel
+def sphere_is_visible(planes: Planes, x: float, y: float, z: float, radius: float) -> bool:
+    """Return whether a sphere, of float64, reaches inside all planes."""
+    return (
+        _height(planes.left, x, y, z) >= -radius * planes.left.length
+        and _height(planes.right, x, y, z) >= -radius * planes.right.length
+        and _height(planes.top, x, y, z) >= -radius * planes.top.length
+        and _height(planes.bottom, x, y, z) >= -radius * planes.bottom.length
+        and _height(planes.near, x, y, z) >= -radius * planes.near.length
+    )

@@ -3,28 +3,37 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inner_kernel
-from eyas.render.kernels.bundles import Geometry
-from eyas.render.kernels.scalars import f4, i8
-from eyas.render.kernels.surface.texture import level_of
+from eyas.core.jit import inlined_kernel
+from eyas.core.lanes import first_bit
+from eyas.render.kernels.bundles import Geometry, Point, Projection, View
+from eyas.render.kernels.scalars import i8
+from eyas.render.kernels.visibility.clusters import (
+    CLUSTER,
+    LEAVES,
+    clusters_seen,
+    project_cluster,
+)
+from eyas.render.kernels.visibility.cull import planes_of
+from eyas.render.kernels.visibility.holes import holes_level, holes_of, no_holes
 from eyas.render.kernels.visibility.rasterise import BOTH_SIDES, FRONT, rasterise
-from eyas.render.kernels.visibility.transform import clip_near, to_screen
+from eyas.render.kernels.visibility.transform import clip_near
 from eyas.state.draw import DrawStage
-from eyas.state.mesh import Surface
 
 __all__ = ["draw_mesh", "level_of_detail"]
 
-FOLIAGE = int(Surface.FOLIAGE)
 VERTICES = int(DrawStage.VERTICES)
 
 PIXELS_PER_TRIANGLE = 1.5
 """Size of the triangles for which a level of detail is fine enough [pixels]."""
 
-SMALLEST_HOLES = 4
-"""Mip level from which on leaves have no holes: a leaf would be smaller than a pixel."""
+TEXELS = 256.0
+"""Texels along a side of a texture."""
+
+ASIDE = 1.0 / 64.0
+"""See `rasterise`: less would let roads rise over their paint at their far edges."""
 
 
-@inner_kernel
+@inlined_kernel
 def level_of_detail(
     geometry: Geometry, prototype: int, radius: float, distance: float, focal: float
 ) -> int:
@@ -38,22 +47,19 @@ def level_of_detail(
     return last
 
 
-@inner_kernel
+@inlined_kernel
 def draw_mesh(
     until: int,
     geometry: Geometry,
-    rows: NDArray[np.float64],
-    ranges: NDArray[np.int32],
-    index: int,
-    instance: int,
+    mesh: NDArray[np.int32],
+    screen: Projection,
+    eye: Point,
     focal: float,
     smallest: float,
-    width: float,
-    height: float,
-    top: int,
-    depth: NDArray[np.float32],
-    owner: NDArray[np.int64],
-    screen: NDArray[np.float64],
+    tag: int,
+    view: View,
+    key: NDArray[np.int64],
+    projected: NDArray[np.float64],
     polygon: NDArray[np.float64],
 ) -> None:
     """Draw a chunk or a level of detail.
@@ -61,57 +67,80 @@ def draw_mesh(
     Args:
         until: See `DrawStage`.
         geometry: Everything that can be drawn.
-        rows: Maps the mesh's vertices to the screen.
-        ranges: `chunk_range` or `mesh_range`.
-        index: Row of `ranges`.
-        instance: -1 for the static mesh, see `Scratch.owner`.
+        mesh: Row of `chunk_range` or `mesh_range`.
+        screen: Projection of the mesh.
+        eye: Optical centre in the frame of the mesh [m].
         focal: Focal length over the scale of the object [pixels].
-        smallest: Size of the smallest detail to draw, see `Geometry.size` [m].
-        width: Width of the picture [pixels].
-        height: Height of the picture [pixels].
-        top: Row of the picture that is row 0 of `depth`.
-        depth: See `Scratch`.
-        owner: See `Scratch`.
-        screen: See `Scratch`.
-        polygon: See `Scratch`.
+        smallest: Size of the smallest detail to draw [m].
+        tag: Tag of triangle 0.
+        view: The band.
+        key: See `Scratch`, shape (rows, columns).
+        projected: See `Scratch`, shape (9, 8).
+        polygon: See `Scratch`, shape (4, 5).
     """
-    if until < VERTICES:
-        return
-    middle_x, middle_y = 0.5 * width, 0.5 * height
-    offset = ranges[index, 2]
-    to_screen(rows, geometry.positions, offset, ranges[index, 3], middle_x, middle_y, screen)
-    if until == VERTICES:
-        return
-    base = (i8(instance) + 1) << i8(32)
-    bottom = top + depth.shape[0]
-    for triangle in range(ranges[index, 0], ranges[index, 1]):
-        if geometry.size[triangle] < smallest:
-            break  # all that follow are small, too
-        a = geometry.corners[triangle, 0] - offset
-        b = geometry.corners[triangle, 1] - offset
-        c = geometry.corners[triangle, 2] - offset
-        material = geometry.material[triangle]
-        leafy = geometry.surface[material] == FOLIAGE
-        clear = screen[a, 2] > 0.0 and screen[b, 2] > 0.0 and screen[c, 2] > 0.0
-        tag = base | i8(triangle)
-        if clear and not leafy:
-            rasterise(
-                screen, a, b, c, top, depth, owner, tag, FRONT, geometry.texture, 0, -1
-            )  # fmt: skip
-            continue
-        if clear and max(screen[a, 1], screen[b, 1], screen[c, 1]) < top:
-            continue
-        if clear and min(screen[a, 1], screen[b, 1], screen[c, 1]) > bottom:
-            continue
-        count = clip_near(screen, geometry.uvs, offset, a, b, c, middle_x, middle_y, polygon)
-        level, sides = -1, BOTH_SIDES if leafy else FRONT
-        if leafy and count > 0:
-            span = 256.0 * abs(geometry.gradients[triangle, 23]) / (focal * polygon[0, 2])
-            level = level_of(f4(span * span))
-            if level >= SMALLEST_HOLES:
-                level = -1
-        for k in range(1, count - 1):
-            rasterise(
-                polygon, 0, k, k + 1, top, depth, owner, tag, sides, geometry.texture,
-                geometry.layer[material], level,
-            )  # fmt: skip
+    bottom = view.top + view.rows
+    planes = planes_of(screen, view.width, view.height, view.top, bottom)
+    first, clusters = mesh[0] // CLUSTER, (mesh[1] - mesh[0] + CLUSTER - 1) // CLUSTER
+    for start in range(0, clusters, CLUSTER):
+        row = mesh[2] + start // CLUSTER
+        left = clusters_seen(geometry.bounds, row, planes, eye, smallest)
+        while left != 0:
+            cluster = first + start + first_bit(left)
+            left &= left - 1
+            drawn, cut = project_cluster(
+                geometry.cluster, cluster, screen, view, smallest, projected
+            )
+            if until == VERTICES:
+                continue
+            while drawn != 0:
+                number = first_bit(drawn)
+                drawn &= drawn - 1
+                is_cut = (cut >> number) & 1 != 0
+                _draw_triangle(
+                    geometry, cluster, number, is_cut, screen, focal, tag, view, key, projected,
+                    polygon,
+                )  # fmt: skip
+
+
+@inlined_kernel
+def _draw_triangle(
+    geometry: Geometry,
+    cluster: int,
+    number: int,
+    cut: bool,
+    screen: Projection,
+    focal: float,
+    tag: int,
+    view: View,
+    key: NDArray[np.int64],
+    projected: NDArray[np.float64],
+    polygon: NDArray[np.float64],
+) -> None:
+    """Draw a triangle of a cluster; for the other arguments see `draw_mesh`."""
+    triangle = CLUSTER * cluster + number
+    uv = geometry.corner_uv[triangle]
+    corners = 3
+    if cut:
+        corners = clip_near(
+            screen, geometry.cluster[cluster], number, uv, 0.5 * view.width, 0.5 * view.height,
+            polygon,
+        )  # fmt: skip
+    else:
+        for corner in range(3):
+            for k in range(3):
+                polygon[corner, k] = projected[3 * corner + k, number]
+    sides, holes = FRONT, no_holes(geometry.texture)
+    tiles = geometry.cluster[cluster, LEAVES, number]
+    if tiles > 0.0:
+        sides = BOTH_SIDES
+        level = holes_level(TEXELS * tiles / (focal * polygon[0, 2]))
+        if level >= 0:
+            holes = holes_of(geometry.texture, geometry.layer[geometry.material[triangle]], level)
+            if not cut:
+                for corner in range(3):
+                    polygon[corner, 3] = uv[2 * corner]
+                    polygon[corner, 4] = uv[2 * corner + 1]
+    for k in range(1, corners - 1):
+        rasterise(
+            polygon, 0, k, k + 1, view.top, view.width, key, tag + triangle, sides, ASIDE, holes
+        )

@@ -1,128 +1,154 @@
-"""Visibility of a band: static chunks, fixtures, moving parts."""
-
-import math
+"""What is seen of the static scene and of moving things: first listed, then drawn."""
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inner_kernel
-from eyas.render.kernels.bundles import GROUP, Geometry
+from eyas.core.jit import inlined_kernel, inner_kernel
+from eyas.render.kernels.bundles import Geometry, Movers, Point, Projection, Scratch, View
 from eyas.render.kernels.scalars import i8
-from eyas.render.kernels.visibility.cull import box_is_visible, sphere_is_visible, visible_chunks
-from eyas.render.kernels.visibility.meshes import draw_mesh, level_of_detail
-from eyas.render.kernels.visibility.transform import set_object_rows
+from eyas.render.kernels.visibility.key import instance_tag
+from eyas.render.kernels.visibility.listing import list_chunks, list_fixtures, list_slots
+from eyas.render.kernels.visibility.meshes import draw_mesh
+from eyas.render.kernels.visibility.transform import in_frame, object_projection, scale_of
+from eyas.state.draw import DrawStage
 
-__all__ = ["draw_moving", "draw_static"]
+__all__ = ["draw_scene", "draw_slots"]
 
-SMALLEST = 0.4
-"""Things with a smaller radius are left out [pixels]."""
+CULLING = int(DrawStage.CULLING)
 
 SMALLEST_DETAIL = 0.35
 """Details whose area has a smaller root are left out [pixels]."""
 
 
 @inner_kernel
-def draw_static(
+def draw_scene(
     until: int,
     geometry: Geometry,
-    eye: NDArray[np.float64],
-    lens: NDArray[np.float64],
-    top: int,
-    rows: NDArray[np.float64],
-    planes: NDArray[np.float64],
-    order: NDArray[np.int64],
-    depth: NDArray[np.float32],
-    owner: NDArray[np.int64],
-    screen: NDArray[np.float64],
-    polygon: NDArray[np.float64],
+    movers: Movers,
+    world: int,
+    view: View,
+    scratch: Scratch,
+    worker: int,
+    key: NDArray[np.int64],
+) -> int:
+    """Draw everything that a band shows; return how many instances there are in `Scratch.drawn`.
+
+    They are numbered fixtures first, in the order of the arrays that hold them, so that the order
+    of their tags does not depend on the band.
+
+    Args:
+        until: See `DrawStage`.
+        geometry: Everything that can be drawn.
+        movers: The draw lists.
+        world: The one of the view.
+        view: The band.
+        scratch: Working memory.
+        worker: Row of it to use.
+        key: See `Scratch`, shape (rows, columns); cleared here.
+    """
+    key[:] = 0
+    listed = list_chunks(geometry, view, scratch.order[worker])
+    count = list_fixtures(geometry, view, scratch, worker, listed)
+    slots = movers.part.shape[1]
+    count = list_slots(geometry, movers, world, 0, slots, view, scratch, worker, listed, count)
+    _draw_listed(until, geometry, movers, world, view, scratch, worker, listed + count, key)
+    return count
+
+
+@inner_kernel
+def draw_slots(
+    geometry: Geometry,
+    movers: Movers,
+    world: int,
+    first: int,
+    last: int,
+    view: View,
+    scratch: Scratch,
+    worker: int,
+    key: NDArray[np.int64],
+    count: int,
+) -> int:
+    """Draw slots `first` to `last` of a draw list; return how many rows of `drawn` are used then.
+
+    Args:
+        geometry: Everything that can be drawn.
+        movers: The draw lists.
+        world: The one of the view.
+        first: First slot.
+        last: Last slot + 1.
+        view: The band.
+        scratch: Working memory; `order` is overwritten.
+        worker: Row of it to use.
+        key: Drawn into, shape (rows, columns).
+        count: Rows of `drawn` that are used before.
+    """
+    until = int(DrawStage.SHADING)
+    after = list_slots(geometry, movers, world, first, last, view, scratch, worker, -count, count)
+    _draw_listed(until, geometry, movers, world, view, scratch, worker, after - count, key)
+    return after
+
+
+@inner_kernel
+def _draw_listed(
+    until: int,
+    geometry: Geometry,
+    movers: Movers,
+    world: int,
+    view: View,
+    scratch: Scratch,
+    worker: int,
+    listed: int,
+    key: NDArray[np.int64],
 ) -> None:
-    """Draw the static scene; see `Job` and `Scratch` for the arguments. `rows` is (2, 3, 4)."""
-    count = visible_chunks(planes, eye, geometry.chunk_box, geometry.chunk_group_box, order)
-    for k in range(count):
-        chunk = order[k] & i8(0xFFFFFFFF)
-        smallest = SMALLEST_DETAIL * 0.001 * (order[k] >> i8(32)) / lens[3]
+    """Draw what is listed in `Scratch.order`, the nearest first."""
+    if until <= CULLING:
+        return
+    order, drawn, meshes = scratch.order[worker], scratch.drawn[worker], scratch.mesh[worker]
+    chunks, fixtures = geometry.chunk_range.shape[0], len(geometry.fixture_prototype)
+    _shell_sort(order, listed)
+    for k in range(listed):
+        item = order[k] & i8(0xFFFFFFFF)
+        if item < chunks:
+            mesh, screen, eye = geometry.chunk_range[item], view.screen, view.eye
+            focal, tag = view.focal, i8(0)
+            smallest = SMALLEST_DETAIL * 0.001 * (order[k] >> i8(32)) / focal
+        else:
+            row = item - chunks
+            mesh, instance = geometry.mesh_range[meshes[row]], i8(drawn[row, 1])
+            if instance < fixtures:
+                screen, eye, focal = _in_frame(view, geometry.fixture_pose, instance)
+            else:
+                screen, eye, focal = _in_frame(view, movers.pose[world], instance - fixtures)
+            tag, smallest = instance_tag(row) - mesh[0], 0.0
         draw_mesh(
-            until, geometry, rows[0], geometry.chunk_range, chunk, -1, lens[3], smallest, lens[1],
-            lens[2], top, depth, owner, screen, polygon,
-        )  # fmt: skip
-    fixtures = len(geometry.fixture_prototype)
-    for group in range(len(geometry.fixture_group_box)):
-        if not box_is_visible(planes, geometry.fixture_group_box, group):
-            continue
-        for i in range(group * GROUP, min((group + 1) * GROUP, fixtures)):
-            _draw_instance(
-                until, geometry, geometry.fixture_prototype[i], geometry.fixture_pose, i, i, eye,
-                lens, top, rows, planes, depth, owner, screen, polygon,
-            )  # fmt: skip
-
-
-@inner_kernel
-def draw_moving(
-    until: int,
-    geometry: Geometry,
-    parts: NDArray[np.int32],
-    poses: NDArray[np.float32],
-    object_ids: NDArray[np.int32],
-    only: int,
-    eye: NDArray[np.float64],
-    lens: NDArray[np.float64],
-    top: int,
-    rows: NDArray[np.float64],
-    planes: NDArray[np.float64],
-    depth: NDArray[np.float32],
-    owner: NDArray[np.int64],
-    screen: NDArray[np.float64],
-    polygon: NDArray[np.float64],
-) -> None:
-    """Draw the parts in one world's draw list, of object `only` alone if it is not negative."""
-    fixtures = len(geometry.fixture_prototype)
-    for slot in range(len(parts)):
-        if parts[slot] < 0 or (only >= 0 and object_ids[slot] != only):
-            continue
-        _draw_instance(
-            until, geometry, geometry.part_first + parts[slot], poses, slot, fixtures + slot, eye,
-            lens, top, rows, planes, depth, owner, screen, polygon,
+            until, geometry, mesh, screen, eye, focal, smallest, tag, view, key,
+            scratch.projected[worker], scratch.polygon[worker],
         )  # fmt: skip
 
 
-@inner_kernel
-def _draw_instance(
-    until: int,
-    geometry: Geometry,
-    prototype: int,
-    poses: NDArray[np.float32],
-    index: int,
-    instance: int,
-    eye: NDArray[np.float64],
-    lens: NDArray[np.float64],
-    top: int,
-    rows: NDArray[np.float64],
-    planes: NDArray[np.float64],
-    depth: NDArray[np.float32],
-    owner: NDArray[np.int64],
-    screen: NDArray[np.float64],
-    polygon: NDArray[np.float64],
-) -> None:
-    """Draw prototype `prototype` at pose `index`, as instance `instance`."""
-    x, y, z = (
-        geometry.sphere[prototype, 0],
-        geometry.sphere[prototype, 1],
-        geometry.sphere[prototype, 2],
-    )
-    pose = poses[index]
-    px = pose[0, 0] * x + pose[0, 1] * y + pose[0, 2] * z + pose[0, 3]
-    py = pose[1, 0] * x + pose[1, 1] * y + pose[1, 2] * z + pose[1, 3]
-    pz = pose[2, 0] * x + pose[2, 1] * y + pose[2, 2] * z + pose[2, 3]
-    scale = math.sqrt(float(pose[0, 0]) ** 2 + float(pose[1, 0]) ** 2 + float(pose[2, 0]) ** 2)
-    radius = geometry.sphere[prototype, 3] * scale
-    if not sphere_is_visible(planes, px, py, pz, radius):
-        return
-    distance = math.sqrt((px - eye[0]) ** 2 + (py - eye[1]) ** 2 + (pz - eye[2]) ** 2)
-    if radius * lens[3] < SMALLEST * distance:
-        return
-    mesh = level_of_detail(geometry, prototype, radius, distance, lens[3])
-    set_object_rows(rows[0], poses, index, rows[1])
-    draw_mesh(
-        until, geometry, rows[1], geometry.mesh_range, mesh, instance, lens[3] * scale, 0.0,
-        lens[1], lens[2], top, depth, owner, screen, polygon,
-    )  # fmt: skip
+@inlined_kernel
+def _in_frame(
+    view: View, poses: NDArray[np.float32], index: int
+) -> tuple[Projection, Point, float]:
+    """Return projection, optical centre and focal length [pixels] for lengths in the frame of
+    pose `index`.
+    """
+    focal = view.focal * scale_of(poses, index)
+    return object_projection(view.screen, poses, index), in_frame(view.eye, poses, index), focal
+
+
+@inlined_kernel
+def _shell_sort(values: NDArray[np.int64], count: int) -> None:
+    """Sort the first `count` values in place; np.sort would allocate."""
+    gap = 1
+    while gap < count // 3:
+        gap = 3 * gap + 1
+    while gap > 0:
+        for i in range(gap, count):
+            value = values[i]
+            j = i
+            while j >= gap and values[j - gap] > value:
+                values[j] = values[j - gap]
+                j -= gap
+            values[j] = value
+        gap //= 3

@@ -1,89 +1,123 @@
 """Transformation from the world to the screen: cameras, poses, the near plane."""
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inner_kernel
-from eyas.render.kernels.bundles import NEAR
+from eyas.core.jit import inlined_kernel, inner_kernel
+from eyas.render.kernels.bundles import NEAR, Job, Point, Projection, Row, View
+from eyas.render.kernels.scalars import i8
+from eyas.render.kernels.visibility.cull import planes_of
 
-__all__ = ["clip_near", "set_object_rows", "set_world_rows", "to_screen"]
-
-
-@inner_kernel
-def set_world_rows(
-    eye: NDArray[np.float64],
-    axes: NDArray[np.float64],
-    lens: NDArray[np.float64],
-    rows: NDArray[np.float64],
-) -> None:
-    """Compute the rows that map a world point to column * w, row * w (from the centre) and w."""
-    for k in range(3):
-        rows[0, k] = -lens[0] * axes[1, k]
-        rows[1, k] = -lens[4] * axes[2, k]
-        rows[2, k] = axes[0, k]
-    for i in range(3):
-        rows[i, 3] = -(rows[i, 0] * eye[0] + rows[i, 1] * eye[1] + rows[i, 2] * eye[2])
+__all__ = ["clip_near", "in_frame", "object_projection", "scale_of", "view_of"]
 
 
-@inner_kernel
-def set_object_rows(
-    world: NDArray[np.float64],
-    poses: NDArray[np.float32],
-    index: int,
-    rows: NDArray[np.float64],
-) -> None:
-    """Compute the same rows for points in the frame of pose `index`."""
-    for i in range(3):
-        for k in range(4):
-            rows[i, k] = (
-                world[i, 0] * poses[index, 0, k]
-                + world[i, 1] * poses[index, 1, k]
-                + world[i, 2] * poses[index, 2, k]
-            )
-        rows[i, 3] += world[i, 3]
+@inlined_kernel
+def view_of(job: Job, band: int, width: int, height: int, samples: int) -> View:
+    """Return a band of a view.
 
-
-@inner_kernel
-def to_screen(
-    rows: NDArray[np.float64],
-    positions: NDArray[np.float32],
-    first: int,
-    last: int,
-    middle_x: float,
-    middle_y: float,
-    screen: NDArray[np.float64],
-) -> None:
-    """Project vertices `first` to `last`: column, row, 1/w, w.
-
-    Behind the near plane 1/w is 0, and column and row are not yet divided by w.
+    Args:
+        job: The cameras.
+        band: Row of `Job.band`.
+        width: Width of the pictures [pixels].
+        height: Height of the pictures [pixels].
+        samples: Samples along a side of each pixel.
     """
-    r00, r01, r02, r03 = rows[0, 0], rows[0, 1], rows[0, 2], rows[0, 3]
-    r10, r11, r12, r13 = rows[1, 0], rows[1, 1], rows[1, 2], rows[1, 3]
-    r20, r21, r22, r23 = rows[2, 0], rows[2, 1], rows[2, 2], rows[2, 3]
-    for i in range(last - first):
-        x, y, z = positions[first + i, 0], positions[first + i, 1], positions[first + i, 2]
-        column = r00 * x + r01 * y + r02 * z + r03
-        row = r10 * x + r11 * y + r12 * z + r13
-        w = r20 * x + r21 * y + r22 * z + r23
-        inverse = 0.0
-        if w >= NEAR:
-            inverse = 1.0 / w
-            column = middle_x + column * inverse
-            row = middle_y + row * inverse
-        screen[i, 0] = column
-        screen[i, 1] = row
-        screen[i, 2] = inverse
-        screen[i, 3] = w
+    number, top, bottom = job.band[band, 0], job.band[band, 1], job.band[band, 2]
+    eye = Point(job.eye[number, 0], job.eye[number, 1], job.eye[number, 2])
+    ahead, left, up = _axis(job, number, 0), _axis(job, number, 1), _axis(job, number, 2)
+    pixels_x, pixels_y = job.focal[number, 0], job.focal[number, 1]
+    focal_x, focal_y = pixels_x * samples, pixels_y * samples
+    screen = Projection(
+        _through(eye, -focal_x, left), _through(eye, -focal_y, up), _through(eye, 1.0, ahead)
+    )
+    columns, lines = i8(width * samples), i8(height * samples)
+    first, last = i8(top * samples), i8(bottom * samples)
+    return View(
+        eye, ahead, left, up, focal_x, focal_y, math.sqrt(pixels_x * pixels_y), columns, lines,
+        first, last - first, i8(samples), screen, planes_of(screen, columns, lines, first, last),
+    )  # fmt: skip
+
+
+@inlined_kernel
+def _axis(job: Job, view: int, axis: int) -> Point:
+    return Point(job.axes[view, axis, 0], job.axes[view, axis, 1], job.axes[view, axis, 2])
+
+
+@inlined_kernel
+def _through(eye: Point, scale: float, axis: Point) -> Row:
+    """Return the row that gives the place along an axis from the eye, times a scale."""
+    x, y, z = scale * axis.x, scale * axis.y, scale * axis.z
+    return Row(x, y, z, -(x * eye.x + y * eye.y + z * eye.z))
+
+
+@inlined_kernel
+def _posed(row: Row, poses: NDArray[np.float32], index: int) -> Row:
+    """Return a row for points in the frame of pose `index`."""
+    p = poses[index]
+    return Row(
+        row.x * p[0, 0] + row.y * p[1, 0] + row.z * p[2, 0],
+        row.x * p[0, 1] + row.y * p[1, 1] + row.z * p[2, 1],
+        row.x * p[0, 2] + row.y * p[1, 2] + row.z * p[2, 2],
+        row.x * p[0, 3] + row.y * p[1, 3] + row.z * p[2, 3] + row.w,
+    )
+
+
+@inlined_kernel
+def object_projection(world: Projection, poses: NDArray[np.float32], index: int) -> Projection:
+    """Return the projection of points in the frame of pose `index`."""
+    return Projection(
+        _posed(world.column, poses, index),
+        _posed(world.row, poses, index),
+        _posed(world.distance, poses, index),
+    )
+
+
+@inlined_kernel
+def scale_of(poses: NDArray[np.float32], index: int) -> float:
+    """Return the scale of pose `index`."""
+    x, y, z = float(poses[index, 0, 0]), float(poses[index, 1, 0]), float(poses[index, 2, 0])
+    return math.sqrt(x * x + y * y + z * z)
+
+
+@inlined_kernel
+def in_frame(point: Point, poses: NDArray[np.float32], index: int) -> Point:
+    """Return a world point in the frame of pose `index`, a rotation and a scale."""
+    p = poses[index]
+    x, y, z = point.x - p[0, 3], point.y - p[1, 3], point.z - p[2, 3]
+    square = scale_of(poses, index) ** 2
+    return Point(
+        (x * p[0, 0] + y * p[1, 0] + z * p[2, 0]) / square,
+        (x * p[0, 1] + y * p[1, 1] + z * p[2, 1]) / square,
+        (x * p[0, 2] + y * p[1, 2] + z * p[2, 2]) / square,
+    )
+
+
+@inlined_kernel
+def _projected(
+    screen: Projection, cluster: NDArray[np.float32], number: int, corner: int
+) -> tuple[float, float, float]:
+    """Return column and row, from the middle of the picture and times the distance, and distance
+    of a corner of a triangle.
+    """
+    x = float(cluster[3 * corner, number])
+    y = float(cluster[3 * corner + 1, number])
+    z = float(cluster[3 * corner + 2, number])
+    c, r, d = screen.column, screen.row, screen.distance
+    return (
+        c.x * x + c.y * y + c.z * z + c.w,
+        r.x * x + r.y * y + r.z * z + r.w,
+        d.x * x + d.y * y + d.z * z + d.w,
+    )
 
 
 @inner_kernel
 def clip_near(
-    screen: NDArray[np.float64],
-    uvs: NDArray[np.float32],
-    offset: int,
-    a: int,
-    b: int,
-    c: int,
+    screen: Projection,
+    cluster: NDArray[np.float32],
+    number: int,
+    uv: NDArray[np.float32],
     middle_x: float,
     middle_y: float,
     polygon: NDArray[np.float64],
@@ -94,38 +128,37 @@ def clip_near(
     at an edge get the very same point.
 
     Args:
-        screen: Output of `to_screen`.
-        uvs: Texture coordinates of all vertices.
-        offset: Index in `uvs` of the first row of `screen`.
-        a: First corner, a row of `screen`.
-        b: Second corner.
-        c: Third corner.
+        screen: Projection of the triangle's corners.
+        cluster: Its cluster, a row of `Geometry.cluster`.
+        number: Its number in the cluster.
+        uv: Texture coordinates of its corners, shape (6,).
         middle_x: Column of the optical axis.
         middle_y: Row of the optical axis.
-        polygon: Filled with column, row, 1/w, u, v, shape (4, 5).
+        polygon: Filled with column, row, 1/distance, u, v, shape (4, 5).
     """
     count = 0
     for j in range(3):
-        i = a if j == 0 else (b if j == 1 else c)
-        k = b if j == 0 else (c if j == 1 else a)
-        if screen[i, 2] > 0.0:
-            polygon[count, 0] = screen[i, 0]
-            polygon[count, 1] = screen[i, 1]
-            polygon[count, 2] = screen[i, 2]
-            polygon[count, 3] = uvs[offset + i, 0]
-            polygon[count, 4] = uvs[offset + i, 1]
+        k = j + 1 if j < 2 else 0
+        cj, rj, wj = _projected(screen, cluster, number, j)
+        ck, rk, wk = _projected(screen, cluster, number, k)
+        if wj >= NEAR:
+            inverse = 1.0 / wj
+            polygon[count, 0] = middle_x + cj * inverse
+            polygon[count, 1] = middle_y + rj * inverse
+            polygon[count, 2] = inverse
+            polygon[count, 3], polygon[count, 4] = uv[2 * j], uv[2 * j + 1]
             count += 1
-        if (screen[i, 2] > 0.0) != (screen[k, 2] > 0.0):
-            front, back = (i, k) if screen[i, 2] > 0.0 else (k, i)
-            w = screen[front, 3]
-            t = (NEAR - w) / (screen[back, 3] - w)
-            column = (screen[front, 0] - middle_x) * w
-            row = (screen[front, 1] - middle_y) * w
-            polygon[count, 0] = middle_x + (column + t * (screen[back, 0] - column)) / NEAR
-            polygon[count, 1] = middle_y + (row + t * (screen[back, 1] - row)) / NEAR
+        if (wj >= NEAR) != (wk >= NEAR):
+            front, back = j, k
+            if wk >= NEAR:
+                front, back = k, j
+                cj, rj, wj, ck, rk, wk = ck, rk, wk, cj, rj, wj
+            t = (NEAR - wj) / (wk - wj)
+            polygon[count, 0] = middle_x + (cj + t * (ck - cj)) / NEAR
+            polygon[count, 1] = middle_y + (rj + t * (rk - rj)) / NEAR
             polygon[count, 2] = 1.0 / NEAR
             for m in range(2):
-                start = uvs[offset + front, m]
-                polygon[count, 3 + m] = start + t * (uvs[offset + back, m] - start)
+                start = uv[2 * front + m]
+                polygon[count, 3 + m] = start + t * (uv[2 * back + m] - start)
             count += 1
     return count
