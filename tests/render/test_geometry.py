@@ -121,6 +121,17 @@ def test_from_places_in_a_cone_all_triangles_of_its_cluster_are_seen_from_behind
     assert inside > 300
 
 
+def test_every_level_of_detail_lies_in_the_box_and_the_sphere(images):
+    (fine, *_), *others = car_parts().parts
+    coarse = replace(fine, positions=1.5 * fine.positions + np.float32(0.2))
+    geometry = build_geometry(city_scene(), PartLibrary(((fine, coarse), *others)), images)
+    for mesh in (fine, coarse):
+        box, sphere = geometry.box[geometry.part_first], geometry.sphere[geometry.part_first]
+        assert (mesh.positions >= box[:3]).all()
+        assert (mesh.positions <= box[3:]).all()
+        assert (np.linalg.norm(mesh.positions - sphere[:3], axis=1) <= sphere[3]).all()
+
+
 def test_fixtures_and_parts_come_after_with_their_levels(images):
     geometry = build_geometry(city_scene(), car_parts(), images)
     assert geometry.part_first == 1

@@ -193,8 +193,9 @@ def test_the_shadow_of_a_body_ends_where_the_sun_says(renderer_of, drawn):
     reach = np.arange(2.0, 4.0, 0.05)
     bare = ground_beside(renderer_of, drawn, reach, shaded=False, with_bus=False)
     seen = ground_beside(renderer_of, drawn, reach, shaded=False)
-    # Its top is 3.1 m high; the last 1 / 2.2 m of the way through are the soft edge.
-    soft = np.sqrt(0.5) / 2.2
+    # Its top is 3.1 m high. The soft edge ends where the way to the sun is long enough in the box:
+    # 0.15 m, and 0.12 m more for each metre before it.
+    soft = 3.1 - (3.1 - 0.15 * np.sqrt(0.5)) / 1.12
     assert (seen[reach > 3.12] == bare[reach > 3.12]).all()
     assert (seen[reach < 3.08] < bare[reach < 3.08]).all()
     dark = seen[reach < 3.1 - soft - 0.05]

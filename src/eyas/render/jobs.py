@@ -6,10 +6,11 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.render.kernels.bundles import Job
+from eyas.render.kernels.bundles import Job, Output
 from eyas.state.draw import Picture, Views
+from eyas.state.scene import ACTOR_OBJECT
 
-__all__ = ["build_jobs", "picture_size", "write_subject"]
+__all__ = ["build_jobs", "picture_size", "write_measured"]
 
 JOBS_PER_THREAD = 4
 """Few views are cut into bands until there are this many: sky is drawn faster than streets."""
@@ -18,9 +19,7 @@ SMALLEST_BAND = 3_500
 """Number of pixels below which cutting costs more than it gains."""
 
 
-def build_jobs(
-    views: Views, height: int, width: int, threads: int, density: float
-) -> Job:
+def build_jobs(views: Views, height: int, width: int, threads: int, density: float) -> Job:
     """Return the cameras and the bands to draw.
 
     Args:
@@ -81,21 +80,49 @@ def picture_size(picture: Picture) -> tuple[int, int]:
     raise ValueError("picture: rgb, depth, object_id or class_id is needed; it gives the size")
 
 
-def write_subject(bands: NDArray[np.int32], measured: NDArray[np.int32], picture: Picture) -> None:
-    """Combine the measurements from the bands of each view.
+def write_measured(job: Job, output: Output, picture: Picture) -> None:
+    """Write what the bands of each view measured into a picture, where it is wanted.
 
     Args:
-        bands: From `Job.band`.
-        measured: From `Output.subject`.
-        picture: Its subject boxes and pixel counts are written, if wanted.
+        job: The cameras and bands.
+        output: What they measured.
+        picture: Its boxes and pixels of subjects and actors are written.
     """
-    views = int(bands[-1, 0]) + 1 if len(bands) else 0
-    by_view = measured.reshape(views, -1, 6)
-    if picture.subject_box is not None:
-        far = np.iinfo(np.int32).max
-        low = np.where(by_view[:, :, 5:] > 0, by_view[:, :, :2], far).min(axis=1)
-        high = by_view[:, :, 2:4].max(axis=1)
-        box = np.concatenate([low, high], axis=1)
-        picture.subject_box[:] = np.where(by_view[:, :, 5].sum(axis=1, keepdims=True) > 0, box, 0)
-    if picture.subject_pixels is not None:
-        picture.subject_pixels[:] = by_view[:, :, 4:].sum(axis=1)
+    views = len(job.eye)
+    if len(output.actor):
+        box, pixels = _joined(output.actor.reshape(views, -1, *output.actor.shape[1:]))
+        _write(box, pixels, picture.actor_box, picture.actor_pixels)
+        actor = job.subject - ACTOR_OBJECT
+        known = (actor >= 0) & (actor < box.shape[1])
+        actor = np.where(known, actor, 0)[:, None, None]
+        box = np.where(known[:, None], np.take_along_axis(box, actor, 1)[:, 0], 0)
+        pixels = np.where(known[:, None], np.take_along_axis(pixels, actor, 1)[:, 0], 0)
+        _write(box, pixels, picture.subject_box, picture.subject_pixels)
+    elif len(output.subject):
+        box, pixels = _joined(output.subject.reshape(views, -1, 6))
+        _write(box, pixels, picture.subject_box, picture.subject_pixels)
+
+
+def _joined(by_band: NDArray[np.int32]) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+    """Return boxes, shape (V, ..., 4), and pixels, shape (V, ..., 2), of whole views.
+
+    Args:
+        by_band: See `Output.actor`, shape (V, bands, ..., 6).
+    """
+    pixels = by_band[..., 4:].sum(axis=1, dtype=np.int32)
+    far = np.iinfo(np.int32).max
+    low = np.where(by_band[..., 5:] > 0, by_band[..., :2], far).min(axis=1)
+    box = np.concatenate([low, by_band[..., 2:4].max(axis=1)], axis=-1)
+    return np.where(pixels[..., 1:] > 0, box, 0), pixels
+
+
+def _write(
+    box: NDArray[np.int32],
+    pixels: NDArray[np.int32],
+    box_out: NDArray[np.int32] | None,
+    pixels_out: NDArray[np.int32] | None,
+) -> None:
+    if box_out is not None:
+        box_out[:] = box
+    if pixels_out is not None:
+        pixels_out[:] = pixels

@@ -14,7 +14,7 @@ from eyas.render.bake.ambient import bake_ambient
 from eyas.render.bake.shadows import bake_shadows
 from eyas.render.bake.tracks import TrackMap, track_map
 from eyas.render.classes import class_table, write_classes
-from eyas.render.jobs import build_jobs, picture_size, write_subject
+from eyas.render.jobs import build_jobs, picture_size, write_measured
 from eyas.render.kernels.bundles import Geometry, Light, Movers, Output, Scratch, Task
 from eyas.render.kernels.draw import draw_views
 from eyas.render.kernels.visibility.clusters import CLUSTER
@@ -85,9 +85,9 @@ class Renderer:
         movers = Movers(draw_list.part, draw_list.pose, draw_list.colour, draw_list.object_id)
         output = _output(picture)
         if samples == 4 and picture.rgb is not None:
-            colours = Output(output.rgb, _NOTHING_DEPTH, _NOTHING_OBJECT, _NOTHING_ACTOR)
+            colours = _NOTHING._replace(rgb=output.rgb)
             self._draw(views, movers, colours, picture, 2, until)
-            output = output._replace(rgb=_NOTHING_RGB)
+            output = output._replace(rgb=_NOTHING.rgb)
         if any(len(array) for array in output):
             self._draw(views, movers, output, picture, 1, until)
         if picture.class_id is not None:
@@ -109,14 +109,17 @@ class Renderer:
         job = build_jobs(views, height, width, threads, density)
         rows = int((job.band[:, 2] - job.band[:, 1]).max(initial=0))
         workers = int(job.begun[0])
-        wanted = len(output.actor) > 0
-        if wanted:
-            output = output._replace(actor=np.zeros((len(job.band), 1, 6), np.int32))
+        jobs = len(job.band)
+        output = output._replace(
+            subject=np.zeros((jobs if len(output.subject) else 0, 6), np.int32),
+            actor=np.zeros((jobs if len(output.actor) else 0, *output.actor.shape[1:]), np.int32),
+        )
+        wanted = len(output.subject) + len(output.actor) > 0
         scratch = self._scratch_for(workers, rows, width, side, movers.part.shape[1], wanted)
         task = Task(side, width, height, int(until), movers, job, output)
         draw_views(workers, *self._held, scratch, Held(task))
         if wanted:
-            write_subject(job.band, output.actor[:, 0], picture)
+            write_measured(job, output, picture)
 
     def _scratch_for(
         self, workers: int, rows: int, width: int, side: int, slots: int, measured: bool
@@ -128,7 +131,8 @@ class Renderer:
                 del self._scratch[next(iter(self._scratch))]
             plane = (workers, rows * side, (width + -width % WIDTH) * side)
             chunks, fixtures = len(self._geometry.chunk_range), len(self._geometry.fixture_object)
-            instances = min(fixtures + slots, MOST_INSTANCES)
+            # What is measured alone takes rows after those of the whole picture.
+            instances = min(fixtures + slots * (2 if measured else 1), MOST_INSTANCES)
             scratch = Scratch(
                 key=np.zeros(plane, np.int64),
                 alone=np.zeros(plane if measured else (workers, 0, 0), np.int64),
@@ -167,10 +171,13 @@ def build_renderer(
     return Renderer(geometry, light, class_table(scene), ready)
 
 
-_NOTHING_RGB = np.empty((0, 0, 0, 3), np.uint8)
-_NOTHING_DEPTH = np.empty((0, 0, 0), np.float32)
-_NOTHING_OBJECT = np.empty((0, 0, 0), np.int32)
-_NOTHING_ACTOR = np.empty((0, 0, 6), np.int32)
+_NOTHING = Output(
+    rgb=np.empty((0, 0, 0, 3), np.uint8),
+    depth=np.empty((0, 0, 0), np.float32),
+    object_id=np.empty((0, 0, 0), np.int32),
+    subject=np.empty((0, 6), np.int32),
+    actor=np.empty((0, 0, 6), np.int32),
+)
 
 
 def _objects(picture: Picture) -> NDArray[np.int32]:
@@ -179,15 +186,20 @@ def _objects(picture: Picture) -> NDArray[np.int32]:
         return picture.object_id
     if picture.class_id is not None:
         return np.empty(picture.class_id.shape, np.int32)
-    return _NOTHING_OBJECT
+    return _NOTHING.object_id
 
 
 def _output(picture: Picture) -> Output:
-    """Return the wanted arrays; that of actors is only a flag, jobs get their own."""
+    """Return the wanted arrays; those of measurements are only flags, jobs get their own.
+
+    If all actors are measured, the subjects are among them.
+    """
+    actors = picture.actor_box if picture.actor_pixels is None else picture.actor_pixels
     subject = picture.subject_box is not None or picture.subject_pixels is not None
     return Output(
-        rgb=_NOTHING_RGB if picture.rgb is None else picture.rgb,
-        depth=_NOTHING_DEPTH if picture.depth is None else picture.depth,
+        rgb=_NOTHING.rgb if picture.rgb is None else picture.rgb,
+        depth=_NOTHING.depth if picture.depth is None else picture.depth,
         object_id=_objects(picture),
-        actor=np.zeros((1, 1, 6), np.int32) if subject else _NOTHING_ACTOR,
+        subject=np.zeros((1 if subject and actors is None else 0, 6), np.int32),
+        actor=_NOTHING.actor if actors is None else np.zeros((1, actors.shape[1], 6), np.int32),
     )

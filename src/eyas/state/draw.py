@@ -141,6 +141,10 @@ class Picture:
     """Number of the subject's visible pixels, and of its visible and hidden ones, shape (V, 2)."""
     class_id: NDArray[np.uint8] | None = None
     """`eyas.state.scene.ObjectClass` of each pixel's object, shape (V, H, W)."""
+    actor_box: NDArray[np.int32] | None = None
+    """Boxes like `subject_box` of all actors of each view's world, shape (V, A, 4)."""
+    actor_pixels: NDArray[np.int32] | None = None
+    """Pixels like `subject_pixels` of the same, shape (V, A, 2)."""
 
     @classmethod
     def create(  # noqa: PLR0913  # every output is requested by name
@@ -154,8 +158,9 @@ class Picture:
         object_id: bool = False,
         subject: bool = False,
         class_id: bool = False,
+        actors: int = 0,
     ) -> "Picture":
-        """Return buffers for the requested outputs."""
+        """Return buffers for the requested outputs; `actors` is the number of actors to measure."""
         plane = (views, height, width)
         return cls(
             rgb=np.zeros((*plane, 3), np.uint8) if rgb else None,
@@ -164,6 +169,8 @@ class Picture:
             subject_box=np.zeros((views, 4), np.int32) if subject else None,
             subject_pixels=np.zeros((views, 2), np.int32) if subject else None,
             class_id=np.zeros(plane, np.uint8) if class_id else None,
+            actor_box=np.zeros((views, actors, 4), np.int32) if actors else None,
+            actor_pixels=np.zeros((views, actors, 2), np.int32) if actors else None,
         )
 
     def first(self, views: int) -> "Picture":

@@ -348,9 +348,11 @@ class Output(NamedTuple):
     rgb: NDArray[np.uint8]
     depth: NDArray[np.float32]
     object_id: NDArray[np.int32]
+    subject: NDArray[np.int32]
+    """Left, top, right, bottom, seen and covered pixels of the view's subject in each job, all 0
+    if it covers none, shape (J, 6)."""
     actor: NDArray[np.int32]
-    """Left, top, right, bottom, seen and covered pixels of each actor in each job: of the view's
-    subject if A is 1, else of actor `a` of the world in row `a`, shape (J, A, 6)."""
+    """The same for each actor of the view's world, shape (J, A, 6)."""
 
 
 class Task(NamedTuple):

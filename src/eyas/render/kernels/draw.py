@@ -11,6 +11,7 @@ from eyas.render.kernels.scalars import f4, i8
 from eyas.render.kernels.sky.backdrop import draw_backdrop
 from eyas.render.kernels.sky.flakes import let_flakes_fall
 from eyas.render.kernels.surface.band import shade_band
+from eyas.render.kernels.visibility.measure import measure_actors, measure_subject
 from eyas.render.kernels.visibility.outputs import write_depth, write_objects
 from eyas.render.kernels.visibility.passes import draw_scene
 from eyas.render.kernels.visibility.transform import view_of
@@ -48,11 +49,20 @@ def _draw_band(
     view = address_of(view_of(job, index, task.width, task.height, task.samples))
     key, shade = scratch.key[worker, : view.rows], scratch.shade[worker, : view.rows]
     drawn = scratch.drawn[worker]
-    draw_scene(until, geometry, movers, world, view, scratch, worker, key)
+    count = draw_scene(until, geometry, movers, world, view, scratch, worker, key)
     if len(output.depth) > 0:
         write_depth(key, output.depth[number, top:bottom])
     if len(output.object_id) > 0:
         write_objects(geometry, movers, world, drawn, key, output.object_id[number, top:bottom])
+    if len(output.subject) > 0 and until >= RASTERISING:
+        measure_subject(
+            geometry, movers, world, job.subject[number], view, scratch, worker, key, count,
+            output.subject[index],
+        )  # fmt: skip
+    if len(output.actor) > 0 and until >= RASTERISING:
+        measure_actors(
+            geometry, movers, world, view, scratch, worker, key, count, output.actor[index]
+        )
     if len(output.rgb) > 0 and until > RASTERISING:
         lamps_on = light.weather.air.lamps > f4(0.0)
         cast_light(geometry, movers, world, view, lamps_on, light.weather.sun, key, drawn, shade)

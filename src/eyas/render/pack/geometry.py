@@ -51,8 +51,10 @@ def build_geometry(
     chunk_range, chunk_boxes = _add_chunks(pool, scene)
     prototypes = (*scene.fixtures.levels, *parts.parts)
     mesh_range = [pool.add(mesh, None) for levels in prototypes for mesh in levels]
-    box = np.array([_box(levels[0].positions) for levels in prototypes], np.float32).reshape(-1, 6)
-    sphere = [_sphere(levels[0].positions) for levels in prototypes]
+    # Around all levels of detail: what is culled must not stick out.
+    points = [np.concatenate([mesh.positions for mesh in levels]) for levels in prototypes]
+    box = np.array([_box(positions) for positions in points], np.float32).reshape(-1, 6)
+    sphere = [_sphere(positions) for positions in points]
     order = _fixture_order(scene.fixtures.pose[:, :, 3])
     pose = np.ascontiguousarray(scene.fixtures.pose[order], np.float32)
     prototype = scene.fixtures.prototype[order].astype(np.int32)

@@ -69,6 +69,8 @@ def reach_of(geometry: Geometry, movers: Movers, world: int, first: int, last: i
     poses, parts = movers.pose[world], movers.part[world]
     reach = 0.0
     for slot in range(first, last):
+        if parts[slot] < 0:
+            continue
         pose, box = poses[slot], geometry.box[geometry.part_first + parts[slot]]
         square, scale, away = 0.0, 0.0, 0.0
         for axis in range(3):
@@ -86,6 +88,8 @@ def _largest(geometry: Geometry, movers: Movers, world: int, first: int, last: i
     poses, parts = movers.pose[world], movers.part[world]
     body, largest = first, f4(-1.0)
     for slot in range(first, last):
+        if parts[slot] < 0:
+            continue
         box = geometry.box[geometry.part_first + parts[slot]]
         size = (box[3] - box[0]) * (box[4] - box[1]) * (box[5] - box[2])
         if size > largest and poses[slot, 0, 0] ** 2 + poses[slot, 1, 0] ** 2 > f4(1e-12):
@@ -111,6 +115,8 @@ def caster_of(geometry: Geometry, movers: Movers, world: int, first: int, last: 
     origin_x, origin_y = float(poses[body, 0, 3]), float(poses[body, 1, 3])
     front, back, left, right, low, high = -1e9, 1e9, -1e9, 1e9, 1e9, -1e9
     for slot in range(first, last):
+        if parts[slot] < 0:
+            continue
         pose, box = poses[slot], geometry.box[geometry.part_first + parts[slot]]
         x, y, z = pose[0, 3] - origin_x, pose[1, 3] - origin_y, float(pose[2, 3])
         along, aside = x * along_x + y * along_y, y * along_x - x * along_y

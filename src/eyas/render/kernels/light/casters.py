@@ -13,7 +13,6 @@ from eyas.core.jit import inlined_kernel, inner_kernel
 from eyas.core.lanes import (
     WIDTH,
     any_of,
-    gather_column,
     lane_numbers,
     lesser,
     load,
@@ -40,7 +39,8 @@ from eyas.render.kernels.light.shadow_boxes import darken
 from eyas.render.kernels.samples import ScreenBox, around, nowhere, point_of, ray_of_row
 from eyas.render.kernels.scalars import f4, i4, u4
 from eyas.render.kernels.visibility.cull import sphere_is_visible
-from eyas.render.kernels.visibility.key import distance_inverse, drawn_of, tag_of
+from eyas.render.kernels.visibility.key import distance_inverse, tag_of
+from eyas.render.kernels.visibility.things import belongs_to, end_of_thing, next_thing
 
 __all__ = ["cast_light"]
 
@@ -114,17 +114,6 @@ def _screen_box(caster: Caster, sun: Direction, view: View) -> ScreenBox:
     return box
 
 
-@inlined_kernel
-def _belongs_to(tag: int, drawn: NDArray[np.int32], first: int, last: int) -> bool:
-    """Return which samples show instances `first` to `last`."""
-    moved = tag < i4(0)
-    if not any_of(moved):
-        return moved
-    # Other samples look at row 0.
-    instance = gather_column(drawn, select(moved, drawn_of(tag), i4(0)), 1, 2)
-    return moved & (instance >= i4(first)) & (instance < i4(last))
-
-
 @inner_kernel
 def _cast_shadow(
     caster: Caster,
@@ -153,7 +142,7 @@ def _cast_shadow(
             x, y, z = point_of(sight, view, ray, columns, select(seen, inverse, f4(1.0)))
             seen &= z <= top
             if any_of(seen):
-                seen &= ~_belongs_to(tag_of(keys), drawn, first, last)
+                seen &= ~belongs_to(tag_of(keys), drawn, first, last)
             if not any_of(seen):
                 continue
             direct, open_share = darken(boxes, x, y, z)
@@ -194,16 +183,10 @@ def cast_light(
     samples = key.shape[0] * key.shape[1]
     for at in range(0, samples, WIDTH):
         store_words(shade, 4 * min(at, samples - WIDTH), splat(u4(0xFFFF)))
-    parts, object_ids = movers.part[world], movers.object_id[world]
-    fixtures = len(geometry.fixture_prototype)
-    first = 0
-    while first < len(parts):
-        last = first + 1
-        if parts[first] < 0:
-            first = last
-            continue
-        while last < len(parts) and parts[last] >= 0 and object_ids[last] == object_ids[first]:
-            last += 1
+    fixtures, slots = len(geometry.fixture_prototype), movers.part.shape[1]
+    first = next_thing(movers, world, 0)
+    while first < slots:
+        last = end_of_thing(movers, world, first)
         if _may_reach(geometry, movers, world, first, last, sun, lamps_on, view):
             caster = address_of(caster_of(geometry, movers, world, first, last))
             if _may_show(caster, sun, view):
@@ -212,4 +195,4 @@ def cast_light(
                 )
             if lamps_on and has_lamps(geometry, movers, world, first, last):
                 cast_beam(caster, view, key, shade)
-        first = last
+        first = next_thing(movers, world, last)

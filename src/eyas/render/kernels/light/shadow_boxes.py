@@ -18,7 +18,7 @@ _INSET = 0.3
 _EDGE = 0.15
 """Length of the ray inside a box that hides all of the sun, for a point at the box [m]."""
 
-_WIDENING = 0.25
+_WIDENING = 0.12
 """Growth of that length with the distance of the box."""
 
 _STEEP = 1e-4

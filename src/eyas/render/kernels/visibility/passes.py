@@ -15,6 +15,7 @@ from eyas.state.draw import DrawStage
 __all__ = ["draw_scene", "draw_slots"]
 
 CULLING = int(DrawStage.CULLING)
+SHADING = int(DrawStage.SHADING)
 
 SMALLEST_DETAIL = 0.35
 """Details whose area has a smaller root are left out [pixels]."""
@@ -82,9 +83,8 @@ def draw_slots(
         key: Drawn into, shape (rows, columns).
         count: Rows of `drawn` that are used before.
     """
-    until = int(DrawStage.SHADING)
     after = list_slots(geometry, movers, world, first, last, view, scratch, worker, -count, count)
-    _draw_listed(until, geometry, movers, world, view, scratch, worker, after - count, key)
+    _draw_listed(SHADING, geometry, movers, world, view, scratch, worker, after - count, key)
     return after
 
 

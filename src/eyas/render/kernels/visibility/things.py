@@ -1,0 +1,52 @@
+"""Moving things: the slots of a draw list that belong together, and the samples that show them."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.jit import inlined_kernel
+from eyas.core.lanes import any_of, gather_column, select
+from eyas.render.kernels.bundles import Movers
+from eyas.render.kernels.scalars import i4
+from eyas.render.kernels.visibility.key import drawn_of
+
+__all__ = ["belongs_to", "end_of_thing", "next_thing"]
+
+
+@inlined_kernel
+def next_thing(movers: Movers, world: int, slot: int) -> int:
+    """Return the first slot from `slot` on that is not empty, or the number of slots."""
+    parts = movers.part[world]
+    while slot < len(parts) and parts[slot] < 0:
+        slot += 1
+    return slot
+
+
+@inlined_kernel
+def end_of_thing(movers: Movers, world: int, first: int) -> int:
+    """Return the slot after those in a row with the object id of slot `first`.
+
+    Some between them may be empty.
+    """
+    object_ids = movers.object_id[world]
+    last = first + 1
+    while last < len(object_ids) and object_ids[last] == object_ids[first]:
+        last += 1
+    return last
+
+
+@inlined_kernel
+def belongs_to(tag: int, drawn: NDArray[np.int32], first: int, last: int) -> bool:
+    """Return which samples show instances `first` to `last`.
+
+    Args:
+        tag: Tags of the samples.
+        drawn: See `Scratch`, shape (I, 2).
+        first: First instance.
+        last: Last instance + 1.
+    """
+    moved = tag < i4(0)
+    if not any_of(moved):
+        return moved
+    # The others look at row 0.
+    instance = gather_column(drawn, select(moved, drawn_of(tag), i4(0)), 1, 2)
+    return moved & (instance >= i4(first)) & (instance < i4(last))
