@@ -8,12 +8,14 @@ from eyas.core.pinhole import intrinsics
 from eyas.exports.frame import Action, Body, CameraPose, Frame, Subject
 from eyas.exports.writer import Episode, Run
 from eyas.sim.config import SimConfig
+from eyas.state.scene import ObjectClass
 from eyas.task.direction import TargetDirection
 from eyas.task.done import DoneReason
 
 TARGET = Subject(
     object_id=65536 + 3,
     type="BmwX5Simple",
+    object_class=ObjectClass.CAR,
     size=np.array([4.6, 1.9, 1.7]),
     position=np.array([14.0, 2.0, 0.37]),
     centre=np.array([13.0, 2.0, 0.37]),

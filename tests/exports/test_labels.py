@@ -9,6 +9,7 @@ from eyas.core.errors import DataFileError
 from eyas.exports.frame import Action
 from eyas.exports.labels import LabelWriter, label_of, read_labels
 from eyas.exports.summary import Scores, Summary
+from eyas.state.scene import ObjectClass
 from eyas.task.done import DoneReason
 
 
@@ -48,6 +49,15 @@ def test_a_label_says_what_the_frame_holds(frame):
     assert label.target_velocity == [13.0, 0.0, 0.0]
 
 
+def test_a_label_lists_the_other_vehicles(written, frame):
+    other = replace(frame(0).target, object_id=65536 + 9, object_class=ObjectClass.BUS)
+    (label,) = read_labels(written(frame(0, others=(other,))))
+    (said,) = label.others
+    assert (label.target_id, said.id, said.class_id) == (65539, 65545, 12)
+    assert (said.box, said.visible_fraction, said.type) == ([10, 11, 20, 17], 0.75, "BmwX5Simple")
+    assert (said.centre, said.velocity, said.yaw) == ([13.0, 2.0, 0.37], [13.0, 0.0, 0.0], 0.0)
+
+
 def test_a_target_outside_the_picture_is_not_occluded(frame):
     target = replace(frame(0).target, box=np.zeros(4, np.int32), seen_pixels=0, covered_pixels=0)
     label = label_of(frame(0, target=target))
@@ -69,6 +79,7 @@ def test_labels_that_are_not_there_tell_nothing(run, tmp_path):
     [
         (lambda text: text[:-30], "line 2 is cut off or not JSON"),
         (lambda text: text.replace('"reward"', '"rewind"'), "line 1 is not the label of a frame"),
+        (lambda text: text.replace("[]}", "[1]}"), "line 1 is not the label of a frame"),
     ],
 )
 def test_damaged_labels_say_where(run, written, frame, damage, line):

@@ -28,6 +28,7 @@ from eyas.modes.video.config import VideoConfig
 from eyas.modes.video.lock import recording_lock
 from eyas.sensors.config import CameraConfig
 from eyas.settings.config import EyasConfig
+from eyas.state.scene import ACTOR_OBJECT
 from eyas.task.config import DoneConfig
 from eyas.task.direction import TargetDirection
 
@@ -281,9 +282,9 @@ def test_an_overlay_changes_pictures_and_films_but_no_label_and_no_mark(recorded
 
 
 class Probe(Writer):
-    """Compares the ids of all pixels with what is said about the target."""
+    """Compares the ids of all pixels with what is said about the target and other vehicles."""
 
-    wants = frozenset({"object_id", "depth"})
+    wants = frozenset({"object_id", "depth", "others"})
     files = Files(episode=("pixels.json",))
 
     def begin(self, episode: Episode) -> Gather[tuple[int, int, float, float]]:
@@ -296,6 +297,10 @@ class Probe(Writer):
         assert frame.rgb is None
         assert frame.class_id is None
         shown = frame.object_id == frame.target.object_id
+        for other in frame.others:
+            assert (frame.object_id == other.object_id).sum() == other.seen_pixels
+        vehicles = set(np.unique(frame.object_id[frame.object_id >= ACTOR_OBJECT]).tolist())
+        assert vehicles == {frame.target.object_id} | {other.object_id for other in frame.others}
         near = np.linalg.norm(frame.target.centre - frame.camera.position)
         return (
             int(shown.sum()),

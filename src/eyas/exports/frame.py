@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
 from eyas.state.draw import Picture
-from eyas.state.scene import ACTOR_OBJECT
+from eyas.state.scene import ACTOR_OBJECT, ObjectClass
 from eyas.state.snapshot import CameraState, Snapshot, TargetState, TrackerState
-from eyas.targets.catalogue import MODELS
+from eyas.targets.catalogue import MODELS, kind_of
 from eyas.task.direction import TargetDirection
 from eyas.task.done import DoneReason
 
@@ -28,11 +28,11 @@ __all__ = [
 
 Floats: TypeAlias = NDArray[np.float64]
 
-Output = Literal["rgb", "depth", "object_id", "class_id"]
-"""Name of a picture of a frame, and of its field in `Frame`."""
+Output = Literal["rgb", "depth", "object_id", "class_id", "others"]
+"""Name of a field of `Frame` that costs time: a picture, or the other moving objects."""
 
 OUTPUTS: tuple[Output, ...] = get_args(Output)
-"""All names of pictures."""
+"""All these names."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,6 +84,8 @@ class Subject:
     """Its value in `Frame.object_id`; the same in all frames of an episode."""
     type: str
     """Name of its model."""
+    object_class: ObjectClass
+    """Its class, the number in `Frame.class_id`."""
     size: Floats
     """Length, width, height [m], shape (3,)."""
     position: Floats
@@ -126,7 +128,8 @@ class Frame:
     target: Subject
     """The target of the tracker."""
     others: tuple[Subject, ...]
-    """Other moving objects in the picture; empty in this version, which measures only targets."""
+    """All other moving objects of which a pixel is visible, in the order of their ids; empty if no
+    writer wants them."""
     action: Action
     reward: float
     """Reward at this time."""
@@ -149,8 +152,14 @@ class Frame:
         return self.step * PHYSICS_STEP
 
 
-def frame_of(
-    snapshot: Snapshot, tracker: int, picture: Picture, view: int, number: int, action: Action
+def frame_of(  # noqa: PLR0913  # everything that a frame holds
+    snapshot: Snapshot,
+    tracker: int,
+    picture: Picture,
+    view: int,
+    number: int,
+    action: Action,
+    others: tuple[Subject, ...] = (),
 ) -> Frame:
     """Return a frame that later steps and pictures do not change.
 
@@ -161,6 +170,7 @@ def frame_of(
         view: The tracker's row in `picture`.
         number: Number of the frame in its episode.
         action: The tracker's action.
+        others: Other moving objects in the picture, see `eyas.exports.others.others_of`.
     """
     episodes = snapshot.episodes
     return Frame(
@@ -170,7 +180,7 @@ def frame_of(
         tracker=_body(snapshot.trackers, tracker),
         camera=_camera(snapshot.cameras, tracker),
         target=_target(snapshot.targets, tracker, picture, view),
-        others=(),
+        others=others,
         action=action,
         reward=float(episodes.reward[tracker]),
         direction=TargetDirection(episodes.direction[tracker]),
@@ -209,6 +219,7 @@ def _target(targets: TargetState, tracker: int, picture: Picture, view: int) -> 
     return Subject(
         object_id=ACTOR_OBJECT + int(targets.actor[tracker]),
         type=MODELS[targets.model[tracker]].name,
+        object_class=kind_of(int(targets.model[tracker])).object_class,
         size=targets.size[tracker].copy(),
         position=targets.position[tracker].copy(),
         centre=targets.centre[tracker].copy(),

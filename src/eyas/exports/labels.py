@@ -3,22 +3,38 @@
 import json
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from eyas.core.errors import DataFileError
 from eyas.core.frames import rotate_back
 from eyas.exports.files import Files
-from eyas.exports.frame import Frame
+from eyas.exports.frame import Frame, Subject
 from eyas.exports.gather import Gather
 from eyas.exports.rounding import rounded, rounded_list
 from eyas.exports.summary import Scores, Summary
 from eyas.exports.writer import Episode, Writer
 from eyas.task.done import DoneReason
 
-__all__ = ["FrameLabel", "LabelWriter", "label_of", "read_labels"]
+__all__ = ["FrameLabel", "LabelWriter", "OtherLabel", "label_of", "read_labels"]
 
 LABELS = "labels.jsonl"
+
+
+@dataclass(frozen=True, slots=True)
+class OtherLabel:
+    """A moving object that is not the target; its fields are like those of the target."""
+
+    id: int
+    type: str
+    class_id: int
+    """`eyas.state.scene.ObjectClass`, as in the class pictures."""
+    box: list[int]
+    visible_fraction: float
+    size: list[float | None]
+    centre: list[float | None]
+    velocity: list[float | None]
+    yaw: float | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +70,8 @@ class FrameLabel:
     """Camera to world, three rows; columns are the camera's forward, left and up axes."""
     field_of_view: float | None
     """Horizontal field of view of the camera [rad]."""
+    target_id: int
+    """Number of the target in the id pictures; the same in all frames of an episode."""
     target_type: str
     """Name of the target's model."""
     target_size: list[float | None]
@@ -76,11 +94,14 @@ class FrameLabel:
     """Turn of the target: 0 stop, 1 straight, 2 left, 3 right."""
     done: bool
     """Whether the episode ends with this frame."""
+    others: list[OtherLabel]
+    """All other moving objects of which a pixel is visible, in the order of their ids."""
 
 
 class LabelWriter(Writer):
     """`labels.jsonl`."""
 
+    wants = frozenset({"others"})
     files = Files(episode=(LABELS,))
 
     def begin(self, episode: Episode) -> Gather[FrameLabel]:
@@ -119,6 +140,7 @@ def label_of(frame: Frame) -> FrameLabel:
         camera_position=rounded_list(camera.position),
         camera_rotation=[rounded_list(row) for row in camera.rotation],
         field_of_view=rounded(camera.field_of_view),
+        target_id=target.object_id,
         target_type=target.type,
         target_size=rounded_list(target.size),
         target_position=rounded_list(target.position),
@@ -130,6 +152,21 @@ def label_of(frame: Frame) -> FrameLabel:
         action=frame.action.number,
         direction=int(frame.direction),
         done=frame.reason is not DoneReason.NONE,
+        others=[_other(subject) for subject in frame.others],
+    )
+
+
+def _other(subject: Subject) -> OtherLabel:
+    return OtherLabel(
+        id=subject.object_id,
+        type=subject.type,
+        class_id=int(subject.object_class),
+        box=subject.box.tolist(),
+        visible_fraction=round(subject.visible_fraction, 6),
+        size=rounded_list(subject.size),
+        centre=rounded_list(subject.centre),
+        velocity=rounded_list(subject.velocity),
+        yaw=rounded(subject.yaw),
     )
 
 
@@ -144,7 +181,6 @@ def read_labels(path: Path) -> list[FrameLabel]:
     Raises:
         DataFileError: The file is missing, cut off, or does not hold labels.
     """
-    known = {field.name for field in fields(FrameLabel)}
     labels = []
     try:
         text = path.read_text()
@@ -155,7 +191,9 @@ def read_labels(path: Path) -> list[FrameLabel]:
             record = json.loads(line)
         except ValueError:
             raise DataFileError(f"{path}: line {number} is cut off or not JSON") from None
-        if not isinstance(record, dict) or record.keys() != known:
-            raise DataFileError(f"{path}: line {number} is not the label of a frame")
-        labels.append(FrameLabel(**record))
+        try:
+            others = [OtherLabel(**other) for other in record["others"]]
+            labels.append(FrameLabel(**{**record, "others": others}))
+        except (TypeError, LookupError):
+            raise DataFileError(f"{path}: line {number} is not the label of a frame") from None
     return labels

@@ -101,7 +101,8 @@ class Writer(Protocol):
     """
 
     wants: ClassVar[AbstractSet[Output]] = frozenset()
-    """Pictures that it needs. Others are not drawn; boxes and pixel counts always exist."""
+    """Pictures that it needs, and `others` if it needs `Frame.others`. What no writer wants is not
+    drawn or measured; box and pixels of the target always exist."""
     files: ClassVar[Files]
     """All files that it writes."""
 

@@ -14,6 +14,7 @@ from eyas.sim.pictures import Pictures
 from eyas.sim.step import Orders, StepState, Surroundings, step_of
 from eyas.sim.worlds import Worlds
 from eyas.state.draw import DrawStage, Picture
+from eyas.state.motion import ActorState
 from eyas.state.snapshot import CameraState, Snapshot
 from eyas.task.packet_rows import PacketRows
 from eyas.task.rules import Rules, exact, make_rules
@@ -62,6 +63,7 @@ class Simulation:
         self.count = len(worlds.of)
         self.snapshot = Snapshot.create(self.count)
         light = LightChanges(config.light, assets.lighting, worlds, self.snapshot.light)
+        self._worlds = worlds
         self._episodes = Episodes(config, assets.traffic, worlds, light, self.snapshot)
         self._pictures = Pictures(config, assets, worlds, light, self.snapshot)
         self._kernels = step_of(tracker)
@@ -127,6 +129,18 @@ class Simulation:
     def follow(self, tracker: int, actor: int) -> None:
         """Make another actor of its world the target of a tracker, from the next step on."""
         self._episodes.follow(tracker, actor)
+
+    @property
+    def actors(self) -> int:
+        """Number of actors in each world."""
+        return self._worlds.actors
+
+    def actors_around(self, tracker: int) -> tuple[ActorState, NDArray[np.int32]]:
+        """Return all actors of a tracker's world now, one world, and the model of each.
+
+        The models are indices into `eyas.targets.catalogue.MODELS`, shape (A,).
+        """
+        return self._worlds.actors_around(tracker, int(self.snapshot.episodes.tick[tracker]))
 
     def packets(self) -> tuple[Floats, Floats]:
         """Return copies of the basic packets (N, 22) and the reward packets (N, 60)."""

@@ -70,6 +70,11 @@ class Worlds:
         self._actors = ActorState.create(0, actors)
         self._movers = DrawList.create(0, 0)
 
+    @property
+    def actors(self) -> int:
+        """Number of actors in each world."""
+        return self._assets.traffic.actors
+
     def trackers_of(self, tracker: int) -> Integers:
         """Return all trackers in the world of a tracker, shape (K,)."""
         return np.flatnonzero(self.of == self.of[tracker])
@@ -89,6 +94,17 @@ class Worlds:
     def object_ids(self, actors: NDArray[np.int32]) -> NDArray[np.int32]:
         """Return the object ids of actors."""
         return (actors + ACTOR_OBJECT).astype(np.int32)
+
+    def actors_around(self, tracker: int, tick: int) -> tuple[ActorState, NDArray[np.int32]]:
+        """Return all actors around a tracker at a time, and their models, see `Looks`.
+
+        Args:
+            tracker: The tracker.
+            tick: Time of its world in physics steps.
+        """
+        actors = ActorState.create(1, self._assets.traffic.actors)
+        self._assets.traffic.at(np.array([tick * PHYSICS_STEP]), actors)
+        return actors, self._looks.model[self.of[tracker]]
 
     def draw_list(
         self, trackers: NDArray[np.integer], tick: Integers

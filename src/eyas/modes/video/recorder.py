@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.exports.frame import frame_of
+from eyas.exports.others import others_of
 from eyas.exports.summary import Scores, Summary
 from eyas.exports.writer import EndedEpisode, Episode
 from eyas.modes.video.action import Mover
@@ -53,16 +54,18 @@ class Recorder:
         self._lanes = WriterLanes(count)
         wanted = {output for writer in folder.writers for output in writer.wants}
         self._overlay = config.video.overlay and "rgb" in wanted
+        pictures = wanted - {"others"}
         self._picture = Picture.create(
             count,
             config.camera.height,
             config.camera.width,
             rgb="rgb" in wanted,
             # A picture needs at least one array of pixels; this one is the fastest.
-            depth="depth" in wanted or not wanted,
+            depth="depth" in wanted or not pictures,
             object_id="object_id" in wanted,
             class_id="class_id" in wanted,
             subject=True,
+            actors=sim.actors if "others" in wanted else 0,
         )
         self._going: list[_Going | None] = [None] * count
         self._begun: list[EpisodeFiles] = []
@@ -111,7 +114,8 @@ class Recorder:
         assert going is not None
         assert going.files is not None
         number, action = going.summary.frames, mover.action(tracker)
-        frame = frame_of(self._sim.snapshot, tracker, picture, view, number, action)
+        others = others_of(self._sim, tracker, picture, view)
+        frame = frame_of(self._sim.snapshot, tracker, picture, view, number, action, others)
         going.summary = going.summary.plus(frame)
         self._lanes.submit(tracker, going.files.add, frame)
 

@@ -1,0 +1,59 @@
+"""The moving objects of a picture besides its target."""
+
+import math
+
+import numpy as np
+
+from eyas.exports.frame import Subject
+from eyas.sim.simulation import Simulation
+from eyas.state.draw import Picture
+from eyas.state.motion import ActorState
+from eyas.state.scene import ACTOR_OBJECT
+from eyas.targets.catalogue import MODELS, kind_of
+from eyas.task.direction import target_centre
+
+__all__ = ["others_of"]
+
+
+def others_of(
+    simulation: Simulation, tracker: int, picture: Picture, view: int
+) -> tuple[Subject, ...]:
+    """Return all visible moving objects except the tracker's target, in the order of their ids.
+
+    Args:
+        simulation: The simulation, at the time of the picture.
+        tracker: The tracker of the picture.
+        picture: The picture, with the boxes and pixels of all actors, if they were measured.
+        view: The tracker's row in `picture`.
+    """
+    if picture.actor_pixels is None:
+        return ()
+    visible = picture.actor_pixels[view, :, 0] > 0
+    visible[simulation.snapshot.targets.actor[tracker]] = False
+    actors, models = simulation.actors_around(tracker)
+    return tuple(
+        _subject(actors, actor, int(models[actor]), picture, view)
+        for actor in np.flatnonzero(visible).tolist()
+    )
+
+
+def _subject(actors: ActorState, actor: int, model: int, picture: Picture, view: int) -> Subject:
+    assert picture.actor_box is not None
+    assert picture.actor_pixels is not None
+    kind, (x, y, z) = kind_of(model), actors.position[0, actor].tolist()
+    yaw, speed = float(actors.yaw[0, actor]), float(actors.speed[0, actor])
+    seen, covered = (int(pixels) for pixels in picture.actor_pixels[view, actor])
+    height = z + MODELS[model].rise
+    return Subject(
+        object_id=ACTOR_OBJECT + actor,
+        type=MODELS[model].name,
+        object_class=kind.object_class,
+        size=np.array(MODELS[model].size, np.float64),
+        position=np.array([x, y, height]),
+        centre=np.array([*target_centre(x, y, yaw, kind.ahead), height]),
+        velocity=np.array([speed * math.cos(yaw), speed * math.sin(yaw), 0.0]),
+        yaw=yaw,
+        box=picture.actor_box[view, actor].copy(),
+        seen_pixels=seen,
+        covered_pixels=covered,
+    )

@@ -1,0 +1,65 @@
+"""The other moving objects of a frame, on the shipped map and traffic."""
+
+from dataclasses import fields
+
+import numpy as np
+import pytest
+
+from eyas.exports.frame import Action, frame_of
+from eyas.exports.others import others_of
+from eyas.sim.build import build_simulation
+from eyas.sim.config import SimConfig
+from eyas.sim.worlds import together
+from eyas.state.draw import Picture
+from eyas.state.scene import ACTOR_OBJECT
+
+MEASURED = ("box", "seen_pixels", "covered_pixels")
+
+
+@pytest.fixture(scope="module")
+def simulation():
+    simulation = build_simulation(SimConfig(), together(2))
+    simulation.reset()
+    simulation.advance(np.zeros((2, 4)), 30)
+    return simulation
+
+
+def picture_of(simulation, **wanted) -> Picture:
+    picture = Picture.create(2, 48, 64, subject=True, **wanted)
+    simulation.draw(np.arange(2, dtype=np.int32), picture)
+    return picture
+
+
+def test_another_s_target_is_described_like_a_target(simulation):
+    picture = picture_of(simulation, actors=simulation.actors)
+    picture.actor_pixels[:] = 3, 4  # as if every actor was seen
+    picture.actor_box[:] = 1, 2, 3, 4
+    target = frame_of(simulation.snapshot, 1, picture, 1, 0, Action(-1, None)).target
+    others = others_of(simulation, 0, picture, 0)
+    own = ACTOR_OBJECT + int(simulation.snapshot.targets.actor[0])
+    everyone = [ACTOR_OBJECT + actor for actor in range(simulation.actors)]
+    assert [other.object_id for other in others] == [id_ for id_ in everyone if id_ != own]
+    (same,) = (other for other in others if other.object_id == target.object_id)
+    for field in fields(target):
+        if field.name not in MEASURED:
+            expected = getattr(target, field.name)
+            np.testing.assert_array_equal(getattr(same, field.name), expected, err_msg=field.name)
+    assert (same.box.tolist(), same.seen_pixels, same.covered_pixels) == ([1, 2, 3, 4], 3, 4)
+
+
+def test_they_are_those_whose_pixels_are_in_the_picture(simulation):
+    picture = picture_of(simulation, actors=simulation.actors, object_id=True, class_id=True)
+    for tracker in range(2):
+        own = ACTOR_OBJECT + int(simulation.snapshot.targets.actor[tracker])
+        shown, count = np.unique(picture.object_id[tracker], return_counts=True)
+        seen = {i: n for i, n in zip(shown.tolist(), count.tolist(), strict=True) if i != own}
+        others = others_of(simulation, tracker, picture, tracker)
+        expected = {i: n for i, n in seen.items() if i >= ACTOR_OBJECT}
+        assert {other.object_id: other.seen_pixels for other in others} == expected
+        for other in others:
+            classes = picture.class_id[tracker][picture.object_id[tracker] == other.object_id]
+            assert set(classes.tolist()) == {int(other.object_class)}
+
+
+def test_there_are_none_where_they_were_not_measured(simulation):
+    assert others_of(simulation, 0, picture_of(simulation), 0) == ()
