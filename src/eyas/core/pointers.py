@@ -1,4 +1,4 @@
-"""Bundles by pointer: a kernel reads `bundle.field` of a named tuple in memory, and loads only that.
+"""Bundles by pointer: a kernel reads `bundle.field` of a named tuple, and loads only that.
 
 By value, a call copies every word of its bundles, some hundred, and each caller is compiled with
 code that takes them apart.
@@ -13,6 +13,7 @@ from numba.extending import intrinsic
 
 __all__ = ["address_of", "field_type", "load_field"]
 
+
 def field_type(pointer: types.CPointer, name: str) -> types.Type | None:
     """Return the type of a field of the named tuple that a pointer points to, if it has it."""
     kind = pointer.dtype
@@ -21,7 +22,7 @@ def field_type(pointer: types.CPointer, name: str) -> types.Type | None:
     return None
 
 
-def load_field(context: Any, builder: Any, kind: types.CPointer, pointer: Any, name: str) -> Any:  # noqa: ANN401
+def load_field(context: Any, builder: Any, kind: types.CPointer, pointer: Any, name: str) -> Any:
     """Return the value of a field, loaded through the pointer."""
     index = kind.dtype.fields.index(name)
     field = context.data_model_manager[kind.dtype[index]]
@@ -53,4 +54,3 @@ def address_of(typing_context, bundle):
         return slot
 
     return types.CPointer(bundle)(bundle), generate
-

@@ -7,7 +7,7 @@ from llvmlite import ir
 from numba.core import types
 from numba.extending import intrinsic
 
-from eyas.core.lanes.kinds import F4, I4, U4, WIDTH, Lanes, as_lanes, ir_type
+from eyas.core.lanes.kinds import F4, U4, WIDTH, Lanes, as_lanes, ir_type
 
 __all__ = [
     "gather", "gather_column", "gather_pair", "load", "load_words", "store", "store_triples",
@@ -17,18 +17,18 @@ __all__ = [
 _I32, _I64 = ir.IntType(32), ir.IntType(64)
 
 
-def _pointer(context: Any, builder: Any, array: Any, value: Any, at: Any) -> ir.Value:  # noqa: ANN401
+def _pointer(context: Any, builder: Any, array: Any, value: Any, at: Any) -> ir.Value:
     data = context.make_array(array)(context, builder, value).data
     return builder.gep(data, [at])
 
 
-def _load(builder: Any, pointer: Any, align: int) -> ir.Value:  # noqa: ANN401
+def _load(builder: Any, pointer: Any, align: int) -> ir.Value:
     value = builder.load(pointer)
     value.align = align
     return value
 
 
-def _each(builder: Any, kind: types.Type, index: ir.Value) -> list[ir.Value]:  # noqa: ANN401
+def _each(builder: Any, kind: types.Type, index: ir.Value) -> list[ir.Value]:
     """Return the indices in the lanes, or the one index, as 64 bits."""
     if not isinstance(kind, Lanes):
         return [index if index.type == _I64 else builder.sext(index, _I64)]
@@ -36,7 +36,7 @@ def _each(builder: Any, kind: types.Type, index: ir.Value) -> list[ir.Value]:  #
     return [builder.sext(item, _I64) for item in items]
 
 
-def _collected(builder: Any, kind: types.Type, items: list[ir.Value]) -> ir.Value:  # noqa: ANN401
+def _collected(builder: Any, kind: types.Type, items: list[ir.Value]) -> ir.Value:
     if not isinstance(kind, Lanes):
         return items[0]
     value = ir.Constant(ir_type(kind), ir.Undefined)
@@ -130,7 +130,7 @@ def transposed(typing_context, array, index, first, width):
     return result(array, index, first, width), generate
 
 
-def _transpose(builder: Any, rows: list[ir.Value]) -> list[ir.Value]:  # noqa: ANN401
+def _transpose(builder: Any, rows: list[ir.Value]) -> list[ir.Value]:
     """Return the columns of eight rows: pairs, then fours, then halves are exchanged."""
 
     def mixed(a: ir.Value, b: ir.Value, order: list[int]) -> ir.Value:
@@ -150,7 +150,7 @@ def _transpose(builder: Any, rows: list[ir.Value]) -> list[ir.Value]:  # noqa: A
     return columns + [mixed(fours[k], fours[k + 4], last) for k in range(4)]
 
 
-def _loading(result: types.Type, align: int) -> Any:  # noqa: ANN401
+def _loading(result: types.Type, align: int) -> Any:
     def generate(context, builder, sig, args):
         at = context.cast(builder, args[1], sig.args[1], types.int64)
         pointer = _pointer(context, builder, sig.args[0], args[0], at)
@@ -173,7 +173,7 @@ def load_words(typing_context, array, at):
     return U4(array, at), _loading(U4, 1)
 
 
-def _storing(align: int) -> Any:  # noqa: ANN401
+def _storing(align: int) -> Any:
     def generate(context, builder, sig, args):
         at = context.cast(builder, args[1], sig.args[1], types.int64)
         pointer = _pointer(context, builder, sig.args[0], args[0], at)

@@ -69,7 +69,7 @@ lesser = intrinsic(_extreme("<"))
 greater = intrinsic(_extreme(">"))
 
 
-def _bits(builder: Any, mask: ir.Value) -> ir.Value:  # noqa: ANN401
+def _bits(builder: Any, mask: ir.Value) -> ir.Value:
     return builder.bitcast(mask, ir.IntType(WIDTH if isinstance(mask.type, ir.VectorType) else 1))
 
 
@@ -115,7 +115,7 @@ def first_bit(typing_context, bits):
     return types.int64(types.int64), generate
 
 
-def _unary(name: str, of_number: Callable[..., Any], *, gives_integers: bool = False) -> Any:  # noqa: ANN401
+def _unary(name: str, of_number: Callable[..., Any], *, gives_integers: bool = False) -> Any:
     """Return a function of floats: LLVM's for lanes, Python's for a number, for CUDA knows that."""
 
     def typed(typing_context, a):

@@ -28,9 +28,7 @@ def pack(red: int, green: int, blue: int) -> int:
 
 
 @inlined_kernel
-def write_pixels(
-    pixels: NDArray[np.uint8], row: int, first: int, chosen: int, packed: int
-) -> None:
+def write_pixels(pixels: NDArray[np.uint8], row: int, first: int, chosen: int, packed: int) -> None:
     """Write packed bytes to those of eight pixels, from column `first` on, whose bit is set."""
     if chosen == _ALL:
         store_triples(pixels, (row * pixels.shape[1] + first) * 3, packed)

@@ -47,9 +47,7 @@ def lamp_grid(
 
 
 def _frame(west: float, south: float, cell: float, cut_off: float) -> LampFrame:
-    return LampFrame(
-        np.float32(west), np.float32(south), np.float32(1 / cell), np.float32(cut_off)
-    )
+    return LampFrame(np.float32(west), np.float32(south), np.float32(1 / cell), np.float32(cut_off))
 
 
 PAPER = 1.05

@@ -24,7 +24,10 @@ def _sunlit(light: Light, x: float, y: float, z: float) -> float:
     i, j = to_i4(line), to_i4(column)
     across, down = column - to_f4(j), line - to_f4(i)
     at = i * i4(columns) + j
-    upper, lower = gather_pair(heights, at), gather_pair(heights, at + select(inside, i4(columns), i4(0)))
+    upper, lower = (
+        gather_pair(heights, at),
+        gather_pair(heights, at + select(inside, i4(columns), i4(0))),
+    )
     half, low = u4(16), u4(0xFFFF)
     a = select(to_f4(upper & low) <= height, one, zero)
     b = select(to_f4(upper >> half) <= height, one, zero)

@@ -26,7 +26,7 @@ def view_light(weather: Illumination, change: NDArray[np.float32]) -> Illuminati
         weather: Light of the weather.
         change: Factor on the sky, factor on the sun, fog density [1/m], shape (3,).
     """
-    sky, sun, air = change[0], change[1], weather.air
+    sky, sun = change[0], change[1]
     return Illumination(
         weather.sun,
         _scaled(sun, weather.sun_colour),
@@ -35,8 +35,14 @@ def view_light(weather: Illumination, change: NDArray[np.float32]) -> Illuminati
         _scaled(sky, weather.above),
         _scaled(f4(0.5) * (sky + sun), weather.below),
         _scaled(sky, weather.fog),
-        Air(
-            change[2], air.power, air.exposure, air.offset, air.snow, air.lamps, air.windows,
-            air.clouds, air.flakes,
-        ),  # fmt: skip
+        _air(weather.air, change[2]),
     )
+
+
+@inlined_kernel
+def _air(air: Air, density: float) -> Air:
+    """Return the air with another density of fog."""
+    return Air(
+        density, air.power, air.exposure, air.offset, air.snow, air.lamps, air.windows,
+        air.clouds, air.flakes,
+    )  # fmt: skip

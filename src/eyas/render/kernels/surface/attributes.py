@@ -145,9 +145,7 @@ def attributes_of(
     u, v = u0 + u_x * x + u_y * y + u_z * z, v0 + v_x * x + v_y * y + v_z * z
     bent = density < f4(0.0)
     if any_of(bent):
-        nx_y, nx_z, ny_x, ny_y, ny_z, nz_x, nz_y, nz_z = transposed(
-            shading, triangle, 24, _COLUMNS
-        )
+        nx_y, nx_z, ny_x, ny_y, ny_z, nz_x, nz_y, nz_z = transposed(shading, triangle, 24, _COLUMNS)
         nx += nx_x * x + nx_y * y + nx_z * z
         ny += ny_x * x + ny_y * y + ny_z * z
         nz += nz_x * x + nz_y * y + nz_z * z

@@ -6,7 +6,6 @@ from numpy.typing import NDArray
 from eyas.core.jit import inlined_kernel, inner_kernel
 from eyas.core.lanes import (
     WIDTH,
-    all_of,
     any_of,
     bits_of,
     first_bit,
@@ -24,7 +23,7 @@ from eyas.core.lanes import (
 from eyas.render.kernels.bundles import Geometry, Illumination, Light, Movers, View
 from eyas.render.kernels.light.tone import tone_bytes
 from eyas.render.kernels.pixels import keys_of, pack, write_pixels
-from eyas.render.kernels.rays import ray_of, rays_of
+from eyas.render.kernels.rays import Rays, ray_of, rays_of
 from eyas.render.kernels.scalars import f4, i4, i8, u4
 from eyas.render.kernels.surface.attributes import Frame, frame_of, no_frame
 from eyas.render.kernels.surface.shade import shade_point
@@ -48,7 +47,7 @@ def instance_frame(
 
 @inlined_kernel
 def _colours(
-    view: View,
+    rays: Rays,
     geometry: Geometry,
     light: Light,
     lit: Illumination,
@@ -66,7 +65,6 @@ def _colours(
 
     All samples of one instance are computed together: its pose is the same number in all lanes.
     """
-    rays = rays_of(view)
     ray, eye = ray_of(rays, line, column), (rays.eye.x, rays.eye.y, rays.eye.z)
     row, triangle = drawn_of(tag), triangle_of(tag)
     red, green, blue = splat(u4(0)), splat(u4(0)), splat(u4(0))
@@ -78,9 +76,12 @@ def _colours(
         frame, first = no_frame(), i4(0)
         if which >= 0:
             frame, first = instance_frame(geometry, movers, world, drawn, which), drawn[which, 0]
+        # Chosen here, so that what depends on the point alone is not the same in all rounds: LLVM
+        # would compute that before the loop, snow too where none has fallen.
+        away = select(same, distance, f4(1.0))
         colour = shade_point(
             geometry, light, lit, select(same, triangle + first, i4(0)), which >= 0, frame, eye,
-            ray, distance, rays.pixel, shade,
+            ray, away, rays.pixel, shade,
         )  # fmt: skip
         r, g, b = tone_bytes(light, lit.air.exposure, colour)
         red, green, blue = select(same, r, red), select(same, g, green), select(same, b, blue)
@@ -88,16 +89,32 @@ def _colours(
 
 
 @inlined_kernel
-def _uniform(key: NDArray[np.int64], line: int, sample: int) -> tuple[bool, float]:
-    """Return where the four samples of each pixel show one triangle, and their mean 1/distance."""
-    first = keys_of(key, line, sample, 2)
-    tag, total = tag_of(first), distance_inverse(first)
-    same = first != i8(0)
-    for k in range(1, 4):
-        keys = keys_of(key, line + (k >> 1), sample + (k & 1), 2)
-        same &= (tag_of(keys) == tag) & (keys != i8(0))
-        total += distance_inverse(keys)
-    return same, total * f4(0.25)
+def _alike(
+    key: NDArray[np.int64], line: int, sample: int, k: int
+) -> tuple[int, bool, int, float, float, float]:
+    """Compare sample `k` of four of eight pixels with the others.
+
+    Returns:
+        Its tag, whether no sample before it shows the same, and of all that show the same: how
+        many they are, and the means of 1/distance, row and column from the pixel's corner.
+    """
+    tag = tag_of(keys_of(key, line + (k >> 1), sample + (k & 1), 2))
+    zero = f4(0.0)
+    count, total = splat(zero), splat(zero)
+    down, right = splat(zero), splat(zero)
+    is_first = splat(f4(1.0)) > zero
+    for other in range(4):
+        keys = keys_of(key, line + (other >> 1), sample + (other & 1), 2)
+        same = (tag_of(keys) == tag) & (keys != i8(0))
+        if other < k:
+            is_first &= ~same
+        share = select(same, splat(f4(1.0)), zero)
+        count += share
+        total += share * distance_inverse(keys)
+        down += share * (f4(other >> 1) + f4(0.5))
+        right += share * (f4(other & 1) + f4(0.5))
+    part = f4(1.0) / greater(count, f4(1.0))
+    return tag, is_first, to_u4(to_i4(count)), total * part, down * part, right * part
 
 
 @inner_kernel
@@ -115,8 +132,9 @@ def shade_band(
 ) -> None:
     """Write the pixels of a band except the sky, which `draw_backdrop` has already written.
 
-    A pixel whose four samples show one triangle is computed once, at its centre: 1/distance is
-    linear on the screen, so its value there is the mean of the four.
+    With four samples, each triangle that a pixel shows is computed once, in the middle of the
+    samples that show it, and counts as often as there are of them; 1/distance is linear on the
+    screen, so the mean of theirs is the one in the middle.
 
     Args:
         view: The band.
@@ -130,53 +148,43 @@ def shade_band(
         shade: See `Scratch`, shape (rows, columns, 4).
         pixels: sRGB, shape (rows, columns, 3).
     """
-    samples, width = view.samples, pixels.shape[1]
-    numbers = to_f4(lane_numbers())
+    rays, samples, width = rays_of(view), view.samples, pixels.shape[1]
+    numbers, half = to_f4(lane_numbers()), splat(f4(0.5))
     for row in range(pixels.shape[0]):
         for first in range(0, width, WIDTH):
             line, sample = row * samples, first * samples
-            whole, mean = splat(samples == 1), splat(f4(0.0))
-            if samples == 2:
-                whole, mean = _uniform(key, line, sample)
-            centre = select(whole, f4(0.5) * f4(samples), f4(0.5))
             inside = numbers < f4(width - first)
             red, green, blue = splat(u4(0)), splat(u4(0)), splat(u4(0))
             shown = i8(0)
             for k in range(samples * samples):
-                if k > 0 and all_of(whole | ~inside):
-                    break
-                down, right = k // samples, k % samples
-                keys = keys_of(key, line + down, sample + right, samples)
+                at = (line + (k >> 1)) * key.shape[1] + sample + (k & 1)
+                keys = keys_of(key, line + (k >> 1), sample + (k & 1), samples)
                 seen = inside & (keys != i8(0))
                 shown |= bits_of(seen)
-                wanted = seen if k == 0 else seen & ~whole
-                if samples == 2:
-                    back = inside & ~seen
-                    if any_of(back):
-                        r, g, b = _written(pixels, row, first, back)
-                        red, green, blue = red + r, green + g, blue + b
-                if not any_of(wanted):
-                    continue
-                inverse = distance_inverse(keys)
-                if samples == 2:
-                    inverse = select(whole, mean, inverse)
-                distance = f4(1.0) / select(seen, inverse, f4(1.0))
-                at = (line + down) * key.shape[1] + sample + right
-                words = (
-                    load_words(shade, 4 * at)
-                    if samples == 1
-                    else _spread_words(shade, at)
+                tag, inverse, down, right, weight = (
+                    tag_of(keys),
+                    distance_inverse(keys),
+                    half,
+                    half,
+                    splat(u4(1)),
                 )
+                if samples == 2:
+                    r, g, b = _written(pixels, row, first, inside & ~seen)
+                    red, green, blue = red + r, green + g, blue + b
+                    tag, is_first, weight, inverse, down, right = _alike(key, line, sample, k)
+                    seen &= is_first
+                if not any_of(seen):
+                    continue
+                words = load_words(shade, 4 * at) if samples == 1 else _spread_words(shade, at)
                 r, g, b = _colours(
-                    view, geometry, light, lit, movers, world, drawn, tag_of(keys), wanted,
-                    distance, centre + f4(line + down),
-                    numbers * f4(samples) + f4(sample + right) + centre, words,
+                    rays, geometry, light, lit, movers, world, drawn, tag, seen,
+                    f4(1.0) / select(seen, inverse, f4(1.0)), down + f4(line),
+                    numbers * f4(samples) + f4(sample) + right, words,
                 )  # fmt: skip
-                red, green, blue = red + r, green + g, blue + b
+                red, green, blue = red + weight * r, green + weight * g, blue + weight * b
             if samples == 2:
-                red = select(whole, red, (red + u4(2)) >> u4(2))
-                green = select(whole, green, (green + u4(2)) >> u4(2))
-                blue = select(whole, blue, (blue + u4(2)) >> u4(2))
+                two = u4(2)
+                red, green, blue = (red + two) >> two, (green + two) >> two, (blue + two) >> two
             if shown != 0:
                 write_pixels(pixels, row, first, shown, pack(red, green, blue))
 
@@ -194,11 +202,12 @@ def _spread_words(shade: NDArray[np.uint8], at: int) -> int:
 @inlined_kernel
 def _written(pixels: NDArray[np.uint8], row: int, first: int, mask: bool) -> Bytes:
     """Return the bytes that eight pixels have already, 0 where the mask is not set."""
-    at = (lane_numbers() + i4(row * pixels.shape[1] + first)) * i4(3)
-    at = select(mask, at, i4(0))
-    zero = u4(0)
-    return (
-        select(mask, gather(pixels, at), zero),
-        select(mask, gather(pixels, at + i4(1)), zero),
-        select(mask, gather(pixels, at + i4(2)), zero),
-    )
+    zero = splat(u4(0))
+    red, green, blue = zero, zero, zero
+    if any_of(mask):
+        at = (lane_numbers() + i4(row * pixels.shape[1] + first)) * i4(3)
+        at = select(mask, at, i4(0))
+        red = select(mask, gather(pixels, at), zero)
+        green = select(mask, gather(pixels, at + i4(1)), zero)
+        blue = select(mask, gather(pixels, at + i4(2)), zero)
+    return red, green, blue

@@ -152,9 +152,7 @@ def shade_point(
     window = surface == FACADE
     if air.windows > zero and any_of(window):
         shown = select(window, one - alpha, zero)
-        window_r, window_g, window_b = window_light(
-            air.windows, at.building, level, at.u, at.v
-        )
+        window_r, window_g, window_b = window_light(air.windows, at.building, level, at.u, at.v)
         # Blinds and curtains are paler than dark rooms, so more light comes out through them.
         red, green, blue = (
             red * light_r + window_r * shown * (f4(0.35) + shown * red),

@@ -163,7 +163,9 @@ def _lying(
         patch = _seen_noise(x, y, f4(0.9), footprint)
         hollow = _clip((rise - f4(0.45) + f4(0.5) * (patch - f4(0.5))) * f4(4.0))
         hollow = greater(hollow, foot * _clip(f4(0.5) + patch))
-        fallen = (patch + (depth - f4(0.76))) * f4(4.0) + greater(depth - f4(0.9), f4(0.0)) * f4(40.0)
+        fallen = (patch + (depth - f4(0.76))) * f4(4.0) + greater(depth - f4(0.9), f4(0.0)) * f4(
+            40.0
+        )
         lies = select(partly, hollow * _clip(fallen), lies)
     share = lies * (f4(0.12) + f4(0.85) * depth)
     return _mixed(colour, share, f4(0.88) + f4(0.1) * drift)
