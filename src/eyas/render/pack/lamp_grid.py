@@ -47,7 +47,8 @@ def lamp_grid(
 
 
 def _frame(west: float, south: float, cell: float, cut_off: float) -> LampFrame:
-    return LampFrame(np.float32(west), np.float32(south), np.float32(1 / cell), np.float32(cut_off))
+    numbers = np.array([west, south, 1 / cell, cut_off], np.float32)
+    return LampFrame(numbers[0], numbers[1], numbers[2], numbers[3])
 
 
 PAPER = 1.05

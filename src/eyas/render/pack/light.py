@@ -1,5 +1,7 @@
 """Light and air as the kernels read them, and the tone curve."""
 
+from typing import cast
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -61,17 +63,16 @@ def _weather(
     lighting: Lighting, sun: tuple[float, float, float], shadows: ShadowMap
 ) -> Illumination:
     """Return the light of a weather; `sun` is of length 1."""
-    air = Air(
-        density=np.float32(lighting.fog_density),
-        power=np.float32(lighting.fog_power),
-        exposure=np.float32(lighting.exposure),
-        # The largest error of the shadow map within a texel.
-        offset=np.float32(1.1 * shadows.texel),
-        snow=np.float32(lighting.snow),
-        lamps=np.float32(lighting.lamps),
-        windows=np.float32(lighting.windows),
-        clouds=np.float32(lighting.clouds),
-        flakes=np.float32(lighting.flakes),
+    numbers = (
+        lighting.fog_density,
+        lighting.fog_power,
+        lighting.exposure,
+        1.1 * shadows.texel,  # the largest error of the shadow map within a texel
+        lighting.snow,
+        lighting.lamps,
+        lighting.windows,
+        lighting.clouds,
+        lighting.flakes,
     )
     return Illumination(
         sun=_direction(sun),
@@ -81,7 +82,7 @@ def _weather(
         above=_direction(lighting.ambient_up),
         below=_direction(lighting.ambient_down),
         fog=_direction(lighting.fog_colour),
-        air=air,
+        air=Air(*_floats(numbers)),
     )
 
 
@@ -98,8 +99,9 @@ def tone_table() -> NDArray[np.uint8]:
     return table
 
 
-def _floats(values: ArrayLike) -> tuple[np.float32, ...]:
-    return tuple(np.asarray(values, np.float32))
+def _floats(values: ArrayLike) -> tuple[float, ...]:
+    """Return numbers of float32, whose type decides that of the kernels' arithmetic."""
+    return cast("tuple[float, ...]", tuple(np.asarray(values, np.float32)))
 
 
 def _direction(values: ArrayLike) -> Direction:

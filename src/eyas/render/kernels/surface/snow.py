@@ -144,7 +144,7 @@ def _mixed(colour: Colour, share: float, light: float) -> Colour:
 
 
 @inlined_kernel
-def _where(mask: bool, a: Colour, b: Colour) -> Colour:
+def _where(mask: int, a: Colour, b: Colour) -> Colour:
     return select(mask, a[0], b[0]), select(mask, a[1], b[1]), select(mask, a[2], b[2])
 
 
