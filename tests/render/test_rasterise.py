@@ -6,10 +6,13 @@ import numpy as np
 import pytest
 
 from eyas.core.jit import kernel
+from eyas.core.lanes import any_of, lane_numbers, splat
 from eyas.core.pinhole import rays
+from eyas.render.kernels.scalars import i4
+from eyas.render.kernels.visibility.fill import SPAN_ROWS, fill
 from eyas.render.kernels.visibility.holes import no_holes
 from eyas.render.kernels.visibility.meshes import ASIDE
-from eyas.render.kernels.visibility.rasterise import BOTH_SIDES, FRONT, rasterise
+from eyas.render.kernels.visibility.triangles import TRIANGLE_ROWS, load_corners, set_up
 from eyas.state.mesh import Mesh
 from eyas.world.build.materials import material
 
@@ -19,22 +22,38 @@ SIDE = 40
 
 
 @kernel
-def draw(polygon, a, b, c, top, width, key, tag, sides, texture):
+def draw(corners, top, width, key, tag, both, triangle, span, texture):
     """Python's way in."""
-    rasterise(polygon, a, b, c, top, width, key, tag, sides, ASIDE, no_holes(texture))
+    bottom = top + key.shape[0]
+    seen = set_up(
+        load_corners(corners), lane_numbers() < i4(1), splat(both), float(top), float(bottom),
+        float(width), ASIDE, triangle,
+    )  # fmt: skip
+    if any_of(seen):
+        fill(triangle, 0, top, width, key, tag, no_holes(texture), span)
 
 
-def drawn_pixels(corners: np.ndarray, top: int = 0, rows: int = SIDE, sides: int = FRONT):
-    """Which pixels one triangle covers, from its corners [pixels], shape (3, 2)."""
+def filled(corners: np.ndarray, top: int = 0, rows: int = SIDE, both: bool = False) -> np.ndarray:
+    """Draw one triangle; corners are columns, rows and 1/distances, shape (3, 3)."""
     key = np.zeros((rows, SIDE + 8), np.int64)  # 40 columns are shown
-    polygon = np.zeros((4, 5))
-    polygon[:3, :2], polygon[:3, 2] = corners, 0.25
-    draw(polygon, 0, 1, 2, top, SIDE, key, 5, sides, np.zeros((1, 1), np.uint32))
+    eight, triangle = np.zeros((9, 8)), np.zeros((TRIANGLE_ROWS, 8))
+    span = np.zeros((SPAN_ROWS, 8), np.int32)
+    eight[:, 0] = np.ravel(corners)
+    draw(eight, top, SIDE, key, 5, both, triangle, span, np.zeros((1, 1), np.uint32))
     assert not key[:, SIDE:].any()
-    covered = key[:, :SIDE] != 0
-    inverse = (key >> 32).astype(np.int32).view(np.float32)[:, :SIDE]
-    np.testing.assert_array_equal(inverse, np.where(covered, np.float32(0.25), 0))
-    np.testing.assert_array_equal(key[:, :SIDE] & 0xFFFFFFFF, np.where(covered, 5, 0))
+    return key[:, :SIDE]
+
+
+def inverses(key: np.ndarray) -> np.ndarray:
+    return (key >> 32).astype(np.int32).view(np.float32)
+
+
+def drawn_pixels(corners: np.ndarray, top: int = 0, rows: int = SIDE, both: bool = False):
+    """Which pixels one triangle covers, from its corners [pixels], shape (3, 2)."""
+    key = filled(np.column_stack([corners, np.full(3, 0.25)]), top, rows, both)
+    covered = key != 0
+    np.testing.assert_array_equal(inverses(key), np.where(covered, np.float32(0.25), 0))
+    np.testing.assert_array_equal(key & 0xFFFFFFFF, np.where(covered, 5, 0))
     return covered
 
 
@@ -89,7 +108,7 @@ def test_the_same_pixels_are_covered_as_by_edges_in_whole_numbers(seed):
     for _ in range(60):
         corners = random_corners(rng)
         expected = covered_by_integers(corners)
-        np.testing.assert_array_equal(drawn_pixels(corners, sides=BOTH_SIDES), expected)
+        np.testing.assert_array_equal(drawn_pixels(corners, both=True), expected)
 
 
 def test_triangles_that_reach_millions_of_pixels_outside_share_their_edges():
@@ -108,17 +127,28 @@ def test_triangles_that_reach_millions_of_pixels_outside_share_their_edges():
 
 
 def test_depth_is_that_of_the_corners_before_they_are_rounded():
-    polygon = np.zeros((4, 5))
-    polygon[:3, :2] = [(3.03, 2.03), (4.02, 33.04), (37.03, 8.01)]
+    corners = np.array([(3.03, 2.03), (4.02, 33.04), (37.03, 8.01)])
     slope = np.array([0.013, -0.007])
-    polygon[:3, 2] = 0.5 + polygon[:3, :2] @ slope
-    key = np.zeros((SIDE, SIDE), np.int64)
-    draw(polygon, 0, 1, 2, 0, SIDE, key, 5, FRONT, np.zeros((1, 1), np.uint32))
+    key = filled(np.column_stack([corners, 0.5 + corners @ slope]))
     row, column = np.nonzero(key)
-    inverse = (key[row, column] >> 32).astype(np.int32).view(np.float32)
     expected = 0.5 + np.column_stack([column + 0.5, row + 0.5]) @ slope
     assert len(row) > 300
-    np.testing.assert_allclose(inverse, expected, rtol=2e-7)
+    np.testing.assert_allclose(inverses(key)[row, column], expected, rtol=2e-7)
+
+
+def test_a_sliver_is_nowhere_much_nearer_than_its_corners():
+    rng = np.random.default_rng(2)
+    seen = 0
+    for _ in range(300):
+        ends = rng.uniform(2.0, SIDE - 2.0, (2, 2))
+        third = ends.mean(axis=0) + rng.normal(0.0, 0.02, 2)
+        inverse = rng.uniform(0.1, 0.2, 3)
+        key = filled(np.column_stack([[*ends, third], inverse]), both=True)
+        found = inverses(key)[key != 0]
+        seen += len(found)
+        assert (found <= inverse.max() * (1 + ASIDE) * (1 + 1e-6)).all()
+        assert (found >= inverse.min() * (1 - ASIDE) * (1 - 1e-6)).all()
+    assert seen > 50
 
 
 def jittered_grid(rng, cells: int, low: float, high: float, snap: bool):

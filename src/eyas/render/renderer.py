@@ -18,7 +18,9 @@ from eyas.render.jobs import build_jobs, picture_size, write_measured
 from eyas.render.kernels.bundles import Geometry, Light, Movers, Output, Scratch, Task
 from eyas.render.kernels.draw import draw_views
 from eyas.render.kernels.visibility.clusters import CLUSTER
+from eyas.render.kernels.visibility.fill import SPAN_ROWS
 from eyas.render.kernels.visibility.key import MOST_INSTANCES
+from eyas.render.kernels.visibility.triangles import TRIANGLE_ROWS
 from eyas.render.pack.light import build_light
 from eyas.state.draw import DrawList, DrawStage, Picture, Views
 from eyas.state.lighting import Lighting
@@ -140,8 +142,9 @@ class Renderer:
                 drawn=np.empty((workers, instances, 2), np.int32),
                 mesh=np.empty((workers, instances), np.int32),
                 order=np.empty((workers, chunks + instances), np.int64),
-                projected=np.empty((workers, 9, CLUSTER)),
-                polygon=np.empty((workers, 4, 5)),
+                triangle=np.empty((workers, TRIANGLE_ROWS, CLUSTER)),
+                polygon=np.zeros((workers, 15, CLUSTER)),
+                span=np.empty((workers, SPAN_ROWS, WIDTH), np.int32),
             )
             self._scratch[key] = Held(scratch)
         return self._scratch[key]

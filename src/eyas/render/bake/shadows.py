@@ -15,6 +15,8 @@ from eyas.core.parallel import Held
 from eyas.render.kernels.bundles import Geometry, Projection, Row
 from eyas.render.kernels.light.shadow_map import BAND, ShadowBake, bake_rows
 from eyas.render.kernels.visibility.clusters import CLUSTER
+from eyas.render.kernels.visibility.fill import SPAN_ROWS
+from eyas.render.kernels.visibility.triangles import TRIANGLE_ROWS
 from eyas.render.pack.clusters import corners_of
 from eyas.state.mesh import Surface
 
@@ -130,8 +132,8 @@ def _bake(
         cards=cards,
         thin=np.array(solid, np.bool_),
         sun=Projection(*[Row(*row) for row in rows.tolist()]),
-        projected=np.empty((workers, 9, CLUSTER)),
-        polygon=np.empty((workers, 4, 5)),
+        triangle=np.empty((workers, TRIANGLE_ROWS, CLUSTER)),
+        span=np.empty((workers, SPAN_ROWS, WIDTH), np.int32),
         key=np.empty((workers, BAND, columns + -columns % WIDTH), np.int64),
         shadow_map=heights,
     )

@@ -55,7 +55,8 @@ class Geometry(NamedTuple):
     """Eight clusters of a mesh in each row, see the same: box, cone of the normals, size,
     shape (., 14, 8)."""
     corner_uv: NDArray[np.float32]
-    """Texture coordinates of the corners of each triangle [tiles], shape (T, 6)."""
+    """Texture coordinates u and v of corner a, of b and of c [tiles] of the eight triangles in each
+    cluster, shape (T / 8, 6, 8)."""
     shading: NDArray[np.float32]
     """Data of each triangle for shading in one place, see `eyas.render.pack.triangles.SHADING`,
     shape (T, 32)."""
@@ -336,10 +337,15 @@ class Scratch(NamedTuple):
     order: NDArray[np.int64]
     """What to draw, the nearest first: sort keys of visible chunks and instances,
     shape (K, C + I)."""
-    projected: NDArray[np.float64]
-    """Column, row [samples] and 1/distance [1/m] of the corners of a cluster, shape (K, 9, 8)."""
+    triangle: NDArray[np.float64]
+    """Eight triangles on the screen, see `eyas.render.kernels.visibility.triangles`,
+    shape (K, 28, 8)."""
     polygon: NDArray[np.float64]
-    """A clipped triangle: column, row, 1/distance, u, v, shape (K, 4, 5)."""
+    """The triangles that the near plane leaves of one: column, row [samples] and 1/distance [1/m]
+    of corner a, of b and of c, then their texture coordinates [tiles], shape (K, 15, 8)."""
+    span: NDArray[np.int32]
+    """A triangle in eight rows of samples, see `eyas.render.kernels.visibility.fill`,
+    shape (K, 7, 8)."""
 
 
 class Output(NamedTuple):

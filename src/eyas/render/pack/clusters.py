@@ -17,7 +17,15 @@ from eyas.render.kernels.visibility.clusters import (
     SIZE,
 )
 
-__all__ = ["NOWHERE", "bounds_of", "clusters_of", "corners_of", "filled_up"]
+__all__ = [
+    "NOWHERE",
+    "bounds_of",
+    "by_clusters",
+    "cluster_order",
+    "clusters_of",
+    "corners_of",
+    "filled_up",
+]
 
 NOWHERE = 1e9
 """Boxes from this to minus this in all directions [m] are inside no plane."""
@@ -26,6 +34,10 @@ _WIDEST = 0.2
 """Cosine of the largest angle between the axis of a cone and a normal."""
 
 
+TURN = 0.5
+"""How much triangles must be apart, as a share of their mesh, to count as much as normals at right
+angles."""
+
 Number = TypeVar("Number", bound=np.generic)
 
 
@@ -33,6 +45,51 @@ def filled_up(values: NDArray[Number]) -> NDArray[Number]:
     """Return rows filled up with zeros to whole clusters."""
     missing = -len(values) % CLUSTER
     return np.concatenate([values, np.zeros((missing, *values.shape[1:]), values.dtype)])
+
+
+def cluster_order(
+    corners: NDArray[np.float32], sizes: NDArray[np.float32], leafy: NDArray[np.bool_]
+) -> NDArray[np.intp]:
+    """Return an order in which each eight triangles in a row lie together and face alike.
+
+    Leaves come last, in the order in which they are given.
+
+    Args:
+        corners: [m], shape (T, 3, 3).
+        sizes: See `SIZE`, shape (T,).
+        leafy: Whether they are leaves, shape (T,).
+    """
+    solid = np.flatnonzero(~leafy)
+    points = corners[solid].astype(np.float64)
+    normals = np.cross(points[:, 1] - points[:, 0], points[:, 2] - points[:, 0])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    middle = (points.min(axis=1) + points.max(axis=1)) / 2
+    reach = max(float(np.ptp(points.reshape(-1, 3), axis=0).max()) if len(points) else 0.0, 1e-6)
+    small = np.where(np.isfinite(sizes[solid]), np.log2(np.maximum(sizes[solid], 1e-3)), 8.0)
+    places = np.concatenate([middle / reach, TURN * normals, 0.1 * small[:, None]], axis=1)
+    return np.concatenate([solid[_together(places)], np.flatnonzero(leafy)])
+
+
+def _together(places: NDArray[np.float64]) -> NDArray[np.intp]:
+    """Return an order of places: cut in two across their longest side, again and again."""
+    done, left = [], [np.arange(len(places))]
+    while left:
+        part = left.pop()
+        if len(part) <= CLUSTER:
+            done.append(part)
+            continue
+        side = places[part]
+        axis = int(np.argmax(np.ptp(side, axis=0)))
+        half = CLUSTER * ((len(part) // CLUSTER + 1) // 2)
+        order = np.argsort(side[:, axis], kind="stable")
+        left += [part[order[half:]], part[order[:half]]]
+    return np.concatenate([np.zeros(0, np.intp), *done])
+
+
+def by_clusters(values: NDArray[Number]) -> NDArray[Number]:
+    """Return rows of triangles, shape (T, n), as columns of clusters, shape (T / 8, n, 8)."""
+    rows = filled_up(values)
+    return np.ascontiguousarray(rows.reshape(-1, CLUSTER, rows.shape[1]).swapaxes(1, 2))
 
 
 def clusters_of(
@@ -49,10 +106,9 @@ def clusters_of(
     rows = np.empty((len(corners) + missing, CLUSTER_ROWS), np.float32)
     rows[: len(corners), :SIZE] = corners.reshape(-1, 9)
     rows[len(corners) :, :SIZE] = np.tile(corners[-1:, 0], (missing, 3))
-    rows[:, SIZE], rows[:, LEAVES] = -1.0, 0.0
+    rows[:, SIZE], rows[:, LEAVES] = -1.0, -1.0
     rows[: len(corners), SIZE], rows[: len(corners), LEAVES] = sizes, tiles
-    clusters = rows.reshape(-1, CLUSTER, CLUSTER_ROWS).swapaxes(1, 2)
-    return np.ascontiguousarray(clusters)
+    return by_clusters(rows)
 
 
 def corners_of(clusters: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -91,7 +147,7 @@ def _cones(corners: NDArray[np.float64], clusters: NDArray[np.float32]) -> NDArr
     middle = corners.reshape(len(corners), -1, 3).mean(axis=1)
     height = np.einsum("bkj,bkj->bk", middle[:, None] - corners[:, :, 0], normals)
     behind = np.where(real, height / np.maximum(cosine, 1e-9), 0.0).max(axis=1)
-    narrow = (cosine.min(axis=1) > _WIDEST) & ~(clusters[:, LEAVES] > 0.0).any(axis=1)
+    narrow = (cosine.min(axis=1) > _WIDEST) & ~(clusters[:, LEAVES] >= 0.0).any(axis=1)
     cone = np.empty((len(corners), 7))
     cone[:, 0:3] = middle - behind[:, None] * axis
     cone[:, 3:6] = axis

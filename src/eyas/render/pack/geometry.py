@@ -7,8 +7,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.render.kernels.bundles import GROUP, Geometry
-from eyas.render.kernels.visibility.clusters import BOUNDS_ROWS, CLUSTER, CLUSTER_ROWS
-from eyas.render.pack.clusters import NOWHERE, bounds_of, clusters_of, filled_up
+from eyas.render.kernels.visibility.clusters import BOUNDS_ROWS, CLUSTER, CLUSTER_ROWS, UV_ROWS
+from eyas.render.pack.clusters import (
+    NOWHERE,
+    bounds_of,
+    by_clusters,
+    cluster_order,
+    clusters_of,
+    filled_up,
+)
 from eyas.render.pack.silhouette import silhouette
 from eyas.render.pack.snow import crown_middles, snow_beds
 from eyas.render.pack.triangles import (
@@ -76,7 +83,7 @@ def build_geometry(
     return Geometry(
         cluster=np.concatenate([np.zeros((0, CLUSTER_ROWS, CLUSTER), np.float32), *pool.clusters]),
         bounds=np.concatenate([np.zeros((0, BOUNDS_ROWS, CLUSTER), np.float32), *pool.bounds]),
-        corner_uv=np.concatenate([np.zeros((0, 6), np.float32), *pool.corner_uvs]),
+        corner_uv=np.concatenate([np.zeros((0, UV_ROWS, CLUSTER), np.float32), *pool.corner_uvs]),
         shading=shading_rows(slopes, objects, materials.of(material)),
         material=material,
         object_id=objects,
@@ -131,21 +138,26 @@ class _Pool:
     ) -> tuple[int, int, int]:
         """Append a mesh; return its ranges as in `Geometry.mesh_range`."""
         keep = np.flatnonzero(solid_triangles(mesh))
+        leafy = np.array([m.surface == Surface.FOLIAGE for m in mesh.palette], np.bool_)
+        size = np.full(len(keep), np.inf, np.float32) if sizes is None else sizes[keep]
+        order = cluster_order(
+            mesh.positions[mesh.triangles[keep]], size, leafy[mesh.materials[keep]]
+        )
+        keep, size = keep[order], size[order]
         triangles, material = mesh.triangles[keep], mesh.materials[keep]
         lookup = np.array(
             [self.palette.setdefault(m, len(self.palette)) for m in mesh.palette], np.int32
         )
-        leafy = np.array([m.surface == Surface.FOLIAGE for m in mesh.palette], np.bool_)
         slopes = gradients(mesh.positions, mesh.normals, mesh.uvs, triangles)
         clusters = clusters_of(
             mesh.positions[triangles],
-            np.full(len(keep), np.inf, np.float32) if sizes is None else sizes[keep],
-            np.where(leafy[material], np.abs(slopes[:, 23]), 0.0),
+            size,
+            np.where(leafy[material], np.abs(slopes[:, 23]), -1.0),
         )
         bounds = bounds_of(clusters)
         self.clusters.append(clusters)
         self.bounds.append(bounds)
-        self.corner_uvs.append(filled_up(mesh.uvs[triangles].reshape(-1, 6)))
+        self.corner_uvs.append(by_clusters(mesh.uvs[triangles].reshape(-1, UV_ROWS)))
         self.gradients.append(filled_up(slopes))
         self.materials.append(filled_up(lookup[material]))
         none = np.full(len(keep), -1, np.int32)

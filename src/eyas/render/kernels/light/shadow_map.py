@@ -6,15 +6,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.jit import inlined_kernel, inner_kernel
-from eyas.core.lanes import bits_of, first_bit, greater, lesser, load, splat, store, to_f8
+from eyas.core.lanes import any_of, bits_of, first_bit, lane_numbers, load, to_f8
 from eyas.core.parallel import Pointer, parallel_kernel
 from eyas.render.kernels.bundles import Geometry, Projection, Row
-from eyas.render.kernels.scalars import f4, i8
-from eyas.render.kernels.visibility.clusters import CLUSTER, CLUSTER_ROWS
+from eyas.render.kernels.scalars import f4, i4, i8
+from eyas.render.kernels.visibility.clusters import (
+    CLUSTER,
+    CLUSTER_ROWS,
+    UV_ROWS,
+    has_leaves,
+)
+from eyas.render.kernels.visibility.fill import fill
 from eyas.render.kernels.visibility.holes import holes_of, no_holes
 from eyas.render.kernels.visibility.key import distance_inverse
-from eyas.render.kernels.visibility.rasterise import BOTH_SIDES, rasterise
 from eyas.render.kernels.visibility.transform import object_projection
+from eyas.render.kernels.visibility.triangles import Corners, set_up, set_up_leaves
 
 __all__ = ["BAND", "ShadowBake", "bake_rows"]
 
@@ -39,10 +45,10 @@ class ShadowBake(NamedTuple):
     """Whether each prototype of the fixtures may be narrower than a texel."""
     sun: Projection
     """World to column and row of the map and, in place of the distance, height, 1 to 65535."""
-    projected: NDArray[np.float64]
-    """Working memory, see `Scratch`, shape (K, 9, 8)."""
-    polygon: NDArray[np.float64]
-    """Working memory, see `Scratch`, shape (K, 4, 5)."""
+    triangle: NDArray[np.float64]
+    """Working memory, see `Scratch`, shape (K, TRIANGLE_ROWS, 8)."""
+    span: NDArray[np.int32]
+    """Working memory, see `Scratch`, shape (K, SPAN_ROWS, 8)."""
     key: NDArray[np.int64]
     """Working memory, see `Scratch`, with heights in place of 1/distance; shape (K, BAND, at least
     as many columns as the map has)."""
@@ -82,28 +88,29 @@ def _along(row: Row, x: float, y: float, z: float) -> float:
 
 
 @inlined_kernel
+def _corner(
+    cluster: NDArray[np.float32], at: int, screen: Projection
+) -> tuple[float, float, float]:
+    x = to_f8(load(cluster, at))
+    y = to_f8(load(cluster, at + CLUSTER))
+    z = to_f8(load(cluster, at + 2 * CLUSTER))
+    return (
+        _along(screen.column, x, y, z),
+        _along(screen.row, x, y, z),
+        _along(screen.distance, x, y, z),
+    )
+
+
+@inlined_kernel
 def _project(
-    cluster: NDArray[np.float32],
-    number: int,
-    screen: Projection,
-    right: float,
-    down: float,
-    top: int,
-    projected: NDArray[np.float64],
-) -> int:
-    """Project eight triangles; return which may be in the band, a bit each."""
+    cluster: NDArray[np.float32], number: int, screen: Projection, right: float, down: float
+) -> Corners:
+    """Project eight triangles; heights take the place of 1/distance."""
     at = number * CLUSTER_ROWS * CLUSTER
-    low, high = splat(1e9), splat(-1e9)
-    for corner in range(3):
-        x = to_f8(load(cluster, at + 3 * corner * CLUSTER))
-        y = to_f8(load(cluster, at + (3 * corner + 1) * CLUSTER))
-        z = to_f8(load(cluster, at + (3 * corner + 2) * CLUSTER))
-        row = _along(screen.row, x, y, z) + down
-        store(projected, 3 * corner * CLUSTER, _along(screen.column, x, y, z) + right)
-        store(projected, (3 * corner + 1) * CLUSTER, row)
-        store(projected, (3 * corner + 2) * CLUSTER, _along(screen.distance, x, y, z))
-        low, high = lesser(low, row), greater(high, row)
-    return bits_of((high >= float(top)) & (low <= float(top + BAND)))
+    ax, ay, ai = _corner(cluster, at, screen)
+    bx, by, bi = _corner(cluster, at + 3 * CLUSTER, screen)
+    cx, cy, ci = _corner(cluster, at + 6 * CLUSTER, screen)
+    return Corners(ax + right, ay + down, ai, bx + right, by + down, bi, cx + right, cy + down, ci)
 
 
 @inner_kernel
@@ -119,13 +126,21 @@ def _draw(
 ) -> None:
     """Draw one mesh from above the sun, moved by some texels, leaves with their holes.
 
-    Heights differ little across a leaf, so `rasterise` may use them in place of 1/w.
+    Heights differ little across a leaf, so `fill` may use them in place of 1/distance.
     """
-    projected, polygon, key = bake.projected[worker], bake.polygon[worker], bake.key[worker]
+    prepared, key, width = bake.triangle[worker], bake.key[worker], bake.shadow_map.shape[1]
     for first in range(mesh[0], mesh[1], CLUSTER):
-        left = _project(geometry.cluster, first // CLUSTER, screen, right, down, top, projected)
-        if mesh[1] - first < CLUSTER:
-            left &= (1 << (mesh[1] - first)) - 1
+        cluster = first // CLUSTER
+        corners = _project(geometry.cluster, cluster, screen, right, down)
+        real, both_sides = lane_numbers() < i4(mesh[1] - first), lane_numbers() >= i4(0)
+        left = bits_of(
+            set_up(
+                corners, real, both_sides, float(top), float(top + BAND), float(width), 0.0,
+                prepared,
+            )
+        )  # fmt: skip
+        if left != 0 and any_of(has_leaves(geometry.cluster, cluster)):
+            set_up_leaves(corners, geometry.corner_uv, cluster * UV_ROWS * CLUSTER, prepared)
         while left != 0:
             number = first_bit(left)
             left &= left - 1
@@ -138,12 +153,4 @@ def _draw(
                 if drawn < 0 or ((triangle - mesh[0]) >> 2) % drawn != 0:
                     continue
                 holes = holes_of(geometry.texture, geometry.layer[material], LEAF_LEVEL)
-            for corner in range(3):
-                for k in range(3):
-                    polygon[corner, k] = projected[3 * corner + k, number]
-                for k in range(2):
-                    polygon[corner, 3 + k] = geometry.corner_uv[triangle, 2 * corner + k]
-            rasterise(
-                polygon, 0, 1, 2, top, bake.shadow_map.shape[1], key, i8(0), BOTH_SIDES, 0.0,
-                holes,
-            )  # fmt: skip
+            fill(prepared, number, top, width, key, i8(0), holes, bake.span[worker])

@@ -10,22 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.jit import inlined_kernel
-from eyas.core.lanes import (
-    any_of,
-    bits_of,
-    ceiling,
-    greater,
-    lesser,
-    load,
-    select,
-    store,
-    to_f8,
-    whole,
-)
-from eyas.render.kernels.bundles import NEAR, Planes, Point, Projection, Row, View
-from eyas.render.kernels.scalars import f4
+from eyas.core.lanes import any_of, bits_of, greater, lane_numbers, load, select, to_f8
+from eyas.render.kernels.bundles import NEAR, Plane, Planes, Point, Projection, Row, View
+from eyas.render.kernels.scalars import f4, i4
 from eyas.render.kernels.visibility.cull import in_boxes
-from eyas.render.kernels.visibility.rasterise import SIXTEENTHS
+from eyas.render.kernels.visibility.triangles import Corners
 
 __all__ = [
     "APEX",
@@ -38,7 +27,9 @@ __all__ = [
     "LEAVES",
     "NO_CONE",
     "SIZE",
+    "UV_ROWS",
     "clusters_seen",
+    "has_leaves",
     "project_cluster",
 ]
 
@@ -52,7 +43,10 @@ SIZE = 9
 left out when it is small; infinite for others; negative where there is no triangle."""
 
 LEAVES = 10
-"""Texture tiles in a metre of leaves, 0 for triangles without holes."""
+"""Texture tiles in a metre of leaves, negative for triangles without holes."""
+
+UV_ROWS = 6
+"""Rows of `Geometry.corner_uv`: u and v of corner a, of b and of c."""
 
 BOUNDS_ROWS = 14
 APEX, AXIS = 6, 9
@@ -124,17 +118,13 @@ def _corner(
 
 
 @inlined_kernel
-def _snapped(place: float) -> float:
-    return whole(place * SIXTEENTHS + 0.5)
-
-
-@inlined_kernel
-def _holds_centre(a: float, b: float, c: float, begin: float, end: float) -> bool:
-    """Return whether there is a centre of a pixel from `begin` to `end` between three places."""
-    half, step = 0.5 * SIXTEENTHS, 1.0 / SIXTEENTHS
-    first = ceiling((lesser(lesser(a, b), c) - half) * step)
-    last = ceiling((greater(greater(a, b), c) - half) * step)
-    return greater(first, begin) < lesser(last, end)
+def _reaches(plane: Plane, cluster: NDArray[np.float32], at: int) -> bool:
+    """Return which triangles reach inside a plane."""
+    row, inside = Row(plane.x, plane.y, plane.z, plane.w), lane_numbers() < i4(0)
+    for corner in range(0, 9 * CLUSTER, 3 * CLUSTER):
+        x, y = to_f8(load(cluster, at + corner)), to_f8(load(cluster, at + corner + CLUSTER))
+        inside |= _along(row, x, y, to_f8(load(cluster, at + corner + 2 * CLUSTER))) >= 0.0
+    return inside
 
 
 @inlined_kernel
@@ -142,23 +132,23 @@ def project_cluster(
     cluster: NDArray[np.float32],
     number: int,
     screen: Projection,
+    planes: Planes,
     view: View,
     smallest: float,
-    projected: NDArray[np.float64],
-) -> tuple[int, int]:
-    """Project the corners of a cluster; return which triangles are to be drawn, and which of them
-    the near plane cuts, a bit each.
-
-    The others are seen from behind, hold no centre of a sample in the band, or are too small.
+) -> tuple[Corners, bool, bool]:
+    """Project the corners of a cluster.
 
     Args:
         cluster: See `Geometry`.
         number: Its row.
         screen: Projection of the mesh.
+        planes: Planes around what is shown, in the frame of the mesh.
         view: The band.
         smallest: Size of the smallest detail to draw [m].
-        projected: Filled, see `Scratch`, shape (9, 8); only the columns of triangles to be drawn
-            that are not cut mean anything.
+
+    Returns:
+        The corners; which triangles are in front of the near plane and large enough; which of
+        those that the near plane cuts may be seen.
     """
     at = number * CLUSTER_ROWS * CLUSTER
     ax, ay, ai, a_front = _corner(cluster, at, screen, view)
@@ -167,22 +157,13 @@ def project_cluster(
     large = load(cluster, at + SIZE * CLUSTER) >= f4(smallest)
     front = a_front & b_front & c_front
     cut = (a_front | b_front | c_front) & ~front & large
-    x0, y0, x1, y1 = _snapped(ax), _snapped(ay), _snapped(bx), _snapped(by)
-    x2, y2 = _snapped(cx), _snapped(cy)
-    area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
-    leaves = load(cluster, at + LEAVES * CLUSTER) > f4(0.0)
-    drawn = front & large & ((area < 0.0) | (leaves & (area > 0.0)))
-    drawn &= _holds_centre(y0, y1, y2, float(view.top), float(view.top + view.rows))
-    drawn &= _holds_centre(x0, x1, x2, 0.0, float(view.width))
-    drawn |= cut
-    if any_of(drawn):
-        store(projected, 0, ax)
-        store(projected, CLUSTER, ay)
-        store(projected, 2 * CLUSTER, ai)
-        store(projected, 3 * CLUSTER, bx)
-        store(projected, 4 * CLUSTER, by)
-        store(projected, 5 * CLUSTER, bi)
-        store(projected, 6 * CLUSTER, cx)
-        store(projected, 7 * CLUSTER, cy)
-        store(projected, 8 * CLUSTER, ci)
-    return bits_of(drawn), bits_of(cut)
+    if any_of(cut):
+        for plane in (planes.left, planes.right, planes.top, planes.bottom):
+            cut &= _reaches(plane, cluster, at)
+    return Corners(ax, ay, ai, bx, by, bi, cx, cy, ci), front & large, cut
+
+
+@inlined_kernel
+def has_leaves(cluster: NDArray[np.float32], number: int) -> bool:
+    """Return which triangles of a cluster are leaves."""
+    return load(cluster, (number * CLUSTER_ROWS + LEAVES) * CLUSTER) >= f4(0.0)

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.jit import inlined_kernel
-from eyas.core.lanes import gather, select, to_f4, to_i4
-from eyas.render.kernels.scalars import f4, i4, i8
+from eyas.core.lanes import gather, to_i4, whole
+from eyas.render.kernels.scalars import i4, i8
 
 __all__ = ["Holes", "has_leaf", "holes_level", "holes_of", "no_holes"]
 
@@ -26,12 +26,14 @@ class Holes(NamedTuple):
     """Its first texel in the whole array."""
     level: int
     """-1: no holes."""
+    size: float
+    """Texels along its sides."""
 
 
 @inlined_kernel
 def no_holes(texture: NDArray[np.uint32]) -> Holes:
     """Return what triangles without holes have."""
-    return Holes(texture, i8(0), i8(-1))
+    return Holes(texture, i8(0), i8(-1), 1.0)
 
 
 @inlined_kernel
@@ -39,7 +41,8 @@ def holes_of(texture: NDArray[np.uint32], layer: int, level: int) -> Holes:
     """Return the holes of a layer at a mip level, below 8."""
     # 65536 + 16384 + ... = (4^9 - 4^(9 - level)) / 3
     before = (262144 - (262144 >> (2 * level))) // 3
-    return Holes(texture, i8(layer * texture.shape[1] + before), i8(level))
+    first = i8(layer * texture.shape[1] + before)
+    return Holes(texture, first, i8(level), float(1 << (_BITS - level)))
 
 
 @inlined_kernel
@@ -53,17 +56,10 @@ def holes_level(texels: float) -> int:
 
 
 @inlined_kernel
-def _place(x: float, bits: int) -> int:
-    """Return the texel, of `2^bits`, at a texture coordinate [tiles]."""
-    part = x - to_f4(to_i4(x))  # truncation is faster than rounding down
-    part += select(part < f4(0.0), f4(1.0), f4(0.0))
-    size = 1 << bits
-    return to_i4(part * f4(size)) & i4(size - 1)
-
-
-@inlined_kernel
 def has_leaf(holes: Holes, u: float, v: float) -> bool:
-    """Return where there is a leaf at texture coordinates [tiles]."""
+    """Return where there is a leaf at texture coordinates [texels of the level]."""
     bits = _BITS - holes.level
-    at = (_place(v, bits) << i4(bits)) + _place(u, bits) + i4(holes.first)
+    last = i4((1 << bits) - 1)
+    column, row = to_i4(whole(u)) & last, to_i4(whole(v)) & last
+    at = (row << i4(bits)) + column + i4(holes.first)
     return to_i4(gather(holes.texture, at)) < i4(0)  # alpha, the highest byte, above 127

@@ -4,19 +4,29 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.jit import inlined_kernel
-from eyas.core.lanes import first_bit
+from eyas.core.lanes import any_of, bits_of, first_bit, gather, lane_numbers, splat
 from eyas.render.kernels.bundles import Geometry, Point, Projection, View
-from eyas.render.kernels.scalars import i8
+from eyas.render.kernels.scalars import i4, i8
 from eyas.render.kernels.visibility.clusters import (
     CLUSTER,
+    CLUSTER_ROWS,
     LEAVES,
+    UV_ROWS,
     clusters_seen,
+    has_leaves,
     project_cluster,
 )
 from eyas.render.kernels.visibility.cull import planes_of
+from eyas.render.kernels.visibility.fill import fill
 from eyas.render.kernels.visibility.holes import holes_level, holes_of, no_holes
-from eyas.render.kernels.visibility.rasterise import BOTH_SIDES, FRONT, rasterise
 from eyas.render.kernels.visibility.transform import clip_near
+from eyas.render.kernels.visibility.triangles import (
+    INVERSE,
+    Corners,
+    load_corners,
+    set_up,
+    set_up_leaves,
+)
 from eyas.state.draw import DrawStage
 
 __all__ = ["draw_mesh", "level_of_detail"]
@@ -59,8 +69,9 @@ def draw_mesh(
     tag: int,
     view: View,
     key: NDArray[np.int64],
-    projected: NDArray[np.float64],
+    triangle: NDArray[np.float64],
     polygon: NDArray[np.float64],
+    span: NDArray[np.int32],
 ) -> None:
     """Draw a chunk or a level of detail.
 
@@ -75,8 +86,9 @@ def draw_mesh(
         tag: Tag of triangle 0.
         view: The band.
         key: See `Scratch`, shape (rows, columns).
-        projected: See `Scratch`, shape (9, 8).
-        polygon: See `Scratch`, shape (4, 5).
+        triangle: See `Scratch`, shape (TRIANGLE_ROWS, 8).
+        polygon: See `Scratch`, shape (15, 8).
+        span: See `Scratch`, shape (SPAN_ROWS, 8).
     """
     bottom = view.top + view.rows
     planes = planes_of(screen, view.width, view.height, view.top, bottom)
@@ -87,60 +99,97 @@ def draw_mesh(
         while left != 0:
             cluster = first + start + first_bit(left)
             left &= left - 1
-            drawn, cut = project_cluster(
-                geometry.cluster, cluster, screen, view, smallest, projected
+            corners, front, cut = project_cluster(
+                geometry.cluster, cluster, screen, planes, view, smallest
             )
+            leafy = has_leaves(geometry.cluster, cluster)
+            drawn = bits_of(_prepared(corners, front, leafy, view, triangle))
             if until == VERTICES:
                 continue
-            while drawn != 0:
-                number = first_bit(drawn)
-                drawn &= drawn - 1
-                is_cut = (cut >> number) & 1 != 0
-                _draw_triangle(
-                    geometry, cluster, number, is_cut, screen, focal, tag, view, key, projected,
-                    polygon,
-                )  # fmt: skip
+            if drawn != 0 and any_of(leafy):
+                at = UV_ROWS * CLUSTER * cluster
+                set_up_leaves(corners, geometry.corner_uv, at, triangle)
+            _draw_triangles(
+                geometry, cluster, drawn, bits_of(cut), screen, focal, tag, view, key, triangle,
+                polygon, span,
+            )  # fmt: skip
 
 
 @inlined_kernel
-def _draw_triangle(
+def _prepared(
+    corners: Corners, wanted: bool, leafy: bool, view: View, triangle: NDArray[np.float64]
+) -> bool:
+    """Prepare triangles of a cluster; return which are to be drawn."""
+    top, bottom, width = float(view.top), float(view.top + view.rows), float(view.width)
+    return set_up(corners, wanted, leafy, top, bottom, width, ASIDE, triangle)
+
+
+@inlined_kernel
+def _draw_triangles(
     geometry: Geometry,
     cluster: int,
-    number: int,
-    cut: bool,
+    drawn: int,
+    cut: int,
     screen: Projection,
     focal: float,
     tag: int,
     view: View,
     key: NDArray[np.int64],
-    projected: NDArray[np.float64],
+    triangle: NDArray[np.float64],
     polygon: NDArray[np.float64],
+    span: NDArray[np.int32],
 ) -> None:
-    """Draw a triangle of a cluster; for the other arguments see `draw_mesh`."""
-    triangle = CLUSTER * cluster + number
-    uv = geometry.corner_uv[triangle]
-    corners = 3
-    if cut:
-        corners = clip_near(
-            screen, geometry.cluster[cluster], number, uv, 0.5 * view.width, 0.5 * view.height,
-            polygon,
-        )  # fmt: skip
-    else:
-        for corner in range(3):
-            for k in range(3):
-                polygon[corner, k] = projected[3 * corner + k, number]
-    sides, holes = FRONT, no_holes(geometry.texture)
-    tiles = geometry.cluster[cluster, LEAVES, number]
-    if tiles > 0.0:
-        sides = BOTH_SIDES
-        level = holes_level(TEXELS * tiles / (focal * polygon[0, 2]))
-        if level >= 0:
-            holes = holes_of(geometry.texture, geometry.layer[geometry.material[triangle]], level)
-            if not cut:
-                for corner in range(3):
-                    polygon[corner, 3] = uv[2 * corner]
-                    polygon[corner, 4] = uv[2 * corner + 1]
-    for k in range(1, corners - 1):
-        rasterise(
-            polygon, 0, k, k + 1, view.top, view.width, key, tag + triangle, sides, ASIDE, holes
-        )
+    """Draw triangles of a cluster, then those that the near plane cuts, a bit each."""
+    whole, number = True, i8(0)
+    while drawn != 0 or cut != 0:
+        if drawn == 0:
+            whole, number = False, first_bit(cut)
+            cut &= cut - 1
+            drawn = _cut_triangle(geometry, cluster, number, screen, view, triangle, polygon)
+            continue
+        column = first_bit(drawn)
+        drawn &= drawn - 1
+        if whole:
+            number = column
+        holes, tiles = no_holes(geometry.texture), _tiles(geometry, cluster, number)
+        at = CLUSTER * cluster + number
+        if tiles >= 0.0:
+            level = holes_level(
+                TEXELS * tiles / (focal * gather(triangle, INVERSE * CLUSTER + column))
+            )
+            if level >= 0:
+                holes = holes_of(
+                    geometry.texture,
+                    gather(geometry.layer, i8(gather(geometry.material, at))),
+                    level,
+                )
+        fill(triangle, column, view.top, view.width, key, tag + at, holes, span)
+
+
+@inlined_kernel
+def _tiles(geometry: Geometry, cluster: int, number: int) -> float:
+    """Return `LEAVES` of a triangle."""
+    return gather(geometry.cluster, (cluster * CLUSTER_ROWS + LEAVES) * CLUSTER + number)
+
+
+@inlined_kernel
+def _cut_triangle(
+    geometry: Geometry,
+    cluster: int,
+    number: int,
+    screen: Projection,
+    view: View,
+    triangle: NDArray[np.float64],
+    polygon: NDArray[np.float64],
+) -> int:
+    """Prepare what the near plane leaves of a triangle: one or two, a bit each."""
+    pieces = clip_near(
+        screen, geometry.cluster[cluster], geometry.corner_uv[cluster], number,
+        0.5 * view.width, 0.5 * view.height, polygon,
+    )  # fmt: skip
+    corners, numbers = load_corners(polygon), lane_numbers()
+    leafy = splat(_tiles(geometry, cluster, number) >= 0.0)
+    drawn = bits_of(_prepared(corners, numbers < i4(pieces), leafy, view, triangle))
+    if drawn != 0:
+        set_up_leaves(corners, polygon, 9 * CLUSTER, triangle)
+    return drawn

@@ -122,7 +122,7 @@ def _draw_listed(
             tag, smallest = instance_tag(row) - mesh[0], 0.0
         draw_mesh(
             until, geometry, mesh, screen, eye, focal, smallest, tag, view, key,
-            scratch.projected[worker], scratch.polygon[worker],
+            scratch.triangle[worker], scratch.polygon[worker], scratch.span[worker],
         )  # fmt: skip
 
 

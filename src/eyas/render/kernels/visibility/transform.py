@@ -112,17 +112,52 @@ def _projected(
     )
 
 
+@inlined_kernel
+def _write(
+    polygon: NDArray[np.float64],
+    count: int,
+    column: float,
+    row: float,
+    inverse: float,
+    u: float,
+    v: float,
+) -> None:
+    """Write corner `count` of a polygon into the triangles that have it: 0 1 2 and 0 2 3."""
+    if count <= 2:
+        _write_corner(polygon, 0, count, column, row, inverse, u, v)
+    if count != 1:
+        _write_corner(polygon, 1, max(count - 1, 0), column, row, inverse, u, v)
+
+
+@inlined_kernel
+def _write_corner(
+    polygon: NDArray[np.float64],
+    piece: int,
+    corner: int,
+    column: float,
+    row: float,
+    inverse: float,
+    u: float,
+    v: float,
+) -> None:
+    polygon[3 * corner, piece] = column
+    polygon[3 * corner + 1, piece] = row
+    polygon[3 * corner + 2, piece] = inverse
+    polygon[9 + 2 * corner, piece] = u
+    polygon[10 + 2 * corner, piece] = v
+
+
 @inner_kernel
 def clip_near(
     screen: Projection,
     cluster: NDArray[np.float32],
-    number: int,
     uv: NDArray[np.float32],
+    number: int,
     middle_x: float,
     middle_y: float,
     polygon: NDArray[np.float64],
 ) -> int:
-    """Cut a triangle at the near plane; return the number of corners left: 0, 3 or 4.
+    """Cut a triangle at the near plane; return how many triangles are left: 0, 1 or 2.
 
     A cut point is always computed from the visible end of its edge, so both triangles
     at an edge get the very same point.
@@ -130,35 +165,32 @@ def clip_near(
     Args:
         screen: Projection of the triangle's corners.
         cluster: Its cluster, a row of `Geometry.cluster`.
+        uv: That row of `Geometry.corner_uv`.
         number: Its number in the cluster.
-        uv: Texture coordinates of its corners, shape (6,).
         middle_x: Column of the optical axis.
         middle_y: Row of the optical axis.
-        polygon: Filled with column, row, 1/distance, u, v, shape (4, 5).
+        polygon: Columns 0 and 1 are filled, see `Scratch`, shape (15, 8).
     """
     count = 0
     for j in range(3):
         k = j + 1 if j < 2 else 0
         cj, rj, wj = _projected(screen, cluster, number, j)
         ck, rk, wk = _projected(screen, cluster, number, k)
+        uj, vj = float(uv[2 * j, number]), float(uv[2 * j + 1, number])
+        uk, vk = float(uv[2 * k, number]), float(uv[2 * k + 1, number])
         if wj >= NEAR:
             inverse = 1.0 / wj
-            polygon[count, 0] = middle_x + cj * inverse
-            polygon[count, 1] = middle_y + rj * inverse
-            polygon[count, 2] = inverse
-            polygon[count, 3], polygon[count, 4] = uv[2 * j], uv[2 * j + 1]
+            _write(
+                polygon, count, middle_x + cj * inverse, middle_y + rj * inverse, inverse, uj, vj
+            )
             count += 1
         if (wj >= NEAR) != (wk >= NEAR):
-            front, back = j, k
             if wk >= NEAR:
-                front, back = k, j
                 cj, rj, wj, ck, rk, wk = ck, rk, wk, cj, rj, wj
+                uj, vj, uk, vk = uk, vk, uj, vj
             t = (NEAR - wj) / (wk - wj)
-            polygon[count, 0] = middle_x + (cj + t * (ck - cj)) / NEAR
-            polygon[count, 1] = middle_y + (rj + t * (rk - rj)) / NEAR
-            polygon[count, 2] = 1.0 / NEAR
-            for m in range(2):
-                start = uv[2 * front + m]
-                polygon[count, 3 + m] = start + t * (uv[2 * back + m] - start)
+            column = middle_x + (cj + t * (ck - cj)) / NEAR
+            row = middle_y + (rj + t * (rk - rj)) / NEAR
+            _write(polygon, count, column, row, 1.0 / NEAR, uj + t * (uk - uj), vj + t * (vk - vj))
             count += 1
-    return count
+    return max(count - 2, 0)
