@@ -28,6 +28,8 @@ class Surface(IntEnum):
     """Emits light (`emission`) when the weather has its lamps on."""
     CROWN = 7
     """Inside of a tree's crown: matt, and casts no shadow; the leaves in front of it do."""
+    SIGNAL = 8
+    """Emits light (`emission`) in every weather, like a traffic light."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -24,7 +24,7 @@ def snow_beds(scene: Scene, parts: PartLibrary, palette: Iterable[Material]) -> 
     def bed(material: Material) -> Bed:
         if material in moving:
             return Bed.VEHICLE if material.surface == Surface.PAINT else Bed.BARE
-        if material.surface in (Surface.WATER, Surface.LAMP):
+        if material.surface in (Surface.WATER, Surface.LAMP, Surface.SIGNAL):
             return Bed.BARE
         if material.surface in (Surface.FOLIAGE, Surface.CROWN):
             return Bed.LEAVES

@@ -23,8 +23,8 @@ Texture = NDArray[np.uint8]
 
 
 def asphalt() -> Texture:
-    """Return a dark blue-grey road surface: aggregate, sealed cracks, a few darker patches."""
-    return _asphalt("asphalt", (63.0, 64.5, 69.0), stones=0.5, cracked=0.16)
+    """Return a dark grey road surface: aggregate, sealed cracks, a few darker patches."""
+    return _asphalt("asphalt", (84.0, 83.0, 81.0), stones=0.5, cracked=0.16)
 
 
 def asphalt_light() -> Texture:
@@ -42,16 +42,16 @@ def _asphalt(
     # Pale and dark stones of the aggregate, about 3 cm.
     stone = rng.random(grain.shape)
     picture = mixed(picture, (150.0, 147.0, 140.0), stones * (stone > 0.985))
-    picture = mixed(picture, (28.0, 28.0, 31.0), 0.6 * (stone < 0.03))
+    picture = mixed(picture, (42.0, 42.0, 42.0), 0.6 * (stone < 0.03))
     patch = np.clip((fractal(rng, 2.0, longest=110.0) - 1.55) * 2.5, 0, 1)
     picture = mixed(
         picture,
-        painted((0.7 * colour[0], 0.7 * colour[1], 0.72 * colour[2]), 0.6 * grain),
+        painted((0.7 * colour[0], 0.7 * colour[1], 0.7 * colour[2]), 0.6 * grain),
         0.45 * patch,
     )
     dust = np.clip((fractal(rng, 1.4, longest=120.0) - 0.9) * 0.6, 0, 1)
     picture = mixed(picture, (128.0, 122.0, 112.0), 0.14 * dust)
-    picture = mixed(picture, (34.0, 34.0, 37.0), 0.55 * cracks(rng, 1.0, cracked))
+    picture = mixed(picture, (48.0, 48.0, 48.0), 0.55 * cracks(rng, 1.0, cracked))
     return opaque(picture)
 
 

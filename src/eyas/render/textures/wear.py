@@ -32,7 +32,7 @@ def asphalt_patch() -> Texture:
     """Return newer, darker, finer asphalt than the road's."""
     rng = source("asphalt_patch")
     grain = 0.07 * white(rng) + 0.05 * fractal(rng, 0.8, longest=40.0)
-    picture = painted((52.0, 53.0, 56.0), grain)
+    picture = painted((70.0, 69.5, 68.5), grain)
     stone = rng.random(grain.shape)
     return opaque(mixed(picture, (112.0, 110.0, 106.0), 0.4 * (stone > 0.99)))
 
@@ -51,14 +51,14 @@ def asphalt_lane() -> Texture:
     lumps = fractal(rng, 0.8, longest=14.0, stretch=(0.5, 1.0))
     cloud = fractal(rng, 1.0, longest=70.0, stretch=(0.5, 1.0))
     picture = painted(
-        (63.0, 64.5, 69.0), (1 - 0.3 * track) * (0.1 * grain + 0.06 * lumps) + 0.04 * cloud
+        (84.0, 83.0, 81.0), (1 - 0.3 * track) * (0.1 * grain + 0.06 * lumps) + 0.04 * cloud
     )
     stone = np.repeat(rng.random((SIZE, SIZE // 2)), 2, axis=1)
-    picture = mixed(picture, (28.0, 28.0, 31.0), 0.5 * (stone < 0.03))
+    picture = mixed(picture, (42.0, 42.0, 42.0), 0.5 * (stone < 0.03))
     picture = mixed(picture, (150.0, 147.0, 140.0), (1 - 0.5 * track) * 0.5 * (stone > 0.985))
-    picture = mixed(picture, (46.0, 47.0, 50.0), 0.55 * track * (1 + 0.25 * cloud))
+    picture = mixed(picture, (64.0, 63.5, 62.5), 0.55 * track * (1 + 0.25 * cloud))
     drip = np.exp(-((across / 0.12) ** 2)) * np.clip(0.5 + 0.4 * cloud, 0, 1)
-    return opaque(mixed(picture, (42.0, 42.0, 44.0), 0.3 * drip))
+    return opaque(mixed(picture, (56.0, 56.0, 56.0), 0.3 * drip))
 
 
 def asphalt_oil() -> Texture:
@@ -66,10 +66,10 @@ def asphalt_oil() -> Texture:
     rng = source("asphalt_oil")
     across = (np.arange(SIZE)[None] + 0.5) / SIZE * 2 - 1
     grain = 0.09 * white(rng) + 0.05 * fractal(rng, 0.8, longest=30.0)
-    picture = painted((62.0, 63.0, 66.0), grain)
+    picture = painted((83.0, 82.0, 80.0), grain)
     where = np.clip(1.0 - np.abs(across), 0, 1)
     cloud = np.clip(0.55 + 0.45 * fractal(rng, 1.2, longest=60.0), 0, 1)
-    picture = mixed(picture, painted((40.0, 40.0, 42.0), 0.6 * grain), 0.7 * where * cloud)
+    picture = mixed(picture, painted((54.0, 53.5, 53.0), 0.6 * grain), 0.7 * where * cloud)
     drops = fractal(rng, 1.3, longest=16.0) * where
     return opaque(mixed(picture, (22.0, 22.0, 24.0), 0.6 * np.clip((drops - 1.2) * 3, 0, 1)))
 
@@ -88,4 +88,4 @@ def manhole() -> Texture:
     picture = mixed(picture, (30.0, 29.0, 29.0), 0.9 * gap)
     rim = np.clip((radius - 0.97) / 0.03, 0, 1)
     grain = 0.08 * white(rng) + 0.05 * fractal(rng, 0.8, longest=40.0)
-    return opaque(mixed(picture, painted((49.0, 49.5, 52.0), grain), rim))
+    return opaque(mixed(picture, painted((66.0, 65.5, 64.5), grain), rim))

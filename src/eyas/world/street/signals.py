@@ -1,7 +1,7 @@
-"""Traffic lights, dark as in the original: a pole at the kerb with an arm over the lanes.
+"""Traffic lights: a pole at the kerb with an arm over the lanes.
 
-They are decoration. Lenses stay dark, at night too: cars give way at crossings but ignore
-lights, so a fixed red or green would show cars running red lights in every film.
+They are decoration. All shine amber, as signals do that leave drivers to give way to each other:
+so cars drive here, and a fixed red or green would show cars running red lights in every film.
 """
 
 import numpy as np
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from eyas.mesh.assembly import concatenate
 from eyas.mesh.solids import box, tube
-from eyas.state.mesh import Mesh
+from eyas.state.mesh import Material, Mesh, Surface
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import ObjectClass
 from eyas.world.build.heights import FLOOR_HEIGHT
@@ -38,7 +38,7 @@ _STEEL = material("plain", (0.55, 0.56, 0.57))
 _CASE = material("plain", (0.13, 0.14, 0.14))
 _LENSES = (
     material("plain", (0.34, 0.09, 0.08)),
-    material("plain", (0.36, 0.27, 0.08)),
+    Material(tint=(1.0, 0.55, 0.06), surface=Surface.SIGNAL, emission=1.9),
     material("plain", (0.08, 0.26, 0.16)),
 )
 

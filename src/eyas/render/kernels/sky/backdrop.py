@@ -20,7 +20,7 @@ def sky_pixel(light: Light, lit: Illumination, rays: Rays, line: float, column: 
     """Return the packed bytes of the sky at a place of the band [samples]."""
     x, y, z = ray_of(rays, line, column)
     unit = f4(1.0) / root(x * x + y * y + z * z)
-    colour = sky(light, lit, x * unit, y * unit, z * unit)
+    colour = sky(light, lit, x * unit, y * unit, z * unit, rays.pixel)
     red, green, blue = tone_bytes(light, lit.air.exposure, colour)
     return pack(red, green, blue)
 

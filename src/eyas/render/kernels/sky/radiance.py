@@ -5,6 +5,7 @@ from eyas.core.lanes import any_of, greater, lesser, like, select
 from eyas.render.kernels.bundles import Direction, Illumination, Light
 from eyas.render.kernels.scalars import f4
 from eyas.render.kernels.sky.panorama import azimuth, panorama
+from eyas.render.kernels.sky.stars import starlight
 
 __all__ = [
     "CLOUDS_FROM",
@@ -89,10 +90,21 @@ def _air(lit: Illumination, z: float, toward_sun: float) -> tuple[float, float, 
 
 
 @inlined_kernel
-def sky(light: Light, lit: Illumination, x: float, y: float, z: float) -> Colour:
+def sky(
+    light: Light, lit: Illumination, x: float, y: float, z: float, pixel: float
+) -> Colour:
     """Return the colour of a direction of length 1 in which nothing stands.
 
-    Air, the sun or the moon, clouds in front of them, hills in front of all, far land below.
+    Stars by night, air, the sun or the moon, clouds in front of them, hills in front of all, far
+    land below.
+
+    Args:
+        light: Panoramas.
+        lit: Light and air.
+        x: The direction.
+        y: The direction.
+        z: The direction.
+        pixel: Angle that a pixel spans [rad].
     """
     zero, one = like(z, f4(0.0)), like(z, f4(1.0))
     around = azimuth(x, y)
@@ -103,7 +115,7 @@ def sky(light: Light, lit: Illumination, x: float, y: float, z: float) -> Colour
         cover = select(hilly, hills, cover)
     colour = (zero, zero, zero)
     if any_of(cover < one):
-        colour = _open_sky(light, lit, x, y, z, around)
+        colour = _open_sky(light, lit, x, y, z, around, pixel)
     if any_of(cover > zero):
         colour = blended(colour, _hills(light, lit, z, around), cover)
     return colour
@@ -111,9 +123,9 @@ def sky(light: Light, lit: Illumination, x: float, y: float, z: float) -> Colour
 
 @inlined_kernel
 def _open_sky(
-    light: Light, lit: Illumination, x: float, y: float, z: float, around: float
+    light: Light, lit: Illumination, x: float, y: float, z: float, around: float, pixel: float
 ) -> Colour:
-    """Return the radiance of air, sun or moon, and clouds."""
+    """Return the radiance of stars, air, sun or moon, and clouds."""
     zero, one, horizon, sun = f4(0.0), f4(1.0), lit.horizon, lit.sun_colour
     toward_sun = _dot(x, y, z, lit.sun)
     red, green, blue, clear = _air(lit, z, toward_sun)
@@ -137,7 +149,14 @@ def _open_sky(
     for _ in range(10):
         ring *= ring
     disc = (disc + f4(1.5) * ring) * clear
-    return red + disc * sun.x, green + disc * sun.y, blue + disc * sun.z
+    red, green, blue = red + disc * sun.x, green + disc * sun.y, blue + disc * sun.z
+    if lit.air.lamps > zero:
+        star, tint = starlight(x, y, z, around, pixel)
+        star *= clear
+        red += star * (one + tint)
+        green += star
+        blue += star * (one - tint)
+    return red, green, blue
 
 
 @inlined_kernel
@@ -184,8 +203,25 @@ def fog_share(lit: Illumination, distance: float) -> float:
 
 
 @inlined_kernel
+def _surroundings(lit: Illumination) -> Colour:
+    """Return the mean radiance of walls and trees: half in the sun, and half of the sky above."""
+    sun, above, below, share = lit.sun_colour, lit.above, lit.below, f4(0.5)
+    return (
+        f4(0.26) * (share * (sun.x + above.x) + below.x),
+        f4(0.24) * (share * (sun.y + above.y) + below.y),
+        f4(0.21) * (share * (sun.z + above.z) + below.z),
+    )
+
+
+@inlined_kernel
 def reflection(
-    lit: Illumination, ray: Colour, normal: Colour, facing: float, least: float, sunlit: float
+    lit: Illumination,
+    ray: Colour,
+    normal: Colour,
+    facing: float,
+    least: float,
+    sunlit: float,
+    hidden: float,
 ) -> tuple[Colour, float]:
     """Return what a smooth surface mirrors, and the share of it (Schlick's formula).
 
@@ -196,6 +232,8 @@ def reflection(
         facing: Minus their dot product, 0 to 1.
         least: Share that is mirrored when looking straight at it.
         sunlit: Share of the sun that reaches the surface.
+        hidden: Share of the sky's light that things around take away there: they are mirrored
+            where the sky would be low.
     """
     zero, one, sun = f4(0.0), f4(1.0), lit.sun_colour
     twice = f4(2.0) * facing
@@ -210,6 +248,10 @@ def reflection(
     below *= below * (f4(3.0) - f4(2.0) * below)
     below *= f4(0.6) * (one - lesser(lit.air.density * f4(400.0), one))
     red, green, blue = blended((red, green, blue), lit.below, below)
+    # Around a point that gets half of the sky's light, things are some 45 degrees high.
+    around = lesser(greater((f4(1.5) * hidden - z) * f4(5.0), zero), one)
+    around *= f4(0.8) * (one - below)
+    red, green, blue = blended((red, green, blue), _surroundings(lit), around)
     shine = _dot(x, y, z, lit.sun)
     for _ in range(6):
         shine *= shine

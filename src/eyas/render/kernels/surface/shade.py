@@ -24,6 +24,7 @@ GLASS = i4(int(Surface.GLASS))
 FOLIAGE = i4(int(Surface.FOLIAGE))
 FACADE = i4(int(Surface.FACADE))
 WATER = i4(int(Surface.WATER))
+SIGNAL = i4(int(Surface.SIGNAL))
 
 Colour = tuple[float, float, float]
 
@@ -136,16 +137,21 @@ def shade_point(
     direct, reaching = sunlight(light, lit.sun, air.offset, point, normal, sun_share, leafy)
     tilt = f4(0.5) * normal[2]
     tilt = select(leafy, f4(0.2) + f4(0.5) * tilt, tilt)  # leaves get light through those above
-    sky_share *= openness(light, point[0], point[1], point[2], normal[0], normal[1])
+    open_share = openness(light, point[0], point[1], point[2], normal[0], normal[1])
+    sky_share *= open_share
     up, down = (f4(0.5) + tilt) * sky_share, (f4(0.5) - tilt) * sky_share
     sun, above, below = lit.sun_colour, lit.above, lit.below
     light_r = direct * sun.x + up * above.x + down * below.x
     light_g = direct * sun.y + up * above.y + down * below.y
     light_b = direct * sun.z + up * above.z + down * below.z
+    signal = surface == SIGNAL
+    if any_of(signal):
+        glow = select(signal, at.emission, zero)
+        light_r, light_g, light_b = light_r + glow, light_g + glow, light_b + glow
     if air.lamps > zero:
         head, tail = to_f4((shade >> u4(16)) & byte), to_f4(shade >> u4(24))
         lamp_r, lamp_g, lamp_b = night_light(light, air.lamps, point, normal, head, tail)
-        glow = air.lamps * at.emission
+        glow = air.lamps * select(signal, zero, at.emission)
         light_r += lamp_r + glow
         light_g += lamp_g + glow
         light_b += lamp_b + glow
@@ -164,9 +170,11 @@ def shade_point(
     mirror = _smoothness(surface, alpha)
     if any_of(mirror > zero):
         facing = lesser(greater(cosine, zero), one)
-        mirrored, share = reflection(lit, way, normal, facing, mirror, reaching)
-        # Clear coat is no mirror, even at a grazing angle.
-        share *= select(window, one - alpha, select(painted, like(alpha, f4(0.6)), one))
+        mirrored, share = reflection(
+            lit, way, normal, facing, mirror, reaching, one - open_share
+        )
+        # Clear coat is no perfect mirror, even at a grazing angle.
+        share *= select(window, one - alpha, select(painted, like(alpha, f4(0.85)), one))
         share = select(mirror > zero, share, zero)
         red, green, blue = blended((red, green, blue), mirrored, share)
     if air.density > zero:
