@@ -82,9 +82,10 @@ def test_the_grid_holds_every_lamp_that_is_near():
     rng = np.random.default_rng(3)
     places = rng.uniform(-150, 150, (40, 2))
     lamp, cells, frame = lamp_grid(lamps_at(places))
-    assert lamp.shape == (40, 7)
+    assert lamp.shape == (40, 8)
     for point in rng.uniform(-170, 170, (300, 2)):
-        column, row = np.floor((point - frame[:2]) * frame[2]).astype(int)
+        corner = np.array([frame.west, frame.south])
+        column, row = np.floor((point - corner) * frame.per_metre).astype(int)
         near = set(np.flatnonzero(np.linalg.norm(places - point, axis=1) < 30.0))
         listed = set()
         if 0 <= row < cells.shape[0] and 0 <= column < cells.shape[1]:

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from eyas.core.jit import kernel
 from eyas.render.bake.clouds import build_clouds, plan_directions
 from eyas.render.bake.hills import build_hills
 from eyas.render.kernels.sky.panorama import azimuth
@@ -90,13 +91,18 @@ def test_clouds_cover_the_picture_and_darken_with_the_sky(sky_of, renderer_of, d
     assert drawn(renderer, night).rgb.max() <= 1
 
 
+@kernel
+def azimuth_of(x, y):
+    return azimuth(x, y)
+
+
 def test_columns_of_panoramas_go_round_by_azimuth():
     directions = plan_directions(64)
     assert np.linalg.norm(directions, axis=1) == pytest.approx(1.0)
     turn = np.unwrap(np.arctan2(directions[:, 1], directions[:, 0]))
     assert (np.diff(turn) > 0).all()
     assert turn[-1] - turn[0] < 2 * np.pi
-    found = [azimuth.py_func(np.float32(x), np.float32(y)) for x, y in directions]
+    found = [azimuth_of(np.float32(x), np.float32(y)) for x, y in directions]
     assert found == pytest.approx((np.arange(64) + 0.5) / 16, abs=1e-5)
 
 

@@ -1,0 +1,58 @@
+"""The shading kernels give the same bytes for eight pixels at once and for one at a time."""
+
+import numpy as np
+import pytest
+
+from eyas.core.parallel import Held, parallel_kernel
+from eyas.core.pointers import address_of
+from eyas.render import renderer as module
+from eyas.render.kernels.light.view_light import view_light
+from eyas.render.kernels.scalars import u4
+from eyas.render.kernels.surface.pixel import shade_pixel
+from eyas.render.kernels.visibility.transform import view_of
+from eyas.state.draw import Picture
+from eyas.world.weather import CLEAR_DAY, CLEAR_NIGHT, FOG, WINTER_DAY
+
+from .small_city import car_parts, city_scene, city_traffic, looking
+
+SIZE = (100, 203)
+WEATHERS = {"day": CLEAR_DAY, "foggy": FOG, "night": CLEAR_NIGHT, "snow": WINTER_DAY}
+
+
+@parallel_kernel
+def one_by_one(parts, worker, workers):
+    geometry, light, scratch, task, places, found = parts[0]
+    job, movers = task.job, address_of(task.movers)
+    view = address_of(view_of(job, 0, task.width, task.height, task.samples))
+    lit = address_of(view_light(light.weather, job.light[0]))
+    for k in range(len(places[0])):
+        row, column = places[0][k, 0], places[0][k, 1]
+        shade = scratch.shade[0, row, column]
+        word = u4(shade[0]) | (u4(shade[1]) << u4(8)) | (u4(shade[2]) << u4(16))
+        found[0][k] = shade_pixel(
+            view, geometry, light, lit, movers, 0, scratch.drawn[0], scratch.key[0, row, column],
+            word | (u4(shade[3]) << u4(24)), row, column,
+        )  # fmt: skip
+
+
+@pytest.mark.slow  # compiles the shading of surfaces a second time
+@pytest.mark.parametrize("weather", WEATHERS)
+def test_eight_pixels_at_once_are_the_same_as_one_at_a_time(renderer_of, monkeypatch, weather):
+    monkeypatch.setattr(module, "thread_count", lambda: 1)  # so that one memory holds the picture
+    drawing, calls = module.draw_views, []
+
+    def kept(workers, *parts):
+        calls.append(parts)
+        drawing(workers, *parts)
+
+    monkeypatch.setattr(module, "draw_views", kept)
+    renderer = renderer_of(city_scene(), car_parts(), WEATHERS[weather])
+    picture = Picture.create(1, *SIZE)
+    renderer.draw(looking([(-95.0, 2.0, 9.0)], pitch=0.12, fov=1.3), city_traffic(1), picture)
+    rng = np.random.default_rng(1)
+    places = np.stack([rng.integers(0, side, 10_000) for side in SIZE], axis=1).astype(np.int64)
+    found = np.zeros(len(places), np.uint32)
+    one_by_one(1, *calls[0], Held(places), Held(found))
+    colours = np.stack([found & 255, (found >> 8) & 255, (found >> 16) & 255], axis=1)
+    np.testing.assert_array_equal(picture.rgb[0][places[:, 0], places[:, 1]], colours)
+    assert len(np.unique(found)) > 1000
