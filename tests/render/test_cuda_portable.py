@@ -1,5 +1,9 @@
 """The hot kernels compile for CUDA as they are: down to PTX, for which no GPU is needed."""
 
+import os
+import re
+import shutil
+import subprocess
 from types import SimpleNamespace
 
 import numba
@@ -7,9 +11,14 @@ import numpy as np
 import pytest
 from numba.types import CPointer, Tuple, intp
 
+from eyas.core.pointers import address_of
 from eyas.render.jobs import build_jobs
-from eyas.render.kernels.bundles import Movers, Output, Task
-from eyas.render.kernels.draw import draw_views
+from eyas.render.kernels.bundles import Movers, Task
+from eyas.render.kernels.light.view_light import view_light
+from eyas.render.kernels.scalars import u4
+from eyas.render.kernels.surface.pixel import shade_pixel
+from eyas.render.kernels.visibility.transform import view_of
+from eyas.render.renderer import _NOTHING as NOTHING
 from eyas.sensors.config import CameraConfig
 from eyas.sim.step import Orders, StepState, Surroundings, step_of
 from eyas.state.draw import DrawStage
@@ -49,23 +58,48 @@ def pointer_to(bundle) -> CPointer:
     return CPointer(numba.typeof(bundle))
 
 
-@pytest.mark.slow  # 36 s of compiling
-def test_drawing_a_band_with_all_weathers_compiles_for_cuda(ptx_of, renderer_of):
+def shade_thread(parts, row, column, found):
+    """Do what one thread does for one pixel whose triangle is known."""
+    geometry, light, scratch, task = parts[0]
+    job, movers = task.job, address_of(task.movers)
+    view = address_of(view_of(job, 0, task.width, task.height, task.samples))
+    lit = address_of(view_light(light.weather, job.light[0]))
+    found[row, column] = shade_pixel(
+        view, geometry, light, lit, movers, 0, scratch.drawn[0], scratch.key[0, row, column],
+        u4(scratch.shade[0, row, column, 0]), row, column,
+    )  # fmt: skip
+
+
+@pytest.mark.slow  # compiles for half a minute
+def test_shading_a_pixel_in_all_weathers_compiles_for_cuda(ptx_of, renderer_of, tmp_path):
+    from eyas.core import cuda  # noqa: F401  # pointers to bundles
+
     renderer = renderer_of(city_scene(), car_parts())
     traffic = city_traffic(1)
     movers = Movers(traffic.part, traffic.pose, traffic.colour, traffic.object_id)
-    views = looking([(0.0, 0.0, 20.0)])
-    job = build_jobs(views, 24, 32, 1, 0.0)
-    scratch = renderer._scratch_for(1, 24, 32).bundle
-    output = Output(
-        np.zeros((1, 24, 32, 3), np.uint8), np.zeros((1, 24, 32), np.float32),
-        np.zeros((1, 24, 32), np.int32), np.zeros((1, 6), np.int32),
-    )  # fmt: skip
-    task = Task(1, int(DrawStage.SHADING), movers, job, output)
-    parts = [pointer_to(part) for part in (renderer._still.bundle, scratch, task)]
-    text = ptx_of(draw_views.function, CPointer(Tuple(parts)), intp, intp)
+    job = build_jobs(looking([(0.0, 0.0, 20.0)]), 24, 32, 1, 0.0)
+    scratch = renderer._scratch_for(1, 24, 32, 1, movers.part.shape[1], False).bundle
+    task = Task(1, 32, 24, int(DrawStage.SHADING), movers, job, NOTHING)
+    bundles = (*(held.bundle for held in renderer._held), scratch, task)
+    parts = CPointer(Tuple([pointer_to(bundle) for bundle in bundles]))
+    text = ptx_of(shade_thread, parts, numba.int64, numba.int64, numba.uint32[:, ::1])
     assert ".visible .entry" in text
     assert "sqrt.rn.f32" in text
+    ptxas = shutil.which("ptxas")
+    if ptxas is None:
+        return
+    source = tmp_path / "shade.ptx"
+    source.write_text(text.rstrip("\0"))
+    command = [ptxas, "-v", "-arch=sm_90", "-o", os.devnull, str(source)]
+    ran = subprocess.run(command, capture_output=True, text=True)
+    if "Unsupported .version" in ran.stderr:  # an older toolkit than numba's
+        return
+    report = ran.stderr + ran.stdout
+    assert ran.returncode == 0, report
+    registers = int(re.search(r"Used (\d+) registers", report)[1])
+    spilled = [int(number) for number in re.findall(r"(\d+) bytes spill", report)]
+    assert registers <= 128
+    assert sum(spilled) == 0
 
 
 @pytest.mark.parametrize("kernel", ["fly", "carry", "begin"])

@@ -101,7 +101,12 @@ def front_of(drawn, renderer_of, house, number, lighting):
 
 def test_some_windows_are_lit_others_in_other_houses(drawn, renderer_of):
     lit = dataclasses.replace(
-        DARK, windows=0.4, zenith_colour=(0, 0, 0), horizon_colour=(0, 0, 0), fog_colour=(0, 0, 0)
+        DARK,
+        lamps=0.0,
+        windows=0.4,
+        zenith_colour=(0, 0, 0),
+        horizon_colour=(0, 0, 0),
+        fog_colour=(0, 0, 0),
     )
     house = tower(0.0, 0.0, 24.0, 30.0)
     first = front_of(drawn, renderer_of, house, 5, lit)
@@ -150,7 +155,12 @@ def test_movers_without_lamps_throw_no_light(drawn, renderer_of):
 
 def test_small_windows_fade_to_their_mean(drawn, renderer_of):
     lit = dataclasses.replace(
-        DARK, windows=0.4, zenith_colour=(0, 0, 0), horizon_colour=(0, 0, 0), fog_colour=(0, 0, 0)
+        DARK,
+        lamps=0.0,
+        windows=0.4,
+        zenith_colour=(0, 0, 0),
+        horizon_colour=(0, 0, 0),
+        fog_colour=(0, 0, 0),
     )
     scene = city_scene()
     means = []
