@@ -146,13 +146,17 @@ def test_drawing_other_subsets_takes_no_more_memory_than_drawing_all(config, ass
     worlds = Worlds(config, assets, each_alone(count))
     for tracker in range(count):
         worlds.sample_looks(tracker, 0, 0)
-    _, movers = worlds.draw_list(np.arange(count), tick)
+    cameras = CameraState.create(count)  # with the whole town in front of them
+    cameras.position[:, 0], cameras.field_of_view[:] = -2000.0, 2.5
+    _, movers = worlds.draw_list(np.arange(count), tick, cameras, 1.0)
+    assert (movers.part[0] >= 0).sum() > 40
     two_worlds = movers.pose[:2].nbytes
     tracemalloc.start()
     try:
         before, _ = tracemalloc.get_traced_memory()
         for last in range(count - 1, 0, -1):
-            rows, few = worlds.draw_list(np.arange(last), tick)
+            some = CameraState(*(array[:last] for array in cameras))
+            rows, few = worlds.draw_list(np.arange(last), tick, some, 1.0)
             assert rows.tolist() == list(range(last))
             assert len(few.part) == last
         del few

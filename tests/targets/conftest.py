@@ -33,6 +33,9 @@ class WalkerRig:
         )  # fmt: skip
         return [(mesh,)] * self.part_count
 
+    def reach(self, parts):
+        return parts.max() + self.slots
+
     def pose(self, group, actors, looks, out):
         for actor, first in zip(group.actor, group.slot, strict=True):
             for k in range(self.slots):

@@ -179,6 +179,27 @@ def test_models_with_fewer_wheels_leave_slots_empty_and_have_their_own_body():
             assert (out.colour[0, window] == colour[0, a]).all()
 
 
+@pytest.mark.parametrize("vehicle_type", TYPES)
+def test_no_point_of_a_vehicle_is_farther_than_its_reach(vehicle_type):
+    library = library_of(vehicle_type)
+    parts = np.array(
+        [np.linalg.norm(levels[0].positions, axis=1).max() for levels in library.parts]
+    )
+    rigs = rigs_of(vehicle_type, 1)
+    (reach,) = rigs.reach(parts)
+    farthest = []
+    count = len(own_models(vehicle_type))
+    actors = random_actors(1, count)
+    out, _ = posed(vehicle_type, actors)
+    slots = out.part.shape[1] // count
+    for slot in np.flatnonzero(out.part[0] >= 0):
+        pose = out.pose[0, slot].astype(np.float64)
+        points = library.parts[out.part[0, slot]][0].positions @ pose[:, :3].T + pose[:, 3]
+        place = actors.position[0, slot // slots]
+        farthest.append(np.linalg.norm(points - place, axis=1).max())
+    assert 0.6 * reach < max(farthest) <= reach + 1e-4
+
+
 def test_each_actor_has_the_slots_of_its_own_kind(walker):
     """A robot of many parts costs the cars beside it no slot."""
     robot = replace(walker, rig=lambda: walker.rig().__class__(25))

@@ -17,6 +17,7 @@ from eyas.render.classes import class_table, write_classes
 from eyas.render.jobs import build_jobs, picture_size, write_measured
 from eyas.render.kernels.bundles import Geometry, Light, Movers, Output, Scratch, Task
 from eyas.render.kernels.draw import draw_views
+from eyas.render.kernels.light.casters import influence
 from eyas.render.kernels.visibility.clusters import CLUSTER
 from eyas.render.kernels.visibility.fill import SPAN_ROWS
 from eyas.render.kernels.visibility.key import MOST_INSTANCES
@@ -58,6 +59,22 @@ class Renderer:
     def textures(self) -> NDArray[np.uint32]:
         """All textures with their mip levels, see `Geometry.texture`."""
         return self._geometry.texture
+
+    def part_reach(self) -> NDArray[np.float64]:
+        """Return how far the corners of each part of the library are from its origin [m]."""
+        box = self._geometry.box[self._geometry.part_first :].astype(np.float64)
+        far = np.maximum(-box[:, :3], box[:, 3:])
+        reach: NDArray[np.float64] = np.sqrt((far * far).sum(axis=1))
+        return reach
+
+    def influence(self, reach: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the distance up to which things, their shadows and lamps may show [m].
+
+        Args:
+            reach: How far the corners of their parts may be from any point of them [m].
+        """
+        sun, lamps_on = self._light.weather.sun, bool(self._light.weather.air.lamps > 0.0)
+        return np.array([influence(one, sun, lamps_on) for one in reach.tolist()])
 
     def draw(
         self,

@@ -17,6 +17,9 @@ class Camera:
     The view has the aspect ratio of the configured picture. Pictures with another aspect ratio show
     the same view distorted, like the original's observations: 320x240 resized to 84x84.
 
+    Attributes:
+        aspect: Height of the view over its width.
+
     Args:
         config: Size, field of view, samples.
         renderer: Draws the scene.
@@ -24,12 +27,12 @@ class Camera:
 
     def __init__(self, config: CameraConfig, renderer: Renderer) -> None:
         self.config = config
+        self.aspect = config.height / config.width
         self._renderer = renderer
 
     def vertical(self, fields: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return the vertical field of view for each horizontal one [rad], shape (V,)."""
-        ratio = self.config.height / self.config.width
-        return np.array([field_along(field, ratio) for field in fields.tolist()])
+        return np.array([field_along(field, self.aspect) for field in fields.tolist()])
 
     def read(
         self,

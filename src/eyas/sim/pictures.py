@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from eyas.core.clock import PHYSICS_STEP
 from eyas.overlay.marks import Marks
 from eyas.overlay.paint import paint_overlays, with_depth
+from eyas.render.jobs import picture_size
 from eyas.sensors.camera import Camera
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
@@ -57,7 +58,7 @@ class Pictures:
             until: The stage at which to stop; see `Renderer.draw`.
         """
         cameras = CameraState(*(array[chosen] for array in self._snapshot.cameras))
-        views, movers = self._views(chosen, cameras)
+        views, movers = self._views(chosen, cameras, self._camera.aspect)
         views.vertical_field_of_view = self._camera.vertical(cameras.field_of_view)
         self._camera.read(views, movers, picture, until)
         return views
@@ -85,7 +86,8 @@ class Pictures:
             picture: V pictures with colours, of any size; pixels are square.
             rules: Rules for the overlay of all trackers of that world; None: no overlay.
         """
-        views, movers = self._views(chosen, cameras)
+        height, width = picture_size(picture)
+        views, movers = self._views(chosen, cameras, height / width)
         deep = picture if rules is None else with_depth(picture)
         self._renderer.draw(views, movers, deep, self._samples)
         if rules is not None:
@@ -96,10 +98,13 @@ class Pictures:
             ]
             paint_overlays(views, marks, deep)
 
-    def _views(self, chosen: Chosen, cameras: CameraState) -> tuple[Views, DrawList]:
-        """Return views of the worlds of trackers: cameras, with square pixels, and movers."""
+    def _views(self, chosen: Chosen, cameras: CameraState, aspect: float) -> tuple[Views, DrawList]:
+        """Return views of the worlds of trackers: cameras, with square pixels, and movers.
+
+        `aspect` is the height of what the cameras show over its width.
+        """
         ticks = self._snapshot.episodes.tick
-        world, movers = self._worlds.draw_list(chosen, ticks)
+        world, movers = self._worlds.draw_list(chosen, ticks, cameras, aspect)
         views = Views(
             position=cameras.position,
             rotation=cameras.rotation,

@@ -7,9 +7,11 @@ from eyas.core.clock import PHYSICS_STEP
 from eyas.core.rng import stream
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
+from eyas.sim.near import NearMovers
 from eyas.state.draw import DrawList
 from eyas.state.motion import ActorState
 from eyas.state.scene import ACTOR_OBJECT
+from eyas.state.snapshot import CameraState
 from eyas.targets.kind import Looks
 from eyas.targets.looks import LookSampler
 
@@ -67,8 +69,9 @@ class Worlds:
         self._looks = Looks(
             np.zeros((worlds, actors), np.int32), np.ones((worlds, actors, 3), np.float32)
         )
-        self._actors = ActorState.create(0, actors)
-        self._movers = DrawList.create(0, 0)
+        renderer, rigs = assets.renderer, assets.rigs
+        reach = renderer.influence(rigs.reach(renderer.part_reach()))
+        self._near = NearMovers(assets.traffic.motion, rigs, self._looks, reach)
 
     @property
     def actors(self) -> int:
@@ -107,29 +110,21 @@ class Worlds:
         return actors, self._looks.model[self.of[tracker]]
 
     def draw_list(
-        self, trackers: NDArray[np.integer], tick: Integers
+        self, trackers: NDArray[np.integer], tick: Integers, cameras: CameraState, aspect: float
     ) -> tuple[NDArray[np.int32], DrawList]:
-        """Return the row of each of V trackers in a list of moving parts, and that list.
+        """Return the row of each of V views in a list of moving parts, and that list.
 
-        The list is overwritten by the next call.
+        The list holds the actors that may matter in the views of their world, and is overwritten
+        by the next call.
 
         Args:
-            trackers: The trackers, shape (V,).
+            trackers: The tracker whose world each view shows, shape (V,).
             tick: Time of all N trackers in physics steps, shape (N,).
+            cameras: The V cameras.
+            aspect: Height of what they show over its width.
         """
         worlds, rows = self.of[trackers], np.arange(len(trackers))
         if self.lasting.any():
             worlds, rows = np.unique(worlds, return_inverse=True)
         time = tick[self.leader[worlds]].astype(np.float64) * PHYSICS_STEP
-        actors, movers = self._buffers(len(worlds))
-        self._assets.traffic.at(time, actors)
-        looks = Looks(*(array[worlds] for array in self._looks))
-        self._assets.rigs.pose(actors, looks, movers)
-        return rows.astype(np.int32), movers
-
-    def _buffers(self, worlds: int) -> tuple[ActorState, DrawList]:
-        """Return buffers for some worlds; they grow to the largest number ever requested."""
-        if len(self._movers.part) < worlds:
-            self._actors = ActorState.create(worlds, self._assets.traffic.actors)
-            self._movers = self._assets.rigs.draw_list(worlds)
-        return self._actors.first(worlds), self._movers.first(worlds)
+        return rows.astype(np.int32), self._near.of(worlds, time, rows, cameras, aspect)

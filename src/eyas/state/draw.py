@@ -65,6 +65,16 @@ class DrawList:
             object_class=np.full((worlds, slots), ObjectClass.CAR, np.uint8),
         )
 
+    def flat(self) -> "DrawList":
+        """Return the slots of all worlds as those of one; the arrays are shared."""
+        return DrawList(
+            part=self.part.reshape(1, -1),
+            pose=self.pose.reshape(1, -1, 3, 4),
+            colour=self.colour.reshape(1, -1, 3),
+            object_id=self.object_id.reshape(1, -1),
+            object_class=self.object_class,
+        )
+
     def first(self, worlds: int) -> "DrawList":
         """Return the lists of the first worlds; the arrays are shared."""
         return DrawList(*(getattr(self, array.name)[:worlds] for array in fields(self)))

@@ -81,6 +81,15 @@ class Rig(Protocol):
         """Return the meshes of each part, the finest first, in the part's own frame."""
         ...
 
+    def reach(self, parts: NDArray[np.float64]) -> float:
+        """Return how far any point of an actor may be from its reference point [m].
+
+        Args:
+            parts: How far the points of each part are from the part's origin, at most [m], shape
+                (part_count,).
+        """
+        ...
+
     def pose(self, group: Group, actors: ActorState, looks: Looks, out: DrawList) -> None:
         """Write part, pose and colour of all slots of the kind's actors, in all worlds.
 

@@ -12,10 +12,10 @@ from eyas.state.scene import ACTOR_OBJECT
 from eyas.targets.catalogue import KINDS, models_of
 from eyas.targets.kind import Group, Kind, Looks, Rig
 
-__all__ = ["Rigs", "part_library"]
+__all__ = ["Cast", "Rigs", "part_library"]
 
 
-class _Cast(NamedTuple):
+class Cast(NamedTuple):
     """The actors of one kind, and the rig that poses them."""
 
     rig: Rig
@@ -28,6 +28,7 @@ class Rigs:
     Attributes:
         kinds: The kinds of the actors, in the order of their parts in the library.
         first_slot: First slot of each actor, and the number of all slots, shape (A + 1,).
+        casts: The actors of each of these kinds.
 
     Args:
         kind: Kind of each actor, index into `KINDS`, shape (A,).
@@ -42,12 +43,12 @@ class Rigs:
         self._owner = np.repeat(np.arange(len(kind)), slots)
         classes = [KINDS[k].object_class for k in kind.tolist()]
         self._object_class = np.array(classes, np.uint8)
-        self._casts: list[_Cast] = []
+        self.casts: list[Cast] = []
         part = 0
         for k in present:
             actor = np.flatnonzero(kind == k)
             group = Group(actor, self.first_slot[actor], part, models_of(k).start)
-            self._casts.append(_Cast(rigs[k], group))
+            self.casts.append(Cast(rigs[k], group))
             part += rigs[k].part_count
 
     def draw_list(self, worlds: int) -> DrawList:
@@ -57,6 +58,27 @@ class Rigs:
         empty.object_class = np.tile(self._object_class, (worlds, 1))
         return empty
 
+    def short_list(self, worlds: int, slots: int) -> DrawList:
+        """Return an empty draw list for some of the actors of some worlds."""
+        empty = DrawList.create(worlds, slots)
+        empty.object_class = np.tile(self._object_class, (worlds, 1))
+        return empty
+
+    def reach(self, parts: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return how far any point of an actor may be from its reference point [m].
+
+        Args:
+            parts: How far the points of each part of the library are from its origin [m].
+
+        Returns:
+            For each kind, shape (K,).
+        """
+        reach = []
+        for rig, group in self.casts:
+            own = slice(group.first_part, group.first_part + rig.part_count)
+            reach.append(rig.reach(parts[own]))
+        return np.array(reach)
+
     def pose(self, actors: ActorState, looks: Looks, out: DrawList) -> None:
         """Fill a draw list in place.
 
@@ -65,7 +87,7 @@ class Rigs:
             looks: Models and colours of the same actors.
             out: A draw list from `draw_list`.
         """
-        for rig, group in self._casts:
+        for rig, group in self.casts:
             rig.pose(group, actors, looks, out)
 
 

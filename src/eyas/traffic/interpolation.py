@@ -9,7 +9,13 @@ from numpy.typing import NDArray
 from eyas.core.jit import kernel, step_kernel
 from eyas.state.motion import ActorState, Motion
 
-__all__ = ["ActorPose", "interpolate_actor", "interpolate_actors"]
+__all__ = [
+    "ActorPose",
+    "interpolate_actor",
+    "interpolate_actors",
+    "sample_before",
+    "write_actor",
+]
 
 
 class ActorPose(NamedTuple):
@@ -27,6 +33,20 @@ class ActorPose(NamedTuple):
 
 
 @step_kernel
+def _place(motion: Motion, time: float) -> float:
+    """Return a time in samples since the first, within the motion."""
+    last = motion.table.shape[0] - 1
+    return min(max((time - motion.first_time) * motion.rate, 0.0), float(last))
+
+
+@step_kernel
+def sample_before(motion: Motion, time: float) -> int:
+    """Return the sample at the beginning of the interval that a time [s] lies in."""
+    last: int = motion.table.shape[0] - 1
+    return min(int(_place(motion, time)), last - 1)
+
+
+@step_kernel
 def interpolate_actor(motion: Motion, actor: int, time: float) -> ActorPose:
     """Return one actor at one time; times outside the samples are clamped to their ends.
 
@@ -35,10 +55,8 @@ def interpolate_actor(motion: Motion, actor: int, time: float) -> ActorPose:
         actor: Index of the actor.
         time: Time [s].
     """
-    last = motion.table.shape[0] - 1
-    place = min(max((time - motion.first_time) * motion.rate, 0.0), float(last))
-    row = min(int(place), last - 1)
-    f = place - row
+    row = sample_before(motion, time)
+    f = _place(motion, time) - row
     a = motion.table[row, actor]
     b = motion.table[row + 1, actor]
     step = 1.0 / motion.rate
@@ -71,6 +89,20 @@ def _hermite(
     return value, slope
 
 
+@step_kernel
+def write_actor(pose: ActorPose, out: ActorState, world: int, actor: int) -> None:
+    """Write an actor as one of a world."""
+    out.position[world, actor, 0] = pose.x
+    out.position[world, actor, 1] = pose.y
+    out.position[world, actor, 2] = pose.z
+    out.yaw[world, actor] = pose.yaw
+    out.slope[world, actor] = pose.slope
+    out.speed[world, actor] = pose.speed
+    out.yaw_rate[world, actor] = pose.yaw_rate
+    out.travelled[world, actor] = pose.travelled
+    out.present[world, actor] = pose.present
+
+
 @kernel
 def interpolate_actors(motion: Motion, time: NDArray[np.float64], out: ActorState) -> None:
     """Write all actors of W worlds at the worlds' own times [s], shape (W,)."""
@@ -78,12 +110,4 @@ def interpolate_actors(motion: Motion, time: NDArray[np.float64], out: ActorStat
     for world in range(len(time)):
         for actor in range(motion.table.shape[1]):
             pose = interpolate_actor(motion, actor, time[world])
-            out.position[world, actor, 0] = pose.x
-            out.position[world, actor, 1] = pose.y
-            out.position[world, actor, 2] = pose.z
-            out.yaw[world, actor] = pose.yaw
-            out.slope[world, actor] = pose.slope
-            out.speed[world, actor] = pose.speed
-            out.yaw_rate[world, actor] = pose.yaw_rate
-            out.travelled[world, actor] = pose.travelled
-            out.present[world, actor] = pose.present
+            write_actor(pose, out, world, actor)

@@ -4,13 +4,14 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from eyas.state.draw import DrawList
 from eyas.state.mesh import Mesh
 from eyas.state.motion import ActorState
 from eyas.targets.kind import Group, Looks
 from eyas.targets.vehicles.bodies import body_levels
-from eyas.targets.vehicles.models import Axle, VehicleModel
+from eyas.targets.vehicles.models import VEHICLE_AHEAD, Axle, VehicleModel
 from eyas.targets.vehicles.pose import AXLES, SLOT, RigTable, Slots, pose_vehicles
 from eyas.targets.vehicles.wheels import wheel_levels
 
@@ -43,6 +44,12 @@ class VehicleRig:
     def part_levels(self) -> list[tuple[Mesh, ...]]:
         """Return the meshes of each part, the finest first."""
         return [_levels(part) for part in self._parts]
+
+    def reach(self, parts: NDArray[np.float64]) -> float:
+        """Return how far any point of a vehicle may be from its reference point, see `Rig` [m]."""
+        slot = self._table.slot[self._table.slot["part"] >= 0]
+        offset = np.sqrt(slot["x"] ** 2 + slot["y"] ** 2 + slot["z"] ** 2)
+        return abs(VEHICLE_AHEAD) + float((offset + parts[slot["part"]]).max())
 
     def pose(self, group: Group, actors: ActorState, looks: Looks, out: DrawList) -> None:
         """Write all slots of the kind's actors, see `Rig`."""

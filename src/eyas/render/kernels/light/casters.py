@@ -9,7 +9,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inlined_kernel, inner_kernel
+from eyas.core.jit import inlined_kernel, inner_kernel, kernel
 from eyas.core.lanes import (
     WIDTH,
     any_of,
@@ -42,7 +42,7 @@ from eyas.render.kernels.visibility.cull import sphere_is_visible
 from eyas.render.kernels.visibility.key import distance_inverse, tag_of
 from eyas.render.kernels.visibility.things import belongs_to, end_of_thing, next_thing
 
-__all__ = ["cast_light"]
+__all__ = ["cast_light", "influence"]
 
 SMALLEST = 1.0
 """Things whose half diagonal is smaller cast no shadow [pixels]."""
@@ -60,6 +60,21 @@ def _throw(sun: Direction) -> float:
     return min(1.0 / max(float(sun.z), 1e-3), _LONGEST)
 
 
+@kernel
+def influence(reach: float, sun: Direction, lamps_on: bool) -> float:
+    """Return the distance up to which a thing, its shadow and its light may be in a picture [m].
+
+    Args:
+        reach: How far the corners of its parts are from any point of it, at most [m].
+        sun: Unit vector to the sun.
+        lamps_on: Whether the lamps of vehicles are on.
+    """
+    height = 2.0 * reach
+    length = _throw(sun) * height * math.sqrt(sun.x * sun.x + sun.y * sun.y)
+    most = CORNER * (reach + beyond(height)) + _BELOW + length
+    return max(most, CORNER * reach + BEAM_REACH) if lamps_on else most
+
+
 @inlined_kernel
 def _may_reach(
     geometry: Geometry, movers: Movers, world: int, first: int, last: int, sun: Direction,
@@ -69,12 +84,7 @@ def _may_reach(
 
     This is tested first because it needs no box around the thing.
     """
-    reach = reach_of(geometry, movers, world, first, last)
-    height = 2.0 * reach
-    length = _throw(sun) * height * math.sqrt(sun.x * sun.x + sun.y * sun.y)
-    most = CORNER * (reach + beyond(height)) + _BELOW + length
-    if lamps_on:
-        most = max(most, CORNER * reach + BEAM_REACH)
+    most = influence(reach_of(geometry, movers, world, first, last), sun, lamps_on)
     origin = movers.pose[world, first]
     return sphere_is_visible(
         view.planes, float(origin[0, 3]), float(origin[1, 3]), float(origin[2, 3]), most
