@@ -10,16 +10,16 @@ import eyas
 
 TELLS = """
 import os
-from eyas.core.jit import KERNEL_SETTINGS, kernel_folder
-print(KERNEL_SETTINGS["cache"], kernel_folder(), os.environ["NUMBA_CACHE_DIR"])
+from eyas.core.jit import KEPT, kernel_folder
+print(KEPT, kernel_folder(), os.environ["NUMBA_CACHE_DIR"])
 """
 
 COMPILES = """
 from eyas.core.frames import wrap_angle
-from eyas.core.jit import KERNEL_SETTINGS
+from eyas.core.jit import KEPT
 from eyas.render import ahead
 assert ahead.compile_ahead() is None
-print(KERNEL_SETTINGS["cache"], wrap_angle(1.0))
+print(KEPT, wrap_angle(1.0))
 """
 
 

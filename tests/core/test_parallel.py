@@ -7,7 +7,6 @@ import signal
 import threading
 import time
 from concurrent.futures import ThreadPoolExecutor
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -15,8 +14,6 @@ import pytest
 from eyas.core.parallel import Held, parallel_kernel
 
 
-# Bundles are plain tuples here: numba keeps the types of what it compiled with Eyas's kernels, and
-# one of a test's own could not be loaded by who runs Eyas from elsewhere.
 @parallel_kernel
 def add_up(parts, worker, workers):
     first, others = parts[0]
@@ -72,7 +69,6 @@ def test_a_bound_kernel_does_all_shares_and_keeps_what_it_works_on():
 def test_a_bundle_of_many_arrays_is_held_whole():
     many = tuple(np.full(1, float(i)) for i in range(120))
     held = Held(many)
-    assert len(held._memory) > 4096
     last = np.zeros((1, 1))
 
     @parallel_kernel
@@ -98,8 +94,7 @@ class SlowWorker:
 
     def __init__(self, monkeypatch):
         self.told, self.begun, self.ended = (threading.Event() for _ in range(3))
-        compiled = SimpleNamespace(ctypes=self.work)
-        monkeypatch.setattr(parallel_kernel, "_compile", lambda kernel, parts: compiled)
+        monkeypatch.setattr(parallel_kernel, "_load", lambda kernel, parts: self.work)
         self.kernel = parallel_kernel(None)
 
     def work(self, table, worker, workers):
@@ -158,8 +153,11 @@ def test_after_two_interrupts_the_next_call_waits_for_the_first_ones_workers(mon
     assert not slow.ended.is_set()  # or there would be nothing to wait for
 
     seen = []
-    compiled = SimpleNamespace(ctypes=lambda *_: seen.append(slow.ended.is_set()))
-    monkeypatch.setattr(parallel_kernel, "_compile", lambda kernel, parts: compiled)
+
+    def work(*_):
+        seen.append(slow.ended.is_set())
+
+    monkeypatch.setattr(parallel_kernel, "_load", lambda kernel, parts: work)
     threading.Timer(0.2, slow.told.set).start()
     parallel_kernel(None)(3, Held((0,)))
     assert seen == [True] * 3
@@ -174,8 +172,7 @@ def test_an_interrupt_before_a_share_begins_leaves_it_undone(monkeypatch):
         time.sleep(0.1)  # or the threads could keep up with the one that hands out shares
         done.append(worker)
 
-    compiled = SimpleNamespace(ctypes=work)
-    monkeypatch.setattr(parallel_kernel, "_compile", lambda kernel, parts: compiled)
+    monkeypatch.setattr(parallel_kernel, "_load", lambda kernel, parts: work)
     with pytest.raises(KeyboardInterrupt):
         parallel_kernel(None)(2000, Held((0,)))
     count = len(done)

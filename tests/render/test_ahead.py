@@ -28,7 +28,7 @@ def test_only_a_first_start_is_told_and_shared(tmp_path, monkeypatch, caplog):
     wait()
     assert ahead._started.pop().returncode == 7
     assert ahead.compile_ahead() is None  # another process of those that start together
-    (tmp_path / "kernels" / "draw.nbc").touch()
+    (tmp_path / "kernels" / "draw.eyk").touch()
     caplog.clear()
     assert ahead.compile_ahead() is None
     assert not caplog.text

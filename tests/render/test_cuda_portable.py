@@ -4,6 +4,7 @@ import os
 import re
 import shutil
 import subprocess
+from importlib import import_module
 from types import SimpleNamespace
 
 import numba
@@ -39,6 +40,8 @@ def ptx_of(monkeypatch):
     """Return what compiles a function for arguments of the types of some values."""
     cuda = pytest.importorskip("numba.cuda")
     from numba.cuda import api, dispatcher
+
+    import_module("eyas.core.cuda")  # tells numba-cuda of kernels and of pointers to bundles
 
     no_gpu = SimpleNamespace(compute_capability=CAPABILITY)
     monkeypatch.setattr(dispatcher, "get_current_device", lambda: no_gpu)

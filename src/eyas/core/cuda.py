@@ -1,13 +1,32 @@
-"""What kernels need to compile for CUDA: pointers to bundles, in numba-cuda's own registries."""
+"""What kernels need to compile for CUDA, in numba-cuda's own registries: kernels that call each
+other, and pointers to bundles.
+"""
+
+from functools import cache
 
 from numba.core import types
 from numba.cuda.cudadecl import registry as typing_registry
 from numba.cuda.cudaimpl import registry as lowering_registry
+from numba.cuda.dispatcher import CUDADispatcher
 from numba.cuda.typing.templates import AttributeTemplate
+from numba.cuda.typing.typeof import typeof_impl
 
+from eyas.core.jit import Kernel
 from eyas.core.pointers import field_type, load_field
 
 __all__: list[str] = []
+
+
+@typeof_impl.register(Kernel)
+def _kernel_type(kernel: Kernel, _context: object) -> types.Type:
+    """Return the type of a kernel in functions that call it."""
+    return _on_device(kernel)._numba_type_
+
+
+@cache
+def _on_device(kernel: Kernel) -> CUDADispatcher:
+    options = {"device": True, "debug": False, "opt": True, "fastmath": False}
+    return CUDADispatcher(kernel.py_func, options)
 
 
 @typing_registry.register_attr

@@ -5,48 +5,32 @@ three times (half a minute for the renderer), unpacks every array at every call 
 of a small picture), and wakes a thread for each worker while the caller waits (another tenth).
 """
 
+import ctypes
 import os
 import threading
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, Generic, Protocol, TypeVar
 
-import numba
 import numpy as np
-from numpy.typing import NDArray
 
-from eyas.core.intrinsics import layout_of, size_of, store
-from eyas.core.jit import KERNEL_SETTINGS, kernel, may_be_kept, thread_count
+from eyas.core.entry import entry_address
+from eyas.core.held import Held
+from eyas.core.jit import thread_count
 
 __all__ = ["BoundKernel", "Held", "Pointer", "parallel_kernel"]
 
 Bundle = TypeVar("Bundle")
 Pointee = TypeVar("Pointee", covariant=True)
 
+_ENTRY = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_ssize_t, ctypes.c_ssize_t, ctypes.c_ssize_t)
+"""Addresses of the bundles, worker, workers; returns 0 unless the kernel raised an exception."""
+
 
 class Pointer(Protocol[Pointee]):
     """Pointer through which a parallel kernel reads a bundle: `pointer[0]`."""
 
     def __getitem__(self, index: int) -> Pointee: ...
-
-
-class Held(Generic[Bundle]):
-    """A tuple of numbers, arrays and tuples of them, laid out once in the kernels' memory format.
-
-    Args:
-        bundle: The tuple. Its arrays are not copied: kernels see later changes.
-    """
-
-    __slots__ = ("_memory", "address", "bundle", "layout")
-
-    def __init__(self, bundle: Bundle) -> None:
-        self.bundle = bundle
-        self._memory = np.empty(4096, np.uint8)
-        self.layout = _lay_out(bundle, self._memory)
-        if self.layout < 0:
-            self._memory = np.empty(-self.layout, np.uint8)
-            self.layout = _lay_out(bundle, self._memory)
-        self.address = self._memory.ctypes.data
 
 
 class _Call:
@@ -57,23 +41,26 @@ class _Call:
         left: Workers whose shares have not begun.
     """
 
-    __slots__ = ("_kernel", "_parts", "_table", "left", "turns")
+    __slots__ = ("_address", "_failed", "_kernel", "_parts", "_table", "left", "turns")
 
     def __init__(
-        self, kernel: Callable[[int, int, int], None], parts: tuple[Held[Any], ...], workers: int
+        self, kernel: Callable[[int, int, int], int], parts: tuple[Held[Any], ...], workers: int
     ) -> None:
         self._kernel = kernel
         self._parts = parts
         self._table = np.array([part.address for part in parts], np.int64)
+        self._address = self._table.ctypes.data
         self.turns = [threading.Lock() for _ in range(workers)]
         self.left = set(range(workers))
+        self._failed = False
 
     def do(self, worker: int) -> None:
         """Do a worker's share if it has not begun; return when it is done, in any thread."""
         with self.turns[worker]:
             if worker in self.left:
                 self.left.discard(worker)
-                self._kernel(self._table.ctypes.data, worker, len(self.turns))
+                if self._kernel(self._address, worker, len(self.turns)):
+                    self._failed = True
 
     def do_all(self, threads: ThreadPoolExecutor | None) -> None:
         """Do all shares with the help of threads; return when they are done."""
@@ -87,6 +74,7 @@ class _Call:
                 self.do(worker)
         for worker in workers:
             self.do(worker)
+        _check(self._failed)
 
     def end(self) -> None:
         """Let no more shares begin, and wait for those that have begun."""
@@ -146,7 +134,7 @@ class BoundKernel:
     __slots__ = ("_address", "_function", "_kept")
 
     def __init__(
-        self, function: Callable[[int, int, int], None], parts: tuple[Held[Any], ...]
+        self, function: Callable[[int, int, int], int], parts: tuple[Held[Any], ...]
     ) -> None:
         table = np.array([part.address for part in parts], np.int64)
         self._function = function
@@ -155,7 +143,12 @@ class BoundKernel:
 
     def __call__(self) -> None:
         """Do all shares."""
-        self._function(self._address, 0, 1)
+        _check(self._function(self._address, 0, 1))
+
+
+def _check(status: int) -> None:
+    if status:
+        raise RuntimeError("a kernel raised an exception")
 
 
 class parallel_kernel(Generic[Bundle]):  # noqa: N801  # a decorator like `kernel`
@@ -171,7 +164,7 @@ class parallel_kernel(Generic[Bundle]):  # noqa: N801  # a decorator like `kerne
     def __init__(self, function: Callable[[Pointer[Bundle], int, int], None]) -> None:
         self.__doc__ = function.__doc__
         self.function = function
-        self._compiled: dict[tuple[int, ...], Any] = {}
+        self._compiled: dict[tuple[str, ...], Callable[[int, int, int], int]] = {}
 
     def __call__(self, workers: int, *parts: Held[Any]) -> None:
         """Run the shares of all workers and wait for them."""
@@ -184,30 +177,14 @@ class parallel_kernel(Generic[Bundle]):  # noqa: N801  # a decorator like `kerne
         """Return the kernel bound to these bundles; it runs in the calling thread."""
         return BoundKernel(self._function(parts), parts)
 
-    def _function(self, parts: tuple[Held[Any], ...]) -> Callable[[int, int, int], None]:
-        """Return the function for bundles of these layouts; as a ctypes function, it releases the
+    def _function(self, parts: tuple[Held[Any], ...]) -> Callable[[int, int, int], int]:
+        """Return the function for bundles of these kinds; as a ctypes function, it releases the
         interpreter's lock.
         """
-        layouts = tuple([part.layout for part in parts])
-        if layouts not in self._compiled:
-            self._compiled[layouts] = self._compile(parts)
-        function: Callable[[int, int, int], None] = self._compiled[layouts].ctypes
-        return function
+        kinds = tuple([part.kind for part in parts])
+        if kinds not in self._compiled:
+            self._compiled[kinds] = self._load(parts)
+        return self._compiled[kinds]
 
-    def _compile(self, parts: tuple[Held[Any], ...]) -> Any:  # noqa: ANN401  # numba has no types
-        pointers = [numba.types.CPointer(numba.typeof(part.bundle)) for part in parts]
-        table = numba.types.CPointer(numba.types.Tuple(pointers))
-        signature = numba.void(table, numba.intp, numba.intp)
-        settings = {**KERNEL_SETTINGS, "cache": may_be_kept(self.function, pointers)}
-        return numba.cfunc(signature, **settings)(self.function)
-
-
-@kernel
-def _lay_out(bundle: object, memory: NDArray[np.uint8]) -> int:
-    """Write a bundle into memory and return its layout; if too small, minus the bytes needed."""
-    size: int = size_of(bundle)
-    if len(memory) < size:
-        return -size
-    store(memory, bundle)
-    layout: int = layout_of(bundle)
-    return layout
+    def _load(self, parts: tuple[Held[Any], ...]) -> Callable[[int, int, int], int]:
+        return _ENTRY(entry_address(self.function, parts))

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from eyas.core.jit import KERNEL_SETTINGS, nothing_compiled
+from eyas.core.jit import KEPT, nothing_compiled
 from eyas.render.bake.ambient import AmbientMap
 from eyas.render.bake.shadows import ShadowMap
 from eyas.render.bake.tracks import TrackMap
@@ -45,7 +45,7 @@ def compile_ahead() -> Callable[[], object] | None:
     if not nothing_compiled():
         return None
     cache = Path(os.environ["NUMBA_CACHE_DIR"])
-    if not KERNEL_SETTINGS["cache"]:
+    if not KEPT:
         _log.warning("cannot write to %s, so every start compiles for about half a minute", cache)
         return None
     _log.warning(

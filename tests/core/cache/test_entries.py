@@ -46,7 +46,8 @@ def put(folder, name, size=1000, age=0.0):
 def kernels(folder, name, age, size=1000):
     path = folder / "kernels" / name
     put(path, "render_0123/draw.draw-7.py311.nbi", size // 2)
-    put(path, "render_0123/draw.draw-7.py311.1.nbc", size // 2)
+    put(path, "render_0123/draw.draw-7.py311.1.nbc", size // 4)
+    put(path, "draw-0123.eyk", size - size // 2 - size // 4)
     put(path, "started", 0)
     used = time.time() - age
     os.utime(path, (used, used))

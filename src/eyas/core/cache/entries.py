@@ -1,7 +1,7 @@
 """The entries of the cache: listing, writing, and removing the least recently used ones.
 
 Only files that Eyas made are counted or removed: those whose names have the forms below, and
-numba's files in folders of kernels. A process that has mapped a file can still read it after the
+compiled kernels in folders of kernels. A process that has mapped a file can still read it after the
 file is removed.
 """
 
@@ -43,7 +43,7 @@ _FORMS = (
 )
 """Kinds, their folders, and the forms of the names in them."""
 
-_KERNEL_FILE = re.compile(r".*\.nb[ci](\.tmp\..*)?|started")
+_KERNEL_FILE = re.compile(r".*\.(nb[ci]|eyk)(\.tmp\..*)?|started")
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,6 +182,6 @@ def _remove_kernels(folder: Path) -> int:
             file.unlink()
             freed += size
     for path, _, _ in os.walk(folder, topdown=False):
-        with contextlib.suppress(OSError):  # it holds files that are not numba's
+        with contextlib.suppress(OSError):  # it holds other files
             os.rmdir(path)
     return freed

@@ -1,0 +1,183 @@
+"""How numba compiles kernels: to LLVM's modules, of which `eyas.core.machine_code` makes code.
+
+numba itself would optimise each function with everything that it calls, make machine code of it,
+and keep that on disk, though most functions of a kernel are only inlined into others. Here each
+function becomes a module once; those of a kernel and of all that it calls are linked and optimised
+together.
+
+Only this module and `eyas.core.lanes` use parts of numba that it does not document.
+"""
+
+import inspect
+import os
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any, NamedTuple
+
+import llvmlite.binding as llvm
+import numba
+from llvmlite import ir
+from numba.core.codegen import JITCodeLibrary
+from numba.core.compiler import Flags, compile_extra
+from numba.core.compiler_lock import global_compiler_lock
+from numba.core.registry import cpu_target
+from numba.extending import models, register_model
+
+from eyas.core.machine_code import MachineCode, optimised
+
+__all__ = ["KernelType", "caller_from_python", "entry_code", "size_of"]
+
+# numba reads the variable when it is imported, which may have been before Eyas set it.
+numba.config.CACHE_DIR = os.environ["NUMBA_CACHE_DIR"]
+
+Kind = Any
+"""One of numba's types."""
+
+# Kernels allocate nothing, so they need no reference counting of arrays (`_nrt`). It costs two
+# atomic operations for each array passed on, which is slow when threads share the arrays: pictures
+# took three times as long.
+_SETTINGS = {"error_model": "numpy", "fastmath": False, "_nrt": False}
+
+_INNER = {"nopython": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+
+
+class _Library(JITCodeLibrary):  # type: ignore[misc]  # numba has no types
+    """The module of one function, which is linked into others but never made machine code."""
+
+    def finalize(self) -> None:
+        self._finalized = True
+
+    def add_linking_library(self, library: JITCodeLibrary) -> None:
+        self._linking_libraries.append(library)
+
+
+class _Overload(NamedTuple):
+    """A function compiled for arguments of certain types."""
+
+    signature: Any
+    described: Any
+    """numba's description of the function: its name and types."""
+    library: _Library
+
+
+@global_compiler_lock
+def _compile(function: Callable[..., Any], kinds: tuple[Kind, ...], *, inline: bool) -> _Overload:
+    flags = Flags()
+    cpu_target.options.parse_as_flags(flags, {**_SETTINGS, **_INNER, "forceinline": inline})
+    flags.no_compile = True
+    typing, target = cpu_target.typing_context, cpu_target.target_context
+    library = _Library(target.codegen(), function.__qualname__)
+    made = compile_extra(typing, target, function, kinds, None, flags, {}, library=library)
+    return _Overload(made.signature, made.fndesc, library)
+
+
+class KernelType(numba.types.Callable, numba.types.Opaque):  # type: ignore[misc]
+    """The type of a kernel in the kernels that call it."""
+
+    def __init__(self, function: Callable[..., Any], *, inline: bool) -> None:
+        self._function, self._inline = function, inline
+        self._parameters = inspect.signature(function)
+        self._overloads: dict[tuple[Kind, ...], _Overload] = {}
+        name = f"{function.__module__}.{function.__qualname__}"
+        super().__init__(f"kernel({name} at {id(function):#x})")
+
+    def get_call_type(self, context: object, args: Iterable[Kind], kws: dict[str, Kind]) -> object:
+        """Return the signature of a call, after compiling the kernel for it."""
+        given = self._parameters.bind(*args, **dict(kws)).arguments
+        kinds = tuple(
+            _widened(given[name]) if name in given else numba.types.Omitted(parameter.default)
+            for name, parameter in self._parameters.parameters.items()
+        )
+        if kinds not in self._overloads:
+            made = _compile(self._function, kinds, inline=self._inline)
+            libraries = tuple(dict.fromkeys(_linked(made.library)))
+            cpu_target.target_context.insert_user_function(made, made.described, libraries)
+            self._overloads[kinds] = made
+        return self._overloads[kinds].signature.replace(pysig=self._parameters)
+
+    def get_call_signatures(self) -> tuple[list[object], bool]:
+        """Return the signatures compiled so far, and that there may be others."""
+        return [made.signature for made in self._overloads.values()], True
+
+    def get_impl_key(self, signature: Any) -> object:  # noqa: ANN401  # numba's signature
+        """Return what identifies the compiled function."""
+        return self._overloads[signature.args]
+
+
+register_model(KernelType)(models.OpaqueModel)
+
+
+def _widened(kind: Kind) -> Kind:
+    """Return one type for all signed whole numbers.
+
+    For the calls `f(0)`, `f(1)` and `f(i)` in other kernels numba would compile `f` three times,
+    and once more if `i` has 32 bits.
+    """
+    kind = numba.types.unliteral(kind)
+    signed = isinstance(kind, numba.types.Integer) and kind.signed
+    return numba.types.int64 if signed else kind
+
+
+def _linked(library: Any) -> Iterator[Any]:  # noqa: ANN401  # numba's library
+    """Yield a library and all that it calls."""
+    yield library
+    for called in library._linking_libraries:
+        yield from _linked(called)
+
+
+def entry_code(function: Callable[..., Any], kinds: tuple[Kind, ...], entry: str) -> MachineCode:
+    """Return the machine code of a function and of all that it calls.
+
+    Args:
+        function: A plain function that returns nothing.
+        kinds: The types of its arguments.
+        entry: Name of the function in C, which returns 0, or another number if `function` raised
+            an exception.
+    """
+    made = _compile(function, kinds, inline=False)
+    library = _entry(made, entry)
+    module = library._final_module
+    for called in dict.fromkeys(_linked(made.library)):
+        module.link_in(_shared(called))
+    return optimised(module, entry)
+
+
+def _shared(library: Any) -> llvm.ModuleRef:  # noqa: ANN401  # numba's library
+    """Return a copy of a library's module whose functions may be in other copies too."""
+    module = library._final_module.clone()
+    for function in module.functions:
+        if not function.is_declaration and function.linkage == llvm.Linkage.external:
+            function.linkage = "linkonce_odr"
+    return module
+
+
+def _entry(made: _Overload, entry: str) -> _Library:
+    """Return the function that C can call."""
+    context = cpu_target.target_context
+    library = _Library(context.codegen(), entry)
+    module = context.create_module(entry)
+    described, convention = made.described, context.call_conv
+    kind = convention.get_function_type(described.restype, described.argtypes)
+    callee = ir.Function(module, kind, described.llvm_func_name)
+    arguments = [context.get_value_type(kind) for kind in described.argtypes]
+    called = ir.Function(module, ir.FunctionType(ir.IntType(32), arguments), entry)
+    builder = ir.IRBuilder(called.append_basic_block())
+    status, _ = convention.call_function(
+        builder, callee, described.restype, described.argtypes, called.args
+    )
+    builder.ret(status.code)
+    library.add_ir_module(module)
+    return library
+
+
+def size_of(kind: Kind) -> int:
+    """Return the size of a value in memory [bytes]."""
+    context = cpu_target.target_context
+    context.refresh()
+    size: int = context.get_abi_sizeof(context.get_data_type(kind))
+    return size
+
+
+def caller_from_python(function: Callable[..., Any], *, cache: bool) -> Callable[..., Any]:
+    """Return a function compiled for calls from Python, in numba's own way."""
+    compiled: Callable[..., Any] = numba.njit(cache=cache, **_SETTINGS)(function)
+    return compiled

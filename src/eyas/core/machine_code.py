@@ -1,0 +1,149 @@
+"""Machine code of kernels: made of LLVM's modules, kept in files, loaded without numba.
+
+A file holds the code of a kernel with everything that it calls, for one kind of processor. Loading
+it takes a millisecond; importing numba, which is needed only to compile, takes half a second.
+"""
+
+import contextlib
+import json
+import os
+import secrets
+import threading
+import zlib
+from collections.abc import Iterable
+from functools import cache
+from hashlib import sha256
+from pathlib import Path
+from typing import NamedTuple
+
+import llvmlite
+import llvmlite.binding as llvm
+
+__all__ = [
+    "SUFFIX",
+    "MachineCode",
+    "code_file",
+    "load",
+    "optimised",
+    "read_code",
+    "write_code",
+]
+
+SUFFIX = ".eyk"
+"""End of the names of files of machine code."""
+
+_LOCK = threading.Lock()
+
+
+class MachineCode(NamedTuple):
+    """Machine code of a kernel."""
+
+    entry: str
+    """Name of the function to call; different for each kernel, as all are loaded together."""
+    needs: tuple[str, ...]
+    """Functions outside the kernel that it calls, such as those of the C library."""
+    code: bytes
+    """An object file."""
+
+
+class Cpu(NamedTuple):
+    """A kind of processor, as LLVM names it."""
+
+    triple: str
+    name: str
+    features: str
+
+
+@cache
+def cpu() -> Cpu:
+    """Return the processor to compile for: this one, unless numba's variables name another."""
+    name = os.environ.get("NUMBA_CPU_NAME") or llvm.get_host_cpu_name()
+    features = os.environ.get("NUMBA_CPU_FEATURES")
+    if features is None:
+        features = llvm.get_host_cpu_features().flatten()
+    return Cpu(llvm.get_process_triple(), name, features)
+
+
+@cache
+def _machine() -> llvm.TargetMachine:
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    triple, name, features = cpu()
+    target = llvm.Target.from_triple(triple)
+    # As numba does. Code and constants may lie far apart, as LLVM's loader puts them.
+    relocation = "static" if target.name.startswith("x86") else "default"
+    return target.create_target_machine(
+        cpu=name, features=features, opt=3, reloc=relocation, codemodel="jitdefault", jit=True
+    )
+
+
+def optimised(module: llvm.ModuleRef, entry: str) -> MachineCode:
+    """Return the machine code of a module, of which only the function `entry` is called."""
+    for value in (*module.functions, *module.global_variables):
+        if not value.is_declaration and value.name != entry:
+            value.linkage = "internal"
+    tuning = llvm.create_pipeline_tuning_options(speed_level=3)
+    tuning.loop_vectorization, tuning.slp_vectorization = True, False
+    builder = llvm.create_pass_builder(_machine(), tuning)
+    builder.getModulePassManager().run(module, builder)
+    needs = (f.name for f in module.functions if f.is_declaration)
+    needed = tuple(sorted(name for name in needs if not name.startswith("llvm.")))
+    return MachineCode(entry, needed, _machine().emit_object(module))
+
+
+@cache
+def _engine() -> llvm.ExecutionEngine:
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    machine = llvm.Target.from_triple(cpu().triple).create_target_machine(jit=True)
+    return llvm.create_mcjit_compiler(llvm.parse_assembly(""), machine)
+
+
+def load(code: MachineCode) -> int | None:
+    """Return the address of a kernel's entry; None if this process lacks a function it needs."""
+    with _LOCK:
+        engine = _engine()
+        if not all(map(llvm.address_of_symbol, code.needs)):
+            return None
+        engine.add_object_file(llvm.ObjectFileRef.from_data(code.code))
+        engine.finalize_object()
+        address: int = engine.get_function_address(code.entry)
+    return address
+
+
+def code_file(folder: Path, name: str, parts: Iterable[str]) -> Path:
+    """Return the file of a kernel's machine code.
+
+    Args:
+        folder: The folder of kernels.
+        name: The name of the kernel, for people who look into the folder.
+        parts: Everything else that the code depends on, except the sources that name the folder.
+    """
+    key = (*cpu(), llvmlite.__version__, name, *parts)
+    digest = sha256("\0".join(key).encode()).hexdigest()[:32]
+    return folder / f"{name}-{digest}{SUFFIX}"
+
+
+def read_code(path: Path) -> MachineCode | None:
+    """Return the content of a file; None if there is none, or it is damaged."""
+    try:
+        content = path.read_bytes()
+        head, code = content[4:].split(b"\n", 1)
+        if zlib.crc32(content[4:]) == int.from_bytes(content[:4], "little"):
+            entry, needs = json.loads(head)
+            return MachineCode(entry, tuple(needs), code)
+    except (OSError, ValueError):
+        pass
+    return None
+
+
+def write_code(path: Path, code: MachineCode) -> None:
+    """Write a file completely or not at all; not at all if the folder cannot be written to."""
+    content = json.dumps([code.entry, code.needs]).encode() + b"\n" + code.code
+    part = path.with_name(f"{path.name}.tmp.{secrets.token_hex(8)}")
+    with contextlib.suppress(OSError):
+        try:
+            part.write_bytes(zlib.crc32(content).to_bytes(4, "little") + content)
+            part.replace(path)
+        finally:
+            part.unlink(missing_ok=True)

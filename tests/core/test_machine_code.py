@@ -1,0 +1,97 @@
+"""Machine code in files."""
+
+import numpy as np
+import pytest
+
+from eyas.core import entry, machine_code
+from eyas.core.held import Held
+from eyas.core.machine_code import MachineCode, code_file, load, read_code, write_code
+from eyas.core.parallel import parallel_kernel
+
+
+def double(parts, worker, workers):
+    values = parts[0][0][0][0]
+    for k in range(len(values)):
+        values[k] *= 2.0
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    return tmp_path
+
+
+@pytest.fixture
+def compiled(monkeypatch):
+    """Return the kernels that were compiled."""
+    found, before = [], entry._compiled
+
+    def counted(function, *others):
+        found.append(function)
+        return before(function, *others)
+
+    monkeypatch.setattr(entry, "_compiled", counted)
+    return found
+
+
+def doubled() -> float:
+    values = np.ones(1)
+    parallel_kernel(double)(1, Held((values,)))
+    return float(values[0])
+
+
+def test_a_kernel_is_compiled_once_and_its_file_is_found_by_the_next(folder, compiled):
+    assert [doubled(), doubled(), len(compiled)] == [2.0, 2.0, 1]
+    (file,) = folder.iterdir()
+    assert file.name.startswith("double-")
+
+
+@pytest.mark.parametrize(
+    "damage", [lambda b: b[:-1], lambda b: b[:9] + b"x" + b[10:], lambda b: b""]
+)
+def test_a_damaged_file_is_made_anew(folder, compiled, damage):
+    doubled()
+    (file,) = folder.iterdir()
+    content = file.read_bytes()
+    file.write_bytes(damage(content))
+    assert read_code(file) is None
+    assert doubled() == 2.0
+    assert len(compiled) == 2
+    assert read_code(file) is not None
+
+
+def test_code_that_needs_what_this_process_lacks_is_made_anew(folder, compiled):
+    doubled()
+    (file,) = folder.iterdir()
+    code = read_code(file)
+    assert load(code._replace(needs=("no_such_function",))) is None
+    write_code(file, code._replace(needs=("no_such_function",)))
+    assert doubled() == 2.0
+    assert len(compiled) == 2
+
+
+def test_each_kind_of_processor_has_its_own_code(folder, compiled, monkeypatch):
+    doubled()
+    monkeypatch.setattr(machine_code, "cpu", lambda: machine_code.Cpu("other", "", ""))
+    path = code_file(folder, "double", ())
+    monkeypatch.undo()
+    assert path != code_file(folder, "double", ())
+
+
+def scaled_by(factor):
+    def scale(parts, worker, workers):
+        parts[0][0][0][0][0] *= factor
+
+    values = np.ones(1)
+    parallel_kernel(scale)(1, Held((values,)))
+    return float(values[0])
+
+
+def test_a_function_with_values_of_another_is_not_kept(folder):
+    assert [scaled_by(2.0), scaled_by(3.0)] == [2.0, 3.0]
+    assert not list(folder.iterdir())
+
+
+def test_where_nothing_can_be_written_nothing_fails(tmp_path):
+    write_code(tmp_path / "no such folder" / "file", MachineCode("entry", (), b"code"))
+    assert read_code(tmp_path / "no such folder" / "file") is None
