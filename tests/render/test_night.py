@@ -155,6 +155,18 @@ def test_light_of_cars_does_not_depend_on_where_a_picture_begins(drawn, renderer
         assert np.abs(part - whole[:, left : left + width]).max() <= 1
 
 
+def test_lamps_of_cars_on_a_bridge_do_not_light_the_road_below(drawn, renderer_of):
+    cars = DrawList.create(1, 6)
+    put_car(cars, 0, 0, 0, 0.0, 0.0, 0.0)
+    views = looking([(8.0, 0.0, 40.0), (-3.2, 0.0, 40.0)], pitch=np.pi / 2, fov=0.02)
+    renderer = renderer_of(scene_of([paper()], [0]), car_parts(), lighting=DARK)
+    on_road = drawn(renderer, views, cars, (9, 9)).rgb.max(axis=(1, 2, 3))
+    cars.pose[..., 2, 3] += 6.0
+    above_it = drawn(renderer, views, cars, (9, 9)).rgb.max(axis=(1, 2, 3))
+    assert on_road.min() > 20
+    assert above_it.max() <= 1
+
+
 def test_movers_without_lamps_throw_no_light(drawn, renderer_of):
     """A car that has them lights the road beside one that has none."""
     lit = car_parts()

@@ -19,7 +19,13 @@ from eyas.core.lanes import (
 )
 from eyas.render.kernels.bundles import View
 from eyas.render.kernels.light.caster import Caster, sight_of
-from eyas.render.kernels.samples import ScreenBox, around, nowhere, point_of, ray_of_row
+from eyas.render.kernels.samples import (
+    ScreenBox,
+    around,
+    nowhere,
+    point_of,
+    ray_of_row,
+)
 from eyas.render.kernels.scalars import f4, i4, u4
 from eyas.render.kernels.visibility.cull import sphere_is_visible
 from eyas.render.kernels.visibility.key import distance_inverse
@@ -34,6 +40,9 @@ _BEHIND = 5.0
 
 _CUT_OFF = 1.2
 """Height above the bottom of a vehicle up to which its lamps light things [m]."""
+
+_DEPTH = 2.0
+"""Depth below the bottom of a vehicle down to which its lamps light things [m]."""
 
 _SPREAD = 0.9 + 0.30 * _REACH
 
@@ -78,7 +87,7 @@ def _screen_box(caster: Caster, view: View) -> ScreenBox:
         aside = wide if corner & 2 else -wide
         x = caster.x + ahead * caster.along_x - aside * caster.along_y
         y = caster.y + ahead * caster.along_y + aside * caster.along_x
-        box = around(box, view, x, y, caster.bottom + (1.3 if corner & 4 else -0.4))
+        box = around(box, view, x, y, caster.bottom + (_CUT_OFF if corner & 4 else -_DEPTH))
     return box
 
 
@@ -108,7 +117,12 @@ def cast_beam(caster: Caster, view: View, key: NDArray[np.int64], shade: NDArray
             # Samples before `start` had their light from the lanes before.
             seen = (inverse > f4(0.0)) & (columns >= i4(start)) & (columns < i4(end))
             x, y, z = point_of(sight, view, ray, columns, select(seen, inverse, f4(1.0)))
-            seen &= (z <= f4(_CUT_OFF)) & (x < length + f4(_REACH)) & (x > -length - f4(_BEHIND))
+            seen &= (
+                (z <= f4(_CUT_OFF))
+                & (z > f4(-_DEPTH))
+                & (x < length + f4(_REACH))
+                & (x > -length - f4(_BEHIND))
+            )
             seen &= magnitude(y) < f4(_SPREAD)
             if not any_of(seen):
                 continue

@@ -174,4 +174,4 @@ def boxes_of(caster: Caster, sun: Direction) -> ShadowBoxes:
         sun.y * caster.along_x - sun.x * caster.along_y,
         float(sun.z),
     )
-    return shadow_boxes(lower, upper, turned, caster.beyond)
+    return shadow_boxes(lower, upper, turned, caster.width, caster.beyond)

@@ -35,7 +35,7 @@ from eyas.render.kernels.light.caster import (
     reach_of,
     sight_of,
 )
-from eyas.render.kernels.light.shadow_boxes import darken
+from eyas.render.kernels.light.shadow_boxes import darken, may_darken
 from eyas.render.kernels.samples import ScreenBox, around, nowhere, point_of, ray_of_row
 from eyas.render.kernels.scalars import f4, i4, u4
 from eyas.render.kernels.visibility.cull import sphere_is_visible
@@ -138,7 +138,7 @@ def _cast_shadow(
     """Darken the samples that instances `first` to `last` shade, but not these themselves."""
     box = _screen_box(caster, sun, view)
     sight, boxes = sight_of(caster, view), boxes_of(caster, sun)
-    stride, top = key.shape[1], boxes.upper.top
+    stride = key.shape[1]
     begin, end = max(int(box.left), 0), min(int(box.right) + 1, view.width)
     bottom = min(int(box.bottom) + 1 - view.top, view.rows)
     for line in range(max(int(box.top) - view.top, 0), bottom):
@@ -150,7 +150,7 @@ def _cast_shadow(
             inverse = distance_inverse(keys)
             seen = (inverse > f4(0.0)) & (columns >= i4(begin)) & (columns < i4(end))
             x, y, z = point_of(sight, view, ray, columns, select(seen, inverse, f4(1.0)))
-            seen &= z <= top
+            seen &= may_darken(boxes, x, y, z)
             if any_of(seen):
                 seen &= ~belongs_to(tag_of(keys), drawn, first, last)
             if not any_of(seen):

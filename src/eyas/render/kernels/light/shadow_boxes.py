@@ -7,7 +7,7 @@ from eyas.core.lanes import greater, lesser, magnitude, root, select
 from eyas.render.kernels.bundles import Direction
 from eyas.render.kernels.scalars import f4
 
-__all__ = ["Box", "ShadowBoxes", "darken", "shadow_boxes"]
+__all__ = ["Box", "ShadowBoxes", "darken", "may_darken", "shadow_boxes"]
 
 _UNDER = 0.88
 """Share of the sky's light that a car blocks on the ground under it."""
@@ -45,6 +45,10 @@ class ShadowBoxes(NamedTuple):
     """Like its cabin."""
     inverse: Direction
     """1 over each part of the unit vector to the sun."""
+    slide: tuple[float, float]
+    """Way along x and y of a ray to the sun while it rises by 1 m."""
+    beside: tuple[float, float]
+    """Half length and half width of the ground around the thing that it darkens, at least [m]."""
     reach: float
     """Inverse of the distance over which the thing blocks the sky's light on the ground [1/m]."""
     most: float
@@ -57,20 +61,25 @@ def _inverse(step: float) -> float:
 
 
 @inlined_kernel
-def shadow_boxes(lower: Box, upper: Box, sun: Direction, beyond: float) -> ShadowBoxes:
+def shadow_boxes(
+    lower: Box, upper: Box, sun: Direction, width: float, beyond: float
+) -> ShadowBoxes:
     """Return what blocks light.
 
     Args:
         lower: See `ShadowBoxes`.
         upper: See `ShadowBoxes`.
         sun: Unit vector to it, in the thing's frame.
+        width: Half the width of the thing [m].
         beyond: Distance from the thing up to which it blocks the sky's light on the ground [m].
     """
-    half = 0.5 * (lower.left - lower.right)
+    half, rise = 0.5 * (lower.left - lower.right), max(sun.z, 1e-3)
     return ShadowBoxes(
         lower,
         upper,
-        Direction(_inverse(sun.x), _inverse(sun.y), f4(1.0 / max(sun.z, 1e-3))),
+        Direction(_inverse(sun.x), _inverse(sun.y), f4(1.0 / rise)),
+        (f4(sun.x / rise), f4(sun.y / rise)),
+        (f4(lower.front + beyond), f4(width + beyond)),
         f4(1.0 / (beyond + _INSET)),
         f4(_UNDER * min(half + 0.35, 1.0)),  # light comes under a motorbike from both sides
     )
@@ -96,6 +105,16 @@ def _blocked(x: float, y: float, z: float, box: Box, inverse: Direction) -> floa
     enters = greater(greater(front, right), greater(low, f4(0.0)))
     inside = greater(lesser(lesser(back, left), high) - enters, f4(0.0))
     return inside / (f4(_EDGE) + f4(_WIDENING) * enters)
+
+
+@inlined_kernel
+def may_darken(boxes: ShadowBoxes, x: float, y: float, z: float) -> bool:
+    """Return which points in the thing's frame it may darken; it is certain of the others."""
+    up = boxes.upper.top - z
+    end_x, end_y = x + up * boxes.slide[0], y + up * boxes.slide[1]
+    far_x, far_y = boxes.beside
+    inside = (lesser(x, end_x) < far_x) & (greater(x, end_x) > -far_x)
+    return inside & (lesser(y, end_y) < far_y) & (greater(y, end_y) > -far_y) & (up >= f4(0.0))
 
 
 @inlined_kernel
