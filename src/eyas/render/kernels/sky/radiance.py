@@ -90,9 +90,7 @@ def _air(lit: Illumination, z: float, toward_sun: float) -> tuple[float, float, 
 
 
 @inlined_kernel
-def sky(
-    light: Light, lit: Illumination, x: float, y: float, z: float, pixel: float
-) -> Colour:
+def sky(light: Light, lit: Illumination, x: float, y: float, z: float, pixel: float) -> Colour:
     """Return the colour of a direction of length 1 in which nothing stands.
 
     Stars by night, air, the sun or the moon, clouds in front of them, hills in front of all, far

@@ -170,9 +170,7 @@ def shade_point(
     mirror = _smoothness(surface, alpha)
     if any_of(mirror > zero):
         facing = lesser(greater(cosine, zero), one)
-        mirrored, share = reflection(
-            lit, way, normal, facing, mirror, reaching, one - open_share
-        )
+        mirrored, share = reflection(lit, way, normal, facing, mirror, reaching, one - open_share)
         # Clear coat is no perfect mirror, even at a grazing angle.
         share *= select(window, one - alpha, select(painted, like(alpha, f4(0.85)), one))
         share = select(mirror > zero, share, zero)
