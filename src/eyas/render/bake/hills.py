@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from eyas.render.bake.clouds import plan_directions
 from eyas.render.kernels.bundles import Geometry
-from eyas.render.kernels.sky.radiance import HAZE_END, HILL_FARTHEST, HILL_TOP
+from eyas.render.kernels.sky.fog import HAZE_END
+from eyas.render.kernels.sky.radiance import HILL_FARTHEST, HILL_TOP
 from eyas.render.pack.clusters import corners_of
 from eyas.render.textures.fields import SIZE, Field, blurred, fractal, source
 from eyas.state.lighting import Horizon

@@ -1,20 +1,19 @@
-"""The sky in a direction, and the air between the camera and things."""
+"""The sky in a direction, and what smooth surfaces mirror of it."""
 
 from eyas.core.jit import inlined_kernel
 from eyas.core.lanes import any_of, greater, lesser, like, select
 from eyas.render.kernels.bundles import Direction, Illumination, Light
 from eyas.render.kernels.scalars import f4
+from eyas.render.kernels.sky.fog import HAZE_END, hidden_at
 from eyas.render.kernels.sky.panorama import azimuth, panorama
 from eyas.render.kernels.sky.stars import starlight
 
 __all__ = [
     "CLOUDS_FROM",
     "CLOUD_BEND",
-    "HAZE_END",
     "HILL_FARTHEST",
     "HILL_TOP",
     "blended",
-    "fog_share",
     "reflection",
     "sky",
 ]
@@ -27,10 +26,6 @@ CLOUDS_FROM = 0.02
 
 HILL_TOP = 0.08
 """Sine of the elevation at which the hills' panorama ends."""
-
-HAZE_END = 4.0
-"""Distance beyond which land gets no hazier, and at which the hills begin [km]. So the foot of
-the hills matches the end of the land, however high the viewer is."""
 
 HILL_FARTHEST = 14.0
 """Distance of the farthest hills [km]."""
@@ -178,26 +173,7 @@ def _hills(light: Light, lit: Illumination, z: float, around: float) -> Colour:
     red *= direct * sun.x + above.x
     green *= direct * sun.y + above.y
     blue *= direct * sun.z + above.z
-    return blended((red, green, blue), lit.fog, _hidden(lit, away))
-
-
-@inlined_kernel
-def _hidden(lit: Illumination, distance: float) -> float:
-    thickness = distance * lit.air.density
-    if lit.air.power > f4(1.5):
-        thickness *= thickness
-    # 1 - exp(-t) as (1 + t/8 + (t/8)^2 / 2)^-8: within 0.003 of it, and several times as fast.
-    eighth = f4(0.125) * thickness
-    power = f4(1.0) + eighth * (f4(1.0) + f4(0.5) * eighth)
-    power *= power
-    power *= power
-    return f4(1.0) - f4(1.0) / (power * power)
-
-
-@inlined_kernel
-def fog_share(lit: Illumination, distance: float) -> float:
-    """Return how much of what lies at a distance [m] the air hides, 0 to 1; see `HAZE_END`."""
-    return _hidden(lit, lesser(distance, _FARTHEST))
+    return blended((red, green, blue), lit.fog, hidden_at(lit, away))
 
 
 @inlined_kernel

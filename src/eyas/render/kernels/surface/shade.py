@@ -10,7 +10,8 @@ from eyas.render.kernels.light.ambient import openness
 from eyas.render.kernels.light.lamps import night_light, window_light
 from eyas.render.kernels.light.sunlight import sunlight
 from eyas.render.kernels.scalars import f4, i4, u4
-from eyas.render.kernels.sky.radiance import blended, fog_share, reflection
+from eyas.render.kernels.sky.fog import fog_share
+from eyas.render.kernels.sky.radiance import blended, reflection
 from eyas.render.kernels.surface.attributes import Frame, attributes_of
 from eyas.render.kernels.surface.snow import snowed
 from eyas.render.kernels.surface.texture import colour_of, level_of, texel
