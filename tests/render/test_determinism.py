@@ -88,6 +88,7 @@ def test_bands_change_no_byte(city, drawn, threads, monkeypatch):
     threads(2)
     monkeypatch.setattr(jobs, "SMALLEST_BAND", 800)
     monkeypatch.setattr(jobs, "JOBS_PER_THREAD", 12)
+    monkeypatch.setattr(jobs, "_bands", jobs._bands.__wrapped__)  # which keeps its results
     assert len(jobs.build_jobs(views, 120, 160, 2, 0.0).band) == 24
     for name, array in arrays(drawn(renderer, views, traffic, (120, 160))).items():
         np.testing.assert_array_equal(array, whole[name], err_msg=name)

@@ -31,7 +31,8 @@ def test_a_drone_leaves_the_others_alone(drone):
     drone.aim()
     for array, old in zip(drone.arrays(), before, strict=True):
         np.testing.assert_array_equal(array[[0, 2]], old[[0, 2]])
-        assert (array[1] != old[1]).any()
+        if array is not drone.cameras.field_of_view:  # drawn by the episode, not by the drone
+            assert (array[1] != old[1]).any()
 
 
 def test_each_command_passes_a_low_pass_of_its_own(drone):

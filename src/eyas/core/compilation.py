@@ -27,7 +27,7 @@ from eyas.core.machine_code import MachineCode, optimised
 __all__ = ["KernelType", "caller_from_python", "entry_code", "size_of"]
 
 # numba reads the variable when it is imported, which may have been before Eyas set it.
-numba.config.CACHE_DIR = os.environ["NUMBA_CACHE_DIR"]
+numba.config.CACHE_DIR = os.environ.get("NUMBA_CACHE_DIR", numba.config.CACHE_DIR)
 
 Kind = Any
 """One of numba's types."""

@@ -24,7 +24,7 @@ Texture = NDArray[np.uint8]
 
 def asphalt() -> Texture:
     """Return a dark grey road surface: aggregate, sealed cracks, a few darker patches."""
-    return _asphalt("asphalt", (84.0, 83.0, 81.0), stones=0.5, cracked=0.16)
+    return _asphalt("asphalt", (81.0, 80.5, 79.0), stones=0.5, cracked=0.16)
 
 
 def asphalt_light() -> Texture:

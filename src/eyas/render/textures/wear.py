@@ -51,7 +51,7 @@ def asphalt_lane() -> Texture:
     lumps = fractal(rng, 0.8, longest=14.0, stretch=(0.5, 1.0))
     cloud = fractal(rng, 1.0, longest=70.0, stretch=(0.5, 1.0))
     picture = painted(
-        (84.0, 83.0, 81.0), (1 - 0.3 * track) * (0.1 * grain + 0.06 * lumps) + 0.04 * cloud
+        (81.0, 80.5, 79.0), (1 - 0.3 * track) * (0.1 * grain + 0.06 * lumps) + 0.04 * cloud
     )
     stone = np.repeat(rng.random((SIZE, SIZE // 2)), 2, axis=1)
     picture = mixed(picture, (42.0, 42.0, 42.0), 0.5 * (stone < 0.03))
@@ -66,7 +66,7 @@ def asphalt_oil() -> Texture:
     rng = source("asphalt_oil")
     across = (np.arange(SIZE)[None] + 0.5) / SIZE * 2 - 1
     grain = 0.09 * white(rng) + 0.05 * fractal(rng, 0.8, longest=30.0)
-    picture = painted((83.0, 82.0, 80.0), grain)
+    picture = painted((80.0, 79.5, 78.0), grain)
     where = np.clip(1.0 - np.abs(across), 0, 1)
     cloud = np.clip(0.55 + 0.45 * fractal(rng, 1.2, longest=60.0), 0, 1)
     picture = mixed(picture, painted((54.0, 53.5, 53.0), 0.6 * grain), 0.7 * where * cloud)
