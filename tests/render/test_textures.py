@@ -55,13 +55,13 @@ def test_noise_repeats_at_its_edges():
     assert across < 2 * inside
 
 
-def test_lawn_and_asphalt_have_the_colours_of_the_original(textures):
+def test_lawn_has_the_colour_of_the_original_and_asphalt_its_brightness(textures):
     lawn = textures["lawn"][..., :3].reshape(-1, 3).mean(0)
     asphalt = textures["asphalt"][..., :3].reshape(-1, 3).mean(0)
     assert np.abs(lawn - (145, 180, 92)).max() < 12
     assert (asphalt > 40).all()
     assert (asphalt < 82).all()
-    assert asphalt[2] > asphalt[0]
+    assert np.ptp(asphalt) < 4  # grey, where the original's is bluish: it looked navy in the sun
 
 
 @pytest.mark.parametrize("name", ["lawn", "asphalt", "soil", "concrete"])
