@@ -4,7 +4,6 @@ import os
 import re
 import shutil
 import subprocess
-from importlib import import_module
 from types import SimpleNamespace
 
 import numba
@@ -12,6 +11,7 @@ import numpy as np
 import pytest
 from numba.types import CPointer, Tuple, intp
 
+from eyas.core.cuda import prepare_cuda
 from eyas.core.pointers import address_of
 from eyas.render.jobs import build_jobs
 from eyas.render.kernels.bundles import Movers, Task
@@ -41,7 +41,7 @@ def ptx_of(monkeypatch):
     cuda = pytest.importorskip("numba.cuda")
     from numba.cuda import api, dispatcher
 
-    import_module("eyas.core.cuda")  # tells numba-cuda of kernels and of pointers to bundles
+    prepare_cuda()
 
     no_gpu = SimpleNamespace(compute_capability=CAPABILITY)
     monkeypatch.setattr(dispatcher, "get_current_device", lambda: no_gpu)
@@ -75,8 +75,6 @@ def shade_thread(parts, row, column, found):
 
 @pytest.mark.slow  # compiles for half a minute
 def test_shading_a_pixel_in_all_weathers_compiles_for_cuda(ptx_of, renderer_of, tmp_path):
-    from eyas.core import cuda  # noqa: F401  # pointers to bundles
-
     renderer = renderer_of(city_scene(), car_parts())
     traffic = city_traffic(1)
     movers = Movers(traffic.part, traffic.pose, traffic.colour, traffic.object_id)
