@@ -60,20 +60,24 @@ class _Overload(NamedTuple):
 
 
 @global_compiler_lock
-def _compile(function: Callable[..., Any], kinds: tuple[Kind, ...], *, inline: bool) -> _Overload:
+def _compile(function: Callable[..., Any], kinds: tuple[Kind, ...], inline: bool | None) -> _Overload:
     flags = Flags()
-    cpu_target.options.parse_as_flags(flags, {**_SETTINGS, **_INNER, "forceinline": inline})
+    cpu_target.options.parse_as_flags(flags, {**_SETTINGS, **_INNER, "forceinline": inline is True})
     flags.no_compile = True
     typing, target = cpu_target.typing_context, cpu_target.target_context
     library = _Library(target.codegen(), function.__qualname__)
     made = compile_extra(typing, target, function, kinds, None, flags, {}, library=library)
+    if inline is False:
+        library._final_module.get_function(made.fndesc.llvm_func_name).add_function_attribute(
+            "noinline"
+        )
     return _Overload(made.signature, made.fndesc, library)
 
 
 class KernelType(numba.types.Callable, numba.types.Opaque):  # type: ignore[misc]
     """The type of a kernel in the kernels that call it."""
 
-    def __init__(self, function: Callable[..., Any], *, inline: bool) -> None:
+    def __init__(self, function: Callable[..., Any], *, inline: bool | None) -> None:
         self._function, self._inline = function, inline
         self._parameters = inspect.signature(function)
         self._overloads: dict[tuple[Kind, ...], _Overload] = {}
@@ -88,7 +92,7 @@ class KernelType(numba.types.Callable, numba.types.Opaque):  # type: ignore[misc
             for name, parameter in self._parameters.parameters.items()
         )
         if kinds not in self._overloads:
-            made = _compile(self._function, kinds, inline=self._inline)
+            made = _compile(self._function, kinds, self._inline)
             libraries = tuple(dict.fromkeys(_linked(made.library)))
             cpu_target.target_context.insert_user_function(made, made.described, libraries)
             self._overloads[kinds] = made
@@ -133,7 +137,7 @@ def entry_code(function: Callable[..., Any], kinds: tuple[Kind, ...], entry: str
         entry: Name of the function in C, which returns 0, or another number if `function` raised
             an exception.
     """
-    made = _compile(function, kinds, inline=False)
+    made = _compile(function, kinds, None)
     library = _entry(made, entry)
     module = library._final_module
     for called in dict.fromkeys(_linked(made.library)):

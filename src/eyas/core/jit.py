@@ -25,6 +25,7 @@ __all__ = [
     "kernel",
     "kernel_folder",
     "nothing_compiled",
+    "separate_kernel",
     "specialised",
     "step_kernel",
     "thread_count",
@@ -84,7 +85,7 @@ class Kernel:
         py_func: The function.
     """
 
-    def __init__(self, function: Callable[..., Any], *, inline: bool) -> None:
+    def __init__(self, function: Callable[..., Any], *, inline: bool | None = None) -> None:
         functools.update_wrapper(self, function)
         self.py_func = function
         self._inline = inline
@@ -110,6 +111,11 @@ class Kernel:
 
 def kernel(function: Function) -> Function:
     """Compile a function that allocates nothing, so that CUDA kernels can call it too."""
+    return cast("Function", Kernel(function))
+
+
+def separate_kernel(function: Function) -> Function:
+    """Compile like `kernel`, and have LLVM never inline it into its callers."""
     return cast("Function", Kernel(function, inline=False))
 
 

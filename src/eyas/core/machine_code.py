@@ -34,6 +34,9 @@ SUFFIX = ".eyk"
 
 _LOCK = threading.Lock()
 
+_LOADED: list[llvm.ResourceTracker] = []
+"""Kernels loaded, kept until the process ends."""
+
 
 class MachineCode(NamedTuple):
     """Machine code of a kernel."""
@@ -70,10 +73,10 @@ def _machine() -> llvm.TargetMachine:
     llvm.initialize_native_asmprinter()
     triple, name, features = cpu()
     target = llvm.Target.from_triple(triple)
-    # As numba does. Code and constants may lie far apart, as LLVM's loader puts them.
-    relocation = "static" if target.name.startswith("x86") else "default"
+    # Code reaches constants, which lie close to it (see `_linker`), by their distances; by their
+    # addresses, shading would take 5 % more instructions.
     return target.create_target_machine(
-        cpu=name, features=features, opt=3, reloc=relocation, codemodel="jitdefault", jit=True
+        cpu=name, features=features, opt=3, reloc="pic", codemodel="small", jit=True
     )
 
 
@@ -92,23 +95,29 @@ def optimised(module: llvm.ModuleRef, entry: str) -> MachineCode:
 
 
 @cache
-def _engine() -> llvm.ExecutionEngine:
+def _linker() -> llvm.LLJIT:
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
     machine = llvm.Target.from_triple(cpu().triple).create_target_machine(jit=True)
-    return llvm.create_mcjit_compiler(llvm.parse_assembly(""), machine)
+    # JITLink puts a kernel's code and constants side by side, as its code expects; LLVM's older
+    # linker may put them more than 2 GiB apart.
+    return llvm.create_lljit_compiler(machine, use_jit_link=True, suppress_errors=True)
 
 
 def load(code: MachineCode) -> int | None:
     """Return the address of a kernel's entry; None if this process lacks a function it needs."""
+    library = llvm.JITLibraryBuilder().add_current_process().add_object_img(code.code)
+    library.export_symbol(code.entry)
     with _LOCK:
-        engine = _engine()
-        if not all(map(llvm.address_of_symbol, code.needs)):
-            return None
-        engine.add_object_file(llvm.ObjectFileRef.from_data(code.code))
-        engine.finalize_object()
-        address: int = engine.get_function_address(code.entry)
-    return address
+        linker = _linker()
+        for name in code.needs:
+            address = llvm.address_of_symbol(name)
+            if not address:
+                return None
+            library.import_symbol(name, address)
+        loaded = library.link(linker, f"{code.entry}-{len(_LOADED)}")
+        _LOADED.append(loaded)
+    return int(loaded[code.entry])
 
 
 def code_file(folder: Path, name: str, parts: Iterable[str]) -> Path:

@@ -29,11 +29,11 @@ def _load(builder: Any, pointer: Any, align: int) -> ir.Value:
 
 
 def _each(builder: Any, kind: types.Type, index: ir.Value) -> list[ir.Value]:
-    """Return the indices in the lanes, or the one index, as 64 bits."""
+    """Return the indices in the lanes, or the one index, as 64 bits; none is negative."""
     if not isinstance(kind, Lanes):
-        return [index if index.type == _I64 else builder.sext(index, _I64)]
+        return [index if index.type == _I64 else builder.zext(index, _I64)]
     items = [builder.extract_element(index, _I32(k)) for k in range(WIDTH)]
-    return [builder.sext(item, _I64) for item in items]
+    return [builder.zext(item, _I64) for item in items]
 
 
 def _collected(builder: Any, kind: types.Type, items: list[ir.Value]) -> ir.Value:

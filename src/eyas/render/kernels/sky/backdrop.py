@@ -30,7 +30,7 @@ def _sky_bits(key: NDArray[np.int64], line: int, sample: int, samples: int) -> i
     """Return in which of eight pixels any sample shows the sky, a bit each."""
     bits = i8(0)
     for k in range(samples * samples):
-        keys = keys_of(key, line + k // samples, sample + k % samples, samples)
+        keys = keys_of(key, line + (k >> 1), sample + (k & 1), samples)
         bits |= bits_of(keys == i8(0))
     return bits
 

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inlined_kernel, inner_kernel
+from eyas.core.jit import inlined_kernel, inner_kernel, separate_kernel
 from eyas.core.lanes import (
     WIDTH,
     any_of,
@@ -31,7 +31,7 @@ from eyas.render.kernels.visibility.key import distance_inverse, drawn_of, tag_o
 
 __all__ = ["instance_frame", "shade_band"]
 
-Bytes = tuple[int, int, int]
+Colour = tuple[float, float, float]
 
 
 @inlined_kernel
@@ -45,8 +45,39 @@ def instance_frame(
     return frame_of(geometry.fixture_pose, movers.colour[world, :0], instance)
 
 
+@separate_kernel
+def _one_instance(
+    geometry: Geometry,
+    light: Light,
+    lit: Illumination,
+    movers: Movers,
+    world: int,
+    drawn: NDArray[np.int32],
+    row: int,
+    triangle: int,
+    eye: Colour,
+    ray: Colour,
+    away: float,
+    pixel: float,
+    shade: int,
+) -> int:
+    """Return the packed bytes of eight points of one instance, a row of `Scratch.drawn`.
+
+    A function of its own: inlined into the loops that call it, the hundred numbers that are the
+    same for all points would be spread over lanes before each loop, kept in memory and read again.
+    """
+    frame, first = no_frame(), i4(0)
+    if row >= 0:
+        frame, first = instance_frame(geometry, movers, world, drawn, row), drawn[row, 0]
+    colour = shade_point(
+        geometry, light, lit, triangle + first, row >= 0, frame, eye, ray, away, pixel, shade
+    )
+    red, green, blue = tone_bytes(light, lit.air.exposure, colour)
+    return pack(red, green, blue)
+
+
 @inlined_kernel
-def _colours(
+def _packed(
     rays: Rays,
     geometry: Geometry,
     light: Light,
@@ -60,32 +91,24 @@ def _colours(
     line: float,
     column: float,
     shade: int,
-) -> Bytes:
-    """Return the bytes of eight samples; those not wanted are 0.
+) -> int:
+    """Return the packed bytes of eight samples; those not wanted are 0.
 
     All samples of one instance are computed together: its pose is the same number in all lanes.
     """
     ray, eye = ray_of(rays, line, column), (rays.eye.x, rays.eye.y, rays.eye.z)
     row, triangle = drawn_of(tag), triangle_of(tag)
-    red, green, blue = splat(u4(0)), splat(u4(0)), splat(u4(0))
-    left = bits_of(wanted)
+    packed, left = splat(u4(0)), bits_of(wanted)
     while left != 0:
         which = lane(row, first_bit(left))
         same = wanted & (row == which)
         left &= ~bits_of(same)
-        frame, first = no_frame(), i4(0)
-        if which >= 0:
-            frame, first = instance_frame(geometry, movers, world, drawn, which), drawn[which, 0]
-        # Chosen here, so that what depends on the point alone is not the same in all rounds: LLVM
-        # would compute that before the loop, snow too where none has fallen.
-        away = select(same, distance, f4(1.0))
-        colour = shade_point(
-            geometry, light, lit, select(same, triangle + first, i4(0)), which >= 0, frame, eye,
-            ray, away, rays.pixel, shade,
+        shown = _one_instance(
+            geometry, light, lit, movers, world, drawn, which, select(same, triangle, i4(0)), eye,
+            ray, select(same, distance, f4(1.0)), rays.pixel, shade,
         )  # fmt: skip
-        r, g, b = tone_bytes(light, lit.air.exposure, colour)
-        red, green, blue = select(same, r, red), select(same, g, green), select(same, b, blue)
-    return red, green, blue
+        packed = select(same, shown, packed)
+    return packed
 
 
 @inlined_kernel
@@ -117,6 +140,85 @@ def _alike(
     return tag, is_first, to_u4(to_i4(count)), total * part, down * part, right * part
 
 
+@inlined_kernel
+def _shade_one(
+    rays: Rays,
+    geometry: Geometry,
+    light: Light,
+    lit: Illumination,
+    movers: Movers,
+    world: int,
+    drawn: NDArray[np.int32],
+    key: NDArray[np.int64],
+    shade: NDArray[np.uint8],
+    pixels: NDArray[np.uint8],
+    row: int,
+    first: int,
+) -> None:
+    """Write eight pixels of a row, with one sample each."""
+    numbers, half = to_f4(lane_numbers()), splat(f4(0.5))
+    keys = keys_of(key, row, first, 1)
+    seen = (numbers < f4(pixels.shape[1] - first)) & (keys != i8(0))
+    if not any_of(seen):
+        return
+    words = load_words(shade, 4 * (row * key.shape[1] + first))
+    packed = _packed(
+        rays, geometry, light, lit, movers, world, drawn, tag_of(keys), seen,
+        f4(1.0) / select(seen, distance_inverse(keys), f4(1.0)), half + f4(row),
+        numbers + f4(first) + half, words,
+    )  # fmt: skip
+    write_pixels(pixels, row, first, bits_of(seen), packed)
+
+
+@inlined_kernel
+def _shade_four(
+    rays: Rays,
+    geometry: Geometry,
+    light: Light,
+    lit: Illumination,
+    movers: Movers,
+    world: int,
+    drawn: NDArray[np.int32],
+    key: NDArray[np.int64],
+    shade: NDArray[np.uint8],
+    pixels: NDArray[np.uint8],
+    row: int,
+    first: int,
+) -> None:
+    """Write eight pixels of a row, with four samples each.
+
+    Each triangle that a pixel shows is computed once, in the middle of the samples that show it,
+    and counts as often as there are of them; 1/distance is linear on the screen, so the mean of
+    theirs is the one in the middle.
+    """
+    numbers, line, sample = to_f4(lane_numbers()), 2 * row, 2 * first
+    inside = numbers < f4(pixels.shape[1] - first)
+    # Sums of red and blue in the halves of one number, and of green.
+    both, green, shown = splat(u4(0)), splat(u4(0)), i8(0)
+    even, eight = u4(0x00FF00FF), u4(8)
+    for k in range(4):
+        keys = keys_of(key, line + (k >> 1), sample + (k & 1), 2)
+        seen = inside & (keys != i8(0))
+        shown |= bits_of(seen)
+        sky = _written(pixels, row, first, inside & ~seen)
+        both, green = both + (sky & even), green + ((sky >> eight) & even)
+        tag, is_first, weight, inverse, down, right = _alike(key, line, sample, k)
+        seen &= is_first
+        if not any_of(seen):
+            continue
+        at = (line + (k >> 1)) * key.shape[1] + sample + (k & 1)
+        packed = _packed(
+            rays, geometry, light, lit, movers, world, drawn, tag, seen,
+            f4(1.0) / select(seen, inverse, f4(1.0)), down + f4(line),
+            numbers * f4(2.0) + f4(sample) + right, _spread_words(shade, at),
+        )  # fmt: skip
+        both, green = both + weight * (packed & even), green + weight * ((packed >> eight) & even)
+    if shown != 0:
+        two, halves = u4(2), u4(0x00020002)
+        both, green = ((both + halves) >> two) & even, ((green + two) >> two) & u4(255)
+        write_pixels(pixels, row, first, shown, to_u4(both | (green << eight)))
+
+
 @inner_kernel
 def shade_band(
     view: View,
@@ -132,10 +234,6 @@ def shade_band(
 ) -> None:
     """Write the pixels of a band except the sky, which `draw_backdrop` has already written.
 
-    With four samples, each triangle that a pixel shows is computed once, in the middle of the
-    samples that show it, and counts as often as there are of them; 1/distance is linear on the
-    screen, so the mean of theirs is the one in the middle.
-
     Args:
         view: The band.
         geometry: Everything that can be drawn.
@@ -148,45 +246,19 @@ def shade_band(
         shade: See `Scratch`, shape (rows, columns, 4).
         pixels: sRGB, shape (rows, columns, 3).
     """
-    rays, samples, width = rays_of(view), view.samples, pixels.shape[1]
-    numbers, half = to_f4(lane_numbers()), splat(f4(0.5))
-    for row in range(pixels.shape[0]):
-        for first in range(0, width, WIDTH):
-            line, sample = row * samples, first * samples
-            inside = numbers < f4(width - first)
-            red, green, blue = splat(u4(0)), splat(u4(0)), splat(u4(0))
-            shown = i8(0)
-            for k in range(samples * samples):
-                at = (line + (k >> 1)) * key.shape[1] + sample + (k & 1)
-                keys = keys_of(key, line + (k >> 1), sample + (k & 1), samples)
-                seen = inside & (keys != i8(0))
-                shown |= bits_of(seen)
-                tag, inverse, down, right, weight = (
-                    tag_of(keys),
-                    distance_inverse(keys),
-                    half,
-                    half,
-                    splat(u4(1)),
+    rays, width = rays_of(view), pixels.shape[1]
+    if view.samples == 1:
+        for row in range(pixels.shape[0]):
+            for first in range(0, width, WIDTH):
+                _shade_one(
+                    rays, geometry, light, lit, movers, world, drawn, key, shade, pixels, row, first
                 )
-                if samples == 2:
-                    r, g, b = _written(pixels, row, first, inside & ~seen)
-                    red, green, blue = red + r, green + g, blue + b
-                    tag, is_first, weight, inverse, down, right = _alike(key, line, sample, k)
-                    seen &= is_first
-                if not any_of(seen):
-                    continue
-                words = load_words(shade, 4 * at) if samples == 1 else _spread_words(shade, at)
-                r, g, b = _colours(
-                    rays, geometry, light, lit, movers, world, drawn, tag, seen,
-                    f4(1.0) / select(seen, inverse, f4(1.0)), down + f4(line),
-                    numbers * f4(samples) + f4(sample) + right, words,
-                )  # fmt: skip
-                red, green, blue = red + weight * r, green + weight * g, blue + weight * b
-            if samples == 2:
-                two = u4(2)
-                red, green, blue = (red + two) >> two, (green + two) >> two, (blue + two) >> two
-            if shown != 0:
-                write_pixels(pixels, row, first, shown, pack(red, green, blue))
+    else:
+        for row in range(pixels.shape[0]):
+            for first in range(0, width, WIDTH):
+                _shade_four(
+                    rays, geometry, light, lit, movers, world, drawn, key, shade, pixels, row, first
+                )
 
 
 @inlined_kernel
@@ -200,14 +272,12 @@ def _spread_words(shade: NDArray[np.uint8], at: int) -> int:
 
 
 @inlined_kernel
-def _written(pixels: NDArray[np.uint8], row: int, first: int, mask: bool) -> Bytes:
-    """Return the bytes that eight pixels have already, 0 where the mask is not set."""
-    zero = splat(u4(0))
-    red, green, blue = zero, zero, zero
+def _written(pixels: NDArray[np.uint8], row: int, first: int, mask: bool) -> int:
+    """Return the packed bytes that eight pixels have already, 0 where the mask is not set."""
+    packed = splat(u4(0))
     if any_of(mask):
         at = (lane_numbers() + i4(row * pixels.shape[1] + first)) * i4(3)
         at = select(mask, at, i4(0))
-        red = select(mask, gather(pixels, at), zero)
-        green = select(mask, gather(pixels, at + i4(1)), zero)
-        blue = select(mask, gather(pixels, at + i4(2)), zero)
-    return red, green, blue
+        words = pack(gather(pixels, at), gather(pixels, at + i4(1)), gather(pixels, at + i4(2)))
+        packed = select(mask, words, packed)
+    return packed
