@@ -60,7 +60,9 @@ class _Overload(NamedTuple):
 
 
 @global_compiler_lock
-def _compile(function: Callable[..., Any], kinds: tuple[Kind, ...], inline: bool | None) -> _Overload:
+def _compile(
+    function: Callable[..., Any], kinds: tuple[Kind, ...], inline: bool | None
+) -> _Overload:
     flags = Flags()
     cpu_target.options.parse_as_flags(flags, {**_SETTINGS, **_INNER, "forceinline": inline is True})
     flags.no_compile = True
