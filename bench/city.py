@@ -1,18 +1,25 @@
 """The input of the peers: Eyas's scene, cars and cameras as plain arrays."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 
+from eyas.core.clock import PHYSICS_STEP
+from eyas.core.pinhole import field_along
 from eyas.mesh.assembly import concatenate, transformed
+from eyas.render.pack.geometry import build_geometry
+from eyas.render.renderer import Renderer, build_renderer
 from eyas.render.textures.library import build_textures
-from eyas.sim.assets import load_assets
+from eyas.sim.assets import Assets, load_assets
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
+from eyas.sim.still import StillWorld
 from eyas.sim.worlds import each_alone
-from eyas.state.draw import Views
+from eyas.state.draw import PartLibrary, Views
 from eyas.state.mesh import Mesh, Surface
+from eyas.targets.catalogue import KINDS
+from eyas.targets.rig import part_library
 
 CHUNK = 32.0
 """Side of the squares that are skipped if not in view [m]."""
@@ -63,42 +70,57 @@ class City:
 def load_city(count: int) -> City:
     """Return citystreet by day and the cameras of `count` trackers after a reset.
 
-    All views show the cars of the first tracker's world, so that peers need not move them.
+    All views show the cars of one world, so that peers need not move them. Everything has its
+    finest level of detail, as `finest_renderer` draws it too.
     """
     simulation = build_simulation(SimConfig(), each_alone(count))
     simulation.reset()
     assets = load_assets(SimConfig().world, SimConfig().traffic, count)
     scene, images = assets.scene, build_textures()
     names = list(images)
-    # Trees at their finest level, which Eyas uses in such views.
     fixtures = scene.fixtures
     copies = [
         transformed(fixtures.levels[kind][0], pose)
         for kind, pose in zip(fixtures.prototype, fixtures.pose, strict=True)
     ]
-    pictures, snapshot = simulation._pictures, simulation.snapshot
-    _, movers = pictures._worlds.draw_list(np.zeros(1, np.int64), snapshot.episodes.tick)
-    parts = [levels[0] for levels in assets.rigs.library.parts]
-    slots = [movers.pose[0][movers.part[0] == k].copy() for k in range(len(parts))]
-    colours = [movers.colour[0][movers.part[0] == k].copy() for k in range(len(parts))]
-    camera = pictures._camera
+    cameras = simulation.snapshot.cameras
+    movers = StillWorld(assets).movers(simulation.snapshot.episodes.tick[0] * PHYSICS_STEP)
+    parts = [levels[0] for levels in _library(assets).parts]
+    drawn = [movers.part[0] == k for k in range(len(parts))]
+    field = float(cameras.field_of_view[0])
+    camera = SimConfig().camera
     views = Views(
-        position=snapshot.cameras.position.copy(),
-        rotation=snapshot.cameras.rotation.copy(),
+        position=cameras.position.copy(),
+        rotation=cameras.rotation.copy(),
         world=np.zeros(count, np.int32),
         subject=np.full(count, -1, np.int32),
-        field_of_view=camera.config.field_of_view,
-        vertical_field_of_view=camera.vertical_field_of_view,
+        field_of_view=field,
+        vertical_field_of_view=field_along(field, camera.height / camera.width),
     )
     return City(
         static=_batch(concatenate([scene.static, *copies]), names, CHUNK),
         parts=[_batch(mesh, names, 1e9) for mesh in parts],
-        slots=slots,
-        slot_colours=colours,
+        slots=[movers.pose[0][chosen].copy() for chosen in drawn],
+        slot_colours=[movers.colour[0][chosen].copy() for chosen in drawn],
         textures=np.stack([images[name] for name in names]),
         views=views,
         sun=np.array(assets.lighting.sun_direction),
     )
+
+
+def _library(assets: Assets) -> PartLibrary:
+    kinds = np.unique(assets.traffic.motion.kind).tolist()
+    return part_library(tuple(KINDS[kind] for kind in kinds))
+
+
+def finest_renderer(assets: Assets) -> Renderer:
+    """Return a renderer that draws what the peers draw: everything at its finest level of detail."""
+    scene, library = assets.scene, _library(assets)
+    levels = tuple(levels[:1] for levels in scene.fixtures.levels)
+    scene = replace(scene, fixtures=replace(scene.fixtures, levels=levels))
+    library = replace(library, parts=tuple(levels[:1] for levels in library.parts))
+    geometry = build_geometry(scene, library, build_textures())
+    return build_renderer(scene, geometry, assets.lighting)
 
 
 def _batch(mesh: Mesh, names: list[str], side: float) -> Batch:

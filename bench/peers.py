@@ -3,8 +3,9 @@
     pip install -e '.[peers]'    (moderngl also needs Mesa: apt install libegl1 libgl1-mesa-dri)
     python bench/peers.py [--views 64] [--seconds 10] [--pictures FOLDER]
 
-All draw the scene textured, mip-mapped, lit and in haze. moderngl has a shadow map; panda3d's
-software renderer has no shadows. Eyas draws everything that it draws by default. All times include
+All draw the same triangles: everything at its finest level of detail, textured, mip-mapped, lit and
+in haze. moderngl has a shadow map; panda3d's software renderer has no shadows. Eyas draws everything
+that it draws by default; a last line is for Eyas with its own choice of levels. All times include
 reading the pictures back.
 """
 
@@ -16,13 +17,15 @@ from pathlib import Path
 from typing import Protocol
 
 import numpy as np
-from city import City, load_city
+from city import City, finest_renderer, load_city
 from PIL import Image
 
 from eyas.core.machine import describe_machine
+from eyas.render.renderer import Renderer
 from eyas.sim.assets import load_assets
 from eyas.sim.config import SimConfig
 from eyas.state.draw import DrawList, Picture
+from eyas.state.scene import ACTOR_OBJECT
 
 SIDE = 84
 """Size of the pictures [pixels]."""
@@ -41,18 +44,15 @@ class Drawer(Protocol):
 class Ours:
     """Eyas."""
 
-    name = "eyas"
-
-    def __init__(self, city: City, side: int) -> None:
-        assets = load_assets(SimConfig().world, SimConfig().traffic, 1)
-        self._renderer, self._views = assets.renderer, city.views
+    def __init__(self, city: City, side: int, name: str, renderer: Renderer) -> None:
+        self.name, self._renderer, self._views = name, renderer, city.views
         count = sum(map(len, city.slots))
         self._movers = DrawList.create(1, count)
         parts = [np.full(len(poses), k) for k, poses in enumerate(city.slots)]
         self._movers.part[0] = np.concatenate(parts)
         self._movers.pose[0] = np.concatenate(city.slots)
         self._movers.colour[0] = np.concatenate(city.slot_colours)
-        self._movers.object_id[0] = (1 << 16) + np.arange(count)
+        self._movers.object_id[0] = ACTOR_OBJECT + np.arange(count)
         self._picture = Picture.create(len(city.views.position), side, side)
 
     def draw(self) -> None:
@@ -73,12 +73,14 @@ def main() -> None:
     parser.add_argument("--pictures", type=Path, help="where to write what each drew")
     arguments = parser.parse_args()
     city = load_city(arguments.views)
-    drawers: list[Drawer] = [Ours(city, SIDE)]
+    assets = load_assets(SimConfig().world, SimConfig().traffic, 1)
+    drawers: list[Drawer] = [Ours(city, SIDE, "eyas", finest_renderer(assets))]
     for module in ("peer_moderngl", "peer_panda3d"):
         try:
             drawers.append(importlib.import_module(module).Peer(city, SIDE))
         except Exception as error:  # a missing driver may raise anything
             print(f"{module}: left out: {error}")
+    drawers.append(Ours(city, SIDE, "eyas-levels (with levels of detail)", assets.renderer))
     rates = _rates(drawers, arguments.seconds)
     print(f"{arguments.views} pictures of {SIDE}x{SIDE}, {describe_machine()}")
     for drawer, rate in zip(drawers, rates, strict=True):

@@ -17,10 +17,14 @@ def test_bench_prints_and_writes_what_it_has_measured(tmp_path):
     assert (done.returncode, done.stderr) == (0, "")
     document = json.loads(path.read_text())
     names = [result["name"] for result in document["results"]]
-    assert len(set(names)) == len(names) >= 14
+    assert len(set(names)) == len(names) >= 17
     starts = {name.split()[0] for name in names}
     assert starts >= {"first", "pictures", "steps,", "reset", "peak", "textures"}
+    for words in ("48x48, 64 views", "night", "snow", "4 samples", "horizon", "1280x720"):
+        assert any(words in name for name in names), words
     for result in document["results"]:
+        drawn = result["name"].startswith(("first", "pictures"))
+        assert not drawn or result["cpu_microseconds"] > 0
         assert result["value"] > 0
         assert result["unit"] in UNITS
         assert result["repeats"] >= 1

@@ -12,7 +12,7 @@ import pytest
 from numba.types import CPointer, Tuple, intp
 
 from eyas.core.cuda import prepare_cuda
-from eyas.core.pointers import address_of
+from eyas.core.intrinsics import address_of
 from eyas.render.jobs import build_jobs
 from eyas.render.kernels.bundles import Movers, Task
 from eyas.render.kernels.light.view_light import view_light

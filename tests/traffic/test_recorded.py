@@ -3,8 +3,9 @@ import pytest
 
 from eyas.state.motion import ActorState
 from eyas.state.terrain import Terrain
+from eyas.traffic import recorded
 from eyas.traffic.interpolation import interpolate_actors
-from eyas.traffic.recorded import recorded_motion
+from eyas.traffic.recorded import kept_motion, recorded_motion
 from eyas.traffic.recording import Recording
 
 EAST, NORTH = 0.05, -0.02
@@ -53,3 +54,22 @@ def test_heights_between_samples_follow_the_motion(wandering, plane):
     interpolate_actors(few, np.linspace(0.0, 20.0, 400), out)
     x, y, z = np.moveaxis(out.position[:, :2], -1, 0)
     np.testing.assert_allclose(z, 7.0 + EAST * x + NORTH * y, atol=2e-3)
+
+
+def test_a_motion_is_smoothed_once_and_then_read_from_the_cache(
+    wandering, plane, tmp_path, monkeypatch
+):
+    monkeypatch.setenv("EYAS_CACHE_DIR", str(tmp_path))
+    smoothed, before = [], recorded.smooth
+    monkeypatch.setattr(recorded, "smooth", lambda found: smoothed.append(0) or before(found))
+    kind = np.zeros(wandering.actors, np.int32)
+    expected = recorded_motion(wandering, plane, kind)
+    for _ in range(2):
+        kept = kept_motion(wandering, plane, kind)
+        assert kept.table.dtype == expected.table.dtype
+        assert kept.table.flags.aligned
+        np.testing.assert_array_equal(kept.table, expected.table)
+        assert kept[1:] == expected[1:]
+    assert len(smoothed) == 2  # the expected one, and one to keep
+    kept_motion(wandering, Terrain.flat(0.0), kind)
+    assert len(smoothed) == 3

@@ -40,9 +40,7 @@ class Config(BaseModel):
         ConfigError: One line: key, value, allowed values.
     """
 
-    model_config = ConfigDict(
-        frozen=True, extra="forbid", allow_inf_nan=False, use_attribute_docstrings=True
-    )
+    model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
 
     def __init__(self, **values: Any) -> None:  # noqa: ANN401  # as in pydantic
         try:

@@ -1,15 +1,13 @@
 """The address of a kernel that gets bundles: from its file, or compiled, which takes seconds."""
 
-import os
 import platform
 import threading
 from collections.abc import Callable
 from importlib.metadata import version
-from pathlib import Path
 from typing import Any
 
 from eyas.core.held import Held
-from eyas.core.jit import KEPT, identity
+from eyas.core.jit import KEPT, folder_in_use, identity
 from eyas.core.machine_code import MachineCode, code_file, load, read_code, write_code
 
 __all__ = ["entry_address"]
@@ -27,7 +25,7 @@ def entry_address(function: Callable[..., Any], parts: tuple[Held[Any], ...]) ->
     name = function.__qualname__.rpartition(".")[2]
     versions = (version("numba"), platform.python_version())
     key = (*versions, identity(function), *(part.kind for part in parts))
-    path = code_file(Path(os.environ["NUMBA_CACHE_DIR"]), name, key)
+    path = code_file(folder_in_use(), name, key)
     kept = KEPT and function.__closure__ is None  # or what it depends on is not all in the key
     with _LOCK:
         found = read_code(path) if kept else None

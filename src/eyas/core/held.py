@@ -5,6 +5,7 @@ count no references, so they do not need the two words about the owner of an arr
 """
 
 import ctypes
+import operator
 import struct
 from typing import Any, Generic, NamedTuple, TypeVar
 
@@ -43,6 +44,11 @@ class Held(Generic[Bundle]):
         self.size = layout.size
         """[bytes]"""
         self.address = ctypes.addressof(ctypes.c_char.from_buffer(self._memory))
+
+    def again(self, bundle: Bundle) -> "Held[Bundle]":
+        """Return this if a bundle has the very same parts, else the other bundle laid out."""
+        same = all(map(operator.is_, self.bundle, bundle))  # type: ignore[call-overload]
+        return self if same else Held(bundle)
 
 
 class _Layout(NamedTuple):

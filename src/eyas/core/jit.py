@@ -15,13 +15,16 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 from eyas.core.cache.folder import Kind, cache_folder, touch
+from eyas.core.machine_code import SUFFIX
 
 __all__ = [
     "KEPT",
     "Kernel",
+    "folder_in_use",
     "identity",
     "inlined_kernel",
     "inner_kernel",
+    "interpreted",
     "kernel",
     "kernel_folder",
     "nothing_compiled",
@@ -56,17 +59,22 @@ def _can_be_written(folder: Path) -> bool:
     return os.access(folder, os.W_OK)
 
 
+def folder_in_use() -> Path:
+    """Return the folder of compiled kernels that this process uses."""
+    return Path(os.environ["NUMBA_CACHE_DIR"])
+
+
 def nothing_compiled() -> bool:
     """Return whether no kernel is cached yet, as at the first start of a version."""
-    return not any(Path(os.environ["NUMBA_CACHE_DIR"]).rglob("*.eyk"))
+    return not any(folder_in_use().glob(f"*{SUFFIX}"))
 
 
 os.environ.setdefault("NUMBA_CACHE_DIR", str(kernel_folder()))
-touch(Path(os.environ["NUMBA_CACHE_DIR"]))
+touch(folder_in_use())
 
 # If the folder cannot be written to, nothing is cached: numba would otherwise keep kernels beside
 # their sources, and use outdated ones after a change in the functions they call.
-KEPT = _can_be_written(Path(os.environ["NUMBA_CACHE_DIR"]))
+KEPT = _can_be_written(folder_in_use())
 """Whether compiled kernels are kept on disk."""
 
 
@@ -130,6 +138,18 @@ def inlined_kernel(function: Function) -> Function:
 
 inner_kernel = kernel
 step_kernel = inlined_kernel
+
+
+def interpreted(function: Function) -> Function:
+    """Return a kernel of plain numbers as a function of Python.
+
+    For few calls: numba, which `Kernel.__call__` needs, takes half a second to import.
+    """
+    plain = cast("Kernel", function).py_func
+    names = plain.__globals__
+    called = {name: names[name] for name in plain.__code__.co_names if name in names}
+    own = {k: interpreted(v) if isinstance(v, Kernel) else v for k, v in called.items()}
+    return cast("Function", types.FunctionType(plain.__code__, own, plain.__name__))
 
 
 def specialised(function: Function, **kernels: Callable[..., Any]) -> Function:

@@ -6,11 +6,10 @@ import os
 import subprocess
 import sys
 from collections.abc import Callable
-from pathlib import Path
 
 import numpy as np
 
-from eyas.core.jit import KEPT, nothing_compiled
+from eyas.core.jit import KEPT, folder_in_use, nothing_compiled
 from eyas.render.bake.ambient import AmbientMap
 from eyas.render.bake.shadows import ShadowMap
 from eyas.render.bake.tracks import TrackMap
@@ -44,7 +43,7 @@ def compile_ahead() -> Callable[[], object] | None:
     """
     if not nothing_compiled():
         return None
-    cache = Path(os.environ["NUMBA_CACHE_DIR"])
+    cache = folder_in_use()
     if not KEPT:
         _log.warning("cannot write to %s, so every start compiles for about half a minute", cache)
         return None

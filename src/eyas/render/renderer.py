@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.errors import ConfigError
-from eyas.core.jit import thread_count
+from eyas.core.jit import interpreted, thread_count
 from eyas.core.lanes import WIDTH
 from eyas.core.parallel import Held
 from eyas.render.bake.ambient import bake_ambient
@@ -74,7 +74,7 @@ class Renderer:
             reach: How far the corners of their parts may be from any point of them [m].
         """
         sun, lamps_on = self._light.weather.sun, bool(self._light.weather.air.lamps > 0.0)
-        return np.array([influence(one, sun, lamps_on) for one in reach.tolist()])
+        return np.array([_influence(one, sun, lamps_on) for one in reach.tolist()])
 
     def draw(
         self,
@@ -190,6 +190,8 @@ def build_renderer(
     light = build_light(scene, lighting, shadows, ambient, tracks, geometry)
     return Renderer(geometry, light, class_table(scene), ready)
 
+
+_influence = interpreted(influence)
 
 _NOTHING = Output(
     rgb=np.empty((0, 0, 0, 3), np.uint8),

@@ -14,7 +14,7 @@ from eyas.targets.catalogue import kind_index
 from eyas.targets.rig import Rigs
 from eyas.traffic.config import Demand, TrafficConfig
 from eyas.traffic.library import find_recording
-from eyas.traffic.recorded import recorded_motion
+from eyas.traffic.recorded import kept_motion
 from eyas.traffic.replay import Replay
 from eyas.traffic.source import TrafficSource
 from eyas.world.config import WorldConfig
@@ -67,7 +67,7 @@ def _traffic(map_name: str, seed: int, config: TrafficConfig, trackers: int) -> 
     # A scene depends on the season, but its ground does not.
     scene = load_scene(map_name, seed)
     kind = np.array([kind_index(name) for name in recording.vehicle_types], np.int32)
-    return Replay(recorded_motion(recording, scene.terrain, kind))
+    return Replay(kept_motion(recording, scene.terrain, kind))
 
 
 @lru_cache(maxsize=8)

@@ -9,10 +9,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from eyas.core.errors import SpawnError
 from eyas.core.frames import wrap_angle
+from eyas.core.jit import interpreted
 from eyas.core.variation import sample
 from eyas.task.config import StartConfig
 
 __all__ = ["Start", "choose_target", "sample_start", "start_pose"]
+
+_wrapped = interpreted(wrap_angle)
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +67,7 @@ def start_pose(
     east = math.cos(yaw) * forward - math.sin(yaw) * left
     north = math.sin(yaw) * forward + math.cos(yaw) * left
     offset = np.array([east, north, start.height])
-    return np.asarray(target_position, np.float64) + offset, wrap_angle(yaw)
+    return np.asarray(target_position, np.float64) + offset, _wrapped(yaw)
 
 
 def choose_target(

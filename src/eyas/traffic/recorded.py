@@ -5,13 +5,35 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.cache.cached import cached
+from eyas.core.cache.folder import Kind
 from eyas.core.jit import kernel
 from eyas.state.motion import SAMPLE, Motion
 from eyas.state.terrain import Terrain, relief_at, slope_at
 from eyas.traffic.recording import Recording
 from eyas.traffic.smoothing import Tracks, smooth
 
-__all__ = ["recorded_motion", "table_of"]
+__all__ = ["kept_motion", "recorded_motion", "table_of"]
+
+_MAKERS = ("traffic/recorded.py", "traffic/smoothing.py", "state/motion.py", "state/terrain.py")
+
+
+def kept_motion(recording: Recording, terrain: Terrain, kind: NDArray[np.int32]) -> Motion:
+    """Return `recorded_motion`, kept in the cache."""
+    poses = (recording.position, recording.yaw, recording.present)
+    numbers = cached(
+        Kind.MOTION,
+        _MAKERS,
+        (*poses, recording.rate, recording.vehicle_length, kind, *terrain),
+        lambda: _numbers(recorded_motion(recording, terrain, kind).table),
+        of=NDArray[np.float32],
+    )
+    return Motion(numbers.view(SAMPLE)[..., 0], kind, float(recording.rate), 0.0)
+
+
+def _numbers(table: NDArray[np.void]) -> NDArray[np.float32]:
+    """Return the numbers of samples, shape (S, A, numbers of a sample)."""
+    return table.view(np.float32).reshape(*table.shape, -1)
 
 
 def recorded_motion(recording: Recording, terrain: Terrain, kind: NDArray[np.int32]) -> Motion:

@@ -40,6 +40,7 @@ class Kind(StrEnum):
     SHADOWS = "shadows"
     AMBIENT = "ambient"
     TRAFFIC = "traffic"
+    MOTION = "motion"
     KERNELS = "kernels"
     OLD = "old"
     """Entries of older versions of Eyas with another layout; they have no common folder."""

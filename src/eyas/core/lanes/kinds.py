@@ -6,10 +6,9 @@ from llvmlite import ir
 from numba.core import types
 from numba.extending import models, register_model
 
-__all__ = ["F4", "I4", "I8", "MASK", "U4", "WIDTH", "Lanes", "as_lanes", "element_of", "ir_type"]
+from eyas.core.lanes import WIDTH
 
-WIDTH = 8
-"""Numbers in a value of type `Lanes`."""
+__all__ = ["F4", "I4", "I8", "MASK", "U4", "Lanes", "as_lanes", "element_of", "ir_type"]
 
 
 class Lanes(types.Type):

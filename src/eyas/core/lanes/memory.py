@@ -7,7 +7,8 @@ from llvmlite import ir
 from numba.core import types
 from numba.extending import intrinsic
 
-from eyas.core.lanes.kinds import F4, U4, WIDTH, Lanes, as_lanes, ir_type
+from eyas.core.lanes import WIDTH
+from eyas.core.lanes.kinds import F4, U4, Lanes, as_lanes, ir_type
 
 __all__ = [
     "gather", "gather_column", "gather_pair", "load", "load_words", "store", "store_triples",

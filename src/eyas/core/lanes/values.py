@@ -8,7 +8,8 @@ from llvmlite import ir
 from numba.core import cgutils, types
 from numba.extending import intrinsic
 
-from eyas.core.lanes.kinds import I4, WIDTH, Lanes, as_lanes, element_of, ir_type
+from eyas.core.lanes import WIDTH
+from eyas.core.lanes.kinds import I4, Lanes, as_lanes, element_of, ir_type
 
 __all__ = [
     "all_of", "any_of", "bit_pattern", "bits_of", "ceiling", "first_bit", "from_bits", "greater",

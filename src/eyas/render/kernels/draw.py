@@ -1,9 +1,8 @@
 """Pictures: the loop over bands of views, and the steps of each."""
 
-from eyas.core.intrinsics import claim
+from eyas.core.intrinsics import address_of, claim
 from eyas.core.jit import inner_kernel
 from eyas.core.parallel import Pointer, parallel_kernel
-from eyas.core.pointers import address_of
 from eyas.render.kernels.bundles import Geometry, Light, Scratch, Task
 from eyas.render.kernels.light.casters import cast_light
 from eyas.render.kernels.light.view_light import view_light

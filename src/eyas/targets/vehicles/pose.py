@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.jit import kernel
+from eyas.core.parallel import Pointer, parallel_kernel
 from eyas.state.motion import ActorState
 from eyas.targets.kind import Group, Looks
 from eyas.targets.vehicles.models import VEHICLE_AHEAD
@@ -137,12 +138,13 @@ def _wheels_of(
     return (cosine, turn * cosine), (np.cos(angle), np.sin(angle))
 
 
-@kernel
+@parallel_kernel
 def pose_vehicles(
-    table: RigTable, group: Group, actors: ActorState, looks: Looks, out: Slots
+    parts: Pointer[tuple[RigTable, Group, ActorState, Looks, Slots]], worker: int, workers: int
 ) -> None:
     """Write the slots of the vehicles of one kind in all worlds, see `Rig`."""
     # One thread: waking a second one takes longer than 64 worlds of 40 actors.
+    table, group, actors, looks, out = parts[0]
     for w in range(looks.model.shape[0]):
         for g in range(group.actor.shape[0]):
             a, first = group.actor[g], group.slot[g]

@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.parallel import Held
 from eyas.state.draw import DrawList
 from eyas.state.mesh import Mesh
 from eyas.state.motion import ActorState
@@ -34,7 +35,8 @@ class VehicleRig:
         self._parts: list[_Part] = []
         layouts = [_layout(model, self._parts) for model in models]
         self.slots = max(len(layout) for layout in layouts)
-        self._table = _tabulate(models, layouts, self.slots)
+        self._table = Held(_tabulate(models, layouts, self.slots))
+        self._last: _Arrays | None = None
 
     @property
     def part_count(self) -> int:
@@ -47,13 +49,30 @@ class VehicleRig:
 
     def reach(self, parts: NDArray[np.float64]) -> float:
         """Return how far any point of a vehicle may be from its reference point, see `Rig` [m]."""
-        slot = self._table.slot[self._table.slot["part"] >= 0]
+        slot = self._table.bundle.slot
+        slot = slot[slot["part"] >= 0]
         offset = np.sqrt(slot["x"] ** 2 + slot["y"] ** 2 + slot["z"] ** 2)
         return abs(VEHICLE_AHEAD) + float((offset + parts[slot["part"]]).max())
 
     def pose(self, group: Group, actors: ActorState, looks: Looks, out: DrawList) -> None:
         """Write all slots of the kind's actors, see `Rig`."""
-        pose_vehicles(self._table, group, actors, looks, Slots(out.part, out.pose, out.colour))
+        slots, last = Slots(out.part, out.pose, out.colour), self._last
+        if last is None:
+            arrays = _Arrays(Held(actors), Held(looks), Held(slots))
+        else:
+            arrays = _Arrays(
+                last.actors.again(actors), last.looks.again(looks), last.slots.again(slots)
+            )
+        self._last = arrays
+        pose_vehicles.bound(self._table, Held(group), *arrays)()
+
+
+class _Arrays(NamedTuple):
+    """The arrays of a call, mostly the same as in the last one."""
+
+    actors: Held[ActorState]
+    looks: Held[Looks]
+    slots: Held[Slots]
 
 
 class _Wheels(NamedTuple):

@@ -9,6 +9,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.intrinsics import address_of
 from eyas.core.jit import inlined_kernel, inner_kernel, kernel
 from eyas.core.lanes import (
     WIDTH,
@@ -22,7 +23,6 @@ from eyas.core.lanes import (
     store_words,
     to_u4,
 )
-from eyas.core.pointers import address_of
 from eyas.render.kernels.bundles import Direction, Geometry, Movers, View
 from eyas.render.kernels.light.beams import BEAM_REACH, cast_beam
 from eyas.render.kernels.light.caster import (

@@ -10,8 +10,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.intrinsics import address_of
 from eyas.core.jit import inlined_kernel, inner_kernel
-from eyas.core.pointers import address_of
 from eyas.render.kernels.bundles import Illumination, Light, View
 from eyas.render.kernels.chance import scrambled, tenth
 from eyas.render.kernels.light.tone import tone_bytes

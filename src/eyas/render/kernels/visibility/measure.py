@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.intrinsics import address_of
 from eyas.core.jit import inlined_kernel, inner_kernel
 from eyas.core.lanes import (
     WIDTH,
@@ -17,7 +18,6 @@ from eyas.core.lanes import (
     store,
     to_i4,
 )
-from eyas.core.pointers import address_of
 from eyas.render.kernels.bundles import Geometry, Movers, Scratch, View
 from eyas.render.kernels.light.caster import Caster, caster_of
 from eyas.render.kernels.samples import ScreenBox, around, nowhere

@@ -1,0 +1,126 @@
+"""Measurements of `eyas bench`: how calls are timed, and the table."""
+
+import statistics
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from rich.table import Table
+
+from eyas.modes.bench.counters import counted, why_not
+
+__all__ = ["Measurement", "Timing", "measurement_table", "of_pictures", "timed"]
+
+_BLOCK = 0.05
+"""Calls are repeated for at least this time for one timing [s]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Measurement:
+    """One line of the table."""
+
+    name: str
+    value: float
+    """Median."""
+    unit: str
+    includes: str
+    """What the figure covers."""
+    repeats: int
+    """Number of timings of which it is the median."""
+    cpu_microseconds: float | None = None
+    """Time of all threads on the processor for one picture or start [µs], median; else None."""
+    instructions: float | None = None
+    """User instructions for one pixel; None: no picture, or no access to hardware counters."""
+    cycles: float | None = None
+    """User cycles for one pixel; None likewise."""
+
+
+@dataclass(frozen=True, slots=True)
+class Timing:
+    """Timing of repeated calls."""
+
+    rate: float
+    """Calls per second, median."""
+    cpu: float
+    """Time of all threads on the processor for one call [s], median."""
+    repeats: int
+
+
+def timed(call: Callable[[], object], seconds: float) -> Timing:
+    """Return the timing of a call: medians over blocks of at least 50 ms."""
+    call()
+    call()
+    rates: list[float] = []
+    spent: list[float] = []
+    end = time.perf_counter() + seconds
+    while time.perf_counter() < end or len(rates) < 3:
+        start, on_processor, calls = time.perf_counter(), time.process_time(), 0
+        while (elapsed := time.perf_counter() - start) < _BLOCK:
+            call()
+            calls += 1
+        rates.append(calls / elapsed)
+        spent.append((time.process_time() - on_processor) / calls)
+    return Timing(statistics.median(rates), statistics.median(spent), len(rates))
+
+
+def of_pictures(
+    name: str, includes: str, draw: Callable[[], object], size: tuple[int, int, int], seconds: float
+) -> Measurement:
+    """Return the measurement of a call that draws pictures.
+
+    Args:
+        name: Name of the line.
+        includes: What the figure covers.
+        draw: The call.
+        size: Number of pictures that it draws, their width and height.
+        seconds: Time to measure [s].
+    """
+    timing = timed(draw, seconds)
+    count, width, height = size
+    instructions = cycles = None
+    if why_not() is None:
+        counts = counted(draw)
+        pixels = count * width * height
+        instructions, cycles = counts.instructions / pixels, counts.cycles / pixels
+    return Measurement(
+        name,
+        timing.rate * count,
+        "/s",
+        includes,
+        timing.repeats,
+        1e6 * timing.cpu / count,
+        instructions,
+        cycles,
+    )
+
+
+def measurement_table(results: list[Measurement], machine: str) -> Table:
+    """Return the measurements as a table; without columns that are empty."""
+    table = Table(title=f"eyas bench on {machine}", title_justify="left")
+    table.add_column("measurement")
+    table.add_column("median", justify="right")
+    table.add_column("unit")
+    table.add_column("CPU time of one", justify="right")
+    columns = {"instructions a pixel": "instructions", "cycles a pixel": "cycles"}
+    shown = {
+        title: field
+        for title, field in columns.items()
+        if any(getattr(result, field) is not None for result in results)
+    }
+    for title in shown:
+        table.add_column(title, justify="right")
+    table.add_column("includes")
+    for result in results:
+        digits = 0 if result.value >= 100 else 3 if result.value < 10 else 1
+        counts = [getattr(result, field) for field in shown.values()]
+        cells = ("" if count is None else f"{count:,.0f}" for count in counts)
+        value = f"{result.value:,.{digits}f}"
+        cpu = _duration(result.cpu_microseconds)
+        table.add_row(result.name, value, result.unit, cpu, *cells, result.includes)
+    return table
+
+
+def _duration(microseconds: float | None) -> str:
+    if microseconds is None:
+        return ""
+    return f"{microseconds:,.0f} µs" if microseconds < 1e5 else f"{1e-6 * microseconds:.2f} s"
