@@ -8,11 +8,10 @@ of a small picture), and wakes a thread for each worker while the caller waits (
 import ctypes
 import os
 import threading
+from array import array
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, Generic, Protocol, TypeVar
-
-import numpy as np
 
 from eyas.core.entry import entry_address
 from eyas.core.held import Held
@@ -48,8 +47,8 @@ class _Call:
     ) -> None:
         self._kernel = kernel
         self._parts = parts
-        self._table = np.array([part.address for part in parts], np.int64)
-        self._address = self._table.ctypes.data
+        self._table = array("q", [part.address for part in parts])
+        self._address = self._table.buffer_info()[0]
         self.turns = [threading.Lock() for _ in range(workers)]
         self.left = set(range(workers))
         self._failed = False
@@ -136,9 +135,9 @@ class BoundKernel:
     def __init__(
         self, function: Callable[[int, int, int], int], parts: tuple[Held[Any], ...]
     ) -> None:
-        table = np.array([part.address for part in parts], np.int64)
+        table = array("q", [part.address for part in parts])
         self._function = function
-        self._address = table.ctypes.data
+        self._address = table.buffer_info()[0]
         self._kept = table, parts
 
     def __call__(self) -> None:

@@ -53,6 +53,7 @@ class Renderer:
         self._geometry, self._light = geometry, light
         self._classes, self._ready = classes, ready
         self._held = Held(geometry), Held(light)
+        self._last = Held(_NO_MOVERS), Held(_NOTHING)
         self._scratch: dict[tuple[int, ...], Held[Scratch]] = {}
 
     @property
@@ -135,8 +136,11 @@ class Renderer:
         )
         wanted = len(output.subject) + len(output.actor) > 0
         scratch = self._scratch_for(workers, rows, width, side, movers.part.shape[1], wanted)
-        task = Task(side, width, height, int(until), movers, job, output)
-        draw_views(workers, *self._held, scratch, Held(task))
+        # Mostly the same arrays as in the last call.
+        held = self._last[0].again(movers), self._last[1].again(output)
+        self._last = held
+        task = Held(Task(side, width, height, int(until), job))
+        draw_views(workers, *self._held, scratch, *held, task)
         if wanted:
             write_measured(job, output, picture)
 
@@ -192,6 +196,13 @@ def build_renderer(
 
 
 _influence = interpreted(influence)
+
+_NO_MOVERS = Movers(
+    part=np.empty((0, 0), np.int32),
+    pose=np.empty((0, 0, 3, 4), np.float32),
+    colour=np.empty((0, 0, 3), np.float32),
+    object_id=np.empty((0, 0), np.int32),
+)
 
 _NOTHING = Output(
     rgb=np.empty((0, 0, 0, 3), np.uint8),

@@ -52,7 +52,7 @@ class NearMovers:
         self,
         worlds: NDArray[np.integer],
         time: NDArray[np.float64],
-        row: NDArray[np.integer],
+        row: NDArray[np.integer] | None,
         cameras: CameraState,
         aspect: float,
     ) -> DrawList:
@@ -61,17 +61,21 @@ class NearMovers:
         Args:
             worlds: The worlds, shape (W,).
             time: Time of each [s], shape (W,).
-            row: Row of `worlds` that each view shows, shape (V,).
+            row: Row of `worlds` that each view shows, shape (V,); None: views and worlds are pairs.
             cameras: The V cameras.
             aspect: Height of what they show over its width.
         """
-        count, views = len(worlds), len(row)
+        count, views = len(worlds), len(cameras.position)
         self._grow(_Size(count, views, 0, 0))
         query = self._query
         query.worlds[0], query.aspect[0] = count, aspect
         query.world[:count], query.time[:count] = worlds, time
-        order = np.argsort(row, kind="stable")
-        query.end[:count] = np.searchsorted(row[order], np.arange(count), side="right")
+        order: NDArray[np.integer] | slice = slice(None)
+        if row is None:
+            query.end[:count] = self._pairs[:count]
+        else:
+            order = np.argsort(row, kind="stable")
+            query.end[:count] = np.searchsorted(row[order], np.arange(count), side="right")
         query.eye[:views] = cameras.position[order]
         query.rotation[:views] = cameras.rotation[order]
         query.field_of_view[:views] = cameras.field_of_view[order]
@@ -81,7 +85,9 @@ class NearMovers:
             self._grow(_Size(0, 0, entries, slots))
             return self.of(worlds, time, row, cameras, aspect)
         self._pose()
-        return self._movers.first(count)
+        if count not in self._first:
+            self._first[count] = self._movers.first(count)
+        return self._first[count]
 
     def _pose(self) -> None:
         """Let the rigs pose the actors, those of each kind at once."""
@@ -112,6 +118,8 @@ class NearMovers:
             field_of_view=np.ones(size.views),
             camera=np.zeros((size.views, 16), np.float32),
         )
+        self._pairs = np.arange(1, size.worlds + 1)
+        self._first: dict[int, DrawList] = {}
         self._movers = self._rigs.short_list(size.worlds, size.slots)
         self._flat = self._movers.flat()
         self._near = Near(

@@ -63,6 +63,7 @@ class Worlds:
         self.of: NDArray[np.int32] = order[numbered].astype(np.int32)
         self.leader: Integers = np.sort(first)
         self.lasting: NDArray[np.bool_] = given[self.leader] != ALONE
+        self._any_lasting = bool(self.lasting.any())
         self._assets = assets
         self._sampler = LookSampler(assets.traffic.motion.kind, config.traffic.colour)
         worlds, actors = len(self.leader), assets.traffic.actors
@@ -123,8 +124,10 @@ class Worlds:
             cameras: The V cameras.
             aspect: Height of what they show over its width.
         """
-        worlds, rows = self.of[trackers], np.arange(len(trackers))
-        if self.lasting.any():
+        worlds, rows = self.of[trackers], None
+        if self._any_lasting:
             worlds, rows = np.unique(worlds, return_inverse=True)
         time = tick[self.leader[worlds]].astype(np.float64) * PHYSICS_STEP
-        return rows.astype(np.int32), self._near.of(worlds, time, rows, cameras, aspect)
+        movers = self._near.of(worlds, time, rows, cameras, aspect)
+        rows = np.arange(len(trackers)) if rows is None else rows
+        return rows.astype(np.int32), movers

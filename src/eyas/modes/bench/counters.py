@@ -1,7 +1,7 @@
 """Hardware counters of this process: instructions and cycles of its own code, all threads.
 
-They repeat within a thousandth and a tenth on a busy machine, which times do not. Linux gives access
-to them, but seldom in containers and virtual machines.
+They repeat within a thousandth and a tenth on a busy machine, which times do not. Linux gives
+access to them, but seldom in containers and virtual machines.
 """
 
 import ctypes
@@ -30,7 +30,7 @@ class Counts(NamedTuple):
     cycles: int
 
 
-class _Unavailable(Exception):
+class _NoAccessError(Exception):
     """The system gives no access; the text says why."""
 
 
@@ -38,7 +38,7 @@ def why_not() -> str | None:
     """Return why the counters cannot be read; None if they can."""
     try:
         os.close(_opened(_CYCLES, os.getpid()))
-    except _Unavailable as error:
+    except _NoAccessError as error:
         return str(error)
     return None
 
@@ -62,7 +62,7 @@ def _opened(kind: int, thread: int) -> int:
     """Return the file of a counter of one thread."""
     number = _CALL.get(platform.machine())
     if platform.system() != "Linux" or number is None:
-        raise _Unavailable(f"{platform.system()} {platform.machine()}")
+        raise _NoAccessError(f"{platform.system()} {platform.machine()}")
     # type, size, what to count, period, samples, format, flags, three for other uses
     attributes = struct.pack("=IIQQQQQIIQ", 0, _SIZE, kind, 0, 0, 0, _OWN_CODE_ONLY, 0, 0, 0)
     library = ctypes.CDLL(None, use_errno=True)
@@ -70,7 +70,7 @@ def _opened(kind: int, thread: int) -> int:
         *(number, ctypes.c_char_p(attributes), thread, -1, -1, ctypes.c_ulong(0))
     )
     if file < 0:
-        raise _Unavailable(os.strerror(ctypes.get_errno()))
+        raise _NoAccessError(os.strerror(ctypes.get_errno()))
     return file
 
 

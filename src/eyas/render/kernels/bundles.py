@@ -371,6 +371,4 @@ class Task(NamedTuple):
     height: int
     until: int
     """The last `eyas.state.draw.DrawStage`."""
-    movers: Movers
     job: Job
-    output: Output

@@ -3,7 +3,7 @@
 from eyas.core.intrinsics import address_of, claim
 from eyas.core.jit import inner_kernel
 from eyas.core.parallel import Pointer, parallel_kernel
-from eyas.render.kernels.bundles import Geometry, Light, Scratch, Task
+from eyas.render.kernels.bundles import Geometry, Light, Movers, Output, Scratch, Task
 from eyas.render.kernels.light.casters import cast_light
 from eyas.render.kernels.light.view_light import view_light
 from eyas.render.kernels.scalars import f4, i8
@@ -24,25 +24,32 @@ MOVERS_LIGHT = int(DrawStage.MOVERS_LIGHT)
 
 @parallel_kernel
 def draw_views(
-    parts: Pointer[tuple[Geometry, Light, Scratch, Task]],
+    parts: Pointer[tuple[Geometry, Light, Scratch, Movers, Output, Task]],
     worker: int,
     workers: int,
 ) -> None:
     """Draw all jobs. Each is drawn alone, so neither workers nor other jobs change its bytes."""
-    geometry, light, scratch, task = parts[0]
+    geometry, light, scratch, movers, output, task = parts[0]
     job = task.job
     index = i8(worker)
     while index < len(job.band):
-        _draw_band(index, geometry, light, scratch, task, worker)
+        _draw_band(index, geometry, light, scratch, movers, output, task, worker)
         index = claim(job.begun)
 
 
 @inner_kernel
 def _draw_band(
-    index: int, geometry: Geometry, light: Light, scratch: Scratch, task: Task, worker: int
+    index: int,
+    geometry: Geometry,
+    light: Light,
+    scratch: Scratch,
+    movers: Movers,
+    output: Output,
+    task: Task,
+    worker: int,
 ) -> None:
     """Draw job `index` with a worker's memory."""
-    job, output, movers, until = task.job, task.output, address_of(task.movers), task.until
+    job, until = task.job, task.until
     number, top, bottom = job.band[index, 0], job.band[index, 1], job.band[index, 2]
     world = i8(job.world[number])
     view = address_of(view_of(job, index, task.width, task.height, task.samples))
