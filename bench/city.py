@@ -114,7 +114,7 @@ def _library(assets: Assets) -> PartLibrary:
 
 
 def finest_renderer(assets: Assets) -> Renderer:
-    """Return a renderer that draws what the peers draw: everything at its finest level of detail."""
+    """Return a renderer that draws what the peers draw: all at the finest level of detail."""
     scene, library = assets.scene, _library(assets)
     levels = tuple(levels[:1] for levels in scene.fixtures.levels)
     scene = replace(scene, fixtures=replace(scene.fixtures, levels=levels))

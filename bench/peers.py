@@ -4,9 +4,9 @@
     python bench/peers.py [--views 64] [--seconds 10] [--pictures FOLDER]
 
 All draw the same triangles: everything at its finest level of detail, textured, mip-mapped, lit and
-in haze. moderngl has a shadow map; panda3d's software renderer has no shadows. Eyas draws everything
-that it draws by default; a last line is for Eyas with its own choice of levels. All times include
-reading the pictures back.
+in haze. moderngl has a shadow map; panda3d's software renderer has no shadows. Eyas draws
+everything that it draws by default; a last line is for Eyas with its own choice of levels. All
+times include reading the pictures back.
 """
 
 import argparse

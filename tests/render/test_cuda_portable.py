@@ -19,7 +19,6 @@ from eyas.render.kernels.light.view_light import view_light
 from eyas.render.kernels.scalars import u4
 from eyas.render.kernels.surface.pixel import shade_pixel
 from eyas.render.kernels.visibility.transform import view_of
-from eyas.render.renderer import _NOTHING as NOTHING
 from eyas.sensors.config import CameraConfig
 from eyas.sim.step import Orders, StepState, Surroundings, step_of
 from eyas.state.draw import DrawStage
@@ -63,8 +62,8 @@ def pointer_to(bundle) -> CPointer:
 
 def shade_thread(parts, row, column, found):
     """Do what one thread does for one pixel whose triangle is known."""
-    geometry, light, scratch, task = parts[0]
-    job, movers = task.job, address_of(task.movers)
+    geometry, light, scratch, movers, task = parts[0]
+    job = task.job
     view = address_of(view_of(job, 0, task.width, task.height, task.samples))
     lit = address_of(view_light(light.weather, job.light[0]))
     found[row, column] = shade_pixel(
@@ -80,8 +79,8 @@ def test_shading_a_pixel_in_all_weathers_compiles_for_cuda(ptx_of, renderer_of, 
     movers = Movers(traffic.part, traffic.pose, traffic.colour, traffic.object_id)
     job = build_jobs(looking([(0.0, 0.0, 20.0)]), 24, 32, 1, 0.0)
     scratch = renderer._scratch_for(1, 24, 32, 1, movers.part.shape[1], False).bundle
-    task = Task(1, 32, 24, int(DrawStage.SHADING), movers, job, NOTHING)
-    bundles = (*(held.bundle for held in renderer._held), scratch, task)
+    task = Task(1, 32, 24, int(DrawStage.SHADING), job)
+    bundles = (*(held.bundle for held in renderer._held), scratch, movers, task)
     parts = CPointer(Tuple([pointer_to(bundle) for bundle in bundles]))
     text = ptx_of(shade_thread, parts, numba.int64, numba.int64, numba.uint32[:, ::1])
     assert ".visible .entry" in text

@@ -21,8 +21,8 @@ WEATHERS = {"day": CLEAR_DAY, "foggy": FOG, "night": CLEAR_NIGHT, "snow": WINTER
 
 @parallel_kernel
 def one_by_one(parts, worker, workers):
-    geometry, light, scratch, task, places, found = parts[0]
-    job, movers = task.job, address_of(task.movers)
+    geometry, light, scratch, movers, _output, task, places, found = parts[0]
+    job = task.job
     view = address_of(view_of(job, 0, task.width, task.height, task.samples))
     lit = address_of(view_light(light.weather, job.light[0]))
     for k in range(len(places[0])):

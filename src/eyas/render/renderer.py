@@ -20,6 +20,7 @@ from eyas.render.kernels.draw import draw_views
 from eyas.render.kernels.light.casters import influence
 from eyas.render.kernels.visibility.clusters import CLUSTER
 from eyas.render.kernels.visibility.fill import SPAN_ROWS
+from eyas.render.kernels.visibility.hidden import TILE
 from eyas.render.kernels.visibility.key import MOST_INSTANCES
 from eyas.render.kernels.visibility.triangles import TRIANGLE_ROWS
 from eyas.render.pack.light import build_light
@@ -162,6 +163,7 @@ class Renderer:
                 shade=np.empty((*plane, 4), np.uint8),
                 drawn=np.empty((workers, instances, 2), np.int32),
                 mesh=np.empty((workers, instances), np.int32),
+                tiles=np.empty((workers, -(-plane[1] // TILE), plane[2] // TILE), np.float32),
                 order=np.empty((workers, chunks + instances), np.int64),
                 triangle=np.empty((workers, TRIANGLE_ROWS, CLUSTER)),
                 polygon=np.zeros((workers, 15, CLUSTER)),

@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from eyas.core.jit import inlined_kernel, inner_kernel
 from eyas.render.kernels.bundles import Geometry, Movers, Point, Projection, Scratch, View
 from eyas.render.kernels.scalars import i8
+from eyas.render.kernels.visibility.hidden import box_is_hidden, measure_tiles
 from eyas.render.kernels.visibility.key import instance_tag
 from eyas.render.kernels.visibility.listing import list_chunks, list_fixtures, list_slots
 from eyas.render.kernels.visibility.meshes import draw_mesh
@@ -16,6 +17,9 @@ __all__ = ["draw_scene", "draw_slots"]
 
 CULLING = int(DrawStage.CULLING)
 SHADING = int(DrawStage.SHADING)
+
+MEASURED_EVERY = 16
+"""Things drawn before it is measured again what they hide."""
 
 SMALLEST_DETAIL = 0.35
 """Details whose area has a smaller root are left out [pixels]."""
@@ -105,9 +109,15 @@ def _draw_listed(
         return
     order, drawn, meshes = scratch.order[worker], scratch.drawn[worker], scratch.mesh[worker]
     chunks, fixtures = geometry.chunk_range.shape[0], len(geometry.fixture_prototype)
+    tiles = scratch.tiles[worker]
     _shell_sort(order, listed)
     for k in range(listed):
         item = order[k] & i8(0xFFFFFFFF)
+        if k >= MEASURED_EVERY:
+            if k % MEASURED_EVERY == 0:
+                measure_tiles(key, view.width, tiles)
+            if _is_hidden(geometry, item, drawn, view, tiles):
+                continue
         if item < chunks:
             mesh, screen, eye = geometry.chunk_range[item], view.screen, view.eye
             focal, tag = view.focal, i8(0)
@@ -124,6 +134,24 @@ def _draw_listed(
             until, geometry, mesh, screen, eye, focal, smallest, tag, view, key,
             scratch.triangle[worker], scratch.polygon[worker], scratch.span[worker],
         )  # fmt: skip
+
+
+@inlined_kernel
+def _is_hidden(
+    geometry: Geometry,
+    item: int,
+    drawn: NDArray[np.int32],
+    view: View,
+    tiles: NDArray[np.float32],
+) -> bool:
+    """Return whether a listed chunk or fixture is hidden; moving things always may be seen."""
+    chunks = geometry.chunk_range.shape[0]
+    if item < chunks:
+        return box_is_hidden(geometry.chunk_box, item, view, tiles)
+    fixture = i8(drawn[item - chunks, 1])
+    if fixture < len(geometry.fixture_object):
+        return box_is_hidden(geometry.fixture_box, fixture, view, tiles)
+    return False
 
 
 @inlined_kernel

@@ -1,0 +1,45 @@
+"""The arrays that the kernels share, in named bundles.
+
+T triangles, C chunks, P prototypes (fixtures first, then parts), M meshes (levels of detail,
+grouped by prototype), F fixtures, I instances, K workers, J jobs (bands of views). Each chunk and
+mesh begins with a triangle whose number is a multiple of 8: eight triangles in a row are a cluster,
+which is drawn at once. What fills its last cluster up has no area.
+
+Kernels get bundles of arrays by pointer, see `eyas.core.pointers`, and read them like the bundles
+themselves. Numbers of a bundle are float32 if their names are those of light, else float64.
+"""
+
+from eyas.render.kernels.bundles.geometry import GROUP, Geometry, Movers
+from eyas.render.kernels.bundles.light import (
+    Air,
+    Direction,
+    Illumination,
+    LampFrame,
+    Light,
+    MapFrame,
+)
+from eyas.render.kernels.bundles.view import NEAR, Plane, Planes, Point, Projection, Row, View
+from eyas.render.kernels.bundles.work import Job, Output, Scratch, Task
+
+__all__ = [
+    "GROUP",
+    "NEAR",
+    "Air",
+    "Direction",
+    "Geometry",
+    "Illumination",
+    "Job",
+    "LampFrame",
+    "Light",
+    "MapFrame",
+    "Movers",
+    "Output",
+    "Plane",
+    "Planes",
+    "Point",
+    "Projection",
+    "Row",
+    "Scratch",
+    "Task",
+    "View",
+]

@@ -1,0 +1,106 @@
+"""Light and air."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Air", "Direction", "Illumination", "LampFrame", "Light", "MapFrame"]
+
+
+class Direction(NamedTuple):
+    """A vector, or a linear colour as red, green, blue, of float32."""
+
+    x: float
+    y: float
+    z: float
+
+
+class Air(NamedTuple):
+    """Numbers of the weather, of float32."""
+
+    density: float
+    """Of fog [1/m]."""
+    power: float
+    """1 or 2: how its thickness grows with distance."""
+    exposure: float
+    offset: float
+    """Distance by which points are moved off their surface for the shadow map [m]."""
+    snow: float
+    """This and the following: 0 to 1, see `eyas.state.lighting.Lighting`."""
+    lamps: float
+    windows: float
+    clouds: float
+    flakes: float
+
+
+class Illumination(NamedTuple):
+    """Light and air of one view; linear colours."""
+
+    sun: Direction
+    """Unit vector towards the sun."""
+    sun_colour: Direction
+    zenith: Direction
+    horizon: Direction
+    above: Direction
+    """Light of the sky on surfaces that face up."""
+    below: Direction
+    """Light from the ground on surfaces that face down."""
+    fog: Direction
+    air: Air
+
+
+class MapFrame(NamedTuple):
+    """Where a map of the ground lies, of float32."""
+
+    west: float
+    """x of its western edge [m]."""
+    south: float
+    """y of its southern edge [m]."""
+    per_metre: float
+    """Texels in a metre."""
+    ground: float
+    """z of the ground [m]."""
+
+
+class LampFrame(NamedTuple):
+    """Where the grid of street lamps lies, of float32."""
+
+    west: float
+    south: float
+    per_metre: float
+    """Squares in a metre."""
+    cut_off: float
+    """Cosine of the angle beyond which the lamps give no light."""
+
+
+class Light(NamedTuple):
+    """Light of a weather, and the maps that tell what reaches a point."""
+
+    weather: Illumination
+    shadow_map: NDArray[np.uint16]
+    """Height towards the sun of the first thing that sunlight meets, shape (rows, columns)."""
+    shadow_rows: NDArray[np.float32]
+    """World to column, row and height of the shadow map, shape (3, 4)."""
+    ambient: NDArray[np.uint16]
+    """Share of the sky's light on the ground and height of what hides it, see `AmbientMap`."""
+    ambient_frame: MapFrame
+    lamp: NDArray[np.float32]
+    """Position [m], axis, strength and 0 for each street lamp, shape (L, 8)."""
+    lamp_cell: NDArray[np.int32]
+    """Lamps that may light each square of a grid, the nearest first, -1 after the last,
+    shape (rows, columns, .)."""
+    lamp_frame: LampFrame
+    tracks: NDArray[np.uint8]
+    """Wear of the snow on roads, see `eyas.render.bake.tracks.TrackMap`."""
+    track_frame: MapFrame
+    tone: NDArray[np.uint8]
+    """Byte of the picture for each step of exposed radiance."""
+    ground: Direction
+    """Colour of far land without snow, see `eyas.render.bake.hills`."""
+    clouds: NDArray[np.uint8]
+    """Opacity, and brightness times opacity, see `eyas.render.bake.clouds`,
+    shape (rows, columns, 2)."""
+    hills: NDArray[np.uint8]
+    """Cover, sunlight, woods and farness, see `eyas.render.bake.hills`,
+    shape (rows, columns, 4)."""

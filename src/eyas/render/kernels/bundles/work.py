@@ -1,0 +1,92 @@
+"""What to draw, into which arrays, with what working memory."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Job", "Output", "Scratch", "Task"]
+
+
+class Job(NamedTuple):
+    """The cameras, and which rows of which view each job draws."""
+
+    band: NDArray[np.int32]
+    """View, first row, last row + 1, shape (J, 3)."""
+    begun: NDArray[np.int64]
+    """Number of jobs begun, at first one for each worker, shape (1,)."""
+    eye: NDArray[np.float64]
+    """Optical centres [m], shape (V, 3)."""
+    axes: NDArray[np.float64]
+    """Forward, left, up as rows, shape (V, 3, 3)."""
+    world: NDArray[np.int32]
+    """Shape (V,)."""
+    subject: NDArray[np.int32]
+    """Shape (V,)."""
+    light: NDArray[np.float32]
+    """Factor on the sky and its light, factor on the sun, fog density [1/m], shape (V, 3)."""
+    instant: NDArray[np.float64]
+    """Time for falling snow [s], shape (V,), or (0,) if none falls."""
+    focal: NDArray[np.float64]
+    """Focal length along rows and along columns [pixels], shape (V, 2)."""
+
+
+class Scratch(NamedTuple):
+    """Working memory of each worker. Its planes have as many columns as a picture whose width is a
+    multiple of 8 pixels; those beyond the width of the picture stay sky.
+    """
+
+    key: NDArray[np.int64]
+    """What each sample shows, see `eyas.render.kernels.visibility.key`,
+    shape (K, rows, columns)."""
+    alone: NDArray[np.int64]
+    """The same for one actor without all else, shape (K, rows, columns), or (K, 0, 0)."""
+    shade: NDArray[np.uint8]
+    """Sun and sky light that moving things let through, 255 for all, and light of vehicles' head
+    and tail lamps, shape (K, rows, columns, 4)."""
+    drawn: NDArray[np.int32]
+    """Visible instances: first triangle of the mesh, and the instance: a fixture, or F + a slot
+    of the draw list, shape (K, I, 2)."""
+    mesh: NDArray[np.int32]
+    """Mesh of each of them, shape (K, I)."""
+    tiles: NDArray[np.float32]
+    """Farthest 1/distance in each 8 x 8 samples, see `eyas.render.kernels.visibility.hidden`,
+    shape (K, rows / 8, columns / 8)."""
+    order: NDArray[np.int64]
+    """What to draw, the nearest first: sort keys of visible chunks and instances,
+    shape (K, C + I)."""
+    triangle: NDArray[np.float64]
+    """Eight triangles on the screen, see `eyas.render.kernels.visibility.triangles`,
+    shape (K, 28, 8)."""
+    polygon: NDArray[np.float64]
+    """The triangles that the near plane leaves of one: column, row [samples] and 1/distance [1/m]
+    of corner a, of b and of c, then their texture coordinates [tiles], shape (K, 15, 8)."""
+    span: NDArray[np.int32]
+    """A triangle in eight rows of samples, see `eyas.render.kernels.visibility.fill`,
+    shape (K, 7, 8)."""
+
+
+class Output(NamedTuple):
+    """Arrays to write; those of length 0 are not wanted."""
+
+    rgb: NDArray[np.uint8]
+    depth: NDArray[np.float32]
+    object_id: NDArray[np.int32]
+    subject: NDArray[np.int32]
+    """Left, top, right, bottom, seen and covered pixels of the view's subject in each job, all 0
+    if it covers none, shape (J, 6)."""
+    actor: NDArray[np.int32]
+    """The same for each actor of the view's world, shape (J, A, 6)."""
+
+
+class Task(NamedTuple):
+    """Inputs that change from picture to picture."""
+
+    samples: int
+    """Samples along a side of each pixel, 1 or 2."""
+    width: int
+    """Size of the pictures [pixels]."""
+    height: int
+    until: int
+    """The last `eyas.state.draw.DrawStage`."""
+    job: Job

@@ -1,0 +1,96 @@
+"""Points of surfaces, eight at once, from the triangles that they show to packed bytes."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.jit import inlined_kernel, separate_kernel
+from eyas.core.lanes import bits_of, first_bit, lane, select, splat
+from eyas.render.kernels.bundles import Geometry, Illumination, Light, Movers
+from eyas.render.kernels.light.tone import tone_bytes
+from eyas.render.kernels.pixels import pack
+from eyas.render.kernels.rays import Rays, ray_of
+from eyas.render.kernels.scalars import f4, i4, u4
+from eyas.render.kernels.surface.attributes import Frame, frame_of, no_frame
+from eyas.render.kernels.surface.shade import shade_point
+from eyas.render.kernels.visibility.key import drawn_of, triangle_of
+
+__all__ = ["instance_frame", "packed_points"]
+
+Colour = tuple[float, float, float]
+
+
+@inlined_kernel
+def instance_frame(
+    geometry: Geometry, movers: Movers, world: int, drawn: NDArray[np.int32], row: int
+) -> Frame:
+    """Return pose and colour of an instance, a row of `Scratch.drawn`; fixtures have no colour."""
+    instance, fixtures = drawn[row, 1], len(geometry.fixture_object)
+    if instance >= fixtures:
+        return frame_of(movers.pose[world], movers.colour[world], instance - fixtures)
+    return frame_of(geometry.fixture_pose, movers.colour[world, :0], instance)
+
+
+@separate_kernel
+def _one_instance(
+    geometry: Geometry,
+    light: Light,
+    lit: Illumination,
+    movers: Movers,
+    world: int,
+    drawn: NDArray[np.int32],
+    row: int,
+    triangle: int,
+    eye: Colour,
+    ray: Colour,
+    away: float,
+    pixel: float,
+    shade: int,
+) -> int:
+    """Return the packed bytes of eight points of one instance, a row of `Scratch.drawn`.
+
+    A function of its own: inlined into the loops that call it, the hundred numbers that are the
+    same for all points would be spread over lanes before each loop, kept in memory and read again.
+    """
+    frame, first = no_frame(), i4(0)
+    if row >= 0:
+        frame, first = instance_frame(geometry, movers, world, drawn, row), drawn[row, 0]
+    colour = shade_point(
+        geometry, light, lit, triangle + first, row >= 0, frame, eye, ray, away, pixel, shade
+    )
+    red, green, blue = tone_bytes(light, lit.air.exposure, colour)
+    return pack(red, green, blue)
+
+
+@inlined_kernel
+def packed_points(
+    rays: Rays,
+    geometry: Geometry,
+    light: Light,
+    lit: Illumination,
+    movers: Movers,
+    world: int,
+    drawn: NDArray[np.int32],
+    tag: int,
+    wanted: bool,
+    distance: float,
+    line: float,
+    column: float,
+    shade: int,
+) -> int:
+    """Return the packed bytes of eight samples; those not wanted are 0.
+
+    All samples of one instance are computed together: its pose is the same number in all lanes.
+    """
+    ray, eye = ray_of(rays, line, column), (rays.eye.x, rays.eye.y, rays.eye.z)
+    row, triangle = drawn_of(tag), triangle_of(tag)
+    packed, left = splat(u4(0)), bits_of(wanted)
+    while left != 0:
+        which = lane(row, first_bit(left))
+        same = wanted & (row == which)
+        left &= ~bits_of(same)
+        shown = _one_instance(
+            geometry, light, lit, movers, world, drawn, which, select(same, triangle, i4(0)), eye,
+            ray, select(same, distance, f4(1.0)), rays.pixel, shade,
+        )  # fmt: skip
+        packed = select(same, shown, packed)
+    return packed
