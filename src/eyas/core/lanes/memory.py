@@ -57,7 +57,7 @@ def _order(numbers: Iterable[int]) -> ir.Constant:
 
 @intrinsic
 def gather(typing_context, array, index):
-    """Return the elements at some indices; bytes and halves of words become uint32."""
+    """Return the elements at some indices, none negative; smaller types become uint32."""
     element = array.dtype if array.dtype.bitwidth >= 32 else types.uint32
     result = _numbered(index, element)
 
