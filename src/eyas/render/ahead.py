@@ -41,7 +41,7 @@ def compile_ahead() -> Callable[[], object] | None:
         A function that waits until the drawing kernels can be loaded from the cache; None if there
         is nothing to wait for. It never fails: the first picture compiles what is missing by then.
     """
-    if not nothing_compiled():
+    if not nothing_compiled("draw"):
         return None
     cache = folder_in_use()
     if not KEPT:

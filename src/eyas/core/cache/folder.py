@@ -2,21 +2,33 @@
 
     <folder>/<kind>/eyas-<key>.npy             arrays, see `eyas.core.cache.array_file`
     <folder>/traffic/<map>-<seed>-<key>.npz    recordings of traffic
-    <folder>/kernels/<key>/                    compiled kernels: Eyas's own files and numba's
+    <folder>/kernels/<key>/                    compiled kernels, see `eyas.core.machine_code`
 
 The modification time of an entry is the time of its last use.
 """
 
+import logging
 import os
 import re
 from enum import StrEnum
+from functools import cache
 from pathlib import Path
 
 import platformdirs
 
 from eyas.core.errors import ConfigError
 
-__all__ = ["FOLDER_VARIABLE", "LIMIT_VARIABLE", "Kind", "cache_folder", "cache_limit", "touch"]
+__all__ = [
+    "FOLDER_VARIABLE",
+    "LIMIT_VARIABLE",
+    "Kind",
+    "cache_folder",
+    "cache_limit",
+    "not_kept",
+    "touch",
+]
+
+_LOG = logging.getLogger("eyas")
 
 FOLDER_VARIABLE = "EYAS_CACHE_DIR"
 """Environment variable: the folder of the cache, instead of the user's default."""
@@ -49,7 +61,10 @@ class Kind(StrEnum):
 def cache_folder() -> Path:
     """Return the folder of the cache; it need not exist."""
     named = os.environ.get(FOLDER_VARIABLE)
-    return Path(named or platformdirs.user_cache_dir("eyas")).expanduser().absolute()
+    try:
+        return Path(named or platformdirs.user_cache_dir("eyas")).expanduser().absolute()
+    except RuntimeError:  # the user has no home
+        return Path(os.devnull, "eyas")  # where nothing can be kept
 
 
 def cache_limit() -> int:
@@ -68,6 +83,19 @@ def cache_limit() -> int:
             "K, M, G or T, for example 500M"
         )
     return int(float(size[1]) * (1 << _UNITS[size[2].upper()]))
+
+
+def not_kept(folder: Path, error: OSError) -> None:
+    """Warn, once for each folder and reason, that something made could not be kept."""
+    _warn_once(
+        f"{folder}: cannot write: {error.strerror or error}; "
+        f"every start makes again what is missing ({FOLDER_VARIABLE} names another folder)"
+    )
+
+
+@cache
+def _warn_once(line: str) -> None:
+    _LOG.warning(line)
 
 
 def touch(path: Path) -> None:
