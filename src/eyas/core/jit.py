@@ -5,6 +5,7 @@ function depends on the functions that it calls. numba's own cache is not used: 
 a change in the file of the function itself, and it unpickles its files.
 """
 
+import errno
 import functools
 import hashlib
 import inspect
@@ -19,7 +20,7 @@ from eyas.core.interrupts import shielded
 from eyas.core.machine_code import SUFFIX
 
 __all__ = [
-    "KEPT",
+    "REFUSAL",
     "Kernel",
     "folder_in_use",
     "identity",
@@ -52,12 +53,13 @@ def kernel_folder() -> Path:
     return cache_folder() / Kind.KERNELS / _source_hash()
 
 
-def _can_be_written(folder: Path) -> bool:
+def _refusal(folder: Path) -> str:
+    """Return why a folder cannot be written to; nothing if it can."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
-    except OSError:
-        return False
-    return os.access(folder, os.W_OK)
+    except OSError as error:
+        return error.strerror or str(error)
+    return "" if os.access(folder, os.W_OK) else os.strerror(errno.EACCES)
 
 
 def folder_in_use() -> Path:
@@ -73,8 +75,8 @@ def nothing_compiled(name: str) -> bool:
 os.environ.setdefault("NUMBA_CACHE_DIR", str(kernel_folder()))
 touch(folder_in_use())
 
-KEPT = _can_be_written(folder_in_use())
-"""Whether compiled kernels are kept on disk."""
+REFUSAL = _refusal(folder_in_use())
+"""Why compiled kernels are not kept on disk; nothing if they are."""
 
 
 def thread_count() -> int:

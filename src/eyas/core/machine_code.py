@@ -146,8 +146,8 @@ def read_code(path: Path) -> MachineCode | None:
         head, code = content[4:].split(b"\n", 1)
         entry, needs = json.loads(head)
         return MachineCode(entry, tuple(needs), code)
-    except FileNotFoundError:
-        return None
+    except (FileNotFoundError, NotADirectoryError, PermissionError):
+        return None  # if it cannot be replaced either, that is told
     except (OSError, ValueError):
         _LOG.warning("%s: damaged or unreadable, so it is compiled anew", path)
         return None
@@ -164,4 +164,4 @@ def write_code(path: Path, code: MachineCode) -> None:
         finally:
             part.unlink(missing_ok=True)
     except OSError as error:
-        not_kept(path.parent, error)
+        not_kept(error)

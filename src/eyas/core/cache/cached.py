@@ -65,7 +65,7 @@ def cached(
     try:
         write_entry(path, array_file(content), limit)
     except OSError as error:
-        not_kept(path.parent, error)
+        not_kept(error)
     if taken > _LONG:
         _LOG.info("made %s in %.1f s", kind, taken)
     return restored
@@ -75,8 +75,8 @@ def _found(path: Path, of: type[Thing]) -> Thing | None:
     """Return the value of an entry; None if there is none, or it is damaged."""
     try:
         found = restore(of, *map_arrays(path))
-    except (FileNotFoundError, NotADirectoryError):
-        return None
+    except (FileNotFoundError, NotADirectoryError, PermissionError):
+        return None  # if it cannot be replaced either, that is told
     except (OSError, ValueError):
         _LOG.warning("%s: damaged or unreadable, so it is made anew", path)
         return None

@@ -11,7 +11,6 @@ import logging
 import os
 import re
 from enum import StrEnum
-from functools import cache
 from pathlib import Path
 
 import platformdirs
@@ -29,6 +28,9 @@ __all__ = [
 ]
 
 _LOG = logging.getLogger("eyas")
+
+_WARNED: list[object] = []
+"""Why something could not be kept: one reason of maybe many."""
 
 FOLDER_VARIABLE = "EYAS_CACHE_DIR"
 """Environment variable: the folder of the cache, instead of the user's default."""
@@ -85,17 +87,15 @@ def cache_limit() -> int:
     return int(float(size[1]) * (1 << _UNITS[size[2].upper()]))
 
 
-def not_kept(folder: Path, error: OSError) -> None:
-    """Warn, once for each folder and reason, that something made could not be kept."""
-    _warn_once(
-        f"{folder}: cannot write: {error.strerror or error}; "
-        f"every start makes again what is missing ({FOLDER_VARIABLE} names another folder)"
-    )
-
-
-@cache
-def _warn_once(line: str) -> None:
-    _LOG.warning(line)
+def not_kept(reason: object) -> None:
+    """Warn that something made could not be kept; only once in a process."""
+    if not _WARNED:
+        _WARNED.append(reason)
+        _LOG.warning(
+            "%s: cannot write: %s; so every start makes and compiles again what is missing there "
+            "(%s names another folder)",
+            *(cache_folder(), getattr(reason, "strerror", None) or reason, FOLDER_VARIABLE),
+        )
 
 
 def touch(path: Path) -> None:
