@@ -1,6 +1,8 @@
 """What all tests share: options, and no skipping where CI says so."""
 
 import os
+import signal
+import sys
 
 import pytest
 
@@ -12,6 +14,20 @@ def pytest_addoption(parser):
 @pytest.fixture
 def regenerate(request):
     return request.config.getoption("--regenerate")
+
+
+@pytest.fixture(autouse=True)
+def signals():
+    """Ctrl-C raises in each test and in the processes that it starts, also if SIGINT was ignored
+    when the tests were started, as it is in the background of a script.
+    """
+    hook, numbers = sys.unraisablehook, (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+    before = [signal.getsignal(number) for number in numbers]
+    signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    sys.unraisablehook = hook
+    for number, handler in zip(numbers, before, strict=True):
+        signal.signal(number, handler)
 
 
 @pytest.hookimpl(hookwrapper=True)

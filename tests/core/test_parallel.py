@@ -11,6 +11,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
+from eyas.core import parallel
 from eyas.core.parallel import Held, parallel_kernel
 
 
@@ -147,10 +148,24 @@ def test_an_interrupted_call_ends_after_its_workers(monkeypatch):
     assert slow.ended.is_set()
 
 
-def test_after_two_interrupts_the_next_call_waits_for_the_first_ones_workers(monkeypatch):
+def test_after_two_interrupts_workers_still_end_before_what_they_use_is_free(monkeypatch):
     slow = SlowWorker(monkeypatch)
-    slow.call_and_interrupt(times=2)
+    slow.call_and_interrupt(times=2, then=slow.told.set)
+    assert slow.ended.is_set()
+
+
+def test_a_call_that_could_not_even_end_is_kept_and_the_next_waits_for_its_workers(monkeypatch):
+    slow = SlowWorker(monkeypatch)
+    whole = parallel._Call.end
+
+    def cut_off(call):  # a second Ctrl-C at the first instant of the end
+        monkeypatch.setattr(parallel._Call, "end", whole)
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(parallel._Call, "end", cut_off)
+    slow.call_and_interrupt(times=1)
     assert not slow.ended.is_set()  # or there would be nothing to wait for
+    assert parallel._CREW.call is not None
 
     seen = []
 
@@ -161,6 +176,7 @@ def test_after_two_interrupts_the_next_call_waits_for_the_first_ones_workers(mon
     threading.Timer(0.2, slow.told.set).start()
     parallel_kernel(None)(3, Held((0,)))
     assert seen == [True] * 3
+    assert parallel._CREW.call is None
 
 
 def test_an_interrupt_before_a_share_begins_leaves_it_undone(monkeypatch):

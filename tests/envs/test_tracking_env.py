@@ -1,5 +1,6 @@
 """The Gymnasium environment, against the checkers of the libraries that use it."""
 
+import math
 import warnings
 
 import gymnasium
@@ -85,6 +86,23 @@ def test_the_reward_packet_comes_by_name():
     assert info["camera_width"] == 320
     assert len(info["camera_pose"]) == 16
     assert info["target_type"].endswith("Simple")
+
+
+def test_the_sensors_come_by_name():
+    env = TrackingEnv()
+    _, start = env.reset(seed=0)
+    assert start["felt_acceleration"] == pytest.approx((0.0, 0.0, 9.81))
+    assert start["velocity"] == start["angular_velocity"] == (0.0, 0.0, 0.0)
+    for _ in range(125):
+        *_, info = env.step(0)
+    moved = math.dist(info["position"], start["position"])
+    assert moved == pytest.approx(40.0, abs=0.5)
+    assert math.hypot(*info["velocity"]) == pytest.approx(40.0)
+    assert 9.81 < math.hypot(*info["felt_acceleration"]) < 11.0
+    w, _, _, z = info["orientation"]
+    assert info["euler"] == pytest.approx((0.0, 0.0, 2.0 * math.atan2(z, w)))
+    # The basic packet's reward and end are where Gymnasium has them.
+    assert not {"reward", "done", "step_count"} & info.keys()
 
 
 def test_render_gives_the_configured_camera():

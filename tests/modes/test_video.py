@@ -162,7 +162,7 @@ def test_a_killed_recording_continues_to_the_same_bytes(recorded, tmp_path):
     assert kept.stat().st_mtime_ns == drawn_at
 
 
-def test_control_c_leaves_whole_files_and_says_how_to_go_on(recorded, tmp_path, capfd):
+def test_control_c_leaves_whole_files_and_says_how_to_go_on(recorded, tmp_path):
     path = tmp_path / "out"
 
     def interrupt() -> None:
@@ -172,10 +172,11 @@ def test_control_c_leaves_whole_files_and_says_how_to_go_on(recorded, tmp_path, 
 
     user = threading.Thread(target=interrupt)
     user.start()
-    with pytest.raises(KeyboardInterrupt):
+    with pytest.raises(KeyboardInterrupt) as caught:
         video.run(CONFIG, path)
     user.join()
-    assert "--resume" in capfd.readouterr().err
+    (note,) = caught.value.__notes__  # the command line prints it
+    assert note == f"every file in {path} is whole; continue with --resume"
     whole = contents(recorded)
     assert all(whole[name] == data for name, data in contents(path).items())
     video.run(CONFIG, path, resume=True, quiet=True)

@@ -107,7 +107,7 @@ def test_the_step_compiles_for_cuda(ptx_of, kernel):
     motion = Motion(np.zeros((2, 1), SAMPLE), np.zeros(1, np.int32), 10.0, 0.0)
     around = Surroundings(motion, Terrain.flat(0.0))
     rules = make_rules(RewardConfig(), DoneConfig(), CameraConfig())
-    state = StepState(Snapshot.create(2), DRONE.memory(2), around, rules)
+    state = StepState(Snapshot.create(2), DRONE.memory(2), around, rules, 0.02)
     parts = [pointer_to(part) for part in (state, Orders.create(2))]
     step = getattr(step_of(DRONE), kernel)
     text = ptx_of(step.function, CPointer(Tuple(parts)), intp, intp)

@@ -21,7 +21,7 @@ def told(snapshot, look):
     trackers.position[N], trackers.velocity[N] = (1.0, 2.0, 3.0), (4.0, 5.0, 6.0)
     trackers.orientation[N] = math.cos(YAW / 2), 0.0, 0.0, math.sin(YAW / 2)
     trackers.euler[N, 2] = YAW
-    trackers.angular_velocity[N] = 0.1, 0.2, 0.3
+    trackers.smoothed[N, 1, 3:] = 0.1, 0.2, 0.3
     trackers.commanded_position[N] = 1.0, 2.0, 22.5
     trackers.commanded_gimbal[N, 0] = 1.37
     cameras.position[N], cameras.rotation[N] = (1.1, 2.1, 22.0), look(YAW, 1.37)

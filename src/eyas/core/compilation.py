@@ -25,14 +25,11 @@ from numba.core.untyped_passes import InlineClosureLikes
 from numba.extending import models, register_model
 
 from eyas.core import pointers as _pointers  # noqa: F401  # registers fields with numba
-from eyas.core.jit import folder_in_use
+from eyas.core.interrupts import let_in
 from eyas.core.lanes import operators as _operators  # noqa: F401  # registers them with numba
 from eyas.core.machine_code import MachineCode, optimised
 
 __all__ = ["KernelType", "caller_from_python", "entry_code", "intrinsic_type", "size_of"]
-
-# numba reads the variable of its folder when it is imported, maybe before Eyas sets it.
-numba.config.CACHE_DIR = str(folder_in_use())
 
 Kind = Any
 """One of numba's types."""
@@ -148,6 +145,7 @@ class KernelType(numba.types.Callable, numba.types.Opaque):  # type: ignore[misc
 
     def get_call_type(self, context: object, args: Iterable[Kind], kws: dict[str, Kind]) -> object:
         """Return the signature of a call, after compiling the kernel for it."""
+        let_in()
         given = self._parameters.bind(*args, **dict(kws)).arguments
         kinds = tuple(
             _widened(given[name]) if name in given else numba.types.Omitted(parameter.default)
@@ -192,10 +190,12 @@ def entry_code(function: Callable[..., Any], kinds: tuple[Kind, ...], entry: str
             an exception.
     """
     made = _compile(function, kinds, inline=None)
+    let_in()
     library = _entry(made, entry)
     module = library._final_module
     for called in made.libraries:
         module.link_in(_shared(called))
+    let_in()
     return optimised(module, entry)
 
 
@@ -242,7 +242,10 @@ def size_of(kind: Kind) -> int:
     return size
 
 
-def caller_from_python(function: Callable[..., Any], *, cache: bool) -> Callable[..., Any]:
-    """Return a function compiled for calls from Python, in numba's own way."""
-    compiled: Callable[..., Any] = numba.njit(cache=cache, **_SETTINGS)(function)
+def caller_from_python(function: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a function compiled for calls from Python, in numba's own way.
+
+    It is not kept on disk, where numba would pickle it.
+    """
+    compiled: Callable[..., Any] = numba.njit(**_SETTINGS)(function)
     return compiled

@@ -7,7 +7,8 @@ from importlib.metadata import version
 from typing import Any
 
 from eyas.core.held import Held
-from eyas.core.jit import KEPT, folder_in_use, identity
+from eyas.core.interrupts import shielded
+from eyas.core.jit import REFUSAL, folder_in_use, identity
 from eyas.core.machine_code import MachineCode, code_file, load, read_code, write_code
 
 __all__ = ["entry_address"]
@@ -26,15 +27,16 @@ def entry_address(function: Callable[..., Any], parts: tuple[Held[Any], ...]) ->
     versions = (version("numba"), platform.python_version())
     key = (*versions, identity(function), *(part.kind for part in parts))
     path = code_file(folder_in_use(), name, key)
-    kept = KEPT and function.__closure__ is None  # or what it depends on is not all in the key
-    with _LOCK:
+    kept = function.__closure__ is None  # or what it depends on is not all in the key
+    # An interrupt in the middle of numba or LLVM leaves objects in pieces, whose end crashes.
+    with _LOCK, shielded():
         found = read_code(path) if kept else None
         address = None if found is None else load(found)
         if address is None:
             code = _compiled(function, parts, path.stem.replace("-", "_"))
             address = load(code)
             assert address is not None, f"{name}: calls functions that do not exist: {code.needs}"
-            if kept:
+            if kept and not REFUSAL:
                 write_code(path, code)
     return address
 

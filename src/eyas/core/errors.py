@@ -4,6 +4,7 @@ import difflib
 from collections.abc import Iterable
 
 __all__ = [
+    "ActionError",
     "ConfigError",
     "DataFileError",
     "EyasError",
@@ -22,6 +23,10 @@ class EyasError(Exception):
 
 class ConfigError(EyasError):
     """A configuration value is missing, unknown, of the wrong type or out of range."""
+
+
+class ActionError(EyasError, ValueError):
+    """An agent's action is not in the space of actions."""
 
 
 class NotInThisVersionError(ConfigError):

@@ -1,10 +1,11 @@
 """Kernels: functions to be compiled, and the folder where the result is kept.
 
 The folder is named after a hash of every source file that holds kernels: what is compiled from a
-function depends on the functions that it calls. numba's own cache would notice only a change in
-the file of the function itself.
+function depends on the functions that it calls. numba's own cache is not used: it would notice only
+a change in the file of the function itself, and it unpickles its files.
 """
 
+import errno
 import functools
 import hashlib
 import inspect
@@ -15,10 +16,11 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 from eyas.core.cache.folder import Kind, cache_folder, touch
+from eyas.core.interrupts import shielded
 from eyas.core.machine_code import SUFFIX
 
 __all__ = [
-    "KEPT",
+    "REFUSAL",
     "Kernel",
     "folder_in_use",
     "identity",
@@ -51,12 +53,13 @@ def kernel_folder() -> Path:
     return cache_folder() / Kind.KERNELS / _source_hash()
 
 
-def _can_be_written(folder: Path) -> bool:
+def _refusal(folder: Path) -> str:
+    """Return why a folder cannot be written to; nothing if it can."""
     try:
         folder.mkdir(parents=True, exist_ok=True)
-    except OSError:
-        return False
-    return os.access(folder, os.W_OK)
+    except OSError as error:
+        return error.strerror or str(error)
+    return "" if os.access(folder, os.W_OK) else os.strerror(errno.EACCES)
 
 
 def folder_in_use() -> Path:
@@ -64,18 +67,16 @@ def folder_in_use() -> Path:
     return Path(os.environ["NUMBA_CACHE_DIR"])
 
 
-def nothing_compiled() -> bool:
-    """Return whether no kernel is cached yet, as at the first start of a version."""
-    return not any(folder_in_use().glob(f"*{SUFFIX}"))
+def nothing_compiled(name: str) -> bool:
+    """Return whether no kernel of such a name is cached, as at a version's first start."""
+    return not any(folder_in_use().glob(f"{name}*{SUFFIX}"))
 
 
 os.environ.setdefault("NUMBA_CACHE_DIR", str(kernel_folder()))
 touch(folder_in_use())
 
-# If the folder cannot be written to, nothing is cached: numba would otherwise keep kernels beside
-# their sources, and use outdated ones after a change in the functions they call.
-KEPT = _can_be_written(folder_in_use())
-"""Whether compiled kernels are kept on disk."""
+REFUSAL = _refusal(folder_in_use())
+"""Why compiled kernels are not kept on disk; nothing if they are."""
 
 
 def thread_count() -> int:
@@ -109,12 +110,15 @@ class Kernel:
     def _compiled(self) -> Callable[..., Any]:
         from eyas.core.compilation import caller_from_python
 
-        kept = KEPT and self.py_func.__closure__ is None
-        return caller_from_python(self.py_func, cache=kept)
+        return caller_from_python(self.py_func)
 
     def __call__(self, *args: object) -> Any:  # noqa: ANN401  # as the function
-        """Call the compiled function."""
-        return self._compiled(*args)
+        """Call the compiled function; for tests, since it is compiled in each process anew.
+
+        Eyas itself calls `parallel_kernel`s, and single numbers are computed by `interpreted`.
+        """
+        with shielded():
+            return self._compiled(*args)
 
 
 def kernel(function: Function) -> Function:

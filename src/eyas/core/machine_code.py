@@ -4,8 +4,8 @@ A file holds the code of a kernel with everything that it calls, for one kind of
 it takes a millisecond; importing numba, which is needed only to compile, takes half a second.
 """
 
-import contextlib
 import json
+import logging
 import os
 import secrets
 import threading
@@ -19,6 +19,8 @@ from typing import NamedTuple
 import llvmlite
 import llvmlite.binding as llvm
 
+from eyas.core.cache.folder import not_kept
+
 __all__ = [
     "SUFFIX",
     "MachineCode",
@@ -31,6 +33,8 @@ __all__ = [
 
 SUFFIX = ".eyk"
 """End of the names of files of machine code."""
+
+_LOG = logging.getLogger("eyas")
 
 _LOCK = threading.Lock()
 
@@ -137,22 +141,27 @@ def read_code(path: Path) -> MachineCode | None:
     """Return the content of a file; None if there is none, or it is damaged."""
     try:
         content = path.read_bytes()
+        if zlib.crc32(content[4:]) != int.from_bytes(content[:4], "little"):
+            raise ValueError("damaged")
         head, code = content[4:].split(b"\n", 1)
-        if zlib.crc32(content[4:]) == int.from_bytes(content[:4], "little"):
-            entry, needs = json.loads(head)
-            return MachineCode(entry, tuple(needs), code)
+        entry, needs = json.loads(head)
+        return MachineCode(entry, tuple(needs), code)
+    except (FileNotFoundError, NotADirectoryError, PermissionError):
+        return None  # if it cannot be replaced either, that is told
     except (OSError, ValueError):
-        pass
-    return None
+        _LOG.warning("%s: damaged or unreadable, so it is compiled anew", path)
+        return None
 
 
 def write_code(path: Path, code: MachineCode) -> None:
     """Write a file completely or not at all; not at all if the folder cannot be written to."""
     content = json.dumps([code.entry, code.needs]).encode() + b"\n" + code.code
     part = path.with_name(f"{path.name}.tmp.{secrets.token_hex(8)}")
-    with contextlib.suppress(OSError):
+    try:
         try:
             part.write_bytes(zlib.crc32(content).to_bytes(4, "little") + content)
             part.replace(path)
         finally:
             part.unlink(missing_ok=True)
+    except OSError as error:
+        not_kept(error)

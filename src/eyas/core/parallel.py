@@ -15,6 +15,7 @@ from typing import Any, Generic, Protocol, TypeVar
 
 from eyas.core.entry import entry_address
 from eyas.core.held import Held
+from eyas.core.interrupts import shielded
 from eyas.core.jit import thread_count
 
 __all__ = ["BoundKernel", "Held", "Pointer", "parallel_kernel"]
@@ -88,8 +89,8 @@ class _Crew:
 
     Attributes:
         busy: Lock held by the calling thread: calls share the kernels' working memory.
-        call: The call in progress, or one that a signal (Ctrl-C) interrupted while it waited for
-            its workers; the next call waits for them first.
+        call: The call in progress, or one whose end a signal (Ctrl-C) prevented; it is kept, with
+            all that its workers use, and the next call waits for them first.
     """
 
     def __init__(self) -> None:
@@ -115,9 +116,12 @@ class _Crew:
         self.call = call
         try:
             call.do_all(self.threads if len(call.turns) > 1 else None)
-        finally:
-            call.end()
-            self.call = None
+        except BaseException:
+            with shielded():  # a second Ctrl-C waits: what workers use may be freed afterwards
+                call.end()
+                self.call = None
+            raise
+        self.call = None
 
 
 _CREW = _Crew()

@@ -1,11 +1,14 @@
 """The actions of an agent, and the commands that they mean."""
 
+import math
+import operator
 from typing import Any
 
 import gymnasium
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.errors import ActionError
 from eyas.envs.config import ActionSpeeds, EnvSpeeds
 
 __all__ = ["ContinuousActions", "DiscreteActions", "action_table"]
@@ -39,8 +42,18 @@ class DiscreteActions:
         self._table = np.concatenate((action_table(speeds), hover))
 
     def command(self, action: int | np.integer[Any]) -> NDArray[np.float64]:
-        """Return forward, left, up, yaw rate as one command, shape (1, 4)."""
-        return self._table[None, int(action)].copy()
+        """Return forward, left, up, yaw rate as one command, shape (1, 4).
+
+        Raises:
+            ActionError: It is not one of the seven.
+        """
+        try:
+            number = operator.index(action)
+        except TypeError:
+            number = -1
+        if not 0 <= number < len(self._table):
+            raise _refused(action, "a whole number from 0 to 6")
+        return self._table[None, number].copy()
 
 
 class ContinuousActions:
@@ -53,11 +66,30 @@ class ContinuousActions:
     def __init__(self, speeds: EnvSpeeds) -> None:
         self.space: gymnasium.Space[Any] = gymnasium.spaces.Box(-1.0, 1.0, (4,), np.float32)
         up, turn = speeds.vertical_speed, speeds.counter_clockwise_rate
-        self._at_1 = np.array([speeds.forward_speed, speeds.left_speed, up, turn])
+        at_1 = (speeds.forward_speed, speeds.left_speed, up, turn)
         turn = speeds.clockwise_rate
-        self._at_minus_1 = np.array([speeds.backward_speed, speeds.right_speed, -up, turn])
+        self._speeds = tuple(
+            zip((speeds.backward_speed, speeds.right_speed, -up, turn), at_1, strict=True)
+        )
 
     def command(self, action: NDArray[np.floating[Any]]) -> NDArray[np.float64]:
-        """Return forward, left, up, yaw rate as one command, shape (1, 4)."""
-        shares: NDArray[np.float64] = np.clip(np.asarray(action, np.float64), -1.0, 1.0)
-        return np.atleast_2d(np.where(shares < 0, -shares * self._at_minus_1, shares * self._at_1))
+        """Return forward, left, up, yaw rate as one command, shape (1, 4); shares are clipped.
+
+        Raises:
+            ActionError: It is not four finite numbers.
+        """
+        try:
+            array = np.asarray(action, np.float64)
+        except (TypeError, ValueError):
+            array = np.empty(0)
+        # Plain numbers take a fifth of the time of arrays of four.
+        shares = array.tolist() if array.shape == (4,) else [math.nan]
+        if not all(map(math.isfinite, shares)):
+            raise _refused(action, "four finite numbers, each from -1 to 1")
+        pairs = zip(shares, self._speeds, strict=True)
+        return np.array([[min(abs(s), 1.0) * ends[s >= 0.0] for s, ends in pairs]])
+
+
+def _refused(action: object, allowed: str) -> ActionError:
+    shown = " ".join(str(action).split())
+    return ActionError(f"action: {shown:.60} is not allowed: {allowed}")

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from eyas.core.errors import DataFileError
 from eyas.core.frames import rotate_back
+from eyas.core.jit import interpreted
 from eyas.exports.files import Files
 from eyas.exports.frame import Frame, Subject
 from eyas.exports.gather import Gather
@@ -19,6 +20,8 @@ from eyas.task.done import DoneReason
 __all__ = ["FrameLabel", "LabelWriter", "OtherLabel", "label_of", "read_labels"]
 
 LABELS = "labels.jsonl"
+
+_rotate_back = interpreted(rotate_back)
 
 
 @dataclass(frozen=True, slots=True)
@@ -147,7 +150,7 @@ def label_of(frame: Frame) -> FrameLabel:
         target_centre=rounded_list(target.centre),
         target_velocity=rounded_list(target.velocity),
         target_yaw=rounded(target.yaw),
-        relative_position=rounded_list(rotate_back(tracker.orientation, *offset)),
+        relative_position=rounded_list(_rotate_back(tracker.orientation, *offset)),
         reward=rounded(frame.reward),
         action=frame.action.number,
         direction=int(frame.direction),

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from eyas.core.jit import interpreted
 from eyas.exports.frame import Subject
 from eyas.sim.simulation import Simulation
 from eyas.state.draw import Picture
@@ -13,6 +14,8 @@ from eyas.targets.catalogue import MODELS, kind_of
 from eyas.task.direction import target_centre
 
 __all__ = ["others_of"]
+
+_target_centre = interpreted(target_centre)
 
 
 def others_of(
@@ -50,7 +53,7 @@ def _subject(actors: ActorState, actor: int, model: int, picture: Picture, view:
         object_class=kind.object_class,
         size=np.array(MODELS[model].size, np.float64),
         position=np.array([x, y, height]),
-        centre=np.array([*target_centre(x, y, yaw, kind.ahead), height]),
+        centre=np.array([*_target_centre(x, y, yaw, kind.ahead), height]),
         velocity=np.array([speed * math.cos(yaw), speed * math.sin(yaw), 0.0]),
         yaw=yaw,
         box=picture.actor_box[view, actor].copy(),

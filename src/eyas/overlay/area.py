@@ -9,11 +9,14 @@ of its gradient. This makes lines smooth and of constant width at any distance a
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.jit import interpreted
 from eyas.overlay.canvas import CASING, NEAR, Canvas, cover
 from eyas.overlay.items import GroundArea
 from eyas.state.terrain import Plane, height_over
 
 __all__ = ["paint_area"]
+
+_height_over = interpreted(height_over)
 
 RISE = 0.3
 """Tolerance in height within which a surface counts as ground [m]: roads and kerbs are higher."""
@@ -30,7 +33,7 @@ Floats = NDArray[np.float32]
 
 def paint_area(canvas: Canvas, area: GroundArea) -> None:
     """Paint an area: casing, line and casing inside its edge, then its fill."""
-    if len(area.corners) < 3 or height_over(area.ground, *canvas.position) <= RISE:
+    if len(area.corners) < 3 or _height_over(area.ground, *canvas.position) <= RISE:
         return
     where = _window(canvas, area.corners)
     outer, inner = _inside(canvas, area.corners, where)
@@ -60,7 +63,7 @@ def _on_ground(canvas: Canvas, ground: Plane, where: Window) -> NDArray[np.bool_
     )
     falling = canvas.plane(upwards, where)
     with np.errstate(invalid="ignore"):  # infinity * 0 for sky pixels at the horizon
-        rise = canvas.depth[where] * falling + np.float32(height_over(ground, *canvas.position))
+        rise = canvas.depth[where] * falling + np.float32(_height_over(ground, *canvas.position))
     on: NDArray[np.bool_] = np.abs(rise) < RISE
     return on
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.frames import rotate
+from eyas.core.jit import interpreted
 from eyas.overlay.bodies import GEM_GIRDLE, GEM_RADIUS, drone, gem
 from eyas.overlay.items import GroundArea, Label, Line, Overlay
 from eyas.sensors.config import CameraConfig
@@ -18,6 +19,9 @@ from eyas.task.reward import axis_depth, view_centre
 from eyas.task.rules import BuiltinReward, Rules
 
 __all__ = ["Marks"]
+
+_plane_at, _axis_depth = interpreted(plane_at), interpreted(axis_depth)
+_view_centre, _rotated = interpreted(view_centre), interpreted(rotate)
 
 VIEW_COLOUR = (0.25, 0.8, 1.0)
 LABEL_COLOUR = (1.0, 1.0, 1.0)
@@ -105,7 +109,7 @@ class Marks:
     def _ground(self, n: int) -> Plane:
         """Return the plane tangent to the ground under a target."""
         x, y, _ = self._snapshot.targets.centre[n]
-        return plane_at(self._terrain, x, y)
+        return _plane_at(self._terrain, x, y)
 
     def _seen(self, n: int) -> NDArray[np.float64]:
         """Return the corners of the ground that a camera sees [m], shape (K, 3)."""
@@ -124,14 +128,14 @@ class Marks:
         """Return the corners of the ground on which a target is rewarded [m], shape (K, 3)."""
         eye, rotation = self._snapshot.cameras.position[n], self._snapshot.cameras.rotation[n]
         ground = self._ground(n)
-        depth = axis_depth(eye, rotation, ground)
+        depth = _axis_depth(eye, rotation, ground)
         if depth <= 0.0:
             return np.zeros((0, 3))
         if rules.reward not in (BuiltinReward.DISTANCE_CONTINUOUS, BuiltinReward.DISTANCE_DISCRETE):
             return self._corners(n, rules.view_range)
         angles = np.arange(CIRCLE) * (2.0 * np.pi / CIRCLE)
         circle: NDArray[np.float64] = np.column_stack([np.cos(angles), np.sin(angles)])
-        return on_plane(ground, rules.distance_range * circle + view_centre(eye, rotation, depth))
+        return on_plane(ground, rules.distance_range * circle + _view_centre(eye, rotation, depth))
 
     def _top_of_target(self, n: int) -> NDArray[np.float64]:
         """Return the point on top of the middle of a target, world frame [m], shape (3,)."""
@@ -150,4 +154,4 @@ def _colour_of(reward: float) -> tuple[float, float, float]:
 
 def _rotation(quaternion: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the rotation body to world, shape (3, 3), of a quaternion w, x, y, z."""
-    return np.stack([np.array(rotate(quaternion, *axis)) for axis in np.eye(3)], axis=1)
+    return np.stack([np.array(_rotated(quaternion, *axis)) for axis in np.eye(3)], axis=1)

@@ -9,7 +9,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from eyas.core.jit import KEPT, folder_in_use, nothing_compiled
+from eyas.core.cache.folder import not_kept
+from eyas.core.jit import REFUSAL, folder_in_use, nothing_compiled
 from eyas.render.bake.ambient import AmbientMap
 from eyas.render.bake.shadows import ShadowMap
 from eyas.render.bake.tracks import TrackMap
@@ -41,11 +42,11 @@ def compile_ahead() -> Callable[[], object] | None:
         A function that waits until the drawing kernels can be loaded from the cache; None if there
         is nothing to wait for. It never fails: the first picture compiles what is missing by then.
     """
-    if not nothing_compiled():
+    if not nothing_compiled("draw"):
         return None
     cache = folder_in_use()
-    if not KEPT:
-        _log.warning("cannot write to %s, so every start compiles for about half a minute", cache)
+    if REFUSAL:
+        not_kept(REFUSAL)
         return None
     _log.warning(
         "first start of this version: compiling takes about half a minute, once; cached in %s",

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.parallel import Held
+from eyas.sensors.inertial import smoothing_share
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.episodes import Episodes
@@ -71,6 +72,7 @@ class Simulation:
         self._around = Surroundings(assets.traffic.motion, terrain)
         self._orders = Orders.create(self.count)
         self._held_orders = Held(self._orders)
+        self._share = smoothing_share(config.tracker.inertial_time_constant)
         self.rules = make_rules(config.reward, config.done, config.camera)
         self._terms = RewardTerms(config.reward)
         self._packets = PacketRows(self.snapshot, config.camera, terrain)
@@ -83,7 +85,7 @@ class Simulation:
     @rules.setter
     def rules(self, rules: Rules) -> None:
         self._rules = rules = exact(rules)
-        state = Held(StepState(self.snapshot, self._memory, self._around, rules))
+        state = Held(StepState(self.snapshot, self._memory, self._around, rules, self._share))
         self._step = self._kernels.bound(state, self._held_orders)
 
     def reseed(self, seed: int) -> None:

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.jit import specialised, step_kernel
 from eyas.core.parallel import BoundKernel, Held, Pointer, parallel_kernel
+from eyas.sensors.inertial import feel, rest
 from eyas.state.motion import Motion
 from eyas.state.snapshot import EpisodeState, Snapshot, TargetState
 from eyas.state.terrain import Terrain
@@ -49,6 +50,8 @@ class StepState(NamedTuple):
     """Memory of the trackers: the record that their kernels use."""
     around: Surroundings
     rules: Rules
+    inertial_share: float
+    """See `eyas.sensors.inertial.smoothing_share`."""
 
 
 class Orders(NamedTuple):
@@ -115,13 +118,14 @@ def step_of(tracker: Tracker) -> StepKernels:
 
 def _fly(parts: Parts, worker: int, workers: int) -> None:
     state, orders = parts[0]
-    snapshot, memory, around, rules = state[0]
+    snapshot, memory, around, rules, share = state[0]
     trackers, cameras, targets, episodes, _ = snapshot
     steps, commands, _, _, _ = orders[0]
     for n in range(commands.shape[0]):
         half_size = rewarded_size(cameras.field_of_view[n], rules)
         for _step in range(steps[0]):
             advance(trackers, memory, n, commands[n])
+            feel(trackers, n, share)
             episodes.tick[n] += 1
             _move_target(targets, episodes, n, around)
             aim(trackers, memory, cameras, n)
@@ -131,7 +135,7 @@ def _fly(parts: Parts, worker: int, workers: int) -> None:
 
 def _carry(parts: Parts, worker: int, workers: int) -> None:
     state, orders = parts[0]
-    snapshot, memory, around, rules = state[0]
+    snapshot, memory, around, rules, share = state[0]
     trackers, cameras, targets, episodes, _ = snapshot
     steps = orders[0].steps
     for n in range(episodes.tick.shape[0]):
@@ -143,6 +147,7 @@ def _carry(parts: Parts, worker: int, workers: int) -> None:
                 targets.position[n], targets.yaw[n], episodes.start_offset[n]
             )
             carry(trackers, memory, n, x, y, z, yaw)
+            feel(trackers, n, share)
             aim(trackers, memory, cameras, n)
             observe(trackers, cameras, targets, episodes, n, around.terrain, rules, half_size)
             judge(trackers, targets, episodes, n, around.terrain, rules)
@@ -151,7 +156,7 @@ def _carry(parts: Parts, worker: int, workers: int) -> None:
 def _begin(parts: Parts, worker: int, workers: int) -> None:
     """Put trackers at their start poses and aim their cameras; target, tick and offset are set."""
     state, orders = parts[0]
-    snapshot, memory, around, rules = state[0]
+    snapshot, memory, around, rules, share = state[0]
     trackers, cameras, targets, episodes, _ = snapshot
     _, _, starts, chosen, pitch = orders[0]
     for k in range(starts[0]):
@@ -160,6 +165,7 @@ def _begin(parts: Parts, worker: int, workers: int) -> None:
         _move_target(targets, episodes, n, around)
         x, y, z, yaw = offset_pose(targets.position[n], targets.yaw[n], episodes.start_offset[n])
         start(trackers, memory, n, x, y, z, yaw, pitch[k])
+        rest(trackers, n, share)
         clear_episode(episodes, n)
         aim(trackers, memory, cameras, n)
         half_size = rewarded_size(cameras.field_of_view[n], rules)

@@ -37,6 +37,13 @@ class TrackerState(NamedTuple):
     """Roll, pitch, yaw [rad], shape (N, 3)."""
     angular_velocity: Floats
     """Body frame [rad/s], shape (N, 3)."""
+    smoothed: Floats
+    """Velocity, world frame [m/s], and angular velocity, body frame [rad/s], behind the first and
+    the second low-pass of the inertial sensors (`eyas.sensors.inertial`), shape (N, 2, 6)."""
+    smoothed_acceleration: Floats
+    """Change of the twice smoothed velocity, world frame [m/s^2], shape (N, 3)."""
+    smoothed_lag: Floats
+    """Heading minus that of the smoothed motion [rad], shape (N,)."""
     commanded_position: Floats
     """Integral of the commanded velocities [m], shape (N, 3)."""
     commanded_yaw: Floats
@@ -60,6 +67,9 @@ class TrackerState(NamedTuple):
             orientation=orientation,
             euler=np.zeros(vector),
             angular_velocity=np.zeros(vector),
+            smoothed=np.zeros((count, 2, 6)),
+            smoothed_acceleration=np.zeros(vector),
+            smoothed_lag=np.zeros(count),
             commanded_position=np.zeros(vector),
             commanded_yaw=np.zeros(count),
             gimbal=np.zeros(vector),

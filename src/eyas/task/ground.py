@@ -3,9 +3,12 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from eyas.core.jit import interpreted
 from eyas.state.terrain import Plane, height_over
 
 __all__ = ["ground_corners", "on_plane"]
+
+_height_over = interpreted(height_over)
 
 
 def ground_corners(
@@ -30,7 +33,7 @@ def ground_corners(
         and none if no ground is visible.
     """
     centre, axes = np.asarray(position, np.float64), np.asarray(rotation, np.float64)
-    height = height_over(ground, centre[0], centre[1], centre[2])
+    height = _height_over(ground, centre[0], centre[1], centre[2])
     signs = np.array([(1.0, 1.0), (1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0)])
     corners = np.column_stack([np.ones(4), signs * half_size])
     rays = corners @ axes.T

@@ -13,10 +13,10 @@ from eyas.core.frames import wrap_angle
 from eyas.core.jit import step_kernel
 from eyas.core.parallel import Held, Pointer, parallel_kernel
 from eyas.sensors.config import CameraConfig
+from eyas.sensors.inertial import accelerometer, gyroscope
 from eyas.state.snapshot import CameraState, EpisodeState, Snapshot, TargetState, TrackerState
 from eyas.state.terrain import Terrain
 from eyas.task.done import is_crash
-from eyas.trackers.drone import accelerometer
 
 __all__ = ["BASIC_COLUMNS", "REWARD_COLUMNS", "PacketRows"]
 
@@ -78,11 +78,11 @@ def _fill_basic(
     trackers: TrackerState, episodes: EpisodeState, n: int, row: NDArray[np.float64]
 ) -> None:
     row[0] = episodes.step_count[n]
-    row[7], row[8], row[9] = accelerometer(trackers.acceleration[n], trackers.orientation[n])
+    row[7], row[8], row[9] = accelerometer(trackers, n)
+    row[10], row[11], row[12] = gyroscope(trackers, n)
     for axis in range(3):
         row[1 + axis] = trackers.position[n, axis]
         row[4 + axis] = trackers.velocity[n, axis]
-        row[10 + axis] = trackers.angular_velocity[n, axis]
         row[17 + axis] = trackers.euler[n, axis]
     for part in range(4):
         row[13 + part] = trackers.orientation[n, part]

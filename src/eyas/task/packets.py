@@ -73,9 +73,11 @@ class BasicPacket:
     velocity: Numbers
     """World frame [m/s], 3 numbers; the original's `linear`."""
     felt_acceleration: Numbers
-    """Accelerometer, body frame [m/s^2], 3 numbers, +9.81 up at rest; the original's `acc`."""
+    """Accelerometer, body frame [m/s^2], 3 numbers, +9.81 up at rest; the original's `acc`. Of a
+    smoothed motion, see `tracker.inertial_time_constant`."""
     angular_velocity: Numbers
-    """Body frame [rad/s], 3 numbers; the original's `angular`."""
+    """Gyroscope, body frame [rad/s], 3 numbers; the original's `angular`. Of the same smoothed
+    motion."""
     orientation: Numbers
     """Body to world, w, x, y, z."""
     euler: Numbers
@@ -90,7 +92,7 @@ class BasicPacket:
     @classmethod
     def from_row(cls, row: NDArray[np.float64]) -> "BasicPacket":
         """Return the packet of a row, shape (22,)."""
-        n = [float(number) for number in row]
+        n = row.tolist()
         return cls(
             step_count=int(n[0]),
             position=tuple(n[1:4]),
@@ -157,7 +159,7 @@ class RewardPacket:
     @classmethod
     def from_row(cls, row: NDArray[np.float64], target_type: str) -> "RewardPacket":
         """Return the packet of a row, shape (60,), with the name of the target's type."""
-        n = [float(number) for number in row]
+        n = row.tolist()
         return cls(
             camera_width=int(n[0]),
             camera_height=int(n[1]),

@@ -7,17 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
-from eyas.core.frames import rotate_back, wrap_angle
-from eyas.core.jit import kernel, step_kernel
+from eyas.core.frames import wrap_angle
+from eyas.core.jit import step_kernel
 from eyas.state.snapshot import CameraState, TrackerState
 from eyas.trackers.gimbal import advance_gimbal, camera_pose, reset_gimbal
 from eyas.trackers.lowpass import low_pass, settle
 from eyas.trackers.tracker import Tracker
 
-__all__ = ["DRONE", "GRAVITY", "DroneMemory", "accelerometer", "advance", "aim", "carry", "start"]
-
-GRAVITY = 9.81
-"""[m/s^2]"""
+__all__ = ["DRONE", "DroneMemory", "advance", "aim", "carry", "start"]
 
 
 class DroneMemory(NamedTuple):
@@ -115,18 +112,6 @@ def aim(trackers: TrackerState, memory: DroneMemory, cameras: CameraState, n: in
         cameras.position[n],
         cameras.rotation[n],
     )
-
-
-@kernel
-def accelerometer(
-    acceleration: NDArray[np.float64], orientation: NDArray[np.float64]
-) -> tuple[float, float, float]:
-    """Return the reading of an accelerometer, body frame [m/s^2]: +9.81 up at rest.
-
-    It follows from the true motion. The original reads a physics body that falls between being
-    teleported, so its readings are unrelated to the visible motion.
-    """
-    return rotate_back(orientation, acceleration[0], acceleration[1], acceleration[2] + GRAVITY)
 
 
 @step_kernel

@@ -6,7 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import kernel, step_kernel
+from eyas.core.jit import step_kernel
+from eyas.core.parallel import Held, Pointer, parallel_kernel
 from eyas.state.motion import ActorState, Motion
 
 __all__ = [
@@ -103,10 +104,19 @@ def write_actor(pose: ActorPose, out: ActorState, world: int, actor: int) -> Non
     out.present[world, actor] = pose.present
 
 
-@kernel
 def interpolate_actors(motion: Motion, time: NDArray[np.float64], out: ActorState) -> None:
     """Write all actors of W worlds at the worlds' own times [s], shape (W,)."""
-    # One thread: waking a second one takes longer than 64 worlds of 40 actors.
+    # One worker: waking a second one takes longer than 64 worlds of 40 actors.
+    _interpolate(1, Held((motion, time, out)))
+
+
+@parallel_kernel
+def _interpolate(
+    parts: Pointer[tuple[Pointer[tuple[Motion, NDArray[np.float64], ActorState]]]],
+    worker: int,
+    workers: int,
+) -> None:
+    motion, time, out = parts[0][0][0]
     for world in range(len(time)):
         for actor in range(motion.table.shape[1]):
             pose = interpolate_actor(motion, actor, time[world])

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from eyas.core.cache.cached import cached
 from eyas.core.cache.folder import Kind
-from eyas.core.jit import kernel
+from eyas.core.parallel import Held, Pointer, parallel_kernel
 from eyas.state.motion import SAMPLE, Motion
 from eyas.state.terrain import Terrain, relief_at, slope_at
 from eyas.traffic.recording import Recording
@@ -58,13 +58,16 @@ def table_of(tracks: Tracks, terrain: Terrain) -> NDArray[np.void]:
     table["travelled"] = tracks.travelled
     table["present"] = tracks.present
     if terrain.relief.size:  # on flat ground all heights and slopes are 0 already
-        _lay(table, terrain)
+        _lay(1, Held((table, terrain)))
     return table
 
 
-@kernel
-def _lay(table: NDArray[np.void], terrain: Terrain) -> None:
+@parallel_kernel
+def _lay(
+    parts: Pointer[tuple[Pointer[tuple[NDArray[np.void], Terrain]]]], worker: int, workers: int
+) -> None:
     """Set the heights and slopes of the samples to those of the ground."""
+    table, terrain = parts[0][0][0]
     for row in range(table.shape[0]):
         for actor in range(table.shape[1]):
             sample = table[row, actor]

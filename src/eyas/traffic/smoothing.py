@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import kernel
+from eyas.core.parallel import Held, Pointer, parallel_kernel
 from eyas.traffic.recording import Recording
 
 __all__ = ["Tracks", "held", "runs", "smooth"]
@@ -106,7 +106,7 @@ def _smooth_run(
     ahead = 0.5 * wheelbase * np.stack([np.cos(yaw), np.sin(yaw)], axis=-1)
     front = _filtered(recording.position[span, actor] + ahead, SIGMA * recording.rate)
     heading = np.empty(len(yaw))
-    _follow(front, float(yaw[0]), wheelbase, heading)
+    _follow(1, Held((front, float(yaw[0]), float(wheelbase), heading)))
     centre = front - 0.5 * wheelbase * np.stack([np.cos(heading), np.sin(heading)], axis=-1)
     tracks.position[span, actor] = centre
     tracks.yaw[span, actor] = heading
@@ -140,15 +140,18 @@ def _slope(values: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
     return slope
 
 
-@kernel
+@parallel_kernel
 def _follow(
-    front: NDArray[np.float64], yaw: float, wheelbase: float, heading: NDArray[np.float64]
+    parts: Pointer[tuple[Pointer[tuple[NDArray[np.float64], float, float, NDArray[np.float64]]]]],
+    worker: int,
+    workers: int,
 ) -> None:
     """Write the heading (S,) of a body whose front axle is pulled along `front` (S, 2).
 
     Between two points the pull is straight, and the angle a between heading and pull shrinks:
     tan(a / 2) falls by the factor exp(-distance / wheelbase), the tractrix in closed form.
     """
+    front, yaw, wheelbase, heading = parts[0][0][0]
     heading[0] = yaw
     for sample in range(1, front.shape[0]):
         east = front[sample, 0] - front[sample - 1, 0]

@@ -10,7 +10,7 @@ import json
 import struct
 import zlib
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,14 +63,25 @@ def map_arrays(path: Path) -> Content:
     # Kernels index these arrays without checking bounds, so not a single bit may be wrong.
     if bytes(body[: _NUMBER.size]) != _NUMBER.pack(zlib.crc32(body[_NUMBER.size :])):
         raise ValueError(f"{path}: damaged")
-    (length,) = _NUMBER.unpack_from(body, _NUMBER.size)
-    data = 2 * _NUMBER.size + length
-    header = json.loads(bytes(body[2 * _NUMBER.size : data]))
-    arrays = [
-        np.ndarray(tuple(shape), np.dtype(kind), body, data + offset)
-        for kind, shape, offset in header["arrays"]
-    ]
-    return Content(header["value"], arrays)
+    try:
+        (length,) = _NUMBER.unpack_from(body, _NUMBER.size)
+        data = 2 * _NUMBER.size + length
+        header = json.loads(bytes(body[2 * _NUMBER.size : data]))
+        arrays = [
+            np.ndarray(tuple(shape), _plain(kind), body, data + offset)
+            for kind, shape, offset in header["arrays"]
+        ]
+        return Content(header["value"], arrays)
+    except (KeyError, TypeError, struct.error) as error:
+        raise ValueError(f"{path}: not as Eyas writes it: {error}") from None
+
+
+def _plain(kind: str) -> np.dtype[Any]:
+    """Return a type of elements without pointers, which a file could aim anywhere."""
+    dtype = np.dtype(kind)
+    if dtype.hasobject:
+        raise TypeError(f"elements of type {kind}")
+    return dtype
 
 
 def _npy_header(size: int) -> bytes:

@@ -1,6 +1,5 @@
 """Values that take long to compute and are always the same, kept from run to run."""
 
-import contextlib
 import logging
 import time
 from collections.abc import Callable
@@ -14,7 +13,7 @@ import numpy as np
 from eyas.core.cache.array_file import Content, array_file, map_arrays
 from eyas.core.cache.entries import write_entry
 from eyas.core.cache.flat import flatten, restore
-from eyas.core.cache.folder import Kind, cache_folder, cache_limit, touch
+from eyas.core.cache.folder import Kind, cache_folder, cache_limit, not_kept, touch
 
 __all__ = ["cached"]
 
@@ -53,9 +52,8 @@ def cached(
     """
     limit = cache_limit()
     path = (folder or cache_folder()) / kind / f"eyas-{_key(makers, inputs)}.npy"
-    with contextlib.suppress(OSError, ValueError):
-        found = restore(of, *map_arrays(path))
-        touch(path)
+    found = _found(path, of)
+    if found is not None:
         return found
     start = time.perf_counter()
     made = make()
@@ -64,11 +62,26 @@ def cached(
     content = Content(flat, [np.asarray(array, order="C") for array in arrays])
     # A value just made is restored like one read from the file, so that both have the same types.
     restored = restore(of, *content)
-    with contextlib.suppress(OSError):
+    try:
         write_entry(path, array_file(content), limit)
+    except OSError as error:
+        not_kept(error)
     if taken > _LONG:
         _LOG.info("made %s in %.1f s", kind, taken)
     return restored
+
+
+def _found(path: Path, of: type[Thing]) -> Thing | None:
+    """Return the value of an entry; None if there is none, or it is damaged."""
+    try:
+        found = restore(of, *map_arrays(path))
+    except (FileNotFoundError, NotADirectoryError, PermissionError):
+        return None  # if it cannot be replaced either, that is told
+    except (OSError, ValueError):
+        _LOG.warning("%s: damaged or unreadable, so it is made anew", path)
+        return None
+    touch(path)
+    return found
 
 
 def _key(makers: tuple[str, ...], inputs: tuple[object, ...]) -> str:

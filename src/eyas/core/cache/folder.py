@@ -2,11 +2,12 @@
 
     <folder>/<kind>/eyas-<key>.npy             arrays, see `eyas.core.cache.array_file`
     <folder>/traffic/<map>-<seed>-<key>.npz    recordings of traffic
-    <folder>/kernels/<key>/                    compiled kernels: Eyas's own files and numba's
+    <folder>/kernels/<key>/                    compiled kernels, see `eyas.core.machine_code`
 
 The modification time of an entry is the time of its last use.
 """
 
+import logging
 import os
 import re
 from enum import StrEnum
@@ -16,7 +17,20 @@ import platformdirs
 
 from eyas.core.errors import ConfigError
 
-__all__ = ["FOLDER_VARIABLE", "LIMIT_VARIABLE", "Kind", "cache_folder", "cache_limit", "touch"]
+__all__ = [
+    "FOLDER_VARIABLE",
+    "LIMIT_VARIABLE",
+    "Kind",
+    "cache_folder",
+    "cache_limit",
+    "not_kept",
+    "touch",
+]
+
+_LOG = logging.getLogger("eyas")
+
+_WARNED: list[object] = []
+"""Why something could not be kept: one reason of maybe many."""
 
 FOLDER_VARIABLE = "EYAS_CACHE_DIR"
 """Environment variable: the folder of the cache, instead of the user's default."""
@@ -49,7 +63,10 @@ class Kind(StrEnum):
 def cache_folder() -> Path:
     """Return the folder of the cache; it need not exist."""
     named = os.environ.get(FOLDER_VARIABLE)
-    return Path(named or platformdirs.user_cache_dir("eyas")).expanduser().absolute()
+    try:
+        return Path(named or platformdirs.user_cache_dir("eyas")).expanduser().absolute()
+    except RuntimeError:  # the user has no home
+        return Path(os.devnull, "eyas")  # where nothing can be kept
 
 
 def cache_limit() -> int:
@@ -68,6 +85,17 @@ def cache_limit() -> int:
             "K, M, G or T, for example 500M"
         )
     return int(float(size[1]) * (1 << _UNITS[size[2].upper()]))
+
+
+def not_kept(reason: object) -> None:
+    """Warn that something made could not be kept; only once in a process."""
+    if not _WARNED:
+        _WARNED.append(reason)
+        _LOG.warning(
+            "%s: cannot write: %s; so every start makes and compiles again what is missing there "
+            "(%s names another folder)",
+            *(cache_folder(), getattr(reason, "strerror", None) or reason, FOLDER_VARIABLE),
+        )
 
 
 def touch(path: Path) -> None:

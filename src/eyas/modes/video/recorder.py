@@ -1,10 +1,12 @@
 """Draws and writes the frames of a recording, and counts them."""
 
+from contextlib import suppress
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.errors import OutputError
 from eyas.exports.frame import frame_of
 from eyas.exports.others import others_of
 from eyas.exports.summary import Scores, Summary
@@ -148,4 +150,6 @@ class Recorder:
         """Stop before the end; every file that exists is complete."""
         self._lanes.stop()
         for files in self._begun:
-            files.abandon()
+            # Why the recording stops is told, not that its parts lie where nothing can be removed.
+            with suppress(OutputError):
+                files.abandon()

@@ -11,7 +11,7 @@ from eyas.exports.summary import Summary, total
 from eyas.modes.video.folder import VideoFolder
 from eyas.modes.video.recorder import Recorder
 
-__all__ = ["Progress", "print_report", "say"]
+__all__ = ["Progress", "print_report"]
 
 
 class Progress:
@@ -63,12 +63,6 @@ class Progress:
         """
         self.frames = frames
         self._bar.update(self._task, completed=share, frames=frames, rate=self.rate)
-
-
-def say(line: str, *, quiet: bool) -> None:
-    """Print a line on stderr."""
-    if not quiet:
-        Console(stderr=True).print(line, highlight=False, markup=False, soft_wrap=True)
 
 
 def print_report(

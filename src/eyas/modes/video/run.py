@@ -10,7 +10,7 @@ from eyas.modes.video.folder import VideoFolder, check_folder, open_folder
 from eyas.modes.video.grid import FrameGrid
 from eyas.modes.video.lock import recording_lock
 from eyas.modes.video.recorder import Recorder
-from eyas.modes.video.report import Progress, print_report, say
+from eyas.modes.video.report import Progress, print_report
 from eyas.settings.config import EyasConfig
 from eyas.sim.assets import load_assets
 from eyas.sim.build import build_simulation
@@ -69,8 +69,7 @@ def _record(sim: Simulation, config: EyasConfig, folder: VideoFolder, *, quiet: 
     except BaseException as error:
         recorder.stop()
         if isinstance(error, KeyboardInterrupt):
-            line = f"stopped; every file in {folder.path} is whole; continue with --resume"
-            say(line, quiet=quiet)
+            error.add_note(f"every file in {folder.path} is whole; continue with --resume")
         if isinstance(error, OutputError):
             raise OutputError(f"{error}; continue with --resume") from error
         raise

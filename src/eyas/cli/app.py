@@ -1,0 +1,107 @@
+"""The commands of `eyas`."""
+
+import logging
+import os
+import sys
+import warnings
+from typing import Annotated, Any
+
+import typer
+import typer.core
+
+from eyas import __version__
+from eyas.cli import bench, cache, config, maps, traffic, video
+from eyas.cli.said import say
+from eyas.core.errors import EyasError
+
+__all__ = ["app", "run"]
+
+# Typer brings its own copy of click in new versions and uses click in old ones.
+_UsageError: Any = typer.BadParameter.__mro__[1]
+
+
+class _Carried(Exception):  # noqa: N818  # no error
+    """Carries an interrupt past Typer, which would drop what its notes say."""
+
+    def __init__(self, interrupt: KeyboardInterrupt) -> None:
+        self.interrupt = interrupt
+
+
+class _Group(typer.core.TyperGroup):
+    def invoke(self, ctx: Any) -> Any:  # noqa: ANN401  # as in Typer
+        try:
+            return super().invoke(ctx)
+        except KeyboardInterrupt as interrupt:
+            raise _Carried(interrupt) from None
+
+
+app = typer.Typer(
+    cls=_Group,
+    name="eyas",
+    help="A fast, repeatable simulator and benchmark for drone visual active tracking.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+)
+app.command("video")(video.command)
+app.command("bench")(bench.command)
+app.add_typer(cache.app, name="cache")
+app.add_typer(config.app, name="config")
+app.add_typer(maps.app, name="maps")
+app.add_typer(traffic.app, name="traffic")
+
+
+def _print_version(value: bool) -> None:  # typer's callback
+    if value:
+        typer.echo(f"eyas {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def _options(
+    version: Annotated[  # used by its callback
+        bool,
+        typer.Option(
+            "--version", callback=_print_version, is_eager=True, help="Print the version."
+        ),
+    ] = False,
+) -> None: ...
+
+
+class _Line(logging.Formatter):
+    """Formats a log record as `eyas: message`, with `warning:` from that level on."""
+
+    def format(self, record: logging.LogRecord) -> str:
+        word = "warning: " if record.levelno >= logging.WARNING else ""
+        return f"eyas: {word}{record.getMessage()}"
+
+
+def run() -> int:
+    """Run the command line; return the exit code."""
+    warnings.showwarning = lambda message, *_, **__: say(f"warning: {message}")
+    lines = logging.StreamHandler()
+    lines.setFormatter(_Line())
+    logging.basicConfig(handlers=[lines], level=logging.WARNING)
+    logging.getLogger("eyas").setLevel(logging.INFO)
+    try:
+        status = app(standalone_mode=False)
+        if sys.stdout is not None:
+            sys.stdout.flush()  # here, so that a closed pipe is caught below
+    except EyasError as error:
+        return _failed(str(error))
+    except _UsageError as error:
+        return _failed(error.format_message())
+    except _Carried as carried:
+        raise carried.interrupt from None
+    except typer.Abort:
+        raise KeyboardInterrupt from None
+    except BrokenPipeError:
+        # The reader of our output has closed the pipe, so nothing more can be printed.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 1
+    return status if isinstance(status, int) else 0
+
+
+def _failed(line: str) -> int:
+    say("error: " + " ".join(line.splitlines()))
+    return 2

@@ -1,0 +1,182 @@
+"""Ctrl-C, SIGTERM and SIGHUP: one line, its own exit code, and whole files, at any moment."""
+
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+from PIL import Image
+
+from eyas.core.machine_code import read_code
+
+PROGRAM = """
+import sys
+from eyas.cli.main import main
+print("ready", flush=True)
+main()
+"""
+SETTINGS = {
+    "camera": {"width": 64, "height": 48},
+    "video": {"channels": 2, "total_time": 300.0, "fps": 50, "writers": ["jpeg", "mp4", "labels"]},
+}
+WORDS = {signal.SIGINT: "interrupted", signal.SIGTERM: "terminated", signal.SIGHUP: "hung up"}
+
+
+def started(folder, *arguments, cache=None, program=PROGRAM):
+    """Start a command; return it when `main` begins."""
+    environment = {**os.environ, **({"EYAS_CACHE_DIR": str(cache)} if cache else {})}
+    environment.pop("NUMBA_CACHE_DIR", None)
+    process = subprocess.Popen(
+        [sys.executable, "-c", program, *map(str, arguments)],
+        stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
+        text=True, cwd=folder, env=environment,
+    )  # fmt: skip
+    assert process.stdout.readline() == "ready\n"
+    return process
+
+
+def recording(folder, **options):
+    (folder / "settings.json").write_text(json.dumps(SETTINGS))
+    return started(folder, "video", "--config", "settings.json", "--out", "out", **options)
+
+
+def ended(process, number, timeout=60):
+    """Check how a command ended that was sent a signal."""
+    out, err = process.communicate(timeout=timeout)
+    *told, line = err.splitlines()
+    assert process.returncode == 128 + number, err
+    assert line.startswith(f"eyas: {WORDS[number]}")
+    # What took long to make is told, if nothing is in the cache yet.
+    assert all("first start" in each or each.startswith("eyas: made ") for each in told), err
+    assert "Traceback" not in out
+    return line
+
+
+def check_whole(folder):
+    for path in folder.rglob("*"):
+        assert not path.name.endswith(".part"), path
+        if path.suffix == ".jpeg":
+            Image.open(path).load()
+        elif path.suffix == ".json":
+            json.loads(path.read_text())
+
+
+@pytest.mark.parametrize("number", WORDS)
+def test_a_signal_at_any_moment_is_one_line_and_its_own_exit_code(tmp_path, number):
+    moments = random.Random(int(number))
+    for attempt, latest in enumerate((0.05, 0.5, 1.2, 3.0)):
+        folder = tmp_path / str(attempt)
+        folder.mkdir()
+        process = recording(folder)
+        time.sleep(moments.uniform(0.0, latest))
+        process.send_signal(number)
+        ended(process, number)
+        check_whole(folder)
+
+
+def until_frames(process, folder):
+    while not list(folder.glob("out/DRONE*/episode0/000003.jpeg")):
+        assert process.poll() is None, process.stderr.read()
+        time.sleep(0.01)
+
+
+def test_further_signals_change_nothing_and_the_line_says_how_to_go_on(tmp_path):
+    process = recording(tmp_path)
+    until_frames(process, tmp_path)
+    for number in (signal.SIGINT, signal.SIGINT, signal.SIGTERM, signal.SIGINT):
+        process.send_signal(number)
+        time.sleep(0.02)
+    line = ended(process, signal.SIGINT)
+    assert line == "eyas: interrupted; every file in out is whole; continue with --resume"
+    check_whole(tmp_path)
+
+
+COMPILES = """
+from eyas.cli import app
+from eyas.cli.main import main
+
+def run():
+    from eyas.render.ahead import draw_nothing
+    print("ready", flush=True)
+    draw_nothing()
+    return 0
+
+app.run = run
+main()
+"""
+
+
+def test_a_signal_while_compiling_is_one_line_and_what_is_kept_is_whole(tmp_path):
+    for wait in (0.2, 1.0, 2.5):
+        process = started(tmp_path, cache=tmp_path, program=COMPILES)
+        time.sleep(wait)
+        process.send_signal(signal.SIGINT)
+        assert ended(process, signal.SIGINT) == "eyas: interrupted"
+    assert all(map(read_code, tmp_path.rglob("*.eyk")))
+    assert not list(tmp_path.rglob("*.tmp.*"))
+
+
+def test_a_program_started_with_the_signal_ignored_goes_on(tmp_path):
+    before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+    try:
+        process = recording(tmp_path)
+    finally:
+        signal.signal(signal.SIGHUP, before)
+    until_frames(process, tmp_path)
+    process.send_signal(signal.SIGHUP)
+    time.sleep(0.3)
+    assert process.poll() is None
+    process.send_signal(signal.SIGTERM)
+    ended(process, signal.SIGTERM)
+
+
+LOSES = """
+import sys, time
+from eyas.cli import app
+from eyas.cli.main import main
+
+class Deaf:
+    def __del__(self):  # Python cannot raise from here
+        print("ready", flush=True)
+        time.sleep(60)
+
+def run():
+    Deaf()
+    time.sleep(60)
+    return 0
+
+app.run = run
+main()
+"""
+
+
+def test_an_interrupt_that_python_would_lose_comes_again(tmp_path):
+    process = started(tmp_path, program=LOSES)
+    time.sleep(0.1)
+    process.send_signal(signal.SIGINT)
+    ended(process, signal.SIGINT, timeout=20)
+
+
+LATE = """
+import atexit, time
+from eyas.cli import app
+from eyas.cli.main import main
+
+def late():
+    print("ready", flush=True)
+    time.sleep(0.5)
+
+app.run = lambda: atexit.register(late) and 0 or 0
+main()
+"""
+
+
+def test_a_signal_after_all_is_done_changes_nothing(tmp_path):
+    process = started(tmp_path, program=LATE)
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate(timeout=20)
+    assert (process.returncode, err) == (0, "")

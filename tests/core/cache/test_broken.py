@@ -1,0 +1,166 @@
+"""Damaged entries and folders that cannot be used: one line, the right values, and no crash."""
+
+import json
+import os
+import resource
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from eyas.core.cache.array_file import map_arrays
+from eyas.core.cache.folder import Kind, cache_folder
+from eyas.core.machine_code import read_code
+
+PROGRAM = """
+import json, sys
+import numpy as np
+from eyas.core.cache.cached import cached
+from eyas.core.cache.folder import Kind
+from eyas.core.held import Held
+from eyas.core.parallel import parallel_kernel
+
+def double(parts, worker, workers):
+    values = parts[0][0][0][0]
+    for k in range(len(values)):
+        values[k] *= 2.0
+
+values = np.array(cached(Kind.SKY, ("core/clock.py",), (1,), lambda: np.arange(3.0), of=np.ndarray))
+parallel_kernel(double)(1, Held((values,)))
+print(json.dumps([values.tolist(), "numba" in sys.modules]))
+"""
+UNPRIVILEGED = ["setpriv", "--bounding-set=-dac_override,-dac_read_search,-fowner"]
+"""Root without its right to ignore permissions; for others it changes nothing."""
+
+
+def run(cache, *before, **options):
+    """Run the program; return whether it had to compile, and the lines that it said."""
+    environment = {k: v for k, v in os.environ.items() if k not in ("NUMBA_CACHE_DIR", "HOME")}
+    environment |= {"EYAS_CACHE_DIR": str(cache)} if cache else {}
+    if not cache:
+        environment.pop("EYAS_CACHE_DIR", None)
+    done = subprocess.run(
+        [*before, sys.executable, "-c", PROGRAM],
+        capture_output=True, text=True, check=False, env=environment, **options,
+    )  # fmt: skip
+    assert not done.returncode, done.stderr
+    values, compiled = json.loads(done.stdout)
+    assert values == [0.0, 2.0, 4.0]
+    return compiled, done.stderr.splitlines()
+
+
+def cut_off(path):
+    path.write_bytes(path.read_bytes()[:-5])
+
+
+def emptied(path):
+    path.write_bytes(b"")
+
+
+def flipped(path):
+    content = bytearray(path.read_bytes())
+    content[len(content) // 2] ^= 0x10
+    path.write_bytes(content)
+
+
+def replaced(path):
+    """By a pickle that would tell on itself."""
+    path.write_bytes(b"cos\nsystem\n(S'touch unpickled'\ntR.")
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """A cache with one array and one kernel."""
+    folder = tmp_path_factory.mktemp("made") / "cache"
+    assert run(folder) == (True, [])
+    assert run(folder) == (False, [])
+    return folder
+
+
+@pytest.fixture
+def cache(made, tmp_path):
+    return Path(shutil.copytree(made, tmp_path / "cache"))
+
+
+@pytest.mark.parametrize("damage", [cut_off, emptied, flipped, replaced])
+def test_damaged_entries_are_told_in_a_line_each_and_made_anew(cache, damage, tmp_path):
+    files = [path for path in cache.rglob("*") if path.is_file()]
+    assert sorted(path.suffix for path in files) == [".eyk", ".npy"]
+    for path in files:
+        damage(path)
+    compiled, said = run(cache, cwd=tmp_path)
+    assert compiled
+    assert len(said) == 2
+    for line, path in zip(sorted(said), sorted(map(str, files)), strict=True):
+        assert line.startswith(f"{path}: damaged or unreadable")
+    assert run(cache) == (False, [])
+    assert not (tmp_path / "unpickled").exists()
+
+
+def test_what_can_only_be_read_is_used_without_a_word(cache):
+    for path in (cache, *cache.rglob("*")):
+        path.chmod(0o555 if path.is_dir() else 0o444)
+    assert run(cache, *UNPRIVILEGED) == (False, [])
+
+
+def check_unused(cache, *before, **options):
+    compiled, said = run(cache, *before, **options)
+    assert len(said) == 1, said
+    (line,) = said
+    assert compiled
+    assert ": cannot write: " in line
+    assert "so every start makes and compiles again what is missing" in line
+
+
+def test_a_folder_that_cannot_be_written_to_is_one_line(tmp_path):
+    empty = tmp_path / "cache"
+    empty.mkdir()
+    empty.chmod(0o555)
+    check_unused(empty, *UNPRIVILEGED)
+    (tmp_path / "file").touch()
+    check_unused(tmp_path / "file")
+
+
+@pytest.mark.skipif(os.getuid() != 0, reason="only root can give files to others")
+def test_someone_else_s_folder_is_one_line(cache):
+    for path in (cache, *cache.rglob("*")):
+        os.chown(path, 54321, 54321)
+        path.chmod(0o700)
+    check_unused(cache, *UNPRIVILEGED)
+
+
+@pytest.mark.skipif(os.getuid() != 0, reason="only root can become a user without a home")
+def test_a_user_without_a_home_is_one_line():
+    reading = "+dac_read_search"  # of this Python, which may lie in root's home
+    check_unused(
+        None,
+        *("setpriv", "--reuid=54321", f"--inh-caps={reading}", f"--ambient-caps={reading}"),
+    )
+
+
+def test_a_full_disk_is_one_line(tmp_path):
+    def full():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (0, 0))
+
+    check_unused(tmp_path / "cache", preexec_fn=full)
+    assert not [path for path in tmp_path.rglob("*") if path.is_file()]
+
+
+@pytest.mark.parametrize("damage", [cut_off, emptied, flipped, replaced])
+@pytest.mark.parametrize("kind", [kind for kind in Kind if kind not in (Kind.OLD, Kind.TRAFFIC)])
+def test_no_kind_of_real_entry_is_believed_when_damaged(kind, damage, tmp_path):
+    """Of those that other tests have made."""
+    found = sorted((cache_folder() / kind).rglob("*.eyk" if kind is Kind.KERNELS else "*.npy"))
+    if not found:
+        return
+    path = Path(shutil.copy(min(found, key=lambda path: path.stat().st_size), tmp_path))
+    read = read_code if kind is Kind.KERNELS else map_arrays
+    assert read(path) is not None
+    damage(path)
+    if kind is Kind.KERNELS:
+        assert read_code(path) is None
+    else:
+        with pytest.raises(ValueError, match=r"."):
+            map_arrays(path)

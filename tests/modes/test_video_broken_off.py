@@ -1,0 +1,134 @@
+"""`eyas video` killed, on a full disk, and in a folder made read-only: `--resume` ends it.
+
+`EYAS_TEST_KILLS=30` kills as often as before a release.
+"""
+
+import os
+import random
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from eyas.modes.video import run as video
+from eyas.modes.video.config import VideoConfig
+from eyas.sensors.config import CameraConfig
+from eyas.settings.config import EyasConfig
+from eyas.settings.file import save_settings
+from eyas.task.config import DoneConfig
+
+KILLS = int(os.environ.get("EYAS_TEST_KILLS", "4"))
+
+# Two trackers, seven episodes of 0.3 s each, a frame every 4 ms.
+CONFIG = EyasConfig(
+    seed=5,
+    camera=CameraConfig(width=64, height=48),
+    done=DoneConfig(total_steps=150, grace_steps=20),
+    video=VideoConfig(
+        channels=2, fps=250.0, start_time=0.7, total_time=2.1, warm_up_steps=10,
+        writers=("jpeg", "mp4", "labels", "mark"),
+    ),
+)  # fmt: skip
+UNPRIVILEGED = ["setpriv", "--bounding-set=-dac_override,-dac_read_search,-fowner"]
+"""Root without its right to ignore permissions; for others it changes nothing."""
+
+
+@pytest.fixture(scope="module")
+def recorded(tmp_path_factory) -> dict[str, bytes]:
+    path = tmp_path_factory.mktemp("video") / "out"
+    video.run(CONFIG, path, quiet=True)
+    return contents(path)
+
+
+@pytest.fixture
+def settings(tmp_path) -> Path:
+    save_settings(CONFIG, tmp_path / "settings.json")
+    return tmp_path / "settings.json"
+
+
+def contents(path: Path) -> dict[str, bytes]:
+    return {
+        inside.relative_to(path).as_posix(): inside.read_bytes()
+        for inside in path.rglob("*")
+        if inside.is_file()
+    }
+
+
+def start(settings: Path, out: Path, *before: str) -> subprocess.Popen[str]:
+    command = [sys.executable, "-m", "eyas.cli.main", "video", "--config", str(settings)]
+    return subprocess.Popen(
+        [*before, *command, "--out", str(out), "--resume", "--quiet"],
+        stdin=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+    )  # fmt: skip
+
+
+def check_resumed(out, recorded):
+    video.run(CONFIG, out, resume=True, quiet=True)
+    assert contents(out) == recorded
+
+
+def check_whole(out, recorded):
+    """Check that whatever has its last name has its last content."""
+    for name, data in contents(out).items():
+        if not name.endswith((".part", ".lock")):
+            assert data == recorded[name], name
+
+
+def test_killed_at_any_moment_it_continues_to_the_same_bytes(settings, tmp_path, recorded):
+    """Each recording is killed a few times before it is done, and the next one goes on there."""
+    moments, latest = random.Random(7), 2.0
+    for attempt in range(KILLS):
+        out = tmp_path / f"out{attempt // 3}"
+        process = start(settings, out)
+        if attempt % 3:  # in the recording; else anywhere, mostly before it
+            while not list(out.glob("DRONE*/episode*/*.jpeg")) and process.poll() is None:
+                time.sleep(0.001)
+            latest = 0.8
+        time.sleep(moments.uniform(0.0, latest))
+        process.kill()
+        process.communicate()
+        if out.exists():
+            check_whole(out, recorded)
+        if attempt % 3 == 2 or attempt == KILLS - 1:
+            check_resumed(out, recorded)
+
+
+def stopped(process: subprocess.Popen[str], reason: str) -> None:
+    """Check that a recording ends by one line."""
+    err = process.communicate(timeout=60)[1]
+    assert (process.returncode, err.count("\n")) == (2, 1), err
+    assert f"cannot write: {reason}" in err
+    assert err.endswith("; continue with --resume\n")
+
+
+def test_in_a_folder_made_read_only_it_ends_in_one_line_and_goes_on(settings, tmp_path, recorded):
+    out = tmp_path / "out"
+    process = start(settings, out, *UNPRIVILEGED)
+    while not (out / "DRONE1" / "episode1" / "000001.jpeg").exists():
+        assert process.poll() is None, process.stderr.read()
+        time.sleep(0.001)
+    folders = [out, *(path for path in out.rglob("*") if path.is_dir())]
+    for folder in folders:
+        folder.chmod(0o555)
+    stopped(process, "Permission denied")
+    check_whole(out, recorded)
+    for folder in folders:
+        folder.chmod(0o755)
+    check_resumed(out, recorded)
+
+
+def test_on_a_full_disk_it_ends_in_one_line_and_goes_on(settings, tmp_path, recorded):
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=700k", "tmpfs", str(disk)]
+    if subprocess.run(mount, capture_output=True, check=False).returncode:
+        pytest.skip("disks of a given size are only for root")
+    try:
+        stopped(start(settings, disk / "out"), "No space left on device")
+        check_whole(disk / "out", recorded)
+        subprocess.run(["mount", "-o", "remount,size=100m", str(disk)], check=True)
+        check_resumed(disk / "out", recorded)
+    finally:
+        subprocess.run(["umount", "-l", str(disk)], check=True)
