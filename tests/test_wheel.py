@@ -26,10 +26,9 @@ assert all(file.startswith(sys.prefix) for file in files), files
 from eyas.sim.scenes import load_network
 from eyas.traffic.recording_file import load
 from eyas.world.maps import MAPS
-from eyas.world.maps.recipe import TRAFFIC_FILE
 for name in MAPS.built_in:
     assert len(load_network(name, 0).lane_points) > 100
-    assert load(MAPS.get(name).shipped(TRAFFIC_FILE)).actors > 10
+    assert [load(file).actors > 10 for file in MAPS.get(name).shipped_traffic()] == [True] * 4
 print(len(names))
 """
 
