@@ -24,12 +24,14 @@ names = [module.name for module in pkgutil.walk_packages(eyas.__path__, "eyas.")
 files = [str(importlib.import_module(name).__file__) for name in names]
 assert all(file.startswith(sys.prefix) for file in files), files
 from eyas.sim.scenes import load_network
+from eyas.traffic.library import RESPAWN_GROUPS
 from eyas.traffic.recording_file import load
 from eyas.world.maps import MAPS
-from eyas.world.maps.recipe import TRAFFIC_FILE
 for name in MAPS.built_in:
     assert len(load_network(name, 0).lane_points) > 100
-    assert load(MAPS.get(name).shipped(TRAFFIC_FILE)).actors > 10
+    recordings = MAPS.get(name).shipped_traffic()
+    assert len(recordings) == 1 + len(RESPAWN_GROUPS)
+    assert all(load(file).actors > 10 for file in recordings)
 print(len(names))
 """
 

@@ -49,8 +49,10 @@ def shipped(tmp_path_factory):
         save_network(package / NETWORK_FILE, build_network(graph))
         made = record("field", 0, graph, CARS, library.STANDARD_DURATION, library.CANONICAL_SEED)
         save(made, package / TRAFFIC_FILE)
-        for module, name in ((library, "_cached_or_new"), (scenes, "build_network")):
-            patch.setattr(module, name, lambda *args: pytest.fail("what is shipped was made again"))
+        for module, name in ((library, "_new"), (scenes, "build_network")):
+            patch.setattr(
+                module, name, lambda *_, **__: pytest.fail("what is shipped was made anew")
+            )
         yield package
     del sys.modules[package.name]
 

@@ -94,13 +94,47 @@ def test_the_recommended_set_reads_as_meant():
     assert config.wire.port == 35531
 
 
+@pytest.mark.parametrize("values", [{}, *map(read, FILES)])
+def test_the_originals_file_means_its_traffic(values):
+    base = EyasConfig()
+    assert base.traffic.demand == "keep_alive"
+    assert from_legacy(values, base).traffic.demand == "respawn"
+
+
+def test_traffic_that_lasts_is_a_key_of_ours_in_its_file():
+    written = to_legacy(EyasConfig())
+    assert written["Sumo_Params"]["keep_alive"] is True
+    assert from_legacy(written).traffic.demand == "keep_alive"
+    assert to_legacy(from_legacy({}))["Sumo_Params"]["keep_alive"] is False
+    with pytest.raises(
+        ConfigError, match=r"^Sumo_Params.keep_alive: 1 is not allowed: true or fal"
+    ):
+        from_legacy({"Sumo_Params": {"keep_alive": 1}})
+
+
+@pytest.mark.parametrize(
+    "keys",
+    [
+        {"fixed_car_group_num": True},
+        {"car_group_num": 7},
+        {"car_import_interval": 30.0},
+        {"min_rou_distance": 400},
+        {"max_rou_distance": 3000},
+        {"route_num": 50},
+    ],
+)
+def test_a_key_about_groups_means_that_groups_come(keys):
+    assert with_legacy(EyasConfig(), {"Sumo_Params": keys}).traffic.demand == "respawn"
+    kept = {"Sumo_Params": keys | {"keep_alive": True}}
+    assert with_legacy(EyasConfig(), kept).traffic.demand == "keep_alive"
+    others = {"Sumo_Params": {"max_sumo_car": 30, "fixed_seed": True, "rou_update": True}}
+    assert with_legacy(EyasConfig(), others).traffic.demand == "keep_alive"
+
+
 def test_what_the_original_cannot_say_is_kept_from_the_base():
-    base = EyasConfig(
-        seed=5, camera={"width": 640}, traffic={"demand": "respawn"}, world={"seed": 3}
-    )
+    base = EyasConfig(seed=5, camera={"width": 640}, world={"seed": 3})
     config = from_legacy(read("shipped"), base)
     assert (config.seed, config.camera.width, config.world.seed) == (5, 640, 3)
-    assert config.traffic.demand == "respawn"
 
 
 variations = st.one_of(
@@ -136,6 +170,7 @@ configs = st.fixed_dictionaries(
         "traffic": st.fixed_dictionaries(
             {},
             optional={
+                "demand": st.sampled_from(["keep_alive", "respawn"]),
                 "group_size": st.none() | st.integers(1, 9),
                 "colour": st.none() | st.tuples(unit, unit, unit),
                 "seed": st.none() | st.integers(0, 9),

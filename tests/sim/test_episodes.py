@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from eyas.core.clock import PHYSICS_STEP
 from eyas.core.errors import SpawnError
 from eyas.sim.build import build_simulation
 from eyas.sim.simulation import Simulation
@@ -92,6 +93,21 @@ def test_where_nobody_is_there_is_no_start_and_one_line_says_so(config, assets_w
     with pytest.raises(SpawnError, match="no target is free: 40 known, 0 in the world") as caught:
         simulation.reset()
     assert "\n" not in str(caught.value)
+
+
+def test_where_nobody_stays_for_a_whole_episode_a_shorter_stay_is_enough(config, assets_where):
+    done = config.done.model_copy(update={"total_steps": 5000})
+    long = config.model_copy(update={"done": done})
+    comings = assets_where((3.0, 4.0), (6.0, 7.0), (9.0, 10.0))
+    simulation = Simulation(long, comings, DRONE, each_alone(3))
+    simulation.reset()
+    assert (simulation.snapshot.targets.actor >= 0).all()
+    start = simulation.snapshot.episodes.tick * PHYSICS_STEP
+    assert all(comings.traffic.available(time, time + 1.0).all() for time in start)
+    reason = DoneReason.NONE
+    while reason == DoneReason.NONE:
+        reason = simulation.carry(500).reason[0]
+    assert reason == DoneReason.TARGET_LOST
 
 
 def test_another_actor_can_be_followed_in_the_middle_of_an_episode(config, assets):

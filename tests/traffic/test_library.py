@@ -1,5 +1,6 @@
 import logging
 import os
+import subprocess
 import sys
 from dataclasses import replace
 from pathlib import Path
@@ -8,10 +9,10 @@ import pytest
 
 from eyas.core.cache.entries import entries
 from eyas.core.cache.folder import Kind
-from eyas.core.errors import ConfigError, DataFileError, MissingExtraError
+from eyas.core.errors import DataFileError, MissingExtraError
 from eyas.state.roads import RoadGraph
 from eyas.traffic import library
-from eyas.traffic.config import TrafficConfig
+from eyas.traffic.config import Demand, TrafficConfig
 from eyas.traffic.library import CANONICAL_SEED, find_recording
 from eyas.traffic.network import graph_hash
 from eyas.traffic.record import resolved
@@ -72,7 +73,7 @@ def copied(
     )
     made = replace(wandering, provenance=origin)
     with monkeypatch.context() as elsewhere:
-        elsewhere.setattr(library, "sumo_version", lambda: "0.1.2")
+        elsewhere.setattr(library, "sumo_version", lambda _: "0.1.2")
         elsewhere.setattr(library, "record", lambda *_: made)
         find_recording(grid, CARS, duration=5.0)
     monkeypatch.setattr(library, "sumo_version", without_sumo)
@@ -110,16 +111,77 @@ def test_a_recording_is_used_where_the_cache_cannot_be_written(
     caplog: pytest.LogCaptureFixture,
 ):
     cache.parent.write_text("in the way")
-    monkeypatch.setattr(library, "sumo_version", lambda: "0.1.2")
+    monkeypatch.setattr(library, "sumo_version", lambda _: "0.1.2")
     monkeypatch.setattr(library, "record", lambda *_: wandering)
     assert find_recording(grid, CARS, duration=5.0) is wandering
     assert caplog.messages[-1].startswith("the recording is used but could not be cached: ")
 
 
-def test_recording_can_be_forbidden(grid: RoadGraph, cache: Path):
-    with pytest.raises(ConfigError, match=r"^traffic\.update_routes: false, but no recording"):
-        find_recording(grid, CARS.model_copy(update={"update_routes": False}))
-    assert not cache.exists()
+@pytest.mark.sumo
+@pytest.mark.usefixtures("sumo")
+def test_routes_that_need_not_be_new_are_made_anew_where_none_fit(
+    grid: RoadGraph, caplog: pytest.LogCaptureFixture
+):
+    kept = CARS.model_copy(update={"update_routes": False})
+    first = find_recording(grid, kept, duration=5.0)
+    assert len(caplog.messages) == 1
+    assert caplog.messages[0].startswith(
+        "traffic.update_routes (Sumo_Params.rou_update): false, but no recording fits; recording 5"
+    )
+    assert to_bytes(find_recording(grid, kept, duration=5.0)) == to_bytes(first)
+    assert to_bytes(find_recording(grid, CARS, duration=5.0)) == to_bytes(first)
+    assert len(caplog.messages) == 1
+
+
+WITHOUT_SUMO = """
+import importlib.metadata, sys
+def version(name, known=importlib.metadata.version):
+    if name == "eclipse-sumo":
+        raise importlib.metadata.PackageNotFoundError(name)
+    return known(name)
+importlib.metadata.version = version
+sys.modules.update(dict.fromkeys(["libsumo", "sumo", "sumolib", "traci"]))
+from eyas.core.errors import MissingExtraError
+from eyas.traffic.config import TrafficConfig
+from eyas.traffic.library import find_recording
+from eyas.world.maps.citystreet import CITYSTREET
+try:
+    find_recording(CITYSTREET.roads(0), TrafficConfig(max_speed=10.0, update_routes=False))
+except MissingExtraError as error:
+    print(error)
+"""
+
+
+def test_without_sumo_one_line_says_what_to_install():
+    done = subprocess.run(
+        [sys.executable, "-c", WITHOUT_SUMO], capture_output=True, text=True, check=True
+    )
+    (line,) = done.stdout.splitlines()
+    assert line.startswith(
+        "new traffic, as no recording fits the settings, needs the extra 'sumo': "
+        "pip install 'eyas[sumo]'"
+    )
+    assert done.stderr == ""
+
+
+def test_a_group_that_is_too_small_is_raised_in_one_line(
+    grid: RoadGraph, wandering: Recording, tmp_path: Path, caplog: pytest.LogCaptureFixture
+):
+    small = TrafficConfig(demand=Demand.RESPAWN, group_size=2)
+    origin = replace(
+        wandering.provenance, graph_hash=graph_hash(grid), config=resolved(small, 1, trackers=4)
+    )
+    save(replace(wandering, provenance=origin), tmp_path / "twelve.npz")
+    shipped = [tmp_path / "twelve.npz"]
+    found = find_recording(grid, small, trackers=4, duration=20.0, shipped=shipped)
+    assert found.provenance.config.group_size == 12
+    assert caplog.messages == [
+        "traffic.group_size (Sumo_Params.car_group_num): 2 raised to 12, 3 for each of 4 trackers "
+        "in a world"
+    ]
+    enough = small.model_copy(update={"group_size": 12})
+    assert find_recording(grid, enough, trackers=4, duration=20.0, shipped=shipped)
+    assert len(caplog.messages) == 1
 
 
 def test_a_named_recording_of_another_map_is_refused(

@@ -6,6 +6,7 @@ import pytest
 from numpy.typing import NDArray
 
 from eyas.core.errors import ConfigError
+from eyas.settings.legacy.adapter import from_legacy
 from eyas.state.motion import ActorState
 from eyas.state.roads import RoadEdge, RoadGraph, RoadNode
 from eyas.traffic import sumo as sumo_room
@@ -16,7 +17,6 @@ from eyas.traffic.recording import Recording
 from eyas.traffic.recording_file import to_bytes
 from eyas.traffic.replay import Replay
 from eyas.traffic.smoothing import runs, smooth
-from eyas.traffic.sumo import OPTIONS
 from eyas.traffic.sumo_install import import_libsumo
 
 pytestmark = [pytest.mark.sumo, pytest.mark.usefixtures("sumo")]
@@ -76,7 +76,8 @@ def test_a_recording_is_what_sumo_itself_writes_down(
     grid: RoadGraph, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
     log = tmp_path / "fcd.xml"
-    monkeypatch.setattr(sumo_room, "OPTIONS", (*OPTIONS, "--fcd-output", str(log)))
+    told = sumo_room.options(Demand.KEEP_ALIVE)
+    monkeypatch.setattr(sumo_room, "options", lambda _: (*told, "--fcd-output", str(log)))
     recording = record("grid", 0, grid, CARS, 20.0, 1)
     compared = 0
     for step in ElementTree.parse(log).iter("timestep"):
@@ -207,3 +208,67 @@ def test_settings_that_sumo_does_not_see_make_no_difference():
     painted = TrafficConfig(colour=(1.0, 0.0, 0.0), update_routes=False, group_interval=3.0)
     assert resolved(painted, 1) == resolved(TrafficConfig(), 1)
     assert resolved(TrafficConfig(demand=Demand.RESPAWN), 1, trackers=4).group_size == 12
+
+
+@pytest.mark.parametrize(
+    ("said", "trackers", "used"), [(None, 0, 3), (2, 0, 2), (2, 1, 3), (5, 1, 5), (5, 2, 6)]
+)
+def test_a_group_has_at_least_three_for_each_tracker(said: int | None, trackers: int, used: int):
+    config = TrafficConfig(demand=Demand.RESPAWN, group_size=said)
+    assert resolved(config, 1, trackers).group_size == used
+
+
+def test_groups_start_and_brake_in_an_instant(groups: Recording, cars: Recording):
+    """As in the original; the others decide twice a second and are smoothed."""
+    for recording, least, most in ((groups, 20.0, 30.0), (cars, 5.0, 15.0)):
+        tracks = smooth(recording)
+        speed = np.hypot(*np.moveaxis(tracks.velocity, -1, 0))
+        change = np.abs(np.diff(speed, axis=0)) * tracks.rate
+        both = tracks.present[1:] & tracks.present[:-1]
+        assert least < np.percentile(change[both], 99.5) < most
+
+
+def test_what_the_original_says_of_groups_and_routes_is_driven(grid: RoadGraph):
+    """Each of its keys reaches SUMO: sizes, times, lengths and number of the routes, the seed."""
+    keys = {
+        "fixed_car_group_num": True,
+        "car_group_num": 4,
+        "car_import_interval": 17.0,
+        "min_rou_distance": 300,
+        "max_rou_distance": 500,
+        "route_num": 22,
+        "fixed_seed": True,
+        "random_seed": 7,
+    }
+
+    def driven(**changes: object) -> Recording:
+        config = from_legacy({"Sumo_Params": keys | changes}).traffic
+        assert config.seed is not None
+        return record("grid", 0, grid, config, 60.0, config.seed)
+
+    def entries(**changes: object) -> list[float]:
+        present = driven(**changes).present.T
+        firsts = [first for stays in map(runs, present) for first, _ in stays if first]
+        return sorted(first / 10.0 + WARM_UP for first in firsts)
+
+    def longest(**changes: object) -> float:
+        """Longest way of those that entered and left [m]."""
+        made = driven(route_num=100, **changes)
+        ways = [
+            _speed(made)[first:last, actor].sum() / made.rate
+            for actor, present in enumerate(made.present.T)
+            for first, last in runs(present)
+            if first and last < len(present)
+        ]
+        return max(ways)
+
+    # Groups of 4 at 68 and 85 s have entered; no other comes after the 22nd vehicle.
+    usual = entries()
+    assert np.floor(usual[-6:]).tolist() == [68.0] * 4 + [85.0] * 2
+    assert len(entries(car_group_num=5)) < len(usual)  # 20 of the 22 are there before
+    assert len(entries(route_num=100)) > len(usual)
+    assert entries(route_num=100, car_import_interval=40.0)[0] >= 80.0
+    # Lengths are those of the roads, without the crossings between them.
+    assert longest() < 600.0 < longest(min_rou_distance=500, max_rou_distance=900)
+    assert longest(min_rou_distance=100, max_rou_distance=300) < 360.0
+    assert not np.array_equal(driven(random_seed=8).position, driven().position)

@@ -1,9 +1,12 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from eyas.state.motion import ActorState
 from eyas.state.terrain import Terrain
 from eyas.traffic import recorded
+from eyas.traffic.config import Demand
 from eyas.traffic.interpolation import interpolate_actors
 from eyas.traffic.recorded import kept_motion, recorded_motion
 from eyas.traffic.recording import Recording
@@ -73,3 +76,8 @@ def test_a_motion_is_smoothed_once_and_then_read_from_the_cache(
     assert len(smoothed) == 2  # the expected one, and one to keep
     kept_motion(wandering, Terrain.flat(0.0), kind)
     assert len(smoothed) == 3
+    config = wandering.provenance.config.model_copy(update={"demand": Demand.RESPAWN})
+    groups = replace(wandering, provenance=replace(wandering.provenance, config=config))
+    brisk = kept_motion(groups, plane, kind)  # the same poses, smoothed less
+    assert len(smoothed) == 4
+    assert not np.array_equal(brisk.table, expected.table)

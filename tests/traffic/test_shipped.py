@@ -2,39 +2,48 @@
 
 import subprocess
 import sys
+from pathlib import Path
 
 import numpy as np
 import pytest
 import shapely
 
-from eyas.core.errors import ConfigError
+from eyas.core.errors import MissingExtraError
 from eyas.state.motion import ActorState
+from eyas.traffic import library
 from eyas.traffic.config import Demand, TrafficConfig, VehicleType
 from eyas.traffic.library import STANDARD_DURATION, find_recording
 from eyas.traffic.replay import Replay
 from eyas.traffic.smoothing import smooth
 from eyas.world.maps.citystreet import CITYSTREET
-from eyas.world.maps.recipe import TRAFFIC_FILE
 from eyas.world.roads.areas import road_area
 
 WITHOUT_SUMO = """
 import sys
 sys.modules.update(dict.fromkeys(["libsumo", "sumo", "sumolib", "traci"]))
+from eyas.traffic import library
 from eyas.traffic.config import TrafficConfig
 from eyas.traffic.library import find_recording
 from eyas.world.maps.citystreet import CITYSTREET
-shipped = CITYSTREET.shipped("traffic.npz")
-print(find_recording(CITYSTREET.roads(0), TrafficConfig(), shipped=shipped).actors)
+def actors(config, trackers):
+    shipped = CITYSTREET.shipped_traffic()
+    roads = CITYSTREET.roads(0)
+    return find_recording(roads, config, trackers=trackers, shipped=shipped).actors
+
+groups = TrafficConfig(demand="respawn")
+print(actors(TrafficConfig(), 4), actors(groups, 1), actors(groups, 4))
+for size in (5, 10):  # of the manual's example, and of the original's own file
+    print(actors(TrafficConfig(demand="respawn", group_size=size), 1))
 """
 
 
-def recording(map_seed, config):
-    shipped = CITYSTREET.shipped(TRAFFIC_FILE)
-    return find_recording(CITYSTREET.roads(map_seed), config, shipped=shipped)
+def recording(map_seed, config, trackers=1):
+    shipped = CITYSTREET.shipped_traffic()
+    return find_recording(CITYSTREET.roads(map_seed), config, trackers=trackers, shipped=shipped)
 
 
 def test_the_default_traffic_of_citystreet_is_shipped():
-    config = TrafficConfig(update_routes=False, colour=(1.0, 1.0, 1.0))
+    config = TrafficConfig(colour=(1.0, 1.0, 1.0))
     shipped = recording(0, config)
     assert shipped.duration == STANDARD_DURATION >= 20 * 60
     assert shipped.provenance.map_name == "citystreet"
@@ -49,9 +58,10 @@ def test_the_default_traffic_of_citystreet_is_shipped():
         assert (apart + 100.0 * np.eye(40)).min() > 1.8
 
 
-def test_no_car_leaves_the_asphalt(flat_motion):
+@pytest.mark.parametrize("demand", Demand)
+def test_no_car_leaves_the_asphalt(flat_motion, demand):
     """Nine tenths of its length and width stay on it, each second of the recording."""
-    shipped = recording(0, TrafficConfig(update_routes=False))
+    shipped = recording(0, TrafficConfig(demand=demand), trackers=4)
     replay = Replay(flat_motion(shipped))
     time = np.arange(0.0, replay.duration, 1.0)
     cars = ActorState.create(len(time), replay.actors)
@@ -65,14 +75,29 @@ def test_no_car_leaves_the_asphalt(flat_motion):
     assert network is not None
     asphalt = road_area(network)
     shapely.prepare(asphalt)
-    assert shapely.contains_xy(asphalt, east.ravel(), north.ravel()).all()
+    on_it = shapely.contains_xy(asphalt, east.ravel(), north.ravel()).reshape(east.shape)
+    assert on_it[cars.present].all()
 
 
 def test_it_needs_no_sumo():
     done = subprocess.run(
         [sys.executable, "-c", WITHOUT_SUMO], capture_output=True, text=True, check=False
     )
-    assert (done.stdout.strip(), done.stderr) == ("40", "")
+    assert (" ".join(done.stdout.split()), done.stderr) == ("40 40 40 40 40", "")
+
+
+def test_groups_drive_as_in_the_original():
+    """Within 15 % of what its own network and settings give, for groups of 12 every 52 s."""
+    shipped = recording(0, TrafficConfig(demand=Demand.RESPAWN), trackers=4)
+    assert shipped.duration == STANDARD_DURATION
+    tracks = smooth(shipped)
+    present = tracks.present
+    speed = np.hypot(*np.moveaxis(tracks.velocity, -1, 0))
+    change = np.abs(np.diff(speed, axis=0))[present[1:] & present[:-1]] * tracks.rate
+    assert present.sum(axis=1).mean() == pytest.approx(14.0, rel=0.15)
+    assert speed[present].mean() == pytest.approx(12.9, rel=0.15)
+    assert (speed[present] < 0.1).mean() == pytest.approx(0.004, rel=0.15)
+    assert np.percentile(change, 99.5) == pytest.approx(24.9, rel=0.15)
 
 
 @pytest.mark.parametrize(
@@ -82,11 +107,20 @@ def test_it_needs_no_sumo():
         (0, TrafficConfig(seed=2)),
         (0, TrafficConfig(max_vehicles=39)),
         (0, TrafficConfig(vehicle_type=VehicleType.BUS)),
-        (0, TrafficConfig(demand=Demand.RESPAWN)),
+        (0, TrafficConfig(demand=Demand.RESPAWN, group_size=4)),
+        (0, TrafficConfig(demand=Demand.RESPAWN, group_interval=20.0)),
+        (0, TrafficConfig(demand=Demand.RESPAWN, route_count=10)),
+        (0, TrafficConfig(demand=Demand.RESPAWN, route_length=(400.0, 7000.0))),
         (0, TrafficConfig(max_speed=10.0)),
     ],
 )
-def test_it_is_not_taken_for_anything_else(map_seed: int, config: TrafficConfig):
-    forbidden = config.model_copy(update={"update_routes": False})
-    with pytest.raises(ConfigError, match="no recording fits"):
-        recording(map_seed, forbidden)
+def test_it_is_not_taken_for_anything_else(
+    map_seed: int, config: TrafficConfig, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+):
+    def not_installed(purpose: str) -> str:
+        raise MissingExtraError(purpose, "sumo")
+
+    monkeypatch.setenv("EYAS_CACHE_DIR", str(tmp_path))
+    monkeypatch.setattr(library, "sumo_version", not_installed)
+    with pytest.raises(MissingExtraError, match="no recording fits"):
+        recording(map_seed, config)

@@ -1,6 +1,9 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from eyas.traffic.config import Demand
 from eyas.traffic.recording import Recording
 from eyas.traffic.smoothing import held, runs, smooth
 
@@ -25,6 +28,26 @@ def test_a_sideways_jump_becomes_a_lane_change(make_recording):
     # The nose leads: the car turns towards the other lane, by less than a car can steer.
     assert 0.1 < tracks.yaw.max() < 0.8
     assert tracks.yaw[-1, 0] == pytest.approx(0.0, abs=0.02)
+
+
+def test_only_groups_brake_in_an_instant(make_recording):
+    """From 12.5 m/s to 0 in half a second, in the middle of a lane change."""
+    speed = np.concatenate([np.full(50, 12.5), np.arange(10.0, 0.0, -2.5), np.zeros(40)])
+    ahead = np.concatenate([[0.0], np.cumsum(speed) / 10.0])
+    sideways = np.where(np.arange(len(ahead)) < 45, 0.0, 3.5)
+    kept = make_recording(np.stack([ahead, sideways], axis=-1)[:, None])
+    config = kept.provenance.config.model_copy(update={"demand": Demand.RESPAWN})
+    groups = replace(kept, provenance=replace(kept.provenance, config=config))
+    braking, tracks = {}, {}
+    for name, recording in (("kept", kept), ("groups", groups)):
+        tracks[name] = smooth(recording)
+        braking[name] = -np.diff(tracks[name].velocity[:, 0, 0]).min() * 10.0
+        assert np.abs(np.diff(tracks[name].position[:, 0, 1])).max() < 0.5
+    assert braking["kept"] < 17.0
+    assert 24.0 < braking["groups"] < 27.0
+    np.testing.assert_allclose(tracks["groups"].velocity[58:], 0.0, atol=0.02)
+    np.testing.assert_allclose(tracks["groups"].position[:, 0, 0], ahead, atol=0.35)
+    assert (np.diff(tracks["groups"].travelled[:, 0]) >= 0.0).all()
 
 
 def test_on_a_circle_the_rear_axle_runs_inside(make_recording):

@@ -7,9 +7,10 @@ from dataclasses import replace
 import pytest
 
 from eyas.core.errors import ConfigError, NotInThisVersionError, UnknownNameError
+from eyas.traffic.library import RESPAWN_GROUPS
 from eyas.world.maps import MAPS
 from eyas.world.maps.citystreet import CITYSTREET
-from eyas.world.maps.recipe import TRAFFIC_FILE
+from eyas.world.maps.recipe import TRAFFIC_FILE, respawn_file
 from eyas.world.weather import DAY, SNOW, WEATHERS, Season, Weather
 
 
@@ -30,6 +31,9 @@ def test_a_map_ships_the_roads_and_the_traffic_of_seed_0(name):
     assert recipe.name == name
     assert recipe.shipped_network() is not None
     assert recipe.shipped(TRAFFIC_FILE) is not None
+    files = [file.name for file in recipe.shipped_traffic()]
+    assert files[0] == TRAFFIC_FILE
+    assert {respawn_file(size) for size in RESPAWN_GROUPS} == set(files[1:])
     assert recipe.shipped("no such file") is None
 
 
@@ -81,6 +85,7 @@ def test_a_map_outside_of_a_package_ships_nothing():
     loose = replace(CITYSTREET, package=None)
     assert loose.shipped_network() is None
     assert loose.shipped(TRAFFIC_FILE) is None
+    assert loose.shipped_traffic() == ()
     assert loose.source_hash() is None
 
 

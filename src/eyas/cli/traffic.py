@@ -36,7 +36,7 @@ def record(  # noqa: PLR0913  # one parameter for each option
         bool,
         typer.Option(
             "--canonical",
-            help="Regenerate the files that ship with the map: its roads and its recording.",
+            help="Regenerate the files that ship with the map: its roads and its recordings.",
         ),
     ] = False,
 ) -> None:

@@ -9,13 +9,13 @@ from rich.progress import Progress
 
 from eyas.core.errors import ConfigError, OutputError
 from eyas.traffic.config import TrafficConfig
-from eyas.traffic.library import CANONICAL_SEED, record_canonical
+from eyas.traffic.library import CANONICAL_SEED, RESPAWN_GROUPS, record_canonical
 from eyas.traffic.network import build_network
 from eyas.traffic.record import record
 from eyas.traffic.recording_file import save
 from eyas.world.config import WorldConfig
 from eyas.world.maps import MAPS
-from eyas.world.maps.recipe import NETWORK_FILE, TRAFFIC_FILE
+from eyas.world.maps.recipe import NETWORK_FILE, TRAFFIC_FILE, respawn_file
 from eyas.world.roads.network_file import save_network
 
 __all__ = ["run", "run_canonical"]
@@ -65,7 +65,7 @@ def _check_free(path: Path, *, overwrite: bool) -> None:
 
 
 def run_canonical(world: WorldConfig) -> None:
-    """Regenerate the roads and the recording that ship with a map, in its package's source.
+    """Regenerate the roads and the recordings that ship with a map, in its package's source.
 
     Raises:
         ConfigError: The map is not part of a package.
@@ -79,9 +79,12 @@ def run_canonical(world: WorldConfig) -> None:
         )
     folder, graph = Path(str(recipe.folder)), recipe.roads(0)
     save_network(folder / NETWORK_FILE, build_network(graph))
-    with _progress() as progress:
-        record_canonical(graph, folder / TRAFFIC_FILE, progress)
-    _report(folder / TRAFFIC_FILE, "the shipped recording")
+    sizes: tuple[int | None, ...] = (None, *RESPAWN_GROUPS)
+    for size in sizes:
+        path = folder / (TRAFFIC_FILE if size is None else respawn_file(size))
+        with _progress() as progress:
+            record_canonical(graph, path, size, progress)
+        _report(path, "a shipped recording")
 
 
 @contextmanager

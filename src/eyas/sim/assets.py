@@ -19,7 +19,6 @@ from eyas.traffic.replay import Replay
 from eyas.traffic.source import TrafficSource
 from eyas.world.config import WorldConfig
 from eyas.world.maps import MAPS
-from eyas.world.maps.recipe import TRAFFIC_FILE
 
 __all__ = ["Assets", "load_assets"]
 
@@ -44,14 +43,15 @@ def load_assets(world: WorldConfig, traffic: TrafficConfig, trackers: int = 1) -
     Args:
         world: Map and weather.
         traffic: The traffic.
-        trackers: Number of trackers; three times as many vehicles enter together in a group.
+        trackers: Number of trackers in a world; at least three times as many vehicles enter
+            together in a group.
 
     Raises:
         EyasError: The map or weather does not exist, or has no traffic.
     """
     recipe = MAPS.get(world.map)
     lighting, season = recipe.light(world.weather), recipe.season(world.weather)
-    grouped = traffic.demand is Demand.RESPAWN and traffic.group_size is None
+    grouped = traffic.demand is Demand.RESPAWN
     source = _traffic(world.map, world.seed, traffic, trackers if grouped else 1)
     renderer = _renderer(world, tuple(np.unique(source.motion.kind).tolist()))
     scene = load_scene(world.map, world.seed, season)
@@ -62,7 +62,7 @@ def load_assets(world: WorldConfig, traffic: TrafficConfig, trackers: int = 1) -
 def _traffic(map_name: str, seed: int, config: TrafficConfig, trackers: int) -> TrafficSource:
     recipe = MAPS.get(map_name)
     recording = find_recording(
-        recipe.roads(seed), config, trackers=trackers, shipped=recipe.shipped(TRAFFIC_FILE)
+        recipe.roads(seed), config, trackers=trackers, shipped=recipe.shipped_traffic()
     )
     # A scene depends on the season, but its ground does not.
     scene = load_scene(map_name, seed)

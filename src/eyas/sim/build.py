@@ -10,6 +10,7 @@ from eyas.sim.assets import load_assets
 from eyas.sim.config import SimConfig
 from eyas.sim.simulation import Simulation
 from eyas.sim.supported import require_parts
+from eyas.sim.worlds import largest_world
 from eyas.trackers.config import TrackerKind
 from eyas.trackers.drone import DRONE
 from eyas.trackers.tracker import Tracker
@@ -36,7 +37,7 @@ def build_simulation(
         EyasError: A setting is not supported, or no traffic matches the settings.
     """
     require_parts(config)
-    assets = load_assets(config.world, config.traffic, len(world_of))
+    assets = load_assets(config.world, config.traffic, largest_world(world_of))
     if config.light.visibility is not None and not assets.lighting.foggy:
         _LOG.warning(
             "light.visibility (Env_Params.foggy_use_default): without effect in the weather '%s', "

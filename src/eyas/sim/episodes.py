@@ -20,6 +20,9 @@ __all__ = ["Episodes"]
 _ATTEMPTS = 100
 """Number of start times that are tried."""
 
+_TIMES = 10
+"""Number of start times after which half the stay of a vehicle is enough."""
+
 
 class Episodes:
     """Draws the episodes of N trackers.
@@ -121,15 +124,15 @@ class Episodes:
     def _choose(self, tracker: int, rng: np.random.Generator) -> tuple[int, int]:
         """Return the start time of an episode, and its target.
 
-        If vehicles come and go, none may stay for a whole episode. Then other times are tried or,
-        in a lasting world, whose time is given, vehicles that stay for a shorter time.
+        If vehicles come and go, none may stay for a whole episode. Then other times are tried, and
+        vehicles that stay for a shorter time; in a lasting world, whose time is given, only these.
         """
         others = self._worlds.trackers_of(tracker)
         lasting = bool(self._worlds.lasting[self._worlds.of[tracker]])
         used = set(self._targets.actor[others].tolist()) if lasting else set()
         for attempt in range(_ATTEMPTS):
             tick = self._now(others) if lasting else self._any_time(rng)
-            steps = self._config.done.total_steps >> (attempt if lasting else 0)
+            steps = self._config.done.total_steps >> (attempt if lasting else attempt // _TIMES)
             end = min(tick + steps, self._last_tick)
             available = self._traffic.available(tick * PHYSICS_STEP, end * PHYSICS_STEP)
             try:

@@ -15,7 +15,7 @@ from eyas.state.snapshot import CameraState
 from eyas.targets.kind import Looks
 from eyas.targets.looks import LookSampler
 
-__all__ = ["ALONE", "Worlds", "each_alone", "together"]
+__all__ = ["ALONE", "Worlds", "each_alone", "largest_world", "together"]
 
 Integers = NDArray[np.int64]
 
@@ -32,6 +32,12 @@ def each_alone(count: int) -> NDArray[np.int32]:
 def together(count: int) -> NDArray[np.int32]:
     """Return world numbers for trackers that are all in one world, shape (N,)."""
     return np.zeros(count, np.int32)
+
+
+def largest_world(world_of: NDArray[np.integer]) -> int:
+    """Return the largest number of trackers that share a world; see `Worlds` for `world_of`."""
+    shared = np.asarray(world_of)[np.asarray(world_of) != ALONE]
+    return int(np.unique(shared, return_counts=True)[1].max(initial=1))
 
 
 class Worlds:

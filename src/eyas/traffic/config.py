@@ -30,7 +30,8 @@ class Demand(StrEnum):
     KEEP_ALIVE = "keep_alive"
     """All vehicles are present from the start and never leave."""
     RESPAWN = "respawn"
-    """Groups of vehicles enter at intervals, drive a route and leave, as in the original."""
+    """Groups of vehicles enter at intervals, drive a route and leave, and all start and brake in an
+    instant, as in the original."""
 
 
 class TrafficConfig(Config):
@@ -49,7 +50,8 @@ class TrafficConfig(Config):
     max_deceleration: Annotated[float, Field(gt=0, le=100)] = 25.0
     """[m/s^2]"""
     group_size: Annotated[int, Field(ge=1, le=1000)] | None = None
-    """Vehicles that enter together (respawn); None: three for each tracker."""
+    """Vehicles that enter together (respawn), at least three for each tracker of a world; None:
+    three for each."""
     group_interval: Annotated[float, Field(gt=0, le=3600)] = 52.0
     """Time between groups (respawn) [s]."""
     route_length: tuple[Least, Most] = (500.0, 7000.0)
@@ -57,7 +59,8 @@ class TrafficConfig(Config):
     route_count: Annotated[int, Field(ge=1, le=10_000_000)] = 100_000
     """Largest number of routes drawn (respawn)."""
     update_routes: bool = True
-    """Whether to make a new recording if none fits; the original's `rou_update`."""
+    """The original's `rou_update`. A recording is reused while it fits in any case; with False, a
+    line says why a new one is made."""
     seed: Annotated[int, Field(ge=0, lt=2**31)] | None = None
     """Seed of SUMO and of the routes; None: the seed of the shipped recording."""
     colour: tuple[Unit, Unit, Unit] | None = None

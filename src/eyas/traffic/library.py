@@ -4,24 +4,25 @@ import hashlib
 import json
 import logging
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from importlib.resources.abc import Traversable
 from pathlib import Path
 
 from eyas.core.cache.entries import write_entry
 from eyas.core.cache.folder import Kind, cache_folder, cache_limit, touch
-from eyas.core.errors import ConfigError, DataFileError
+from eyas.core.errors import DataFileError
 from eyas.state.roads import RoadGraph
-from eyas.traffic.config import TrafficConfig
+from eyas.traffic.config import Demand, TrafficConfig
 from eyas.traffic.network import graph_hash
-from eyas.traffic.record import WARM_UP, record, resolved
-from eyas.traffic.recording import Recording, check_map
-from eyas.traffic.recording_file import FORMAT, load, save, to_bytes
-from eyas.traffic.sumo import OPTIONS
+from eyas.traffic.record import GROUP_SHARE, WARM_UP, record, resolved
+from eyas.traffic.recording import Provenance, Recording, check_map
+from eyas.traffic.recording_file import FORMAT, load, load_provenance, save, to_bytes
+from eyas.traffic.sumo import options
 from eyas.traffic.sumo_install import sumo_version
 
 __all__ = [
     "CANONICAL_SEED",
+    "RESPAWN_GROUPS",
     "STANDARD_DURATION",
     "find_recording",
     "record_canonical",
@@ -31,6 +32,10 @@ _LOG = logging.getLogger("eyas")
 
 CANONICAL_SEED = 1
 """Seed of the shipped recordings, and the default seed of others."""
+
+RESPAWN_GROUPS = (3, 5, 10, 12)
+"""Sizes of the groups in the shipped recordings with `respawn`: 3 for one tracker and 12 for the
+four of a video by default; 5 in the manual's example; 10 in the original's own file."""
 
 STANDARD_DURATION = 1260.0
 """Default length of a recording: 21 minutes [s]."""
@@ -46,7 +51,7 @@ def find_recording(
     *,
     trackers: int = 1,
     duration: float = STANDARD_DURATION,
-    shipped: Traversable | None = None,
+    shipped: Iterable[Traversable] = (),
 ) -> Recording:
     """Return the recording to replay: the named, the shipped, a cached or a new one.
 
@@ -55,13 +60,12 @@ def find_recording(
     Args:
         graph: Roads to drive on.
         config: Settings of the traffic.
-        trackers: Number of trackers, which determines the default size of a group.
+        trackers: Number of trackers in a world, which determines the least size of a group.
         duration: Smallest duration of the recording [s].
-        shipped: File of the recording that comes with the map, if there is one.
+        shipped: Files of the recordings that come with the map.
 
     Raises:
         DataFileError: The named recording cannot be read or is of another map.
-        ConfigError: No recording fits, and `update_routes` forbids a new one.
         MissingExtraError: No recording fits, and SUMO is not installed.
     """
     if config.recording is not None:
@@ -71,30 +75,39 @@ def find_recording(
         return named
     seed = CANONICAL_SEED if config.seed is None else config.seed
     wanted = resolved(config, seed, trackers)
-    found = _fitting(shipped, graph, wanted) if shipped is not None else None
-    if found is not None and found.duration >= duration:
-        return found
-    if not config.update_routes:
-        raise ConfigError(
-            "traffic.update_routes: false, but no recording fits these settings; allowed: true, "
-            "or the settings of the shipped recording, or traffic.recording"
-        )
-    return _cached_or_new(graph, wanted, duration)
+    _tell_raised(config, wanted, trackers)
+    for file in shipped:
+        origin = load_provenance(file)
+        if _fits(origin, graph, wanted) and origin.duration >= duration:
+            return load(file)
+    kept = _cached(graph, wanted, duration)
+    return kept or _new(graph, wanted, duration, keep_routes=not config.update_routes)
 
 
 def record_canonical(
-    graph: RoadGraph, path: Path, progress: Callable[[float], None] | None = None
+    graph: RoadGraph,
+    path: Path,
+    group_size: int | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> None:
     """Record the canonical traffic of a map (its seed 0), to be shipped with it.
 
     For developers of a map, after a change in its roads.
 
+    Args:
+        graph: Roads of the map.
+        path: The file.
+        group_size: Size of the groups, for `respawn`; None: `keep_alive`.
+        progress: Called with the completed share, 0 to 1.
+
     Raises:
         MissingExtraError: SUMO is not installed.
         OutputError: The file cannot be written.
     """
+    grouped = TrafficConfig(demand=Demand.RESPAWN, group_size=group_size)
+    config = TrafficConfig() if group_size is None else grouped
     name, seed = graph.map_name, graph.seed
-    made = record(name, seed, graph, TrafficConfig(), STANDARD_DURATION, CANONICAL_SEED, progress)
+    made = record(name, seed, graph, config, STANDARD_DURATION, CANONICAL_SEED, progress)
     save(made, path)
 
 
@@ -114,7 +127,7 @@ def _cache_file(graph: RoadGraph, wanted: TrafficConfig, duration: float) -> Pat
         "config": wanted.model_dump(mode="json"),
         "duration": duration,
         "warm_up": WARM_UP,
-        "options": OPTIONS,
+        "options": options(wanted.demand),
         "recorder": _RECORDER,
         "format": FORMAT,
     }
@@ -123,26 +136,43 @@ def _cache_file(graph: RoadGraph, wanted: TrafficConfig, duration: float) -> Pat
     return cache_folder() / Kind.TRAFFIC / f"{name}-{graph.seed}-{key}.npz"
 
 
-def _fitting(file: Traversable, graph: RoadGraph, wanted: TrafficConfig) -> Recording | None:
-    """Return a shipped recording if it fits the settings, else None."""
-    recording = load(file)
-    return recording if _fits(recording, graph, wanted) else None
+def _tell_raised(config: TrafficConfig, wanted: TrafficConfig, trackers: int) -> None:
+    said, used = config.group_size, wanted.group_size
+    if said is not None and used is not None and used > said:
+        _LOG.warning(
+            "traffic.group_size (Sumo_Params.car_group_num): %d raised to %d, %d for each of "
+            "%d trackers in a world",
+            *(said, used, GROUP_SHARE, trackers),
+        )
 
 
-def _fits(recording: Recording, graph: RoadGraph, wanted: TrafficConfig) -> bool:
-    origin = recording.provenance
+def _fits(origin: Provenance, graph: RoadGraph, wanted: TrafficConfig) -> bool:
     return (origin.graph_hash, origin.config) == (graph_hash(graph), wanted)
 
 
-def _cached_or_new(graph: RoadGraph, wanted: TrafficConfig, duration: float) -> Recording:
+def _cached(graph: RoadGraph, wanted: TrafficConfig, duration: float) -> Recording | None:
+    """Return a recording from the cache; None if it is missing or damaged, or of other traffic."""
+    path = _cache_file(graph, wanted, duration)
+    try:
+        kept = load(path)
+    except DataFileError:
+        return None
+    if not _fits(kept.provenance, graph, wanted):
+        return None
+    touch(path)
+    return kept
+
+
+def _new(
+    graph: RoadGraph, wanted: TrafficConfig, duration: float, *, keep_routes: bool
+) -> Recording:
+    """Return a new recording, and keep it in the cache."""
     limit, path = cache_limit(), _cache_file(graph, wanted, duration)
-    kept = _cached(path)
-    if kept is not None and _fits(kept, graph, wanted):
-        touch(path)
-        return kept
+    version = sumo_version("new traffic, as no recording fits the settings,")
+    reason = "traffic.update_routes (Sumo_Params.rou_update): false, but no recording fits; "
     _LOG.warning(
-        "recording %.0f s of traffic on '%s' with SUMO %s, once; kept in %s",
-        *(duration, graph.map_name, sumo_version(), path),
+        "%srecording %.0f s of traffic on '%s' with SUMO %s, once; kept in %s",
+        *(reason if keep_routes else "", duration, graph.map_name, version, path),
     )
     assert wanted.seed is not None
     made = record(graph.map_name, graph.seed, graph, wanted, duration, wanted.seed)
@@ -151,11 +181,3 @@ def _cached_or_new(graph: RoadGraph, wanted: TrafficConfig, duration: float) -> 
     except OSError as error:
         _LOG.warning("the recording is used but could not be cached: %s: %s", path, error.strerror)
     return made
-
-
-def _cached(path: Path) -> Recording | None:
-    """Return a recording from the cache; None if it is missing or damaged."""
-    try:
-        return load(path)
-    except DataFileError:
-        return None

@@ -27,7 +27,7 @@ from eyas.traffic.recording import (
     restored,
 )
 from eyas.traffic.smoothing import held
-from eyas.traffic.sumo import OPTIONS, RATE, Drive, Fleet, drive
+from eyas.traffic.sumo import RATE, Drive, Fleet, drive, options
 from eyas.traffic.sumo_install import sumo_version
 
 __all__ = ["GROUP_SHARE", "WARM_UP", "provenance", "record", "resolved"]
@@ -36,7 +36,7 @@ WARM_UP = 60.0
 """Simulated time before the recording begins, in which vehicles spread over the map [s]."""
 
 GROUP_SHARE = 3
-"""Default number of vehicles in a group for each tracker, as in the original."""
+"""Least number of vehicles in a group for each tracker, as in the original."""
 
 
 def record(  # noqa: PLR0913  # everything a recording depends on
@@ -72,13 +72,13 @@ def record(  # noqa: PLR0913  # everything a recording depends on
     return _as_recording(raw, origin)
 
 
-def resolved(config: TrafficConfig, seed: int, trackers: int = 1) -> TrafficConfig:
+def resolved(config: TrafficConfig, seed: int, trackers: int = 0) -> TrafficConfig:
     """Return the settings that affect SUMO, with all values filled in; others at their defaults.
 
     Args:
         config: The user's settings.
         seed: Seed of SUMO and of the routes.
-        trackers: Number of trackers, which determines the default size of a group.
+        trackers: Number of trackers in a world, which determines the least size of a group.
     """
     seen: dict[str, object] = {
         name: getattr(config, name)
@@ -91,7 +91,7 @@ def resolved(config: TrafficConfig, seed: int, trackers: int = 1) -> TrafficConf
     }
     if config.demand is Demand.RESPAWN:
         seen |= {
-            "group_size": config.group_size or GROUP_SHARE * trackers,
+            "group_size": max(config.group_size or GROUP_SHARE, GROUP_SHARE * trackers),
             "group_interval": config.group_interval,
             "route_length": config.route_length,
             "route_count": config.route_count,
@@ -121,7 +121,7 @@ def provenance(
         config=config,
         duration=duration,
         warm_up=WARM_UP,
-        options=OPTIONS,
+        options=options(config.demand),
         sumo_version=sumo_version(),
         eyas_version=version("eyas"),
     )

@@ -20,11 +20,12 @@ _MAKERS = ("traffic/recorded.py", "traffic/smoothing.py", "state/motion.py", "st
 
 def kept_motion(recording: Recording, terrain: Terrain, kind: NDArray[np.int32]) -> Motion:
     """Return `recorded_motion`, kept in the cache."""
+    demand = recording.provenance.config.demand.value  # smoothing depends on it
     poses = (recording.position, recording.yaw, recording.present)
     numbers = cached(
         Kind.MOTION,
         _MAKERS,
-        (*poses, recording.rate, recording.vehicle_length, kind, *terrain),
+        (*poses, recording.rate, recording.vehicle_length, demand, kind, *terrain),
         lambda: _numbers(recorded_motion(recording, terrain, kind).table),
         of=NDArray[np.float32],
     )

@@ -11,12 +11,13 @@ import json
 from dataclasses import asdict
 from importlib.resources.abc import Traversable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.config import validated
-from eyas.core.errors import DataFileError
+from eyas.core.errors import DataFileError, EyasError
 from eyas.core.files import write_atomic
 from eyas.traffic.config import TrafficConfig
 from eyas.traffic.recording import (
@@ -28,7 +29,7 @@ from eyas.traffic.recording import (
     restored,
 )
 
-__all__ = ["FORMAT", "from_bytes", "load", "save", "to_bytes"]
+__all__ = ["FORMAT", "from_bytes", "load", "load_provenance", "save", "to_bytes"]
 
 FORMAT = "eyas traffic recording 1"
 """Format in the header of a file; another layout gets another number."""
@@ -51,11 +52,24 @@ def load(path: Path | Traversable) -> Recording:
     Raises:
         DataFileError: The file is missing, unreadable, truncated or not a recording.
     """
+    return from_bytes(_read(path), str(path))
+
+
+def load_provenance(path: Path | Traversable) -> Provenance:
+    """Read the provenance only, without checking that the rest is whole.
+
+    Raises:
+        DataFileError: The file is missing, unreadable, truncated or not a recording.
+    """
+    source, data = str(path), _read(path)
     try:
-        data = path.read_bytes()
-    except OSError as error:
-        raise DataFileError(f"{path}: cannot read: {error.strerror or error}") from error
-    return from_bytes(data, str(path))
+        with np.load(io.BytesIO(data), allow_pickle=False) as file:
+            header = json.loads(file["header"].tobytes())
+        return _provenance(header, source)
+    except EyasError:
+        raise
+    except Exception as error:  # damaged bytes raise many kinds in zipfile, zlib, numpy, json
+        raise DataFileError(f"{source}: not a complete traffic recording") from error
 
 
 def to_bytes(recording: Recording) -> bytes:
@@ -99,17 +113,28 @@ def from_bytes(data: bytes, source: str) -> Recording:
     position = restored(_integrated("position", arrays), POSITION_UNIT)
     samples = int(header["shape"][0])
     present = np.unpackbits(arrays["present"].astype(np.uint8), axis=-1, count=samples)
-    origin = header["provenance"]
-    origin["config"] = validated(TrafficConfig, origin["config"], f"{source}: config")
-    origin["options"] = tuple(origin["options"])
     return Recording(
         rate=float(header["rate"]),
         position=np.ascontiguousarray(position.transpose(2, 0, 1)),
         yaw=np.ascontiguousarray(restored(_integrated("yaw", arrays), ANGLE_UNIT).T),
         present=np.ascontiguousarray(present.T.astype(np.bool_)),
         vehicle_length=float(header["vehicle_length"]),
-        provenance=Provenance(**origin),
+        provenance=_provenance(header, source),
     )
+
+
+def _read(path: Path | Traversable) -> bytes:
+    try:
+        return path.read_bytes()
+    except OSError as error:
+        raise DataFileError(f"{path}: cannot read: {error.strerror or error}") from error
+
+
+def _provenance(header: dict[str, Any], source: str) -> Provenance:
+    origin = dict(header["provenance"])
+    origin["config"] = validated(TrafficConfig, origin["config"], f"{source}: config")
+    origin["options"] = tuple(origin["options"])
+    return Provenance(**origin)
 
 
 def _read_arrays(data: bytes, source: str) -> Arrays:

@@ -2,7 +2,8 @@
 
 SUMO moves a vehicle sideways and turns it in discrete steps. A Gaussian filter removes the steps
 from the path of the front axle; the rear axle follows like a trailer (a tractrix), which gives the
-heading.
+heading. The filter also spreads braking and starting over half a second, except with `respawn`:
+there, as in the original, a vehicle is as far along the filtered path as SUMO has it.
 """
 
 import math
@@ -12,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.parallel import Held, Pointer, parallel_kernel
+from eyas.traffic.config import Demand
 from eyas.traffic.recording import Recording
 
 __all__ = ["Tracks", "held", "runs", "smooth"]
@@ -104,7 +106,10 @@ def _smooth_run(
 ) -> None:
     yaw = recording.yaw[span, actor]
     ahead = 0.5 * wheelbase * np.stack([np.cos(yaw), np.sin(yaw)], axis=-1)
-    front = _filtered(recording.position[span, actor] + ahead, SIGMA * recording.rate)
+    driven = recording.position[span, actor] + ahead
+    front = _filtered(driven, SIGMA * recording.rate)
+    if recording.provenance.config.demand is Demand.RESPAWN:
+        front = _as_far(front, driven, yaw)
     heading = np.empty(len(yaw))
     _follow(1, Held((front, float(yaw[0]), float(wheelbase), heading)))
     centre = front - 0.5 * wheelbase * np.stack([np.cos(heading), np.sin(heading)], axis=-1)
@@ -129,6 +134,22 @@ def _filtered(points: NDArray[np.float64], sigma: float) -> NDArray[np.float64]:
     padded = np.concatenate([before, points, after])
     columns = [np.convolve(padded[:, axis], weight, "valid") for axis in range(2)]
     return np.stack(columns, axis=-1)
+
+
+def _as_far(
+    path: NDArray[np.float64], driven: NDArray[np.float64], yaw: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Return the points of a path (S, 2) beside the points driven (S, 2) with headings (S,).
+
+    The path is followed from each of its points by what the point driven is ahead of it; never
+    backwards.
+    """
+    step = np.hypot(*np.diff(path, axis=0).T)
+    length = np.concatenate([[0.0], np.cumsum(step)])
+    gap = driven - path
+    ahead = gap[:, 0] * np.cos(yaw) + gap[:, 1] * np.sin(yaw)
+    place = np.maximum.accumulate(length + ahead)
+    return np.stack([np.interp(place, length, path[:, axis]) for axis in range(2)], axis=-1)
 
 
 def _slope(values: NDArray[np.float64], rate: float) -> NDArray[np.float64]:

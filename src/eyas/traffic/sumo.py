@@ -17,16 +17,19 @@ from eyas.traffic.demand import RoadLinks, Route, without_turnarounds
 from eyas.traffic.slots import Slots
 from eyas.traffic.sumo_install import import_libsumo
 
-__all__ = ["OPTIONS", "RATE", "Drive", "Fleet", "drive"]
+__all__ = ["RATE", "Drive", "Fleet", "drive", "options"]
 
 RATE = 10
 """SUMO's steps and Eyas's samples per second [Hz], as in the original."""
 
-OPTIONS = (
-    # Vehicles move gradually to the next lane instead of jumping 3.5 m in one step.
-    *("--lateral-resolution", "0.8"),
+_DRIVERS = {
     # Drivers decide twice a second: smoother, and several times faster.
-    *("--default.action-step-length", "0.5"),
+    Demand.KEEP_ALIVE: ("--default.action-step-length", "0.5"),
+    # In each step, as in the original.
+    Demand.RESPAWN: (),
+}
+
+_OPTIONS = (
     # Never teleport a vehicle out of a jam or an accident.
     *("--time-to-teleport", "-1"),
     *("--collision.action", "none"),
@@ -34,7 +37,13 @@ OPTIONS = (
     *("--no-step-log", "true"),
     *("--duration-log.disable", "true"),
 )
-"""SUMO's options, except the network, the seed and the step length."""
+
+_IMPATIENCE = {
+    Demand.KEEP_ALIVE: "",
+    # Makes up for our crossings, which are wider than the original's: cars stand 0.4 % of the time
+    # there, but 1.1 % here if none is impatient.
+    Demand.RESPAWN: ' impatience="0.12"',
+}
 
 TYPE = "eyas"
 """Name of the only vehicle type."""
@@ -55,6 +64,12 @@ class Drive:
     """Whether the actor is in the world, shape (S, A)."""
     vehicle_length: float
     """SUMO's length of the vehicle class [m]."""
+
+
+def options(demand: Demand) -> tuple[str, ...]:
+    """Return SUMO's options, except the network, the seed and the step length."""
+    # Vehicles move gradually to the next lane instead of jumping 3.5 m in one step.
+    return ("--lateral-resolution", "0.8", *_DRIVERS[demand], *_OPTIONS)
 
 
 def drive(
@@ -109,7 +124,7 @@ def _simulation(network: bytes, config: TrafficConfig) -> Iterator[ModuleType]:
         types.write_text(_type_xml(config))
         files = ("--net-file", str(roads), "--additional-files", str(types))
         clock = ("--step-length", str(1 / RATE), "--seed", str(config.seed))
-        sumo.start(["sumo", *files, *clock, *OPTIONS])
+        sumo.start(["sumo", *files, *clock, *options(config.demand)])
         try:
             yield sumo
         finally:
@@ -124,7 +139,8 @@ def _type_xml(config: TrafficConfig) -> str:
         f'<additional><vType id="{TYPE}" vClass="{config.vehicle_type}" '
         f'maxSpeed="{config.max_speed}" accel="{config.max_acceleration}" '
         f'decel="{config.max_deceleration}" '
-        'lcMaxSpeedLatStanding="0" lcMaxSpeedLatFactor="0.3"/></additional>'
+        'lcMaxSpeedLatStanding="0" lcMaxSpeedLatFactor="0.3"'
+        f"{_IMPATIENCE[config.demand]}/></additional>"
     )
 
 

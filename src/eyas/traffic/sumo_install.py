@@ -47,8 +47,11 @@ def import_libsumo() -> ModuleType:
     return _imported("libsumo")
 
 
-def sumo_version() -> str:
+def sumo_version(purpose: str = "traffic") -> str:
     """Return the installed version of SUMO, for example `1.28.0`.
+
+    Args:
+        purpose: The feature that needs it, as a noun phrase for the error.
 
     Raises:
         MissingExtraError: SUMO is not installed.
@@ -56,7 +59,7 @@ def sumo_version() -> str:
     try:
         return version("eclipse-sumo")
     except PackageNotFoundError:
-        raise missing_sumo("traffic") from None
+        raise missing_sumo(purpose) from None
 
 
 def missing_sumo(purpose: str) -> MissingExtraError:

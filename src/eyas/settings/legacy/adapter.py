@@ -14,7 +14,7 @@ from eyas.core.errors import ConfigError
 from eyas.core.files import write_atomic
 from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.entries import Entry, Values
-from eyas.settings.legacy.keys import ENTRIES
+from eyas.settings.legacy.keys import ENTRIES, GROUP_KEYS, KEEP_ALIVE
 
 __all__ = [
     "from_legacy",
@@ -44,7 +44,7 @@ def from_legacy(values: Nested, base: EyasConfig | None = None) -> EyasConfig:
     Args:
         values: Its content; groups and keys that are missing have the manual's defaults, or, where
             the manual leaves them out, the values that the original ships with.
-        base: Settings that it cannot express (camera, seed, demand, ...); None: our defaults.
+        base: Settings that it cannot express (camera, seed, ...); None: our defaults.
 
     Raises:
         ConfigError: An unknown key, a wrong type or a value that is not allowed: one line with the
@@ -67,6 +67,8 @@ def with_legacy(config: EyasConfig, changes: Nested, inactive: Nested | None = N
         ConfigError: As from `from_legacy`.
     """
     said = _flat(changes)
+    if not GROUP_KEYS.isdisjoint(said):
+        said = {KEEP_ALIVE: False} | said  # who says how groups come means that they do
     touched = [entry for entry in ENTRIES if not said.keys().isdisjoint(entry.keys)]
     values = {**_flat(legacy_defaults()), **_flat(inactive or {})}
     for entry in touched:

@@ -1,9 +1,27 @@
-"""Every key of the original's `env_config.json`, and our setting for it."""
+"""Every key of an `env_config.json`, and our setting for it."""
 
 from eyas.settings.legacy.entries import Entry, Optional, Same, Span, Varied
+from eyas.settings.legacy.switch import Switch
 from eyas.settings.legacy.world_path import WorldPath
+from eyas.traffic.config import Demand
 
-__all__ = ["ENTRIES"]
+__all__ = ["ENTRIES", "GROUP_KEYS", "KEEP_ALIVE"]
+
+KEEP_ALIVE = "Sumo_Params.keep_alive"
+"""The one key of ours, which the original ignores: without it, or false, its traffic is meant."""
+
+GROUP_KEYS = frozenset(
+    f"Sumo_Params.{name}"
+    for name in (
+        "fixed_car_group_num",
+        "car_group_num",
+        "car_import_interval",
+        "max_rou_distance",
+        "min_rou_distance",
+        "route_num",
+    )
+)
+"""Keys that have an effect on the original's traffic only."""
 
 
 def _drawn(name: str, path: str, sides: str | None) -> Varied:
@@ -53,6 +71,7 @@ _TASK = (
 )
 
 _SUMO = (
+    Switch(KEEP_ALIVE, "traffic.demand", on=Demand.KEEP_ALIVE.value, off=Demand.RESPAWN.value),
     Same("Sumo_Params.rou_update", "traffic.update_routes"),
     Same("Sumo_Params.max_sumo_car", "traffic.max_vehicles"),
     Optional("Sumo_Params.fixed_car_group_num", "Sumo_Params.car_group_num", "traffic.group_size"),

@@ -15,13 +15,18 @@ if TYPE_CHECKING:  # maps load with `eyas`; the scene modules only when a scene 
     from eyas.state.roads import RoadGraph, RoadNetwork
     from eyas.state.scene import Scene
 
-__all__ = ["NETWORK_FILE", "TRAFFIC_FILE", "MapRecipe"]
+__all__ = ["NETWORK_FILE", "TRAFFIC_FILE", "MapRecipe", "respawn_file"]
 
 NETWORK_FILE = "network.npz"
 """File in a map's package with the processed roads of its seed 0."""
 
 TRAFFIC_FILE = "traffic.npz"
 """File in a map's package with the canonical recording of its traffic."""
+
+
+def respawn_file(group_size: int) -> str:
+    """Return the file in a map's package with the canonical traffic of groups of a size."""
+    return f"traffic-groups-of-{group_size}.npz"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -42,9 +47,9 @@ class MapRecipe:
     """Whether the winter scene differs from that of summer: other trees, roofs or crops. Snow on an
     unchanged scene is part of the light (`Lighting.snow`) and needs no scene of its own."""
     package: str | None = None
-    """Package that contains the map, mostly `__name__`: it may hold `NETWORK_FILE` and
-    `TRAFFIC_FILE`, and a change of its source rebuilds the scene. None: nothing is shipped, and the
-    scene is not cached between runs."""
+    """Package that contains the map, mostly `__name__`: it may hold `NETWORK_FILE` and recordings
+    (`traffic*.npz`), and a change of its source rebuilds the scene. None: nothing is shipped, and
+    the scene is not cached between runs."""
 
     def __post_init__(self) -> None:
         if not re.fullmatch(r"\w+(-\w+)*", self.name):
@@ -87,6 +92,12 @@ class MapRecipe:
         """Return a file that comes with the map's package; None if there is none."""
         path = self.folder / file if self.folder is not None else None
         return path if path is not None and path.is_file() else None
+
+    def shipped_traffic(self) -> tuple[Traversable, ...]:
+        """Return the recordings that come with the map's package, `TRAFFIC_FILE` first."""
+        files = () if self.folder is None else self.folder.iterdir()
+        found = [file for file in files if re.fullmatch(r"traffic.*\.npz", file.name)]
+        return tuple(sorted(found, key=lambda file: (file.name != TRAFFIC_FILE, file.name)))
 
     def source_hash(self) -> str | None:
         """Return a hash of the sources of the map's package; None without a package."""
