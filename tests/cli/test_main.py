@@ -80,7 +80,7 @@ def test_convert_writes_the_other_notation_and_rewrites_nothing(monkeypatch, cap
     )
     legacy.write_text(json.dumps(to_legacy(EyasConfig(video={"fps": 9}))))
     assert run(monkeypatch, capsys, "config", "convert", legacy, native)[0] == 0
-    assert EyasConfig(**json.loads(native.read_text())) == EyasConfig(video={"fps": 9})
+    assert EyasConfig(**json.loads(native.read_text())) == EyasConfig(video={"fps": 9}, original={})
     assert run(monkeypatch, capsys, "config", "convert", native, again)[0] == 0
     assert json.loads(again.read_text()) == json.loads(legacy.read_text())
     code, _, err = run(monkeypatch, capsys, "config", "convert", legacy, native)
@@ -94,6 +94,12 @@ def test_a_recording_of_traffic_is_not_replaced_unasked(monkeypatch, capsys, tmp
     code, _, err = run(monkeypatch, capsys, "traffic", "record", "--out", path)
     assert (code, len(err)) == (2, 1)
     assert path.read_bytes() == b"precious"
+
+
+def test_help_keeps_its_units(monkeypatch, capsys):
+    code, out, _ = run(monkeypatch, capsys, "traffic", "record", "--help")
+    assert code == 0
+    assert "Seconds to record" in out
 
 
 def test_version_and_maps(monkeypatch, capsys):

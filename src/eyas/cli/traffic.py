@@ -24,7 +24,7 @@ def record(  # noqa: PLR0913  # one parameter for each option
     seed: Annotated[
         int | None, typer.Option("--seed", help="Seed of SUMO and of the routes.")
     ] = None,
-    duration: Annotated[float, typer.Option("--duration", help="Time to record [s].")] = 1260.0,
+    duration: Annotated[float, typer.Option("--duration", help="Seconds to record.")] = 1260.0,
     vehicle_type: Annotated[
         str | None, typer.Option("--type", help="passenger, bus, truck, trailer or motorcycle.")
     ] = None,
@@ -43,6 +43,7 @@ def record(  # noqa: PLR0913  # one parameter for each option
     """Record traffic; use it with --set traffic.recording=FILE."""
     from eyas.modes import traffic
     from eyas.settings.file import load_settings
+    from eyas.settings.legacy.messages import originals_named
 
     short = {
         "world.seed": map_seed,
@@ -51,7 +52,8 @@ def record(  # noqa: PLR0913  # one parameter for each option
     }
     said = [f"{key}={json.dumps(value)}" for key, value in short.items() if value is not None]
     settings = load_settings(config, [*gathered(set_, map_name), *said])
-    if canonical:
-        traffic.run_canonical(settings.world)
-    else:
-        traffic.run(settings.world, settings.traffic, duration, out, overwrite=overwrite)
+    with originals_named(settings):
+        if canonical:
+            traffic.run_canonical(settings.world)
+        else:
+            traffic.run(settings.world, settings.traffic, duration, out, overwrite=overwrite)

@@ -17,6 +17,7 @@ from eyas.exports.registry import WRITERS, chosen_writers
 from eyas.exports.writer import Episode, Run
 from eyas.modes.video.contents import Contents, paths_below
 from eyas.modes.video.lock import LOCK
+from eyas.modes.video.step_log import STEP_LOGS
 from eyas.settings.config import EyasConfig
 from eyas.settings.file import read_settings, save_settings
 from eyas.settings.legacy.adapter import save_legacy
@@ -140,7 +141,7 @@ def _contents(path: Path, config: EyasConfig) -> Contents:
     with suppress(OSError, ValueError, TypeError, KeyError):
         recorded = json.loads((path / ORIGIN).read_text())["files"]
         files.append(Files(**{kind: tuple(recorded[kind]) for kind in recorded}))
-    return Contents(joined(files), [SETTINGS, LEGACY_SETTINGS, ORIGIN, LOCK])
+    return Contents(joined(files), [SETTINGS, LEGACY_SETTINGS, ORIGIN, LOCK, *STEP_LOGS])
 
 
 def _delete_parts(path: Path, contents: Contents) -> None:
@@ -194,7 +195,8 @@ def _require_same_settings(path: Path, config: EyasConfig) -> None:
         recorded = validated(EyasConfig, read_settings(settings))
     except (DataFileError, ConfigError):
         raise DataFileError(f"{settings}: cannot be read; start again with --overwrite") from None
-    was, asked = recorded.model_dump(mode="json"), config.model_dump(mode="json")
+    # Values without effect need not be the same.
+    was, asked = (each.model_dump(mode="json", exclude={"original"}) for each in (recorded, config))
     difference = _first_difference(was, asked, "")
     if difference:
         raise ConfigError(
