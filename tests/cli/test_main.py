@@ -11,6 +11,7 @@ from eyas import __version__
 from eyas.cli.main import main
 from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.adapter import to_legacy
+from eyas.settings.preset import PRESETS
 
 COMMAND = [sys.executable, "-m", "eyas.cli.main"]
 
@@ -33,6 +34,8 @@ def run(monkeypatch, capsys, *arguments):
             ["config", "show", "--set", "Control_Frequence=0"],
             "Control_Frequence: 0 is not allowed: ",
         ),
+        (["video", "--preset", "dat"], "preset: 'dat' is not allowed; "),
+        (["config", "show", "--preset", "easy", "--config", "a.json"], "--preset and --config "),
         (["config", "show", "--set", "seed"], "--set 'seed': not of the form key=value"),
         (["video", "--set", "Lidar_Enable=true"], "wire.lidar (Lidar_Enable): true: "),
         (["video", "--seed", "-1"], "seed: -1 is not allowed: "),
@@ -72,6 +75,15 @@ def test_show_prints_the_settings_in_either_notation(monkeypatch, capsys):
     assert (code, EyasConfig(**json.loads(out))) == (0, config)
     _, out, _ = run(monkeypatch, capsys, "config", "show", "--legacy", "--set", "video.fps=9")
     assert json.loads(out) == to_legacy(config)
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_presets_are_chosen_by_name_and_changed_by_set(monkeypatch, capsys, name):
+    command = ("config", "show", "--preset", name, "--set", "start.height=17")
+    code, out, _ = run(monkeypatch, capsys, *command)
+    assert (code, json.loads(out)["start"]["height"]) == (0, 17.0)
+    help_text = run(monkeypatch, capsys, "config", "show", "--help")[1]
+    assert name in help_text
 
 
 def test_convert_writes_the_other_notation_and_rewrites_nothing(monkeypatch, capsys, tmp_path):

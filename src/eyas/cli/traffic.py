@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from eyas.cli.options import ConfigFile, MapName, Overrides, gathered
+from eyas.cli.options import ConfigFile, MapName, Overrides, Preset, chosen_file, gathered
 
 __all__ = ["app"]
 
@@ -31,6 +31,7 @@ def record(  # noqa: PLR0913  # one parameter for each option
     out: Annotated[Path | None, typer.Option("--out", help="File to write.")] = None,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the file.")] = False,
     config: ConfigFile = None,
+    preset: Preset = None,
     set_: Overrides = None,
     canonical: Annotated[
         bool,
@@ -51,7 +52,7 @@ def record(  # noqa: PLR0913  # one parameter for each option
         "traffic.vehicle_type": vehicle_type,
     }
     said = [f"{key}={json.dumps(value)}" for key, value in short.items() if value is not None]
-    settings = load_settings(config, [*gathered(set_, map_name), *said])
+    settings = load_settings(chosen_file(config, preset), [*gathered(set_, map_name), *said])
     with originals_named(settings):
         if canonical:
             traffic.run_canonical(settings.world)

@@ -18,6 +18,7 @@ from eyas.envs.config import EnvSpeeds
 from eyas.settings.config import EyasConfig
 from eyas.settings.file import load_settings
 from eyas.settings.legacy.messages import originals_named
+from eyas.settings.preset import preset_file
 from eyas.settings.version_check import require_supported
 from eyas.sim.build import build_simulation
 from eyas.sim.worlds import each_alone
@@ -46,8 +47,9 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
     settings (factor on the sky, factor on the sun, one over the visibility range [1/m]).
 
     Args:
-        config: Settings: an `EyasConfig`, nested dictionaries of native settings, or the path of a
-            JSON file (native or the original's `env_config.json`).
+        config: Settings: an `EyasConfig`, nested dictionaries of native settings, the name of a
+            preset (`dat-train`, `dat-eval`, `easy`), or the path of a JSON file (native or the
+            original's `env_config.json`).
         map: Name of the map; overrides the configuration.
         weather: Name of the weather; overrides the configuration.
         continuous: True: four numbers in -1 to 1; False: the seven discrete actions.
@@ -166,8 +168,10 @@ def _settings(
             settings = config
         case Mapping():
             settings = validated(EyasConfig, dict(config))
+        case str() if "." not in config and not Path(config).exists():
+            settings = load_settings(preset_file(config))
         case _:
-            settings = load_settings(Path(config), [])
+            settings = load_settings(Path(config))
     world = {"map": map_name, "weather": weather}
     changed = {key: value for key, value in world.items() if value is not None}
     changes: dict[str, object] = {}

@@ -111,7 +111,8 @@ def _require_traffic(config: EyasConfig) -> None:
         raise ConfigError(
             f"video.total_time: {config.video.total_time:g} s after {config.video.start_time:g} s"
             f" is longer than the traffic's recording; allowed: up to"
-            f" {known - config.video.start_time:g} s"
+            f" {known - config.video.start_time:g} s, or a longer traffic.recording (eyas traffic"
+            " record --duration)"
         )
     begin = (config.start.warm_up_steps + config.video.warm_up_steps) / PHYSICS_RATE
     if end <= begin:
