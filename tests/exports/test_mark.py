@@ -44,7 +44,7 @@ def test_rewards_are_whole_doubles_and_what_is_no_number_is_null(run, episode, f
     assert rewards == [0.1 + 0.2, None]
 
 
-@pytest.mark.parametrize("text", [None, '{\n    "000000": [\n'])
+@pytest.mark.parametrize("text", [None, '{\n    "000000": [\n', "3", "[1]", "[" * 100_000])
 def test_marks_that_are_missing_or_cut_off_are_not_whole(run, episode, text):
     if text is not None:
         (episode.folder / "mark.json").write_text(text)

@@ -8,7 +8,15 @@ from pathlib import Path
 
 from eyas.core.errors import DataFileError, OutputError
 
-__all__ = ["PART_SUFFIX", "atomic_path", "part_path", "read_limited", "refusals", "write_atomic"]
+__all__ = [
+    "PART_SUFFIX",
+    "atomic_path",
+    "part_path",
+    "read_limited",
+    "refusals",
+    "user_path",
+    "write_atomic",
+]
 
 PART_SUFFIX = ".part"
 """Ending of a file that is still being written; such a file may be deleted at any time."""
@@ -59,6 +67,18 @@ def write_atomic(path: Path, data: bytes) -> None:
         part.write_bytes(data)
 
 
+def user_path(text: str) -> Path:
+    """Return the path that a user has written, with `~` as in a shell.
+
+    Raises:
+        DataFileError: There is no such user.
+    """
+    try:
+        return Path(text).expanduser()
+    except RuntimeError as error:
+        raise DataFileError(f"{text}: cannot read: {error}") from error
+
+
 def read_limited(path: Path, largest: int) -> bytes:
     """Return the content of a file.
 
@@ -77,6 +97,8 @@ def read_limited(path: Path, largest: int) -> bytes:
             content = file.read(largest + 1)
     except OSError as error:
         raise DataFileError(f"{path}: cannot read: {error.strerror or error}") from error
+    except ValueError as error:  # a character that no path can have
+        raise DataFileError(f"{path}: cannot read: {error}") from error
     if len(content) > largest:
         raise DataFileError(f"{path}: cannot read: larger than {largest >> 20} MiB")
     return content

@@ -1,6 +1,7 @@
 """The Gymnasium environment: one drone, one target."""
 
 import logging
+import os
 from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
@@ -168,7 +169,7 @@ def _settings(
             settings = config
         case Mapping():
             settings = validated(EyasConfig, dict(config))
-        case str() if "." not in config and not Path(config).exists():
+        case str() if "." not in config and not os.path.exists(config):
             settings = load_settings(preset_file(config))
         case _:
             settings = load_settings(Path(config))

@@ -46,9 +46,10 @@ class MarkWriter(Writer):
     def read(self, folder: Path) -> Summary | None:
         """Return the number of marks."""
         try:
-            return Summary(len(json.loads((folder / MARK).read_text())))
-        except (OSError, ValueError):
+            marks = json.loads((folder / MARK).read_text())
+        except (OSError, ValueError, RecursionError):
             return None
+        return Summary(len(marks)) if isinstance(marks, dict) else None
 
     def finish(self, episodes: Sequence[EndedEpisode]) -> None:
         """Write `dir_info.json`.
