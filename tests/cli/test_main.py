@@ -11,6 +11,7 @@ from eyas import __version__
 from eyas.cli.main import main
 from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.adapter import to_legacy
+from eyas.settings.preset import PRESETS
 
 COMMAND = [sys.executable, "-m", "eyas.cli.main"]
 
@@ -33,6 +34,8 @@ def run(monkeypatch, capsys, *arguments):
             ["config", "show", "--set", "Control_Frequence=0"],
             "Control_Frequence: 0 is not allowed: ",
         ),
+        (["video", "--preset", "dat"], "preset: 'dat' is not allowed; "),
+        (["config", "show", "--preset", "easy", "--config", "a.json"], "--preset and --config "),
         (["config", "show", "--set", "seed"], "--set 'seed': not of the form key=value"),
         (["video", "--set", "Lidar_Enable=true"], "wire.lidar (Lidar_Enable): true: "),
         (["video", "--seed", "-1"], "seed: -1 is not allowed: "),
@@ -74,13 +77,22 @@ def test_show_prints_the_settings_in_either_notation(monkeypatch, capsys):
     assert json.loads(out) == to_legacy(config)
 
 
+@pytest.mark.parametrize("name", PRESETS)
+def test_presets_are_chosen_by_name_and_changed_by_set(monkeypatch, capsys, name):
+    command = ("config", "show", "--preset", name, "--set", "start.height=17")
+    code, out, _ = run(monkeypatch, capsys, *command)
+    assert (code, json.loads(out)["start"]["height"]) == (0, 17.0)
+    help_text = run(monkeypatch, capsys, "config", "show", "--help")[1]
+    assert name in help_text
+
+
 def test_convert_writes_the_other_notation_and_rewrites_nothing(monkeypatch, capsys, tmp_path):
     legacy, native, again = (
         tmp_path / name for name in ("legacy.json", "native.json", "again.json")
     )
     legacy.write_text(json.dumps(to_legacy(EyasConfig(video={"fps": 9}))))
     assert run(monkeypatch, capsys, "config", "convert", legacy, native)[0] == 0
-    assert EyasConfig(**json.loads(native.read_text())) == EyasConfig(video={"fps": 9})
+    assert EyasConfig(**json.loads(native.read_text())) == EyasConfig(video={"fps": 9}, original={})
     assert run(monkeypatch, capsys, "config", "convert", native, again)[0] == 0
     assert json.loads(again.read_text()) == json.loads(legacy.read_text())
     code, _, err = run(monkeypatch, capsys, "config", "convert", legacy, native)
@@ -94,6 +106,12 @@ def test_a_recording_of_traffic_is_not_replaced_unasked(monkeypatch, capsys, tmp
     code, _, err = run(monkeypatch, capsys, "traffic", "record", "--out", path)
     assert (code, len(err)) == (2, 1)
     assert path.read_bytes() == b"precious"
+
+
+def test_help_keeps_its_units(monkeypatch, capsys):
+    code, out, _ = run(monkeypatch, capsys, "traffic", "record", "--help")
+    assert code == 0
+    assert "Seconds to record" in out
 
 
 def test_version_and_maps(monkeypatch, capsys):

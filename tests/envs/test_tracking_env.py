@@ -1,5 +1,6 @@
 """The Gymnasium environment, against the checkers of the libraries that use it."""
 
+import logging
 import math
 import warnings
 
@@ -77,6 +78,29 @@ def test_an_episode_ends_terminated_without_reward():
     assert terminated
     assert reward == 0
     assert info["done_reason"] == "no_reward"
+
+
+def test_a_violated_limit_is_told_and_logged_in_the_originals_words(caplog):
+    caplog.set_level(logging.INFO, "eyas.steps")
+    done = {"yaw_rate": 1.5, "grace_steps": 0}
+    env = TrackingEnv({"done": done, "verbose": True})
+    _, info = env.reset(seed=0)
+    assert info["done_state"] == "none"
+    for _ in range(10):
+        *_, terminated, _, info = env.step(4)
+        if terminated:
+            break
+    assert (info["done_reason"], info["done_state"]) == ("yaw_rate", "yaw velocity")
+    line = caplog.records[-1].getMessage()
+    assert line.startswith("id: DRONE0 done: 1 reward: ")
+    assert line.endswith("doneState: yaw velocity")
+
+
+def test_an_error_names_the_originals_key_if_the_setting_came_from_its_file(tmp_path):
+    path = tmp_path / "env_config.json"
+    path.write_text('{"Train_Total_Steps": 1000000}')
+    with pytest.raises(EyasError, match=r"^done\.total_steps \(Train_Total_Steps\): 1000000 "):
+        TrackingEnv(path)
 
 
 def test_the_reward_packet_comes_by_name():

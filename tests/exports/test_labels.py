@@ -88,3 +88,20 @@ def test_damaged_labels_say_where(run, written, frame, damage, line):
     with pytest.raises(DataFileError, match=line):
         read_labels(path)
     assert LabelWriter(run).read(path.parent) is None
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        lambda text: text.replace('"visible_fraction": 0.75', '"visible_fraction": "all"'),
+        lambda text: text.replace('"reward": 0.5', '"reward": [1]'),
+        lambda text: text.replace('"reward": 0.5', '"reward": 1' + "0" * 400),
+        lambda text: text + "[" * 100_000,
+    ],
+)
+def test_labels_of_someone_else_that_hold_anything_tell_nothing(run, written, frame, damage):
+    path = written(frame(0))
+    changed = damage(path.read_text())
+    assert changed != path.read_text()
+    path.write_text(changed)
+    assert LabelWriter(run).read(path.parent) is None

@@ -1,3 +1,4 @@
+import json
 from dataclasses import replace
 
 import numpy as np
@@ -37,7 +38,13 @@ def test_marks_of_the_direction_are_whole_numbers(run, episode, frames):
     assert text == '{\n    "000000": 1,\n    "000001": 2\n}'
 
 
-@pytest.mark.parametrize("text", [None, '{\n    "000000": [\n'])
+def test_rewards_are_whole_doubles_and_what_is_no_number_is_null(run, episode, frame):
+    text = write(run, episode, [frame(0, reward=0.1 + 0.2), frame(1, reward=float("nan"))])
+    rewards = [reward for reward, _ in json.loads(text).values()]
+    assert rewards == [0.1 + 0.2, None]
+
+
+@pytest.mark.parametrize("text", [None, '{\n    "000000": [\n', "3", "[1]", "[" * 100_000])
 def test_marks_that_are_missing_or_cut_off_are_not_whole(run, episode, text):
     if text is not None:
         (episode.folder / "mark.json").write_text(text)

@@ -68,3 +68,13 @@ def test_an_abandoned_movie_leaves_nothing(run, episode, frame):
     assert not (episode.folder / "episode.mp4").exists()
     part.abandon()
     assert list(episode.folder.iterdir()) == []
+
+
+def test_a_playlist_under_the_name_of_a_movie_is_not_played(run, episode, frame):
+    part = Mp4Writer(run).begin(episode)
+    part.add(frame(0))
+    part.finish()
+    movie = episode.folder / "episode.mp4"
+    movie.rename(episode.folder / "other.mp4")
+    movie.write_text("ffconcat version 1.0\nfile other.mp4\n")
+    assert Mp4Writer(run).read(episode.folder) is None

@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import resource
 import signal
 import subprocess
@@ -16,7 +17,7 @@ import pytest
 from PIL import Image
 
 from eyas.cli.main import main
-from eyas.core.errors import ConfigError, OutputError
+from eyas.core.errors import ConfigError, OutputError, SpawnError
 from eyas.exports.files import Files
 from eyas.exports.frame import Frame
 from eyas.exports.gather import Gather
@@ -97,7 +98,8 @@ def test_labels_agree_with_the_marks_and_the_geometry(recorded):
     for episode in episodes_of(recorded):
         marks = json.loads((episode / "mark.json").read_text())
         for label in read_labels(episode / "labels.jsonl"):
-            assert marks[f"{label.frame:06d}"] == [label.reward, -1.0]
+            reward, action = marks[f"{label.frame:06d}"]
+            assert (round(reward, 6), action) == (label.reward, -1.0)
             left, top, right, bottom = label.target_box
             assert label.in_view
             assert 0 <= left < right <= 64
@@ -262,6 +264,50 @@ def test_more_time_than_there_is_traffic_is_one_line_and_no_folder(tmp_path):
     with pytest.raises(ConfigError, match=r"video\.total_time: .*allowed: up to"):
         video.run(CONFIG.model_copy(update={"video": changed}), tmp_path / "a", quiet=True)
     assert not (tmp_path / "a").exists()
+
+
+def test_fewer_targets_than_trackers_is_one_line_and_no_folder(tmp_path):
+    changed = CONFIG.video.model_copy(update={"channels": 50})
+    with pytest.raises(SpawnError, match="40 known, 40 in the world, 40 followed"):
+        video.run(CONFIG.model_copy(update={"video": changed}), tmp_path / "a", quiet=True)
+    assert not (tmp_path / "a").exists()
+
+
+def test_an_error_names_the_originals_key_if_the_setting_came_from_its_file(tmp_path):
+    changed = CONFIG.video.model_copy(update={"total_time": 1e6})
+    config = CONFIG.model_copy(update={"video": changed, "original": {}})
+    with pytest.raises(ConfigError, match=r"^video\.total_time \(Out_Video\.total_time\): 1e\+06"):
+        video.run(config, tmp_path / "a", quiet=True)
+
+
+def test_verbose_logs_every_step_in_the_originals_words(recorded, tmp_path):
+    short = CONFIG.video.model_copy(update={"total_time": 0.1})
+    config = CONFIG.model_copy(update={"video": short, "verbose": True})
+    path = tmp_path / "a"
+    video.run(config, path, quiet=True)
+    lines = (path / "DRONE1.log").read_text().splitlines()
+    assert len(lines) == round((0.7 + 0.1) * 500) - CONFIG.start.warm_up_steps
+    pattern = re.compile(
+        r"id: DRONE1 done: [01] reward: [\d.e-]+ count: \d+ time: [\d.]+ carDir: [0-3]"
+        r" pitchAngle: [\d.]+ doneState: none"
+    )
+    assert all(pattern.fullmatch(line) for line in lines)
+    before = contents(path)
+    next(path.glob("DRONE1/*/mark.json")).unlink()
+    (path / "DRONE1.log").unlink()
+    video.run(config, path, resume=True, quiet=True)
+    assert contents(path) == before
+    video.run(config, path, overwrite=True, quiet=True)
+    assert contents(path) == before
+
+
+def test_values_without_effect_do_not_keep_a_recording_from_being_continued(tmp_path):
+    config = with_writers("mark", total_time=0.1)
+    video.run(config, tmp_path / "a", quiet=True)
+    kept = {"Drone_Random_Config.height_fixed": 17}
+    video.run(config.model_copy(update={"original": kept}), tmp_path / "a", resume=True, quiet=True)
+    written = json.loads((tmp_path / "a" / "env_config.json").read_text())
+    assert written["Drone_Random_Config"]["height_fixed"] == 17
 
 
 def test_a_recording_that_ends_before_it_begins_is_refused_and_leaves_no_folder(tmp_path):

@@ -1,4 +1,5 @@
 import json
+import os
 from pathlib import Path
 
 import pytest
@@ -175,3 +176,58 @@ def test_overwrite_and_resume_exclude_each_other(tmp_path):
     with pytest.raises(ConfigError, match="cannot be used together"):
         open_folder(tmp_path / "a", CONFIG, overwrite=True, resume=True)
     assert not (tmp_path / "a").exists()
+
+
+@pytest.mark.parametrize("link", ["DRONE0/episode1", "DRONE1", "DRONE0/episode0/mark.json"])
+def test_resume_follows_no_links_of_a_recording_of_someone_else(tmp_path, link):
+    path = recording(tmp_path / "a")
+    outside = tmp_path / "outside"
+    outside.mkdir()
+    (outside / "000000.jpeg").write_text("mine")
+    (path / link).unlink(missing_ok=True)
+    (path / link).symlink_to(outside)
+    with pytest.raises(OutputError, match=rf"not continued: '{link}' is a link") as caught:
+        open_folder(path, CONFIG, overwrite=False, resume=True)
+    assert "\n" not in str(caught.value)
+    assert (outside / "000000.jpeg").read_text() == "mine"
+
+
+@pytest.mark.parametrize("options", [{"resume": True}, {"overwrite": True}])
+def test_a_pipe_or_a_device_instead_of_a_file_is_not_read(tmp_path, options):
+    path = recording(tmp_path / "a")
+    (path / "version.json").unlink()
+    os.mkfifo(path / "version.json")
+    if options.get("resume"):
+        with pytest.raises(OutputError, match=r"'version\.json' is a link or a device"):
+            open_folder(path, CONFIG, **{"overwrite": False, "resume": False} | options)
+    else:
+        open_folder(path, CONFIG, **{"overwrite": False, "resume": False} | options)
+        assert (path / "version.json").is_file()
+
+
+@pytest.mark.parametrize(
+    "files",
+    [
+        {"run": ["../outside/{:06d}.jpeg"]},
+        {"run": ["/etc/passwd"], "episode": [".."]},
+        {"run": ["{:99999999999d}"]},
+        {"run": [["a"]]},
+    ],
+)
+def test_a_list_of_files_that_names_others_deletes_none_of_them(tmp_path, files):
+    path = recording(tmp_path / "a")
+    outside = tmp_path / "outside"
+    outside.mkdir()
+    (outside / "000000.jpeg").write_text("mine")
+    (path / "version.json").write_text(json.dumps({"eyas": __version__, "files": files}))
+    open_folder(path, CONFIG, overwrite=True, resume=False)
+    assert (outside / "000000.jpeg").read_text() == "mine"
+
+
+@pytest.mark.parametrize("content", ["[" * 100_000, '{"eyas": ["\\n"]}', "x" * (2 << 20)])
+def test_a_version_of_any_content_is_one_line(tmp_path, content):
+    path = recording(tmp_path / "a")
+    (path / "version.json").write_text(content)
+    with pytest.raises(OutputError, match="recorded by Eyas") as caught:
+        open_folder(path, CONFIG, overwrite=False, resume=True)
+    assert len(str(caught.value)) < 400

@@ -24,6 +24,7 @@ from eyas.render.pack.geometry import build_geometry
 from eyas.render.pack.triangles import gradients, solid_triangles
 from eyas.render.textures.mipmap import packed_layers
 from eyas.state.draw import PartLibrary
+from eyas.state.mesh import Material, Mesh
 
 from .small_city import GROUND, TREE_OBJECT, car_parts, city_scene, floor, scene_of
 
@@ -220,3 +221,29 @@ def test_a_sliver_without_width_is_left_out_and_gives_no_number_that_is_none():
     solid = solid_triangles(mesh)
     assert np.isfinite(gradients(corners, up, corners[:, :2], triangles[solid])).all()
     assert solid[1]
+
+
+def test_gradients_of_every_triangle_that_is_kept_are_right_at_its_corners():
+    rng = np.random.default_rng(0)
+    count = 20_000
+    a, b = (rng.uniform(-600, 600, (count, 3)) for _ in range(2))
+    along, aside = rng.uniform(0, 1, (count, 1)), 10.0 ** rng.uniform(-9, 0, (count, 1))
+    c = a + along * (b - a) + aside * rng.normal(size=(count, 3))
+    positions = np.stack([a, b, c], axis=1).reshape(-1, 3).astype(np.float32)
+    mesh = Mesh(
+        positions=positions,
+        normals=np.tile(np.float32([0, 0, 1]), (3 * count, 1)),
+        uvs=np.tile(np.float32([[0, 0], [1, 0], [0, 1]]), (count, 1)),
+        triangles=np.arange(3 * count, dtype=np.int32).reshape(-1, 3),
+        materials=np.zeros(count, np.int32),
+        palette=(Material(),),
+    )
+    keep = solid_triangles(mesh)
+    assert 0.4 < keep.mean() < 0.99
+    corners = positions.reshape(-1, 3, 3)[keep].astype(np.float64)
+    with np.errstate(all="raise"):
+        rows = gradients(mesh.positions, mesh.normals, mesh.uvs, mesh.triangles[keep])
+    slopes = rows[:, 3:6].astype(np.float64)
+    for corner, u in ((1, 1.0), (2, 0.0)):
+        told = np.einsum("ti,ti->t", slopes, corners[:, corner] - corners[:, 0])
+        np.testing.assert_allclose(told, u, atol=0.05)

@@ -7,8 +7,8 @@ import pytest
 
 from eyas.core.config import group_of
 from eyas.settings.config import EyasConfig
-from eyas.settings.legacy.adapter import legacy_defaults
 from eyas.settings.legacy.keys import ENTRIES
+from eyas.settings.legacy.layout import legacy_defaults
 
 DOC = (Path(__file__).parents[2] / "docs" / "configuration.md").read_text().splitlines()
 

@@ -134,16 +134,20 @@ def test_a_wrong_override_is_one_line_in_its_own_notation(override, line):
     assert "\n" not in str(caught.value)
 
 
-def test_a_rate_that_does_not_divide_500_is_told_with_the_rate_in_effect(caplog):
+def test_a_rate_that_does_not_divide_500_is_told_with_the_rate_in_effect(caplog, tmp_path):
     load_settings(None, ["control.frequency=125"])
     assert not caplog.records
     load_settings(None, ["Control_Frequence=150"])
+    load_settings(write(tmp_path, '{"Control_Frequence": 166.6}'))
     assert [record.getMessage() for record in caplog.records] == [
         "control.frequency: 150 does not divide 500; an action lasts 3 steps of 2 ms, "
-        "so the effective rate is 166.7 Hz"
+        "so the effective rate is 166.7 Hz",
+        "control.frequency (Control_Frequence): 166.6 does not divide 500; an action lasts 3 steps "
+        "of 2 ms, so the effective rate is 166.7 Hz",
     ]
 
 
-def test_a_log_that_is_not_written_is_told(caplog):
-    load_settings(None, ["Verbose=true"])
-    assert [record.getMessage()[:17] for record in caplog.records] == ["verbose (Verbose)"]
+def test_the_settings_of_the_originals_client_are_recognised(tmp_path):
+    path = write(tmp_path, '{"Benchmark": {"Need_render": 0, "Action_dim": 7}}')
+    with pytest.raises(DataFileError, match=r"the original's client.*config/env_config\.json"):
+        load_settings(path)

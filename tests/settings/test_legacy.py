@@ -5,18 +5,21 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from eyas.core.clock import physics_steps
+from eyas.core.config import updated
 from eyas.core.errors import ConfigError, UnknownNameError
 from eyas.core.variation import Mirrored, Uniform
 from eyas.settings.config import EyasConfig
+from eyas.settings.file import load_settings, save_settings
 from eyas.settings.legacy.adapter import (
     from_legacy,
     is_legacy,
-    legacy_defaults,
     save_legacy,
     to_legacy,
     with_legacy,
 )
 from eyas.settings.legacy.keys import ENTRIES
+from eyas.settings.legacy.layout import legacy_defaults
 from eyas.settings.version_check import require_supported
 
 DATA = Path(__file__).parent / "data"
@@ -195,7 +198,7 @@ configs = st.fixed_dictionaries(
 @given(configs)
 def test_native_to_legacy_and_back_loses_nothing(config):
     written = json.loads(json.dumps(to_legacy(config)))
-    assert from_legacy(written, config) == config
+    assert from_legacy(written, config).model_copy(update={"original": None}) == config
     again = from_legacy(written)
     assert from_legacy(to_legacy(again)) == again
     assert again.start == config.start
@@ -233,7 +236,7 @@ def test_saved_files_load_back(tmp_path):
     [
         (
             {"Control_Frequence": 0},
-            "Control_Frequence: 0 is not allowed: a whole number from 1 to 500",
+            "Control_Frequence: 0 is not allowed: a number from 1 to 500",
         ),
         (
             {"Control_Frequency": 9},
@@ -256,6 +259,14 @@ def test_saved_files_load_back(tmp_path):
             "Simulation_Mode: 'vidoe' is not allowed; did you mean 'video'?",
         ),
         ({"World_Path": 3}, "World_Path: 3 is not allowed: text"),
+        (
+            {"Sumo_Params": {"normalize_color": "red"}},
+            "Sumo_Params.normalize_color: 'red' is not allowed: a list of 3 numbers",
+        ),
+        (
+            {"Drone_Random_Config": {"height_fixed": float("nan")}},
+            "Drone_Random_Config.height_fixed: NaN is not allowed: a number",
+        ),
     ],
 )
 def test_a_wrong_key_or_value_is_told_in_the_originals_words(values, line):
@@ -300,8 +311,89 @@ def test_the_key_to_blame_is_found_among_several(group, keys, path):
     assert "\n" not in str(caught.value)
 
 
-def test_keys_without_effect_may_be_out_of_range():
-    assert from_legacy({"Drone_Random_Config": {"height_fixed": -1}}) == from_legacy({})
+def test_keys_without_effect_may_be_out_of_range_and_are_kept():
+    config = from_legacy({"Drone_Random_Config": {"height_fixed": -1}})
+    assert config.original == {"Drone_Random_Config.height_fixed": -1}
+    assert config.model_copy(update={"original": {}}) == from_legacy({})
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_what_is_written_back_loses_nothing(name, tmp_path):
+    config = from_legacy(read(name))
+    assert save_legacy(config, tmp_path / "env_config.json")
+    save_settings(config, tmp_path / "config.json")
+    native = load_settings(tmp_path / "config.json")
+    assert native == config
+    for written in (json.loads((tmp_path / "env_config.json").read_text()), to_legacy(native)):
+        said, again = flat(read(name)), flat(written)
+        assert {key: again[key] for key in said} == said
+
+
+def test_a_switch_turned_on_later_finds_its_values():
+    group = {"direction_random": False, "direction_random_max": 3.14, "direction_random_min": -3.14}
+    written = to_legacy(from_legacy({"Drone_Random_Config": group}))
+    written["Drone_Random_Config"]["direction_random"] = True
+    assert from_legacy(written).start.direction == Uniform(uniform=(-3.14, 3.14))
+
+
+def test_a_kept_value_never_overrides_a_setting():
+    group = {"height_random": True, "height_random_max": 22, "height_fixed": 17}
+    config = from_legacy({"Drone_Random_Config": group, "World_Path": "/home/me/lake-day.wbt"})
+    changed = updated(config, {"start": {"height": 9.0}, "world": {"weather": "night"}})
+    written = to_legacy(changed)
+    assert written["Drone_Random_Config"]["height_fixed"] == 9.0
+    assert written["World_Path"] == "worlds/lake-night.wbt"
+    assert from_legacy(written).start.height == 9.0
+    assert to_legacy(config)["World_Path"] == "/home/me/lake-day.wbt"
+
+
+@pytest.mark.parametrize(
+    ("original", "line"),
+    [
+        ({"Out_Video.fsp": 3}, "original.Out_Video.fsp: unknown key; did you mean 'Out_Video.fps'"),
+        (
+            {"Drone_Random_Config.height_fixed": "a"},
+            "Drone_Random_Config.height_fixed: 'a' is not allowed: a number",
+        ),
+    ],
+)
+def test_kept_values_are_checked(original, line, tmp_path):
+    path = tmp_path / "config.json"
+    path.write_text(json.dumps({"original": original}))
+    with pytest.raises(ConfigError) as caught:
+        load_settings(path)
+    assert str(caught.value).startswith(line)
+
+
+@pytest.mark.parametrize(("frequency", "steps"), [(125.0, 4), (62.5, 8), (250, 2), (150.0, 3)])
+def test_a_rate_may_have_a_fraction_as_in_the_original(frequency, steps):
+    config = from_legacy({"Control_Frequence": frequency})
+    assert physics_steps(config.control.frequency) == steps
+
+
+@pytest.mark.parametrize(
+    ("group", "pitch", "key"),
+    [
+        ({"view_pitch_fixed": 0}, 0.5, "fixed: 0 "),
+        ({"view_pitch_fixed": -0.3}, 0.5, "fixed: -0.3 "),
+        ({"view_pitch_fixed": 3.2}, 1.5, "fixed: 3.2 "),
+        (
+            {"view_pitch_random": True, "view_pitch_random_min": -1},
+            Uniform(uniform=(0.5, 1.57)),
+            "random_min: -1 ",
+        ),
+    ],
+)
+def test_a_pitch_that_the_gimbal_cannot_reach_is_limited_and_told(group, pitch, key, caplog):
+    assert from_legacy({"Drone_Random_Config": group}).start.pitch == pitch
+    (record,) = caplog.records
+    assert record.getMessage().startswith(f"Drone_Random_Config.view_pitch_{key}")
+
+
+def test_a_pitch_that_can_start_keeps_its_value(caplog):
+    group = {"view_pitch_fixed": 0.3, "view_pitch_random_min": -1}
+    assert from_legacy({"Drone_Random_Config": group}).start.pitch == 0.3
+    assert not caplog.records
 
 
 def test_an_unknown_target_is_told_with_the_nearest():

@@ -16,15 +16,25 @@ from eyas.settings.version_check import require_supported
         ),
         ({"Tracking_Object": "Mantis"}, r"target \(Tracking_Object\): 'Mantis': "),
         ({"Lidar_Enable": True}, r"wire\.lidar \(Lidar_Enable\): true: "),
-        (
-            {"Other_Params": {"max_obj_num": 3}},
-            r"objects\.max_count \(Other_Params\.max_obj_num\): 3: ",
-        ),
     ],
 )
 def test_parts_that_come_later_are_named_in_both_notations(values, line):
     with pytest.raises(NotInThisVersionError, match=rf"^{line}.* is not in this version yet$"):
         require_supported(from_legacy(values))
+
+
+def test_other_params_refuse_no_run_that_follows_a_vehicle():
+    every = {
+        "max_obj_num": 5,
+        "obj_import_interval": 1.0,
+        "import_group_num": 2,
+        "obj_edge_distribution_random": True,
+        "obj_edge_distribution_multilateral": True,
+        "obj_edge_distribution_fixed": 3,
+        "obj_edge_distribution_max": 12,
+        "obj_edge_distribution_min": -4,
+    }
+    require_supported(from_legacy({"Other_Params": every}))
 
 
 def test_defaults_ports_and_modes_are_supported():

@@ -17,6 +17,7 @@ class Walker:
     kind: str
     size: tuple[float, float, float] = (0.5, 0.5, 1.75)
     rise: float = 0.0
+    typename: str = "Pedestrian"
 
 
 class WalkerRig:

@@ -64,6 +64,11 @@ def test_what_the_reward_looks_for_is_a_metre_behind_a_vehicles_reference(model)
     assert MODELS[model].rise == MODELS[model].wheel_radius
 
 
+def test_a_trailer_has_the_type_of_its_truck_as_in_the_original():
+    others = {model.name: model.typename for model in MODELS if model.name != model.typename}
+    assert others == {"TruckTrailerSimple": "TruckSimple", "TruckTankSimple": "TruckSimple"}
+
+
 def test_a_kind_is_added_behind_the_others(walker):
     before = list(MODELS)
     register(walker)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from eyas.cli.options import ConfigFile, Overrides, gathered
+from eyas.cli.options import ConfigFile, Overrides, Preset, chosen_file, gathered
 
 if TYPE_CHECKING:
     from eyas.settings.config import EyasConfig
@@ -23,6 +23,7 @@ def _group() -> None: ...
 @app.command()
 def show(
     config: ConfigFile = None,
+    preset: Preset = None,
     set_: Overrides = None,
     legacy: Annotated[
         bool, typer.Option("--legacy", help="In the format of the DAT benchmark's env_config.json.")
@@ -31,7 +32,7 @@ def show(
     """Check the settings, and print all of them as JSON."""
     from eyas.settings.file import load_settings
 
-    typer.echo(_text(load_settings(config, gathered(set_)), legacy=legacy))
+    typer.echo(_text(load_settings(chosen_file(config, preset), gathered(set_)), legacy=legacy))
 
 
 @app.command()

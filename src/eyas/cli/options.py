@@ -6,13 +6,28 @@ from typing import Annotated
 
 import typer
 
-__all__ = ["ConfigFile", "MapName", "Overrides", "Seed", "Weather", "gathered"]
+from eyas.core.errors import ConfigError
+
+__all__ = [
+    "ConfigFile",
+    "MapName",
+    "Overrides",
+    "Preset",
+    "Seed",
+    "Weather",
+    "chosen_file",
+    "gathered",
+]
 
 ConfigFile = Annotated[
     Path | None,
     typer.Option(
         "--config", help="Settings in JSON: native, or the DAT benchmark's env_config.json."
     ),
+]
+Preset = Annotated[
+    str | None,
+    typer.Option("--preset", help="Settings that come with Eyas: dat-eval, dat-train or easy."),
 ]
 Overrides = Annotated[
     list[str] | None,
@@ -23,6 +38,23 @@ Overrides = Annotated[
 MapName = Annotated[str | None, typer.Option("--map", help="Name of the map.")]
 Weather = Annotated[str | None, typer.Option("--weather", help="Name of the weather.")]
 Seed = Annotated[int | None, typer.Option("--seed", help="The one seed of the run.")]
+
+
+def chosen_file(config: Path | None, preset: str | None) -> Path | None:
+    """Return the file of settings that a user has chosen; None for the defaults.
+
+    Raises:
+        ConfigError: There is no such preset, or a file is given as well.
+    """
+    if preset is None:
+        return config
+    from eyas.settings.preset import preset_file
+
+    if config is not None:
+        raise ConfigError(
+            "--preset and --config cannot be used together; change single settings with --set"
+        )
+    return preset_file(preset)
 
 
 def gathered(

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from eyas.cli.options import ConfigFile, MapName, Overrides, gathered
+from eyas.cli.options import ConfigFile, MapName, Overrides, Preset, chosen_file, gathered
 
 __all__ = ["app"]
 
@@ -24,13 +24,14 @@ def record(  # noqa: PLR0913  # one parameter for each option
     seed: Annotated[
         int | None, typer.Option("--seed", help="Seed of SUMO and of the routes.")
     ] = None,
-    duration: Annotated[float, typer.Option("--duration", help="Time to record [s].")] = 1260.0,
+    duration: Annotated[float, typer.Option("--duration", help="Seconds to record.")] = 1260.0,
     vehicle_type: Annotated[
         str | None, typer.Option("--type", help="passenger, bus, truck, trailer or motorcycle.")
     ] = None,
     out: Annotated[Path | None, typer.Option("--out", help="File to write.")] = None,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the file.")] = False,
     config: ConfigFile = None,
+    preset: Preset = None,
     set_: Overrides = None,
     canonical: Annotated[
         bool,
@@ -43,6 +44,7 @@ def record(  # noqa: PLR0913  # one parameter for each option
     """Record traffic; use it with --set traffic.recording=FILE."""
     from eyas.modes import traffic
     from eyas.settings.file import load_settings
+    from eyas.settings.legacy.messages import originals_named
 
     short = {
         "world.seed": map_seed,
@@ -50,8 +52,9 @@ def record(  # noqa: PLR0913  # one parameter for each option
         "traffic.vehicle_type": vehicle_type,
     }
     said = [f"{key}={json.dumps(value)}" for key, value in short.items() if value is not None]
-    settings = load_settings(config, [*gathered(set_, map_name), *said])
-    if canonical:
-        traffic.run_canonical(settings.world)
-    else:
-        traffic.run(settings.world, settings.traffic, duration, out, overwrite=overwrite)
+    settings = load_settings(chosen_file(config, preset), [*gathered(set_, map_name), *said])
+    with originals_named(settings):
+        if canonical:
+            traffic.run_canonical(settings.world)
+        else:
+            traffic.run(settings.world, settings.traffic, duration, out, overwrite=overwrite)

@@ -6,7 +6,16 @@ from typing import Annotated
 
 import typer
 
-from eyas.cli.options import ConfigFile, MapName, Overrides, Seed, Weather, gathered
+from eyas.cli.options import (
+    ConfigFile,
+    MapName,
+    Overrides,
+    Preset,
+    Seed,
+    Weather,
+    chosen_file,
+    gathered,
+)
 
 __all__ = ["command"]
 
@@ -14,6 +23,7 @@ __all__ = ["command"]
 def command(  # noqa: PLR0913  # one parameter for each option
     out: Annotated[Path, typer.Option("--out", help="Folder to write to.")] = Path("runs/video"),
     config: ConfigFile = None,
+    preset: Preset = None,
     map_name: MapName = None,
     weather: Weather = None,
     seed: Seed = None,
@@ -33,7 +43,7 @@ def command(  # noqa: PLR0913  # one parameter for each option
 
     if quiet:
         logging.getLogger("eyas").setLevel(logging.ERROR)
-    settings = load_settings(config, gathered(set_, map_name, weather, seed))
+    settings = load_settings(chosen_file(config, preset), gathered(set_, map_name, weather, seed))
     require_supported(settings)
     if settings.mode is not Mode.VIDEO and not quiet:
         said = f"mode (Simulation_Mode) is '{settings.mode}'; 'eyas video' records anyway"

@@ -11,8 +11,8 @@ PHYSICS_STEP = 1.0 / PHYSICS_RATE
 """Length of a physics step [s]."""
 
 
-def physics_steps(control_frequency: int) -> int:
-    """Return how many physics steps one action lasts: `500 // control_frequency`.
+def physics_steps(control_frequency: float) -> int:
+    """Return how many physics steps one action lasts: the whole part of `500 / control_frequency`.
 
     Args:
         control_frequency: Actions per second [Hz], 1 to 500.
@@ -25,4 +25,4 @@ def physics_steps(control_frequency: int) -> int:
             f"control.frequency: {control_frequency} is out of range; "
             f"allowed: 1 to {PHYSICS_RATE} Hz"
         )
-    return PHYSICS_RATE // control_frequency
+    return int(PHYSICS_RATE / control_frequency)

@@ -17,8 +17,22 @@ __all__ = [
 ]
 
 
+_LONGEST = 4000
+"""Largest number of characters of a message."""
+
+
 class EyasError(Exception):
-    """Base of all errors of Eyas; the command line prints the message and exits with code 2."""
+    """Base of all errors of Eyas; the command line prints the message and exits with code 2.
+
+    Its text is one line, whatever the names in it contain: other characters than printable ones are
+    written as in Python, and what is too long is cut out of the middle.
+    """
+
+    def __str__(self) -> str:
+        line = super().__str__()
+        if len(line) > _LONGEST:
+            line = f"{line[: _LONGEST // 2]} ... {line[-_LONGEST // 4 :]}"
+        return "".join(char if char.isprintable() else repr(char)[1:-1] for char in line)
 
 
 class ConfigError(EyasError):

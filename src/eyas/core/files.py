@@ -1,13 +1,22 @@
-"""Atomic writing of files: written under a temporary name, then renamed."""
+"""Files that may come from anyone, read; our own, written under a temporary name and renamed."""
 
 import os
+import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from eyas.core.errors import OutputError
+from eyas.core.errors import DataFileError, OutputError
 
-__all__ = ["PART_SUFFIX", "atomic_path", "part_path", "refusals", "write_atomic"]
+__all__ = [
+    "PART_SUFFIX",
+    "atomic_path",
+    "part_path",
+    "read_limited",
+    "refusals",
+    "user_path",
+    "write_atomic",
+]
 
 PART_SUFFIX = ".part"
 """Ending of a file that is still being written; such a file may be deleted at any time."""
@@ -56,3 +65,45 @@ def write_atomic(path: Path, data: bytes) -> None:
     """
     with atomic_path(path) as part:
         part.write_bytes(data)
+
+
+def user_path(text: str) -> Path:
+    """Return the path that a user has written, with `~` as in a shell.
+
+    Raises:
+        DataFileError: There is no such user.
+    """
+    try:
+        return Path(text).expanduser()
+    except RuntimeError as error:
+        raise DataFileError(f"{text}: cannot read: {error}") from error
+
+
+def read_limited(path: Path, largest: int) -> bytes:
+    """Return the content of a file.
+
+    Args:
+        path: The file.
+        largest: Largest allowed size [bytes].
+
+    Raises:
+        DataFileError: The file is missing or unreadable, too large, or no ordinary file: a device
+            or a pipe would be read for ever.
+    """
+    try:
+        with open(path, "rb", opener=_open_at_once) as file:
+            if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+                raise DataFileError(f"{path}: cannot read: not an ordinary file")
+            content = file.read(largest + 1)
+    except OSError as error:
+        raise DataFileError(f"{path}: cannot read: {error.strerror or error}") from error
+    except ValueError as error:  # a character that no path can have
+        raise DataFileError(f"{path}: cannot read: {error}") from error
+    if len(content) > largest:
+        raise DataFileError(f"{path}: cannot read: larger than {largest >> 20} MiB")
+    return content
+
+
+def _open_at_once(path: str, flags: int) -> int:
+    """Open a file without waiting for the writer of a pipe."""
+    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))

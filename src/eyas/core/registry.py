@@ -132,7 +132,7 @@ class Registry(Generic[T]):
     def _imported(self, path: str) -> object:
         """Return the object at a path; errors raised by its module pass through."""
         name, _, attribute = path.partition(":")
-        if not name or not attribute.isidentifier():
+        if not all(part.isidentifier() for part in (*name.split("."), attribute)):
             raise ConfigError(
                 f"{self._setting}: {path!r} is not a path; allowed: package.module:attribute"
             )

@@ -1,5 +1,7 @@
 """The Gymnasium environment: one drone, one target."""
 
+import logging
+import os
 from collections.abc import Mapping
 from dataclasses import fields
 from pathlib import Path
@@ -16,6 +18,8 @@ from eyas.envs.actions import ContinuousActions, DiscreteActions
 from eyas.envs.config import EnvSpeeds
 from eyas.settings.config import EyasConfig
 from eyas.settings.file import load_settings
+from eyas.settings.legacy.messages import originals_named
+from eyas.settings.preset import preset_file
 from eyas.settings.version_check import require_supported
 from eyas.sim.build import build_simulation
 from eyas.sim.worlds import each_alone
@@ -23,10 +27,15 @@ from eyas.state.draw import Picture
 from eyas.targets.catalogue import MODELS
 from eyas.task.done import DoneReason
 from eyas.task.packets import BasicPacket, RewardPacket
+from eyas.task.step_line import step_line
 
 __all__ = ["TrackingEnv"]
 
 Observation = NDArray[np.uint8]
+
+_STEPS = logging.getLogger("eyas.steps")
+"""Gets a line for each action if `verbose` is true."""
+_STEPS.setLevel(logging.INFO)
 
 _SENSORS = (
     *("position", "velocity", "felt_acceleration"),
@@ -43,12 +52,14 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
     scaled to a square, as in the original. `info` holds by name: the sensors of the basic packet,
     which are `position` and `velocity` (GPS), `orientation` and `euler` (IMU), `angular_velocity`
     (gyroscope) and `felt_acceleration` (accelerometer); the reward packet (both:
-    `eyas.task.packets`); the reason of the end; the step count; and the values drawn from the
-    `light` settings (factor on the sky, factor on the sun, one over the visibility range [1/m]).
+    `eyas.task.packets`); the reason of the end (`done_reason`), the limit that the body violates in
+    the original's words (`done_state`); the step count; and the values drawn from the `light`
+    settings (factor on the sky, factor on the sun, one over the visibility range [1/m]).
 
     Args:
-        config: Settings: an `EyasConfig`, nested dictionaries of native settings, or the path of a
-            JSON file (native or the original's `env_config.json`).
+        config: Settings: an `EyasConfig`, nested dictionaries of native settings, the name of a
+            preset (`dat-train`, `dat-eval`, `easy`), or the path of a JSON file (native or the
+            original's `env_config.json`).
         map: Name of the map; overrides the configuration.
         weather: Name of the weather; overrides the configuration.
         continuous: True: four numbers in -1 to 1; False: the seven discrete actions.
@@ -79,7 +90,6 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
         if render_mode not in (None, *self.metadata["render_modes"]):
             raise ConfigError(f"render_mode: '{render_mode}' is not allowed: 'rgb_array' or None")
         self.config = _settings(config, map, weather, speeds)
-        require_supported(self.config)
         self.render_mode = render_mode
         actions = ContinuousActions if continuous else DiscreteActions
         self._actions = actions(self.config.env.speeds)
@@ -87,7 +97,9 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
         width, height = observation_size
         self.observation_space = gymnasium.spaces.Box(0, 255, (height, width, 3), np.uint8)
         self._steps_per_action = physics_steps(self.config.control.frequency)
-        self._simulation = build_simulation(self.config, each_alone(1))
+        with originals_named(self.config):
+            require_supported(self.config)
+            self._simulation = build_simulation(self.config, each_alone(1))
         self._picture = Picture.create(1, height, width)
         self._render_picture: Picture | None = None
         self._overlay = overlay
@@ -110,7 +122,7 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
         return self._observe(), self._info()
 
     def step(self, action: Any) -> tuple[Observation, float, bool, bool, dict[str, Any]]:  # noqa: ANN401  # as in Gymnasium
-        """Hold an action for 500 // frequency physics steps of 2 ms.
+        """Hold an action as `control.frequency` says: for 4 physics steps of 2 ms at 125 Hz.
 
         Raises:
             ActionError: The action is not in the space of actions.
@@ -119,6 +131,8 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
         result = self._simulation.advance(command, self._steps_per_action)
         done, reason = bool(result.done[0]), result.reason[0]
         truncated = done and reason == DoneReason.STEP_LIMIT
+        if self.config.verbose:
+            _STEPS.info("%s", step_line(self._simulation.snapshot, 0, "DRONE0"))
         info = self._info()
         info["reward_terms"] = {name: float(term[0]) for name, term in result.terms.items()}
         return self._observe(), float(result.reward[0]), done and not truncated, truncated, info
@@ -143,9 +157,10 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
         model = MODELS[snapshot.targets.model[0]]
         return {
             **_named(BasicPacket.from_row(basic[0]), _SENSORS),
-            **_named(RewardPacket.from_row(reward[0], model.name), _REWARD),
+            **_named(RewardPacket.from_row(reward[0], model.typename), _REWARD),
             "step": int(snapshot.episodes.step_count[0]),
             "done_reason": DoneReason(int(snapshot.episodes.reason[0])).name.lower(),
+            "done_state": DoneReason(int(snapshot.episodes.breach[0])).original,
             "light": snapshot.light[0].copy(),
         }
 
@@ -173,8 +188,10 @@ def _settings(
             settings = config
         case Mapping():
             settings = validated(EyasConfig, dict(config))
+        case str() if "." not in config and not os.path.exists(config):
+            settings = load_settings(preset_file(config))
         case _:
-            settings = load_settings(Path(config), [])
+            settings = load_settings(Path(config))
     world = {"map": map_name, "weather": weather}
     changed = {key: value for key, value in world.items() if value is not None}
     changes: dict[str, object] = {}

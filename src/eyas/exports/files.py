@@ -45,7 +45,7 @@ def pattern_of(name: str) -> str:
     for literal, field, layout, _ in Formatter().parse(name):
         parts.append(re.escape(literal))
         if field is not None:
-            digits = re.fullmatch(r"0?(\d*)d", layout or "")
+            digits = re.fullmatch(r"0?(\d{0,2})d", layout or "")
             if not digits:
                 raise ValueError(f"{name!r} is not a file's name; a number in it is like {{:06d}}")
             parts.append(rf"\d{{{digits[1] or 1},}}")

@@ -113,14 +113,14 @@ class LabelWriter(Writer):
 
     def read(self, folder: Path) -> Summary | None:
         """Return the summary of the labels; None if they are missing or cut off."""
+        scores = Scores()
         try:
             labels = read_labels(folder / LABELS)
-        except DataFileError:
+            for label in labels:
+                reward = math.nan if label.reward is None else label.reward
+                scores = scores.plus(reward, seen=label.visible_fraction > 0.0)
+        except (DataFileError, TypeError, OverflowError):  # a field may hold anything
             return None
-        scores = Scores()
-        for label in labels:
-            reward = math.nan if label.reward is None else label.reward
-            scores = scores.plus(reward, seen=label.visible_fraction > 0.0)
         return Summary(len(labels), scores)
 
 
@@ -192,7 +192,7 @@ def read_labels(path: Path) -> list[FrameLabel]:
     for number, line in enumerate(text.splitlines(), 1):
         try:
             record = json.loads(line)
-        except ValueError:
+        except (ValueError, RecursionError):
             raise DataFileError(f"{path}: line {number} is cut off or not JSON") from None
         try:
             others = [OtherLabel(**other) for other in record["others"]]

@@ -1,6 +1,7 @@
 """`mark.json` and `dir_info.json`, as the original writes them."""
 
 import json
+import math
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -8,7 +9,6 @@ from eyas.core.files import write_atomic
 from eyas.exports.files import Files
 from eyas.exports.frame import Frame
 from eyas.exports.gather import Gather
-from eyas.exports.rounding import rounded
 from eyas.exports.summary import Summary
 from eyas.exports.writer import EndedEpisode, Episode, Run, Writer
 
@@ -39,15 +39,17 @@ class MarkWriter(Writer):
 
     def _marked(self, frame: Frame) -> tuple[str, Mark]:
         # The original writes both as C++ doubles: an action as 3.0, exact following as -1.0.
-        pair = [rounded(frame.reward), float(frame.action.number)]
+        reward = frame.reward if math.isfinite(frame.reward) else None
+        pair = [reward, float(frame.action.number)]
         return f"{frame.number:06d}", int(frame.direction) if self._run.target_direction else pair
 
     def read(self, folder: Path) -> Summary | None:
         """Return the number of marks."""
         try:
-            return Summary(len(json.loads((folder / MARK).read_text())))
-        except (OSError, ValueError):
+            marks = json.loads((folder / MARK).read_text())
+        except (OSError, ValueError, RecursionError):
             return None
+        return Summary(len(marks)) if isinstance(marks, dict) else None
 
     def finish(self, episodes: Sequence[EndedEpisode]) -> None:
         """Write `dir_info.json`.

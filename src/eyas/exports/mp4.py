@@ -46,7 +46,8 @@ class Mp4Writer(Writer):
     def read(self, folder: Path) -> Summary | None:
         """Return the number of pictures that the video's header states."""
         try:
-            with av.open(str(folder / MOVIE)) as container:
+            # Only as what it should be: of a playlist, FFmpeg would open what it names.
+            with av.open(str(folder / MOVIE), format="mp4") as container:
                 return Summary(container.streams.video[0].frames)
         except (OSError, ValueError, IndexError):
             return None

@@ -12,6 +12,9 @@ from eyas.sim.config import SimConfig
 
 __all__ = ["EyasConfig", "Mode", "WireConfig"]
 
+Value = bool | int | float | str | tuple[float, ...]
+"""Value of one of the original's keys."""
+
 
 class Mode(StrEnum):
     """Intended use of a configuration; the original's `Simulation_Mode`."""
@@ -44,7 +47,12 @@ class EyasConfig(SimConfig):
     mode: Mode = Mode.VIDEO
     """Intended use of the configuration."""
     verbose: bool = False
-    """Whether a log is written."""
+    """Whether each step is logged in the original's words: by `eyas video` in `<tracker>.log`, by
+    environments to Python's logger `eyas.steps`."""
     env: EnvConfig = EnvConfig()
     video: VideoConfig = VideoConfig()
     wire: WireConfig = WireConfig()
+    original: dict[str, Value] | None = None
+    """Values of the original's `env_config.json` that no other setting holds, such as those whose
+    switch is off: they are written back with it. None if the settings do not come from such a
+    file."""

@@ -2,17 +2,18 @@
 
 import json
 import logging
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-from eyas.core.clock import PHYSICS_RATE
+from eyas.core.clock import PHYSICS_RATE, physics_steps
 from eyas.core.config import updated, validated
 from eyas.core.errors import ConfigError, DataFileError
 from eyas.core.files import write_atomic
 from eyas.settings.config import EyasConfig
-from eyas.settings.legacy.adapter import from_legacy, is_legacy, with_legacy
+from eyas.settings.legacy.adapter import check_original, from_legacy, is_legacy, with_legacy
+from eyas.settings.legacy.messages import named_path
 
 __all__ = ["load_settings", "read_settings", "save_settings"]
 
@@ -20,12 +21,15 @@ _LOG = logging.getLogger("eyas")
 
 Nested = dict[str, Any]
 
+_CLIENT_KEY = "Benchmark"
+"""The one group of the `config.json` of the original's client."""
+
 
 def load_settings(path: Path | None, overrides: Sequence[str] = ()) -> EyasConfig:
     """Return the settings of a file, with some of them changed.
 
     Allowed settings that may have an unexpected effect (a control frequency that does not divide
-    500, a log that is not written) give a warning in Python's logger `eyas`.
+    500, a pitch that is limited) give a warning in Python's logger `eyas`.
 
     Args:
         path: JSON, native or the original's `env_config.json`; None: the defaults.
@@ -37,19 +41,20 @@ def load_settings(path: Path | None, overrides: Sequence[str] = ()) -> EyasConfi
         ConfigError: A key or a value is wrong.
     """
     values = {} if path is None else read_settings(path)
-    legacy = is_legacy(values)
-    config = from_legacy(values) if legacy else validated(EyasConfig, values)
-    inactive = values if legacy else {}
+    if _CLIENT_KEY in values:
+        raise DataFileError(
+            f"{path}: the settings of the original's client, not of its simulator; give its "
+            "Webots_Simulation/traffic_project/config/env_config.json (the speeds of actions are "
+            "env.speeds here)"
+        )
+    config = from_legacy(values) if is_legacy(values) else validated(EyasConfig, values)
+    check_original(config)
     pairs = [_parsed(override) for override in overrides]
     for capital, group in groupby(pairs, key=lambda pair: pair[0][0][:1].isupper()):
         changes: Nested = {}
         for keys, value in group:
             _put(changes, keys, value)
-        if capital:
-            config = with_legacy(config, changes, inactive)
-            inactive = _overlaid(inactive, changes)
-        else:
-            config = updated(config, changes)
+        config = with_legacy(config, changes) if capital else updated(config, changes)
     _tell_surprises(config)
     return config
 
@@ -89,15 +94,14 @@ def read_settings(path: Path) -> Nested:
 
 def _tell_surprises(config: EyasConfig) -> None:
     frequency = config.control.frequency
-    steps = PHYSICS_RATE // frequency
-    if steps * frequency != PHYSICS_RATE:
+    steps = physics_steps(frequency)
+    if abs(steps * frequency - PHYSICS_RATE) > 1e-6:
         _LOG.warning(
-            "control.frequency: %d does not divide %d; an action lasts %d steps of 2 ms, "
+            "%s: %g does not divide %d; an action lasts %d steps of 2 ms, "
             "so the effective rate is %.4g Hz",
+            named_path(config, "control.frequency"),
             *(frequency, PHYSICS_RATE, steps, PHYSICS_RATE / steps),
         )
-    if config.verbose:
-        _LOG.warning("verbose (Verbose): logging is not in this version yet; no log is written")
 
 
 def _without_doubles(pairs: list[tuple[str, Any]]) -> Nested:
@@ -126,12 +130,3 @@ def _put(values: Nested, keys: Sequence[str], value: Any) -> None:  # noqa: ANN4
             values[key] = {}
         values = values[key]
     values[keys[-1]] = value
-
-
-def _overlaid(values: Nested, changes: Nested) -> Nested:
-    result = dict(values)
-    for key, change in changes.items():
-        old = result.get(key)
-        groups = isinstance(old, Mapping) and isinstance(change, Mapping)
-        result[key] = _overlaid(dict(old), change) if groups and old else change
-    return result

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 from eyas.settings.config import EyasConfig
-from eyas.settings.legacy.adapter import legacy_keys_of
+from eyas.settings.legacy.adapter import legacy_key_of
 from eyas.sim.supported import Missing, missing_parts
 
 __all__ = ["require_supported"]
@@ -19,8 +19,7 @@ def require_supported(config: EyasConfig) -> None:
         NotInThisVersionError: One line that names the setting, in both notations.
     """
     for missing in _missing(config):
-        keys = legacy_keys_of(missing.path)
-        raise missing.error(keys[0] if keys else "")
+        raise missing.error(legacy_key_of(missing.path))
 
 
 def _missing(config: EyasConfig) -> Iterator[Missing]:

@@ -18,8 +18,9 @@ __all__ = ["ControlConfig", "SimConfig"]
 class ControlConfig(Config):
     """The rate of actions."""
 
-    frequency: Annotated[int, Field(ge=1, le=500)] = 125
-    """Actions per second [Hz]; each lasts 500 // frequency physics steps of 2 ms."""
+    frequency: Annotated[float, Field(ge=1, le=500)] = 125.0
+    """Actions per second [Hz]; each lasts the whole part of 500 / frequency physics steps of 2
+    ms."""
 
 
 class SimConfig(Config):

@@ -3,10 +3,10 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from eyas.core.config import Config, shown
+from eyas.core.config import shown
 from eyas.core.errors import NotInThisVersionError
 from eyas.sim.config import SimConfig
-from eyas.targets.config import ObjectsConfig, TargetName
+from eyas.targets.config import TargetName
 from eyas.trackers.config import TrackerKind
 
 __all__ = ["Missing", "missing_parts", "require_parts"]
@@ -53,12 +53,3 @@ def missing_parts(config: SimConfig) -> Iterator[Missing]:
     if not config.tracker.supervised:
         part = "flying by a flight controller"
         yield Missing("tracker.supervised", value=False, part=part)
-    for path, value in _changed("objects", config.objects, ObjectsConfig()):
-        yield Missing(path, value, "placing objects along the road")
-
-
-def _changed(group: str, config: Config, default: Config) -> Iterator[tuple[str, object]]:
-    for name in type(config).model_fields:
-        value = getattr(config, name)
-        if value != getattr(default, name):
-            yield f"{group}.{name}", value

@@ -27,6 +27,11 @@ class Model(Protocol):
         ...
 
     @property
+    def typename(self) -> str:
+        """The original's `typename` of a target of this model, which packets tell."""
+        ...
+
+    @property
     def kind(self) -> str:
         """Name of its kind."""
         ...

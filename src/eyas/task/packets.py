@@ -152,7 +152,7 @@ class RewardPacket:
     target_direction: TargetDirection
     """Direction of the target's motion; the original's `carDir`."""
     target_type: str
-    """Name of the target's type; the original's `typename`."""
+    """The original's `typename`, for a trailer that of its truck."""
 
     names: ClassVar[tuple[str, ...]] = REWARD_FIELDS
 

@@ -77,7 +77,7 @@ def choose_target(
 
     Args:
         available: Whether each actor may be followed, shape (A,).
-        used: Actors that are already followed.
+        used: Actors that are already followed; -1 for a tracker without a target.
         rng: Random generator.
 
     Raises:
@@ -85,8 +85,9 @@ def choose_target(
     """
     free = [int(actor) for actor in np.flatnonzero(available) if int(actor) not in used]
     if not free:
+        followed = sum(actor >= 0 for actor in used)
         raise SpawnError(
             f"start: no target is free: {len(available)} known, {int(np.sum(available))} in the "
-            f"world, {len(used)} followed; allowed: at least as many vehicles as trackers"
+            f"world, {followed} followed; allowed: at least as many vehicles as trackers"
         )
     return free[int(rng.integers(len(free)))]

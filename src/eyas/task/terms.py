@@ -63,6 +63,8 @@ def load_term(name: str) -> RewardTerm:
     """
     module, _, function = name.partition(":")
     try:
+        if module.startswith("."):
+            raise ImportError("no module has such a name")
         term = getattr(import_module(module), function)
     except (ImportError, AttributeError, ValueError) as error:
         raise ConfigError(

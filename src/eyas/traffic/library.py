@@ -11,6 +11,7 @@ from pathlib import Path
 from eyas.core.cache.entries import write_entry
 from eyas.core.cache.folder import Kind, cache_folder, cache_limit, touch
 from eyas.core.errors import DataFileError
+from eyas.core.files import user_path
 from eyas.state.roads import RoadGraph
 from eyas.traffic.config import Demand, TrafficConfig
 from eyas.traffic.network import graph_hash
@@ -69,7 +70,7 @@ def find_recording(
         MissingExtraError: No recording fits, and SUMO is not installed.
     """
     if config.recording is not None:
-        path = Path(config.recording).expanduser()
+        path = user_path(config.recording)
         named = load(path)
         check_map(named, graph.map_name, graph.seed, graph_hash(graph), str(path))
         return named

@@ -14,6 +14,7 @@ __all__ = [
     "Provenance",
     "Recording",
     "check_map",
+    "problem_of",
     "quantised",
     "restored",
 ]
@@ -92,6 +93,27 @@ def restored(multiples: NDArray[np.int64], unit: float) -> NDArray[np.float64]:
     return multiples.astype(np.float64) * unit
 
 
+def problem_of(recording: Recording) -> str:
+    """Return what is wrong with a recording that someone else has made; empty if nothing is.
+
+    Kernels index its arrays without checking bounds, so their shapes must fit.
+    """
+    samples, actors = shape = recording.present.shape
+    origin, limit = recording.provenance, 1e6
+    texts = (origin.map_name, origin.graph_hash, origin.sumo_version, origin.eyas_version)
+    checks = {
+        "it is empty": samples > 1 and actors > 0,
+        "its arrays have different shapes": recording.position.shape == (*shape, 2)
+        and recording.yaw.shape == shape,
+        "its rate is not between 0.1 and 1000 Hz": 0.1 <= recording.rate <= 1000.0,
+        "its vehicles are not between 0 and 100 m long": 0.0 < recording.vehicle_length <= 100.0,
+        "a vehicle is out of the world": bool((abs(recording.position) < limit).all()),
+        "a vehicle turns without end": bool((abs(recording.yaw) < limit).all()),
+        "its origin is not told in words": all(isinstance(text, str) for text in texts),
+    }
+    return next((problem for problem, passed in checks.items() if not passed), "")
+
+
 def check_map(
     recording: Recording, map_name: str, map_seed: int, graph_hash: str, source: str
 ) -> None:
@@ -113,7 +135,7 @@ def check_map(
     if (origin.map_name, origin.map_seed) == (map_name, map_seed):
         reason = f"of an older '{map_name}' (roads {origin.graph_hash[:8]}, now {graph_hash[:8]})"
     else:
-        reason = f"of map '{origin.map_name}' with seed {origin.map_seed}"
+        reason = f"of map {origin.map_name!r} with seed {origin.map_seed!r}"
     raise DataFileError(
         f"{source}: the recording is {reason}, but the map is '{map_name}' with seed {map_seed}; "
         "record this map or leave traffic.recording out"

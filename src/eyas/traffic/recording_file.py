@@ -8,6 +8,7 @@ bytes.
 import hashlib
 import io
 import json
+from contextlib import suppress
 from dataclasses import asdict
 from importlib.resources.abc import Traversable
 from pathlib import Path
@@ -16,15 +17,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.config import validated
+from eyas.core.config import shown, validated
 from eyas.core.errors import DataFileError, EyasError
-from eyas.core.files import write_atomic
+from eyas.core.files import read_limited, write_atomic
+from eyas.core.npz import read_npz
 from eyas.traffic.config import TrafficConfig
 from eyas.traffic.recording import (
     ANGLE_UNIT,
     POSITION_UNIT,
     Provenance,
     Recording,
+    problem_of,
     quantised,
     restored,
 )
@@ -33,6 +36,9 @@ __all__ = ["FORMAT", "from_bytes", "load", "load_provenance", "save", "to_bytes"
 
 FORMAT = "eyas traffic recording 1"
 """Format in the header of a file; another layout gets another number."""
+
+_LARGEST = 256 << 20
+"""Largest size of a file, and of its arrays: a day of 50 vehicles [bytes]."""
 
 Arrays = dict[str, NDArray[np.generic]]
 
@@ -109,10 +115,27 @@ def from_bytes(data: bytes, source: str) -> Recording:
         DataFileError: The content is truncated, damaged or not a recording.
     """
     arrays = _read_arrays(data, source)
+    try:
+        recording = _recording(arrays, source)
+        problem = problem_of(recording)
+    except EyasError as error:
+        raise DataFileError(str(error)) from error
+    except Exception as error:  # a right checksum says nothing about what its maker has written
+        raise DataFileError(f"{source}: not a traffic recording: its parts do not fit") from error
+    if problem:
+        raise DataFileError(f"{source}: not a traffic recording: {problem}")
+    return recording
+
+
+def _recording(arrays: Arrays, source: str) -> Recording:
+    """Return the recording of arrays that have any shapes and types."""
     header = json.loads(arrays["header"].tobytes())
     position = restored(_integrated("position", arrays), POSITION_UNIT)
-    samples = int(header["shape"][0])
-    present = np.unpackbits(arrays["present"].astype(np.uint8), axis=-1, count=samples)
+    samples = position.shape[-1]
+    flags = arrays["present"].astype(np.uint8, casting="safe")
+    if samples != header["shape"][0] or flags.shape[-1] != -(-samples // 8):
+        raise ValueError(f"{samples} samples, but the header says {header['shape']}")
+    present = np.unpackbits(flags, axis=-1, count=samples)
     return Recording(
         rate=float(header["rate"]),
         position=np.ascontiguousarray(position.transpose(2, 0, 1)),
@@ -124,10 +147,7 @@ def from_bytes(data: bytes, source: str) -> Recording:
 
 
 def _read(path: Path | Traversable) -> bytes:
-    try:
-        return path.read_bytes()
-    except OSError as error:
-        raise DataFileError(f"{path}: cannot read: {error.strerror or error}") from error
+    return read_limited(path, _LARGEST) if isinstance(path, Path) else path.read_bytes()
 
 
 def _provenance(header: dict[str, Any], source: str) -> Provenance:
@@ -139,18 +159,19 @@ def _provenance(header: dict[str, Any], source: str) -> Provenance:
 
 def _read_arrays(data: bytes, source: str) -> Arrays:
     try:
-        with np.load(io.BytesIO(data), allow_pickle=False) as file:
-            arrays: Arrays = {name: file[name] for name in file.files}
+        arrays = read_npz(data, _LARGEST)
     except Exception as error:  # damaged bytes raise many kinds in zipfile, zlib, numpy
         raise DataFileError(f"{source}: not a complete traffic recording") from error
     if {"header", "checksum"} - set(arrays):
         raise DataFileError(f"{source}: not a traffic recording (allowed: '{FORMAT}')")
     if not np.array_equal(arrays.pop("checksum"), _checksum(arrays)):
         raise DataFileError(f"{source}: damaged: its checksum does not match its content")
-    header = json.loads(arrays["header"].tobytes())
-    if header["format"] != FORMAT:
-        raise DataFileError(f"{source}: format '{header['format']}' (allowed: '{FORMAT}')")
-    return arrays
+    with suppress(ValueError, TypeError, LookupError, RecursionError):
+        kind = json.loads(arrays["header"].tobytes())["format"]
+        if kind == FORMAT:
+            return arrays
+        raise DataFileError(f"{source}: format {shown(kind)} (allowed: '{FORMAT}')")
+    raise DataFileError(f"{source}: not a traffic recording: its header cannot be read")
 
 
 def _checksum(arrays: Arrays) -> NDArray[np.uint8]:
@@ -174,8 +195,8 @@ def _differences(name: str, values: NDArray[np.int64]) -> Arrays:
 
 
 def _integrated(name: str, arrays: Arrays) -> NDArray[np.int64]:
-    start = arrays[f"{name}_start"].astype(np.int64)
-    second = arrays[f"{name}_second"].astype(np.int64)
+    start = arrays[f"{name}_start"].astype(np.int64, casting="safe")
+    second = arrays[f"{name}_second"].astype(np.int64, casting="safe")
     first = np.concatenate([np.diff(start, axis=-1), second], axis=-1).cumsum(axis=-1)
     values: NDArray[np.int64] = np.concatenate([start[..., :1], first], axis=-1).cumsum(axis=-1)
     return values

@@ -6,17 +6,19 @@ from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 from eyas import __version__
 from eyas.core.config import validated
 from eyas.core.errors import ConfigError, DataFileError, OutputError
-from eyas.core.files import PART_SUFFIX, refusals, write_atomic
+from eyas.core.files import PART_SUFFIX, read_limited, refusals, write_atomic
 from eyas.core.pinhole import intrinsics
 from eyas.exports.files import Files, joined
 from eyas.exports.registry import WRITERS, chosen_writers
 from eyas.exports.writer import Episode, Run
 from eyas.modes.video.contents import Contents, paths_below
 from eyas.modes.video.lock import LOCK
+from eyas.modes.video.step_log import STEP_LOGS
 from eyas.settings.config import EyasConfig
 from eyas.settings.file import read_settings, save_settings
 from eyas.settings.legacy.adapter import save_legacy
@@ -95,6 +97,7 @@ def check_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: boo
     if used and overwrite:
         _require_recording(path, _contents(path, config))
     elif used and resume:
+        _require_plain(path)
         _require_same_version(path)
         _require_same_settings(path, config)
     elif used:
@@ -137,10 +140,23 @@ def _contents(path: Path, config: EyasConfig) -> Contents:
     """Return the paths of a recording with these settings, and of the existing one."""
     names = dict.fromkeys((*WRITERS.built_in, *config.video.writers))
     files = [WRITERS.get(name).files for name in names]
-    with suppress(OSError, ValueError, TypeError, KeyError):
-        recorded = json.loads((path / ORIGIN).read_text())["files"]
+    with suppress(DataFileError, ValueError, TypeError, KeyError, RecursionError):
+        recorded = _origin(path)["files"]
         files.append(Files(**{kind: tuple(recorded[kind]) for kind in recorded}))
-    return Contents(joined(files), [SETTINGS, LEGACY_SETTINGS, ORIGIN, LOCK])
+    return Contents(joined(files), [SETTINGS, LEGACY_SETTINGS, ORIGIN, LOCK, *STEP_LOGS])
+
+
+def _origin(path: Path) -> Any:  # noqa: ANN401  # JSON, of anyone
+    return json.loads(read_limited(path / ORIGIN, 1 << 20))
+
+
+def _require_plain(path: Path) -> None:
+    """Refuse a folder with links: what is written and deleted below one lies elsewhere."""
+    for inside, found in paths_below(path):
+        if found.is_symlink() or not (found.is_file() or found.is_dir()):
+            raise OutputError(
+                f"{path}: not continued: {inside!r} is a link or a device; a recording has none"
+            )
 
 
 def _delete_parts(path: Path, contents: Contents) -> None:
@@ -175,13 +191,13 @@ def _delete_recording(path: Path) -> None:
 def _require_same_version(path: Path) -> None:
     """Refuse to continue a recording of another version, whose pictures may differ."""
     try:
-        recorded = json.loads((path / ORIGIN).read_text())["eyas"]
-    except (OSError, ValueError, TypeError, LookupError):
+        recorded = _origin(path)["eyas"]
+    except (DataFileError, ValueError, TypeError, LookupError, RecursionError):
         recorded = "of an unknown version"
     if (path / SETTINGS).is_file() and recorded != __version__:
         raise OutputError(
-            f"{path}: recorded by Eyas {recorded}, but this is {__version__}, whose pictures may"
-            " differ; continue with that version, or start again with --overwrite"
+            f"{path}: recorded by Eyas {recorded!s:.40}, but this is {__version__}, whose pictures"
+            " may differ; continue with that version, or start again with --overwrite"
         )
 
 
@@ -194,7 +210,9 @@ def _require_same_settings(path: Path, config: EyasConfig) -> None:
         recorded = validated(EyasConfig, read_settings(settings))
     except (DataFileError, ConfigError):
         raise DataFileError(f"{settings}: cannot be read; start again with --overwrite") from None
-    was, asked = recorded.model_dump(mode="json"), config.model_dump(mode="json")
+    # Values without effect need not be the same.
+    was = recorded.model_dump(mode="json", exclude={"original"})
+    asked = config.model_dump(mode="json", exclude={"original"})
     difference = _first_difference(was, asked, "")
     if difference:
         raise ConfigError(

@@ -1,5 +1,6 @@
 """Record videos with labels: `channels` trackers follow their targets together in one world."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 from eyas.core.clock import PHYSICS_RATE
@@ -11,11 +12,14 @@ from eyas.modes.video.grid import FrameGrid
 from eyas.modes.video.lock import recording_lock
 from eyas.modes.video.recorder import Recorder
 from eyas.modes.video.report import Progress, print_report
+from eyas.modes.video.step_log import step_log
 from eyas.settings.config import EyasConfig
+from eyas.settings.legacy.messages import originals_named
 from eyas.sim.assets import load_assets
 from eyas.sim.build import build_simulation
 from eyas.sim.simulation import Simulation
 from eyas.sim.worlds import together
+from eyas.state.snapshot import Snapshot
 from eyas.task.config import DoneConfig
 
 __all__ = ["run"]
@@ -50,10 +54,12 @@ def run(
     """
     # Building may take a minute, so writers and folder are checked first. The folder is changed
     # only after building, so that a failed build neither makes nor deletes one.
-    chosen_writers(config.video.writers)
-    check_folder(folder, config, overwrite=overwrite, resume=resume)
-    sim = build_simulation(recording_rules(config), together(config.video.channels))
-    _require_traffic(config)
+    with originals_named(config):
+        chosen_writers(config.video.writers)
+        check_folder(folder, config, overwrite=overwrite, resume=resume)
+        sim = build_simulation(recording_rules(config), together(config.video.channels))
+        _require_traffic(config)
+        sim.reset()  # raises if there are fewer targets than trackers
     with recording_lock(folder):
         recording = open_folder(folder, config, overwrite=overwrite, resume=resume)
         _record(sim, config, recording, quiet=quiet)
@@ -63,8 +69,8 @@ def _record(sim: Simulation, config: EyasConfig, folder: VideoFolder, *, quiet: 
     recorder = Recorder(sim, config, folder)
     progress = Progress(quiet=quiet)
     try:
-        with progress:
-            _run_episodes(sim, config, recorder, progress)
+        with progress, step_log(folder.path, folder.trackers, verbose=config.verbose) as log:
+            _run_episodes(sim, config, recorder, progress, log)
         recorder.finish()
     except BaseException as error:
         recorder.stop()
@@ -104,7 +110,8 @@ def _require_traffic(config: EyasConfig) -> None:
         raise ConfigError(
             f"video.total_time: {config.video.total_time:g} s after {config.video.start_time:g} s"
             f" is longer than the traffic's recording; allowed: up to"
-            f" {known - config.video.start_time:g} s"
+            f" {known - config.video.start_time:g} s, or a longer traffic.recording (eyas traffic"
+            " record --duration)"
         )
     begin = (config.start.warm_up_steps + config.video.warm_up_steps) / PHYSICS_RATE
     if end <= begin:
@@ -115,15 +122,19 @@ def _require_traffic(config: EyasConfig) -> None:
 
 
 def _run_episodes(
-    sim: Simulation, config: EyasConfig, recorder: Recorder, progress: Progress
+    sim: Simulation,
+    config: EyasConfig,
+    recorder: Recorder,
+    progress: Progress,
+    log: Callable[[Snapshot], None],
 ) -> None:
     count = config.video.channels
     grid, mover = FrameGrid(config.video, count), mover_of(config, count)
-    sim.reset()
     episodes = sim.snapshot.episodes
     tick = begin = int(episodes.tick[0])
     while tick < grid.last_tick:
         mover.move(sim)
+        log(sim.snapshot)
         tick += 1
         due = grid.due(tick, episodes.step_count)
         if due.size:

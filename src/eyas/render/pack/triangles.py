@@ -32,14 +32,20 @@ the normal is not the same all over; texture; surface, and bed of snow times 256
 middle of the crown; object id; gradients of the normal. Whole numbers lie there as int32."""
 
 
+_SLIVER = 1e-12
+"""Squared sine of the least angle between sides: thousands of times the rounding of a float64."""
+
+
 def solid_triangles(mesh: Mesh) -> NDArray[np.bool_]:
     """Return which triangles have an area, shape (T,)."""
     a, b, c = np.moveaxis(mesh.positions[mesh.triangles].astype(np.float64), 1, 0)
     e1, e2 = b - a, c - a
     solid: NDArray[np.bool_] = np.linalg.norm(np.cross(e1, e2), axis=1) > 1e-10
-    # `gradients` divides by this; it may be 0 for long slivers although their area is not.
-    square = _dot(e1, e1) * _dot(e2, e2) - _dot(e1, e2) ** 2
-    return solid & (square[:, 0] > 0.0)
+    # `gradients` divides by this difference, in which the rounding of its terms remains: of a long
+    # sliver nothing else may be left, although its area is not 0.
+    whole = _dot(e1, e1) * _dot(e2, e2)
+    square = whole - _dot(e1, e2) ** 2
+    return solid & (square > _SLIVER * whole)[:, 0]
 
 
 def gradients(

@@ -2,34 +2,31 @@
 
 import json
 import logging
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
+from contextlib import suppress
 from dataclasses import replace
-from functools import cache
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from eyas.core.config import Problem, updated
+from eyas.core.config import Problem, updated, validated
 from eyas.core.errors import ConfigError
 from eyas.core.files import write_atomic
 from eyas.settings.config import EyasConfig
-from eyas.settings.legacy.entries import Entry, Values
+from eyas.settings.legacy.entries import Entry, Optional, Values
 from eyas.settings.legacy.keys import ENTRIES, GROUP_KEYS, KEEP_ALIVE
+from eyas.settings.legacy.layout import Nested, check_kinds, every_key, flat, nested
 
 __all__ = [
+    "check_original",
     "from_legacy",
     "is_legacy",
-    "legacy_defaults",
-    "legacy_keys_of",
+    "legacy_key_of",
     "save_legacy",
     "to_legacy",
     "with_legacy",
 ]
 
 _LOG = logging.getLogger("eyas")
-
-Nested = Mapping[str, Any]
-"""The content of a JSON object."""
 
 
 def is_legacy(values: Nested) -> bool:
@@ -50,27 +47,26 @@ def from_legacy(values: Nested, base: EyasConfig | None = None) -> EyasConfig:
         ConfigError: An unknown key, a wrong type or a value that is not allowed: one line with the
             original's path.
     """
-    said = _flat(values)
-    return _with(base or EyasConfig(), {**_flat(legacy_defaults()), **said}, ENTRIES)
+    config = (base or EyasConfig()).model_copy(update={"original": {}})
+    return _with(config, every_key() | flat(values), ENTRIES)
 
 
-def with_legacy(config: EyasConfig, changes: Nested, inactive: Nested | None = None) -> EyasConfig:
+def with_legacy(config: EyasConfig, changes: Nested) -> EyasConfig:
     """Return settings with some of the original's keys changed.
 
     Args:
         config: The settings.
-        changes: The keys that change.
-        inactive: An `env_config.json` with values for keys that had no effect so far and may have
-            one now; None: the manual's defaults.
+        changes: The keys that change; keys that had no effect so far, but have one now, have their
+            values of `config.original`, or else the manual's defaults.
 
     Raises:
         ConfigError: As from `from_legacy`.
     """
-    said = _flat(changes)
+    said = flat(changes)
     if not GROUP_KEYS.isdisjoint(said):
         said = {KEEP_ALIVE: False} | said  # who says how groups come means that they do
     touched = [entry for entry in ENTRIES if not said.keys().isdisjoint(entry.keys)]
-    values = {**_flat(legacy_defaults()), **_flat(inactive or {})}
+    values = {**every_key(), **_kept(config)}
     for entry in touched:
         try:
             values |= entry.write(_fields(config, entry))
@@ -82,13 +78,29 @@ def with_legacy(config: EyasConfig, changes: Nested, inactive: Nested | None = N
 def to_legacy(config: EyasConfig) -> dict[str, Any]:
     """Return settings as an `env_config.json` with all groups and keys.
 
+    A key that changes no setting has its value of `config.original`, or else the manual's default.
+
     Raises:
         ConfigError: The original's keys cannot express a value, such as a choice among values.
     """
-    values = dict(_flat(legacy_defaults()))
+    values: dict[str, object] = {}
     for entry in ENTRIES:
-        values |= entry.write(_fields(config, entry))
-    return _nested(values)
+        values |= _written(entry, config)
+    return nested(values)
+
+
+def check_original(config: EyasConfig) -> None:
+    """Refuse values in `config.original` that no `env_config.json` can hold.
+
+    Raises:
+        ConfigError: An unknown key or a wrong type: one line.
+    """
+    every = every_key()
+    for key, value in _kept(config).items():
+        if key not in every:
+            raise Problem(("original", key), value, "", tuple(every), unknown_key=True).error()
+    for entry in ENTRIES:
+        check_kinds(entry, {**every, **_kept(config)})
 
 
 def save_legacy(config: EyasConfig, path: Path) -> bool:
@@ -106,43 +118,65 @@ def save_legacy(config: EyasConfig, path: Path) -> bool:
     return True
 
 
-def legacy_keys_of(path: str) -> tuple[str, ...]:
-    """Return the original's keys for a field of ours; empty if there are none."""
-    return next((entry.keys for entry in ENTRIES if path in entry.paths), ())
-
-
-@cache
-def legacy_defaults() -> Nested:
-    """Return the values that keys have if a file does not contain them."""
-    values: dict[str, Any] = json.loads(
-        files("eyas.settings.legacy").joinpath("defaults.json").read_text()
-    )
-    return values
+def legacy_key_of(path: str) -> str:
+    """Return the original's key for a field of ours, for messages; empty if there is none."""
+    entry = next((entry for entry in ENTRIES if path in entry.paths), None)
+    if entry is None:
+        return ""
+    return entry.key if isinstance(entry, Optional) else entry.keys[0]
 
 
 def _with(config: EyasConfig, values: Values, entries: Iterable[Entry]) -> EyasConfig:
+    """Return settings in which the fields of these entries have these values of their keys."""
     changes: dict[str, object] = {}
     for entry in entries:
-        _check_kinds(entry, values)
+        check_kinds(entry, values)
         changes |= entry.read(values)
-    return updated(config, _nested(changes), lambda problem: _retold(problem, values))
+        for remark in entry.remarks(values):
+            _LOG.warning("%s", remark)
+    new = updated(config, nested(changes), lambda problem: _retold(problem, values))
+    kept = dict(_kept(new))
+    for entry in entries:
+        written = _told(entry, new)
+        for key in entry.keys:
+            kept.pop(key, None)
+            if key not in written or written[key] != values[key]:
+                kept[key] = values[key]
+    defaults = every_key()
+    kept = {key: value for key, value in kept.items() if value != defaults[key]}
+    original = kept if kept or new.original is not None else None
+    return validated(EyasConfig, {**dict(new), "original": original})
 
 
-def _check_kinds(entry: Entry, values: Values) -> None:
-    """Refuse switches and numbers of a wrong type; a key for one field is checked by that field."""
-    if len(entry.keys) == 1:
-        return
-    for key in entry.keys:
-        value, default = values[key], _flat(legacy_defaults())[key]
-        if isinstance(default, bool):
-            fits, allowed = isinstance(value, bool), "true or false"
-        elif isinstance(default, int | float):
-            number = isinstance(value, int | float) and not isinstance(value, bool)
-            fits, allowed = number, "a number"
-        else:
-            continue
-        if not fits:
-            raise Problem((key,), value, allowed).error()
+def _kept(config: EyasConfig) -> Values:
+    """Return the original's values that no setting holds."""
+    kept = config.original or {}
+    return {key: list(value) if isinstance(value, tuple) else value for key, value in kept.items()}
+
+
+def _told(entry: Entry, config: EyasConfig) -> Values:
+    """Return the keys of an entry that have an effect; none if they cannot express the settings."""
+    try:
+        return entry.write(_fields(config, entry))
+    except ConfigError:
+        return {}
+
+
+def _written(entry: Entry, config: EyasConfig) -> Values:
+    """Return all keys of an entry, as they were in the original's file where that means the same.
+
+    Raises:
+        ConfigError: The original's keys cannot express a value.
+    """
+    said = entry.write(_fields(config, entry))
+    before = {key: value for key, value in _kept(config).items() if key in entry.keys}
+    defaults = {key: every_key()[key] for key in entry.keys}
+    values = {**defaults, **before, **said}
+    for key in before.keys() & said.keys():
+        trial = {**values, key: before[key]}
+        with suppress(ConfigError):
+            values = trial if updated(config, nested(entry.read(trial))) == config else values
+    return values
 
 
 def _retold(problem: Problem, values: Values) -> Problem:
@@ -161,7 +195,7 @@ def _retold(problem: Problem, values: Values) -> Problem:
 
 def _is_refused(path: str, value: object) -> bool:
     try:
-        updated(EyasConfig(), _nested({path: value}))
+        updated(EyasConfig(), nested({path: value}))
     except ConfigError:
         return True
     return False
@@ -175,38 +209,3 @@ def _fields(config: EyasConfig, entry: Entry) -> Values:
             value = getattr(value, name)
         fields[path] = value
     return fields
-
-
-def _flat(values: Nested) -> dict[str, object]:
-    """Return values by dotted path.
-
-    Raises:
-        ConfigError: A key that the original does not have, or a value that should be a group.
-    """
-    defaults = legacy_defaults()
-    flat: dict[str, object] = {}
-    for key, value in values.items():
-        if key not in defaults:
-            raise Problem((key,), value, "", tuple(defaults), unknown_key=True).error()
-        known = defaults[key]
-        if not isinstance(known, Mapping):
-            flat[key] = value
-            continue
-        if not isinstance(value, Mapping):
-            raise Problem((key,), value, f"an object with {', '.join(known)}").error()
-        for inner, inner_value in value.items():
-            if inner not in known:
-                raise Problem((key, inner), value, "", tuple(known), unknown_key=True).error()
-            flat[f"{key}.{inner}"] = inner_value
-    return flat
-
-
-def _nested(flat: Values) -> dict[str, Any]:
-    nested: dict[str, Any] = {}
-    for path, value in flat.items():
-        *groups, name = path.split(".")
-        inner = nested
-        for group in groups:
-            inner = inner.setdefault(group, {})
-        inner[name] = value
-    return nested

@@ -59,6 +59,10 @@ class Entry(ABC):
     def blame(self, values: Values) -> Iterator[Guess]:
         """Yield the keys that may have caused the refusal of a field; if no other did, the last."""
 
+    def remarks(self, values: Values) -> Iterator[str]:
+        """Yield a line for each value that is not used as it stands."""
+        yield from ()
+
 
 @dataclass(frozen=True, slots=True)
 class Same(Entry):

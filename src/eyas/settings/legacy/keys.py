@@ -1,6 +1,7 @@
 """Every key of an `env_config.json`, and our setting for it."""
 
 from eyas.settings.legacy.entries import Entry, Optional, Same, Span, Varied
+from eyas.settings.legacy.pitch import Pitch
 from eyas.settings.legacy.switch import Switch
 from eyas.settings.legacy.world_path import WorldPath
 from eyas.traffic.config import Demand
@@ -24,9 +25,9 @@ GROUP_KEYS = frozenset(
 """Keys that have an effect on the original's traffic only."""
 
 
-def _drawn(name: str, path: str, sides: str | None) -> Varied:
+def _drawn(name: str, path: str, sides: str | None, kind: type[Varied] = Varied) -> Varied:
     group = "Drone_Random_Config"
-    return Varied(
+    return kind(
         random=f"{group}.{name}_random",
         fixed=f"{group}.{name}_fixed",
         least=f"{group}.{name}_random_min",
@@ -120,7 +121,7 @@ _VIDEO = (
 _START = (
     # Steps of 2 ms, not milliseconds, in spite of its name.
     Same("Drone_Random_Config.start_time_bias_ms", "start.warm_up_steps"),
-    _drawn("view_pitch", "start.pitch", None),
+    _drawn("view_pitch", "start.pitch", None, Pitch),
     _drawn("height", "start.height", None),
     _drawn("direction", "start.direction", "direction_random_multilateral"),
     _drawn("horizon_bias", "start.horizontal_bias", "horizon_bias_multilateral"),

@@ -1,6 +1,5 @@
 """The original's path of a world file, which contains map and weather."""
 
-import logging
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -12,8 +11,6 @@ from eyas.core.errors import ConfigError
 from eyas.settings.legacy.entries import Entry, Guess, Values
 
 __all__ = ["WorldPath"]
-
-_LOG = logging.getLogger("eyas")
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,12 +39,13 @@ class WorldPath(Entry):
         if not isinstance(path, str):
             raise ConfigError(f"{self.key}: {shown(path)} is not allowed: text")
         found = re.fullmatch(r"(?:.*[/\\])?([^/\\]+)-([^-/\\]+)\.wbt", path)
-        if found is None:
-            _LOG.warning(
-                "%s: %s contains no map and weather, so it is ignored", self.key, shown(path)
-            )
-            return {}
-        return {self.map: found[1], self.weather: found[2]}
+        return {self.map: found[1], self.weather: found[2]} if found else {}
+
+    @override
+    def remarks(self, values: Values) -> Iterator[str]:
+        path = values[self.key]
+        if path is not None and not self.read(values):
+            yield f"{self.key}: {shown(path)} contains no map and weather, so it is ignored"
 
     @override
     def write(self, fields: Values) -> Values:

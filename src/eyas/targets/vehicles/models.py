@@ -88,6 +88,11 @@ class VehicleModel:
     """Largest lean in a curve [rad]."""
 
     @property
+    def typename(self) -> str:
+        """The original's `typename`; a trailer has that of the truck, its first part."""
+        return "TruckSimple" if self.kind is VehicleType.TRAILER else self.name
+
+    @property
     def rise(self) -> float:
         """Height of the reference point, and of the axles, above the road [m]."""
         return self.wheel_radius

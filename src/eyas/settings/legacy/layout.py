@@ -1,0 +1,92 @@
+"""The groups and keys of an `env_config.json`, by dotted path."""
+
+import json
+from collections.abc import Mapping
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+from eyas.core.config import Problem
+from eyas.settings.legacy.entries import Entry, Values
+
+__all__ = ["Nested", "check_kinds", "every_key", "flat", "legacy_defaults", "nested"]
+
+Nested = Mapping[str, Any]
+"""The content of a JSON object."""
+
+
+@cache
+def legacy_defaults() -> Nested:
+    """Return the values that keys have if a file does not contain them."""
+    values: dict[str, Any] = json.loads(
+        files("eyas.settings.legacy").joinpath("defaults.json").read_text()
+    )
+    return values
+
+
+def every_key() -> dict[str, object]:
+    """Return the values of all keys if a file contains none of them."""
+    return flat(legacy_defaults())
+
+
+def flat(values: Nested) -> dict[str, object]:
+    """Return values by dotted path.
+
+    Raises:
+        ConfigError: A key that the original does not have, or a value that should be a group.
+    """
+    defaults = legacy_defaults()
+    by_path: dict[str, object] = {}
+    for key, value in values.items():
+        if key not in defaults:
+            raise Problem((key,), value, "", tuple(defaults), unknown_key=True).error()
+        known = defaults[key]
+        if not isinstance(known, Mapping):
+            by_path[key] = value
+            continue
+        if not isinstance(value, Mapping):
+            raise Problem((key,), value, f"an object with {', '.join(known)}").error()
+        for inner, inner_value in value.items():
+            if inner not in known:
+                raise Problem((key, inner), value, "", tuple(known), unknown_key=True).error()
+            by_path[f"{key}.{inner}"] = inner_value
+    return by_path
+
+
+def nested(by_path: Values) -> dict[str, Any]:
+    """Return values by dotted path as groups; also those of our settings."""
+    groups: dict[str, Any] = {}
+    for path, value in by_path.items():
+        *above, name = path.split(".")
+        inner = groups
+        for group in above:
+            inner = inner.setdefault(group, {})
+        inner[name] = value
+    return groups
+
+
+def check_kinds(entry: Entry, values: Values) -> None:
+    """Refuse switches and numbers of a wrong type; a key for one field is checked by that field."""
+    if len(entry.keys) == 1:
+        return
+    for key in entry.keys:
+        value, default = values[key], every_key()[key]
+        if isinstance(default, bool):
+            fits, allowed = isinstance(value, bool), "true or false"
+        elif isinstance(default, list):
+            fits, allowed = _are_numbers(value, len(default)), f"a list of {len(default)} numbers"
+        else:
+            fits, allowed = _is_number(value), "a number"
+        if not fits:
+            raise Problem((key,), value, allowed).error()
+
+
+def _is_number(value: object) -> bool:
+    """Return whether a JSON value is a finite number, not a truth value."""
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return False
+    return abs(value) < 1e308
+
+
+def _are_numbers(value: object, count: int) -> bool:
+    return isinstance(value, list) and len(value) == count and all(map(_is_number, value))

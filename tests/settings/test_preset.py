@@ -1,0 +1,56 @@
+"""Settings that come with Eyas."""
+
+import json
+import math
+
+import pytest
+
+from eyas.core.errors import UnknownNameError
+from eyas.envs.tracking_env import TrackingEnv
+from eyas.settings.file import load_settings
+from eyas.settings.legacy.adapter import is_legacy
+from eyas.settings.legacy.keys import KEEP_ALIVE
+from eyas.settings.legacy.layout import flat, legacy_defaults
+from eyas.settings.preset import PRESETS, preset_file
+
+
+@pytest.mark.parametrize("name", PRESETS)
+def test_an_environment_runs_with_each(name):
+    env = TrackingEnv(name)
+    env.reset(seed=0)
+    *_, info = env.step(6)
+    assert info["step"] == 4
+    assert env.config == load_settings(preset_file(name))
+
+
+def test_every_file_is_a_preset():
+    found = {path.stem for path in preset_file("easy").parent.iterdir()}
+    assert found == set(PRESETS)
+
+
+@pytest.mark.parametrize("name", ["dat-train", "dat-eval"])
+def test_those_of_the_original_are_files_that_it_loads(name):
+    values = json.loads(preset_file(name).read_text())
+    assert is_legacy(values)
+    assert flat(values).keys() == flat(legacy_defaults()).keys() - {"World_Path", KEEP_ALIVE}
+
+
+def test_evaluation_is_as_published():
+    config = load_settings(preset_file("dat-eval"))
+    start = config.start
+    assert (start.pitch, start.height, start.direction) == (1.37, 22.0, 0.0)
+    assert (start.horizontal_bias, start.vertical_bias) == (0.0, 0.0)
+    assert (config.reward.view_range, config.reward.view_scale) == (1.0, 4.0)
+    assert config.done.no_reward_steps > config.done.total_steps == 1500
+    assert config.traffic.seed is not None
+
+
+def test_training_starts_from_every_side():
+    config = load_settings(preset_file("dat-train"))
+    assert config.start.direction.uniform == pytest.approx((-math.pi, math.pi))
+    assert config.reward.view_range == 0.7
+
+
+def test_an_unknown_name_is_told_with_the_nearest():
+    with pytest.raises(UnknownNameError, match=r"^preset: 'dat-evl' .*did you mean 'dat-eval'"):
+        TrackingEnv("dat-evl")
