@@ -92,7 +92,8 @@ def test_every_picture_opens_at_the_size_that_the_page_says_and_is_not_flat(draw
 
 
 def test_the_observation_is_84_pixels_wide_with_each_pixel_four_times_as_large(drawn):
-    pixels = np.asarray(Image.open(drawn / "citystreet-day" / "observation.png"))
+    with Image.open(drawn / "citystreet-day" / "observation.png") as picture:
+        pixels = np.asarray(picture)
     assert pixels.shape == (336, 336, 3)
     assert np.array_equal(pixels, np.kron(pixels[::4, ::4], np.ones((4, 4, 1), np.uint8)))
 
@@ -178,7 +179,8 @@ def test_what_an_interrupted_run_has_left_may_be_drawn_over(tmp_path, monkeypatc
     with pytest.raises(KeyboardInterrupt):
         gallery.run(tmp_path)
     assert not (tmp_path / gallery.INDEX).exists()
-    assert Image.open(tmp_path / "citystreet-day" / "horizon.png").size == (640, 480)
+    with Image.open(tmp_path / "citystreet-day" / "horizon.png") as picture:
+        assert picture.size == (640, 480)
 
 
 def test_only_what_is_named_is_drawn_and_wrong_names_are_told():

@@ -19,7 +19,7 @@ from eyas.settings.legacy.adapter import (
     with_legacy,
 )
 from eyas.settings.legacy.keys import ENTRIES
-from eyas.settings.legacy.layout import legacy_defaults
+from eyas.settings.legacy.layout import legacy_defaults, nested
 from eyas.settings.version_check import require_supported
 
 DATA = Path(__file__).parent / "data"
@@ -327,6 +327,30 @@ def test_what_is_written_back_loses_nothing(name, tmp_path):
     for written in (json.loads((tmp_path / "env_config.json").read_text()), to_legacy(native)):
         said, again = flat(read(name)), flat(written)
         assert {key: again[key] for key in said} == said
+
+
+switches = [key for key, value in flat(read("shipped")).items() if isinstance(value, bool)]
+drawn = [
+    key
+    for key, value in flat(read("shipped")).items()
+    if key.startswith(("Drone_Random_Config", "Env_Params", "Other_Params"))
+    and isinstance(value, int | float)
+    and key not in switches
+    and "start_time" not in key
+]
+
+
+@settings(max_examples=60, deadline=None)
+@given(
+    st.dictionaries(st.sampled_from(switches), st.booleans()),
+    st.dictionaries(st.sampled_from(drawn), st.integers(1, 9) | st.floats(0.5, 1.5)),
+)
+def test_whatever_the_switches_nothing_is_lost(flags, numbers):
+    said = flat(read("shipped")) | flags | numbers
+    config = from_legacy(nested(said))
+    again = EyasConfig.model_validate_json(config.model_dump_json())
+    assert again == config
+    assert {key: value for key, value in flat(to_legacy(again)).items() if key in said} == said
 
 
 def test_a_switch_turned_on_later_finds_its_values():

@@ -2,6 +2,7 @@
 
 import json
 import math
+from pathlib import Path
 
 import pytest
 
@@ -9,8 +10,7 @@ from eyas.core.errors import UnknownNameError
 from eyas.envs.tracking_env import TrackingEnv
 from eyas.settings.file import load_settings
 from eyas.settings.legacy.adapter import is_legacy
-from eyas.settings.legacy.keys import KEEP_ALIVE
-from eyas.settings.legacy.layout import flat, legacy_defaults
+from eyas.settings.legacy.layout import flat
 from eyas.settings.preset import PRESETS, preset_file
 
 
@@ -32,7 +32,8 @@ def test_every_file_is_a_preset():
 def test_those_of_the_original_are_files_that_it_loads(name):
     values = json.loads(preset_file(name).read_text())
     assert is_legacy(values)
-    assert flat(values).keys() == flat(legacy_defaults()).keys() - {"World_Path", KEEP_ALIVE}
+    shipped = Path(__file__).parent / "data" / "shipped.json"
+    assert flat(values).keys() == flat(json.loads(shipped.read_text())).keys()
 
 
 def test_evaluation_is_as_published():

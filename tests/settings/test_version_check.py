@@ -1,8 +1,8 @@
 import pytest
 
-from eyas.core.errors import NotInThisVersionError
+from eyas.core.errors import ConfigError, NotInThisVersionError
 from eyas.settings.config import EyasConfig
-from eyas.settings.legacy.adapter import from_legacy
+from eyas.settings.legacy.adapter import from_legacy, to_legacy
 from eyas.settings.version_check import require_supported
 
 
@@ -35,6 +35,19 @@ def test_other_params_refuse_no_run_that_follows_a_vehicle():
         "obj_edge_distribution_min": -4,
     }
     require_supported(from_legacy({"Other_Params": every}))
+
+
+@pytest.mark.parametrize("value", [0, -3, 1.0, 1e9])
+def test_other_params_may_be_out_of_range_then_and_are_written_back(value):
+    config = from_legacy({"Other_Params": {"max_obj_num": value, "obj_import_interval": value}})
+    require_supported(config)
+    written = to_legacy(config)["Other_Params"]
+    assert (written["max_obj_num"], written["obj_import_interval"]) == (value, value)
+    followed = {"Tracking_Object": "Pedestrian", "Other_Params": {"max_obj_num": value}}
+    with pytest.raises(ConfigError, match=r"^Other_Params\.max_obj_num: .* a whole number"):
+        from_legacy(followed)
+    with pytest.raises(ConfigError, match=r"^Other_Params\.max_obj_num: 'a' is not .*: a number"):
+        from_legacy({"Other_Params": {"max_obj_num": "a"}})
 
 
 def test_defaults_ports_and_modes_are_supported():

@@ -30,7 +30,8 @@ FILES = (
 
 VALUES: tuple[Any, ...] = (
     None, True, False, 0, -1, 1, 2, 3, 0.5, -0.0, 1e-308, 1e308, -1e308, 10**30, -(10**30), 2**63,
-    float("nan"), float("inf"), float("-inf"), "", " ", "0", "nan", "day", "night", "citystreet",
+    float("nan"), float("inf"), float("-inf"), "", " ", "0", "nan", "day", "night",
+    "citystreet",
     "\u200b", "\x00", "\n", "\ud800", "\U0001f985", "é" * 50, "a" * 10_000, "../..", "/dev/null", "a:b", "a.b:c",
     [], [0], [1, 2], [3, 1], [None], [[0.5, 1.0]], ["x", "y"], list(range(1000)), {}, {"": 0},
     {"uniform": [0, 1]}, {"uniform": [1, 0]}, {"uniform": [0]}, {"uniform": [float("nan"), 1]},
@@ -110,7 +111,9 @@ def try_case(number: int, folder: Path) -> bool:
         require_supported(config)
     except EyasError as error:
         line = str(error)
-        assert line.strip() and line.isprintable() and len(line) < 5000, (number, line)
+        assert line.strip(), number
+        assert line.isprintable(), (number, line)
+        assert len(line) < 5000, (number, line)
         return False
     save_settings(config, again)
     assert load_settings(again) == config, number

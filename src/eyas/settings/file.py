@@ -48,13 +48,13 @@ def load_settings(path: Path | None, overrides: Sequence[str] = ()) -> EyasConfi
             "env.speeds here)"
         )
     config = from_legacy(values) if is_legacy(values) else validated(EyasConfig, values)
-    check_original(config)
     pairs = [_parsed(override) for override in overrides]
     for capital, group in groupby(pairs, key=lambda pair: pair[0][0][:1].isupper()):
         changes: Nested = {}
         for keys, value in group:
             _put(changes, keys, value)
         config = with_legacy(config, changes) if capital else updated(config, changes)
+    check_original(config)
     _tell_surprises(config)
     return config
 

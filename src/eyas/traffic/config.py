@@ -43,16 +43,16 @@ class TrafficConfig(Config):
     """Class of all vehicles."""
     max_vehicles: Annotated[int, Field(ge=1, le=1000)] = 40
     """Largest number of vehicles at a time."""
-    max_speed: Annotated[float, Field(gt=0, le=100)] = 20.0
+    max_speed: Annotated[float, Field(ge=0.1, le=100)] = 20.0
     """Largest speed of a vehicle [m/s]; the speed limits of the roads apply too."""
-    max_acceleration: Annotated[float, Field(gt=0, le=100)] = 25.0
+    max_acceleration: Annotated[float, Field(ge=0.1, le=100)] = 25.0
     """[m/s^2]"""
-    max_deceleration: Annotated[float, Field(gt=0, le=100)] = 25.0
+    max_deceleration: Annotated[float, Field(ge=0.1, le=100)] = 25.0
     """[m/s^2]"""
     group_size: Annotated[int, Field(ge=1, le=1000)] | None = None
     """Vehicles that enter together (respawn), at least three for each tracker of a world; None:
     three for each."""
-    group_interval: Annotated[float, Field(gt=0, le=3600)] = 52.0
+    group_interval: Annotated[float, Field(ge=0.1, le=3600)] = 52.0
     """Time between groups (respawn) [s]."""
     route_length: tuple[Least, Most] = (500.0, 7000.0)
     """Shortest and longest route (respawn) [m]."""

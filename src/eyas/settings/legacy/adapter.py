@@ -15,6 +15,7 @@ from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.entries import Entry, Optional, Values
 from eyas.settings.legacy.keys import ENTRIES, GROUP_KEYS, KEEP_ALIVE
 from eyas.settings.legacy.layout import Nested, check_kinds, every_key, flat, nested
+from eyas.targets.config import TargetName
 
 __all__ = [
     "check_original",
@@ -66,7 +67,7 @@ def with_legacy(config: EyasConfig, changes: Nested) -> EyasConfig:
     if not GROUP_KEYS.isdisjoint(said):
         said = {KEEP_ALIVE: False} | said  # who says how groups come means that they do
     touched = [entry for entry in ENTRIES if not said.keys().isdisjoint(entry.keys)]
-    values = {**every_key(), **_kept(config)}
+    values = {**every_key(), **_kept(config), "Tracking_Object": config.target.value}
     for entry in touched:
         try:
             values |= entry.write(_fields(config, entry))
@@ -100,7 +101,8 @@ def check_original(config: EyasConfig) -> None:
         if key not in every:
             raise Problem(("original", key), value, "", tuple(every), unknown_key=True).error()
     for entry in ENTRIES:
-        check_kinds(entry, {**every, **_kept(config)})
+        idle = _is_idle(entry, config.target.value)
+        check_kinds(entry, {**every, **_kept(config)}, idle=idle)
 
 
 def save_legacy(config: EyasConfig, path: Path) -> bool:
@@ -130,8 +132,12 @@ def _with(config: EyasConfig, values: Values, entries: Iterable[Entry]) -> EyasC
     """Return settings in which the fields of these entries have these values of their keys."""
     changes: dict[str, object] = {}
     for entry in entries:
-        check_kinds(entry, values)
-        changes |= entry.read(values)
+        idle = _is_idle(entry, values["Tracking_Object"])
+        check_kinds(entry, values, idle=idle)
+        fields = entry.read(values)
+        if idle and any(_is_refused(path, value) for path, value in fields.items()):
+            continue
+        changes |= fields
         for remark in entry.remarks(values):
             _LOG.warning("%s", remark)
     new = updated(config, nested(changes), lambda problem: _retold(problem, values))
@@ -146,6 +152,12 @@ def _with(config: EyasConfig, values: Values, entries: Iterable[Entry]) -> EyasC
     kept = {key: value for key, value in kept.items() if value != defaults[key]}
     original = kept if kept or new.original is not None else None
     return validated(EyasConfig, {**dict(new), "original": original})
+
+
+def _is_idle(entry: Entry, target: object) -> bool:
+    """Return whether an entry has no effect for a target, whatever its values."""
+    vehicle = target == TargetName.SUMO_VEHICLE
+    return vehicle and all(path.startswith("objects.") for path in entry.paths)
 
 
 def _kept(config: EyasConfig) -> Values:
@@ -171,6 +183,8 @@ def _written(entry: Entry, config: EyasConfig) -> Values:
     said = entry.write(_fields(config, entry))
     before = {key: value for key, value in _kept(config).items() if key in entry.keys}
     defaults = {key: every_key()[key] for key in entry.keys}
+    if _is_idle(entry, config.target.value):
+        return {**defaults, **said, **before}
     values = {**defaults, **before, **said}
     for key in before.keys() & said.keys():
         trial = {**values, key: before[key]}

@@ -65,9 +65,12 @@ def nested(by_path: Values) -> dict[str, Any]:
     return groups
 
 
-def check_kinds(entry: Entry, values: Values) -> None:
-    """Refuse switches and numbers of a wrong type; a key for one field is checked by that field."""
-    if len(entry.keys) == 1:
+def check_kinds(entry: Entry, values: Values, *, idle: bool = False) -> None:
+    """Refuse switches and numbers of a wrong type.
+
+    A key for one field is checked by that field, unless the entry has no effect (`idle`).
+    """
+    if len(entry.keys) == 1 and not idle:
         return
     for key in entry.keys:
         value, default = values[key], every_key()[key]

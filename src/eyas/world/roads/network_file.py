@@ -44,7 +44,7 @@ def load_network(path: Path) -> RoadNetwork:
         DataFileError: The file is missing, truncated or of another kind.
     """
     try:
-        with np.load(path) as archive:
+        with path.open("rb") as file, np.load(file) as archive:
             values = {field.name: archive[field.name] for field in fields(RoadNetwork)}
     except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile, zlib.error) as error:
         raise DataFileError(f"{path}: not a readable road network: {error}") from error
