@@ -40,8 +40,8 @@ _OPTIONS = (
 
 _IMPATIENCE = {
     Demand.KEEP_ALIVE: "",
-    # Makes up for our crossings, which are wider than the original's: cars stand 0.4 % of the time
-    # there, but 1.1 % here if none is impatient.
+    # Cars stand 0.4 % of the time on the original's roads, but 1.1 % on ours if none is impatient.
+    # Measured on citystreet: 0.37 % for the shipped groups of 12, 0.37 to 0.68 % for four seeds.
     Demand.RESPAWN: ' impatience="0.12"',
 }
 
