@@ -85,8 +85,7 @@ def run() -> int:
     logging.getLogger("eyas").setLevel(logging.INFO)
     try:
         status = app(standalone_mode=False)
-        if sys.stdout is not None:
-            sys.stdout.flush()  # here, so that a closed pipe is caught below
+        sys.stdout.flush()  # here, so that a closed pipe is caught below
     except EyasError as error:
         return _failed(str(error))
     except _UsageError as error:
@@ -95,11 +94,20 @@ def run() -> int:
         raise carried.interrupt from None
     except typer.Abort:
         raise KeyboardInterrupt from None
-    except BrokenPipeError:
-        # The reader of our output has closed the pipe, so nothing more can be printed.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 1
+    except OSError as error:
+        return _not_printed(error)
     return status if isinstance(status, int) else 0
+
+
+def _not_printed(error: OSError) -> int:
+    """Return the exit code of a system's refusal, nearly always to print."""
+    if error.filename is not None:
+        return _failed(f"{error.filename}: {error.strerror}")
+    # What is left in the buffer would fail again when Python ends.
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+    if isinstance(error, BrokenPipeError):
+        return 1  # the reader of our output has seen enough
+    return _failed(f"stdout: cannot write: {error.strerror or error}")
 
 
 def _failed(line: str) -> int:

@@ -1,5 +1,6 @@
 """The program `eyas`: its first and its last line."""
 
+import os
 import sys
 
 from eyas.core.interrupts import EndingSignals
@@ -18,6 +19,7 @@ def main() -> None:
     signals, remarks = EndingSignals(), ""
     try:
         signals.take()
+        _make_streams_usable()
         from eyas.cli.app import run  # heavy, so only after the signals are handled
 
         status = run()
@@ -32,6 +34,24 @@ def main() -> None:
 
         say(_WORDS[signals.first] + remarks)
     sys.exit(status)
+
+
+def _make_streams_usable() -> None:
+    """Let anything be printed, wherever it goes.
+
+    Without something in place of standard streams that the shell has closed, the next file that is
+    opened would take their numbers, and get what libraries and other programs print.
+    """
+    for number in range(3):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # takes the lowest free number
+    for name in ("stdout", "stderr"):
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, "w"))
+        # In the language C, the dots of a name that is cut off could not be printed.
+        getattr(sys, name).reconfigure(errors="backslashreplace" if name == "stderr" else "replace")
 
 
 if __name__ == "__main__":
