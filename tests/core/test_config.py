@@ -62,7 +62,7 @@ class Outer(Config):
             '{"uniform": [low, high]}, {"mirrored": [low, high]} or {"choice": [a, b, ...]}',
         ),
         ({"seed": -1}, "inner.seed: -1 is not allowed: null or a whole number of at least 0"),
-        ({"a\nb": 1}, "inner.a\nb: unknown key; known: "),
+        ({"a\nb": 1}, "inner.a\\nb: unknown key; known: "),
     ],
 )
 def test_a_wrong_value_is_told_with_path_value_and_what_is_allowed(values, line):

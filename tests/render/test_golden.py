@@ -76,7 +76,8 @@ def test_the_city_looks_as_it_did(name, regenerate, tmp_path):
     now = drawn(*PICTURES[name])
     if regenerate:
         Image.fromarray(now).save(path, optimize=True)
-    then = np.asarray(Image.open(path))
+    with Image.open(path) as picture:
+        then = np.asarray(picture)
     difference = np.abs(now.astype(int) - then).max(axis=2)
     if difference.mean() > MEAN or (difference > 24).mean() > SHARE:
         shown = np.concatenate([then, now, np.repeat(difference[..., None], 3, 2)], axis=1)
