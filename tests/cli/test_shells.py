@@ -56,7 +56,7 @@ def shell(line, *arguments, flags=(), **environment):
 @pytest.mark.parametrize(
     ("line", "flags", "environment"),
     [
-        ('"$@"', ["-I", "-W", "error"], {"HOME": "/nowhere"}),
+        ('"$@"', ["-I", "-B", "-W", "error"], {"HOME": "/nowhere"}),
         (
             'exec "$@" >&- 2>&- <&-',
             ["-OO"],

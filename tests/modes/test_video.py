@@ -22,6 +22,7 @@ from eyas.exports.files import Files
 from eyas.exports.frame import Frame
 from eyas.exports.gather import Gather
 from eyas.exports.labels import FrameLabel, read_labels
+from eyas.exports.registry import WRITERS
 from eyas.exports.summary import Summary
 from eyas.exports.writer import Episode, Writer
 from eyas.modes.video import run as video
@@ -162,6 +163,20 @@ def test_a_killed_recording_continues_to_the_same_bytes(recorded, tmp_path):
     video.run(CONFIG, path, resume=True, quiet=True)
     assert contents(path) == contents(recorded)
     assert kept.stat().st_mtime_ns == drawn_at
+
+
+def test_a_later_start_does_without_numba(tmp_path):
+    """Which would take half a second to import, and compile for seconds what it keeps nowhere."""
+    with_overlay = CONFIG.video.model_copy(
+        update={"overlay": True, "writers": tuple(WRITERS.built_in)}
+    )
+    config = CONFIG.model_copy(update={"video": with_overlay})
+    program = RUN + 'print("numba" in sys.modules)'
+    said = []
+    for out in ("first", "later"):
+        command = [sys.executable, "-c", program, config.model_dump_json(), str(tmp_path / out)]
+        said.append(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+    assert said[1] == "False\n"
 
 
 def test_control_c_leaves_whole_files_and_says_how_to_go_on(recorded, tmp_path):

@@ -129,6 +129,8 @@ class MapRecipe:
 def _source_hash(folder: Traversable) -> str:
     digest = blake2b(digest_size=16)
     for path in sorted(folder.iterdir(), key=lambda path: path.name):
+        if path.name == "__pycache__":  # which comes with the first start
+            continue
         if path.is_dir():
             digest.update(f"{path.name}/{_source_hash(path)}".encode())
         elif path.name.endswith(".py"):
