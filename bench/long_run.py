@@ -1,0 +1,72 @@
+"""Run many steps with pictures, and many resets, in one process, and tell how its memory grows.
+
+    python bench/long_run.py [--steps 1000000] [--resets 100000] [--trackers 64]
+
+Memory is what the process holds in RAM after garbage collection; the first hundredth of the run is
+left out, in which buffers reach their sizes. Run it before a release.
+"""
+
+import argparse
+import gc
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from eyas.core.machine import describe_machine
+from eyas.sim.build import build_simulation
+from eyas.sim.config import SimConfig
+from eyas.sim.worlds import each_alone
+from eyas.state.draw import Picture
+
+PAGE = 4096
+
+
+def resident() -> int:
+    """Return the memory of this process in RAM [bytes]."""
+    gc.collect()
+    return int(Path("/proc/self/statm").read_text().split()[1]) * PAGE
+
+
+def grown(call: Callable[[], None], repeats: int) -> tuple[float, float]:
+    """Return by how much memory grows while a call is repeated [MiB], and the time [s]."""
+    for _ in range(max(repeats // 100, 10)):
+        call()
+    before, start = resident(), time.perf_counter()
+    for _ in range(repeats):
+        call()
+    return (resident() - before) / 2**20, time.perf_counter() - start
+
+
+def main() -> None:
+    """Measure and print."""
+    parser = argparse.ArgumentParser(description=main.__doc__)
+    parser.add_argument("--steps", type=int, default=1_000_000, help="steps of single trackers")
+    parser.add_argument("--resets", type=int, default=100_000, help="resets of single trackers")
+    parser.add_argument("--trackers", type=int, default=64)
+    given = parser.parse_args()
+    count = given.trackers
+    simulation = build_simulation(SimConfig(), each_alone(count))
+    simulation.reset()
+    picture, all_ = Picture.create(count, 84, 84), np.arange(count, dtype=np.int32)
+    rng = np.random.default_rng(0)
+
+    def step() -> None:
+        done = simulation.advance(rng.uniform(-1.0, 1.0, (count, 4)), 4).done
+        simulation.draw(all_, picture)
+        simulation.packets()
+        if done.any():
+            simulation.reset(done)
+
+    for name, call, number in (
+        ("steps", step, given.steps),
+        ("resets", simulation.reset, given.resets),
+    ):
+        mebibytes, seconds = grown(call, -(-number // count))
+        print(f"{number:,} {name}: memory grew by {mebibytes:.2f} MiB in {seconds:.0f} s")
+    print(describe_machine())
+
+
+if __name__ == "__main__":
+    main()
