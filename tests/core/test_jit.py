@@ -1,13 +1,18 @@
 """Kernels made of other kernels, and how they are kept on disk."""
 
+import importlib
+import inspect
 import json
 import os
+import pkgutil
 import subprocess
 import sys
+import types
 
 import pytest
 
-from eyas.core.jit import kernel, specialised
+import eyas
+from eyas.core.jit import Kernel, kernel, specialised
 from eyas.sim.step import step_of
 from eyas.trackers.drone import DRONE
 
@@ -110,3 +115,30 @@ def test_processes_share_what_was_compiled_until_the_source_of_a_kernel_changes(
     assert run(SPECIALISED, tmp_path) == [6.0, 1, False]
     own.write_text(OWN.replace("FACTOR", "5.0"))
     assert run(SPECIALISED, tmp_path) == [10.0, 2, True]
+
+
+def test_eyas_itself_calls_no_kernel_from_python():
+    """Which would import numba and compile it at every start."""
+    functions = [
+        function
+        for info in pkgutil.walk_packages(eyas.__path__, "eyas.")
+        if not info.name.startswith(("eyas.core.", "eyas.traffic.sumo"))
+        for function in functions_of(importlib.import_module(info.name))
+    ]
+    assert len(functions) > 500
+    for function in functions:
+        if function.__code__.co_varnames[:1] != ("parts",):  # a kernel itself
+            used = map(function.__globals__.get, function.__code__.co_names)
+            called = [kernel.__name__ for kernel in used if isinstance(kernel, Kernel)]
+            assert not called, f"{function.__module__}.{function.__qualname__} calls {called}"
+
+
+def functions_of(module):
+    for value in vars(module).values():
+        if getattr(value, "__module__", None) != module.__name__:
+            continue
+        members = vars(value).values() if inspect.isclass(value) else (value,)
+        for member in members:
+            function = getattr(member, "fget", getattr(member, "__func__", member))
+            if isinstance(function, types.FunctionType):
+                yield function
