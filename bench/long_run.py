@@ -1,6 +1,6 @@
-"""Run many steps with pictures, and many resets, in one process, and tell how its memory grows.
+"""Run many steps with pictures, many resets and a long recording, and tell how memory grows.
 
-    python bench/long_run.py [--steps 1000000] [--resets 100000] [--trackers 64]
+    python bench/long_run.py [--steps 1000000] [--resets 100000] [--video 3600] [--trackers 64]
 
 Memory is what the process holds in RAM after garbage collection; the first hundredth of the run is
 left out, in which buffers reach their sizes. Run it before a release.
@@ -8,6 +8,7 @@ left out, in which buffers reach their sizes. Run it before a release.
 
 import argparse
 import gc
+import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -15,6 +16,9 @@ from pathlib import Path
 import numpy as np
 
 from eyas.core.machine import describe_machine
+from eyas.modes.video.config import VideoConfig
+from eyas.modes.video.run import run
+from eyas.settings.config import EyasConfig
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
 from eyas.sim.worlds import each_alone
@@ -39,11 +43,24 @@ def grown(call: Callable[[], None], repeats: int) -> tuple[float, float]:
     return (resident() - before) / 2**20, time.perf_counter() - start
 
 
+def recorded(length: float) -> tuple[float, float]:
+    """Return by how much memory grows with a recording of a length [s] after a short one [MiB],
+    and the time [s].
+    """
+    with tempfile.TemporaryDirectory() as folder:
+        for number, part in enumerate((min(30.0, length), length)):
+            settings = VideoConfig(channels=1, total_time=part)
+            before, start = resident(), time.perf_counter()
+            run(EyasConfig(video=settings), Path(folder) / str(number), quiet=True)
+    return (resident() - before) / 2**20, time.perf_counter() - start
+
+
 def main() -> None:
     """Measure and print."""
     parser = argparse.ArgumentParser(description=main.__doc__)
     parser.add_argument("--steps", type=int, default=1_000_000, help="steps of single trackers")
     parser.add_argument("--resets", type=int, default=100_000, help="resets of single trackers")
+    parser.add_argument("--video", type=float, default=3600.0, help="length of a recording [s]")
     parser.add_argument("--trackers", type=int, default=64)
     given = parser.parse_args()
     count = given.trackers
@@ -65,6 +82,11 @@ def main() -> None:
     ):
         mebibytes, seconds = grown(call, -(-number // count))
         print(f"{number:,} {name}: memory grew by {mebibytes:.2f} MiB in {seconds:.0f} s")
+    if given.video > 0:
+        mebibytes, seconds = recorded(given.video)
+        print(
+            f"{given.video:.0f} s of video: memory grew by {mebibytes:.2f} MiB in {seconds:.0f} s"
+        )
     print(describe_machine())
 
 
