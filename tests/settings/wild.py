@@ -13,6 +13,7 @@ import resource
 import tempfile
 import time
 from collections.abc import Callable
+from copy import deepcopy
 from pathlib import Path
 from typing import Any
 
@@ -58,13 +59,15 @@ def changed(rng: random.Random, values: dict[str, Any]) -> None:
         values = values[group]
     what = rng.random()
     if what < 0.75:
-        values[key] = rng.choice(VALUES)
+        values[key] = deepcopy(rng.choice(VALUES))
     elif what < 0.85:
         values[misspelt(rng, key)] = values.pop(key)
     elif what < 0.95:
         del values[key]
     else:
-        values[rng.choice(["x", "", "Sumo_Params", "world", "é", "__class__"])] = rng.choice(VALUES)
+        values[rng.choice(["x", "", "Sumo_Params", "world", "é", "__class__"])] = deepcopy(
+            rng.choice(VALUES)
+        )
 
 
 def misspelt(rng: random.Random, key: str) -> str:
