@@ -146,6 +146,14 @@ class Simulation:
         """Make another actor of its world the target of a tracker, from the next step on."""
         self._episodes.follow(tracker, actor)
 
+    def make_alike(self) -> None:
+        """Make the other actors of the target's kind look like it, until the next reset.
+
+        In a world of several trackers, all look like the target of the last.
+        """
+        for tracker, actor in enumerate(self.snapshot.targets.actor.tolist()):
+            self._worlds.make_alike(tracker, actor)
+
     @property
     def actors(self) -> int:
         """Number of actors in each world."""

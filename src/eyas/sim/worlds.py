@@ -97,6 +97,13 @@ class Worlds:
         looks = self._sampler.sample(key.stream("looks"))
         self._looks.model[world], self._looks.colour[world] = looks
 
+    def make_alike(self, tracker: int, actor: int) -> None:
+        """Give all actors of an actor's kind around a tracker the model and colour of that one."""
+        world, kinds = self.of[tracker], self._assets.traffic.motion.kind
+        same = kinds == kinds[actor]
+        self._looks.model[world, same] = self._looks.model[world, actor]
+        self._looks.colour[world, same] = self._looks.colour[world, actor]
+
     def model_of(self, tracker: int, actor: int) -> int:
         """Return the model of an actor around a tracker, an index into the catalogue."""
         return int(self._looks.model[self.of[tracker], actor])

@@ -55,6 +55,7 @@ class Kind(StrEnum):
     AMBIENT = "ambient"
     TRAFFIC = "traffic"
     MOTION = "motion"
+    OCCLUSION = "occlusion"
     KERNELS = "kernels"
     OLD = "old"
     """Entries of older versions of Eyas with another layout; they have no common folder."""

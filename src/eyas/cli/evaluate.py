@@ -1,0 +1,120 @@
+"""`eyas evaluate`, `eyas compare` and `eyas leaderboard`."""
+
+import json
+import re
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from eyas.core.errors import ConfigError
+
+__all__ = ["evaluate"]
+
+
+def evaluate(  # noqa: PLR0913  # one parameter for each option
+    policy: Annotated[
+        str,
+        typer.Option(
+            "--policy",
+            help="random, hover, follow, servo, csrt, a file (.onnx, .zip, .pt, .pt2), or "
+            "package.module:name.",
+        ),
+    ],
+    protocol: Annotated[
+        str, typer.Option("--protocol", help="paper, long, search or distractor.")
+    ] = "paper",
+    maps: Annotated[str, typer.Option("--maps", metavar="A,B,...")] = "citystreet",
+    weathers: Annotated[str, typer.Option("--weathers", metavar="A,B,...")] = "day",
+    targets: Annotated[str, typer.Option("--targets", metavar="A,B,...")] = "SUMO_VEHICLE",
+    episodes: Annotated[
+        int | None,
+        typer.Option("--episodes", help="For each map, weather, target and start direction."),
+    ] = None,
+    seed: Annotated[int | None, typer.Option("--seed", help="Seed of the first episode.")] = None,
+    latency: Annotated[
+        str,
+        typer.Option("--latency", help="Milliseconds, a file with one in each line, or measured."),
+    ] = "0",
+    sample: Annotated[
+        bool, typer.Option("--sample", help="Draw a network's actions instead of the best.")
+    ] = False,
+    batch: Annotated[int, typer.Option("--batch", help="Episodes flown together.")] = 64,
+    set_: Annotated[
+        list[str] | None,
+        typer.Option("--set", metavar="env.KEY=VALUE", help="What the policy sees and does."),
+    ] = None,
+    out: Annotated[Path | None, typer.Option("--out", help="Folder to write to.")] = None,
+    as_published: Annotated[
+        bool, typer.Option("--as-published", help="Figures as the original's code prints them.")
+    ] = False,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Continue an interrupted evaluation.")
+    ] = False,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="First delete an evaluation in the folder.")
+    ] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
+) -> None:
+    """Fly a policy in the episodes of a protocol, and tell how well it tracks."""
+    from eyas.core.config import validated
+    from eyas.evaluation.plan import Plan
+
+    values: dict[str, Any] = {
+        "policy": policy,
+        "protocol": protocol,
+        "maps": _names(maps),
+        "weathers": _names(weathers),
+        "targets": _names(targets),
+        "episodes": episodes,
+        "latency": latency,
+        "sampled": sample,
+        "batch": batch,
+        "env": _changes(set_ or []),
+    }
+    if seed is not None:
+        values["seed"] = seed
+    plan = validated(Plan, values)
+    from eyas.modes.evaluate import run
+
+    run(
+        plan,
+        out or Path("runs/evaluation") / _folder_name(plan.policy, plan.protocol),
+        resume=resume,
+        overwrite=overwrite,
+        as_published=as_published,
+        quiet=quiet,
+    )
+
+
+def _names(text: str) -> list[str]:
+    return [name.strip() for name in text.split(",") if name.strip()]
+
+
+def _changes(said: list[str]) -> dict[str, Any]:
+    """Return changes of `env` from `env.key=value`.
+
+    Raises:
+        ConfigError: One is of another form, or changes what the protocol fixes.
+    """
+    changes: dict[str, Any] = {}
+    for text in said:
+        path, equals, value = text.partition("=")
+        room, *keys = path.strip().split(".")
+        if not equals or room != "env" or not all(keys) or not keys:
+            raise ConfigError(
+                f"--set {text!r}: not allowed: env.KEY=VALUE, such as env.action_repeat=4; all "
+                "else belongs to the protocol"
+            )
+        group = changes
+        for key in keys[:-1]:
+            group = group.setdefault(key, {})
+        try:
+            group[keys[-1]] = json.loads(value)
+        except ValueError:
+            group[keys[-1]] = value.strip()
+    return changes
+
+
+def _folder_name(policy: str, protocol: str) -> str:
+    return re.sub(r"[^\w.-]+", "-", f"{Path(policy).stem}-{protocol}")

@@ -1,0 +1,1 @@
+"""Evaluation of policies: the same episodes for all, and figures with their uncertainty."""

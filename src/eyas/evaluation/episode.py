@@ -1,0 +1,55 @@
+"""Episodes: which there are, and what each is called."""
+
+import math
+from typing import NamedTuple
+
+__all__ = ["FIRST_SEED", "Episode", "Place", "episodes_of"]
+
+FIRST_SEED = 1_000_000
+"""Seed of the first episode: far from the seeds that training begins with, 0, 1, ..."""
+
+
+class Place(NamedTuple):
+    """Where episodes are, and what is followed."""
+
+    map: str
+    weather: str
+    target: str
+
+
+class Episode(NamedTuple):
+    """One episode of an evaluation. Protocol and episode determine all but the policy's actions."""
+
+    place: Place
+    direction: float
+    """Heading of the drone relative to its target's at the start [rad]."""
+    seed: int
+    """Seed of which it is the first episode."""
+
+    @property
+    def name(self) -> str:
+        """A unique name, for example `citystreet/day/SUMO_VEHICLE/90/1000001`."""
+        return "/".join((*self.place, f"{math.degrees(self.direction):.0f}", str(self.seed)))
+
+
+def episodes_of(
+    places: list[Place], directions: tuple[float, ...], count: int, first_seed: int = FIRST_SEED
+) -> list[Episode]:
+    """Return `count` episodes for each place and direction.
+
+    The seeds do not depend on the places, so that conditions are compared with the same traffic,
+    nor on `count`, so that more episodes include the fewer ones.
+
+    Args:
+        places: The places.
+        directions: Start directions [rad].
+        count: Number of episodes for each place and direction.
+        first_seed: Seed of the first episode.
+    """
+    turns = len(directions)
+    return [
+        Episode(place, direction, first_seed + number * turns + turn)
+        for place in places
+        for number in range(count)
+        for turn, direction in enumerate(directions)
+    ]

@@ -1,0 +1,146 @@
+"""Flies a batch of episodes with one policy."""
+
+import time
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.errors import ActionError
+from eyas.envs.actions import make_actions
+from eyas.evaluation.delay import Delay
+from eyas.evaluation.episode import Episode
+from eyas.evaluation.flock import Flock
+from eyas.evaluation.meter import Meter
+from eyas.evaluation.occlusion import clear_shares
+from eyas.evaluation.policies.policy import Decision, Policy, Sight, Start
+from eyas.evaluation.protocol import Protocol
+from eyas.evaluation.record import Record
+
+__all__ = ["Flight", "Watcher"]
+
+Mask = NDArray[np.bool_]
+
+Watcher = Callable[[Flock, Meter], None]
+"""Called after each control step, for films."""
+
+
+class Flight:
+    """A batch of episodes that begin together.
+
+    Attributes:
+        answers: How long each call of the policy has taken [s].
+
+    Args:
+        episodes: N episodes.
+        protocol: Their protocol.
+        policy: Flies them all.
+        delay: How long its answers take; until then the last action is held, and the policy takes
+            no new picture.
+    """
+
+    def __init__(
+        self, episodes: list[Episode], protocol: Protocol, policy: Policy, delay: Delay
+    ) -> None:
+        self._episodes, self._protocol, self._policy = episodes, protocol, policy
+        self._delay = delay
+        self._flock = Flock(episodes, protocol, policy.env)
+        self._meter = Meter(self._flock, protocol)
+        self._actions = make_actions(policy.env.actions, policy.env.speeds)
+        count = len(episodes)
+        self._active = np.ones(count, np.bool_)
+        self._failed: dict[int, str] = {}
+        self._commands = np.zeros((count, 4))
+        self._next = np.zeros((count, 4))
+        self._ready = np.zeros(count, np.int64)
+        """Control step from which each policy can look again."""
+        self._effective = np.zeros(count, np.int64)
+        """Control step from which its next command holds."""
+        self.answers: list[float] = []
+
+    def fly(self, watcher: Watcher | None = None) -> Iterator[list[Record]]:
+        """Yield the records of the episodes that end, whenever some end."""
+        seeds = np.array([episode.seed for episode in self._episodes])
+        clear = clear_shares(self._episodes, self._protocol)
+        self._delay.begin(seeds.tolist())
+        start = Start(seeds, self._boxes)
+        self._guarded(lambda: self._policy.begin(start))
+        for step in range(self._protocol.steps):
+            before = self._active.copy()
+            self._decide(step)
+            self._fly_on(step)
+            if watcher is not None:
+                watcher(self._flock, self._meter)
+            if len(ended := np.flatnonzero(before & ~self._active)):
+                yield [
+                    self._meter.record(row, self._episodes[row], clear[row], self._failed.get(row))
+                    for row in ended.tolist()
+                ]
+            if not self._active.any():
+                return
+        raise AssertionError("the number of steps ends each episode")
+
+    def _fly_on(self, step: int) -> None:
+        """Fly one control step."""
+        effective = self._effective <= step
+        self._commands[effective] = self._next[effective]
+        self._flock.advance(self._commands, self._active)
+        self._meter.measure(self._active)
+        self._active &= self._meter.reason == 0
+
+    def _decide(self, step: int) -> None:
+        """Let the policy look and choose actions, for those that are ready."""
+        deciding = self._active & (self._ready <= step)
+        if not deciding.any():
+            return
+        self._flock.look(deciding, np.full(len(deciding), step == 0))
+        sight = Sight(self._flock.observations, deciding, self._flock.snapshot)
+        begun = time.perf_counter()
+        decision = self._guarded(lambda: self._policy.act(sight))
+        taken = time.perf_counter() - begun
+        self.answers.append(taken)
+        if decision is None:
+            return
+        for row, error in decision.failed.items():
+            self._fail(row, error)
+        deciding &= self._active
+        self._take(decision.actions, deciding)
+        period, repeat = self._protocol.period, self._policy.env.action_repeat
+        for row in np.flatnonzero(deciding & self._active).tolist():
+            # Rounded up to control steps; rounding errors of the quotient are not.
+            late = int(np.ceil(self._delay.next(row, taken) / period - 1e-9))
+            self._effective[row] = step + late
+            self._ready[row] = step + max(late, repeat)
+
+    def _take(self, actions: Any, deciding: Mask) -> None:  # noqa: ANN401  # a policy's
+        """Set the next commands; those whose action is not allowed fail."""
+        for row in np.flatnonzero(deciding).tolist():
+            try:
+                self._next[row] = self._actions.commands([actions[row]])[0]
+            except (ActionError, IndexError, KeyError, TypeError) as error:
+                self._fail(row, _line(error))
+
+    def _guarded(self, call: Callable[[], Decision | None]) -> Decision | None:
+        """Call the policy; if it raises, all its episodes have failed."""
+        try:
+            return call()
+        except Exception as error:  # whatever a user's code raises is a record
+            for row in np.flatnonzero(self._active).tolist():
+                self._fail(row, _line(error))
+            return None
+
+    def _fail(self, row: int, error: str) -> None:
+        self._failed[row] = error
+        self._active[row] = False
+
+    def _boxes(self) -> NDArray[np.int32]:
+        image = self._policy.env.observation
+        size = image.height, image.width
+        boxes: NDArray[np.int32] = self._flock.gathered(lambda squad: squad.subjects(size)[1])
+        return boxes
+
+
+def _line(error: Exception) -> str:
+    """Return an error as one line."""
+    return " ".join(f"{type(error).__name__}: {error}".split())[:500]

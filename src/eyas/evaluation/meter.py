@@ -1,0 +1,166 @@
+"""Measures flights: from the true state and the target's pixels, whatever a policy was trained for.
+
+The reward is that of the protocol, read at every control step; the target's pixels are counted at
+every fourth one.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.rng import stream
+from eyas.evaluation.episode import Episode
+from eyas.evaluation.flock import Flock
+from eyas.evaluation.protocol import Protocol
+from eyas.evaluation.record import Published, Record, Trace
+from eyas.evaluation.watch import watched
+from eyas.task.done import DoneReason
+
+__all__ = ["LOOK", "Meter", "published"]
+
+Floats = NDArray[np.float64]
+
+LOOK = 4
+"""Control steps between two counts of the target's pixels."""
+
+_TRACE = 20
+"""Control steps between two points of a trace."""
+
+_PUBLISHED_ACTIONS = 305, 363
+"""Fewest and most actions that the original's client makes in 1,500 physics steps."""
+
+_PUBLISHED_LENGTH = 375
+"""Number by which it divides."""
+
+_CRASHES = frozenset(
+    (DoneReason.HEIGHT, DoneReason.DISTANCE, DoneReason.VELOCITY, DoneReason.YAW_RATE)
+) | {DoneReason.TILT, DoneReason.NOT_A_NUMBER}
+
+
+class _Sums(NamedTuple):
+    """What is added up over the control steps of N flights."""
+
+    error: Floats
+    """Distance of the target from the middle of the picture [m], shape (N,)."""
+    path: Floats
+    """[m], shape (N,)."""
+    jerk: Floats
+    """Squared jerk [m^2/s^6], shape (N,)."""
+    shares: Floats
+    """Looks with a visible pixel, and visible shares, shape (N, 2)."""
+
+
+class Meter:
+    """Measures N flights.
+
+    Args:
+        flock: The drones, at their start.
+        protocol: The protocol.
+    """
+
+    def __init__(self, flock: Flock, protocol: Protocol) -> None:
+        count, steps = flock.count, protocol.steps
+        self._flock, self._protocol = flock, protocol
+        self._reward = np.zeros((count, steps))
+        self._trace = np.zeros((count, steps // _TRACE, 4))
+        self._sums = _Sums(np.zeros(count), np.zeros(count), np.zeros(count), np.zeros((count, 2)))
+        self.length = np.zeros(count, np.int64)
+        """Control steps flown, shape (N,)."""
+        self.reason = np.zeros(count, np.int64)
+        """`DoneReason` of each, shape (N,)."""
+        snapshot = flock.snapshot()
+        self._position = snapshot.trackers.position.copy()
+        self._acceleration = snapshot.trackers.acceleration.copy()
+
+    def measure(self, active: NDArray[np.bool_]) -> None:
+        """Measure after a control step of the active flights, shape (N,)."""
+        trackers, _, targets, episodes, _ = self._flock.snapshot()
+        rows = np.flatnonzero(active)
+        step, sums = self.length[rows], self._sums
+        self._reward[rows, step] = episodes.reward[rows]
+        self.length[rows] += 1
+        self.reason[rows] = episodes.reason[rows]
+        middle = episodes.view_centre[rows, :2]
+        sums.error[rows] += np.linalg.norm(targets.centre[rows, :2] - middle, axis=1)
+        moved = trackers.position[rows] - self._position[rows]
+        sums.path[rows] += np.linalg.norm(moved, axis=1)
+        change = (trackers.acceleration[rows] - self._acceleration[rows]) / self._protocol.period
+        sums.jerk[rows] += (change**2).sum(axis=1)
+        self._position[rows] = trackers.position[rows]
+        self._acceleration[rows] = trackers.acceleration[rows]
+        # All active flights have begun together, so that they have flown equally many steps.
+        if len(rows) and (step[0] + 1) % _TRACE == 0:
+            point = self._trace[rows, step[0] // _TRACE]
+            point[:, :2], point[:, 2:] = trackers.position[rows, :2], targets.centre[rows, :2]
+            self._trace[rows, step[0] // _TRACE] = point
+        if len(rows) and (step[0] + 1) % LOOK == 0:
+            pixels = self._flock.gathered(lambda squad: squad.subjects()[0])[rows]
+            sums.shares[rows, 0] += pixels[:, 0] > 0
+            sums.shares[rows, 1] += pixels[:, 0] / np.maximum(pixels[:, 1], 1)
+
+    def record(self, row: int, episode: Episode, clear: float, error: str | None) -> Record:
+        """Return the record of a flight that has ended.
+
+        Args:
+            row: Its place in the batch.
+            episode: The episode.
+            clear: See `Record`.
+            error: What its policy has failed with, if it has.
+        """
+        protocol, length = self._protocol, int(self.length[row])
+        reward, flown = self._reward[row, :length], max(length, 1)
+        reason = DoneReason(int(self.reason[row]))
+        broken_off = error is not None or reason in _CRASHES
+        shares = self._sums.shares[row] / (protocol.steps // LOOK)
+        return Record(
+            name=episode.name,
+            **episode.place._asdict(),
+            direction=episode.direction,
+            seed=episode.seed,
+            error=error,
+            reason=reason.name.lower() if error is None else "policy_failed",
+            duration=length * protocol.period,
+            cr=float(reward.sum()),
+            tsr=int((reward > 0.0).sum()) / protocol.steps,
+            seen=float(shares[0]),
+            visible=float(shares[1]),
+            clear=clear,
+            **watched(reward > 0.0, protocol.period, broken_off=broken_off),
+            crashed=reason in _CRASHES,
+            centre_error=float(self._sums.error[row]) / flown,
+            path=float(self._sums.path[row]),
+            jerk=float(np.sqrt(self._sums.jerk[row] / flown)),
+            published=published(reward, protocol.steps, episode.seed),
+            trace=self._trace_of(row, length // _TRACE),
+        )
+
+    def _trace_of(self, row: int, points: int) -> Trace:
+        reward = self._reward[row, : points * _TRACE].reshape(points, _TRACE).mean(axis=1)
+        places = self._trace[row, :points].round(2).tolist()
+        return Trace(
+            reward=tuple(reward.round(4).tolist()),
+            drone=tuple((place[0], place[1]) for place in places),
+            target=tuple((place[2], place[3]) for place in places),
+        )
+
+
+def published(reward: Floats, steps: int, seed: int) -> Published:
+    """Return the figures that the original's code prints, see docs/published-results.md.
+
+    Its client makes 305 to 363 actions in an episode, here drawn from the seed and spread evenly,
+    loses the last reward, and divides by 375.
+
+    Args:
+        reward: Rewards of the flown control steps, shape (M,).
+        steps: Control steps in a full episode.
+        seed: Seed of the episode.
+    """
+    low, high = _PUBLISHED_ACTIONS
+    drawn = int(stream(seed, "published").integers(low, high + 1))
+    full = drawn * steps / _PUBLISHED_LENGTH
+    last = np.round(np.arange(1, int(full) + 1) * (steps / full)).astype(np.int64) - 1
+    kept = reward[last[last < len(reward)]][:-1]
+    return Published(
+        actions=len(kept) + 1, cr=float(kept.sum()), tsr=int((kept > 0.0).sum()) / steps
+    )

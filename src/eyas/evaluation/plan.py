@@ -1,0 +1,150 @@
+"""What an evaluation flies, and with what."""
+
+from collections.abc import Iterator
+from typing import Annotated, Any
+
+from pydantic import Field
+
+from eyas import __version__
+from eyas.core.config import Config
+from eyas.core.errors import ConfigError
+from eyas.evaluation.delay import Measured, delay_from
+from eyas.evaluation.episode import FIRST_SEED, Episode, Place, episodes_of
+from eyas.evaluation.flight import Flight
+from eyas.evaluation.neighbours import episodes_with_neighbours
+from eyas.evaluation.policies.table import fingerprint, open_policy
+from eyas.evaluation.protocol import Protocol, protocol_named
+from eyas.evaluation.record import Record
+from eyas.settings.version_check import require_supported
+
+__all__ = ["Plan", "Stamp", "batches", "fly_batch", "stamp"]
+
+Names = Annotated[tuple[str, ...], Field(min_length=1)]
+
+
+class Plan(Config):
+    """An evaluation. The same plan in the same version gives the same records, bit for bit."""
+
+    policy: str
+    """Built-in name, path of a file, or `package.module:name`."""
+    protocol: str = "paper"
+    maps: Names = ("citystreet",)
+    weathers: Names = ("day",)
+    targets: Names = ("SUMO_VEHICLE",)
+    episodes: Annotated[int, Field(ge=1, le=100_000)] | None = None
+    """For each place and start direction; None: the protocol's number."""
+    seed: Annotated[int, Field(ge=0, lt=2**62)] = FIRST_SEED
+    """Seed of the first episode."""
+    latency: str = "0"
+    """Milliseconds, the path of a file with one latency in each line, or `measured`."""
+    sampled: bool = False
+    """Whether a network's actions are drawn instead of the best ones."""
+    env: dict[str, Any] = {}  # noqa: RUF012  # pydantic copies it
+    """Changes of what the policy sees and does."""
+    batch: Annotated[int, Field(ge=1, le=4096)] = 64
+    """Episodes that are flown together. A network's last bits may depend on it."""
+
+    @property
+    def rules(self) -> Protocol:
+        """The protocol."""
+        return protocol_named(self.protocol)
+
+    @property
+    def command(self) -> str:
+        """The command that repeats it."""
+        told = self.model_dump(exclude_defaults=True, exclude={"env", "sampled", "policy"})
+        words = [f"eyas evaluate --policy {self.policy}"]
+        for name, value in told.items():
+            text = ",".join(value) if isinstance(value, tuple) else value
+            words.append(f"--{name} {text}")
+        if self.sampled:
+            words.append("--sample")
+        words += [f"--set {key}={value}" for key, value in _flat("env", self.env)]
+        return " ".join(words)
+
+
+class Stamp(Config):
+    """What tells whether records belong together."""
+
+    version: str
+    """Of Eyas."""
+    protocol: str
+    """Hash of the protocol."""
+    policy: str | None
+    """Hash of the policy's file; None if it is none."""
+    plan: Plan
+
+
+def stamp(plan: Plan) -> Stamp:
+    """Return the stamp of a plan."""
+    return Stamp(
+        version=__version__,
+        protocol=plan.rules.hash,
+        policy=fingerprint(plan.policy),
+        plan=plan,
+    )
+
+
+def batches(plan: Plan) -> list[list[Episode]]:
+    """Return the episodes that are flown together; an interrupted batch is flown again whole."""
+    protocol = plan.rules
+    places = [
+        Place(name, weather, target)
+        for name in plan.maps
+        for weather in plan.weathers
+        for target in plan.targets
+    ]
+    count = plan.episodes or protocol.episodes
+    if protocol.alike:
+        episodes = episodes_with_neighbours(places, protocol, count, plan.seed)
+    else:
+        episodes = episodes_of(places, protocol.directions, count, plan.seed)
+    size = 1 if plan.latency == "measured" else plan.batch
+    return [episodes[at : at + size] for at in range(0, len(episodes), size)]
+
+
+def fly_batch(
+    plan: Plan, episodes: list[Episode], answers: list[float] | None = None
+) -> Iterator[list[Record]]:
+    """Yield the records of a batch, whenever some of its episodes end.
+
+    Args:
+        plan: The plan.
+        episodes: One of its batches.
+        answers: Gets how long each call of the policy has taken [s].
+
+    Raises:
+        EyasError: The policy cannot be loaded, or a setting is not supported.
+    """
+    delay = delay_from(plan.latency)
+    assert len(episodes) == 1 or not isinstance(delay, Measured)
+    policy = open_policy(plan.policy, plan.env, sampled=plan.sampled)
+    flight = Flight(episodes, plan.rules, policy, delay)
+    yield from flight.fly()
+    if answers is not None:
+        answers += flight.answers
+
+
+def check(plan: Plan) -> None:
+    """Refuse a plan that cannot be flown, before anything is written.
+
+    Raises:
+        EyasError: A name or a setting is wrong.
+    """
+    delay_from(plan.latency)
+    if len(set(plan.maps)) < len(plan.maps) or len(set(plan.weathers)) < len(plan.weathers):
+        raise ConfigError("--maps, --weathers: a name is there twice")
+    policy = open_policy(plan.policy, plan.env, sampled=plan.sampled)
+    for name in plan.maps:
+        for weather in plan.weathers:
+            for target in plan.targets:
+                episode = Episode(Place(name, weather, target), 0.0, 0)
+                require_supported(plan.rules.settings_of(episode, policy.env))
+
+
+def _flat(path: str, values: dict[str, Any]) -> Iterator[tuple[str, Any]]:
+    for key, value in values.items():
+        if isinstance(value, dict):
+            yield from _flat(f"{path}.{key}", value)
+        else:
+            yield f"{path}.{key}", value

@@ -1,0 +1,109 @@
+"""A user's own policy: a function of pictures, or one object for each episode."""
+
+import inspect
+from collections.abc import Callable, Mapping
+from importlib import import_module
+from typing import Any
+
+import numpy as np
+
+from eyas.core.errors import ConfigError
+from eyas.envs.config import ActionKind, EnvConfig
+from eyas.envs.observation import Observation
+from eyas.evaluation.policies.policy import Decision, Policy, Sight, Start, env_config
+from eyas.evaluation.policies.simple import HOVER
+
+__all__ = ["Each", "Whole", "load_callable"]
+
+SETTINGS = "env_settings"
+"""Attribute of a user's policy: changes of the defaults of `env`."""
+
+
+class Each:
+    """Calls one object for each episode.
+
+    Args:
+        make: Returns the policy of an episode: a function of its observation, or an object with
+            `act(observation)` and, if it wants the target's first box, `reset(box)`.
+        env: What it sees, and what its actions mean.
+    """
+
+    sampled = False
+
+    def __init__(self, make: Callable[[], Any], env: EnvConfig) -> None:
+        self.env, self._make = env, make
+
+    def begin(self, start: Start) -> None:
+        """Make the policy of each episode; a box tracker gets the box in its first picture."""
+        self._own = [self._make() for _ in start.seeds]
+        if hasattr(self._own[0], "reset"):
+            for own, box in zip(self._own, start.boxes().tolist(), strict=True):
+                own.reset(tuple(box))
+
+    def act(self, sight: Sight) -> Decision:
+        """Ask the policies of those who decide."""
+        actions: list[Any] = [no_action(self.env)] * len(self._own)
+        failed = {}
+        for row in np.flatnonzero(sight.deciding).tolist():
+            own = self._own[row]
+            try:
+                actions[row] = getattr(own, "act", own)(one_of(sight.observation, row))
+            except Exception as error:  # whatever a user's code raises ends only its own episode
+                failed[row] = " ".join(f"{type(error).__name__}: {error}".split())[:500]
+        return Decision(actions, failed)
+
+
+class Whole:
+    """Calls one function with the observations of all episodes; it cannot tell them apart."""
+
+    sampled = False
+
+    def __init__(self, function: Callable[[Any], Any], env: EnvConfig) -> None:
+        self.env, self._function = env, function
+
+    def begin(self, start: Start) -> None:
+        """Do nothing: a function remembers nothing."""
+
+    def act(self, sight: Sight) -> Decision:
+        """Call the function."""
+        return Decision(self._function(sight.observation))
+
+
+def no_action(env: EnvConfig) -> Any:  # noqa: ANN401  # a number, or four
+    """Return the action that does nothing."""
+    return HOVER if env.actions is ActionKind.DISCRETE else np.zeros(4)
+
+
+def one_of(observation: Observation, row: int) -> Observation:
+    """Return a copy of the observation of one episode."""
+    if isinstance(observation, dict):
+        return {name: part[row].copy() for name, part in observation.items()}
+    copied: Observation = observation[row].copy()
+    return copied
+
+
+def load_callable(path: str, changes: Mapping[str, Any]) -> Policy:
+    """Return a user's policy.
+
+    Args:
+        path: `package.module:name` of a function of one observation; of a function whose attribute
+            `batched` is true, of observations with a leading axis; or of a class with `act`.
+        changes: Changes of `env`; those in the attribute `env_settings` come first.
+
+    Raises:
+        ConfigError: There is no such thing, or it is none of these.
+    """
+    module, _, name = path.partition(":")
+    try:
+        found = getattr(import_module(module), name)
+    except (ImportError, AttributeError, ValueError) as error:
+        raise ConfigError(f"--policy: '{path}' cannot be imported: {error}") from error
+    if not callable(found) or (inspect.isclass(found) and not hasattr(found, "act")):
+        raise ConfigError(
+            f"--policy: '{path}' is not allowed: a function of an observation, or a class with "
+            "act(observation)"
+        )
+    env = env_config(getattr(found, SETTINGS, {}), changes)
+    if inspect.isclass(found):
+        return Each(found, env)
+    return Whole(found, env) if getattr(found, "batched", False) else Each(lambda: found, env)

@@ -1,0 +1,119 @@
+"""Networks in ONNX files, run by onnxruntime.
+
+Inputs and outputs, by name, all with a leading axis of N episodes:
+
+- `image`, uint8, (N, C, H, W) with the layout `chw`: the observation;
+- `last_action`, float32, optional: (N, 7) with a 1 at the last action (hover at the start), or the
+  last four numbers;
+- any number of memories `x`, float32, (N, ...), with an output `next_x` each; 0 at the start;
+- the first output: `logits`, float, (N, 7), or `action`, float, (N, 4).
+
+The metadata `eyas` holds JSON: changes of the defaults of `env`, such as `{"observation": {"width":
+48, "height": 48, "layout": "chw", "frames": 1}, "actions": "discrete", "action_repeat": 4}`.
+"""
+
+import json
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.errors import DataFileError, MissingExtraError
+from eyas.envs.config import ActionKind
+from eyas.evaluation.policies.choice import Chooser
+from eyas.evaluation.policies.policy import Decision, Sight, Start, env_config
+from eyas.evaluation.policies.simple import ACTIONS, HOVER
+
+__all__ = ["METADATA", "OnnxPolicy", "load_onnx"]
+
+METADATA = "eyas"
+"""Key of the metadata."""
+
+_IMAGE, _LAST, _NEXT = "image", "last_action", "next_"
+
+
+class OnnxPolicy:
+    """A network.
+
+    Args:
+        path: The file.
+        changes: Changes of `env`.
+        sampled: Whether discrete actions are drawn.
+
+    Raises:
+        DataFileError: The file is no such network.
+        MissingExtraError: onnxruntime is not installed.
+    """
+
+    def __init__(self, path: Path, changes: Mapping[str, Any], *, sampled: bool) -> None:
+        self._session = _session(path)
+        described = self._session.get_modelmeta().custom_metadata_map.get(METADATA, "{}")
+        try:
+            settings = json.loads(described)
+        except ValueError as error:
+            raise DataFileError(f"{path}: metadata '{METADATA}': not valid JSON") from error
+        self.env = env_config({"observation": {"layout": "chw"}, **settings}, changes)
+        self.sampled = sampled
+        self._chooser = Chooser(sampled=sampled)
+        self._discrete = self.env.actions is ActionKind.DISCRETE
+        inputs = {each.name: each.shape for each in self._session.get_inputs()}
+        outputs = [each.name for each in self._session.get_outputs()]
+        memories = [name for name in inputs if name not in (_IMAGE, _LAST)]
+        if _IMAGE not in inputs or any(_NEXT + name not in outputs for name in memories):
+            raise DataFileError(
+                f"{path}: not a policy: it needs the input 'image', and for each memory 'x' the "
+                f"output 'next_x'; it has {', '.join(inputs)} and {', '.join(outputs)}"
+            )
+        self._remembers_action = _LAST in inputs
+        self._shapes = {name: inputs[name][1:] for name in memories}
+        self._outputs = [outputs[0], *(_NEXT + name for name in memories)]
+
+    def begin(self, start: Start) -> None:
+        """Clear the memories."""
+        count = len(start.seeds)
+        self._chooser.begin(start.seeds)
+        self._memory: dict[str, NDArray[np.float32]] = {
+            name: np.zeros((count, *shape), np.float32) for name, shape in self._shapes.items()
+        }
+        width = ACTIONS if self._discrete else 4
+        self._last = np.zeros((count, width), np.float32)
+        if self._discrete:
+            self._last[:, HOVER] = 1.0
+
+    def act(self, sight: Sight) -> Decision:
+        """Run the network for all; those who do not decide remember nothing new."""
+        feed: dict[str, Any] = {_IMAGE: sight.observation, **self._memory}
+        if self._remembers_action:
+            feed[_LAST] = self._last
+        answer, *memories = self._session.run(self._outputs, feed)
+        mask = sight.deciding
+        for (name, old), new in zip(list(self._memory.items()), memories, strict=True):
+            self._memory[name] = np.where(mask.reshape(-1, *[1] * (old.ndim - 1)), new, old)
+        if not self._discrete:
+            self._last[mask] = answer[mask]
+            return Decision(answer)
+        actions = self._chooser.of(answer, mask)
+        self._last[mask] = np.eye(ACTIONS, dtype=np.float32)[actions[mask]]
+        return Decision(actions)
+
+
+def load_onnx(path: Path, changes: Mapping[str, Any], *, sampled: bool) -> OnnxPolicy:
+    """Return the policy in a file, see `OnnxPolicy`."""
+    return OnnxPolicy(path, changes, sampled=sampled)
+
+
+def _session(path: Path) -> Any:  # noqa: ANN401  # onnxruntime has no types
+    try:
+        import onnxruntime
+    except ImportError as error:
+        raise MissingExtraError("a policy in an ONNX file", "policies") from error
+    options = onnxruntime.SessionOptions()
+    # One thread: the order of additions, and with it each bit, is then always the same.
+    options.intra_op_num_threads = options.inter_op_num_threads = 1
+    try:
+        return onnxruntime.InferenceSession(str(path), options, providers=["CPUExecutionProvider"])
+    except Exception as error:  # onnxruntime has errors of its own, without a common base
+        line = " ".join(str(error).split())[:200]
+        raise DataFileError(f"{path}: not a network in ONNX: {line}") from error

@@ -1,0 +1,78 @@
+"""The interface of a policy that flies N drones at once."""
+
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.config import updated
+from eyas.envs.config import EnvConfig, ObservationPart
+from eyas.envs.observation import Observation
+from eyas.state.snapshot import Snapshot
+
+__all__ = ["BLIND", "Decision", "Policy", "Sight", "Start", "env_config"]
+
+BLIND = {"observation": {"parts": [ObservationPart.PRIVILEGED]}}
+"""Changes of `EnvConfig` for policies that see no picture, so that none is drawn."""
+
+
+class Start(NamedTuple):
+    """The start of N episodes."""
+
+    seeds: NDArray[np.int64]
+    """Seed of each episode, shape (N,)."""
+    boxes: Callable[[], NDArray[np.int32]]
+    """Returns the true box of each target in its first picture, visible or hidden: left, top,
+    right, bottom, the last two exclusive [pixels]; all 0 if it is outside, shape (N, 4)."""
+
+
+class Sight(NamedTuple):
+    """What a policy sees at one instant."""
+
+    observation: Observation
+    """Latest observation of each episode, shape (N, ...); not to be changed or kept."""
+    deciding: NDArray[np.bool_]
+    """Whose action is asked for now, shape (N,); the observations of others may be old, and
+    memories of theirs must not change."""
+    snapshot: Callable[[], Snapshot]
+    """Returns the true state of all N: for oracles."""
+
+
+class Decision(NamedTuple):
+    """Actions of N drones."""
+
+    actions: Any
+    """An action for each drone, shape (N, ...) or a list; those who do not decide are not read."""
+    failed: Mapping[int, str] = {}  # never changed
+    """Drones whose policy has failed, and how; their episodes end."""
+
+
+class Policy(Protocol):
+    """A policy for N episodes that begin together. An error that it raises fails all of them."""
+
+    env: EnvConfig
+    """What it sees, and what its actions mean."""
+    sampled: bool
+    """Whether its actions are drawn at random, from the seeds of the episodes."""
+
+    def begin(self, start: Start) -> None:
+        """Forget everything: N episodes begin."""
+        ...
+
+    def act(self, sight: Sight) -> Decision:
+        """Choose actions."""
+        ...
+
+
+def env_config(settings: Mapping[str, Any], changes: Mapping[str, Any] | None = None) -> EnvConfig:
+    """Return what a policy sees and does.
+
+    Args:
+        settings: Changes of the defaults that belong to the policy.
+        changes: Changes of the user's, which win.
+
+    Raises:
+        ConfigError: A setting is wrong.
+    """
+    return updated(updated(EnvConfig(), settings), changes or {})

@@ -1,0 +1,89 @@
+"""Policies that stable-baselines3 has saved."""
+
+import json
+import zipfile
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from eyas.core.errors import DataFileError, MissingExtraError
+from eyas.evaluation.policies.policy import Decision, Sight, Start, env_config
+
+__all__ = ["Sb3Policy", "load_sb3"]
+
+_SIGNS = {
+    "clip_range": "PPO",
+    "policy_delay": "TD3",
+    "target_entropy": "SAC",
+    "exploration_rate": "DQN",
+    "use_sde": "A2C",
+}
+"""Settings that tell the algorithm of a file, the most telling first."""
+
+
+class Sb3Policy:
+    """A model of stable-baselines3: PPO, A2C, DQN, SAC or TD3.
+
+    Size, colours and layout of its pictures follow from its observation space, and the kind of its
+    actions from its action space; `env.action_repeat` is not saved with it.
+
+    Args:
+        path: The `.zip`. It holds pickles, which run code: load only files that you trust.
+        changes: Changes of `env`.
+        sampled: Whether actions are drawn; not repeatable, since the library seeds no single ones.
+
+    Raises:
+        DataFileError: The file is not such a model.
+        MissingExtraError: stable-baselines3 is not installed.
+    """
+
+    def __init__(self, path: Path, changes: Mapping[str, Any], *, sampled: bool) -> None:
+        self._model = _loaded(path)
+        shape = self._model.observation_space.shape
+        if shape is None or len(shape) != 3:
+            raise DataFileError(f"{path}: its observations are no pictures")
+        first = shape[0] < shape[2]
+        planes, height, width = shape if first else (shape[2], shape[0], shape[1])
+        grey = planes % 3 != 0
+        image = {
+            "width": width,
+            "height": height,
+            "layout": "chw" if first else "hwc",
+            "colours": "grey" if grey else "rgb",
+            "frames": planes if grey else planes // 3,
+        }
+        discrete = hasattr(self._model.action_space, "n")
+        actions = "discrete" if discrete else "shares"
+        self.env = env_config({"observation": image, "actions": actions}, changes)
+        self.sampled = sampled
+
+    def begin(self, start: Start) -> None:
+        """Seed the drawing of actions."""
+        self._model.set_random_seed(int(start.seeds[0]) % 2**32)
+
+    def act(self, sight: Sight) -> Decision:
+        """Predict."""
+        actions, _ = self._model.predict(sight.observation, deterministic=not self.sampled)
+        return Decision(actions)
+
+
+def load_sb3(path: Path, changes: Mapping[str, Any], *, sampled: bool) -> Sb3Policy:
+    """Return the policy in a file, see `Sb3Policy`."""
+    return Sb3Policy(path, changes, sampled=sampled)
+
+
+def _loaded(path: Path) -> Any:  # noqa: ANN401  # a model of any class
+    try:
+        import stable_baselines3
+        import torch
+    except ImportError as error:
+        raise MissingExtraError("a policy of stable-baselines3", "train") from error
+    torch.set_num_threads(1)
+    try:
+        with zipfile.ZipFile(path) as file:
+            settings = json.loads(file.read("data"))
+        name = next(_SIGNS[sign] for sign in _SIGNS if sign in settings)
+        return getattr(stable_baselines3, name).load(path, device="cpu")
+    except Exception as error:  # unpickling can raise anything
+        line = " ".join(str(error).split())[:200]
+        raise DataFileError(f"{path}: not a model of stable-baselines3: {line}") from error

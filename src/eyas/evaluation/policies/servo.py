@@ -1,0 +1,90 @@
+"""Visual servoing: finds what was in the middle of the first picture again, and flies to it."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import NDArray
+
+from eyas.evaluation.policies.policy import Decision, Sight, Start, env_config
+from eyas.evaluation.steering import pixel_offset, towards
+
+__all__ = ["Servo", "servo"]
+
+_SIZE = 84
+_PATCH = 14
+"""Side of the pattern [pixels]."""
+_REACH = 11
+"""Farthest motion between two pictures [pixels]."""
+_LEARNING = 0.1
+"""Share of a new picture in the pattern, where the match is good."""
+_GOOD = 0.6
+"""Least correlation of a good match."""
+
+Floats = NDArray[np.float64]
+
+
+class Servo:
+    """Follows a pattern of pixels by normalised correlation, from the picture alone.
+
+    It takes what is in the middle of the first picture for the target.
+    """
+
+    sampled = False
+
+    def __init__(self, changes: Mapping[str, Any]) -> None:
+        image = {"width": _SIZE, "height": _SIZE, "colours": "rgb", "layout": "chw", "frames": 1}
+        own = {"observation": image, "actions": "discrete", "action_repeat": 4}
+        self.env = env_config(own, {**changes, "observation": image, "actions": "discrete"})
+
+    def begin(self, start: Start) -> None:
+        """Forget the patterns."""
+        count = len(start.seeds)
+        self._pattern: list[Floats | None] = [None] * count
+        self._place = np.full((count, 2), 0.5 * (_SIZE - _PATCH))
+
+    def act(self, sight: Sight) -> Decision:
+        """Find the patterns, and steer."""
+        pictures: Any = sight.observation
+        for row in np.flatnonzero(sight.deciding).tolist():
+            self._find(row, pictures[row].astype(np.float64))
+        middle = self._place + 0.5 * _PATCH
+        offset = pixel_offset(middle[:, 1], middle[:, 0], (_SIZE, _SIZE))
+        return Decision(towards(offset, self.env))
+
+    def _find(self, row: int, picture: Floats) -> None:
+        """Move the place of a pattern to its best match in a picture, shape (3, H, W)."""
+        top, left = np.round(self._place[row]).astype(int)
+        pattern = self._pattern[row]
+        if pattern is None:
+            self._pattern[row] = picture[:, top : top + _PATCH, left : left + _PATCH]
+            return
+        first = max(top - _REACH, 0), max(left - _REACH, 0)
+        area = picture[:, first[0] : top + _REACH + _PATCH, first[1] : left + _REACH + _PATCH]
+        if min(area.shape[1:]) < _PATCH:
+            return
+        match = _correlation(area, pattern)
+        best = np.unravel_index(int(match.argmax()), match.shape)
+        place = first[0] + int(best[0]), first[1] + int(best[1])
+        self._place[row] = place
+        if match[best] > _GOOD:
+            seen = picture[:, place[0] : place[0] + _PATCH, place[1] : place[1] + _PATCH]
+            self._pattern[row] = (1.0 - _LEARNING) * pattern + _LEARNING * seen
+
+
+def _correlation(area: Floats, pattern: Floats) -> Floats:
+    """Return the normalised correlation of a pattern with each place of an area, -1 to 1."""
+    windows = sliding_window_view(area, pattern.shape[1:], axis=(1, 2))
+    centred = pattern - pattern.mean(axis=(1, 2), keepdims=True)
+    dot = np.einsum("crsij,cij->rs", windows, centred)
+    spread = (windows**2).sum(axis=(0, 3, 4)) - (
+        windows.sum(axis=(3, 4)) ** 2 / pattern[0].size
+    ).sum(axis=0)
+    match: Floats = dot / np.sqrt(np.maximum(spread, 1.0) * max((centred**2).sum(), 1.0))
+    return match
+
+
+def servo(changes: Mapping[str, Any]) -> Servo:
+    """Return the visual servo."""
+    return Servo(changes)

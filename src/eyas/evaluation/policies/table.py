@@ -1,0 +1,87 @@
+"""Finds a policy by what a user calls it."""
+
+from collections.abc import Mapping
+from hashlib import sha256
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from eyas.core.errors import ConfigError, DataFileError, UnknownNameError
+from eyas.evaluation.policies.policy import Policy
+
+__all__ = ["BUILT_IN", "FILES", "fingerprint", "open_policy"]
+
+_ROOM = "eyas.evaluation.policies"
+
+BUILT_IN = {
+    "random": f"{_ROOM}.simple:random",
+    "hover": f"{_ROOM}.simple:hover",
+    "follow": f"{_ROOM}.follow:follow",
+    "servo": f"{_ROOM}.servo:servo",
+    "csrt": f"{_ROOM}.csrt:csrt",
+}
+"""Functions that take changes of `env` and return a policy, by name."""
+
+FILES = {
+    ".onnx": f"{_ROOM}.onnx:load_onnx",
+    ".zip": f"{_ROOM}.sb3:load_sb3",
+    ".pt": f"{_ROOM}.torch_file:load_torch",
+    ".pth": f"{_ROOM}.torch_file:load_torch",
+    ".pt2": f"{_ROOM}.torch_file:load_torch",
+}
+"""Functions that take a path and changes of `env` and return a policy, by the file's ending."""
+
+
+def open_policy(said: str, changes: Mapping[str, Any], *, sampled: bool = False) -> Policy:
+    """Return a policy.
+
+    Args:
+        said: A built-in name, the path of a file, or `package.module:name`.
+        changes: Changes of `env`.
+        sampled: Whether a network's actions are drawn instead of the best ones.
+
+    Raises:
+        EyasError: There is no such policy, or it cannot be loaded.
+    """
+    policy: Policy
+    path = Path(said)
+    if said in BUILT_IN:
+        _refuse_sampled(said, sampled=sampled)
+        policy = _imported(BUILT_IN[said])(changes)
+    elif path.suffix in FILES:
+        if not path.is_file():
+            raise DataFileError(f"{path}: cannot read: no such file")
+        policy = _imported(FILES[path.suffix])(path, changes, sampled=sampled)
+    elif ":" in said:
+        from eyas.evaluation.policies.each import load_callable
+
+        _refuse_sampled(said, sampled=sampled)
+        policy = load_callable(said, changes)
+    else:
+        raise UnknownNameError(
+            "--policy",
+            said,
+            BUILT_IN,
+            f"(nor a file {', '.join(FILES)}, nor 'package.module:name')",
+        )
+    if policy.env.mixture:
+        raise ConfigError("env.mixture: not allowed here: the protocol chooses the conditions")
+    return policy
+
+
+def fingerprint(said: str) -> str | None:
+    """Return a hash of a policy's file; None if it is none."""
+    path = Path(said)
+    if said in BUILT_IN or path.suffix not in FILES:
+        return None
+    return sha256(path.read_bytes()).hexdigest()[:16]
+
+
+def _refuse_sampled(said: str, *, sampled: bool) -> None:
+    if sampled:
+        raise ConfigError(f"--sample: not allowed for '{said}': it is no network with scores")
+
+
+def _imported(path: str) -> Any:  # noqa: ANN401  # a function of the tables above
+    module, _, name = path.partition(":")
+    return getattr(import_module(module), name)

@@ -1,0 +1,129 @@
+"""Protocols: the settings in which all policies fly, with a hash that tells them apart."""
+
+import hashlib
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+from eyas.core.clock import PHYSICS_STEP, physics_steps
+from eyas.core.config import updated
+from eyas.core.errors import UnknownNameError
+from eyas.envs.config import EnvConfig
+from eyas.evaluation.episode import Episode
+from eyas.settings.config import EyasConfig
+from eyas.settings.file import load_settings
+from eyas.settings.preset import preset_file
+
+__all__ = ["PROTOCOLS", "Protocol", "protocol_named"]
+
+FORMAT = 1
+"""Increased by 1 when the same protocol gives other episodes or figures."""
+
+_DIRECTIONS = (0.0, 0.5 * math.pi, math.pi, -0.5 * math.pi)
+
+_NEVER = 2**31 - 1
+
+_VARIABLE = {"seed", "env", "mode", "verbose", "video", "wire", "original"}
+"""Settings that are no part of a protocol."""
+
+
+@dataclass(frozen=True)
+class Protocol:
+    """A protocol; its settings are those of the preset `dat-eval`, with changes."""
+
+    name: str
+    title: str
+    """What it measures, in a few words."""
+    changes: Mapping[str, Any] = field(default_factory=dict)
+    directions: tuple[float, ...] = _DIRECTIONS
+    """Start directions [rad]."""
+    episodes: int = 10
+    """Default number of episodes for each place and direction."""
+    alike: bool = False
+    """Whether all vehicles look like the target, and another one is near it at the start."""
+
+    @cached_property
+    def settings(self) -> EyasConfig:
+        """The settings, without place, direction, seed and `env`."""
+        return updated(load_settings(preset_file("dat-eval")), self.changes)
+
+    @property
+    def steps(self) -> int:
+        """Number of control steps in an episode; actions last one or several of them."""
+        return self.settings.done.total_steps // physics_steps(self.settings.control.frequency)
+
+    @property
+    def period(self) -> float:
+        """Length of a control step [s]."""
+        return physics_steps(self.settings.control.frequency) * PHYSICS_STEP
+
+    @cached_property
+    def hash(self) -> str:
+        """Twelve hexadecimal digits that differ between protocols."""
+        settings = self.settings.model_dump(mode="json", exclude=_VARIABLE)
+        content = [FORMAT, settings, self.directions, self.alike]
+        return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:12]
+
+    def settings_of(self, episode: Episode, env: EnvConfig) -> EyasConfig:
+        """Return the settings of an episode.
+
+        Args:
+            episode: The episode.
+            env: What the policy sees and how it acts.
+        """
+        place = episode.place
+        changes = {
+            "world": {"map": place.map, "weather": place.weather},
+            "target": place.target,
+            "start": {"direction": episode.direction},
+        }
+        return updated(self.settings, changes).model_copy(update={"env": env})
+
+
+PROTOCOLS: Mapping[str, Protocol] = {
+    protocol.name: protocol
+    for protocol in (
+        Protocol("paper", "the published test: 3 s, figures CR and TSR"),
+        Protocol(
+            "long",
+            "60 s: when is the target lost, and is it found again?",
+            {
+                "traffic": {"demand": "keep_alive"},
+                "done": {"total_steps": 30_000, "no_reward_steps": _NEVER},
+            },
+        ),
+        Protocol(
+            "search",
+            "20 s: the target starts out of view, 12 to 25 m beside the middle",
+            {
+                "traffic": {"demand": "keep_alive"},
+                "start": {"horizontal_bias": {"mirrored": [12.0, 25.0]}},
+                "done": {"total_steps": 10_000, "no_reward_steps": _NEVER},
+            },
+        ),
+        Protocol(
+            "distractor",
+            "20 s: all vehicles have the target's model and colour, and one is beside it",
+            {
+                "traffic": {"demand": "keep_alive"},
+                "done": {"total_steps": 10_000, "no_reward_steps": _NEVER},
+            },
+            alike=True,
+        ),
+    )
+}
+"""The protocols by name."""
+
+
+def protocol_named(name: str) -> Protocol:
+    """Return a protocol.
+
+    Raises:
+        UnknownNameError: There is no such protocol.
+    """
+    if name not in PROTOCOLS:
+        raise UnknownNameError("--protocol", name, PROTOCOLS)
+    return PROTOCOLS[name]

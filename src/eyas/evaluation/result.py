@@ -1,0 +1,135 @@
+"""The result of an evaluation: table, JSON and CSV."""
+
+import csv
+import io
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from eyas.core.config import validated
+from eyas.core.errors import DataFileError
+from eyas.core.files import write_atomic
+from eyas.evaluation.plan import Stamp
+from eyas.evaluation.record import Record, read_records
+from eyas.evaluation.rows import Row, rows_of
+from eyas.evaluation.statistics import Estimate
+from eyas.settings.file import read_settings
+
+__all__ = ["EPISODES", "RESULT", "STAMP", "load_run", "table", "write_result"]
+
+STAMP, EPISODES, RESULT, ROWS = "run.json", "episodes.jsonl", "result.json", "result.csv"
+"""Files of an evaluation's folder."""
+
+_COLUMNS = {
+    "paper": ("cr", "tsr", "seen", "visible"),
+    "long": ("kept", "tsr", "losses", "search_time", "crashed", "centre_error"),
+    "search": ("found_after", "tsr", "kept", "losses", "search_time", "crashed"),
+    "distractor": ("kept", "tsr", "seen", "losses", "crashed", "centre_error"),
+}
+"""The columns that are printed; the files have all."""
+
+_UNITS = {
+    "kept": "s",
+    "search_time": "s",
+    "found_after": "s",
+    "centre_error": "m",
+    "path": "m",
+    "watched": "s",
+    "jerk": "m/s^3",
+}
+
+
+def load_run(folder: Path) -> tuple[Stamp, list[Record]]:
+    """Return stamp and records of an evaluation.
+
+    Raises:
+        DataFileError: The folder holds none, or a file is damaged.
+    """
+    path = folder / STAMP
+    if not path.is_file():
+        raise DataFileError(f"{folder}: not the folder of an evaluation: it has no {STAMP}")
+    values = read_settings(path)
+    return validated(Stamp, values, str(path)), read_records(folder / EPISODES)
+
+
+def figures_of(row: Row) -> dict[str, Estimate]:
+    """Return all figures of a row, with the time until the target is lost."""
+    return {**row.figures, **({"kept": row.kept} if row.kept else {})}
+
+
+def table(rows: Sequence[Row], protocol: str) -> str:
+    """Return a table as text: mean, 95 % interval, and interquartile mean of the first figures."""
+    columns = _COLUMNS[protocol]
+    heads = [f"{name} [{_UNITS[name]}]" if name in _UNITS else name for name in columns]
+    lines = [["", "n", *heads]]
+    for row in rows:
+        figures = figures_of(row)
+        cells = [_cell(figures.get(name), iqm=name in ("cr", "tsr")) for name in columns]
+        label = "all" if row.group == "all" else f"{row.group} {row.name}"
+        lines.append([label, str(len(row.records)), *cells])
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    return "\n".join(
+        "  ".join(
+            cell.ljust(width) if place == 0 else cell.rjust(width)
+            for place, (cell, width) in enumerate(zip(line, widths, strict=True))
+        ).rstrip()
+        for line in lines
+    )
+
+
+def write_result(
+    folder: Path, made: Stamp, records: Sequence[Record], *, as_published: bool
+) -> list[Row]:
+    """Write `result.json` and `result.csv`; return the rows.
+
+    Raises:
+        OutputError: They cannot be written.
+    """
+    horizon = made.plan.rules.steps * made.plan.rules.period
+    rows = rows_of(records, horizon, as_published=as_published)
+    content: dict[str, Any] = {
+        **made.model_dump(mode="json", exclude={"plan"}),
+        "protocol_name": made.plan.protocol,
+        "as_published": as_published,
+        "plan": made.plan.model_dump(mode="json"),
+        "command": made.plan.command + (" --as-published" if as_published else ""),
+        "seeds": sorted({record.seed for record in records}),
+        "failed": sum(record.error is not None for record in records),
+        "rows": [
+            {
+                "group": row.group,
+                "name": row.name,
+                "n": len(row.records),
+                "figures": {name: each._asdict() for name, each in figures_of(row).items()},
+            }
+            for row in rows
+        ],
+    }
+    write_atomic(folder / RESULT, (json.dumps(content, indent=1) + "\n").encode())
+    write_atomic(folder / ROWS, _csv(made, rows).encode())
+    return rows
+
+
+def _cell(figure: Estimate | None, *, iqm: bool) -> str:
+    if figure is None:
+        return "-"
+    digits = 1 if abs(figure.mean) >= 20.0 else 3
+    low, high = figure.mean_interval
+    text = f"{figure.mean:.{digits}f} [{low:.{digits}f}, {high:.{digits}f}]"
+    return f"{text} iqm {figure.iqm:.{digits}f}" if iqm else text
+
+
+def _csv(made: Stamp, rows: Sequence[Row]) -> str:
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    heads = "version protocol protocol_hash policy latency group name figure n mean iqm".split()
+    writer.writerow([*heads, "mean_low", "mean_high", "iqm_low", "iqm_high"])
+    plan = made.plan
+    start = [made.version, plan.protocol, made.protocol, plan.policy, plan.latency]
+    for row in rows:
+        for name, figure in figures_of(row).items():
+            n, mean, iqm, *intervals = figure
+            limits = [limit for interval in intervals for limit in interval]
+            writer.writerow([*start, row.group, row.name, name, n, mean, iqm, *limits])
+    return text.getvalue()

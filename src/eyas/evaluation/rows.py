@@ -1,0 +1,129 @@
+"""The rows of a table: all episodes, and those of each map, condition, target and visibility."""
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+
+from eyas.evaluation.record import Record
+from eyas.evaluation.statistics import (
+    Estimate,
+    Interval,
+    estimate,
+    restricted_mean,
+    stratified_resamples,
+)
+
+__all__ = ["FIGURES", "Row", "rows_of", "strata_of", "thirds"]
+
+Figure = Callable[[Record], float | None]
+
+FIGURES: dict[str, Figure] = {
+    "cr": lambda record: record.cr,
+    "tsr": lambda record: record.tsr,
+    "seen": lambda record: record.seen,
+    "visible": lambda record: record.visible,
+    "watched": lambda record: record.watched,
+    "found_after": lambda record: record.found_after,
+    "losses": lambda record: float(record.losses),
+    "found_again": lambda record: float(record.found_again),
+    "search_time": lambda record: record.search_time,
+    "crashed": lambda record: float(record.crashed),
+    "failed": lambda record: float(record.error is not None),
+    "centre_error": lambda record: record.centre_error,
+    "path": lambda record: record.path,
+    "jerk": lambda record: record.jerk,
+}
+"""The figures of an episode; those that are None are left out of a row's mean."""
+
+
+class Row(NamedTuple):
+    """A row of a table."""
+
+    group: str
+    """`all`, `map`, `weather`, `target` or `visibility`."""
+    name: str
+    records: list[Record]
+    figures: dict[str, Estimate]
+    kept: Estimate | None
+    """Time until the target is lost [s], with those in which it never was: Kaplan-Meier estimate,
+    its restricted mean and interval; `iqm` is the same number. None: no target was ever seen."""
+
+
+def strata_of(records: Sequence[Record]) -> list[tuple[str, str, str, float]]:
+    """Return the stratum of each record."""
+    return [(each.map, each.weather, each.target, each.direction) for each in records]
+
+
+def thirds(records: Sequence[Record]) -> list[str]:
+    """Return the third of visibility of each record: how much of its target can be seen at all."""
+    order = sorted(range(len(records)), key=lambda i: (records[i].clear, records[i].name))
+    names = [""] * len(records)
+    for name, part in zip(
+        ("1 hidden", "2 partly", "3 clear"), np.array_split(order, 3), strict=True
+    ):
+        if len(part):
+            low, high = records[part[0]].clear, records[part[-1]].clear
+            for index in part.tolist():
+                names[index] = f"{name} {low:.2f}-{high:.2f}"
+    return names
+
+
+def rows_of(records: Sequence[Record], horizon: float, *, as_published: bool = False) -> list[Row]:
+    """Return the rows of a table; a group of which all records are alike has none.
+
+    Args:
+        records: Episode records, at least one.
+        horizon: Length of a full episode [s].
+        as_published: Whether CR and TSR are those that the original's code would have printed, of
+            the episodes that it would not have dropped.
+    """
+    figures = dict(FIGURES)
+    if as_published:
+        records = [record for record in records if record.published.cr > 0.0]
+        figures["cr"] = lambda record: record.published.cr
+        figures["tsr"] = lambda record: record.published.tsr
+    return [
+        Row(group, name, chosen, _figures(chosen, figures), _kept(chosen, horizon))
+        for group, name, chosen in _groups(records)
+        if chosen
+    ]
+
+
+def _groups(records: Sequence[Record]) -> Iterator[tuple[str, str, list[Record]]]:
+    yield "all", "all", list(records)
+    labels_of = {
+        "map": [record.map for record in records],
+        "weather": [record.weather for record in records],
+        "target": [record.target for record in records],
+        "visibility": thirds(records),
+    }
+    for group, labels in labels_of.items():
+        for label in sorted(set(labels)) if len(set(labels)) > 1 else ():
+            pairs = zip(records, labels, strict=True)
+            yield group, label, [record for record, own in pairs if own == label]
+
+
+def _figures(records: list[Record], figures: dict[str, Figure]) -> dict[str, Estimate]:
+    found = {}
+    for name, figure in figures.items():
+        known = [(record, value) for record in records if (value := figure(record)) is not None]
+        if known:
+            own = [record for record, _ in known]
+            found[name] = estimate([value for _, value in known], strata_of(own))
+    return found
+
+
+def _kept(records: list[Record], horizon: float) -> Estimate | None:
+    seen = [record for record in records if record.found_after is not None]
+    if not seen:
+        return None
+    times = np.array([record.watched for record in seen])
+    ended = np.array([record.lost_after is not None for record in seen])
+    whole = restricted_mean(times.tolist(), ended.tolist(), horizon)
+    resamples = stratified_resamples(strata_of(seen), 500)
+    means = [
+        restricted_mean(times[row].tolist(), ended[row].tolist(), horizon) for row in resamples
+    ]
+    spread = Interval(*np.quantile(means, (0.025, 0.975)).tolist())
+    return Estimate(len(seen), whole, whole, spread, spread)

@@ -1,0 +1,174 @@
+"""Evaluates a policy: flies the episodes of a protocol, and writes records and figures."""
+
+import logging
+import os
+import shutil
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+import numpy as np
+from rich.console import Console
+from rich.progress import (
+    BarColumn,
+    MofNCompleteColumn,
+    Progress,
+    TaskID,
+    TextColumn,
+    TimeRemainingColumn,
+)
+
+from eyas.core.errors import OutputError
+from eyas.core.files import refusals, write_atomic
+from eyas.core.machine import describe_machine
+from eyas.evaluation.plan import Plan, Stamp, batches, check, fly_batch, stamp
+from eyas.evaluation.record import Record, RecordFile, read_records
+from eyas.evaluation.result import EPISODES, STAMP, load_run, table, write_result
+from eyas.modes.video.lock import recording_lock
+
+__all__ = ["run"]
+
+_LOG = logging.getLogger("eyas")
+
+TIMING = "timing.json"
+"""How long the policy takes; apart from the result, which repeats."""
+
+
+def run(
+    plan: Plan,
+    out: Path,
+    *,
+    resume: bool = False,
+    overwrite: bool = False,
+    as_published: bool = False,
+    quiet: bool = False,
+) -> list[Record]:
+    """Fly all episodes of a plan, or those that are missing in the folder; print a table.
+
+    Args:
+        plan: The plan.
+        out: Folder to write to.
+        resume: Whether an interrupted evaluation in the folder is continued.
+        overwrite: Whether one that is in the folder is deleted first.
+        as_published: Whether the figures are those that the original's code would have printed.
+        quiet: Whether nothing is printed.
+
+    Raises:
+        EyasError: A setting is wrong, or the folder is taken.
+    """
+    check(plan)
+    made = stamp(plan)
+    with recording_lock(out):
+        records = _prepared(out, made, resume=resume, overwrite=overwrite)
+        _fly(plan, out, records, quiet=quiet)
+        flown = _in_order(plan, out)
+        rows = write_result(out, made, flown, as_published=as_published)
+    if not quiet:
+        print(f"{plan.policy}, protocol {plan.protocol} {made.protocol}, Eyas {made.version}")
+        print(table(rows, plan.protocol))
+        _tell_failures(flown)
+    return flown
+
+
+def _prepared(out: Path, made: Stamp, *, resume: bool, overwrite: bool) -> list[Record]:
+    """Return the records that the folder has; write the stamp into an empty one.
+
+    Raises:
+        OutputError: It holds another evaluation, or one that may not be continued.
+    """
+    path = out / STAMP
+    if path.exists() and overwrite:
+        _delete(out)
+    if not path.exists():
+        write_atomic(path, (made.model_dump_json(indent=1) + "\n").encode())
+        return []
+    if not resume:
+        raise OutputError(
+            f"{out}: an evaluation is already there; continue it with --resume, or replace it "
+            "with --overwrite"
+        )
+    found, records = load_run(out)
+    for name in ("version", "protocol", "policy"):
+        old, new = getattr(found, name), getattr(made, name)
+        if old != new:
+            raise OutputError(f"{out}: cannot be continued: its {name} was {old}, now it is {new}")
+    old_plan, new_plan = found.plan.model_dump(), made.plan.model_dump()
+    for name in old_plan:
+        if old_plan[name] != new_plan[name]:
+            raise OutputError(
+                f"{out}: cannot be continued: '{name}' was {old_plan[name]!r}, now it is "
+                f"{new_plan[name]!r}"
+            )
+    return records
+
+
+def _delete(out: Path) -> None:
+    """Delete what an evaluation has written into its folder."""
+    with refusals(out):
+        for path in (*out.glob("*.json"), *out.glob("*.csv"), *out.glob("*.jsonl")):
+            path.unlink()
+        for name in ("plots", "videos"):
+            shutil.rmtree(out / name, ignore_errors=True)
+
+
+def _fly(plan: Plan, out: Path, records: list[Record], *, quiet: bool) -> None:
+    """Fly the batches that are not complete, and append the records that are missing."""
+    known = {record.name for record in records}
+    answers: list[float] = []
+    parts = batches(plan)
+    total = sum(map(len, parts))
+    begun = time.perf_counter()
+    with RecordFile(out / EPISODES) as file, _progress(total, quiet=quiet) as (bar, task):
+        bar.update(task, completed=len(known))
+        for part in parts:
+            if all(episode.name in known for episode in part):
+                continue
+            for ended in fly_batch(plan, part, answers):
+                new = [record for record in ended if record.name not in known]
+                file.add(new)
+                known.update(record.name for record in new)
+                bar.update(task, completed=len(known))
+    if answers:
+        _write_timing(plan, out, answers, time.perf_counter() - begun)
+
+
+def _in_order(plan: Plan, out: Path) -> list[Record]:
+    """Return the records in the order of the plan."""
+    found = {record.name: record for record in read_records(out / EPISODES)}
+    return [found[episode.name] for part in batches(plan) for episode in part]
+
+
+@contextmanager
+def _progress(total: int, *, quiet: bool) -> Iterator[tuple[Progress, TaskID]]:
+    """Show the progress on stderr."""
+    columns = (TextColumn("episodes"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    console = Console(stderr=True)
+    with Progress(*columns, console=console, transient=True, disable=quiet) as bar:
+        yield bar, bar.add_task("episodes", total=total)
+
+
+def _write_timing(plan: Plan, out: Path, answers: list[float], wall: float) -> None:
+    import json
+
+    middle, most = (np.quantile(answers, (0.5, 0.95)) * 1e3).tolist()
+    content = {
+        "machine": describe_machine(),
+        "processes": 1,
+        "batch": 1 if plan.latency == "measured" else plan.batch,
+        "answers": len(answers),
+        "median_ms": middle,
+        "p95_ms": most,
+        "wall_s": wall,
+        "load": os.getloadavg()[0] if hasattr(os, "getloadavg") else None,
+    }
+    write_atomic(out / TIMING, (json.dumps(content, indent=1) + "\n").encode())
+
+
+def _tell_failures(records: list[Record]) -> None:
+    failed = [record for record in records if record.error is not None]
+    if failed:
+        _LOG.warning(
+            "the policy failed in %d of %d episodes, first in %s: %s",
+            *(len(failed), len(records), failed[0].name, failed[0].error),
+        )

@@ -1,0 +1,99 @@
+"""The command: folder, table, resuming after a kill."""
+
+import json
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+from eyas.core.errors import EyasError
+from eyas.evaluation.plan import Plan
+from eyas.evaluation.record import RecordFile, read_records
+from eyas.modes.evaluate import run
+
+PLAN = Plan(policy="random", episodes=2, batch=2)
+FILES = ("episodes.jsonl", "result.json", "result.csv", "run.json")
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    out = tmp_path_factory.mktemp("whole")
+    run(PLAN, out, quiet=True)
+    return out
+
+
+def test_the_result_tells_all_that_repeats_it(whole):
+    result = json.loads((whole / "result.json").read_text())
+    assert result["command"] == "eyas evaluate --policy random --episodes 2 --batch 2"
+    assert result["seeds"] == list(range(1_000_000, 1_000_008))
+    first = result["rows"][0]
+    assert (first["group"], first["n"]) == ("all", 8)
+    low, high = first["figures"]["cr"]["mean_interval"]
+    assert low < first["figures"]["cr"]["mean"] < high
+    assert {row["group"] for row in result["rows"]} == {"all", "visibility"}
+    lines = (whole / "result.csv").read_text().splitlines()
+    assert len({line.count(",") for line in lines}) == 1
+
+
+def test_a_killed_evaluation_continues_to_the_same_bytes(whole, tmp_path):
+    arguments = ["--policy", "random", "--episodes", "2", "--batch", "2", "--out", str(tmp_path)]
+    command = [sys.executable, "-m", "eyas.cli.main", "evaluate", *arguments]
+    process = subprocess.Popen(command, stderr=subprocess.DEVNULL)
+    records = tmp_path / "episodes.jsonl"
+    while not (records.exists() and records.read_bytes().count(b"\n") >= 2):
+        assert process.poll() is None
+        time.sleep(0.005)
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    flown = records.read_bytes().count(b"\n")
+    assert flown < 8, "killed too late to test anything"
+    with records.open("ab") as file:
+        file.write(b'{"name": "torn')  # as a kill in the middle of a line leaves it
+    run(PLAN, tmp_path, resume=True, quiet=True)
+    for name in FILES:
+        assert (tmp_path / name).read_bytes() == (whole / name).read_bytes(), name
+
+
+def test_a_batch_of_which_a_part_is_missing_is_flown_again(whole, tmp_path):
+    for name in ("run.json", "episodes.jsonl"):
+        (tmp_path / name).write_bytes((whole / name).read_bytes())
+    lines = (whole / "episodes.jsonl").read_bytes().splitlines(keepends=True)
+    (tmp_path / "episodes.jsonl").write_bytes(b"".join(lines[:3]))
+    run(PLAN, tmp_path, resume=True, quiet=True)
+    assert (tmp_path / "episodes.jsonl").read_bytes() == b"".join(lines)
+
+
+def test_a_folder_that_is_taken_is_not_touched(whole):
+    with pytest.raises(EyasError, match="--resume"):
+        run(PLAN, whole, quiet=True)
+    with pytest.raises(EyasError, match="'episodes' was 2, now it is 3"):
+        run(PLAN.model_copy(update={"episodes": 3}), whole, resume=True, quiet=True)
+
+
+def test_a_damaged_line_is_told_with_its_number(whole, tmp_path):
+    path = tmp_path / "episodes.jsonl"
+    line = (whole / "episodes.jsonl").read_bytes().splitlines(keepends=True)[0]
+    path.write_bytes(line + b'{"name": 3}\n')
+    with pytest.raises(EyasError, match="line 2"):
+        read_records(path)
+
+
+def test_a_torn_last_line_is_cut_off(whole, tmp_path):
+    path = tmp_path / "episodes.jsonl"
+    record = read_records(whole / "episodes.jsonl")[0]
+    path.write_bytes(b"torn")
+    with RecordFile(path) as file:
+        file.add([record])
+    assert read_records(path) == [record]
+
+
+def test_the_table_is_printed_as_published_too(tmp_path, capsys):
+    plan = Plan(policy="follow", episodes=1)
+    run(plan, tmp_path, as_published=True)
+    text = capsys.readouterr().out
+    assert "cr" in text
+    figures = json.loads((tmp_path / "result.json").read_text())["rows"][0]["figures"]
+    assert 303.0 < figures["cr"]["mean"] < 363.0
+    assert figures["tsr"]["mean"] < 0.97
