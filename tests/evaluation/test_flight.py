@@ -5,7 +5,7 @@ import pytest
 
 from eyas.core.errors import EyasError
 from eyas.evaluation.meter import published
-from eyas.evaluation.plan import Plan, check
+from eyas.evaluation.plan import Plan, batches, check, fly_batch
 from eyas.evaluation.record import Record
 
 
@@ -45,8 +45,9 @@ def test_a_servo_that_sees_only_pictures_is_between(fly, follow, hover):
 
 def test_a_box_tracker_of_opencv_is_between(fly, follow, hover):
     pytest.importorskip("cv2")
-    csrt = figure(fly("csrt"), "cr")
-    assert figure(hover, "cr") + 50.0 < csrt < figure(follow, "cr")
+    plan = Plan(policy="csrt", episodes=1, batch=1)  # one episode: it takes 60 ms a picture
+    (csrt,) = next(fly_batch(plan, batches(plan)[0]))
+    assert hover[0].cr + 50.0 < csrt.cr < follow[0].cr
 
 
 def test_what_is_seen_while_following_is_what_can_be_seen(follow):

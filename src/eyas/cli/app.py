@@ -46,6 +46,8 @@ app = typer.Typer(
 app.command("video")(video.command)
 app.command("bench")(bench.command)
 app.command("evaluate")(evaluate.evaluate)
+app.command("compare")(evaluate.compare)
+app.command("leaderboard")(evaluate.leaderboard)
 app.add_typer(cache.app, name="cache")
 app.add_typer(config.app, name="config")
 app.add_typer(maps.app, name="maps")

@@ -9,7 +9,7 @@ import typer
 
 from eyas.core.errors import ConfigError
 
-__all__ = ["evaluate"]
+__all__ = ["compare", "evaluate", "leaderboard"]
 
 
 def evaluate(  # noqa: PLR0913  # one parameter for each option
@@ -48,6 +48,12 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
     as_published: Annotated[
         bool, typer.Option("--as-published", help="Figures as the original's code prints them.")
     ] = False,
+    plots: Annotated[
+        bool, typer.Option("--plots", help="Draw reward, losses and flights (extra plots).")
+    ] = False,
+    videos: Annotated[
+        bool, typer.Option("--videos", help="Film the worst, the median and the best flight.")
+    ] = False,
     resume: Annotated[
         bool, typer.Option("--resume", help="Continue an interrupted evaluation.")
     ] = False,
@@ -83,6 +89,8 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
         resume=resume,
         overwrite=overwrite,
         as_published=as_published,
+        plots=plots,
+        videos=videos,
         quiet=quiet,
     )
 
@@ -118,3 +126,37 @@ def _changes(said: list[str]) -> dict[str, Any]:
 
 def _folder_name(policy: str, protocol: str) -> str:
     return re.sub(r"[^\w.-]+", "-", f"{Path(policy).stem}-{protocol}")
+
+
+def compare(
+    first: Annotated[Path, typer.Argument(metavar="A", help="Folder of an evaluation.")],
+    second: Annotated[Path, typer.Argument(metavar="B", help="Folder of another.")],
+    json_: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
+) -> None:
+    """Tell by how much B differs from A in the episodes that both have flown."""
+    from eyas.evaluation.comparison import differences, refuse_other_protocol, text_of
+    from eyas.evaluation.result import load_run
+
+    (stamp_a, records_a), (stamp_b, records_b) = load_run(first), load_run(second)
+    refuse_other_protocol(stamp_a, stamp_b)
+    found = differences(records_a, records_b)
+    if json_:
+        typer.echo(json.dumps([each._asdict() for each in found], indent=1))
+        return
+    for name, stamp in (("A", stamp_a), ("B", stamp_b)):
+        typer.echo(f"{name}: {stamp.plan.command} (Eyas {stamp.version})")
+    typer.echo(text_of(found))
+
+
+def leaderboard(
+    folder: Annotated[
+        Path, typer.Argument(metavar="DIR", help="Folder with evaluations, at any depth.")
+    ],
+    out: Annotated[
+        Path | None, typer.Option("--out", help="The page; by default DIR/index.html.")
+    ] = None,
+) -> None:
+    """Write a page that ranks all evaluations in a folder."""
+    from eyas.modes.leaderboard import run
+
+    typer.echo(run(folder, out or folder / "index.html"))

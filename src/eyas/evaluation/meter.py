@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 from eyas.core.rng import stream
 from eyas.evaluation.episode import Episode
-from eyas.evaluation.flock import Flock
+from eyas.evaluation.flock import Flock, Squad
 from eyas.evaluation.protocol import Protocol
 from eyas.evaluation.record import Published, Record, Trace
 from eyas.evaluation.watch import watched
 from eyas.task.done import DoneReason
 
-__all__ = ["LOOK", "Meter", "published"]
+__all__ = ["LOOK", "TRACE_PERIOD", "Meter", "published"]
 
 Floats = NDArray[np.float64]
 
@@ -26,6 +26,9 @@ LOOK = 4
 
 _TRACE = 20
 """Control steps between two points of a trace."""
+
+TRACE_PERIOD = 0.16
+"""The same in the protocols' control steps of 8 ms [s]."""
 
 _PUBLISHED_ACTIONS = 305, 363
 """Fewest and most actions that the original's client makes in 1,500 physics steps."""
@@ -36,6 +39,22 @@ _PUBLISHED_LENGTH = 375
 _CRASHES = frozenset(
     (DoneReason.HEIGHT, DoneReason.DISTANCE, DoneReason.VELOCITY, DoneReason.YAW_RATE)
 ) | {DoneReason.TILT, DoneReason.NOT_A_NUMBER}
+
+
+_REWARD, _REASON = 0, 1
+_POSITION, _ACCELERATION = slice(2, 5), slice(5, 8)
+_TARGET, _MIDDLE = slice(8, 10), slice(10, 12)
+"""Columns of what is measured."""
+
+
+def _measured(squad: Squad) -> Floats:
+    """Return what is measured at each control step, shape (K, 12)."""
+    trackers, _, targets, episodes, _ = squad.simulation.snapshot
+    columns = np.empty((len(squad.rows), 12))
+    columns[:, _REWARD], columns[:, _REASON] = episodes.reward, episodes.reason
+    columns[:, _POSITION], columns[:, _ACCELERATION] = trackers.position, trackers.acceleration
+    columns[:, _TARGET], columns[:, _MIDDLE] = targets.centre[:, :2], episodes.view_centre[:, :2]
+    return columns
 
 
 class _Sums(NamedTuple):
@@ -69,31 +88,25 @@ class Meter:
         """Control steps flown, shape (N,)."""
         self.reason = np.zeros(count, np.int64)
         """`DoneReason` of each, shape (N,)."""
-        snapshot = flock.snapshot()
-        self._position = snapshot.trackers.position.copy()
-        self._acceleration = snapshot.trackers.acceleration.copy()
+        self._last = flock.gathered(_measured)
 
     def measure(self, active: NDArray[np.bool_]) -> None:
         """Measure after a control step of the active flights, shape (N,)."""
-        trackers, _, targets, episodes, _ = self._flock.snapshot()
         rows = np.flatnonzero(active)
+        state = self._flock.gathered(_measured)[rows]
         step, sums = self.length[rows], self._sums
-        self._reward[rows, step] = episodes.reward[rows]
+        self._reward[rows, step] = state[:, _REWARD]
         self.length[rows] += 1
-        self.reason[rows] = episodes.reason[rows]
-        middle = episodes.view_centre[rows, :2]
-        sums.error[rows] += np.linalg.norm(targets.centre[rows, :2] - middle, axis=1)
-        moved = trackers.position[rows] - self._position[rows]
-        sums.path[rows] += np.linalg.norm(moved, axis=1)
-        change = (trackers.acceleration[rows] - self._acceleration[rows]) / self._protocol.period
+        self.reason[rows] = state[:, _REASON]
+        place, target = state[:, _POSITION], state[:, _TARGET]
+        sums.error[rows] += np.linalg.norm(target - state[:, _MIDDLE], axis=1)
+        sums.path[rows] += np.linalg.norm(place - self._last[rows, _POSITION], axis=1)
+        change = (state - self._last[rows])[:, _ACCELERATION] / self._protocol.period
         sums.jerk[rows] += (change**2).sum(axis=1)
-        self._position[rows] = trackers.position[rows]
-        self._acceleration[rows] = trackers.acceleration[rows]
+        self._last[rows] = state
         # All active flights have begun together, so that they have flown equally many steps.
         if len(rows) and (step[0] + 1) % _TRACE == 0:
-            point = self._trace[rows, step[0] // _TRACE]
-            point[:, :2], point[:, 2:] = trackers.position[rows, :2], targets.centre[rows, :2]
-            self._trace[rows, step[0] // _TRACE] = point
+            self._trace[rows, step[0] // _TRACE] = np.concatenate((place[:, :2], target), axis=1)
         if len(rows) and (step[0] + 1) % LOOK == 0:
             pixels = self._flock.gathered(lambda squad: squad.subjects()[0])[rows]
             sums.shares[rows, 0] += pixels[:, 0] > 0

@@ -33,7 +33,7 @@ def episodes_with_neighbours(
     """
     found = []
     for place in places:
-        for turn, direction in enumerate(protocol.directions):
+        for turn in range(len(protocol.directions)):
             tried = episodes_of([place], protocol.directions, count * _TRIED, first_seed)
             own = tried[turn :: len(protocol.directions)]
             chosen = list(islice(_with_neighbours(own, protocol, count), count))

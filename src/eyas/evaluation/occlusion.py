@@ -1,5 +1,7 @@
 """How much of a target can be seen at all: its visible share under exact following."""
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -36,6 +38,9 @@ def clear_shares(episodes: list[Episode], protocol: Protocol) -> list[float]:
 
 
 def _flown(episodes: list[Episode], protocol: Protocol) -> NDArray[np.float64]:
+    # Without biases the target is in the middle. They are drawn last, so nothing else changes.
+    start = {**protocol.changes.get("start", {}), "horizontal_bias": 0.0, "vertical_bias": 0.0}
+    protocol = replace(protocol, changes={**protocol.changes, "start": start})
     settings = protocol.settings
     ticks = round(_PERIOD * 500)
     looks = settings.done.total_steps // max(ticks, physics_steps(settings.control.frequency))

@@ -10,12 +10,14 @@ from eyas.core.config import Config
 from eyas.core.errors import ConfigError
 from eyas.evaluation.delay import Measured, delay_from
 from eyas.evaluation.episode import FIRST_SEED, Episode, Place, episodes_of
-from eyas.evaluation.flight import Flight
+from eyas.evaluation.flight import Flight, Watcher
 from eyas.evaluation.neighbours import episodes_with_neighbours
 from eyas.evaluation.policies.table import fingerprint, open_policy
 from eyas.evaluation.protocol import Protocol, protocol_named
 from eyas.evaluation.record import Record
 from eyas.settings.version_check import require_supported
+from eyas.sim.supported import require_parts
+from eyas.world.maps import MAPS
 
 __all__ = ["Plan", "Stamp", "batches", "fly_batch", "stamp"]
 
@@ -104,7 +106,10 @@ def batches(plan: Plan) -> list[list[Episode]]:
 
 
 def fly_batch(
-    plan: Plan, episodes: list[Episode], answers: list[float] | None = None
+    plan: Plan,
+    episodes: list[Episode],
+    answers: list[float] | None = None,
+    watcher: Watcher | None = None,
 ) -> Iterator[list[Record]]:
     """Yield the records of a batch, whenever some of its episodes end.
 
@@ -112,6 +117,7 @@ def fly_batch(
         plan: The plan.
         episodes: One of its batches.
         answers: Gets how long each call of the policy has taken [s].
+        watcher: Called after each control step.
 
     Raises:
         EyasError: The policy cannot be loaded, or a setting is not supported.
@@ -120,7 +126,7 @@ def fly_batch(
     assert len(episodes) == 1 or not isinstance(delay, Measured)
     policy = open_policy(plan.policy, plan.env, sampled=plan.sampled)
     flight = Flight(episodes, plan.rules, policy, delay)
-    yield from flight.fly()
+    yield from flight.fly(watcher)
     if answers is not None:
         answers += flight.answers
 
@@ -139,7 +145,10 @@ def check(plan: Plan) -> None:
         for weather in plan.weathers:
             for target in plan.targets:
                 episode = Episode(Place(name, weather, target), 0.0, 0)
-                require_supported(plan.rules.settings_of(episode, policy.env))
+                MAPS.get(name).light(weather)  # refuses unknown names
+                settings = plan.rules.settings_of(episode, policy.env)
+                require_supported(settings)
+                require_parts(settings)
 
 
 def _flat(path: str, values: dict[str, Any]) -> Iterator[tuple[str, Any]]:

@@ -16,28 +16,39 @@ from eyas.evaluation.rows import Row, rows_of
 from eyas.evaluation.statistics import Estimate
 from eyas.settings.file import read_settings
 
-__all__ = ["EPISODES", "RESULT", "STAMP", "load_run", "table", "write_result"]
+__all__ = [
+    "COLUMNS",
+    "EPISODES",
+    "RESULT",
+    "STAMP",
+    "UNITS",
+    "cell",
+    "load_run",
+    "table",
+    "write_result",
+]
 
 STAMP, EPISODES, RESULT, ROWS = "run.json", "episodes.jsonl", "result.json", "result.csv"
 """Files of an evaluation's folder."""
 
-_COLUMNS = {
+COLUMNS = {
     "paper": ("cr", "tsr", "seen", "visible"),
     "long": ("kept", "tsr", "losses", "search_time", "crashed", "centre_error"),
-    "search": ("found_after", "tsr", "kept", "losses", "search_time", "crashed"),
+    "search": ("to_find", "tsr", "kept", "losses", "search_time", "crashed"),
     "distractor": ("kept", "tsr", "seen", "losses", "crashed", "centre_error"),
 }
 """The columns that are printed; the files have all."""
 
-_UNITS = {
+UNITS = {
     "kept": "s",
     "search_time": "s",
-    "found_after": "s",
+    "to_find": "s",
     "centre_error": "m",
     "path": "m",
     "watched": "s",
     "jerk": "m/s^3",
 }
+"""Units of the figures that have one."""
 
 
 def load_run(folder: Path) -> tuple[Stamp, list[Record]]:
@@ -53,19 +64,14 @@ def load_run(folder: Path) -> tuple[Stamp, list[Record]]:
     return validated(Stamp, values, str(path)), read_records(folder / EPISODES)
 
 
-def figures_of(row: Row) -> dict[str, Estimate]:
-    """Return all figures of a row, with the time until the target is lost."""
-    return {**row.figures, **({"kept": row.kept} if row.kept else {})}
-
-
 def table(rows: Sequence[Row], protocol: str) -> str:
     """Return a table as text: mean, 95 % interval, and interquartile mean of the first figures."""
-    columns = _COLUMNS[protocol]
-    heads = [f"{name} [{_UNITS[name]}]" if name in _UNITS else name for name in columns]
+    columns = COLUMNS[protocol]
+    heads = [f"{name} [{UNITS[name]}]" if name in UNITS else name for name in columns]
     lines = [["", "n", *heads]]
     for row in rows:
-        figures = figures_of(row)
-        cells = [_cell(figures.get(name), iqm=name in ("cr", "tsr")) for name in columns]
+        figures = row.figures
+        cells = [cell(figures.get(name), iqm=name in ("cr", "tsr")) for name in columns]
         label = "all" if row.group == "all" else f"{row.group} {row.name}"
         lines.append([label, str(len(row.records)), *cells])
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
@@ -101,7 +107,7 @@ def write_result(
                 "group": row.group,
                 "name": row.name,
                 "n": len(row.records),
-                "figures": {name: each._asdict() for name, each in figures_of(row).items()},
+                "figures": {name: each._asdict() for name, each in row.figures.items()},
             }
             for row in rows
         ],
@@ -111,7 +117,8 @@ def write_result(
     return rows
 
 
-def _cell(figure: Estimate | None, *, iqm: bool) -> str:
+def cell(figure: Estimate | None, *, iqm: bool = False) -> str:
+    """Return a figure as text: mean, interval and, if wanted, interquartile mean."""
     if figure is None:
         return "-"
     digits = 1 if abs(figure.mean) >= 20.0 else 3
@@ -128,7 +135,7 @@ def _csv(made: Stamp, rows: Sequence[Row]) -> str:
     plan = made.plan
     start = [made.version, plan.protocol, made.protocol, plan.policy, plan.latency]
     for row in rows:
-        for name, figure in figures_of(row).items():
+        for name, figure in row.figures.items():
             n, mean, iqm, *intervals = figure
             limits = [limit for interval in intervals for limit in interval]
             writer.writerow([*start, row.group, row.name, name, n, mean, iqm, *limits])

@@ -14,7 +14,7 @@ from eyas.evaluation.statistics import (
     stratified_resamples,
 )
 
-__all__ = ["FIGURES", "Row", "rows_of", "strata_of", "thirds"]
+__all__ = ["FIGURES", "Row", "groups_of", "rows_of", "strata_of", "thirds"]
 
 Figure = Callable[[Record], float | None]
 
@@ -24,7 +24,6 @@ FIGURES: dict[str, Figure] = {
     "seen": lambda record: record.seen,
     "visible": lambda record: record.visible,
     "watched": lambda record: record.watched,
-    "found_after": lambda record: record.found_after,
     "losses": lambda record: float(record.losses),
     "found_again": lambda record: float(record.found_again),
     "search_time": lambda record: record.search_time,
@@ -37,6 +36,10 @@ FIGURES: dict[str, Figure] = {
 """The figures of an episode; those that are None are left out of a row's mean."""
 
 
+_RESAMPLES = 500
+"""Bootstrap samples of a censored time, each of which takes a curve of its own."""
+
+
 class Row(NamedTuple):
     """A row of a table."""
 
@@ -45,9 +48,6 @@ class Row(NamedTuple):
     name: str
     records: list[Record]
     figures: dict[str, Estimate]
-    kept: Estimate | None
-    """Time until the target is lost [s], with those in which it never was: Kaplan-Meier estimate,
-    its restricted mean and interval; `iqm` is the same number. None: no target was ever seen."""
 
 
 def strata_of(records: Sequence[Record]) -> list[tuple[str, str, str, float]]:
@@ -65,12 +65,12 @@ def thirds(records: Sequence[Record]) -> list[str]:
         if len(part):
             low, high = records[part[0]].clear, records[part[-1]].clear
             for index in part.tolist():
-                names[index] = f"{name} {low:.2f}-{high:.2f}"
+                names[index] = f"{name} {low:.3f}-{high:.3f}"
     return names
 
 
 def rows_of(records: Sequence[Record], horizon: float, *, as_published: bool = False) -> list[Row]:
-    """Return the rows of a table; a group of which all records are alike has none.
+    """Return the rows of a table.
 
     Args:
         records: Episode records, at least one.
@@ -84,13 +84,14 @@ def rows_of(records: Sequence[Record], horizon: float, *, as_published: bool = F
         figures["cr"] = lambda record: record.published.cr
         figures["tsr"] = lambda record: record.published.tsr
     return [
-        Row(group, name, chosen, _figures(chosen, figures), _kept(chosen, horizon))
-        for group, name, chosen in _groups(records)
+        Row(group, name, chosen, _figures(chosen, figures) | _times(chosen, horizon))
+        for group, name, chosen in groups_of(records)
         if chosen
     ]
 
 
-def _groups(records: Sequence[Record]) -> Iterator[tuple[str, str, list[Record]]]:
+def groups_of(records: Sequence[Record]) -> Iterator[tuple[str, str, list[Record]]]:
+    """Yield group, name and records of each row; a group of one row is left out."""
     yield "all", "all", list(records)
     labels_of = {
         "map": [record.map for record in records],
@@ -114,16 +115,31 @@ def _figures(records: list[Record], figures: dict[str, Figure]) -> dict[str, Est
     return found
 
 
-def _kept(records: list[Record], horizon: float) -> Estimate | None:
+def _times(records: list[Record], horizon: float) -> dict[str, Estimate]:
+    """Return times of which some are censored: until the target is lost (`kept`), and found.
+
+    Both are restricted means of Kaplan-Meier curves; `iqm` is the same number.
+    """
     seen = [record for record in records if record.found_after is not None]
-    if not seen:
-        return None
-    times = np.array([record.watched for record in seen])
-    ended = np.array([record.lost_after is not None for record in seen])
-    whole = restricted_mean(times.tolist(), ended.tolist(), horizon)
-    resamples = stratified_resamples(strata_of(seen), 500)
+    finds = [record.found_after is not None for record in records]
+    waits = [
+        record.duration if record.found_after is None else record.found_after for record in records
+    ]
+    times = {"to_find": _censored(records, waits, finds, horizon)}
+    if seen:
+        lost = [record.lost_after is not None for record in seen]
+        times["kept"] = _censored(seen, [record.watched for record in seen], lost, horizon)
+    return times
+
+
+def _censored(
+    records: list[Record], times: list[float], ended: list[bool], horizon: float
+) -> Estimate:
+    whole = restricted_mean(times, ended, horizon)
+    at, happened = np.array(times), np.array(ended)
     means = [
-        restricted_mean(times[row].tolist(), ended[row].tolist(), horizon) for row in resamples
+        restricted_mean(at[row], happened[row], horizon)
+        for row in stratified_resamples(strata_of(records), _RESAMPLES)
     ]
     spread = Interval(*np.quantile(means, (0.025, 0.975)).tolist())
-    return Estimate(len(seen), whole, whole, spread, spread)
+    return Estimate(len(records), whole, whole, spread, spread)

@@ -9,7 +9,7 @@ from collections.abc import Callable, Hashable, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 __all__ = [
     "Estimate",
@@ -131,7 +131,7 @@ def improvement(first: Sequence[float], second: Sequence[float]) -> float:
     return float((np.sign(difference) + 1.0).mean() / 2.0)
 
 
-def survival(times: Sequence[float], ended: Sequence[bool]) -> tuple[Floats, Floats]:
+def survival(times: ArrayLike, ended: ArrayLike) -> tuple[Floats, Floats]:
     """Return the Kaplan-Meier curve.
 
     Args:
@@ -152,7 +152,7 @@ def survival(times: Sequence[float], ended: Sequence[bool]) -> tuple[Floats, Flo
     return np.concatenate(([0.0], events)), left
 
 
-def restricted_mean(times: Sequence[float], ended: Sequence[bool], horizon: float) -> float:
+def restricted_mean(times: ArrayLike, ended: ArrayLike, horizon: float) -> float:
     """Return the mean time until the event, or until the horizon: the area below the curve."""
     start, left = survival(times, ended)
     stop = np.minimum(np.concatenate((start[1:], [horizon])), horizon)

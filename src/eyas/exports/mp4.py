@@ -9,6 +9,7 @@ from typing import IO
 import av
 import numpy as np
 from av.video.stream import VideoStream
+from numpy.typing import NDArray
 
 from eyas.core.files import part_path, refusals
 from eyas.exports.files import Files
@@ -94,9 +95,13 @@ class Mp4Episode(EpisodeWriter):
         return stream
 
     def add(self, frame: Frame) -> None:
-        """Append the next picture."""
+        """Append the picture of a frame."""
         assert frame.rgb is not None
-        padded = np.pad(frame.rgb, self._padding, mode="edge")
+        self.add_picture(frame.rgb)
+
+    def add_picture(self, rgb: NDArray[np.uint8]) -> None:
+        """Append the next picture, shape (H, W, 3)."""
+        padded = np.pad(rgb, self._padding, mode="edge")
         image = av.VideoFrame.from_ndarray(padded, format="rgb24")
         with refusals(self._path):
             self._container.mux(self._stream.encode(image))

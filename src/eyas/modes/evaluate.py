@@ -1,5 +1,6 @@
 """Evaluates a policy: flies the episodes of a protocol, and writes records and figures."""
 
+import json
 import logging
 import os
 import shutil
@@ -25,6 +26,9 @@ from eyas.core.machine import describe_machine
 from eyas.evaluation.plan import Plan, Stamp, batches, check, fly_batch, stamp
 from eyas.evaluation.record import Record, RecordFile, read_records
 from eyas.evaluation.result import EPISODES, STAMP, load_run, table, write_result
+from eyas.modes import evaluation_films, evaluation_plots
+from eyas.modes.evaluation_films import film
+from eyas.modes.evaluation_plots import draw_plots, require_matplotlib
 from eyas.modes.video.lock import recording_lock
 
 __all__ = ["run"]
@@ -35,13 +39,15 @@ TIMING = "timing.json"
 """How long the policy takes; apart from the result, which repeats."""
 
 
-def run(
+def run(  # noqa: PLR0913  # choices of the user's
     plan: Plan,
     out: Path,
     *,
     resume: bool = False,
     overwrite: bool = False,
     as_published: bool = False,
+    plots: bool = False,
+    videos: bool = False,
     quiet: bool = False,
 ) -> list[Record]:
     """Fly all episodes of a plan, or those that are missing in the folder; print a table.
@@ -52,18 +58,26 @@ def run(
         resume: Whether an interrupted evaluation in the folder is continued.
         overwrite: Whether one that is in the folder is deleted first.
         as_published: Whether the figures are those that the original's code would have printed.
+        plots: Whether plots are drawn.
+        videos: Whether the worst, the median and the best flight are filmed.
         quiet: Whether nothing is printed.
 
     Raises:
         EyasError: A setting is wrong, or the folder is taken.
     """
     check(plan)
+    if plots:
+        require_matplotlib()
     made = stamp(plan)
     with recording_lock(out):
         records = _prepared(out, made, resume=resume, overwrite=overwrite)
         _fly(plan, out, records, quiet=quiet)
         flown = _in_order(plan, out)
         rows = write_result(out, made, flown, as_published=as_published)
+        if plots:
+            draw_plots(out, plan.rules, f"{plan.policy}, protocol {plan.protocol}", flown)
+        if videos:
+            film(out, plan, flown)
     if not quiet:
         print(f"{plan.policy}, protocol {plan.protocol} {made.protocol}, Eyas {made.version}")
         print(table(rows, plan.protocol))
@@ -108,7 +122,7 @@ def _delete(out: Path) -> None:
     with refusals(out):
         for path in (*out.glob("*.json"), *out.glob("*.csv"), *out.glob("*.jsonl")):
             path.unlink()
-        for name in ("plots", "videos"):
+        for name in (evaluation_plots.FOLDER, evaluation_films.FOLDER):
             shutil.rmtree(out / name, ignore_errors=True)
 
 
@@ -149,8 +163,6 @@ def _progress(total: int, *, quiet: bool) -> Iterator[tuple[Progress, TaskID]]:
 
 
 def _write_timing(plan: Plan, out: Path, answers: list[float], wall: float) -> None:
-    import json
-
     middle, most = (np.quantile(answers, (0.5, 0.95)) * 1e3).tolist()
     content = {
         "machine": describe_machine(),
