@@ -36,6 +36,9 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
         str,
         typer.Option("--latency", help="Milliseconds, a file with one in each line, or measured."),
     ] = "0",
+    latency_curve: Annotated[
+        bool, typer.Option("--latency-curve", help="Evaluate at 0, 20, 40, 80 and 160 ms.")
+    ] = False,
     sample: Annotated[
         bool, typer.Option("--sample", help="Draw a network's actions instead of the best.")
     ] = False,
@@ -81,11 +84,19 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
     if seed is not None:
         values["seed"] = seed
     plan = validated(Plan, values)
+    folder = out or Path("runs/evaluation") / _folder_name(plan.policy, plan.protocol)
+    if latency_curve:
+        if as_published or videos:
+            raise ConfigError("--latency-curve: not together with --as-published or --videos")
+        from eyas.modes.latency_curve import run_curve
+
+        run_curve(plan, folder, resume=resume, overwrite=overwrite, plots=plots, quiet=quiet)
+        return
     from eyas.modes.evaluate import run
 
     run(
         plan,
-        out or Path("runs/evaluation") / _folder_name(plan.policy, plan.protocol),
+        folder,
         resume=resume,
         overwrite=overwrite,
         as_published=as_published,

@@ -56,17 +56,19 @@ def strata_of(records: Sequence[Record]) -> list[tuple[str, str, str, float]]:
 
 
 def thirds(records: Sequence[Record]) -> list[str]:
-    """Return the third of visibility of each record: how much of its target can be seen at all."""
-    order = sorted(range(len(records)), key=lambda i: (records[i].clear, records[i].name))
-    names = [""] * len(records)
-    for name, part in zip(
-        ("1 hidden", "2 partly", "3 clear"), np.array_split(order, 3), strict=True
-    ):
-        if len(part):
-            low, high = records[part[0]].clear, records[part[-1]].clear
-            for index in part.tolist():
-                names[index] = f"{name} {low:.3f}-{high:.3f}"
-    return names
+    """Return the third of visibility of each record: how much of its target can be seen at all.
+
+    Equal shares are in the same third, so that thirds may be of unequal size, or empty: most
+    targets are never hidden.
+    """
+    shares = np.array([record.clear for record in records])
+    limits = np.quantile(shares, (1 / 3, 2 / 3), method="higher")
+    third = np.searchsorted(limits, shares, side="right")
+    names = {}
+    for number, name in enumerate(("1 hidden", "2 partly", "3 clear")):
+        if len(own := shares[third == number]):
+            names[number] = f"{name} {own.min():.3f}-{own.max():.3f}"
+    return [names[number] for number in third.tolist()]
 
 
 def rows_of(records: Sequence[Record], horizon: float, *, as_published: bool = False) -> list[Row]:

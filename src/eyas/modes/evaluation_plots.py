@@ -14,7 +14,7 @@ from eyas.evaluation.record import Record
 from eyas.evaluation.statistics import survival
 from eyas.sim.scenes import load_network
 
-__all__ = ["FOLDER", "draw_plots", "require_matplotlib"]
+__all__ = ["FOLDER", "draw_plots", "require_matplotlib", "save_plot"]
 
 FOLDER = "plots"
 
@@ -54,14 +54,19 @@ def draw_plots(folder: Path, protocol: Protocol, title: str, records: Sequence[R
     with refusals(plots):
         plots.mkdir(exist_ok=True)
     horizon = protocol.steps * protocol.period
-    _save(plots / "reward.png", title, lambda axes: _reward(axes, records, horizon))
-    _save(plots / "lost.png", title, lambda axes: _lost(axes, records, horizon))
+    save_plot(plots / "reward.png", title, lambda axes: _reward(axes, records, horizon))
+    save_plot(plots / "lost.png", title, lambda axes: _lost(axes, records, horizon))
     for name in sorted({record.map for record in records}):
         own = [record for record in records if record.map == name][:_FLIGHTS]
-        _save(plots / f"flights-{name}.png", title, lambda axes, own=own: _flights(axes, own))
+        save_plot(plots / f"flights-{name}.png", title, lambda axes, own=own: _flights(axes, own))
 
 
-def _save(path: Path, title: str, draw: Any) -> None:  # noqa: ANN401  # a function of axes
+def save_plot(path: Path, title: str, draw: Any) -> None:  # noqa: ANN401  # a function of axes
+    """Write one plot, drawn by a function of matplotlib's axes.
+
+    Raises:
+        OutputError: The file cannot be written.
+    """
     figure = require_matplotlib()(figsize=(7.0, 4.2), layout="constrained", dpi=120)
     axes = figure.add_subplot()
     axes.set_title(title, loc="left", fontsize="medium")

@@ -1,0 +1,83 @@
+"""TSR over the latency of the policy: one evaluation for each of five latencies."""
+
+import json
+from pathlib import Path
+from typing import Any, TypedDict
+
+from eyas.core.errors import ConfigError
+from eyas.core.files import write_atomic
+from eyas.evaluation.plan import Plan, check, stamp
+from eyas.evaluation.rows import rows_of
+from eyas.modes.evaluate import run
+from eyas.modes.evaluation_plots import require_matplotlib, save_plot
+
+__all__ = ["LATENCIES", "run_curve"]
+
+LATENCIES = ("0", "20", "40", "80", "160")
+"""[ms]"""
+
+CURVE = "latency"
+"""Name of the files of the curve, without ending."""
+
+_FIGURES = ("tsr", "cr")
+
+
+class _Point(TypedDict):
+    """Means at one latency, with their 95 % intervals."""
+
+    latency_ms: float
+    figures: dict[str, tuple[float, float, float]]
+
+
+def run_curve(
+    plan: Plan, out: Path, *, resume: bool, overwrite: bool, plots: bool, quiet: bool
+) -> None:
+    """Evaluate at each latency, in a folder of its own, and write `latency.json`.
+
+    Args:
+        plan: The plan; it must not have a latency of its own.
+        out: Folder to write to.
+        resume: Whether interrupted evaluations are continued.
+        overwrite: Whether those in the folders are deleted first.
+        plots: Whether `latency.png` is drawn.
+        quiet: Whether nothing is printed.
+
+    Raises:
+        EyasError: A setting is wrong, or a folder is taken.
+    """
+    if plan.latency != "0":
+        raise ConfigError("--latency and --latency-curve cannot be used together")
+    check(plan)
+    if plots:
+        require_matplotlib()
+    points: list[_Point] = []
+    for latency in LATENCIES:
+        own, folder = plan.model_copy(update={"latency": latency}), out / f"latency-{latency}"
+        records = run(own, folder, resume=resume, overwrite=overwrite, quiet=True)
+        figures = rows_of(records, plan.rules.steps * plan.rules.period)[0].figures
+        found = {name: (figures[name].mean, *figures[name].mean_interval) for name in _FIGURES}
+        points.append(_Point(latency_ms=float(latency), figures=found))
+        if not quiet:
+            print(_line(latency, found), flush=True)
+    made = stamp(plan).model_dump(mode="json")
+    content = json.dumps({**made, "points": points}, indent=1) + "\n"
+    write_atomic(out / f"{CURVE}.json", content.encode())
+    if plots:
+        title = f"{plan.policy}, protocol {plan.protocol}"
+        save_plot(out / f"{CURVE}.png", title, lambda axes: _draw(axes, points))
+
+
+def _line(latency: str, found: dict[str, tuple[float, float, float]]) -> str:
+    cells = [
+        f"{name} {mean:.3f} [{low:.3f}, {high:.3f}]" for name, (mean, low, high) in found.items()
+    ]
+    return f"{latency:>4} ms  " + "  ".join(cells)
+
+
+def _draw(axes: Any, points: list[_Point]) -> None:  # noqa: ANN401  # matplotlib's
+    time = [point["latency_ms"] for point in points]
+    means, lows, highs = zip(*(point["figures"]["tsr"] for point in points), strict=True)
+    axes.fill_between(time, lows, highs, color="#9db9cc", alpha=0.5, lw=0, label="95 %")
+    axes.plot(time, means, "o-", color="#1b6ca8", lw=2, label="mean")
+    axes.set(xlabel="latency [ms]", ylabel="TSR", ylim=(0, 1.02), xticks=time)
+    axes.legend(frameon=False, loc="best")

@@ -1,0 +1,65 @@
+"""What is special in each protocol."""
+
+import numpy as np
+import pytest
+
+from eyas.envs.config import EnvConfig
+from eyas.evaluation.episode import Place, episodes_of
+from eyas.evaluation.flock import squads_of
+from eyas.evaluation.neighbours import NEAR, episodes_with_neighbours
+from eyas.evaluation.occlusion import clear_shares
+from eyas.evaluation.protocol import PROTOCOLS
+
+HOME = [Place("citystreet", "day", "SUMO_VEHICLE")]
+
+
+def starts(name, count=2):
+    protocol = PROTOCOLS[name]
+    episodes = episodes_of(HOME, protocol.directions, count)
+    return episodes, squads_of(episodes, protocol, EnvConfig())
+
+
+def test_more_episodes_include_the_fewer():
+    directions = PROTOCOLS["paper"].directions
+    few, many = episodes_of(HOME, directions, 2), episodes_of(HOME, directions, 5)
+    assert many[: len(few)] == few
+    assert len({episode.name for episode in many}) == len(many)
+
+
+def test_the_paper_starts_above_the_target_in_four_directions():
+    _, squads = starts("paper")
+    assert sorted(squad.config.start.direction for squad in squads) == pytest.approx(
+        [-np.pi / 2, 0.0, np.pi / 2, np.pi]
+    )
+    for squad in squads:
+        assert squad.config.reward.view_range == 1.0
+        assert (squad.simulation.snapshot.episodes.reward > 0.9).all()
+
+
+def test_a_search_starts_with_the_target_out_of_view():
+    _, squads = starts("search", 4)
+    for squad in squads:
+        assert (squad.simulation.snapshot.episodes.reward == 0.0).all()
+        pixels, _ = squad.subjects()
+        assert (pixels == 0).all()
+
+
+def test_what_can_be_seen_in_a_search_is_measured_above_the_target():
+    episodes, _ = starts("search", 1)
+    assert max(clear_shares(episodes, PROTOCOLS["search"])) > 0.5
+
+
+def test_distractors_look_like_the_target_and_one_is_beside_it():
+    protocol = PROTOCOLS["distractor"]
+    episodes = episodes_with_neighbours(HOME, protocol, 2, 5)
+    assert len(episodes) == 8
+    for squad in squads_of(episodes, protocol, EnvConfig()):
+        simulation, targets = squad.simulation, squad.simulation.snapshot.targets
+        for tracker in range(len(squad.rows)):
+            actors, models = simulation.actors_around(tracker)
+            assert len(set(models.tolist())) == 1
+            away = np.linalg.norm(actors.position[0, :, :2] - targets.position[tracker, :2], axis=1)
+            assert np.sort(away)[1] <= NEAR
+    other = squads_of(episodes_of(HOME, protocol.directions, 1), PROTOCOLS["long"], EnvConfig())
+    _, models = other[0].simulation.actors_around(0)
+    assert len(set(models.tolist())) > 1

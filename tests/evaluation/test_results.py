@@ -1,0 +1,159 @@
+"""Comparing, ranking, plotting and filming evaluations."""
+
+import json
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from eyas.cli.app import app
+from eyas.core.errors import EyasError
+from eyas.evaluation.comparison import differences
+from eyas.evaluation.plan import Plan
+from eyas.evaluation.protocol import PROTOCOLS
+from eyas.evaluation.record import read_records
+from eyas.evaluation.rows import rows_of, thirds
+from eyas.modes import leaderboard
+from eyas.modes.evaluate import run
+from eyas.modes.evaluation_films import chosen_flights
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Evaluations of hover and follow."""
+    folder = tmp_path_factory.mktemp("results")
+    for name in ("hover", "follow"):
+        run(Plan(policy=name, episodes=2), folder / name, quiet=True)
+    return folder
+
+
+def records(folder, name):
+    return read_records(folder / name / "episodes.jsonl")
+
+
+def test_all_protocols_differ():
+    assert len({protocol.hash for protocol in PROTOCOLS.values()}) == len(PROTOCOLS)
+
+
+def with_shares(folder, *shares):
+    record = records(folder, "follow")[0]
+    return [record.model_copy(update={"clear": share}) for share in shares]
+
+
+def test_thirds_are_ordered_by_what_can_be_seen(folder):
+    names = thirds(with_shares(folder, 0.9, 0.1, 0.5, 0.6, 0.95, 0.2))
+    assert [name[0] for name in names] == ["3", "1", "2", "2", "3", "1"]
+    assert names[1] == names[5] == "1 hidden 0.100-0.200"
+
+
+def test_targets_that_are_equally_visible_are_in_the_same_third(folder):
+    names = thirds(with_shares(folder, 1.0, 1.0, 0.4, 1.0, 1.0, 1.0, 1.0))
+    assert [name[0] for name in names] == ["3", "3", "1", "3", "3", "3", "3"]
+
+
+def test_the_third_is_the_episodes_and_not_the_policys(folder):
+    assert thirds(records(folder, "hover")) == thirds(records(folder, "follow"))
+
+
+def test_a_row_holds_the_mean_of_its_records(folder):
+    flown = records(folder, "hover")
+    rows = rows_of(flown, 3.0)
+    assert rows[0].figures["cr"].mean == pytest.approx(np.mean([each.cr for each in flown]))
+    assert sum(len(row.records) for row in rows if row.group == "visibility") == len(flown)
+
+
+def test_as_published_drops_episodes_without_reward(folder):
+    flown = records(folder, "hover")
+    nothing = flown[0].published.model_copy(update={"cr": 0.0})
+    dropped = [flown[0].model_copy(update={"published": nothing}), *flown[1:]]
+    assert rows_of(dropped, 3.0, as_published=True)[0].figures["cr"].n == len(flown) - 1
+    assert rows_of(dropped, 3.0)[0].figures["cr"].n == len(flown)
+
+
+def test_differences_are_paired(folder):
+    hover, follow = records(folder, "hover"), records(folder, "follow")
+    first = differences(hover, follow[::-1][:5])[0]
+    assert (first.group, first.figure, first.n) == ("all", "cr", 5)
+    names = {record.name for record in follow[::-1][:5]}
+    chosen = [record.cr for record in hover if record.name in names]
+    assert first.first == pytest.approx(np.mean(chosen))
+    assert first.improved == 1.0
+    assert first.interval.low <= first.mean <= first.interval.high
+    same = differences(hover, hover)[0]
+    assert (same.mean, same.interval, same.improved) == (0.0, (0.0, 0.0), 0.5)
+
+
+def test_what_has_nothing_in_common_is_not_compared(folder, tmp_path):
+    with pytest.raises(EyasError, match="no episode in common"):
+        differences(records(folder, "hover")[:2], records(folder, "hover")[2:])
+    other = json.loads((folder / "hover" / "run.json").read_text())
+    (tmp_path / "run.json").write_text(json.dumps({**other, "protocol": "0123456789ab"}))
+    answer = CliRunner().invoke(app, ["compare", str(folder / "hover"), str(tmp_path)])
+    assert isinstance(answer.exception, EyasError)
+    assert "not comparable" in str(answer.exception)
+
+
+def test_the_command_prints_both_ways(folder):
+    names = [str(folder / "hover"), str(folder / "follow")]
+    assert "B - A" in CliRunner().invoke(app, ["compare", *names]).output
+    found = json.loads(CliRunner().invoke(app, ["compare", *names, "--json"]).output)
+    assert found[0]["mean"] > 200.0
+
+
+class Texts(HTMLParser):
+    """Collects the texts of a page, and checks that its tags are closed in order."""
+
+    def __init__(self, page):
+        super().__init__()
+        self.open, self.found = [], []
+        self.feed(page)
+        assert self.open == []
+
+    def handle_starttag(self, tag, attrs):
+        if tag not in ("meta", "br"):
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        assert self.open.pop() == tag
+
+    def handle_data(self, data):
+        self.found.append(data.strip())
+
+
+def test_the_leaderboard_ranks_and_tells_how_to_repeat(folder, tmp_path):
+    page = tmp_path / "index.html"
+    leaderboard.run(folder, page)
+    texts = Texts(page.read_text()).found
+    assert texts.index("follow") < texts.index("hover")
+    assert "eyas evaluate --policy follow --episodes 2" in texts
+    body = texts[len(texts) - texts[::-1].index("Eyas leaderboard") :]
+    assert next(filter(None, body)).startswith("Results repeat to the bit")
+
+
+def test_unfinished_evaluations_are_left_out_with_a_word(folder, tmp_path, caplog):
+    part = tmp_path / "part"
+    part.mkdir()
+    (part / "run.json").write_bytes((folder / "hover" / "run.json").read_bytes())
+    line = (folder / "hover" / "episodes.jsonl").read_bytes().splitlines(keepends=True)[0]
+    (part / "episodes.jsonl").write_bytes(line)
+    with pytest.raises(EyasError, match="no finished evaluation"):
+        leaderboard.run(tmp_path, tmp_path / "index.html")
+    assert "7 episodes are missing" in caplog.text
+
+
+def test_worst_median_and_best_are_chosen(folder):
+    chosen = chosen_flights(records(folder, "hover"))
+    assert chosen["worst"].cr <= chosen["median"].cr <= chosen["best"].cr
+
+
+def test_plots_and_films_are_written(folder, tmp_path):
+    pytest.importorskip("matplotlib")
+    import av
+
+    run(Plan(policy="hover", episodes=1), tmp_path, plots=True, videos=True, quiet=True)
+    for name in ("reward", "lost", "flights-citystreet"):
+        assert (tmp_path / "plots" / f"{name}.png").read_bytes().startswith(b"\x89PNG")
+    for name in ("worst", "median", "best"):
+        with av.open(str(tmp_path / "videos" / f"{name}.mp4")) as film:
+            assert film.streams.video[0].frames == 93  # one every 32 ms of 3 s
