@@ -50,6 +50,16 @@ class Fails:
         return 6
 
 
+class CannotBegin:
+    """Fails before its first picture."""
+
+    def reset(self, box):
+        raise OSError("no weights")
+
+    def act(self, picture):
+        return 6
+
+
 def wrong(pictures):
     return np.full(len(pictures), 7)
 

@@ -60,9 +60,13 @@ def test_the_same_again_whatever_flies_beside_it(fly, hover):
     assert fly("random", episodes=2)[:4] == fly("random", episodes=1)
 
 
-def test_late_answers_are_worse_and_repeat(fly, follow, tmp_path):
+def test_late_answers_are_worse_and_repeat(fly, follow, hover, tmp_path):
     late = fly("follow", latency="160")
-    assert figure(late, "cr") < figure(follow, "cr") - 5.0
+    little = figure(fly("follow", latency="20"), "cr")
+    assert figure(follow, "cr") > little > figure(late, "cr") + 5.0
+    assert figure(late, "cr") > figure(hover, "cr") + 50.0
+    # Answers that are no later than actions last change nothing but when the actions begin.
+    assert fly("follow", latency="0.0") == follow
     file = tmp_path / "latencies.txt"
     file.write_text("160\n\n160.0\n")
     assert fly("follow", latency=str(file)) == late
@@ -97,6 +101,13 @@ def test_a_policy_that_fails_is_a_record_with_its_error(fly, hover):
         assert record.losses == 1
     others = [record for record in records if not record.error]
     assert all(record in hover for record in others)
+
+
+def test_a_policy_that_cannot_begin_is_a_record_too(fly):
+    records = fly("own_policies:CannotBegin")
+    assert [(each.error, each.cr, each.duration) for each in records] == [
+        ("OSError: no weights", 0.0, 0.0)
+    ] * 4
 
 
 def test_actions_that_are_not_allowed_are_errors(fly):

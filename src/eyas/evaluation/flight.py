@@ -66,13 +66,18 @@ class Flight:
         self._delay.begin(seeds.tolist())
         start = Start(seeds, self._boxes)
         self._guarded(lambda: self._policy.begin(start))
+        told = np.zeros(len(seeds), np.bool_)
         for step in range(self._protocol.steps):
-            before = self._active.copy()
+            self._answer(step)  # before the next look, whose answer takes this one's place
             self._decide(step)
-            self._fly_on(step)
+            self._answer(step)
+            self._flock.advance(self._commands, self._active)
+            self._meter.measure(self._active)
+            self._active &= self._meter.reason == 0
             if watcher is not None:
                 watcher(self._flock, self._meter)
-            if len(ended := np.flatnonzero(before & ~self._active)):
+            if len(ended := np.flatnonzero(~self._active & ~told)):
+                told[ended] = True
                 yield [
                     self._meter.record(row, self._episodes[row], clear[row], self._failed.get(row))
                     for row in ended.tolist()
@@ -81,13 +86,10 @@ class Flight:
                 return
         raise AssertionError("the number of steps ends each episode")
 
-    def _fly_on(self, step: int) -> None:
-        """Fly one control step."""
+    def _answer(self, step: int) -> None:
+        """Let those actions hold whose latency is over."""
         effective = self._effective <= step
         self._commands[effective] = self._next[effective]
-        self._flock.advance(self._commands, self._active)
-        self._meter.measure(self._active)
-        self._active &= self._meter.reason == 0
 
     def _decide(self, step: int) -> None:
         """Let the policy look and choose actions, for those that are ready."""
