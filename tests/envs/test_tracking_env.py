@@ -169,14 +169,14 @@ def test_terms_of_one_s_own_are_rewarded_and_told_by_name(tmp_path, monkeypatch)
     env, plain = TrackingEnv({"reward": reward}), TrackingEnv()
     for each in (env, plain):
         _, info = each.reset(seed=5)
-        assert "reward_terms" not in info
+        assert not any(name.startswith("reward/") for name in info)
     for _ in range(3):
         _, total, *_, info = env.step(6)
         _, builtin, *_, told = plain.step(6)
-        speed = info["reward_terms"]["speed_term:speed"]
+        speed = info["reward/speed_term:speed"]
         assert speed > 0.0
-        assert told["reward_terms"] == {"builtin": builtin}
-        assert info["reward_terms"] == {"builtin": builtin, "speed_term:speed": speed}
+        assert told["reward/builtin"] == info["reward/builtin"] == builtin
+        assert "reward/speed_term:speed" not in told
         assert total == pytest.approx(0.5 * builtin + 0.25 * speed)
         assert isinstance(total, float)
 

@@ -13,6 +13,7 @@ from eyas.envs.choice import kinds_of, settings_of_kinds
 from eyas.envs.information import Info
 from eyas.envs.observation import Observation
 from eyas.settings.config import EyasConfig
+from eyas.task.terms import BUILTIN
 
 __all__ = ["Fleet"]
 
@@ -93,6 +94,12 @@ class Fleet:
         """Return the state of the trackers by name, see `eyas.envs.information`."""
         joined: Info = self._joined([batch.info() for batch, _ in self._squads])
         return joined
+
+    @property
+    def terms(self) -> tuple[str, ...]:
+        """Names of the terms of the reward, of all kinds."""
+        names = (name for batch, _ in self._squads for name in batch.config.reward.terms)
+        return tuple(dict.fromkeys((BUILTIN, *names)))
 
     def config_of(self, index: int) -> EyasConfig:
         """Return the settings of one."""

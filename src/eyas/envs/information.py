@@ -10,7 +10,7 @@ from eyas.state.snapshot import Snapshot
 from eyas.targets.catalogue import MODELS
 from eyas.task.done import DoneReason
 
-__all__ = ["Info", "information", "masked", "of_one", "privileged_state", "sensor_state"]
+__all__ = ["Info", "by_term", "information", "masked", "of_one", "privileged_state", "sensor_state"]
 
 Floats = NDArray[np.float64]
 Info = dict[str, Any]
@@ -49,9 +49,12 @@ _REWARD: dict[str, int | slice] = {
 _WHOLE = {"camera_width": 0, "camera_height": 1, "target_direction": 59}
 _CRASH = 58
 
-_REASONS = np.array([reason.name.lower() for reason in DoneReason], object)
-_STATES = np.array([reason.original for reason in DoneReason], object)
-_TYPES = np.array([model.typename for model in MODELS], object)
+_WORDS = {
+    "done_reason": [reason.name.lower() for reason in DoneReason],
+    "done_state": [reason.original for reason in DoneReason],
+    "target_type": [model.typename for model in MODELS],
+}
+"""What numbers mean."""
 
 
 def information(simulation: Simulation) -> Info:
@@ -59,9 +62,10 @@ def information(simulation: Simulation) -> Info:
 
     - the sensors of the basic packet: `position` and `velocity` (GPS), `orientation` and `euler`
       (IMU), `angular_velocity` (gyroscope), `felt_acceleration` (accelerometer);
-    - the reward packet (both: `eyas.task.packets`);
-    - the reason of the end (`done_reason`), the limit that the body violates in the original's
-      words (`done_state`), and the physics steps since the reset (`step`);
+    - the reward packet (both: `eyas.task.packets`), with the type of the target as an index into
+      `eyas.targets.catalogue.MODELS`;
+    - as numbers of `eyas.task.done.DoneReason`, the reason of the end (`done_reason`) and the limit
+      that the body violates (`done_state`); the physics steps since the reset (`step`);
     - the values drawn from the `light` settings (factor on the sky, factor on the sun, one over the
       visibility range [1/m]).
     """
@@ -71,20 +75,28 @@ def information(simulation: Simulation) -> Info:
     info.update({name: reward[:, columns] for name, columns in _REWARD.items()})
     info.update({name: reward[:, column].astype(np.int64) for name, column in _WHOLE.items()})
     info["crash"] = reward[:, _CRASH] != 0.0
-    info["target_type"] = _TYPES[targets.model]
+    info["target_type"] = targets.model.copy()
     info["step"] = episodes.step_count.copy()
-    info["done_reason"] = _REASONS[episodes.reason]
-    info["done_state"] = _STATES[episodes.breach]
+    info["done_reason"] = episodes.reason.copy()
+    info["done_state"] = episodes.breach.copy()
     info["light"] = light.copy()
     return info
 
 
+def by_term(terms: dict[str, Floats]) -> Info:
+    """Return terms of the reward under the names `reward/<term>`.
+
+    They are no dictionary of their own, because TorchRL takes only arrays.
+    """
+    return {f"reward/{name}": values for name, values in terms.items()}
+
+
 def of_one(info: Info, index: int) -> Info:
-    """Return the information of one tracker."""
-    return {
-        name: of_one(value, index) if isinstance(value, dict) else value[index]
-        for name, value in info.items()
-    }
+    """Return the information of one tracker, with words for its three numbers that mean words:
+    `done_reason`, `done_state` (the original's) and `target_type` (the same).
+    """
+    one = {name: value[index] for name, value in info.items()}
+    return one | {name: words[one[name]] for name, words in _WORDS.items()}
 
 
 def masked(info: Info, mask: Mask) -> Info:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from eyas.core.errors import ConfigError
 from eyas.envs.batch import Batch
 from eyas.envs.choice import EnvChoices, Source, chosen_settings, settings_of_kinds
-from eyas.envs.information import Info, of_one
+from eyas.envs.information import Info, by_term, of_one
 from eyas.envs.keys import KEYS_TO_ACTION
 from eyas.envs.observation import Observation
 from eyas.envs.window import Window
@@ -25,7 +25,7 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
 
     The observation is what the camera sees, RGB uint8, shape (84, 84, 3): the configured 4:3 view
     scaled to a square, as in the original; `env.observation` changes it. `info` holds by name what
-    `eyas.envs.information.information` tells, and after a step the terms of the reward.
+    `eyas.envs.information` tells, and after a step the terms of the reward.
 
     Args:
         config: Settings, see `eyas.envs.choice.Source`.
@@ -90,8 +90,7 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
         """
         outcome = self._batch.step([action], _ONE)
         self._batch.look(_ONE, _GOES_ON)
-        info = self._batch.info()
-        info["reward_terms"] = outcome.terms
+        info = self._batch.info() | by_term(outcome.terms)
         self._show()
         return (
             self._batch.observer.one(0),

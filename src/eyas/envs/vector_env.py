@@ -13,7 +13,7 @@ from eyas.core.errors import ConfigError
 from eyas.envs.batch import Outcome
 from eyas.envs.choice import EnvChoices, Source, chosen_settings
 from eyas.envs.fleet import Fleet
-from eyas.envs.information import Info, masked
+from eyas.envs.information import Info, by_term, masked
 from eyas.envs.members import Member
 from eyas.envs.observation import Observation
 from eyas.settings.config import EyasConfig
@@ -109,7 +109,11 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         self._fleet.begin(chosen, self._seeds(seed))
         self._fleet.look(chosen, chosen)
         self._ended[chosen] = False
-        return self._observations(out), masked(self._fleet.info(), chosen)
+        info = masked(self._fleet.info(), chosen)
+        # The same names as after a step: TorchRL stacks all information.
+        none = {name: np.zeros(self.num_envs) for name in self._fleet.terms}
+        info |= masked(by_term(none), np.zeros(self.num_envs, np.bool_))
+        return self._observations(out), info
 
     def step(self, actions: Any, *, out: Observation | None = None) -> Stepped:  # noqa: ANN401  # as in Gymnasium
         """Hold an action in each environment.
@@ -138,7 +142,7 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
             self._fleet.begin(begin)
         self._fleet.look(self._all, begin)
         info = {**masked(self._fleet.info(), self._all), **final}
-        info |= masked({"reward_terms": outcome.terms}, ~begin)
+        info |= masked(by_term(outcome.terms), ~begin)
         return (
             self._observations(out),
             outcome.reward,
@@ -171,6 +175,10 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         for member, value in zip(self._members, each, strict=True):
             setattr(member, name, value)
 
+    def member(self, index: int) -> Member:
+        """Return what libraries see of one environment."""
+        return self._members[index]
+
     def config_of(self, index: int) -> EyasConfig:
         """Return the settings of one environment."""
         return self._fleet.config_of(index)
@@ -187,7 +195,7 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         observations = np.full(self.num_envs, None, object)
         for index in np.flatnonzero(ended).tolist():
             observations[index] = self._fleet.one(index)
-        info = {**self._fleet.info(), "reward_terms": outcome.terms}
+        info = self._fleet.info() | by_term(outcome.terms)
         return masked({"final_obs": observations, "final_info": info}, ended)
 
     def _observations(self, out: Observation | None) -> Observation:
