@@ -72,6 +72,19 @@ def test_a_folder_that_is_taken_is_not_touched(whole):
         run(PLAN.model_copy(update={"episodes": 3}), whole, resume=True, quiet=True)
 
 
+def test_overwriting_deletes_only_what_an_evaluation_writes(whole, tmp_path):
+    for name in FILES:
+        (tmp_path / name).write_bytes((whole / name).read_bytes())
+    (tmp_path / "mine.json").write_text("{}")
+    plan = Plan(policy="hover", episodes=1)
+    run(plan, tmp_path, overwrite=True, quiet=True)
+    assert len(read_records(tmp_path / "episodes.jsonl")) == 4
+    assert (tmp_path / "mine.json").exists()
+    (tmp_path / "run.json").unlink()
+    with pytest.raises(EyasError, match="--resume"):
+        run(plan, tmp_path, quiet=True)
+
+
 def test_a_damaged_line_is_told_with_its_number(whole, tmp_path):
     path = tmp_path / "episodes.jsonl"
     line = (whole / "episodes.jsonl").read_bytes().splitlines(keepends=True)[0]

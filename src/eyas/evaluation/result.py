@@ -20,6 +20,7 @@ __all__ = [
     "COLUMNS",
     "EPISODES",
     "RESULT",
+    "ROWS",
     "STAMP",
     "UNITS",
     "cell",

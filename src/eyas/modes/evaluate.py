@@ -3,7 +3,6 @@
 import json
 import logging
 import os
-import shutil
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -25,7 +24,7 @@ from eyas.core.files import refusals, write_atomic
 from eyas.core.machine import describe_machine
 from eyas.evaluation.plan import Plan, Stamp, batches, check, fly_batch, stamp
 from eyas.evaluation.record import Record, RecordFile, read_records
-from eyas.evaluation.result import EPISODES, STAMP, load_run, table, write_result
+from eyas.evaluation.result import EPISODES, RESULT, ROWS, STAMP, load_run, table, write_result
 from eyas.modes import evaluation_films, evaluation_plots
 from eyas.modes.evaluation_films import film
 from eyas.modes.evaluation_plots import draw_plots, require_matplotlib
@@ -92,9 +91,9 @@ def _prepared(out: Path, made: Stamp, *, resume: bool, overwrite: bool) -> list[
         OutputError: It holds another evaluation, or one that may not be continued.
     """
     path = out / STAMP
-    if path.exists() and overwrite:
+    if overwrite:
         _delete(out)
-    if not path.exists():
+    if not path.exists() and not (out / EPISODES).exists():
         write_atomic(path, (made.model_dump_json(indent=1) + "\n").encode())
         return []
     if not resume:
@@ -118,12 +117,12 @@ def _prepared(out: Path, made: Stamp, *, resume: bool, overwrite: bool) -> list[
 
 
 def _delete(out: Path) -> None:
-    """Delete what an evaluation has written into its folder."""
+    """Delete what an evaluation has written into its folder, and nothing else."""
+    plots, videos = out / evaluation_plots.FOLDER, out / evaluation_films.FOLDER
+    names = (STAMP, EPISODES, RESULT, ROWS, TIMING)
     with refusals(out):
-        for path in (*out.glob("*.json"), *out.glob("*.csv"), *out.glob("*.jsonl")):
-            path.unlink()
-        for name in (evaluation_plots.FOLDER, evaluation_films.FOLDER):
-            shutil.rmtree(out / name, ignore_errors=True)
+        for path in (*(out / name for name in names), *plots.glob("*.png"), *videos.glob("*.mp4")):
+            path.unlink(missing_ok=True)
 
 
 def _fly(plan: Plan, out: Path, records: list[Record], *, quiet: bool) -> None:
