@@ -43,6 +43,7 @@ def test_a_servo_that_sees_only_pictures_is_between(fly, follow, hover):
     assert figure(hover, "cr") + 50.0 < servo < figure(follow, "cr")
 
 
+@pytest.mark.slow
 def test_a_box_tracker_of_opencv_is_between(fly, follow, hover):
     pytest.importorskip("cv2")
     plan = Plan(policy="csrt", episodes=1, batch=1)  # one episode: it takes 60 ms a picture

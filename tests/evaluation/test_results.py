@@ -147,6 +147,7 @@ def test_worst_median_and_best_are_chosen(folder):
     assert chosen["worst"].cr <= chosen["median"].cr <= chosen["best"].cr
 
 
+@pytest.mark.slow
 def test_plots_and_films_are_written(folder, tmp_path):
     pytest.importorskip("matplotlib")
     import av

@@ -16,6 +16,7 @@ from eyas.evaluation.episode import Episode
 from eyas.settings.config import EyasConfig
 from eyas.settings.file import load_settings
 from eyas.settings.preset import preset_file
+from eyas.sim.config import SimConfig
 
 __all__ = ["PROTOCOLS", "Protocol", "protocol_named"]
 
@@ -26,8 +27,8 @@ _DIRECTIONS = (0.0, 0.5 * math.pi, math.pi, -0.5 * math.pi)
 
 _NEVER = 2**31 - 1
 
-_VARIABLE = {"seed", "env", "mode", "verbose", "video", "wire", "original"}
-"""Settings that are no part of a protocol."""
+_FIXED = set(SimConfig.model_fields) - {"seed"}
+"""Settings that are part of a protocol: all of the simulation, none of its uses."""
 
 
 @dataclass(frozen=True)
@@ -63,7 +64,7 @@ class Protocol:
     @cached_property
     def hash(self) -> str:
         """Twelve hexadecimal digits that differ between protocols."""
-        settings = self.settings.model_dump(mode="json", exclude=_VARIABLE)
+        settings = self.settings.model_dump(mode="json", include=_FIXED)
         content = [FORMAT, settings, self.directions, self.alike]
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:12]
 
