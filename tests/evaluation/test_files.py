@@ -112,3 +112,19 @@ def test_a_model_of_stable_baselines3_flies(fly, tmp_path):
     records = fly(str(path), env={"action_repeat": 25})
     assert [record.error for record in records] == [None] * 4
     assert fly(str(path), env={"action_repeat": 25}) == records
+
+
+def test_a_network_as_training_writes_it_flies(onnx, fly, tmp_path):
+    torch = pytest.importorskip("torch")
+    from eyas.envs.config import EnvConfig
+    from eyas.learning.export import export
+    from eyas.learning.network import NetworkShape, TrackingNetwork
+
+    network = TrackingNetwork(NetworkShape(3, 48, 48, hidden=32, memory=True))
+    network.initialise(torch.Generator().manual_seed(1))
+    seen = {"width": 48, "height": 48, "layout": "chw"}
+    path = tmp_path / "policy.onnx"
+    export(network, EnvConfig(observation=seen, action_repeat=25), path)
+    records = fly(str(path))
+    assert [record.error for record in records] == [None] * 4
+    assert fly(str(path)) == records

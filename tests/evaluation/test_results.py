@@ -158,3 +158,16 @@ def test_plots_and_films_are_written(folder, tmp_path):
     for name in ("worst", "median", "best"):
         with av.open(str(tmp_path / "videos" / f"{name}.mp4")) as film:
             assert film.streams.video[0].frames == 93  # one every 32 ms of 3 s
+
+
+def test_a_latency_curve_has_a_point_and_a_folder_for_each_latency(tmp_path):
+    arguments = ["--policy", "follow", "--episodes", "1", "--latency-curve", "--out", str(tmp_path)]
+    answer = CliRunner().invoke(app, ["evaluate", *arguments])
+    assert "160 ms" in answer.output
+    points = json.loads((tmp_path / "latency.json").read_text())["points"]
+    assert [point["latency_ms"] for point in points] == [0, 20, 40, 80, 160]
+    means = [point["figures"]["cr"][0] for point in points]
+    assert means == sorted(means, reverse=True)
+    assert (tmp_path / "latency-40" / "result.json").exists()
+    with pytest.raises(EyasError, match="cannot be used together"):
+        raise CliRunner().invoke(app, ["evaluate", *arguments, "--latency", "5"]).exception
