@@ -18,10 +18,6 @@ FORWARD = (40.0, 0.0, 0.0, 0.0)
 HOVER = (0.0, 0.0, 0.0, 0.0)
 
 
-class GaveUpError(Exception):
-    """The simulator did not answer in time."""
-
-
 class Client:
     """One agent. `patience` is the longest wait for a file [s]."""
 
@@ -85,7 +81,7 @@ class Client:
         end = time.monotonic() + self.patience
         while not true():
             if time.monotonic() > end:
-                raise GaveUpError
+                raise TimeoutError("the simulator does not answer")
             time.sleep(0.001)  # as the original
 
 

@@ -38,7 +38,7 @@ class Served:
         self.process = subprocess.Popen(
             [*command, *options, *arguments], stderr=subprocess.PIPE, text=True, env={**os.environ}
         )
-        self.lines = []
+        self.lines, self._players = [], []
         self._reader = threading.Thread(target=self._read)
         self._reader.start()
 
@@ -67,12 +67,11 @@ class Served:
     def play(self, agent, agents, rounds):
         """Start a client in a process of its own; return it when its first reset is done."""
         words = map(str, (self.root, agent, agents, self.port, rounds))
-        return subprocess.Popen(
-            [sys.executable, CLIENT, *words],
-            stdout=subprocess.PIPE,
-            stderr=subprocess.PIPE,
-            text=True,
-        )
+        command = [sys.executable, str(CLIENT), *words]
+        pipe = subprocess.PIPE
+        player = subprocess.Popen(command, stdout=pipe, stderr=pipe, text=True)
+        self._players.append(player)
+        return player
 
     def left(self):
         """Return the files of the protocol that exist."""
@@ -84,6 +83,11 @@ class Served:
         code = self.process.wait(30)
         self._reader.join()
         self.process.stderr.close()
+        for player in self._players:
+            player.kill()
+            player.wait()
+            player.stdout.close()
+            player.stderr.close()
         return code
 
 

@@ -12,10 +12,9 @@ from eyas.sim.worlds import together
 from eyas.state.draw import Picture
 from eyas.task.config import DoneConfig
 from eyas.traffic.config import TrafficConfig
-from eyas.wire.codec import HOVER, Action
+from eyas.wire.codec import HOVER, RESET, Action
 from eyas.wire.crew import Crew
 
-RESET = Action((0.0, 0.0, 0.0, 0.0), reset=True)
 AHEAD = Action((20.0, 0.0, 0.0, 0.5), reset=False)
 
 CONFIG = SimConfig(camera={"width": 64, "height": 48}, done=DoneConfig(no_reward_steps=10_000))

@@ -3,6 +3,7 @@
 import logging
 import socket
 import time
+from contextlib import suppress
 
 from eyas.core.errors import ConfigError, OutputError
 
@@ -55,19 +56,32 @@ class Announcements:
         """Wait for the first announcement; return the number of agents."""
         self._socket.settimeout(0.5)  # not for ever: some systems let no signal in before
         while True:
-            count = self._next()
-            if count is not None:
-                return count
+            with suppress(TimeoutError):
+                count = self._next()
+                if count is not None:
+                    return count
 
     def poll(self) -> int | None:
-        """Return the number of agents in the next announcement; None if there is none."""
+        """Return the number of agents in the last announcement; None if there is none."""
         self._socket.settimeout(0.0)
-        return self._next()
+        last = None
+        for _ in range(MOST_AGENTS):  # not for ever, should someone send without end
+            try:
+                last = self._next() or last
+            except BlockingIOError:
+                break
+        return last
 
     def _next(self) -> int | None:
+        """Return the number in the next message; None if it has none.
+
+        Raises:
+            BlockingIOError: There is no message.
+            TimeoutError: There is none yet.
+        """
         try:
             message, sender = self._socket.recvfrom(_LONGEST)
-        except (TimeoutError, BlockingIOError, ConnectionError):
+        except ConnectionError:  # some systems tell so that an earlier message was not heard
             return None
         text = message.strip()
         if text.isdigit() and len(text) <= 4 and 1 <= int(text) <= MOST_AGENTS:

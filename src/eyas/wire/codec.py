@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from eyas.core.errors import ActionError
 
-__all__ = ["HOVER", "Action", "packet_line", "parse_action"]
+__all__ = ["HOVER", "RESET", "Action", "packet_line", "parse_action"]
 
 _FASTEST = 1e4
 """Largest number in an action, as for the speeds of the environments' actions."""
@@ -24,6 +24,8 @@ class Action(NamedTuple):
 
 
 HOVER = Action((0.0, 0.0, 0.0, 0.0), reset=False)
+RESET = HOVER._replace(reset=True)
+"""What clients send first."""
 
 
 def parse_action(line: bytes) -> Action:

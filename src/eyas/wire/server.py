@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from eyas.wire.announcements import Announcements
+from eyas.wire.codec import RESET
 from eyas.wire.config import WireConfig
 from eyas.wire.exchange import Exchange
 from eyas.wire.journal import Journal
@@ -64,14 +65,25 @@ class Server:
                         *(self._exchange.files, removed),
                     )
                 _LOG.info("waiting for clients on UDP port %d of %s", port, address)
-                count = announcements.wait()
+                count, begun = announcements.wait(), frozenset[int]()
                 while True:
-                    count = self._serve(count, announcements)
+                    count, begun = self._serve(count, begun, announcements)
         finally:
             announcements.close()
 
-    def _serve(self, count: int, announcements: Announcements) -> int:
-        """Serve some agents until another number of them is announced; return that number."""
+    def _serve(
+        self, count: int, begun: frozenset[int], announcements: Announcements
+    ) -> tuple[int, frozenset[int]]:
+        """Serve some agents until another number of them is announced.
+
+        Args:
+            count: Number of agents.
+            begun: Those of them whose first reset has been taken already.
+            announcements: Where another number may be announced.
+
+        Returns:
+            Another number of agents, and those whose first reset has been taken already.
+        """
         names = [f"{self._tracker}{number}" for number in range(count)]
         _LOG.info("%d agent%s announced", count, "s" * (count > 1))
         crew = self._build(count)
@@ -81,12 +93,16 @@ class Server:
                     Post(self._exchange.names(name), journal.hearer(number))
                     for number, name in enumerate(names)
                 ]
+                for number in begun & set(range(count)):
+                    posts[number].action = RESET
                 _LOG.info("serving %s in %s", _named(names), self._exchange.files)
                 self._late.clear()
                 while True:
                     other = self._gather(posts, count, announcements)
                     if other is not None:
-                        return other
+                        # New clients announce themselves first, but may be heard of last.
+                        first = [n for n, post in enumerate(posts) if post.action == RESET]
+                        return other, frozenset(first)
                     self._play(crew, posts, journal)
         finally:
             crew.close()
@@ -99,12 +115,9 @@ class Server:
         """
         pause = Pause()
         while any(post.action is None for post in posts):
-            happened = False
-            for post in posts:
-                if post.poll():
-                    happened = True
-                    self._welcome(post)
+            happened = [post for post in posts if post.poll()]
             if happened:
+                self._welcome(happened)
                 pause.restart()
                 continue
             other = announcements.poll()
@@ -112,7 +125,8 @@ class Server:
                 return other
             self._tell_late(posts)
             pause.sleep()
-        return None
+        other = announcements.poll()
+        return None if other == count else other
 
     def _play(self, crew: "Crew", posts: list[Post], journal: Journal) -> None:
         actions = [post.action for post in posts]
@@ -142,10 +156,11 @@ class Server:
                 *(", ".join(late), self._config.patience),
             )
 
-    def _welcome(self, post: Post) -> None:
-        if post.names.tracker in self._late:
-            self._late.discard(post.names.tracker)
-            _LOG.info("%s: goes on", post.names.tracker)
+    def _welcome(self, posts: list[Post]) -> None:
+        for post in posts:
+            if post.names.tracker in self._late:
+                self._late.discard(post.names.tracker)
+                _LOG.info("%s: goes on", post.names.tracker)
 
 
 def _named(names: list[str]) -> str:
