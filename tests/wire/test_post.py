@@ -106,12 +106,15 @@ def test_a_pipe_or_a_link_in_the_place_of_an_action_is_not_read(post, tmp_path, 
     assert len(caplog.records) == 2
 
 
-def test_a_new_client_takes_the_place_of_one_that_has_left_its_answer(post, caplog):
+def test_a_new_client_takes_the_place_of_one_that_has_left_its_answer(post, caplog, monkeypatch):
+    now = [100.0]
+    monkeypatch.setattr("time.monotonic", lambda: now[0])
     post.answer(parts(post.names))
     post.poll()
     post.names.state.unlink()
     post.poll()
     post.names.action.write_text("0,0,0,0,1\n")
+    now[0] += 0.1
     assert post.poll()
     assert files(post) == [post.names.action.name]
     assert "DRONE0: a new action while DRONE0_RewardParams.txt was not taken" in caplog.text

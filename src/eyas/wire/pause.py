@@ -2,10 +2,13 @@
 
 import time
 
-__all__ = ["Pause"]
+__all__ = ["RARE", "Pause"]
 
 _SHORTEST, _LONGEST = 0.0002, 0.02
 """Limits of a sleep [s]. Clients of the original look once in a millisecond themselves."""
+
+RARE = 0.05
+"""Time without an event after which to look for what happens rarely, too [s]."""
 
 
 class Pause:
@@ -17,6 +20,11 @@ class Pause:
 
     def __init__(self) -> None:
         self._since = time.monotonic()
+
+    @property
+    def long(self) -> bool:
+        """Whether nothing has happened for so long that rare things may have."""
+        return time.monotonic() - self._since > RARE
 
     def restart(self) -> None:
         """Begin to wait anew, because something happened."""

@@ -13,6 +13,7 @@ from eyas.core.errors import ActionError, OutputError
 from eyas.core.files import refusals, write_atomic
 from eyas.wire.codec import HOVER, Action, parse_action
 from eyas.wire.exchange import Names
+from eyas.wire.pause import RARE
 
 __all__ = ["Part", "Post"]
 
@@ -89,7 +90,7 @@ class Post:
         """Write the next file of the answer, after the client has deleted the last."""
         if self._shown:
             if os.path.lexists(self._answer[0].path):
-                return self._drop_if_late()
+                return time.monotonic() - self.waiting > RARE and self._drop_if_late()
             self._answer.popleft()
             self._shown = False
             if not self._answer:

@@ -120,10 +120,11 @@ class Server:
                 self._welcome(happened)
                 pause.restart()
                 continue
-            other = announcements.poll()
-            if other not in (None, count):
-                return other
-            self._tell_late(posts)
+            if pause.long:
+                other = announcements.poll()
+                if other not in (None, count):
+                    return other
+                self._tell_late(posts)
             pause.sleep()
         other = announcements.poll()
         return None if other == count else other
