@@ -123,10 +123,11 @@ def test_more_trackers_than_targets_is_one_line(crews):
 
 
 def test_an_answer_that_nobody_takes_does_not_disturb_the_next(crews):
-    crew = crews(2)
-    first = crew.play([RESET, RESET])
-    second = crew.play([AHEAD, AHEAD])  # at once, while the pictures are still drawn
-    assert all(answer.picture.result() for answer in (*first, *second))
+    patient, hasty = crews(4), crews(4)
+    shown = [answer.picture.result() for answer in patient.play([RESET] * 4)]
+    dropped = hasty.play([RESET] * 4)
+    hasty.play([AHEAD] * 4)  # at once, while the pictures are still drawn
+    assert [answer.picture.result() for answer in dropped] == shown
 
 
 @pytest.mark.parametrize("speed", [1e4, -1e4])

@@ -65,9 +65,11 @@ def test_nothing_outside_the_root_is_deleted_through_links(tmp_path):
     root.mkdir()
     exchange = Exchange(root)
     exchange.files.mkdir(parents=True)
-    (exchange.files / "DRONE0_AlgAction.txt").symlink_to(precious / "start.txt")
+    links = [exchange.files / f"DRONE{number}_AlgAction.txt" for number in range(2)]
+    links[0].symlink_to(precious / "start.txt")
+    links[1].symlink_to(precious)
     with exchange.opened():
-        assert not os.path.lexists(exchange.files / "DRONE0_AlgAction.txt")
+        assert not any(map(os.path.lexists, links))
     assert (precious / "start.txt").read_text() == "mine"
 
 
