@@ -122,6 +122,16 @@ def test_a_new_client_takes_the_place_of_one_that_has_left_its_answer(post, capl
     assert post.action.reset
 
 
+def test_what_was_not_taken_can_be_withdrawn(post):
+    for shown in (False, True):
+        post.answer(parts(post.names))
+        assert not shown or post.poll()
+        post.withdraw()
+        assert files(post) == []
+        assert post.owes
+    post.withdraw()
+
+
 def test_files_that_cannot_be_written_are_told_once_and_tried_again(post, caplog, monkeypatch):
     now = [100.0]
     monkeypatch.setattr("time.monotonic", lambda: now[0])

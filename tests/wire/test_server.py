@@ -68,6 +68,7 @@ def pair(serve):
     return server, server.client(0), server.client(1)
 
 
+@pytest.mark.slow
 def test_a_client_killed_at_any_moment_is_reported_and_a_new_one_takes_its_place(pair):
     server, mine, _ = pair
     rounds = []
@@ -100,6 +101,7 @@ def test_a_client_killed_at_any_moment_is_reported_and_a_new_one_takes_its_place
     assert server.end() == 130
 
 
+@pytest.mark.slow
 def test_the_clients_of_a_second_training_follow_those_of_the_first(serve):
     server = serve()
     for _ in range(2):
@@ -107,6 +109,11 @@ def test_the_clients_of_a_second_training_follow_those_of_the_first(serve):
         players = [server.play(agent, 2, 20) for agent in range(2)]
         assert [done(player)["seconds"] > 0 for player in players] == [True, True]
     assert server.left() == ["start.txt"]
+    killed = [server.play(agent, 2, 10**6) for agent in range(2)]
+    for player in killed:
+        assert player.stdout.readline() == "begun\n"
+        player.kill()
+        player.wait()
     players = [server.play(agent, 3, 20) for agent in range(3)]  # of another number of agents
     for player in players:
         done(player)
@@ -185,6 +192,7 @@ def fails(client):
     return False
 
 
+@pytest.mark.slow
 def test_servers_side_by_side_keep_apart(serve, tmp_path):
     servers = [serve(root=tmp_path / name) for name in "ab"]
     for server in servers:

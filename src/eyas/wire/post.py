@@ -73,6 +73,19 @@ class Post:
         self.action = None
         self._answer.extend(parts)
 
+    def withdraw(self) -> None:
+        """Drop the rest of an answer, with its file that the client has not taken.
+
+        Raises:
+            OutputError: The file cannot be deleted.
+        """
+        if self._shown:
+            part = self._answer[0].path
+            with refusals(part):
+                part.unlink(missing_ok=True)
+        self._answer.clear()
+        self._shown = False
+
     def poll(self) -> bool:
         """Go on by one file, if the client has; return whether anything happened.
 
@@ -128,10 +141,7 @@ class Post:
             "the rest of that answer is dropped",
             *(self.names.tracker, part.name),
         )
-        with refusals(part):
-            part.unlink(missing_ok=True)
-        self._answer.clear()
-        self._shown = False
+        self.withdraw()
         return True
 
     def _take(self) -> bool:

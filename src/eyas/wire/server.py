@@ -100,9 +100,7 @@ class Server:
                 while True:
                     other = self._gather(posts, count, announcements)
                     if other is not None:
-                        # New clients announce themselves first, but may be heard of last.
-                        first = [n for n, post in enumerate(posts) if post.action == RESET]
-                        return other, frozenset(first)
+                        return other, _begun(posts)
                     self._play(crew, posts, journal)
         finally:
             crew.close()
@@ -162,6 +160,17 @@ class Server:
             if post.names.tracker in self._late:
                 self._late.discard(post.names.tracker)
                 _LOG.info("%s: goes on", post.names.tracker)
+
+
+def _begun(posts: list[Post]) -> frozenset[int]:
+    """Withdraw all answers; return the agents that have begun a new training.
+
+    New clients announce themselves first, but may be heard of after their first resets.
+    """
+    for post in posts:
+        post.withdraw()
+    resets = [post.action is not None and post.action.reset for post in posts]
+    return frozenset(number for number, reset in enumerate(resets) if reset)
 
 
 def _named(names: list[str]) -> str:
