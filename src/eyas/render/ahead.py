@@ -10,7 +10,8 @@ from collections.abc import Callable
 import numpy as np
 
 from eyas.core.cache.folder import not_kept
-from eyas.core.jit import REFUSAL, folder_in_use, nothing_compiled
+from eyas.core.entry import nothing_compiled
+from eyas.core.jit import REFUSAL, folder_in_use
 from eyas.render.bake.ambient import AmbientMap
 from eyas.render.bake.shadows import ShadowMap
 from eyas.render.bake.tracks import TrackMap
