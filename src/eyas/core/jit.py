@@ -40,7 +40,10 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 @functools.cache
 def source_hash() -> str:
-    """Return a hash of every source file that holds kernels."""
+    """Return a hash of every source file that holds kernels, or values that they read.
+
+    It is known by the word "kernel" in it.
+    """
     digest = hashlib.sha256()
     for path in sorted(Path(__file__).parent.parent.rglob("*.py")):
         text = path.read_bytes()

@@ -4,6 +4,7 @@ A file holds the code of a kernel with everything that it calls, for one kind of
 it takes a millisecond; importing numba, which is needed only to compile, takes half a second.
 """
 
+import itertools
 import json
 import logging
 import os
@@ -40,6 +41,9 @@ _LOCK = threading.Lock()
 
 _LOADED: list[llvm.ResourceTracker] = []
 """Kernels loaded, kept until the process ends."""
+
+_NUMBERS = itertools.count()
+"""Numbers of the kernels that this process has tried to load."""
 
 
 class MachineCode(NamedTuple):
@@ -123,7 +127,7 @@ def load(code: MachineCode) -> int | None:
                 return None
             library.import_symbol(name, address)
         try:
-            loaded = library.link(linker, f"{code.entry}-{len(_LOADED)}")
+            loaded = library.link(linker, f"{code.entry}-{next(_NUMBERS)}")
         except RuntimeError:
             return None
         _LOADED.append(loaded)

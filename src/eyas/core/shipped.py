@@ -39,10 +39,14 @@ def _folder() -> Path | None:
     named = {"NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES"} & os.environ.keys()
     if named or sys.platform != "linux" or platform.machine() != "x86_64":
         return None
-    features = llvm.get_host_cpu_features()
-    has = {name for name, present in features.items() if present}
+    has = _features()
     folders = (SHIPPED / source_hash() / name for name, needed in LEVELS.items() if needed <= has)
     return next((folder for folder in folders if folder.is_dir()), None)
+
+
+def _features() -> set[str]:
+    """Return what this processor has, as LLVM names it."""
+    return {name for name, present in llvm.get_host_cpu_features().items() if present}
 
 
 def shipped_code(name: str) -> MachineCode | None:
