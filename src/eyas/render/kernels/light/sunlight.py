@@ -5,6 +5,7 @@ from eyas.core.lanes import (
     any_of,
     gather,
     gather_pair,
+    gather_pair_after,
     greater,
     lesser,
     like,
@@ -41,17 +42,16 @@ def sunlit(light: Light, x: float, y: float, z: float) -> float:
     # The outermost tiles are empty: places beyond them are lit, like theirs.
     column = greater(lesser(column, f4(columns * TILE - 1)), zero)
     line = greater(lesser(line, f4(lines * TILE - 1)), zero)
-    height = greater(height, zero)  # the map's zero is nothing at all
+    top = to_i4(greater(height, zero))  # the map's zero is nothing at all
     i, j = to_i4(line), to_i4(column)
     across, down = column - to_f4(j), line - to_f4(i)
     at = _first_texel(light, i, j)
-    upper, lower = gather_pair(texels, at), gather_pair(texels, at + i4(TILE + 1))
-    half, low = u4(16), u4(0xFFFF)
-    a = select(to_f4(upper & low) <= height, one, zero)
-    b = select(to_f4(upper >> half) <= height, one, zero)
-    c = select(to_f4(lower & low) <= height, one, zero)
-    d = select(to_f4(lower >> half) <= height, one, zero)
-    above, below = a + across * (b - a), c + across * (d - c)
+    upper, lower = gather_pair(texels, at), gather_pair_after(texels, at, TILE + 1)
+    half, low, left = u4(16), u4(0xFFFF), one - across
+    above = select(to_i4(upper & low) <= top, left, zero)
+    above += select(to_i4(upper >> half) <= top, across, zero)
+    below = select(to_i4(lower & low) <= top, left, zero)
+    below += select(to_i4(lower >> half) <= top, across, zero)
     return above + down * (below - above)
 
 
