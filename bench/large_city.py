@@ -19,6 +19,7 @@ from eyas.render.bake.ambient import bake_ambient
 from eyas.render.bake.shadows import bake_shadows
 from eyas.render.bake.tracks import TrackMap
 from eyas.render.classes import class_table
+from eyas.render.kernels.visibility.passes import SMALLEST_DETAIL
 from eyas.render.pack.geometry import build_geometry
 from eyas.render.pack.light import build_light
 from eyas.render.renderer import Renderer
@@ -26,7 +27,7 @@ from eyas.render.textures.library import build_textures
 from eyas.sim.scenes import load_scene
 from eyas.state.draw import DrawList, DrawStage, PartLibrary, Picture, Views
 from eyas.state.mesh import Mesh
-from eyas.state.scene import Fixtures, Lamps, Scene
+from eyas.state.scene import Fixtures, Lamps, ObjectClass, Scene
 from eyas.world.maps import MAPS
 
 __all__ = ["horizon_views", "large_city", "street_views"]
@@ -35,6 +36,8 @@ SIDE = 3
 """Copies along a side."""
 
 _VIEWS, _SIZE = 64, 84
+_HORIZON_FIELD = 1.2
+"""Field of view from the horizon [rad]."""
 
 
 def large_city(side: int = SIDE) -> Scene:
@@ -121,7 +124,7 @@ def street_views(scene: Scene, count: int = _VIEWS, pitch: float = 1.37) -> View
 
 def horizon_views(scene: Scene, count: int = _VIEWS) -> Views:
     """Return views from a ring outside the city, which show all of it."""
-    pitch, field = 0.3, 1.2
+    pitch, field = 0.3, _HORIZON_FIELD
     points = scene.network.lane_points
     centre = 0.5 * (points.min(axis=0) + points.max(axis=0))
     away = np.linalg.norm(points - centre, axis=1).max() / np.sin(0.5 * field)
@@ -129,6 +132,23 @@ def horizon_views(scene: Scene, count: int = _VIEWS) -> Views:
     out = away * np.stack([np.cos(turn), np.sin(turn)], axis=1)
     position = np.column_stack([centre + out, np.full(count, away * np.tan(pitch))])
     return _looking(position, turn + np.pi, pitch, field)
+
+
+def _print_facing(scene: Scene) -> None:
+    """Print which static triangles face a view from the horizon and are drawn, by class."""
+    place = horizon_views(scene).position[0]
+    corners = scene.static.positions[scene.static.triangles]
+    normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    ahead = place - corners.mean(axis=1)
+    focal = 0.5 * _SIZE / np.tan(0.5 * _HORIZON_FIELD)
+    size = np.sqrt(0.5 * np.linalg.norm(normal, axis=1))
+    pixels = size * focal / np.linalg.norm(ahead, axis=1)
+    kind = scene.object_class[scene.static_object]
+    details = np.isin(kind, (ObjectClass.MARKING, ObjectClass.BUILDING))
+    drawn = ((normal * ahead).sum(axis=1) > 0.0) & (~details | (pixels >= SMALLEST_DETAIL))
+    counts = {one.name.lower(): int((drawn & (kind == one)).sum()) for one in ObjectClass}
+    listed = ", ".join(f"{name} {count:,}" for name, count in counts.items() if count)
+    print(f"  triangles that face the horizon: {listed}")
 
 
 def _measured(name: str, renderer: Renderer, views: Views) -> None:
@@ -159,6 +179,7 @@ def _report(name: str, scene: Scene) -> None:
         size = sum(a.nbytes for a in geometry if isinstance(a, np.ndarray)) / 2**20
         print(f"{name}: {len(scene.static.triangles):,} static triangles, "
               f"{len(scene.fixtures.pose):,} fixtures")  # fmt: skip
+        _print_facing(scene)
         print(f"  packed in {packed - start:.1f} s CPU, {size:.0f} MiB")
         held = (shadows.heights.nbytes + shadows.tile.nbytes) / 2**20
         print(f"  shadows: {held:.1f} MiB, texels of {shadows.texel:.3f} m")
