@@ -99,11 +99,10 @@ def draw_nothing() -> None:
     """Draw a view of an empty scene, which compiles every drawing kernel."""
     scene = Scene.empty()
     geometry = build_geometry(scene, PartLibrary(()), {"plain": np.zeros((256, 256, 4), np.uint8)})
-    shadows = ShadowMap(np.zeros((1, 1), np.uint16), np.zeros((3, 4)), 1.0)
     ambient = AmbientMap(np.zeros((1, 1), np.uint16), np.zeros(4))
     black = (0.0, 0.0, 0.0)
     lighting = Lighting((0.0, 0.0, 1.0), black, black, black, black, black, black, 0.0)
-    light = build_light(scene, lighting, shadows, ambient, TrackMap.none(), geometry)
+    light = build_light(scene, lighting, ShadowMap.none(), ambient, TrackMap.none(), geometry)
     views = Views(
         position=np.zeros((1, 3)),
         rotation=np.eye(3)[None],
