@@ -1,13 +1,15 @@
 """What kernels need of numba; if a new version of numba changes that, these tests fail."""
 
 import math
+from functools import cache
 
 import numba
 import numpy as np
 import pytest
 from numba.core.registry import cpu_target
+from numba.core.typing import Context
 
-from eyas.core import compilation
+from eyas.core import compilation, front_end
 from eyas.core.compilation import entry_code
 from eyas.core.held import Held
 from eyas.core.jit import inlined_kernel, kernel
@@ -133,3 +135,27 @@ def test_products_and_sums_are_rounded_one_by_one():
 
     x = 1.0 + 2.0**-30
     assert call(work, x, x, 1.0 + 2.0**-29)[0] == x * x - (1.0 + 2.0**-29) == 0.0
+
+
+def test_the_rules_for_an_operator_are_tried_once_for_the_same_types(monkeypatch):
+    asked, before = [], Context.resolve_function_type
+
+    def noted(self, function, kinds, names):
+        if isinstance(function, numba.types.Function) and not names:
+            asked.append((id(function), kinds))
+        return before(self, function, kinds, names)
+
+    @kernel
+    def other(x):
+        return x * 2.0 - 1.0
+
+    @kernel
+    def work(a):
+        a[0] = other(a[0]) * 2.0 - 1.0
+        a[1] = other(a[1]) * 2.0 - 1.0
+
+    monkeypatch.setattr(Context, "resolve_function_type", noted)
+    monkeypatch.setattr(front_end, "typing", cache(front_end.typing.__wrapped__))
+    monkeypatch.setattr(compilation, "typing", front_end.typing)
+    assert call(work, 1.0, 2.0) == [1.0, 5.0]
+    assert len(asked) == len(set(asked)) > 0

@@ -21,6 +21,7 @@ from eyas.core.lanes import (
     gather,
     gather_column,
     gather_pair,
+    gather_pair_after,
     greater,
     lane,
     lane_numbers,
@@ -214,6 +215,8 @@ def fetched(table, bytes_, halves, index, width, wide, single):
         store(wide, len(index) + at, gather_column(table, places, 3, width))
         store(wide, 2 * len(index) + at, to_f4(gather(bytes_, places)))
         store(wide, 3 * len(index) + at, to_f4(gather_pair(halves, places) >> u4(16)))
+        after = gather_pair_after(halves, places, width)
+        store(wide, 12 * len(index) + at, to_f4(after >> u4(16)))
         for k, column in enumerate(transposed(table, places, 2, width)):
             store(wide, (4 + k) * len(index) + at, column)
     for at in range(len(index)):
@@ -222,6 +225,7 @@ def fetched(table, bytes_, halves, index, width, wide, single):
         single[1, at] = gather_column(table, place, 3, width)
         single[2, at] = to_f4(gather(bytes_, place))
         single[3, at] = to_f4(gather_pair(halves, place) >> u4(16))
+        single[12, at] = to_f4(gather_pair_after(halves, place, width) >> u4(16))
         for k, column in enumerate(transposed(table, place, 2, width)):
             single[4 + k, at] = column
 
@@ -232,10 +236,11 @@ def test_gathers_fetch_what_indices_name():
     bytes_ = RNG.integers(0, 256, COUNT * width).astype(np.uint8)
     halves = RNG.integers(0, 65536, COUNT * width).astype(np.uint16)
     index = RNG.permutation(COUNT).astype(i4)
-    wide, single = np.zeros((12, COUNT), f4), np.zeros((12, COUNT), f4)
+    wide, single = np.zeros((13, COUNT), f4), np.zeros((13, COUNT), f4)
     fetched(table, bytes_, halves, index, width, wide, single)
     rows = [table.ravel()[index], table[index, 3], bytes_[index], halves[index + 1]]
-    expected = np.array([*rows, *(table[index, 2 + k] for k in range(8))], f4)
+    columns = [table[index, 2 + k] for k in range(8)]
+    expected = np.array([*rows, *columns, halves[index + width + 1]], f4)
     np.testing.assert_array_equal(wide, expected)
     np.testing.assert_array_equal(single, expected)
 

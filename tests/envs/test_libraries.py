@@ -109,10 +109,10 @@ def test_a_film_is_recorded_by_gymnasiums_wrapper(tmp_path):
     pytest.importorskip("moviepy")
     env = gymnasium.wrappers.RecordVideo(
         gymnasium.make("eyas/citystreet-day-v0", config=SHORT, render_mode="rgb_array"),
-        str(tmp_path),
+        str(tmp_path / "film"),
     )
     env.reset(seed=0)
     for _ in range(10):
         env.step(6)
     env.close()
-    assert next(tmp_path.glob("*.mp4")).stat().st_size > 1000
+    assert next(tmp_path.glob("film/*.mp4")).stat().st_size > 1000

@@ -18,6 +18,7 @@ from PIL import Image
 
 from eyas.cli.main import main
 from eyas.core.errors import ConfigError, OutputError, SpawnError
+from eyas.core.folder_lock import folder_lock
 from eyas.exports.files import Files
 from eyas.exports.frame import Frame
 from eyas.exports.gather import Gather
@@ -27,7 +28,6 @@ from eyas.exports.summary import Summary
 from eyas.exports.writer import Episode, Writer
 from eyas.modes.video import run as video
 from eyas.modes.video.config import VideoConfig
-from eyas.modes.video.lock import recording_lock
 from eyas.sensors.config import CameraConfig
 from eyas.settings.config import EyasConfig
 from eyas.state.scene import ACTOR_OBJECT
@@ -220,7 +220,10 @@ def test_a_full_disk_is_one_line_and_nothing_is_half_written(recorded, tmp_path,
 
 
 def test_two_recorders_do_not_share_a_folder(tmp_path):
-    with recording_lock(tmp_path), pytest.raises(OutputError, match="is recording into it"):
+    with (
+        folder_lock(tmp_path, "recording into it"),
+        pytest.raises(OutputError, match="is recording into it"),
+    ):
         video.run(CONFIG, tmp_path, quiet=True)
 
 

@@ -9,6 +9,8 @@ from numpy.typing import NDArray
 from eyas.mesh.assembly import concatenate, transformed
 from eyas.mesh.flat import flat_polygon, walls
 from eyas.mesh.solids import box, cylinder, sphere
+from eyas.render.bake.shadows import ShadowMap
+from eyas.render.kernels.bundles import TILE
 from eyas.state.draw import DrawList, PartLibrary, Views
 from eyas.state.lighting import Lighting
 from eyas.state.mesh import Material, Mesh, Surface
@@ -67,6 +69,16 @@ def tree(subdivisions: int) -> Mesh:
         shells.append(transformed(sphere(subdivisions, what, tile=0.8), pose))
     trunk = cylinder((0.25, 0.18), (0.0, 4.0), 8, material("bark"))
     return concatenate([trunk, *shells])
+
+
+def untiled(shadows: ShadowMap) -> NDArray[np.uint16]:
+    """The whole shadow map, 0 where it has no tiles."""
+    lines, columns = (TILE * n + 1 for n in shadows.tile.shape)
+    whole = np.zeros((lines, columns), np.uint16)
+    for i, j in np.argwhere(shadows.tile > 0):
+        part = whole[TILE * i : TILE * i + TILE + 1, TILE * j : TILE * j + TILE + 1]
+        part[:] = shadows.heights[shadows.tile[i, j]]
+    return whole
 
 
 def car_parts() -> PartLibrary:

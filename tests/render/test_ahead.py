@@ -1,5 +1,10 @@
 """The first start: what the second process compiles is what the first will need."""
 
+import subprocess
+import sys
+
+import pytest
+
 from eyas.render import ahead
 from eyas.render.kernels.draw import draw_views
 
@@ -19,16 +24,76 @@ def test_drawing_nothing_compiles_what_drawing_a_city_needs(city, drawn, monkeyp
     assert compiled_by(ahead.draw_nothing) == needed
 
 
-def test_only_a_first_start_is_told_and_shared(tmp_path, monkeypatch, caplog):
+@pytest.fixture
+def begins(tmp_path, monkeypatch):
+    """Return a function that begins a start with an empty cache of kernels."""
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "kernels"))
-    monkeypatch.setattr(ahead, "_PROGRAM", "import eyas; raise SystemExit(7)")
+    monkeypatch.setattr(ahead, "_COMPILE", "import eyas; raise SystemExit(7)")
     monkeypatch.setattr(ahead.os, "cpu_count", lambda: 2)
-    wait = ahead.compile_ahead()
+    monkeypatch.setattr(ahead, "_compiling", [])
+    monkeypatch.setattr(ahead, "_doing_other", [])
+
+    def begin(*, shipped):
+        monkeypatch.setattr(ahead, "nothing_compiled", lambda name: not shipped)
+        ahead.begin_ahead("import eyas; raise SystemExit(8)")
+        return ahead._compiling, ahead._doing_other
+
+    return begin
+
+
+def test_a_first_start_is_told_and_shared_by_one_of_those_that_start_together(begins, caplog):
+    (process,), none = begins(shipped=False)
+    assert not none
     assert "first start" in caplog.text
-    wait()
-    assert ahead._started.pop().returncode == 7
-    assert ahead.compile_ahead() is None  # another process of those that start together
-    (tmp_path / "kernels" / "draw.eyk").touch()
-    caplog.clear()
-    assert ahead.compile_ahead() is None
+    ahead.drawing_is_ready()
+    assert process.returncode == 7
+    assert begins(shipped=False) == ([process], [])
+
+
+def test_where_kernels_are_shipped_the_second_process_does_something_else(begins, caplog):
+    none, (process,) = begins(shipped=True)
+    assert not none
     assert not caplog.text
+    ahead.drawing_is_ready()  # waits for nothing
+    ahead.other_is_ready()
+    assert process.returncode == 8
+
+
+ASKS = """
+import sys
+from eyas.core import parallel
+from eyas.render import ahead
+address = parallel.entry_address
+parallel.entry_address = lambda function, parts: (
+    print(function.__name__) or address(function, parts)
+)
+if sys.argv[1] == "second":
+    ahead.draw_nothing()
+    sys.exit()
+import numpy as np
+from eyas.render import renderer
+from eyas.sim import assets
+from eyas.sim.build import build_simulation
+from eyas.sim.config import SimConfig
+from eyas.sim.worlds import each_alone
+from eyas.state.draw import Picture
+assets.drawing_is_ready = lambda: print("waits")
+simulation = build_simulation(SimConfig(), each_alone(1))
+simulation.reset()
+simulation.draw(np.zeros(1, np.int32), Picture.create(1, 8, 8))
+"""
+
+
+def asked_for(process):
+    """Return the kernels that a process asks for, in order, and when it waits."""
+    command = [sys.executable, "-c", ASKS, process]
+    done = subprocess.run(command, check=True, capture_output=True, text=True)
+    return done.stdout.split()
+
+
+def test_no_kernel_is_compiled_by_both_processes():
+    first, second = asked_for("first"), asked_for("second")
+    own = first[: first.index("waits")]
+    assert {"_fly", "list_near"} <= set(own)
+    assert not set(own) & set(second)
+    assert set(first[len(own) + 1 :]) == set(second) == {"draw_views"}

@@ -14,7 +14,7 @@ from eyas.state.draw import PartLibrary
 from eyas.state.mesh import Material, Mesh, Surface
 from eyas.state.scene import Fixtures
 
-from .small_city import DAY, GROUND, TOWER, floor, looking, scene_of, tower
+from .small_city import DAY, GROUND, TOWER, floor, looking, scene_of, tower, untiled
 
 SUN = np.array(DAY.sun_direction)
 SOUTH = (0.0, -math.sqrt(0.5), math.sqrt(0.5))
@@ -26,7 +26,7 @@ def shaded(shadows, points: np.ndarray) -> np.ndarray:
     column, line, height = (points @ shadows.rows[:, :3].T + shadows.rows[:, 3]).T
     unit = np.linalg.norm(shadows.rows[2, :3])
     height = np.maximum(height, 0.0)  # the map's zero is nothing at all
-    return shadows.heights[line.astype(int), column.astype(int)] > height + 0.5 * unit
+    return untiled(shadows)[line.astype(int), column.astype(int)] > height + 0.5 * unit
 
 
 def sheet(side: float, count: int) -> Mesh:

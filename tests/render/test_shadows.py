@@ -13,7 +13,18 @@ from eyas.render.pack.geometry import build_geometry
 from eyas.state.draw import DrawList, PartLibrary
 from eyas.state.mesh import Material
 
-from .small_city import DAY, GROUND, TOWER, car_parts, floor, looking, put_car, scene_of, tower
+from .small_city import (
+    DAY,
+    GROUND,
+    TOWER,
+    car_parts,
+    floor,
+    looking,
+    put_car,
+    scene_of,
+    tower,
+    untiled,
+)
 
 SUN = np.array(DAY.sun_direction)
 
@@ -37,11 +48,12 @@ def test_the_shadow_of_a_tower_lies_where_the_sun_says(geometry, tmp_path):
     x, y = np.random.default_rng(0).uniform(-30, 30, (2, 4000))
     points = np.column_stack([x, y, np.full(4000, 0.05)])
     column, line, height = (points @ shadows.rows[:, :3].T + shadows.rows[:, 3]).T
-    lines, columns = shadows.heights.shape
+    whole = untiled(shadows)
+    lines, columns = whole.shape
     on_map = (column > 0) & (column < columns - 1) & (line > 0) & (line < lines - 1)
     lit = np.ones(4000, bool)
     at = line[on_map].astype(int), column[on_map].astype(int)
-    lit[on_map] = shadows.heights[at] <= np.maximum(height[on_map], 0) + 65000 * 0.2 / 40
+    lit[on_map] = whole[at] <= np.maximum(height[on_map], 0) + 65000 * 0.2 / 40
     assert not lit[in_tower_shadow(x, y, -0.5)].any()
     assert lit[~in_tower_shadow(x, y, 0.5)].all()
     assert 0.05 < np.mean(~lit) < 0.5

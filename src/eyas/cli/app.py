@@ -10,7 +10,7 @@ import typer
 import typer.core
 
 from eyas import __version__
-from eyas.cli import bench, cache, config, evaluate, maps, traffic, train, video
+from eyas.cli import bench, cache, config, evaluate, maps, serve, traffic, train, video
 from eyas.cli.said import say
 from eyas.core.errors import EyasError
 
@@ -45,6 +45,7 @@ app = typer.Typer(
 )
 app.command("video")(video.command)
 app.command("train")(train.command)
+app.command("serve")(serve.command)
 app.command("bench")(bench.command)
 app.command("evaluate")(evaluate.evaluate)
 app.command("compare")(evaluate.compare)

@@ -8,7 +8,7 @@ PHYSICS_RATE = 500
 """Physics steps per second [Hz]."""
 
 PHYSICS_STEP = 1.0 / PHYSICS_RATE
-"""Length of a physics step [s]."""
+"""Length of a physics step [s]; kernels read it."""
 
 
 def physics_steps(control_frequency: float) -> int:

@@ -5,26 +5,24 @@ and keep that on disk, though most functions of a kernel are only inlined into o
 function becomes a module once; those of a kernel and of all that it calls are linked and optimised
 together.
 
-Only this module and `eyas.core.lanes` use parts of numba that it does not document.
+Only this module, `eyas.core.front_end` and `eyas.core.lanes` use parts of numba that it does not
+document.
 """
 
 import inspect
 from collections.abc import Callable, Iterable
-from functools import cache
 from typing import Any, NamedTuple
 
 import llvmlite.binding as llvm
 import numba
 from llvmlite import ir
-from numba.core.codegen import JITCodeLibrary
-from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags, compile_extra
+from numba.core.compiler import compile_extra
 from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import cpu_target
-from numba.core.typed_passes import NopythonRewrites
-from numba.core.untyped_passes import InlineClosureLikes
 from numba.extending import models, register_model
 
 from eyas.core import pointers as _pointers  # noqa: F401  # registers fields with numba
+from eyas.core.front_end import SETTINGS, Compiler, Library, flags, typing
 from eyas.core.interrupts import let_in
 from eyas.core.lanes import operators as _operators  # noqa: F401  # registers them with numba
 from eyas.core.machine_code import MachineCode, optimised
@@ -33,61 +31,6 @@ __all__ = ["KernelType", "caller_from_python", "entry_code", "intrinsic_type", "
 
 Kind = Any
 """One of numba's types."""
-
-# Kernels allocate nothing, so they need no reference counting of arrays (`_nrt`). It costs two
-# atomic operations for each array passed on, which is slow when threads share the arrays: pictures
-# took three times as long.
-_SETTINGS = {"error_model": "numpy", "fastmath": False, "_nrt": False}
-
-_INNER = {"nopython": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
-
-
-class _Library(JITCodeLibrary):  # type: ignore[misc]  # numba has no types
-    """The module of one function, which is linked into others but never made machine code."""
-
-    def finalize(self) -> None:
-        self._finalized = True
-
-    def add_linking_library(self, library: JITCodeLibrary) -> None:
-        self._linking_libraries.append(library)
-
-
-class _Flags(Flags):  # type: ignore[misc]
-    """Settings that numba need not compare, as it does at each operator: that took a tenth of the
-    time of compiling.
-    """
-
-    __slots__ = ()
-
-    def __eq__(self, other: object) -> bool:
-        return self is other or (not isinstance(other, _Flags) and super().__eq__(other))
-
-    def __hash__(self) -> int:
-        return id(self)
-
-    def copy(self) -> "_Flags":
-        return self
-
-
-@cache
-def _flags(*, inline: bool) -> _Flags:
-    flags = _Flags()
-    cpu_target.options.parse_as_flags(flags, {**_SETTINGS, **_INNER, "forceinline": inline})
-    flags.no_compile = True
-    return flags
-
-
-class _Compiler(CompilerBase):  # type: ignore[misc]
-    """numba's compiler without what kernels do not need: a tenth of the time."""
-
-    _LEFT_OUT = (InlineClosureLikes, NopythonRewrites)
-    """For functions inside functions, and for sums of whole arrays."""
-
-    def define_pipelines(self) -> list[Any]:
-        passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
-        passes.passes = [step for step in passes.passes if step[0] not in self._LEFT_OUT]
-        passes.finalize()
-        return [passes]
 
 
 class _Overload(NamedTuple):
@@ -104,18 +47,18 @@ class _Overload(NamedTuple):
 def _compile(
     function: Callable[..., Any], kinds: tuple[Kind, ...], *, inline: bool | None
 ) -> _Overload:
-    typing, target = cpu_target.typing_context, cpu_target.target_context
-    library = _Library(target.codegen(), function.__qualname__)
+    target = cpu_target.target_context
+    library = Library(target.codegen(), function.__qualname__)
     made = compile_extra(
-        typing,
+        typing(),
         target,
         function,
         kinds,
         None,
-        _flags(inline=inline is True),
+        flags(inline=inline is True),
         {},
         library=library,
-        pipeline_class=_Compiler,
+        pipeline_class=Compiler,
     )
     if inline is False:
         own = library._final_module.get_function(made.fndesc.llvm_func_name)
@@ -208,10 +151,10 @@ def _shared(library: Any) -> llvm.ModuleRef:  # noqa: ANN401  # numba's library
     return module
 
 
-def _entry(made: _Overload, entry: str) -> _Library:
+def _entry(made: _Overload, entry: str) -> Library:
     """Return the function that C can call."""
     context = cpu_target.target_context
-    library = _Library(context.codegen(), entry)
+    library = Library(context.codegen(), entry)
     module = context.create_module(entry)
     described, convention = made.described, context.call_conv
     kind = convention.get_function_type(described.restype, described.argtypes)
@@ -247,5 +190,5 @@ def caller_from_python(function: Callable[..., Any]) -> Callable[..., Any]:
 
     It is not kept on disk, where numba would pickle it.
     """
-    compiled: Callable[..., Any] = numba.njit(**_SETTINGS)(function)
+    compiled: Callable[..., Any] = numba.njit(**SETTINGS)(function)
     return compiled

@@ -4,14 +4,16 @@ import platform
 import threading
 from collections.abc import Callable
 from importlib.metadata import version
+from pathlib import Path
 from typing import Any
 
 from eyas.core.held import Held
 from eyas.core.interrupts import shielded
 from eyas.core.jit import REFUSAL, folder_in_use, identity
-from eyas.core.machine_code import MachineCode, code_file, load, read_code, write_code
+from eyas.core.machine_code import SUFFIX, MachineCode, code_file, load, read_code, write_code
+from eyas.core.shipped import is_shipped, shipped_code
 
-__all__ = ["entry_address"]
+__all__ = ["entry_address", "nothing_compiled"]
 
 _LOCK = threading.RLock()
 
@@ -24,21 +26,31 @@ def entry_address(function: Callable[..., Any], parts: tuple[Held[Any], ...]) ->
         parts: The bundles.
     """
     name = function.__qualname__.rpartition(".")[2]
-    versions = (version("numba"), platform.python_version())
-    key = (*versions, identity(function), *(part.kind for part in parts))
-    path = code_file(folder_in_use(), name, key)
-    kept = function.__closure__ is None  # or what it depends on is not all in the key
+    made_of = identity(function), *(part.kind for part in parts)
+    made_by = version("numba"), platform.python_version()
+    path = code_file(folder_in_use(), name, made_of, made_by)
+    keeps = function.__closure__ is None  # or what it depends on is not all in the name
     # An interrupt in the middle of numba or LLVM leaves objects in pieces, whose end crashes.
     with _LOCK, shielded():
-        found = read_code(path) if kept else None
-        address = None if found is None else load(found)
+        address = _kept(path) if keeps else None
         if address is None:
             code = _compiled(function, parts, path.stem.replace("-", "_"))
             address = load(code)
-            assert address is not None, f"{name}: calls functions that do not exist: {code.needs}"
-            if kept and not REFUSAL:
+            assert address is not None, f"{name}: cannot be loaded; it needs {code.needs}"
+            if keeps and not REFUSAL:
                 write_code(path, code)
     return address
+
+
+def _kept(path: Path) -> int | None:
+    """Return the address of a kernel that is cached, or else shipped; None if it is neither."""
+    found = read_code(path) or shipped_code(path.stem.rpartition("-")[0])
+    return None if found is None else load(found)
+
+
+def nothing_compiled(name: str) -> bool:
+    """Return whether no kernel of such a name is cached or shipped, as at a first start."""
+    return not any(folder_in_use().glob(f"{name}*{SUFFIX}")) and not is_shipped(name)
 
 
 def _compiled(

@@ -17,7 +17,6 @@ from typing import Any, TypeVar, cast
 
 from eyas.core.cache.folder import Kind, cache_folder, touch
 from eyas.core.interrupts import shielded
-from eyas.core.machine_code import SUFFIX
 
 __all__ = [
     "REFUSAL",
@@ -29,8 +28,8 @@ __all__ = [
     "interpreted",
     "kernel",
     "kernel_folder",
-    "nothing_compiled",
     "separate_kernel",
+    "source_hash",
     "specialised",
     "step_kernel",
     "thread_count",
@@ -39,7 +38,12 @@ __all__ = [
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
-def _source_hash() -> str:
+@functools.cache
+def source_hash() -> str:
+    """Return a hash of every source file that holds kernels, or values that they read.
+
+    It is known by the word "kernel" in it.
+    """
     digest = hashlib.sha256()
     for path in sorted(Path(__file__).parent.parent.rglob("*.py")):
         text = path.read_bytes()
@@ -50,7 +54,7 @@ def _source_hash() -> str:
 
 def kernel_folder() -> Path:
     """Return the folder of the kernels compiled from exactly these sources."""
-    return cache_folder() / Kind.KERNELS / _source_hash()
+    return cache_folder() / Kind.KERNELS / source_hash()
 
 
 def _refusal(folder: Path) -> str:
@@ -65,11 +69,6 @@ def _refusal(folder: Path) -> str:
 def folder_in_use() -> Path:
     """Return the folder of compiled kernels that this process uses."""
     return Path(os.environ["NUMBA_CACHE_DIR"])
-
-
-def nothing_compiled(name: str) -> bool:
-    """Return whether no kernel of such a name is cached, as at a version's first start."""
-    return not any(folder_in_use().glob(f"{name}*{SUFFIX}"))
 
 
 os.environ.setdefault("NUMBA_CACHE_DIR", str(kernel_folder()))

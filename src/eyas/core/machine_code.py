@@ -4,6 +4,7 @@ A file holds the code of a kernel with everything that it calls, for one kind of
 it takes a millisecond; importing numba, which is needed only to compile, takes half a second.
 """
 
+import itertools
 import json
 import logging
 import os
@@ -40,6 +41,9 @@ _LOCK = threading.Lock()
 
 _LOADED: list[llvm.ResourceTracker] = []
 """Kernels loaded, kept until the process ends."""
+
+_NUMBERS = itertools.count()
+"""Numbers of the kernels that this process has tried to load."""
 
 
 class MachineCode(NamedTuple):
@@ -109,7 +113,10 @@ def _linker() -> llvm.LLJIT:
 
 
 def load(code: MachineCode) -> int | None:
-    """Return the address of a kernel's entry; None if this process lacks a function it needs."""
+    """Return the address of a kernel's entry.
+
+    None if this process lacks a function it needs, or this version of LLVM cannot read it.
+    """
     library = llvm.JITLibraryBuilder().add_current_process().add_object_img(code.code)
     library.export_symbol(code.entry)
     with _LOCK:
@@ -119,22 +126,30 @@ def load(code: MachineCode) -> int | None:
             if not address:
                 return None
             library.import_symbol(name, address)
-        loaded = library.link(linker, f"{code.entry}-{len(_LOADED)}")
+        try:
+            loaded = library.link(linker, f"{code.entry}-{next(_NUMBERS)}")
+        except RuntimeError:
+            return None
         _LOADED.append(loaded)
     return int(loaded[code.entry])
 
 
-def code_file(folder: Path, name: str, parts: Iterable[str]) -> Path:
-    """Return the file of a kernel's machine code.
+def code_file(folder: Path, name: str, made_of: Iterable[str], made_by: Iterable[str]) -> Path:
+    """Return the file of a kernel's machine code, `<name>-<hash of made_of>-<of made_by>`.
 
     Args:
         folder: The folder of kernels.
         name: The name of the kernel, for people who look into the folder.
-        parts: Everything else that the code depends on, except the sources that name the folder.
+        made_of: All that determines what the kernel computes, except the sources that name the
+            folder.
+        made_by: What else the code depends on, except the processor and llvmlite.
     """
-    key = (*cpu(), llvmlite.__version__, name, *parts)
-    digest = sha256("\0".join(key).encode()).hexdigest()[:32]
-    return folder / f"{name}-{digest}{SUFFIX}"
+    by = (*cpu(), llvmlite.__version__, *made_by)
+    return folder / f"{name}-{_digest((name, *made_of))}-{_digest(by)}{SUFFIX}"
+
+
+def _digest(parts: Iterable[str]) -> str:
+    return sha256("\0".join(parts).encode()).hexdigest()[:24]
 
 
 def read_code(path: Path) -> MachineCode | None:

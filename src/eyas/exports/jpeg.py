@@ -1,24 +1,19 @@
 """Pictures as JPEG files."""
 
-import io
 import re
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
 
 from eyas.core.files import write_atomic
+from eyas.core.jpeg import jpeg_bytes
 from eyas.exports.files import Files, pattern_of
 from eyas.exports.frame import Frame
 from eyas.exports.summary import Summary
 from eyas.exports.writer import Episode, EpisodeWriter, Writer
 
-__all__ = ["QUALITY", "JpegWriter", "write_picture"]
-
-QUALITY = 100
-"""The original's JPEG quality. Colours have the full resolution too (4:4:4), because a target may
-be only a few pixels wide. A picture of 320 x 240 takes about 90 kB (36 kB at quality 95)."""
+__all__ = ["JpegWriter", "write_picture"]
 
 PICTURE = "{:06d}.jpeg"
 """Name of a frame's file."""
@@ -68,6 +63,4 @@ def write_picture(path: Path, rgb: NDArray[np.uint8]) -> None:
     Raises:
         OutputError: The file cannot be written.
     """
-    buffer = io.BytesIO()
-    Image.fromarray(rgb).save(buffer, "JPEG", quality=QUALITY, subsampling=0)
-    write_atomic(path, buffer.getvalue())
+    write_atomic(path, jpeg_bytes(rgb))

@@ -1,5 +1,7 @@
 """Meshes of flat faces: quadrilaterals, polygons on the ground, walls. Lengths in metres, z up."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
@@ -8,7 +10,9 @@ from eyas.mesh.assembly import of_one_material
 from eyas.mesh.panels import cells
 from eyas.state.mesh import Material, Mesh
 
-__all__ = ["flat_polygon", "quads", "wall_along", "walls"]
+__all__ = ["flat_polygon", "flat_polygons", "quads", "wall_along", "walls"]
+
+Rows = NDArray[np.float64]
 
 
 def quads(corners: ArrayLike, uvs: ArrayLike, material: Material) -> Mesh:
@@ -42,21 +46,49 @@ def flat_polygon(
 
     The texture is aligned with the world's axes, or turned counter-clockwise by `turn` [rad].
     """
-    cells = shapely.get_parts(shapely.constrained_delaunay_triangles(polygon))
-    if len(cells) == 0:
-        return quads(np.zeros((0, 4, 3)), np.zeros((0, 4, 2)), material)
-    flat = np.array([shapely.get_coordinates(cell)[:3] for cell in cells])
+    return flat_polygons([polygon], z, material, tile, turn)
+
+
+def flat_polygons(
+    polygons: Sequence[shapely.Geometry],
+    z: float,
+    material: Material,
+    tile: float,
+    turn: float = 0.0,
+) -> Mesh:
+    """Return polygons as one mesh, see `flat_polygon`; they share no vertices."""
+    split = shapely.constrained_delaunay_triangles(np.asarray(polygons, object))
+    cells, owner = shapely.get_parts(split, return_index=True)
+    flat = shapely.get_coordinates(cells).reshape(-1, 4, 2)[:, :3]
     edge = flat[:, 1:] - flat[:, :1]
     area = edge[:, 0, 0] * edge[:, 1, 1] - edge[:, 0, 1] * edge[:, 1, 0]
     flat[area < 0] = flat[area < 0][:, ::-1]
     # Collinear corners give triangles narrower than a micrometre, which cannot be shaded.
-    flat = flat[np.abs(area) > 1e-6 * np.abs(edge).max(axis=(1, 2))]
-    points, index = np.unique(flat.reshape(-1, 2), axis=0, return_inverse=True)
+    wide = np.abs(area) > 1e-6 * np.abs(edge).max(axis=(1, 2))
+    corners = np.column_stack([np.repeat(owner[wide], 3), flat[wide].reshape(-1, 2)])
+    points, index = _distinct(corners)
     positions = np.column_stack([points, np.full(len(points), z)])
     up = np.tile([0.0, 0.0, 1.0], (len(points), 1))
     cosine, sine = np.cos(turn), np.sin(turn)
-    uvs = points @ np.array([[cosine, -sine], [sine, cosine]]) / tile
+    u = points[:, 0] * cosine + points[:, 1] * sine
+    v = points[:, 1] * cosine - points[:, 0] * sine
+    uvs = np.column_stack([u, v]) / tile
     return of_one_material(positions, up, uvs, index.reshape(-1, 3), material)
+
+
+def _distinct(corners: Rows) -> tuple[Rows, NDArray[np.intp]]:
+    """Return the points of polygons in order, and the index of the point of each corner.
+
+    Args:
+        corners: Number of the polygon, east, north; shape (C, 3).
+    """
+    order = np.lexsort(corners.T[::-1])
+    ordered = corners[order]
+    new = np.ones(len(order), np.bool_)
+    new[1:] = (ordered[1:] != ordered[:-1]).any(axis=1)
+    index = np.empty(len(order), np.intp)
+    index[order] = np.cumsum(new) - 1
+    return ordered[new, 1:], index
 
 
 def walls(outline: ArrayLike, bottom: float, top: float, material: Material, tile: float) -> Mesh:

@@ -1,16 +1,16 @@
-"""The first start: a second process compiles kernels while the first builds the world."""
+"""The first start: a second process does some of the work of the first."""
 
 import contextlib
 import logging
 import os
 import subprocess
 import sys
-from collections.abc import Callable
 
 import numpy as np
 
 from eyas.core.cache.folder import not_kept
-from eyas.core.jit import REFUSAL, folder_in_use, nothing_compiled
+from eyas.core.entry import nothing_compiled
+from eyas.core.jit import REFUSAL, folder_in_use
 from eyas.render.bake.ambient import AmbientMap
 from eyas.render.bake.shadows import ShadowMap
 from eyas.render.bake.tracks import TrackMap
@@ -22,58 +22,75 @@ from eyas.state.draw import DrawList, PartLibrary, Picture, Views
 from eyas.state.lighting import Lighting
 from eyas.state.scene import Scene
 
-__all__ = ["compile_ahead"]
+__all__ = ["begin_ahead", "drawing_is_ready", "other_is_ready"]
 
 _log = logging.getLogger("eyas")
 
 _PATIENCE = 300.0
-"""Longest time that a first picture waits for the second process [s]."""
+"""Longest time that this process waits for the second one [s]."""
 
-_started: list[subprocess.Popen[bytes]] = []
-"""Kept here, because Python warns of processes that are forgotten before they end."""
+_compiling: list[subprocess.Popen[bytes]] = []
+"""The second process, if it compiles; kept even after that, because Python warns of processes that
+are forgotten before they end."""
 
-_PROGRAM = "from eyas.render.ahead import draw_nothing; draw_nothing()"
+_doing_other: list[subprocess.Popen[bytes]] = []
+"""The second process, if it does something else."""
+
+_COMPILE = "from eyas.render.ahead import draw_nothing; draw_nothing()"
 
 
-def compile_ahead() -> Callable[[], object] | None:
+def begin_ahead(other: str) -> None:
     """Report a first start to the user, and use a second core for it if there is one.
 
-    Returns:
-        A function that waits until the drawing kernels can be loaded from the cache; None if there
-        is nothing to wait for. It never fails: the first picture compiles what is missing by then.
+    The second process compiles the drawing kernels while this one does everything else; if they
+    come with Eyas, it takes over some of that. It never fails: what is missing when this process
+    waits for it, this process makes.
+
+    Args:
+        other: Program that makes something which is kept in the cache, and needed by this process.
     """
-    if not nothing_compiled("draw"):
-        return None
-    cache = folder_in_use()
-    if REFUSAL:
+    compiles, cache = nothing_compiled("draw"), folder_in_use()
+    if compiles and REFUSAL:
         not_kept(REFUSAL)
-        return None
-    _log.warning(
-        "first start of this version: compiling takes about half a minute, once; cached in %s",
-        cache,
-    )
+    elif compiles:
+        _log.warning(
+            "first start of this version: compiling takes about half a minute, once; cached in %s",
+            cache,
+        )
     # A frozen program has no interpreter to start.
-    if (os.cpu_count() or 1) < 2 or getattr(sys, "frozen", False):
-        return None
-    try:
+    if REFUSAL or (os.cpu_count() or 1) < 2 or getattr(sys, "frozen", False):
+        return
+    with contextlib.suppress(OSError):
         cache.mkdir(parents=True, exist_ok=True)
         (cache / "started").touch(exist_ok=False)  # exactly one of several processes succeeds
-        path = os.pathsep.join(filter(None, sys.path))
-        process = subprocess.Popen(
-            [sys.executable, "-P", "-c", _PROGRAM],
-            env={**os.environ, "PYTHONPATH": path},
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.DEVNULL,
-        )
-    except OSError:
-        return None
-    _started.append(process)
-    return _wait
+        processes = _compiling if compiles else _doing_other
+        processes.append(_started(_COMPILE if compiles else other))
 
 
-def _wait() -> None:
-    for process in _started:
+def _started(program: str) -> subprocess.Popen[bytes]:
+    """Return a new process that runs a program."""
+    path = os.pathsep.join(filter(None, sys.path))
+    return subprocess.Popen(
+        [sys.executable, "-P", "-c", program],
+        env={**os.environ, "PYTHONPATH": path},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+    )
+
+
+def drawing_is_ready() -> None:
+    """Wait until the drawing kernels can be loaded, if the second process compiles them."""
+    _wait(_compiling)
+
+
+def other_is_ready() -> None:
+    """Wait until the other work of the second process is done, if it does any."""
+    _wait(_doing_other)
+
+
+def _wait(processes: list[subprocess.Popen[bytes]]) -> None:
+    for process in processes:
         with contextlib.suppress(subprocess.TimeoutExpired):
             process.wait(_PATIENCE)
 
@@ -82,11 +99,10 @@ def draw_nothing() -> None:
     """Draw a view of an empty scene, which compiles every drawing kernel."""
     scene = Scene.empty()
     geometry = build_geometry(scene, PartLibrary(()), {"plain": np.zeros((256, 256, 4), np.uint8)})
-    shadows = ShadowMap(np.zeros((1, 1), np.uint16), np.zeros((3, 4)), 1.0)
     ambient = AmbientMap(np.zeros((1, 1), np.uint16), np.zeros(4))
     black = (0.0, 0.0, 0.0)
     lighting = Lighting((0.0, 0.0, 1.0), black, black, black, black, black, black, 0.0)
-    light = build_light(scene, lighting, shadows, ambient, TrackMap.none(), geometry)
+    light = build_light(scene, lighting, ShadowMap.none(), ambient, TrackMap.none(), geometry)
     views = Views(
         position=np.zeros((1, 3)),
         rotation=np.eye(3)[None],

@@ -5,7 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from eyas.render.ahead import compile_ahead
+from eyas.render.ahead import begin_ahead, drawing_is_ready
 from eyas.render.renderer import Renderer, build_renderer
 from eyas.sim.scenes import load_geometry, load_scene
 from eyas.state.lighting import Lighting
@@ -64,9 +64,10 @@ def _traffic(map_name: str, seed: int, config: TrafficConfig, trackers: int) -> 
     recording = find_recording(
         recipe.roads(seed), config, trackers=trackers, shipped=recipe.shipped_traffic()
     )
+    kind = np.array([kind_index(name) for name in recording.vehicle_types], np.int32)
+    begin_ahead(f"from eyas.sim.scenes import paint; paint({np.unique(kind).tolist()})")
     # A scene depends on the season, but its ground does not.
     scene = load_scene(map_name, seed)
-    kind = np.array([kind_index(name) for name in recording.vehicle_types], np.int32)
     return Replay(kept_motion(recording, scene.terrain, kind))
 
 
@@ -74,10 +75,9 @@ def _traffic(map_name: str, seed: int, config: TrafficConfig, trackers: int) -> 
 def _renderer(world: WorldConfig, kinds: tuple[int, ...]) -> Renderer:
     recipe = MAPS.get(world.map)
     season = recipe.season(world.weather)
-    ready = compile_ahead()
     return build_renderer(
         load_scene(world.map, world.seed, season),
         load_geometry(world.map, world.seed, season, kinds),
         recipe.light(world.weather),
-        ready=ready,
+        ready=drawing_is_ready,
     )

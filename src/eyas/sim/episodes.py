@@ -78,6 +78,15 @@ class Episodes:
         self._stream[trackers] = 0
         self._episodes.number[trackers] = -1
 
+    @property
+    def steps_left(self) -> int:
+        """Physics steps until the end of the traffic, for the tracker whose time is latest."""
+        return self._last_tick - int(self._episodes.tick.max())
+
+    def rewind(self) -> None:
+        """Begin the traffic anew; takes effect when all trackers are reset at once."""
+        self._episodes.tick[:] = 0
+
     def begin(self, trackers: NDArray[np.int64]) -> NDArray[np.float64]:
         """Set target, time and offset of trackers; return their camera pitches [rad].
 

@@ -1,6 +1,6 @@
 """Scenes and their packed geometry: made once, kept on disk, shared by all weathers of a season."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import lru_cache
 from typing import TypeVar
 
@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from eyas.core.cache.cached import cached
 from eyas.core.cache.folder import Kind
+from eyas.render.ahead import other_is_ready
 from eyas.render.kernels.bundles import Geometry
 from eyas.render.pack.geometry import build_geometry
 from eyas.render.textures.library import build_textures
@@ -22,7 +23,7 @@ from eyas.traffic.network import build_network
 from eyas.world.maps import MAPS
 from eyas.world.weather import Season
 
-__all__ = ["load_geometry", "load_network", "load_scene"]
+__all__ = ["load_geometry", "load_network", "load_scene", "paint"]
 
 Thing = TypeVar("Thing")
 
@@ -67,6 +68,7 @@ def load_geometry(map_name: str, seed: int, season: Season, kinds: tuple[int, ..
     origin = _origin(map_name, seed, season, scene.network)
 
     def make() -> Geometry:
+        other_is_ready()  # which may be to `paint`
         return build_geometry(scene, _parts(kinds), _textures())
 
     inputs = None if origin is None else (*origin, names)
@@ -97,6 +99,16 @@ def _cached(
     of: type[Thing],
 ) -> Thing:
     return make() if inputs is None else cached(kind, (*makers, *_MAKERS), inputs, make, of=of)
+
+
+def paint(kinds: Sequence[int]) -> None:
+    """Put textures, and the parts of kinds of moving objects, into the cache.
+
+    Args:
+        kinds: See `load_geometry`.
+    """
+    _textures()
+    _parts(tuple(kinds))
 
 
 def _parts(kinds: tuple[int, ...]) -> PartLibrary:

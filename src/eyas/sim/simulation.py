@@ -101,6 +101,18 @@ class Simulation:
         """
         self._episodes.reseed_alone(trackers, seeds)
 
+    @property
+    def steps_left(self) -> int:
+        """Physics steps until the recorded traffic ends; afterwards all vehicles stand still.
+
+        Only shared worlds, whose time goes on from episode to episode, get there.
+        """
+        return self._episodes.steps_left
+
+    def rewind(self) -> None:
+        """Begin the traffic anew; call `reset` for all trackers next."""
+        self._episodes.rewind()
+
     def reset(self, trackers: NDArray[np.bool_] | None = None) -> None:
         """Begin a new episode.
 

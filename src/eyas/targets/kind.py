@@ -48,7 +48,7 @@ class Model(Protocol):
 
 
 class Group(NamedTuple):
-    """The G actors of one kind, and their slots in a draw list."""
+    """The G actors of one kind, and their slots in a draw list; kernels read it."""
 
     actor: NDArray[np.int64]
     """Indices of the actors, shape (G,)."""

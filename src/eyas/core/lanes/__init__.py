@@ -22,6 +22,7 @@ __all__ = [
     "gather",
     "gather_column",
     "gather_pair",
+    "gather_pair_after",
     "greater",
     "lane",
     "lane_numbers",
@@ -54,6 +55,7 @@ _MEMORY, _VALUES = "eyas.core.lanes.memory", "eyas.core.lanes.values"
 gather = Intrinsic(_MEMORY, "gather")
 gather_column = Intrinsic(_MEMORY, "gather_column")
 gather_pair = Intrinsic(_MEMORY, "gather_pair")
+gather_pair_after = Intrinsic(_MEMORY, "gather_pair_after")
 load = Intrinsic(_MEMORY, "load")
 load_words = Intrinsic(_MEMORY, "load_words")
 store = Intrinsic(_MEMORY, "store")

@@ -11,8 +11,8 @@ from eyas.core.lanes import WIDTH
 from eyas.core.lanes.kinds import F4, U4, Lanes, as_lanes, ir_type
 
 __all__ = [
-    "gather", "gather_column", "gather_pair", "load", "load_words", "store", "store_triples",
-    "store_where", "store_words", "transposed",
+    "gather", "gather_column", "gather_pair", "gather_pair_after", "load", "load_words", "store",
+    "store_triples", "store_where", "store_words", "transposed",
 ]  # fmt: skip
 
 _I32, _I64 = ir.IntType(32), ir.IntType(64)
@@ -86,6 +86,26 @@ def gather_pair(typing_context, array, index):
         return _collected(builder, result, items)
 
     return result(array, index), generate
+
+
+@intrinsic
+def gather_pair_after(typing_context, array, index, step):
+    """Return the same as `gather_pair(array, index + step)`, for one step of all lanes.
+
+    If both are gathered, the indices are taken out of the lanes only once.
+    """
+    result = _numbered(index, types.uint32)
+
+    def generate(context, builder, sig, args):
+        step = context.cast(builder, args[2], sig.args[2], types.int64)
+        items = []
+        for at in _each(builder, index, args[1]):
+            pointer = _pointer(context, builder, array, args[0], at)
+            pointer = builder.bitcast(builder.gep(pointer, [step]), _I32.as_pointer())
+            items.append(_load(builder, pointer, 2))
+        return _collected(builder, result, items)
+
+    return result(array, index, step), generate
 
 
 @intrinsic

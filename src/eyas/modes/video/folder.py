@@ -12,12 +12,12 @@ from eyas import __version__
 from eyas.core.config import validated
 from eyas.core.errors import ConfigError, DataFileError, OutputError
 from eyas.core.files import PART_SUFFIX, read_limited, refusals, write_atomic
+from eyas.core.folder_lock import LOCK
 from eyas.core.pinhole import intrinsics
 from eyas.exports.files import Files, joined
 from eyas.exports.registry import WRITERS, chosen_writers
 from eyas.exports.writer import Episode, Run
 from eyas.modes.video.contents import Contents, paths_below
-from eyas.modes.video.lock import LOCK
 from eyas.modes.video.step_log import STEP_LOGS
 from eyas.settings.config import EyasConfig
 from eyas.settings.file import read_settings, save_settings
@@ -108,7 +108,7 @@ def check_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: boo
 
 
 def open_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: bool) -> VideoFolder:
-    """Prepare a folder for recording and write the settings; call it under `recording_lock`.
+    """Prepare a folder for recording and write the settings; call it under `folder_lock`.
 
     Args:
         path: The folder; made if it does not exist.

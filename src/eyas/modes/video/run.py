@@ -5,11 +5,11 @@ from pathlib import Path
 
 from eyas.core.clock import PHYSICS_RATE
 from eyas.core.errors import ConfigError, OutputError
+from eyas.core.folder_lock import folder_lock
 from eyas.exports.registry import chosen_writers
 from eyas.modes.video.action import mover_of
 from eyas.modes.video.folder import VideoFolder, check_folder, open_folder
 from eyas.modes.video.grid import FrameGrid
-from eyas.modes.video.lock import recording_lock
 from eyas.modes.video.recorder import Recorder
 from eyas.modes.video.report import Progress, print_report
 from eyas.modes.video.step_log import step_log
@@ -60,7 +60,7 @@ def run(
         sim = build_simulation(recording_rules(config), together(config.video.channels))
         _require_traffic(config)
         sim.reset()  # raises if there are fewer targets than trackers
-    with recording_lock(folder):
+    with folder_lock(folder, "recording into it"):
         recording = open_folder(folder, config, overwrite=overwrite, resume=resume)
         _record(sim, config, recording, quiet=quiet)
 

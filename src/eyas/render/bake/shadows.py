@@ -1,6 +1,10 @@
-"""The shadow map of everything static, computed once for a scene and a sun."""
+"""The shadow map of everything static, computed once for a scene and a sun.
 
-import math
+It is made of tiles, and only those are kept in which something may cast a shadow: a sixth of
+citystreet's, whose elevated road makes the map much larger than the city.
+"""
+
+import itertools
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,8 +16,8 @@ from eyas.core.cache.folder import Kind
 from eyas.core.jit import thread_count
 from eyas.core.lanes import WIDTH
 from eyas.core.parallel import Held
-from eyas.render.kernels.bundles import Geometry, Projection, Row
-from eyas.render.kernels.light.shadow_map import BAND, ShadowBake, bake_rows
+from eyas.render.kernels.bundles import TILE, Geometry, Projection, Row
+from eyas.render.kernels.light.shadow_map import BLOCK, BLOCK_TEXELS, ShadowBake, bake_tiles
 from eyas.render.kernels.visibility.clusters import CLUSTER
 from eyas.render.kernels.visibility.fill import SPAN_ROWS
 from eyas.render.kernels.visibility.triangles import TRIANGLE_ROWS
@@ -23,16 +27,20 @@ from eyas.state.mesh import Surface
 __all__ = ["ShadowMap", "bake_shadows"]
 
 TEXEL = 0.2
-"""Side of a texel, unless the map would become too large [m]."""
+"""Side of a texel, unless the tiles would become too many [m]."""
 
-LARGEST = 6144
-"""Largest number of texels along a side."""
+MOST_TILES = 40_000
+"""Largest number of tiles: 83 MiB."""
+
+_FLAT = 0.5
+"""Static triangles less high than this above the floor cast no shadow [m]. A point is looked up
+over its surface, so a kerb could shade only a line beside it, thinner than a texel."""
 
 CARDS = 4
 """One in this many leaf cards casts a shadow: they overlap so much that all of them would
 stop all light, but the shade below crowns is dappled."""
 
-_FORMAT = "eyas shadow map 8"
+_FORMAT = "eyas shadow map 9"
 """Raise its number by 1 whenever the same scene gives different shadows."""
 
 
@@ -41,12 +49,21 @@ class ShadowMap:
     """Shadows of the static scene."""
 
     heights: NDArray[np.uint16]
-    """Height towards the sun of the first surface that sunlight meets, 0 for none,
-    shape (lines, columns)."""
+    """Height towards the sun of the first surface that sunlight meets, 0 for none: tiles of the
+    map, shape (tiles, TILE + 1, TILE + 1). The last line and column of a tile are also the first of
+    the next one, so that four neighbours always lie in one tile. Tile 0 is empty."""
+    tile: NDArray[np.int32]
+    """Number of each tile of the map, shape (rows, columns); those at its edges are empty."""
     rows: NDArray[np.float64]
     """World [m] to column, line and height of the map, shape (3, 4)."""
     texel: float
     """Side of a texel [m]."""
+
+    @classmethod
+    def none(cls) -> "ShadowMap":
+        """Return a map without shadows."""
+        heights = np.zeros((1, TILE + 1, TILE + 1), np.uint16)
+        return cls(heights, np.zeros((1, 1), np.int32), np.zeros((3, 4)), 1.0)
 
 
 def bake_shadows(
@@ -63,82 +80,131 @@ def bake_shadows(
         ground: z of the floor [m].
         folder: Folder of the cache; None: the user's.
     """
-    rows, lines, columns, texel = _frame(geometry, sun, ground)
-    heights = cached(
+    return cached(
         Kind.SHADOWS,
         (),
-        (_FORMAT, rows, lines, columns, *_casters(geometry)),
-        lambda: _bake(geometry, rows, lines, columns),
-        of=NDArray[np.uint16],
+        (_FORMAT, sun, ground, *_casters(geometry)),
+        lambda: _bake(geometry, sun, ground),
+        of=ShadowMap,
         folder=folder,
     )
-    return ShadowMap(heights, rows, texel)
 
 
-def _frame(
-    geometry: Geometry, sun: tuple[float, float, float], ground: float
-) -> tuple[NDArray[np.float64], int, int, float]:
-    """Return the map's rows, lines, columns and texel: it covers everything above the floor.
-
-    Flat ground casts no shadow, so even a very wide floor costs no texels.
-    """
+def _bake(geometry: Geometry, sun: tuple[float, float, float], ground: float) -> ShadowMap:
     toward = np.asarray(sun, np.float64) / np.linalg.norm(sun)
     right = np.array([-toward[1], toward[0], 0.0])
     right = right / np.linalg.norm(right) if np.linalg.norm(right) > 1e-6 else np.eye(3)[0]
     axes = np.stack([right, np.cross(toward, right), toward])
-    flat = _casting_points(geometry, ground + 0.5) @ axes.T
-    # Rounded, because last bits differ between processors: where the longer side is a whole
-    # number of texels, one processor would otherwise make a map of one texel more.
-    low, top = np.round(flat.min(axis=0) - 1.0, 3), np.round(flat.max(axis=0) + 1.0, 3)
-    texel = max(TEXEL, float((top - low)[:2].max()) / (LARGEST - 4))
-    size = np.ceil(np.round((top - low)[:2] / texel, 6)).astype(int) + 2
+    casting = _bounds(_casting_points(geometry, ground + _FLAT), axes)
+    texel = TEXEL
+    rows, tile = _frame(casting, axes, texel)
+    while tile.max() > MOST_TILES:
+        texel *= 1.05
+        rows, tile = _frame(casting, axes, texel)
+    heights = np.zeros((int(tile.max()) + 1, TILE + 1, TILE + 1), np.uint16)
+    _draw(geometry, ground + _FLAT, rows, tile, heights)
+    return ShadowMap(heights, tile, rows, texel)
+
+
+def _frame(
+    casting: NDArray[np.float64], axes: NDArray[np.float64], texel: float
+) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
+    """Return the rows of a map and the numbers of its tiles.
+
+    Args:
+        casting: Bounds of all that casts shadows, along the axes [m], shape (N, 6).
+        axes: Directions of the map's columns and lines, and towards the sun, shape (3, 3).
+        texel: Side of a texel [m].
+    """
+    # Rounded, because last bits differ between processors.
+    low = np.round(casting[:, :3].min(axis=0, initial=np.inf), 3) - 1.0
+    top = np.round(casting[:, 3:].max(axis=0, initial=-np.inf), 3) + 1.0
+    if len(casting) == 0:
+        low, top = np.zeros(3), np.ones(3)
     # The floor may reach lower than all casters; its height is then below 0.
-    unit = 65000.0 / float(top[2] - low[2])
-    scale = np.array([1.0 / texel, 1.0 / texel, unit])
-    rows = np.concatenate(
-        [axes * scale[:, None], (-low * scale + [1.0, 1.0, 1.0])[:, None]], axis=1
-    )
-    return rows, int(size[1]), int(size[0]), texel
+    scale = np.array([1.0 / texel, 1.0 / texel, 65000.0 / float(top[2] - low[2])])
+    first = np.array([TILE, TILE, 1.0])
+    rows = np.concatenate([axes * scale[:, None], (first - low * scale)[:, None]], axis=1)
+    # One texel more on all sides: the light of a point is blended over four.
+    edges = np.floor(
+        (np.round((casting.reshape(-1, 2, 3)[:, :, :2] - low[:2]) / texel, 3) + TILE + [[-1], [1]])
+        / TILE
+    ).astype(np.int64)
+    size = np.ceil((top - low)[:2] / (texel * TILE)).astype(int) + 2
+    columns, lines = size + -size % BLOCK
+    # How many rectangles begin or end at each tile; summed up, how many it lies in.
+    changes = np.zeros((lines + 1, columns + 1), np.int64)
+    (left, up), (over, below) = edges[:, 0].T, edges[:, 1].T + 1
+    for line, column, sign in ((up, left, 1), (below, over, 1), (up, over, -1), (below, left, -1)):
+        np.add.at(changes, (line, column), sign)
+    shaded = changes.cumsum(axis=0).cumsum(axis=1)[:lines, :columns] > 0
+    return rows, np.where(shaded, np.cumsum(shaded).reshape(shaded.shape), 0).astype(np.int32)
+
+
+def _bounds(things: NDArray[np.float64], axes: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the bounds of things along axes: three least values, three largest, shape (N, 6).
+
+    Args:
+        things: Corners of each thing [m], shape (N, K, 3).
+        axes: Shape (3, 3), or (3, 4) with an offset.
+    """
+    places = things @ axes[:, :3].T + (axes[:, 3] if axes.shape[1] == 4 else 0.0)
+    return np.concatenate([places.min(axis=1), places.max(axis=1)], axis=1)
+
+
+def _box_corners(boxes: NDArray[np.float32]) -> NDArray[np.float64]:
+    """Return the corners of boxes, shape (N, 8, 3)."""
+    sides = itertools.product((0, 3), (1, 4), (2, 5))
+    return np.stack([boxes[:, side] for side in sides], axis=1).astype(np.float64)
 
 
 def _casting_points(geometry: Geometry, height: float) -> NDArray[np.float64]:
-    """Return all corners of static triangles and of fixtures' boxes that reach a height [m]."""
+    """Return corners of static triangles and of fixtures that reach a height [m], shape (N, 8, 3).
+
+    Flat ground casts no shadow, so even a very wide floor costs no tiles.
+    """
     last = geometry.chunk_range[-1, 1] if len(geometry.chunk_range) else 0
     static = corners_of(geometry.cluster)[:last]
-    boxes = geometry.box[geometry.fixture_prototype]
-    corners = np.stack(
-        [boxes[:, (i, j, k)] for i in (0, 3) for j in (1, 4) for k in (2, 5)], axis=1
-    )
+    static = static[static[:, :, 2].max(axis=1) > height].astype(np.float64)
+    boxes = _box_corners(geometry.box[geometry.fixture_prototype])
     linear, offset = geometry.fixture_pose[:, :, :3], geometry.fixture_pose[:, :, 3]
-    posed = np.einsum("fij,fcj->fci", linear, corners) + offset[:, None]
-    points = [
-        things[things[:, :, 2].max(axis=1) > height].reshape(-1, 3) for things in (static, posed)
-    ]
-    found = np.concatenate(points).astype(np.float64)
-    return found if len(found) else np.zeros((1, 3))
+    posed = np.einsum("fij,fcj->fci", linear, boxes) + offset[:, None]
+    posed = posed[posed[:, :, 2].max(axis=1) > height]
+    return np.concatenate([static[:, [0, 1, 2, 0, 1, 2, 0, 1]], posed])
 
 
-def _bake(
-    geometry: Geometry, rows: NDArray[np.float64], lines: int, columns: int
-) -> NDArray[np.uint16]:
-    heights = np.zeros((lines, columns), np.uint16)
+def _draw(
+    geometry: Geometry,
+    flat: float,
+    rows: NDArray[np.float64],
+    tile: NDArray[np.int32],
+    heights: NDArray[np.uint16],
+) -> None:
+    """Fill the tiles of a map with what reaches above z = `flat` [m]."""
     cards = _cards(geometry)
     solid = [
         not cards[geometry.material[first:last]].any()
         for first, last in geometry.mesh_range[geometry.level_first[: geometry.part_first], :2]
     ]
-    workers = min(thread_count(), math.ceil(lines / BAND))
+    chunks, fixtures = len(geometry.chunk_range), len(geometry.fixture_prototype)
+    boxes = np.concatenate([geometry.chunk_box[:, :chunks].T, geometry.fixture_box[:, :fixtures].T])
+    reach = _bounds(_box_corners(boxes), rows)[:, [0, 1, 3, 4]] + [-1.0, -1.0, 1.0, 1.0]
+    blocks = tile.reshape(len(tile) // BLOCK, BLOCK, -1, BLOCK).any(axis=(1, 3))
+    workers = min(thread_count(), int(blocks.sum()))
     bake = ShadowBake(
         cards=cards,
         thin=np.array(solid, np.bool_),
+        flat=flat,
         sun=Projection(*[Row(*row) for row in rows.tolist()]),
+        reach=reach.astype(np.float32),
+        block=(BLOCK * np.argwhere(blocks)).astype(np.int32),
+        tile=tile,
         triangle=np.empty((workers, TRIANGLE_ROWS, CLUSTER)),
         span=np.empty((workers, SPAN_ROWS, WIDTH), np.int32),
-        key=np.empty((workers, BAND, columns + -columns % WIDTH), np.int64),
-        shadow_map=heights,
+        key=np.empty((workers, BLOCK_TEXELS, BLOCK_TEXELS + -BLOCK_TEXELS % WIDTH), np.int64),
+        heights=heights,
     )
-    bake_rows(workers, Held(geometry), Held(bake))
-    return heights
+    bake_tiles(workers, Held(geometry), Held(bake))
 
 
 def _cards(geometry: Geometry) -> NDArray[np.int32]:

@@ -40,6 +40,9 @@ _FIXTURE_CELL = 6.0
 _HIGH = 4.0
 """Height above which things are grouped separately [m]."""
 
+_Palette = tuple[tuple[Material, ...], NDArray[np.int32], NDArray[np.bool_]]
+"""Materials, their indices in the palette of the pool, and whether they are of leaves."""
+
 
 def build_geometry(
     scene: Scene, parts: PartLibrary, textures: Mapping[str, NDArray[np.uint8]]
@@ -129,6 +132,7 @@ class _Pool:
         self.objects: list[NDArray[np.int32]] = []
         self._cluster_count = 0
         self._bounds_count = 0
+        self._last: _Palette = ((), np.zeros(0, np.int32), np.zeros(0, np.bool_))
 
     def add(
         self,
@@ -138,16 +142,13 @@ class _Pool:
     ) -> tuple[int, int, int]:
         """Append a mesh; return its ranges as in `Geometry.mesh_range`."""
         keep = np.flatnonzero(solid_triangles(mesh))
-        leafy = np.array([m.surface == Surface.FOLIAGE for m in mesh.palette], np.bool_)
+        lookup, leafy = self._looked_up(mesh.palette)
         size = np.full(len(keep), np.inf, np.float32) if sizes is None else sizes[keep]
         order = cluster_order(
             mesh.positions[mesh.triangles[keep]], size, leafy[mesh.materials[keep]]
         )
         keep, size = keep[order], size[order]
         triangles, material = mesh.triangles[keep], mesh.materials[keep]
-        lookup = np.array(
-            [self.palette.setdefault(m, len(self.palette)) for m in mesh.palette], np.int32
-        )
         slopes = gradients(mesh.positions, mesh.normals, mesh.uvs, triangles)
         clusters = clusters_of(
             mesh.positions[triangles],
@@ -166,6 +167,16 @@ class _Pool:
         self._cluster_count += len(clusters)
         self._bounds_count += len(bounds)
         return first, first + len(keep), row
+
+    def _looked_up(
+        self, palette: tuple[Material, ...]
+    ) -> tuple[NDArray[np.int32], NDArray[np.bool_]]:
+        """Return the index in the pool's palette of each material, and whether it is of leaves."""
+        if self._last[0] is not palette:  # all chunks have the same
+            index = [self.palette.setdefault(m, len(self.palette)) for m in palette]
+            leafy = [material.surface == Surface.FOLIAGE for material in palette]
+            self._last = palette, np.array(index, np.int32), np.array(leafy, np.bool_)
+        return self._last[1:]
 
 
 def _add_chunks(pool: _Pool, scene: Scene) -> tuple[NDArray[np.int32], NDArray[np.float32]]:

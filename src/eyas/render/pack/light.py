@@ -12,13 +12,21 @@ from eyas.render.bake.clouds import build_clouds
 from eyas.render.bake.hills import build_hills, far_ground
 from eyas.render.bake.shadows import ShadowMap
 from eyas.render.bake.tracks import TrackMap
-from eyas.render.kernels.bundles import Air, Direction, Geometry, Illumination, Light, MapFrame
+from eyas.render.kernels.bundles import (
+    TILE,
+    Air,
+    Direction,
+    Geometry,
+    Illumination,
+    Light,
+    MapFrame,
+)
 from eyas.render.kernels.light.tone import TONE_STEPS, TONE_TOP
 from eyas.render.pack.lamp_grid import lamp_grid
 from eyas.state.lighting import Lighting
 from eyas.state.scene import Scene
 
-__all__ = ["build_light", "tone_table"]
+__all__ = ["build_light", "tile_starts", "tone_table"]
 
 
 def build_light(
@@ -43,7 +51,8 @@ def build_light(
     )
     return Light(
         weather=_weather(lighting, toward, shadows),
-        shadow_map=shadows.heights,
+        shadow_texel=shadows.heights,
+        shadow_tile=tile_starts(shadows.tile),
         shadow_rows=np.ascontiguousarray(shadows.rows, np.float32),
         ambient=ambient.openness,
         ambient_frame=MapFrame(*_floats(ambient.frame)),
@@ -57,6 +66,13 @@ def build_light(
         clouds=clouds,
         hills=hills,
     )
+
+
+def tile_starts(tile: NDArray[np.int32]) -> NDArray[np.int32]:
+    """Return `Light.shadow_tile` of the numbers of tiles."""
+    line, column = np.indices(tile.shape, np.int32) * TILE
+    starts: NDArray[np.int32] = tile * (TILE + 1) ** 2 - line * (TILE + 1) - column
+    return starts
 
 
 def _weather(

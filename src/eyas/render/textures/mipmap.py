@@ -19,6 +19,10 @@ def linear(values: NDArray[np.floating]) -> NDArray[np.float64]:
     return np.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4)
 
 
+_LINEAR = linear(np.arange(256) / 255.0)
+"""Linear value of each byte of sRGB."""
+
+
 def packed_layers(
     textures: Mapping[str, NDArray[np.uint8]], names: Sequence[str]
 ) -> NDArray[np.uint32]:
@@ -44,7 +48,7 @@ def packed_layers(
 
 def _packed(image: NDArray[np.uint8]) -> NDArray[np.uint32]:
     texels = image[::-1].astype(np.float64) / 255.0  # v grows upwards, rows grow downwards
-    texels[..., :3] = linear(texels[..., :3])
+    texels[..., :3] = _LINEAR[image[::-1, :, :3]]
     levels = []
     while True:
         encoded = np.concatenate([np.sqrt(texels[..., :3]), texels[..., 3:]], axis=-1)

@@ -20,7 +20,7 @@ __all__ = [
 
 VEHICLE_AHEAD = -1.0
 """Distance of the middle of a vehicle, the point that the reward uses, ahead of the actor's
-reference point [m]: the original rewards a point 1 m behind it."""
+reference point [m]: the original rewards a point 1 m behind it; kernels read it."""
 
 LEAN_LIMIT = 0.2
 """Largest lean of two-wheelers in a curve [rad]; the original's limit of the yaw rate [rad/s]."""

@@ -75,8 +75,9 @@ def place_buildings(
     base: list[int] = []
     for ground, angle, members in _shared(blocks, areas, keep_free):
         wanted = [(float(areas[i]), i in carriers) for i in members]
+        keep = [turned(part, -angle) for part in shapely.get_parts(keep_free)]
         for lot, carrier in divide(ground, wanted):
-            shape = _clear(footprint_in(lot, rng, plain=carrier), angle, keep_free)
+            shape = _clear(footprint_in(lot, rng, plain=carrier), keep)
             if shape.area >= 6.0:
                 shapes.append(turned(shape, angle))
                 base.append(-1)
@@ -107,13 +108,12 @@ def _shared(
     return [entry for entry in zip(grounds, angles, members, strict=True) if entry[2]]
 
 
-def _clear(shape: shapely.Polygon, angle: float, keep_free: shapely.Geometry) -> shapely.Polygon:
+def _clear(shape: shapely.Polygon, keep_free: Sequence[shapely.Polygon]) -> shapely.Polygon:
     """Return a footprint without the boxes around the kept-free areas in it."""
-    for part in shapely.get_parts(keep_free):
-        local = turned(part, -angle)
-        if local.intersects(shape):
-            local = shapely.box(*local.bounds) if part.area <= _SMALL else local
-            shape = largest(shapely.difference(shape, local))
+    for part in keep_free:
+        if part.intersects(shape):
+            taken = shapely.box(*part.bounds) if part.area <= _SMALL else part
+            shape = largest(shapely.difference(shape, taken))
     return _without_courts(shape)
 
 

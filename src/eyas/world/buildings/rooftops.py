@@ -87,7 +87,7 @@ def _spot(free: shapely.Geometry, radius: float, rng: np.random.Generator) -> Ou
     west, south, east, north = room.bounds
     for _ in range(12):
         point = rng.uniform((west, south), (east, north))
-        if room.contains(shapely.Point(point)):
+        if shapely.contains_xy(room, *point):
             return np.asarray(point, np.float64)
     return None
 

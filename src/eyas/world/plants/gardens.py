@@ -46,22 +46,24 @@ def paved_yards(
         pavement: Pavements, to which paths lead [m].
         keep_free: Roads, pavements, car parks and pools [m].
     """
-    solid = shapely.union_all([shapely.Polygon(corners) for corners in footprints])
-    made = []
-    done: shapely.Geometry = shapely.Polygon()
-    for corners in footprints:
-        shape = shapely.Polygon(corners)
-        others = shapely.difference(solid, shape)
+    shapes = [shapely.Polygon(corners) for corners in footprints]
+    free = shapely.get_parts(keep_free)
+    shapely.prepare(free)
+    made: list[shapely.Geometry] = []
+    done: list[shapely.Geometry] = []
+    for index, (corners, shape) in enumerate(zip(footprints, shapes, strict=True)):
+        others = shapes[:index] + shapes[index + 1 :]
         paths = sorted(_paths(corners, pavement, others), key=lambda path: float(path.area))
         yard = shapely.union_all([shapely.buffer(shape, _APRON, join_style="mitre"), *paths[:2]])
-        yard = shapely.difference(yard, shapely.union_all([keep_free, others, done]))
-        done = shapely.union(done, yard)
+        near = [part for part in (*free, *others, *done) if shapely.intersects(part, yard)]
+        yard = shapely.difference(yard, shapely.union_all(near))
+        done.append(yard)
         made.append(shapely.simplify(yard, 0.02))
     return made
 
 
 def _paths(
-    corners: Points, pavement: shapely.Geometry, others: shapely.Geometry
+    corners: Points, pavement: shapely.Geometry, others: Sequence[shapely.Geometry]
 ) -> Iterator[shapely.Polygon]:
     """Yield straight paths from the middle of walls to a pavement, where nothing is in the way."""
     for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
@@ -72,7 +74,7 @@ def _paths(
         door = (start + end) / 2
         ray = shapely.LineString([door, door + _LONGEST_PATH * outwards])
         hit = shapely.intersection(ray, pavement)
-        if not hit.is_empty and not ray.intersects(others):
+        if not hit.is_empty and not shapely.intersects(ray, others).any():
             reach = shapely.distance(shapely.Point(door), hit) + 0.3
             side = _PATH / 2 * along
             far = door + reach * outwards

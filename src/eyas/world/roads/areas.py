@@ -9,7 +9,7 @@ import shapely
 from numpy.typing import NDArray
 
 from eyas.mesh.assembly import concatenate
-from eyas.mesh.flat import flat_polygon, wall_along
+from eyas.mesh.flat import flat_polygons, wall_along
 from eyas.state.mesh import Material, Mesh
 from eyas.state.roads import RoadNetwork
 from eyas.world.build.millimetres import dot, snapped
@@ -154,17 +154,18 @@ def split_on_grid(shape: shapely.Geometry, cell: float = GRID) -> list[shapely.P
         shape: Polygons [m].
         cell: Distance between the lines [m].
     """
-    west, south, east, north = shape.bounds
+    if shape.is_empty:
+        return []
     shapely.prepare(shape)
-    parts: list[shapely.Polygon] = []
-    for x in np.arange(np.floor(west / cell), np.ceil(east / cell)) * cell:
-        for y in np.arange(np.floor(south / cell), np.ceil(north / cell)) * cell:
-            square = shapely.box(x, y, x + cell, y + cell)
-            if shapely.contains_properly(shape, square):
-                parts.append(square)
-            elif shapely.intersects(shape, square):
-                parts.extend(polygons_of(shapely.intersection(shape, square)))
-    return parts
+    west, south, east, north = np.array(shape.bounds) / cell
+    columns = np.arange(np.floor(west), np.ceil(east)) * cell
+    rows = np.arange(np.floor(south), np.ceil(north)) * cell
+    x, y = (axis.ravel() for axis in np.meshgrid(columns, rows, indexing="ij"))
+    squares = shapely.box(x, y, x + cell, y + cell)
+    squares = squares[shapely.intersects(shape, squares)]
+    cut = ~shapely.contains_properly(shape, squares)
+    squares[cut] = shapely.intersection(shape, squares[cut])
+    return polygons_of(squares)
 
 
 def surface(
@@ -179,8 +180,7 @@ def surface(
         tile: Size of one repeat of the texture [m].
         turn: Angle of the texture, counter-clockwise [rad].
     """
-    parts = split_on_grid(shape)
-    return concatenate([flat_polygon(part, z, material, tile, turn) for part in parts])
+    return flat_polygons(split_on_grid(shape), z, material, tile, turn)
 
 
 def skirt(
@@ -201,7 +201,8 @@ def skirt(
 def polygons_of(shape: shapely.Geometry | Sequence[shapely.Geometry]) -> list[shapely.Polygon]:
     """Return the polygons within any shape, without slivers below a square centimetre."""
     parts = shapely.get_parts(shapely.get_parts(shape))
-    return [part for part in parts if isinstance(part, shapely.Polygon) and part.area > 1e-4]
+    polygons = shapely.get_type_id(parts) == shapely.GeometryType.POLYGON
+    return list(parts[polygons & (shapely.area(parts) > 1e-4)])
 
 
 def _bends(network: RoadNetwork) -> list[tuple[Line, float]]:

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from shapely.ops import substring
 
 from eyas.mesh.assembly import concatenate
-from eyas.mesh.flat import flat_polygon
+from eyas.mesh.flat import flat_polygons
 from eyas.state.mesh import Material, Mesh
 from eyas.state.roads import RoadNetwork
 from eyas.world.build.materials import TEXTURES, material
@@ -118,9 +118,7 @@ def painted(shapes: Sequence[shapely.Polygon], paint: Material) -> Mesh:
         for shape in shapes
         for part in (split_on_grid(shape) if shape.length > 60.0 else [shape])
     ]
-    return concatenate(
-        [flat_polygon(piece, PAINT_HEIGHT, paint, TEXTURES["paint"]) for piece in pieces]
-    )
+    return flat_polygons(pieces, PAINT_HEIGHT, paint, TEXTURES["paint"])
 
 
 def _chains(all_streets: list[Street], meeting: dict[str, int]) -> list[list[tuple[Line, ...]]]:

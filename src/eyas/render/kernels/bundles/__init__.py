@@ -11,6 +11,7 @@ themselves. Numbers of a bundle are float32 if their names are those of light, e
 
 from eyas.render.kernels.bundles.geometry import GROUP, Geometry, Movers
 from eyas.render.kernels.bundles.light import (
+    TILE,
     Air,
     Direction,
     Illumination,
@@ -24,6 +25,7 @@ from eyas.render.kernels.bundles.work import Job, Output, Scratch, Task
 __all__ = [
     "GROUP",
     "NEAR",
+    "TILE",
     "Air",
     "Direction",
     "Geometry",

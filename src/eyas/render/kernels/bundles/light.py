@@ -5,7 +5,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Air", "Direction", "Illumination", "LampFrame", "Light", "MapFrame"]
+__all__ = ["TILE", "Air", "Direction", "Illumination", "LampFrame", "Light", "MapFrame"]
+
+TILE = 32
+"""Texels of the shadow map from one tile to the next."""
 
 
 class Direction(NamedTuple):
@@ -78,8 +81,12 @@ class Light(NamedTuple):
     """Light of a weather, and the maps that tell what reaches a point."""
 
     weather: Illumination
-    shadow_map: NDArray[np.uint16]
-    """Height towards the sun of the first thing that sunlight meets, shape (rows, columns)."""
+    shadow_texel: NDArray[np.uint16]
+    """Height towards the sun of the first thing that sunlight meets, see
+    `eyas.render.bake.shadows.ShadowMap.heights`, shape (., TILE + 1, TILE + 1)."""
+    shadow_tile: NDArray[np.int32]
+    """For each tile of the map, where texel (0, 0) of the map would lie in `shadow_texel` if the
+    tile went on up to there, shape (rows, columns). Those at the edges of the map are empty."""
     shadow_rows: NDArray[np.float32]
     """World to column, row and height of the shadow map, shape (3, 4)."""
     ambient: NDArray[np.uint16]

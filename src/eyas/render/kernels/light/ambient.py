@@ -7,7 +7,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.jit import inlined_kernel, inner_kernel
-from eyas.core.lanes import gather_pair, greater, lesser, like, select, to_f4, to_i4
+from eyas.core.lanes import (
+    gather_pair,
+    gather_pair_after,
+    greater,
+    lesser,
+    like,
+    select,
+    to_f4,
+    to_i4,
+)
 from eyas.core.parallel import Pointer, parallel_kernel
 from eyas.render.kernels.bundles import Light
 from eyas.render.kernels.scalars import f4, i4, u4
@@ -147,8 +156,7 @@ def openness(light: Light, x: float, y: float, z: float, normal_x: float, normal
     i, j = to_i4(row), to_i4(column)
     across, down = column - to_f4(j), row - to_f4(i)
     at = i * i4(columns) + j
-    below = at + select(inside, i4(columns), i4(0))
-    upper, lower = gather_pair(shares, at), gather_pair(shares, below)
+    upper, lower = gather_pair(shares, at), gather_pair_after(shares, at, columns)
     byte, half = u4(255), u4(16)
     a, b = to_f4(upper & byte), to_f4((upper >> half) & byte)
     c, d = to_f4(lower & byte), to_f4((lower >> half) & byte)

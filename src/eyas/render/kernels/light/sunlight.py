@@ -1,40 +1,58 @@
 """Light that comes straight from the sun."""
 
 from eyas.core.jit import inlined_kernel
-from eyas.core.lanes import any_of, gather_pair, greater, like, select, to_f4, to_i4
-from eyas.render.kernels.bundles import Direction, Light
+from eyas.core.lanes import (
+    any_of,
+    gather,
+    gather_pair,
+    gather_pair_after,
+    greater,
+    lesser,
+    like,
+    select,
+    to_f4,
+    to_i4,
+)
+from eyas.render.kernels.bundles import TILE, Direction, Light
 from eyas.render.kernels.scalars import f4, i4, u4
 
-__all__ = ["sunlight"]
+__all__ = ["sunlight", "sunlit"]
+
+TILE_BITS = i4(TILE.bit_length() - 1)
 
 
 @inlined_kernel
-def _sunlit(light: Light, x: float, y: float, z: float) -> float:
+def _first_texel(light: Light, line: int, column: int) -> int:
+    """Return the index in `Light.shadow_texel` of a texel of the map; its neighbours in the next
+    column and line, and the one beside both, lie in the same tile.
+    """
+    tile = (line >> TILE_BITS) * i4(light.shadow_tile.shape[1]) + (column >> TILE_BITS)
+    return gather(light.shadow_tile, tile) + line * i4(TILE + 1) + column
+
+
+@inlined_kernel
+def sunlit(light: Light, x: float, y: float, z: float) -> float:
     """Return how much of the sun reaches a point, 0 to 1, blended over four texels."""
-    rows, heights = light.shadow_rows, light.shadow_map
-    column = x * rows[0, 0] + y * rows[0, 1] + z * rows[0, 2] + (rows[0, 3] - f4(0.5))
+    rows, texels = light.shadow_rows, light.shadow_texel
+    lines, columns = light.shadow_tile.shape
+    column = x * rows[0, 0] + y * rows[0, 1] + (rows[0, 3] - f4(0.5))  # which are level
     line = x * rows[1, 0] + y * rows[1, 1] + z * rows[1, 2] + (rows[1, 3] - f4(0.5))
     height = x * rows[2, 0] + y * rows[2, 1] + z * rows[2, 2] + rows[2, 3]
-    lines, columns = heights.shape
     zero, one = f4(0.0), like(x, f4(1.0))
-    height = greater(height, zero)  # the map's zero is nothing at all
-    inside = (column > zero) & (line > zero)
-    inside &= (column < f4(columns - 2)) & (line < f4(lines - 2))
-    column, line = select(inside, column, zero), select(inside, line, zero)
+    # The outermost tiles are empty: places beyond them are lit, like theirs.
+    column = greater(lesser(column, f4(columns * TILE - 1)), zero)
+    line = greater(lesser(line, f4(lines * TILE - 1)), zero)
+    top = to_i4(greater(height, zero))  # the map's zero is nothing at all
     i, j = to_i4(line), to_i4(column)
     across, down = column - to_f4(j), line - to_f4(i)
-    at = i * i4(columns) + j
-    upper, lower = (
-        gather_pair(heights, at),
-        gather_pair(heights, at + select(inside, i4(columns), i4(0))),
-    )
-    half, low = u4(16), u4(0xFFFF)
-    a = select(to_f4(upper & low) <= height, one, zero)
-    b = select(to_f4(upper >> half) <= height, one, zero)
-    c = select(to_f4(lower & low) <= height, one, zero)
-    d = select(to_f4(lower >> half) <= height, one, zero)
-    above, below = a + across * (b - a), c + across * (d - c)
-    return select(inside, above + down * (below - above), one)
+    at = _first_texel(light, i, j)
+    upper, lower = gather_pair(texels, at), gather_pair_after(texels, at, TILE + 1)
+    half, low, left = u4(16), u4(0xFFFF), one - across
+    above = select(to_i4(upper & low) <= top, left, zero)
+    above += select(to_i4(upper >> half) <= top, across, zero)
+    below = select(to_i4(lower & low) <= top, left, zero)
+    below += select(to_i4(lower >> half) <= top, across, zero)
+    return above + down * (below - above)
 
 
 @inlined_kernel
@@ -71,6 +89,6 @@ def sunlight(
     if any_of(faces):
         x, y, z = point
         x, y, z = x + away * normal[0], y + away * normal[1], z + away * normal[2]
-        reaching = sun_share * (through + (one - through) * _sunlit(light, x, y, z))
+        reaching = sun_share * (through + (one - through) * sunlit(light, x, y, z))
         reaching = select(faces, reaching, zero)
     return select(faces, lean, zero) * reaching, reaching

@@ -19,7 +19,8 @@ CULLING = int(DrawStage.CULLING)
 SHADING = int(DrawStage.SHADING)
 
 MEASURED_EVERY = 16
-"""Things drawn before it is measured again what they hide."""
+"""Things drawn before it is measured again what they hide; later a quarter of those drawn so far,
+since the first are the nearest: with thousands of things, it took a fifth of the time."""
 
 SMALLEST_DETAIL = 0.35
 """Details whose area has a smaller root are left out [pixels]."""
@@ -111,11 +112,13 @@ def _draw_listed(
     chunks, fixtures = geometry.chunk_range.shape[0], len(geometry.fixture_prototype)
     tiles = scratch.tiles[worker]
     _shell_sort(order, listed)
+    measured = i8(MEASURED_EVERY)
     for k in range(listed):
         item = order[k] & i8(0xFFFFFFFF)
         if k >= MEASURED_EVERY:
-            if k % MEASURED_EVERY == 0:
+            if k == measured:
                 measure_tiles(key, view.width, tiles)
+                measured += max(i8(MEASURED_EVERY), measured >> i8(2))
             if _is_hidden(geometry, item, drawn, view, tiles):
                 continue
         if item < chunks:

@@ -1,4 +1,4 @@
-"""The lock by which only one process at a time records into a folder."""
+"""The lock by which only one process at a time works in a folder."""
 
 import errno
 import logging
@@ -16,29 +16,33 @@ try:
 except ImportError:  # Windows
     fcntl = None  # type: ignore[assignment]
 
-__all__ = ["LOCK", "recording_lock"]
+__all__ = ["LOCK", "folder_lock"]
 
 LOCK = ".lock"
-"""File that exists during a recording; it holds the process id of the recorder."""
+"""File that exists while a process works in a folder; it holds the id of that process."""
 
 _LOG = logging.getLogger("eyas")
 
 
 @contextmanager
-def recording_lock(folder: Path) -> Iterator[None]:
+def folder_lock(folder: Path, doing: str) -> Iterator[None]:
     """Lock a folder for this process; the folder is made if it does not exist.
 
     The system releases the lock when the process ends for any reason, so the file of a killed
-    recorder blocks no other process. Without file locks (on Windows and on some network file
-    systems), a warning is logged instead.
+    process blocks no other. Without file locks (on Windows and on some network file systems), a
+    warning is logged instead.
+
+    Args:
+        folder: The folder.
+        doing: What the process does in it, for messages, such as `recording into it`.
 
     Raises:
-        OutputError: Another process records into it, or writing failed.
+        OutputError: Another process holds the lock, or writing failed.
     """
     path = folder / LOCK
     with refusals(path):
         folder.mkdir(parents=True, exist_ok=True)
-        file = _locked(path)
+        file = _locked(path, doing)
     with file:
         try:
             yield
@@ -48,7 +52,7 @@ def recording_lock(folder: Path) -> Iterator[None]:
                 path.unlink(missing_ok=True)
 
 
-def _locked(path: Path) -> TextIO:
+def _locked(path: Path, doing: str) -> TextIO:
     while True:
         file = path.open("a+")
         try:
@@ -58,14 +62,13 @@ def _locked(path: Path) -> TextIO:
             owner = file.read() or "that just began"
             file.close()
             raise OutputError(
-                f"{path.parent}: process {owner} is recording into it;"
+                f"{path.parent}: process {owner} is {doing};"
                 " wait for it to end, or name another folder"
             ) from None
         except OSError as error:
             _LOG.warning(
-                "%s: no file locks here; make sure that only one process records into this "
-                "folder: %s",
-                *(path, error.strerror),
+                "%s: no file locks here; make sure that no other process is %s: %s",
+                *(path, doing, error.strerror),
             )
             return file
         if _is_at(file, path):

@@ -1,0 +1,54 @@
+"""`eyas serve`."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from eyas.cli.options import (
+    ConfigFile,
+    MapName,
+    Overrides,
+    Preset,
+    Seed,
+    Weather,
+    chosen_file,
+    gathered,
+)
+
+__all__ = ["command"]
+
+
+def command(  # noqa: PLR0913  # one parameter for each option
+    root: Annotated[
+        Path,
+        typer.Option(
+            "--root",
+            help="Folder of the DAT benchmark, with Webots_Simulation and Alg_Base, or an empty "
+            "one. Its env_config.json is used unless --config or --preset is given.",
+        ),
+    ],
+    config: ConfigFile = None,
+    preset: Preset = None,
+    map_name: MapName = None,
+    weather: Weather = None,
+    seed: Seed = None,
+    set_: Overrides = None,
+) -> None:
+    """Serve algorithm code of the DAT benchmark in the place of its simulator, until Ctrl-C."""
+    from eyas.settings.config import Mode
+    from eyas.settings.file import load_settings
+    from eyas.settings.version_check import require_supported
+    from eyas.wire.exchange import SETTINGS_FILE
+
+    file = chosen_file(config, preset)
+    if file is None and (root / SETTINGS_FILE).exists():
+        file = root / SETTINGS_FILE
+    settings = load_settings(file, gathered(set_, map_name, weather, seed))
+    require_supported(settings)
+    if settings.original is not None and settings.mode is not Mode.TRAIN:
+        said = f"mode (Simulation_Mode) is '{settings.mode}'; 'eyas serve' trains anyway"
+        typer.echo(f"eyas: note: {said}", err=True)
+    from eyas.modes.serve.run import run  # after all checks
+
+    run(settings, root)

@@ -1,0 +1,1 @@
+"""Serving clients of the original."""

@@ -1,0 +1,100 @@
+"""UDP messages by which clients announce how many agents there will be."""
+
+import logging
+import socket
+import time
+from contextlib import suppress
+
+from eyas.core.errors import ConfigError, OutputError
+
+__all__ = ["MOST_AGENTS", "Announcements"]
+
+MOST_AGENTS = 1024
+"""Largest number of agents, as of the channels of a recording."""
+
+_LONGEST = 256
+"""Largest message that is read whole, as by the original [bytes]."""
+
+_LOG = logging.getLogger("eyas")
+
+
+class Announcements:
+    """A UDP socket on which each client sends the number of all clients, in digits.
+
+    Args:
+        address: Address to listen on.
+        port: Port to listen on.
+
+    Raises:
+        ConfigError: No such address on this machine.
+        OutputError: The port is not free.
+    """
+
+    def __init__(self, address: str, port: int) -> None:
+        try:
+            family, kind, _, _, place = socket.getaddrinfo(
+                address, port, type=socket.SOCK_DGRAM, flags=socket.AI_PASSIVE
+            )[0]
+        except (OSError, UnicodeError) as error:
+            raise ConfigError(f"wire.address: {address!r} is no network address: {error}") from None
+        self._socket = socket.socket(family, kind)
+        self._told = -1.0
+        try:
+            self._socket.bind(place)
+        except OSError as error:
+            self._socket.close()
+            raise OutputError(
+                f"wire.port: cannot listen on UDP port {port} of {address}: {error.strerror}; "
+                "another server may use it: choose another, in the clients' port_process too"
+            ) from None
+
+    def close(self) -> None:
+        """Close the socket."""
+        self._socket.close()
+
+    def wait(self) -> int:
+        """Wait for the first announcement; return the number of agents."""
+        self._socket.settimeout(0.5)  # not for ever: some systems let no signal in before
+        while True:
+            with suppress(TimeoutError):
+                count = self._next()
+                if count is not None:
+                    return count
+
+    def poll(self) -> int | None:
+        """Return the number of agents in the last announcement; None if there is none."""
+        self._socket.settimeout(0.0)
+        last = None
+        for _ in range(MOST_AGENTS):  # not for ever, should someone send without end
+            try:
+                last = self._next() or last
+            except BlockingIOError:
+                break
+        return last
+
+    def _next(self) -> int | None:
+        """Return the number in the next message; None if it has none.
+
+        Raises:
+            BlockingIOError: There is no message.
+            TimeoutError: There is none yet.
+        """
+        try:
+            message, sender = self._socket.recvfrom(_LONGEST)
+        except ConnectionError:  # some systems tell so that an earlier message was not heard
+            return None
+        text = message.strip()
+        if text.isdigit() and len(text) <= 4 and 1 <= int(text) <= MOST_AGENTS:
+            return int(text)
+        self._tell(message, sender[0])
+        return None
+
+    def _tell(self, message: bytes, sender: str) -> None:
+        """Report a message that is no number of agents, one of many in a second."""
+        now = time.monotonic()
+        if self._told < 0.0 or now - self._told > 1.0:
+            self._told = now
+            _LOG.warning(
+                "message %r from %s ignored: not a number of agents, 1 to %d",
+                *(message[:40], sender, MOST_AGENTS),
+            )

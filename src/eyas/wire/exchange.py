@@ -1,0 +1,113 @@
+"""The folder of the original in which its simulator and its clients exchange files."""
+
+import os
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from eyas.core.errors import DataFileError, OutputError
+from eyas.core.files import PART_SUFFIX, refusals, write_atomic
+from eyas.core.folder_lock import folder_lock
+
+__all__ = ["SETTINGS_FILE", "Exchange", "Names"]
+
+_SIMULATOR = Path("Webots_Simulation", "traffic_project")
+
+SETTINGS_FILE = _SIMULATOR / "config" / "env_config.json"
+"""The settings of the original's simulator, below its root; its clients read them too."""
+
+_START = "start.txt"
+_OURS = re.compile(
+    r"(DRONE|CAR)\d+_(AlgAction|Ctrl2Global|RewardParams|PointCloud)\.txt"
+    r"|(DRONE|CAR)\d+_VideoFrame\.jpeg|recv_action\d+\.txt|start\.txt"
+)
+"""The files of the protocol; those of an earlier run are deleted."""
+
+
+class Names:
+    """The files by which one tracker's client and its simulator talk.
+
+    Each is written by one side and deleted by the other; it exists while it has not been read.
+
+    Attributes:
+        tracker: Name of the tracker, such as `DRONE0`.
+        action: The client's action.
+        state: The answer's basic packet.
+        reward: The answer's reward packet.
+        picture: The answer's picture.
+
+    Args:
+        folder: The folder of the files.
+        tracker: Name of the tracker.
+    """
+
+    def __init__(self, folder: Path, tracker: str) -> None:
+        self.tracker = tracker
+        self.action = folder / f"{tracker}_AlgAction.txt"
+        self.state = folder / f"{tracker}_Ctrl2Global.txt"
+        self.reward = folder / f"{tracker}_RewardParams.txt"
+        self.picture = folder / f"{tracker}_VideoFrame.jpeg"
+
+
+class Exchange:
+    """The folders below the original's root that a server uses.
+
+    Attributes:
+        files: Where files are exchanged.
+        logs: Where the original logs with `Verbose`.
+        settings: The `env_config.json` that clients read too.
+
+    Args:
+        root: Folder with the original's `Webots_Simulation`; it may be empty.
+
+    Raises:
+        DataFileError: There is no such folder.
+        OutputError: Links lead out of it, and nothing outside it is ever changed.
+    """
+
+    def __init__(self, root: Path) -> None:
+        if not root.is_dir():
+            raise DataFileError(
+                f"{root}: no such folder; give the one that holds the original's "
+                "Webots_Simulation and Alg_Base, or an empty one for a client of your own"
+            )
+        simulator = root / _SIMULATOR
+        self.files, self.logs = simulator / "Files2Alg", simulator / "logs"
+        self.settings = root / SETTINGS_FILE
+        for path in (self.files, self.logs, self.settings):
+            if not path.resolve().is_relative_to(root.resolve()):
+                raise OutputError(f"{path}: a link leads out of {root}, where nothing is changed")
+
+    def names(self, tracker: str) -> Names:
+        """Return the files of a tracker."""
+        return Names(self.files, tracker)
+
+    @contextmanager
+    def opened(self) -> Iterator[int]:
+        """Keep the folder for this process, without files of an earlier run; yield their number.
+
+        The file by which the original says that it has started exists until the block is left.
+
+        Raises:
+            OutputError: Another server uses the folder, or writing failed.
+        """
+        with folder_lock(self.files, "serving in it"):
+            try:
+                removed = self._clear()
+                write_atomic(self.files / _START, b"b'1\\n'\n")
+                yield removed
+            finally:
+                with suppress(OutputError):  # why the server ends is told, not this
+                    self._clear()
+
+    def _clear(self) -> int:
+        """Delete all files of the protocol; return how many there were."""
+        removed = 0
+        with refusals(self.files):
+            for found in list(os.scandir(self.files)):
+                name = found.name.removeprefix(".").removesuffix(PART_SUFFIX)
+                if _OURS.fullmatch(name) and not found.is_dir(follow_symlinks=False):
+                    Path(found.path).unlink(missing_ok=True)
+                    removed += 1
+        return removed

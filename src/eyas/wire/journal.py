@@ -1,0 +1,72 @@
+"""The original's logs of what each client says and of each step (`Verbose`)."""
+
+import logging
+import time
+from collections.abc import Callable, Sequence
+from contextlib import ExitStack
+from pathlib import Path
+from types import TracebackType
+from typing import TextIO
+
+from eyas.core.files import refusals
+from eyas.state.snapshot import Snapshot
+from eyas.task.step_line import step_line
+
+__all__ = ["Journal"]
+
+_LOG = logging.getLogger("eyas")
+
+
+class Journal:
+    """`Agent<i>.log` of each client, begun anew, in which a line is there at once.
+
+    Args:
+        folder: The folder of the logs; made if needed.
+        trackers: Names of the trackers.
+        verbose: Whether anything is logged.
+
+    Raises:
+        OutputError: A log cannot be written.
+    """
+
+    def __init__(self, folder: Path, trackers: Sequence[str], *, verbose: bool) -> None:
+        self._trackers = trackers
+        self._folder = folder
+        self._files: list[TextIO] = []
+        self._stack = ExitStack()
+        if verbose:
+            with refusals(folder):
+                folder.mkdir(parents=True, exist_ok=True)
+                for number in range(len(trackers)):
+                    file = (folder / f"Agent{number}.log").open("w", buffering=1)
+                    self._files.append(self._stack.enter_context(file))
+
+    def __enter__(self) -> "Journal":
+        return self
+
+    def __exit__(
+        self,
+        kind: type[BaseException] | None,
+        error: BaseException | None,
+        trace: TracebackType | None,
+    ) -> None:
+        self._stack.close()
+
+    def hearer(self, number: int) -> Callable[[bytes], None]:
+        """Return a function that logs a line of a client."""
+        return lambda line: self._write(number, f"received {line!r}")
+
+    def step(self, snapshot: Snapshot) -> None:
+        """Log a step of all trackers."""
+        for number in range(len(self._files)):
+            self._write(number, step_line(snapshot, number, self._trackers[number]))
+
+    def _write(self, number: int, text: str) -> None:
+        if not self._files:
+            return
+        try:
+            self._files[number].write(f"{time.strftime('%Y-%m-%d %H:%M:%S')} : {text}\n")
+        except OSError as error:
+            # A full disk must not end the training of all clients.
+            _LOG.warning("%s: no longer logged: %s", self._folder, error.strerror)
+            self._files.clear()

@@ -1,0 +1,105 @@
+"""Make the machine code that ships in the package, for each level of `eyas.core.shipped.LEVELS`.
+
+    python tools/ship_kernels.py          # some minutes; commit what it changes
+    python tools/ship_kernels.py --check  # is the code in the package that of these sources?
+
+The files belong to exactly these sources: after any change of a kernel Eyas passes them over, and
+compiles. So they are made before a release, not with each change.
+"""
+
+import argparse
+import importlib
+import os
+import pkgutil
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import eyas
+from eyas.core.jit import source_hash
+from eyas.core.machine_code import SUFFIX
+from eyas.core.parallel import parallel_kernel
+from eyas.core.shipped import LEVELS, SHIPPED
+from eyas.sim.step import step_of
+from eyas.trackers.drone import DRONE
+
+USES_ALL = """
+import numpy as np
+from eyas.sensors.stack import FrameStack
+from eyas.sim.assets import load_assets
+from eyas.sim.build import build_simulation
+from eyas.sim.config import SimConfig
+from eyas.sim.still import StillWorld
+from eyas.sim.worlds import each_alone
+from eyas.state.draw import Picture
+from eyas.state.terrain import Terrain
+from eyas.traffic.recorded import recorded_motion
+from eyas.traffic.recording_file import load
+from eyas.world.maps import MAPS
+
+simulation = build_simulation(SimConfig(), each_alone(1))
+simulation.reset()
+simulation.advance(np.zeros((1, 4)), 1)
+simulation.packets()
+picture = Picture.create(1, 84, 84)
+simulation.draw(np.zeros(1, np.int32), picture)
+FrameStack(1, (84, 84)).add(picture.rgb, np.zeros(1, np.int64))
+StillWorld(load_assets(SimConfig().world, SimConfig().traffic)).actors(0.0)
+recording = load(MAPS.get("citystreet").shipped_traffic()[0])
+hill = Terrain(0.0, np.ones((2, 2), np.float32), 0.0, 0.0, 1.0)
+recorded_motion(recording, hill, np.zeros(recording.actors, np.int32))
+"""
+"""A program that uses every kernel of the package; `missing` names those that it forgets."""
+
+
+def main() -> None:
+    """Make the code, or check it."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--check", action="store_true", help="change nothing; fail if out of date")
+    if parser.parse_args().check:
+        raise SystemExit(missing(SHIPPED / source_hash()))
+    for level in LEVELS:
+        print(f"compiling for {level} ...", flush=True)
+        compile_for(level, SHIPPED / source_hash() / level)
+    for folder in SHIPPED.iterdir():
+        if folder.name != source_hash():
+            shutil.rmtree(folder)
+    raise SystemExit(missing(SHIPPED / source_hash()))
+
+
+def compile_for(level: str, folder: Path) -> None:
+    """Compile all kernels for a level into a folder."""
+    with tempfile.TemporaryDirectory() as cache:
+        environment = {**os.environ, "EYAS_CACHE_DIR": cache, "NUMBA_CPU_NAME": level}
+        environment["NUMBA_CPU_FEATURES"] = ""
+        environment.pop("NUMBA_CACHE_DIR", None)
+        subprocess.run([sys.executable, "-c", USES_ALL], env=environment, check=True)
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir(parents=True)
+        for file in Path(cache, "kernels", source_hash()).glob(f"*{SUFFIX}"):
+            shutil.copy(file, folder / f"{file.stem.rpartition('-')[0]}{SUFFIX}")
+
+
+def missing(folder: Path) -> str | None:
+    """Return what is missing in the package; None if nothing is."""
+    lacks = [
+        f"{level}: {name}"
+        for level in LEVELS
+        for name in sorted(kernels())
+        if not any((folder / level).glob(f"{name}-*{SUFFIX}"))
+    ]
+    return f"not in {folder}: {', '.join(lacks)}" if lacks else None
+
+
+def kernels() -> set[str]:
+    """Return the names of all parallel kernels of the package."""
+    modules = pkgutil.walk_packages(eyas.__path__, "eyas.")
+    found = [vars(importlib.import_module(module.name)).values() for module in modules]
+    kept = [value for values in (*found, step_of(DRONE)) for value in values]
+    return {kernel.function.__name__ for kernel in kept if isinstance(kernel, parallel_kernel)}
+
+
+if __name__ == "__main__":
+    main()
