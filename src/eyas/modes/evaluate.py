@@ -21,6 +21,7 @@ from rich.progress import (
 
 from eyas.core.errors import OutputError
 from eyas.core.files import refusals, write_atomic
+from eyas.core.folder_lock import folder_lock
 from eyas.core.machine import describe_machine
 from eyas.evaluation.plan import Plan, Stamp, batches, check, fly_batch, stamp
 from eyas.evaluation.record import Record, RecordFile, read_records
@@ -28,7 +29,6 @@ from eyas.evaluation.result import EPISODES, RESULT, ROWS, STAMP, load_run, tabl
 from eyas.modes import evaluation_films, evaluation_plots
 from eyas.modes.evaluation_films import film
 from eyas.modes.evaluation_plots import draw_plots, require_matplotlib
-from eyas.modes.video.lock import recording_lock
 
 __all__ = ["run"]
 
@@ -68,7 +68,7 @@ def run(  # noqa: PLR0913  # choices of the user's
     if plots:
         require_matplotlib()
     made = stamp(plan)
-    with recording_lock(out):
+    with folder_lock(out, "evaluating into it"):
         records = _prepared(out, made, resume=resume, overwrite=overwrite)
         _fly(plan, out, records, quiet=quiet)
         flown = _in_order(plan, out)
