@@ -13,6 +13,7 @@ from eyas.render.kernels.scalars import f4, i4, u4
 from eyas.render.kernels.sky.fog import fog_share
 from eyas.render.kernels.sky.radiance import blended, reflection
 from eyas.render.kernels.surface.attributes import Frame, attributes_of
+from eyas.render.kernels.surface.marking import TILES, painted_share
 from eyas.render.kernels.surface.snow import snowed
 from eyas.render.kernels.surface.texture import colour_of, detail_of, texel
 from eyas.render.kernels.surface.water import water_slope
@@ -26,6 +27,7 @@ FOLIAGE = i4(int(Surface.FOLIAGE))
 FACADE = i4(int(Surface.FACADE))
 WATER = i4(int(Surface.WATER))
 SIGNAL = i4(int(Surface.SIGNAL))
+MARKING = i4(int(Surface.MARKING))
 
 SHARP = f4(0.004)
 """Mip levels are blended if a pixel spans less [rad]. In smaller pictures, each level lies in a few
@@ -109,12 +111,22 @@ def shade_point(
     way = (ray[0] * shrink, ray[1] * shrink, ray[2] * shrink)
     cosine = -_dot(normal, way)
 
-    span = f4(256.0) * at.density * distance * pixel
+    marked, u, v, density = surface == MARKING, at.u, at.v, at.density
+    if any_of(marked):
+        u, v = select(marked, TILES * point[0], u), select(marked, TILES * point[1], v)
+        density = select(marked, like(density, TILES), density)
+    span = f4(256.0) * density * distance * pixel
     detail = detail_of(span * span / greater(magnitude(cosine), f4(0.1)))
     blend = pixel < SHARP
-    low, high = texel(geometry.texture, at.layer, detail, blend, at.u, at.v)
-    red, green, blue, alpha = colour_of(low, high)
-    red, green, blue = red * at.tint[0], green * at.tint[1], blue * at.tint[2]
+    low, high = texel(geometry.texture, at.layer, detail, blend, u, v)
+    asphalt_r, asphalt_g, asphalt_b, alpha = colour_of(low, high)
+    red, green, blue = asphalt_r * at.tint[0], asphalt_g * at.tint[1], asphalt_b * at.tint[2]
+    if any_of(marked):
+        share = painted_share(at.u, at.u_slope, at.density, way, cosine, distance * pixel)
+        paint, rest = share * alpha, one - share
+        red = select(marked, paint * at.tint[0] + rest * asphalt_r, red)
+        green = select(marked, paint * at.tint[1] + rest * asphalt_g, green)
+        blue = select(marked, paint * at.tint[2] + rest * asphalt_b, blue)
     painted, wet = surface == PAINT, surface == WATER
     if any_of(painted):
         red = select(painted, red * frame.red, red)
