@@ -45,7 +45,7 @@ def flown(name: str, steps: int, **kwargs: object) -> dict[str, str]:
             repr(
                 {
                     key: np.asarray(info[key]).tolist()
-                    for key in sorted(info.keys() - {"reward_terms"})
+                    for key in sorted(key for key in info if not key.startswith("reward/"))
                 }
             ).encode()
         )

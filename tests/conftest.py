@@ -5,6 +5,10 @@ import signal
 import sys
 
 import pytest
+from hypothesis import settings
+
+settings.register_profile("eyas", deadline=None)  # no test asserts a time
+settings.load_profile("eyas")
 
 
 def pytest_addoption(parser):

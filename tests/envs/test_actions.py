@@ -1,11 +1,10 @@
 import math
-import timeit
 
 import numpy as np
 import pytest
 
 from eyas.core.errors import ActionError, NotInThisVersionError
-from eyas.envs.actions import ContinuousActions, DiscreteActions, action_table
+from eyas.envs.actions import Discrete, Shares, Velocity, action_table
 from eyas.envs.config import EnvSpeeds
 from eyas.envs.tracking_env import TrackingEnv
 from eyas.modes.video.config import VideoConfig
@@ -22,15 +21,14 @@ SPEEDS = {
 
 
 def test_numbers_of_actions_mean_the_same_to_an_agent_and_in_a_recording():
-    discrete = DiscreteActions(EnvSpeeds(**SPEEDS))
+    discrete = Discrete(EnvSpeeds(**SPEEDS))
     recorded = action_table(VideoConfig(**SPEEDS))
-    assert [discrete.command(number)[0].tolist() for number in range(6)] == recorded.tolist()
+    assert discrete.commands(range(6)).tolist() == recorded.tolist()
 
 
 def test_each_number_moves_along_its_axis():
-    discrete = DiscreteActions(EnvSpeeds(**SPEEDS))
-    commands = [discrete.command(number)[0].tolist() for number in range(7)]
-    assert commands == [
+    discrete = Discrete(EnvSpeeds(**SPEEDS))
+    assert discrete.commands(range(7)).tolist() == [
         [5, 0, 0, 0],
         [-1, 0, 0, 0],
         [0, 3, 0, 0],
@@ -41,11 +39,22 @@ def test_each_number_moves_along_its_axis():
     ]
 
 
-def test_continuous_actions_are_shares_of_the_speed_of_their_direction():
-    continuous = ContinuousActions(EnvSpeeds(**SPEEDS, vertical_speed=0.02))
-    assert continuous.command(np.ones(4)).tolist() == [[5, 3, 0.02, 0.5]]
-    assert continuous.command(np.full(4, -1.0)).tolist() == [[-1, -2, -0.02, -0.25]]
-    assert continuous.command(np.array([0.5, -0.5, 0, -9])).tolist() == [[2.5, -1, 0, -0.25]]
+def test_shares_are_those_of_the_speed_of_their_direction():
+    continuous = Shares(EnvSpeeds(**SPEEDS, vertical_speed=0.02))
+    shares = np.array([np.ones(4), np.full(4, -1.0), [0.5, -0.5, 0, -9]], np.float32)
+    assert continuous.commands(shares).tolist() == [
+        [5, 3, 0.02, 0.5],
+        [-1, -2, -0.02, -0.25],
+        [2.5, -1, 0, -0.25],
+    ]
+
+
+def test_velocities_are_in_physical_units_and_clipped_to_the_speeds():
+    velocity = Velocity(EnvSpeeds(**SPEEDS, vertical_speed=0.02))
+    assert velocity.space.low.tolist() == [-1, -2, -10, -0.25]
+    assert velocity.space.high.tolist() == [5, 3, 10, 0.5]
+    commands = velocity.commands(np.array([[2.5, -1.0, 5.0, 0.125], [9, -9, -99, -9]]))
+    assert commands.tolist() == [[2.5, -1.0, 0.01, 0.125], [5, -2, -0.02, -0.25]]
 
 
 @pytest.mark.parametrize(
@@ -57,12 +66,12 @@ def test_an_action_that_is_none_of_the_seven_is_one_clear_line(action):
     with pytest.raises(
         ActionError, match=r"^action: .* is not allowed: a whole number from 0 to 6$"
     ):
-        DiscreteActions(EnvSpeeds()).command(action)
+        Discrete(EnvSpeeds()).commands([action])
 
 
 @pytest.mark.parametrize("action", [3, np.int64(3), np.uint8(3), np.array(3), np.array(3, np.int8)])
 def test_whole_numbers_of_any_kind_are_taken(action):
-    assert DiscreteActions(EnvSpeeds(**SPEEDS)).command(action).tolist() == [[0, -2, 0, 0]]
+    assert Discrete(EnvSpeeds(**SPEEDS)).commands([action]).tolist() == [[0, -2, 0, 0]]
 
 
 @pytest.mark.parametrize(
@@ -73,7 +82,7 @@ def test_whole_numbers_of_any_kind_are_taken(action):
 def test_an_action_that_is_not_four_finite_numbers_is_one_clear_line(action):
     allowed = "four finite numbers, each from -1 to 1"
     with pytest.raises(ActionError, match=f"^action: .* is not allowed: {allowed}$") as caught:
-        ContinuousActions(EnvSpeeds()).command(action)
+        Shares(EnvSpeeds()).commands([action])
     assert "\n" not in str(caught.value)
 
 
@@ -89,17 +98,8 @@ def test_a_refused_action_leaves_the_episode_as_it_was():
 def test_below_the_environment_not_a_number_keeps_its_reason():
     env = TrackingEnv()
     env.reset(seed=3)
-    result = env._simulation.advance(np.array([[math.nan, 0.0, 0.0, 0.0]]))
+    result = env._batch._simulation.advance(np.array([[math.nan, 0.0, 0.0, 0.0]]))
     assert result.reason.tolist() == [DoneReason.NOT_A_NUMBER]
-
-
-@pytest.mark.parametrize(("continuous", "action"), [(False, 6), (True, np.zeros(4, np.float32))])
-def test_a_command_takes_less_than_a_hundredth_of_a_step(continuous, action):
-    env = TrackingEnv(continuous=continuous)
-    env.reset(seed=3)
-    step = min(timeit.repeat(lambda: env.step(action), number=1, repeat=20))
-    command = min(timeit.repeat(lambda: env._actions.command(action), number=100, repeat=20)) / 100
-    assert command < 0.01 * step
 
 
 def test_an_environment_takes_its_speeds_from_the_settings_or_the_call():
@@ -111,8 +111,8 @@ def test_an_environment_takes_its_speeds_from_the_settings_or_the_call():
         for _ in range(9):
             *_, info = env.step(action)
         places.append(info["camera_pose"])
-    assert places[0] == places[1]
-    assert places[0] != places[2]
+    assert np.array_equal(places[0], places[1])
+    assert not np.array_equal(places[0], places[2])
     assert called.config.env.speeds == EnvSpeeds(backward_speed=0.0)
 
 

@@ -194,7 +194,7 @@ configs = st.fixed_dictionaries(
 ).map(lambda values: EyasConfig(**values))
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(configs)
 def test_native_to_legacy_and_back_loses_nothing(config):
     written = json.loads(json.dumps(to_legacy(config)))
@@ -340,7 +340,7 @@ drawn = [
 ]
 
 
-@settings(max_examples=60, deadline=None)
+@settings(max_examples=60)
 @given(
     st.dictionaries(st.sampled_from(switches), st.booleans()),
     st.dictionaries(st.sampled_from(drawn), st.integers(1, 6) | st.floats(0.5, 1.5)),

@@ -155,7 +155,7 @@ def row_at(chart, motion, time):
     return charted(chart, motion, sample_before(motion, time))
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(st.floats(0.0, 11.99))
 def test_every_actor_is_in_its_sphere_of_the_chart(assets_where, time):
     traffic = assets_where((2.5, 4.0)).traffic

@@ -5,6 +5,7 @@ import tracemalloc
 import numpy as np
 import pytest
 
+from eyas.core.rng import EpisodeKey
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
 from eyas.sim.worlds import ALONE, Worlds, each_alone, together
@@ -145,7 +146,7 @@ def test_drawing_other_subsets_takes_no_more_memory_than_drawing_all(config, ass
     tick = np.full(count, 500, np.int64)
     worlds = Worlds(config, assets, each_alone(count))
     for tracker in range(count):
-        worlds.sample_looks(tracker, 0, 0)
+        worlds.sample_looks(tracker, EpisodeKey(0, tracker, 0))
     cameras = CameraState.create(count)  # with the whole town in front of them
     cameras.position[:, 0], cameras.field_of_view[:] = -2000.0, 2.5
     _, movers = worlds.draw_list(np.arange(count), tick, cameras, 1.0)

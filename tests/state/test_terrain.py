@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from eyas.state.terrain import Terrain, ground_at, relief_at, reliefs, slope_at
@@ -22,7 +22,6 @@ def bilinear(x, y) -> float:
     return float(np.interp(y, rows, [np.interp(x, columns, row) for row in RELIEF]))
 
 
-@settings(deadline=None)  # the first call compiles
 @given(anywhere)
 def test_heights_are_those_of_linear_interpolation_and_the_edge_goes_on(point):
     assert relief_at(HILLS, *point) == pytest.approx(bilinear(*point), abs=1e-9)
@@ -35,14 +34,12 @@ def test_the_points_of_the_raster_have_its_heights():
         assert height == RELIEF[row, column]
 
 
-@settings(deadline=None)  # the first call compiles
 @given(st.lists(anywhere, min_size=1, max_size=20))
 def test_many_points_at_once_have_the_heights_of_each(points):
     each = [relief_at(HILLS, *point) for point in points]
     np.testing.assert_allclose(reliefs(HILLS, np.array(points)), each, rtol=0, atol=1e-9)
 
 
-@settings(deadline=None)  # the first call compiles
 @given(inside)
 def test_slopes_are_differences_of_heights(point):
     x, y = point
@@ -65,7 +62,6 @@ def test_beyond_the_raster_the_ground_does_not_rise_away_from_it():
     assert slope_at(HILLS, WEST - 5.0, NORTH + 5.0) == (0.0, 0.0)
 
 
-@settings(deadline=None)  # the first call compiles
 @given(anywhere)
 def test_a_flat_map_is_exactly_its_floor(point):
     flat = Terrain.flat(FLOOR)

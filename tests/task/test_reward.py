@@ -91,7 +91,7 @@ def inside(polygon, x, y):
     return float(np.min(cross / np.linalg.norm(edges, axis=1)))
 
 
-@settings(deadline=None, max_examples=150)
+@settings(max_examples=150)
 @given(st.floats(-3.2, 3.2), st.floats(0.15, 1.57), st.floats(0.3, 1.5), near, near)
 def test_a_target_is_rewarded_exactly_where_the_picture_shows_ground(
     rules_with, look, yaw, pitch, view_range, x, y
@@ -110,7 +110,7 @@ def shown_at(rules, camera, rotation, column, row):
     return np.array(camera)[:2] - ray[:2] * (camera[2] - FLOOR) / ray[2]
 
 
-@settings(deadline=None, max_examples=50)
+@settings(max_examples=50)
 @given(
     st.floats(-3.2, 3.2), st.floats(0.4, 1.5), in_picture, in_picture, st.floats(0.05, 0.95)
 )  # fmt: skip
@@ -138,7 +138,7 @@ def test_target_in_the_middle_has_the_full_share(rules_with, look, yaw, pitch):
     assert evaluate(rules_with(mode=RewardMode.DISCRETE), (3, 4, 20), rotation, *middle)[0] == 1.0
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(
     st.floats(-3, 3), near, near, st.floats(-3, 3), st.floats(0.5, 1.5), in_picture, in_picture
 )  # fmt: skip
@@ -157,7 +157,7 @@ def test_moving_and_turning_the_world_changes_nothing(
 
 @pytest.mark.parametrize("type_", RewardType)
 @pytest.mark.parametrize("mode", RewardMode)
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(
     st.tuples(anything, anything, anything), st.floats(-4, 4), st.floats(-2, 4), anything, anything
 )

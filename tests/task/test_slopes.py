@@ -62,7 +62,7 @@ def seen(rules, position, rotation, ground):
     )
 
 
-@settings(deadline=None, max_examples=100)
+@settings(max_examples=100)
 @given(tilts, headings, pitches, st.floats(-25, 25), st.floats(-25, 25))
 def test_tilting_the_whole_world_leaves_the_share_as_it_was(
     rules_with, look, world, yaw, pitch, x, y
@@ -79,7 +79,7 @@ def test_tilting_the_whole_world_leaves_the_share_as_it_was(
     assert moved[2] == pytest.approx(share, abs=1e-9)
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(tilts, headings, st.floats(-0.2, 1.55))
 def test_tilting_the_whole_world_tilts_the_seen_ground_with_it(rules_with, look, world, yaw, pitch):
     size, turn = rewarded_size(FIELD, rules_with(view_range=1.0)), tilt(*world)

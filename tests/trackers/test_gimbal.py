@@ -78,7 +78,7 @@ def test_joints_stop_at_their_limits():
     assert settled(1.3, euler=(0.0, -0.23, 0.0))[0].gimbal[0, 1] == 1.5
 
 
-@settings(deadline=None, max_examples=60)
+@settings(max_examples=60)
 @given(
     st.floats(-0.35, 0.35), st.floats(-0.35, 0.35), st.floats(-3, 3),
     st.floats(0.5, 1.0), st.floats(-0.5, 0.5),

@@ -1,10 +1,11 @@
 """Random numbers: one seed, and one named stream for each tracker and room."""
 
 import zlib
+from typing import NamedTuple
 
 import numpy as np
 
-__all__ = ["stream"]
+__all__ = ["EpisodeKey", "stream"]
 
 
 def stream(seed: int, room: str, *indices: int) -> np.random.Generator:
@@ -20,3 +21,18 @@ def stream(seed: int, room: str, *indices: int) -> np.random.Generator:
     """
     key = (zlib.crc32(room.encode()), *indices)
     return np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed, spawn_key=key)))
+
+
+class EpisodeKey(NamedTuple):
+    """What the random values of an episode depend on."""
+
+    seed: int
+    """Seed of the run."""
+    tracker: int
+    """Number of the tracker among those with this seed."""
+    episode: int
+    """Number of the episode, from 0."""
+
+    def stream(self, room: str) -> np.random.Generator:
+        """Return the generator of a room in this episode."""
+        return stream(self.seed, room, self.tracker, self.episode)

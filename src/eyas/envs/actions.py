@@ -1,17 +1,43 @@
-"""The actions of an agent, and the commands that they mean."""
+"""The actions of agents, and the commands that they mean."""
 
-import math
-import operator
-from typing import Any
+from typing import Any, Protocol
 
 import gymnasium
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.errors import ActionError
-from eyas.envs.config import ActionSpeeds, EnvSpeeds
+from eyas.envs.config import ActionKind, ActionSpeeds, EnvSpeeds
 
-__all__ = ["ContinuousActions", "DiscreteActions", "action_table"]
+__all__ = ["Actions", "Discrete", "Shares", "Velocity", "action_table", "make_actions"]
+
+Commands = NDArray[np.float64]
+"""Forward [m/s], left [m/s], up [m per 2 ms], counter-clockwise [rad/s], shape (N, 4)."""
+
+
+class Actions(Protocol):
+    """A space of actions."""
+
+    space: gymnasium.Space[Any]
+    """The actions of one agent."""
+
+    def commands(self, actions: Any) -> Commands:  # noqa: ANN401  # whatever a learner returns
+        """Return the commands of N actions.
+
+        Raises:
+            ActionError: One of them is not in the space of actions.
+        """
+
+
+def make_actions(kind: ActionKind, speeds: EnvSpeeds) -> Actions:
+    """Return the actions of a kind."""
+    match kind:
+        case ActionKind.DISCRETE:
+            return Discrete(speeds)
+        case ActionKind.SHARES:
+            return Shares(speeds)
+        case ActionKind.VELOCITY:
+            return Velocity(speeds)
 
 
 def action_table(speeds: ActionSpeeds) -> NDArray[np.float64]:
@@ -27,7 +53,7 @@ def action_table(speeds: ActionSpeeds) -> NDArray[np.float64]:
     return table
 
 
-class DiscreteActions:
+class Discrete:
     """Seven actions, one axis at a time.
 
     0 forward, 1 backward, 2 left, 3 right, 4 turn counter-clockwise, 5 turn clockwise, 6 hover.
@@ -36,60 +62,112 @@ class DiscreteActions:
         speeds: The speeds of the actions.
     """
 
+    allowed = "a whole number from 0 to 6"
+
     def __init__(self, speeds: ActionSpeeds) -> None:
         self.space: gymnasium.Space[Any] = gymnasium.spaces.Discrete(7)
-        hover = np.zeros((1, 4))
-        self._table = np.concatenate((action_table(speeds), hover))
+        self._table = np.concatenate((action_table(speeds), np.zeros((1, 4))))
 
-    def command(self, action: int | np.integer[Any]) -> NDArray[np.float64]:
-        """Return forward, left, up, yaw rate as one command, shape (1, 4).
-
-        Raises:
-            ActionError: It is not one of the seven.
-        """
-        try:
-            number = operator.index(action)
-        except TypeError:
-            number = -1
-        if not 0 <= number < len(self._table):
-            raise _refused(action, "a whole number from 0 to 6")
-        return self._table[None, number].copy()
+    def commands(self, actions: Any) -> Commands:  # noqa: ANN401  # as in the protocol
+        """Return the commands of N numbers, shape (N,)."""
+        numbers = _array(actions)
+        if numbers.ndim != 1 or numbers.dtype.kind not in "iu":
+            raise _refused(actions, self.allowed)
+        if numbers.size and not 0 <= numbers.min() <= numbers.max() < len(self._table):
+            wrong = int(np.flatnonzero((numbers < 0) | (numbers >= len(self._table)))[0])
+            raise _refused(numbers[wrong], self.allowed, wrong, len(numbers))
+        commands: Commands = self._table[numbers]
+        return commands
 
 
-class ContinuousActions:
+class _FourNumbers:
+    """Four numbers: forward, left, up, turn counter-clockwise; out of range, they are clipped.
+
+    Args:
+        low: Smallest of each, shape (4,).
+        high: Largest of each, shape (4,).
+    """
+
+    allowed = "four finite numbers"
+
+    def __init__(self, low: Commands, high: Commands) -> None:
+        self.space: gymnasium.Space[Any] = gymnasium.spaces.Box(
+            low.astype(np.float32), high.astype(np.float32)
+        )
+        self._low, self._high = low, high
+
+    def clipped(self, actions: Any) -> Commands:  # noqa: ANN401  # as in the protocol
+        """Return N actions within the limits, shape (N, 4)."""
+        given = _array(actions)
+        if given.ndim != 2 or given.shape[1] != 4 or given.dtype.kind not in "fiu":
+            raise _refused(actions, self.allowed)
+        array = given.astype(np.float64)
+        if not np.isfinite(array).all():
+            wrong = int(np.flatnonzero(~np.isfinite(array).all(axis=1))[0])
+            raise _refused(given[wrong], self.allowed, wrong, len(array))
+        clipped: Commands = np.minimum(np.maximum(array, self._low), self._high)
+        return clipped
+
+
+class Shares(_FourNumbers):
     """Four numbers in -1 to 1: forward, left, up, turn counter-clockwise, as shares of the speeds.
 
     Args:
         speeds: The speeds that -1 and 1 mean.
     """
 
+    allowed = "four finite numbers, each from -1 to 1"
+
     def __init__(self, speeds: EnvSpeeds) -> None:
-        self.space: gymnasium.Space[Any] = gymnasium.spaces.Box(-1.0, 1.0, (4,), np.float32)
-        up, turn = speeds.vertical_speed, speeds.counter_clockwise_rate
-        at_1 = (speeds.forward_speed, speeds.left_speed, up, turn)
-        turn = speeds.clockwise_rate
-        self._speeds = tuple(
-            zip((speeds.backward_speed, speeds.right_speed, -up, turn), at_1, strict=True)
-        )
+        super().__init__(-np.ones(4), np.ones(4))
+        self._at_minus_1, self._at_1 = _ends(speeds)
 
-    def command(self, action: NDArray[np.floating[Any]]) -> NDArray[np.float64]:
-        """Return forward, left, up, yaw rate as one command, shape (1, 4); shares are clipped.
-
-        Raises:
-            ActionError: It is not four finite numbers.
-        """
-        try:
-            array = np.asarray(action, np.float64)
-        except (TypeError, ValueError):
-            array = np.empty(0)
-        # Plain numbers take a fifth of the time of arrays of four.
-        shares = array.tolist() if array.shape == (4,) else [math.nan]
-        if not all(map(math.isfinite, shares)):
-            raise _refused(action, "four finite numbers, each from -1 to 1")
-        pairs = zip(shares, self._speeds, strict=True)
-        return np.array([[min(abs(s), 1.0) * ends[s >= 0.0] for s, ends in pairs]])
+    def commands(self, actions: Any) -> Commands:  # noqa: ANN401  # as in the protocol
+        """Return the commands of N times four shares, shape (N, 4)."""
+        shares = self.clipped(actions)
+        return np.abs(shares) * np.where(shares >= 0.0, self._at_1, self._at_minus_1)
 
 
-def _refused(action: object, allowed: str) -> ActionError:
+class Velocity(_FourNumbers):
+    """Four velocities: forward, left, up [m/s], turn counter-clockwise [rad/s].
+
+    Args:
+        speeds: The largest and smallest.
+    """
+
+    allowed = "four finite numbers: forward, left, up [m/s], turn counter-clockwise [rad/s]"
+    _UNITS = np.array([1.0, 1.0, 500.0, 1.0])
+    """Commands have the third in m per 2 ms."""
+
+    def __init__(self, speeds: EnvSpeeds) -> None:
+        ends = _ends(speeds)
+        super().__init__(np.minimum(*ends) * self._UNITS, np.maximum(*ends) * self._UNITS)
+
+    def commands(self, actions: Any) -> Commands:  # noqa: ANN401  # as in the protocol
+        """Return the commands of N times four velocities, shape (N, 4)."""
+        commands: Commands = self.clipped(actions) / self._UNITS
+        return commands
+
+
+def _ends(speeds: EnvSpeeds) -> tuple[Commands, Commands]:
+    """Return the commands backward, right, down, clockwise, and their opposites, shape (4,)."""
+    up = speeds.vertical_speed
+    return (
+        np.array([speeds.backward_speed, speeds.right_speed, -up, speeds.clockwise_rate]),
+        np.array([speeds.forward_speed, speeds.left_speed, up, speeds.counter_clockwise_rate]),
+    )
+
+
+def _array(actions: object) -> NDArray[Any]:
+    try:
+        return np.asarray(actions)
+    except (TypeError, ValueError):  # for example rows of different lengths
+        return np.empty(0)
+
+
+def _refused(action: object, allowed: str, index: int = 0, count: int = 1) -> ActionError:
+    if isinstance(action, list) and len(action) == 1:
+        action = action[0]  # that of a single environment
     shown = " ".join(str(action).split())
-    return ActionError(f"action: {shown:.60} is not allowed: {allowed}")
+    which = f"action of environment {index}" if count > 1 else "action"
+    return ActionError(f"{which}: {shown:.60} is not allowed: {allowed}")

@@ -1,12 +1,22 @@
 """Settings of the environments, and the speeds of the actions that they share with recordings."""
 
-from typing import Annotated
+from enum import StrEnum
+from typing import Annotated, Any
 
 from pydantic import Field
 
 from eyas.core.config import Config
+from eyas.sensors.config import ColourLayout, Colours
 
-__all__ = ["ActionSpeeds", "EnvConfig", "EnvSpeeds"]
+__all__ = [
+    "ActionKind",
+    "ActionSpeeds",
+    "EnvConfig",
+    "EnvSpeeds",
+    "MixturePart",
+    "ObservationConfig",
+    "ObservationPart",
+]
 
 Speed = Annotated[float, Field(ge=-1e4, le=1e4)]
 TurnRate = Annotated[float, Field(ge=-1e3, le=1e3)]
@@ -34,10 +44,73 @@ class EnvSpeeds(ActionSpeeds):
     """Speeds of the actions. The defaults are those of the original's algorithm code."""
 
     vertical_speed: Speed = 0.01
-    """Speed up and down [m per 2 ms step]; used by continuous actions only."""
+    """Speed up and down [m per 2 ms step]; used by actions of four numbers only."""
+
+
+class ActionKind(StrEnum):
+    """What an agent chooses from."""
+
+    DISCRETE = "discrete"
+    """Seven actions: six motions along or about one axis, and hover."""
+    SHARES = "shares"
+    """Four numbers from -1 to 1: shares of the speeds forward, left, up and of the turn rate."""
+    VELOCITY = "velocity"
+    """The same four in physical units: m/s and, counter-clockwise, rad/s."""
+
+
+class ObservationPart(StrEnum):
+    """What an observation can hold; of several, it is a dictionary by these names."""
+
+    IMAGE = "image"
+    """The camera's picture, uint8."""
+    DEPTH = "depth"
+    """Distance along the optical axis [m], float32, infinity for the sky."""
+    CLASSES = "classes"
+    """`eyas.state.scene.ObjectClass` of each pixel, uint8."""
+    SENSORS = "sensors"
+    """GPS, accelerometer, gyroscope and IMU: 19 numbers of the basic packet, float32."""
+    PRIVILEGED = "privileged"
+    """What no sensor tells: the true motion of the target, 16 numbers, float32."""
+
+
+class ObservationConfig(Config):
+    """What an agent sees."""
+
+    parts: Annotated[tuple[ObservationPart, ...], Field(min_length=1)] = (ObservationPart.IMAGE,)
+    """The parts; of one, the observation is its array, of several, a dictionary of arrays."""
+    width: Annotated[int, Field(ge=8, le=8192)] = 84
+    """Of picture, depth and classes [pixels]; they show the camera's whole view, squeezed if their
+    shape is another."""
+    height: Annotated[int, Field(ge=8, le=8192)] = 84
+    """[pixels]"""
+    colours: Colours = Colours.RGB
+    """Channels of the picture."""
+    layout: ColourLayout = ColourLayout.HWC
+    """Order of the axes: channels last, or first as PyTorch wants them."""
+    frames: Annotated[int, Field(ge=1, le=64)] = 1
+    """Number of the latest pictures in one observation, along the channels, the newest last; after
+    a reset all are the first one. Depth and classes are not stacked."""
+
+
+class MixturePart(Config):
+    """A kind of environment among others in one vector environment."""
+
+    weight: Annotated[float, Field(gt=0, le=1e6)] = 1.0
+    """Share of the environments, relative to the other parts."""
+    settings: dict[str, Any] = {}  # noqa: RUF012  # pydantic copies it
+    """Settings that differ from the common ones, for example `{"world": {"weather": "night"}}`."""
 
 
 class EnvConfig(Config):
-    """Meaning of an agent's actions in the environments."""
+    """Meaning of an agent's actions in the environments, and what it sees."""
 
+    actions: ActionKind = ActionKind.DISCRETE
+    """What the agent chooses from."""
+    action_repeat: Annotated[int, Field(ge=1, le=500)] = 1
+    """Number of control steps that an action lasts; their rewards are added up, and only the last
+    is observed. It ends early with the episode."""
     speeds: EnvSpeeds = EnvSpeeds()
+    observation: ObservationConfig = ObservationConfig()
+    mixture: tuple[MixturePart, ...] = ()
+    """Kinds of environments, for example one for each weather; empty: all are alike. Which
+    environment is of which kind depends on its index and the weights only."""

@@ -1,4 +1,4 @@
-"""Names for `gymnasium.make`: one for each map and weather."""
+"""Names for `gymnasium.make` and `gymnasium.make_vec`: one for each map and weather."""
 
 import gymnasium
 
@@ -30,5 +30,6 @@ def register_map(name: str) -> None:
         gymnasium.register(
             id=identifier,
             entry_point="eyas.envs.tracking_env:TrackingEnv",
+            vector_entry_point="eyas.envs.vector_env:EyasVectorEnv",
             kwargs={"map": name, "weather": weather},
         )

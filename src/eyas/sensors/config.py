@@ -1,5 +1,6 @@
 """Settings of the sensors."""
 
+from enum import StrEnum
 from typing import Annotated, Literal
 
 from pydantic import AfterValidator, Field
@@ -7,7 +8,21 @@ from pydantic import AfterValidator, Field
 from eyas.core.config import Config
 from eyas.core.variation import Variation, within
 
-__all__ = ["CameraConfig"]
+__all__ = ["CameraConfig", "ColourLayout", "Colours"]
+
+
+class Colours(StrEnum):
+    """Channels of a picture."""
+
+    RGB = "rgb"
+    GREY = "grey"
+
+
+class ColourLayout(StrEnum):
+    """Order of the axes of a picture."""
+
+    HWC = "hwc"
+    CHW = "chw"
 
 
 class CameraConfig(Config):

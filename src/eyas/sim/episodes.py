@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.errors import ConfigError, SpawnError
-from eyas.core.rng import stream
+from eyas.core.rng import EpisodeKey
 from eyas.core.variation import sample
 from eyas.sim.config import SimConfig
 from eyas.sim.light import LightChanges
@@ -49,7 +49,9 @@ class Episodes:
         snapshot: Snapshot,
     ) -> None:
         self._config = config
-        self._seed = config.seed
+        count = len(snapshot.episodes.number)
+        self._seed = np.full(count, config.seed, np.int64)
+        self._stream = np.arange(count)
         self._traffic = traffic
         self._worlds = worlds
         self._light = light
@@ -65,8 +67,16 @@ class Episodes:
 
     def reseed(self, seed: int) -> None:
         """Begin the sequence of episodes of another seed."""
-        self._seed = seed
+        self._seed[:] = seed
+        self._stream[:] = np.arange(len(self._stream))
         self._episodes.number[:] = -1
+
+    def reseed_alone(self, trackers: NDArray[np.integer], seeds: NDArray[np.integer]) -> None:
+        """Begin the episodes that the only tracker of a simulation has with each of these seeds."""
+        assert not self._worlds.lasting[self._worlds.of[trackers]].any(), "a world of one's own"
+        self._seed[trackers] = seeds
+        self._stream[trackers] = 0
+        self._episodes.number[trackers] = -1
 
     def begin(self, trackers: NDArray[np.int64]) -> NDArray[np.float64]:
         """Set target, time and offset of trackers; return their camera pitches [rad].
@@ -103,13 +113,20 @@ class Episodes:
         targets.rise[tracker] = MODELS[model].rise
         targets.ahead[tracker] = kind_of(model).ahead
 
+    def _key(self, tracker: int) -> EpisodeKey:
+        """Return what the random values of a tracker's episode depend on."""
+        return EpisodeKey(
+            int(self._seed[tracker]),
+            int(self._stream[tracker]),
+            int(self._episodes.number[tracker]),
+        )
+
     def _begin_one(self, tracker: int) -> float:
-        episode = int(self._episodes.number[tracker])
-        self._worlds.sample_looks(tracker, self._seed, episode)
-        self._light.sample(tracker, self._seed, episode)
-        lens = stream(self._seed, "camera", tracker, episode)
-        self._fields[tracker] = sample(self._config.camera.field_of_view, lens)
-        rng = stream(self._seed, "episode", tracker, episode)
+        key = self._key(tracker)
+        self._worlds.sample_looks(tracker, key)
+        self._light.sample(tracker, key)
+        self._fields[tracker] = sample(self._config.camera.field_of_view, key.stream("camera"))
+        rng = key.stream("episode")
         tick, actor = self._choose(tracker, rng)
         self._episodes.tick[tracker] = tick
         self.follow(tracker, actor)

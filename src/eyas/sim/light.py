@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.rng import stream
+from eyas.core.rng import EpisodeKey
 from eyas.core.variation import sample
 from eyas.sim.worlds import Worlds
 from eyas.state.lighting import Lighting
@@ -41,12 +41,12 @@ class LightChanges:
         self._factors = factors
         factors[:] = 1.0, 1.0, weather.fog_density
 
-    def sample(self, tracker: int, seed: int, episode: int) -> None:
+    def sample(self, tracker: int, key: EpisodeKey) -> None:
         """Draw the light around a tracker; the leader of a world draws for all its trackers."""
-        fixed = episode > 0 and not self._config.each_reset
+        fixed = key.episode > 0 and not self._config.each_reset
         if fixed or tracker != self._worlds.leader[self._worlds.of[tracker]]:
             return
-        rng = stream(seed, "light", tracker, episode)
+        rng = key.stream("light")
         config, weather = self._config, self._weather
         sky = _changed(
             sample(config.background, rng), config.background_replaces, weather.luminosity

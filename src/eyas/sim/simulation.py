@@ -92,6 +92,15 @@ class Simulation:
         """Begin the sequence of episodes of another seed; takes effect at the next reset."""
         self._episodes.reseed(seed)
 
+    def reseed_alone(self, trackers: NDArray[np.integer], seeds: NDArray[np.integer]) -> None:
+        """Begin the episodes that a simulation of one tracker has with each of these seeds.
+
+        Args:
+            trackers: Trackers with worlds of their own, shape (K,).
+            seeds: The seed of each, shape (K,).
+        """
+        self._episodes.reseed_alone(trackers, seeds)
+
     def reset(self, trackers: NDArray[np.bool_] | None = None) -> None:
         """Begin a new episode.
 
@@ -109,15 +118,20 @@ class Simulation:
         self._orders.starts[0] = count
         self._step.begin()
 
-    def advance(self, commands: Floats, physics_steps: int = 1) -> StepResult:
+    def advance(
+        self, commands: Floats, physics_steps: int = 1, active: NDArray[np.bool_] | None = None
+    ) -> StepResult:
         """Hold commands for some physics steps of 2 ms, each with reward and end conditions.
 
         Args:
             commands: Forward [m/s], left [m/s], up [m per 2 ms], yaw rate [rad/s], shape (N, 4).
             physics_steps: Number of steps.
+            active: The trackers that fly, shape (N,); for the others time stands still, so that
+                these must have worlds of their own. None: all.
         """
         assert commands.shape == (self.count, 4), f"commands: shape {commands.shape}, not (N, 4)"
         self._orders.commands[:] = commands
+        self._orders.active[:] = True if active is None else active
         self._orders.steps[0] = physics_steps
         self._step.fly()
         return self._result()

@@ -61,6 +61,8 @@ class Orders(NamedTuple):
     """Physics steps to take, shape (1,)."""
     commands: NDArray[np.float64]
     """Command of each tracker, see `Tracker.advance`, shape (N, 4)."""
+    active: NDArray[np.bool_]
+    """Whether each tracker flies, shape (N,); for the others, time stands still."""
     starts: NDArray[np.int64]
     """Number of trackers that begin an episode, K, shape (1,)."""
     chosen: NDArray[np.int64]
@@ -74,6 +76,7 @@ class Orders(NamedTuple):
         return cls(
             steps=np.zeros(1, np.int64),
             commands=np.zeros((trackers, 4)),
+            active=np.ones(trackers, np.bool_),
             starts=np.zeros(1, np.int64),
             chosen=np.zeros(trackers, np.int64),
             pitch=np.zeros(trackers),
@@ -120,8 +123,10 @@ def _fly(parts: Parts, worker: int, workers: int) -> None:
     state, orders = parts[0]
     snapshot, memory, around, rules, share = state[0]
     trackers, cameras, targets, episodes, _ = snapshot
-    steps, commands, _, _, _ = orders[0]
+    steps, commands, active, _, _, _ = orders[0]
     for n in range(commands.shape[0]):
+        if not active[n]:
+            continue
         half_size = rewarded_size(cameras.field_of_view[n], rules)
         for _step in range(steps[0]):
             advance(trackers, memory, n, commands[n])
@@ -158,7 +163,7 @@ def _begin(parts: Parts, worker: int, workers: int) -> None:
     state, orders = parts[0]
     snapshot, memory, around, rules, share = state[0]
     trackers, cameras, targets, episodes, _ = snapshot
-    _, _, starts, chosen, pitch = orders[0]
+    _, _, _, starts, chosen, pitch = orders[0]
     for k in range(starts[0]):
         n = chosen[k]
         targets.lost[n] = False

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
-from eyas.core.rng import stream
+from eyas.core.rng import EpisodeKey
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.near import NearMovers
@@ -89,13 +89,13 @@ class Worlds:
         """Return all trackers in the world of a tracker, shape (K,)."""
         return np.flatnonzero(self.of == self.of[tracker])
 
-    def sample_looks(self, tracker: int, seed: int, episode: int) -> None:
+    def sample_looks(self, tracker: int, key: EpisodeKey) -> None:
         """Draw models and colours of the actors around a tracker, if its world starts again."""
         world = self.of[tracker]
-        if self.lasting[world] and (tracker != self.leader[world] or episode > 0):
+        if self.lasting[world] and (tracker != self.leader[world] or key.episode > 0):
             return
-        rng = stream(seed, "looks", tracker, episode)
-        self._looks.model[world], self._looks.colour[world] = self._sampler.sample(rng)
+        looks = self._sampler.sample(key.stream("looks"))
+        self._looks.model[world], self._looks.colour[world] = looks
 
     def model_of(self, tracker: int, actor: int) -> int:
         """Return the model of an actor around a tracker, an index into the catalogue."""

@@ -1,0 +1,137 @@
+"""N trackers of the same settings, each in a world of its own, as environments step them."""
+
+import logging
+from collections.abc import Sequence
+from itertools import compress
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.clock import physics_steps
+from eyas.envs.actions import make_actions
+from eyas.envs.information import Info, information
+from eyas.envs.observation import Observer
+from eyas.settings.config import EyasConfig
+from eyas.settings.legacy.messages import originals_named
+from eyas.settings.version_check import require_supported
+from eyas.sim.build import build_simulation
+from eyas.sim.worlds import each_alone
+from eyas.state.draw import Picture
+from eyas.task.done import DoneReason
+from eyas.task.step_line import step_line
+
+__all__ = ["Batch", "Outcome", "Seeds"]
+
+Mask = NDArray[np.bool_]
+Seeds = Sequence[int | None] | None
+
+_STEPS = logging.getLogger("eyas.steps")
+"""Gets a line for each action if `verbose` is true."""
+_STEPS.setLevel(logging.INFO)
+
+
+class Outcome(NamedTuple):
+    """Result of one action of each of N agents."""
+
+    reward: NDArray[np.float64]
+    """Sum over the control steps that the action lasted, shape (N,)."""
+    terms: dict[str, NDArray[np.float64]]
+    """The same of each term of the reward, without its weight, shape (N,)."""
+    terminated: Mask
+    """Whether the episode has ended before its number of steps, shape (N,)."""
+    truncated: Mask
+    """Whether it has ended by its number of steps, shape (N,)."""
+
+
+class Batch:
+    """N trackers of the same settings.
+
+    Attributes:
+        config: The settings.
+        actions: What an agent chooses from.
+        observer: What an agent sees.
+
+    Args:
+        config: The settings.
+        count: N.
+
+    Raises:
+        EyasError: A setting is wrong; the message is one line.
+    """
+
+    def __init__(self, config: EyasConfig, count: int) -> None:
+        self.config = config
+        with originals_named(config):
+            require_supported(config)
+            self._simulation = build_simulation(config, each_alone(count))
+        self.actions = make_actions(config.env.actions, config.env.speeds)
+        self.observer = Observer(config.env.observation, self._simulation)
+        self._steps = physics_steps(config.control.frequency)
+        self._all = np.arange(count, dtype=np.int32)
+        self._picture: Picture | None = None
+
+    def begin(self, chosen: Mask, seeds: Seeds = None) -> None:
+        """Begin new episodes; `look` comes next.
+
+        Args:
+            chosen: The trackers, shape (N,).
+            seeds: For each of the N trackers, the seed whose sequence of episodes begins, or None
+                to continue its sequence; None: all continue.
+        """
+        pairs = zip(np.flatnonzero(chosen).tolist(), compress(seeds or (), chosen), strict=False)
+        for tracker, seed in pairs:
+            if seed is not None:
+                self._simulation.reseed_alone(np.array([tracker]), np.array([seed]))
+        self._simulation.reset(chosen)
+
+    def step(self, actions: Any, active: Mask) -> Outcome:  # noqa: ANN401  # whatever a learner returns
+        """Hold an action of each agent; `begin` or `look` comes next.
+
+        Args:
+            actions: N actions.
+            active: The trackers that fly, shape (N,); time stands still for the others, whose
+                rewards are 0 and who have no end.
+
+        Raises:
+            ActionError: An action is not in the space of actions.
+        """
+        commands = self.actions.commands(actions)
+        reward = np.zeros(len(active))
+        terms: dict[str, NDArray[np.float64]] = {}
+        running = active
+        for _ in range(self.config.env.action_repeat):
+            result = self._simulation.advance(commands, self._steps, running)
+            reward += np.where(running, result.reward, 0.0)
+            for name, values in result.terms.items():
+                terms[name] = np.where(running, values, 0.0) + terms.get(name, 0.0)
+            running = running & ~result.done
+            if not running.any():
+                break
+        if self.config.verbose:
+            for tracker in np.flatnonzero(active).tolist():
+                name = f"DRONE{tracker}"
+                _STEPS.info("%s", step_line(self._simulation.snapshot, tracker, name))
+        done, at_limit = result.done & active, result.reason == DoneReason.STEP_LIMIT
+        return Outcome(reward, terms, done & ~at_limit, done & at_limit)
+
+    def look(self, chosen: Mask, begun: Mask) -> None:
+        """Observe some trackers; `begun` tells whose episode has just begun; shapes (N,)."""
+        self.observer.look(self._all[chosen], begun[chosen])
+
+    def info(self) -> Info:
+        """Return the state of the trackers by name, see `eyas.envs.information`."""
+        return information(self._simulation)
+
+    def render(
+        self, chosen: NDArray[np.int32] | None = None, *, overlay: bool
+    ) -> NDArray[np.uint8]:
+        """Return cameras' pictures in their configured size, shape (V, H, W, 3)."""
+        camera = self.config.camera
+        chosen = self._all if chosen is None else chosen
+        if self._picture is None:
+            self._picture = Picture.create(len(self._all), camera.height, camera.width)
+        picture = self._picture.first(len(chosen))
+        self._simulation.draw(chosen, picture, overlay=overlay)
+        assert picture.rgb is not None
+        return picture.rgb.copy()

@@ -1,0 +1,122 @@
+"""Observations of N agents: their spaces, and the arrays that hold the latest of each."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import gymnasium
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.envs.config import ObservationConfig, ObservationPart
+from eyas.envs.information import SENSOR_COLUMNS, privileged_state, sensor_state
+from eyas.sensors.config import ColourLayout
+from eyas.sensors.stack import FrameStack
+from eyas.sim.simulation import Simulation
+from eyas.state.draw import Picture
+from eyas.state.scene import ObjectClass
+
+__all__ = ["Observation", "Observer", "observation_space"]
+
+Array = NDArray[Any]
+Observation = Array | dict[str, Array]
+
+_SENSORS = SENSOR_COLUMNS.stop - SENSOR_COLUMNS.start
+_PRIVILEGED = 16
+_Parts = ObservationPart
+
+
+def observation_space(config: ObservationConfig) -> gymnasium.Space[Any]:
+    """Return the space of one agent's observations."""
+    spaces: dict[str, gymnasium.Space[Any]] = {
+        part.value: _space(part, config) for part in dict.fromkeys(config.parts)
+    }
+    return gymnasium.spaces.Dict(spaces) if len(spaces) > 1 else next(iter(spaces.values()))
+
+
+def _space(part: ObservationPart, config: ObservationConfig) -> gymnasium.spaces.Box:
+    size = config.height, config.width
+    plane = (1, *size) if config.layout is ColourLayout.CHW else (*size, 1)
+    match part:
+        case _Parts.IMAGE:
+            shape = FrameStack(0, size, config.colours, config.layout, config.frames).shape
+            return gymnasium.spaces.Box(0, 255, shape, np.uint8)
+        case _Parts.CLASSES:
+            return gymnasium.spaces.Box(0, max(ObjectClass), plane, np.uint8)
+        case _Parts.DEPTH:
+            return gymnasium.spaces.Box(0.0, np.inf, plane, np.float32)
+        case _Parts.SENSORS:
+            return gymnasium.spaces.Box(-np.inf, np.inf, (_SENSORS,), np.float32)
+        case _Parts.PRIVILEGED:
+            return gymnasium.spaces.Box(-np.inf, np.inf, (_PRIVILEGED,), np.float32)
+
+
+class Observer:
+    """Observes N trackers.
+
+    Attributes:
+        space: The space of one observation.
+
+    Args:
+        config: What is observed.
+        simulation: The N trackers.
+    """
+
+    def __init__(self, config: ObservationConfig, simulation: Simulation) -> None:
+        self.space = observation_space(config)
+        self._simulation = simulation
+        count, size = simulation.count, (config.height, config.width)
+        wanted = frozenset(config.parts)
+        self._picture = Picture.create(
+            count,
+            *size,
+            rgb=_Parts.IMAGE in wanted,
+            depth=_Parts.DEPTH in wanted,
+            class_id=_Parts.CLASSES in wanted,
+        )
+        self._draws = bool(wanted & {_Parts.IMAGE, _Parts.DEPTH, _Parts.CLASSES})
+        self._stack = FrameStack(count, size, config.colours, config.layout, config.frames)
+        self._latest: dict[ObservationPart, Array] = {}
+        for part in wanted:
+            space = _space(part, config)
+            self._latest[part] = np.zeros((count, *space.shape), space.dtype)
+        if _Parts.IMAGE in wanted:
+            self._latest[_Parts.IMAGE] = self._stack.images
+
+    def look(self, chosen: NDArray[np.int32], begun: NDArray[np.bool_]) -> None:
+        """Observe some trackers.
+
+        Args:
+            chosen: The trackers, shape (V,).
+            begun: Whether the episode of each has just begun, shape (V,).
+        """
+        if self._draws:
+            picture = self._picture.first(len(chosen))
+            self._simulation.draw(chosen, picture)
+            if picture.rgb is not None:
+                self._stack.add(picture.rgb, chosen, begun)
+            for part, plane in ((_Parts.DEPTH, picture.depth), (_Parts.CLASSES, picture.class_id)):
+                if plane is not None:
+                    latest = self._latest[part]
+                    latest[chosen] = plane.reshape(len(chosen), *latest.shape[1:])
+        if (sensors := self._latest.get(_Parts.SENSORS)) is not None:
+            sensor_state(self._simulation, sensors)
+        if (privileged := self._latest.get(_Parts.PRIVILEGED)) is not None:
+            privileged_state(self._simulation.snapshot, privileged)
+
+    def copy_to(self, out: Observation, rows: NDArray[np.integer] | slice) -> None:
+        """Copy the latest observation of each tracker.
+
+        Args:
+            out: Observations, each array with a leading axis.
+            rows: Place of each tracker on that axis, shape (N,).
+        """
+        if isinstance(out, Mapping):
+            for part, array in self._latest.items():
+                out[part][rows] = array
+        else:
+            out[rows] = next(iter(self._latest.values()))
+
+    def one(self, tracker: int) -> Observation:
+        """Return a copy of the latest observation of a tracker."""
+        copies = {part.value: array[tracker].copy() for part, array in self._latest.items()}
+        return copies if len(copies) > 1 else next(iter(copies.values()))

@@ -1,0 +1,238 @@
+"""The Gymnasium vector environment: N drones, each in a world of its own, in one process."""
+
+from collections.abc import Sequence
+from typing import Any, Unpack, cast
+
+import gymnasium
+import numpy as np
+from gymnasium.vector import AutoresetMode
+from gymnasium.vector.utils import batch_space, create_empty_array
+from numpy.typing import NDArray
+
+from eyas.core.errors import ConfigError
+from eyas.envs.batch import Outcome
+from eyas.envs.choice import EnvChoices, Source, chosen_settings
+from eyas.envs.fleet import Fleet
+from eyas.envs.information import Info, by_term, masked
+from eyas.envs.members import Member
+from eyas.envs.observation import Observation
+from eyas.settings.config import EyasConfig
+
+__all__ = ["EyasVectorEnv"]
+
+Mask = NDArray[np.bool_]
+Seed = int | Sequence[int | None] | None
+Stepped = tuple[Observation, NDArray[np.float64], Mask, Mask, Info]
+
+
+class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
+    """N environments that are stepped and drawn together by all threads of one process.
+
+    Environment i gives the same as `TrackingEnv` with seed s + i if reset with seed s. Without a
+    seed, the first reset takes that of the configuration for s.
+
+    Args:
+        num_envs: N.
+        config: Settings, see `eyas.envs.choice.Source`.
+        autoreset_mode: When an environment whose episode has ended begins the next one: in the next
+            step, in the same step, or when it is reset by `reset_mask`.
+        copy: Whether each step returns new arrays of observations; False: the arrays of a step are
+            written again two steps later.
+        render_mode: `rgb_array` or None.
+        overlay: As for `TrackingEnv`.
+        choices: Settings by keyword, see `eyas.envs.choice.EnvChoices`.
+
+    Raises:
+        EyasError: A setting is wrong; the message is one line.
+    """
+
+    metadata = {  # noqa: RUF012  # Gymnasium's
+        "render_modes": ["rgb_array"],
+        "render_fps": 125,
+        "autoreset_mode": AutoresetMode.NEXT_STEP,
+    }
+
+    def __init__(
+        self,
+        num_envs: int = 1,
+        config: Source = None,
+        *,
+        autoreset_mode: AutoresetMode | str = AutoresetMode.NEXT_STEP,
+        copy: bool = True,
+        render_mode: str | None = None,
+        overlay: bool = False,
+        **choices: Unpack[EnvChoices],
+    ) -> None:
+        if num_envs < 1:
+            raise ConfigError(f"num_envs: {num_envs} is not allowed: a whole number, at least 1")
+        if render_mode not in (None, *self.metadata["render_modes"]):
+            raise ConfigError(f"render_mode: '{render_mode}' is not allowed: 'rgb_array' or None")
+        self.config = chosen_settings(config, **choices)
+        self._fleet = Fleet(self.config, num_envs)
+        self.num_envs = num_envs
+        self.render_mode = render_mode
+        self.single_action_space = self._fleet.action_space
+        self.single_observation_space = self._fleet.observation_space
+        self.action_space = batch_space(self.single_action_space, num_envs)
+        self.observation_space = batch_space(self.single_observation_space, num_envs)
+        self.autoreset_mode = AutoresetMode(autoreset_mode)
+        env = self.config.env
+        rate = round(self.config.control.frequency / env.action_repeat)
+        self.metadata = {
+            **self.metadata,
+            "render_fps": max(rate, 1),
+            "autoreset_mode": self.autoreset_mode,
+        }
+        self._overlay = overlay
+        self._all = np.ones(num_envs, np.bool_)
+        self._begun, self._ended = False, np.zeros(num_envs, np.bool_)
+        self._ring = [] if copy else [self._new_observations() for _ in range(2)]
+        self._members = [Member(self, index) for index in range(num_envs)]
+
+    def reset(
+        self,
+        *,
+        seed: Seed = None,
+        options: dict[str, Any] | None = None,
+        out: Observation | None = None,
+    ) -> tuple[Observation, Info]:
+        """Begin new episodes.
+
+        Args:
+            seed: s, s + 1, ... for a number s; or a list with the seed of each, or None to continue
+                its sequence of episodes.
+            options: `reset_mask` chooses the environments to reset, bool, shape (N,); the
+                observations of the others stay as they are.
+            out: Arrays to write the observations into; they are returned.
+        """
+        chosen = self._chosen(options)
+        self._fleet.begin(chosen, self._seeds(seed))
+        self._fleet.look(chosen, chosen)
+        self._ended[chosen] = False
+        info = masked(self._fleet.info(), chosen)
+        # The same names as after a step: TorchRL stacks all information.
+        none = {name: np.zeros(self.num_envs) for name in self._fleet.terms}
+        info |= masked(by_term(none), np.zeros(self.num_envs, np.bool_))
+        return self._observations(out), info
+
+    def step(self, actions: Any, *, out: Observation | None = None) -> Stepped:  # noqa: ANN401  # as in Gymnasium
+        """Hold an action in each environment.
+
+        Args:
+            actions: N actions.
+            out: Arrays to write the observations into; they are returned.
+
+        Returns:
+            Observations, rewards, terminations, truncations, information: see
+            `eyas.envs.information`, and, in the mode `SAME_STEP`, the last observation
+            (`final_obs`) and information (`final_info`) of the episodes that have ended.
+
+        Raises:
+            ActionError: An action is not in the space of actions.
+        """
+        begin = self._ended
+        if self.autoreset_mode == AutoresetMode.DISABLED:
+            assert not begin.any(), f"environments {np.flatnonzero(begin)} must be reset first"
+        outcome = self._fleet.step(actions, ~begin)
+        self._ended, final = outcome.terminated | outcome.truncated, {}
+        if self.autoreset_mode == AutoresetMode.SAME_STEP:
+            begin, self._ended = self._ended, np.zeros(self.num_envs, np.bool_)
+            final = self._final(begin, outcome)
+        if begin.any():
+            self._fleet.begin(begin)
+        self._fleet.look(self._all, begin)
+        info = {**masked(self._fleet.info(), self._all), **final}
+        info |= masked(by_term(outcome.terms), ~begin)
+        return (
+            self._observations(out),
+            outcome.reward,
+            outcome.terminated,
+            outcome.truncated,
+            info,
+        )
+
+    def render(self) -> tuple[NDArray[np.uint8], ...] | None:
+        """Return the cameras' pictures in their configured sizes, each of shape (H, W, 3)."""
+        if self.render_mode is None:
+            return None
+        return tuple(map(self.render_one, range(self.num_envs)))
+
+    def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:  # noqa: ANN401  # anything
+        """Return an attribute of each environment, or call it if it is a method.
+
+        The attributes are those of `eyas.envs.members.Member`.
+        """
+        values = self.get_attr(name)
+        return tuple(value(*args, **kwargs) if callable(value) else value for value in values)
+
+    def get_attr(self, name: str) -> tuple[Any, ...]:
+        """Return an attribute of each environment."""
+        return tuple(getattr(member, name) for member in self._members)
+
+    def set_attr(self, name: str, values: Any) -> None:  # noqa: ANN401  # anything
+        """Give each environment an attribute: one value for all, or a list or tuple with N."""
+        each = values if isinstance(values, list | tuple) else [values] * self.num_envs
+        for member, value in zip(self._members, each, strict=True):
+            setattr(member, name, value)
+
+    def member(self, index: int) -> Member:
+        """Return what libraries see of one environment."""
+        return self._members[index]
+
+    def config_of(self, index: int) -> EyasConfig:
+        """Return the settings of one environment."""
+        return self._fleet.config_of(index)
+
+    def render_one(self, index: int) -> NDArray[np.uint8]:
+        """Return the picture of one camera in its configured size, shape (H, W, 3)."""
+        return self._fleet.render(index, overlay=self._overlay)
+
+    def _final(self, ended: Mask, outcome: Outcome) -> Info:
+        """Return the last observations and information of episodes that have ended."""
+        if not ended.any():
+            return {}
+        self._fleet.look(ended, np.zeros(self.num_envs, np.bool_))
+        observations = np.full(self.num_envs, None, object)
+        for index in np.flatnonzero(ended).tolist():
+            observations[index] = self._fleet.one(index)
+        info = self._fleet.info() | by_term(outcome.terms)
+        return masked({"final_obs": observations, "final_info": info}, ended)
+
+    def _observations(self, out: Observation | None) -> Observation:
+        """Return the latest observations in the caller's arrays, the next of the ring, or new."""
+        if out is None:
+            self._ring.reverse()
+            out = self._ring[0] if self._ring else self._new_observations()
+        self._fleet.copy_to(out)
+        return out
+
+    def _new_observations(self) -> Observation:
+        new: Any = create_empty_array(self.single_observation_space, self.num_envs)
+        return cast("Observation", new)
+
+    def _chosen(self, options: dict[str, Any] | None) -> Mask:
+        """Return which environments to reset."""
+        if options is None or "reset_mask" not in options:
+            return self._all
+        mask = options.pop("reset_mask")  # Gymnasium's environments take it out, too
+        fits = isinstance(mask, np.ndarray) and mask.dtype == np.bool_
+        if not fits or mask.shape != (self.num_envs,) or not mask.any():
+            raise ConfigError(
+                "options['reset_mask']: not allowed: a bool array of shape "
+                f"({self.num_envs},) with at least one True"
+            )
+        chosen: Mask = mask.copy()
+        return chosen
+
+    def _seeds(self, seed: Seed) -> list[int | None] | None:
+        """Return the seed of each environment."""
+        first, self._begun = not self._begun, True
+        if seed is None:
+            if not first:
+                return None
+            seed = self.config.seed
+        if isinstance(seed, int | np.integer):
+            return list(range(int(seed), int(seed) + self.num_envs))
+        if len(seed) != self.num_envs:
+            raise ConfigError(f"seed: {len(seed)} are given for {self.num_envs} environments")
+        return list(seed)
