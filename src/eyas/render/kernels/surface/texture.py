@@ -84,8 +84,8 @@ def texel(
     if blend:
         away = detail - (level << i4(8))
         far = away < i4(0)
-        # Within a quarter of a level, that one is as good as a blend; between two, half of each.
-        part = to_i4(greater((select(far, -away, away) << i4(1)) - i4(128), i4(0)))
+        # Up to 3/8 from a level, that one is as good as a blend; half-way, half of each.
+        part = to_i4(greater((select(far, -away, away) << i4(2)) - i4(384), i4(0)))
         if any_of(part > i4(0)):
             other = level + select(far, like(level, i4(-1)), i4(1))
             other_low, other_high = _of_level(textures, layer, other, u, v)
