@@ -104,6 +104,7 @@ def test_the_legacy_picture_is_read_in_the_wrong_order_of_axes():
         LegacyObservation(TrackingEnv(observation={"layout": "chw"}))
 
 
+@pytest.mark.filterwarnings("ignore:.*render_fps:UserWarning")
 def test_a_film_is_recorded_by_gymnasiums_wrapper(tmp_path):
     pytest.importorskip("moviepy")
     env = gymnasium.wrappers.RecordVideo(

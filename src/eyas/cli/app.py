@@ -10,7 +10,7 @@ import typer
 import typer.core
 
 from eyas import __version__
-from eyas.cli import bench, cache, config, maps, traffic, video
+from eyas.cli import bench, cache, config, maps, traffic, train, video
 from eyas.cli.said import say
 from eyas.core.errors import EyasError
 
@@ -44,6 +44,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
 )
 app.command("video")(video.command)
+app.command("train")(train.command)
 app.command("bench")(bench.command)
 app.add_typer(cache.app, name="cache")
 app.add_typer(config.app, name="config")

@@ -27,7 +27,9 @@ ConfigFile = Annotated[
 ]
 Preset = Annotated[
     str | None,
-    typer.Option("--preset", help="Settings that come with Eyas: dat-eval, dat-train or easy."),
+    typer.Option(
+        "--preset", help="Settings that come with Eyas: dat-eval, dat-train, easy, fast or robust."
+    ),
 ]
 Overrides = Annotated[
     list[str] | None,

@@ -7,6 +7,7 @@ from pydantic import Field
 
 from eyas.core.config import Config
 from eyas.envs.config import EnvConfig
+from eyas.learning.config import TrainConfig
 from eyas.modes.video.config import VideoConfig
 from eyas.sim.config import SimConfig
 
@@ -51,6 +52,7 @@ class EyasConfig(SimConfig):
     environments to Python's logger `eyas.steps`."""
     env: EnvConfig = EnvConfig()
     video: VideoConfig = VideoConfig()
+    train: TrainConfig = TrainConfig()
     wire: WireConfig = WireConfig()
     original: dict[str, Value] | None = None
     """Values of the original's `env_config.json` that no other setting holds, such as those whose

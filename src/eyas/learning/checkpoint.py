@@ -1,0 +1,108 @@
+"""The folder of a training run: settings, checkpoint, curve and network."""
+
+import csv
+import io
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import Any
+
+import torch
+
+from eyas.core.errors import DataFileError, OutputError
+from eyas.core.files import refusals, write_atomic
+from eyas.settings.config import EyasConfig
+from eyas.settings.file import load_settings, save_settings
+
+__all__ = ["Progress", "RunFolder"]
+
+Row = dict[str, float]
+
+
+@dataclass
+class Progress:
+    """How far a run has come."""
+
+    stage: int = 0
+    block: int = 0
+    """Number of the next block."""
+    decisions: int = 0
+    """Of all stages."""
+    stage_decisions: int = 0
+    """Of the current stage."""
+    seconds: float = 0.0
+    """Time that the run has taken."""
+    rows: list[Row] = field(default_factory=list)
+    """Of the curve, one for each block."""
+
+
+class RunFolder:
+    """A folder with `config.json`, `checkpoint.pt`, `curve.csv`, `policy.onnx`, `tensorboard/`.
+
+    Args:
+        path: The folder.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.policy = path / "policy.onnx"
+        self._config = path / "config.json"
+        self._checkpoint = path / "checkpoint.pt"
+
+    def begin(self, config: EyasConfig, *, resume: bool) -> None:
+        """Make the folder, or check that it holds a run with these settings.
+
+        Raises:
+            OutputError: There is a run in it already, or none to resume, or one with other
+                settings.
+        """
+        if not resume and self._config.exists():
+            raise OutputError(f"{self.path}: has a run already; continue it with --resume")
+        if resume:
+            if not self._config.exists():
+                raise OutputError(f"{self.path}: there is no run to resume")
+            if load_settings(self._config) != config:
+                raise OutputError(
+                    f"{self.path}: the run in it has other settings, see its config.json; only a "
+                    "run with the same settings can be resumed"
+                )
+            return
+        with refusals(self.path):
+            self.path.mkdir(parents=True, exist_ok=True)
+        save_settings(config, self._config)
+
+    def save(
+        self, progress: Progress, network: torch.nn.Module, optimiser: torch.optim.Optimizer
+    ) -> None:
+        """Write a checkpoint and the curve."""
+        data = io.BytesIO()
+        torch.save(
+            {
+                "progress": asdict(progress),
+                "network": network.state_dict(),
+                "optimiser": optimiser.state_dict(),
+            },
+            data,
+        )
+        write_atomic(self._checkpoint, data.getvalue())
+        text = io.StringIO()
+        writer = csv.DictWriter(text, list(progress.rows[0]), lineterminator="\n")
+        writer.writeheader()
+        writer.writerows(progress.rows)
+        write_atomic(self.path / "curve.csv", text.getvalue().encode())
+
+    def load(self, network: torch.nn.Module, optimiser: torch.optim.Optimizer) -> Progress:
+        """Return how far the run has come; set network and optimiser as they were.
+
+        Raises:
+            DataFileError: The checkpoint cannot be read.
+        """
+        if not self._checkpoint.exists():
+            return Progress()
+        try:
+            saved: dict[str, Any] = torch.load(self._checkpoint, weights_only=True)
+            network.load_state_dict(saved["network"])
+            optimiser.load_state_dict(saved["optimiser"])
+            return Progress(**saved["progress"])
+        except Exception as error:  # PyTorch has many kinds
+            line = " ".join(str(error).split())[:200]
+            raise DataFileError(f"{self._checkpoint}: not a checkpoint: {line}") from error

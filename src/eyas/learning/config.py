@@ -1,0 +1,65 @@
+"""Settings of learning."""
+
+from typing import Annotated, Any
+
+from pydantic import Field
+
+from eyas.core.config import Config
+
+__all__ = ["Stage", "TrainConfig"]
+
+Share = Annotated[float, Field(ge=0, le=1)]
+Count = Annotated[int, Field(ge=1, le=2**40)]
+
+
+class Stage(Config):
+    """A part of a curriculum."""
+
+    decisions: Count
+    """Largest number of decisions, of all environments together."""
+    until_score: float | None = None
+    """The stage ends as soon as the mean return of a block is at least this."""
+    settings: dict[str, Any] = {}  # noqa: RUF012  # pydantic copies it
+    """Settings that differ from the common ones, for example `{"world": {"weather": "night"}}`."""
+
+
+class TrainConfig(Config):
+    """Proximal policy optimisation (Schulman et al. 2017, arXiv:1707.06347)."""
+
+    environments: Annotated[int, Field(ge=1, le=65536)] = 32
+    """Environments that are stepped together."""
+    stages: tuple[Stage, ...] = (Stage(decisions=600_000),)
+    """The curriculum: one stage after the other."""
+    rollout: Annotated[int, Field(ge=2, le=65536)] = 64
+    """Decisions of each environment between two updates."""
+    updates_per_block: Annotated[int, Field(ge=1, le=100_000)] = 20
+    """Updates between two checkpoints. Each block begins with new episodes, so that a run that is
+    resumed gives the same as one that never stopped."""
+    epochs: Annotated[int, Field(ge=1, le=100)] = 3
+    """Passes over the data of a rollout."""
+    minibatches: Annotated[int, Field(ge=1, le=4096)] = 4
+    """Parts of a pass; each is a step of the optimiser."""
+    learning_rate: Annotated[float, Field(gt=0, le=1)] = 5e-4
+    """Of Adam; it falls linearly to `final_rate` of this over all stages."""
+    final_rate: Share = 0.05
+    """Share of the learning rate that is left at the end."""
+    discount: Share = 0.95
+    """Gamma, per decision."""
+    trace: Share = 0.9
+    """Lambda of generalised advantage estimation."""
+    clip: Annotated[float, Field(gt=0, le=10)] = 0.2
+    """Largest change of the ratio of probabilities that is rewarded."""
+    entropy: Annotated[float, Field(ge=0, le=10)] = 0.01
+    """Weight of the entropy of actions in the loss."""
+    value: Annotated[float, Field(ge=0, le=100)] = 0.5
+    """Weight of the error of the value in the loss."""
+    largest_gradient: Annotated[float, Field(gt=0, le=1e6)] = 0.5
+    """Norm to which gradients are cut."""
+    reward_scale: Annotated[float, Field(gt=0, le=1e6)] = 0.025
+    """Factor on the rewards that are learned from."""
+    hidden: Annotated[int, Field(ge=1, le=65536)] = 256
+    """Width of the layer behind the convolutions, and of the memory."""
+    memory: bool = False
+    """Whether a gated recurrent unit follows that layer."""
+    threads: Annotated[int, Field(ge=1, le=1024)] = 1
+    """Threads of PyTorch; the result depends on their number in the last digits."""

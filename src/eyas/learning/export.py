@@ -1,0 +1,130 @@
+"""Networks as ONNX files, for onnxruntime and `eyas evaluate`."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import onnx
+from onnx import TensorProto, helper, numpy_helper
+from torch import Tensor
+
+from eyas import __version__
+from eyas.core.files import write_atomic
+from eyas.envs.config import EnvConfig
+from eyas.learning.network import ACTIONS, HOVER, MEAN, SPREAD, TrackingNetwork
+
+__all__ = ["export"]
+
+_OPSET = 17
+
+
+class _Graph:
+    """Nodes and weights of a graph that is being written."""
+
+    def __init__(self) -> None:
+        self.nodes: list[onnx.NodeProto] = []
+        self.weights: list[onnx.TensorProto] = []
+
+    def weight(self, name: str, values: Any) -> str:  # noqa: ANN401  # whatever numpy takes
+        """Add a tensor, an array or a number; return its name."""
+        array = values.detach().numpy() if isinstance(values, Tensor) else np.asarray(values)
+        self.weights.append(numpy_helper.from_array(np.ascontiguousarray(array), name))
+        return name
+
+    def node(self, kind: str, inputs: list[str], output: str, **attributes: object) -> str:
+        """Add a node with one output; return the output's name."""
+        self.nodes.append(helper.make_node(kind, inputs, [output], **attributes))
+        return output
+
+    def linear(self, name: str, source: str, weight: Tensor, bias: Tensor) -> str:
+        """Add a layer of sums."""
+        parts = [source, self.weight(f"{name}.w", weight), self.weight(f"{name}.b", bias)]
+        return self.node("Gemm", parts, name, transB=1)
+
+
+def export(network: TrackingNetwork, env: EnvConfig, path: Path) -> None:
+    """Write a network.
+
+    Inputs: `image`, uint8 (N, C, H, W); `last_action`, float (N, 7), a 1 at the last action, hover
+    at the start; `memory`, float (N, hidden), if it has one, 0 at the start. Outputs: `logits`,
+    float (N, 7), and `next_memory`. The metadata `eyas` has the settings of actions and
+    observations as JSON.
+
+    Args:
+        network: The network.
+        env: What it sees and chooses from.
+        path: The file.
+    """
+    graph, shape = _Graph(), network.shape
+    picture = ["n", shape.channels, shape.height, shape.width]
+    inputs = [
+        helper.make_tensor_value_info("image", TensorProto.UINT8, picture),
+        helper.make_tensor_value_info("last_action", TensorProto.FLOAT, ["n", ACTIONS]),
+    ]
+    outputs = [helper.make_tensor_value_info("logits", TensorProto.FLOAT, ["n", ACTIONS])]
+    features = _features(graph, network)
+    if network.memory is not None:
+        memory = ["n", shape.hidden]
+        inputs.append(helper.make_tensor_value_info("memory", TensorProto.FLOAT, memory))
+        outputs.append(helper.make_tensor_value_info("next_memory", TensorProto.FLOAT, memory))
+        features = _memory(graph, network, features)
+    graph.linear("logits", features, network.policy.weight, network.policy.bias)
+    body = helper.make_graph(graph.nodes, "eyas", inputs, outputs, graph.weights)
+    model = helper.make_model(
+        body,
+        opset_imports=[helper.make_opsetid("", _OPSET)],
+        ir_version=8,
+        producer_name="eyas",
+        producer_version=__version__,
+    )
+    settings = env.model_dump(mode="json", include={"actions", "action_repeat", "observation"})
+    helper.set_model_props(model, {"eyas": json.dumps(settings)})
+    onnx.checker.check_model(model, full_check=True)
+    write_atomic(path, model.SerializeToString())
+
+
+def _features(graph: _Graph, network: TrackingNetwork) -> str:
+    """Add the convolutions and the layer behind them."""
+    value = graph.node("Cast", ["image"], "image.float", to=TensorProto.FLOAT)
+    value = graph.node("Sub", [value, graph.weight("mean", np.float32(MEAN))], "image.centred")
+    value = graph.node("Div", [value, graph.weight("spread", np.float32(SPREAD))], "image.scaled")
+    for number in (0, 2):
+        layer: Any = network.convolutions[number]
+        name = f"convolution.{number}"
+        parts = [
+            value,
+            graph.weight(f"{name}.w", layer.weight),
+            graph.weight(f"{name}.b", layer.bias),
+        ]
+        value = graph.node("Conv", parts, name, strides=list(layer.stride))
+        value = graph.node("Relu", [value], f"{name}.relu")
+    value = graph.node("Flatten", [value], "seen")
+    # Hover is told as zeros.
+    ends = [graph.weight(f"cut.{end}", np.array([at])) for end, at in (("0", 0), ("1", HOVER))]
+    action = graph.node(
+        "Slice", ["last_action", *ends, graph.weight("cut.axis", np.array([1]))], "told"
+    )
+    value = graph.node("Concat", [value, action], "seen.told", axis=1)
+    value = graph.linear("layer", value, network.layer.weight, network.layer.bias)
+    return graph.node("Relu", [value], "features")
+
+
+def _memory(graph: _Graph, network: TrackingNetwork, features: str) -> str:
+    """Add a step of the gated recurrent unit, as in `torch.nn.GRUCell`."""
+    cell = network.memory
+    assert cell is not None
+    given = graph.linear("given", features, cell.weight_ih, cell.bias_ih)
+    kept = graph.linear("kept", "memory", cell.weight_hh, cell.bias_hh)
+    names = [f"{kind}.{gate}" for kind in ("given", "kept") for gate in ("reset", "update", "new")]
+    graph.nodes.append(helper.make_node("Split", [given], names[:3], axis=1))
+    graph.nodes.append(helper.make_node("Split", [kept], names[3:], axis=1))
+    for gate in ("reset", "update"):
+        graph.node("Add", [f"given.{gate}", f"kept.{gate}"], f"{gate}.sum")
+        graph.node("Sigmoid", [f"{gate}.sum"], gate)
+    graph.node("Mul", ["reset", "kept.new"], "new.kept")
+    graph.node("Add", ["given.new", "new.kept"], "new.sum")
+    graph.node("Tanh", ["new.sum"], "new")
+    graph.node("Sub", ["memory", "new"], "change")
+    graph.node("Mul", ["update", "change"], "remembered")
+    return graph.node("Add", ["new", "remembered"], "next_memory")

@@ -1,0 +1,110 @@
+"""The network: picture and last action in, probabilities of the seven actions and a value out."""
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+import torch
+from torch import Tensor, nn
+
+__all__ = ["ACTIONS", "HOVER", "MEAN", "SPREAD", "NetworkShape", "TrackingNetwork"]
+
+ACTIONS = 7
+HOVER = 6
+"""The action that stands for "none yet"; the network sees it as zeros."""
+
+MEAN, SPREAD = 110.0, 60.0
+"""Of the pixels of a picture by day."""
+
+
+@dataclass(frozen=True)
+class NetworkShape:
+    """What a network is made for."""
+
+    channels: int
+    """Of the picture."""
+    height: int
+    width: int
+    hidden: int
+    memory: bool
+
+    def to_json(self) -> dict[str, Any]:
+        """Return the numbers by name."""
+        return asdict(self)
+
+    @property
+    def state(self) -> int:
+        """Numbers that are carried from one decision to the next: last action, and memory."""
+        return ACTIONS - 1 + (self.hidden if self.memory else 0)
+
+    @property
+    def filters(self) -> tuple[tuple[int, int, int], tuple[int, int, int]]:
+        """Channels, width and stride of the two convolutions."""
+        first = (16, 8, 4) if max(self.height, self.width) > 60 else (16, 6, 3)
+        return first, (32, 4, 2)
+
+
+class TrackingNetwork(nn.Module):
+    """Two convolutions, a layer, perhaps a memory, and two heads.
+
+    Attributes:
+        shape: What it is made for.
+    """
+
+    def __init__(self, shape: NetworkShape) -> None:
+        super().__init__()
+        self.shape = shape
+        (wide, width, stride), (deep, width2, stride2) = shape.filters
+        self.convolutions = nn.Sequential(
+            nn.Conv2d(shape.channels, wide, width, stride),
+            nn.ReLU(),
+            nn.Conv2d(wide, deep, width2, stride2),
+            nn.ReLU(),
+            nn.Flatten(),
+        )
+        with torch.no_grad():
+            seen = self.convolutions(torch.zeros(1, shape.channels, shape.height, shape.width))
+        self.layer = nn.Linear(seen.shape[1] + ACTIONS - 1, shape.hidden)
+        self.memory = nn.GRUCell(shape.hidden, shape.hidden) if shape.memory else None
+        self.policy = nn.Linear(shape.hidden, ACTIONS)
+        self.value = nn.Linear(shape.hidden, 1)
+
+    def forward(self, picture: Tensor, state: Tensor) -> tuple[Tensor, Tensor, Tensor]:
+        """Return logits (B, 7), values (B,) and the memory that follows (B, hidden or 0).
+
+        Args:
+            picture: uint8, shape (B, C, H, W).
+            state: Last action and memory, shape (B, `shape.state`); zeros at the start.
+        """
+        seen = self.convolutions((picture.float() - MEAN) / SPREAD)
+        action, memory = state[:, : ACTIONS - 1], state[:, ACTIONS - 1 :]
+        features = torch.relu(self.layer(torch.cat([seen, action], 1)))
+        if self.memory is not None:
+            features = memory = self.memory(features, memory)
+        return self.policy(features), self.value(features)[:, 0], memory
+
+    def next_state(self, action: Tensor, memory: Tensor, begun: Tensor | None = None) -> Tensor:
+        """Return the state for the next decision, shape (B, `shape.state`).
+
+        Args:
+            action: The actions taken, shape (B,).
+            memory: The memory from `forward`.
+            begun: Where a new episode has begun, shape (B,).
+        """
+        told = nn.functional.one_hot(action, ACTIONS)[:, :HOVER].float()
+        state = torch.cat([told, memory], 1)
+        return state if begun is None else torch.where(begun[:, None], 0.0, state)
+
+    def initialise(self, generator: torch.Generator) -> None:
+        """Draw orthogonal weights, as is usual for this method (Andrychowicz et al. 2021)."""
+        gains: dict[nn.Module, float] = {self.policy: 0.01, self.value: 1.0}
+        for module in self.modules():
+            if isinstance(module, nn.Conv2d | nn.Linear):
+                gain = gains.get(module, 2**0.5)
+                nn.init.orthogonal_(module.weight, gain, generator)
+                assert module.bias is not None
+                nn.init.zeros_(module.bias)
+        if self.memory is not None:
+            for weight in (self.memory.weight_ih, self.memory.weight_hh):
+                nn.init.orthogonal_(weight, 1.0, generator)
+            nn.init.zeros_(self.memory.bias_ih)
+            nn.init.zeros_(self.memory.bias_hh)

@@ -1,0 +1,134 @@
+"""Rollouts: what N environments and the network did in T decisions."""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+import torch
+from gymnasium.vector import AutoresetMode
+from torch import Tensor
+
+from eyas.envs.vector_env import EyasVectorEnv
+from eyas.learning.network import TrackingNetwork
+from eyas.settings.config import EyasConfig
+
+__all__ = ["Finished", "Roller", "Rollout"]
+
+
+@dataclass
+class Rollout:
+    """T decisions in N environments."""
+
+    pictures: Tensor
+    """uint8, shape (T, N, C, H, W)."""
+    states: Tensor
+    """What the network carried, shape (T, N, S)."""
+    actions: Tensor
+    """Shape (T, N)."""
+    log_probability: Tensor
+    """Of the actions, shape (T, N)."""
+    rewards: Tensor
+    """Scaled; with the value of what was cut off, shape (T, N)."""
+    values: Tensor
+    """Shape (T + 1, N)."""
+    ended: Tensor
+    """Whether the episode ended with each decision, shape (T, N)."""
+
+
+@dataclass
+class Finished:
+    """The episodes that have ended since the block began."""
+
+    returns: list[float] = field(default_factory=list)
+    """Sum of the unscaled rewards of each."""
+    lengths: list[float] = field(default_factory=list)
+    """Decisions in each."""
+
+
+class Roller:
+    """Runs N environments with a network.
+
+    Attributes:
+        env: The environments.
+        finished: Episodes that have ended since `begin`.
+
+    Args:
+        config: The settings.
+        network: Chooses the actions.
+    """
+
+    def __init__(self, config: EyasConfig, network: TrackingNetwork) -> None:
+        count, rollout = config.train.environments, config.train.rollout
+        self.env = EyasVectorEnv(count, config, autoreset_mode=AutoresetMode.SAME_STEP, copy=False)
+        self.finished = Finished()
+        self._network = network
+        self._config = config.train
+        shape = network.shape
+        self._data = Rollout(
+            pictures=torch.zeros(
+                rollout, count, shape.channels, shape.height, shape.width, dtype=torch.uint8
+            ),
+            states=torch.zeros(rollout, count, shape.state),
+            actions=torch.zeros(rollout, count, dtype=torch.long),
+            log_probability=torch.zeros(rollout, count),
+            rewards=torch.zeros(rollout, count),
+            values=torch.zeros(rollout + 1, count),
+            ended=torch.zeros(rollout, count),
+        )
+        self._picture = torch.zeros(0)
+        self._state = torch.zeros(count, shape.state)
+        self._return, self._length = np.zeros(count), np.zeros(count, np.int64)
+
+    def begin(self, seed: int) -> None:
+        """Begin new episodes."""
+        observation, _ = self.env.reset(seed=seed)
+        assert isinstance(observation, np.ndarray)
+        self._picture = torch.from_numpy(observation)
+        self._state = torch.zeros_like(self._state)
+        self._return[:], self._length[:] = 0.0, 0
+        self.finished = Finished()
+
+    @torch.no_grad()
+    def roll(self, generator: torch.Generator) -> Rollout:
+        """Return the next T decisions; the arrays are overwritten by the next call.
+
+        Args:
+            generator: Source of the random choices of actions.
+        """
+        data = self._data
+        for step in range(self._config.rollout):
+            logits, value, memory = self._network(self._picture, self._state)
+            action = torch.multinomial(logits.softmax(1), 1, generator=generator)[:, 0]
+            chosen = logits.log_softmax(1).gather(1, action[:, None])[:, 0]
+            data.pictures[step], data.states[step] = self._picture, self._state
+            data.actions[step], data.log_probability[step] = action, chosen
+            data.values[step] = value
+            state = self._network.next_state(action, memory)
+            ended = self._step(step, action, state)
+            self._state = torch.where(ended[:, None], 0.0, state)
+        data.values[-1] = self._network(self._picture, self._state)[1]
+        return data
+
+    def _step(self, step: int, action: Tensor, state: Tensor) -> Tensor:
+        """Take a step in the environments; return which episodes have ended."""
+        observation, reward, terminated, truncated, info = self.env.step(action.numpy())
+        assert isinstance(observation, np.ndarray)
+        self._picture = torch.from_numpy(observation)
+        ended = terminated | truncated
+        self._count(reward, ended)
+        scaled = torch.from_numpy(reward * self._config.reward_scale).float()
+        cut = np.flatnonzero(truncated)
+        if len(cut):  # what would have followed counts as its value
+            last = torch.from_numpy(np.stack([info["final_obs"][n] for n in cut]))
+            scaled[cut] += self._config.discount * self._network(last, state[cut])[1]
+        self._data.rewards[step] = scaled
+        gone = torch.from_numpy(ended)
+        self._data.ended[step] = gone.float()
+        return gone
+
+    def _count(self, reward: np.ndarray, ended: np.ndarray) -> None:
+        self._return += reward
+        self._length += 1
+        for index in np.flatnonzero(ended).tolist():
+            self.finished.returns.append(float(self._return[index]))
+            self.finished.lengths.append(int(self._length[index]))
+        self._return[ended], self._length[ended] = 0.0, 0

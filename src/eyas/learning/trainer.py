@@ -1,0 +1,159 @@
+"""A training run: stages, blocks of updates, checkpoints."""
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import torch
+
+from eyas.core.config import updated
+from eyas.core.errors import ConfigError
+from eyas.core.rng import stream
+from eyas.envs.choice import steps_per_action
+from eyas.envs.config import ActionKind, ObservationPart
+from eyas.envs.observation import observation_space
+from eyas.learning.board import Board
+from eyas.learning.checkpoint import Progress, RunFolder
+from eyas.learning.config import Stage
+from eyas.learning.export import export
+from eyas.learning.network import NetworkShape, TrackingNetwork
+from eyas.learning.ppo import Losses, update
+from eyas.learning.rollout import Roller
+from eyas.sensors.config import ColourLayout
+from eyas.settings.config import EyasConfig
+
+__all__ = ["train"]
+
+Say = Callable[[str], None]
+
+
+def train(config: EyasConfig, folder: Path, *, resume: bool = False, say: Say = print) -> Path:
+    """Train a network; return the path of the ONNX file.
+
+    The result depends only on the settings and on the number of PyTorch's threads: each block of
+    updates begins with new episodes and random numbers of its own, so a resumed run gives the same.
+
+    Args:
+        config: The settings; `env` and `train` say what is seen and how it is learned.
+        folder: Where the run is kept.
+        resume: Whether to continue the run in the folder.
+        say: Called with a line for each block.
+
+    Raises:
+        EyasError: A setting is wrong, or the folder; one line.
+    """
+    run = _Run(config, RunFolder(folder), say)
+    run.files.begin(config, resume=resume)
+    if resume:
+        run.progress = run.files.load(run.network, run.optimiser)
+    while run.progress.stage < len(config.train.stages):
+        run.stage()
+    return run.files.policy
+
+
+class _Run:
+    """A run and how far it has come."""
+
+    def __init__(self, config: EyasConfig, files: RunFolder, say: Say) -> None:
+        torch.set_num_threads(config.train.threads)
+        self.config, self.files, self._say = config, files, say
+        self.network = TrackingNetwork(_shape(config))
+        generator = torch.Generator().manual_seed(config.seed)
+        self.network.initialise(generator)
+        rate = config.train.learning_rate
+        self.optimiser = torch.optim.Adam(self.network.parameters(), rate, eps=1e-5)
+        self.progress = Progress()
+        self._board = Board(files.path / "tensorboard")
+        self._total = sum(stage.decisions for stage in config.train.stages)
+
+    def stage(self) -> None:
+        """Do the current stage, or what is left of it."""
+        stage = self.config.train.stages[self.progress.stage]
+        roller = Roller(updated(self.config, stage.settings), self.network)
+        done = self.progress.stage_decisions >= stage.decisions
+        while not done:
+            done = self._block(roller, stage)
+            if done:
+                self.progress.stage += 1
+                self.progress.stage_decisions = 0
+            self.files.save(self.progress, self.network, self.optimiser)
+            export(self.network, roller.env.config.env, self.files.policy)
+
+    def _block(self, roller: Roller, stage: Stage) -> bool:
+        """Do a block of updates; return whether the stage is done."""
+        config, progress, start = self.config.train, self.progress, time.monotonic()
+        draws = stream(self.config.seed, "learning", progress.block)
+        roller.begin(int(draws.integers(2**31, 2**62)))
+        generator = torch.Generator().manual_seed(int(draws.integers(2**62)))
+        for _ in range(config.updates_per_block):
+            self._set_rate()
+            data = roller.roll(generator)
+            losses = update(self.network, self.optimiser, data, config, generator)
+            progress.decisions += data.rewards.numel()
+            progress.stage_decisions += data.rewards.numel()
+        seconds = time.monotonic() - start
+        progress.seconds += seconds
+        row = self._row(roller, losses)
+        progress.rows.append(row)
+        progress.block += 1
+        self._tell(row, config.updates_per_block * data.rewards.numel() / seconds)
+        good = stage.until_score is not None and row["return"] >= stage.until_score
+        return good or progress.stage_decisions >= stage.decisions
+
+    def _set_rate(self) -> None:
+        config = self.config.train
+        left = max(1.0 - self.progress.decisions / self._total, config.final_rate)
+        for group in self.optimiser.param_groups:
+            group["lr"] = config.learning_rate * left
+
+    def _row(self, roller: Roller, losses: Losses) -> dict[str, float]:
+        """Return the curve's row of a block."""
+        ends = roller.finished
+        return {
+            "stage": self.progress.stage,
+            "decisions": self.progress.decisions,
+            "episodes": len(ends.returns),
+            "return": round(float(np.mean(ends.returns or [np.nan])), 6),
+            "length": round(float(np.mean(ends.lengths or [np.nan])), 6),
+            "policy_loss": losses.policy,
+            "value_loss": losses.value,
+            "entropy": losses.entropy,
+            "divergence": losses.divergence,
+        }
+
+    def _tell(self, row: dict[str, float], rate: float) -> None:
+        """Tell how it goes."""
+        progress = self.progress
+        left = (self._total - progress.decisions) * progress.seconds / progress.decisions
+        physics = rate * steps_per_action(self.config)
+        self._say(
+            f"{progress.decisions:>9,} of {self._total:,} decisions  return {row['return']:7.2f}  "
+            f"{rate:,.0f} decisions/s ({physics / 500:,.0f} s of flight per s)  "
+            f"{left / 60:.1f} min left"
+        )
+        self._board.add(progress.decisions, {**row, "decisions_per_second": rate})
+
+
+def _shape(config: EyasConfig) -> NetworkShape:
+    """Return the shape of the network for what is seen.
+
+    Raises:
+        ConfigError: The network cannot see or choose that.
+    """
+    env = config.env
+    if env.actions is not ActionKind.DISCRETE:
+        raise ConfigError(f"env.actions: '{env.actions}' cannot be trained yet: 'discrete' can")
+    seen = env.observation
+    if seen.parts != (ObservationPart.IMAGE,) or seen.layout is not ColourLayout.CHW:
+        raise ConfigError(
+            "env.observation: only pictures alone are trained, with channels first: "
+            'parts ["image"], layout "chw"'
+        )
+    shape = observation_space(seen).shape
+    assert shape is not None
+    if min(shape[1:]) < 20:
+        raise ConfigError("env.observation: too small to be trained: at least 20x20 pixels")
+    train = config.train
+    channels, height, width = shape
+    return NetworkShape(channels, height, width, train.hidden, train.memory)

@@ -1,0 +1,151 @@
+"""Training runs: the same when resumed, killed or repeated; what is wrong is one line."""
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("torch")
+
+import torch
+
+from eyas.core.config import updated, validated
+from eyas.core.errors import EyasError
+from eyas.learning.checkpoint import RunFolder
+from eyas.learning.trainer import train
+from eyas.settings.config import EyasConfig
+
+SMALL = validated(
+    EyasConfig,
+    {
+        "env": {
+            "action_repeat": 4,
+            "observation": {"width": 24, "height": 24, "layout": "chw"},
+        },
+        "train": {
+            "environments": 4,
+            "rollout": 8,
+            "updates_per_block": 2,
+            "hidden": 16,
+            "stages": [
+                {"decisions": 128},
+                {"decisions": 64, "settings": {"world": {"weather": "night"}}},
+            ],
+        },
+    },
+)
+"""Three blocks of 64 decisions, the last one at night."""
+
+
+def files(folder: Path) -> dict[str, bytes]:
+    return {name: (folder / name).read_bytes() for name in ("curve.csv", "policy.onnx")}
+
+
+def quiet(line: str) -> None:
+    pass
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("whole") / "run"
+    policy = train(SMALL, folder, say=quiet)
+    assert policy == folder / "policy.onnx"
+    return files(folder)
+
+
+def test_a_run_has_a_row_for_each_block(whole):
+    rows = whole["curve.csv"].decode().splitlines()
+    assert rows[0].startswith("stage,decisions,episodes,return,length,")
+    assert [row.split(",")[:2] for row in rows[1:]] == [["0", "64"], ["0", "128"], ["1", "192"]]
+
+
+def test_a_run_that_is_interrupted_and_resumed_gives_the_same_bytes(whole, tmp_path):
+    lines = []
+
+    def stop(line):
+        lines.append(line)
+        if len(lines) == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        train(SMALL, tmp_path / "run", say=stop)
+    assert (tmp_path / "run" / "curve.csv").read_bytes() != whole["curve.csv"]
+    train(SMALL, tmp_path / "run", resume=True, say=quiet)
+    assert files(tmp_path / "run") == whole
+    train(SMALL, tmp_path / "run", resume=True, say=quiet)  # there is nothing left to do
+    assert files(tmp_path / "run") == whole
+
+
+def test_a_run_that_is_killed_gives_the_same_bytes(whole, tmp_path):
+    folder = tmp_path / "run"
+    script = (
+        "import sys; from pathlib import Path; from eyas.settings.file import load_settings\n"
+        "from eyas.learning.trainer import train\n"
+        "train(load_settings(Path(sys.argv[1])), Path(sys.argv[2]))"
+    )
+    settings = tmp_path / "settings.json"
+    settings.write_text(SMALL.model_dump_json())
+    child = subprocess.Popen([sys.executable, "-c", script, str(settings), str(folder)])
+    while not (folder / "checkpoint.pt").exists():
+        assert child.poll() is None
+        time.sleep(0.01)
+    os.kill(child.pid, signal.SIGKILL)
+    child.wait()
+    train(SMALL, folder, resume=True, say=quiet)
+    assert files(folder) == whole
+
+
+def test_a_stage_ends_early_at_its_score(tmp_path):
+    stages = [{"decisions": 10_000_000, "until_score": -1.0}, {"decisions": 64}]
+    short = {"total_steps": 32, "grace_steps": 0}  # so that episodes end within a block
+    config = updated(SMALL, {"train": {"stages": stages}, "done": short})
+    train(config, tmp_path / "run", say=quiet)
+    rows = (tmp_path / "run" / "curve.csv").read_text().splitlines()[1:]
+    assert [row.split(",")[0] for row in rows] == ["0", "1"]
+
+
+def test_other_settings_and_other_folders_are_refused(tmp_path, whole):
+    train(updated(SMALL, {"train": {"stages": [{"decisions": 1}]}}), tmp_path / "run", say=quiet)
+    for config, folder, resume, message in [
+        (SMALL, "run", False, "has a run already; continue it with --resume"),
+        (SMALL, "run", True, "has other settings"),
+        (SMALL, "none", True, "there is no run to resume"),
+    ]:
+        with pytest.raises(EyasError, match=message) as caught:
+            train(config, tmp_path / folder, resume=resume, say=quiet)
+        assert "\n" not in str(caught.value)
+
+
+def test_a_damaged_checkpoint_is_one_line(tmp_path):
+    config = updated(SMALL, {"train": {"stages": [{"decisions": 1}]}})
+    train(config, tmp_path / "run", say=quiet)
+    (tmp_path / "run" / "checkpoint.pt").write_bytes(b"no checkpoint")
+    with pytest.raises(EyasError, match=r"checkpoint\.pt: not a checkpoint") as caught:
+        train(config, tmp_path / "run", resume=True, say=quiet)
+    assert "\n" not in str(caught.value)
+    assert RunFolder(tmp_path / "run").policy.exists()
+
+
+@pytest.mark.parametrize(
+    ("env", "message"),
+    [
+        ({"actions": "shares"}, r"^env\.actions: 'shares' cannot be trained yet"),
+        ({"observation": {"layout": "hwc"}}, r"^env\.observation: only pictures alone"),
+        ({"observation": {"width": 16, "height": 16}}, r"^env\.observation: too small"),
+    ],
+)
+def test_what_cannot_be_trained_is_one_line(env, message, tmp_path):
+    with pytest.raises(EyasError, match=message):
+        train(updated(SMALL, {"env": env}), tmp_path / "run", say=quiet)
+    assert not (tmp_path / "run").exists()
+
+
+def test_a_network_with_memory_learns_too(tmp_path):
+    config = updated(SMALL, {"train": {"memory": True, "stages": [{"decisions": 64}]}})
+    train(config, tmp_path / "run", say=quiet)
+    saved = torch.load(tmp_path / "run" / "checkpoint.pt", weights_only=True)
+    assert saved["network"]["memory.weight_hh"].shape == (48, 16)
