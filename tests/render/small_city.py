@@ -16,9 +16,11 @@ from eyas.state.lighting import Lighting
 from eyas.state.mesh import Material, Mesh, Surface
 from eyas.state.scene import Fixtures, Scene
 from eyas.world.build.materials import TEXTURES, facade, material
+from eyas.world.roads.markings import RoadPaint, Stripe, margins_of, mesh_of
 
 GROUND, ROAD, TOWER, TREE = 0, 1, 2, 3
 TREE_OBJECT = 90
+LINE = 91
 
 DAY = Lighting(
     sun_direction=(-0.45, 0.45, 0.7713624),
@@ -174,6 +176,20 @@ def city_scene() -> Scene:
             objects.append(TOWER + 2 * k + (side > 0))
             places.append((float(x) + 20.0, side * 11.0))
     return scene_of(meshes, objects, trees_at(places))
+
+
+def with_line(scene: Scene, width: float = 0.2, rise: float = 0.02) -> Scene:
+    """The same with a white line along y = 0 and asphalt beside it: objects `LINE` and `ROAD`."""
+    line = Stripe(np.array([[-200.0, 0.0], [200.0, 0.0]]), width)
+    meshes = [make(RoadPaint([line], [], [])) for make in (mesh_of, margins_of)]
+    for mesh in meshes:
+        mesh.positions[:, 2] += rise
+    ids = np.repeat([LINE, ROAD], [len(mesh.triangles) for mesh in meshes]).astype(np.int32)
+    return dataclasses.replace(
+        scene,
+        static=concatenate([scene.static, *meshes]),
+        static_object=np.concatenate([scene.static_object, ids]),
+    )
 
 
 def city_traffic(worlds: int) -> DrawList:

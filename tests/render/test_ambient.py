@@ -14,16 +14,28 @@ from eyas.state.terrain import Terrain, ground_at
 from eyas.world.build.materials import material
 from eyas.world.land.hills import Hill, hilly, relief_mesh
 
-from .small_city import DAY, GROUND, TOWER, TREE_OBJECT, floor, looking, scene_of, tower, trees_at
+from .small_city import (
+    DAY,
+    GROUND,
+    TOWER,
+    TREE,
+    TREE_OBJECT,
+    floor,
+    looking,
+    scene_of,
+    tower,
+    trees_at,
+)
 
 SHADE = dataclasses.replace(DAY, sun_colour=(0.0, 0.0, 0.0), fog_density=0.0)
 
 
-def open_shares(solid, crowns=None, workers=1) -> np.ndarray:
+def open_shares(solid, crowns=None, decks=None, workers=1) -> np.ndarray:
     """Return the share of the sky that each texel's ground sees, light that bounces left out."""
     result = np.empty(solid.shape, np.uint16)
     crowns = np.zeros_like(solid) if crowns is None else crowns
-    bake_openness(workers, Held(OpennessBake(1.0, solid, crowns, result)))
+    decks = np.zeros((0, 0), np.float32) if decks is None else decks
+    bake_openness(workers, Held(OpennessBake(1.0, solid, crowns, decks, result)))
     return ((result & 255) / 255.0 - BOUNCED) / (1.0 - BOUNCED)
 
 
@@ -59,6 +71,28 @@ def test_a_courtyard_is_darker_than_a_street_and_crowns_let_some_light_through()
     assert 0.2 < middle[0] < 0.6
 
 
+def test_below_an_elevated_road_it_is_darker_the_lower_the_road_is():
+    # Straight below a long strip of half width w at height h, the share w / root(w^2 + h^2) of the
+    # light is hidden.
+    hidden = []
+    for height in (6.0, 15.0, 50.0):
+        road = field()
+        road[:, 33:48] = height
+        shares = open_shares(field(), decks=road)
+        hidden.append(1 - shares[40, 40])
+        assert shares[40, 40] < shares[40, 60] < shares[40, 80] < 1.01
+    exact = [7.5 / np.hypot(7.5, height) for height in (6.0, 15.0, 50.0)]
+    assert hidden == pytest.approx(exact, abs=0.08)
+
+
+def test_a_roof_beside_a_higher_wall_is_as_dark_as_ground_beside_one():
+    wall, roof = field(), np.full((81, 81), 20.0, np.float32)
+    wall[:, 40:60], roof[:, 40:60] = 30.0, 50.0
+    ground = open_shares(wall)
+    np.testing.assert_array_equal(open_shares(roof), ground)
+    assert ground[40, 38] < 0.65 < 0.9 < ground[40, 5]
+
+
 def test_any_number_of_workers_bakes_the_same():
     solid = np.where(np.random.default_rng(0).random((81, 81)) < 0.05, 15.0, 0.0)
     solid = solid.astype(np.float32)
@@ -84,6 +118,29 @@ def test_walls_darken_towards_their_feet_and_roofs_stay_bright(drawn, renderer_o
     lone = scene_of([block], [TOWER], size=1.0)  # no map reaches so far
     alone = drawn(renderer_of(lone, lighting=SHADE), looking(down[2:], pitch=np.pi / 2, fov=0.02))
     assert roof == pytest.approx(int(alone.rgb[0, 48, 64].astype(int).sum()), abs=6)
+
+
+def test_light_on_a_roof_and_a_deck_follows_what_is_higher(drawn, renderer_of):
+    low = box((60.0, 60.0, 10.0), (0.0, 0.0, 5.0), material("plain"), 1.0)
+    high = box((20.0, 60.0, 30.0), (10.0, 0.0, 15.0), material("plain"), 1.0)
+    deck = box((40.0, 14.0, 1.0), (80.0, 0.0, 7.5), material("plain"), 1.0)
+    scene = scene_of(
+        [floor(200.0, "plain"), low, high, deck], [GROUND, TOWER, TOWER, TREE], size=300.0
+    )
+    scene.object_class[TREE] = ObjectClass.STRUCTURE
+    renderer = renderer_of(scene, lighting=SHADE)
+
+    def light(x, y, z, pitch=np.pi / 2, yaw=0.0):
+        views = looking([(x, y, z)], pitch=pitch, yaw=yaw, fov=0.02)
+        return int(drawn(renderer, views, size=(9, 9)).rgb[0, 4, 4].astype(int).sum())
+
+    by_wall, away = light(-3.0, 0.0, 20.0), light(-24.0, 0.0, 20.0)
+    assert by_wall < 0.95 * away
+    foot, top = (light(-15.0, 0.0, z, pitch=0.0) for z in (12.0, 28.0))
+    assert foot < 0.95 * top
+    below, beside = light(80.0, 0.0, 5.0), light(80.0, 60.0, 5.0)
+    assert below < 0.9 * beside
+    assert light(80.0, 0.0, 20.0) == pytest.approx(light(10.0, 0.0, 60.0), abs=9)  # on the deck
 
 
 def test_a_hill_is_no_wall_and_what_stands_on_it_is_as_high_as_it_is():

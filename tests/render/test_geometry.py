@@ -4,13 +4,14 @@ import math
 from dataclasses import replace
 
 import numpy as np
+import pytest
 
 from eyas.core.cache.cached import cached
 from eyas.core.cache.folder import Kind
 from eyas.core.jit import kernel
 from eyas.core.parallel import Held
 from eyas.render.kernels.bundles import GROUP, Geometry
-from eyas.render.kernels.surface.texture import level_of, texel
+from eyas.render.kernels.surface.texture import detail_of, texel
 from eyas.render.kernels.visibility.clusters import (
     APEX,
     AXIS,
@@ -30,14 +31,14 @@ from .small_city import GROUND, TREE_OBJECT, car_parts, city_scene, floor, scene
 
 
 @kernel
-def texel_at(textures, layer, level, u, v):
-    low, high = texel(textures, layer, level, u, v)
+def texel_at(textures, layer, detail, blend, u, v):
+    low, high = texel(textures, layer, detail, blend, u, v)
     return low & 255, high & 255, (low >> 16) & 255, (high >> 16) & 255
 
 
 @kernel
-def level_at(square):
-    return level_of(square)
+def detail_at(square):
+    return detail_of(square)
 
 
 def test_a_kept_geometry_is_read_by_the_same_kernels_as_a_new_one(images, tmp_path):
@@ -186,7 +187,7 @@ def test_texels_are_blended_between_their_centres_and_v_grows_upwards():
     packed = packed_layers({"plain": image}, ["plain"])
 
     def colour(level, u, v):
-        return list(texel_at(packed, 0, np.int32(level), np.float32(u), np.float32(v)))
+        return list(texel_at(packed, 0, np.int32(256 * level), True, np.float32(u), np.float32(v)))
 
     assert colour(0, 0.3, 0.5 / 256) == [0, 255, 0, 255]
     assert colour(0, 0.3, 255.5 / 256) == [255, 0, 0, 255]
@@ -196,12 +197,32 @@ def test_texels_are_blended_between_their_centres_and_v_grows_upwards():
     assert colour(8, 0.9, 0.1) == [round(mean), round(mean), 0, 255]
 
 
-def test_the_level_has_about_one_texel_in_a_pixel():
+def test_a_level_of_detail_has_about_one_texel_in_a_pixel():
     for level in range(9):
         for factor in (0.8, 1.0, 1.3):
-            assert level_at(np.float32((factor * 2.0**level) ** 2)) == level
-    assert level_at(np.float32(0.0)) == 0
-    assert level_at(np.float32(1e12)) == 8
+            found = detail_at(np.float32((factor * 2.0**level) ** 2)) / 256
+            assert found == pytest.approx(np.clip(level + np.log2(factor), 0, 8), abs=0.05)
+            assert round(found) == level
+    assert detail_at(np.float32(0.0)) == 0
+    assert detail_at(np.float32(1e12)) == 2048
+
+
+def test_large_pictures_show_no_line_where_mip_levels_meet():
+    image = np.zeros((256, 256, 4), np.uint8)
+    image[:, ::2, :3], image[..., 3] = 255, 255  # level 0 is white here, all coarser ones are grey
+    packed = packed_layers({"plain": image}, ["plain"])
+
+    def whites(blend):
+        u, v = np.float32(0.5 / 256), np.float32(0.3)
+        return [texel_at(packed, 0, np.int32(k), blend, u, v)[0] for k in range(2049)]
+
+    blended, hard = np.array(whites(True)), np.array(whites(False))
+    grey = 0.5**0.5 * 255
+    assert blended[0] == 255
+    assert blended[-1] == round(grey)
+    assert np.abs(np.diff(blended)).max() <= 2
+    assert np.abs(np.diff(hard)).max() > 70
+    assert np.abs(blended[::256] - hard[::256]).max() == 0
 
 
 def test_a_sliver_without_width_is_left_out_and_gives_no_number_that_is_none():

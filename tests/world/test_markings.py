@@ -14,11 +14,15 @@ def paint(network):
     return road_paint(network)
 
 
+def white_areas(paint):
+    return [line.area for line in paint.lines] + paint.arrows
+
+
 def test_every_arm_of_every_junction_has_a_crossing_of_the_originals_size(network, paint):
     meeting = joints(network)
     assert len(paint.zebras) == sum(roads for roads in meeting.values() if roads > 2) == 36
     for bars in paint.zebras:
-        box = shapely.minimum_rotated_rectangle(shapely.MultiPolygon(bars))
+        box = shapely.minimum_rotated_rectangle(shapely.MultiPolygon([bar.area for bar in bars]))
         ring = shapely.get_coordinates(box)
         sides = sorted(np.linalg.norm(np.diff(ring, axis=0), axis=1)[:2])
         assert sides[0] == pytest.approx(5.6, abs=0.01)
@@ -28,19 +32,18 @@ def test_every_arm_of_every_junction_has_a_crossing_of_the_originals_size(networ
 def test_paint_is_on_asphalt(network, paint):
     road = road_area(network).buffer(0.02)
     shapely.prepare(road)
-    on_road = [shapely.covers(road, shape) for shape in paint.white]
-    assert all(on_road)
-    assert all(shapely.covers(road, bar) for bars in paint.zebras for bar in bars)
+    assert all(shapely.covers(road, shape) for shape in white_areas(paint))
+    assert all(shapely.covers(road, bar.area) for bars in paint.zebras for bar in bars)
 
 
 def test_crossings_do_not_overlap(paint):
-    every = [shapely.MultiPolygon(bars) for bars in paint.zebras]
+    every = [shapely.MultiPolygon([bar.area for bar in bars]) for bars in paint.zebras]
     assert shapely.union_all(every).area == pytest.approx(sum(z.area for z in every))
 
 
 def test_lane_lines_do_not_lie_where_wheels_roll(network, paint):
     """The middles of all lanes, but for arrows and stop lines near their ends, are bare."""
-    white = shapely.union_all(paint.white)
+    white = shapely.union_all(white_areas(paint))
     for lane in range(len(network.lane_width)):
         points = network.lane_points[network.lane_first[lane] : network.lane_first[lane + 1]]
         line = shapely.LineString(points)
@@ -50,7 +53,7 @@ def test_lane_lines_do_not_lie_where_wheels_roll(network, paint):
 
 
 def test_the_middle_of_a_road_is_painted_through_and_between_lanes_there_are_dashes(network, paint):
-    white = shapely.union_all(paint.white)
+    white = shapely.union_all(white_areas(paint))
     shapely.prepare(white)
     shares = []
     for street in streets(network):
@@ -65,7 +68,7 @@ def test_the_middle_of_a_road_is_painted_through_and_between_lanes_there_are_das
 
 def test_lines_go_round_bends_without_corners(paint):
     """No piece of a line turns by more than an arc's chord does."""
-    long = [shape for shape in paint.white if shape.area > 20.0]
+    long = [shape for shape in white_areas(paint) if shape.area > 20.0]
     assert len(long) > 20
     for shape in long:
         ring = shapely.get_coordinates(shapely.simplify(shape, 1e-4).exterior)
@@ -77,7 +80,8 @@ def test_lines_go_round_bends_without_corners(paint):
 
 
 def test_dashes_are_spread_evenly_over_a_line():
-    dashes = stripes(np.array([[0.0, 0.0], [100.0, 0.0]]), 0.2, (3.0, 6.0))
+    line = np.array([[0.0, 0.0], [100.0, 0.0]])
+    dashes = [dash.area for dash in stripes(line, 0.2, (3.0, 6.0))]
     assert len(dashes) == 11
     assert [dash.bounds[2] - dash.bounds[0] for dash in dashes] == pytest.approx([3.0] * 11)
     assert dashes[0].bounds[0] == pytest.approx(100.0 - dashes[-1].bounds[2])

@@ -6,7 +6,10 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["Material", "Mesh", "Surface"]
+__all__ = ["MARGIN", "Material", "Mesh", "Surface"]
+
+MARGIN = 0.275
+"""Asphalt beside the lines of a `Surface.MARKING` [m]: half the gap between bars of a crossing."""
 
 
 class Surface(IntEnum):
@@ -30,6 +33,11 @@ class Surface(IntEnum):
     """Inside of a tree's crown: matt, and casts no shadow; the leaves in front of it do."""
     SIGNAL = 8
     """Emits light (`emission`) in every weather, like a traffic light."""
+    MARKING = 9
+    """A line of paint on level asphalt; a pixel shows as much of each as it covers. The texture
+    repeats every 8 m, whatever u and v: asphalt and, in alpha, the brightness of paint. u is 31 at
+    the right edge of the line and 33 at the left one, and v has the same scale. Triangles without
+    paint reach `MARGIN` farther."""
 
 
 @dataclass(frozen=True, slots=True)

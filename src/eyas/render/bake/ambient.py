@@ -1,4 +1,4 @@
-"""Share of the sky seen from the ground: less beside walls, in courtyards, under trees."""
+"""Share of the sky seen from ground and roofs: less beside walls, under trees and bridges."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -26,17 +26,21 @@ LARGEST = 2048
 _LOWEST = 1.5
 """Things less high than this above the ground hide no sky [m]."""
 
-_FORMAT = "eyas ambient map 1"
+_DECK = 3.0
+"""Elevated roads less high than this are taken for the ground [m]."""
+
+_FORMAT = "eyas ambient map 2"
 """Raise its number by 1 whenever the same scene gives a different result."""
 
 
 @dataclass(frozen=True, slots=True)
 class AmbientMap:
-    """Share of the sky seen from the ground."""
+    """Share of the sky seen from the ground, or from the roof of a building."""
 
     openness: NDArray[np.uint16]
-    """Low byte: share of the sky's light that reaches the ground, 0 to 255; high byte: height of
-    what hides the rest [m]; shape (rows, columns)."""
+    """Low byte: share of the sky's light that arrives there, 0 to 255; high byte: where row +
+    column is even, height of what hides the rest, else height of the roof, 0 on the ground [m above
+    the ground]; shape (rows, columns)."""
     frame: NDArray[np.float64]
     """West and south edge [m], texels per metre, z of the ground [m]."""
 
@@ -45,7 +49,7 @@ def bake_ambient(scene: Scene, folder: Path | None = None) -> AmbientMap:
     """Return the map of a scene; computed only if the cache has none.
 
     Args:
-        scene: The static scene. Bridges and other structures hide little and are left out.
+        scene: The static scene. Structures lower than `_DECK` hide little and are left out.
         folder: Folder of the cache; None: the user's.
     """
     extent = np.array(scene.size)
@@ -71,7 +75,10 @@ def bake_ambient(scene: Scene, folder: Path | None = None) -> AmbientMap:
         openness = np.empty((rows, columns), np.uint16)
         solid = height_map(scene, frame, (rows, columns))
         crowns = canopy_map(scene, frame, (rows, columns))
-        bake_openness(thread_count(), Held(OpennessBake(texel, solid, crowns, openness)))
+        decks = height_map(scene, frame, (rows, columns), structures=True)
+        if not decks.any():
+            decks = decks[:0, :0]
+        bake_openness(thread_count(), Held(OpennessBake(texel, solid, crowns, decks, openness)))
         return openness
 
     openness = cached(Kind.AMBIENT, (), inputs, make, of=NDArray[np.uint16], folder=folder)
@@ -79,9 +86,14 @@ def bake_ambient(scene: Scene, folder: Path | None = None) -> AmbientMap:
 
 
 def height_map(
-    scene: Scene, frame: NDArray[np.float64], shape: tuple[int, int]
+    scene: Scene,
+    frame: NDArray[np.float64],
+    shape: tuple[int, int],
+    *,
+    structures: bool = False,
 ) -> NDArray[np.float32]:
-    """Return the height of the highest solid above the ground in each texel [m].
+    """Return the height of the highest solid above the ground in each texel [m], or that of the
+    highest elevated road.
 
     The ground itself does not count, however steep it is: hills are not walls.
     """
@@ -91,7 +103,8 @@ def height_map(
     ground = frame[3] + reliefs(scene.terrain, corners[:, :, :2])
     rise = (corners[:, :, 2] - ground).max(axis=1)
     level = mesh.normals[mesh.triangles, 2].mean(axis=1) > 0.2
-    chosen = np.flatnonzero(level & (kind != ObjectClass.STRUCTURE) & (rise > _LOWEST))
+    of_kind = (kind == ObjectClass.STRUCTURE) == structures
+    chosen = np.flatnonzero(level & of_kind & (rise > (_DECK if structures else _LOWEST)))
     flat = (corners[:, :, :2] - frame[:2]) * frame[2]
     picture = Image.new("F", (shape[1], shape[0]), 0.0)
     pen = ImageDraw.Draw(picture)

@@ -31,6 +31,7 @@ PAINTERS: dict[str, Callable[[], NDArray[np.uint8]]] = {
     "clinker": land.clinker,
     "water": land.water,
     "paint": wear.paint,
+    "asphalt_paint": wear.asphalt_paint,
     "asphalt_patch": wear.asphalt_patch,
     "asphalt_lane": wear.asphalt_lane,
     "asphalt_oil": wear.asphalt_oil,

@@ -12,8 +12,10 @@ from eyas.render.textures.fields import (
     source,
     white,
 )
+from eyas.render.textures.ground import asphalt
+from eyas.render.textures.mipmap import linear
 
-__all__ = ["asphalt_lane", "asphalt_oil", "asphalt_patch", "manhole", "paint"]
+__all__ = ["asphalt_lane", "asphalt_oil", "asphalt_paint", "asphalt_patch", "manhole", "paint"]
 
 Texture = NDArray[np.uint8]
 
@@ -26,6 +28,15 @@ def paint() -> Texture:
     picture = mixed(picture, (176.0, 172.0, 164.0), np.clip(0.22 * dirt - 0.1, 0, 0.4))
     wear = 0.75 * fractal(rng, 0.5, longest=20.0) + 0.65 * fractal(rng, 1.0, longest=70.0)
     return opaque(mixed(picture, (84.0, 84.0, 86.0), 0.6 * np.clip((wear - 1.5) * 3.0, 0, 1)))
+
+
+def asphalt_paint() -> Texture:
+    """Return the road's asphalt and, in alpha, how bright paint on it is: linear, 0 to 255."""
+    picture = asphalt()
+    bright = linear(paint()[..., 0] / 255.0)  # a repeat is 4 m wide, half of the asphalt's
+    coarse = bright.reshape(SIZE // 2, 2, SIZE // 2, 2).mean(axis=(1, 3))
+    picture[..., 3] = np.round(255.0 * np.tile(coarse, (2, 2)))
+    return picture
 
 
 def asphalt_patch() -> Texture:

@@ -37,6 +37,7 @@ TEXTURES: dict[str, float] = {
     "clinker": 4.0,
     "water": 9.0,
     "paint": 4.0,
+    "asphalt_paint": 8.0,
     "asphalt_patch": 8.0,
     "asphalt_lane": 6.4,
     "asphalt_oil": 4.0,

@@ -10,30 +10,34 @@ from numpy.typing import ArrayLike, NDArray
 from shapely.ops import substring
 
 from eyas.mesh.assembly import concatenate
-from eyas.mesh.flat import flat_polygons
-from eyas.state.mesh import Material, Mesh
+from eyas.mesh.flat import flat_polygons, quads
+from eyas.state.mesh import MARGIN, Material, Mesh, Surface
 from eyas.state.roads import RoadNetwork
 from eyas.world.build.materials import TEXTURES, material
 from eyas.world.build.millimetres import dot, rounded, unit
-from eyas.world.roads.areas import Street, joints, split_on_grid, streets
+from eyas.world.roads.areas import GRID, Street, joints, split_on_grid, streets
 from eyas.world.roads.curves import joined
 
 __all__ = [
     "PAINT_HEIGHT",
     "WHITE",
-    "YELLOW",
     "RoadPaint",
+    "Stripe",
+    "margins_of",
     "mesh_of",
     "painted",
     "road_paint",
     "stripes",
 ]
 
-PAINT_HEIGHT = 0.012
+PAINT_HEIGHT = 0.015
 """z of the paint: invisible, but enough to separate it from the asphalt at any distance [m]."""
+_MARGIN_HEIGHT = 0.012
+"""z of the asphalt beside it, which hides the wear of the road but no other paint [m]."""
 
 WHITE = material("paint", (0.99, 0.99, 0.98))
-YELLOW = material("paint", (1.0, 0.79, 0.18))
+_WHITE_LINE = Material("asphalt_paint", (0.99, 0.985, 0.96), Surface.MARKING)
+_YELLOW_LINE = Material("asphalt_paint", (1.0, 0.785, 0.176), Surface.MARKING)
 
 _DASH, _GAP = 3.0, 6.0
 _LINE = 0.18
@@ -53,45 +57,70 @@ Line = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
+class Stripe:
+    """A painted line."""
+
+    middle: Line
+    """Shape (K, 2) [m]."""
+    width: float
+    """Width [m]."""
+
+    @property
+    def area(self) -> shapely.Polygon:
+        """Return where paint is, in plan view."""
+        return shapely.buffer(shapely.LineString(self.middle), self.width / 2, cap_style="flat")
+
+
+@dataclass(frozen=True, slots=True)
 class RoadPaint:
     """Paint on roads, in plan view."""
 
-    white: list[shapely.Polygon]
-    """Lines and arrows."""
-    zebras: list[list[shapely.Polygon]]
+    lines: list[Stripe]
+    """White lines."""
+    arrows: list[shapely.Polygon]
+    """White arrows."""
+    zebras: list[list[Stripe]]
     """Yellow bars of each crossing."""
 
 
 def road_paint(network: RoadNetwork) -> RoadPaint:
     """Return the paint of all roads, with zebra crossings where three or more roads meet."""
     meeting = joints(network)
-    white: list[shapely.Polygon] = []
+    lines: list[Stripe] = []
     all_streets = streets(network)
     for chain in _chains(all_streets, meeting):
         middle, *dividers, kerb = (reduce(joined, parts) for parts in zip(*chain, strict=True))
-        white += stripes(middle, _CENTRE_LINE) if _comes_first(middle) else []
+        lines += stripes(middle, _CENTRE_LINE) if _comes_first(middle) else []
         for divider in dividers:
-            white += stripes(divider, _LINE, (_DASH, _GAP))
+            lines += stripes(divider, _LINE, (_DASH, _GAP))
         edge = shapely.offset_curve(shapely.LineString(kerb), _EDGE)
-        white += stripes(shapely.get_coordinates(edge), _EDGE_LINE)
+        lines += stripes(shapely.get_coordinates(edge), _EDGE_LINE)
+    arrows: list[shapely.Polygon] = []
     zebras = []
     for street in all_streets:
         if meeting[street.end] >= 3:
             leaving = [other for other in all_streets if other.start == street.end]
-            white += [_stop_line(street), *_arrows(street, leaving)]
+            lines.append(_stop_line(street))
+            arrows += _arrows(street, leaving)
             zebras.append(_zebra(street))
-    return RoadPaint(white, zebras)
+    return RoadPaint(lines, arrows, zebras)
 
 
 def mesh_of(paint: RoadPaint) -> Mesh:
     """Return the paint as triangles."""
-    bars = [bar for zebra in paint.zebras for bar in zebra]
-    return concatenate([painted(paint.white, WHITE), painted(bars, YELLOW)])
+    return concatenate([painted(paint.arrows, WHITE), *_strips(paint, 0.0, PAINT_HEIGHT)])
 
 
-def stripes(
-    line: Line, width: float, dashes: tuple[float, float] | None = None
-) -> list[shapely.Polygon]:
+def margins_of(paint: RoadPaint) -> Mesh:
+    """Return the asphalt beside the lines.
+
+    A pixel whose middle lies there may show some of the line, see `Surface.MARKING`: without
+    margins, lines narrower than a pixel would break into pieces.
+    """
+    return concatenate(_strips(paint, MARGIN, _MARGIN_HEIGHT))
+
+
+def stripes(line: Line, width: float, dashes: tuple[float, float] | None = None) -> list[Stripe]:
     """Return a painted line.
 
     Args:
@@ -99,15 +128,42 @@ def stripes(
         width: Width [m].
         dashes: Length of a dash and of the gap between two; None: a solid line.
     """
+    if not dashes:
+        return [Stripe(line, width)]
     path = shapely.LineString(line)
-    starts, length = np.zeros(1), path.length
-    if dashes:
-        length = dashes[0]
-        count = int((path.length + dashes[1]) // sum(dashes))
-        spare = path.length - (count * sum(dashes) - dashes[1])
-        starts = spare / 2 + np.arange(count) * sum(dashes)
-    pieces = [substring(path, start, start + length) for start in starts]
-    return [shapely.buffer(piece, width / 2, cap_style="flat") for piece in pieces]
+    count = int((path.length + dashes[1]) // sum(dashes))
+    spare = path.length - (count * sum(dashes) - dashes[1])
+    starts = spare / 2 + np.arange(count) * sum(dashes)
+    pieces = [substring(path, start, start + dashes[0]) for start in starts]
+    return [Stripe(shapely.get_coordinates(piece), width) for piece in pieces]
+
+
+def _strips(paint: RoadPaint, margin: float, z: float) -> list[Mesh]:
+    """Return the lines as quadrilaterals, wider than the paint on both sides by a margin [m]."""
+    bars = [bar for zebra in paint.zebras for bar in zebra]
+    white = [_strip(line, margin, z, _WHITE_LINE) for line in paint.lines]
+    return white + [_strip(bar, margin, z, _YELLOW_LINE) for bar in bars]
+
+
+def _strip(stripe: Stripe, margin: float, z: float, kind: Material) -> Mesh:
+    """Return a line; u and v are in half widths, see `Surface.MARKING`."""
+    path = shapely.simplify(shapely.LineString(stripe.middle), 1e-3)
+    middle = shapely.get_coordinates(shapely.segmentize(path, GRID))
+    along = np.gradient(middle, axis=0)
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    half = stripe.width / 2
+    reach = 1.0 + margin / half
+    across = reach * half * np.stack([-along[:, 1], along[:, 0]], axis=1)
+    gone = np.append(0.0, np.linalg.norm(np.diff(middle, axis=0), axis=1).cumsum()) / half
+    sides = [(middle - across, 32.0 - reach), (middle + across, 32.0 + reach)]
+    right, left = (np.column_stack([side, np.full(len(gone), z)]) for side, _ in sides)
+    uv_right, uv_left = (np.column_stack([np.full(len(gone), u), gone]) for _, u in sides)
+    return quads(_cells(right, left), _cells(uv_right, uv_left), kind)
+
+
+def _cells(right: Line, left: Line) -> Line:
+    """Return the corners between two rows of points, counter-clockwise, shape (K - 1, 4, .)."""
+    return np.stack([right[:-1], right[1:], left[1:], left[:-1]], axis=1)
 
 
 def painted(shapes: Sequence[shapely.Polygon], paint: Material) -> Mesh:
@@ -151,26 +207,26 @@ def _frame(street: Street) -> tuple[Line, Line, Line, float]:
     return street.right[-1], onwards, leftwards, width
 
 
-def _placed(street: Street, outline: ArrayLike) -> shapely.Polygon:
-    """Return a shape given onwards and leftwards from the stop line's right end [m]."""
+def _placed(street: Street, outline: ArrayLike) -> Line:
+    """Return points given onwards and leftwards from the stop line's right end [m]."""
     origin, onwards, leftwards, _ = _frame(street)
-    return shapely.Polygon(rounded(np.asarray(outline) @ np.stack([onwards, leftwards]) + origin))
+    return rounded(np.asarray(outline) @ np.stack([onwards, leftwards]) + origin)
 
 
-def _stop_line(street: Street) -> shapely.Polygon:
-    width = _frame(street)[3]
-    low, high = -_STOP_LINE, 0.0
-    return _placed(street, _rectangle(low, high, _EDGE, width - 0.15))
+def _stop_line(street: Street) -> Stripe:
+    onward = -_STOP_LINE / 2
+    ends = [(onward, _EDGE), (onward, _frame(street)[3] - 0.15)]
+    return Stripe(_placed(street, ends), _STOP_LINE)
 
 
-def _zebra(street: Street) -> list[shapely.Polygon]:
+def _zebra(street: Street) -> list[Stripe]:
     """Return the bars of the crossing beyond a stop line, over both directions of the road."""
     road = 2 * _frame(street)[3]
     count = int((road - 0.5) // (2 * _BAR))
-    first = (road - (2 * count - 1) * _BAR) / 2
+    first = (road - (2 * count - 1) * _BAR) / 2 + _BAR / 2
     low, high = _ZEBRA_START, _ZEBRA_START + _ZEBRA_LENGTH
     return [
-        _placed(street, _rectangle(low, high, y, y + _BAR))
+        Stripe(_placed(street, [(low, y), (high, y)]), _BAR)
         for y in first + 2 * _BAR * np.arange(count)
     ]
 
@@ -206,9 +262,6 @@ def _arrows(street: Street, leaving: Sequence[Street]) -> list[shapely.Polygon]:
         if len(parts) > 1:
             arrow = shapely.union_all([shapely.Polygon(part) for part in parts])
             shift = [-_ARROW_BACK, width * (lane + 0.5) / lanes]
-            made.append(_placed(street, shapely.get_coordinates(arrow) + shift))
+            outline = _placed(street, shapely.get_coordinates(arrow) + shift)
+            made.append(shapely.Polygon(outline))
     return made
-
-
-def _rectangle(x0: float, x1: float, y0: float, y1: float) -> list[tuple[float, float]]:
-    return [(x0, y0), (x1, y0), (x1, y1), (x0, y1)]

@@ -1,4 +1,4 @@
-"""Ambient occlusion: the share of the sky's light that reaches a point, baked on the ground."""
+"""Ambient occlusion: the share of the light of the sky that arrives on ground and roofs, baked."""
 
 import math
 from typing import NamedTuple
@@ -32,6 +32,9 @@ STEPS = 14
 LEAVES = 0.6
 """Share of the light that a crown absorbs."""
 
+STOREY = 2.0
+"""Roofs and ground that differ by less are one [m]."""
+
 BOUNCED = 0.42
 """Share of the sky's light that arrives by way of walls and ground where the sky is hidden."""
 
@@ -45,6 +48,12 @@ def _distance(step: int) -> float:
     return float(0.9 * (1.36**step))
 
 
+@inlined_kernel
+def _sine_squared(height: float, far: float) -> float:
+    """Return sin^2 of the angle below which something is seen: the share of the light below it."""
+    return height * height / (height * height + far * far)
+
+
 @inner_kernel
 def _open_share(
     texel: float,
@@ -52,13 +61,16 @@ def _open_share(
     column: int,
     solid: NDArray[np.float32],
     crowns: NDArray[np.float32],
+    decks: NDArray[np.float32],
 ) -> tuple[float, float]:
-    """Return the share of the sky's light on a texel's ground, and the height of what hides it.
+    """Return the share of the sky's light on a texel's ground or roof, and the height above the
+    ground of what hides it.
 
     Each direction contributes cos^2 of the horizon's angle, the share on a flat surface below
-    a uniformly bright sky.
+    a uniformly bright sky, less what decks hide above it.
     """
     rows, columns = solid.shape
+    base = solid[row, column]
     total, height, weight = 0.0, 0.0, 1e-6
     for k in range(DIRECTIONS):
         angle = (k + 0.5) * (2.0 * math.pi / DIRECTIONS)
@@ -69,20 +81,61 @@ def _open_share(
             i, j = int(row + 0.5 + north * far), int(column + 0.5 + east * far)
             if i < 0 or j < 0 or i >= rows or j >= columns:
                 break
-            if solid[i, j] > slope * far:
-                slope, high = solid[i, j] / far, max(high, float(solid[i, j]))
-            leafy = max(leafy, crowns[i, j] / far)
-        hidden = slope * slope / (1.0 + slope * slope)
-        leaves = max(leafy * leafy / (1.0 + leafy * leafy) - hidden, 0.0)
+            if solid[i, j] - base > slope * far:
+                slope, high = (solid[i, j] - base) / far, max(high, float(solid[i, j]))
+            leafy = max(leafy, (crowns[i, j] - base) / far)
+        hidden = _sine_squared(slope, 1.0)
+        leaves = max(_sine_squared(leafy, 1.0) - hidden, 0.0)
         total += 1.0 - hidden - LEAVES * leaves
         height += high * hidden
         weight += hidden
+        if len(decks) > 0:
+            covered, top = _covered(texel, row, column, east, north, base, hidden, decks)
+            total -= covered
+            height += top * covered
+            weight += covered
     share = total / DIRECTIONS
     above = crowns[row, column]
-    if above > 0.0:  # a crown right overhead hides the zenith, the brightest part
+    if above > base:  # a crown right overhead hides the zenith, the brightest part
         share *= 1.0 - 0.5 * LEAVES
         height, weight = height + 2.0 * above, weight + 2.0
-    return BOUNCED + (1.0 - BOUNCED) * share, height / weight
+    height /= weight
+    if len(decks) > 0 and decks[row, column] > base:  # the road on the deck is open
+        height = min(height, float(decks[row, column]))
+    return BOUNCED + (1.0 - BOUNCED) * max(share, 0.0), height
+
+
+@inner_kernel
+def _covered(
+    texel: float,
+    row: int,
+    column: int,
+    east: float,
+    north: float,
+    base: float,
+    hidden: float,
+    decks: NDArray[np.float32],
+) -> tuple[float, float]:
+    """Return the share of the light of one direction that decks hide, and the highest one's height.
+
+    The `hidden` share, which would come from below the horizon, is left out.
+    """
+    total, top, upper = 0.0, 0.0, 1.0
+    i, j = row, column
+    for step in range(STEPS):
+        # What lies at a point is taken to reach half-way to the next ones.
+        far = _distance(step) * 1.36**-0.5
+        deck = decks[i, j] - base
+        if deck > 0.0:
+            lower = max(_sine_squared(deck, far), hidden)
+            total += max(upper - lower, 0.0)
+            top = max(top, float(decks[i, j]))
+        i = int(row + 0.5 + north * _distance(step))
+        j = int(column + 0.5 + east * _distance(step))
+        if i < 0 or j < 0 or i >= decks.shape[0] or j >= decks.shape[1]:
+            break
+        upper = _sine_squared(decks[i, j] - base, far)
+    return total, top
 
 
 class OpennessBake(NamedTuple):
@@ -94,43 +147,44 @@ class OpennessBake(NamedTuple):
     """Height of buildings [m], shape (rows, columns)."""
     crowns: NDArray[np.float32]
     """Height of trees [m], shape (rows, columns)."""
+    decks: NDArray[np.float32]
+    """Height of elevated roads [m], shape (rows, columns); (0, 0) if there are none."""
     result: NDArray[np.uint16]
     """`AmbientMap.openness`, filled, shape (rows, columns)."""
 
 
 @parallel_kernel
 def bake_openness(parts: Pointer[tuple[Pointer[OpennessBake]]], worker: int, workers: int) -> None:
-    """Fill `AmbientMap.openness`.
+    """Fill `AmbientMap.openness`, for the ground and for roofs.
 
-    Below buildings it copies the nearest texel outside, up to 3 texels in, where the feet of
-    walls are looked up; farther in, the map is open, for roofs.
+    Up to 3 texels into a building, where the feet of its walls are looked up, it copies the
+    nearest texel of what they stand on.
     """
-    texel, solid, crowns, result = parts[0][0][0]
+    texel, solid, crowns, decks, result = parts[0][0][0]
     for row in range(worker, solid.shape[0], workers):
         for column in range(solid.shape[1]):
             i, j = _outside(solid, row, column)
-            if i < 0:
-                result[row, column] = np.uint16(255 | (1 << 8))
-                continue
-            share, height = _open_share(texel, i, j, solid, crowns)
-            height = min(max(height, 1.0), 255.0)
+            share, height = _open_share(texel, i, j, solid, crowns, decks)
+            if (row + column) & 1:
+                height = solid[i, j]
+            height = min(max(height, 0.0), 255.0)
             result[row, column] = np.uint16(int(255.0 * share + 0.5) | (int(height) << 8))
 
 
 @inner_kernel
 def _outside(solid: NDArray[np.float32], row: int, column: int) -> tuple[int, int]:
-    """Return the nearest texel without a building, or -1, -1 if there is none within 3."""
+    """Return the nearest texel within 3 that is lower by a storey, or this one."""
     rows, columns = solid.shape
     for reach in range(4):
         best, bi, bj = 1 << 30, -1, -1
         for i in range(max(row - reach, 0), min(row + reach + 1, rows)):
             for j in range(max(column - reach, 0), min(column + reach + 1, columns)):
                 far = (i - row) ** 2 + (j - column) ** 2
-                if solid[i, j] == 0.0 and far < best:
+                if solid[i, j] < solid[row, column] - STOREY and far < best:
                     best, bi, bj = far, i, j
         if bi >= 0:
             return bi, bj
-    return -1, -1
+    return row, column
 
 
 @inlined_kernel
@@ -162,7 +216,14 @@ def openness(light: Light, x: float, y: float, z: float, normal_x: float, normal
     c, d = to_f4(lower & byte), to_f4((lower >> half) & byte)
     first, second = a + across * (b - a), c + across * (d - c)
     hidden = one - f4(1.0 / 255.0) * (first + down * (second - first))
-    # Higher up less is hidden; at the top of what hides it, nothing.
-    top = to_f4((upper >> u4(8)) & byte)
-    climb = one - lesser(greater((z - frame.ground) / top, zero), one)
+    # Higher up less is hidden; at the top of what hides it, nothing. Of four texels two on a
+    # diagonal hold the top, two the base. Where neighbours differ, the lower ones are walls' feet.
+    even = ((i + j) & i4(1)) == i4(0)
+    eight = u4(8)
+    one_a, one_b = (upper >> eight) & byte, lower >> u4(24)
+    two_a, two_b = upper >> u4(24), (lower >> eight) & byte
+    one_c, two_c = to_f4(lesser(one_a, one_b)), to_f4(lesser(two_a, two_b))
+    top, base = select(even, one_c, two_c), select(even, two_c, one_c)
+    above = z - (frame.ground + base)
+    climb = one - lesser(greater(above / greater(top - base, one), zero), one)
     return select(inside, one - hidden * climb * climb, one)

@@ -100,7 +100,7 @@ def _street_light(
 
 @inlined_kernel
 def window_light(
-    share: float, building: int, level: int, u: float, v: float
+    share: float, building: int, detail: int, u: float, v: float
 ) -> tuple[float, float, float]:
     """Return the light behind the window at (u, v) of a facade: dark, or one of a few lights.
 
@@ -110,7 +110,7 @@ def window_light(
     Args:
         share: Share of lit windows.
         building: Object id.
-        level: Mip level of the facade's texture; a window has 64 texels along a side.
+        detail: See `detail_of`; a bay of windows has 64 texels along a side.
         u: Texture coordinates [tiles].
         v: Texture coordinates [tiles].
     """
@@ -131,9 +131,11 @@ def window_light(
     red = select(office, bright, f4(0.35) * bright)
     green = bright * select(home, like(u, f4(0.68)), select(office, like(u, f4(0.92)), f4(0.5)))
     blue = bright * select(home, like(u, f4(0.36)), select(office, like(u, f4(0.74)), f4(0.8)))
-    far, mean = level > i4(5), f4(0.55) * share
+    # A bay is two pixels wide at level 5, and one at level 6.
+    far = lesser(greater(f4(1.0 / 256.0) * to_f4(detail - i4(1280)), f4(0.0)), f4(1.0))
+    near, mean = f4(1.0) - far, f4(0.55) * share * far
     return (
-        select(far, mean, red),
-        select(far, f4(0.72) * mean, green),
-        select(far, f4(0.46) * mean, blue),
+        near * red + mean,
+        near * green + f4(0.72) * mean,
+        near * blue + f4(0.46) * mean,
     )

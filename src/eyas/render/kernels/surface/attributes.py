@@ -46,6 +46,8 @@ class Attributes(NamedTuple):
     u: float
     """Texture coordinates [tiles]."""
     v: float
+    u_slope: Vector
+    """Gradient of u in the frame of the instance [tiles/m]."""
     normal: Vector
     """Unit normal, in the world."""
     own: Vector
@@ -160,6 +162,6 @@ def attributes_of(
         normal = (nx * scale, ny * scale, nz * scale)
     kinds = bit_pattern(kind)
     return Attributes(
-        u, v, normal, own, density, bit_pattern(layer), kinds & i4(255), kinds >> i4(8),
-        (red, green, blue), emission, crown, bit_pattern(building),
+        u, v, (u_x, u_y, u_z), normal, own, density, bit_pattern(layer), kinds & i4(255),
+        kinds >> i4(8), (red, green, blue), emission, crown, bit_pattern(building),
     )  # fmt: skip

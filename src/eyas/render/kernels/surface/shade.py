@@ -13,8 +13,9 @@ from eyas.render.kernels.scalars import f4, i4, u4
 from eyas.render.kernels.sky.fog import fog_share
 from eyas.render.kernels.sky.radiance import blended, reflection
 from eyas.render.kernels.surface.attributes import Frame, attributes_of
+from eyas.render.kernels.surface.marking import TILES, painted_share
 from eyas.render.kernels.surface.snow import snowed
-from eyas.render.kernels.surface.texture import colour_of, level_of, texel
+from eyas.render.kernels.surface.texture import colour_of, detail_of, texel
 from eyas.render.kernels.surface.water import water_slope
 from eyas.state.mesh import Surface
 
@@ -26,6 +27,11 @@ FOLIAGE = i4(int(Surface.FOLIAGE))
 FACADE = i4(int(Surface.FACADE))
 WATER = i4(int(Surface.WATER))
 SIGNAL = i4(int(Surface.SIGNAL))
+MARKING = i4(int(Surface.MARKING))
+
+SHARP = f4(0.004)
+"""Mip levels are blended if a pixel spans less [rad]. In smaller pictures, each level lies in a few
+rows of pixels, and a blend would cost a tenth of the shading to hide what is hardly seen."""
 
 Colour = tuple[float, float, float]
 
@@ -39,13 +45,14 @@ def _dot(a: Colour, b: Colour) -> float:
 def _wavy(
     textures: NDArray[np.uint32],
     layer: int,
-    level: int,
+    detail: int,
+    blend: bool,
     uv: tuple[float, float],
     normal: Colour,
     cosine: float,
 ) -> tuple[Colour, float]:
     """Return the normal of water with waves, and how much light they gather."""
-    slope_x, slope_y = water_slope(textures, layer, level, uv[0], uv[1])
+    slope_x, slope_y = water_slope(textures, layer, detail, blend, uv[0], uv[1])
     # Seen at a grazing angle, the far sides of waves are hidden: none mirrors the ground.
     calm = lesser(greater(f4(1.5) * cosine, f4(0.1)), f4(1.0))
     slope_x *= calm
@@ -104,18 +111,31 @@ def shade_point(
     way = (ray[0] * shrink, ray[1] * shrink, ray[2] * shrink)
     cosine = -_dot(normal, way)
 
-    span = f4(256.0) * at.density * distance * pixel
-    level = level_of(span * span / greater(magnitude(cosine), f4(0.1)))
-    low, high = texel(geometry.texture, at.layer, level, at.u, at.v)
-    red, green, blue, alpha = colour_of(low, high)
-    red, green, blue = red * at.tint[0], green * at.tint[1], blue * at.tint[2]
+    marked, u, v, density = surface == MARKING, at.u, at.v, at.density
+    if any_of(marked):
+        u, v = select(marked, TILES * point[0], u), select(marked, TILES * point[1], v)
+        density = select(marked, like(density, TILES), density)
+    span = f4(256.0) * density * distance * pixel
+    detail = detail_of(span * span / greater(magnitude(cosine), f4(0.1)))
+    blend = pixel < SHARP
+    low, high = texel(geometry.texture, at.layer, detail, blend, u, v)
+    asphalt_r, asphalt_g, asphalt_b, alpha = colour_of(low, high)
+    red, green, blue = asphalt_r * at.tint[0], asphalt_g * at.tint[1], asphalt_b * at.tint[2]
+    if any_of(marked):
+        share = painted_share(at.u, at.u_slope, at.density, way, cosine, distance * pixel)
+        paint, rest = share * alpha, one - share
+        red = select(marked, paint * at.tint[0] + rest * asphalt_r, red)
+        green = select(marked, paint * at.tint[1] + rest * asphalt_g, green)
+        blue = select(marked, paint * at.tint[2] + rest * asphalt_b, blue)
     painted, wet = surface == PAINT, surface == WATER
     if any_of(painted):
         red = select(painted, red * frame.red, red)
         green = select(painted, green * frame.green, green)
         blue = select(painted, blue * frame.blue, blue)
     if any_of(wet):
-        waves, bright = _wavy(geometry.texture, at.layer, level, (at.u, at.v), normal, cosine)
+        waves, bright = _wavy(
+            geometry.texture, at.layer, detail, blend, (at.u, at.v), normal, cosine
+        )
         normal = (
             select(wet, waves[0], normal[0]),
             select(wet, waves[1], normal[1]),
@@ -159,7 +179,7 @@ def shade_point(
     window = surface == FACADE
     if air.windows > zero and any_of(window):
         shown = select(window, one - alpha, zero)
-        window_r, window_g, window_b = window_light(air.windows, at.building, level, at.u, at.v)
+        window_r, window_g, window_b = window_light(air.windows, at.building, detail, at.u, at.v)
         # Blinds and curtains are paler than dark rooms, so more light comes out through them.
         red, green, blue = (
             red * light_r + window_r * shown * (f4(0.35) + shown * red),

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from eyas.core.jit import inlined_kernel
 from eyas.core.lanes import (
+    any_of,
     bit_pattern,
     gather,
     greater,
@@ -20,7 +21,7 @@ from eyas.core.lanes import (
 )
 from eyas.render.kernels.scalars import f4, i4, u4
 
-__all__ = ["colour_of", "first_texel", "fraction", "level_of", "texel"]
+__all__ = ["colour_of", "detail_of", "first_texel", "fraction", "texel"]
 
 _LAYER = i4(87381)
 """Texels of a layer with all its levels."""
@@ -28,15 +29,21 @@ _LAYER = i4(87381)
 _THIRD = i4(-1431655765)
 """Inverse of 3 for numbers of 32 bits: a product with it is exact where nothing is left over."""
 
+_COARSEST = i4(8)
+
+_ONE = i4(0x3F800000)
+"""The bits of 1.0."""
+
 
 @inlined_kernel
-def level_of(texels_squared: float) -> int:
-    """Return the mip level, 0 to 8, from the squared number of texels that a pixel spans.
+def detail_of(texels_squared: float) -> int:
+    """Return the level of detail, 0 to 2048, from the squared number of texels that a pixel spans.
 
-    It rises at 2, 8, 32, ...: at every second step of the exponent.
+    256 steps are one mip level. The exponent of a square grows by two from level to level, and its
+    upper bits with the mantissa's are nearly a logarithm.
     """
-    exponent = ((bit_pattern(texels_squared) - i4(1)) >> i4(23)) - i4(127)
-    return to_i4(lesser((greater(exponent, i4(0)) + i4(1)) >> i4(1), i4(8)))
+    steps = (bit_pattern(texels_squared) - _ONE) >> i4(16)
+    return to_i4(lesser(greater(steps, i4(0)), _COARSEST << i4(8)))
 
 
 @inlined_kernel
@@ -55,18 +62,50 @@ def first_texel(level: int) -> int:
 
 @inlined_kernel
 def texel(
-    textures: NDArray[np.uint32], layer: int, level: int, u: float, v: float
+    textures: NDArray[np.uint32], layer: int, detail: int, blend: bool, u: float, v: float
 ) -> tuple[int, int]:
-    """Return the texel at (u, v) [tiles], blended from the four around it.
+    """Return the colour at (u, v) [tiles], blended from the four texels around it.
 
-    Two bytes are blended with one multiplication: weights are 0 to 256 and sum to 256, so the
-    lower product cannot reach the upper byte.
+    Args:
+        textures: See `Geometry.texture`.
+        layer: Which of them.
+        detail: From `detail_of`.
+        blend: Whether to blend two mip levels where none of them is near, so that no line is seen
+            where they meet; one answer for all lanes.
+        u: Texture coordinates [tiles].
+        v: Texture coordinates [tiles].
 
     Returns:
         Red and blue in bits 0 to 7 and 16 to 23 of a number, green and alpha in those of another;
         the bits between are not zero.
     """
-    bits = i4(8) - level
+    level = (detail + i4(128)) >> i4(8)
+    low, high = _of_level(textures, layer, level, u, v)
+    if blend:
+        away = detail - (level << i4(8))
+        far = away < i4(0)
+        # Up to 3/8 from a level, that one is as good as a blend; half-way, half of each.
+        part = to_i4(greater((select(far, -away, away) << i4(2)) - i4(384), i4(0)))
+        if any_of(part > i4(0)):
+            other = level + select(far, like(level, i4(-1)), i4(1))
+            other_low, other_high = _of_level(textures, layer, other, u, v)
+            share, even, eight = to_u4(part), u4(0x00FF00FF), u4(8)
+            rest = u4(256) - share
+            low = to_u4((rest * (low & even) + share * (other_low & even)) >> eight)
+            high = to_u4((rest * (high & even) + share * (other_high & even)) >> eight)
+    return low, high
+
+
+@inlined_kernel
+def _of_level(
+    textures: NDArray[np.uint32], layer: int, level: int, u: float, v: float
+) -> tuple[int, int]:
+    """Return what `texel` does, of one mip level.
+
+    Two bytes are blended with one multiplication: weights are 0 to 256 and sum to 256, so the
+    lower product cannot reach the upper byte.
+    """
+    bits = _COARSEST - level
     one = like(level, i4(1))
     side = to_i4(one << bits)
     size = to_f4(side)

@@ -13,17 +13,17 @@ __all__ = ["water_slope"]
 
 @inlined_kernel
 def water_slope(
-    textures: NDArray[np.uint32], layer: int, level: int, u: float, v: float
+    textures: NDArray[np.uint32], layer: int, detail: int, blend: bool, u: float, v: float
 ) -> tuple[float, float]:
     """Return the slope of the waves eastwards and northwards, see the texture `water`.
 
     Two sizes of waves that share no period, the smaller ones turned by a right angle, so that
     no repeat is seen.
     """
-    low, high = texel(textures, layer, level, u, v)
+    low, high = texel(textures, layer, detail, blend, u, v)
     large_u, large_v, _, _ = colour_of(low, high)
-    finer = to_i4(lesser(level + i4(1), i4(8)))
-    low, high = texel(textures, layer, finer, f4(2.31) * v + f4(0.37), f4(-2.31) * u)
+    finer = to_i4(lesser(detail + i4(256), i4(2048)))
+    low, high = texel(textures, layer, finer, blend, f4(2.31) * v + f4(0.37), f4(-2.31) * u)
     small_u, small_v, _, _ = colour_of(low, high)
     half = f4(0.5)
     # The small waves' own v runs west, their u north.
