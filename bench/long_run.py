@@ -24,13 +24,16 @@ from eyas.sim.config import SimConfig
 from eyas.sim.worlds import each_alone
 from eyas.state.draw import Picture
 
-PAGE = 4096
-
 
 def resident() -> int:
-    """Return the memory of this process in RAM [bytes]."""
+    """Return the memory in RAM that only this process has [bytes].
+
+    Mapped files do not count: their pages come into RAM as they are read, and leave when others
+    need it.
+    """
     gc.collect()
-    return int(Path("/proc/self/statm").read_text().split()[1]) * PAGE
+    lines = Path("/proc/self/status").read_text().splitlines()
+    return next(int(line.split()[1]) for line in lines if line.startswith("RssAnon:")) * 1024
 
 
 def grown(call: Callable[[], None], repeats: int) -> tuple[float, float]:
