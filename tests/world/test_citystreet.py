@@ -10,6 +10,7 @@ from eyas.render.pack.triangles import gradients
 from eyas.state.scene import ObjectClass
 from eyas.world.maps.citystreet import CITYSTREET
 from eyas.world.roads.areas import road_area
+from eyas.world.roads.markings import MARGIN_HEIGHT
 from eyas.world.roads.wear import WEAR_HEIGHTS
 from eyas.world.weather import Season
 
@@ -168,7 +169,8 @@ def test_flat_surfaces_cover_the_floor_once(scene):
     flat = np.isin(kinds, [ObjectClass.GROUND, ObjectClass.ROAD, ObjectClass.PAVEMENT,
                            ObjectClass.WATER])  # fmt: skip
     up = mesh.normals[mesh.triangles[:, 0], 2] > 0.9
-    up &= ~np.isin(np.round(corners[:, 0, 2], 4), WEAR_HEIGHTS)  # tracks lie on the asphalt
+    # Tracks and the margins of lines lie on the asphalt.
+    up &= ~np.isin(np.round(corners[:, 0, 2], 4), (*WEAR_HEIGHTS, MARGIN_HEIGHT))
     near = np.all(np.abs(corners[:, :, :2].mean(axis=1)) < 450, axis=1)
     edges = (corners[:, 1:, :2] - corners[:, :1, :2])[flat & up & near]
     area = (edges[:, 0, 0] * edges[:, 1, 1] - edges[:, 0, 1] * edges[:, 1, 0]) / 2

@@ -19,6 +19,7 @@ from eyas.world.roads.areas import GRID, Street, joints, split_on_grid, streets
 from eyas.world.roads.curves import joined
 
 __all__ = [
+    "MARGIN_HEIGHT",
     "PAINT_HEIGHT",
     "WHITE",
     "RoadPaint",
@@ -32,7 +33,7 @@ __all__ = [
 
 PAINT_HEIGHT = 0.015
 """z of the paint: invisible, but enough to separate it from the asphalt at any distance [m]."""
-_MARGIN_HEIGHT = 0.012
+MARGIN_HEIGHT = 0.012
 """z of the asphalt beside it, which hides the wear of the road but no other paint [m]."""
 
 WHITE = material("paint", (0.99, 0.99, 0.98))
@@ -117,7 +118,7 @@ def margins_of(paint: RoadPaint) -> Mesh:
     A pixel whose middle lies there may show some of the line, see `Surface.MARKING`: without
     margins, lines narrower than a pixel would break into pieces.
     """
-    return concatenate(_strips(paint, MARGIN, _MARGIN_HEIGHT))
+    return concatenate(_strips(paint, MARGIN, MARGIN_HEIGHT))
 
 
 def stripes(line: Line, width: float, dashes: tuple[float, float] | None = None) -> list[Stripe]:
