@@ -22,12 +22,13 @@ def regenerate(request):
 
 @pytest.fixture(autouse=True)
 def signals():
-    """Ctrl-C raises in each test and in the processes that it starts, also if SIGINT was ignored
-    when the tests were started, as it is in the background of a script.
+    """Signals do in each test, and in the processes that it starts, what they do in a terminal, also
+    if they were ignored when the tests were started, as in the background of a script.
     """
     hook, numbers = sys.unraisablehook, (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
     before = [signal.getsignal(number) for number in numbers]
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)  # `nohup` ignores it
     yield
     sys.unraisablehook = hook
     for number, handler in zip(numbers, before, strict=True):
