@@ -22,8 +22,8 @@ def regenerate(request):
 
 @pytest.fixture(autouse=True)
 def signals():
-    """Signals do in each test, and in the processes that it starts, what they do in a terminal, also
-    if they were ignored when the tests were started, as in the background of a script.
+    """Signals do in each test, and in the processes that it starts, what they do in a terminal,
+    also if they were ignored when the tests were started, as in the background of a script.
     """
     hook, numbers = sys.unraisablehook, (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
     before = [signal.getsignal(number) for number in numbers]
