@@ -1,8 +1,8 @@
 """Settings of learning."""
 
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from eyas.core.config import Config
 
@@ -61,5 +61,16 @@ class TrainConfig(Config):
     """Width of the layer behind the convolutions, and of the memory."""
     memory: bool = False
     """Whether a gated recurrent unit follows that layer."""
-    threads: Annotated[int, Field(ge=1, le=1024)] = 1
-    """Threads of PyTorch; the result depends on their number in the last digits."""
+    shards: Annotated[int, Field(ge=1, le=1024)] = 2
+    """Parts of equal size into which the environments are split; their work is done side by side,
+    each part in a thread of its own. The result depends on it, as on every setting, but not on the
+    number of processors."""
+
+    @model_validator(mode="after")
+    def _check_shards(self) -> Self:
+        if self.environments % self.shards:
+            raise ValueError(
+                f"environments: {self.environments} cannot be split into {self.shards} shards of "
+                "equal size"
+            )
+        return self

@@ -12,7 +12,7 @@ from torch import Tensor
 from eyas import __version__
 from eyas.core.files import write_atomic
 from eyas.envs.config import EnvConfig
-from eyas.learning.network import ACTIONS, HOVER, MEAN, SPREAD, TrackingNetwork
+from eyas.learning.network import ACTIONS, HOVER, TrackingNetwork
 
 __all__ = ["export"]
 
@@ -86,18 +86,13 @@ def export(network: TrackingNetwork, env: EnvConfig, path: Path) -> None:
 
 def _features(graph: _Graph, network: TrackingNetwork) -> str:
     """Add the convolutions and the layer behind them."""
+    shape = network.shape
     value = graph.node("Cast", ["image"], "image.float", to=TensorProto.FLOAT)
-    value = graph.node("Sub", [value, graph.weight("mean", np.float32(MEAN))], "image.centred")
-    value = graph.node("Div", [value, graph.weight("spread", np.float32(SPREAD))], "image.scaled")
-    for number in (0, 2):
-        layer: Any = network.convolutions[number]
-        name = f"convolution.{number}"
-        parts = [
-            value,
-            graph.weight(f"{name}.w", layer.weight),
-            graph.weight(f"{name}.b", layer.bias),
-        ]
-        value = graph.node("Conv", parts, name, strides=list(layer.stride))
+    weights = [network.first_convolution(), (network.second.weight, network.second.bias)]
+    for number, (weight, bias) in enumerate(weights):
+        name, stride = f"convolution.{number}", shape.filters[number][2]
+        parts = [value, graph.weight(f"{name}.w", weight), graph.weight(f"{name}.b", bias)]
+        value = graph.node("Conv", parts, name, strides=[stride, stride])
         value = graph.node("Relu", [value], f"{name}.relu")
     value = graph.node("Flatten", [value], "seen")
     # Hover is told as zeros.

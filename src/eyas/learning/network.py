@@ -54,15 +54,11 @@ class TrackingNetwork(nn.Module):
         super().__init__()
         self.shape = shape
         (wide, width, stride), (deep, width2, stride2) = shape.filters
-        self.convolutions = nn.Sequential(
-            nn.Conv2d(shape.channels, wide, width, stride),
-            nn.ReLU(),
-            nn.Conv2d(wide, deep, width2, stride2),
-            nn.ReLU(),
-            nn.Flatten(),
-        )
+        self.first = nn.Conv2d(shape.channels, wide, width, stride)
+        self.second = nn.Conv2d(wide, deep, width2, stride2)
         with torch.no_grad():
-            seen = self.convolutions(torch.zeros(1, shape.channels, shape.height, shape.width))
+            size = shape.channels, shape.height, shape.width
+            seen = self._seen(torch.zeros(1, *size, dtype=torch.uint8))
         self.layer = nn.Linear(seen.shape[1] + ACTIONS - 1, shape.hidden)
         self.memory = nn.GRUCell(shape.hidden, shape.hidden) if shape.memory else None
         self.policy = nn.Linear(shape.hidden, ACTIONS)
@@ -75,12 +71,38 @@ class TrackingNetwork(nn.Module):
             picture: uint8, shape (B, C, H, W).
             state: Last action and memory, shape (B, `shape.state`); zeros at the start.
         """
-        seen = self.convolutions((picture.float() - MEAN) / SPREAD)
-        action, memory = state[:, : ACTIONS - 1], state[:, ACTIONS - 1 :]
-        features = torch.relu(self.layer(torch.cat([seen, action], 1)))
+        features = self.features(picture, state[:, : ACTIONS - 1])
+        memory = state[:, ACTIONS - 1 :]
         if self.memory is not None:
             features = memory = self.memory(features, memory)
-        return self.policy(features), self.value(features)[:, 0], memory
+        return *self.heads(features), memory
+
+    def features(self, picture: Tensor, told: Tensor) -> Tensor:
+        """Return what is seen, shape (B, hidden).
+
+        Args:
+            picture: uint8, shape (B, C, H, W).
+            told: The last action, shape (B, 6).
+        """
+        return torch.relu(self.layer(torch.cat([self._seen(picture), told], 1)))
+
+    def _seen(self, picture: Tensor) -> Tensor:
+        """Return what the convolutions make of pictures, shape (B, K)."""
+        weight, bias = self.first_convolution()
+        seen = nn.functional.conv2d(picture.float(), weight, bias, self.first.stride)
+        return torch.relu(self.second(torch.relu(seen))).flatten(1)
+
+    def first_convolution(self) -> tuple[Tensor, Tensor]:
+        """Return weights and biases for pixels of 0 to 255: the network learns those for pixels
+        about 0 of about 1, but to scale a few weights is faster than to scale all pixels.
+        """
+        weight = self.first.weight / SPREAD
+        assert self.first.bias is not None
+        return weight, self.first.bias - MEAN * weight.sum((1, 2, 3))
+
+    def heads(self, features: Tensor) -> tuple[Tensor, Tensor]:
+        """Return logits (B, 7) and values (B,)."""
+        return self.policy(features), self.value(features)[:, 0]
 
     def next_state(self, action: Tensor, memory: Tensor, begun: Tensor | None = None) -> Tensor:
         """Return the state for the next decision, shape (B, `shape.state`).

@@ -1,4 +1,4 @@
-"""Rollouts: what N environments and the network did in T decisions."""
+"""Rollouts: what the environments of a shard and the network did in T decisions."""
 
 from dataclasses import dataclass, field
 
@@ -45,19 +45,19 @@ class Finished:
 
 
 class Roller:
-    """Runs N environments with a network.
+    """Runs the N environments of a shard with a network.
 
     Attributes:
         env: The environments.
         finished: Episodes that have ended since `begin`.
 
     Args:
-        config: The settings.
+        config: The settings; N is their number of environments divided by that of shards.
         network: Chooses the actions.
     """
 
     def __init__(self, config: EyasConfig, network: TrackingNetwork) -> None:
-        count, rollout = config.train.environments, config.train.rollout
+        count, rollout = config.train.environments // config.train.shards, config.train.rollout
         self.env = EyasVectorEnv(count, config, autoreset_mode=AutoresetMode.SAME_STEP, copy=False)
         self.finished = Finished()
         self._network = network
@@ -77,10 +77,12 @@ class Roller:
         self._picture = torch.zeros(0)
         self._state = torch.zeros(count, shape.state)
         self._return, self._length = np.zeros(count), np.zeros(count, np.int64)
+        self._generator = torch.Generator()
 
-    def begin(self, seed: int) -> None:
-        """Begin new episodes."""
-        observation, _ = self.env.reset(seed=seed)
+    def begin(self, draws: np.random.Generator) -> None:
+        """Begin new episodes and new random choices of actions."""
+        observation, _ = self.env.reset(seed=int(draws.integers(2**31, 2**62)))
+        self._generator.manual_seed(int(draws.integers(2**62)))
         assert isinstance(observation, np.ndarray)
         self._picture = torch.from_numpy(observation)
         self._state = torch.zeros_like(self._state)
@@ -88,16 +90,12 @@ class Roller:
         self.finished = Finished()
 
     @torch.no_grad()
-    def roll(self, generator: torch.Generator) -> Rollout:
-        """Return the next T decisions; the arrays are overwritten by the next call.
-
-        Args:
-            generator: Source of the random choices of actions.
-        """
+    def roll(self) -> Rollout:
+        """Return the next T decisions; the arrays are overwritten by the next call."""
         data = self._data
         for step in range(self._config.rollout):
             logits, value, memory = self._network(self._picture, self._state)
-            action = torch.multinomial(logits.softmax(1), 1, generator=generator)[:, 0]
+            action = torch.multinomial(logits.softmax(1), 1, generator=self._generator)[:, 0]
             chosen = logits.log_softmax(1).gather(1, action[:, None])[:, 0]
             data.pictures[step], data.states[step] = self._picture, self._state
             data.actions[step], data.log_probability[step] = action, chosen

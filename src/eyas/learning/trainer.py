@@ -16,6 +16,7 @@ from eyas.envs.observation import observation_space
 from eyas.learning.board import Board
 from eyas.learning.checkpoint import Progress, RunFolder
 from eyas.learning.config import Stage
+from eyas.learning.crew import Crew
 from eyas.learning.export import export
 from eyas.learning.network import NetworkShape, TrackingNetwork
 from eyas.learning.ppo import Losses, update
@@ -31,8 +32,8 @@ Say = Callable[[str], None]
 def train(config: EyasConfig, folder: Path, *, resume: bool = False, say: Say = print) -> Path:
     """Train a network; return the path of the ONNX file.
 
-    The result depends only on the settings and on the number of PyTorch's threads: each block of
-    updates begins with new episodes and random numbers of its own, so a resumed run gives the same.
+    The result depends only on the settings: each block of updates begins with new episodes and
+    random numbers of its own, so a resumed run gives the same.
 
     Args:
         config: The settings; `env` and `train` say what is seen and how it is learned.
@@ -56,8 +57,8 @@ class _Run:
     """A run and how far it has come."""
 
     def __init__(self, config: EyasConfig, files: RunFolder, say: Say) -> None:
-        torch.set_num_threads(config.train.threads)
         self.config, self.files, self._say = config, files, say
+        self._crew = Crew(config.train.shards)  # first: it sets PyTorch's threads
         self.network = TrackingNetwork(_shape(config))
         generator = torch.Generator().manual_seed(config.seed)
         self.network.initialise(generator)
@@ -70,34 +71,37 @@ class _Run:
     def stage(self) -> None:
         """Do the current stage, or what is left of it."""
         stage = self.config.train.stages[self.progress.stage]
-        roller = Roller(updated(self.config, stage.settings), self.network)
+        settings = updated(self.config, stage.settings)
+        rollers = [Roller(settings, self.network) for _ in range(settings.train.shards)]
         done = self.progress.stage_decisions >= stage.decisions
         while not done:
-            done = self._block(roller, stage)
+            done = self._block(rollers, stage)
             if done:
                 self.progress.stage += 1
                 self.progress.stage_decisions = 0
             self.files.save(self.progress, self.network, self.optimiser)
-            export(self.network, roller.env.config.env, self.files.policy)
+            export(self.network, settings.env, self.files.policy)
 
-    def _block(self, roller: Roller, stage: Stage) -> bool:
+    def _block(self, rollers: list[Roller], stage: Stage) -> bool:
         """Do a block of updates; return whether the stage is done."""
         config, progress, start = self.config.train, self.progress, time.monotonic()
         draws = stream(self.config.seed, "learning", progress.block)
-        roller.begin(int(draws.integers(2**31, 2**62)))
+        for roller, own in zip(rollers, draws.spawn(len(rollers)), strict=True):
+            roller.begin(own)
         generator = torch.Generator().manual_seed(int(draws.integers(2**62)))
         for _ in range(config.updates_per_block):
             self._set_rate()
-            data = roller.roll(generator)
-            losses = update(self.network, self.optimiser, data, config, generator)
-            progress.decisions += data.rewards.numel()
-            progress.stage_decisions += data.rewards.numel()
+            data = self._crew.each(Roller.roll, rollers)
+            losses = update(self.network, self.optimiser, data, config, generator, self._crew)
+            decisions = config.environments * config.rollout
+            progress.decisions += decisions
+            progress.stage_decisions += decisions
         seconds = time.monotonic() - start
         progress.seconds += seconds
-        row = self._row(roller, losses)
+        row = self._row(rollers, losses)
         progress.rows.append(row)
         progress.block += 1
-        self._tell(row, config.updates_per_block * data.rewards.numel() / seconds)
+        self._tell(row, config.updates_per_block * decisions / seconds)
         good = stage.until_score is not None and row["return"] >= stage.until_score
         return good or progress.stage_decisions >= stage.decisions
 
@@ -107,15 +111,16 @@ class _Run:
         for group in self.optimiser.param_groups:
             group["lr"] = config.learning_rate * left
 
-    def _row(self, roller: Roller, losses: Losses) -> dict[str, float]:
+    def _row(self, rollers: list[Roller], losses: Losses) -> dict[str, float]:
         """Return the curve's row of a block."""
-        ends = roller.finished
+        returns = [each for roller in rollers for each in roller.finished.returns]
+        lengths = [each for roller in rollers for each in roller.finished.lengths]
         return {
             "stage": self.progress.stage,
             "decisions": self.progress.decisions,
-            "episodes": len(ends.returns),
-            "return": round(float(np.mean(ends.returns or [np.nan])), 6),
-            "length": round(float(np.mean(ends.lengths or [np.nan])), 6),
+            "episodes": len(returns),
+            "return": round(float(np.mean(returns or [np.nan])), 6),
+            "length": round(float(np.mean(lengths or [np.nan])), 6),
             "policy_loss": losses.policy,
             "value_loss": losses.value,
             "entropy": losses.entropy,
