@@ -63,6 +63,6 @@ def test_an_action_that_is_rewarded_becomes_likely(memory):
         data.rewards[:] = (data.actions == good).float()
         data.values[:] = value
         data.ended[:] = 1.0  # each decision is an episode
-        update(network, optimiser, [data, data], config, generator, crew)
+        update(network, optimiser, data, config, generator, crew)
     chances = network(data.pictures[0], state)[0].softmax(1).gather(1, good[:, None])
     assert chances.min() > 0.9

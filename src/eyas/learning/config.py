@@ -61,10 +61,12 @@ class TrainConfig(Config):
     """Width of the layer behind the convolutions, and of the memory."""
     memory: bool = False
     """Whether a gated recurrent unit follows that layer."""
-    shards: Annotated[int, Field(ge=1, le=1024)] = 2
-    """Parts of equal size into which the environments are split; their work is done side by side,
-    each part in a thread of its own. The result depends on it, as on every setting, but not on the
-    number of processors."""
+    parts: Annotated[int, Field(ge=1, le=1024)] = 2
+    """Parts of a minibatch whose gradients are found side by side, each in a thread. The result
+    depends on their number in the last digits, but not on that of processors."""
+    shards: Annotated[int, Field(ge=1, le=1024)] = 1
+    """Parts into which the environments are split, with random numbers of their own. One is fastest
+    in one process; the result does not depend on where the shards run."""
 
     @model_validator(mode="after")
     def _check_shards(self) -> Self:

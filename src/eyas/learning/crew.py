@@ -1,7 +1,6 @@
-"""Shards: parts of a rollout and of each minibatch, done side by side in threads.
+"""Threads for the parts of a minibatch and for the shards of a rollout.
 
-What a shard does depends on its own environments and random numbers alone, so the number of threads
-changes no byte of the result, and a shard could as well run in another process.
+What a part gives depends on its own data alone, so the number of threads changes no byte.
 """
 
 from collections.abc import Callable, Iterable
@@ -17,18 +16,18 @@ Result = TypeVar("Result")
 
 
 class Crew:
-    """Threads, one for each shard; PyTorch uses one thread in each of them.
+    """Threads, in each of which PyTorch uses no more threads of its own.
 
-    With several threads of its own, PyTorch is many times slower beside the renderer's, which its
-    waiting threads keep from the processors; and its results would depend on their number.
+    PyTorch's threads would keep the renderer's from the processors while they wait, and results
+    would depend on their number.
 
     Args:
-        shards: Number of threads.
+        threads: Their number.
     """
 
-    def __init__(self, shards: int) -> None:
+    def __init__(self, threads: int) -> None:
         torch.set_num_threads(1)
-        self._threads = ThreadPoolExecutor(shards, "eyas-shard")
+        self._threads = ThreadPoolExecutor(threads, "eyas-learning")
 
     def each(self, do: Callable[[Job], Result], jobs: Iterable[Job]) -> list[Result]:
         """Return what `do` gives for each job, in their order."""

@@ -15,7 +15,7 @@ __all__ = ["Losses", "advantages", "update"]
 
 
 class Losses(NamedTuple):
-    """Of the last minibatch of an update, on average over the shards."""
+    """Of the last minibatch of an update."""
 
     policy: float
     value: float
@@ -39,62 +39,45 @@ def advantages(data: Rollout, discount: float, trace: float) -> Tensor:
 def update(
     network: TrackingNetwork,
     optimiser: torch.optim.Optimizer,
-    rollouts: Sequence[Rollout],
+    data: Rollout,
     config: TrainConfig,
     generator: torch.Generator,
     crew: Crew,
 ) -> Losses:
-    """Improve the network with the rollouts of all shards.
+    """Improve the network with a rollout.
 
     Args:
         network: Changed in place.
         optimiser: Of its parameters.
-        rollouts: Of this network, one of each shard, of equal shapes.
+        data: A rollout of this network.
         config: The settings.
         generator: Source of the random order of the data.
-        crew: Finds the gradients of the shards.
+        crew: Finds the gradients of the parts of a minibatch.
     """
-    lessons = _lessons(rollouts, config)
+    estimates = advantages(data, config.discount, config.trace)
+    gains = (estimates - estimates.mean()) / (estimates.std() + 1e-8)
+    lesson = _Lesson(data, gains, estimates + data.values[:-1])
+    # Minibatches are of environments if there is a memory, which needs whole sequences, else of
+    # single decisions.
+    count = gains.shape[1] if network.shape.memory else gains.numel()
     losses = torch.zeros(len(Losses._fields))
     for _ in range(config.epochs):
-        orders = [_parts(lesson, network, config.minibatches, generator) for lesson in lessons]
-        for parts in zip(*orders, strict=True):
-            jobs = zip(lessons, parts, strict=True)
-            found = crew.each(lambda job: _gradients(network, *job, config), jobs)
-            losses = torch.stack([loss for loss, _ in found]).mean(0)
+        for chosen in torch.randperm(count, generator=generator).chunk(config.minibatches):
+            parts = [(part, len(part) / len(chosen)) for part in chosen.chunk(config.parts)]
+            found = crew.each(lambda job: _gradients(network, lesson, *job, config), parts)
+            losses = torch.stack([loss for loss, _ in found]).sum(0)
             _step(network, optimiser, [gradients for _, gradients in found], config)
     return Losses(*losses.tolist())
 
 
 class _Lesson(NamedTuple):
-    """What is learned from a shard's rollout."""
+    """What is learned from a rollout."""
 
     data: Rollout
     gains: Tensor
-    """Advantages of the actions; over all shards their mean is 0 and their deviation 1, (T, N)."""
+    """Advantages of the actions, scaled to mean 0 and deviation 1, shape (T, N)."""
     targets: Tensor
     """Of the values, shape (T, N)."""
-
-
-def _lessons(rollouts: Sequence[Rollout], config: TrainConfig) -> list[_Lesson]:
-    estimates = [advantages(data, config.discount, config.trace) for data in rollouts]
-    every = torch.cat(estimates, 1)
-    mean, deviation = every.mean(), every.std() + 1e-8
-    return [
-        _Lesson(data, (estimate - mean) / deviation, estimate + data.values[:-1])
-        for data, estimate in zip(rollouts, estimates, strict=True)
-    ]
-
-
-def _parts(
-    lesson: _Lesson, network: TrackingNetwork, minibatches: int, generator: torch.Generator
-) -> tuple[Tensor, ...]:
-    """Return the indices of each minibatch: of environments if there is a memory, which needs whole
-    sequences, else of single decisions.
-    """
-    steps, count = lesson.gains.shape
-    order = torch.randperm(count if network.shape.memory else steps * count, generator=generator)
-    return order.chunk(minibatches)
 
 
 def _step(
@@ -103,17 +86,19 @@ def _step(
     gradients: Sequence[Sequence[Tensor]],
     config: TrainConfig,
 ) -> None:
-    """Take a step of the optimiser with the mean of the shards' gradients."""
+    """Take a step of the optimiser with the sum of the parts' gradients."""
     for parameter, parts in zip(network.parameters(), zip(*gradients, strict=True), strict=True):
-        parameter.grad = torch.stack(parts).mean(0)
+        parameter.grad = torch.stack(parts).sum(0)
     nn.utils.clip_grad_norm_(network.parameters(), config.largest_gradient)
     optimiser.step()
 
 
 def _gradients(
-    network: TrackingNetwork, lesson: _Lesson, part: Tensor, config: TrainConfig
+    network: TrackingNetwork, lesson: _Lesson, part: Tensor, share: float, config: TrainConfig
 ) -> tuple[Tensor, tuple[Tensor, ...]]:
-    """Return the losses of a shard's part of a minibatch, and the gradient of their sum."""
+    """Return the losses of a part of a minibatch, and the gradient of their sum, both times the
+    part's share of the minibatch.
+    """
     data = lesson.data
 
     def of(array: Tensor) -> Tensor:
@@ -128,9 +113,10 @@ def _gradients(
     value_loss = (values - of(lesson.targets)).square().mean()
     entropy = -(all_log.exp() * all_log).sum(1).mean()
     loss = policy_loss + config.value * value_loss - config.entropy * entropy
-    gradients = torch.autograd.grad(loss, tuple(network.parameters()))
+    gradients = torch.autograd.grad(share * loss, tuple(network.parameters()))
     divergence = (ratio - 1.0 - change).mean()
-    return torch.stack([policy_loss, value_loss, entropy, divergence]).detach(), gradients
+    losses = torch.stack([policy_loss, value_loss, entropy, divergence])
+    return share * losses.detach(), gradients
 
 
 def _outputs(

@@ -1,5 +1,6 @@
 """Rollouts: what the environments of a shard and the network did in T decisions."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -32,6 +33,14 @@ class Rollout:
     """Shape (T + 1, N)."""
     ended: Tensor
     """Whether the episode ended with each decision, shape (T, N)."""
+
+    @staticmethod
+    def joined(shards: Sequence["Rollout"]) -> "Rollout":
+        """Return the rollouts of shards as one."""
+        if len(shards) == 1:
+            return shards[0]
+        parts = zip(*(vars(shard).values() for shard in shards), strict=True)
+        return Rollout(*(torch.cat(part, 1) for part in parts))
 
 
 @dataclass

@@ -20,7 +20,7 @@ from eyas.learning.crew import Crew
 from eyas.learning.export import export
 from eyas.learning.network import NetworkShape, TrackingNetwork
 from eyas.learning.ppo import Losses, update
-from eyas.learning.rollout import Roller
+from eyas.learning.rollout import Roller, Rollout
 from eyas.sensors.config import ColourLayout
 from eyas.settings.config import EyasConfig
 
@@ -58,7 +58,9 @@ class _Run:
 
     def __init__(self, config: EyasConfig, files: RunFolder, say: Say) -> None:
         self.config, self.files, self._say = config, files, say
-        self._crew = Crew(config.train.shards)  # first: it sets PyTorch's threads
+        self._crew = Crew(
+            max(config.train.parts, config.train.shards)
+        )  # first: it sets PyTorch's threads
         self.network = TrackingNetwork(_shape(config))
         generator = torch.Generator().manual_seed(config.seed)
         self.network.initialise(generator)
@@ -91,17 +93,16 @@ class _Run:
         generator = torch.Generator().manual_seed(int(draws.integers(2**62)))
         for _ in range(config.updates_per_block):
             self._set_rate()
-            data = self._crew.each(Roller.roll, rollers)
+            data = Rollout.joined(self._crew.each(Roller.roll, rollers))
             losses = update(self.network, self.optimiser, data, config, generator, self._crew)
-            decisions = config.environments * config.rollout
-            progress.decisions += decisions
-            progress.stage_decisions += decisions
+            progress.decisions += data.rewards.numel()
+            progress.stage_decisions += data.rewards.numel()
         seconds = time.monotonic() - start
         progress.seconds += seconds
         row = self._row(rollers, losses)
         progress.rows.append(row)
         progress.block += 1
-        self._tell(row, config.updates_per_block * decisions / seconds)
+        self._tell(row, config.updates_per_block * data.rewards.numel() / seconds)
         good = stage.until_score is not None and row["return"] >= stage.until_score
         return good or progress.stage_decisions >= stage.decisions
 
