@@ -55,7 +55,7 @@ def test_an_action_that_is_rewarded_becomes_likely(memory):
     data.pictures[:] = (bright * 200 + 20).to(torch.uint8)[None, :, None, None, None]
     good, state = torch.tensor([2, 5])[bright], torch.zeros(8, shape.state)
     crew = Crew(2)
-    for _ in range(30):
+    for _ in range(60):
         with torch.no_grad():
             logits, value, _ = network(data.pictures[0], state)
         data.actions[:] = torch.multinomial(logits.softmax(1), 8, True, generator=generator).T
