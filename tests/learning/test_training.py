@@ -7,6 +7,7 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 pytest.importorskip("torch")
@@ -15,7 +16,9 @@ import torch
 
 from eyas.core.config import updated, validated
 from eyas.core.errors import EyasError
+from eyas.evaluation.plan import Plan, batches, fly_batch
 from eyas.learning.checkpoint import RunFolder
+from eyas.learning.crew import Crew
 from eyas.learning.trainer import train
 from eyas.settings.config import EyasConfig
 
@@ -31,6 +34,7 @@ SMALL = validated(
             "rollout": 8,
             "updates_per_block": 2,
             "hidden": 16,
+            "evaluation": {"every": 2, "episodes": 1},
             "stages": [
                 {"decisions": 128},
                 {"decisions": 64, "settings": {"world": {"weather": "night"}}},
@@ -61,6 +65,9 @@ def test_a_run_has_a_row_for_each_block(whole):
     rows = whole["curve.csv"].decode().splitlines()
     assert rows[0].startswith("stage,decisions,episodes,return,length,")
     assert [row.split(",")[:2] for row in rows[1:]] == [["0", "64"], ["0", "128"], ["1", "192"]]
+    assert rows[0].endswith(",cr,tsr")
+    tested = ["nan" not in row.split(",")[-2:] for row in rows[1:]]
+    assert tested == [False, True, True], "every second block, and after the last"
 
 
 def test_a_run_that_is_interrupted_and_resumed_gives_the_same_bytes(whole, tmp_path):
@@ -100,12 +107,42 @@ def test_a_run_that_is_killed_gives_the_same_bytes(whole, tmp_path):
 
 
 def test_a_stage_ends_early_at_its_score(tmp_path):
-    stages = [{"decisions": 10_000_000, "until_score": -1.0}, {"decisions": 64}]
-    short = {"total_steps": 32, "grace_steps": 0}  # so that episodes end within a block
-    config = updated(SMALL, {"train": {"stages": stages}, "done": short})
+    stages = [{"decisions": 10_000_000, "until_tsr": 0.01}, {"decisions": 64}]
+    config = updated(SMALL, {"train": {"stages": stages, "evaluation": {"every": 1}}})
     train(config, tmp_path / "run", say=quiet)
     rows = (tmp_path / "run" / "curve.csv").read_text().splitlines()[1:]
     assert [row.split(",")[0] for row in rows] == ["0", "1"]
+
+
+def test_a_score_without_evaluations_is_refused():
+    stages = [{"decisions": 10, "until_tsr": 0.5}]
+    with pytest.raises(EyasError, match=r"^train: stages: 'until_tsr' needs evaluations"):
+        updated(SMALL, {"train": {"stages": stages, "evaluation": {"every": 0}}})
+
+
+def test_marks_are_those_of_eyas_evaluate(tmp_path):
+    """The network in its ONNX file gets the same records from `eyas evaluate`."""
+    policy = train(SMALL, tmp_path / "run", say=quiet)
+    row = (tmp_path / "run" / "curve.csv").read_text().splitlines()[-1].split(",")
+    plan = Plan(policy=str(policy), episodes=1, seed=2_000_000)
+    records = [
+        each for batch in batches(plan) for ended in fly_batch(plan, batch) for each in ended
+    ]
+    assert float(row[-2]) == pytest.approx(np.mean([each.cr for each in records]), abs=1e-5)
+    assert float(row[-1]) == pytest.approx(np.mean([each.tsr for each in records]), abs=1e-5)
+
+
+def test_shards_and_parts_give_the_same_on_any_number_of_threads(tmp_path, monkeypatch):
+    config = updated(SMALL, {"train": {"shards": 2, "parts": 3}})
+    train(config, tmp_path / "side by side", say=quiet)
+    monkeypatch.setattr(Crew, "each", lambda self, do, jobs: [do(job) for job in jobs])
+    train(config, tmp_path / "in turn", say=quiet)
+    assert files(tmp_path / "side by side") == files(tmp_path / "in turn")
+
+
+def test_shards_are_of_equal_size():
+    with pytest.raises(EyasError, match="4 cannot be split into 3 shards of equal size"):
+        updated(SMALL, {"train": {"shards": 3}})
 
 
 def test_other_settings_and_other_folders_are_refused(tmp_path, whole):

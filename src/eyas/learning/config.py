@@ -6,7 +6,7 @@ from pydantic import Field, model_validator
 
 from eyas.core.config import Config
 
-__all__ = ["Stage", "TrainConfig"]
+__all__ = ["Evaluation", "Stage", "TrainConfig"]
 
 Share = Annotated[float, Field(ge=0, le=1)]
 Count = Annotated[int, Field(ge=1, le=2**40)]
@@ -17,10 +17,25 @@ class Stage(Config):
 
     decisions: Count
     """Largest number of decisions, of all environments together."""
-    until_score: float | None = None
-    """The stage ends as soon as the mean return of a block is at least this."""
+    until_tsr: Share | None = None
+    """The stage ends as soon as an evaluation has at least this TSR."""
     settings: dict[str, Any] = {}  # noqa: RUF012  # pydantic copies it
     """Settings that differ from the common ones, for example `{"world": {"weather": "night"}}`."""
+
+
+class Evaluation(Config):
+    """How the network is tested during training; the figures stand in the curve."""
+
+    every: Annotated[int, Field(ge=0, le=100_000)] = 4
+    """Blocks from one evaluation to the next; 0: none."""
+    protocol: str = "paper"
+    """Of `eyas evaluate`."""
+    weathers: tuple[str, ...] = ()
+    """None: `world.weather`."""
+    episodes: Annotated[int, Field(ge=1, le=1000)] = 5
+    """For each weather and start direction."""
+    seed: Annotated[int, Field(ge=0, lt=2**62)] = 2_000_000
+    """Of the first episode: far from those of training and of `eyas evaluate`."""
 
 
 class TrainConfig(Config):
@@ -30,6 +45,7 @@ class TrainConfig(Config):
     """Environments that are stepped together."""
     stages: tuple[Stage, ...] = (Stage(decisions=600_000),)
     """The curriculum: one stage after the other."""
+    evaluation: Evaluation = Evaluation()
     rollout: Annotated[int, Field(ge=2, le=65536)] = 64
     """Decisions of each environment between two updates."""
     updates_per_block: Annotated[int, Field(ge=1, le=100_000)] = 20
@@ -67,6 +83,12 @@ class TrainConfig(Config):
     shards: Annotated[int, Field(ge=1, le=1024)] = 1
     """Parts into which the environments are split, with random numbers of their own. One is fastest
     in one process; the result does not depend on where the shards run."""
+
+    @model_validator(mode="after")
+    def _check_stages(self) -> Self:
+        if not self.evaluation.every and any(stage.until_tsr is not None for stage in self.stages):
+            raise ValueError("stages: 'until_tsr' needs evaluations: evaluation.every is 0")
+        return self
 
     @model_validator(mode="after")
     def _check_shards(self) -> Self:

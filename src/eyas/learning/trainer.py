@@ -17,6 +17,7 @@ from eyas.learning.board import Board
 from eyas.learning.checkpoint import Progress, RunFolder
 from eyas.learning.config import Stage
 from eyas.learning.crew import Crew
+from eyas.learning.exam import NO_MARKS, Marks, examine
 from eyas.learning.export import export
 from eyas.learning.network import NetworkShape, TrackingNetwork
 from eyas.learning.ppo import Losses, update
@@ -98,13 +99,22 @@ class _Run:
             progress.decisions += data.rewards.numel()
             progress.stage_decisions += data.rewards.numel()
         seconds = time.monotonic() - start
-        progress.seconds += seconds
-        row = self._row(rollers, losses)
-        progress.rows.append(row)
+        rate = config.updates_per_block * data.rewards.numel() / seconds
         progress.block += 1
-        self._tell(row, config.updates_per_block * data.rewards.numel() / seconds)
-        good = stage.until_score is not None and row["return"] >= stage.until_score
+        marks = self._examined()
+        progress.seconds += time.monotonic() - start
+        row = self._row(rollers, losses) | marks._asdict()
+        progress.rows.append(row)
+        self._tell(row, rate)
+        good = stage.until_tsr is not None and marks.tsr >= stage.until_tsr
         return good or progress.stage_decisions >= stage.decisions
+
+    def _examined(self) -> Marks:
+        """Return the marks after a block: of an evaluation, if it is time for one."""
+        every = self.config.train.evaluation.every
+        if every and (self.progress.block % every == 0 or self.progress.decisions >= self._total):
+            return examine(self.network, self.config)
+        return NO_MARKS
 
     def _set_rate(self) -> None:
         config = self.config.train
@@ -133,8 +143,10 @@ class _Run:
         progress = self.progress
         left = (self._total - progress.decisions) * progress.seconds / progress.decisions
         physics = rate * steps_per_action(self.config)
+        tested = "" if np.isnan(row["tsr"]) else f"CR {row['cr']:.1f}  TSR {row['tsr']:.3f}  "
         self._say(
             f"{progress.decisions:>9,} of {self._total:,} decisions  return {row['return']:7.2f}  "
+            f"{tested}"
             f"{rate:,.0f} decisions/s ({physics / 500:,.0f} s of flight per s)  "
             f"{left / 60:.1f} min left"
         )
