@@ -10,7 +10,7 @@ import typer
 import typer.core
 
 from eyas import __version__
-from eyas.cli import bench, cache, config, evaluate, maps, serve, traffic, train, video
+from eyas.cli import bench, cache, config, evaluate, maps, policies, serve, traffic, train, video
 from eyas.cli.said import say
 from eyas.core.errors import EyasError
 
@@ -53,6 +53,7 @@ app.command("leaderboard")(evaluate.leaderboard)
 app.add_typer(cache.app, name="cache")
 app.add_typer(config.app, name="config")
 app.add_typer(maps.app, name="maps")
+app.add_typer(policies.app, name="policies")
 app.add_typer(traffic.app, name="traffic")
 
 

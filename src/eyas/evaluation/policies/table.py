@@ -8,6 +8,7 @@ from typing import Any
 
 from eyas.core.errors import ConfigError, DataFileError, UnknownNameError
 from eyas.evaluation.policies.policy import Policy
+from eyas.evaluation.policies.shipped import file_of, shipped_names
 
 __all__ = ["BUILT_IN", "FILES", "fingerprint", "open_policy"]
 
@@ -36,7 +37,7 @@ def open_policy(said: str, changes: Mapping[str, Any], *, sampled: bool = False)
     """Return a policy.
 
     Args:
-        said: A built-in name, the path of a file, or `package.module:name`.
+        said: A built-in or shipped name, the path of a file, or `package.module:name`.
         changes: Changes of `env`.
         sampled: Whether a network's actions are drawn instead of the best ones.
 
@@ -44,7 +45,7 @@ def open_policy(said: str, changes: Mapping[str, Any], *, sampled: bool = False)
         EyasError: There is no such policy, or it cannot be loaded.
     """
     policy: Policy
-    path = Path(said)
+    path = file_of(said) if said in shipped_names() else Path(said)
     if said in BUILT_IN:
         _refuse_sampled(said, sampled=sampled)
         policy = _imported(BUILT_IN[said])(changes)
@@ -61,7 +62,7 @@ def open_policy(said: str, changes: Mapping[str, Any], *, sampled: bool = False)
         raise UnknownNameError(
             "--policy",
             said,
-            BUILT_IN,
+            (*BUILT_IN, *shipped_names()),
             f"(nor a file {', '.join(FILES)}, nor 'package.module:name')",
         )
     if policy.env.mixture:
@@ -71,7 +72,7 @@ def open_policy(said: str, changes: Mapping[str, Any], *, sampled: bool = False)
 
 def fingerprint(said: str) -> str | None:
     """Return a hash of a policy's file; None if it is none."""
-    path = Path(said)
+    path = file_of(said) if said in shipped_names() else Path(said)
     if said in BUILT_IN or path.suffix not in FILES:
         return None
     return sha256(path.read_bytes()).hexdigest()[:16]

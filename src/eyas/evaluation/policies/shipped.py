@@ -1,0 +1,58 @@
+"""The policies that Eyas has taught itself and brings along, each with a card of where it is from.
+
+`tools/ship_policy.py` puts them there.
+"""
+
+import json
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+
+from eyas.core.config import Config, validated
+
+__all__ = ["TRAINED", "Card", "Score", "card_of", "file_of", "shipped_names"]
+
+TRAINED = Path(str(files("eyas.evaluation.policies"))) / "trained"
+"""Their folder: for each name a network (`.onnx`), a card (`.json`) and a curve (`.csv`)."""
+
+
+class Score(Config):
+    """What a policy reaches in a protocol."""
+
+    protocol: str
+    weather: str
+    n: int
+    """Number of episodes."""
+    cr: float
+    tsr: float
+
+
+class Card(Config):
+    """Where a policy is from, and what it can do."""
+
+    title: str
+    """What it has learned, in a few words."""
+    command: str
+    """The command that trained it."""
+    decisions: int
+    """Of all environments, in training."""
+    version: str
+    """Of Eyas, when it was trained."""
+    scores: tuple[Score, ...]
+
+
+def shipped_names() -> tuple[str, ...]:
+    """Return the names of all."""
+    return tuple(sorted(path.stem for path in TRAINED.glob("*.onnx")))
+
+
+def file_of(name: str) -> Path:
+    """Return the network's file."""
+    return TRAINED / f"{name}.onnx"
+
+
+@cache
+def card_of(name: str) -> Card:
+    """Return the card of a policy."""
+    path = TRAINED / f"{name}.json"
+    return validated(Card, json.loads(path.read_text()), str(path))
