@@ -181,6 +181,20 @@ def test_what_cannot_be_trained_is_one_line(env, message, tmp_path):
     assert not (tmp_path / "run").exists()
 
 
+@pytest.mark.parametrize(
+    ("evaluation", "message"),
+    [
+        ({"protocol": "papr"}, r"^train\.evaluation\.protocol: .*papr.*'paper'"),
+        ({"weathers": ["day", "snwo"]}, r"'snwo'.*'snow'"),
+    ],
+)
+def test_an_evaluation_that_cannot_be_flown_is_refused_at_once(evaluation, message, tmp_path):
+    config = updated(SMALL, {"train": {"evaluation": evaluation}})
+    with pytest.raises(EyasError, match=message):
+        train(config, tmp_path / "run", say=quiet)
+    assert not (tmp_path / "run").exists()
+
+
 def test_a_network_with_memory_learns_too(tmp_path):
     config = updated(SMALL, {"train": {"memory": True, "stages": [{"decisions": 64}]}})
     train(config, tmp_path / "run", say=quiet)

@@ -119,12 +119,16 @@ PROTOCOLS: Mapping[str, Protocol] = {
 """The protocols by name."""
 
 
-def protocol_named(name: str) -> Protocol:
+def protocol_named(name: str, place: str = "--protocol") -> Protocol:
     """Return a protocol.
+
+    Args:
+        name: Its name.
+        place: Option or setting with the name, for the message.
 
     Raises:
         UnknownNameError: There is no such protocol.
     """
     if name not in PROTOCOLS:
-        raise UnknownNameError("--protocol", name, PROTOCOLS)
+        raise UnknownNameError(place, name, PROTOCOLS)
     return PROTOCOLS[name]

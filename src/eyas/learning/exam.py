@@ -8,14 +8,15 @@ from torch import Tensor
 
 from eyas.envs.config import EnvConfig
 from eyas.evaluation.delay import delay_from
-from eyas.evaluation.episode import Place, episodes_of
+from eyas.evaluation.episode import Episode, Place, episodes_of
 from eyas.evaluation.flight import Flight
 from eyas.evaluation.policies.policy import Decision, Sight, Start
-from eyas.evaluation.protocol import protocol_named
+from eyas.evaluation.protocol import Protocol, protocol_named
 from eyas.learning.network import TrackingNetwork
 from eyas.settings.config import EyasConfig
+from eyas.world.maps import MAPS
 
-__all__ = ["NO_MARKS", "Marks", "examine"]
+__all__ = ["NO_MARKS", "Marks", "episodes_of_exam", "examine"]
 
 
 class Marks(NamedTuple):
@@ -54,18 +55,25 @@ class _Student:
 
 
 def examine(network: TrackingNetwork, config: EyasConfig) -> Marks:
-    """Return how the network does in the episodes of `train.evaluation`.
-
-    Raises:
-        EyasError: There is no such protocol or weather.
-    """
-    asked = config.train.evaluation
-    protocol = protocol_named(asked.protocol)
-    world, env = config.world, config.env.model_copy(update={"mixture": ()})
-    weathers = asked.weathers or (world.weather,)
-    places = [Place(world.map, weather, config.target) for weather in weathers]
-    episodes = episodes_of(places, protocol.directions, asked.episodes, asked.seed)
+    """Return how the network does in the episodes of `train.evaluation`."""
+    episodes, protocol = episodes_of_exam(config)
+    env = config.env.model_copy(update={"mixture": ()})
     flight = Flight(episodes, protocol, _Student(network, env), delay_from("0"))
     records = [record for ended in flight.fly() for record in ended]
     means = [np.mean([getattr(record, name) for record in records]) for name in Marks._fields]
     return Marks(*(round(float(mean), 6) for mean in means))
+
+
+def episodes_of_exam(config: EyasConfig) -> tuple[list[Episode], Protocol]:
+    """Return the episodes of `train.evaluation`, and their protocol.
+
+    Raises:
+        UnknownNameError: There is no such protocol, or no such weather on the map.
+    """
+    asked, world = config.train.evaluation, config.world
+    protocol = protocol_named(asked.protocol, "train.evaluation.protocol")
+    weathers = asked.weathers or (world.weather,)
+    for weather in weathers:
+        MAPS.get(world.map).light(weather)
+    places = [Place(world.map, weather, config.target) for weather in weathers]
+    return episodes_of(places, protocol.directions, asked.episodes, asked.seed), protocol

@@ -104,17 +104,15 @@ class TrackingNetwork(nn.Module):
         """Return logits (B, 7) and values (B,)."""
         return self.policy(features), self.value(features)[:, 0]
 
-    def next_state(self, action: Tensor, memory: Tensor, begun: Tensor | None = None) -> Tensor:
+    def next_state(self, action: Tensor, memory: Tensor) -> Tensor:
         """Return the state for the next decision, shape (B, `shape.state`).
 
         Args:
             action: The actions taken, shape (B,).
             memory: The memory from `forward`.
-            begun: Where a new episode has begun, shape (B,).
         """
         told = nn.functional.one_hot(action, ACTIONS)[:, :HOVER].float()
-        state = torch.cat([told, memory], 1)
-        return state if begun is None else torch.where(begun[:, None], 0.0, state)
+        return torch.cat([told, memory], 1)
 
     def initialise(self, generator: torch.Generator) -> None:
         """Draw orthogonal weights, as is usual for this method (Andrychowicz et al. 2021)."""

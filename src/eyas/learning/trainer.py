@@ -17,7 +17,7 @@ from eyas.learning.board import Board
 from eyas.learning.checkpoint import Progress, RunFolder
 from eyas.learning.config import Stage
 from eyas.learning.crew import Crew
-from eyas.learning.exam import NO_MARKS, Marks, examine
+from eyas.learning.exam import NO_MARKS, Marks, episodes_of_exam, examine
 from eyas.learning.export import export
 from eyas.learning.network import NetworkShape, TrackingNetwork
 from eyas.learning.ppo import Losses, update
@@ -59,6 +59,7 @@ class _Run:
 
     def __init__(self, config: EyasConfig, files: RunFolder, say: Say) -> None:
         self.config, self.files, self._say = config, files, say
+        episodes_of_exam(config)  # refuses wrong names now, not after minutes
         self._crew = Crew(
             max(config.train.parts, config.train.shards)
         )  # first: it sets PyTorch's threads
