@@ -13,6 +13,8 @@ from numba.types import CPointer, Tuple, intp
 
 from eyas.core.cuda import prepare_cuda
 from eyas.core.intrinsics import address_of
+from eyas.core.jit import kernel
+from eyas.core.lanes import greater
 from eyas.render.jobs import build_jobs
 from eyas.render.kernels.bundles import Movers, Task
 from eyas.render.kernels.light.view_light import view_light
@@ -113,3 +115,24 @@ def test_the_step_compiles_for_cuda(ptx_of, kernel):
     step = getattr(step_of(DRONE), kernel)
     text = ptx_of(step.function, CPointer(Tuple(parts)), intp, intp)
     assert ".visible .entry" in text
+
+
+def test_what_is_compiled_for_cuda_leaves_the_processors_kernels_as_they_are(ptx_of):
+    """numba notes in its functions with what they were compiled last, for any processor."""
+
+    def compiled():
+        @kernel
+        def larger(a):
+            a[0] = greater(a[0], a[1]) + 1.0
+
+        @kernel
+        def work(a):
+            larger(a)
+
+        values = np.array([1.0, 2.0])
+        work(values)
+        assert values[0] == 3.0
+        ptx_of(work.py_func, numba.float64[::1])
+
+    compiled()
+    compiled()

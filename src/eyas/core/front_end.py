@@ -87,9 +87,11 @@ class _Typing(Context):  # type: ignore[misc]
     numba tries a dozen rules at each `+`: a fifth of the time of compiling.
     """
 
+    __slots__ = ("_known",)  # all else is the very dictionary of numba's own
+
     def __init__(self) -> None:
-        self.__dict__.update(vars(cpu_target.typing_context))
-        self._known: dict[tuple[int, tuple[Kind, ...]], tuple[Kind, Any]] = {}
+        self.__dict__ = vars(cpu_target.typing_context)  # type: ignore[misc]  # no slot
+        self._known: dict[tuple[int, tuple[Kind, ...]], tuple[Kind, Any, Any]] = {}
 
     def resolve_function_type(
         self, func: Kind, args: tuple[Kind, ...], kws: dict[str, Kind]
@@ -99,9 +101,14 @@ class _Typing(Context):  # type: ignore[misc]
             return super().resolve_function_type(func, args, kws)
         key = id(func), args
         if key not in self._known:
+            signature = super().resolve_function_type(func, args, kws)
             # The function is kept, so that no other gets its `id`.
-            self._known[key] = func, super().resolve_function_type(func, args, kws)
-        return self._known[key][1]
+            self._known[key] = func, signature, func.get_impl_key(signature)
+        _, signature, implementation = self._known[key]
+        # What numba generates code with is noted in the function, which others resolve too, each
+        # with code of its own: numba with other settings, or numba-cuda.
+        func._impl_keys[signature.args] = implementation
+        return signature
 
 
 @cache

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.errors import SpawnError
+from eyas.core.jit import thread_count
 from eyas.core.jpeg import jpeg_bytes
 from eyas.sim.simulation import Simulation
 from eyas.state.draw import Picture
@@ -51,7 +52,8 @@ class Crew:
         self._steps = physics_steps
         self._picture = Picture.create(sim.count, camera.height, camera.width)
         self._trackers = np.arange(sim.count, dtype=np.int32)
-        self._threads = ThreadPoolExecutor(2, "eyas-pictures")
+        workers = max(2, min(sim.count, thread_count()))
+        self._threads = ThreadPoolExecutor(workers, "eyas-pictures")
         self._drawn: list[Future[bytes]] = []
         self._begun = False
 
