@@ -28,6 +28,7 @@ __all__ = [
     "interpreted",
     "kernel",
     "kernel_folder",
+    "limit_threads",
     "separate_kernel",
     "source_hash",
     "specialised",
@@ -84,6 +85,11 @@ def thread_count() -> int:
     if named:
         return int(named)
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def limit_threads(count: int) -> None:
+    """Let this process, and those that it starts, draw with so many threads."""
+    os.environ["NUMBA_NUM_THREADS"] = str(count)
 
 
 class Kernel:

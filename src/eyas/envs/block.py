@@ -1,12 +1,12 @@
 """A process that holds a block of environments, for `eyas.envs.worker_fleet`."""
 
-import os
 import signal
 import traceback
 from multiprocessing.connection import Connection
 from typing import Any, NamedTuple
 
 from eyas.core.errors import EyasError
+from eyas.core.jit import limit_threads
 from eyas.envs.fleet import Fleet
 from eyas.envs.shared import SharedObservations
 from eyas.settings.config import EyasConfig
@@ -44,7 +44,7 @@ class Answer(NamedTuple):
 def serve(block: Block, pipe: Connection) -> None:
     """Answer calls until the pipe is closed; the first answer is that the block is made."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the process that calls
-    os.environ["NUMBA_NUM_THREADS"] = str(block.threads)
+    limit_threads(block.threads)
     fleet: Fleet | None = None
     calls: Calls = []
     while True:

@@ -1,7 +1,6 @@
 """Evaluation by the processes of Ray; all of Ray that evaluations need is imported here."""
 
 import logging
-import os
 import signal
 import threading
 from collections.abc import Iterator
@@ -10,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from eyas.core.errors import EyasError, MissingExtraError
+from eyas.core.jit import limit_threads
 from eyas.evaluation.episode import Episode
 from eyas.evaluation.fliers import Flier, flown
 from eyas.evaluation.plan import Plan, Stamp, stamp
@@ -84,7 +84,7 @@ def _fly(ray: Any, plan: Plan, parts: list[list[Episode]]) -> Iterator[list[Reco
 
 def _flown_by_one(made: Stamp, part: list[Episode]) -> list[Record]:
     """Return the records of a batch, flown by the one core that Ray has given this process."""
-    os.environ["NUMBA_NUM_THREADS"] = "1"
+    limit_threads(1)
     try:
         return flown(made, part)
     except EyasError as error:
