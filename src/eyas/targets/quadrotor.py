@@ -106,7 +106,7 @@ def _arm(
 
 
 class QuadrotorRig:
-    """One level part at the heading of its actor; `eyas.sim.bodies` poses trackers, which may tilt."""
+    """One part, at the heading of its actor; `eyas.sim.bodies` poses trackers, which may tilt."""
 
     slots = 1
     part_count = 1
