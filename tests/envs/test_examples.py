@@ -39,6 +39,7 @@ def test_an_observation_of_ones_own_has_edges_and_motion(capsys):
 
 def test_proximal_policy_optimisation_in_one_file_learns_and_repeats_itself(tmp_path, capsys):
     torch = pytest.importorskip("torch")
+    torch.set_num_threads(1)  # on a busy machine, more wait for each other
     import ppo
 
     options = ppo.Options(decisions=192, num_envs=4, num_steps=16, save=str(tmp_path / "a.pt"))
