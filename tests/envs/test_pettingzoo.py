@@ -89,6 +89,17 @@ def test_a_drone_whose_episode_has_ended_leaves_and_hovers_while_the_others_fly(
     assert len(env.reset()[0]) == 2
 
 
+def test_the_reason_of_an_end_is_told_also_if_it_is_over_before_the_action_is():
+    done = {"grace_steps": 0, "no_reward_steps": 5000, "velocity": 10.0}
+    env = EyasParallelEnv(2, {"done": done}, action_repeat=100, **SMALL)
+    env.reset(seed=1)
+    *_, terminated, _, info = env.step({"drone_0": 0, "drone_1": 6})
+    assert terminated == {"drone_0": True, "drone_1": False}
+    assert info["drone_0"]["done_reason"] == "velocity"
+    assert info["drone_0"]["done_state"] != info["drone_0"]["done_reason"]
+    assert np.linalg.norm(info["drone_0"]["velocity"]) < 10.0
+
+
 @pytest.mark.parametrize("repeat", [1, 5])
 def test_a_longer_action_gets_the_rewards_of_shorter_ones(repeat):
     long, short = (EyasParallelEnv(2, SHORT, action_repeat=count, **SMALL) for count in (repeat, 1))
