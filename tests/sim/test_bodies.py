@@ -52,7 +52,7 @@ def test_a_tracker_sees_another_where_it_is(simulation):
 def test_nobody_sees_itself_or_trackers_of_other_worlds(simulation):
     put_before_camera(simulation, 2, camera=0)
     put_before_camera(simulation, 4, camera=0)
-    put_before_camera(simulation, 0, camera=2)
+    put_before_camera(simulation, 0, camera=0)
     assert not (seen_by(simulation, 0, 1, 2, 3, 4).class_id == ObjectClass.ROBOT).any()
     alone = build_simulation(simulation.config, np.array([0]))
     alone.reset()
