@@ -57,7 +57,7 @@ def test_every_class_that_sumo_drives_is_a_kind():
     assert classes == ["CAR", "BUS", "TRUCK", "TRUCK", "MOTORCYCLE"]
 
 
-@pytest.mark.parametrize("model", range(len(MODELS)))
+@pytest.mark.parametrize("model", [MODELS.index(vehicle) for vehicle in VEHICLES])
 def test_what_the_reward_looks_for_is_a_metre_behind_a_vehicles_reference(model):
     assert kind_of(model).ahead == -1.0
     assert kind_of(model).lamps

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import physics_steps
+from eyas.core.rng import EpisodeKey
 from eyas.envs.actions import make_actions
 from eyas.envs.information import Info, information
 from eyas.envs.observation import Observer
@@ -16,7 +17,7 @@ from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.messages import originals_named
 from eyas.settings.version_check import require_supported
 from eyas.sim.build import build_simulation
-from eyas.sim.worlds import each_alone
+from eyas.sim.worlds import each_alone, together
 from eyas.state.draw import Picture
 from eyas.task.done import DoneReason
 from eyas.task.step_line import step_line
@@ -42,6 +43,8 @@ class Outcome(NamedTuple):
     """Whether the episode has ended before its number of steps, shape (N,)."""
     truncated: Mask
     """Whether it has ended by its number of steps, shape (N,)."""
+    reason: NDArray[np.int64]
+    """`eyas.task.done.DoneReason` of its end, shape (N,)."""
 
 
 class Batch:
@@ -55,16 +58,18 @@ class Batch:
     Args:
         config: The settings.
         count: N.
+        shared: Whether all are in one world, where they see each other; its time goes on for all.
 
     Raises:
         EyasError: A setting is wrong; the message is one line.
     """
 
-    def __init__(self, config: EyasConfig, count: int) -> None:
+    def __init__(self, config: EyasConfig, count: int, *, shared: bool = False) -> None:
         self.config = config
+        self._shared, self._seed = shared, config.seed
         with originals_named(config):
             require_supported(config)
-            self._simulation = build_simulation(config, each_alone(count))
+            self._simulation = build_simulation(config, (together if shared else each_alone)(count))
         self.actions = make_actions(config.env.actions, config.env.speeds)
         self.observer = Observer(config.env.observation, self._simulation)
         self._steps = physics_steps(config.control.frequency)
@@ -72,7 +77,7 @@ class Batch:
         self._picture: Picture | None = None
 
     def begin(self, chosen: Mask, seeds: Seeds = None) -> None:
-        """Begin new episodes; `look` comes next.
+        """Begin new episodes of trackers with worlds of their own; `look` comes next.
 
         Args:
             chosen: The trackers, shape (N,).
@@ -85,13 +90,30 @@ class Batch:
                 self._simulation.reseed_alone(np.array([tracker]), np.array([seed]))
         self._simulation.reset(chosen)
 
+    def begin_together(self, seed: int | None = None) -> None:
+        """Begin new episodes of all trackers in their shared world, at any time of its traffic.
+
+        Args:
+            seed: The seed whose sequence of episodes begins; None: it continues.
+        """
+        simulation, episodes = self._simulation, self._simulation.snapshot.episodes
+        if seed is not None:
+            self._seed = seed
+            simulation.reseed(seed)
+        simulation.rewind()
+        first = self.config.start.warm_up_steps
+        last = simulation.steps_left - self.config.done.total_steps
+        key = EpisodeKey(self._seed, 0, int(episodes.number[0]) + 1)
+        episodes.tick[:] = key.stream("time").integers(first, last + 1)
+        simulation.reset()
+
     def step(self, actions: Any, active: Mask) -> Outcome:  # noqa: ANN401  # whatever a learner returns
         """Hold an action of each agent; `begin` or `look` comes next.
 
         Args:
             actions: N actions.
-            active: The trackers that fly, shape (N,); time stands still for the others, whose
-                rewards are 0 and who have no end.
+            active: The trackers that fly, shape (N,); for the others, whose rewards are 0 and who
+                have no end, time stands still, or they hover in the world that they share.
 
         Raises:
             ActionError: An action is not in the space of actions.
@@ -99,12 +121,16 @@ class Batch:
         commands = self.actions.commands(actions)
         reward = np.zeros(len(active))
         terms: dict[str, NDArray[np.float64]] = {}
-        running = active
+        running, reason = active, np.zeros(len(active), np.int64)
         for _ in range(self.config.env.action_repeat):
-            result = self._simulation.advance(commands, self._steps, running)
+            if self._shared:
+                commands[~running] = 0.0
+            flying = None if self._shared else running
+            result = self._simulation.advance(commands, self._steps, flying)
             reward += np.where(running, result.reward, 0.0)
             for name, values in result.terms.items():
                 terms[name] = np.where(running, values, 0.0) + terms.get(name, 0.0)
+            reason[running] = result.reason[running]
             running = running & ~result.done
             if not running.any():
                 break
@@ -112,8 +138,8 @@ class Batch:
             for tracker in np.flatnonzero(active).tolist():
                 name = f"DRONE{tracker}"
                 _STEPS.info("%s", step_line(self._simulation.snapshot, tracker, name))
-        done, at_limit = result.done & active, result.reason == DoneReason.STEP_LIMIT
-        return Outcome(reward, terms, done & ~at_limit, done & at_limit)
+        done, at_limit = reason > DoneReason.NONE, reason == DoneReason.STEP_LIMIT
+        return Outcome(reward, terms, done & ~at_limit, at_limit, reason)
 
     def look(self, chosen: Mask, begun: Mask) -> None:
         """Observe some trackers; `begun` tells whose episode has just begun; shapes (N,)."""

@@ -27,8 +27,9 @@ _DIRECTIONS = (0.0, 0.5 * math.pi, math.pi, -0.5 * math.pi)
 
 _NEVER = 2**31 - 1
 
-_FIXED = set(SimConfig.model_fields) - {"seed"}
-"""Settings that are part of a protocol: all of the simulation, none of its uses."""
+_FIXED = set(SimConfig.model_fields) - {"seed", "same_target"}
+"""Settings that are part of a protocol: all of the simulation, none of its uses. Each drone has a
+world of its own, so that none shares its target."""
 
 
 @dataclass(frozen=True)

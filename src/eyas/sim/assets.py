@@ -11,6 +11,7 @@ from eyas.sim.scenes import load_geometry, load_scene
 from eyas.state.lighting import Lighting
 from eyas.state.scene import Scene
 from eyas.targets.catalogue import kind_index
+from eyas.targets.quadrotor import QUADROTOR
 from eyas.targets.rig import Rigs
 from eyas.traffic.config import Demand, TrafficConfig
 from eyas.traffic.library import find_recording
@@ -32,6 +33,8 @@ class Assets:
     lighting: Lighting
     renderer: Renderer
     rigs: Rigs
+    body_part: int = -1
+    """Part of the renderer's library that a tracker looks like to others; -1: it has none."""
 
 
 def load_assets(world: WorldConfig, traffic: TrafficConfig, trackers: int = 1) -> Assets:
@@ -44,7 +47,7 @@ def load_assets(world: WorldConfig, traffic: TrafficConfig, trackers: int = 1) -
         world: Map and weather.
         traffic: The traffic.
         trackers: Number of trackers in a world; at least three times as many vehicles enter
-            together in a group.
+            together in a group, and several see each other.
 
     Raises:
         EyasError: The map or weather does not exist, or has no traffic.
@@ -53,9 +56,14 @@ def load_assets(world: WorldConfig, traffic: TrafficConfig, trackers: int = 1) -
     lighting, season = recipe.light(world.weather), recipe.season(world.weather)
     grouped = traffic.demand is Demand.RESPAWN
     source = _traffic(world.map, world.seed, traffic, trackers if grouped else 1)
-    renderer = _renderer(world, tuple(np.unique(source.motion.kind).tolist()))
+    kinds, rigs = np.unique(source.motion.kind).tolist(), Rigs(source.motion.kind)
+    body_part = -1
+    if trackers > 1:
+        body_part = sum(cast.rig.part_count for cast in rigs.casts)
+        kinds.append(kind_index(QUADROTOR.name))
+    renderer = _renderer(world, tuple(kinds))
     scene = load_scene(world.map, world.seed, season)
-    return Assets(scene, source, lighting, renderer, Rigs(source.motion.kind))
+    return Assets(scene, source, lighting, renderer, rigs, body_part)
 
 
 @lru_cache(maxsize=4)

@@ -30,6 +30,9 @@ class SimConfig(Config):
     """The one seed of the run."""
     target: TargetName = TargetName.SUMO_VEHICLE
     """Kind of target to follow."""
+    same_target: bool = False
+    """Whether all trackers of a world follow the same target; they start on different sides of
+    it."""
     world: WorldConfig = WorldConfig()
     traffic: TrafficConfig = TrafficConfig()
     tracker: TrackerConfig = TrackerConfig()

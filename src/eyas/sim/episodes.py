@@ -1,5 +1,8 @@
 """Episodes: the start time, target and start pose of each."""
 
+import math
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,7 +15,7 @@ from eyas.sim.light import LightChanges
 from eyas.sim.worlds import Worlds
 from eyas.state.snapshot import Snapshot
 from eyas.targets.catalogue import MODELS, kind_of
-from eyas.task.spawn import choose_target, sample_start, start_pose
+from eyas.task.spawn import Start, choose_target, sample_start, start_pose
 from eyas.traffic.source import TrafficSource
 
 __all__ = ["Episodes"]
@@ -139,13 +142,21 @@ class Episodes:
         tick, actor = self._choose(tracker, rng)
         self._episodes.tick[tracker] = tick
         self.follow(tracker, actor)
-        start = sample_start(self._config.start, rng)
+        start = self._aside(tracker, sample_start(self._config.start, rng))
         # The target is at the origin, with a heading for which the tracker heads east, so that the
         # result is the offset in the tracker's heading frame.
         ahead = float(self._targets.ahead[tracker])
         offset, _ = start_pose(start, np.zeros(3), -start.direction, ahead)
         self._episodes.start_offset[tracker] = *offset, start.direction
         return start.pitch
+
+    def _aside(self, tracker: int, start: Start) -> Start:
+        """Return a start on the tracker's own side of a target that others follow, too."""
+        if not self._config.same_target:
+            return start
+        others = self._worlds.trackers_of(tracker)
+        turn = 2.0 * math.pi * others.tolist().index(tracker) / len(others)
+        return replace(start, direction=start.direction + turn)
 
     def _choose(self, tracker: int, rng: np.random.Generator) -> tuple[int, int]:
         """Return the start time of an episode, and its target.
@@ -156,6 +167,10 @@ class Episodes:
         others = self._worlds.trackers_of(tracker)
         lasting = bool(self._worlds.lasting[self._worlds.of[tracker]])
         used = set(self._targets.actor[others].tolist()) if lasting else set()
+        if lasting and self._config.same_target:
+            followed = self._followed(others)
+            if followed is not None:
+                return self._now(others), followed
         for attempt in range(_ATTEMPTS):
             tick = self._now(others) if lasting else self._any_time(rng)
             steps = self._config.done.total_steps >> (attempt if lasting else attempt // _TIMES)
@@ -167,6 +182,13 @@ class Episodes:
                 if attempt == _ATTEMPTS - 1 or steps == 0:
                     raise
         raise AssertionError("the loop returns or raises")
+
+    def _followed(self, trackers: NDArray[np.int64]) -> int | None:
+        """Return the target of some trackers, if one has a target that is still in the world."""
+        time = self._now(trackers) * PHYSICS_STEP
+        available = self._traffic.available(time, time)
+        followed = self._targets.actor[trackers]
+        return next((a for a in followed.tolist() if a >= 0 and available[a]), None)
 
     def _any_time(self, rng: np.random.Generator) -> int:
         """Return a random time that leaves enough of the recording for a whole episode."""

@@ -9,6 +9,7 @@ from eyas.overlay.paint import paint_overlays, with_depth
 from eyas.render.jobs import picture_size
 from eyas.sensors.camera import Camera
 from eyas.sim.assets import Assets
+from eyas.sim.bodies import Bodies
 from eyas.sim.config import SimConfig
 from eyas.sim.light import LightChanges
 from eyas.sim.worlds import Worlds
@@ -41,6 +42,7 @@ class Pictures:
         snapshot: Snapshot,
     ) -> None:
         self._worlds = worlds
+        self._bodies = Bodies(worlds, assets)
         self._light = light
         self._snapshot = snapshot
         self._flakes = config.light.flakes
@@ -59,6 +61,9 @@ class Pictures:
         """
         cameras = CameraState(*(array[chosen] for array in self._snapshot.cameras))
         views, movers = self._views(chosen, cameras, self._camera.aspect)
+        if self._bodies.any:
+            movers = self._bodies.added(chosen, views.world, movers, self._snapshot.trackers)
+            views.world = np.arange(len(chosen), dtype=np.int32)
         views.vertical_field_of_view = self._camera.vertical(cameras.field_of_view)
         self._camera.read(views, movers, picture, until)
         return views

@@ -4,6 +4,7 @@ A new kind is a file with its shapes and its rig, and one call of `register`.
 """
 
 from eyas.targets.kind import Kind, Model
+from eyas.targets.quadrotor import QUADROTOR
 from eyas.targets.vehicles.kinds import VEHICLE_KINDS
 
 __all__ = ["KINDS", "MODELS", "kind_index", "kind_of", "model_index", "models_of", "register"]
@@ -53,5 +54,5 @@ def models_of(kind: int) -> range:
     return range(first, first + len(KINDS[kind].models))
 
 
-for _kind in VEHICLE_KINDS:
+for _kind in (*VEHICLE_KINDS, QUADROTOR):
     register(_kind)

@@ -1,0 +1,69 @@
+"""The examples run; those of maps and of published figures have tests of their own."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+@pytest.fixture(autouse=True)
+def importable(monkeypatch):
+    monkeypatch.syspath_prepend(EXAMPLES)
+    yield
+    for name in ("ppo", "own_observation"):
+        sys.modules.pop(name, None)
+
+
+def test_an_observation_of_ones_own_has_edges_and_motion(capsys):
+    import own_observation
+
+    own_observation.main()
+    assert (
+        "'edges': (8, 1, 48, 47), 'motion': (8, 2), 'privileged': (8, 16)"
+        in capsys.readouterr().out
+    )
+    env = own_observation.EyasVectorEnv(
+        2,
+        observation={"parts": ["image", "sensors", "privileged"], "width": 48, "height": 48,
+                     "colours": "grey", "layout": "chw"},
+    )  # fmt: skip
+    plain, _ = env.reset(seed=1)
+    seen, _ = own_observation.EdgesAndMotion(env).reset(seed=1)
+    left, right = plain["image"][..., :-1].astype(int), plain["image"][..., 1:].astype(int)
+    assert np.array_equal(seen["edges"], np.abs(right - left))
+    assert np.allclose(seen["motion"][:, 0] * 25.0, plain["sensors"][:, 2])
+
+
+def test_proximal_policy_optimisation_in_one_file_learns_and_repeats_itself(tmp_path, capsys):
+    torch = pytest.importorskip("torch")
+    torch.set_num_threads(1)  # on a busy machine, more wait for each other
+    import ppo
+
+    options = ppo.Options(decisions=192, num_envs=4, num_steps=16, save=str(tmp_path / "a.pt"))
+    curve = ppo.main(options)
+    assert len(curve) == 3
+    assert capsys.readouterr().out.count("entropy") == 3
+    options.save = str(tmp_path / "b.pt")
+    assert ppo.main(options) == curve
+    learnt, again = torch.load(tmp_path / "a.pt"), torch.load(tmp_path / "b.pt")
+    torch.manual_seed(options.seed)
+    fresh = ppo.Agent().state_dict()
+    for name, weights in learnt.items():
+        assert torch.equal(weights, again[name])
+        assert not torch.equal(weights, fresh[name])
+
+
+def test_its_advantages_are_those_of_sums_of_errors():
+    torch = pytest.importorskip("torch")
+    import ppo
+
+    options, data = ppo.Options(discount=0.9, trace=0.5), ppo.Rollout(3, 1)
+    data.values[:, 0] = torch.tensor([1.0, 2.0, 3.0])
+    data.rewards[:, 0] = torch.tensor([0.5, 0.25, 2.0])
+    data.ended[1, 0] = 1.0
+    found = data.advantages(torch.tensor([4.0]), options)[:, 0]
+    last, cut = 2.0 + 0.9 * 4.0 - 3.0, 0.25 - 2.0
+    assert found.tolist() == pytest.approx([0.5 + 0.9 * 2.0 - 1.0 + 0.45 * cut, cut, last])
