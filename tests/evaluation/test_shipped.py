@@ -1,0 +1,36 @@
+"""The policies that come with Eyas do what their cards say."""
+
+import numpy as np
+import pytest
+
+from eyas.core.errors import EyasError
+from eyas.evaluation.policies.shipped import TRAINED, card_of, file_of, shipped_names
+from eyas.evaluation.policies.table import fingerprint, open_policy
+from eyas.settings.preset import PRESETS
+
+
+@pytest.mark.parametrize("name", shipped_names())
+def test_a_policy_reproduces_the_first_row_of_its_card(name, fly):
+    """Other processors may choose another action where two are as good to the last bit."""
+    row = card_of(name).scores[0]
+    records = fly(name, episodes=None, protocol=row.protocol, weathers=(row.weather,))
+    assert len(records) == row.n
+    assert np.mean([record.tsr for record in records]) == pytest.approx(row.tsr, abs=0.03)
+    assert np.mean([record.cr for record in records]) == pytest.approx(row.cr, rel=0.03)
+
+
+def test_each_was_trained_by_its_preset():
+    assert shipped_names()
+    for name in shipped_names():
+        assert name in PRESETS
+        assert card_of(name).command.startswith(f"eyas train --preset {name} --seed ")
+        assert fingerprint(name) == fingerprint(str(file_of(name)))
+
+
+def test_together_they_are_small():
+    assert sum(path.stat().st_size for path in TRAINED.iterdir()) < 10e6
+
+
+def test_a_name_that_is_nearly_one_is_told():
+    with pytest.raises(EyasError, match="'fsat'.*'fast'"):
+        open_policy("fsat", {})
