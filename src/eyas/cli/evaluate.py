@@ -2,12 +2,16 @@
 
 import json
 import re
+from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from eyas.core.errors import ConfigError
+
+if TYPE_CHECKING:
+    from eyas.evaluation.fliers import Flier
 
 __all__ = ["compare", "evaluate", "leaderboard"]
 
@@ -63,6 +67,10 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
     overwrite: Annotated[
         bool, typer.Option("--overwrite", help="First delete an evaluation in the folder.")
     ] = False,
+    ray: Annotated[
+        bool,
+        typer.Option("--ray", help="Spread the batches over a Ray cluster (extra cluster)."),
+    ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
 ) -> None:
     """Fly a policy in the episodes of a protocol, and tell how well it tracks."""
@@ -85,25 +93,31 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
         values["seed"] = seed
     plan = validated(Plan, values)
     folder = out or Path("runs/evaluation") / _folder_name(plan.policy, plan.protocol)
-    if latency_curve:
-        if as_published or videos:
-            raise ConfigError("--latency-curve: not together with --as-published or --videos")
-        from eyas.modes.latency_curve import run_curve
+    if latency_curve and (as_published or videos):
+        raise ConfigError("--latency-curve: not together with --as-published or --videos")
+    if ray and latency == "measured":
+        raise ConfigError("--ray: not together with --latency measured: that is of this machine")
+    with _flier(ray=ray) as flier:
+        common: Any = {"resume": resume, "overwrite": overwrite, "plots": plots, "quiet": quiet}
+        if latency_curve:
+            from eyas.modes.latency_curve import run_curve
 
-        run_curve(plan, folder, resume=resume, overwrite=overwrite, plots=plots, quiet=quiet)
-        return
-    from eyas.modes.evaluate import run
+            run_curve(plan, folder, flier=flier, **common)
+        else:
+            from eyas.modes.evaluate import run
 
-    run(
-        plan,
-        folder,
-        resume=resume,
-        overwrite=overwrite,
-        as_published=as_published,
-        plots=plots,
-        videos=videos,
-        quiet=quiet,
-    )
+            run(plan, folder, as_published=as_published, videos=videos, flier=flier, **common)
+
+
+def _flier(*, ray: bool) -> "AbstractContextManager[Flier]":
+    """Return what flies the batches."""
+    if ray:
+        from eyas.evaluation.cluster import on_ray
+
+        return on_ray()
+    from eyas.evaluation.fliers import fly_here
+
+    return nullcontext(fly_here)
 
 
 def _names(text: str) -> list[str]:

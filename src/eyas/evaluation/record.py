@@ -9,9 +9,9 @@ from typing import Self
 
 from eyas.core.config import Config, validated
 from eyas.core.errors import ConfigError, DataFileError
-from eyas.core.files import refusals
+from eyas.core.files import refusals, write_atomic
 
-__all__ = ["Published", "Record", "RecordFile", "Trace", "read_records"]
+__all__ = ["Published", "Record", "RecordFile", "Trace", "order_records", "read_records"]
 
 
 class Published(Config):
@@ -147,3 +147,19 @@ def read_records(path: Path) -> list[Record]:
         except (ValueError, RecursionError, ConfigError) as error:
             raise DataFileError(f"{path}: line {number}: not a record: {error}") from error
     return records
+
+
+def order_records(path: Path, keys: list[int]) -> None:
+    """Sort a file that `read_records` can read; lines with the same key keep their order.
+
+    Args:
+        path: The file.
+        keys: Of each record.
+
+    Raises:
+        OutputError: The file cannot be written.
+    """
+    places = sorted(range(len(keys)), key=keys.__getitem__)
+    if places != list(range(len(keys))):
+        lines = path.read_bytes().splitlines(keepends=True)
+        write_atomic(path, b"".join(lines[place] for place in places))

@@ -4,7 +4,7 @@ import json
 import logging
 import os
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -14,7 +14,6 @@ from rich.progress import (
     BarColumn,
     MofNCompleteColumn,
     Progress,
-    TaskID,
     TextColumn,
     TimeRemainingColumn,
 )
@@ -23,8 +22,9 @@ from eyas.core.errors import OutputError
 from eyas.core.files import refusals, write_atomic
 from eyas.core.folder_lock import folder_lock
 from eyas.core.machine import describe_machine
-from eyas.evaluation.plan import Plan, Stamp, batches, check, fly_batch, stamp
-from eyas.evaluation.record import Record, RecordFile, read_records
+from eyas.evaluation.fliers import Flier, fly_here
+from eyas.evaluation.plan import Plan, Stamp, batches, check, stamp
+from eyas.evaluation.record import Record, RecordFile, order_records, read_records
 from eyas.evaluation.result import EPISODES, RESULT, ROWS, STAMP, load_run, table, write_result
 from eyas.modes import evaluation_films, evaluation_plots
 from eyas.modes.evaluation_films import film
@@ -48,6 +48,7 @@ def run(  # noqa: PLR0913  # choices of the user's
     plots: bool = False,
     videos: bool = False,
     quiet: bool = False,
+    flier: Flier = fly_here,
 ) -> list[Record]:
     """Fly all episodes of a plan, or those that are missing in the folder; print a table.
 
@@ -60,6 +61,7 @@ def run(  # noqa: PLR0913  # choices of the user's
         plots: Whether plots are drawn.
         videos: Whether the worst, the median and the best flight are filmed.
         quiet: Whether nothing is printed.
+        flier: Flies the batches.
 
     Raises:
         EyasError: A setting is wrong, or the folder is taken.
@@ -70,7 +72,7 @@ def run(  # noqa: PLR0913  # choices of the user's
     made = stamp(plan)
     with folder_lock(out, "evaluating into it"):
         records = _prepared(out, made, resume=resume, overwrite=overwrite)
-        _fly(plan, out, records, quiet=quiet)
+        _fly(plan, out, records, flier, quiet=quiet)
         flown = _in_order(plan, out)
         rows = write_result(out, made, flown, as_published=as_published)
         if plots:
@@ -125,40 +127,41 @@ def _delete(out: Path) -> None:
             path.unlink(missing_ok=True)
 
 
-def _fly(plan: Plan, out: Path, records: list[Record], *, quiet: bool) -> None:
+def _fly(plan: Plan, out: Path, records: list[Record], flier: Flier, *, quiet: bool) -> None:
     """Fly the batches that are not complete, and append the records that are missing."""
     known = {record.name for record in records}
     answers: list[float] = []
     parts = batches(plan)
-    total = sum(map(len, parts))
+    left = [part for part in parts if any(episode.name not in known for episode in part)]
     begun = time.perf_counter()
-    with RecordFile(out / EPISODES) as file, _progress(total, quiet=quiet) as (bar, task):
-        bar.update(task, completed=len(known))
-        for part in parts:
-            if all(episode.name in known for episode in part):
-                continue
-            for ended in fly_batch(plan, part, answers):
-                new = [record for record in ended if record.name not in known]
-                file.add(new)
-                known.update(record.name for record in new)
-                bar.update(task, completed=len(known))
+    with RecordFile(out / EPISODES) as file, _progress(sum(map(len, parts)), quiet=quiet) as tell:
+        tell(len(known))
+        for ended in flier(plan, left, answers):
+            new = [record for record in ended if record.name not in known]
+            file.add(new)
+            known.update(record.name for record in new)
+            tell(len(known))
     if answers:
         _write_timing(plan, out, answers, time.perf_counter() - begun)
 
 
 def _in_order(plan: Plan, out: Path) -> list[Record]:
-    """Return the records in the order of the plan."""
-    found = {record.name: record for record in read_records(out / EPISODES)}
-    return [found[episode.name] for part in batches(plan) for episode in part]
+    """Return the records in the order of the plan; in the file, put the batches in this order."""
+    parts, found = batches(plan), read_records(out / EPISODES)
+    batch = {episode.name: number for number, part in enumerate(parts) for episode in part}
+    order_records(out / EPISODES, [batch[record.name] for record in found])
+    named = {record.name: record for record in found}
+    return [named[episode.name] for part in parts for episode in part]
 
 
 @contextmanager
-def _progress(total: int, *, quiet: bool) -> Iterator[tuple[Progress, TaskID]]:
-    """Show the progress on stderr."""
+def _progress(total: int, *, quiet: bool) -> Iterator[Callable[[int], None]]:
+    """Show the progress on stderr; yield what is told the number of flown episodes."""
     columns = (TextColumn("episodes"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
     console = Console(stderr=True)
     with Progress(*columns, console=console, transient=True, disable=quiet) as bar:
-        yield bar, bar.add_task("episodes", total=total)
+        task = bar.add_task("episodes", total=total)
+        yield lambda flown: bar.update(task, completed=flown)
 
 
 def _write_timing(plan: Plan, out: Path, answers: list[float], wall: float) -> None:

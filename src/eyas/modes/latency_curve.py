@@ -6,6 +6,7 @@ from typing import Any, TypedDict
 
 from eyas.core.errors import ConfigError
 from eyas.core.files import write_atomic
+from eyas.evaluation.fliers import Flier, fly_here
 from eyas.evaluation.plan import Plan, check, stamp
 from eyas.evaluation.rows import rows_of
 from eyas.modes.evaluate import run
@@ -29,8 +30,15 @@ class _Point(TypedDict):
     figures: dict[str, tuple[float, float, float]]
 
 
-def run_curve(
-    plan: Plan, out: Path, *, resume: bool, overwrite: bool, plots: bool, quiet: bool
+def run_curve(  # noqa: PLR0913  # choices of the user's
+    plan: Plan,
+    out: Path,
+    *,
+    resume: bool,
+    overwrite: bool,
+    plots: bool,
+    quiet: bool,
+    flier: Flier = fly_here,
 ) -> None:
     """Evaluate at each latency, in a folder of its own, and write `latency.json`.
 
@@ -41,6 +49,7 @@ def run_curve(
         overwrite: Whether those in the folders are deleted first.
         plots: Whether `latency.png` is drawn.
         quiet: Whether nothing is printed.
+        flier: Flies the batches.
 
     Raises:
         EyasError: A setting is wrong, or a folder is taken.
@@ -53,7 +62,7 @@ def run_curve(
     points: list[_Point] = []
     for latency in LATENCIES:
         own, folder = plan.model_copy(update={"latency": latency}), out / f"latency-{latency}"
-        records = run(own, folder, resume=resume, overwrite=overwrite, quiet=True)
+        records = run(own, folder, resume=resume, overwrite=overwrite, quiet=True, flier=flier)
         figures = rows_of(records, plan.rules.steps * plan.rules.period)[0].figures
         found = {name: (figures[name].mean, *figures[name].mean_interval) for name in _FIGURES}
         points.append(_Point(latency_ms=float(latency), figures=found))
