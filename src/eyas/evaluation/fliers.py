@@ -26,10 +26,14 @@ def flown(made: Stamp, part: list[Episode]) -> list[Record]:
     """Return the records of a batch: the same on every machine, however often it is flown.
 
     Raises:
-        ConfigError: This machine has another version of Eyas, or another file of the policy.
+        ConfigError: This machine has another version of Eyas, or another or no file of the policy.
         EyasError: The policy cannot be loaded here.
     """
-    for name, mine in stamp(made.plan):
+    try:
+        here = stamp(made.plan)
+    except OSError as error:
+        raise ConfigError(f"{made.plan.policy}: cannot read on a worker: {error}") from None
+    for name, mine in here:
         if mine != (told := getattr(made, name)):
             raise ConfigError(f"a worker has another {name}: {mine}, not {told}")
     return [record for ended in fly_batch(made.plan, part) for record in ended]
