@@ -1,6 +1,6 @@
 """N environments of one or more kinds, as one: a batch of trackers for each kind in the mixture."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any, NamedTuple
 
 import gymnasium
@@ -15,7 +15,7 @@ from eyas.envs.observation import Observation
 from eyas.settings.config import EyasConfig
 from eyas.task.terms import BUILTIN
 
-__all__ = ["Fleet"]
+__all__ = ["Fleet", "array_of", "joined", "terms_of"]
 
 Mask = NDArray[np.bool_]
 
@@ -34,13 +34,15 @@ class Fleet:
     Args:
         config: The settings.
         count: N.
+        first: Index of its first environment in a larger fleet; the kinds depend on it.
 
     Raises:
         EyasError: A setting is wrong; the message is one line.
     """
 
-    def __init__(self, config: EyasConfig, count: int) -> None:
-        kinds, kind_of = settings_of_kinds(config), np.array(kinds_of(config, count))
+    def __init__(self, config: EyasConfig, count: int, first: int = 0) -> None:
+        kinds = settings_of_kinds(config)
+        kind_of = np.array(kinds_of(config, first + count)[first:])
         self._count = count
         rows_of = [np.flatnonzero(kind_of == kind) for kind in range(len(kinds))]
         self._squads = [
@@ -53,9 +55,11 @@ class Fleet:
             for squad in self._squads
             for tracker, row in enumerate(squad.rows)
         }
-        first = self._squads[0].batch
-        self.action_space: gymnasium.Space[Any] = first.actions.space
-        self.observation_space: gymnasium.Space[Any] = first.observer.space
+        self._rows = [squad.rows for squad in self._squads]
+        alike = self._squads[0].batch
+        self._actions = alike.actions
+        self.action_space: gymnasium.Space[Any] = alike.actions.space
+        self.observation_space: gymnasium.Space[Any] = alike.observer.space
 
     def begin(self, chosen: Mask, seeds: Seeds = None) -> None:
         """Begin new episodes, see `Batch.begin`."""
@@ -65,14 +69,11 @@ class Fleet:
 
     def step(self, actions: Any, active: Mask) -> Outcome:  # noqa: ANN401  # whatever a learner returns
         """Hold an action of each agent, see `Batch.step`."""
-        array = np.asarray(actions)
-        if array.shape[:1] != (self._count,):
-            raise ActionError(
-                f"actions: an array of shape {array.shape} is not allowed: one action for each "
-                f"of {self._count} environments"
-            )
+        array = array_of(actions, self._count)
+        if len(self._squads) > 1:
+            self._actions.commands(array)  # refuses before any environment has moved
         outcomes = [batch.step(array[rows], active[rows]) for batch, rows in self._squads]
-        return Outcome(*(self._joined(parts) for parts in zip(*outcomes, strict=True)))
+        return Outcome(*(joined(parts, self._rows) for parts in zip(*outcomes, strict=True)))
 
     def look(self, chosen: Mask, begun: Mask) -> None:
         """Observe some trackers; `begun` tells whose episode has just begun, shapes (N,)."""
@@ -92,14 +93,13 @@ class Fleet:
 
     def info(self) -> Info:
         """Return the state of the trackers by name, see `eyas.envs.information`."""
-        joined: Info = self._joined([batch.info() for batch, _ in self._squads])
-        return joined
+        told: Info = joined([batch.info() for batch, _ in self._squads], self._rows)
+        return told
 
     @property
     def terms(self) -> tuple[str, ...]:
         """Names of the terms of the reward, of all kinds."""
-        names = (name for batch, _ in self._squads for name in batch.config.reward.terms)
-        return tuple(dict.fromkeys((BUILTIN, *names)))
+        return terms_of([batch.config for batch, _ in self._squads])
 
     def config_of(self, index: int) -> EyasConfig:
         """Return the settings of one."""
@@ -112,15 +112,50 @@ class Fleet:
         picture: NDArray[np.uint8] = pictures[0]
         return picture
 
-    def _joined(self, parts: Any) -> Any:  # noqa: ANN401  # arrays, or dictionaries of arrays
-        """Return the results of all squads as one, in the order of the environments."""
-        if len(self._squads) == 1:
-            return parts[0]
-        if isinstance(parts[0], Mapping):
-            names = dict.fromkeys(name for part in parts for name in part)
-            return {name: self._joined([part.get(name, 0.0) for part in parts]) for name in names}
-        whole = np.asarray(parts[0])
-        joined = np.empty((self._count, *whole.shape[1:]), whole.dtype)
-        for (_, rows), part in zip(self._squads, parts, strict=True):
-            joined[rows] = part
-        return joined
+    def picture(self, index: int, overlay: bool) -> NDArray[np.uint8]:
+        """As `render`."""
+        return self.render(index, overlay=overlay)
+
+    def close(self) -> None:
+        """Do nothing: there is nothing to end."""
+
+
+def array_of(actions: Any, count: int) -> NDArray[Any]:  # noqa: ANN401  # whatever a learner returns
+    """Return N actions as an array.
+
+    Raises:
+        ActionError: There are not N.
+    """
+    array = np.asarray(actions)
+    if array.shape[:1] != (count,):
+        raise ActionError(
+            f"actions: an array of shape {array.shape} is not allowed: one action for each "
+            f"of {count} environments"
+        )
+    return array
+
+
+def terms_of(configs: Sequence[EyasConfig]) -> tuple[str, ...]:
+    """Return the names of the terms of the reward in any of some settings."""
+    names = (name for config in configs for name in config.reward.terms)
+    return tuple(dict.fromkeys((BUILTIN, *names)))
+
+
+def joined(parts: Sequence[Any], rows: Sequence[Any]) -> Any:  # noqa: ANN401  # arrays, or dictionaries of arrays
+    """Return results of groups of environments as one, in the order of the environments.
+
+    Args:
+        parts: An array of each group, or a dictionary of arrays; what one lacks is 0.
+        rows: The indices of each group's environments.
+    """
+    if len(parts) == 1:
+        return parts[0]
+    if isinstance(parts[0], Mapping):
+        names = dict.fromkeys(name for part in parts for name in part)
+        return {name: joined([part.get(name, 0.0) for part in parts], rows) for name in names}
+    count = sum(len(own) if isinstance(own, np.ndarray) else own.stop - own.start for own in rows)
+    whole = np.asarray(parts[0])
+    result = np.empty((count, *whole.shape[1:]), whole.dtype)
+    for own, part in zip(rows, parts, strict=True):
+        result[own] = part
+    return result

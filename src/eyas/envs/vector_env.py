@@ -1,4 +1,4 @@
-"""The Gymnasium vector environment: N drones, each in a world of its own, in one process."""
+"""The Gymnasium vector environment: N drones, each in a world of its own."""
 
 from collections.abc import Sequence
 from typing import Any, Unpack, cast
@@ -16,6 +16,7 @@ from eyas.envs.fleet import Fleet
 from eyas.envs.information import Info, by_term, masked
 from eyas.envs.members import Member
 from eyas.envs.observation import Observation
+from eyas.envs.worker_fleet import WorkerFleet
 from eyas.settings.config import EyasConfig
 
 __all__ = ["EyasVectorEnv"]
@@ -26,7 +27,8 @@ Stepped = tuple[Observation, NDArray[np.float64], Mask, Mask, Info]
 
 
 class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
-    """N environments that are stepped and drawn together by all threads of one process.
+    """N environments that are stepped and drawn together, by all threads of one process or by
+    several processes.
 
     Environment i gives the same as `TrackingEnv` with seed s + i if reset with seed s. Without a
     seed, the first reset takes that of the configuration for s.
@@ -40,6 +42,8 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
             written again two steps later.
         render_mode: `rgb_array` or None.
         overlay: As for `TrackingEnv`.
+        workers: Number of processes that hold the environments, which changes no result; 0: they
+            are in this one.
         choices: Settings by keyword, see `eyas.envs.choice.EnvChoices`.
 
     Raises:
@@ -52,7 +56,7 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         "autoreset_mode": AutoresetMode.NEXT_STEP,
     }
 
-    def __init__(
+    def __init__(  # noqa: PLR0913  # one for each choice
         self,
         num_envs: int = 1,
         config: Source = None,
@@ -61,14 +65,18 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         copy: bool = True,
         render_mode: str | None = None,
         overlay: bool = False,
+        workers: int = 0,
         **choices: Unpack[EnvChoices],
     ) -> None:
         if num_envs < 1:
             raise ConfigError(f"num_envs: {num_envs} is not allowed: a whole number, at least 1")
         if render_mode not in (None, *self.metadata["render_modes"]):
             raise ConfigError(f"render_mode: '{render_mode}' is not allowed: 'rgb_array' or None")
+        if not 0 <= workers <= num_envs:
+            raise ConfigError(f"workers: {workers} is not allowed: 0 to num_envs, here {num_envs}")
         self.config = chosen_settings(config, **choices)
-        self._fleet = Fleet(self.config, num_envs)
+        made = self.config, num_envs
+        self._fleet = WorkerFleet(*made, workers) if workers else Fleet(*made)
         self.num_envs = num_envs
         self.render_mode = render_mode
         self.single_action_space = self._fleet.action_space
@@ -186,6 +194,10 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
     def render_one(self, index: int) -> NDArray[np.uint8]:
         """Return the picture of one camera in its configured size, shape (H, W, 3)."""
         return self._fleet.render(index, overlay=self._overlay)
+
+    def close_extras(self, **_: Any) -> None:  # noqa: ANN401  # Gymnasium's
+        """End the processes, if there are some."""
+        self._fleet.close()
 
     def _final(self, ended: Mask, outcome: Outcome) -> Info:
         """Return the last observations and information of episodes that have ended."""

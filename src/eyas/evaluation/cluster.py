@@ -52,7 +52,7 @@ def _begin(ray: Any) -> None:  # noqa: ANN401  # a module
     handler = signal.getsignal(signal.SIGTERM)
     try:
         ray.init()
-    except (ConnectionError, RuntimeError, ValueError) as error:
+    except Exception as error:  # Ray has no base for what can go wrong here
         raise EyasError(f"--ray: {_line(error)}") from error
     if main:  # Ray's handler ends the process without a word
         signal.signal(signal.SIGTERM, handler)
