@@ -121,9 +121,9 @@ def test_an_error_in_a_process_is_one_line_with_the_traceback_as_a_note():
     env.reset(seed=0)
     env.step([6, 6])
     env.step([6, 6])
-    line = r"^worker 0 \(environments 0 to 1\): ValueError: no such thing$"
-    with pytest.raises(EyasError, match=line) as caught:
+    with pytest.raises(EyasError, match=r"no such") as caught:
         env.step([6, 6])
+    assert str(caught.value) == "worker 0 (environments 0 to 1): ValueError: no such thing"
     assert "in fails_after_two_steps" in caught.value.__notes__[0]
     env.reset(seed=0)
     env.step([6, 6])  # the environments are still there
