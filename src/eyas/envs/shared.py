@@ -3,7 +3,7 @@
 from ctypes import Array as CArray
 from ctypes import c_ubyte
 from multiprocessing.sharedctypes import RawArray
-from typing import Any
+from typing import Any, NamedTuple
 
 import gymnasium
 import numpy as np
@@ -12,6 +12,19 @@ from numpy.typing import NDArray
 from eyas.envs.observation import Observation
 
 __all__ = ["SharedObservations"]
+
+
+class _Part(NamedTuple):
+    """A part of the observations, in bytes: ctypes has not all types of numpy."""
+
+    memory: "CArray[c_ubyte]"
+    dtype: str
+    shape: tuple[int, ...]
+
+    def of(self, rows: slice) -> NDArray[Any]:
+        whole = np.frombuffer(memoryview(self.memory), np.dtype(self.dtype))
+        part: NDArray[Any] = whole.reshape(self.shape)[rows]
+        return part
 
 
 class SharedObservations:
@@ -24,37 +37,20 @@ class SharedObservations:
         count: N.
     """
 
+    # It does not keep the space, whose limits are as large as pictures: a process that fails while
+    # it starts is waited for in vain if it was to read more than a pipe holds.
     def __init__(self, space: gymnasium.Space[Any], count: int) -> None:
-        self._space, self._count = space, count
-        # Arrays of bytes, because ctypes has not all types of numpy.
-        self._bytes: dict[str, CArray[c_ubyte]] = {
-            part: RawArray(c_ubyte, count * _size(own)) for part, own in self._parts().items()
-        }
+        self._several = isinstance(space, gymnasium.spaces.Dict)
+        spaces = space.spaces if isinstance(space, gymnasium.spaces.Dict) else {"": space}
+        self._parts = {name: _part(own, count) for name, own in spaces.items()}
 
     def of(self, rows: slice) -> Observation:
         """Return the observations of some environments, in arrays that are the shared memory."""
-        arrays = {
-            part: np.frombuffer(memoryview(self._bytes[part]), np.dtype(own.dtype)).reshape(
-                self._count, *_shape(own)
-            )
-            for part, own in self._parts().items()
-        }
-        if isinstance(self._space, gymnasium.spaces.Dict):
-            return {part: array[rows] for part, array in arrays.items()}
-        only: NDArray[Any] = arrays[""][rows]
-        return only
-
-    def _parts(self) -> dict[str, gymnasium.Space[Any]]:
-        if isinstance(self._space, gymnasium.spaces.Dict):
-            return dict(self._space.spaces)
-        return {"": self._space}
+        arrays = {name: part.of(rows) for name, part in self._parts.items()}
+        return arrays if self._several else arrays[""]
 
 
-def _shape(space: gymnasium.Space[Any]) -> tuple[int, ...]:
+def _part(space: gymnasium.Space[Any], count: int) -> _Part:
     assert space.shape is not None
-    return space.shape
-
-
-def _size(space: gymnasium.Space[Any]) -> int:
-    """Return the size of one observation [bytes]."""
-    return int(np.prod(_shape(space))) * np.dtype(space.dtype).itemsize
+    dtype, shape = np.dtype(space.dtype), (count, *space.shape)
+    return _Part(RawArray(c_ubyte, int(np.prod(shape)) * dtype.itemsize), dtype.str, shape)

@@ -27,8 +27,7 @@ Stepped = tuple[Observation, NDArray[np.float64], Mask, Mask, Info]
 
 
 class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
-    """N environments that are stepped and drawn together, by all threads of one process or by
-    several processes.
+    """N environments that are stepped and drawn together, in one process or in several.
 
     Environment i gives the same as `TrackingEnv` with seed s + i if reset with seed s. Without a
     seed, the first reset takes that of the configuration for s.
