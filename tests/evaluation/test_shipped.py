@@ -32,5 +32,5 @@ def test_together_they_are_small():
 
 
 def test_a_name_that_is_nearly_one_is_told():
-    with pytest.raises(EyasError, match="'fsat'.*'fast'"):
+    with pytest.raises(EyasError, match=r"'fsat'.*'fast'"):
         open_policy("fsat", {})
