@@ -12,7 +12,7 @@ from torch import Tensor
 from eyas import __version__
 from eyas.core.files import write_atomic
 from eyas.envs.config import EnvConfig
-from eyas.learning.network import ACTIONS, HOVER, TrackingNetwork
+from eyas.learning.network import ACTIONS, HOVER, STRIDE, TrackingNetwork
 
 __all__ = ["export"]
 
@@ -86,13 +86,12 @@ def export(network: TrackingNetwork, env: EnvConfig, path: Path) -> None:
 
 def _features(graph: _Graph, network: TrackingNetwork) -> str:
     """Add the convolutions and the layer behind them."""
-    shape = network.shape
     value = graph.node("Cast", ["image"], "image.float", to=TensorProto.FLOAT)
-    weights = [network.first_convolution(), (network.second.weight, network.second.bias)]
-    for number, (weight, bias) in enumerate(weights):
-        name, stride = f"convolution.{number}", shape.filters[number][2]
+    later = [(layer.weight, layer.bias) for layer in (network.second, network.third)]
+    for number, (weight, bias) in enumerate([network.first_convolution(), *later]):
+        name = f"convolution.{number}"
         parts = [value, graph.weight(f"{name}.w", weight), graph.weight(f"{name}.b", bias)]
-        value = graph.node("Conv", parts, name, strides=[stride, stride])
+        value = graph.node("Conv", parts, name, strides=[STRIDE, STRIDE])
         value = graph.node("Relu", [value], f"{name}.relu")
     value = graph.node("Flatten", [value], "seen")
     # Hover is told as zeros.
