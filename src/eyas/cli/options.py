@@ -28,7 +28,8 @@ ConfigFile = Annotated[
 Preset = Annotated[
     str | None,
     typer.Option(
-        "--preset", help="Settings that come with Eyas: dat-eval, dat-train, easy, fast or robust."
+        "--preset",
+        help="Settings that come with Eyas: dat-eval, dat-train, easy, fast, paper or robust.",
     ),
 ]
 Overrides = Annotated[
