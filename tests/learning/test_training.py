@@ -195,6 +195,20 @@ def test_an_evaluation_that_cannot_be_flown_is_refused_at_once(evaluation, messa
     assert not (tmp_path / "run").exists()
 
 
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        ({"train": {"shards": 2}}, r"^train\.stages\.1\.settings\.train: not allowed"),
+        ({"start": {"hight": 3}}, r"hight.*height"),
+    ],
+)
+def test_a_wrong_later_stage_is_refused_at_once(settings, message, tmp_path):
+    stages = [{"decisions": 64}, {"decisions": 64, "settings": settings}]
+    with pytest.raises(EyasError, match=message):
+        train(updated(SMALL, {"train": {"stages": stages}}), tmp_path / "run", say=quiet)
+    assert not (tmp_path / "run").exists()
+
+
 def test_a_network_with_memory_learns_too(tmp_path):
     config = updated(SMALL, {"train": {"memory": True, "stages": [{"decisions": 64}]}})
     train(config, tmp_path / "run", say=quiet)

@@ -59,10 +59,9 @@ class _Run:
 
     def __init__(self, config: EyasConfig, files: RunFolder, say: Say) -> None:
         self.config, self.files, self._say = config, files, say
-        episodes_of_exam(config)  # refuses wrong names now, not after minutes
-        self._crew = Crew(
-            max(config.train.parts, config.train.shards)
-        )  # first: it sets PyTorch's threads
+        _refuse_later_errors(config)
+        # Before the network is made, because it sets PyTorch's threads.
+        self._crew = Crew(max(config.train.parts, config.train.shards))
         self.network = TrackingNetwork(_shape(config))
         generator = torch.Generator().manual_seed(config.seed)
         self.network.initialise(generator)
@@ -102,7 +101,7 @@ class _Run:
         seconds = time.monotonic() - start
         rate = config.updates_per_block * data.rewards.numel() / seconds
         progress.block += 1
-        marks = self._examined()
+        marks = self._examined(stage)
         progress.seconds += time.monotonic() - start
         row = self._row(rollers, losses) | marks._asdict()
         progress.rows.append(row)
@@ -110,10 +109,11 @@ class _Run:
         good = stage.until_tsr is not None and marks.tsr >= stage.until_tsr
         return good or progress.stage_decisions >= stage.decisions
 
-    def _examined(self) -> Marks:
+    def _examined(self, stage: Stage) -> Marks:
         """Return the marks after a block: of an evaluation, if it is time for one."""
         every = self.config.train.evaluation.every
-        if every and (self.progress.block % every == 0 or self.progress.decisions >= self._total):
+        stage_done = self.progress.stage_decisions >= stage.decisions
+        if every and (self.progress.block % every == 0 or stage_done):
             return examine(self.network, self.config)
         return NO_MARKS
 
@@ -152,6 +152,20 @@ class _Run:
             f"{left / 60:.1f} min left"
         )
         self._board.add(progress.decisions, {**row, "decisions_per_second": rate})
+
+
+def _refuse_later_errors(config: EyasConfig) -> None:
+    """Refuse at once what would end the run only after minutes or hours.
+
+    Raises:
+        EyasError: The evaluation or a stage cannot be run.
+    """
+    episodes_of_exam(config)
+    for number, stage in enumerate(config.train.stages):
+        if updated(config, stage.settings).train != config.train:
+            raise ConfigError(
+                f"train.stages.{number}.settings.train: not allowed: all stages learn alike"
+            )
 
 
 def _shape(config: EyasConfig) -> NetworkShape:
