@@ -163,6 +163,33 @@ def test_an_interrupt_that_python_would_lose_comes_again(tmp_path):
     ended(process, signal.SIGINT, timeout=20)
 
 
+WRAPS = """
+import time
+from eyas.cli import app
+from eyas.cli.main import main
+
+class Slow:
+    def __set_name__(self, owner, name):  # Python 3.11 wraps what is raised here
+        print("ready", flush=True)
+        time.sleep(60)
+
+def run():
+    class Owner:
+        slow = Slow()
+    return 0
+
+app.run = run
+main()
+"""
+
+
+def test_an_interrupt_that_python_wraps_in_an_error_is_still_one_line(tmp_path):
+    process = started(tmp_path, program=WRAPS)
+    time.sleep(0.1)
+    process.send_signal(signal.SIGINT)
+    assert ended(process, signal.SIGINT, timeout=20) == "eyas: interrupted"
+
+
 LATE = """
 import atexit, time
 from eyas.cli import app

@@ -24,9 +24,12 @@ def main() -> None:
 
         status = run()
         signals.close()
-    except KeyboardInterrupt as error:
+    except BaseException as error:
+        interrupt = _interrupt_behind(error)
+        if interrupt is None:
+            raise
         status = 130
-        remarks = "".join(f"; {note}" for note in getattr(error, "__notes__", ()))
+        remarks = "".join(f"; {note}" for note in getattr(interrupt, "__notes__", ()))
     signals.close()  # again, if a signal came before
     if signals.first is not None:
         status = 128 + signals.first
@@ -34,6 +37,16 @@ def main() -> None:
 
         say(_WORDS[signals.first] + remarks)
     sys.exit(status)
+
+
+def _interrupt_behind(error: BaseException | None) -> BaseException | None:
+    """Return the interrupt that an error is or comes of.
+
+    Where a class is made, Python 3.11 turns whatever is raised into a `RuntimeError`.
+    """
+    while error is not None and not isinstance(error, KeyboardInterrupt):
+        error = error.__cause__
+    return error
 
 
 def _make_streams_usable() -> None:
