@@ -28,6 +28,10 @@ def command(  # noqa: PLR0913  # one parameter for each option
     seed: Seed = None,
     set_: Overrides = None,
     resume: Annotated[bool, typer.Option("--resume", help="Continue an interrupted run.")] = False,
+    ray: Annotated[
+        bool,
+        typer.Option("--ray", help="Spread the shards over a Ray cluster (extra cluster)."),
+    ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
 ) -> None:
     """Teach a network to track, and write it as an ONNX file."""
@@ -39,6 +43,6 @@ def command(  # noqa: PLR0913  # one parameter for each option
     require_supported(settings)
     from eyas.modes.train import run
 
-    policy = run(settings, out, resume=resume, quiet=quiet)
+    policy = run(settings, out, resume=resume, quiet=quiet, ray=ray)
     if not quiet:
         typer.echo(f"{policy}")

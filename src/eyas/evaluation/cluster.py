@@ -1,14 +1,13 @@
-"""Evaluation by the processes of Ray; all of Ray that evaluations need is imported here."""
+"""Evaluation by the processes of Ray."""
 
 import logging
-import signal
-import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from eyas.core.errors import EyasError, MissingExtraError
+from eyas.core.cluster import connected, one_line
+from eyas.core.errors import EyasError
 from eyas.core.jit import limit_threads
 from eyas.evaluation.episode import Episode
 from eyas.evaluation.fliers import Flier, flown
@@ -26,36 +25,9 @@ fault in a policy's native code, must not do so for ever."""
 
 @contextmanager
 def on_ray() -> Iterator[Flier]:
-    """Yield what flies batches on Ray: on the cluster that `ray.init()` finds, or on a local one
-    that lasts as long as the block.
-
-    Raises:
-        MissingExtraError: Ray is not installed.
-        EyasError: There is no cluster at the address that the environment tells.
-    """
-    try:
-        import ray
-    except ImportError as error:
-        raise MissingExtraError("--ray", "cluster") from error
-    begun = not ray.is_initialized()
-    if begun:
-        _begin(ray)
-    try:
+    """Yield what flies batches on Ray, see `connected` for where and for errors."""
+    with connected() as ray:
         yield lambda plan, parts, _: _fly(ray, plan, parts)
-    finally:
-        if begun:
-            ray.shutdown()
-
-
-def _begin(ray: Any) -> None:  # noqa: ANN401  # a module
-    main = threading.current_thread() is threading.main_thread()
-    handler = signal.getsignal(signal.SIGTERM)
-    try:
-        ray.init()
-    except Exception as error:  # Ray has no base for what can go wrong here
-        raise EyasError(f"--ray: {_line(error)}") from error
-    if main:  # Ray's handler ends the process without a word
-        signal.signal(signal.SIGTERM, handler)
 
 
 def _fly(ray: Any, plan: Plan, parts: list[list[Episode]]) -> Iterator[list[Record]]:  # noqa: ANN401
@@ -76,7 +48,7 @@ def _fly(ray: Any, plan: Plan, parts: list[list[Episode]]) -> Iterator[list[Reco
             except ray.exceptions.RayTaskError as error:
                 raise getattr(error, "cause", error) from None
             except ray.exceptions.RayError as error:
-                raise EyasError(f"--ray: a batch was lost: {_line(error)}") from error
+                raise EyasError(f"--ray: a batch was lost: {one_line(error)}") from error
     finally:
         for task in waiting:
             ray.cancel(task, force=True)
@@ -96,7 +68,3 @@ def _with_whole_paths(plan: Plan) -> Plan:
     told = {"policy": plan.policy, "latency": plan.latency}
     whole = {name: str(Path(text).resolve()) for name, text in told.items() if Path(text).is_file()}
     return plan.model_copy(update=whole)
-
-
-def _line(error: Exception) -> str:
-    return " ".join(str(error).split())[:500]

@@ -21,7 +21,8 @@ from eyas.learning.exam import NO_MARKS, Marks, episodes_of_exam, examine
 from eyas.learning.export import export
 from eyas.learning.network import NetworkShape, TrackingNetwork
 from eyas.learning.ppo import Losses, update
-from eyas.learning.rollout import Roller, Rollout
+from eyas.learning.rollout import Finished
+from eyas.learning.shards import LocalShards, MakeShards, Shards
 from eyas.sensors.config import ColourLayout
 from eyas.settings.config import EyasConfig
 
@@ -30,7 +31,14 @@ __all__ = ["train"]
 Say = Callable[[str], None]
 
 
-def train(config: EyasConfig, folder: Path, *, resume: bool = False, say: Say = print) -> Path:
+def train(
+    config: EyasConfig,
+    folder: Path,
+    *,
+    resume: bool = False,
+    say: Say = print,
+    make_shards: MakeShards = LocalShards,
+) -> Path:
     """Train a network; return the path of the ONNX file.
 
     The result depends only on the settings: each block of updates begins with new episodes and
@@ -41,11 +49,12 @@ def train(config: EyasConfig, folder: Path, *, resume: bool = False, say: Say = 
         folder: Where the run is kept.
         resume: Whether to continue the run in the folder.
         say: Called with a line for each block.
+        make_shards: Makes the environments, here or elsewhere.
 
     Raises:
         EyasError: A setting is wrong, or the folder; one line.
     """
-    run = _Run(config, RunFolder(folder), say)
+    run = _Run(config, RunFolder(folder), say, make_shards)
     run.files.begin(config, resume=resume)
     if resume:
         run.progress = run.files.load(run.network, run.optimiser)
@@ -57,11 +66,14 @@ def train(config: EyasConfig, folder: Path, *, resume: bool = False, say: Say = 
 class _Run:
     """A run and how far it has come."""
 
-    def __init__(self, config: EyasConfig, files: RunFolder, say: Say) -> None:
+    def __init__(
+        self, config: EyasConfig, files: RunFolder, say: Say, make_shards: MakeShards
+    ) -> None:
         self.config, self.files, self._say = config, files, say
+        self._make_shards = make_shards
         _refuse_later_errors(config)
         # Before the network is made, because it sets PyTorch's threads.
-        self._crew = Crew(max(config.train.parts, config.train.shards))
+        self._crew = Crew(config.train.parts)
         self.network = TrackingNetwork(_shape(config))
         generator = torch.Generator().manual_seed(config.seed)
         self.network.initialise(generator)
@@ -75,26 +87,26 @@ class _Run:
         """Do the current stage, or what is left of it."""
         stage = self.config.train.stages[self.progress.stage]
         settings = updated(self.config, stage.settings)
-        rollers = [Roller(settings, self.network) for _ in range(settings.train.shards)]
+        shards = self._make_shards(settings, self.network)
         done = self.progress.stage_decisions >= stage.decisions
         while not done:
-            done = self._block(rollers, stage)
+            done = self._block(shards, stage)
             if done:
                 self.progress.stage += 1
                 self.progress.stage_decisions = 0
             self.files.save(self.progress, self.network, self.optimiser)
             export(self.network, settings.env, self.files.policy)
+        shards.close()
 
-    def _block(self, rollers: list[Roller], stage: Stage) -> bool:
+    def _block(self, shards: Shards, stage: Stage) -> bool:
         """Do a block of updates; return whether the stage is done."""
         config, progress, start = self.config.train, self.progress, time.monotonic()
         draws = stream(self.config.seed, "learning", progress.block)
-        for roller, own in zip(rollers, draws.spawn(len(rollers)), strict=True):
-            roller.begin(own)
+        shards.begin(draws.spawn(config.shards))
         generator = torch.Generator().manual_seed(int(draws.integers(2**62)))
         for _ in range(config.updates_per_block):
             self._set_rate()
-            data = Rollout.joined(self._crew.each(Roller.roll, rollers))
+            data = shards.roll()
             losses = update(self.network, self.optimiser, data, config, generator, self._crew)
             progress.decisions += data.rewards.numel()
             progress.stage_decisions += data.rewards.numel()
@@ -103,7 +115,7 @@ class _Run:
         progress.block += 1
         marks = self._examined(stage)
         progress.seconds += time.monotonic() - start
-        row = self._row(rollers, losses) | marks._asdict()
+        row = self._row(shards.finished(), losses) | marks._asdict()
         progress.rows.append(row)
         self._tell(row, rate)
         good = stage.until_tsr is not None and marks.tsr >= stage.until_tsr
@@ -123,10 +135,10 @@ class _Run:
         for group in self.optimiser.param_groups:
             group["lr"] = config.learning_rate * left
 
-    def _row(self, rollers: list[Roller], losses: Losses) -> dict[str, float]:
+    def _row(self, shards: list[Finished], losses: Losses) -> dict[str, float]:
         """Return the curve's row of a block."""
-        returns = [each for roller in rollers for each in roller.finished.returns]
-        lengths = [each for roller in rollers for each in roller.finished.lengths]
+        returns = [each for finished in shards for each in finished.returns]
+        lengths = [each for finished in shards for each in finished.lengths]
         return {
             "stage": self.progress.stage,
             "decisions": self.progress.decisions,

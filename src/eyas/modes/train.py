@@ -8,7 +8,7 @@ from eyas.settings.config import EyasConfig
 __all__ = ["run"]
 
 
-def run(config: EyasConfig, folder: Path, *, resume: bool, quiet: bool) -> Path:
+def run(config: EyasConfig, folder: Path, *, resume: bool, quiet: bool, ray: bool) -> Path:
     """Train a network; return the path of the ONNX file.
 
     Args:
@@ -16,16 +16,23 @@ def run(config: EyasConfig, folder: Path, *, resume: bool, quiet: bool) -> Path:
         folder: Where the run is kept.
         resume: Whether to continue the run in the folder.
         quiet: Whether to print no progress.
+        ray: Whether the environments run on a cluster of Ray.
 
     Raises:
-        MissingExtraError: PyTorch or onnx is not installed.
+        MissingExtraError: PyTorch, onnx or Ray is not installed.
         EyasError: A setting is wrong, or the folder.
     """
     try:
         from eyas.learning.trainer import train
     except ModuleNotFoundError as error:
         raise MissingExtraError("training", "train") from error
-    return train(config, folder, resume=resume, say=(lambda _: None) if quiet else _say)
+    say = (lambda _: None) if quiet else _say
+    if not ray:
+        return train(config, folder, resume=resume, say=say)
+    from eyas.learning.cluster import on_ray
+
+    with on_ray() as make_shards:
+        return train(config, folder, resume=resume, say=say, make_shards=make_shards)
 
 
 def _say(line: str) -> None:
