@@ -115,6 +115,19 @@ def test_gymnasium_makes_them_by_one_argument():
         env.reset()
 
 
+def test_stable_baselines3_gets_the_same_from_processes():
+    pytest.importorskip("stable_baselines3")
+    from eyas.envs.sb3 import EyasVecEnv
+
+    steps = []
+    for workers in (0, 2):
+        env = EyasVecEnv(2, workers=workers, observation={"width": 8, "height": 8})
+        env.seed(3)
+        steps.append([env.reset(), *env.step(np.array([0, 3]))[:3]])
+        env.close()
+    same(*steps)
+
+
 def test_an_error_in_a_process_is_one_line_with_the_traceback_as_a_note():
     settings = {"reward": {"terms": {"own_terms:fails_after_two_steps": 1.0}}}
     env = EyasVectorEnv(2, settings, workers=1, observation={"width": 8, "height": 8})
