@@ -32,6 +32,7 @@ th, td { padding: .4rem .8rem; text-align: right; border-bottom: 1px solid #8884
   white-space: nowrap; }
 th { vertical-align: bottom; }
 th:first-child, td:first-child, th:last-child, td:last-child { text-align: left; }
+td:last-child { white-space: normal; min-width: 16rem; overflow-wrap: anywhere; }
 .interval { opacity: .65; font-size: .85em; }
 code { font-size: .85em; }
 """
@@ -94,10 +95,11 @@ def _section(entries: Sequence[_Entry]) -> str:
     heads = [f"{name} [{UNITS[name]}]" if name in UNITS else name for name in columns]
     head = _cells("th", ["policy", "latency [ms]", *heads, "failed", "command"])
     rows = "\n".join(f"<tr>{_line(entry, columns)}</tr>" for entry in ranked)
-    places = f"{', '.join(plan.maps)}; {', '.join(plan.weathers)}; {', '.join(plan.targets)}"
+    places = f"{', '.join(plan.maps)}, {', '.join(plan.weathers)}"
     return (
-        f"<h2>{html.escape(plan.protocol)}: {html.escape(plan.rules.title)}</h2>\n"
-        f"<p>{html.escape(places)}; {len(records)} episodes; protocol "
+        f"<h2>{html.escape(plan.protocol)}: {html.escape(places)}</h2>\n"
+        f"<p>{html.escape(plan.rules.title)}. {html.escape(', '.join(plan.targets))}; "
+        f"{len(records)} episodes; protocol "
         f"<code>{html.escape(stamp.protocol)}</code>, Eyas {html.escape(stamp.version)}</p>\n"
         f'<div class="scroll"><table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{rows}\n'
         "</tbody></table></div>"
