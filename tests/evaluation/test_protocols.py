@@ -63,3 +63,13 @@ def test_distractors_look_like_the_target_and_one_is_beside_it():
     other = squads_of(episodes_of(HOME, protocol.directions, 1), PROTOCOLS["long"], EnvConfig())
     _, models = other[0].simulation.actors_around(0)
     assert len(set(models.tolist())) > 1
+
+
+def test_the_rules_are_those_that_results_were_published_with():
+    """A change of a hash makes all earlier results incomparable, and has to be meant."""
+    assert {name: protocol.hash for name, protocol in PROTOCOLS.items()} == {
+        "paper": "5d95fb4b5777",
+        "long": "1b1faf0441cc",
+        "search": "6c1587d6dd0e",
+        "distractor": "b9906084cebc",
+    }
