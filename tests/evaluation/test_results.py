@@ -10,11 +10,11 @@ from typer.testing import CliRunner
 from eyas.cli.app import app
 from eyas.core.errors import EyasError
 from eyas.evaluation.comparison import differences
-from eyas.evaluation.plan import Plan
+from eyas.evaluation.plan import Plan, batches
 from eyas.evaluation.protocol import PROTOCOLS
 from eyas.evaluation.record import read_records
 from eyas.evaluation.rows import rows_of, thirds
-from eyas.modes import leaderboard
+from eyas.modes import evaluation_films, leaderboard
 from eyas.modes.evaluate import run
 from eyas.modes.evaluation_films import chosen_flights
 
@@ -158,6 +158,23 @@ def test_plots_and_films_are_written(folder, tmp_path):
     for name in ("worst", "median", "best"):
         with av.open(str(tmp_path / "videos" / f"{name}.mp4")) as film:
             assert film.streams.video[0].frames == 93  # one every 32 ms of 3 s
+
+
+def test_an_interrupted_film_leaves_nothing_behind(folder, tmp_path, monkeypatch):
+    plan = Plan(policy="hover", episodes=1)
+    names = {episode.name for part in batches(plan) for episode in part}
+    shoot, pictures = evaluation_films._Camera.shoot, iter(range(20))
+
+    def interrupted(camera, *seen):
+        if next(pictures, None) is None:
+            raise KeyboardInterrupt
+        shoot(camera, *seen)
+
+    monkeypatch.setattr(evaluation_films._Camera, "shoot", interrupted)
+    flown = [record for record in records(folder, "hover") if record.name in names]
+    with pytest.raises(KeyboardInterrupt):
+        evaluation_films.film(tmp_path, plan, flown)
+    assert not list((tmp_path / "videos").iterdir())
 
 
 def test_a_latency_curve_has_a_point_and_a_folder_for_each_latency(tmp_path):

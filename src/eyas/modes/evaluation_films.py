@@ -1,12 +1,14 @@
 """Films of the worst, the median and the best flight of an evaluation."""
 
 import logging
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from contextlib import ExitStack
 from pathlib import Path
 
 import numpy as np
 
 from eyas.core.files import refusals
+from eyas.evaluation.episode import Episode
 from eyas.evaluation.flock import Flock
 from eyas.evaluation.meter import LOOK, Meter
 from eyas.evaluation.plan import Plan, batches, fly_batch
@@ -55,14 +57,27 @@ def film(folder: Path, plan: Plan, records: Sequence[Record]) -> None:
             if record.name == episode.name
         }
         if rows:
-            cameras = [_Camera(videos / f"{name}.mp4", row, plan) for name, row in rows.items()]
-            flown = fly_batch(plan, part, watcher=lambda *seen, own=cameras: _shoot(own, *seen))
-            again = {record.name: record for ended in flown for record in ended}
-            for camera in cameras:
-                camera.finish()
+            again = _filmed(videos, plan, part, rows)
             for name in rows:
                 if again[chosen[name].name] != chosen[name]:
                     _LOG.warning("%s.mp4: the policy has flown differently than before", name)
+
+
+def _filmed(
+    videos: Path, plan: Plan, part: list[Episode], rows: Mapping[str, int]
+) -> dict[str, Record]:
+    """Fly a batch, film some rows of it, and return the records by name."""
+    with ExitStack() as unfinished:
+        cameras = []
+        for name, row in rows.items():
+            cameras.append(_Camera(videos / f"{name}.mp4", row, plan))
+            unfinished.callback(cameras[-1].abandon)
+        flown = fly_batch(plan, part, watcher=lambda *seen: _shoot(cameras, *seen))
+        again = {record.name: record for ended in flown for record in ended}
+        for camera in cameras:
+            camera.finish()
+        unfinished.pop_all()
+    return again
 
 
 class _Camera:
@@ -89,6 +104,10 @@ class _Camera:
     def finish(self) -> None:
         """Write what remains."""
         self._file.finish()
+
+    def abandon(self) -> None:
+        """Delete the unfinished film."""
+        self._file.abandon()
 
 
 def _shoot(cameras: Sequence[_Camera], flock: Flock, meter: Meter) -> None:
