@@ -101,7 +101,9 @@ def from_text(text: str, source: str) -> Features:
             lamps=[(float(x), float(y)) for x, y in kept["lamps"]],
             crossings=[(float(x), float(y)) for x, y in kept["crossings"]],
             rails=[shapely.LineString(line) for line in kept["rails"]],
-            pavement=shapely.MultiPolygon([_polygon(part) for part in kept["pavement"]]),
+            pavement=shapely.make_valid(
+                shapely.MultiPolygon([_polygon(part) for part in kept["pavement"]])
+            ),
             signals=tuple(str(name) for name in kept["signals"]),
         )
     except Exception as error:  # JSON of anyone

@@ -1,0 +1,54 @@
+"""Street lamps where the map names them, with their arms over the nearest street."""
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+import shapely
+
+from eyas.state.roads import RoadNetwork
+from eyas.state.scene import Lamps, ObjectClass
+from eyas.world.build.heights import FLOOR_HEIGHT
+from eyas.world.build.scene_builder import SceneBuilder
+from eyas.world.street.lamps import LIGHT, POLE_HEIGHT, POLE_RADIUS, lamp_levels
+
+__all__ = ["add_known_lamps"]
+
+_AXIS = np.array([0.4, 0.0, -1.0]) / np.hypot(0.4, 1.0)
+"""Unit vector along the beam, with the arm along x."""
+
+
+def add_known_lamps(
+    builder: SceneBuilder,
+    network: RoadNetwork,
+    places: Sequence[tuple[float, float]],
+    taken: shapely.Geometry,
+) -> Lamps:
+    """Add street lamps at places; those where something else stands are left out.
+
+    Args:
+        builder: The builder to add to.
+        network: The streets.
+        places: Feet of the lamps [m].
+        taken: Where no pole may stand [m].
+    """
+    prototype = builder.prototype("street lamp", lamp_levels)
+    first = network.lane_first
+    lanes = [shapely.LineString(network.lane_points[a:b]) for a, b in pairwise(first)]
+    tree = shapely.STRtree(lanes)
+    shapely.prepare(taken)
+    position, axis = [], []
+    for x, y in places:
+        point = shapely.Point(x, y)
+        if shapely.intersects(taken, point.buffer(POLE_RADIUS)):
+            continue
+        ends = shapely.get_coordinates(shapely.shortest_line(point, lanes[int(tree.nearest(point))]))
+        turn = round(float(np.arctan2(*(ends[1] - ends[0])[::-1])), 6)
+        onto_road = np.array([np.cos(turn), np.sin(turn)])
+        owner = builder.add_copy(ObjectClass.POLE, prototype, (x, y, 0.0), turn, 1.0)
+        builder.add_cylinder((x, y), POLE_RADIUS, FLOOR_HEIGHT, POLE_HEIGHT, owner)
+        position.append([x + LIGHT[0] * onto_road[0], y + LIGHT[0] * onto_road[1], LIGHT[2]])
+        axis.append([_AXIS[0] * onto_road[0], _AXIS[0] * onto_road[1], _AXIS[2]])
+    return Lamps(
+        np.array(position, np.float32).reshape(-1, 3), np.array(axis, np.float32).reshape(-1, 3)
+    )
