@@ -45,7 +45,7 @@ class Registry(Generic[T]):
         files: Objects that are made of files; None: there are none.
     """
 
-    def __init__(  # noqa: PLR0913  # one argument for each place where objects are found
+    def __init__(  # one argument for each place where objects are found
         self,
         setting: str,
         kind: type[T],

@@ -6,6 +6,7 @@ the lowest; where the footprint's edge lies higher than the eaves, the wall goes
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import shapely
@@ -159,7 +160,7 @@ def _walls_below(
     solid = shapely.geometry.polygon.orient(shape)
     for ring in (solid.exterior, *solid.interiors):
         corners = shapely.get_coordinates(ring)
-        for start, end in zip(corners[:-1], corners[1:], strict=True):
+        for start, end in pairwise(corners):
             stops = shapely.get_coordinates(
                 shapely.intersection(shapely.LineString([start, end]), seams)
             )
@@ -168,9 +169,11 @@ def _walls_below(
             order = np.argsort((points - start) @ (end - start) / size, kind="stable")
             line = points[order]
             top = np.min([plane.at(line) for plane in planes], axis=0)
-            for k in range(len(line) - 1):
-                if max(top[k], top[k + 1]) > eaves + 0.02:
-                    faces.append(_upright(line[k : k + 2], eaves, np.maximum(top[k : k + 2], eaves)))
+            faces += [
+                _upright(line[k : k + 2], eaves, np.maximum(top[k : k + 2], eaves))
+                for k in range(len(line) - 1)
+                if max(top[k], top[k + 1]) > eaves + 0.02
+            ]
     if not faces:
         return Mesh.none()
     upright = np.array(faces)

@@ -39,7 +39,7 @@ _KINDS: dict[tuple[str, str], str] = {
     **{("landuse", kind): "grass" for kind in ("grass", "meadow", "village_green", "flowerbed")},
     ("natural", "grassland"): "grass",
     **{("landuse", kind): "farmland" for kind in ("farmland", "orchard", "vineyard", "farmyard")},
-    **{("landuse", kind): "soil" for kind in ("construction", "brownfield", "greenfield", "quarry")},
+    **{("landuse", kind): "soil" for kind in ("construction", "brownfield", "quarry")},
     **{("landuse", kind): "industrial" for kind in ("industrial", "port", "garages", "depot")},
     **{("landuse", kind): "commercial" for kind in ("commercial", "retail")},
     ("landuse", "residential"): "residential",

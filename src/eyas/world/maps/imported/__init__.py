@@ -1,11 +1,11 @@
 """Maps made of OpenStreetMap: each is a folder of files, made by `eyas maps import`.
 
-    <folder>/<name>/map.json          name, title, origin, size
-    <folder>/<name>/features.json     buildings, ground, trees, lamps
-    <folder>/<name>/roads.net.xml.gz  SUMO's network
-    <folder>/<name>/network.npz       its lanes
-    <folder>/<name>/traffic*.npz      recordings
-    <folder>/<name>/ATTRIBUTION.txt   whose data it is
+<folder>/<name>/map.json          name, title, origin, size
+<folder>/<name>/features.json     buildings, ground, trees, lamps
+<folder>/<name>/roads.net.xml.gz  SUMO's network
+<folder>/<name>/network.npz       its lanes
+<folder>/<name>/traffic*.npz      recordings
+<folder>/<name>/ATTRIBUTION.txt   whose data it is
 """
 
 import json

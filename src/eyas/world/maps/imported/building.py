@@ -72,15 +72,14 @@ def _walls(look: Look, stone: Material, rng: np.random.Generator) -> list[Mesh]:
     cuts = [street, *range(street + _BAND, storeys - _BAND // 2, _BAND), storeys]
     walled = facade(look.facade, look.tint)
     front = facade(GROUND_FLOORS[int(rng.integers(len(GROUND_FLOORS)))], look.tint)
-    solid = shapely.geometry.polygon.orient(look.shape)
-    for ring in (solid.exterior, *solid.interiors):
-        outline = _ring(ring)
+    outlines = _outlines(look.shape)
+    for outline in outlines:
         if street:
             made.append(_storeys(outline, look.bottom, (0, 1), storey, front, rng))
         for low, top in pairwise(cuts):
             made.append(_storeys(outline, look.bottom, (low, top), storey, walled, rng))
     if street:
-        made.append(parts.ledge(_ring(solid.exterior), look.bottom + storey, stone))
+        made.append(parts.ledge(outlines[0], look.bottom + storey, stone))
     return made
 
 
@@ -108,14 +107,10 @@ def _flat_roof(look: Look, stone: Material) -> Mesh:
     if not _parapet(look):
         return flat_polygon(shape, top, look.cover, tile)
     inside = shapely.buffer(shape, -0.35, join_style="mitre")
-    made = [flat_polygon(shape - inside, top + PARAPET, stone, _STONE_TILE)]
-    solid = shapely.geometry.polygon.orient(shape)
-    for ring in (solid.exterior, *solid.interiors):
-        made.append(walls(_ring(ring), top, top + PARAPET, stone, _STONE_TILE))
-    for part in shapely.get_parts(inside):
-        inner = shapely.geometry.polygon.orient(part)
-        for ring in (inner.exterior, *inner.interiors):
-            made.append(walls(_ring(ring)[::-1], top, top + PARAPET, stone, _STONE_TILE))
+    rings = _outlines(shape)
+    rings += [ring[::-1] for part in shapely.get_parts(inside) for ring in _outlines(part)]
+    made = [walls(ring, top, top + PARAPET, stone, _STONE_TILE) for ring in rings]
+    made.append(flat_polygon(shape - inside, top + PARAPET, stone, _STONE_TILE))
     return concatenate([*made, flat_polygon(inside, top, look.cover, tile)])
 
 
@@ -140,6 +135,12 @@ def _without_holes(shape: shapely.Polygon) -> list[shapely.Polygon]:
         if isinstance(part, shapely.Polygon) and part.area > 1e-3
         for piece in _without_holes(part)
     ]
+
+
+def _outlines(shape: shapely.Polygon) -> list[Outline]:
+    """Return the outlines of a shape, each with the inside of the shape on its left [m]."""
+    solid = shapely.geometry.polygon.orient(shape)
+    return [_ring(ring) for ring in (solid.exterior, *solid.interiors)]
 
 
 def _ring(ring: shapely.LinearRing) -> Outline:

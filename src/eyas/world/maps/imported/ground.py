@@ -88,9 +88,7 @@ def add_ground(
     painted = markings.painted(bays, markings.WHITE)
     builder.add(ObjectClass.MARKING, markings.mesh_of(paint), painted)
     worn = road_wear(_worn(network), rng)
-    builder.add(
-        ObjectClass.ROAD, markings.margins_of(paint), worn, ground.asphalt(plan.roads)
-    )
+    builder.add(ObjectClass.ROAD, markings.margins_of(paint), worn, ground.asphalt(plan.roads))
     builder.add(ObjectClass.PAVEMENT, ground.pavement(plan.pavement, plan.roads))
     builder.add(ObjectClass.ROAD, ground.asphalt(plan.ground["parking"], light=True))
     for kind, (owner, covers) in _COVERS.items():

@@ -42,7 +42,9 @@ def add_known_lamps(
         point = shapely.Point(x, y)
         if shapely.intersects(taken, point.buffer(POLE_RADIUS)):
             continue
-        ends = shapely.get_coordinates(shapely.shortest_line(point, lanes[int(tree.nearest(point))]))
+        ends = shapely.get_coordinates(
+            shapely.shortest_line(point, lanes[int(tree.nearest(point))])
+        )
         turn = round(float(np.arctan2(*(ends[1] - ends[0])[::-1])), 6)
         onto_road = np.array([np.cos(turn), np.sin(turn)])
         owner = builder.add_copy(ObjectClass.POLE, prototype, (x, y, 0.0), turn, 1.0)

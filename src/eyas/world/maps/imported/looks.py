@@ -81,9 +81,9 @@ class Look:
     shape: shapely.Polygon
     """Footprint [m]."""
     bottom: float
-    """z of its foot [m]."""
+    """Z of its foot [m]."""
     eaves: float
-    """z of the top of its walls [m]."""
+    """Z of the top of its walls [m]."""
     rise: float
     """Height of the roof above the eaves [m]; 0 for flat ones."""
     roof: str
@@ -102,7 +102,7 @@ class Look:
 
     @property
     def top(self) -> float:
-        """z of its highest point [m]."""
+        """Z of its highest point [m]."""
         return self.eaves + self.rise
 
 

@@ -142,7 +142,9 @@ def _bars(lane: shapely.LineString, along: float, roads: shapely.Geometry) -> li
     own = [part for part in parts if part.distance(shapely.Point(here)) < 0.1]
     if not own:
         return []
-    low, high = sorted(dot(end - here, leftwards) for end in shapely.get_coordinates(own[0])[[0, -1]])
+    low, high = sorted(
+        dot(end - here, leftwards) for end in shapely.get_coordinates(own[0])[[0, -1]]
+    )
     count = int((high - low - 0.4) // (2 * _BAR))
     start = (low + high) / 2 - (count - 0.5) * _BAR + _BAR / 2 - _BAR / 2
     middles = [here + (start + 2 * _BAR * k) * leftwards for k in range(count)]
