@@ -11,6 +11,7 @@ car parks, trees and rows of trees. Some tags are missing, some are odd, as in r
 import argparse
 import math
 import random
+from itertools import pairwise
 from pathlib import Path
 from xml.sax.saxutils import quoteattr
 
@@ -34,24 +35,29 @@ class Writer:
         self._next = 1_000_000
 
     def node(self, place: Point, **tags: str) -> int:
+        """Add a point; return its number."""
         self._places.append(place)
         self._tags[len(self._places)] = tags
         return len(self._places)
 
     def tag(self, node: int, **tags: str) -> None:
+        """Add tags to a point."""
         self._tags[node] |= tags
 
     def way(self, nodes: list[int], **tags: str) -> int:
+        """Add a line of points; return its number."""
         self._next += 1
         refs = "".join(f'<nd ref="{node}"/>' for node in nodes)
         self._others.append(f'<way id="{self._next}">{refs}{_tags(tags)}</way>')
         return self._next
 
     def ring(self, points: list[Point], **tags: str) -> int:
+        """Add a closed line; return its number."""
         nodes = [self.node(point) for point in points]
         return self.way([*nodes, nodes[0]], **tags)
 
     def area(self, shape: shapely.Polygon, **tags: str) -> None:
+        """Add an area, with holes as a relation."""
         rings = [list(ring.coords)[:-1] for ring in (shape.exterior, *shape.interiors)]
         if len(rings) == 1:
             self.ring(rings[0], **tags)
@@ -67,6 +73,7 @@ class Writer:
         self._others.append(f'<relation id="{self._next}">{members}{_tags(tags)}</relation>')
 
     def text(self, half: Point) -> str:
+        """Return the file; `half` is half the extent of the town [m]."""
         degrees = ORIGIN.degrees(np.array(self._places))
         low, high = ORIGIN.degrees(np.array([[-half[0], -half[1]], half]))
         lines = [
@@ -122,6 +129,7 @@ class Town:
         self.avenues_y = {rows // 2, *range(2, rows, 5)}
 
     def build(self) -> str:
+        """Return the whole file."""
         self._streets()
         for i in range(self.columns):
             for j in range(self.rows):
@@ -151,7 +159,7 @@ class Town:
         elif index % 3 == 2:
             tags |= {"oneway": "yes", "maxspeed": "30", "lanes": self.rng.choice(["1", "two"])}
         nodes = [self.nodes[keys[0]]]
-        for a, b in zip(keys, keys[1:], strict=False):
+        for a, b in pairwise(keys):
             (ax, ay), (bx, by) = self.at[a], self.at[b]
             bend = self.rng.uniform(-2, 2)
             nodes.append(self.out.node(((ax + bx) / 2 + bend, (ay + by) / 2 - bend)))
@@ -352,6 +360,7 @@ def _slice(
 
 
 def main() -> None:
+    """Write the file that the arguments name."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("path", type=Path)
     parser.add_argument("--columns", type=int, default=4)

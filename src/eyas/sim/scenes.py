@@ -23,7 +23,7 @@ from eyas.traffic.network import build_network
 from eyas.world.maps import MAPS
 from eyas.world.weather import Season
 
-__all__ = ["load_geometry", "load_network", "load_scene", "load_textures", "paint"]
+__all__ = ["load_geometry", "load_network", "load_scene", "paint"]
 
 Thing = TypeVar("Thing")
 
@@ -69,7 +69,7 @@ def load_geometry(map_name: str, seed: int, season: Season, kinds: tuple[int, ..
 
     def make() -> Geometry:
         other_is_ready()  # which may be to `paint`
-        return build_geometry(scene, _parts(kinds), load_textures())
+        return build_geometry(scene, _parts(kinds), _textures())
 
     inputs = None if origin is None else (*origin, names)
     return _cached(Kind.GEOMETRY, ("render", "targets"), inputs, make, Geometry)
@@ -107,7 +107,7 @@ def paint(kinds: Sequence[int]) -> None:
     Args:
         kinds: See `load_geometry`.
     """
-    load_textures()
+    _textures()
     _parts(tuple(kinds))
 
 
@@ -123,8 +123,7 @@ def _parts(kinds: tuple[int, ...]) -> PartLibrary:
     )
 
 
-def load_textures() -> dict[str, NDArray[np.uint8]]:
-    """Return all textures, see `eyas.render.textures.library.build_textures`."""
+def _textures() -> dict[str, NDArray[np.uint8]]:
     return cached(
         Kind.TEXTURES,
         ("render", "world/build/materials.py"),

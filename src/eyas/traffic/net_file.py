@@ -37,7 +37,8 @@ def road_network(xml: bytes, graph_hash: str) -> RoadNetwork:
         ConfigError: No car may drive anywhere in it.
     """
     root = ElementTree.fromstring(xml)
-    edges, lanes = [], []
+    edges: list[ElementTree.Element] = []
+    lanes: list[tuple[int, int, ElementTree.Element]] = []
     for edge in root.iter("edge"):
         found = [lane for lane in edge.iter("lane") if not _only_walked(lane)]
         if edge.get("function") is None and found:

@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from eyas.core.files import write_atomic
-from eyas.sim.scenes import load_scene, load_textures
+from eyas.render.textures.library import PAINTERS
+from eyas.sim.scenes import load_scene
 from eyas.state.mesh import Material, Mesh, Surface
 from eyas.state.scene import Scene
 from eyas.world.maps import MAPS
@@ -34,8 +35,6 @@ _ROUGH = {Surface.WATER: 0.1, Surface.GLASS: 0.1, Surface.PAINT: 0.35}
 class _File:
     """The parts of a glTF file under construction."""
 
-    textures: dict[str, NDArray[np.uint8]]
-    """Rows from the top; sRGB and alpha."""
     parts: list[bytes] = field(default_factory=list)
     length: int = 0
     views: list[dict[str, int]] = field(default_factory=list)
@@ -74,7 +73,7 @@ class _File:
         """Return the index of a texture, added when it is first used."""
         key = name, holes
         if key not in self.of_image:
-            pixels = self.textures[name]
+            pixels = PAINTERS[name]()
             kept = pixels if holes else pixels[..., :3]
             png = io.BytesIO()
             Image.fromarray(np.ascontiguousarray(kept)).save(png, format="PNG")
@@ -143,7 +142,7 @@ def run(name: str, seed: int, path: Path, detail: int) -> int:
         EyasError: The map cannot be built, or the file not written.
     """
     scene = load_scene(name, seed)
-    file = _File(load_textures())
+    file = _File()
     nodes: list[dict[str, Any]] = [{"name": "static", "mesh": file.mesh(scene.static, "static")}]
     triangles = len(scene.static.triangles)
     fixtures = scene.fixtures

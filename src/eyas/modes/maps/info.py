@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
 from eyas.sim.scenes import load_scene
 from eyas.state.roads import RoadNetwork
@@ -108,7 +109,7 @@ def describe(name: str, seed: int) -> list[str]:
     return lines + recipe.attribution().splitlines()
 
 
-def _lengths(network: RoadNetwork) -> np.ndarray:  # type: ignore[type-arg]
+def _lengths(network: RoadNetwork) -> NDArray[np.float64]:
     first = network.lane_first
     lines = [
         shapely.LineString(network.lane_points[first[k] : first[k + 1]])

@@ -95,7 +95,8 @@ def _roads(scene: Scene) -> list[tuple[shapely.Geometry, dict[str, Any]]]:
 
 def _buildings(scene: Scene) -> list[tuple[shapely.Geometry, dict[str, Any]]]:
     """Return the footprint of each building; what is solid of it may be several pieces."""
-    solids, pieces = scene.colliders, {}
+    solids = scene.colliders
+    pieces: dict[int, list[tuple[shapely.Polygon, tuple[float, float]]]] = {}
     for solid, (low, high) in enumerate(pairwise(solids.prism_first)):
         owner = int(solids.prism_object[solid])
         if scene.object_class[owner] == ObjectClass.BUILDING:

@@ -56,10 +56,10 @@ def run(name: str, seed: int, path: Path, width: int, *, tracks: bool) -> None:
             there = recording.present[:, car]
             driven += [recording.position[low:high, car] for low, high in _runs(there)]
     with atomic_path(path) as part:
-        _picture(scene, driven, width, recipe_notice(name)).save(part, format="PNG")
+        _picture(scene, driven, width, _notice(name)).save(part, format="PNG")
 
 
-def recipe_notice(name: str) -> str:
+def _notice(name: str) -> str:
     """Return the first line of a map's attribution, or nothing."""
     return (MAPS.get(name).attribution().splitlines() or [""])[0]
 
@@ -134,7 +134,8 @@ def _legend(paper: _Paper, notice: str) -> None:
     """Draw a bar of 100 m, and the notice of whose data it is."""
     x, y, size = 24.0, paper.image.height - 30.0, 100.0 * paper.scale
     paper.draw.line([(x, y), (x + size, y)], fill=(30, 30, 30), width=3 * _SHARP)
-    font = {"font_size": 13 * _SHARP, "fill": (30, 30, 30)}
-    paper.draw.text((x, y - 8), "100 m", anchor="ld", **font)
-    if notice:
-        paper.draw.text((paper.image.width - 24, y + 8), notice, anchor="rd", **font)
+    for place, text, anchor in (
+        ((x, y - 8), "100 m", "ld"),
+        ((paper.image.width - 24, y + 8), notice, "rd"),
+    ):
+        paper.draw.text(place, text, fill=(30, 30, 30), anchor=anchor, font_size=13 * _SHARP)

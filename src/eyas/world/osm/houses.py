@@ -105,8 +105,7 @@ def _roof(tags: Tags, odd: Odd) -> str:
 
 
 def _mostly(part: shapely.Polygon, house: shapely.Polygon) -> bool:
-    shared: float = shapely.intersection(part, house).area
-    return shared > 0.5 * part.area
+    return bool(shapely.intersection(part, house).area > 0.5 * part.area)
 
 
 def _complete(part: House, house: House) -> None:

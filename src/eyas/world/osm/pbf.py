@@ -1,6 +1,7 @@
 """Reading of `.osm.pbf` files with pyosmium, the only file that needs it (extra `osm`)."""
 
 from pathlib import Path
+from typing import Any
 
 from eyas.core.errors import DataFileError, MissingExtraError
 from eyas.world.osm.data import OsmData, Relation, Way
@@ -39,22 +40,18 @@ def read_pbf(path: Path) -> OsmData:
     return data
 
 
-def _take(thing: object, data: OsmData) -> None:
+def _take(one: Any, data: OsmData) -> None:  # noqa: ANN401  # pyosmium need not be there
     """Add a node, way or relation of pyosmium to the data."""
-    one: object = thing
-    tags = {tag.k: tag.v for tag in one.tags}  # type: ignore[attr-defined]
-    number = int(one.id)  # type: ignore[attr-defined]
-    kind = one.type_str()  # type: ignore[attr-defined]
-    if kind == "n" and one.location.valid():  # type: ignore[attr-defined]
-        data.places[number] = (one.location.lon, one.location.lat)  # type: ignore[attr-defined]
+    tags = {tag.k: tag.v for tag in one.tags}
+    number = int(one.id)
+    kind = one.type_str()
+    if kind == "n" and one.location.valid():
+        data.places[number] = (one.location.lon, one.location.lat)
         if tags:
             data.nodes[number] = tags
     elif kind == "w":
-        line = tuple(int(node.ref) for node in one.nodes)  # type: ignore[attr-defined]
+        line = tuple(int(node.ref) for node in one.nodes)
         data.ways[number] = Way(number, line, tags)
     elif kind == "r":
-        members = tuple(
-            (_KINDS[m.type], int(m.ref), str(m.role))
-            for m in one.members  # type: ignore[attr-defined]
-        )
+        members = tuple((_KINDS[m.type], int(m.ref), str(m.role)) for m in one.members)
         data.relations.append(Relation(number, members, tags))

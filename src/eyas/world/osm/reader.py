@@ -96,7 +96,7 @@ def _read_xml(path: Path, *, compressed: bool) -> OsmData:
     return data
 
 
-def _elements(file: IO[bytes], path: Path) -> Iterator[ElementTree.Element]:
+def _elements(file: IO[bytes] | gzip.GzipFile, path: Path) -> Iterator[ElementTree.Element]:
     """Yield the file's nodes, ways, relations and bounds, and free each after its use."""
     parser = ElementTree.iterparse(file, ("start", "end"))
     _, root = next(parser)

@@ -23,6 +23,9 @@ _KEPT = (
 ).split()
 """Tags of ways that netconvert uses."""
 
+_TURNS = ("type", "restriction", "except")
+"""Tags of turn restrictions that netconvert uses."""
+
 _SPEED = re.compile(r"\d{1,3}(\.\d+)?( ?(km/h|kmh|mph|knots))?")
 
 
@@ -109,8 +112,7 @@ def _restrictions(data: OsmData, ways: set[int], nodes: dict[int, None]) -> Iter
                 f'<member type="{kind}" ref="{ref}" role={quoteattr(role)}/>'
                 for kind, ref, role in relation.members
             )
-            tags = {key: relation.tags[key] for key in ("type", "restriction", "except")
-                    if key in relation.tags}  # fmt: skip
+            tags = {key: text for key, text in relation.tags.items() if key in _TURNS}
             yield f'<relation id="{relation.id}">{members}{_xml(tags)}</relation>'
 
 

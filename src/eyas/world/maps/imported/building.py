@@ -61,7 +61,7 @@ def solids_of(look: Look) -> Iterator[tuple[Outline, float, float]]:
 
 def _walls(look: Look, stone: Material, rng: np.random.Generator) -> list[Mesh]:
     """Return the walls of all outlines: street level, and bands of storeys above it."""
-    made = []
+    made: list[Mesh] = []
     high = look.eaves - look.bottom
     if high < 0.3:
         return made

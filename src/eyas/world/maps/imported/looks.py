@@ -70,6 +70,10 @@ _PITCH = {"gabled": 0.42, "hipped": 0.36, "pyramidal": 0.5, "skillion": 0.12, "d
 _SLAB = 0.5
 """Thickness of a roof on posts [m]."""
 _OPEN = ("roof", "carport")
+_LEVEL = ("roof_gravel", "roof_gravel", "roof_membrane", "bitumen", "bitumen", "roof_terrace")
+_AGES: tuple[Tint, ...] = (
+    (1.0, 1.0, 1.0), (0.97, 0.94, 0.88), (0.82, 0.83, 0.85), (0.90, 0.86, 0.80), (0.70, 0.71, 0.73),
+)  # fmt: skip
 _RED = 1.15
 """A colour whose red is stronger than its blue by this factor suits tiles."""
 
@@ -192,10 +196,18 @@ def _walls(house: House, guess: _Guess, rng: np.random.Generator) -> tuple[str, 
 
 
 def _cover(house: House, eaves: float, rng: np.random.Generator, *, sloping: bool) -> Material:
-    usual = roof_cover(eaves, rng, pyramid=sloping)
+    usual = roof_cover(eaves, rng, pyramid=True) if sloping else _flat_cover(rng)
     if house.cover is None:
         return usual
     red, _, blue = house.cover
     if sloping and red > _RED * blue:
         return usual
     return material("concrete", house.cover)
+
+
+def _flat_cover(rng: np.random.Generator) -> Material:
+    """Return gravel, felt or sheets, from pale to dark: few flat roofs are tiled."""
+    name = _LEVEL[int(rng.integers(len(_LEVEL)))]
+    red, green, blue = _AGES[int(rng.integers(len(_AGES)))]
+    age = float(rng.uniform(0.9, 1.0))
+    return material(name, (red * age, green * age, blue * age))

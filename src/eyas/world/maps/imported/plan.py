@@ -25,7 +25,11 @@ _APRON = 0.8
 """Width of the paving at the foot of houses [m]."""
 _YARD, _INSET = 9.0, 6.0
 """Gaps between buildings of a town up to twice the first are paved, except beside lawns [m]."""
-_TALLEST_CAR = 0.02
+_STRIP = 3.5
+"""Strips between streets and buildings up to twice this wide are paved [m]."""
+_BUILT_ON = ("industrial", "commercial", "residential")
+"""Kinds of ground that yards are cut out of; the last of `AREA_KINDS`."""
+_NEEDLE = 0.02
 """Slivers narrower than twice this are no asphalt [m]."""
 
 
@@ -72,24 +76,26 @@ def make_plan(
     built = shapely.union_all([one.shape for one in houses if one.bottom < CLEARANCE])
     pavement = _clean(shapely.difference(walked, shapely.union(roads, built)))
     taken = shapely.union(roads, pavement)
+    covered = taken
     ground: dict[str, shapely.Geometry] = {}
     for kind in AREA_KINDS:
         shapes = [area.shape for area in features.areas if area.kind == kind]
         whole = shapely.intersection(shapely.union_all(shapes), extent)
-        ground[kind] = snapped(shapely.difference(whole, taken))
-        if kind not in ("industrial", "commercial", "residential"):
-            taken = shapely.union(taken, ground[kind])
-    yards = _yards(houses, ground, shapely.difference(extent, taken))
-    for kind in ("industrial", "commercial", "residential"):
-        ground[kind] = snapped(shapely.difference(ground[kind], yards))
-    covered = shapely.union_all([taken, yards, *ground.values()])
+        ground[kind] = _whole(shapely.difference(whole, covered))
+        covered = shapely.union(covered, ground[kind])
+        if kind not in _BUILT_ON:
+            taken = covered
+    yards = _yards(houses, shapely.union(roads, pavement), shapely.difference(extent, taken))
+    for kind in _BUILT_ON:
+        ground[kind] = _whole(shapely.difference(ground[kind], yards))
+    covered = shapely.union(covered, yards)
     return Plan(
         extent=extent,
         roads=roads,
         pavement=pavement,
         ground=ground,
         yards=yards,
-        lawn=snapped(shapely.difference(extent, covered)),
+        lawn=_whole(shapely.difference(extent, covered)),
         buildings=[look_of(house, seed) for house in houses],
         gardens=[one.shape for one in houses if is_small(one) and one.shape.area > 40.0],
         built=built,
@@ -114,9 +120,9 @@ def _junctions(network: RoadNetwork) -> shapely.Geometry:
 def _clean(shape: shapely.Geometry) -> shapely.Geometry:
     """Return a shape at whole millimetres, without gaps and needles of centimetres."""
     closed = shapely.buffer(shape, 0.15, join_style="mitre")
-    opened = shapely.buffer(closed, -0.15 - _TALLEST_CAR, join_style="mitre")
-    again = shapely.buffer(opened, _TALLEST_CAR, join_style="mitre")
-    return snapped(shapely.simplify(again, 0.03))
+    opened = shapely.buffer(closed, -0.15 - _NEEDLE, join_style="mitre")
+    again = shapely.buffer(opened, _NEEDLE, join_style="mitre")
+    return _whole(shapely.simplify(again, 0.03))
 
 
 def _beside(houses: Sequence[House], roads: shapely.Geometry) -> list[House]:
@@ -131,23 +137,35 @@ def _beside(houses: Sequence[House], roads: shapely.Geometry) -> list[House]:
         rest = [part for part in polygons_of(shapely.difference(house.shape, near))
                 if part.area > 4.0]  # fmt: skip
         if sum(part.area for part in rest) > _LEFT * house.shape.area:
-            kept += [replace(house, shape=snapped_polygon(part)) for part in rest]
+            kept += [replace(house, shape=_largest(part)) for part in rest]
     return [house for house in kept if not house.shape.is_empty]
 
 
-def snapped_polygon(shape: shapely.Polygon) -> shapely.Polygon:
-    """Return the largest part of a polygon at whole millimetres."""
-    parts = polygons_of(snapped(shape))
-    return max(parts, key=shapely.area, default=shapely.Polygon())
+def _whole(shape: shapely.Geometry) -> shapely.MultiPolygon:
+    """Return the polygons of a shape at whole millimetres, without lines and points."""
+    return shapely.MultiPolygon(polygons_of(snapped(shape)))
+
+
+def _largest(shape: shapely.Polygon) -> shapely.Polygon:
+    """Return the largest polygon of a shape at whole millimetres."""
+    return max(polygons_of(snapped(shape)), key=shapely.area, default=shapely.Polygon())
 
 
 def _yards(
-    houses: Sequence[House], ground: dict[str, shapely.Geometry], free: shapely.Geometry
+    houses: Sequence[House], kerbs: shapely.Geometry, free: shapely.Geometry
 ) -> shapely.Geometry:
-    """Return the paving between and around buildings, where no other ground is."""
+    """Return the paving between and around buildings, where no other ground is.
+
+    Args:
+        houses: All buildings.
+        kerbs: Streets with their pavements [m].
+        free: Ground that nothing covers [m].
+    """
     town = shapely.union_all([one.shape for one in houses if not is_small(one)])
     closed = shapely.buffer(shapely.buffer(town, _YARD, quad_segs=3), -_INSET, quad_segs=3)
+    street = shapely.buffer(shapely.union(town, kerbs), _STRIP, quad_segs=3)
+    closed = shapely.union(closed, shapely.buffer(street, -_STRIP, quad_segs=3))
     small = shapely.union_all([one.shape for one in houses if is_small(one)])
     aprons = shapely.buffer(small, _APRON, join_style="mitre")
     paved = shapely.intersection(shapely.union(closed, aprons), free)
-    return snapped(shapely.simplify(paved, 0.05))
+    return _whole(shapely.simplify(paved, 0.05))
