@@ -28,13 +28,13 @@ def read_pbf(path: Path) -> OsmData:
         ) from None
     data = OsmData()
     try:
-        with osmium.FileProcessor(str(path)) as file:
-            box = file.header.box()
-            if box.valid():
-                low, high = box.bottom_left, box.top_right
-                data.bounds = (low.lon, low.lat, high.lon, high.lat)
-            for thing in file:
-                _take(thing, data)
+        file = osmium.FileProcessor(str(path))
+        box = file.header.box()
+        if box.valid():
+            low, high = box.bottom_left, box.top_right
+            data.bounds = (low.lon, low.lat, high.lon, high.lat)
+        for thing in file:
+            _take(thing, data)
     except (RuntimeError, OSError, ValueError) as error:
         raise DataFileError(f"{path}: not a complete OpenStreetMap file: {error}") from error
     return data
