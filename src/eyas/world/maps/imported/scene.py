@@ -16,7 +16,7 @@ from eyas.world.buildings import rooftops
 from eyas.world.maps.imported.building import building_mesh, solids_of
 from eyas.world.maps.imported.greenery import add_greenery, add_parked
 from eyas.world.maps.imported.ground import add_ground
-from eyas.world.maps.imported.lamps import add_known_lamps
+from eyas.world.maps.imported.lamps import add_lamps_at, usual_lamps
 from eyas.world.maps.imported.looks import Look
 from eyas.world.maps.imported.plan import Plan, make_plan
 from eyas.world.osm.features import Features
@@ -25,13 +25,10 @@ from eyas.world.plants.shrubs import plant_makers
 from eyas.world.roads.areas import Street, streets
 from eyas.world.street import signals
 from eyas.world.street.furnishing import add_furniture
-from eyas.world.street.lamps import add_lamps
 from eyas.world.street.parked_cars import VARIANTS, parked_car
 
 __all__ = ["build_scene"]
 
-_LAMP_EVERY = 42.0
-"""Metres of street for each lamp, where the map names none."""
 _BEYOND_KERB, _BEFORE_LINE = 0.9, 0.6
 """From the kerb, and back from the stop line, to the pole of a traffic light [m]."""
 _NO_EQUIPMENT = 150.0
@@ -121,11 +118,6 @@ def _lights(
 ) -> Lamps:
     """Add the lamps that the map names; if it names none, as many as streets usually have."""
     if features.lamps:
-        return add_known_lamps(builder, network, features.lamps, taken)
-    first = network.lane_first
-    right = np.flatnonzero(network.lane_index == 0)
-    length = sum(
-        shapely.LineString(network.lane_points[first[k] : first[k + 1]]).length for k in right
-    )
-    count = int(length / (2 * _LAMP_EVERY))
-    return add_lamps(builder, network, count, taken, stream(seed, "imported lamps"))
+        return add_lamps_at(builder, network, features.lamps, taken)
+    places = usual_lamps(network, taken, stream(seed, "imported lamps"))
+    return add_lamps_at(builder, network, places, taken)
