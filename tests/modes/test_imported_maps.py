@@ -92,14 +92,11 @@ def test_streets_lie_where_buildings_expect_them(town, source):
         assert (float(x), float(y)) == pytest.approx(tuple(expected), abs=0.003)
 
 
-def test_a_scene_is_the_same_each_time_and_its_guesses_differ_by_seed(scene, town):
+def test_a_scene_is_the_same_each_time(scene, town):
     recipe, network = MAPS.get(NAME), scene.network
     again = recipe.scene(network, 0, recipe.season("day"))
     np.testing.assert_array_equal(again.static.positions, scene.static.positions)
     np.testing.assert_array_equal(again.fixtures.pose, scene.fixtures.pose)
-    other = recipe.scene(network, 1, recipe.season("day"))
-    assert len(other.colliders.prism_top) == len(scene.colliders.prism_top)
-    assert (other.colliders.prism_top != scene.colliders.prism_top).any()
 
 
 def test_no_lane_leads_through_anything_solid(scene):

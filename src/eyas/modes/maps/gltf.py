@@ -11,8 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from eyas.core.cache.cached import cached
+from eyas.core.cache.folder import Kind
 from eyas.core.files import write_atomic
-from eyas.render.textures.library import PAINTERS
+from eyas.render.textures.library import build_textures
 from eyas.sim.scenes import load_scene
 from eyas.state.mesh import Material, Mesh, Surface
 from eyas.state.scene import Scene
@@ -35,6 +37,8 @@ _ROUGH = {Surface.WATER: 0.1, Surface.GLASS: 0.1, Surface.PAINT: 0.35}
 class _File:
     """The parts of a glTF file under construction."""
 
+    textures: dict[str, NDArray[np.uint8]]
+    """Rows from the top; sRGB and alpha."""
     parts: list[bytes] = field(default_factory=list)
     length: int = 0
     views: list[dict[str, int]] = field(default_factory=list)
@@ -73,7 +77,7 @@ class _File:
         """Return the index of a texture, added when it is first used."""
         key = name, holes
         if key not in self.of_image:
-            pixels = PAINTERS[name]()
+            pixels = self.textures[name]
             kept = pixels if holes else pixels[..., :3]
             png = io.BytesIO()
             Image.fromarray(np.ascontiguousarray(kept)).save(png, format="PNG")
@@ -142,7 +146,7 @@ def run(name: str, seed: int, path: Path, detail: int) -> int:
         EyasError: The map cannot be built, or the file not written.
     """
     scene = load_scene(name, seed)
-    file = _File()
+    file = _File(_textures())
     nodes: list[dict[str, Any]] = [{"name": "static", "mesh": file.mesh(scene.static, "static")}]
     triangles = len(scene.static.triangles)
     fixtures = scene.fixtures
@@ -159,6 +163,12 @@ def run(name: str, seed: int, path: Path, detail: int) -> int:
         triangles += count
     write_atomic(path, _glb(file, nodes, scene, MAPS.get(name).attribution()))
     return triangles
+
+
+def _textures() -> dict[str, NDArray[np.uint8]]:
+    """Return all textures, from where pictures have them too."""
+    makers = ("render", "world/build/materials.py")
+    return cached(Kind.TEXTURES, makers, (), build_textures, of=dict[str, NDArray[np.uint8]])
 
 
 def _glb(file: _File, nodes: list[dict[str, Any]], scene: Scene, notice: str) -> bytes:

@@ -31,7 +31,7 @@ __all__ = ["build_scene"]
 
 _BEYOND_KERB, _BEFORE_LINE = 0.9, 0.6
 """From the kerb, and back from the stop line, to the pole of a traffic light [m]."""
-_NO_EQUIPMENT = 150.0
+_NO_EQUIPMENT = 250.0
 """Smaller flat roofs carry nothing [m^2]."""
 
 
