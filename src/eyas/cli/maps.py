@@ -5,7 +5,12 @@ from typing import Annotated
 
 import typer
 
+from eyas.core.errors import ConfigError
+
 __all__ = ["app"]
+
+Name = Annotated[str, typer.Argument(help="Name of the map, or the folder of an imported one.")]
+Seed = Annotated[int, typer.Option("--seed", min=0, help="Seed of the map.")]
 
 app = typer.Typer(help="List and draw the maps.", no_args_is_help=True)
 
@@ -41,3 +46,99 @@ def draw_gallery(
     from eyas.modes.gallery import run as gallery
 
     gallery.run(out, map_name or (), weather or ())
+
+
+@app.command("import")
+def import_map(
+    file: Annotated[Path, typer.Argument(help="OpenStreetMap: .osm, .osm.gz or .osm.pbf.")],
+    name: Annotated[str | None, typer.Option("--name", help="Name of the map.")] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", help="Folder of the map; then use --map FOLDER.")
+    ] = None,
+    bbox: Annotated[
+        str | None, typer.Option("--bbox", help="Only WEST,SOUTH,EAST,NORTH, in degrees.")
+    ] = None,
+    traffic: Annotated[bool, typer.Option(help="Record the traffic now, not on first use.")] = True,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the map.")] = False,
+) -> None:
+    """Make a map of an OpenStreetMap file; use it with --map NAME."""
+    from eyas.modes.maps.importing import run
+
+    bounds = _bounds(bbox)
+    report = run(file, name, out=out, bounds=bounds, record=traffic, overwrite=overwrite)
+    for line in report.lines():
+        typer.echo(line)
+
+
+@app.command("info")
+def show_info(name: Name, seed: Seed = 0) -> None:
+    """Print figures of a map: its size, streets, buildings, trees, and whose data it is."""
+    from eyas.modes.maps.info import describe
+
+    for line in describe(name, seed):
+        typer.echo(line)
+
+
+@app.command("show")
+def show_map(
+    name: Name,
+    out: Annotated[
+        Path | None, typer.Option("--out", help="PNG file to write; by default NAME.png.")
+    ] = None,
+    seed: Seed = 0,
+    width: Annotated[
+        int, typer.Option("--width", min=100, max=8000, help="Width in pixels.")
+    ] = 1200,
+    tracks: Annotated[bool, typer.Option(help="Draw where the recorded cars drive.")] = True,
+) -> None:
+    """Draw a map from above: streets, buildings, trees, and where its cars drive."""
+    from eyas.modes.maps.show import run
+    from eyas.world.maps import MAPS
+
+    path = out if out is not None else Path(f"{MAPS.get(name).name}.png")
+    run(name, seed, path, width, tracks=tracks)
+    typer.echo(path)
+
+
+@app.command("export")
+def export_map(
+    name: Name,
+    gltf: Annotated[
+        Path | None, typer.Option("--gltf", help="Write this .glb file: shapes and textures.")
+    ] = None,
+    geojson: Annotated[
+        Path | None,
+        typer.Option("--geojson", help="Write streets, buildings and rasters into this folder."),
+    ] = None,
+    seed: Seed = 0,
+    detail: Annotated[
+        int, typer.Option("--detail", min=0, max=9, help="Trees in the .glb: 0 is the finest.")
+    ] = 1,
+    cell: Annotated[
+        float, typer.Option("--cell", min=0.1, max=100.0, help="Side of a raster cell in metres.")
+    ] = 0.5,
+) -> None:
+    """Write a map for other programs."""
+    if gltf is None and geojson is None:
+        raise ConfigError("maps export: name --gltf FILE, --geojson FOLDER or both")
+    if gltf is not None:
+        from eyas.modes.maps.gltf import run as write_gltf
+
+        typer.echo(f"{gltf}: {write_gltf(name, seed, gltf, detail)} triangles")
+    if geojson is not None:
+        from eyas.modes.maps.plan_files import run as write_plan
+
+        for path in write_plan(name, seed, geojson, cell):
+            typer.echo(path)
+
+
+def _bounds(text: str | None) -> tuple[float, float, float, float] | None:
+    if text is None:
+        return None
+    try:
+        west, south, east, north = (float(part) for part in text.split(","))
+    except ValueError:
+        raise ConfigError(
+            f"--bbox: {text!r} is not allowed; allowed: WEST,SOUTH,EAST,NORTH in degrees"
+        ) from None
+    return west, south, east, north

@@ -8,13 +8,26 @@ import sys
 from collections.abc import Iterable, Mapping
 from importlib import import_module
 from importlib.util import find_spec
-from typing import Generic, TypeVar
+from typing import Generic, Protocol, TypeVar
 
 from eyas.core.errors import ConfigError, NotInThisVersionError, UnknownNameError, nearest
 
-__all__ = ["Registry"]
+__all__ = ["Found", "Registry"]
 
 T = TypeVar("T")
+T_co = TypeVar("T_co", covariant=True)
+
+
+class Found(Protocol[T_co]):
+    """Objects that are made of files, wherever these lie."""
+
+    def names(self) -> tuple[str, ...]:
+        """Return the names of all objects."""
+        ...
+
+    def get(self, name: str) -> T_co | None:
+        """Return the object with a name or at a path; None if there is none."""
+        ...
 
 
 class Registry(Generic[T]):
@@ -29,9 +42,10 @@ class Registry(Generic[T]):
         built_in: The built-in objects, each as `package.module:attribute`.
         group: Entry point group with which installed packages add objects; None: they cannot.
         later: Names planned for a later version; choosing one raises `NotInThisVersionError`.
+        files: Objects that are made of files; None: there are none.
     """
 
-    def __init__(
+    def __init__(  # one argument for each place where objects are found
         self,
         setting: str,
         kind: type[T],
@@ -39,10 +53,11 @@ class Registry(Generic[T]):
         *,
         group: str | None = None,
         later: Iterable[str] = (),
+        files: Found[T] | None = None,
     ) -> None:
         self.built_in = tuple(built_in)
         self.later = tuple(later)
-        self._setting, self._kind, self._group = setting, kind, group
+        self._setting, self._kind, self._group, self._files = setting, kind, group, files
         self._table: dict[str, T | str] = dict(built_in)
         self._loaded: dict[str, T] = {}
 
@@ -67,12 +82,13 @@ class Registry(Generic[T]):
         self._table[name] = what
 
     def names(self) -> tuple[str, ...]:
-        """Return all names: built-in, then user-defined, then of installed packages.
+        """Return all names: built-in, user-defined, of installed packages, of files.
 
         Raises:
             ConfigError: Two packages use the same name.
         """
-        return tuple({**self._table, **self._installed()})
+        names = (*self._table, *self._installed(), *self._of_files())
+        return tuple(dict.fromkeys(names))
 
     def get(self, name: str) -> T:
         """Return the object with a name or path.
@@ -91,6 +107,9 @@ class Registry(Generic[T]):
         """Return the table's entry for a name: an object, or a path to it."""
         if name in self._table:
             return self._table[name]
+        kept = self._files.get(name) if self._files else None
+        if kept is not None:
+            return kept
         if ":" in name:
             return name
         if name in self.later:
@@ -100,9 +119,12 @@ class Registry(Generic[T]):
             )
         installed = self._installed()
         if name not in installed:
-            known = (*self._table, *installed, *self.later)
+            known = (*self._table, *installed, *self._of_files(), *self.later)
             raise UnknownNameError(self._setting, name, known)
         return installed[name]
+
+    def _of_files(self) -> tuple[str, ...]:
+        return self._files.names() if self._files else ()
 
     def _installed(self) -> dict[str, str]:
         """Return the names and paths of the objects that installed packages add."""

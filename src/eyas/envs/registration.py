@@ -3,13 +3,14 @@
 import gymnasium
 
 from eyas.world.maps import MAPS
+from eyas.world.maps.imported import IMPORTED
 
 __all__ = ["register", "register_map"]
 
 
 def register() -> None:
-    """Register the maps that come with Eyas; importing `eyas` does it."""
-    for name in MAPS.built_in:
+    """Register the maps that come with Eyas and imported ones; importing `eyas` does it."""
+    for name in (*MAPS.built_in, *IMPORTED.names()):
         register_map(name)
 
 

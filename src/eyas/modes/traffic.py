@@ -1,13 +1,11 @@
 """Record traffic with SUMO."""
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 
 from rich.console import Console
-from rich.progress import Progress
 
 from eyas.core.errors import ConfigError, OutputError
+from eyas.modes.progress import sumo_progress
 from eyas.traffic.config import TrafficConfig
 from eyas.traffic.library import CANONICAL_SEED, RESPAWN_GROUPS, record_canonical
 from eyas.traffic.network import build_network
@@ -49,7 +47,7 @@ def run(
     graph = MAPS.get(world.map).roads(world.seed)
     target = path or Path(f"{graph.map_name}-{seed}-{config.vehicle_type}.npz")
     _check_free(target, overwrite=overwrite)  # before SUMO runs for minutes
-    with _progress() as progress:
+    with sumo_progress() as progress:
         recording = record(graph.map_name, graph.seed, graph, config, duration, seed, progress)
     save(recording, target)
     _report(target, f"{recording.actors} vehicles, {recording.duration:g} s")
@@ -82,17 +80,9 @@ def run_canonical(world: WorldConfig) -> None:
     sizes: tuple[int | None, ...] = (None, *RESPAWN_GROUPS)
     for size in sizes:
         path = folder / (TRAFFIC_FILE if size is None else respawn_file(size))
-        with _progress() as progress:
+        with sumo_progress() as progress:
             record_canonical(graph, path, size, progress)
         _report(path, "a shipped recording")
-
-
-@contextmanager
-def _progress() -> Iterator[Callable[[float], None]]:
-    """Show the progress of SUMO on stderr."""
-    with Progress(console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("SUMO drives", total=1.0)
-        yield lambda share: bar.update(task, completed=share)
 
 
 def _report(path: Path, what: str) -> None:

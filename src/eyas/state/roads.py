@@ -1,6 +1,6 @@
 """Roads: the graph that a recipe draws, and the network that SUMO's netconvert builds from it."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -45,6 +45,8 @@ class RoadGraph:
     seed: int
     nodes: tuple[RoadNode, ...]
     edges: tuple[RoadEdge, ...]
+    finished: bytes = field(default=b"", repr=False)
+    """SUMO's network file, for roads that no recipe has drawn; nodes and edges are empty then."""
 
 
 @dataclass(slots=True)

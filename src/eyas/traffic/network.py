@@ -12,9 +12,10 @@ from numpy.typing import NDArray
 
 from eyas.core.errors import ConfigError
 from eyas.state.roads import RoadEdge, RoadGraph, RoadNetwork, RoadNode
+from eyas.traffic.net_file import road_network
 from eyas.traffic.sumo_install import sumo_binary, sumo_environment, sumo_version
 
-__all__ = ["OPTIONS", "build_network", "graph_hash", "network_xml"]
+__all__ = ["OPTIONS", "build_network", "graph_hash", "network_xml", "without_comments"]
 
 OPTIONS = (
     # Keep the world coordinates of the map.
@@ -35,6 +36,8 @@ OPTIONS = (
 
 def graph_hash(graph: RoadGraph) -> str:
     """Return the SHA-256 of netconvert's whole input for a graph, options included."""
+    if graph.finished:
+        return hashlib.sha256(graph.finished).hexdigest()
     told = "\n".join([_node_xml(graph.nodes), _edge_xml(graph.edges), *OPTIONS])
     return hashlib.sha256(told.encode()).hexdigest()
 
@@ -46,6 +49,8 @@ def build_network(graph: RoadGraph) -> RoadNetwork:
         MissingExtraError: SUMO is not installed.
         ConfigError: netconvert rejects the graph.
     """
+    if graph.finished:
+        return road_network(graph.finished, graph_hash(graph))
     root = ElementTree.fromstring(network_xml(graph))
     edges = {name: root.find(f"./edge[@id='{name}']") for name in (e.name for e in graph.edges)}
     lanes = [
@@ -83,6 +88,8 @@ def network_xml(graph: RoadGraph) -> bytes:
         MissingExtraError: SUMO is not installed.
         ConfigError: netconvert rejects the graph.
     """
+    if graph.finished:
+        return graph.finished
     netconvert = sumo_binary("netconvert")
     with tempfile.TemporaryDirectory(prefix="eyas-roads-") as folder:
         nodes, edges, out = (Path(folder) / name for name in ("nod.xml", "edg.xml", "net.xml"))
@@ -99,10 +106,10 @@ def network_xml(graph: RoadGraph) -> bytes:
         if done.returncode != 0:
             reason = (done.stderr.strip().splitlines() or ["no message"])[0]
             raise ConfigError(f"roads of '{graph.map_name}': netconvert refuses them: {reason}")
-        return _without_comments(out.read_bytes())
+        return without_comments(out.read_bytes())
 
 
-def _without_comments(xml: bytes) -> bytes:
+def without_comments(xml: bytes) -> bytes:
     """Remove the comment with the time and temporary folder; the parser skips comments."""
     root = ElementTree.fromstring(xml)
     return bytes(ElementTree.tostring(root, encoding="utf-8")) + b"\n"

@@ -22,6 +22,8 @@ from eyas.modes.video.step_log import STEP_LOGS
 from eyas.settings.config import EyasConfig
 from eyas.settings.file import read_settings, save_settings
 from eyas.settings.legacy.adapter import save_legacy
+from eyas.world.maps import MAPS
+from eyas.world.maps.recipe import ATTRIBUTION_FILE
 
 __all__ = ["VideoFolder", "check_folder", "open_folder"]
 
@@ -31,6 +33,9 @@ ORIGIN = "version.json"
 """Version of Eyas and the files of the writers: `{"eyas": "0.1.0", "files": {...}}`. The version,
 since another one may draw different pictures; the files, so that `--overwrite` can delete them even
 if the package of a user's own writer is no longer installed."""
+
+
+_OWN = (SETTINGS, LEGACY_SETTINGS, ORIGIN, ATTRIBUTION_FILE, LOCK)
 
 
 class VideoFolder:
@@ -132,6 +137,9 @@ def open_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: bool
     folder = VideoFolder(path, config)
     files = joined(writer.files for writer in folder.writers)
     origin = {"eyas": __version__, "files": asdict(files)}
+    notice = MAPS.get(config.world.map).attribution()
+    if notice:
+        write_atomic(path / ATTRIBUTION_FILE, notice.encode())
     write_atomic(path / ORIGIN, (json.dumps(origin) + "\n").encode())
     return folder
 
@@ -143,7 +151,7 @@ def _contents(path: Path, config: EyasConfig) -> Contents:
     with suppress(DataFileError, ValueError, TypeError, KeyError, RecursionError):
         recorded = _origin(path)["files"]
         files.append(Files(**{kind: tuple(recorded[kind]) for kind in recorded}))
-    return Contents(joined(files), [SETTINGS, LEGACY_SETTINGS, ORIGIN, LOCK, *STEP_LOGS])
+    return Contents(joined(files), [*_OWN, *STEP_LOGS])
 
 
 def _origin(path: Path) -> Any:  # noqa: ANN401  # JSON, of anyone

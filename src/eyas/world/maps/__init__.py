@@ -2,10 +2,11 @@
 
 A user's own map is a `MapRecipe` in another package. It is found by its path
 (`my_package.field:FIELD`), by the name given to `MAPS.register`, or by the name of an entry point
-in the group `eyas.maps`.
+in the group `eyas.maps`. An imported map is found by its name, or by the path of its folder.
 """
 
 from eyas.core.registry import Registry
+from eyas.world.maps.imported import IMPORTED
 from eyas.world.maps.recipe import MapRecipe
 
 __all__ = ["MAPS", "MapRecipe"]
@@ -18,4 +19,5 @@ MAPS: Registry[MapRecipe] = Registry(
     },
     group="eyas.maps",
     later=("desert", "downtown", "farmland", "lake", "simpleway", "village"),
+    files=IMPORTED,
 )

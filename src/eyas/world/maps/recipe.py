@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from hashlib import blake2b
 from importlib.resources.abc import Traversable
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from eyas.core.errors import ConfigError, UnknownNameError
@@ -15,7 +16,20 @@ if TYPE_CHECKING:  # maps load with `eyas`; the scene modules only when a scene 
     from eyas.state.roads import RoadGraph, RoadNetwork
     from eyas.state.scene import Scene
 
-__all__ = ["NETWORK_FILE", "TRAFFIC_FILE", "MapRecipe", "respawn_file"]
+__all__ = [
+    "ATTRIBUTION_FILE",
+    "FEATURES_FILE",
+    "NETWORK_FILE",
+    "TRAFFIC_FILE",
+    "MapRecipe",
+    "respawn_file",
+]
+
+ATTRIBUTION_FILE = "ATTRIBUTION.txt"
+"""File in a map's folder that names those whose data it is made of."""
+
+FEATURES_FILE = "features.json"
+"""File in the folder of an imported map with what stands on it."""
 
 NETWORK_FILE = "network.npz"
 """File in a map's package with the processed roads of its seed 0."""
@@ -50,6 +64,8 @@ class MapRecipe:
     """Package that contains the map, mostly `__name__`: it may hold `NETWORK_FILE` and recordings
     (`traffic*.npz`), and a change of its source rebuilds the scene. None: nothing is shipped, and
     the scene is not cached between runs."""
+    home: Path | None = None
+    """Folder of a map that is no package: an imported one. It holds the same files."""
 
     def __post_init__(self) -> None:
         if not re.fullmatch(r"\w+(-\w+)*", self.name):
@@ -81,9 +97,9 @@ class MapRecipe:
 
     @property
     def folder(self) -> Traversable | None:
-        """Folder of the map's package; None without a package."""
+        """Folder of the map's package, or of an imported map; None without either."""
         if self.package is None:
-            return None
+            return self.home
         from importlib.resources import files  # not needed to describe a map
 
         return files(self.package)
@@ -100,8 +116,13 @@ class MapRecipe:
         return tuple(sorted(found, key=lambda file: (file.name != TRAFFIC_FILE, file.name)))
 
     def source_hash(self) -> str | None:
-        """Return a hash of the sources of the map's package; None without a package."""
+        """Return a hash of the sources in the map's folder; None without a folder."""
         return None if self.folder is None else _source_hash(self.folder)
+
+    def attribution(self) -> str:
+        """Return what must be said wherever the map or data made from it is shown, or nothing."""
+        file = self.shipped(ATTRIBUTION_FILE)
+        return file.read_text(encoding="utf-8") if file is not None else ""
 
     def shipped_network(self) -> "RoadNetwork | None":
         """Return the processed roads of seed 0 that come with the package, if there are any.
@@ -133,6 +154,6 @@ def _source_hash(folder: Traversable) -> str:
             continue
         if path.is_dir():
             digest.update(f"{path.name}/{_source_hash(path)}".encode())
-        elif path.name.endswith(".py"):
+        elif path.name.endswith((".py", FEATURES_FILE)):
             digest.update(path.name.encode() + path.read_bytes())
     return digest.hexdigest()

@@ -1,0 +1,1 @@
+"""Importing, describing, drawing and exporting maps."""

@@ -1,0 +1,118 @@
+"""Figures of a map: extent, streets, buildings, trees, and whose data it is."""
+
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from eyas.sim.scenes import load_scene
+from eyas.state.roads import RoadNetwork
+from eyas.state.scene import ObjectClass, Scene
+from eyas.world.maps import MAPS
+
+__all__ = ["Figures", "describe", "figures_of", "street_lines"]
+
+
+@dataclass(frozen=True, slots=True)
+class Figures:
+    """Figures of a scene."""
+
+    size: tuple[float, float]
+    """Extent of the floor [m]."""
+    area: float
+    """Of the rectangle around the streets [km^2]."""
+    road: float
+    """Length of the streets, both directions counted once [km]."""
+    lanes: float
+    """Length of all lanes [km]."""
+    buildings: int
+    height: float
+    """Median height of the buildings [m]."""
+    trees: int
+    lamps: int
+
+
+def figures_of(scene: Scene) -> Figures:
+    """Return the figures of a scene."""
+    network, solids = scene.network, scene.colliders
+    span = np.ptp(network.lane_points, axis=0) if len(network.lane_points) else np.zeros(2)
+    kinds = scene.object_class
+    built = kinds[solids.prism_object] == ObjectClass.BUILDING
+    tops: dict[int, float] = {}
+    for owner, top in zip(solids.prism_object[built], solids.prism_top[built], strict=True):
+        tops[int(owner)] = max(tops.get(int(owner), 0.0), float(top))
+    trunks = kinds[solids.cylinder_object] == ObjectClass.TREE
+    ways = street_lines(network)
+    return Figures(
+        size=scene.size,
+        area=float(np.prod(span)) / 1e6,
+        road=sum(line.length for line in ways) / 1000.0,
+        lanes=float(_lengths(network).sum()) / 1000.0,
+        buildings=len(tops),
+        height=float(np.median(list(tops.values()))) if tops else 0.0,
+        trees=int(trunks.sum()),
+        lamps=len(scene.lamps.position),
+    )
+
+
+def street_lines(network: RoadNetwork) -> list[shapely.LineString]:
+    """Return the middle of each street, once for both directions [m]."""
+    first = network.lane_first
+    ends = list(zip(network.edge_start, network.edge_end, strict=True))
+    reverse: dict[tuple[str, str], list[int]] = {}
+    for edge, (start, end) in enumerate(ends):
+        reverse.setdefault((end, start), []).append(edge)
+    leftmost: dict[int, int] = {}
+    for lane, edge in enumerate(network.lane_edge.tolist()):
+        if edge not in leftmost or network.lane_index[lane] > network.lane_index[leftmost[edge]]:
+            leftmost[edge] = lane
+    lines, done = [], set()
+    for edge, lane in leftmost.items():
+        back = [other for other in reverse.get(ends[edge], []) if other not in done]
+        if edge in done:
+            continue
+        done.add(edge)
+        points = network.lane_points[first[lane] : first[lane + 1]]
+        line = shapely.LineString(points)
+        if back:
+            done.add(back[0])
+            line = shapely.offset_curve(line, float(network.lane_width[lane]) / 2)
+        if line.geom_type == "LineString" and not line.is_empty:
+            lines.append(line)
+    return lines
+
+
+def describe(name: str, seed: int) -> list[str]:
+    """Return what `eyas maps info` prints.
+
+    Raises:
+        EyasError: There is no such map, or it cannot be built.
+    """
+    recipe = MAPS.get(name)
+    said = figures_of(load_scene(name, seed))
+    area = max(said.area, 1e-9)
+    lines = [
+        f"{recipe.name}: {recipe.title}",
+        f"weathers: {', '.join(recipe.weathers)}",
+        f"floor: {said.size[0]:.0f} x {said.size[1]:.0f} m; streets within {said.area:.2f} km2",
+        f"streets: {said.road:.2f} km ({said.road / area:.1f} km per km2), "
+        f"{said.lanes:.2f} km of lanes, {said.lamps} lamps",
+        f"buildings: {said.buildings} ({said.buildings / area:.0f} per km2), "
+        f"median height {said.height:.0f} m",
+        f"trees: {said.trees} ({said.trees / area:.0f} per km2)",
+    ]
+    recorded = [file.name for file in recipe.shipped_traffic()]
+    lines.append(f"recorded traffic: {', '.join(recorded) or 'none; recorded on first use'}")
+    if recipe.home is not None:
+        lines.append(f"folder: {recipe.home}")
+    return lines + recipe.attribution().splitlines()
+
+
+def _lengths(network: RoadNetwork) -> NDArray[np.float64]:
+    first = network.lane_first
+    lines = [
+        shapely.LineString(network.lane_points[first[k] : first[k + 1]])
+        for k in range(len(first) - 1)
+    ]
+    return np.asarray(shapely.length(lines), np.float64)

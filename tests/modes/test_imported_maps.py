@@ -1,0 +1,262 @@
+"""A small town that does not exist, imported, flown over, described and exported."""
+
+import gzip
+import importlib.util
+import json
+import re
+import struct
+from itertools import pairwise
+from pathlib import Path
+
+import gymnasium
+import numpy as np
+import pytest
+import shapely
+from PIL import Image
+
+from eyas.core.errors import ConfigError, DataFileError, OutputError
+from eyas.modes.maps import gltf, importing, info, plan_files, show
+from eyas.modes.video.folder import open_folder
+from eyas.settings.config import EyasConfig
+from eyas.sim.scenes import load_scene
+from eyas.state.scene import ObjectClass
+from eyas.traffic.config import TrafficConfig
+from eyas.traffic.record import record
+from eyas.world.maps import MAPS
+from eyas.world.maps.imported import IMPORTED, MAP_FILE, ROADS_FILE, origin_of
+from eyas.world.osm.projection import Projection
+from eyas.world.osm.reader import read_osm
+
+pytestmark = pytest.mark.sumo
+NAME = "test-town"
+NOTICE = "© OpenStreetMap contributors"
+
+
+@pytest.fixture(scope="module")
+def source(tmp_path_factory):
+    """The file of a town of three by two blocks."""
+    path = Path(__file__).parents[2] / "tools" / "synthetic_osm.py"
+    spec = importlib.util.spec_from_file_location("synthetic_osm", path)
+    tool = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(tool)
+    made = tmp_path_factory.mktemp("osm") / "town.osm"
+    made.write_text(tool.Town(3, 2, 2).build(), encoding="utf-8")
+    return made
+
+
+@pytest.fixture(scope="module")
+def town(source, tmp_path_factory):
+    """The imported town; its folder is the user's folder of maps while this file is tested."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("EYAS_MAPS_DIR", str(tmp_path_factory.mktemp("maps")))
+        yield importing.run(source, NAME, record=False)
+
+
+@pytest.fixture(scope="module")
+def scene(town):
+    return load_scene(NAME, 0)
+
+
+def test_an_import_says_what_it_found_and_guessed(town):
+    assert town.lanes > 20
+    assert town.signals >= 1
+    assert town.buildings >= 8
+    assert town.guessed["heights"] >= 1
+    text = "\n".join(town.lines())
+    assert f"--map {NAME}" in text
+    assert text.endswith(NOTICE)
+
+
+def test_an_imported_map_is_found_like_any_other(town):
+    assert IMPORTED.names() == (NAME,)
+    assert NAME in MAPS.names()
+    for name in (NAME, str(town.folder)):
+        recipe = MAPS.get(name)
+        assert recipe.name == NAME
+        assert recipe.weathers == ("day", "foggy", "night", "snow")
+        assert recipe.attribution().startswith(NOTICE)
+        assert recipe.shipped_network() is not None
+    assert f"eyas/{NAME}-night-v0" in gymnasium.registry
+
+
+def test_streets_lie_where_buildings_expect_them(town, source):
+    """netconvert and our own projection agree to a millimetre or two."""
+    origin = origin_of(town.folder)
+    projection = Projection(origin.longitude, origin.latitude)
+    net = gzip.decompress((town.folder / ROADS_FILE).read_bytes()).decode()
+    places = read_osm(source).places
+    found = re.findall(r'<junction id="(\d+)" type="\w+" x="([-\d.]+)" y="([-\d.]+)"', net)
+    assert len(found) >= 5
+    for name, x, y in found:
+        expected = projection.metres([places[int(name)]])[0]
+        assert (float(x), float(y)) == pytest.approx(tuple(expected), abs=0.003)
+
+
+def test_a_scene_is_the_same_each_time(scene, town):
+    recipe, network = MAPS.get(NAME), scene.network
+    again = recipe.scene(network, 0, recipe.season("day"))
+    np.testing.assert_array_equal(again.static.positions, scene.static.positions)
+    np.testing.assert_array_equal(again.fixtures.pose, scene.fixtures.pose)
+
+
+def test_no_lane_leads_through_anything_solid(scene):
+    solids = scene.colliders
+    outlines = [
+        shapely.Polygon(solids.prism_points[low:high])
+        for solid, (low, high) in enumerate(pairwise(solids.prism_first))
+        if solids.prism_bottom[solid] < 4.0
+    ]
+    round_ones = shapely.buffer(shapely.points(solids.cylinder_centre), solids.cylinder_radius)
+    tree = shapely.STRtree([*outlines, *round_ones])
+    first = scene.network.lane_first
+    for low, high in pairwise(first):
+        car = shapely.LineString(scene.network.lane_points[low:high]).buffer(0.95, cap_style="flat")
+        assert len(tree.query(car, predicate="intersects")) == 0
+
+
+def test_no_ground_lies_over_other_ground(scene):
+    kinds = scene.object_class[scene.static_object]
+    corners = scene.static.positions[scene.static.triangles].astype(np.float64)
+    level = np.ptp(corners[..., 2], axis=1) < 1e-6
+    flat = level & (corners[:, 0, 2] == np.float32(scene.terrain.floor))
+    flat &= np.isin(kinds, [ObjectClass.GROUND, ObjectClass.PAVEMENT])
+    inside = np.abs(corners[..., :2]).max(axis=(1, 2)) <= max(scene.size) / 2 + 0.01
+    pieces = shapely.polygons(corners[flat & inside][..., :2])
+    together = shapely.area(shapely.union_all(pieces))
+    assert shapely.area(pieces).sum() == pytest.approx(together, rel=2e-4)
+    assert together > 0.4 * np.prod(scene.size)
+
+
+def test_cars_drive_on_the_streets_and_stop_at_signals(town, scene):
+    graph = MAPS.get(NAME).roads(0)
+    made = record(NAME, 0, graph, TrafficConfig(max_vehicles=6), 90.0, 1)
+    lanes = shapely.union_all(
+        [
+            shapely.LineString(scene.network.lane_points[a:b]).buffer(2.4)
+            for a, b in pairwise(scene.network.lane_first)
+        ]
+    )
+    rings = [shapely.Polygon(scene.network.junction_points[a:b]).buffer(1.0)
+             for a, b in pairwise(scene.network.junction_first) if b - a > 2]  # fmt: skip
+    road = shapely.union_all([lanes, *rings])
+    on_it = shapely.contains_xy(road, made.position[..., 0], made.position[..., 1])
+    assert on_it.mean() > 0.995
+    moved = np.linalg.norm(np.diff(made.position, axis=0), axis=2)
+    standing = (moved < 0.005).mean()
+    assert 0.01 < standing < 0.7
+
+
+def test_info_tells_figures_and_whose_data_it_is(scene, town):
+    said = info.figures_of(scene)
+    assert said.road == pytest.approx(2 * 3 * 0.25, abs=0.4)
+    assert said.lanes > 1.3 * said.road
+    assert town.buildings * 0.9 <= said.buildings <= town.buildings * 1.2
+    text = "\n".join(info.describe(NAME, 0))
+    assert f"buildings: {said.buildings} (" in text
+    assert NOTICE in text
+
+
+def test_a_picture_from_above_shows_buildings_in_their_place(scene, tmp_path):
+    path = tmp_path / "town.png"
+    show.run(NAME, 0, path, 400, tracks=False)
+    picture = np.asarray(Image.open(path))
+    assert picture.shape[1] == 400
+    paper = show._Paper(scene, 400)
+    sizes = np.diff(scene.colliders.prism_first)
+    big = int(np.argmax(sizes >= 4))
+    low, high = scene.colliders.prism_first[big : big + 2]
+    middle = shapely.Polygon(scene.colliders.prism_points[low:high]).representative_point()
+    ((x, y),) = paper.at(np.array([[middle.x, middle.y]]))
+    assert tuple(picture[int(y / 2), int(x / 2)]) == show._BUILDING
+
+
+def test_a_gltf_file_is_read_back_with_the_stated_number_of_triangles(tmp_path, scene):
+    path = tmp_path / "town.glb"
+    stated = gltf.run(NAME, 0, path, 9)
+    data = path.read_bytes()
+    magic, version, size = struct.unpack_from("<4sII", data)
+    assert (magic, version, size) == (b"glTF", 2, len(data))
+    (length,) = struct.unpack_from("<I", data, 12)
+    told = json.loads(data[20 : 20 + length])
+    assert told["asset"]["copyright"] == NOTICE
+    counts = [
+        sum(told["accessors"][part["indices"]]["count"] // 3 for part in mesh["primitives"])
+        for mesh in told["meshes"]
+    ]
+    assert sum(counts[node["mesh"]] for node in told["nodes"] if "mesh" in node) == stated
+    trimesh = pytest.importorskip("trimesh")
+    read = trimesh.load(path)
+    faces = {name: len(shape.faces) for name, shape in read.geometry.items()}
+    assert sum(faces[read.graph[node][1]] for node in read.graph.nodes_geometry) == stated
+    low, high = read.bounds  # glTF's y points up
+    assert high[1] == pytest.approx(float(scene.static.positions[:, 2].max()), abs=20.0)
+    assert low[1] == pytest.approx(float(scene.static.positions[:, 2].min()), abs=0.5)
+
+
+def test_plans_are_in_degrees_and_rasters_hold_heights(tmp_path, scene, source):
+    plan_files.run(NAME, 0, tmp_path, 1.0)
+    roads, houses = (json.loads((tmp_path / f"{n}.geojson").read_text())
+                     for n in ("roads", "buildings"))  # fmt: skip
+    assert roads["attribution"] == NOTICE
+    x, y = np.array(roads["features"][0]["geometry"]["coordinates"][0])
+    assert (x, y) == pytest.approx((13.4, 52.5), abs=0.01)
+    assert len(houses["features"]) == info.figures_of(scene).buildings
+    raster = np.load(tmp_path / "raster.npz")
+    height, occupancy = raster["height"], raster["occupancy"]
+    assert height.shape == occupancy.shape == tuple(map(int, scene.size[::-1]))
+    built = occupancy == 3
+    assert height[built].min() > 1.0
+    footprints = sum(
+        shapely.Polygon(scene.colliders.prism_points[a:b]).area
+        for a, b in pairwise(scene.colliders.prism_first)
+    )
+    assert 0.7 * footprints < built.sum() < 1.3 * footprints
+    picture = np.asarray(Image.open(tmp_path / "height.png"))
+    np.testing.assert_allclose(picture[::-1] / 100.0, np.maximum(height, 0), atol=0.006)
+    assert (tmp_path / "ATTRIBUTION.txt").read_text().startswith(NOTICE)
+
+
+def test_the_notice_lies_in_the_folder_of_a_film(town, tmp_path):
+    config = EyasConfig.model_validate({"world": {"map": NAME}})
+    for overwrite in (False, True):
+        open_folder(tmp_path / "film", config, overwrite=overwrite, resume=False)
+        assert (tmp_path / "film" / "ATTRIBUTION.txt").read_text().startswith(NOTICE)
+
+
+def test_a_map_is_not_replaced_unless_asked(town, source, tmp_path):
+    with pytest.raises(OutputError, match="is there already; replace it with --overwrite"):
+        importing.run(source, NAME, record=False)
+    (tmp_path / "notes.txt").write_text("mine")
+    with pytest.raises(OutputError, match="no imported map"):
+        importing.run(source, None, out=tmp_path, record=False, overwrite=True)
+    with pytest.raises(ConfigError, match="'citystreet' is a map of Eyas"):
+        importing.run(source, "citystreet", record=False)
+
+
+def test_damaged_maps_are_told_in_one_line_and_hide_no_others(town, tmp_path, monkeypatch, caplog):
+    monkeypatch.setenv("EYAS_MAPS_DIR", str(tmp_path))
+    (tmp_path / "bad").mkdir()
+    (tmp_path / "bad" / MAP_FILE).write_text("{")
+    assert IMPORTED.names() == ()
+    assert "an imported map is left out" in caplog.text
+    with pytest.raises(DataFileError, match="not the file of an imported map"):
+        MAPS.get("bad")
+
+
+@pytest.mark.parametrize(
+    ("content", "reason"),
+    [
+        ('<bounds minlat="52" minlon="13" maxlat="52.001" maxlon="13.001"/>'
+         '<node id="1" lat="52.0005" lon="13.0005"/>', "makes no road network|no street"),
+        ('<bounds minlat="52" minlon="13" maxlat="52.2" maxlon="13.2"/>'
+         '<node id="1" lat="52.0005" lon="13.0005"/>', "at most 6 km"),
+        ('<bounds minlat="52" minlon="13" maxlat="52.0001" maxlon="13.0001"/>'
+         '<node id="1" lat="52.00005" lon="13.00005"/>', "too little for a map"),
+    ],
+)  # fmt: skip
+def test_what_is_no_map_is_one_line_and_leaves_no_folder(content, reason, town, tmp_path):
+    path = tmp_path / "odd.osm"
+    path.write_text(f"<osm>{content}</osm>")
+    with pytest.raises((DataFileError, ConfigError), match=reason):
+        importing.run(path, None, out=tmp_path / "made", record=False)
+    assert not (tmp_path / "made").exists()
