@@ -15,7 +15,9 @@ MAPS: Registry[MapRecipe] = Registry(
     MapRecipe,
     {
         "citystreet": "eyas.world.maps.citystreet:CITYSTREET",
+        "farmland": "eyas.world.maps.farmland:FARMLAND",
+        "farmland-bare": "eyas.world.maps.farmland:FARMLAND_BARE",
     },
     group="eyas.maps",
-    later=("desert", "downtown", "farmland", "lake", "simpleway", "village"),
+    later=("desert", "downtown", "lake", "simpleway", "village"),
 )
