@@ -22,8 +22,10 @@ if TYPE_CHECKING:
 
 __all__ = ["FARMLAND", "FARMLAND_BARE"]
 
-# The original's lamps are on by day too; here they leave a warm gleam on the asphalt.
-_BY_DAY = 0.12
+_BY_DAY = 0.35
+"""Lamps by day: as in the original they are never off, and leave a warm glow on the road."""
+_CLEAR = 1.0 / 18_000.0
+"""Density of air in which the mountains are seen."""
 
 
 def _roads(seed: int) -> "RoadGraph":
@@ -50,7 +52,7 @@ FARMLAND = MapRecipe(
     roads=_roads,
     scene=_scene,
     lighting={
-        DAY: replace(CLEAR_DAY, lamps=_BY_DAY),
+        DAY: replace(CLEAR_DAY, lamps=_BY_DAY, fog_density=_CLEAR),
         FOGGY: replace(FOG, fog_density=1.0 / 400.0, lamps=_BY_DAY),
         # Under its black sky, the original's farmland keeps half of the day's light.
         NIGHT: replace(
@@ -59,7 +61,7 @@ FARMLAND = MapRecipe(
             ambient_up=(0.115, 0.12, 0.14),
             ambient_down=(0.056, 0.052, 0.046),
         ),
-        SNOW: replace(WINTER_DAY, lamps=_BY_DAY),
+        SNOW: replace(WINTER_DAY, lamps=_BY_DAY, fog_density=_CLEAR),
     },
     seasons=True,
     package=__name__,

@@ -63,7 +63,7 @@ CROPS = (
     Crop(
         "lilac",
         material("crops_lilac"),
-        without_snow(material("crops_tan", (0.78, 0.90, 1.0))),
+        without_snow(material("crops_tan", (0.72, 0.82, 1.0))),
         0.30,
         13 / 68,
     ),

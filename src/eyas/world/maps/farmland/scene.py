@@ -29,6 +29,7 @@ FLOOR = (982.0, 998.0)
 """Extent of the floor, as in the original [m]."""
 
 _SOIL = material("soil", (1.0, 0.90, 0.66))
+_MEADOW = material("lawn", (0.9, 0.94, 0.84))
 _MOUNTAINS = Horizon("farmland", height=0.075, ridges=1.0, woods=0.25)
 _LAMPS_APART = 64.0
 """Along a road, from the first lamp of a link to the second, across the road [m]."""
@@ -82,7 +83,8 @@ def _add_soil(builder: SceneBuilder, covered: shapely.Geometry, season: Season, 
     """Add the soil between the fields, and fields up to the mountains."""
     floor = shapely.box(-FLOOR[0] / 2, -FLOOR[1] / 2, FLOOR[0] / 2, FLOOR[1] / 2)
     soil = surface(shapely.difference(floor, covered), FLOOR_HEIGHT, _SOIL, TEXTURES["soil"])
-    far = [(_SOIL, 0.46), *((crop.look(season), 0.54 * crop.share) for crop in CROPS)]
+    far = [(_SOIL, 0.24), (_MEADOW, 0.2)]
+    far += [(crop.look(season), 0.56 * crop.share) for crop in CROPS]
     land = outskirts.fields(FLOOR, FLOOR_HEIGHT, stream(seed, "farmland far fields"), far)
     builder.add(ObjectClass.GROUND, soil, land)
 
