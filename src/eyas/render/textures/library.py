@@ -44,6 +44,8 @@ PAINTERS: dict[str, Callable[[], NDArray[np.uint8]]] = {
     "bark": plants.bark,
     "leaves": plants.leaves,
     "foliage": plants.foliage,
+    "pale_leaves": plants.pale_leaves,
+    "pale_foliage": plants.pale_foliage,
     "roof_tiles": roofs.roof_tiles,
     "roof_terrace": roofs.roof_terrace,
     "roof_gravel": roofs.roof_gravel,

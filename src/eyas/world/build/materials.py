@@ -52,6 +52,8 @@ TEXTURES: dict[str, float] = {
     "bark": 2.0,
     "leaves": 3.0,
     "foliage": 3.0,
+    "pale_leaves": 3.0,
+    "pale_foliage": 3.0,
     "roof_tiles": 4.0,
     "roof_terrace": 8.0,
     "roof_gravel": 8.0,

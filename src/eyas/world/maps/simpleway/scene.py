@@ -2,26 +2,24 @@
 
 from dataclasses import replace
 
-import numpy as np
 import shapely
-from numpy.typing import NDArray
 
 from eyas.core.rng import stream
 from eyas.mesh.flat import flat_polygons
-from eyas.state.mesh import Material, Mesh, Surface
+from eyas.state.mesh import Mesh, Surface
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import ObjectClass, Scene
 from eyas.state.terrain import Terrain
 from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.materials import TEXTURES
-from eyas.world.build.millimetres import rounded
 from eyas.world.build.scene_builder import SceneBuilder
 from eyas.world.land import ground
+from eyas.world.land.plain import blob, far_plain, plain, rectangle
 from eyas.world.maps.simpleway.drifts import sand_bars
 from eyas.world.maps.simpleway.roads import NAME, is_loop, road_lines
 from eyas.world.maps.simpleway.skins import SKINS, Skin
 from eyas.world.roads import markings
-from eyas.world.roads.areas import corridors, split_on_grid, streets
+from eyas.world.roads.areas import corridors, streets
 from eyas.world.roads.curves import rounded_kerbs
 from eyas.world.roads.wear import road_wear
 from eyas.world.weather import Season
@@ -31,14 +29,11 @@ __all__ = ["FLOOR", "build_scene", "paved"]
 FLOOR = (7000.0, 5000.0)
 """Extent of the floor, as in the original [m]."""
 
-_CELL = 128.0
-"""Side of the squares into which the ground is cut [m]."""
-_FAR, _FAR_CELL = 14_000.0, 1750.0
-"""The ground goes on to this distance, in larger squares [m]."""
-_BELOW = 0.05
+_NEAR = 80.0
+"""Reach of the ground that is cut into small squares beside a road [m]."""
 _BANK = 2.5
 """Bare ground between a road and a strip, at least [m]."""
-_SPOTS = 700
+_SPOTS = 320
 _SPOT = (8.0, 40.0)
 """Number and mean radius of the patches of another tint [m]."""
 
@@ -57,16 +52,23 @@ def build_scene(skin_name: str, network: RoadNetwork, seed: int, season: Season)
     _add_roads(builder, network, roads, seed)
     if skin.bars:
         bars = sand_bars(road_lines(seed), roads, stream(seed, "simpleway bars"))
-        builder.add(ObjectClass.GROUND, flat_polygons(bars, 0.03, skin.ground, _tile(skin.ground)))
-    rest = shapely.difference(shapely.box(*_bounds(*FLOOR)), roads)
-    banks = shapely.buffer(roads, _BANK)
+        builder.add(
+            ObjectClass.GROUND,
+            flat_polygons(bars, 0.03, skin.ground, TEXTURES[skin.ground.texture]),
+        )
+    rest = shapely.difference(rectangle(*FLOOR), roads)
+    banks, near = shapely.buffer(roads, _BANK), shapely.buffer(roads, _NEAR, join_style="mitre")
     patches = skin.patches(road_lines(seed), season, stream(seed, "simpleway strips"))
     for patch in patches:
         kind = patch.cover.surface == Surface.WATER
         area = shapely.difference(patch.area, banks)
-        builder.add(ObjectClass.WATER if kind else ObjectClass.GROUND, _wide(area, patch.cover))
+        builder.add(
+            ObjectClass.WATER if kind else ObjectClass.GROUND, plain(area, near, patch.cover)
+        )
         rest = shapely.difference(rest, area)
-    builder.add(ObjectClass.GROUND, *_spotted(rest, skin, seed), _far(skin.ground))
+    builder.add(
+        ObjectClass.GROUND, *_spotted(rest, near, skin, seed), far_plain(FLOOR, skin.ground)
+    )
     return builder.build(network, horizon=skin.horizon)
 
 
@@ -83,12 +85,12 @@ def _add_roads(
     for edge, street in zip(network.edges, streets(network), strict=True):
         if is_loop(edge):
             paint.lines.extend(markings.stripes(street.left, 0.2))
-    wear = road_wear(network, stream(seed, "simpleway road wear"))
+    wear = road_wear(network, stream(seed, "simpleway road wear"), apart=5.0)
     builder.add(ObjectClass.MARKING, markings.mesh_of(paint))
     builder.add(ObjectClass.ROAD, markings.margins_of(paint), wear, ground.asphalt(roads))
 
 
-def _spotted(area: shapely.Geometry, skin: Skin, seed: int) -> list[Mesh]:
+def _spotted(area: shapely.Geometry, near: shapely.Geometry, skin: Skin, seed: int) -> list[Mesh]:
     """Return the ground, with patches of other tints along the roads."""
     rng = stream(seed, "simpleway spots")
     count = len(skin.tints)
@@ -97,41 +99,12 @@ def _spotted(area: shapely.Geometry, skin: Skin, seed: int) -> list[Mesh]:
     for index in range(_SPOTS):
         south, north = lines[int(rng.integers(len(lines)))]
         middle = south + rng.random() * (north - south) + rng.uniform(-60.0, 60.0, 2)
-        spots[index % count].append(_blob(middle, float(rng.uniform(*_SPOT)), rng))
+        spots[index % count].append(blob(middle, float(rng.uniform(*_SPOT)), rng))
     made, rest = [], area
     for tint, shapes in zip(skin.tints, spots, strict=True):
         some = shapely.union_all(shapes)
         red, green, blue = (a * b for a, b in zip(skin.ground.tint, tint, strict=True))
         cover = replace(skin.ground, tint=(red, green, blue))
-        made.append(_wide(shapely.intersection(rest, some), cover))
+        made.append(plain(shapely.intersection(rest, some), near, cover))
         rest = shapely.difference(rest, some)
-    return [*made, _wide(rest, skin.ground)]
-
-
-def _blob(middle: NDArray[np.float64], size: float, rng: np.random.Generator) -> shapely.Polygon:
-    """Return a round patch with an uneven outline."""
-    angle = np.linspace(0.0, 2 * np.pi, 18, endpoint=False)
-    phase, swing = rng.uniform(0, 2 * np.pi, (3, 1)), rng.uniform(0.05, 0.16, (3, 1))
-    waves = 1.0 + (swing * np.sin(angle * [[1], [2], [3]] + phase)).sum(axis=0)
-    ring = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    return shapely.Polygon(rounded(middle + size * waves[:, None] * ring))
-
-
-def _far(cover: Material) -> Mesh:
-    """Return the ground beyond the floor, slightly below it so that it never shows through."""
-    ring = shapely.difference(
-        shapely.box(*_bounds(2 * _FAR, 2 * _FAR)), shapely.box(*_bounds(*FLOOR))
-    )
-    return flat_polygons(split_on_grid(ring, _FAR_CELL), FLOOR_HEIGHT - _BELOW, cover, _tile(cover))
-
-
-def _wide(area: shapely.Geometry, cover: Material) -> Mesh:
-    return flat_polygons(split_on_grid(area, _CELL), FLOOR_HEIGHT, cover, _tile(cover))
-
-
-def _tile(cover: Material) -> float:
-    return TEXTURES[cover.texture]
-
-
-def _bounds(east_west: float, north_south: float) -> tuple[float, float, float, float]:
-    return -east_west / 2, -north_south / 2, east_west / 2, north_south / 2
+    return [*made, plain(rest, near, skin.ground)]

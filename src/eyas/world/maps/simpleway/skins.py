@@ -58,10 +58,10 @@ def _coloured(material_name: str, tint: tuple[float, float, float]) -> Material:
     return without_snow(material(material_name, tint))
 
 
-_WATER = Material("water", (0.30, 0.52, 0.80), Surface.WATER)
+_WATER = Material("water", (0.38, 0.59, 0.85), Surface.WATER)
 _PINK = _coloured("crops_lilac", (1.0, 0.90, 0.60))
 _GREEN = _coloured("crops_green", (1.0, 1.0, 0.62))
-_OCHRE = _coloured("crops_yellow", (0.86, 0.80, 0.5))
+_OCHRE = _coloured("crops_yellow", (0.86, 0.72, 0.42))
 _BROWN = _coloured("crops_tan", (0.74, 0.72, 0.70))
 _OLIVE = _coloured("crops_yellow", (0.78, 0.90, 0.80))
 _STRIPS = (*(4 * [_WATER]), *(3 * [_PINK]), *(3 * [_GREEN]), *(3 * [_OCHRE]),
