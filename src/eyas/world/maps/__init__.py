@@ -17,6 +17,7 @@ MAPS: Registry[MapRecipe] = Registry(
         "citystreet": "eyas.world.maps.citystreet:CITYSTREET",
         "farmland": "eyas.world.maps.farmland:FARMLAND",
         "farmland-bare": "eyas.world.maps.farmland:FARMLAND_BARE",
+        "lake": "eyas.world.maps.lake:LAKE",
         "simpleway-grass": "eyas.world.maps.simpleway:GRASS",
         "simpleway-clinker": "eyas.world.maps.simpleway:CLINKER",
         "simpleway-desert": "eyas.world.maps.simpleway:DESERT",
@@ -26,5 +27,5 @@ MAPS: Registry[MapRecipe] = Registry(
         "simpleway-city": "eyas.world.maps.simpleway:CITY",
     },
     group="eyas.maps",
-    later=("desert", "downtown", "lake", "village"),
+    later=("desert", "downtown", "village"),
 )
