@@ -86,7 +86,8 @@ def stand_levels(kinds: Sequence[Species], rng: np.random.Generator, *, frosted:
         for level, mesh in zip(levels, shapes[which], strict=True):
             level.append(transformed(mesh, pose))
         tops[column, row] = height
-    cover = _leafy("pale_foliage", kinds[0], frosted, 0.92)
+    main = kinds[int(rng.integers(len(kinds)))]
+    cover = _leafy("pale_foliage", main, frosted, 0.8)
     return (*(concatenate(level) for level in levels), _canopy(tops, cover, rng))
 
 
@@ -170,8 +171,8 @@ def _canopy(tops: Array, cover: Material, rng: np.random.Generator) -> Mesh:
     steps = np.linspace(-0.5, 0.5, 5) * (STAND + 1.0)
     x, y = np.meshgrid(steps, steps, indexing="ij")
     z = tops.mean() * rng.uniform(0.75, 1.05, x.shape)
-    z[[0, -1]] *= 0.35
-    z[:, [0, -1]] *= 0.45
+    z[[0, -1]] *= 0.8
+    z[:, [0, -1]] *= 0.8
     points = np.stack([x, y, z], axis=2)
     corners = np.stack([points[:-1, :-1], points[1:, :-1], points[1:, 1:], points[:-1, 1:]], axis=2)
     flat = corners.reshape(-1, 4, 3)
