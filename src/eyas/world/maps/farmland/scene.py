@@ -7,6 +7,7 @@ import shapely
 
 from eyas.core.rng import stream
 from eyas.state.lighting import Horizon
+from eyas.state.mesh import Mesh
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import Lamps, ObjectClass, Scene
 from eyas.state.terrain import Terrain
@@ -14,7 +15,8 @@ from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.materials import TEXTURES, material
 from eyas.world.build.scene_builder import SceneBuilder
 from eyas.world.land import ground, outskirts
-from eyas.world.maps.farmland.fields import CROPS, Field, field_mesh, lay_out
+from eyas.world.land.plain import far_plain, rectangle
+from eyas.world.maps.farmland.fields import CROPS, VERGE, Field, field_mesh, lay_out
 from eyas.world.maps.farmland.roads import NAME, ROAD_WIDTH, road_graph
 from eyas.world.roads import markings
 from eyas.world.roads.areas import road_area, surface
@@ -48,11 +50,17 @@ def build_scene(network: RoadNetwork, seed: int, season: Season) -> Scene:
     """
     builder = SceneBuilder(NAME, seed, FLOOR, Terrain.flat(FLOOR_HEIGHT))
     x, y = (sorted(set(places)) for places in zip(*_nodes(seed), strict=True))
-    fields = lay_out(x, y, stream(seed, "farmland fields"))
+    # Kerbs are round at the corners, and so are the verges.
+    verge = shapely.buffer(road_area(network), VERGE - 0.01)
+    fields = [
+        replace(field, area=shapely.difference(field.area, verge))
+        for field in lay_out(x, y, stream(seed, "farmland fields"))
+    ]
     _add_roads(builder, network, seed)
     crops = shapely.union_all([field.area for field in fields])
     builder.add(ObjectClass.GROUND, *(field_mesh(field, season) for field in fields))
-    _add_soil(builder, shapely.union(road_area(network), crops), season, seed)
+    soil = _soil(shapely.union(road_area(network), crops))
+    builder.add(ObjectClass.GROUND, soil, _far_fields(season, seed))
     add_bales(builder, _stubble(fields), CROPS[2].height, stream(seed, "farmland bales"))
     lamps = add_lamps_at(builder, _lamp_places(network, seed), _LEAN)
     return builder.build(network, replace(lamps, intensity=45.0, cut_off=1.57), _MOUNTAINS)
@@ -62,7 +70,7 @@ def build_bare_scene(network: RoadNetwork, seed: int) -> Scene:
     """Return the roads of the farmland on bare soil."""
     builder = SceneBuilder(NAME, seed, FLOOR, Terrain.flat(FLOOR_HEIGHT))
     _add_roads(builder, network, seed)
-    _add_soil(builder, road_area(network), Season.SUMMER, seed)
+    builder.add(ObjectClass.GROUND, _soil(road_area(network)), far_plain(FLOOR, _SOIL))
     return builder.build(network, Lamps.none(), _MOUNTAINS)
 
 
@@ -79,14 +87,18 @@ def _add_roads(builder: SceneBuilder, network: RoadNetwork, seed: int) -> None:
     builder.add(ObjectClass.ROAD, markings.margins_of(paint), wear, asphalt)
 
 
-def _add_soil(builder: SceneBuilder, covered: shapely.Geometry, season: Season, seed: int) -> None:
-    """Add the soil between the fields, and fields up to the mountains."""
-    floor = shapely.box(-FLOOR[0] / 2, -FLOOR[1] / 2, FLOOR[0] / 2, FLOOR[1] / 2)
-    soil = surface(shapely.difference(floor, covered), FLOOR_HEIGHT, _SOIL, TEXTURES["soil"])
-    far = [(_SOIL, 0.24), (_MEADOW, 0.2)]
-    far += [(crop.look(season), 0.56 * crop.share) for crop in CROPS]
-    land = outskirts.fields(FLOOR, FLOOR_HEIGHT, stream(seed, "farmland far fields"), far)
-    builder.add(ObjectClass.GROUND, soil, land)
+def _soil(covered: shapely.Geometry) -> Mesh:
+    """Return the soil of the floor where nothing else covers it."""
+    bare = shapely.difference(rectangle(*FLOOR), covered)
+    return surface(bare, FLOOR_HEIGHT, _SOIL, TEXTURES["soil"])
+
+
+def _far_fields(season: Season, seed: int) -> Mesh:
+    """Return larger fields of the same crops, up to the mountains."""
+    crops = [(_SOIL, 0.24), (_MEADOW, 0.2)]
+    crops += [(crop.look(season), 0.56 * crop.share) for crop in CROPS]
+    rng = stream(seed, "farmland far fields")
+    return outskirts.fields(FLOOR, FLOOR_HEIGHT, rng, crops)
 
 
 def _stubble(fields: list[Field]) -> list[shapely.Polygon]:
