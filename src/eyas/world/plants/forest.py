@@ -87,7 +87,7 @@ def stand_levels(kinds: Sequence[Species], rng: np.random.Generator, *, frosted:
             level.append(transformed(mesh, pose))
         tops[column, row] = height
     main = kinds[int(rng.integers(len(kinds)))]
-    cover = _leafy("pale_foliage", main, frosted, 0.8)
+    cover = _leafy("pale_foliage", main, frosted, 0.76)
     return (*(concatenate(level) for level in levels), _canopy(tops, cover, rng))
 
 
@@ -107,8 +107,8 @@ def _leafy(texture: str, kind: Species, frosted: bool, light: float) -> Material
 def _unit_levels(kind: Species, rng: np.random.Generator, frosted: bool) -> tuple[Mesh, Mesh, Mesh]:
     """Return a tree of height 1: with many cards, with few, and as a closed shape."""
     crown = _CROWNS[kind.shape](kind.width / 2, rng)
-    dark, closed = (_leafy("pale_foliage", kind, frosted, light) for light in (0.5, 0.86))
-    tints = tuple(_leafy("pale_leaves", kind, frosted, k).tint for k in (0.62, 0.8, 1.0))
+    dark, closed = (_leafy("pale_foliage", kind, frosted, light) for light in (0.66, 0.78))
+    tints = tuple(_leafy("pale_leaves", kind, frosted, k).tint for k in (0.78, 0.9, 1.0))
     trunk = _trunk(kind)
     wide = kind.width
     fine = leaf_cards(crown, 42, (0.3 * wide, 0.5 * wide), tints, rng, bent=False)
