@@ -48,6 +48,12 @@ def test_turnarounds_stay_only_in_dead_ends():
     assert onward == {"up": ("on",), "down": ("up",), "on": ("back",), "back": ("down",)}
 
 
+def test_of_roads_that_never_meet_all_the_largest_last():
+    links = {"a": ("b",), "b": ("a",), "c": ("d",), "d": ("c",), "e": ("e",)}
+    apart = RoadLinks(links, dict.fromkeys(links, 1.0))
+    assert lasting_edges(apart) == ("a", "b", "c", "d")
+
+
 def test_trips_are_shortest_routes_within_the_limits():
     trips = list(islice(random_trips(SQUARE, (150.0, 320.0), np.random.default_rng(1)), 50))
     for trip in trips:

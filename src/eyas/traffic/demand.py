@@ -56,23 +56,26 @@ def without_turnarounds(links: RoadLinks, ends: dict[str, tuple[str, str]]) -> R
 def lasting_edges(links: RoadLinks) -> Route:
     """Return the edges of the largest part of the roads where all can be reached from each other.
 
+    Where several parts are the largest, as with roads that never meet, the edges of all of them.
+
     Raises:
         ConfigError: There is none: every route comes to an end.
     """
     reach = {edge: _reachable(links, edge) for edge in links.successors}
     unplaced = set(links.successors)
-    best: set[str] = set()
+    parts: list[set[str]] = []
     for edge in sorted(links.successors):
         if edge in unplaced:
             part = {other for other in reach[edge] if edge in reach[other]}
             unplaced -= part | {edge}
-            best = max(best, part, key=len)
-    if not best:
+            parts.append(part)
+    largest = max(map(len, parts), default=0)
+    if not largest:
         raise ConfigError(
             "traffic.demand: 'keep_alive' needs roads that form a loop, but all roads of this "
             "map lead out of it; use 'respawn'"
         )
-    return tuple(sorted(best))
+    return tuple(sorted(edge for part in parts if len(part) == largest for edge in part))
 
 
 def endless_walk(

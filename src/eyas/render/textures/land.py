@@ -16,7 +16,19 @@ from eyas.render.textures.fields import (
     white,
 )
 
-__all__ = ["clinker", "crops", "crops_ripe", "dry_leaves", "sand", "snow", "water"]
+__all__ = [
+    "clinker",
+    "crops",
+    "crops_green",
+    "crops_lilac",
+    "crops_ripe",
+    "crops_tan",
+    "crops_yellow",
+    "dry_leaves",
+    "sand",
+    "snow",
+    "water",
+]
 
 Texture = NDArray[np.uint8]
 
@@ -45,6 +57,26 @@ def crops() -> Texture:
 def crops_ripe() -> Texture:
     """Return dense rows of ripe yellow grain."""
     return _rows("crops_ripe", (207.0, 176.0, 98.0), (160.0, 126.0, 62.0), width=0.72)
+
+
+def crops_green() -> Texture:
+    """Return dense rows of full-grown green plants."""
+    return _rows("crops_green", (98.0, 160.0, 74.0), (62.0, 116.0, 48.0), width=0.86)
+
+
+def crops_yellow() -> Texture:
+    """Return dense rows of bright yellow flowers."""
+    return _rows("crops_yellow", (252.0, 230.0, 96.0), (206.0, 184.0, 62.0), width=0.92)
+
+
+def crops_lilac() -> Texture:
+    """Return dense rows of lilac flowers."""
+    return _rows("crops_lilac", (232.0, 176.0, 246.0), (176.0, 124.0, 198.0), width=0.86)
+
+
+def crops_tan() -> Texture:
+    """Return the dry stubble of a harvested field."""
+    return _rows("crops_tan", (228.0, 198.0, 162.0), (188.0, 156.0, 122.0), width=0.8)
 
 
 def _rows(

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from eyas.render.textures.fields import SIZE, fractal, mixed, opaque, painted, source, white
 
-__all__ = ["bark", "foliage", "leaves"]
+__all__ = ["bark", "foliage", "leaves", "pale_foliage", "pale_leaves"]
 
 _CLUSTER = 128
 """Side of one cluster of leaves; the texture holds two by two [pixels]."""
@@ -57,6 +57,22 @@ def foliage() -> NDArray[np.uint8]:
     # Clusters and the clefts between them, visible even where single leaves are not.
     clusters = 1.0 + 0.3 * fractal(rng, 1.2, longest=70.0)
     return opaque(picture[..., :3] * np.clip(clusters, 0.35, 1.5)[..., None])
+
+
+def pale_leaves() -> NDArray[np.uint8]:
+    """Return the clusters of `leaves` in light grey, to be tinted like blossoms or frost."""
+    return _paled(leaves())
+
+
+def pale_foliage() -> NDArray[np.uint8]:
+    """Return the closed leaves of `foliage` in light grey."""
+    return _paled(foliage())
+
+
+def _paled(picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
+    grey = np.clip(np.round(2.1 * picture[..., :3].mean(axis=2, keepdims=True)), 0, 255)
+    pale = np.concatenate([grey, grey, grey, picture[..., 3:]], axis=2)
+    return pale.astype(np.uint8)
 
 
 def _shade_of_leaves(rng: np.random.Generator) -> NDArray[np.float64]:

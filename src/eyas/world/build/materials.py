@@ -1,8 +1,10 @@
 """Materials of the maps: the names of their textures and the size of one repeat in metres."""
 
+from dataclasses import replace
+
 from eyas.state.mesh import Material, Surface
 
-__all__ = ["FACADES", "GROUND_FLOORS", "TEXTURES", "facade", "material"]
+__all__ = ["FACADES", "GROUND_FLOORS", "TEXTURES", "facade", "material", "without_snow"]
 
 FACADES = (
     "facade_concrete",
@@ -32,6 +34,10 @@ TEXTURES: dict[str, float] = {
     "sand": 6.0,
     "crops": 12.0,
     "crops_ripe": 12.0,
+    "crops_green": 12.0,
+    "crops_yellow": 12.0,
+    "crops_lilac": 12.0,
+    "crops_tan": 12.0,
     "dry_leaves": 4.0,
     "snow": 8.0,
     "clinker": 4.0,
@@ -46,6 +52,8 @@ TEXTURES: dict[str, float] = {
     "bark": 2.0,
     "leaves": 3.0,
     "foliage": 3.0,
+    "pale_leaves": 3.0,
+    "pale_foliage": 3.0,
     "roof_tiles": 4.0,
     "roof_terrace": 8.0,
     "roof_gravel": 8.0,
@@ -61,6 +69,11 @@ TEXTURES: dict[str, float] = {
 def material(texture: str, tint: tuple[float, float, float] = (1.0, 1.0, 1.0)) -> Material:
     """Return a matt material with a texture."""
     return Material(texture=texture, tint=tint)
+
+
+def without_snow(base: Material) -> Material:
+    """Return a matt material on which no snow stays: a signal's, which gives no light here."""
+    return replace(base, surface=Surface.SIGNAL, emission=0.0)
 
 
 def facade(kind: str, tint: tuple[float, float, float] = (1.0, 1.0, 1.0)) -> Material:

@@ -1,12 +1,14 @@
 """Land beyond the streets: fields up to the horizon, and the end of an elevated road."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
 from eyas.mesh.assembly import concatenate
 from eyas.mesh.flat import quads
-from eyas.state.mesh import Mesh
+from eyas.state.mesh import Material, Mesh
 from eyas.world.build.materials import TEXTURES, material
 from eyas.world.build.millimetres import rounded, snapped, unit
 from eyas.world.roads.curves import TURN, arc
@@ -17,14 +19,14 @@ __all__ = ["access_road", "descent", "fields"]
 _LINES = (450.0, 620.0, 860.0, 1200.0, 1700.0, 2300.0, 3000.0, 4200.0, 6500.0, 10000.0)
 """Borders of the fields from the centre of a floor of 900 m; scaled with the floor [m]."""
 _CROPS = (
-    material("lawn", (0.99, 0.99, 0.97)),
-    material("lawn", (0.92, 0.95, 0.86)),
-    material("lawn", (0.84, 0.91, 0.80)),
-    material("crops", (0.98, 1.0, 0.92)),
-    material("crops_ripe", (0.90, 0.92, 0.82)),
-    material("soil", (0.98, 0.94, 0.88)),
+    (material("lawn", (0.99, 0.99, 0.97)), 0.26),
+    (material("lawn", (0.92, 0.95, 0.86)), 0.22),
+    (material("lawn", (0.84, 0.91, 0.80)), 0.2),
+    (material("crops", (0.98, 1.0, 0.92)), 0.14),
+    (material("crops_ripe", (0.90, 0.92, 0.82)), 0.12),
+    (material("soil", (0.98, 0.94, 0.88)), 0.06),
 )
-_CROP_ODDS = (0.26, 0.22, 0.2, 0.14, 0.12, 0.06)
+"""What grows on the fields, and the share of each."""
 _BELOW = 0.05
 """Depth of the fields below the floor, so that rounding never makes them show through [m]."""
 
@@ -38,13 +40,19 @@ _TAIL = 621.0
 Points = NDArray[np.float64]
 
 
-def fields(size: tuple[float, float], floor: float, rng: np.random.Generator) -> Mesh:
+def fields(
+    size: tuple[float, float],
+    floor: float,
+    rng: np.random.Generator,
+    crops: Sequence[tuple[Material, float]] = _CROPS,
+) -> Mesh:
     """Return the land around the floor up to the horizon, a patchwork of large fields.
 
     Args:
         size: Extent of the floor [m].
         floor: z of the floor [m].
         rng: Random numbers of the fields.
+        crops: What grows on them, and the share of each; the shares add up to 1.
     """
     half = np.array([*(-np.array(_LINES[::-1])), -150.0, 150.0, *_LINES])
     steps = len(half) - 1
@@ -58,9 +66,9 @@ def fields(size: tuple[float, float], floor: float, rng: np.random.Generator) ->
     ).reshape(-1, 4, 3)
     inner = np.abs(half[:-1] + half[1:]) / 2 < _LINES[0]
     outside = ~(inner[:, None] & inner[None]).ravel()
-    kind = rng.choice(len(_CROPS), size=steps * steps, p=_CROP_ODDS)
+    kind = rng.choice(len(crops), size=steps * steps, p=[share for _, share in crops])
     made = []
-    for index, crop in enumerate(_CROPS):
+    for index, (crop, _) in enumerate(crops):
         some = cells[outside & (kind == index)]
         made.append(quads(some, some[..., :2] / TEXTURES[crop.texture], crop))
     return concatenate(made)

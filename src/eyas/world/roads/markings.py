@@ -14,7 +14,7 @@ from eyas.mesh.flat import flat_polygons, quads
 from eyas.state.mesh import MARGIN, Material, Mesh, Surface
 from eyas.state.roads import RoadNetwork
 from eyas.world.build.materials import TEXTURES, material
-from eyas.world.build.millimetres import dot, rounded, unit
+from eyas.world.build.millimetres import dot, length, rounded, unit
 from eyas.world.roads.areas import GRID, Street, joints, split_on_grid, streets
 from eyas.world.roads.curves import joined
 
@@ -142,24 +142,41 @@ def stripes(line: Line, width: float, dashes: tuple[float, float] | None = None)
 def _strips(paint: RoadPaint, margin: float, z: float) -> list[Mesh]:
     """Return the lines as quadrilaterals, wider than the paint on both sides by a margin [m]."""
     bars = [bar for zebra in paint.zebras for bar in zebra]
-    white = [_strip(line, margin, z, _WHITE_LINE) for line in paint.lines]
-    return white + [_strip(bar, margin, z, _YELLOW_LINE) for bar in bars]
+    return [
+        _together(some, margin, z, kind)
+        for some, kind in ((paint.lines, _WHITE_LINE), (bars, _YELLOW_LINE))
+    ]
 
 
-def _strip(stripe: Stripe, margin: float, z: float, kind: Material) -> Mesh:
-    """Return a line; u and v are in half widths, see `Surface.MARKING`."""
-    path = shapely.simplify(shapely.LineString(stripe.middle), 1e-3)
-    middle = shapely.get_coordinates(shapely.segmentize(path, GRID))
+def _together(some: Sequence[Stripe], margin: float, z: float, kind: Material) -> Mesh:
+    """Return lines of one colour; u and v are in half widths, see `Surface.MARKING`."""
+    if not some:
+        return Mesh.none()
+    corners, uvs = zip(*[_strip(line, margin) for line in some], strict=True)
+    flat = np.concatenate(corners)
+    level = np.full((*flat.shape[:2], 1), z)
+    return quads(np.concatenate([flat, level], axis=2), np.concatenate(uvs), kind)
+
+
+def _strip(stripe: Stripe, margin: float) -> tuple[Line, Line]:
+    """Return corners of the quadrilaterals of a line [m], and u and v, shapes (K, 4, 2)."""
+    middle = _pieces(stripe.middle)
     along = np.gradient(middle, axis=0)
     along /= np.linalg.norm(along, axis=1, keepdims=True)
     half = stripe.width / 2
     reach = 1.0 + margin / half
     across = reach * half * np.stack([-along[:, 1], along[:, 0]], axis=1)
     gone = np.append(0.0, np.linalg.norm(np.diff(middle, axis=0), axis=1).cumsum()) / half
-    sides = [(middle - across, 32.0 - reach), (middle + across, 32.0 + reach)]
-    right, left = (np.column_stack([side, np.full(len(gone), z)]) for side, _ in sides)
-    uv_right, uv_left = (np.column_stack([np.full(len(gone), u), gone]) for _, u in sides)
-    return quads(_cells(right, left), _cells(uv_right, uv_left), kind)
+    right, left = (np.stack([np.full(len(gone), 32.0 + u), gone], axis=1) for u in (-reach, reach))
+    return _cells(middle - across, middle + across), _cells(right, left)
+
+
+def _pieces(line: Line) -> Line:
+    """Return a line without needless points, in pieces no longer than the side of a square."""
+    if len(line) == 2 and length(line[1] - line[0]) <= GRID:
+        return line  # like most dashes
+    path = shapely.simplify(shapely.LineString(line), 1e-3)
+    return np.asarray(shapely.get_coordinates(shapely.segmentize(path, GRID)), np.float64)
 
 
 def _cells(right: Line, left: Line) -> Line:

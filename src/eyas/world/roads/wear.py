@@ -55,19 +55,20 @@ _SEAL_STEPS = 6
 Line = NDArray[np.float64]
 
 
-def road_wear(network: RoadNetwork, rng: np.random.Generator) -> Mesh:
+def road_wear(network: RoadNetwork, rng: np.random.Generator, apart: float = 1.0) -> Mesh:
     """Return the wear of all lanes, the upper layers first.
 
     Args:
         network: The roads.
         rng: Random numbers of the map, for the positions of patches, seals and lids.
+        apart: Factor on the distances between these; larger for very long roads.
     """
     tracks, seals, patches, lids, oil = [], [], [], [], []
     for low, high in pairwise(network.lane_first):
         lane = shapely.LineString(network.lane_points[low:high])
         paved = _LANES[int(rng.integers(len(_LANES)))]
         tracks.append(_tracks(lane, float(rng.random()), paved))
-        for start in _places(lane.length, _PATCH_EVERY, rng):
+        for start in _places(lane.length, apart * _PATCH_EVERY, rng):
             half_width = rng.uniform(*_PATCH_WIDTH) / 2
             end = start + rng.uniform(*_PATCH_LENGTH)
             middle = rng.uniform(-1.5 + half_width, 1.5 - half_width)
@@ -75,11 +76,11 @@ def road_wear(network: RoadNetwork, rng: np.random.Generator) -> Mesh:
         if lane.length > 3 * _WAITING[1]:
             start, end = lane.length - _WAITING[1], lane.length - _WAITING[0]
             oil.append(_beside(lane, start, end, -_OIL_HALF, _OIL_HALF))
-        for at in _places(lane.length, _LID_EVERY, rng):
+        for at in _places(lane.length, apart * _LID_EVERY, rng):
             aside = rng.uniform(-0.5, 0.5)
             sides = (at - _LID_HALF, at + _LID_HALF, aside - _LID_HALF, aside + _LID_HALF)
             lids.append(_beside(lane, *sides))
-        seals += [_seal(lane, at, rng) for at in _places(lane.length, _SEAL_EVERY, rng)]
+        seals += [_seal(lane, at, rng) for at in _places(lane.length, apart * _SEAL_EVERY, rng)]
     flat = _slabs(patches, WEAR_HEIGHTS[1], _PATCH)
     flat.uvs = (flat.positions[:, :2] / TEXTURES["asphalt_patch"]).astype(np.float32)
     stains = _slabs(oil, WEAR_HEIGHTS[1], _OIL)

@@ -1,8 +1,10 @@
 """Street lamps: a dark pole beyond the kerb, and an arm with the light over the road."""
 
+from collections.abc import Iterable
+
 import numpy as np
 import shapely
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from eyas.mesh.assembly import concatenate
 from eyas.mesh.solids import box, tube
@@ -14,7 +16,15 @@ from eyas.world.build.materials import material
 from eyas.world.build.scene_builder import SceneBuilder
 from eyas.world.roads.areas import streets
 
-__all__ = ["BEYOND_KERB", "LIGHT", "POLE_HEIGHT", "POLE_RADIUS", "add_lamps", "lamp_levels"]
+__all__ = [
+    "BEYOND_KERB",
+    "LIGHT",
+    "POLE_HEIGHT",
+    "POLE_RADIUS",
+    "add_lamps",
+    "add_lamps_at",
+    "lamp_levels",
+]
 
 POLE_HEIGHT = 7.35
 """Height of the poles, as in the original [m]."""
@@ -62,10 +72,26 @@ def add_lamps(
         keep_free: Area where no pole may stand.
         rng: Random numbers of the lamps.
     """
+    return add_lamps_at(builder, _places(network, count, keep_free, rng), _AXIS)
+
+
+def add_lamps_at(
+    builder: SceneBuilder,
+    places: Iterable[tuple[ArrayLike, float]],
+    beam: tuple[float, float, float],
+) -> Lamps:
+    """Add street lamps at given places; return their lights.
+
+    Args:
+        builder: The builder to add to.
+        places: Foot of each lamp [m], 2 numbers, and the direction of its arm [rad].
+        beam: Axis of the beams, not of length 1; x is the direction of the arm.
+    """
     prototype = builder.prototype("street lamp", lamp_levels)
     position, axis = [], []
-    lean = np.array(_AXIS) / np.linalg.norm(_AXIS)
-    for foot, turn in _places(network, count, keep_free, rng):
+    lean = np.array(beam) / np.linalg.norm(beam)
+    for place, turn in places:
+        foot = np.asarray(place, np.float64)
         owner = builder.add_copy(ObjectClass.POLE, prototype, (*foot, 0.0), turn, 1.0)
         builder.add_cylinder((foot[0], foot[1]), POLE_RADIUS, FLOOR_HEIGHT, POLE_HEIGHT, owner)
         onto_road = np.array([np.cos(turn), np.sin(turn)])

@@ -1,0 +1,78 @@
+"""The farmland: a patchwork of crops in four colours between straight roads, nothing to hide in."""
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from eyas.world.maps.recipe import MapRecipe
+from eyas.world.weather import (
+    CLEAR_DAY,
+    CLEAR_NIGHT,
+    DAY,
+    FOG,
+    FOGGY,
+    NIGHT,
+    SNOW,
+    WINTER_DAY,
+    Season,
+)
+
+if TYPE_CHECKING:
+    from eyas.state.roads import RoadGraph, RoadNetwork
+    from eyas.state.scene import Scene
+
+__all__ = ["FARMLAND", "FARMLAND_BARE"]
+
+_BY_DAY = 0.35
+"""Lamps by day: as in the original they are never off, and leave a warm glow on the road."""
+_CLEAR = 1.0 / 18_000.0
+"""Density of air in which the mountains are seen."""
+
+
+def _roads(seed: int) -> "RoadGraph":
+    from eyas.world.maps.farmland.roads import road_graph
+
+    return road_graph(seed)
+
+
+def _scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
+    from eyas.world.maps.farmland.scene import build_scene
+
+    return build_scene(network, seed, season)
+
+
+def _bare_scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
+    from eyas.world.maps.farmland.scene import build_bare_scene
+
+    return build_bare_scene(network, seed)
+
+
+FARMLAND = MapRecipe(
+    name="farmland",
+    title="A patchwork of fields in four colours",
+    roads=_roads,
+    scene=_scene,
+    lighting={
+        DAY: replace(CLEAR_DAY, lamps=_BY_DAY, fog_density=_CLEAR),
+        FOGGY: replace(FOG, fog_density=1.0 / 400.0, lamps=_BY_DAY),
+        # Under its black sky, the original's farmland keeps half of the day's light.
+        NIGHT: replace(
+            CLEAR_NIGHT,
+            sun_colour=(0.16, 0.17, 0.19),
+            ambient_up=(0.115, 0.12, 0.14),
+            ambient_down=(0.056, 0.052, 0.046),
+        ),
+        SNOW: replace(WINTER_DAY, lamps=_BY_DAY, fog_density=_CLEAR),
+    },
+    seasons=True,
+    package=__name__,
+)
+
+FARMLAND_BARE = replace(
+    FARMLAND,
+    name="farmland-bare",
+    title="The roads of the farmland on bare soil, without scenery",
+    scene=_bare_scene,
+    lighting={DAY: CLEAR_DAY},
+    seasons=False,
+)
+"""The layout `farmlandS` of the original."""

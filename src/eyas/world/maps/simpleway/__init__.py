@@ -1,0 +1,94 @@
+"""The simple maps: sixteen straight roads that never meet, on grounds of seven kinds.
+
+All have the same roads, and share the network and the recordings in this package. As in the
+original there are 23 of them, weathers included.
+"""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from eyas.state.lighting import Lighting
+from eyas.world.maps.recipe import MapRecipe
+from eyas.world.weather import (
+    CLEAR_DAY,
+    CLEAR_NIGHT,
+    DAY,
+    FOG,
+    FOGGY,
+    NIGHT,
+    SNOW,
+    WINTER_DAY,
+    Season,
+    Weather,
+)
+
+if TYPE_CHECKING:
+    from eyas.state.roads import RoadGraph, RoadNetwork
+    from eyas.state.scene import Scene
+
+__all__ = ["CITY", "CLINKER", "DESERT", "FARM", "GRASS", "LAKE", "VILLAGE"]
+
+_FOG = replace(FOG, fog_density=1.0 / 400.0)
+_ALL = {DAY: CLEAR_DAY, FOGGY: _FOG, NIGHT: CLEAR_NIGHT, SNOW: WINTER_DAY}
+
+_DUSTY = replace(
+    CLEAR_DAY,
+    zenith_colour=(0.34, 0.36, 0.36),
+    horizon_colour=(0.86, 0.76, 0.56),
+    fog_colour=(0.78, 0.68, 0.50),
+    clouds=0.0,
+)
+_DESERT = {
+    DAY: _DUSTY,
+    FOGGY: replace(_FOG, fog_colour=(0.66, 0.60, 0.48), horizon_colour=(0.86, 0.80, 0.68)),
+    NIGHT: replace(CLEAR_NIGHT, horizon_colour=(0.07, 0.03, 0.015), clouds=0.0),
+    # As in the original, some squares are white (their scene says so), and the sand stays bare.
+    SNOW: replace(_DUSTY, flakes=0.5),
+}
+
+_PURPLE_NIGHT = replace(
+    CLEAR_NIGHT, zenith_colour=(0.018, 0.015, 0.028), horizon_colour=(0.042, 0.036, 0.057)
+)
+
+
+def _roads(seed: int) -> "RoadGraph":
+    from eyas.world.maps.simpleway.roads import road_graph
+
+    return road_graph(seed)
+
+
+def _skinned(
+    skin: str, title: str, lighting: Mapping[Weather, Lighting], *, seasons: bool = False
+) -> MapRecipe:
+    """Return the simple map with one kind of ground."""
+
+    def scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
+        from eyas.world.maps.simpleway.scene import build_scene
+
+        return build_scene(skin, network, seed, season)
+
+    return MapRecipe(
+        name=f"simpleway-{skin}",
+        title=title,
+        roads=_roads,
+        scene=scene,
+        lighting=lighting,
+        seasons=seasons,
+        package=__name__,
+    )
+
+
+GRASS = _skinned(
+    "grass",
+    "Straight roads on a lawn",
+    {**_ALL, FOGGY: replace(FOG, fog_density=1.0 / 500.0)},
+)
+CLINKER = _skinned(
+    "clinker", "Straight roads on a grey plain", {DAY: CLEAR_DAY, NIGHT: _PURPLE_NIGHT}
+)
+DESERT = _skinned("desert", "Straight roads under bars of sand", _DESERT, seasons=True)
+FARM = _skinned("farm", "Straight roads between coloured strips", _ALL, seasons=True)
+LAKE = _skinned("lake", "Straight roads between strips of water", _ALL)
+VILLAGE = _skinned("village", "Straight roads on a green plain", _ALL)
+CITY = _skinned("city", "Straight roads on a white plain", {SNOW: WINTER_DAY})
