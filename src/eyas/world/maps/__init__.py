@@ -15,7 +15,8 @@ MAPS: Registry[MapRecipe] = Registry(
     MapRecipe,
     {
         "citystreet": "eyas.world.maps.citystreet:CITYSTREET",
+        "downtown": "eyas.world.maps.downtown:DOWNTOWN",
     },
     group="eyas.maps",
-    later=("desert", "downtown", "farmland", "lake", "simpleway", "village"),
+    later=("desert", "farmland", "lake", "simpleway", "village"),
 )
