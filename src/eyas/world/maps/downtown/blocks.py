@@ -100,7 +100,7 @@ def _large(strip: Box, rng: np.random.Generator) -> list[Lot]:
     west, south, east, north = strip
     long = east - west >= north - south
     length = max(east - west, north - south)
-    count = max(round(length / float(rng.uniform(26.0, 40.0))), 1)
+    count = max(round(length / float(rng.uniform(36.0, 52.0))), 1)
     cuts = np.round(np.linspace(0.0, length, count + 1) / 1.5) * 1.5
     cuts[-1] = length
     boxes = [

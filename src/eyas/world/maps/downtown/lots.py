@@ -13,9 +13,9 @@ _STRETCH = (26.0, 58.0)
 """Length of a stretch of the block with two rows of lots [m]."""
 _ROW_DEPTH = (0.36, 0.49)
 """Depth of a row as a share of the block's; yards lie between two rows."""
-_WIDTH = 15.5
+_WIDTH = 23.0
 """Median width of a lot in a row [m]."""
-_WIDTHS = (7.5, 36.0)
+_WIDTHS = (7.5, 40.0)
 _SHALLOW = 30.0
 """Blocks less deep than this have no yards [m]."""
 _PARTY = 0.06

@@ -38,7 +38,7 @@ _TWO_WAY = 3
 _NARROW_AVENUE = (2, 5)
 """Avenues of three lanes instead of four."""
 _WIDE_STREETS = (2, 4, 7)
-"""Streets of two lanes each way; the others have one."""
+"""Inner streets of two lanes each way; the others have one."""
 _LANE = 3.5
 
 AVENUES, STREETS = len(_COLUMNS) + 1, len(_ROWS) + 1
@@ -115,7 +115,8 @@ def _edges(plan: Grid, start: Cell, end: Cell, sides: int) -> list[RoadEdge]:
     """Return the directions of the road between two crossings, with blocks on `sides` sides."""
     avenue = start[0] == end[0]
     if not avenue or sides == 1 or start[0] == _TWO_WAY:
-        lanes = 2 if avenue or start[1] in _WIDE_STREETS else 1
+        # Outer roads are wide, so that no lane ends at a corner.
+        lanes = 2 if avenue or sides == 1 or start[1] in _WIDE_STREETS else 1
         return [_edge(pair, lanes) for pair in ((start, end), (end, start))]
     lanes = 3 if start[0] in _NARROW_AVENUE else 4
     # Every other one leads south. SUMO puts lanes on the right of an edge's line; this one runs
