@@ -15,7 +15,7 @@ from eyas.world.roads.areas import polygons_of
 
 __all__ = ["Park", "make_park"]
 
-_DEPTH = 400.0
+_DEPTH = 345.0
 """From the street along its south side to its far end [m]."""
 _WALK = 4.2
 """Width of the pavement along its edge [m]."""
@@ -164,7 +164,7 @@ def _benches(trails: shapely.Geometry, taken: shapely.Geometry, inner: shapely.G
     for part in polygons_of(trails):
         for ring in (part.exterior, *part.interiors):
             line = shapely.LineString(ring.coords)
-            for at in np.arange(12.0, line.length - 1.0, 31.0):
+            for at in np.arange(12.0, line.length - 1.0, 58.0):
                 here, there = (shapely.get_coordinates(line.interpolate(s))[0] for s in (at, at + 0.2))
                 onwards = (there - here) / np.hypot(*(there - here))
                 # The path lies on the left or right of its edge; a bench on the other side.

@@ -19,6 +19,7 @@ from eyas.world.build.materials import material
 from eyas.world.build.scene_builder import Levels, Prototype, SceneBuilder
 from eyas.world.buildings import placing, rooftops
 from eyas.world.buildings.facades import chance_of, mesh_of
+from eyas.world.maps.downtown.fronts import add_fronts
 from eyas.world.maps.downtown.kerbs import crossing_lamps
 from eyas.world.maps.downtown.plan import FLOOR, Plan, make_plan
 from eyas.world.maps.downtown.roads import NAME
@@ -37,7 +38,7 @@ _GREAT_HEIGHTS = (13.6, 15.4)
 _SLIM_HEIGHTS = (11.5, 14.0)
 _SLIMMER = 0.56
 """Width of the slim trees' crowns as a share of the great ones' of the same height."""
-_PARK_HEIGHTS = (3.4, 7.5)
+_PARK_HEIGHTS = (3.6, 8.8)
 _TAXI = (0.93, 0.70, 0.08)
 _TAXIS = 0.2
 """Share of taxis among the parked cars."""
@@ -84,8 +85,11 @@ def build_scene(network: RoadNetwork, seed: int) -> Scene:
 
 def _add_buildings(builder: SceneBuilder, plan: Plan) -> None:
     """Add buildings, each with all its parts, and the equipment of their roofs."""
+    pavement = plan.pavement
+    shapely.prepare(pavement)
     for parts in plan.buildings:
         owner = builder.add(ObjectClass.BUILDING, *map(mesh_of, parts))
+        add_fronts(builder, parts[0], owner, pavement, chance_of(parts[0]))
         above = [shapely.Polygon(part.footprint) for part in parts[1:]] + [shapely.Polygon()]
         for part, taken in zip(parts, above, strict=True):
             builder.add_prism(*placing.prism_of(part), owner)

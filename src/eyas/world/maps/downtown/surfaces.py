@@ -24,7 +24,7 @@ __all__ = ["add_surfaces"]
 _KERB_WIDTH = 0.8
 """As wide as the original's [m]."""
 _KERB = material("stone", (1.0, 0.90, 0.84))
-_SLABS = material("paving", (0.97, 0.96, 0.93))
+_SLABS = material("paving", (0.84, 0.91, 0.95))
 _COURT = material("concrete", (0.97, 0.97, 0.93))
 _TRAIL = material("asphalt_light", (1.0, 0.97, 0.90))
 _RIM = material("stone", (0.98, 0.95, 0.92))
@@ -76,7 +76,7 @@ def _pavement(
     inside = shapely.difference(area, kerb)
     return concatenate(
         [
-            surface(kerb, KERB_HEIGHT, _KERB, TEXTURES["stone"]),
+            surface(kerb, KERB_HEIGHT, _KERB, TEXTURES["stone"], turn),
             surface(inside, KERB_HEIGHT, slabs, TEXTURES[slabs.texture], turn),
             skirt(area, FLOOR_HEIGHT, KERB_HEIGHT, _KERB, TEXTURES["stone"]),
         ]
