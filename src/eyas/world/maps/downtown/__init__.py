@@ -1,4 +1,4 @@
-"""Downtown: a dense grid of streets between old brick blocks and towers, and a park in the north."""
+"""Downtown: canyons between old blocks of brick and towers, and a park in the north."""
 
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -36,16 +36,19 @@ def _scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
     return build_scene(network, seed)
 
 
-# The original's fog hides the far end of an avenue, not the other side of a crossing: its density
-# grows with the square of the distance.
-_HAZE = replace(FOG, fog_density=1.0 / 650.0, fog_power=2)
+# In the original the fog is too thin to be seen from above; here it veils the far end of a block.
+_MIST = replace(FOG, fog_density=1.0 / 500.0)
 
-# Between lit fronts the streets are less dark than on open land, and many more windows are lit.
+# Fronts and shop windows throw light back into the streets; the sky between them is black.
 _LIT = replace(
     CLEAR_NIGHT,
-    horizon_colour=(0.030, 0.027, 0.030),
-    ambient_down=(0.042, 0.037, 0.030),
-    windows=0.42,
+    zenith_colour=(0.0012, 0.0016, 0.004),
+    horizon_colour=(0.010, 0.010, 0.014),
+    ambient_up=(0.092, 0.092, 0.104),
+    ambient_down=(0.056, 0.051, 0.044),
+    fog_colour=(0.012, 0.012, 0.016),
+    clouds=0.0,
+    windows=0.36,
 )
 
 DOWNTOWN = MapRecipe(
@@ -53,6 +56,6 @@ DOWNTOWN = MapRecipe(
     title="Canyons between towers, and a park",
     roads=_roads,
     scene=_scene,
-    lighting={DAY: CLEAR_DAY, FOGGY: _HAZE, NIGHT: _LIT, SNOW: WINTER_DAY},
+    lighting={DAY: CLEAR_DAY, FOGGY: _MIST, NIGHT: _LIT, SNOW: WINTER_DAY},
     package=__name__,
 )

@@ -6,15 +6,16 @@ import numpy as np
 import shapely
 
 from eyas.core.rng import stream
+from eyas.state.mesh import Material
 from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.buildings.lots import turned
 from eyas.world.buildings.placing import Building
 from eyas.world.maps.downtown.lots import Box, Lot, divided, frontage
 from eyas.world.maps.downtown.massing import STOREY, Part, stacked
-from eyas.world.maps.downtown.roads import AVENUES, STREETS, Cell, Grid
+from eyas.world.maps.downtown.roads import Cell, Grid
 from eyas.world.maps.downtown.skyline import cores, facade_of, roof_of, storeys
 
-__all__ = ["AVENUE_WALK", "STREET_WALK", "built", "inner_blocks", "outer_lots", "park_cells"]
+__all__ = ["AVENUE_WALK", "STREET_WALK", "block_lots", "built", "inner_blocks", "outer_lots"]
 
 STREET_WALK, AVENUE_WALK = 5.6, 7.0
 """Width of the pavements along streets and avenues, from the kerb to the fronts [m]."""
@@ -46,7 +47,7 @@ def inner_blocks(grid: Grid, sharp: list[shapely.Polygon]) -> dict[Cell, Box]:
     return {cell: found[cell] for cell in sorted(found)}
 
 
-def park_cells(cell: Cell) -> bool:
+def _in_park(cell: Cell) -> bool:
     """Return whether a place of the grid, also beyond its edge, belongs to the park."""
     column, row = cell
     return row >= 7 and column < 4
@@ -77,7 +78,7 @@ def outer_lots(grid: Grid, blocks: dict[Cell, Box], rng: np.random.Generator) ->
 def _around(grid: Grid) -> list[Cell]:
     """Return the places around the blocks, without the park."""
     near = {(i + a, j + b) for i, j in grid.blocks for a in (-1, 0, 1) for b in (-1, 0, 1)}
-    return sorted(cell for cell in near - grid.blocks if not park_cells(cell))
+    return sorted(cell for cell in near - grid.blocks if not _in_park(cell))
 
 
 def _place(grid: Grid, blocks: dict[Cell, Box], cell: Cell) -> Box:
@@ -137,7 +138,7 @@ def _building(grid: Grid, lot: Lot, floors: int, rng: np.random.Generator) -> li
     return made
 
 
-def _part(grid: Grid, part: Part, look: _Look, cover, pointed: bool) -> Building:  # noqa: FBT001, ANN001
+def _part(grid: Grid, part: Part, look: _Look, cover: Material, pointed: bool) -> Building:
     ring = shapely.get_coordinates(shapely.geometry.polygon.orient(part.shape))[:-1]
     return Building(
         footprint=grid.world(ring),

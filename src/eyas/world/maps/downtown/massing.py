@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
 from eyas.world.buildings.lots import largest
 from eyas.world.maps.downtown.lots import Box, Lot
@@ -34,7 +35,7 @@ class Part:
     """Storeys up to its roof."""
 
 
-def stacked(lot: Lot, storeys: int, stepped: bool, rng: np.random.Generator) -> list[Part]:  # noqa: FBT001
+def stacked(lot: Lot, storeys: int, stepped: bool, rng: np.random.Generator) -> list[Part]:
     """Return the parts of a building, each within the one below it.
 
     Args:
@@ -130,7 +131,7 @@ def _within(shape: shapely.Polygon, parts: Sequence[Part]) -> shapely.Polygon:
     return largest(shapely.intersection(shape, parts[-1].shape))
 
 
-def _inset(box: Box, by: np.ndarray) -> Box:
+def _inset(box: Box, by: NDArray[np.float64]) -> Box:
     west, south, east, north = box
     sides = (west + by[0], south + by[2], east - by[1], north - by[3])
     low_u, low_v, high_u, high_v = (round(float(value), 2) for value in sides)

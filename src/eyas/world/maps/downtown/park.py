@@ -78,7 +78,10 @@ def make_park(
     pond = _pond(grid, middle)
     fountain = grid.world(np.array([[east - 118.0, south + 62.0]]))[0]
     basin = snapped(shapely.buffer(shapely.Point(fountain), _FOUNTAIN, quad_segs=12))
-    small = [_oval(grid, west + x * (east - west), south + y * _DEPTH, a, b) for x, y, a, b in _SMALL_PONDS]
+    small = [
+        _oval(grid, west + x * (east - west), south + y * _DEPTH, a, b)
+        for x, y, a, b in _SMALL_PONDS
+    ]
     water = shapely.union_all([pond, basin, *small])
     rim = snapped(shapely.difference(shapely.buffer(water, 0.9, quad_segs=4), water))
     wet = shapely.union(water, rim)
@@ -103,8 +106,10 @@ def _pond(grid: Grid, middle: Points) -> shapely.Polygon:
     """Return the pond: winding, and exactly as large as the original's."""
     line = shapely.LineString(np.array(_POND_LINE) + middle)
     shape = shapely.buffer(line, _POND_REACH, quad_segs=6)
-    island = shapely.buffer(shapely.Point(middle + [-26.0, 8.0]), 9.0, quad_segs=4)
-    bays = [shapely.buffer(shapely.Point(middle + at), 13.0) for at in ([30.0, -26.0], [-6.0, 74.0])]
+    island = shapely.buffer(shapely.Point(middle + np.array([-26.0, 8.0])), 9.0, quad_segs=4)
+    bays = [
+        shapely.buffer(shapely.Point(middle + at), 13.0) for at in ([30.0, -26.0], [-6.0, 74.0])
+    ]
     shape = shapely.difference(shape, shapely.union_all([island, *bays]))
     shape = shapely.buffer(shapely.buffer(shape, -6.0), 6.0, quad_segs=4)
     factor = math.sqrt(_POND_AREA / shape.area)
@@ -125,8 +130,8 @@ def _trails(
     west, south, east = corner
     loop = shapely.buffer(pond, 7.0, quad_segs=6).exterior
     ends = [
-        (west + 20.0, south), (west + 190.0, south), (middle[0] + 90.0, south), (east - 40.0, south),
-        (east, south + 120.0), (east, south + 300.0), (west, south + 160.0),
+        (west + 20.0, south), (west + 190.0, south), (middle[0] + 90.0, south),
+        (east - 40.0, south), (east, south + 120.0), (east, south + 300.0), (west, south + 160.0),
         (west + 90.0, south + _DEPTH), (middle[0] + 160.0, south + _DEPTH),
     ]  # fmt: skip
     lines: list[shapely.Geometry] = [shapely.LineString(loop.coords)]
@@ -165,7 +170,9 @@ def _benches(trails: shapely.Geometry, taken: shapely.Geometry, inner: shapely.G
         for ring in (part.exterior, *part.interiors):
             line = shapely.LineString(ring.coords)
             for at in np.arange(12.0, line.length - 1.0, 58.0):
-                here, there = (shapely.get_coordinates(line.interpolate(s))[0] for s in (at, at + 0.2))
+                here, there = (
+                    shapely.get_coordinates(line.interpolate(s))[0] for s in (at, at + 0.2)
+                )
                 onwards = (there - here) / np.hypot(*(there - here))
                 # The path lies on the left or right of its edge; a bench on the other side.
                 for side in (1.0, -1.0):
@@ -176,5 +183,3 @@ def _benches(trails: shapely.Geometry, taken: shapely.Geometry, inner: shapely.G
                     ):
                         made.append([*place, round(math.atan2(-out[1], -out[0]), 6)])
     return np.array(made).reshape(-1, 3)
-
-

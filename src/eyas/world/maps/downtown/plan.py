@@ -78,11 +78,17 @@ def make_plan(network: RoadNetwork, seed: int) -> Plan:
     kerbs = make_kerbs(network, plan, stream(seed, "downtown kerbs"))
     inside, outside = blocks(roads, EXTENT)
     courts = [
-        turned(shapely.box(w + AVENUE_WALK, s + STREET_WALK, e - AVENUE_WALK, n - STREET_WALK), plan.turn)
+        turned(
+            shapely.box(w + AVENUE_WALK, s + STREET_WALK, e - AVENUE_WALK, n - STREET_WALK),
+            plan.turn,
+        )
         for w, s, e, n in cells.values()
     ]
     rings = shapely.difference(shapely.union_all(inside), shapely.union_all(courts))
-    verge = shapely.intersection(shapely.union_all(outside), shapely.buffer(roads, _OUTER_WALK, join_style="mitre", mitre_limit=2.0))
+    verge = shapely.intersection(
+        shapely.union_all(outside),
+        shapely.buffer(roads, _OUTER_WALK, join_style="mitre", mitre_limit=2.0),
+    )
     verge = shapely.difference(verge, park.ground)
     pavement = shapely.union_all([rings, verge, park.walk])
     return Plan(

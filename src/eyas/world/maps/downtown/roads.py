@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from eyas.core.rng import stream
 from eyas.state.roads import RoadEdge, RoadGraph, RoadNode
 
-__all__ = ["AVENUES", "NAME", "STREETS", "Grid", "grid", "road_graph"]
+__all__ = ["NAME", "Cell", "Grid", "grid", "road_graph"]
 
 NAME = "downtown"
 
@@ -40,8 +40,6 @@ _NARROW_AVENUE = (2, 5)
 _WIDE_STREETS = (2, 4, 7)
 """Inner streets of two lanes each way; the others have one."""
 _LANE = 3.5
-
-AVENUES, STREETS = len(_COLUMNS) + 1, len(_ROWS) + 1
 
 Cell = tuple[int, int]
 
@@ -75,7 +73,9 @@ def grid(seed: int) -> Grid:
         rows = np.round(np.clip(rows * rng.uniform(0.92, 1.06, len(rows)), 71, 90), 1)
         turn += math.radians(round(rng.uniform(-6.0, 6.0), 1))
     lines = _MASK.split()[::-1]
-    blocks = frozenset((i, j) for j, line in enumerate(lines) for i, c in enumerate(line) if c == "#")
+    blocks = frozenset(
+        (i, j) for j, line in enumerate(lines) for i, c in enumerate(line) if c == "#"
+    )
     plain = Grid(turn, _lines(columns), _lines(rows), blocks)
     # The net, not the grid, is centred on the floor.
     nodes = {corner for cell in blocks for corner in _corners(cell)}

@@ -83,7 +83,9 @@ def _tank(sides: int, *, legs: bool) -> Mesh:
             for x in (-reach, reach)
             for y in (-reach, reach)
         ]
-        parts += [box((2.2 * reach, 0.12, 0.14), (0.0, y, 1.5), _IRON, 1.0) for y in (-reach, reach)]
+        parts += [
+            box((2.2 * reach, 0.12, 0.14), (0.0, y, 1.5), _IRON, 1.0) for y in (-reach, reach)
+        ]
     else:
         parts.append(box((2 * reach, 2 * reach, _LEGS), (0.0, 0.0, _LEGS / 2), _IRON, 1.0))
     return concatenate(parts)

@@ -1,11 +1,11 @@
 """The scene of downtown."""
 
-from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 
 from eyas.core.rng import stream
 from eyas.mesh.assembly import concatenate
@@ -16,12 +16,13 @@ from eyas.state.scene import Lamps, ObjectClass, Scene
 from eyas.state.terrain import Terrain
 from eyas.world.build.heights import FLOOR_HEIGHT, KERB_HEIGHT
 from eyas.world.build.materials import material
-from eyas.world.build.scene_builder import Levels, Prototype, SceneBuilder
+from eyas.world.build.scene_builder import Levels, SceneBuilder
 from eyas.world.buildings import placing, rooftops
 from eyas.world.buildings.facades import chance_of, mesh_of
+from eyas.world.maps.downtown.backdrop import add_backdrop
 from eyas.world.maps.downtown.fronts import add_fronts
 from eyas.world.maps.downtown.kerbs import crossing_lamps
-from eyas.world.maps.downtown.plan import FLOOR, Plan, make_plan
+from eyas.world.maps.downtown.plan import EXTENT, FLOOR, Plan, make_plan
 from eyas.world.maps.downtown.roads import NAME
 from eyas.world.maps.downtown.rooftops import add_water_tank
 from eyas.world.maps.downtown.surfaces import add_surfaces
@@ -44,6 +45,8 @@ _TAXIS = 0.2
 """Share of taxis among the parked cars."""
 _HIGHEST_UNITS = 170.0
 """Roofs above this height are left bare but for a mast: no camera sees their equipment [m]."""
+_LAMP_LIGHT = 64.0
+"""Twice the usual: one lamp has to light a whole crossing [the original's unit]."""
 _JET = material("plain", (0.93, 0.95, 0.97))
 
 
@@ -56,28 +59,12 @@ def build_scene(network: RoadNetwork, seed: int) -> Scene:
     """
     plan = make_plan(network, seed)
     builder = SceneBuilder(NAME, seed, FLOOR, Terrain.flat(FLOOR_HEIGHT))
-    shapes = stream(seed, "downtown tree shapes")
-    great = [
-        builder.prototype(f"great tree {k}", partial(trees.street_tree_levels, shapes, k))
-        for k in range(3)
-    ]
-    slim = [builder.prototype(f"slim tree {k}", partial(_slim_tree, shapes, k)) for k in range(2)]
     # The largest occluders come first: they are drawn first, so less is drawn twice.
     _add_buildings(builder, plan)
+    _add_surroundings(builder, plan, seed)
     add_surfaces(builder, plan, network, seed)
-    rng = stream(seed, "downtown trees")
-    _add_trees(builder, plan.kerbs.great_trees, great, _GREAT_HEIGHTS, KERB_HEIGHT, rng)
-    _add_trees(builder, plan.kerbs.slim_trees, slim, _SLIM_HEIGHTS, KERB_HEIGHT, rng)
-    gardens.add_small_trees(builder, plan.park.trees, _PARK_HEIGHTS, FLOOR_HEIGHT, great, rng)
-    add_signals(builder, network)
-    lights, feet = _add_lamps(builder, network)
-    poles = [place for place, _ in signal_places(network)]
-    trunks = [*plan.kerbs.great_trees, *plan.kerbs.slim_trees]
-    taken = shapely.union_all(
-        [plan.roads, plan.kerbs.bays, *shapely.buffer(shapely.points([*feet, *poles, *trunks]), 1.6)]
-    )
-    rng = stream(seed, "downtown furniture")
-    add_furniture(builder, network, plan.pavement, taken, KERB_HEIGHT, rng)
+    _add_trees(builder, plan, seed)
+    lights = _furnish_streets(builder, plan, network, seed)
     _add_parked(builder, plan, stream(seed, "downtown parked cars"))
     _furnish_park(builder, plan)
     return builder.build(network, lights)
@@ -94,7 +81,7 @@ def _add_buildings(builder: SceneBuilder, plan: Plan) -> None:
         for part, taken in zip(parts, above, strict=True):
             builder.add_prism(*placing.prism_of(part), owner)
             top = part.bottom + part.height
-            if part.roof != "flat" or top > _HIGHEST_UNITS and not taken.is_empty:
+            if part.roof != "flat" or (top > _HIGHEST_UNITS and not taken.is_empty):
                 continue
             rng = chance_of(part)
             inside = shapely.buffer(shapely.Polygon(part.footprint), -0.8, join_style="mitre")
@@ -102,6 +89,29 @@ def _add_buildings(builder: SceneBuilder, plan: Plan) -> None:
             free = add_water_tank(builder, part, owner, roof, rng)
             used = shapely.union(taken, shapely.difference(roof, free))
             rooftops.add_rooftop(builder, part.footprint, top, owner, used, rng)
+
+
+def _add_surroundings(builder: SceneBuilder, plan: Plan, seed: int) -> None:
+    """Add the city beyond the outer streets."""
+    fronts = [shapely.Polygon(corners) for corners in plan.footprints]
+    city = shapely.union_all([plan.roads, plan.park.ground, *fronts])
+    add_backdrop(builder, plan.grid, EXTENT, city, stream(seed, "downtown backdrop"))
+
+
+def _add_trees(builder: SceneBuilder, plan: Plan, seed: int) -> None:
+    """Plant the trees along two streets and in the park."""
+    shapes, rng = stream(seed, "downtown tree shapes"), stream(seed, "downtown trees")
+    great = [
+        builder.prototype(f"great tree {k}", partial(trees.street_tree_levels, shapes, k))
+        for k in range(3)
+    ]
+    slim = [builder.prototype(f"slim tree {k}", partial(_slim_tree, shapes, k)) for k in range(2)]
+    for trunks, kinds, heights, ground in (
+        (plan.kerbs.great_trees, great, _GREAT_HEIGHTS, KERB_HEIGHT),
+        (plan.kerbs.slim_trees, slim, _SLIM_HEIGHTS, KERB_HEIGHT),
+        (plan.park.trees, great, _PARK_HEIGHTS, FLOOR_HEIGHT),
+    ):
+        gardens.add_small_trees(builder, trunks, heights, ground, kinds, rng)
 
 
 def _slim_tree(rng: np.random.Generator, variant: int) -> Levels:
@@ -120,18 +130,20 @@ def _narrowed(mesh: Mesh) -> Mesh:
     )
 
 
-def _add_trees(
-    builder: SceneBuilder,
-    trunks: np.ndarray,
-    kinds: Sequence[Prototype],
-    heights: tuple[float, float],
-    ground: float,
-    rng: np.random.Generator,
-) -> None:
-    gardens.add_small_trees(builder, trunks, heights, ground, kinds, rng)
+def _furnish_streets(builder: SceneBuilder, plan: Plan, network: RoadNetwork, seed: int) -> Lamps:
+    """Add signals, lamps and furniture; return the light of the lamps."""
+    add_signals(builder, network)
+    lights, feet = _add_lamps(builder, network)
+    poles = [place for place, _ in signal_places(network)]
+    trunks = [*plan.kerbs.great_trees, *plan.kerbs.slim_trees]
+    thin = shapely.buffer(shapely.points([*feet, *poles, *trunks]), 1.6)
+    taken = shapely.union_all([plan.roads, plan.kerbs.bays, *thin])
+    rng = stream(seed, "downtown furniture")
+    add_furniture(builder, network, plan.pavement, taken, KERB_HEIGHT, rng)
+    return lights
 
 
-def _add_lamps(builder: SceneBuilder, network: RoadNetwork) -> tuple[Lamps, np.ndarray]:
+def _add_lamps(builder: SceneBuilder, network: RoadNetwork) -> tuple[Lamps, NDArray[np.float64]]:
     """Add a lamp at each crossing; return their lights and their feet."""
     kind = builder.prototype("street lamp", lamps.lamp_levels)
     position, axis, feet = [], [], []
@@ -144,7 +156,7 @@ def _add_lamps(builder: SceneBuilder, network: RoadNetwork) -> tuple[Lamps, np.n
         axis.append([*(0.3 * onto_road), -0.954])
         feet.append(foot)
     direction = np.array(axis) / np.linalg.norm(axis, axis=1, keepdims=True)
-    made = Lamps(np.array(position, np.float32), direction.astype(np.float32))
+    made = Lamps(np.array(position, np.float32), direction.astype(np.float32), _LAMP_LIGHT)
     return made, np.array(feet)
 
 

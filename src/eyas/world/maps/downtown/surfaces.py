@@ -23,12 +23,15 @@ __all__ = ["add_surfaces"]
 
 _KERB_WIDTH = 0.8
 """As wide as the original's [m]."""
-_KERB = material("stone", (1.0, 0.90, 0.84))
+_KERB = material("paving", (1.0, 0.94, 0.90))
 _SLABS = material("paving", (0.84, 0.91, 0.95))
 _COURT = material("concrete", (0.97, 0.97, 0.93))
 _TRAIL = material("asphalt_light", (1.0, 0.97, 0.90))
 _RIM = material("stone", (0.98, 0.95, 0.92))
 _WATER = Material("water", (0.16, 0.42, 0.54), Surface.WATER)
+_STONES = material("stone", (0.80, 0.78, 0.76))
+_WALL, _WALL_TOP = 0.5, 1.0
+"""Thickness of the wall around the park, and z of its top [m]."""
 _LAND = (
     material("concrete", (0.90, 0.90, 0.87)),
     material("concrete", (0.80, 0.80, 0.79)),
@@ -56,12 +59,18 @@ def add_surfaces(builder: SceneBuilder, plan: Plan, network: RoadNetwork, seed: 
     wet = shapely.union(park.water, park.rim)
     green = shapely.difference(park.ground, shapely.union_all([park.walk, park.paths, wet]))
     nowhere = shapely.Polygon()
-    builder.add(ObjectClass.GROUND, ground.lawn(park.ground, shapely.difference(EXTENT, green), rng, nowhere, 0.0))
-    builder.add(ObjectClass.PAVEMENT, surface(park.paths, FLOOR_HEIGHT, _TRAIL, TEXTURES["asphalt_light"]))
+    builder.add(
+        ObjectClass.GROUND,
+        ground.lawn(park.ground, shapely.difference(EXTENT, green), rng, nowhere, 0.0),
+    )
+    builder.add(
+        ObjectClass.PAVEMENT, surface(park.paths, FLOOR_HEIGHT, _TRAIL, TEXTURES["asphalt_light"])
+    )
     builder.add(ObjectClass.PAVEMENT, _pavement(park.rim, nowhere, 0.0, _RIM))
     for pond in shapely.get_parts(park.water):
         water = surface(pond, -0.15, _WATER, materials.TEXTURES["water"])
         builder.add(ObjectClass.WATER, water)
+    builder.add(ObjectClass.STRUCTURE, _park_wall(plan))
     covered = shapely.union_all([plan.roads, bays, plan.pavement, park.ground])
     rest = shapely.difference(EXTENT, covered)
     court = surface(rest, FLOOR_HEIGHT, _COURT, TEXTURES["concrete"], plan.grid.turn)
@@ -76,9 +85,23 @@ def _pavement(
     inside = shapely.difference(area, kerb)
     return concatenate(
         [
-            surface(kerb, KERB_HEIGHT, _KERB, TEXTURES["stone"], turn),
+            surface(kerb, KERB_HEIGHT, _KERB, TEXTURES["paving"], turn),
             surface(inside, KERB_HEIGHT, slabs, TEXTURES[slabs.texture], turn),
-            skirt(area, FLOOR_HEIGHT, KERB_HEIGHT, _KERB, TEXTURES["stone"]),
+            skirt(area, FLOOR_HEIGHT, KERB_HEIGHT, _KERB, TEXTURES["paving"]),
+        ]
+    )
+
+
+def _park_wall(plan: Plan) -> Mesh:
+    """Return the low wall between the streets and the park, with gaps where paths enter."""
+    park = plan.park
+    line = shapely.intersection(shapely.buffer(park.walk, _WALL, join_style="mitre"), park.ground)
+    gates = shapely.buffer(park.paths, 0.6)
+    wall = shapely.difference(line, shapely.union(park.walk, gates))
+    return concatenate(
+        [
+            surface(wall, _WALL_TOP, _RIM, TEXTURES["stone"], plan.grid.turn),
+            skirt(wall, FLOOR_HEIGHT, _WALL_TOP, _STONES, TEXTURES["stone"]),
         ]
     )
 
