@@ -79,7 +79,7 @@ def make_kerbs(network: RoadNetwork, grid: Grid, rng: np.random.Generator) -> Ke
         bays=snapped(shapely.union_all(bays)),
         lines=lines,
         cars=np.array(cars).reshape(-1, 3),
-        great_trees=_row_of_trees(great, _GREAT_SPACING, _GREAT_BEYOND, 9.0)[:_GREAT],
+        great_trees=_row_of_trees(great, _GREAT_SPACING, _GREAT_BEYOND, 4.0)[:_GREAT],
         slim_trees=_row_of_trees(slim, _SLIM_SPACING, _SLIM_BEYOND, 13.0)[:_SLIM],
     )
 
@@ -115,7 +115,8 @@ def _is_along(street: Street, index: int) -> bool:
 def _rows(street: Street, rng: np.random.Generator) -> list[shapely.LineString]:
     """Return the kerb along each row of bays."""
     kerb = shapely.LineString(street.right)
-    made, at = [], _FROM_CROSSING + float(rng.uniform(0.0, 6.0))
+    made: list[shapely.LineString] = []
+    at = _FROM_CROSSING + float(rng.uniform(0.0, 6.0))
     while True:
         length = _BAY_LENGTH * int(rng.integers(*_BAYS))
         if at + length > kerb.length - _FROM_CROSSING:

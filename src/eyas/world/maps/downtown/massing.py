@@ -19,7 +19,7 @@ _PLAIN = 9
 """Up to so many storeys a house has no set-backs."""
 _NARROWEST = 8.0
 """Side below which a part is not stepped back further [m]."""
-_SLENDER = 11.0
+_SLENDER = 13.0
 """Greatest height of a tower as a multiple of the shorter side of its shaft."""
 
 

@@ -54,6 +54,8 @@ class Park:
     """Middle of the fountain."""
     trees: Points
     """Trunks, shape (K, 2)."""
+    shrubs: Points
+    """Middle of each group of shrubs and its direction [rad], shape (K, 3)."""
     benches: Points
     """Position of each bench and direction that it faces [rad], shape (K, 3)."""
 
@@ -98,6 +100,7 @@ def make_park(
         paths=paths,
         fountain=(float(fountain[0]), float(fountain[1])),
         trees=trees,
+        shrubs=_shrubs(shapely.difference(inner, shapely.union(wet, paths)), wet, rng),
         benches=_benches(trails, shapely.union(wet, paths), inner),
     )
 
@@ -160,6 +163,17 @@ def _trees(room: shapely.Geometry, rng: np.random.Generator) -> Points:
         if len(chosen) < _TREES and all(np.abs(place - c).max() > 3.2 for c in chosen):
             chosen.append(place)
     return np.array(chosen).reshape(-1, 2)
+
+
+def _shrubs(room: shapely.Geometry, wet: shapely.Geometry, rng: np.random.Generator) -> Points:
+    """Return groups of shrubs: thickets on the meadows, and some along the water."""
+    free = shapely.buffer(room, -2.4)
+    shore = shapely.intersection(free, shapely.buffer(wet, 5.0))
+    shapely.prepare(free)
+    thickets = gardens.clustered(gardens.scattered(free, 40.0, 0.002, rng), 4.5, (2, 6), free, rng)
+    places = np.concatenate([thickets, gardens.scattered(shore, 7.0, 0.012, rng)])
+    turns = np.round(rng.uniform(0.0, np.pi, (len(places), 1)), 6)
+    return np.column_stack([rounded(places), turns])
 
 
 def _benches(trails: shapely.Geometry, taken: shapely.Geometry, inner: shapely.Geometry) -> Points:

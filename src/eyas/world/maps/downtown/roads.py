@@ -83,8 +83,8 @@ def grid(seed: int) -> Grid:
     x, y = (at.min(axis=0) + at.max(axis=0)) / 2
     u = round(math.cos(turn) * x + math.sin(turn) * y, 3)
     v = round(math.cos(turn) * y - math.sin(turn) * x, 3)
-    avenues = tuple(round(a - u, 3) for a in plain.avenues)
-    return Grid(turn, avenues, tuple(round(s - v, 3) for s in plain.streets), blocks)
+    avenues = tuple(round(float(a - u), 3) for a in plain.avenues)
+    return Grid(turn, avenues, tuple(round(float(s - v), 3) for s in plain.streets), blocks)
 
 
 def road_graph(seed: int) -> RoadGraph:

@@ -25,8 +25,10 @@ from eyas.world.maps.downtown.kerbs import crossing_lamps
 from eyas.world.maps.downtown.plan import EXTENT, FLOOR, Plan, make_plan
 from eyas.world.maps.downtown.roads import NAME
 from eyas.world.maps.downtown.rooftops import add_water_tank
+from eyas.world.maps.downtown.subway import add_entrances
 from eyas.world.maps.downtown.surfaces import add_surfaces
 from eyas.world.plants import gardens, trees
+from eyas.world.plants.shrubs import plant_makers
 from eyas.world.street import lamps
 from eyas.world.street.furnishing import add_furniture
 from eyas.world.street.furniture import FURNITURE
@@ -112,6 +114,12 @@ def _add_trees(builder: SceneBuilder, plan: Plan, seed: int) -> None:
         (plan.park.trees, great, _PARK_HEIGHTS, FLOOR_HEIGHT),
     ):
         gardens.add_small_trees(builder, trunks, heights, ground, kinds, rng)
+    makers = plant_makers(shapes)
+    shrubs = [builder.prototype(name, makers[name]) for name in ("border", "tall border")]
+    for x, y, turn in plan.park.shrubs:
+        kind = shrubs[int(rng.integers(len(shrubs)))]
+        size = float(rng.uniform(0.9, 1.5))
+        builder.add_copy(ObjectClass.TREE, kind, (x, y, FLOOR_HEIGHT), turn, size)
 
 
 def _slim_tree(rng: np.random.Generator, variant: int) -> Levels:
@@ -139,6 +147,7 @@ def _furnish_streets(builder: SceneBuilder, plan: Plan, network: RoadNetwork, se
     thin = shapely.buffer(shapely.points([*feet, *poles, *trunks]), 1.6)
     taken = shapely.union_all([plan.roads, plan.kerbs.bays, *thin])
     rng = stream(seed, "downtown furniture")
+    taken = shapely.union(taken, add_entrances(builder, network, taken, rng))
     add_furniture(builder, network, plan.pavement, taken, KERB_HEIGHT, rng)
     return lights
 
@@ -150,7 +159,9 @@ def _add_lamps(builder: SceneBuilder, network: RoadNetwork) -> tuple[Lamps, NDAr
     x, _, z = lamps.LIGHT
     for foot, turn in crossing_lamps(network, lamps.BEYOND_KERB):
         owner = builder.add_copy(ObjectClass.POLE, kind, (*foot, KERB_HEIGHT), turn, 1.0)
-        builder.add_cylinder(foot, lamps.POLE_RADIUS, FLOOR_HEIGHT, lamps.POLE_HEIGHT, owner)
+        builder.add_cylinder(
+            (foot[0], foot[1]), lamps.POLE_RADIUS, FLOOR_HEIGHT, lamps.POLE_HEIGHT, owner
+        )
         onto_road = np.array([np.cos(turn), np.sin(turn)])
         position.append([*(foot + x * onto_road), z + KERB_HEIGHT])
         axis.append([*(0.3 * onto_road), -0.954])
