@@ -22,7 +22,7 @@ _STEP = (72.0, 66.0)
 """Distances between the middles of neighbours, along the streets and the avenues [m]."""
 _REACH = 420.0
 """From the outermost roads to the farthest [m]."""
-_APART = 62.0
+_APART = 36.0
 """Least distance from blocks, fronts and the park [m]."""
 _FROM_EDGE = 30.0
 _SHARE = 0.7
@@ -48,9 +48,7 @@ def add_backdrop(
         city: Roads, fronts and park [m].
         rng: Random numbers of the backdrop.
     """
-    free = shapely.difference(
-        shapely.buffer(floor, -_FROM_EDGE), shapely.buffer(shapely.convex_hull(city), _APART)
-    )
+    free = shapely.difference(shapely.buffer(floor, -_FROM_EDGE), shapely.buffer(city, _APART))
     shapely.prepare(free)
     u = np.arange(grid.avenues[0] - _REACH, grid.avenues[-1] + _REACH, _STEP[0])
     v = np.arange(grid.streets[0] - _REACH, grid.streets[-1] + _REACH, _STEP[1])
