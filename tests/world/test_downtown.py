@@ -207,12 +207,13 @@ def test_no_two_buildings_share_ground(plan):
     assert shared.max(initial=0.0) < 0.01
 
 
-def test_lanes_are_free_of_everything_solid(city, streets):
+def test_lanes_are_free_of_everything_solid(city, streets, asphalt):
     solids = city.colliders
     low = solids.prism_bottom < 5.0
     tree = shapely.STRtree(outlines(solids)[low])
     trunks = shapely.buffer(shapely.points(solids.cylinder_centre), solids.cylinder_radius)
     poles = shapely.STRtree(trunks)
+    assert shapely.distance(asphalt, shapely.points(solids.cylinder_centre)).min() > 0.3
     first = streets.lane_first
     for lane, (start, end) in enumerate(pairwise(first)):
         way = shapely.LineString(streets.lane_points[start:end])

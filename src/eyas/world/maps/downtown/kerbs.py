@@ -31,6 +31,8 @@ _SLIM = 59
 _SLIM_STREET = 5
 """The street with slim trees on both sides, counted from the south."""
 _PARK_STREET = 7
+_PAST_LINE = 2.2
+"""From a stop line to the lamp at the crossing for walkers beyond it [m]."""
 
 Points = NDArray[np.float64]
 
@@ -103,7 +105,7 @@ def crossing_lamps(network: RoadNetwork, beyond: float) -> list[tuple[Points, fl
         street = max(ways[node], key=lambda s: (len(s.dividers), s.start))
         onwards = unit(street.right[-1] - street.right[-2])
         leftwards = np.array([-onwards[1], onwards[0]])
-        foot = street.right[-1] - beyond * leftwards - 2.4 * onwards
+        foot = street.right[-1] - beyond * leftwards + _PAST_LINE * onwards
         made.append((rounded(foot), float(np.arctan2(leftwards[1], leftwards[0]))))
     return made
 

@@ -89,7 +89,7 @@ def _tower(lot: Lot, storeys: int, rng: np.random.Generator) -> list[Part]:
     least = max(12.0, STOREY * storeys / _SLENDER)
     spare = np.repeat(np.maximum(np.array([east - west, north - south]) - least, 0.0) / 2, 2)
     margin = np.minimum(rng.uniform(2.0, 9.0, 4), spare)
-    slab = _inset(lot.box, np.round(margin, 1))
+    slab = _inset(lot.box, np.asarray(np.round(margin, 1), np.float64))
     shaft = _cut(slab, rng)
     if storeys < 18 or margin.max() < 1.0:
         return [Part(shapely.box(*lot.box), 0, storeys)]

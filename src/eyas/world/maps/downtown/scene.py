@@ -47,8 +47,8 @@ _TAXIS = 0.2
 """Share of taxis among the parked cars."""
 _HIGHEST_UNITS = 170.0
 """Roofs above this height are left bare but for a mast: no camera sees their equipment [m]."""
-_LAMP_LIGHT = 64.0
-"""Twice the usual: one lamp has to light a whole crossing [the original's unit]."""
+_LAMP_LIGHT = 96.0
+"""Three times the usual: one lamp has to light a whole crossing [the original's unit]."""
 _JET = material("plain", (0.93, 0.95, 0.97))
 
 
