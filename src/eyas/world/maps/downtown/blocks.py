@@ -20,8 +20,10 @@ __all__ = ["AVENUE_WALK", "STREET_WALK", "block_lots", "built", "inner_blocks", 
 STREET_WALK, AVENUE_WALK = 5.6, 7.0
 """Width of the pavements along streets and avenues, from the kerb to the fronts [m]."""
 
-_FRONT_DEPTH = 30.0
+_FRONT_DEPTH = 24.0
 """Depth of the buildings beyond the outer streets [m]."""
+_HALF_ROAD = 7.0
+"""Half the width of the outer roads [m]."""
 _BEYOND = 90.0
 """Depth of the blocks beyond the grid [m]."""
 _STEPPED = ("facade_brick", "facade_stone", "facade_concrete", "facade_plaster", "facade_old")
@@ -61,11 +63,11 @@ def block_lots(block: Box, rng: np.random.Generator) -> list[Lot]:
     return divided(inner, core, rng)
 
 
-def outer_lots(grid: Grid, blocks: dict[Cell, Box], rng: np.random.Generator) -> list[Lot]:
+def outer_lots(grid: Grid, rng: np.random.Generator) -> list[Lot]:
     """Return the lots along the far side of the outer streets, which close the canyons."""
     lots: list[Lot] = []
     for cell in _around(grid):
-        box = _place(grid, blocks, cell)
+        box = _place(grid, cell)
         sides = [(-1, 0), (1, 0), (0, -1), (0, 1)]
         west, east, south, north = ((cell[0] + i, cell[1] + j) in grid.blocks for i, j in sides)
         if not (west or east or south or north):
@@ -81,19 +83,18 @@ def _around(grid: Grid) -> list[Cell]:
     return sorted(cell for cell in near - grid.blocks if not _in_park(cell))
 
 
-def _place(grid: Grid, blocks: dict[Cell, Box], cell: Cell) -> Box:
+def _place(grid: Grid, cell: Cell) -> Box:
     """Return the ground of a place without a block, behind the pavements [m]."""
     column, row = cell
-    near = [blocks[other] for other in sorted(blocks) if other[0] == column]
-    beside = [blocks[other] for other in sorted(blocks) if other[1] == row]
     avenues = (grid.avenues[0] - _BEYOND, *grid.avenues, grid.avenues[-1] + _BEYOND)
     streets = (grid.streets[0] - _BEYOND, *grid.streets, grid.streets[-1] + _BEYOND)
-    # Straight on from the fronts of the blocks in the same row and column.
-    west = max((b[0] for b in near), default=avenues[column + 1] + 8.0)
-    east = min((b[2] for b in near), default=avenues[column + 2] - 8.0)
-    south = max((b[1] for b in beside), default=streets[row + 1] + 8.0)
-    north = min((b[3] for b in beside), default=streets[row + 2] - 8.0)
-    return (west + AVENUE_WALK, south + STREET_WALK, east - AVENUE_WALK, north - STREET_WALK)
+    aside, along = _HALF_ROAD + AVENUE_WALK, _HALF_ROAD + STREET_WALK
+    return (
+        avenues[column + 1] + aside,
+        streets[row + 1] + along,
+        avenues[column + 2] - aside,
+        streets[row + 2] - along,
+    )
 
 
 def _large(strip: Box, rng: np.random.Generator) -> list[Lot]:

@@ -22,7 +22,7 @@ _BAYS = (4, 9)
 """Bays in a row; between two rows the pavement reaches out to the kerb."""
 _BETWEEN = 11.0
 _OCCUPIED = 0.82
-_GREAT_SPACING, _GREAT_BEYOND = 24.6, 2.6
+_GREAT_SPACING, _GREAT_BEYOND = 21.0, 2.6
 """Distances along the park of its great trees, and from the kerb to their trunks [m]."""
 _GREAT = 32
 _SLIM_SPACING, _SLIM_BEYOND = 10.6, 1.5

@@ -11,7 +11,7 @@ _THROUGH = (30.0, 54.0)
 """Width of a lot that reaches from one street to the next [m]."""
 _STRETCH = (26.0, 58.0)
 """Length of a stretch of the block with two rows of lots [m]."""
-_ROW_DEPTH = (0.36, 0.49)
+_ROW_DEPTH = (0.33, 0.44)
 """Depth of a row as a share of the block's; yards lie between two rows."""
 _WIDTH = 23.0
 """Median width of a lot in a row [m]."""

@@ -73,7 +73,7 @@ def make_plan(network: RoadNetwork, seed: int) -> Plan:
     cells = inner_blocks(plan, closed)
     rng = stream(seed, "downtown lots")
     lots = [lot for block in cells.values() for lot in block_lots(block, rng)]
-    lots += outer_lots(plan, cells, rng)
+    lots += outer_lots(plan, rng)
     park = make_park(plan, roads, EXTENT, stream(seed, "downtown park"))
     kerbs = make_kerbs(network, plan, stream(seed, "downtown kerbs"))
     inside, outside = blocks(roads, EXTENT)
