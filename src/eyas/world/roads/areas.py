@@ -211,9 +211,10 @@ def _bends(network: RoadNetwork) -> list[tuple[Line, float]]:
     for lane in np.flatnonzero(network.lane_index == 0):
         end = network.edge_end[network.lane_edge[lane]]
         arriving.setdefault(end, []).append(_lane(network, int(lane))[-2:])
-    bends = []
-    for one, *others in arriving.values():
-        if len(others) == 1:
+    bends, meeting = [], joints(network)
+    for node, (one, *others) in arriving.items():
+        # Where a one-way road leaves another, two roads arrive, but three meet.
+        if len(others) == 1 and meeting[node] == 2:
             onwards, back = np.diff(one, axis=0)[0], np.diff(others[0], axis=0)[0]
             sine = onwards[0] * back[1] - onwards[1] * back[0]
             angle = np.pi - abs(np.arctan2(sine, dot(onwards, back)))

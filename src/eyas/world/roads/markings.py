@@ -89,9 +89,16 @@ def road_paint(network: RoadNetwork) -> RoadPaint:
     meeting = joints(network)
     lines: list[Stripe] = []
     all_streets = streets(network)
+    both_ways = {(street.end, street.start) for street in all_streets}
     for chain in _chains(all_streets, meeting):
-        middle, *dividers, kerb = (reduce(joined, parts) for parts in zip(*chain, strict=True))
-        lines += stripes(middle, _CENTRE_LINE) if _comes_first(middle) else []
+        middle, *dividers, kerb = (
+            reduce(joined, parts) for parts in zip(*(link.lines for link in chain), strict=True)
+        )
+        if (chain[0].start, chain[0].end) not in both_ways:
+            edge = shapely.offset_curve(shapely.LineString(middle), -_EDGE)
+            lines += stripes(shapely.get_coordinates(edge), _EDGE_LINE)
+        elif _comes_first(middle):
+            lines += stripes(middle, _CENTRE_LINE)
         for divider in dividers:
             lines += stripes(divider, _LINE, (_DASH, _GAP))
         edge = shapely.offset_curve(shapely.LineString(kerb), _EDGE)
@@ -103,7 +110,9 @@ def road_paint(network: RoadNetwork) -> RoadPaint:
             leaving = [other for other in all_streets if other.start == street.end]
             lines.append(_stop_line(street))
             arrows += _arrows(street, leaving)
-            zebras.append(_zebra(street))
+            zebras.append(_zebra(street, one_way=(street.start, street.end) not in both_ways))
+        if meeting[street.start] >= 3 and (street.start, street.end) not in both_ways:
+            zebras.append(_zebra(_reversed(street), one_way=True))
     return RoadPaint(lines, arrows, zebras)
 
 
@@ -195,8 +204,8 @@ def painted(shapes: Sequence[shapely.Polygon], paint: Material) -> Mesh:
     return flat_polygons(pieces, PAINT_HEIGHT, paint, TEXTURES["paint"])
 
 
-def _chains(all_streets: list[Street], meeting: dict[str, int]) -> list[list[tuple[Line, ...]]]:
-    """Return the lines of streets that are joined by bends, from junction to junction."""
+def _chains(all_streets: list[Street], meeting: dict[str, int]) -> list[list[Street]]:
+    """Return streets that are joined by bends, from junction to junction."""
     leaving: dict[str, list[Street]] = {}
     for street in all_streets:
         leaving.setdefault(street.start, []).append(street)
@@ -208,7 +217,7 @@ def _chains(all_streets: list[Street], meeting: dict[str, int]) -> list[list[tup
         while meeting[chain[-1].end] == 2:
             last = chain[-1]
             chain += [s for s in leaving[last.end] if s.end != last.start]
-        chains.append([link.lines for link in chain])
+        chains.append(chain)
     return chains
 
 
@@ -237,9 +246,15 @@ def _stop_line(street: Street) -> Stripe:
     return Stripe(_placed(street, ends), _STOP_LINE)
 
 
-def _zebra(street: Street) -> list[Stripe]:
-    """Return the bars of the crossing beyond a stop line, over both directions of the road."""
-    road = 2 * _frame(street)[3]
+def _reversed(street: Street) -> Street:
+    """Return a street against its traffic, to mark its start like an end."""
+    dividers = tuple(line[::-1] for line in street.dividers[::-1])
+    return Street(street.end, street.start, street.right[::-1], dividers, street.left[::-1])
+
+
+def _zebra(street: Street, *, one_way: bool) -> list[Stripe]:
+    """Return the bars of the crossing beyond a stop line, over all lanes of the road."""
+    road = _frame(street)[3] * (1 if one_way else 2)
     count = int((road - 0.5) // (2 * _BAR))
     first = (road - (2 * count - 1) * _BAR) / 2 + _BAR / 2
     low, high = _ZEBRA_START, _ZEBRA_START + _ZEBRA_LENGTH

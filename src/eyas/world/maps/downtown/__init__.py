@@ -1,0 +1,61 @@
+"""Downtown: canyons between old blocks of brick and towers, and a park in the north."""
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from eyas.world.maps.recipe import MapRecipe
+from eyas.world.weather import (
+    CLEAR_DAY,
+    CLEAR_NIGHT,
+    DAY,
+    FOG,
+    FOGGY,
+    NIGHT,
+    SNOW,
+    WINTER_DAY,
+    Season,
+)
+
+if TYPE_CHECKING:
+    from eyas.state.roads import RoadGraph, RoadNetwork
+    from eyas.state.scene import Scene
+
+__all__ = ["DOWNTOWN"]
+
+
+def _roads(seed: int) -> "RoadGraph":
+    from eyas.world.maps.downtown.roads import road_graph
+
+    return road_graph(seed)
+
+
+def _scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
+    """Build the city; in winter it is the same, and the weather's light adds the snow."""
+    from eyas.world.maps.downtown.scene import build_scene
+
+    return build_scene(network, seed)
+
+
+# In the original the fog is too thin to be seen from above; here it veils the far end of a block.
+_MIST = replace(FOG, fog_density=1.0 / 500.0)
+
+# Fronts and shop windows throw light back into the streets; the sky between them is black.
+_LIT = replace(
+    CLEAR_NIGHT,
+    zenith_colour=(0.0012, 0.0016, 0.004),
+    horizon_colour=(0.010, 0.010, 0.014),
+    ambient_up=(0.092, 0.092, 0.104),
+    ambient_down=(0.056, 0.051, 0.044),
+    fog_colour=(0.012, 0.012, 0.016),
+    clouds=0.0,
+    windows=0.36,
+)
+
+DOWNTOWN = MapRecipe(
+    name="downtown",
+    title="Canyons between towers, and a park",
+    roads=_roads,
+    scene=_scene,
+    lighting={DAY: CLEAR_DAY, FOGGY: _MIST, NIGHT: _LIT, SNOW: WINTER_DAY},
+    package=__name__,
+)
