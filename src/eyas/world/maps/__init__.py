@@ -15,7 +15,9 @@ MAPS: Registry[MapRecipe] = Registry(
     MapRecipe,
     {
         "citystreet": "eyas.world.maps.citystreet:CITYSTREET",
+        "desert": "eyas.world.maps.desert:DESERT",
+        "village": "eyas.world.maps.village:VILLAGE",
     },
     group="eyas.maps",
-    later=("desert", "downtown", "farmland", "lake", "simpleway", "village"),
+    later=("downtown", "farmland", "lake", "simpleway"),
 )

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import Enum, auto
 from functools import reduce
 
 import numpy as np
@@ -22,6 +23,7 @@ __all__ = [
     "MARGIN_HEIGHT",
     "PAINT_HEIGHT",
     "WHITE",
+    "Centre",
     "RoadPaint",
     "Stripe",
     "margins_of",
@@ -44,6 +46,8 @@ _DASH, _GAP = 3.0, 6.0
 _LINE = 0.18
 """Width of a lane line: nearly a pixel of a policy's small image, from 22 m away [m]."""
 _CENTRE_LINE = 0.2
+_DOUBLE = 0.18
+"""From the middle of the road to each of two yellow lines [m]."""
 _EDGE_LINE = 0.2
 _EDGE = 0.3
 """From the kerb to the edge line [m]."""
@@ -55,6 +59,15 @@ _BAR = 0.55
 """Width of a bar of a zebra crossing, nearly that of the gap to the next bar [m]."""
 
 Line = NDArray[np.float64]
+
+
+class Centre(Enum):
+    """The line between the two directions of a road."""
+
+    WHITE = auto()
+    """One white line."""
+    DOUBLE_YELLOW = auto()
+    """Two yellow lines."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,29 +94,43 @@ class RoadPaint:
     arrows: list[shapely.Polygon]
     """White arrows."""
     zebras: list[list[Stripe]]
-    """Yellow bars of each crossing."""
+    """Yellow bars of each crossing, and pairs of yellow lines."""
 
 
-def road_paint(network: RoadNetwork) -> RoadPaint:
-    """Return the paint of all roads, with zebra crossings where three or more roads meet."""
+def road_paint(
+    network: RoadNetwork, *, centre: Centre = Centre.WHITE, crossings: bool = True
+) -> RoadPaint:
+    """Return the paint of all roads.
+
+    Args:
+        network: The roads.
+        centre: The line between the two directions.
+        crossings: Whether there are zebra crossings where three or more roads meet.
+    """
     meeting = joints(network)
     lines: list[Stripe] = []
+    zebras: list[list[Stripe]] = []
     all_streets = streets(network)
     for chain in _chains(all_streets, meeting):
         middle, *dividers, kerb = (reduce(joined, parts) for parts in zip(*chain, strict=True))
-        lines += stripes(middle, _CENTRE_LINE) if _comes_first(middle) else []
+        if _comes_first(middle) and centre is Centre.DOUBLE_YELLOW:
+            path = shapely.LineString(middle)
+            beside = [shapely.offset_curve(path, side) for side in (-_DOUBLE, _DOUBLE)]
+            zebras.append([Stripe(shapely.get_coordinates(line), _LINE) for line in beside])
+        elif _comes_first(middle):
+            lines += stripes(middle, _CENTRE_LINE)
         for divider in dividers:
             lines += stripes(divider, _LINE, (_DASH, _GAP))
         edge = shapely.offset_curve(shapely.LineString(kerb), _EDGE)
         lines += stripes(shapely.get_coordinates(edge), _EDGE_LINE)
     arrows: list[shapely.Polygon] = []
-    zebras = []
     for street in all_streets:
         if meeting[street.end] >= 3:
             leaving = [other for other in all_streets if other.start == street.end]
             lines.append(_stop_line(street))
             arrows += _arrows(street, leaving)
-            zebras.append(_zebra(street))
+            if crossings:
+                zebras.append(_zebra(street))
     return RoadPaint(lines, arrows, zebras)
 
 

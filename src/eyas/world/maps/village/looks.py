@@ -1,0 +1,31 @@
+"""Colours of the village: saturated greens, white houses with orange roofs."""
+
+from eyas.state.mesh import Material, Surface
+from eyas.world.build.materials import material
+from eyas.world.buildings.cottages import CottageLook
+
+__all__ = ["GRASS", "HILLS", "HOUSES", "ROCK", "SHORE", "VERGE", "WATER"]
+
+GRASS = material("lawn", (0.62, 0.84, 0.84))
+"""The valley."""
+
+HILLS = (
+    material("lawn", (0.62, 0.86, 0.86)),
+    material("lawn", (0.66, 0.91, 0.92)),
+    material("lawn", (0.70, 0.95, 0.98)),
+    material("lawn", (0.75, 0.98, 1.0)),
+)
+"""Greens of the hills, from the foot up."""
+
+VERGE = material("soil", (0.92, 0.92, 0.84))
+SHORE = material("sand", (0.80, 0.78, 0.70))
+ROCK = material("stone", (0.50, 0.52, 0.47))
+"""Inside of the tunnels."""
+
+WATER = Material("water", (0.20, 0.44, 0.72), Surface.WATER)
+
+HOUSES = (
+    CottageLook("facade_plaster", (0.99, 0.99, 1.0), (1.0, 0.96, 0.94)),
+    CottageLook("facade_stone", (0.97, 0.98, 1.0), (0.96, 0.88, 0.84)),
+    CottageLook("facade_concrete", (0.98, 0.98, 1.0), (1.0, 0.92, 0.86)),
+)
