@@ -14,9 +14,9 @@ __all__ = ["Mound", "highest", "place_inside", "place_ring", "sizes"]
 
 _WAVES = 3
 """Number of waves of an outline."""
-_TRIES = 160
+_TRIES = 400
 """Number of places tried for each mound inside."""
-_APART = 0.62
+_APART = 0.52
 """Least distance of two summits as a share of the larger radius: closer ones would be one hill."""
 
 Points = NDArray[np.float64]
@@ -75,9 +75,7 @@ def highest(mounds: Sequence[Mound], points: Points) -> tuple[Points, NDArray[np
     """
     best, owner = np.zeros(len(points)), np.full(len(points), -1, np.intp)
     for index, mound in enumerate(mounds):
-        near = np.flatnonzero(
-            np.abs(points - (mound.x, mound.y)).max(axis=1) < mound.radius
-        )
+        near = np.flatnonzero(np.abs(points - (mound.x, mound.y)).max(axis=1) < mound.radius)
         height = mound.heights(points[near])
         higher = height > best[near]
         best[near[higher]], owner[near[higher]] = height[higher], index

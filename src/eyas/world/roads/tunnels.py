@@ -141,9 +141,12 @@ def _surface(tunnel: Tunnel, floor: float, rows: Points, stuff: Material) -> Mes
     """Return the facets between neighbouring rows of points, two triangles a cell."""
     world = np.concatenate([tunnel.placed(rows[..., :2]), rows[..., 2:] + floor], axis=-1)
     tile = TEXTURES[stuff.texture]
-    around = np.linalg.norm(np.diff(rows[..., 1:], axis=1), axis=2).cumsum(axis=1)
-    v = np.concatenate([np.zeros((len(rows), 1)), around], axis=1)
-    uvs = np.stack([rows[..., 0], v], axis=-1) / tile
+    # Measured along the surface both ways, so that fronts and roof look alike.
+    u, v = (
+        np.linalg.norm(np.diff(rows, axis=axis, prepend=rows.take([0], axis)), axis=2).cumsum(axis)
+        for axis in (0, 1)
+    )
+    uvs = np.stack([u, v], axis=-1) / tile
     corners = halves(cells(world))
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)

@@ -104,7 +104,9 @@ def _board(middle: float, width: float, height: float, *, fine: bool) -> list[Me
             wide = width * (0.55 if row % 2 else 0.66)
             at = (-0.29, middle - 0.06 * width, z)
             made.append(box((0.015, wide, 0.26), at, _WHITE, 1.0))
-        made.append(box((0.015, 0.16, 0.6 * height), (-0.29, middle + 0.4 * width, centre), _WHITE, 1.0))
+        made.append(
+            box((0.015, 0.16, 0.6 * height), (-0.29, middle + 0.4 * width, centre), _WHITE, 1.0)
+        )
         tip = (-0.29, middle + 0.4 * width, centre + 0.3 * height)
         made.append(box((0.015, 0.5, 0.16), tip, _WHITE, 1.0))
     return made

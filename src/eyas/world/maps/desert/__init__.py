@@ -2,6 +2,7 @@
 
 from typing import TYPE_CHECKING
 
+from eyas.world.maps.desert.air import DESERT_DAY, DESERT_FOG, DESERT_NIGHT, DESERT_WINTER
 from eyas.world.maps.recipe import MapRecipe
 from eyas.world.weather import DAY, FOGGY, NIGHT, SNOW, Season
 
@@ -24,18 +25,12 @@ def _scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
     return build_scene(network, seed, season)
 
 
-def _lighting() -> dict:  # placeholder
-    from eyas.world.weather import CLEAR_DAY, CLEAR_NIGHT, FOG, WINTER_DAY
-
-    return {DAY: CLEAR_DAY, FOGGY: FOG, NIGHT: CLEAR_NIGHT, SNOW: WINTER_DAY}
-
-
 DESERT = MapRecipe(
     name="desert",
-    title="Dunes and roads under sand",
+    title="Dunes, and roads under sand",
     roads=_roads,
     scene=_scene,
-    lighting=_lighting(),
+    lighting={DAY: DESERT_DAY, FOGGY: DESERT_FOG, NIGHT: DESERT_NIGHT, SNOW: DESERT_WINTER},
     seasons=True,
     package=__name__,
 )

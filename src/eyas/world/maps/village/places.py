@@ -154,13 +154,13 @@ def gantries_along(
     for index in rng.permutation(len(ways)):
         way = ways[int(index)]
         line = shapely.LineString(way.left)
-        if line.length < 60.0 or len(made) == _GANTRIES:
+        if line.length < 50.0 or len(made) == _GANTRIES:
             continue
-        at = line.length - rng.uniform(24.0, 32.0)
+        at = line.length - rng.uniform(20.0, 34.0)
         place = rounded(shapely.get_coordinates(line.interpolate(at))[0])
         along = unit(way.left[-1] - way.left[0])
         apart = [length(place - other) for other, _ in made]
-        clear = not shapely.intersects(taken, shapely.buffer(shapely.Point(place), 10.0))
-        if clear and min(apart, default=math.inf) > 120.0:
+        clear = not shapely.intersects(taken, shapely.buffer(shapely.Point(place), 9.0))
+        if clear and min(apart, default=math.inf) > 70.0:
             made.append((place, round(math.atan2(along[1], along[0]), 4)))
     return made

@@ -15,6 +15,7 @@ from eyas.world.buildings.cottages import SIDE, Cottage
 from eyas.world.buildings.lots import largest
 from eyas.world.land.mounds import Mound, place_inside, place_ring, sizes
 from eyas.world.land.outlines import wavy
+from eyas.world.maps.village.roads import road_graph
 from eyas.world.maps.village.places import cottages_along, gantries_along, tunnels_along
 from eyas.world.plants import trees
 from eyas.world.roads.areas import Street, blocks, road_area, streets
@@ -31,14 +32,16 @@ HALF = 730.0
 EXTENT = shapely.box(-HALF, -HALF, HALF, HALF)
 """That square."""
 
-_INSIDE, _INSIDE_RADII = 15, (60.0, 83.0, 134.0)
+_INSIDE, _INSIDE_RADII = 15, (60.0, 86.0, 134.0)
 _RING, _RING_RADII = 33, (87.0, 144.0, 201.0)
 """Numbers of hills, and their smallest, median and largest radius [m]."""
-_STEEP, _RING_STEEP = (0.64, 0.76), (0.73, 0.84)
+_STEEP, _RING_STEEP = (0.72, 0.86), (0.73, 0.84)
 """Least and largest height of a hill, as a share of its radius."""
 _KERB_TO_FOOT = 7.0
 """Least distance from a kerb to the foot of a hill [m]."""
 _RING_GAPS = (14.0, 73.0)
+_LAKESIDE = "o14"
+"""Node of the outer road beside the lake's block."""
 _LAKE = 41_979.0
 """Area of the lake, as in the original [m^2]."""
 _LAKE_SHARE = 0.64
@@ -92,7 +95,9 @@ def make_plan(network: RoadNetwork, seed: int) -> Plan:
     roads = road_area(network)
     closed, _ = blocks(roads, EXTENT)
     ways = streets(network)
-    lake = _lake(closed, stream(seed, "village lake"))
+    shore = {node.name: (node.x, node.y) for node in road_graph(seed).nodes}[_LAKESIDE]
+    beside = min(closed, key=lambda block: float(block.distance(shapely.Point(shore))))
+    lake = _lake(beside, stream(seed, "village lake"))
     tunnels = tunnels_along(ways, roads, stream(seed, "village tunnels"))
     covered = shapely.union_all([tunnel.area for tunnel in tunnels])
     taken = shapely.union_all([roads, shapely.buffer(lake, 7.0), shapely.buffer(covered, 5.0)])
@@ -108,12 +113,8 @@ def make_plan(network: RoadNetwork, seed: int) -> Plan:
     return Plan(roads, closed, lake, tunnels, cottages, trunks, gantries, hills)
 
 
-def _lake(closed: Sequence[shapely.Polygon], rng: np.random.Generator) -> shapely.Polygon:
-    """Return the lake, which fills most of the block in the south-west or south-east."""
-    def southern(block: shapely.Polygon) -> float:
-        return round(float(block.centroid.y) - 0.5 * abs(float(block.centroid.x)), 1)
-
-    block = min(closed, key=southern)
+def _lake(block: shapely.Polygon, rng: np.random.Generator) -> shapely.Polygon:
+    """Return the lake, which fills most of its block."""
     wanted = min(_LAKE, _LAKE_SHARE * block.area)
     low, high = 5.0, 120.0
     for _ in range(24):
@@ -160,7 +161,7 @@ def _hills(
         Mound(
             *(hill.x, hill.y, hill.radius, hill.height),
             phases=tuple(rng.uniform(0, 2 * math.pi, 3).tolist()),
-            waviness=0.3,
+            waviness=0.14,
         )
         for hill in (*made, *ring)
     ]

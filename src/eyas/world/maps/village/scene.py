@@ -8,7 +8,7 @@ import shapely
 from eyas.core.rng import stream
 from eyas.mesh.solids import box
 from eyas.state.lighting import Horizon
-from eyas.state.mesh import Material, Surface
+from eyas.state.mesh import Material, Mesh, Surface
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import Lamps, ObjectClass, Scene
 from eyas.world.build.heights import FLOOR_HEIGHT
@@ -18,8 +18,9 @@ from eyas.world.buildings.cottages import add_cottages
 from eyas.world.land import ground
 from eyas.world.land.facets import Relief, relief, surface_of, terrain_of
 from eyas.world.land.mounds import highest
+from eyas.world.land.outlines import blob
 from eyas.world.land.plain import plain
-from eyas.world.maps.village.looks import GRASS, HILLS, HOUSES, ROCK, SHORE, VERGE, WATER
+from eyas.world.maps.village.looks import GRASS, HILLS, HOUSES, MEADOWS, ROCK, SHORE, VERGE, WATER
 from eyas.world.maps.village.plan import EXTENT, FLOOR, HALF, Plan, make_plan
 from eyas.world.maps.village.roads import NAME
 from eyas.world.plants import gardens
@@ -42,6 +43,10 @@ _FACETS = (6.5, 12.5)
 """Distance between the corners of facets in the middle and outside of it [m]."""
 _ROUGH = 0.045
 """Most by which a corner lies above or below the smooth shape, as a share of its height."""
+_PATCHES = 60
+"""Number of patches of each kind of grass."""
+_BUSHES = (26.0, 0.004)
+"""Least distance between two bushes [m], and number of attempts on a square metre."""
 _TREE_HEIGHTS = (10.0, 11.8)
 
 
@@ -60,7 +65,7 @@ def build_scene(network: RoadNetwork, seed: int) -> Scene:
     lights = _add_tunnels(builder, plan, stream(seed, "village mounds"))
     add_cottages(builder, plan.cottages, HOUSES)
     _add_ground(builder, plan, network, hills.area, seed)
-    _add_plants(builder, plan, stream(seed, "village plants"))
+    _add_plants(builder, plan, hills.area, stream(seed, "village plants"))
     add_signals(builder, network)
     add_gantries(builder, plan.gantries, stream(seed, "village signs"))
     street = _LAMPS - len(lights.position)
@@ -126,9 +131,7 @@ def _add_ground(
     paint = markings.road_paint(network, centre=markings.Centre.DOUBLE_YELLOW, crossings=False)
     builder.add(ObjectClass.MARKING, markings.mesh_of(paint))
     wear = road_wear.road_wear(network, stream(seed, "village road wear"))
-    builder.add(
-        ObjectClass.ROAD, markings.margins_of(paint), wear, ground.asphalt(plan.roads)
-    )
+    builder.add(ObjectClass.ROAD, markings.margins_of(paint), wear, ground.asphalt(plan.roads))
     passages = shapely.union_all([tunnel.passage for tunnel in plan.tunnels])
     beside = shapely.buffer(plan.roads, 1.4, quad_segs=4)
     paved = _paving(plan)
@@ -141,7 +144,7 @@ def _add_ground(
     )
     builder.add(
         ObjectClass.GROUND,
-        surface(lawn, FLOOR_HEIGHT, GRASS, TEXTURES[GRASS.texture]),
+        *_meadow(lawn, stream(seed, "village meadow")),
         surface(verge, FLOOR_HEIGHT, VERGE, TEXTURES[VERGE.texture]),
         surface(shore, FLOOR_HEIGHT, SHORE, TEXTURES[SHORE.texture]),
         skirt(shore, FLOOR_HEIGHT - 0.3, FLOOR_HEIGHT, SHORE, TEXTURES[SHORE.texture]),
@@ -151,6 +154,21 @@ def _add_ground(
     builder.add(ObjectClass.PAVEMENT, surface(paved, FLOOR_HEIGHT, slabs, TEXTURES["paving"]))
     water = surface(plan.lake, FLOOR_HEIGHT - 0.2, WATER, TEXTURES["water"])
     builder.add(ObjectClass.WATER, water)
+
+
+def _meadow(lawn: shapely.Geometry, rng: np.random.Generator) -> list[Mesh]:
+    """Return the grass of the valley, with drier and lusher patches."""
+    made = []
+    for cover in MEADOWS:
+        spots = rng.uniform(-_CORE, _CORE, (_PATCHES, 2))
+        shapes = [
+            blob(spot, (rng.uniform(8.0, 34.0), rng.uniform(6.0, 16.0)), rng.uniform(0, 3.1), rng)
+            for spot in spots
+        ]
+        patch = shapely.intersection(lawn, shapely.union_all(shapes))
+        lawn = shapely.difference(lawn, patch)
+        made.append(surface(patch, FLOOR_HEIGHT, cover, TEXTURES[cover.texture]))
+    return [surface(lawn, FLOOR_HEIGHT, GRASS, TEXTURES[GRASS.texture]), *made]
 
 
 def _paving(plan: Plan) -> shapely.Geometry:
@@ -165,8 +183,10 @@ def _paving(plan: Plan) -> shapely.Geometry:
     return shapely.difference(shapely.union_all(parts), plan.roads)
 
 
-def _add_plants(builder: SceneBuilder, plan: Plan, rng: np.random.Generator) -> None:
-    """Add the rows of trees, and hedges round the gardens."""
+def _add_plants(
+    builder: SceneBuilder, plan: Plan, hills: shapely.Geometry, rng: np.random.Generator
+) -> None:
+    """Add the rows of trees, hedges round the gardens, and bushes in the valley."""
     kinds = [
         builder.prototype(f"cone tree {k}", partial(cone_tree_levels, rng, k))
         for k in range(VARIANTS)
@@ -176,7 +196,8 @@ def _add_plants(builder: SceneBuilder, plan: Plan, rng: np.random.Generator) -> 
         kind = kinds[int(rng.integers(len(kinds)))]
         owner = builder.add_copy(ObjectClass.TREE, kind, (*place, FLOOR_HEIGHT), turn, height)
         builder.add_cylinder(place, 0.03 * height, FLOOR_HEIGHT, 0.5 * height, owner)
-    hedge = [builder.prototype("hedge", plant_makers(rng)["hedge"])]
+    plants = {name: builder.prototype(name, make) for name, make in plant_makers(rng).items()}
+    hedge = [plants["hedge"]]
     room = shapely.difference(
         shapely.union_all(plan.blocks),
         shapely.union_all([shapely.buffer(_paving(plan), 0.6), shapely.buffer(plan.roads, 1.9)]),
@@ -186,6 +207,18 @@ def _add_plants(builder: SceneBuilder, plan: Plan, rng: np.random.Generator) -> 
         ring = shapely.get_coordinates(yard)
         for start, end in zip(ring[:-1], ring[1:], strict=True):
             gardens.add_row(builder, hedge, np.array([start, end]), room, FLOOR_HEIGHT, rng)
+    thin = shapely.buffer(shapely.union_all(shapely.points(plan.trees)), 4.0)
+    yards = shapely.buffer(plan.walls, 6.0)
+    taken = [yards, shapely.buffer(plan.lake, 3.4), plan.covered, hills, thin]
+    open_land = shapely.difference(
+        shapely.intersection(EXTENT, shapely.buffer(plan.roads, 60.0)),
+        shapely.union_all([shapely.buffer(plan.roads, 5.0), *taken]),
+    )
+    bushes = [plants["border"], plants["low border"], plants["tall border"]]
+    for spot in gardens.scattered(open_land, *_BUSHES, rng):
+        kind, turn = bushes[int(rng.integers(3))], rng.uniform(0, 2 * np.pi)
+        size = rng.uniform(0.7, 1.3)
+        builder.add_copy(ObjectClass.TREE, kind, (*spot.tolist(), FLOOR_HEIGHT), turn, size)
 
 
 def _taken(plan: Plan, network: RoadNetwork) -> shapely.Geometry:

@@ -1,0 +1,27 @@
+"""Colours of the desert: sand and asphalt, and houses of the same sand."""
+
+from eyas.world.build.materials import material
+from eyas.world.buildings.cottages import CottageLook
+
+__all__ = ["DUNES", "DUSTY", "HOUSES", "SAND", "SNOW"]
+
+SAND = material("sand", (1.0, 0.93, 0.60))
+"""The ground, and the drifts on the roads."""
+
+DUNES = (
+    material("sand", (1.0, 0.91, 0.57)),
+    material("sand", (1.0, 0.89, 0.55)),
+)
+"""Dunes: slightly paler than the ground."""
+
+DUSTY = material("asphalt_light", (1.0, 0.90, 0.62))
+"""Asphalt under a thin layer of sand."""
+
+SNOW = material("snow", (0.97, 0.97, 0.97))
+"""Dunes under snow."""
+
+HOUSES = (
+    CottageLook("facade_plaster", (1.0, 0.95, 0.82), (1.0, 0.90, 0.80)),
+    CottageLook("facade_plaster", (0.98, 0.90, 0.74), (0.94, 0.84, 0.74)),
+    CottageLook("facade_stone", (1.0, 0.96, 0.84), (0.98, 0.88, 0.78)),
+)
