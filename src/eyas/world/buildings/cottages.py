@@ -5,8 +5,10 @@ The origin is on the ground in the middle of the house; the front faces along y.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from eyas.mesh.assembly import concatenate
@@ -19,8 +21,6 @@ from eyas.world.build.materials import TEXTURES, facade, material
 from eyas.world.build.scene_builder import Levels, SceneBuilder
 from eyas.world.buildings import parts
 from eyas.world.buildings.skyline import FLOOR
-
-import shapely
 
 __all__ = ["SIDE", "Cottage", "CottageLook", "add_cottages"]
 
@@ -89,12 +89,8 @@ def add_cottages(
     """
     for house in houses:
         look = looks[house.look % len(looks)]
-
-        def make(storeys: int = house.storeys, look: CottageLook = look) -> Levels:
-            return _levels(storeys, look)
-
         name = f"house of {house.storeys} storeys {house.look % len(looks)}"
-        kind = builder.prototype(name, make)
+        kind = builder.prototype(name, partial(_levels, house.storeys, look))
         spot = (*house.place.tolist(), FLOOR_HEIGHT)
         owner = builder.add_copy(ObjectClass.BUILDING, kind, spot, house.turn, 1.0)
         top = FLOOR_HEIGHT + house.storeys * FLOOR + _ROOF

@@ -67,7 +67,7 @@ def relief(
     index = index[(height[index] > 0).any(axis=1)]
     shapely.prepare(flat)
     touching = shapely.intersects(flat, shapely.polygons(points[index]))
-    height[index[touching]] = 0.0
+    height[index[touching].ravel()] = 0.0
     index = index[(height[index] > 0).any(axis=1)]
     edge = points[index][:, 1:] - points[index][:, :1]
     clockwise = edge[:, 0, 0] * edge[:, 1, 1] < edge[:, 0, 1] * edge[:, 1, 0]
@@ -100,8 +100,8 @@ def terrain_of(ground: Relief, floor: float, half: float, spacing: float = 4.0) 
     other = (across[:, 0] * way[:, 1] - across[:, 1] * way[:, 0]) / double
     raster = np.zeros(count * count)
     raster[point] = a[:, 2] + one * across[:, 2] + other * up[:, 2]
-    raster = np.maximum(rounded(raster), 0.0).reshape(count, count)
-    return Terrain(floor, raster.astype(np.float32), -half, -half, spacing)
+    rows = np.maximum(rounded(raster), 0.0).reshape(count, count).astype(np.float32)
+    return Terrain(floor, rows, -half, -half, spacing)
 
 
 def surface_of(
@@ -128,8 +128,8 @@ def surface_of(
         corners = ground.corners[some].reshape(-1, 3)
         uvs = corners[:, :2] / TEXTURES[material.texture]
         triangles = np.arange(len(corners)).reshape(-1, 3)
-        z = corners + (0.0, 0.0, floor)
-        made.append(of_one_material(z, normals[some].reshape(-1, 3), uvs, triangles, material))
+        placed = corners + np.array([0.0, 0.0, floor])
+        made.append(of_one_material(placed, normals[some].reshape(-1, 3), uvs, triangles, material))
     return concatenate(made)
 
 
@@ -140,6 +140,8 @@ def _normals(ground: Relief, *, smooth: bool) -> Points:
     if smooth:
         total = np.zeros_like(ground.points)
         np.add.at(total, ground.triangles, face[:, None])
+        # The feet join level ground.
+        total[ground.points[:, 2] == 0] = (0.0, 0.0, 1.0)
         normals = total[ground.triangles]
     else:
         normals = np.repeat(face[:, None], 3, axis=1)

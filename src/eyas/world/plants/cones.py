@@ -23,7 +23,7 @@ _GREENS = (
 )
 _CORE = (0.34, 0.42, 0.34)
 _HALF_WIDTH = (0.46, 0.40, 0.43)
-"""Half the width of the crown, as a share of the height; the original's trees are as wide as high."""
+"""Half the width of the crown, as a share of the height: in the original, 0.5."""
 _LOW = 0.10
 """Height of the lowest branches."""
 _RINGS = 6
@@ -61,7 +61,7 @@ def cone_tree_levels(rng: np.random.Generator, variant: int) -> tuple[Mesh, ...]
 
 def _crown(half: float, rng: np.random.Generator) -> Crown:
     """Return balls in rings that become smaller towards the top."""
-    centres, radii = [], []
+    centres, radii = [np.array([[0.0, 0.0, 0.94]])], [np.array([0.045])]
     for ring in range(_RINGS):
         share = ring / (_RINGS - 1)
         reach, height = half * (1.0 - share), _LOW + 0.10 + 0.72 * share
@@ -72,8 +72,6 @@ def _crown(half: float, rng: np.random.Generator) -> Crown:
         z = height + rng.uniform(-0.025, 0.025, count)
         centres.append(np.column_stack([out * np.cos(angle), out * np.sin(angle), z]))
         radii.append(np.full(count, size))
-    centres.append([[0.0, 0.0, 0.94]])
-    radii.append([0.045])
     return Crown(np.concatenate(centres), np.concatenate(radii), np.array([0.0, 0.0, 0.4]))
 
 

@@ -1,6 +1,7 @@
 """Tunnels under grown-over mounds: lumpy arches over the road that hide what drives below."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import shapely
@@ -98,7 +99,7 @@ def tunnel_prisms(tunnel: Tunnel, floor: float) -> list[tuple[Points, float, flo
     """Return the solids of a tunnel: outline, bottom and top of each [m]."""
     half = tunnel.length / 2 - 0.5
     made = []
-    for right, left in zip(_STRIPS[:-1], _STRIPS[1:], strict=True):
+    for right, left in pairwise(_STRIPS):
         outline = np.array([(-half, right), (half, right), (half, left), (-half, left)])
         far, near = max(abs(right), abs(left)), min(abs(right), abs(left))
         if right < 0.0 < left:

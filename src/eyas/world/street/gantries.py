@@ -59,7 +59,7 @@ def add_gantries(
         across = np.array([-along[1], along[0]])
         for side in (-SPAN / 2, SPAN / 2):
             foot = place + side * across
-            builder.add_cylinder(foot, _POST_RADIUS, FLOOR_HEIGHT, _BEAM + 0.4, owner)
+            builder.add_cylinder(foot.tolist(), _POST_RADIUS, FLOOR_HEIGHT, _BEAM + 0.4, owner)
         top = max(height for _, _, height in _BOARDS[number]) + _UNDER
         corners = [(-0.3, -SPAN / 2), (0.3, -SPAN / 2), (0.3, SPAN / 2), (-0.3, SPAN / 2)]
         outline = place + np.array([x * along + y * across for x, y in corners])
@@ -104,9 +104,7 @@ def _board(middle: float, width: float, height: float, *, fine: bool) -> list[Me
             wide = width * (0.55 if row % 2 else 0.66)
             at = (-0.29, middle - 0.06 * width, z)
             made.append(box((0.015, wide, 0.26), at, _WHITE, 1.0))
-        made.append(
-            box((0.015, 0.16, 0.6 * height), (-0.29, middle + 0.4 * width, centre), _WHITE, 1.0)
-        )
-        tip = (-0.29, middle + 0.4 * width, centre + 0.3 * height)
-        made.append(box((0.015, 0.5, 0.16), tip, _WHITE, 1.0))
+        beside = middle + 0.4 * width
+        for across, tall, z in ((0.16, 0.6 * height, centre), (0.5, 0.16, centre + 0.3 * height)):
+            made.append(box((0.015, across, tall), (-0.29, beside, z), _WHITE, 1.0))
     return made

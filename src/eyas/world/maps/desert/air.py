@@ -10,14 +10,14 @@ __all__ = ["DESERT_DAY", "DESERT_FOG", "DESERT_NIGHT", "DESERT_WINTER"]
 DESERT_DAY = replace(
     CLEAR_DAY,
     sun_colour=(1.06, 0.97, 0.80),
-    zenith_colour=(0.52, 0.55, 0.50),
-    horizon_colour=(0.92, 0.84, 0.62),
+    zenith_colour=(0.60, 0.58, 0.44),
+    horizon_colour=(0.96, 0.86, 0.58),
     # Sand reflects more light upwards than grass.
     ambient_up=(0.36, 0.35, 0.30),
     ambient_down=(0.26, 0.22, 0.14),
     fog_colour=(0.84, 0.76, 0.56),
     fog_density=1.0 / 5000.0,
-    clouds=0.08,
+    clouds=0.0,
 )
 
 # Dust in the air: the original's visibility range, and its sun still casts shadows.
@@ -55,5 +55,5 @@ DESERT_NIGHT = replace(
     ambient_up=(0.040, 0.030, 0.024),
     ambient_down=(0.022, 0.015, 0.009),
     fog_colour=(0.040, 0.018, 0.010),
-    clouds=0.1,
+    clouds=0.0,
 )

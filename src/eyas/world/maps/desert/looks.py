@@ -3,16 +3,10 @@
 from eyas.world.build.materials import material
 from eyas.world.buildings.cottages import CottageLook
 
-__all__ = ["DUNES", "DUSTY", "HOUSES", "SAND", "SNOW"]
+__all__ = ["DUSTY", "HOUSES", "SAND", "SNOW"]
 
 SAND = material("sand", (1.0, 0.93, 0.60))
-"""The ground, and the drifts on the roads."""
-
-DUNES = (
-    material("sand", (1.0, 0.91, 0.57)),
-    material("sand", (1.0, 0.89, 0.55)),
-)
-"""Dunes: slightly paler than the ground."""
+"""The ground, the dunes, and the drifts on the roads."""
 
 DUSTY = material("asphalt_light", (1.0, 0.90, 0.62))
 """Asphalt under a thin layer of sand."""

@@ -19,7 +19,7 @@ from eyas.world.land import ground
 from eyas.world.land.facets import Relief, relief, surface_of, terrain_of
 from eyas.world.land.mounds import Mound, highest
 from eyas.world.land.plain import plain
-from eyas.world.maps.desert.looks import DUNES, DUSTY, HOUSES, SAND, SNOW
+from eyas.world.maps.desert.looks import DUSTY, HOUSES, SAND, SNOW
 from eyas.world.maps.desert.plan import EXTENT, FLOOR, HALF, Plan, make_plan
 from eyas.world.maps.desert.roads import NAME
 from eyas.world.roads import markings
@@ -59,8 +59,8 @@ def build_scene(network: RoadNetwork, seed: int, season: Season) -> Scene:
     builder = SceneBuilder(NAME, seed, FLOOR, terrain_of(dunes, FLOOR_HEIGHT, HALF))
     white = _white(plan.dunes, season, stream(seed, "desert snow"))
     kind = _covers(dunes, plan.dunes, white, stream(seed, "desert sand"))
-    cover = (*DUNES, SNOW)
-    builder.add(ObjectClass.GROUND, surface_of(dunes, FLOOR_HEIGHT, cover, kind, smooth=True))
+    sides = surface_of(dunes, FLOOR_HEIGHT, (SAND, SNOW), kind, smooth=True)
+    builder.add(ObjectClass.GROUND, sides)
     add_cottages(builder, plan.houses, HOUSES)
     _add_ground(builder, plan, network, dunes.area, seed)
     add_signals(builder, network)
@@ -93,13 +93,11 @@ def _white(dunes: Sequence[Mound], season: Season, rng: np.random.Generator) -> 
 def _covers(
     ground_: Relief, dunes: Sequence[Mound], white: set[int], rng: np.random.Generator
 ) -> NDArray[np.intp]:
-    """Return the index of the material of each triangle: two sands, or snow."""
+    """Return the index of the material of each triangle: 0 for sand, 1 for snow."""
     middle = ground_.corners.mean(axis=1)
     height, owner = highest(dunes, middle[:, :2])
-    kind = np.where(owner % 2 == 0, 0, 1)
     line = _SNOW_LINE + rng.uniform(-1.5, 1.5, len(height))
-    kind[np.isin(owner, sorted(white)) & (height > line)] = 2
-    return kind
+    return (np.isin(owner, sorted(white)) & (height > line)).astype(np.intp)
 
 
 def _add_ground(

@@ -1,9 +1,10 @@
-"""The village: a green valley of faceted hills, a winding road, and tunnels that hide the target."""
+"""The village: a green valley of faceted hills, where tunnels hide the target."""
 
 from typing import TYPE_CHECKING
 
 from eyas.world.maps.recipe import MapRecipe
-from eyas.world.weather import DAY, FOGGY, NIGHT, SNOW, Season
+from eyas.world.maps.village.air import VILLAGE_FOG, VILLAGE_NIGHT
+from eyas.world.weather import CLEAR_DAY, DAY, FOGGY, NIGHT, SNOW, WINTER_DAY, Season
 
 if TYPE_CHECKING:
     from eyas.state.roads import RoadGraph, RoadNetwork
@@ -19,15 +20,10 @@ def _roads(seed: int) -> "RoadGraph":
 
 
 def _scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
+    """Build the village; in winter it is the same, and the weather's light adds the snow."""
     from eyas.world.maps.village.scene import build_scene
 
     return build_scene(network, seed)
-
-
-def _lighting() -> dict:  # placeholder
-    from eyas.world.weather import CLEAR_DAY, CLEAR_NIGHT, FOG, WINTER_DAY
-
-    return {DAY: CLEAR_DAY, FOGGY: FOG, NIGHT: CLEAR_NIGHT, SNOW: WINTER_DAY}
 
 
 VILLAGE = MapRecipe(
@@ -35,6 +31,6 @@ VILLAGE = MapRecipe(
     title="A green valley with hills and tunnels",
     roads=_roads,
     scene=_scene,
-    lighting=_lighting(),
+    lighting={DAY: CLEAR_DAY, FOGGY: VILLAGE_FOG, NIGHT: VILLAGE_NIGHT, SNOW: WINTER_DAY},
     package=__name__,
 )

@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 
 from eyas.core.rng import stream
 from eyas.state.roads import RoadNetwork
-from eyas.world.build.millimetres import rounded, snapped, unit
-from eyas.world.buildings.cottages import SIDE, Cottage
+from eyas.world.build.millimetres import snapped
+from eyas.world.buildings.cottages import Cottage
 from eyas.world.buildings.lots import largest
 from eyas.world.land.mounds import Mound, place_inside, place_ring, sizes
 from eyas.world.land.outlines import wavy
-from eyas.world.maps.village.roads import road_graph
 from eyas.world.maps.village.places import cottages_along, gantries_along, tunnels_along
+from eyas.world.maps.village.roads import road_graph
 from eyas.world.plants import trees
 from eyas.world.roads.areas import Street, blocks, road_area, streets
 from eyas.world.roads.tunnels import Tunnel

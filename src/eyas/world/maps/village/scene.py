@@ -1,6 +1,7 @@
 """The scene of the village."""
 
 from functools import partial
+from itertools import pairwise
 
 import numpy as np
 import shapely
@@ -205,7 +206,7 @@ def _add_plants(
     for house in plan.cottages:
         yard = shapely.buffer(shapely.Polygon(house.outline), 3.1, join_style="mitre")
         ring = shapely.get_coordinates(yard)
-        for start, end in zip(ring[:-1], ring[1:], strict=True):
+        for start, end in pairwise(ring):
             gardens.add_row(builder, hedge, np.array([start, end]), room, FLOOR_HEIGHT, rng)
     thin = shapely.buffer(shapely.union_all(shapely.points(plan.trees)), 4.0)
     yards = shapely.buffer(plan.walls, 6.0)
