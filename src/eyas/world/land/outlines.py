@@ -12,7 +12,11 @@ Points = NDArray[np.float64]
 
 
 def blob(
-    middle: Points, half: tuple[float, float], turn: float, rng: np.random.Generator
+    middle: Points,
+    half: tuple[float, float],
+    turn: float,
+    rng: np.random.Generator,
+    corners: int = 40,
 ) -> shapely.Polygon:
     """Return an uneven ellipse.
 
@@ -21,8 +25,9 @@ def blob(
         half: Half its length and width [m].
         turn: Direction of its length, counter-clockwise from east [rad].
         rng: Random numbers of the outline.
+        corners: Number of its corners.
     """
-    angle = np.linspace(0.0, 2 * np.pi, 40, endpoint=False)
+    angle = np.linspace(0.0, 2 * np.pi, corners, endpoint=False)
     phase, size = rng.uniform(0, 2 * np.pi, (3, 1)), rng.uniform(0.04, 0.11, (3, 1))
     waves = 1.0 + (size * np.sin(angle * [[2], [3], [5]] + phase)).sum(axis=0)
     # Between an ellipse and a rectangle: full ends.

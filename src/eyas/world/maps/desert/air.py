@@ -10,8 +10,8 @@ __all__ = ["DESERT_DAY", "DESERT_FOG", "DESERT_NIGHT", "DESERT_WINTER"]
 DESERT_DAY = replace(
     CLEAR_DAY,
     sun_colour=(1.06, 0.97, 0.80),
-    zenith_colour=(0.60, 0.58, 0.44),
-    horizon_colour=(0.96, 0.86, 0.58),
+    zenith_colour=(0.66, 0.61, 0.42),
+    horizon_colour=(1.0, 0.88, 0.56),
     # Sand reflects more light upwards than grass.
     ambient_up=(0.36, 0.35, 0.30),
     ambient_down=(0.26, 0.22, 0.14),

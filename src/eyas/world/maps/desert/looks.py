@@ -8,7 +8,7 @@ __all__ = ["DUSTY", "HOUSES", "SAND", "SNOW"]
 SAND = material("sand", (1.0, 0.93, 0.60))
 """The ground, the dunes, and the drifts on the roads."""
 
-DUSTY = material("asphalt_light", (1.0, 0.90, 0.62))
+DUSTY = material("sand", (0.76, 0.70, 0.48))
 """Asphalt under a thin layer of sand."""
 
 SNOW = material("snow", (0.97, 0.97, 0.97))

@@ -44,6 +44,8 @@ _DRIFT = (15.0, 32.0)
 _ASKEW = math.radians(40.0)
 """Most by which a drift is turned from the line across the road [rad]."""
 _DRIFT_APART = 95.0
+_TONGUE_EVERY, _TONGUES = 24.0, 0.6
+"""From one place with sand on the kerb to the next [m], and share of the places that have it."""
 _HOUSES = 7
 _SETBACKS = (4.6, 10.5)
 
@@ -70,6 +72,8 @@ class Plan:
     """Ground between roads [m]."""
     drifts: list[Drift]
     """Sand on the roads."""
+    tongues: list[shapely.Polygon]
+    """Sand that reaches over the kerbs [m]."""
     houses: list[Cottage]
     """Houses."""
     dunes: list[Mound]
@@ -95,7 +99,22 @@ def make_plan(network: RoadNetwork, seed: int) -> Plan:
     houses = _houses(ways, roads, drifts, stream(seed, "desert houses"))
     walls = shapely.union_all([shapely.Polygon(house.outline) for house in houses])
     dunes = _dunes(roads, closed, walls, stream(seed, "desert dunes"))
-    return Plan(roads, closed, drifts, houses, dunes)
+    tongues = _tongues(roads, stream(seed, "desert tongues"))
+    return Plan(roads, closed, drifts, tongues, houses, dunes)
+
+
+def _tongues(roads: shapely.Geometry, rng: np.random.Generator) -> list[shapely.Polygon]:
+    """Return sand along the kerbs, which hides the straight edge of the road here and there."""
+    made = []
+    for ring in shapely.get_parts(shapely.boundary(roads)):
+        for at in np.arange(0.0, float(ring.length), _TONGUE_EVERY) + rng.uniform(0.0, 20.0):
+            here, there = (shapely.get_coordinates(ring.interpolate(s))[0] for s in (at, at + 1.0))
+            half = (rng.uniform(2.5, 9.0), rng.uniform(0.35, 1.0))
+            if rng.random() < _TONGUES and length(there - here) > 0.1:
+                onwards = unit(there - here)
+                turn = math.atan2(onwards[1], onwards[0])
+                made.append(blob(here, half, turn, rng, corners=16))
+    return made
 
 
 def _drifts(ways: Sequence[Street], rng: np.random.Generator) -> list[Drift]:

@@ -7,8 +7,11 @@ import shapely
 from numpy.typing import NDArray
 
 from eyas.core.rng import stream
-from eyas.mesh.flat import flat_polygons
+from eyas.mesh.assembly import concatenate
+from eyas.mesh.flat import flat_polygons, quads
+from eyas.mesh.panels import cells, closed
 from eyas.state.lighting import Horizon
+from eyas.state.mesh import Mesh
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import ObjectClass, Scene
 from eyas.world.build.heights import FLOOR_HEIGHT
@@ -39,6 +42,9 @@ _SPACING = (6.0, 13.0)
 DRIFT_HEIGHT = 0.03
 """z of the drifts: above all paint [m]."""
 _FRINGE_HEIGHT = 0.022
+"""z of the thin sand around them, and of the tongues at the kerbs [m]."""
+_SLOPE = 1.4
+"""Width of the slope around a heap of sand [m]."""
 
 _SNOWED = 22
 """Number of dunes under snow in winter, as in the original."""
@@ -100,18 +106,38 @@ def _covers(
     return (np.isin(owner, sorted(white)) & (height > line)).astype(np.intp)
 
 
+def _heap(area: shapely.Polygon, top: float) -> Mesh:
+    """Return a flat heap of sand, whose sides slope down to the ground.
+
+    Args:
+        area: Its top in plan view [m].
+        top: z of its top [m].
+    """
+    rim = shapely.get_coordinates(shapely.geometry.polygon.orient(area).exterior)[:-1]
+    ahead = np.roll(rim, -1, axis=0) - np.roll(rim, 1, axis=0)
+    away = np.stack([ahead[:, 1], -ahead[:, 0]], axis=1)
+    foot = rim + _SLOPE * away / np.linalg.norm(away, axis=1, keepdims=True)
+    low = np.column_stack([foot, np.full(len(foot), FLOOR_HEIGHT - 0.02)])
+    high = np.column_stack([rim, np.full(len(rim), top)])
+    sides = cells(closed([low, high]))
+    tile = TEXTURES[SAND.texture]
+    return concatenate(
+        [quads(sides, sides[..., :2] / tile, SAND), flat_polygons([area], top, SAND, tile)]
+    )
+
+
 def _add_ground(
     builder: SceneBuilder, plan: Plan, network: RoadNetwork, dunes: shapely.Geometry, seed: int
 ) -> None:
     paint = markings.road_paint(network, crossings=False)
     sand = shapely.union_all([drift.area for drift in plan.drifts])
     dusty = shapely.union_all([drift.fringe for drift in plan.drifts])
-    on_road = shapely.intersection(sand, plan.roads)
     edge = shapely.intersection(shapely.difference(dusty, sand), plan.roads)
     tile = TEXTURES["sand"]
     builder.add(
         ObjectClass.GROUND,
-        flat_polygons([on_road], DRIFT_HEIGHT, SAND, tile),
+        *(_heap(drift.area, DRIFT_HEIGHT) for drift in plan.drifts),
+        *(_heap(tongue, _FRINGE_HEIGHT) for tongue in plan.tongues),
         flat_polygons([edge], _FRINGE_HEIGHT, DUSTY, TEXTURES[DUSTY.texture]),
     )
     builder.add(ObjectClass.MARKING, markings.mesh_of(paint))
