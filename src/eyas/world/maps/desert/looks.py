@@ -3,7 +3,7 @@
 from eyas.world.build.materials import material
 from eyas.world.buildings.cottages import CottageLook
 
-__all__ = ["DUSTY", "HOUSES", "SAND", "SNOW"]
+__all__ = ["DUSTY", "HOUSES", "SAND", "SNOW", "THIN_SNOW"]
 
 SAND = material("sand", (1.0, 0.93, 0.60))
 """The ground, the dunes, and the drifts on the roads."""
@@ -13,6 +13,9 @@ DUSTY = material("sand", (0.76, 0.70, 0.48))
 
 SNOW = material("snow", (0.97, 0.97, 0.97))
 """Dunes under snow."""
+
+THIN_SNOW = material("snow", (0.98, 0.91, 0.72))
+"""Their feet, where sand shows through."""
 
 HOUSES = (
     CottageLook("facade_plaster", (1.0, 0.95, 0.82), (1.0, 0.90, 0.80)),

@@ -22,7 +22,7 @@ from eyas.world.land import ground
 from eyas.world.land.facets import Relief, relief, surface_of, terrain_of
 from eyas.world.land.mounds import Mound, highest
 from eyas.world.land.plain import plain
-from eyas.world.maps.desert.looks import DUSTY, HOUSES, SAND, SNOW
+from eyas.world.maps.desert.looks import DUSTY, HOUSES, SAND, SNOW, THIN_SNOW
 from eyas.world.maps.desert.plan import EXTENT, FLOOR, HALF, Plan, make_plan
 from eyas.world.maps.desert.roads import NAME
 from eyas.world.roads import markings
@@ -48,8 +48,8 @@ _SLOPE = 1.4
 
 _SNOWED = 22
 """Number of dunes under snow in winter, as in the original."""
-_SNOW_LINE = 2.5
-"""Height from which snow lies on them [m]."""
+_SNOW_LINES = (2.5, 6.0)
+"""Heights from which thin and closed snow lies on them [m]."""
 
 
 def build_scene(network: RoadNetwork, seed: int, season: Season) -> Scene:
@@ -65,7 +65,7 @@ def build_scene(network: RoadNetwork, seed: int, season: Season) -> Scene:
     builder = SceneBuilder(NAME, seed, FLOOR, terrain_of(dunes, FLOOR_HEIGHT, HALF))
     white = _white(plan.dunes, season, stream(seed, "desert snow"))
     kind = _covers(dunes, plan.dunes, white, stream(seed, "desert sand"))
-    sides = surface_of(dunes, FLOOR_HEIGHT, (SAND, SNOW), kind, smooth=True)
+    sides = surface_of(dunes, FLOOR_HEIGHT, (SAND, THIN_SNOW, SNOW), kind, smooth=True)
     builder.add(ObjectClass.GROUND, sides)
     add_cottages(builder, plan.houses, HOUSES)
     _add_ground(builder, plan, network, dunes.area, seed)
@@ -99,11 +99,11 @@ def _white(dunes: Sequence[Mound], season: Season, rng: np.random.Generator) -> 
 def _covers(
     ground_: Relief, dunes: Sequence[Mound], white: set[int], rng: np.random.Generator
 ) -> NDArray[np.intp]:
-    """Return the index of the material of each triangle: 0 for sand, 1 for snow."""
+    """Return the index of the material of each triangle: 0 for sand, then the snows."""
     middle = ground_.corners.mean(axis=1)
     height, owner = highest(dunes, middle[:, :2])
-    line = _SNOW_LINE + rng.uniform(-1.5, 1.5, len(height))
-    return (np.isin(owner, sorted(white)) & (height > line)).astype(np.intp)
+    depth = np.searchsorted(_SNOW_LINES, height + rng.uniform(-1.5, 1.5, len(height)))
+    return np.where(np.isin(owner, sorted(white)), depth, 0)
 
 
 def _heap(area: shapely.Polygon, top: float) -> Mesh:

@@ -28,7 +28,7 @@ ROCK = material("stone", (0.50, 0.52, 0.47))
 WATER = Material("water", (0.20, 0.44, 0.72), Surface.WATER)
 
 HOUSES = (
-    CottageLook("facade_plaster", (0.99, 0.99, 1.0), (1.0, 0.96, 0.94)),
-    CottageLook("facade_plaster", (1.0, 0.98, 0.94), (0.96, 0.88, 0.84)),
-    CottageLook("facade_plaster", (0.94, 0.97, 1.0), (1.0, 0.92, 0.86)),
+    CottageLook("facade_concrete", (1.0, 1.0, 1.0), (1.0, 0.96, 0.94)),
+    CottageLook("facade_plaster", (0.88, 0.94, 1.0), (0.96, 0.88, 0.84)),
+    CottageLook("facade_concrete", (1.0, 0.99, 0.97), (1.0, 0.92, 0.86)),
 )
