@@ -18,6 +18,8 @@ MAPS: Registry[MapRecipe] = Registry(
         "citystreet": "eyas.world.maps.citystreet:CITYSTREET",
         "downtown": "eyas.world.maps.downtown:DOWNTOWN",
         "lake": "eyas.world.maps.lake:LAKE",
+        "village": "eyas.world.maps.village:VILLAGE",
+        "desert": "eyas.world.maps.desert:DESERT",
         "farmland": "eyas.world.maps.farmland:FARMLAND",
         "farmland-bare": "eyas.world.maps.farmland:FARMLAND_BARE",
         "simpleway-grass": "eyas.world.maps.simpleway:GRASS",

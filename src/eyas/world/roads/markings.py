@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import Enum, auto
 from functools import reduce
 
 import numpy as np
@@ -22,6 +23,7 @@ __all__ = [
     "MARGIN_HEIGHT",
     "PAINT_HEIGHT",
     "WHITE",
+    "Centre",
     "RoadPaint",
     "Stripe",
     "margins_of",
@@ -44,6 +46,8 @@ _DASH, _GAP = 3.0, 6.0
 _LINE = 0.18
 """Width of a lane line: nearly a pixel of a policy's small image, from 22 m away [m]."""
 _CENTRE_LINE = 0.2
+_DOUBLE = 0.18
+"""From the middle of the road to each of two yellow lines [m]."""
 _EDGE_LINE = 0.2
 _EDGE = 0.3
 """From the kerb to the edge line [m]."""
@@ -55,6 +59,15 @@ _BAR = 0.55
 """Width of a bar of a zebra crossing, nearly that of the gap to the next bar [m]."""
 
 Line = NDArray[np.float64]
+
+
+class Centre(Enum):
+    """The line between the two directions of a road."""
+
+    WHITE = auto()
+    """One white line."""
+    DOUBLE_YELLOW = auto()
+    """Two yellow lines."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,37 +94,37 @@ class RoadPaint:
     arrows: list[shapely.Polygon]
     """White arrows."""
     zebras: list[list[Stripe]]
-    """Yellow bars of each crossing."""
+    """Yellow bars of each crossing, and pairs of yellow lines."""
 
 
-def road_paint(network: RoadNetwork) -> RoadPaint:
-    """Return the paint of all roads, with zebra crossings where three or more roads meet."""
-    meeting = joints(network)
-    lines: list[Stripe] = []
-    all_streets = streets(network)
+def road_paint(
+    network: RoadNetwork, *, centre: Centre = Centre.WHITE, crossings: bool = True
+) -> RoadPaint:
+    """Return the paint of all roads.
+
+    Args:
+        network: The roads.
+        centre: The line between the two directions.
+        crossings: Whether there are zebra crossings where three or more roads meet.
+    """
+    meeting, all_streets = joints(network), streets(network)
     both_ways = {(street.end, street.start) for street in all_streets}
+    lines: list[Stripe] = []
+    zebras: list[list[Stripe]] = []
     for chain in _chains(all_streets, meeting):
-        middle, *dividers, kerb = (
-            reduce(joined, parts) for parts in zip(*(link.lines for link in chain), strict=True)
-        )
-        if (chain[0].start, chain[0].end) not in both_ways:
-            edge = shapely.offset_curve(shapely.LineString(middle), -_EDGE)
-            lines += stripes(shapely.get_coordinates(edge), _EDGE_LINE)
-        elif _comes_first(middle):
-            lines += stripes(middle, _CENTRE_LINE)
-        for divider in dividers:
-            lines += stripes(divider, _LINE, (_DASH, _GAP))
-        edge = shapely.offset_curve(shapely.LineString(kerb), _EDGE)
-        lines += stripes(shapely.get_coordinates(edge), _EDGE_LINE)
+        one_way = (chain[0].start, chain[0].end) not in both_ways
+        white, yellow = _along(chain, None if one_way else centre)
+        lines += white
+        zebras += yellow
     arrows: list[shapely.Polygon] = []
-    zebras = []
     for street in all_streets:
+        one_way = (street.start, street.end) not in both_ways
         if meeting[street.end] >= 3:
             leaving = [other for other in all_streets if other.start == street.end]
             lines.append(_stop_line(street))
             arrows += _arrows(street, leaving)
-            zebras.append(_zebra(street, one_way=(street.start, street.end) not in both_ways))
-        if meeting[street.start] >= 3 and (street.start, street.end) not in both_ways:
+            zebras += [_zebra(street, one_way=one_way)] if crossings else []
+        if meeting[street.start] >= 3 and one_way and crossings:
             zebras.append(_zebra(_reversed(street), one_way=True))
     return RoadPaint(lines, arrows, zebras)
 
@@ -202,6 +215,28 @@ def painted(shapes: Sequence[shapely.Polygon], paint: Material) -> Mesh:
         for part in (split_on_grid(shape) if shape.length > 60.0 else [shape])
     ]
     return flat_polygons(pieces, PAINT_HEIGHT, paint, TEXTURES["paint"])
+
+
+def _along(
+    chain: Sequence[Street], centre: Centre | None
+) -> tuple[list[Stripe], list[list[Stripe]]]:
+    """Return the white and the yellow lines along joined streets; no centre: one way."""
+    middle, *dividers, kerb = (
+        reduce(joined, parts) for parts in zip(*(link.lines for link in chain), strict=True)
+    )
+    path, white, yellow = shapely.LineString(middle), [], []
+    if centre is None:
+        edge = shapely.offset_curve(path, -_EDGE)
+        white += stripes(shapely.get_coordinates(edge), _EDGE_LINE)
+    elif _comes_first(middle) and centre is Centre.DOUBLE_YELLOW:
+        beside = [shapely.offset_curve(path, side) for side in (-_DOUBLE, _DOUBLE)]
+        yellow = [[Stripe(shapely.get_coordinates(line), _LINE) for line in beside]]
+    elif _comes_first(middle):
+        white += stripes(middle, _CENTRE_LINE)
+    for divider in dividers:
+        white += stripes(divider, _LINE, (_DASH, _GAP))
+    edge = shapely.offset_curve(shapely.LineString(kerb), _EDGE)
+    return white + stripes(shapely.get_coordinates(edge), _EDGE_LINE), yellow
 
 
 def _chains(all_streets: list[Street], meeting: dict[str, int]) -> list[list[Street]]:

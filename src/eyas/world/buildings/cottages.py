@@ -1,0 +1,153 @@
+"""Detached houses as fixtures: white cubes with pyramid roofs, doors and chimneys.
+
+The origin is on the ground in the middle of the house; the front faces along y.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from eyas.mesh.assembly import concatenate
+from eyas.mesh.flat import flat_polygon, quads, walls
+from eyas.mesh.solids import box
+from eyas.state.mesh import Material, Mesh
+from eyas.state.scene import ObjectClass
+from eyas.world.build.heights import FLOOR_HEIGHT
+from eyas.world.build.materials import TEXTURES, facade, material
+from eyas.world.build.scene_builder import Levels, SceneBuilder
+from eyas.world.buildings import parts
+from eyas.world.buildings.skyline import FLOOR
+
+__all__ = ["SIDE", "Cottage", "CottageLook", "add_cottages"]
+
+SIDE = 20.0
+"""Length of the walls [m]."""
+
+_ROOF = 3.6
+"""Height of the roof above the eaves [m]."""
+_EAVES = 0.9
+"""From the wall to the edge of the roof [m]."""
+_PATIO = 2.2
+"""Width of the paving around a house [m]."""
+
+Points = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Cottage:
+    """A house in plan view."""
+
+    place: Points
+    """Its middle [m], shape (2,)."""
+    turn: float
+    """Angle of its front from north, counter-clockwise [rad]."""
+    storeys: int
+    """Number of storeys."""
+    look: int
+    """Index of its look."""
+
+    @property
+    def outline(self) -> Points:
+        """Corners of its walls, counter-clockwise [m], shape (4, 2)."""
+        cosine, sine = np.cos(self.turn), np.sin(self.turn)
+        turned = _SQUARE @ np.array([[cosine, sine], [-sine, cosine]])
+        return np.asarray(self.place + turned, np.float64)
+
+
+@dataclass(frozen=True, slots=True)
+class CottageLook:
+    """Paint and tiles of a house."""
+
+    walls: str
+    """One of `FACADES`."""
+    tint: tuple[float, float, float]
+    """Factor on the walls' colour."""
+    tiles: tuple[float, float, float]
+    """Factor on the tiles' colour."""
+
+
+_SQUARE = 0.5 * SIDE * np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
+_DOOR = material("plain", (0.36, 0.22, 0.14))
+_FRAME = material("plain", (0.93, 0.93, 0.91))
+_CHIMNEY = material("brick", (0.95, 0.9, 0.86))
+_DARK = material("plain", (0.12, 0.11, 0.10))
+
+
+def add_cottages(
+    builder: SceneBuilder, houses: Sequence[Cottage], looks: Sequence[CottageLook]
+) -> None:
+    """Add houses.
+
+    Args:
+        builder: The builder to add to.
+        houses: The houses.
+        looks: Their looks.
+    """
+    for house in houses:
+        look = looks[house.look % len(looks)]
+        name = f"house of {house.storeys} storeys {house.look % len(looks)}"
+        kind = builder.prototype(name, partial(_levels, house.storeys, look))
+        spot = (*house.place.tolist(), FLOOR_HEIGHT)
+        owner = builder.add_copy(ObjectClass.BUILDING, kind, spot, house.turn, 1.0)
+        top = FLOOR_HEIGHT + house.storeys * FLOOR + _ROOF
+        builder.add_prism(house.outline, FLOOR_HEIGHT, top, owner)
+
+
+def _levels(storeys: int, look: CottageLook) -> Levels:
+    """Return a house in two levels of detail."""
+    top = storeys * FLOOR
+    wall = facade(look.walls, look.tint)
+    tiles = material("roof_tiles", look.tiles)
+    rng = np.random.default_rng(storeys)
+    shell = [
+        parts.window_wall(_SQUARE, 0.0, top, wall, rng),
+        _roof(top, tiles),
+        walls(_SQUARE * (1.0 + 2 * _EAVES / SIDE), top - 0.25, top, _FRAME, 4.0),
+    ]
+    return concatenate([*shell, *_details(top, storeys)]), concatenate(shell)
+
+
+def _roof(top: float, tiles: Material) -> Mesh:
+    """Return four slopes with their undersides."""
+    eaves = _SQUARE * (1.0 + 2 * _EAVES / SIDE)
+    rim = np.column_stack([eaves, np.full(4, top)])
+    peak = np.array([0.0, 0.0, top + _ROOF])
+    half, slope = SIDE / 2 + _EAVES, float(np.hypot(SIDE / 2 + _EAVES, _ROOF))
+    made = []
+    for k in range(4):
+        one, other = rim[k], rim[(k + 1) % 4]
+        # A quadrilateral whose upper side is short, not a point: empty triangles have no normal.
+        corners = [one, other, peak + 0.01 * (other - peak), peak + 0.01 * (one - peak)]
+        uvs = np.array([(-half, 0.0), (half, 0.0), (0.01 * half, slope), (-0.01 * half, slope)])
+        made.append(quads([corners], [uvs / TEXTURES[tiles.texture]], tiles))
+    soffit = flat_polygon(shapely.Polygon(eaves), top - 0.25, _FRAME, 1.0)
+    soffit.triangles = np.ascontiguousarray(soffit.triangles[:, ::-1])
+    soffit.normals = -soffit.normals
+    return concatenate([*made, soffit])
+
+
+def _details(top: float, storeys: int) -> list[Mesh]:
+    """Return door, porch, balconies and chimneys."""
+    front = SIDE / 2
+    made = [
+        box((1.5, 0.12, 2.3), (0.0, front + 0.04, 1.15), _DOOR, 1.0),
+        box((2.0, 0.08, 2.6), (0.0, front + 0.02, 1.3), _FRAME, 1.0),
+        box((3.4, 1.7, 0.18), (0.0, front + 0.8, 2.85), _FRAME, 1.0),
+        box((0.16, 0.16, 2.8), (-1.5, front + 1.5, 1.4), _FRAME, 1.0),
+        box((0.16, 0.16, 2.8), (1.5, front + 1.5, 1.4), _FRAME, 1.0),
+        box((3.0, 1.8, 0.16), (0.0, front + 0.9, 0.08), material("stone"), 4.0),
+        box((1.3, 1.3, 2.6), (5.2, -3.4, top + 2.3), _CHIMNEY, 4.0),
+        box((1.5, 1.5, 0.2), (5.2, -3.4, top + 3.65), _FRAME, 1.0),
+        box((0.7, 0.7, 0.06), (5.2, -3.4, top + 3.78), _DARK, 1.0),
+    ]
+    for storey in range(1, storeys):
+        floor = storey * FLOOR
+        made += [
+            box((5.6, 1.3, 0.14), (-5.4, front + 0.65, floor), _FRAME, 1.0),
+            box((5.6, 0.06, 0.9), (-5.4, front + 1.27, floor + 0.5), _FRAME, 1.0),
+        ]
+    return made

@@ -1,0 +1,153 @@
+"""The scene of the desert."""
+
+from collections.abc import Sequence
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from eyas.core.rng import stream
+from eyas.mesh.assembly import concatenate
+from eyas.mesh.flat import flat_polygons, quads
+from eyas.mesh.panels import cells, closed
+from eyas.state.lighting import Horizon
+from eyas.state.mesh import Mesh
+from eyas.state.roads import RoadNetwork
+from eyas.state.scene import ObjectClass, Scene
+from eyas.world.build.heights import FLOOR_HEIGHT
+from eyas.world.build.materials import TEXTURES
+from eyas.world.build.scene_builder import SceneBuilder
+from eyas.world.buildings.cottages import add_cottages
+from eyas.world.land import ground
+from eyas.world.land.facets import Relief, relief, surface_of, terrain_of
+from eyas.world.land.mounds import Mound, highest
+from eyas.world.land.plain import far_plain
+from eyas.world.maps.desert.looks import DUSTY, HOUSES, SAND, SNOW, THIN_SNOW
+from eyas.world.maps.desert.plan import EXTENT, FLOOR, HALF, Plan, make_plan
+from eyas.world.maps.desert.roads import NAME
+from eyas.world.roads import markings
+from eyas.world.roads import wear as road_wear
+from eyas.world.roads.areas import surface
+from eyas.world.street.lamps import add_lamps
+from eyas.world.street.signals import add_signals, signal_places
+from eyas.world.weather import Season
+
+__all__ = ["DRIFT_HEIGHT", "build_scene"]
+
+_LAMPS = 38
+_CORE = 345.0
+_SPACING = (6.0, 13.0)
+"""Half the side of the square with the smaller triangles, and distances of their corners [m]."""
+
+DRIFT_HEIGHT = 0.03
+"""z of the drifts: above all paint [m]."""
+_FRINGE_HEIGHT = 0.022
+"""z of the thin sand around them, and of the tongues at the kerbs [m]."""
+_SLOPE = 1.4
+"""Width of the slope around a heap of sand [m]."""
+
+_SNOWED = 22
+"""Number of dunes under snow in winter, as in the original."""
+_SNOW_LINES = (2.5, 6.0)
+"""Heights from which thin and closed snow lies on them [m]."""
+
+
+def build_scene(network: RoadNetwork, seed: int, season: Season) -> Scene:
+    """Return the desert.
+
+    Args:
+        network: Made of `road_graph(seed)`.
+        seed: Seed of the map, >= 0.
+        season: In winter, nearly every second dune is white; the ground is not.
+    """
+    plan = make_plan(network, seed)
+    dunes = _relief(plan, stream(seed, "desert facets"))
+    builder = SceneBuilder(NAME, seed, FLOOR, terrain_of(dunes, FLOOR_HEIGHT, HALF))
+    white = _white(plan.dunes, season, stream(seed, "desert snow"))
+    kind = _covers(dunes, plan.dunes, white, stream(seed, "desert sand"))
+    sides = surface_of(dunes, FLOOR_HEIGHT, (SAND, THIN_SNOW, SNOW), kind, smooth=True)
+    builder.add(ObjectClass.GROUND, sides)
+    add_cottages(builder, plan.houses, HOUSES)
+    _add_ground(builder, plan, network, dunes.area, seed)
+    add_signals(builder, network)
+    poles = shapely.buffer(shapely.points([place for place, _ in signal_places(network)]), 2.0)
+    taken = shapely.union_all([plan.roads, plan.walls, *poles])
+    lights = add_lamps(builder, network, _LAMPS, taken, stream(seed, "desert lamps"))
+    horizon = Horizon(name="desert", height=0.03, ridges=0.1, woods=0.0)
+    return builder.build(network, lights, horizon)
+
+
+def _relief(plan: Plan, rng: np.random.Generator) -> Relief:
+    """Return the dunes as triangles."""
+    flat = shapely.union(shapely.buffer(plan.roads, 5.0), shapely.buffer(plan.walls, 3.0))
+
+    def heights(points: NDArray[np.float64]) -> NDArray[np.float64]:
+        return highest(plan.dunes, points)[0]
+
+    return relief(heights, (_CORE, HALF), _SPACING, flat, rng)
+
+
+def _white(dunes: Sequence[Mound], season: Season, rng: np.random.Generator) -> set[int]:
+    """Return which dunes are white: about every second."""
+    if season is not Season.WINTER:
+        return set()
+    share = _SNOWED / len(dunes)
+    kept = np.floor(share * (np.arange(len(dunes)) + rng.uniform())).astype(int)
+    return set((1 + np.flatnonzero(np.diff(kept) > 0)).tolist())
+
+
+def _covers(
+    ground_: Relief, dunes: Sequence[Mound], white: set[int], rng: np.random.Generator
+) -> NDArray[np.intp]:
+    """Return the index of the material of each triangle: 0 for sand, then the snows."""
+    middle = ground_.corners.mean(axis=1)
+    height, owner = highest(dunes, middle[:, :2])
+    depth = np.searchsorted(_SNOW_LINES, height + rng.uniform(-1.5, 1.5, len(height)))
+    return np.where(np.isin(owner, sorted(white)), depth, 0)
+
+
+def _heap(area: shapely.Polygon, top: float) -> Mesh:
+    """Return a flat heap of sand, whose sides slope down to the ground.
+
+    Args:
+        area: Its top in plan view [m].
+        top: z of its top [m].
+    """
+    rim = shapely.get_coordinates(shapely.geometry.polygon.orient(area).exterior)[:-1]
+    ahead = np.roll(rim, -1, axis=0) - np.roll(rim, 1, axis=0)
+    away = np.stack([ahead[:, 1], -ahead[:, 0]], axis=1)
+    foot = rim + _SLOPE * away / np.linalg.norm(away, axis=1, keepdims=True)
+    low = np.column_stack([foot, np.full(len(foot), FLOOR_HEIGHT - 0.02)])
+    high = np.column_stack([rim, np.full(len(rim), top)])
+    sides = cells(closed([low, high]))
+    tile = TEXTURES[SAND.texture]
+    return concatenate(
+        [quads(sides, sides[..., :2] / tile, SAND), flat_polygons([area], top, SAND, tile)]
+    )
+
+
+def _add_ground(
+    builder: SceneBuilder, plan: Plan, network: RoadNetwork, dunes: shapely.Geometry, seed: int
+) -> None:
+    paint = markings.road_paint(network, crossings=False)
+    sand = shapely.union_all([drift.area for drift in plan.drifts])
+    dusty = shapely.union_all([drift.fringe for drift in plan.drifts])
+    edge = shapely.intersection(shapely.difference(dusty, sand), plan.roads)
+    tile = TEXTURES["sand"]
+    builder.add(
+        ObjectClass.GROUND,
+        *(_heap(drift.area, DRIFT_HEIGHT) for drift in plan.drifts),
+        *(_heap(tongue, _FRINGE_HEIGHT) for tongue in plan.tongues),
+        flat_polygons([edge], _FRINGE_HEIGHT, DUSTY, TEXTURES[DUSTY.texture]),
+    )
+    builder.add(ObjectClass.MARKING, markings.mesh_of(paint))
+    wear = road_wear.road_wear(network, stream(seed, "desert road wear"))
+    builder.add(ObjectClass.ROAD, markings.margins_of(paint), wear, ground.asphalt(plan.roads))
+    # Slightly below the feet of the dunes, so that rounding leaves no gap between them.
+    rest = shapely.buffer(dunes, -0.4, join_style="mitre")
+    level = shapely.difference(EXTENT, shapely.union(plan.roads, rest))
+    builder.add(
+        ObjectClass.GROUND,
+        surface(level, FLOOR_HEIGHT, SAND, tile),
+        far_plain((2 * HALF, 2 * HALF), SAND),
+    )

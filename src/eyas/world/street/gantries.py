@@ -1,0 +1,110 @@
+"""Blue direction signs on gantries over roads."""
+
+from collections.abc import Sequence
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.mesh.assembly import concatenate
+from eyas.mesh.solids import box, tube
+from eyas.state.mesh import Mesh
+from eyas.state.scene import ObjectClass
+from eyas.world.build.heights import FLOOR_HEIGHT
+from eyas.world.build.materials import material
+from eyas.world.build.scene_builder import Levels, SceneBuilder
+
+__all__ = ["KINDS", "SPAN", "add_gantries"]
+
+SPAN = 16.6
+"""Distance of the two posts, as in the original [m]."""
+
+_POST_RADIUS = 0.2
+_BEAM = 6.0
+"""Height of the beam [m]."""
+_UNDER = 5.6
+"""z of the lowest edge of a board: higher than any vehicle [m]."""
+_STEEL = material("plain", (0.62, 0.64, 0.66))
+_BLUE = material("plain", (0.08, 0.22, 0.62))
+_WHITE = material("plain", (0.95, 0.95, 0.95))
+
+_BOARDS: tuple[tuple[tuple[float, float, float], ...], ...] = (
+    ((-3.6, 6.0, 2.9),),
+    ((-3.6, 6.0, 2.5), (3.9, 3.2, 2.1)),
+    ((-4.2, 3.2, 2.1), (-0.6, 3.2, 2.1)),
+)
+"""Boards of each kind: middle across the road, width, height [m]."""
+
+KINDS = len(_BOARDS)
+"""Number of kinds."""
+
+Points = NDArray[np.float64]
+
+
+def add_gantries(
+    builder: SceneBuilder, places: Sequence[tuple[Points, float]], rng: np.random.Generator
+) -> None:
+    """Add gantries.
+
+    Args:
+        builder: The builder to add to.
+        places: Middle of the road [m] and its direction [rad], of each.
+        rng: Random numbers for the choice of the boards.
+    """
+    for index, (place, turn) in enumerate(places):
+        number = int((index + rng.integers(2)) % KINDS)
+        kind = builder.prototype(f"gantry {number}", partial(_levels, number))
+        owner = builder.add_copy(ObjectClass.POLE, kind, (*place.tolist(), 0.0), turn, 1.0)
+        along = np.array([np.cos(turn), np.sin(turn)])
+        across = np.array([-along[1], along[0]])
+        for side in (-SPAN / 2, SPAN / 2):
+            foot = place + side * across
+            builder.add_cylinder(foot.tolist(), _POST_RADIUS, FLOOR_HEIGHT, _BEAM + 0.4, owner)
+        top = max(height for _, _, height in _BOARDS[number]) + _UNDER
+        corners = [(-0.3, -SPAN / 2), (0.3, -SPAN / 2), (0.3, SPAN / 2), (-0.3, SPAN / 2)]
+        outline = place + np.array([x * along + y * across for x, y in corners])
+        builder.add_prism(outline, _UNDER, top, owner)
+
+
+def _levels(number: int) -> Levels:
+    """Return a gantry over a road along x; its boards face backwards, to who drives along x."""
+    return _gantry(number, 8, fine=True), _gantry(number, 4, fine=False)
+
+
+def _gantry(number: int, sides: int, *, fine: bool) -> Mesh:
+    half = SPAN / 2
+    made = [box((0.28, SPAN, 0.3), (0.0, 0.0, _BEAM), _STEEL, 1.0)]
+    made.append(box((0.2, SPAN, 0.16), (0.0, 0.0, _BEAM + 0.9), _STEEL, 1.0))
+    for side in (-half, half):
+        post = np.array([[0, side, -0.2], [0, side, 3.0], [0, side, _BEAM + 1.0]])
+        made.append(tube(post, [_POST_RADIUS, 0.17, 0.15], sides, _STEEL))
+        if fine:
+            made.append(box((0.9, 0.9, 0.25), (0.0, side, 0.02), material("concrete"), 6.0))
+    if fine:
+        made += [
+            box((0.1, 0.1, 0.9), (0.0, y, _BEAM + 0.45), _STEEL, 1.0)
+            for y in np.arange(-half + 1.2, half, 1.8)
+        ]
+    for middle, width, height in _BOARDS[number]:
+        made += _board(middle, width, height, fine=fine)
+    return concatenate(made)
+
+
+def _board(middle: float, width: float, height: float, *, fine: bool) -> list[Mesh]:
+    """Return a board with a white rim, an arrow and lines of writing."""
+    centre = _UNDER + height / 2
+    made = [
+        box((0.10, width, height), (-0.22, middle, centre), _WHITE, 1.0),
+        box((0.02, width - 0.24, height - 0.24), (-0.275, middle, centre), _BLUE, 1.0),
+    ]
+    if fine:
+        rows = max(int(height / 0.75), 1)
+        for row in range(rows):
+            z = _UNDER + height - 0.55 - 0.68 * row
+            wide = width * (0.55 if row % 2 else 0.66)
+            at = (-0.29, middle - 0.06 * width, z)
+            made.append(box((0.015, wide, 0.26), at, _WHITE, 1.0))
+        beside = middle + 0.4 * width
+        for across, tall, z in ((0.16, 0.6 * height, centre), (0.5, 0.16, centre + 0.3 * height)):
+            made.append(box((0.015, across, tall), (-0.29, beside, z), _WHITE, 1.0))
+    return made

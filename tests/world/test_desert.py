@@ -1,0 +1,213 @@
+"""The desert against the original's figures, and as a scene that holds together."""
+
+import numpy as np
+import pytest
+import shapely
+
+from eyas.sim.scenes import load_network, load_scene
+from eyas.state.scene import ObjectClass
+from eyas.state.terrain import reliefs
+from eyas.traffic.recording_file import load
+from eyas.world.maps.desert import DESERT
+from eyas.world.maps.desert.plan import make_plan
+from eyas.world.maps.desert.scene import DRIFT_HEIGHT
+from eyas.world.maps.recipe import TRAFFIC_FILE
+from eyas.world.roads.areas import joints, road_area
+from eyas.world.roads.markings import PAINT_HEIGHT
+from eyas.world.weather import Season
+
+from .hills import in_the_way, recorded_off_road, relief_on_lanes, surface_heights
+
+SEEDS = range(6)
+
+
+@pytest.fixture(scope="module")
+def roads():
+    return DESERT.shipped_network()
+
+
+@pytest.fixture(scope="module")
+def desert():
+    return load_scene("desert", 0)
+
+
+@pytest.fixture(scope="module")
+def winter(roads):
+    return DESERT.scene(roads, 0, Season.WINTER)
+
+
+@pytest.fixture(scope="module")
+def plan(roads):
+    return make_plan(roads, 0)
+
+
+def lines_of(graph):
+    at = {node.name: (node.x, node.y) for node in graph.nodes}
+    return [shapely.LineString([at[e.start], *e.shape, at[e.end]]) for e in graph.edges]
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_roads_have_the_originals_figures(seed):
+    graph = DESERT.roads(seed)
+    lines = lines_of(graph)
+    length = sum(line.length for line in lines) / 2
+    assert length == pytest.approx(3370, rel=0.06 if seed == 0 else 0.12)
+    assert {(e.lanes, e.lane_width, e.speed) for e in graph.edges} == {(2, 4.0, 13.89)}
+    ends = {(edge.start, edge.end) for edge in graph.edges}
+    assert ends == {(end, start) for start, end in ends}
+
+
+def test_seeds_differ_and_repeat():
+    graphs = [DESERT.roads(seed) for seed in SEEDS]
+    assert len({graph.edges for graph in graphs}) == len(graphs)
+    assert graphs[3] == DESERT.roads(3)
+
+
+def test_a_rounded_square_with_an_x_makes_four_blocks(plan, roads):
+    assert len(plan.blocks) == 4
+    assert sorted(joints(roads).values()) == [3, 3, 3, 3, 4]
+    area = road_area(roads)
+    west, south, east, north = area.bounds
+    assert (east - west, north - south) == pytest.approx((559, 642), rel=0.01)
+    assert area.area / ((east - west) * (north - south)) == pytest.approx(0.157, abs=0.006)
+    corner = shapely.Point(west, south)  # a corner of radius r lies 0.41 r from a sharp one
+    assert area.distance(corner) == pytest.approx(0.414 * 58.0, rel=0.15)
+
+
+def test_roads_are_curved():
+    """The original's have 15 bends of more than 5 degrees on a kilometre."""
+    bends = length = 0.0
+    for line in lines_of(DESERT.roads(0)):
+        ahead = np.diff(shapely.get_coordinates(line), axis=0)
+        heading = np.unwrap(np.arctan2(ahead[:, 1], ahead[:, 0]))
+        bends += np.abs(np.diff(heading)).sum()
+        length += line.length
+    assert np.degrees(bends) / (length / 1000) > 15 * 5
+
+
+def test_dunes_are_of_the_originals_size(plan):
+    inside, ring = plan.dunes[:-24], plan.dunes[-24:]
+    assert 24 <= len(inside) <= 26
+    assert np.median([dune.height for dune in inside]) == pytest.approx(39, rel=0.15)
+    assert np.median([dune.radius for dune in inside]) == pytest.approx(84, rel=0.2)
+    peaks, radii = ([getattr(d, name) for d in ring] for name in ("height", "radius"))
+    assert np.percentile(peaks, [0, 50, 100]) == pytest.approx([44, 81, 130], rel=0.2)
+    assert np.percentile(radii, [0, 50, 100]) == pytest.approx([111, 153, 192], rel=0.1)
+
+
+def test_dunes_are_steep_to_leeward(plan):
+    """The sand falls from the summit twice as fast on one side as on the other."""
+    for dune in plan.dunes:
+        lean = np.array(dune.lean)
+        way = lean / np.linalg.norm(lean)
+        top = np.array([dune.x, dune.y]) + dune.radius * lean
+        reach = 0.4 * dune.radius
+        points = np.stack([top, top + reach * way, top - reach * way])
+        summit, lee, windward = dune.heights(points)
+        assert summit == pytest.approx(dune.height, rel=0.01)
+        assert summit - lee > 1.5 * (summit - windward)
+
+
+def test_dunes_come_close_to_the_road_and_cover_much_of_the_floor(desert, plan):
+    area = road_area(DESERT.shipped_network())
+    gaps = [area.distance(shapely.Point(d.x, d.y)) - d.radius for d in plan.dunes[:-24]]
+    assert np.median(gaps) < 12.0
+    x, y = np.meshgrid(np.linspace(-320, 320, 200), np.linspace(-320, 320, 200))
+    heights = reliefs(desert.terrain, np.stack([x, y], axis=-1))
+    assert (heights > 0.1).mean() == pytest.approx(0.53, abs=0.1)  # the original's: 0.62
+
+
+def test_no_dune_lies_on_a_road(desert, roads):
+    assert relief_on_lanes(desert, roads).max() == 0.0
+
+
+def test_the_raster_is_the_ground_that_is_drawn(desert, plan):
+    rng = np.random.default_rng(1)
+    points = rng.uniform(-600, 600, (4000, 2))
+    tops = [drift.fringe for drift in plan.drifts]
+    free = shapely.union_all([plan.roads, plan.walls, *tops])
+    points = points[~shapely.contains_xy(shapely.buffer(free, 8.0), points)]
+    apart = surface_heights(desert, points) - reliefs(desert.terrain, points) + 0.1
+    assert np.abs(apart).max() < 2.0
+    assert np.abs(apart).mean() < 0.1
+
+
+def test_as_much_stands_in_it_as_in_the_original(desert, plan):
+    count = {kind: int((desert.object_class == kind).sum()) for kind in ObjectClass}
+    assert count[ObjectClass.BUILDING] == len(plan.houses) == 7
+    assert count[ObjectClass.TREE] == count[ObjectClass.WATER] == 0
+    assert len(plan.drifts) == 11
+    assert len(desert.lamps.position) == 38
+    assert count[ObjectClass.POLE] == 38 + 16
+
+
+def test_drifts_hide_the_road_and_its_paint(desert, plan, roads):
+    """Eleven bars of about 15 x 32 m from kerb to kerb; what drives on them stays in sight."""
+    area = road_area(roads)
+    assert all(d.area.area == pytest.approx(15 * 32, rel=0.3) for d in plan.drifts)
+    rng, tops = np.random.default_rng(0), []
+    for drift in plan.drifts:
+        top = shapely.buffer(shapely.intersection(drift.area, area), -0.5)
+        west, south, east, north = top.bounds
+        points = rng.uniform((west, south), (east, north), (60, 2))
+        tops.append(points[shapely.contains_xy(top, points)])
+    heights = surface_heights(desert, np.concatenate(tops))
+    assert np.allclose(heights, DRIFT_HEIGHT, atol=1e-4)
+    assert PAINT_HEIGHT < DRIFT_HEIGHT < 0.05
+    cut = shapely.difference(area, shapely.union_all([drift.area for drift in plan.drifts]))
+    assert len(shapely.get_parts(cut)) >= 8  # most drifts leave no asphalt at either kerb
+
+
+def test_a_followed_car_is_often_on_sand(plan):
+    recording = load(DESERT.shipped(TRAFFIC_FILE))
+    places = recording.position[::7][recording.present[::7]]
+    sand = shapely.union_all([drift.area for drift in plan.drifts])
+    shapely.prepare(sand)
+    assert 0.02 < shapely.contains_xy(sand, places[:, 0], places[:, 1]).mean() < 0.15
+
+
+def test_no_car_drives_through_anything(desert, roads):
+    assert in_the_way(desert, roads) == ([], [])
+
+
+def test_recorded_cars_stay_on_the_roads(roads):
+    assert recorded_off_road(DESERT, roads) < 1e-3
+
+
+def corners_of(scene):
+    """All corners of triangles, in an order that does not depend on their materials."""
+    corners = scene.static.positions[scene.static.triangles.ravel()]
+    return corners[np.lexsort(corners.T)]
+
+
+def test_building_again_gives_the_same_bytes(desert, winter):
+    """Winter is a scene of its own, with the same things at the same places."""
+    assert corners_of(winter).tobytes() == corners_of(desert).tobytes()
+    assert winter.fixtures.pose.tobytes() == desert.fixtures.pose.tobytes()
+    assert winter.terrain.relief.tobytes() == desert.terrain.relief.tobytes()
+    assert winter.colliders.prism_points.tobytes() == desert.colliders.prism_points.tobytes()
+
+
+def test_in_winter_about_every_second_dune_is_white_and_nothing_else(desert, winter):
+    names = np.array([material.texture for material in winter.static.palette])
+    white = names[winter.static.materials] == "snow"
+    assert "snow" not in [material.texture for material in desert.static.palette]
+    middle = winter.static.positions[winter.static.triangles[white]].mean(axis=1)
+    assert middle[:, 2].min() > 0.5
+    dunes = winter.static_object == winter.static_object[white][0]
+    assert not (white & ~dunes).any()
+    assert white.sum() / dunes.sum() == pytest.approx(22 / 50, abs=0.12)
+    assert DESERT.light("snow").snow == 0.0
+
+
+def test_scenes_are_small_enough_for_small_machines(desert):
+    assert len(desert.static.triangles) < 65_000
+    assert np.isfinite(desert.static.positions).all()
+    assert np.allclose(np.linalg.norm(desert.static.normals, axis=1), 1.0, atol=1e-3)
+
+
+def test_another_seed_is_another_desert_of_the_same_kind():
+    network = load_network("desert", 3)
+    other = make_plan(network, 3)
+    assert (len(other.drifts), len(other.houses)) == (11, 7)
+    assert len(other.dunes) >= 46
