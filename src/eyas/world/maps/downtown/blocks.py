@@ -24,6 +24,8 @@ _FRONT_DEPTH = 24.0
 """Depth of the buildings beyond the outer streets [m]."""
 _HALF_ROAD = 7.0
 """Half the width of the outer roads [m]."""
+_PARTY = 0.03
+"""Half the gap between two neighbours, so that their walls are not in one plane [m]."""
 _BEYOND = 90.0
 """Depth of the blocks beyond the grid [m]."""
 _STEPPED = ("facade_brick", "facade_stone", "facade_concrete", "facade_plaster", "facade_old")
@@ -109,7 +111,10 @@ def _large(strip: Box, rng: np.random.Generator) -> list[Lot]:
         (west + a, south, west + b, north) if long else (west, south + a, east, south + b)
         for a, b in zip(cuts[:-1].tolist(), cuts[1:].tolist(), strict=True)
     ]
-    return [Lot((w + 0.03, s, e - 0.03, n), through=True, rear=0) for w, s, e, n in boxes]
+    return [
+        Lot((w + _PARTY, s + _PARTY, e - _PARTY, n - _PARTY), through=True, rear=0)
+        for w, s, e, n in boxes
+    ]
 
 
 @dataclass(frozen=True, slots=True)
