@@ -7,6 +7,9 @@ import sys
 import pytest
 from hypothesis import settings
 
+# The maps that a developer has imported are not there for tests.
+os.environ["EYAS_MAPS_DIR"] = os.path.join(os.devnull, "maps")
+
 settings.register_profile("eyas", deadline=None)  # no test asserts a time
 settings.load_profile("eyas")
 

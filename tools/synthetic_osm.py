@@ -234,7 +234,7 @@ class Town:
             self.out.area(shapely.Polygon(ground.exterior, [yard.exterior]), **tags)
             self._scatter(yard, 5)
             return
-        corners = list(ground.exterior.coords)[:-1]
+        corners = list(shapely.geometry.polygon.orient(ground).exterior.coords)[:-1]
         for k in range(4):
             pieces = 3 if k % 2 else 2
             for piece in range(pieces):
