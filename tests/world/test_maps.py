@@ -21,7 +21,9 @@ def test_an_unknown_map_is_told_with_the_nearest_name():
 
 @pytest.mark.parametrize("name", MAPS.later)
 def test_maps_of_later_versions_are_told_in_one_line(name):
-    with pytest.raises(NotInThisVersionError, match=rf"^world\.map: '{name}' .*citystreet$"):
+    with pytest.raises(
+        NotInThisVersionError, match=rf"^world\.map: '{name}' .*there is: citystreet"
+    ):
         MAPS.get(name)
 
 
