@@ -12,6 +12,7 @@ from eyas.cli.main import main
 from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.adapter import to_legacy
 from eyas.settings.preset import PRESETS
+from eyas.world.maps import MAPS
 
 COMMAND = [sys.executable, "-m", "eyas.cli.main"]
 
@@ -122,7 +123,8 @@ def test_version_and_maps(monkeypatch, capsys):
     listed = run(monkeypatch, capsys, "maps", "list")[1].splitlines()
     assert listed[0].startswith("citystreet: ")
     assert listed[0].endswith("(day, foggy, night, snow)")
-    assert "lake (not in this version)" in listed
+    assert any(line.startswith("simpleway-clinker: ") for line in listed)
+    assert {f"{name} (not in this version)" for name in MAPS.later} <= set(listed)
 
 
 def test_warnings_are_one_line_on_stderr_and_stdout_stays_json():

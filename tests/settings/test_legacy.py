@@ -157,8 +157,8 @@ configs = st.fixed_dictionaries(
         "target": st.sampled_from(["SUMO_VEHICLE", "BB-8"]),
         "world": st.fixed_dictionaries(
             {
-                "map": st.sampled_from(["citystreet", "lake", "simpleway"]),
-                "weather": st.sampled_from(["day", "foggy", "grass_foggy"]),
+                "map": st.sampled_from(["citystreet", "lake", "simpleway-grass"]),
+                "weather": st.sampled_from(["day", "foggy", "snow"]),
                 "seed": st.integers(0, 9),
             }
         ),
@@ -442,7 +442,7 @@ def test_random_fog_is_drawn_between_both_limits():
     [
         ("/home/me/worlds/lake-night.wbt", ("lake", "night")),
         (r"C:\worlds\village-snow.wbt", ("village", "snow")),
-        ("simpleway-grass_foggy.wbt", ("simpleway", "grass_foggy")),
+        ("simpleway-grass_foggy.wbt", ("simpleway-grass", "foggy")),
         ("worlds/old-town-day.wbt", ("old-town", "day")),
     ],
 )

@@ -12,10 +12,13 @@ from eyas.settings.legacy.entries import Entry, Guess, Values
 
 __all__ = ["WorldPath"]
 
+_SIMPLE = "simpleway"
+"""First part of the names of the simple maps."""
+
 
 @dataclass(frozen=True, slots=True)
 class WorldPath(Entry):
-    """The path of a world file, `<map>-<weather>.wbt`."""
+    """The path of a world file: `<map>-<weather>.wbt`, or `simpleway-<skin>_<weather>.wbt`."""
 
     key: str
     map: str
@@ -39,7 +42,13 @@ class WorldPath(Entry):
         if not isinstance(path, str):
             raise ConfigError(f"{self.key}: {shown(path)} is not allowed: text")
         found = re.fullmatch(r"(?:.*[/\\])?([^/\\]+)-([^-/\\]+)\.wbt", path)
-        return {self.map: found[1], self.weather: found[2]} if found else {}
+        if not found:
+            return {}
+        name, weather = found[1], found[2]
+        skin, joint, rest = weather.rpartition("_")
+        if name == _SIMPLE and joint:
+            name, weather = f"{_SIMPLE}-{skin}", rest
+        return {self.map: name, self.weather: weather}
 
     @override
     def remarks(self, values: Values) -> Iterator[str]:
@@ -50,7 +59,8 @@ class WorldPath(Entry):
     @override
     def write(self, fields: Values) -> Values:
         name, weather = fields[self.map], fields[self.weather]
-        said = {self.key: f"worlds/{name}-{weather}.wbt"}
+        joint = "_" if str(name).startswith(f"{_SIMPLE}-") else "-"
+        said = {self.key: f"worlds/{name}{joint}{weather}.wbt"}
         if self.read(said) != {self.map: name, self.weather: weather}:
             raise ConfigError(f"{self.map}: {shown(name)} cannot be expressed in env_config.json")
         return said

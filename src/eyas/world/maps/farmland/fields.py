@@ -134,7 +134,8 @@ def field_mesh(field: Field, season: Season) -> Mesh:
     cover = Material(look.texture, (red, green, blue), look.surface)
     tile = TEXTURES[cover.texture]
     top = surface(field.area, crop.height, cover, tile, np.pi / 2 if field.north else 0.0)
-    edge = skirt(field.area, FLOOR_HEIGHT, crop.height, cover, tile)
+    # Into the soil, so that no crack shows between the two.
+    edge = skirt(field.area, FLOOR_HEIGHT - 0.05, crop.height, cover, tile)
     return concatenate([_tracks(field, season), top, edge])
 
 
