@@ -21,7 +21,7 @@ def test_an_unknown_map_is_told_with_the_nearest_name():
 
 @pytest.mark.parametrize("name", MAPS.later)
 def test_maps_of_later_versions_are_told_in_one_line(name):
-    with pytest.raises(NotInThisVersionError, match=rf"^world\.map: '{name}' .*citystreet$"):
+    with pytest.raises(NotInThisVersionError, match=rf"^world\.map: '{name}' .*: citystreet"):
         MAPS.get(name)
 
 
