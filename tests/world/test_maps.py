@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import pytest
 
-from eyas.core.errors import ConfigError, NotInThisVersionError, UnknownNameError
+from eyas.core.errors import ConfigError, UnknownNameError
 from eyas.traffic.library import RESPAWN_GROUPS
 from eyas.world.maps import MAPS
 from eyas.world.maps.citystreet import CITYSTREET
@@ -17,14 +17,6 @@ from eyas.world.weather import DAY, SNOW, WEATHERS, Season, Weather
 def test_an_unknown_map_is_told_with_the_nearest_name():
     with pytest.raises(UnknownNameError, match=r"world\.map: .*'citystret'.*mean 'citystreet'"):
         MAPS.get("citystret")
-
-
-@pytest.mark.parametrize("name", MAPS.later)
-def test_maps_of_later_versions_are_told_in_one_line(name):
-    with pytest.raises(
-        NotInThisVersionError, match=rf"^world\.map: '{name}' .*there is: citystreet"
-    ):
-        MAPS.get(name)
 
 
 @pytest.mark.parametrize("name", MAPS.built_in)

@@ -125,6 +125,8 @@ def surface_of(
     made = []
     for index, material in enumerate(cover):
         some = kind == index
+        if not some.any():
+            continue
         corners = ground.corners[some].reshape(-1, 3)
         uvs = corners[:, :2] / TEXTURES[material.texture]
         triangles = np.arange(len(corners)).reshape(-1, 3)

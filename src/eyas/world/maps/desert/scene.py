@@ -92,8 +92,8 @@ def _white(dunes: Sequence[Mound], season: Season, rng: np.random.Generator) -> 
     if season is not Season.WINTER:
         return set()
     share = _SNOWED / len(dunes)
-    kept = np.floor(share * (np.arange(len(dunes)) + rng.uniform())).astype(int)
-    return set((1 + np.flatnonzero(np.diff(kept) > 0)).tolist())
+    kept = np.floor(share * np.arange(len(dunes) + 1) + rng.uniform())
+    return set(np.flatnonzero(np.diff(kept) > 0).tolist())
 
 
 def _covers(
