@@ -132,6 +132,14 @@ def test_seventeen_coloured_strips_lie_between_the_roads_of_the_farm(farm, netwo
     assert all(look.surface == Surface.SIGNAL for look in crops)  # unchanged by snow
 
 
+def test_winter_whitens_the_soil_of_the_farm_and_no_snow_lies_on_roads(farm):
+    assert "soil" not in {farm.static.palette[k].texture for k in np.unique(farm.static.materials)}
+    for name in NAMES:
+        recipe = MAPS.get(name)
+        assert "snow" not in recipe.weathers or recipe.light("snow").snow == 0.0
+        assert recipe.seasons == ("snow" in recipe.weathers)
+
+
 def test_nine_strips_of_water_lie_on_the_soil_of_the_lake():
     water = SKINS["lake"].patches(road_lines(0), Season.SUMMER, np.random.default_rng(1))
     assert [patch.cover.surface for patch in water] == 9 * [Surface.WATER]

@@ -30,7 +30,10 @@ if TYPE_CHECKING:
 __all__ = ["CITY", "CLINKER", "DESERT", "FARM", "GRASS", "LAKE", "VILLAGE"]
 
 _FOG = replace(FOG, fog_density=1.0 / 400.0)
-_ALL = {DAY: CLEAR_DAY, FOGGY: _FOG, NIGHT: CLEAR_NIGHT, SNOW: WINTER_DAY}
+# The winter scene is white itself and, as in the original, roads stay black: a map of the tracks
+# in the snow of 48 km of roads would take a gigabyte.
+_WINTER = replace(WINTER_DAY, snow=0.0)
+_ALL = {DAY: CLEAR_DAY, FOGGY: _FOG, NIGHT: CLEAR_NIGHT, SNOW: _WINTER}
 
 _DUSTY = replace(
     CLEAR_DAY,
@@ -83,12 +86,13 @@ GRASS = _skinned(
     "grass",
     "Straight roads on a lawn",
     {**_ALL, FOGGY: replace(FOG, fog_density=1.0 / 500.0)},
+    seasons=True,
 )
 CLINKER = _skinned(
     "clinker", "Straight roads on a grey plain", {DAY: CLEAR_DAY, NIGHT: _PURPLE_NIGHT}
 )
 DESERT = _skinned("desert", "Straight roads under bars of sand", _DESERT, seasons=True)
 FARM = _skinned("farm", "Straight roads between coloured strips", _ALL, seasons=True)
-LAKE = _skinned("lake", "Straight roads between strips of water", _ALL)
-VILLAGE = _skinned("village", "Straight roads on a green plain", _ALL)
-CITY = _skinned("city", "Straight roads on a white plain", {SNOW: WINTER_DAY})
+LAKE = _skinned("lake", "Straight roads between strips of water", _ALL, seasons=True)
+VILLAGE = _skinned("village", "Straight roads on a green plain", _ALL, seasons=True)
+CITY = _skinned("city", "Straight roads on a white plain", {SNOW: _WINTER}, seasons=True)

@@ -11,7 +11,7 @@ from eyas.state.roads import RoadNetwork
 from eyas.state.scene import ObjectClass, Scene
 from eyas.state.terrain import Terrain
 from eyas.world.build.heights import FLOOR_HEIGHT
-from eyas.world.build.materials import TEXTURES
+from eyas.world.build.materials import TEXTURES, material
 from eyas.world.build.scene_builder import SceneBuilder
 from eyas.world.land import ground
 from eyas.world.land.plain import blob, far_plain, plain, rectangle
@@ -48,6 +48,8 @@ def build_scene(skin_name: str, network: RoadNetwork, seed: int, season: Season)
         season: Season of the ground.
     """
     skin, roads = SKINS[skin_name], paved(network)
+    if season is Season.WINTER and not skin.bars:  # sand stays bare
+        skin = replace(skin, ground=material("snow"))
     builder = SceneBuilder(NAME, seed, FLOOR, Terrain.flat(FLOOR_HEIGHT))
     _add_roads(builder, network, roads, seed)
     if skin.bars:
