@@ -16,7 +16,7 @@ from eyas.state.lighting import Lighting
 from eyas.state.mesh import Material, Mesh, Surface
 from eyas.state.scene import Fixtures, Scene
 from eyas.world.build.materials import TEXTURES, facade, material
-from eyas.world.roads.markings import RoadPaint, Stripe, margins_of, mesh_of
+from eyas.world.roads.painting import RoadPaint, Stripe, margins_of, mesh_of
 
 GROUND, ROAD, TOWER, TREE = 0, 1, 2, 3
 TREE_OBJECT = 90

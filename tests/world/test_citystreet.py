@@ -10,7 +10,7 @@ from eyas.render.pack.triangles import gradients
 from eyas.state.scene import ObjectClass
 from eyas.world.maps.citystreet import CITYSTREET
 from eyas.world.roads.areas import road_area
-from eyas.world.roads.markings import MARGIN_HEIGHT
+from eyas.world.roads.painting import MARGIN_HEIGHT
 from eyas.world.roads.wear import WEAR_HEIGHTS
 from eyas.world.weather import Season
 

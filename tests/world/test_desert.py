@@ -14,7 +14,7 @@ from eyas.world.maps.desert.plan import make_plan
 from eyas.world.maps.desert.scene import DRIFT_HEIGHT
 from eyas.world.maps.recipe import TRAFFIC_FILE
 from eyas.world.roads.areas import joints, road_area
-from eyas.world.roads.markings import PAINT_HEIGHT
+from eyas.world.roads.painting import PAINT_HEIGHT
 from eyas.world.weather import Season
 
 from .hills import in_the_way, recorded_off_road, relief_on_lanes, surface_heights

@@ -15,7 +15,8 @@ from eyas.world.maps.downtown import DOWNTOWN
 from eyas.world.maps.downtown.plan import make_plan
 from eyas.world.maps.recipe import TRAFFIC_FILE
 from eyas.world.roads.areas import road_area
-from eyas.world.roads.markings import MARGIN_HEIGHT, road_paint
+from eyas.world.roads.markings import road_paint
+from eyas.world.roads.painting import MARGIN_HEIGHT
 from eyas.world.roads.wear import WEAR_HEIGHTS
 
 SEEDS = range(4)

@@ -6,7 +6,8 @@ import shapely
 from shapely.ops import substring
 
 from eyas.world.roads.areas import joints, road_area, streets
-from eyas.world.roads.markings import PAINT_HEIGHT, mesh_of, road_paint, stripes
+from eyas.world.roads.markings import road_paint
+from eyas.world.roads.painting import PAINT_HEIGHT, mesh_of, stripes
 
 
 @pytest.fixture(scope="module")

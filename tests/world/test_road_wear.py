@@ -6,7 +6,7 @@ import shapely
 
 from eyas.core.rng import stream
 from eyas.world.roads.areas import road_area
-from eyas.world.roads.markings import PAINT_HEIGHT
+from eyas.world.roads.painting import PAINT_HEIGHT
 from eyas.world.roads.wear import WEAR_HEIGHTS, road_wear
 
 

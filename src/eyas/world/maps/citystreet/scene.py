@@ -23,7 +23,7 @@ from eyas.world.maps.citystreet.plan import EXTENT, FLOOR, Plan, make_plan
 from eyas.world.maps.citystreet.roads import NAME
 from eyas.world.plants import gardens, trees
 from eyas.world.plants.shrubs import plant_makers
-from eyas.world.roads import markings, overpass
+from eyas.world.roads import markings, overpass, painting
 from eyas.world.roads import wear as road_wear
 from eyas.world.roads.areas import surface
 from eyas.world.roads.pillars import BASE_HEIGHT, COLUMN_RADIUS, pillar_mesh, pillars
@@ -119,10 +119,10 @@ def _add_ground(
     land = outskirts.fields(FLOOR, FLOOR_HEIGHT, rng)
     mown = shapely.union_all(plan.blocks)
     paint = markings.road_paint(network)
-    bays = [markings.painted(park.lines, markings.WHITE) for park in plan.car_parks]
-    builder.add(ObjectClass.MARKING, markings.mesh_of(paint), *bays)
+    bays = [painting.painted(park.lines, painting.WHITE) for park in plan.car_parks]
+    builder.add(ObjectClass.MARKING, painting.mesh_of(paint), *bays)
     wear = road_wear.road_wear(network, stream(seed, "citystreet road wear"))
-    builder.add(ObjectClass.ROAD, markings.margins_of(paint), wear, ground.asphalt(paved))
+    builder.add(ObjectClass.ROAD, painting.margins_of(paint), wear, ground.asphalt(paved))
     builder.add(ObjectClass.PAVEMENT, ground.pavement(plan.pavement, paved, turn))
     builder.add(ObjectClass.PAVEMENT, ground.yards(yards, turn, rng))
     builder.add(ObjectClass.ROAD, ground.asphalt(plan.lots, light=True))

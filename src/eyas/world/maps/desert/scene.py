@@ -25,7 +25,7 @@ from eyas.world.land.plain import far_plain
 from eyas.world.maps.desert.looks import DUSTY, HOUSES, SAND, SNOW, THIN_SNOW
 from eyas.world.maps.desert.plan import EXTENT, FLOOR, HALF, Plan, make_plan
 from eyas.world.maps.desert.roads import NAME
-from eyas.world.roads import markings
+from eyas.world.roads import markings, painting
 from eyas.world.roads import wear as road_wear
 from eyas.world.roads.areas import surface
 from eyas.world.street.lamps import add_lamps
@@ -140,9 +140,9 @@ def _add_ground(
         *(_heap(tongue, _FRINGE_HEIGHT) for tongue in plan.tongues),
         flat_polygons([edge], _FRINGE_HEIGHT, DUSTY, TEXTURES[DUSTY.texture]),
     )
-    builder.add(ObjectClass.MARKING, markings.mesh_of(paint))
+    builder.add(ObjectClass.MARKING, painting.mesh_of(paint))
     wear = road_wear.road_wear(network, stream(seed, "desert road wear"))
-    builder.add(ObjectClass.ROAD, markings.margins_of(paint), wear, ground.asphalt(plan.roads))
+    builder.add(ObjectClass.ROAD, painting.margins_of(paint), wear, ground.asphalt(plan.roads))
     # Slightly below the feet of the dunes, so that rounding leaves no gap between them.
     rest = shapely.buffer(dunes, -0.4, join_style="mitre")
     level = shapely.difference(EXTENT, shapely.union(plan.roads, rest))

@@ -15,7 +15,7 @@ from eyas.world.build.materials import TEXTURES, material
 from eyas.world.build.scene_builder import SceneBuilder
 from eyas.world.land import ground
 from eyas.world.maps.downtown.plan import EXTENT, FLOOR, Plan
-from eyas.world.roads import markings
+from eyas.world.roads import markings, painting
 from eyas.world.roads import wear as road_wear
 from eyas.world.roads.areas import skirt, surface
 
@@ -50,11 +50,11 @@ def add_surfaces(builder: SceneBuilder, plan: Plan, network: RoadNetwork, seed: 
     bays = shapely.difference(plan.kerbs.bays, plan.roads)
     asphalt = shapely.union(plan.roads, bays)
     paint = markings.road_paint(network)
-    lines = markings.painted(plan.kerbs.lines, markings.WHITE)
-    builder.add(ObjectClass.MARKING, markings.mesh_of(paint), lines)
+    lines = painting.painted(plan.kerbs.lines, painting.WHITE)
+    builder.add(ObjectClass.MARKING, painting.mesh_of(paint), lines)
     wear = road_wear.road_wear(network, stream(seed, "downtown road wear"))
     smooth = [ground.asphalt(plan.roads), ground.asphalt(bays, light=True)]
-    builder.add(ObjectClass.ROAD, markings.margins_of(paint), wear, *smooth)
+    builder.add(ObjectClass.ROAD, painting.margins_of(paint), wear, *smooth)
     builder.add(ObjectClass.PAVEMENT, _pavement(plan.pavement, asphalt, plan.grid.turn))
     wet = shapely.union(park.water, park.rim)
     green = shapely.difference(park.ground, shapely.union_all([park.walk, park.paths, wet]))

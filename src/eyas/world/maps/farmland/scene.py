@@ -18,7 +18,7 @@ from eyas.world.land import ground, outskirts
 from eyas.world.land.plain import far_plain, rectangle
 from eyas.world.maps.farmland.fields import CROPS, VERGE, Field, field_mesh, lay_out
 from eyas.world.maps.farmland.roads import NAME, ROAD_WIDTH, road_graph
-from eyas.world.roads import markings
+from eyas.world.roads import markings, painting
 from eyas.world.roads.areas import road_area, surface
 from eyas.world.roads.wear import road_wear
 from eyas.world.street.hay import add_bales
@@ -82,9 +82,9 @@ def _add_roads(builder: SceneBuilder, network: RoadNetwork, seed: int) -> None:
     """Add the roads, which have no crossings for people."""
     paint = replace(markings.road_paint(network), zebras=[])
     wear = road_wear(network, stream(seed, "farmland road wear"))
-    builder.add(ObjectClass.MARKING, markings.mesh_of(paint))
+    builder.add(ObjectClass.MARKING, painting.mesh_of(paint))
     asphalt = ground.asphalt(road_area(network))
-    builder.add(ObjectClass.ROAD, markings.margins_of(paint), wear, asphalt)
+    builder.add(ObjectClass.ROAD, painting.margins_of(paint), wear, asphalt)
 
 
 def _soil(covered: shapely.Geometry) -> Mesh:

@@ -17,7 +17,7 @@ from eyas.world.land import ground, outskirts
 from eyas.world.maps.imported.paint import road_paint
 from eyas.world.maps.imported.plan import Plan
 from eyas.world.osm.features import Features
-from eyas.world.roads import markings
+from eyas.world.roads import painting
 from eyas.world.roads.areas import polygons_of, split_on_grid, surface
 from eyas.world.roads.wear import road_wear
 
@@ -85,10 +85,10 @@ def add_ground(
         rng: Random numbers of the ground.
     """
     paint = road_paint(network, plan.roads, features)
-    painted = markings.painted(bays, markings.WHITE)
-    builder.add(ObjectClass.MARKING, markings.mesh_of(paint), painted)
+    painted = painting.painted(bays, painting.WHITE)
+    builder.add(ObjectClass.MARKING, painting.mesh_of(paint), painted)
     worn = road_wear(_worn(network), rng)
-    builder.add(ObjectClass.ROAD, markings.margins_of(paint), worn, ground.asphalt(plan.roads))
+    builder.add(ObjectClass.ROAD, painting.margins_of(paint), worn, ground.asphalt(plan.roads))
     builder.add(ObjectClass.PAVEMENT, ground.pavement(plan.pavement, plan.roads))
     builder.add(ObjectClass.ROAD, ground.asphalt(plan.ground["parking"], light=True))
     for kind, (owner, covers) in _COVERS.items():

@@ -12,7 +12,7 @@ from eyas.state.roads import RoadNetwork
 from eyas.world.build.millimetres import dot, rounded, unit
 from eyas.world.osm.features import Features
 from eyas.world.roads.areas import Street, streets
-from eyas.world.roads.markings import RoadPaint, Stripe, stripes
+from eyas.world.roads.painting import RoadPaint, Stripe, stripes
 
 __all__ = ["road_paint"]
 

@@ -23,7 +23,7 @@ from eyas.world.land.plain import far_plain, plain
 from eyas.world.maps.lake.plan import EXTENT, FLOOR, MIXED, Plan, Strip, make_plan
 from eyas.world.maps.lake.roads import NAME
 from eyas.world.plants.forest import SPECIES, STAND, stand_levels
-from eyas.world.roads import markings
+from eyas.world.roads import markings, painting
 from eyas.world.roads.areas import skirt, surface
 from eyas.world.roads.wear import road_wear
 from eyas.world.street.lamps import add_lamps
@@ -81,11 +81,11 @@ def _add_roads(builder: SceneBuilder, plan: Plan, network: RoadNetwork, seed: in
     """Add the roads with their kerbs, and the car parks."""
     paint = markings.road_paint(network)
     paint = replace(paint, zebras=paint.zebras[::_ZEBRAS_EVERY])
-    bays = [markings.painted(park.lines, markings.WHITE) for park in plan.car_parks]
+    bays = [painting.painted(park.lines, painting.WHITE) for park in plan.car_parks]
     wear = road_wear(network, stream(seed, "lake road wear"), apart=2.0)
     lots = _lots(plan)
-    builder.add(ObjectClass.MARKING, markings.mesh_of(paint), *bays)
-    builder.add(ObjectClass.ROAD, markings.margins_of(paint), wear, ground.asphalt(plan.roads))
+    builder.add(ObjectClass.MARKING, painting.mesh_of(paint), *bays)
+    builder.add(ObjectClass.ROAD, painting.margins_of(paint), wear, ground.asphalt(plan.roads))
     builder.add(ObjectClass.ROAD, ground.asphalt(lots, light=True))
     kerbs = _kerbs(plan)
     tile = TEXTURES["stone"]

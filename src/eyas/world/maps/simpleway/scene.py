@@ -18,7 +18,7 @@ from eyas.world.land.plain import blob, far_plain, plain, rectangle
 from eyas.world.maps.simpleway.drifts import sand_bars
 from eyas.world.maps.simpleway.roads import NAME, is_loop, road_lines
 from eyas.world.maps.simpleway.skins import SKINS, Skin
-from eyas.world.roads import markings
+from eyas.world.roads import markings, painting
 from eyas.world.roads.areas import corridors, streets
 from eyas.world.roads.curves import rounded_kerbs
 from eyas.world.roads.wear import road_wear
@@ -86,10 +86,10 @@ def _add_roads(
     # A line runs along the inner edge of a loop; `road_paint` draws it on one half only.
     for edge, street in zip(network.edges, streets(network), strict=True):
         if is_loop(edge):
-            paint.lines.extend(markings.stripes(street.left, 0.2))
+            paint.lines.extend(painting.stripes(street.left, 0.2))
     wear = road_wear(network, stream(seed, "simpleway road wear"), apart=5.0)
-    builder.add(ObjectClass.MARKING, markings.mesh_of(paint))
-    builder.add(ObjectClass.ROAD, markings.margins_of(paint), wear, ground.asphalt(roads))
+    builder.add(ObjectClass.MARKING, painting.mesh_of(paint))
+    builder.add(ObjectClass.ROAD, painting.margins_of(paint), wear, ground.asphalt(roads))
 
 
 def _spotted(area: shapely.Geometry, near: shapely.Geometry, skin: Skin, seed: int) -> list[Mesh]:

@@ -27,7 +27,7 @@ from eyas.world.maps.village.roads import NAME
 from eyas.world.plants import gardens
 from eyas.world.plants.cones import VARIANTS, cone_tree_levels
 from eyas.world.plants.shrubs import plant_makers
-from eyas.world.roads import markings
+from eyas.world.roads import markings, painting
 from eyas.world.roads import wear as road_wear
 from eyas.world.roads.areas import skirt, surface
 from eyas.world.roads.tunnels import tunnel_mesh, tunnel_prisms
@@ -130,9 +130,9 @@ def _add_ground(
     builder: SceneBuilder, plan: Plan, network: RoadNetwork, hills: shapely.Geometry, seed: int
 ) -> None:
     paint = markings.road_paint(network, centre=markings.Centre.DOUBLE_YELLOW, crossings=False)
-    builder.add(ObjectClass.MARKING, markings.mesh_of(paint))
+    builder.add(ObjectClass.MARKING, painting.mesh_of(paint))
     wear = road_wear.road_wear(network, stream(seed, "village road wear"))
-    builder.add(ObjectClass.ROAD, markings.margins_of(paint), wear, ground.asphalt(plan.roads))
+    builder.add(ObjectClass.ROAD, painting.margins_of(paint), wear, ground.asphalt(plan.roads))
     passages = shapely.union_all([tunnel.passage for tunnel in plan.tunnels])
     beside = shapely.buffer(plan.roads, 1.4, quad_segs=4)
     paved = _paving(plan)

@@ -1,0 +1,154 @@
+"""Paint on roads as triangles, slightly above the asphalt."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+from shapely.ops import substring
+
+from eyas.mesh.assembly import concatenate
+from eyas.mesh.flat import flat_polygons, quads
+from eyas.state.mesh import MARGIN, Material, Mesh, Surface
+from eyas.world.build.materials import TEXTURES, material
+from eyas.world.build.millimetres import length
+from eyas.world.roads.areas import GRID, split_on_grid
+
+__all__ = [
+    "MARGIN_HEIGHT",
+    "PAINT_HEIGHT",
+    "WHITE",
+    "RoadPaint",
+    "Stripe",
+    "margins_of",
+    "mesh_of",
+    "painted",
+    "stripes",
+]
+
+PAINT_HEIGHT = 0.015
+"""z of the paint: invisible, but enough to separate it from the asphalt at any distance [m]."""
+MARGIN_HEIGHT = 0.012
+"""z of the asphalt beside it, which hides the wear of the road but no other paint [m]."""
+
+WHITE = material("paint", (0.99, 0.99, 0.98))
+_WHITE_LINE = Material("asphalt_paint", (0.99, 0.985, 0.96), Surface.MARKING)
+_YELLOW_LINE = Material("asphalt_paint", (1.0, 0.785, 0.176), Surface.MARKING)
+
+Line = NDArray[np.float64]
+
+
+@dataclass(frozen=True, slots=True)
+class Stripe:
+    """A painted line."""
+
+    middle: Line
+    """Shape (K, 2) [m]."""
+    width: float
+    """Width [m]."""
+
+    @property
+    def area(self) -> shapely.Polygon:
+        """Return where paint is, in plan view."""
+        return shapely.buffer(shapely.LineString(self.middle), self.width / 2, cap_style="flat")
+
+
+@dataclass(frozen=True, slots=True)
+class RoadPaint:
+    """Paint on roads, in plan view."""
+
+    lines: list[Stripe]
+    """White lines."""
+    arrows: list[shapely.Polygon]
+    """White arrows."""
+    zebras: list[list[Stripe]]
+    """Yellow bars of each crossing, and pairs of yellow lines."""
+
+
+def mesh_of(paint: RoadPaint) -> Mesh:
+    """Return the paint as triangles."""
+    return concatenate([painted(paint.arrows, WHITE), *_strips(paint, 0.0, PAINT_HEIGHT)])
+
+
+def margins_of(paint: RoadPaint) -> Mesh:
+    """Return the asphalt beside the lines.
+
+    A pixel whose middle lies there may show some of the line, see `Surface.MARKING`: without
+    margins, lines narrower than a pixel would break into pieces.
+    """
+    return concatenate(_strips(paint, MARGIN, MARGIN_HEIGHT))
+
+
+def stripes(line: Line, width: float, dashes: tuple[float, float] | None = None) -> list[Stripe]:
+    """Return a painted line.
+
+    Args:
+        line: Centre line, shape (K, 2) [m].
+        width: Width [m].
+        dashes: Length of a dash and of the gap between two; None: a solid line.
+    """
+    if not dashes:
+        return [Stripe(line, width)]
+    path = shapely.LineString(line)
+    count = int((path.length + dashes[1]) // sum(dashes))
+    spare = path.length - (count * sum(dashes) - dashes[1])
+    starts = spare / 2 + np.arange(count) * sum(dashes)
+    pieces = [substring(path, start, start + dashes[0]) for start in starts]
+    return [Stripe(shapely.get_coordinates(piece), width) for piece in pieces]
+
+
+def _strips(paint: RoadPaint, margin: float, z: float) -> list[Mesh]:
+    """Return the lines as quadrilaterals, wider than the paint on both sides by a margin [m]."""
+    bars = [bar for zebra in paint.zebras for bar in zebra]
+    return [
+        _together(some, margin, z, kind)
+        for some, kind in ((paint.lines, _WHITE_LINE), (bars, _YELLOW_LINE))
+    ]
+
+
+def _together(some: Sequence[Stripe], margin: float, z: float, kind: Material) -> Mesh:
+    """Return lines of one colour; u and v are in half widths, see `Surface.MARKING`."""
+    if not some:
+        return Mesh.none()
+    corners, uvs = zip(*[_strip(line, margin) for line in some], strict=True)
+    flat = np.concatenate(corners)
+    level = np.full((*flat.shape[:2], 1), z)
+    return quads(np.concatenate([flat, level], axis=2), np.concatenate(uvs), kind)
+
+
+def _strip(stripe: Stripe, margin: float) -> tuple[Line, Line]:
+    """Return corners of the quadrilaterals of a line [m], and u and v, shapes (K, 4, 2)."""
+    middle = _pieces(stripe.middle)
+    along = np.gradient(middle, axis=0)
+    along /= np.linalg.norm(along, axis=1, keepdims=True)
+    half = stripe.width / 2
+    reach = 1.0 + margin / half
+    across = reach * half * np.stack([-along[:, 1], along[:, 0]], axis=1)
+    gone = np.append(0.0, np.linalg.norm(np.diff(middle, axis=0), axis=1).cumsum()) / half
+    right, left = (np.stack([np.full(len(gone), 32.0 + u), gone], axis=1) for u in (-reach, reach))
+    return _cells(middle - across, middle + across), _cells(right, left)
+
+
+def _pieces(line: Line) -> Line:
+    """Return a line without needless points, in pieces no longer than the side of a square."""
+    if len(line) == 2 and length(line[1] - line[0]) <= GRID:
+        return line  # like most dashes
+    path = shapely.simplify(shapely.LineString(line), 1e-3)
+    return np.asarray(shapely.get_coordinates(shapely.segmentize(path, GRID)), np.float64)
+
+
+def _cells(right: Line, left: Line) -> Line:
+    """Return the corners between two rows of points, counter-clockwise, shape (K - 1, 4, .)."""
+    return np.stack([right[:-1], right[1:], left[1:], left[:-1]], axis=1)
+
+
+def painted(shapes: Sequence[shapely.Polygon], paint: Material) -> Mesh:
+    """Return painted shapes on a road at z = 0."""
+    # Long lines are cut, so that each piece belongs to one square of the map only.
+    pieces = [
+        part
+        for shape in shapes
+        for part in (split_on_grid(shape) if shape.length > 60.0 else [shape])
+    ]
+    return flat_polygons(pieces, PAINT_HEIGHT, paint, TEXTURES["paint"])
