@@ -129,7 +129,7 @@ def test_pictures_from_the_drones_start_show_a_road_and_are_not_flat(name, weath
     assert (picture.depth < 60.0).mean() > 0.999, "sky, or a hole in the ground"
     assert 4.0 < grey.mean() < 245.0
     assert grey.std(axis=(1, 2)).max() > 2.0
-    assert len(np.unique(picture.rgb.reshape(-1, 3), axis=0)) > 200
+    assert len(np.unique(picture.rgb.reshape(-1, 3), axis=0)) > 50, "nothing but one surface"
 
 
 def _starts(scene: Scene) -> Views:
