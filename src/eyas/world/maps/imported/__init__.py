@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from eyas.core.errors import DataFileError
+from eyas.core.files import user_path
 from eyas.world.maps.recipe import MapRecipe
 from eyas.world.weather import (
     CLEAR_DAY,
@@ -115,9 +116,9 @@ class ImportedMaps:
         """Return the map with a name or in a folder; None if there is none.
 
         Raises:
-            DataFileError: Its files are damaged.
+            DataFileError: Its files are damaged, or the path is of no user.
         """
-        folder = Path(name).expanduser() if "/" in name or "\\" in name else maps_folder() / name
+        folder = user_path(name) if "/" in name or "\\" in name else maps_folder() / name
         try:
             there = (folder / MAP_FILE).is_file()
         except (OSError, ValueError):  # a name that no file can have
