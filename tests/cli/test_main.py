@@ -12,7 +12,6 @@ from eyas.cli.main import main
 from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.adapter import to_legacy
 from eyas.settings.preset import PRESETS
-from eyas.world.maps import MAPS
 
 COMMAND = [sys.executable, "-m", "eyas.cli.main"]
 
@@ -124,7 +123,6 @@ def test_version_and_maps(monkeypatch, capsys):
     assert listed[0].startswith("citystreet: ")
     assert listed[0].endswith("(day, foggy, night, snow)")
     assert any(line.startswith("simpleway-clinker: ") for line in listed)
-    assert {f"{name} (not in this version)" for name in MAPS.later} <= set(listed)
 
 
 def test_warnings_are_one_line_on_stderr_and_stdout_stays_json():

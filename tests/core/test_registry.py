@@ -6,7 +6,7 @@ from importlib.metadata import EntryPoint
 
 import pytest
 
-from eyas.core.errors import ConfigError, NotInThisVersionError, UnknownNameError
+from eyas.core.errors import ConfigError, UnknownNameError
 from eyas.core.registry import Registry
 
 
@@ -80,20 +80,15 @@ def test_a_users_own_can_be_given_a_name(orchard):
 
 def test_an_unknown_name_is_told_with_the_nearest_and_all_known_ones():
     with pytest.raises(UnknownNameError) as caught:
-        fruits(later=("lemon",)).get("appel")
+        fruits().get("appel")
     assert str(caught.value) == (
-        "meal.fruit: 'appel' is not allowed; did you mean 'apple'?; known: apple, lemon, pear"
+        "meal.fruit: 'appel' is not allowed; did you mean 'apple'?; known: apple, pear"
     )
 
 
-def test_what_later_versions_have_is_an_error_of_its_own():
-    with pytest.raises(NotInThisVersionError, match=r"'lemon' is not in this version; .*: apple"):
-        fruits(later=("lemon",)).get("lemon")
-
-
-@pytest.mark.parametrize("name", ["apple", "lemon", "mine", "a:b", ""])
+@pytest.mark.parametrize("name", ["apple", "mine", "a:b", ""])
 def test_a_name_is_given_once(name):
-    table = fruits(later=("lemon",))
+    table = fruits()
     table.register("mine", APPLE)
     table.register("mine", APPLE)  # the same again is no harm: a module may be run twice
     assert refusal(lambda: table.register(name, Fruit("other"))).startswith("meal.fruit: ")
@@ -130,10 +125,10 @@ def test_installed_packages_add_names(orchard, monkeypatch):
     assert fruits().names() == ("apple", "pear")  # no group, no packages
 
 
-@pytest.mark.parametrize("name", ["apple", "lemon", "mine"])
+@pytest.mark.parametrize("name", ["apple", "mine"])
 def test_a_package_cannot_take_a_name_that_is_taken(orchard, monkeypatch, name):
     installed(monkeypatch, **{name: "orchard.trees:FIG"})
-    table = fruits(group="eyas.fruits", later=("lemon",))
+    table = fruits(group="eyas.fruits")
     table.register("mine", APPLE)
     assert f"'orchard.trees:FIG' adds '{name}'" in refusal(table.names)
     assert table.get("apple") == APPLE  # names of the table itself do not suffer

@@ -10,7 +10,7 @@ import pytest
 from PIL import Image
 
 from eyas.cli.main import main
-from eyas.core.errors import NotInThisVersionError, OutputError, UnknownNameError
+from eyas.core.errors import OutputError, UnknownNameError
 from eyas.modes.gallery import run as gallery
 from eyas.modes.gallery.page import Shown, page
 from eyas.modes.gallery.still import StillScene
@@ -192,9 +192,6 @@ def test_only_what_is_named_is_drawn_and_wrong_names_are_told():
         gallery.conditions(["citystret"], [])
     with pytest.raises(UnknownNameError, match="did you mean 'foggy'"):
         gallery.conditions([], ["fogy"])
-    for later in gallery.MAPS.later:
-        with pytest.raises(NotInThisVersionError, match=later):
-            gallery.conditions([later], [])
 
 
 def test_maps_that_lack_a_named_weather_are_left_out_unless_they_are_named(monkeypatch):

@@ -21,14 +21,12 @@ def _group() -> None: ...
 
 @app.command("list")
 def list_maps() -> None:
-    """Print the maps with their weathers, and the maps planned for later versions."""
+    """Print the maps with their weathers."""
     from eyas.world.maps import MAPS
 
     for name in sorted(MAPS.names()):
         recipe = MAPS.get(name)
         typer.echo(f"{name}: {recipe.title} ({', '.join(recipe.weathers)})")
-    for name in sorted(MAPS.later):
-        typer.echo(f"{name} (not in this version)")
 
 
 @app.command("gallery")

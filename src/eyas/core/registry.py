@@ -5,12 +5,12 @@ user-defined object needs no entry in a table. An object is imported when it is 
 """
 
 import sys
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from importlib import import_module
 from importlib.util import find_spec
 from typing import Generic, Protocol, TypeVar
 
-from eyas.core.errors import ConfigError, NotInThisVersionError, UnknownNameError, nearest
+from eyas.core.errors import ConfigError, UnknownNameError, nearest
 
 __all__ = ["Found", "Registry"]
 
@@ -41,7 +41,6 @@ class Registry(Generic[T]):
         kind: Class of the objects, or a protocol that can be checked at run time.
         built_in: The built-in objects, each as `package.module:attribute`.
         group: Entry point group with which installed packages add objects; None: they cannot.
-        later: Names planned for a later version; choosing one raises `NotInThisVersionError`.
         files: Objects that are made of files; None: there are none.
     """
 
@@ -52,11 +51,9 @@ class Registry(Generic[T]):
         built_in: Mapping[str, str],
         *,
         group: str | None = None,
-        later: Iterable[str] = (),
         files: Found[T] | None = None,
     ) -> None:
         self.built_in = tuple(built_in)
-        self.later = tuple(later)
         self._setting, self._kind, self._group, self._files = setting, kind, group, files
         self._table: dict[str, T | str] = dict(built_in)
         self._loaded: dict[str, T] = {}
@@ -77,7 +74,7 @@ class Registry(Generic[T]):
             )
         taken = self._table.get(name, what)
         same = taken is what or (isinstance(taken, str) and taken == what)
-        if name in self.later or not same:
+        if not same:
             raise ConfigError(f"{self._setting}: the name {name!r} is taken; choose another")
         self._table[name] = what
 
@@ -95,7 +92,6 @@ class Registry(Generic[T]):
 
         Raises:
             UnknownNameError: There is no such name.
-            NotInThisVersionError: The name is planned for a later version.
             ConfigError: There is no such path, its object is of another kind, or two packages use
                 the name.
         """
@@ -112,14 +108,9 @@ class Registry(Generic[T]):
             return kept
         if ":" in name:
             return name
-        if name in self.later:
-            have = ", ".join(sorted(self.names()))
-            raise NotInThisVersionError(
-                f"{self._setting}: '{name}' is not in this version; there is: {have}"
-            )
         installed = self._installed()
         if name not in installed:
-            known = (*self._table, *installed, *self._of_files(), *self.later)
+            known = (*self._table, *installed, *self._of_files())
             raise UnknownNameError(self._setting, name, known)
         return installed[name]
 
@@ -133,7 +124,7 @@ class Registry(Generic[T]):
         found: dict[str, str] = {}
         for point in entry_points(group=self._group) if self._group else ():
             taken = found.get(point.name, self._table.get(point.name, point.value))
-            if point.name in self.later or taken != point.value:
+            if taken != point.value:
                 package = point.dist.name if point.dist else point.value
                 raise ConfigError(
                     f"{self._setting}: the package '{package}' adds {point.name!r}, "

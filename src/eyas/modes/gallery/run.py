@@ -61,8 +61,7 @@ def conditions(map_names: Sequence[str], weather_names: Sequence[str]) -> list[t
     If no map is named, all maps are drawn except those that lack one of the named weathers.
 
     Raises:
-        UnknownNameError: No such map or weather.
-        NotInThisVersionError: This version has no such map, or not in that weather.
+        UnknownNameError: No such map, or not in that weather.
     """
     every = sorted(MAPS.names())
     have = [name for name in every if set(weather_names) <= set(MAPS.get(name).weathers)]

@@ -166,7 +166,7 @@ def _name(text: str) -> str:
 
 
 def _check_free(folder: Path, name: str, *, overwrite: bool, own: bool) -> None:
-    if own and name in (*MAPS.built_in, *MAPS.later):
+    if own and name in MAPS.built_in:
         raise ConfigError(f"--name: {name!r} is a map of Eyas; choose another name")
     if not folder.exists():
         return
