@@ -1,15 +1,18 @@
-"""A picture of a map from above: ground, streets, buildings, trees, and where its cars drive."""
+"""A picture of a map from above: hills, streets, water, buildings, trees, and driven ways."""
 
+from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 from PIL import Image, ImageDraw
 
 from eyas.core.files import atomic_path
 from eyas.sim.scenes import load_scene
 from eyas.state.scene import ObjectClass, Scene
+from eyas.state.terrain import reliefs
 from eyas.traffic.config import TrafficConfig
 from eyas.traffic.library import find_recording
 from eyas.world.maps import MAPS
@@ -22,6 +25,8 @@ _SHARP = 2
 """The picture is drawn this much larger, and made smaller at the end."""
 _PAPER, _BUILDING, _EDGE = (244, 243, 238), (176, 168, 160), (128, 120, 114)
 _TREE, _TRACK = (122, 168, 104), (206, 66, 40)
+_SUN = np.array([-0.53, 0.53, 0.66])
+"""Direction to the sun of the hills, north-west as on printed maps."""
 _GROUND = {
     ObjectClass.ROAD: (120, 122, 128),
     ObjectClass.PAVEMENT: (214, 210, 202),
@@ -102,22 +107,18 @@ def _bounds(scene: Scene) -> tuple[Points, Points]:
 
 def _picture(scene: Scene, driven: list[Points], width: int, notice: str) -> Image.Image:
     paper = _Paper(scene, width)
+    if scene.terrain.relief.size:
+        paper.image.paste(_hills(scene, paper))
     kinds = scene.object_class[scene.static_object]
     corners = scene.static.positions[scene.static.triangles]
-    level = corners[..., 2].max(axis=1) < scene.terrain.floor + 1.0
+    ground = scene.terrain.floor + reliefs(scene.terrain, corners[..., :2].astype(np.float64))
+    level = (corners[..., 2] - ground).max(axis=1) < 1.0
     for kind in (ObjectClass.STRUCTURE, ObjectClass.WATER, ObjectClass.PAVEMENT, ObjectClass.ROAD):
         for triangle in corners[level & (kinds == kind)]:
             paper.draw.polygon(paper.at(triangle), fill=_GROUND[kind])
+    for crown in _crowns(scene):
+        paper.draw.polygon(paper.at(crown), fill=_TREE)
     solids = scene.colliders
-    owners = scene.object_class[solids.cylinder_object]
-    for spot, top in zip(
-        solids.cylinder_centre[owners == ObjectClass.TREE],
-        solids.cylinder_top[owners == ObjectClass.TREE],
-        strict=True,
-    ):
-        reach = 1.4 * max(float(top), 1.0) * paper.scale  # trunks end at a third of the height
-        (x, y), *_ = paper.at(spot[None])
-        paper.draw.ellipse((x - reach, y - reach, x + reach, y + reach), fill=_TREE)
     for solid, (low, high) in enumerate(pairwise(solids.prism_first)):
         kind = scene.object_class[solids.prism_object[solid]]
         fill = _BUILDING if kind == ObjectClass.BUILDING else _GROUND[ObjectClass.STRUCTURE]
@@ -128,6 +129,34 @@ def _picture(scene: Scene, driven: list[Points], width: int, notice: str) -> Ima
     _legend(paper, notice)
     height = round(paper.image.height / _SHARP)
     return paper.image.resize((width, height), Image.Resampling.BOX)
+
+
+def _hills(scene: Scene, paper: _Paper) -> Image.Image:
+    """Return the ground in the light of a low sun."""
+    size = np.array(paper.image.size) // (2 * _SHARP)  # a coarse picture: hills are smooth
+    east = np.linspace(paper.low[0], paper.high[0], size[0])
+    north = np.linspace(paper.high[1], paper.low[1], size[1])
+    heights = reliefs(scene.terrain, np.stack(np.meshgrid(east, north), axis=-1))
+    up, along = np.gradient(heights, north, east)
+    normal = np.stack([-along, -up, np.ones_like(up)], axis=-1)
+    light = normal @ _SUN / np.linalg.norm(normal, axis=-1) / _SUN[2]
+    tone = np.clip(0.45 + 0.55 * light, 0.5, 1.05)
+    shaded = np.minimum(tone[..., None] * np.array(_PAPER), 255.0).astype(np.uint8)
+    return Image.fromarray(shaded).resize(paper.image.size, Image.Resampling.BICUBIC)
+
+
+def _crowns(scene: Scene) -> Iterator[Points]:
+    """Yield the outlines of trees, or of stands of trees, as seen from above [m]."""
+    fixtures = scene.fixtures
+    trees = np.flatnonzero(scene.object_class[fixtures.object_id] == ObjectClass.TREE)
+    hulls: dict[int, Points] = {}
+    for copy in trees.tolist():
+        prototype = int(fixtures.prototype[copy])
+        if prototype not in hulls:
+            shape = shapely.MultiPoint(fixtures.levels[prototype][-1].positions[:, :2])
+            hulls[prototype] = shapely.get_coordinates(shape.convex_hull)
+        pose = fixtures.pose[copy].astype(np.float64)
+        yield hulls[prototype] @ pose[:2, :2].T + pose[:2, 3]
 
 
 def _legend(paper: _Paper, notice: str) -> None:
