@@ -19,7 +19,7 @@ from eyas.targets.jointed.robots.shrimp import SHRIMP
 from eyas.targets.jointed.robots.sojourner import SOJOURNER
 from eyas.targets.kind import Colour, Kind
 
-__all__ = ["JOINTED_KINDS"]
+__all__ = ["FIGURES", "JOINTED_KINDS"]
 
 _ROBOTS: dict[TargetName, tuple[Figure, Colour]] = {
     TargetName.SHRIMP: (SHRIMP, (0.19, 0.69, 1.0)),
@@ -36,6 +36,12 @@ _ROBOTS: dict[TargetName, tuple[Figure, Colour]] = {
 }
 """Figure and main colour of each robot."""
 
+FIGURES: dict[str, Figure] = {
+    **{person.name: figure_of(person) for person in PEOPLE},
+    **{name.value: figure for name, (figure, _) in _ROBOTS.items()},
+}
+"""The figure of each model, by its name."""
+
 
 def _robot(name: TargetName) -> Kind:
     figure, colour = _ROBOTS[name]
@@ -49,17 +55,12 @@ def _robot(name: TargetName) -> Kind:
     )
 
 
-_FIGURES = tuple(map(figure_of, PEOPLE))
-
 _PEDESTRIAN = Kind(
     name=TargetName.PEDESTRIAN.value,
-    models=tuple(
-        pedestrian(one.name, one.size, figure.period)
-        for one, figure in zip(PEOPLE, _FIGURES, strict=True)
-    ),
+    models=tuple(pedestrian(one.name, one.size, FIGURES[one.name].period) for one in PEOPLE),
     colours=PEDESTRIAN_COLOURS,
     object_class=ObjectClass.PERSON,
-    rig=lambda: JointedRig(_FIGURES),
+    rig=lambda: JointedRig([FIGURES[one.name] for one in PEOPLE]),
     keeps_colours=True,
 )
 
