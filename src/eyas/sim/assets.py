@@ -14,8 +14,8 @@ from eyas.state.lighting import Lighting
 from eyas.state.motion import Motion, joined
 from eyas.state.scene import Scene
 from eyas.targets.catalogue import kind_index
-from eyas.targets.quadrotor import QUADROTOR
 from eyas.targets.config import TargetName
+from eyas.targets.quadrotor import QUADROTOR
 from eyas.targets.rig import Rigs
 from eyas.traffic.config import Demand, TrafficConfig
 from eyas.traffic.library import CANONICAL_SEED, STANDARD_DURATION, find_recording
