@@ -48,7 +48,9 @@ def crowd_of(config: SimConfig) -> Crowd:
     if config.target is TargetName.SUMO_VEHICLE:
         return Crowd(extras=config.extras)
     seconds = config.done.total_steps * PHYSICS_STEP
-    return Crowd(config.target, config.objects, config.extras, seconds)
+    return Crowd(
+        target=config.target, objects=config.objects, extras=config.extras, episode=seconds
+    )
 
 
 def vehicles_of(crowd: Crowd, known: int) -> int:
