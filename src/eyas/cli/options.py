@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from eyas.core.errors import ConfigError
+from eyas.settings.preset import PRESETS
 
 __all__ = [
     "ConfigFile",
@@ -29,7 +30,7 @@ Preset = Annotated[
     str | None,
     typer.Option(
         "--preset",
-        help="Settings that come with Eyas: dat-eval, dat-train, easy, fast, paper or robust.",
+        help=f"Settings that come with Eyas: {', '.join(PRESETS[:-1])} or {PRESETS[-1]}.",
     ),
 ]
 Overrides = Annotated[
