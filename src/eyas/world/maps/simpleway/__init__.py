@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from eyas.state.lighting import Lighting
-from eyas.world.maps.recipe import MapRecipe
+from eyas.world.maps.recipe import MapRecipe, Original
 from eyas.world.weather import (
     CLEAR_DAY,
     CLEAR_NIGHT,
@@ -79,6 +79,7 @@ def _skinned(
         lighting=lighting,
         seasons=seasons,
         package=__name__,
+        original=Original(road=48.1),
     )
 
 
