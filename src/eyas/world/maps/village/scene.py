@@ -13,7 +13,7 @@ from eyas.state.mesh import Material, Mesh, Surface
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import Lamps, ObjectClass, Scene
 from eyas.world.build.heights import FLOOR_HEIGHT
-from eyas.world.build.materials import TEXTURES, material
+from eyas.world.build.materials import TEXTURES, material, without_snow
 from eyas.world.build.scene_builder import SceneBuilder
 from eyas.world.buildings.cottages import add_cottages
 from eyas.world.land import ground
@@ -148,7 +148,13 @@ def _add_ground(
     builder.add(
         ObjectClass.GROUND,
         *_meadow(lawn, stream(seed, "village meadow")),
-        surface(verge, FLOOR_HEIGHT, VERGE, TEXTURES[VERGE.texture]),
+        surface(
+            shapely.intersection(verge, passages),
+            FLOOR_HEIGHT,
+            without_snow(VERGE),
+            TEXTURES[VERGE.texture],
+        ),
+        surface(shapely.difference(verge, passages), FLOOR_HEIGHT, VERGE, TEXTURES[VERGE.texture]),
         surface(shore, FLOOR_HEIGHT, SHORE, TEXTURES[SHORE.texture]),
         skirt(shore, FLOOR_HEIGHT - 0.3, FLOOR_HEIGHT, SHORE, TEXTURES[SHORE.texture]),
         far_plain((2 * HALF, 2 * HALF), GRASS),
