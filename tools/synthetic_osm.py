@@ -1,11 +1,14 @@
 """Write an OpenStreetMap file of a town that does not exist, to try the importer without a network.
 
     python tools/synthetic_osm.py town.osm --columns 4 --rows 4
-    python tools/synthetic_osm.py city.osm --columns 9 --rows 15    # of the size of a dense city
+    python tools/synthetic_osm.py city.osm --columns 9 --rows 15
+    python tools/synthetic_osm.py city.osm --columns 11 --rows 20 --as-found    # a city, 10 MB
 
 The town has avenues, side streets and traffic lights, closed blocks with courtyards, towers of
 several parts, houses with gardens, sheds, a church, parks with paths and ponds, a river, a railway,
-car parks, trees and rows of trees. Some tags are missing, some are odd, as in real data.
+car parks, trees and rows of trees. Some tags are missing, some are odd, as in real data. With
+`--as-found` its streets are wider and its blocks denser, each object has a history, there are
+thousands of shops with names in all scripts, and defects of many kinds.
 """
 
 import argparse
@@ -17,11 +20,13 @@ from xml.sax.saxutils import quoteattr
 
 import numpy as np
 import shapely
+from osm_as_found import add_defects, add_shops, as_found
 from shapely import affinity
 
 from eyas.world.osm.projection import Projection
 
 ORIGIN = Projection(13.4, 52.5)
+_SHOPS = 16_000
 Point = tuple[float, float]
 
 
@@ -72,8 +77,12 @@ class Writer:
         tags["type"] = "multipolygon"
         self._others.append(f'<relation id="{self._next}">{members}{_tags(tags)}</relation>')
 
-    def text(self, half: Point) -> str:
-        """Return the file; `half` is half the extent of the town [m]."""
+    def raw(self, element: str) -> None:
+        """Add an element as it is."""
+        self._others.append(element)
+
+    def lines(self, half: Point) -> list[str]:
+        """Return the file's lines; `half` is half the extent of the town [m]."""
         degrees = ORIGIN.degrees(np.array(self._places))
         low, high = ORIGIN.degrees(np.array([[-half[0], -half[1]], half]))
         lines = [
@@ -88,7 +97,7 @@ class Writer:
         # Relations come last, as in real files.
         ways = [other for other in self._others if other.startswith("<way")]
         rest = [other for other in self._others if not other.startswith("<way")]
-        return "\n".join([*lines, *ways, *rest, "</osm>", ""])
+        return [*lines, *ways, *rest, "</osm>", ""]
 
 
 def _tags(tags: dict[str, str]) -> str:
@@ -105,10 +114,11 @@ class Town:
         columns: Number of blocks from west to east.
         rows: Number of blocks from south to north.
         seed: Seed of everything.
+        found: Whether it is written as found.
     """
 
-    def __init__(self, columns: int, rows: int, seed: int) -> None:
-        self.out, self.rng = Writer(), random.Random(seed)
+    def __init__(self, columns: int, rows: int, seed: int, *, found: bool = False) -> None:
+        self.out, self.rng, self.found = Writer(), random.Random(seed), found
         self.columns, self.rows = columns, rows
         widths = [self.rng.uniform(88, 128) for _ in range(columns)]
         depths = [self.rng.uniform(88, 132) for _ in range(rows)]
@@ -135,7 +145,11 @@ class Town:
             for j in range(self.rows):
                 self._block(i, j)
         self._railway()
-        return self.out.text(self.half)
+        if not self.found:
+            return "\n".join(self.out.lines(self.half))
+        add_shops(self.out.node, self.half, _SHOPS, self.rng)
+        add_defects(self.out.node, self.out.way, self.out.raw, self.half, self.rng)
+        return "\n".join(as_found(self.out.lines(self.half), self.rng))
 
     def _streets(self) -> None:
         for i in range(self.columns + 1):
@@ -155,9 +169,12 @@ class Town:
         if avenue:
             tags = {"highway": "primary", "lanes": "4", "sidewalk": "both", "maxspeed": "50"}
         elif index % 3 == 1:
-            tags = {"highway": "secondary", "lanes": "2", "sidewalk": "both"}
+            lanes = "4" if self.found else "2"
+            tags = {"highway": "secondary", "lanes": lanes, "sidewalk": "both"}
         elif index % 3 == 2:
             tags |= {"oneway": "yes", "maxspeed": "30", "lanes": self.rng.choice(["1", "two"])}
+        if self.found and tags["highway"] == "residential":
+            tags |= {"lanes": "2" if "oneway" in tags else "4", "sidewalk": "right"}
         nodes = [self.nodes[keys[0]]]
         for a, b in pairwise(keys):
             (ax, ay), (bx, by) = self.at[a], self.at[b]
@@ -190,7 +207,9 @@ class Town:
             self._park(ground)
         elif away < 0.28 * reach or kind > 0.93:
             self._towers(ground)
-        elif away < 0.6 * reach:
+        elif self.found and kind < 0.7:
+            self._towers(ground)
+        elif away < 0.6 * reach or (self.found and kind < 0.8):
             self._closed_block(ground)
         elif kind < 0.75:
             self._houses(ground)
@@ -229,7 +248,7 @@ class Town:
     def _closed_block(self, ground: shapely.Polygon) -> None:
         self.out.area(ground, landuse="residential")
         yard = ground.buffer(-self.rng.uniform(12, 15), join_style="mitre")
-        if self.rng.random() < 0.35 and not yard.is_empty:
+        if self.rng.random() < (0.7 if self.found else 0.35) and not yard.is_empty:
             tags = {"building": "apartments", "building__levels": str(self.rng.randint(4, 7))}
             self.out.area(shapely.Polygon(ground.exterior, [yard.exterior]), **tags)
             self._scatter(yard, 5)
@@ -366,8 +385,9 @@ def main() -> None:
     parser.add_argument("--columns", type=int, default=4)
     parser.add_argument("--rows", type=int, default=4)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--as-found", action="store_true")
     said = parser.parse_args()
-    text = Town(said.columns, said.rows, said.seed).build()
+    text = Town(said.columns, said.rows, said.seed, found=said.as_found).build()
     said.path.write_text(text, encoding="utf-8")
     print(f"{said.path}: {len(text) / 1e6:.1f} MB")
 

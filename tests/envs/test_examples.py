@@ -6,6 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from eyas.core.errors import MissingExtraError
+from eyas.traffic.sumo_install import import_libsumo
+from eyas.world.maps import MAPS
+
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
 
@@ -13,7 +17,7 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 def importable(monkeypatch):
     monkeypatch.syspath_prepend(EXAMPLES)
     yield
-    for name in ("ppo", "own_observation"):
+    for name in ("ppo", "own_observation", "own_map", "custom_map"):
         sys.modules.pop(name, None)
 
 
@@ -67,3 +71,24 @@ def test_its_advantages_are_those_of_sums_of_errors():
     found = data.advantages(torch.tensor([4.0]), options)[:, 0]
     last, cut = 2.0 + 0.9 * 4.0 - 3.0, 0.25 - 2.0
     assert found.tolist() == pytest.approx([0.5 + 0.9 * 2.0 - 1.0 + 0.45 * cut, cut, last])
+
+
+@pytest.mark.sumo
+@pytest.mark.slow
+def test_a_network_is_trained_on_a_map_of_ones_own(tmp_path, monkeypatch, capsys):
+    torch = pytest.importorskip("torch")
+    pytest.importorskip("onnx")
+    try:
+        import_libsumo()
+    except MissingExtraError as error:
+        pytest.skip(str(error))
+    monkeypatch.setattr(MAPS, "_table", dict(MAPS._table))  # the name is gone after the test
+    threads = torch.get_num_threads()
+    import custom_map
+
+    policy = custom_map.main(4096, tmp_path / "field")
+    torch.set_num_threads(threads)
+    assert policy.is_file()
+    rows = (tmp_path / "field" / "curve.csv").read_text().splitlines()
+    assert len(rows) == 2
+    assert f"--policy {policy} --maps own_map:FIELD" in capsys.readouterr().out

@@ -99,7 +99,7 @@ def test_tracks_are_dark_and_what_lies_between_lanes_is_white(seen):
 
 def test_tracks_lead_over_junctions():
     scene = scene_with(plate("asphalt"), ObjectClass.ROAD)
-    found = track_map(with_lanes(scene, [(-30, 0), (-8, 0)], [(0, 8), (0, 30)]).network)
+    found = track_map(with_lanes(scene, [(-30, 0), (-8, 0)], [(0, 8), (0, 30)]))
     low, per = found.frame[:2], found.frame[2]
 
     def worn(x, y):
@@ -209,3 +209,35 @@ def test_near_things_hide_flakes(drawn, renderer_of):
     seen = drawn(falling, views).rgb
     views.instant = None
     np.testing.assert_array_equal(seen, drawn(falling, views).rgb)
+
+
+def test_no_snow_lies_on_the_road_in_a_tunnel():
+    scene = with_lanes(scene_with(plate("asphalt"), ObjectClass.ROAD), [(-38, 0), (38, 0)])
+    fresh = track_map(scene).worn[..., 0]
+    scene.colliders = dataclasses.replace(
+        scene.colliders,
+        prism_points=np.array([(-5.0, -4.0), (5.0, -4.0), (5.0, 4.0), (-5.0, 4.0)] * 2)
+        + np.repeat([[0.0, 0.0], [25.0, 0.0]], 4, axis=0),
+        prism_first=np.array([0, 4, 8], np.int32),
+        prism_bottom=np.array([6.0, 50.0]),
+        prism_top=np.array([9.0, 52.0]),
+        prism_object=np.zeros(2, np.int32),
+    )
+    found = track_map(scene)
+    x = np.arange(found.worn.shape[1]) / found.frame[2] + found.frame[0]
+    y = np.arange(found.worn.shape[0]) / found.frame[2] + found.frame[1]
+    inside = np.ix_(np.abs(y) < 3.0, np.abs(x) < 4.0)
+    assert found.worn[(*inside, 0)].min() == 255
+    away = np.abs(x) > 7.0  # under the other roof, 50 m high, snow falls
+    assert (found.worn[:, away, 0] == fresh[:, away]).all()
+
+
+def test_the_map_of_tracks_of_very_long_roads_has_larger_texels(monkeypatch):
+    scene = scene_with(plate("asphalt"), ObjectClass.ROAD)
+    scene = with_lanes(scene, [(-900, 0), (900, 0)], [(0, -700), (0, 700)])
+    monkeypatch.setattr("eyas.render.bake.tracks.MOST_TEXELS", 300_000)
+    found = track_map(scene)
+    assert found.worn[..., 0].size < 303_000  # whole rows and columns
+    assert found.frame[2] == pytest.approx(300_000**0.5 / (1812 * 1412) ** 0.5)
+    column = int((500.0 - found.frame[0]) * found.frame[2])
+    assert found.worn[:, column, 0].max() > 100

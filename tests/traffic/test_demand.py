@@ -72,3 +72,28 @@ def test_groups_enter_at_intervals_until_the_routes_are_used_up():
     config = TrafficConfig(demand=Demand.RESPAWN, group_size=4, group_interval=10.0, route_count=10)
     assert list(departures(config, 100.0)) == [(0.0, 4), (10.0, 4), (20.0, 2)]
     assert list(departures(config, 15.0)) == [(0.0, 4), (10.0, 4)]
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_lasting_edges_of_any_roads_reach_each_other_and_no_larger_part_does(seed):
+    rng = np.random.default_rng(seed)
+    names = [f"e{k:02d}" for k in range(30)]
+    following = {name: tuple(rng.choice(names, int(rng.integers(3)))) for name in names}
+    reach = {name: set(following[name]) for name in names}
+    for _ in names:
+        reach = {name: on.union(*(following[other] for other in on)) for name, on in reach.items()}
+    parts = {frozenset(b for b in reach[a] if a in reach[b]) for a in names}
+    largest = max(map(len, parts))
+    links = RoadLinks(following, dict.fromkeys(names, 1.0))
+    if largest:
+        wanted = {name for part in parts if len(part) == largest for name in part}
+        assert lasting_edges(links) == tuple(sorted(wanted))
+    else:
+        with pytest.raises(ConfigError):
+            lasting_edges(links)
+
+
+def test_a_very_long_loop_is_no_burden():
+    names = [f"e{k:05d}" for k in range(20_000)]  # one step of each search for each edge
+    links = {name: (names[(k + 1) % len(names)],) for k, name in enumerate(names)}
+    assert len(lasting_edges(RoadLinks(links, dict.fromkeys(names, 1.0)))) == len(names)

@@ -116,3 +116,14 @@ def test_without_sumo_the_extra_and_the_system_packages_are_named(grid, monkeypa
         build_network(grid)
     assert sumo_install.SYSTEM_PACKAGES in str(caught.value)
     assert "\n" not in str(caught.value)
+
+
+def test_two_nodes_or_edges_of_one_name_are_refused(grid):
+    moved = replace(grid.nodes[0], x=grid.nodes[0].x + 1.0)
+    twins = {
+        f"node '{moved.name}' is there twice": replace(grid, nodes=(*grid.nodes, moved)),
+        f"edge '{grid.edges[0].name}' is there": replace(grid, edges=(*grid.edges, grid.edges[0])),
+    }
+    for line, graph in twins.items():
+        with pytest.raises(ConfigError, match=line):
+            build_network(graph)

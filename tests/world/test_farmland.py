@@ -8,7 +8,7 @@ from eyas.core.rng import stream
 from eyas.sim.scenes import load_scene
 from eyas.state.mesh import Surface
 from eyas.state.scene import ObjectClass
-from eyas.world.maps.farmland import FARMLAND, FARMLAND_BARE
+from eyas.world.maps.farmland import FARMLAND
 from eyas.world.maps.farmland.fields import CROPS, SIDE, VERGE, lay_out
 from eyas.world.maps.farmland.roads import ROAD_WIDTH, road_graph
 from eyas.world.roads.areas import road_area
@@ -162,11 +162,3 @@ def test_winter_whitens_green_greys_lilac_and_leaves_yellow_and_tan(scene, winte
         if look.texture in ("crops_yellow", "crops_tan"):
             assert (look.surface, look.emission) == (Surface.SIGNAL, 0.0)  # no snow stays
     assert len(scene.static.triangles) == len(winter.static.triangles)
-
-
-def test_the_bare_layout_has_the_same_roads_and_nothing_else(network):
-    assert FARMLAND_BARE.roads(0) == FARMLAND.roads(0)
-    bare = FARMLAND_BARE.scene(network, 0, Season.SUMMER)
-    assert len(bare.fixtures.pose) == len(bare.lamps.position) == 0
-    textures = {bare.static.palette[k].texture for k in np.unique(bare.static.materials)}
-    assert not {texture for texture in textures if texture.startswith("crops")}

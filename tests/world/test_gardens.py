@@ -1,12 +1,13 @@
 """Points that are scattered within shapes: how far apart they are, and how long it takes."""
 
 import time
+from itertools import pairwise
 
 import numpy as np
 import pytest
 import shapely
 
-from eyas.world.plants.gardens import scattered
+from eyas.world.plants.gardens import paved_yards, scattered
 
 YARD = shapely.box(-40.0, -25.0, 60.0, 30.0)
 ISLES = shapely.MultiPolygon([shapely.box(0, 0, 30, 30), shapely.box(33, 0, 60, 30)])
@@ -43,3 +44,17 @@ def test_the_forests_of_a_lake_take_no_time():
     assert len(found) > 13_500
     # Each compared with all before it would take half a minute.
     assert time.process_time() - start < 3.0
+
+
+def test_the_paving_of_a_house_depends_on_its_neighbours_only():
+    corners = np.array([(0.0, 0.0), (12.0, 0.0), (12.0, 9.0), (0.0, 9.0)])
+    east, north, step = np.array([14.0, 0.0]), np.array([0.0, 12.0]), np.array([90.0, 0.0])
+    houses = [corners, corners + east, corners + north]
+    kerb = shapely.box(-50, -12, 2000, -10)
+    few = paved_yards(houses, kerb, kerb)
+    many = paved_yards([*houses, *(corners + k * step for k in range(1, 20))], kerb, kerb)
+    assert [shapely.to_wkb(yard) for yard in many[:3]] == [shapely.to_wkb(yard) for yard in few]
+    assert all(a.intersection(b).area < 1e-6 for a, b in pairwise(few))
+    assert all(yard.contains(shapely.box(*house.min(axis=0), *house.max(axis=0)).buffer(-0.5))
+               for yard, house in zip(few, houses, strict=True))  # fmt: skip
+    assert few[0].bounds[1] == pytest.approx(-10.0, abs=0.01)  # a path to the pavement

@@ -5,6 +5,7 @@ import pytest
 import shapely
 from shapely.ops import substring
 
+from eyas.state.roads import RoadNetwork
 from eyas.world.roads.areas import joints, road_area, streets
 from eyas.world.roads.markings import road_paint
 from eyas.world.roads.painting import PAINT_HEIGHT, mesh_of, stripes
@@ -92,3 +93,54 @@ def test_paint_lies_just_above_the_road(paint):
     mesh = mesh_of(paint)
     assert np.allclose(mesh.positions[:, 2], PAINT_HEIGHT)
     assert {material.tint[2] < 0.3 for material in mesh.palette} == {True, False}
+
+
+def roads_of(*edges):
+    """Return a network of edges: names of both nodes, positions of both [m], number of lanes."""
+    lanes = []
+    for index, (_, ends, count) in enumerate(edges):
+        start, end = np.array(ends, np.float64)
+        along = (end - start) / np.linalg.norm(end - start)
+        right = np.array([along[1], -along[0]])
+        lanes += [
+            (index, lane, np.stack([start, end]) + 3.5 * (count - lane - 0.5) * right)
+            for lane in range(count)
+        ]
+    nodes = sorted({name for names, _, _ in edges for name in names})
+    return RoadNetwork(
+        graph_hash="", builder="",
+        lane_points=np.concatenate([line for _, _, line in lanes]),
+        lane_first=2 * np.arange(len(lanes) + 1, dtype=np.int32),
+        lane_width=np.full(len(lanes), 3.5), lane_speed=np.full(len(lanes), 13.9),
+        lane_edge=np.array([edge for edge, _, _ in lanes], np.int32),
+        lane_index=np.array([lane for _, lane, _ in lanes], np.int32),
+        edges=tuple(f"e{k}" for k in range(len(edges))),
+        edge_start=tuple(names[0] for names, _, _ in edges),
+        edge_end=tuple(names[1] for names, _, _ in edges),
+        junction_points=np.zeros((0, 2)),
+        junction_first=np.zeros(len(nodes) + 1, np.int32), junctions=tuple(nodes),
+    )  # fmt: skip
+
+
+A, B, C, D = (0.0, 0.0), (100.0, 0.0), (100.0, 100.0), (0.0, 100.0)
+
+
+@pytest.mark.parametrize(
+    ("edges", "lines"),
+    [
+        # Two edge lines for each one-way street, joined where one leads on to the other.
+        ([("ab", (A, B), 1), ("bc", (B, C), 1)], 2),
+        ([("ab", (A, B), 1), ("cb", (C, B), 1)], 4),
+        ([("ba", (B, A), 1), ("bc", (B, C), 1)], 4),
+        # Where lanes begin or end: two edge lines each, and the dashes of the wider street.
+        ([("ab", (A, B), 2), ("bc", (B, C), 1)], 4 + 11),
+        # A ring without a junction.
+        ([("ab", (A, B), 1), ("bc", (B, C), 1), ("cd", (C, D), 1), ("da", (D, A), 1)], 2),
+    ],
+)
+def test_lines_go_on_around_bends_and_end_where_the_street_changes(edges, lines):
+    paint = road_paint(roads_of(*edges))
+    assert len(paint.lines) == lines
+    painted = shapely.union_all(white_areas(paint))
+    for _, ends, _ in edges:
+        assert shapely.LineString(ends).buffer(3.5).intersection(painted).area > 20.0

@@ -19,6 +19,8 @@ from eyas.core.rng import stream
 from eyas.world.buildings.facades import mesh_of
 from eyas.world.maps.citystreet import CITYSTREET
 from eyas.world.maps.citystreet.plan import make_plan
+from eyas.world.maps.desert import DESERT, DESERT_BARE
+from eyas.world.maps.desert.plan import make_plan as plan_of_dunes
 from eyas.world.plants.shrubs import plant_makers
 from eyas.world.plants.trees import street_tree_levels
 from eyas.world.weather import Season
@@ -31,6 +33,11 @@ def of_the_plan():
     return plan, [mesh_of(building) for building in plan.buildings[:20]], plants
 
 
+def of_the_desert():
+    network = DESERT.shipped_network()
+    return plan_of_dunes(network, 0), DESERT_BARE.scene(network, 0, Season.SUMMER)
+
+
 def of_the_scene():
     return CITYSTREET.scene(CITYSTREET.shipped_network(), 0, Season.SUMMER)
 
@@ -39,7 +46,12 @@ def of_the_processor():
     return [float(value) for value in np.exp(np.linspace(0.0, 9.0, 9999))]
 
 
-MAKERS = {"plan": of_the_plan, "scene": of_the_scene, "processor": of_the_processor}
+MAKERS = {
+    "plan": of_the_plan,
+    "desert": of_the_desert,
+    "scene": of_the_scene,
+    "processor": of_the_processor,
+}
 NEWER = np.show_config(mode="dicts")["SIMD Extensions"].get("found", [])
 
 
@@ -83,7 +95,7 @@ def differences(here, there, path=""):
         yield path
 
 
-@pytest.mark.parametrize("name", ["plan", pytest.param("scene", marks=pytest.mark.slow)])
+@pytest.mark.parametrize("name", ["plan", "desert", pytest.param("scene", marks=pytest.mark.slow)])
 def test_a_map_is_the_same_on_another_processor(name):
     assert list(differences(MAKERS[name](), elsewhere(name))) == []
 

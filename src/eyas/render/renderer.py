@@ -191,7 +191,7 @@ def build_renderer(
         ready: See `Renderer`.
     """
     shadows = bake_shadows(geometry, lighting.sun_direction, scene.terrain.floor, cache)
-    tracks = track_map(scene.network) if lighting.snow > 0 else TrackMap.none()
+    tracks = track_map(scene) if lighting.snow > 0 else TrackMap.none()
     ambient = bake_ambient(scene, cache)
     light = build_light(scene, lighting, shadows, ambient, tracks, geometry)
     return Renderer(geometry, light, class_table(scene), ready)

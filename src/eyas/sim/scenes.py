@@ -1,5 +1,6 @@
 """Scenes and their packed geometry: made once, kept on disk, shared by all weathers of a season."""
 
+import logging
 from collections.abc import Callable, Sequence
 from functools import lru_cache
 from typing import TypeVar
@@ -25,6 +26,8 @@ from eyas.world.weather import Season
 
 __all__ = ["load_geometry", "load_network", "load_scene", "paint"]
 
+_LOG = logging.getLogger("eyas")
+
 Thing = TypeVar("Thing")
 
 _MAKERS = ("world", "mesh", "state", "core/rng.py")
@@ -48,6 +51,7 @@ def load_scene(map_name: str, seed: int = 0, season: Season = Season.SUMMER) -> 
     recipe, network = MAPS.get(map_name), load_network(map_name, seed)
 
     def make() -> Scene:
+        _LOG.info("building the map '%s', once: up to 20 s of CPU time", recipe.name)
         return recipe.scene(network, seed, season)
 
     return _cached(Kind.SCENE, (), _origin(map_name, seed, season, network), make, Scene)

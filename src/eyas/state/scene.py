@@ -67,6 +67,8 @@ class Fixtures:
     """Object of the scene, shape (F,)."""
     names: tuple[str, ...] = ()
     """Name of each prototype, for people and tests; drawing does not use it."""
+    trees: tuple[int, ...] = ()
+    """Number of trees in each prototype: 0 for shrubs and all else, several for a stand."""
 
 
 @dataclass(slots=True)

@@ -1,7 +1,7 @@
 """Routes of vehicles: endless random walks, or groups that cross the map and leave."""
 
 import heapq
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -61,14 +61,7 @@ def lasting_edges(links: RoadLinks) -> Route:
     Raises:
         ConfigError: There is none: every route comes to an end.
     """
-    reach = {edge: _reachable(links, edge) for edge in links.successors}
-    unplaced = set(links.successors)
-    parts: list[set[str]] = []
-    for edge in sorted(links.successors):
-        if edge in unplaced:
-            part = {other for other in reach[edge] if edge in reach[other]}
-            unplaced -= part | {edge}
-            parts.append(part)
+    parts = [part for part in _loops(links) if len(part) > 1 or _turns_back(links, part[0])]
     largest = max(map(len, parts), default=0)
     if not largest:
         raise ConfigError(
@@ -144,15 +137,45 @@ def departures(config: TrafficConfig, duration: float) -> Iterator[tuple[float, 
         group += 1
 
 
-def _reachable(links: RoadLinks, start: str) -> set[str]:
-    found: set[str] = set()
-    front = list(links.successors[start])
-    while front:
-        edge = front.pop()
-        if edge not in found:
-            found.add(edge)
-            front.extend(links.successors[edge])
-    return found
+def _turns_back(links: RoadLinks, edge: str) -> bool:
+    return edge in links.successors[edge]
+
+
+def _loops(links: RoadLinks) -> list[list[str]]:
+    """Return the edges in parts in which all can be reached from each other.
+
+    Kosaraju's algorithm (in Aho, Hopcroft, Ullman 1983, Data Structures and Algorithms, 6.7): in
+    the order in which a search through all edges leaves them last, each search against the traffic
+    finds one part.
+    """
+    before: dict[str, list[str]] = {edge: [] for edge in links.successors}
+    for edge, following in links.successors.items():
+        for other in following:
+            before[other].append(edge)
+    seen: set[str] = set()
+    order = [edge for start in sorted(before) for edge in _search(links.successors, start, seen)]
+    seen.clear()
+    parts = [_search(before, edge, seen) for edge in reversed(order)]
+    return [part for part in parts if part]
+
+
+def _search(links: Mapping[str, Sequence[str]], start: str, seen: set[str]) -> list[str]:
+    """Return what can be reached and was not seen, in the order in which it is left."""
+    if start in seen:
+        return []
+    seen.add(start)
+    left: list[str] = []
+    open_ = [(start, iter(links[start]))]
+    while open_:
+        edge, rest = open_[-1]
+        fresh = next((other for other in rest if other not in seen), None)
+        if fresh is None:
+            left.append(edge)
+            open_.pop()
+        else:
+            seen.add(fresh)
+            open_.append((fresh, iter(links[fresh])))
+    return left
 
 
 def _shortest_tree(links: RoadLinks, start: str) -> dict[str, str]:

@@ -3,6 +3,7 @@
 import hashlib
 import subprocess
 import tempfile
+from collections import Counter
 from pathlib import Path
 from xml.etree import ElementTree
 from xml.sax.saxutils import quoteattr
@@ -47,7 +48,7 @@ def build_network(graph: RoadGraph) -> RoadNetwork:
 
     Raises:
         MissingExtraError: SUMO is not installed.
-        ConfigError: netconvert rejects the graph.
+        ConfigError: Two nodes or edges have one name, or netconvert rejects the graph.
     """
     if graph.finished:
         return road_network(graph.finished, graph_hash(graph))
@@ -86,10 +87,17 @@ def network_xml(graph: RoadGraph) -> bytes:
 
     Raises:
         MissingExtraError: SUMO is not installed.
-        ConfigError: netconvert rejects the graph.
+        ConfigError: Two nodes or edges have one name, or netconvert rejects the graph.
     """
     if graph.finished:
         return graph.finished
+    for kind, names in (("node", graph.nodes), ("edge", graph.edges)):
+        twice = [name for name, count in Counter(one.name for one in names).items() if count > 1]
+        if twice:
+            raise ConfigError(
+                f"roads of '{graph.map_name}': {kind} '{twice[0]}' is there twice; each needs a "
+                "name of its own"
+            )
     netconvert = sumo_binary("netconvert")
     with tempfile.TemporaryDirectory(prefix="eyas-roads-") as folder:
         nodes, edges, out = (Path(folder) / name for name in ("nod.xml", "edg.xml", "net.xml"))

@@ -58,6 +58,8 @@ def choose_viewpoints(still: StillScene, sun: tuple[float, float, float]) -> lis
     chosen: list[Viewpoint] = []
     for name, where, score in _STOPS:
         chosen += _stop(still, cars, name, where, score(still.scene, cars))
+    if len(chosen) < 2 * len(_POSES):
+        chosen += _stop(still, cars, "road", "on an open road", _on_open_roads(still.scene, cars))
     side = math.atan2(sun[1], sun[0]) + math.radians(15.0)
     chosen += [_overview(still, side), _horizon(still.scene, side)]
     first = chosen[0]
@@ -149,6 +151,15 @@ def _on_crossings(scene: Scene, cars: _Cars) -> Points:
                 near = np.linalg.norm(cars.position - cars.position[car], axis=1) < 30.0
                 score[car] = (near & (cars.time == cars.time[car])).sum()
     return score
+
+
+def _on_open_roads(scene: Scene, cars: _Cars) -> Points:
+    """Return how far each car is from the next junction, at most 100 m, shape (K,)."""
+    network = scene.network
+    rings = np.split(network.junction_points, network.junction_first[1:-1])
+    shapes = shapely.union_all([shapely.Polygon(ring) for ring in rings if len(ring) >= 3])
+    away: Points = np.minimum(shapely.distance(shapely.points(cars.position), shapes), 100.0)
+    return np.round(away)
 
 
 def _between_towers(scene: Scene, cars: _Cars) -> Points:

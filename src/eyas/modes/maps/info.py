@@ -10,6 +10,7 @@ from eyas.sim.scenes import load_scene
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import ObjectClass, Scene
 from eyas.world.maps import MAPS
+from eyas.world.maps.recipe import Original
 
 __all__ = ["Figures", "describe", "figures_of", "street_lines"]
 
@@ -23,13 +24,19 @@ class Figures:
     area: float
     """Of the rectangle around the streets [km^2]."""
     road: float
-    """Length of the streets, both directions counted once [km]."""
+    """Length of the streets from the middle of one junction to that of the next, both directions
+    counted once [km]."""
+    between: float
+    """The same without what lies within junctions [km]."""
     lanes: float
     """Length of all lanes [km]."""
     buildings: int
     height: float
     """Median height of the buildings [m]."""
     trees: int
+    """Trees by themselves and in stands; no shrubs or hedges."""
+    stands: int
+    """Copies that are several trees each."""
     lamps: int
 
 
@@ -42,22 +49,45 @@ def figures_of(scene: Scene) -> Figures:
     tops: dict[int, float] = {}
     for owner, top in zip(solids.prism_object[built], solids.prism_top[built], strict=True):
         tops[int(owner)] = max(tops.get(int(owner), 0.0), float(top))
-    trunks = kinds[solids.cylinder_object] == ObjectClass.TREE
-    ways = street_lines(network)
+    counts = np.array(scene.fixtures.trees or (0,), np.int64)
+    planted = counts[scene.fixtures.prototype]
+    ways = _ways(network)
+    within = sum(_within_junctions(network, edge, line) for edge, line in ways)
+    between = sum(line.length for _, line in ways)
     return Figures(
         size=scene.size,
         area=float(np.prod(span)) / 1e6,
-        road=sum(line.length for line in ways) / 1000.0,
+        road=(between + within) / 1000.0,
+        between=between / 1000.0,
         lanes=float(_lengths(network).sum()) / 1000.0,
         buildings=len(tops),
         height=float(np.median(list(tops.values()))) if tops else 0.0,
-        trees=int(trunks.sum()),
+        trees=int(planted.sum()),
+        stands=int((planted > 1).sum()),
         lamps=len(scene.lamps.position),
     )
 
 
 def street_lines(network: RoadNetwork) -> list[shapely.LineString]:
-    """Return the middle of each street, once for both directions [m]."""
+    """Return the middle of each street between junctions, once for both directions [m]."""
+    return [line for _, line in _ways(network)]
+
+
+def _within_junctions(network: RoadNetwork, edge: int, line: shapely.LineString) -> float:
+    """Return the distance from both ends of a street to the middles of its junctions [m]."""
+    ends = shapely.get_coordinates(line)[[0, -1]]
+    total = 0.0
+    for end, name in zip(ends, (network.edge_start[edge], network.edge_end[edge]), strict=True):
+        index = network.junctions.index(name)
+        low, high = network.junction_first[index : index + 2]
+        if high - low >= 3:
+            middle = shapely.Polygon(network.junction_points[low:high]).centroid
+            total += float(middle.distance(shapely.Point(end)))
+    return total
+
+
+def _ways(network: RoadNetwork) -> list[tuple[int, shapely.LineString]]:
+    """Return the index of an edge of each street, and its middle [m]."""
     first = network.lane_first
     ends = list(zip(network.edge_start, network.edge_end, strict=True))
     reverse: dict[tuple[str, str], list[int]] = {}
@@ -79,7 +109,7 @@ def street_lines(network: RoadNetwork) -> list[shapely.LineString]:
             done.add(back[0])
             line = shapely.offset_curve(line, float(network.lane_width[lane]) / 2)
         if line.geom_type == "LineString" and not line.is_empty:
-            lines.append(line)
+            lines.append((edge, line))
     return lines
 
 
@@ -96,17 +126,29 @@ def describe(name: str, seed: int) -> list[str]:
         f"{recipe.name}: {recipe.title}",
         f"weathers: {', '.join(recipe.weathers)}",
         f"floor: {said.size[0]:.0f} x {said.size[1]:.0f} m; streets within {said.area:.2f} km2",
-        f"streets: {said.road:.2f} km ({said.road / area:.1f} km per km2), "
-        f"{said.lanes:.2f} km of lanes, {said.lamps} lamps",
+        f"streets: {said.road:.2f} km, {said.between:.2f} km without junctions "
+        f"({said.road / area:.1f} km per km2)",
+        f"lanes: {said.lanes:.2f} km; lamps: {said.lamps}",
         f"buildings: {said.buildings} ({said.buildings / area:.0f} per km2), "
         f"median height {said.height:.0f} m",
-        f"trees: {said.trees} ({said.trees / area:.0f} per km2)",
+        f"trees: {said.trees} ({said.trees / area:.0f} per km2)"
+        + (f", in {said.stands} stands" if said.stands else ""),
     ]
+    if recipe.original is not None:
+        lines.append(_of_the_original(recipe.original))
     recorded = [file.name for file in recipe.shipped_traffic()]
     lines.append(f"recorded traffic: {', '.join(recorded) or 'none; recorded on first use'}")
     if recipe.home is not None:
         lines.append(f"folder: {recipe.home}")
     return lines + recipe.attribution().splitlines()
+
+
+def _of_the_original(figures: Original) -> str:
+    built = f", median height {figures.height:.0f} m" if figures.buildings else ""
+    return (
+        f"the original has {figures.road:.2f} km of streets, {figures.buildings} buildings{built}, "
+        f"{figures.trees} trees"
+    )
 
 
 def _lengths(network: RoadNetwork) -> NDArray[np.float64]:

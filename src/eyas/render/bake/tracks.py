@@ -6,13 +6,18 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
+from PIL import Image, ImageDraw
 
 from eyas.state.roads import RoadNetwork
+from eyas.state.scene import Scene
 
 __all__ = ["TEXEL", "TRACK_ASIDE", "TrackMap", "track_map"]
 
 TEXEL = 0.3
-"""Side of a texel [m]."""
+"""Side of a texel, unless there would be too many [m]."""
+
+MOST_TEXELS = 30_000_000
+"""Largest number of texels: 57 MiB."""
 
 TRACK_ASIDE = 0.78
 """Distance of a track from the middle of the lane [m]; same as the dark tracks in the asphalt."""
@@ -29,8 +34,12 @@ _OTHERS = ((0.0, 1.0), (0.26, 0.5), (-0.3, 0.4))
 _STRAIGHT, _BACK = np.radians(50.0), np.radians(150.0)
 """Angles up to which a path over a junction leads straight on, and from which it turns back."""
 
-_FAR = 8
-"""Texels over which the map is blurred for distant views: slightly more than a lane's tracks."""
+_NEAR, _FAR = 0.9, 2.4
+"""Lengths over which the map is blurred, and blurred again for distant views: slightly more than a
+lane's tracks [m]."""
+
+_ROOF = (3.0, 12.0)
+"""Least and largest height of what keeps the snow off the road below it [m]."""
 
 _MARGIN = 6.0
 """Between the lanes and the edges of the map [m]."""
@@ -54,12 +63,18 @@ class TrackMap:
         return cls(np.zeros((2, 2, 2), np.uint8), np.array([0.0, 0.0, 1.0]))
 
 
-def track_map(network: RoadNetwork) -> TrackMap:
-    """Return the tracks of all lanes, and of the paths from lane to lane over junctions."""
+def track_map(scene: Scene) -> TrackMap:
+    """Return the tracks of all lanes, and of the paths from lane to lane over junctions.
+
+    Where a roof covers the road, as in tunnels, no snow lies.
+    """
+    network = scene.network
     if len(network.lane_points) == 0:
         return TrackMap.none()
     low = network.lane_points.min(axis=0) - _MARGIN
-    size = np.ceil((network.lane_points.max(axis=0) + _MARGIN - low) / TEXEL).astype(int)
+    extent = network.lane_points.max(axis=0) + _MARGIN - low
+    texel = max(TEXEL, float(np.sqrt(extent.prod() / MOST_TEXELS)))
+    size = np.ceil(extent / texel).astype(int)
     worn = np.zeros((size[1], size[0]), np.float32)
     ways = [(line, 1.0) for line in _lanes(network)] + [(way, 0.75) for way in _crossings(network)]
     stations = [_stations(line) for line, _ in ways]
@@ -69,13 +84,32 @@ def track_map(network: RoadNetwork) -> TrackMap:
     # Paths sway a little and their wear varies; neighbouring points agree.
     sway, uneven = _waves(middle, 11.0, 1), _waves(middle, 23.0, 2)
     for aside in np.arange(-_HALF, _HALF + _STEP, _STEP):
-        texel = ((middle + aside * left - low) / TEXEL).astype(int)
-        inside = ((texel >= 0) & (texel < size)).all(axis=1)
+        cell = ((middle + aside * left - low) / texel).astype(int)
+        inside = ((cell >= 0) & (cell < size)).all(axis=1)
         much = strength * (0.86 + 0.16 * uneven) * _profile(aside + 0.1 * sway)
-        np.maximum.at(worn, (texel[inside, 1], texel[inside, 0]), much[inside].astype(np.float32))
-    near = _blurred(worn, 3)
-    both = np.stack([near, _blurred(near, _FAR)], axis=2)
-    return TrackMap(np.round(255.0 * both).astype(np.uint8), np.array([*low, 1.0 / TEXEL]))
+        np.maximum.at(worn, (cell[inside, 1], cell[inside, 0]), much[inside].astype(np.float32))
+    worn = _sheltered(scene, worn, low, texel)
+    near = _blurred(worn, max(round(_NEAR / texel), 1))
+    both = np.empty((*worn.shape, 2), np.uint8)
+    for index, map_ in enumerate((near, _blurred(near, max(round(_FAR / texel), 1)))):
+        both[..., index] = np.round(255.0 * map_)
+    return TrackMap(both, np.array([*low, 1.0 / texel]))
+
+
+def _sheltered(
+    scene: Scene, worn: NDArray[np.float32], low: Line, texel: float
+) -> NDArray[np.float32]:
+    """Return the wear with all snow gone below roofs."""
+    solids = scene.colliders
+    roofs = (solids.prism_bottom >= _ROOF[0]) & (solids.prism_bottom <= _ROOF[1])
+    if not roofs.any():
+        return worn
+    picture = Image.fromarray(worn)
+    pen = ImageDraw.Draw(picture)
+    for roof in np.flatnonzero(roofs):
+        outline = solids.prism_points[solids.prism_first[roof] : solids.prism_first[roof + 1]]
+        pen.polygon(((outline - low) / texel).ravel().tolist(), fill=1.0)
+    return np.array(picture, np.float32)
 
 
 def _profile(aside: Line) -> Line:
@@ -149,6 +183,8 @@ def _waves(points: Line, length: float, seed: int) -> Line:
 
 def _blurred(values: NDArray[np.float32], texels: int) -> NDArray[np.float32]:
     """Return means over squares of so many texels; all values beyond the edges are 0."""
+    if texels == 1:
+        return values
     for axis in (0, 1):
         before = [(0, 0), (0, 0)]
         before[axis] = (texels // 2 + 1, texels - texels // 2)

@@ -27,6 +27,8 @@ class Prototype:
     name: str
     number: int
     """Index among the scene's fixtures."""
+    trees: int = 0
+    """Number of trees in it."""
 
 
 class SceneBuilder:
@@ -50,16 +52,17 @@ class SceneBuilder:
         self._cylinders: list[tuple[tuple[float, float], float, float, float, int]] = []
         self._copies: list[tuple[Prototype, NDArray[np.float32], int]] = []
 
-    def prototype(self, name: str, make: Callable[[], Levels]) -> Prototype:
+    def prototype(self, name: str, make: Callable[[], Levels], *, trees: int = 0) -> Prototype:
         """Return the prototype with a name; only the first call for a name uses its `make`.
 
         Args:
             name: Name of the prototype, for example `bench`.
             make: Returns the levels. `build` calls it after all copies have been placed, in the
                 order of the first calls: so shapes and positions may share a random generator.
+            trees: Number of trees in it; shrubs and hedges are none.
         """
         if name not in self._prototypes:
-            self._prototypes[name] = Prototype(name, len(self._prototypes)), make
+            self._prototypes[name] = Prototype(name, len(self._prototypes), trees), make
         return self._prototypes[name][0]
 
     def add(self, kind: ObjectClass, *meshes: Mesh) -> int:
@@ -139,6 +142,7 @@ class SceneBuilder:
                 pose=np.array(poses, np.float32).reshape(-1, 3, 4),
                 object_id=np.array([owner for _, _, owner in self._copies], np.int32),
                 names=tuple(self._prototypes),
+                trees=tuple(one.trees for one, _ in self._prototypes.values()),
             ),
             colliders=self._colliders(),
             network=network,

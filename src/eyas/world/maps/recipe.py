@@ -22,6 +22,7 @@ __all__ = [
     "NETWORK_FILE",
     "TRAFFIC_FILE",
     "MapRecipe",
+    "Original",
     "respawn_file",
 ]
 
@@ -41,6 +42,18 @@ TRAFFIC_FILE = "traffic.npz"
 def respawn_file(group_size: int) -> str:
     """Return the file in a map's package with the canonical traffic of groups of a size."""
     return f"traffic-groups-of-{group_size}.npz"
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Original:
+    """Figures of the map of the DAT benchmark that a map re-creates."""
+
+    road: float
+    """Length of its roads [km]."""
+    buildings: int = 0
+    height: float = 0.0
+    """Median height of the buildings [m]; 0 if there are none."""
+    trees: int = 0
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,6 +79,8 @@ class MapRecipe:
     the scene is not cached between runs."""
     home: Path | None = None
     """Folder of a map that is no package: an imported one. It holds the same files."""
+    original: Original | None = None
+    """Figures of the map that it re-creates; None if there is none."""
 
     def __post_init__(self) -> None:
         if not re.fullmatch(r"\w+(-\w+)*", self.name):

@@ -1,6 +1,5 @@
 """Ground between buildings: paved feet of walls, paths to doors, hedges, shrubs, small trees."""
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
@@ -8,6 +7,7 @@ import shapely
 from numpy.typing import NDArray
 
 from eyas.state.scene import ObjectClass
+from eyas.world.build.apart import Apart
 from eyas.world.build.millimetres import length, unit
 from eyas.world.build.scene_builder import Prototype, SceneBuilder
 from eyas.world.plants.shrubs import PIECE
@@ -46,17 +46,24 @@ def paved_yards(
         pavement: Pavements, to which paths lead [m].
         keep_free: Roads, pavements, car parks and pools [m].
     """
-    shapes = [shapely.Polygon(corners) for corners in footprints]
+    shapes = np.array([shapely.Polygon(corners) for corners in footprints], object)
     free = shapely.get_parts(keep_free)
     shapely.prepare(free)
+    open_land = shapely.STRtree(free)
+    # Yards and paths of buildings farther apart than this cannot meet.
+    reach = shapely.buffer(shapely.envelope(shapes), 2 * _LONGEST_PATH, join_style="mitre")
+    within = shapely.STRtree(reach)
     made: list[shapely.Geometry] = []
     done: list[shapely.Geometry] = []
     for index, (corners, shape) in enumerate(zip(footprints, shapes, strict=True)):
-        others = shapes[:index] + shapes[index + 1 :]
+        near = np.sort(within.query(reach[index]))
+        others = list(shapes[near[near != index]])
         paths = sorted(_paths(corners, pavement, others), key=lambda path: float(path.area))
         yard = shapely.union_all([shapely.buffer(shape, _APRON, join_style="mitre"), *paths[:2]])
-        near = [part for part in (*free, *others, *done) if shapely.intersects(part, yard)]
-        yard = shapely.difference(yard, shapely.union_all(near))
+        kept = [free[k] for k in np.sort(open_land.query(yard))]
+        kept += others + [done[k] for k in near[near < index]]
+        taken = [part for part in kept if shapely.intersects(part, yard)]
+        yard = shapely.difference(yard, shapely.union_all(taken))
         done.append(yard)
         made.append(shapely.simplify(yard, 0.02))
     return made
@@ -156,7 +163,7 @@ def scattered(
     Returns:
         Shape (K, 2) [m].
     """
-    chosen = _Apart(apart)
+    chosen = Apart(apart)
     for part in shapely.get_parts(room):
         if part.is_empty:
             continue
@@ -166,31 +173,6 @@ def scattered(
         for x, y in points[shapely.contains_xy(part, points)].tolist():
             chosen.add(x, y)
     return np.array(chosen.points, np.float64).reshape(-1, 2)
-
-
-class _Apart:
-    """Points that keep a distance; a new one is compared only with those in the squares around it.
-
-    Args:
-        apart: Least distance between two points [m].
-    """
-
-    def __init__(self, apart: float) -> None:
-        self.points: list[tuple[float, float]] = []
-        self._apart = apart
-        self._side = 1.001 * apart  # slightly larger, so that rounding hides no neighbour
-        self._squares: dict[tuple[int, int], list[tuple[float, float]]] = {}
-
-    def add(self, x: float, y: float) -> None:
-        """Add a point if no other is near."""
-        column, row = int(x // self._side), int(y // self._side)
-        for i in (column - 1, column, column + 1):
-            for j in (row - 1, row, row + 1):
-                for east, north in self._squares.get((i, j), ()):
-                    if math.sqrt((east - x) ** 2 + (north - y) ** 2) <= self._apart:
-                        return
-        self.points.append((x, y))
-        self._squares.setdefault((column, row), []).append((x, y))
 
 
 def clustered(

@@ -33,6 +33,9 @@ __all__ = [
 GRID = 32.0
 """Side of the squares into which large surfaces are cut, so that unseen ones are skipped [m]."""
 
+_FEW, _AT_ONCE = 400, 8.0
+"""Shapes with more corners than this are first cut into squares larger by this factor."""
+
 _AT_CORNER = 5.0
 """From the centre of the asphalt that a round corner adds, to buildings [m]."""
 
@@ -62,21 +65,23 @@ class Street:
 
 def streets(network: RoadNetwork) -> list[Street]:
     """Return all directions of all roads, in the order of `network.edges`."""
+    count = len(network.lane_width)
+    lines = shapely.linestrings(
+        network.lane_points, indices=np.repeat(np.arange(count), np.diff(network.lane_first))
+    )
+    half = network.lane_width / 2
+    left, right = _beside(lines, half), _beside(lines, -half)
     made = []
     for edge in range(len(network.edges)):
         lanes = np.flatnonzero(network.lane_edge == edge)
         lanes = lanes[np.argsort(network.lane_index[lanes])]
-        centre = [_lane(network, int(lane)) for lane in lanes]
-        half = network.lane_width[lanes] / 2
         made.append(
             Street(
                 start=network.edge_start[edge],
                 end=network.edge_end[edge],
-                left=_beside(centre[-1], half[-1]),
-                dividers=tuple(
-                    _beside(line, width) for line, width in zip(centre[:-1], half[:-1], strict=True)
-                ),
-                right=_beside(centre[0], -half[0]),
+                left=left[lanes[-1]],
+                dividers=tuple(left[lane] for lane in lanes[:-1]),
+                right=right[lanes[0]],
             )
         )
     return made
@@ -154,6 +159,13 @@ def split_on_grid(shape: shapely.Geometry, cell: float = GRID) -> list[shapely.P
         shape: Polygons [m].
         cell: Distance between the lines [m].
     """
+    if shapely.get_num_coordinates(shape) < _FEW:
+        return _split(shape, cell)
+    # First into large squares: cutting small ones out of everything at once takes far longer.
+    return [piece for large in _split(shape, _AT_ONCE * cell) for piece in _split(large, cell)]
+
+
+def _split(shape: shapely.Geometry, cell: float) -> list[shapely.Polygon]:
     if shape.is_empty:
         return []
     shapely.prepare(shape)
@@ -226,7 +238,8 @@ def _lane(network: RoadNetwork, lane: int) -> Line:
     return network.lane_points[network.lane_first[lane] : network.lane_first[lane + 1]]
 
 
-def _beside(line: Line, distance: float) -> Line:
-    """Return a line that runs beside another, on its left for a positive distance [m]."""
-    moved = shapely.offset_curve(shapely.LineString(line), distance, join_style="mitre")
-    return np.asarray(shapely.get_coordinates(moved), np.float64)
+def _beside(lines: NDArray[np.object_], distance: Line) -> list[Line]:
+    """Return a line that runs beside each of some, on its left for a positive distance [m]."""
+    moved = shapely.offset_curve(lines, distance, join_style="mitre")
+    points, owner = shapely.get_coordinates(moved, return_index=True)
+    return np.split(points, np.searchsorted(owner, np.arange(1, len(lines))))

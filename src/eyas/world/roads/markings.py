@@ -99,20 +99,44 @@ def _along(
 
 
 def _chains(all_streets: list[Street], meeting: dict[str, int]) -> list[list[Street]]:
-    """Return streets that are joined by bends, from junction to junction."""
-    leaving: dict[str, list[Street]] = {}
-    for street in all_streets:
-        leaving.setdefault(street.start, []).append(street)
-    chains = []
-    for street in all_streets:
-        if meeting[street.start] == 2:
-            continue
-        chain = [street]
-        while meeting[chain[-1].end] == 2:
-            last = chain[-1]
-            chain += [s for s in leaving[last.end] if s.end != last.start]
-        chains.append(chain)
+    """Return streets that are joined by bends, from junction to junction, or all around a ring."""
+    next_ = _joined_by_bends(all_streets, meeting)
+    follow = set(next_.values())
+    starts = [k for k in range(len(all_streets)) if k not in follow]
+    chains, done = [], set()
+    # What is left when all others are done are rings without a junction.
+    for start in [*starts, *range(len(all_streets))]:
+        chain = []
+        here: int | None = start
+        while here is not None and here not in done:
+            done.add(here)
+            chain.append(all_streets[here])
+            here = next_.get(here)
+        if chain:
+            chains.append(chain)
     return chains
+
+
+def _joined_by_bends(all_streets: list[Street], meeting: dict[str, int]) -> dict[int, int]:
+    """Return which street goes on with the lines of another, by index.
+
+    Lines end where lanes begin or end, and where traffic of one direction meets that of two.
+    """
+    both = {(street.end, street.start) for street in all_streets}
+    leaving: dict[str, list[int]] = {}
+    for index, street in enumerate(all_streets):
+        leaving.setdefault(street.start, []).append(index)
+
+    def kind(street: Street) -> tuple[int, bool]:
+        return len(street.dividers), (street.start, street.end) in both
+
+    found = {}
+    for index, street in enumerate(all_streets):
+        if meeting[street.end] == 2:
+            on = [k for k in leaving.get(street.end, ()) if all_streets[k].end != street.start]
+            if len(on) == 1 and kind(all_streets[on[0]]) == kind(street):
+                found[index] = on[0]
+    return found
 
 
 def _comes_first(line: Line) -> bool:

@@ -1,6 +1,6 @@
 """Paint on roads as triangles, slightly above the asphalt."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -111,7 +111,10 @@ def _together(some: Sequence[Stripe], margin: float, z: float, kind: Material) -
     """Return lines of one colour; u and v are in half widths, see `Surface.MARKING`."""
     if not some:
         return Mesh.none()
-    corners, uvs = zip(*[_strip(line, margin) for line in some], strict=True)
+    short = [k for k, line in enumerate(some) if _is_short(line.middle)]  # most are dashes
+    made = dict(zip(short, _short_strips([some[k] for k in short], margin), strict=True))
+    made |= {k: _strip(line, margin) for k, line in enumerate(some) if k not in made}
+    corners, uvs = zip(*(made[k] for k in range(len(some))), strict=True)
     flat = np.concatenate(corners)
     level = np.full((*flat.shape[:2], 1), z)
     return quads(np.concatenate([flat, level], axis=2), np.concatenate(uvs), kind)
@@ -130,10 +133,30 @@ def _strip(stripe: Stripe, margin: float) -> tuple[Line, Line]:
     return _cells(middle - across, middle + across), _cells(right, left)
 
 
+def _is_short(line: Line) -> bool:
+    """Return whether a line is one straight piece within the side of a square."""
+    return len(line) == 2 and length(line[1] - line[0]) <= GRID
+
+
+def _short_strips(some: Sequence[Stripe], margin: float) -> Iterator[tuple[Line, Line]]:
+    """Yield for short lines what `_strip` returns, computed for all at once."""
+    ends = np.array([line.middle for line in some], np.float64).reshape(-1, 2, 2)
+    half = np.array([line.width for line in some])[:, None, None] / 2
+    along = ends[:, 1:] - ends[:, :1]
+    size = np.linalg.norm(along, axis=2, keepdims=True)
+    along = along / size
+    reach = 1.0 + margin / half
+    across = reach * half * np.concatenate([-along[..., 1:], along[..., :1]], axis=2)
+    right, left = ends - across, ends + across
+    corners = np.stack([right[:, 0], right[:, 1], left[:, 1], left[:, 0]], axis=1)
+    u = np.concatenate([32.0 - reach, 32.0 - reach, 32.0 + reach, 32.0 + reach], axis=1)
+    gone, start = size / half, np.zeros_like(size)
+    uvs = np.concatenate([u, np.concatenate([start, gone, gone, start], axis=1)], axis=2)
+    yield from zip(corners[:, None], uvs[:, None], strict=True)
+
+
 def _pieces(line: Line) -> Line:
     """Return a line without needless points, in pieces no longer than the side of a square."""
-    if len(line) == 2 and length(line[1] - line[0]) <= GRID:
-        return line  # like most dashes
     path = shapely.simplify(shapely.LineString(line), 1e-3)
     return np.asarray(shapely.get_coordinates(shapely.segmentize(path, GRID)), np.float64)
 

@@ -11,6 +11,7 @@ from eyas.mesh.solids import box, tube
 from eyas.state.mesh import Material, Mesh, Surface
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import Lamps, ObjectClass
+from eyas.world.build.apart import Apart
 from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.materials import material
 from eyas.world.build.scene_builder import SceneBuilder
@@ -113,10 +114,14 @@ def _places(
     order = rng.permutation(np.flatnonzero(free))
     chosen: list[int] = []
     for least in _APART:
-        for index in order:
-            apart = np.linalg.norm(feet[chosen] - feet[index], axis=1)
-            if len(chosen) < count and apart.min(initial=np.inf) >= least:
-                chosen.append(int(index))
+        near = Apart(least)
+        for index in chosen:
+            near.add(*feet[index].tolist())
+        for index in order.tolist():
+            if len(chosen) >= count:
+                break
+            if near.add(*feet[index].tolist()):
+                chosen.append(index)
     return [(feet[index], float(turns[index])) for index in sorted(chosen)]
 
 

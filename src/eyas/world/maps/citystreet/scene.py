@@ -53,7 +53,7 @@ def build_scene(network: RoadNetwork, seed: int) -> Scene:
     yards = gardens.paved_yards(plan.footprints, plan.pavement, _no_lawn(plan))
     trunks, beds = stream(seed, "citystreet trees", 1), stream(seed, "citystreet gardens")
     kinds = [
-        builder.prototype(f"street tree {k}", partial(trees.street_tree_levels, trunks, k))
+        builder.prototype(f"street tree {k}", partial(trees.street_tree_levels, trunks, k), trees=1)
         for k in range(trees.VARIANTS)
     ]
     # The largest occluders come first: they are drawn first, so less is drawn twice.

@@ -1,16 +1,17 @@
 """The desert: dunes close to the road, and sand drifts that hide its surface."""
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from eyas.world.maps.desert.air import DESERT_DAY, DESERT_FOG, DESERT_NIGHT, DESERT_WINTER
-from eyas.world.maps.recipe import MapRecipe
+from eyas.world.maps.recipe import MapRecipe, Original
 from eyas.world.weather import DAY, FOGGY, NIGHT, SNOW, Season
 
 if TYPE_CHECKING:
     from eyas.state.roads import RoadGraph, RoadNetwork
     from eyas.state.scene import Scene
 
-__all__ = ["DESERT"]
+__all__ = ["DESERT", "DESERT_BARE"]
 
 
 def _roads(seed: int) -> "RoadGraph":
@@ -25,6 +26,15 @@ def _scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
     return build_scene(network, seed, season)
 
 
+def _bare_scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
+    from eyas.world.maps.bare import build_bare_scene
+    from eyas.world.maps.desert.looks import SAND
+    from eyas.world.maps.desert.plan import FLOOR
+    from eyas.world.maps.desert.scene import DUNES
+
+    return build_bare_scene("desert-bare", network, seed, FLOOR, SAND, DUNES)
+
+
 DESERT = MapRecipe(
     name="desert",
     title="Dunes, and roads under sand",
@@ -33,4 +43,16 @@ DESERT = MapRecipe(
     lighting={DAY: DESERT_DAY, FOGGY: DESERT_FOG, NIGHT: DESERT_NIGHT, SNOW: DESERT_WINTER},
     seasons=True,
     package=__name__,
+    original=Original(road=3.37, buildings=7, height=12.0),
 )
+
+DESERT_BARE = replace(
+    DESERT,
+    name="desert-bare",
+    title="The roads of the desert on bare sand, without scenery",
+    scene=_bare_scene,
+    lighting={DAY: DESERT_DAY},
+    seasons=False,
+    original=Original(road=3.35),
+)
+"""The layout `desertS` of the original."""

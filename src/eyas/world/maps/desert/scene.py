@@ -32,8 +32,10 @@ from eyas.world.street.lamps import add_lamps
 from eyas.world.street.signals import add_signals, signal_places
 from eyas.world.weather import Season
 
-__all__ = ["DRIFT_HEIGHT", "build_scene"]
+__all__ = ["DRIFT_HEIGHT", "DUNES", "build_scene"]
 
+DUNES = Horizon(name="desert", height=0.03, ridges=0.1, woods=0.0)
+"""What stands beyond the map."""
 _LAMPS = 38
 _CORE = 345.0
 _SPACING = (6.0, 13.0)
@@ -73,8 +75,7 @@ def build_scene(network: RoadNetwork, seed: int, season: Season) -> Scene:
     poles = shapely.buffer(shapely.points([place for place, _ in signal_places(network)]), 2.0)
     taken = shapely.union_all([plan.roads, plan.walls, *poles])
     lights = add_lamps(builder, network, _LAMPS, taken, stream(seed, "desert lamps"))
-    horizon = Horizon(name="desert", height=0.03, ridges=0.1, woods=0.0)
-    return builder.build(network, lights, horizon)
+    return builder.build(network, lights, DUNES)
 
 
 def _relief(plan: Plan, rng: np.random.Generator) -> Relief:

@@ -104,10 +104,13 @@ def _add_trees(builder: SceneBuilder, plan: Plan, seed: int) -> None:
     """Plant the trees along two streets and in the park."""
     shapes, rng = stream(seed, "downtown tree shapes"), stream(seed, "downtown trees")
     great = [
-        builder.prototype(f"great tree {k}", partial(trees.street_tree_levels, shapes, k))
+        builder.prototype(f"great tree {k}", partial(trees.street_tree_levels, shapes, k), trees=1)
         for k in range(3)
     ]
-    slim = [builder.prototype(f"slim tree {k}", partial(_slim_tree, shapes, k)) for k in range(2)]
+    slim = [
+        builder.prototype(f"slim tree {k}", partial(_slim_tree, shapes, k), trees=1)
+        for k in range(2)
+    ]
     for trunks, kinds, heights, ground in (
         (plan.kerbs.great_trees, great, _GREAT_HEIGHTS, KERB_HEIGHT),
         (plan.kerbs.slim_trees, slim, _SLIM_HEIGHTS, KERB_HEIGHT),

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from eyas.world.maps.recipe import MapRecipe
+from eyas.world.maps.recipe import MapRecipe, Original
 from eyas.world.weather import (
     CLEAR_DAY,
     CLEAR_NIGHT,
@@ -41,9 +41,10 @@ def _scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
 
 
 def _bare_scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
-    from eyas.world.maps.farmland.scene import build_bare_scene
+    from eyas.world.maps.bare import build_bare_scene
+    from eyas.world.maps.farmland.scene import FLOOR, MOUNTAINS, SOIL
 
-    return build_bare_scene(network, seed)
+    return build_bare_scene("farmland-bare", network, seed, FLOOR, SOIL, MOUNTAINS)
 
 
 FARMLAND = MapRecipe(
@@ -65,6 +66,7 @@ FARMLAND = MapRecipe(
     },
     seasons=True,
     package=__name__,
+    original=Original(road=4.43),
 )
 
 FARMLAND_BARE = replace(
@@ -74,5 +76,6 @@ FARMLAND_BARE = replace(
     scene=_bare_scene,
     lighting={DAY: CLEAR_DAY},
     seasons=False,
+    original=Original(road=4.45),
 )
 """The layout `farmlandS` of the original."""

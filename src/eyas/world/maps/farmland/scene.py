@@ -9,13 +9,13 @@ from eyas.core.rng import stream
 from eyas.state.lighting import Horizon
 from eyas.state.mesh import Mesh
 from eyas.state.roads import RoadNetwork
-from eyas.state.scene import Lamps, ObjectClass, Scene
+from eyas.state.scene import ObjectClass, Scene
 from eyas.state.terrain import Terrain
 from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.materials import TEXTURES, material
 from eyas.world.build.scene_builder import SceneBuilder
 from eyas.world.land import ground, outskirts
-from eyas.world.land.plain import far_plain, rectangle
+from eyas.world.land.plain import rectangle
 from eyas.world.maps.farmland.fields import CROPS, VERGE, Field, field_mesh, lay_out
 from eyas.world.maps.farmland.roads import NAME, ROAD_WIDTH, road_graph
 from eyas.world.roads import markings, painting
@@ -25,14 +25,16 @@ from eyas.world.street.hay import add_bales
 from eyas.world.street.lamps import add_lamps_at
 from eyas.world.weather import Season
 
-__all__ = ["FLOOR", "build_bare_scene", "build_scene"]
+__all__ = ["FLOOR", "MOUNTAINS", "SOIL", "build_scene"]
 
 FLOOR = (982.0, 998.0)
 """Extent of the floor, as in the original [m]."""
 
-_SOIL = material("soil", (1.0, 0.90, 0.66))
+SOIL = material("soil", (1.0, 0.90, 0.66))
+"""The ground between fields."""
 _MEADOW = material("lawn", (0.9, 0.94, 0.84))
-_MOUNTAINS = Horizon("farmland", height=0.075, ridges=1.0, woods=0.25)
+MOUNTAINS = Horizon("farmland", height=0.075, ridges=1.0, woods=0.25)
+"""What stands beyond the fields."""
 _LAMPS_APART = 64.0
 """Along a road, from the first lamp of a link to the second, across the road [m]."""
 _FROM_KERB = 1.4
@@ -63,15 +65,7 @@ def build_scene(network: RoadNetwork, seed: int, season: Season) -> Scene:
     builder.add(ObjectClass.GROUND, soil, _far_fields(season, seed))
     add_bales(builder, _stubble(fields), CROPS[2].height, stream(seed, "farmland bales"))
     lamps = add_lamps_at(builder, _lamp_places(network, seed), _LEAN)
-    return builder.build(network, replace(lamps, intensity=45.0, cut_off=1.57), _MOUNTAINS)
-
-
-def build_bare_scene(network: RoadNetwork, seed: int) -> Scene:
-    """Return the roads of the farmland on bare soil."""
-    builder = SceneBuilder(NAME, seed, FLOOR, Terrain.flat(FLOOR_HEIGHT))
-    _add_roads(builder, network, seed)
-    builder.add(ObjectClass.GROUND, _soil(road_area(network)), far_plain(FLOOR, _SOIL))
-    return builder.build(network, Lamps.none(), _MOUNTAINS)
+    return builder.build(network, replace(lamps, intensity=45.0, cut_off=1.57), MOUNTAINS)
 
 
 def _nodes(seed: int) -> list[tuple[float, float]]:
@@ -90,12 +84,12 @@ def _add_roads(builder: SceneBuilder, network: RoadNetwork, seed: int) -> None:
 def _soil(covered: shapely.Geometry) -> Mesh:
     """Return the soil of the floor where nothing else covers it."""
     bare = shapely.difference(rectangle(*FLOOR), covered)
-    return surface(bare, FLOOR_HEIGHT, _SOIL, TEXTURES["soil"])
+    return surface(bare, FLOOR_HEIGHT, SOIL, TEXTURES["soil"])
 
 
 def _far_fields(season: Season, seed: int) -> Mesh:
     """Return larger fields of the same crops, up to the mountains."""
-    crops = [(_SOIL, 0.24), (_MEADOW, 0.2)]
+    crops = [(SOIL, 0.24), (_MEADOW, 0.2)]
     crops += [(crop.look(season), 0.56 * crop.share) for crop in CROPS]
     rng = stream(seed, "farmland far fields")
     return outskirts.fields(FLOOR, FLOOR_HEIGHT, rng, crops)

@@ -95,8 +95,9 @@ def add_parked(
         rng: Random numbers of the cars.
     """
     lines: list[shapely.Polygon] = []
+    walls = shapely.buffer(plan.built, 0.8, quad_segs=3)
     for area in polygons_of(plan.ground["parking"]):
-        bays, paint = bays_in(shapely.difference(area, shapely.buffer(plan.built, 0.8)))
+        bays, paint = bays_in(shapely.difference(area, walls))
         lines += paint
         for x, y, turn in bays:
             if rng.random() < _OCCUPIED:

@@ -8,6 +8,7 @@ import shapely
 
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import Lamps, ObjectClass
+from eyas.world.build.apart import Apart
 from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.scene_builder import SceneBuilder
 from eyas.world.roads.areas import streets
@@ -37,8 +38,7 @@ def usual_lamps(
         rng: Random numbers of the lamps.
     """
     shapely.prepare(taken)
-    kept: list[tuple[float, float]] = []
-    near: dict[tuple[int, int], list[tuple[float, float]]] = {}
+    kept = Apart(_APART)
     for street in streets(network):
         kerb = shapely.LineString(street.right)
         beside = shapely.offset_curve(kerb, -BEYOND_KERB)
@@ -48,14 +48,8 @@ def usual_lamps(
             continue
         points = shapely.line_interpolate_point(beside, along)
         for point in points[~shapely.intersects(taken, shapely.buffer(points, 0.6))]:
-            x, y = round(point.x, 3), round(point.y, 3)
-            column, row = int(x // _APART), int(y // _APART)
-            around = [(column + i, row + j) for i in (-1, 0, 1) for j in (-1, 0, 1)]
-            others = [other for cell in around for other in near.get(cell, ())]
-            if all((x - a) ** 2 + (y - b) ** 2 >= _APART**2 for a, b in others):
-                kept.append((x, y))
-                near.setdefault((column, row), []).append((x, y))
-    return kept
+            kept.add(round(point.x, 3), round(point.y, 3))
+    return kept.points
 
 
 def add_lamps_at(

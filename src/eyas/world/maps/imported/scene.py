@@ -51,7 +51,7 @@ def build_scene(
     builder = SceneBuilder(name, seed, size, Terrain.flat(FLOOR_HEIGHT))
     trunks, beds = stream(seed, "imported trees"), stream(seed, "imported gardens")
     kinds = [
-        builder.prototype(f"street tree {k}", partial(trees.street_tree_levels, trunks, k))
+        builder.prototype(f"street tree {k}", partial(trees.street_tree_levels, trunks, k), trees=1)
         for k in range(trees.VARIANTS)
     ]
     # The largest occluders come first: they are drawn first, so less is drawn twice.

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from eyas.world.maps.recipe import MapRecipe
+from eyas.world.maps.recipe import MapRecipe, Original
 from eyas.world.weather import (
     CLEAR_DAY,
     CLEAR_NIGHT,
@@ -48,4 +48,5 @@ LAKE = MapRecipe(
     },
     seasons=True,
     package=__name__,
+    original=Original(road=19.67, buildings=56, height=9.0, trees=13_520),
 )

@@ -22,7 +22,7 @@ from eyas.world.land import ground
 from eyas.world.land.plain import far_plain, plain
 from eyas.world.maps.lake.plan import EXTENT, FLOOR, MIXED, Plan, Strip, make_plan
 from eyas.world.maps.lake.roads import NAME
-from eyas.world.plants.forest import SPECIES, STAND, stand_levels
+from eyas.world.plants.forest import SPECIES, STAND, TREES, stand_levels
 from eyas.world.roads import markings, painting
 from eyas.world.roads.areas import skirt, surface
 from eyas.world.roads.wear import road_wear
@@ -144,7 +144,7 @@ def _add_strip(
     kinds = SPECIES if strip.kind == MIXED else (SPECIES[strip.kind],)
     name = "mixed" if strip.kind == MIXED else SPECIES[strip.kind].name
     make = partial(stand_levels, kinds, rng, frosted=season is Season.WINTER)
-    stands = [builder.prototype(f"{name} {k}", make) for k in range(_STANDS)]
+    stands = [builder.prototype(f"{name} {k}", make, trees=TREES) for k in range(_STANDS)]
     west, south, east, north = strip.area.bounds
     for x in np.arange(west + STAND / 2, east, STAND):
         for y in np.arange(south + STAND / 2, north, STAND):

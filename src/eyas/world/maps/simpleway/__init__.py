@@ -9,7 +9,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from eyas.state.lighting import Lighting
-from eyas.world.maps.recipe import MapRecipe
+from eyas.world.maps.desert.air import DESERT_DAY, DESERT_FOG, DESERT_NIGHT, DESERT_WINTER
+from eyas.world.maps.recipe import MapRecipe, Original
 from eyas.world.weather import (
     CLEAR_DAY,
     CLEAR_NIGHT,
@@ -30,25 +31,11 @@ if TYPE_CHECKING:
 __all__ = ["CITY", "CLINKER", "DESERT", "FARM", "GRASS", "LAKE", "VILLAGE"]
 
 _FOG = replace(FOG, fog_density=1.0 / 400.0)
-# The winter scene is white itself and, as in the original, roads stay black: a map of the tracks
-# in the snow of 48 km of roads would take a gigabyte.
+# The winter scene is white itself and, as in the original, roads stay black.
 _WINTER = replace(WINTER_DAY, snow=0.0)
 _ALL = {DAY: CLEAR_DAY, FOGGY: _FOG, NIGHT: CLEAR_NIGHT, SNOW: _WINTER}
 
-_DUSTY = replace(
-    CLEAR_DAY,
-    zenith_colour=(0.34, 0.36, 0.36),
-    horizon_colour=(0.86, 0.76, 0.56),
-    fog_colour=(0.78, 0.68, 0.50),
-    clouds=0.0,
-)
-_DESERT = {
-    DAY: _DUSTY,
-    FOGGY: replace(_FOG, fog_colour=(0.66, 0.60, 0.48), horizon_colour=(0.86, 0.80, 0.68)),
-    NIGHT: replace(CLEAR_NIGHT, horizon_colour=(0.07, 0.03, 0.015), clouds=0.0),
-    # As in the original, some squares are white (their scene says so), and the sand stays bare.
-    SNOW: replace(_DUSTY, flakes=0.5),
-}
+_DESERT = {DAY: DESERT_DAY, FOGGY: DESERT_FOG, NIGHT: DESERT_NIGHT, SNOW: DESERT_WINTER}
 
 _PURPLE_NIGHT = replace(
     CLEAR_NIGHT, zenith_colour=(0.018, 0.015, 0.028), horizon_colour=(0.042, 0.036, 0.057)
@@ -79,6 +66,7 @@ def _skinned(
         lighting=lighting,
         seasons=seasons,
         package=__name__,
+        original=Original(road=48.1),
     )
 
 

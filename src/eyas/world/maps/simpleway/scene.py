@@ -49,7 +49,7 @@ def build_scene(skin_name: str, network: RoadNetwork, seed: int, season: Season)
     """
     skin, roads = SKINS[skin_name], paved(network)
     if season is Season.WINTER and not skin.bars:  # sand stays bare
-        skin = replace(skin, ground=material("snow"))
+        skin = replace(skin, ground=skin.winter)
     builder = SceneBuilder(NAME, seed, FLOOR, Terrain.flat(FLOOR_HEIGHT))
     _add_roads(builder, network, roads, seed)
     if skin.bars:

@@ -48,6 +48,8 @@ class Skin:
         default=lambda lines, season, rng: []
     )
     """Returns what else lies between the roads, given their ends."""
+    winter: Material = field(default_factory=lambda: material("snow"))
+    """Ground in winter; sand under bars stays bare."""
     bars: bool = False
     """Whether bars of sand lie across the roads."""
     horizon: Horizon = field(default_factory=Horizon)
@@ -125,11 +127,17 @@ def _white_squares(lines: Points, season: Season, rng: np.random.Generator) -> l
 
 
 _LAWN = material("lawn")
+_GREY_SNOW = material("snow", (0.90, 0.90, 0.89))
+"""As in the original, snow is less white in the village and on fields."""
 _SOIL = material("soil", (1.0, 0.92, 0.78))
 
 SKINS: dict[str, Skin] = {
     "grass": Skin(_LAWN, ((0.97, 0.93, 0.80), (0.84, 0.91, 0.83))),
-    "village": Skin(material("lawn", (0.62, 0.84, 0.90)), horizon=Horizon("green", 0.07, 0.6, 1.0)),
+    "village": Skin(
+        material("lawn", (0.62, 0.84, 0.90)),
+        horizon=Horizon("green", 0.07, 0.6, 1.0),
+        winter=_GREY_SNOW,
+    ),
     "clinker": Skin(material("concrete", (0.86, 0.87, 0.88)), horizon=Horizon("plain", 0.0)),
     "desert": Skin(
         material("sand", (1.0, 0.93, 0.62)),
@@ -138,7 +146,7 @@ SKINS: dict[str, Skin] = {
         bars=True,
         horizon=Horizon("dunes", 0.03, 0.1, 0.0),
     ),
-    "farm": Skin(_SOIL, patches=_farm_strips),
+    "farm": Skin(_SOIL, patches=_farm_strips, winter=_GREY_SNOW),
     "lake": Skin(_SOIL, patches=_lake_strips),
     "city": Skin(_LAWN, horizon=Horizon("plain", 0.0)),
 }

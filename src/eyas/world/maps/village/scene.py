@@ -13,7 +13,7 @@ from eyas.state.mesh import Material, Mesh, Surface
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import Lamps, ObjectClass, Scene
 from eyas.world.build.heights import FLOOR_HEIGHT
-from eyas.world.build.materials import TEXTURES, material
+from eyas.world.build.materials import TEXTURES, material, without_snow
 from eyas.world.build.scene_builder import SceneBuilder
 from eyas.world.buildings.cottages import add_cottages
 from eyas.world.land import ground
@@ -35,8 +35,10 @@ from eyas.world.street.gantries import add_gantries
 from eyas.world.street.lamps import add_lamps
 from eyas.world.street.signals import add_signals, signal_places
 
-__all__ = ["build_scene"]
+__all__ = ["VALLEY", "build_scene"]
 
+VALLEY = Horizon(name="village", height=0.05, woods=0.6)
+"""What stands beyond the hills."""
 _LAMPS = 47
 _CORE = 345.0
 """Half the side of the square with the smaller facets [m]."""
@@ -75,7 +77,7 @@ def build_scene(network: RoadNetwork, seed: int) -> Scene:
     both = Lamps(
         np.concatenate([lights.position, more.position]), np.concatenate([lights.axis, more.axis])
     )
-    return builder.build(network, both, Horizon(name="village", height=0.05, woods=0.6))
+    return builder.build(network, both, VALLEY)
 
 
 def _relief(plan: Plan, rng: np.random.Generator) -> Relief:
@@ -146,7 +148,13 @@ def _add_ground(
     builder.add(
         ObjectClass.GROUND,
         *_meadow(lawn, stream(seed, "village meadow")),
-        surface(verge, FLOOR_HEIGHT, VERGE, TEXTURES[VERGE.texture]),
+        surface(
+            shapely.intersection(verge, passages),
+            FLOOR_HEIGHT,
+            without_snow(VERGE),
+            TEXTURES[VERGE.texture],
+        ),
+        surface(shapely.difference(verge, passages), FLOOR_HEIGHT, VERGE, TEXTURES[VERGE.texture]),
         surface(shore, FLOOR_HEIGHT, SHORE, TEXTURES[SHORE.texture]),
         skirt(shore, FLOOR_HEIGHT - 0.3, FLOOR_HEIGHT, SHORE, TEXTURES[SHORE.texture]),
         far_plain((2 * HALF, 2 * HALF), GRASS),
@@ -189,7 +197,7 @@ def _add_plants(
 ) -> None:
     """Add the rows of trees, hedges round the gardens, and bushes in the valley."""
     kinds = [
-        builder.prototype(f"cone tree {k}", partial(cone_tree_levels, rng, k))
+        builder.prototype(f"cone tree {k}", partial(cone_tree_levels, rng, k), trees=1)
         for k in range(VARIANTS)
     ]
     for place in plan.trees:

@@ -1,0 +1,35 @@
+"""What `eyas maps info` tells of the maps that ship."""
+
+import numpy as np
+import pytest
+
+from eyas.modes.maps.info import describe, figures_of
+from eyas.sim.scenes import load_scene
+from eyas.world.maps import MAPS
+
+
+def test_stands_count_as_the_trees_they_are_and_shrubs_as_none():
+    lake, village = figures_of(load_scene("lake", 0)), figures_of(load_scene("village", 0))
+    assert (lake.trees, lake.stands) == (13_520, 676)
+    assert (village.trees, village.stands) == (41, 0)  # its hedges and bushes are no trees
+    assert "trees: 13520 (" in "\n".join(describe("lake", 0))
+
+
+def test_streets_are_measured_to_the_middle_of_junctions_and_told_without_them():
+    said = figures_of(load_scene("village", 0))
+    graph = MAPS.get("village").roads(0)
+    at = {node.name: np.array([node.x, node.y]) for node in graph.nodes}
+    links = {frozenset((edge.start, edge.end)) for edge in graph.edges}
+    straight = sum(np.linalg.norm(at[a] - at[b]) for a, b in map(tuple, links)) / 1000.0
+    assert said.road == pytest.approx(straight, rel=0.01)
+    assert 0.85 * said.road < said.between < 0.95 * said.road
+    first = describe("village", 0)
+    assert f"streets: {said.road:.2f} km, {said.between:.2f} km without junctions" in first[3]
+
+
+def test_the_originals_figures_stand_beside_ours():
+    lines = describe("village", 0)
+    assert (
+        "the original has 3.59 km of streets, 24 buildings, median height 12 m, 41 trees" in lines
+    )
+    assert all(MAPS.get(name).original is not None for name in MAPS.built_in)
