@@ -60,10 +60,10 @@ def smooth(recording: Recording) -> Tracks:
         travelled=np.zeros(shape),
         present=recording.present.copy(),
     )
-    wheelbase = min(WHEELBASE * recording.vehicle_length, LONGEST_WHEELBASE)
+    wheelbase = np.minimum(WHEELBASE * recording.vehicle_length, LONGEST_WHEELBASE).tolist()
     for actor in range(shape[1]):
         for first, last in runs(recording.present[:, actor]):
-            _smooth_run(recording, tracks, actor, slice(first, last), wheelbase)
+            _smooth_run(recording, tracks, actor, slice(first, last), wheelbase[actor])
         present = recording.present[:, actor]
         tracks.position[:, actor] = held(tracks.position[:, actor], present)
         tracks.yaw[:, actor] = held(tracks.yaw[:, actor], present)
