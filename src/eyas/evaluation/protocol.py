@@ -66,6 +66,8 @@ class Protocol:
     def hash(self) -> str:
         """Twelve hexadecimal digits that differ between protocols."""
         settings = self.settings.model_dump(mode="json", include=_FIXED)
+        if not settings["extras"]:  # results are older than this setting
+            del settings["extras"]
         content = [FORMAT, settings, self.directions, self.alike]
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:12]
 

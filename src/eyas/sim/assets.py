@@ -5,16 +5,20 @@ from functools import lru_cache
 
 import numpy as np
 
+from eyas.behaviours.scripted import Clock
 from eyas.render.ahead import begin_ahead, drawing_is_ready
 from eyas.render.renderer import Renderer, build_renderer
+from eyas.sim.crowd import NOBODY, Crowd, crowd_motions, vehicles_of
 from eyas.sim.scenes import load_geometry, load_scene
 from eyas.state.lighting import Lighting
+from eyas.state.motion import Motion, joined
 from eyas.state.scene import Scene
 from eyas.targets.catalogue import kind_index
 from eyas.targets.quadrotor import QUADROTOR
+from eyas.targets.config import TargetName
 from eyas.targets.rig import Rigs
 from eyas.traffic.config import Demand, TrafficConfig
-from eyas.traffic.library import find_recording
+from eyas.traffic.library import CANONICAL_SEED, STANDARD_DURATION, find_recording
 from eyas.traffic.recorded import kept_motion
 from eyas.traffic.replay import Replay
 from eyas.traffic.source import TrafficSource
@@ -22,6 +26,9 @@ from eyas.world.config import WorldConfig
 from eyas.world.maps import MAPS
 
 __all__ = ["Assets", "load_assets"]
+
+_RATE = 10.0
+"""Samples per second of worlds without vehicles, as of a recording [Hz]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,7 +44,9 @@ class Assets:
     """Part of the renderer's library that a tracker looks like to others; -1: it has none."""
 
 
-def load_assets(world: WorldConfig, traffic: TrafficConfig, trackers: int = 1) -> Assets:
+def load_assets(
+    world: WorldConfig, traffic: TrafficConfig, trackers: int = 1, crowd: Crowd = NOBODY
+) -> Assets:
     """Return the data of a simulation; simulations that need the same part share it.
 
     Weathers of one season share scene and geometry; different traffic shares the scene; all
@@ -48,6 +57,7 @@ def load_assets(world: WorldConfig, traffic: TrafficConfig, trackers: int = 1) -
         traffic: The traffic.
         trackers: Number of trackers in a world; at least three times as many vehicles enter
             together in a group, and several see each other.
+        crowd: Who is there besides, or instead of, the vehicles.
 
     Raises:
         EyasError: The map or weather does not exist, or has no traffic.
@@ -55,7 +65,7 @@ def load_assets(world: WorldConfig, traffic: TrafficConfig, trackers: int = 1) -
     recipe = MAPS.get(world.map)
     lighting, season = recipe.light(world.weather), recipe.season(world.weather)
     grouped = traffic.demand is Demand.RESPAWN
-    source = _traffic(world.map, world.seed, traffic, trackers if grouped else 1)
+    source = _traffic(world.map, world.seed, traffic, trackers if grouped else 1, crowd)
     kinds, rigs = np.unique(source.motion.kind).tolist(), Rigs(source.motion.kind)
     body_part = -1
     if trackers > 1:
@@ -67,16 +77,38 @@ def load_assets(world: WorldConfig, traffic: TrafficConfig, trackers: int = 1) -
 
 
 @lru_cache(maxsize=4)
-def _traffic(map_name: str, seed: int, config: TrafficConfig, trackers: int) -> TrafficSource:
+def _traffic(
+    map_name: str, seed: int, config: TrafficConfig, trackers: int, crowd: Crowd
+) -> TrafficSource:
+    vehicles = _vehicles(map_name, seed, config, trackers, crowd)
+    clock = Clock(round(STANDARD_DURATION * _RATE) + 1, _RATE)
+    if vehicles is not None:
+        clock = Clock(len(vehicles.table), vehicles.rate)
+    # A scene depends on the season, but its ground does not.
+    scene = load_scene(map_name, seed)
+    own_seed = CANONICAL_SEED if config.seed is None else config.seed
+    others = crowd_motions(crowd, scene, clock, own_seed)
+    every = others if vehicles is None else [vehicles, *others]
+    followed = vehicles if crowd.target is TargetName.SUMO_VEHICLE else others[0]
+    targets = np.concatenate([np.full(len(motion.kind), motion is followed) for motion in every])
+    return Replay(joined(every), targets)
+
+
+def _vehicles(
+    map_name: str, seed: int, config: TrafficConfig, trackers: int, crowd: Crowd
+) -> Motion | None:
+    """Return the motion of SUMO's vehicles; None if none are wanted."""
+    if vehicles_of(crowd, config.max_vehicles) == 0:
+        return None
     recipe = MAPS.get(map_name)
     recording = find_recording(
         recipe.roads(seed), config, trackers=trackers, shipped=recipe.shipped_traffic()
     )
     kind = np.array([kind_index(name) for name in recording.vehicle_types], np.int32)
     begin_ahead(f"from eyas.sim.scenes import paint; paint({np.unique(kind).tolist()})")
-    # A scene depends on the season, but its ground does not.
-    scene = load_scene(map_name, seed)
-    return Replay(kept_motion(recording, scene.terrain, kind))
+    motion = kept_motion(recording, load_scene(map_name, seed).terrain, kind)
+    count = vehicles_of(crowd, recording.actors)
+    return motion._replace(table=motion.table[:, :count], kind=kind[:count])
 
 
 @lru_cache(maxsize=8)

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from eyas.sim.assets import load_assets
 from eyas.sim.config import SimConfig
+from eyas.sim.crowd import crowd_of
 from eyas.sim.simulation import Simulation
 from eyas.sim.supported import require_parts
 from eyas.sim.worlds import largest_world
@@ -37,7 +38,8 @@ def build_simulation(
         EyasError: A setting is not supported, or no traffic matches the settings.
     """
     require_parts(config)
-    assets = load_assets(config.world, config.traffic, largest_world(world_of))
+    crowd = crowd_of(config)
+    assets = load_assets(config.world, config.traffic, largest_world(world_of), crowd)
     if config.light.visibility is not None and not assets.lighting.foggy:
         _LOG.warning(
             "light.visibility (Env_Params.foggy_use_default): without effect in the weather '%s', "

@@ -2,8 +2,9 @@
 
 from typing import Annotated
 
-from pydantic import Field
+from pydantic import Field, model_validator
 
+from eyas.behaviours.config import ExtraConfig
 from eyas.core.config import Config
 from eyas.sensors.config import CameraConfig
 from eyas.targets.config import ObjectsConfig, TargetName
@@ -43,3 +44,13 @@ class SimConfig(Config):
     done: DoneConfig = DoneConfig()
     light: LightConfig = LightConfig()
     objects: ObjectsConfig = ObjectsConfig()
+    extras: tuple[ExtraConfig, ...] = ()
+    """Groups that share the world with the targets as distractors."""
+
+    @model_validator(mode="after")
+    def _vehicles_once(self) -> "SimConfig":
+        if self.target is TargetName.SUMO_VEHICLE and any(
+            extra.kind is TargetName.SUMO_VEHICLE for extra in self.extras
+        ):
+            raise ValueError("extras must not hold SUMO_VEHICLE, whose number is traffic.max_vehicles")
+        return self

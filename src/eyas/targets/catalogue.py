@@ -3,6 +3,7 @@
 A new kind is a file with its shapes and its rig, and one call of `register`.
 """
 
+from eyas.targets.jointed.kinds import JOINTED_KINDS
 from eyas.targets.kind import Kind, Model
 from eyas.targets.quadrotor import QUADROTOR
 from eyas.targets.vehicles.kinds import VEHICLE_KINDS
@@ -54,5 +55,5 @@ def models_of(kind: int) -> range:
     return range(first, first + len(KINDS[kind].models))
 
 
-for _kind in (*VEHICLE_KINDS, QUADROTOR):
+for _kind in (*VEHICLE_KINDS, QUADROTOR, *JOINTED_KINDS):
     register(_kind)

@@ -24,15 +24,17 @@ class Replay:
 
     Args:
         motion: Motion of all actors; its first time must be 0.
+        targets: Whether each actor may be a target, shape (A,); None: all.
     """
 
     live: Final = False
 
-    def __init__(self, motion: Motion) -> None:
+    def __init__(self, motion: Motion, targets: NDArray[np.bool_] | None = None) -> None:
         assert motion.first_time == 0.0, f"motion: begins at {motion.first_time} s"
         self.motion: Final = motion
         present = motion.table["present"] > 0.0
-        stays = [(actor, *stay) for actor in range(self.actors) for stay in runs(present[:, actor])]
+        followed = range(self.actors) if targets is None else np.flatnonzero(targets).tolist()
+        stays = [(actor, *stay) for actor in followed for stay in runs(present[:, actor])]
         self._who, enters, leaves = np.array(stays, np.int64).reshape(-1, 3).T
         # Times of the first and last sample of each stay in the world [s].
         self._enters, self._leaves = enters / motion.rate, (leaves - 1) / motion.rate
@@ -55,7 +57,7 @@ class Replay:
         interpolate_actors(self.motion, time, out)
 
     def available(self, start: float, end: float) -> NDArray[np.bool_]:
-        """Return whether each actor stays in the world from `start` to `end` [s], shape (A,).
+        """Return whether each actor may be a target from `start` to `end` [s], shape (A,).
 
         Raises:
             ConfigError: The motion does not last that long.

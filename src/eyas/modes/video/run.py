@@ -17,6 +17,7 @@ from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.messages import originals_named
 from eyas.sim.assets import load_assets
 from eyas.sim.build import build_simulation
+from eyas.sim.crowd import crowd_of
 from eyas.sim.simulation import Simulation
 from eyas.sim.worlds import together
 from eyas.state.snapshot import Snapshot
@@ -105,7 +106,8 @@ def recording_rules(config: EyasConfig) -> EyasConfig:
 
 def _require_traffic(config: EyasConfig) -> None:
     end = config.video.start_time + config.video.total_time
-    known = load_assets(config.world, config.traffic, config.video.channels).traffic.duration
+    channels, crowd = config.video.channels, crowd_of(config)
+    known = load_assets(config.world, config.traffic, channels, crowd).traffic.duration
     if end > known:
         raise ConfigError(
             f"video.total_time: {config.video.total_time:g} s after {config.video.start_time:g} s"

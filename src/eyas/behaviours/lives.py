@@ -1,0 +1,63 @@
+"""When objects come and go: the original's groups, without taking anything from who follows it."""
+
+import math
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.targets.config import ObjectsConfig
+
+__all__ = ["Lives", "lasting", "recycled"]
+
+_LEAST: Final = 60.0
+"""Least length of a life [s]."""
+
+_EPISODES: Final = 4.0
+"""Least length of a life, in episodes: then three of four objects last one at any time."""
+
+
+class Lives(NamedTuple):
+    """L stays in the world, shape (L,) each."""
+
+    slot: NDArray[np.int64]
+    """Number of the object that stays; one object has many lives, each at another place."""
+    enters: NDArray[np.int64]
+    """First sample."""
+    leaves: NDArray[np.int64]
+    """Last sample; the next life begins two samples later, so that no motion joins the two."""
+
+
+def lasting(count: int, samples: int) -> Lives:
+    """Return objects that stay from the first to the last sample."""
+    return Lives(np.arange(count), np.zeros(count, np.int64), np.full(count, samples - 1))
+
+
+def recycled(config: ObjectsConfig, samples: int, rate: float, episode: float) -> Lives:
+    """Return objects that come in groups and are moved elsewhere in the same order.
+
+    The original moves the oldest group whenever an interval has passed, even if someone follows it;
+    with its defaults, an object stays for 1.25 s. Here groups enter as there, but are moved so
+    rarely that each object stays for several episodes: a target is drawn from those that stay for
+    the whole of its episode.
+
+    Args:
+        config: Numbers and interval.
+        samples: Number of samples of the motion.
+        rate: Samples per second [Hz].
+        episode: Length of an episode [s].
+    """
+    groups = math.ceil(config.max_count / config.group_size)
+    stay = max(groups * config.interval, _EPISODES * episode, _LEAST)
+    made = []
+    for slot in range(config.max_count):
+        group = slot // config.group_size
+        enters = round(group * config.interval * rate)
+        first = (group + 1) / groups * stay
+        moves = np.arange(first, samples / rate, stay) * rate
+        moves = np.rint(moves[moves > enters + 2]).astype(np.int64)
+        starts = [enters, *(moves + 2).tolist()]
+        ends = [*moves.tolist(), samples - 1]
+        made += [(slot, a, b) for a, b in zip(starts, ends, strict=True) if b > a]
+    slot, enters_, leaves = np.array(made, np.int64).reshape(-1, 3).T
+    return Lives(slot, enters_, leaves)

@@ -1,0 +1,160 @@
+"""What stands in the way of those on foot: solid shapes, water, the edge of the map."""
+
+from typing import Final
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from eyas.state.scene import Fixtures, ObjectClass, Scene
+from eyas.state.terrain import reliefs
+from eyas.world.roads.areas import corridors, split_on_grid
+
+__all__ = ["Obstacles"]
+
+_STEP: Final = 0.3
+"""Height above the ground up to which one can step over things [m]."""
+
+_HEAD: Final = 2.2
+"""Height above the ground over which nothing is in the way [m]."""
+
+_EDGE: Final = 5.0
+"""Distance to the edge of the map that is kept [m]."""
+
+_SOLID: Final = (
+    ObjectClass.BUILDING,
+    ObjectClass.TREE,
+    ObjectClass.STRUCTURE,
+    ObjectClass.POLE,
+)
+
+Floats = NDArray[np.float64]
+
+
+class Obstacles:
+    """The plan shapes of all obstacles of a map.
+
+    Args:
+        scene: The map.
+        roads: Whether roads are obstacles too, as cars drive on them.
+    """
+
+    def __init__(self, scene: Scene, *, roads: bool) -> None:
+        shapes = [
+            _prisms(scene),
+            _cylinders(scene),
+            _fixtures(scene.fixtures),
+            _walls(scene),
+            _water(scene),
+            _beyond(scene),
+        ]
+        if roads and len(scene.network.lane_width):
+            shapes.append(np.array(split_on_grid(corridors(scene.network)), object))
+        every = np.concatenate([np.asarray(part, object).ravel() for part in shapes])
+        self._tree = shapely.STRtree(every[~shapely.is_empty(every)])
+
+    def near(self, shape: shapely.Geometry, distance: float) -> NDArray[np.object_]:
+        """Return the obstacles within a distance [m] of a shape."""
+        found: NDArray[np.object_] = self._tree.geometries.take(
+            self._tree.query(shape, predicate="dwithin", distance=distance)
+        )
+        return found
+
+    def blocked(self, shapes: NDArray[np.object_], radius: float) -> NDArray[np.bool_]:
+        """Return whether an obstacle is within a radius [m] of each point or line, shape (K,)."""
+        which, _ = self._tree.query(shapes, predicate="dwithin", distance=radius)
+        blocked = np.zeros(len(shapes), np.bool_)
+        blocked[which] = True
+        return blocked
+
+    def reach(self, start: Floats, direction: Floats, far: float, radius: float) -> Floats:
+        """Return how far one can go straight on [m], shape (K,).
+
+        Args:
+            start: Where from [m], shape (K, 2).
+            direction: Headings [rad], shape (K,).
+            far: The most that is returned [m].
+            radius: Distance to obstacles that is kept [m].
+        """
+        end = start + far * np.column_stack([np.cos(direction), np.sin(direction)])
+        lines = shapely.linestrings(np.stack([start, end], axis=1))
+        which, what = self._tree.query(lines, predicate="dwithin", distance=radius)
+        # A polygon around the obstacle, a little larger than the circle of eight edges in it.
+        swollen = shapely.buffer(self._tree.geometries.take(what), 1.01 * radius, quad_segs=4)
+        met = shapely.intersection(lines[which], swollen)
+        away = shapely.distance(shapely.points(start)[which], met)
+        reach = np.full(len(start), far)
+        np.minimum.at(reach, which, np.where(np.isfinite(away), away, far))
+        return reach
+
+
+def _prisms(scene: Scene) -> NDArray[np.object_]:
+    colliders = scene.colliders
+    first = colliders.prism_first
+    low = colliders.prism_points[first[:-1]] if len(first) > 1 else np.zeros((0, 2))
+    kept = _in_the_way(scene, low, colliders.prism_bottom, colliders.prism_top)
+    kept &= np.diff(first) >= 3
+    rings = [colliders.prism_points[first[i] : first[i + 1]] for i in np.flatnonzero(kept)]
+    return np.array([shapely.make_valid(shapely.Polygon(ring)) for ring in rings], object)
+
+
+def _cylinders(scene: Scene) -> NDArray[np.object_]:
+    colliders = scene.colliders
+    centre = colliders.cylinder_centre
+    kept = _in_the_way(scene, centre, colliders.cylinder_bottom, colliders.cylinder_top)
+    # Its polygon of 16 corners lies outside the circle.
+    radius = colliders.cylinder_radius[kept] / np.cos(np.pi / 16)
+    return np.asarray(shapely.buffer(shapely.points(centre[kept]), radius, quad_segs=4), object)
+
+
+def _in_the_way(scene: Scene, at: Floats, low: Floats, high: Floats) -> NDArray[np.bool_]:
+    """Return which of some heights, from low to high [m], are in the way at points."""
+    ground = reliefs(scene.terrain, at)
+    kept: NDArray[np.bool_] = (low < ground + _HEAD) & (high > ground + _STEP)
+    return kept
+
+
+def _fixtures(fixtures: Fixtures) -> NDArray[np.object_]:
+    """Return what trees, benches, lamps and parked cars cover at the height of people."""
+    shapes: list[shapely.Geometry] = []
+    for number, levels in enumerate(fixtures.levels):
+        points = levels[0].positions
+        points = points[(points[:, 2] > 0.0) & (points[:, 2] < _HEAD)]
+        if not len(points) or points[:, 2].max() < _STEP:
+            continue
+        plan = shapely.convex_hull(shapely.MultiPoint(points[:, :2]))
+        if plan.geom_type != "Polygon":
+            continue
+        ring = shapely.get_coordinates(plan)
+        pose = fixtures.pose[fixtures.prototype == number].astype(np.float64)
+        placed = np.einsum("fij,kj->fki", pose[:, :2, :2], ring) + pose[:, None, :2, 3]
+        shapes += list(shapely.polygons(placed)) if len(placed) else []
+    return np.array(shapes, object)
+
+
+def _triangles(scene: Scene, classes: tuple[ObjectClass, ...]) -> Floats:
+    """Return the static triangles of some classes, shape (T, 3, 3) [m]."""
+    chosen = np.isin(scene.object_class[scene.static_object], classes)
+    return scene.static.positions[scene.static.triangles[chosen]].astype(np.float64)
+
+
+def _walls(scene: Scene) -> NDArray[np.object_]:
+    """Return what the triangles of solid things cover at the height of people."""
+    triangles = _triangles(scene, _SOLID)
+    low, high = triangles[..., 2].min(axis=1), triangles[..., 2].max(axis=1)
+    kept = _in_the_way(scene, triangles[:, 0, :2], low, high)
+    plan = triangles[kept][..., :2]
+    # Upright triangles have no area, but a convex hull: a line.
+    corners = shapely.multipoints(plan) if len(plan) else np.zeros(0, object)
+    return np.asarray(shapely.convex_hull(corners), object)
+
+
+def _water(scene: Scene) -> NDArray[np.object_]:
+    plan = _triangles(scene, (ObjectClass.WATER,))[..., :2]
+    return np.asarray(shapely.polygons(plan) if len(plan) else np.zeros(0), object)
+
+
+def _beyond(scene: Scene) -> NDArray[np.object_]:
+    """Return the edge of the map."""
+    east, north = scene.size[0] / 2 - _EDGE, scene.size[1] / 2 - _EDGE
+    return np.asarray(shapely.box(-east, -north, east, north).exterior, object).reshape(1)

@@ -1,0 +1,107 @@
+"""Where things are put: beside the roads, on free ground."""
+
+from typing import Final, NamedTuple
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from eyas.behaviours.obstacles import Obstacles
+from eyas.core.errors import SpawnError
+from eyas.core.variation import Variation, sample
+from eyas.state.roads import RoadNetwork
+from eyas.world.roads.areas import Street, streets
+
+__all__ = ["Roadside"]
+
+_ROUNDS: Final = 60
+"""How often places are drawn for those that have none yet."""
+
+_PATIENT: Final = 10
+"""Rounds with the offset that is asked for; then it grows, by up to `_WIDER` more each round."""
+
+_WIDER: Final = 1.0
+"""[m]"""
+
+_APART: Final = 0.3
+"""Free ground around each [m]."""
+
+Floats = NDArray[np.float64]
+
+
+class _Middle(NamedTuple):
+    """Points on the middles of roads, shape (K, 2) each."""
+
+    point: Floats
+    """[m]"""
+    left: Floats
+    """Unit vectors across the road."""
+
+
+class Roadside:
+    """Draws places at an offset from the middle of a random road.
+
+    As in the original, all roads are equally likely, whatever their lengths; unlike there, the
+    offset is perpendicular to the road, and the middle follows its bends.
+
+    Args:
+        network: The roads.
+        obstacles: What stands in the way.
+    """
+
+    def __init__(self, network: RoadNetwork, obstacles: Obstacles) -> None:
+        self._lines = [_line(street) for street in streets(network)]
+        self._obstacles = obstacles
+
+    def draw(
+        self, count: int, offset: Variation, radius: float, rng: np.random.Generator, what: str
+    ) -> Floats:
+        """Return free places [m], shape (count, 2).
+
+        Where there is nothing free at the offset, places are sought ever farther from it.
+
+        Args:
+            count: How many.
+            offset: To the left of the middle of the road [m].
+            radius: Distance to obstacles [m].
+            rng: Random numbers.
+            what: Setting that asks for them, for the message.
+
+        Raises:
+            SpawnError: The map has no room.
+        """
+        places, open_ = np.zeros((count, 2)), np.arange(count)
+        for round_ in range(_ROUNDS):
+            if not len(open_) or not self._lines:
+                break
+            middle = self._middles(len(open_), rng)
+            aside = np.array([sample(offset, rng) for _ in open_])
+            aside += rng.uniform(-1.0, 1.0, len(open_)) * _WIDER * max(round_ - _PATIENT, 0)
+            drawn = middle.point + aside[:, None] * middle.left
+            free = ~self._obstacles.blocked(shapely.points(drawn), radius + _APART)
+            places[open_[free]] = drawn[free]
+            open_ = open_[~free]
+        if len(open_):
+            raise SpawnError(
+                f"{what}: {count} are asked for, but the map has room beside its roads for only "
+                f"{count - len(open_)}; allowed: fewer, or another objects.offset"
+            )
+        return places
+
+    def _middles(self, count: int, rng: np.random.Generator) -> _Middle:
+        road = rng.integers(len(self._lines), size=count)
+        lines = np.array(self._lines, object)[road]
+        length = shapely.length(lines)
+        along = rng.uniform(0.0, 1.0, count) * length
+        before, after = np.maximum(along - 0.5, 0.0), np.minimum(along + 0.5, length)
+        here, low, high = (
+            shapely.get_coordinates(shapely.line_interpolate_point(lines, way))
+            for way in (along, before, after)
+        )
+        onwards = high - low
+        onwards /= np.maximum(np.hypot(onwards[:, 0], onwards[:, 1]), 1e-9)[:, None]
+        return _Middle(here, np.column_stack([-onwards[:, 1], onwards[:, 0]]))
+
+
+def _line(street: Street) -> shapely.LineString:
+    return shapely.LineString(street.left)

@@ -1,0 +1,164 @@
+"""The motion of what moves by itself, as rows of the table of all motion.
+
+It is computed at once for the whole length of the traffic, from the map, a seed and the settings,
+so it is known at any instant without stepping.
+"""
+
+from typing import Final, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.behaviours.config import Behaviour
+from eyas.behaviours.habits import HABITS, STROLL, Habit
+from eyas.behaviours.lives import Lives
+from eyas.behaviours.obstacles import Obstacles
+from eyas.behaviours.pavements import pavement_rings
+from eyas.behaviours.places import Roadside
+from eyas.behaviours.chain import Chain
+from eyas.behaviours.routes import Task, legs, polylines, round_and_round, stops, wave_of
+from eyas.behaviours.surface import Surface
+from eyas.behaviours.timetable import ride
+from eyas.core.errors import SpawnError
+from eyas.core.variation import Variation
+from eyas.state.motion import SAMPLE
+from eyas.state.scene import Scene
+from eyas.state.terrain import reliefs
+
+__all__ = ["Clock", "Ground", "Troop", "scripted_table"]
+
+_SPAN: Final = 0.25
+"""Half the distance over which the slope of the land is taken [m]."""
+
+_ROOM: Final = 0.1
+"""Room between a body and obstacles [m]."""
+
+Floats = NDArray[np.float64]
+
+
+class Clock(NamedTuple):
+    """The instants of a motion."""
+
+    samples: int
+    rate: float
+    """[Hz]"""
+
+
+class Troop(NamedTuple):
+    """Some of one kind."""
+
+    kind: str
+    """Name of the kind, one of `HABITS`."""
+    breadth: float
+    """Diameter of the circle in which it fits [m]."""
+    behaviour: Behaviour | None
+    """None: that of the kind."""
+    lives: Lives
+    offset: Variation
+    """Where it begins: distance from the middle of the road [m]."""
+    setting: str
+    """Setting that asks for it, for messages."""
+
+
+class Ground:
+    """A map, as those see it who walk on it.
+
+    Args:
+        scene: The map.
+        roads: Whether roads are left to cars.
+    """
+
+    def __init__(self, scene: Scene, *, roads: bool) -> None:
+        self.scene = scene
+        self.obstacles = Obstacles(scene, roads=roads)
+        # Pavement walkers are beside the roads by the choice of their ways.
+        self.surface = Surface(scene)
+        self.roadside = Roadside(scene.network, self.obstacles)
+
+
+def scripted_table(
+    ground: Ground, troop: Troop, clock: Clock, rng: np.random.Generator
+) -> NDArray[np.void]:
+    """Return the samples of a troop, of dtype `SAMPLE`, shape (samples, objects).
+
+    Raises:
+        SpawnError: The map has no room for it.
+    """
+    lives, habit = troop.lives, HABITS[troop.kind]
+    seconds = (lives.leaves - lives.enters) / clock.rate
+    paths = _paths(ground, troop, habit, seconds, rng)
+    table = np.zeros((clock.samples, int(lives.slot.max()) + 1), SAMPLE)
+    for (path, own), slot, enters, leaves in zip(paths, *(a.tolist() for a in lives), strict=True):
+        motion = ride(path, own, np.arange(leaves - enters + 1) / clock.rate)
+        rows = table[enters : leaves + 1, slot]
+        rows["x"], rows["y"], rows["yaw"] = motion.poses
+        rows["velocity_x"] = motion.speed * np.cos(motion.poses.yaw)
+        rows["velocity_y"] = motion.speed * np.sin(motion.poses.yaw)
+        rows["yaw_rate"], rows["travelled"] = motion.yaw_rate, motion.travelled
+        rows["present"] = 1.0
+    _lay(ground, table, clock.rate)
+    return table
+
+
+def _paths(
+    ground: Ground, troop: Troop, habit: Habit, seconds: Floats, rng: np.random.Generator
+) -> list[tuple[Chain, Habit]]:
+    """Return the path of each life, and how it is gone."""
+    behaviour = troop.behaviour or habit.behaviour
+    radius = 0.5 * troop.breadth + _ROOM
+    if behaviour is Behaviour.PAVEMENT:
+        return _strolls(ground, troop, habit, seconds, rng)
+    aside = wave_of(habit.speed).aside if behaviour is Behaviour.WEAVE else 0.0
+    start = ground.roadside.draw(len(seconds), troop.offset, radius + aside, rng, troop.setting)
+    task = Task(start, seconds, habit, radius, ground.obstacles, rng)
+    if behaviour is Behaviour.POLYLINE:
+        chains = polylines(task)
+    elif behaviour is Behaviour.STOP:
+        chains = stops(task)
+    else:
+        chains = legs(task, behaviour)
+    return [(chain, habit) for chain in chains]
+
+
+def _strolls(
+    ground: Ground, troop: Troop, habit: Habit, seconds: Floats, rng: np.random.Generator
+) -> list[tuple[Chain, Habit]]:
+    """Return ways round blocks; all who go the same way are equally fast, so none passes others."""
+    scene, radius = ground.scene, 0.5 * troop.breadth + _ROOM
+    rings = pavement_rings(scene.network, scene.size, ground.obstacles, ground.surface, radius)
+    if not rings:
+        raise SpawnError(
+            f"{troop.setting}: behaviour 'pavement': '{scene.name}' has no pavement all round a "
+            "block; allowed: another behaviour, or another map such as citystreet"
+        )
+    speed = rng.uniform(*STROLL, len(rings))
+    length = np.array([ring.length for ring in rings])
+    chosen = rng.choice(len(rings), size=len(seconds), p=length / length.sum())
+    made = []
+    for ring, lasts in zip(chosen.tolist(), seconds.tolist(), strict=True):
+        own = habit._replace(speed=min(float(speed[ring]), habit.speed))
+        corners = rings[ring].corners
+        corners = np.roll(corners, -int(rng.integers(len(corners))), axis=0)
+        made.append((round_and_round(corners, own, lasts), own))
+    return made
+
+
+def _lay(ground: Ground, table: NDArray[np.void], rate: float) -> None:
+    """Set the heights and slopes of samples to those of the ground."""
+    here = table["present"] > 0.0
+    rows = table[here]
+    points = np.column_stack([rows["x"], rows["y"]]).astype(np.float64)
+    ahead = _SPAN * np.column_stack([np.cos(rows["yaw"]), np.sin(rows["yaw"])])
+    terrain = ground.scene.terrain
+    rise = reliefs(terrain, points + ahead) - reliefs(terrain, points - ahead)
+    table["slope"][here] = np.arctan(rise / (2.0 * _SPAN))
+    table["z"][here] = ground.surface.at(points).height
+    # Half the way between the neighbouring samples; a life's ends have one only.
+    after, before = np.minimum(np.arange(len(table)) + 1, len(table) - 1), np.arange(len(table)) - 1
+    before[0] = 0
+    after_, before_ = here[after], here[before]
+    z = table["z"].astype(np.float64)
+    change = np.where(after_, z[after], z) - np.where(before_, z[before], z)
+    steps = (after_ & (after != np.arange(len(table)))[:, None]).astype(np.int64)
+    steps += before_ & (before != np.arange(len(table)))[:, None]
+    table["velocity_z"] = np.where(here, change * rate / np.maximum(steps, 1), 0.0)

@@ -1,0 +1,146 @@
+"""Everyone in a world who is no vehicle of SUMO's: the targets that are asked for, and extras."""
+
+import zlib
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.behaviours.config import ExtraConfig
+from eyas.behaviours.lives import Lives, lasting, recycled
+from eyas.behaviours.scripted import Clock, Ground, Troop, scripted_table
+from eyas.core.cache.cached import cached
+from eyas.core.cache.folder import Kind
+from eyas.core.clock import PHYSICS_STEP
+from eyas.core.errors import ConfigError
+from eyas.core.rng import stream
+from eyas.core.variation import Mirrored, Variation
+from eyas.sim.config import SimConfig
+from eyas.state.motion import SAMPLE, Motion
+from eyas.state.scene import Scene
+from eyas.targets.catalogue import MODELS, kind_index, models_of
+from eyas.targets.config import ObjectsConfig, TargetName
+
+__all__ = ["NOBODY", "Crowd", "crowd_motions", "crowd_of", "vehicles_of"]
+
+_MAKERS = ("behaviours", "sim/crowd.py", "state/motion.py", "state/terrain.py", "world/roads")
+
+_ASIDE = Mirrored(mirrored=(4.0, 20.0))
+"""Distance of extras from the middle of the road, if no pavement is asked for [m]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Crowd:
+    """The settings that tell who is in a world besides, or instead of, SUMO's vehicles."""
+
+    target: TargetName = TargetName.SUMO_VEHICLE
+    objects: ObjectsConfig = ObjectsConfig()
+    extras: tuple[ExtraConfig, ...] = ()
+    episode: float = 0.0
+    """Length of an episode [s]."""
+
+
+NOBODY = Crowd()
+"""Only SUMO's vehicles."""
+
+
+def crowd_of(config: SimConfig) -> Crowd:
+    """Return the crowd of a simulation; equal where only settings without effect differ."""
+    if config.target is TargetName.SUMO_VEHICLE:
+        return Crowd(extras=config.extras)
+    seconds = config.done.total_steps * PHYSICS_STEP
+    return Crowd(config.target, config.objects, config.extras, seconds)
+
+
+def vehicles_of(crowd: Crowd, known: int) -> int:
+    """Return how many of the vehicles in `traffic` are in the world; as in the original, none
+    unless they are the targets or asked for.
+
+    Args:
+        crowd: The crowd.
+        known: Number of vehicles that the traffic has.
+
+    Raises:
+        ConfigError: More are asked for than there are.
+    """
+    if crowd.target is TargetName.SUMO_VEHICLE:
+        return known
+    wanted = sum(extra.count for extra in crowd.extras if _is_traffic(extra))
+    if wanted > known:
+        raise ConfigError(
+            f"extras: {wanted} vehicles are asked for, but the traffic has {known}; allowed: up to "
+            "traffic.max_vehicles"
+        )
+    return wanted
+
+
+def crowd_motions(crowd: Crowd, scene: Scene, clock: Clock, seed: int) -> list[Motion]:
+    """Return the motions of a crowd, kept in the cache: of the targets first, if it has any.
+
+    Args:
+        crowd: The crowd.
+        scene: The map.
+        clock: Number of samples, and their rate.
+        seed: Seed of places and ways.
+
+    Raises:
+        SpawnError: The map has no room for all.
+    """
+    troops = _troops(crowd, clock)
+    vehicles = crowd.target is TargetName.SUMO_VEHICLE or any(map(_is_traffic, crowd.extras))
+    ground: list[Ground] = []  # made when the first motion is not in the cache
+
+    def made(number: int, troop: Troop) -> NDArray[np.float32]:
+        if not ground:
+            ground.append(Ground(scene, roads=vehicles))
+        rng = stream(seed, "crowd", number, zlib.crc32(troop.kind.encode()))
+        table = scripted_table(ground[0], troop, clock, rng)
+        return table.view(np.float32).reshape(*table.shape, -1)
+
+    motions = []
+    for number, troop in enumerate(troops):
+        numbers = cached(
+            Kind.MOTION,
+            _MAKERS,
+            (*_plan_of(scene), *troop.lives, troop[:3], troop[4:], clock, seed, number, vehicles),
+            lambda n=number, t=troop: made(n, t),  # type: ignore[misc]
+            of=NDArray[np.float32],
+        )
+        kind = np.full(numbers.shape[1], kind_index(troop.kind), np.int32)
+        motions.append(Motion(numbers.view(SAMPLE)[..., 0], kind, clock.rate, 0.0))
+    return motions
+
+
+def _troops(crowd: Crowd, clock: Clock) -> list[Troop]:
+    troops = []
+    if crowd.target is not TargetName.SUMO_VEHICLE:
+        lives = recycled(crowd.objects, clock.samples, clock.rate, crowd.episode)
+        target = ExtraConfig(kind=crowd.target)
+        troops.append(_troop(target, lives, crowd.objects.offset, "objects.max_count"))
+    for number, extra in enumerate(crowd.extras):
+        if not _is_traffic(extra):
+            lives = lasting(extra.count, clock.samples)
+            troops.append(_troop(extra, lives, _ASIDE, f"extras.{number}.count"))
+    return troops
+
+
+def _troop(extra: ExtraConfig, lives: Lives, offset: Variation, setting: str) -> Troop:
+    models = [MODELS[model] for model in models_of(kind_index(extra.kind))]
+    breadth = max(float(np.hypot(*model.size[:2])) for model in models)
+    return Troop(extra.kind.value, breadth, extra.behaviour, lives, offset, setting)
+
+
+def _is_traffic(extra: ExtraConfig) -> bool:
+    return extra.kind is TargetName.SUMO_VEHICLE
+
+
+def _plan_of(scene: Scene) -> tuple[object, ...]:
+    """Return what of a map paths depend on."""
+    mesh, fixtures, colliders = scene.static, scene.fixtures, scene.colliders
+    return (
+        *(scene.name, scene.size, *scene.terrain, scene.network.graph_hash),
+        *(mesh.positions, mesh.triangles, scene.static_object, scene.object_class),
+        *(fixtures.pose, fixtures.prototype, colliders.prism_points, colliders.prism_first),
+        *(colliders.prism_bottom, colliders.prism_top, colliders.cylinder_centre),
+        *(colliders.cylinder_radius, colliders.cylinder_bottom, colliders.cylinder_top),
+    )

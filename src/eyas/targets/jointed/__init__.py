@@ -1,0 +1,1 @@
+"""Targets of jointed parts: people and robots."""

@@ -1,0 +1,78 @@
+"""The models of people and robots: names, sizes, colours and typical motion.
+
+Sizes, colours and speeds are those of the original's models in Webots. Model frame: x forward, y
+left, z up, origin on the ground below the middle.
+"""
+
+from dataclasses import dataclass
+
+from eyas.targets.config import TargetName
+from eyas.targets.kind import Colour
+
+__all__ = ["PEDESTRIAN_COLOURS", "ROBOTS", "JointedModel", "pedestrian"]
+
+PEDESTRIAN_COLOURS: tuple[Colour, ...] = (
+    (0.25, 0.55, 0.20),
+    (0.72, 0.12, 0.11),
+    (0.13, 0.27, 0.62),
+    (0.90, 0.88, 0.84),
+    (0.13, 0.13, 0.15),
+    (0.88, 0.72, 0.14),
+    (0.86, 0.42, 0.12),
+    (0.45, 0.20, 0.50),
+    (0.55, 0.56, 0.58),
+    (0.12, 0.50, 0.52),
+)
+"""Colours of shirts and coats, sRGB; the first is the original's green."""
+
+
+@dataclass(frozen=True, slots=True)
+class JointedModel:
+    """One model of a person or robot."""
+
+    name: str
+    """The original's name, with an addition where there are several models of a kind."""
+    kind: str
+    """Name of its kind; the original's name."""
+    size: tuple[float, float, float]
+    """Length, width and height, standing [m]."""
+    rise: float
+    """Height of the reference point above the ground [m]."""
+    speed: float
+    """Typical speed [m/s]."""
+    motion: str
+    """Typical motion, in words."""
+
+    @property
+    def typename(self) -> str:
+        """The original's `typename`."""
+        return self.kind
+
+
+def pedestrian(name: str, height: float) -> JointedModel:
+    """Return a pedestrian of a height [m]; the original's reference point is at 1.27 m."""
+    motion = "walks from point to point"
+    size = (0.4, 0.6, height)
+    return JointedModel(name, TargetName.PEDESTRIAN.value, size, 1.27, 2.0, motion)
+
+
+def _robot(
+    kind: TargetName, size: tuple[float, float, float], speed: float, motion: str
+) -> JointedModel:
+    return JointedModel(kind.value, kind.value, size, size[2] / 2, speed, motion)
+
+
+ROBOTS: tuple[JointedModel, ...] = (
+    _robot(TargetName.SHRIMP, (0.64, 0.41, 0.24), 0.26, "straight, turns, then stops"),
+    _robot(TargetName.CREATE, (0.335, 0.335, 0.08), 0.5, "straight, turns away from obstacles"),
+    _robot(TargetName.SOJOURNER, (0.65, 0.48, 0.30), 0.04, "straight"),
+    _robot(TargetName.MANTIS, (4.6, 4.3, 2.0), 0.55, "walks on six legs, three at a time"),
+    _robot(TargetName.BB_8, (0.50, 0.50, 0.68), 1.0, "weaves"),
+    _robot(TargetName.AIBO_ERS7, (0.32, 0.18, 0.28), 0.1, "walks, then stands"),
+    _robot(TargetName.BIOLOID_DOG, (0.40, 0.35, 0.20), 0.35, "trots"),
+    _robot(TargetName.FIRE_BIRD_6, (0.32, 0.32, 0.22), 0.05, "straight, avoids obstacles"),
+    _robot(TargetName.SCOUT, (0.15, 0.20, 0.30), 0.08, "walks on two legs"),
+    _robot(TargetName.GHOST_DOG, (0.80, 0.28, 0.50), 0.8, "gallops"),
+    _robot(TargetName.HOAP_2, (0.20, 0.25, 0.48), 0.05, "walks on two legs, then stops"),
+)
+"""All models of robots, in the order of `TargetName`."""
