@@ -12,6 +12,8 @@ from eyas.state.motion import ActorState
 from eyas.state.scene import ObjectClass
 from eyas.targets.config import TargetName
 from eyas.targets.jointed.models import PEDESTRIAN_COLOURS, ROBOTS, JointedModel, pedestrian
+from eyas.targets.jointed.people.people import PEOPLE, figure_of
+from eyas.targets.jointed.rig import JointedRig
 from eyas.targets.kind import Colour, Group, Kind, Looks
 
 __all__ = ["JOINTED_KINDS"]
@@ -79,7 +81,14 @@ def _kind(
 
 
 JOINTED_KINDS: tuple[Kind, ...] = (
-    _kind((pedestrian("Pedestrian", 1.8),), PEDESTRIAN_COLOURS, ObjectClass.PERSON),
+    Kind(
+        name=TargetName.PEDESTRIAN.value,
+        models=tuple(pedestrian(p.name, p.height, p.girth) for p in PEOPLE),
+        colours=PEDESTRIAN_COLOURS,
+        object_class=ObjectClass.PERSON,
+        rig=lambda: JointedRig([figure_of(person) for person in PEOPLE]),
+        keeps_colours=True,
+    ),
     *(_kind((robot,), (_COLOURS[robot.kind],), ObjectClass.ROBOT) for robot in ROBOTS),
 )
 """The pedestrian, then the robots in the order of `TargetName`."""

@@ -49,11 +49,15 @@ class JointedModel:
         return self.kind
 
 
-def pedestrian(name: str, height: float) -> JointedModel:
-    """Return a pedestrian of a height [m]; the original's reference point is at 1.27 m."""
+def pedestrian(name: str, height: float, girth: float) -> JointedModel:
+    """Return a pedestrian of a height [m] and a factor on the width.
+
+    The original's is 1.80 m high, and its reference point at 1.27 m.
+    """
+    scale = height / 1.8
+    size = (0.4 * scale, 0.6 * scale * girth, height)
     motion = "walks from point to point"
-    size = (0.4, 0.6, height)
-    return JointedModel(name, TargetName.PEDESTRIAN.value, size, 1.27, 2.0, motion)
+    return JointedModel(name, TargetName.PEDESTRIAN.value, size, 1.27 * scale, 2.0, motion)
 
 
 def _robot(

@@ -1,0 +1,1 @@
+"""The catalogue of targets: a list, and pictures of each."""

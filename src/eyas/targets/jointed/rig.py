@@ -1,0 +1,118 @@
+"""The rig of people and robots."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.parallel import Held
+from eyas.state.draw import DrawList
+from eyas.state.mesh import Mesh
+from eyas.state.motion import ActorState
+from eyas.targets.jointed.cycle import frames_of, shapes_of
+from eyas.targets.jointed.figure import Figure, Shape, levels_of
+from eyas.targets.jointed.pose import BODY, PART, CycleTable, Slots, pose_jointed
+from eyas.targets.kind import Group, Looks
+
+__all__ = ["JointedRig"]
+
+_INTERVALS = 64
+"""Intervals of a cycle; within one, parts move along straight lines."""
+
+_MANY = 4096
+"""Actors from which on two threads pose them: waking one takes as long as some hundred actors."""
+
+
+class JointedRig:
+    """The rig of the models of one kind.
+
+    Attributes:
+        slots: As in `Rig`.
+
+    Args:
+        figures: The figure of each model.
+    """
+
+    slots: int
+
+    def __init__(self, figures: Sequence[Figure]) -> None:
+        self._shapes: list[Shape] = []
+        drawn = [shapes_of(figure) for figure in figures]
+        for shape in (shape for shapes in drawn for shape in shapes):
+            if shape not in self._shapes:
+                self._shapes.append(shape)
+        self.slots = max(map(len, drawn))
+        table = _tabulate(figures, drawn, self._shapes, self.slots)
+        self._far = _farthest(table)
+        self._table = Held(table)
+        self._last: _Arrays | None = None
+
+    @property
+    def part_count(self) -> int:
+        """Total number of parts of all models."""
+        return len(self._shapes)
+
+    def part_levels(self) -> list[tuple[Mesh, ...]]:
+        """Return the meshes of each part, the finest first."""
+        return [levels_of(shape) for shape in self._shapes]
+
+    def reach(self, parts: NDArray[np.float64]) -> float:
+        """Return how far any point of an actor may be from its reference point, see `Rig` [m]."""
+        part = self._table.bundle.part["part"]
+        return float((self._far + parts[part])[part >= 0].max())
+
+    def pose(self, group: Group, actors: ActorState, looks: Looks, out: DrawList) -> None:
+        """Write all slots of the kind's actors, see `Rig`."""
+        slots, last = Slots(out.part, out.pose, out.colour), self._last
+        if last is None:
+            arrays = _Arrays(Held(actors), Held(looks), Held(slots))
+        else:
+            arrays = _Arrays(
+                last.actors.again(actors), last.looks.again(looks), last.slots.again(slots)
+            )
+        self._last = arrays
+        if looks.model.shape[0] * len(group.actor) < _MANY:
+            pose_jointed.bound(self._table, Held(group), *arrays)()
+        else:
+            pose_jointed(2, self._table, Held(group), *arrays)
+
+
+class _Arrays(NamedTuple):
+    """The arrays of a call, mostly the same as in the last one."""
+
+    actors: Held[ActorState]
+    looks: Held[Looks]
+    slots: Held[Slots]
+
+
+def _tabulate(
+    figures: Sequence[Figure], drawn: Sequence[list[Shape]], shapes: list[Shape], slots: int
+) -> CycleTable:
+    models = len(figures)
+    table = CycleTable(
+        part=np.zeros((models, slots), PART),
+        body=np.zeros(models, BODY),
+        rest=np.zeros((models, slots, 4, 3), np.float32),
+        cycle=np.zeros((models, _INTERVALS + 1, slots, 4, 3), np.float32),
+    )
+    table.part["part"] = -1
+    cycle = np.linspace(0.0, 1.0, _INTERVALS + 1)
+    for m, (figure, own) in enumerate(zip(figures, drawn, strict=True)):
+        count, gait = len(own), figure.gait
+        table.part["part"][m, :count] = [shapes.index(shape) for shape in own]
+        joints = [joint for joint in figure.joints if joint.shape is not None]
+        table.part["spins"][m, : len(joints)] = [joint.spins for joint in joints]
+        table.part["steers"][m, : len(joints)] = [joint.steers for joint in joints]
+        table.body[m] = (1.0 / gait.stride, gait.slowest, figure.wheel_radius, figure.upright)
+        still = frames_of(figure, np.zeros(1), moving=False)[0]
+        table.rest[m, :count] = still.swapaxes(-1, -2)
+        moving = frames_of(figure, cycle, moving=True)
+        table.cycle[m, :, :count] = moving.swapaxes(-1, -2)
+    return table
+
+
+def _farthest(table: CycleTable) -> NDArray[np.float64]:
+    """Return how far the origins of parts are from the actor's, at most [m], shape (M, S)."""
+    away = np.linalg.norm(table.cycle[..., 3, :].astype(np.float64), axis=-1).max(axis=1)
+    return np.maximum(away, np.linalg.norm(table.rest[..., 3, :].astype(np.float64), axis=-1))

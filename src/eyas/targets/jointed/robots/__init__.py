@@ -1,0 +1,1 @@
+"""The robots of the original, wheeled and legged."""
