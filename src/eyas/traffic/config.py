@@ -93,8 +93,8 @@ class TrafficConfig(Config):
     route_count: Annotated[int, Field(ge=1, le=10_000_000)] = 100_000
     """Largest number of routes drawn (respawn)."""
     update_routes: bool = True
-    """The original's `rou_update`. A recording is reused while it fits in any case; with False, a
-    line says why a new one is made."""
+    """The original's `rou_update`. A recording is reused while it fits in any case; with False,
+    the line that tells of a new one says that it was made all the same."""
     seed: Annotated[int, Field(ge=0, lt=2**31)] | None = None
     """Seed of SUMO and of the routes; None: the seed of the shipped recording."""
     colour: tuple[Unit, Unit, Unit] | None = None

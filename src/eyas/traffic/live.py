@@ -8,14 +8,14 @@ for again; only what lies ahead can still be changed.
 import gc
 import math
 import weakref
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.errors import ConfigError
-from eyas.state.motion import SAMPLE, ActorState, Motion
+from eyas.state.motion import SAMPLE, ActorState, Motion, joined
 from eyas.state.roads import RoadGraph
 from eyas.state.terrain import Terrain
 from eyas.traffic.config import Demand, TrafficConfig
@@ -53,6 +53,7 @@ class LiveSumo:
         terrain: The ground; roads follow its relief.
         kind: Function of the name of a class that returns its index, see `Motion.kind`.
         duration: Last time [s].
+        others: Motions of those who are in the world besides; only vehicles are targets.
 
     Raises:
         MissingExtraError: SUMO is not installed.
@@ -68,6 +69,8 @@ class LiveSumo:
         terrain: Terrain,
         kind: Callable[[str], int],
         duration: float,
+        *,
+        others: Sequence[Motion] = (),
     ) -> None:
         _check_alone()
         fleet = fleet_of(config, WARM_UP + duration)
@@ -78,8 +81,9 @@ class LiveSumo:
         samples = round(duration * RATE) + 1
         kinds = np.array([kind(name) for name in self._run.actors], np.int32)
         # The system gives memory only to what is written.
-        table = np.zeros((samples, len(kinds)), SAMPLE)
-        self.motion: Final = Motion(table, kinds, float(RATE), 0.0)
+        empty = Motion(np.zeros((samples, len(kinds)), SAMPLE), kinds, float(RATE), 0.0)
+        self.motion: Final = joined([empty, *others]) if others else empty
+        self._vehicles = len(kinds)
         self.reactions: Final[list[Reaction]] = []
         self._tracks = LiveTracks(self._run, samples, config.demand)
         for _ in range(round(WARM_UP * RATE) - 1):
@@ -126,8 +130,7 @@ class LiveSumo:
                 f"traffic.source: the live traffic was closed at {self.ahead:g} s, but {until:g} s "
                 "was asked for"
             )
-        while self._tracks.ready < wanted:
-            self._drive()
+        self._drive(min(wanted + self._tracks.ahead, len(self.motion.table)))
 
     def at(self, time: NDArray[np.float64], out: ActorState) -> None:
         """Write all actors of W worlds at the time of each world [s], shape (W,)."""
@@ -147,17 +150,20 @@ class LiveSumo:
         self.prepare(start)
         known = min(round(end * RATE), self._tracks.ready - 1)
         present: NDArray[np.bool_] = self._tracks.present[math.floor(start * RATE) : known + 1]
-        return present.all(axis=0)
+        available = np.zeros(self.actors, np.bool_)
+        available[: self._vehicles] = present.all(axis=0)
+        return available
 
-    def _drive(self) -> None:
-        """Let SUMO drive on for a second or to the end, and append what is known then."""
-        for _ in range(min(RATE, len(self.motion.table) - self._tracks.driven)):
+    def _drive(self, samples: int) -> None:
+        """Let SUMO drive on until there are so many samples, and append what is known then."""
+        tracks = self._tracks
+        while tracks.driven < samples:
             for react in self.reactions:
-                react(self._run, self._tracks.driven / RATE)
+                react(self._run, tracks.driven / RATE)
             self._run.advance()
-            self._tracks.append()
-        rows = self._tracks.smooth()
-        self.motion.table[rows] = table_of(self._tracks.rows(rows), self._terrain)
+            tracks.append()
+        rows = tracks.smooth()
+        self.motion.table[rows, : self._vehicles] = table_of(tracks.rows(rows), self._terrain)
 
 
 def _check_alone() -> None:

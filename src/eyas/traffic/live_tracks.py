@@ -42,6 +42,7 @@ class LiveTracks:
     Attributes:
         driven: Number of samples that SUMO has driven.
         ready: Number of samples that are smooth.
+        ahead: Number of samples that are driven before one is smooth.
         present: Whether each actor is in the world, shape (S, A).
 
     Args:
@@ -59,7 +60,7 @@ class LiveTracks:
         self._yaw = np.full(len(run.actors), np.nan)
         self._wheelbase = wheelbases(run.vehicle_length).tolist()
         self._grouped = demand is Demand.RESPAWN
-        self._ahead = _AHEAD[demand]
+        self.ahead = _AHEAD[demand]
 
     def append(self) -> None:
         """Append SUMO's poses now as a sample, rounded as in a recording."""
@@ -77,7 +78,7 @@ class LiveTracks:
         """Smooth the samples for which enough is driven; return them."""
         first, tracks = self.ready, self._tracks
         all_driven = self.driven == len(self.present)
-        last = self.driven if all_driven else max(self.driven - self._ahead, first)
+        last = self.driven if all_driven else max(self.driven - self.ahead, first)
         window = slice(max(first - _BEFORE, 0), self.driven)
         tracks.present[first:last] = self.present[first:last]
         for actor in range(self.present.shape[1]):

@@ -52,6 +52,9 @@ class Replay:
     def prepare(self, until: float) -> None:
         """Do nothing: everything is known."""
 
+    def close(self) -> None:
+        """Do nothing: nothing drives."""
+
     def at(self, time: NDArray[np.float64], out: ActorState) -> None:
         """Write all actors of W worlds at the time of each world [s], shape (W,)."""
         interpolate_actors(self.motion, time, out)

@@ -53,3 +53,7 @@ class TrafficSource(Protocol):
     def available(self, start: float, end: float) -> NDArray[np.bool_]:
         """Return whether each actor stays in the world from `start` to `end` [s], shape (A,)."""
         ...
+
+    def close(self) -> None:
+        """End what drives the traffic; may be called twice."""
+        ...
