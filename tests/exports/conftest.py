@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from eyas.core.pinhole import intrinsics
-from eyas.exports.frame import Action, Body, CameraPose, Frame, Subject
+from eyas.exports.frame import Action, Body, CameraPose, Frame, Movement, Subject
 from eyas.exports.writer import Episode, Run
 from eyas.sim.config import SimConfig
 from eyas.state.scene import ObjectClass
@@ -21,6 +21,7 @@ TARGET = Subject(
     centre=np.array([13.0, 2.0, 0.37]),
     velocity=np.array([13.0, 0.0, 0.0]),
     yaw=0.0,
+    motion=Movement(np.array([0.5, 0.0, 0.0]), 0.0, 0.0, 120.0, TargetDirection.STRAIGHT, 0.37),
     box=np.array([10, 11, 20, 17], np.int32),
     seen_pixels=45,
     covered_pixels=60,

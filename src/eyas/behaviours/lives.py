@@ -59,5 +59,4 @@ def recycled(config: ObjectsConfig, samples: int, rate: float, episode: float) -
         starts = [enters, *(moves + 2).tolist()]
         ends = [*moves.tolist(), samples - 1]
         made += [(slot, a, b) for a, b in zip(starts, ends, strict=True) if b > a]
-    slot, enters_, leaves = np.array(made, np.int64).reshape(-1, 3).T
-    return Lives(slot, enters_, leaves)
+    return Lives(*np.array(made, np.int64).reshape(-1, 3).T)

@@ -156,8 +156,10 @@ def legs(task: Task, behaviour: Behaviour) -> list[Chain]:
             pieces[life] += made
             # What has no way out stands still.
             left[life] -= max(time_of(chain_of(made, (0.0, 0.0, 0.0)), habit), _LEAST)
+    # A wave swings to both sides of its direction, and begins at the right.
     back = wave.swing if wave else 0.0
-    return [chain_of(own, (x, y, yaw - back)) for own, (x, y, yaw) in zip(pieces, first, strict=True)]
+    starts = [(x, y, yaw - back) for x, y, yaw in first]
+    return [chain_of(own, start) for own, start in zip(pieces, starts, strict=True)]
 
 
 def _reach(task: Task, at: Floats, heading: Floats, far: float, radius: float) -> Floats:

@@ -9,13 +9,13 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.behaviours.chain import Chain
 from eyas.behaviours.config import Behaviour
 from eyas.behaviours.habits import HABITS, STROLL, Habit
 from eyas.behaviours.lives import Lives
 from eyas.behaviours.obstacles import Obstacles
 from eyas.behaviours.pavements import pavement_rings
 from eyas.behaviours.places import Roadside
-from eyas.behaviours.chain import Chain
 from eyas.behaviours.routes import Task, legs, polylines, round_and_round, stops, wave_of
 from eyas.behaviours.surface import Surface
 from eyas.behaviours.timetable import ride

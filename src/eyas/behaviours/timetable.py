@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.behaviours.chain import Chain, Poses, joints, poses_on
+from eyas.behaviours.chain import Chain, Poses, poses_on
 from eyas.behaviours.habits import Habit
 
 __all__ = ["Ride", "ride", "time_of"]

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from eyas.core.clock import PHYSICS_STEP
 from eyas.state.draw import Picture
 from eyas.state.scene import ACTOR_OBJECT, ObjectClass
-from eyas.state.snapshot import CameraState, Snapshot, TargetState, TrackerState
+from eyas.state.snapshot import CameraState, Snapshot, TrackerState
 from eyas.targets.catalogue import MODELS, kind_of
 from eyas.task.direction import TargetDirection
 from eyas.task.done import DoneReason
@@ -21,6 +21,7 @@ __all__ = [
     "Body",
     "CameraPose",
     "Frame",
+    "Movement",
     "Output",
     "Subject",
     "frame_of",
@@ -96,6 +97,7 @@ class Subject:
     """[m/s], shape (3,)."""
     yaw: float
     """Heading, counter-clockwise from east [rad]."""
+    motion: "Movement"
     box: NDArray[np.int32]
     """Extent in the picture, hidden parts included, clipped to the picture: left, top, right,
     bottom [pixels], the last two exclusive; all 0 outside the picture; shape (4,)."""
@@ -108,6 +110,38 @@ class Subject:
     def visible_fraction(self) -> float:
         """Visible share of its pixels, 0 to 1; 0 outside the picture."""
         return self.seen_pixels / self.covered_pixels if self.covered_pixels else 0.0
+
+    @property
+    def corners(self) -> Floats:
+        """Corners of its 3D box: four on the ground, counter-clockwise from the right of its tail,
+        and those above them [m], shape (8, 3).
+        """
+        length, width, height = self.size.tolist()
+        pitch, (cosine, sine) = self.motion.slope, (math.cos(self.yaw), math.sin(self.yaw))
+        ahead = np.array([cosine * math.cos(pitch), sine * math.cos(pitch), math.sin(pitch)])
+        left, up = np.array([-sine, cosine, 0.0]), np.array([0.0, 0.0, 1.0])
+        foot = self.centre - [0.0, 0.0, self.motion.rise]
+        ends = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+        ground = foot + 0.5 * (length * ends[:, :1] * ahead + width * ends[:, 1:] * left)
+        return np.concatenate([ground, ground + height * up])
+
+
+@dataclass(frozen=True, slots=True)
+class Movement:
+    """How a moving object moves, and stands on the ground."""
+
+    acceleration: Floats
+    """World frame, horizontal [m/s^2], shape (3,)."""
+    yaw_rate: float
+    """Counter-clockwise [rad/s]."""
+    slope: float
+    """Pitch of the ground along its heading, positive up [rad]."""
+    travelled: float
+    """Way since it entered the world [m]."""
+    direction: TargetDirection
+    """Its turn."""
+    rise: float
+    """Height of its reference point above the ground [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -179,7 +213,7 @@ def frame_of(  # noqa: PLR0913  # everything that a frame holds
         step=int(episodes.step_count[tracker]),
         tracker=_body(snapshot.trackers, tracker),
         camera=_camera(snapshot.cameras, tracker),
-        target=_target(snapshot.targets, tracker, picture, view),
+        target=_target(snapshot, tracker, picture, view),
         others=others,
         action=action,
         reward=float(episodes.reward[tracker]),
@@ -211,7 +245,8 @@ def _camera(cameras: CameraState, tracker: int) -> CameraPose:
     )
 
 
-def _target(targets: TargetState, tracker: int, picture: Picture, view: int) -> Subject:
+def _target(snapshot: Snapshot, tracker: int, picture: Picture, view: int) -> Subject:
+    targets = snapshot.targets
     assert picture.subject_box is not None
     assert picture.subject_pixels is not None
     seen, covered = (int(pixels) for pixels in picture.subject_pixels[view])
@@ -225,6 +260,14 @@ def _target(targets: TargetState, tracker: int, picture: Picture, view: int) -> 
         centre=targets.centre[tracker].copy(),
         velocity=np.array([speed * math.cos(yaw), speed * math.sin(yaw), 0.0]),
         yaw=yaw,
+        motion=Movement(
+            acceleration=targets.acceleration[tracker].copy(),
+            yaw_rate=float(targets.yaw_rate[tracker]),
+            slope=float(targets.slope[tracker]),
+            travelled=float(targets.travelled[tracker]),
+            direction=TargetDirection(snapshot.episodes.direction[tracker]),
+            rise=float(targets.rise[tracker]),
+        ),
         box=picture.subject_box[view].copy(),
         seen_pixels=seen,
         covered_pixels=covered,

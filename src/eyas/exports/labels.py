@@ -3,7 +3,7 @@
 import json
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 from eyas.core.errors import DataFileError
@@ -38,6 +38,12 @@ class OtherLabel:
     centre: list[float | None]
     velocity: list[float | None]
     yaw: float | None
+    acceleration: list[float | None] = field(default_factory=list)
+    yaw_rate: float | None = None
+    travelled: float | None = None
+    direction: int = 0
+    corners: list[list[float | None]] = field(default_factory=list)
+    """The corners of its 3D box [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,6 +105,15 @@ class FrameLabel:
     """Whether the episode ends with this frame."""
     others: list[OtherLabel]
     """All other moving objects of which a pixel is visible, in the order of their ids."""
+    target_acceleration: list[float | None] = field(default_factory=list)
+    """Horizontal [m/s^2]. This and the next are missing in older labels."""
+    target_yaw_rate: float | None = None
+    """Counter-clockwise [rad/s]."""
+    target_travelled: float | None = None
+    """Way since it entered the world [m]."""
+    target_corners: list[list[float | None]] = field(default_factory=list)
+    """Corners of its 3D box: four on the ground, counter-clockwise from the right of its tail, and
+    those above them [m]."""
 
 
 class LabelWriter(Writer):
@@ -156,6 +171,10 @@ def label_of(frame: Frame) -> FrameLabel:
         direction=int(frame.direction),
         done=frame.reason is not DoneReason.NONE,
         others=[_other(subject) for subject in frame.others],
+        target_acceleration=rounded_list(target.motion.acceleration),
+        target_yaw_rate=rounded(target.motion.yaw_rate),
+        target_travelled=rounded(target.motion.travelled),
+        target_corners=[rounded_list(corner) for corner in target.corners],
     )
 
 
@@ -170,6 +189,11 @@ def _other(subject: Subject) -> OtherLabel:
         centre=rounded_list(subject.centre),
         velocity=rounded_list(subject.velocity),
         yaw=rounded(subject.yaw),
+        acceleration=rounded_list(subject.motion.acceleration),
+        yaw_rate=rounded(subject.motion.yaw_rate),
+        travelled=rounded(subject.motion.travelled),
+        direction=int(subject.motion.direction),
+        corners=[rounded_list(corner) for corner in subject.corners],
     )
 
 

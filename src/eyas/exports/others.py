@@ -4,18 +4,20 @@ import math
 
 import numpy as np
 
+from eyas.core.clock import PHYSICS_STEP
 from eyas.core.jit import interpreted
-from eyas.exports.frame import Subject
+from eyas.exports.frame import Movement, Subject
 from eyas.sim.simulation import Simulation
 from eyas.state.draw import Picture
 from eyas.state.motion import ActorState
 from eyas.state.scene import ACTOR_OBJECT
 from eyas.targets.catalogue import MODELS, kind_of
-from eyas.task.direction import target_centre
+from eyas.task.direction import TargetDirection, target_centre, target_direction
 
 __all__ = ["others_of"]
 
 _target_centre = interpreted(target_centre)
+_target_direction = interpreted(target_direction)
 
 
 def others_of(
@@ -34,13 +36,36 @@ def others_of(
     visible = picture.actor_pixels[view, :, 0] > 0
     visible[simulation.snapshot.targets.actor[tracker]] = False
     actors, models = simulation.actors_around(tracker)
+    before, _ = simulation.actors_around(tracker, ago=1)
     return tuple(
-        _subject(actors, actor, int(models[actor]), picture, view)
+        _subject(actors, before, actor, int(models[actor]), picture, view)
         for actor in np.flatnonzero(visible).tolist()
     )
 
 
-def _subject(actors: ActorState, actor: int, model: int, picture: Picture, view: int) -> Subject:
+def _movement(actors: ActorState, before: ActorState, actor: int, model: int) -> Movement:
+    """Return the movement of an actor, from its states now and a step earlier."""
+    yaw, speed = float(actors.yaw[0, actor]), float(actors.speed[0, actor])
+    yaw_rate, gain = float(actors.yaw_rate[0, actor]), 0.0
+    if before.present[0, actor]:
+        gain = (speed - float(before.speed[0, actor])) / PHYSICS_STEP
+    way, swing = speed * PHYSICS_STEP, speed * yaw_rate
+    last_yaw = yaw - yaw_rate * PHYSICS_STEP
+    direction = _target_direction(way, 0.0, yaw, last_yaw, kind_of(model).slowest)
+    east, north = math.cos(yaw), math.sin(yaw)
+    return Movement(
+        acceleration=np.array([gain * east - swing * north, gain * north + swing * east, 0.0]),
+        yaw_rate=yaw_rate,
+        slope=float(actors.slope[0, actor]),
+        travelled=float(actors.travelled[0, actor]),
+        direction=TargetDirection(direction),
+        rise=MODELS[model].rise,
+    )
+
+
+def _subject(  # where it is, and where it is seen
+    actors: ActorState, before: ActorState, actor: int, model: int, picture: Picture, view: int
+) -> Subject:
     assert picture.actor_box is not None
     assert picture.actor_pixels is not None
     kind, (x, y, z) = kind_of(model), actors.position[0, actor].tolist()
@@ -56,6 +81,7 @@ def _subject(actors: ActorState, actor: int, model: int, picture: Picture, view:
         centre=np.array([*_target_centre(x, y, yaw, kind.ahead), height]),
         velocity=np.array([speed * math.cos(yaw), speed * math.sin(yaw), 0.0]),
         yaw=yaw,
+        motion=_movement(actors, before, actor, model),
         box=picture.actor_box[view, actor].copy(),
         seen_pixels=seen,
         covered_pixels=covered,

@@ -52,5 +52,5 @@ class SimConfig(Config):
         if self.target is TargetName.SUMO_VEHICLE and any(
             extra.kind is TargetName.SUMO_VEHICLE for extra in self.extras
         ):
-            raise ValueError("extras must not hold SUMO_VEHICLE, whose number is traffic.max_vehicles")
+            raise ValueError("extras must not hold SUMO_VEHICLE (see traffic.max_vehicles)")
         return self

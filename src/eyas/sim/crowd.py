@@ -1,7 +1,6 @@
 """Everyone in a world who is no vehicle of SUMO's: the targets that are asked for, and extras."""
 
 import zlib
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +11,7 @@ from eyas.behaviours.scripted import Clock, Ground, Troop, scripted_table
 from eyas.core.cache.cached import cached
 from eyas.core.cache.folder import Kind
 from eyas.core.clock import PHYSICS_STEP
+from eyas.core.config import Config
 from eyas.core.errors import ConfigError
 from eyas.core.rng import stream
 from eyas.core.variation import Mirrored, Variation
@@ -29,8 +29,7 @@ _ASIDE = Mirrored(mirrored=(4.0, 20.0))
 """Distance of extras from the middle of the road, if no pavement is asked for [m]."""
 
 
-@dataclass(frozen=True, slots=True)
-class Crowd:
+class Crowd(Config):
     """The settings that tell who is in a world besides, or instead of, SUMO's vehicles."""
 
     target: TargetName = TargetName.SUMO_VEHICLE

@@ -124,6 +124,7 @@ class Episodes:
         targets.size[tracker] = MODELS[model].size
         targets.rise[tracker] = MODELS[model].rise
         targets.ahead[tracker] = kind_of(model).ahead
+        targets.slowest[tracker] = kind_of(model).slowest
 
     def _key(self, tracker: int) -> EpisodeKey:
         """Return what the random values of a tracker's episode depend on."""

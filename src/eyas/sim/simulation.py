@@ -174,12 +174,17 @@ class Simulation:
         """Number of actors in each world."""
         return self._worlds.actors
 
-    def actors_around(self, tracker: int) -> tuple[ActorState, NDArray[np.int32]]:
-        """Return all actors of a tracker's world now, one world, and the model of each.
+    def actors_around(self, tracker: int, ago: int = 0) -> tuple[ActorState, NDArray[np.int32]]:
+        """Return all actors of a tracker's world, one world, and the model of each.
 
         The models are indices into `eyas.targets.catalogue.MODELS`, shape (A,).
+
+        Args:
+            tracker: The tracker.
+            ago: Physics steps before now.
         """
-        return self._worlds.actors_around(tracker, int(self.snapshot.episodes.tick[tracker]))
+        tick = int(self.snapshot.episodes.tick[tracker])
+        return self._worlds.actors_around(tracker, tick - ago)
 
     def packets(self) -> tuple[Floats, Floats]:
         """Return copies of the basic packets (N, 22) and the reward packets (N, 60)."""

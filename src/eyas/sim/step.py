@@ -5,6 +5,7 @@ Its kernels get the address of their arguments (`eyas.core.parallel`): unpacking
 at each call would take four times as long as a step of one tracker.
 """
 
+import math
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -166,12 +167,12 @@ def _begin(parts: Parts, worker: int, workers: int) -> None:
     _, _, _, starts, chosen, pitch = orders[0]
     for k in range(starts[0]):
         n = chosen[k]
+        clear_episode(episodes, n)
         targets.lost[n] = False
         _move_target(targets, episodes, n, around)
         x, y, z, yaw = offset_pose(targets.position[n], targets.yaw[n], episodes.start_offset[n])
         start(trackers, memory, n, x, y, z, yaw, pitch[k])
         rest(trackers, n, share)
-        clear_episode(episodes, n)
         aim(trackers, memory, cameras, n)
         half_size = rewarded_size(cameras.field_of_view[n], rules)
         observe(trackers, cameras, targets, episodes, n, around.terrain, rules, half_size)
@@ -186,9 +187,17 @@ def _move_target(
     pose = interpolate_actor(around.motion, targets.actor[n], time)
     if targets.lost[n] or not pose.present:
         targets.lost[n] = True
-        targets.speed[n] = 0.0
+        targets.speed[n] = targets.yaw_rate[n] = 0.0
+        targets.acceleration[n, 0] = targets.acceleration[n, 1] = 0.0
         return
     position, centre = targets.position[n], targets.centre[n]
+    gain = (pose.speed - targets.speed[n]) / PHYSICS_STEP if episodes.observations[n] > 0 else 0.0
+    swing = pose.speed * pose.yaw_rate
+    east, north = math.cos(pose.yaw), math.sin(pose.yaw)
+    targets.acceleration[n, 0] = gain * east - swing * north
+    targets.acceleration[n, 1] = gain * north + swing * east
+    targets.yaw_rate[n], targets.slope[n] = pose.yaw_rate, pose.slope
+    targets.travelled[n] = pose.travelled
     position[0], position[1], position[2] = pose.x, pose.y, pose.z + targets.rise[n]
     targets.yaw[n] = pose.yaw
     targets.speed[n] = pose.speed

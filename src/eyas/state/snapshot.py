@@ -113,6 +113,16 @@ class TargetState(NamedTuple):
     """Heading, counter-clockwise from east [rad], shape (N,)."""
     speed: Floats
     """[m/s], shape (N,)."""
+    acceleration: Floats
+    """World frame, horizontal [m/s^2], shape (N, 3)."""
+    yaw_rate: Floats
+    """[rad/s], shape (N,)."""
+    slope: Floats
+    """Pitch of the ground along the heading, positive up [rad], shape (N,)."""
+    travelled: Floats
+    """Way since it entered the world [m], shape (N,)."""
+    slowest: Floats
+    """Speed below which it counts as standing [m/s], shape (N,)."""
     centre: Floats
     """Visible middle of the target, the point that the reward uses [m], shape (N, 3)."""
     lost: NDArray[np.bool_]
@@ -130,6 +140,11 @@ class TargetState(NamedTuple):
             position=np.zeros((count, 3)),
             yaw=np.zeros(count),
             speed=np.zeros(count),
+            acceleration=np.zeros((count, 3)),
+            yaw_rate=np.zeros(count),
+            slope=np.zeros(count),
+            travelled=np.zeros(count),
+            slowest=np.zeros(count),
             centre=np.zeros((count, 3)),
             lost=np.zeros(count, np.bool_),
         )

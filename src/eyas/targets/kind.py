@@ -119,6 +119,8 @@ class Kind:
     """Returns the rig of all its models."""
     ahead: float = 0.0
     """Distance of the middle, the point that the reward uses, ahead of the reference point [m]."""
+    slowest: float = 0.01
+    """Speed below which it counts as standing [m/s]."""
     lamps: bool = False
     """Whether it has head and tail lamps that light the road."""
     keeps_colours: bool = False

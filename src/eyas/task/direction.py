@@ -3,6 +3,7 @@
 import math
 from enum import IntEnum
 
+from eyas.core.clock import PHYSICS_STEP
 from eyas.core.frames import wrap_angle
 from eyas.core.jit import kernel
 
@@ -10,8 +11,6 @@ __all__ = ["TargetDirection", "target_centre", "target_direction"]
 
 _TURNING = 1e-4
 """Change of heading in 2 ms above which the target turns [rad]."""
-_MOVING = 1e-3
-"""Smallest distance in 2 ms at which the target moves [m]."""
 
 
 class TargetDirection(IntEnum):
@@ -28,7 +27,7 @@ _LEFT, _RIGHT = int(TargetDirection.LEFT), int(TargetDirection.RIGHT)
 
 
 @kernel
-def target_direction(dx: float, dy: float, yaw: float, last_yaw: float) -> int:
+def target_direction(dx: float, dy: float, yaw: float, last_yaw: float, slowest: float) -> int:
     """Return the `TargetDirection` of one 2 ms step.
 
     Left and right follow the true turn; the original ignores the sign of its rotation axis and so
@@ -39,13 +38,14 @@ def target_direction(dx: float, dy: float, yaw: float, last_yaw: float) -> int:
         dy: Motion north [m].
         yaw: Heading [rad].
         last_yaw: Heading one step ago [rad].
+        slowest: Speed below which it stands [m/s], see `eyas.targets.kind.Kind`.
     """
     turn = wrap_angle(yaw - last_yaw)
     if turn > _TURNING:
         return _LEFT
     if turn < -_TURNING:
         return _RIGHT
-    return _STOP if math.sqrt(dx * dx + dy * dy) < _MOVING else _STRAIGHT
+    return _STOP if math.sqrt(dx * dx + dy * dy) < slowest * PHYSICS_STEP else _STRAIGHT
 
 
 @kernel

@@ -67,7 +67,8 @@ def _follow_target(targets: TargetState, episodes: EpisodeState, n: int) -> None
     x, y, yaw = targets.position[n, 0], targets.position[n, 1], targets.yaw[n]
     last = episodes.last_target[n]
     if episodes.observations[n] > 0:
-        episodes.direction[n] = target_direction(x - last[0], y - last[1], yaw, last[2])
+        slowest = targets.slowest[n]
+        episodes.direction[n] = target_direction(x - last[0], y - last[1], yaw, last[2], slowest)
     last[0], last[1], last[2] = x, y, yaw
 
 

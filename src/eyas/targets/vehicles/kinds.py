@@ -32,6 +32,7 @@ def _kind(vehicle_type: VehicleType) -> Kind:
         object_class=_CLASSES[vehicle_type],
         rig=lambda: VehicleRig(models),
         ahead=VEHICLE_AHEAD,
+        slowest=0.5,  # as in the original
         lamps=True,
         keeps_colours=two_wheeled,
     )

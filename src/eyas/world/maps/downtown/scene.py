@@ -32,7 +32,7 @@ from eyas.world.plants.shrubs import plant_makers
 from eyas.world.street import lamps
 from eyas.world.street.furnishing import add_furniture
 from eyas.world.street.furniture import FURNITURE
-from eyas.world.street.parked_cars import VARIANTS, parked_car
+from eyas.world.street.parked_cars import VARIANTS, add_car, parked_car
 from eyas.world.street.signals import add_signals, signal_places
 
 __all__ = ["build_scene"]
@@ -178,7 +178,7 @@ def _add_parked(builder: SceneBuilder, plan: Plan, rng: np.random.Generator) -> 
     for x, y, heading in plan.kerbs.cars:
         car = taxi if rng.random() < _TAXIS else cars[int(rng.integers(len(cars)))]
         size = float(rng.uniform(0.94, 1.04))
-        builder.add_copy(ObjectClass.STRUCTURE, car, (x, y, 0.0), heading, size)
+        add_car(builder, car, (x, y, 0.0), heading, size)
 
 
 def _taxi() -> Levels:

@@ -6,7 +6,6 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from eyas.state.scene import ObjectClass
 from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.scene_builder import Prototype, SceneBuilder
 from eyas.world.maps.imported.plan import Plan
@@ -14,6 +13,7 @@ from eyas.world.osm.features import Features
 from eyas.world.plants import gardens
 from eyas.world.roads.areas import polygons_of
 from eyas.world.street.bays import bays_in
+from eyas.world.street.parked_cars import add_car
 
 __all__ = ["add_greenery", "add_parked"]
 
@@ -103,7 +103,7 @@ def add_parked(
                 way = turn + np.pi * float(rng.random() < 0.4) + rng.normal(0, 0.015)
                 car = cars[int(rng.integers(len(cars)))]
                 spot = (x + rng.normal(0, 0.06), y + rng.normal(0, 0.06), 0.0)
-                builder.add_copy(ObjectClass.STRUCTURE, car, spot, way, rng.uniform(0.94, 1.04))
+                add_car(builder, car, spot, way, float(rng.uniform(0.94, 1.04)))
     return lines
 
 

@@ -27,7 +27,7 @@ from eyas.world.roads import markings, painting
 from eyas.world.roads.areas import skirt, surface
 from eyas.world.roads.wear import road_wear
 from eyas.world.street.lamps import add_lamps
-from eyas.world.street.parked_cars import VARIANTS, parked_car
+from eyas.world.street.parked_cars import VARIANTS, add_car, parked_car
 from eyas.world.weather import Season
 
 __all__ = ["build_scene"]
@@ -161,4 +161,4 @@ def _add_parked(builder: SceneBuilder, plan: Plan, rng: np.random.Generator) -> 
             if rng.random() < _OCCUPIED:
                 way = turn + np.pi * float(rng.random() < 0.35) + rng.normal(0, 0.015)
                 car = cars[int(rng.integers(len(cars)))]
-                builder.add_copy(ObjectClass.STRUCTURE, car, (x, y, 0.0), way, 1.0)
+                add_car(builder, car, (x, y, 0.0), way, 1.0)
