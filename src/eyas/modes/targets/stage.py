@@ -95,7 +95,8 @@ class Stage:
             actors.travelled[v], actors.speed[v] = pose.travelled, pose.speed
             actors.yaw_rate[v] = pose.yaw_rate
         looks = Looks(
-            np.full((count, 1), model, np.int32), np.tile(np.float32(colour), (count, 1, 1))
+            np.full((count, 1), model, np.int32),
+            np.tile(np.array(colour, np.float32), (count, 1, 1)),
         )
         rigs.pose(actors, looks, movers)
         picture = Picture.create(count, *size)
@@ -108,7 +109,7 @@ class Stage:
 
     def _views(self, height: float, cameras: Sequence[Camera]) -> Views:
         looks = [_rotation(camera) for camera in cameras]
-        middle = self._spot + [0.0, 0.0, height / 2]
+        middle = self._spot + np.array([0.0, 0.0, height / 2])
         away = [-look[:, 0] * camera.distance for look, camera in zip(looks, cameras, strict=True)]
         fields = np.array([camera.field_of_view for camera in cameras])
         return Views(

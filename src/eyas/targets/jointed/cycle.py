@@ -34,7 +34,7 @@ def frames_of(figure: Figure, cycle: NDArray[np.float64], *, moving: bool) -> ND
         if joint.shape is not None:
             drawn.append(frames[joint.name])
     for leg in figure.legs:
-        drawn += leg_frames(figure.gait, leg, frames["trunk"], cycle, moving=moving)
+        drawn += leg_frames(figure.gait, leg, frames[leg.parent], cycle, moving=moving)
     return np.stack(drawn, axis=1)
 
 

@@ -87,14 +87,16 @@ class Leg:
     side to which the knee bends.
     """
 
+    parent: str = "trunk"
+    """Name of the joint that it is fixed to, or `trunk`."""
     hip: Point
-    """Upper end in the frame of the trunk [m]."""
+    """Upper end in the frame of its parent [m]."""
     foot: Point
     """Middle of the lower end while standing, in the model frame; z is the height of the ankle."""
     bones: tuple[float, float]
     """Lengths of the upper and the lower bone [m]."""
     knee: Point
-    """Direction to which the knee bends, in the frame of the trunk."""
+    """Direction to which the knee bends, in the frame of the parent."""
     phase: float
     """Part of the cycle by which it is ahead of a leg that touches the ground at its beginning."""
     shapes: tuple[Shape, Shape, Shape | None]
@@ -138,7 +140,7 @@ class Figure:
     """Parents before what turns with them."""
     legs: tuple[Leg, ...] = ()
     gait: Gait = Gait()
-    wheel_radius: float = 1.0
-    """Radius of what spins [m]."""
+    wheel_radius: float = 0.0
+    """Radius of what spins [m]; 0: nothing does."""
     upright: bool = False
     """Whether it stays upright on slopes; else it tilts with the ground."""

@@ -49,15 +49,11 @@ class JointedModel:
         return self.kind
 
 
-def pedestrian(name: str, height: float, girth: float) -> JointedModel:
-    """Return a pedestrian of a height [m] and a factor on the width.
-
-    The original's is 1.80 m high, and its reference point at 1.27 m.
-    """
-    scale = height / 1.8
-    size = (0.4 * scale, 0.6 * scale * girth, height)
+def pedestrian(name: str, size: tuple[float, float, float]) -> JointedModel:
+    """Return a pedestrian; the original's is 1.80 m high, its reference point at 1.27 m."""
+    rise = 1.27 / 1.8 * size[2]
     motion = "walks from point to point"
-    return JointedModel(name, TargetName.PEDESTRIAN.value, size, 1.27 * scale, 2.0, motion)
+    return JointedModel(name, TargetName.PEDESTRIAN.value, size, rise, 2.0, motion)
 
 
 def _robot(

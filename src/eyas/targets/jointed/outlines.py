@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from eyas.mesh.shell import Shell
 from eyas.state.mesh import Material, Surface
 
-__all__ = ["cylinder", "limb", "matt", "oval", "stack"]
+__all__ = ["bar", "block", "cylinder", "limb", "matt", "oval", "stack", "wheel"]
 
 
 def matt(red: float, green: float, blue: float) -> Material:
@@ -67,9 +67,78 @@ def stack(
 def limb(
     shell: Shell, length: float, radii: Sequence[float], material: Material, sides: int
 ) -> None:
-    """Add a round rod that hangs from the origin, with radii at even distances along it [m]."""
-    path = [(0.0, 0.0, z) for z in np.linspace(0.0, -length, len(radii))]
-    shell.tube(path, radii, material, sides=sides)
+    """Add a rod with round ends that hangs from the origin.
+
+    Args:
+        shell: Shell to add it to.
+        length: Its length, without the ends [m].
+        radii: Radii at even distances along it [m].
+        material: Material of all faces.
+        sides: Number of sides; with fewer than five, the ends are flat.
+    """
+    heights, sizes = np.linspace(0.0, -length, len(radii)).tolist(), list(radii)
+    if sides >= 5:
+        heights = [0.75 * sizes[0], *heights, -length - 0.75 * sizes[-1]]
+        sizes = [0.5 * sizes[0], *sizes, 0.5 * sizes[-1]]
+    shell.tube([(0.0, 0.0, z) for z in heights], sizes, material, sides=sides)
+
+
+def wheel(
+    shell: Shell,
+    radius: float,
+    width: float,
+    places: Sequence[float],
+    materials: tuple[Material, Material],
+    detail: int,
+) -> None:
+    """Add wheels that turn about the y axis.
+
+    Args:
+        shell: Shell to add them to.
+        radius: [m]
+        width: [m]
+        places: y of the middle of each [m].
+        materials: Of the tread, and of the hub, which has a bar that shows how it turns.
+        detail: See `Shape`.
+    """
+    sides = (6, 9, 14)[detail]
+    for y in places:
+        cylinder(shell, (0.0, y, 0.0), radius, width, materials[0], sides)
+        if detail == 0:
+            continue
+        cylinder(shell, (0.0, y, 0.0), 0.62 * radius, 1.08 * width, materials[1], sides)
+        bar = (0.55 * radius, 0.58 * width, 0.12 * radius)
+        low, high = [-bar[0], y - bar[1], -bar[2]], [bar[0], y + bar[1], bar[2]]
+        shell.box(low, high, materials[0])
+
+
+def bar(
+    shell: Shell,
+    start: Sequence[float],
+    end: Sequence[float],
+    thick: float,
+    material: Material,
+    *,
+    sides: int = 4,
+    both_sides: bool = False,
+) -> None:
+    """Add a straight rod of a radius [m] between two points."""
+    shell.tube([start, end], (thick, thick), material, sides=sides, both_sides=both_sides)
+
+
+def block(  # as its neighbours
+    shell: Shell,
+    centre: Sequence[float],
+    size: Sequence[float],
+    material: Material,
+    *,
+    both_sides: bool = False,
+    taper: float = 0.0,
+) -> None:
+    """Add a box with its middle at a point [m]."""
+    low = [p - s / 2 for p, s in zip(centre, size, strict=True)]
+    high = [p + s / 2 for p, s in zip(centre, size, strict=True)]
+    shell.box(low, high, material, taper=taper, both_sides=both_sides)
 
 
 def cylinder(  # noqa: PLR0913  # as its neighbours

@@ -47,7 +47,7 @@ BODY: Final = np.dtype(
 """A model.
 
 per_metre: cycles in a metre [1/m]; slowest: speed from which it moves fully [m/s]; wheel_radius:
-of what spins [m]; upright: whether it stays upright on slopes.
+of what spins [m], 0 if nothing does; upright: whether it stays upright on slopes.
 """
 
 
@@ -108,32 +108,46 @@ def _base_of(actors: ActorState, w: int, a: int, upright: bool) -> _Base:
 def _place_part(
     pose: NDArray[np.float32],
     base: _Base,
-    rest: NDArray[np.float32],
     first: NDArray[np.float32],
     second: NDArray[np.float32],
-    share: tuple[float, float],
+    later: float,
 ) -> None:
     """Write the pose of one part.
 
     Args:
         pose: Pose to write, shape (3, 4).
         base: Frame of the actor.
-        rest: Its frame while standing, shape (4, 3).
-        first: Its frame at the beginning of an interval of the cycle.
+        first: Its frame at the beginning of an interval of the cycle, shape (4, 3).
         second: Its frame at the end of the interval.
-        share: Weights of the last two; the rest is that of the first.
+        later: Share of the interval that is over.
     """
-    still = 1.0 - share[0] - share[1]
     for axis in range(4):
-        x = still * rest[axis, 0] + share[0] * first[axis, 0] + share[1] * second[axis, 0]
-        y = still * rest[axis, 1] + share[0] * first[axis, 1] + share[1] * second[axis, 1]
-        z = still * rest[axis, 2] + share[0] * first[axis, 2] + share[1] * second[axis, 2]
+        x = first[axis, 0] + later * (second[axis, 0] - first[axis, 0])
+        y = first[axis, 1] + later * (second[axis, 1] - first[axis, 1])
+        z = first[axis, 2] + later * (second[axis, 2] - first[axis, 2])
         pose[0, axis] = base.xx * x + base.xy * y + base.xz * z
         pose[1, axis] = base.yx * x + base.yy * y + base.yz * z
         pose[2, axis] = base.zx * x + base.zz * z
     pose[0, 3] += base.x
     pose[1, 3] += base.y
     pose[2, 3] += base.z
+
+
+@kernel
+def _fade_part(
+    pose: NDArray[np.float32], base: _Base, rest: NDArray[np.float32], moving: float
+) -> None:
+    """Blend a pose with the resting one; arguments as above."""
+    for axis in range(4):
+        x, y, z = float(rest[axis, 0]), float(rest[axis, 1]), float(rest[axis, 2])
+        u = base.xx * x + base.xy * y + base.xz * z
+        v = base.yx * x + base.yy * y + base.yz * z
+        w = base.zx * x + base.zz * z
+        if axis == 3:
+            u, v, w = u + base.x, v + base.y, w + base.z
+        pose[0, axis] = u + moving * (pose[0, axis] - u)
+        pose[1, axis] = v + moving * (pose[1, axis] - v)
+        pose[2, axis] = w + moving * (pose[2, axis] - w)
 
 
 @kernel
@@ -156,9 +170,7 @@ def _steering(ahead: float, yaw_rate: float, speed: float) -> tuple[float, float
 
 
 @kernel
-def _pose_actor(
-    given: tuple[CycleTable, Group, ActorState, Looks, Slots], w: int, g: int
-) -> None:
+def _pose_actor(given: tuple[CycleTable, Group, ActorState, Looks, Slots], w: int, g: int) -> None:
     """Write the slots of one actor."""
     table, group, actors, looks, out = given
     a, first = group.actor[g], group.slot[g]
@@ -171,9 +183,10 @@ def _pose_actor(
     place = (cycles - np.floor(cycles)) * intervals
     row = min(int(place), intervals - 1)
     moving = min(speed / body.slowest, 1.0)
-    later = moving * (place - row)
-    share = (moving - later, later)
-    angle = travelled / body.wheel_radius
+    cosine, sine = 1.0, 0.0
+    if body.wheel_radius > 0.0:
+        angle = travelled / body.wheel_radius
+        cosine, sine = np.cos(angle), np.sin(angle)
     for k in range(table.part.shape[1]):
         slot, part = first + k, table.part[model, k]
         if part.part < 0:
@@ -181,15 +194,15 @@ def _pose_actor(
             continue
         out.part[w, slot] = group.first_part + part.part
         pose = out.pose[w, slot]
-        _place_part(
-            pose, base, table.rest[model, k], table.cycle[model, row, k],
-            table.cycle[model, row + 1, k], share,
-        )  # fmt: skip
+        frames = table.cycle[model]
+        _place_part(pose, base, frames[row, k], frames[row + 1, k], place - row)
+        if moving < 1.0:
+            _fade_part(pose, base, table.rest[model, k], moving)
         if part.steers != 0.0:
-            cosine, sine = _steering(part.steers, actors.yaw_rate[w, a], speed)
-            _turn(pose, 0, 1, cosine, sine)
+            steer = _steering(part.steers, actors.yaw_rate[w, a], speed)
+            _turn(pose, 0, 1, steer[0], steer[1])
         if part.spins:
-            _turn(pose, 2, 0, np.cos(angle), np.sin(angle))
+            _turn(pose, 2, 0, cosine, sine)
         for channel in range(3):
             out.colour[w, slot, channel] = looks.colour[w, a, channel]
 

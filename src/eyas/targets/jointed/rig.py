@@ -17,8 +17,11 @@ from eyas.targets.kind import Group, Looks
 
 __all__ = ["JointedRig"]
 
-_INTERVALS = 64
+_INTERVALS = 32
 """Intervals of a cycle; within one, parts move along straight lines."""
+
+_SHEARED = 1.25
+"""Factor by which what stays upright on a slope may be farther from its origin."""
 
 _MANY = 4096
 """Actors from which on two threads pose them: waking one takes as long as some hundred actors."""
@@ -115,4 +118,5 @@ def _tabulate(
 def _farthest(table: CycleTable) -> NDArray[np.float64]:
     """Return how far the origins of parts are from the actor's, at most [m], shape (M, S)."""
     away = np.linalg.norm(table.cycle[..., 3, :].astype(np.float64), axis=-1).max(axis=1)
-    return np.maximum(away, np.linalg.norm(table.rest[..., 3, :].astype(np.float64), axis=-1))
+    still = np.linalg.norm(table.rest[..., 3, :].astype(np.float64), axis=-1)
+    return np.asarray(_SHEARED * np.maximum(away, still), np.float64)

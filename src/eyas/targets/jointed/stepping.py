@@ -21,12 +21,12 @@ _SLACK = 0.999
 
 
 def leg_frames(
-    gait: Gait, leg: Leg, trunk: NDArray[np.float64], cycle: NDArray[np.float64], *, moving: bool
+    gait: Gait, leg: Leg, parent: NDArray[np.float64], cycle: NDArray[np.float64], *, moving: bool
 ) -> list[NDArray[np.float64]]:
     """Return the frames of the drawn parts of a leg in the model frame, each (K, 3, 4)."""
     ankle, pitch = _ankle(gait, leg, cycle, moving=moving)
-    hip = places(trunk, np.array(leg.hip))
-    up = trunk[..., 2]
+    hip = places(parent, np.array(leg.hip))
+    up = parent[..., 2]
     drawn = []
     if leg.coxa is not None:
         out = ankle - hip
@@ -34,7 +34,7 @@ def leg_frames(
         out /= np.linalg.norm(out, axis=-1, keepdims=True)
         drawn.append(framed(hip, out, np.cross(up, out), up))
         hip = hip + leg.coxa[0] * out
-    bend = directions(trunk, np.array(leg.knee))
+    bend = directions(parent, np.array(leg.knee))
     knee, ankle = _bent(hip, ankle, bend, leg.bones)
     drawn += [along(hip, knee, bend), along(knee, ankle, bend)]
     if leg.shapes[2] is not None:

@@ -42,11 +42,12 @@ PEOPLE: tuple[Person, ...] = (
            skin=_TAN, hair_colour=_BLOND, trousers=_TAN, shoes=_WHITE),
     Person("Pedestrian5", 1.86, 0.97, Garment.T_SHIRT, Hair.CAP,
            skin=_PALE, hair_colour=(0.16, 0.18, 0.24), trousers=_JEANS, shoes=_WHITE,
-           bag=(0.20, 0.21, 0.23)),
+           length=0.5, bag=(0.20, 0.21, 0.23)),
     Person("Pedestrian6", 1.70, 0.98, Garment.T_SHIRT, Hair.BUN,
            skin=_DEEP, hair_colour=_BLACK, trousers=_BEIGE, shoes=_WHITE),
     Person("Pedestrian7", 1.74, 1.08, Garment.COAT, Hair.HAT,
-           skin=_PALE, hair_colour=(0.25, 0.22, 0.19), trousers=_CHARCOAL, shoes=_LEATHER),
+           skin=_PALE, hair_colour=(0.25, 0.22, 0.19), trousers=_CHARCOAL, shoes=_LEATHER,
+           length=0.43),
     Person("Pedestrian8", 1.72, 1.02, Garment.JACKET, Hair.SHORT,
            skin=_TAN, hair_colour=_GREY, trousers=_OLIVE, shoes=_LEATHER),
 )  # fmt: skip
@@ -58,7 +59,7 @@ _STRIDE = 1.56
 
 def figure_of(person: Person) -> Figure:
     """Return a person who walks."""
-    s, g = person.height / 1.8, person.girth * person.height / 1.8
+    s, g = person.scale, person.girth * person.scale
     shapes = shapes_of_person(person)
     return Figure(
         upright=True,

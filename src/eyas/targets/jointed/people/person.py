@@ -64,8 +64,20 @@ class Person:
     """Of the hair, or of what covers it."""
     trousers: Colour
     shoes: Colour
+    length: float = 0.4
+    """From front to back at a height of 1.80 m [m]; the original's is 0.4."""
     bag: Colour | None = None
     """Colour of a backpack; None: none."""
+
+    @property
+    def scale(self) -> float:
+        """Height as a factor on the original's."""
+        return self.height / 1.8
+
+    @property
+    def size(self) -> tuple[float, float, float]:
+        """Length, width and height [m]."""
+        return self.length * self.scale, 0.6 * self.girth * self.scale, self.height
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +95,7 @@ class PersonShapes:
 
 def shapes_of_person(person: Person) -> PersonShapes:
     """Return the shapes of a person's parts."""
-    s, g = person.height / 1.8, person.girth * person.height / 1.8
+    s, g = person.scale, person.girth * person.scale
     skin, trousers = matt(*person.skin), matt(*person.trousers)
     bare_arm = person.garment in (Garment.T_SHIRT, Garment.DRESS)
     leg = skin if person.garment is Garment.DRESS else trousers
@@ -126,7 +138,7 @@ def shapes_of_person(person: Person) -> PersonShapes:
 
 
 def _torso(shell: Shell, person: Person, detail: int) -> None:
-    s, g = person.height / 1.8, person.girth * person.height / 1.8
+    s, g = person.scale, person.girth * person.scale
     sides = (5, 8, 12)[detail]
     trousers = matt(*person.trousers)
 
@@ -150,7 +162,7 @@ def _torso(shell: Shell, person: Person, detail: int) -> None:
 
 
 def _head(shell: Shell, person: Person, detail: int) -> None:
-    s = person.height / 1.8
+    s = person.scale
     skin, hair = matt(*person.skin), matt(*person.hair_colour)
     sides, rows = (5, 8, 12)[detail], (3, 5, 8)[detail]
     middle = 0.725
