@@ -15,7 +15,6 @@ from eyas.state.lighting import Lighting
 from eyas.state.motion import Motion, joined
 from eyas.state.scene import Scene
 from eyas.targets.catalogue import kind_index
-from eyas.targets.config import TargetName
 from eyas.targets.quadrotor import QUADROTOR
 from eyas.targets.rig import Rigs
 from eyas.traffic.config import Demand, Source, TrafficConfig
@@ -92,7 +91,7 @@ def _traffic(
     scene = load_scene(map_name, seed)
     others = crowd_motions(crowd, scene, clock, _seed_of(config))
     every = others if vehicles is None else [vehicles, *others]
-    followed = vehicles if crowd.target is TargetName.SUMO_VEHICLE else others[0]
+    followed = vehicles if crowd.follows_vehicles else others[0]
     targets = np.concatenate([np.full(len(motion.kind), motion is followed) for motion in every])
     return Replay(joined(every), targets)
 
@@ -101,10 +100,9 @@ def _live(
     map_name: str, seed: int, config: TrafficConfig, trackers: int, crowd: Crowd
 ) -> TrafficSource:
     """Return traffic that SUMO drives now: never shared, as its simulation ends with its owner."""
-    if crowd.target is not TargetName.SUMO_VEHICLE:
+    if not crowd.follows_vehicles:
         raise ConfigError(
-            f"traffic.source: 'live' is for the target 'SUMO_VEHICLE', not '{crowd.target}'; use "
-            "'recorded'"
+            "traffic.source: 'live' is for targets that SUMO drives, 'SUMO_VEHICLE'; use 'recorded'"
         )
     scene, own_seed = load_scene(map_name, seed), _seed_of(config)
     clock = Clock(round(STANDARD_DURATION * _RATE) + 1, _RATE)
