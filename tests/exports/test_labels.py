@@ -79,7 +79,7 @@ def test_labels_that_are_not_there_tell_nothing(run, tmp_path):
     [
         (lambda text: text[:-30], "line 2 is cut off or not JSON"),
         (lambda text: text.replace('"reward"', '"rewind"'), "line 1 is not the label of a frame"),
-        (lambda text: text.replace("[]}", "[1]}"), "line 1 is not the label of a frame"),
+        (lambda text: text.replace('"others": []', '"others": [1]'), "line 1 is not the label of a frame"),
     ],
 )
 def test_damaged_labels_say_where(run, written, frame, damage, line):

@@ -11,7 +11,6 @@ from eyas.sim.worlds import each_alone
     [
         ({"tracker": {"kind": "car"}}, r"tracker\.kind: 'car': the car as a tracker"),
         ({"tracker": {"supervised": False}}, r"tracker\.supervised: false: "),
-        ({"target": "Mantis"}, r"target: 'Mantis': "),
     ],
 )
 def test_a_simulation_refuses_what_it_would_ignore(values, line):

@@ -34,6 +34,7 @@ def see(snapshot, rules_with, look):
         cameras.rotation[N] = look(yaw, 1.0)
         targets.position[N] = targets.centre[N] = target
         targets.yaw[N] = target_yaw
+        targets.slowest[N] = 0.5
         observe(trackers, cameras, targets, episodes, N, FLAT, rules, size)
         return SimpleNamespace(**{name: array[N] for name, array in episodes._asdict().items()})
 

@@ -31,7 +31,7 @@ class Behaviour(StrEnum):
 class ExtraConfig(Config):
     """A group that shares the world with the targets, but is never drawn as one."""
 
-    kind: TargetName
+    kind: TargetName = TargetName.PEDESTRIAN
     """What they are. `SUMO_VEHICLE`: vehicles of `traffic`, where the target is none of these."""
     count: Annotated[int, Field(ge=1, le=1000)] = 10
     """How many."""

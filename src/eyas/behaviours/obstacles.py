@@ -7,7 +7,7 @@ import shapely
 from numpy.typing import NDArray
 
 from eyas.state.scene import Fixtures, ObjectClass, Scene
-from eyas.state.terrain import reliefs
+from eyas.state.terrain import Terrain, reliefs
 from eyas.world.roads.areas import corridors, split_on_grid
 
 __all__ = ["Obstacles"]
@@ -17,6 +17,9 @@ _STEP: Final = 0.3
 
 _HEAD: Final = 2.2
 """Height above the ground over which nothing is in the way [m]."""
+
+_STEEP: Final = 0.5
+"""Largest rise within a cell of the relief, per metre of its side."""
 
 _EDGE: Final = 5.0
 """Distance to the edge of the map that is kept [m]."""
@@ -46,6 +49,7 @@ class Obstacles:
             _fixtures(scene.fixtures),
             _walls(scene),
             _water(scene),
+            _steep(scene.terrain),
             _beyond(scene),
         ]
         if roads and len(scene.network.lane_width):
@@ -152,6 +156,18 @@ def _walls(scene: Scene) -> NDArray[np.object_]:
 def _water(scene: Scene) -> NDArray[np.object_]:
     plan = _triangles(scene, (ObjectClass.WATER,))[..., :2]
     return np.asarray(shapely.polygons(plan) if len(plan) else np.zeros(0), object)
+
+
+def _steep(terrain: Terrain) -> NDArray[np.object_]:
+    """Return the cells of the relief that are too steep to be climbed."""
+    if terrain.relief.size == 0:
+        return np.zeros(0, object)
+    relief = terrain.relief.astype(np.float64)
+    corners = np.stack([relief[:-1, :-1], relief[:-1, 1:], relief[1:, :-1], relief[1:, 1:]])
+    row, column = np.nonzero(np.ptp(corners, axis=0) > _STEEP * terrain.spacing)
+    west, south = terrain.west + column * terrain.spacing, terrain.south + row * terrain.spacing
+    boxes = shapely.box(west, south, west + terrain.spacing, south + terrain.spacing)
+    return np.asarray(boxes, object)
 
 
 def _beyond(scene: Scene) -> NDArray[np.object_]:

@@ -1,50 +1,55 @@
-"""Ways round blocks on their pavements."""
+"""Ways along pavements."""
 
 from typing import Final, NamedTuple
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
+from shapely.ops import substring
 
 from eyas.behaviours.obstacles import Obstacles
 from eyas.behaviours.surface import Surface
 from eyas.state.roads import RoadNetwork
-from eyas.world.roads.areas import blocks, corridors, polygons_of
+from eyas.traffic.smoothing import runs
+from eyas.world.roads.areas import blocks, polygons_of, road_area
 
-__all__ = ["LANES", "pavement_rings"]
+__all__ = ["LANES", "Way", "pavement_ways"]
 
 LANES: Final = (1.0, 1.9)
-"""Distances from the kerb of those who have the block on their left, and on their right [m]."""
+"""Distances from the kerb of those who have the road on their left, and on their right [m]."""
 
-_SHARE: Final = 0.97
-"""Least share of a way that lies on a pavement."""
+_SHORTEST: Final = 25.0
+"""Least length of a pavement on which one walks [m]."""
 
-_SHORTEST: Final = 60.0
-"""Least length of a way [m]."""
+_DRIVEWAY: Final = 12.0
+"""Largest width of asphalt that interrupts a pavement [m]."""
+
+_LAWN: Final = -0.05
+"""Height above that of lawns [m]."""
 
 _EVERY: Final = 1.0
 """Distance between points that are tested for pavement [m]."""
 
 
-class _Ring(NamedTuple):
-    """A closed way."""
+class Way(NamedTuple):
+    """A way that ends where it begins: round a block, or there and back."""
 
     corners: NDArray[np.float64]
-    """[m], shape (K, 2), the last not the first again; the block on the left if `LANES[0]`."""
+    """[m], shape (K, 2), the last not the first again."""
     length: float
     """[m]"""
 
 
-def pavement_rings(
+def pavement_ways(
     network: RoadNetwork,
     size: tuple[float, float],
     obstacles: Obstacles,
     surface: Surface,
     radius: float,
-) -> list[_Ring]:
-    """Return the ways round all blocks that have pavements all round, in both directions.
+) -> list[Way]:
+    """Return the ways along the pavements of all blocks, round what stands on them.
 
-    They lead round what stands on the pavement.
+    Where a block has no pavement all round, they lead there and back.
 
     Args:
         network: The roads.
@@ -56,19 +61,14 @@ def pavement_rings(
     if not len(network.lane_width):
         return []
     extent = shapely.box(-size[0] / 2, -size[1] / 2, size[0] / 2, size[1] / 2)
-    closed, _ = blocks(corridors(network), extent)
+    closed, _ = blocks(road_area(network), extent)
     found = []
     for block in closed:
         for lane, beyond in enumerate(LANES):
             ring = _ring(block, beyond, obstacles, radius)
-            if ring is None or ring.length < _SHORTEST:
-                continue
-            points = shapely.line_interpolate_point(ring, np.arange(0.0, ring.length, _EVERY))
-            if surface.at(shapely.get_coordinates(points)).pavement.mean() < _SHARE:
-                continue
-            corners = shapely.get_coordinates(ring)[:-1]
-            anticlockwise = shapely.is_ccw(ring) == (lane == 0)
-            found.append(_Ring(corners if anticlockwise else corners[::-1], ring.length))
+            if ring is not None:
+                line = ring if shapely.is_ccw(ring) == (lane == 1) else shapely.reverse(ring)
+                found += _ways(line, surface)
     return found
 
 
@@ -86,3 +86,30 @@ def _ring(
     free = shapely.difference(shapely.Polygon(inner.exterior), shapely.union_all(kept))
     parts = polygons_of(shapely.simplify(free, 0.04))
     return max(parts, key=shapely.area).exterior if parts else None
+
+
+def _ways(ring: shapely.LinearRing, surface: Surface) -> list[Way]:
+    """Return the parts of a ring that are on pavement, or all of it."""
+    count = int(ring.length / _EVERY)
+    points = shapely.line_interpolate_point(ring, np.arange(count) * _EVERY)
+    under = surface.at(shapely.get_coordinates(points))
+    paved = _bridged(under.pavement, under.height > _LAWN)
+    if paved.all():
+        return [Way(shapely.get_coordinates(ring)[:-1], ring.length)]
+    made = []
+    for first, last in runs(paved):
+        if (last - first) * _EVERY < _SHORTEST:
+            continue
+        part = substring(ring, first * _EVERY, (last - 1) * _EVERY)
+        corners = shapely.get_coordinates(part)
+        made.append(Way(np.concatenate([corners, corners[-2:0:-1]]), 2.0 * part.length))
+    return made
+
+
+def _bridged(paved: NDArray[np.bool_], hard: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Return what is paved, with the driveways that interrupt it."""
+    paved = paved.copy()
+    for first, last in runs(~paved):
+        if last - first <= _DRIVEWAY / _EVERY and hard[first:last].all():
+            paved[first:last] = True
+    return paved

@@ -137,20 +137,22 @@ def legs(task: Task, behaviour: Behaviour) -> list[Chain]:
     heading = task.rng.uniform(-math.pi, math.pi, count)
     first = [(*at, turn) for at, turn in zip(task.start.tolist(), heading.tolist(), strict=True)]
     pieces: list[list[Piece]] = [[] for _ in range(count)]
-    at, left = task.start.copy(), task.seconds.copy()
+    at, left, begins = task.start.copy(), task.seconds.copy(), True
+    enough = max(_ENOUGH, radius, 1.1 * wave.onwards if wave else 0.0)
     while (active := np.flatnonzero(left > 0.0)).size:
         far = min(_FAR, float(left.max()) * habit.speed + 1.0)
         turn, way = np.zeros(len(active)), np.zeros(len(active))
-        if behaviour is not Behaviour.WANDER:
+        if begins or behaviour is not Behaviour.WANDER:
             way = _reach(task, at[active], heading[active], far, radius)
-        stuck = way < min(max(_ENOUGH, radius), 0.5 * far)
+        begins, stuck = False, way < min(enough, 0.5 * far)
         other = active[stuck]
-        turn[stuck], way[stuck] = _turns(task, at[other], heading[other], far, radius)
+        turn[stuck], way[stuck] = _turns(task, at[other], heading[other], (far, enough), radius)
         if behaviour is Behaviour.WANDER:
             way = np.minimum(way, habit.speed * task.rng.uniform(*_WAY, len(active)))
         for k, life in enumerate(active.tolist()):
-            made = wave.leg(turn[k], way[k]) if wave else [(turn[k], way[k], 0.0)]
-            onwards = len(made) // _PIECES * wave.onwards if wave else way[k]
+            made, onwards = [(turn[k], way[k], 0.0)], way[k]
+            if wave:
+                made, onwards = wave.leg(turn[k], way[k])
             heading[life] += turn[k]
             at[life] += onwards * np.array([math.cos(heading[life]), math.sin(heading[life])])
             pieces[life] += made
@@ -169,16 +171,25 @@ def _reach(task: Task, at: Floats, heading: Floats, far: float, radius: float) -
 
 
 def _turns(
-    task: Task, at: Floats, heading: Floats, far: float, radius: float
+    task: Task, at: Floats, heading: Floats, span: tuple[float, float], radius: float
 ) -> tuple[Floats, Floats]:
-    """Return random turns [rad] that lead far enough, or else farthest, and how far [m]."""
+    """Return random turns [rad] that lead far enough, or else farthest, and how far [m].
+
+    Args:
+        task: Where it goes on.
+        at: Where they begin [m], shape (K, 2).
+        heading: Headings before the turns [rad], shape (K,).
+        span: The farthest, and what is enough [m].
+        radius: Distance to obstacles [m].
+    """
+    far, enough = span
     count = len(at)
     turn = task.rng.uniform(-math.pi, math.pi, (count, _DIRECTIONS))
     from_ = np.repeat(at, _DIRECTIONS, axis=0)
     reach = _reach(task, from_, (heading[:, None] + turn).ravel(), far, radius)
     reach = reach.reshape(turn.shape)
-    enough = np.minimum(0.5 * reach.max(axis=1), max(_ENOUGH, radius))
-    row, first = np.arange(count), np.argmax(reach >= enough[:, None], axis=1)
+    least = np.minimum(0.7 * reach.max(axis=1), enough)
+    row, first = np.arange(count), np.argmax(reach >= least[:, None], axis=1)
     return turn[row, first], reach[row, first]
 
 
@@ -194,18 +205,23 @@ class Wave(NamedTuple):
     aside: float
     """How far aside it swings [m]."""
 
-    def leg(self, turn: float, way: float) -> list[Piece]:
-        """Return the pieces of as many periods as lead so far [m], after a turn [rad]."""
+    def leg(self, turn: float, way: float) -> tuple[list[Piece], float]:
+        """Return the pieces of as many periods as lead so far [m], after a turn [rad], and how far
+        they lead [m]; where there is no room for a wave, they are straight.
+        """
+        count = int(way / self.onwards)
+        if count == 0:
+            return [(turn + self.swing, way, 0.0), (-self.swing, 0.0, 0.0)], way
         place = 2.0 * math.pi / _PIECES * np.arange(_PIECES + 1)
         bends = -self.swing * np.diff(np.cos(place)) * _PIECES / self.period
         once = [(0.0, self.period / _PIECES, bend) for bend in bends.tolist()]
-        many = once * int(way / self.onwards)
-        return [(turn, *many[0][1:]), *many[1:]] if many else [(turn, 0.0, 0.0)]
+        many = once * count
+        return [(turn, *many[0][1:]), *many[1:]], count * self.onwards
 
 
 def wave_of(speed: float) -> Wave:
     """Return the weave at a speed [m/s]."""
     period, swing = speed * 2.0 * math.pi / _WAVE, 1.0 / _WAVE
     flat = Wave(period, swing, 1.0, 0.0)
-    path = outline(chain_of(flat.leg(0.0, 1.0), (0.0, 0.0, -swing)))
+    path = outline(chain_of(flat.leg(0.0, 1.0)[0], (0.0, 0.0, -swing)))
     return flat._replace(onwards=float(path[-1, 0]), aside=float(np.abs(path[:, 1]).max()))

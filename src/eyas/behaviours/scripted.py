@@ -14,7 +14,7 @@ from eyas.behaviours.config import Behaviour
 from eyas.behaviours.habits import HABITS, STROLL, Habit
 from eyas.behaviours.lives import Lives
 from eyas.behaviours.obstacles import Obstacles
-from eyas.behaviours.pavements import pavement_rings
+from eyas.behaviours.pavements import pavement_ways
 from eyas.behaviours.places import Roadside
 from eyas.behaviours.routes import Task, legs, polylines, round_and_round, stops, wave_of
 from eyas.behaviours.surface import Surface
@@ -125,21 +125,21 @@ def _paths(
 def _strolls(
     ground: Ground, troop: Troop, habit: Habit, seconds: Floats, rng: np.random.Generator
 ) -> list[tuple[Chain, Habit]]:
-    """Return ways round blocks; all who go the same way are equally fast, so none passes others."""
+    """Return ways on pavements; all who go the same way are equally fast, so none overtakes."""
     scene, radius = ground.scene, 0.5 * troop.breadth + _ROOM
-    rings = pavement_rings(scene.network, scene.size, ground.obstacles, ground.surface, radius)
-    if not rings:
+    ways = pavement_ways(scene.network, scene.size, ground.obstacles, ground.surface, radius)
+    if not ways:
         raise SpawnError(
-            f"{troop.setting}: behaviour 'pavement': '{scene.name}' has no pavement all round a "
-            "block; allowed: another behaviour, or another map such as citystreet"
+            f"{troop.setting}: behaviour 'pavement': '{scene.name}' has no pavement; "
+            "allowed: another behaviour, or another map such as citystreet"
         )
-    speed = rng.uniform(*STROLL, len(rings))
-    length = np.array([ring.length for ring in rings])
-    chosen = rng.choice(len(rings), size=len(seconds), p=length / length.sum())
+    speed = rng.uniform(*STROLL, len(ways))
+    length = np.array([way.length for way in ways])
+    chosen = rng.choice(len(ways), size=len(seconds), p=length / length.sum())
     made = []
-    for ring, lasts in zip(chosen.tolist(), seconds.tolist(), strict=True):
-        own = habit._replace(speed=min(float(speed[ring]), habit.speed))
-        corners = rings[ring].corners
+    for way, lasts in zip(chosen.tolist(), seconds.tolist(), strict=True):
+        own = habit._replace(speed=min(float(speed[way]), habit.speed))
+        corners = ways[way].corners
         corners = np.roll(corners, -int(rng.integers(len(corners))), axis=0)
         made.append((round_and_round(corners, own, lasts), own))
     return made

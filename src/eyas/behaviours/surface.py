@@ -63,7 +63,7 @@ class Surface:
         return Footing(height, found.pavement[place])
 
     def _exactly(self, points: Floats) -> Footing:
-        floor = reliefs(self._terrain, points)
+        floor = self._terrain.floor + reliefs(self._terrain, points)
         height, pavement = np.full(len(points), -np.inf), np.zeros(len(points), np.bool_)
         which, what = self._tree.query(shapely.points(points), predicate="intersects")
         if len(which):

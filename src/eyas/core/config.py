@@ -3,7 +3,7 @@
 import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, TypeVar
+from typing import Any, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler, ValidationError
 from pydantic.fields import FieldInfo
@@ -147,6 +147,13 @@ def group_of(field: FieldInfo | None) -> type[Config] | None:
     return kind if isinstance(kind, type) and issubclass(kind, Config) else None
 
 
+def _entries_of(field: FieldInfo | None) -> type[Config] | None:
+    """Return the class of a field that holds a list of groups of settings; None for others."""
+    parts = get_args(field.annotation) if field else ()
+    kind = parts[0] if len(parts) == 2 and parts[1] is ... else None
+    return kind if isinstance(kind, type) and issubclass(kind, Config) else None
+
+
 def _merged(config: Config, changes: Mapping[str, Any]) -> dict[str, Any]:
     fields = type(config).model_fields
     values: dict[str, Any] = {name: getattr(config, name) for name in fields}
@@ -168,6 +175,10 @@ def _one_problem(entry: ErrorDetails, model: type[Config], values: object) -> Pr
     field: FieldInfo | None = None
     group: type[Config] | None = model
     for part in entry["loc"]:
+        if group is None and isinstance(part, int) and (group := _entries_of(field)):
+            path += (str(part),)
+            values = values[part] if isinstance(values, list | tuple) else None
+            continue
         if group is None:
             break  # inside one field: pydantic appends the variant of a union
         field = group.model_fields.get(str(part))

@@ -1,0 +1,37 @@
+"""The grounds of two maps: a flat city, and a village between hills."""
+
+import numpy as np
+import pytest
+
+from eyas.behaviours.habits import HABITS
+from eyas.behaviours.lives import lasting
+from eyas.behaviours.scripted import Clock, Ground, Troop, scripted_table
+from eyas.core.rng import stream
+from eyas.sim.scenes import load_scene
+
+CLOCK = Clock(601, 10.0)
+
+
+@pytest.fixture(scope="session")
+def city():
+    return Ground(load_scene("citystreet"), roads=False)
+
+
+@pytest.fixture(scope="session")
+def hills():
+    return Ground(load_scene("village"), roads=False)
+
+
+def troop(kind: str, count: int = 8, breadth: float = 0.6, **changes) -> Troop:
+    made = Troop(kind, breadth, None, lasting(count, CLOCK.samples), 0.0, "objects.max_count")
+    return made._replace(**changes)
+
+
+def table_of(ground, which, seed=0) -> np.ndarray:
+    return scripted_table(ground, which, CLOCK, stream(seed, which.kind))
+
+
+@pytest.fixture(scope="session")
+def city_tables(city):
+    """One minute of eight of each kind."""
+    return {kind: table_of(city, troop(kind)) for kind in HABITS}

@@ -1,0 +1,199 @@
+import math
+
+import numpy as np
+import pytest
+import shapely
+
+from eyas.behaviours.config import Behaviour
+from eyas.behaviours.habits import HABITS, STROLL
+from eyas.behaviours.lives import recycled
+from eyas.behaviours.scripted import Clock, Ground
+from eyas.core.errors import SpawnError
+from eyas.core.variation import Mirrored
+from eyas.sim.scenes import load_scene
+from eyas.state.motion import SAMPLE, ActorState, Motion
+from eyas.state.scene import ObjectClass
+from eyas.state.terrain import reliefs
+from eyas.targets.catalogue import MODELS
+from eyas.targets.config import ObjectsConfig, TargetName
+from eyas.traffic.replay import Replay
+from eyas.world.roads.areas import streets
+
+from .conftest import CLOCK, table_of, troop
+
+STOPPED = {kind for kind, habit in HABITS.items() if habit.behaviour is Behaviour.STOP}
+
+
+def points_of(table) -> np.ndarray:
+    here = table[table["present"] > 0.0]
+    return np.column_stack([here["x"], here["y"]]).astype(np.float64)
+
+
+def solids_at_feet(scene) -> shapely.STRtree:
+    """The colliders of a map that begin on the ground, without the code under test."""
+    solids, first = scene.colliders, scene.colliders.prism_first
+    low = solids.prism_bottom < reliefs(scene.terrain, solids.prism_points[first[:-1]]) + 1.0
+    prisms = [
+        shapely.Polygon(solids.prism_points[first[i] : first[i + 1]]) for i in np.flatnonzero(low)
+    ]
+    trunks = shapely.buffer(shapely.points(solids.cylinder_centre), solids.cylinder_radius)
+    return shapely.STRtree([*prisms, *trunks])
+
+
+def test_every_object_of_the_original_has_habits():
+    assert set(HABITS) == {name.value for name in TargetName} - {"SUMO_VEHICLE"}
+
+
+def test_the_catalogue_tells_the_speeds_of_the_habits():
+    speeds = {model.kind: model.speed for model in MODELS if model.kind in HABITS}
+    assert speeds == {kind: habit.speed for kind, habit in HABITS.items()}
+
+
+@pytest.mark.parametrize("place", ["city", "hills"])
+@pytest.mark.parametrize("kind", ["Pedestrian", "BB-8", "Create"])
+def test_nobody_goes_through_a_solid_or_water(request, place, kind):
+    ground = request.getfixturevalue(place)
+    points = shapely.points(points_of(table_of(ground, troop(kind))))
+    assert not len(solids_at_feet(ground.scene).query(points, predicate="intersects")[0])
+    kinds = ground.scene.object_class[ground.scene.static_object]
+    wet = ground.scene.static.triangles[kinds == ObjectClass.WATER]
+    if len(wet):
+        ponds = shapely.STRtree(shapely.polygons(ground.scene.static.positions[wet][..., :2]))
+        assert not len(ponds.query(points, predicate="intersects")[0])
+
+
+def test_everyone_stands_on_the_upper_side_of_the_ground(hills):
+    table = table_of(hills, troop("Pedestrian", count=30, offset=Mirrored(mirrored=(30.0, 90.0))))
+    here = table[table["present"] > 0.0]
+    points = points_of(table)
+    relief = reliefs(hills.scene.terrain, points)
+    assert np.abs(here["z"] - relief).max() < 0.7
+    assert np.ptp(here["z"]) > 1.0  # there are hills
+    steep = np.abs(np.tan(here["slope"]))
+    assert 0.02 < steep.max() < 0.8
+
+
+def test_pavements_are_higher_than_roads_and_lawns_lower(city):
+    rows = table_of(city, troop("Pedestrian", behaviour=Behaviour.PAVEMENT))
+    assert np.median(rows["z"]) == pytest.approx(0.15)
+    wide = table_of(city, troop("Pedestrian", count=20, offset=Mirrored(mirrored=(5.0, 20.0))))
+    assert {-0.1, 0.15} <= set(np.round(wide["z"].astype(float), 2).ravel().tolist())
+
+
+@pytest.mark.parametrize("kind", sorted(HABITS))
+def test_each_moves_at_its_speed_and_turns_no_faster_than_it_can(city_tables, kind):
+    table, habit = city_tables[kind], HABITS[kind]
+    speed = np.hypot(table["velocity_x"], table["velocity_y"])
+    assert speed.max() <= habit.speed * 1.001
+    moving = speed > 0.0
+    assert np.median(speed[moving]) == pytest.approx(habit.speed, rel=0.02)
+    assert speed[0].mean() > 0.7 * habit.speed
+    step = np.hypot(*(np.diff(table[axis].astype(np.float64), axis=0) for axis in "xy"))
+    assert step.max() <= habit.speed / CLOCK.rate + 1e-4
+    assert np.abs(np.diff(table["yaw"], axis=0)).max() <= habit.yaw_rate / CLOCK.rate + 1e-4
+    gone = np.diff(table["travelled"], axis=0)
+    both = moving[1:] & moving[:-1]
+    assert gone[both].mean() == pytest.approx(step[both].mean(), rel=0.02)
+    assert ((speed[-1] == 0.0).all()) == (kind in STOPPED and time_to_stop(kind) < 60.0)
+
+
+def time_to_stop(kind: str) -> float:
+    habit = HABITS[kind]
+    return (habit.distance + abs(habit.turn) * habit.radius) / habit.speed + 1.0
+
+
+def test_a_weave_swings(city_tables):
+    yaw = city_tables["BB-8"]["yaw"].astype(np.float64)
+    assert np.ptp(yaw, axis=0).min() > 2.0
+
+
+def test_the_pose_between_samples_is_the_same_alone_and_among_other_times(city_tables):
+    """Bit for bit: nothing is stepped."""
+    table = city_tables["Pedestrian"]
+    replay = Replay(Motion(table, np.zeros(table.shape[1], np.int32), CLOCK.rate, 0.0))
+    times = np.linspace(0.0, 59.0, 300)
+    every, one = ActorState.create(300, 8), ActorState.create(1, 8)
+    replay.at(times, every)
+    for k in (299, 0, 150):
+        replay.at(times[k : k + 1], one)
+        assert all(np.array_equal(a[k], b[0]) for a, b in zip(every, one, strict=True))
+
+
+def test_the_same_seed_gives_the_same_bytes_and_another_does_not(city, city_tables):
+    again = table_of(city, troop("Create"))
+    assert again.tobytes() == city_tables["Create"].tobytes()
+    assert table_of(city, troop("Create"), seed=1).tobytes() != again.tobytes()
+
+
+def from_middle(ground, points) -> np.ndarray:
+    """Distance of points to the nearest middle of a road [m]."""
+    middles = shapely.MultiLineString([street.left for street in streets(ground.scene.network)])
+    return shapely.distance(shapely.points(points), middles)
+
+
+def test_offsets_are_perpendicular_to_the_road_and_on_the_asked_side(city):
+    for offset in (2.0, -2.0):
+        starts = points_of(table_of(city, troop("Sojourner", count=40, offset=offset))[:1])
+        assert np.median(from_middle(city, starts)) == pytest.approx(2.0, abs=0.05)
+    mirrored = Mirrored(mirrored=(1.0, 3.0))
+    starts = points_of(table_of(city, troop("Sojourner", count=40, offset=mirrored))[:1])
+    away = from_middle(city, starts)
+    assert 0.9 < np.percentile(away, 10) < np.percentile(away, 90) < 3.1
+
+
+def test_where_cars_drive_nobody_is_on_the_road():
+    ground = Ground(load_scene("citystreet"), roads=True)
+    for behaviour in (None, Behaviour.PAVEMENT):
+        table = table_of(ground, troop("Pedestrian", behaviour=behaviour))
+        lanes = ground.scene.network.lane_points
+        points = points_of(table[::10])
+        away = np.linalg.norm(points[:, None] - lanes, axis=2).min()
+        assert away > 0.6
+
+
+def test_strollers_walk_on_pavements_only(city):
+    table = table_of(city, troop("Pedestrian", count=12, behaviour=Behaviour.PAVEMENT))
+    assert city.surface.at(points_of(table)).pavement.mean() > 0.95
+    speed = np.hypot(table["velocity_x"], table["velocity_y"]).max(axis=0)
+    assert ((STROLL[0] <= speed) & (speed <= STROLL[1])).all()
+
+
+def test_a_map_without_pavements_says_so(hills):
+    with pytest.raises(SpawnError, match=r"pavement.*'village' has no pavement"):
+        table_of(hills, troop("Pedestrian", behaviour=Behaviour.PAVEMENT))
+
+
+def test_a_map_that_is_full_says_so(city):
+    with pytest.raises(SpawnError, match=r"^objects\.max_count: 4 are asked for, but .* only 0"):
+        table_of(city, troop("Mantis", count=4, breadth=400.0))
+
+
+def test_objects_are_recycled_but_stay_for_an_episode():
+    config, clock = ObjectsConfig(), Clock(12601, 10.0)
+    lives = recycled(config, *clock, episode=3.0)
+    assert set(lives.slot.tolist()) == set(range(10))
+    assert len(lives.slot) > 100  # moved elsewhere again and again
+    motion = np.zeros((clock.samples, 10))
+    for slot, a, b in zip(*lives, strict=True):
+        assert not motion[a - 1 if a else 0 : b + 1, slot].any()  # never twice at once
+        motion[a : b + 1, slot] = 1
+    assert motion[50:].sum(axis=1).min() >= 10 - config.group_size
+    # Groups enter after each other, as in the original.
+    assert motion[0].sum() == 4
+    assert motion[6].sum() == 8
+    table = np.zeros(motion.shape, SAMPLE)
+    table["present"] = motion
+    replay = Replay(Motion(table, np.zeros(10, np.int32), 10.0, 0.0))
+    lasts = [replay.available(t, t + 3.0).sum() for t in np.linspace(2.0, 1200.0, 400)]
+    assert min(lasts) >= 5
+
+
+def test_longer_episodes_make_longer_lives():
+    long = recycled(ObjectsConfig(), 12601, 10.0, episode=60.0)
+    stays = (long.leaves - long.enters)[long.slot == 5] / 10.0
+    assert sorted(stays)[len(stays) // 2] == pytest.approx(240.0, abs=1.0)
+
+
+def test_a_full_turn_is_no_jump(city_tables):
+    for table in city_tables.values():
+        assert np.abs(np.diff(table["yaw"], axis=0)).max() < math.pi / 2

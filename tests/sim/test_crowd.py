@@ -1,0 +1,139 @@
+"""Targets other than vehicles, and extras, in simulations."""
+
+import math
+
+import numpy as np
+import pytest
+
+from eyas.core.errors import ConfigError, SpawnError
+from eyas.exports.frame import Action, frame_of
+from eyas.exports.labels import label_of
+from eyas.sim.build import build_simulation
+from eyas.sim.config import SimConfig
+from eyas.sim.worlds import each_alone, together
+from eyas.state.draw import Picture
+from eyas.state.scene import ObjectClass
+from eyas.targets.catalogue import KINDS
+
+FEW = {"max_count": 4, "interval": 10.0, "group_size": 4}
+START = {"pitch": 1.37, "height": 8.0}
+
+
+def built(trackers=1, **settings):
+    config = SimConfig(**{"start": START, "done": {"no_reward_steps": 10_000}, **settings})
+    simulation = build_simulation(config, each_alone(trackers))
+    simulation.reset()
+    return simulation
+
+
+@pytest.fixture(scope="module")
+def walk():
+    """Pedestrians to be followed, with a robot beside."""
+    extras = [{"kind": "BB-8", "count": 3}, {"kind": "SUMO_VEHICLE", "count": 5}]
+    return built(4, target="Pedestrian", objects=FEW, extras=extras)
+
+
+def kinds_around(simulation) -> list[str]:
+    return [KINDS[kind].name for kind in simulation._around.motion.kind.tolist()]
+
+
+def test_the_world_holds_who_is_asked_for_vehicles_first(walk):
+    assert kinds_around(walk) == ["passenger"] * 5 + ["Pedestrian"] * 4 + ["BB-8"] * 3
+
+
+def test_only_those_of_the_asked_kind_are_followed_and_none_is_lost(walk):
+    for _ in range(10):
+        walk.reset()
+        assert set(walk.snapshot.targets.actor.tolist()) <= {5, 6, 7, 8}
+        walk.carry(1500)
+        assert not walk.snapshot.targets.lost.any()
+
+
+def test_a_target_on_foot_is_in_the_picture_and_in_the_labels(walk):
+    walk.reset()
+    walk.carry(250)
+    picture = Picture.create(4, 120, 160, subject=True, class_id=True)
+    walk.draw(np.arange(4, dtype=np.int32), picture)
+    for tracker in range(4):
+        frame = frame_of(walk.snapshot, tracker, picture, tracker, 0, Action(-1, None))
+        label = label_of(frame)
+        assert (label.target_type, frame.target.object_class) == (
+            frame.target.type,
+            ObjectClass.PERSON,
+        )
+        assert label.visible_fraction > 0.1
+        assert (picture.class_id[tracker] == ObjectClass.PERSON).any()
+        assert math.hypot(*label.target_velocity) <= 2.001
+        assert label.target_travelled > 0.0
+        assert label.direction in (0, 1, 2, 3)
+        corners = np.array(label.target_corners)
+        ground = corners[:4, 2].mean()
+        assert -0.11 < ground < 0.16
+        assert corners[4:, 2].mean() - ground == pytest.approx(label.target_size[2])
+        assert np.allclose(corners.mean(axis=0)[:2], label.target_centre[:2], atol=1e-3)
+
+
+def velocity_of(targets) -> np.ndarray:
+    return targets.speed[:, None] * np.column_stack([np.cos(targets.yaw), np.sin(targets.yaw)])
+
+
+def test_truth_agrees_with_its_own_differences(walk):
+    walk.reset()
+    walk.carry(100)
+    before = walk.snapshot.copy().targets
+    walk.carry(1)
+    after = walk.snapshot.targets
+    went = np.linalg.norm(after.position - before.position, axis=1)[:4]
+    assert np.allclose(after.travelled - before.travelled, went, atol=2e-4)
+    turned = (after.yaw - before.yaw) / 0.002
+    assert np.allclose(turned, after.yaw_rate, atol=0.1)
+    velocity = [velocity_of(before), velocity_of(after)]
+    gain = (velocity[1] - velocity[0]) / 0.002
+    assert np.allclose(gain, after.acceleration[:, :2], atol=0.3)
+
+
+def test_extras_leave_the_vehicles_and_their_episodes_as_they_are():
+    alone = built(3)
+    among = built(3, extras=[{"kind": "Create", "count": 2}])
+    cars = alone.actors
+    assert among.actors == cars + 2
+    for _ in range(3):
+        for field in ("actor", "model", "position", "yaw"):
+            a, b = (getattr(sim.snapshot.targets, field) for sim in (alone, among))
+            assert np.array_equal(a, b), field
+        looks = [sim.actors_around(1)[1][:cars] for sim in (alone, among)]
+        assert np.array_equal(*looks)
+        alone.reset()
+        among.reset()
+
+
+def test_a_slow_robot_has_a_turn_direction():
+    robots = built(2, target="Sojourner", objects=FEW)
+    robots.carry(500)
+    assert (robots.snapshot.episodes.direction > 0).all()
+    assert (robots.snapshot.targets.speed < 0.05).all()
+
+
+def test_more_vehicles_than_the_traffic_has_are_refused():
+    extras = [{"kind": "SUMO_VEHICLE", "count": 60}]
+    with pytest.raises(ConfigError, match=r"^extras: 60 vehicles .* has 40; allowed"):
+        built(target="Pedestrian", objects=FEW, extras=extras)
+
+
+def test_an_unknown_behaviour_is_told_with_the_nearest():
+    with pytest.raises(ConfigError, match=r"^extras\.0\.behaviour: 'wonder' .* mean 'wander'"):
+        SimConfig(extras=[{"behaviour": "wonder"}])
+
+
+def test_fewer_targets_than_trackers_is_told():
+    config = SimConfig(target="Pedestrian", objects={**FEW, "max_count": 2})
+    simulation = build_simulation(config, together(3))
+    with pytest.raises(SpawnError, match="no target is free"):
+        simulation.reset()
+
+
+def test_no_target_for_a_whole_episode_is_told():
+    """Objects that come after the recording has ended."""
+    settings = {"target": "Pedestrian", "objects": FEW, "done": {"total_steps": 900_000}}
+    with pytest.raises(ConfigError, match=r"done\.total_steps: 900000"):
+        build_simulation(SimConfig(**settings), each_alone(1))
