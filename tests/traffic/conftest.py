@@ -8,7 +8,7 @@ from eyas.core.errors import MissingExtraError
 from eyas.state.motion import Motion
 from eyas.state.roads import RoadEdge, RoadGraph, RoadNode
 from eyas.state.terrain import Terrain
-from eyas.traffic.config import TrafficConfig
+from eyas.traffic.config import TrafficConfig, VehicleType
 from eyas.traffic.recorded import recorded_motion
 from eyas.traffic.recording import Provenance, Recording
 from eyas.traffic.sumo_install import import_libsumo
@@ -46,7 +46,8 @@ def make_recording() -> MakeRecording:
             position=np.rint(position * 100) * 0.01,
             yaw=np.zeros(shape) if yaw is None else np.rint(yaw * 1000) * 0.001,
             present=np.ones(shape, np.bool_) if present is None else present,
-            vehicle_length=5.0,
+            vehicle_types=(VehicleType.PASSENGER,) * shape[1],
+            vehicle_length=np.full(shape[1], 5.0),
             provenance=Provenance(
                 map_name="grid",
                 map_seed=3,

@@ -12,14 +12,15 @@ from eyas.core.cache.folder import Kind
 from eyas.core.errors import DataFileError, MissingExtraError
 from eyas.state.roads import RoadGraph
 from eyas.traffic import library
-from eyas.traffic.config import Demand, TrafficConfig
+from eyas.traffic.config import Demand, TrafficConfig, VehicleType
 from eyas.traffic.library import CANONICAL_SEED, find_recording
 from eyas.traffic.network import graph_hash
-from eyas.traffic.record import resolved
+from eyas.traffic.record import record, resolved
 from eyas.traffic.recording import Recording
 from eyas.traffic.recording_file import save, to_bytes
 
 CARS = TrafficConfig(max_vehicles=5)
+BUSES = TrafficConfig(max_vehicles=4, vehicle_type=VehicleType.BUS)
 
 
 @pytest.fixture(autouse=True)
@@ -125,12 +126,28 @@ def test_routes_that_need_not_be_new_are_made_anew_where_none_fit(
     kept = CARS.model_copy(update={"update_routes": False})
     first = find_recording(grid, kept, duration=5.0)
     assert len(caplog.messages) == 1
-    assert caplog.messages[0].startswith(
-        "traffic.update_routes (Sumo_Params.rou_update): false, but no recording fits; recording 5"
-    )
+    assert caplog.messages[0].startswith("recording 5 s of traffic on 'grid' with SUMO")
+    assert "although traffic.update_routes (Sumo_Params.rou_update) is false" in caplog.messages[0]
     assert to_bytes(find_recording(grid, kept, duration=5.0)) == to_bytes(first)
     assert to_bytes(find_recording(grid, CARS, duration=5.0)) == to_bytes(first)
     assert len(caplog.messages) == 1
+
+
+@pytest.mark.sumo
+@pytest.mark.usefixtures("sumo")
+def test_one_line_says_what_has_changed(
+    grid: RoadGraph, tmp_path: Path, caplog: pytest.LogCaptureFixture
+):
+    shipped = [tmp_path / "cars.npz", tmp_path / "buses.npz"]
+    save(record("grid", 0, grid, CARS, 5.0, CANONICAL_SEED), shipped[0])
+    save(record("grid", 0, grid, BUSES, 5.0, CANONICAL_SEED), shipped[1])
+    for same in (CARS, CARS.model_copy(update={"colour": (1.0, 0.0, 0.0), "group_size": 9}), BUSES):
+        find_recording(grid, same, duration=5.0, shipped=shipped)
+    assert caplog.messages == []
+    slow = BUSES.model_copy(update={"max_speed": 9.0})
+    find_recording(grid, slow, duration=5.0, shipped=shipped)
+    (line,) = caplog.messages
+    assert ", once, for traffic.max_speed is 9.0 (shipped: 20.0); kept in " in line
 
 
 WITHOUT_SUMO = """

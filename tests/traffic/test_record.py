@@ -10,11 +10,11 @@ from eyas.settings.legacy.adapter import from_legacy
 from eyas.state.motion import ActorState
 from eyas.state.roads import RoadEdge, RoadGraph, RoadNode
 from eyas.traffic import sumo as sumo_room
-from eyas.traffic.config import Demand, TrafficConfig, VehicleType
+from eyas.traffic.config import Demand, Mix, TrafficConfig, VehicleType
 from eyas.traffic.network import network_xml
 from eyas.traffic.record import WARM_UP, record, resolved
 from eyas.traffic.recording import Recording
-from eyas.traffic.recording_file import to_bytes
+from eyas.traffic.recording_file import from_bytes, to_bytes
 from eyas.traffic.replay import Replay
 from eyas.traffic.smoothing import runs, smooth
 from eyas.traffic.sumo_install import import_libsumo
@@ -157,8 +157,32 @@ def test_routes_are_used_up(grid: RoadGraph):
 def test_the_vehicle_type_reaches_sumo(grid: RoadGraph, vehicle_type: VehicleType, length: float):
     config = TrafficConfig(vehicle_type=vehicle_type, max_vehicles=3)
     recording = record("grid", 0, grid, config, 5.0, 1)
-    assert recording.vehicle_length == length
+    assert (recording.vehicle_length == length).all()
     assert recording.provenance.config.vehicle_type is vehicle_type
+
+
+MIX = Mix(passenger=5, bus=2, motorcycle=1)
+
+
+@pytest.mark.parametrize("demand", Demand)
+def test_a_mix_gives_each_class_its_share(grid: RoadGraph, demand: Demand):
+    base = GROUPS if demand is Demand.RESPAWN else CARS
+    config = base.model_copy(update={"vehicle_type": MIX, "max_vehicles": 10})
+    made = record("grid", 0, grid, config, 90.0, 1)
+    classes = np.array(made.vehicle_types)
+    # 6.25, 2.5 and 1.25 of ten: the one that is left goes to the largest remainder.
+    assert [int((classes == name).sum()) for name in VehicleType] == [6, 3, 0, 0, 1]
+    for name, length in ((VehicleType.PASSENGER, 5.0), (VehicleType.BUS, 12.0)):
+        assert (made.vehicle_length[classes == name] == length).all()
+        assert made.present[:, classes == name].any()
+    assert from_bytes(to_bytes(made), "").vehicle_types == made.vehicle_types
+    again = record("grid", 0, grid, config, 90.0, 1)
+    assert to_bytes(again) == to_bytes(made)
+
+
+def test_a_mix_of_one_class_is_that_class(cars: Recording, grid: RoadGraph):
+    alone = CARS.model_copy(update={"vehicle_type": Mix(passenger=0.3)})
+    assert to_bytes(record("grid", 0, grid, alone, 120.0, 1)) == to_bytes(cars)
 
 
 def test_top_speed_and_acceleration_reach_sumo(grid: RoadGraph):

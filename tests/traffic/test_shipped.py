@@ -2,6 +2,7 @@
 
 import subprocess
 import sys
+from collections import Counter
 from pathlib import Path
 
 import numpy as np
@@ -11,11 +12,12 @@ import shapely
 from eyas.core.errors import MissingExtraError
 from eyas.state.motion import ActorState
 from eyas.traffic import library
-from eyas.traffic.config import Demand, TrafficConfig, VehicleType
+from eyas.traffic.config import Demand, Mix, TrafficConfig, VehicleType
 from eyas.traffic.library import STANDARD_DURATION, find_recording
 from eyas.traffic.replay import Replay
 from eyas.traffic.smoothing import smooth
 from eyas.world.maps.citystreet import CITYSTREET
+from eyas.world.maps.downtown import DOWNTOWN
 from eyas.world.roads.areas import road_area
 
 WITHOUT_SUMO = """
@@ -66,7 +68,7 @@ def test_no_car_leaves_the_asphalt(flat_motion, demand):
     time = np.arange(0.0, replay.duration, 1.0)
     cars = ActorState.create(len(time), replay.actors)
     replay.at(time, cars)
-    size = 0.9 * np.array([shipped.vehicle_length, 1.8])
+    size = 0.9 * np.array([shipped.vehicle_length[0], 1.8])
     corners = 0.5 * size * [[1, 1], [1, -1], [-1, -1], [-1, 1]]
     cosine, sine = np.cos(cars.yaw)[..., None], np.sin(cars.yaw)[..., None]
     east = cars.position[..., :1] + cosine * corners[:, 0] - sine * corners[:, 1]
@@ -77,6 +79,17 @@ def test_no_car_leaves_the_asphalt(flat_motion, demand):
     shapely.prepare(asphalt)
     on_it = shapely.contains_xy(asphalt, east.ravel(), north.ravel()).reshape(east.shape)
     assert on_it[cars.present].all()
+
+
+@pytest.mark.parametrize("recipe", [CITYSTREET, DOWNTOWN], ids=lambda recipe: recipe.name)
+def test_a_mixed_fleet_is_shipped_and_found_in_any_unit(recipe):
+    percent = Mix(passenger=70, bus=10, truck=10, trailer=5, motorcycle=5)
+    config = TrafficConfig(vehicle_type=percent)
+    found = find_recording(recipe.roads(0), config, shipped=recipe.shipped_traffic())
+    numbers = Counter(found.vehicle_types)
+    assert [numbers[name] for name in VehicleType] == [28, 4, 4, 2, 2]
+    assert found.present.all()
+    assert (smooth(found).travelled[-1] > 7.0 * STANDARD_DURATION).all()
 
 
 def test_it_needs_no_sumo():

@@ -58,6 +58,8 @@ class Troop(NamedTuple):
     """Where it begins: distance from the middle of the road [m]."""
     setting: str
     """Setting that asks for it, for messages."""
+    habit: Habit | None = None
+    """How it moves; None: as its kind does."""
 
 
 class Ground:
@@ -84,7 +86,7 @@ def scripted_table(
     Raises:
         SpawnError: The map has no room for it.
     """
-    lives, habit = troop.lives, HABITS[troop.kind]
+    lives, habit = troop.lives, troop.habit or HABITS[troop.kind]
     seconds = (lives.leaves - lives.enters) / clock.rate
     paths = _paths(ground, troop, habit, seconds, rng)
     table = np.zeros((clock.samples, int(lives.slot.max()) + 1), SAMPLE)

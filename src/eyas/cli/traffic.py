@@ -1,16 +1,21 @@
 """`eyas traffic`."""
 
 import json
+import re
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from eyas.cli.options import ConfigFile, MapName, Overrides, Preset, chosen_file, gathered
+from eyas.core.errors import ConfigError
 
 __all__ = ["app"]
 
 app = typer.Typer(help="Record traffic with SUMO.", no_args_is_help=True)
+
+_MOST = 10_000
+"""Largest number of seeds at once."""
 
 
 @app.callback()
@@ -26,10 +31,25 @@ def record(  # noqa: PLR0913  # one parameter for each option
     ] = None,
     duration: Annotated[float, typer.Option("--duration", help="Seconds to record.")] = 1260.0,
     vehicle_type: Annotated[
-        str | None, typer.Option("--type", help="passenger, bus, truck, trailer or motorcycle.")
+        str | None,
+        typer.Option(
+            "--type",
+            help="passenger, bus, truck, trailer or motorcycle; or shares of several, such as "
+            """'{"passenger": 0.8, "bus": 0.2}'.""",
+        ),
     ] = None,
-    out: Annotated[Path | None, typer.Option("--out", help="File to write.")] = None,
-    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the file.")] = False,
+    seeds: Annotated[
+        str | None,
+        typer.Option("--seeds", help="Several seeds, such as 1-8 or 3,5,9: a file for each."),
+    ] = None,
+    workers: Annotated[
+        int | None,
+        typer.Option("--workers", min=1, help="Processes for several seeds; default: all cores."),
+    ] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", help="File to write; with --seeds the folder.")
+    ] = None,
+    overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace files.")] = False,
     config: ConfigFile = None,
     preset: Preset = None,
     set_: Overrides = None,
@@ -42,19 +62,47 @@ def record(  # noqa: PLR0913  # one parameter for each option
     ] = False,
 ) -> None:
     """Record traffic; use it with --set traffic.recording=FILE."""
-    from eyas.modes import traffic
+    from eyas.modes.traffic.recording import run, run_canonical
     from eyas.settings.file import load_settings
     from eyas.settings.legacy.messages import originals_named
 
-    short = {
-        "world.seed": map_seed,
-        "traffic.seed": seed,
-        "traffic.vehicle_type": vehicle_type,
-    }
+    short = {"world.seed": map_seed, "traffic.seed": seed}
     said = [f"{key}={json.dumps(value)}" for key, value in short.items() if value is not None]
+    if vehicle_type is not None:
+        said.append(f"traffic.vehicle_type={vehicle_type}")
     settings = load_settings(chosen_file(config, preset), [*gathered(set_, map_name), *said])
+    many = _numbers(seeds) if seeds is not None else ()
     with originals_named(settings):
         if canonical:
-            traffic.run_canonical(settings.world)
-        else:
-            traffic.run(settings.world, settings.traffic, duration, out, overwrite=overwrite)
+            run_canonical(settings.world)
+            return
+        run(
+            *(settings.world, settings.traffic, duration, out),
+            seeds=many,
+            workers=workers,
+            overwrite=overwrite,
+        )
+
+
+@app.command()
+def info(file: Annotated[Path, typer.Argument(help="A recording of traffic.")]) -> None:
+    """Print what is in a recording: its map and settings, vehicles, speeds, lasting tracks."""
+    from eyas.modes.traffic.info import describe
+
+    for line in describe(file):
+        typer.echo(line)
+
+
+def _numbers(text: str) -> tuple[int, ...]:
+    """Return the numbers of a list such as `1-4,9`.
+
+    Raises:
+        ConfigError: It is no such list, or too long.
+    """
+    ends = [re.fullmatch(r"(\d{1,9})(?:-(\d{1,9}))?", part.strip()) for part in text.split(",")]
+    spans = [range(int(one[1]), int(one[2] or one[1]) + 1) for one in ends if one]
+    if all(ends) and all(spans) and sum(map(len, spans)) <= _MOST:
+        return tuple(dict.fromkeys(number for span in spans for number in span))
+    raise ConfigError(
+        f"--seeds: {text!r} is not allowed; allowed: at most {_MOST} numbers, such as 1-8 or 3,5,9"
+    )

@@ -146,6 +146,10 @@ class Batch:
         """Observe some trackers; `begun` tells whose episode has just begun; shapes (N,)."""
         self.observer.look(self._all[chosen], begun[chosen])
 
+    def close(self) -> None:
+        """End live traffic, if there is any; may be called twice."""
+        self._simulation.close()
+
     def info(self) -> Info:
         """Return the state of the trackers by name, see `eyas.envs.information`."""
         return information(self._simulation)

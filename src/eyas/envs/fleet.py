@@ -122,7 +122,9 @@ class Fleet:
         return self.render(index, overlay=overlay)
 
     def close(self) -> None:
-        """Do nothing: there is nothing to end."""
+        """End live traffic, if there is any; may be called twice."""
+        for batch, _ in self._squads:
+            batch.close()
 
 
 def array_of(actions: Any, count: int) -> NDArray[Any]:  # noqa: ANN401  # whatever a learner returns

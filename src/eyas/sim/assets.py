@@ -6,6 +6,7 @@ from functools import lru_cache
 import numpy as np
 
 from eyas.behaviours.scripted import Clock
+from eyas.core.errors import ConfigError
 from eyas.render.ahead import begin_ahead, drawing_is_ready
 from eyas.render.renderer import Renderer, build_renderer
 from eyas.sim.crowd import NOBODY, Crowd, crowd_motions, vehicles_of
@@ -14,11 +15,12 @@ from eyas.state.lighting import Lighting
 from eyas.state.motion import Motion, joined
 from eyas.state.scene import Scene
 from eyas.targets.catalogue import kind_index
-from eyas.targets.config import TargetName
 from eyas.targets.quadrotor import QUADROTOR
 from eyas.targets.rig import Rigs
-from eyas.traffic.config import Demand, TrafficConfig
+from eyas.traffic.config import Demand, Source, TrafficConfig
 from eyas.traffic.library import CANONICAL_SEED, STANDARD_DURATION, find_recording
+from eyas.traffic.live import LiveSumo
+from eyas.traffic.record import resolved
 from eyas.traffic.recorded import kept_motion
 from eyas.traffic.replay import Replay
 from eyas.traffic.source import TrafficSource
@@ -65,7 +67,8 @@ def load_assets(
     recipe = MAPS.get(world.map)
     lighting, season = recipe.light(world.weather), recipe.season(world.weather)
     grouped = traffic.demand is Demand.RESPAWN
-    source = _traffic(world.map, world.seed, traffic, trackers if grouped else 1, crowd)
+    find = _live if traffic.source is Source.LIVE else _traffic
+    source = find(world.map, world.seed, traffic, trackers if grouped else 1, crowd)
     kinds, rigs = np.unique(source.motion.kind).tolist(), Rigs(source.motion.kind)
     body_part = -1
     if trackers > 1:
@@ -86,12 +89,35 @@ def _traffic(
         clock = Clock(len(vehicles.table), vehicles.rate)
     # A scene depends on the season, but its ground does not.
     scene = load_scene(map_name, seed)
-    own_seed = CANONICAL_SEED if config.seed is None else config.seed
-    others = crowd_motions(crowd, scene, clock, own_seed)
+    others = crowd_motions(crowd, scene, clock, _seed_of(config))
     every = others if vehicles is None else [vehicles, *others]
-    followed = vehicles if crowd.target is TargetName.SUMO_VEHICLE else others[0]
+    followed = vehicles if crowd.follows_vehicles else others[0]
     targets = np.concatenate([np.full(len(motion.kind), motion is followed) for motion in every])
     return Replay(joined(every), targets)
+
+
+def _live(
+    map_name: str, seed: int, config: TrafficConfig, trackers: int, crowd: Crowd
+) -> TrafficSource:
+    """Return traffic that SUMO drives now: never shared, as its simulation ends with its owner."""
+    if not crowd.follows_vehicles:
+        raise ConfigError(
+            "traffic.source: 'live' is for targets that SUMO drives, 'SUMO_VEHICLE'; use 'recorded'"
+        )
+    scene, own_seed = load_scene(map_name, seed), _seed_of(config)
+    clock = Clock(round(STANDARD_DURATION * _RATE) + 1, _RATE)
+    return LiveSumo(
+        MAPS.get(map_name).roads(seed),
+        resolved(config, own_seed, trackers),
+        scene.terrain,
+        kind_index,
+        STANDARD_DURATION,
+        others=crowd_motions(crowd, scene, clock, own_seed),
+    )
+
+
+def _seed_of(config: TrafficConfig) -> int:
+    return CANONICAL_SEED if config.seed is None else config.seed
 
 
 def _vehicles(

@@ -6,6 +6,7 @@ from pydantic import Field, model_validator
 
 from eyas.behaviours.config import ExtraConfig
 from eyas.core.config import Config
+from eyas.custom.config import CustomConfig
 from eyas.sensors.config import CameraConfig
 from eyas.targets.config import ObjectsConfig, TargetName
 from eyas.task.config import DoneConfig, RewardConfig, StartConfig
@@ -44,6 +45,8 @@ class SimConfig(Config):
     done: DoneConfig = DoneConfig()
     light: LightConfig = LightConfig()
     objects: ObjectsConfig = ObjectsConfig()
+    custom: CustomConfig | None = None
+    """A target of one's own, in the place of `target`."""
     extras: tuple[ExtraConfig, ...] = ()
     """Groups that share the world with the targets as distractors."""
 

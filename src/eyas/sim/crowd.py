@@ -15,6 +15,8 @@ from eyas.core.config import Config
 from eyas.core.errors import ConfigError
 from eyas.core.rng import stream
 from eyas.core.variation import Mirrored, Variation
+from eyas.custom.config import CustomConfig
+from eyas.custom.motion import Places, custom_motion
 from eyas.sim.config import SimConfig
 from eyas.state.motion import SAMPLE, Motion
 from eyas.state.scene import Scene
@@ -37,6 +39,13 @@ class Crowd(Config):
     extras: tuple[ExtraConfig, ...] = ()
     episode: float = 0.0
     """Length of an episode [s]."""
+    custom: CustomConfig | None = None
+    """A target of one's own, in the place of `target`."""
+
+    @property
+    def follows_vehicles(self) -> bool:
+        """Whether SUMO's vehicles are the targets."""
+        return self.custom is None and self.target is TargetName.SUMO_VEHICLE
 
 
 NOBODY = Crowd()
@@ -45,11 +54,15 @@ NOBODY = Crowd()
 
 def crowd_of(config: SimConfig) -> Crowd:
     """Return the crowd of a simulation; equal where only settings without effect differ."""
-    if config.target is TargetName.SUMO_VEHICLE:
+    if config.custom is None and config.target is TargetName.SUMO_VEHICLE:
         return Crowd(extras=config.extras)
     seconds = config.done.total_steps * PHYSICS_STEP
     return Crowd(
-        target=config.target, objects=config.objects, extras=config.extras, episode=seconds
+        target=config.target,
+        objects=config.objects,
+        extras=config.extras,
+        episode=seconds,
+        custom=config.custom,
     )
 
 
@@ -64,7 +77,7 @@ def vehicles_of(crowd: Crowd, known: int) -> int:
     Raises:
         ConfigError: More are asked for than there are.
     """
-    if crowd.target is TargetName.SUMO_VEHICLE:
+    if crowd.follows_vehicles:
         return known
     wanted = sum(extra.count for extra in crowd.extras if _is_traffic(extra))
     if wanted > known:
@@ -88,7 +101,7 @@ def crowd_motions(crowd: Crowd, scene: Scene, clock: Clock, seed: int) -> list[M
         SpawnError: The map has no room for all.
     """
     troops = _troops(crowd, clock)
-    vehicles = crowd.target is TargetName.SUMO_VEHICLE or any(map(_is_traffic, crowd.extras))
+    vehicles = crowd.follows_vehicles or any(map(_is_traffic, crowd.extras))
     ground: list[Ground] = []  # made when the first motion is not in the cache
 
     def made(number: int, troop: Troop) -> NDArray[np.float32]:
@@ -98,7 +111,7 @@ def crowd_motions(crowd: Crowd, scene: Scene, clock: Clock, seed: int) -> list[M
         table = scripted_table(ground[0], troop, clock, rng)
         return table.view(np.float32).reshape(*table.shape, -1)
 
-    motions = []
+    motions = [] if crowd.custom is None else [_custom(crowd, crowd.custom, scene, clock, seed)]
     for number, troop in enumerate(troops):
         numbers = cached(
             Kind.MOTION,
@@ -114,7 +127,7 @@ def crowd_motions(crowd: Crowd, scene: Scene, clock: Clock, seed: int) -> list[M
 
 def _troops(crowd: Crowd, clock: Clock) -> list[Troop]:
     troops = []
-    if crowd.target is not TargetName.SUMO_VEHICLE:
+    if crowd.custom is None and not crowd.follows_vehicles:
         lives = recycled(crowd.objects, clock.samples, clock.rate, crowd.episode)
         target = ExtraConfig(kind=crowd.target)
         troops.append(_troop(target, lives, crowd.objects.offset, "objects.max_count"))
@@ -123,6 +136,14 @@ def _troops(crowd: Crowd, clock: Clock) -> list[Troop]:
             lives = lasting(extra.count, clock.samples)
             troops.append(_troop(extra, lives, _ASIDE, f"extras.{number}.count"))
     return troops
+
+
+def _custom(crowd: Crowd, custom: CustomConfig, scene: Scene, clock: Clock, seed: int) -> Motion:
+    """Return the motion of a target of one's own; not kept, as its class may have changed."""
+    vehicles = any(map(_is_traffic, crowd.extras))
+    lives = recycled(crowd.objects, clock.samples, clock.rate, crowd.episode)
+    places, ground = Places(lives, crowd.objects.offset), Ground(scene, roads=vehicles)
+    return custom_motion(custom, places, ground, clock, stream(seed, "custom"))
 
 
 def _troop(extra: ExtraConfig, lives: Lives, offset: Variation, setting: str) -> Troop:

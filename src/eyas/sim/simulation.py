@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.clock import PHYSICS_STEP
 from eyas.core.parallel import Held
 from eyas.sensors.inertial import smoothing_share
 from eyas.sim.assets import Assets
@@ -47,6 +48,7 @@ class Simulation:
     Attributes:
         config: The settings.
         count: N.
+        traffic: Everything that moves by itself; live traffic takes reactions.
         snapshot: The state of everything; its arrays are written in place by each step.
 
     Args:
@@ -63,6 +65,7 @@ class Simulation:
         terrain = assets.scene.terrain
         self.config = config
         self.count = len(worlds.of)
+        self.traffic = assets.traffic
         self.snapshot = Snapshot.create(self.count)
         light = LightChanges(config.light, assets.lighting, worlds, self.snapshot.light)
         self._worlds = worlds
@@ -145,13 +148,13 @@ class Simulation:
         assert commands.shape == (self.count, 4), f"commands: shape {commands.shape}, not (N, 4)"
         self._orders.commands[:] = commands
         self._orders.active[:] = True if active is None else active
-        self._orders.steps[0] = physics_steps
+        self._begin_steps(physics_steps)
         self._step.fly()
         return self._result()
 
     def carry(self, physics_steps: int = 1) -> StepResult:
         """Move all trackers with their targets, at their start offsets."""
-        self._orders.steps[0] = physics_steps
+        self._begin_steps(physics_steps)
         self._step.carry()
         return self._result()
 
@@ -234,6 +237,16 @@ class Simulation:
         """
         chosen, rules = np.asarray(trackers, np.int32), self.rules if overlay else None
         self._pictures.draw_from(chosen, cameras, picture, rules)
+
+    def close(self) -> None:
+        """End live traffic, if that is what drives; may be called twice."""
+        self.traffic.close()
+
+    def _begin_steps(self, physics_steps: int) -> None:
+        self._orders.steps[0] = physics_steps
+        if self.traffic.live:
+            last = int(self.snapshot.episodes.tick.max()) + physics_steps
+            self.traffic.prepare(last * PHYSICS_STEP)
 
     def _result(self) -> StepResult:
         episodes = self.snapshot.episodes

@@ -1,17 +1,18 @@
 """Settings of the traffic."""
 
 from enum import StrEnum
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 from pydantic import Field, model_validator
 
 from eyas.core.config import Config
 
-__all__ = ["Demand", "TrafficConfig", "VehicleType"]
+__all__ = ["Demand", "Mix", "Source", "TrafficConfig", "VehicleType"]
 
 Unit = Annotated[float, Field(ge=0, le=1)]
 Least = Annotated[float, Field(ge=0, le=1e9)]
 Most = Annotated[float, Field(gt=0, le=1e9)]
+Share = Annotated[float, Field(ge=0, le=1e6)]
 
 
 class VehicleType(StrEnum):
@@ -22,6 +23,37 @@ class VehicleType(StrEnum):
     TRUCK = "truck"
     TRAILER = "trailer"
     MOTORCYCLE = "motorcycle"
+
+
+class Mix(Config):
+    """Classes of vehicles that share the roads, each with its share of them."""
+
+    written: ClassVar[str] = '{"passenger": 0.8, "bus": 0.2}'
+    passenger: Share = 0.0
+    bus: Share = 0.0
+    truck: Share = 0.0
+    trailer: Share = 0.0
+    motorcycle: Share = 0.0
+
+    @model_validator(mode="after")
+    def _not_empty(self) -> "Mix":
+        if not any(self.shares.values()):
+            raise ValueError("it must hold a number above 0")
+        return self
+
+    @property
+    def shares(self) -> dict[VehicleType, float]:
+        """Share of each class, in the user's own unit."""
+        return {name: getattr(self, name.value) for name in VehicleType}
+
+
+class Source(StrEnum):
+    """Where the traffic comes from."""
+
+    RECORDED = "recorded"
+    """A recording is replayed."""
+    LIVE = "live"
+    """SUMO drives in this process, a little ahead of the trackers."""
 
 
 class Demand(StrEnum):
@@ -37,10 +69,12 @@ class Demand(StrEnum):
 class TrafficConfig(Config):
     """Settings of the traffic that SUMO simulates."""
 
+    source: Source = Source.RECORDED
+    """Where the traffic comes from."""
     demand: Demand = Demand.KEEP_ALIVE
     """When vehicles enter and leave."""
-    vehicle_type: VehicleType = VehicleType.PASSENGER
-    """Class of all vehicles."""
+    vehicle_type: VehicleType | Mix = VehicleType.PASSENGER
+    """Class of all vehicles, or the share of each class."""
     max_vehicles: Annotated[int, Field(ge=1, le=1000)] = 40
     """Largest number of vehicles at a time."""
     max_speed: Annotated[float, Field(ge=0.1, le=100)] = 20.0
@@ -59,8 +93,8 @@ class TrafficConfig(Config):
     route_count: Annotated[int, Field(ge=1, le=10_000_000)] = 100_000
     """Largest number of routes drawn (respawn)."""
     update_routes: bool = True
-    """The original's `rou_update`. A recording is reused while it fits in any case; with False, a
-    line says why a new one is made."""
+    """The original's `rou_update`. A recording is reused while it fits in any case; with False,
+    the line that tells of a new one says that it was made all the same."""
     seed: Annotated[int, Field(ge=0, lt=2**31)] | None = None
     """Seed of SUMO and of the routes; None: the seed of the shipped recording."""
     colour: tuple[Unit, Unit, Unit] | None = None
@@ -73,4 +107,6 @@ class TrafficConfig(Config):
         low, high = self.route_length
         if low >= high:
             raise ValueError("route_length must hold the shortest and then the longest")
+        if self.source is Source.LIVE and self.recording is not None:
+            raise ValueError("recording must be left out where source is 'live'")
         return self

@@ -10,10 +10,11 @@ from pathlib import Path
 
 from eyas.core.cache.entries import write_entry
 from eyas.core.cache.folder import Kind, cache_folder, cache_limit, touch
+from eyas.core.config import shown
 from eyas.core.errors import DataFileError
 from eyas.core.files import user_path
 from eyas.state.roads import RoadGraph
-from eyas.traffic.config import Demand, TrafficConfig
+from eyas.traffic.config import Mix, TrafficConfig
 from eyas.traffic.network import graph_hash
 from eyas.traffic.record import GROUP_SHARE, WARM_UP, record, resolved
 from eyas.traffic.recording import Provenance, Recording, check_map
@@ -22,6 +23,7 @@ from eyas.traffic.sumo import options
 from eyas.traffic.sumo_install import sumo_version
 
 __all__ = [
+    "CANONICAL_MIX",
     "CANONICAL_SEED",
     "RESPAWN_GROUPS",
     "STANDARD_DURATION",
@@ -37,6 +39,9 @@ CANONICAL_SEED = 1
 RESPAWN_GROUPS = (3, 5, 10, 12)
 """Sizes of the groups in the shipped recordings with `respawn`: 3 for one tracker and 12 for the
 four of a video by default; 5 in the manual's example; 10 in the original's own file."""
+
+CANONICAL_MIX = Mix(passenger=0.7, bus=0.1, truck=0.1, trailer=0.05, motorcycle=0.05)
+"""Classes of vehicles in the shipped recordings of a mixed fleet, which the two cities have."""
 
 STANDARD_DURATION = 1260.0
 """Default length of a recording: 21 minutes [s]."""
@@ -77,38 +82,43 @@ def find_recording(
     seed = CANONICAL_SEED if config.seed is None else config.seed
     wanted = resolved(config, seed, trackers)
     _tell_raised(config, wanted, trackers)
+    others = []
     for file in shipped:
         origin = load_provenance(file)
         if _fits(origin, graph, wanted) and origin.duration >= duration:
             return load(file)
+        others.append(origin)
     kept = _cached(graph, wanted, duration)
-    return kept or _new(graph, wanted, duration, keep_routes=not config.update_routes)
+    if kept is not None:
+        return kept
+    reason = _reason(others, graph, wanted, duration)
+    if not config.update_routes:
+        reason = f"although traffic.update_routes (Sumo_Params.rou_update) is false, {reason}"
+    return _new(graph, wanted, duration, reason)
 
 
 def record_canonical(
     graph: RoadGraph,
     path: Path,
-    group_size: int | None = None,
+    config: TrafficConfig | None = None,
     progress: Callable[[float], None] | None = None,
 ) -> None:
-    """Record the canonical traffic of a map (its seed 0), to be shipped with it.
+    """Record canonical traffic of a map (its seed 0), to be shipped with it.
 
     For developers of a map, after a change in its roads.
 
     Args:
         graph: Roads of the map.
         path: The file.
-        group_size: Size of the groups, for `respawn`; None: `keep_alive`.
+        config: Settings of the traffic; None: the default.
         progress: Called with the completed share, 0 to 1.
 
     Raises:
         MissingExtraError: SUMO is not installed.
         OutputError: The file cannot be written.
     """
-    grouped = TrafficConfig(demand=Demand.RESPAWN, group_size=group_size)
-    config = TrafficConfig() if group_size is None else grouped
-    name, seed = graph.map_name, graph.seed
-    made = record(name, seed, graph, config, STANDARD_DURATION, CANONICAL_SEED, progress)
+    name, seed, chosen = graph.map_name, graph.seed, config or TrafficConfig()
+    made = record(name, seed, graph, chosen, STANDARD_DURATION, CANONICAL_SEED, progress)
     save(made, path)
 
 
@@ -164,16 +174,42 @@ def _cached(graph: RoadGraph, wanted: TrafficConfig, duration: float) -> Recordi
     return kept
 
 
-def _new(
-    graph: RoadGraph, wanted: TrafficConfig, duration: float, *, keep_routes: bool
-) -> Recording:
+def _reason(
+    others: Iterable[Provenance], graph: RoadGraph, wanted: TrafficConfig, duration: float
+) -> str:
+    """Return why none of other recordings fits: how the most alike of them differs."""
+    differences = [_differences(origin, graph, wanted, duration) for origin in others]
+    if not differences:
+        return "for there is none yet"
+    fewest = min(differences, key=lambda told: len(told))
+    return f"for {', '.join(fewest)}"
+
+
+def _differences(
+    origin: Provenance, graph: RoadGraph, wanted: TrafficConfig, duration: float
+) -> list[str]:
+    """Return what of a new recording is not as in one that is shipped."""
+    told = []
+    if origin.graph_hash != graph_hash(graph):
+        told.append(f"the roads are those of seed {graph.seed}")
+    new, old = wanted.model_dump(mode="json"), origin.config.model_dump(mode="json")
+    told += [
+        f"traffic.{name} is {shown(new[name])} (shipped: {shown(old[name])})"
+        for name in new
+        if new[name] != old[name]
+    ]
+    if origin.duration < duration:
+        told.append(f"it must last {duration:g} s (shipped: {origin.duration:g} s)")
+    return told
+
+
+def _new(graph: RoadGraph, wanted: TrafficConfig, duration: float, reason: str) -> Recording:
     """Return a new recording, and keep it in the cache."""
     limit, path = cache_limit(), _cache_file(graph, wanted, duration)
     version = sumo_version("new traffic, as no recording fits the settings,")
-    reason = "traffic.update_routes (Sumo_Params.rou_update): false, but no recording fits; "
     _LOG.warning(
-        "%srecording %.0f s of traffic on '%s' with SUMO %s, once; kept in %s",
-        *(reason if keep_routes else "", duration, graph.map_name, version, path),
+        "recording %.0f s of traffic on '%s' with SUMO %s, once, %s; kept in %s",
+        *(duration, graph.map_name, version, reason, path),
     )
     assert wanted.seed is not None
     made = record(graph.map_name, graph.seed, graph, wanted, duration, wanted.seed)

@@ -1,22 +1,14 @@
 """Recording of traffic that SUMO simulates according to the settings."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from importlib.metadata import version
 
 import numpy as np
 
 from eyas.core.errors import ConfigError
-from eyas.core.rng import stream
 from eyas.state.roads import RoadGraph
 from eyas.traffic.config import Demand, TrafficConfig
-from eyas.traffic.demand import (
-    RoadLinks,
-    Route,
-    departures,
-    endless_walk,
-    lasting_edges,
-    random_trips,
-)
+from eyas.traffic.fleet import fleet_of, simplest
 from eyas.traffic.network import graph_hash, network_xml
 from eyas.traffic.recording import (
     ANGLE_UNIT,
@@ -27,7 +19,7 @@ from eyas.traffic.recording import (
     restored,
 )
 from eyas.traffic.smoothing import held
-from eyas.traffic.sumo import RATE, Drive, Fleet, drive, options
+from eyas.traffic.sumo import RATE, Drive, drive, options
 from eyas.traffic.sumo_install import sumo_version
 
 __all__ = ["GROUP_SHARE", "WARM_UP", "provenance", "record", "resolved"]
@@ -66,7 +58,7 @@ def record(  # noqa: PLR0913  # everything a recording depends on
     config = resolved(config, seed)
     origin = provenance(map_name, map_seed, graph_hash(graph), config, duration)
     span = (WARM_UP, WARM_UP + duration)
-    raw = drive(network_xml(graph), config, _fleet(config, span[1]), span, progress)
+    raw = drive(network_xml(graph), config, fleet_of(config, span[1]), span, progress)
     if config.demand is Demand.KEEP_ALIVE:
         _check_all_there(raw)
     return _as_recording(raw, origin)
@@ -81,10 +73,10 @@ def resolved(config: TrafficConfig, seed: int, trackers: int = 0) -> TrafficConf
         trackers: Number of trackers in a world, which determines the least size of a group.
     """
     seen: dict[str, object] = {
-        name: getattr(config, name)
-        for name in ("demand", "vehicle_type", "max_vehicles", "max_speed")
+        name: getattr(config, name) for name in ("demand", "max_vehicles", "max_speed")
     }
     seen |= {
+        "vehicle_type": simplest(config.vehicle_type),
         "max_acceleration": config.max_acceleration,
         "max_deceleration": config.max_deceleration,
         "seed": seed,
@@ -127,24 +119,6 @@ def provenance(
     )
 
 
-def _fleet(config: TrafficConfig, duration: float) -> Fleet:
-    assert config.seed is not None
-    rng = stream(config.seed, "traffic")
-
-    def keep_alive(links: RoadLinks) -> Iterator[tuple[float, Route]]:
-        edges = lasting_edges(links)
-        for _ in range(config.max_vehicles):
-            yield 0.0, endless_walk(links, edges, duration * config.max_speed, rng)
-
-    def respawn(links: RoadLinks) -> Iterator[tuple[float, Route]]:
-        trips = random_trips(links, config.route_length, rng)
-        for time, size in departures(config, duration):
-            for _ in range(size):
-                yield time, next(trips)
-
-    return keep_alive if config.demand is Demand.KEEP_ALIVE else respawn
-
-
 def _check_all_there(raw: Drive) -> None:
     there = raw.present.all(axis=0)
     if not there.all():
@@ -166,6 +140,7 @@ def _as_recording(raw: Drive, origin: Provenance) -> Recording:
         position=restored(quantised(position, POSITION_UNIT), POSITION_UNIT),
         yaw=restored(quantised(yaw, ANGLE_UNIT), ANGLE_UNIT),
         present=raw.present,
+        vehicle_types=raw.vehicle_types,
         vehicle_length=raw.vehicle_length,
         provenance=origin,
     )

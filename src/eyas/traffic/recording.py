@@ -62,8 +62,10 @@ class Recording:
     """Heading without jumps at ±180° [rad], shape (S, A); held while absent."""
     present: NDArray[np.bool_]
     """Whether the actor is in the world, shape (S, A)."""
-    vehicle_length: float
-    """SUMO's length of the vehicle class [m]."""
+    vehicle_types: tuple[VehicleType, ...]
+    """Class of each actor, which is the class of all vehicles it represents, A."""
+    vehicle_length: NDArray[np.float64]
+    """SUMO's length of each actor's class [m], shape (A,)."""
     provenance: Provenance
     """Inputs it was made from."""
 
@@ -71,11 +73,6 @@ class Recording:
     def actors(self) -> int:
         """Number of actors."""
         return int(self.present.shape[1])
-
-    @property
-    def vehicle_types(self) -> tuple[VehicleType, ...]:
-        """Class of each actor, which is the class of all vehicles it represents."""
-        return (self.provenance.config.vehicle_type,) * self.actors
 
     @property
     def duration(self) -> float:
@@ -106,7 +103,11 @@ def problem_of(recording: Recording) -> str:
         "its arrays have different shapes": recording.position.shape == (*shape, 2)
         and recording.yaw.shape == shape,
         "its rate is not between 0.1 and 1000 Hz": 0.1 <= recording.rate <= 1000.0,
-        "its vehicles are not between 0 and 100 m long": 0.0 < recording.vehicle_length <= 100.0,
+        "its vehicles are not those of its arrays": len(recording.vehicle_types) == actors
+        and recording.vehicle_length.shape == (actors,),
+        "its vehicles are not between 0 and 100 m long": bool(
+            ((recording.vehicle_length > 0.0) & (recording.vehicle_length <= 100.0)).all()
+        ),
         "a vehicle is out of the world": bool((abs(recording.position) < limit).all()),
         "a vehicle turns without end": bool((abs(recording.yaw) < limit).all()),
         "its origin is not told in words": all(isinstance(text, str) for text in texts),

@@ -21,7 +21,7 @@ from eyas.core.config import shown, validated
 from eyas.core.errors import DataFileError, EyasError
 from eyas.core.files import read_limited, write_atomic
 from eyas.core.npz import read_npz
-from eyas.traffic.config import TrafficConfig
+from eyas.traffic.config import Mix, TrafficConfig, VehicleType
 from eyas.traffic.recording import (
     ANGLE_UNIT,
     POSITION_UNIT,
@@ -83,7 +83,7 @@ def to_bytes(recording: Recording) -> bytes:
     header = {
         "format": FORMAT,
         "rate": recording.rate,
-        "vehicle_length": recording.vehicle_length,
+        **_fleet_header(recording),
         "shape": recording.present.shape,
         "provenance": {
             **asdict(recording.provenance),
@@ -136,14 +136,27 @@ def _recording(arrays: Arrays, source: str) -> Recording:
     if samples != header["shape"][0] or flags.shape[-1] != -(-samples // 8):
         raise ValueError(f"{samples} samples, but the header says {header['shape']}")
     present = np.unpackbits(flags, axis=-1, count=samples)
+    origin = _provenance(header, source)
+    # One class and one length are those of all actors.
+    classes = header.get("vehicle_types", [origin.config.vehicle_type] * len(present))
+    length = np.asarray(header["vehicle_length"], np.float64)
     return Recording(
         rate=float(header["rate"]),
         position=np.ascontiguousarray(position.transpose(2, 0, 1)),
         yaw=np.ascontiguousarray(restored(_integrated("yaw", arrays), ANGLE_UNIT).T),
         present=np.ascontiguousarray(present.T.astype(np.bool_)),
-        vehicle_length=float(header["vehicle_length"]),
-        provenance=_provenance(header, source),
+        vehicle_types=tuple(VehicleType(name) for name in classes),
+        vehicle_length=length if length.ndim else np.full(len(present), float(length)),
+        provenance=origin,
     )
+
+
+def _fleet_header(recording: Recording) -> dict[str, Any]:
+    """Return what the header says of the actors: one length, or class and length of each."""
+    length = recording.vehicle_length.tolist()
+    if not isinstance(recording.provenance.config.vehicle_type, Mix):
+        return {"vehicle_length": length[0]}
+    return {"vehicle_length": length, "vehicle_types": list(recording.vehicle_types)}
 
 
 def _read(path: Path | Traversable) -> bytes:

@@ -10,7 +10,7 @@ from eyas.state.motion import ActorState, Motion
 from eyas.traffic.interpolation import interpolate_actors
 from eyas.traffic.smoothing import runs
 
-__all__ = ["Replay"]
+__all__ = ["Replay", "check_time"]
 
 ROUNDING: Final = 1e-9
 """Tolerance for rounding errors in times that are multiples of 2 ms [s]."""
@@ -26,6 +26,8 @@ class Replay:
         motion: Motion of all actors; its first time must be 0.
         targets: Whether each actor may be a target, shape (A,); None: all.
     """
+
+    live: Final = False
 
     def __init__(self, motion: Motion, targets: NDArray[np.bool_] | None = None) -> None:
         assert motion.first_time == 0.0, f"motion: begins at {motion.first_time} s"
@@ -47,6 +49,12 @@ class Replay:
         """Last time of the traffic [s]; the first is 0."""
         return (len(self.motion.table) - 1) / self.motion.rate
 
+    def prepare(self, until: float) -> None:
+        """Do nothing: everything is known."""
+
+    def close(self) -> None:
+        """Do nothing: nothing drives."""
+
     def at(self, time: NDArray[np.float64], out: ActorState) -> None:
         """Write all actors of W worlds at the time of each world [s], shape (W,)."""
         interpolate_actors(self.motion, time, out)
@@ -57,16 +65,22 @@ class Replay:
         Raises:
             ConfigError: The motion does not last that long.
         """
-        self._check_time(start)
-        self._check_time(end)
+        for time in (start, end):
+            check_time(time, self.duration)
         stays = (self._enters - ROUNDING <= start) & (end - ROUNDING <= self._leaves)
         available = np.zeros(self.actors, np.bool_)
         available[self._who[stays]] = True
         return available
 
-    def _check_time(self, time: float) -> None:
-        if not 0.0 <= time <= self.duration + ROUNDING:
-            raise ConfigError(
-                f"traffic: the recording lasts {self.duration:g} s, but {time:g} s was asked for; "
-                "shorten the episode or record more (eyas traffic record --duration)"
-            )
+
+def check_time(time: float, duration: float) -> None:
+    """Refuse a time [s] outside traffic of a duration [s].
+
+    Raises:
+        ConfigError: The traffic does not last that long.
+    """
+    if not 0.0 <= time <= duration + ROUNDING:
+        raise ConfigError(
+            f"traffic: the recording lasts {duration:g} s, but {time:g} s was asked for; "
+            "shorten the episode or record more (eyas traffic record --duration)"
+        )

@@ -16,10 +16,26 @@ from eyas.core.parallel import Held, Pointer, parallel_kernel
 from eyas.traffic.config import Demand
 from eyas.traffic.recording import Recording
 
-__all__ = ["Tracks", "held", "runs", "smooth"]
+__all__ = [
+    "REACH",
+    "SIGMA",
+    "Tracks",
+    "as_far",
+    "filtered",
+    "follow",
+    "front_path",
+    "held",
+    "rate_of",
+    "runs",
+    "smooth",
+    "wheelbases",
+]
 
 SIGMA = 0.3
 """Width of the Gaussian [s]: removes SUMO's 0.1 s steps and moves the path by centimetres only."""
+
+REACH = 4.0
+"""Half the length of the filter, in widths."""
 
 WHEELBASE = 0.54
 """Axle distance as a share of the vehicle's length: 2.7 m for the 5 m car."""
@@ -47,23 +63,30 @@ class Tracks:
     present: NDArray[np.bool_]
     """Whether the actor is in the world, shape (S, A)."""
 
+    @classmethod
+    def create(cls, rate: float, samples: int, actors: int) -> "Tracks":
+        """Return tracks of actors that are absent, at the origin."""
+        shape = (samples, actors)
+        return cls(
+            rate=rate,
+            position=np.zeros((*shape, 2)),
+            velocity=np.zeros((*shape, 2)),
+            yaw=np.zeros(shape),
+            yaw_rate=np.zeros(shape),
+            travelled=np.zeros(shape),
+            present=np.zeros(shape, np.bool_),
+        )
+
 
 def smooth(recording: Recording) -> Tracks:
     """Return the smooth motion of a recording."""
     shape = recording.present.shape
-    tracks = Tracks(
-        rate=recording.rate,
-        position=np.zeros((*shape, 2)),
-        velocity=np.zeros((*shape, 2)),
-        yaw=np.zeros(shape),
-        yaw_rate=np.zeros(shape),
-        travelled=np.zeros(shape),
-        present=recording.present.copy(),
-    )
-    wheelbase = min(WHEELBASE * recording.vehicle_length, LONGEST_WHEELBASE)
+    tracks = Tracks.create(recording.rate, *shape)
+    tracks.present[:] = recording.present
+    wheelbase = wheelbases(recording.vehicle_length).tolist()
     for actor in range(shape[1]):
         for first, last in runs(recording.present[:, actor]):
-            _smooth_run(recording, tracks, actor, slice(first, last), wheelbase)
+            _smooth_run(recording, tracks, actor, slice(first, last), wheelbase[actor])
         present = recording.present[:, actor]
         tracks.position[:, actor] = held(tracks.position[:, actor], present)
         tracks.yaw[:, actor] = held(tracks.yaw[:, actor], present)
@@ -71,6 +94,11 @@ def smooth(recording: Recording) -> Tracks:
         step[~(present[1:] & present[:-1])] = 0.0
         tracks.travelled[1:, actor] = np.cumsum(step)
     return tracks
+
+
+def wheelbases(length: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the axle distance of vehicles of a length [m]."""
+    return np.minimum(WHEELBASE * length, LONGEST_WHEELBASE)
 
 
 def runs(present: NDArray[np.bool_]) -> list[tuple[int, int]]:
@@ -104,28 +132,48 @@ def held(values: NDArray[np.float64], present: NDArray[np.bool_]) -> NDArray[np.
 def _smooth_run(
     recording: Recording, tracks: Tracks, actor: int, span: slice, wheelbase: float
 ) -> None:
-    yaw = recording.yaw[span, actor]
-    ahead = 0.5 * wheelbase * np.stack([np.cos(yaw), np.sin(yaw)], axis=-1)
-    driven = recording.position[span, actor] + ahead
-    front = _filtered(driven, SIGMA * recording.rate)
+    driven = front_path(recording.position[span, actor], recording.yaw[span, actor], wheelbase)
+    yaw, front = recording.yaw[span, actor], filtered(driven, recording.rate)
     if recording.provenance.config.demand is Demand.RESPAWN:
-        front = _as_far(front, driven, yaw)
-    heading = np.empty(len(yaw))
-    _follow(1, Held((front, float(yaw[0]), float(wheelbase), heading)))
-    centre = front - 0.5 * wheelbase * np.stack([np.cos(heading), np.sin(heading)], axis=-1)
+        front = as_far(front, driven, yaw)
+    centre, heading = follow(front, float(yaw[0]), wheelbase)
     tracks.position[span, actor] = centre
     tracks.yaw[span, actor] = heading
     if len(yaw) > 1:
-        tracks.velocity[span, actor] = _slope(centre, recording.rate)
-        tracks.yaw_rate[span, actor] = _slope(heading, recording.rate)
+        tracks.velocity[span, actor] = rate_of(centre, recording.rate)
+        tracks.yaw_rate[span, actor] = rate_of(heading, recording.rate)
 
 
-def _filtered(points: NDArray[np.float64], sigma: float) -> NDArray[np.float64]:
-    """Return points (S, 2) after a Gaussian filter of `sigma` samples.
+def front_path(
+    position: NDArray[np.float64], yaw: NDArray[np.float64], wheelbase: float
+) -> NDArray[np.float64]:
+    """Return where the front axle is for middles (S, 2) with headings (S,) [m], shape (S, 2)."""
+    return position + 0.5 * wheelbase * np.stack([np.cos(yaw), np.sin(yaw)], axis=-1)
+
+
+def follow(
+    front: NDArray[np.float64], yaw: float, wheelbase: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return middle (S, 2) and heading (S,) of a vehicle that is pulled along a path.
+
+    Args:
+        front: Path of the front axle [m], shape (S, 2).
+        yaw: Heading at its first point [rad].
+        wheelbase: Distance between the axles [m].
+    """
+    heading = np.empty(len(front))
+    _follow(1, Held((front, float(yaw), float(wheelbase), heading)))
+    centre = front - 0.5 * wheelbase * np.stack([np.cos(heading), np.sin(heading)], axis=-1)
+    return centre, heading
+
+
+def filtered(points: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
+    """Return points (S, 2) of a path after the Gaussian filter, at `rate` samples a second.
 
     Beyond its ends the path is continued by point reflection, so that uniform motion is unchanged.
     """
-    reach = math.ceil(4 * sigma)
+    sigma = SIGMA * rate
+    reach = math.ceil(REACH * sigma)
     weight = np.exp(-0.5 * (np.arange(-reach, reach + 1) / sigma) ** 2)
     weight /= weight.sum()
     mirror = np.minimum(np.arange(1, reach + 1), len(points) - 1)
@@ -136,7 +184,7 @@ def _filtered(points: NDArray[np.float64], sigma: float) -> NDArray[np.float64]:
     return np.stack(columns, axis=-1)
 
 
-def _as_far(
+def as_far(
     path: NDArray[np.float64], driven: NDArray[np.float64], yaw: NDArray[np.float64]
 ) -> NDArray[np.float64]:
     """Return the points of a path (S, 2) beside the points driven (S, 2) with headings (S,).
@@ -152,7 +200,7 @@ def _as_far(
     return np.stack([np.interp(place, length, path[:, axis]) for axis in range(2)], axis=-1)
 
 
-def _slope(values: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
+def rate_of(values: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
     """Return the change per second, by central differences; one-sided at the ends."""
     slope = np.empty_like(values)
     slope[1:-1] = (values[2:] - values[:-2]) * (0.5 * rate)

@@ -23,6 +23,11 @@ class TrafficSource(Protocol):
         ...
 
     @property
+    def live(self) -> bool:
+        """Whether the motion is not known in advance, so that `prepare` must come first."""
+        ...
+
+    @property
     def actors(self) -> int:
         """Number of actors."""
         ...
@@ -30,6 +35,10 @@ class TrafficSource(Protocol):
     @property
     def duration(self) -> float:
         """Last time of the traffic [s]; the first is 0."""
+        ...
+
+    def prepare(self, until: float) -> None:
+        """Make the motion known up to a time [s], and for a second more."""
         ...
 
     def at(self, time: NDArray[np.float64], out: ActorState) -> None:
@@ -43,4 +52,8 @@ class TrafficSource(Protocol):
 
     def available(self, start: float, end: float) -> NDArray[np.bool_]:
         """Return whether each actor stays in the world from `start` to `end` [s], shape (A,)."""
+        ...
+
+    def close(self) -> None:
+        """End what drives the traffic; may be called twice."""
         ...

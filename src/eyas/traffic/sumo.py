@@ -1,9 +1,8 @@
 """Interface to SUMO: a simulation in this process, sampled ten times per second."""
 
 import tempfile
-from collections import deque
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from types import ModuleType
@@ -12,12 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.errors import ConfigError
-from eyas.traffic.config import Demand, TrafficConfig
+from eyas.traffic.config import Demand, TrafficConfig, VehicleType
 from eyas.traffic.demand import RoadLinks, Route, without_turnarounds
+from eyas.traffic.entrance import Entrance
+from eyas.traffic.fleet import Fleet, vehicle_types
 from eyas.traffic.slots import Slots
 from eyas.traffic.sumo_install import import_libsumo
 
-__all__ = ["RATE", "Drive", "Fleet", "drive", "options"]
+__all__ = ["RATE", "Drive", "SumoRun", "drive", "options"]
 
 RATE = 10
 """SUMO's steps and Eyas's samples per second [Hz], as in the original."""
@@ -45,12 +46,6 @@ _IMPATIENCE = {
     Demand.RESPAWN: ' impatience="0.12"',
 }
 
-TYPE = "eyas"
-"""Name of the only vehicle type."""
-
-Fleet = Callable[[RoadLinks], Iterator[tuple[float, Route]]]
-"""Function of the roads that yields each vehicle's entry time [s] and route, the earliest first."""
-
 
 @dataclass(slots=True)
 class Drive:
@@ -62,8 +57,20 @@ class Drive:
     """Heading [rad], shape (S, A); 0 while absent."""
     present: NDArray[np.bool_]
     """Whether the actor is in the world, shape (S, A)."""
-    vehicle_length: float
-    """SUMO's length of the vehicle class [m]."""
+    vehicle_types: tuple[VehicleType, ...]
+    """Class of each actor, A."""
+    vehicle_length: NDArray[np.float64]
+    """SUMO's length of each actor's class [m], shape (A,)."""
+
+    @classmethod
+    def create(
+        cls, samples: int, actors: tuple[VehicleType, ...], length: NDArray[np.float64]
+    ) -> "Drive":
+        """Return samples in which nobody is present."""
+        shape = (samples, len(actors))
+        return cls(
+            np.zeros((*shape, 2)), np.zeros(shape), np.zeros(shape, np.bool_), actors, length
+        )
 
 
 def options(demand: Demand) -> tuple[str, ...]:
@@ -84,7 +91,7 @@ def drive(
     Args:
         network: SUMO's network file.
         config: Settings of the traffic; the seed is a number.
-        fleet: Entry times and routes of the vehicles.
+        fleet: The vehicles.
         span: First and last time of the samples [s].
         progress: Called with the completed share, 0 to 1, each simulated second.
 
@@ -93,26 +100,83 @@ def drive(
         ConfigError: SUMO already runs another simulation in this process.
     """
     skipped, steps = round(span[0] * RATE), round(span[1] * RATE)
-    shape = (steps - skipped + 1, config.max_vehicles)
-    result = Drive(np.zeros((*shape, 2)), np.zeros(shape), np.zeros(shape, np.bool_), 0.0)
-    with _simulation(network, config) as sumo:
-        result.vehicle_length = sumo.vehicletype.getLength(TYPE)
-        links = _read_links(sumo, config.vehicle_type)
-        entrance = _Entrance(sumo, fleet(links), config)
-        slots = Slots(config.max_vehicles)
+    with closing(SumoRun(network, config, fleet)) as run:
+        result = Drive.create(steps - skipped + 1, run.actors, run.vehicle_length)
         for step in range(1, steps + 1):
-            entrance.advance((step - 1) / RATE)
-            sumo.simulationStep()
-            slots.advance(int(name) for name in sumo.vehicle.getIDList())
+            run.advance()
             if step >= skipped:
-                _read_poses(sumo, slots, result, step - skipped)
+                run.read(result, step - skipped)
             if progress and step % RATE == 0:
                 progress(step / steps)
     return result
 
 
+class SumoRun:
+    """SUMO's simulation in this process: libsumo allows one.
+
+    Attributes:
+        actors: Class of each actor.
+        vehicle_length: SUMO's length of each actor's class [m], shape (A,).
+        sumo: The module libsumo, with the simulation loaded.
+
+    Args:
+        network: SUMO's network file.
+        config: Settings of the traffic; the seed is a number.
+        fleet: The vehicles.
+
+    Raises:
+        MissingExtraError: SUMO is not installed.
+        ConfigError: SUMO already runs another simulation in this process, or the roads are too few.
+    """
+
+    def __init__(self, network: bytes, config: TrafficConfig, fleet: Fleet) -> None:
+        self.actors = vehicle_types(config)
+        classes = tuple(dict.fromkeys(self.actors))
+        self._slots = Slots(self.actors)
+        self._steps = 0
+        with ExitStack() as stack:
+            self.sumo = stack.enter_context(_simulation(network, config, classes))
+            length = {name: self.sumo.vehicletype.getLength(name.value) for name in classes}
+            self.vehicle_length = np.array([length[name] for name in self.actors], np.float64)
+            links = {name: _read_links(self.sumo, name) for name in classes}
+            self._entrance = Entrance(self.sumo, fleet(links), self.actors, config.demand)
+            self._stack = stack.pop_all()
+
+    def close(self) -> None:
+        """End the simulation; may be called twice."""
+        self._stack.close()
+
+    def advance(self) -> None:
+        """Simulate one step."""
+        self._entrance.advance(self._steps / RATE)
+        self.sumo.simulationStep()
+        self._steps += 1
+        entered = self._entrance.entered
+        here = (int(name) for name in self.sumo.vehicle.getIDList())
+        self._slots.advance({vehicle: entered[vehicle] for vehicle in here})
+
+    def read(self, result: Drive, sample: int) -> None:
+        """Write the poses of the vehicles as a sample that is empty so far."""
+        for vehicle, actor in self._slots.taken.items():
+            # SUMO's position is the middle of the front bumper; its angle is clockwise from north.
+            half = 0.5 * result.vehicle_length[actor]
+            east, north = self.sumo.vehicle.getPosition(str(vehicle))
+            yaw = np.radians(90.0 - self.sumo.vehicle.getAngle(str(vehicle)))
+            place = east - half * np.cos(yaw), north - half * np.sin(yaw)
+            result.position[sample, actor] = place
+            result.yaw[sample, actor] = yaw
+            result.present[sample, actor] = True
+
+    def vehicle_of(self, actor: int) -> str | None:
+        """Return SUMO's name of the vehicle that an actor represents now; None if absent."""
+        taken = self._slots.taken.items()
+        return next((str(vehicle) for vehicle, slot in taken if slot == actor), None)
+
+
 @contextmanager
-def _simulation(network: bytes, config: TrafficConfig) -> Iterator[ModuleType]:
+def _simulation(
+    network: bytes, config: TrafficConfig, classes: Sequence[VehicleType]
+) -> Iterator[ModuleType]:
     sumo = import_libsumo()
     if sumo.simulation.isLoaded():
         raise ConfigError(
@@ -121,7 +185,8 @@ def _simulation(network: bytes, config: TrafficConfig) -> Iterator[ModuleType]:
     with tempfile.TemporaryDirectory(prefix="eyas-sumo-") as folder:
         roads, types = Path(folder) / "net.xml", Path(folder) / "types.xml"
         roads.write_bytes(network)
-        types.write_text(_type_xml(config))
+        lines = "".join(_type_xml(name, config) for name in classes)
+        types.write_text(f"<additional>{lines}</additional>")
         files = ("--net-file", str(roads), "--additional-files", str(types))
         clock = ("--step-length", str(1 / RATE), "--seed", str(config.seed))
         sumo.start(["sumo", *files, *clock, *options(config.demand)])
@@ -131,16 +196,16 @@ def _simulation(network: bytes, config: TrafficConfig) -> Iterator[ModuleType]:
             sumo.close()
 
 
-def _type_xml(config: TrafficConfig) -> str:
+def _type_xml(name: VehicleType, config: TrafficConfig) -> str:
     # Everything else, including the length, is SUMO's default for the class, as in the original,
     # except that vehicles do not slide sideways while standing, and at most at an angle of 17
     # degrees while driving.
     return (
-        f'<additional><vType id="{TYPE}" vClass="{config.vehicle_type}" '
+        f'<vType id="{name}" vClass="{name}" '
         f'maxSpeed="{config.max_speed}" accel="{config.max_acceleration}" '
         f'decel="{config.max_deceleration}" '
         'lcMaxSpeedLatStanding="0" lcMaxSpeedLatFactor="0.3"'
-        f"{_IMPATIENCE[config.demand]}/></additional>"
+        f"{_IMPATIENCE[config.demand]}/>"
     )
 
 
@@ -165,44 +230,3 @@ def _read_links(sumo: ModuleType, vehicle_type: str) -> RoadLinks:
         edge: (sumo.edge.getFromJunction(edge), sumo.edge.getToJunction(edge)) for edge in edges
     }
     return without_turnarounds(RoadLinks(successors, length), ends)
-
-
-class _Entrance:
-    """Adds vehicles to the simulation when they are due and there is room for them."""
-
-    def __init__(
-        self, sumo: ModuleType, fleet: Iterator[tuple[float, Route]], config: TrafficConfig
-    ) -> None:
-        self._sumo = sumo
-        self._fleet = fleet
-        self._room = config.max_vehicles
-        # Vehicles that never leave start anywhere; those of a group start where an edge begins.
-        self._place = "random_free" if config.demand is Demand.KEEP_ALIVE else "base"
-        self._waiting: deque[tuple[float, Route]] = deque()
-        self._entered = 0
-
-    def advance(self, time: float) -> None:
-        """Add the vehicles that are due at `time` [s]; those without room wait."""
-        self._room += self._sumo.simulation.getArrivedNumber()
-        while self._room > 0 and self._next_time() <= time:
-            name = str(self._entered)
-            self._sumo.route.add(name, self._waiting.popleft()[1])
-            self._sumo.vehicle.add(name, name, TYPE, departLane="best", departPos=self._place)
-            self._entered += 1
-            self._room -= 1
-
-    def _next_time(self) -> float:
-        if not self._waiting:
-            self._waiting.extend(entry for entry in [next(self._fleet, None)] if entry)
-        return self._waiting[0][0] if self._waiting else float("inf")
-
-
-def _read_poses(sumo: ModuleType, slots: Slots, result: Drive, sample: int) -> None:
-    half = 0.5 * result.vehicle_length
-    for vehicle, slot in slots.taken.items():
-        # SUMO's position is the middle of the front bumper; its angle is clockwise from north.
-        east, north = sumo.vehicle.getPosition(str(vehicle))
-        yaw = np.radians(90.0 - sumo.vehicle.getAngle(str(vehicle)))
-        result.position[sample, slot] = east - half * np.cos(yaw), north - half * np.sin(yaw)
-        result.yaw[sample, slot] = yaw
-        result.present[sample, slot] = True

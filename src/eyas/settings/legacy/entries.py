@@ -7,7 +7,7 @@ from enum import Enum
 
 from typing_extensions import override
 
-from eyas.core.config import shown
+from eyas.core.config import Config, shown
 from eyas.core.errors import ConfigError
 from eyas.core.variation import Mirrored, Uniform
 
@@ -94,6 +94,8 @@ class Same(Entry):
     def write(self, fields: Values) -> Values:
         value = fields[self.path]
         value = value.value if isinstance(value, Enum) else value
+        if isinstance(value, Config):
+            raise ConfigError(f"{self.path}: {shown(value)} cannot be expressed in env_config.json")
         return {self.key: str(value).upper() if self.upper_case else value}
 
     @override

@@ -19,6 +19,7 @@ if TYPE_CHECKING:  # maps load with `eyas`; the scene modules only when a scene 
 __all__ = [
     "ATTRIBUTION_FILE",
     "FEATURES_FILE",
+    "MIXED_FILE",
     "NETWORK_FILE",
     "TRAFFIC_FILE",
     "MapRecipe",
@@ -37,6 +38,10 @@ NETWORK_FILE = "network.npz"
 
 TRAFFIC_FILE = "traffic.npz"
 """File in a map's package with the canonical recording of its traffic."""
+
+
+MIXED_FILE = "traffic-mixed.npz"
+"""File in a city's package with the canonical recording of all classes of vehicles."""
 
 
 def respawn_file(group_size: int) -> str:

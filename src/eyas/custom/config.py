@@ -1,0 +1,45 @@
+"""Settings of a target of one's own."""
+
+from typing import Annotated, Literal
+
+from pydantic import Field, model_validator
+
+from eyas.behaviours.config import Behaviour
+from eyas.core.config import Config
+
+__all__ = ["CustomConfig"]
+
+Text = Annotated[str, Field(min_length=1)]
+
+
+class CustomConfig(Config):
+    """A target of one's own, in the place of `target`: `mesh`, `path` or `trajectory`."""
+
+    mesh: Text | None = None
+    """File of its shape: glTF, GLB, OBJ, STL or PLY (extra `mesh`)."""
+    path: Text | None = None
+    """Its class, `package.module:Class`, see `eyas.custom.own.OwnTarget`."""
+    trajectory: Text | None = None
+    """CSV file with the columns t, x, y and perhaps z and yaw, which moves it."""
+    body: Text = "Pedestrian"
+    """Kind that is moved by `trajectory`, if there is neither `mesh` nor `path`."""
+    up: Literal["y", "z"] | None = None
+    """Axis that is up in the file; None: y in glTF, else z."""
+    turn: Annotated[float, Field(ge=-7, le=7)] = 0.0
+    """Angle by which the mesh is turned about its height, so that it looks along x [rad]."""
+    scale: Annotated[float, Field(gt=0, le=1e6)] = 1.0
+    """Factor from the file's unit to metres."""
+    most_triangles: Annotated[int, Field(ge=12, le=200_000)] | None = None
+    """Number of triangles to which a larger mesh is simplified; None: it is left as it is."""
+    behaviour: Behaviour = Behaviour.WANDER
+    """How it moves, where it has no motion of its own."""
+    speed: Annotated[float, Field(ge=0.01, le=50)] = 1.0
+    """How fast it moves with a behaviour [m/s]."""
+
+    @model_validator(mode="after")
+    def _something(self) -> "CustomConfig":
+        if self.mesh is None and self.path is None and self.trajectory is None:
+            raise ValueError("mesh must be given, or path, or trajectory")
+        if self.mesh is not None and self.path is not None:
+            raise ValueError("path must be left out where a mesh is given")
+        return self

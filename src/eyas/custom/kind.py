@@ -1,0 +1,132 @@
+"""The entry of a target of one's own in the catalogue."""
+
+import hashlib
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from eyas.core.errors import ConfigError, UnknownNameError
+from eyas.core.files import user_path
+from eyas.core.registry import Registry
+from eyas.custom.config import CustomConfig
+from eyas.custom.mesh_file import LARGEST, loaded
+from eyas.custom.own import OwnTarget, Ride, Shaped
+from eyas.custom.rig import OwnRig
+from eyas.custom.shape import levels_of_detail, simplified
+from eyas.state.mesh import Mesh
+from eyas.state.scene import ObjectClass
+from eyas.targets.catalogue import KINDS, register
+from eyas.targets.kind import Kind
+
+__all__ = ["OwnModel", "kind_name_of", "own_target"]
+
+_CLASSES: Registry[type] = Registry("custom.path", type, {})
+
+
+@dataclass(frozen=True, slots=True)
+class OwnModel:
+    """The one model of a user's kind."""
+
+    name: str
+    typename: str
+    kind: str
+    size: tuple[float, float, float]
+    """Length, width and height [m]."""
+
+    @property
+    def rise(self) -> float:
+        """Height of the reference point above the ground [m]."""
+        return self.size[2] / 2
+
+
+def kind_name_of(config: CustomConfig) -> str:
+    """Return the kind of a user's target, put into the catalogue when it is asked for first.
+
+    Its name holds a hash of its parts, so that nothing that was kept of others is used for it.
+
+    Raises:
+        EyasError: The target cannot be used: one line.
+    """
+    if config.mesh is None and config.path is None:
+        names = [kind.name for kind in KINDS]
+        if config.body not in names:
+            raise UnknownNameError("custom.body", config.body, names)
+        return config.body
+    target, word = own_target(config), _word(config)
+    rig = OwnRig(target)
+    name = f"{word}-{_digest([mesh for levels in rig.part_levels() for mesh in levels])}"
+    if name not in (kind.name for kind in KINDS):
+        register(
+            Kind(
+                name=name,
+                models=(OwnModel(f"{name}-model", word, name, target.size),),
+                colours=((1.0, 1.0, 1.0),),
+                object_class=ObjectClass.ROBOT,
+                rig=lambda: OwnRig(target),
+                keeps_colours=True,
+            )
+        )
+    return name
+
+
+def own_target(config: CustomConfig) -> OwnTarget:
+    """Return the target that settings describe by a mesh or a class.
+
+    Raises:
+        EyasError: It cannot be used: one line.
+    """
+    if config.path is not None:
+        return _made(config.path)
+    shape = loaded(config)
+    if config.most_triangles is not None:
+        shape = simplified(shape, config.most_triangles)
+    count = len(shape.corners)
+    if count > LARGEST:
+        raise ConfigError(
+            f"custom.mesh: {config.mesh}: {count} triangles; allowed: up to {LARGEST}; simplify it "
+            f"with custom.most_triangles={LARGEST // 10}"
+        )
+    return Shaped(shape.size, levels_of_detail(shape))
+
+
+def _made(path: str) -> OwnTarget:
+    """Return a new target of a user's class, after looking at what it returns."""
+    target = _CLASSES.get(path)()
+    where = f"custom.path: {path!r}"
+    if not isinstance(target, OwnTarget):
+        raise ConfigError(f"{where} has not all of: size, parts(), pose(ride)")
+    size = np.asarray(target.size, np.float64)
+    if size.shape != (3,) or not (np.isfinite(size) & (size > 0.0)).all():
+        raise ConfigError(f"{where}: size is {target.size}; allowed: three lengths above 0 [m]")
+    parts = target.parts()
+    if not parts or not all(isinstance(part, Mesh) and len(part.triangles) for part in parts):
+        raise ConfigError(f"{where}: parts() must return one or more meshes with triangles")
+    count = sum(len(part.triangles) for part in parts)
+    if count > LARGEST:
+        raise ConfigError(f"{where}: {count} triangles; allowed: up to {LARGEST}")
+    poses = np.asarray(target.pose(Ride(*np.ones((3, 2)))))
+    if poses.shape != (2, len(parts), 3, 4) or not np.isfinite(poses).all():
+        raise ConfigError(
+            f"{where}: pose(ride) returned an array of shape {poses.shape} for 2 bodies; allowed: "
+            f"finite numbers of shape (2, {len(parts)}, 3, 4)"
+        )
+    return target
+
+
+def _word(config: CustomConfig) -> str:
+    """Return what packets and labels call it."""
+    if config.path is not None:
+        return config.path.partition(":")[2]
+    assert config.mesh is not None
+    return Path(user_path(config.mesh)).stem
+
+
+def _digest(meshes: Sequence[Mesh]) -> str:
+    digest = hashlib.sha256()
+    for mesh in meshes:
+        for array in (mesh.positions, mesh.normals, mesh.triangles, mesh.materials):
+            digest.update(f"{array.dtype.str} {array.shape}".encode() + array.tobytes())
+        digest.update(repr(mesh.palette).encode())
+    return digest.hexdigest()[:12]

@@ -1,0 +1,161 @@
+"""Reading of mesh files through trimesh: triangles in metres, each with one colour."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.errors import DataFileError, MissingExtraError
+from eyas.core.files import user_path
+from eyas.custom.config import CustomConfig
+
+__all__ = ["ENDINGS", "LARGEST", "Triangles", "loaded", "placed", "read_mesh"]
+
+ENDINGS = (".glb", ".gltf", ".obj", ".ply", ".stl")
+"""Endings of the files that can be read."""
+
+LARGEST = 200_000
+"""Largest number of triangles of a target."""
+
+_LARGEST_FILE = 512 << 20
+"""[bytes]"""
+
+_GLTF = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
+"""Our axes by those of glTF: z ahead, x left, y up."""
+
+_INSIDE = np.array([[4, 1, 1], [1, 4, 1], [1, 1, 4], [2, 2, 2]]) / 6.0
+"""Points of a triangle at which its texture is looked up, as shares of its corners."""
+
+_PLAIN = (0.62, 0.62, 0.62)
+"""sRGB of what has no colour."""
+
+
+@dataclass(frozen=True, slots=True)
+class Triangles:
+    """A shape without materials. V vertices, T triangles."""
+
+    points: NDArray[np.float64]
+    """[m], shape (V, 3)."""
+    corners: NDArray[np.int64]
+    """Vertices, counter-clockwise as seen from outside, shape (T, 3)."""
+    colours: NDArray[np.float64]
+    """sRGB 0 to 1, shape (T, 3)."""
+
+    @property
+    def size(self) -> tuple[float, float, float]:
+        """Length, width and height [m]."""
+        used = self.points[self.corners.ravel()]
+        length, width, height = (used.max(axis=0) - used.min(axis=0)).tolist()
+        return length, width, height
+
+
+def loaded(config: CustomConfig) -> Triangles:
+    """Return the mesh that settings name, on the ground at the origin and looking along x.
+
+    Raises:
+        DataFileError: The file is missing, empty or cannot be read.
+        MissingExtraError: trimesh is not installed.
+    """
+    assert config.mesh is not None
+    path = user_path(config.mesh)
+    up = config.up or ("y" if path.suffix.lower() in (".glb", ".gltf") else "z")
+    return placed(read_mesh(path), up, config.turn, config.scale)
+
+
+def read_mesh(path: Path) -> Triangles:
+    """Return the triangles of a file, in its own unit and axes.
+
+    Raises:
+        DataFileError: The file is missing, empty or cannot be read.
+        MissingExtraError: trimesh is not installed.
+    """
+    trimesh = _trimesh()
+    if path.suffix.lower() not in ENDINGS:
+        raise DataFileError(f"{path}: not a mesh file; allowed: {', '.join(ENDINGS)}")
+    if not path.is_file():
+        raise DataFileError(f"{path}: cannot read: no such file")
+    if path.stat().st_size > _LARGEST_FILE:
+        raise DataFileError(f"{path}: larger than {_LARGEST_FILE >> 20} MiB")
+    try:
+        parts = list(_parts(trimesh.load_scene(str(path))))
+    except Exception as error:  # its readers raise whatever they stumble on
+        raise DataFileError(f"{path}: cannot read as a mesh: {error}") from None
+    if not parts:
+        raise DataFileError(f"{path}: holds no triangles")
+    first = np.cumsum([0, *(len(part.points) for part in parts)])
+    return Triangles(
+        np.concatenate([part.points for part in parts]),
+        np.concatenate([part.corners + k for part, k in zip(parts, first, strict=False)]),
+        np.concatenate([part.colours for part in parts]),
+    )
+
+
+def placed(shape: Triangles, up: str, turn: float, scale: float) -> Triangles:
+    """Return a shape in metres, on the ground, its middle above the origin.
+
+    Args:
+        shape: As in the file.
+        up: The file's axis that is up: `y` as in glTF, or `z`.
+        turn: Angle by which it is turned, counter-clockwise from above [rad].
+        scale: Metres in the file's unit.
+    """
+    points = shape.points * scale
+    if up == "y":
+        points = points @ _GLTF.T
+    cosine, sine = np.cos(turn), np.sin(turn)
+    points = points @ np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]]).T
+    used = points[shape.corners.ravel()]
+    low, high = used.min(axis=0), used.max(axis=0)
+    middle = np.array([*(0.5 * (low + high))[:2], low[2]])
+    return replace(shape, points=points - middle)
+
+
+def _parts(scene: Any) -> Iterator[Triangles]:  # noqa: ANN401  # trimesh has no types
+    for part in scene.dump():
+        corners = getattr(part, "faces", None)
+        if corners is not None and len(corners):
+            points = np.asarray(part.vertices, np.float64)
+            corners = np.asarray(corners, np.int64)
+            yield Triangles(points, corners, _colours(part, len(corners)))
+
+
+def _colours(part: Any, count: int) -> NDArray[np.float64]:  # noqa: ANN401
+    """Return the colour of each triangle: its own, that of its corners or of the texture there."""
+    visual = part.visual
+    if hasattr(visual, "material"):
+        return _textured(visual, np.asarray(part.faces), count)
+    if not visual.defined:
+        return np.tile(_PLAIN, (count, 1))
+    return np.asarray(visual.face_colors, np.float64)[:, :3] / 255.0
+
+
+def _textured(visual: Any, corners: NDArray[np.int64], count: int) -> NDArray[np.float64]:  # noqa: ANN401
+    """Return the mean of the texture in each triangle, or the colour of the material."""
+    material = visual.material
+    image = getattr(material, "baseColorTexture", None) or getattr(material, "image", None)
+    if image is None or visual.uv is None:
+        return np.tile(np.asarray(material.main_color, np.float64)[:3] / 255.0, (count, 1))
+    pixels = np.asarray(image.convert("RGB"), np.float64) / 255.0
+    height, width = pixels.shape[:2]
+    total = np.zeros((count, 3))
+    for share in _INSIDE:
+        u, v = np.einsum("k,tkc->ct", share, np.asarray(visual.uv, np.float64)[corners])
+        column = np.floor(u * width).astype(np.int64) % width
+        row = np.floor((1.0 - v) * height).astype(np.int64) % height
+        total += pixels[row, column]
+    factor = getattr(material, "baseColorFactor", None)
+    tint = np.ones(3) if factor is None else np.asarray(factor, np.float64)[:3] / 255.0
+    return np.asarray(total / len(_INSIDE) * tint, np.float64)
+
+
+def _trimesh() -> ModuleType:
+    try:
+        import trimesh
+    except ImportError:
+        raise MissingExtraError("a target's mesh file", "mesh") from None
+    module: ModuleType = trimesh
+    return module

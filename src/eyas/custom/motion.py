@@ -1,0 +1,127 @@
+"""The motion of targets of one's own, as rows of the table of all motion."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.behaviours.habits import Habit
+from eyas.behaviours.lives import Lives
+from eyas.behaviours.scripted import Clock, Ground, Troop, scripted_table
+from eyas.core.errors import ConfigError
+from eyas.core.files import user_path
+from eyas.core.variation import Variation
+from eyas.custom.config import CustomConfig
+from eyas.custom.kind import kind_name_of, own_target
+from eyas.custom.own import MovesItself
+from eyas.custom.trajectory import read_trajectory
+from eyas.state.motion import SAMPLE, Motion
+from eyas.state.terrain import Terrain, reliefs
+from eyas.targets.catalogue import MODELS, kind_index, models_of
+
+__all__ = ["Places", "custom_motion"]
+
+_SPAN = 0.25
+"""Half the distance over which the slope of the ground is taken [m]."""
+
+Floats = NDArray[np.float64]
+
+
+class Places(NamedTuple):
+    """When and where targets with a behaviour begin, see `ObjectsConfig`."""
+
+    lives: Lives
+    offset: Variation
+
+
+def custom_motion(
+    config: CustomConfig, places: Places, ground: Ground, clock: Clock, rng: np.random.Generator
+) -> Motion:
+    """Return the motion of the user's targets.
+
+    Args:
+        config: The target.
+        places: When and where it begins, if it moves by a behaviour.
+        ground: The map.
+        clock: Number of samples, and their rate.
+        rng: Source of random numbers.
+
+    Raises:
+        EyasError: The target cannot be used, or the map has no room for it: one line.
+    """
+    name = kind_name_of(config)
+    target = own_target(config) if config.path is not None else None
+    if config.trajectory is not None:
+        table = _driven(config.trajectory, ground.scene.terrain, clock)
+    elif isinstance(target, MovesItself):
+        table = _own(target, int(places.lives.slot.max()) + 1, ground, clock, rng)
+    else:
+        table = scripted_table(ground, _troop(config, name, places), clock, rng)
+    return Motion(table, np.full(table.shape[1], kind_index(name), np.int32), clock.rate, 0.0)
+
+
+def _troop(config: CustomConfig, name: str, places: Places) -> Troop:
+    speed, size = config.speed, MODELS[models_of(kind_index(name)).start].size
+    breadth = float(np.hypot(*size[:2]))
+    radius = max(0.5, 0.5 * breadth, 0.3 * speed * speed)
+    habit = Habit(config.behaviour, speed, max(1.0, 0.5 * speed), min(2.0, speed / radius), radius)
+    return Troop(name, breadth, config.behaviour, *places, "objects.max_count", habit)
+
+
+def _driven(file: str, terrain: Terrain, clock: Clock) -> NDArray[np.void]:
+    """Return the samples of a trajectory, again and again, with a sample's break in between."""
+    path = user_path(file)
+    trajectory = read_trajectory(path)
+    jumps = trajectory.jumps()
+    if len(jumps):
+        raise ConfigError(
+            f"custom.trajectory: {path}: it jumps {trajectory.time[jumps[0]]:g} s after its "
+            "beginning; eyas targets check tells where"
+        )
+    period = int(trajectory.time[-1] * clock.rate) + 1
+    if period < 2:
+        raise ConfigError(f"custom.trajectory: {path}: it is shorter than {1.0 / clock.rate:g} s")
+    place, yaw = trajectory.at(np.arange(period) / clock.rate)
+    once = _table(place[:, None], yaw[:, None], terrain, clock.rate)
+    rounds = -(-clock.samples // (period + 1))
+    pause = once[-1:].copy()
+    pause["present"] = 0.0
+    table = np.concatenate([once, pause] * rounds)[: clock.samples]
+    travelled = np.repeat(np.arange(rounds), period + 1)[: clock.samples, None]
+    table["travelled"] += travelled * once["travelled"][-1]
+    return table
+
+
+def _own(
+    target: MovesItself, count: int, ground: Ground, clock: Clock, rng: np.random.Generator
+) -> NDArray[np.void]:
+    """Return the samples of a motion that a user's class computes."""
+    time = np.arange(clock.samples) / clock.rate
+    tracks = np.asarray(target.tracks(ground.scene, time, count, rng), np.float64)
+    if tracks.shape != (clock.samples, count, 3) or not np.isfinite(tracks).all():
+        raise ConfigError(
+            f"custom.path: tracks(...) returned an array of shape {tracks.shape}; allowed: finite "
+            f"numbers of shape {(clock.samples, count, 3)}"
+        )
+    place = np.concatenate([tracks[..., :2], np.full((*tracks.shape[:2], 1), np.nan)], axis=-1)
+    return _table(place, np.unwrap(tracks[..., 2], axis=0), ground.scene.terrain, clock.rate)
+
+
+def _table(place: Floats, yaw: Floats, terrain: Terrain, rate: float) -> NDArray[np.void]:
+    """Return samples of places (S, A, 3) with headings (S, A); z is NaN: on the ground."""
+    flat = place[..., :2].reshape(-1, 2)
+    ahead = _SPAN * np.stack([np.cos(yaw), np.sin(yaw)], axis=-1).reshape(-1, 2)
+    rise = reliefs(terrain, flat + ahead) - reliefs(terrain, flat - ahead)
+    on_ground = np.isnan(place[..., 2])
+    z = np.where(on_ground, reliefs(terrain, flat).reshape(yaw.shape), place[..., 2])
+    slope = np.arctan(rise / (2.0 * _SPAN)).reshape(yaw.shape)
+    table = np.zeros(yaw.shape, SAMPLE)
+    table["x"], table["y"], table["z"], table["yaw"] = place[..., 0], place[..., 1], z, yaw
+    table["slope"] = np.where(on_ground, slope, 0.0)
+    for name, values in (("velocity_x", place[..., 0]), ("velocity_y", place[..., 1])):
+        table[name] = np.gradient(values, axis=0) * rate
+    table["velocity_z"], table["yaw_rate"] = (np.gradient(v, axis=0) * rate for v in (z, yaw))
+    step = np.hypot(*np.moveaxis(np.diff(place[..., :2], axis=0), -1, 0))
+    table["travelled"][1:] = np.cumsum(step, axis=0)
+    table["present"] = 1.0
+    return table

@@ -1,0 +1,79 @@
+"""The rig of a target of one's own."""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.custom.own import OwnTarget, Ride, Shaped
+from eyas.state.draw import DrawList
+from eyas.state.mesh import Mesh
+from eyas.state.motion import ActorState
+from eyas.targets.kind import Group, Looks
+
+__all__ = ["OwnRig"]
+
+_TRIED = np.linspace(0.0, 20.0, 64)
+"""Distances at which the farthest place of each part is looked for [m]."""
+
+_MARGIN = 1.5
+"""Factor on it: parts may go farther in between."""
+
+
+class OwnRig:
+    """Parts that are posed by a user's function, on the ground and along its slope.
+
+    Attributes:
+        slots: As in `Rig`.
+        part_count: As in `Rig`.
+
+    Args:
+        target: The target.
+    """
+
+    def __init__(self, target: OwnTarget) -> None:
+        self._target = target
+        parts = target.parts()
+        self._levels = [target.levels] if isinstance(target, Shaped) else [(p,) for p in parts]
+        self.slots = self.part_count = len(parts)
+
+    def part_levels(self) -> Sequence[tuple[Mesh, ...]]:
+        """Return the meshes, see `Rig`."""
+        return self._levels
+
+    def reach(self, parts: NDArray[np.float64]) -> float:
+        """Return how far any point may be from the reference point, see `Rig` [m]."""
+        still = np.zeros_like(_TRIED)
+        poses = self._target.pose(Ride(_TRIED, still + 1.0, still))
+        away = np.linalg.norm(poses[..., 3], axis=-1).max(axis=0)
+        return float((_MARGIN * away + parts).max())
+
+    def pose(self, group: Group, actors: ActorState, looks: Looks, out: DrawList) -> None:
+        """Write the slots of all actors, see `Rig`."""
+        who = group.actor
+        shape = actors.yaw[:, who].shape
+        numbers = (actors.travelled, actors.speed, actors.yaw_rate)
+        local = self._target.pose(Ride(*(array[:, who].ravel() for array in numbers)))
+        local = np.reshape(local, (*shape, self.slots, 3, 4))
+        body = _frames(actors.yaw[:, who], actors.slope[:, who])[..., None, :, :]
+        turned = body @ local[..., :3]
+        moved = (body @ local[..., 3:])[..., 0] + actors.position[:, who, None]
+        present = actors.present[:, who]
+        for part in range(self.slots):
+            slot = group.slot + part
+            out.part[:, slot] = np.where(present, group.first_part + part, -1)
+            out.pose[:, slot, :, :3] = turned[:, :, part]
+            out.pose[:, slot, :, 3] = moved[:, :, part]
+            out.colour[:, slot] = looks.colour[:, who]
+
+
+def _frames(yaw: NDArray[np.float64], slope: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return rotations, shape (..., 3, 3): x along the heading and the slope."""
+    cosine, sine, rise = np.cos(yaw), np.sin(yaw), np.sin(slope)
+    level, none = np.cos(slope), np.zeros_like(yaw)
+    columns = [
+        np.stack([cosine * level, sine * level, rise], axis=-1),
+        np.stack([-sine, cosine, none], axis=-1),
+        np.stack([-cosine * rise, -sine * rise, level], axis=-1),
+    ]
+    return np.stack(columns, axis=-1)

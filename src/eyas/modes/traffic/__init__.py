@@ -1,0 +1,1 @@
+"""Recordings of traffic: making them with SUMO, and telling what they hold."""

@@ -1,0 +1,177 @@
+"""Live traffic: SUMO drives in this process, a little ahead of the trackers.
+
+The motion is that of a recording with the same settings, as it grows: SUMO's poses are filtered and
+laid on the ground piece by piece. What has been driven stays, so a time that is past can be asked
+for again; only what lies ahead can still be changed.
+"""
+
+import gc
+import math
+import weakref
+from collections.abc import Callable, Sequence
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.errors import ConfigError
+from eyas.state.motion import SAMPLE, ActorState, Motion, joined
+from eyas.state.roads import RoadGraph
+from eyas.state.terrain import Terrain
+from eyas.traffic.config import Demand, TrafficConfig
+from eyas.traffic.fleet import fleet_of
+from eyas.traffic.interpolation import interpolate_actors
+from eyas.traffic.live_tracks import LiveTracks
+from eyas.traffic.network import network_xml
+from eyas.traffic.record import WARM_UP
+from eyas.traffic.recorded import table_of
+from eyas.traffic.replay import check_time
+from eyas.traffic.sumo import RATE, SumoRun
+
+__all__ = ["LiveSumo", "Reaction"]
+
+Reaction = Callable[[SumoRun, float], None]
+"""Called before each of SUMO's steps, with the time of the traffic [s]: it may change anything in
+the running simulation through `SumoRun.sumo`, for example the speed of a vehicle."""
+
+_FARTHEST = 1
+"""Whole seconds beyond the one asked for that are ready: drawing looks up to one ahead [s]."""
+
+_running: "weakref.ref[LiveSumo] | None" = None
+
+
+class LiveSumo:
+    """SUMO in this process as a `TrafficSource`; there can be one, and no recording beside it.
+
+    Attributes:
+        motion: Motion of all actors; its table is filled while time goes on.
+        reactions: What is called before each step of SUMO; append your own.
+
+    Args:
+        graph: The roads.
+        config: Settings from `resolved`.
+        terrain: The ground; roads follow its relief.
+        kind: Function of the name of a class that returns its index, see `Motion.kind`.
+        duration: Last time [s].
+        others: Motions of those who are in the world besides; only vehicles are targets.
+
+    Raises:
+        MissingExtraError: SUMO is not installed.
+        ConfigError: SUMO already runs in this process, or the roads have no room for the traffic.
+    """
+
+    live: Final = True
+
+    def __init__(
+        self,
+        graph: RoadGraph,
+        config: TrafficConfig,
+        terrain: Terrain,
+        kind: Callable[[str], int],
+        duration: float,
+        *,
+        others: Sequence[Motion] = (),
+    ) -> None:
+        _check_alone()
+        fleet = fleet_of(config, WARM_UP + duration)
+        self._run = SumoRun(network_xml(graph), config, fleet)
+        self._end = weakref.finalize(self, self._run.close)
+        self._lasting = config.demand is Demand.KEEP_ALIVE
+        self._terrain = terrain
+        samples = round(duration * RATE) + 1
+        kinds = np.array([kind(name) for name in self._run.actors], np.int32)
+        # The system gives memory only to what is written.
+        empty = Motion(np.zeros((samples, len(kinds)), SAMPLE), kinds, float(RATE), 0.0)
+        self.motion: Final = joined([empty, *others]) if others else empty
+        self._vehicles = len(kinds)
+        self.reactions: Final[list[Reaction]] = []
+        self._tracks = LiveTracks(self._run, samples, config.demand)
+        for _ in range(round(WARM_UP * RATE) - 1):
+            self._run.advance()
+        self.prepare(0.0)
+        if self._lasting and not self._tracks.present[0].all():
+            self.close()
+            raise ConfigError(
+                f"traffic.max_vehicles: {len(kinds)} is too many for the roads of this map"
+            )
+        global _running
+        _running = weakref.ref(self)
+
+    @property
+    def actors(self) -> int:
+        """Number of actors."""
+        return len(self.motion.kind)
+
+    @property
+    def duration(self) -> float:
+        """Last time of the traffic [s]; the first is 0."""
+        return (len(self.motion.table) - 1) / RATE
+
+    @property
+    def ahead(self) -> float:
+        """Last time that SUMO has driven: what is later can be changed [s]."""
+        return (self._tracks.driven - 1) / RATE
+
+    def close(self) -> None:
+        """End SUMO's simulation; what it has driven can still be asked for."""
+        self._end()
+
+    def prepare(self, until: float) -> None:
+        """Drive on until the motion is known up to a time [s].
+
+        Raises:
+            ConfigError: The simulation was closed before that time.
+        """
+        wanted = min((math.floor(until) + 1 + _FARTHEST) * RATE + 1, len(self.motion.table))
+        if wanted <= self._tracks.ready:
+            return
+        if not self._end.alive:
+            raise ConfigError(
+                f"traffic.source: the live traffic was closed at {self.ahead:g} s, but {until:g} s "
+                "was asked for"
+            )
+        self._drive(min(wanted + self._tracks.ahead, len(self.motion.table)))
+
+    def at(self, time: NDArray[np.float64], out: ActorState) -> None:
+        """Write all actors of W worlds at the time of each world [s], shape (W,)."""
+        self.prepare(float(np.max(time)))
+        interpolate_actors(self.motion, time, out)
+
+    def available(self, start: float, end: float) -> NDArray[np.bool_]:
+        """Return whether each actor is in the world at `start`, as far as known until `end` [s].
+
+        Vehicles that come and go may leave before `end`: where they go is not known before.
+
+        Raises:
+            ConfigError: The traffic does not last that long.
+        """
+        for time in (start, end):
+            check_time(time, self.duration)
+        self.prepare(start)
+        known = min(round(end * RATE), self._tracks.ready - 1)
+        present: NDArray[np.bool_] = self._tracks.present[math.floor(start * RATE) : known + 1]
+        available = np.zeros(self.actors, np.bool_)
+        available[: self._vehicles] = present.all(axis=0)
+        return available
+
+    def _drive(self, samples: int) -> None:
+        """Let SUMO drive on until there are so many samples, and append what is known then."""
+        tracks = self._tracks
+        while tracks.driven < samples:
+            for react in self.reactions:
+                react(self._run, tracks.driven / RATE)
+            self._run.advance()
+            tracks.append()
+        rows = tracks.smooth()
+        self.motion.table[rows, : self._vehicles] = table_of(tracks.rows(rows), self._terrain)
+
+
+def _check_alone() -> None:
+    """Refuse a second live world; one that nobody uses any more is ended."""
+    gc.collect()
+    other = _running() if _running is not None else None
+    if other is not None and other._end.alive:
+        raise ConfigError(
+            "traffic.source: 'live' is in use in this process already, and libsumo runs one "
+            "simulation in a process; close the other one, or use 'recorded'"
+        )
