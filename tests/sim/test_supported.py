@@ -9,8 +9,6 @@ from eyas.sim.worlds import each_alone
 @pytest.mark.parametrize(
     ("values", "line"),
     [
-        ({"tracker": {"kind": "car"}}, r"tracker\.kind: 'car': the car as a tracker"),
-        ({"tracker": {"supervised": False}}, r"tracker\.supervised: false: "),
         ({"target": "Mantis"}, r"target: 'Mantis': "),
     ],
 )

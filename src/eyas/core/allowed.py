@@ -69,6 +69,8 @@ def describe(annotation: object, metadata: Sequence[object] = ()) -> str:
 
 def names_of(annotation: object) -> tuple[str, ...]:
     """Return the names a field can choose from; empty if it is not a choice of names."""
+    if get_origin(annotation) in (Union, types.UnionType):
+        return tuple(name for part in get_args(annotation) for name in names_of(part))
     if isinstance(annotation, type) and issubclass(annotation, Enum):
         return tuple(str(member.value) for member in annotation)
     return ()

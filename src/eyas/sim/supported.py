@@ -7,7 +7,6 @@ from eyas.core.config import shown
 from eyas.core.errors import NotInThisVersionError
 from eyas.sim.config import SimConfig
 from eyas.targets.config import TargetName
-from eyas.trackers.config import TrackerKind
 
 __all__ = ["Missing", "missing_parts", "require_parts"]
 
@@ -48,8 +47,3 @@ def missing_parts(config: SimConfig) -> Iterator[Missing]:
     if config.target is not TargetName.SUMO_VEHICLE:
         part = "a target other than SUMO's vehicles"
         yield Missing("target", config.target.value, part)
-    if config.tracker.kind is TrackerKind.CAR:
-        yield Missing("tracker.kind", config.tracker.kind.value, "the car as a tracker")
-    if not config.tracker.supervised:
-        part = "flying by a flight controller"
-        yield Missing("tracker.supervised", value=False, part=part)
