@@ -93,7 +93,7 @@ class Same(Entry):
     @override
     def write(self, fields: Values) -> Values:
         value = fields[self.path]
-        if self.upper_case and not isinstance(value, Enum):
+        if self.upper_case and ":" in str(value):  # a class of the user's
             raise ConfigError(f"{self.path}: {shown(value)} cannot be expressed in env_config.json")
         value = value.value if isinstance(value, Enum) else value
         return {self.key: str(value).upper() if self.upper_case else value}
