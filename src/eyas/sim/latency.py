@@ -70,7 +70,7 @@ class LateCommands:
         self._drawn.draw(tracker, key)
         self._since[:, tracker] = _NEVER
         self._commands[self._next, tracker] = 0.0
-        self._since[self._next, tracker] = 0
+        self._since[self._next, tracker] = -1  # before any that is given
 
     def pieces(self, commands: Floats, steps: int, clock: Integers) -> Iterator[tuple[Floats, int]]:
         """Yield the commands in force during the next steps, and for how many steps.
@@ -84,7 +84,7 @@ class LateCommands:
         self._commands[self._next] = commands
         self._since[self._next] = clock + self._drawn.steps
         times = clock + np.arange(steps)[:, np.newaxis]
-        given = np.where(self._since <= times[:, np.newaxis], self._since, -1)
+        given = np.where(self._since <= times[:, np.newaxis], self._since, -2)
         slot = given.argmax(axis=1)
         first = 0
         every = np.arange(slot.shape[1])
