@@ -117,5 +117,5 @@ def test_an_environment_takes_its_speeds_from_the_settings_or_the_call():
 
 
 def test_an_environment_names_what_is_not_in_this_version_in_both_notations():
-    with pytest.raises(NotInThisVersionError, match=r"tracker\.kind \(Tracker_Def\): 'car'"):
-        TrackingEnv({"tracker": {"kind": "car"}})
+    with pytest.raises(NotInThisVersionError, match=r"target \(Tracking_Object\): 'Mantis'"):
+        TrackingEnv({"target": "Mantis"})

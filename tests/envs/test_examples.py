@@ -17,7 +17,7 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 def importable(monkeypatch):
     monkeypatch.syspath_prepend(EXAMPLES)
     yield
-    for name in ("ppo", "own_observation", "own_map", "custom_map"):
+    for name in ("ppo", "own_observation", "own_map", "custom_map", "own_tracker"):
         sys.modules.pop(name, None)
 
 
@@ -39,6 +39,15 @@ def test_an_observation_of_ones_own_has_edges_and_motion(capsys):
     left, right = plain["image"][..., :-1].astype(int), plain["image"][..., 1:].astype(int)
     assert np.array_equal(seen["edges"], np.abs(right - left))
     assert np.allclose(seen["motion"][:, 0] * 25.0, plain["sensors"][:, 2])
+
+
+def test_a_tracker_of_ones_own_flies_a_curve(capsys):
+    import own_tracker
+
+    own_tracker.main()
+    lines = capsys.readouterr().out.splitlines()
+    assert len(lines) == 5
+    assert lines[-1].startswith("bank, pitch, heading: [-0.4")
 
 
 def test_proximal_policy_optimisation_in_one_file_learns_and_repeats_itself(tmp_path, capsys):

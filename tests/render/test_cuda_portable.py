@@ -29,7 +29,9 @@ from eyas.state.snapshot import Snapshot
 from eyas.state.terrain import Terrain
 from eyas.task.config import DoneConfig, RewardConfig
 from eyas.task.rules import make_rules
+from eyas.trackers.config import TrackerConfig
 from eyas.trackers.drone import DRONE
+from eyas.trackers.kinds import tracker_of
 
 from .small_city import car_parts, city_scene, city_traffic, looking
 
@@ -105,14 +107,22 @@ def test_shading_a_pixel_in_all_weathers_compiles_for_cuda(ptx_of, renderer_of, 
     assert sum(spilled) == 0
 
 
-@pytest.mark.parametrize("kernel", ["fly", "carry", "begin"])
-def test_the_step_compiles_for_cuda(ptx_of, kernel):
+FLOWN, CAR = (
+    tracker_of(TrackerConfig(**values)) for values in ({"supervised": False}, {"kind": "car"})
+)
+
+
+@pytest.mark.parametrize(
+    ("tracker", "kernel"),
+    [(DRONE, "fly"), (DRONE, "carry"), (DRONE, "begin"), (FLOWN, "fly"), (CAR, "fly")],
+)
+def test_the_step_compiles_for_cuda(ptx_of, tracker, kernel):
     motion = Motion(np.zeros((2, 1), SAMPLE), np.zeros(1, np.int32), 10.0, 0.0)
     around = Surroundings(motion, Terrain.flat(0.0))
     rules = make_rules(RewardConfig(), DoneConfig(), CameraConfig())
-    state = StepState(Snapshot.create(2), DRONE.memory(2), around, rules, 0.02)
+    state = StepState(Snapshot.create(2), tracker.memory(2, Terrain.flat(0.0)), around, rules, 0.02)
     parts = [pointer_to(part) for part in (state, Orders.create(2))]
-    step = getattr(step_of(DRONE), kernel)
+    step = getattr(step_of(tracker), kernel)
     text = ptx_of(step.function, CPointer(Tuple(parts)), intp, intp)
     assert ".visible .entry" in text
 

@@ -9,11 +9,6 @@ from eyas.settings.version_check import require_supported
 @pytest.mark.parametrize(
     ("values", "line"),
     [
-        ({"Tracker_Def": "CAR"}, r"tracker\.kind \(Tracker_Def\): 'car': "),
-        (
-            {"Drone_Supervisor_Ctrl": False},
-            r"tracker\.supervised \(Drone_Supervisor_Ctrl\): false: ",
-        ),
         ({"Tracking_Object": "Mantis"}, r"target \(Tracking_Object\): 'Mantis': "),
         ({"Lidar_Enable": True}, r"wire\.lidar \(Lidar_Enable\): true: "),
     ],

@@ -12,6 +12,7 @@ from eyas.sim.build import build_simulation
 from eyas.sim.simulation import Simulation
 from eyas.sim.worlds import each_alone
 from eyas.state.draw import Picture
+from eyas.state.terrain import Terrain
 from eyas.task.config import DoneConfig
 from eyas.task.done import DoneReason
 from eyas.trackers.tracker import Tracker
@@ -24,7 +25,7 @@ class RoverMemory(NamedTuple):
     """Since the start [m], shape (N,)."""
 
     @classmethod
-    def create(cls, count: int) -> "RoverMemory":
+    def create(cls, count: int, terrain: Terrain) -> "RoverMemory":
         return cls(np.zeros(count))
 
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from eyas.state.snapshot import CameraState, TrackerState
+from eyas.state.terrain import Terrain
 from eyas.trackers.drone import DRONE
 
 COUNT, N = 3, 1
@@ -14,7 +15,7 @@ class Drone:
 
     def __init__(self):
         self.trackers = TrackerState.create(COUNT)
-        self.memory = DRONE.memory(COUNT)
+        self.memory = DRONE.memory(COUNT, Terrain.flat(0.0))
         self.cameras = CameraState.create(COUNT)
         named = self.trackers._asdict().items()
         self.rows = SimpleNamespace(**{name: rows[N] for name, rows in named if rows.ndim > 1})

@@ -49,7 +49,11 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
     batch: Annotated[int, typer.Option("--batch", help="Episodes flown together.")] = 64,
     set_: Annotated[
         list[str] | None,
-        typer.Option("--set", metavar="env.KEY=VALUE", help="What the policy sees and does."),
+        typer.Option(
+            "--set",
+            metavar="env.KEY=VALUE",
+            help="What the policy sees and does; tracker.KEY, control.KEY: another protocol.",
+        ),
     ] = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder to write to.")] = None,
     as_published: Annotated[
@@ -87,8 +91,9 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
         "latency": latency,
         "sampled": sample,
         "batch": batch,
-        "env": _changes(set_ or []),
     }
+    changes = _changes(set_ or [])
+    values |= {"env": changes.pop("env", {}), "settings": changes}
     if seed is not None:
         values["seed"] = seed
     plan = validated(Plan, values)
@@ -125,7 +130,7 @@ def _names(text: str) -> list[str]:
 
 
 def _changes(said: list[str]) -> dict[str, Any]:
-    """Return changes of `env` from `env.key=value`.
+    """Return changes from `env.key=value`, and of other rooms.
 
     Raises:
         ConfigError: One is of another form, or changes what the protocol fixes.
@@ -133,11 +138,11 @@ def _changes(said: list[str]) -> dict[str, Any]:
     changes: dict[str, Any] = {}
     for text in said:
         path, equals, value = text.partition("=")
-        room, *keys = path.strip().split(".")
-        if not equals or room != "env" or not all(keys) or not keys:
+        keys = path.strip().split(".")
+        if not equals or keys[0] not in ("env", "tracker", "control") or not all(keys[1:] or [""]):
             raise ConfigError(
-                f"--set {text!r}: not allowed: env.KEY=VALUE, such as env.action_repeat=4; all "
-                "else belongs to the protocol"
+                f"--set {text!r}: not allowed: env.KEY=VALUE, such as env.action_repeat=4, or "
+                "tracker.KEY or control.KEY; all else belongs to the protocol"
             )
         group = changes
         for key in keys[:-1]:

@@ -11,6 +11,8 @@ __all__ = ["rotate", "rotate_back", "wrap_angle"]
 
 _TURN = 2.0 * math.pi
 
+Quaternion = NDArray[np.float64] | tuple[float, float, float, float]
+
 
 @kernel
 def wrap_angle(angle: float) -> float:
@@ -21,9 +23,7 @@ def wrap_angle(angle: float) -> float:
 
 
 @kernel
-def rotate(
-    quaternion: NDArray[np.float64], x: float, y: float, z: float
-) -> tuple[float, float, float]:
+def rotate(quaternion: Quaternion, x: float, y: float, z: float) -> tuple[float, float, float]:
     """Return a body vector in the world frame."""
     w, i, j, k = quaternion[0], quaternion[1], quaternion[2], quaternion[3]
     tx, ty, tz = 2.0 * (j * z - k * y), 2.0 * (k * x - i * z), 2.0 * (i * y - j * x)
@@ -35,9 +35,7 @@ def rotate(
 
 
 @kernel
-def rotate_back(
-    quaternion: NDArray[np.float64], x: float, y: float, z: float
-) -> tuple[float, float, float]:
+def rotate_back(quaternion: Quaternion, x: float, y: float, z: float) -> tuple[float, float, float]:
     """Return a world vector in the body frame."""
     w, i, j, k = quaternion[0], quaternion[1], quaternion[2], quaternion[3]
     tx, ty, tz = 2.0 * (k * y - j * z), 2.0 * (i * z - k * x), 2.0 * (j * x - i * y)

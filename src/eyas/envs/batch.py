@@ -137,7 +137,7 @@ class Batch:
                 break
         if self.config.verbose:
             for tracker in np.flatnonzero(active).tolist():
-                name = f"DRONE{tracker}"
+                name = f"{self.config.tracker.original_name}{tracker}"
                 _STEPS.info("%s", step_line(self._simulation.snapshot, tracker, name))
         done, at_limit = reason > DoneReason.NONE, reason == DoneReason.STEP_LIMIT
         return Outcome(reward, terms, done & ~at_limit, at_limit, reason)

@@ -109,13 +109,14 @@ def masked(info: Info, mask: Mask) -> Info:
 
 
 def sensor_state(simulation: Simulation, out: NDArray[np.float32]) -> None:
-    """Write position, velocity, felt acceleration, angular velocity, orientation and Euler angles.
+    """Write position, velocity, felt acceleration, angular velocity, orientation and Euler angles,
+    as the agents see them.
 
     Args:
         simulation: N trackers.
         out: Shape (N, 19).
     """
-    out[:] = simulation.packets()[0][:, SENSOR_COLUMNS]
+    out[:] = simulation.perception.packets()[0][:, SENSOR_COLUMNS]
 
 
 def privileged_state(snapshot: Snapshot, out: NDArray[np.float32]) -> None:

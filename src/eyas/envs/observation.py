@@ -91,7 +91,7 @@ class Observer:
         """
         if self._draws:
             picture = self._picture.first(len(chosen))
-            self._simulation.draw(chosen, picture)
+            self._simulation.perception.draw(chosen, picture)
             if picture.rgb is not None:
                 self._stack.add(picture.rgb, chosen, begun)
             for part, plane in ((_Parts.DEPTH, picture.depth), (_Parts.CLASSES, picture.class_id)):

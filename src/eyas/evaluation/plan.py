@@ -1,5 +1,6 @@
 """What an evaluation flies, and with what."""
 
+import json
 from collections.abc import Iterator
 from typing import Annotated, Any
 
@@ -43,25 +44,35 @@ class Plan(Config):
     """Whether a network's actions are drawn instead of the best ones."""
     env: dict[str, Any] = {}  # noqa: RUF012  # pydantic copies it
     """Changes of what the policy sees and does."""
+    settings: dict[str, Any] = {}  # noqa: RUF012  # the same
+    """Changes of `tracker` and `control`: another protocol."""
     batch: Annotated[int, Field(ge=1, le=4096)] = 64
     """Episodes that are flown together. A network's last bits may depend on it."""
 
     @property
     def rules(self) -> Protocol:
-        """The protocol."""
-        return protocol_named(self.protocol)
+        """The protocol, with the changes."""
+        protocol = protocol_named(self.protocol)
+        return protocol.changed(self.settings) if self.settings else protocol
 
     @property
     def command(self) -> str:
         """The command that repeats it."""
-        told = self.model_dump(exclude_defaults=True, exclude={"env", "sampled", "policy"})
+        told = self.model_dump(
+            exclude_defaults=True, exclude={"env", "settings", "sampled", "policy"}
+        )
         words = [f"eyas evaluate --policy {self.policy}"]
         for name, value in told.items():
             text = ",".join(value) if isinstance(value, tuple) else value
             words.append(f"--{name} {text}")
         if self.sampled:
             words.append("--sample")
-        words += [f"--set {key}={value}" for key, value in _flat("env", self.env)]
+        changes = {"env": self.env, **self.settings}
+        words += [
+            f"--set {key}={value if isinstance(value, str) else json.dumps(value)}"
+            for name, group in changes.items()
+            for key, value in _flat(name, group)
+        ]
         return " ".join(words)
 
 

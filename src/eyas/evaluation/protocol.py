@@ -4,7 +4,7 @@ import hashlib
 import json
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -32,6 +32,29 @@ _FIXED = set(SimConfig.model_fields) - {"seed", "same_target"}
 world of its own, so that none shares its target."""
 
 
+_LATER: Mapping[str, Any] = {
+    "control.action_latency_steps": 0.0,
+    "control.observation_latency_steps": 0.0,
+    "tracker.judged": None,
+    "tracker.motor_time_constant": 0.0,
+    "tracker.drag_area": 0.0,
+    "tracker.ground_contact": False,
+    "tracker.wind": {"speed": 0.0, "direction": 0.0, "turbulence": 0.0},
+}
+"""Settings that came after the first results, and the values that these had been made with."""
+
+
+def _joined(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, Any]:
+    """Return nested settings with some changed."""
+    both = dict(first)
+    for name, value in second.items():
+        inner = both.get(name)
+        if isinstance(value, Mapping) and isinstance(inner, Mapping):
+            value = _joined(inner, value)
+        both[name] = value
+    return both
+
+
 @dataclass(frozen=True)
 class Protocol:
     """A protocol; its settings are those of the preset `dat-eval`, with changes."""
@@ -52,6 +75,10 @@ class Protocol:
         """The settings, without place, direction, seed and `env`."""
         return updated(load_settings(preset_file("dat-eval")), self.changes)
 
+    def changed(self, changes: Mapping[str, Any]) -> "Protocol":
+        """Return a protocol with other settings, and so with another hash."""
+        return replace(self, changes=_joined(self.changes, changes))
+
     @property
     def steps(self) -> int:
         """Number of control steps in an episode; actions last one or several of them."""
@@ -68,6 +95,10 @@ class Protocol:
         settings = self.settings.model_dump(mode="json", include=_FIXED)
         if not settings["extras"]:  # results are older than this setting
             del settings["extras"]
+        for path, default in _LATER.items():
+            group, name = path.split(".")
+            if settings[group][name] == default:
+                del settings[group][name]
         content = [FORMAT, settings, self.directions, self.alike]
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:12]
 

@@ -24,14 +24,15 @@ class Bodies:
     Args:
         worlds: The worlds of N trackers.
         assets: The renderer has the part, if trackers share worlds.
+        visible: Whether trackers see each other at all.
     """
 
-    def __init__(self, worlds: Worlds, assets: Assets) -> None:
+    def __init__(self, worlds: Worlds, assets: Assets, *, visible: bool = True) -> None:
         self._part, self._actors = assets.body_part, worlds.actors
         mates = [worlds.trackers_of(n) for n in range(len(worlds.of))]
         others = [own[own != n] for n, own in enumerate(mates)]
-        self.any = any(map(len, others))
-        """Whether any trackers share a world."""
+        self.any = visible and any(map(len, others))
+        """Whether any tracker sees another."""
         self._others = np.full((len(others), max(map(len, others), default=0)), -1)
         for row, own in zip(self._others, others, strict=True):
             row[: len(own)] = own

@@ -1,7 +1,6 @@
 """Builds a simulation from its settings."""
 
 import logging
-from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,15 +11,12 @@ from eyas.sim.crowd import crowd_of
 from eyas.sim.simulation import Simulation
 from eyas.sim.supported import require_parts
 from eyas.sim.worlds import largest_world
-from eyas.trackers.config import TrackerKind
-from eyas.trackers.drone import DRONE
+from eyas.trackers.kinds import tracker_of
 from eyas.trackers.tracker import Tracker
 
 __all__ = ["build_simulation"]
 
 _LOG = logging.getLogger("eyas")
-
-TRACKERS: Mapping[TrackerKind, Tracker] = {TrackerKind.DRONE: DRONE}
 
 
 def build_simulation(
@@ -32,7 +28,7 @@ def build_simulation(
         config: The settings.
         world_of: Number of the world of each tracker, shape (N,): `each_alone(N)`, `together(N)`,
             or other numbers; see `eyas.sim.worlds.Worlds`.
-        tracker: A kind of tracker of your own; None: the kind in `tracker.kind`.
+        tracker: A tracker in the place of the kind in `tracker.kind`.
 
     Raises:
         EyasError: A setting is not supported, or no traffic matches the settings.
@@ -46,5 +42,5 @@ def build_simulation(
             "which has no fog",
             config.world.weather,
         )
-    chosen = TRACKERS[config.tracker.kind] if tracker is None else tracker
+    chosen = tracker_of(config.tracker) if tracker is None else tracker
     return Simulation(config, assets, chosen, world_of)

@@ -2,10 +2,11 @@
 
 from typing import Annotated
 
-from pydantic import Field, model_validator
+from pydantic import AfterValidator, Field, model_validator
 
 from eyas.behaviours.config import ExtraConfig
 from eyas.core.config import Config
+from eyas.core.variation import Variation, within
 from eyas.custom.config import CustomConfig
 from eyas.sensors.config import CameraConfig
 from eyas.targets.config import ObjectsConfig, TargetName
@@ -16,13 +17,21 @@ from eyas.world.config import LightConfig, WorldConfig
 
 __all__ = ["ControlConfig", "SimConfig"]
 
+Latency = Annotated[Variation, AfterValidator(within(0.0, 500.0))]
+
 
 class ControlConfig(Config):
-    """The rate of actions."""
+    """The rate of actions, and how late they and what agents see are."""
 
     frequency: Annotated[float, Field(ge=1, le=500)] = 125.0
     """Actions per second [Hz]; each lasts the whole part of 500 / frequency physics steps of 2
     ms."""
+    action_latency_steps: Latency = 0.0
+    """2 ms steps from an action to its effect; drones hover before that of the first. Drawn at each
+    reset, rounded."""
+    observation_latency_steps: Latency = 0.0
+    """2 ms steps by which agents see pictures and sensors late, at the beginning of an episode the
+    first ones. Drawn at each reset, rounded."""
 
 
 class SimConfig(Config):

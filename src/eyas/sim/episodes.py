@@ -1,6 +1,7 @@
 """Episodes: the start time, target and start pose of each."""
 
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -18,7 +19,10 @@ from eyas.targets.catalogue import MODELS, kind_of
 from eyas.task.spawn import Start, choose_target, sample_start, start_pose
 from eyas.traffic.source import TrafficSource
 
-__all__ = ["Episodes"]
+__all__ = ["Draw", "Episodes"]
+
+Draw = Callable[[int, EpisodeKey], None]
+"""Draws something for the episode of a tracker."""
 
 _ATTEMPTS = 100
 """Number of start times that are tried."""
@@ -41,6 +45,7 @@ class Episodes:
         light: The light around them.
         snapshot: State of N trackers; this class sets its episodes and targets, and the
             fields of view of its cameras.
+        draws: What else is drawn for an episode.
     """
 
     def __init__(
@@ -50,8 +55,10 @@ class Episodes:
         worlds: Worlds,
         light: LightChanges,
         snapshot: Snapshot,
+        draws: Sequence[Draw] = (),
     ) -> None:
         self._config = config
+        self._draws = tuple(draws)
         count = len(snapshot.episodes.number)
         self._seed = np.full(count, config.seed, np.int64)
         self._stream = np.arange(count)
@@ -138,6 +145,8 @@ class Episodes:
         key = self._key(tracker)
         self._worlds.sample_looks(tracker, key)
         self._light.sample(tracker, key)
+        for draw in self._draws:
+            draw(tracker, key)
         self._fields[tracker] = sample(self._config.camera.field_of_view, key.stream("camera"))
         rng = key.stream("episode")
         tick, actor = self._choose(tracker, rng)

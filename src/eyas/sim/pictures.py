@@ -31,6 +31,7 @@ class Pictures:
         worlds: The worlds, with their moving objects.
         light: The light around each tracker.
         snapshot: State of the trackers.
+        visible: Whether trackers see each other.
     """
 
     def __init__(
@@ -40,9 +41,11 @@ class Pictures:
         worlds: Worlds,
         light: LightChanges,
         snapshot: Snapshot,
+        *,
+        visible: bool = True,
     ) -> None:
         self._worlds = worlds
-        self._bodies = Bodies(worlds, assets)
+        self._bodies = Bodies(worlds, assets, visible=visible)
         self._light = light
         self._snapshot = snapshot
         self._flakes = config.light.flakes

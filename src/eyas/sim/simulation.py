@@ -1,18 +1,20 @@
 """The simulation: N trackers, each with a target, in separate or shared worlds."""
 
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
-from eyas.core.parallel import Held
+from eyas.core.parallel import BoundKernel, Held
 from eyas.sensors.inertial import smoothing_share
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
-from eyas.sim.episodes import Episodes
+from eyas.sim.episodes import Draw, Episodes
+from eyas.sim.latency import LateCommands, LateSight
 from eyas.sim.light import LightChanges
-from eyas.sim.pictures import Pictures
+from eyas.sim.perception import Perception
 from eyas.sim.step import Orders, StepState, Surroundings, step_of
 from eyas.sim.worlds import Worlds
 from eyas.state.draw import DrawStage, Picture
@@ -20,7 +22,7 @@ from eyas.state.motion import ActorState
 from eyas.state.snapshot import CameraState, Snapshot
 from eyas.targets.kind import Looks
 from eyas.task.packet_rows import PacketRows
-from eyas.task.rules import Rules, exact, make_rules
+from eyas.task.rules import Rules, exact, lenient, make_rules
 from eyas.task.terms import RewardTerms
 from eyas.trackers.tracker import Tracker
 
@@ -50,6 +52,7 @@ class Simulation:
         count: N.
         traffic: Everything that moves by itself; live traffic takes reactions.
         snapshot: The state of everything; its arrays are written in place by each step.
+        perception: What agents see of it: now, or, with a latency, earlier.
 
     Args:
         config: The settings.
@@ -69,17 +72,25 @@ class Simulation:
         self.snapshot = Snapshot.create(self.count)
         light = LightChanges(config.light, assets.lighting, worlds, self.snapshot.light)
         self._worlds = worlds
-        self._episodes = Episodes(config, assets.traffic, worlds, light, self.snapshot)
-        self._pictures = Pictures(config, assets, worlds, light, self.snapshot)
+        self._memory = tracker.memory(self.count, terrain)
+        draws: list[Draw] = [partial(tracker.draw, self._memory)] if tracker.draw else []
+        self._late = LateCommands.of(config.control.action_latency_steps, self.count)
+        self._past = LateSight.of(config.control.observation_latency_steps, self.snapshot)
+        draws += [late.draw for late in (self._late, self._past) if late]
+        self._episodes = Episodes(config, assets.traffic, worlds, light, self.snapshot, draws)
+        view = partial(Perception, config, assets, worlds, light, visible=tracker.visible)
+        self._view = view(snapshot=self.snapshot)
+        self.perception = view(snapshot=self._past.snapshot) if self._past else self._view
         self._kernels = step_of(tracker)
-        self._memory = tracker.memory(self.count)
         self._around = Surroundings(assets.traffic.motion, terrain)
         self._orders = Orders.create(self.count)
         self._held_orders = Held(self._orders)
-        self._share = smoothing_share(config.tracker.inertial_time_constant)
-        self.rules = make_rules(config.reward, config.done, config.camera)
+        smoothing = config.tracker.inertial_time_constant if tracker.jumps else 0.0
+        self._share = smoothing_share(smoothing)
+        rules = make_rules(config.reward, config.done, config.camera)
+        judged = tracker.judged if config.tracker.judged is None else config.tracker.judged
+        self.rules = rules if judged else lenient(rules)
         self._terms = RewardTerms(config.reward)
-        self._packets = PacketRows(self.snapshot, config.camera, terrain)
 
     @property
     def rules(self) -> Rules:
@@ -133,6 +144,8 @@ class Simulation:
         self._orders.chosen[:count] = chosen
         self._orders.starts[0] = count
         self._step.begin()
+        if self._past:
+            self._past.begin(chosen)
 
     def advance(
         self, commands: Floats, physics_steps: int = 1, active: NDArray[np.bool_] | None = None
@@ -146,16 +159,18 @@ class Simulation:
                 these must have worlds of their own. None: all.
         """
         assert commands.shape == (self.count, 4), f"commands: shape {commands.shape}, not (N, 4)"
-        self._orders.commands[:] = commands
         self._orders.active[:] = True if active is None else active
-        self._begin_steps(physics_steps)
-        self._step.fly()
+        if self._late is None:
+            self._fly(commands, physics_steps)
+        else:
+            clock = self.snapshot.episodes.step_count
+            for piece in self._late.pieces(commands, physics_steps, clock):
+                self._fly(*piece)
         return self._result()
 
     def carry(self, physics_steps: int = 1) -> StepResult:
         """Move all trackers with their targets, at their start offsets."""
-        self._begin_steps(physics_steps)
-        self._step.carry()
+        self._take(self._step.carry, physics_steps)
         return self._result()
 
     def follow(self, tracker: int, actor: int) -> None:
@@ -193,7 +208,7 @@ class Simulation:
 
     def packets(self) -> tuple[Floats, Floats]:
         """Return copies of the basic packets (N, 22) and the reward packets (N, 60)."""
-        return self._packets.now()
+        return self._view.packets()
 
     def draw(
         self,
@@ -214,9 +229,9 @@ class Simulation:
         """
         chosen = np.asarray(trackers, np.int32)
         if overlay:
-            self._pictures.draw_overlaid(chosen, picture, self.rules, until)
+            self._view.pictures.draw_overlaid(chosen, picture, self.rules, until)
         else:
-            self._pictures.draw(chosen, picture, until)
+            self._view.pictures.draw(chosen, picture, until)
 
     def draw_from(
         self,
@@ -236,17 +251,30 @@ class Simulation:
             overlay: Whether to draw all trackers of that world and their overlays over the colours.
         """
         chosen, rules = np.asarray(trackers, np.int32), self.rules if overlay else None
-        self._pictures.draw_from(chosen, cameras, picture, rules)
+        self._view.pictures.draw_from(chosen, cameras, picture, rules)
+
+    def _fly(self, commands: Floats, physics_steps: int) -> None:
+        self._orders.commands[:] = commands
+        self._take(self._step.fly, physics_steps)
+
+    def _take(self, step: BoundKernel, physics_steps: int) -> None:
+        """Take some physics steps, one by one if what they lead to is seen later."""
+        if self.traffic.live:
+            last = int(self.snapshot.episodes.tick.max()) + physics_steps
+            self.traffic.prepare(last * PHYSICS_STEP)
+        if self._past is None:
+            self._orders.steps[0] = physics_steps
+            step()
+            return
+        self._orders.steps[0] = 1
+        for _ in range(physics_steps):
+            step()
+            self._past.record()
+        self._past.see()
 
     def close(self) -> None:
         """End live traffic, if that is what drives; may be called twice."""
         self.traffic.close()
-
-    def _begin_steps(self, physics_steps: int) -> None:
-        self._orders.steps[0] = physics_steps
-        if self.traffic.live:
-            last = int(self.snapshot.episodes.tick.max()) + physics_steps
-            self.traffic.prepare(last * PHYSICS_STEP)
 
     def _result(self) -> StepResult:
         episodes = self.snapshot.episodes

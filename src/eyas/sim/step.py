@@ -6,6 +6,7 @@ at each call would take four times as long as a step of one tracker.
 """
 
 import math
+from collections.abc import Callable
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -84,6 +85,7 @@ class Orders(NamedTuple):
         )
 
 
+Kernel = Callable[..., Any]
 Parts = Pointer[tuple[Pointer[StepState], Pointer[Orders]]]
 
 
@@ -110,13 +112,17 @@ class StepKernels(NamedTuple):
         return Step(*(kernel.bound(state, orders) for kernel in self))
 
 
-@lru_cache(maxsize=16)
 def step_of(tracker: Tracker) -> StepKernels:
     """Return the step of a kind of tracker."""
+    return _step_of(tracker.start, tracker.advance, tracker.carry, tracker.aim)
+
+
+@lru_cache(maxsize=16)
+def _step_of(start: Kernel, advance: Kernel, carry: Kernel, aim: Kernel) -> StepKernels:
     return StepKernels(
-        fly=parallel_kernel(specialised(_fly, advance=tracker.advance, aim=tracker.aim)),
-        carry=parallel_kernel(specialised(_carry, carry=tracker.carry, aim=tracker.aim)),
-        begin=parallel_kernel(specialised(_begin, start=tracker.start, aim=tracker.aim)),
+        fly=parallel_kernel(specialised(_fly, advance=advance, aim=aim)),
+        carry=parallel_kernel(specialised(_carry, carry=carry, aim=aim)),
+        begin=parallel_kernel(specialised(_begin, start=start, aim=aim)),
     )
 
 

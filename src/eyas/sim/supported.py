@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from eyas.core.config import shown
 from eyas.core.errors import NotInThisVersionError
 from eyas.sim.config import SimConfig
-from eyas.trackers.config import TrackerKind
 
 __all__ = ["Missing", "missing_parts", "require_parts"]
 
@@ -44,8 +43,4 @@ def require_parts(config: SimConfig) -> None:
 
 def missing_parts(config: SimConfig) -> Iterator[Missing]:
     """Yield the settings of a simulation that need a part that this version does not have."""
-    if config.tracker.kind is TrackerKind.CAR:
-        yield Missing("tracker.kind", config.tracker.kind.value, "the car as a tracker")
-    if not config.tracker.supervised:
-        part = "flying by a flight controller"
-        yield Missing("tracker.supervised", value=False, part=part)
+    yield from ()

@@ -38,6 +38,7 @@ _VIEW_CONTINUOUS, _VIEW_DISCRETE = (
     int(BuiltinReward.VIEW_DISCRETE),
 )
 _DISTANCE_CONTINUOUS = int(BuiltinReward.DISTANCE_CONTINUOUS)
+_CONSTANT = int(BuiltinReward.CONSTANT)
 
 
 @step_kernel
@@ -116,7 +117,7 @@ def view_share(
 
 @step_kernel
 def reward_value(share: float, distance: float, depth: float, rules: Rules) -> float:
-    """Return the reward, 0 to 1; 0 if the optical axis does not meet the ground.
+    """Return the reward, 0 to 1; 0 if the optical axis does not meet the ground, unless constant.
 
     Args:
         share: Share from `view_share`.
@@ -124,6 +125,8 @@ def reward_value(share: float, distance: float, depth: float, rules: Rules) -> f
         depth: Depth from `axis_depth`.
         rules: Type of the reward, and its constants.
     """
+    if rules.reward == _CONSTANT:
+        return 1.0
     if not depth > 0.0:
         return 0.0
     if rules.reward == _VIEW_CONTINUOUS:

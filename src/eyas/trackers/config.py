@@ -1,13 +1,14 @@
 """Settings of the tracker."""
 
 from enum import StrEnum
-from typing import Annotated
+from typing import Annotated, Self
 
-from pydantic import Field
+from pydantic import AfterValidator, Field, model_validator
 
 from eyas.core.config import Config
+from eyas.core.variation import Variation, bounds, within
 
-__all__ = ["TrackerConfig", "TrackerKind"]
+__all__ = ["TrackerConfig", "TrackerKind", "WindConfig"]
 
 
 class TrackerKind(StrEnum):
@@ -16,16 +17,66 @@ class TrackerKind(StrEnum):
     DRONE = "drone"
     """A quadrotor with a camera on a gimbal."""
     CAR = "car"
-    """An ideal ground robot."""
+    """An ideal robot that keeps its height over the ground."""
+
+
+def _path(text: str) -> str:
+    if ":" not in text:
+        raise ValueError("'package.module:Class'")
+    return text
+
+
+class WindConfig(Config):
+    """The wind, which acts on a flown drone that has a `drag_area`."""
+
+    speed: Annotated[Variation, AfterValidator(within(0.0, 60.0))] = 0.0
+    """Mean speed [m/s]."""
+    direction: Annotated[Variation, AfterValidator(within(-6.3, 6.3))] = 0.0
+    """Direction towards which it blows, counter-clockwise from east [rad]."""
+    turbulence: Annotated[float, Field(ge=0, le=60)] = 0.0
+    """Strength of gusts by Dryden's model: speed of the wind 6 m (20 ft) above the ground that
+    makes them [m/s]; 7.7 is light, 15.4 moderate, 23 severe."""
 
 
 class TrackerConfig(Config):
     """Kind of the tracker, and how it follows its commands."""
 
-    kind: TrackerKind = TrackerKind.DRONE
-    """Kind of the tracker."""
+    kind: TrackerKind | Annotated[str, AfterValidator(_path)] = TrackerKind.DRONE
+    """Kind of the tracker, or a class of your own, `package.module:Class`."""
     supervised: bool = True
-    """True: commands are followed exactly; False: a flight controller carries them out."""
+    """True: the drone follows its commands exactly; False: a flight controller flies it."""
+    judged: bool | None = None
+    """Whether its view is rewarded, and limits of its body end the episode; if not, the reward is
+    1. None: a drone's are, a car's not, as in the original."""
     inertial_time_constant: Annotated[float, Field(ge=0, le=10)] = 0.1
     """Time constant of the two low-passes through which accelerometer and gyroscope read the motion
-    [s]; 0: the differences of 2 ms, which reach thousands of m/s^2."""
+    [s]; 0: the differences of 2 ms, which reach thousands of m/s^2. A flown drone's read the motion
+    itself."""
+    motor_time_constant: Annotated[float, Field(ge=0, le=1)] = 0.0
+    """Time constant with which the rotors of a flown drone change their speed [s]; 0: at once."""
+    drag_area: Annotated[float, Field(ge=0, le=10)] = 0.0
+    """Air drag of a flown drone: drag coefficient times area [m^2]; 0: none."""
+    ground_contact: bool = False
+    """Whether a flown drone lands on the ground; otherwise it passes through."""
+    wind: WindConfig = WindConfig()
+
+    @property
+    def original_name(self) -> str:
+        """The original's name of such a tracker, in names of folders and files."""
+        return "CAR" if self.kind is TrackerKind.CAR else "DRONE"
+
+    @model_validator(mode="after")
+    def _only_where_it_acts(self) -> Self:
+        calm = bounds(self.wind.speed) == (0.0, 0.0) and self.wind.turbulence == 0.0
+        if not calm and self.drag_area == 0.0:
+            raise ValueError("drag_area must be above 0 with wind, which acts through drag only")
+        given = {
+            "motor_time_constant": self.motor_time_constant,
+            "drag_area": self.drag_area,
+            "ground_contact": self.ground_contact,
+        }
+        flown = self.kind is TrackerKind.DRONE and not self.supervised
+        used = next((name for name, value in given.items() if value), None)
+        if used and not flown and isinstance(self.kind, TrackerKind):
+            raise ValueError(f"{used} must be off unless the drone is flown (supervised: false)")
+        return self

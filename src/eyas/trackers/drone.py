@@ -1,7 +1,7 @@
 """The supervised drone: a level body that follows its low-pass filtered commands exactly."""
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,11 +10,22 @@ from eyas.core.clock import PHYSICS_STEP
 from eyas.core.frames import wrap_angle
 from eyas.core.jit import step_kernel
 from eyas.state.snapshot import CameraState, TrackerState
+from eyas.state.terrain import Terrain
+from eyas.trackers.commands import follow_command, forget_commands
 from eyas.trackers.gimbal import advance_gimbal, camera_pose, reset_gimbal
-from eyas.trackers.lowpass import low_pass, settle
 from eyas.trackers.tracker import Tracker
 
-__all__ = ["DRONE", "DroneMemory", "advance", "aim", "carry", "start"]
+__all__ = [
+    "DRONE",
+    "DroneMemory",
+    "advance",
+    "aim",
+    "carry",
+    "move_level",
+    "obey",
+    "place",
+    "start",
+]
 
 
 class DroneMemory(NamedTuple):
@@ -30,7 +41,7 @@ class DroneMemory(NamedTuple):
     """Filters of the gimbal's roll, pitch and yaw, shape (N, 3, 2)."""
 
     @classmethod
-    def create(cls, count: int) -> "DroneMemory":
+    def create(cls, count: int, terrain: Terrain) -> "DroneMemory":
         """Return the memory of drones at rest."""
         pair = (count, 2)
         return cls(np.zeros(pair), np.zeros(pair), np.zeros(pair), np.zeros((count, 3, 2)))
@@ -46,19 +57,18 @@ def advance(
     takes that pose in every step. The original intends the same, but a race condition makes it skip
     about half of the steps.
     """
-    forward = low_pass(memory.forward[n], command[0])
-    left = low_pass(memory.left[n], command[1])
-    yaw_rate = low_pass(memory.yaw_rate[n], command[3])
-    east, north = _heading(trackers.orientation[n])
+    _, _, yaw_rate = follow_command(trackers, memory, n, command)
+    obey(trackers, n, yaw_rate)
+    advance_gimbal(trackers, memory.gimbal, n)
+
+
+@step_kernel
+def obey(trackers: TrackerState, n: int, yaw_rate: float) -> None:
+    """Put a level body at its commanded pose within one physics step; `yaw_rate` led there."""
     commanded = trackers.commanded_position[n]
-    commanded[0] += (east * forward - north * left) * PHYSICS_STEP
-    commanded[1] += (north * forward + east * left) * PHYSICS_STEP
-    commanded[2] += command[2]
-    trackers.commanded_yaw[n] += yaw_rate * PHYSICS_STEP
     _move_to(trackers, n, commanded[0], commanded[1], commanded[2])
     trackers.angular_velocity[n, 2] = yaw_rate
     _stand_level(trackers, n, wrap_angle(trackers.commanded_yaw[n]))
-    advance_gimbal(trackers, memory.gimbal, n)
 
 
 @step_kernel
@@ -66,13 +76,19 @@ def carry(
     trackers: TrackerState, memory: DroneMemory, n: int, x: float, y: float, z: float, yaw: float
 ) -> None:
     """Move a level drone to a pose within one physics step of 2 ms."""
+    move_level(trackers, n, x, y, z, yaw)
+    advance_gimbal(trackers, memory.gimbal, n)
+
+
+@step_kernel
+def move_level(trackers: TrackerState, n: int, x: float, y: float, z: float, yaw: float) -> None:
+    """Move a level body to a pose within one physics step of 2 ms, as if it had been commanded."""
     commanded = trackers.commanded_position[n]
     commanded[0], commanded[1], commanded[2] = x, y, z
     _move_to(trackers, n, x, y, z)
     trackers.angular_velocity[n, 2] = wrap_angle(yaw - trackers.euler[n, 2]) / PHYSICS_STEP
     trackers.commanded_yaw[n] = yaw
     _stand_level(trackers, n, yaw)
-    advance_gimbal(trackers, memory.gimbal, n)
 
 
 @step_kernel
@@ -87,9 +103,22 @@ def start(
     pitch: float,
 ) -> None:
     """Place drone `n` at rest with its gimbal at a commanded pitch, see `Tracker.start`."""
-    settle(memory.forward[n], 0.0)
-    settle(memory.left[n], 0.0)
-    settle(memory.yaw_rate[n], 0.0)
+    place(trackers, memory, n, x, y, z, yaw)
+    reset_gimbal(trackers, memory.gimbal, n, pitch, 0.0)
+
+
+@step_kernel
+def place(
+    trackers: TrackerState,
+    memory: Any,  # noqa: ANN401  # as for `forget_commands`
+    n: int,
+    x: float,
+    y: float,
+    z: float,
+    yaw: float,
+) -> None:
+    """Place a level body at rest, without commands."""
+    forget_commands(memory, n)
     trackers.commanded_yaw[n] = yaw
     point = (x, y, z)
     for axis in range(3):
@@ -99,7 +128,6 @@ def start(
         trackers.acceleration[n, axis] = 0.0
         trackers.angular_velocity[n, axis] = 0.0
     _stand_level(trackers, n, wrap_angle(yaw))
-    reset_gimbal(trackers, memory.gimbal, n, pitch, 0.0)
 
 
 @step_kernel
@@ -123,15 +151,6 @@ def _move_to(trackers: TrackerState, n: int, x: float, y: float, z: float) -> No
         trackers.acceleration[n, axis] = (speed - trackers.velocity[n, axis]) / PHYSICS_STEP
         trackers.velocity[n, axis] = speed
         trackers.position[n, axis] = goal[axis]
-
-
-@step_kernel
-def _heading(orientation: NDArray[np.float64]) -> tuple[float, float]:
-    """Return the horizontal direction of the body's x axis, a unit vector."""
-    w, x, y, z = orientation[0], orientation[1], orientation[2], orientation[3]
-    east, north = 1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z)
-    length = math.sqrt(east * east + north * north)
-    return east / length, north / length
 
 
 @step_kernel

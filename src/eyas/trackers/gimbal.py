@@ -10,14 +10,24 @@ from eyas.core.jit import kernel, step_kernel
 from eyas.state.snapshot import TrackerState
 from eyas.trackers.lowpass import low_pass, settle
 
-__all__ = ["advance_gimbal", "camera_pose", "held_pitch", "reset_gimbal"]
+__all__ = [
+    "CAR_LIMITS",
+    "advance_gimbal",
+    "camera_axes",
+    "camera_pose",
+    "desired_angles",
+    "held_pitch",
+    "reset_gimbal",
+]
 
 _SIDEWAYS_LIMIT = 1.7
 """Largest roll and yaw of the joints [rad]."""
-_PITCH_LIMITS = (-0.5, 1.5)
-"""Limits of the pitch joint [rad]."""
-_COMMAND_LIMITS = (0.5, 1.5)
-"""Limits of the commanded pitch [rad]."""
+
+Limits = tuple[float, float, float, float]
+"""Least and largest pitch that may be commanded, then those of the joint, positive down [rad]."""
+
+DRONE_LIMITS: Limits = (0.5, 1.5, -0.5, 1.5)
+CAR_LIMITS: Limits = (-1.0, 1.5, -1.0, 1.5)
 
 _YAW_JOINT = (0.13, -0.00469654, -0.013)
 """Position of the yaw joint, body frame [m]."""
@@ -28,22 +38,25 @@ _ROLL_JOINT = (0.00754686, 0.0160388, -0.00586401)
 
 
 @kernel
-def held_pitch(pitch: float) -> float:
+def held_pitch(pitch: float, limits: Limits = DRONE_LIMITS) -> float:
     """Return a camera pitch limited to the range of the original's command [rad]."""
-    return min(max(pitch, _COMMAND_LIMITS[0]), _COMMAND_LIMITS[1])
+    return min(max(pitch, limits[0]), limits[1])
 
 
 @step_kernel
-def advance_gimbal(trackers: TrackerState, memory: NDArray[np.float64], n: int) -> None:
+def advance_gimbal(
+    trackers: TrackerState, memory: NDArray[np.float64], n: int, limits: Limits = DRONE_LIMITS
+) -> None:
     """Move gimbal `n` by one physics step of 2 ms.
 
     Args:
         trackers: Source of the body's attitude and the commanded angles; its joint angles are set.
         memory: Low-pass filters of roll, pitch and yaw, shape (N, 3, 2); updated.
         n: Index of the tracker.
+        limits: Of the pitch.
     """
     commanded, euler, gimbal = trackers.commanded_gimbal[n], trackers.euler[n], trackers.gimbal[n]
-    roll, pitch, yaw = _desired(commanded[0], commanded[1], euler[0], euler[1])
+    roll, pitch, yaw = desired_angles(commanded[0], commanded[1], euler[0], euler[1], limits)
     gimbal[0] = low_pass(memory[n, 0], roll)
     gimbal[1] = low_pass(memory[n, 1], pitch)
     gimbal[2] = low_pass(memory[n, 2], yaw)
@@ -51,7 +64,12 @@ def advance_gimbal(trackers: TrackerState, memory: NDArray[np.float64], n: int) 
 
 @step_kernel
 def reset_gimbal(
-    trackers: TrackerState, memory: NDArray[np.float64], n: int, pitch: float, yaw: float
+    trackers: TrackerState,
+    memory: NDArray[np.float64],
+    n: int,
+    pitch: float,
+    yaw: float,
+    limits: Limits = DRONE_LIMITS,
 ) -> None:
     """Command new angles and move the joints there at once.
 
@@ -62,12 +80,13 @@ def reset_gimbal(
         trackers: Source of the body's attitude; its commanded angles and joint angles are set.
         memory: Low-pass filters of roll, pitch and yaw, shape (N, 3, 2); set.
         n: Index of the tracker.
-        pitch: Commanded pitch, positive down, limited to 0.5 to 1.5 [rad].
+        pitch: Commanded pitch, positive down [rad].
         yaw: Commanded yaw relative to the body [rad].
+        limits: Of the pitch.
     """
     commanded, euler, gimbal = trackers.commanded_gimbal[n], trackers.euler[n], trackers.gimbal[n]
-    commanded[0], commanded[1] = held_pitch(pitch), yaw
-    gimbal[0], gimbal[1], gimbal[2] = _desired(commanded[0], yaw, euler[0], euler[1])
+    commanded[0], commanded[1] = held_pitch(pitch, limits), yaw
+    gimbal[0], gimbal[1], gimbal[2] = desired_angles(commanded[0], yaw, euler[0], euler[1], limits)
     for axis in range(3):
         settle(memory[n, axis], gimbal[axis])
 
@@ -89,7 +108,6 @@ def camera_pose(
         camera_position: Optical centre, world frame [m], shape (3,); set.
         camera_rotation: Camera to world; columns forward, left, up, shape (3, 3); set.
     """
-    sr, cr = math.sin(gimbal[0]), math.cos(gimbal[0])
     sp, cp = math.sin(gimbal[1]), math.cos(gimbal[1])
     sy, cy = math.sin(gimbal[2]), math.cos(gimbal[2])
     x = _PITCH_JOINT[0] + cp * _ROLL_JOINT[0] + sp * _ROLL_JOINT[2]
@@ -100,6 +118,19 @@ def camera_pose(
     camera_position[0] = position[0] + x
     camera_position[1] = position[1] + y
     camera_position[2] = position[2] + z
+    camera_axes(orientation, gimbal, camera_rotation)
+
+
+@kernel
+def camera_axes(
+    orientation: NDArray[np.float64],
+    gimbal: NDArray[np.float64],
+    camera_rotation: NDArray[np.float64],
+) -> None:
+    """Compute the axes of the camera; arguments as in `camera_pose`."""
+    sr, cr = math.sin(gimbal[0]), math.cos(gimbal[0])
+    sp, cp = math.sin(gimbal[1]), math.cos(gimbal[1])
+    sy, cy = math.sin(gimbal[2]), math.cos(gimbal[2])
     _set_column(camera_rotation, 0, rotate(orientation, cy * cp, sy * cp, -sp))
     left = rotate(orientation, cy * sp * sr - sy * cr, sy * sp * sr + cy * cr, cp * sr)
     _set_column(camera_rotation, 1, left)
@@ -115,8 +146,8 @@ def _set_column(
 
 
 @kernel
-def _desired(
-    pitch: float, yaw: float, body_roll: float, body_pitch: float
+def desired_angles(
+    pitch: float, yaw: float, body_roll: float, body_pitch: float, limits: Limits = DRONE_LIMITS
 ) -> tuple[float, float, float]:
     """Return the joints' roll, pitch and yaw that compensate the tilt of the body, within limits.
 
@@ -142,6 +173,6 @@ def _desired(
         yaw = math.atan2(r10, m00)
     return (
         min(max(roll, -_SIDEWAYS_LIMIT), _SIDEWAYS_LIMIT),
-        min(max(pitch, _PITCH_LIMITS[0]), _PITCH_LIMITS[1]),
+        min(max(pitch, limits[2]), limits[3]),
         min(max(yaw, -_SIDEWAYS_LIMIT), _SIDEWAYS_LIMIT),
     )

@@ -4,6 +4,9 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from eyas.core.rng import EpisodeKey
+from eyas.state.terrain import Terrain
+
 __all__ = ["Tracker"]
 
 Kernel = Callable[..., Any]
@@ -18,8 +21,9 @@ class Tracker:
     """
 
     name: str
-    memory: Callable[[int], tuple[Any, ...]]
-    """`memory(N)` returns a `NamedTuple` of arrays with leading axis N."""
+    memory: Callable[[int, Terrain], tuple[Any, ...]]
+    """`memory(N, terrain)` returns a `NamedTuple` of arrays with leading axis N, of numbers and of
+    other such tuples; it may hold the ground, too."""
     start: Kernel
     """`start(trackers, memory, n, x, y, z, yaw, pitch)` puts it at rest at a point [m] with a
     heading [rad] and its camera at a commanded pitch, positive down [rad]."""
@@ -30,3 +34,12 @@ class Tracker:
     """`carry(trackers, memory, n, x, y, z, yaw)` moves it to a pose within one physics step."""
     aim: Kernel
     """`aim(trackers, memory, cameras, n)` writes the pose of its camera into a `CameraState`."""
+    draw: Callable[[Any, int, EpisodeKey], None] | None = None
+    """`draw(memory, n, key)`, a function of Python, draws what is random in an episode, before
+    `start`; None: nothing is."""
+    jumps: bool = True
+    """Whether its velocity may jump, so that its inertial sensors read a smoothed motion."""
+    visible: bool = True
+    """Whether others in its world see it, as a quadrotor."""
+    judged: bool = True
+    """Whether it is rewarded for its view and its limits end episodes; False: the reward is 1."""

@@ -120,7 +120,7 @@ class Crew:
 
     def _draw_all(self, pictures: list[Future[bytes]]) -> None:
         try:
-            self.sim.draw(self._trackers, self._picture)
+            self.sim.perception.draw(self._trackers, self._picture)
         except BaseException as error:
             for picture in pictures:
                 picture.set_exception(error)

@@ -70,7 +70,7 @@ def _ours(config: EyasConfig) -> dict[str, Any]:
     """Return the values of the server by the original's keys."""
     wire, done = config.wire, config.done
     return {
-        "Tracker_Def": config.tracker.kind.value.upper(),
+        "Tracker_Def": config.tracker.original_name,
         "Control_Frequence": config.control.frequency,
         "Train_Total_Steps": done.total_steps,
         "Init_No_Done_Steps": done.grace_steps,

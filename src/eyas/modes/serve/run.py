@@ -42,7 +42,7 @@ def run(config: EyasConfig, root: Path) -> None:
                 exchange.settings.parent.mkdir(parents=True, exist_ok=True)
             save_legacy(config, exchange.settings)
         tell_disagreements(config, root, exchange.settings)
-        tracker = config.tracker.kind.value.upper()
+        tracker = config.tracker.original_name
         crew = partial(_crew, config)
         server = Server(config.wire, exchange, tracker, crew, verbose=config.verbose)
         try:

@@ -55,7 +55,7 @@ class VideoFolder:
         self.path = path
         self._fps = config.video.fps
         self._camera = config.camera
-        kind = config.tracker.kind.value.upper()
+        kind = config.tracker.original_name
         self.trackers = tuple(f"{kind}{tracker}" for tracker in range(config.video.channels))
         run = Run(path, self.trackers, config, config.video.target_direction)
         self.writers = tuple(writer(run) for writer in chosen_writers(config.video.writers))

@@ -93,6 +93,8 @@ class Same(Entry):
     @override
     def write(self, fields: Values) -> Values:
         value = fields[self.path]
+        if self.upper_case and ":" in str(value):  # a class of the user's
+            raise ConfigError(f"{self.path}: {shown(value)} cannot be expressed in env_config.json")
         value = value.value if isinstance(value, Enum) else value
         if isinstance(value, Config):
             raise ConfigError(f"{self.path}: {shown(value)} cannot be expressed in env_config.json")

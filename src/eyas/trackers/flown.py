@@ -1,0 +1,252 @@
+"""The drone flown by its controller: four rotors move a rigid body, which tilts to accelerate."""
+
+import math
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.clock import PHYSICS_STEP
+from eyas.core.jit import kernel, step_kernel
+from eyas.core.rng import EpisodeKey
+from eyas.core.variation import bounds
+from eyas.state.snapshot import TrackerState
+from eyas.state.terrain import Terrain, ground_at
+from eyas.trackers.airframe import FIRM_GROUND, ORIGINAL, Airframe
+from eyas.trackers.commands import follow_command
+from eyas.trackers.config import TrackerConfig
+from eyas.trackers.drone import aim, move_level, place
+from eyas.trackers.flight_controller import attitude_torque, desired_force, mixed
+from eyas.trackers.gimbal import advance_gimbal, reset_gimbal
+from eyas.trackers.gimbal_servo import ServoMemory, advance_servo, settle_servo
+from eyas.trackers.rigid_body import Body, Thrusts, moved
+from eyas.trackers.tracker import Tracker
+from eyas.trackers.wind import WindMemory, begin_wind, blow
+
+__all__ = ["FlightMemory", "flown_drone"]
+
+
+class FlightMemory(NamedTuple):
+    """What N flown drones remember, and their constants."""
+
+    forward: NDArray[np.float64]
+    """Filter of the forward command, shape (N, 2)."""
+    left: NDArray[np.float64]
+    """Filter of the sideways command, shape (N, 2)."""
+    yaw_rate: NDArray[np.float64]
+    """Filter of the yaw rate command, shape (N, 2)."""
+    gimbal: NDArray[np.float64]
+    """Filters of the gimbal's roll, pitch and yaw, shape (N, 3, 2)."""
+    servo: ServoMemory
+    last_command: NDArray[np.float64]
+    """Commanded velocity of the last step, towards east and north [m/s], shape (N, 2)."""
+    measured: NDArray[np.float64]
+    """Difference of the last two positions over 2 ms, as the controller knows the velocity [m/s],
+    shape (N, 3)."""
+    rotor: NDArray[np.float64]
+    """Rates of the rotors [rad/s], shape (N, 4)."""
+    wind: WindMemory
+    turbulence: float
+    """See `eyas.trackers.wind.blow`."""
+    frame: Airframe
+    terrain: Terrain
+
+    @classmethod
+    def create(
+        cls, frame: Airframe, turbulence: float, count: int, terrain: Terrain
+    ) -> "FlightMemory":
+        """Return the memory of drones at rest."""
+        pair = (count, 2)
+        return cls(
+            forward=np.zeros(pair),
+            left=np.zeros(pair),
+            yaw_rate=np.zeros(pair),
+            gimbal=np.zeros((count, 3, 2)),
+            servo=ServoMemory.create(count),
+            last_command=np.zeros(pair),
+            measured=np.zeros((count, 3)),
+            rotor=np.zeros((count, 4)),
+            wind=WindMemory.create(count),
+            turbulence=turbulence,
+            frame=frame,
+            terrain=terrain,
+        )
+
+
+@step_kernel
+def start(
+    trackers: TrackerState,
+    memory: FlightMemory,
+    n: int,
+    x: float,
+    y: float,
+    z: float,
+    yaw: float,
+    pitch: float,
+) -> None:
+    """Place drone `n` at rest, level, its rotors carrying it, see `Tracker.start`."""
+    place(trackers, memory, n, x, y, z, yaw)
+    reset_gimbal(trackers, memory.gimbal, n, pitch, 0.0)
+    _settle(trackers, memory, n)
+
+
+@step_kernel
+def carry(
+    trackers: TrackerState, memory: FlightMemory, n: int, x: float, y: float, z: float, yaw: float
+) -> None:
+    """Move a level drone to a pose within one physics step, as in the supervised mode."""
+    move_level(trackers, n, x, y, z, yaw)
+    advance_gimbal(trackers, memory.gimbal, n)
+    _settle(trackers, memory, n)
+
+
+@step_kernel
+def _settle(trackers: TrackerState, memory: FlightMemory, n: int) -> None:
+    """Forget the past: what was commanded is what is."""
+    memory.last_command[n, 0], memory.last_command[n, 1] = 0.0, 0.0
+    for axis in range(3):
+        memory.measured[n, axis] = trackers.velocity[n, axis]
+    frame = memory.frame
+    hover = math.sqrt(0.25 * frame.mass * frame.gravity / frame.thrust_constant)
+    for rotor in range(4):
+        memory.rotor[n, rotor] = hover
+    settle_servo(trackers, memory.gimbal, memory.servo, n)
+
+
+@step_kernel
+def advance(
+    trackers: TrackerState, memory: FlightMemory, n: int, command: NDArray[np.float64]
+) -> None:
+    """Fly drone `n` for one physics step of 2 ms, see `Tracker.advance`.
+
+    The controller acts at the beginning of the step. As in the original, the commanded velocity
+    has no part upwards: a command to climb moves only the commanded position.
+    """
+    east, north, _ = follow_command(trackers, memory, n, command)
+    wanted = _wanted(trackers, memory, n, east, north)
+    frame, wind = memory.frame, memory.wind
+    before = _body(trackers, n)
+    air = (0.0, 0.0, 0.0)
+    if frame.drag_area > 0.0:
+        height = before.position[2]
+        if memory.turbulence > 0.0:
+            height -= ground_at(memory.terrain, before.position[0], before.position[1])
+        air = blow(wind, n, memory.turbulence, height, before.velocity)
+    pushed = _spun_up(frame, memory.rotor[n], wanted)
+    after = moved(frame, before, pushed, air, memory.terrain, PHYSICS_STEP)
+    _write(trackers, memory, n, before, after)
+    a, b = before.rate, after.rate
+    change = (b[0] - a[0], b[1] - a[1], b[2] - a[2])
+    advance_servo(trackers, memory.gimbal, memory.servo, frame.servo, n, change)
+
+
+@step_kernel
+def _wanted(
+    trackers: TrackerState, memory: FlightMemory, n: int, east: float, north: float
+) -> Thrusts:
+    """Return the thrusts that the controller asks of the rotors [N]."""
+    goal, position = trackers.commanded_position[n], trackers.position[n]
+    measured, last = memory.measured[n], memory.last_command[n]
+    behind = (goal[0] - position[0], goal[1] - position[1], goal[2] - position[2])
+    slower = (east - measured[0], north - measured[1], -measured[2])
+    change_east, change_north = (east - last[0]) / PHYSICS_STEP, (north - last[1]) / PHYSICS_STEP
+    last[0], last[1] = east, north
+    frame, attitude = memory.frame, trackers.orientation[n]
+    force = desired_force(frame, behind, slower, change_east, change_north)
+    rate = trackers.angular_velocity[n]
+    torque = attitude_torque(frame, force, trackers.commanded_yaw[n], attitude, rate)
+    return mixed(frame, force, torque, attitude)
+
+
+@kernel
+def _spun_up(
+    frame: Airframe, rotor: NDArray[np.float64], wanted: Thrusts
+) -> tuple[Thrusts, Thrusts, Thrusts]:
+    """Return the thrusts at the beginning, in the middle and at the end of a step [N].
+
+    Each rotor's rate approaches the one for its wanted thrust by a low-pass of first order.
+
+    Args:
+        frame: Its motors' constants are used.
+        rotor: Rates of the rotors [rad/s], shape (4,); updated.
+        wanted: Thrusts that the controller asks for [N].
+    """
+    if frame.motor_time_constant <= 0.0:
+        return wanted, wanted, wanted
+    left = math.exp(-0.5 * PHYSICS_STEP / frame.motor_time_constant)
+    a = _spun(frame, rotor, 0, wanted[0], left)
+    b = _spun(frame, rotor, 1, wanted[1], left)
+    c = _spun(frame, rotor, 2, wanted[2], left)
+    d = _spun(frame, rotor, 3, wanted[3], left)
+    return (a[0], b[0], c[0], d[0]), (a[1], b[1], c[1], d[1]), (a[2], b[2], c[2], d[2])
+
+
+@kernel
+def _spun(
+    frame: Airframe, rotor: NDArray[np.float64], index: int, wanted: float, left: float
+) -> tuple[float, float, float]:
+    """Return the thrusts of one rotor as in `_spun_up`; `left` is the gap after half a step."""
+    goal = math.sqrt(wanted / frame.thrust_constant)
+    gap = rotor[index] - goal
+    middle, end = goal + left * gap, goal + left * left * gap
+    first, rotor[index] = rotor[index], end
+    factor = frame.thrust_constant
+    return factor * first * first, factor * middle * middle, factor * end * end
+
+
+@kernel
+def _body(trackers: TrackerState, n: int) -> Body:
+    p, v = trackers.position[n], trackers.velocity[n]
+    q, w = trackers.orientation[n], trackers.angular_velocity[n]
+    return Body(
+        (p[0], p[1], p[2]), (v[0], v[1], v[2]), (q[0], q[1], q[2], q[3]), (w[0], w[1], w[2])
+    )
+
+
+@step_kernel
+def _write(trackers: TrackerState, memory: FlightMemory, n: int, before: Body, after: Body) -> None:
+    """Write the state of a body after a step of 2 ms."""
+    for axis in range(3):
+        memory.measured[n, axis] = (after.position[axis] - before.position[axis]) / PHYSICS_STEP
+        change = after.velocity[axis] - before.velocity[axis]
+        trackers.acceleration[n, axis] = change / PHYSICS_STEP
+        trackers.position[n, axis] = after.position[axis]
+        trackers.velocity[n, axis] = after.velocity[axis]
+        trackers.angular_velocity[n, axis] = after.rate[axis]
+    w, x, y, z = after.attitude
+    attitude, euler = trackers.orientation[n], trackers.euler[n]
+    attitude[0], attitude[1], attitude[2], attitude[3] = w, x, y, z
+    euler[0] = math.atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))
+    euler[1] = math.asin(min(max(2.0 * (w * y - z * x), -1.0), 1.0))
+    euler[2] = math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+
+
+def flown_drone(config: TrackerConfig, frame: Airframe = ORIGINAL) -> Tracker:
+    """Return the drone that its flight controller flies.
+
+    Args:
+        config: The options: motors, drag, contact, wind.
+        frame: The constants; options replace its own.
+    """
+    wind = config.wind
+    frame = frame._replace(
+        motor_time_constant=float(config.motor_time_constant),
+        drag_area=float(config.drag_area),
+        contact_stiffness=FIRM_GROUND if config.ground_contact else 0.0,
+    )
+    blows = wind.turbulence > 0.0 or bounds(wind.speed) != (0.0, 0.0)
+
+    def draw(memory: FlightMemory, n: int, key: EpisodeKey) -> None:
+        begin_wind(memory.wind, n, wind.speed, wind.direction, key)
+
+    return Tracker(
+        "flown drone",
+        partial(FlightMemory.create, frame, float(wind.turbulence)),
+        start,
+        advance,
+        carry,
+        aim,
+        draw=draw if blows else None,
+        jumps=False,
+    )

@@ -1,0 +1,50 @@
+"""The kinds of trackers: the built-in ones by name, and a user's own by path."""
+
+from collections.abc import Callable
+from typing import Any
+
+from eyas.core.errors import ConfigError
+from eyas.core.registry import Registry
+from eyas.trackers.car import CAR
+from eyas.trackers.config import TrackerConfig, TrackerKind
+from eyas.trackers.drone import DRONE
+from eyas.trackers.flown import flown_drone
+from eyas.trackers.tracker import Tracker
+
+__all__ = ["TRACKERS", "car", "drone", "tracker_of"]
+
+
+def drone(config: TrackerConfig) -> Tracker:
+    """Return the drone: supervised, or flown by its controller."""
+    return DRONE if config.supervised else flown_drone(config)
+
+
+def car(config: TrackerConfig) -> Tracker:
+    """Return the car."""
+    return CAR
+
+
+TRACKERS: Registry[Callable[[TrackerConfig], Any]] = Registry(
+    "tracker.kind",
+    Callable,  # type: ignore[arg-type]  # a class to `isinstance`
+    {
+        TrackerKind.DRONE.value: f"{__name__}:drone",
+        TrackerKind.CAR.value: f"{__name__}:car",
+    },
+)
+"""Functions, or classes, that return a `Tracker` for its settings."""
+
+
+def tracker_of(config: TrackerConfig) -> Tracker:
+    """Return the kind of tracker of some settings.
+
+    Raises:
+        ConfigError: There is no such tracker, or what the path names does not make one.
+    """
+    made = TRACKERS.get(config.kind)(config)
+    if not isinstance(made, Tracker):
+        raise ConfigError(
+            f"tracker.kind: {config.kind!r} gave a {type(made).__name__}; allowed: a class or "
+            "function that takes a TrackerConfig and gives an eyas.trackers.tracker.Tracker"
+        )
+    return made

@@ -1,0 +1,230 @@
+"""The motion of a rigid body under the thrusts of four rotors, gravity, air and the ground."""
+
+import math
+from typing import NamedTuple
+
+from eyas.core.frames import rotate, rotate_back
+from eyas.core.jit import kernel
+from eyas.state.terrain import Terrain, ground_at
+from eyas.trackers.airframe import Airframe
+
+__all__ = ["Body", "Thrusts", "moved", "turned"]
+
+Vector = tuple[float, float, float]
+Quaternion = tuple[float, float, float, float]
+Thrusts = tuple[float, float, float, float]
+
+
+class Body(NamedTuple):
+    """State of a rigid body."""
+
+    position: Vector
+    """World frame [m]."""
+    velocity: Vector
+    """World frame [m/s]."""
+    attitude: Quaternion
+    """Body to world, w, x, y, z."""
+    rate: Vector
+    """Angular velocity, body frame [rad/s]."""
+
+
+class _Change(NamedTuple):
+    """Rates of change of a body; those of the attitude as a rotation vector since the step began.
+
+    The change of a rotation vector is that of Bortz, "A new mathematical formulation for strapdown
+    inertial navigation" (IEEE Transactions AES 7, 1971), to second order in the vector.
+    """
+
+    position: Vector
+    velocity: Vector
+    rotation: Vector
+    rate: Vector
+
+
+@kernel
+def moved(
+    frame: Airframe,
+    body: Body,
+    thrusts: tuple[Thrusts, Thrusts, Thrusts],
+    wind: Vector,
+    terrain: Terrain,
+    step: float,
+) -> Body:
+    """Return a body after a time step.
+
+    The step is the Runge-Kutta method of order 4 in the form of Munthe-Kaas ("High order
+    Runge-Kutta methods on manifolds", Applied Numerical Mathematics 29, 1999): each stage turns the
+    first attitude by a rotation vector, so that it stays a rotation.
+
+    Args:
+        frame: Constants of the body.
+        body: State at the beginning.
+        thrusts: Of the rotors at the beginning, in the middle and at the end of the step [N].
+        wind: Velocity of the air, world frame [m/s].
+        terrain: The ground.
+        step: Length of the time step [s].
+    """
+    first, middle, last = thrusts
+    still = (0.0, 0.0, 0.0)
+    a = _change(frame, body, still, first, wind, terrain)
+    half = 0.5 * step
+    b = _stage(frame, body, a, half, middle, wind, terrain)
+    c = _stage(frame, body, b, half, middle, wind, terrain)
+    d = _stage(frame, body, c, step, last, wind, terrain)
+    attitude = turned(
+        body.attitude, _sum(still, a.rotation, b.rotation, c.rotation, d.rotation, step)
+    )
+    return Body(
+        _sum(body.position, a.position, b.position, c.position, d.position, step),
+        _sum(body.velocity, a.velocity, b.velocity, c.velocity, d.velocity, step),
+        _normalised(attitude),
+        _sum(body.rate, a.rate, b.rate, c.rate, d.rate, step),
+    )
+
+
+@kernel
+def turned(attitude: Quaternion, rotation: Vector) -> Quaternion:
+    """Return an attitude turned by a rotation vector, body frame [rad]."""
+    x, y, z = rotation
+    square = x * x + y * y + z * z
+    if square < 0.01:  # as exact as sine and cosine, in a third of their time
+        real = 1.0 - square / 8.0 * (1.0 - square / 48.0 * (1.0 - square / 120.0))
+        share = 0.5 - square / 48.0 * (1.0 - square / 80.0 * (1.0 - square / 168.0))
+    else:
+        angle = math.sqrt(square)
+        real, share = math.cos(0.5 * angle), math.sin(0.5 * angle) / angle
+    x, y, z = share * x, share * y, share * z
+    w, i, j, k = attitude
+    return (
+        w * real - i * x - j * y - k * z,
+        w * x + i * real + j * z - k * y,
+        w * y - i * z + j * real + k * x,
+        w * z + i * y - j * x + k * real,
+    )
+
+
+@kernel
+def _stage(
+    frame: Airframe,
+    body: Body,
+    change: _Change,
+    step: float,
+    thrusts: Thrusts,
+    wind: Vector,
+    terrain: Terrain,
+) -> _Change:
+    """Return the rates of change of a body that has changed for a time at other rates."""
+    rotation = _plus((0.0, 0.0, 0.0), change.rotation, step)
+    there = Body(
+        _plus(body.position, change.position, step),
+        _plus(body.velocity, change.velocity, step),
+        turned(body.attitude, rotation),
+        _plus(body.rate, change.rate, step),
+    )
+    return _change(frame, there, rotation, thrusts, wind, terrain)
+
+
+@kernel
+def _change(
+    frame: Airframe,
+    body: Body,
+    rotation: Vector,
+    thrusts: Thrusts,
+    wind: Vector,
+    terrain: Terrain,
+) -> _Change:
+    front_right, front_left, rear_left, rear_right = thrusts
+    right, left = front_right + rear_right, front_left + rear_left
+    front, rear = front_right + front_left, rear_left + rear_right
+    fx, fy, fz = rotate(body.attitude, 0.0, 0.0, front + rear)
+    torque = (
+        frame.arm * (left - right),
+        frame.arm * (rear - front),
+        frame.torque_constant
+        / frame.thrust_constant
+        * (front_left - front_right + rear_right - rear_left),
+    )
+    if frame.drag_area > 0.0:
+        x, y, z = _plus(wind, body.velocity, -1.0)
+        drag = 0.5 * frame.air_density * frame.drag_area * math.sqrt(x * x + y * y + z * z)
+        fx, fy, fz = fx + drag * x, fy + drag * y, fz + drag * z
+    if frame.contact_stiffness > 0.0:
+        force, moment = _contact(frame, body, terrain)
+        fx, fy, fz = fx + force[0], fy + force[1], fz + force[2]
+        torque = _plus(torque, moment, 1.0)
+    p, q, r = body.rate
+    jx, jy, jz = frame.inertia
+    once = _cross(rotation, body.rate)
+    twice = _cross(rotation, once)
+    return _Change(
+        body.velocity,
+        (fx / frame.mass, fy / frame.mass, fz / frame.mass - frame.gravity),
+        _plus(_plus(body.rate, once, 0.5), twice, 1.0 / 12.0),
+        (
+            (torque[0] - (jz - jy) * q * r) / jx,
+            (torque[1] - (jx - jz) * r * p) / jy,
+            (torque[2] - (jy - jx) * p * q) / jz,
+        ),
+    )
+
+
+@kernel
+def _contact(frame: Airframe, body: Body, terrain: Terrain) -> tuple[Vector, Vector]:
+    """Return force, world frame [N], and torque, body frame [N m], of the ground on four feet.
+
+    Each stands on a spring with a damper, and slides if the force along the ground would exceed
+    its friction. The ground is taken as level below each foot.
+    """
+    fx = fy = fz = tx = ty = tz = 0.0
+    for foot in range(4):
+        x = frame.arm if foot < 2 else -frame.arm
+        y = frame.arm if foot == 1 or foot == 2 else -frame.arm
+        place = (x, y, -frame.feet)
+        east, north, up = rotate(body.attitude, x, y, -frame.feet)
+        ground = ground_at(terrain, body.position[0] + east, body.position[1] + north)
+        depth = ground - (body.position[2] + up)
+        if depth <= 0.0:
+            continue
+        turning = _cross(body.rate, place)
+        slip = rotate(body.attitude, turning[0], turning[1], turning[2])
+        vx, vy, vz = _plus(slip, body.velocity, 1.0)
+        push = max(0.0, frame.contact_stiffness * depth - frame.contact_damping * vz)
+        speed = math.sqrt(vx * vx + vy * vy)
+        hold = min(frame.contact_damping, frame.contact_friction * push / max(speed, 1e-9))
+        fx, fy, fz = fx - hold * vx, fy - hold * vy, fz + push
+        moment = _cross(place, rotate_back(body.attitude, -hold * vx, -hold * vy, push))
+        tx, ty, tz = tx + moment[0], ty + moment[1], tz + moment[2]
+    return (fx, fy, fz), (tx, ty, tz)
+
+
+@kernel
+def _normalised(quaternion: Quaternion) -> Quaternion:
+    """Return a rotation of length 1, from which rounding leads away."""
+    w, x, y, z = quaternion
+    scale = 1.0 / math.sqrt(w * w + x * x + y * y + z * z)
+    return scale * w, scale * x, scale * y, scale * z
+
+
+@kernel
+def _sum(start: Vector, a: Vector, b: Vector, c: Vector, d: Vector, step: float) -> Vector:
+    """Return a vector after a step, from its rates of change in the four stages."""
+    share = step / 6.0
+    return (
+        start[0] + share * (a[0] + 2.0 * (b[0] + c[0]) + d[0]),
+        start[1] + share * (a[1] + 2.0 * (b[1] + c[1]) + d[1]),
+        start[2] + share * (a[2] + 2.0 * (b[2] + c[2]) + d[2]),
+    )
+
+
+@kernel
+def _plus(a: Vector, b: Vector, factor: float) -> Vector:
+    return a[0] + factor * b[0], a[1] + factor * b[1], a[2] + factor * b[2]
+
+
+@kernel
+def _cross(a: Vector, b: Vector) -> Vector:
+    return (
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    )

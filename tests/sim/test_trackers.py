@@ -1,0 +1,163 @@
+"""Flown drones and cars in a simulation: what ends, rewards, sensors and others make of them."""
+
+import math
+
+import numpy as np
+import pytest
+
+from eyas.core.errors import ConfigError
+from eyas.sim.build import build_simulation
+from eyas.sim.worlds import each_alone, together
+from eyas.state.draw import Picture
+from eyas.task.config import DoneConfig, StartConfig
+from eyas.task.done import DoneReason
+from eyas.trackers.config import TrackerConfig
+
+FLOWN, CAR = TrackerConfig(supervised=False), TrackerConfig(kind="car")
+
+
+def simulation_of(config, tracker, world_of=None, **changes):
+    config = config.model_copy(update={"tracker": tracker, **changes})
+    simulation = build_simulation(config, each_alone(2) if world_of is None else world_of)
+    simulation.reset()
+    return simulation
+
+
+def test_a_drone_that_cannot_keep_up_with_its_commands_ends_by_its_distance(config):
+    simulation = simulation_of(config, FLOWN)
+    fast, slow = [40.0, 0.0, 0.0, 0.0], [5.0, 0.0, 0.0, 0.0]
+    reasons = [simulation.advance(np.array([fast, slow]), 25).reason for _ in range(40)]
+    ended = [row[0] for row in reasons].index(DoneReason.DISTANCE)
+    # 40 t - g tan(pi / 5) t^2 / 2 is 50 m at 1.4 s; it has to tilt first.
+    assert 1.25 < (ended + 1) * 0.05 < 1.45
+    assert {row[1] for row in reasons} == {DoneReason.NONE}
+    assert simulation.packets()[1][0, 58] == 1.0  # `crash`, as in the original
+
+
+def test_a_supervised_drone_never_does(config):
+    simulation = simulation_of(config, TrackerConfig())
+    result = simulation.advance(np.tile([40.0, 0.0, 0.0, 0.0], (2, 1)), 1000)
+    assert DoneReason.DISTANCE not in result.reason
+
+
+def test_the_sensors_of_a_flown_drone_feel_its_thrust_and_its_turning(config):
+    simulation = simulation_of(config, FLOWN)
+    trackers = simulation.snapshot.trackers
+    for command in ([8.0, 0.0, 0.0, 0.0], [0.0, -8.0, 0.0, 1.0], [-40.0, 0.0, 0.004, -2.0]):
+        for _ in range(12):
+            simulation.advance(np.tile(command, (2, 1)), 4)
+            basic = simulation.packets()[0]
+            # Rotors pull along the body's own axis, and nothing else is felt.
+            assert np.abs(basic[:, 7:9]).max() < 0.1
+            upright = np.cos(trackers.euler[:, 0]) * np.cos(trackers.euler[:, 1])
+            pull = (trackers.acceleration[:, 2] + 9.81) / upright
+            assert basic[:, 9] == pytest.approx(pull, abs=0.1)
+            assert np.array_equal(basic[:, 10:13], trackers.angular_velocity)
+            assert np.array_equal(basic[:, 4:7], trackers.velocity)
+
+
+def test_the_same_commands_begin_the_same_in_both_modes(config):
+    commands = np.tile([2.0, -1.0, 0.001, 0.5], (2, 1))
+    ends = []
+    for tracker in (TrackerConfig(), FLOWN):
+        simulation = simulation_of(config, tracker)
+        simulation.advance(commands, 40)
+        ends.append(simulation.snapshot.trackers)
+    supervised, flown = ends
+    # The same command path: what differs is the heading that the flown body has by then.
+    assert flown.commanded_yaw == pytest.approx(supervised.commanded_yaw, abs=1e-12)
+    assert flown.commanded_position == pytest.approx(supervised.commanded_position, abs=5e-3)
+    assert not np.array_equal(flown.position, supervised.position)
+
+
+def test_gentle_flying_keeps_the_target_in_view_as_long_as_a_supervised_drone(config):
+    simulation = simulation_of(config, FLOWN)
+    simulation.carry(200)
+    carried = simulation.snapshot.episodes.reward.copy()
+    assert carried.min() > 0.9
+    assert not simulation.snapshot.trackers.euler[:, :2].any()
+
+
+def test_others_see_it_tilted_in_a_shared_world(config):
+    near = StartConfig(height=22.0, pitch=1.37)
+    simulation = simulation_of(config, FLOWN, together(2), start=near, same_target=True)
+    trackers, cameras = simulation.snapshot.trackers, simulation.snapshot.cameras
+    seen = {}
+    for name, command in (("level", [0.0] * 4), ("tilted", [40.0, 0.0, 0.0, 0.0])):
+        simulation.reset()
+        simulation.advance(np.tile(command, (2, 1)), 100)
+        # Camera 1 looks at drone 0 from 2 m behind it, along its heading.
+        yaw = trackers.euler[0, 2]
+        ahead = np.array([math.cos(yaw), math.sin(yaw), 0.0])
+        left = np.array([-ahead[1], ahead[0], 0.0])
+        cameras.position[1] = trackers.position[0] - 2.0 * ahead
+        cameras.rotation[1] = np.column_stack([ahead, left, [0.0, 0.0, 1.0]])
+        picture = Picture.create(1, 96, 128, object_id=True)
+        simulation.draw(np.array([1], np.int32), picture)
+        rows, _ = np.nonzero(picture.object_id[0] >= 65536 + simulation.actors)
+        seen[name] = np.ptp(rows)
+    assert seen["tilted"] > 1.3 * seen["level"] > 0
+
+
+def test_a_car_is_rewarded_by_1_and_only_its_time_ends_it(config):
+    simulation = simulation_of(config, CAR, done=DoneConfig(total_steps=600, no_reward_steps=50))
+    result = simulation.advance(np.array([[40.0, 0.0, -0.5, 3.0], [0.0, 0.0, 0.5, 0.0]]), 599)
+    assert result.reward.tolist() == [1.0, 1.0]
+    assert result.reason.tolist() == [DoneReason.NONE] * 2
+    assert simulation.snapshot.trackers.position[0, 2] == pytest.approx(-0.1)  # on the ground
+    last = simulation.advance(np.zeros((2, 4)))
+    assert last.reason.tolist() == [DoneReason.STEP_LIMIT] * 2
+
+
+def test_a_car_may_be_judged_like_a_drone_and_a_drone_like_a_car(config):
+    judged = simulation_of(config, CAR.model_copy(update={"judged": True}))
+    far = judged.advance(np.tile([0.0, 0.0, -0.5, 0.0], (2, 1)), 200)
+    assert far.reason.tolist() == [DoneReason.HEIGHT] * 2
+    assert far.reward.max() < 1.0
+    free = simulation_of(config, TrackerConfig(judged=False))
+    far = free.advance(np.tile([0.0, 0.0, 0.5, 0.0], (2, 1)), 200)
+    assert far.reason.tolist() == [DoneReason.NONE] * 2
+    assert far.reward.tolist() == [1.0, 1.0]
+
+
+def test_a_car_is_not_seen_by_others(config):
+    simulation = simulation_of(config, CAR, together(2), same_target=True)
+    picture = Picture.create(2, 48, 64, object_id=True)
+    simulation.draw(np.arange(2, dtype=np.int32), picture)
+    assert picture.object_id.max() < 65536 + simulation.actors
+
+
+def test_wind_differs_from_episode_to_episode_and_repeats_with_the_seed(config):
+    wind = {"speed": {"uniform": [3.0, 9.0]}, "direction": {"uniform": [-3.1, 3.1]}}
+    windy = TrackerConfig(supervised=False, drag_area=0.05, wind={**wind, "turbulence": 10.0})
+
+    def drift(simulation):
+        simulation.reset()
+        before = simulation.snapshot.trackers.position.copy()
+        simulation.advance(np.zeros((2, 4)), 400)
+        return simulation.snapshot.trackers.position - before
+
+    simulation = simulation_of(config, windy)
+    first, second = drift(simulation), drift(simulation)
+    assert np.abs(first[:, :2]).min() > 1e-3
+    assert not np.allclose(first, second, atol=1e-3)
+    simulation.reseed(config.seed)
+    simulation.reset()
+    assert np.array_equal(drift(simulation), first)
+
+
+@pytest.mark.parametrize(
+    ("values", "line"),
+    [
+        ({"wind": {"speed": 3.0}}, "drag_area: 0.0 is not allowed: must be above 0 with wind"),
+        ({"drag_area": 0.1}, "drag_area: 0.1 is not allowed: must be off unless the drone is"),
+        ({"kind": "car", "ground_contact": True}, "ground_contact: true is not allowed: must be"),
+        ({"supervised": False, "drag_area": -1.0}, "drag_area: -1.0 is not allowed: a number from"),
+        ({"wind": {"turbulence": 99.0}}, "wind.turbulence: 99.0 is not allowed: a number from 0"),
+        ({"wind": {"gusts": 1.0}}, "wind.gusts: unknown key"),
+    ],
+)
+def test_settings_without_effect_or_out_of_range_are_told_in_one_line(values, line):
+    with pytest.raises(ConfigError) as caught:
+        TrackerConfig(**values)
+    assert str(caught.value).startswith(line)
