@@ -9,15 +9,13 @@ from eyas.sim.simulation import Simulation
 from eyas.state.snapshot import Snapshot
 from eyas.targets.catalogue import MODELS
 from eyas.task.done import DoneReason
+from eyas.task.packet_rows import SENSOR_COLUMNS
 
 __all__ = ["Info", "by_term", "information", "masked", "of_one", "privileged_state", "sensor_state"]
 
 Floats = NDArray[np.float64]
 Info = dict[str, Any]
 Mask = NDArray[np.bool_]
-
-SENSOR_COLUMNS = slice(1, 20)
-"""Columns of the basic packet that the sensors measure."""
 
 _SENSORS = {
     "position": slice(1, 4),

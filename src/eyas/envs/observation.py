@@ -8,12 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.envs.config import ObservationConfig, ObservationPart
-from eyas.envs.information import SENSOR_COLUMNS, privileged_state, sensor_state
+from eyas.envs.information import privileged_state, sensor_state
 from eyas.sensors.config import ColourLayout
 from eyas.sensors.stack import FrameStack
 from eyas.sim.simulation import Simulation
 from eyas.state.draw import Picture
 from eyas.state.scene import ObjectClass
+from eyas.task.packet_rows import SENSOR_COLUMNS
 
 __all__ = ["Observation", "Observer", "observation_space"]
 

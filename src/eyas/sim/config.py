@@ -5,7 +5,7 @@ from typing import Annotated
 from pydantic import Field
 
 from eyas.core.config import Config
-from eyas.sensors.config import CameraConfig
+from eyas.sensors.config import CameraConfig, LidarConfig, SensorsConfig
 from eyas.targets.config import ObjectsConfig, TargetName
 from eyas.task.config import DoneConfig, RewardConfig, StartConfig
 from eyas.trackers.config import TrackerConfig
@@ -37,6 +37,8 @@ class SimConfig(Config):
     traffic: TrafficConfig = TrafficConfig()
     tracker: TrackerConfig = TrackerConfig()
     camera: CameraConfig = CameraConfig()
+    lidar: LidarConfig = LidarConfig()
+    sensors: SensorsConfig = SensorsConfig()
     control: ControlConfig = ControlConfig()
     start: StartConfig = StartConfig()
     reward: RewardConfig = RewardConfig()

@@ -125,7 +125,7 @@ class Episodes:
         targets.rise[tracker] = MODELS[model].rise
         targets.ahead[tracker] = kind_of(model).ahead
 
-    def _key(self, tracker: int) -> EpisodeKey:
+    def key(self, tracker: int) -> EpisodeKey:
         """Return what the random values of a tracker's episode depend on."""
         return EpisodeKey(
             int(self._seed[tracker]),
@@ -134,7 +134,7 @@ class Episodes:
         )
 
     def _begin_one(self, tracker: int) -> float:
-        key = self._key(tracker)
+        key = self.key(tracker)
         self._worlds.sample_looks(tracker, key)
         self._light.sample(tracker, key)
         self._fields[tracker] = sample(self._config.camera.field_of_view, key.stream("camera"))

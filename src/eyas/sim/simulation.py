@@ -5,19 +5,21 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.parallel import Held
+from eyas.core.parallel import BoundKernel, Held
 from eyas.sensors.inertial import smoothing_share
+from eyas.sensors.lidar import Lidar
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.episodes import Episodes
 from eyas.sim.light import LightChanges
 from eyas.sim.pictures import Pictures
+from eyas.sim.senses import Senses
 from eyas.sim.step import Orders, StepState, Surroundings, step_of
 from eyas.sim.worlds import Worlds
 from eyas.state.draw import DrawStage, Picture
 from eyas.state.motion import ActorState
 from eyas.state.snapshot import CameraState, Snapshot
-from eyas.task.packet_rows import PacketRows
+from eyas.task.packet_rows import SENSOR_COLUMNS, PacketRows
 from eyas.task.rules import Rules, exact, make_rules
 from eyas.task.terms import RewardTerms
 from eyas.trackers.tracker import Tracker
@@ -76,6 +78,7 @@ class Simulation:
         self.rules = make_rules(config.reward, config.done, config.camera)
         self._terms = RewardTerms(config.reward)
         self._packets = PacketRows(self.snapshot, config.camera, terrain)
+        self._senses = Senses(config, assets, worlds, self.snapshot, self._orders.active)
 
     @property
     def rules(self) -> Rules:
@@ -129,6 +132,7 @@ class Simulation:
         self._orders.chosen[:count] = chosen
         self._orders.starts[0] = count
         self._step.begin()
+        self._senses.begin(chosen.tolist(), self._episodes.key)
 
     def advance(
         self, commands: Floats, physics_steps: int = 1, active: NDArray[np.bool_] | None = None
@@ -144,15 +148,26 @@ class Simulation:
         assert commands.shape == (self.count, 4), f"commands: shape {commands.shape}, not (N, 4)"
         self._orders.commands[:] = commands
         self._orders.active[:] = True if active is None else active
-        self._orders.steps[0] = physics_steps
-        self._step.fly()
+        self._take(self._step.fly, physics_steps)
         return self._result()
 
     def carry(self, physics_steps: int = 1) -> StepResult:
         """Move all trackers with their targets, at their start offsets."""
-        self._orders.steps[0] = physics_steps
-        self._step.carry()
+        self._orders.active[:] = True
+        self._take(self._step.carry, physics_steps)
         return self._result()
+
+    def _take(self, step: BoundKernel, physics_steps: int) -> None:
+        """Take physics steps: all in one call, unless something is sensed after each."""
+        if not self._senses.follow:
+            self._orders.steps[0] = physics_steps
+            step()
+            return
+        self._orders.steps[0] = 1
+        self._senses.renew()
+        for _ in range(physics_steps):
+            step()
+            self._senses.advance()
 
     def follow(self, tracker: int, actor: int) -> None:
         """Make another actor of its world the target of a tracker, from the next step on."""
@@ -179,8 +194,19 @@ class Simulation:
         return self._worlds.actors_around(tracker, int(self.snapshot.episodes.tick[tracker]))
 
     def packets(self) -> tuple[Floats, Floats]:
-        """Return copies of the basic packets (N, 22) and the reward packets (N, 60)."""
-        return self._packets.now()
+        """Return copies of the basic packets (N, 22) and the reward packets (N, 60).
+
+        The sensors' columns of the basic packets are what the sensors read, with their errors.
+        """
+        basic, reward = self._packets.now()
+        if self._senses.readings is not None:
+            basic[:, SENSOR_COLUMNS] = self._senses.readings.now()
+        return basic, reward
+
+    @property
+    def lidar(self) -> Lidar | None:
+        """The lidars of the trackers; None if `lidar.enabled` is false."""
+        return self._senses.lidar
 
     def draw(
         self,
@@ -204,6 +230,8 @@ class Simulation:
             self._pictures.draw_overlaid(chosen, picture, self.rules, until)
         else:
             self._pictures.draw(chosen, picture, until)
+        if self._senses.grain is not None and picture.rgb is not None:
+            self._senses.grain.add(picture.rgb, chosen, self.snapshot.episodes.step_count)
 
     def draw_from(
         self,

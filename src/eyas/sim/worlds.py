@@ -81,6 +81,13 @@ class Worlds:
         self._near = NearMovers(assets.traffic.motion, rigs, self._looks, reach)
 
     @property
+    def models(self) -> NDArray[np.int32]:
+        """Model of each actor in each world, index into the catalogue, shape (W, A); it changes in
+        place.
+        """
+        return self._looks.model
+
+    @property
     def actors(self) -> int:
         """Number of actors in each world."""
         return self._assets.traffic.actors

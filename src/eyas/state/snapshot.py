@@ -155,6 +155,14 @@ class EpisodeState(NamedTuple):
     shape (N,)."""
     not_a_number: NDArray[np.bool_]
     """Whether a value was not a finite number, shape (N,)."""
+    crash: NDArray[np.bool_]
+    """Whether the tracker has crashed, as `done.crash` means it, shape (N,)."""
+    contact: Floats
+    """Where the body has touched something last, world frame [m]; zeros if nowhere since the reset,
+    shape (N, 3)."""
+    contact_object: Integers
+    """Object id of what it has touched there, as in `Picture.object_id`; -1 if nothing,
+    shape (N,)."""
     direction: Integers
     """`eyas.task.direction.TargetDirection`, shape (N,)."""
     observations: Integers
@@ -165,6 +173,8 @@ class EpisodeState(NamedTuple):
     """Ground point that the camera looks at, or the point below it [m], shape (N, 3)."""
     last_target: Floats
     """Target one step ago: east, north [m] and heading [rad], shape (N, 3)."""
+    first_position: Floats
+    """`relative_position` when the target was first observed [m], shape (N, 3)."""
     relative_position: Floats
     """The target's centre in the tracker's body frame [m], shape (N, 3)."""
     relative_velocity: Floats
@@ -185,11 +195,15 @@ class EpisodeState(NamedTuple):
             reason=np.zeros(count, np.int64),
             breach=np.zeros(count, np.int64),
             not_a_number=np.zeros(count, np.bool_),
+            crash=np.zeros(count, np.bool_),
+            contact=np.zeros(vector),
+            contact_object=np.full(count, -1, np.int64),
             direction=np.zeros(count, np.int64),
             observations=np.zeros(count, np.int64),
             start_offset=np.zeros((count, 4)),
             view_centre=np.zeros(vector),
             last_target=np.zeros(vector),
+            first_position=np.zeros(vector),
             relative_position=np.zeros(vector),
             relative_velocity=np.zeros(vector),
             relative_acceleration=np.zeros(vector),

@@ -9,7 +9,7 @@ from pydantic import AfterValidator, Field, model_validator
 from eyas.core.config import Config
 from eyas.core.variation import Uniform, Variation, within
 
-__all__ = ["DoneConfig", "RewardConfig", "RewardMode", "RewardType", "StartConfig"]
+__all__ = ["Crash", "DoneConfig", "RewardConfig", "RewardMode", "RewardType", "StartConfig"]
 
 Positive = Annotated[float, Field(gt=0, le=1e9)]
 Height = Annotated[float, Field(ge=-1e6, le=1e6)]
@@ -31,6 +31,18 @@ class RewardMode(StrEnum):
 
     CONTINUOUS = "continuous"
     DISCRETE = "discrete"
+
+
+class Crash(StrEnum):
+    """What counts as a crash."""
+
+    ORIGINAL = "original"
+    """As in the original, which knows no contacts: too far from the commanded position, or turning
+    too fast. Costs nothing."""
+    CONTACT = "contact"
+    """The body touches a building, a tree, the ground or a vehicle; the episode goes on."""
+    END = "end"
+    """The same, and the episode ends."""
 
 
 class StartConfig(Config):
@@ -99,6 +111,8 @@ class DoneConfig(Config):
     """2 ms steps after a reset during which the episode does not end."""
     no_reward_steps: Steps = 100
     """2 ms steps without reward after which the episode ends."""
+    crash: Crash = Crash.ORIGINAL
+    """What counts as a crash, and whether it ends the episode."""
 
     @model_validator(mode="after")
     def _heights_in_order(self) -> Self:

@@ -23,9 +23,12 @@ def clear_episode(episodes: EpisodeState, n: int) -> None:
     episodes.reason[n] = 0
     episodes.breach[n] = 0
     episodes.not_a_number[n] = False
+    episodes.crash[n] = False
+    episodes.contact_object[n] = -1
     episodes.direction[n] = 0
     episodes.observations[n] = 0
     for axis in range(3):
+        episodes.contact[n, axis] = 0.0
         episodes.relative_velocity[n, axis] = 0.0
         episodes.relative_acceleration[n, axis] = 0.0
 
@@ -94,4 +97,6 @@ def _follow_relative(
                 change = speed - episodes.relative_velocity[n, axis]
                 episodes.relative_acceleration[n, axis] = change / PHYSICS_STEP
             episodes.relative_velocity[n, axis] = speed
+        else:
+            episodes.first_position[n, axis] = relative[axis]
         episodes.relative_position[n, axis] = relative[axis]

@@ -140,6 +140,9 @@ class Server:
         parts = [Part(names.state, lambda: answer.state)]
         if self._config.reward_packet:
             parts.append(Part(names.reward, lambda: answer.reward))
+        radar = answer.radar
+        if radar is not None:
+            parts.append(Part(names.radar, lambda: radar))
         drawn = Part(names.picture, lambda: picture.result() if picture.done() else None)
         return [*parts, drawn]
 
