@@ -141,7 +141,7 @@ def _scan_all(parts: Pointer[tuple[Pointer[_Scan]]], worker: int, workers: int) 
     """Measure the due points of all active trackers."""
     scan = parts[0][0][0]
     for n in range(scan.active.shape[0]):
-        due = int(math.floor(scan.episodes.step_count[n] * scan.per_step + 1e-9))
+        due = math.floor(scan.episodes.step_count[n] * scan.per_step + 1e-9)
         if scan.active[n] and scan.turned[n] < due:
             _scan_one(scan, n, due)
         elif scan.turned[n] < 0:

@@ -58,10 +58,10 @@ def _cast_solids(ray: Ray, reach: float, solids: Solids) -> tuple[float, int]:
     end_z = ray.z + reach * ray.ahead_z
     low, high = min(ray.z, end_z), max(ray.z, end_z)
     prisms = solids.first.shape[0] - 1
-    left = max(int(math.floor((min(ray.x, end_x) - solids.west) / solids.spacing)), 0)
-    right = int(math.floor((max(ray.x, end_x) - solids.west) / solids.spacing))
-    lower = max(int(math.floor((min(ray.y, end_y) - solids.south) / solids.spacing)), 0)
-    upper = int(math.floor((max(ray.y, end_y) - solids.south) / solids.spacing))
+    left = max(math.floor((min(ray.x, end_x) - solids.west) / solids.spacing), 0)
+    right = math.floor((max(ray.x, end_x) - solids.west) / solids.spacing)
+    lower = max(math.floor((min(ray.y, end_y) - solids.south) / solids.spacing), 0)
+    upper = math.floor((max(ray.y, end_y) - solids.south) / solids.spacing)
     for row in range(lower, min(upper, solids.rows - 1) + 1):
         for column in range(left, min(right, solids.columns - 1) + 1):
             cell = row * solids.columns + column
@@ -74,8 +74,8 @@ def _cast_solids(ray: Ray, reach: float, solids: Solids) -> tuple[float, int]:
                     continue
                 limit = min(best, reach)
                 if item < prisms:
-                    first, last = solids.first[item], solids.first[item + 1]
-                    near = _cast_prism(ray, limit, solids.points, first, last, bottom, top)
+                    corners = (solids.first[item], solids.first[item + 1])
+                    near = _cast_prism(ray, limit, solids.points, corners, (bottom, top))
                 else:
                     near = _cast_cylinder(ray, limit, solids.round[item - prisms], bottom, top)
                 if near < best:
@@ -87,8 +87,8 @@ def _cast_solids(ray: Ray, reach: float, solids: Solids) -> tuple[float, int]:
 def _cast_boxes(ray: Ray, reach: float, boxes: Boxes, count: int) -> tuple[float, int]:
     best, thing = math.inf, -1
     for box in range(count):
-        first, bottom, top = 4 * box, boxes.bottom[box], boxes.top[box]
-        near = _cast_prism(ray, min(best, reach), boxes.corners, first, first + 4, bottom, top)
+        corners, heights = (4 * box, 4 * box + 4), (boxes.bottom[box], boxes.top[box])
+        near = _cast_prism(ray, min(best, reach), boxes.corners, corners, heights)
         if near < best:
             best, thing = near, int(boxes.thing[box])
     return best, thing
@@ -99,17 +99,18 @@ def _cast_prism(
     ray: Ray,
     limit: float,
     points: NDArray[np.float64],
-    first: int,
-    last: int,
-    bottom: float,
-    top: float,
+    corners: tuple[int, int],
+    heights: tuple[float, float],
 ) -> float:
     """Return the distance of a prism, infinity if it is not met before the limit [m]."""
-    best = math.inf
+    best, (first, last), (bottom, top) = math.inf, corners, heights
     before = last - 1
     for corner in range(first, last):
         from_x, from_y = points[before, 0] - ray.x, points[before, 1] - ray.y
-        side_x, side_y = points[corner, 0] - points[before, 0], points[corner, 1] - points[before, 1]
+        side_x, side_y = (
+            points[corner, 0] - points[before, 0],
+            points[corner, 1] - points[before, 1],
+        )
         before = corner
         across = ray.ahead_x * side_y - ray.ahead_y * side_x
         if across == 0.0:

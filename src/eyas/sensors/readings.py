@@ -144,7 +144,25 @@ def _read(work: _Work, n: int, step: int) -> None:
 @step_kernel
 def _read_one(work: _Work, n: int, step: int, sensor: int, row: NDArray[np.float64]) -> None:
     """Write a new reading of a sensor."""
-    trackers, seed = work.trackers, work.seed[n]
+    _write_truth(work.trackers, n, sensor, row)
+    seed = work.seed[n]
+    begin = _EULER if sensor == _IMU else work.first[sensor]
+    changed = False
+    for column in range(begin, work.first[sensor + 1]):
+        if work.noise[column] > 0.0:
+            row[column] += work.noise[column] * normal(seed, step, column)
+            changed = True
+        if work.bias[column] > 0.0:
+            row[column] += work.bias[column] * normal(seed, 0, _BIAS + column)
+            changed = True
+    if sensor == _IMU and changed:
+        row[_EULER + 2] = wrap_angle(row[_EULER + 2])
+        _write_quaternion(row)
+
+
+@step_kernel
+def _write_truth(trackers: TrackerState, n: int, sensor: int, row: NDArray[np.float64]) -> None:
+    """Write what a sensor without errors reads."""
     if sensor == 0:
         row[0], row[1] = trackers.position[n, 0], trackers.position[n, 1]
         row[2] = trackers.position[n, 2]
@@ -160,18 +178,6 @@ def _read_one(work: _Work, n: int, step: int, sensor: int, row: NDArray[np.float
             row[_EULER + axis] = trackers.euler[n, axis]
         for part in range(4):
             row[_QUATERNION + part] = trackers.orientation[n, part]
-    begin = _EULER if sensor == _IMU else work.first[sensor]
-    changed = False
-    for column in range(begin, work.first[sensor + 1]):
-        if work.noise[column] > 0.0:
-            row[column] += work.noise[column] * normal(seed, step, column)
-            changed = True
-        if work.bias[column] > 0.0:
-            row[column] += work.bias[column] * normal(seed, 0, _BIAS + column)
-            changed = True
-    if sensor == _IMU and changed:
-        row[_EULER + 2] = wrap_angle(row[_EULER + 2])
-        _write_quaternion(row)
 
 
 @step_kernel

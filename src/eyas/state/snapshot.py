@@ -169,6 +169,11 @@ class EpisodeState(NamedTuple):
     """Observations of the target since the reset, counted up to 3, shape (N,)."""
     start_offset: Floats
     """Start relative to the target: forward, left, up [m], heading [rad], shape (N, 4)."""
+    offset: Floats
+    """Horizontal distance of the target from the view centre [m], shape (N,)."""
+    proportion: Floats
+    """1 in the middle of the rewarded part of the picture, 0 at its edge and outside, see
+    `eyas.task.reward.view_share`, shape (N,)."""
     view_centre: Floats
     """Ground point that the camera looks at, or the point below it [m], shape (N, 3)."""
     last_target: Floats
@@ -201,6 +206,8 @@ class EpisodeState(NamedTuple):
             direction=np.zeros(count, np.int64),
             observations=np.zeros(count, np.int64),
             start_offset=np.zeros((count, 4)),
+            offset=np.zeros(count),
+            proportion=np.zeros(count),
             view_centre=np.zeros(vector),
             last_target=np.zeros(vector),
             first_position=np.zeros(vector),

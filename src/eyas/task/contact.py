@@ -207,10 +207,10 @@ def _touch_solids(
     to_x, to_y = sweep.x + sweep.motion_x, sweep.y + sweep.motion_y
     prisms, spacing = solids.first.shape[0] - 1, solids.spacing
     lowest = min(sweep.z, sweep.z + sweep.motion_z) - sweep.half_height
-    left = max(int(math.floor((min(sweep.x, to_x) - wide - solids.west) / spacing)), 0)
-    right = int(math.floor((max(sweep.x, to_x) + wide - solids.west) / spacing))
-    lower = max(int(math.floor((min(sweep.y, to_y) - wide - solids.south) / spacing)), 0)
-    upper = int(math.floor((max(sweep.y, to_y) + wide - solids.south) / spacing))
+    left = max(math.floor((min(sweep.x, to_x) - wide - solids.west) / spacing), 0)
+    right = math.floor((max(sweep.x, to_x) + wide - solids.west) / spacing)
+    lower = max(math.floor((min(sweep.y, to_y) - wide - solids.south) / spacing), 0)
+    upper = math.floor((max(sweep.y, to_y) + wide - solids.south) / spacing)
     for row in range(lower, min(upper, solids.rows - 1) + 1):
         for column in range(left, min(right, solids.columns - 1) + 1):
             cell = row * solids.columns + column

@@ -57,6 +57,7 @@ def observe(
     share = view_share(position, rotation, depth, ground, half_size)
     distance = math.sqrt((x - middle_x) ** 2 + (y - middle_y) ** 2)
     episodes.reward[n] = reward_value(share, distance, depth, rules)
+    episodes.offset[n], episodes.proportion[n] = distance, share
     centre = episodes.view_centre[n]
     centre[0], centre[1] = middle_x, middle_y
     centre[2] = -height_over(ground, middle_x, middle_y, 0.0)
