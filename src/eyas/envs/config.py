@@ -69,6 +69,8 @@ class ObservationPart(StrEnum):
     """`eyas.state.scene.ObjectClass` of each pixel, uint8."""
     SENSORS = "sensors"
     """GPS, accelerometer, gyroscope and IMU: 19 numbers of the basic packet, float32."""
+    LIDAR = "lidar"
+    """Distance of each point of the lidar [m], its longest range where nothing is, float32."""
     PRIVILEGED = "privileged"
     """What no sensor tells: the true motion of the target, 16 numbers, float32."""
 

@@ -154,7 +154,7 @@ def joined(parts: Sequence[Any], rows: Sequence[Any]) -> Any:  # noqa: ANN401  #
         names = dict.fromkeys(name for part in parts for name in part)
         return {name: joined([part.get(name, 0.0) for part in parts], rows) for name in names}
     count = sum(len(own) if isinstance(own, np.ndarray) else own.stop - own.start for own in rows)
-    whole = np.asarray(parts[0])
+    whole = max(map(np.asarray, parts), key=np.ndim)  # what a part lacks is a single 0
     result = np.empty((count, *whole.shape[1:]), whole.dtype)
     for own, part in zip(rows, parts, strict=True):
         result[own] = part

@@ -92,6 +92,11 @@ class Lidar:
         """
         return self._range.copy()
 
+    def ranges_of(self, tracker: int) -> NDArray[np.float64]:
+        """Return the same of one tracker, shape (points,)."""
+        ranges: NDArray[np.float64] = self._range[tracker].copy()
+        return ranges
+
     def things(self) -> NDArray[np.int32]:
         """Return the object id of what each point has hit, -1 for nothing, shape (N, points).
 
@@ -104,7 +109,8 @@ class Lidar:
         rows = np.zeros((*self._range.shape, POINT_NUMBERS))
         rows[..., 0:2] = self._range[..., None] * self._ahead
         rows[..., 4] = self._time
-        return rows.reshape(len(rows), -1)
+        packets: NDArray[np.float64] = rows.reshape(len(rows), -1)
+        return packets
 
     def filled(self, out: NDArray[np.float32]) -> None:
         """Write the distances [m], the largest range where nothing is, shape (N, points)."""

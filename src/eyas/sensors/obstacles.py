@@ -1,13 +1,13 @@
 """Everything solid that a ray or a body may hit, in the form that kernels read."""
 
-import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.sensors.furniture import furniture
+from eyas.sensors.furniture import Box, Cylinder, furniture
+from eyas.sensors.grid import Grid, grid_of
 from eyas.state.motion import Motion
 from eyas.state.scene import ObjectClass, Scene
 from eyas.state.terrain import Terrain
@@ -17,12 +17,9 @@ __all__ = ["Boxes", "Movers", "Obstacles", "Solids", "obstacles_of"]
 
 Floats = NDArray[np.float64]
 
-_SPACING = 8.0
-"""Width of a cell of the grid [m]."""
-
 
 class Solids(NamedTuple):
-    """Upright prisms and cylinders that stand still, in a grid of cells on the ground.
+    """Upright prisms and cylinders that stand still.
 
     Item i below B is prism i; item B + c is cylinder c.
     """
@@ -39,20 +36,8 @@ class Solids(NamedTuple):
     """z of each item [m], shape (B + C,)."""
     thing: NDArray[np.int32]
     """Object of the scene that each item belongs to, shape (B + C,)."""
-    cell_first: NDArray[np.int32]
-    """Start of each cell's items, row by row from the south-west, shape (rows * columns + 1,)."""
-    cell_item: NDArray[np.int32]
-    """The items that reach into each cell."""
-    cell_top: Floats
-    """Highest z of each cell's items [m], shape (rows * columns,)."""
-    columns: int
-    rows: int
-    west: float
-    """[m]"""
-    south: float
-    """[m]"""
-    spacing: float
-    """Width of a cell [m]."""
+    grid: Grid
+    """The items in each cell."""
     ground: int
     """Object of the scene that the ground is."""
 
@@ -131,7 +116,7 @@ def solids_of(scene: Scene) -> Solids:
         _columns(more.cylinders),
     ]
     bottom, top, thing = (np.concatenate(column) for column in zip(*parts, strict=True))
-    boxes = np.array(list(_bounds(outlines, round_))).reshape(-1, 4)
+    bounds = np.array(list(_bounds(outlines, round_)), np.float64).reshape(-1, 4)
     ground = np.flatnonzero(scene.object_class == ObjectClass.GROUND)
     return Solids(
         points=np.concatenate([np.zeros((0, 2)), *outlines]),
@@ -140,12 +125,12 @@ def solids_of(scene: Scene) -> Solids:
         bottom=bottom.astype(np.float64),
         top=top.astype(np.float64),
         thing=thing.astype(np.int32),
-        **_grid(boxes, top),
+        grid=grid_of(bounds, top),
         ground=int(ground[0]) if len(ground) else 0,
     )
 
 
-def _columns(items: list) -> tuple[Floats, Floats, NDArray[np.int32]]:  # type: ignore[type-arg]
+def _columns(items: Sequence[Box | Cylinder]) -> tuple[Floats, Floats, NDArray[np.int32]]:
     rows = np.array([(i.bottom, i.top, i.thing) for i in items], np.float64).reshape(-1, 3)
     return rows[:, 0], rows[:, 1], rows[:, 2].astype(np.int32)
 
@@ -156,29 +141,3 @@ def _bounds(outlines: list[Floats], round_: Floats) -> Iterator[tuple[float, ...
         yield (*outline.min(axis=0), *outline.max(axis=0))
     for x, y, radius in round_:
         yield (x - radius, y - radius, x + radius, y + radius)
-
-
-def _grid(boxes: Floats, top: Floats) -> dict[str, object]:
-    """Return the fields of `Solids` that make its grid."""
-    if not len(boxes):
-        boxes = np.zeros((0, 4))
-        corner, far = np.zeros(2), np.zeros(2)
-    else:
-        corner, far = boxes[:, :2].min(axis=0), boxes[:, 2:].max(axis=0)
-    columns, rows = (int(n) + 1 for n in (far - corner) // _SPACING)
-    cells: list[list[int]] = [[] for _ in range(rows * columns)]
-    reach = ((boxes - np.tile(corner, 2)) // _SPACING).astype(int)
-    for item, (left, low, right, high) in enumerate(reach.tolist()):
-        for row in range(low, high + 1):
-            for column in range(left, right + 1):
-                cells[row * columns + column].append(item)
-    return {
-        "cell_first": np.cumsum([0, *map(len, cells)]).astype(np.int32),
-        "cell_item": np.array([item for cell in cells for item in cell], np.int32),
-        "cell_top": np.array([max((top[i] for i in cell), default=-math.inf) for cell in cells]),
-        "columns": columns,
-        "rows": rows,
-        "west": float(corner[0]),
-        "south": float(corner[1]),
-        "spacing": _SPACING,
-    }

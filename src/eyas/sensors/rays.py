@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.jit import step_kernel
+from eyas.sensors.grid import cells_between
 from eyas.sensors.obstacles import Boxes, Obstacles, Solids
 from eyas.state.terrain import Terrain, ground_at
 
@@ -58,17 +59,15 @@ def _cast_solids(ray: Ray, reach: float, solids: Solids) -> tuple[float, int]:
     end_z = ray.z + reach * ray.ahead_z
     low, high = min(ray.z, end_z), max(ray.z, end_z)
     prisms = solids.first.shape[0] - 1
-    left = max(math.floor((min(ray.x, end_x) - solids.west) / solids.spacing), 0)
-    right = math.floor((max(ray.x, end_x) - solids.west) / solids.spacing)
-    lower = max(math.floor((min(ray.y, end_y) - solids.south) / solids.spacing), 0)
-    upper = math.floor((max(ray.y, end_y) - solids.south) / solids.spacing)
-    for row in range(lower, min(upper, solids.rows - 1) + 1):
-        for column in range(left, min(right, solids.columns - 1) + 1):
-            cell = row * solids.columns + column
-            if solids.cell_top[cell] < low:
+    grid = solids.grid
+    first_row, last_row, left, right = cells_between(grid, (ray.x, end_x), (ray.y, end_y), 0.0)
+    for row in range(first_row, last_row + 1):
+        for column in range(left, right + 1):
+            cell = row * grid.columns + column
+            if grid.top[cell] < low:
                 continue
-            for k in range(solids.cell_first[cell], solids.cell_first[cell + 1]):
-                item = solids.cell_item[k]
+            for k in range(grid.first[cell], grid.first[cell + 1]):
+                item = grid.item[k]
                 bottom, top = solids.bottom[item], solids.top[item]
                 if top < low or bottom > high:
                     continue

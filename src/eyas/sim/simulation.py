@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.clock import physics_steps
 from eyas.core.parallel import BoundKernel, Held
 from eyas.sensors.inertial import smoothing_share
 from eyas.sensors.lidar import Lidar
@@ -20,6 +21,7 @@ from eyas.state.draw import DrawStage, Picture
 from eyas.state.motion import ActorState
 from eyas.state.snapshot import CameraState, Snapshot
 from eyas.task.packet_rows import SENSOR_COLUMNS, PacketRows
+from eyas.task.quantities import Setting
 from eyas.task.rules import Rules, exact, make_rules
 from eyas.task.terms import RewardTerms
 from eyas.trackers.tracker import Tracker
@@ -76,7 +78,8 @@ class Simulation:
         self._held_orders = Held(self._orders)
         self._share = smoothing_share(config.tracker.inertial_time_constant)
         self.rules = make_rules(config.reward, config.done, config.camera)
-        self._terms = RewardTerms(config.reward)
+        early = config.done.grace_steps + 2 * physics_steps(config.control.frequency)
+        self._terms = RewardTerms(config.reward, Setting(self.rules.aspect, early))
         self._packets = PacketRows(self.snapshot, config.camera, terrain)
         self._senses = Senses(config, assets, worlds, self.snapshot, self._orders.active)
 
@@ -207,6 +210,14 @@ class Simulation:
     def lidar(self) -> Lidar | None:
         """The lidars of the trackers; None if `lidar.enabled` is false."""
         return self._senses.lidar
+
+    def classes_of(self, objects: NDArray[np.integer]) -> NDArray[np.int64]:
+        """Return the `ObjectClass` of objects, -1 for the id -1, shape (K,).
+
+        Args:
+            objects: Object ids as in `Picture.object_id`, but not those of trackers, shape (K,).
+        """
+        return self._worlds.classes_of(objects)
 
     def draw(
         self,

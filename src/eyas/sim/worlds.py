@@ -12,6 +12,7 @@ from eyas.state.draw import DrawList
 from eyas.state.motion import ActorState
 from eyas.state.scene import ACTOR_OBJECT
 from eyas.state.snapshot import CameraState
+from eyas.targets.catalogue import KINDS
 from eyas.targets.kind import Looks
 from eyas.targets.looks import LookSampler
 
@@ -114,6 +115,16 @@ class Worlds:
     def model_of(self, tracker: int, actor: int) -> int:
         """Return the model of an actor around a tracker, an index into the catalogue."""
         return int(self._looks.model[self.of[tracker], actor])
+
+    def classes_of(self, objects: NDArray[np.integer]) -> Integers:
+        """Return the `ObjectClass` of objects and actors, -1 for the id -1, shape (K,)."""
+        static, kinds = self._assets.scene.object_class, self._assets.traffic.motion.kind
+        moving = np.array([KINDS[kind].object_class for kind in kinds.tolist()], np.int64)
+        classes = np.full(len(objects), -1, np.int64)
+        still, moves = (objects >= 0) & (objects < ACTOR_OBJECT), objects >= ACTOR_OBJECT
+        classes[still] = static[objects[still]]
+        classes[moves] = moving[objects[moves] - ACTOR_OBJECT]
+        return classes
 
     def object_ids(self, actors: NDArray[np.int32]) -> NDArray[np.int32]:
         """Return the object ids of actors."""

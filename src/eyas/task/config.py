@@ -73,8 +73,10 @@ class RewardConfig(Config):
     weight: Weight = 1.0
     """Factor on the built-in reward."""
     terms: dict[str, Weight] = Field(default_factory=dict)
-    """User-defined terms to add: the path of a function, `package.module:function`, which takes a
-    `Snapshot` and returns a number for each tracker, and the factor on it."""
+    """Terms to add, and the factor on each: the name of a published one (`e2e`, `d_vat`,
+    `d_vat_3d`, `speed`, `effort`), or the path of a function, `package.module:function`, which
+    takes a `Snapshot`, or the quantities that its parameters name, and returns a number for each
+    tracker."""
     cut_off: Annotated[float, Field(ge=0, le=1)] = 0.001
     """Reward at or below which a step counts as one without reward, 0 to 1."""
     distance_scale: Positive = 0.01

@@ -9,12 +9,11 @@ from numpy.typing import NDArray
 from eyas.core.frames import rotate
 from eyas.core.jit import step_kernel
 from eyas.core.parallel import Held, Pointer, parallel_kernel
-from eyas.sensors.movers import find_boxes
 from eyas.sensors.obstacles import Obstacles
 from eyas.state.snapshot import EpisodeState, Snapshot, TrackerState
-from eyas.state.terrain import ground_at
 from eyas.task.done import DoneReason
-from eyas.task.sweep import NEVER, Sweep, sweep_cylinder, sweep_prism, while_level
+from eyas.task.sweep import NEVER, Sweep
+from eyas.task.touch import touch_ground, touch_solids, touch_vehicles
 
 __all__ = ["BODY", "Contacts"]
 
@@ -126,47 +125,21 @@ def _find_all(parts: Pointer[tuple[Pointer[_Work]]], worker: int, workers: int) 
 def _find(trackers: TrackerState, episodes: EpisodeState, work: _Work, n: int) -> bool:
     """Find what the body of tracker `n` touches first on its way of the last step."""
     sweep = _sweep_of(trackers, work, n)
-    share, x, y, thing, bottom, top = _touch_solids(sweep, work.obstacles)
-    at, tick = trackers.position[n], episodes.tick[n]
-    way = abs(sweep.motion_x) + abs(sweep.motion_y) + abs(sweep.motion_z)
-    reach = way + work.half_length + work.half_width + work.half_height
-    place = (at[0], at[1], at[2])
-    boxes = work.obstacles.boxes
-    for box in range(find_boxes(work.obstacles.movers, n, tick, place, reach, boxes)):
-        moved = boxes.moved[box]
-        # As seen from the vehicle, which stands where it is now.
-        beside = Sweep(
-            sweep.x + moved[0],
-            sweep.y + moved[1],
-            sweep.z + moved[2],
-            sweep.motion_x - moved[0],
-            sweep.motion_y - moved[1],
-            sweep.motion_z - moved[2],
-            sweep.cosine,
-            sweep.sine,
-            sweep.half_length,
-            sweep.half_width,
-            sweep.half_height,
-        )
-        start, end = while_level(beside, boxes.bottom[box], boxes.top[box])
-        if start > end:
-            continue
-        touch = sweep_prism(beside, boxes.corners, 4 * box, 4 * box + 4, start, end)
-        if touch.share < share:
-            share, x, y, thing = touch.share, touch.x, touch.y, int(boxes.thing[box])
-            bottom, top = boxes.bottom[box], boxes.top[box]
-    ground, ground_x, ground_y = _touch_ground(sweep, work.obstacles)
-    if ground < share:
-        share, x, y, thing = ground, ground_x, ground_y, work.obstacles.solids.ground
-        bottom = top = ground_at(work.obstacles.terrain, x, y)
+    hit = touch_solids(sweep, work.obstacles)
+    vehicle = touch_vehicles(sweep, work.obstacles, n, episodes.tick[n])
+    if vehicle.share < hit.share:
+        hit = vehicle
+    ground = touch_ground(sweep, work.obstacles)
+    if ground.share < hit.share:
+        hit = ground
     for axis in range(3):
-        work.last[n, axis] = at[axis]
-    if share >= NEVER:
+        work.last[n, axis] = trackers.position[n, axis]
+    if hit.share >= NEVER:
         return False
     contact = episodes.contact[n]
-    contact[0], contact[1] = x, y
-    contact[2] = min(max(sweep.z + share * sweep.motion_z, bottom), top)
-    episodes.contact_object[n] = thing
+    contact[0], contact[1] = hit.x, hit.y
+    contact[2] = min(max(sweep.z + hit.share * sweep.motion_z, hit.bottom), hit.top)
+    episodes.contact_object[n] = hit.thing
     return True
 
 
@@ -194,63 +167,3 @@ def _sweep_of(trackers: TrackerState, work: _Work, n: int) -> Sweep:
         width + abs(cosine * up[1] - sine * up[0]),
         abs(ahead[2]) + abs(left[2]) + abs(up[2]),
     )
-
-
-@step_kernel
-def _touch_solids(
-    sweep: Sweep, obstacles: Obstacles
-) -> tuple[float, float, float, int, float, float]:
-    """Return share, x, y, object, bottom and top of the first solid that is touched."""
-    solids, best = obstacles.solids, NEVER
-    best_x, best_y, thing, low, high = 0.0, 0.0, -1, 0.0, 0.0
-    wide = math.sqrt(sweep.half_length * sweep.half_length + sweep.half_width * sweep.half_width)
-    to_x, to_y = sweep.x + sweep.motion_x, sweep.y + sweep.motion_y
-    prisms, spacing = solids.first.shape[0] - 1, solids.spacing
-    lowest = min(sweep.z, sweep.z + sweep.motion_z) - sweep.half_height
-    left = max(math.floor((min(sweep.x, to_x) - wide - solids.west) / spacing), 0)
-    right = math.floor((max(sweep.x, to_x) + wide - solids.west) / spacing)
-    lower = max(math.floor((min(sweep.y, to_y) - wide - solids.south) / spacing), 0)
-    upper = math.floor((max(sweep.y, to_y) + wide - solids.south) / spacing)
-    for row in range(lower, min(upper, solids.rows - 1) + 1):
-        for column in range(left, min(right, solids.columns - 1) + 1):
-            cell = row * solids.columns + column
-            if solids.cell_top[cell] < lowest:
-                continue
-            for k in range(solids.cell_first[cell], solids.cell_first[cell + 1]):
-                item = solids.cell_item[k]
-                bottom, top = solids.bottom[item], solids.top[item]
-                start, end = while_level(sweep, bottom, top)
-                if start > end:
-                    continue
-                if item < prisms:
-                    first, last = solids.first[item], solids.first[item + 1]
-                    touch = sweep_prism(sweep, solids.points, first, last, start, end)
-                else:
-                    touch = sweep_cylinder(sweep, solids.round[item - prisms], start, end)
-                if touch.share < best:
-                    best, best_x, best_y = touch.share, touch.x, touch.y
-                    thing, low, high = int(solids.thing[item]), bottom, top
-    return best, best_x, best_y, thing, low, high
-
-
-@step_kernel
-def _touch_ground(sweep: Sweep, obstacles: Obstacles) -> tuple[float, float, float]:
-    """Return share, x and y of the first touch of the ground, looked for at the corners and the
-    middle of the box, in steps of half a cell of the relief.
-    """
-    terrain = obstacles.terrain
-    way = abs(sweep.motion_x) + abs(sweep.motion_y)
-    hills = terrain.relief.shape[0] > 0
-    steps = int(way / (0.5 * terrain.spacing)) + 1 if hills else 1
-    for step in range(steps):
-        share = (step + 1.0) / steps
-        low = sweep.z + share * sweep.motion_z - sweep.half_height
-        for corner in range(5 if hills else 1):
-            ahead = 0.0 if corner == 0 else sweep.half_length if corner < 3 else -sweep.half_length
-            aside = sweep.half_width if corner % 2 else -sweep.half_width
-            left = 0.0 if corner == 0 else aside
-            x = sweep.x + share * sweep.motion_x + sweep.cosine * ahead - sweep.sine * left
-            y = sweep.y + share * sweep.motion_y + sweep.sine * ahead + sweep.cosine * left
-            if low <= ground_at(terrain, x, y):
-                return share, x, y
-    return NEVER, 0.0, 0.0
