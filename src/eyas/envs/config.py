@@ -113,6 +113,9 @@ class EnvConfig(Config):
     is observed. It ends early with the episode."""
     speeds: EnvSpeeds = EnvSpeeds()
     observation: ObservationConfig = ObservationConfig()
+    log_folder: Annotated[str, Field(min_length=1)] | None = None
+    """If `verbose` is true, folder in which each environment's steps are logged as by the original,
+    in `Agent<i>.log`; None: they only go to Python's logger `eyas.steps`."""
     mixture: tuple[MixturePart, ...] = ()
     """Kinds of environments, for example one for each weather; empty: all are alike. Which
     environment is of which kind depends on its index and the weights only."""

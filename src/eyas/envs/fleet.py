@@ -46,7 +46,7 @@ class Fleet:
         self._count = count
         rows_of = [np.flatnonzero(kind_of == kind) for kind in range(len(kinds))]
         self._squads = [
-            _Squad(Batch(kind, len(rows)), rows)
+            _Squad(Batch(kind, len(rows), numbers=(first + rows).tolist()), rows)
             for kind, rows in zip(kinds, rows_of, strict=True)
             if len(rows)
         ]
@@ -117,7 +117,9 @@ class Fleet:
         return self.render(index, overlay=overlay)
 
     def close(self) -> None:
-        """Do nothing: there is nothing to end."""
+        """Close the logs."""
+        for batch, _ in self._squads:
+            batch.close()
 
 
 def array_of(actions: Any, count: int) -> NDArray[Any]:  # noqa: ANN401  # whatever a learner returns

@@ -150,7 +150,8 @@ class EyasParallelEnv(ParallelEnv[str, Observation, Any]):  # type: ignore[misc]
         return self._pictures() if self.render_mode == "rgb_array" else None
 
     def close(self) -> None:
-        """Close the window, if there is one."""
+        """Close the logs, and the window if there is one."""
+        self._batch.close()
         if self._window is not None:
             self._window.close()
 

@@ -115,7 +115,8 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
         return KEYS_TO_ACTION[self.config.env.actions](self.config.env.speeds)
 
     def close(self) -> None:
-        """Close the window, if there is one."""
+        """Close the logs, and the window if there is one."""
+        self._batch.close()
         if self._window is not None:
             self._window.close()
 

@@ -91,11 +91,9 @@ def _kept(target: Floats, first: Floats) -> Floats:
 
 def _level(target: Floats, field_of_view: Floats) -> Floats:
     """Return how near the target is to straight ahead, sideways."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        angle = np.arctan(target[:, 1] / target[:, 0])
-    # Beside the body, where y / x has no value, the angle is that of a target to the side.
-    angle = np.where(target[:, 0] == 0.0, 0.5 * np.pi, angle)
-    return np.maximum(0.0, 1.0 - np.abs(2.0 / field_of_view * angle))
+    # atan(y / x) is the angle of a line: what is behind counts like what is ahead.
+    angle = np.arctan2(np.abs(target[:, 1]), np.abs(target[:, 0]))
+    return np.maximum(0.0, 1.0 - 2.0 / field_of_view * angle)
 
 
 def _joined(product: Floats, crash: NDArray[np.bool_]) -> Floats:

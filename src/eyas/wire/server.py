@@ -5,11 +5,11 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from eyas.task.journal import Journal
 from eyas.wire.announcements import Announcements
 from eyas.wire.codec import RESET
 from eyas.wire.config import WireConfig
 from eyas.wire.exchange import Exchange
-from eyas.wire.journal import Journal
 from eyas.wire.pause import Pause
 from eyas.wire.post import Part, Post
 
