@@ -27,7 +27,7 @@ class Flight:
         self.readings.advance()
 
     def step(self):
-        self.snapshot.episodes.step_count += 1
+        self.snapshot.episodes.step_count[:] += 1
         self.snapshot.trackers.position[:, 0] += 1.0
         self.readings.advance()
         return self.readings.now()

@@ -56,7 +56,9 @@ def test_senses_change_nothing_but_what_is_sensed(config, assets):
 
 
 def test_what_is_sensed_depends_on_seed_and_tracker_only(config, assets):
-    low = sensing(config, start=StartConfig(height=4.0, pitch=1.0))
+    # Beside its target, 1 m above the road.
+    start = StartConfig(height=1.0, pitch=1.5, horizontal_bias=4.0)
+    low = sensing(config, start=start)
 
     def seen(count, chunks):
         simulation = started(low, count)
