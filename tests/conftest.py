@@ -1,8 +1,10 @@
 """What all tests share: options, and no skipping where CI says so."""
 
 import os
+import runpy
 import signal
 import sys
+from pathlib import Path
 
 import pytest
 from hypothesis import settings
@@ -45,3 +47,9 @@ def pytest_runtest_makereport(item, call):
     if os.environ.get("EYAS_TEST_NO_SKIP") and report.skipped and not hasattr(report, "wasxfail"):
         report.outcome = "failed"
         report.longrepr = f"skipped, which is not allowed here: {report.longrepr}"
+
+
+@pytest.fixture(scope="session")
+def around():
+    """Build trackers among a few solids, see `solid_worlds.build`."""
+    return runpy.run_path(str(Path(__file__).parent / "solid_worlds.py"))["build"]

@@ -10,7 +10,6 @@ from eyas.settings.version_check import require_supported
     ("values", "line"),
     [
         ({"Tracking_Object": "Mantis"}, r"target \(Tracking_Object\): 'Mantis': "),
-        ({"Lidar_Enable": True}, r"wire\.lidar \(Lidar_Enable\): true: "),
     ],
 )
 def test_parts_that_come_later_are_named_in_both_notations(values, line):

@@ -16,7 +16,10 @@ FLAT = Terrain.flat(-0.1)
 # Known when an episode begins, before its first observation.
 KNOWN_BEFORE = {"number", "tick", "start_offset"}
 # Said by every observation.
-SAID_ANEW = {"view_centre", "last_target", "relative_position"}
+SAID_ANEW = {
+    *("view_centre", "last_target", "relative_position"),
+    *("offset", "proportion", "first_position"),
+}
 
 
 @pytest.fixture
@@ -45,6 +48,8 @@ def test_a_new_episode_forgets_the_one_before_and_no_other_tracker_s():
     episodes = EpisodeState(*(np.full_like(array, 7) for array in EpisodeState.create(3)))
     clear_episode(episodes, N)
     forgotten = {name for name, array in episodes._asdict().items() if not array[N].any()}
+    assert episodes.contact_object[N] == -1
+    forgotten.add("contact_object")
     assert forgotten == set(EpisodeState._fields) - KNOWN_BEFORE - SAID_ANEW
     for array in episodes:
         assert (array[[0, 2]] == np.full_like(array, 7)[[0, 2]]).all()

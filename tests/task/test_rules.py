@@ -29,7 +29,7 @@ def test_every_limit_is_taken_from_the_field_of_its_name():
     assert rules.reward == BuiltinReward.DISTANCE_DISCRETE
     for settings in (done, reward):
         for name in type(settings).model_fields:
-            if name not in ("type", "mode", "view_range", "weight", "terms"):
+            if name not in ("type", "mode", "view_range", "weight", "terms", "crash"):
                 assert getattr(rules, name) == getattr(settings, name), name
 
 

@@ -23,6 +23,15 @@ def total(snapshot):
 def columns(snapshot):
     return snapshot.trackers.position
 
+def near(offset, visible, weight=2.0):
+    return weight * visible / (1.0 + offset)
+
+def lateral(target_position_body):
+    return abs(target_position_body[:, 1])
+
+def misspelt(ofset, visible):
+    return visible
+
 number = 3.0
 """
 
@@ -98,3 +107,21 @@ def test_another_shape_is_refused_in_one_line(scored, name, shape):
         f"reward.terms.own_terms:{name}: it returned an array of shape {shape}; "
         "allowed: (3,), a number for each tracker"
     )
+
+
+@pytest.mark.usefixtures("module")
+def test_a_term_may_ask_for_quantities_by_name(scored):
+    scored.episodes.offset[:] = 0.0, 1.0, 3.0
+    scored.targets.centre[:] = 10.0, 0.0, 0.0
+    scored.trackers.position[:] = scored.cameras.position[:] = 0.0
+    scored.episodes.relative_position[:, 1] = -1.0, 0.0, 2.0
+    weights = {"own_terms:near": 1.0, "own_terms:lateral": -1.0}
+    _, terms = RewardTerms(RewardConfig(terms=weights)).of(scored)
+    assert terms["own_terms:near"].tolist() == [2.0, 1.0, 0.5]
+    assert terms["own_terms:lateral"].tolist() == [1.0, 0.0, 2.0]
+
+
+@pytest.mark.usefixtures("module")
+def test_a_quantity_that_does_not_exist_is_refused_with_the_nearest():
+    with pytest.raises(ConfigError, match="asks for 'ofset'; did you mean 'offset'"):
+        RewardTerms(RewardConfig(terms={"own_terms:misspelt": 1.0}))

@@ -21,12 +21,14 @@ HOVER = (0.0, 0.0, 0.0, 0.0)
 class Client:
     """One agent. `patience` is the longest wait for a file [s]."""
 
-    def __init__(self, root, agent, *, rewards=True, tracker="DRONE", patience=60.0):
+    def __init__(self, root, agent, *, rewards=True, radar=False, tracker="DRONE", patience=60.0):
         name = f"{tracker}{agent}"
         self.folder = Path(root) / FILES
         self.action = self.folder / f"{name}_AlgAction.txt"
         self.state = self.folder / f"{name}_Ctrl2Global.txt"
         self.rewards = self.folder / f"{name}_RewardParams.txt" if rewards else None
+        self.radar = self.folder / f"{name}_PointCloud.txt" if radar else None
+        self.cloud = None
         self.picture = self.folder / f"{name}_VideoFrame.jpeg"
         self.patience = patience
 
@@ -61,6 +63,9 @@ class Client:
             *numbers, kind = self.text(self.rewards).split(",")
             assert len(numbers) == 60
             rewards = [*map(float, numbers), kind]
+        if self.radar is not None:
+            self.cloud = [float(word) for word in self.text(self.radar).split(",")]
+            assert len(self.cloud) == 2000
         self.state.unlink(missing_ok=True)  # as the original: nothing may be there yet
         return state, rewards, self.take(self.picture)
 

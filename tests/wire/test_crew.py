@@ -5,6 +5,7 @@ import pytest
 from PIL import Image
 
 from eyas.core.errors import SpawnError
+from eyas.sensors.config import LidarConfig
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
 from eyas.sim.simulation import Simulation
@@ -138,3 +139,11 @@ def test_the_fastest_commands_that_are_let_through_can_be_drawn(crews, speed):
         (answer,) = crew.play([Action((speed, speed, speed, speed), reset=False)])
     assert np.isfinite(numbers(answer)).all()
     assert answer.picture.result()
+
+
+def test_the_radar_packet_is_that_of_the_lidar(crews):
+    config = CONFIG.model_copy(update={"lidar": LidarConfig(enabled=True)})
+    crew = crews(2, config)
+    for answer, row in zip(crew.play([RESET] * 2), crew.sim.lidar.packets(), strict=True):
+        assert [float(word) for word in answer.radar.decode().split(",")] == row.tolist()
+    assert [answer.radar for answer in crews(1).play([RESET])] == [None]

@@ -246,3 +246,15 @@ def test_its_switches_have_an_effect(serve):
     assert lines[0] == "received b'0.0,0.0,0.0,0.0,1'"
     assert lines[-1].startswith("id: DRONE0 done: 0 reward: ")
     assert " count: 6 " in lines[-1]
+
+
+def test_the_radar_packet_comes_between_reward_and_picture(serve):
+    server = serve("Lidar_Enable=true")
+    server.announce(1)
+    agent = server.client(0, radar=True)
+    agent.reset()
+    agent.step(AHEAD)
+    points = [agent.cloud[point : point + 5] for point in range(0, 2000, 5)]
+    assert all(z == 0 and layer == 0 and time > 0 for _, _, z, layer, time in points)
+    agent.reset()
+    assert not [name for name in server.left() if "PointCloud" in name]

@@ -3,6 +3,7 @@
 import logging
 from collections.abc import Sequence
 from itertools import compress
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -21,6 +22,7 @@ from eyas.sim.build import build_simulation
 from eyas.sim.worlds import each_alone, together
 from eyas.state.draw import Picture
 from eyas.task.done import DoneReason
+from eyas.task.journal import Journal
 from eyas.task.step_line import step_line
 
 __all__ = ["Batch", "Outcome", "Seeds"]
@@ -60,12 +62,20 @@ class Batch:
         config: The settings.
         count: N.
         shared: Whether all are in one world, where they see each other; its time goes on for all.
+        numbers: Number of each, for logs, shape (N,); None: 0, 1, ...
 
     Raises:
         EyasError: A setting is wrong; the message is one line.
     """
 
-    def __init__(self, config: EyasConfig, count: int, *, shared: bool = False) -> None:
+    def __init__(
+        self,
+        config: EyasConfig,
+        count: int,
+        *,
+        shared: bool = False,
+        numbers: Sequence[int] | None = None,
+    ) -> None:
         self.config = config
         self._shared, self._seed = shared, config.seed
         with originals_named(config):
@@ -76,6 +86,15 @@ class Batch:
         self._steps = physics_steps(config.control.frequency)
         self._all = np.arange(count, dtype=np.int32)
         self._picture: Picture | None = None
+        folder, kind = config.env.log_folder, config.tracker.original_name
+        self._names = [f"{kind}{number}" for number in numbers or range(count)]
+        self._journal = Journal(
+            None if folder is None else Path(folder), self._names, numbers, verbose=config.verbose
+        )
+
+    def close(self) -> None:
+        """Close the logs; may be called again."""
+        self._journal.close()
 
     def begin(self, chosen: Mask, seeds: Seeds = None) -> None:
         """Begin new episodes of trackers with worlds of their own; `look` comes next.
@@ -136,9 +155,10 @@ class Batch:
             if not running.any():
                 break
         if self.config.verbose:
+            snapshot = self._simulation.snapshot
+            self._journal.step(snapshot)
             for tracker in np.flatnonzero(active).tolist():
-                name = f"{self.config.tracker.original_name}{tracker}"
-                _STEPS.info("%s", step_line(self._simulation.snapshot, tracker, name))
+                _STEPS.info("%s", step_line(snapshot, tracker, self._names[tracker]))
         done, at_limit = reason > DoneReason.NONE, reason == DoneReason.STEP_LIMIT
         return Outcome(reward, terms, done & ~at_limit, at_limit, reason)
 

@@ -10,7 +10,7 @@ import numpy as np
 from eyas.core.clock import physics_steps
 from eyas.core.config import updated, validated
 from eyas.core.errors import ConfigError, UnknownNameError
-from eyas.envs.config import ActionKind, EnvSpeeds, ObservationConfig
+from eyas.envs.config import ActionKind, EnvSpeeds, ObservationConfig, ObservationPart
 from eyas.settings.config import EyasConfig
 from eyas.settings.file import load_settings
 from eyas.settings.preset import preset_file
@@ -112,6 +112,11 @@ def settings_of_kinds(config: EyasConfig) -> list[EyasConfig]:
             raise ConfigError(
                 f"env.mixture.{number}.settings.env: not allowed: all environments have the same "
                 "actions and observations"
+            )
+        if kind.lidar != config.lidar and ObservationPart.LIDAR in config.env.observation.parts:
+            raise ConfigError(
+                f"env.mixture.{number}.settings.lidar: not allowed: all environments have the same "
+                "observations"
             )
         kinds.append(kind.model_copy(update={"env": alone}))
     return kinds or [config]

@@ -69,6 +69,8 @@ class ObservationPart(StrEnum):
     """`eyas.state.scene.ObjectClass` of each pixel, uint8."""
     SENSORS = "sensors"
     """GPS, accelerometer, gyroscope and IMU: 19 numbers of the basic packet, float32."""
+    LIDAR = "lidar"
+    """Distance of each point of the lidar [m], its longest range where nothing is, float32."""
     PRIVILEGED = "privileged"
     """What no sensor tells: the true motion of the target, 16 numbers, float32."""
 
@@ -111,6 +113,9 @@ class EnvConfig(Config):
     is observed. It ends early with the episode."""
     speeds: EnvSpeeds = EnvSpeeds()
     observation: ObservationConfig = ObservationConfig()
+    log_folder: Annotated[str, Field(min_length=1)] | None = None
+    """If `verbose` is true, folder in which each environment's steps are logged as by the original,
+    in `Agent<i>.log`; None: they only go to Python's logger `eyas.steps`."""
     mixture: tuple[MixturePart, ...] = ()
     """Kinds of environments, for example one for each weather; empty: all are alike. Which
     environment is of which kind depends on its index and the weights only."""

@@ -46,7 +46,7 @@ class Fleet:
         self._count = count
         rows_of = [np.flatnonzero(kind_of == kind) for kind in range(len(kinds))]
         self._squads = [
-            _Squad(Batch(kind, len(rows)), rows)
+            _Squad(Batch(kind, len(rows), numbers=(first + rows).tolist()), rows)
             for kind, rows in zip(kinds, rows_of, strict=True)
             if len(rows)
         ]
@@ -122,7 +122,7 @@ class Fleet:
         return self.render(index, overlay=overlay)
 
     def close(self) -> None:
-        """End live traffic, if there is any; may be called twice."""
+        """Close the logs and end live traffic; may be called twice."""
         for batch, _ in self._squads:
             batch.close()
 
@@ -161,7 +161,7 @@ def joined(parts: Sequence[Any], rows: Sequence[Any]) -> Any:  # noqa: ANN401  #
         names = dict.fromkeys(name for part in parts for name in part)
         return {name: joined([part.get(name, 0.0) for part in parts], rows) for name in names}
     count = sum(len(own) if isinstance(own, np.ndarray) else own.stop - own.start for own in rows)
-    whole = np.asarray(parts[0])
+    whole = max(map(np.asarray, parts), key=np.ndim)  # what a part lacks is a single 0
     result = np.empty((count, *whole.shape[1:]), whole.dtype)
     for own, part in zip(rows, parts, strict=True):
         result[own] = part

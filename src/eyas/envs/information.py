@@ -6,18 +6,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.sim.simulation import Simulation
+from eyas.state.scene import ObjectClass
 from eyas.state.snapshot import Snapshot
 from eyas.targets.catalogue import MODELS
+from eyas.task.config import Crash
 from eyas.task.done import DoneReason
+from eyas.task.packet_rows import SENSOR_COLUMNS
 
 __all__ = ["Info", "by_term", "information", "masked", "of_one", "privileged_state", "sensor_state"]
 
 Floats = NDArray[np.float64]
 Info = dict[str, Any]
 Mask = NDArray[np.bool_]
-
-SENSOR_COLUMNS = slice(1, 20)
-"""Columns of the basic packet that the sensors measure."""
 
 _SENSORS = {
     "position": slice(1, 4),
@@ -53,6 +53,7 @@ _WORDS = {
     "done_reason": [reason.name.lower() for reason in DoneReason],
     "done_state": [reason.original for reason in DoneReason],
     "target_type": [model.typename for model in MODELS],
+    "contact_class": [*(kind.name.lower() for kind in ObjectClass), "nothing"],
 }
 """What numbers mean."""
 
@@ -67,7 +68,12 @@ def information(simulation: Simulation) -> Info:
     - as numbers of `eyas.task.done.DoneReason`, the reason of the end (`done_reason`) and the limit
       that the body violates (`done_state`); the physics steps since the reset (`step`);
     - the values drawn from the `light` settings (factor on the sky, factor on the sun, one over the
-      visibility range [1/m]).
+      visibility range [1/m]);
+    - where `done.crash` means contacts, the place of the last one since the reset (`contact`, world
+      frame [m]), the object that was touched (`contact_object`, as in `Picture.object_id`; -1:
+      none) and its `ObjectClass` (`contact_class`, -1: none);
+    - the distances that the lidar has measured, if there is one (`lidar` [m], infinity where
+      nothing was within range).
     """
     basic, reward = simulation.packets()
     _, _, targets, episodes, light = simulation.snapshot
@@ -80,6 +86,12 @@ def information(simulation: Simulation) -> Info:
     info["done_reason"] = episodes.reason.copy()
     info["done_state"] = episodes.breach.copy()
     info["light"] = light.copy()
+    if simulation.config.done.crash is not Crash.ORIGINAL:
+        info["contact"] = episodes.contact.copy()
+        info["contact_object"] = episodes.contact_object.copy()
+        info["contact_class"] = simulation.classes_of(episodes.contact_object)
+    if simulation.lidar is not None:
+        info["lidar"] = simulation.lidar.ranges()
     return info
 
 
@@ -92,11 +104,11 @@ def by_term(terms: dict[str, Floats]) -> Info:
 
 
 def of_one(info: Info, index: int) -> Info:
-    """Return the information of one tracker, with words for its three numbers that mean words:
-    `done_reason`, `done_state` (the original's) and `target_type` (the same).
+    """Return the information of one tracker, with words for its numbers that mean words:
+    `done_reason`, `done_state` (the original's), `target_type` (the same) and `contact_class`.
     """
     one = {name: value[index] for name, value in info.items()}
-    return one | {name: words[one[name]] for name, words in _WORDS.items()}
+    return one | {name: words[one[name]] for name, words in _WORDS.items() if name in one}
 
 
 def masked(info: Info, mask: Mask) -> Info:

@@ -7,13 +7,15 @@ import gymnasium
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.errors import ConfigError
 from eyas.envs.config import ObservationConfig, ObservationPart
-from eyas.envs.information import SENSOR_COLUMNS, privileged_state, sensor_state
-from eyas.sensors.config import ColourLayout
+from eyas.envs.information import privileged_state, sensor_state
+from eyas.sensors.config import ColourLayout, LidarConfig
 from eyas.sensors.stack import FrameStack
 from eyas.sim.simulation import Simulation
 from eyas.state.draw import Picture
 from eyas.state.scene import ObjectClass
+from eyas.task.packet_rows import SENSOR_COLUMNS
 
 __all__ = ["Observation", "Observer", "observation_space"]
 
@@ -25,15 +27,25 @@ _PRIVILEGED = 16
 _Parts = ObservationPart
 
 
-def observation_space(config: ObservationConfig) -> gymnasium.Space[Any]:
-    """Return the space of one agent's observations."""
+def observation_space(config: ObservationConfig, lidar: LidarConfig) -> gymnasium.Space[Any]:
+    """Return the space of one agent's observations.
+
+    Raises:
+        ConfigError: The agent is to observe a lidar that it does not have.
+    """
+    if _Parts.LIDAR in config.parts and not lidar.enabled:
+        raise ConfigError(
+            "env.observation.parts: 'lidar' needs a lidar: lidar.enabled (Lidar_Enable) is false"
+        )
     spaces: dict[str, gymnasium.Space[Any]] = {
-        part.value: _space(part, config) for part in dict.fromkeys(config.parts)
+        part.value: _space(part, config, lidar) for part in dict.fromkeys(config.parts)
     }
     return gymnasium.spaces.Dict(spaces) if len(spaces) > 1 else next(iter(spaces.values()))
 
 
-def _space(part: ObservationPart, config: ObservationConfig) -> gymnasium.spaces.Box:
+def _space(
+    part: ObservationPart, config: ObservationConfig, lidar: LidarConfig
+) -> gymnasium.spaces.Box:
     size = config.height, config.width
     plane = (1, *size) if config.layout is ColourLayout.CHW else (*size, 1)
     match part:
@@ -46,6 +58,8 @@ def _space(part: ObservationPart, config: ObservationConfig) -> gymnasium.spaces
             return gymnasium.spaces.Box(0.0, np.inf, plane, np.float32)
         case _Parts.SENSORS:
             return gymnasium.spaces.Box(-np.inf, np.inf, (_SENSORS,), np.float32)
+        case _Parts.LIDAR:
+            return gymnasium.spaces.Box(0.0, lidar.max_range, (lidar.points,), np.float32)
         case _Parts.PRIVILEGED:
             return gymnasium.spaces.Box(-np.inf, np.inf, (_PRIVILEGED,), np.float32)
 
@@ -59,10 +73,14 @@ class Observer:
     Args:
         config: What is observed.
         simulation: The N trackers.
+
+    Raises:
+        ConfigError: As `observation_space`.
     """
 
     def __init__(self, config: ObservationConfig, simulation: Simulation) -> None:
-        self.space = observation_space(config)
+        lidar = simulation.config.lidar
+        self.space = observation_space(config, lidar)
         self._simulation = simulation
         count, size = simulation.count, (config.height, config.width)
         wanted = frozenset(config.parts)
@@ -77,7 +95,7 @@ class Observer:
         self._stack = FrameStack(count, size, config.colours, config.layout, config.frames)
         self._latest: dict[ObservationPart, Array] = {}
         for part in wanted:
-            space = _space(part, config)
+            space = _space(part, config, lidar)
             self._latest[part] = np.zeros((count, *space.shape), space.dtype)
         if _Parts.IMAGE in wanted:
             self._latest[_Parts.IMAGE] = self._stack.images
@@ -100,6 +118,9 @@ class Observer:
                     latest[chosen] = plane.reshape(len(chosen), *latest.shape[1:])
         if (sensors := self._latest.get(_Parts.SENSORS)) is not None:
             sensor_state(self._simulation, sensors)
+        if (ranges := self._latest.get(_Parts.LIDAR)) is not None:
+            assert self._simulation.lidar is not None  # its space says so
+            self._simulation.lidar.filled(ranges)
         if (privileged := self._latest.get(_Parts.PRIVILEGED)) is not None:
             privileged_state(self._simulation.snapshot, privileged)
 

@@ -150,7 +150,7 @@ class EyasParallelEnv(ParallelEnv[str, Observation, Any]):  # type: ignore[misc]
         return self._pictures() if self.render_mode == "rgb_array" else None
 
     def close(self) -> None:
-        """Close the window and end live traffic, if there is either."""
+        """Close the window and the logs, and end live traffic."""
         self._batch.close()
         if self._window is not None:
             self._window.close()

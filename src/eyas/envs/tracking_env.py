@@ -115,7 +115,7 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
         return KEYS_TO_ACTION[self.config.env.actions](self.config.env.speeds)
 
     def close(self) -> None:
-        """Close the window and end live traffic, if there is either."""
+        """Close the window and the logs, and end live traffic."""
         self._batch.close()
         if self._window is not None:
             self._window.close()

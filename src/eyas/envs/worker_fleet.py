@@ -45,7 +45,7 @@ class WorkerFleet:
         self._configs = [kinds[kind] for kind in kinds_of(config, count)]
         self._actions = make_actions(config.env.actions, config.env.speeds)
         self.action_space: gymnasium.Space[Any] = self._actions.space
-        self.observation_space = observation_space(config.env.observation)
+        self.observation_space = observation_space(config.env.observation, config.lidar)
         self.terms = terms_of(self._configs)
         shared = SharedObservations(self.observation_space, count)
         self._latest = shared.of(slice(0, count))

@@ -179,6 +179,9 @@ class Frame:
     """Object of each pixel, `SKY_OBJECT` for the sky, shape (H, W)."""
     class_id: NDArray[np.uint8] | None
     """`ObjectClass` of each pixel's object, shape (H, W)."""
+    lidar: Floats | None = None
+    """Distances that the lidar has measured [m], infinity where nothing was within range, shape
+    (points,); None: there is no lidar."""
 
     @property
     def episode_time(self) -> float:
@@ -194,6 +197,7 @@ def frame_of(  # noqa: PLR0913  # everything that a frame holds
     number: int,
     action: Action,
     others: tuple[Subject, ...] = (),
+    lidar: Floats | None = None,
 ) -> Frame:
     """Return a frame that later steps and pictures do not change.
 
@@ -205,6 +209,7 @@ def frame_of(  # noqa: PLR0913  # everything that a frame holds
         number: Number of the frame in its episode.
         action: The tracker's action.
         others: Other moving objects in the picture, see `eyas.exports.others.others_of`.
+        lidar: Distances of its lidar, which nothing changes later.
     """
     episodes = snapshot.episodes
     return Frame(
@@ -223,6 +228,7 @@ def frame_of(  # noqa: PLR0913  # everything that a frame holds
         depth=None if picture.depth is None else picture.depth[view].copy(),
         object_id=None if picture.object_id is None else picture.object_id[view].copy(),
         class_id=None if picture.class_id is None else picture.class_id[view].copy(),
+        lidar=lidar,
     )
 
 

@@ -21,6 +21,7 @@ WRITERS: Registry[type[Any]] = Registry(
         "mp4": "eyas.exports.mp4:Mp4Writer",
         "labels": "eyas.exports.labels:LabelWriter",
         "mark": "eyas.exports.mark:MarkWriter",
+        "lidar": "eyas.exports.lidar:LidarWriter",
     },
     group="eyas.writers",
 )

@@ -1,14 +1,24 @@
 """Settings of the sensors."""
 
 from enum import StrEnum
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Self
 
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator, Field, model_validator
 
 from eyas.core.config import Config
 from eyas.core.variation import Variation, within
 
-__all__ = ["CameraConfig", "ColourLayout", "Colours"]
+__all__ = [
+    "CameraConfig",
+    "ColourLayout",
+    "Colours",
+    "LidarConfig",
+    "ReadingConfig",
+    "SensorsConfig",
+]
+
+Share = Annotated[float, Field(ge=0, le=1)]
+Deviation = Annotated[float, Field(ge=0, le=1e6)]
 
 
 class Colours(StrEnum):
@@ -36,3 +46,75 @@ class CameraConfig(Config):
     """Horizontal [rad]; a variation is drawn anew for each tracker at each reset."""
     samples: Literal[1, 4] = 1
     """Samples per pixel."""
+
+
+class LidarConfig(Config):
+    """The lidar, by default an RpLidarA2 as on the original's tracker."""
+
+    enabled: bool = False
+    """Whether the tracker has one; the original's `Lidar_Enable`."""
+    points: Annotated[int, Field(ge=1, le=10_000)] = 400
+    """Points of a turn; radar packets have five numbers for each."""
+    frequency: Annotated[float, Field(gt=0, le=500)] = 12.0
+    """Turns per second [Hz]."""
+    min_range: Annotated[float, Field(ge=0, le=1e3)] = 0.2
+    """Shortest distance that is measured [m]."""
+    max_range: Annotated[float, Field(gt=0, le=1e3)] = 12.0
+    """Longest distance that is measured [m]."""
+    noise: Deviation = 0.01
+    """Standard deviation of a distance [m]."""
+    resolution: Annotated[float, Field(ge=0, le=10)] = 0.01
+    """Distances are multiples of this [m]; 0: they are not rounded."""
+    drop_out: Share = 0.0
+    """Probability that a point that should be measured is missing."""
+
+    @model_validator(mode="after")
+    def _ranges_in_order(self) -> Self:
+        if self.min_range >= self.max_range:
+            raise ValueError(f"min_range must be below max_range, which is {self.max_range:g} m")
+        return self
+
+
+class ReadingConfig(Config):
+    """Errors of one sensor; by default it reads the truth at each physics step."""
+
+    rate: Annotated[float, Field(gt=0, le=500)] = 500.0
+    """Readings per second [Hz]; in between, the last one is told."""
+    noise: Deviation = 0.0
+    """Standard deviation of each number of a reading, in its unit."""
+    bias: Deviation = 0.0
+    """Standard deviation of the constant error that is drawn for each number and episode."""
+    delay_steps: Annotated[int, Field(ge=0, le=500)] = 0
+    """Age of a reading when it is told, in steps of 2 ms."""
+    drop_out: Share = 0.0
+    """Probability that a reading is missing, so that the last one is told again."""
+
+
+class SensorsConfig(Config):
+    """Errors of the sensors; by default none has any."""
+
+    gps_position: ReadingConfig = ReadingConfig()
+    """GPS: position [m]."""
+    gps_velocity: ReadingConfig = ReadingConfig()
+    """GPS: velocity [m/s]."""
+    accelerometer: ReadingConfig = ReadingConfig()
+    """Felt acceleration [m/s^2]."""
+    gyroscope: ReadingConfig = ReadingConfig()
+    """Angular velocity [rad/s]."""
+    imu: ReadingConfig = ReadingConfig()
+    """Attitude: Euler angles [rad], and the same as a quaternion."""
+    camera_noise: Annotated[float, Field(ge=0, le=255)] = 0.0
+    """Standard deviation of each channel of each pixel, of 255."""
+
+    @property
+    def readings(self) -> tuple[ReadingConfig, ...]:
+        """The errors of the sensors whose readings are numbers, in the order of their columns in
+        the basic packet.
+        """
+        return (
+            self.gps_position,
+            self.gps_velocity,
+            self.accelerometer,
+            self.gyroscope,
+            self.imu,
+        )

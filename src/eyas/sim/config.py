@@ -8,7 +8,7 @@ from eyas.behaviours.config import ExtraConfig
 from eyas.core.config import Config
 from eyas.core.variation import Variation, within
 from eyas.custom.config import CustomConfig
-from eyas.sensors.config import CameraConfig
+from eyas.sensors.config import CameraConfig, LidarConfig, SensorsConfig
 from eyas.targets.config import ObjectsConfig, TargetName
 from eyas.task.config import DoneConfig, RewardConfig, StartConfig
 from eyas.trackers.config import TrackerConfig
@@ -48,6 +48,8 @@ class SimConfig(Config):
     traffic: TrafficConfig = TrafficConfig()
     tracker: TrackerConfig = TrackerConfig()
     camera: CameraConfig = CameraConfig()
+    lidar: LidarConfig = LidarConfig()
+    sensors: SensorsConfig = SensorsConfig()
     control: ControlConfig = ControlConfig()
     start: StartConfig = StartConfig()
     reward: RewardConfig = RewardConfig()

@@ -133,7 +133,7 @@ class Episodes:
         targets.ahead[tracker] = kind_of(model).ahead
         targets.slowest[tracker] = kind_of(model).slowest
 
-    def _key(self, tracker: int) -> EpisodeKey:
+    def key(self, tracker: int) -> EpisodeKey:
         """Return what the random values of a tracker's episode depend on."""
         return EpisodeKey(
             int(self._seed[tracker]),
@@ -142,7 +142,7 @@ class Episodes:
         )
 
     def _begin_one(self, tracker: int) -> float:
-        key = self._key(tracker)
+        key = self.key(tracker)
         self._worlds.sample_looks(tracker, key)
         self._light.sample(tracker, key)
         for draw in self._draws:

@@ -99,26 +99,34 @@ class LateSight:
 
     Attributes:
         snapshot: Their state at that time; written in place.
+        told: What their sensors with errors told then; None: none has errors.
 
     Args:
         latency: Physics steps.
         now: The present state.
+        told: What sensors with errors tell now, shape (N, ...); None: none has errors.
     """
 
-    def __init__(self, latency: Variation, now: Snapshot) -> None:
+    def __init__(self, latency: Variation, now: Snapshot, told: Floats | None) -> None:
         count = len(now.light)
         self.snapshot = Snapshot.create(count)
         self._drawn = _Drawn(latency, "observation_latency", count)
         self._now, self._seen = _arrays(now), _arrays(self.snapshot)
+        self.told = None if told is None else told.copy()
+        if told is not None and self.told is not None:
+            self._now.append(told)
+            self._seen.append(self.told)
         self._past = [np.stack([array] * (self._drawn.most + 1)) for array in self._now]
         self._row = 0
         self._every = np.arange(count)
         self._clock = now.episodes.step_count
 
     @classmethod
-    def of(cls, latency: Variation, now: Snapshot) -> "LateSight | None":
+    def of(
+        cls, latency: Variation, now: Snapshot, told: Floats | None
+    ) -> "LateSight | None":
         """Return a late sight; None if it is always in time."""
-        return None if _is_off(latency) else cls(latency, now)
+        return None if _is_off(latency) else cls(latency, now, told)
 
     def draw(self, tracker: int, key: EpisodeKey) -> None:
         """Draw the latency of a tracker's episode."""

@@ -6,22 +6,24 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.clock import PHYSICS_STEP
+from eyas.core.clock import PHYSICS_STEP, physics_steps
 from eyas.core.parallel import BoundKernel, Held
 from eyas.sensors.inertial import smoothing_share
+from eyas.sensors.lidar import Lidar
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.episodes import Draw, Episodes
 from eyas.sim.latency import LateCommands, LateSight
 from eyas.sim.light import LightChanges
 from eyas.sim.perception import Perception
+from eyas.sim.senses import Senses
 from eyas.sim.step import Orders, StepState, Surroundings, step_of
 from eyas.sim.worlds import Worlds
 from eyas.state.draw import DrawStage, Picture
 from eyas.state.motion import ActorState
 from eyas.state.snapshot import CameraState, Snapshot
 from eyas.targets.kind import Looks
-from eyas.task.packet_rows import PacketRows
+from eyas.task.quantities import Setting
 from eyas.task.rules import Rules, exact, lenient, make_rules
 from eyas.task.terms import RewardTerms
 from eyas.trackers.tracker import Tracker
@@ -75,22 +77,28 @@ class Simulation:
         self._memory = tracker.memory(self.count, terrain)
         draws: list[Draw] = [partial(tracker.draw, self._memory)] if tracker.draw else []
         self._late = LateCommands.of(config.control.action_latency_steps, self.count)
-        self._past = LateSight.of(config.control.observation_latency_steps, self.snapshot)
-        draws += [late.draw for late in (self._late, self._past) if late]
-        self._episodes = Episodes(config, assets.traffic, worlds, light, self.snapshot, draws)
-        view = partial(Perception, config, assets, worlds, light, visible=tracker.visible)
-        self._view = view(snapshot=self.snapshot)
-        self.perception = view(snapshot=self._past.snapshot) if self._past else self._view
-        self._kernels = step_of(tracker)
-        self._around = Surroundings(assets.traffic.motion, terrain)
         self._orders = Orders.create(self.count)
         self._held_orders = Held(self._orders)
+        self._senses = Senses(config, assets, worlds, self.snapshot, self._orders.active)
+        told = self._senses.told
+        self._past = LateSight.of(config.control.observation_latency_steps, self.snapshot, told)
+        draws += [late.draw for late in (self._late, self._past) if late]
+        self._episodes = Episodes(config, assets.traffic, worlds, light, self.snapshot, draws)
+        view = partial(
+            Perception, config, assets, worlds, light, self._senses.grain, visible=tracker.visible
+        )
+        self._view = self.perception = view(self.snapshot, told)
+        if self._past:
+            self.perception = view(self._past.snapshot, self._past.told)
+        self._kernels = step_of(tracker)
+        self._around = Surroundings(assets.traffic.motion, terrain)
         smoothing = config.tracker.inertial_time_constant if tracker.jumps else 0.0
         self._share = smoothing_share(smoothing)
         rules = make_rules(config.reward, config.done, config.camera)
         judged = tracker.judged if config.tracker.judged is None else config.tracker.judged
         self.rules = rules if judged else lenient(rules)
-        self._terms = RewardTerms(config.reward)
+        early = config.done.grace_steps + 2 * physics_steps(config.control.frequency)
+        self._terms = RewardTerms(config.reward, Setting(self.rules.aspect, early))
 
     @property
     def rules(self) -> Rules:
@@ -144,6 +152,7 @@ class Simulation:
         self._orders.chosen[:count] = chosen
         self._orders.starts[0] = count
         self._step.begin()
+        self._senses.begin(chosen.tolist(), self._episodes.key)
         if self._past:
             self._past.begin(chosen)
 
@@ -160,6 +169,7 @@ class Simulation:
         """
         assert commands.shape == (self.count, 4), f"commands: shape {commands.shape}, not (N, 4)"
         self._orders.active[:] = True if active is None else active
+        self._senses.renew()
         if self._late is None:
             self._fly(commands, physics_steps)
         else:
@@ -170,6 +180,8 @@ class Simulation:
 
     def carry(self, physics_steps: int = 1) -> StepResult:
         """Move all trackers with their targets, at their start offsets."""
+        self._orders.active[:] = True
+        self._senses.renew()
         self._take(self._step.carry, physics_steps)
         return self._result()
 
@@ -207,8 +219,24 @@ class Simulation:
         return self._worlds.looks_around(tracker)
 
     def packets(self) -> tuple[Floats, Floats]:
-        """Return copies of the basic packets (N, 22) and the reward packets (N, 60)."""
+        """Return copies of the basic packets (N, 22) and the reward packets (N, 60).
+
+        The sensors' columns of the basic packets are what the sensors read, with their errors.
+        """
         return self._view.packets()
+
+    @property
+    def lidar(self) -> Lidar | None:
+        """The lidars of the trackers; None if `lidar.enabled` is false."""
+        return self._senses.lidar
+
+    def classes_of(self, objects: NDArray[np.integer]) -> NDArray[np.int64]:
+        """Return the `ObjectClass` of objects, -1 for the id -1, shape (K,).
+
+        Args:
+            objects: Object ids as in `Picture.object_id`, but not those of trackers, shape (K,).
+        """
+        return self._worlds.classes_of(objects)
 
     def draw(
         self,
@@ -227,11 +255,8 @@ class Simulation:
                 of the picture do not change.
             until: The stage at which to stop; see `Renderer.draw`.
         """
-        chosen = np.asarray(trackers, np.int32)
-        if overlay:
-            self._view.pictures.draw_overlaid(chosen, picture, self.rules, until)
-        else:
-            self._view.pictures.draw(chosen, picture, until)
+        rules = self.rules if overlay else None
+        self._view.draw(np.asarray(trackers, np.int32), picture, until, rules)
 
     def draw_from(
         self,
@@ -258,19 +283,22 @@ class Simulation:
         self._take(self._step.fly, physics_steps)
 
     def _take(self, step: BoundKernel, physics_steps: int) -> None:
-        """Take some physics steps, one by one if what they lead to is seen later."""
+        """Take physics steps: all in one call, unless something is sensed or kept after each."""
         if self.traffic.live:
             last = int(self.snapshot.episodes.tick.max()) + physics_steps
             self.traffic.prepare(last * PHYSICS_STEP)
-        if self._past is None:
+        if not self._senses.follow and self._past is None:
             self._orders.steps[0] = physics_steps
             step()
             return
         self._orders.steps[0] = 1
         for _ in range(physics_steps):
             step()
-            self._past.record()
-        self._past.see()
+            self._senses.advance()
+            if self._past:
+                self._past.record()
+        if self._past:
+            self._past.see()
 
     def close(self) -> None:
         """End live traffic, if that is what drives; may be called twice."""

@@ -12,6 +12,7 @@ from eyas.state.draw import DrawList
 from eyas.state.motion import ActorState
 from eyas.state.scene import ACTOR_OBJECT
 from eyas.state.snapshot import CameraState
+from eyas.targets.catalogue import KINDS
 from eyas.targets.kind import Looks
 from eyas.targets.looks import LookSampler
 
@@ -81,6 +82,13 @@ class Worlds:
         self._near = NearMovers(assets.traffic.motion, rigs, self._looks, reach)
 
     @property
+    def models(self) -> NDArray[np.int32]:
+        """Model of each actor in each world, index into the catalogue, shape (W, A); it changes in
+        place.
+        """
+        return self._looks.model
+
+    @property
     def actors(self) -> int:
         """Number of actors in each world."""
         return self._assets.traffic.actors
@@ -112,6 +120,15 @@ class Worlds:
         """Return the looks of all actors around a tracker, one world; they may change."""
         world = self.of[tracker]
         return Looks(self._looks.model[world : world + 1], self._looks.colour[world : world + 1])
+    def classes_of(self, objects: NDArray[np.integer]) -> Integers:
+        """Return the `ObjectClass` of objects and actors, -1 for the id -1, shape (K,)."""
+        static, kinds = self._assets.scene.object_class, self._assets.traffic.motion.kind
+        moving = np.array([KINDS[kind].object_class for kind in kinds.tolist()], np.int64)
+        classes = np.full(len(objects), -1, np.int64)
+        still, moves = (objects >= 0) & (objects < ACTOR_OBJECT), objects >= ACTOR_OBJECT
+        classes[still] = static[objects[still]]
+        classes[moves] = moving[objects[moves] - ACTOR_OBJECT]
+        return classes
 
     def object_ids(self, actors: NDArray[np.int32]) -> NDArray[np.int32]:
         """Return the object ids of actors."""

@@ -9,7 +9,7 @@ from pydantic import AfterValidator, Field, model_validator
 from eyas.core.config import Config
 from eyas.core.variation import Uniform, Variation, within
 
-__all__ = ["DoneConfig", "RewardConfig", "RewardMode", "RewardType", "StartConfig"]
+__all__ = ["Crash", "DoneConfig", "RewardConfig", "RewardMode", "RewardType", "StartConfig"]
 
 Positive = Annotated[float, Field(gt=0, le=1e9)]
 Height = Annotated[float, Field(ge=-1e6, le=1e6)]
@@ -31,6 +31,18 @@ class RewardMode(StrEnum):
 
     CONTINUOUS = "continuous"
     DISCRETE = "discrete"
+
+
+class Crash(StrEnum):
+    """What counts as a crash."""
+
+    ORIGINAL = "original"
+    """As in the original, which knows no contacts: too far from the commanded position, or turning
+    too fast. Costs nothing."""
+    CONTACT = "contact"
+    """The body touches a building, a tree, the ground or a vehicle; the episode goes on."""
+    END = "end"
+    """The same, and the episode ends."""
 
 
 class StartConfig(Config):
@@ -61,8 +73,10 @@ class RewardConfig(Config):
     weight: Weight = 1.0
     """Factor on the built-in reward."""
     terms: dict[str, Weight] = Field(default_factory=dict)
-    """User-defined terms to add: the path of a function, `package.module:function`, which takes a
-    `Snapshot` and returns a number for each tracker, and the factor on it."""
+    """Terms to add, and the factor on each: the name of a published one (`e2e`, `d_vat`,
+    `d_vat_3d`, `speed`, `effort`), or the path of a function, `package.module:function`, which
+    takes a `Snapshot`, or the quantities that its parameters name, and returns a number for each
+    tracker."""
     cut_off: Annotated[float, Field(ge=0, le=1)] = 0.001
     """Reward at or below which a step counts as one without reward, 0 to 1."""
     distance_scale: Positive = 0.01
@@ -99,6 +113,8 @@ class DoneConfig(Config):
     """2 ms steps after a reset during which the episode does not end."""
     no_reward_steps: Steps = 100
     """2 ms steps without reward after which the episode ends."""
+    crash: Crash = Crash.ORIGINAL
+    """What counts as a crash, and whether it ends the episode."""
 
     @model_validator(mode="after")
     def _heights_in_order(self) -> Self:

@@ -24,6 +24,7 @@ class DoneReason(IntEnum):
     NO_REWARD = 7
     STEP_LIMIT = 8
     NOT_A_NUMBER = 9
+    CRASH = 10
 
     @property
     def sentence(self) -> str:
@@ -47,6 +48,7 @@ _SENTENCES = {
     DoneReason.NO_REWARD: "There was no reward for too long.",
     DoneReason.STEP_LIMIT: "The episode has reached its number of steps.",
     DoneReason.NOT_A_NUMBER: "A value of the state is not a finite number.",
+    DoneReason.CRASH: "The tracker has touched something.",
 }
 _ORIGINALS = {
     DoneReason.HEIGHT: "height",
@@ -113,6 +115,7 @@ def judge(
     """
     episodes.step_count[n] += 1
     episodes.breach[n] = broken_limit(trackers, n, terrain, rules)
+    episodes.crash[n] = is_crash(episodes.breach[n])
     if episodes.reward[n] > rules.cut_off:
         episodes.no_reward_count[n] = 0
     else:

@@ -23,9 +23,12 @@ def clear_episode(episodes: EpisodeState, n: int) -> None:
     episodes.reason[n] = 0
     episodes.breach[n] = 0
     episodes.not_a_number[n] = False
+    episodes.crash[n] = False
+    episodes.contact_object[n] = -1
     episodes.direction[n] = 0
     episodes.observations[n] = 0
     for axis in range(3):
+        episodes.contact[n, axis] = 0.0
         episodes.relative_velocity[n, axis] = 0.0
         episodes.relative_acceleration[n, axis] = 0.0
 
@@ -54,6 +57,7 @@ def observe(
     share = view_share(position, rotation, depth, ground, half_size)
     distance = math.sqrt((x - middle_x) ** 2 + (y - middle_y) ** 2)
     episodes.reward[n] = reward_value(share, distance, depth, rules)
+    episodes.offset[n], episodes.proportion[n] = distance, share
     centre = episodes.view_centre[n]
     centre[0], centre[1] = middle_x, middle_y
     centre[2] = -height_over(ground, middle_x, middle_y, 0.0)
@@ -95,4 +99,6 @@ def _follow_relative(
                 change = speed - episodes.relative_velocity[n, axis]
                 episodes.relative_acceleration[n, axis] = change / PHYSICS_STEP
             episodes.relative_velocity[n, axis] = speed
+        else:
+            episodes.first_position[n, axis] = relative[axis]
         episodes.relative_position[n, axis] = relative[axis]

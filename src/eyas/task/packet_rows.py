@@ -16,12 +16,14 @@ from eyas.sensors.config import CameraConfig
 from eyas.sensors.inertial import accelerometer, gyroscope
 from eyas.state.snapshot import CameraState, EpisodeState, Snapshot, TargetState, TrackerState
 from eyas.state.terrain import Terrain
-from eyas.task.done import is_crash
 
-__all__ = ["BASIC_COLUMNS", "REWARD_COLUMNS", "PacketRows"]
+__all__ = ["BASIC_COLUMNS", "REWARD_COLUMNS", "SENSOR_COLUMNS", "PacketRows"]
 
 BASIC_COLUMNS = 22
 REWARD_COLUMNS = 60
+
+SENSOR_COLUMNS = slice(1, 20)
+"""Columns of the basic packet that the sensors measure."""
 
 _CAMERA_POSE, _TARGET_POSE = 7, 23
 _VIEW_CENTRE, _TARGET_CENTRE, _CAMERA_POSITION = 39, 42, 45
@@ -127,5 +129,5 @@ def _fill_reward(
         row[_RELATIVE + 3 + axis] = episodes.relative_velocity[n, axis]
         row[_RELATIVE + 6 + axis] = episodes.relative_acceleration[n, axis]
     row[48] = wrap_angle(targets.yaw[n] - trackers.euler[n, 2])
-    row[58] = 1.0 if is_crash(episodes.breach[n]) else 0.0
+    row[58] = 1.0 if episodes.crash[n] else 0.0
     row[59] = episodes.direction[n]

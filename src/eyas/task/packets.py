@@ -1,4 +1,7 @@
-"""The two packets that a client of the original receives, as named records.
+"""The packets of the original as named records: its input, and two of the three that it answers;
+the third, of the lidar, is in `eyas.task.radar_packet`.
+
+Input packet, 5 numbers: four of the command and whether it is a reset.
 
 Basic packet, 22 numbers (the original's names): t, position 3, linear 3, acc 3, angular 3,
 orientation 4, angle 3, reward, done.
@@ -18,7 +21,14 @@ from numpy.typing import NDArray
 
 from eyas.task.direction import TargetDirection
 
-__all__ = ["BASIC_FIELDS", "REWARD_FIELDS", "BasicPacket", "RewardPacket"]
+__all__ = [
+    "BASIC_FIELDS",
+    "INPUT_FIELDS",
+    "REWARD_FIELDS",
+    "BasicPacket",
+    "InputPacket",
+    "RewardPacket",
+]
 
 Numbers = tuple[float, ...]
 
@@ -30,6 +40,9 @@ def _named(name: str, parts: str) -> tuple[str, ...]:
 def _matrix(name: str) -> tuple[str, ...]:
     return tuple(f"{name}_{row}{column}" for row in range(4) for column in range(4))
 
+
+INPUT_FIELDS = ("forward", "left", "up", "turn_rate", "reset")
+"""Names of the columns of an input packet."""
 
 BASIC_FIELDS = (
     "step_count",
@@ -60,6 +73,37 @@ REWARD_FIELDS = (
     "target_direction",
 )
 """Names of the columns of a reward packet; the name of the target's type follows."""
+
+
+@dataclass(frozen=True, slots=True)
+class InputPacket:
+    """A command of one tracker: three speeds and a turn rate.
+
+    The manual calls its numbers forward, backward, left and right.
+    """
+
+    forward: float = 0.0
+    """Speed ahead in the heading frame [m/s]."""
+    left: float = 0.0
+    """Speed to the left [m/s]."""
+    up: float = 0.0
+    """Climb in each physics step [m per 2 ms]."""
+    turn_rate: float = 0.0
+    """Counter-clockwise, seen from above [rad/s]."""
+    reset: bool = False
+    """Whether a new episode is to begin instead."""
+
+    names: ClassVar[tuple[str, ...]] = INPUT_FIELDS
+
+    @classmethod
+    def from_row(cls, row: NDArray[np.float64]) -> "InputPacket":
+        """Return the packet of a row, shape (5,)."""
+        *command, reset = row.tolist()
+        return cls(*command, reset=bool(reset))
+
+    def to_row(self) -> NDArray[np.float64]:
+        """Return the numbers, shape (5,)."""
+        return np.array([getattr(self, name) for name in INPUT_FIELDS], np.float64)
 
 
 @dataclass(frozen=True, slots=True)
@@ -148,7 +192,8 @@ class RewardPacket:
     relative_acceleration: Numbers
     """Change of `relative_velocity` in 2 ms [m/s^2]; 0 at a reset and one step after."""
     crash: bool
-    """Whether the tracker is too far from its commanded position or turns too fast."""
+    """Whether the tracker has crashed, as `done.crash` means it: by default, whether it is too far
+    from its commanded position or turns too fast."""
     target_direction: TargetDirection
     """Direction of the target's motion; the original's `carDir`."""
     target_type: str
@@ -186,3 +231,9 @@ class RewardPacket:
         """Return the numbers, shape (60,)."""
         numbers = [getattr(self, field.name) for field in fields(self)[:-1]]
         return np.hstack(numbers).astype(np.float64)
+
+    def to_manual_row(self) -> NDArray[np.float64]:
+        """Return the numbers that the original's manual lists, shape (59,): all but
+        `start_direction`.
+        """
+        return np.delete(self.to_row(), REWARD_FIELDS.index("start_direction"))

@@ -1,20 +1,23 @@
-"""The reward as a weighted sum of named terms: the built-in term and user-defined ones."""
+"""The reward as a weighted sum of named terms: the built-in one, published ones, a user's own."""
 
+import inspect
 from collections.abc import Callable
 from importlib import import_module
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.errors import ConfigError
+from eyas.core.errors import ConfigError, nearest
 from eyas.state.snapshot import Snapshot
 from eyas.task.config import RewardConfig
+from eyas.task.published import TERMS
+from eyas.task.quantities import QUANTITIES, Setting
 
 __all__ = ["BUILTIN", "RewardTerm", "RewardTerms"]
 
 Floats = NDArray[np.float64]
 
-RewardTerm = Callable[[Snapshot], Floats]
+RewardTerm = Callable[[Snapshot, Setting], Floats]
 """Function that returns one number for each tracker of a snapshot, shape (N,)."""
 
 BUILTIN = "builtin"
@@ -26,13 +29,14 @@ class RewardTerms:
 
     Args:
         config: Terms and their weights.
+        setting: What quantities depend on.
 
     Raises:
-        ConfigError: A term cannot be imported.
+        ConfigError: A term cannot be imported, or asks for a quantity that does not exist.
     """
 
-    def __init__(self, config: RewardConfig) -> None:
-        self._weight = config.weight
+    def __init__(self, config: RewardConfig, setting: Setting | None = None) -> None:
+        self._weight, self._setting = config.weight, setting or Setting()
         self._terms = [(name, load_term(name), weight) for name, weight in config.terms.items()]
 
     def of(self, snapshot: Snapshot) -> tuple[Floats, dict[str, Floats]]:
@@ -44,7 +48,7 @@ class RewardTerms:
         terms = {BUILTIN: snapshot.episodes.reward.copy()}
         total = self._weight * terms[BUILTIN]
         for name, term, weight in self._terms:
-            values = np.array(term(snapshot), np.float64)
+            values = np.array(term(snapshot, self._setting), np.float64)
             if values.shape != total.shape:
                 raise ConfigError(
                     f"reward.terms.{name}: it returned an array of shape {values.shape}; "
@@ -56,22 +60,40 @@ class RewardTerms:
 
 
 def load_term(name: str) -> RewardTerm:
-    """Return a term by its path, `package.module:function`.
+    """Return a term by its name, or by the path `package.module:function`.
 
     Raises:
-        ConfigError: There is no such function.
+        ConfigError: There is no such function, or its parameters are no quantities.
     """
-    module, _, function = name.partition(":")
+    function = TERMS.get(name) or _imported(name)
+    if not callable(function):
+        raise ConfigError(f"reward.terms: '{name}' is not a function")
+    parameters = inspect.signature(function).parameters.values()
+    wanted = [p.name for p in parameters if p.default is p.empty or p.name in QUANTITIES]
+    if len(wanted) == 1 and wanted[0] not in QUANTITIES:
+        return lambda snapshot, _: function(snapshot)
+    for quantity in wanted:
+        if quantity not in QUANTITIES:
+            raise ConfigError(
+                f"reward.terms: '{name}' asks for '{quantity}'{nearest(quantity, QUANTITIES)}; "
+                f"allowed: a snapshot, or {', '.join(QUANTITIES)}"
+            )
+    return lambda snapshot, setting: function(
+        **{quantity: QUANTITIES[quantity](snapshot, setting) for quantity in wanted}
+    )
+
+
+def _imported(name: str) -> Callable[..., Floats]:
+    module, colon, attribute = name.partition(":")
     try:
+        if not colon:
+            raise ImportError(f"no term has that name{nearest(name, TERMS)}")
         if module.startswith("."):
             raise ImportError("no module has such a name")
-        term = getattr(import_module(module), function)
+        function: Callable[..., Floats] = getattr(import_module(module), attribute)
     except (ImportError, AttributeError, ValueError) as error:
         raise ConfigError(
-            f"reward.terms: '{name}' cannot be imported ({error}); "
-            "allowed: 'package.module:function', which takes a snapshot"
+            f"reward.terms: '{name}' cannot be imported ({error}); allowed: {', '.join(TERMS)}, or "
+            "'package.module:function', which takes a snapshot or named quantities"
         ) from error
-    if not callable(term):
-        raise ConfigError(f"reward.terms: '{name}' is not a function")
-    loaded: RewardTerm = term
-    return loaded
+    return function

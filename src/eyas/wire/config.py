@@ -18,8 +18,6 @@ class WireConfig(Config):
     """UDP port on which the number of trackers is announced."""
     reward_packet: bool = True
     """Whether the custom reward packet is sent."""
-    lidar: bool = False
-    """Whether the lidar packet is sent."""
     patience: Annotated[float, Field(gt=0, le=1e6)] = 30.0
     """Time after which a client that does not go on is reported [s]; it is waited for all the
     same, and a new client can take its place."""

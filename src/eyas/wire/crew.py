@@ -31,6 +31,8 @@ class Answer(NamedTuple):
     """The basic packet."""
     reward: bytes
     """The reward packet."""
+    radar: bytes | None
+    """The radar packet; None without a lidar."""
     picture: Future[bytes]
     """JPEG; made in another thread while the client reads the packets."""
 
@@ -78,9 +80,14 @@ class Crew:
         basic[renewed & ~resets, _DONE] = 1.0
         self._drawn = self._draw()
         models = self.sim.snapshot.targets.model.tolist()
+        lidar = self.sim.lidar
+        radar = None if lidar is None else [packet_line(row) for row in lidar.packets()]
         return [
             Answer(
-                packet_line(basic[n]), packet_line(reward[n], MODELS[models[n]].typename), picture
+                packet_line(basic[n]),
+                packet_line(reward[n], MODELS[models[n]].typename),
+                None if radar is None else radar[n],
+                picture,
             )
             for n, picture in enumerate(self._drawn)
         ]

@@ -35,6 +35,7 @@ class Names:
         action: The client's action.
         state: The answer's basic packet.
         reward: The answer's reward packet.
+        radar: The answer's radar packet.
         picture: The answer's picture.
 
     Args:
@@ -47,6 +48,7 @@ class Names:
         self.action = folder / f"{tracker}_AlgAction.txt"
         self.state = folder / f"{tracker}_Ctrl2Global.txt"
         self.reward = folder / f"{tracker}_RewardParams.txt"
+        self.radar = folder / f"{tracker}_PointCloud.txt"
         self.picture = folder / f"{tracker}_VideoFrame.jpeg"
 
 

@@ -5,11 +5,11 @@ import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from eyas.task.journal import Journal
 from eyas.wire.announcements import Announcements
 from eyas.wire.codec import RESET
 from eyas.wire.config import WireConfig
 from eyas.wire.exchange import Exchange
-from eyas.wire.journal import Journal
 from eyas.wire.pause import Pause
 from eyas.wire.post import Part, Post
 
@@ -140,6 +140,9 @@ class Server:
         parts = [Part(names.state, lambda: answer.state)]
         if self._config.reward_packet:
             parts.append(Part(names.reward, lambda: answer.reward))
+        radar = answer.radar
+        if radar is not None:
+            parts.append(Part(names.radar, lambda: radar))
         drawn = Part(names.picture, lambda: picture.result() if picture.done() else None)
         return [*parts, drawn]
 

@@ -76,5 +76,5 @@ def _ours(config: EyasConfig) -> dict[str, Any]:
         "Init_No_Done_Steps": done.grace_steps,
         "Config_Agen_Num_Port": wire.port,
         "Customized_Rewards": wire.reward_packet,
-        "Lidar_Enable": wire.lidar,
+        "Lidar_Enable": config.lidar.enabled,
     }

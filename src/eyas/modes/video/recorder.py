@@ -117,7 +117,9 @@ class Recorder:
         assert going.files is not None
         number, action = going.summary.frames, mover.action(tracker)
         others = others_of(self._sim, tracker, picture, view)
-        frame = frame_of(self._sim.snapshot, tracker, picture, view, number, action, others)
+        lidar = self._sim.lidar
+        ranges = None if lidar is None else lidar.ranges_of(tracker)
+        frame = frame_of(self._sim.snapshot, tracker, picture, view, number, action, others, ranges)
         going.summary = going.summary.plus(frame)
         self._lanes.submit(tracker, going.files.add, frame)
 

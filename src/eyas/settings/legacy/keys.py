@@ -48,7 +48,7 @@ _BASIC = (
     Same("No_Reward_Done_Steps", "done.no_reward_steps"),
     Same("Control_Frequence", "control.frequency"),
     Same("Customized_Rewards", "wire.reward_packet"),
-    Same("Lidar_Enable", "wire.lidar"),
+    Same("Lidar_Enable", "lidar.enabled"),
     Same("Tracking_Object", "target"),
     Same("Verbose", "verbose"),
     WorldPath("World_Path", "world.map", "world.weather"),

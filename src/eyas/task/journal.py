@@ -10,7 +10,7 @@ from typing import TextIO
 
 from eyas.core.files import refusals
 from eyas.state.snapshot import Snapshot
-from eyas.task.step_line import step_line
+from eyas.task.step_line import EpisodeLines, step_line
 
 __all__ = ["Journal"]
 
@@ -18,26 +18,36 @@ _LOG = logging.getLogger("eyas")
 
 
 class Journal:
-    """`Agent<i>.log` of each client, begun anew, in which a line is there at once.
+    """`Agent<i>.log` of each tracker, begun anew, in which a line is there at once; and a line on
+    the console for each episode.
 
     Args:
-        folder: The folder of the logs; made if needed.
+        folder: The folder of the logs, made if needed; None: only the console gets lines.
         trackers: Names of the trackers.
+        numbers: Number of each, for its file; None: 0, 1, ...
         verbose: Whether anything is logged.
 
     Raises:
         OutputError: A log cannot be written.
     """
 
-    def __init__(self, folder: Path, trackers: Sequence[str], *, verbose: bool) -> None:
+    def __init__(
+        self,
+        folder: Path | None,
+        trackers: Sequence[str],
+        numbers: Sequence[int] | None = None,
+        *,
+        verbose: bool,
+    ) -> None:
         self._trackers = trackers
         self._folder = folder
+        self._episodes = EpisodeLines(trackers) if verbose else None
         self._files: list[TextIO] = []
         self._stack = ExitStack()
-        if verbose:
+        if verbose and folder is not None:
             with refusals(folder):
                 folder.mkdir(parents=True, exist_ok=True)
-                for number in range(len(trackers)):
+                for number in numbers or range(len(trackers)):
                     file = (folder / f"Agent{number}.log").open("w", buffering=1)
                     self._files.append(self._stack.enter_context(file))
 
@@ -50,6 +60,11 @@ class Journal:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the files; may be called again."""
+        self._files.clear()
         self._stack.close()
 
     def hearer(self, number: int) -> Callable[[bytes], None]:
@@ -58,6 +73,9 @@ class Journal:
 
     def step(self, snapshot: Snapshot) -> None:
         """Log a step of all trackers."""
+        if self._episodes is not None:
+            for line in self._episodes.after(snapshot):
+                _LOG.info("%s", line)
         for number in range(len(self._files)):
             self._write(number, step_line(snapshot, number, self._trackers[number]))
 

@@ -1,0 +1,75 @@
+"""Noise of the camera's sensor."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.jit import thread_count
+from eyas.core.parallel import Held, Pointer, parallel_kernel
+from eyas.sensors.chance import SEEDS, mixed
+
+__all__ = ["Grain"]
+
+_DEVIATION = 147.8
+"""Standard deviation of the sum of four random bytes: (4 (256^2 - 1) / 12)^(1/2)."""
+
+
+class Grain:
+    """Adds noise to the pictures of N trackers.
+
+    The noise of a channel of a pixel is the sum of four random bytes, which is nearly normal. Each
+    physics step has its own, so a picture that is drawn twice is the same.
+
+    Args:
+        deviation: Its standard deviation, of 255.
+        count: N.
+    """
+
+    def __init__(self, deviation: float, count: int) -> None:
+        self._scale = deviation / _DEVIATION
+        self._seed = np.zeros(count, np.int64)
+
+    def begin(self, tracker: int, rng: np.random.Generator) -> None:
+        """Begin an episode."""
+        self._seed[tracker] = rng.integers(SEEDS)
+
+    def add(
+        self,
+        rgb: NDArray[np.uint8],
+        trackers: NDArray[np.integer],
+        step: NDArray[np.int64],
+    ) -> None:
+        """Add noise in place.
+
+        Args:
+            rgb: Pictures, shape (V, H, W, 3).
+            trackers: The tracker of each, shape (V,).
+            step: Physics steps of each tracker since its reset, shape (N,).
+        """
+        views = len(trackers)
+        work = _Work(rgb.reshape(views, -1), self._seed[trackers], step[trackers], self._scale)
+        _add_noise(min(thread_count(), views), Held(work))
+
+
+class _Work(NamedTuple):
+    """Inputs and outputs of the kernel."""
+
+    pixels: NDArray[np.uint8]
+    """Shape (V, bytes of a picture)."""
+    seed: NDArray[np.int64]
+    step: NDArray[np.int64]
+    scale: float
+
+
+@parallel_kernel
+def _add_noise(parts: Pointer[tuple[Pointer[_Work]]], worker: int, workers: int) -> None:
+    """Add noise to the pictures whose turn is this worker's."""
+    pixels, seed, step, scale = parts[0][0][0]
+    for view in range(worker, pixels.shape[0], workers):
+        base = mixed(mixed(seed[view]) ^ (step[view] & 0xFFFFFFFF))
+        for at in range(pixels.shape[1]):
+            word = mixed(base ^ at)
+            four = (word & 255) + ((word >> 8) & 255) + ((word >> 16) & 255) + (word >> 24)
+            value = pixels[view, at] + scale * (four - 510) + 0.5
+            pixels[view, at] = int(min(max(value, 0.0), 255.0))

@@ -1,0 +1,143 @@
+"""Everything solid that a ray or a body may hit, in the form that kernels read."""
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.sensors.furniture import Box, Cylinder, furniture
+from eyas.sensors.grid import Grid, grid_of
+from eyas.state.motion import Motion
+from eyas.state.scene import ObjectClass, Scene
+from eyas.state.terrain import Terrain
+from eyas.targets.catalogue import MODELS, kind_of
+
+__all__ = ["Boxes", "Movers", "Obstacles", "Solids", "obstacles_of"]
+
+Floats = NDArray[np.float64]
+
+
+class Solids(NamedTuple):
+    """Upright prisms and cylinders that stand still.
+
+    Item i below B is prism i; item B + c is cylinder c.
+    """
+
+    points: Floats
+    """Corners of the prisms, counter-clockwise [m], shape (K, 2)."""
+    first: NDArray[np.int32]
+    """Start of each prism's corners, shape (B + 1,)."""
+    round: Floats
+    """Centre and radius of each cylinder [m], shape (C, 3)."""
+    bottom: Floats
+    """z of each item [m], shape (B + C,)."""
+    top: Floats
+    """z of each item [m], shape (B + C,)."""
+    thing: NDArray[np.int32]
+    """Object of the scene that each item belongs to, shape (B + C,)."""
+    grid: Grid
+    """The items in each cell."""
+    ground: int
+    """Object of the scene that the ground is."""
+
+
+class Movers(NamedTuple):
+    """The actors around N trackers, in W worlds."""
+
+    motion: Motion
+    world: NDArray[np.int32]
+    """World of each tracker, shape (N,)."""
+    model: NDArray[np.int32]
+    """Model of each actor in each world, index into the catalogue, shape (W, A)."""
+    size: Floats
+    """Length, width, height of each model [m], shape (M, 3)."""
+    ahead: Floats
+    """Distance of each model's middle ahead of its reference point [m], shape (M,)."""
+
+
+class Boxes(NamedTuple):
+    """Working memory: the upright boxes of the actors near one tracker at one time."""
+
+    corners: Floats
+    """Corners, counter-clockwise, those of box b from 4 b [m], shape (4 A, 2)."""
+    bottom: Floats
+    """[m], shape (A,)."""
+    top: Floats
+    """[m], shape (A,)."""
+    moved: Floats
+    """Motion in the last physics step [m], shape (A, 3)."""
+    thing: NDArray[np.int32]
+    """Object id of the actor, shape (A,)."""
+
+
+class Obstacles(NamedTuple):
+    """Everything solid around N trackers."""
+
+    solids: Solids
+    terrain: Terrain
+    movers: Movers
+    boxes: Boxes
+
+
+def obstacles_of(
+    scene: Scene, motion: Motion, world: NDArray[np.int32], model: NDArray[np.int32]
+) -> Obstacles:
+    """Return the obstacles of a map with its traffic; the arguments are those of `Movers`."""
+    actors = model.shape[1]
+    movers = Movers(
+        motion=motion,
+        world=world,
+        model=model,
+        size=np.array([known.size for known in MODELS], np.float64),
+        ahead=np.array([kind_of(number).ahead for number in range(len(MODELS))], np.float64),
+    )
+    boxes = Boxes(
+        corners=np.zeros((4 * actors, 2)),
+        bottom=np.zeros(actors),
+        top=np.zeros(actors),
+        moved=np.zeros((actors, 3)),
+        thing=np.zeros(actors, np.int32),
+    )
+    return Obstacles(solids_of(scene), scene.terrain, movers, boxes)
+
+
+def solids_of(scene: Scene) -> Solids:
+    """Return the solids of a map: its colliders, and its trees and furniture that have none."""
+    given, more = scene.colliders, furniture(scene)
+    outlines = np.split(given.prism_points, given.prism_first[1:-1])[: len(given.prism_top)]
+    outlines += [box.outline for box in more.boxes]
+    round_ = np.column_stack([given.cylinder_centre, given.cylinder_radius])
+    round_ = np.concatenate([round_, np.array([c.place for c in more.cylinders]).reshape(-1, 3)])
+    parts = [
+        (given.prism_bottom, given.prism_top, given.prism_object),
+        _columns(more.boxes),
+        (given.cylinder_bottom, given.cylinder_top, given.cylinder_object),
+        _columns(more.cylinders),
+    ]
+    bottom, top, thing = (np.concatenate(column) for column in zip(*parts, strict=True))
+    bounds = np.array(list(_bounds(outlines, round_)), np.float64).reshape(-1, 4)
+    ground = np.flatnonzero(scene.object_class == ObjectClass.GROUND)
+    return Solids(
+        points=np.concatenate([np.zeros((0, 2)), *outlines]),
+        first=np.cumsum([0, *map(len, outlines)]).astype(np.int32),
+        round=round_,
+        bottom=bottom.astype(np.float64),
+        top=top.astype(np.float64),
+        thing=thing.astype(np.int32),
+        grid=grid_of(bounds, top),
+        ground=int(ground[0]) if len(ground) else 0,
+    )
+
+
+def _columns(items: Sequence[Box | Cylinder]) -> tuple[Floats, Floats, NDArray[np.int32]]:
+    rows = np.array([(i.bottom, i.top, i.thing) for i in items], np.float64).reshape(-1, 3)
+    return rows[:, 0], rows[:, 1], rows[:, 2].astype(np.int32)
+
+
+def _bounds(outlines: list[Floats], round_: Floats) -> Iterator[tuple[float, ...]]:
+    """Yield west, south, east, north of each item [m]."""
+    for outline in outlines:
+        yield (*outline.min(axis=0), *outline.max(axis=0))
+    for x, y, radius in round_:
+        yield (x - radius, y - radius, x + radius, y + radius)

@@ -1,0 +1,117 @@
+"""What is sensed after each physics step: contacts, lidar, and the errors of the other sensors.
+
+What is off does not exist here, so that it costs nothing.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.rng import EpisodeKey
+from eyas.sensors.grain import Grain
+from eyas.sensors.lidar import Lidar
+from eyas.sensors.obstacles import Obstacles, obstacles_of
+from eyas.sensors.readings import Readings, has_errors
+from eyas.sim.assets import Assets
+from eyas.sim.config import SimConfig
+from eyas.sim.worlds import Worlds
+from eyas.state.snapshot import Snapshot
+from eyas.task.config import Crash
+from eyas.task.contact import Contacts
+
+__all__ = ["Senses"]
+
+
+class _Sense(Protocol):
+    def begin(self, tracker: int, rng: np.random.Generator) -> None: ...
+
+
+class Senses:
+    """The senses of N trackers that the settings ask for.
+
+    Attributes:
+        lidar: None if it is off.
+        readings: None if the sensors have no errors.
+        grain: None if the camera has no noise.
+        follow: Whether `advance` must be called after each physics step.
+
+    Args:
+        config: The settings.
+        assets: Map and traffic.
+        worlds: The worlds of the trackers.
+        snapshot: Their state.
+        active: Whether each moves in a step, shape (N,); read at each.
+    """
+
+    def __init__(
+        self,
+        config: SimConfig,
+        assets: Assets,
+        worlds: Worlds,
+        snapshot: Snapshot,
+        active: NDArray[np.bool_],
+    ) -> None:
+        self.lidar: Lidar | None = None
+        self.readings: Readings | None = None
+        self.grain: Grain | None = None
+        self._contacts: Contacts | None = None
+        crash = config.done.crash
+        if config.lidar.enabled or crash is not Crash.ORIGINAL:
+            motion = assets.traffic.motion
+            obstacles = obstacles_of(assets.scene, motion, worlds.of, worlds.models)
+            if crash is not Crash.ORIGINAL:
+                self._contacts = _contacts(config, snapshot, obstacles, active)
+            if config.lidar.enabled:
+                self.lidar = Lidar(config.lidar, snapshot, obstacles, active)
+        if has_errors(config.sensors):
+            self.readings = Readings(config.sensors, snapshot, active)
+        if config.sensors.camera_noise > 0.0:
+            self.grain = Grain(config.sensors.camera_noise, len(active))
+        # Contacts come first: they may end the episode that the others then see.
+        self._following = [
+            sense for sense in (self._contacts, self.lidar, self.readings) if sense is not None
+        ]
+        self.follow = bool(self._following)
+
+    @property
+    def told(self) -> NDArray[np.float64] | None:
+        """What sensors with errors read, see `Readings`; None if none has errors."""
+        return None if self.readings is None else self.readings.told
+
+    def begin(self, trackers: Sequence[int], key_of: Callable[[int], EpisodeKey]) -> None:
+        """Begin episodes of some trackers, which are at their starts.
+
+        Args:
+            trackers: The trackers.
+            key_of: Returns what the random numbers of a tracker's episode depend on.
+        """
+        senses: dict[str, _Sense | None] = {
+            "contacts": self._contacts,
+            "lidar": self.lidar,
+            "readings": self.readings,
+            "grain": self.grain,
+        }
+        for name, sense in senses.items():
+            if sense is not None:
+                for tracker in trackers:
+                    sense.begin(tracker, key_of(tracker).stream(name))
+        self.advance()
+
+    def renew(self) -> None:
+        """Begin a command."""
+        if self._contacts is not None:
+            self._contacts.renew()
+
+    def advance(self) -> None:
+        """Sense, after a physics step."""
+        for sense in self._following:
+            sense.advance()
+
+
+def _contacts(
+    config: SimConfig, snapshot: Snapshot, obstacles: Obstacles, active: NDArray[np.bool_]
+) -> Contacts:
+    ends = config.done.crash is Crash.END
+    return Contacts(snapshot, obstacles, active, config.done.grace_steps, ends=ends)

@@ -1,0 +1,169 @@
+"""Collisions: where and what the body of a tracker touches."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.frames import rotate
+from eyas.core.jit import step_kernel
+from eyas.core.parallel import Held, Pointer, parallel_kernel
+from eyas.sensors.obstacles import Obstacles
+from eyas.state.snapshot import EpisodeState, Snapshot, TrackerState
+from eyas.task.done import DoneReason
+from eyas.task.sweep import NEVER, Sweep
+from eyas.task.touch import touch_ground, touch_solids, touch_vehicles
+
+__all__ = ["BODY", "Contacts"]
+
+BODY = (0.806, 0.806, 0.366)
+"""Length, width, height of the original's drone [m]; its camera, a few cm below, is neglected."""
+
+_CRASH, _NOT_A_NUMBER = int(DoneReason.CRASH), int(DoneReason.NOT_A_NUMBER)
+
+
+class Contacts:
+    """Tells the contacts of N trackers in their episodes, after each physics step.
+
+    Args:
+        snapshot: State of the trackers; `crash`, `contact` and `contact_object` of its episodes are
+            written, and the reasons of their ends if a crash is one.
+        obstacles: What they may touch.
+        active: Whether each tracker moves in a step, shape (N,); read at each.
+        grace_steps: Steps after a reset in which a crash is no end.
+        ends: Whether a crash ends the episode.
+    """
+
+    def __init__(
+        self,
+        snapshot: Snapshot,
+        obstacles: Obstacles,
+        active: NDArray[np.bool_],
+        grace_steps: int,
+        *,
+        ends: bool,
+    ) -> None:
+        count = len(active)
+        self._snapshot, self._active = snapshot, active
+        self._last = np.zeros((count, 3))
+        self._fresh = np.zeros(count, np.bool_)
+        self._touched = np.zeros(count, np.bool_)
+        self._crashed = np.zeros(count, np.bool_)
+        work = _Work(
+            snapshot.trackers,
+            snapshot.episodes,
+            obstacles,
+            active,
+            self._last,
+            self._fresh,
+            self._touched,
+            self._crashed,
+            grace_steps,
+            int(ends),
+            *(0.5 * size for size in BODY),
+        )
+        self._find = _find_all.bound(Held(work))
+
+    def begin(self, tracker: int, rng: np.random.Generator) -> None:
+        """Begin an episode, without a contact, where the tracker is now."""
+        self._last[tracker] = self._snapshot.trackers.position[tracker]
+        self._touched[tracker] = self._crashed[tracker] = False
+
+    def renew(self) -> None:
+        """Begin a command: `crash` tells of contacts from now on."""
+        self._fresh[:] = True
+
+    def advance(self) -> None:
+        """Tell the contacts of the last physics step."""
+        self._find()
+
+
+class _Work(NamedTuple):
+    """Inputs and outputs of the kernel."""
+
+    trackers: TrackerState
+    episodes: EpisodeState
+    obstacles: Obstacles
+    active: NDArray[np.bool_]
+    last: NDArray[np.float64]
+    """Where each body was after the last step [m], shape (N, 3)."""
+    fresh: NDArray[np.bool_]
+    """Whether this is the first step of a command, shape (N,)."""
+    touched: NDArray[np.bool_]
+    """Whether the body has touched anything since the command began, shape (N,)."""
+    crashed: NDArray[np.bool_]
+    """Whether a crash has ended the episode, shape (N,)."""
+    grace_steps: int
+    ends: int
+    """1: a crash ends the episode; 0: it does not."""
+    half_length: float
+    half_width: float
+    half_height: float
+
+
+@parallel_kernel
+def _find_all(parts: Pointer[tuple[Pointer[_Work]]], worker: int, workers: int) -> None:
+    """Find the contacts of all active trackers."""
+    work = parts[0][0][0]
+    trackers, episodes = work.trackers, work.episodes
+    for n in range(work.active.shape[0]):
+        if not work.active[n] or episodes.step_count[n] == 0:
+            continue
+        touched = _find(trackers, episodes, work, n)
+        # The step has set what the original calls a crash.
+        work.touched[n] = touched or (work.touched[n] and not work.fresh[n])
+        episodes.crash[n] = work.touched[n]
+        work.fresh[n] = False
+        if work.ends == 1 and touched and episodes.step_count[n] >= work.grace_steps:
+            work.crashed[n] = True
+        if work.crashed[n] and episodes.reason[n] != _NOT_A_NUMBER:
+            episodes.reason[n] = _CRASH
+
+
+@step_kernel
+def _find(trackers: TrackerState, episodes: EpisodeState, work: _Work, n: int) -> bool:
+    """Find what the body of tracker `n` touches first on its way of the last step."""
+    sweep = _sweep_of(trackers, work, n)
+    hit = touch_solids(sweep, work.obstacles)
+    vehicle = touch_vehicles(sweep, work.obstacles, n, episodes.tick[n])
+    if vehicle.share < hit.share:
+        hit = vehicle
+    ground = touch_ground(sweep, work.obstacles)
+    if ground.share < hit.share:
+        hit = ground
+    for axis in range(3):
+        work.last[n, axis] = trackers.position[n, axis]
+    if hit.share >= NEVER:
+        return False
+    contact = episodes.contact[n]
+    contact[0], contact[1] = hit.x, hit.y
+    contact[2] = min(max(sweep.z + hit.share * sweep.motion_z, hit.bottom), hit.top)
+    episodes.contact_object[n] = hit.thing
+    return True
+
+
+@step_kernel
+def _sweep_of(trackers: TrackerState, work: _Work, n: int) -> Sweep:
+    """Return the way of the body in the last step, as an upright box around the tilted one."""
+    at, last, orientation = trackers.position[n], work.last[n], trackers.orientation[n]
+    ahead = rotate(orientation, work.half_length, 0.0, 0.0)
+    left = rotate(orientation, 0.0, work.half_width, 0.0)
+    up = rotate(orientation, 0.0, 0.0, work.half_height)
+    level = math.sqrt(ahead[0] * ahead[0] + ahead[1] * ahead[1])
+    cosine, sine = (ahead[0] / level, ahead[1] / level) if level > 0.0 else (1.0, 0.0)
+    length = abs(cosine * ahead[0] + sine * ahead[1]) + abs(cosine * left[0] + sine * left[1])
+    width = abs(cosine * ahead[1] - sine * ahead[0]) + abs(cosine * left[1] - sine * left[0])
+    return Sweep(
+        last[0],
+        last[1],
+        last[2],
+        at[0] - last[0],
+        at[1] - last[1],
+        at[2] - last[2],
+        cosine,
+        sine,
+        length + abs(cosine * up[0] + sine * up[1]),
+        width + abs(cosine * up[1] - sine * up[0]),
+        abs(ahead[2]) + abs(left[2]) + abs(up[2]),
+    )

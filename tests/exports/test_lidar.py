@@ -1,0 +1,30 @@
+import dataclasses
+
+import numpy as np
+import pytest
+
+from eyas.core.errors import ConfigError
+from eyas.exports.lidar import LidarWriter
+from eyas.exports.summary import Summary
+from eyas.sensors.config import LidarConfig
+
+
+def test_distances_are_read_back_from_the_table(run, episode, frame):
+    config = run.config.model_copy(update={"lidar": LidarConfig(enabled=True)})
+    writer = LidarWriter(dataclasses.replace(run, config=config))
+    part = writer.begin(episode)
+    ranges = np.array([[0.25, np.inf, 12.0], [np.inf, 3.14, 1.5]])
+    for number in range(2):
+        part.add(frame(number, lidar=ranges[number]))
+    part.finish()
+    assert writer.read(episode.folder) == Summary(2)
+    lines = (episode.folder / "lidar.csv").read_text().splitlines()
+    assert lines[0] == "frame,step,point_0,point_1,point_2"
+    rows = [[float(word or "inf") for word in line.split(",")] for line in lines[1:]]
+    assert [row[:2] for row in rows] == [[0, 31], [1, 51]]
+    assert np.array_equal([row[2:] for row in rows], ranges)
+
+
+def test_a_table_without_a_lidar_is_refused_in_one_line(run):
+    with pytest.raises(ConfigError, match=r"^video\.writers: 'lidar' needs lidar\.enabled"):
+        LidarWriter(run)

@@ -1,0 +1,67 @@
+"""Small worlds of a few solids, a terrain and vehicles, around trackers at known poses."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from eyas.sensors.obstacles import obstacles_of
+from eyas.state.motion import SAMPLE, Motion
+from eyas.state.scene import Colliders, ObjectClass, Scene
+from eyas.state.snapshot import Snapshot
+from eyas.state.terrain import Terrain
+from eyas.targets.catalogue import model_index
+
+GROUND, WALL, POLE = 0, 1, 2
+
+
+def scene_of(prisms=(), cylinders=(), relief=None):
+    """A scene of prisms (outline, bottom, top) and cylinders (x, y, radius, bottom, top)."""
+    outlines = [np.array(outline, np.float64).reshape(-1, 2) for outline, _, _ in prisms]
+    rounds = np.array(cylinders, np.float64).reshape(-1, 5)
+    colliders = Colliders(
+        prism_points=np.concatenate([np.zeros((0, 2)), *outlines]),
+        prism_first=np.cumsum([0, *map(len, outlines)]).astype(np.int32),
+        prism_bottom=np.array([low for _, low, _ in prisms], np.float64),
+        prism_top=np.array([high for _, _, high in prisms], np.float64),
+        prism_object=np.full(len(prisms), WALL, np.int32),
+        cylinder_centre=rounds[:, :2],
+        cylinder_radius=rounds[:, 2],
+        cylinder_bottom=rounds[:, 3],
+        cylinder_top=rounds[:, 4],
+        cylinder_object=np.full(len(rounds), POLE, np.int32),
+    )
+    terrain = Terrain.flat(-0.1) if relief is None else relief
+    classes = [ObjectClass.GROUND, ObjectClass.BUILDING, ObjectClass.POLE]
+    return replace(
+        Scene.empty(),
+        colliders=colliders,
+        terrain=terrain,
+        object_class=np.array(classes, np.int32),
+    )
+
+
+def motion_of(*cars):
+    """Motion of cars that drive straight ahead for a second: (x, y, yaw, speed) at time 0."""
+    table = np.zeros((11, max(len(cars), 1)), SAMPLE)
+    for actor, (x, y, yaw, speed) in enumerate(cars):
+        times = np.linspace(0.0, 1.0, 11)
+        table["x"][:, actor] = x + speed * np.cos(yaw) * times
+        table["y"][:, actor] = y + speed * np.sin(yaw) * times
+        table["velocity_x"][:, actor] = speed * np.cos(yaw)
+        table["velocity_y"][:, actor] = speed * np.sin(yaw)
+        table["yaw"][:, actor], table["present"][:, actor] = yaw, 1.0
+    return Motion(table, np.zeros(table.shape[1], np.int32), 10.0, 0.0)
+
+
+def build(*poses, prisms=(), cylinders=(), relief=None, cars=(), model="BmwX5Simple"):
+    """Return a snapshot of trackers at poses (x, y, z, yaw) in one world, and their obstacles."""
+    snapshot = Snapshot.create(len(poses))
+    for n, (x, y, z, yaw) in enumerate(poses):
+        snapshot.trackers.position[n] = x, y, z
+        snapshot.trackers.euler[n, 2] = yaw
+        snapshot.trackers.orientation[n] = np.cos(yaw / 2), 0.0, 0.0, np.sin(yaw / 2)
+    motion = motion_of(*cars)
+    scene = scene_of(prisms, cylinders, relief)
+    models = np.full((1, motion.table.shape[1]), model_index(model), np.int32)
+    world = np.zeros(len(poses), np.int32)
+    return snapshot, obstacles_of(scene, motion, world, models)
