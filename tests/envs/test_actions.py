@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from eyas.core.errors import ActionError, NotInThisVersionError
+from eyas.core.errors import ActionError
 from eyas.envs.actions import Discrete, Shares, Velocity, action_table
 from eyas.envs.config import EnvSpeeds
 from eyas.envs.tracking_env import TrackingEnv
@@ -114,8 +114,3 @@ def test_an_environment_takes_its_speeds_from_the_settings_or_the_call():
     assert np.array_equal(places[0], places[1])
     assert not np.array_equal(places[0], places[2])
     assert called.config.env.speeds == EnvSpeeds(backward_speed=0.0)
-
-
-def test_an_environment_names_what_is_not_in_this_version_in_both_notations():
-    with pytest.raises(NotInThisVersionError, match=r"target \(Tracking_Object\): 'Mantis'"):
-        TrackingEnv({"target": "Mantis"})

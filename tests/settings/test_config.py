@@ -9,7 +9,7 @@ from eyas.sim.config import SimConfig
 
 LOADED = """
 import sys
-import eyas.settings.file, eyas.settings.version_check
+import eyas.settings.file
 heavy = {"numba", "av", "PIL", "shapely", "scipy", "rich"} & sys.modules.keys()
 upper = {name for name in sys.modules if name.startswith(("eyas.modes.", "eyas.exports."))}
 print(sorted(heavy | upper))

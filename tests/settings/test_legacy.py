@@ -20,7 +20,6 @@ from eyas.settings.legacy.adapter import (
 )
 from eyas.settings.legacy.keys import ENTRIES
 from eyas.settings.legacy.layout import legacy_defaults, nested
-from eyas.settings.version_check import require_supported
 
 DATA = Path(__file__).parent / "data"
 FILES = ("manual_example", "recommended", "shipped")
@@ -39,9 +38,8 @@ def flat(values):
 
 
 @pytest.mark.parametrize("name", FILES)
-def test_the_originals_files_load_and_are_supported(name):
+def test_the_originals_files_load(name):
     config = from_legacy(read(name))
-    require_supported(config)
     assert from_legacy(to_legacy(config)) == config
 
 

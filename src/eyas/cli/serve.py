@@ -38,14 +38,12 @@ def command(  # noqa: PLR0913  # one parameter for each option
     """Serve algorithm code of the DAT benchmark in the place of its simulator, until Ctrl-C."""
     from eyas.settings.config import Mode
     from eyas.settings.file import load_settings
-    from eyas.settings.version_check import require_supported
     from eyas.wire.exchange import SETTINGS_FILE
 
     file = chosen_file(config, preset)
     if file is None and (root / SETTINGS_FILE).exists():
         file = root / SETTINGS_FILE
     settings = load_settings(file, gathered(set_, map_name, weather, seed))
-    require_supported(settings)
     if settings.original is not None and settings.mode is not Mode.TRAIN:
         said = f"mode (Simulation_Mode) is '{settings.mode}'; 'eyas serve' trains anyway"
         typer.echo(f"eyas: note: {said}", err=True)

@@ -36,11 +36,9 @@ def command(  # noqa: PLR0913  # one parameter for each option
 ) -> None:
     """Teach a network to track, and write it as an ONNX file."""
     from eyas.settings.file import load_settings
-    from eyas.settings.version_check import require_supported
 
     preset = preset or (None if config else "fast")
     settings = load_settings(chosen_file(config, preset), gathered(set_, map_name, weather, seed))
-    require_supported(settings)
     from eyas.modes.train import run
 
     policy = run(settings, out, resume=resume, quiet=quiet, ray=ray)

@@ -39,12 +39,10 @@ def command(  # noqa: PLR0913  # one parameter for each option
     """Record labelled pictures and videos of trackers that follow their targets."""
     from eyas.settings.config import Mode
     from eyas.settings.file import load_settings
-    from eyas.settings.version_check import require_supported
 
     if quiet:
         logging.getLogger("eyas").setLevel(logging.ERROR)
     settings = load_settings(chosen_file(config, preset), gathered(set_, map_name, weather, seed))
-    require_supported(settings)
     if settings.mode is not Mode.VIDEO and not quiet:
         said = f"mode (Simulation_Mode) is '{settings.mode}'; 'eyas video' records anyway"
         typer.echo(f"eyas: note: {said}", err=True)

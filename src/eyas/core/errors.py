@@ -9,7 +9,6 @@ __all__ = [
     "DataFileError",
     "EyasError",
     "MissingExtraError",
-    "NotInThisVersionError",
     "OutputError",
     "SpawnError",
     "UnknownNameError",
@@ -41,10 +40,6 @@ class ConfigError(EyasError):
 
 class ActionError(EyasError, ValueError):
     """An agent's action is not in the space of actions."""
-
-
-class NotInThisVersionError(ConfigError):
-    """A valid setting asks for a part that this version does not have yet."""
 
 
 class DataFileError(EyasError):

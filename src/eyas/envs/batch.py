@@ -17,7 +17,6 @@ from eyas.envs.observation import Observer
 from eyas.envs.words import target_in_words
 from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.messages import originals_named
-from eyas.settings.version_check import require_supported
 from eyas.sim.build import build_simulation
 from eyas.sim.worlds import each_alone, together
 from eyas.state.draw import Picture
@@ -79,7 +78,6 @@ class Batch:
         self.config = config
         self._shared, self._seed = shared, config.seed
         with originals_named(config):
-            require_supported(config)
             self._simulation = build_simulation(config, (together if shared else each_alone)(count))
         self.actions = make_actions(config.env.actions, config.env.speeds)
         self.observer = Observer(config.env.observation, self._simulation)
@@ -93,8 +91,9 @@ class Batch:
         )
 
     def close(self) -> None:
-        """Close the logs; may be called again."""
+        """Close the logs and end live traffic; may be called again."""
         self._journal.close()
+        self._simulation.close()
 
     def begin(self, chosen: Mask, seeds: Seeds = None) -> None:
         """Begin new episodes of trackers with worlds of their own; `look` comes next.
@@ -165,10 +164,6 @@ class Batch:
     def look(self, chosen: Mask, begun: Mask) -> None:
         """Observe some trackers; `begun` tells whose episode has just begun; shapes (N,)."""
         self.observer.look(self._all[chosen], begun[chosen])
-
-    def close(self) -> None:
-        """End live traffic, if there is any; may be called twice."""
-        self._simulation.close()
 
     def info(self) -> Info:
         """Return the state of the trackers by name, see `eyas.envs.information`."""

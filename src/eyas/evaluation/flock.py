@@ -14,7 +14,6 @@ from eyas.envs.observation import Observation, Observer
 from eyas.evaluation.episode import Episode
 from eyas.evaluation.protocol import Protocol
 from eyas.settings.config import EyasConfig
-from eyas.settings.version_check import require_supported
 from eyas.sim.build import build_simulation
 from eyas.sim.simulation import Simulation
 from eyas.sim.worlds import each_alone
@@ -66,7 +65,6 @@ def squads_of(episodes: list[Episode], protocol: Protocol, env: EnvConfig) -> li
     for _, group in groupby(sorted(range(len(episodes)), key=kind), key=kind):
         rows = np.array(list(group))
         config = protocol.settings_of(episodes[rows[0]], env)
-        require_supported(config)
         simulation = build_simulation(config, each_alone(len(rows)))
         seeds = np.array([episodes[row].seed for row in rows.tolist()])
         simulation.reseed_alone(np.arange(len(rows)), seeds)

@@ -9,7 +9,6 @@ from eyas.sim.assets import load_assets
 from eyas.sim.config import SimConfig
 from eyas.sim.crowd import crowd_of
 from eyas.sim.simulation import Simulation
-from eyas.sim.supported import require_parts
 from eyas.sim.worlds import largest_world
 from eyas.trackers.kinds import tracker_of
 from eyas.trackers.tracker import Tracker
@@ -33,7 +32,6 @@ def build_simulation(
     Raises:
         EyasError: A setting is not supported, or no traffic matches the settings.
     """
-    require_parts(config)
     crowd = crowd_of(config)
     assets = load_assets(config.world, config.traffic, largest_world(world_of), crowd)
     if config.light.visibility is not None and not assets.lighting.foggy:

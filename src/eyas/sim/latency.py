@@ -122,9 +122,7 @@ class LateSight:
         self._clock = now.episodes.step_count
 
     @classmethod
-    def of(
-        cls, latency: Variation, now: Snapshot, told: Floats | None
-    ) -> "LateSight | None":
+    def of(cls, latency: Variation, now: Snapshot, told: Floats | None) -> "LateSight | None":
         """Return a late sight; None if it is always in time."""
         return None if _is_off(latency) else cls(latency, now, told)
 

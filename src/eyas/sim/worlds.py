@@ -120,6 +120,7 @@ class Worlds:
         """Return the looks of all actors around a tracker, one world; they may change."""
         world = self.of[tracker]
         return Looks(self._looks.model[world : world + 1], self._looks.colour[world : world + 1])
+
     def classes_of(self, objects: NDArray[np.integer]) -> Integers:
         """Return the `ObjectClass` of objects and actors, -1 for the id -1, shape (K,)."""
         static, kinds = self._assets.scene.object_class, self._assets.traffic.motion.kind
