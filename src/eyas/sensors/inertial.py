@@ -1,9 +1,10 @@
 """The inertial sensors: an accelerometer and a gyroscope.
 
-Drones follow their commands at once, by jumps of velocity that no body could make: the differences
-of two steps reach thousands of m/s^2. So these sensors read a smoothed motion, which follows the
-true one through two equal low-passes. Both belong to the same smoothed body, so that integrating
-them gives its motion. A time constant of 0 gives the differences themselves.
+Supervised drones follow their commands at once, by jumps of velocity that no body could make: the
+differences of two steps reach thousands of m/s^2. So these sensors read a smoothed motion, which
+follows the true one through two equal low-passes. Both belong to the same smoothed body, so that
+integrating them gives its motion. A time constant of 0 gives the differences themselves; so the
+sensors of a flown drone, which cannot jump, read its own motion.
 """
 
 import math

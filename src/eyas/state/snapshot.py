@@ -28,7 +28,8 @@ class TrackerState(NamedTuple):
     position: Floats
     """Centre of the body [m], shape (N, 3)."""
     velocity: Floats
-    """Difference of the last two positions over 2 ms [m/s], shape (N, 3)."""
+    """Of the body; of one that follows commands exactly, the difference of its last two positions
+    over 2 ms [m/s], shape (N, 3)."""
     acceleration: Floats
     """Difference of the last two velocities over 2 ms [m/s^2], shape (N, 3)."""
     orientation: Floats

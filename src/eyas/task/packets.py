@@ -118,7 +118,7 @@ class BasicPacket:
     """World frame [m/s], 3 numbers; the original's `linear`."""
     felt_acceleration: Numbers
     """Accelerometer, body frame [m/s^2], 3 numbers, +9.81 up at rest; the original's `acc`. Of a
-    smoothed motion, see `tracker.inertial_time_constant`."""
+    smoothed motion unless the drone is flown, see `tracker.inertial_time_constant`."""
     angular_velocity: Numbers
     """Gyroscope, body frame [rad/s], 3 numbers; the original's `angular`. Of the same smoothed
     motion."""

@@ -1,5 +1,6 @@
 """The kinds of trackers: the built-in ones by name, and a user's own by path."""
 
+import inspect
 from collections.abc import Callable
 from typing import Any
 
@@ -41,10 +42,19 @@ def tracker_of(config: TrackerConfig) -> Tracker:
     Raises:
         ConfigError: There is no such tracker, or what the path names does not make one.
     """
-    made = TRACKERS.get(config.kind)(config)
+    make = TRACKERS.get(config.kind)
+    try:
+        inspect.signature(make).bind(config)
+    except (TypeError, ValueError) as error:
+        raise _refused(config, f"cannot be called with it ({error})") from error
+    made = make(config)
     if not isinstance(made, Tracker):
-        raise ConfigError(
-            f"tracker.kind: {config.kind!r} gave a {type(made).__name__}; allowed: a class or "
-            "function that takes a TrackerConfig and gives an eyas.trackers.tracker.Tracker"
-        )
+        raise _refused(config, f"gave a {type(made).__name__}")
     return made
+
+
+def _refused(config: TrackerConfig, why: str) -> ConfigError:
+    return ConfigError(
+        f"tracker.kind: {config.kind!r} {why}; allowed: a class or function that takes a "
+        "TrackerConfig and gives an eyas.trackers.tracker.Tracker"
+    )
