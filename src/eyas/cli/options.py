@@ -29,7 +29,7 @@ Preset = Annotated[
     str | None,
     typer.Option(
         "--preset",
-        help="Settings that come with Eyas: dat-eval, dat-train, easy, fast, paper or robust.",
+        help="Settings of Eyas: dat-eval, dat-train, easy, fast, noisy, paper or robust.",
     ),
 ]
 Overrides = Annotated[
