@@ -151,12 +151,14 @@ class Simulation:
         assert commands.shape == (self.count, 4), f"commands: shape {commands.shape}, not (N, 4)"
         self._orders.commands[:] = commands
         self._orders.active[:] = True if active is None else active
+        self._senses.renew()
         self._take(self._step.fly, physics_steps)
         return self._result()
 
     def carry(self, physics_steps: int = 1) -> StepResult:
         """Move all trackers with their targets, at their start offsets."""
         self._orders.active[:] = True
+        self._senses.renew()
         self._take(self._step.carry, physics_steps)
         return self._result()
 
@@ -167,7 +169,6 @@ class Simulation:
             step()
             return
         self._orders.steps[0] = 1
-        self._senses.renew()
         for _ in range(physics_steps):
             step()
             self._senses.advance()
