@@ -7,6 +7,7 @@ import pytest
 from eyas.core.pinhole import intrinsics
 from eyas.exports.frame import Action, Body, CameraPose, Frame, Movement, Subject
 from eyas.exports.writer import Episode, Run
+from eyas.sensors.config import LidarConfig
 from eyas.sim.config import SimConfig
 from eyas.state.scene import ObjectClass
 from eyas.task.direction import TargetDirection
@@ -52,6 +53,7 @@ def made(number: int, **changes: object) -> Frame:
         "depth": None,
         "object_id": None,
         "class_id": None,
+        "lidar": np.array([0.5, np.inf]),
     }
     return Frame(**{**values, **changes})  # type: ignore[arg-type]
 
@@ -70,5 +72,6 @@ def episode(tmp_path: Path) -> Episode:
 
 @pytest.fixture
 def run(tmp_path: Path) -> Run:
-    """A recording of two trackers in an empty folder."""
-    return Run(tmp_path, ("DRONE0", "DRONE1"), SimConfig(), target_direction=False)
+    """A recording of two trackers with a lidar, in an empty folder."""
+    config = SimConfig(lidar=LidarConfig(enabled=True))
+    return Run(tmp_path, ("DRONE0", "DRONE1"), config, target_direction=False)

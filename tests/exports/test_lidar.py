@@ -6,12 +6,11 @@ import pytest
 from eyas.core.errors import ConfigError
 from eyas.exports.lidar import LidarWriter
 from eyas.exports.summary import Summary
-from eyas.sensors.config import LidarConfig
+from eyas.sim.config import SimConfig
 
 
 def test_distances_are_read_back_from_the_table(run, episode, frame):
-    config = run.config.model_copy(update={"lidar": LidarConfig(enabled=True)})
-    writer = LidarWriter(dataclasses.replace(run, config=config))
+    writer = LidarWriter(run)
     part = writer.begin(episode)
     ranges = np.array([[0.25, np.inf, 12.0], [np.inf, 3.14, 1.5]])
     for number in range(2):
@@ -26,5 +25,6 @@ def test_distances_are_read_back_from_the_table(run, episode, frame):
 
 
 def test_a_table_without_a_lidar_is_refused_in_one_line(run):
+    run = dataclasses.replace(run, config=SimConfig())
     with pytest.raises(ConfigError, match=r"^video\.writers: 'lidar' needs lidar\.enabled"):
         LidarWriter(run)

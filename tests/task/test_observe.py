@@ -30,11 +30,11 @@ def see(snapshot, rules_with, look):
     trackers, cameras, targets, episodes, _ = snapshot
     clear_episode(episodes, N)
 
-    def observed(target, target_yaw=0.0, position=(0.0, 0.0, 20.0), yaw=0.0):
+    def observed(target, target_yaw=0.0, position=(0.0, 0.0, 20.0), yaw=0.0, pitch=1.0):
         trackers.position[N] = position
         trackers.orientation[N] = math.cos(yaw / 2), 0.0, 0.0, math.sin(yaw / 2)
         cameras.position[N] = trackers.position[N] + (0.0, 0.0, 1.0)
-        cameras.rotation[N] = look(yaw, 1.0)
+        cameras.rotation[N] = look(yaw, pitch)
         targets.position[N] = targets.centre[N] = target
         targets.yaw[N] = target_yaw
         targets.slowest[N] = 0.5
@@ -91,3 +91,16 @@ def test_direction_is_known_from_the_second_sample(see):
     assert see((5.04, 0.0, 0.0), 3.001).direction == TargetDirection.LEFT
     assert see((5.06, 0.0, 0.0), 3.0).direction == TargetDirection.RIGHT
     assert see((5.06, 0.0, 0.0), 3.0).direction == TargetDirection.STOP
+
+
+def test_the_reward_falls_steadily_as_the_view_rises_above_the_horizon(see):
+    below = 21.1 / math.tan(1.0)
+    rewards = [see((below, 0.0, 0.3), pitch=pitch).reward for pitch in np.linspace(1.0, -0.5, 100)]
+    assert rewards[0] == pytest.approx(math.tanh(4.0))
+    assert (np.diff(rewards) <= 0.0).all()
+    assert rewards[-1] == 0.0
+    # A target far ahead loses its reward before the horizon is in the middle, and for good.
+    far = [see((2000.0, 0.0, 0.3), pitch=pitch).reward for pitch in np.linspace(0.01, -0.5, 60)]
+    assert far[0] > 0.9
+    assert (np.diff(far) <= 0.0).all()
+    assert far[-1] == 0.0

@@ -47,10 +47,11 @@ def grid_of(bounds: NDArray[np.float64], top: NDArray[np.float64]) -> Grid:
         for row in range(low, high + 1):
             for column in range(left, right + 1):
                 cells[row * columns + column].append(item)
+    heights = top.tolist()
     return Grid(
         first=np.cumsum([0, *map(len, cells)]).astype(np.int32),
         item=np.array([item for cell in cells for item in cell], np.int32),
-        top=np.array([max((top[item] for item in cell), default=-math.inf) for cell in cells]),
+        top=np.array([max((heights[item] for item in cell), default=-math.inf) for cell in cells]),
         columns=columns,
         rows=rows,
         west=float(corner[0]),

@@ -98,8 +98,8 @@ class InputPacket:
     @classmethod
     def from_row(cls, row: NDArray[np.float64]) -> "InputPacket":
         """Return the packet of a row, shape (5,)."""
-        forward, left, up, turn, reset = row.tolist()
-        return cls(forward, left, up, turn, bool(reset))
+        forward, left, up, turn_rate, reset = row.tolist()
+        return cls(forward, left, up, turn_rate, reset=bool(reset))
 
     def to_row(self) -> NDArray[np.float64]:
         """Return the numbers, shape (5,)."""
