@@ -11,7 +11,7 @@ from eyas.state.roads import RoadNetwork
 from eyas.state.scene import ObjectClass, Scene
 from eyas.state.terrain import Terrain
 from eyas.world.build.heights import FLOOR_HEIGHT
-from eyas.world.build.materials import TEXTURES, material
+from eyas.world.build.materials import TEXTURES
 from eyas.world.build.scene_builder import SceneBuilder
 from eyas.world.land import ground
 from eyas.world.land.plain import blob, far_plain, plain, rectangle
