@@ -14,7 +14,13 @@ from eyas.core.errors import OutputError, UnknownNameError
 from eyas.modes.gallery import run as gallery
 from eyas.modes.gallery.page import Shown, page
 from eyas.modes.gallery.still import StillScene
-from eyas.modes.gallery.views import _all_cars, _stop, choose_viewpoints
+from eyas.modes.gallery.views import (
+    _all_cars,
+    _on_crossings,
+    _on_open_roads,
+    _stop,
+    choose_viewpoints,
+)
 from eyas.sim.assets import load_assets
 from eyas.traffic.config import TrafficConfig
 from eyas.world.config import WorldConfig
@@ -130,6 +136,13 @@ def test_cars_that_a_drone_in_a_tree_would_look_at_are_passed_over(still):
     apart = np.linalg.norm((cars.position - back)[:, None] - crowns[None], axis=2).min(axis=1)
     assert (apart < 6.0).sum() > 3
     assert not list(_stop(still, cars, "trees", "in a tree", (apart < 6.0).astype(float)))
+
+
+def test_an_open_road_is_far_from_junctions(still):
+    cars = _all_cars(still)
+    far, crossing = _on_open_roads(still.scene, cars), _on_crossings(still.scene, cars)
+    assert 0.0 == far.min() < 50.0 < far.max() <= 100.0
+    assert (far[crossing > 0] == 0.0).all()
 
 
 def test_all_streets_are_in_the_horizon_view(still, views):

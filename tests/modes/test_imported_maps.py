@@ -1,7 +1,7 @@
 """A small town that does not exist, imported, flown over, described and exported."""
 
 import gzip
-import importlib.util
+import importlib
 import json
 import re
 import struct
@@ -33,12 +33,17 @@ NOTICE = "© OpenStreetMap contributors"
 
 
 @pytest.fixture(scope="module")
-def source(tmp_path_factory):
+def tool():
+    """The module that writes files of towns."""
+    folder = Path(__file__).parents[2] / "tools"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.syspath_prepend(folder)
+        yield importlib.import_module("synthetic_osm")
+
+
+@pytest.fixture(scope="module")
+def source(tool, tmp_path_factory):
     """The file of a town of three by two blocks."""
-    path = Path(__file__).parents[2] / "tools" / "synthetic_osm.py"
-    spec = importlib.util.spec_from_file_location("synthetic_osm", path)
-    tool = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(tool)
     made = tmp_path_factory.mktemp("osm") / "town.osm"
     made.write_text(tool.Town(3, 2, 2).build(), encoding="utf-8")
     return made
@@ -260,3 +265,21 @@ def test_what_is_no_map_is_one_line_and_leaves_no_folder(content, reason, town, 
     with pytest.raises((DataFileError, ConfigError), match=reason):
         importing.run(path, None, out=tmp_path / "made", record=False)
     assert not (tmp_path / "made").exists()
+
+
+def test_a_city_as_found_is_imported_and_its_defects_are_counted(tool, town, tmp_path, monkeypatch):
+    monkeypatch.setattr(tool, "_SHOPS", 60)
+    file = tmp_path / "city.osm"
+    text = tool.Town(4, 3, 1, found=True).build()
+    assert "東京ラーメン" in text
+    assert 'user="Ольга"' in text
+    file.write_text(text, encoding="utf-8")
+    report = importing.run(file, "as-found", record=False)
+    said = "\n".join(report.lines())
+    for defect in ("open outline", "crosses itself", "missing ways", "without a closed outline"):
+        assert defect in said
+    for tag in ("height", "building:levels", "lanes", "roof:shape"):
+        assert re.search(rf"odd tags: .*\d {tag}\b", said)
+    scene = load_scene("as-found", 0)
+    assert info.figures_of(scene).buildings > 20
+    load_scene.cache_clear()
