@@ -10,7 +10,19 @@ import typer
 import typer.core
 
 from eyas import __version__
-from eyas.cli import bench, cache, config, evaluate, maps, policies, serve, traffic, train, video
+from eyas.cli import (
+    bench,
+    cache,
+    config,
+    demo,
+    evaluate,
+    maps,
+    policies,
+    serve,
+    traffic,
+    train,
+    video,
+)
 from eyas.cli.said import say
 from eyas.core.errors import EyasError
 
@@ -43,6 +55,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
+app.command("demo")(demo.command)
 app.command("video")(video.command)
 app.command("train")(train.command)
 app.command("serve")(serve.command)
