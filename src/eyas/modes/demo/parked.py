@@ -21,9 +21,9 @@ MODEL = "BmwX5Simple"
 COLOUR = (0.62, 0.05, 0.06)
 
 WANTED = (30.0, 30.0)
-"""Where the car stands in most worlds of the original [m]."""
-REACH, CELL = 100.0, 0.5
-"""How far from there a place is looked for, and how finely [m]."""
+"""Where the car stands in most worlds of the original [m]; here, by the road nearest to that."""
+REACH, CELL = 80.0, 0.5
+"""How far from that road a place is looked for, and how finely [m]."""
 EYE = 400.0
 """Height of the camera that looks for it [m]."""
 FREE_SIDE, ROAD_SIDE = 6.5, 16.0
@@ -58,7 +58,9 @@ def parked_car(assets: Assets, samples: int, rate: float) -> Motion | None:
 def _free_place(assets: Assets) -> tuple[float, float, float] | None:
     """Return the nearest place to the wanted one where level ground is free [m]."""
     size = int(2.0 * REACH / CELL)
-    classes, depth = _from_above(assets, size)
+    lanes = assets.scene.network.lane_points
+    middle = lanes[int(np.hypot(*(lanes - WANTED).T).argmin())]
+    classes, depth = _from_above(assets, middle, size)
     good = _around(np.isin(classes, FREE), FREE_SIDE, least=1.0)
     good &= _around(classes == ObjectClass.ROAD, ROAD_SIDE, least=0.1)
     good &= _spread(depth, FREE_SIDE) < LEVEL
@@ -68,7 +70,7 @@ def _free_place(assets: Assets) -> tuple[float, float, float] | None:
     east, north = (column + 0.5 - 0.5 * size) * CELL, (0.5 * size - row - 0.5) * CELL
     best = int(np.argmin(east**2 + north**2))
     height = EYE - float(depth[row[best], column[best]])
-    return WANTED[0] + float(east[best]), WANTED[1] + float(north[best]), height
+    return float(middle[0] + east[best]), float(middle[1] + north[best]), height
 
 
 def _windows(array: NDArray[Any], side: float) -> NDArray[Any]:
@@ -104,12 +106,14 @@ def _heading(assets: Assets, x: float, y: float) -> float:
     return math.atan2(along[1], along[0])
 
 
-def _from_above(assets: Assets, size: int) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
-    """Return classes and depths [m] around the wanted place, north on top, shape (size, size)."""
+def _from_above(
+    assets: Assets, middle: NDArray[np.float64], size: int
+) -> tuple[NDArray[np.uint8], NDArray[np.float32]]:
+    """Return classes and depths [m] around a place, north on top, shape (size, size)."""
     # Forward is down, left is west, up is north.
     rotation = np.array([[0.0, -1.0, 0.0], [0.0, 0.0, 1.0], [-1.0, 0.0, 0.0]])
     views = Views(
-        position=np.array([[*WANTED, EYE]]),
+        position=np.array([[*middle, EYE]]),
         rotation=rotation[None],
         world=np.zeros(1, np.int32),
         subject=np.full(1, -1, np.int32),

@@ -78,9 +78,8 @@ class Screen:
         ahead = np.array([math.cos(yaw), math.sin(yaw), 0.0])
         if self.view == "top":
             forward, up = np.array([0.0, 0.0, -1.0]), np.array([0.0, 1.0, 0.0])
-            return place + np.array([0.0, 0.0, ABOVE]), np.column_stack(
-                [forward, np.cross(up, forward), up]
-            )
+            axes = np.column_stack([forward, np.cross(up, forward), up])
+            return place + np.array([0.0, 0.0, ABOVE]), axes
         eye = place - CHASE[0] * ahead + np.array([0.0, 0.0, CHASE[1]])
         forward = place + 6.0 * ahead - np.array([0.0, 0.0, 5.0]) - eye
         forward /= np.linalg.norm(forward)
