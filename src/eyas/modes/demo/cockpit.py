@@ -129,6 +129,7 @@ class Cockpit:
             "flies": self.pilot_name,
             "recorded": None if self.recording is None else self.recording.frames,
             "duel": None if self.duel is None else self.duel.told(now),
+            "body": self.screen.body(width, height),
             "marks": self.screen.marks(width, height) if self.overlay else None,
         }
         if self._frames % TRAFFIC == 1:

@@ -8,10 +8,8 @@ from numpy.typing import NDArray
 
 from eyas.core.pinhole import field_along, project
 from eyas.modes.demo.flight import Flight
-from eyas.overlay.items import Overlay
 from eyas.overlay.marks import Marks
-from eyas.overlay.paint import paint_overlays
-from eyas.state.draw import Picture, Views
+from eyas.state.draw import Picture
 from eyas.state.scene import ACTOR_OBJECT
 from eyas.state.snapshot import CameraState
 
@@ -27,6 +25,23 @@ NEAR = 0.2
 """What is nearer to the camera is cut off marks [m]."""
 CLOSE = 0.03
 """How far from a click an actor may be, as a share of the picture's width."""
+
+
+ROUND = np.linspace(0.0, 2.0 * math.pi, 12, endpoint=False)
+
+
+def _disc(x: float, y: float, radius: tuple[float, float], z: float) -> NDArray[np.float64]:
+    """Return the rim of a flat disc in the body's frame [m], shape (K, 3)."""
+    east, north = x + radius[0] * np.cos(ROUND), y + radius[1] * np.sin(ROUND)
+    return np.column_stack([east, north, np.full(len(ROUND), z)])
+
+
+_BODY = (
+    _disc(0.0, 0.0, (0.22, 0.13), 0.0),
+    _disc(0.17, 0.0, (0.06, 0.06), 0.0),
+    *(_disc(x, y, (0.2, 0.2), 0.06) for x in (-0.3, 0.3) for y in (-0.3, 0.3)),
+)
+"""Outlines of the drone [m], a little larger than it is, to be visible from far."""
 
 
 class Screen:
@@ -48,15 +63,11 @@ class Screen:
 
     def draw(self, width: int, height: int) -> NDArray[np.uint8]:
         """Return the picture, shape (height, width, 3); the next call overwrites it."""
-        outside = self.view != "drone"
         if self._picture.rgb is None or self._picture.rgb.shape[1:3] != (height, width):
-            self._picture = Picture.create(1, height, width, depth=True)
+            self._picture = Picture.create(1, height, width)
         picture, chosen = self._picture, np.zeros(1, np.int32)
         cameras = self.cameras(width, height)
         self._flight.simulation.draw_from(chosen, cameras, picture, overlay=False)
-        if outside:
-            solids = self._marks.of(0, self._flight.simulation.rules, [0]).solids[-1:]
-            paint_overlays(_views(cameras), [Overlay(solids=solids)], picture)
         assert picture.rgb is not None
         rgb: NDArray[np.uint8] = picture.rgb[0]
         return rgb
@@ -90,15 +101,16 @@ class Screen:
         """Return the overlay as lines in shares of the picture's sides, for the page to draw."""
         cameras = self.cameras(width, height)
         snapshot, rules = self._flight.simulation.snapshot, self._flight.simulation.rules
-        overlay = self._marks.of(0, rules, None if self.view == "drone" else [0])
+        overlay = self._marks.of(0, rules)
         target = snapshot.targets.centre[0]
         top = target + np.array([0.0, 0.0, snapshot.targets.size[0, 2] - snapshot.targets.rise[0]])
         reward, seen = (_outline(area.corners, cameras, width, height) for area in overlay.areas)
         points = np.stack([snapshot.episodes.view_centre[0], target, top])
         centre, middle, tip = _points(points, cameras, width, height)
+        eye = snapshot.cameras.position[0]
+        edges = overlay.areas[1].corners if self.view != "drone" else ()
         lines = [
-            _outline(np.stack([line.start, line.end]), cameras, width, height, closed=False)
-            for line in overlay.lines
+            _outline(np.stack([eye, end]), cameras, width, height, closed=False) for end in edges
         ]
         return {
             "reward": reward,
@@ -108,6 +120,24 @@ class Screen:
             "tip": tip,
             "lines": lines,
         }
+
+    def body(self, width: int, height: int) -> list[list[list[float]]] | None:
+        """Return outlines of the drone in shares of the picture's sides: body, nose, rotors.
+
+        None from its own camera. The page draws them: painting its faces takes five times as long
+        as the whole picture.
+        """
+        if self.view == "drone":
+            return None
+        trackers = self._flight.simulation.snapshot.trackers
+        yaw = float(trackers.euler[0, 2])
+        turn = np.array(
+            [[math.cos(yaw), math.sin(yaw), 0], [-math.sin(yaw), math.cos(yaw), 0], [0, 0, 1]]
+        )
+        cameras = self.cameras(width, height)
+        return [
+            _outline(trackers.position[0] + part @ turn, cameras, width, height) for part in _BODY
+        ]
 
     def actor_at(self, x: float, y: float, width: int, height: int) -> int | None:
         """Return the actor nearest to a place in the picture, if one is close.
@@ -131,16 +161,6 @@ class Screen:
             return None
         actor = int(picture.object_id[0][rows[nearest], columns[nearest]]) - ACTOR_OBJECT
         return actor if actor < self._flight.simulation.actors else None
-
-
-def _views(cameras: CameraState) -> Views:
-    return Views(
-        position=cameras.position,
-        rotation=cameras.rotation,
-        world=np.zeros(1, np.int32),
-        subject=np.full(1, -1, np.int32),
-        field_of_view=cameras.field_of_view,
-    )
 
 
 def _outline(

@@ -130,6 +130,10 @@ class _DemoWindow:
         drawing = ImageDraw.Draw(picture)
         if cockpit.overlay:
             _draw_marks(drawing, cockpit.screen.marks(*size), wide)
+        for part in cockpit.screen.body(*size) or ():
+            outline = [(x * wide[0], y * wide[1]) for x, y in part]
+            if len(outline) > 2:
+                drawing.polygon(outline, fill=(238, 241, 245), outline=(61, 68, 77))
         _draw_line(drawing, _line(cockpit), wide)
         surface = self._pygame.image.frombytes(picture.tobytes(), wide, "RGB")
         self._screen.blit(surface, (0, 0))

@@ -3,8 +3,8 @@
 export const KINDS = {
   view: { title: "view", colour: "#22b8cf" },
   distance: { title: "distance", colour: "#f59f45" },
-  view_discrete: { title: "view, discrete", colour: "#7d8cff" },
-  distance_discrete: { title: "distance, discrete", colour: "#e26bb4" },
+  view_discrete: { title: "view 0/1", colour: "#7d8cff" },
+  distance_discrete: { title: "distance 0/1", colour: "#e26bb4" },
 };
 const SECONDS = 20;
 

@@ -36,6 +36,7 @@ export class Stage {
     this.context.imageSmoothingQuality = "medium";
     this.context.drawImage(bitmap, box.x, box.y, box.width, box.height);
     if (state.marks) this.marks(state);
+    if (state.body) this.body(state.body);
   }
 
   // A place on the screen as shares of the picture's sides.
@@ -55,6 +56,14 @@ export class Stage {
     if (centre) this.cross(centre);
     if (centre && target) this.line([centre, target], "rgb(255 255 255 / .7)", 1.2, [5, 5]);
     if (tip) this.gem(tip, state);
+  }
+
+  body([hull, nose, ...rotors]) {
+    const middle = (points) => [0, 1].map((i) => points.reduce((sum, point) => sum + point[i], 0) / points.length);
+    for (const rotor of rotors) this.line([middle(hull), middle(rotor)], "#3d444d", 2.5);
+    this.shape(hull, "#eef1f5", "#3d444d", 1);
+    this.shape(nose, "#ff9a1a", "#3d444d", 1);
+    for (const rotor of rotors) this.shape(rotor, "rgb(150 160 172 / .75)", "#3d444d", 1.2);
   }
 
   at([x, y]) {
