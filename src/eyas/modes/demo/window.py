@@ -14,7 +14,7 @@ from eyas.modes.demo.orders import carry_out
 from eyas.modes.demo.pace import FRAME
 from eyas.modes.demo.readings import readings
 
-__all__ = ["run_window"]
+__all__ = ["DemoWindow", "run_window"]
 
 SIZE = 960, 540
 
@@ -49,7 +49,7 @@ def run_window(cockpit: Cockpit, seconds: float | None) -> None:
     Raises:
         MissingExtraError: pygame is not installed.
     """
-    window = _DemoWindow(load_pygame(), cockpit)
+    window = DemoWindow(load_pygame(), cockpit)
     begun = time.monotonic()
     cockpit.clock.skip(begun)
     try:
@@ -63,7 +63,14 @@ def run_window(cockpit: Cockpit, seconds: float | None) -> None:
         window.close()
 
 
-class _DemoWindow:
+class DemoWindow:
+    """The window.
+
+    Args:
+        pygame: The module.
+        cockpit: What is flown and shown.
+    """
+
     def __init__(self, pygame: Any, cockpit: Cockpit) -> None:  # noqa: ANN401  # a module
         self._pygame, self._cockpit = pygame, cockpit
         self._down: set[int] = set()
@@ -72,6 +79,7 @@ class _DemoWindow:
         self._screen = pygame.display.set_mode(SIZE, pygame.RESIZABLE)
 
     def close(self) -> None:
+        """Close it."""
         self._pygame.display.quit()
 
     def hear(self) -> bool:
