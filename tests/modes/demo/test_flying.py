@@ -13,6 +13,8 @@ from eyas.core.config import validated
 from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.adapter import from_legacy
 
+from .conftest import Viewer
+
 
 def turn(yaw, before):
     return (yaw - before + math.pi) % (2 * math.pi) - math.pi
@@ -215,6 +217,15 @@ def test_only_policies_that_were_offered_fly(viewer):
     assert "os:getcwd" in viewer.errors[0]
 
 
+def test_a_policy_that_fails_hands_the_controls_back(serve):
+    served = serve("--policy", "statistics:median")  # of a picture, it cannot be told
+    viewer = Viewer(served.socket)
+    viewer.say("fly", policy="statistics:median")
+    viewer.until(lambda s: viewer.errors and s["flies"] is None)
+    assert viewer.errors[0].startswith("policy 'statistics:median': failed: ")
+    viewer.close()
+
+
 def test_boxes_of_a_tracker_outside_steer(viewer):
     viewer.say("do", what="reset")
     before = viewer.settled()
@@ -230,6 +241,9 @@ def test_a_duel_begins_at_the_same_place_for_both(viewer):
     state = viewer.until(lambda s: s["duel"] and s["duel"]["ready"] > 0)
     assert state["duel"]["stage"] == "you"
     start = state["drone"], state["target"]["actor"], state["time"]
+    viewer.errors.clear()
+    viewer.say("pace", speed=0)  # would be unfair
+    viewer.until(lambda s: viewer.errors)
     viewer.say("duel", policy=None)
     viewer.until(lambda s: s["duel"] is None)
     viewer.say("duel", policy="follow")

@@ -5,7 +5,7 @@ from collections.abc import Callable
 from typing import Any
 
 from eyas.core.config import updated
-from eyas.core.errors import UnknownNameError
+from eyas.core.errors import ConfigError, UnknownNameError
 from eyas.modes.demo import messages as said
 from eyas.modes.demo.cockpit import Cockpit
 from eyas.modes.demo.duel import SEED, Duel
@@ -18,6 +18,9 @@ __all__ = ["BOXES", "carry_out", "change_sides", "end_recording", "reward_of", "
 
 BOXES = "boxes"
 """The name under which a tracker outside flies."""
+
+_UNFAIR = (said.Click, said.Do, said.Fly, said.Pace, said.Record, said.Reward)
+"""What would change a flight against a policy."""
 
 STEP = 4
 """Physics steps of a single step."""
@@ -34,6 +37,9 @@ def carry_out(cockpit: Cockpit, message: said.Message) -> dict[str, Any] | None:
     Raises:
         EyasError: It cannot be done; the message is one line, and nothing has changed.
     """
+    duel = cockpit.duel
+    if duel is not None and duel.stage != "over" and isinstance(message, _UNFAIR):
+        raise ConfigError("a flight against a policy goes on; give it up first")
     return _ORDERS[type(message)](cockpit, message)
 
 
@@ -103,6 +109,7 @@ def _do(cockpit: Cockpit, message: said.Do) -> None:
     if message.what == "next_target":
         flight.follow_next()
     elif message.what == "parked_target" and flight.world.parked >= 0:
+        end_recording(cockpit)
         flight.follow(flight.world.parked)
         flight.reset()
     elif message.what == "reset":

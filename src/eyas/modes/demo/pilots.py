@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import physics_steps
+from eyas.core.errors import ConfigError
 from eyas.envs.actions import make_actions
 from eyas.envs.observation import Observer
 from eyas.evaluation.policies.policy import Sight, Start
@@ -40,6 +41,7 @@ class PolicyPilot:
     """
 
     def __init__(self, name: str, flight: Flight) -> None:
+        self._name = name
         self._policy = open_policy(name, {})
         env = self._policy.env
         self._simulation = flight.simulation
@@ -51,7 +53,11 @@ class PolicyPilot:
         self._policy.begin(Start(np.array([flight.config.seed]), self._boxes))
 
     def decide(self) -> tuple[Commands, int]:
-        """Ask the policy."""
+        """Ask the policy.
+
+        Raises:
+            EyasError: It fails, or its action is none.
+        """
         self._observer.look(np.zeros(1, np.int32), self._begun)
         self._begun = np.zeros(1, np.bool_)
         observation = self._observer.one(0)
@@ -61,7 +67,14 @@ class PolicyPilot:
             else observation[None]
         )
         sight = Sight(batch, np.ones(1, np.bool_), lambda: self._simulation.snapshot)
-        return self._actions.commands(self._policy.act(sight).actions), self._steps
+        try:
+            decision = self._policy.act(sight)
+        except Exception as error:  # whatever a user's code raises; the demo goes on
+            said = " ".join(f"{type(error).__name__}: {error}".split())[:300]
+            raise ConfigError(f"policy '{self._name}': failed: {said}") from error
+        if decision.failed:
+            raise ConfigError(f"policy '{self._name}': failed: {decision.failed[0]}")
+        return self._actions.commands(decision.actions), self._steps
 
     def _boxes(self) -> NDArray[np.int32]:
         picture = Picture.create(1, *self._size, rgb=False, class_id=True, subject=True)

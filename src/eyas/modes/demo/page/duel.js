@@ -39,6 +39,7 @@ export class DuelBoard {
     const line = document.createElement("div");
     const { you, policy } = duel.scores;
     if (duel.stage === "over") {
+      by("duel-board").title = "Click to close";
       line.textContent = you > policy ? "You win!" : you === policy ? "A draw." : `${duel.policy} wins.`;
     } else if (duel.ready > 0) {
       line.textContent = `${duel.stage === "you" ? "Your turn" : `Now ${duel.policy}`} in ${Math.ceil(duel.ready)} …`;

@@ -129,6 +129,9 @@ by("views").addEventListener("click", ({ target }) => {
   if (target.dataset.view) showLook({ view: target.dataset.view });
   target.blur();
 });
+by("duel-board").addEventListener("click", () => {
+  if (last?.duel?.stage === "over") link.send("duel", { policy: null });
+});
 by("picture").addEventListener("click", (event) => {
   if (stage.box) link.send("click", stage.place(event));
 });
