@@ -14,6 +14,7 @@ from eyas.cli import (
     bench,
     cache,
     config,
+    demo,
     evaluate,
     maps,
     policies,
@@ -55,6 +56,7 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
+app.command("demo")(demo.command)
 app.command("video")(video.command)
 app.command("train")(train.command)
 app.command("serve")(serve.command)

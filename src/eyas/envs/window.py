@@ -10,7 +10,7 @@ from eyas.core.errors import MissingExtraError
 if TYPE_CHECKING:
     import pygame
 
-__all__ = ["Window"]
+__all__ = ["Window", "load_pygame"]
 
 
 class Window:
@@ -24,7 +24,7 @@ class Window:
     """
 
     def __init__(self, rate: int) -> None:
-        self._pygame = _load_pygame()
+        self._pygame = load_pygame()
         self._rate = rate
         self._clock = self._pygame.time.Clock()
         self._screen: pygame.Surface | None = None
@@ -47,7 +47,12 @@ class Window:
             self._screen = None
 
 
-def _load_pygame() -> Any:  # noqa: ANN401  # a module
+def load_pygame() -> Any:  # noqa: ANN401  # a module
+    """Return the module.
+
+    Raises:
+        MissingExtraError: It is not installed.
+    """
     try:
         import pygame
     except ImportError as error:

@@ -13,7 +13,7 @@ from eyas.state.motion import ActorState
 from eyas.state.scene import ACTOR_OBJECT
 from eyas.state.snapshot import CameraState
 from eyas.targets.catalogue import KINDS
-from eyas.targets.kind import Looks
+from eyas.targets.kind import Colour, Looks
 from eyas.targets.looks import LookSampler
 
 __all__ = ["ALONE", "Worlds", "each_alone", "largest_world", "together"]
@@ -111,6 +111,18 @@ class Worlds:
         same = kinds == kinds[actor]
         self._looks.model[world, same] = self._looks.model[world, actor]
         self._looks.colour[world, same] = self._looks.colour[world, actor]
+
+    def dress(self, tracker: int, actor: int, model: int, colour: Colour) -> None:
+        """Give an actor around a tracker a model of its kind and a colour, until looks are drawn.
+
+        Args:
+            tracker: The tracker.
+            actor: The actor.
+            model: Index into `eyas.targets.catalogue.MODELS`.
+            colour: sRGB, each 0 to 1.
+        """
+        world = self.of[tracker]
+        self._looks.model[world, actor], self._looks.colour[world, actor] = model, colour
 
     def model_of(self, tracker: int, actor: int) -> int:
         """Return the model of an actor around a tracker, an index into the catalogue."""

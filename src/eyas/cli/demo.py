@@ -1,0 +1,73 @@
+"""`eyas demo`."""
+
+from typing import Annotated
+
+import typer
+
+from eyas.cli.options import (
+    ConfigFile,
+    MapName,
+    Overrides,
+    Preset,
+    Seed,
+    Weather,
+    chosen_file,
+    gathered,
+)
+from eyas.core.errors import ConfigError
+
+__all__ = ["command"]
+
+
+def command(  # noqa: PLR0913  # one parameter for each option
+    config: ConfigFile = None,
+    preset: Preset = None,
+    map_name: MapName = None,
+    weather: Weather = None,
+    seed: Seed = None,
+    set_: Overrides = None,
+    policy: Annotated[
+        str | None,
+        typer.Option("--policy", help="A policy that may fly too: a file, or module:name."),
+    ] = None,
+    host: Annotated[
+        str,
+        typer.Option("--host", help="Address to serve; others than loopback ask for a token."),
+    ] = "127.0.0.1",
+    port: Annotated[
+        int, typer.Option("--port", min=0, max=65535, help="Port to serve; 0: any.")
+    ] = 8720,
+    browser: Annotated[
+        bool, typer.Option("--browser/--no-browser", help="Open the page in a browser.")
+    ] = True,
+    window: Annotated[
+        bool, typer.Option("--window", help="In a window instead (extra play).")
+    ] = False,
+    headless: Annotated[
+        bool, typer.Option("--headless", help="Print the reward of a hovering drone instead.")
+    ] = False,
+    seconds: Annotated[
+        float | None, typer.Option("--seconds", min=0.1, help="Stop after this time.")
+    ] = None,
+) -> None:
+    """Fly a drone by keyboard through any map, in the browser, and watch the reward."""
+    from eyas.settings.file import load_settings
+    from eyas.settings.version_check import require_supported
+
+    if window and headless:
+        raise ConfigError("--window and --headless cannot be used together")
+    if seconds is not None and not (window or headless):
+        raise ConfigError("--seconds: only with --headless or --window")
+    settings = load_settings(chosen_file(config, preset), gathered(set_, map_name, weather, seed))
+    require_supported(settings)
+    from eyas.modes.demo import run as demo  # after all checks
+
+    cockpit = demo.cockpit_of(settings, policy)
+    if headless:
+        demo.run_headless(cockpit, seconds or 10.0, typer.echo)
+    elif window:
+        from eyas.modes.demo.window import run_window
+
+        run_window(cockpit, seconds)
+    else:
+        demo.run_browser(cockpit, host, port, browser=browser, say=typer.echo)

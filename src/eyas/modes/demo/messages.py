@@ -1,0 +1,166 @@
+"""What a page may say: one JSON object for each message, of bounded size and checked values."""
+
+import json
+from typing import Annotated, Any, Literal
+
+from pydantic import Field
+
+from eyas.core.config import Config, validated
+from eyas.core.errors import ConfigError, UnknownNameError
+from eyas.modes.demo.controls import Control
+from eyas.task.config import RewardMode, RewardType
+
+__all__ = [
+    "LONGEST",
+    "Ack",
+    "Box",
+    "Click",
+    "Do",
+    "Duel",
+    "Fly",
+    "Keys",
+    "Look",
+    "Message",
+    "Pace",
+    "Record",
+    "Reward",
+    "World",
+    "parsed",
+]
+
+LONGEST = 4096
+"""Of a message [bytes]."""
+
+Share = Annotated[float, Field(ge=0, le=1)]
+Side = Annotated[int, Field(ge=16, le=16384)]
+Name = Annotated[str, Field(max_length=200)]
+Positive = Annotated[float, Field(gt=0, le=1000)]
+
+
+class Message(Config):
+    """Something that a page says."""
+
+
+class Keys(Message):
+    """The controls that are held now; sent on a change and every 100 ms."""
+
+    held: dict[Control, Share]
+    sequence: Annotated[int, Field(ge=0)]
+    time: float
+    """Of the page's clock, at the last change [ms]; it comes back with each frame."""
+
+
+class Ack(Message):
+    """A frame has arrived and is shown."""
+
+    frame: Annotated[int, Field(ge=0)]
+
+
+class Look(Message):
+    """What the picture shows, and how large it is on the screen."""
+
+    view: Literal["drone", "chase", "top"] = "drone"
+    overlay: bool = True
+    width: Side = 640
+    height: Side = 360
+
+
+class Click(Message):
+    """A place in the picture: from its left and upper edge, in shares of its sides."""
+
+    x: Share
+    y: Share
+
+
+class Do(Message):
+    """Something to do once; `pilot` takes the controls."""
+
+    what: Literal["next_target", "parked_target", "reset", "step", "pilot"]
+
+
+class Pace(Message):
+    """Seconds of the simulation in a second; 0: it stands still."""
+
+    speed: Annotated[float, Field(ge=0, le=4)]
+
+
+class Reward(Message):
+    """Settings of the reward; those that are not named stay."""
+
+    type: RewardType | None = None
+    mode: RewardMode | None = None
+    view_range: Annotated[float, Field(gt=0, le=10)] | None = None
+    view_scale: Positive | None = None
+    distance_range: Positive | None = None
+    distance_scale: Positive | None = None
+
+
+class World(Message):
+    """Another world; what is not named stays."""
+
+    map: Name | None = None
+    weather: Name | None = None
+    vehicles: Annotated[int, Field(ge=1, le=100)] | None = None
+
+
+class Fly(Message):
+    """Who flies: a policy, or None for the pilot's keys."""
+
+    policy: Name | None
+
+
+class Duel(Message):
+    """The same minute flown by the pilot and by a policy; None: give up."""
+
+    policy: Name | None
+
+
+class Record(Message):
+    """Whether to record."""
+
+    on: bool
+
+
+class Box(Message):
+    """Where an outside tracker sees the target, to fly by it; None: it sees none.
+
+    Left, top, right, bottom, in shares of the picture's sides.
+    """
+
+    box: tuple[Share, Share, Share, Share] | None
+
+
+_KINDS: dict[str, type[Message]] = {
+    "keys": Keys,
+    "ack": Ack,
+    "look": Look,
+    "click": Click,
+    "do": Do,
+    "pace": Pace,
+    "reward": Reward,
+    "world": World,
+    "fly": Fly,
+    "duel": Duel,
+    "record": Record,
+    "box": Box,
+}
+
+
+def parsed(text: str | bytes) -> Message:
+    """Return the message that a text holds: `{"message": "keys", ...}`.
+
+    Raises:
+        ConfigError: It is none; the message is one line.
+    """
+    if isinstance(text, bytes):
+        raise ConfigError("message: bytes are not allowed; allowed: text")
+    try:
+        values: Any = json.loads(text)
+    except (ValueError, RecursionError):
+        raise ConfigError("message: not JSON") from None
+    if not isinstance(values, dict):
+        raise ConfigError("message: not allowed; allowed: a JSON object")
+    said = values.pop("message", None)
+    if not isinstance(said, str) or said not in _KINDS:
+        raise UnknownNameError("message", str(said)[:40], tuple(_KINDS))
+    return validated(_KINDS[said], values, said)

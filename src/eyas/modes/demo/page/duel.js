@@ -1,0 +1,82 @@
+// You against a policy: the board over the picture, and the best flights, kept in this browser.
+
+const KEY = "eyas-best-flights";
+const MOST = 5;
+const by = (id) => document.getElementById(id);
+
+export class DuelBoard {
+  constructor() {
+    this.stage = null;
+    this.list();
+  }
+
+  show(state, place) {
+    const duel = state.duel;
+    by("duel-board").hidden = !duel;
+    by("duel").textContent = duel && duel.stage !== "over" ? "Give up" : "You against it: 60 s";
+    if (!duel) {
+      this.stage = null;
+      return;
+    }
+    if (this.stage && this.stage !== "over" && duel.stage === "over") this.keep(duel, place);
+    this.stage = duel.stage;
+    const { you, policy } = duel.scores;
+    const side = (name, score, active) => {
+      const part = document.createElement("div");
+      part.classList.toggle("active", active);
+      const number = document.createElement("b");
+      number.textContent = score.toFixed(1);
+      part.append(name, document.createElement("br"), number);
+      return part;
+    };
+    const sides = document.createElement("div");
+    sides.className = "sides";
+    sides.append(side("you", you, duel.stage === "you"), side(duel.policy, policy, duel.stage === "policy"));
+    by("duel-board").replaceChildren(this.line(duel), sides);
+  }
+
+  line(duel) {
+    const line = document.createElement("div");
+    const { you, policy } = duel.scores;
+    if (duel.stage === "over") {
+      by("duel-board").title = "Click to close";
+      line.textContent = you > policy ? "You win!" : you === policy ? "A draw." : `${duel.policy} wins.`;
+    } else if (duel.ready > 0) {
+      line.textContent = `${duel.stage === "you" ? "Your turn" : `Now ${duel.policy}`} in ${Math.ceil(duel.ready)} …`;
+    } else {
+      line.textContent = `${duel.left.toFixed(0)} s left: keep the target in the middle`;
+    }
+    return line;
+  }
+
+  best() {
+    try {
+      const kept = JSON.parse(localStorage.getItem(KEY) ?? "[]");
+      return Array.isArray(kept) ? kept : [];
+    } catch {
+      return [];
+    }
+  }
+
+  keep(duel, place) {
+    const flight = { ...duel.scores, name: duel.policy, place, day: new Date().toISOString().slice(0, 10) };
+    const best = [...this.best(), flight].sort((a, b) => b.you - a.you).slice(0, MOST);
+    localStorage.setItem(KEY, JSON.stringify(best));
+    this.list();
+  }
+
+  list() {
+    const rows = this.best().map((flight) => row("td", [flight.place, flight.you, `${flight.name} ${flight.policy}`]));
+    by("best").replaceChildren(...(rows.length ? [row("th", ["Best flights", "you", "it"]), ...rows] : []));
+  }
+}
+
+function row(kind, cells) {
+  const line = document.createElement("tr");
+  for (const cell of cells) {
+    const part = document.createElement(kind);
+    part.textContent = cell;
+    line.append(part);
+  }
+  return line;
+}

@@ -1,0 +1,81 @@
+// Map, weather, traffic, and the sliders of the reward.
+
+const SLIDERS = ["view_range", "view_scale", "distance_range", "distance_scale"];
+const by = (id) => document.getElementById(id);
+
+export class Settings {
+  constructor(link) {
+    this.link = link;
+    this.maps = {};
+    for (const name of SLIDERS) {
+      by(name).addEventListener("input", () => {
+        this.label(name);
+        this.touched = performance.now();
+        link.send("reward", { [name]: Number(by(name).value) });
+      });
+    }
+    for (const name of ["type", "mode"]) {
+      by(name).addEventListener("change", () => {
+        link.send("reward", { [name]: by(name).value });
+        by(name).blur();
+      });
+    }
+    by("map").addEventListener("change", () => {
+      const weathers = this.maps[by("map").value].weathers;
+      const weather = weathers.includes(by("weather").value) ? by("weather").value : weathers[0];
+      link.send("world", { map: by("map").value, weather });
+      by("map").blur();
+    });
+    by("weather").addEventListener("change", () => {
+      link.send("world", { weather: by("weather").value });
+      by("weather").blur();
+    });
+    by("vehicles").addEventListener("change", () => {
+      link.send("world", { vehicles: Number(by("vehicles").value) });
+      by("vehicles").blur();
+    });
+    by("save").href = "env_config.json" + location.search;
+  }
+
+  // The built-in reward that counts, as the plot names it.
+  kind() {
+    return by("type").value + (by("mode").value === "discrete" ? "_discrete" : "");
+  }
+
+  greet({ maps, policies, most_vehicles: most }) {
+    this.maps = maps;
+    fill(by("map"), Object.keys(maps).map((name) => [name, name]));
+    const shares = [0.1, 0.25, 0.5, 1].map((share) => Math.max(Math.round(share * most), 1));
+    fill(by("vehicles"), [...new Set(shares)].map((count) => [count, `${count} cars`]));
+    fill(by("policy"), policies.map((name) => [name, name === "boxes" ? "tracker outside" : name]));
+  }
+
+  world({ map, weather, vehicles }) {
+    fill(by("weather"), this.maps[map].weathers.map((name) => [name, name]));
+    by("map").value = map;
+    by("map").title = this.maps[map].title;
+    by("weather").value = weather;
+    by("vehicles").value = vehicles;
+  }
+
+  reward(values) {
+    by("type").value = values.type;
+    by("mode").value = values.mode;
+    by("kind-now").textContent = `${values.type}, ${values.mode}`;
+    if (performance.now() - (this.touched ?? -1e9) < 500) return; // a slider moves under the hand
+    for (const name of SLIDERS) {
+      by(name).value = values[name];
+      this.label(name);
+    }
+  }
+
+  label(name) {
+    by(name).previousElementSibling.textContent = by(name).value;
+  }
+}
+
+function fill(select, options) {
+  const chosen = select.value;
+  select.replaceChildren(...options.map(([value, title]) => new Option(title, value)));
+  if (options.some(([value]) => `${value}` === chosen)) select.value = chosen;
+}

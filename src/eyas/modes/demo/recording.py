@@ -1,0 +1,92 @@
+"""Records the flight of the demo into a folder, as `eyas video` would."""
+
+from contextlib import ExitStack
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.clock import PHYSICS_RATE
+from eyas.core.config import updated
+from eyas.core.folder_lock import folder_lock
+from eyas.exports.frame import Action
+from eyas.modes.demo.flight import Flight
+from eyas.modes.video.folder import open_folder
+from eyas.modes.video.recorder import Recorder
+
+__all__ = ["Recording"]
+
+
+class _Flown:
+    """Tells the recorder which command was held."""
+
+    command: NDArray[np.float64]
+
+    def move(self, sim: object) -> None:
+        """Do nothing: the demo moves the drone."""
+
+    def action(self, tracker: int) -> Action:
+        """Return the command of the last step."""
+        return Action(-1, self.command)
+
+
+class Recording:
+    """A recording of one episode, from now on.
+
+    Attributes:
+        folder: Where it is.
+        frames: Number of frames.
+
+    Args:
+        flight: What is recorded; the recording must end before its world does.
+        folder: The folder; it must not exist, or be empty.
+
+    Raises:
+        EyasError: It cannot be written.
+    """
+
+    def __init__(self, flight: Flight, folder: Path) -> None:
+        config = updated(flight.config, {"video": {"channels": 1}})
+        self.folder, self.frames = folder, 0
+        self.period = max(round(PHYSICS_RATE / config.video.fps), 1)
+        self._flown, self._steps = _Flown(), 0
+        with ExitStack() as stack:
+            stack.enter_context(folder_lock(folder, "recording into it"))
+            opened = open_folder(folder, config, overwrite=False, resume=False)
+            self._recorder = Recorder(flight.simulation, config, opened)
+            self._lock = stack.pop_all()
+
+    @property
+    def steps_left(self) -> int:
+        """Physics steps until the next frame."""
+        return self.period - self._steps % self.period
+
+    def count(self, command: NDArray[np.float64], steps: int) -> None:
+        """Count steps of a command, shape (1, 4); write a frame if one is due.
+
+        Raises:
+            OutputError: A frame could not be written.
+        """
+        self._steps += steps
+        if self._steps % self.period == 0:
+            self._flown.command = command[0]
+            self._recorder.take(np.zeros(1, np.int32), self._flown)
+            self.frames += 1
+
+    def end(self) -> None:
+        """End the recording; it is whole.
+
+        Raises:
+            OutputError: Writing failed.
+        """
+        with self._lock:
+            try:
+                self._recorder.finish()
+            except BaseException:
+                self._recorder.stop()
+                raise
+
+    def abandon(self) -> None:
+        """Stop after a failure; every file that exists is whole."""
+        with self._lock:
+            self._recorder.stop()

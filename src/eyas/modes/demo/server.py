@@ -1,0 +1,195 @@
+"""The server of the demo: the page over HTTP, and one WebSocket for each viewer, on one port."""
+
+import asyncio
+import json
+from collections.abc import Awaitable, Callable
+from http import HTTPStatus
+from typing import Any
+from urllib.parse import parse_qs, urlsplit
+
+from websockets.asyncio.server import Server as WebSocketServer
+from websockets.asyncio.server import ServerConnection, serve
+from websockets.datastructures import Headers
+from websockets.exceptions import ConnectionClosed
+from websockets.http11 import Request, Response
+
+from eyas import __version__
+from eyas.core.errors import ConfigError, OutputError
+from eyas.modes.demo import messages as said
+from eyas.modes.demo.cockpit import Cockpit
+from eyas.modes.demo.files import own_file, page_file
+from eyas.modes.demo.frame import Frame
+from eyas.modes.demo.gate import Gate
+from eyas.modes.demo.orders import BOXES, reward_of, world_of
+from eyas.modes.demo.session import Session
+from eyas.modes.demo.viewers import Viewer, Viewers
+from eyas.world.maps import MAPS
+
+__all__ = ["Server"]
+
+SOCKET = "/socket"
+ERRORS = 20
+"""Refused messages after which a connection is closed."""
+MOST_VIEWERS = 16
+
+_SAFE = {
+    "Content-Security-Policy": "default-src 'self'; img-src 'self' blob: data:; "
+    "frame-ancestors 'none'",
+    "X-Content-Type-Options": "nosniff",
+    "Referrer-Policy": "no-referrer",
+    "Cache-Control": "no-store",
+}
+
+
+class Server:
+    """Serves one cockpit.
+
+    Attributes:
+        viewers: Those who watch.
+
+    Args:
+        cockpit: What is flown.
+        host: The address to bind.
+        port: The port; 0: any that is free.
+    """
+
+    def __init__(self, cockpit: Cockpit, host: str, port: int) -> None:
+        self._cockpit, self._host, self._port = cockpit, host, port
+        self._gate = Gate(host)
+
+    async def run(self, begun: Callable[[str], None]) -> None:
+        """Serve until this task is cancelled.
+
+        Args:
+            begun: Is called with the address, once it answers.
+
+        Raises:
+            OutputError: The port cannot be had.
+        """
+        self.viewers = Viewers(asyncio.get_running_loop())
+        self._session = Session(self._cockpit, self.viewers)
+        try:
+            server = await self._bound()
+        except OSError as error:
+            raise OutputError(
+                f"port {self._port} of {self._host}: cannot be used: {error.strerror or error}; "
+                "name another with --port, or 0 for any"
+            ) from None
+        async with server:
+            flying = asyncio.create_task(asyncio.to_thread(self._session.run))
+            begun(self._address(server))
+            try:
+                await asyncio.shield(flying)
+            finally:
+                self._session.stop()
+                await flying
+
+    def _bound(self) -> Awaitable[WebSocketServer]:
+        return serve(
+            self._talk,
+            self._host,
+            self._port,
+            process_request=self._answer,
+            max_size=said.LONGEST,
+            compression=None,  # pictures are compressed already
+            close_timeout=1,
+        )
+
+    def _address(self, server: WebSocketServer) -> str:
+        port = next(iter(server.sockets)).getsockname()[1]
+        shown = f"[{self._host}]" if ":" in self._host else self._host
+        token = "" if self._gate.token is None else f"?token={self._gate.token}"
+        return f"http://{shown}:{port}/{token}"
+
+    def _answer(self, connection: ServerConnection, request: Request) -> Response | None:
+        """Answer a request, or let a WebSocket begin."""
+        path = urlsplit(request.path).path
+        page = page_file(path)
+        public = page is not None and path not in ("/", "/index.html")
+        refused = self._gate.refusal(request, private=not public)
+        if refused is not None:
+            return _text(HTTPStatus.FORBIDDEN, refused)
+        if path == SOCKET:
+            return None
+        try:
+            found = page or own_file(path, self._cockpit)
+        except ConfigError as error:
+            return _text(HTTPStatus.CONFLICT, str(error))
+        if found is None:
+            return _text(HTTPStatus.NOT_FOUND, "there is no such page")
+        return _response(HTTPStatus.OK, *found)
+
+    async def _talk(self, connection: ServerConnection) -> None:
+        """Serve one viewer until it goes."""
+        assert connection.request is not None
+        asked = parse_qs(urlsplit(connection.request.path).query)
+        viewer = Viewer(flies=asked.get("role") != ["tracker"])
+        if self.viewers.count >= MOST_VIEWERS:
+            await connection.close(1013, "there are too many viewers")
+            return
+        viewer.tell(self._greeting())
+        self.viewers.add(viewer)
+        sending = asyncio.create_task(_send(connection, viewer))
+        try:
+            await self._listen(connection, viewer)
+        except ConnectionClosed:
+            pass
+        finally:
+            sending.cancel()
+            self.viewers.remove(viewer)
+
+    async def _listen(self, connection: ServerConnection, viewer: Viewer) -> None:
+        errors = 0
+        async for text in connection:
+            try:
+                self._hear(viewer, said.parsed(text))
+            except ConfigError as error:
+                errors += 1
+                viewer.tell({"error": str(error)})
+            if errors >= ERRORS:
+                await connection.close(1008, "too many messages were refused")
+
+    def _hear(self, viewer: Viewer, message: said.Message) -> None:
+        """Take a message.
+
+        Raises:
+            ConfigError: Only who flies may say this.
+        """
+        if isinstance(message, said.Ack):
+            viewer.acknowledge(message.frame)
+        elif isinstance(message, said.Do) and message.what == "pilot" and viewer.flies:
+            self.viewers.appoint(viewer)
+        elif viewer is self.viewers.pilot or isinstance(message, said.Box):
+            self._session.put(message)
+        elif not isinstance(message, said.Keys | said.Look):
+            raise ConfigError("message: another page flies; take the controls first")
+
+    def _greeting(self) -> dict[str, Any]:
+        """Return what a page must know to begin."""
+        maps = {}
+        for name in sorted(MAPS.names()):
+            recipe = MAPS.get(name)
+            maps[name] = {"title": recipe.title, "weathers": recipe.weathers}
+        policies = [*self._cockpit.policies, BOXES]
+        most = self._cockpit.flight.config.traffic.max_vehicles
+        told = {"hello": __version__, "maps": maps, "policies": policies, "most_vehicles": most}
+        return told | reward_of(self._cockpit) | world_of(self._cockpit)
+
+
+async def _send(connection: ServerConnection, viewer: Viewer) -> None:
+    """Send a viewer its frames and texts."""
+    try:
+        while True:
+            what = await viewer.next()
+            await connection.send(what.data if isinstance(what, Frame) else json.dumps(what))
+    except ConnectionClosed:
+        return
+
+
+def _text(status: HTTPStatus, text: str) -> Response:
+    return _response(status, "text/plain; charset=utf-8", f"{text}\n".encode())
+
+
+def _response(status: HTTPStatus, kind: str, body: bytes) -> Response:
+    headers = Headers({"Content-Type": kind, "Content-Length": str(len(body)), **_SAFE})
+    return Response(status.value, status.phrase, headers, body)

@@ -1,0 +1,114 @@
+"""The thread of the demo: it hears the pilot, flies by the clock, and draws frames."""
+
+import queue
+import time
+from collections.abc import Callable
+from functools import partial
+from typing import Any, Protocol
+
+from eyas.core.errors import EyasError
+from eyas.modes.demo.cockpit import Cockpit
+from eyas.modes.demo.frame import Frame
+from eyas.modes.demo.messages import Message
+from eyas.modes.demo.orders import carry_out, change_sides, end_recording, slow
+from eyas.modes.demo.pace import FRAME
+
+__all__ = ["Audience", "Session"]
+
+
+class Audience(Protocol):
+    """Those who watch; its methods are called in the thread of the session."""
+
+    def wants_frame(self) -> bool:
+        """Return whether anyone can take a frame now."""
+        ...
+
+    def show(self, frame: Frame) -> None:
+        """Send a frame to all who can take one."""
+        ...
+
+    def tell(self, what: dict[str, Any]) -> None:
+        """Tell all something."""
+        ...
+
+
+class Session:
+    """Flies what is in a cockpit, for an audience.
+
+    Args:
+        cockpit: What is flown.
+        audience: Those who watch.
+    """
+
+    def __init__(self, cockpit: Cockpit, audience: Audience) -> None:
+        self.cockpit = cockpit
+        self._audience = audience
+        self._inbox: queue.SimpleQueue[Message | None] = queue.SimpleQueue()
+
+    def put(self, message: Message) -> None:
+        """Take what the pilot says; may be called in any thread."""
+        self._inbox.put(message)
+
+    def stop(self) -> None:
+        """End `run`; may be called in any thread."""
+        self._inbox.put(None)
+
+    def run(self) -> None:
+        """Fly until `stop`; a recording is ended."""
+        try:
+            due = time.monotonic()
+            while self._hear(due):
+                now = time.monotonic()
+                due = max(due + FRAME, now)
+                self._try(partial(self._fly, now), self._drop_pilot)
+                if self._audience.wants_frame():
+                    self._audience.show(self.cockpit.frame(now))
+        finally:
+            self._try(lambda: end_recording(self.cockpit))
+
+    def _fly(self, now: float) -> None:
+        """Fly until now, and let the other side of a duel begin."""
+        self.cockpit.advance(now)
+        if self.cockpit.sides_change:
+            change_sides(self.cockpit)
+
+    def _hear(self, due: float) -> bool:
+        """Carry out messages until the next frame is due; return whether to go on."""
+        while True:
+            left = due - time.monotonic()
+            try:
+                message = self._inbox.get(timeout=left) if left > 0 else self._inbox.get_nowait()
+            except queue.Empty:
+                return True
+            if message is None:
+                return False
+            self._carry_out(message)
+
+    def _carry_out(self, message: Message) -> None:
+        if slow(message):
+            self._audience.tell({"busy": True})
+        self._try(lambda: carry_out(self.cockpit, message))
+        if slow(message):
+            self.cockpit.clock.skip(time.monotonic())
+            self._audience.tell({"busy": False})
+
+    def _try(
+        self, act: Callable[[], dict[str, Any] | None], otherwise: Callable[[], None] | None = None
+    ) -> None:
+        """Do something, and tell the audience what came of it, also if it failed."""
+        try:
+            told = act()
+        except EyasError as error:
+            told = {"error": str(error)}
+            if otherwise is not None:
+                otherwise()
+        if told is not None:
+            self._audience.tell(told)
+
+    def _drop_pilot(self) -> None:
+        """Let the keys fly, and record no more, after a failure in flight."""
+        self.cockpit.hand_over(None, None)
+        self.cockpit.duel = None
+        recording, self.cockpit.recording = self.cockpit.recording, None
+        if recording is not None:
+            recording.abandon()

@@ -1,0 +1,141 @@
+"""One server of the demo for all tests of a module, in a process of its own, on a simple map."""
+
+import contextlib
+import json
+import os
+import shutil
+import struct
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
+
+try:
+    import playwright  # noqa: F401
+except ImportError:
+    CHROMIUM = None
+
+# Tests of the page itself run where a browser and what drives it are installed.
+if CHROMIUM is None:
+    collect_ignore = ["test_page.py"]
+
+QUICK = ["--set", "world.map=simpleway-grass", "--set", "traffic.max_vehicles=40"]
+
+
+class Served:
+    """A running `eyas demo`."""
+
+    def __init__(self, folder, *options):
+        command = [sys.executable, "-m", "eyas.cli.main", "demo", "--no-browser", "--port", "0"]
+        self.folder = folder
+        self.process = subprocess.Popen(
+            [*command, *QUICK, *options],
+            stdout=subprocess.PIPE,
+            text=True,
+            cwd=folder,
+            env=os.environ | {"PYTHONPATH": os.pathsep.join(map(os.path.abspath, sys.path))},
+        )
+        self.address = self.process.stdout.readline().strip()
+
+    @property
+    def socket(self):
+        page, _, query = self.address.partition("?")
+        return page.replace("http", "ws") + "socket" + (f"?{query}" if query else "")
+
+    def stop(self):
+        self.process.terminate()
+        return self.process.wait(20)
+
+
+@pytest.fixture(scope="session")
+def serve(tmp_path_factory):
+    """Starts `eyas demo` with options; all are stopped at the end."""
+    with contextlib.ExitStack() as stack:
+
+        def start(*options):
+            served = Served(Path(tmp_path_factory.mktemp("demo")), *options)
+            stack.callback(served.process.stdout.close)
+            stack.callback(served.stop)
+            return served
+
+        yield start
+
+
+@pytest.fixture(scope="session")
+def served(serve):
+    return serve()
+
+
+class Viewer:
+    """A page without a browser: it acknowledges what it reads."""
+
+    def __init__(self, address, **options):
+        from websockets.sync.client import connect
+
+        self._open = contextlib.ExitStack()
+        self.connection = self._open.enter_context(connect(address, max_size=None, **options))
+        self.told, self.sequence = {}, 0
+        self.errors = []
+
+    def say(self, message, **values):
+        self.connection.send(json.dumps({"message": message, **values}))
+
+    def hold(self, *controls):
+        self.sequence += 1
+        held = dict.fromkeys(map(str, controls), 1)
+        self.say("keys", held=held, sequence=self.sequence, time=self.sequence)
+
+    def read(self, timeout=30.0):
+        """Return the state of the next frame and its picture, or None for a text."""
+        data = self.connection.recv(timeout)
+        if isinstance(data, str):
+            told = json.loads(data)
+            self.told |= told
+            self.errors += [told["error"]] if "error" in told else []
+            return None
+        length = struct.unpack("<I", data[:4])[0]
+        return json.loads(data[4 : 4 + length]), data[4 + length :]
+
+    def frame(self):
+        """Return the state of the next frame, and acknowledge it."""
+        while (found := self.read()) is None:
+            pass
+        self.picture = found[1]
+        self.say("ack", frame=found[0]["frame"])
+        return found[0]
+
+    def until(self, wanted, seconds=30.0, while_waiting=lambda: None):
+        """Return the first state of which something is true."""
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            state = self.frame()
+            if wanted(state):
+                return state
+            while_waiting()
+        raise AssertionError(f"not within {seconds} s; last state: {state}")
+
+    def settled(self):
+        """Return a state in which nothing is held and the drone stands still."""
+        self.hold()
+        sequence = self.sequence
+        return self.until(
+            lambda s: s["sequence"] >= sequence and abs(s["speed"]) + abs(s["yaw_rate"]) < 0.05,
+            while_waiting=self.hold,
+        )
+
+    def close(self):
+        self._open.close()
+
+
+@pytest.fixture
+def viewer(served):
+    one = Viewer(served.socket)
+    one.say("look", overlay=False, width=160, height=90)
+    one.say("pace", speed=1)
+    one.say("fly", policy=None)
+    yield one
+    one.close()

@@ -1,0 +1,147 @@
+"""The page in a real Chromium; collected where one is installed, with playwright."""
+
+import time
+
+import pytest
+from playwright.sync_api import sync_playwright
+
+from .conftest import CHROMIUM
+
+
+@pytest.fixture(scope="module")
+def browser():
+    with sync_playwright() as driver:
+        flags = ["--headless", "--no-sandbox", "--disable-gpu"]
+        chromium = driver.chromium.launch(executable_path=CHROMIUM, args=flags)
+        yield chromium
+        chromium.close()
+
+
+@pytest.fixture
+def page(browser, served):
+    """The page, with frames; what it has asked for and complained of is checked at the end."""
+    context = browser.new_context(viewport={"width": 900, "height": 560})
+    page = context.new_page()
+    asked, problems = [], []
+    page.on("request", lambda request: asked.append(request.url))
+    page.on("pageerror", lambda error: problems.append(str(error)))
+    page.on("console", lambda line: problems.append(line.text) if line.type == "error" else None)
+    page.goto(served.address)
+    until(page, "window.eyas !== undefined")
+    yield page
+    context.close()
+    own = (served.address, served.address.replace("http", "ws"), "blob:", "data:")
+    assert not [url for url in asked if not url.startswith(own)]
+    assert not problems
+
+
+def until(page, truth, seconds=40):
+    """Wait until something is true of the page; its policy forbids what playwright has for that."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        if page.evaluate(truth):
+            return
+        time.sleep(0.05)
+    raise AssertionError(f"not within {seconds} s: {truth}; {page.evaluate('window.eyas.state')}")
+
+
+def state(page):
+    return page.evaluate("window.eyas.state")
+
+
+def stand_still(page):
+    page.click("#reset")
+    until(page, "eyas.state.steps < 500 && eyas.state.speed === 0")
+
+
+def test_held_keys_fly_and_the_picture_changes(page):
+    stand_still(page)
+    before, picture = state(page), page.locator("#picture").screenshot()
+    page.keyboard.down("ArrowUp")
+    until(page, "eyas.state.speed > 10")
+    page.keyboard.up("ArrowUp")
+    until(page, "eyas.state.speed < 0.1")
+    assert state(page)["drone"][:2] != before["drone"][:2]
+    assert page.locator("#picture").screenshot() != picture
+    assert page.evaluate("eyas.latency") > 0
+
+
+def test_shift_changes_the_meaning_of_arrows(page):
+    stand_still(page)
+    height = state(page)["height"]
+    page.keyboard.down("Shift")
+    page.keyboard.down("ArrowUp")
+    until(page, f"eyas.state.height > {height + 0.5}")
+    page.keyboard.up("Shift")  # the arrow is still held, and flies forward now
+    until(page, "eyas.state.speed > 5")
+    page.keyboard.up("ArrowUp")
+    until(page, "eyas.state.speed < 0.1 && eyas.state.climb === 0")
+
+
+def test_a_page_without_focus_lets_go(page):
+    stand_still(page)
+    page.keyboard.down("ArrowDown")
+    until(page, "eyas.state.speed > 5")
+    page.evaluate("window.dispatchEvent(new Event('blur'))")
+    until(page, "eyas.state.speed < 0.1")
+    page.keyboard.up("ArrowDown")
+
+
+def test_buttons_on_the_screen_are_held_too(page):
+    page.set_viewport_size({"width": 390, "height": 844})
+    stand_still(page)
+    box = page.locator('[data-control="turn_left"]').bounding_box()
+    page.mouse.move(box["x"] + 10, box["y"] + 10)
+    page.mouse.down()
+    until(page, "eyas.state.yaw_rate > 40")
+    page.mouse.up()
+    until(page, "Math.abs(eyas.state.yaw_rate) < 0.1")
+
+
+def test_sliders_change_the_reward(page):
+    page.click("#parked")
+    until(page, "eyas.state.target.parked && eyas.state.reward > 0.5")
+    page.locator("#view_scale").fill("0.1")
+    until(page, "eyas.state.reward < 0.2")
+    page.locator("#view_scale").fill("4")
+    until(page, "eyas.state.reward > 0.5")
+
+
+def test_a_click_on_the_parked_car_follows_it(page):
+    page.click("#parked")
+    until(page, "eyas.state.target.parked && eyas.state.marks")
+    x, y = state(page)["marks"]["target"]
+    page.click("#next")
+    until(page, "!eyas.state.target.parked")
+    box = page.locator("#picture").bounding_box()
+    page.mouse.click(box["x"] + x * box["width"], box["y"] + y * box["height"])
+    until(page, "eyas.state.target.parked")
+
+
+def test_menus_change_the_weather(page):
+    page.select_option("#weather", "night")
+    until(page, "document.getElementById('notice').hidden === false || eyas.state.time < 3")
+    until(page, "document.getElementById('notice').hidden && eyas.state.time < 20")
+    assert page.locator("#weather").input_value() == "night"
+    page.select_option("#weather", "day")
+    until(page, "document.getElementById('notice').hidden && eyas.state.time < 20")
+
+
+def test_help_opens_and_closes(page):
+    page.keyboard.press("?")
+    assert page.locator("#help").is_visible()
+    page.keyboard.press("Escape")
+    assert not page.locator("#help").is_visible()
+
+
+def test_a_second_page_watches_and_can_take_over(page, browser, served):
+    context = browser.new_context()
+    second = context.new_page()
+    second.goto(served.address)
+    until(second, "window.eyas !== undefined")
+    assert second.locator("#watching").is_visible()
+    second.click("#take")
+    until(second, "document.getElementById('watching').hidden")
+    until(page, "!document.getElementById('watching').hidden")
+    context.close()
+    until(page, "document.getElementById('watching').hidden")
