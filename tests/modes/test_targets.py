@@ -26,9 +26,9 @@ def test_the_list_has_every_model_with_fewer_triangles_from_afar():
 def test_unknown_names_and_endings_are_refused_before_anything_is_drawn(tmp_path):
     with pytest.raises(UnknownNameError, match="did you mean 'Sojourner'"):
         run("sojourner", tmp_path / "x.png")
-    with pytest.raises(ConfigError, match="allowed endings: .png, .gif"):
+    with pytest.raises(ConfigError, match=r"allowed endings: \.png, \.gif"):
         run("Create", tmp_path / "x.jpg")
-    with pytest.raises(ConfigError, match="allowed endings: .png$"):
+    with pytest.raises(ConfigError, match=r"allowed endings: \.png$"):
         run("all", tmp_path / "x.gif")
     assert not list(tmp_path.iterdir())
 
