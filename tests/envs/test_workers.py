@@ -109,8 +109,12 @@ def test_gymnasium_makes_them_by_one_argument():
     env = gymnasium.make_vec(NAME, num_envs=2, workers=2, observation={"width": 8, "height": 8})
     assert len(active_children()) >= 2
     assert env.reset(seed=0)[0].shape == (2, 8, 8, 3)
+    told = env.call("task_description")
     env.close()
     env.close()
+    here = gymnasium.make_vec(NAME, num_envs=2, observation={"width": 8, "height": 8})
+    here.reset(seed=0)
+    assert told == here.call("task_description")
     with pytest.raises(EyasError, match=r"^the environments are closed$"):
         env.reset()
 

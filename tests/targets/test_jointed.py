@@ -16,8 +16,8 @@ from eyas.targets.rig import Rigs
 
 NAMES = sorted(FIGURES)
 WALKERS = [name for name in NAMES if FIGURES[name].legs]
-SLIDES = 0.004
-"""How far a foot that stands may move while the body moves on, as a share of the stride."""
+SLIDES = 0.01
+"""How far a foot may move between its first and its last touch, as a share of the stride."""
 
 
 def index_of(name):
@@ -127,17 +127,15 @@ def test_feet_that_stand_do_not_slide(name):
         else:
             soles = [(-leg.sole[0], 0.0, -leg.foot[2]), (leg.sole[1], 0.0, -leg.foot[2])]
             points = [last[:, :, :3] @ np.array(sole) + last[:, :, 3] for sole in soles]
-        part = (steps + leg.phase) % 1.0
-        world = [point[:, 0] + steps * gait.stride for point in points]
+        begun = np.floor(steps + leg.phase)
+        part = steps + leg.phase - begun
         # The heel stands at first, the toes at last.
-        stands = [(part > 0.005) & (part < 0.6 * gait.duty), (part > 0.4 * gait.duty)]
-        stands = [*stands[:1], stands[1] & (part < 0.98 * gait.duty)]
-        if len(world) == 1:
-            stands = [(part > 0.005) & (part < 0.98 * gait.duty)]
-        for x, standing in zip(world, stands, strict=True):
-            moved = np.abs(np.diff(x))[standing[1:] & standing[:-1]]
-            at_rest = moved < gait.stride  # not where the path of the test begins again
-            assert moved[at_rest].max() < SLIDES * gait.stride
+        heel = (part > 0.005) & (part < 0.55 * gait.duty)
+        toes = (part > 0.2 * gait.duty) & (part < 0.98 * gait.duty)
+        stands = [heel | toes] if len(points) == 1 else [heel, toes]
+        for point, standing in zip(points, stands, strict=True):
+            in_world = point[:, 0] + (steps - begun) * gait.stride
+            assert np.ptp(in_world[standing]) < SLIDES * gait.stride
 
 
 @pytest.mark.parametrize("name", WALKERS)

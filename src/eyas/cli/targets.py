@@ -19,7 +19,7 @@ def _group() -> None: ...
 
 @app.command("list")
 def list_targets() -> None:
-    """Print all targets with their sizes, colours, motion and numbers of triangles."""
+    """Print all targets with their sizes, motion, numbers of triangles and looks."""
     from rich.console import Console
 
     from eyas.modes.targets.listing import table

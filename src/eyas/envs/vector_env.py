@@ -35,14 +35,11 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
     Args:
         num_envs: N.
         config: Settings, see `eyas.envs.choice.Source`.
-        autoreset_mode: When an environment whose episode has ended begins the next one: in the next
-            step, in the same step, or when it is reset by `reset_mask`.
-        copy: Whether each step returns new arrays of observations; False: the arrays of a step are
-            written again two steps later.
+        autoreset_mode: When the next episode begins: next step, same step, or by `reset_mask`.
+        copy: Whether each step returns new arrays; False: they are written again two steps later.
         render_mode: `rgb_array` or None.
         overlay: As for `TrackingEnv`.
-        workers: Number of processes that hold the environments, which changes no result; 0: they
-            are in this one.
+        workers: Number of processes with the environments, which changes no result; 0: this one.
         choices: Settings by keyword, see `eyas.envs.choice.EnvChoices`.
 
     Raises:

@@ -120,7 +120,12 @@ def words_among(
 
 
 def looks_in_words(model: int) -> tuple[str, ...]:
-    """Return the names of the colours that a model may have, in the order of its kind's."""
+    """Return the names of the colours that a model may have, in the order of its kind's.
+
+    For a robot, which always looks the same: what it looks like.
+    """
+    if MODELS[model].name in _ROBOTS:
+        return (_ROBOTS[MODELS[model].name],)
     colours: tuple[Colour, ...] = kind_of(model).colours
     return tuple(dict.fromkeys(colour_name(colour) for colour in colours))
 

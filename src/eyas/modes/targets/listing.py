@@ -26,6 +26,7 @@ class Entry:
     size: tuple[float, float, float]
     """Length, width and height [m]."""
     colours: tuple[str, ...]
+    """See `looks_in_words`."""
     motion: str
     triangles: tuple[int, int]
     """Number of triangles at the finest and at the coarsest level of detail."""
@@ -67,7 +68,7 @@ def _triangles(parts: Sequence[tuple[Mesh, ...]], level: int) -> int:
 
 def table() -> Table:
     """Return the table for the terminal."""
-    shown = Table("name", "kind", "size [m]", "motion", "triangles", "colours", box=None)
+    shown = Table("name", "kind", "size [m]", "motion", "triangles", "looks", box=None)
     for line in entries():
         size = " x ".join(f"{side:.2f}" for side in line.size)
         near, far = line.triangles

@@ -108,7 +108,7 @@ GHOST_DOG = Figure(
         duty=0.4,
         lift=0.06,
         slowest=0.25,
-        z=Swing(lean=-0.02, size=0.015, phase=0.55),
+        z=Swing(lean=-0.034, size=0.015, phase=0.55),
         pitch=Swing(size=0.08, phase=0.2),
     ),
 )

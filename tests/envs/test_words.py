@@ -1,0 +1,40 @@
+"""The target in words, among what is in view."""
+
+import numpy as np
+import pytest
+
+from eyas.envs.words import target_in_words
+from eyas.sim.build import build_simulation
+from eyas.sim.config import SimConfig
+from eyas.sim.worlds import each_alone
+from eyas.targets.words import phrases
+
+
+@pytest.fixture(scope="module")
+def simulation():
+    made = build_simulation(SimConfig(), each_alone(1))
+    made.reset(np.ones(1, np.bool_))
+    return made
+
+
+def own_phrases(simulation):
+    target = simulation.snapshot.targets.actor[0]
+    (model,), (colour,) = simulation.looks_around(0)
+    return phrases(int(model[target]), colour[target])
+
+
+def test_a_target_alone_in_view_is_called_by_its_class_and_colour(simulation):
+    simulation.snapshot.cameras.field_of_view[0] = 0.01
+    assert target_in_words(simulation, 0, 0.75) == own_phrases(simulation)[0]
+
+
+def test_where_all_look_alike_nothing_shorter_than_everything_is_said(simulation):
+    simulation.make_alike()
+    simulation.snapshot.cameras.field_of_view[0] = 3.1
+    target = simulation.snapshot.targets.actor[0]
+    actors, _ = simulation.actors_around(0)
+    away = actors.position[0] - simulation.snapshot.cameras.position[0]
+    ahead = (away @ simulation.snapshot.cameras.rotation[0][:, 0] > 0) & actors.present[0]
+    ahead[target] = False
+    assert ahead.any()
+    assert target_in_words(simulation, 0, 1.0) == own_phrases(simulation)[-1]

@@ -1,0 +1,45 @@
+"""`eyas targets`."""
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from eyas.core.errors import ConfigError, UnknownNameError
+from eyas.modes.targets.listing import entries
+from eyas.modes.targets.show import run
+from eyas.targets.catalogue import MODELS
+
+
+def test_the_list_has_every_model_with_fewer_triangles_from_afar():
+    lines = entries()
+    assert [line.name for line in lines] == [model.name for model in MODELS]
+    for line in lines:
+        near, far = line.triangles
+        assert 0 < far < near
+        assert line.colours
+    pedestrian = next(line for line in lines if line.name == "Pedestrian")
+    assert pedestrian.size == (0.4, 0.6, 1.8)
+    assert pedestrian.colours[0] == "green"
+    assert pedestrian.motion == "walks from point to point, 2 m/s"
+
+
+def test_unknown_names_and_endings_are_refused_before_anything_is_drawn(tmp_path):
+    with pytest.raises(UnknownNameError, match="did you mean 'Sojourner'"):
+        run("sojourner", tmp_path / "x.png")
+    with pytest.raises(ConfigError, match=r"allowed endings: \.png, \.gif"):
+        run("Create", tmp_path / "x.jpg")
+    with pytest.raises(ConfigError, match=r"allowed endings: \.png$"):
+        run("all", tmp_path / "x.gif")
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.slow
+def test_a_sheet_and_a_film_show_the_target_in_its_colour(tmp_path):
+    run("Shrimp", tmp_path / "sheet.png")
+    sheet = np.asarray(Image.open(tmp_path / "sheet.png")).astype(int)
+    blue = (sheet[..., 2] > 1.4 * sheet[..., 0]) & (sheet[..., 2] > 150) & (sheet[..., 1] > 80)
+    middles = blue[64:320].reshape(256, 8, 256)[64:192, :, 64:192]
+    assert (middles.sum(axis=(0, 2)) > 300).all()  # in each of the pictures all round
+    run("Shrimp", tmp_path / "film.gif")
+    with Image.open(tmp_path / "film.gif") as film:
+        assert film.n_frames == 72
