@@ -129,6 +129,7 @@ def test_libraries_find_the_attributes_that_they_ask_for():
     assert env.call("_max_episode_steps") == (375, 375)
     assert env.get_attr("render_mode") == ("rgb_array", "rgb_array")
     assert "citystreet" in env.call("task_description")[1]
+    assert env.call("task_description")[0].startswith("Keep the target, a")
     env.set_attr("mark", [3, 4])
     assert env.get_attr("mark") == (3, 4)
     frames, called = env.render(), env.call("render")

@@ -65,8 +65,13 @@ def test_what_the_reward_looks_for_is_a_metre_behind_a_vehicles_reference(model)
 
 
 def test_a_trailer_has_the_type_of_its_truck_as_in_the_original():
-    others = {model.name: model.typename for model in MODELS if model.name != model.typename}
+    others = {model.name: model.typename for model in VEHICLES if model.name != model.typename}
     assert others == {"TruckTrailerSimple": "TruckSimple", "TruckTankSimple": "TruckSimple"}
+
+
+def test_every_pedestrian_has_the_type_of_the_original():
+    people = {MODELS[m].typename for m in models_of(kind_index("Pedestrian"))}
+    assert people == {"Pedestrian"}
 
 
 def test_a_kind_is_added_behind_the_others(walker):

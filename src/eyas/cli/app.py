@@ -10,7 +10,19 @@ import typer
 import typer.core
 
 from eyas import __version__
-from eyas.cli import bench, cache, config, evaluate, maps, policies, serve, traffic, train, video
+from eyas.cli import (
+    bench,
+    cache,
+    config,
+    evaluate,
+    maps,
+    policies,
+    serve,
+    targets,
+    traffic,
+    train,
+    video,
+)
 from eyas.cli.said import say
 from eyas.core.errors import EyasError
 
@@ -54,6 +66,7 @@ app.add_typer(cache.app, name="cache")
 app.add_typer(config.app, name="config")
 app.add_typer(maps.app, name="maps")
 app.add_typer(policies.app, name="policies")
+app.add_typer(targets.app, name="targets")
 app.add_typer(traffic.app, name="traffic")
 
 

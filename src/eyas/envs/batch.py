@@ -13,6 +13,7 @@ from eyas.core.rng import EpisodeKey
 from eyas.envs.actions import make_actions
 from eyas.envs.information import Info, information
 from eyas.envs.observation import Observer
+from eyas.envs.words import target_in_words
 from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.messages import originals_named
 from eyas.settings.version_check import require_supported
@@ -148,6 +149,11 @@ class Batch:
     def info(self) -> Info:
         """Return the state of the trackers by name, see `eyas.envs.information`."""
         return information(self._simulation)
+
+    def words_of(self, tracker: int) -> str:
+        """Return the target of a tracker in words, see `eyas.envs.words`."""
+        camera = self.config.camera
+        return target_in_words(self._simulation, tracker, camera.height / camera.width)
 
     def render(
         self, chosen: NDArray[np.int32] | None = None, *, overlay: bool

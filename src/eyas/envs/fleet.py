@@ -112,6 +112,11 @@ class Fleet:
         picture: NDArray[np.uint8] = pictures[0]
         return picture
 
+    def words_of(self, index: int) -> str:
+        """Return the target of one in words, see `eyas.envs.words`."""
+        batch, tracker = self._place[index]
+        return batch.words_of(tracker)
+
     def picture(self, index: int, overlay: bool) -> NDArray[np.uint8]:
         """As `render`."""
         return self.render(index, overlay=overlay)

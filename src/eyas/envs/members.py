@@ -71,8 +71,10 @@ class Member:
     def task_description(self) -> str:
         """The task in a sentence; LeRobot's name."""
         world = self.config.world
+        target = self._whole.words_of(self.index)
         return (
-            f"Keep the moving target in view of the drone's camera ({world.map}, {world.weather})."
+            f"Keep the target, {target}, in view of the drone's camera "
+            f"({world.map}, {world.weather})."
         )
 
     @property

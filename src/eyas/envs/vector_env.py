@@ -190,6 +190,10 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         """Return the settings of one environment."""
         return self._fleet.config_of(index)
 
+    def words_of(self, index: int) -> str:
+        """Return the target of one environment in words that tell it from what else is in view."""
+        return self._fleet.words_of(index)
+
     def render_one(self, index: int) -> NDArray[np.uint8]:
         """Return the picture of one camera in its configured size, shape (H, W, 3)."""
         return self._fleet.render(index, overlay=self._overlay)

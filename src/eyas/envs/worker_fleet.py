@@ -98,12 +98,13 @@ class WorkerFleet:
 
     def render(self, index: int, *, overlay: bool) -> NDArray[np.uint8]:
         """Return the picture of a camera in its configured size, shape (H, W, 3)."""
-        for rows, calls in zip(self._rows, self._waiting, strict=True):
-            if rows.start <= index < rows.stop:
-                calls.append(("picture", (index - rows.start, overlay)))
-                worker = self._rows.index(rows)
-        picture: NDArray[np.uint8] = self._catch_up()[worker]
+        picture: NDArray[np.uint8] = self._ask_one("picture", index, overlay)
         return picture
+
+    def words_of(self, index: int) -> str:
+        """Return the target of one in words, see `eyas.envs.words`."""
+        words: str = self._ask_one("words_of", index)
+        return words
 
     def close(self) -> None:
         """End the processes."""
@@ -119,6 +120,14 @@ class WorkerFleet:
         """Make a call in each process, after those that wait; return the results."""
         self._wait(name, *arguments)
         return self._catch_up()
+
+    def _ask_one(self, name: str, index: int, *arguments: Any) -> Any:  # noqa: ANN401  # the same
+        """Make a call about one environment in its process; return the result."""
+        for rows, calls in zip(self._rows, self._waiting, strict=True):
+            if rows.start <= index < rows.stop:
+                calls.append((name, (index - rows.start, *arguments)))
+                worker = self._rows.index(rows)
+        return self._catch_up()[worker]
 
     def _catch_up(self) -> list[Any]:
         """Make the calls that wait; return the results of the last ones."""

@@ -17,6 +17,7 @@ from eyas.sim.worlds import Worlds
 from eyas.state.draw import DrawStage, Picture
 from eyas.state.motion import ActorState
 from eyas.state.snapshot import CameraState, Snapshot
+from eyas.targets.kind import Looks
 from eyas.task.packet_rows import PacketRows
 from eyas.task.rules import Rules, exact, make_rules
 from eyas.task.terms import RewardTerms
@@ -182,6 +183,10 @@ class Simulation:
         """
         tick = int(self.snapshot.episodes.tick[tracker])
         return self._worlds.actors_around(tracker, tick - ago)
+
+    def looks_around(self, tracker: int) -> Looks:
+        """Return the models and colours of all actors of a tracker's world, one world."""
+        return self._worlds.looks_around(tracker)
 
     def packets(self) -> tuple[Floats, Floats]:
         """Return copies of the basic packets (N, 22) and the reward packets (N, 60)."""

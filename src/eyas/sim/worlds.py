@@ -108,6 +108,11 @@ class Worlds:
         """Return the model of an actor around a tracker, an index into the catalogue."""
         return int(self._looks.model[self.of[tracker], actor])
 
+    def looks_around(self, tracker: int) -> Looks:
+        """Return the looks of all actors around a tracker, one world; they may change."""
+        world = self.of[tracker]
+        return Looks(self._looks.model[world : world + 1], self._looks.colour[world : world + 1])
+
     def object_ids(self, actors: NDArray[np.int32]) -> NDArray[np.int32]:
         """Return the object ids of actors."""
         return (actors + ACTOR_OBJECT).astype(np.int32)

@@ -1,8 +1,7 @@
-"""A stage: targets of one kind alone on a street, seen from any side."""
+"""A stage: a target alone on a street, seen from any side."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +11,7 @@ from eyas.sim.scenes import load_geometry, load_scene
 from eyas.state.draw import Picture, Views
 from eyas.state.motion import ActorState
 from eyas.state.scene import ACTOR_OBJECT
-from eyas.targets.catalogue import MODELS, kind_index
+from eyas.targets.catalogue import KINDS, MODELS, kind_index
 from eyas.targets.kind import Colour, Looks
 from eyas.targets.rig import Rigs
 from eyas.world.maps import MAPS
@@ -25,7 +24,7 @@ _MAP = "simpleway-lake"
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Pose:
-    """How the target is at an instant; it heads east."""
+    """How the target is at an instant; it heads along the street."""
 
     travelled: float = 0.0
     """[m]"""
@@ -50,24 +49,25 @@ class Camera:
 
 
 class Stage:
-    """Draws the models of one kind.
+    """Draws targets, one at a time.
 
     Args:
-        kind: Name of the kind.
+        kinds: Names of the kinds that it can draw.
     """
 
-    def __init__(self, kind: str) -> None:
-        recipe, self._kind = MAPS.get(_MAP), kind_index(kind)
+    def __init__(self, kinds: Sequence[str]) -> None:
+        recipe = MAPS.get(_MAP)
+        self._kinds = sorted(kind_index(kind) for kind in kinds)
         season = recipe.season(DAY.name)
-        self._scene = load_scene(_MAP, 0, season)
-        geometry = load_geometry(_MAP, 0, season, (self._kind,))
-        self._renderer = build_renderer(self._scene, geometry, recipe.light(DAY.name))
-
-    @cached_property
-    def _spot(self) -> NDArray[np.float64]:
-        """The middle of a lane, far from its ends [m], shape (3,)."""
-        points = self._scene.network.lane_points[: self._scene.network.lane_first[1]]
-        return np.array([*points.mean(axis=0), 0.0])
+        scene = load_scene(_MAP, 0, season)
+        geometry = load_geometry(_MAP, 0, season, tuple(self._kinds))
+        self._renderer = build_renderer(scene, geometry, recipe.light(DAY.name))
+        self._rigs = Rigs(np.array(self._kinds, np.int32))
+        lane = scene.network.lane_points[: scene.network.lane_first[1]]
+        self._spot = np.array([*lane.mean(axis=0), 0.0])
+        """The middle of a lane, far from its ends [m]."""
+        self._ahead = np.array([*(lane[-1] - lane[0]), 0.0])
+        self._ahead /= np.linalg.norm(self._ahead)
 
     def draw(
         self,
@@ -86,47 +86,45 @@ class Stage:
             size: Height and width of the pictures [pixels].
             samples: Samples for each pixel, 1 or 4.
         """
-        count = len(shots)
-        rigs = Rigs(np.array([self._kind], np.int32))
-        actors, movers = ActorState.create(count, 1), rigs.draw_list(count)
-        actors.position[:] = self._spot
-        actors.present[:] = True
+        count, kinds = len(shots), len(self._kinds)
+        actor = self._kinds.index(kind_index(MODELS[model].kind))
+        actors, movers = ActorState.create(count, kinds), self._rigs.draw_list(count)
+        actors.yaw[:] = np.arctan2(self._ahead[1], self._ahead[0])
+        actors.present[:, actor] = True
         for v, (pose, _) in enumerate(shots):
+            actors.position[v] = self._spot + pose.travelled * self._ahead
             actors.travelled[v], actors.speed[v] = pose.travelled, pose.speed
             actors.yaw_rate[v] = pose.yaw_rate
-        looks = Looks(
-            np.full((count, 1), model, np.int32),
-            np.tile(np.array(colour, np.float32), (count, 1, 1)),
-        )
-        rigs.pose(actors, looks, movers)
+        models = np.array([MODELS.index(KINDS[kind].models[0]) for kind in self._kinds], np.int32)
+        models[actor] = model
+        colours = np.tile(np.array(colour, np.float32), (count, kinds, 1))
+        self._rigs.pose(actors, Looks(np.tile(models, (count, 1)), colours), movers)
         picture = Picture.create(count, *size)
-        self._renderer.draw(
-            self._views(MODELS[model].size[2], [camera for _, camera in shots]),
-            movers, picture, samples,
-        )  # fmt: skip
+        middles = actors.position[:, actor] + np.array([0.0, 0.0, MODELS[model].size[2] / 2])
+        views = self._views(middles, actor, [camera for _, camera in shots])
+        self._renderer.draw(views, movers, picture, samples)
         assert picture.rgb is not None  # asked for
         return picture.rgb
 
-    def _views(self, height: float, cameras: Sequence[Camera]) -> Views:
-        looks = [_rotation(camera) for camera in cameras]
-        middle = self._spot + np.array([0.0, 0.0, height / 2])
-        away = [-look[:, 0] * camera.distance for look, camera in zip(looks, cameras, strict=True)]
-        fields = np.array([camera.field_of_view for camera in cameras])
+    def _views(self, middles: NDArray[np.float64], actor: int, cameras: Sequence[Camera]) -> Views:
+        yaw = float(np.arctan2(self._ahead[1], self._ahead[0]))
+        looks = np.array([_rotation(camera, yaw) for camera in cameras])
+        away = np.array([camera.distance for camera in cameras])
         return Views(
-            position=middle + np.array(away),
-            rotation=np.array(looks),
+            position=middles - away[:, None] * looks[:, :, 0],
+            rotation=looks,
             world=np.arange(len(cameras), dtype=np.int32),
-            subject=np.full(len(cameras), ACTOR_OBJECT, np.int32),
-            field_of_view=fields,
+            subject=np.full(len(cameras), ACTOR_OBJECT + actor, np.int32),
+            field_of_view=np.array([camera.field_of_view for camera in cameras]),
             instant=np.zeros(len(cameras)),
         )
 
 
-def _rotation(camera: Camera) -> NDArray[np.float64]:
-    """Return camera to world; columns are forward, left, up."""
-    level = np.cos(camera.elevation)
+def _rotation(camera: Camera, yaw: float) -> NDArray[np.float64]:
+    """Return camera to world for a target with this heading; columns are forward, left, up."""
+    level, bearing = np.cos(camera.elevation), camera.bearing + yaw
     forward = -np.array([
-        np.cos(camera.bearing) * level, np.sin(camera.bearing) * level, np.sin(camera.elevation),
+        np.cos(bearing) * level, np.sin(bearing) * level, np.sin(camera.elevation),
     ])  # fmt: skip
-    left = np.array([np.sin(camera.bearing), -np.cos(camera.bearing), 0.0])
+    left = np.array([np.sin(bearing), -np.cos(bearing), 0.0])
     return np.stack([forward, left, np.cross(forward, left)], axis=1)

@@ -5,6 +5,7 @@ same while it stands still. Angles: roll about x, pitch about y, yaw about z, so
 pitch lowers what is ahead. A cycle is one stride: every leg steps once.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -144,3 +145,9 @@ class Figure:
     """Radius of what spins [m]; 0: nothing does."""
     upright: bool = False
     """Whether it stays upright on slopes; else it tilts with the ground."""
+
+    @property
+    def period(self) -> float:
+        """Distance after which its motion repeats [m]."""
+        turn = 2.0 * math.pi * self.wheel_radius
+        return self.gait.stride if self.legs or not turn else turn

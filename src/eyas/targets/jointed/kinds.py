@@ -3,7 +3,7 @@
 from eyas.state.scene import ObjectClass
 from eyas.targets.config import TargetName
 from eyas.targets.jointed.figure import Figure
-from eyas.targets.jointed.models import PEDESTRIAN_COLOURS, ROBOTS, JointedModel, pedestrian
+from eyas.targets.jointed.models import PEDESTRIAN_COLOURS, pedestrian, robot
 from eyas.targets.jointed.people.people import PEOPLE, figure_of
 from eyas.targets.jointed.rig import JointedRig
 from eyas.targets.jointed.robots.aibo import AIBO
@@ -19,9 +19,9 @@ from eyas.targets.jointed.robots.shrimp import SHRIMP
 from eyas.targets.jointed.robots.sojourner import SOJOURNER
 from eyas.targets.kind import Colour, Kind
 
-__all__ = ["JOINTED_KINDS"]
+__all__ = ["FIGURES", "JOINTED_KINDS"]
 
-_ROBOTS: dict[str, tuple[Figure, Colour]] = {
+_ROBOTS: dict[TargetName, tuple[Figure, Colour]] = {
     TargetName.SHRIMP: (SHRIMP, (0.19, 0.69, 1.0)),
     TargetName.CREATE: (CREATE, (0.88, 0.88, 0.87)),
     TargetName.SOJOURNER: (SOJOURNER, (0.80, 0.55, 0.20)),
@@ -36,12 +36,18 @@ _ROBOTS: dict[str, tuple[Figure, Colour]] = {
 }
 """Figure and main colour of each robot."""
 
+FIGURES: dict[str, Figure] = {
+    **{person.name: figure_of(person) for person in PEOPLE},
+    **{name.value: figure for name, (figure, _) in _ROBOTS.items()},
+}
+"""The figure of each model, by its name."""
 
-def _robot(model: JointedModel) -> Kind:
-    figure, colour = _ROBOTS[model.kind]
+
+def _robot(name: TargetName) -> Kind:
+    figure, colour = _ROBOTS[name]
     return Kind(
-        name=model.kind,
-        models=(model,),
+        name=name.value,
+        models=(robot(name, figure.period),),
         colours=(colour,),
         object_class=ObjectClass.ROBOT,
         rig=lambda: JointedRig([figure]),
@@ -51,12 +57,12 @@ def _robot(model: JointedModel) -> Kind:
 
 _PEDESTRIAN = Kind(
     name=TargetName.PEDESTRIAN.value,
-    models=tuple(pedestrian(one.name, one.size) for one in PEOPLE),
+    models=tuple(pedestrian(one.name, one.size, FIGURES[one.name].period) for one in PEOPLE),
     colours=PEDESTRIAN_COLOURS,
     object_class=ObjectClass.PERSON,
-    rig=lambda: JointedRig([figure_of(one) for one in PEOPLE]),
+    rig=lambda: JointedRig([FIGURES[one.name] for one in PEOPLE]),
     keeps_colours=True,
 )
 
-JOINTED_KINDS: tuple[Kind, ...] = (_PEDESTRIAN, *map(_robot, ROBOTS))
+JOINTED_KINDS: tuple[Kind, ...] = (_PEDESTRIAN, *map(_robot, _ROBOTS))
 """The pedestrian, then the robots in the order of `TargetName`."""

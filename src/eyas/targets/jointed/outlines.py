@@ -112,7 +112,7 @@ def wheel(
         shell.box(low, high, materials[0])
 
 
-def bar(
+def bar(  # noqa: PLR0913  # as its neighbours
     shell: Shell,
     start: Sequence[float],
     end: Sequence[float],

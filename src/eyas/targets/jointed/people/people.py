@@ -35,7 +35,8 @@ PEOPLE: tuple[Person, ...] = (
            skin=(1.0, 0.75, 0.7), hair_colour=_BROWN, trousers=(0.24, 0.25, 0.50),
            shoes=(0.35, 0.22, 0.13)),
     Person("Pedestrian2", 1.68, 0.94, Garment.COAT, Hair.LONG,
-           skin=_PALE, hair_colour=_BROWN, trousers=_CHARCOAL, shoes=_LEATHER),
+           skin=_PALE, hair_colour=_BROWN, trousers=_CHARCOAL, shoes=_LEATHER,
+           length=0.43),
     Person("Pedestrian3", 1.77, 1.2, Garment.JACKET, Hair.SHORT,
            skin=_DARK, hair_colour=_BLACK, trousers=_BEIGE, shoes=_LEATHER),
     Person("Pedestrian4", 1.66, 0.92, Garment.DRESS, Hair.LONG,
@@ -47,7 +48,7 @@ PEOPLE: tuple[Person, ...] = (
            skin=_DEEP, hair_colour=_BLACK, trousers=_BEIGE, shoes=_WHITE),
     Person("Pedestrian7", 1.74, 1.08, Garment.COAT, Hair.HAT,
            skin=_PALE, hair_colour=(0.25, 0.22, 0.19), trousers=_CHARCOAL, shoes=_LEATHER,
-           length=0.43),
+           length=0.48),
     Person("Pedestrian8", 1.72, 1.02, Garment.JACKET, Hair.SHORT,
            skin=_TAN, hair_colour=_GREY, trousers=_OLIVE, shoes=_LEATHER),
 )  # fmt: skip

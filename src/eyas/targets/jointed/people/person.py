@@ -145,11 +145,11 @@ def _torso(shell: Shell, person: Person, detail: int) -> None:
     def rows(*of: tuple[float, float, float, float]) -> list[tuple[float, float, float, float]]:
         return [(z * s, x * g, y * g, ahead * s) for z, x, y, ahead in of]
 
-    hem = {Garment.COAT: -0.36, Garment.DRESS: -0.40, Garment.JACKET: -0.10}.get(
+    hem = {Garment.COAT: -0.24, Garment.DRESS: -0.28, Garment.JACKET: -0.10}.get(
         person.garment, -0.02
     )
     flare = 0.03 if hem < -0.2 else 0.0
-    low = (hem, 0.145 + 1.6 * flare, 0.185 + flare, -0.01)
+    low = (hem, 0.145 + 2.8 * flare, 0.185 + 1.3 * flare, 0.01)
     if hem > -0.2:
         bottom = (-0.12, 0.09, 0.15, 0.0)
         stack(shell, rows(bottom, (0.0, 0.125, 0.18, 0.0)), trousers, sides, box=0.25)
