@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 
 from eyas.core.pinhole import intrinsics
-from eyas.exports.frame import Action, Body, CameraPose, Frame, Movement, Subject
+from eyas.exports.frame import Action, Body, CameraPose, Frame, Subject
+from eyas.exports.movement import Movement
 from eyas.exports.writer import Episode, Run
 from eyas.sensors.config import LidarConfig
 from eyas.sim.config import SimConfig

@@ -14,13 +14,13 @@ from eyas.world.roads.areas import Street, streets
 
 __all__ = ["Roadside"]
 
-_ROUNDS: Final = 60
+_ROUNDS: Final = 200
 """How often places are drawn for those that have none yet."""
 
 _PATIENT: Final = 10
 """Rounds with the offset that is asked for; then it grows, by up to `_WIDER` more each round."""
 
-_WIDER: Final = 1.0
+_WIDER: Final = 0.3
 """[m]"""
 
 _APART: Final = 0.3
@@ -84,7 +84,7 @@ class Roadside:
         if len(open_):
             raise SpawnError(
                 f"{what}: {count} are asked for, but the map has room beside its roads for only "
-                f"{count - len(open_)}; allowed: fewer, or another objects.offset"
+                f"{count - len(open_)}; allowed: fewer"
             )
         return places
 

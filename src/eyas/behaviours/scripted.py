@@ -7,9 +7,10 @@ so it is known at any instant without stepping.
 from typing import Final, NamedTuple
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
-from eyas.behaviours.chain import Chain
+from eyas.behaviours.chain import Chain, chain_through, outline
 from eyas.behaviours.config import Behaviour
 from eyas.behaviours.habits import HABITS, STROLL, Habit
 from eyas.behaviours.lives import Lives
@@ -127,7 +128,12 @@ def _strolls(
 ) -> list[tuple[Chain, Habit]]:
     """Return ways on pavements; all who go the same way are equally fast, so none overtakes."""
     scene, radius = ground.scene, 0.5 * troop.breadth + _ROOM
-    ways = pavement_ways(scene.network, scene.size, ground.obstacles, ground.surface, radius)
+    found = pavement_ways(scene.network, scene.size, ground.obstacles, ground.surface, radius)
+    once = [outline(chain_through(way.corners, habit.radius, 1)) for way in found]
+    # A rounded corner may come too near to what the way leads round.
+    lines = np.array([shapely.LineString(points) for points in once], object)
+    blocked = ground.obstacles.blocked(lines, 0.5 * troop.breadth)
+    ways = [way for way, stopped in zip(found, blocked.tolist(), strict=True) if not stopped]
     if not ways:
         raise SpawnError(
             f"{troop.setting}: behaviour 'pavement': '{scene.name}' has no pavement; "

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
+from eyas.exports.movement import Movement, box_corners
 from eyas.state.draw import Picture
 from eyas.state.scene import ACTOR_OBJECT, ObjectClass
 from eyas.state.snapshot import CameraState, Snapshot, TrackerState
@@ -21,7 +22,6 @@ __all__ = [
     "Body",
     "CameraPose",
     "Frame",
-    "Movement",
     "Output",
     "Subject",
     "frame_of",
@@ -97,7 +97,7 @@ class Subject:
     """[m/s], shape (3,)."""
     yaw: float
     """Heading, counter-clockwise from east [rad]."""
-    motion: "Movement"
+    motion: Movement
     box: NDArray[np.int32]
     """Extent in the picture, hidden parts included, clipped to the picture: left, top, right,
     bottom [pixels], the last two exclusive; all 0 outside the picture; shape (4,)."""
@@ -113,35 +113,8 @@ class Subject:
 
     @property
     def corners(self) -> Floats:
-        """Corners of its 3D box: four on the ground, counter-clockwise from the right of its tail,
-        and those above them [m], shape (8, 3).
-        """
-        length, width, height = self.size.tolist()
-        pitch, (cosine, sine) = self.motion.slope, (math.cos(self.yaw), math.sin(self.yaw))
-        ahead = np.array([cosine * math.cos(pitch), sine * math.cos(pitch), math.sin(pitch)])
-        left, up = np.array([-sine, cosine, 0.0]), np.array([0.0, 0.0, 1.0])
-        foot = self.centre - [0.0, 0.0, self.motion.rise]
-        ends = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
-        ground = foot + 0.5 * (length * ends[:, :1] * ahead + width * ends[:, 1:] * left)
-        return np.concatenate([ground, ground + height * up])
-
-
-@dataclass(frozen=True, slots=True)
-class Movement:
-    """How a moving object moves, and stands on the ground."""
-
-    acceleration: Floats
-    """World frame, horizontal [m/s^2], shape (3,)."""
-    yaw_rate: float
-    """Counter-clockwise [rad/s]."""
-    slope: float
-    """Pitch of the ground along its heading, positive up [rad]."""
-    travelled: float
-    """Way since it entered the world [m]."""
-    direction: TargetDirection
-    """Its turn."""
-    rise: float
-    """Height of its reference point above the ground [m]."""
+        """Corners of its 3D box, see `box_corners`."""
+        return box_corners(self.centre, self.size, self.yaw, self.motion)
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,8 @@ import numpy as np
 
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.jit import interpreted
-from eyas.exports.frame import Movement, Subject
+from eyas.exports.frame import Subject
+from eyas.exports.movement import Movement
 from eyas.sim.simulation import Simulation
 from eyas.state.draw import Picture
 from eyas.state.motion import ActorState
