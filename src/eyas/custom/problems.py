@@ -74,7 +74,7 @@ def of_trajectory(
             fatal=True,
         )
     beyond = np.abs(trajectory.position[:, :2]) > 0.5 * np.array(size)
-    outside: NDArray[np.bool_] = beyond.any(axis=1)
+    outside = beyond[:, 0] | beyond[:, 1]
     if outside.any():
         extent = " x ".join(f"{length:.0f}" for length in size)
         yield Finding(

@@ -55,7 +55,7 @@ def _findings(what: str, config: CustomConfig, map_name: str) -> Iterator[Findin
     elif ":" in what:
         yield from _class(what, map_name)
     else:
-        names = dict.fromkeys(one.name for one in (*KINDS, *MODELS))
+        names = dict.fromkeys([*(kind.name for kind in KINDS), *(model.name for model in MODELS)])
         if what not in names:
             others = f"(nor a file {', '.join(ENDINGS)}, .csv, nor 'package.module:Class')"
             raise UnknownNameError("target", what, names, others)
