@@ -4,7 +4,6 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from eyas.custom.mesh_file import LARGEST, Triangles
 from eyas.custom.trajectory import JUMP, Trajectory
