@@ -6,8 +6,8 @@ Settings alone do it, so every command takes it:
 
     eyas video --set custom='{"mesh": "examples/own_mesh.obj", "scale": 0.01}'
 
-`eyas targets check examples/own_mesh.obj` tells whether a file can be used. Reading meshes needs the
-extra `mesh`.
+`eyas targets check examples/own_mesh.obj --scale 0.01` tells whether a file can be used. Reading
+meshes needs the extra `mesh`.
 """
 
 from pathlib import Path
@@ -29,9 +29,9 @@ ROBOT = {
 def main() -> None:
     """Fly over the robot for a second."""
     env = gymnasium.make("eyas/citystreet-day-v0", config={"custom": ROBOT})
-    observation, info = env.reset(seed=1)
+    observation, _ = env.reset(seed=1)
     for _ in range(125):
-        observation, reward, ended, cut, info = env.step(env.action_space.sample())
+        observation, reward, ended, cut, _ = env.step(env.action_space.sample())
         if ended or cut:
             break
     print(f"{observation.shape} pixels, reward {reward:.2f}")

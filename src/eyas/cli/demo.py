@@ -52,14 +52,12 @@ def command(  # noqa: PLR0913  # one parameter for each option
 ) -> None:
     """Fly a drone by keyboard through any map, in the browser, and watch the reward."""
     from eyas.settings.file import load_settings
-    from eyas.settings.version_check import require_supported
 
     if window and headless:
         raise ConfigError("--window and --headless cannot be used together")
     if seconds is not None and not (window or headless):
         raise ConfigError("--seconds: only with --headless or --window")
     settings = load_settings(chosen_file(config, preset), gathered(set_, map_name, weather, seed))
-    require_supported(settings)
     from eyas.modes.demo import run as demo  # after all checks
 
     cockpit = demo.cockpit_of(settings, policy)

@@ -27,6 +27,36 @@ def list_targets() -> None:
     Console(width=_WIDTH).print(table())
 
 
+@app.command("check")
+def check_target(
+    what: Annotated[
+        str,
+        typer.Argument(
+            help="A name of the list, a mesh file, a trajectory (.csv), or package.module:Class."
+        ),
+    ],
+    scale: Annotated[float, typer.Option("--scale", help="Metres in the file's unit.")] = 1.0,
+    up: Annotated[str | None, typer.Option("--up", help="Axis that is up: y or z.")] = None,
+    most_triangles: Annotated[
+        int | None, typer.Option("--most-triangles", help="Simplify larger meshes to so many.")
+    ] = None,
+    map_name: Annotated[
+        str, typer.Option("--map", help="Map on which it is to move.")
+    ] = "citystreet",
+) -> None:
+    """Tell whether a target can be used, and why not; the exit code is 1 if it cannot."""
+    from eyas.core.config import validated
+    from eyas.custom.config import CustomConfig
+    from eyas.modes.targets.check import check
+
+    said = {"path": "-", "scale": scale, "up": up, "most_triangles": most_triangles}
+    lines, usable = check(what, validated(CustomConfig, said, "custom"), map_name)
+    for line in lines:
+        typer.echo(line)
+    if not usable:
+        raise typer.Exit(1)
+
+
 @app.command("show")
 def show_target(
     name: Annotated[str, typer.Argument(help="Name of a model or a kind, or `all`.")],

@@ -13,6 +13,7 @@ from eyas.core.registry import Registry
 from eyas.custom.config import CustomConfig
 from eyas.custom.mesh_file import LARGEST, loaded
 from eyas.custom.own import OwnTarget, Ride, Shaped
+from eyas.custom.problems import of_shape, worst
 from eyas.custom.rig import OwnRig
 from eyas.custom.shape import levels_of_detail, simplified
 from eyas.state.mesh import Mesh
@@ -80,14 +81,10 @@ def own_target(config: CustomConfig) -> OwnTarget:
     if config.path is not None:
         return _made(config.path)
     shape = loaded(config)
-    if config.most_triangles is not None:
+    if config.most_triangles is not None and np.isfinite(shape.points).all():
         shape = simplified(shape, config.most_triangles)
-    count = len(shape.corners)
-    if count > LARGEST:
-        raise ConfigError(
-            f"custom.mesh: {config.mesh}: {count} triangles; allowed: up to {LARGEST}; simplify it "
-            f"with custom.most_triangles={LARGEST // 10}"
-        )
+    if problem := worst(of_shape(shape)):
+        raise ConfigError(f"custom.mesh: {config.mesh}: {problem}")
     return Shaped(shape.size, levels_of_detail(shape))
 
 

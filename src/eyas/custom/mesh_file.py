@@ -109,6 +109,8 @@ def placed(shape: Triangles, up: str, turn: float, scale: float) -> Triangles:
     cosine, sine = np.cos(turn), np.sin(turn)
     points = points @ np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]]).T
     used = points[shape.corners.ravel()]
+    if not np.isfinite(used).all():
+        return replace(shape, points=points)  # `eyas.custom.problems` tells it
     low, high = used.min(axis=0), used.max(axis=0)
     middle = np.array([*(0.5 * (low + high))[:2], low[2]])
     return replace(shape, points=points - middle)
@@ -130,6 +132,12 @@ def _colours(part: Any, count: int) -> NDArray[np.float64]:  # noqa: ANN401
         return _textured(visual, np.asarray(part.faces), count)
     if not visual.defined:
         return np.tile(_PLAIN, (count, 1))
+    if visual.kind == "vertex":
+        corners = np.asarray(visual.vertex_colors, np.float64)[np.asarray(part.faces)]
+        return np.asarray(corners.mean(axis=1)[:, :3] / 255.0, np.float64)
+    if visual.kind == "vertex":
+        corners = np.asarray(visual.vertex_colors, np.float64)[np.asarray(part.faces)]
+        return np.asarray(corners.mean(axis=1)[:, :3] / 255.0, np.float64)
     return np.asarray(visual.face_colors, np.float64)[:, :3] / 255.0
 
 

@@ -63,8 +63,7 @@ def custom_motion(
 def _troop(config: CustomConfig, name: str, places: Places) -> Troop:
     speed, size = config.speed, MODELS[models_of(kind_index(name)).start].size
     breadth = float(np.hypot(*size[:2]))
-    radius = max(0.5, 0.5 * breadth, 0.3 * speed * speed)
-    habit = Habit(config.behaviour, speed, max(1.0, 0.5 * speed), min(2.0, speed / radius), radius)
+    habit = Habit(config.behaviour, speed, max(1.0, speed), 2.0, max(0.5, breadth))
     return Troop(name, breadth, config.behaviour, *places, "objects.max_count", habit)
 
 

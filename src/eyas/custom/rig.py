@@ -56,14 +56,13 @@ class OwnRig:
         local = self._target.pose(Ride(*(array[:, who].ravel() for array in numbers)))
         local = np.reshape(local, (*shape, self.slots, 3, 4))
         body = _frames(actors.yaw[:, who], actors.slope[:, who])[..., None, :, :]
-        turned = body @ local[..., :3]
-        moved = (body @ local[..., 3:])[..., 0] + actors.position[:, who, None]
+        poses = body @ local
+        poses[..., 3] += actors.position[:, who, None]
         present = actors.present[:, who]
         for part in range(self.slots):
             slot = group.slot + part
             out.part[:, slot] = np.where(present, group.first_part + part, -1)
-            out.pose[:, slot, :, :3] = turned[:, :, part]
-            out.pose[:, slot, :, 3] = moved[:, :, part]
+            out.pose[:, slot] = poses[:, :, part]
             out.colour[:, slot] = looks.colour[:, who]
 
 

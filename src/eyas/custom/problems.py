@@ -1,0 +1,117 @@
+"""What is wrong with a shape or a trajectory, one line each."""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+
+from eyas.custom.mesh_file import LARGEST, Triangles
+from eyas.custom.trajectory import JUMP, Trajectory
+
+__all__ = ["Finding", "of_shape", "of_trajectory", "worst"]
+
+_LARGE, _SMALL = 60.0, 0.05
+"""Lengths from which on a target is hardly one: a unit is suspected [m]."""
+
+_USUAL = 2.0
+"""Length of a usual target [m]."""
+
+_UNITS = {0.001: "millimetres", 0.01: "centimetres", 1000.0: "kilometres"}
+
+_GAP = 5.0
+"""Time between two points from which on a gap is told [s]."""
+
+
+class Finding(NamedTuple):
+    """Something to tell."""
+
+    text: str
+    fatal: bool
+    """Whether the target cannot be used."""
+
+
+def worst(findings: Iterator[Finding]) -> str:
+    """Return the first that is fatal; empty if none is."""
+    return next((finding.text for finding in findings if finding.fatal), "")
+
+
+def of_shape(shape: Triangles) -> Iterator[Finding]:
+    """Yield what is wrong with a shape in metres."""
+    if not np.isfinite(shape.points[shape.corners]).all():
+        bad = int((~np.isfinite(shape.points)).any(axis=1).sum())
+        yield Finding(f"{bad} vertices are not finite numbers (NaN)", fatal=True)
+        return
+    count, size = len(shape.corners), shape.size
+    if count > LARGEST:
+        advice = f"simplify it with custom.most_triangles={LARGEST // 10}"
+        yield Finding(f"{count} triangles; allowed: up to {LARGEST}; {advice}", fatal=True)
+    told = " x ".join(f"{length:.4g}" for length in size)
+    if min(size) < 1e-6 * max(max(size), 1e-9):
+        yield Finding(f"it has no size: {told} m", fatal=True)
+        return
+    if max(size) > _LARGE or max(size) < _SMALL:
+        yield Finding(f"{told} m: {_unit(max(size))}", fatal=max(size) > 1000.0)
+    if count <= LARGEST:
+        yield from _surface(shape)
+
+
+def of_trajectory(
+    trajectory: Trajectory, size: tuple[float, float], map_name: str
+) -> Iterator[Finding]:
+    """Yield what is wrong with a trajectory on a map.
+
+    Args:
+        trajectory: The trajectory.
+        size: Extent of the map in x and y; its middle is the origin [m].
+        map_name: Its name.
+    """
+    for k in trajectory.jumps().tolist()[:3]:
+        step = float(np.hypot(*(trajectory.position[k] - trajectory.position[k - 1])[:2]))
+        seconds = trajectory.time[k] - trajectory.time[k - 1]
+        yield Finding(
+            f"point {k + 1}: it jumps {step:.0f} m in {seconds:g} s; allowed: up to {JUMP:g} m/s",
+            fatal=True,
+        )
+    beyond = np.abs(trajectory.position[:, :2]) > 0.5 * np.array(size)
+    outside = beyond[:, 0] | beyond[:, 1]
+    if outside.any():
+        extent = " x ".join(f"{length:.0f}" for length in size)
+        yield Finding(
+            f"{int(outside.sum())} of {len(outside)} points are outside the map '{map_name}' "
+            f"({extent} m about the origin), first point {int(np.argmax(outside)) + 1}",
+            fatal=bool(outside.all()),
+        )
+    gaps = np.flatnonzero(np.diff(trajectory.time) > _GAP)
+    if len(gaps):
+        yield Finding(
+            f"{len(gaps)} gaps of more than {_GAP:g} s, where a curve is guessed; the first after "
+            f"point {int(gaps[0]) + 1}",
+            fatal=False,
+        )
+
+
+def _unit(longest: float) -> str:
+    """Return a guess at the unit of a length: that of which it would be the most usual one."""
+    scale = min(_UNITS, key=lambda scale: abs(np.log(longest * scale / _USUAL)))
+    return f"in {_UNITS[scale]}? then use custom.scale={scale:g}"
+
+
+def _surface(shape: Triangles) -> Iterator[Finding]:
+    """Yield what is wrong with the surface: holes, and the wrong side outside."""
+    extent = max(shape.size)
+    _, place = np.unique(np.rint(shape.points / (1e-6 * extent)), axis=0, return_inverse=True)
+    corners = place.ravel()[shape.corners]
+    a, b, c = corners.T
+    flat = (a == b) | (b == c) | (c == a)
+    edges = np.concatenate([corners[~flat][:, pair] for pair in ([0, 1], [1, 2], [2, 0])])
+    _, times = np.unique(np.sort(edges, axis=1), axis=0, return_counts=True)
+    single = int((times == 1).sum())
+    if single:
+        yield Finding(
+            f"it is not closed: {single} edges have one triangle only, and behind them one looks "
+            "through it",
+            fatal=False,
+        )
+    p, q, r = np.moveaxis(shape.points[shape.corners], 1, 0)
+    if not single and float(np.einsum("ij,ij->", p, np.cross(q, r))) < 0.0:
+        yield Finding("it is inside out: its triangles run clockwise from outside", fatal=False)

@@ -1,0 +1,104 @@
+"""Tell whether a target can be used, and why not."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from eyas.core.errors import EyasError, UnknownNameError
+from eyas.core.files import user_path
+from eyas.core.rng import stream
+from eyas.custom.config import CustomConfig
+from eyas.custom.kind import own_target
+from eyas.custom.mesh_file import ENDINGS, loaded
+from eyas.custom.own import MovesItself
+from eyas.custom.problems import Finding, of_shape, of_trajectory
+from eyas.custom.shape import simplified
+from eyas.custom.trajectory import Trajectory, read_trajectory
+from eyas.sim.scenes import load_scene
+from eyas.targets.catalogue import KINDS, MODELS
+
+__all__ = ["check"]
+
+_SECONDS = 60
+"""Time for which a motion of one's own is tried [s]."""
+
+
+def check(what: str, config: CustomConfig, map_name: str) -> tuple[list[str], bool]:
+    """Return lines about a target, and whether it can be used.
+
+    Args:
+        what: A name of the catalogue, a file, or `package.module:Class`.
+        config: How to read it.
+        map_name: Map on which it is to move.
+
+    Raises:
+        UnknownNameError: There is no such name.
+    """
+    try:
+        findings = list(_findings(what, config, map_name))
+    except UnknownNameError:
+        raise
+    except EyasError as error:
+        findings = [Finding(str(error), fatal=True)]
+    usable = not any(finding.fatal for finding in findings)
+    lines = [f"{'not usable' if one.fatal else 'note'}: {one.text}" for one in findings]
+    return [*lines, *([f"usable: {what}"] if usable else [])], usable
+
+
+def _findings(what: str, config: CustomConfig, map_name: str) -> Iterator[Finding]:
+    path = user_path(what)
+    if path.suffix.lower() in ENDINGS:
+        yield from _mesh(config.model_copy(update={"mesh": what, "path": None}))
+    elif path.suffix.lower() == ".csv":
+        yield from _trajectory(path, map_name)
+    elif ":" in what:
+        yield from _class(what, map_name)
+    else:
+        names = dict.fromkeys([*(kind.name for kind in KINDS), *(model.name for model in MODELS)])
+        if what not in names:
+            others = f"(nor a file {', '.join(ENDINGS)}, .csv, nor 'package.module:Class')"
+            raise UnknownNameError("target", what, names, others)
+
+
+def _mesh(config: CustomConfig) -> Iterator[Finding]:
+    shape = loaded(config)
+    whole = len(shape.corners)
+    if config.most_triangles is not None and np.isfinite(shape.points).all():
+        shape = simplified(shape, config.most_triangles)
+    yield from of_shape(shape)
+    simpler = f" of {whole}" if len(shape.corners) < whole else ""
+    size = " x ".join(f"{length:.3g}" for length in shape.size)
+    colours = len(np.unique(shape.colours, axis=0))
+    yield Finding(
+        f"{len(shape.corners)}{simpler} triangles, {colours} colours, {size} m", fatal=False
+    )
+
+
+def _trajectory(path: Path, map_name: str) -> Iterator[Finding]:
+    trajectory = read_trajectory(path)
+    yield from of_trajectory(trajectory, load_scene(map_name).size, map_name)
+    step = np.hypot(*np.diff(trajectory.position[:, :2], axis=0).T)
+    speed = step / np.diff(trajectory.time)
+    yield Finding(
+        f"{len(trajectory.time)} points in {trajectory.time[-1]:g} s, {step.sum():.0f} m, "
+        f"{speed.max():.1f} m/s at most",
+        fatal=False,
+    )
+
+
+def _class(path: str, map_name: str) -> Iterator[Finding]:
+    target = own_target(CustomConfig(path=path))
+    size = " x ".join(f"{length:.3g}" for length in target.size)
+    yield Finding(f"{len(target.parts())} parts, {size} m", fatal=False)
+    if isinstance(target, MovesItself):
+        scene, time = load_scene(map_name), np.arange(10 * _SECONDS) / 10.0
+        tracks = np.asarray(target.tracks(scene, time, 1, stream(0, "custom")), np.float64)
+        if tracks.shape != (len(time), 1, 3) or not np.isfinite(tracks).all():
+            yield Finding(
+                f"tracks(...) returned an array of shape {tracks.shape}; allowed: finite numbers "
+                f"of shape {(len(time), 1, 3)}",
+                fatal=True,
+            )
+            return
+        yield from of_trajectory(Trajectory(time, tracks[:, 0], None), scene.size, map_name)

@@ -1,0 +1,127 @@
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from eyas.core.errors import ConfigError, DataFileError
+from eyas.custom.config import CustomConfig
+from eyas.custom.kind import kind_name_of
+from eyas.custom.mesh_file import Triangles, loaded
+from eyas.custom.problems import of_shape
+from eyas.custom.shape import levels_of_detail, mesh_of, simplified
+from eyas.modes.targets.check import check
+
+trimesh = pytest.importorskip("trimesh")
+
+SIZE = (2.0, 1.0, 0.5)
+RED = [200, 20, 10, 255]
+
+
+@pytest.fixture(params=["glb", "obj", "stl", "ply"])
+def box(request, tmp_path: Path) -> Path:
+    """A red box, 2 m long; in a GLB file y is up and z ahead."""
+    shape = trimesh.creation.box((1.0, 0.5, 2.0) if request.param == "glb" else SIZE)
+    if request.param != "stl":
+        shape.visual.vertex_colors = RED
+    path = tmp_path / f"box.{request.param}"
+    shape.export(path)
+    return path
+
+
+def ball(subdivisions: int) -> Triangles:
+    shape = trimesh.creation.icosphere(subdivisions)
+    colours = np.tile([0.2, 0.4, 0.6], (len(shape.faces), 1))
+    return Triangles(np.array(shape.vertices), np.array(shape.faces), colours)
+
+
+def test_a_file_stands_on_the_ground_and_looks_along_x(box: Path):
+    shape = loaded(CustomConfig(mesh=str(box)))
+    np.testing.assert_allclose(shape.size, SIZE, atol=1e-6)
+    np.testing.assert_allclose(shape.points.min(axis=0), [-1.0, -0.5, 0.0], atol=1e-6)
+    if box.suffix != ".stl":
+        np.testing.assert_allclose(shape.colours, np.array([RED[:3]] * 12) / 255.0, atol=0.03)
+    turned = loaded(CustomConfig(mesh=str(box), turn=np.pi / 2, scale=0.1))
+    np.testing.assert_allclose(turned.size, [0.1, 0.2, 0.05], atol=1e-6)
+    assert list(of_shape(shape)) == []
+
+
+def test_a_texture_becomes_colours(tmp_path: Path):
+    from PIL import Image
+
+    halves = np.zeros((8, 8, 3), np.uint8)
+    halves[:, :4], halves[:, 4:] = (255, 0, 0), (0, 0, 255)
+    points = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [2, 0, 0], [2, 1, 0]]
+    uv = np.array([[x / 2, y] for x, y, _ in points], np.float64)
+    material = trimesh.visual.material.PBRMaterial(baseColorTexture=Image.fromarray(halves))
+    visual = trimesh.visual.TextureVisuals(uv=uv, material=material)
+    faces = [[0, 1, 2], [0, 2, 3], [1, 4, 5], [1, 5, 2]]
+    trimesh.Trimesh(points, faces, visual=visual, process=False).export(tmp_path / "flag.glb")
+    colours = loaded(CustomConfig(mesh=str(tmp_path / "flag.glb"))).colours
+    np.testing.assert_allclose(colours[:2], [[1, 0, 0]] * 2, atol=0.02)
+    np.testing.assert_allclose(colours[2:], [[0, 0, 1]] * 2, atol=0.02)
+
+
+def test_edges_stay_sharp_and_curves_are_smooth():
+    box = trimesh.creation.box(SIZE)
+    sharp = mesh_of(Triangles(box.vertices, box.faces, np.ones((12, 3))))
+    assert len(sharp.positions) == 24  # three normals at each corner
+    smooth = mesh_of(ball(3))
+    np.testing.assert_allclose(smooth.normals, smooth.positions, atol=0.02)
+    assert len(smooth.positions) == 642
+
+
+def test_simpler_meshes_keep_their_size():
+    shape = ball(4)
+    for most in (1500, 300, 60):
+        simpler = simplified(shape, most)
+        assert 0.4 * most < len(simpler.corners) <= most
+        np.testing.assert_allclose(simpler.size, shape.size, rtol=0.25)
+    counts = [len(mesh.triangles) for mesh in levels_of_detail(shape)]
+    assert counts[0] == 5120 > counts[1] > counts[2] > 60
+
+
+def told(shape: Triangles) -> list[str]:
+    return [finding.text for finding in of_shape(shape)]
+
+
+def test_what_is_wrong_with_a_shape_is_told():
+    good = ball(2)
+    assert told(good) == []
+    holed = Triangles(good.points, good.corners[3:], good.colours[3:])
+    assert told(holed)[0].startswith("it is not closed: ")
+    inside_out = Triangles(good.points, good.corners[:, ::-1], good.colours)
+    assert told(inside_out) == ["it is inside out: its triangles run clockwise from outside"]
+    assert (
+        "in millimetres? then use custom.scale=0.001"
+        in told(Triangles(good.points * 900.0, good.corners, good.colours))[0]
+    )
+    broken = good.points.copy()
+    broken[7, 1] = np.nan
+    assert told(Triangles(broken, good.corners, good.colours)) == [
+        "1 vertices are not finite numbers (NaN)"
+    ]
+    flat = Triangles(good.points * [1, 1, 0], good.corners, good.colours)
+    assert told(flat)[0].startswith("it has no size: ")
+
+
+def test_a_mesh_that_is_too_large_is_refused_and_simplified_on_request(tmp_path: Path):
+    path = tmp_path / "fine.stl"
+    trimesh.creation.icosphere(7).export(path)  # 327,680 triangles
+    with pytest.raises(ConfigError, match=r"327680 triangles; allowed: up to 200000; simplify"):
+        kind_name_of(CustomConfig(mesh=str(path)))
+    lines, usable = check(str(path), CustomConfig(path="-", most_triangles=2000), "citystreet")
+    assert usable
+    assert " of 327680 triangles" in lines[0]
+
+
+def test_files_that_are_none_are_told_in_one_line(tmp_path: Path):
+    (tmp_path / "noise.glb").write_bytes(b"glTF and then nothing")
+    (tmp_path / "empty.obj").write_text("# nothing\n")
+    for name, message in (
+        ("missing.stl", "no such file"),
+        ("noise.glb", "cannot read as a mesh"),
+        ("empty.obj", "empty.obj: "),
+    ):
+        with pytest.raises(DataFileError, match=message) as caught:
+            loaded(CustomConfig(mesh=str(tmp_path / name)))
+        assert "\n" not in str(caught.value)

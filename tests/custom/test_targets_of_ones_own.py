@@ -1,0 +1,178 @@
+"""Targets of one's own, from the settings to the picture."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from eyas.core.config import validated
+from eyas.core.errors import ConfigError, UnknownNameError
+from eyas.custom.config import CustomConfig
+from eyas.modes.targets.check import check
+from eyas.sim.build import build_simulation
+from eyas.sim.config import SimConfig
+from eyas.sim.simulation import Simulation
+from eyas.sim.worlds import together
+from eyas.state.draw import Picture
+from eyas.state.scene import ACTOR_OBJECT, ObjectClass
+from eyas.targets.catalogue import MODELS
+from eyas.targets.kind import Model
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+
+@pytest.fixture(autouse=True)
+def importable(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.syspath_prepend(EXAMPLES)
+    yield
+    for name in ("own_mesh", "own_target", "own_track"):
+        sys.modules.pop(name, None)
+
+
+def begun(**settings: object) -> Simulation:
+    start = {"pitch": 1.37, "height": 9.0}
+    config = validated(SimConfig, {"start": start, **settings})
+    simulation = build_simulation(config, together(1))
+    simulation.reset()
+    return simulation
+
+
+def seen(simulation: Simulation) -> tuple[Model, Picture, np.ndarray]:
+    """Return the target's model, a picture and where the target is in it."""
+    picture = Picture.create(1, 60, 80, object_id=True, class_id=True)
+    simulation.draw(np.zeros(1, np.int32), picture)
+    targets = simulation.snapshot.targets
+    shown = picture.object_id[0] == ACTOR_OBJECT + targets.actor[0]
+    assert shown.any()
+    return MODELS[targets.model[0]], picture, shown
+
+
+def test_a_mesh_file_is_followed_and_drawn():
+    pytest.importorskip("trimesh")
+    import own_mesh
+
+    simulation = begun(custom=own_mesh.ROBOT)
+    simulation.carry(500)
+    model, picture, shown = seen(simulation)
+    assert model.typename == "own_mesh"
+    np.testing.assert_allclose(model.size, (0.9, 0.68, 1.3), atol=1e-6)
+    assert set(picture.class_id[0][shown]) == {ObjectClass.ROBOT}
+    speed = simulation.traffic.motion.table["velocity_x"]
+    assert np.abs(speed).max() <= 1.51
+    assert np.abs(speed).max() > 1.0
+
+
+def test_a_class_brings_its_parts_and_its_motion():
+    import own_target
+
+    simulation = begun(
+        custom={"path": "own_target:Sprinkler"}, objects={"max_count": 3}, world={"map": "farmland"}
+    )
+    before = simulation.snapshot.targets.position[0].copy()
+    simulation.carry(500)
+    model, picture, shown = seen(simulation)
+    assert (model.typename, model.size) == ("Sprinkler", own_target.Sprinkler.size)
+    moved = np.hypot(*(simulation.snapshot.targets.position[0] - before)[:2])
+    assert moved == pytest.approx(2.0, rel=0.02)  # 2 m/s for a second
+    assert simulation.traffic.actors == 3
+    arm = picture.rgb[0][shown].astype(int)
+    assert (arm[:, 0] > 1.5 * arm[:, 2]).any()  # yellow
+    table = begun(
+        custom={"path": "own_target:Sprinkler"}, objects={"max_count": 3}, world={"map": "farmland"}
+    ).traffic.motion.table
+    np.testing.assert_array_equal(table, simulation.traffic.motion.table)
+
+
+def test_a_trajectory_moves_any_body_and_begins_again():
+    import own_track
+
+    points = np.genfromtxt(EXAMPLES / "own_track.csv", delimiter=",", names=True)
+    last = round(points["t"][-1] * 10)
+    for body in ("Pedestrian", "bus"):
+        simulation = begun(custom={**own_track.WALK, "body": body})
+        assert seen(simulation)[0].kind == body
+        table = simulation.traffic.motion.table[:, 0]
+        np.testing.assert_allclose(table["x"][: last + 1 : 10], points["x"], atol=1e-3)
+        assert table["present"][last]
+        assert not table["present"][last + 1]
+        assert table["x"][last + 2] == table["x"][0]
+        assert (np.diff(table["travelled"]) >= 0.0).all()
+
+
+@pytest.mark.parametrize("name", ["own_mesh", "own_target", "own_track"])
+def test_the_examples_run(name: str, capsys: pytest.CaptureFixture[str]):
+    if name == "own_mesh":
+        pytest.importorskip("trimesh")
+    __import__(name).main()
+    assert "pixels, reward" in capsys.readouterr().out
+
+
+class Sizeless:
+    size = (1.0, 0.0, 1.0)
+
+    def parts(self):
+        return []
+
+    def pose(self, ride):
+        return np.zeros((1, 1, 3, 4))
+
+
+class Partless(Sizeless):
+    size = (1.0, 1.0, 1.0)
+
+
+class Crooked(Partless):
+    def parts(self):
+        import own_target
+
+        return own_target.Sprinkler().parts()
+
+
+@pytest.mark.parametrize(
+    ("custom", "message"),
+    [
+        ({}, "custom: .*mesh must be given, or path, or trajectory"),
+        ({"mesh": "a.obj", "path": "a:B"}, "custom: .*path must be left out where a mesh is given"),
+        ({"path": "nowhere:Fox"}, r"custom\.path: 'nowhere:Fox': there is no module 'nowhere'"),
+        ({"path": "math:pi"}, r"custom\.path: 'math:pi' is a float"),
+        ({"path": "pathlib:PurePath"}, "has not all of: size, parts"),
+        ({"path": f"{__name__}:Sizeless"}, "size is .*allowed: three lengths above 0"),
+        ({"path": f"{__name__}:Partless"}, r"parts\(\) must return one or more meshes"),
+        ({"path": f"{__name__}:Crooked"}, r"shape \(1, 1, 3, 4\) for 2 bodies"),
+        ({"trajectory": "x.csv", "body": "Pedestrien"}, "did you mean 'Pedestrian'"),
+        ({"path": "a:B", "behaviour": "wonder"}, "custom: .*wonder.* is not allowed"),
+    ],
+)
+def test_what_cannot_be_used_is_told_in_one_line(custom, message, monkeypatch):
+    monkeypatch.setitem(sys.modules, __name__, sys.modules.get(__name__, _this()))
+    with pytest.raises(ConfigError, match=message):
+        begun(custom=custom)
+
+
+def _this():
+    import types
+
+    module = types.ModuleType(__name__)
+    module.__dict__.update(Sizeless=Sizeless, Partless=Partless, Crooked=Crooked)
+    return module
+
+
+def test_check_tells_whether_a_target_can_be_used(tmp_path: Path):
+    settings = CustomConfig(path="-")
+    assert check("BB-8", settings, "citystreet") == (["usable: BB-8"], True)
+    lines, usable = check("own_target:Sprinkler", settings, "farmland")
+    assert (lines, usable) == (
+        ["note: 2 parts, 2 x 1.2 x 1.1 m", "usable: own_target:Sprinkler"],
+        True,
+    )
+    lines, usable = check(str(EXAMPLES / "own_track.csv"), settings, "citystreet")
+    assert usable
+    assert lines[0].startswith("note: 81 points in 80 s, ")
+    back = tmp_path / "back.csv"
+    back.write_text("t,x,y\n1,0,0\n0,1,0\n")
+    lines, usable = check(str(back), settings, "citystreet")
+    assert not usable
+    assert lines[0].endswith("point 2: t is 0 after 1: time must increase")
+    with pytest.raises(UnknownNameError, match="did you mean 'Mantis'"):
+        check("Mantes", settings, "citystreet")

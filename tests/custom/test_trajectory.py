@@ -1,0 +1,73 @@
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from eyas.core.errors import DataFileError
+from eyas.custom.problems import of_trajectory
+from eyas.custom.trajectory import Trajectory, read_trajectory
+
+
+def written(folder: Path, text: str) -> Path:
+    path = folder / "track.csv"
+    path.write_text(text)
+    return path
+
+
+def test_points_are_passed_at_their_times_and_smoothly(tmp_path: Path):
+    lines = "".join(f"{k},{10 * math.cos(k / 10)},{10 * math.sin(k / 10)}\n" for k in range(5, 40))
+    track = read_trajectory(written(tmp_path, "t,x,y\n" + lines))
+    assert track.time[0] == 0.0  # whatever the clock of the receiver
+    place, yaw = track.at(track.time)
+    np.testing.assert_allclose(place[:, :2], track.position[:, :2], atol=1e-9)
+    between, heading = track.at(np.arange(10, 240) / 10.0)
+    radius = np.hypot(between[:, 0], between[:, 1])
+    np.testing.assert_allclose(radius, 10.0, atol=0.01)
+    angle = np.unwrap(np.arctan2(between[:, 1], between[:, 0])) + math.pi / 2
+    np.testing.assert_allclose(np.sin(heading - angle), 0.0, atol=0.02)
+    assert len(yaw) == 35
+
+
+def test_columns_come_in_any_order_and_a_told_heading_counts(tmp_path: Path):
+    text = "yaw, y, x, t, z\n3.1,0,0,0,1\n-3.1,0,1,1,2\n-2.9,0,2,2,3\n"
+    track = read_trajectory(written(tmp_path, text))
+    place, yaw = track.at(np.array([0.5, 2.0]))
+    assert place[1].tolist() == [2.0, 0.0, 3.0]
+    assert yaw[0] == pytest.approx(math.pi, abs=1e-9)  # over the jump at 180 degrees
+
+
+def test_who_stands_keeps_the_heading(tmp_path: Path):
+    text = "t,x,y\n" + "".join(f"{k},{min(k, 4)},0\n" for k in range(12))
+    _, yaw = read_trajectory(written(tmp_path, text)).at(np.arange(0.0, 11.0, 0.1))
+    np.testing.assert_allclose(yaw, 0.0, atol=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("", "line 1: no column 't'"),
+        ("t,x\n0,0\n", "line 1: no column 'y' in 't,x'; allowed: t,x,y and perhaps z,yaw"),
+        ("t,x,y\n0,0,0\n", "1 points; a trajectory has two or more"),
+        ("t,x,y\n0,0,0\n1,nan,0\n", "line 3: '1,nan,0' is not allowed: 3 finite numbers"),
+        ("t,x,y\n0,0,0\n1,0\n", "line 3: '1,0' is not allowed: 3 finite numbers"),
+        ("t,x,y\n0,0,0\n2,0,0\n1,0,0\n", "point 3: t is 1 after 2: time must increase"),
+    ],
+)
+def test_what_is_no_trajectory_is_told_in_one_line(tmp_path: Path, text: str, message: str):
+    with pytest.raises(DataFileError) as caught:
+        read_trajectory(written(tmp_path, text))
+    assert message in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_jumps_gaps_and_places_outside_the_map_are_told():
+    time = np.array([0.0, 1.0, 2.0, 20.0])
+    position = np.array([[0, 0], [1, 0], [400, 0], [401, 0]], np.float64)
+    track = Trajectory(time, np.column_stack([position, np.full(4, np.nan)]), None)
+    assert track.jumps().tolist() == [2]
+    told = list(of_trajectory(track, (600.0, 600.0), "meadow"))
+    assert [finding.fatal for finding in told] == [True, False, False]
+    assert told[0].text == "point 3: it jumps 399 m in 1 s; allowed: up to 100 m/s"
+    assert told[1].text.startswith("2 of 4 points are outside the map 'meadow' (600 x 600 m")
+    assert told[2].text.startswith("1 gaps of more than 5 s")
