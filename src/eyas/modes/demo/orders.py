@@ -12,7 +12,6 @@ from eyas.modes.demo.duel import SEED, Duel
 from eyas.modes.demo.flight import Flight
 from eyas.modes.demo.pilots import BoxPilot, Pilot, PolicyPilot
 from eyas.modes.demo.recording import Recording
-from eyas.settings.version_check import require_supported
 
 __all__ = ["BOXES", "carry_out", "change_sides", "end_recording", "reward_of", "slow", "world_of"]
 
@@ -147,7 +146,6 @@ def _world(cockpit: Cockpit, message: said.World) -> dict[str, Any]:
     flight = cockpit.flight
     changes = message.model_dump(include={"map", "weather"}, exclude_none=True)
     config = updated(flight.config, {"world": changes})
-    require_supported(config)
     new = Flight(config, message.vehicles or flight.vehicles)
     end_recording(cockpit)
     cockpit.duel = None

@@ -8,14 +8,15 @@ import numpy as np
 from eyas.modes.demo.parked import COLOUR, MODEL, parked_car
 from eyas.settings.config import EyasConfig
 from eyas.sim.assets import Assets, load_assets
-from eyas.sim.build import TRACKERS
 from eyas.sim.config import SimConfig
+from eyas.sim.crowd import crowd_of
 from eyas.sim.simulation import Simulation
-from eyas.sim.supported import require_parts
 from eyas.sim.worlds import together
-from eyas.state.motion import Motion, joined
-from eyas.targets.catalogue import model_index
+from eyas.state.motion import joined
+from eyas.targets.catalogue import kind_index, model_index
 from eyas.targets.rig import Rigs
+from eyas.targets.vehicles.kinds import VEHICLE_KINDS
+from eyas.trackers.kinds import tracker_of
 from eyas.traffic.replay import Replay
 
 __all__ = ["DemoSimulation", "DemoWorld", "build_world"]
@@ -25,7 +26,7 @@ class DemoSimulation(Simulation):
     """A simulation whose parked car has the look of the original's."""
 
     def __init__(self, config: SimConfig, assets: Assets, parked: int) -> None:
-        super().__init__(config, assets, TRACKERS[config.tracker.kind], together(1))
+        super().__init__(config, assets, tracker_of(config.tracker), together(1))
         self._parked = parked
 
     def reset(self, trackers: None = None) -> None:  # type: ignore[override]
@@ -54,14 +55,18 @@ def build_world(config: EyasConfig, vehicles: int) -> DemoWorld:
     Raises:
         EyasError: A setting is not supported, or no traffic matches the settings.
     """
-    require_parts(config)
-    assets = load_assets(config.world, config.traffic)
+    crowd = crowd_of(config)
+    assets = load_assets(config.world, config.traffic, crowd=crowd)
     motion = assets.traffic.motion
-    driving = Motion(motion.table[:, :vehicles], motion.kind[:vehicles], motion.rate, 0.0)
-    car = parked_car(assets, len(motion.table), motion.rate)
-    parked = -1 if car is None else len(driving.kind)
-    whole = driving if car is None else joined([driving, car])
-    table = np.ascontiguousarray(whole.table)
-    traffic = Replay(whole._replace(table=table))
+    driven = np.isin(motion.kind, [kind_index(kind.name) for kind in VEHICLE_KINDS])
+    kept = ~driven | (np.cumsum(driven) <= vehicles)
+    whole = motion._replace(table=motion.table[:, kept], kind=motion.kind[kept])
+    targets, parked = None if crowd.follows_vehicles else ~driven[kept], -1
+    if crowd.follows_vehicles:
+        car = parked_car(assets, len(motion.table), motion.rate)
+        if car is not None:
+            parked = len(whole.kind)
+            whole = joined([whole, car])
+    traffic = Replay(whole._replace(table=np.ascontiguousarray(whole.table)), targets)
     own = replace(assets, traffic=traffic, rigs=Rigs(whole.kind))
     return DemoWorld(DemoSimulation(config, own, parked), own, parked)
