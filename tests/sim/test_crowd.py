@@ -34,7 +34,7 @@ def walk():
 
 
 def kinds_around(simulation) -> list[str]:
-    return [KINDS[kind].name for kind in simulation._around.motion.kind.tolist()]
+    return [KINDS[kind].name for kind in simulation.traffic.motion.kind.tolist()]
 
 
 def test_the_world_holds_who_is_asked_for_vehicles_first(walk):

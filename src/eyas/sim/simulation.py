@@ -6,18 +6,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.clock import PHYSICS_STEP, physics_steps
-from eyas.core.parallel import BoundKernel, Held
-from eyas.sensors.inertial import smoothing_share
+from eyas.core.clock import physics_steps
 from eyas.sensors.lidar import Lidar
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
-from eyas.sim.episodes import Draw, Episodes
-from eyas.sim.latency import LateCommands, LateSight
+from eyas.sim.episodes import Episodes
 from eyas.sim.light import LightChanges
 from eyas.sim.perception import Perception
-from eyas.sim.senses import Senses
-from eyas.sim.step import Orders, StepState, Surroundings, step_of
+from eyas.sim.stepper import Stepper
 from eyas.sim.worlds import Worlds
 from eyas.state.draw import DrawStage, Picture
 from eyas.state.motion import ActorState
@@ -67,33 +63,22 @@ class Simulation:
         self, config: SimConfig, assets: Assets, tracker: Tracker, world_of: NDArray[np.integer]
     ) -> None:
         worlds = Worlds(config, assets, world_of)
-        terrain = assets.scene.terrain
         self.config = config
         self.count = len(worlds.of)
         self.traffic = assets.traffic
         self.snapshot = Snapshot.create(self.count)
         light = LightChanges(config.light, assets.lighting, worlds, self.snapshot.light)
         self._worlds = worlds
-        self._memory = tracker.memory(self.count, terrain)
-        draws: list[Draw] = [partial(tracker.draw, self._memory)] if tracker.draw else []
-        self._late = LateCommands.of(config.control.action_latency_steps, self.count)
-        self._orders = Orders.create(self.count)
-        self._held_orders = Held(self._orders)
-        self._senses = Senses(config, assets, worlds, self.snapshot, self._orders.active)
-        told = self._senses.told
-        self._past = LateSight.of(config.control.observation_latency_steps, self.snapshot, told)
-        draws += [late.draw for late in (self._late, self._past) if late]
+        self._stepper = Stepper(config, assets, tracker, worlds, self.snapshot)
+        self._senses, past = self._stepper.senses, self._stepper.past
+        draws = self._stepper.draws
         self._episodes = Episodes(config, assets.traffic, worlds, light, self.snapshot, draws)
         view = partial(
             Perception, config, assets, worlds, light, self._senses.grain, visible=tracker.visible
         )
-        self._view = self.perception = view(self.snapshot, told)
-        if self._past:
-            self.perception = view(self._past.snapshot, self._past.told)
-        self._kernels = step_of(tracker)
-        self._around = Surroundings(assets.traffic.motion, terrain)
-        smoothing = config.tracker.inertial_time_constant if tracker.jumps else 0.0
-        self._share = smoothing_share(smoothing)
+        self._view = self.perception = view(self.snapshot, self._senses.told)
+        if past:
+            self.perception = view(past.snapshot, past.told)
         rules = make_rules(config.reward, config.done, config.camera)
         judged = tracker.judged if config.tracker.judged is None else config.tracker.judged
         self.rules = rules if judged else lenient(rules)
@@ -107,9 +92,8 @@ class Simulation:
 
     @rules.setter
     def rules(self, rules: Rules) -> None:
-        self._rules = rules = exact(rules)
-        state = Held(StepState(self.snapshot, self._memory, self._around, rules, self._share))
-        self._step = self._kernels.bound(state, self._held_orders)
+        self._rules = exact(rules)
+        self._stepper.obey(self._rules)
 
     def reseed(self, seed: int) -> None:
         """Begin the sequence of episodes of another seed; takes effect at the next reset."""
@@ -147,14 +131,7 @@ class Simulation:
             ConfigError: The recording is too short for an episode.
         """
         chosen = np.arange(self.count) if trackers is None else np.flatnonzero(trackers)
-        count = len(chosen)
-        self._orders.pitch[:count] = self._episodes.begin(chosen)
-        self._orders.chosen[:count] = chosen
-        self._orders.starts[0] = count
-        self._step.begin()
-        self._senses.begin(chosen.tolist(), self._episodes.key)
-        if self._past:
-            self._past.begin(chosen)
+        self._stepper.begin(chosen, self._episodes.begin(chosen), self._episodes.key)
 
     def advance(
         self, commands: Floats, physics_steps: int = 1, active: NDArray[np.bool_] | None = None
@@ -168,21 +145,12 @@ class Simulation:
                 these must have worlds of their own. None: all.
         """
         assert commands.shape == (self.count, 4), f"commands: shape {commands.shape}, not (N, 4)"
-        self._orders.active[:] = True if active is None else active
-        self._senses.renew()
-        if self._late is None:
-            self._fly(commands, physics_steps)
-        else:
-            clock = self.snapshot.episodes.step_count
-            for piece in self._late.pieces(commands, physics_steps, clock):
-                self._fly(*piece)
+        self._stepper.fly(commands, physics_steps, active)
         return self._result()
 
     def carry(self, physics_steps: int = 1) -> StepResult:
         """Move all trackers with their targets, at their start offsets."""
-        self._orders.active[:] = True
-        self._senses.renew()
-        self._take(self._step.carry, physics_steps)
+        self._stepper.carry(physics_steps)
         return self._result()
 
     def follow(self, tracker: int, actor: int) -> None:
@@ -277,28 +245,6 @@ class Simulation:
         """
         chosen, rules = np.asarray(trackers, np.int32), self.rules if overlay else None
         self._view.pictures.draw_from(chosen, cameras, picture, rules)
-
-    def _fly(self, commands: Floats, physics_steps: int) -> None:
-        self._orders.commands[:] = commands
-        self._take(self._step.fly, physics_steps)
-
-    def _take(self, step: BoundKernel, physics_steps: int) -> None:
-        """Take physics steps: all in one call, unless something is sensed or kept after each."""
-        if self.traffic.live:
-            last = int(self.snapshot.episodes.tick.max()) + physics_steps
-            self.traffic.prepare(last * PHYSICS_STEP)
-        if not self._senses.follow and self._past is None:
-            self._orders.steps[0] = physics_steps
-            step()
-            return
-        self._orders.steps[0] = 1
-        for _ in range(physics_steps):
-            step()
-            self._senses.advance()
-            if self._past:
-                self._past.record()
-        if self._past:
-            self._past.see()
 
     def close(self) -> None:
         """End live traffic, if that is what drives; may be called twice."""

@@ -1,0 +1,128 @@
+"""Takes the steps of a simulation, with what happens between physics steps."""
+
+from collections.abc import Callable
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.clock import PHYSICS_STEP
+from eyas.core.parallel import BoundKernel, Held
+from eyas.core.rng import EpisodeKey
+from eyas.sensors.inertial import smoothing_share
+from eyas.sim.assets import Assets
+from eyas.sim.config import SimConfig
+from eyas.sim.episodes import Draw
+from eyas.sim.latency import LateCommands, LateSight
+from eyas.sim.senses import Senses
+from eyas.sim.step import Orders, StepState, Surroundings, step_of
+from eyas.sim.worlds import Worlds
+from eyas.state.snapshot import Snapshot
+from eyas.task.rules import Rules
+from eyas.trackers.tracker import Tracker
+
+__all__ = ["Stepper"]
+
+Floats = NDArray[np.float64]
+
+
+class Stepper:
+    """Moves N trackers: all physics steps of a command in one call, unless something is sensed, or
+    kept to be seen later, after each.
+
+    Attributes:
+        senses: What is sensed after each physics step.
+        past: What agents see late; None if they see the present.
+        draws: Called with each tracker and the key of its episode that begins.
+
+    Args:
+        config: The settings.
+        assets: Map and traffic.
+        tracker: The kind of the trackers.
+        worlds: The worlds of the trackers.
+        snapshot: Their state.
+    """
+
+    def __init__(
+        self,
+        config: SimConfig,
+        assets: Assets,
+        tracker: Tracker,
+        worlds: Worlds,
+        snapshot: Snapshot,
+    ) -> None:
+        count, terrain = len(worlds.of), assets.scene.terrain
+        self._traffic, self._snapshot = assets.traffic, snapshot
+        self._memory = tracker.memory(count, terrain)
+        self._around = Surroundings(assets.traffic.motion, terrain)
+        smoothing = config.tracker.inertial_time_constant if tracker.jumps else 0.0
+        self._share = smoothing_share(smoothing)
+        self._kernels = step_of(tracker)
+        self._orders = Orders.create(count)
+        self._held_orders = Held(self._orders)
+        self.senses = Senses(config, assets, worlds, snapshot, self._orders.active)
+        control = config.control
+        self._late = LateCommands.of(control.action_latency_steps, count)
+        self.past = LateSight.of(control.observation_latency_steps, snapshot, self.senses.told)
+        self.draws: list[Draw] = [late.draw for late in (self._late, self.past) if late]
+        if tracker.draw:
+            self.draws.insert(0, partial(tracker.draw, self._memory))
+
+    def obey(self, rules: Rules) -> None:
+        """Judge by these rules from the next step on."""
+        state = Held(StepState(self._snapshot, self._memory, self._around, rules, self._share))
+        self._step = self._kernels.bound(state, self._held_orders)
+
+    def begin(
+        self, chosen: NDArray[np.int64], pitch: Floats, key_of: Callable[[int], EpisodeKey]
+    ) -> None:
+        """Put trackers at their start poses.
+
+        Args:
+            chosen: The trackers, shape (K,).
+            pitch: Commanded pitch of their cameras [rad], shape (K,).
+            key_of: Returns what the random numbers of a tracker's episode depend on.
+        """
+        count = len(chosen)
+        self._orders.pitch[:count] = pitch
+        self._orders.chosen[:count] = chosen
+        self._orders.starts[0] = count
+        self._step.begin()
+        self.senses.begin(chosen.tolist(), key_of)
+        if self.past:
+            self.past.begin(chosen)
+
+    def fly(self, commands: Floats, steps: int, active: NDArray[np.bool_] | None) -> None:
+        """Hold commands for some physics steps; see `Simulation.advance`."""
+        self._orders.active[:] = True if active is None else active
+        self.senses.renew()
+        pieces = [(commands, steps)]
+        if self._late:
+            clock = self._snapshot.episodes.step_count
+            pieces = list(self._late.pieces(commands, steps, clock))
+        for piece, some in pieces:
+            self._orders.commands[:] = piece
+            self._take(self._step.fly, some)
+
+    def carry(self, steps: int) -> None:
+        """Move all trackers with their targets."""
+        self._orders.active[:] = True
+        self.senses.renew()
+        self._take(self._step.carry, steps)
+
+    def _take(self, step: BoundKernel, steps: int) -> None:
+        if self._traffic.live:
+            last = int(self._snapshot.episodes.tick.max()) + steps
+            self._traffic.prepare(last * PHYSICS_STEP)
+        if not self.senses.follow and self.past is None:
+            self._orders.steps[0] = steps
+            step()
+            return
+        self._orders.steps[0] = 1
+        for _ in range(steps):
+            step()
+            self.senses.advance()
+            if self.past:
+                self.past.record()
+        if self.past:
+            self.past.see()
