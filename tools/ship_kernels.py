@@ -27,6 +27,7 @@ from eyas.trackers.drone import DRONE
 
 USES_ALL = """
 import numpy as np
+from eyas.sensors.config import Colours
 from eyas.sensors.stack import FrameStack
 from eyas.sim.assets import load_assets
 from eyas.sim.build import build_simulation
@@ -39,13 +40,25 @@ from eyas.traffic.recorded import recorded_motion
 from eyas.traffic.recording_file import load
 from eyas.world.maps import MAPS
 
-simulation = build_simulation(SimConfig(), each_alone(1))
-simulation.reset()
-simulation.advance(np.zeros((1, 4)), 1)
-simulation.packets()
 picture = Picture.create(1, 84, 84)
-simulation.draw(np.zeros(1, np.int32), picture)
-FrameStack(1, (84, 84)).add(picture.rgb, np.zeros(1, np.int64))
+for settings in (
+    {},
+    {"tracker": {"supervised": False}},
+    {"tracker": {"kind": "car"}},
+    {
+        "lidar": {"enabled": True},
+        "sensors": {"imu": {"noise": 0.1}, "camera_noise": 1.0},
+        "done": {"crash": "contact"},
+        "target": "Pedestrian",
+    },
+):
+    simulation = build_simulation(SimConfig(**settings), each_alone(1))
+    simulation.reset()
+    simulation.advance(np.zeros((1, 4)), 1)
+    simulation.carry(1)
+    simulation.packets()
+    simulation.draw(np.zeros(1, np.int32), picture)
+FrameStack(1, (84, 84), Colours.GREY).add(picture.rgb, np.zeros(1, np.int64))
 StillWorld(load_assets(SimConfig().world, SimConfig().traffic)).actors(0.0)
 recording = load(MAPS.get("citystreet").shipped_traffic()[0])
 hill = Terrain(0.0, np.ones((2, 2), np.float32), 0.0, 0.0, 1.0)
