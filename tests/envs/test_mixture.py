@@ -46,7 +46,7 @@ def test_the_kind_of_an_environment_does_not_depend_on_their_number():
         ({"settings": {"world": {"weather": "dya"}}}, "did you mean 'day'"),
         ({"settings": {"wrold": {}}}, r"^env\.mixture\.0\.settings\.wrold: unknown key"),
         ({"settings": {"env": {"action_repeat": 2}}}, r"^env\.mixture\.0\.settings\.env: not all"),
-        ({"weight": 0}, r"^env\.mixture: "),
+        ({"weight": 0}, r"^env\.mixture\.0\.weight: "),
     ],
 )
 def test_a_wrong_kind_is_one_clear_line(kind, message):

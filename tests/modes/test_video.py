@@ -170,7 +170,8 @@ def test_a_later_start_does_without_numba(tmp_path):
     with_overlay = CONFIG.video.model_copy(
         update={"overlay": True, "writers": tuple(WRITERS.built_in)}
     )
-    config = CONFIG.model_copy(update={"video": with_overlay})
+    lidar = CONFIG.lidar.model_copy(update={"enabled": True})  # for its writer
+    config = CONFIG.model_copy(update={"video": with_overlay, "lidar": lidar})
     program = RUN + 'print("numba" in sys.modules)'
     said = []
     for out in ("first", "later"):

@@ -10,11 +10,13 @@ from eyas.exports.registry import WRITERS, chosen_writers
 from eyas.exports.summary import Scores, Summary
 from eyas.exports.writer import Episode, EpisodeWriter, Run, Writer
 from eyas.modes.video.episode import EpisodeFiles, read_complete
+from eyas.sensors.config import LidarConfig
 from eyas.sim.config import SimConfig
 from eyas.state.draw import Picture
 from eyas.state.snapshot import Snapshot
 
-RUN = Run(Path("unused"), ("DRONE0",), SimConfig(), target_direction=False)
+LIDAR = LidarConfig(enabled=True)
+RUN = Run(Path("unused"), ("DRONE0",), SimConfig(lidar=LIDAR), target_direction=False)
 
 
 def writers_of(*names: str) -> list[Writer]:
@@ -29,7 +31,7 @@ def write(folder: Path, frames: int, writers: list[Writer] | None = None) -> Epi
     picture.subject_pixels[:] = 4, 5
     for number in range(frames):
         picture.rgb[:] = 40 * number
-        files.add(frame_of(snapshot, 0, picture, 0, number, Action(-1, None)))
+        files.add(frame_of(snapshot, 0, picture, 0, number, Action(-1, None), lidar=np.ones(400)))
     return files
 
 

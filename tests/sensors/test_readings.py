@@ -30,11 +30,11 @@ class Flight:
         self.snapshot.episodes.step_count[:] += 1
         self.snapshot.trackers.position[:, 0] += 1.0
         self.readings.advance()
-        return self.readings.now()
+        return self.readings.told.copy()
 
     def fly(self, steps):
         """Readings after the reset and after each step, shape (steps + 1, N, columns)."""
-        return np.array([self.readings.now(), *(self.step() for _ in range(steps))])
+        return np.array([self.readings.told.copy(), *(self.step() for _ in range(steps))])
 
 
 def test_without_errors_the_truth_is_read():
@@ -92,7 +92,7 @@ def test_a_bias_lasts_for_the_episode_and_is_drawn_for_each():
         flight.readings.begin(tracker, np.random.default_rng((1, tracker)))
     flight.snapshot.episodes.step_count[:] = 0
     flight.readings.advance()
-    assert (flight.readings.now()[:, TURN] != rows[0]).all()
+    assert (flight.readings.told.copy()[:, TURN] != rows[0]).all()
 
 
 def test_a_slow_sensor_tells_its_last_reading_in_between():

@@ -89,7 +89,7 @@ def test_a_rover_moves_only_ahead_and_on_the_ground(rovers):
     assert not moved[1].any()
     assert (trackers.position[:, 2] == HEIGHT).all()
     assert np.array_equal(trackers.euler, before.trackers.euler)
-    assert rovers._memory.travelled == pytest.approx([5.0, 0.0])
+    assert rovers._stepper._memory.travelled == pytest.approx([5.0, 0.0])
     # All around it is as ever: traffic, time and packets.
     assert (episodes.tick == before.episodes.tick + 250).all()
     assert not np.array_equal(targets.position, before.targets.position)
@@ -117,10 +117,10 @@ def test_it_is_carried_by_its_own_kernel_and_starts_again(rovers):
     trackers, _, targets, episodes, _ = rovers.snapshot
     offset = np.linalg.norm(trackers.position - targets.position, axis=1)[:]
     assert (offset < np.linalg.norm(episodes.start_offset[:, :3], axis=1)).all()  # on the ground
-    assert rovers._memory.travelled.tolist() == [0.0, 0.0]
+    assert rovers._stepper._memory.travelled.tolist() == [0.0, 0.0]
     rovers.advance(np.full((2, 4), 3.0), 10)
     rovers.reset(np.array([True, False]))
-    assert rovers._memory.travelled == pytest.approx([0.0, 0.06])
+    assert rovers._stepper._memory.travelled == pytest.approx([0.0, 0.06])
 
 
 def test_drones_fly_as_ever_beside_it(config, rovers):

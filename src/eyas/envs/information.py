@@ -52,7 +52,6 @@ _CRASH = 58
 _WORDS = {
     "done_reason": [reason.name.lower() for reason in DoneReason],
     "done_state": [reason.original for reason in DoneReason],
-    "target_type": [model.typename for model in MODELS],
     "contact_class": [*(kind.name.lower() for kind in ObjectClass), "nothing"],
 }
 """What numbers mean."""
@@ -108,7 +107,8 @@ def of_one(info: Info, index: int) -> Info:
     `done_reason`, `done_state` (the original's), `target_type` (the same) and `contact_class`.
     """
     one = {name: value[index] for name, value in info.items()}
-    return one | {name: words[one[name]] for name, words in _WORDS.items() if name in one}
+    words = {**_WORDS, "target_type": [model.typename for model in MODELS]}  # users add models
+    return one | {name: said[one[name]] for name, said in words.items() if name in one}
 
 
 def masked(info: Info, mask: Mask) -> Info:

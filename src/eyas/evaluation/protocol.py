@@ -3,9 +3,10 @@
 import hashlib
 import json
 import math
+import operator
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, reduce
 from typing import Any
 
 from eyas.core.clock import PHYSICS_STEP, physics_steps
@@ -13,6 +14,7 @@ from eyas.core.config import updated
 from eyas.core.errors import UnknownNameError
 from eyas.envs.config import EnvConfig
 from eyas.evaluation.episode import Episode
+from eyas.sensors.config import LidarConfig, SensorsConfig
 from eyas.settings.config import EyasConfig
 from eyas.settings.file import load_settings
 from eyas.settings.preset import preset_file
@@ -40,6 +42,12 @@ _LATER: Mapping[str, Any] = {
     "tracker.drag_area": 0.0,
     "tracker.ground_contact": False,
     "tracker.wind": {"speed": 0.0, "direction": 0.0, "turbulence": 0.0},
+    "traffic.source": "recorded",
+    "done.crash": "original",
+    "custom": None,
+    "extras": [],
+    "lidar": LidarConfig().model_dump(mode="json"),
+    "sensors": SensorsConfig().model_dump(mode="json"),
 }
 """Settings that came after the first results, and the values that these had been made with."""
 
@@ -93,12 +101,11 @@ class Protocol:
     def hash(self) -> str:
         """Twelve hexadecimal digits that differ between protocols."""
         settings = self.settings.model_dump(mode="json", include=_FIXED)
-        if not settings["extras"]:  # results are older than this setting
-            del settings["extras"]
         for path, default in _LATER.items():
-            group, name = path.split(".")
-            if settings[group][name] == default:
-                del settings[group][name]
+            *groups, name = path.split(".")
+            group = reduce(operator.getitem, groups, settings)
+            if group[name] == default:
+                del group[name]
         content = [FORMAT, settings, self.directions, self.alike]
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:12]
 

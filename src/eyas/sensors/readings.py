@@ -71,7 +71,7 @@ class Readings:
             np.zeros((count, int(delays.max()) + 2, READ_COLUMNS)),
             self.told,
         )
-        self._read = _read_all.bound(Held(work))
+        self._readings = _read_all.bound(Held(work))
 
     def begin(self, tracker: int, rng: np.random.Generator) -> None:
         """Begin an episode: the next `advance` makes its first reading."""
@@ -79,7 +79,7 @@ class Readings:
 
     def advance(self) -> None:
         """Read, after each physics step and after a reset."""
-        self._read()
+        self._readings()
 
 
 class _Work(NamedTuple):

@@ -1,5 +1,6 @@
-"""The constants of the flown drone: body, rotors, flight controller, gimbal; and what is optional.
+"""The constants of the flown drone, which its kernels read.
 
+They are those of body, rotors, flight controller and gimbal; besides, there is what is optional.
 The values are those of the drone `M100` of the DAT benchmark and of its flight controller, unless
 their text names another source.
 """
