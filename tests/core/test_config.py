@@ -119,3 +119,18 @@ def test_values_are_shown_on_one_line_and_cut():
     assert shown("a\nb") == r"'a\nb'"
     assert shown(Uniform(uniform=(1.0, 2.0))) == '{"uniform": [1.0, 2.0]}'
     assert len(shown(list(range(1000)))) == 80
+
+
+class Holder(Config):
+    inner: Inner | None = None
+
+
+def test_a_group_that_may_be_null_is_checked_and_changed_as_any_other():
+    with pytest.raises(ConfigError, match=r"^inner\.cuont: unknown key; did you mean 'count'"):
+        updated(Holder(), {"inner": {"cuont": 3}})
+    with pytest.raises(ConfigError, match=r"^inner\.count: 0 is not allowed"):
+        updated(Holder(), {"inner": {"count": 0}})
+    first = updated(Holder(), {"inner": {"count": 3}})
+    second = updated(first, {"inner": {"height": 4.0}})
+    assert second.inner == Inner(count=3, height=4.0)
+    assert updated(second, {"inner": None}) == Holder()

@@ -16,7 +16,7 @@ DOC = (Path(__file__).parents[2] / "docs" / "configuration.md").read_text().spli
 def settings(group=EyasConfig, path=""):
     values = json.loads(group().model_dump_json())
     for name, field in group.model_fields.items():
-        if inner := group_of(field):
+        if values[name] is not None and (inner := group_of(field)):
             yield from settings(inner, f"{path}{name}.")
         else:
             yield f"{path}{name}", values[name]

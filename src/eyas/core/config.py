@@ -3,6 +3,7 @@
 import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from types import NoneType, UnionType
 from typing import Any, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler, ValidationError
@@ -142,8 +143,11 @@ def _plain(value: object) -> object:
 
 
 def group_of(field: FieldInfo | None) -> type[Config] | None:
-    """Return the class of a field that holds a group of settings; None for other fields."""
+    """Return the class of a field that holds a group of settings, or null; None for others."""
     kind = field.annotation if field else None
+    if isinstance(kind, UnionType):
+        kinds = [part for part in get_args(kind) if part is not NoneType]
+        kind = kinds[0] if len(kinds) == 1 else None
     return kind if isinstance(kind, type) and issubclass(kind, Config) else None
 
 
@@ -158,8 +162,10 @@ def _merged(config: Config, changes: Mapping[str, Any]) -> dict[str, Any]:
     fields = type(config).model_fields
     values: dict[str, Any] = {name: getattr(config, name) for name in fields}
     for name, change in changes.items():
-        whole = group_of(fields.get(name)) is None or not isinstance(change, Mapping)
-        values[name] = change if whole else _merged(values[name], change)
+        old, group = values.get(name), group_of(fields.get(name))
+        if group and isinstance(old, Config) and isinstance(change, Mapping):
+            change = _merged(old, change)
+        values[name] = change
     return values
 
 
