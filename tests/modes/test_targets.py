@@ -9,10 +9,13 @@ from eyas.modes.targets.listing import entries
 from eyas.modes.targets.show import run
 from eyas.targets.catalogue import MODELS
 
+BUILT_IN = [model.name for model in MODELS]
+"""Read before any test adds a model of its own."""
+
 
 def test_the_list_has_every_model_with_fewer_triangles_from_afar():
-    lines = entries()
-    assert [line.name for line in lines] == [model.name for model in MODELS]
+    lines = entries()[: len(BUILT_IN)]
+    assert [line.name for line in lines] == BUILT_IN
     for line in lines:
         near, far = line.triangles
         assert 0 < far < near
