@@ -132,8 +132,11 @@ class Crooked(Partless):
 @pytest.mark.parametrize(
     ("custom", "message"),
     [
-        ({}, "custom: .*mesh must be given, or path, or trajectory"),
-        ({"mesh": "a.obj", "path": "a:B"}, "custom: .*path must be left out where a mesh is given"),
+        ({}, "custom.mesh: .*must be given, or path, or trajectory"),
+        (
+            {"mesh": "a.obj", "path": "a:B"},
+            r"custom\.path: .*must be left out where a mesh is given",
+        ),
         ({"path": "nowhere:Fox"}, r"custom\.path: 'nowhere:Fox': there is no module 'nowhere'"),
         ({"path": "math:pi"}, r"custom\.path: 'math:pi' is a float"),
         ({"path": "pathlib:PurePath"}, "has not all of: size, parts"),
@@ -141,7 +144,7 @@ class Crooked(Partless):
         ({"path": f"{__name__}:Partless"}, r"parts\(\) must return one or more meshes"),
         ({"path": f"{__name__}:Crooked"}, r"shape \(1, 1, 3, 4\) for 2 bodies"),
         ({"trajectory": "x.csv", "body": "Pedestrien"}, "did you mean 'Pedestrian'"),
-        ({"path": "a:B", "behaviour": "wonder"}, "custom: .*wonder.* is not allowed"),
+        ({"path": "a:B", "behaviour": "wonder"}, r"custom\.behaviour: .*did you mean 'wander'"),
     ],
 )
 def test_what_cannot_be_used_is_told_in_one_line(custom, message, monkeypatch):
