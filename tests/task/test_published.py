@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from eyas.core.errors import ConfigError
@@ -45,6 +45,7 @@ def test_e2e_is_its_formula(place, first, yaw):
 
 @given(place=places, first=places)
 def test_d_vat_is_its_formula(place, first):
+    assume(abs(place[0]) > 1e-6)  # nearer, the slope depends on the last bits
     from eyas.state.snapshot import Snapshot
 
     snapshot = placed(Snapshot.create(3), place, first)
