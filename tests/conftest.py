@@ -12,7 +12,10 @@ from hypothesis import settings
 # The maps that a developer has imported are not there for tests.
 os.environ["EYAS_MAPS_DIR"] = os.path.join(os.devnull, "maps")
 
-settings.register_profile("eyas", deadline=None)  # no test asserts a time
+# No test asserts a time, and a submission meets the same examples as the last; others, and more
+# of them, are tried by `--hypothesis-profile search`.
+settings.register_profile("eyas", deadline=None, derandomize=True)
+settings.register_profile("search", deadline=None, max_examples=1000)
 settings.load_profile("eyas")
 
 

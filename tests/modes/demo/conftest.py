@@ -65,9 +65,12 @@ def serve(tmp_path_factory):
         yield start
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def served(serve):
-    return serve()
+    """One server for a file, so that no file flies with what another has set."""
+    served = serve()
+    yield served
+    served.stop()
 
 
 class Viewer:

@@ -100,11 +100,9 @@ def test_buttons_on_the_screen_are_held_too(page):
 
 def test_sliders_change_the_reward(page):
     page.click("#parked")
-    until(page, "eyas.state.target.parked && eyas.state.reward > 0.5")
-    page.locator("#view_scale").fill("0.1")
-    until(page, "eyas.state.reward < 0.2")
-    page.locator("#view_scale").fill("4")
-    until(page, "eyas.state.reward > 0.5")
+    for scale, right in [("4", "> 0.5"), ("0.1", "< 0.2"), ("4", "> 0.5")]:
+        page.locator("#view_scale").fill(scale)
+        until(page, f"eyas.state.target.parked && eyas.state.reward {right}")
 
 
 def test_a_click_on_the_parked_car_follows_it(page):
