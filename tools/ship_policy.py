@@ -2,7 +2,8 @@
 
     python tools/ship_policy.py runs/fast fast "citystreet by day"
 
-Protocols and weathers of the card: `paper` in the weathers that it has learned, and `long` by day.
+The card's rows: `paper` on each map and in each weather that it has learned, and `long` on
+citystreet by day. If the run teaches another run's network further, the card has both commands.
 """
 
 import argparse
@@ -17,29 +18,28 @@ from eyas import __version__
 from eyas.envs.choice import settings_of_kinds
 from eyas.evaluation.plan import Plan, batches, fly_batch
 from eyas.evaluation.policies.shipped import TRAINED, Card, Score
+from eyas.settings.config import EyasConfig
 from eyas.settings.file import load_settings
-
-WEATHERS = ("day", "night", "foggy", "snow")
 
 
 def main() -> None:
     """Copy the network and the curve, fly, and write the card."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("run", type=Path, help="folder of `eyas train`")
-    parser.add_argument("name", help="name of the policy and of the preset it was trained with")
+    parser.add_argument("run", type=Path, help="folder of `eyas train`, named like the preset")
+    parser.add_argument("name", help="name of the policy")
     parser.add_argument("title", help="what it has learned, in a few words")
     asked = parser.parse_args()
     TRAINED.mkdir(exist_ok=True)
     config = load_settings(asked.run / "config.json")
     policy = shutil.copy(asked.run / "policy.onnx", TRAINED / f"{asked.name}.onnx")
     curve = shutil.copy(asked.run / "curve.csv", TRAINED / f"{asked.name}.csv")
-    learned = {kind.world.weather for kind in settings_of_kinds(config)}
-    flown = [("paper", weather) for weather in WEATHERS if weather in learned] + [("long", "day")]
+    learned = [(kind.world.map, kind.world.weather) for kind in settings_of_kinds(config)]
+    flown = [("paper", *place) for place in learned] + [("long", "citystreet", "day")]
     with curve.open() as file:
         decisions = int(list(csv.DictReader(file))[-1]["decisions"])
     card = Card(
         title=asked.title,
-        command=f"eyas train --preset {asked.name} --seed {config.seed} --out {asked.run}",
+        command=command(asked.run, config),
         decisions=decisions,
         version=__version__,
         scores=tuple(score(policy, *each) for each in flown),
@@ -49,15 +49,30 @@ def main() -> None:
     print(text)
 
 
-def score(policy: Path, protocol: str, weather: str) -> Score:
-    """Fly the protocol's episodes in one weather."""
-    plan = Plan(policy=str(policy), protocol=protocol, weathers=(weather,))
+def command(run: Path, config: EyasConfig) -> str:
+    """Return what trains the network of a run; its folder has the preset's name."""
+    before = config.train.begin_from
+    own = f"eyas train --preset {run.name} --seed {config.seed} --out {run}"
+    if before is None:
+        return own
+    first = command(Path(before), load_settings(Path(before) / "config.json"))
+    return f"{first} && {own} --set train.begin_from={before}"
+
+
+def score(policy: Path, protocol: str, map_name: str, weather: str) -> Score:
+    """Fly the protocol's episodes at one place."""
+    plan = Plan(policy=str(policy), protocol=protocol, maps=(map_name,), weathers=(weather,))
     records = [
         record for batch in batches(plan) for ended in fly_batch(plan, batch) for record in ended
     ]
     cr, tsr = (float(np.mean([getattr(each, name) for each in records])) for name in ("cr", "tsr"))
     return Score(
-        protocol=protocol, weather=weather, n=len(records), cr=round(cr, 1), tsr=round(tsr, 4)
+        protocol=protocol,
+        map=map_name,
+        weather=weather,
+        n=len(records),
+        cr=round(cr, 1),
+        tsr=round(tsr, 4),
     )
 
 

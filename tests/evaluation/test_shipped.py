@@ -23,7 +23,7 @@ def test_each_was_trained_by_its_preset():
     assert shipped_names()
     for name in shipped_names():
         assert name in PRESETS
-        assert card_of(name).command.startswith(f"eyas train --preset {name} --seed ")
+        assert f"eyas train --preset {name} --seed " in card_of(name).command
         assert fingerprint(name) == fingerprint(str(file_of(name)))
 
 

@@ -167,6 +167,32 @@ def test_a_damaged_checkpoint_is_one_line(tmp_path):
     assert RunFolder(tmp_path / "run").policy.exists()
 
 
+def test_what_another_run_has_learned_is_taught_further(tmp_path):
+    first = tmp_path / "first"
+    short = updated(SMALL, {"train": {"stages": [{"decisions": 64}]}})
+    train(short, first, say=quiet)
+    rate = {"learning_rate": 1e-30}  # so small that nothing changes
+    second = updated(short, {"seed": 5, "train": rate | {"begin_from": str(first)}})
+    train(second, tmp_path / "second", say=quiet)
+    before, after = (
+        torch.load(folder / "checkpoint.pt", weights_only=True)["network"]
+        for folder in (first, tmp_path / "second")
+    )
+    assert all(torch.equal(before[name], after[name]) for name in before)
+
+
+def test_only_a_run_of_the_same_network_can_be_taught_further(tmp_path):
+    train(updated(SMALL, {"train": {"stages": [{"decisions": 1}]}}), tmp_path / "run", say=quiet)
+    for folder, other, message in [
+        ("none", {}, r"none/checkpoint\.pt: no such file"),
+        ("run", {"memory": True}, r"checkpoint\.pt: not a checkpoint of this network"),
+    ]:
+        learning = other | {"begin_from": str(tmp_path / folder)}
+        with pytest.raises(EyasError, match=message):
+            train(updated(SMALL, {"train": learning}), tmp_path / "new", say=quiet)
+        assert not (tmp_path / "new").exists()
+
+
 @pytest.mark.parametrize(
     ("env", "message"),
     [

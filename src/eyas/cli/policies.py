@@ -24,6 +24,6 @@ def list_policies() -> None:
         typer.echo(f"{name}: {card.title}; {card.decisions:,} decisions of `{card.command}`")
         for score in card.scores:
             typer.echo(
-                f"  {score.protocol:<10} {score.weather:<6} TSR {score.tsr:.3f}  "
+                f"  {score.protocol:<6} {score.map:<10} {score.weather:<6} TSR {score.tsr:.3f}  "
                 f"CR {score.cr:.1f}  n {score.n}"
             )

@@ -2,6 +2,8 @@
 
 import csv
 import io
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import Any
@@ -98,11 +100,33 @@ class RunFolder:
         """
         if not self._checkpoint.exists():
             return Progress()
-        try:
+        with _readable(self._checkpoint):
             saved: dict[str, Any] = torch.load(self._checkpoint, weights_only=True)
             network.load_state_dict(saved["network"])
             optimiser.load_state_dict(saved["optimiser"])
             return Progress(**saved["progress"])
-        except Exception as error:  # PyTorch has many kinds
-            line = " ".join(str(error).split())[:200]
-            raise DataFileError(f"{self._checkpoint}: not a checkpoint: {line}") from error
+
+    def load_network(self, network: torch.nn.Module) -> None:
+        """Set a network to what this run has learned.
+
+        Raises:
+            DataFileError: There is no checkpoint, or one of another network.
+        """
+        with _readable(self._checkpoint):
+            network.load_state_dict(torch.load(self._checkpoint, weights_only=True)["network"])
+
+
+@contextmanager
+def _readable(path: Path) -> Iterator[None]:
+    """Say in one line what is wrong with a checkpoint.
+
+    Raises:
+        DataFileError: It cannot be read.
+    """
+    try:
+        yield
+    except FileNotFoundError:
+        raise DataFileError(f"{path}: no such file") from None
+    except Exception as error:  # PyTorch has many kinds
+        line = " ".join(str(error).split())[:200]
+        raise DataFileError(f"{path}: not a checkpoint of this network: {line}") from error

@@ -46,6 +46,8 @@ class TrainConfig(Config):
     stages: tuple[Stage, ...] = (Stage(decisions=600_000),)
     """The curriculum: one stage after the other."""
     evaluation: Evaluation = Evaluation()
+    begin_from: str | None = None
+    """Folder of another run, whose network this one teaches further; None: a new network."""
     rollout: Annotated[int, Field(ge=2, le=65536)] = 64
     """Decisions of each environment between two updates."""
     updates_per_block: Annotated[int, Field(ge=1, le=100_000)] = 20

@@ -77,6 +77,8 @@ class _Run:
         self.network = TrackingNetwork(_shape(config))
         generator = torch.Generator().manual_seed(config.seed)
         self.network.initialise(generator)
+        if config.train.begin_from is not None:
+            RunFolder(Path(config.train.begin_from)).load_network(self.network)
         rate = config.train.learning_rate
         self.optimiser = torch.optim.Adam(self.network.parameters(), rate, eps=1e-5)
         self.progress = Progress()
@@ -154,7 +156,7 @@ class _Run:
     def _tell(self, row: dict[str, float], rate: float) -> None:
         """Tell how it goes."""
         progress = self.progress
-        left = (self._total - progress.decisions) * progress.seconds / progress.decisions
+        left = max(self._total - progress.decisions, 0) * progress.seconds / progress.decisions
         physics = rate * steps_per_action(self.config)
         tested = "" if np.isnan(row["tsr"]) else f"CR {row['cr']:.1f}  TSR {row['tsr']:.3f}  "
         self._say(

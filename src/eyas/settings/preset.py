@@ -7,7 +7,10 @@ from eyas.core.errors import UnknownNameError
 
 __all__ = ["PRESETS", "preset_file"]
 
-PRESETS = ("dat-eval", "dat-train", "easy", "fast", "lively", "noisy", "paper", "robust")
+PRESETS = (
+    *("dat-eval", "dat-train", "easy", "lively", "noisy"),
+    *("anywhere", "fast", "long", "paper", "robust"),
+)
 """Names of all presets; docs/configuration.md says what each is for."""
 
 

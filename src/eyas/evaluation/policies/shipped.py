@@ -20,6 +20,7 @@ class Score(Config):
     """What a policy reaches in a protocol."""
 
     protocol: str
+    map: str = "citystreet"
     weather: str
     n: int
     """Number of episodes."""
