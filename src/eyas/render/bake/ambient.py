@@ -2,10 +2,10 @@
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, ImageDraw
 
 from eyas.core.cache.cached import cached
 from eyas.core.cache.folder import Kind
@@ -14,6 +14,9 @@ from eyas.core.parallel import Held
 from eyas.render.kernels.light.ambient import BOUNCED, LEAVES, OpennessBake, bake_openness
 from eyas.state.scene import ObjectClass, Scene
 from eyas.state.terrain import reliefs
+
+if TYPE_CHECKING:
+    from PIL import Image, ImageDraw
 
 __all__ = ["AmbientMap", "bake_ambient", "canopy_map", "height_map"]
 
@@ -106,8 +109,7 @@ def height_map(
     of_kind = (kind == ObjectClass.STRUCTURE) == structures
     chosen = np.flatnonzero(level & of_kind & (rise > (_DECK if structures else _LOWEST)))
     flat = (corners[:, :, :2] - frame[:2]) * frame[2]
-    picture = Image.new("F", (shape[1], shape[0]), 0.0)
-    pen = ImageDraw.Draw(picture)
+    picture, pen = _canvas(shape)
     for index in chosen[np.argsort(rise[chosen], kind="stable")]:
         pen.polygon(flat[index].ravel().tolist(), fill=float(rise[index]))
     return np.array(picture, np.float32)
@@ -118,8 +120,7 @@ def canopy_map(
 ) -> NDArray[np.float32]:
     """Return the height above the ground of the crown's top over each texel, 0 for none [m]."""
     fixtures = scene.fixtures
-    picture = Image.new("F", (shape[1], shape[0]), 0.0)
-    pen = ImageDraw.Draw(picture)
+    picture, pen = _canvas(shape)
     for index in np.flatnonzero(scene.object_class[fixtures.object_id] == ObjectClass.TREE):
         points = fixtures.levels[fixtures.prototype[index]][0].positions
         pose = fixtures.pose[index].astype(np.float64)
@@ -132,3 +133,11 @@ def canopy_map(
         top = scale * float(points[:, 2].max()) + pose[2, 3] - ground
         pen.ellipse((x - r, y - r, x + r, y + r), fill=float(top))
     return np.array(picture, np.float32)
+
+
+def _canvas(shape: tuple[int, int]) -> "tuple[Image.Image, ImageDraw.ImageDraw]":
+    """Return a picture of heights, and a pen for it."""
+    from PIL import Image, ImageDraw  # not needed where the map is in the cache
+
+    picture = Image.new("F", (shape[1], shape[0]), 0.0)
+    return picture, ImageDraw.Draw(picture)
