@@ -9,8 +9,8 @@ from eyas.traffic import recorded
 from eyas.traffic.config import Demand
 from eyas.traffic.interpolation import interpolate_actors
 from eyas.traffic.recorded import kept_motion, recorded_motion
-from eyas.traffic.recording_file import RecordingFile, to_bytes
 from eyas.traffic.recording import Recording
+from eyas.traffic.recording_file import RecordingFile, to_bytes
 
 EAST, NORTH = 0.05, -0.02
 

@@ -1,5 +1,6 @@
 """Share of the sky seen from ground and roofs: less beside walls, under trees and bridges."""
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,14 +12,21 @@ from eyas.core.cache.cached import cached
 from eyas.core.cache.folder import Kind
 from eyas.core.jit import thread_count
 from eyas.core.parallel import Held
-from eyas.render.kernels.light.ambient import BOUNCED, LEAVES, OpennessBake, bake_openness
+from eyas.render.kernels.light.ambient import (
+    BOUNCED,
+    DIRECTIONS,
+    DISTANCES,
+    LEAVES,
+    OpennessBake,
+    bake_openness,
+)
 from eyas.state.scene import ObjectClass, Scene
 from eyas.state.terrain import reliefs
 
 if TYPE_CHECKING:
     from PIL import Image, ImageDraw
 
-__all__ = ["AmbientMap", "bake_ambient", "canopy_map", "height_map"]
+__all__ = ["AmbientMap", "bake_ambient", "canopy_map", "height_map", "openness_of"]
 
 TEXEL = 1.0
 """Side of a texel [m]."""
@@ -75,17 +83,58 @@ def bake_ambient(scene: Scene, folder: Path | None = None) -> AmbientMap:
     )
 
     def make() -> NDArray[np.uint16]:
-        openness = np.empty((rows, columns), np.uint16)
         solid = height_map(scene, frame, (rows, columns))
         crowns = canopy_map(scene, frame, (rows, columns))
         decks = height_map(scene, frame, (rows, columns), structures=True)
-        if not decks.any():
-            decks = decks[:0, :0]
-        bake_openness(thread_count(), Held(OpennessBake(texel, solid, crowns, decks, openness)))
-        return openness
+        return openness_of(solid, crowns, decks, texel, thread_count())
 
     openness = cached(Kind.AMBIENT, (), inputs, make, of=NDArray[np.uint16], folder=folder)
     return AmbientMap(openness, frame)
+
+
+def openness_of(
+    solid: NDArray[np.float32],
+    crowns: NDArray[np.float32],
+    decks: NDArray[np.float32],
+    texel: float,
+    workers: int,
+) -> NDArray[np.uint16]:
+    """Return `AmbientMap.openness`.
+
+    Args:
+        solid: Height of buildings above the ground [m], shape (rows, columns).
+        crowns: The same of trees.
+        decks: The same of elevated roads.
+        texel: Side of a texel [m].
+        workers: Number of threads.
+    """
+    openness = np.empty(solid.shape, np.uint16)
+    way, distance = _ways(texel), np.array(DISTANCES)
+    square = math.ceil(DISTANCES[-1] / texel) + 1
+    near = _near(decks, square)
+    bake = OpennessBake(way, distance, solid, crowns, decks, square, near, openness)
+    bake_openness(workers, Held(bake))
+    return openness
+
+
+def _ways(texel: float) -> NDArray[np.float64]:
+    """Return `OpennessBake.way`; numpy's sines differ between processors, those of C do not."""
+    angles = [(k + 0.5) * (2.0 * math.pi / DIRECTIONS) for k in range(DIRECTIONS)]
+    return np.array(
+        [
+            [(math.sin(angle) / texel * far, math.cos(angle) / texel * far) for far in DISTANCES]
+            for angle in angles
+        ]
+    )
+
+
+def _near(decks: NDArray[np.float32], square: int) -> NDArray[np.bool_]:
+    """Return whether there are decks in each square of texels or in one of the eight around it."""
+    rows, columns = (-(-size // square) for size in decks.shape)
+    near = np.zeros((rows + 2, columns + 2), np.bool_)
+    for row, column in {*map(tuple, (np.argwhere(decks > 0.0) // square).tolist())}:
+        near[row : row + 3, column : column + 3] = True
+    return np.ascontiguousarray(near[1:-1, 1:-1])
 
 
 def height_map(
