@@ -7,7 +7,8 @@ import shapely
 from eyas.behaviours.config import Behaviour
 from eyas.behaviours.habits import HABITS, STROLL
 from eyas.behaviours.lives import recycled
-from eyas.behaviours.scripted import Clock, Ground
+from eyas.behaviours.scripted import Ground
+from eyas.behaviours.troop import Clock
 from eyas.core.errors import SpawnError
 from eyas.core.variation import Mirrored
 from eyas.sim.scenes import load_scene

@@ -5,10 +5,9 @@ import dataclasses
 import numpy as np
 import pytest
 
-from eyas.core.parallel import Held
 from eyas.mesh.solids import box
-from eyas.render.bake.ambient import bake_ambient, canopy_map, height_map
-from eyas.render.kernels.light.ambient import BOUNCED, OpennessBake, bake_openness
+from eyas.render.bake.ambient import bake_ambient, canopy_map, height_map, openness_of
+from eyas.render.kernels.light.ambient import BOUNCED
 from eyas.state.scene import ObjectClass
 from eyas.state.terrain import Terrain, ground_at
 from eyas.world.build.materials import material
@@ -32,10 +31,9 @@ SHADE = dataclasses.replace(DAY, sun_colour=(0.0, 0.0, 0.0), fog_density=0.0)
 
 def open_shares(solid, crowns=None, decks=None, workers=1) -> np.ndarray:
     """Return the share of the sky that each texel's ground sees, light that bounces left out."""
-    result = np.empty(solid.shape, np.uint16)
     crowns = np.zeros_like(solid) if crowns is None else crowns
-    decks = np.zeros((0, 0), np.float32) if decks is None else decks
-    bake_openness(workers, Held(OpennessBake(1.0, solid, crowns, decks, result)))
+    decks = np.zeros_like(solid) if decks is None else decks
+    result = openness_of(solid, crowns, decks, 1.0, workers)
     return ((result & 255) / 255.0 - BOUNCED) / (1.0 - BOUNCED)
 
 

@@ -4,7 +4,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from eyas.state.snapshot import EpisodeState
+from eyas.state.episode import EpisodeState
 from eyas.state.terrain import Terrain
 from eyas.task.direction import TargetDirection
 from eyas.task.observe import clear_episode, observe

@@ -9,7 +9,7 @@ import pytest
 from eyas.core.errors import ConfigError, MissingExtraError
 from eyas.state.roads import RoadEdge, RoadGraph, RoadNode
 from eyas.state.scene import ObjectClass
-from eyas.traffic import sumo_install
+from eyas.traffic import network, sumo_install
 from eyas.traffic.network import build_network, graph_hash, network_xml
 from eyas.world.maps import MAPS
 from eyas.world.maps.citystreet import CITYSTREET
@@ -127,3 +127,10 @@ def test_two_nodes_or_edges_of_one_name_are_refused(grid):
     for line, graph in twins.items():
         with pytest.raises(ConfigError, match=line):
             build_network(graph)
+
+
+def test_any_name_survives_in_the_files_for_netconvert():
+    name = "A & \"B\" <c> 'd'\n\te"
+    node = RoadNode(name, 1.0, 2.0)
+    xml = network._node_xml((node,))
+    assert [found.get("id") for found in ElementTree.fromstring(xml)] == [name]

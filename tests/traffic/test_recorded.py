@@ -10,6 +10,7 @@ from eyas.traffic.config import Demand
 from eyas.traffic.interpolation import interpolate_actors
 from eyas.traffic.recorded import kept_motion, recorded_motion
 from eyas.traffic.recording import Recording
+from eyas.traffic.recording_file import RecordingFile, to_bytes
 
 EAST, NORTH = 0.05, -0.02
 
@@ -59,6 +60,10 @@ def test_heights_between_samples_follow_the_motion(wandering, plane):
     np.testing.assert_allclose(z, 7.0 + EAST * x + NORTH * y, atol=2e-3)
 
 
+def file_of(recording):
+    return RecordingFile(to_bytes(recording), "drive.npz")
+
+
 def test_a_motion_is_smoothed_once_and_then_read_from_the_cache(
     wandering, plane, tmp_path, monkeypatch
 ):
@@ -68,16 +73,16 @@ def test_a_motion_is_smoothed_once_and_then_read_from_the_cache(
     kind = np.zeros(wandering.actors, np.int32)
     expected = recorded_motion(wandering, plane, kind)
     for _ in range(2):
-        kept = kept_motion(wandering, plane, kind)
+        kept = kept_motion(file_of(wandering), plane, kind)
         assert kept.table.dtype == expected.table.dtype
         assert kept.table.flags.aligned
         np.testing.assert_array_equal(kept.table, expected.table)
         assert kept[1:] == expected[1:]
     assert len(smoothed) == 2  # the expected one, and one to keep
-    kept_motion(wandering, Terrain.flat(0.0), kind)
+    kept_motion(file_of(wandering), Terrain.flat(0.0), kind)
     assert len(smoothed) == 3
     config = wandering.provenance.config.model_copy(update={"demand": Demand.RESPAWN})
     groups = replace(wandering, provenance=replace(wandering.provenance, config=config))
-    brisk = kept_motion(groups, plane, kind)  # the same poses, smoothed less
+    brisk = kept_motion(file_of(groups), plane, kind)  # the same poses, smoothed less
     assert len(smoothed) == 4
     assert not np.array_equal(brisk.table, expected.table)

@@ -6,7 +6,7 @@ import pytest
 
 from eyas.core.errors import DataFileError, OutputError
 from eyas.traffic.recording import Recording
-from eyas.traffic.recording_file import from_bytes, load, load_provenance, save, to_bytes
+from eyas.traffic.recording_file import RecordingFile, from_bytes, load, save, to_bytes
 
 
 def test_a_loaded_recording_equals_the_saved_one(wandering: Recording, tmp_path: Path):
@@ -20,7 +20,7 @@ def test_a_loaded_recording_equals_the_saved_one(wandering: Recording, tmp_path:
     assert (back.vehicle_length == 5.0).all()
     assert (back.actors, back.duration) == (3, 20.0)
     assert [entry.name for entry in tmp_path.iterdir()] == ["drive.npz"]
-    assert load_provenance(tmp_path / "drive.npz") == wandering.provenance
+    assert RecordingFile.read(tmp_path / "drive.npz").outline().provenance == wandering.provenance
 
 
 def test_equal_recordings_give_equal_bytes(wandering: Recording):

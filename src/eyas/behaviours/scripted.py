@@ -4,7 +4,7 @@ It is computed at once for the whole length of the traffic, from the map, a seed
 so it is known at any instant without stepping.
 """
 
-from typing import Final, NamedTuple
+from typing import Final
 
 import numpy as np
 import shapely
@@ -13,20 +13,19 @@ from numpy.typing import NDArray
 from eyas.behaviours.chain import Chain, chain_through, outline
 from eyas.behaviours.config import Behaviour
 from eyas.behaviours.habits import HABITS, STROLL, Habit
-from eyas.behaviours.lives import Lives
 from eyas.behaviours.obstacles import Obstacles
 from eyas.behaviours.pavements import pavement_ways
 from eyas.behaviours.places import Roadside
 from eyas.behaviours.routes import Task, legs, polylines, round_and_round, stops, wave_of
 from eyas.behaviours.surface import Surface
 from eyas.behaviours.timetable import ride
+from eyas.behaviours.troop import Clock, Troop
 from eyas.core.errors import SpawnError
-from eyas.core.variation import Variation
 from eyas.state.motion import SAMPLE
 from eyas.state.scene import Scene
 from eyas.state.terrain import reliefs
 
-__all__ = ["Clock", "Ground", "Troop", "scripted_table"]
+__all__ = ["Ground", "scripted_table"]
 
 _SPAN: Final = 0.25
 """Half the distance over which the slope of the land is taken [m]."""
@@ -35,32 +34,6 @@ _ROOM: Final = 0.1
 """Room between a body and obstacles [m]."""
 
 Floats = NDArray[np.float64]
-
-
-class Clock(NamedTuple):
-    """The instants of a motion."""
-
-    samples: int
-    rate: float
-    """[Hz]"""
-
-
-class Troop(NamedTuple):
-    """Some of one kind."""
-
-    kind: str
-    """Name of the kind, one of `HABITS`."""
-    breadth: float
-    """Diameter of the circle in which it fits [m]."""
-    behaviour: Behaviour | None
-    """None: that of the kind."""
-    lives: Lives
-    offset: Variation
-    """Where it begins: distance from the middle of the road [m]."""
-    setting: str
-    """Setting that asks for it, for messages."""
-    habit: Habit | None = None
-    """How it moves; None: as its kind does."""
 
 
 class Ground:

@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from eyas.behaviours.habits import Habit
 from eyas.behaviours.lives import Lives
-from eyas.behaviours.scripted import Clock, Ground, Troop, scripted_table
+from eyas.behaviours.scripted import Ground, scripted_table
+from eyas.behaviours.troop import Clock, Troop
 from eyas.core.errors import ConfigError
 from eyas.core.files import user_path
 from eyas.core.variation import Variation

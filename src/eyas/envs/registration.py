@@ -1,6 +1,10 @@
 """Names for `gymnasium.make` and `gymnasium.make_vec`: one for each map and weather."""
 
-import gymnasium
+import importlib.util
+import sys
+from collections.abc import Sequence
+from importlib.machinery import ModuleSpec
+from types import ModuleType
 
 from eyas.world.maps import MAPS
 from eyas.world.maps.imported import IMPORTED
@@ -9,9 +13,16 @@ __all__ = ["register", "register_map"]
 
 
 def register() -> None:
-    """Register the maps that come with Eyas and imported ones; importing `eyas` does it."""
-    for name in (*MAPS.built_in, *IMPORTED.names()):
-        register_map(name)
+    """Register the maps that come with Eyas and imported ones; importing `eyas` does it.
+
+    If Gymnasium is not imported yet, they are registered when it is: it takes longer to import than
+    the rest of Eyas, and drawing, recording and the demo do without it.
+    """
+    if "gymnasium" in sys.modules:
+        for name in (*MAPS.built_in, *IMPORTED.names()):
+            register_map(name)
+    elif not any(isinstance(finder, _Registrar) for finder in sys.meta_path):
+        sys.meta_path.insert(0, _Registrar())
 
 
 def register_map(name: str) -> None:
@@ -23,6 +34,8 @@ def register_map(name: str) -> None:
     Raises:
         ConfigError: The map does not exist.
     """
+    import gymnasium
+
     recipe = MAPS.get(name)
     for weather in recipe.weathers:
         identifier = f"eyas/{recipe.name}-{weather}-v0"
@@ -34,3 +47,25 @@ def register_map(name: str) -> None:
             vector_entry_point="eyas.envs.vector_env:EyasVectorEnv",
             kwargs={"map": name, "weather": weather},
         )
+
+
+class _Registrar:
+    """Has Gymnasium's module, once Python finds it, call `register` after its own code."""
+
+    def find_spec(
+        self, name: str, path: Sequence[str] | None, target: ModuleType | None = None
+    ) -> ModuleSpec | None:
+        """Return None, and so leave the search to the other finders, for all other modules."""
+        if name != "gymnasium":
+            return None
+        sys.meta_path.remove(self)
+        spec = importlib.util.find_spec(name)
+        if spec is not None and spec.loader is not None:
+            execute = spec.loader.exec_module
+
+            def execute_and_register(module: ModuleType) -> None:
+                execute(module)
+                register()
+
+            spec.loader.exec_module = execute_and_register  # type: ignore[method-assign]
+        return spec

@@ -1,14 +1,17 @@
 """Meshes of flat faces: quadrilaterals, polygons on the ground, walls. Lengths in metres, z up."""
 
 from collections.abc import Sequence
+from typing import TYPE_CHECKING
 
 import numpy as np
-import shapely
 from numpy.typing import ArrayLike, NDArray
 
 from eyas.mesh.assembly import of_one_material
 from eyas.mesh.panels import cells
 from eyas.state.mesh import Material, Mesh
+
+if TYPE_CHECKING:
+    import shapely
 
 __all__ = ["flat_polygon", "flat_polygons", "quads", "wall_along", "walls"]
 
@@ -40,7 +43,7 @@ def quads(corners: ArrayLike, uvs: ArrayLike, material: Material) -> Mesh:
 
 
 def flat_polygon(
-    polygon: shapely.Geometry, z: float, material: Material, tile: float, turn: float = 0.0
+    polygon: "shapely.Geometry", z: float, material: Material, tile: float, turn: float = 0.0
 ) -> Mesh:
     """Return a horizontal polygon (holes and several parts allowed) that faces up.
 
@@ -50,13 +53,15 @@ def flat_polygon(
 
 
 def flat_polygons(
-    polygons: Sequence[shapely.Geometry],
+    polygons: "Sequence[shapely.Geometry]",
     z: float,
     material: Material,
     tile: float,
     turn: float = 0.0,
 ) -> Mesh:
     """Return polygons as one mesh, see `flat_polygon`; they share no vertices."""
+    import shapely  # not needed to move and join meshes, as each start does
+
     split = shapely.constrained_delaunay_triangles(np.asarray(polygons, object))
     cells, owner = shapely.get_parts(split, return_index=True)
     flat = shapely.get_coordinates(cells).reshape(-1, 4, 2)[:, :3]

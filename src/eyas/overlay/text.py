@@ -6,7 +6,6 @@ from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, ImageDraw, ImageFont
 
 from eyas.overlay.canvas import CASING, NEAR, Canvas
 from eyas.overlay.items import Label
@@ -45,6 +44,8 @@ def paint_labels(canvas: Canvas, labels: Sequence[Label]) -> None:
 @lru_cache(maxsize=64)
 def _masks(text: str, size: int) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """Return the share of each pixel that letters cover, without and with an outline."""
+    from PIL import Image, ImageDraw, ImageFont  # only where there are labels
+
     font = ImageFont.load_default(size)
     stroke = max(1, round(size / 8))
     left, top, right, bottom = font.getbbox(text)

@@ -20,7 +20,8 @@ from eyas.sensors.config import LidarConfig
 from eyas.sensors.movers import find_boxes
 from eyas.sensors.obstacles import Obstacles
 from eyas.sensors.rays import Ray, cast_ray
-from eyas.state.snapshot import EpisodeState, Snapshot, TrackerState
+from eyas.state.episode import EpisodeState
+from eyas.state.snapshot import Snapshot, TrackerState
 
 __all__ = ["MOUNT", "POINT_NUMBERS", "Lidar"]
 

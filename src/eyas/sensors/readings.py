@@ -15,7 +15,8 @@ from eyas.core.parallel import Held, Pointer, parallel_kernel
 from eyas.sensors.chance import SEEDS, normal, uniform
 from eyas.sensors.config import ReadingConfig, SensorsConfig
 from eyas.sensors.inertial import accelerometer, gyroscope
-from eyas.state.snapshot import EpisodeState, Snapshot, TrackerState
+from eyas.state.episode import EpisodeState
+from eyas.state.snapshot import Snapshot, TrackerState
 
 __all__ = ["READ_COLUMNS", "Readings", "has_errors"]
 

@@ -5,7 +5,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from eyas.behaviours.scripted import Clock
+from eyas.behaviours.troop import Clock
 from eyas.core.errors import ConfigError
 from eyas.render.ahead import begin_ahead, drawing_is_ready
 from eyas.render.renderer import Renderer, build_renderer
@@ -18,7 +18,7 @@ from eyas.targets.catalogue import kind_index
 from eyas.targets.quadrotor import QUADROTOR
 from eyas.targets.rig import Rigs
 from eyas.traffic.config import Demand, Source, TrafficConfig
-from eyas.traffic.library import CANONICAL_SEED, STANDARD_DURATION, find_recording
+from eyas.traffic.library import CANONICAL_SEED, STANDARD_DURATION, find_file
 from eyas.traffic.live import LiveSumo
 from eyas.traffic.record import resolved
 from eyas.traffic.recorded import kept_motion
@@ -69,7 +69,7 @@ def load_assets(
     grouped = traffic.demand is Demand.RESPAWN
     find = _live if traffic.source is Source.LIVE else _traffic
     source = find(world.map, world.seed, traffic, trackers if grouped else 1, crowd)
-    kinds, rigs = np.unique(source.motion.kind).tolist(), Rigs(source.motion.kind)
+    kinds, rigs = sorted({*source.motion.kind.tolist()}), Rigs(source.motion.kind)
     body_part = -1
     if trackers > 1:
         body_part = sum(cast.rig.part_count for cast in rigs.casts)
@@ -127,13 +127,13 @@ def _vehicles(
     if vehicles_of(crowd, config.max_vehicles) == 0:
         return None
     recipe = MAPS.get(map_name)
-    recording = find_recording(
+    file = find_file(
         recipe.roads(seed), config, trackers=trackers, shipped=recipe.shipped_traffic()
     )
-    kind = np.array([kind_index(name) for name in recording.vehicle_types], np.int32)
-    begin_ahead(f"from eyas.sim.scenes import paint; paint({np.unique(kind).tolist()})")
-    motion = kept_motion(recording, load_scene(map_name, seed).terrain, kind)
-    count = vehicles_of(crowd, recording.actors)
+    kind = np.array([kind_index(name) for name in file.outline().vehicle_types], np.int32)
+    begin_ahead(f"from eyas.sim.scenes import paint; paint({sorted({*kind.tolist()})})")
+    motion = kept_motion(file, load_scene(map_name, seed).terrain, kind)
+    count = vehicles_of(crowd, len(kind))
     return motion._replace(table=motion.table[:, :count], kind=kind[:count])
 
 

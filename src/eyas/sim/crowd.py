@@ -1,13 +1,14 @@
 """Everyone in a world who is no vehicle of SUMO's: the targets that are asked for, and extras."""
 
 import zlib
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.behaviours.config import ExtraConfig
 from eyas.behaviours.lives import Lives, lasting, recycled
-from eyas.behaviours.scripted import Clock, Ground, Troop, scripted_table
+from eyas.behaviours.troop import Clock, Troop
 from eyas.core.cache.cached import cached
 from eyas.core.cache.folder import Kind
 from eyas.core.clock import PHYSICS_STEP
@@ -16,12 +17,14 @@ from eyas.core.errors import ConfigError
 from eyas.core.rng import stream
 from eyas.core.variation import Mirrored, Variation
 from eyas.custom.config import CustomConfig
-from eyas.custom.motion import Places, custom_motion
 from eyas.sim.config import SimConfig
 from eyas.state.motion import SAMPLE, Motion
 from eyas.state.scene import Scene
 from eyas.targets.catalogue import MODELS, kind_index, models_of
 from eyas.targets.config import ObjectsConfig, TargetName
+
+if TYPE_CHECKING:
+    from eyas.behaviours.scripted import Ground
 
 __all__ = ["NOBODY", "Crowd", "crowd_motions", "crowd_of", "vehicles_of"]
 
@@ -105,6 +108,8 @@ def crowd_motions(crowd: Crowd, scene: Scene, clock: Clock, seed: int) -> list[M
     ground: list[Ground] = []  # made when the first motion is not in the cache
 
     def made(number: int, troop: Troop) -> NDArray[np.float32]:
+        from eyas.behaviours.scripted import Ground, scripted_table  # with shapely
+
         if not ground:
             ground.append(Ground(scene, roads=vehicles))
         rng = stream(seed, "crowd", number, zlib.crc32(troop.kind.encode()))
@@ -140,6 +145,9 @@ def _troops(crowd: Crowd, clock: Clock) -> list[Troop]:
 
 def _custom(crowd: Crowd, custom: CustomConfig, scene: Scene, clock: Clock, seed: int) -> Motion:
     """Return the motion of a target of one's own; not kept, as its class may have changed."""
+    from eyas.behaviours.scripted import Ground
+    from eyas.custom.motion import Places, custom_motion
+
     vehicles = any(map(_is_traffic, crowd.extras))
     lives = recycled(crowd.objects, clock.samples, clock.rate, crowd.episode)
     places, ground = Places(lives, crowd.objects.offset), Ground(scene, roads=vehicles)

@@ -3,10 +3,10 @@
 import logging
 from collections.abc import Callable, Sequence
 from functools import lru_cache
+from importlib.metadata import version
 from typing import TypeVar
 
 import numpy as np
-import shapely
 from numpy.typing import NDArray
 
 from eyas.core.cache.cached import cached
@@ -91,7 +91,7 @@ def _origin(
     sources = recipe.source_hash()
     if sources is None:
         return None
-    roads = network.graph_hash, network.builder, shapely.__version__
+    roads = network.graph_hash, network.builder, version("shapely")
     return (recipe.name, sources, seed, season.value, *roads)
 
 

@@ -17,8 +17,9 @@ from eyas.core.clock import PHYSICS_STEP
 from eyas.core.jit import specialised, step_kernel
 from eyas.core.parallel import BoundKernel, Held, Pointer, parallel_kernel
 from eyas.sensors.inertial import feel, rest
+from eyas.state.episode import EpisodeState
 from eyas.state.motion import Motion
-from eyas.state.snapshot import EpisodeState, Snapshot, TargetState
+from eyas.state.snapshot import Snapshot, TargetState
 from eyas.state.terrain import Terrain
 from eyas.task.direction import target_centre
 from eyas.task.done import judge

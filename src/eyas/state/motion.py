@@ -96,6 +96,8 @@ def joined(motions: Sequence[Motion]) -> Motion:
         ValueError: Their samples are not at the same times.
     """
     first = motions[0]
+    if len(motions) == 1:
+        return first
     for other in motions[1:]:
         times = [(len(m.table), m.rate, m.first_time) for m in (first, other)]
         if times[0] != times[1]:

@@ -42,7 +42,7 @@ class LookSampler:
                 colours=np.array(KINDS[k].colours, np.float32),
                 fixed=None if KINDS[k].keeps_colours else colour,
             )
-            for k in np.unique(kind).tolist()
+            for k in sorted({*kind.tolist()})
         ]
 
     def sample(self, rng: np.random.Generator) -> tuple[NDArray[np.int32], NDArray[np.float32]]:

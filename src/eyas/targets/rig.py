@@ -35,7 +35,7 @@ class Rigs:
     """
 
     def __init__(self, kind: NDArray[np.int32]) -> None:
-        present = np.unique(kind).tolist()
+        present = sorted({*kind.tolist()})
         rigs = {k: KINDS[k].rig() for k in present}
         self.kinds: tuple[Kind, ...] = tuple(KINDS[k] for k in present)
         slots = np.array([rigs[k].slots for k in kind.tolist()], np.int64)

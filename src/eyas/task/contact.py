@@ -10,7 +10,8 @@ from eyas.core.frames import rotate
 from eyas.core.jit import step_kernel
 from eyas.core.parallel import Held, Pointer, parallel_kernel
 from eyas.sensors.obstacles import Obstacles
-from eyas.state.snapshot import EpisodeState, Snapshot, TrackerState
+from eyas.state.episode import EpisodeState
+from eyas.state.snapshot import Snapshot, TrackerState
 from eyas.task.done import DoneReason
 from eyas.task.sweep import NEVER, Sweep
 from eyas.task.touch import touch_ground, touch_solids, touch_vehicles

@@ -4,7 +4,8 @@ import math
 from enum import IntEnum
 
 from eyas.core.jit import kernel, step_kernel
-from eyas.state.snapshot import EpisodeState, TargetState, TrackerState
+from eyas.state.episode import EpisodeState
+from eyas.state.snapshot import TargetState, TrackerState
 from eyas.state.terrain import Terrain, relief_at
 from eyas.task.rules import Rules
 

@@ -5,7 +5,8 @@ import math
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.frames import rotate_back
 from eyas.core.jit import step_kernel
-from eyas.state.snapshot import CameraState, EpisodeState, TargetState, TrackerState
+from eyas.state.episode import EpisodeState
+from eyas.state.snapshot import CameraState, TargetState, TrackerState
 from eyas.state.terrain import Terrain, height_over, plane_at
 from eyas.task.direction import target_direction
 from eyas.task.reward import axis_depth, reward_value, view_centre, view_share

@@ -14,7 +14,8 @@ from eyas.core.jit import step_kernel
 from eyas.core.parallel import Held, Pointer, parallel_kernel
 from eyas.sensors.config import CameraConfig
 from eyas.sensors.inertial import accelerometer, gyroscope
-from eyas.state.snapshot import CameraState, EpisodeState, Snapshot, TargetState, TrackerState
+from eyas.state.episode import EpisodeState
+from eyas.state.snapshot import CameraState, Snapshot, TargetState, TrackerState
 from eyas.state.terrain import Terrain
 
 __all__ = ["BASIC_COLUMNS", "REWARD_COLUMNS", "SENSOR_COLUMNS", "PacketRows"]

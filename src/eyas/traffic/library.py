@@ -18,7 +18,7 @@ from eyas.traffic.config import Mix, TrafficConfig
 from eyas.traffic.network import graph_hash
 from eyas.traffic.record import GROUP_SHARE, WARM_UP, record, resolved
 from eyas.traffic.recording import Provenance, Recording, check_map
-from eyas.traffic.recording_file import FORMAT, load, load_provenance, save, to_bytes
+from eyas.traffic.recording_file import FORMAT, RecordingFile, save, to_bytes
 from eyas.traffic.sumo import options
 from eyas.traffic.sumo_install import sumo_version
 
@@ -27,6 +27,7 @@ __all__ = [
     "CANONICAL_SEED",
     "RESPAWN_GROUPS",
     "STANDARD_DURATION",
+    "find_file",
     "find_recording",
     "record_canonical",
 ]
@@ -51,15 +52,15 @@ _RECORDER = 1
 made anew."""
 
 
-def find_recording(
+def find_file(
     graph: RoadGraph,
     config: TrafficConfig,
     *,
     trackers: int = 1,
     duration: float = STANDARD_DURATION,
     shipped: Iterable[Traversable] = (),
-) -> Recording:
-    """Return the recording to replay: the named, the shipped, a cached or a new one.
+) -> RecordingFile:
+    """Return the file of the recording to replay: the named, the shipped, a cached or a new one.
 
     Before a new recording is made, one line in the log `eyas` says so; Python prints it.
 
@@ -76,17 +77,19 @@ def find_recording(
     """
     if config.recording is not None:
         path = user_path(config.recording)
-        named = load(path)
-        check_map(named, graph.map_name, graph.seed, graph_hash(graph), str(path))
+        named = RecordingFile.read(path)
+        origin = named.outline().provenance
+        check_map(origin, graph.map_name, graph.seed, graph_hash(graph), str(path))
         return named
     seed = CANONICAL_SEED if config.seed is None else config.seed
     wanted = resolved(config, seed, trackers)
     _tell_raised(config, wanted, trackers)
     others = []
     for file in shipped:
-        origin = load_provenance(file)
+        found = RecordingFile.read(file)
+        origin = found.outline().provenance
         if _fits(origin, graph, wanted) and origin.duration >= duration:
-            return load(file)
+            return found
         others.append(origin)
     kept = _cached(graph, wanted, duration)
     if kept is not None:
@@ -95,6 +98,18 @@ def find_recording(
     if not config.update_routes:
         reason = f"although traffic.update_routes (Sumo_Params.rou_update) is false, {reason}"
     return _new(graph, wanted, duration, reason)
+
+
+def find_recording(
+    graph: RoadGraph,
+    config: TrafficConfig,
+    *,
+    trackers: int = 1,
+    duration: float = STANDARD_DURATION,
+    shipped: Iterable[Traversable] = (),
+) -> Recording:
+    """Return the recording of `find_file`."""
+    return find_file(graph, config, trackers=trackers, duration=duration, shipped=shipped).load()
 
 
 def record_canonical(
@@ -161,14 +176,15 @@ def _fits(origin: Provenance, graph: RoadGraph, wanted: TrafficConfig) -> bool:
     return (origin.graph_hash, origin.config) == (graph_hash(graph), wanted)
 
 
-def _cached(graph: RoadGraph, wanted: TrafficConfig, duration: float) -> Recording | None:
+def _cached(graph: RoadGraph, wanted: TrafficConfig, duration: float) -> RecordingFile | None:
     """Return a recording from the cache; None if it is missing or damaged, or of other traffic."""
     path = _cache_file(graph, wanted, duration)
     try:
-        kept = load(path)
+        kept = RecordingFile.read(path)
+        origin = kept.load().provenance  # whole, or it is recorded again
     except DataFileError:
         return None
-    if not _fits(kept.provenance, graph, wanted):
+    if not _fits(origin, graph, wanted):
         return None
     touch(path)
     return kept
@@ -203,7 +219,7 @@ def _differences(
     return told
 
 
-def _new(graph: RoadGraph, wanted: TrafficConfig, duration: float, reason: str) -> Recording:
+def _new(graph: RoadGraph, wanted: TrafficConfig, duration: float, reason: str) -> RecordingFile:
     """Return a new recording, and keep it in the cache."""
     limit, path = cache_limit(), _cache_file(graph, wanted, duration)
     version = sumo_version("new traffic, as no recording fits the settings,")
@@ -213,8 +229,9 @@ def _new(graph: RoadGraph, wanted: TrafficConfig, duration: float, reason: str) 
     )
     assert wanted.seed is not None
     made = record(graph.map_name, graph.seed, graph, wanted, duration, wanted.seed)
+    data = to_bytes(made)
     try:
-        write_entry(path, [to_bytes(made)], limit)
+        write_entry(path, [data], limit)
     except OSError as error:
         _LOG.warning("the recording is used but could not be cached: %s: %s", path, error.strerror)
-    return made
+    return RecordingFile(data, str(path))

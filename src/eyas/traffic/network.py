@@ -6,14 +6,12 @@ import tempfile
 from collections import Counter
 from pathlib import Path
 from xml.etree import ElementTree
-from xml.sax.saxutils import quoteattr
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.errors import ConfigError
 from eyas.state.roads import RoadEdge, RoadGraph, RoadNetwork, RoadNode
-from eyas.traffic.net_file import road_network
 from eyas.traffic.sumo_install import sumo_binary, sumo_environment, sumo_version
 
 __all__ = ["OPTIONS", "build_network", "graph_hash", "network_xml", "without_comments"]
@@ -51,6 +49,8 @@ def build_network(graph: RoadGraph) -> RoadNetwork:
         ConfigError: Two nodes or edges have one name, or netconvert rejects the graph.
     """
     if graph.finished:
+        from eyas.traffic.net_file import road_network  # shapely, which few starts need
+
         return road_network(graph.finished, graph_hash(graph))
     root = ElementTree.fromstring(network_xml(graph))
     edges = {name: root.find(f"./edge[@id='{name}']") for name in (e.name for e in graph.edges)}
@@ -123,9 +123,27 @@ def without_comments(xml: bytes) -> bytes:
     return bytes(ElementTree.tostring(root, encoding="utf-8")) + b"\n"
 
 
+_ESCAPED = str.maketrans(
+    {
+        "&": "&amp;",
+        "<": "&lt;",
+        ">": "&gt;",
+        '"': "&quot;",
+        "\n": "&#10;",
+        "\r": "&#13;",
+        "\t": "&#9;",
+    }
+)
+
+
+def _quoted(name: str) -> str:
+    """Return the value of an attribute; `xml.sax.saxutils` would import an HTTP client with it."""
+    return f'"{name.translate(_ESCAPED)}"'
+
+
 def _node_xml(nodes: tuple[RoadNode, ...]) -> str:
     lines = [
-        f'<node id={quoteattr(node.name)} x="{node.x:.3f}" y="{node.y:.3f}" type="priority"/>'
+        f'<node id={_quoted(node.name)} x="{node.x:.3f}" y="{node.y:.3f}" type="priority"/>'
         for node in nodes
     ]
     return "\n".join(["<nodes>", *lines, "</nodes>"])
@@ -137,8 +155,8 @@ def _edge_xml(edges: tuple[RoadEdge, ...]) -> str:
         shape = " ".join(f"{x:.3f},{y:.3f}" for x, y in edge.shape)
         middle = f' shape="{shape}"' if shape else ""
         lines.append(
-            f"<edge id={quoteattr(edge.name)} from={quoteattr(edge.start)} "
-            f'to={quoteattr(edge.end)} numLanes="{edge.lanes}" width="{edge.lane_width:.3f}" '
+            f"<edge id={_quoted(edge.name)} from={_quoted(edge.start)} "
+            f'to={_quoted(edge.end)} numLanes="{edge.lanes}" width="{edge.lane_width:.3f}" '
             f'speed="{edge.speed:.3f}"{middle}/>'
         )
     return "\n".join(["<edges>", *lines, "</edges>"])

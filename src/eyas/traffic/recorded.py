@@ -11,6 +11,7 @@ from eyas.core.parallel import Held, Pointer, parallel_kernel
 from eyas.state.motion import SAMPLE, Motion
 from eyas.state.terrain import Terrain, relief_at, slope_at
 from eyas.traffic.recording import Recording
+from eyas.traffic.recording_file import RecordingFile
 from eyas.traffic.smoothing import Tracks, smooth
 
 __all__ = ["kept_motion", "recorded_motion", "table_of"]
@@ -18,18 +19,20 @@ __all__ = ["kept_motion", "recorded_motion", "table_of"]
 _MAKERS = ("traffic/recorded.py", "traffic/smoothing.py", "state/motion.py", "state/terrain.py")
 
 
-def kept_motion(recording: Recording, terrain: Terrain, kind: NDArray[np.int32]) -> Motion:
-    """Return `recorded_motion`, kept in the cache."""
-    demand = recording.provenance.config.demand.value  # smoothing depends on it
-    poses = (recording.position, recording.yaw, recording.present)
+def kept_motion(file: RecordingFile, terrain: Terrain, kind: NDArray[np.int32]) -> Motion:
+    """Return `recorded_motion`, kept in the cache.
+
+    Raises:
+        DataFileError: The file is damaged or not a recording.
+    """
     numbers = cached(
         Kind.MOTION,
         _MAKERS,
-        (*poses, recording.rate, recording.vehicle_length, demand, kind, *terrain),
-        lambda: _numbers(recorded_motion(recording, terrain, kind).table),
+        (np.frombuffer(file.data, np.uint8), *terrain),
+        lambda: _numbers(recorded_motion(file.load(), terrain, kind).table),
         of=NDArray[np.float32],
     )
-    return Motion(numbers.view(SAMPLE)[..., 0], kind, float(recording.rate), 0.0)
+    return Motion(numbers.view(SAMPLE)[..., 0], kind, file.outline().rate, 0.0)
 
 
 def _numbers(table: NDArray[np.void]) -> NDArray[np.float32]:

@@ -116,12 +116,12 @@ def problem_of(recording: Recording) -> str:
 
 
 def check_map(
-    recording: Recording, map_name: str, map_seed: int, graph_hash: str, source: str
+    origin: Provenance, map_name: str, map_seed: int, graph_hash: str, source: str
 ) -> None:
     """Reject a recording of other roads.
 
     Args:
-        recording: The recording.
+        origin: Where the recording comes from.
         map_name: Name of the map in use.
         map_seed: Seed of that map.
         graph_hash: Hash of its road graph.
@@ -130,7 +130,6 @@ def check_map(
     Raises:
         DataFileError: The recording was made on other roads.
     """
-    origin = recording.provenance
     if origin.graph_hash == graph_hash:
         return
     if (origin.map_name, origin.map_seed) == (map_name, map_seed):

@@ -12,7 +12,7 @@ from contextlib import suppress
 from dataclasses import asdict
 from importlib.resources.abc import Traversable
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,7 +32,7 @@ from eyas.traffic.recording import (
     restored,
 )
 
-__all__ = ["FORMAT", "from_bytes", "load", "load_provenance", "save", "to_bytes"]
+__all__ = ["FORMAT", "Outline", "RecordingFile", "from_bytes", "load", "save", "to_bytes"]
 
 FORMAT = "eyas traffic recording 1"
 """Format in the header of a file; another layout gets another number."""
@@ -41,6 +41,56 @@ _LARGEST = 256 << 20
 """Largest size of a file, and of its arrays: a day of 50 vehicles [bytes]."""
 
 Arrays = dict[str, NDArray[np.generic]]
+
+
+class Outline(NamedTuple):
+    """What the header of a file says."""
+
+    provenance: Provenance
+    rate: float
+    """Samples per second [Hz]."""
+    vehicle_types: tuple[VehicleType, ...]
+    """Class of each actor."""
+
+
+class RecordingFile(NamedTuple):
+    """The content of a file, not unpacked yet: that takes a tenth of a second."""
+
+    data: bytes
+    source: str
+    """Name of the file for messages."""
+
+    @classmethod
+    def read(cls, path: Path | Traversable) -> "RecordingFile":
+        """Read a file.
+
+        Raises:
+            DataFileError: It is missing, unreadable or too large.
+        """
+        data = read_limited(path, _LARGEST) if isinstance(path, Path) else path.read_bytes()
+        return cls(data, str(path))
+
+    def outline(self) -> Outline:
+        """Return what the header says, without checking that the rest is whole.
+
+        Raises:
+            DataFileError: The content is truncated, damaged or not a recording.
+        """
+        try:
+            with np.load(io.BytesIO(self.data), allow_pickle=False) as file:
+                return _outline(json.loads(file["header"].tobytes()), self.source)
+        except EyasError:
+            raise
+        except Exception as error:  # damaged bytes raise many kinds in zipfile, zlib, numpy, json
+            raise DataFileError(f"{self.source}: not a complete traffic recording") from error
+
+    def load(self) -> Recording:
+        """Return the recording.
+
+        Raises:
+            DataFileError: The content is truncated, damaged or not a recording.
+        """
+        return from_bytes(self.data, self.source)
 
 
 def save(recording: Recording, path: Path) -> None:
@@ -58,24 +108,7 @@ def load(path: Path | Traversable) -> Recording:
     Raises:
         DataFileError: The file is missing, unreadable, truncated or not a recording.
     """
-    return from_bytes(_read(path), str(path))
-
-
-def load_provenance(path: Path | Traversable) -> Provenance:
-    """Read the provenance only, without checking that the rest is whole.
-
-    Raises:
-        DataFileError: The file is missing, unreadable, truncated or not a recording.
-    """
-    source, data = str(path), _read(path)
-    try:
-        with np.load(io.BytesIO(data), allow_pickle=False) as file:
-            header = json.loads(file["header"].tobytes())
-        return _provenance(header, source)
-    except EyasError:
-        raise
-    except Exception as error:  # damaged bytes raise many kinds in zipfile, zlib, numpy, json
-        raise DataFileError(f"{source}: not a complete traffic recording") from error
+    return RecordingFile.read(path).load()
 
 
 def to_bytes(recording: Recording) -> bytes:
@@ -136,18 +169,17 @@ def _recording(arrays: Arrays, source: str) -> Recording:
     if samples != header["shape"][0] or flags.shape[-1] != -(-samples // 8):
         raise ValueError(f"{samples} samples, but the header says {header['shape']}")
     present = np.unpackbits(flags, axis=-1, count=samples)
-    origin = _provenance(header, source)
-    # One class and one length are those of all actors.
-    classes = header.get("vehicle_types", [origin.config.vehicle_type] * len(present))
+    outline = _outline(header, source)
+    # One length is that of all actors.
     length = np.asarray(header["vehicle_length"], np.float64)
     return Recording(
-        rate=float(header["rate"]),
+        rate=outline.rate,
         position=np.ascontiguousarray(position.transpose(2, 0, 1)),
         yaw=np.ascontiguousarray(restored(_integrated("yaw", arrays), ANGLE_UNIT).T),
         present=np.ascontiguousarray(present.T.astype(np.bool_)),
-        vehicle_types=tuple(VehicleType(name) for name in classes),
+        vehicle_types=outline.vehicle_types,
         vehicle_length=length if length.ndim else np.full(len(present), float(length)),
-        provenance=origin,
+        provenance=outline.provenance,
     )
 
 
@@ -159,8 +191,11 @@ def _fleet_header(recording: Recording) -> dict[str, Any]:
     return {"vehicle_length": length, "vehicle_types": list(recording.vehicle_types)}
 
 
-def _read(path: Path | Traversable) -> bytes:
-    return read_limited(path, _LARGEST) if isinstance(path, Path) else path.read_bytes()
+def _outline(header: dict[str, Any], source: str) -> Outline:
+    origin = _provenance(header, source)
+    # One class is that of all actors.
+    classes = header.get("vehicle_types", [origin.config.vehicle_type] * header["shape"][1])
+    return Outline(origin, float(header["rate"]), tuple(map(VehicleType, classes)))
 
 
 def _provenance(header: dict[str, Any], source: str) -> Provenance:

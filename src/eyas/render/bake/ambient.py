@@ -1,21 +1,32 @@
 """Share of the sky seen from ground and roofs: less beside walls, under trees and bridges."""
 
+import math
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, ImageDraw
 
 from eyas.core.cache.cached import cached
 from eyas.core.cache.folder import Kind
 from eyas.core.jit import thread_count
 from eyas.core.parallel import Held
-from eyas.render.kernels.light.ambient import BOUNCED, LEAVES, OpennessBake, bake_openness
+from eyas.render.kernels.light.ambient import (
+    BOUNCED,
+    DIRECTIONS,
+    DISTANCES,
+    LEAVES,
+    OpennessBake,
+    bake_openness,
+)
 from eyas.state.scene import ObjectClass, Scene
 from eyas.state.terrain import reliefs
 
-__all__ = ["AmbientMap", "bake_ambient", "canopy_map", "height_map"]
+if TYPE_CHECKING:
+    from PIL import Image, ImageDraw
+
+__all__ = ["AmbientMap", "bake_ambient", "canopy_map", "height_map", "openness_of"]
 
 TEXEL = 1.0
 """Side of a texel [m]."""
@@ -72,17 +83,58 @@ def bake_ambient(scene: Scene, folder: Path | None = None) -> AmbientMap:
     )
 
     def make() -> NDArray[np.uint16]:
-        openness = np.empty((rows, columns), np.uint16)
         solid = height_map(scene, frame, (rows, columns))
         crowns = canopy_map(scene, frame, (rows, columns))
         decks = height_map(scene, frame, (rows, columns), structures=True)
-        if not decks.any():
-            decks = decks[:0, :0]
-        bake_openness(thread_count(), Held(OpennessBake(texel, solid, crowns, decks, openness)))
-        return openness
+        return openness_of(solid, crowns, decks, texel, thread_count())
 
     openness = cached(Kind.AMBIENT, (), inputs, make, of=NDArray[np.uint16], folder=folder)
     return AmbientMap(openness, frame)
+
+
+def openness_of(
+    solid: NDArray[np.float32],
+    crowns: NDArray[np.float32],
+    decks: NDArray[np.float32],
+    texel: float,
+    workers: int,
+) -> NDArray[np.uint16]:
+    """Return `AmbientMap.openness`.
+
+    Args:
+        solid: Height of buildings above the ground [m], shape (rows, columns).
+        crowns: The same of trees.
+        decks: The same of elevated roads.
+        texel: Side of a texel [m].
+        workers: Number of threads.
+    """
+    openness = np.empty(solid.shape, np.uint16)
+    way, distance = _ways(texel), np.array(DISTANCES)
+    square = math.ceil(DISTANCES[-1] / texel) + 1
+    near = _near(decks, square)
+    bake = OpennessBake(way, distance, solid, crowns, decks, square, near, openness)
+    bake_openness(workers, Held(bake))
+    return openness
+
+
+def _ways(texel: float) -> NDArray[np.float64]:
+    """Return `OpennessBake.way`; numpy's sines differ between processors, those of C do not."""
+    angles = [(k + 0.5) * (2.0 * math.pi / DIRECTIONS) for k in range(DIRECTIONS)]
+    return np.array(
+        [
+            [(math.sin(angle) / texel * far, math.cos(angle) / texel * far) for far in DISTANCES]
+            for angle in angles
+        ]
+    )
+
+
+def _near(decks: NDArray[np.float32], square: int) -> NDArray[np.bool_]:
+    """Return whether there are decks in each square of texels or in one of the eight around it."""
+    rows, columns = (-(-size // square) for size in decks.shape)
+    near = np.zeros((rows + 2, columns + 2), np.bool_)
+    for row, column in {*map(tuple, (np.argwhere(decks > 0.0) // square).tolist())}:
+        near[row : row + 3, column : column + 3] = True
+    return np.ascontiguousarray(near[1:-1, 1:-1])
 
 
 def height_map(
@@ -106,8 +158,7 @@ def height_map(
     of_kind = (kind == ObjectClass.STRUCTURE) == structures
     chosen = np.flatnonzero(level & of_kind & (rise > (_DECK if structures else _LOWEST)))
     flat = (corners[:, :, :2] - frame[:2]) * frame[2]
-    picture = Image.new("F", (shape[1], shape[0]), 0.0)
-    pen = ImageDraw.Draw(picture)
+    picture, pen = _canvas(shape)
     for index in chosen[np.argsort(rise[chosen], kind="stable")]:
         pen.polygon(flat[index].ravel().tolist(), fill=float(rise[index]))
     return np.array(picture, np.float32)
@@ -118,8 +169,7 @@ def canopy_map(
 ) -> NDArray[np.float32]:
     """Return the height above the ground of the crown's top over each texel, 0 for none [m]."""
     fixtures = scene.fixtures
-    picture = Image.new("F", (shape[1], shape[0]), 0.0)
-    pen = ImageDraw.Draw(picture)
+    picture, pen = _canvas(shape)
     for index in np.flatnonzero(scene.object_class[fixtures.object_id] == ObjectClass.TREE):
         points = fixtures.levels[fixtures.prototype[index]][0].positions
         pose = fixtures.pose[index].astype(np.float64)
@@ -132,3 +182,11 @@ def canopy_map(
         top = scale * float(points[:, 2].max()) + pose[2, 3] - ground
         pen.ellipse((x - r, y - r, x + r, y + r), fill=float(top))
     return np.array(picture, np.float32)
+
+
+def _canvas(shape: tuple[int, int]) -> "tuple[Image.Image, ImageDraw.ImageDraw]":
+    """Return a picture of heights, and a pen for it."""
+    from PIL import Image, ImageDraw  # not needed where the map is in the cache
+
+    picture = Image.new("F", (shape[1], shape[0]), 0.0)
+    return picture, ImageDraw.Draw(picture)

@@ -226,7 +226,7 @@ def _casters(geometry: Geometry) -> tuple[NDArray[np.generic], ...]:
         corners_of(geometry.cluster)[:last],
         geometry.corner_uv[:last],
         cards[geometry.material[:last]],
-        geometry.texture[np.unique(geometry.layer[cards > 0])] >> 24,
+        geometry.texture[np.flatnonzero(np.bincount(geometry.layer[cards > 0]))] >> 24,
         fixtures,
         geometry.fixture_prototype,
         geometry.fixture_pose,

@@ -6,7 +6,6 @@ from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, ImageDraw
 
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import Scene
@@ -104,6 +103,8 @@ def _sheltered(
     roofs = (solids.prism_bottom >= _ROOF[0]) & (solids.prism_bottom <= _ROOF[1])
     if not roofs.any():
         return worn
+    from PIL import Image, ImageDraw  # for few maps, and only when it snows
+
     picture = Image.fromarray(worn)
     pen = ImageDraw.Draw(picture)
     for roof in np.flatnonzero(roofs):

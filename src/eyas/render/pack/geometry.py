@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from eyas.render.kernels.bundles import GROUP, Geometry
 from eyas.render.kernels.visibility.clusters import BOUNDS_ROWS, CLUSTER, CLUSTER_ROWS, UV_ROWS
+from eyas.render.pack.boxes import box_of, columns_of, group_boxes, posed_boxes, sphere_of
 from eyas.render.pack.clusters import (
-    NOWHERE,
     bounds_of,
     by_clusters,
     cluster_order,
@@ -63,14 +63,14 @@ def build_geometry(
     mesh_range = [pool.add(mesh, None) for levels in prototypes for mesh in levels]
     # Around all levels of detail: what is culled must not stick out.
     points = [np.concatenate([mesh.positions for mesh in levels]) for levels in prototypes]
-    box = np.array([_box(positions) for positions in points], np.float32).reshape(-1, 6)
-    sphere = [_sphere(positions) for positions in points]
+    box = np.array([box_of(positions) for positions in points], np.float32).reshape(-1, 6)
+    sphere = [sphere_of(positions) for positions in points]
     order = _fixture_order(scene.fixtures.pose[:, :, 3])
     pose = np.ascontiguousarray(scene.fixtures.pose[order], np.float32)
     prototype = scene.fixtures.prototype[order].astype(np.int32)
     palette = tuple(pool.palette)
     names = sorted({material.texture for material in palette} | {"plain"})
-    fixture_boxes = _posed_boxes(box[prototype], pose)
+    fixture_boxes = posed_boxes(box[prototype], pose)
     tint = linear(np.array([material.tint for material in palette]).reshape(-1, 3))
     materials = MaterialTable(
         layer=np.array([names.index(material.texture) for material in palette], np.int32),
@@ -90,8 +90,8 @@ def build_geometry(
         shading=shading_rows(slopes, objects, materials.of(material)),
         material=material,
         object_id=objects,
-        chunk_box=_columns(chunk_boxes, GROUP),
-        chunk_group_box=_columns(_group_boxes(chunk_boxes), CLUSTER),
+        chunk_box=columns_of(chunk_boxes, GROUP),
+        chunk_group_box=columns_of(group_boxes(chunk_boxes), CLUSTER),
         chunk_range=chunk_range,
         mesh_range=np.array(mesh_range, np.int32).reshape(-1, 3),
         level_first=np.cumsum([0, *[len(levels) for levels in prototypes]]).astype(np.int32),
@@ -103,8 +103,8 @@ def build_geometry(
         fixture_prototype=prototype,
         fixture_pose=pose,
         fixture_object=scene.fixtures.object_id[order].astype(np.int32),
-        fixture_box=_columns(fixture_boxes, GROUP),
-        fixture_group_box=_columns(_group_boxes(fixture_boxes), CLUSTER),
+        fixture_box=columns_of(fixture_boxes, GROUP),
+        fixture_group_box=columns_of(group_boxes(fixture_boxes), CLUSTER),
         layer=materials.layer,
         surface=materials.surface,
         tint=materials.tint,
@@ -205,7 +205,7 @@ def _add_chunks(pool: _Pool, scene: Scene) -> tuple[NDArray[np.int32], NDArray[n
         )
         objects = scene.static_object[index].astype(np.int32)
         ranges.append(pool.add(part, objects, size[index]))
-        boxes.append(_box(mesh.positions[part.triangles].reshape(-1, 3)))
+        boxes.append(box_of(mesh.positions[part.triangles].reshape(-1, 3)))
     return (
         np.array(ranges, np.int32).reshape(-1, 3),
         np.array(boxes, np.float32).reshape(-1, 6),
@@ -219,46 +219,6 @@ def _detail_sizes(scene: Scene, corners: NDArray[np.float32]) -> NDArray[np.floa
     sides = corners[:, 1:] - corners[:, :1]
     area = 0.5 * np.linalg.norm(np.cross(sides[:, 0], sides[:, 1]), axis=1)
     return np.where(detail, np.sqrt(area), np.inf).astype(np.float32)
-
-
-def _box(positions: NDArray[np.float32]) -> NDArray[np.float32]:
-    if len(positions) == 0:
-        return np.zeros(6, np.float32)
-    return np.concatenate([positions.min(axis=0), positions.max(axis=0)])
-
-
-def _sphere(positions: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Return centre and radius of a sphere around all points, shape (4,)."""
-    box = _box(positions)
-    centre = (box[:3] + box[3:]) / 2
-    radius = np.linalg.norm(positions - centre, axis=1).max(initial=0.0)
-    return np.append(centre, np.float32(radius * 1.0001))
-
-
-def _posed_boxes(boxes: NDArray[np.float32], poses: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Return boxes around boxes that were moved by poses, shape (F, 6)."""
-    centre, half = (boxes[:, :3] + boxes[:, 3:]) / 2, (boxes[:, 3:] - boxes[:, :3]) / 2
-    middle = np.einsum("fij,fj->fi", poses[:, :, :3], centre) + poses[:, :, 3]
-    reach = np.einsum("fij,fj->fi", np.abs(poses[:, :, :3]), half)
-    return np.concatenate([middle - reach, middle + reach], axis=1)
-
-
-def _group_boxes(boxes: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Return the box around each `GROUP` boxes in a row."""
-    starts = np.arange(0, len(boxes), GROUP)
-    if len(starts) == 0:
-        return np.zeros((0, 6), np.float32)
-    low = np.minimum.reduceat(boxes[:, :3], starts, axis=0)
-    high = np.maximum.reduceat(boxes[:, 3:], starts, axis=0)
-    return np.ascontiguousarray(np.concatenate([low, high], axis=1), np.float32)
-
-
-def _columns(boxes: NDArray[np.float32], group: int) -> NDArray[np.float32]:
-    """Return boxes as columns, filled up to a multiple of `group`, see `Geometry.chunk_box`."""
-    columns = np.empty((6, len(boxes) + -len(boxes) % group), np.float32)
-    columns[:3], columns[3:] = NOWHERE, -NOWHERE
-    columns[:, : len(boxes)] = boxes.T
-    return columns
 
 
 def _fixture_order(points: NDArray[np.float32]) -> NDArray[np.intp]:

@@ -24,7 +24,7 @@ from eyas.render.kernels.bundles import (
 from eyas.render.kernels.light.tone import TONE_STEPS, TONE_TOP
 from eyas.render.pack.lamp_grid import lamp_grid
 from eyas.state.lighting import Lighting
-from eyas.state.scene import Scene
+from eyas.state.scene import Lamps, Scene
 
 __all__ = ["build_light", "tile_starts", "tone_table"]
 
@@ -38,7 +38,8 @@ def build_light(
     geometry: Geometry,
 ) -> Light:
     """Return the light of a weather over a scene."""
-    lamp, lamp_cell, lamp_frame = lamp_grid(scene.lamps)
+    lit = scene.lamps if lighting.lamps > 0 else Lamps.none()
+    lamp, lamp_cell, lamp_frame = lamp_grid(lit)
     sun = np.array(lighting.sun_direction, np.float64)
     sun /= np.linalg.norm(sun)
     toward = (float(sun[0]), float(sun[1]), float(sun[2]))

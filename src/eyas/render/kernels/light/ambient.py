@@ -1,6 +1,5 @@
 """Ambient occlusion: the share of the light of the sky that arrives on ground and roofs, baked."""
 
-import math
 from typing import NamedTuple
 
 import numpy as np
@@ -21,7 +20,15 @@ from eyas.core.parallel import Pointer, parallel_kernel
 from eyas.render.kernels.bundles import Light
 from eyas.render.kernels.scalars import f4, i4, u4
 
-__all__ = ["BOUNCED", "LEAVES", "OpennessBake", "bake_openness", "openness"]
+__all__ = [
+    "BOUNCED",
+    "DIRECTIONS",
+    "DISTANCES",
+    "LEAVES",
+    "OpennessBake",
+    "bake_openness",
+    "openness",
+]
 
 DIRECTIONS = 16
 """Number of directions in which the horizon is searched."""
@@ -42,10 +49,10 @@ _ASIDE = f4(0.9)
 """Distance in front of a wall at which its light is looked up [m]."""
 
 
-@inner_kernel
-def _distance(step: int) -> float:
-    """Return the distance of a point [m]: 1 to 70, each about half as far again as the last."""
-    return float(0.9 * (1.36**step))
+DISTANCES = tuple(0.9 * 1.36**step for step in range(STEPS))
+"""Distances of these points [m]: 1 to 49, each about a third farther than the last."""
+
+_HALF_WAY = 1.36**-0.5
 
 
 @inlined_kernel
@@ -56,12 +63,7 @@ def _sine_squared(height: float, far: float) -> float:
 
 @inner_kernel
 def _open_share(
-    texel: float,
-    row: int,
-    column: int,
-    solid: NDArray[np.float32],
-    crowns: NDArray[np.float32],
-    decks: NDArray[np.float32],
+    bake: "OpennessBake", row: int, column: int, near_decks: bool
 ) -> tuple[float, float]:
     """Return the share of the sky's light on a texel's ground or roof, and the height above the
     ground of what hides it.
@@ -69,28 +71,28 @@ def _open_share(
     Each direction contributes cos^2 of the horizon's angle, the share on a flat surface below
     a uniformly bright sky, less what decks hide above it.
     """
+    solid, crowns = bake.solid, bake.crowns
     rows, columns = solid.shape
     base = solid[row, column]
     total, height, weight = 0.0, 0.0, 1e-6
     for k in range(DIRECTIONS):
-        angle = (k + 0.5) * (2.0 * math.pi / DIRECTIONS)
-        east, north = math.cos(angle) / texel, math.sin(angle) / texel
         slope, leafy, high = 0.0, 0.0, 0.0
         for step in range(STEPS):
-            far = _distance(step)
-            i, j = int(row + 0.5 + north * far), int(column + 0.5 + east * far)
+            i, j = int(row + 0.5 + bake.way[k, step, 0]), int(column + 0.5 + bake.way[k, step, 1])
             if i < 0 or j < 0 or i >= rows or j >= columns:
                 break
+            far = bake.distance[step]
             if solid[i, j] - base > slope * far:
                 slope, high = (solid[i, j] - base) / far, max(high, float(solid[i, j]))
-            leafy = max(leafy, (crowns[i, j] - base) / far)
+            if crowns[i, j] - base > leafy * far:
+                leafy = (crowns[i, j] - base) / far
         hidden = _sine_squared(slope, 1.0)
         leaves = max(_sine_squared(leafy, 1.0) - hidden, 0.0)
         total += 1.0 - hidden - LEAVES * leaves
         height += high * hidden
         weight += hidden
-        if len(decks) > 0:
-            covered, top = _covered(texel, row, column, east, north, base, hidden, decks)
+        if near_decks:
+            covered, top = _covered(bake, row, column, k, hidden)
             total -= covered
             height += top * covered
             weight += covered
@@ -100,38 +102,32 @@ def _open_share(
         share *= 1.0 - 0.5 * LEAVES
         height, weight = height + 2.0 * above, weight + 2.0
     height /= weight
-    if len(decks) > 0 and decks[row, column] > base:  # the road on the deck is open
-        height = min(height, float(decks[row, column]))
+    if near_decks and bake.decks[row, column] > base:  # the road on the deck is open
+        height = min(height, float(bake.decks[row, column]))
     return BOUNCED + (1.0 - BOUNCED) * max(share, 0.0), height
 
 
 @inner_kernel
 def _covered(
-    texel: float,
-    row: int,
-    column: int,
-    east: float,
-    north: float,
-    base: float,
-    hidden: float,
-    decks: NDArray[np.float32],
+    bake: "OpennessBake", row: int, column: int, direction: int, hidden: float
 ) -> tuple[float, float]:
     """Return the share of the light of one direction that decks hide, and the highest one's height.
 
     The `hidden` share, which would come from below the horizon, is left out.
     """
+    decks, base = bake.decks, bake.solid[row, column]
     total, top, upper = 0.0, 0.0, 1.0
     i, j = row, column
     for step in range(STEPS):
         # What lies at a point is taken to reach half-way to the next ones.
-        far = _distance(step) * 1.36**-0.5
+        far = bake.distance[step] * _HALF_WAY
         deck = decks[i, j] - base
         if deck > 0.0:
             lower = max(_sine_squared(deck, far), hidden)
             total += max(upper - lower, 0.0)
             top = max(top, float(decks[i, j]))
-        i = int(row + 0.5 + north * _distance(step))
-        j = int(column + 0.5 + east * _distance(step))
+        i = int(row + 0.5 + bake.way[direction, step, 0])
+        j = int(column + 0.5 + bake.way[direction, step, 1])
         if i < 0 or j < 0 or i >= decks.shape[0] or j >= decks.shape[1]:
             break
         upper = _sine_squared(decks[i, j] - base, far)
@@ -141,14 +137,20 @@ def _covered(
 class OpennessBake(NamedTuple):
     """Input and output of `bake_openness`."""
 
-    texel: float
-    """Side of a texel [m]."""
+    way: NDArray[np.float64]
+    """Way to each point that is examined: rows and columns, shape (DIRECTIONS, STEPS, 2)."""
+    distance: NDArray[np.float64]
+    """Its length, `DISTANCES` [m]."""
     solid: NDArray[np.float32]
     """Height of buildings [m], shape (rows, columns)."""
     crowns: NDArray[np.float32]
     """Height of trees [m], shape (rows, columns)."""
     decks: NDArray[np.float32]
-    """Height of elevated roads [m], shape (rows, columns); (0, 0) if there are none."""
+    """Height of elevated roads [m], shape (rows, columns)."""
+    square: int
+    """Side of the squares of `decked` [texels]."""
+    decked: NDArray[np.bool_]
+    """Whether there may be decks at the points of a texel, for squares of texels."""
     result: NDArray[np.uint16]
     """`AmbientMap.openness`, filled, shape (rows, columns)."""
 
@@ -160,11 +162,13 @@ def bake_openness(parts: Pointer[tuple[Pointer[OpennessBake]]], worker: int, wor
     Up to 3 texels into a building, where the feet of its walls are looked up, it copies the
     nearest texel of what they stand on.
     """
-    texel, solid, crowns, decks, result = parts[0][0][0]
+    bake = parts[0][0][0]
+    solid, result = bake.solid, bake.result
     for row in range(worker, solid.shape[0], workers):
         for column in range(solid.shape[1]):
             i, j = _outside(solid, row, column)
-            share, height = _open_share(texel, i, j, solid, crowns, decks)
+            near_decks = bake.decked[i // bake.square, j // bake.square]
+            share, height = _open_share(bake, i, j, near_decks)
             if (row + column) & 1:
                 height = solid[i, j]
             height = min(max(height, 0.0), 255.0)
@@ -175,6 +179,8 @@ def bake_openness(parts: Pointer[tuple[Pointer[OpennessBake]]], worker: int, wor
 def _outside(solid: NDArray[np.float32], row: int, column: int) -> tuple[int, int]:
     """Return the nearest texel within 3 that is lower by a storey, or this one."""
     rows, columns = solid.shape
+    if solid[row, column] <= STOREY:  # as most of a map: nothing is lower than the ground
+        return row, column
     for reach in range(4):
         best, bi, bj = 1 << 30, -1, -1
         for i in range(max(row - reach, 0), min(row + reach + 1, rows)):

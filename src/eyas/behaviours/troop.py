@@ -1,0 +1,36 @@
+"""What is asked for: how many of a kind, where, when, and how they move."""
+
+from typing import NamedTuple
+
+from eyas.behaviours.config import Behaviour
+from eyas.behaviours.habits import Habit
+from eyas.behaviours.lives import Lives
+from eyas.core.variation import Variation
+
+__all__ = ["Clock", "Troop"]
+
+
+class Clock(NamedTuple):
+    """The instants of a motion."""
+
+    samples: int
+    rate: float
+    """[Hz]"""
+
+
+class Troop(NamedTuple):
+    """Some of one kind."""
+
+    kind: str
+    """Name of the kind, one of `HABITS`."""
+    breadth: float
+    """Diameter of the circle in which it fits [m]."""
+    behaviour: Behaviour | None
+    """None: that of the kind."""
+    lives: Lives
+    offset: Variation
+    """Where it begins: distance from the middle of the road [m]."""
+    setting: str
+    """Setting that asks for it, for messages."""
+    habit: Habit | None = None
+    """How it moves; None: as its kind does."""
