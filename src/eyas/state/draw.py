@@ -36,7 +36,8 @@ class PartLibrary:
     """Meshes of each part, the finest first, in the part's own frame."""
     lamps: tuple[bool, ...] = ()
     """For each part, whether a moving thing with this as its largest part has head and tail lamps
-    that light the road; empty: none has."""
+    that light the road; empty: none has. In a thing whose first part has lamps, one that has none
+    is the body of its trailer."""
 
 
 @dataclass(slots=True)
