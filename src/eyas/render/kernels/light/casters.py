@@ -41,6 +41,7 @@ from eyas.render.kernels.scalars import f4, i4, u4
 from eyas.render.kernels.visibility.cull import sphere_is_visible
 from eyas.render.kernels.visibility.key import distance_inverse, tag_of
 from eyas.render.kernels.visibility.things import belongs_to, end_of_thing, next_thing
+from eyas.state.scene import ACTOR_OBJECT
 
 __all__ = ["cast_light", "influence"]
 
@@ -208,7 +209,8 @@ def cast_light(
 ) -> None:
     """Write the share of light that moving things let through to each sample, and their own light.
 
-    Slots in a row with the same object id are one thing.
+    Slots in a row with the same object id are one thing. Those of objects of the scene, such as the
+    lenses of signals, cast nothing.
 
     Args:
         geometry: Everything that can be drawn.
@@ -228,7 +230,8 @@ def cast_light(
     first = next_thing(movers, world, 0)
     while first < slots:
         last = end_of_thing(movers, world, first)
-        if _may_reach(geometry, movers, world, first, last, sun, lamps_on, view):
+        mover = movers.object_id[world, first] >= ACTOR_OBJECT
+        if mover and _may_reach(geometry, movers, world, first, last, sun, lamps_on, view):
             own, begin = (fixtures + first, fixtures + last), first
             while begin < last:
                 end = _end_of_body(geometry, movers, world, begin, last)
