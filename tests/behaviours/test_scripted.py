@@ -159,6 +159,16 @@ def test_strollers_walk_on_pavements_only(city):
     assert ((STROLL[0] <= speed) & (speed <= STROLL[1])).all()
 
 
+def test_those_who_go_the_same_way_keep_apart(city):
+    """Two may meet, but none walks in another all the time."""
+    table = table_of(city, troop("Pedestrian", count=100, behaviour=Behaviour.PAVEMENT))
+    points = np.stack([table["x"], table["y"]], axis=-1)[:: round(CLOCK.rate)]
+    first, second = np.triu_indices(100, 1)
+    near = np.linalg.norm(points[:, first] - points[:, second], axis=-1) < 0.5
+    assert near.mean(axis=0).max() < 0.5
+    assert near.sum(axis=1).mean() < 1.5  # pairs at a time
+
+
 def test_a_map_without_pavements_says_so(hills):
     with pytest.raises(SpawnError, match=r"pavement.*'village' has no pavement"):
         table_of(hills, troop("Pedestrian", behaviour=Behaviour.PAVEMENT))

@@ -18,10 +18,17 @@ from eyas.core.errors import ConfigError, DataFileError, OutputError
 from eyas.modes.maps import gltf, importing, info, plan_files, show
 from eyas.modes.video.folder import open_folder
 from eyas.settings.config import EyasConfig
+from eyas.sim.assets import load_assets
+from eyas.sim.crowd import Crowd
 from eyas.sim.scenes import load_scene
+from eyas.sim.still import StillWorld
+from eyas.state.draw import Picture, Views
 from eyas.state.scene import ObjectClass
+from eyas.targets.config import ObjectsConfig, TargetName
 from eyas.traffic.config import TrafficConfig
 from eyas.traffic.record import record
+from eyas.traffic.signals import Aspect
+from eyas.world.config import WorldConfig
 from eyas.world.maps import MAPS
 from eyas.world.maps.imported import IMPORTED, MAP_FILE, ROADS_FILE, origin_of
 from eyas.world.osm.projection import Projection
@@ -149,6 +156,39 @@ def test_cars_drive_on_the_streets_and_stop_at_signals(town, scene):
     moved = np.linalg.norm(np.diff(made.position, axis=0), axis=2)
     standing = (moved < 0.005).mean()
     assert 0.01 < standing < 0.7
+
+
+def test_signals_are_seen_in_their_state_which_changes_with_time(town):
+    people = Crowd(target=TargetName.PEDESTRIAN, objects=ObjectsConfig(max_count=2))
+    assets = load_assets(WorldConfig(map=NAME, weather="night"), TrafficConfig(), crowd=people)
+    lights, world = assets.signals, StillWorld(assets)
+    pole = lights.pose[0].astype(float)
+    across, faced, up = pole[:, 0], pole[:, 1], pole[:, 2]
+    views = Views(
+        position=(pole[:, 3] + 4.0 * across + 10.0 * faced + 5.8 * up)[None],
+        rotation=np.column_stack([-faced, across, up])[None],
+        world=np.zeros(1, np.int32),
+        subject=np.array([-1], np.int32),
+        field_of_view=np.radians(40.0),
+    )
+    seen = {}
+    for time in np.arange(0.5, 90.0, 1.0):
+        aspect = Aspect(int(lights.plan.at(np.array([time]))[0, lights.row[0]]))
+        if aspect in seen:
+            continue
+        picture = Picture.create(1, 96, 128, object_id=True, class_id=True)
+        world.draw(views, float(time), picture)
+        mine = picture.object_id[0] == lights.object_id[0]
+        assert (picture.class_id[0][mine] == ObjectClass.POLE).all()
+        shine = picture.rgb[0][mine].astype(int)
+        seen[aspect] = shine[shine.max(axis=1) > 200]
+    assert set(seen) == {Aspect.RED, Aspect.AMBER, Aspect.GREEN}
+    for aspect, shine in seen.items():
+        assert len(shine) > 10
+        red, green, _ = shine.mean(axis=0)
+        share = red / (red + green)
+        low, high = {0: (0.65, 1.0), 2: (0.5, 0.65), 3: (0.0, 0.45)}[aspect]
+        assert low < share < high, aspect
 
 
 def test_info_tells_figures_and_whose_data_it_is(scene, town):

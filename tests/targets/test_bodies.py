@@ -9,6 +9,7 @@ from eyas.state.mesh import Surface
 from eyas.targets.catalogue import MODELS, model_index
 from eyas.targets.vehicles.bodies import body_levels
 from eyas.targets.vehicles.finishes import BLACK_PAINT, HEAD_LAMP, ROOF_GLASS, TAIL_LAMP
+from eyas.targets.vehicles.heavy import trailer_levels
 from eyas.targets.vehicles.models import VEHICLES
 from eyas.targets.vehicles.wheels import wheel_levels
 
@@ -17,7 +18,12 @@ NAMES = [vehicle.name for vehicle in VEHICLES]
 
 @functools.cache
 def levels_of(name):
-    return body_levels(MODELS[model_index(name)])
+    """The bodies; of a truck with a trailer, both."""
+    vehicle = MODELS[model_index(name)]
+    bodies = body_levels(vehicle)
+    if not vehicle.articulated:
+        return bodies
+    return [concatenate(pair) for pair in zip(bodies, trailer_levels(vehicle), strict=True)]
 
 
 @functools.cache

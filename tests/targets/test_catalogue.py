@@ -15,6 +15,7 @@ from eyas.traffic.config import VehicleType
 
 ORIGINAL = {
     # name: length, width, height, wheelbase, wheel radius, number of wheels
+    # The trucks before a trailer have a wheelbase of ours: the original's trailers do not turn.
     "BmwX5Simple": (4.85, 1.9, 1.8, 3.0, 0.374, 4),
     "CitroenCZeroSimple": (3.5, 1.5, 1.6, 2.55, 0.285, 4),
     "ToyotaPriusSimple": (4.5, 1.8, 1.5, 2.8, 0.317, 4),
@@ -24,8 +25,8 @@ ORIGINAL = {
     "MercedesBenzSprinterSimple": (6.9, 2.0, 2.7, 4.33, 0.40, 4),
     "BusSimple": (9.73, 2.64, 3.36, 4.5, 0.56, 4),
     "TruckSimple": (7.7, 2.8, 4.5, 5.25, 0.50, 4),
-    "TruckTrailerSimple": (14.3, 2.8, 4.5, 5.25, 0.50, 10),
-    "TruckTankSimple": (14.3, 2.8, 4.5, 5.25, 0.50, 10),
+    "TruckTrailerSimple": (14.3, 2.8, 4.5, 3.7, 0.50, 10),
+    "TruckTankSimple": (14.3, 2.8, 4.5, 3.7, 0.50, 10),
     "ScooterSimple": (1.95, 0.66, 1.7, 1.48, 0.23, 2),
     "MotorbikeSimple": (2.48, 1.1, 1.55, 1.78, 0.25, 2),
 }
@@ -35,7 +36,8 @@ ORIGINAL = {
 def test_sizes_and_wheels_are_those_of_the_original(name):
     vehicle = MODELS[model_index(name)]
     wheels = sum(2 if axle.track else 1 for axle in vehicle.axles)
-    assert (*vehicle.size, vehicle.wheelbase, vehicle.wheel_radius, wheels) == ORIGINAL[name]
+    said = (*vehicle.size, vehicle.wheelbase, vehicle.wheel_radius, wheels)
+    assert said == pytest.approx(ORIGINAL[name])
     assert vehicle.axles[0].x - vehicle.axles[1].x == pytest.approx(vehicle.wheelbase)
 
 

@@ -18,7 +18,7 @@ from eyas.behaviours.pavements import pavement_ways
 from eyas.behaviours.places import Roadside
 from eyas.behaviours.routes import Task, legs, polylines, round_and_round, stops, wave_of
 from eyas.behaviours.surface import Surface
-from eyas.behaviours.timetable import ride
+from eyas.behaviours.timetable import ride, time_of
 from eyas.behaviours.troop import Clock, Troop
 from eyas.core.errors import SpawnError
 from eyas.state.motion import SAMPLE
@@ -33,7 +33,19 @@ _SPAN: Final = 0.25
 _ROOM: Final = 0.1
 """Room between a body and obstacles [m]."""
 
+_JITTER: Final = 0.5
+"""How irregularly those who go the same way follow each other, as a share of even distances."""
+
 Floats = NDArray[np.float64]
+
+
+class _Course(NamedTuple):
+    """The path of a life, and how it is gone."""
+
+    path: Chain
+    habit: Habit
+    begun: float = 0.0
+    """For how long it has been gone when the life begins [s]."""
 
 
 class Ground:
@@ -64,8 +76,9 @@ def scripted_table(
     seconds = (lives.leaves - lives.enters) / clock.rate
     paths = _paths(ground, troop, habit, seconds, rng)
     table = np.zeros((clock.samples, int(lives.slot.max()) + 1), SAMPLE)
-    for (path, own), slot, enters, leaves in zip(paths, *(a.tolist() for a in lives), strict=True):
-        motion = ride(path, own, np.arange(leaves - enters + 1) / clock.rate)
+    for course, slot, enters, leaves in zip(paths, *(a.tolist() for a in lives), strict=True):
+        time = course.begun + np.arange(leaves - enters + 1) / clock.rate
+        motion = ride(course.path, course.habit, time)
         rows = table[enters : leaves + 1, slot]
         rows["x"], rows["y"], rows["yaw"] = motion.poses
         rows["velocity_x"] = motion.speed * np.cos(motion.poses.yaw)
@@ -78,8 +91,7 @@ def scripted_table(
 
 def _paths(
     ground: Ground, troop: Troop, habit: Habit, seconds: Floats, rng: np.random.Generator
-) -> list[tuple[Chain, Habit]]:
-    """Return the path of each life, and how it is gone."""
+) -> list[_Course]:
     behaviour = troop.behaviour or habit.behaviour
     radius = 0.5 * troop.breadth + _ROOM
     if behaviour is Behaviour.PAVEMENT:
@@ -93,13 +105,16 @@ def _paths(
         chains = stops(task)
     else:
         chains = legs(task, behaviour)
-    return [(chain, habit) for chain in chains]
+    return [_Course(chain, habit) for chain in chains]
 
 
 def _strolls(
     ground: Ground, troop: Troop, habit: Habit, seconds: Floats, rng: np.random.Generator
-) -> list[tuple[Chain, Habit]]:
-    """Return ways on pavements; all who go the same way are equally fast, so none overtakes."""
+) -> list[_Course]:
+    """Return ways on pavements.
+
+    All who go the same way are equally fast and begin apart, so none overtakes or walks in another.
+    """
     scene, radius = ground.scene, 0.5 * troop.breadth + _ROOM
     found = pavement_ways(scene.network, scene.size, ground.obstacles, ground.surface, radius)
     once = [outline(chain_through(way.corners, habit.radius, 1)) for way in found]
@@ -115,12 +130,16 @@ def _strolls(
     speed = rng.uniform(*STROLL, len(ways))
     length = np.array([way.length for way in ways])
     chosen = rng.choice(len(ways), size=len(seconds), p=length / length.sum())
-    made = []
-    for way, lasts in zip(chosen.tolist(), seconds.tolist(), strict=True):
-        own = habit._replace(speed=min(float(speed[way]), habit.speed))
-        corners = ways[way].corners
-        corners = np.roll(corners, -int(rng.integers(len(corners))), axis=0)
-        made.append((round_and_round(corners, own, lasts), own))
+    begun, made = np.zeros(len(seconds)), []
+    paced = [habit._replace(speed=min(float(fast), habit.speed)) for fast in speed]
+    for way in np.unique(chosen).tolist():
+        who = np.flatnonzero(chosen == way)
+        lap = time_of(chain_through(ways[way].corners, habit.radius, 1), paced[way])
+        place = rng.permutation(len(who)) + rng.uniform(0.0, _JITTER, len(who))
+        begun[who] = lap * place / len(who)
+    for way, lasts, ahead in zip(chosen.tolist(), seconds.tolist(), begun.tolist(), strict=True):
+        path = round_and_round(ways[way].corners, paced[way], lasts + ahead)
+        made.append(_Course(path, paced[way], ahead))
     return made
 
 

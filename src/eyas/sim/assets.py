@@ -11,6 +11,7 @@ from eyas.render.ahead import begin_ahead, drawing_is_ready
 from eyas.render.renderer import Renderer, build_renderer
 from eyas.sim.crowd import NOBODY, Crowd, crowd_motions, vehicles_of
 from eyas.sim.scenes import load_geometry, load_scene
+from eyas.sim.signals import SignalLights, lights_of
 from eyas.state.lighting import Lighting
 from eyas.state.motion import Motion, joined
 from eyas.state.scene import Scene
@@ -23,6 +24,7 @@ from eyas.traffic.live import LiveSumo
 from eyas.traffic.record import resolved
 from eyas.traffic.recorded import kept_motion
 from eyas.traffic.replay import Replay
+from eyas.traffic.signals import SignalPlan, signal_plan
 from eyas.traffic.source import TrafficSource
 from eyas.world.config import WorldConfig
 from eyas.world.maps import MAPS
@@ -44,6 +46,8 @@ class Assets:
     rigs: Rigs
     body_part: int = -1
     """Part of the renderer's library that a tracker looks like to others; -1: it has none."""
+    signals: SignalLights | None = None
+    """Lights of signals that change; None: there are none."""
 
 
 def load_assets(
@@ -70,13 +74,22 @@ def load_assets(
     find = _live if traffic.source is Source.LIVE else _traffic
     source = find(world.map, world.seed, traffic, trackers if grouped else 1, crowd)
     kinds, rigs = sorted({*source.motion.kind.tolist()}), Rigs(source.motion.kind)
-    body_part = -1
+    body_part, parts = -1, sum(cast.rig.part_count for cast in rigs.casts)
     if trackers > 1:
-        body_part = sum(cast.rig.part_count for cast in rigs.casts)
+        body_part, parts = parts, parts + 1
         kinds.append(kind_index(QUADROTOR.name))
-    renderer = _renderer(world, tuple(kinds))
     scene = load_scene(world.map, world.seed, season)
-    return Assets(scene, source, lighting, renderer, rigs, body_part)
+    plan = _signal_plan(world.map, world.seed)
+    signals = None if plan is None else lights_of(scene, plan, parts)
+    renderer = _renderer(world, tuple(kinds), signals=signals is not None)
+    return Assets(scene, source, lighting, renderer, rigs, body_part, signals)
+
+
+@lru_cache(maxsize=4)
+def _signal_plan(map_name: str, seed: int) -> SignalPlan | None:
+    """Return the programs of the signals in a network of SUMO; None if recipes drew the roads."""
+    network = MAPS.get(map_name).roads(seed).finished
+    return signal_plan(network) if network else None
 
 
 @lru_cache(maxsize=4)
@@ -138,12 +151,12 @@ def _vehicles(
 
 
 @lru_cache(maxsize=8)
-def _renderer(world: WorldConfig, kinds: tuple[int, ...]) -> Renderer:
+def _renderer(world: WorldConfig, kinds: tuple[int, ...], *, signals: bool) -> Renderer:
     recipe = MAPS.get(world.map)
     season = recipe.season(world.weather)
     return build_renderer(
         load_scene(world.map, world.seed, season),
-        load_geometry(world.map, world.seed, season, kinds),
+        load_geometry(world.map, world.seed, season, kinds, signals=signals),
         recipe.light(world.weather),
         ready=drawing_is_ready,
     )

@@ -22,6 +22,7 @@ from eyas.targets.catalogue import KINDS
 from eyas.targets.rig import part_library
 from eyas.traffic.network import build_network
 from eyas.world.maps import MAPS
+from eyas.world.street.signals import lens_levels
 from eyas.world.weather import Season
 
 __all__ = ["load_geometry", "load_network", "load_scene", "paint"]
@@ -58,7 +59,9 @@ def load_scene(map_name: str, seed: int = 0, season: Season = Season.SUMMER) -> 
 
 
 @lru_cache(maxsize=4)
-def load_geometry(map_name: str, seed: int, season: Season, kinds: tuple[int, ...]) -> Geometry:
+def load_geometry(
+    map_name: str, seed: int, season: Season, kinds: tuple[int, ...], *, signals: bool = False
+) -> Geometry:
     """Return the geometry of a scene and of the parts of moving objects, for the kernels.
 
     Args:
@@ -66,6 +69,7 @@ def load_geometry(map_name: str, seed: int, season: Season, kinds: tuple[int, ..
         seed: Seed of the map.
         season: Season of the weather.
         kinds: Kinds of the moving objects, indices into `KINDS`.
+        signals: Whether the lights of signals are parts, too, the last ones.
     """
     scene = load_scene(map_name, seed, season)
     names = tuple(KINDS[kind].name for kind in kinds)
@@ -73,9 +77,9 @@ def load_geometry(map_name: str, seed: int, season: Season, kinds: tuple[int, ..
 
     def make() -> Geometry:
         other_is_ready()  # which may be to `paint`
-        return build_geometry(scene, _parts(kinds), _textures())
+        return build_geometry(scene, _with_lights(_parts(kinds), wanted=signals), _textures())
 
-    inputs = None if origin is None else (*origin, names)
+    inputs = None if origin is None else (*origin, names, signals)
     return _cached(Kind.GEOMETRY, ("render", "targets"), inputs, make, Geometry)
 
 
@@ -125,6 +129,15 @@ def _parts(kinds: tuple[int, ...]) -> PartLibrary:
         lambda: part_library(chosen),
         of=PartLibrary,
     )
+
+
+def _with_lights(parts: PartLibrary, *, wanted: bool) -> PartLibrary:
+    """Return a library with the lights of signals after its other parts, if they are wanted."""
+    if not wanted:
+        return parts
+    lenses = lens_levels()
+    lamps = parts.lamps or (False,) * len(parts.parts)
+    return PartLibrary((*parts.parts, *lenses), (*lamps, *(False for _ in lenses)))
 
 
 def _textures() -> dict[str, NDArray[np.uint8]]:

@@ -34,7 +34,8 @@ class StillWorld:
         """Return the drawn parts of the actors at a time [s], one world."""
         movers = self.assets.rigs.draw_list(1)
         self.assets.rigs.pose(self.actors(time), self._looks, movers)
-        return movers
+        signals = self.assets.signals
+        return movers if signals is None else signals.added(movers, np.array([time]))
 
     def draw(self, views: Views, time: float, picture: Picture, samples: int = 1) -> None:
         """Draw views of the world at a time [s]; see `eyas.render.renderer.Renderer.draw`."""

@@ -177,5 +177,7 @@ class Worlds:
             worlds, rows = np.unique(worlds, return_inverse=True)
         time = tick[self.leader[worlds]].astype(np.float64) * PHYSICS_STEP
         movers = self._near.of(worlds, time, rows, cameras, aspect)
+        if self._assets.signals is not None:
+            movers = self._assets.signals.added(movers, time)
         rows = np.arange(len(trackers)) if rows is None else rows
         return rows.astype(np.int32), movers

@@ -36,7 +36,8 @@ class PartLibrary:
     """Meshes of each part, the finest first, in the part's own frame."""
     lamps: tuple[bool, ...] = ()
     """For each part, whether a moving thing with this as its largest part has head and tail lamps
-    that light the road; empty: none has."""
+    that light the road; empty: none has. In a thing whose first part has lamps, one that has none
+    is the body of its trailer."""
 
 
 @dataclass(slots=True)
@@ -50,7 +51,8 @@ class DrawList:
     colour: NDArray[np.float32]
     """Body colour, sRGB 0 to 1, shape (W, I, 3)."""
     object_id: NDArray[np.int32]
-    """Object id, `ACTOR_OBJECT + actor`, shape (W, I)."""
+    """Object id, `ACTOR_OBJECT + actor`, or that of the scene's object a part is drawn on, shape
+    (W, I)."""
     object_class: NDArray[np.uint8]
     """`eyas.state.scene.ObjectClass` of each actor, shape (W, A)."""
 

@@ -19,6 +19,7 @@ SAMPLE: Final = np.dtype(
         ("yaw", np.float32),
         ("yaw_rate", np.float32),
         ("slope", np.float32),
+        ("hitch", np.float32),
         ("travelled", np.float32),
         ("present", np.float32),
     ],
@@ -28,8 +29,9 @@ SAMPLE: Final = np.dtype(
 
 x, y, z: reference point on the road, world frame [m]; velocity_x, velocity_y, velocity_z: its
 velocity [m/s]; yaw: heading, counter-clockwise from east, without jumps at ±180° [rad]; yaw_rate
-[rad/s]; slope: pitch of the road along the heading, positive up [rad]; travelled: horizontal path
-length since the first sample [m]; present: 1 while the actor is in the world, else 0.
+[rad/s]; slope: pitch of the road along the heading, positive up [rad]; hitch: heading of a trailer
+less that of its truck, 0 of all others [rad]; travelled: horizontal path length since the first
+sample [m]; present: 1 while the actor is in the world, else 0.
 
 32 bits keep positions to 0.03 mm and halve the memory that each world's step touches.
 """
@@ -62,6 +64,8 @@ class ActorState(NamedTuple):
     """Horizontal speed [m/s], shape (W, A)."""
     yaw_rate: NDArray[np.float64]
     """[rad/s], shape (W, A)."""
+    hitch: NDArray[np.float64]
+    """Heading of a trailer less that of its truck [rad], shape (W, A); 0 of all others."""
     travelled: NDArray[np.float64]
     """Path length since the motion began [m], shape (W, A); it gives the rotation of wheels."""
     present: NDArray[np.bool_]
@@ -77,6 +81,7 @@ class ActorState(NamedTuple):
             slope=np.zeros(plane),
             speed=np.zeros(plane),
             yaw_rate=np.zeros(plane),
+            hitch=np.zeros(plane),
             travelled=np.zeros(plane),
             present=np.zeros(plane, np.bool_),
         )

@@ -123,5 +123,7 @@ class Kind:
     """Speed below which it counts as standing [m/s]."""
     lamps: bool = False
     """Whether it has head and tail lamps that light the road."""
+    trailers: tuple[int, ...] = ()
+    """Parts of its rig that are towed: they have shadows of their own, and no lamps."""
     keeps_colours: bool = False
     """Whether `traffic.colour` does not change its colours, as for the original's motorcycles."""

@@ -96,6 +96,7 @@ def part_library(kinds: tuple[Kind, ...]) -> PartLibrary:
     parts: list[tuple[Mesh, ...]] = []
     lamps: list[bool] = []
     for kind in kinds:
-        parts += kind.rig().part_levels()
-        lamps += [kind.lamps] * (len(parts) - len(lamps))
+        rig = kind.rig()
+        lamps += [kind.lamps and part not in kind.trailers for part in range(rig.part_count)]
+        parts += rig.part_levels()
     return PartLibrary(tuple(parts), tuple(lamps))

@@ -29,6 +29,7 @@ class ActorPose(NamedTuple):
     slope: float
     speed: float
     yaw_rate: float
+    hitch: float
     travelled: float
     present: bool
 
@@ -69,9 +70,10 @@ def interpolate_actor(motion: Motion, actor: int, time: float) -> ActorPose:
     speed_b = math.hypot(b.velocity_x, b.velocity_y)
     travelled, _ = _hermite(a.travelled, b.travelled, speed_a, speed_b, step, f)
     slope = a.slope + f * (b.slope - a.slope)
+    hitch = a.hitch + f * (b.hitch - a.hitch)
     speed = math.hypot(speed_x, speed_y)
     present = (a.present > 0.0 or f == 1.0) and (b.present > 0.0 or f == 0.0)
-    return ActorPose(x, y, z, yaw, slope, speed, yaw_rate, travelled, present)
+    return ActorPose(x, y, z, yaw, slope, speed, yaw_rate, hitch, travelled, present)
 
 
 @step_kernel
@@ -100,6 +102,7 @@ def write_actor(pose: ActorPose, out: ActorState, world: int, actor: int) -> Non
     out.slope[world, actor] = pose.slope
     out.speed[world, actor] = pose.speed
     out.yaw_rate[world, actor] = pose.yaw_rate
+    out.hitch[world, actor] = pose.hitch
     out.travelled[world, actor] = pose.travelled
     out.present[world, actor] = pose.present
 

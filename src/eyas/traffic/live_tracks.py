@@ -5,7 +5,7 @@ from dataclasses import fields
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.traffic.config import Demand
+from eyas.traffic.config import Demand, VehicleType
 from eyas.traffic.recording import ANGLE_UNIT, POSITION_UNIT, quantised, restored
 from eyas.traffic.smoothing import (
     REACH,
@@ -15,11 +15,12 @@ from eyas.traffic.smoothing import (
     filtered,
     follow,
     front_path,
+    lead_of,
     rate_of,
     runs,
-    wheelbases,
 )
 from eyas.traffic.sumo import RATE, Drive, SumoRun
+from eyas.traffic.trailer import Links, tow
 
 __all__ = ["LiveTracks"]
 
@@ -58,7 +59,6 @@ class LiveTracks:
         self._tracks = Tracks.create(float(RATE), samples, len(run.actors))
         self.present = self._raw.present
         self._yaw = np.full(len(run.actors), np.nan)
-        self._wheelbase = wheelbases(run.vehicle_length).tolist()
         self._grouped = demand is Demand.RESPAWN
         self.ahead = _AHEAD[demand]
 
@@ -105,22 +105,31 @@ class LiveTracks:
         """
         if wanted.start >= wanted.stop:
             return
-        tracks, wheelbase = self._tracks, self._wheelbase[actor]
+        tracks, length = self._tracks, float(self._raw.vehicle_length[actor])
+        articulated = self._raw.vehicle_types[actor] is VehicleType.TRAILER
+        arm = lead_of(length, articulated=articulated)
         yaw = self._raw.yaw[stay, actor]
-        driven = front_path(self._raw.position[stay, actor], yaw, wheelbase)
+        driven = front_path(self._raw.position[stay, actor], yaw, arm)
         front = filtered(driven, RATE)
-        heading, skipped = float(yaw[0]), 0
-        if stay.start > 0 and self.present[stay.start - 1, actor]:
-            # The filter has not seen what came before, so its first samples are wrong; they are
-            # known, and so is the heading after them.
-            skipped = _FILTER
-            heading = float(tracks.yaw[stay.start + skipped, actor])
+        # In the middle of a stay, the filter has not seen what came before, so its first samples
+        # are wrong; they are known, and so is the pose after them.
+        within = stay.start > 0 and bool(self.present[stay.start - 1, actor])
+        skipped = _FILTER if within else 0
         front, driven, yaw = front[skipped:], driven[skipped:], yaw[skipped:]
         if self._grouped:
             front = as_far(front, driven, yaw)
-        centre, headings = follow(front, heading, wheelbase)
         begin = stay.start + skipped
         own = slice(wanted.start - begin, wanted.stop - begin)
+        heading = float(tracks.yaw[begin, actor] if within else yaw[0])
+        if articulated:
+            links = Links.straight(heading)
+            if within:
+                hitch = float(tracks.hitch[begin, actor])
+                links = Links.of(front[0], tracks.position[begin, actor], heading, hitch)
+            centre, headings, hitches = tow(front, length, links)
+            tracks.hitch[wanted, actor] = hitches[own]
+        else:
+            centre, headings = follow(front, heading, 2.0 * arm)
         tracks.position[wanted, actor] = centre[own]
         tracks.yaw[wanted, actor] = headings[own]
         if len(yaw) > 1:
@@ -134,6 +143,7 @@ class LiveTracks:
             absent = ~self.present[row]
             tracks.position[row, absent] = tracks.position[row - 1, absent]
             tracks.yaw[row, absent] = tracks.yaw[row - 1, absent]
+            tracks.hitch[row, absent] = 0.0
             step = np.hypot(*(tracks.position[row] - tracks.position[row - 1]).T)
             step[absent | ~self.present[row - 1]] = 0.0
             tracks.travelled[row] = tracks.travelled[row - 1] + step

@@ -16,7 +16,14 @@ from eyas.traffic.smoothing import Tracks, smooth
 
 __all__ = ["kept_motion", "recorded_motion", "table_of"]
 
-_MAKERS = ("traffic/recorded.py", "traffic/smoothing.py", "state/motion.py", "state/terrain.py")
+_MAKERS = (
+    "traffic/recorded.py",
+    "traffic/smoothing.py",
+    "traffic/tractrix.py",
+    "traffic/trailer.py",
+    "state/motion.py",
+    "state/terrain.py",
+)
 
 
 def kept_motion(file: RecordingFile, terrain: Terrain, kind: NDArray[np.int32]) -> Motion:
@@ -59,6 +66,7 @@ def table_of(tracks: Tracks, terrain: Terrain) -> NDArray[np.void]:
     table["velocity_x"], table["velocity_y"] = np.moveaxis(tracks.velocity, -1, 0)
     table["yaw"] = tracks.yaw
     table["yaw_rate"] = tracks.yaw_rate
+    table["hitch"] = np.round(tracks.hitch, 6)  # straight is straight
     table["travelled"] = tracks.travelled
     table["present"] = tracks.present
     if terrain.relief.size:  # on flat ground all heights and slopes are 0 already

@@ -1,9 +1,10 @@
 """Smoothing of SUMO's poses: filtered positions, and a heading that a car can follow.
 
 SUMO moves a vehicle sideways and turns it in discrete steps. A Gaussian filter removes the steps
-from the path of the front axle; the rear axle follows like a trailer (a tractrix), which gives the
-heading. The filter also spreads braking and starting over half a second, except with `respawn`:
-there, as in the original, a vehicle is as far along the filtered path as SUMO has it.
+from the path of the front axle; the rear axle follows (a tractrix), which gives the heading. What
+pulls a trailer is in `eyas.traffic.trailer`. The filter also spreads braking and starting over half
+a second, except with `respawn`: there, as in the original, a vehicle is as far along the filtered
+path as SUMO has it.
 """
 
 import math
@@ -12,9 +13,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.parallel import Held, Pointer, parallel_kernel
-from eyas.traffic.config import Demand
+from eyas.traffic.config import Demand, VehicleType
 from eyas.traffic.recording import Recording
+from eyas.traffic.tractrix import follow_headings
+from eyas.traffic.trailer import Links, tow
 
 __all__ = [
     "REACH",
@@ -25,10 +27,10 @@ __all__ = [
     "follow",
     "front_path",
     "held",
+    "lead_of",
     "rate_of",
     "runs",
     "smooth",
-    "wheelbases",
 ]
 
 SIGMA = 0.3
@@ -41,7 +43,7 @@ WHEELBASE = 0.54
 """Axle distance as a share of the vehicle's length: 2.7 m for the 5 m car."""
 
 LONGEST_WHEELBASE = 6.0
-"""Upper limit of the axle distance [m]: longer vehicles are articulated and turn more tightly."""
+"""Upper limit of the axle distance [m]."""
 
 
 @dataclass(slots=True)
@@ -58,6 +60,8 @@ class Tracks:
     """Heading without jumps at ±180° [rad], shape (S, A)."""
     yaw_rate: NDArray[np.float64]
     """[rad/s], shape (S, A)."""
+    hitch: NDArray[np.float64]
+    """Heading of a trailer less that of its truck [rad], shape (S, A)."""
     travelled: NDArray[np.float64]
     """Path length since the recording began [m], shape (S, A)."""
     present: NDArray[np.bool_]
@@ -73,6 +77,7 @@ class Tracks:
             velocity=np.zeros((*shape, 2)),
             yaw=np.zeros(shape),
             yaw_rate=np.zeros(shape),
+            hitch=np.zeros(shape),
             travelled=np.zeros(shape),
             present=np.zeros(shape, np.bool_),
         )
@@ -83,10 +88,9 @@ def smooth(recording: Recording) -> Tracks:
     shape = recording.present.shape
     tracks = Tracks.create(recording.rate, *shape)
     tracks.present[:] = recording.present
-    wheelbase = wheelbases(recording.vehicle_length).tolist()
     for actor in range(shape[1]):
         for first, last in runs(recording.present[:, actor]):
-            _smooth_run(recording, tracks, actor, slice(first, last), wheelbase[actor])
+            _smooth_run(recording, tracks, actor, slice(first, last))
         present = recording.present[:, actor]
         tracks.position[:, actor] = held(tracks.position[:, actor], present)
         tracks.yaw[:, actor] = held(tracks.yaw[:, actor], present)
@@ -96,9 +100,11 @@ def smooth(recording: Recording) -> Tracks:
     return tracks
 
 
-def wheelbases(length: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Return the axle distance of vehicles of a length [m]."""
-    return np.minimum(WHEELBASE * length, LONGEST_WHEELBASE)
+def lead_of(length: float, *, articulated: bool) -> float:
+    """Return how far ahead of the middle of a vehicle of a length that point is whose path is
+    filtered [m]: the front axle, of trucks with a trailer SUMO's front, which is on the lane.
+    """
+    return 0.5 * (length if articulated else min(WHEELBASE * length, LONGEST_WHEELBASE))
 
 
 def runs(present: NDArray[np.bool_]) -> list[tuple[int, int]]:
@@ -129,14 +135,19 @@ def held(values: NDArray[np.float64], present: NDArray[np.bool_]) -> NDArray[np.
     return source
 
 
-def _smooth_run(
-    recording: Recording, tracks: Tracks, actor: int, span: slice, wheelbase: float
-) -> None:
-    driven = front_path(recording.position[span, actor], recording.yaw[span, actor], wheelbase)
-    yaw, front = recording.yaw[span, actor], filtered(driven, recording.rate)
+def _smooth_run(recording: Recording, tracks: Tracks, actor: int, span: slice) -> None:
+    yaw, length = recording.yaw[span, actor], float(recording.vehicle_length[actor])
+    articulated = recording.vehicle_types[actor] is VehicleType.TRAILER
+    arm = lead_of(length, articulated=articulated)
+    driven = front_path(recording.position[span, actor], yaw, arm)
+    front = filtered(driven, recording.rate)
     if recording.provenance.config.demand is Demand.RESPAWN:
         front = as_far(front, driven, yaw)
-    centre, heading = follow(front, float(yaw[0]), wheelbase)
+    if articulated:
+        links = Links.straight(float(yaw[0]))
+        centre, heading, tracks.hitch[span, actor] = tow(front, length, links)
+    else:
+        centre, heading = follow(front, float(yaw[0]), 2.0 * arm)
     tracks.position[span, actor] = centre
     tracks.yaw[span, actor] = heading
     if len(yaw) > 1:
@@ -145,10 +156,10 @@ def _smooth_run(
 
 
 def front_path(
-    position: NDArray[np.float64], yaw: NDArray[np.float64], wheelbase: float
+    position: NDArray[np.float64], yaw: NDArray[np.float64], ahead: float
 ) -> NDArray[np.float64]:
-    """Return where the front axle is for middles (S, 2) with headings (S,) [m], shape (S, 2)."""
-    return position + 0.5 * wheelbase * np.stack([np.cos(yaw), np.sin(yaw)], axis=-1)
+    """Return points ahead of middles (S, 2) with headings (S,) by a distance [m], shape (S, 2)."""
+    return position + ahead * np.stack([np.cos(yaw), np.sin(yaw)], axis=-1)
 
 
 def follow(
@@ -161,8 +172,7 @@ def follow(
         yaw: Heading at its first point [rad].
         wheelbase: Distance between the axles [m].
     """
-    heading = np.empty(len(front))
-    _follow(1, Held((front, float(yaw), float(wheelbase), heading)))
+    heading = follow_headings(front, yaw, wheelbase)
     centre = front - 0.5 * wheelbase * np.stack([np.cos(heading), np.sin(heading)], axis=-1)
     return centre, heading
 
@@ -207,28 +217,3 @@ def rate_of(values: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
     slope[0] = (values[1] - values[0]) * rate
     slope[-1] = (values[-1] - values[-2]) * rate
     return slope
-
-
-@parallel_kernel
-def _follow(
-    parts: Pointer[tuple[Pointer[tuple[NDArray[np.float64], float, float, NDArray[np.float64]]]]],
-    worker: int,
-    workers: int,
-) -> None:
-    """Write the heading (S,) of a body whose front axle is pulled along `front` (S, 2).
-
-    Between two points the pull is straight, and the angle a between heading and pull shrinks:
-    tan(a / 2) falls by the factor exp(-distance / wheelbase), the tractrix in closed form.
-    """
-    front, yaw, wheelbase, heading = parts[0][0][0]
-    heading[0] = yaw
-    for sample in range(1, front.shape[0]):
-        east = front[sample, 0] - front[sample - 1, 0]
-        north = front[sample, 1] - front[sample - 1, 1]
-        distance = math.hypot(east, north)
-        if distance > 1e-9:
-            angle = math.atan2(north, east) - yaw
-            angle -= 2.0 * math.pi * math.floor(angle / (2.0 * math.pi) + 0.5)
-            left = 2.0 * math.atan(math.tan(0.5 * angle) * math.exp(-distance / wheelbase))
-            yaw += angle - left
-        heading[sample] = yaw

@@ -19,7 +19,7 @@ from eyas.targets.vehicles.finishes import (
 )
 from eyas.targets.vehicles.models import VehicleModel
 
-__all__ = ["truck_levels"]
+__all__ = ["trailer_levels", "truck_levels"]
 
 _CAB = 2.5
 """Length of the cab above the wheels [m]."""
@@ -33,16 +33,23 @@ _SEAM = plain(0.52, 0.53, 0.54)
 
 
 def truck_levels(vehicle: VehicleModel) -> tuple[Mesh, Mesh, Mesh]:
-    """Return the levels of detail of a truck and its trailer, the finest first."""
+    """Return the levels of detail of a truck without its trailer, the finest first."""
     levels = []
     for detail in (2, 1, 0):
         shell = Shell()
         _cab(shell, vehicle.length / 2, detail)
         _chassis(shell, vehicle, detail)
-        if vehicle.name == "TruckTrailerSimple":
-            _box_trailer(shell, vehicle, detail)
-        elif vehicle.name == "TruckTankSimple":
-            _tank_trailer(shell, vehicle, detail)
+        levels.append(shell.mesh())
+    return levels[0], levels[1], levels[2]
+
+
+def trailer_levels(vehicle: VehicleModel) -> tuple[Mesh, Mesh, Mesh]:
+    """Return the same of its trailer, where it is behind a truck that drives straight on."""
+    add = _tank_trailer if vehicle.name == "TruckTankSimple" else _box_trailer
+    levels = []
+    for detail in (2, 1, 0):
+        shell = Shell()
+        add(shell, vehicle, detail)
         levels.append(shell.mesh())
     return levels[0], levels[1], levels[2]
 
@@ -147,7 +154,7 @@ def _trailer_frame(shell: Shell, vehicle: VehicleModel, z: float, detail: int) -
         return
     axles = [axle.x for axle in vehicle.axles[2:]]
     shell.box((min(axles) - 0.6, 0.85, 1.05), (max(axles) + 0.6, 1.24, 1.1), TRIM, both_sides=True)
-    ahead = vehicle.axles[1].x - 0.8
+    ahead = vehicle.axles[1].x - 1.6  # clear of the truck when it turns
     shell.box((max(axles) + 0.75, 1.16, 0.5), (ahead, 1.2, 1.0), STEEL, both_sides=True)
     shell.box((ahead - 0.3, 0.7, 0.3), (ahead - 0.15, 0.85, z - 0.1), TRIM, both_sides=True)
 

@@ -8,7 +8,7 @@ from eyas.targets.vehicles.models import (
     VEHICLE_AHEAD,
     VEHICLES,
 )
-from eyas.targets.vehicles.rig import VehicleRig
+from eyas.targets.vehicles.rig import VehicleRig, trailers_of
 from eyas.traffic.config import VehicleType
 
 __all__ = ["VEHICLE_KINDS"]
@@ -34,6 +34,7 @@ def _kind(vehicle_type: VehicleType) -> Kind:
         ahead=VEHICLE_AHEAD,
         slowest=0.5,  # as in the original
         lamps=True,
+        trailers=trailers_of(models),
         keeps_colours=two_wheeled,
     )
 

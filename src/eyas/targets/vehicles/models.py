@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 from eyas.targets.kind import Colour
 from eyas.traffic.config import VehicleType
+from eyas.traffic.trailer import BUMPER_AHEAD, REAR_AXLE, TAIL_BEHIND
 
 __all__ = [
     "BODY_COLOURS",
@@ -21,6 +22,9 @@ __all__ = [
 VEHICLE_AHEAD = -1.0
 """Distance of the middle of a vehicle, the point that the reward uses, ahead of the actor's
 reference point [m]: the original rewards a point 1 m behind it; kernels read it."""
+
+_OVERHANG = 1.35
+"""From the front axle of a truck to its bumper [m]."""
 
 LEAN_LIMIT = 0.2
 """Largest lean of two-wheelers in a curve [rad]; the original's limit of the yaw rate [rad/s]."""
@@ -62,6 +66,8 @@ class Axle:
     """Width of a tyre [m]."""
     steered: bool = False
     """Whether the wheels steer."""
+    towed: bool = False
+    """Whether it is a trailer's."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,6 +99,11 @@ class VehicleModel:
         return "TruckSimple" if self.kind is VehicleType.TRAILER else self.name
 
     @property
+    def articulated(self) -> bool:
+        """Whether it has a trailer, which swings behind it."""
+        return any(axle.towed for axle in self.axles)
+
+    @property
     def rise(self) -> float:
         """Height of the reference point, and of the axles, above the road [m]."""
         return self.wheel_radius
@@ -113,15 +124,16 @@ def _car(
     return VehicleModel(name, VehicleType.PASSENGER, *size, wheelbase, radius, axles)
 
 
-def _truck(name: str, kind: VehicleType, length: float, rear: tuple[float, ...]) -> VehicleModel:
+def _truck(name: str, kind: VehicleType, wheelbase: float, rear: tuple[float, ...]) -> VehicleModel:
     """Return a truck, 4.5 m high; `rear` holds x of the trailer's axles [m]."""
-    front = length / 2 - 1.35
+    length = BUMPER_AHEAD + TAIL_BEHIND if rear else 7.7
+    front = length / 2 - _OVERHANG
     axles = (
         Axle(front, 2.14, 0.32, steered=True),
-        Axle(front - 5.25, 1.9, 0.56),
-        *(Axle(x, 2.1, 0.38) for x in rear),
+        Axle(front - wheelbase, 1.9, 0.56),
+        *(Axle(x, 2.1, 0.38, towed=True) for x in rear),
     )
-    return VehicleModel(name, kind, length, 2.8, 4.5, 5.25, 0.5, axles)
+    return VehicleModel(name, kind, length, 2.8, 4.5, wheelbase, 0.5, axles)
 
 
 def _two_wheeler(
@@ -135,6 +147,7 @@ def _two_wheeler(
 
 _BUS_AXLES = (Axle(2.3, 2.2, 0.3, steered=True), Axle(-2.2, 1.96, 0.54))
 _TRAILER_AXLES = (-3.4, -4.7, -6.0)
+_TRACTOR_BASE = BUMPER_AHEAD + REAR_AXLE - _OVERHANG
 
 VEHICLES: tuple[VehicleModel, ...] = (
     _car("BmwX5Simple", (4.85, 1.9, 1.8), (3.0, 0.374, 1.53)),
@@ -145,9 +158,9 @@ VEHICLES: tuple[VehicleModel, ...] = (
     _car("TeslaModel3Simple", (4.8, 1.85, 1.5), (2.94, 0.36, 1.53)),
     _car("MercedesBenzSprinterSimple", (6.9, 2.0, 2.7), (4.33, 0.40, 2.45)),
     VehicleModel("BusSimple", VehicleType.BUS, 9.73, 2.64, 3.36, 4.5, 0.56, _BUS_AXLES),
-    _truck("TruckSimple", VehicleType.TRUCK, 7.7, ()),
-    _truck("TruckTrailerSimple", VehicleType.TRAILER, 14.3, _TRAILER_AXLES),
-    _truck("TruckTankSimple", VehicleType.TRAILER, 14.3, _TRAILER_AXLES),
+    _truck("TruckSimple", VehicleType.TRUCK, 5.25, ()),
+    _truck("TruckTrailerSimple", VehicleType.TRAILER, _TRACTOR_BASE, _TRAILER_AXLES),
+    _truck("TruckTankSimple", VehicleType.TRAILER, _TRACTOR_BASE, _TRAILER_AXLES),
     _two_wheeler("ScooterSimple", (1.95, 0.66, 1.7), (1.48, 0.23, 0.745)),
     _two_wheeler("MotorbikeSimple", (2.48, 1.1, 1.55), (1.78, 0.25, 0.94)),
 )

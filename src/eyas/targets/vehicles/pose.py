@@ -10,11 +10,15 @@ from eyas.core.parallel import Pointer, parallel_kernel
 from eyas.state.motion import ActorState
 from eyas.targets.kind import Group, Looks
 from eyas.targets.vehicles.models import VEHICLE_AHEAD
+from eyas.traffic.trailer import BUMPER_AHEAD, TAIL_BEHIND, folded
 
 __all__ = ["AXLES", "SLOT", "STEER_LIMIT", "RigTable", "Slots", "pose_vehicles"]
 
 STEER_LIMIT = 0.6
 """Largest steering angle [rad]."""
+
+_KINGPIN = 0.5 * (TAIL_BEHIND - BUMPER_AHEAD)
+"""x of the kingpin in the frame of a model with a trailer [m]."""
 
 _SLOWEST = 1.0
 """Smallest speed used to compute the curvature from the yaw rate [m/s]."""
@@ -29,13 +33,20 @@ class Slots(NamedTuple):
 
 
 SLOT: Final = np.dtype(
-    [("part", np.int64), ("x", np.float64), ("y", np.float64), ("z", np.float64), ("steered", "?")],
+    [
+        ("part", np.int64),
+        ("x", np.float64),
+        ("y", np.float64),
+        ("z", np.float64),
+        ("steered", "?"),
+        ("towed", "?"),
+    ],
     align=True,
 )
 """A part in the frame of its model.
 
 part: index among the parts of the kind, -1 for an unused slot; x, y, z: position [m]; steered:
-whether it steers.
+whether it steers; towed: whether it belongs to the trailer.
 """
 
 AXLES: Final = np.dtype(
@@ -86,6 +97,28 @@ def _base_of(actors: ActorState, w: int, a: int, most_lean: float) -> _Base:
         actors.position[w, a, 0] + VEHICLE_AHEAD * c * cp,
         actors.position[w, a, 1] + VEHICLE_AHEAD * s * cp,
         actors.position[w, a, 2] + VEHICLE_AHEAD * sp,
+    )  # fmt: skip
+
+
+@kernel
+def _turned(base: _Base, x: float, y: float, turn: float) -> _Base:
+    """Return the pose of a truck or its trailer, in the frame of the straight model.
+
+    Args:
+        base: Pose of the whole.
+        x: Where the kingpin is in its frame [m].
+        y: Likewise [m].
+        turn: Heading in that frame [rad].
+    """
+    c, s = np.cos(turn), np.sin(turn)
+    x, y = x - _KINGPIN * c, y - _KINGPIN * s
+    return _Base(
+        base.xx * c + base.xy * s, base.xy * c - base.xx * s, base.xz,
+        base.yx * c + base.yy * s, base.yy * c - base.yx * s, base.yz,
+        base.zx * c + base.zy * s, base.zy * c - base.zx * s, base.zz,
+        base.x + base.xx * x + base.xy * y,
+        base.y + base.yx * x + base.yy * y,
+        base.z + base.zx * x + base.zy * y,
     )  # fmt: skip
 
 
@@ -150,7 +183,11 @@ def pose_vehicles(
             a, first = group.actor[g], group.slot[g]
             model = looks.model[w, a] - group.first_model
             axles = table.axles[model]
-            base = _base_of(actors, w, a, axles.lean)
+            truck = trailer = _base_of(actors, w, a, axles.lean)
+            hitch = actors.hitch[w, a]
+            if hitch != 0.0:
+                x, y, turn = folded(hitch)
+                truck, trailer = _turned(truck, x, y, turn), _turned(truck, x, y, turn + hitch)
             steered, rolled = _wheels_of(axles.radius, axles.wheelbase, actors, w, a)
             for k in range(table.slot.shape[1]):
                 slot, part = first + k, table.slot[model, k]
@@ -159,7 +196,8 @@ def pose_vehicles(
                     continue
                 out.part[w, slot] = group.first_part + part.part
                 steer = steered if part.steered else (1.0, 0.0)
-                spin = rolled if k > 0 else (1.0, 0.0)
+                spin = rolled if part.z > 0.0 else (1.0, 0.0)
+                base = trailer if part.towed else truck
                 _pose_slot(out.pose[w, slot], base, (part.x, part.y, part.z), steer, spin)
                 for channel in range(3):
                     out.colour[w, slot, channel] = looks.colour[w, a, channel]

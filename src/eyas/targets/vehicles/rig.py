@@ -1,4 +1,4 @@
-"""The rig of vehicles: a body, and wheels that roll and steer."""
+"""The rig of vehicles: a body, wheels that roll and steer, and a trailer that swings."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -12,11 +12,12 @@ from eyas.state.mesh import Mesh
 from eyas.state.motion import ActorState
 from eyas.targets.kind import Group, Looks
 from eyas.targets.vehicles.bodies import body_levels
+from eyas.targets.vehicles.heavy import trailer_levels
 from eyas.targets.vehicles.models import VEHICLE_AHEAD, Axle, VehicleModel
 from eyas.targets.vehicles.pose import AXLES, SLOT, RigTable, Slots, pose_vehicles
 from eyas.targets.vehicles.wheels import wheel_levels
 
-__all__ = ["VehicleRig"]
+__all__ = ["VehicleRig", "trailers_of"]
 
 
 class VehicleRig:
@@ -67,6 +68,14 @@ class VehicleRig:
         pose_vehicles.bound(self._table, Held(group), *arrays)()
 
 
+def trailers_of(models: Sequence[VehicleModel]) -> tuple[int, ...]:
+    """Return the parts of a rig of models that are trailers, without their wheels."""
+    parts: list[_Part] = []
+    for model in models:
+        _layout(model, parts)
+    return tuple(k for k, part in enumerate(parts) if isinstance(part, _Trailer))
+
+
 class _Arrays(NamedTuple):
     """The arrays of a call, mostly the same as in the last one."""
 
@@ -82,29 +91,41 @@ class _Wheels(NamedTuple):
     """Distance between the two wheels of an axle [m]; 0 for a single wheel."""
 
 
-_Part = VehicleModel | _Wheels
-"""The body of a model, or wheels, which several models may share."""
+class _Trailer(NamedTuple):
+    vehicle: VehicleModel
+
+
+_Part = VehicleModel | _Wheels | _Trailer
+"""The body of a model, or wheels, which several models may share, or its trailer."""
 
 
 def _levels(part: _Part) -> tuple[Mesh, ...]:
+    if isinstance(part, _Trailer):
+        return trailer_levels(part.vehicle)
     return wheel_levels(*part) if isinstance(part, _Wheels) else body_levels(part)
 
 
 class _Slot(NamedTuple):
     part: int
     offset: tuple[float, float, float]
-    steered: bool
+    steered: bool = False
+    towed: bool = False
 
 
 def _layout(vehicle: VehicleModel, parts: list[_Part]) -> list[_Slot]:
-    """Return the slots of a model: its body, then its wheels; add new parts to `parts`."""
-    slots = [_Slot(_index(vehicle, parts), (0.0, 0.0, 0.0), steered=False)]
-    for axle in vehicle.axles:
+    """Return the slots of a model: its body and wheels, then its trailer and the wheels of that;
+    add new parts to `parts`.
+    """
+    slots = [_Slot(_index(vehicle, parts), (0.0, 0.0, 0.0))]
+    for axle in sorted(vehicle.axles, key=lambda axle: axle.towed):
+        if axle.towed and not slots[-1].towed:
+            slots.append(_Slot(_index(_Trailer(vehicle), parts), (0.0, 0.0, 0.0), towed=True))
         # Steered wheels turn about their own middles, so each is a part; others are one per axle.
         pair = 0.0 if axle.steered else axle.track
         part = _index(_Wheels(vehicle.wheel_radius, axle.width, pair), parts)
         slots += [
-            _Slot(part, (axle.x, y, vehicle.wheel_radius), axle.steered) for y in _places(axle)
+            _Slot(part, (axle.x, y, vehicle.wheel_radius), axle.steered, axle.towed)
+            for y in _places(axle)
         ]
     return slots
 
@@ -130,5 +151,5 @@ def _tabulate(
     table.slot["part"] = -1
     for model, layout in enumerate(layouts):
         for s, slot in enumerate(layout):
-            table.slot[model, s] = (slot.part, *slot.offset, slot.steered)
+            table.slot[model, s] = (slot.part, *slot.offset, slot.steered, slot.towed)
     return table

@@ -1,7 +1,9 @@
 """Traffic lights: a pole at the kerb with an arm over the lanes.
 
-They are decoration. All shine amber, as signals do that leave drivers to give way to each other:
-so cars drive here, and a fixed red or green would show cars running red lights in every film.
+Where a network has programs for them (imported towns), their lenses are dark here, and
+`eyas.sim.signals` draws the one that shines. Elsewhere they are decoration and shine amber, as
+signals do that leave drivers to give way to each other: so cars drive there, and a fixed red or
+green would show cars running red lights in every film.
 """
 
 import numpy as np
@@ -17,9 +19,17 @@ from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.materials import material
 from eyas.world.build.millimetres import unit
 from eyas.world.build.scene_builder import SceneBuilder
-from eyas.world.roads.areas import joints, road_area, streets
+from eyas.world.roads.areas import Street, joints, road_area, streets
 
-__all__ = ["POLE_HEIGHT", "POLE_RADIUS", "add_signals", "signal_levels", "signal_places"]
+__all__ = [
+    "POLE_HEIGHT",
+    "POLE_RADIUS",
+    "add_signals",
+    "lens_levels",
+    "pole_at",
+    "signal_levels",
+    "signal_places",
+]
 
 POLE_HEIGHT = 6.6
 """Height of the top of a pole above the road [m]."""
@@ -31,16 +41,27 @@ _ARM = 5.6
 _ARM_HEIGHT = 6.1
 _HEADS = (2.6, 5.3)
 """Distances of the heads along the arm [m]."""
+_CENTRES = (*((x, 0.16, _ARM_HEIGHT - 0.35) for x in _HEADS), (0.0, 0.24, 3.1))
+"""Middles of the heads; the last is on the pole [m]."""
 _BEYOND_KERB = 0.9
 _BEFORE_LINE = 0.6
 """From the stop line back to the pole [m]."""
 _STEEL = material("plain", (0.55, 0.56, 0.57))
 _CASE = material("plain", (0.13, 0.14, 0.14))
-_LENSES = (
+_DARK = (
     material("plain", (0.34, 0.09, 0.08)),
-    Material(tint=(1.0, 0.55, 0.06), surface=Surface.SIGNAL, emission=1.9),
+    material("plain", (0.36, 0.26, 0.08)),
     material("plain", (0.08, 0.26, 0.16)),
 )
+_SHINING = tuple(
+    Material(tint=tint, surface=Surface.SIGNAL, emission=1.9)
+    for tint in ((1.0, 0.10, 0.06), (1.0, 0.55, 0.06), (0.10, 0.95, 0.45))
+)
+_RISES = (0.33, 0.0, -0.33)
+"""Heights of the red, amber and green lens over the middle of a head [m]."""
+_RED, _AMBER, _GREEN = range(3)
+_ASPECTS = ((_RED,), (_RED, _AMBER), (_AMBER,), (_GREEN,))
+"""Lenses that shine, by `eyas.traffic.signals.Aspect`."""
 
 
 def signal_places(network: RoadNetwork) -> list[tuple[NDArray[np.float64], float]]:
@@ -51,12 +72,18 @@ def signal_places(network: RoadNetwork) -> list[tuple[NDArray[np.float64], float
     for street in streets(network):
         if meeting[street.end] < 3:
             continue
-        onwards = unit(street.right[-1] - street.right[-2])
-        leftwards = np.array([-onwards[1], onwards[0]])
-        foot = street.right[-1] - _BEYOND_KERB * leftwards - _BEFORE_LINE * onwards
+        foot, turn = pole_at(street)
         if shapely.distance(road, shapely.Point(foot)) > POLE_RADIUS:
-            places.append((foot, float(np.arctan2(leftwards[1], leftwards[0]))))
+            places.append((np.array(foot), turn))
     return places
+
+
+def pole_at(street: Street) -> tuple[tuple[float, float], float]:
+    """Return the foot [m] of the pole at the end of a street and the direction of its arm [rad]."""
+    onwards = unit(street.right[-1] - street.right[-2])
+    leftwards = np.array([-onwards[1], onwards[0]])
+    foot = street.right[-1] - _BEYOND_KERB * leftwards - _BEFORE_LINE * onwards
+    return (float(foot[0]), float(foot[1])), float(np.arctan2(leftwards[1], leftwards[0]))
 
 
 def add_signals(builder: SceneBuilder, network: RoadNetwork) -> None:
@@ -67,14 +94,26 @@ def add_signals(builder: SceneBuilder, network: RoadNetwork) -> None:
         builder.add_cylinder((place[0], place[1]), POLE_RADIUS, FLOOR_HEIGHT, POLE_HEIGHT, owner)
 
 
-def signal_levels() -> tuple[Mesh, ...]:
+def signal_levels(*, amber: bool = True) -> tuple[Mesh, ...]:
     """Return a traffic light, the finest level of detail first.
 
     The foot is at the origin, the arm along x; the lights face along y.
+
+    Args:
+        amber: Whether the amber lenses shine.
     """
-    heads = [_head((x, 0.16, _ARM_HEIGHT - 0.35)) for x in _HEADS]
-    low = _head((0.0, 0.24, 3.1))
-    return concatenate([_steel(8), *heads, low]), concatenate([_steel(3), *heads])
+    lenses = (_DARK[_RED], _SHINING[_AMBER] if amber else _DARK[_AMBER], _DARK[_GREEN])
+    heads = [_head(centre, lenses) for centre in _CENTRES]
+    return concatenate([_steel(8), *heads]), concatenate([_steel(3), *heads[:-1]])
+
+
+def lens_levels() -> tuple[tuple[Mesh, ...], ...]:
+    """Return the lenses that shine, over those of `signal_levels`, for each aspect."""
+    levels = []
+    for shining in _ASPECTS:
+        heads = [concatenate([_lit(centre, lens) for lens in shining]) for centre in _CENTRES]
+        levels.append((concatenate(heads), concatenate(heads[:-1])))
+    return tuple(levels)
 
 
 def _steel(sides: int) -> Mesh:
@@ -89,9 +128,15 @@ def _steel(sides: int) -> Mesh:
     )
 
 
-def _head(centre: tuple[float, float, float]) -> Mesh:
+def _head(centre: tuple[float, float, float], lenses: tuple[Material, ...]) -> Mesh:
     x, y, z = centre
     parts = [box((0.36, 0.22, 1.05), centre, _CASE, 1.0)]
-    for lens, rise in zip(_LENSES, (0.33, 0.0, -0.33), strict=True):
+    for lens, rise in zip(lenses, _RISES, strict=True):
         parts.append(box((0.24, 0.04, 0.24), (x, y + 0.12, z + rise), lens, 1.0))
     return concatenate(parts)
+
+
+def _lit(centre: tuple[float, float, float], lens: int) -> Mesh:
+    """Return a shining lens, which bulges so that it is seen from above, too."""
+    x, y, z = centre
+    return box((0.27, 0.16, 0.27), (x, y + 0.19, z + _RISES[lens]), _SHINING[lens], 1.0)

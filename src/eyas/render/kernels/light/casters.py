@@ -41,6 +41,7 @@ from eyas.render.kernels.scalars import f4, i4, u4
 from eyas.render.kernels.visibility.cull import sphere_is_visible
 from eyas.render.kernels.visibility.key import distance_inverse, tag_of
 from eyas.render.kernels.visibility.things import belongs_to, end_of_thing, next_thing
+from eyas.state.scene import ACTOR_OBJECT
 
 __all__ = ["cast_light", "influence"]
 
@@ -163,6 +164,37 @@ def _cast_shadow(
             store_words(shade, 4 * at, select(seen, dark, words))
 
 
+@inlined_kernel
+def _end_of_body(geometry: Geometry, movers: Movers, world: int, first: int, last: int) -> int:
+    """Return the slot after those of a body: that of the trailer of what begins at `first`."""
+    parts = movers.part[world]
+    if not geometry.lamps[geometry.part_first + parts[first]]:
+        return last
+    end = first + 1
+    while end < last and (parts[end] < 0 or geometry.lamps[geometry.part_first + parts[end]]):
+        end += 1
+    return end
+
+
+@inlined_kernel
+def _stretch(truck: Caster, trailer: Caster) -> float:
+    """Return how much farther back a trailer ends, if it is straight behind its truck [m]."""
+    apart = math.sqrt((truck.x - trailer.x) ** 2 + (truck.y - trailer.y) ** 2)
+    return max(apart + trailer.length - truck.length, 0.0)
+
+
+@inlined_kernel
+def _longer(caster: Caster, more: float) -> Caster:
+    """Return a caster that ends farther back [m]."""
+    half = 0.5 * more
+    return Caster(
+        caster.x - half * caster.along_x, caster.y - half * caster.along_y,
+        caster.along_x, caster.along_y, caster.length + half, caster.width,
+        caster.bottom, caster.top, caster.waist, caster.back + half, caster.front + half,
+        caster.right, caster.left, caster.lower_right, caster.lower_left, caster.beyond,
+    )  # fmt: skip
+
+
 @inner_kernel
 def cast_light(
     geometry: Geometry,
@@ -177,7 +209,8 @@ def cast_light(
 ) -> None:
     """Write the share of light that moving things let through to each sample, and their own light.
 
-    Slots in a row with the same object id are one thing.
+    Slots in a row with the same object id are one thing. Those of objects of the scene, such as the
+    lenses of signals, cast nothing.
 
     Args:
         geometry: Everything that can be drawn.
@@ -197,12 +230,19 @@ def cast_light(
     first = next_thing(movers, world, 0)
     while first < slots:
         last = end_of_thing(movers, world, first)
-        if _may_reach(geometry, movers, world, first, last, sun, lamps_on, view):
-            caster = address_of(caster_of(geometry, movers, world, first, last))
-            if _may_show(caster, sun, view):
-                _cast_shadow(
-                    caster, sun, fixtures + first, fixtures + last, view, key, drawn, shade
-                )
-            if lamps_on and has_lamps(geometry, movers, world, first, last):
-                cast_beam(caster, view, key, shade)
+        mover = movers.object_id[world, first] >= ACTOR_OBJECT
+        if mover and _may_reach(geometry, movers, world, first, last, sun, lamps_on, view):
+            own, begin = (fixtures + first, fixtures + last), first
+            while begin < last:
+                end = _end_of_body(geometry, movers, world, begin, last)
+                caster = address_of(caster_of(geometry, movers, world, begin, end))
+                if _may_show(caster, sun, view):
+                    _cast_shadow(caster, sun, own[0], own[1], view, key, drawn, shade)
+                if lamps_on and has_lamps(geometry, movers, world, begin, end):
+                    reach = 0.0
+                    if end < last:
+                        trailer = caster_of(geometry, movers, world, end, last)
+                        reach = _stretch(caster, trailer)
+                    cast_beam(address_of(_longer(caster, reach)), view, key, shade)
+                begin = end
         first = next_thing(movers, world, last)

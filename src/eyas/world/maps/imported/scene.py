@@ -10,7 +10,6 @@ from eyas.state.roads import RoadNetwork
 from eyas.state.scene import Lamps, ObjectClass, Scene
 from eyas.state.terrain import Terrain
 from eyas.world.build.heights import FLOOR_HEIGHT, KERB_HEIGHT
-from eyas.world.build.millimetres import unit
 from eyas.world.build.scene_builder import SceneBuilder
 from eyas.world.buildings import rooftops
 from eyas.world.maps.imported.building import building_mesh, solids_of
@@ -22,15 +21,13 @@ from eyas.world.maps.imported.plan import Plan, make_plan
 from eyas.world.osm.features import Features
 from eyas.world.plants import trees
 from eyas.world.plants.shrubs import plant_makers
-from eyas.world.roads.areas import Street, streets
+from eyas.world.roads.areas import streets
 from eyas.world.street import signals
 from eyas.world.street.furnishing import add_furniture
 from eyas.world.street.parked_cars import VARIANTS, parked_car
 
 __all__ = ["build_scene"]
 
-_BEYOND_KERB, _BEFORE_LINE = 0.9, 0.6
-"""From the kerb, and back from the stop line, to the pole of a traffic light [m]."""
 _NO_EQUIPMENT = 250.0
 """Smaller flat roofs carry nothing [m^2]."""
 
@@ -86,12 +83,12 @@ def _add_signals(
     builder: SceneBuilder, network: RoadNetwork, plan: Plan, features: Features
 ) -> shapely.Geometry:
     """Add a traffic light at the end of each street that has one; return where they stand [m]."""
-    prototype = builder.prototype("traffic light", signals.signal_levels)
+    prototype = builder.prototype("traffic light", partial(signals.signal_levels, amber=False))
     lit, feet = set(features.signals), []
     for name, street in zip(network.edges, streets(network), strict=True):
         if name not in lit or len(street.right) < 2:
             continue
-        foot, turn = _pole(street)
+        foot, turn = signals.pole_at(street)
         if shapely.distance(plan.roads, shapely.Point(foot)) <= signals.POLE_RADIUS:
             continue
         owner = builder.add_copy(ObjectClass.POLE, prototype, (*foot, 0.0), turn, 1.0)
@@ -99,14 +96,6 @@ def _add_signals(
         builder.add_cylinder(foot, radius, FLOOR_HEIGHT, top, owner)
         feet.append(shapely.Point(foot).buffer(1.0))
     return shapely.union_all(feet)
-
-
-def _pole(street: Street) -> tuple[tuple[float, float], float]:
-    """Return the foot of a pole [m] and the direction of its arm [rad]."""
-    onwards = unit(street.right[-1] - street.right[-2])
-    leftwards = np.array([-onwards[1], onwards[0]])
-    foot = street.right[-1] - _BEYOND_KERB * leftwards - _BEFORE_LINE * onwards
-    return (float(foot[0]), float(foot[1])), float(np.arctan2(leftwards[1], leftwards[0]))
 
 
 def _lights(

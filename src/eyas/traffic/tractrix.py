@@ -1,0 +1,50 @@
+"""The tractrix: the heading of what is pulled along a path and does not slide."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.parallel import Held, Pointer, parallel_kernel
+
+__all__ = ["follow_headings"]
+
+
+def follow_headings(
+    front: NDArray[np.float64], yaw: float, wheelbase: float
+) -> NDArray[np.float64]:
+    """Return the headings (S,) of a body whose front is pulled along a path [rad].
+
+    Args:
+        front: Path of its front [m], shape (S, 2).
+        yaw: Heading at its first point [rad].
+        wheelbase: Distance from the front to the axle that does not slide [m].
+    """
+    heading = np.empty(len(front))
+    _follow(1, Held((front, float(yaw), float(wheelbase), heading)))
+    return heading
+
+
+@parallel_kernel
+def _follow(
+    parts: Pointer[tuple[Pointer[tuple[NDArray[np.float64], float, float, NDArray[np.float64]]]]],
+    worker: int,
+    workers: int,
+) -> None:
+    """Write the heading (S,) of a body whose front is pulled along `front` (S, 2).
+
+    Between two points the pull is straight, and the angle a between heading and pull shrinks:
+    tan(a / 2) falls by the factor exp(-distance / wheelbase), the tractrix in closed form.
+    """
+    front, yaw, wheelbase, heading = parts[0][0][0]
+    heading[0] = yaw
+    for sample in range(1, front.shape[0]):
+        east = front[sample, 0] - front[sample - 1, 0]
+        north = front[sample, 1] - front[sample - 1, 1]
+        distance = math.hypot(east, north)
+        if distance > 1e-9:
+            angle = math.atan2(north, east) - yaw
+            angle -= 2.0 * math.pi * math.floor(angle / (2.0 * math.pi) + 0.5)
+            left = 2.0 * math.atan(math.tan(0.5 * angle) * math.exp(-distance / wheelbase))
+            yaw += angle - left
+        heading[sample] = yaw

@@ -1,0 +1,80 @@
+"""Traffic lights: what is shown is what SUMO shows, and no car passes a red one."""
+
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+from eyas.traffic import network
+from eyas.traffic.config import TrafficConfig
+from eyas.traffic.fleet import fleet_of
+from eyas.traffic.network import network_xml
+from eyas.traffic.record import WARM_UP, resolved
+from eyas.traffic.signals import Aspect, signal_plan
+from eyas.traffic.sumo import RATE, SumoRun
+
+NET = """<net>
+<tlLogic id="a" type="static" programID="0" offset="7">
+<phase duration="10" state="rGs"/><phase duration="3" state="uyO"/><phase duration="7" state="Gro"/>
+</tlLogic>
+<tlLogic id="b" type="actuated" programID="0" offset="0"><phase duration="10" state="r"/></tlLogic>
+<connection from="left" to="x" linkIndex="1" tl="a" dir="l"/>
+<connection from="left" to="y" linkIndex="0" tl="a" dir="s"/>
+<connection from="right" to="x" linkIndex="1" tl="a" dir="r"/>
+<connection from="dark" to="x" linkIndex="2" tl="a" dir="s"/>
+<connection from="clever" to="x" linkIndex="0" tl="b" dir="s"/>
+<connection from="free" to="x" dir="s"/>
+</net>"""
+
+
+def test_phases_are_those_of_the_program_for_who_drives_straight_on():
+    plan = signal_plan(NET.encode())
+    assert plan.edges == ("left", "right", "dark", "clever")
+    begin = 7.0 - WARM_UP
+    time = begin + np.array([0.0, 9.999, 10.0, 12.999, 13.0, 19.999, 20.0, 400.0, -0.001])
+    shown = [[Aspect(one).name for one in row] for row in plan.at(time).tolist()]
+    first, second = ["RED", "GREEN", "RED", "AMBER"], ["RED_AMBER", "AMBER", "DARK", "AMBER"]
+    third = ["GREEN", "RED", "AMBER", "AMBER"]
+    assert shown == [first, first, second, second, third, third, first, first, third]
+
+
+@pytest.fixture(scope="module")
+def lit(grid):
+    """The network of a grid with traffic lights, and its graph."""
+    with pytest.MonkeyPatch.context() as patch:
+        more = ("--tls.guess", "true", "--tls.guess.threshold", "1")
+        patch.setattr(network, "OPTIONS", (*network.OPTIONS, *more))
+        return network_xml(grid)
+
+
+@pytest.mark.sumo
+def test_what_is_shown_is_what_sumo_shows_and_nobody_passes_red(lit):
+    plan = signal_plan(lit)
+    assert len(plan.edges) >= 4
+    links = [one for one in ElementTree.fromstring(lit).iter("connection") if one.get("tl")]
+    inside = {one.attrib["via"]: (one.attrib["tl"], int(one.attrib["linkIndex"])) for one in links}
+    straight = {one.attrib["from"]: inside[one.attrib["via"]] for one in links[::-1]
+                if one.get("dir") == "s"}  # fmt: skip
+    config, before, passed = resolved(TrafficConfig(max_vehicles=12), 1), {}, []
+    run = SumoRun(lit, config, fleet_of(config, 200.0))
+    try:
+        for step in range(1, 200 * RATE):
+            run.advance()
+            lights = {k: run.sumo.trafficlight.getRedYellowGreenState(k)
+                      for k in run.sumo.trafficlight.getIDList()}  # fmt: skip
+            # SUMO tells what held during the step that it has made.
+            shown = plan.at(np.array([(step - 0.5) / RATE - WARM_UP]))[0]
+            for edge, one in zip(plan.edges, shown.tolist(), strict=True):
+                if edge in straight:
+                    light, index = straight[edge]
+                    assert lights[light][index] in {0: "r", 2: "y", 3: "gG"}[one], (step, edge)
+            for vehicle in run.sumo.vehicle.getIDList():
+                lane, last = run.sumo.vehicle.getLaneID(vehicle), before.get(vehicle, ":")
+                if lane in inside and not last.startswith(":"):
+                    light, index = inside[lane]
+                    passed.append(lights[light][index])
+                before[vehicle] = lane
+    finally:
+        run.close()
+    assert len(passed) > 30
+    assert "r" not in passed
