@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from eyas.envs.words import target_in_words
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
+from eyas.sim.words import target_in_words
 from eyas.sim.worlds import each_alone
 from eyas.targets.words import phrases
 

@@ -40,7 +40,9 @@ def test_each_line_is_a_record_that_any_reader_understands(written, frame):
 
 
 def test_a_label_says_what_the_frame_holds(frame):
-    label = label_of(frame(7, action=Action(3, np.zeros(4)), reason=DoneReason.HEIGHT))
+    seen = frame(7, action=Action(3, np.zeros(4)), reason=DoneReason.HEIGHT)
+    label = label_of(replace(seen, target_words="a red SUV"))
+    assert label.target_words == "a red SUV"
     assert (label.frame, label.step, label.time) == (7, 171, 1.28)
     assert label.episode_time == 0.342
     assert (label.action, label.direction, label.done, label.reward) == (3, 1, True, 0.5)

@@ -22,6 +22,9 @@ PART_SUFFIX = ".part"
 """Ending of a file that is still being written; such a file may be deleted at any time."""
 
 
+_NEW = os.O_WRONLY | os.O_CREAT | os.O_TRUNC | getattr(os, "O_BINARY", 0)
+
+
 def part_path(path: Path) -> Path:
     """Return the hidden temporary path, beside `path`, under which the file is written."""
     return path.with_name(f".{path.name}{PART_SUFFIX}")
@@ -64,7 +67,14 @@ def write_atomic(path: Path, data: bytes) -> None:
         OutputError: The file cannot be written.
     """
     with atomic_path(path) as part:
-        part.write_bytes(data)
+        # Without Python's file objects: half of the time, of which `eyas serve` has 16 in a round.
+        file = os.open(part, _NEW, 0o666)
+        try:
+            left = memoryview(data)
+            while left:
+                left = left[os.write(file, left) :]
+        finally:
+            os.close(file)
 
 
 def user_path(text: str) -> Path:

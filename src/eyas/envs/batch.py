@@ -14,10 +14,10 @@ from eyas.core.rng import EpisodeKey
 from eyas.envs.actions import make_actions
 from eyas.envs.information import Info, information
 from eyas.envs.observation import Observer
-from eyas.envs.words import target_in_words
 from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.messages import originals_named
 from eyas.sim.build import build_simulation
+from eyas.sim.words import target_in_words
 from eyas.sim.worlds import each_alone, together
 from eyas.state.draw import Picture
 from eyas.task.done import DoneReason
@@ -170,7 +170,7 @@ class Batch:
         return information(self._simulation)
 
     def words_of(self, tracker: int) -> str:
-        """Return the target of a tracker in words, see `eyas.envs.words`."""
+        """Return the target of a tracker in words, see `eyas.sim.words`."""
         camera = self.config.camera
         return target_in_words(self._simulation, tracker, camera.height / camera.width)
 

@@ -113,7 +113,7 @@ class Fleet:
         return picture
 
     def words_of(self, index: int) -> str:
-        """Return the target of one in words, see `eyas.envs.words`."""
+        """Return the target of one in words, see `eyas.sim.words`."""
         batch, tracker = self._place[index]
         return batch.words_of(tracker)
 

@@ -102,7 +102,7 @@ class WorkerFleet:
         return picture
 
     def words_of(self, index: int) -> str:
-        """Return the target of one in words, see `eyas.envs.words`."""
+        """Return the target of one in words, see `eyas.sim.words`."""
         words: str = self._ask_one("words_of", index)
         return words
 

@@ -155,6 +155,9 @@ class Frame:
     lidar: Floats | None = None
     """Distances that the lidar has measured [m], infinity where nothing was within range, shape
     (points,); None: there is no lidar."""
+    target_words: str = ""
+    """The target in words that tell it from what else is in view; empty if no writer wants
+    `others`."""
 
     @property
     def episode_time(self) -> float:
@@ -171,6 +174,7 @@ def frame_of(  # noqa: PLR0913  # everything that a frame holds
     action: Action,
     others: tuple[Subject, ...] = (),
     lidar: Floats | None = None,
+    words: str = "",
 ) -> Frame:
     """Return a frame that later steps and pictures do not change.
 
@@ -183,6 +187,7 @@ def frame_of(  # noqa: PLR0913  # everything that a frame holds
         action: The tracker's action.
         others: Other moving objects in the picture, see `eyas.exports.others.others_of`.
         lidar: Distances of its lidar, which nothing changes later.
+        words: The target in words.
     """
     episodes = snapshot.episodes
     return Frame(
@@ -202,6 +207,7 @@ def frame_of(  # noqa: PLR0913  # everything that a frame holds
         object_id=None if picture.object_id is None else picture.object_id[view].copy(),
         class_id=None if picture.class_id is None else picture.class_id[view].copy(),
         lidar=lidar,
+        target_words=words,
     )
 
 

@@ -114,6 +114,8 @@ class FrameLabel:
     target_corners: list[list[float | None]] = field(default_factory=list)
     """Corners of its 3D box: four on the ground, counter-clockwise from the right of its tail, and
     those above them [m]."""
+    target_words: str = ""
+    """The target in words, such as "a red SUV": the shortest that nothing else in view shares."""
 
 
 class LabelWriter(Writer):
@@ -175,6 +177,7 @@ def label_of(frame: Frame) -> FrameLabel:
         target_yaw_rate=rounded(target.motion.yaw_rate),
         target_travelled=rounded(target.motion.travelled),
         target_corners=[rounded_list(corner) for corner in target.corners],
+        target_words=frame.target_words,
     )
 
 

@@ -17,6 +17,7 @@ from eyas.modes.video.folder import VideoFolder
 from eyas.modes.video.lanes import WriterLanes
 from eyas.settings.config import EyasConfig
 from eyas.sim.simulation import Simulation
+from eyas.sim.words import target_in_words
 from eyas.state.draw import Picture
 
 __all__ = ["Recorder"]
@@ -119,7 +120,13 @@ class Recorder:
         others = others_of(self._sim, tracker, picture, view)
         lidar = self._sim.lidar
         ranges = None if lidar is None else lidar.ranges_of(tracker)
-        frame = frame_of(self._sim.snapshot, tracker, picture, view, number, action, others, ranges)
+        words = ""
+        if picture.actor_pixels is not None:  # labels are written
+            episode = going.episode
+            words = target_in_words(self._sim, tracker, episode.height / episode.width)
+        frame = frame_of(
+            self._sim.snapshot, tracker, picture, view, number, action, others, ranges, words
+        )
         going.summary = going.summary.plus(frame)
         self._lanes.submit(tracker, going.files.add, frame)
 
