@@ -4,7 +4,7 @@ It is computed at once for the whole length of the traffic, from the map, a seed
 so it is known at any instant without stepping.
 """
 
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 import shapely
