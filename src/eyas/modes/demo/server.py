@@ -20,9 +20,10 @@ from eyas.modes.demo.cockpit import Cockpit
 from eyas.modes.demo.files import own_file, page_file
 from eyas.modes.demo.frame import Frame
 from eyas.modes.demo.gate import Gate
-from eyas.modes.demo.orders import BOXES, reward_of, world_of
+from eyas.modes.demo.orders import BOXES, reward_of, world_now
 from eyas.modes.demo.session import Session
 from eyas.modes.demo.viewers import Viewer, Viewers
+from eyas.targets.config import TargetName
 from eyas.world.maps import MAPS
 
 __all__ = ["Server"]
@@ -172,8 +173,15 @@ class Server:
             maps[name] = {"title": recipe.title, "weathers": recipe.weathers}
         policies = [*self._cockpit.policies, BOXES]
         most = self._cockpit.flight.config.traffic.max_vehicles
-        told = {"hello": __version__, "maps": maps, "policies": policies, "most_vehicles": most}
-        return told | reward_of(self._cockpit) | world_of(self._cockpit)
+        told = {
+            "hello": __version__,
+            "maps": maps,
+            "policies": policies,
+            "most_vehicles": most,
+            "targets": [name.value for name in TargetName],
+            "lights": list(said.LIGHTS),
+        }
+        return told | reward_of(self._cockpit) | world_now(self._cockpit)
 
 
 async def _send(connection: ServerConnection, viewer: Viewer) -> None:
