@@ -66,8 +66,8 @@ def plan_of(before: Plan, said: World) -> Plan:
         changes["extras"] = _passers_by(said.people)
     light = said.light or before.light
     if said.light is not None or light != "own":
-        world = before.config.world
-        own = MAPS.get(said.map or world.map).light(said.weather or world.weather).luminosity
+        now = before.config.world
+        own = MAPS.get(said.map or now.map).light(said.weather or now.weather).luminosity
         sun, sky = LIGHTS[light]
         changes["light"] = {
             **{"sun": own * sun, "background": own * sky},

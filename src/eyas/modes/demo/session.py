@@ -9,7 +9,7 @@ from typing import Any, Protocol
 from eyas.core.errors import EyasError
 from eyas.modes.demo.cockpit import Cockpit
 from eyas.modes.demo.frame import Frame
-from eyas.modes.demo.messages import Message
+from eyas.modes.demo.messages import Message, World
 from eyas.modes.demo.orders import carry_out, change_sides, end_recording, move_in, world_now
 from eyas.modes.demo.pace import FRAME
 
@@ -87,7 +87,8 @@ class Session:
             self._carry_out(message)
 
     def _carry_out(self, message: Message) -> None:
-        self._try(lambda: carry_out(self.cockpit, message))
+        stay = self._stay if isinstance(message, World) else None
+        self._try(lambda: carry_out(self.cockpit, message), stay)
 
     def _try(
         self, act: Callable[[], dict[str, Any] | None], otherwise: Callable[[], None] | None = None

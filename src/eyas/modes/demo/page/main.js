@@ -56,7 +56,7 @@ function measure(state) {
   const wait = middle === undefined ? "" : ` · key to picture ${middle.toFixed(0)} ms`;
   by("link-line").textContent = `${state.size.join("×")} · ${times.length} fps${wait}`;
   by("speed-line").textContent = `${state.height.toFixed(0)} m up · ${state.speed.toFixed(0)} m/s`;
-  window.eyas = { state, latency: middle, frames: times.length }; // for whoever debugs, and tests
+  window.eyas = { state, world: settings.chosen, latency: middle, frames: times.length }; // for whoever debugs, and tests
 }
 
 function text(told) {
