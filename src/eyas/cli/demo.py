@@ -60,12 +60,13 @@ def command(  # noqa: PLR0913  # one parameter for each option
     settings = load_settings(chosen_file(config, preset), gathered(set_, map_name, weather, seed))
     from eyas.modes.demo import run as demo  # after all checks
 
+    listening = None if headless or window else demo.listen(host, port)
     cockpit = demo.cockpit_of(settings, policy)
     if headless:
         demo.run_headless(cockpit, seconds or 10.0, typer.echo)
-    elif window:
+    elif listening is None:
         from eyas.modes.demo.window import run_window
 
         run_window(cockpit, seconds)
     else:
-        demo.run_browser(cockpit, host, port, browser=browser, say=typer.echo)
+        demo.run_browser(cockpit, host, listening, browser=browser, say=typer.echo)

@@ -51,6 +51,7 @@ class Simulation:
         traffic: Everything that moves by itself; live traffic takes reactions.
         snapshot: The state of everything; its arrays are written in place by each step.
         perception: What agents see of it: now, or, with a latency, earlier.
+        judged: Whether views are rewarded and limits end episodes, see `TrackerConfig.judged`.
 
     Args:
         config: The settings.
@@ -80,8 +81,9 @@ class Simulation:
         if past:
             self.perception = view(past.snapshot, past.told)
         rules = make_rules(config.reward, config.done, config.camera)
-        judged = tracker.judged if config.tracker.judged is None else config.tracker.judged
-        self.rules = rules if judged else lenient(rules)
+        own = config.tracker.judged
+        self.judged = tracker.judged if own is None else own
+        self.rules = rules if self.judged else lenient(rules)
         early = config.done.grace_steps + 2 * physics_steps(config.control.frequency)
         self._terms = RewardTerms(config.reward, Setting(self.rules.aspect, early))
 

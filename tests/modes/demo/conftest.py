@@ -12,6 +12,9 @@ from pathlib import Path
 
 import pytest
 
+from eyas.modes.demo.messages import Reward
+from eyas.task.config import RewardConfig
+
 CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
 
 try:
@@ -24,6 +27,18 @@ if CHROMIUM is None:
     collect_ignore = ["test_page.py"]
 
 QUICK = ["--set", "world.map=simpleway-grass", "--set", "traffic.max_vehicles=40"]
+
+
+WORLD = {
+    "map": "simpleway-grass",
+    "weather": "day",
+    "vehicles": 40,
+    "target": "SUMO_VEHICLE",
+    "tracker": "drone",
+    "light": "own",
+    "people": 0,
+}
+REWARD = RewardConfig().model_dump(mode="json", include=set(Reward.model_fields))
 
 
 class Served:
@@ -134,11 +149,32 @@ class Viewer:
         self._open.close()
 
 
+def restore(viewer):
+    """Set everything that a test before may have set, so that no test meets what another did."""
+    viewer.say("do", what="pilot")
+    viewer.say("duel", policy=None)
+    viewer.say("record", on=False)
+    viewer.say("pace", speed=1)
+    viewer.say("fly", policy=None)
+    viewer.say("look", overlay=False, width=160, height=90)
+    viewer.frame()
+    if not viewer.told.keys() >= {"world", "reward"}:
+        viewer.until(lambda s: viewer.told.keys() >= {"world", "reward"})
+    world = {name: viewer.told["world"][name] for name in WORLD}
+    if world != WORLD or viewer.told["busy"]:
+        viewer.say("world", **WORLD)
+        viewer.until(lambda s: viewer.told["busy"], seconds=120)
+        viewer.until(lambda s: not viewer.told["busy"], seconds=120)
+    viewer.say("reward", **REWARD)
+    viewer.say("do", what="parked_target")
+    viewer.until(lambda s: s["target"]["parked"] and s["steps"] < 500 and not s["recorded"])
+    viewer.settled()
+    viewer.errors.clear()
+
+
 @pytest.fixture
 def viewer(served):
     one = Viewer(served.socket)
-    one.say("look", overlay=False, width=160, height=90)
-    one.say("pace", speed=1)
-    one.say("fly", policy=None)
+    restore(one)
     yield one
     one.close()

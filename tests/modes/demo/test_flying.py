@@ -6,6 +6,7 @@ import math
 import time
 import urllib.request
 
+import numpy as np
 import pytest
 from PIL import Image
 
@@ -13,7 +14,7 @@ from eyas.core.config import validated
 from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.adapter import from_legacy
 
-from .conftest import Viewer
+from .conftest import WORLD, Viewer
 
 
 def turn(yaw, before):
@@ -172,8 +173,52 @@ def test_another_weather_and_thinner_traffic(viewer):
     viewer.say("world", weather="night", vehicles=5)
     state = viewer.until(lambda s: len(s.get("traffic", range(99))) == 6, seconds=120)
     assert cars > 6
-    assert viewer.told["world"] == {"map": "simpleway-grass", "weather": "night", "vehicles": 5}
+    assert viewer.told["world"] == WORLD | {"weather": "night", "vehicles": 5, "parked": True}
     assert state["target"]["parked"]
+
+
+def test_frames_go_on_while_another_world_is_built_and_show_it_then(viewer):
+    first = viewer.frame()["frame"]
+    viewer.say("world", target="Pedestrian", tracker="flown")
+    busy = viewer.until(lambda s: viewer.told["busy"])
+    assert busy["target"]["parked"]
+    assert viewer.told["busy"] == "simpleway-grass, day"
+    state = viewer.until(lambda s: not viewer.told["busy"] and not s["target"]["parked"], 120)
+    assert state["frame"] > first + 3
+    chosen = viewer.told["world"]
+    assert (chosen["target"], chosen["tracker"], chosen["parked"]) == ("Pedestrian", "flown", False)
+    assert state["target"]["model"].startswith("Pedestrian")
+
+
+def test_a_click_chooses_a_person_under_it(viewer):
+    viewer.say("world", target="Pedestrian")
+    viewer.until(lambda s: s["target"]["model"].startswith("Pedestrian"), seconds=120)
+    viewer.say("look", view="drone", overlay=True, width=640, height=360)
+    state = viewer.until(lambda s: s["view"] == "drone" and s["marks"] and s["marks"]["target"])
+    followed = state["target"]["actor"]
+    viewer.say("pace", speed=0)  # nobody walks on until the click
+    state = viewer.until(lambda s: s["speed_of_time"] == 0 and s["marks"] and s["marks"]["target"])
+    x, y = state["marks"]["target"]
+    viewer.say("do", what="next_target")
+    viewer.say("do", what="step")
+    viewer.until(lambda s: s["target"]["actor"] != followed)
+    viewer.say("click", x=x, y=y)
+    viewer.say("do", what="step")
+    viewer.until(lambda s: s["target"]["actor"] == followed)
+
+
+def test_dusk_is_darker_and_the_reward_settings_stay(viewer):
+    def brightness():
+        return np.mean(Image.open(io.BytesIO(viewer.picture)).convert("L"))
+
+    viewer.say("reward", view_scale=2.0)
+    viewer.until(lambda s: viewer.told["reward"]["view_scale"] == 2.0)
+    day = brightness()
+    viewer.say("world", light="dusk")
+    viewer.until(lambda s: viewer.told["world"]["light"] == "dusk", seconds=120)
+    viewer.frame()
+    assert brightness() < 0.7 * day
+    assert viewer.told["reward"]["view_scale"] == 2.0
 
 
 def test_a_world_that_does_not_exist_changes_nothing(viewer):
@@ -186,11 +231,12 @@ def test_a_world_that_does_not_exist_changes_nothing(viewer):
 
 
 def test_a_recording_is_a_whole_folder_of_eyas_video(viewer, served):
+    before = set((served.folder / "runs/demo").glob("*"))
     viewer.say("record", on=True)
     viewer.until(lambda s: (s["recorded"] or 0) >= 4)
     viewer.say("record", on=False)
     viewer.until(lambda s: s["recorded"] is None)
-    (folder,) = (served.folder / "runs/demo").iterdir()
+    (folder,) = set((served.folder / "runs/demo").iterdir()) - before
     validated(EyasConfig, json.loads((folder / "config.json").read_text()))
     episode = folder / "DRONE0/episode0"
     pictures = sorted(episode.glob("*.jpeg"))

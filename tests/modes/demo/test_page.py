@@ -5,7 +5,7 @@ import time
 import pytest
 from playwright.sync_api import sync_playwright
 
-from .conftest import CHROMIUM
+from .conftest import CHROMIUM, Viewer, restore
 
 
 @pytest.fixture(scope="module")
@@ -20,6 +20,9 @@ def browser():
 @pytest.fixture
 def page(browser, served):
     """The page, with frames; what it has asked for and complained of is checked at the end."""
+    before = Viewer(served.socket)
+    restore(before)
+    before.close()
     context = browser.new_context(viewport={"width": 900, "height": 560})
     page = context.new_page()
     asked, problems = [], []
@@ -118,11 +121,16 @@ def test_a_click_on_the_parked_car_follows_it(page):
 
 def test_menus_change_the_weather(page):
     page.select_option("#weather", "night")
-    until(page, "document.getElementById('notice').hidden === false || eyas.state.time < 3")
-    until(page, "document.getElementById('notice').hidden && eyas.state.time < 20")
+    until(page, "!document.getElementById('notice').hidden")
+    until(page, "document.getElementById('notice').hidden", seconds=120)
     assert page.locator("#weather").input_value() == "night"
-    page.select_option("#weather", "day")
-    until(page, "document.getElementById('notice').hidden && eyas.state.time < 20")
+
+
+def test_menus_change_the_tracker_and_the_light(page):
+    for menu, choice in [("tracker", "flown"), ("light", "dusk")]:
+        page.select_option(f"#{menu}", choice)
+        until(page, f"eyas.world.{menu} === '{choice}'", seconds=120)
+        assert page.locator(f"#{menu}").input_value() == choice
 
 
 def test_help_opens_and_closes(page):

@@ -8,7 +8,7 @@ from eyas.modes.demo.controls import CAMERA_PITCH, CAMERA_YAW, Control, Held, ca
 from eyas.modes.demo.messages import Reward
 from eyas.modes.demo.world import build_world
 from eyas.settings.config import EyasConfig
-from eyas.task.rules import make_rules
+from eyas.task.rules import lenient, make_rules
 
 __all__ = ["Flight"]
 
@@ -107,5 +107,14 @@ class Flight:
     def change_reward(self, said: Reward) -> None:
         """Change settings of the reward, from the next step on."""
         self.config = updated(self.config, {"reward": said.model_dump(exclude_none=True)})
+        self._obey()
+
+    def adopt_reward(self, other: "Flight") -> None:
+        """Take the settings of the reward that sliders have changed in another flight."""
+        self.config = self.config.model_copy(update={"reward": other.config.reward})
+        self._obey()
+
+    def _obey(self) -> None:
         config = self.config
-        self.simulation.rules = make_rules(config.reward, config.done, config.camera)
+        rules = make_rules(config.reward, config.done, config.camera)
+        self.simulation.rules = rules if self.simulation.judged else lenient(rules)

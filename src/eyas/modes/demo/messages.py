@@ -8,9 +8,11 @@ from pydantic import Field
 from eyas.core.config import Config, validated
 from eyas.core.errors import ConfigError, UnknownNameError
 from eyas.modes.demo.controls import Control
+from eyas.targets.config import TargetName
 from eyas.task.config import RewardMode, RewardType
 
 __all__ = [
+    "LIGHTS",
     "LONGEST",
     "Ack",
     "Box",
@@ -19,6 +21,7 @@ __all__ = [
     "Duel",
     "Fly",
     "Keys",
+    "Light",
     "Look",
     "Message",
     "Pace",
@@ -35,6 +38,15 @@ Share = Annotated[float, Field(ge=0, le=1)]
 Side = Annotated[int, Field(ge=16, le=16384)]
 Name = Annotated[str, Field(max_length=200)]
 Positive = Annotated[float, Field(gt=0, le=1000)]
+Light = Literal["own", "bright", "evening", "dusk"]
+
+LIGHTS: dict[Light, tuple[float, float]] = {
+    "own": (0.0, 0.0),
+    "bright": (1.3, 1.2),
+    "evening": (0.45, 0.6),
+    "dusk": (0.12, 0.3),
+}
+"""Brightness of sun and sky in shares of the weather's own; `own` changes nothing."""
 
 
 class Message(Config):
@@ -101,6 +113,11 @@ class World(Message):
     map: Name | None = None
     weather: Name | None = None
     vehicles: Annotated[int, Field(ge=1, le=100)] | None = None
+    target: TargetName | None = None
+    tracker: Literal["drone", "flown", "car"] | None = None
+    light: Light | None = None
+    people: Annotated[int, Field(ge=0, le=100)] | None = None
+    """Those who walk around without being asked for as targets: people and robots."""
 
 
 class Fly(Message):

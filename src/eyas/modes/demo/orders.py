@@ -4,16 +4,23 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from eyas.core.config import updated
 from eyas.core.errors import ConfigError, UnknownNameError
 from eyas.modes.demo import messages as said
+from eyas.modes.demo.choices import plan_of, world_of
 from eyas.modes.demo.cockpit import Cockpit
 from eyas.modes.demo.duel import SEED, Duel
-from eyas.modes.demo.flight import Flight
 from eyas.modes.demo.pilots import BoxPilot, Pilot, PolicyPilot
 from eyas.modes.demo.recording import Recording
 
-__all__ = ["BOXES", "carry_out", "change_sides", "end_recording", "reward_of", "slow", "world_of"]
+__all__ = [
+    "BOXES",
+    "carry_out",
+    "change_sides",
+    "end_recording",
+    "move_in",
+    "reward_of",
+    "world_now",
+]
 
 BOXES = "boxes"
 """The name under which a tracker outside flies."""
@@ -23,11 +30,6 @@ _UNFAIR = (said.Click, said.Do, said.Fly, said.Pace, said.Record, said.Reward)
 
 STEP = 4
 """Physics steps of a single step."""
-
-
-def slow(message: said.Message) -> bool:
-    """Return whether a message takes long, so that a page should be told to wait."""
-    return isinstance(message, said.World)
 
 
 def carry_out(cockpit: Cockpit, message: said.Message) -> dict[str, Any] | None:
@@ -134,25 +136,38 @@ def reward_of(cockpit: Cockpit) -> dict[str, Any]:
     return {"reward": {name: values[name] for name in names}}
 
 
-def world_of(cockpit: Cockpit) -> dict[str, Any]:
-    """Return map, weather and traffic, for the menus."""
-    flight = cockpit.flight
-    world = flight.config.world
-    chosen = {"map": world.map, "weather": world.weather, "vehicles": flight.vehicles}
-    return {"world": chosen}
+def world_now(cockpit: Cockpit) -> dict[str, Any]:
+    """Return what the menus show, and what is being built instead, if anything."""
+    told = world_of(cockpit.builder.flown, cockpit.flight)
+    return told | _busy(cockpit)
+
+
+def _busy(cockpit: Cockpit) -> dict[str, Any]:
+    world = cockpit.builder.plan.config.world
+    return {"busy": f"{world.map}, {world.weather}" if cockpit.builder.busy else None}
 
 
 def _world(cockpit: Cockpit, message: said.World) -> dict[str, Any]:
-    flight = cockpit.flight
-    changes = message.model_dump(include={"map", "weather"}, exclude_none=True)
-    config = updated(flight.config, {"world": changes})
-    new = Flight(config, message.vehicles or flight.vehicles)
-    end_recording(cockpit)
+    cockpit.builder.order(plan_of(cockpit.builder.plan, message))
+    return _busy(cockpit)
+
+
+def move_in(cockpit: Cockpit) -> dict[str, Any] | None:
+    """Go on in the world that was ordered, once it is built.
+
+    Raises:
+        EyasError: It could not be built; nothing has changed.
+    """
+    new = cockpit.builder.take()
+    if new is None:
+        return None
+    ended = end_recording(cockpit) or {}
     cockpit.duel = None
+    new.adopt_reward(cockpit.flight)
     view = cockpit.screen.view
     cockpit.board(new)
     cockpit.screen.view = view
-    return world_of(cockpit)
+    return ended | world_now(cockpit)
 
 
 def _fly(cockpit: Cockpit, message: said.Fly) -> None:

@@ -91,9 +91,10 @@ def reasons(flight: Flight) -> list[str]:
 
 
 def traffic(flight: Flight) -> list[list[float]]:
-    """Return east, north [m] and heading [rad] of each actor in the world, and its number."""
-    state, _ = flight.simulation.actors_around(0)
+    """Return east, north [m], heading [rad], number and length [m] of each actor in the world."""
+    state, model = flight.simulation.actors_around(0)
     here = np.flatnonzero(state.present[0])
-    place = np.column_stack([state.position[0, here, :2], state.yaw[0, here], here])
+    lengths = [MODELS[index].size[0] for index in model[here].tolist()]
+    place = np.column_stack([state.position[0, here, :2], state.yaw[0, here], here, lengths])
     listed: list[list[float]] = np.round(place, 2).tolist()
     return listed

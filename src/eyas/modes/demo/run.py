@@ -2,18 +2,20 @@
 
 import asyncio
 import os
+import socket
 import sys
 import time
 import webbrowser
 from collections.abc import Callable
 from pathlib import Path
 
+from eyas.core.errors import OutputError
 from eyas.evaluation.policies.shipped import shipped_names
 from eyas.modes.demo.cockpit import Cockpit
 from eyas.settings.config import EyasConfig
 from eyas.task.step_line import step_line
 
-__all__ = ["RECORDINGS", "cockpit_of", "run_browser", "run_headless"]
+__all__ = ["RECORDINGS", "cockpit_of", "listen", "run_browser", "run_headless"]
 
 RECORDINGS = Path("runs/demo")
 BUILT_IN = ("follow", "servo")
@@ -35,20 +37,42 @@ def cockpit_of(config: EyasConfig, policy: str | None = None) -> Cockpit:
     return Cockpit(config, tuple(dict.fromkeys(names)), RECORDINGS)
 
 
+def listen(host: str, port: int) -> socket.socket:
+    """Return a socket that listens, before a world is built for nothing.
+
+    Args:
+        host: The address to bind.
+        port: The port; 0: any that is free.
+
+    Raises:
+        OutputError: The port cannot be had.
+    """
+    try:
+        family, *_, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+        return socket.create_server(address[:2], family=family)
+    except OSError as error:
+        raise OutputError(
+            f"port {port} of {host}: cannot be used: {error.strerror or error}; "
+            "name another with --port, or 0 for any"
+        ) from None
+
+
 def run_browser(
-    cockpit: Cockpit, host: str, port: int, *, browser: bool, say: Callable[[str], None]
+    cockpit: Cockpit,
+    host: str,
+    listening: socket.socket,
+    *,
+    browser: bool,
+    say: Callable[[str], None],
 ) -> None:
     """Serve the demo's page until it is interrupted.
 
     Args:
         cockpit: What is flown.
-        host: The address to bind.
-        port: The port; 0: any that is free.
+        host: The address that is bound.
+        listening: Its socket, see `listen`.
         browser: Whether to open a browser, where there is one.
         say: Prints the line with the address.
-
-    Raises:
-        OutputError: The port cannot be had.
     """
     from eyas.modes.demo.server import Server
 
@@ -57,7 +81,7 @@ def run_browser(
         if browser and _has_screen():
             webbrowser.open(address)
 
-    asyncio.run(Server(cockpit, host, port).run(begun))
+    asyncio.run(Server(cockpit, host, listening).run(begun))
 
 
 def _has_screen() -> bool:

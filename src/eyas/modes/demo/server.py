@@ -2,7 +2,8 @@
 
 import asyncio
 import json
-from collections.abc import Awaitable, Callable
+import socket
+from collections.abc import Callable
 from http import HTTPStatus
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
@@ -14,15 +15,16 @@ from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
 from eyas import __version__
-from eyas.core.errors import ConfigError, OutputError
+from eyas.core.errors import ConfigError
 from eyas.modes.demo import messages as said
 from eyas.modes.demo.cockpit import Cockpit
 from eyas.modes.demo.files import own_file, page_file
 from eyas.modes.demo.frame import Frame
 from eyas.modes.demo.gate import Gate
-from eyas.modes.demo.orders import BOXES, reward_of, world_of
+from eyas.modes.demo.orders import BOXES, reward_of, world_now
 from eyas.modes.demo.session import Session
 from eyas.modes.demo.viewers import Viewer, Viewers
+from eyas.targets.config import TargetName
 from eyas.world.maps import MAPS
 
 __all__ = ["Server"]
@@ -49,12 +51,12 @@ class Server:
 
     Args:
         cockpit: What is flown.
-        host: The address to bind.
-        port: The port; 0: any that is free.
+        host: The address that is bound.
+        listening: Its socket, see `listen`.
     """
 
-    def __init__(self, cockpit: Cockpit, host: str, port: int) -> None:
-        self._cockpit, self._host, self._port = cockpit, host, port
+    def __init__(self, cockpit: Cockpit, host: str, listening: socket.socket) -> None:
+        self._cockpit, self._host, self._listening = cockpit, host, listening
         self._gate = Gate(host)
 
     async def run(self, begun: Callable[[str], None]) -> None:
@@ -62,20 +64,10 @@ class Server:
 
         Args:
             begun: Is called with the address, once it answers.
-
-        Raises:
-            OutputError: The port cannot be had.
         """
         self.viewers = Viewers(asyncio.get_running_loop())
         self._session = Session(self._cockpit, self.viewers)
-        try:
-            server = await self._bound()
-        except OSError as error:
-            raise OutputError(
-                f"port {self._port} of {self._host}: cannot be used: {error.strerror or error}; "
-                "name another with --port, or 0 for any"
-            ) from None
-        async with server:
+        async with self._bound() as server:
             flying = asyncio.create_task(asyncio.to_thread(self._session.run))
             begun(self._address(server))
             try:
@@ -84,11 +76,10 @@ class Server:
                 self._session.stop()
                 await flying
 
-    def _bound(self) -> Awaitable[WebSocketServer]:
+    def _bound(self) -> serve:
         return serve(
             self._talk,
-            self._host,
-            self._port,
+            sock=self._listening,
             process_request=self._answer,
             max_size=said.LONGEST,
             compression=None,  # pictures are compressed already
@@ -172,8 +163,15 @@ class Server:
             maps[name] = {"title": recipe.title, "weathers": recipe.weathers}
         policies = [*self._cockpit.policies, BOXES]
         most = self._cockpit.flight.config.traffic.max_vehicles
-        told = {"hello": __version__, "maps": maps, "policies": policies, "most_vehicles": most}
-        return told | reward_of(self._cockpit) | world_of(self._cockpit)
+        told = {
+            "hello": __version__,
+            "maps": maps,
+            "policies": policies,
+            "most_vehicles": most,
+            "targets": [name.value for name in TargetName],
+            "lights": list(said.LIGHTS),
+        }
+        return told | reward_of(self._cockpit) | world_now(self._cockpit)
 
 
 async def _send(connection: ServerConnection, viewer: Viewer) -> None:

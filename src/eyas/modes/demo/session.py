@@ -9,8 +9,8 @@ from typing import Any, Protocol
 from eyas.core.errors import EyasError
 from eyas.modes.demo.cockpit import Cockpit
 from eyas.modes.demo.frame import Frame
-from eyas.modes.demo.messages import Message
-from eyas.modes.demo.orders import carry_out, change_sides, end_recording, slow
+from eyas.modes.demo.messages import Message, World
+from eyas.modes.demo.orders import carry_out, change_sides, end_recording, move_in, world_now
 from eyas.modes.demo.pace import FRAME
 
 __all__ = ["Audience", "Session"]
@@ -60,11 +60,13 @@ class Session:
             while self._hear(due):
                 now = time.monotonic()
                 due = max(due + FRAME, now)
+                self._try(lambda: move_in(self.cockpit), self._stay)
                 self._try(partial(self._fly, now), self._drop_pilot)
                 if self._audience.wants_frame():
                     self._audience.show(self.cockpit.frame(now))
         finally:
             self._try(lambda: end_recording(self.cockpit))
+            self.cockpit.builder.stop()
 
     def _fly(self, now: float) -> None:
         """Fly until now, and let the other side of a duel begin."""
@@ -85,12 +87,8 @@ class Session:
             self._carry_out(message)
 
     def _carry_out(self, message: Message) -> None:
-        if slow(message):
-            self._audience.tell({"busy": True})
-        self._try(lambda: carry_out(self.cockpit, message))
-        if slow(message):
-            self.cockpit.clock.skip(time.monotonic())
-            self._audience.tell({"busy": False})
+        stay = self._stay if isinstance(message, World) else None
+        self._try(lambda: carry_out(self.cockpit, message), stay)
 
     def _try(
         self, act: Callable[[], dict[str, Any] | None], otherwise: Callable[[], None] | None = None
@@ -104,6 +102,10 @@ class Session:
                 otherwise()
         if told is not None:
             self._audience.tell(told)
+
+    def _stay(self) -> None:
+        """Let the menus show the present world, after another could not be built."""
+        self._audience.tell(world_now(self.cockpit))
 
     def _drop_pilot(self) -> None:
         """Let the keys fly, and record no more, after a failure in flight."""

@@ -4,12 +4,13 @@ from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from eyas.modes.demo.parked import COLOUR, MODEL, parked_car
 from eyas.settings.config import EyasConfig
 from eyas.sim.assets import Assets, load_assets
 from eyas.sim.config import SimConfig
-from eyas.sim.crowd import crowd_of
+from eyas.sim.crowd import Crowd, crowd_of
 from eyas.sim.simulation import Simulation
 from eyas.sim.worlds import together
 from eyas.state.motion import joined
@@ -61,12 +62,24 @@ def build_world(config: EyasConfig, vehicles: int) -> DemoWorld:
     driven = np.isin(motion.kind, [kind_index(kind.name) for kind in VEHICLE_KINDS])
     kept = ~driven | (np.cumsum(driven) <= vehicles)
     whole = motion._replace(table=motion.table[:, kept], kind=motion.kind[kept])
-    targets, parked = None if crowd.follows_vehicles else ~driven[kept], -1
+    targets, parked = _followed(crowd, whole.kind, driven[kept]), -1
     if crowd.follows_vehicles:
         car = parked_car(assets, len(motion.table), motion.rate)
         if car is not None:
             parked = len(whole.kind)
-            whole = joined([whole, car])
+            whole, targets = joined([whole, car]), np.append(targets, True)
     traffic = Replay(whole._replace(table=np.ascontiguousarray(whole.table)), targets)
     own = replace(assets, traffic=traffic, rigs=Rigs(whole.kind))
     return DemoWorld(DemoSimulation(config, own, parked), own, parked)
+
+
+def _followed(
+    crowd: Crowd, kinds: NDArray[np.int32], driven: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
+    """Return which actors an episode may choose as its target, shape (A,)."""
+    if crowd.follows_vehicles:
+        return driven
+    if crowd.custom is not None:
+        return ~driven
+    asked: NDArray[np.bool_] = kinds == kind_index(crowd.target.value)
+    return asked

@@ -1,16 +1,16 @@
 // You against a policy: the board over the picture, and the best flights, kept in this browser.
 
-const KEY = "eyas-best-flights";
+const KEY = "eyas-best-flights-by-terms";
 const MOST = 5;
 const by = (id) => document.getElementById(id);
 
 export class DuelBoard {
   constructor() {
     this.stage = null;
-    this.list();
   }
 
-  show(state, place) {
+  // `terms`: under what flights can be compared.
+  show(state, terms) {
     const duel = state.duel;
     by("duel-board").hidden = !duel;
     by("duel").textContent = duel && duel.stage !== "over" ? "Give up" : "You against it: 60 s";
@@ -18,7 +18,7 @@ export class DuelBoard {
       this.stage = null;
       return;
     }
-    if (this.stage && this.stage !== "over" && duel.stage === "over") this.keep(duel, place);
+    if (this.stage && this.stage !== "over" && duel.stage === "over") this.keep(duel, terms);
     this.stage = duel.stage;
     const { you, policy } = duel.scores;
     const side = (name, score, active) => {
@@ -49,25 +49,29 @@ export class DuelBoard {
     return line;
   }
 
-  best() {
+  // All flights that were kept: lists by their terms.
+  kept() {
     try {
-      const kept = JSON.parse(localStorage.getItem(KEY) ?? "[]");
-      return Array.isArray(kept) ? kept : [];
+      const kept = JSON.parse(localStorage.getItem(KEY) ?? "{}");
+      return kept && typeof kept === "object" && !Array.isArray(kept) ? kept : {};
     } catch {
-      return [];
+      return {};
     }
   }
 
-  keep(duel, place) {
-    const flight = { ...duel.scores, name: duel.policy, place, day: new Date().toISOString().slice(0, 10) };
-    const best = [...this.best(), flight].sort((a, b) => b.you - a.you).slice(0, MOST);
-    localStorage.setItem(KEY, JSON.stringify(best));
-    this.list();
+  keep(duel, terms) {
+    const flight = { ...duel.scores, name: duel.policy, day: new Date().toISOString().slice(0, 10) };
+    const kept = this.kept();
+    kept[terms] = [...(kept[terms] ?? []), flight].sort((a, b) => b.you - a.you).slice(0, MOST);
+    localStorage.setItem(KEY, JSON.stringify(kept));
+    this.list(terms);
   }
 
-  list() {
-    const rows = this.best().map((flight) => row("td", [flight.place, flight.you, `${flight.name} ${flight.policy}`]));
-    by("best").replaceChildren(...(rows.length ? [row("th", ["Best flights", "you", "it"]), ...rows] : []));
+  list(terms) {
+    const flights = this.kept()[terms] ?? [];
+    const rows = flights.map((flight) => row("td", [flight.day, flight.you, `${flight.name} ${flight.policy}`]));
+    by("best").title = "Flights in this world, with this tracker and this reward";
+    by("best").replaceChildren(...(rows.length ? [row("th", ["Best flights here", "you", "it"]), ...rows] : []));
   }
 }
 

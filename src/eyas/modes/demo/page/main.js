@@ -16,6 +16,7 @@ const latencies = [];
 let last = null;
 let lastInput = 0;
 let hidesNotice = 0;
+let builds = 0;
 
 const stage = new Stage(by("picture"));
 const minimap = new Minimap(by("minimap"));
@@ -30,7 +31,7 @@ function frame(state, bitmap) {
   stage.show(state, bitmap);
   minimap.draw(state);
   panel.show(state);
-  board.show(state, `${by("map").value}, ${by("weather").value}`);
+  if (settings.chosen) board.show(state, settings.terms());
   measure(state);
   press("pause", state.speed_of_time === 0);
   press("slow", state.speed_of_time === SLOW);
@@ -55,26 +56,45 @@ function measure(state) {
   const wait = middle === undefined ? "" : ` · key to picture ${middle.toFixed(0)} ms`;
   by("link-line").textContent = `${state.size.join("×")} · ${times.length} fps${wait}`;
   by("speed-line").textContent = `${state.height.toFixed(0)} m up · ${state.speed.toFixed(0)} m/s`;
-  window.eyas = { state, latency: middle, frames: times.length }; // for whoever debugs, and tests
+  window.eyas = { state, world: settings.chosen, latency: middle, frames: times.length }; // for whoever debugs, and tests
 }
 
 function text(told) {
   if (told.hello) settings.greet(told);
   if (told.world) {
     settings.world(told.world);
+    board.list(settings.terms());
     minimap.load();
   }
   if (told.reward) settings.reward(told.reward);
+  if (told.reward && settings.chosen) board.list(settings.terms());
   if ("pilot" in told) by("watching").hidden = told.pilot;
   if ("pilot" in told && told.pilot) showLook();
-  if (told.busy) notice("Building the world …", false, 120000);
-  if (told.busy === false) notice("");
+  if ("busy" in told) building(told.busy);
   if (told.say) notice(told.say);
   if (told.error) notice(told.error, true);
 }
 
+// Another world is being built; what is seen flies on meanwhile.
+function building(what) {
+  clearInterval(builds);
+  if (!what) {
+    notice("");
+    return;
+  }
+  const begun = performance.now();
+  const show = () => {
+    const seconds = Math.floor((performance.now() - begun) / 1000);
+    const why = seconds > 5 ? "; new worlds take up to a minute, known ones seconds" : "";
+    notice(`Building ${what}: ${seconds} s${why}`, false, 10000);
+  };
+  show();
+  builds = setInterval(show, 1000);
+}
+
 function linked(open) {
   document.body.classList.toggle("offline", !open);
+  clearInterval(builds);
   if (open) notice("");
   else notice("No connection to eyas demo; trying again …", true, 1e9);
   if (open) showLook();

@@ -45,8 +45,9 @@ export class Minimap {
     context.strokeStyle = "#22b8cf";
     context.lineWidth = 1.4 / zoom * scale;
     context.stroke();
-    for (const [east, north, heading] of this.traffic) {
-      this.car(east, north, heading, light ? "#5b6879" : "#c9d3df", 1.5 * scale / zoom);
+    for (const [east, north, heading, , length] of this.traffic) {
+      const size = Math.min(0.5 + 0.25 * length, 2.5); // people are dots
+      this.car(east, north, heading, light ? "#5b6879" : "#c9d3df", size * scale / zoom);
     }
     this.car(...state.target.place, "#ff4580", 2.3 * scale / zoom);
     this.arrow(x, y, yaw, 5 * scale / zoom);

@@ -1,6 +1,10 @@
-// Map, weather, traffic, and the sliders of the reward.
+// The menus of the world, and the sliders of the reward.
 
 const SLIDERS = ["view_range", "view_scale", "distance_range", "distance_scale"];
+const COUNTS = ["vehicles", "people"];
+const PEOPLE = [0, 10, 30, 60];
+const LIGHTS = { own: "of the weather", bright: "bright", evening: "evening", dusk: "dusk" };
+const TARGETS = { SUMO_VEHICLE: "cars, buses, trucks", Pedestrian: "people" };
 const by = (id) => document.getElementById(id);
 
 export class Settings {
@@ -26,14 +30,13 @@ export class Settings {
       link.send("world", { map: by("map").value, weather });
       by("map").blur();
     });
-    by("weather").addEventListener("change", () => {
-      link.send("world", { weather: by("weather").value });
-      by("weather").blur();
-    });
-    by("vehicles").addEventListener("change", () => {
-      link.send("world", { vehicles: Number(by("vehicles").value) });
-      by("vehicles").blur();
-    });
+    for (const name of ["weather", "target", "tracker", "light", "vehicles", "people"]) {
+      by(name).addEventListener("change", () => {
+        const { value } = by(name);
+        link.send("world", { [name]: COUNTS.includes(name) ? Number(value) : value });
+        by(name).blur();
+      });
+    }
     by("save").href = "env_config.json" + location.search;
   }
 
@@ -42,20 +45,33 @@ export class Settings {
     return by("type").value + (by("mode").value === "discrete" ? "_discrete" : "");
   }
 
-  greet({ maps, policies, most_vehicles: most }) {
+  greet({ maps, policies, targets, lights, most_vehicles: most }) {
     this.maps = maps;
+    fill(by("target"), targets.map((name) => [name, TARGETS[name] ?? name]));
+    fill(by("light"), lights.map((name) => [name, LIGHTS[name] ?? name]));
     fill(by("map"), Object.keys(maps).map((name) => [name, name]));
     const shares = [0.1, 0.25, 0.5, 1].map((share) => Math.max(Math.round(share * most), 1));
     fill(by("vehicles"), [...new Set(shares)].map((count) => [count, `${count} cars`]));
     fill(by("policy"), policies.map((name) => [name, name === "boxes" ? "tracker outside" : name]));
   }
 
-  world({ map, weather, vehicles }) {
+  world(chosen) {
+    const { map, people } = chosen;
+    this.chosen = chosen;
     fill(by("weather"), this.maps[map].weathers.map((name) => [name, name]));
-    by("map").value = map;
+    const counts = [...new Set([...PEOPLE, people])].sort((a, b) => a - b);
+    fill(by("people"), counts.map((count) => [count, count ? `${count}` : "nobody"]));
+    for (const name of ["map", "weather", "target", "tracker", "light", "vehicles", "people"]) by(name).value = chosen[name];
     by("map").title = this.maps[map].title;
-    by("weather").value = weather;
-    by("vehicles").value = vehicles;
+    by("vehicles").disabled = chosen.target !== "SUMO_VEHICLE"; // others have the roads to themselves
+    by("parked").disabled = !chosen.parked;
+  }
+
+  // Under what flights can be compared.
+  terms() {
+    const { map, weather, light, vehicles, target, tracker, people } = this.chosen;
+    const reward = [this.kind(), ...SLIDERS.map((name) => by(name).value)];
+    return [map, weather, light, target, vehicles, people, tracker, ...reward].join(" ");
   }
 
   reward(values) {

@@ -1,0 +1,103 @@
+"""What the page's menus choose, and the settings that it means."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from eyas.core.config import updated
+from eyas.modes.demo.flight import Flight
+from eyas.modes.demo.messages import LIGHTS, Light, World
+from eyas.settings.config import EyasConfig
+from eyas.targets.config import TargetName
+from eyas.trackers.config import TrackerKind
+from eyas.world.maps import MAPS
+
+__all__ = ["Plan", "plan_of", "world_of"]
+
+_TRACKERS: dict[str, dict[str, Any]] = {
+    "drone": {"kind": TrackerKind.DRONE, "supervised": True},
+    "flown": {"kind": TrackerKind.DRONE, "supervised": False},
+    "car": {"kind": TrackerKind.CAR},
+}
+_ROBOTS = (TargetName.AIBO_ERS7, TargetName.CREATE)
+"""Each is a fifth of those who walk around; the others are people."""
+
+
+@dataclass(frozen=True, slots=True)
+class Plan:
+    """A world to build.
+
+    Attributes:
+        config: The settings.
+        vehicles: Largest number of vehicles that drive.
+        light: What the menu of the light shows.
+    """
+
+    config: EyasConfig
+    vehicles: int
+    light: Light = "own"
+
+    def build(self) -> Flight:
+        """Return a flight in this world.
+
+        Raises:
+            EyasError: It cannot be built.
+        """
+        return Flight(self.config, self.vehicles)
+
+
+def plan_of(before: Plan, said: World) -> Plan:
+    """Return a plan with what a page has chosen.
+
+    Args:
+        before: The plan, for what was not chosen.
+        said: The choices.
+
+    Raises:
+        ConfigError: A setting does not fit to the others, or a map or weather does not exist.
+    """
+    changes: dict[str, Any] = {
+        "world": said.model_dump(include={"map", "weather"}, exclude_none=True)
+    }
+    if said.target is not None:
+        changes["target"] = said.target
+    if said.tracker is not None:
+        changes["tracker"] = _TRACKERS[said.tracker]
+    if said.people is not None:
+        changes["extras"] = _passers_by(said.people)
+    light = said.light or before.light
+    if said.light is not None or light != "own":
+        now = before.config.world
+        own = MAPS.get(said.map or now.map).light(said.weather or now.weather).luminosity
+        sun, sky = LIGHTS[light]
+        changes["light"] = {
+            **{"sun": own * sun, "background": own * sky},
+            **{"sun_replaces": light != "own", "background_replaces": light != "own"},
+        }
+    return Plan(updated(before.config, changes), said.vehicles or before.vehicles, light)
+
+
+def _passers_by(count: int) -> list[dict[str, Any]]:
+    each = count // 5
+    groups = [
+        (TargetName.PEDESTRIAN, count - each * len(_ROBOTS)),
+        *((kind, each) for kind in _ROBOTS),
+    ]
+    return [{"kind": kind, "count": number} for kind, number in groups if number]
+
+
+def world_of(plan: Plan, flight: Flight) -> dict[str, Any]:
+    """Return what is chosen, for the menus."""
+    config = plan.config
+    tracker = config.tracker
+    flown = tracker.kind is TrackerKind.DRONE and not tracker.supervised
+    chosen = {
+        "map": config.world.map,
+        "weather": config.world.weather,
+        "vehicles": plan.vehicles,
+        "target": config.target.value,
+        "tracker": "flown" if flown else str(tracker.kind),
+        "light": plan.light,
+        "people": sum(extra.count for extra in config.extras),
+        "parked": flight.world.parked >= 0,
+    }
+    return {"world": chosen}
