@@ -67,7 +67,7 @@ def write_atomic(path: Path, data: bytes) -> None:
         OutputError: The file cannot be written.
     """
     with atomic_path(path) as part:
-        # Without Python's file objects: half of the time, of which `eyas serve` has 16 in a round.
+        # Without Python's file objects: half of the time, of which `eyas serve` has 12 in a round.
         file = os.open(part, _NEW, 0o666)
         try:
             left = memoryview(data)
