@@ -3,7 +3,7 @@
 import asyncio
 import json
 import socket
-from collections.abc import Callable
+from collections.abc import Awaitable, Callable
 from http import HTTPStatus
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
@@ -67,7 +67,7 @@ class Server:
         """
         self.viewers = Viewers(asyncio.get_running_loop())
         self._session = Session(self._cockpit, self.viewers)
-        async with self._bound() as server:
+        async with await self._bound() as server:
             flying = asyncio.create_task(asyncio.to_thread(self._session.run))
             begun(self._address(server))
             try:
@@ -76,7 +76,7 @@ class Server:
                 self._session.stop()
                 await flying
 
-    def _bound(self) -> serve:
+    def _bound(self) -> Awaitable[WebSocketServer]:
         return serve(
             self._talk,
             sock=self._listening,
