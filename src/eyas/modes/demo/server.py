@@ -3,7 +3,7 @@
 import asyncio
 import json
 import socket
-from collections.abc import Awaitable, Callable
+from collections.abc import Callable
 from http import HTTPStatus
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
@@ -67,7 +67,14 @@ class Server:
         """
         self.viewers = Viewers(asyncio.get_running_loop())
         self._session = Session(self._cockpit, self.viewers)
-        async with await self._bound() as server:
+        async with serve(
+            self._talk,
+            sock=self._listening,
+            process_request=self._answer,
+            max_size=said.LONGEST,
+            compression=None,  # pictures are compressed already
+            close_timeout=1,
+        ) as server:
             flying = asyncio.create_task(asyncio.to_thread(self._session.run))
             begun(self._address(server))
             try:
@@ -75,16 +82,6 @@ class Server:
             finally:
                 self._session.stop()
                 await flying
-
-    def _bound(self) -> Awaitable[WebSocketServer]:
-        return serve(
-            self._talk,
-            sock=self._listening,
-            process_request=self._answer,
-            max_size=said.LONGEST,
-            compression=None,  # pictures are compressed already
-            close_timeout=1,
-        )
 
     def _address(self, server: WebSocketServer) -> str:
         port = next(iter(server.sockets)).getsockname()[1]
