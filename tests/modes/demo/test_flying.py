@@ -160,7 +160,7 @@ def test_pictures_show_what_the_view_is(viewer):
     pictures = []
     for view in ("drone", "chase", "top"):
         viewer.say("look", view=view, overlay=True, width=320, height=180)
-        state = viewer.until(lambda s, v=view: s["view"] == v)
+        state = viewer.until(lambda s, v=view: s["view"] == v and s["marks"])
         pictures.append(Image.open(io.BytesIO(viewer.picture)).convert("RGB").resize((32, 18)))
         assert Image.open(io.BytesIO(viewer.picture)).size == tuple(state["size"])
         assert state["marks"]["seen"]
