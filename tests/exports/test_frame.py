@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
 
-from eyas.exports.frame import Action, frame_of
+from eyas.exports.capture import frame_of
+from eyas.exports.frame import Action
 from eyas.state.draw import Picture
 from eyas.state.scene import ACTOR_OBJECT
 from eyas.state.snapshot import Snapshot

@@ -5,7 +5,8 @@ from dataclasses import asdict, fields, is_dataclass
 import numpy as np
 import pytest
 
-from eyas.exports.frame import Action, frame_of
+from eyas.exports.capture import frame_of
+from eyas.exports.frame import Action
 from eyas.exports.others import others_of
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig

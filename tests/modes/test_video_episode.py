@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from eyas.core.errors import OutputError
+from eyas.exports.capture import frame_of
 from eyas.exports.files import Files
-from eyas.exports.frame import Action, frame_of
+from eyas.exports.frame import Action
 from eyas.exports.registry import WRITERS, chosen_writers
 from eyas.exports.summary import Scores, Summary
 from eyas.exports.writer import Episode, EpisodeWriter, Run, Writer

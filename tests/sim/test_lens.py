@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from eyas.core.errors import ConfigError
-from eyas.exports.frame import Action, frame_of
+from eyas.exports.capture import frame_of
+from eyas.exports.frame import Action
 from eyas.sensors.config import CameraConfig
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig

@@ -25,4 +25,4 @@ def test_motions_of_other_times_are_refused(other):
 
 def test_a_sample_is_aligned_for_kernels():
     assert SAMPLE.isalignedstruct
-    assert SAMPLE.itemsize == 44
+    assert SAMPLE.itemsize == 48

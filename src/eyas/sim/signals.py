@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 from eyas.state.draw import DrawList
 from eyas.state.scene import ObjectClass, Scene
 from eyas.traffic.signals import SignalPlan
-from eyas.world.roads.areas import streets
-from eyas.world.street.signals import pole_at
 
 __all__ = ["SignalLights", "lights_of"]
 
@@ -60,6 +58,10 @@ def lights_of(scene: Scene, plan: SignalPlan, first_part: int) -> SignalLights |
         plan: Programs of the lights.
         first_part: See `SignalLights`.
     """
+    # Shapely takes long to import, and few maps have signals.
+    from eyas.world.roads.areas import streets
+    from eyas.world.street.signals import pole_at
+
     fixtures, rows = scene.fixtures, {name: row for row, name in enumerate(plan.edges)}
     poles = np.flatnonzero(scene.object_class[fixtures.object_id] == ObjectClass.POLE)
     feet, found = fixtures.pose[poles][:, :2, 3], []

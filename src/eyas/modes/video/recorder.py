@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.errors import OutputError
-from eyas.exports.frame import frame_of
+from eyas.exports.capture import frame_of
 from eyas.exports.others import others_of
 from eyas.exports.summary import Scores, Summary
 from eyas.exports.writer import EndedEpisode, Episode

@@ -6,8 +6,9 @@ signals do that leave drivers to give way to each other: so cars drive there, an
 green would show cars running red lights in every film.
 """
 
+from typing import TYPE_CHECKING
+
 import numpy as np
-import shapely
 from numpy.typing import NDArray
 
 from eyas.mesh.assembly import concatenate
@@ -17,9 +18,10 @@ from eyas.state.roads import RoadNetwork
 from eyas.state.scene import ObjectClass
 from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.materials import material
-from eyas.world.build.millimetres import unit
 from eyas.world.build.scene_builder import SceneBuilder
-from eyas.world.roads.areas import Street, joints, road_area, streets
+
+if TYPE_CHECKING:
+    from eyas.world.roads.areas import Street
 
 __all__ = [
     "POLE_HEIGHT",
@@ -66,6 +68,11 @@ _ASPECTS = ((_RED,), (_RED, _AMBER), (_AMBER,), (_GREEN,))
 
 def signal_places(network: RoadNetwork) -> list[tuple[NDArray[np.float64], float]]:
     """Return the foot [m] and the direction of the arm [rad] of the pole at each stop line."""
+    # Each start draws lenses, but places none, and shapely takes long to import.
+    import shapely
+
+    from eyas.world.roads.areas import joints, road_area, streets
+
     meeting = joints(network)
     road = road_area(network)
     places = []
@@ -78,8 +85,10 @@ def signal_places(network: RoadNetwork) -> list[tuple[NDArray[np.float64], float
     return places
 
 
-def pole_at(street: Street) -> tuple[tuple[float, float], float]:
+def pole_at(street: "Street") -> tuple[tuple[float, float], float]:
     """Return the foot [m] of the pole at the end of a street and the direction of its arm [rad]."""
+    from eyas.world.build.millimetres import unit
+
     onwards = unit(street.right[-1] - street.right[-2])
     leftwards = np.array([-onwards[1], onwards[0]])
     foot = street.right[-1] - _BEYOND_KERB * leftwards - _BEFORE_LINE * onwards

@@ -1,0 +1,111 @@
+"""Frames as they are taken: copies of what steps and pictures change later."""
+
+import math
+
+import numpy as np
+
+from eyas.core.clock import PHYSICS_STEP
+from eyas.exports.frame import Action, Body, CameraPose, Floats, Frame, Subject
+from eyas.exports.movement import Movement
+from eyas.state.draw import Picture
+from eyas.state.scene import ACTOR_OBJECT
+from eyas.state.snapshot import CameraState, Snapshot, TrackerState
+from eyas.targets.catalogue import MODELS, kind_of
+from eyas.task.direction import TargetDirection
+from eyas.task.done import DoneReason
+
+__all__ = ["frame_of"]
+
+
+def frame_of(  # noqa: PLR0913  # everything that a frame holds
+    snapshot: Snapshot,
+    tracker: int,
+    picture: Picture,
+    view: int,
+    number: int,
+    action: Action,
+    others: tuple[Subject, ...] = (),
+    lidar: Floats | None = None,
+    words: str = "",
+) -> Frame:
+    """Return a frame that later steps and pictures do not change.
+
+    Args:
+        snapshot: The state at the time of the frame.
+        tracker: The tracker of the frame.
+        picture: The picture, with the box and pixels of the target.
+        view: The tracker's row in `picture`.
+        number: Number of the frame in its episode.
+        action: The tracker's action.
+        others: Other moving objects in the picture, see `eyas.exports.others.others_of`.
+        lidar: Distances of its lidar, which nothing changes later.
+        words: The target in words.
+    """
+    episodes = snapshot.episodes
+    return Frame(
+        number=number,
+        time=float(episodes.tick[tracker]) * PHYSICS_STEP,
+        step=int(episodes.step_count[tracker]),
+        tracker=_body(snapshot.trackers, tracker),
+        camera=_camera(snapshot.cameras, tracker),
+        target=_target(snapshot, tracker, picture, view),
+        others=others,
+        action=action,
+        reward=float(episodes.reward[tracker]),
+        direction=TargetDirection(episodes.direction[tracker]),
+        reason=DoneReason(episodes.reason[tracker]),
+        rgb=None if picture.rgb is None else picture.rgb[view].copy(),
+        depth=None if picture.depth is None else picture.depth[view].copy(),
+        object_id=None if picture.object_id is None else picture.object_id[view].copy(),
+        class_id=None if picture.class_id is None else picture.class_id[view].copy(),
+        lidar=lidar,
+        target_words=words,
+    )
+
+
+def _body(trackers: TrackerState, tracker: int) -> Body:
+    return Body(
+        position=trackers.position[tracker].copy(),
+        velocity=trackers.velocity[tracker].copy(),
+        acceleration=trackers.acceleration[tracker].copy(),
+        orientation=trackers.orientation[tracker].copy(),
+        angular_velocity=trackers.angular_velocity[tracker].copy(),
+        gimbal=trackers.gimbal[tracker].copy(),
+    )
+
+
+def _camera(cameras: CameraState, tracker: int) -> CameraPose:
+    return CameraPose(
+        position=cameras.position[tracker].copy(),
+        rotation=cameras.rotation[tracker].copy(),
+        field_of_view=float(cameras.field_of_view[tracker]),
+    )
+
+
+def _target(snapshot: Snapshot, tracker: int, picture: Picture, view: int) -> Subject:
+    targets = snapshot.targets
+    assert picture.subject_box is not None
+    assert picture.subject_pixels is not None
+    seen, covered = (int(pixels) for pixels in picture.subject_pixels[view])
+    yaw, speed = float(targets.yaw[tracker]), float(targets.speed[tracker])
+    return Subject(
+        object_id=ACTOR_OBJECT + int(targets.actor[tracker]),
+        type=MODELS[targets.model[tracker]].name,
+        object_class=kind_of(int(targets.model[tracker])).object_class,
+        size=targets.size[tracker].copy(),
+        position=targets.position[tracker].copy(),
+        centre=targets.centre[tracker].copy(),
+        velocity=np.array([speed * math.cos(yaw), speed * math.sin(yaw), 0.0]),
+        yaw=yaw,
+        motion=Movement(
+            acceleration=targets.acceleration[tracker].copy(),
+            yaw_rate=float(targets.yaw_rate[tracker]),
+            slope=float(targets.slope[tracker]),
+            travelled=float(targets.travelled[tracker]),
+            direction=TargetDirection(snapshot.episodes.direction[tracker]),
+            rise=float(targets.rise[tracker]),
+        ),
+        box=picture.subject_box[view].copy(),
+        seen_pixels=seen,
+        covered_pixels=covered,
+    )
