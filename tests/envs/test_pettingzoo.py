@@ -1,7 +1,5 @@
 """Several drones in one world, by PettingZoo's rules."""
 
-import warnings
-
 import numpy as np
 import pytest
 
@@ -16,14 +14,6 @@ from eyas.envs.pettingzoo import EyasParallelEnv
 SMALL = {"observation": {"width": 24, "height": 20}}
 SHORT = {"done": {"total_steps": 40, "grace_steps": 0, "no_reward_steps": 500}}
 """Episodes of ten actions."""
-
-
-@pytest.fixture(scope="module")
-def official():
-    """PettingZoo's own tests; importing them warns of its own games."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore")
-        return pytest.importorskip("pettingzoo.test")
 
 
 def test_pettingzoos_own_tests_pass(official):

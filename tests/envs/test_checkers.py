@@ -1,0 +1,31 @@
+"""Every environment that Eyas registers, against the checkers of the libraries that use it."""
+
+import warnings
+
+import gymnasium
+import pytest
+from gymnasium.utils.env_checker import check_env
+
+import eyas  # noqa: F401  # makes the environments known
+from eyas.envs.pettingzoo import EyasParallelEnv
+from eyas.world.maps import MAPS
+
+stable_baselines3 = pytest.importorskip("stable_baselines3.common.env_checker")
+
+SHORT = {"done": {"total_steps": 40}}
+"""Episodes of ten actions."""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", MAPS.built_in)
+def test_checkers_find_nothing_wrong_in_any_weather_of_a_map(name, official):
+    for weather in MAPS.get(name).weathers:
+        env = gymnasium.make(f"eyas/{name}-{weather}-v0", render_mode="rgb_array")
+        drones = EyasParallelEnv(2, SHORT | {"world": {"map": name, "weather": weather}})
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            check_env(env.unwrapped)
+            stable_baselines3.check_env(env.unwrapped)
+        official.parallel_api_test(drones, num_cycles=12)
+        env.close()
+        drones.close()
