@@ -147,7 +147,10 @@ class Episodes:
         self._light.sample(tracker, key)
         for draw in self._draws:
             draw(tracker, key)
-        self._fields[tracker] = sample(self._config.camera.field_of_view, key.stream("camera"))
+        field = self._config.camera.field_of_view
+        if not isinstance(field, float):  # a stream costs 30 us
+            field = sample(field, key.stream("camera"))
+        self._fields[tracker] = field
         rng = key.stream("episode")
         tick, actor = self._choose(tracker, rng)
         self._episodes.tick[tracker] = tick

@@ -36,6 +36,7 @@ class LightChanges:
         factors: NDArray[np.float32],
     ) -> None:
         self._config = config
+        self._changes = config != _UNCHANGED
         self._weather = weather
         self._worlds = worlds
         self._factors = factors
@@ -44,7 +45,7 @@ class LightChanges:
     def sample(self, tracker: int, key: EpisodeKey) -> None:
         """Draw the light around a tracker; the leader of a world draws for all its trackers."""
         fixed = key.episode > 0 and not self._config.each_reset
-        if fixed or tracker != self._worlds.leader[self._worlds.of[tracker]]:
+        if not self._changes or fixed or tracker != self._worlds.leader[self._worlds.of[tracker]]:
             return
         rng = key.stream("light")
         config, weather = self._config, self._weather
@@ -59,7 +60,7 @@ class LightChanges:
 
     def of(self, trackers: NDArray[np.integer]) -> NDArray[np.float32] | None:
         """Return `Views.light` of trackers; None if the light of the weather is unchanged."""
-        return self._factors.take(trackers, axis=0) if self._config != _UNCHANGED else None
+        return self._factors.take(trackers, axis=0) if self._changes else None
 
 
 def _changed(value: float, replaces: bool, own: float) -> float:

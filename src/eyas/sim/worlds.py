@@ -71,6 +71,7 @@ class Worlds:
         self.leader: Integers = np.sort(first)
         self.lasting: NDArray[np.bool_] = given[self.leader] != ALONE
         self._any_lasting = bool(self.lasting.any())
+        self._members = [np.flatnonzero(self.of == world) for world in range(len(first))]
         self._assets = assets
         self._sampler = LookSampler(assets.traffic.motion.kind, config.traffic.colour)
         worlds, actors = len(self.leader), assets.traffic.actors
@@ -95,7 +96,7 @@ class Worlds:
 
     def trackers_of(self, tracker: int) -> Integers:
         """Return all trackers in the world of a tracker, shape (K,)."""
-        return np.flatnonzero(self.of == self.of[tracker])
+        return self._members[int(self.of[tracker])]
 
     def sample_looks(self, tracker: int, key: EpisodeKey) -> None:
         """Draw models and colours of the actors around a tracker, if its world starts again."""
