@@ -11,7 +11,7 @@ from eyas.state.draw import Views
 
 __all__ = ["Size", "new_task", "set_views"]
 
-JOBS_PER_THREAD = 4
+JOBS_PER_THREAD = 6
 """Few views are cut into bands until there are this many: sky is drawn faster than streets."""
 
 SMALLEST_BAND = 7_500
