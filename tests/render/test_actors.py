@@ -1,6 +1,5 @@
 """Boxes and pixels of all actors of a view, compared with what the pictures themselves show."""
 
-import numba
 import numpy as np
 import pytest
 
@@ -109,15 +108,14 @@ def test_measuring_changes_no_byte_of_the_pictures(city):
 def test_bands_change_no_measurement(city, monkeypatch):
     renderer, traffic = city
     views = looking([(-60.0, -2.0, 7.0)], 0.1, 0.15, fov=1.2, subject=ACTOR_OBJECT + 2)
-    monkeypatch.setattr(numba.config, "NUMBA_NUM_THREADS", 1)
+    monkeypatch.setenv("NUMBA_NUM_THREADS", "1")
     whole = measured(renderer, views, traffic, (120, 160))
     assert (whole.actor_pixels[0, :, 0] > 0).sum() > 3
-    monkeypatch.setattr(numba.config, "NUMBA_NUM_THREADS", 2)
+    monkeypatch.setenv("NUMBA_NUM_THREADS", "2")
     monkeypatch.setattr(jobs, "SMALLEST_BAND", 500)
     monkeypatch.setattr(jobs, "JOBS_PER_THREAD", 12)
-    jobs._bands.cache_clear()
+    renderer._tasks.clear()  # which keep their bands
     banded = measured(renderer, views, traffic, (120, 160))
-    jobs._bands.cache_clear()
     for name in ("actor_box", "actor_pixels", "subject_box", "subject_pixels"):
         np.testing.assert_array_equal(getattr(banded, name), getattr(whole, name))
 

@@ -15,8 +15,8 @@ from eyas.core.cuda import prepare_cuda
 from eyas.core.intrinsics import address_of
 from eyas.core.jit import kernel
 from eyas.core.lanes import greater
-from eyas.render.jobs import build_jobs
-from eyas.render.kernels.bundles import Movers, Task
+from eyas.render.jobs import Size, new_task, set_views
+from eyas.render.kernels.bundles import Movers
 from eyas.render.kernels.light.view_light import view_light
 from eyas.render.kernels.scalars import u4
 from eyas.render.kernels.surface.pixel import shade_pixel
@@ -81,9 +81,9 @@ def test_shading_a_pixel_in_all_weathers_compiles_for_cuda(ptx_of, renderer_of, 
     renderer = renderer_of(city_scene(), car_parts())
     traffic = city_traffic(1)
     movers = Movers(traffic.part, traffic.pose, traffic.colour, traffic.object_id)
-    job = build_jobs(looking([(0.0, 0.0, 20.0)]), 24, 32, 1, 0.0)
+    task = new_task(Size(1, 24, 32, 1, int(DrawStage.SHADING), False, 1))
+    set_views(task, looking([(0.0, 0.0, 20.0)]), 0.0, 1)
     scratch = renderer._scratch_for(1, 24, 32, 1, movers.part.shape[1], False).bundle
-    task = Task(1, 32, 24, int(DrawStage.SHADING), job)
     bundles = (*(held.bundle for held in renderer._held), scratch, movers, task)
     parts = CPointer(Tuple([pointer_to(bundle) for bundle in bundles]))
     text = ptx_of(shade_thread, parts, numba.int64, numba.int64, numba.uint32[:, ::1])

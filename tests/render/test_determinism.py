@@ -1,13 +1,13 @@
 """The same view gives the same bytes, whoever draws it and with whom."""
 
 import dataclasses
-from functools import partial
 
-import numba
 import numpy as np
 import pytest
 
 from eyas.render import jobs
+from eyas.render import renderer as module
+from eyas.render.kernels.draw import draw_views
 from eyas.state.draw import Views
 from eyas.state.scene import Lamps
 
@@ -44,7 +44,7 @@ def arrays(picture):
 
 @pytest.fixture
 def threads(monkeypatch):
-    return partial(monkeypatch.setattr, numba.config, "NUMBA_NUM_THREADS")
+    return lambda count: monkeypatch.setenv("NUMBA_NUM_THREADS", str(count))
 
 
 # What each weather adds to the day; all of it at once is no weather, but finds all.
@@ -88,10 +88,25 @@ def test_bands_change_no_byte(city, drawn, threads, monkeypatch):
     threads(2)
     monkeypatch.setattr(jobs, "SMALLEST_BAND", 800)
     monkeypatch.setattr(jobs, "JOBS_PER_THREAD", 12)
-    monkeypatch.setattr(jobs, "_bands", jobs._bands.__wrapped__)  # which keeps its results
-    assert len(jobs.build_jobs(views, 120, 160, 2, 0.0).band) == 24
+    renderer._tasks.clear()  # which keep their bands
+    assert len(jobs.new_task(jobs.Size(1, 120, 160, 1, 0, False, 2)).job.band) == 24
     for name, array in arrays(drawn(renderer, views, traffic, (120, 160))).items():
         np.testing.assert_array_equal(array, whole[name], err_msg=name)
+
+
+def test_another_thread_may_draw_in_the_middle_of_a_picture(city, drawn, monkeypatch):
+    renderer, traffic = city
+    views, others = one_of(sixteen_views(), 0), one_of(sixteen_views(), 7)
+    alone = arrays(drawn(renderer, views, traffic))
+
+    def interrupted(*given):
+        monkeypatch.setattr(module, "draw_views", draw_views)
+        drawn(renderer, others, traffic)
+        draw_views(*given)
+
+    monkeypatch.setattr(module, "draw_views", interrupted)
+    for name, array in arrays(drawn(renderer, views, traffic)).items():
+        np.testing.assert_array_equal(array, alone[name], err_msg=name)
 
 
 def test_what_is_not_wanted_changes_nothing(city, drawn):

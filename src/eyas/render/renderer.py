@@ -1,7 +1,8 @@
 """The renderer: pictures, depths, object ids and subject measurements of many views at once."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +15,7 @@ from eyas.render.bake.ambient import bake_ambient
 from eyas.render.bake.shadows import bake_shadows
 from eyas.render.bake.tracks import TrackMap, track_map
 from eyas.render.classes import class_table, write_classes
-from eyas.render.jobs import build_jobs, picture_size, write_measured
+from eyas.render.jobs import Size, new_task, set_views
 from eyas.render.kernels.bundles import Geometry, Light, Movers, Output, Scratch, Task
 from eyas.render.kernels.draw import draw_views
 from eyas.render.kernels.light.casters import influence
@@ -23,6 +24,13 @@ from eyas.render.kernels.visibility.fill import SPAN_ROWS
 from eyas.render.kernels.visibility.hidden import TILE
 from eyas.render.kernels.visibility.key import MOST_INSTANCES
 from eyas.render.kernels.visibility.triangles import TRIANGLE_ROWS
+from eyas.render.outputs import (
+    NOTHING,
+    measured_alone,
+    picture_size,
+    wanted_output,
+    write_measured,
+)
 from eyas.render.pack.light import build_light
 from eyas.state.draw import DrawList, DrawStage, Picture, Views
 from eyas.state.lighting import Lighting
@@ -54,8 +62,9 @@ class Renderer:
         self._geometry, self._light = geometry, light
         self._classes, self._ready = classes, ready
         self._held = Held(geometry), Held(light)
-        self._last = Held(_NO_MOVERS), Held(_NOTHING)
+        self._last = Held(_NO_MOVERS), Held(NOTHING)
         self._scratch: dict[tuple[int, ...], Held[Scratch]] = {}
+        self._tasks: dict[Size, Held[Task]] = {}
 
     @property
     def textures(self) -> NDArray[np.uint32]:
@@ -104,11 +113,11 @@ class Renderer:
         if self._ready is not None:
             self._ready()
         movers = Movers(draw_list.part, draw_list.pose, draw_list.colour, draw_list.object_id)
-        output = _output(picture)
+        output = wanted_output(picture)
         if samples == 4 and picture.rgb is not None:
-            colours = _NOTHING._replace(rgb=output.rgb)
+            colours = NOTHING._replace(rgb=output.rgb)
             self._draw(views, movers, colours, picture, 2, until)
-            output = output._replace(rgb=_NOTHING.rgb)
+            output = output._replace(rgb=NOTHING.rgb)
         if any(len(array) for array in output):
             self._draw(views, movers, output, picture, 1, until)
         if picture.class_id is not None:
@@ -125,25 +134,25 @@ class Renderer:
     ) -> None:
         """Draw with `side` x `side` samples per pixel."""
         height, width = picture_size(picture)
-        threads = thread_count()
-        density = float(self._light.weather.air.density)
-        job = build_jobs(views, height, width, threads, density)
-        rows = int((job.band[:, 2] - job.band[:, 1]).max(initial=0))
-        workers = int(job.begun[0])
-        jobs = len(job.band)
-        output = output._replace(
-            subject=np.zeros((jobs if len(output.subject) else 0, 6), np.int32),
-            actor=np.zeros((jobs if len(output.actor) else 0, *output.actor.shape[1:]), np.int32),
-        )
+        falls, threads = views.instant is not None, thread_count()
+        size = Size(len(views.position), height, width, side, int(until), falls, threads)
+        # Taken away while it is in use, so that another thread that draws gets another one.
+        task = self._tasks.pop(size, None) or Held(new_task(size))
+        band = task.bundle.job.band
+        jobs, workers = len(band), min(threads, len(band))
+        set_views(task.bundle, views, float(self._light.weather.air.density), workers)
         wanted = len(output.subject) + len(output.actor) > 0
+        if wanted:
+            output = measured_alone(output, jobs)
+        rows = height if jobs == size.views else int((band[:, 2] - band[:, 1]).max(initial=0))
         scratch = self._scratch_for(workers, rows, width, side, movers.part.shape[1], wanted)
         # Mostly the same arrays as in the last call.
         held = self._last[0].again(movers), self._last[1].again(output)
         self._last = held
-        task = Held(Task(side, width, height, int(until), job))
         draw_views(workers, *self._held, scratch, *held, task)
         if wanted:
-            write_measured(job, output, picture)
+            write_measured(task.bundle.job, output, picture)
+        _keep(self._tasks, size, task)
 
     def _scratch_for(
         self, workers: int, rows: int, width: int, side: int, slots: int, measured: bool
@@ -151,8 +160,6 @@ class Renderer:
         """Return working memory, the same as last time for the same size."""
         key = (workers, rows, width, side, slots, measured)
         if key not in self._scratch:
-            if len(self._scratch) >= 4:  # sizes seldom change; forget the oldest
-                del self._scratch[next(iter(self._scratch))]
             plane = (workers, rows * side, (width + -width % WIDTH) * side)
             chunks, fixtures = len(self._geometry.chunk_range), len(self._geometry.fixture_object)
             # What is measured alone takes rows after those of the whole picture.
@@ -169,7 +176,7 @@ class Renderer:
                 polygon=np.zeros((workers, 15, CLUSTER)),
                 span=np.empty((workers, SPAN_ROWS, WIDTH), np.int32),
             )
-            self._scratch[key] = Held(scratch)
+            _keep(self._scratch, key, Held(scratch))
         return self._scratch[key]
 
 
@@ -197,6 +204,12 @@ def build_renderer(
     return Renderer(geometry, light, class_table(scene), ready)
 
 
+Key = TypeVar("Key", bound=Hashable)
+Value = TypeVar("Value")
+
+_KEPT = 4
+"""Sizes of pictures for which arrays are kept."""
+
 _influence = interpreted(influence)
 
 _NO_MOVERS = Movers(
@@ -206,35 +219,9 @@ _NO_MOVERS = Movers(
     object_id=np.empty((0, 0), np.int32),
 )
 
-_NOTHING = Output(
-    rgb=np.empty((0, 0, 0, 3), np.uint8),
-    depth=np.empty((0, 0, 0), np.float32),
-    object_id=np.empty((0, 0, 0), np.int32),
-    subject=np.empty((0, 6), np.int32),
-    actor=np.empty((0, 0, 6), np.int32),
-)
 
-
-def _objects(picture: Picture) -> NDArray[np.int32]:
-    """Return the array for object ids; classes need them even if they are not wanted."""
-    if picture.object_id is not None:
-        return picture.object_id
-    if picture.class_id is not None:
-        return np.empty(picture.class_id.shape, np.int32)
-    return _NOTHING.object_id
-
-
-def _output(picture: Picture) -> Output:
-    """Return the wanted arrays; those of measurements are only flags, jobs get their own.
-
-    If all actors are measured, the subjects are among them.
-    """
-    actors = picture.actor_box if picture.actor_pixels is None else picture.actor_pixels
-    subject = picture.subject_box is not None or picture.subject_pixels is not None
-    return Output(
-        rgb=_NOTHING.rgb if picture.rgb is None else picture.rgb,
-        depth=_NOTHING.depth if picture.depth is None else picture.depth,
-        object_id=_objects(picture),
-        subject=np.zeros((1 if subject and actors is None else 0, 6), np.int32),
-        actor=_NOTHING.actor if actors is None else np.zeros((1, actors.shape[1], 6), np.int32),
-    )
+def _keep(kept: dict[Key, Value], key: Key, value: Value) -> None:
+    """Keep something for the next call of the same size; sizes seldom change."""
+    if len(kept) >= _KEPT:
+        kept.pop(next(iter(kept), key), None)  # the oldest, unless another thread did so
+    kept[key] = value

@@ -15,13 +15,17 @@ from eyas.sim.near_list import Near, Plan, Query, list_near
 from eyas.state.draw import DrawList
 from eyas.state.motion import ActorState, Motion
 from eyas.state.snapshot import CameraState
-from eyas.targets.kind import Looks
+from eyas.targets.kind import Group, Looks
 from eyas.targets.rig import Rigs
 
 __all__ = ["NearMovers"]
 
 _SLACK = 0.05
 """Distance outside a view at which actors are still posed: more than roundings [m]."""
+
+
+_CHOICES = 100
+"""Groups of actors that are kept: those of one picture are mostly those of the next."""
 
 
 class NearMovers:
@@ -92,12 +96,20 @@ class NearMovers:
     def _pose(self) -> None:
         """Let the rigs pose the actors, those of each kind at once."""
         near, begin = self._near, 0
-        for cast, end in zip(self._rigs.casts, near.end.tolist(), strict=True):
+        for k, end in enumerate(near.end.tolist()):
             if begin < end:
-                actor, slot = np.arange(begin, end), near.slot[begin:end]
-                chosen = cast.group._replace(actor=actor, slot=slot)
-                cast.rig.pose(chosen, near.state, near.looks, self._flat)
+                chosen = self._chosen.get((k, begin, end)) or self._choose(k, begin, end)
+                self._rigs.casts[k].rig.pose(chosen, near.state, near.looks, self._flat)
             begin = end
+
+    def _choose(self, k: int, begin: int, end: int) -> Group:
+        """Return entries of the list as the actors of kind `k`."""
+        if len(self._chosen) >= _CHOICES:
+            self._chosen.clear()
+        group = self._rigs.casts[k].group
+        chosen = group._replace(actor=np.arange(begin, end), slot=self._near.slot[begin:end])
+        self._chosen[k, begin, end] = chosen
+        return chosen
 
     def _grow(self, wanted: "_Size") -> None:
         """Make buffers that suffice, a quarter larger than needed; keep them if they do."""
@@ -120,6 +132,7 @@ class NearMovers:
         )
         self._pairs = np.arange(1, size.worlds + 1)
         self._first: dict[int, DrawList] = {}
+        self._chosen: dict[tuple[int, int, int], Group] = {}
         self._movers = self._rigs.short_list(size.worlds, size.slots)
         self._flat = self._movers.flat()
         self._near = Near(

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from eyas.core.clock import PHYSICS_STEP
 from eyas.overlay.marks import Marks
 from eyas.overlay.paint import paint_overlays, with_depth
-from eyas.render.jobs import picture_size
+from eyas.render.outputs import picture_size
 from eyas.sensors.camera import Camera
 from eyas.sim.assets import Assets
 from eyas.sim.bodies import Bodies

@@ -146,7 +146,7 @@ class Worlds:
 
     def object_ids(self, actors: NDArray[np.int32]) -> NDArray[np.int32]:
         """Return the object ids of actors."""
-        return (actors + ACTOR_OBJECT).astype(np.int32)
+        return np.add(actors, ACTOR_OBJECT, dtype=np.int32)
 
     def actors_around(self, tracker: int, tick: int) -> tuple[ActorState, NDArray[np.int32]]:
         """Return all actors around a tracker at a time, and their models, see `Looks`.

@@ -1,12 +1,13 @@
 """The rig of vehicles: a body, wheels that roll and steer, and a trailer that swings."""
 
+import operator
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.parallel import Held
+from eyas.core.parallel import BoundKernel, Held
 from eyas.state.draw import DrawList
 from eyas.state.mesh import Mesh
 from eyas.state.motion import ActorState
@@ -37,7 +38,7 @@ class VehicleRig:
         layouts = [_layout(model, self._parts) for model in models]
         self.slots = max(len(layout) for layout in layouts)
         self._table = Held(_tabulate(models, layouts, self.slots))
-        self._last: _Arrays | None = None
+        self._last: _Call | None = None
 
     @property
     def part_count(self) -> int:
@@ -57,15 +58,14 @@ class VehicleRig:
 
     def pose(self, group: Group, actors: ActorState, looks: Looks, out: DrawList) -> None:
         """Write all slots of the kind's actors, see `Rig`."""
-        slots, last = Slots(out.part, out.pose, out.colour), self._last
+        given, last = (group, actors, looks, Slots(out.part, out.pose, out.colour)), self._last
         if last is None:
-            arrays = _Arrays(Held(actors), Held(looks), Held(slots))
+            held = tuple(map(Held, given))
         else:
-            arrays = _Arrays(
-                last.actors.again(actors), last.looks.again(looks), last.slots.again(slots)
-            )
-        self._last = arrays
-        pose_vehicles.bound(self._table, Held(group), *arrays)()
+            held = tuple(map(Held.again, last.held, given))
+        if last is None or not all(map(operator.is_, held, last.held)):
+            last = self._last = _Call(held, pose_vehicles.bound(self._table, *held))
+        last.kernel()
 
 
 def trailers_of(models: Sequence[VehicleModel]) -> tuple[int, ...]:
@@ -76,12 +76,11 @@ def trailers_of(models: Sequence[VehicleModel]) -> tuple[int, ...]:
     return tuple(k for k, part in enumerate(parts) if isinstance(part, _Trailer))
 
 
-class _Arrays(NamedTuple):
-    """The arrays of a call, mostly the same as in the last one."""
+class _Call(NamedTuple):
+    """A call; that of the next picture is mostly the same."""
 
-    actors: Held[ActorState]
-    looks: Held[Looks]
-    slots: Held[Slots]
+    held: tuple[Held[Any], ...]
+    kernel: BoundKernel
 
 
 class _Wheels(NamedTuple):
