@@ -11,7 +11,7 @@ from eyas.sim.assets import Assets
 from eyas.sim.still import StillWorld
 from eyas.state.draw import Picture, Views
 from eyas.state.motion import ActorState
-from eyas.state.scene import ACTOR_OBJECT
+from eyas.state.scene import ACTOR_OBJECT, ObjectClass
 
 __all__ = ["StillScene", "Viewpoint"]
 
@@ -82,6 +82,14 @@ class StillScene:
         assert picture.subject_pixels is not None
         seen, covered = picture.subject_pixels[0]
         return picture.depth[0], seen / covered if covered else 0.0
+
+    def shares(self, view: Viewpoint) -> NDArray[np.float64]:
+        """Return the share of each `ObjectClass` in a small picture."""
+        picture = Picture.create(1, 48, 64, rgb=False, class_id=True)
+        self._draw(view, picture, 1)
+        assert picture.class_id is not None  # set above
+        count = np.bincount(picture.class_id.ravel(), minlength=len(ObjectClass))
+        return count / picture.class_id.size
 
     def _draw(self, view: Viewpoint, picture: Picture, samples: int) -> None:
         subject = ACTOR_OBJECT + view.actor if view.actor >= 0 else -1
