@@ -1,60 +1,88 @@
 """Views from afar: into the map, over it, and of all of it."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.modes.gallery.solids import is_inside
 from eyas.modes.gallery.still import StillScene, Viewpoint
-from eyas.modes.gallery.stops import CAMERA
+from eyas.modes.gallery.stops import CAMERA, Cars
 from eyas.state.scene import Scene
 
-__all__ = ["horizon", "overview", "streets"]
+__all__ = ["along", "horizon", "overview", "streets"]
 
 _WIDE = 1.2
 """Field of view of the horizon view; the drone camera's would end at the horizon [rad]."""
 _BROAD = 700.0
 """Distance from the middle to the farthest street of a wide map [m]."""
-_BEHIND = 70.0
-"""From a drone to the overview behind it [m]."""
+_BEHIND, _OVER = 90.0, 120
+"""From a car to the overview behind it [m], and the number of cars that are tried."""
+_RING, _LIT = 24, 9
+"""Number of views around the streets, and of those on the lit side."""
+_ALONG = (26.0, 21.0, 0.36)
+"""From a drone back to the view along its road [m], height [m] and pitch [rad]."""
 
 Points = NDArray[np.float64]
 
 
-def overview(still: StillScene, side: float, above: Viewpoint) -> Viewpoint:
+def overview(still: StillScene, side: float, cars: Cars) -> Viewpoint:
     """Return a view of a part of the map from 60 m.
 
-    It is the first one on a ring around the streets that no wall blocks, else the farthest; on
-    wide maps, of which that would show little, it is one along a road.
+    It is one on a ring around the streets, behind which the sun stands, or over a road of wide
+    maps, whose rings show little: the one without a wall in front in which most stands.
 
     Args:
         still: The world.
-        side: Where to begin on the ring [rad].
-        above: View of the road.
+        side: Direction to the sun [rad].
+        cars: Cars on the roads.
     """
-    height, pitch = 60.0, 0.25
     centre, reach = streets(still.scene)
     if reach > _BROAD:
-        back = _BEHIND * np.array([math.cos(above.yaw), math.sin(above.yaw)])
-        return _from(np.array(above.position[:2]) - back, height, above.yaw, 2 * pitch)
-    best, farthest = None, -1.0
-    for turn in range(24):
-        # Start at the lit side and move away step by step, left and right.
-        angle = side + (turn + 1) // 2 * (-1) ** turn * math.tau / 24
+        some = np.linspace(0, len(cars.time) - 1, _OVER).astype(int)
+        views = [_over(cars.position[car], float(cars.yaw[car])) for car in some.tolist()]
+        return max(views, key=still.sights)
+    ring = []
+    for turn in range(_RING):
+        # From the lit side away, left and right.
+        angle = side + (turn + 1) // 2 * (-1) ** turn * math.tau / _RING
         out = reach * np.array([math.cos(angle), math.sin(angle)])
-        view = _from(centre + out, height, angle + math.pi, pitch)
-        depth, _ = still.probe(view)
-        median = float(np.median(depth))
-        if not is_inside(still.scene.colliders, view.position):
-            if median > 100.0 and float(np.quantile(depth, 0.1)) > 70.0:
-                return view
-            if median > farthest:
-                best, farthest = view, median
-    return best or view
+        ring.append(_from(centre + out, angle + math.pi, 0.25))
+    free = [view for view in ring if not is_inside(still.scene.colliders, view.position)] or ring
+    depths = {view: still.probe(view)[0] for view in free}
+    far = [v for v in free if np.median(depths[v]) > 100.0 and np.quantile(depths[v], 0.1) > 70.0]
+    if not far:
+        return max(free, key=lambda view: float(np.median(depths[view])))
+    lit = [view for view in far if view in ring[:_LIT]]
+    return max(lit, key=still.sights) if lit else far[0]
 
 
-def _from(place: Points, height: float, yaw: float, pitch: float) -> Viewpoint:
+def along(still: StillScene, drone: Viewpoint) -> list[Viewpoint]:
+    """Return a view along the road from behind a drone, or none if something is in the way."""
+    back, height, pitch = _ALONG
+    onwards = np.array([math.cos(drone.yaw), math.sin(drone.yaw)])
+    view = replace(
+        drone,
+        name=f"{drone.name.split('-')[0]}-along",
+        title="The same place from farther away",
+        caption=f"From {height:g} m, {pitch:g} rad down, at {drone.time:g} s of the traffic.",
+        position=_at(np.array(drone.position[:2]) - back * onwards, height),
+        pitch=pitch,
+        actor=-1,
+    )
+    depth, _ = still.probe(view)
+    blocked = is_inside(still.scene.colliders, view.position) or depth.min() < 8.0
+    return [] if blocked or np.median(depth) < 25.0 else [view]
+
+
+def _over(place: Points, yaw: float) -> Viewpoint:
+    back = _BEHIND * np.array([math.cos(yaw), math.sin(yaw)])
+    return _from(place - back, yaw, 0.5)
+
+
+def _from(place: Points, yaw: float, pitch: float) -> Viewpoint:
+    height = 60.0
     return Viewpoint(
         name="overview",
         title=f"Overview, {height:g} m",

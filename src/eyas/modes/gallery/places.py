@@ -21,7 +21,6 @@ _SPAN = (4.0, 14.0)
 """Heights of the underside of a bridge [m]."""
 _SOON = (4.0, 9.0)
 """No bridge is so far ahead, and one is so far [m]."""
-_SIGHTS = (ObjectClass.TREE, ObjectClass.WATER, ObjectClass.BUILDING, ObjectClass.STRUCTURE)
 _RATED = 240
 """Number of cars of which a small picture is drawn."""
 _PLAIN = 0.1
@@ -96,14 +95,13 @@ def before_spans(scene: Scene, cars: Cars) -> Points:
 def beside_most(still: StillScene, cars: Cars) -> Points:
     """Return how much stands around each of some cars, as the drone sees it; shape (K,).
 
-    Plants, water, buildings and other structures count up to an eighth of the picture each.
+    See `StillScene.sights`.
     """
     rated = np.zeros(len(cars.time))
     pose = POSES[-1]
     some = np.unique(np.linspace(0, len(rated) - 1, min(_RATED, len(rated))).astype(int))
     for car in some.tolist():
-        shares = still.shares(drone_view(cars, car, "", "", pose))
-        rated[car] = np.minimum(shares[list(_SIGHTS)], 0.125).sum()
+        rated[car] = still.sights(drone_view(cars, car, "", "", pose))
     return np.where(rated > _PLAIN, rated, 0.0)
 
 

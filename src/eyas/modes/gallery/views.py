@@ -3,7 +3,7 @@
 import math
 from dataclasses import replace
 
-from eyas.modes.gallery.distant import horizon, overview, streets
+from eyas.modes.gallery.distant import along, horizon, overview, streets
 from eyas.modes.gallery.places import STOPS, beside_most, on_open_roads
 from eyas.modes.gallery.still import StillScene, Viewpoint
 from eyas.modes.gallery.stops import POSES, all_cars, stop
@@ -27,13 +27,15 @@ def choose_viewpoints(still: StillScene, light: Lighting) -> list[Viewpoint]:
     chosen: list[Viewpoint] = []
     for name, where, score in STOPS:
         chosen += stop(still, cars, name, where, score(still.scene, cars))
-    sights = list(stop(still, cars, "sights", "where much stands around", beside_most(still, cars)))
-    chosen += sights
+        if name == "span" and chosen and chosen[-1].name == "span-ahead":
+            chosen += along(still, chosen[-1])
     if len(chosen) < 2 * len(POSES):
         chosen += stop(still, cars, "road", "on an open road", on_open_roads(still.scene, cars))
+    sights = stop(still, cars, "sights", "where much stands around", beside_most(still, cars))
+    chosen += [view for view in sights if view.position not in {one.position for one in chosen}]
     side = math.atan2(light.sun_direction[1], light.sun_direction[0]) + math.radians(15.0)
     far = horizon(still.scene, side)
-    chosen.append(overview(still, side, (sights or chosen)[-1]))
+    chosen.append(overview(still, side, cars))
     away = math.dist(far.position[:2], streets(still.scene)[0])
     if math.exp(-((light.fog_density * away) ** light.fog_power)) > _VEILED:
         chosen.append(far)
