@@ -13,14 +13,10 @@ from eyas.cli.main import main
 from eyas.core.errors import OutputError, UnknownNameError
 from eyas.modes.gallery import run as gallery
 from eyas.modes.gallery.page import Shown, page
+from eyas.modes.gallery.places import before_spans, beside_most, on_crossings, on_open_roads
 from eyas.modes.gallery.still import StillScene
-from eyas.modes.gallery.views import (
-    _all_cars,
-    _on_crossings,
-    _on_open_roads,
-    _stop,
-    choose_viewpoints,
-)
+from eyas.modes.gallery.stops import all_cars, stop
+from eyas.modes.gallery.views import choose_viewpoints
 from eyas.sim.assets import load_assets
 from eyas.traffic.config import TrafficConfig
 from eyas.world.config import WorldConfig
@@ -28,7 +24,7 @@ from eyas.world.maps import MAPS
 from eyas.world.maps.citystreet import CITYSTREET
 from eyas.world.weather import DAY
 
-SUN = CITYSTREET.light("day").sun_direction
+LIGHT = CITYSTREET.light("day")
 
 
 class Pictures(HTMLParser):
@@ -52,7 +48,7 @@ def still():
 
 @pytest.fixture(scope="module")
 def views(still):
-    return choose_viewpoints(still, SUN)
+    return choose_viewpoints(still, LIGHT)
 
 
 @pytest.fixture(scope="module")
@@ -108,7 +104,7 @@ def test_the_observation_is_84_pixels_wide_with_each_pixel_four_times_as_large(d
 def test_drone_views_have_their_car_in_the_middle_and_unhidden(still, views):
     about = [view for view in views if view.actor >= 0 and view.enlarged == 1]
     assert {(view.position[2], view.pitch) for view in about} == {(22.0, 1.37), (15.0, 0.6)}
-    assert {view.name.split("-")[0] for view in about} == {"trees", "crossing", "towers"}
+    assert {view.name.split("-")[0] for view in about} == {"trees", "crossing", "towers", "sights"}
     for view in about:
         car = still.actors(view.time).position[0, view.actor]
         apart = np.linalg.norm(car[:2] - view.position[:2])
@@ -117,10 +113,36 @@ def test_drone_views_have_their_car_in_the_middle_and_unhidden(still, views):
         assert still.probe(view)[1] > 0.7
 
 
+def test_the_next_thing_over_the_road_is_a_few_metres_ahead():
+    still = StillScene(load_assets(WorldConfig(map="village"), TrafficConfig(), 1))
+    cars = all_cars(still)
+    soon = np.flatnonzero(before_spans(still.scene, cars))
+    assert 0 < len(soon) < 0.1 * len(cars.time)
+    views = {view.name: view for view in choose_viewpoints(still, LIGHT)}
+    assert still.sights(views["span-ahead"]) > 0.05
+    # From farther back the whole mouth of the tunnel is seen.
+    assert still.sights(views["span-along"]) >= still.sights(views["span-ahead"])
+
+
+def test_most_stands_where_pictures_show_most(still, views):
+    cars = all_cars(still)
+    rated = beside_most(still, cars)
+    assert 0 < np.count_nonzero(rated) < len(rated)
+    view = next(view for view in views if view.name == "sights-ahead")
+    assert still.sights(view) > 0.8 * rated.max()
+
+
+def test_fog_that_would_hide_all_of_a_distant_view_leaves_it_out(still, views):
+    thick = replace(LIGHT, fog_density=0.02, fog_power=1)
+    names = [view.name for view in choose_viewpoints(still, thick)]
+    assert names == [view.name for view in views if view.name != "horizon"]
+
+
 @pytest.mark.parametrize("turn", range(0, 360, 45))
 def test_no_wall_fills_the_overview_wherever_the_sun_stands(still, turn):
     sun = (np.cos(np.radians(turn)), np.sin(np.radians(turn)), 1.0)
-    overview = next(view for view in choose_viewpoints(still, sun) if view.name == "overview")
+    light = replace(LIGHT, sun_direction=sun)
+    overview = next(view for view in choose_viewpoints(still, light) if view.name == "overview")
     depth = still.probe(overview)[0]
     assert overview.position[2] == 60.0
     assert np.median(depth) > 60.0
@@ -128,19 +150,19 @@ def test_no_wall_fills_the_overview_wherever_the_sun_stands(still, turn):
 
 
 def test_cars_that_a_drone_in_a_tree_would_look_at_are_passed_over(still):
-    cars = _all_cars(still)
+    cars = all_cars(still)
     back = 15.0 / np.tan(0.6) * np.stack([np.cos(cars.yaw), np.sin(cars.yaw)], axis=1)
     crowns = still.scene.fixtures.pose[:, :2, 3]
     scale = np.linalg.norm(still.scene.fixtures.pose[:, 0, :3], axis=1)  # a tree's height
     crowns = crowns[scale > 17.0]
     apart = np.linalg.norm((cars.position - back)[:, None] - crowns[None], axis=2).min(axis=1)
     assert (apart < 6.0).sum() > 3
-    assert not list(_stop(still, cars, "trees", "in a tree", (apart < 6.0).astype(float)))
+    assert not list(stop(still, cars, "trees", "in a tree", (apart < 6.0).astype(float)))
 
 
 def test_an_open_road_is_far_from_junctions(still):
-    cars = _all_cars(still)
-    far, crossing = _on_open_roads(still.scene, cars), _on_crossings(still.scene, cars)
+    cars = all_cars(still)
+    far, crossing = on_open_roads(still.scene, cars), on_crossings(still.scene, cars)
     assert 0.0 == far.min() < 50.0 < far.max() <= 100.0
     assert (far[crossing > 0] == 0.0).all()
 

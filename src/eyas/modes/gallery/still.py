@@ -11,9 +11,11 @@ from eyas.sim.assets import Assets
 from eyas.sim.still import StillWorld
 from eyas.state.draw import Picture, Views
 from eyas.state.motion import ActorState
-from eyas.state.scene import ACTOR_OBJECT
+from eyas.state.scene import ACTOR_OBJECT, ObjectClass
 
 __all__ = ["StillScene", "Viewpoint"]
+
+_SIGHTS = (ObjectClass.TREE, ObjectClass.WATER, ObjectClass.BUILDING, ObjectClass.STRUCTURE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,6 +84,15 @@ class StillScene:
         assert picture.subject_pixels is not None
         seen, covered = picture.subject_pixels[0]
         return picture.depth[0], seen / covered if covered else 0.0
+
+    def sights(self, view: Viewpoint) -> float:
+        """Return how much stands in a view: shares of what is no ground, an eighth each at most."""
+        picture = Picture.create(1, 48, 64, rgb=False, class_id=True)
+        self._draw(view, picture, 1)
+        assert picture.class_id is not None  # set above
+        count = np.bincount(picture.class_id.ravel(), minlength=len(ObjectClass))
+        shares = count[list(_SIGHTS)] / picture.class_id.size
+        return float(np.minimum(shares, 0.125).sum())
 
     def _draw(self, view: Viewpoint, picture: Picture, samples: int) -> None:
         subject = ACTOR_OBJECT + view.actor if view.actor >= 0 else -1

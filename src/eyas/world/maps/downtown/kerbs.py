@@ -53,12 +53,15 @@ class Kerbs:
     """Trunks of the slim trees [m], shape (K, 2)."""
 
 
-def make_kerbs(network: RoadNetwork, grid: Grid, rng: np.random.Generator) -> Kerbs:
+def make_kerbs(
+    network: RoadNetwork, grid: Grid, railway: shapely.Geometry, rng: np.random.Generator
+) -> Kerbs:
     """Return what stands along the kerbs.
 
     Args:
         network: The roads.
         grid: Their grid.
+        railway: The ground of the elevated railway, where no tree stands [m].
         rng: Random numbers of the kerbs.
     """
     every = streets(network)
@@ -77,12 +80,13 @@ def make_kerbs(network: RoadNetwork, grid: Grid, rng: np.random.Generator) -> Ke
                     at = float(np.clip(k * _BAY_LENGTH, 0.05, row.length - 0.05))
                     lines.append(_beside(row, 0.0, _BAY_DEPTH - 0.1, at - 0.05, at + 0.05))
                 cars += _parked(row, count, rng)
+    slim_trees = _row_of_trees(slim, _SLIM_SPACING, _SLIM_BEYOND, 13.0)
     return Kerbs(
         bays=snapped(shapely.union_all(bays)),
         lines=lines,
         cars=np.array(cars).reshape(-1, 3),
         great_trees=_row_of_trees(great, _GREAT_SPACING, _GREAT_BEYOND, 4.0)[:_GREAT],
-        slim_trees=_row_of_trees(slim, _SLIM_SPACING, _SLIM_BEYOND, 13.0)[:_SLIM],
+        slim_trees=slim_trees[shapely.distance(railway, shapely.points(slim_trees)) > 1.0][:_SLIM],
     )
 
 

@@ -56,7 +56,8 @@ def _house(lot: Lot, rng: np.random.Generator) -> shapely.Polygon:
     width, depth = east - west, north - south
     if lot.rear and width > 10.0 and depth > 15.0 and rng.random() < 0.55:
         deep, wide = depth * rng.uniform(0.22, 0.45), width * rng.uniform(0.28, 0.5)
-        at = float(rng.choice([west - 1.0, east - wide, west + (width - wide) / 2]))
+        # Past a side rather than along it: rounding would leave a sliver there.
+        at = float(rng.choice([west - 1.0, east - wide + 1.0, west + (width - wide) / 2]))
         low = north - deep if lot.rear > 0 else south - 1.0
         high = north + 1.0 if lot.rear > 0 else south + deep
         shape = largest(shapely.difference(shape, shapely.box(at, low, at + wide, high)))

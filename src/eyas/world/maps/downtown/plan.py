@@ -21,6 +21,8 @@ from eyas.world.maps.downtown.blocks import (
 from eyas.world.maps.downtown.kerbs import Kerbs, make_kerbs
 from eyas.world.maps.downtown.park import Park, make_park
 from eyas.world.maps.downtown.roads import Grid, grid
+from eyas.world.maps.downtown.skyways import Skyway, make_skyways
+from eyas.world.maps.downtown.viaduct import Viaduct, cut, make_viaduct
 from eyas.world.roads.areas import blocks, corridors, road_area
 
 __all__ = ["EXTENT", "FLOOR", "Plan", "make_plan"]
@@ -33,6 +35,9 @@ EXTENT = shapely.box(*(-0.5 * np.array(FLOOR)), *(0.5 * np.array(FLOOR)))
 
 _OUTER_WALK = 6.5
 """Width of the pavement on the far side of the outer streets [m]."""
+
+_CROWN = 5.0
+"""No skyway comes nearer to a trunk [m]."""
 
 Points = NDArray[np.float64]
 
@@ -53,6 +58,10 @@ class Plan:
     """Raised pavements beside the streets, without parking bays [m]."""
     buildings: list[list[Building]]
     """Parts of each building, the lowest first."""
+    viaduct: Viaduct
+    """The elevated railway."""
+    skyways: list[Skyway]
+    """Bridges between buildings."""
 
     @property
     def footprints(self) -> list[Points]:
@@ -73,9 +82,10 @@ def make_plan(network: RoadNetwork, seed: int) -> Plan:
     cells = inner_blocks(plan, closed)
     rng = stream(seed, "downtown lots")
     lots = [lot for block in cells.values() for lot in block_lots(block, rng)]
-    lots += outer_lots(plan, rng)
+    lots = cut(lots + outer_lots(plan, rng), plan)
+    viaduct = make_viaduct(network, plan)
     park = make_park(plan, roads, EXTENT, stream(seed, "downtown park"))
-    kerbs = make_kerbs(network, plan, stream(seed, "downtown kerbs"))
+    kerbs = make_kerbs(network, plan, viaduct.ground, stream(seed, "downtown kerbs"))
     inside, outside = blocks(roads, EXTENT)
     courts = [
         turned(
@@ -91,11 +101,17 @@ def make_plan(network: RoadNetwork, seed: int) -> Plan:
     )
     verge = shapely.difference(verge, park.ground)
     pavement = shapely.union_all([rings, verge, park.walk])
+    buildings = built(plan, lots, seed)
+    trunks = shapely.points(np.concatenate([kerbs.great_trees, kerbs.slim_trees]))
+    taken = shapely.union_all([viaduct.ground, *shapely.buffer(trunks, _CROWN)])
+    rng = stream(seed, "downtown skyways")
     return Plan(
         grid=plan,
         roads=roads,
         park=park,
         kerbs=kerbs,
         pavement=shapely.difference(pavement, kerbs.bays),
-        buildings=built(plan, lots, seed),
+        buildings=buildings,
+        viaduct=viaduct,
+        skyways=make_skyways(plan, lots, buildings, roads, taken, rng),
     )

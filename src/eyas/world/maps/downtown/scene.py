@@ -20,9 +20,11 @@ from eyas.world.build.scene_builder import Levels, SceneBuilder
 from eyas.world.buildings import placing, rooftops
 from eyas.world.buildings.facades import chance_of, mesh_of
 from eyas.world.maps.downtown.backdrop import add_backdrop
+from eyas.world.maps.downtown.bridges import add_skyways
 from eyas.world.maps.downtown.fronts import add_fronts
 from eyas.world.maps.downtown.kerbs import crossing_lamps
 from eyas.world.maps.downtown.plan import EXTENT, FLOOR, Plan, make_plan
+from eyas.world.maps.downtown.railway import add_railway
 from eyas.world.maps.downtown.roads import NAME
 from eyas.world.maps.downtown.rooftops import add_water_tank
 from eyas.world.maps.downtown.subway import add_entrances
@@ -39,8 +41,9 @@ __all__ = ["build_scene"]
 
 _GREAT_HEIGHTS = (13.6, 15.4)
 _SLIM_HEIGHTS = (11.5, 14.0)
-_SLIMMER = 0.56
-"""Width of the slim trees' crowns as a share of the great ones' of the same height."""
+_BROADER, _SLIMMER = 1.15, 0.64
+"""Factors on the widths of the great and slim trees' crowns; they are usually about as wide as
+high."""
 _PARK_HEIGHTS = (3.6, 8.8)
 _TAXI = (0.93, 0.70, 0.08)
 _TAXIS = 0.2
@@ -63,6 +66,8 @@ def build_scene(network: RoadNetwork, seed: int) -> Scene:
     builder = SceneBuilder(NAME, seed, FLOOR, Terrain.flat(FLOOR_HEIGHT))
     # The largest occluders come first: they are drawn first, so less is drawn twice.
     _add_buildings(builder, plan)
+    add_railway(builder, plan.viaduct)
+    add_skyways(builder, plan.skyways)
     _add_surroundings(builder, plan, seed)
     add_surfaces(builder, plan, network, seed)
     _add_trees(builder, plan, seed)
@@ -96,7 +101,7 @@ def _add_buildings(builder: SceneBuilder, plan: Plan) -> None:
 def _add_surroundings(builder: SceneBuilder, plan: Plan, seed: int) -> None:
     """Add the city beyond the outer streets."""
     fronts = [shapely.Polygon(corners) for corners in plan.footprints]
-    city = shapely.union_all([plan.roads, plan.park.ground, *fronts])
+    city = shapely.union_all([plan.roads, plan.park.ground, plan.viaduct.ground, *fronts])
     add_backdrop(builder, plan.grid, EXTENT, city, stream(seed, "downtown backdrop"))
 
 
@@ -104,11 +109,11 @@ def _add_trees(builder: SceneBuilder, plan: Plan, seed: int) -> None:
     """Plant the trees along two streets and in the park."""
     shapes, rng = stream(seed, "downtown tree shapes"), stream(seed, "downtown trees")
     great = [
-        builder.prototype(f"great tree {k}", partial(trees.street_tree_levels, shapes, k), trees=1)
+        builder.prototype(f"great tree {k}", partial(_tree, shapes, k, _BROADER), trees=1)
         for k in range(3)
     ]
     slim = [
-        builder.prototype(f"slim tree {k}", partial(_slim_tree, shapes, k), trees=1)
+        builder.prototype(f"slim tree {k}", partial(_tree, shapes, k, _SLIMMER), trees=1)
         for k in range(2)
     ]
     for trunks, kinds, heights, ground in (
@@ -125,13 +130,13 @@ def _add_trees(builder: SceneBuilder, plan: Plan, seed: int) -> None:
         builder.add_copy(ObjectClass.TREE, kind, (x, y, FLOOR_HEIGHT), turn, size)
 
 
-def _slim_tree(rng: np.random.Generator, variant: int) -> Levels:
-    """Return a tree of height 1 with a narrow crown, the finest level of detail first."""
-    return tuple(_narrowed(level) for level in trees.street_tree_levels(rng, variant))
+def _tree(rng: np.random.Generator, variant: int, width: float) -> Levels:
+    """Return a tree of height 1 with a crown of another width, the finest level first."""
+    return tuple(_widened(level, width) for level in trees.street_tree_levels(rng, variant))
 
 
-def _narrowed(mesh: Mesh) -> Mesh:
-    factor = np.array([_SLIMMER, _SLIMMER, 1.0])
+def _widened(mesh: Mesh, width: float) -> Mesh:
+    factor = np.array([width, width, 1.0])
     normals = mesh.normals / factor
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     return replace(
@@ -146,7 +151,7 @@ def _furnish_streets(builder: SceneBuilder, plan: Plan, network: RoadNetwork, se
     add_signals(builder, network)
     lights, feet = _add_lamps(builder, network)
     poles = [place for place, _ in signal_places(network)]
-    trunks = [*plan.kerbs.great_trees, *plan.kerbs.slim_trees]
+    trunks = [*plan.kerbs.great_trees, *plan.kerbs.slim_trees, *plan.viaduct.feet]
     thin = shapely.buffer(shapely.points([*feet, *poles, *trunks]), 1.6)
     taken = shapely.union_all([plan.roads, plan.kerbs.bays, *thin])
     rng = stream(seed, "downtown furniture")
