@@ -127,3 +127,5 @@ class Kind:
     """Parts of its rig that are towed: they have shadows of their own, and no lamps."""
     keeps_colours: bool = False
     """Whether `traffic.colour` does not change its colours, as for the original's motorcycles."""
+    words: str = ""
+    """What any of it is in words, "a delivery robot"; empty: `eyas.targets.words` knows."""
