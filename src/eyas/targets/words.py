@@ -2,7 +2,7 @@
 
 Each has a few phrases, the shortest first: vehicles their colour and class, then colour and body,
 then also the make; people what they wear, then also the rest of their looks; robots what they are,
-then also their name. `words_among` chooses the shortest that nothing else in view shares.
+then also their name. `eyas.targets.telling` chooses one that nothing else in view shares.
 """
 
 import math
@@ -23,7 +23,6 @@ __all__ = [
     "phrases",
     "typical_motion",
     "with_article",
-    "words_among",
     "words_of",
 ]
 
@@ -101,24 +100,6 @@ def phrases(model: int, colour: Sequence[float]) -> tuple[str, ...]:
 def words_of(model: int, colour: Sequence[float]) -> str:
     """Return the shortest description of a target."""
     return phrases(model, colour)[0]
-
-
-def words_among(
-    model: int, colour: Sequence[float], others: Sequence[tuple[int, Sequence[float]]]
-) -> str:
-    """Return the shortest description of a target that none of some others shares.
-
-    Args:
-        model: Index into `MODELS`.
-        colour: Its colour, sRGB 0 to 1.
-        others: Model and colour of each of the others.
-
-    Returns:
-        The longest description if another target looks the same.
-    """
-    taken = {phrase for other in others for phrase in phrases(*other)}
-    own = phrases(model, colour)
-    return next((phrase for phrase in own if phrase not in taken), own[-1])
 
 
 def looks_in_words(model: int) -> tuple[str, ...]:
