@@ -10,7 +10,7 @@ from eyas.core.parallel import Held
 from eyas.state.draw import DrawList
 from eyas.state.mesh import Mesh
 from eyas.state.motion import ActorState
-from eyas.targets.kind import Group, Looks
+from eyas.targets.kind import MANY, Group, Looks
 from eyas.targets.vehicles.bodies import body_levels
 from eyas.targets.vehicles.heavy import trailer_levels
 from eyas.targets.vehicles.models import VEHICLE_AHEAD, Axle, VehicleModel
@@ -65,7 +65,10 @@ class VehicleRig:
                 last.actors.again(actors), last.looks.again(looks), last.slots.again(slots)
             )
         self._last = arrays
-        pose_vehicles.bound(self._table, Held(group), *arrays)()
+        if looks.model.shape[0] * len(group.actor) < MANY:
+            pose_vehicles.bound(self._table, Held(group), *arrays)()
+        else:
+            pose_vehicles(2, self._table, Held(group), *arrays)
 
 
 def trailers_of(models: Sequence[VehicleModel]) -> tuple[int, ...]:
