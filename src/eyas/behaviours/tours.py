@@ -102,8 +102,8 @@ def _next(streets: Streets, way: int, along: float, rng: np.random.Generator) ->
     around = streets.ways[way].length
     # One that is just here is reached after going all round.
     ahead = [(one.along - along - _LEAST) % around for one in streets.crossings[way]]
-    order = np.argsort(ahead).tolist()
-    taken = next((k for k in order if rng.uniform() > _PASSED_BY), order[0])
+    order: list[int] = np.argsort(ahead).tolist()
+    taken: int = next((k for k in order if rng.uniform() > _PASSED_BY), order[0])
     return streets.crossings[way][taken]
 
 

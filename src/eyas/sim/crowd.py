@@ -127,13 +127,14 @@ def crowd_motions(
     if crowd.custom is not None:
         motions.append(_custom(crowd, crowd.custom, scene, clock, seed, vehicles))
     for number, troop in enumerate(troops):
-        crosses = troop.behaviour is Behaviour.CROSSING and vehicles is not None
+        crosses = troop.behaviour is Behaviour.CROSSING
+        waits_for = (vehicles.table, vehicles.kind) if crosses and vehicles is not None else ()
         numbers = cached(
             Kind.MOTION,
             _MAKERS,
             (
                 *(*_plan_of(scene), *troop.lives, troop[:3], troop[4:], clock, seed, number),
-                *(driven, *((vehicles.table, vehicles.kind) if crosses else ())),
+                *(driven, *waits_for),
             ),
             lambda n=number, t=troop: made(n, t),  # type: ignore[misc]
             of=NDArray[np.float32],
