@@ -61,6 +61,32 @@ def test_a_texture_becomes_colours(tmp_path: Path):
     np.testing.assert_allclose(colours[2:], [[0, 0, 1]] * 2, atol=0.02)
 
 
+@pytest.mark.parametrize("ending", ["glb", "obj"])
+def test_large_triangles_show_their_texture(tmp_path: Path, ending: str):
+    """A square of two triangles with a red disc in the upper half of its picture."""
+    from PIL import Image, ImageDraw
+
+    picture = Image.new("RGB", (64, 64), (240, 240, 240))
+    ImageDraw.Draw(picture).ellipse((16, 4, 48, 36), fill=(200, 0, 0))
+    material = trimesh.visual.material.PBRMaterial(baseColorTexture=picture)
+    uv = np.array([[0, 0], [1, 0], [1, 1], [0, 1]], np.float64)
+    flat = np.column_stack([uv - 0.5, np.zeros(4)])
+    points = flat if ending == "obj" else flat[:, [1, 2, 0]]  # y is up in glTF, z ahead
+    shape = trimesh.Trimesh(
+        points,
+        [[0, 1, 2], [0, 2, 3]],
+        visual=trimesh.visual.TextureVisuals(uv=uv, material=material),
+        process=False,
+    )
+    shape.export(tmp_path / f"disc.{ending}")
+    read = loaded(CustomConfig(mesh=str(tmp_path / f"disc.{ending}")))
+    middle = read.points[read.corners].mean(axis=1)[:, :2]
+    away = np.hypot(middle[:, 0], middle[:, 1] - 12 / 64)
+    assert np.abs(read.colours[away < 0.2] - [0.78, 0.0, 0.0]).max() < 0.02
+    assert np.abs(read.colours[away > 0.32] - [0.94, 0.94, 0.94]).max() < 0.02
+    assert len(read.corners) <= 20_000
+
+
 def test_edges_stay_sharp_and_curves_are_smooth():
     box = trimesh.creation.box(SIZE)
     sharp = mesh_of(Triangles(box.vertices, box.faces, np.ones((12, 3))))

@@ -13,6 +13,7 @@ from eyas.sim.config import SimConfig
 from eyas.sim.worlds import together
 from eyas.state.draw import Picture
 from eyas.state.scene import ACTOR_OBJECT
+from eyas.targets.words import words_of
 
 MEASURED = ("box", "seen_pixels", "covered_pixels")
 
@@ -42,12 +43,15 @@ def test_another_s_target_is_described_like_a_target(simulation):
     assert [other.object_id for other in others] == [id_ for id_ in everyone if id_ != own]
     (same,) = (other for other in others if other.object_id == target.object_id)
     for field in fields(target):
-        if field.name not in MEASURED:
+        if field.name not in (*MEASURED, "words"):
             expected = getattr(target, field.name)
             told = getattr(same, field.name)
             if is_dataclass(expected):
                 told, expected = asdict(told), asdict(expected)
             np.testing.assert_equal(told, expected, err_msg=field.name)
+    (model,), (colour,) = simulation.looks_around(0)
+    actor = target.object_id - ACTOR_OBJECT
+    assert same.words == words_of(int(model[actor]), colour[actor])
     assert (same.box.tolist(), same.seen_pixels, same.covered_pixels) == ([1, 2, 3, 4], 3, 4)
 
 

@@ -2,7 +2,8 @@ import pytest
 
 from eyas.targets.catalogue import KINDS, MODELS, kind_of, model_index
 from eyas.targets.colour_names import COLOUR_NAMES, colour_name
-from eyas.targets.words import looks_in_words, motion_in_words, phrases, words_among, words_of
+from eyas.targets.telling import Seen, told_apart
+from eyas.targets.words import looks_in_words, motion_in_words, phrases, words_of
 
 RED, BLUE = (0.74, 0.10, 0.09), (0.13, 0.27, 0.62)
 
@@ -35,20 +36,55 @@ def test_phrases_of_a_model_differ(model):
     assert words_of(model, kind_of(model).colours[0]) == own[0]
 
 
+def seen(model: str, colour=RED, **changes: float) -> Seen:
+    return Seen(model_index(model), colour, 10.0, 0.0, 0.5, 25.0)._replace(**changes)
+
+
 def test_words_say_as_little_as_tells_a_target_from_the_others():
-    sedan, suv = model_index("LincolnMKZSimple"), model_index("BmwX5Simple")
-    tesla = model_index("TeslaModel3Simple")
-    assert words_among(sedan, RED, []) == "a red car"
-    assert words_among(sedan, RED, [(sedan, BLUE)]) == "a red car"
-    assert words_among(sedan, RED, [(suv, RED)]) == "a red sedan"
-    assert words_among(tesla, RED, [(suv, RED), (sedan, RED)]) == "a red sedan with a glass roof"
-    assert words_among(sedan, RED, [(sedan, RED)]) == "a red Lincoln MKZ sedan"
+    sedan, suv, tesla = seen("LincolnMKZSimple"), seen("BmwX5Simple"), seen("TeslaModel3Simple")
+    assert told_apart(sedan, []) == "a red car"
+    assert told_apart(sedan, [seen("LincolnMKZSimple", BLUE)]) == "a red car"
+    assert told_apart(sedan, [suv]) == "a red sedan"
+    assert told_apart(tesla, [suv, sedan]) == "a red sedan with a glass roof"
+    assert told_apart(sedan, [seen("LincolnMKZSimple", BLUE), suv]) == "a red sedan"
+
+
+def test_those_who_look_the_same_are_told_by_what_they_do():
+    moving, still = seen("BmwX5Simple"), seen("BmwX5Simple", speed=0.0)
+    left, right = (seen("BmwX5Simple", yaw_rate=rate) for rate in (0.4, -0.4))
+    assert told_apart(still, [moving, left]) == "a red car, standing still"
+    assert told_apart(moving, [still, left]) == "a red car, driving straight on"
+    assert told_apart(left, [right, still]) == "a red car, turning left"
+    assert told_apart(right, [left, moving]) == "a red car, turning right"
+    walker = seen("Pedestrian2", BLUE, speed=1.3, yaw_rate=1.0)
+    waiting = seen("Pedestrian2", BLUE, speed=0.0)
+    assert told_apart(walker, [waiting]) == "a pedestrian in a blue coat, walking"
+    robots = seen("BB-8", speed=1.0), seen("BB-8", speed=0.0)
+    assert told_apart(robots[0], robots[1:]).endswith("on a ball, moving")
+
+
+def test_those_who_do_the_same_are_told_by_their_places_with_as_few_rivals_as_may_be():
+    row = [seen("BmwX5Simple", column=k / 10, distance=20.0 + 3 * k) for k in range(1, 8)]
+    assert told_apart(row[0], row[1:2]) == "a red car, the left one of two"
+    assert told_apart(row[1], row[:1]) == "a red car, the right one of two"
+    between = ("second", "third", "fourth", "fifth", "sixth")
+    places = [told_apart(one, [other for other in row if other is not one]) for one in row]
+    assert places == [
+        f"a red car, the {place} of seven"
+        for place in ("leftmost", *(f"{nth} from the left" for nth in between), "rightmost")
+    ]
+    near, far = row[0]._replace(column=0.5), row[3]._replace(column=0.51)
+    assert told_apart(near, [far]) == "a red car, the nearer one of two"
+    assert (
+        told_apart(far, [near, row[0]._replace(column=0.9)]) == "a red car, the farthest of three"
+    )
+    sedans = [seen("LincolnMKZSimple", column=0.9)]
+    assert told_apart(row[0], [row[1], *sedans]) == "a red SUV, the left one of two"
 
 
 def test_people_are_known_by_their_clothes():
     first, coat = model_index("Pedestrian"), model_index("Pedestrian2")
     assert words_of(coat, BLUE) == "a pedestrian in a blue coat"
     assert words_of(first, (0.88, 0.44, 0.10)) == "a pedestrian in an orange shirt"
-    other = model_index("Pedestrian7")
-    told = words_among(coat, BLUE, [(other, BLUE)])
+    told = told_apart(seen("Pedestrian2", BLUE), [seen("Pedestrian7", BLUE)])
     assert told == "a pedestrian in a blue coat and black trousers, with long brown hair"

@@ -18,6 +18,8 @@ class Behaviour(StrEnum):
     """Round and round through 2 to 4 random points within 30 m, as the original's pedestrians."""
     PAVEMENT = "pavement"
     """Round a block on its pavement, at 1.1 to 1.7 m/s."""
+    CROSSING = "crossing"
+    """As on pavements, and over the painted crossings, when no recorded vehicle comes."""
     STRAIGHT = "straight"
     """Straight on; turns away where something is in the way."""
     WANDER = "wander"

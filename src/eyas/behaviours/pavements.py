@@ -38,6 +38,13 @@ class Way(NamedTuple):
     """[m], shape (K, 2), the last not the first again."""
     length: float
     """[m]"""
+    lane: int
+    """Index into `LANES`."""
+
+    @property
+    def line(self) -> shapely.LineString:
+        """All of it, from its first corner to its first corner."""
+        return shapely.LineString([*self.corners, self.corners[0]])
 
 
 def pavement_ways(
@@ -68,7 +75,7 @@ def pavement_ways(
             ring = _ring(block, beyond, obstacles, radius)
             if ring is not None:
                 line = ring if shapely.is_ccw(ring) == (lane == 1) else shapely.reverse(ring)
-                found += _ways(line, surface)
+                found += _ways(line, surface, lane)
     return found
 
 
@@ -88,21 +95,21 @@ def _ring(
     return max(parts, key=shapely.area).exterior if parts else None
 
 
-def _ways(ring: shapely.LinearRing, surface: Surface) -> list[Way]:
+def _ways(ring: shapely.LinearRing, surface: Surface, lane: int) -> list[Way]:
     """Return the parts of a ring that are on pavement, or all of it."""
     count = int(ring.length / _EVERY)
     points = shapely.line_interpolate_point(ring, np.arange(count) * _EVERY)
     under = surface.at(shapely.get_coordinates(points))
     paved = _bridged(under.pavement, under.height > _LAWN)
     if paved.all():
-        return [Way(shapely.get_coordinates(ring)[:-1], ring.length)]
+        return [Way(shapely.get_coordinates(ring)[:-1], ring.length, lane)]
     made = []
     for first, last in runs(paved):
         if (last - first) * _EVERY < _SHORTEST:
             continue
         part = substring(ring, first * _EVERY, (last - 1) * _EVERY)
         corners = shapely.get_coordinates(part)
-        made.append(Way(np.concatenate([corners, corners[-2:0:-1]]), 2.0 * part.length))
+        made.append(Way(np.concatenate([corners, corners[-2:0:-1]]), 2.0 * part.length, lane))
     return made
 
 

@@ -4,6 +4,7 @@ It is computed at once for the whole length of the traffic, from the map, a seed
 so it is known at any instant without stepping.
 """
 
+from functools import cached_property
 from typing import Final, NamedTuple
 
 import numpy as np
@@ -12,16 +13,19 @@ from numpy.typing import NDArray
 
 from eyas.behaviours.chain import Chain, chain_through, outline
 from eyas.behaviours.config import Behaviour
+from eyas.behaviours.crossings import crossings_of
+from eyas.behaviours.gaps import Gaps
 from eyas.behaviours.habits import HABITS, STROLL, Habit
 from eyas.behaviours.obstacles import Obstacles
-from eyas.behaviours.pavements import pavement_ways
+from eyas.behaviours.pavements import Way, pavement_ways
 from eyas.behaviours.places import Roadside
 from eyas.behaviours.routes import Task, legs, polylines, round_and_round, stops, wave_of
 from eyas.behaviours.surface import Surface
-from eyas.behaviours.timetable import ride, time_of
+from eyas.behaviours.timetable import Ride, ride, time_of
+from eyas.behaviours.tours import Streets, Tour, tour, tour_ride
 from eyas.behaviours.troop import Clock, Troop
 from eyas.core.errors import SpawnError
-from eyas.state.motion import SAMPLE
+from eyas.state.motion import SAMPLE, Motion
 from eyas.state.scene import Scene
 from eyas.state.terrain import reliefs
 
@@ -42,10 +46,16 @@ Floats = NDArray[np.float64]
 class _Course(NamedTuple):
     """The path of a life, and how it is gone."""
 
-    path: Chain
+    path: Chain | Tour
     habit: Habit
     begun: float = 0.0
     """For how long it has been gone when the life begins [s]."""
+
+    def ride(self, time: Floats) -> Ride:
+        """Return the motion at times since the beginning of the life [s]."""
+        if isinstance(self.path, Tour):
+            return tour_ride(self.path, self.habit, time)
+        return ride(self.path, self.habit, self.begun + time)
 
 
 class Ground:
@@ -59,26 +69,46 @@ class Ground:
     def __init__(self, scene: Scene, *, roads: bool) -> None:
         self.scene = scene
         self.obstacles = Obstacles(scene, roads=roads)
+        self._roads = roads
         # Pavement walkers are beside the roads by the choice of their ways.
         self.surface = Surface(scene)
         self.roadside = Roadside(scene.network, self.obstacles)
 
+    @cached_property
+    def solids(self) -> Obstacles:
+        """The obstacles without the roads."""
+        return Obstacles(self.scene, roads=False) if self._roads else self.obstacles
+
 
 def scripted_table(
-    ground: Ground, troop: Troop, clock: Clock, rng: np.random.Generator
+    ground: Ground,
+    troop: Troop,
+    clock: Clock,
+    rng: np.random.Generator,
+    vehicles: Motion | None = None,
 ) -> NDArray[np.void]:
     """Return the samples of a troop, of dtype `SAMPLE`, shape (samples, objects).
+
+    Args:
+        ground: The map.
+        troop: Who moves.
+        clock: Number of samples, and their rate.
+        rng: Random numbers.
+        vehicles: Motion, at the same instants, of the vehicles for which those wait who cross.
 
     Raises:
         SpawnError: The map has no room for it.
     """
     lives, habit = troop.lives, troop.habit or HABITS[troop.kind]
     seconds = (lives.leaves - lives.enters) / clock.rate
-    paths = _paths(ground, troop, habit, seconds, rng)
+    if (troop.behaviour or habit.behaviour) is Behaviour.CROSSING:
+        gaps = Gaps(vehicles, clock.samples, clock.rate)
+        paths = _tours(ground, troop, habit, lives.enters / clock.rate, seconds, gaps, rng)
+    else:
+        paths = _paths(ground, troop, habit, seconds, rng)
     table = np.zeros((clock.samples, int(lives.slot.max()) + 1), SAMPLE)
     for course, slot, enters, leaves in zip(paths, *(a.tolist() for a in lives), strict=True):
-        time = course.begun + np.arange(leaves - enters + 1) / clock.rate
-        motion = ride(course.path, course.habit, time)
+        motion = course.ride(np.arange(leaves - enters + 1) / clock.rate)
         rows = table[enters : leaves + 1, slot]
         rows["x"], rows["y"], rows["yaw"] = motion.poses
         rows["velocity_x"] = motion.speed * np.cos(motion.poses.yaw)
@@ -115,18 +145,7 @@ def _strolls(
 
     All who go the same way are equally fast and begin apart, so none overtakes or walks in another.
     """
-    scene, radius = ground.scene, 0.5 * troop.breadth + _ROOM
-    found = pavement_ways(scene.network, scene.size, ground.obstacles, ground.surface, radius)
-    once = [outline(chain_through(way.corners, habit.radius, 1)) for way in found]
-    # A rounded corner may come too near to what the way leads round.
-    lines = np.array([shapely.LineString(points) for points in once], object)
-    blocked = ground.obstacles.blocked(lines, 0.5 * troop.breadth)
-    ways = [way for way, stopped in zip(found, blocked.tolist(), strict=True) if not stopped]
-    if not ways:
-        raise SpawnError(
-            f"{troop.setting}: behaviour 'pavement': '{scene.name}' has no pavement; "
-            "allowed: another behaviour, or another map such as citystreet"
-        )
+    ways = _pavements(ground, troop, habit)
     speed = rng.uniform(*STROLL, len(ways))
     length = np.array([way.length for way in ways])
     chosen = rng.choice(len(ways), size=len(seconds), p=length / length.sum())
@@ -141,6 +160,56 @@ def _strolls(
         path = round_and_round(ways[way].corners, paced[way], lasts + ahead)
         made.append(_Course(path, paced[way], ahead))
     return made
+
+
+def _tours(  # noqa: PLR0913  # who, where, when
+    ground: Ground,
+    troop: Troop,
+    habit: Habit,
+    enters: Floats,
+    seconds: Floats,
+    gaps: Gaps,
+    rng: np.random.Generator,
+) -> list[_Course]:
+    """Return walks on pavements and over crossings."""
+    ways, radius = _pavements(ground, troop, habit), 0.5 * troop.breadth
+    over = crossings_of(ground.scene, ways, ground.solids, radius)
+    if not over:
+        raise SpawnError(
+            f"{troop.setting}: behaviour 'crossing': '{ground.scene.name}' has no crossing between "
+            "pavements; allowed: another behaviour, or another map such as citystreet"
+        )
+    from_each = [
+        sorted((one for one in over if one.way == k), key=lambda one: one.along)
+        for k in range(len(ways))
+    ]
+    where, made = Streets(ways, from_each, gaps), []
+    for begins, lasts in zip(enters.tolist(), seconds.tolist(), strict=True):
+        paced = habit._replace(speed=min(float(rng.uniform(*STROLL)), habit.speed))
+        made.append(_Course(tour(where, paced, begins, lasts, rng), paced))
+    return made
+
+
+def _pavements(ground: Ground, troop: Troop, habit: Habit) -> list[Way]:
+    """Return the ways on pavements.
+
+    Raises:
+        SpawnError: There are none.
+    """
+    scene, radius = ground.scene, 0.5 * troop.breadth + _ROOM
+    found = pavement_ways(scene.network, scene.size, ground.obstacles, ground.surface, radius)
+    once = [outline(chain_through(way.corners, habit.radius, 1)) for way in found]
+    # A rounded corner may come too near to what the way leads round.
+    lines = np.array([shapely.LineString(points) for points in once], object)
+    blocked = ground.obstacles.blocked(lines, 0.5 * troop.breadth)
+    ways = [way for way, stopped in zip(found, blocked.tolist(), strict=True) if not stopped]
+    if not ways:
+        behaviour = (troop.behaviour or habit.behaviour).value
+        raise SpawnError(
+            f"{troop.setting}: behaviour '{behaviour}': '{scene.name}' has no pavement; "
+            "allowed: another behaviour, or another map such as citystreet"
+        )
+    return ways
 
 
 def _lay(ground: Ground, table: NDArray[np.void], rate: float) -> None:

@@ -1,14 +1,24 @@
 """`eyas targets`."""
 
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+if TYPE_CHECKING:
+    from eyas.custom.config import CustomConfig
 
 __all__ = ["app"]
 
 _WIDTH = 190
 """Of the table [characters]; a narrower terminal breaks its lines."""
+
+_Scale = Annotated[float, typer.Option("--scale", help="Metres in the mesh file's unit.")]
+_Up = Annotated[str | None, typer.Option("--up", help="The mesh file's axis that is up: y or z.")]
+_Turn = Annotated[float, typer.Option("--turn", help="Turn the mesh about its height [rad].")]
+_Most = Annotated[
+    int | None, typer.Option("--most-triangles", help="Simplify larger meshes to so many.")
+]
 
 app = typer.Typer(help="List and draw what can be followed.", no_args_is_help=True)
 
@@ -35,22 +45,18 @@ def check_target(
             help="A name of the list, a mesh file, a trajectory (.csv), or package.module:Class."
         ),
     ],
-    scale: Annotated[float, typer.Option("--scale", help="Metres in the file's unit.")] = 1.0,
-    up: Annotated[str | None, typer.Option("--up", help="Axis that is up: y or z.")] = None,
-    most_triangles: Annotated[
-        int | None, typer.Option("--most-triangles", help="Simplify larger meshes to so many.")
-    ] = None,
+    scale: _Scale = 1.0,
+    up: _Up = None,
+    most_triangles: _Most = None,
     map_name: Annotated[
         str, typer.Option("--map", help="Map on which it is to move.")
     ] = "citystreet",
 ) -> None:
     """Tell whether a target can be used, and why not; the exit code is 1 if it cannot."""
-    from eyas.core.config import validated
-    from eyas.custom.config import CustomConfig
     from eyas.modes.targets.check import check
 
-    said = {"path": "-", "scale": scale, "up": up, "most_triangles": most_triangles}
-    lines, usable = check(what, validated(CustomConfig, said, "custom"), map_name)
+    config = _reading(scale=scale, up=up, most_triangles=most_triangles)
+    lines, usable = check(what, config, map_name)
     for line in lines:
         typer.echo(line)
     if not usable:
@@ -59,7 +65,12 @@ def check_target(
 
 @app.command("show")
 def show_target(
-    name: Annotated[str, typer.Argument(help="Name of a model or a kind, or `all`.")],
+    name: Annotated[
+        str,
+        typer.Argument(
+            help="Name of a model or a kind, `all`, a mesh file, or package.module:Class."
+        ),
+    ],
     out: Annotated[
         Path | None,
         typer.Option(
@@ -67,10 +78,22 @@ def show_target(
             help="File to write: .png, or .gif, .webp or .apng for a film; by default NAME.png.",
         ),
     ] = None,
+    scale: _Scale = 1.0,
+    up: _Up = None,
+    turn: _Turn = 0.0,
+    most_triangles: _Most = None,
 ) -> None:
     """Draw a target from all sides, in motion, and from the height of a tracker."""
     from eyas.modes.targets.show import run
 
-    path = out if out is not None else Path(f"{name}.png")
-    run(name, path)
+    path = out if out is not None else Path(f"{Path(name).name.replace(':', '.')}.png")
+    run(name, path, _reading(scale=scale, up=up, turn=turn, most_triangles=most_triangles))
     typer.echo(path)
+
+
+def _reading(**said: object) -> "CustomConfig":
+    """Return how a mesh file is read."""
+    from eyas.core.config import validated
+    from eyas.custom.config import CustomConfig
+
+    return validated(CustomConfig, {"path": "-", **said}, "custom")

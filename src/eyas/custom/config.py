@@ -35,6 +35,8 @@ class CustomConfig(Config):
     """How it moves, where it has no motion of its own."""
     speed: Annotated[float, Field(ge=0.01, le=50)] = 1.0
     """How fast it moves with a behaviour [m/s]."""
+    words: Text | None = None
+    """What it is, "a delivery robot"; None: the name of its file or class."""
 
     @model_validator(mode="after")
     def _something(self) -> "CustomConfig":

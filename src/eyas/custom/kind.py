@@ -1,6 +1,7 @@
 """The entry of a target of one's own in the catalogue."""
 
 import hashlib
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,17 +12,18 @@ from eyas.core.errors import ConfigError, UnknownNameError
 from eyas.core.files import user_path
 from eyas.core.registry import Registry
 from eyas.custom.config import CustomConfig
-from eyas.custom.mesh_file import LARGEST, loaded
+from eyas.custom.mesh_file import ENDINGS, LARGEST, loaded
 from eyas.custom.own import OwnTarget, Ride, Shaped
 from eyas.custom.problems import of_shape, worst
 from eyas.custom.rig import OwnRig
 from eyas.custom.shape import levels_of_detail, simplified
 from eyas.state.mesh import Mesh
 from eyas.state.scene import ObjectClass
-from eyas.targets.catalogue import KINDS, register
+from eyas.targets.catalogue import KINDS, MODELS, register
 from eyas.targets.kind import Kind
+from eyas.targets.words import with_article
 
-__all__ = ["OwnModel", "kind_name_of", "own_target"]
+__all__ = ["OwnModel", "as_custom", "kind_name_of", "own_target"]
 
 _CLASSES: Registry[type] = Registry("custom.path", type, {})
 
@@ -56,20 +58,36 @@ def kind_name_of(config: CustomConfig) -> str:
             raise UnknownNameError("custom.body", config.body, names)
         return config.body
     target, word = own_target(config), _word(config)
-    rig = OwnRig(target)
-    name = f"{word}-{_digest([mesh for levels in rig.part_levels() for mesh in levels])}"
+    words = config.words or _spoken(word)
+    meshes = [mesh for levels in OwnRig(target).part_levels() for mesh in levels]
+    name = f"{word}-{_digest(meshes, word, words)}"
     if name not in (kind.name for kind in KINDS):
+        # Labels tell the model's name.
+        model = f"{name}-model" if word in (one.name for one in MODELS) else word
         register(
             Kind(
                 name=name,
-                models=(OwnModel(f"{name}-model", word, name, target.size),),
+                models=(OwnModel(model, word, name, target.size),),
                 colours=((1.0, 1.0, 1.0),),
                 object_class=ObjectClass.ROBOT,
                 rig=lambda: OwnRig(target),
                 keeps_colours=True,
+                words=words,
             )
         )
     return name
+
+
+def as_custom(what: str, config: CustomConfig) -> CustomConfig | None:
+    """Return the settings of a mesh file or a `package.module:Class`; None for another name.
+
+    Args:
+        what: The name.
+        config: How to read a mesh file.
+    """
+    if user_path(what).suffix.lower() in ENDINGS:
+        return config.model_copy(update={"mesh": what, "path": None})
+    return config.model_copy(update={"path": what}) if ":" in what else None
 
 
 def own_target(config: CustomConfig) -> OwnTarget:
@@ -120,8 +138,14 @@ def _word(config: CustomConfig) -> str:
     return Path(user_path(config.mesh)).stem
 
 
-def _digest(meshes: Sequence[Mesh]) -> str:
-    digest = hashlib.sha256()
+def _spoken(word: str) -> str:
+    """Return what people would call it: `DeliveryRobot` and `delivery_robot` is that."""
+    parts = re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+", word)
+    return with_article(" ".join(parts).lower() or word)
+
+
+def _digest(meshes: Sequence[Mesh], *texts: str) -> str:
+    digest = hashlib.sha256(repr(texts).encode())
     for mesh in meshes:
         for array in (mesh.positions, mesh.normals, mesh.triangles, mesh.materials):
             digest.update(f"{array.dtype.str} {array.shape}".encode() + array.tobytes())

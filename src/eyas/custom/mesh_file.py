@@ -30,6 +30,12 @@ _GLTF = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 _INSIDE = np.array([[4, 1, 1], [1, 4, 1], [1, 1, 4], [2, 2, 2]]) / 6.0
 """Points of a triangle at which its texture is looked up, as shares of its corners."""
 
+_FINE = 20_000
+"""Number of triangles up to which textured parts are cut, so that they show their texture."""
+
+_EVEN = 0.01
+"""Mean deviation of the texture within triangles that is not worth a cut [sRGB 0 to 1]."""
+
 _PLAIN = (0.62, 0.62, 0.62)
 """sRGB of what has no colour."""
 
@@ -81,7 +87,7 @@ def read_mesh(path: Path) -> Triangles:
     if path.stat().st_size > _LARGEST_FILE:
         raise DataFileError(f"{path}: larger than {_LARGEST_FILE >> 20} MiB")
     try:
-        parts = list(_parts(trimesh.load_scene(str(path))))
+        parts = list(_parts(trimesh, path))
     except Exception as error:  # its readers raise whatever they stumble on
         raise DataFileError(f"{path}: cannot read as a mesh: {error}") from None
     if not parts:
@@ -116,48 +122,72 @@ def placed(shape: Triangles, up: str, turn: float, scale: float) -> Triangles:
     return replace(shape, points=points - middle)
 
 
-def _parts(scene: Any) -> Iterator[Triangles]:  # noqa: ANN401  # trimesh has no types
-    for part in scene.dump():
+def _parts(trimesh: ModuleType, path: Path) -> Iterator[Triangles]:
+    for part in trimesh.load_scene(str(path)).dump():
         corners = getattr(part, "faces", None)
         if corners is not None and len(corners):
             points = np.asarray(part.vertices, np.float64)
             corners = np.asarray(corners, np.int64)
-            yield Triangles(points, corners, _colours(part, len(corners)))
+            if _texture(part.visual) is None:
+                yield Triangles(points, corners, _colours(part.visual, corners))
+            else:
+                yield _textured(trimesh, part.visual, points, corners)
 
 
-def _colours(part: Any, count: int) -> NDArray[np.float64]:  # noqa: ANN401
-    """Return the colour of each triangle: its own, that of its corners or of the texture there."""
-    visual = part.visual
+def _colours(visual: Any, corners: NDArray[np.int64]) -> NDArray[np.float64]:  # noqa: ANN401
+    """Return the colour of each triangle without a texture."""
+    count = len(corners)
     if hasattr(visual, "material"):
-        return _textured(visual, np.asarray(part.faces), count)
+        return np.tile(np.asarray(visual.material.main_color, np.float64)[:3] / 255.0, (count, 1))
     if not visual.defined:
         return np.tile(_PLAIN, (count, 1))
     if visual.kind == "vertex":
-        corners = np.asarray(visual.vertex_colors, np.float64)[np.asarray(part.faces)]
-        return np.asarray(corners.mean(axis=1)[:, :3] / 255.0, np.float64)
-    if visual.kind == "vertex":
-        corners = np.asarray(visual.vertex_colors, np.float64)[np.asarray(part.faces)]
-        return np.asarray(corners.mean(axis=1)[:, :3] / 255.0, np.float64)
+        colours = np.asarray(visual.vertex_colors, np.float64)[corners]
+        return np.asarray(colours.mean(axis=1)[:, :3] / 255.0, np.float64)
     return np.asarray(visual.face_colors, np.float64)[:, :3] / 255.0
 
 
-def _textured(visual: Any, corners: NDArray[np.int64], count: int) -> NDArray[np.float64]:  # noqa: ANN401
-    """Return the mean of the texture in each triangle, or the colour of the material."""
-    material = visual.material
+def _texture(visual: Any) -> Any:  # noqa: ANN401  # trimesh has no types
+    """Return the picture that is the texture; None if there is none."""
+    material = getattr(visual, "material", None)
     image = getattr(material, "baseColorTexture", None) or getattr(material, "image", None)
-    if image is None or visual.uv is None:
-        return np.tile(np.asarray(material.main_color, np.float64)[:3] / 255.0, (count, 1))
-    pixels = np.asarray(image.convert("RGB"), np.float64) / 255.0
+    return None if getattr(visual, "uv", None) is None else image
+
+
+def _textured(
+    trimesh: ModuleType,
+    visual: Any,  # noqa: ANN401  # trimesh has no types
+    points: NDArray[np.float64],
+    corners: NDArray[np.int64],
+) -> Triangles:
+    """Return triangles with the mean of the texture in each, cut in four until they show it."""
+    uv = np.asarray(visual.uv, np.float64)
+    pixels = np.asarray(_texture(visual).convert("RGB"), np.float64) / 255.0
+    factor = getattr(visual.material, "baseColorFactor", None)
+    if factor is not None:
+        pixels = pixels * (np.asarray(factor, np.float64)[:3] / 255.0)
+    seen = _looked_up(pixels, uv[corners])
+    while 4 * len(corners) <= _FINE and seen.std(axis=0).mean() > _EVEN:
+        points, corners, more = trimesh.remesh.subdivide(
+            points, corners, vertex_attributes={"": uv}
+        )
+        uv = more[""]
+        seen = _looked_up(pixels, uv[corners])
+    return Triangles(points, np.asarray(corners, np.int64), seen.mean(axis=0))
+
+
+def _looked_up(pixels: NDArray[np.float64], uv: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Return the texture at four points of each triangle, shape (4, T, 3).
+
+    Args:
+        pixels: The texture, shape (H, W, 3).
+        uv: Coordinates in it of the corners of the triangles, shape (T, 3, 2).
+    """
     height, width = pixels.shape[:2]
-    total = np.zeros((count, 3))
-    for share in _INSIDE:
-        u, v = np.einsum("k,tkc->ct", share, np.asarray(visual.uv, np.float64)[corners])
-        column = np.floor(u * width).astype(np.int64) % width
-        row = np.floor((1.0 - v) * height).astype(np.int64) % height
-        total += pixels[row, column]
-    factor = getattr(material, "baseColorFactor", None)
-    tint = np.ones(3) if factor is None else np.asarray(factor, np.float64)[:3] / 255.0
-    return np.asarray(total / len(_INSIDE) * tint, np.float64)
+    u, v = np.einsum("sk,tkc->cst", _INSIDE, uv)
+    column = np.floor(u * width).astype(np.int64) % width
+    row = np.floor((1.0 - v) * height).astype(np.int64) % height
+    return np.asarray(pixels[row, column])
 
 
 def _trimesh() -> ModuleType:

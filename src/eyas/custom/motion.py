@@ -33,6 +33,8 @@ class Places(NamedTuple):
 
     lives: Lives
     offset: Variation
+    vehicles: Motion | None = None
+    """For which those wait who cross roads."""
 
 
 def custom_motion(
@@ -57,7 +59,8 @@ def custom_motion(
     elif isinstance(target, MovesItself):
         table = _own(target, int(places.lives.slot.max()) + 1, ground, clock, rng)
     else:
-        table = scripted_table(ground, _troop(config, name, places), clock, rng)
+        troop = _troop(config, name, places)
+        table = scripted_table(ground, troop, clock, rng, places.vehicles)
     return Motion(table, np.full(table.shape[1], kind_index(name), np.int32), clock.rate, 0.0)
 
 
@@ -65,7 +68,8 @@ def _troop(config: CustomConfig, name: str, places: Places) -> Troop:
     speed, size = config.speed, MODELS[models_of(kind_index(name)).start].size
     breadth = float(np.hypot(*size[:2]))
     habit = Habit(config.behaviour, speed, max(1.0, speed), 2.0, max(0.5, breadth))
-    return Troop(name, breadth, config.behaviour, *places, "objects.max_count", habit)
+    where = (places.lives, places.offset)
+    return Troop(name, breadth, config.behaviour, *where, "objects.max_count", habit)
 
 
 def _driven(file: str, terrain: Terrain, clock: Clock) -> NDArray[np.void]:

@@ -100,6 +100,8 @@ class Subject:
     """Pixels that show it."""
     covered_pixels: int
     """Pixels that would show it if nothing hid it; 0 outside the picture."""
+    words: str = ""
+    """What it looks like, "a red car"; empty for the target, see `Frame.target_words`."""
 
     @property
     def visible_fraction(self) -> float:

@@ -44,6 +44,8 @@ class OtherLabel:
     direction: int = 0
     corners: list[list[float | None]] = field(default_factory=list)
     """The corners of its 3D box [m]."""
+    words: str = ""
+    """What it looks like, such as "a red car"; others may look the same."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,7 +117,8 @@ class FrameLabel:
     """Corners of its 3D box: four on the ground, counter-clockwise from the right of its tail, and
     those above them [m]."""
     target_words: str = ""
-    """The target in words, such as "a red SUV": the shortest that nothing else in view shares."""
+    """The target in words, such as "a red SUV" or "a red SUV, turning left": nothing else in view
+    shares them."""
 
 
 class LabelWriter(Writer):
@@ -197,6 +200,7 @@ def _other(subject: Subject) -> OtherLabel:
         travelled=rounded(subject.motion.travelled),
         direction=int(subject.motion.direction),
         corners=[rounded_list(corner) for corner in subject.corners],
+        words=subject.words,
     )
 
 

@@ -1,6 +1,7 @@
 """The moving objects of a picture besides its target."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from eyas.state.draw import Picture
 from eyas.state.motion import ActorState
 from eyas.state.scene import ACTOR_OBJECT
 from eyas.targets.catalogue import MODELS, kind_of
+from eyas.targets.words import words_of
 from eyas.task.direction import TargetDirection, target_centre, target_direction
 
 __all__ = ["others_of"]
@@ -37,9 +39,13 @@ def others_of(
     visible = picture.actor_pixels[view, :, 0] > 0
     visible[simulation.snapshot.targets.actor[tracker]] = False
     actors, models = simulation.actors_around(tracker)
+    (colours,) = simulation.looks_around(tracker).colour
     before, _ = simulation.actors_around(tracker, ago=1)
     return tuple(
-        _subject(actors, before, actor, int(models[actor]), picture, view)
+        replace(
+            _subject(actors, before, actor, int(models[actor]), picture, view),
+            words=words_of(int(models[actor]), colours[actor].tolist()),
+        )
         for actor in np.flatnonzero(visible).tolist()
     )
 

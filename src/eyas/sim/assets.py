@@ -102,7 +102,7 @@ def _traffic(
         clock = Clock(len(vehicles.table), vehicles.rate)
     # A scene depends on the season, but its ground does not.
     scene = load_scene(map_name, seed)
-    others = crowd_motions(crowd, scene, clock, _seed_of(config))
+    others = crowd_motions(crowd, scene, clock, _seed_of(config), vehicles)
     every = others if vehicles is None else [vehicles, *others]
     followed = vehicles if crowd.follows_vehicles else others[0]
     targets = np.concatenate([np.full(len(motion.kind), motion is followed) for motion in every])

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.behaviours.config import ExtraConfig
+from eyas.behaviours.config import Behaviour, ExtraConfig
 from eyas.behaviours.lives import Lives, lasting, recycled
 from eyas.behaviours.troop import Clock, Troop
 from eyas.core.cache.cached import cached
@@ -91,7 +91,9 @@ def vehicles_of(crowd: Crowd, known: int) -> int:
     return wanted
 
 
-def crowd_motions(crowd: Crowd, scene: Scene, clock: Clock, seed: int) -> list[Motion]:
+def crowd_motions(
+    crowd: Crowd, scene: Scene, clock: Clock, seed: int, vehicles: Motion | None = None
+) -> list[Motion]:
     """Return the motions of a crowd, kept in the cache: of the targets first, if it has any.
 
     Args:
@@ -99,29 +101,41 @@ def crowd_motions(crowd: Crowd, scene: Scene, clock: Clock, seed: int) -> list[M
         scene: The map.
         clock: Number of samples, and their rate.
         seed: Seed of places and ways.
+        vehicles: The vehicles' motion, for which those wait who cross roads; None: there are none,
+            or it is not known in advance.
 
     Raises:
+        ConfigError: Somebody is to cross roads among vehicles whose motion is not known.
         SpawnError: The map has no room for all.
     """
     troops = _troops(crowd, clock)
-    vehicles = crowd.follows_vehicles or any(map(_is_traffic, crowd.extras))
+    driven = crowd.follows_vehicles or any(map(_is_traffic, crowd.extras))
+    if driven and vehicles is None:
+        _refuse_crossing(crowd)
     ground: list[Ground] = []  # made when the first motion is not in the cache
 
     def made(number: int, troop: Troop) -> NDArray[np.float32]:
         from eyas.behaviours.scripted import Ground, scripted_table  # with shapely
 
         if not ground:
-            ground.append(Ground(scene, roads=vehicles))
+            ground.append(Ground(scene, roads=driven))
         rng = stream(seed, "crowd", number, zlib.crc32(troop.kind.encode()))
-        table = scripted_table(ground[0], troop, clock, rng)
+        table = scripted_table(ground[0], troop, clock, rng, vehicles)
         return table.view(np.float32).reshape(*table.shape, -1)
 
-    motions = [] if crowd.custom is None else [_custom(crowd, crowd.custom, scene, clock, seed)]
+    motions = []
+    if crowd.custom is not None:
+        motions.append(_custom(crowd, crowd.custom, scene, clock, seed, vehicles))
     for number, troop in enumerate(troops):
+        crosses = troop.behaviour is Behaviour.CROSSING
+        waits_for = (vehicles.table, vehicles.kind) if crosses and vehicles is not None else ()
         numbers = cached(
             Kind.MOTION,
             _MAKERS,
-            (*_plan_of(scene), *troop.lives, troop[:3], troop[4:], clock, seed, number, vehicles),
+            (
+                *(*_plan_of(scene), *troop.lives, troop[:3], troop[4:], clock, seed, number),
+                *(driven, *waits_for),
+            ),
             lambda n=number, t=troop: made(n, t),  # type: ignore[misc]
             of=NDArray[np.float32],
         )
@@ -143,14 +157,36 @@ def _troops(crowd: Crowd, clock: Clock) -> list[Troop]:
     return troops
 
 
-def _custom(crowd: Crowd, custom: CustomConfig, scene: Scene, clock: Clock, seed: int) -> Motion:
+def _refuse_crossing(crowd: Crowd) -> None:
+    """Raise an error if somebody is to cross roads."""
+    custom = crowd.custom.behaviour if crowd.custom is not None else None
+    for setting, behaviour in (
+        ("custom.behaviour", custom),
+        *((f"extras.{k}.behaviour", extra.behaviour) for k, extra in enumerate(crowd.extras)),
+    ):
+        if behaviour is Behaviour.CROSSING:
+            raise ConfigError(
+                f"{setting}: 'crossing' is not allowed with traffic.source=live, as it is unknown "
+                "in advance; allowed: 'pavement'"
+            )
+
+
+def _custom(
+    crowd: Crowd,
+    custom: CustomConfig,
+    scene: Scene,
+    clock: Clock,
+    seed: int,
+    vehicles: Motion | None,
+) -> Motion:
     """Return the motion of a target of one's own; not kept, as its class may have changed."""
     from eyas.behaviours.scripted import Ground
     from eyas.custom.motion import Places, custom_motion
 
-    vehicles = any(map(_is_traffic, crowd.extras))
+    driven = any(map(_is_traffic, crowd.extras))
     lives = recycled(crowd.objects, clock.samples, clock.rate, crowd.episode)
-    places, ground = Places(lives, crowd.objects.offset), Ground(scene, roads=vehicles)
+    places = Places(lives, crowd.objects.offset, vehicles)
+    ground = Ground(scene, roads=driven)
     return custom_motion(custom, places, ground, clock, stream(seed, "custom"))
 
 

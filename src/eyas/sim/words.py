@@ -4,7 +4,7 @@ import numpy as np
 
 from eyas.core.pinhole import project
 from eyas.sim.simulation import Simulation
-from eyas.targets.words import words_among
+from eyas.targets.telling import Seen, told_apart
 
 __all__ = ["target_in_words"]
 
@@ -12,14 +12,14 @@ __all__ = ["target_in_words"]
 def target_in_words(simulation: Simulation, tracker: int, aspect: float) -> str:
     """Return a description of a tracker's target, such as "a red SUV".
 
-    It is the shortest that no other actor in the camera's view shares, hidden or not.
+    No other actor in the camera's view shares it, hidden or not.
 
     Args:
         simulation: The simulation.
         tracker: The tracker.
         aspect: Height of the camera's picture over its width.
     """
-    cameras, target = simulation.snapshot.cameras, simulation.snapshot.targets.actor[tracker]
+    cameras, target = simulation.snapshot.cameras, int(simulation.snapshot.targets.actor[tracker])
     actors, _ = simulation.actors_around(tracker)
     (model,), (colour,) = simulation.looks_around(tracker)
     pose = cameras.position[tracker], cameras.rotation[tracker]
@@ -31,5 +31,15 @@ def target_in_words(simulation: Simulation, tracker: int, aspect: float) -> str:
         inside = (np.abs(column - 0.5) < 0.5) & (np.abs(row - 0.5) < 0.5 * aspect) & (depth > 0.0)
     inside &= actors.present[0]
     inside[target] = False
-    others = [(int(model[a]), colour[a].tolist()) for a in np.flatnonzero(inside).tolist()]
-    return words_among(int(model[target]), colour[target].tolist(), others)
+
+    def seen(actor: int) -> Seen:
+        return Seen(
+            model=int(model[actor]),
+            colour=colour[actor].tolist(),
+            speed=float(actors.speed[0, actor]),
+            yaw_rate=float(actors.yaw_rate[0, actor]),
+            column=float(column[actor]),
+            distance=float(depth[actor]),
+        )
+
+    return told_apart(seen(target), [seen(actor) for actor in np.flatnonzero(inside).tolist()])

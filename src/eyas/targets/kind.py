@@ -12,7 +12,10 @@ from eyas.state.mesh import Mesh
 from eyas.state.motion import ActorState
 from eyas.state.scene import ObjectClass
 
-__all__ = ["Colour", "Group", "Kind", "Looks", "Model", "Rig"]
+__all__ = ["MANY", "Colour", "Group", "Kind", "Looks", "Model", "Rig"]
+
+MANY = 4096
+"""Actors from which on two threads pose them: waking one takes as long as some hundred actors."""
 
 Colour = tuple[float, float, float]
 """sRGB, each 0 to 1."""
@@ -127,3 +130,5 @@ class Kind:
     """Parts of its rig that are towed: they have shadows of their own, and no lamps."""
     keeps_colours: bool = False
     """Whether `traffic.colour` does not change its colours, as for the original's motorcycles."""
+    words: str = ""
+    """What any of it is in words, "a delivery robot"; empty: `eyas.targets.words` knows."""

@@ -2,7 +2,7 @@
 
 Each has a few phrases, the shortest first: vehicles their colour and class, then colour and body,
 then also the make; people what they wear, then also the rest of their looks; robots what they are,
-then also their name. `words_among` chooses the shortest that nothing else in view shares.
+then also their name. `eyas.targets.telling` chooses one that nothing else in view shares.
 """
 
 import math
@@ -22,7 +22,7 @@ __all__ = [
     "motion_in_words",
     "phrases",
     "typical_motion",
-    "words_among",
+    "with_article",
     "words_of",
 ]
 
@@ -87,13 +87,14 @@ def phrases(model: int, colour: Sequence[float]) -> tuple[str, ...]:
         model: Index into `MODELS`.
         colour: Its colour, sRGB 0 to 1.
     """
+    if kind_of(model).words:
+        return (kind_of(model).words,)
     name, seen = MODELS[model].name, colour_name(colour)
     if name in _PEOPLE:
         return _person(_PEOPLE[name], seen)
     if name in _ROBOTS:
         return (_ROBOTS[name], f"{_ROBOTS[name]} ({name})")
-    nouns = _VEHICLES.get(name, (MODELS[model].typename,))
-    return tuple(_with_article(f"{seen} {noun}") for noun in nouns)
+    return tuple(with_article(f"{seen} {noun}") for noun in _VEHICLES[name])
 
 
 def words_of(model: int, colour: Sequence[float]) -> str:
@@ -101,31 +102,14 @@ def words_of(model: int, colour: Sequence[float]) -> str:
     return phrases(model, colour)[0]
 
 
-def words_among(
-    model: int, colour: Sequence[float], others: Sequence[tuple[int, Sequence[float]]]
-) -> str:
-    """Return the shortest description of a target that none of some others shares.
-
-    Args:
-        model: Index into `MODELS`.
-        colour: Its colour, sRGB 0 to 1.
-        others: Model and colour of each of the others.
-
-    Returns:
-        The longest description if another target looks the same.
-    """
-    taken = {phrase for other in others for phrase in phrases(*other)}
-    own = phrases(model, colour)
-    return next((phrase for phrase in own if phrase not in taken), own[-1])
-
-
 def looks_in_words(model: int) -> tuple[str, ...]:
     """Return the names of the colours that a model may have, in the order of its kind's.
 
-    For a robot, which always looks the same: what it looks like.
+    For what always looks the same, such as a robot: what it looks like.
     """
-    if MODELS[model].name in _ROBOTS:
-        return (_ROBOTS[MODELS[model].name],)
+    always = kind_of(model).words or _ROBOTS.get(MODELS[model].name)
+    if always:
+        return (always,)
     colours: tuple[Colour, ...] = kind_of(model).colours
     return tuple(dict.fromkeys(colour_name(colour) for colour in colours))
 
@@ -137,7 +121,7 @@ def motion_in_words(model: int) -> str:
         return f"{one.motion}, {one.speed:g} m/s"
     if isinstance(one, VehicleModel):
         return "drives in traffic, up to 20 m/s"
-    return "flies"
+    return "moves as its settings say" if kind_of(model).words else "flies"
 
 
 def typical_motion(model: int) -> tuple[float, float]:
@@ -147,11 +131,11 @@ def typical_motion(model: int) -> tuple[float, float]:
         return one.speed, one.stride
     if isinstance(one, VehicleModel):
         return 8.0, 2.0 * math.pi * one.wheel_radius
-    return 0.0, 1.0
+    return (1.0, 4.0 * one.size[0]) if kind_of(model).words else (0.0, 1.0)
 
 
 def _person(person: Person, colour: str) -> tuple[str, ...]:
-    worn = f"a pedestrian in {_with_article(f'{colour} {_GARMENTS[person.garment]}')}"
+    worn = f"a pedestrian in {with_article(f'{colour} {_GARMENTS[person.garment]}')}"
     hair = colour_name(person.hair_colour)
     head = f"with {_HEADS[person.hair].format(_HAIR.get(hair, hair))}"
     if person.garment is Garment.DRESS:
@@ -160,5 +144,6 @@ def _person(person: Person, colour: str) -> tuple[str, ...]:
     return worn, below, f"{below}, {head}"
 
 
-def _with_article(noun: str) -> str:
-    return f"{'an' if noun[0] in 'aeio' else 'a'} {noun}"
+def with_article(noun: str) -> str:
+    """Return a noun after its indefinite article."""
+    return f"{'an' if noun[0].lower() in 'aeio' else 'a'} {noun}"

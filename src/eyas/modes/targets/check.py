@@ -9,7 +9,7 @@ from eyas.core.errors import EyasError, UnknownNameError
 from eyas.core.files import user_path
 from eyas.core.rng import stream
 from eyas.custom.config import CustomConfig
-from eyas.custom.kind import own_target
+from eyas.custom.kind import as_custom, own_target
 from eyas.custom.mesh_file import ENDINGS, loaded
 from eyas.custom.own import MovesItself
 from eyas.custom.problems import Finding, of_shape, of_trajectory
@@ -47,12 +47,12 @@ def check(what: str, config: CustomConfig, map_name: str) -> tuple[list[str], bo
 
 
 def _findings(what: str, config: CustomConfig, map_name: str) -> Iterator[Finding]:
-    path = user_path(what)
-    if path.suffix.lower() in ENDINGS:
-        yield from _mesh(config.model_copy(update={"mesh": what, "path": None}))
+    path, own = user_path(what), as_custom(what, config)
+    if own is not None and own.mesh is not None:
+        yield from _mesh(own)
     elif path.suffix.lower() == ".csv":
         yield from _trajectory(path, map_name)
-    elif ":" in what:
+    elif own is not None:
         yield from _class(what, map_name)
     else:
         names = dict.fromkeys([*(kind.name for kind in KINDS), *(model.name for model in MODELS)])

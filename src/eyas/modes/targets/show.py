@@ -9,8 +9,10 @@ from PIL import Image, ImageDraw, ImageFont
 
 from eyas.core.errors import ConfigError, UnknownNameError
 from eyas.core.files import atomic_path
+from eyas.custom.config import CustomConfig
+from eyas.custom.kind import as_custom, kind_name_of
 from eyas.modes.targets.stage import Camera, Pose, Stage
-from eyas.targets.catalogue import KINDS, MODELS, kind_of
+from eyas.targets.catalogue import KINDS, MODELS, kind_index, kind_of, models_of
 from eyas.targets.words import motion_in_words, typical_motion, words_of
 
 __all__ = ["ALL", "run"]
@@ -33,12 +35,13 @@ _BACK, _INK, _DIM = (24, 25, 27), (230, 230, 228), (160, 161, 163)
 Rgb = NDArray[np.uint8]
 
 
-def run(name: str, path: Path) -> None:
+def run(name: str, path: Path, custom: CustomConfig | None = None) -> None:
     """Draw a target into a file.
 
     Args:
-        name: Name of a model or of a kind, or `all`.
+        name: Name of a model or of a kind, `all`, a mesh file, or `package.module:Class`.
         path: A .png for a sheet; a .gif, .webp or .apng for a film.
+        custom: How to read a mesh file.
 
     Raises:
         EyasError: There is no such target or ending, or the file cannot be written.
@@ -47,7 +50,7 @@ def run(name: str, path: Path) -> None:
     if form is None or (name == ALL and path.suffix.lower() != ".png"):
         allowed = ".png" if name == ALL else ".png, .gif, .webp, .apng"
         raise ConfigError(f"--out: {str(path)!r} is not allowed; allowed endings: {allowed}")
-    models = _models(name)
+    models = _models(name, custom or CustomConfig(path="-"))
     stage = Stage(sorted({MODELS[model].kind for model in models}))
     if path.suffix.lower() != ".png":
         frames = [Image.fromarray(frame) for frame in _film(stage, models[0])]
@@ -65,10 +68,12 @@ def run(name: str, path: Path) -> None:
         Image.fromarray(sheet).save(part, format=form, optimize=True)
 
 
-def _models(name: str) -> list[int]:
+def _models(name: str, custom: CustomConfig) -> list[int]:
     """Return the models that a name stands for."""
     if name == ALL:
         return list(range(len(MODELS)))
+    if own := as_custom(name, custom):
+        return list(models_of(kind_index(kind_name_of(own))))
     found = [m for m, model in enumerate(MODELS) if name == model.name]
     found = found or [m for m, model in enumerate(MODELS) if name == model.kind]
     if not found:

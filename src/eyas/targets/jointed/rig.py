@@ -13,7 +13,7 @@ from eyas.state.motion import ActorState
 from eyas.targets.jointed.cycle import frames_of, shapes_of
 from eyas.targets.jointed.figure import Figure, Shape, levels_of
 from eyas.targets.jointed.pose import BODY, PART, CycleTable, Slots, pose_jointed
-from eyas.targets.kind import Group, Looks
+from eyas.targets.kind import MANY, Group, Looks
 
 __all__ = ["JointedRig"]
 
@@ -22,9 +22,6 @@ _INTERVALS = 32
 
 _SHEARED = 1.25
 """Factor by which what stays upright on a slope may be farther from its origin."""
-
-_MANY = 4096
-"""Actors from which on two threads pose them: waking one takes as long as some hundred actors."""
 
 
 class JointedRig:
@@ -75,7 +72,7 @@ class JointedRig:
                 last.actors.again(actors), last.looks.again(looks), last.slots.again(slots)
             )
         self._last = arrays
-        if looks.model.shape[0] * len(group.actor) < _MANY:
+        if looks.model.shape[0] * len(group.actor) < MANY:
             pose_jointed.bound(self._table, Held(group), *arrays)()
         else:
             pose_jointed(2, self._table, Held(group), *arrays)

@@ -171,33 +171,45 @@ def _wheels_of(
     return (cosine, turn * cosine), (np.cos(angle), np.sin(angle))
 
 
+@kernel
+def _pose_actor(given: tuple[RigTable, Group, ActorState, Looks, Slots], w: int, g: int) -> None:
+    """Write the slots of one vehicle."""
+    table, group, actors, looks, out = given
+    a, first = group.actor[g], group.slot[g]
+    model = looks.model[w, a] - group.first_model
+    axles = table.axles[model]
+    truck = trailer = _base_of(actors, w, a, axles.lean)
+    hitch = actors.hitch[w, a]
+    if hitch != 0.0:
+        x, y, turn = folded(hitch)
+        truck, trailer = _turned(truck, x, y, turn), _turned(truck, x, y, turn + hitch)
+    steered, rolled = _wheels_of(axles.radius, axles.wheelbase, actors, w, a)
+    for k in range(table.slot.shape[1]):
+        slot, part = first + k, table.slot[model, k]
+        if part.part < 0:
+            out.part[w, slot] = -1
+            continue
+        out.part[w, slot] = group.first_part + part.part
+        steer = steered if part.steered else (1.0, 0.0)
+        spin = rolled if part.z > 0.0 else (1.0, 0.0)
+        base = trailer if part.towed else truck
+        _pose_slot(out.pose[w, slot], base, (part.x, part.y, part.z), steer, spin)
+        for channel in range(3):
+            out.colour[w, slot, channel] = looks.colour[w, a, channel]
+
+
 @parallel_kernel
 def pose_vehicles(
     parts: Pointer[tuple[RigTable, Group, ActorState, Looks, Slots]], worker: int, workers: int
 ) -> None:
     """Write the slots of the vehicles of one kind in all worlds, see `Rig`."""
-    # One thread: waking a second one takes longer than 64 worlds of 40 actors.
     table, group, actors, looks, out = parts[0]
-    for w in range(looks.model.shape[0]):
-        for g in range(group.actor.shape[0]):
-            a, first = group.actor[g], group.slot[g]
-            model = looks.model[w, a] - group.first_model
-            axles = table.axles[model]
-            truck = trailer = _base_of(actors, w, a, axles.lean)
-            hitch = actors.hitch[w, a]
-            if hitch != 0.0:
-                x, y, turn = folded(hitch)
-                truck, trailer = _turned(truck, x, y, turn), _turned(truck, x, y, turn + hitch)
-            steered, rolled = _wheels_of(axles.radius, axles.wheelbase, actors, w, a)
+    count = group.actor.shape[0]
+    total = looks.model.shape[0] * count
+    for i in range(worker * total // workers, (worker + 1) * total // workers):
+        w, g = i // count, i % count
+        if actors.present[w, group.actor[g]]:
+            _pose_actor(parts[0], w, g)
+        else:
             for k in range(table.slot.shape[1]):
-                slot, part = first + k, table.slot[model, k]
-                if part.part < 0 or not actors.present[w, a]:
-                    out.part[w, slot] = -1
-                    continue
-                out.part[w, slot] = group.first_part + part.part
-                steer = steered if part.steered else (1.0, 0.0)
-                spin = rolled if part.z > 0.0 else (1.0, 0.0)
-                base = trailer if part.towed else truck
-                _pose_slot(out.pose[w, slot], base, (part.x, part.y, part.z), steer, spin)
-                for channel in range(3):
-                    out.colour[w, slot, channel] = looks.colour[w, a, channel]
+                out.part[w, group.slot[g] + k] = -1

@@ -11,7 +11,7 @@ from eyas.core.parallel import BoundKernel, Held
 from eyas.state.draw import DrawList
 from eyas.state.mesh import Mesh
 from eyas.state.motion import ActorState
-from eyas.targets.kind import Group, Looks
+from eyas.targets.kind import MANY, Group, Looks
 from eyas.targets.vehicles.bodies import body_levels
 from eyas.targets.vehicles.heavy import trailer_levels
 from eyas.targets.vehicles.models import VEHICLE_AHEAD, Axle, VehicleModel
@@ -65,7 +65,10 @@ class VehicleRig:
             held = tuple(map(Held.again, last.held, given))
         if last is None or not all(map(operator.is_, held, last.held)):
             last = self._last = _Call(held, pose_vehicles.bound(self._table, *held))
-        last.kernel()
+        if looks.model.shape[0] * len(group.actor) < MANY:
+            last.kernel()
+        else:
+            pose_vehicles(2, self._table, *held)
 
 
 def trailers_of(models: Sequence[VehicleModel]) -> tuple[int, ...]:

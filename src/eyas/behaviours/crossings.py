@@ -1,0 +1,121 @@
+"""Where pavements are joined by painted crossings."""
+
+from typing import Final, NamedTuple
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from eyas.behaviours.obstacles import Obstacles
+from eyas.behaviours.pavements import LANES, Way
+from eyas.state.scene import ObjectClass, Scene
+from eyas.world.roads.areas import joints, streets
+
+__all__ = ["Crossing", "crossings_of"]
+
+_BEYOND: Final = 3.0
+"""From the stop line to the line on which one crosses: within the bars of all maps [m]."""
+
+_PAVED: Final = 9.0
+"""How far from the kerb pavements are sought: corners are round [m]."""
+
+_STEP: Final = 0.2
+"""Distance between the points at which paint is sought [m]."""
+
+_PAINTED: Final = 0.3
+"""Least share of them that is painted: bars cover half of a crossing."""
+
+Floats = NDArray[np.float64]
+
+
+class Crossing(NamedTuple):
+    """From one way on a pavement over a road to another."""
+
+    way: int
+    along: float
+    """Where on the way it begins, from its first corner [m]."""
+    other: int
+    other_along: float
+    line: Floats
+    """Where it begins and ends [m], shape (2, 2)."""
+
+
+def crossings_of(
+    scene: Scene, ways: list[Way], obstacles: Obstacles, radius: float
+) -> list[Crossing]:
+    """Return the crossings between ways, in both directions.
+
+    Args:
+        scene: The map.
+        ways: The ways on its pavements.
+        obstacles: What stands in the way, without the roads.
+        radius: Distance to obstacles that is kept [m].
+    """
+    rings = [way.line for way in ways]
+    found = []
+    for right, left in _painted(scene, _across(scene)):
+        for lane in range(len(LANES)):
+            own = [k for k, way in enumerate(ways) if way.lane == lane]
+            ends = [_joint(rings, own, a, b) for a, b in ((right, left), (left, right))]
+            if ends[0] is None or ends[1] is None:
+                continue
+            (way, along), (other, other_along) = ends[0], ends[1]
+            feet = [rings[way].interpolate(along), rings[other].interpolate(other_along)]
+            line = shapely.get_coordinates(feet)
+            if obstacles.blocked(np.array([shapely.LineString(line)], object), radius)[0]:
+                continue
+            found.append(Crossing(way, along, other, other_along, line))
+            found.append(Crossing(other, other_along, way, along, line[::-1]))
+    return found
+
+
+def _across(scene: Scene) -> list[tuple[Floats, Floats]]:
+    """Return the right and the left kerb beyond each stop line, where it might be crossed."""
+    network, made = scene.network, []
+    meeting, every = joints(network), streets(network)
+    ways = {(street.start, street.end) for street in every}
+    for street in every:
+        if meeting[street.end] < 3 or len(street.right) < 2:
+            continue
+        onwards = street.right[-1] - street.right[-2]
+        onwards /= max(float(np.hypot(*onwards)), 1e-9)
+        leftwards = np.array([-onwards[1], onwards[0]])
+        width = float((street.left[-1] - street.right[-1]) @ leftwards)
+        right = street.right[-1] + _BEYOND * onwards
+        sides = 2.0 if (street.end, street.start) in ways else 1.0
+        made.append((right, right + sides * width * leftwards))
+    return made
+
+
+def _painted(scene: Scene, across: list[tuple[Floats, Floats]]) -> list[tuple[Floats, Floats]]:
+    """Return the lines on which a crossing is painted."""
+    kinds = scene.object_class[scene.static_object]
+    corners = scene.static.triangles[kinds == ObjectClass.MARKING]
+    paint = scene.static.positions[corners][..., :2].astype(np.float64)
+    tree = shapely.STRtree(shapely.polygons(paint) if len(paint) else [])
+    kept = []
+    for right, left in across:
+        count = max(int(np.hypot(*(left - right)) / _STEP), 1)
+        share = (np.arange(count) + 0.5)[:, None] / count
+        points = shapely.points(right + share * (left - right))
+        on_paint = np.unique(tree.query(points, predicate="intersects")[0])
+        if len(on_paint) >= _PAINTED * count:
+            kept.append((right, left))
+    return kept
+
+
+def _joint(
+    rings: list[shapely.LineString], own: list[int], kerb: Floats, opposite: Floats
+) -> tuple[int, float] | None:
+    """Return the way nearest to a kerb on the line from the other kerb, and the place on it."""
+    outwards = (kerb - opposite) / np.hypot(*(kerb - opposite))
+    line = shapely.LineString([0.5 * (kerb + opposite), kerb + _PAVED * outwards])
+    best, place = np.inf, None
+    for k in own:
+        met = shapely.get_coordinates(rings[k].intersection(line))
+        if len(met):
+            away = (met - kerb) @ outwards
+            if away.min() < best:
+                best = float(away.min())
+                place = k, float(rings[k].project(shapely.Point(met[away.argmin()])))
+    return place

@@ -1,0 +1,147 @@
+"""Those who cross roads: on the painted crossings, when no recorded vehicle comes."""
+
+import numpy as np
+import pytest
+
+from eyas.behaviours.config import Behaviour
+from eyas.behaviours.gaps import Gaps
+from eyas.behaviours.habits import HABITS
+from eyas.behaviours.lives import lasting
+from eyas.behaviours.scripted import Ground, scripted_table
+from eyas.behaviours.troop import Clock
+from eyas.core.errors import ConfigError, SpawnError
+from eyas.core.rng import stream
+from eyas.sim.assets import load_assets
+from eyas.sim.build import build_simulation
+from eyas.sim.config import SimConfig
+from eyas.sim.scenes import load_scene
+from eyas.sim.worlds import together
+from eyas.state.motion import SAMPLE, Motion
+from eyas.state.scene import ObjectClass
+from eyas.targets.catalogue import KINDS, MODELS, kind_index, models_of
+
+from .conftest import troop
+
+FIVE_MINUTES = Clock(3001, 10.0)
+
+
+@pytest.fixture(scope="module")
+def ground():
+    return Ground(load_scene("citystreet"), roads=True)
+
+
+@pytest.fixture(scope="module")
+def vehicles() -> Motion:
+    config = SimConfig()
+    motion = load_assets(config.world, config.traffic).traffic.motion
+    return motion._replace(table=motion.table[: FIVE_MINUTES.samples])
+
+
+def walked(ground, vehicles, count=24) -> np.ndarray:
+    who = troop("Pedestrian", behaviour=Behaviour.CROSSING)
+    who = who._replace(lives=lasting(count, FIVE_MINUTES.samples))
+    return scripted_table(ground, who, FIVE_MINUTES, stream(1, "crossing"), vehicles)
+
+
+@pytest.fixture(scope="module")
+def table(ground, vehicles):
+    return walked(ground, vehicles)
+
+
+def nearest(table, vehicles) -> float:
+    """The least distance of anyone to the box of a vehicle [m]."""
+    least = np.inf
+    for kind, one in zip(vehicles.kind.tolist(), vehicles.table.T, strict=True):
+        length, width, _ = np.array([MODELS[m].size for m in models_of(kind)]).max(axis=0)
+        cosine, sine = np.cos(one["yaw"])[:, None], np.sin(one["yaw"])[:, None]
+        east = table["x"] - one["x"][:, None] - KINDS[kind].ahead * cosine
+        north = table["y"] - one["y"][:, None] - KINDS[kind].ahead * sine
+        ahead = np.abs(east * cosine + north * sine) - length / 2
+        aside = np.abs(north * cosine - east * sine) - width / 2
+        away = np.hypot(np.maximum(ahead, 0.0), np.maximum(aside, 0.0))
+        least = min(least, float(away[one["present"] > 0.0].min()))
+    return least
+
+
+def test_no_car_ever_comes_within_a_metre_of_a_walker(table, vehicles):
+    assert nearest(table, vehicles) > 1.0
+
+
+def test_who_does_not_look_is_run_over(ground, vehicles):
+    """So the test above would see it."""
+    assert nearest(walked(ground, None), vehicles) < 0.2
+
+
+def on_road(table) -> np.ndarray:
+    return table["z"] < 0.05  # pavements are 15 cm high
+
+
+def test_many_cross_and_some_wait_at_the_kerb(table):
+    crossing = on_road(table)
+    begins = np.diff(crossing.astype(int), axis=0) == 1
+    assert begins.sum() > 40
+    assert (begins.sum(axis=0) > 0).mean() > 0.7
+    assert 0.03 < crossing.mean() < 0.2
+    speed = np.hypot(table["velocity_x"], table["velocity_y"])
+    standing = speed < 0.01
+    assert 0.02 < standing.mean() < 0.4
+    assert not (standing & crossing)[1:].any()  # nobody stops on the road
+
+
+def test_roads_are_crossed_on_paint_only(ground, table):
+    scene = ground.scene
+    kinds = scene.object_class[scene.static_object]
+    corners = scene.static.positions[scene.static.triangles[kinds == ObjectClass.MARKING]]
+    paint = corners[..., :2].mean(axis=1)
+    rows = table[on_road(table)]
+    places = np.column_stack([rows["x"], rows["y"]])[::20]
+    # Bars are 1.1 m apart and 5.6 m long; other paint is a line here and there.
+    near = np.array([(np.linalg.norm(paint - place, axis=1) < 4.0).sum() for place in places])
+    assert np.median(near) >= 8
+    assert (near >= 4).mean() > 0.98
+
+
+def test_their_motion_is_continuous_and_the_same_again(ground, vehicles, table):
+    habit = HABITS["Pedestrian"]
+    steps = [np.diff(table[axis].astype(np.float64), axis=0) for axis in "xy"]
+    step, gone = np.hypot(*steps), np.diff(table["travelled"].astype(np.float64), axis=0)
+    assert step.max() < 0.18  # at most 1.7 m/s
+    assert gone.min() > -1e-3
+    assert gone.sum() == pytest.approx(step.sum(), rel=0.01)
+    assert np.abs(np.diff(table["yaw"], axis=0)).max() <= habit.yaw_rate / 10.0 + 1e-4
+    assert walked(ground, vehicles).tobytes() == table.tobytes()
+
+
+def passing(x: np.ndarray) -> Motion:
+    """One car along the x axis, ten samples a second."""
+    table = np.zeros((len(x), 1), SAMPLE)
+    table["x"][:, 0], table["present"] = x, 1.0
+    return Motion(table, np.array([kind_index("passenger")], np.int32), 10.0, 0.0)
+
+
+LINE = np.array([[0.0, -5.0], [0.0, 5.0]])
+
+
+def test_a_gap_is_long_enough_for_who_crosses():
+    time = np.arange(601) / 10.0
+    # It passes the line after 20 s, with 10 m/s.
+    gaps = Gaps(passing(10.0 * (time - 20.0)), 601, 10.0)
+    assert gaps.first(LINE, 3.0, 7.0) == 3.0
+    assert 20.4 < gaps.first(LINE, 15.0, 7.0) < 22.0
+    assert gaps.first(LINE, 30.0, 7.0) == 30.0
+    assert Gaps(None, 601, 10.0).first(LINE, 15.02, 7.0) == 15.1
+
+
+def test_nobody_waits_longer_than_a_minute():
+    gaps = Gaps(passing(np.zeros(2001)), 2001, 10.0)
+    assert gaps.first(LINE, 3.0, 7.0) is None
+
+
+def test_maps_without_crossings_and_live_traffic_say_so():
+    hills = Ground(load_scene("village"), roads=False)
+    with pytest.raises(SpawnError, match=r"'crossing': 'village' has no pavement"):
+        walked(hills, None)
+    people = {"kind": "Pedestrian", "count": 3, "behaviour": "crossing"}
+    config = SimConfig(extras=[people], traffic={"source": "live"})
+    with pytest.raises(ConfigError, match=r"^extras\.0\.behaviour: 'crossing' is not allowed with"):
+        build_simulation(config, together(1))
