@@ -14,6 +14,7 @@ from eyas.task.done import DoneReason
 from eyas.trackers.config import TrackerConfig
 
 FLOWN, CAR = TrackerConfig(supervised=False), TrackerConfig(kind="car")
+REST = StartConfig(pitch=1.37, height=22.0, velocity="rest")
 
 
 def simulation_of(config, tracker, world_of=None, **changes):
@@ -24,7 +25,7 @@ def simulation_of(config, tracker, world_of=None, **changes):
 
 
 def test_a_drone_that_cannot_keep_up_with_its_commands_ends_by_its_distance(config):
-    simulation = simulation_of(config, FLOWN)
+    simulation = simulation_of(config, FLOWN, start=REST)
     fast, slow = [40.0, 0.0, 0.0, 0.0], [5.0, 0.0, 0.0, 0.0]
     reasons = [simulation.advance(np.array([fast, slow]), 25).reason for _ in range(40)]
     ended = [row[0] for row in reasons].index(DoneReason.DISTANCE)
@@ -60,7 +61,7 @@ def test_the_same_commands_begin_the_same_in_both_modes(config):
     commands = np.tile([2.0, -1.0, 0.001, 0.5], (2, 1))
     ends = []
     for tracker in (TrackerConfig(), FLOWN):
-        simulation = simulation_of(config, tracker)
+        simulation = simulation_of(config, tracker, start=REST)
         simulation.advance(commands, 40)
         ends.append(simulation.snapshot.trackers)
     supervised, flown = ends
@@ -78,9 +79,50 @@ def test_gentle_flying_keeps_the_target_in_view_as_long_as_a_supervised_drone(co
     assert not simulation.snapshot.trackers.euler[:, :2].any()
 
 
+@pytest.mark.parametrize("direction", [0.0, 2.0])
+def test_a_flown_drone_begins_as_fast_as_its_target_and_keeps_it_where_it_is(config, direction):
+    start = config.start.model_copy(update={"direction": direction})
+    simulation = simulation_of(config, FLOWN, each_alone(8), start=start)
+    trackers, _, targets, episodes, _ = simulation.snapshot
+    simulation.advance(np.full((8, 4), 2.0), 40)
+    simulation.reset()  # the second episode begins like the first
+    way = np.stack([np.cos(targets.yaw), np.sin(targets.yaw)], 1)
+    assert trackers.velocity[:, :2] == pytest.approx(targets.speed[:, None] * way)
+    assert targets.speed.max() > 9.0
+    assert not trackers.velocity[:, 2].any()
+    # No sensor feels a jolt, and the target stands still in view.
+    basic, _ = simulation.packets()
+    assert basic[:, 4:6] == pytest.approx(targets.speed[:, None] * way)
+    assert basic[:, 7:10] == pytest.approx(np.tile([0.0, 0.0, 9.81], (8, 1)), abs=1e-6)
+    commands = np.zeros((8, 4))
+    commands[:, 0] = np.cos(direction) * targets.speed
+    commands[:, 1] = -np.sin(direction) * targets.speed
+    simulation.advance(commands, 100)
+    assert episodes.reward.min() > 0.6
+
+
+def test_at_rest_as_in_the_original_it_falls_behind(config):
+    at_rest = simulation_of(config, FLOWN, each_alone(8), start=REST)
+    assert not at_rest.snapshot.trackers.velocity.any()
+    # Nothing else begins otherwise; what follows its commands at once has no velocity to keep.
+    going = simulation_of(config, FLOWN, each_alone(8))
+    for name in ("position", "orientation", "gimbal", "euler"):
+        there = [getattr(s.snapshot.trackers, name) for s in (at_rest, going)]
+        assert there[0] == pytest.approx(there[1], abs=1e-12)
+    commands = np.zeros((8, 4))
+    commands[:, 0] = going.snapshot.targets.speed
+    fast = commands[:, 0] > 8.0
+    for simulation in (at_rest, going):
+        simulation.advance(commands, 400)
+    behind, beside = (s.snapshot.episodes.reward[fast] for s in (at_rest, going))
+    assert beside.mean() > behind.mean() + 0.5
+    for tracker in (TrackerConfig(), CAR):
+        simulation = simulation_of(config, tracker)
+        assert not simulation.snapshot.trackers.velocity.any()
+
+
 def test_others_see_it_tilted_in_a_shared_world(config):
-    near = StartConfig(height=22.0, pitch=1.37)
-    simulation = simulation_of(config, FLOWN, together(2), start=near, same_target=True)
+    simulation = simulation_of(config, FLOWN, together(2), start=REST, same_target=True)
     trackers, cameras = simulation.snapshot.trackers, simulation.snapshot.cameras
     seen = {}
     for name, command in (("level", [0.0] * 4), ("tilted", [40.0, 0.0, 0.0, 0.0])):

@@ -31,6 +31,7 @@ from eyas.task.rules import Rules
 # The kernels and the memory of the tracker: those of the drone, unless `step_of` replaces them.
 from eyas.trackers.drone import advance, aim, carry, start
 from eyas.trackers.tracker import Tracker
+from eyas.trackers.tracker import stand as launch
 from eyas.traffic.interpolation import interpolate_actor
 
 __all__ = ["Orders", "Step", "StepKernels", "StepState", "Surroundings", "step_of"]
@@ -55,6 +56,8 @@ class StepState(NamedTuple):
     rules: Rules
     inertial_share: float
     """See `eyas.sensors.inertial.smoothing_share`."""
+    launched: int
+    """1: episodes begin at the velocity of the target; 0: at rest."""
 
 
 class Orders(NamedTuple):
@@ -115,21 +118,23 @@ class StepKernels(NamedTuple):
 
 def step_of(tracker: Tracker) -> StepKernels:
     """Return the step of a kind of tracker."""
-    return _step_of(tracker.start, tracker.advance, tracker.carry, tracker.aim)
+    return _step_of(tracker.start, tracker.launch, tracker.advance, tracker.carry, tracker.aim)
 
 
 @lru_cache(maxsize=16)
-def _step_of(start: Kernel, advance: Kernel, carry: Kernel, aim: Kernel) -> StepKernels:
+def _step_of(
+    start: Kernel, launch: Kernel, advance: Kernel, carry: Kernel, aim: Kernel
+) -> StepKernels:
     return StepKernels(
         fly=parallel_kernel(specialised(_fly, advance=advance, aim=aim)),
         carry=parallel_kernel(specialised(_carry, carry=carry, aim=aim)),
-        begin=parallel_kernel(specialised(_begin, start=start, aim=aim)),
+        begin=parallel_kernel(specialised(_begin, start=start, launch=launch, aim=aim)),
     )
 
 
 def _fly(parts: Parts, worker: int, workers: int) -> None:
     state, orders = parts[0]
-    snapshot, memory, around, rules, share = state[0]
+    snapshot, memory, around, rules, share, _ = state[0]
     trackers, cameras, targets, episodes, _ = snapshot
     steps, commands, active, _, _, _ = orders[0]
     for n in range(commands.shape[0]):
@@ -148,7 +153,7 @@ def _fly(parts: Parts, worker: int, workers: int) -> None:
 
 def _carry(parts: Parts, worker: int, workers: int) -> None:
     state, orders = parts[0]
-    snapshot, memory, around, rules, share = state[0]
+    snapshot, memory, around, rules, share, _ = state[0]
     trackers, cameras, targets, episodes, _ = snapshot
     steps = orders[0].steps
     for n in range(episodes.tick.shape[0]):
@@ -169,7 +174,7 @@ def _carry(parts: Parts, worker: int, workers: int) -> None:
 def _begin(parts: Parts, worker: int, workers: int) -> None:
     """Put trackers at their start poses and aim their cameras; target, tick and offset are set."""
     state, orders = parts[0]
-    snapshot, memory, around, rules, share = state[0]
+    snapshot, memory, around, rules, share, launched = state[0]
     trackers, cameras, targets, episodes, _ = snapshot
     _, _, _, starts, chosen, pitch = orders[0]
     for k in range(starts[0]):
@@ -179,6 +184,9 @@ def _begin(parts: Parts, worker: int, workers: int) -> None:
         _move_target(targets, episodes, n, around)
         x, y, z, yaw = offset_pose(targets.position[n], targets.yaw[n], episodes.start_offset[n])
         start(trackers, memory, n, x, y, z, yaw, pitch[k])
+        if launched == 1:
+            speed, way = targets.speed[n], targets.yaw[n]
+            launch(trackers, memory, n, speed * math.cos(way), speed * math.sin(way))
         rest(trackers, n, share)
         aim(trackers, memory, cameras, n)
         half_size = rewarded_size(cameras.field_of_view[n], rules)

@@ -18,6 +18,7 @@ from eyas.sim.senses import Senses
 from eyas.sim.step import Orders, StepState, Surroundings, step_of
 from eyas.sim.worlds import Worlds
 from eyas.state.snapshot import Snapshot
+from eyas.task.config import StartVelocity
 from eyas.task.rules import Rules
 from eyas.trackers.tracker import Tracker
 
@@ -57,6 +58,7 @@ class Stepper:
         self._around = Surroundings(assets.traffic.motion, terrain)
         smoothing = config.tracker.inertial_time_constant if tracker.jumps else 0.0
         self._share = smoothing_share(smoothing)
+        self._launched = int(config.start.velocity is StartVelocity.TARGET)
         self._kernels = step_of(tracker)
         self._orders = Orders.create(count)
         self._held_orders = Held(self._orders)
@@ -70,8 +72,9 @@ class Stepper:
 
     def obey(self, rules: Rules) -> None:
         """Judge by these rules from the next step on."""
-        state = Held(StepState(self._snapshot, self._memory, self._around, rules, self._share))
-        self._step = self._kernels.bound(state, self._held_orders)
+        snapshot, memory, around = self._snapshot, self._memory, self._around
+        state = StepState(snapshot, memory, around, rules, self._share, self._launched)
+        self._step = self._kernels.bound(Held(state), self._held_orders)
 
     def begin(
         self, chosen: NDArray[np.int64], pitch: Floats, key_of: Callable[[int], EpisodeKey]
