@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from eyas.core.errors import ConfigError
+from eyas.sensors.config import MountConfig
 from eyas.sim.build import build_simulation
 from eyas.sim.worlds import each_alone, together
 from eyas.state.draw import Picture
@@ -203,3 +204,33 @@ def test_settings_without_effect_or_out_of_range_are_told_in_one_line(values, li
     with pytest.raises(ConfigError) as caught:
         TrackerConfig(**values)
     assert str(caught.value).startswith(line)
+
+
+def test_a_fixed_camera_is_carried_by_the_body_and_tilts_with_it(config):
+    camera = config.camera.model_copy(
+        update={"mount": MountConfig(x=0.2, y=-0.1, z=0.3, pitch=1.37)}
+    )
+    simulation = simulation_of(config, FLOWN, camera=camera, start=REST)
+    trackers, cameras = simulation.snapshot.trackers, simulation.snapshot.cameras
+    begun = simulation.snapshot.episodes.reward.copy()
+    assert begun.min() > 0.9  # as with a gimbal: the target is in the middle
+    down = []
+    for _ in range(2):
+        yaw, pitch = trackers.euler[:, 2], trackers.euler[:, 1]
+        ahead = np.stack([np.cos(yaw), np.sin(yaw), 0 * yaw], 1)
+        left, up = np.stack([-ahead[:, 1], ahead[:, 0], 0 * yaw], 1), [0.0, 0.0, 1.0]
+        sine, cosine = np.sin(pitch)[:, None], np.cos(pitch)[:, None]
+        nose, top = cosine * ahead - sine * up, sine * ahead + cosine * np.array(up)
+        place = trackers.position + 0.2 * nose - 0.1 * left + 0.3 * top
+        assert cameras.position == pytest.approx(place, abs=2e-3)
+        assert cameras.rotation[:, 2, 0] == pytest.approx(-np.sin(1.37 + pitch), abs=1e-3)
+        down.append(cameras.rotation[:, 2, 0].copy())
+        assert simulation.packets()[1][:, 4] == pytest.approx([1.37] * 2)
+        simulation.advance(np.tile([9.0, 0.0, 0.0, 0.0], (2, 1)), 60)
+    assert np.abs(down[1] - down[0]).min() > 0.005
+    turned = simulation_of(
+        config, CAR, camera=config.camera.model_copy(update={"mount": MountConfig(yaw=0.5)})
+    )
+    assert turned.snapshot.cameras.position == pytest.approx(turned.snapshot.trackers.position)
+    direction = turned.snapshot.trackers.euler[:, 2] + 0.5
+    assert turned.snapshot.cameras.rotation[:, 0, 0] == pytest.approx(np.cos(direction))

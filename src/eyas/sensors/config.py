@@ -67,6 +67,9 @@ class CameraConfig(Config):
     """Horizontal [rad]; a variation is drawn anew for each tracker at each reset."""
     samples: Literal[1, 4] = 1
     """Samples per pixel."""
+    mount: MountConfig | None = None
+    """Where it is fixed to the body, so that it tilts with it; None: the tracker carries it, a drone
+    by a gimbal."""
 
 
 class LidarConfig(Config):

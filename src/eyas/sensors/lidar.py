@@ -17,6 +17,7 @@ from eyas.core.jit import step_kernel
 from eyas.core.parallel import Held, Pointer, parallel_kernel
 from eyas.sensors.chance import SEEDS, normal, uniform
 from eyas.sensors.config import LidarConfig, MountConfig
+from eyas.sensors.mount import turn_of
 from eyas.sensors.movers import find_boxes
 from eyas.sensors.obstacles import Obstacles
 from eyas.sensors.rays import Ray, cast_ray
@@ -84,7 +85,7 @@ class Lidar:
             obstacles,
             active,
             np.array([place.x, place.y, place.z]),
-            np.ascontiguousarray(self._ahead @ _turn_of(place)[:, :2].T),
+            np.ascontiguousarray(self._ahead @ turn_of(place)[:, :2].T),
             self._turned,
             self._seed,
             self._range,
@@ -156,18 +157,6 @@ class Lidar:
         number = last - (last - np.arange(self._points)) % self._points
         told: NDArray[Number] = np.take_along_axis(kept, number % kept.shape[1], axis=1)
         return told
-
-
-def _turn_of(mount: MountConfig) -> Floats:
-    """Return the rotation of a mount, sensor to body, shape (3, 3)."""
-    cr, sr = math.cos(mount.roll), math.sin(mount.roll)
-    cp, sp = math.cos(mount.pitch), math.sin(mount.pitch)
-    cy, sy = math.cos(mount.yaw), math.sin(mount.yaw)
-    about_x = np.array([[1.0, 0.0, 0.0], [0.0, cr, -sr], [0.0, sr, cr]])
-    about_y = np.array([[cp, 0.0, sp], [0.0, 1.0, 0.0], [-sp, 0.0, cp]])
-    about_z = np.array([[cy, -sy, 0.0], [sy, cy, 0.0], [0.0, 0.0, 1.0]])
-    turn: Floats = about_z @ about_y @ about_x
-    return turn
 
 
 class _Scan(NamedTuple):

@@ -9,7 +9,9 @@ from numpy.typing import NDArray
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.parallel import BoundKernel, Held
 from eyas.core.rng import EpisodeKey
+from eyas.sensors.config import MountConfig
 from eyas.sensors.inertial import smoothing_share
+from eyas.sensors.mount import mount_of
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.episodes import Draw
@@ -60,7 +62,9 @@ class Stepper:
         smoothing = config.tracker.inertial_time_constant if tracker.jumps else 0.0
         self._share = smoothing_share(smoothing)
         self._launched = int(config.start.velocity is StartVelocity.TARGET)
-        self._kernels = step_of(tracker)
+        mount = config.camera.mount
+        self._mount = mount_of(mount or MountConfig())
+        self._kernels = step_of(tracker, fixed_camera=mount is not None)
         self._orders = Orders.create(count)
         self._held_orders = Held(self._orders)
         active, bodies = self._orders.active, tracker.visible
@@ -76,7 +80,7 @@ class Stepper:
     def obey(self, rules: Rules) -> None:
         """Judge by these rules from the next step on."""
         snapshot, memory, around = self._snapshot, self._memory, self._around
-        state = StepState(snapshot, memory, around, rules, self._share, self._launched)
+        state = StepState(snapshot, memory, around, rules, self._share, self._mount, self._launched)
         self._step = self._kernels.bound(Held(state), self._held_orders)
 
     def begin(
