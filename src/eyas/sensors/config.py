@@ -68,8 +68,8 @@ class CameraConfig(Config):
     samples: Literal[1, 4] = 1
     """Samples per pixel."""
     mount: MountConfig | None = None
-    """Where it is fixed to the body, so that it tilts with it; None: the tracker carries it, a drone
-    by a gimbal."""
+    """Where it is fixed to the body, so that it tilts with it; None: the tracker carries it, on a
+    drone by a gimbal."""
 
 
 class LidarConfig(Config):

@@ -66,8 +66,10 @@ class LateSight:
 
     def record(self) -> None:
         """Remember the present state, after a physics step, or else the last exposure's."""
-        last, self._row = self._row, (self._row + 1) % self._kept
         exposed = self._exposed()
+        if self._kept == 1 and not exposed.any():
+            return  # the last exposure stays
+        last, self._row = self._row, (self._row + 1) % self._kept
         for past, now in zip(self._past, self._now, strict=True):
             if exposed.all():
                 past[self._row] = now
