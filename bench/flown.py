@@ -12,6 +12,7 @@ from eyas.modes.evaluation_plots import require_matplotlib
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
 from eyas.sim.worlds import each_alone
+from eyas.task.config import StartConfig, StartVelocity
 from eyas.trackers.config import TrackerConfig
 
 SPEEDS, STEPS = (2.0, 5.0, 10.0), 3000
@@ -20,7 +21,8 @@ COLOURS = ("#9db9cc", "#1b6ca8", "#c8553d")
 
 def flight(tracker: TrackerConfig) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Return speed ahead [m/s] and pitch [rad] in each step, shape (K, speeds)."""
-    simulation = build_simulation(SimConfig(tracker=tracker), each_alone(len(SPEEDS)))
+    start = StartConfig(velocity=StartVelocity.REST)
+    simulation = build_simulation(SimConfig(tracker=tracker, start=start), each_alone(len(SPEEDS)))
     simulation.reset()
     state = simulation.snapshot.trackers
     yaw = state.euler[:, 2].copy()

@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from eyas.sensors.obstacles import obstacles_of
+from eyas.sensors.obstacles import obstacles_of, solids_of
 from eyas.state.motion import SAMPLE, Motion
 from eyas.state.scene import Colliders, ObjectClass, Scene
 from eyas.state.snapshot import Snapshot
@@ -53,7 +53,7 @@ def motion_of(*cars):
     return Motion(table, np.zeros(table.shape[1], np.int32), 10.0, 0.0)
 
 
-def build(*poses, prisms=(), cylinders=(), relief=None, cars=(), model="BmwX5Simple"):
+def build(*poses, prisms=(), cylinders=(), relief=None, cars=(), model="BmwX5Simple", bodies=False):
     """Return a snapshot of trackers at poses (x, y, z, yaw) in one world, and their obstacles."""
     snapshot = Snapshot.create(len(poses))
     for n, (x, y, z, yaw) in enumerate(poses):
@@ -64,4 +64,6 @@ def build(*poses, prisms=(), cylinders=(), relief=None, cars=(), model="BmwX5Sim
     scene = scene_of(prisms, cylinders, relief)
     models = np.full((1, motion.table.shape[1]), model_index(model), np.int32)
     world = np.zeros(len(poses), np.int32)
-    return snapshot, obstacles_of(scene, motion, world, models)
+    trackers = snapshot.trackers if bodies else None
+    solids = solids_of(scene)
+    return snapshot, obstacles_of(solids, scene.terrain, motion, world, models, trackers)

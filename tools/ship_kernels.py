@@ -47,7 +47,7 @@ for settings in (
     {"tracker": {"kind": "car"}},
     {
         "lidar": {"enabled": True},
-        "sensors": {"imu": {"noise": 0.1}, "camera_noise": 1.0},
+        "sensors": {"imu": {"noise": 0.1}, "camera": {"noise": 1.0}},
         "done": {"crash": "contact"},
         "target": "Pedestrian",
     },

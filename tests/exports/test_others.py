@@ -36,7 +36,9 @@ def test_another_s_target_is_described_like_a_target(simulation):
     picture = picture_of(simulation, actors=simulation.actors)
     picture.actor_pixels[:] = 3, 4  # as if every actor was seen
     picture.actor_box[:] = 1, 2, 3, 4
-    target = frame_of(simulation.snapshot, 1, picture, 1, 0, Action(-1, None)).target
+    target = frame_of(
+        simulation.snapshot, simulation.snapshot.episodes, 1, picture, 1, 0, Action(-1, None)
+    ).target
     others = others_of(simulation, 0, picture, 0)
     own = ACTOR_OBJECT + int(simulation.snapshot.targets.actor[0])
     everyone = [ACTOR_OBJECT + actor for actor in range(simulation.actors)]

@@ -32,7 +32,8 @@ def write(folder: Path, frames: int, writers: list[Writer] | None = None) -> Epi
     picture.subject_pixels[:] = 4, 5
     for number in range(frames):
         picture.rgb[:] = 40 * number
-        files.add(frame_of(snapshot, 0, picture, 0, number, Action(-1, None), lidar=np.ones(400)))
+        action, now = Action(-1, None), snapshot.episodes
+        files.add(frame_of(snapshot, now, 0, picture, 0, number, action, lidar=np.ones(400)))
     return files
 
 

@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from eyas.sensors.config import LidarConfig
+from eyas.sensors.bodies import BODY
+from eyas.sensors.config import LidarConfig, MountConfig
 from eyas.sensors.lidar import MOUNT, Lidar
 from eyas.state.scene import ACTOR_OBJECT
 from eyas.state.terrain import Terrain
@@ -70,7 +71,7 @@ def test_points_begin_at_the_back_and_turn_clockwise(around):
 
 def test_what_is_lower_or_higher_or_too_near_or_too_far_is_not_seen(around):
     wall = [(2, -1), (3, -1), (3, 1), (2, 1)]
-    beam = 5.0 + MOUNT
+    beam = 5.0 + MOUNT.z
     for bottom, top, seen in ((0, beam - 0.01, 0), (beam + 0.01, 9, 0), (0, beam + 0.01, 1)):
         lidar = turned(around((0, 0, 5.0, 0), prisms=[(wall, bottom, top)]))
         assert np.isfinite(lidar.ranges()[0, 200]) == seen
@@ -91,7 +92,7 @@ def test_a_tilted_body_sees_the_ground(around):
     pitch = 0.5  # the nose is down
     snapshot.trackers.orientation[0] = math.cos(pitch / 2), 0.0, math.sin(pitch / 2), 0.0
     lidar = turned((snapshot, obstacles))
-    height = 2.0 + MOUNT * math.cos(pitch) + 0.1
+    height = 2.0 + MOUNT.z * math.cos(pitch) + 0.1
     assert lidar.ranges()[0, 200] == pytest.approx(height / math.sin(pitch))
     assert lidar.things()[0, 200] == 0
     assert np.isinf(lidar.ranges()[0, 0])  # the other side looks into the sky
@@ -103,7 +104,7 @@ def test_a_slope_is_as_far_as_its_plane(around):
     relief = np.tile((rise * grid + 20.0).astype(np.float32), (len(grid), 1))
     terrain = Terrain(0.0, relief, -40.0, -40.0, 4.0)
     lidar = turned(around((0, 0, 22.0, 0), relief=terrain))
-    assert lidar.ranges()[0, 200] == pytest.approx((2.0 + MOUNT) / rise, abs=1e-3)
+    assert lidar.ranges()[0, 200] == pytest.approx((2.0 + MOUNT.z) / rise, abs=1e-3)
     assert np.isinf(lidar.ranges()[0, [0, 100, 300]]).all()
 
 
@@ -190,5 +191,77 @@ def test_packets_hold_points_in_the_frame_of_the_lidar(around):
     assert np.isinf(points[~seen, :2]).all()
     assert not points[:, 2:4].any()
     filled = np.zeros((1, 400), np.float32)
-    lidar.filled(filled)
+    lidar.fill(filled)
     assert filled[0] == pytest.approx(np.where(seen, ranges, 12.0))
+
+
+def test_a_mount_moves_and_turns_it(around):
+    mount = MountConfig(x=1.0, y=-0.5, z=-0.3, yaw=0.6)
+    config = EXACT.model_copy(update={"mount": mount})
+    yaw = 0.9
+    lidar = turned(around((1.0, -0.5, 5.0, yaw), prisms=[(room(-6, -5, 6, 5), 0.0, 9.0)]), config)
+    x = 1.0 + math.cos(yaw) * 1.0 + math.sin(yaw) * 0.5
+    y = -0.5 + math.sin(yaw) * 1.0 - math.cos(yaw) * 0.5
+    direction = AZIMUTH + yaw + 0.6
+    along = np.where(np.cos(direction) > 0, 6.0 - x, -6.0 - x) / np.cos(direction)
+    across = np.where(np.sin(direction) > 0, 5.0 - y, -5.0 - y) / np.sin(direction)
+    assert lidar.ranges()[0] == pytest.approx(np.minimum(along, across), abs=1e-9)
+    beam = 5.0 - 0.3
+    for top, seen in ((beam - 0.01, False), (beam + 0.01, True)):
+        world = around((0.0, 0, 5.0, 0), prisms=[(room(-5, -5, 5, 5), 0.0, top)])
+        assert np.isfinite(turned(world, config).ranges()).all() == seen
+
+
+def test_a_mount_that_looks_down_or_rolls_sees_the_ground(around):
+    for turn, point in (({"pitch": 0.5}, 200), ({"roll": 0.5}, 300), ({"roll": -0.5}, 100)):
+        mount = MountConfig(z=-0.2, **turn)
+        config = EXACT.model_copy(update={"mount": mount})
+        ranges = turned(around((0, 0, 3.0, 0.3)), config).ranges()[0]
+        assert ranges[point] == pytest.approx((3.0 - 0.2 + 0.1) / math.sin(0.5))
+        assert np.isinf(ranges[(point + 200) % 400])
+        # A packet tells points in the frame of the lidar.
+        rows = turned(around((0, 0, 3.0, 0.3)), config).packets().reshape(400, 5)
+        assert math.hypot(*rows[point, :2]) == pytest.approx(ranges[point])
+        assert not rows[:, 2].any()
+
+
+def test_a_bias_is_one_number_for_all_distances_of_an_episode(around):
+    poses = [(0.0, 0.0, 5.0, 0.0)] * 300
+    world = around(*poses, prisms=[(room(-5, -5, 5, 5), 0, 9)])
+    exact, biased = turned(world), turned(world, EXACT.model_copy(update={"bias": 0.1}))
+    error = biased.ranges() - exact.ranges()
+    assert np.ptp(error, axis=1).max() < 1e-9
+    assert error[:, 0].std() == pytest.approx(0.1, rel=0.15)
+    assert abs(error[:, 0].mean()) < 4 * 0.1 / math.sqrt(300)
+
+
+def test_late_points_are_those_of_so_many_steps_ago(around):
+    snapshot, obstacles = around((0.0, 0, 5.0, 0), prisms=[(room(-5, -5, 5, 5), 0, 9)])
+    on_time, delayed = EXACT, EXACT.model_copy(update={"delay_steps": 60})
+    active = np.ones(1, np.bool_)
+    lidars = [Lidar(c, snapshot, obstacles, active, latest=50) for c in (on_time, delayed)]
+    for lidar in lidars:
+        lidar.begin(0, np.random.default_rng(0))
+        lidar.advance()
+    told = [(lidars[0].ranges(), lidars[0].packets())]
+    for step in range(1, 180):
+        snapshot.trackers.position[0, 0] = math.sin(0.05 * step)
+        snapshot.episodes.step_count[0] = step
+        snapshot.episodes.tick[0] = 1000 + step
+        for lidar in lidars:
+            lidar.advance()
+        told.append((lidars[0].ranges(), lidars[0].packets()))
+        for late in (0, 7, 50):
+            for lidar, own in ((lidars[0], 0), (lidars[1], 60)):
+                ranges, packets = told[max(step - late - own, 0)]
+                np.testing.assert_array_equal(lidar.ranges(np.array([late])), ranges)
+                np.testing.assert_array_equal(lidar.packets(np.array([late])), packets)
+
+
+def test_other_drones_are_seen(around):
+    poses = (0.0, 0.0, 5.0, 0.0), (4.0, 0.0, 5.0, 0.0)
+    lidar = turned(around(*poses, bodies=True))
+    assert lidar.ranges()[0, 200] == pytest.approx(4.0 - BODY[0] / 2)
+    assert lidar.ranges()[1, 0] == pytest.approx(4.0 - BODY[0] / 2)
+    assert lidar.things()[[0, 1], [200, 0]].tolist() == [ACTOR_OBJECT + 2, ACTOR_OBJECT + 1]
+    assert np.isinf(turned(around(*poses)).ranges()).all()

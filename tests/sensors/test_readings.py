@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from eyas.sensors.config import ReadingConfig, SensorsConfig
+from eyas.sensors.config import CameraErrors, ReadingConfig, SensorsConfig
 from eyas.sensors.grain import Grain
 from eyas.sensors.readings import READ_COLUMNS, Readings, has_errors
 from eyas.state.snapshot import Snapshot
@@ -39,7 +39,7 @@ class Flight:
 
 def test_without_errors_the_truth_is_read():
     assert not has_errors(SensorsConfig())
-    assert not has_errors(SensorsConfig(camera_noise=3.0))
+    assert not has_errors(SensorsConfig(camera=CameraErrors(noise=3.0)))
     assert all(has_errors(SensorsConfig(**{f: ReadingConfig(noise=1.0)})) for f in FIELDS)
     rows = Flight().fly(20)[:, 0]
     assert rows[:, 0].tolist() == list(range(21))
@@ -126,7 +126,7 @@ def test_sensors_do_not_share_random_numbers():
 
 
 def test_grain_has_its_deviation_and_each_step_its_own():
-    grain = Grain(6.0, 2)
+    grain = Grain(CameraErrors(noise=6.0), 2)
     for tracker in range(2):
         grain.begin(tracker, np.random.default_rng(tracker))
     step = np.array([5, 5])
@@ -146,3 +146,16 @@ def test_grain_has_its_deviation_and_each_step_its_own():
     dark = np.zeros((1, 8, 8, 3), np.uint8)
     grain.add(dark, np.array([0]), step)
     assert dark.max() < 40  # cut off at black, not around to white
+
+
+def test_the_cameras_bias_is_drawn_for_each_channel_and_episode():
+    assert Grain.of(CameraErrors(rate=30.0), 1) is None
+    grain = Grain.of(CameraErrors(bias=10.0), 200)
+    for tracker in range(200):
+        grain.begin(tracker, np.random.default_rng(tracker))
+    rgb = np.full((200, 6, 4, 3), 128, np.uint8)
+    grain.add(rgb, np.arange(200), np.zeros(200, np.int64))
+    error = rgb.astype(int) - 128
+    assert (error == error[:, :1, :1]).all()
+    assert error[:, 0, 0].std() == pytest.approx(10.0, rel=0.1)
+    assert abs(np.corrcoef(error[:, 0, 0, 0], error[:, 0, 0, 1])[0, 1]) < 0.25

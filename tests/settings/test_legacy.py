@@ -102,6 +102,13 @@ def test_the_originals_file_means_its_traffic(values):
     assert from_legacy(values, base).traffic.demand == "respawn"
 
 
+@pytest.mark.parametrize("values", [{}, *map(read, FILES)])
+def test_the_originals_file_means_a_start_at_rest(values):
+    assert EyasConfig().start.velocity == "target"
+    assert from_legacy(values).start.velocity == "rest"
+    assert from_legacy(values, EyasConfig()).start.velocity == "target"
+
+
 def test_traffic_that_lasts_is_a_key_of_ours_in_its_file():
     written = to_legacy(EyasConfig())
     assert written["Sumo_Params"]["keep_alive"] is True
@@ -199,7 +206,7 @@ def test_native_to_legacy_and_back_loses_nothing(config):
     assert from_legacy(written, config).model_copy(update={"original": None}) == config
     again = from_legacy(written)
     assert from_legacy(to_legacy(again)) == again
-    assert again.start == config.start
+    assert again.start == config.start.model_copy(update={"velocity": "rest"})
     assert again.light == config.light
     assert (again.world.map, again.world.weather) == (config.world.map, config.world.weather)
 

@@ -56,7 +56,9 @@ def test_a_target_on_foot_is_in_the_picture_and_in_the_labels(walk):
     picture = Picture.create(4, 120, 160, subject=True, class_id=True)
     walk.draw(np.arange(4, dtype=np.int32), picture)
     for tracker in range(4):
-        frame = frame_of(walk.snapshot, tracker, picture, tracker, 0, Action(-1, None))
+        frame = frame_of(
+            walk.snapshot, walk.snapshot.episodes, tracker, picture, tracker, 0, Action(-1, None)
+        )
         label = label_of(frame)
         assert (label.target_type, frame.target.object_class) == (
             frame.target.type,

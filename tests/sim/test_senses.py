@@ -3,13 +3,15 @@
 import numpy as np
 import pytest
 
-from eyas.sensors.config import LidarConfig, ReadingConfig, SensorsConfig
+from eyas.envs.information import information, of_one
+from eyas.sensors.config import CameraErrors, LidarConfig, ReadingConfig, SensorsConfig
 from eyas.sim.build import build_simulation
 from eyas.sim.worlds import each_alone, together
 from eyas.state.draw import Picture
-from eyas.state.scene import ObjectClass
+from eyas.state.scene import DRONE_CLASS, ObjectClass
 from eyas.task.config import Crash, StartConfig
 from eyas.task.done import DoneReason
+from eyas.trackers.config import TrackerConfig
 
 ALL = {
     "lidar": LidarConfig(enabled=True),
@@ -66,7 +68,7 @@ def test_what_is_sensed_depends_on_seed_and_tracker_only(config, assets):
         command[0] = 6.0, 2.0, 0.0, 0.5
         for steps in chunks:
             simulation.advance(command, steps)
-        lidar = simulation.lidar
+        lidar = simulation.perception.lidar
         return lidar.ranges()[0], lidar.packets()[0], simulation.packets()[0][0]
 
     first = seen(1, [4] * 30)
@@ -100,15 +102,35 @@ def test_a_drone_that_sinks_onto_its_target_crashes_into_it(config, assets):
 def test_trackers_of_one_world_and_those_that_wait_are_sensed_too(config, assets):
     shared = started(sensing(config, start=StartConfig(height=4.0)), 3, together)
     shared.advance(np.zeros((3, 4)), 8)
-    assert shared.lidar.ranges().shape == (3, 400)
+    assert shared.perception.lidar.ranges().shape == (3, 400)
     alone = started(sensing(config, start=StartConfig(height=4.0)), 2)
-    before = alone.lidar.ranges()[1]
+    before = alone.perception.lidar.ranges()[1]
     alone.advance(np.full((2, 4), 3.0), 40, np.array([True, False]))
-    np.testing.assert_array_equal(alone.lidar.ranges()[1], before)
+    np.testing.assert_array_equal(alone.perception.lidar.ranges()[1], before)
 
 
 def test_noise_of_the_camera_is_only_in_its_pictures(config, assets):
-    noisy = config.model_copy(update={"sensors": SensorsConfig(camera_noise=5.0)})
+    noisy = config.model_copy(update={"sensors": SensorsConfig(camera=CameraErrors(noise=5.0))})
     clean, grain = drawn(started(config)).astype(int), drawn(started(noisy)).astype(int)
     assert (grain - clean).std() == pytest.approx(5.0, rel=0.1)
     assert np.array_equal(grain, drawn(started(noisy)))
+
+
+def test_drones_of_a_shared_world_crash_into_each_other(config, assets):
+    shared = started(sensing(config, Crash.END, same_target=True), 2, together)
+    trackers, episodes = shared.snapshot.trackers, shared.snapshot.episodes
+    # Onto the other one, in an instant: where it is told to be is where it is.
+    trackers.position[1] = trackers.commanded_position[1] = trackers.position[0] + [0.5, 0, 0.1]
+    result = shared.advance(np.zeros((2, 4)), 101)
+    assert result.reason.tolist() == [DoneReason.CRASH] * 2
+    others = [65536 + shared.actors + 1, 65536 + shared.actors]
+    assert episodes.contact_object.tolist() == others
+    assert shared.classes_of(episodes.contact_object).tolist() == [DRONE_CLASS] * 2
+    info = of_one(information(shared), 0)
+    assert info["contact_class"] == "drone"
+    # Cars have no bodies.
+    car = config.model_copy(update={"tracker": TrackerConfig(kind="car")})
+    cars = started(sensing(car, Crash.CONTACT, same_target=True), 2, together)
+    cars.snapshot.trackers.commanded_position[1] = cars.snapshot.trackers.position[0]
+    cars.advance(np.zeros((2, 4)), 4)
+    assert 65536 + cars.actors not in cars.snapshot.episodes.contact_object

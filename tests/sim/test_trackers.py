@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from eyas.core.errors import ConfigError
+from eyas.sensors.config import MountConfig
 from eyas.sim.build import build_simulation
 from eyas.sim.worlds import each_alone, together
 from eyas.state.draw import Picture
@@ -14,6 +15,7 @@ from eyas.task.done import DoneReason
 from eyas.trackers.config import TrackerConfig
 
 FLOWN, CAR = TrackerConfig(supervised=False), TrackerConfig(kind="car")
+REST = StartConfig(pitch=1.37, height=22.0, velocity="rest")
 
 
 def simulation_of(config, tracker, world_of=None, **changes):
@@ -24,7 +26,7 @@ def simulation_of(config, tracker, world_of=None, **changes):
 
 
 def test_a_drone_that_cannot_keep_up_with_its_commands_ends_by_its_distance(config):
-    simulation = simulation_of(config, FLOWN)
+    simulation = simulation_of(config, FLOWN, start=REST)
     fast, slow = [40.0, 0.0, 0.0, 0.0], [5.0, 0.0, 0.0, 0.0]
     reasons = [simulation.advance(np.array([fast, slow]), 25).reason for _ in range(40)]
     ended = [row[0] for row in reasons].index(DoneReason.DISTANCE)
@@ -60,7 +62,7 @@ def test_the_same_commands_begin_the_same_in_both_modes(config):
     commands = np.tile([2.0, -1.0, 0.001, 0.5], (2, 1))
     ends = []
     for tracker in (TrackerConfig(), FLOWN):
-        simulation = simulation_of(config, tracker)
+        simulation = simulation_of(config, tracker, start=REST)
         simulation.advance(commands, 40)
         ends.append(simulation.snapshot.trackers)
     supervised, flown = ends
@@ -78,9 +80,50 @@ def test_gentle_flying_keeps_the_target_in_view_as_long_as_a_supervised_drone(co
     assert not simulation.snapshot.trackers.euler[:, :2].any()
 
 
+@pytest.mark.parametrize("direction", [0.0, 2.0])
+def test_a_flown_drone_begins_as_fast_as_its_target_and_keeps_it_where_it_is(config, direction):
+    start = config.start.model_copy(update={"direction": direction})
+    simulation = simulation_of(config, FLOWN, each_alone(8), start=start)
+    trackers, _, targets, episodes, _ = simulation.snapshot
+    simulation.advance(np.full((8, 4), 2.0), 40)
+    simulation.reset()  # the second episode begins like the first
+    way = np.stack([np.cos(targets.yaw), np.sin(targets.yaw)], 1)
+    assert trackers.velocity[:, :2] == pytest.approx(targets.speed[:, None] * way)
+    assert targets.speed.max() > 9.0
+    assert not trackers.velocity[:, 2].any()
+    # No sensor feels a jolt, and the target stands still in view.
+    basic, _ = simulation.packets()
+    assert basic[:, 4:6] == pytest.approx(targets.speed[:, None] * way)
+    assert basic[:, 7:10] == pytest.approx(np.tile([0.0, 0.0, 9.81], (8, 1)), abs=1e-6)
+    commands = np.zeros((8, 4))
+    commands[:, 0] = np.cos(direction) * targets.speed
+    commands[:, 1] = -np.sin(direction) * targets.speed
+    simulation.advance(commands, 100)
+    assert episodes.reward.min() > 0.6
+
+
+def test_at_rest_as_in_the_original_it_falls_behind(config):
+    at_rest = simulation_of(config, FLOWN, each_alone(8), start=REST)
+    assert not at_rest.snapshot.trackers.velocity.any()
+    # Nothing else begins otherwise; what follows its commands at once has no velocity to keep.
+    going = simulation_of(config, FLOWN, each_alone(8))
+    for name in ("position", "orientation", "gimbal", "euler"):
+        there = [getattr(s.snapshot.trackers, name) for s in (at_rest, going)]
+        assert there[0] == pytest.approx(there[1], abs=1e-12)
+    commands = np.zeros((8, 4))
+    commands[:, 0] = going.snapshot.targets.speed
+    fast = commands[:, 0] > 8.0
+    for simulation in (at_rest, going):
+        simulation.advance(commands, 400)
+    behind, beside = (s.snapshot.episodes.reward[fast] for s in (at_rest, going))
+    assert beside.mean() > behind.mean() + 0.5
+    for tracker in (TrackerConfig(), CAR):
+        simulation = simulation_of(config, tracker)
+        assert not simulation.snapshot.trackers.velocity.any()
+
+
 def test_others_see_it_tilted_in_a_shared_world(config):
-    near = StartConfig(height=22.0, pitch=1.37)
-    simulation = simulation_of(config, FLOWN, together(2), start=near, same_target=True)
+    simulation = simulation_of(config, FLOWN, together(2), start=REST, same_target=True)
     trackers, cameras = simulation.snapshot.trackers, simulation.snapshot.cameras
     seen = {}
     for name, command in (("level", [0.0] * 4), ("tilted", [40.0, 0.0, 0.0, 0.0])):
@@ -161,3 +204,33 @@ def test_settings_without_effect_or_out_of_range_are_told_in_one_line(values, li
     with pytest.raises(ConfigError) as caught:
         TrackerConfig(**values)
     assert str(caught.value).startswith(line)
+
+
+def test_a_fixed_camera_is_carried_by_the_body_and_tilts_with_it(config):
+    camera = config.camera.model_copy(
+        update={"mount": MountConfig(x=0.2, y=-0.1, z=0.3, pitch=1.37)}
+    )
+    simulation = simulation_of(config, FLOWN, camera=camera, start=REST)
+    trackers, cameras = simulation.snapshot.trackers, simulation.snapshot.cameras
+    begun = simulation.snapshot.episodes.reward.copy()
+    assert begun.min() > 0.9  # as with a gimbal: the target is in the middle
+    down = []
+    for _ in range(2):
+        yaw, pitch = trackers.euler[:, 2], trackers.euler[:, 1]
+        ahead = np.stack([np.cos(yaw), np.sin(yaw), 0 * yaw], 1)
+        left, up = np.stack([-ahead[:, 1], ahead[:, 0], 0 * yaw], 1), [0.0, 0.0, 1.0]
+        sine, cosine = np.sin(pitch)[:, None], np.cos(pitch)[:, None]
+        nose, top = cosine * ahead - sine * up, sine * ahead + cosine * np.array(up)
+        place = trackers.position + 0.2 * nose - 0.1 * left + 0.3 * top
+        assert cameras.position == pytest.approx(place, abs=2e-3)
+        assert cameras.rotation[:, 2, 0] == pytest.approx(-np.sin(1.37 + pitch), abs=1e-3)
+        down.append(cameras.rotation[:, 2, 0].copy())
+        assert simulation.packets()[1][:, 4] == pytest.approx([1.37] * 2)
+        simulation.advance(np.tile([9.0, 0.0, 0.0, 0.0], (2, 1)), 60)
+    assert np.abs(down[1] - down[0]).min() > 0.005
+    turned = simulation_of(
+        config, CAR, camera=config.camera.model_copy(update={"mount": MountConfig(yaw=0.5)})
+    )
+    assert turned.snapshot.cameras.position == pytest.approx(turned.snapshot.trackers.position)
+    direction = turned.snapshot.trackers.euler[:, 2] + 0.5
+    assert turned.snapshot.cameras.rotation[:, 0, 0] == pytest.approx(np.cos(direction))

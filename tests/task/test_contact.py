@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
+from eyas.sensors.bodies import BODY
 from eyas.state.scene import ACTOR_OBJECT
 from eyas.state.terrain import Terrain
 from eyas.targets.catalogue import MODELS, kind_of, model_index
-from eyas.task.contact import BODY, Contacts
+from eyas.task.contact import Contacts
 from eyas.task.done import DoneReason
 
 HALF, HIGH = BODY[0] / 2, BODY[2] / 2
@@ -151,3 +152,52 @@ def test_a_tilted_body_is_as_high_as_its_corners(around):
     assert not flat.step(0.0, 0.0, 0.0)
     world[0].trackers.orientation[0] = np.cos(0.3), np.sin(0.3), 0.0, 0.0  # 0.6 rad of roll
     assert flat.step(0.0, 0.0, 0.0)
+
+
+def meeting(around, speed, aside=0.0, **others):
+    """Two drones 10 m apart that fly towards each other, with the steps until they crash."""
+    poses = (0.0, 0.0, 20.0, 0.0), (10.0, aside, 20.0, 0.0)
+    flight = Flight(around(*poses, bodies=True, **others))
+    velocity = np.array([[speed, 0.0, 0.0], [-speed, 0.0, 0.0]])
+    flight.trackers.velocity[:] = velocity
+    steps = 0
+    while not flight.episodes.crash[0] and steps < 20.0 / (speed * 0.004):
+        flight.trackers.position[:] += velocity * 0.002
+        flight.step(0.0, 0.0, 0.0)
+        steps += 1
+    return flight, steps
+
+
+@pytest.mark.parametrize("speed", [1.0, 40.0, 3000.0])
+def test_drones_of_a_world_collide_at_any_speed(around, speed):
+    flight, steps = meeting(around, speed)
+    assert flight.episodes.crash.tolist() == [True, True]
+    assert steps == pytest.approx((10.0 - 2 * HALF) / (speed * 0.004), abs=2.01)
+    assert flight.episodes.contact_object.tolist() == [ACTOR_OBJECT + 2, ACTOR_OBJECT + 1]
+    assert np.abs(flight.episodes.contact[:, 1]).max() <= HALF + 1e-9
+    assert flight.episodes.contact[:, 2] == pytest.approx([20.0, 20.0])
+
+
+def test_drones_that_pass_each_other_do_not(around):
+    assert not meeting(around, 40.0, aside=2 * HALF + 0.01)[0].episodes.crash.any()
+    assert meeting(around, 40.0, aside=2 * HALF - 0.01)[0].episodes.crash.all()
+
+
+def test_nobody_collides_with_itself_nor_with_another_world(around):
+    flight = Flight(around(*[(0.0, 0.0, 20.0, 0.0)] * 3, bodies=True))
+    flight.step(0.0, 0.0, 0.0)
+    assert flight.episodes.crash.tolist() == [True] * 3
+    for bodies, worlds in ((False, [0, 0, 0]), (True, [0, 1, 2])):
+        snapshot, obstacles = around(*[(0.0, 0.0, 20.0, 0.0)] * 3, bodies=bodies)
+        model = np.tile(obstacles.movers.model, (3, 1))
+        movers = obstacles.movers._replace(world=np.array(worlds, np.int32), model=model)
+        apart = Flight((snapshot, obstacles._replace(movers=movers)))
+        apart.step(0.0, 0.0, 0.0)
+        assert not apart.episodes.crash.any()
+
+
+def test_a_tilted_drone_is_as_high_as_it_stands(around):
+    flight = Flight(around((0.0, 0.0, 20.0, 0.0), (0.0, 0.0, 20.5, 0.0), bodies=True))
+    assert not flight.step(0.0, 0.0, 0.0)
+    flight.trackers.orientation[1] = np.cos(0.4), np.sin(0.4), 0.0, 0.0
+    assert flight.step(0.0, 0.0, 0.0)

@@ -12,6 +12,7 @@ from eyas.state.terrain import Terrain
 from eyas.trackers.config import TrackerConfig
 from eyas.trackers.flown import FlightMemory, advance, aim, start
 from eyas.trackers.kinds import tracker_of
+from eyas.trackers.steady import launch
 
 FLAT = Terrain.flat(0.0)
 FLOWN = TrackerConfig(supervised=False)
@@ -65,6 +66,13 @@ def _fly(parts, worker, workers):
                 log.rotor[k, n, part] = memory.rotor[n, part]
 
 
+def _launch(parts, worker, workers):
+    trackers, memory, velocities = parts[0][0][0]
+    for n in range(velocities.shape[0]):
+        launch(trackers, memory, n, velocities[n, 0], velocities[n, 1])
+
+
+set_going = parallel_kernel(_launch)
 begin, fly = parallel_kernel(_begin), parallel_kernel(_fly)
 
 
@@ -85,6 +93,10 @@ class Drones:
     def start(self, poses):
         """Place them at x, y, z, yaw, pitch, shape (N, 5)."""
         begin(1, Held((self.trackers, self.memory, poses)))
+
+    def launch(self, velocities):
+        """Let them fly on at velocities towards east and north [m/s], shape (N, 2)."""
+        set_going(1, Held((self.trackers, self.memory, np.asarray(velocities, np.float64))))
 
     def fly(self, commands):
         """Fly commands, shape (K, 4) for all or (K, N, 4), one for each step of 2 ms."""

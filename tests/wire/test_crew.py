@@ -7,7 +7,7 @@ from PIL import Image
 from eyas.core.errors import SpawnError
 from eyas.sensors.config import LidarConfig
 from eyas.sim.build import build_simulation
-from eyas.sim.config import SimConfig
+from eyas.sim.config import ControlConfig, SimConfig
 from eyas.sim.simulation import Simulation
 from eyas.sim.worlds import together
 from eyas.state.draw import Picture
@@ -144,6 +144,28 @@ def test_the_fastest_commands_that_are_let_through_can_be_drawn(crews, speed):
 def test_the_radar_packet_is_that_of_the_lidar(crews):
     config = CONFIG.model_copy(update={"lidar": LidarConfig(enabled=True)})
     crew = crews(2, config)
-    for answer, row in zip(crew.play([RESET] * 2), crew.sim.lidar.packets(), strict=True):
+    for answer, row in zip(
+        crew.play([RESET] * 2), crew.sim.perception.lidar.packets(), strict=True
+    ):
         assert [float(word) for word in answer.radar.decode().split(",")] == row.tolist()
     assert [answer.radar for answer in crews(1).play([RESET])] == [None]
+
+
+def test_what_is_sensed_is_late_and_what_is_judged_is_not(crews):
+    late = {"control": ControlConfig(observation_latency_steps=8.0)}
+    lidar = {"lidar": LidarConfig(enabled=True)}
+    crew = crews(2, CONFIG.model_copy(update={**late, **lidar}))
+    now = crews(2, CONFIG.model_copy(update=lidar))
+    history = []
+    for actions in ([RESET] * 2, *[[AHEAD, HOVER]] * 5):
+        ours, theirs = crew.play(actions), now.play(actions)
+        history.append(theirs)
+        then = history[max(len(history) - 3, 0)]
+        for n in range(2):
+            basic, present, past = map(numbers, (ours[n], theirs[n], then[n]))
+            assert basic[1:20] == past[1:20]
+            assert [basic[0], *basic[20:]] == [present[0], *present[20:]]
+            assert ours[n].reward == theirs[n].reward
+            assert ours[n].radar == then[n].radar
+            assert ours[n].picture.result() == then[n].picture.result()
+    assert numbers(ours[0])[1:20] != numbers(theirs[0])[1:20]

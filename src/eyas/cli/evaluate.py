@@ -52,7 +52,8 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
         typer.Option(
             "--set",
             metavar="env.KEY=VALUE",
-            help="What the policy sees and does; tracker.KEY, control.KEY: another protocol.",
+            help="What the policy sees and does; tracker.KEY, control.KEY, start.velocity: "
+            "another protocol.",
         ),
     ] = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder to write to.")] = None,
@@ -139,10 +140,11 @@ def _changes(said: list[str]) -> dict[str, Any]:
     for text in said:
         path, equals, value = text.partition("=")
         keys = path.strip().split(".")
-        if not equals or keys[0] not in ("env", "tracker", "control") or not all(keys[1:] or [""]):
+        free = keys[0] in ("env", "tracker", "control") or keys == ["start", "velocity"]
+        if not equals or not free or not all(keys[1:] or [""]):
             raise ConfigError(
                 f"--set {text!r}: not allowed: env.KEY=VALUE, such as env.action_repeat=4, or "
-                "tracker.KEY or control.KEY; all else belongs to the protocol"
+                "tracker.KEY, control.KEY or start.velocity; all else belongs to the protocol"
             )
         group = changes
         for key in keys[:-1]:

@@ -52,7 +52,7 @@ _CRASH = 58
 _WORDS = {
     "done_reason": [reason.name.lower() for reason in DoneReason],
     "done_state": [reason.original for reason in DoneReason],
-    "contact_class": [*(kind.name.lower() for kind in ObjectClass), "nothing"],
+    "contact_class": [*(kind.name.lower() for kind in ObjectClass), "drone", "nothing"],
 }
 """What numbers mean."""
 
@@ -70,7 +70,7 @@ def information(simulation: Simulation) -> Info:
       visibility range [1/m]);
     - where `done.crash` means contacts, the place of the last one since the reset (`contact`, world
       frame [m]), the object that was touched (`contact_object`, as in `Picture.object_id`; -1:
-      none) and its `ObjectClass` (`contact_class`, -1: none);
+      none) and its `ObjectClass` (`contact_class`; `DRONE_CLASS`: another drone; -1: none);
     - the distances that the lidar has measured, if there is one (`lidar` [m], infinity where
       nothing was within range).
     """
@@ -89,8 +89,8 @@ def information(simulation: Simulation) -> Info:
         info["contact"] = episodes.contact.copy()
         info["contact_object"] = episodes.contact_object.copy()
         info["contact_class"] = simulation.classes_of(episodes.contact_object)
-    if simulation.lidar is not None:
-        info["lidar"] = simulation.lidar.ranges()
+    if (lidar := simulation.perception.lidar) is not None:
+        info["lidar"] = lidar.ranges()
     return info
 
 

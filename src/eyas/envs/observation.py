@@ -119,8 +119,9 @@ class Observer:
         if (sensors := self._latest.get(_Parts.SENSORS)) is not None:
             sensor_state(self._simulation, sensors)
         if (ranges := self._latest.get(_Parts.LIDAR)) is not None:
-            assert self._simulation.lidar is not None  # its space says so
-            self._simulation.lidar.filled(ranges)
+            seen = self._simulation.perception
+            assert seen.lidar is not None  # its space says so
+            seen.lidar.fill(ranges, seen.sight.late)
         if (privileged := self._latest.get(_Parts.PRIVILEGED)) is not None:
             privileged_state(self._simulation.snapshot, privileged)
 

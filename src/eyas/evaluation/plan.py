@@ -43,7 +43,7 @@ class Plan(Config):
     env: dict[str, Any] = {}  # noqa: RUF012  # pydantic copies it
     """Changes of what the policy sees and does."""
     settings: dict[str, Any] = {}  # noqa: RUF012  # the same
-    """Changes of `tracker` and `control`: another protocol."""
+    """Changes of `tracker`, `control` and `start.velocity`: another protocol."""
     batch: Annotated[int, Field(ge=1, le=4096)] = 64
     """Episodes that are flown together. A network's last bits may depend on it."""
 

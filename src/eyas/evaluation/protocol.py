@@ -35,6 +35,8 @@ world of its own, so that none shares its target."""
 
 
 _LATER: Mapping[str, Any] = {
+    "start.velocity": "rest",
+    "camera.mount": None,
     "control.action_latency_steps": 0.0,
     "control.observation_latency_steps": 0.0,
     "tracker.judged": None,

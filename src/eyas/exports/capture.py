@@ -8,6 +8,7 @@ from eyas.core.clock import PHYSICS_STEP
 from eyas.exports.frame import Action, Body, CameraPose, Floats, Frame, Subject
 from eyas.exports.movement import Movement
 from eyas.state.draw import Picture
+from eyas.state.episode import EpisodeState
 from eyas.state.scene import ACTOR_OBJECT
 from eyas.state.snapshot import CameraState, Snapshot, TrackerState
 from eyas.targets.catalogue import MODELS, kind_of
@@ -18,7 +19,8 @@ __all__ = ["frame_of"]
 
 
 def frame_of(  # noqa: PLR0913  # everything that a frame holds
-    snapshot: Snapshot,
+    shown: Snapshot,
+    now: EpisodeState,
     tracker: int,
     picture: Picture,
     view: int,
@@ -31,7 +33,8 @@ def frame_of(  # noqa: PLR0913  # everything that a frame holds
     """Return a frame that later steps and pictures do not change.
 
     Args:
-        snapshot: The state at the time of the frame.
+        shown: The state that the picture shows.
+        now: The episodes at the time of the frame, which is later if pictures are late.
         tracker: The tracker of the frame.
         picture: The picture, with the box and pixels of the target.
         view: The tracker's row in `picture`.
@@ -41,19 +44,18 @@ def frame_of(  # noqa: PLR0913  # everything that a frame holds
         lidar: Distances of its lidar, which nothing changes later.
         words: The target in words.
     """
-    episodes = snapshot.episodes
     return Frame(
         number=number,
-        time=float(episodes.tick[tracker]) * PHYSICS_STEP,
-        step=int(episodes.step_count[tracker]),
-        tracker=_body(snapshot.trackers, tracker),
-        camera=_camera(snapshot.cameras, tracker),
-        target=_target(snapshot, tracker, picture, view),
+        time=float(shown.episodes.tick[tracker]) * PHYSICS_STEP,
+        step=int(shown.episodes.step_count[tracker]),
+        tracker=_body(shown.trackers, tracker),
+        camera=_camera(shown.cameras, tracker),
+        target=_target(shown, tracker, picture, view),
         others=others,
         action=action,
-        reward=float(episodes.reward[tracker]),
-        direction=TargetDirection(episodes.direction[tracker]),
-        reason=DoneReason(episodes.reason[tracker]),
+        reward=float(now.reward[tracker]),
+        direction=TargetDirection(shown.episodes.direction[tracker]),
+        reason=DoneReason(now.reason[tracker]),
         rgb=None if picture.rgb is None else picture.rgb[view].copy(),
         depth=None if picture.depth is None else picture.depth[view].copy(),
         object_id=None if picture.object_id is None else picture.object_id[view].copy(),

@@ -118,7 +118,8 @@ class Subject:
 class Frame:
     """One picture of one tracker with all its data. Numbers are not rounded.
 
-    Its arrays are never changed, so writers may keep them.
+    Its arrays are never changed, so writers may keep them. If pictures are late, time and state are
+    those that the picture shows; action, reward and end are those of the present.
     """
 
     number: int
@@ -136,7 +137,7 @@ class Frame:
     writer wants them."""
     action: Action
     reward: float
-    """Reward at this time."""
+    """Present reward."""
     direction: TargetDirection
     """The turn of the target."""
     reason: DoneReason

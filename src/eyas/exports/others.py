@@ -29,7 +29,7 @@ def others_of(
     """Return all visible moving objects except the tracker's target, in the order of their ids.
 
     Args:
-        simulation: The simulation, at the time of the picture.
+        simulation: The simulation, whose agents see that picture.
         tracker: The tracker of the picture.
         picture: The picture, with the boxes and pixels of all actors, if they were measured.
         view: The tracker's row in `picture`.
@@ -37,10 +37,12 @@ def others_of(
     if picture.actor_pixels is None:
         return ()
     visible = picture.actor_pixels[view, :, 0] > 0
-    visible[simulation.snapshot.targets.actor[tracker]] = False
-    actors, models = simulation.actors_around(tracker)
+    sight = simulation.perception.sight
+    visible[sight.shown.targets.actor[tracker]] = False
+    age = sight.age_of(tracker)
+    actors, models = simulation.actors_around(tracker, age)
     (colours,) = simulation.looks_around(tracker).colour
-    before, _ = simulation.actors_around(tracker, ago=1)
+    before, _ = simulation.actors_around(tracker, age + 1)
     return tuple(
         replace(
             _subject(actors, before, actor, int(models[actor]), picture, view),

@@ -10,14 +10,18 @@ from eyas.core.variation import Variation, within
 
 __all__ = [
     "CameraConfig",
+    "CameraErrors",
     "ColourLayout",
     "Colours",
     "LidarConfig",
+    "MountConfig",
     "ReadingConfig",
     "SensorsConfig",
 ]
 
 Share = Annotated[float, Field(ge=0, le=1)]
+Metres = Annotated[float, Field(ge=-100, le=100)]
+Angle = Annotated[float, Field(ge=-6.3, le=6.3)]
 Deviation = Annotated[float, Field(ge=0, le=1e6)]
 
 
@@ -35,6 +39,23 @@ class ColourLayout(StrEnum):
     CHW = "chw"
 
 
+class MountConfig(Config):
+    """Where a sensor is fixed to the body, and how it is turned: by yaw, then pitch, then roll."""
+
+    x: Metres = 0.0
+    """Ahead of the body's middle [m]."""
+    y: Metres = 0.0
+    """Left of it [m]."""
+    z: Metres = 0.0
+    """Above it [m]."""
+    roll: Angle = 0.0
+    """[rad]"""
+    pitch: Angle = 0.0
+    """Positive down [rad]."""
+    yaw: Angle = 0.0
+    """Counter-clockwise [rad]."""
+
+
 class CameraConfig(Config):
     """A pinhole camera without distortion."""
 
@@ -46,6 +67,9 @@ class CameraConfig(Config):
     """Horizontal [rad]; a variation is drawn anew for each tracker at each reset."""
     samples: Literal[1, 4] = 1
     """Samples per pixel."""
+    mount: MountConfig | None = None
+    """Where it is fixed to the body, so that it tilts with it; None: the tracker carries it, on a
+    drone by a gimbal."""
 
 
 class LidarConfig(Config):
@@ -56,13 +80,20 @@ class LidarConfig(Config):
     points: Annotated[int, Field(ge=1, le=10_000)] = 400
     """Points of a turn; radar packets have five numbers for each."""
     frequency: Annotated[float, Field(gt=0, le=500)] = 12.0
-    """Turns per second [Hz]."""
+    """Turns per second, its rate [Hz]."""
+    mount: MountConfig | None = None
+    """Where it is fixed to the body; None: where the original has it, 3.1 cm above the middle of a
+    drone, or 10 cm behind that of a car."""
     min_range: Annotated[float, Field(ge=0, le=1e3)] = 0.2
     """Shortest distance that is measured [m]."""
     max_range: Annotated[float, Field(gt=0, le=1e3)] = 12.0
     """Longest distance that is measured [m]."""
     noise: Deviation = 0.01
     """Standard deviation of a distance [m]."""
+    bias: Deviation = 0.0
+    """Standard deviation of the constant error of all distances, drawn for each episode [m]."""
+    delay_steps: Annotated[int, Field(ge=0, le=500)] = 0
+    """Age of the newest point when it is told, in steps of 2 ms."""
     resolution: Annotated[float, Field(ge=0, le=10)] = 0.01
     """Distances are multiples of this [m]; 0: they are not rounded."""
     drop_out: Share = 0.0
@@ -76,7 +107,9 @@ class LidarConfig(Config):
 
 
 class ReadingConfig(Config):
-    """Errors of one sensor; by default it reads the truth at each physics step."""
+    """Errors of one sensor; by default it reads the truth at each physics step. Those of the lidar
+    have the same names (`LidarConfig`).
+    """
 
     rate: Annotated[float, Field(gt=0, le=500)] = 500.0
     """Readings per second [Hz]; in between, the last one is told."""
@@ -88,6 +121,16 @@ class ReadingConfig(Config):
     """Age of a reading when it is told, in steps of 2 ms."""
     drop_out: Share = 0.0
     """Probability that a reading is missing, so that the last one is told again."""
+
+
+class CameraErrors(ReadingConfig):
+    """Errors of the camera; by default there is a picture of each physics step, without noise."""
+
+    noise: Annotated[float, Field(ge=0, le=255)] = 0.0
+    """Standard deviation of each channel of each pixel, of 255."""
+    bias: Annotated[float, Field(ge=0, le=255)] = 0.0
+    """Standard deviation of the constant error that is drawn for each channel and episode, of
+    255."""
 
 
 class SensorsConfig(Config):
@@ -103,8 +146,8 @@ class SensorsConfig(Config):
     """Angular velocity [rad/s]."""
     imu: ReadingConfig = ReadingConfig()
     """Attitude: Euler angles [rad], and the same as a quaternion."""
-    camera_noise: Annotated[float, Field(ge=0, le=255)] = 0.0
-    """Standard deviation of each channel of each pixel, of 255."""
+    camera: CameraErrors = CameraErrors()
+    """Pictures."""
 
     @property
     def readings(self) -> tuple[ReadingConfig, ...]:

@@ -4,20 +4,19 @@ hedges, parked cars, benches.
 
 import math
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.state.mesh import Mesh, Surface
+from eyas.sensors.crowns import crown_slices, leaves_of
+from eyas.state.mesh import Mesh
 from eyas.state.scene import ObjectClass, Scene
 
 __all__ = ["Box", "Cylinder", "Furniture", "furniture"]
 
 _LONG = 1.4
 """Length over width from which leaves are a hedge, and no crown."""
-
-_CROWN = 0.85
-"""Radius of a crown's cylinder over that of its mesh, whose outermost leaves stand alone."""
 
 _TRUNK = 0.025
 """Radius of a trunk over the height of its tree."""
@@ -61,7 +60,7 @@ def furniture(scene: Scene) -> Furniture:
     """
     made, fixtures = Furniture([], []), scene.fixtures
     solid = {*scene.colliders.prism_object.tolist(), *scene.colliders.cylinder_object.tolist()}
-    spans: dict[tuple[int, bool], NDArray[np.float64] | None] = {}
+    spans: dict[tuple[int, bool], _Span | None] = {}
     pairs = zip(fixtures.prototype.tolist(), fixtures.object_id.tolist(), strict=True)
     for copy, (prototype, thing) in enumerate(pairs):
         tree = scene.object_class[thing] == ObjectClass.TREE
@@ -72,44 +71,50 @@ def furniture(scene: Scene) -> Furniture:
         span = spans[prototype, tree]
         if span is not None:
             pose = fixtures.pose[copy].astype(np.float64)
-            _add(made, span, pose, thing, tree=tree, trunk=thing not in solid)
+            _add(made, span, pose, thing, trunk=thing not in solid)
     return made
 
 
-def _span(mesh: Mesh, *, leaves: bool) -> NDArray[np.float64] | None:
-    """Return lowest and highest x, y, z of a mesh, or of its leaves if it has any, shape (2, 3)."""
-    chosen = np.ones(len(mesh.triangles), np.bool_)
-    if leaves:
-        foliage = [m.surface in (Surface.FOLIAGE, Surface.CROWN) for m in mesh.palette]
-        chosen = np.array(foliage, np.bool_)[mesh.materials]
-        chosen |= not chosen.any()
+class _Span(NamedTuple):
+    """The extent of a mesh, or of the leaves of a tree, in the mesh's frame."""
+
+    low: list[float]
+    """Lowest x, y, z [m]."""
+    high: list[float]
+    slices: list[tuple[float, float, float]]
+    """Bottom, top and radius of the cylinders of a crown [m]; none: it is a box."""
+
+
+def _span(mesh: Mesh, *, leaves: bool) -> _Span | None:
+    """Return the extent of a mesh, of its leaves if it is a tree with any; None if it is empty."""
+    chosen = leaves_of(mesh) if leaves else np.ones(len(mesh.triangles), np.bool_)
     corners = mesh.positions[np.unique(mesh.triangles[chosen])].astype(np.float64)
-    return np.stack([corners.min(axis=0), corners.max(axis=0)]) if len(corners) else None
+    if not len(corners):
+        return None
+    low, high = corners.min(axis=0), corners.max(axis=0)
+    length, width, _ = high - low
+    crown = leaves and max(length, width) <= _LONG * min(length, width)
+    slices = crown_slices(mesh, low, high) if crown else []
+    return _Span(low.tolist(), high.tolist(), slices)
 
 
 def _add(
-    made: Furniture,
-    span: NDArray[np.float64],
-    pose: NDArray[np.float64],
-    thing: int,
-    *,
-    tree: bool,
-    trunk: bool,
+    made: Furniture, span: _Span, pose: NDArray[np.float64], thing: int, *, trunk: bool
 ) -> None:
     """Add the solids of one copy."""
-    (west, south, low), (east, north, high) = span
-    length, width = east - west, north - south
-    bottom, top = pose[2, 2] * low + pose[2, 3], pose[2, 2] * high + pose[2, 3]
-    if not tree or max(length, width) > _LONG * min(length, width):
+    (west, south, low), (east, north, high) = span.low, span.high
+    foot, tall = float(pose[2, 3]), float(pose[2, 2])
+    bottom, top = tall * low + foot, tall * high + foot
+    if not span.slices:
         corners = np.array([[west, south], [east, south], [east, north], [west, north]])
         outline = corners @ pose[:2, :2].T + pose[:2, 3]
-        made.boxes.append(Box(outline, float(bottom), float(top), thing))
+        made.boxes.append(Box(outline, bottom, top, thing))
         return
     middle = pose[:2, :2] @ [0.5 * (west + east), 0.5 * (south + north)] + pose[:2, 3]
-    scale = math.hypot(pose[0, 0], pose[1, 0])
-    x, y, radius = float(middle[0]), float(middle[1]), _CROWN * 0.25 * scale * (length + width)
-    made.cylinders.append(Cylinder((x, y, radius), float(bottom), float(top), thing))
-    if trunk and bottom > pose[2, 3]:
-        foot, thick = float(pose[2, 3]), _TRUNK * float(top - pose[2, 3])
-        x, y = float(pose[0, 3]), float(pose[1, 3])
-        made.cylinders.append(Cylinder((x, y, thick), foot, float(bottom), thing))
+    x, y, scale = float(middle[0]), float(middle[1]), math.hypot(pose[0, 0], pose[1, 0])
+    for begin, end, radius in span.slices:
+        place = (x, y, scale * radius)
+        made.cylinders.append(Cylinder(place, tall * begin + foot, tall * end + foot, thing))
+    if trunk and bottom > foot:
+        place = (float(pose[0, 3]), float(pose[1, 3]), _TRUNK * (top - foot))
+        made.cylinders.append(Cylinder(place, foot, bottom, thing))

@@ -1,4 +1,4 @@
-"""Noise of the camera's sensor."""
+"""Noise and bias of the camera's sensor."""
 
 from typing import NamedTuple
 
@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from eyas.core.jit import thread_count
 from eyas.core.parallel import Held, Pointer, parallel_kernel
 from eyas.sensors.chance import SEEDS, mixed
+from eyas.sensors.config import CameraErrors
 
 __all__ = ["Grain"]
 
@@ -16,23 +17,31 @@ _DEVIATION = 147.8
 
 
 class Grain:
-    """Adds noise to the pictures of N trackers.
+    """Adds noise, and the bias of each episode, to the pictures of N trackers.
 
     The noise of a channel of a pixel is the sum of four random bytes, which is nearly normal. Each
     physics step has its own, so a picture that is drawn twice is the same.
 
     Args:
-        deviation: Its standard deviation, of 255.
+        config: Their deviations.
         count: N.
     """
 
-    def __init__(self, deviation: float, count: int) -> None:
-        self._scale = deviation / _DEVIATION
+    def __init__(self, config: CameraErrors, count: int) -> None:
+        self._scale = config.noise / _DEVIATION
+        self._deviation = config.bias
         self._seed = np.zeros(count, np.int64)
+        self._bias = np.zeros((count, 3))
+
+    @classmethod
+    def of(cls, config: CameraErrors, count: int) -> "Grain | None":
+        """Return the grain of some settings; None if they have none."""
+        return cls(config, count) if config.noise > 0.0 or config.bias > 0.0 else None
 
     def begin(self, tracker: int, rng: np.random.Generator) -> None:
         """Begin an episode."""
         self._seed[tracker] = rng.integers(SEEDS)
+        self._bias[tracker] = self._deviation * rng.standard_normal(3)
 
     def add(
         self,
@@ -48,7 +57,13 @@ class Grain:
             step: Physics steps of each tracker since its reset, shape (N,).
         """
         views = len(trackers)
-        work = _Work(rgb.reshape(views, -1), self._seed[trackers], step[trackers], self._scale)
+        work = _Work(
+            rgb.reshape(views, -1),
+            self._seed[trackers],
+            self._bias[trackers],
+            step[trackers],
+            self._scale,
+        )
         _add_noise(min(thread_count(), views), Held(work))
 
 
@@ -58,6 +73,8 @@ class _Work(NamedTuple):
     pixels: NDArray[np.uint8]
     """Shape (V, bytes of a picture)."""
     seed: NDArray[np.int64]
+    bias: NDArray[np.float64]
+    """Of each channel, shape (V, 3)."""
     step: NDArray[np.int64]
     scale: float
 
@@ -65,11 +82,11 @@ class _Work(NamedTuple):
 @parallel_kernel
 def _add_noise(parts: Pointer[tuple[Pointer[_Work]]], worker: int, workers: int) -> None:
     """Add noise to the pictures whose turn is this worker's."""
-    pixels, seed, step, scale = parts[0][0][0]
+    pixels, seed, bias, step, scale = parts[0][0][0]
     for view in range(worker, pixels.shape[0], workers):
         base = mixed(mixed(seed[view]) ^ (step[view] & 0xFFFFFFFF))
         for at in range(pixels.shape[1]):
             word = mixed(base ^ at)
             four = (word & 255) + ((word >> 8) & 255) + ((word >> 16) & 255) + (word >> 24)
-            value = pixels[view, at] + scale * (four - 510) + 0.5
+            value = pixels[view, at] + scale * (four - 510) + bias[view, at % 3] + 0.5
             pixels[view, at] = int(min(max(value, 0.0), 255.0))

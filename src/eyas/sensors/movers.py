@@ -1,11 +1,13 @@
-"""The boxes of the actors near a tracker."""
+"""The boxes of what moves near a tracker: actors, and the bodies of other trackers."""
 
 import math
 
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.jit import step_kernel
+from eyas.sensors.bodies import body_box
 from eyas.sensors.obstacles import Boxes, Movers
 from eyas.state.scene import ACTOR_OBJECT
+from eyas.state.snapshot import TrackerState
 from eyas.traffic.interpolation import ActorPose, interpolate_actor, sample_before
 
 __all__ = ["find_boxes"]
@@ -18,15 +20,15 @@ _SLACK = 20.0
 def find_boxes(
     movers: Movers, n: int, tick: int, place: tuple[float, float, float], reach: float, boxes: Boxes
 ) -> int:
-    """Find the actors that may be near a place; return their number.
+    """Find what moves and may be near a place; return its number.
 
     Args:
-        movers: The actors.
-        n: The tracker in whose world they are.
+        movers: What moves.
+        n: The tracker in whose world it is, and whose own body does not count.
         tick: Time in the traffic, in physics steps.
         place: World frame [m].
         reach: How far from the place anything matters, along each axis [m].
-        boxes: Where their boxes are written.
+        boxes: Where its boxes are written.
     """
     count, motion, time = 0, movers.motion, tick * PHYSICS_STEP
     row, world, far = sample_before(motion, time), movers.world[n], reach + _SLACK
@@ -47,7 +49,31 @@ def find_boxes(
         moved[0], moved[1], moved[2] = pose.x - before.x, pose.y - before.y, pose.z - before.z
         boxes.thing[count] = ACTOR_OBJECT + actor
         count += 1
+    bodies = movers.bodies
+    for other in range(bodies.position.shape[0]):
+        if other == n or movers.world[other] != world:
+            continue
+        at = bodies.position[other]
+        if abs(at[0] - place[0]) < far and abs(at[1] - place[1]) < far:
+            _write_body(bodies, other, boxes, count)
+            boxes.thing[count] = ACTOR_OBJECT + motion.table.shape[1] + other
+            count += 1
     return count
+
+
+@step_kernel
+def _write_body(bodies: TrackerState, other: int, boxes: Boxes, count: int) -> None:
+    """Write the box of a tracker's body, which stands upright around the tilted one."""
+    at, box = bodies.position[other], body_box(bodies.orientation[other])
+    for corner in range(4):
+        forward = box.half_length if corner == 0 or corner == 3 else -box.half_length
+        left = box.half_width if corner < 2 else -box.half_width
+        boxes.corners[4 * count + corner, 0] = at[0] + box.cosine * forward - box.sine * left
+        boxes.corners[4 * count + corner, 1] = at[1] + box.sine * forward + box.cosine * left
+    boxes.bottom[count] = at[2] - box.half_height
+    boxes.top[count] = at[2] + box.half_height
+    for axis in range(3):
+        boxes.moved[count, axis] = bodies.velocity[other, axis] * PHYSICS_STEP
 
 
 @step_kernel

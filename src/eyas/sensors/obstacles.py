@@ -10,10 +10,11 @@ from eyas.sensors.furniture import Box, Cylinder, furniture
 from eyas.sensors.grid import Grid, grid_of
 from eyas.state.motion import Motion
 from eyas.state.scene import ObjectClass, Scene
+from eyas.state.snapshot import TrackerState
 from eyas.state.terrain import Terrain
 from eyas.targets.catalogue import MODELS, kind_of
 
-__all__ = ["Boxes", "Movers", "Obstacles", "Solids", "obstacles_of"]
+__all__ = ["Boxes", "Movers", "Obstacles", "Solids", "obstacles_of", "solids_of"]
 
 Floats = NDArray[np.float64]
 
@@ -43,7 +44,7 @@ class Solids(NamedTuple):
 
 
 class Movers(NamedTuple):
-    """The actors around N trackers, in W worlds."""
+    """The actors, and the bodies of the others, around N trackers, in W worlds."""
 
     motion: Motion
     world: NDArray[np.int32]
@@ -54,21 +55,23 @@ class Movers(NamedTuple):
     """Length, width, height of each model [m], shape (M, 3)."""
     ahead: Floats
     """Distance of each model's middle ahead of its reference point [m], shape (M,)."""
+    bodies: TrackerState
+    """The N trackers, whose bodies others in their world meet; none: they have no bodies."""
 
 
 class Boxes(NamedTuple):
-    """Working memory: the upright boxes of the actors near one tracker at one time."""
+    """Working memory: the upright boxes of what moves near one tracker at one time, at most B."""
 
     corners: Floats
-    """Corners, counter-clockwise, those of box b from 4 b [m], shape (4 A, 2)."""
+    """Corners, counter-clockwise, those of box b from 4 b [m], shape (4 B, 2)."""
     bottom: Floats
-    """[m], shape (A,)."""
+    """[m], shape (B,)."""
     top: Floats
-    """[m], shape (A,)."""
+    """[m], shape (B,)."""
     moved: Floats
-    """Motion in the last physics step [m], shape (A, 3)."""
+    """Motion in the last physics step [m], shape (B, 3)."""
     thing: NDArray[np.int32]
-    """Object id of the actor, shape (A,)."""
+    """Object id, shape (B,)."""
 
 
 class Obstacles(NamedTuple):
@@ -81,25 +84,40 @@ class Obstacles(NamedTuple):
 
 
 def obstacles_of(
-    scene: Scene, motion: Motion, world: NDArray[np.int32], model: NDArray[np.int32]
+    solids: Solids,
+    terrain: Terrain,
+    motion: Motion,
+    world: NDArray[np.int32],
+    model: NDArray[np.int32],
+    bodies: TrackerState | None = None,
 ) -> Obstacles:
-    """Return the obstacles of a map with its traffic; the arguments are those of `Movers`."""
-    actors = model.shape[1]
+    """Return the obstacles of a map with its traffic.
+
+    Args:
+        solids: See `solids_of`.
+        terrain: The ground.
+        motion: See `Movers`, as for the next two.
+        world: Shape (N,).
+        model: Shape (W, A).
+        bodies: The trackers; None: these have no bodies.
+    """
     movers = Movers(
         motion=motion,
         world=world,
         model=model,
         size=np.array([known.size for known in MODELS], np.float64),
         ahead=np.array([kind_of(number).ahead for number in range(len(MODELS))], np.float64),
+        bodies=TrackerState.create(0) if bodies is None else bodies,
     )
+    most = model.shape[1] + len(movers.bodies.position)
     boxes = Boxes(
-        corners=np.zeros((4 * actors, 2)),
-        bottom=np.zeros(actors),
-        top=np.zeros(actors),
-        moved=np.zeros((actors, 3)),
-        thing=np.zeros(actors, np.int32),
+        corners=np.zeros((4 * most, 2)),
+        bottom=np.zeros(most),
+        top=np.zeros(most),
+        moved=np.zeros((most, 3)),
+        thing=np.zeros(most, np.int32),
     )
-    return Obstacles(solids_of(scene), scene.terrain, movers, boxes)
+    return Obstacles(solids, terrain, movers, boxes)
 
 
 def solids_of(scene: Scene) -> Solids:

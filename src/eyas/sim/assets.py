@@ -1,7 +1,8 @@
 """Data shared by simulations of the same map, weather and traffic; made once per process."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 
 import numpy as np
 
@@ -9,8 +10,9 @@ from eyas.behaviours.troop import Clock
 from eyas.core.errors import ConfigError
 from eyas.render.ahead import begin_ahead, drawing_is_ready
 from eyas.render.renderer import Renderer, build_renderer
+from eyas.sensors.obstacles import Solids
 from eyas.sim.crowd import NOBODY, Crowd, crowd_motions, vehicles_of
-from eyas.sim.scenes import load_geometry, load_scene
+from eyas.sim.scenes import load_geometry, load_scene, load_solids
 from eyas.sim.signals import SignalLights, lights_of
 from eyas.state.lighting import Lighting
 from eyas.state.motion import Motion, joined
@@ -44,6 +46,8 @@ class Assets:
     lighting: Lighting
     renderer: Renderer
     rigs: Rigs
+    solids: Callable[[], Solids]
+    """Returns what rays and bodies may meet, loaded when it is first asked for."""
     body_part: int = -1
     """Part of the renderer's library that a tracker looks like to others; -1: it has none."""
     signals: SignalLights | None = None
@@ -82,7 +86,8 @@ def load_assets(
     plan = _signal_plan(world.map, world.seed)
     signals = None if plan is None else lights_of(scene, plan, parts)
     renderer = _renderer(world, tuple(kinds), signals=signals is not None)
-    return Assets(scene, source, lighting, renderer, rigs, body_part, signals)
+    solids = partial(load_solids, world.map, world.seed, season)
+    return Assets(scene, source, lighting, renderer, rigs, solids, body_part, signals)
 
 
 @lru_cache(maxsize=4)

@@ -1,7 +1,7 @@
-"""Late commands and late sight: the delays of a radio link, a camera, an autopilot.
+"""Latencies, and late commands: the delays of a radio link or an autopilot.
 
-Both are whole physics steps of 2 ms, drawn for each tracker and episode. Nothing of this file is
-used, and no time is lost, where the settings have no delay.
+They are whole physics steps of 2 ms, drawn for each tracker and episode. No time is lost where the
+settings have no delay.
 """
 
 from collections.abc import Iterator
@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 
 from eyas.core.rng import EpisodeKey
 from eyas.core.variation import Variation, bounds, sample
-from eyas.state.snapshot import Snapshot
 
-__all__ = ["LateCommands", "LateSight"]
+__all__ = ["LateCommands", "Latency", "is_always_0"]
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -21,16 +20,22 @@ Integers = NDArray[np.int64]
 _NEVER = np.iinfo(np.int64).max
 
 
-def _is_off(latency: Variation) -> bool:
+def is_always_0(latency: Variation) -> bool:
     """Return whether a latency is always 0."""
     return bounds(latency) == (0.0, 0.0)
 
 
-class _Drawn:
+class Latency:
     """A latency of N trackers, drawn at each reset.
 
     Attributes:
         steps: The latency of each tracker in physics steps, shape (N,).
+        most: The longest that may be drawn.
+
+    Args:
+        latency: Physics steps.
+        name: Name of its random numbers.
+        count: N.
     """
 
     def __init__(self, latency: Variation, name: str, count: int) -> None:
@@ -39,6 +44,7 @@ class _Drawn:
         self.most = round(bounds(latency)[1])
 
     def draw(self, tracker: int, key: EpisodeKey) -> None:
+        """Draw the latency of a tracker's episode."""
         self.steps[tracker] = round(sample(self._latency, key.stream(self._name)))
 
 
@@ -53,7 +59,7 @@ class LateCommands:
     """
 
     def __init__(self, latency: Variation, count: int) -> None:
-        self._drawn = _Drawn(latency, "action_latency", count)
+        self._drawn = Latency(latency, "action_latency", count)
         # One command may come in each step: those under way, the one in force, and the new one.
         slots = self._drawn.most + 2
         self._commands = np.zeros((slots, count, 4))
@@ -63,7 +69,7 @@ class LateCommands:
     @classmethod
     def of(cls, latency: Variation, count: int) -> "LateCommands | None":
         """Return late commands; None if they are always in time."""
-        return None if _is_off(latency) else cls(latency, count)
+        return None if is_always_0(latency) else cls(latency, count)
 
     def draw(self, tracker: int, key: EpisodeKey) -> None:
         """Draw the latency of a tracker's episode, and forget the commands of the last one."""
@@ -92,65 +98,3 @@ class LateCommands:
             if last == steps or (slot[last] != slot[first]).any():
                 yield self._commands[slot[first], every], last - first
                 first = last
-
-
-class LateSight:
-    """What N trackers saw some time ago.
-
-    Attributes:
-        snapshot: Their state at that time; written in place.
-        told: What their sensors with errors told then; None: none has errors.
-
-    Args:
-        latency: Physics steps.
-        now: The present state.
-        told: What sensors with errors tell now, shape (N, ...); None: none has errors.
-    """
-
-    def __init__(self, latency: Variation, now: Snapshot, told: Floats | None) -> None:
-        count = len(now.light)
-        self.snapshot = Snapshot.create(count)
-        self._drawn = _Drawn(latency, "observation_latency", count)
-        self._now, self._seen = _arrays(now), _arrays(self.snapshot)
-        self.told = None if told is None else told.copy()
-        if told is not None and self.told is not None:
-            self._now.append(told)
-            self._seen.append(self.told)
-        self._past = [np.stack([array] * (self._drawn.most + 1)) for array in self._now]
-        self._row = 0
-        self._every = np.arange(count)
-        self._clock = now.episodes.step_count
-
-    @classmethod
-    def of(cls, latency: Variation, now: Snapshot, told: Floats | None) -> "LateSight | None":
-        """Return a late sight; None if it is always in time."""
-        return None if _is_off(latency) else cls(latency, now, told)
-
-    def draw(self, tracker: int, key: EpisodeKey) -> None:
-        """Draw the latency of a tracker's episode."""
-        self._drawn.draw(tracker, key)
-
-    def record(self) -> None:
-        """Remember the present state, after a physics step."""
-        self._row = (self._row + 1) % (self._drawn.most + 1)
-        for past, now in zip(self._past, self._now, strict=True):
-            past[self._row] = now
-
-    def begin(self, trackers: Integers) -> None:
-        """Remember the present state of trackers whose episodes have begun."""
-        for past, now in zip(self._past, self._now, strict=True):
-            past[self._row, trackers] = now[trackers]
-        self.see()
-
-    def see(self) -> None:
-        """Set `snapshot`; nothing from before the reset is seen."""
-        late = np.minimum(self._drawn.steps, self._clock)
-        rows = (self._row - late) % (self._drawn.most + 1)
-        for seen, past in zip(self._seen, self._past, strict=True):
-            seen[...] = past[rows, self._every]
-
-
-def _arrays(snapshot: Snapshot) -> list[NDArray[np.generic]]:
-    """Return all arrays of a snapshot."""
-    *records, light = snapshot
-    return [*(array for record in records for array in record), light]

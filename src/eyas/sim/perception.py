@@ -3,14 +3,15 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.sensors.grain import Grain
+from eyas.sensors.lidar import Lidar
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.light import LightChanges
 from eyas.sim.pictures import Pictures
+from eyas.sim.senses import Senses
+from eyas.sim.sight import Sight
 from eyas.sim.worlds import Worlds
 from eyas.state.draw import DrawStage, Picture
-from eyas.state.snapshot import Snapshot
 from eyas.task.packet_rows import SENSOR_COLUMNS, PacketRows
 from eyas.task.rules import Rules
 
@@ -20,10 +21,10 @@ Floats = NDArray[np.float64]
 
 
 class Perception:
-    """The sight of N trackers: of their present state, or of an earlier one.
+    """What N trackers, or those who record them, get to see: pictures, packets, the lidar.
 
     Attributes:
-        snapshot: That state, read at each call.
+        sight: The state that is seen, read at each call.
         pictures: Draws it.
 
     Args:
@@ -31,9 +32,8 @@ class Perception:
         assets: Scene and renderer.
         worlds: The worlds, with their moving objects.
         light: The light around each tracker.
-        grain: Noise of the cameras; None: they have none.
-        snapshot: The state.
-        told: What sensors with errors read, see `Readings.told`; None: none has errors.
+        senses: The sensors.
+        sight: The state that is seen.
         visible: Whether trackers see each other.
     """
 
@@ -43,16 +43,15 @@ class Perception:
         assets: Assets,
         worlds: Worlds,
         light: LightChanges,
-        grain: Grain | None,
-        snapshot: Snapshot,
-        told: Floats | None,
+        senses: Senses,
+        sight: Sight,
         *,
         visible: bool,
     ) -> None:
-        self.snapshot = snapshot
-        self.pictures = Pictures(config, assets, worlds, light, snapshot, visible=visible)
-        self._packets = PacketRows(snapshot, config.camera, assets.scene.terrain)
-        self._grain, self._told = grain, told
+        self.sight = sight
+        self.pictures = Pictures(config, assets, worlds, light, sight.shown, visible=visible)
+        self._packets = PacketRows(sight.snapshot, config.camera, assets.scene.terrain)
+        self._senses = senses
 
     def draw(
         self,
@@ -73,12 +72,18 @@ class Perception:
             self.pictures.draw(trackers, picture, until)
         else:
             self.pictures.draw_overlaid(trackers, picture, overlaid, until)
-        if self._grain is not None and picture.rgb is not None:
-            self._grain.add(picture.rgb, trackers, self.snapshot.episodes.step_count)
+        grain = self._senses.grain
+        if grain is not None and picture.rgb is not None:
+            grain.add(picture.rgb, trackers, self.sight.shown.episodes.step_count)
 
     def packets(self) -> tuple[Floats, Floats]:
         """Return copies of the basic packets (N, 22) and the reward packets (N, 60)."""
         basic, reward = self._packets.now()
-        if self._told is not None:
-            basic[:, SENSOR_COLUMNS] = self._told
+        if self.sight.told is not None:
+            basic[:, SENSOR_COLUMNS] = self.sight.told
         return basic, reward
+
+    @property
+    def lidar(self) -> Lidar | None:
+        """The lidars; what they tell is late by `sight.late`. None: there are none."""
+        return self._senses.lidar

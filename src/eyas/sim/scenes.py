@@ -1,8 +1,10 @@
-"""Scenes and their packed geometry: made once, kept on disk, shared by all weathers of a season."""
+"""Scenes, their packed geometry and their solids: made once, kept on disk, shared by all weathers
+of a season.
+"""
 
 import logging
 from collections.abc import Callable, Sequence
-from functools import lru_cache
+from functools import lru_cache, partial
 from importlib.metadata import version
 from typing import TypeVar
 
@@ -15,6 +17,7 @@ from eyas.render.ahead import other_is_ready
 from eyas.render.kernels.bundles import Geometry
 from eyas.render.pack.geometry import build_geometry
 from eyas.render.textures.library import build_textures
+from eyas.sensors.obstacles import Solids, solids_of
 from eyas.state.draw import PartLibrary
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import Scene
@@ -25,7 +28,7 @@ from eyas.world.maps import MAPS
 from eyas.world.street.signals import lens_levels
 from eyas.world.weather import Season
 
-__all__ = ["load_geometry", "load_network", "load_scene", "paint"]
+__all__ = ["load_geometry", "load_network", "load_scene", "load_solids", "paint"]
 
 _LOG = logging.getLogger("eyas")
 
@@ -33,6 +36,10 @@ Thing = TypeVar("Thing")
 
 _MAKERS = ("world", "mesh", "state", "core/rng.py")
 """Packages whose source files determine a scene."""
+
+
+_SHAPERS = ("sensors/furniture.py", "sensors/crowns.py", "sensors/grid.py", "sensors/obstacles.py")
+"""Files that make solids of a scene."""
 
 
 def load_network(map_name: str, seed: int) -> RoadNetwork:
@@ -56,6 +63,14 @@ def load_scene(map_name: str, seed: int = 0, season: Season = Season.SUMMER) -> 
         return recipe.scene(network, seed, season)
 
     return _cached(Kind.SCENE, (), _origin(map_name, seed, season, network), make, Scene)
+
+
+@lru_cache(maxsize=4)
+def load_solids(map_name: str, seed: int, season: Season) -> Solids:
+    """Return everything on a map that rays and bodies may meet."""
+    scene = load_scene(map_name, seed, season)
+    origin = _origin(map_name, seed, season, scene.network)
+    return _cached(Kind.SOLIDS, _SHAPERS, origin, partial(solids_of, scene), Solids)
 
 
 @lru_cache(maxsize=4)

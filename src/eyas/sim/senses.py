@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.rng import EpisodeKey
+from eyas.core.variation import bounds
 from eyas.sensors.grain import Grain
-from eyas.sensors.lidar import Lidar
+from eyas.sensors.lidar import CAR_MOUNT, MOUNT, Lidar
 from eyas.sensors.obstacles import Obstacles, obstacles_of
 from eyas.sensors.readings import Readings, has_errors
 from eyas.sim.assets import Assets
@@ -20,6 +21,7 @@ from eyas.sim.worlds import Worlds
 from eyas.state.snapshot import Snapshot
 from eyas.task.config import Crash
 from eyas.task.contact import Contacts
+from eyas.trackers.config import TrackerKind
 
 __all__ = ["Senses"]
 
@@ -43,6 +45,7 @@ class Senses:
         worlds: The worlds of the trackers.
         snapshot: Their state.
         active: Whether each moves in a step, shape (N,); read at each.
+        bodies: Whether they have bodies, which others meet.
     """
 
     def __init__(
@@ -52,23 +55,31 @@ class Senses:
         worlds: Worlds,
         snapshot: Snapshot,
         active: NDArray[np.bool_],
+        *,
+        bodies: bool,
     ) -> None:
         self.lidar: Lidar | None = None
         self.readings: Readings | None = None
-        self.grain: Grain | None = None
         self._contacts: Contacts | None = None
         crash = config.done.crash
         if config.lidar.enabled or crash is not Crash.ORIGINAL:
-            motion = assets.traffic.motion
-            obstacles = obstacles_of(assets.scene, motion, worlds.of, worlds.models)
+            obstacles = obstacles_of(
+                assets.solids(),
+                assets.scene.terrain,
+                assets.traffic.motion,
+                worlds.of,
+                worlds.models,
+                snapshot.trackers if bodies else None,
+            )
             if crash is not Crash.ORIGINAL:
                 self._contacts = _contacts(config, snapshot, obstacles, active)
             if config.lidar.enabled:
-                self.lidar = Lidar(config.lidar, snapshot, obstacles, active)
+                latest = round(bounds(config.control.observation_latency_steps)[1])
+                mount = CAR_MOUNT if config.tracker.kind is TrackerKind.CAR else MOUNT
+                self.lidar = Lidar(config.lidar, snapshot, obstacles, active, latest, mount)
         if has_errors(config.sensors):
             self.readings = Readings(config.sensors, snapshot, active)
-        if config.sensors.camera_noise > 0.0:
-            self.grain = Grain(config.sensors.camera_noise, len(active))
+        self.grain = Grain.of(config.sensors.camera, len(active))
         # Contacts come first: they may end the episode that the others then see.
         self._following = [
             sense for sense in (self._contacts, self.lidar, self.readings) if sense is not None

@@ -7,12 +7,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import physics_steps
-from eyas.sensors.lidar import Lidar
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.episodes import Episodes
 from eyas.sim.light import LightChanges
 from eyas.sim.perception import Perception
+from eyas.sim.sight import Sight
 from eyas.sim.stepper import Stepper
 from eyas.sim.worlds import Worlds
 from eyas.state.draw import DrawStage, Picture
@@ -50,7 +50,7 @@ class Simulation:
         count: N.
         traffic: Everything that moves by itself; live traffic takes reactions.
         snapshot: The state of everything; its arrays are written in place by each step.
-        perception: What agents see of it: now, or, with a latency, earlier.
+        perception: What agents see of it, now or late.
         judged: Whether views are rewarded and limits end episodes, see `TrackerConfig.judged`.
 
     Args:
@@ -71,15 +71,12 @@ class Simulation:
         light = LightChanges(config.light, assets.lighting, worlds, self.snapshot.light)
         self._worlds = worlds
         self._stepper = Stepper(config, assets, tracker, worlds, self.snapshot)
-        self._senses, past = self._stepper.senses, self._stepper.past
-        draws = self._stepper.draws
+        senses, sight, draws = self._stepper.senses, self._stepper.sight, self._stepper.draws
         self._episodes = Episodes(config, assets.traffic, worlds, light, self.snapshot, draws)
-        view = partial(
-            Perception, config, assets, worlds, light, self._senses.grain, visible=tracker.visible
-        )
-        self._view = self.perception = view(self.snapshot, self._senses.told)
-        if past:
-            self.perception = view(past.snapshot, past.told)
+        view = partial(Perception, config, assets, worlds, light, senses, visible=tracker.visible)
+        self._view = self.perception = view(sight)
+        if sight.is_late:
+            self._view = view(Sight.on_time(self.snapshot, senses.told))
         rules = make_rules(config.reward, config.done, config.camera)
         own = config.tracker.judged
         self.judged = tracker.judged if own is None else own
@@ -195,16 +192,11 @@ class Simulation:
         """
         return self._view.packets()
 
-    @property
-    def lidar(self) -> Lidar | None:
-        """The lidars of the trackers; None if `lidar.enabled` is false."""
-        return self._senses.lidar
-
     def classes_of(self, objects: NDArray[np.integer]) -> NDArray[np.int64]:
-        """Return the `ObjectClass` of objects, -1 for the id -1, shape (K,).
+        """Return the `ObjectClass` of objects, or `DRONE_CLASS`; -1 for the id -1, shape (K,).
 
         Args:
-            objects: Object ids as in `Picture.object_id`, but not those of trackers, shape (K,).
+            objects: Object ids as in `Picture.object_id`, shape (K,).
         """
         return self._worlds.classes_of(objects)
 

@@ -17,6 +17,8 @@ from eyas.core.clock import PHYSICS_STEP
 from eyas.core.jit import specialised, step_kernel
 from eyas.core.parallel import BoundKernel, Held, Pointer, parallel_kernel
 from eyas.sensors.inertial import feel, rest
+from eyas.sensors.mount import Mount, fixed, left_on_gimbal
+from eyas.sensors.mount import left_on_gimbal as carried
 from eyas.state.episode import EpisodeState
 from eyas.state.motion import Motion
 from eyas.state.snapshot import Snapshot, TargetState
@@ -31,6 +33,7 @@ from eyas.task.rules import Rules
 # The kernels and the memory of the tracker: those of the drone, unless `step_of` replaces them.
 from eyas.trackers.drone import advance, aim, carry, start
 from eyas.trackers.tracker import Tracker
+from eyas.trackers.tracker import stand as launch
 from eyas.traffic.interpolation import interpolate_actor
 
 __all__ = ["Orders", "Step", "StepKernels", "StepState", "Surroundings", "step_of"]
@@ -55,6 +58,10 @@ class StepState(NamedTuple):
     rules: Rules
     inertial_share: float
     """See `eyas.sensors.inertial.smoothing_share`."""
+    mount: Mount
+    """Where cameras are that no gimbal carries."""
+    launched: int
+    """1: episodes begin at the velocity of the target; 0: at rest."""
 
 
 class Orders(NamedTuple):
@@ -113,23 +120,34 @@ class StepKernels(NamedTuple):
         return Step(*(kernel.bound(state, orders) for kernel in self))
 
 
-def step_of(tracker: Tracker) -> StepKernels:
-    """Return the step of a kind of tracker."""
-    return _step_of(tracker.start, tracker.advance, tracker.carry, tracker.aim)
+def step_of(tracker: Tracker, *, fixed_camera: bool = False) -> StepKernels:
+    """Return the step of a kind of tracker, whose camera it carries, or has fixed to its body."""
+    carried = fixed if fixed_camera else left_on_gimbal
+    return _step_of(
+        tracker.start, tracker.launch, tracker.advance, tracker.carry, tracker.aim, carried
+    )
 
 
 @lru_cache(maxsize=16)
-def _step_of(start: Kernel, advance: Kernel, carry: Kernel, aim: Kernel) -> StepKernels:
+def _step_of(
+    start: Kernel,
+    launch: Kernel,
+    advance: Kernel,
+    carry: Kernel,
+    aim: Kernel,
+    carried: Kernel,
+) -> StepKernels:
+    seen: dict[str, Kernel] = {"aim": aim, "carried": carried}
     return StepKernels(
-        fly=parallel_kernel(specialised(_fly, advance=advance, aim=aim)),
-        carry=parallel_kernel(specialised(_carry, carry=carry, aim=aim)),
-        begin=parallel_kernel(specialised(_begin, start=start, aim=aim)),
+        fly=parallel_kernel(specialised(_fly, advance=advance, **seen)),
+        carry=parallel_kernel(specialised(_carry, carry=carry, **seen)),
+        begin=parallel_kernel(specialised(_begin, start=start, launch=launch, **seen)),
     )
 
 
 def _fly(parts: Parts, worker: int, workers: int) -> None:
     state, orders = parts[0]
-    snapshot, memory, around, rules, share = state[0]
+    snapshot, memory, around, rules, share, mount, _ = state[0]
     trackers, cameras, targets, episodes, _ = snapshot
     steps, commands, active, _, _, _ = orders[0]
     for n in range(commands.shape[0]):
@@ -142,13 +160,14 @@ def _fly(parts: Parts, worker: int, workers: int) -> None:
             episodes.tick[n] += 1
             _move_target(targets, episodes, n, around)
             aim(trackers, memory, cameras, n)
+            carried(trackers, cameras, n, mount)
             observe(trackers, cameras, targets, episodes, n, around.terrain, rules, half_size)
             judge(trackers, targets, episodes, n, around.terrain, rules)
 
 
 def _carry(parts: Parts, worker: int, workers: int) -> None:
     state, orders = parts[0]
-    snapshot, memory, around, rules, share = state[0]
+    snapshot, memory, around, rules, share, mount, _ = state[0]
     trackers, cameras, targets, episodes, _ = snapshot
     steps = orders[0].steps
     for n in range(episodes.tick.shape[0]):
@@ -162,6 +181,7 @@ def _carry(parts: Parts, worker: int, workers: int) -> None:
             carry(trackers, memory, n, x, y, z, yaw)
             feel(trackers, n, share)
             aim(trackers, memory, cameras, n)
+            carried(trackers, cameras, n, mount)
             observe(trackers, cameras, targets, episodes, n, around.terrain, rules, half_size)
             judge(trackers, targets, episodes, n, around.terrain, rules)
 
@@ -169,7 +189,7 @@ def _carry(parts: Parts, worker: int, workers: int) -> None:
 def _begin(parts: Parts, worker: int, workers: int) -> None:
     """Put trackers at their start poses and aim their cameras; target, tick and offset are set."""
     state, orders = parts[0]
-    snapshot, memory, around, rules, share = state[0]
+    snapshot, memory, around, rules, share, mount, launched = state[0]
     trackers, cameras, targets, episodes, _ = snapshot
     _, _, _, starts, chosen, pitch = orders[0]
     for k in range(starts[0]):
@@ -179,8 +199,12 @@ def _begin(parts: Parts, worker: int, workers: int) -> None:
         _move_target(targets, episodes, n, around)
         x, y, z, yaw = offset_pose(targets.position[n], targets.yaw[n], episodes.start_offset[n])
         start(trackers, memory, n, x, y, z, yaw, pitch[k])
+        if launched == 1:
+            speed, way = targets.speed[n], targets.yaw[n]
+            launch(trackers, memory, n, speed * math.cos(way), speed * math.sin(way))
         rest(trackers, n, share)
         aim(trackers, memory, cameras, n)
+        carried(trackers, cameras, n, mount)
         half_size = rewarded_size(cameras.field_of_view[n], rules)
         observe(trackers, cameras, targets, episodes, n, around.terrain, rules, half_size)
 

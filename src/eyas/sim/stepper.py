@@ -9,15 +9,19 @@ from numpy.typing import NDArray
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.parallel import BoundKernel, Held
 from eyas.core.rng import EpisodeKey
+from eyas.sensors.config import MountConfig
 from eyas.sensors.inertial import smoothing_share
+from eyas.sensors.mount import mount_of
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.episodes import Draw
-from eyas.sim.latency import LateCommands, LateSight
+from eyas.sim.latency import LateCommands
 from eyas.sim.senses import Senses
+from eyas.sim.sight import Sight
 from eyas.sim.step import Orders, StepState, Surroundings, step_of
 from eyas.sim.worlds import Worlds
 from eyas.state.snapshot import Snapshot
+from eyas.task.config import StartVelocity
 from eyas.task.rules import Rules
 from eyas.trackers.tracker import Tracker
 
@@ -32,7 +36,7 @@ class Stepper:
 
     Attributes:
         senses: What is sensed after each physics step.
-        past: What agents see late; None if they see the present.
+        sight: What agents see.
         draws: Called with each tracker and the key of its episode that begins.
 
     Args:
@@ -57,21 +61,27 @@ class Stepper:
         self._around = Surroundings(assets.traffic.motion, terrain)
         smoothing = config.tracker.inertial_time_constant if tracker.jumps else 0.0
         self._share = smoothing_share(smoothing)
-        self._kernels = step_of(tracker)
+        self._launched = int(config.start.velocity is StartVelocity.TARGET)
+        mount = config.camera.mount
+        self._mount = mount_of(mount or MountConfig())
+        self._kernels = step_of(tracker, fixed_camera=mount is not None)
         self._orders = Orders.create(count)
         self._held_orders = Held(self._orders)
-        self.senses = Senses(config, assets, worlds, snapshot, self._orders.active)
+        active, bodies = self._orders.active, tracker.visible
+        self.senses = Senses(config, assets, worlds, snapshot, active, bodies=bodies)
         control = config.control
         self._late = LateCommands.of(control.action_latency_steps, count)
-        self.past = LateSight.of(control.observation_latency_steps, snapshot, self.senses.told)
-        self.draws: list[Draw] = [late.draw for late in (self._late, self.past) if late]
+        camera, latency = config.sensors.camera, control.observation_latency_steps
+        self.sight = Sight(latency, camera, snapshot, self.senses.told)
+        self.draws: list[Draw] = [late.draw for late in (self._late, self.sight) if late]
         if tracker.draw:
             self.draws.insert(0, partial(tracker.draw, self._memory))
 
     def obey(self, rules: Rules) -> None:
         """Judge by these rules from the next step on."""
-        state = Held(StepState(self._snapshot, self._memory, self._around, rules, self._share))
-        self._step = self._kernels.bound(state, self._held_orders)
+        snapshot, memory, around = self._snapshot, self._memory, self._around
+        state = StepState(snapshot, memory, around, rules, self._share, self._mount, self._launched)
+        self._step = self._kernels.bound(Held(state), self._held_orders)
 
     def begin(
         self, chosen: NDArray[np.int64], pitch: Floats, key_of: Callable[[int], EpisodeKey]
@@ -89,8 +99,7 @@ class Stepper:
         self._orders.starts[0] = count
         self._step.begin()
         self.senses.begin(chosen.tolist(), key_of)
-        if self.past:
-            self.past.begin(chosen)
+        self.sight.begin(chosen)
 
     def fly(self, commands: Floats, steps: int, active: NDArray[np.bool_] | None) -> None:
         """Hold commands for some physics steps; see `Simulation.advance`."""
@@ -114,7 +123,7 @@ class Stepper:
         if self._traffic.live:
             last = int(self._snapshot.episodes.tick.max()) + steps
             self._traffic.prepare(last * PHYSICS_STEP)
-        if not self.senses.follow and self.past is None:
+        if not self.senses.follow and not self.sight.is_late:
             self._orders.steps[0] = steps
             step()
             return
@@ -122,7 +131,5 @@ class Stepper:
         for _ in range(steps):
             step()
             self.senses.advance()
-            if self.past:
-                self.past.record()
-        if self.past:
-            self.past.see()
+            self.sight.record()
+        self.sight.see()

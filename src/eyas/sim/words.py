@@ -10,7 +10,7 @@ __all__ = ["target_in_words"]
 
 
 def target_in_words(simulation: Simulation, tracker: int, aspect: float) -> str:
-    """Return a description of a tracker's target, such as "a red SUV".
+    """Return a description of a tracker's target as its camera shows it, such as "a red SUV".
 
     No other actor in the camera's view shares it, hidden or not.
 
@@ -19,8 +19,9 @@ def target_in_words(simulation: Simulation, tracker: int, aspect: float) -> str:
         tracker: The tracker.
         aspect: Height of the camera's picture over its width.
     """
-    cameras, target = simulation.snapshot.cameras, int(simulation.snapshot.targets.actor[tracker])
-    actors, _ = simulation.actors_around(tracker)
+    sight = simulation.perception.sight
+    cameras, target = sight.shown.cameras, int(sight.shown.targets.actor[tracker])
+    actors, _ = simulation.actors_around(tracker, ago=sight.age_of(tracker))
     (model,), (colour,) = simulation.looks_around(tracker)
     pose = cameras.position[tracker], cameras.rotation[tracker]
     with np.errstate(invalid="ignore"):

@@ -10,7 +10,7 @@ from eyas.sim.config import SimConfig
 from eyas.sim.near import NearMovers
 from eyas.state.draw import DrawList
 from eyas.state.motion import ActorState
-from eyas.state.scene import ACTOR_OBJECT
+from eyas.state.scene import ACTOR_OBJECT, DRONE_CLASS
 from eyas.state.snapshot import CameraState
 from eyas.targets.catalogue import KINDS
 from eyas.targets.kind import Colour, Looks
@@ -135,13 +135,17 @@ class Worlds:
         return Looks(self._looks.model[world : world + 1], self._looks.colour[world : world + 1])
 
     def classes_of(self, objects: NDArray[np.integer]) -> Integers:
-        """Return the `ObjectClass` of objects and actors, -1 for the id -1, shape (K,)."""
+        """Return the `ObjectClass` of objects and actors, -1 for the id -1, and `DRONE_CLASS` for
+        the bodies of trackers, shape (K,).
+        """
         static, kinds = self._assets.scene.object_class, self._assets.traffic.motion.kind
         moving = np.array([KINDS[kind].object_class for kind in kinds.tolist()], np.int64)
         classes = np.full(len(objects), -1, np.int64)
-        still, moves = (objects >= 0) & (objects < ACTOR_OBJECT), objects >= ACTOR_OBJECT
+        still, actor = (objects >= 0) & (objects < ACTOR_OBJECT), objects - ACTOR_OBJECT
+        moves = (actor >= 0) & (actor < len(moving))
         classes[still] = static[objects[still]]
-        classes[moves] = moving[objects[moves] - ACTOR_OBJECT]
+        classes[moves] = moving[actor[moves]]
+        classes[actor >= len(moving)] = DRONE_CLASS
         return classes
 
     def object_ids(self, actors: NDArray[np.int32]) -> NDArray[np.int32]:

@@ -13,6 +13,7 @@ from eyas.state.terrain import Terrain
 
 __all__ = [
     "ACTOR_OBJECT",
+    "DRONE_CLASS",
     "SKY_OBJECT",
     "Colliders",
     "Fixtures",
@@ -51,6 +52,10 @@ class ObjectClass(IntEnum):
     """A motorcycle, including its rider."""
     PERSON = 14
     ROBOT = 15
+
+
+DRONE_CLASS = max(ObjectClass) + 1
+"""Stands for the body of a tracker where contacts are told; pictures show it as a robot."""
 
 
 @dataclass(slots=True)

@@ -9,7 +9,15 @@ from pydantic import AfterValidator, Field, model_validator
 from eyas.core.config import Config
 from eyas.core.variation import Uniform, Variation, within
 
-__all__ = ["Crash", "DoneConfig", "RewardConfig", "RewardMode", "RewardType", "StartConfig"]
+__all__ = [
+    "Crash",
+    "DoneConfig",
+    "RewardConfig",
+    "RewardMode",
+    "RewardType",
+    "StartConfig",
+    "StartVelocity",
+]
 
 Positive = Annotated[float, Field(gt=0, le=1e9)]
 Height = Annotated[float, Field(ge=-1e6, le=1e6)]
@@ -45,6 +53,15 @@ class Crash(StrEnum):
     """The same, and the episode ends."""
 
 
+class StartVelocity(StrEnum):
+    """How fast a tracker is when its episode begins."""
+
+    TARGET = "target"
+    """As fast as its target, horizontally, in steady flight."""
+    REST = "rest"
+    """It hovers, as in the original."""
+
+
 class StartConfig(Config):
     """Start of the tracker, relative to its target. Variations are drawn anew at each reset."""
 
@@ -59,6 +76,9 @@ class StartConfig(Config):
     """Sideways offset of the tracker, positive left, which moves the target right in view [m]."""
     vertical_bias: Annotated[Variation, AfterValidator(within(-1e4, 1e4))] = 0.0
     """Forward offset of the tracker, which moves the target down in view [m]."""
+    velocity: StartVelocity = StartVelocity.TARGET
+    """How fast a flown drone begins; what follows its commands at once begins at rest in any
+    case."""
     warm_up_steps: Annotated[int, Field(ge=0, le=5_000_000)] = 310
     """2 ms steps of traffic before the trackers start."""
 

@@ -1,25 +1,21 @@
 """Collisions: where and what the body of a tracker touches."""
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.frames import rotate
 from eyas.core.jit import step_kernel
 from eyas.core.parallel import Held, Pointer, parallel_kernel
+from eyas.sensors.bodies import body_box
 from eyas.sensors.obstacles import Obstacles
 from eyas.state.episode import EpisodeState
 from eyas.state.snapshot import Snapshot, TrackerState
 from eyas.task.done import DoneReason
 from eyas.task.sweep import NEVER, Sweep
-from eyas.task.touch import touch_ground, touch_solids, touch_vehicles
+from eyas.task.touch import touch_ground, touch_movers, touch_solids
 
-__all__ = ["BODY", "Contacts"]
-
-BODY = (0.806, 0.806, 0.366)
-"""Length, width, height of the original's drone [m]; its camera, a few cm below, is neglected."""
+__all__ = ["Contacts"]
 
 _CRASH, _NOT_A_NUMBER = int(DoneReason.CRASH), int(DoneReason.NOT_A_NUMBER)
 
@@ -62,7 +58,6 @@ class Contacts:
             self._crashed,
             grace_steps,
             int(ends),
-            *(0.5 * size for size in BODY),
         )
         self._find = _find_all.bound(Held(work))
 
@@ -98,9 +93,6 @@ class _Work(NamedTuple):
     grace_steps: int
     ends: int
     """1: a crash ends the episode; 0: it does not."""
-    half_length: float
-    half_width: float
-    half_height: float
 
 
 @parallel_kernel
@@ -127,9 +119,9 @@ def _find(trackers: TrackerState, episodes: EpisodeState, work: _Work, n: int) -
     """Find what the body of tracker `n` touches first on its way of the last step."""
     sweep = _sweep_of(trackers, work, n)
     hit = touch_solids(sweep, work.obstacles)
-    vehicle = touch_vehicles(sweep, work.obstacles, n, episodes.tick[n])
-    if vehicle.share < hit.share:
-        hit = vehicle
+    mover = touch_movers(sweep, work.obstacles, n, episodes.tick[n])
+    if mover.share < hit.share:
+        hit = mover
     ground = touch_ground(sweep, work.obstacles)
     if ground.share < hit.share:
         hit = ground
@@ -146,15 +138,8 @@ def _find(trackers: TrackerState, episodes: EpisodeState, work: _Work, n: int) -
 
 @step_kernel
 def _sweep_of(trackers: TrackerState, work: _Work, n: int) -> Sweep:
-    """Return the way of the body in the last step, as an upright box around the tilted one."""
-    at, last, orientation = trackers.position[n], work.last[n], trackers.orientation[n]
-    ahead = rotate(orientation, work.half_length, 0.0, 0.0)
-    left = rotate(orientation, 0.0, work.half_width, 0.0)
-    up = rotate(orientation, 0.0, 0.0, work.half_height)
-    level = math.sqrt(ahead[0] * ahead[0] + ahead[1] * ahead[1])
-    cosine, sine = (ahead[0] / level, ahead[1] / level) if level > 0.0 else (1.0, 0.0)
-    length = abs(cosine * ahead[0] + sine * ahead[1]) + abs(cosine * left[0] + sine * left[1])
-    width = abs(cosine * ahead[1] - sine * ahead[0]) + abs(cosine * left[1] - sine * left[0])
+    """Return the way of the body in the last step."""
+    at, last, box = trackers.position[n], work.last[n], body_box(trackers.orientation[n])
     return Sweep(
         last[0],
         last[1],
@@ -162,9 +147,9 @@ def _sweep_of(trackers: TrackerState, work: _Work, n: int) -> Sweep:
         at[0] - last[0],
         at[1] - last[1],
         at[2] - last[2],
-        cosine,
-        sine,
-        length + abs(cosine * up[0] + sine * up[1]),
-        width + abs(cosine * up[1] - sine * up[0]),
-        abs(ahead[2]) + abs(left[2]) + abs(up[2]),
+        box.cosine,
+        box.sine,
+        box.half_length,
+        box.half_width,
+        box.half_height,
     )

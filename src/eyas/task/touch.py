@@ -1,4 +1,4 @@
-"""What a body touches first on its way: solids, vehicles, the ground."""
+"""What a body touches first on its way: solids, vehicles, other trackers, the ground."""
 
 import math
 from typing import NamedTuple
@@ -13,7 +13,7 @@ from eyas.sensors.obstacles import Obstacles
 from eyas.state.terrain import ground_at
 from eyas.task.sweep import NEVER, Sweep, sweep_cylinder, sweep_prism, while_level
 
-__all__ = ["Hit", "touch_ground", "touch_solids", "touch_vehicles"]
+__all__ = ["Hit", "touch_ground", "touch_movers", "touch_solids"]
 
 
 class Hit(NamedTuple):
@@ -64,8 +64,8 @@ def touch_solids(sweep: Sweep, obstacles: Obstacles) -> Hit:
 
 
 @step_kernel
-def touch_vehicles(sweep: Sweep, obstacles: Obstacles, n: int, tick: int) -> Hit:
-    """Return the first vehicle that is touched.
+def touch_movers(sweep: Sweep, obstacles: Obstacles, n: int, tick: int) -> Hit:
+    """Return the first vehicle, or body of another tracker, that is touched.
 
     Args:
         sweep: The motion of the body in the last physics step.
@@ -79,7 +79,7 @@ def touch_vehicles(sweep: Sweep, obstacles: Obstacles, n: int, tick: int) -> Hit
     reach += sweep.half_length + sweep.half_width + sweep.half_height
     place = (sweep.x, sweep.y, sweep.z)
     for box in range(find_boxes(obstacles.movers, n, tick, place, reach, boxes)):
-        # As seen from the vehicle, which stands where it is at the end.
+        # As seen from the mover, which stands where it is at the end.
         beside = _seen_from(sweep, boxes.moved[box])
         bottom, top = boxes.bottom[box], boxes.top[box]
         start, end = while_level(beside, bottom, top)

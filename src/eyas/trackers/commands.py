@@ -11,7 +11,7 @@ from eyas.core.jit import step_kernel
 from eyas.state.snapshot import TrackerState
 from eyas.trackers.lowpass import low_pass, settle
 
-__all__ = ["follow_command", "forget_commands"]
+__all__ = ["follow_command", "forget_commands", "heading"]
 
 
 @step_kernel
@@ -32,7 +32,7 @@ def follow_command(
     forward = low_pass(memory.forward[n], command[0])
     left = low_pass(memory.left[n], command[1])
     yaw_rate = low_pass(memory.yaw_rate[n], command[3])
-    east, north = _heading(trackers.orientation[n])
+    east, north = heading(trackers.orientation[n])
     along_east, along_north = east * forward - north * left, north * forward + east * left
     commanded = trackers.commanded_position[n]
     commanded[0] += along_east * PHYSICS_STEP
@@ -51,7 +51,7 @@ def forget_commands(memory: Any, n: int) -> None:  # noqa: ANN401  # as above
 
 
 @step_kernel
-def _heading(orientation: NDArray[np.float64]) -> tuple[float, float]:
+def heading(orientation: NDArray[np.float64]) -> tuple[float, float]:
     """Return the horizontal direction of the body's x axis, a unit vector."""
     w, x, y, z = orientation[0], orientation[1], orientation[2], orientation[3]
     east, north = 1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z)

@@ -15,7 +15,7 @@ from eyas.core.frames import rotate, rotate_back
 from eyas.core.jit import kernel
 from eyas.trackers.airframe import Airframe
 
-__all__ = ["attitude_torque", "desired_force", "mixed", "within_tilt"]
+__all__ = ["attitude_torque", "body_axes", "desired_force", "mixed", "within_tilt"]
 
 Vector = tuple[float, float, float]
 Thrusts = tuple[float, float, float, float]
@@ -79,11 +79,7 @@ def attitude_torque(frame: Airframe, force: Vector, yaw: float, attitude: Row, r
         attitude: Body to world, shape (4,).
         rate: Angular velocity, body frame [rad/s], shape (3,).
     """
-    x, y, z = _unit(force)
-    sine, cosine = math.sin(yaw), math.cos(yaw)
-    # The desired axes of the body, and then what they are in the frame of the body.
-    left = _unit((-z * sine, z * cosine, x * sine - y * cosine))
-    ahead = (left[1] * z - left[2] * y, left[2] * x - left[0] * z, left[0] * y - left[1] * x)
+    ahead, left, (x, y, z) = body_axes(force, yaw)
     _, x1, x2 = rotate_back(attitude, ahead[0], ahead[1], ahead[2])
     y0, _, y2 = rotate_back(attitude, left[0], left[1], left[2])
     z0, z1, _ = rotate_back(attitude, x, y, z)
@@ -95,6 +91,21 @@ def attitude_torque(frame: Airframe, force: Vector, yaw: float, attitude: Row, r
         0.5 * gain[1] * (z0 - x2) - damping * q + (jx - jz) * r * p,
         0.5 * gain[2] * (x1 - y0) - damping * r + (jy - jx) * p * q,
     )
+
+
+@kernel
+def body_axes(force: Vector, yaw: float) -> tuple[Vector, Vector, Vector]:
+    """Return the axes that the body should have, forward, left and up, world frame.
+
+    Args:
+        force: Force that the rotors should exert, world frame [N].
+        yaw: Commanded heading [rad].
+    """
+    x, y, z = _unit(force)
+    sine, cosine = math.sin(yaw), math.cos(yaw)
+    left = _unit((-z * sine, z * cosine, x * sine - y * cosine))
+    ahead = (left[1] * z - left[2] * y, left[2] * x - left[0] * z, left[0] * y - left[1] * x)
+    return ahead, left, (x, y, z)
 
 
 @kernel

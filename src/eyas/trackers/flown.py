@@ -21,6 +21,8 @@ from eyas.trackers.flight_controller import attitude_torque, desired_force, mixe
 from eyas.trackers.gimbal import advance_gimbal, reset_gimbal
 from eyas.trackers.gimbal_servo import ServoMemory, advance_servo, settle_servo
 from eyas.trackers.rigid_body import Body, Thrusts, moved
+from eyas.trackers.rotors import spun_up
+from eyas.trackers.steady import launch
 from eyas.trackers.tracker import Tracker
 from eyas.trackers.wind import WindMemory, begin_wind, blow
 
@@ -133,7 +135,7 @@ def advance(
         if memory.turbulence > 0.0:
             height -= ground_at(memory.terrain, before.position[0], before.position[1])
         air = blow(wind, n, memory.turbulence, height, before.velocity)
-    pushed = _spun_up(frame, memory.rotor[n], wanted)
+    pushed = spun_up(frame, memory.rotor[n], wanted)
     after = moved(frame, before, pushed, air, memory.terrain, PHYSICS_STEP)
     _write(trackers, memory, n, before, after)
     a, b = before.rate, after.rate
@@ -157,42 +159,6 @@ def _wanted(
     rate = trackers.angular_velocity[n]
     torque = attitude_torque(frame, force, trackers.commanded_yaw[n], attitude, rate)
     return mixed(frame, force, torque, attitude)
-
-
-@kernel
-def _spun_up(
-    frame: Airframe, rotor: NDArray[np.float64], wanted: Thrusts
-) -> tuple[Thrusts, Thrusts, Thrusts]:
-    """Return the thrusts at the beginning, in the middle and at the end of a step [N].
-
-    Each rotor's rate approaches the one for its wanted thrust by a low-pass of first order.
-
-    Args:
-        frame: Its motors' constants are used.
-        rotor: Rates of the rotors [rad/s], shape (4,); updated.
-        wanted: Thrusts that the controller asks for [N].
-    """
-    if frame.motor_time_constant <= 0.0:
-        return wanted, wanted, wanted
-    left = math.exp(-0.5 * PHYSICS_STEP / frame.motor_time_constant)
-    a = _spun(frame, rotor, 0, wanted[0], left)
-    b = _spun(frame, rotor, 1, wanted[1], left)
-    c = _spun(frame, rotor, 2, wanted[2], left)
-    d = _spun(frame, rotor, 3, wanted[3], left)
-    return (a[0], b[0], c[0], d[0]), (a[1], b[1], c[1], d[1]), (a[2], b[2], c[2], d[2])
-
-
-@kernel
-def _spun(
-    frame: Airframe, rotor: NDArray[np.float64], index: int, wanted: float, left: float
-) -> tuple[float, float, float]:
-    """Return the thrusts of one rotor as in `_spun_up`; `left` is the gap after half a step."""
-    goal = math.sqrt(wanted / frame.thrust_constant)
-    gap = rotor[index] - goal
-    middle, end = goal + left * gap, goal + left * left * gap
-    first, rotor[index] = rotor[index], end
-    factor = frame.thrust_constant
-    return factor * first * first, factor * middle * middle, factor * end * end
 
 
 @kernel
@@ -247,6 +213,7 @@ def flown_drone(config: TrackerConfig, frame: Airframe = ORIGINAL) -> Tracker:
         advance,
         carry,
         aim,
-        draw=draw if blows else None,
+        launch,
+        draw if blows else None,
         jumps=False,
     )

@@ -4,12 +4,25 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
+from eyas.core.jit import step_kernel
 from eyas.core.rng import EpisodeKey
+from eyas.state.snapshot import TrackerState
 from eyas.state.terrain import Terrain
 
-__all__ = ["Tracker"]
+__all__ = ["Tracker", "stand"]
 
 Kernel = Callable[..., Any]
+
+
+@step_kernel
+def stand(
+    trackers: TrackerState,
+    memory: Any,  # noqa: ANN401  # of any kind of tracker
+    n: int,
+    east: float,
+    north: float,
+) -> None:
+    """Leave tracker `n` as it has been started: a `Tracker.launch`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,6 +47,10 @@ class Tracker:
     """`carry(trackers, memory, n, x, y, z, yaw)` moves it to a pose within one physics step."""
     aim: Kernel
     """`aim(trackers, memory, cameras, n)` writes the pose of its camera into a `CameraState`."""
+    launch: Kernel = stand
+    """`launch(trackers, memory, n, east, north)` lets it, just started, fly on at a horizontal
+    velocity [m/s], that of its target, where `start.velocity` says so; without a `launch` it begins
+    as `start` leaves it, which suits what has no inertia."""
     draw: Callable[[Any, int, EpisodeKey], None] | None = None
     """`draw(memory, n, key)`, a function of Python, draws what is random in an episode, before
     `start`; None: nothing is."""

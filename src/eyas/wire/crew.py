@@ -14,6 +14,7 @@ from eyas.core.jpeg import jpeg_bytes
 from eyas.sim.simulation import Simulation
 from eyas.state.draw import Picture
 from eyas.targets.catalogue import MODELS
+from eyas.task.packet_rows import SENSOR_COLUMNS
 from eyas.wire.codec import Action, packet_line
 
 __all__ = ["Answer", "Crew"]
@@ -77,11 +78,15 @@ class Crew:
         resets = np.array([action.reset for action in actions])
         renewed = self._move(actions, resets)
         basic, reward = self.sim.packets()
+        seen = self.sim.perception
+        # What is sensed may be late; time, reward, end and the reward packet are not.
+        basic[:, SENSOR_COLUMNS] = seen.packets()[0][:, SENSOR_COLUMNS]
         basic[renewed & ~resets, _DONE] = 1.0
         self._drawn = self._draw()
         models = self.sim.snapshot.targets.model.tolist()
-        lidar = self.sim.lidar
-        radar = None if lidar is None else [packet_line(row) for row in lidar.packets()]
+        radar = None
+        if seen.lidar is not None:
+            radar = [packet_line(row) for row in seen.lidar.packets(seen.sight.late)]
         return [
             Answer(
                 packet_line(basic[n]),

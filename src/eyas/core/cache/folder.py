@@ -50,6 +50,7 @@ class Kind(StrEnum):
     TEXTURES = "textures"
     PARTS = "parts"
     GEOMETRY = "geometry"
+    SOLIDS = "solids"
     SKY = "sky"
     SHADOWS = "shadows"
     AMBIENT = "ambient"

@@ -89,7 +89,8 @@ class Recorder:
         if not drawn:
             return
         picture = self._picture.first(len(drawn))
-        self._sim.draw(np.array(drawn, np.int32), picture, overlay=self._overlay)
+        overlaid = self._sim.rules if self._overlay else None
+        self._sim.perception.draw(np.array(drawn, np.int32), picture, overlaid=overlaid)
         for view, tracker in enumerate(drawn):
             self._write(tracker, picture, view, mover)
         self.drawn += len(drawn)
@@ -118,15 +119,14 @@ class Recorder:
         assert going.files is not None
         number, action = going.summary.frames, mover.action(tracker)
         others = others_of(self._sim, tracker, picture, view)
-        lidar = self._sim.lidar
-        ranges = None if lidar is None else lidar.ranges_of(tracker)
+        seen, now = self._sim.perception, self._sim.snapshot.episodes
+        ranges = None if seen.lidar is None else seen.lidar.ranges(seen.sight.late)[tracker]
         words = ""
         if picture.actor_pixels is not None:  # labels are written
             episode = going.episode
             words = target_in_words(self._sim, tracker, episode.height / episode.width)
-        frame = frame_of(
-            self._sim.snapshot, tracker, picture, view, number, action, others, ranges, words
-        )
+        shown = seen.sight.shown
+        frame = frame_of(shown, now, tracker, picture, view, number, action, others, ranges, words)
         going.summary = going.summary.plus(frame)
         self._lanes.submit(tracker, going.files.add, frame)
 

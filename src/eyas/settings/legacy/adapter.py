@@ -16,6 +16,7 @@ from eyas.settings.legacy.entries import Entry, Optional, Values
 from eyas.settings.legacy.keys import ENTRIES, GROUP_KEYS, KEEP_ALIVE
 from eyas.settings.legacy.layout import Nested, check_kinds, every_key, flat, nested
 from eyas.targets.config import TargetName
+from eyas.task.config import StartConfig, StartVelocity
 
 __all__ = [
     "check_original",
@@ -28,6 +29,9 @@ __all__ = [
 ]
 
 _LOG = logging.getLogger("eyas")
+
+_LIKE_THE_ORIGINAL = EyasConfig(start=StartConfig(velocity=StartVelocity.REST))
+"""What its file cannot express, and differs from our defaults."""
 
 
 def is_legacy(values: Nested) -> bool:
@@ -42,13 +46,14 @@ def from_legacy(values: Nested, base: EyasConfig | None = None) -> EyasConfig:
     Args:
         values: Its content; groups and keys that are missing have the manual's defaults, or, where
             the manual leaves them out, the values that the original ships with.
-        base: Settings that it cannot express (camera, seed, ...); None: our defaults.
+        base: Settings that it cannot express (camera, seed, ...); None: our defaults, and what the
+            original does.
 
     Raises:
         ConfigError: An unknown key, a wrong type or a value that is not allowed: one line with the
             original's path.
     """
-    config = (base or EyasConfig()).model_copy(update={"original": {}})
+    config = (base or _LIKE_THE_ORIGINAL).model_copy(update={"original": {}})
     return _with(config, every_key() | flat(values), ENTRIES)
 
 
