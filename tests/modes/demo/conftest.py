@@ -57,6 +57,10 @@ class Served:
         self.address = self.process.stdout.readline().strip()
 
     @property
+    def port(self):
+        return int(self.address.partition("?")[0].rstrip("/").rpartition(":")[2])
+
+    @property
     def socket(self):
         page, _, query = self.address.partition("?")
         return page.replace("http", "ws") + "socket" + (f"?{query}" if query else "")
