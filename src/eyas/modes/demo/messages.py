@@ -68,6 +68,8 @@ class Ack(Message):
     """A frame has arrived and is shown."""
 
     frame: Annotated[int, Field(ge=0)]
+    spent: Annotated[float, Field(ge=0, le=60000)] = 0.0
+    """Time from its arrival until then [ms]."""
 
 
 class Pictures(Message):

@@ -12,7 +12,7 @@ SMALLEST, FIRST, LARGEST = 480 * 270, 640 * 360, 1280 * 720
 """Pixels of a picture."""
 STEP = 1.3
 """From one number of pixels to the next: seldom, for each change takes a whole picture of H.264."""
-PATIENCE, MOST_PATIENCE = 60, 960
+PATIENCE, MOST_PATIENCE = 60, 240
 """Frames with time to spare after which pictures grow; doubled each time they shrink."""
 
 

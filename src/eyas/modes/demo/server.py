@@ -144,7 +144,7 @@ class Server:
             ConfigError: Only who flies may say this.
         """
         if isinstance(message, said.Ack):
-            viewer.acknowledge(message.frame)
+            viewer.acknowledge(message.frame, 0.001 * message.spent)
         elif isinstance(message, said.Pictures):
             viewer.choose(message.coding)
         elif isinstance(message, said.Do) and message.what == "pilot" and viewer.flies:
@@ -187,6 +187,7 @@ async def _send(connection: ServerConnection, viewer: Viewer) -> None:
                 viewer.choose("jpeg")
                 viewer.tell({"error": str(error)})
             else:
+                viewer.sends(what)
                 await connection.send(data)
     except ConnectionClosed:
         return

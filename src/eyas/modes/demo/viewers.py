@@ -7,15 +7,13 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 from eyas.modes.demo.frame import Frame, packed
-from eyas.modes.demo.line import FACTORS, Coding, Line
+from eyas.modes.demo.line import FACTORS, IN_FLIGHT, Coding, Line
 
 if TYPE_CHECKING:  # PyAV takes its time to be imported; only H.264 needs it
     from eyas.modes.demo.stream import Stream
 
 __all__ = ["Viewer", "Viewers"]
 
-IN_FLIGHT = 2
-"""Largest number of frames that a viewer has not acknowledged."""
 TEXTS = 32
 """Largest number of texts that wait for a viewer; older ones are dropped."""
 
@@ -34,6 +32,7 @@ class Viewer:
         self._stream_of: tuple[object, ...] = ()
         self._streams = 0
         self._unseen: deque[int] = deque()
+        self._sent: dict[int, float] = {}
         self._texts: deque[dict[str, Any]] = deque(maxlen=TEXTS)
         self._frame: Frame | None = None
         self._wake = asyncio.Event()
@@ -43,13 +42,19 @@ class Viewer:
         """Whether a frame could be sent now."""
         return len(self._unseen) < IN_FLIGHT
 
-    def acknowledge(self, number: int) -> None:
-        """Take that a frame, and all before it, are shown."""
-        before, now = len(self._unseen), time.monotonic()
+    def acknowledge(self, number: int, spent: float) -> None:
+        """Take that a frame, and all before it, are shown.
+
+        Args:
+            number: Of the frame.
+            spent: Time from its arrival until then [s].
+        """
         while self._unseen and self._unseen[0] <= number:
             self._unseen.popleft()
-        self._line.fill(full=not self.ready, now=now)
-        self._line.arrive(before - len(self._unseen), now)
+        sent, now = self._sent.pop(number, None), time.monotonic()
+        if sent is not None:
+            self._line.arrive(now - sent - spent, now)
+        self._sent = {other: then for other, then in self._sent.items() if other > number}
         self._wake.set()
 
     def choose(self, coding: Coding) -> None:
@@ -75,10 +80,13 @@ class Viewer:
             if self._frame is not None and self.ready:
                 frame, self._frame = self._frame, None
                 self._unseen.append(frame.number)
-                self._line.fill(full=not self.ready, now=time.monotonic())
                 return frame
             self._wake.clear()
             await self._wake.wait()
+
+    def sends(self, frame: Frame) -> None:
+        """Take that a frame is sent now."""
+        self._sent[frame.number] = time.monotonic()
 
     def coded(self, frame: Frame) -> bytes:
         """Return a frame as this viewer takes it; call it in a thread, once for each frame.

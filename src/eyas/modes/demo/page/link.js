@@ -49,6 +49,7 @@ export class Link {
     const state = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 4, length)));
     const bytes = new Uint8Array(data, 4 + length);
     state.bytes = data.byteLength;
+    state.arrived = performance.now();
     if (state.picture !== "jpeg") {
       this.stream.add(state, bytes);
       return;
@@ -84,6 +85,6 @@ export class Link {
   }
 
   acknowledge(state) {
-    this.send("ack", { frame: state.frame });
+    this.send("ack", { frame: state.frame, spent: performance.now() - state.arrived });
   }
 }
