@@ -6,7 +6,6 @@ import pytest
 
 from .conftest import moved
 
-
 KEYS = {
     "forward": ("forward", 1),
     "back": ("forward", -1),
