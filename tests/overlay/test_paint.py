@@ -244,3 +244,19 @@ def test_depth_is_added_only_where_it_is_not_wanted_and_colours_are_needed(plain
     assert with_depth(deep) is deep
     with pytest.raises(ValueError, match="rgb is needed"):
         with_depth(Picture.create(1, *SIZE, rgb=False, depth=True))
+
+
+def test_the_nearest_face_of_a_solid_is_seen_in_whatever_order_faces_come(plain, painted):
+    def facing(x, half, colour):
+        corners = np.array([[x, half, 5 - half], [x, -half, 5 - half], [x, 0.0, 5 + half]])
+        return corners, colour
+
+    for order in (1, -1):
+        parts = [facing(10.0, 0.7, BLUE), facing(20.0, 4.0, RED)][::order]
+        corners = np.concatenate([part[0] for part in parts])
+        triangles = np.arange(6, dtype=np.int32).reshape(2, 3)
+        both = Solid(corners, triangles, np.array([part[1] for part in parts]))
+        _, after = painted(plain, looking([(0.0, 0.0, 5.0)], fov=FOV), Overlay(solids=(both,)))
+        rgb = after.rgb[0].astype(int)
+        assert rgb[48, 64, 2] > rgb[48, 64, 0] + 50
+        assert rgb[30, 64, 0] > rgb[30, 64, 2] + 50  # beside the nearer one

@@ -15,6 +15,10 @@ CASING = (0.04, 0.05, 0.07)
 """Colour of the outlines, which make marks visible on any ground."""
 
 
+SPARSE = 0.3
+"""If fewer of a window's pixels are touched, the others are left out."""
+
+
 class Canvas:
     """The colours of picture `v` of some views, to paint on.
 
@@ -74,9 +78,28 @@ class Canvas:
         share: NDArray[np.floating] | NDArray[np.bool_],
     ) -> None:
         """Mix a colour, sRGB 0 to 1, into a window's pixels, with a share of 0 to 1 for each."""
-        below = self._colour[where]
+        touched = np.nonzero(share)
+        if len(touched[0]) < SPARSE * share.size:
+            rows, columns = (part + side.start for part, side in zip(touched, where, strict=True))
+            above = np.asarray(colour)
+            above = above[touched] if above.ndim > 1 else above
+            self.blend_pixels(rows, columns, above, share[touched])
+        else:
+            below = self._colour[where]
+            above = np.asarray(colour, np.float32) * np.float32(255.0)
+            below += (above - below) * share[..., None].astype(np.float32)
+
+    def blend_pixels(
+        self,
+        rows: NDArray[np.int64],
+        columns: NDArray[np.int64],
+        colour: ArrayLike,
+        share: NDArray[np.floating] | NDArray[np.bool_],
+    ) -> None:
+        """Mix a colour into pixels, each of which is named once; see `blend`."""
+        below = self._colour[rows, columns]
         above = np.asarray(colour, np.float32) * np.float32(255.0)
-        below += (above - below) * share[..., None].astype(np.float32)
+        self._colour[rows, columns] = below + (above - below) * share[:, None].astype(np.float32)
 
     def finished(self) -> NDArray[np.uint8]:
         """Return the colours, shape (H, W, 3)."""

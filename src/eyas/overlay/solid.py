@@ -55,27 +55,84 @@ def _sample(
     """
     rows, columns = where
     shape = (rows.stop - rows.start) * SIDE, (columns.stop - columns.start) * SIDE
-    near, face = np.zeros(shape), np.full(shape, -1, np.int64)
+    near, face = np.zeros(shape[0] * shape[1]), np.full(shape[0] * shape[1], -1, np.int64)
     on_grid = np.array([columns.start, rows.start])
-    corners = (vertices[:, :2] - on_grid) * SIDE - 0.5  # sample k is at k
-    for t, triangle in enumerate(triangles):
-        (ax, ay), (bx, by), (cx, cy) = corners[triangle]
-        area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
-        if area >= 0.0:  # rows grow downwards: the front is clockwise in the picture
-            continue
-        low = np.clip(np.ceil(corners[triangle].min(axis=0)), 0, shape[::-1]).astype(int)
-        high = np.clip(np.floor(corners[triangle].max(axis=0)) + 1, 0, shape[::-1]).astype(int)
-        part = np.s_[low[1] : high[1], low[0] : high[0]]
-        x, y = np.arange(low[0], high[0]), np.arange(low[1], high[1])[:, None]
-        b = ((x - ax) * (cy - ay) - (y - ay) * (cx - ax)) / area
-        c = ((bx - ax) * (y - ay) - (by - ay) * (x - ax)) / area
-        a = 1.0 - b - c
-        depths = 1.0 / vertices[triangle, 2]
-        value = a * depths[0] + b * depths[1] + c * depths[2]
-        hit = (a >= 0.0) & (b >= 0.0) & (c >= 0.0) & (value > near[part])
-        near[part][hit] = value[hit]
-        face[part][hit] = t
-    return near, face
+    corners = ((vertices[:, :2] - on_grid) * SIDE - 0.5)[triangles]  # sample k is at k
+    first, last, row, of = _spans(corners, shape)
+    count, x = last - first, _counted(first, last)
+    shares = _shares(corners[of], row, count, x)
+    inside = np.flatnonzero(np.logical_and.reduce([share >= 0.0 for share in shares]))
+    span = np.repeat(np.arange(len(of)), count)[inside]
+    t, sample = of[span], (row * shape[1])[span] + x[inside]
+    value = np.zeros(len(t))
+    for share, corner in zip(shares, triangles.T, strict=True):
+        value += share[inside] * (1.0 / vertices[corner, 2])[t]
+    np.maximum.at(near, sample, value)
+    nearest = np.flatnonzero(value == near[sample])[::-1]  # of equals, the first stays
+    face[sample[nearest]] = t[nearest]
+    return near.reshape(shape), face.reshape(shape)
+
+
+def _spans(
+    corners: NDArray[np.float64], shape: tuple[int, int]
+) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
+    """Return where triangles that face the camera lie: a row of samples for each entry.
+
+    First and last column (excluded; one too many at each end), row, and triangle.
+
+    Args:
+        corners: Column and row [samples], shape (T, 3, 2).
+        shape: Number of rows and columns.
+    """
+    (ax, ay), (bx, by), (cx, cy) = np.moveaxis(corners, 0, -1)
+    # Rows grow downwards: the front is clockwise in the picture.
+    front = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax) < 0.0
+    low = np.clip(np.ceil(corners.min(axis=1)), 0, shape[::-1]).astype(np.int64)
+    high = np.clip(np.floor(corners.max(axis=1)) + 1, 0, shape[::-1]).astype(np.int64)
+    height = np.where(front, np.maximum(high - low, 0)[:, 1], 0)
+    of = np.repeat(np.arange(len(corners)), height)
+    row = _counted(low[:, 1], low[:, 1] + height)
+    left, right = np.full(len(of), np.inf), np.full(len(of), -np.inf)
+    for k in range(3):
+        (ax, ay), (bx, by) = corners[of, k].T, corners[of, k - 1].T
+        crossed = ((row - ay) * (row - by) <= 0.0) & (ay != by)
+        at = ax + (row - ay) * (bx - ax) / np.where(crossed, by - ay, 1.0)
+        left = np.minimum(left, np.where(crossed, at, np.inf))
+        right = np.maximum(right, np.where(crossed, at, -np.inf))
+    # Where nothing is crossed, there is no sample either.
+    first = np.clip(np.floor(left), low[of, 0], high[of, 0]).astype(np.int64)
+    last = np.clip(np.ceil(right) + 1.0, first, high[of, 0]).astype(np.int64)
+    return first, last, row, of
+
+
+def _counted(first: NDArray[np.int64], last: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Return the numbers from each first to each last (excluded), one after the other."""
+    count = last - first
+    begin = np.cumsum(count) - count
+    counted: NDArray[np.int64] = np.arange(count.sum()) + np.repeat(first - begin, count)
+    return counted
+
+
+def _shares(
+    corners: NDArray[np.float64],
+    row: NDArray[np.int64],
+    count: NDArray[np.int64],
+    x: NDArray[np.int64],
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Return how much of each corner is in a sample: its barycentric coordinates.
+
+    Args:
+        corners: Of the triangle of each span, shape (K, 3, 2).
+        row: Of each span.
+        count: Number of its samples.
+        x: Column of each sample.
+    """
+    (ax, ay), (bx, by), (cx, cy) = np.moveaxis(corners, 0, -1)
+    area = np.repeat((bx - ax) * (cy - ay) - (by - ay) * (cx - ax), count)
+    right = x - np.repeat(ax, count)
+    b = (right * np.repeat(cy - ay, count) - np.repeat((row - ay) * (cx - ax), count)) / area
+    c = (np.repeat((bx - ax) * (row - ay), count) - np.repeat(by - ay, count) * right) / area
+    return 1.0 - b - c, b, c
 
 
 def _shaded(solid: Solid) -> NDArray[np.float64]:

@@ -2,6 +2,7 @@
 
 import contextlib
 import json
+import math
 import os
 import shutil
 import struct
@@ -55,6 +56,10 @@ class Served:
             env=os.environ | {"PYTHONPATH": os.pathsep.join(map(os.path.abspath, sys.path))},
         )
         self.address = self.process.stdout.readline().strip()
+
+    @property
+    def port(self):
+        return int(self.address.partition("?")[0].rstrip("/").rpartition(":")[2])
 
     @property
     def socket(self):
@@ -147,6 +152,20 @@ class Viewer:
 
     def close(self):
         self._open.close()
+
+
+def moved(before, after):
+    """Forward, left, up [m] and turn to the left [rad] from one state to another."""
+    x, y, z, yaw = before["drone"]
+    dx, dy = after["drone"][0] - x, after["drone"][1] - y
+    return {
+        "forward": math.cos(yaw) * dx + math.sin(yaw) * dy,
+        "left": -math.sin(yaw) * dx + math.cos(yaw) * dy,
+        "up": after["drone"][2] - z,
+        "turn": (after["drone"][3] - yaw + math.pi) % (2 * math.pi) - math.pi,
+        "pitch": after["pitch"] - before["pitch"],
+        "camera": after["camera_yaw"] - before["camera_yaw"],
+    }
 
 
 def restore(viewer):

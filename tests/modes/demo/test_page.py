@@ -1,11 +1,13 @@
 """The page in a real Chromium; collected where one is installed, with playwright."""
 
+import contextlib
 import time
 
 import pytest
 from playwright.sync_api import sync_playwright
 
 from .conftest import CHROMIUM, Viewer, restore
+from .slow_line import SlowLine
 
 
 @pytest.fixture(scope="module")
@@ -117,6 +119,42 @@ def test_a_click_on_the_parked_car_follows_it(page):
     box = page.locator("#picture").bounding_box()
     page.mouse.click(box["x"] + x * box["width"], box["y"] + y * box["height"])
     until(page, "eyas.state.target.parked")
+
+
+COLOURS = """(() => {
+  const { width, height } = document.getElementById("picture");
+  const all = document.getElementById("picture").getContext("2d").getImageData(0, 0, width, height);
+  const mean = [0, 0, 0];
+  all.data.forEach((value, i) => { if (i % 4 < 3) mean[i % 4] += value / (width * height); });
+  return mean;
+})()"""
+
+
+def test_h264_shows_the_same_colours(page):
+    if not page.evaluate("import('/pictures.js').then((it) => it.decodesH264())"):
+        pytest.skip("this Chromium does not decode H.264")
+    page.keyboard.press("o")
+    page.click("#pause")
+    shown = {}
+    for coding, kind in [("h264", "delta"), ("jpeg", "jpeg")]:
+        page.select_option("#coding", coding)
+        until(page, f"eyas.state.picture === '{kind}' && !eyas.state.marks")
+        time.sleep(1.0)  # some more frames, which sharpen what stands still
+        shown[coding] = page.evaluate(COLOURS)
+    page.click("#pause")
+    assert shown["h264"] == pytest.approx(shown["jpeg"], abs=3.0)
+
+
+def test_a_slow_line_gets_h264_by_itself(browser, served):
+    with contextlib.ExitStack() as stack:
+        line = stack.enter_context(contextlib.closing(SlowLine(served.port, 150_000)))
+        context = stack.enter_context(browser.new_context(viewport={"width": 900, "height": 560}))
+        page = context.new_page()
+        page.goto(f"http://127.0.0.1:{line.port}/")
+        until(page, "window.eyas !== undefined")
+        if page.evaluate("document.getElementById('coding').disabled"):
+            pytest.skip("this Chromium does not decode H.264")
+        until(page, "eyas.state.picture === 'delta'")
 
 
 def test_menus_change_the_weather(page):

@@ -140,7 +140,7 @@ def test_a_page_comes_back_to_where_it_was(served, viewer):
 
 
 def test_a_port_that_is_taken_is_one_line(served):
-    port = served.address.rstrip("/").rpartition(":")[2]
+    port = str(served.port)
     command = [sys.executable, "-m", "eyas.cli.main", "demo", "--no-browser", "--port", port]
     done = subprocess.run([*command, *QUICK], capture_output=True, text=True, check=False)
     assert done.returncode == 2

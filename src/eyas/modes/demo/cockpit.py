@@ -9,7 +9,7 @@ from eyas.modes.demo.choices import Plan
 from eyas.modes.demo.controls import Held, command_of
 from eyas.modes.demo.duel import Duel
 from eyas.modes.demo.flight import Flight
-from eyas.modes.demo.frame import Frame, packed
+from eyas.modes.demo.frame import Frame
 from eyas.modes.demo.pace import Clock, Size
 from eyas.modes.demo.pilots import Pilot
 from eyas.modes.demo.readings import readings, traffic
@@ -117,7 +117,7 @@ class Cockpit:
         self._frames += 1
         width, height = self.size.now
         rgb = self.screen.draw(width, height)
-        frame = packed(self._frames, self._state(now, width, height), rgb)
+        frame = Frame(self._frames, self._state(now, width, height), rgb)
         self.size.spent(time.perf_counter() - begun)
         return frame
 

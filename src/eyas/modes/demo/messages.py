@@ -8,6 +8,7 @@ from pydantic import Field
 from eyas.core.config import Config, validated
 from eyas.core.errors import ConfigError, UnknownNameError
 from eyas.modes.demo.controls import Control
+from eyas.modes.demo.line import Coding
 from eyas.targets.config import TargetName
 from eyas.task.config import RewardMode, RewardType
 
@@ -25,6 +26,7 @@ __all__ = [
     "Look",
     "Message",
     "Pace",
+    "Pictures",
     "Record",
     "Reward",
     "World",
@@ -66,6 +68,14 @@ class Ack(Message):
     """A frame has arrived and is shown."""
 
     frame: Annotated[int, Field(ge=0)]
+    spent: Annotated[float, Field(ge=0, le=60000)] = 0.0
+    """Time from its arrival until then [ms]."""
+
+
+class Pictures(Message):
+    """How pictures for this viewer are coded; H.264 begins anew, with a whole picture."""
+
+    coding: Coding
 
 
 class Look(Message):
@@ -150,6 +160,7 @@ class Box(Message):
 _KINDS: dict[str, type[Message]] = {
     "keys": Keys,
     "ack": Ack,
+    "pictures": Pictures,
     "look": Look,
     "click": Click,
     "do": Do,

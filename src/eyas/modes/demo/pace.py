@@ -10,6 +10,10 @@ LONGEST = 0.1
 """Of a frame, in seconds of the clock: a slower machine flies slower, not farther at a time."""
 SMALLEST, FIRST, LARGEST = 480 * 270, 640 * 360, 1280 * 720
 """Pixels of a picture."""
+STEP = 1.3
+"""From one number of pixels to the next: seldom, for each change takes a whole picture of H.264."""
+PATIENCE, MOST_PATIENCE = 60, 240
+"""Frames with time to spare after which pictures grow; doubled each time they shrink."""
 
 
 class Clock:
@@ -37,12 +41,17 @@ class Clock:
 
 
 class Size:
-    """Chooses the largest picture that the machine can draw in time, in the window's shape."""
+    """Chooses the largest picture that the machine can draw in time, in the window's shape.
+
+    Attributes:
+        now: Width and height [pixels].
+    """
 
     def __init__(self) -> None:
         self._window = (640, 360)
         self._pixels = float(FIRST)
         self._cost = 0.5 * FRAME
+        self._easy, self._patience = 0, PATIENCE
         self.now = (640, 360)
 
     def fit(self, width: int, height: int) -> None:
@@ -51,15 +60,20 @@ class Size:
         self._choose()
 
     def spent(self, seconds: float) -> None:
-        """Take the time that a picture took; grow, or shrink, a little."""
+        """Take the time that a picture took; shrink at once, grow after a while."""
         self._cost += 0.1 * (seconds - self._cost)
-        if self._cost > 0.8 * FRAME:
-            self._pixels = max(self._pixels * 0.97, SMALLEST)
-        elif self._cost < 0.45 * FRAME:
-            self._pixels = min(self._pixels * 1.02, LARGEST)
-        now = self.now[0] * self.now[1]
-        if not 0.85 < self._pixels / now < 1.15:
-            self._choose()
+        self._easy = self._easy + 1 if STEP * self._cost < 0.6 * FRAME else 0
+        if self._cost > 0.8 * FRAME and self._pixels > SMALLEST:
+            self._patience = min(2 * self._patience, MOST_PATIENCE)
+            self._change(1.0 / STEP)
+        elif self._easy >= self._patience and self._pixels < LARGEST:
+            self._change(STEP)
+
+    def _change(self, factor: float) -> None:
+        self._pixels = min(max(self._pixels * factor, SMALLEST), LARGEST)
+        self._cost *= factor
+        self._easy = 0
+        self._choose()
 
     def _choose(self) -> None:
         width, height = self._window

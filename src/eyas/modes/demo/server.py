@@ -144,7 +144,9 @@ class Server:
             ConfigError: Only who flies may say this.
         """
         if isinstance(message, said.Ack):
-            viewer.acknowledge(message.frame)
+            viewer.acknowledge(message.frame, 0.001 * message.spent)
+        elif isinstance(message, said.Pictures):
+            viewer.choose(message.coding)
         elif isinstance(message, said.Do) and message.what == "pilot" and viewer.flies:
             self.viewers.appoint(viewer)
         elif viewer is self.viewers.pilot or isinstance(message, said.Box):
@@ -176,7 +178,17 @@ async def _send(connection: ServerConnection, viewer: Viewer) -> None:
     try:
         while True:
             what = await viewer.next()
-            await connection.send(what.data if isinstance(what, Frame) else json.dumps(what))
+            if not isinstance(what, Frame):
+                await connection.send(json.dumps(what))
+                continue
+            try:
+                data = await asyncio.to_thread(viewer.coded, what)
+            except ConfigError as error:
+                viewer.choose("jpeg")
+                viewer.tell({"error": str(error)})
+            else:
+                viewer.sends(what)
+                await connection.send(data)
     except ConnectionClosed:
         return
 

@@ -1,32 +1,38 @@
 """Those who watch: each gets the newest frame, and never more than two that it has not shown."""
 
 import asyncio
+import time
 from collections import deque
 from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from eyas.modes.demo.frame import Frame
+from eyas.modes.demo.frame import Frame, packed
+from eyas.modes.demo.line import FACTORS, IN_FLIGHT, Coding, Line
+
+if TYPE_CHECKING:  # PyAV takes its time to be imported; only H.264 needs it
+    from eyas.modes.demo.stream import Stream
 
 __all__ = ["Viewer", "Viewers"]
 
-IN_FLIGHT = 2
-"""Largest number of frames that a viewer has not acknowledged."""
 TEXTS = 32
 """Largest number of texts that wait for a viewer; older ones are dropped."""
 
 
 class Viewer:
-    """A page, or a tracker outside; used in the server's thread only.
+    """A page, or a tracker outside; used in the server's thread only, but for `coded`.
 
     Attributes:
         flies: Whether it may fly: pages, not trackers.
-        sent: Frames that were sent.
     """
 
     def __init__(self, *, flies: bool) -> None:
         self.flies = flies
-        self.sent = 0
+        self._line = Line(time.monotonic())
+        self._stream: Stream | None = None
+        self._stream_of: tuple[object, ...] = ()
+        self._streams = 0
         self._unseen: deque[int] = deque()
+        self._sent: dict[int, float] = {}
         self._texts: deque[dict[str, Any]] = deque(maxlen=TEXTS)
         self._frame: Frame | None = None
         self._wake = asyncio.Event()
@@ -36,11 +42,25 @@ class Viewer:
         """Whether a frame could be sent now."""
         return len(self._unseen) < IN_FLIGHT
 
-    def acknowledge(self, number: int) -> None:
-        """Take that a frame, and all before it, are shown."""
+    def acknowledge(self, number: int, spent: float) -> None:
+        """Take that a frame, and all before it, are shown.
+
+        Args:
+            number: Of the frame.
+            spent: Time from its arrival until then [s].
+        """
         while self._unseen and self._unseen[0] <= number:
             self._unseen.popleft()
+        sent, now = self._sent.pop(number, None), time.monotonic()
+        if sent is not None:
+            self._line.arrive(now - sent - spent, now)
+        self._sent = {other: then for other, then in self._sent.items() if other > number}
         self._wake.set()
+
+    def choose(self, coding: Coding) -> None:
+        """Choose how pictures are coded; H.264 begins anew, with a whole picture."""
+        self._line.choose(coding, time.monotonic())
+        self._streams += 1
 
     def show(self, frame: Frame) -> None:
         """Send a frame, in the place of one that still waits."""
@@ -60,10 +80,36 @@ class Viewer:
             if self._frame is not None and self.ready:
                 frame, self._frame = self._frame, None
                 self._unseen.append(frame.number)
-                self.sent += 1
                 return frame
             self._wake.clear()
             await self._wake.wait()
+
+    def sends(self, frame: Frame) -> None:
+        """Take that a frame is sent now."""
+        self._sent[frame.number] = time.monotonic()
+
+    def coded(self, frame: Frame) -> bytes:
+        """Return a frame as this viewer takes it; call it in a thread, once for each frame.
+
+        The kind of the picture is `jpeg`, or of an H.264 stream `key`, which begins one, or
+        `delta`, which needs all before it. Frames are dropped before they come here, never after.
+
+        Raises:
+            ConfigError: H.264 cannot be had.
+        """
+        level = self._line.level
+        if not level:
+            self._stream, self._stream_of = None, ()
+            return packed(frame, "jpeg", frame.jpeg())
+        from eyas.modes.demo.stream import Stream
+
+        of = (*frame.rgb.shape, level, self._streams)
+        begins = self._stream is None or of != self._stream_of
+        if self._stream is None or begins:
+            height, width, _ = frame.rgb.shape
+            self._stream = Stream(height, width, FACTORS[level - 1])
+            self._stream_of = of
+        return packed(frame, "key" if begins else "delta", self._stream.encode(frame.rgb))
 
 
 class Viewers:

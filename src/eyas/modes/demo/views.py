@@ -42,6 +42,8 @@ _BODY = (
     *(_disc(x, y, (0.2, 0.2), 0.06) for x in (-0.3, 0.3) for y in (-0.3, 0.3)),
 )
 """Outlines of the drone [m], a little larger than it is, to be visible from far."""
+FROM_ABOVE = 2.5
+"""How much larger still it is from above."""
 
 
 class Screen:
@@ -134,6 +136,8 @@ class Screen:
         turn = np.array(
             [[math.cos(yaw), math.sin(yaw), 0], [-math.sin(yaw), math.cos(yaw), 0], [0, 0, 1]]
         )
+        if self.view == "top":
+            turn *= FROM_ABOVE
         cameras = self.cameras(width, height)
         return [
             _outline(trackers.position[0] + part @ turn, cameras, width, height) for part in _BODY

@@ -1,13 +1,20 @@
 // The socket: frames and texts come in, messages go out; it connects again by itself.
 
+import { Stream } from "./pictures.js";
+
 const RETRY = 1000; // ms
 
 export class Link {
-  // `take` has the functions frame(state, bitmap), text(told) and state(open).
+  // `take` has the functions frame(state, picture, bytes), text(told), state(open) and broken().
   constructor(take) {
     this.take = take;
     this.busy = false;
     this.waiting = null;
+    this.shown = 0;
+    this.stream = new Stream((state, picture) => this.show(state, picture), (state) => {
+      this.acknowledge(state);
+      take.broken();
+    });
     this.connect();
   }
 
@@ -16,7 +23,10 @@ export class Link {
     address.protocol = address.protocol.replace("http", "ws");
     this.socket = new WebSocket(address);
     this.socket.binaryType = "arraybuffer";
-    this.socket.onopen = () => this.take.state(true);
+    this.socket.onopen = () => {
+      this.shown = 0; // another server counts anew
+      this.take.state(true);
+    };
     this.socket.onmessage = (event) => this.receive(event.data);
     this.socket.onclose = () => {
       this.take.state(false);
@@ -35,26 +45,46 @@ export class Link {
       this.take.text(JSON.parse(data));
       return;
     }
-    this.waiting = data; // a newer frame takes the place of one that waits
+    const length = new DataView(data).getUint32(0, true);
+    const state = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 4, length)));
+    const bytes = new Uint8Array(data, 4 + length);
+    state.bytes = data.byteLength;
+    state.arrived = performance.now();
+    if (state.picture !== "jpeg") {
+      this.stream.add(state, bytes);
+      return;
+    }
+    this.stream.end();
+    this.waiting = { state, bytes }; // a newer picture takes the place of one that waits
     if (!this.busy) this.showAll();
   }
 
   async showAll() {
     this.busy = true;
-    while (this.waiting) {
-      const data = this.waiting;
-      this.waiting = null;
-      const length = new DataView(data).getUint32(0, true);
-      const state = JSON.parse(new TextDecoder().decode(new Uint8Array(data, 4, length)));
-      try {
-        const picture = new Blob([new Uint8Array(data, 4 + length)], { type: "image/jpeg" });
-        const bitmap = await createImageBitmap(picture);
-        this.take.frame(state, bitmap);
+    try {
+      while (this.waiting) {
+        const { state, bytes } = this.waiting;
+        this.waiting = null;
+        const bitmap = await createImageBitmap(new Blob([bytes], { type: "image/jpeg" }));
+        this.show(state, bitmap);
         bitmap.close();
-      } finally {
-        this.send("ack", { frame: state.frame });
       }
+    } finally {
+      this.busy = false;
     }
-    this.busy = false;
+  }
+
+  show(state, picture) {
+    try {
+      // A picture of one coding may be ready before an older one of the other.
+      if (state.frame > this.shown) this.take.frame(state, picture);
+      this.shown = Math.max(this.shown, state.frame);
+    } finally {
+      this.acknowledge(state);
+    }
+  }
+
+  acknowledge(state) {
+    this.send("ack", { frame: state.frame, spent: performance.now() - state.arrived });
   }
 }

@@ -1,5 +1,6 @@
 // Joins the parts of the page.
 
+import { CodingMenu } from "./coding.js";
 import { DuelBoard } from "./duel.js";
 import { Keys } from "./keys.js";
 import { Link } from "./link.js";
@@ -21,18 +22,20 @@ let builds = 0;
 const stage = new Stage(by("picture"));
 const minimap = new Minimap(by("minimap"));
 const board = new DuelBoard();
-const link = new Link({ frame, text, state: linked });
+const link = new Link({ frame, text, state: linked, broken: () => coding.broken() });
+const coding = new CodingMenu(link, notice);
 const settings = new Settings(link);
 const panel = new Panel(settings);
 new Keys(link);
 
-function frame(state, bitmap) {
+function frame(state, picture) {
   last = state;
-  stage.show(state, bitmap);
+  stage.show(state, picture);
   minimap.draw(state);
   panel.show(state);
   if (settings.chosen) board.show(state, settings.terms());
   measure(state);
+  coding.show(state);
   press("pause", state.speed_of_time === 0);
   press("slow", state.speed_of_time === SLOW);
   press("record", state.recorded !== null);
@@ -97,7 +100,10 @@ function linked(open) {
   clearInterval(builds);
   if (open) notice("");
   else notice("No connection to eyas demo; trying again …", true, 1e9);
-  if (open) showLook();
+  if (open) {
+    showLook();
+    coding.ask();
+  }
 }
 
 function notice(words, error = false, time = 6000) {

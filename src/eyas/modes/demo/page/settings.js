@@ -4,7 +4,7 @@ const SLIDERS = ["view_range", "view_scale", "distance_range", "distance_scale"]
 const COUNTS = ["vehicles", "people"];
 const PEOPLE = [0, 10, 30, 60];
 const LIGHTS = { own: "of the weather", bright: "bright", evening: "evening", dusk: "dusk" };
-const TARGETS = { SUMO_VEHICLE: "cars, buses, trucks", Pedestrian: "people" };
+const TARGETS = { SUMO_VEHICLE: "vehicles", Pedestrian: "people", AiboErs7: "Aibo ERS-7", BioloidDog: "Bioloid dog", FireBird6: "Fire Bird 6", GhostDog: "Ghost dog", Hoap2: "Hoap 2" };
 const by = (id) => document.getElementById(id);
 
 export class Settings {

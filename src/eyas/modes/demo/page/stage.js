@@ -29,12 +29,12 @@ export class Stage {
     return { width, height };
   }
 
-  show(state, bitmap) {
+  show(state, picture) {
     this.state = state;
     const { width, height } = this.fit();
-    const box = this.box = cover(bitmap.width, bitmap.height, width, height);
+    const box = this.box = cover(...state.size, width, height);
     this.context.imageSmoothingQuality = "medium";
-    this.context.drawImage(bitmap, box.x, box.y, box.width, box.height);
+    this.context.drawImage(picture, box.x, box.y, box.width, box.height);
     if (state.marks) this.marks(state);
     if (state.body) this.body(state.body);
   }
