@@ -1,8 +1,11 @@
 """What `eyas maps info` tells of the maps that ship."""
 
+import sys
+
 import numpy as np
 import pytest
 
+from eyas.cli.main import main
 from eyas.modes.maps.info import describe, figures_of
 from eyas.sim.scenes import load_scene
 from eyas.world.maps import MAPS
@@ -33,3 +36,19 @@ def test_the_originals_figures_stand_beside_ours():
         "the original has 3.59 km of streets, 24 buildings, median height 12 m, 41 trees" in lines
     )
     assert all(MAPS.get(name).original is not None for name in MAPS.built_in)
+
+
+@pytest.mark.sumo
+def test_a_new_map_of_a_kind_is_made_at_once_with_its_traffic(
+    monkeypatch, capsys, caplog, tmp_path
+):
+    monkeypatch.setenv("EYAS_CACHE_DIR", str(tmp_path))
+    monkeypatch.setattr(sys, "argv", ["eyas", "maps", "new", "farmland-bare", "--seed", "3"])
+    with pytest.raises(SystemExit, match="0"):
+        main()
+    assert "recording 1260 s of traffic" in caplog.text
+    assert capsys.readouterr().out.endswith("use it with --map farmland-bare --set world.seed=3\n")
+    caplog.clear()
+    with pytest.raises(SystemExit, match="0"):
+        main()
+    assert "recording" not in caplog.text

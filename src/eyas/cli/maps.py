@@ -68,6 +68,18 @@ def import_map(
         typer.echo(line)
 
 
+@app.command("new")
+def new_map(
+    name: Annotated[str, typer.Argument(help="Name of the map whose kind it is.")],
+    seed: Annotated[int, typer.Option("--seed", min=0, help="Seed of the new map.")],
+) -> None:
+    """Make another map of a kind now, with its traffic, not on first use."""
+    from eyas.modes.maps.another import run
+
+    for line in run(name, seed):
+        typer.echo(line)
+
+
 @app.command("info")
 def show_info(name: Name, seed: Seed = 0) -> None:
     """Print figures of a map: its size, streets, buildings, trees, and whose data it is."""

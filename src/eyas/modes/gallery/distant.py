@@ -11,7 +11,7 @@ from eyas.modes.gallery.still import StillScene, Viewpoint
 from eyas.modes.gallery.stops import CAMERA, Cars
 from eyas.state.scene import Scene
 
-__all__ = ["along", "horizon", "overview", "streets"]
+__all__ = ["along", "horizon", "overview"]
 
 _WIDE = 1.2
 """Field of view of the horizon view; the drone camera's would end at the horizon [rad]."""
@@ -38,7 +38,7 @@ def overview(still: StillScene, side: float, cars: Cars) -> Viewpoint:
         side: Direction to the sun [rad].
         cars: Cars on the roads.
     """
-    centre, reach = streets(still.scene)
+    centre, reach = _streets(still.scene)
     if reach > _BROAD:
         some = np.linspace(0, len(cars.time) - 1, _OVER).astype(int)
         views = [_over(cars.position[car], float(cars.yaw[car])) for car in some.tolist()]
@@ -98,7 +98,7 @@ def _from(place: Points, yaw: float, pitch: float) -> Viewpoint:
 def horizon(scene: Scene, side: float) -> Viewpoint:
     """Return a view from outside that shows all streets."""
     pitch = 0.3
-    centre, reach = streets(scene)
+    centre, reach = _streets(scene)
     away = reach / math.sin(0.5 * _WIDE)
     out = away * np.array([math.cos(side), math.sin(side)])
     height = away * math.tan(pitch)
@@ -115,7 +115,7 @@ def horizon(scene: Scene, side: float) -> Viewpoint:
     )
 
 
-def streets(scene: Scene) -> tuple[Points, float]:
+def _streets(scene: Scene) -> tuple[Points, float]:
     """Return the middle of all streets [m], shape (2,), and the distance to their farthest [m]."""
     points = scene.network.lane_points
     centre: Points = 0.5 * (points.min(axis=0) + points.max(axis=0))

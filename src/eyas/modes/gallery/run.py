@@ -78,7 +78,7 @@ def _draw(out: Path, map_name: str, weather: str, progress: Progress) -> Shown:
     world = WorldConfig(map=map_name, weather=weather)
     still = StillScene(load_assets(world, TrafficConfig(), 1))
     recipe = MAPS.get(map_name)
-    views = choose_viewpoints(still, recipe.light(weather))
+    views = choose_viewpoints(still, recipe.light(weather).sun_direction)
     shown = Shown(recipe.name, weather, views, [still.rgb(view) for view in views])
     folder = out / shown.folder
     with refusals(folder):

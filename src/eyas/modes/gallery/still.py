@@ -94,6 +94,14 @@ class StillScene:
         shares = count[list(_SIGHTS)] / picture.class_id.size
         return float(np.minimum(shares, 0.125).sum())
 
+    def contrast(self, view: Viewpoint) -> float:
+        """Return how much the lower half of a view differs within its rows, in sRGB levels."""
+        picture = Picture.create(1, 48, 64)
+        self._draw(view, picture, 4)
+        assert picture.rgb is not None  # set above
+        low = picture.rgb[0, 24:].astype(np.float64)
+        return float((low - low.mean(axis=1, keepdims=True)).std())
+
     def _draw(self, view: Viewpoint, picture: Picture, samples: int) -> None:
         subject = ACTOR_OBJECT + view.actor if view.actor >= 0 else -1
         views = Views(

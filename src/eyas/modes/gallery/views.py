@@ -3,25 +3,23 @@
 import math
 from dataclasses import replace
 
-from eyas.modes.gallery.distant import along, horizon, overview, streets
+from eyas.modes.gallery.distant import along, horizon, overview
 from eyas.modes.gallery.places import STOPS, beside_most, on_open_roads
 from eyas.modes.gallery.still import StillScene, Viewpoint
 from eyas.modes.gallery.stops import POSES, all_cars, stop
-from eyas.state.lighting import Lighting
 
 __all__ = ["choose_viewpoints"]
 
-_VEILED = 0.05
-"""Share of the light of distant things below which fog leaves nothing to see."""
+_PLAIN = 2.0
+"""Contrast of a distant view in which haze or fog leaves nothing to see [sRGB levels]."""
 
 
-def choose_viewpoints(still: StillScene, light: Lighting) -> list[Viewpoint]:
+def choose_viewpoints(still: StillScene, sun: tuple[float, float, float]) -> list[Viewpoint]:
     """Return the viewpoints of a map, without those for which it has no suitable place.
 
     Args:
         still: The world.
-        light: Its light: distant views have the sun behind the camera, so that walls are lit, and
-            what fog would hide altogether is left out.
+        sun: Direction to the sun; distant views have it behind the camera, so that walls are lit.
     """
     cars = all_cars(still)
     chosen: list[Viewpoint] = []
@@ -33,11 +31,10 @@ def choose_viewpoints(still: StillScene, light: Lighting) -> list[Viewpoint]:
         chosen += stop(still, cars, "road", "on an open road", on_open_roads(still.scene, cars))
     sights = stop(still, cars, "sights", "where much stands around", beside_most(still, cars))
     chosen += [view for view in sights if view.position not in {one.position for one in chosen}]
-    side = math.atan2(light.sun_direction[1], light.sun_direction[0]) + math.radians(15.0)
+    side = math.atan2(sun[1], sun[0]) + math.radians(15.0)
     far = horizon(still.scene, side)
     chosen.append(overview(still, side, cars))
-    away = math.dist(far.position[:2], streets(still.scene)[0])
-    if math.exp(-((light.fog_density * away) ** light.fog_power)) > _VEILED:
+    if still.contrast(far) > _PLAIN:
         chosen.append(far)
     first = chosen[0]
     small = replace(

@@ -136,7 +136,8 @@ def describe(name: str, seed: int) -> list[str]:
     ]
     if recipe.original is not None:
         lines.append(_of_the_original(recipe.original))
-    recorded = [file.name for file in recipe.shipped_traffic()]
+    shipped = seed == 0 or recipe.home is not None  # an imported map has its streets at any seed
+    recorded = [file.name for file in recipe.shipped_traffic()] if shipped else []
     lines.append(f"recorded traffic: {', '.join(recorded) or 'none; recorded on first use'}")
     if recipe.home is not None:
         lines.append(f"folder: {recipe.home}")

@@ -45,8 +45,8 @@ _STOP = 4
 """The street over which the station lies."""
 _HALF = 9.0
 """From its middle to the walls beside it [m]."""
-_REACH = 960.0
-"""From the middle of the floor to either end [m]."""
+_REACH = 1248.0
+"""From the middle of the floor to either end, beyond its edges [m]."""
 _BESIDE_ROAD = 3.2
 """From a kerb to the columns beside it: behind parked cars [m]."""
 _BETWEEN = 15.0

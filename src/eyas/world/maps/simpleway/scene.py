@@ -36,6 +36,8 @@ _BANK = 2.5
 _SPOTS = 320
 _SPOT = (8.0, 40.0)
 """Number and mean radius of the patches of another tint [m]."""
+_DRIFTS = ((0.975, 0.98, 0.985), (0.985, 0.985, 0.98))
+"""Their tints in snow: no grass shows through it."""
 
 
 def build_scene(skin_name: str, network: RoadNetwork, seed: int, season: Season) -> Scene:
@@ -49,7 +51,7 @@ def build_scene(skin_name: str, network: RoadNetwork, seed: int, season: Season)
     """
     skin, roads = SKINS[skin_name], paved(network)
     if season is Season.WINTER and not skin.bars:  # sand stays bare
-        skin = replace(skin, ground=skin.winter)
+        skin = replace(skin, ground=skin.winter, tints=_DRIFTS)
     builder = SceneBuilder(NAME, seed, FLOOR, Terrain.flat(FLOOR_HEIGHT))
     _add_roads(builder, network, roads, seed)
     if skin.bars:
