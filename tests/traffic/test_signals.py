@@ -15,13 +15,17 @@ from eyas.traffic.sumo import RATE, SumoRun
 
 NET = """<net>
 <tlLogic id="a" type="static" programID="0" offset="7">
-<phase duration="10" state="rGs"/><phase duration="3" state="uyO"/><phase duration="7" state="Gro"/>
+<phase duration="10" state="rGsYr"/><phase duration="3" state="uyOgr"/>
+<phase duration="7" state="GroGr"/>
 </tlLogic>
 <tlLogic id="b" type="actuated" programID="0" offset="0"><phase duration="10" state="r"/></tlLogic>
 <connection from="left" to="x" linkIndex="1" tl="a" dir="l"/>
+<connection from="left" to="z" linkIndex="4" tl="a" dir="s"/>
 <connection from="left" to="y" linkIndex="0" tl="a" dir="s"/>
 <connection from="right" to="x" linkIndex="1" tl="a" dir="r"/>
 <connection from="dark" to="x" linkIndex="2" tl="a" dir="s"/>
+<connection from="yields" to="x" linkIndex="3" tl="a" dir="s"/>
+<connection from=":inside_0" to="x" linkIndex="3" tl="a" dir="s"/>
 <connection from="clever" to="x" linkIndex="0" tl="b" dir="s"/>
 <connection from="free" to="x" dir="s"/>
 </net>"""
@@ -29,13 +33,24 @@ NET = """<net>
 
 def test_phases_are_those_of_the_program_for_who_drives_straight_on():
     plan = signal_plan(NET.encode())
-    assert plan.edges == ("left", "right", "dark", "clever")
+    assert plan.edges == ("left", "right", "dark", "yields", "clever")
     begin = 7.0 - WARM_UP
     time = begin + np.array([0.0, 9.999, 10.0, 12.999, 13.0, 19.999, 20.0, 400.0, -0.001])
     shown = [[Aspect(one).name for one in row] for row in plan.at(time).tolist()]
-    first, second = ["RED", "GREEN", "RED", "AMBER"], ["RED_AMBER", "AMBER", "DARK", "AMBER"]
-    third = ["GREEN", "RED", "AMBER", "AMBER"]
+    first = ["RED", "GREEN", "RED", "AMBER", "AMBER"]
+    second = ["RED_AMBER", "AMBER", "DARK", "GREEN", "AMBER"]
+    third = ["GREEN", "RED", "AMBER", "GREEN", "AMBER"]
     assert shown == [first, first, second, second, third, third, first, first, third]
+
+
+def test_a_phase_begins_at_the_physics_step_at_which_the_last_one_ends():
+    plan = signal_plan(NET.encode())
+    begin = 7.0 - WARM_UP
+    # A nanosecond is less than the error of sums of steps of 2 ms.
+    for ends, aspect in ((10.0, Aspect.RED_AMBER), (13.0, Aspect.GREEN), (20.0, Aspect.RED)):
+        for off in (-1e-9, 0.0, 1e-9):
+            assert plan.at(np.array([begin + ends + off]))[0, 0] == aspect
+        assert plan.at(np.array([begin + ends - 0.002]))[0, 0] != aspect
 
 
 @pytest.fixture(scope="module")

@@ -76,6 +76,30 @@ def test_no_axle_slides_and_both_parts_meet_at_the_kingpin():
         assert np.abs(aside).max() * RATE < 0.05 * SPEED
 
 
+def test_turning_on_and_on_is_no_jump():
+    """The headings of a ring go past half a turn, where the direction of the pull jumps."""
+    angle = np.linspace(0.0, 6.0 * math.pi, 4000)
+    path = 15.0 * np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    motion = tow(path, LENGTH, Links.straight(0.5 * math.pi))
+    assert np.abs(np.diff(motion.heading)).max() < 0.02
+    assert np.abs(np.diff(motion.hitch)).max() < 0.02
+    assert motion.heading[-1] - motion.heading[0] > 5.0 * math.pi
+    # Each follows its ring in a smaller one: the truck's axle, the axles of the trailer.
+    lead = 0.5 * LENGTH - 0.5 * (trailer.BUMPER_AHEAD + trailer.TAIL_BEHIND) + trailer._REFERENCE
+    squared = 15.0**2 - lead**2 - (trailer.BUMPER_AHEAD + trailer.REAR_AXLE) ** 2
+    kingpin = squared + trailer.REAR_AXLE**2
+    axles = kingpin - trailer.AXLES_BEHIND**2
+    truck, towed = parts(motion)
+    fifth = 0.5 * (trailer.TAIL_BEHIND - trailer.BUMPER_AHEAD)
+    for pose, x, wanted in (
+        (truck, fifth - trailer.REAR_AXLE, squared),
+        (towed, fifth, kingpin),
+        (towed, fifth - trailer.AXLES_BEHIND, axles),
+    ):
+        radius = np.linalg.norm(placed(pose, x)[-500:], axis=-1)
+        np.testing.assert_allclose(radius, math.sqrt(wanted), atol=0.02)
+
+
 def test_the_motion_can_be_taken_up_at_any_pose():
     path = bend()
     whole = tow(path, LENGTH, Links.straight(0.0))
