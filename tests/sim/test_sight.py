@@ -54,7 +54,7 @@ def test_pictures_show_the_last_exposure_of_so_long_ago(config, camera, late, ex
 
 def test_a_missing_picture_is_replaced_by_the_last(config):
     simulation = simulation_of(config, rate=250.0, drop_out=0.3)
-    first, second = exposures(simulation, 400), None
+    first = exposures(simulation, 400)
     taken = np.diff(first, axis=0)[1::2] > 0
     assert 1 - taken.mean() == pytest.approx(0.3, abs=0.06)
     assert not np.array_equal(taken[:, 0], taken[:, 1])
@@ -63,7 +63,20 @@ def test_a_missing_picture_is_replaced_by_the_last(config):
     second = exposures(simulation, 400)
     assert np.array_equal(first, second)
     simulation.reset()
-    assert not np.array_equal(first, exposures(simulation, 400))
+    other = exposures(simulation, 400)
+    for tracker in range(2):
+        assert not np.array_equal(first[:, tracker], other[:, tracker])
+
+
+def test_a_reset_of_one_is_no_exposure_of_another(config):
+    for camera in ({"rate": 50.0}, {"rate": 50.0, "delay_steps": 3}):
+        simulation = simulation_of(config, **camera)
+        shown = exposures(simulation, 17)[-1].copy()
+        simulation.reset(np.array([True, False]))
+        seen = simulation.perception.sight.shown.episodes.step_count
+        assert seen.tolist() == [0, shown[1]]
+        simulation.advance(FORWARD)
+        assert seen.tolist() == [0, shown[1]]
 
 
 def test_only_pictures_are_late_and_they_are_whole(config):
