@@ -8,8 +8,10 @@ from eyas.envs.observation import Observer
 from eyas.sensors.config import CameraErrors, LidarConfig, MountConfig, SensorsConfig
 from eyas.sim.build import build_simulation
 from eyas.sim.config import ControlConfig
+from eyas.sim.words import target_in_words
 from eyas.sim.worlds import each_alone
 from eyas.state.draw import Picture
+from eyas.task.config import StartConfig
 from eyas.trackers.config import TrackerConfig
 
 FORWARD = np.tile([9.0, -2.0, 0.004, 0.7], (2, 1))
@@ -134,3 +136,22 @@ def test_a_cars_lidar_is_where_the_originals_is(config):
     assert np.array_equal(ranges(car), ranges(car, MountConfig(x=-0.1)))
     assert not np.array_equal(ranges(car), ranges(drone))
     assert np.array_equal(ranges(drone), ranges(drone, MountConfig(z=0.031)))
+
+
+def test_the_words_for_a_target_are_those_of_what_is_shown(config):
+    wide = config.camera.model_copy(update={"field_of_view": 2.0})
+    changes = {"camera": wide, "start": StartConfig(height=60.0, pitch=1.0)}
+    changes["done"] = config.done.model_copy(update={"total_steps": 3000, "max_height": 100.0})
+    sims = []
+    for late in (0.0, 500.0):
+        control = ControlConfig(observation_latency_steps=late)
+        settings = config.model_copy(update={**changes, "control": control})
+        sims.append(build_simulation(settings, each_alone(12)))
+        sims[-1].reset()
+    now, late = ([] for _ in sims)
+    for _ in range(6):
+        for words, simulation in zip((now, late), sims, strict=True):
+            words.append([target_in_words(simulation, n, 0.75) for n in range(12)])
+            simulation.carry(500)
+    assert late[1:] == now[:-1]
+    assert now[1:] != now[:-1]
