@@ -171,6 +171,18 @@ def test_noise_and_resolution_are_those_of_the_settings(around):
     assert np.isinf(turned(world).ranges()).all()
 
 
+def test_no_noise_leads_out_of_range(around):
+    wall = [(11.99, -9), (13, -9), (13, 9), (11.99, 9)]
+    config = LidarConfig(enabled=True, noise=0.5, resolution=0.0)
+    ranges = turned(around(*[(0, 0, 5.0, 0)] * 40, prisms=[(wall, 0, 9)]), config).ranges()
+    seen = ranges[np.isfinite(ranges)]
+    assert seen.max() == 12.0
+    assert seen.min() < 11.5
+    near = room(-0.21, -0.21, 0.21, 0.21)
+    ranges = turned(around((0, 0, 5.0, 0), prisms=[(near, 0, 9)]), config).ranges()
+    assert ranges.min() == 0.2
+
+
 def test_the_same_seed_gives_the_same_noise_and_another_seed_another(around):
     world = around((0.0, 0.0, 5.0, 0.0), prisms=[(room(-5, -5, 5, 5), 0, 9)])
     config = LidarConfig(enabled=True)

@@ -57,6 +57,14 @@ def test_each_episode_has_a_latency_of_its_own_and_begins_hovering(config):
     assert drawn == {0, 3, 10}
 
 
+def test_a_reset_forgets_commands_that_are_under_way(config):
+    simulation = simulation_of(config, action_latency_steps=10.0)
+    track(simulation, np.full((3, 2, 4), 5.0))
+    simulation.reset()
+    start = simulation.snapshot.trackers.position.copy()
+    assert (track(simulation, np.zeros((10, 2, 4))) == start).all()
+
+
 def test_a_tracker_whose_time_stands_still_keeps_its_commands_for_later(config):
     simulation = simulation_of(config, action_latency_steps=6.0)
     simulation.advance(COMMANDS[0], 4)

@@ -8,8 +8,10 @@ from eyas.envs.observation import Observer
 from eyas.sensors.config import CameraErrors, LidarConfig, MountConfig, SensorsConfig
 from eyas.sim.build import build_simulation
 from eyas.sim.config import ControlConfig
+from eyas.sim.words import target_in_words
 from eyas.sim.worlds import each_alone
 from eyas.state.draw import Picture
+from eyas.task.config import StartConfig
 from eyas.trackers.config import TrackerConfig
 
 FORWARD = np.tile([9.0, -2.0, 0.004, 0.7], (2, 1))
@@ -54,7 +56,7 @@ def test_pictures_show_the_last_exposure_of_so_long_ago(config, camera, late, ex
 
 def test_a_missing_picture_is_replaced_by_the_last(config):
     simulation = simulation_of(config, rate=250.0, drop_out=0.3)
-    first, second = exposures(simulation, 400), None
+    first = exposures(simulation, 400)
     taken = np.diff(first, axis=0)[1::2] > 0
     assert 1 - taken.mean() == pytest.approx(0.3, abs=0.06)
     assert not np.array_equal(taken[:, 0], taken[:, 1])
@@ -63,7 +65,20 @@ def test_a_missing_picture_is_replaced_by_the_last(config):
     second = exposures(simulation, 400)
     assert np.array_equal(first, second)
     simulation.reset()
-    assert not np.array_equal(first, exposures(simulation, 400))
+    other = exposures(simulation, 400)
+    for tracker in range(2):
+        assert not np.array_equal(first[:, tracker], other[:, tracker])
+
+
+def test_a_reset_of_one_is_no_exposure_of_another(config):
+    for camera in ({"rate": 50.0}, {"rate": 50.0, "delay_steps": 3}):
+        simulation = simulation_of(config, **camera)
+        shown = exposures(simulation, 17)[-1].copy()
+        simulation.reset(np.array([True, False]))
+        seen = simulation.perception.sight.shown.episodes.step_count
+        assert seen.tolist() == [0, shown[1]]
+        simulation.advance(FORWARD)
+        assert seen.tolist() == [0, shown[1]]
 
 
 def test_only_pictures_are_late_and_they_are_whole(config):
@@ -121,3 +136,22 @@ def test_a_cars_lidar_is_where_the_originals_is(config):
     assert np.array_equal(ranges(car), ranges(car, MountConfig(x=-0.1)))
     assert not np.array_equal(ranges(car), ranges(drone))
     assert np.array_equal(ranges(drone), ranges(drone, MountConfig(z=0.031)))
+
+
+def test_the_words_for_a_target_are_those_of_what_is_shown(config):
+    wide = config.camera.model_copy(update={"field_of_view": 2.0})
+    changes = {"camera": wide, "start": StartConfig(height=60.0, pitch=1.0)}
+    changes["done"] = config.done.model_copy(update={"total_steps": 3000, "max_height": 100.0})
+    sims = []
+    for late in (0.0, 500.0):
+        control = ControlConfig(observation_latency_steps=late)
+        settings = config.model_copy(update={**changes, "control": control})
+        sims.append(build_simulation(settings, each_alone(12)))
+        sims[-1].reset()
+    now, late = ([] for _ in sims)
+    for _ in range(6):
+        for words, simulation in zip((now, late), sims, strict=True):
+            words.append([target_in_words(simulation, n, 0.75) for n in range(12)])
+            simulation.carry(500)
+    assert late[1:] == now[:-1]
+    assert now[1:] != now[:-1]

@@ -178,6 +178,14 @@ def test_drones_of_a_world_collide_at_any_speed(around, speed):
     assert flight.episodes.contact[:, 2] == pytest.approx([20.0, 20.0])
 
 
+def test_a_drone_that_hovers_is_hit_by_one_that_flies_through_it_in_a_step(around):
+    flight = Flight(around((0.0, 0.0, 20.0, 0.0), (5.0, 0.0, 20.0, 0.0), bodies=True))
+    flight.trackers.velocity[1] = -5000.0, 0.0, 0.0
+    flight.trackers.position[1, 0] -= 10.0
+    flight.step(0.0, 0.0, 0.0)
+    assert flight.episodes.crash.tolist() == [True, True]
+
+
 def test_drones_that_pass_each_other_do_not(around):
     assert not meeting(around, 40.0, aside=2 * HALF + 0.01)[0].episodes.crash.any()
     assert meeting(around, 40.0, aside=2 * HALF - 0.01)[0].episodes.crash.all()

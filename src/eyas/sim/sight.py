@@ -54,8 +54,10 @@ class LateSight:
             self._now.append(told)
             self._seen.append(self.told)
         self._kept = latency.most + sensor.delay_steps + 1
-        self._past = [np.stack([array] * self._kept) for array in self._now]
-        self._row = 0
+        # States are kept in slots, one more than steps; steps without an exposure share a slot.
+        self._past = [np.stack([array] * (self._kept + 1)) for array in self._now]
+        self._row, self._slot = 0, np.zeros(self._kept, np.int64)
+        self._uses, self._free = [self._kept, *([0] * self._kept)], [*range(1, self._kept + 1)]
         self._every = np.arange(count)
         self._clock = now.episodes.step_count
 
@@ -66,16 +68,28 @@ class LateSight:
 
     def record(self) -> None:
         """Remember the present state, after a physics step, or else the last exposure's."""
-        exposed = self._exposed()
-        if self._kept == 1 and not exposed.any():
-            return  # the last exposure stays
         last, self._row = self._row, (self._row + 1) % self._kept
+        exposed, before = self._exposed(), int(self._slot[last])
+        if not exposed.any():
+            self._use(before)
+            return
+        slot = self._free.pop()
         for past, now in zip(self._past, self._now, strict=True):
             if exposed.all():
-                past[self._row] = now
+                past[slot] = now
             else:
-                past[self._row] = past[last]
-                past[self._row, exposed] = now[exposed]
+                past[slot] = past[before]
+                past[slot, exposed] = now[exposed]
+        self._use(slot)
+
+    def _use(self, slot: int) -> None:
+        """Let the present step have a slot; one that no step has any more becomes free."""
+        old = int(self._slot[self._row])
+        self._slot[self._row] = slot
+        self._uses[slot] += 1
+        self._uses[old] -= 1
+        if self._uses[old] == 0:
+            self._free.append(old)
 
     def _exposed(self) -> NDArray[np.bool_]:
         """Return whether each tracker's sensor is exposed in this physics step, shape (N,)."""
@@ -89,15 +103,15 @@ class LateSight:
     def begin(self, trackers: Integers) -> None:
         """Remember the present state of trackers whose episodes have begun."""
         for past, now in zip(self._past, self._now, strict=True):
-            past[self._row, trackers] = now[trackers]
+            past[self._slot[self._row], trackers] = now[trackers]
         self.see()
 
     def see(self) -> None:
         """Set `snapshot`; nothing from before the reset is seen."""
         late = np.minimum(self._latency.steps + self._delay, self._clock)
-        rows = (self._row - late) % self._kept
+        slots = self._slot[(self._row - late) % self._kept]
         for seen, past in zip(self._seen, self._past, strict=True):
-            seen[...] = past[rows, self._every]
+            seen[...] = past[slots, self._every]
 
 
 class Sight:
