@@ -48,6 +48,7 @@ _LATER: Mapping[str, Any] = {
     "done.crash": "original",
     "custom": None,
     "extras": [],
+    "world.hour": None,
     "lidar": LidarConfig().model_dump(mode="json"),
     "sensors": SensorsConfig().model_dump(mode="json"),
 }

@@ -30,6 +30,7 @@ from eyas.traffic.signals import SignalPlan, signal_plan
 from eyas.traffic.source import TrafficSource
 from eyas.world.config import WorldConfig
 from eyas.world.maps import MAPS
+from eyas.world.sun import at_hour
 
 __all__ = ["Assets", "load_assets"]
 
@@ -73,7 +74,7 @@ def load_assets(
         EyasError: The map or weather does not exist, or has no traffic.
     """
     recipe = MAPS.get(world.map)
-    lighting, season = recipe.light(world.weather), recipe.season(world.weather)
+    lighting, season = _lighting(world), recipe.season(world.weather)
     grouped = traffic.demand is Demand.RESPAWN
     find = _live if traffic.source is Source.LIVE else _traffic
     source = find(world.map, world.seed, traffic, trackers if grouped else 1, crowd)
@@ -162,6 +163,11 @@ def _renderer(world: WorldConfig, kinds: tuple[int, ...], *, signals: bool) -> R
     return build_renderer(
         load_scene(world.map, world.seed, season),
         load_geometry(world.map, world.seed, season, kinds, signals=signals),
-        recipe.light(world.weather),
+        _lighting(world),
         ready=drawing_is_ready,
     )
+
+
+def _lighting(world: WorldConfig) -> Lighting:
+    own = MAPS.get(world.map).light(world.weather)
+    return own if world.hour is None else at_hour(own, world.hour)

@@ -22,6 +22,8 @@ class WorldConfig(Config):
     """Name of the weather."""
     seed: Annotated[int, Field(ge=0, lt=2**31)] = 0
     """Seed of the map: 0 is the canonical map, other seeds give other maps of the same kind."""
+    hour: Annotated[float, Field(ge=6.5, le=17.5)] | None = None
+    """Time of day, which moves the sun and its shadows; None: the weather's own sun."""
 
 
 class LightConfig(Config):

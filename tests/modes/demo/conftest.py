@@ -37,6 +37,7 @@ WORLD = {
     "target": "SUMO_VEHICLE",
     "tracker": "drone",
     "light": "own",
+    "hour": "own",
     "people": 0,
 }
 REWARD = RewardConfig().model_dump(mode="json", include=set(Reward.model_fields))

@@ -165,7 +165,7 @@ def test_menus_change_the_weather(page):
 
 
 def test_menus_change_the_tracker_and_the_light(page):
-    for menu, choice in [("tracker", "flown"), ("light", "dusk")]:
+    for menu, choice in [("tracker", "flown"), ("light", "dark"), ("hour", "9")]:
         page.select_option(f"#{menu}", choice)
         until(page, f"eyas.world.{menu} === '{choice}'", seconds=120)
         assert page.locator(f"#{menu}").input_value() == choice

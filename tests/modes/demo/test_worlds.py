@@ -43,7 +43,12 @@ def test_another_weather_and_thinner_traffic(viewer):
     viewer.say("world", weather="night", vehicles=5)
     state = viewer.until(lambda s: len(s.get("traffic", range(99))) == 6, seconds=120)
     assert cars > 6
-    assert viewer.told["world"] == WORLD | {"weather": "night", "vehicles": 5, "parked": True}
+    assert viewer.told["world"] == WORLD | {
+        "weather": "night",
+        "vehicles": 5,
+        "parked": True,
+        "dark": True,
+    }
     assert state["target"]["parked"]
 
 
@@ -85,15 +90,15 @@ def test_a_click_chooses_the_person_or_robot_under_it(viewer):
         viewer.say("pace", speed=1)
 
 
-def test_dusk_is_darker_and_the_reward_settings_stay(viewer):
+def test_dark_light_is_darker_and_the_reward_settings_stay(viewer):
     def brightness():
         return np.mean(Image.open(io.BytesIO(viewer.picture)).convert("L"))
 
     viewer.say("reward", view_scale=2.0)
     viewer.until(lambda s: viewer.told["reward"]["view_scale"] == 2.0)
     day = brightness()
-    viewer.say("world", light="dusk")
-    viewer.until(lambda s: viewer.told["world"]["light"] == "dusk", seconds=120)
+    viewer.say("world", light="dark")
+    viewer.until(lambda s: viewer.told["world"]["light"] == "dark", seconds=120)
     viewer.frame()
     assert brightness() < 0.7 * day
     assert viewer.told["reward"]["view_scale"] == 2.0

@@ -58,6 +58,11 @@ def plan_of(before: Plan, said: World) -> Plan:
     changes: dict[str, Any] = {
         "world": said.model_dump(include={"map", "weather"}, exclude_none=True)
     }
+    now = before.config.world
+    lighting = MAPS.get(said.map or now.map).light(said.weather or now.weather)
+    if said.hour is not None or lighting.lamps > 0.0:
+        fixed = said.hour in (None, "own") or lighting.lamps > 0.0
+        changes["world"]["hour"] = None if fixed else said.hour
     if said.target is not None:
         changes["target"] = said.target
     if said.tracker is not None:
@@ -66,8 +71,7 @@ def plan_of(before: Plan, said: World) -> Plan:
         changes["extras"] = _passers_by(said.people)
     light = said.light or before.light
     if said.light is not None or light != "own":
-        now = before.config.world
-        own = MAPS.get(said.map or now.map).light(said.weather or now.weather).luminosity
+        own = lighting.luminosity
         sun, sky = LIGHTS[light]
         changes["light"] = {
             **{"sun": own * sun, "background": own * sky},
@@ -97,6 +101,8 @@ def world_of(plan: Plan, flight: Flight) -> dict[str, Any]:
         "target": config.target.value,
         "tracker": "flown" if flown else str(tracker.kind),
         "light": plan.light,
+        "hour": config.world.hour or "own",
+        "dark": MAPS.get(config.world.map).light(config.world.weather).lamps > 0.0,
         "people": sum(extra.count for extra in config.extras),
         "parked": flight.world.parked >= 0,
     }

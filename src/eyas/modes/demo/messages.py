@@ -40,13 +40,14 @@ Share = Annotated[float, Field(ge=0, le=1)]
 Side = Annotated[int, Field(ge=16, le=16384)]
 Name = Annotated[str, Field(max_length=200)]
 Positive = Annotated[float, Field(gt=0, le=1000)]
-Light = Literal["own", "bright", "evening", "dusk"]
+Light = Literal["own", "bright", "dim", "dark"]
+Hour = Annotated[float, Field(ge=6.5, le=17.5)]
 
 LIGHTS: dict[Light, tuple[float, float]] = {
     "own": (0.0, 0.0),
     "bright": (1.3, 1.2),
-    "evening": (0.45, 0.6),
-    "dusk": (0.12, 0.3),
+    "dim": (0.45, 0.6),
+    "dark": (0.12, 0.3),
 }
 """Brightness of sun and sky in shares of the weather's own; `own` changes nothing."""
 
@@ -126,6 +127,8 @@ class World(Message):
     target: TargetName | None = None
     tracker: Literal["drone", "flown", "car"] | None = None
     light: Light | None = None
+    hour: Hour | Literal["own"] | None = None
+    """Time of day; `own`: the weather's sun, as in any weather that is night."""
     people: Annotated[int, Field(ge=0, le=100)] | None = None
     """Those who walk around without being asked for as targets: people and robots."""
 

@@ -1,9 +1,10 @@
 // The menus of the world, and the sliders of the reward.
 
 const SLIDERS = ["view_range", "view_scale", "distance_range", "distance_scale"];
-const COUNTS = ["vehicles", "people"];
+const NUMBERS = ["vehicles", "people", "hour"];
 const PEOPLE = [0, 10, 30, 60];
-const LIGHTS = { own: "of the weather", bright: "bright", evening: "evening", dusk: "dusk" };
+const LIGHTS = { own: "of the weather" };
+const HOURS = { own: "of the weather", 7: "7:00", 9: "9:00", 12: "12:00", 15: "15:00", 17: "17:00" };
 const TARGETS = { SUMO_VEHICLE: "vehicles", Pedestrian: "people", AiboErs7: "Aibo ERS-7", BioloidDog: "Bioloid dog", FireBird6: "Fire Bird 6", GhostDog: "Ghost dog", Hoap2: "Hoap 2" };
 const by = (id) => document.getElementById(id);
 
@@ -30,10 +31,10 @@ export class Settings {
       link.send("world", { map: by("map").value, weather });
       by("map").blur();
     });
-    for (const name of ["weather", "target", "tracker", "light", "vehicles", "people"]) {
+    for (const name of ["weather", "target", "tracker", "light", "hour", "vehicles", "people"]) {
       by(name).addEventListener("change", () => {
         const { value } = by(name);
-        link.send("world", { [name]: COUNTS.includes(name) ? Number(value) : value });
+        link.send("world", { [name]: NUMBERS.includes(name) && value !== "own" ? Number(value) : value });
         by(name).blur();
       });
     }
@@ -56,12 +57,16 @@ export class Settings {
   }
 
   world(chosen) {
-    const { map, people } = chosen;
+    const { map, people, hour } = chosen;
     this.chosen = chosen;
     fill(by("weather"), this.maps[map].weathers.map((name) => [name, name]));
     const counts = [...new Set([...PEOPLE, people])].sort((a, b) => a - b);
     fill(by("people"), counts.map((count) => [count, count ? `${count}` : "nobody"]));
-    for (const name of ["map", "weather", "target", "tracker", "light", "vehicles", "people"]) by(name).value = chosen[name];
+    const hours = [...new Set(["own", ...Object.keys(HOURS).filter(Number), `${hour}`])];
+    fill(by("hour"), hours.map((name) => [name, HOURS[name] ?? `${name} h`]));
+    by("hour").disabled = chosen.dark; // a night has its own moon
+    for (const name of ["map", "weather", "target", "tracker", "light", "hour", "vehicles", "people"]) by(name).value = chosen[name];
+    by("not-saved").hidden = !people && hour === "own";
     by("map").title = this.maps[map].title;
     by("vehicles").disabled = chosen.target !== "SUMO_VEHICLE"; // others have the roads to themselves
     by("parked").disabled = !chosen.parked;
@@ -69,9 +74,9 @@ export class Settings {
 
   // Under what flights can be compared.
   terms() {
-    const { map, weather, light, vehicles, target, tracker, people } = this.chosen;
+    const { map, weather, light, hour, vehicles, target, tracker, people } = this.chosen;
     const reward = [this.kind(), ...SLIDERS.map((name) => by(name).value)];
-    return [map, weather, light, target, vehicles, people, tracker, ...reward].join(" ");
+    return [map, weather, light, ...(hour === "own" ? [] : [hour]), target, vehicles, people, tracker, ...reward].join(" ");
   }
 
   reward(values) {
