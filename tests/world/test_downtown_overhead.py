@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 import shapely
 
-from eyas.sim.scenes import load_scene
+from eyas.sim.scenes import load_network, load_scene
 from eyas.state.scene import ObjectClass
 from eyas.traffic.recording_file import load
 from eyas.world.maps.downtown import DOWNTOWN
@@ -111,3 +111,19 @@ def test_it_hides_cars_from_the_drone_above_them(solids):
             share = (z - 0.8) / (22.0 - 0.8)
             hidden |= shapely.contains_xy(shape, *(place + share * (drone - place)).T)
     assert 0.02 < hidden.mean() < 0.06
+
+
+@pytest.mark.sumo
+@pytest.mark.parametrize("seed", [1, 2])
+def test_other_cities_hold_together_too(seed):
+    network = load_network("downtown", seed)
+    plan = make_plan(network, seed)
+    fronts = shapely.union_all([shapely.Polygon(corners) for corners in plan.footprints])
+    assert fronts.is_valid
+    assert not plan.viaduct.ground.buffer(-0.01).intersects(fronts)
+    assert not plan.viaduct.ground.intersects(plan.park.ground)
+    wheels = shapely.union(road_area(network), plan.kerbs.bays)
+    assert shapely.distance(wheels, shapely.points(plan.viaduct.feet)).min() > 0.6
+    assert len(plan.skyways) > 40
+    shapes = [shapely.Polygon(skyway.outline()) for skyway in plan.skyways]
+    assert shapely.area(shapely.intersection(shapes, fronts)).max() < 0.05

@@ -23,8 +23,8 @@ _SOON = (4.0, 9.0)
 """No bridge is so far ahead, and one is so far [m]."""
 _RATED = 240
 """Number of cars of which a small picture is drawn."""
-_PLAIN = 0.1
-"""Least rate of a place worth a stop."""
+_PLAIN = 0.225
+"""Least rate of a place worth a stop; a road alone has an eighth."""
 
 Points = NDArray[np.float64]
 

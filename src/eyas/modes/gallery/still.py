@@ -15,7 +15,8 @@ from eyas.state.scene import ACTOR_OBJECT, ObjectClass
 
 __all__ = ["StillScene", "Viewpoint"]
 
-_SIGHTS = (ObjectClass.TREE, ObjectClass.WATER, ObjectClass.BUILDING, ObjectClass.STRUCTURE)
+_SIGHTS = (ObjectClass.ROAD, ObjectClass.TREE, ObjectClass.WATER, ObjectClass.BUILDING,
+           ObjectClass.STRUCTURE)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,7 +87,7 @@ class StillScene:
         return picture.depth[0], seen / covered if covered else 0.0
 
     def sights(self, view: Viewpoint) -> float:
-        """Return how much stands in a view: shares of what is no ground, an eighth each at most."""
+        """Return how much is in a view: shares of what is no ground, an eighth each at most."""
         picture = Picture.create(1, 48, 64, rgb=False, class_id=True)
         self._draw(view, picture, 1)
         assert picture.class_id is not None  # set above
