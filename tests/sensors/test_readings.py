@@ -159,3 +159,21 @@ def test_the_cameras_bias_is_drawn_for_each_channel_and_episode():
     assert (error == error[:, :1, :1]).all()
     assert error[:, 0, 0].std() == pytest.approx(10.0, rel=0.1)
     assert abs(np.corrcoef(error[:, 0, 0, 0], error[:, 0, 0, 1])[0, 1]) < 0.25
+
+
+def test_a_heading_stays_within_half_a_turn_whatever_its_noise():
+    flight = Flight(200, imu=ReadingConfig(noise=0.3))
+    flight.snapshot.trackers.euler[:, 2] = 3.1
+    yaw = flight.fly(5)[1:, :, EULER.start + 2]
+    assert np.abs(yaw).max() <= math.pi
+    assert (yaw < 0).any()
+
+
+def test_sensors_do_not_miss_their_readings_together():
+    flight = Flight(20, gps_position=ReadingConfig(drop_out=0.5), imu=ReadingConfig(drop_out=0.5))
+    rows = [flight.readings.told.copy()]
+    for step in range(200):
+        flight.snapshot.trackers.euler[:, 0] = 1e-3 * (step + 1)
+        rows.append(flight.step())
+    place, roll = (np.diff([row[:, column] for row in rows], axis=0) for column in (0, EULER.start))
+    assert abs(np.corrcoef((place > 0).ravel(), (roll > 0).ravel())[0, 1]) < 0.1

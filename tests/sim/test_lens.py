@@ -87,8 +87,8 @@ def test_rewards_packets_and_frames_are_those_of_a_simulation_with_that_lens():
             np.testing.assert_array_equal(ours[n], theirs[n])
         assert varied.packets()[1][n, 2] == field
         assert varied.packets()[1][n, 3] == pytest.approx(48 / math.tan(field / 2))
-        now = varied.snapshot
-        frame = frame_of(now, now.episodes, n, pictures(varied), n, 0, Action(-1, None))
+        now, action = varied.snapshot.episodes, Action(-1, None)
+        frame = frame_of(varied.snapshot, now, n, pictures(varied), n, 0, action)
         assert frame.camera.field_of_view == field
         varied = started(RANDOM, 2)
 

@@ -137,6 +137,26 @@ def test_a_crash_ends_the_episode_where_it_is_an_end(around):
     assert flight.episodes.reason[0] == DoneReason.CRASH
 
 
+def test_numbers_that_are_none_are_told_before_a_crash(around):
+    flight = Flight(around((0, 0, 5.0, 0.0), prisms=[WALL]), ends=True)
+    flight.step(4.7, 0.0, 0.0)
+    flight.episodes.reason[0] = DoneReason.NOT_A_NUMBER
+    flight.step(0.0, 0.0, 0.0)
+    assert flight.episodes.reason[0] == DoneReason.NOT_A_NUMBER
+
+
+def test_a_new_episode_begins_without_a_crash_also_within_a_command(around):
+    flight = Flight(around((0, 0, 5.0, 0.0), prisms=[WALL]), ends=True)
+    assert flight.step(4.7, 0.0, 0.0)
+    assert flight.episodes.reason[0] == DoneReason.CRASH
+    flight.trackers.position[0] = -20.0, 0.0, 5.0
+    flight.episodes.step_count[0] = 0
+    flight.episodes.crash[0], flight.episodes.reason[0] = False, DoneReason.NONE
+    flight.contacts.begin(0, np.random.default_rng(0))
+    assert not flight.step(0.01, 0.0, 0.0, command=False)
+    assert flight.episodes.reason[0] == DoneReason.NONE
+
+
 def test_each_tracker_has_its_own_contacts_and_those_that_stand_still_none(around):
     poses = [(4.7, 0, 5.0, 0.0), (0.0, 0, 5.0, 0.0), (4.7, 0, 5.0, 0.0)]
     flight = Flight(around(*poses, prisms=[WALL]))

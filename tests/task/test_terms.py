@@ -42,6 +42,8 @@ def module(tmp_path, monkeypatch):
     (tmp_path / "own_terms.py").write_text(MODULE)
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.delitem(sys.modules, "own_terms", raising=False)
+    yield
+    sys.modules.pop("own_terms", None)  # another folder has one by this name, too
 
 
 @pytest.fixture

@@ -182,8 +182,10 @@ def corners_of(scene):
 
 
 def test_building_again_gives_the_same_bytes(desert, winter):
-    """Winter is a scene of its own, with the same things at the same places."""
-    assert corners_of(winter).tobytes() == corners_of(desert).tobytes()
+    """Winter is a scene of its own, with the same things at the same places; its dunes are cut
+    where their snow begins.
+    """
+    assert set(map(tuple, corners_of(desert))) < set(map(tuple, corners_of(winter)))
     assert winter.fixtures.pose.tobytes() == desert.fixtures.pose.tobytes()
     assert winter.terrain.relief.tobytes() == desert.terrain.relief.tobytes()
     assert winter.colliders.prism_points.tobytes() == desert.colliders.prism_points.tobytes()
@@ -199,7 +201,8 @@ def test_in_winter_about_every_second_dune_is_white_and_nothing_else(desert, win
     assert not (white & ~dunes).any()
     assert 0.22 < white.sum() / dunes.sum() < 0.5
     _, owners = highest(plan.dunes, middle[:, :2].astype(float))
-    assert 20 <= len(np.unique(owners)) <= 22
+    assert 20 <= (np.bincount(owners) > 0.01 * len(owners)).sum() <= 22
+    assert np.sort(np.bincount(owners))[:-22].sum() < 0.01 * len(owners)  # at their edges
     assert DESERT.light("snow").snow == 0.0
 
 

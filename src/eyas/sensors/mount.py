@@ -11,7 +11,7 @@ from eyas.core.jit import step_kernel
 from eyas.sensors.config import MountConfig
 from eyas.state.snapshot import CameraState, TrackerState
 
-__all__ = ["Mount", "fixed", "left_on_gimbal", "mount_of", "turn_of"]
+__all__ = ["CARRIED", "Mount", "left_on_gimbal", "mount_of", "turn_of"]
 
 Floats = NDArray[np.float64]
 
@@ -64,3 +64,7 @@ def fixed(trackers: TrackerState, cameras: CameraState, n: int, mount: Mount) ->
 @step_kernel
 def left_on_gimbal(trackers: TrackerState, cameras: CameraState, n: int, mount: Mount) -> None:
     """Leave the camera of tracker `n` where its tracker has aimed it."""
+
+
+CARRIED = {False: left_on_gimbal, True: fixed}
+"""What carries a camera, by whether it is fixed to the body."""

@@ -17,7 +17,7 @@ from eyas.core.clock import PHYSICS_STEP
 from eyas.core.jit import specialised, step_kernel
 from eyas.core.parallel import BoundKernel, Held, Pointer, parallel_kernel
 from eyas.sensors.inertial import feel, rest
-from eyas.sensors.mount import Mount, fixed, left_on_gimbal
+from eyas.sensors.mount import Mount
 from eyas.sensors.mount import left_on_gimbal as carried
 from eyas.state.episode import EpisodeState
 from eyas.state.motion import Motion
@@ -120,9 +120,8 @@ class StepKernels(NamedTuple):
         return Step(*(kernel.bound(state, orders) for kernel in self))
 
 
-def step_of(tracker: Tracker, *, fixed_camera: bool = False) -> StepKernels:
-    """Return the step of a kind of tracker, whose camera it carries, or has fixed to its body."""
-    carried = fixed if fixed_camera else left_on_gimbal
+def step_of(tracker: Tracker, carried: Kernel = carried) -> StepKernels:
+    """Return the step of a kind of tracker; `carried` is one of `eyas.sensors.mount.CARRIED`."""
     return _step_of(
         tracker.start, tracker.launch, tracker.advance, tracker.carry, tracker.aim, carried
     )

@@ -11,7 +11,7 @@ from eyas.core.parallel import BoundKernel, Held
 from eyas.core.rng import EpisodeKey
 from eyas.sensors.config import MountConfig
 from eyas.sensors.inertial import smoothing_share
-from eyas.sensors.mount import mount_of
+from eyas.sensors.mount import CARRIED, mount_of
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.episodes import Draw
@@ -64,7 +64,7 @@ class Stepper:
         self._launched = int(config.start.velocity is StartVelocity.TARGET)
         mount = config.camera.mount
         self._mount = mount_of(mount or MountConfig())
-        self._kernels = step_of(tracker, fixed_camera=mount is not None)
+        self._kernels = step_of(tracker, CARRIED[mount is not None])
         self._orders = Orders.create(count)
         self._held_orders = Held(self._orders)
         active, bodies = self._orders.active, tracker.visible

@@ -16,9 +16,11 @@ from eyas.state.roads import RoadNetwork
 from eyas.state.scene import ObjectClass, Scene
 from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.materials import TEXTURES
+from eyas.world.build.millimetres import rounded
 from eyas.world.build.scene_builder import SceneBuilder
 from eyas.world.buildings.cottages import add_cottages
 from eyas.world.land import ground
+from eyas.world.land.cut import cut
 from eyas.world.land.facets import Relief, relief, surface_of, terrain_of
 from eyas.world.land.mounds import Mound, highest
 from eyas.world.land.plain import far_plain
@@ -52,6 +54,10 @@ _SNOWED = 22
 """Number of dunes under snow in winter, as in the original."""
 _SNOW_LINES = (2.5, 6.0)
 """Heights from which thin and closed snow lies on them [m]."""
+_MARGINS = (0.0, 2.5)
+"""How much higher than a dune beside it a white one is there [m]."""
+_WAVE = 1.5
+"""By how much the lines rise and fall [m]."""
 
 
 def build_scene(network: RoadNetwork, seed: int, season: Season) -> Scene:
@@ -66,8 +72,8 @@ def build_scene(network: RoadNetwork, seed: int, season: Season) -> Scene:
     dunes = _relief(plan, stream(seed, "desert facets"))
     builder = SceneBuilder(NAME, seed, FLOOR, terrain_of(dunes, FLOOR_HEIGHT, HALF))
     white = _white(plan.dunes, season, stream(seed, "desert snow"))
-    kind = _covers(dunes, plan.dunes, white, stream(seed, "desert sand"))
-    sides = surface_of(dunes, FLOOR_HEIGHT, (SAND, THIN_SNOW, SNOW), kind, smooth=True)
+    sloping, cover = _snowed(dunes, plan.dunes, white)
+    sides = surface_of(sloping, FLOOR_HEIGHT, (SAND, THIN_SNOW, SNOW), cover, smooth=True)
     builder.add(ObjectClass.GROUND, sides)
     add_cottages(builder, plan.houses, HOUSES)
     _add_ground(builder, plan, network, dunes.area, seed)
@@ -97,14 +103,25 @@ def _white(dunes: Sequence[Mound], season: Season, rng: np.random.Generator) -> 
     return set(np.flatnonzero(np.diff(kept) > 0).tolist())
 
 
-def _covers(
-    ground_: Relief, dunes: Sequence[Mound], white: set[int], rng: np.random.Generator
-) -> NDArray[np.intp]:
-    """Return the index of the material of each triangle: 0 for sand, then the snows."""
-    middle = ground_.corners.mean(axis=1)
-    height, owner = highest(dunes, middle[:, :2])
-    depth = np.searchsorted(_SNOW_LINES, height + rng.uniform(-1.5, 1.5, len(height)))
-    return np.where(np.isin(owner, sorted(white)), depth, 0)
+def _snowed(
+    ground_: Relief, dunes: Sequence[Mound], white: set[int]
+) -> tuple[Relief, NDArray[np.intp]]:
+    """Cut the relief where snow begins; return it and what covers each triangle: sand, thin, snow.
+
+    Snow lies where a white dune is the highest, above lines that rise and fall along its foot.
+    """
+    points = ground_.points
+    own, _ = highest([dunes[index] for index in sorted(white)], points[:, :2])
+    others, _ = highest([d for index, d in enumerate(dunes) if index not in white], points[:, :2])
+    over = points[:, 2] + _WAVE * np.sin(0.11 * points[:, 0]) * np.sin(0.13 * points[:, 1])
+    thin, closed_ = (
+        np.minimum(own - others - margin, over - line)
+        for line, margin in zip(_SNOW_LINES, _MARGINS, strict=True)
+    )
+    levels = rounded(np.column_stack([thin, closed_]))
+    for which in range(2):
+        ground_, levels = cut(ground_, levels, which)
+    return ground_, (levels[ground_.triangles].mean(axis=1) > 0).sum(axis=1)
 
 
 def _heap(area: shapely.Polygon, top: float) -> Mesh:
