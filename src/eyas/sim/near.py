@@ -24,7 +24,7 @@ _SLACK = 0.05
 """Distance outside a view at which actors are still posed: more than roundings [m]."""
 
 
-_CHOICES = 100
+_CHOICES = 32
 """Groups of actors that are kept: those of one picture are mostly those of the next."""
 
 
@@ -107,7 +107,7 @@ class NearMovers:
         if len(self._chosen) >= _CHOICES:
             self._chosen.clear()
         group = self._rigs.casts[k].group
-        chosen = group._replace(actor=np.arange(begin, end), slot=self._near.slot[begin:end])
+        chosen = group._replace(actor=self._entries[begin:end], slot=self._near.slot[begin:end])
         self._chosen[k, begin, end] = chosen
         return chosen
 
@@ -131,6 +131,7 @@ class NearMovers:
             camera=np.zeros((size.views, 16), np.float32),
         )
         self._pairs = np.arange(1, size.worlds + 1)
+        self._entries = np.arange(size.entries)
         self._first: dict[int, DrawList] = {}
         self._chosen: dict[tuple[int, int, int], Group] = {}
         self._movers = self._rigs.short_list(size.worlds, size.slots)
