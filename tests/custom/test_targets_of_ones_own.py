@@ -102,6 +102,20 @@ def test_a_trajectory_moves_any_body_and_begins_again():
         assert (first["present"] + second["present"] > 0.0).all()
 
 
+def test_a_pedestrian_who_crosses_roads_is_followed():
+    crossing = {"body": "Pedestrian", "behaviour": "crossing", "speed": 1.6}
+    few = {"max_count": 4, "group_size": 4, "interval": 20.0}
+    cars = [{"kind": "SUMO_VEHICLE", "count": 30}]
+    simulation = begun(custom=crossing, objects=few, extras=cars)
+    model, _, _ = seen(simulation)
+    assert (model.kind, model.typename) == ("Pedestrian", "Pedestrian")
+    table = simulation.traffic.motion.table[:, 30:34]
+    speed = np.hypot(table["velocity_x"], table["velocity_y"])
+    assert 1.05 < speed.max() < 1.61
+    walking, on_road = table["present"] > 0.0, table["z"] < 0.05
+    assert 0.02 < (on_road & walking).sum() / walking.sum() < 0.3
+
+
 def test_a_short_trajectory_is_followed_for_ever_by_shorter_episodes(tmp_path: Path):
     (tmp_path / "short.csv").write_text("t,x,y\n0,0,0\n1,1,0\n2,2,0\n")
     simulation = begun(custom={"trajectory": str(tmp_path / "short.csv")})
@@ -144,7 +158,7 @@ class Crooked(Partless):
 @pytest.mark.parametrize(
     ("custom", "message"),
     [
-        ({}, "custom.mesh: .*must be given, or path, or trajectory"),
+        ({}, "custom.mesh: .*must be given, or path, trajectory or behaviour"),
         (
             {"mesh": "a.obj", "path": "a:B"},
             r"custom\.path: .*must be left out where a mesh is given",
