@@ -143,11 +143,26 @@ def test_a_mesh_that_is_too_large_is_refused_and_simplified_on_request(tmp_path:
 def test_files_that_are_none_are_told_in_one_line(tmp_path: Path):
     (tmp_path / "noise.glb").write_bytes(b"glTF and then nothing")
     (tmp_path / "empty.obj").write_text("# nothing\n")
+    (tmp_path / "empty.glb").write_bytes(b"")
     for name, message in (
         ("missing.stl", "no such file"),
+        ("empty.glb", "holds no triangles: the file is empty"),
         ("noise.glb", "cannot read as a mesh"),
         ("empty.obj", "empty.obj: "),
     ):
         with pytest.raises(DataFileError, match=message) as caught:
             loaded(CustomConfig(mesh=str(tmp_path / name)))
         assert "\n" not in str(caught.value)
+
+
+def test_a_corner_that_is_no_number_is_told(tmp_path: Path):
+    corners = "v nan 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
+    (tmp_path / "nan.obj").write_text(corners + "f 1 2 3\nf 1 3 4\nf 2 3 4\nf 1 4 2\n")
+    with pytest.raises(ConfigError, match=r"nan\.obj: 1 vertices are not finite numbers"):
+        kind_name_of(CustomConfig(mesh=str(tmp_path / "nan.obj")))
+
+
+def test_a_mesh_in_millimetres_is_suspected_and_refused(tmp_path: Path):
+    trimesh.creation.box((900, 400, 300)).export(tmp_path / "drawn.stl")
+    with pytest.raises(ConfigError, match=r"in millimetres\? then use custom\.scale=0\.001"):
+        kind_name_of(CustomConfig(mesh=str(tmp_path / "drawn.stl")))

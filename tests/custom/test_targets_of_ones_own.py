@@ -92,12 +92,38 @@ def test_a_trajectory_moves_any_body_and_begins_again():
     for body in ("Pedestrian", "bus"):
         simulation = begun(custom={**own_track.WALK, "body": body})
         assert seen(simulation)[0].kind == body
-        table = simulation.traffic.motion.table[:, 0]
-        np.testing.assert_allclose(table["x"][: last + 1 : 10], points["x"], atol=1e-3)
-        assert table["present"][last]
-        assert not table["present"][last + 1]
-        assert table["x"][last + 2] == table["x"][0]
-        assert (np.diff(table["travelled"]) >= 0.0).all()
+        first, second = simulation.traffic.motion.table.T
+        np.testing.assert_allclose(first["x"][: last + 1 : 10], points["x"], atol=1e-3)
+        assert (np.diff(first["travelled"][: last + 1]) >= 0.0).all()
+        assert first["present"][last]
+        assert not first["present"][last + 1]
+        # The next one begins as it ends, and so on: there is always one.
+        assert second["x"][last] == first["x"][0] == first["x"][2 * last]
+        assert (first["present"] + second["present"] > 0.0).all()
+
+
+def test_a_pedestrian_who_crosses_roads_is_followed():
+    crossing = {"body": "Pedestrian", "behaviour": "crossing", "speed": 1.6}
+    few = {"max_count": 4, "group_size": 4, "interval": 20.0}
+    cars = [{"kind": "SUMO_VEHICLE", "count": 30}]
+    simulation = begun(custom=crossing, objects=few, extras=cars)
+    model, _, _ = seen(simulation)
+    assert (model.kind, model.typename) == ("Pedestrian", "Pedestrian")
+    table = simulation.traffic.motion.table[:, 30:34]
+    speed = np.hypot(table["velocity_x"], table["velocity_y"])
+    assert 1.05 < speed.max() < 1.61
+    walking, on_road = table["present"] > 0.0, table["z"] < 0.05
+    assert 0.02 < (on_road & walking).sum() / walking.sum() < 0.3
+
+
+def test_a_short_trajectory_is_followed_for_ever_by_shorter_episodes(tmp_path: Path):
+    (tmp_path / "short.csv").write_text("t,x,y\n0,0,0\n1,1,0\n2,2,0\n")
+    simulation = begun(custom={"trajectory": str(tmp_path / "short.csv")})
+    for _ in range(30):  # 12 s, in one world whose time goes on
+        ended = simulation.carry(200).done
+        if ended.any():
+            simulation.reset(ended)
+    assert simulation.snapshot.episodes.number[0] > 3
 
 
 @pytest.mark.parametrize("name", ["own_mesh", "own_target", "own_track"])
@@ -132,7 +158,7 @@ class Crooked(Partless):
 @pytest.mark.parametrize(
     ("custom", "message"),
     [
-        ({}, "custom.mesh: .*must be given, or path, or trajectory"),
+        ({}, "custom.mesh: .*must be given, or path, trajectory or behaviour"),
         (
             {"mesh": "a.obj", "path": "a:B"},
             r"custom\.path: .*must be left out where a mesh is given",
@@ -159,6 +185,12 @@ def _this():
     module = types.ModuleType(__name__)
     module.__dict__.update(Sizeless=Sizeless, Partless=Partless, Crooked=Crooked)
     return module
+
+
+def test_a_trajectory_outside_the_map_is_told_before_anything_moves(tmp_path: Path):
+    (tmp_path / "far.csv").write_text("t,x,y\n0,9000,0\n1,9001,0\n")
+    with pytest.raises(ConfigError, match=r"2 of 2 points are outside the map 'citystreet'"):
+        begun(custom={"trajectory": str(tmp_path / "far.csv")})
 
 
 def test_check_tells_whether_a_target_can_be_used(tmp_path: Path):

@@ -1,5 +1,7 @@
 """`eyas targets`."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from PIL import Image
@@ -46,3 +48,14 @@ def test_a_sheet_and_a_film_show_the_target_in_its_colour(tmp_path):
     run("Shrimp", tmp_path / "film.gif")
     with Image.open(tmp_path / "film.gif") as film:
         assert film.n_frames == 72
+
+
+@pytest.mark.slow
+def test_a_target_of_ones_own_is_shown_in_its_colours(tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(Path(__file__).parents[2] / "examples")
+    run("own_target:Sprinkler", tmp_path / "sheet.png")
+    sheet = np.asarray(Image.open(tmp_path / "sheet.png")).astype(int)
+    red, green, blue = sheet[64:320].reshape(256, 8, 256, 3)[64:192, :, 64:192].T
+    box, arm = green > 1.4 * np.maximum(red, blue), (blue < 0.35 * red) & (green > 0.65 * red)
+    for colour in (box, arm):
+        assert (colour.sum(axis=(0, 2)) > 50).all()  # in each picture all round

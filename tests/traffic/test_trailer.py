@@ -1,15 +1,19 @@
 """Trailers: they swing behind their trucks, and no wheel slides."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
 from eyas.state.motion import ActorState
+from eyas.state.terrain import Terrain
 from eyas.targets.catalogue import kind_index, model_index
 from eyas.targets.kind import Looks
 from eyas.targets.rig import Rigs
 from eyas.targets.vehicles.models import VEHICLE_AHEAD
 from eyas.traffic import trailer
+from eyas.traffic.config import VehicleType
+from eyas.traffic.recorded import recorded_motion
 from eyas.traffic.trailer import Links, tow
 
 RATE, SPEED, RADIUS = 50.0, 5.0, 12.0
@@ -108,3 +112,16 @@ def test_the_motion_can_be_taken_up_at_any_pose():
     rest = tow(path[at:], LENGTH, links)
     np.testing.assert_allclose(rest.centre, whole.centre[at:], atol=1e-9)
     np.testing.assert_allclose(rest.hitch, whole.hitch[at:], atol=1e-9)
+
+
+def test_recorded_trailers_swing(make_recording):
+    path = bend()[:: round(RATE / 10.0)]
+    yaw = np.unwrap(np.arctan2(*np.gradient(path, axis=0).T[::-1]))
+    recording = make_recording(path[:, None], yaw[:, None])
+    kind = np.array([kind_index("trailer")], np.int32)
+    flat = Terrain.flat(0.0)
+    truck = replace(
+        recording, vehicle_types=(VehicleType.TRAILER,), vehicle_length=np.array([LENGTH])
+    )
+    assert recorded_motion(truck, flat, kind).table["hitch"].min() < -0.3
+    assert not recorded_motion(recording, flat, kind).table["hitch"].any()

@@ -13,7 +13,9 @@ Text = Annotated[str, Field(min_length=1)]
 
 
 class CustomConfig(Config):
-    """A target of one's own, in the place of `target`: `mesh`, `path` or `trajectory`."""
+    """A target of one's own, in the place of `target`: `mesh`, `path`, `trajectory`, or a `body`
+    with a `behaviour`.
+    """
 
     mesh: Text | None = None
     """File of its shape: glTF, GLB, OBJ, STL or PLY (extra `mesh`)."""
@@ -22,7 +24,7 @@ class CustomConfig(Config):
     trajectory: Text | None = None
     """CSV file with the columns t, x, y and perhaps z and yaw, which moves it."""
     body: Text = "Pedestrian"
-    """Kind that is moved by `trajectory`, if there is neither `mesh` nor `path`."""
+    """Kind that is moved by `trajectory` or `behaviour`, if there is neither `mesh` nor `path`."""
     up: Literal["y", "z"] | None = None
     """Axis that is up in the file; None: y in glTF, else z."""
     turn: Annotated[float, Field(ge=-7, le=7)] = 0.0
@@ -40,8 +42,9 @@ class CustomConfig(Config):
 
     @model_validator(mode="after")
     def _something(self) -> "CustomConfig":
-        if self.mesh is None and self.path is None and self.trajectory is None:
-            raise ValueError("mesh must be given, or path, or trajectory")
+        alone = self.mesh is None and self.path is None and self.trajectory is None
+        if alone and "behaviour" not in self.model_fields_set:
+            raise ValueError("mesh must be given, or path, trajectory or behaviour")
         if self.mesh is not None and self.path is not None:
             raise ValueError("path must be left out where a mesh is given")
         return self

@@ -84,6 +84,8 @@ def read_mesh(path: Path) -> Triangles:
         raise DataFileError(f"{path}: not a mesh file; allowed: {', '.join(ENDINGS)}")
     if not path.is_file():
         raise DataFileError(f"{path}: cannot read: no such file")
+    if path.stat().st_size == 0:
+        raise DataFileError(f"{path}: holds no triangles: the file is empty")
     if path.stat().st_size > _LARGEST_FILE:
         raise DataFileError(f"{path}: larger than {_LARGEST_FILE >> 20} MiB")
     try:
@@ -123,7 +125,8 @@ def placed(shape: Triangles, up: str, turn: float, scale: float) -> Triangles:
 
 
 def _parts(trimesh: ModuleType, path: Path) -> Iterator[Triangles]:
-    for part in trimesh.load_scene(str(path)).dump():
+    # As it is: cleaned up, it would have lost the corners that are no numbers.
+    for part in trimesh.load_scene(str(path), process=False).dump():
         corners = getattr(part, "faces", None)
         if corners is not None and len(corners):
             points = np.asarray(part.vertices, np.float64)

@@ -15,8 +15,10 @@ from eyas.core.variation import Variation
 from eyas.custom.config import CustomConfig
 from eyas.custom.kind import kind_name_of, own_target
 from eyas.custom.own import MovesItself
+from eyas.custom.problems import of_trajectory, worst
 from eyas.custom.trajectory import read_trajectory
 from eyas.state.motion import SAMPLE, Motion
+from eyas.state.scene import Scene
 from eyas.state.terrain import Terrain, reliefs
 from eyas.targets.catalogue import MODELS, kind_index, models_of
 
@@ -24,6 +26,9 @@ __all__ = ["Places", "custom_motion"]
 
 _SPAN = 0.25
 """Half the distance over which the slope of the ground is taken [m]."""
+
+_FEWEST = 5
+"""Least number of samples of a trajectory."""
 
 Floats = NDArray[np.float64]
 
@@ -55,7 +60,7 @@ def custom_motion(
     name = kind_name_of(config)
     target = own_target(config) if config.path is not None else None
     if config.trajectory is not None:
-        table = _driven(config.trajectory, ground.scene.terrain, clock)
+        table = _driven(config.trajectory, ground.scene, clock)
     elif isinstance(target, MovesItself):
         table = _own(target, int(places.lives.slot.max()) + 1, ground, clock, rng)
     else:
@@ -72,27 +77,24 @@ def _troop(config: CustomConfig, name: str, places: Places) -> Troop:
     return Troop(name, breadth, config.behaviour, *where, "objects.max_count", habit)
 
 
-def _driven(file: str, terrain: Terrain, clock: Clock) -> NDArray[np.void]:
-    """Return the samples of a trajectory, again and again, with a sample's break in between."""
+def _driven(file: str, scene: Scene, clock: Clock) -> NDArray[np.void]:
+    """Return the samples of a trajectory, again and again."""
     path = user_path(file)
     trajectory = read_trajectory(path)
-    jumps = trajectory.jumps()
-    if len(jumps):
-        raise ConfigError(
-            f"custom.trajectory: {path}: it jumps {trajectory.time[jumps[0]]:g} s after its "
-            "beginning; eyas targets check tells where"
-        )
+    if problem := worst(of_trajectory(trajectory, scene.size, scene.name)):
+        raise ConfigError(f"custom.trajectory: {path}: {problem}")
     period = int(trajectory.time[-1] * clock.rate) + 1
-    if period < 2:
-        raise ConfigError(f"custom.trajectory: {path}: it is shorter than {1.0 / clock.rate:g} s")
+    if period < _FEWEST:
+        raise ConfigError(
+            f"custom.trajectory: {path}: it is shorter than {(_FEWEST - 1) / clock.rate:g} s"
+        )
     place, yaw = trajectory.at(np.arange(period) / clock.rate)
-    once = _table(place[:, None], yaw[:, None], terrain, clock.rate)
-    rounds = -(-clock.samples // (period + 1))
-    pause = once[-1:].copy()
-    pause["present"] = 0.0
-    table = np.concatenate([once, pause] * rounds)[: clock.samples]
-    travelled = np.repeat(np.arange(rounds), period + 1)[: clock.samples, None]
-    table["travelled"] += travelled * once["travelled"][-1]
+    once = _table(place[:, None], yaw[:, None], scene.terrain, clock.rate)[:, 0]
+    # Two bodies in turn: one begins when the other ends, so there is always one to be followed.
+    table = np.zeros((clock.samples, 2), SAMPLE)
+    for number, begin in enumerate(range(0, clock.samples - 1, period - 1)):
+        rows = table[begin : begin + period, number % 2]
+        rows[:] = once[: len(rows)]
     return table
 
 

@@ -13,6 +13,9 @@ __all__ = ["Finding", "of_shape", "of_trajectory", "worst"]
 _LARGE, _SMALL = 60.0, 0.05
 """Lengths from which on a target is hardly one: a unit is suspected [m]."""
 
+_TOO_LARGE = 100.0
+"""Length of which none is [m]."""
+
 _USUAL = 2.0
 """Length of a usual target [m]."""
 
@@ -50,7 +53,7 @@ def of_shape(shape: Triangles) -> Iterator[Finding]:
         yield Finding(f"it has no size: {told} m", fatal=True)
         return
     if max(size) > _LARGE or max(size) < _SMALL:
-        yield Finding(f"{told} m: {_unit(max(size))}", fatal=max(size) > 1000.0)
+        yield Finding(f"{told} m: {_unit(max(size))}", fatal=max(size) > _TOO_LARGE)
     if count <= LARGEST:
         yield from _surface(shape)
 

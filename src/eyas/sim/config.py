@@ -63,8 +63,7 @@ class SimConfig(Config):
 
     @model_validator(mode="after")
     def _vehicles_once(self) -> "SimConfig":
-        if self.target is TargetName.SUMO_VEHICLE and any(
-            extra.kind is TargetName.SUMO_VEHICLE for extra in self.extras
-        ):
+        followed = self.custom is None and self.target is TargetName.SUMO_VEHICLE
+        if followed and any(extra.kind is TargetName.SUMO_VEHICLE for extra in self.extras):
             raise ValueError("extras must not hold SUMO_VEHICLE (see traffic.max_vehicles)")
         return self

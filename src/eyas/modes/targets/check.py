@@ -68,6 +68,8 @@ def _mesh(config: CustomConfig) -> Iterator[Finding]:
         shape = simplified(shape, config.most_triangles)
     yield from of_shape(shape)
     simpler = f" of {whole}" if len(shape.corners) < whole else ""
+    if not np.isfinite(shape.points).all():
+        return
     size = " x ".join(f"{length:.3g}" for length in shape.size)
     colours = len(np.unique(shape.colours, axis=0))
     yield Finding(
