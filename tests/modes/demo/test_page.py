@@ -125,6 +125,23 @@ def test_h264_shows_the_same_colours(page):
     assert shown["h264"] == pytest.approx(shown["jpeg"], abs=3.0)
 
 
+def test_a_page_that_cannot_decode_h264_goes_on_with_jpeg(page):
+    if not page.evaluate("import('/pictures.js').then((it) => it.decodesH264())"):
+        pytest.skip("this Chromium does not decode H.264")
+    page.evaluate(
+        """() => {
+          const Own = EncodedVideoChunk;
+          window.EncodedVideoChunk = function (init) {
+            return new Own({ ...init, data: new Uint8Array(50) });
+          };
+        }"""
+    )
+    page.select_option("#coding", "h264")
+    until(page, "document.getElementById('coding').value === 'jpeg'")
+    frame = state(page)["frame"]
+    until(page, f"eyas.state.frame > {frame + 20} && eyas.state.picture === 'jpeg'")
+
+
 def test_a_slow_line_gets_h264_by_itself(browser, served):
     with contextlib.ExitStack() as stack:
         line = stack.enter_context(contextlib.closing(SlowLine(served.port, 150_000)))
