@@ -25,7 +25,7 @@ except ImportError:
 
 # Tests of the page itself run where a browser and what drives it are installed.
 if CHROMIUM is None:
-    collect_ignore = ["test_page.py"]
+    collect_ignore = ["test_page.py", "test_hands.py"]
 
 QUICK = ["--set", "world.map=simpleway-grass", "--set", "traffic.max_vehicles=40"]
 
@@ -198,3 +198,24 @@ def viewer(served):
     restore(one)
     yield one
     one.close()
+
+
+@pytest.fixture(scope="module")
+def browser():
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as driver:
+        flags = ["--headless", "--no-sandbox", "--disable-gpu"]
+        chromium = driver.chromium.launch(executable_path=CHROMIUM, args=flags)
+        yield chromium
+        chromium.close()
+
+
+def until(page, truth, seconds=40):
+    """Wait until something is true of the page; its policy forbids what playwright has for that."""
+    end = time.monotonic() + seconds
+    while time.monotonic() < end:
+        if page.evaluate(truth):
+            return
+        time.sleep(0.05)
+    raise AssertionError(f"not within {seconds} s: {truth}; {page.evaluate('window.eyas.state')}")

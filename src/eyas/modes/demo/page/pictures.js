@@ -27,7 +27,12 @@ export class Stream {
       return;
     }
     this.states.set(state.frame, state);
-    this.decoder.decode(new EncodedVideoChunk({ type: key ? "key" : "delta", timestamp: state.frame, data }));
+    try {
+      this.decoder.decode(new EncodedVideoChunk({ type: key ? "key" : "delta", timestamp: state.frame, data }));
+    } catch {
+      this.end();
+      this.fail(state);
+    }
   }
 
   begin() {
