@@ -3,15 +3,17 @@
 from dataclasses import dataclass
 from typing import Any
 
+from eyas.behaviours.config import Behaviour
 from eyas.core.config import updated
 from eyas.modes.demo.flight import Flight
 from eyas.modes.demo.messages import LIGHTS, Light, World
 from eyas.settings.config import EyasConfig
 from eyas.targets.config import TargetName
 from eyas.trackers.config import TrackerKind
+from eyas.traffic.config import Source
 from eyas.world.maps import MAPS
 
-__all__ = ["Plan", "plan_of", "world_of"]
+__all__ = ["Plan", "first_plan", "plan_of", "world_of"]
 
 _TRACKERS: dict[str, dict[str, Any]] = {
     "drone": {"kind": TrackerKind.DRONE, "supervised": True},
@@ -20,6 +22,10 @@ _TRACKERS: dict[str, dict[str, Any]] = {
 }
 _ROBOTS = (TargetName.AIBO_ERS7, TargetName.CREATE)
 """Each is a fifth of those who walk around; the others are people."""
+_CITIES = ("citystreet", "downtown")
+"""Maps with pavements and painted crossings."""
+_PEDESTRIANS = 40
+"""People who walk in the cities, unless the settings say who does."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +51,17 @@ class Plan:
         return Flight(self.config, self.vehicles)
 
 
+def first_plan(config: EyasConfig) -> Plan:
+    """Return the plan that a demo begins with.
+
+    Raises:
+        ConfigError: The settings do not fit to each other.
+    """
+    if "extras" not in config.model_fields_set and _has_crossings(config):
+        config = updated(config, {"extras": _pedestrians(_PEDESTRIANS, config)})
+    return Plan(config, config.traffic.max_vehicles)
+
+
 def plan_of(before: Plan, said: World) -> Plan:
     """Return a plan with what a page has chosen.
 
@@ -67,8 +84,6 @@ def plan_of(before: Plan, said: World) -> Plan:
         changes["target"] = said.target
     if said.tracker is not None:
         changes["tracker"] = _TRACKERS[said.tracker]
-    if said.people is not None:
-        changes["extras"] = _passers_by(said.people)
     light = said.light or before.light
     if said.light is not None or light != "own":
         own = lighting.luminosity
@@ -77,16 +92,30 @@ def plan_of(before: Plan, said: World) -> Plan:
             **{"sun": own * sun, "background": own * sky},
             **{"sun_replaces": light != "own", "background_replaces": light != "own"},
         }
-    return Plan(updated(before.config, changes), said.vehicles or before.vehicles, light)
+    people = said.people
+    if people is None and said.map is not None:  # others may walk there
+        people = sum(extra.count for extra in before.config.extras)
+    config = updated(before.config, changes if people is None else changes | {"extras": []})
+    if people:
+        config = updated(config, {"extras": _passers_by(people, config)})
+    return Plan(config, said.vehicles or before.vehicles, light)
 
 
-def _passers_by(count: int) -> list[dict[str, Any]]:
+def _passers_by(count: int, config: EyasConfig) -> list[dict[str, Any]]:
     each = count // 5
-    groups = [
-        (TargetName.PEDESTRIAN, count - each * len(_ROBOTS)),
-        *((kind, each) for kind in _ROBOTS),
-    ]
-    return [{"kind": kind, "count": number} for kind, number in groups if number]
+    robots = [{"kind": kind, "count": each} for kind in _ROBOTS if each]
+    return [*_pedestrians(count - each * len(_ROBOTS), config), *robots]
+
+
+def _pedestrians(count: int, config: EyasConfig) -> list[dict[str, Any]]:
+    behaviour = Behaviour.CROSSING if _has_crossings(config) else None
+    return [{"kind": TargetName.PEDESTRIAN, "count": count, "behaviour": behaviour}]
+
+
+def _has_crossings(config: EyasConfig) -> bool:
+    """Return whether people can cross roads: they must know where vehicles will be."""
+    recorded = config.traffic.source is not Source.LIVE
+    return config.world.map in _CITIES and recorded
 
 
 def world_of(plan: Plan, flight: Flight) -> dict[str, Any]:
