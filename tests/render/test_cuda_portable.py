@@ -21,7 +21,8 @@ from eyas.render.kernels.light.view_light import view_light
 from eyas.render.kernels.scalars import u4
 from eyas.render.kernels.surface.pixel import shade_pixel
 from eyas.render.kernels.visibility.transform import view_of
-from eyas.sensors.config import CameraConfig
+from eyas.sensors.config import CameraConfig, MountConfig
+from eyas.sensors.mount import CARRIED, mount_of
 from eyas.sim.step import Orders, StepState, Surroundings, step_of
 from eyas.state.draw import DrawStage
 from eyas.state.motion import SAMPLE, Motion
@@ -113,16 +114,24 @@ FLOWN, CAR = (
 
 
 @pytest.mark.parametrize(
-    ("tracker", "kernel"),
-    [(DRONE, "fly"), (DRONE, "carry"), (DRONE, "begin"), (FLOWN, "fly"), (CAR, "fly")],
+    ("tracker", "mounted", "kernel"),
+    [
+        (DRONE, False, "fly"),
+        (DRONE, False, "carry"),
+        (DRONE, True, "begin"),
+        (FLOWN, False, "begin"),
+        (FLOWN, True, "fly"),
+        (CAR, False, "fly"),
+    ],
 )
-def test_the_step_compiles_for_cuda(ptx_of, tracker, kernel):
+def test_the_step_compiles_for_cuda(ptx_of, tracker, mounted, kernel):
     motion = Motion(np.zeros((2, 1), SAMPLE), np.zeros(1, np.int32), 10.0, 0.0)
     around = Surroundings(motion, Terrain.flat(0.0))
     rules = make_rules(RewardConfig(), DoneConfig(), CameraConfig())
-    state = StepState(Snapshot.create(2), tracker.memory(2, Terrain.flat(0.0)), around, rules, 0.02)
+    memory, mount = tracker.memory(2, Terrain.flat(0.0)), mount_of(MountConfig())
+    state = StepState(Snapshot.create(2), memory, around, rules, 0.02, mount, 1)
     parts = [pointer_to(part) for part in (state, Orders.create(2))]
-    step = getattr(step_of(tracker), kernel)
+    step = getattr(step_of(tracker, CARRIED[mounted]), kernel)
     text = ptx_of(step.function, CPointer(Tuple(parts)), intp, intp)
     assert ".visible .entry" in text
 
