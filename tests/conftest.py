@@ -1,5 +1,6 @@
 """What all tests share: options, and no skipping where CI says so."""
 
+import logging
 import os
 import runpy
 import signal
@@ -42,6 +43,15 @@ def signals():
     sys.unraisablehook = hook
     for number, handler in zip(numbers, before, strict=True):
         signal.signal(number, handler)
+
+
+@pytest.fixture(autouse=True)
+def level():
+    """Commands that a test has run in this process leave the level of the log as it was."""
+    log = logging.getLogger("eyas")
+    before = log.level
+    yield
+    log.setLevel(before)
 
 
 @pytest.hookimpl(hookwrapper=True)

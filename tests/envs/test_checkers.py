@@ -17,15 +17,18 @@ SHORT = {"done": {"total_steps": 40}}
 
 
 def pytest_generate_tests(metafunc):
-    """Simple maps that differ only in their ground from `simpleway-grass` take long to prepare."""
-    every = metafunc.config.getoption("--every-map")
-    names = [n for n in MAPS.built_in if every or n.partition("-")[2] in ("", "grass", "bare")]
-    metafunc.parametrize("name", names)
+    """All take minutes: without `--every-map`, those of citystreet and one of each other place."""
+    if metafunc.config.getoption("--every-map"):
+        places = [(name, MAPS.get(name).weathers) for name in MAPS.built_in]
+    else:
+        names = [n for n in MAPS.built_in if n.partition("-")[2] in ("", "grass", "bare")]
+        some = {"citystreet": None}
+        places = [(n, MAPS.get(n).weathers[: some.get(n, 1)]) for n in names]
+    metafunc.parametrize(("name", "weathers"), places, ids=[name for name, _ in places])
 
 
 @pytest.mark.slow
-def test_checkers_find_nothing_wrong_on_a_map(name, official):
-    weathers = MAPS.get(name).weathers
+def test_checkers_find_nothing_wrong_on_a_map(name, weathers, official):
     for weather in weathers:
         env = gymnasium.make(f"eyas/{name}-{weather}-v0", render_mode="rgb_array")
         with warnings.catch_warnings():

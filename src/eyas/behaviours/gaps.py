@@ -60,7 +60,7 @@ class Gaps:
 
     def _busy_before(self, line: Floats) -> NDArray[np.int64]:
         """Return at how many samples before each a vehicle is on a line, shape (samples + 1,)."""
-        key = np.sort(line, axis=0).tobytes()
+        key = min(line.tobytes(), line[::-1].tobytes())  # there and back
         if key not in self._known:
             busy = np.zeros(self._samples, np.bool_)
             for kind in [] if self._vehicles is None else np.unique(self._vehicles.kind).tolist():
