@@ -3,9 +3,15 @@
 import pytest
 
 from eyas.core.config import updated
-from eyas.modes.demo.choices import first_plan, plan_of
+from eyas.modes.demo.choices import Plan, first_plan, plan_of
 from eyas.modes.demo.messages import World
+from eyas.modes.demo.run import cockpit_of
 from eyas.settings.config import EyasConfig
+from eyas.settings.file import load_settings
+
+
+class BuildError(Exception):
+    """Holds the plan that a demo wants to build."""
 
 
 def walkers(plan):
@@ -18,9 +24,20 @@ def test_people_walk_in_the_cities_and_cross_their_roads(name):
     assert walkers(plan) == [("Pedestrian", 40, "crossing")]
 
 
-def test_there_are_none_elsewhere_or_where_the_settings_say_so():
+def test_there_are_none_elsewhere_and_others_where_the_settings_name_them():
     assert walkers(first_plan(EyasConfig(world={"map": "lake"}))) == []
-    assert walkers(first_plan(EyasConfig(extras=[]))) == []
+    dogs = EyasConfig(extras=[{"kind": "GhostDog", "count": 2}])
+    assert walkers(first_plan(dogs)) == [("GhostDog", 2, None)]
+
+
+def test_the_command_has_them_too(monkeypatch):
+    def build(plan):
+        raise BuildError(plan)
+
+    monkeypatch.setattr(Plan, "build", build)
+    with pytest.raises(BuildError) as begun:
+        cockpit_of(load_settings(None))
+    assert walkers(begun.value.args[0]) == [("Pedestrian", 40, "crossing")]
 
 
 def test_as_many_walk_in_the_next_world_in_its_own_way():

@@ -25,7 +25,7 @@ _ROBOTS = (TargetName.AIBO_ERS7, TargetName.CREATE)
 _CITIES = ("citystreet", "downtown")
 """Maps with pavements and painted crossings."""
 _PEDESTRIANS = 40
-"""People who walk in the cities, unless the settings say who does."""
+"""People who walk in the cities, unless the settings name others."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +57,7 @@ def first_plan(config: EyasConfig) -> Plan:
     Raises:
         ConfigError: The settings do not fit to each other.
     """
-    if "extras" not in config.model_fields_set and _has_crossings(config):
+    if not config.extras and _has_crossings(config):
         config = updated(config, {"extras": _pedestrians(_PEDESTRIANS, config)})
     return Plan(config, config.traffic.max_vehicles)
 
