@@ -15,7 +15,10 @@ DIMMING = (0.06, 0.12, 0.26)
 
 
 def sun_at(hour: float) -> tuple[float, float, float]:
-    """Return the unit vector towards the sun: east, north, up."""
+    """Return the unit vector towards the sun: east, north, up.
+
+    The usual formulas of hour angle, declination and latitude, by true solar time.
+    """
     turn = math.radians(15.0 * (hour - 12.0))
     south = math.cos(DECLINATION) * math.cos(turn)
     up = math.sin(DECLINATION)
@@ -56,7 +59,10 @@ def at_hour(lighting: Lighting, hour: float) -> Lighting:
 
 
 def _way(height: float) -> float:
-    """Return the way of light through the air, given the sine of the sun's height; zenith: 1."""
+    """Return the way of light through the air, given the sine of the sun's height; zenith: 1.
+
+    Rozenberg, Twilight (1966): finite at the horizon, where 1 / sine is not.
+    """
     return 1.0 / (height + 0.025 * math.exp(-11.0 * height))
 
 

@@ -48,6 +48,7 @@ def test_as_many_walk_in_the_next_world_in_its_own_way():
     back = plan_of(lake, World(map="downtown"))
     assert ("Pedestrian", 24, "crossing") in walkers(back)
     assert walkers(plan_of(back, World(weather="snow"))) == walkers(back)
+    assert walkers(plan_of(city, World(map="citystreet", weather="snow"))) == walkers(city)
     assert walkers(plan_of(back, World(people=0))) == []
 
 

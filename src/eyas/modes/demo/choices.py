@@ -93,7 +93,7 @@ def plan_of(before: Plan, said: World) -> Plan:
             **{"sun_replaces": light != "own", "background_replaces": light != "own"},
         }
     people = said.people
-    if people is None and said.map is not None:  # others may walk there
+    if people is None and said.map not in (None, now.map):  # others walk there
         people = sum(extra.count for extra in before.config.extras)
     config = updated(before.config, changes if people is None else changes | {"extras": []})
     if people:
