@@ -19,6 +19,12 @@ _BEYOND: Final = 3.0
 _PAVED: Final = 9.0
 """How far from the kerb pavements are sought: corners are round [m]."""
 
+_BEYOND_KERB: Final = 4.0
+"""The same on imported maps, which tell where each crossing ends [m]."""
+
+_BESIDE: Final = 1.2
+"""There, pavements may end so far beside the middle of a crossing [m]."""
+
 _STEP: Final = 0.2
 """Distance between the points at which paint is sought [m]."""
 
@@ -38,6 +44,10 @@ class Crossing(NamedTuple):
     other_along: float
     line: Floats
     """Where it begins and ends [m], shape (2, 2)."""
+    number: int = 0
+    """Which of the map's crossings it is: there and back, near the kerb or not."""
+    light: str = ""
+    """Name of its traffic light in the network; empty: it has none."""
 
 
 def crossings_of(
@@ -52,11 +62,11 @@ def crossings_of(
         radius: Distance to obstacles that is kept [m].
     """
     rings = [way.line for way in ways]
+    lanes = [[k for k, way in enumerate(ways) if way.lane == lane] for lane in range(len(LANES))]
     found = []
-    for right, left in _painted(scene, _across(scene)):
-        for lane in range(len(LANES)):
-            own = [k for k, way in enumerate(ways) if way.lane == lane]
-            ends = [_joint(rings, own, a, b) for a, b in ((right, left), (left, right))]
+    for number, (right, left, light, beyond) in enumerate(_kerb_to_kerb(scene)):
+        for own in lanes:
+            ends = [_joint(rings, own, a, b, beyond) for a, b in ((right, left), (left, right))]
             if ends[0] is None or ends[1] is None:
                 continue
             (way, along), (other, other_along) = ends[0], ends[1]
@@ -64,9 +74,18 @@ def crossings_of(
             line = shapely.get_coordinates(feet)
             if obstacles.blocked(np.array([shapely.LineString(line)], object), radius)[0]:
                 continue
-            found.append(Crossing(way, along, other, other_along, line))
-            found.append(Crossing(other, other_along, way, along, line[::-1]))
+            found.append(Crossing(way, along, other, other_along, line, number, light))
+            found.append(Crossing(other, other_along, way, along, line[::-1], number, light))
     return found
+
+
+def _kerb_to_kerb(scene: Scene) -> list[tuple[Floats, Floats, str, float]]:
+    """Return both ends of each crossing [m], its light, and how far the pavement may be [m]."""
+    told = scene.footways
+    if told.told:
+        each = zip(told.crossings, told.lights, strict=True)
+        return [(line[0], line[1], light, _BEYOND_KERB) for line, light in each]
+    return [(right, left, "", _PAVED) for right, left in _painted(scene, _across(scene))]
 
 
 def _across(scene: Scene) -> list[tuple[Floats, Floats]]:
@@ -105,14 +124,16 @@ def _painted(scene: Scene, across: list[tuple[Floats, Floats]]) -> list[tuple[Fl
 
 
 def _joint(
-    rings: list[shapely.LineString], own: list[int], kerb: Floats, opposite: Floats
+    rings: list[shapely.LineString], own: list[int], kerb: Floats, opposite: Floats, beyond: float
 ) -> tuple[int, float] | None:
     """Return the way nearest to a kerb on the line from the other kerb, and the place on it."""
     outwards = (kerb - opposite) / np.hypot(*(kerb - opposite))
-    line = shapely.LineString([0.5 * (kerb + opposite), kerb + _PAVED * outwards])
+    line = shapely.LineString([0.5 * (kerb + opposite), kerb + beyond * outwards])
     best, place = np.inf, None
     for k in own:
         met = shapely.get_coordinates(rings[k].intersection(line))
+        if beyond < _PAVED and not len(met) and shapely.dwithin(rings[k], line, _BESIDE):
+            met = shapely.get_coordinates(shapely.shortest_line(rings[k], line))[:1]
         if len(met):
             away = (met - kerb) @ outwards
             if away.min() < best:

@@ -1,4 +1,4 @@
-"""When a road can be crossed: no recorded vehicle will be there meanwhile."""
+"""When a road can be crossed: it is green, and no recorded vehicle will be there meanwhile."""
 
 import math
 from typing import Final
@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from eyas.state.motion import Motion
 from eyas.targets.catalogue import KINDS, MODELS, models_of
+from eyas.traffic.signals import Aspect, SignalPlan
 
 __all__ = ["Gaps"]
 
@@ -23,6 +24,9 @@ _BEFORE: Final = 0.5
 _AFTER: Final = 1.5
 """The same afterwards [s]."""
 
+_GREEN: Final = 1.0
+"""For how long it is still green, at least, when somebody steps off [s]."""
+
 _PATIENCE: Final = 60.0
 """The longest that somebody waits for a gap [s]."""
 
@@ -36,27 +40,53 @@ class Gaps:
         vehicles: The vehicles; None: there are none.
         samples: Number of samples.
         rate: Samples per second [Hz].
+        lights: What crossings with lights show, see `walk_plan`; None: there are none.
     """
 
-    def __init__(self, vehicles: Motion | None, samples: int, rate: float) -> None:
+    def __init__(
+        self,
+        vehicles: Motion | None,
+        samples: int,
+        rate: float,
+        lights: SignalPlan | None = None,
+    ) -> None:
         self._vehicles, self._samples, self._rate = vehicles, samples, rate
         self._known: dict[bytes, NDArray[np.int64]] = {}
+        self._lights = lights
+        self._rows = {} if lights is None else {name: k for k, name in enumerate(lights.edges)}
 
-    def first(self, line: Floats, ready: float, lasts: float) -> float | None:
+    def first(self, line: Floats, ready: float, lasts: float, light: str = "") -> float | None:
         """Return when a line can be crossed [s]; None: not before patience is at an end.
 
         Args:
             line: From kerb to kerb [m], shape (2, 2).
             ready: Earliest time [s].
             lasts: How long it takes [s].
+            light: Name of the crossing's light; empty: it has none.
         """
         busy, rate = self._busy_before(line), self._rate
         first = math.ceil(ready * rate)
         starts = np.arange(first, first + int(_PATIENCE * rate))
         low = np.clip(starts - int(_BEFORE * rate), 0, self._samples)
         high = np.clip(starts + math.ceil((lasts + _AFTER) * rate) + 1, 0, self._samples)
-        free = np.flatnonzero(busy[high] == busy[low])
+        free = np.flatnonzero((busy[high] == busy[low]) & self._shown(light, starts, lasts))
         return float(starts[free[0]]) / rate if len(free) else None
+
+    def _shown(self, light: str, starts: NDArray[np.int64], lasts: float) -> NDArray[np.bool_]:
+        """Return at which of consecutive samples a light lets one cross: it is green, and traffic
+        has red until one has crossed.
+        """
+        if self._lights is None or light not in self._rows:
+            return np.full(len(starts), not light)
+        after, still = math.ceil(lasts * self._rate) + 1, math.ceil(_GREEN * self._rate)
+        times = np.arange(starts[0], starts[-1] + max(after, still) + 1) / self._rate
+        aspect = self._lights.only(self._rows[light]).at(times)[:, 0]
+        held = np.concatenate([[0], np.cumsum(aspect == Aspect.RED)])
+        other = np.concatenate([[0], np.cumsum(aspect != Aspect.GREEN)])
+        here = np.arange(len(starts))
+        goes: NDArray[np.bool_] = other[here + still + 1] == other[here]
+        finishes: NDArray[np.bool_] = held[here + after] == held[here]
+        return np.logical_and(goes, finishes)
 
     def _busy_before(self, line: Floats) -> NDArray[np.int64]:
         """Return at how many samples before each a vehicle is on a line, shape (samples + 1,)."""

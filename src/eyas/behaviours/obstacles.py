@@ -46,7 +46,7 @@ class Obstacles:
         shapes = [
             _prisms(scene),
             _cylinders(scene),
-            _fixtures(scene.fixtures),
+            _fixtures(scene.fixtures, as_placed=scene.footways.told),
             _walls(scene),
             _water(scene),
             _steep(scene.terrain),
@@ -118,22 +118,37 @@ def _in_the_way(scene: Scene, at: Floats, low: Floats, high: Floats) -> NDArray[
     return kept
 
 
-def _fixtures(fixtures: Fixtures) -> NDArray[np.object_]:
-    """Return what trees, benches, lamps and parked cars cover at the height of people."""
+def _fixtures(fixtures: Fixtures, *, as_placed: bool) -> NDArray[np.object_]:
+    """Return what trees, benches, lamps and parked cars cover at the height of people.
+
+    Args:
+        fixtures: All of them.
+        as_placed: Whether heights are those of the copies, so that one walks below crowns of trees.
+            On maps with wide pavements heights are those of the prototypes: the crowns of trees,
+            which are 1 m high, are kept clear of as a whole.
+    """
     shapes: list[shapely.Geometry] = []
     for number, levels in enumerate(fixtures.levels):
-        points = levels[0].positions
-        points = points[(points[:, 2] > 0.0) & (points[:, 2] < _HEAD)]
-        if not len(points) or points[:, 2].max() < _STEP:
-            continue
-        plan = shapely.convex_hull(shapely.MultiPoint(points[:, :2]))
-        if plan.geom_type != "Polygon":
-            continue
-        ring = shapely.get_coordinates(plan)
         pose = fixtures.pose[fixtures.prototype == number].astype(np.float64)
-        placed = np.einsum("fij,kj->fki", pose[:, :2, :2], ring) + pose[:, None, :2, 3]
-        shapes += list(shapely.polygons(placed)) if len(placed) else []
+        scale = np.ones(len(pose))
+        if as_placed:
+            scale = np.maximum(np.round(np.linalg.norm(pose[:, :, 2], axis=1), 1), 0.1)
+        for size in np.unique(scale).tolist():
+            ring = _outline(levels[0].positions, size)
+            if ring is not None:
+                own = pose[scale == size]
+                placed = np.einsum("fij,kj->fki", own[:, :2, :2], ring) + own[:, None, :2, 3]
+                shapes += list(shapely.polygons(placed))
     return np.array(shapes, object)
+
+
+def _outline(points: NDArray[np.float32], size: float) -> Floats | None:
+    """Return the outline of what is in the way of people, for a prototype at a scale."""
+    points = points[(points[:, 2] > 0.0) & (points[:, 2] < _HEAD / size)]
+    if not len(points) or points[:, 2].max() < _STEP / size:
+        return None
+    plan = shapely.convex_hull(shapely.MultiPoint(points[:, :2]))
+    return shapely.get_coordinates(plan) if plan.geom_type == "Polygon" else None
 
 
 def _triangles(scene: Scene, classes: tuple[ObjectClass, ...]) -> Floats:

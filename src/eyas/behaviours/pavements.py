@@ -13,7 +13,7 @@ from eyas.state.roads import RoadNetwork
 from eyas.traffic.smoothing import runs
 from eyas.world.roads.areas import blocks, polygons_of, road_area
 
-__all__ = ["LANES", "Way", "pavement_ways"]
+__all__ = ["LANES", "Way", "along", "bridged", "paved_parts", "pavement_ways"]
 
 LANES: Final = (1.0, 1.9)
 """Distances from the kerb of those who have the road on their left, and on their right [m]."""
@@ -39,7 +39,7 @@ class Way(NamedTuple):
     length: float
     """[m]"""
     lane: int
-    """Index into `LANES`."""
+    """Of those who have the road on their left: 0; on their right: 1."""
 
     @property
     def line(self) -> shapely.LineString:
@@ -75,7 +75,8 @@ def pavement_ways(
             ring = _ring(block, beyond, obstacles, radius)
             if ring is not None:
                 line = ring if shapely.is_ccw(ring) == (lane == 1) else shapely.reverse(ring)
-                found += _ways(line, surface, lane)
+                under = surface.at(along(line))
+                found += paved_parts(line, bridged(under.pavement, under.height), lane)
     return found
 
 
@@ -95,12 +96,14 @@ def _ring(
     return max(parts, key=shapely.area).exterior if parts else None
 
 
-def _ways(ring: shapely.LinearRing, surface: Surface, lane: int) -> list[Way]:
-    """Return the parts of a ring that are on pavement, or all of it."""
-    count = int(ring.length / _EVERY)
-    points = shapely.line_interpolate_point(ring, np.arange(count) * _EVERY)
-    under = surface.at(shapely.get_coordinates(points))
-    paved = _bridged(under.pavement, under.height > _LAWN)
+def paved_parts(ring: shapely.LinearRing, paved: NDArray[np.bool_], lane: int) -> list[Way]:
+    """Return the parts of a ring that are on pavement, or all of it.
+
+    Args:
+        ring: [m]
+        paved: Whether there is pavement at each of its points, from `along`.
+        lane: Index into `LANES`.
+    """
     if paved.all():
         return [Way(shapely.get_coordinates(ring)[:-1], ring.length, lane)]
     made = []
@@ -113,9 +116,21 @@ def _ways(ring: shapely.LinearRing, surface: Surface, lane: int) -> list[Way]:
     return made
 
 
-def _bridged(paved: NDArray[np.bool_], hard: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return what is paved, with the driveways that interrupt it."""
-    paved = paved.copy()
+def along(ring: shapely.LinearRing) -> NDArray[np.float64]:
+    """Return points along a ring, shape (K, 2) [m]."""
+    places = np.arange(int(ring.length / _EVERY)) * _EVERY
+    points = shapely.line_interpolate_point(ring, places)
+    return np.asarray(shapely.get_coordinates(points), np.float64)
+
+
+def bridged(pavement: NDArray[np.bool_], height: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Return which points are paved, with the driveways that interrupt pavements.
+
+    Args:
+        pavement: Which are on pavement, shape (K,).
+        height: Their heights [m], shape (K,).
+    """
+    paved, hard = pavement.copy(), height > _LAWN
     for first, last in runs(~paved):
         if last - first <= _DRIVEWAY / _EVERY and hard[first:last].all():
             paved[first:last] = True

@@ -16,6 +16,7 @@ from eyas.behaviours.config import Behaviour
 from eyas.behaviours.crossings import crossings_of
 from eyas.behaviours.gaps import Gaps
 from eyas.behaviours.habits import HABITS, STROLL, Habit
+from eyas.behaviours.kerbs import kerb_ways
 from eyas.behaviours.obstacles import Obstacles
 from eyas.behaviours.pavements import Way, pavement_ways
 from eyas.behaviours.places import Roadside
@@ -28,6 +29,7 @@ from eyas.core.errors import SpawnError
 from eyas.state.motion import SAMPLE, Motion
 from eyas.state.scene import Scene
 from eyas.state.terrain import reliefs
+from eyas.traffic.signals import SignalPlan
 
 __all__ = ["Ground", "scripted_table"]
 
@@ -64,10 +66,11 @@ class Ground:
     Args:
         scene: The map.
         roads: Whether roads are left to cars.
+        lights: What crossings with lights show, see `walk_plan`; None: there are none.
     """
 
-    def __init__(self, scene: Scene, *, roads: bool) -> None:
-        self.scene = scene
+    def __init__(self, scene: Scene, *, roads: bool, lights: SignalPlan | None = None) -> None:
+        self.scene, self.lights = scene, lights
         self.obstacles = Obstacles(scene, roads=roads)
         self._roads = roads
         # Pavement walkers are beside the roads by the choice of their ways.
@@ -102,7 +105,7 @@ def scripted_table(
     lives, habit = troop.lives, troop.habit or HABITS[troop.kind]
     seconds = (lives.leaves - lives.enters) / clock.rate
     if (troop.behaviour or habit.behaviour) is Behaviour.CROSSING:
-        gaps = Gaps(vehicles, clock.samples, clock.rate)
+        gaps = Gaps(vehicles, clock.samples, clock.rate, ground.lights)
         paths = _tours(ground, troop, habit, lives.enters / clock.rate, seconds, gaps, rng)
     else:
         paths = _paths(ground, troop, habit, seconds, rng)
@@ -197,11 +200,17 @@ def _pavements(ground: Ground, troop: Troop, habit: Habit) -> list[Way]:
         SpawnError: There are none.
     """
     scene, radius = ground.scene, 0.5 * troop.breadth + _ROOM
-    found = pavement_ways(scene.network, scene.size, ground.obstacles, ground.surface, radius)
+    if scene.footways.told:
+        # Its kerbs tell where the roads are; those of the network have sharp corners.
+        obstacles = ground.solids
+        found = kerb_ways(scene.footways, obstacles, ground.surface, radius)
+    else:
+        obstacles = ground.obstacles
+        found = pavement_ways(scene.network, scene.size, obstacles, ground.surface, radius)
     once = [outline(chain_through(way.corners, habit.radius, 1)) for way in found]
     # A rounded corner may come too near to what the way leads round.
     lines = np.array([shapely.LineString(points) for points in once], object)
-    blocked = ground.obstacles.blocked(lines, 0.5 * troop.breadth)
+    blocked = obstacles.blocked(lines, 0.5 * troop.breadth)
     ways = [way for way, stopped in zip(found, blocked.tolist(), strict=True) if not stopped]
     if not ways:
         behaviour = (troop.behaviour or habit.behaviour).value

@@ -74,7 +74,9 @@ def tour(
         straight = chain_of(
             [(0.0, float(np.hypot(*over)), 0.0)], (*crossing.line[0].tolist(), heading)
         )
-        begins = streets.gaps.first(crossing.line, enters + time, time_of(straight, habit))
+        begins = streets.gaps.first(
+            crossing.line, enters + time, time_of(straight, habit), crossing.light
+        )
         if begins is not None:
             time = begins - enters
             made.legs.append(straight)

@@ -26,7 +26,7 @@ from eyas.traffic.live import LiveSumo
 from eyas.traffic.record import resolved
 from eyas.traffic.recorded import kept_motion
 from eyas.traffic.replay import Replay
-from eyas.traffic.signals import SignalPlan, signal_plan
+from eyas.traffic.signals import SignalPlan, signal_plan, walk_plan
 from eyas.traffic.source import TrafficSource
 from eyas.world.config import WorldConfig
 from eyas.world.maps import MAPS
@@ -99,6 +99,13 @@ def _signal_plan(map_name: str, seed: int) -> SignalPlan | None:
 
 
 @lru_cache(maxsize=4)
+def _walk_plan(map_name: str, seed: int) -> SignalPlan | None:
+    """Return what the crossings with lights show, as `_signal_plan`."""
+    network = MAPS.get(map_name).roads(seed).finished
+    return walk_plan(network) if network else None
+
+
+@lru_cache(maxsize=4)
 def _traffic(
     map_name: str, seed: int, config: TrafficConfig, trackers: int, crowd: Crowd
 ) -> TrafficSource:
@@ -108,7 +115,8 @@ def _traffic(
         clock = Clock(len(vehicles.table), vehicles.rate)
     # A scene depends on the season, but its ground does not.
     scene = load_scene(map_name, seed)
-    others = crowd_motions(crowd, scene, clock, _seed_of(config), vehicles)
+    lights = _walk_plan(map_name, seed) if scene.footways.told else None
+    others = crowd_motions(crowd, scene, clock, _seed_of(config), vehicles, lights)
     every = others if vehicles is None else [vehicles, *others]
     followed = vehicles if crowd.follows_vehicles else others[0]
     targets = np.concatenate([np.full(len(motion.kind), motion is followed) for motion in every])

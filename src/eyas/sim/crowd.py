@@ -22,13 +22,17 @@ from eyas.state.motion import SAMPLE, Motion
 from eyas.state.scene import Scene
 from eyas.targets.catalogue import MODELS, kind_index, models_of
 from eyas.targets.config import ObjectsConfig, TargetName
+from eyas.traffic.signals import SignalPlan
 
 if TYPE_CHECKING:
     from eyas.behaviours.scripted import Ground
 
 __all__ = ["NOBODY", "Crowd", "crowd_motions", "crowd_of", "vehicles_of"]
 
-_MAKERS = ("behaviours", "sim/crowd.py", "state/motion.py", "state/terrain.py", "world/roads")
+_MAKERS = (
+    *("behaviours", "sim/crowd.py", "state/motion.py", "state/terrain.py", "world/roads"),
+    "traffic/signals.py",
+)
 
 _ASIDE = Mirrored(mirrored=(4.0, 20.0))
 """Distance of extras from the middle of the road, if no pavement is asked for [m]."""
@@ -92,7 +96,12 @@ def vehicles_of(crowd: Crowd, known: int) -> int:
 
 
 def crowd_motions(
-    crowd: Crowd, scene: Scene, clock: Clock, seed: int, vehicles: Motion | None = None
+    crowd: Crowd,
+    scene: Scene,
+    clock: Clock,
+    seed: int,
+    vehicles: Motion | None = None,
+    lights: SignalPlan | None = None,
 ) -> list[Motion]:
     """Return the motions of a crowd, kept in the cache: of the targets first, if it has any.
 
@@ -103,6 +112,7 @@ def crowd_motions(
         seed: Seed of places and ways.
         vehicles: The vehicles' motion, for which those wait who cross roads; None: there are none,
             or it is not known in advance.
+        lights: What crossings with lights show, see `walk_plan`; None: there are none.
 
     Raises:
         ConfigError: Somebody is to cross roads among vehicles whose motion is not known.
@@ -118,23 +128,24 @@ def crowd_motions(
         from eyas.behaviours.scripted import Ground, scripted_table  # with shapely
 
         if not ground:
-            ground.append(Ground(scene, roads=driven))
+            ground.append(Ground(scene, roads=driven, lights=lights))
         rng = stream(seed, "crowd", number, zlib.crc32(troop.kind.encode()))
         table = scripted_table(ground[0], troop, clock, rng, vehicles)
         return table.view(np.float32).reshape(*table.shape, -1)
 
     motions = []
     if crowd.custom is not None:
-        motions.append(_custom(crowd, crowd.custom, scene, clock, seed, vehicles))
+        motions.append(_custom(crowd, crowd.custom, scene, clock, seed, vehicles, lights))
     for number, troop in enumerate(troops):
         crosses = troop.behaviour is Behaviour.CROSSING
         waits_for = (vehicles.table, vehicles.kind) if crosses and vehicles is not None else ()
+        obeys = tuple(lights) if crosses and lights is not None else ()
         numbers = cached(
             Kind.MOTION,
             _MAKERS,
             (
                 *(*_plan_of(scene), *troop.lives, troop[:3], troop[4:], clock, seed, number),
-                *(driven, *waits_for),
+                *(driven, *waits_for, *obeys),
             ),
             lambda n=number, t=troop: made(n, t),  # type: ignore[misc]
             of=NDArray[np.float32],
@@ -171,13 +182,14 @@ def _refuse_crossing(crowd: Crowd) -> None:
             )
 
 
-def _custom(
+def _custom(  # as of `crowd_motions`
     crowd: Crowd,
     custom: CustomConfig,
     scene: Scene,
     clock: Clock,
     seed: int,
     vehicles: Motion | None,
+    lights: SignalPlan | None,
 ) -> Motion:
     """Return the motion of a target of one's own; not kept, as its class may have changed."""
     from eyas.behaviours.scripted import Ground
@@ -186,7 +198,7 @@ def _custom(
     driven = any(map(_is_traffic, crowd.extras))
     lives = recycled(crowd.objects, clock.samples, clock.rate, crowd.episode)
     places = Places(lives, crowd.objects.offset, vehicles)
-    ground = Ground(scene, roads=driven)
+    ground = Ground(scene, roads=driven, lights=lights)
     return custom_motion(custom, places, ground, clock, stream(seed, "custom"))
 
 
@@ -203,7 +215,9 @@ def _is_traffic(extra: ExtraConfig) -> bool:
 def _plan_of(scene: Scene) -> tuple[object, ...]:
     """Return what of a map paths depend on."""
     mesh, fixtures, colliders = scene.static, scene.fixtures, scene.colliders
+    told = scene.footways
     return (
+        *(told.kerb_points, told.kerb_first, told.crossings, told.lights),
         *(scene.name, scene.size, *scene.terrain, scene.network.graph_hash),
         *(mesh.positions, mesh.triangles, scene.static_object, scene.object_class),
         *(fixtures.pose, fixtures.prototype, colliders.prism_points, colliders.prism_first),

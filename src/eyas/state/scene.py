@@ -17,6 +17,7 @@ __all__ = [
     "SKY_OBJECT",
     "Colliders",
     "Fixtures",
+    "Footways",
     "Lamps",
     "ObjectClass",
     "Scene",
@@ -122,6 +123,31 @@ class Lamps:
 
 
 @dataclass(slots=True)
+class Footways:
+    """Where people walk on an imported map, in plan view: beside R kerbs, over C crossings."""
+
+    kerb_points: NDArray[np.float64]
+    """Outlines of the asphalt, which lies on their left [m], shape (K, 2); the first point of each
+    is also its last."""
+    kerb_first: NDArray[np.int32]
+    """Start of each outline's points, shape (R + 1,)."""
+    crossings: NDArray[np.float64]
+    """From kerb to kerb [m], shape (C, 2, 2)."""
+    lights: tuple[str, ...]
+    """Names of the crossings' lights in the network, C; empty where there are none."""
+
+    @property
+    def told(self) -> bool:
+        """Whether the map tells them."""
+        return len(self.kerb_first) > 1
+
+    @classmethod
+    def none(cls) -> "Footways":
+        """Return those of a map whose pavements lie along its network."""
+        return cls(np.zeros((0, 2)), np.zeros(1, np.int32), np.zeros((0, 2, 2)), ())
+
+
+@dataclass(slots=True)
 class Scene:
     """Everything static on a map. T static triangles, O objects."""
 
@@ -149,6 +175,8 @@ class Scene:
     """Street lamps."""
     horizon: Horizon = field(default_factory=Horizon)
     """Hills all around the map, far beyond its edge."""
+    footways: Footways = field(default_factory=Footways.none)
+    """Where people walk, on imported maps."""
 
     @classmethod
     def empty(cls) -> "Scene":

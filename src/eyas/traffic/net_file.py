@@ -10,7 +10,14 @@ from numpy.typing import NDArray
 from eyas.core.errors import ConfigError
 from eyas.state.roads import RoadNetwork
 
-__all__ = ["Pavements", "pavements_of", "road_network", "signal_programs", "signalled_edges"]
+__all__ = [
+    "Pavements",
+    "crossings_of",
+    "pavements_of",
+    "road_network",
+    "signal_programs",
+    "signalled_edges",
+]
 
 _SHORTEST = 0.05
 """Points nearer to each other are one [m]."""
@@ -85,6 +92,17 @@ def pavements_of(xml: bytes) -> Pavements:
                     shapely.buffer(line, half, cap_style="flat", join_style="mitre", quad_segs=3)
                 )
     return Pavements(shapely.union_all(shapes))
+
+
+def crossings_of(xml: bytes) -> dict[str, Line]:
+    """Return the middle of each crossing for people at a junction [m], shape (K, 2), by name."""
+    root = ElementTree.fromstring(xml)
+    return {
+        edge.attrib["id"]: _points(lane.attrib["shape"])
+        for edge in root.iter("edge")
+        if edge.get("function") == "crossing"
+        for lane in edge.iter("lane")
+    }
 
 
 def signalled_edges(xml: bytes) -> tuple[str, ...]:

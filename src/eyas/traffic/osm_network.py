@@ -15,12 +15,14 @@ _TYPES = ("osmNetconvert.typ.xml", "osmNetconvertUrbanDe.typ.xml")
 
 OPTIONS = (
     *("--offset.disable-normalization", "true"),
-    # Streets for cars that hang together; their sidewalks as tagged, or as usual for their speed.
+    # Streets for cars that hang together, with sidewalks as tagged.
     *("--keep-edges.by-vclass", "passenger"),
     *("--keep-edges.components", "1"),
     *("--osm.sidewalks", "true"),
-    *("--sidewalks.guess", "true"),
     *("--walkingareas", "true"),
+    # Crossings, with lights for those on foot, only where there are traffic lights.
+    *("--crossings.guess", "true"),
+    *("--crossings.guess.speed-threshold", "0"),
     # Bends are no junctions, and what is one crossing for drivers is one junction.
     *("--geometry.remove", "true"),
     *("--junctions.join", "true"),

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from eyas.traffic.record import WARM_UP
 
-__all__ = ["Aspect", "SignalPlan", "signal_plan"]
+__all__ = ["Aspect", "SignalPlan", "signal_plan", "walk_plan"]
 
 
 class Aspect(IntEnum):
@@ -61,6 +61,13 @@ class SignalPlan(NamedTuple):
         shown: NDArray[np.int64] = self.aspect[np.arange(len(self.edges)), phase]
         return shown
 
+    def only(self, row: int) -> "SignalPlan":
+        """Return the plan of one light."""
+        one = slice(row, row + 1)
+        return SignalPlan(
+            self.edges[one], self.cycle[one], self.offset[one], self.end[one], self.aspect[one]
+        )
+
 
 def signal_plan(xml: bytes) -> SignalPlan:
     """Return the plan of a network of SUMO.
@@ -68,24 +75,65 @@ def signal_plan(xml: bytes) -> SignalPlan:
     Lights that SUMO switches by what drives show amber, as what they will show is not known.
     """
     root = ElementTree.fromstring(xml)
-    programs = {logic.attrib["id"]: logic for logic in root.iter("tlLogic")}
+    programs = _programs(root)
     links: dict[str, tuple[str, int, str]] = {}
     for one in root.iter("connection"):
-        edge, light = one.attrib["from"], one.get("tl")
+        edge, light = one.attrib["from"], one.get("tl", "")
         if light not in programs or edge.startswith(":"):
             continue
         link = (light, int(one.attrib["linkIndex"]), one.get("dir", "s"))
         if edge not in links or _rank(link) < _rank(links[edge]):
             links[edge] = link
-    phases = [_phases(programs[light], index) for light, index, _ in links.values()]
+    shown = {
+        edge: (programs[light], _phases(programs[light], index))
+        for edge, (light, index, _) in links.items()
+    }
+    return _plan(shown)
+
+
+def walk_plan(xml: bytes) -> SignalPlan:
+    """Return what the crossings with lights of a network of SUMO show those on foot.
+
+    Green: who is there may begin to cross. Amber: who is on the way may go on, as red still holds
+    up those who drive on the crossed street. Red: it no longer does. Where SUMO switches the
+    lights by what drives, always red, as what they will show is not known.
+    """
+    root = ElementTree.fromstring(xml)
+    programs, links = _programs(root), list(root.iter("connection"))
+    shown = {}
+    for crossing in root.iter("edge"):
+        name = crossing.attrib["id"]
+        own = [one for one in links if one.get("to") == name and one.get("tl") in programs]
+        if crossing.get("function") != "crossing" or not own:
+            continue
+        light, crossed = own[0].attrib["tl"], crossing.get("crossingEdges", "").split()
+        held = [
+            int(one.attrib["linkIndex"])
+            for one in links
+            if one.get("tl") == light and one.attrib["from"] in crossed
+        ]
+        phases = _walked(programs[light], int(own[0].attrib["linkIndex"]), held)
+        shown[name] = programs[light], phases
+    return _plan(shown)
+
+
+def _programs(root: ElementTree.Element) -> dict[str, ElementTree.Element]:
+    return {logic.attrib["id"]: logic for logic in root.iter("tlLogic")}
+
+
+def _plan(
+    shown: dict[str, tuple[ElementTree.Element, list[tuple[float, Aspect]]]],
+) -> SignalPlan:
+    """Return the plan of lights, from the program and the phases of each."""
+    phases = [own for _, own in shown.values()]
     most = max((len(own) for own in phases), default=1)
-    end, aspect = np.full((len(links), most), np.inf), np.zeros((len(links), most), np.int64)
+    end, aspect = np.full((len(phases), most), np.inf), np.zeros((len(phases), most), np.int64)
     for row, own in enumerate(phases):
         end[row, : len(own)] = np.cumsum([seconds for seconds, _ in own])
-        aspect[row, : len(own)] = [shown for _, shown in own]
-    offset = [float(programs[light].get("offset", "0")) for light, _, _ in links.values()]
+        aspect[row, : len(own)] = [one for _, one in own]
+    offset = [float(program.get("offset", "0")) for program, _ in shown.values()]
     cycle = np.where(np.isfinite(end), end, 0.0).max(axis=1, initial=0.0)
-    return SignalPlan(tuple(links), cycle, np.array(offset, np.float64) - WARM_UP, end, aspect)
+    return SignalPlan(tuple(shown), cycle, np.array(offset, np.float64) - WARM_UP, end, aspect)
 
 
 def _rank(link: tuple[str, int, str]) -> tuple[int, int]:
@@ -98,5 +146,27 @@ def _phases(logic: ElementTree.Element, index: int) -> list[tuple[float, Aspect]
         (float(one.attrib["duration"]), _ASPECTS.get(one.attrib["state"][index], Aspect.DARK))
         for one in logic.iter("phase")
     ]
-    known = logic.get("type", "static") == "static" and sum(lasts for lasts, _ in phases) > 0.0
-    return phases if known else [(1.0, Aspect.AMBER)]
+    return phases if _is_known(logic) else [(1.0, Aspect.AMBER)]
+
+
+def _walked(logic: ElementTree.Element, own: int, held: list[int]) -> list[tuple[float, Aspect]]:
+    """Return duration [s] and aspect of the phases of a crossing, see `walk_plan`.
+
+    Args:
+        logic: The program.
+        own: Its link.
+        held: The links of those who drive on the crossed street towards the junction.
+    """
+    phases = []
+    for one in logic.iter("phase"):
+        state = one.attrib["state"]
+        stand = all(_ASPECTS.get(state[link]) is Aspect.RED for link in held)
+        walk = Aspect.GREEN if _ASPECTS.get(state[own]) is Aspect.GREEN else Aspect.AMBER
+        phases.append((float(one.attrib["duration"]), walk if stand else Aspect.RED))
+    return phases if _is_known(logic) else [(1.0, Aspect.RED)]
+
+
+def _is_known(logic: ElementTree.Element) -> bool:
+    """Return whether a program depends on the time alone."""
+    lasts = sum(float(one.attrib["duration"]) for one in logic.iter("phase"))
+    return logic.get("type", "static") == "static" and lasts > 0.0

@@ -20,7 +20,13 @@ from eyas.envs.registration import register_map
 from eyas.modes.progress import sumo_progress
 from eyas.state.roads import RoadGraph
 from eyas.traffic.library import record_canonical
-from eyas.traffic.net_file import pavements_of, road_network, signal_programs, signalled_edges
+from eyas.traffic.net_file import (
+    crossings_of,
+    pavements_of,
+    road_network,
+    signal_programs,
+    signalled_edges,
+)
 from eyas.traffic.network import graph_hash
 from eyas.traffic.osm_network import osm_network
 from eyas.world.build.millimetres import snapped
@@ -204,6 +210,7 @@ def _features(shapes: Shapes, net: bytes, report: Report) -> Features:
     add_land(features, shapes, odd, stream(0, "imported tree rows"))
     features.pavement = snapped(pavements_of(net).area)
     features.signals = signalled_edges(net)
+    features.lit_crossings = {k: shapely.LineString(v) for k, v in crossings_of(net).items()}
     report.buildings, report.trees = len(features.houses), len(features.trees)
     for house in features.houses:
         report.guessed["heights"] += house.height is None and house.levels is None

@@ -67,7 +67,9 @@ class Features:
     lamps: list[Point] = field(default_factory=list)
     """Street lamps that the file names [m]."""
     crossings: list[Point] = field(default_factory=list)
-    """Crossings for people on streets [m]."""
+    """Crossings for people on streets, as mapped [m]."""
+    lit_crossings: dict[str, shapely.LineString] = field(default_factory=dict)
+    """Crossings at traffic lights, by their names in the network [m]."""
     rails: list[shapely.LineString] = field(default_factory=list)
     """Tracks of railways [m]."""
     pavement: shapely.Geometry = field(default_factory=shapely.Polygon)
@@ -81,6 +83,8 @@ def to_text(features: Features) -> str:
     kept = {one.name: getattr(features, one.name) for one in fields(features)}
     kept["houses"] = [_plain(house) for house in features.houses]
     kept["areas"] = [_plain(area) for area in features.areas]
+    lit = features.lit_crossings.items()
+    kept["lit_crossings"] = {name: _numbers(line) for name, line in lit}
     kept["rails"] = [_numbers(line) for line in features.rails]
     kept["pavement"] = [_numbers(part) for part in shapely.get_parts(features.pavement)]
     return json.dumps(kept, separators=(",", ":"))
@@ -100,6 +104,11 @@ def from_text(text: str, source: str) -> Features:
             trees=[(float(x), float(y), float(z)) for x, y, z in kept["trees"]],
             lamps=[(float(x), float(y)) for x, y in kept["lamps"]],
             crossings=[(float(x), float(y)) for x, y in kept["crossings"]],
+            # Maps that were imported before Eyas knew them have none.
+            lit_crossings={
+                str(name): shapely.LineString(line)
+                for name, line in kept.get("lit_crossings", {}).items()
+            },
             rails=[shapely.LineString(line) for line in kept["rails"]],
             pavement=shapely.make_valid(
                 shapely.MultiPolygon([_polygon(part) for part in kept["pavement"]])

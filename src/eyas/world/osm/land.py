@@ -8,6 +8,7 @@ from eyas.world.osm.data import Tags
 from eyas.world.osm.features import Area, Features
 from eyas.world.osm.measures import Odd, length
 from eyas.world.osm.rings import Shapes
+from eyas.world.osm.streets import is_street
 from eyas.world.roads.areas import polygons_of
 
 __all__ = ["add_land"]
@@ -86,10 +87,23 @@ def add_land(features: Features, shapes: Shapes, odd: Odd, rng: np.random.Genera
         features.trees += [(round(p.x, 3), round(p.y, 3), tall) for p in spots]
     lamps = shapes.points(lambda tags: tags.get("highway") == "street_lamp")
     features.lamps += [place for _, place in lamps]
-    crossings = shapes.points(
-        lambda tags: tags.get("highway") == "crossing" and tags.get("crossing") != "unmarked"
-    )
-    features.crossings += [place for _, place in crossings]
+    features.crossings += _crossings(shapes)
+
+
+def _crossings(shapes: Shapes) -> list[tuple[float, float]]:
+    """Return where streets are crossed: at points, and where a way for people leads over one."""
+    found = [place for _, place in shapes.points(lambda tags: _is_crossing(tags, "highway"))]
+    streets = [line for _, line in shapes.lines(is_street)]
+    tree = shapely.STRtree(streets)
+    for _, line in shapes.lines(lambda tags: _is_crossing(tags, "footway")):
+        for k in np.sort(tree.query(line, predicate="intersects")).tolist():
+            met = shapely.get_coordinates(shapely.intersection(line, streets[k]))
+            found += [(round(float(x), 3), round(float(y), 3)) for x, y in met]
+    return found
+
+
+def _is_crossing(tags: Tags, key: str) -> bool:
+    return tags.get(key) == "crossing" and tags.get("crossing") not in ("unmarked", "no")
 
 
 def _kind(tags: Tags) -> str:

@@ -7,7 +7,7 @@ from xml.sax.saxutils import quoteattr
 from eyas.world.osm.data import Bounds, OsmData, Tags, Way
 from eyas.world.osm.measures import Odd, number
 
-__all__ = ["street_file"]
+__all__ = ["is_street", "street_file"]
 
 _DRIVEN = re.compile(
     r"(motorway|trunk|primary|secondary|tertiary)(_link)?|unclassified|residential|living_street"
@@ -22,6 +22,12 @@ _KEPT = (
     "turn:lanes turn:lanes:forward turn:lanes:backward width"
 ).split()
 """Tags of ways that netconvert uses."""
+
+_NOT_WALKED = ("motorway", "motorway_link", "living_street", "service")
+"""Streets that have no sidewalk unless it is mapped."""
+
+_WALKED_BESIDE = (21.0, 51.0)
+"""Usual streets with sidewalks are faster than the first and no faster than the second [km/h]."""
 
 _TURNS = ("type", "restriction", "except")
 """Tags of turn restrictions that netconvert uses."""
@@ -40,7 +46,7 @@ def street_file(data: OsmData, bounds: Bounds, odd: Odd) -> bytes:
     lines = ['<?xml version="1.0" encoding="UTF-8"?>', '<osm version="0.6">']
     pieces: list[tuple[int, tuple[int, ...], Tags]] = []
     for way in data.ways.values():
-        if _is_street(way.tags):
+        if is_street(way.tags):
             tags = _clean(way.tags, odd)
             for k, nodes in enumerate(_inside(way, data, bounds)):
                 # The first piece keeps the number, so that restrictions still name it.
@@ -58,7 +64,8 @@ def street_file(data: OsmData, bounds: Bounds, odd: Odd) -> bytes:
     return "\n".join([*lines, "</osm>", ""]).encode()
 
 
-def _is_street(tags: Tags) -> bool:
+def is_street(tags: Tags) -> bool:
+    """Return whether a way is a street for cars."""
     kind = tags.get("highway", "")
     if not _DRIVEN.fullmatch(kind) or tags.get("area") == "yes":
         return False
@@ -85,7 +92,23 @@ def _clean(tags: Tags, odd: Odd) -> Tags:
             odd("maxspeed")
         del kept["maxspeed"]
     kept.pop("width", None)
+    for key in [key for key in kept if key.startswith("sidewalk")]:
+        # One that is mapped by itself is made beside its street, like the others.
+        kept[key] = {"separate": "yes"}.get(kept[key], kept[key])
+    if not any(key.startswith("sidewalk") for key in kept) and _has_usual_sidewalk(kept):
+        one_way = kept.get("oneway", "no") != "no" or kept.get("junction") == "roundabout"
+        kept["sidewalk"] = "right" if one_way else "both"
     return kept
+
+
+def _has_usual_sidewalk(tags: Tags) -> bool:
+    """Return whether streets of a kind and speed usually have sidewalks."""
+    if tags["highway"] in _NOT_WALKED:
+        return False
+    speed = re.match(r"(\d+(?:\.\d+)?)(?: ?(\w+))?", tags.get("maxspeed", "50"))
+    assert speed is not None  # as other values are left out
+    unit = {"mph": 1.609, "knots": 1.852}.get(speed[2] or "", 1.0)
+    return _WALKED_BESIDE[0] < float(speed[1]) * unit <= _WALKED_BESIDE[1]
 
 
 def _inside(way: Way, data: OsmData, bounds: Bounds) -> Iterator[tuple[int, ...]]:

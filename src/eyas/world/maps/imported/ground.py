@@ -80,11 +80,11 @@ def add_ground(
         builder: The builder to add to.
         plan: The plan of the town.
         network: The streets.
-        features: Crossings, signals and tracks.
+        features: Signals and tracks.
         bays: Paint in car parks [m].
         rng: Random numbers of the ground.
     """
-    paint = road_paint(network, plan.roads, features)
+    paint = road_paint(network, plan, set(features.signals))
     painted = painting.painted(bays, painting.WHITE)
     builder.add(ObjectClass.MARKING, painting.mesh_of(paint), painted)
     worn = road_wear(_worn(network), rng)

@@ -4,13 +4,16 @@ Real streets have ends, one-way parts and lanes that begin and end, so every str
 itself.
 """
 
+from collections.abc import Collection
+
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
 from eyas.state.roads import RoadNetwork
-from eyas.world.build.millimetres import dot, rounded, unit
-from eyas.world.osm.features import Features
+from eyas.world.build.millimetres import dot, length, rounded, unit
+from eyas.world.maps.imported.crosswalks import HALF, Crosswalk
+from eyas.world.maps.imported.plan import Plan
 from eyas.world.roads.areas import Street, streets
 from eyas.world.roads.painting import RoadPaint, Stripe, stripes
 
@@ -26,29 +29,23 @@ _EDGE = 0.28
 _STOP_LINE = 0.4
 _STOP_BACK = 0.6
 """From the end of a lane back to the stop line [m]."""
-_ZEBRA = (0.9, 4.1)
-"""Range of a crossing beyond a stop line [m]."""
 _BAR = 0.5
-_ACROSS = 16.0
-"""Widest half of a street with a crossing in its course [m]."""
 
 Line = NDArray[np.float64]
 
 
-def road_paint(network: RoadNetwork, roads: shapely.Geometry, features: Features) -> RoadPaint:
+def road_paint(network: RoadNetwork, plan: Plan, signalled: Collection[str]) -> RoadPaint:
     """Return the paint of all streets.
 
     Args:
         network: The streets.
-        roads: Their asphalt [m].
-        features: Crossings, and the streets that end at signals.
+        plan: Their asphalt and crossings.
+        signalled: The streets that end at signals.
     """
     every = streets(network)
     ways = {(street.start, street.end) for street in every}
     speeds = {int(edge): network.lane_speed[lane] for lane, edge in enumerate(network.lane_edge)}
     lines: list[Stripe] = []
-    zebras: list[list[Stripe]] = []
-    signalled = set(features.signals)
     for index, street in enumerate(every):
         if len(street.right) < 2 or len(street.left) < 2 or speeds[index] < _SLOWEST:
             continue
@@ -57,8 +54,8 @@ def road_paint(network: RoadNetwork, roads: shapely.Geometry, features: Features
             lines += _lines(street, both=both)
         if network.edges[index] in signalled:
             lines.append(_stop_line(street))
-            zebras.append(_zebra(street, both=both))
-    zebras += _crossings(network, roads, features)
+    shapely.prepare(plan.roads)
+    zebras = [_zebra(walk, plan.roads) for walk in plan.crosswalks]
     return RoadPaint(lines, [], [bars for bars in zebras if bars])
 
 
@@ -98,56 +95,13 @@ def _stop_line(street: Street) -> Stripe:
     return Stripe(_placed(street, ends), _STOP_LINE)
 
 
-def _zebra(street: Street, *, both: bool) -> list[Stripe]:
-    """Return the bars of the crossing beyond a stop line, over both directions of the street."""
-    road = _frame(street)[3] * (2.0 if both else 1.0)
-    count = int((road - 0.4) // (2 * _BAR))
-    first = (road - (2 * count - 1) * _BAR) / 2 + _BAR / 2
-    low, high = _ZEBRA
-    return [
-        Stripe(_placed(street, [(low, y), (high, y)]), _BAR)
-        for y in first + 2 * _BAR * np.arange(count)
-    ]
-
-
-def _crossings(
-    network: RoadNetwork, roads: shapely.Geometry, features: Features
-) -> list[list[Stripe]]:
-    """Return the bars of crossings in the course of streets."""
-    if not features.crossings:
-        return []
-    first = network.lane_first
-    lanes = [
-        shapely.LineString(network.lane_points[first[k] : first[k + 1]])
-        for k in range(len(first) - 1)
-    ]
-    tree = shapely.STRtree(lanes)
-    made = []
-    for place in features.crossings:
-        point = shapely.Point(place)
-        lane = lanes[int(tree.nearest(point))]
-        along = float(lane.project(point))
-        # Those at the ends of streets are painted with the signals there.
-        if lane.distance(point) < 6.0 and 6.0 < along < lane.length - 6.0:
-            made.append(_bars(lane, along, roads))
-    return made
-
-
-def _bars(lane: shapely.LineString, along: float, roads: shapely.Geometry) -> list[Stripe]:
-    here, there = (shapely.get_coordinates(lane.interpolate(s))[0] for s in (along, along + 0.5))
-    onwards = unit(there - here)
-    leftwards = np.array([-onwards[1], onwards[0]])
-    across = shapely.LineString([here - _ACROSS * leftwards, here + _ACROSS * leftwards])
-    parts = shapely.get_parts(shapely.intersection(across, roads))
-    own = [part for part in parts if part.distance(shapely.Point(here)) < 0.1]
-    if not own:
-        return []
-    low, high = sorted(
-        dot(end - here, leftwards) for end in shapely.get_coordinates(own[0])[[0, -1]]
-    )
-    count = int((high - low - 0.4) // (2 * _BAR))
-    start = (low + high) / 2 - (count - 0.5) * _BAR + _BAR / 2 - _BAR / 2
-    middles = [here + (start + 2 * _BAR * k) * leftwards for k in range(count)]
-    return [
-        Stripe(rounded(np.stack([m - 1.6 * onwards, m + 1.6 * onwards])), _BAR) for m in middles
-    ]
+def _zebra(walk: Crosswalk, roads: shapely.Geometry) -> list[Stripe]:
+    """Return the bars of a crossing, where there is asphalt."""
+    start, end = walk.line
+    across = unit(end - start)
+    onwards = np.array([-across[1], across[0]])
+    count = int((length(end - start) - 0.4) // (2 * _BAR))
+    middles = (start + end) / 2 + (np.arange(count) - (count - 1) / 2)[:, None] * 2 * _BAR * across
+    bars = [Stripe(rounded(np.stack([m - HALF * onwards, m + HALF * onwards])), _BAR)
+            for m in middles]  # fmt: skip
+    return [bar for bar in bars if shapely.covers(roads, bar.area)]

@@ -8,6 +8,7 @@ import shapely
 
 from eyas.state.roads import RoadNetwork
 from eyas.world.build.millimetres import snapped
+from eyas.world.maps.imported.crosswalks import Crosswalk, crosswalks_of
 from eyas.world.maps.imported.looks import Look, is_small, look_of
 from eyas.world.osm.features import AREA_KINDS, Features, House
 from eyas.world.roads.areas import polygons_of
@@ -43,6 +44,8 @@ class Plan:
     """Asphalt of the streets [m]."""
     pavement: shapely.Geometry
     """Raised pavements beside the streets [m]."""
+    crosswalks: list[Crosswalk]
+    """Crossings of the streets."""
     ground: dict[str, shapely.Geometry]
     """Ground of each of `AREA_KINDS`, cut out of each other and of the streets [m]."""
     yards: shapely.Geometry
@@ -74,6 +77,8 @@ def make_plan(
     roads = _clean(shapely.union(lanes, shapely.difference(crossings, walked)))
     houses = _beside(features.houses, roads)
     built = shapely.union_all([one.shape for one in houses if one.bottom < CLEARANCE])
+    crosswalks, islands = crosswalks_of(network, roads, walked, features)
+    walked = shapely.union(walked, shapely.intersection(islands, extent))
     pavement = _clean(shapely.difference(walked, shapely.union(roads, built)))
     taken = shapely.union(roads, pavement)
     covered = taken
@@ -93,6 +98,7 @@ def make_plan(
         extent=extent,
         roads=roads,
         pavement=pavement,
+        crosswalks=crosswalks,
         ground=ground,
         yards=yards,
         lawn=_whole(shapely.difference(extent, covered)),

@@ -13,6 +13,7 @@ from eyas.world.build.heights import FLOOR_HEIGHT, KERB_HEIGHT
 from eyas.world.build.scene_builder import SceneBuilder
 from eyas.world.buildings import rooftops
 from eyas.world.maps.imported.building import building_mesh, solids_of
+from eyas.world.maps.imported.crosswalks import footways
 from eyas.world.maps.imported.greenery import add_greenery, add_parked
 from eyas.world.maps.imported.ground import add_ground
 from eyas.world.maps.imported.lamps import add_lamps_at, usual_lamps
@@ -66,7 +67,9 @@ def build_scene(
     add_furniture(builder, network, plan.pavement, taken, KERB_HEIGHT, rng)
     plants = {name: builder.prototype(name, make) for name, make in plant_makers(beds).items()}
     add_greenery(builder, plan, features, kinds, plants, stream(seed, "imported plants"))
-    return builder.build(network, lights)
+    scene = builder.build(network, lights)
+    scene.footways = footways(plan.roads, plan.crosswalks)
+    return scene
 
 
 def _add_building(builder: SceneBuilder, look: Look) -> None:
