@@ -22,6 +22,9 @@ _PAVED: Final = 9.0
 _BEYOND_KERB: Final = 4.0
 """The same on imported maps, which tell where each crossing ends [m]."""
 
+_ASIDES: Final = (0.0, 0.9, -0.9)
+"""There, one crosses beside the middle if something stands at the end of it [m]."""
+
 _BESIDE: Final = 1.2
 """There, pavements may end so far beside the middle of a crossing [m]."""
 
@@ -64,28 +67,56 @@ def crossings_of(
     rings = [way.line for way in ways]
     lanes = [[k for k, way in enumerate(ways) if way.lane == lane] for lane in range(len(LANES))]
     found = []
-    for number, (right, left, light, beyond) in enumerate(_kerb_to_kerb(scene)):
+    for number, one in enumerate(_kerb_to_kerb(scene)):
         for own in lanes:
-            ends = [_joint(rings, own, a, b, beyond) for a, b in ((right, left), (left, right))]
-            if ends[0] is None or ends[1] is None:
-                continue
-            (way, along), (other, other_along) = ends[0], ends[1]
-            feet = [rings[way].interpolate(along), rings[other].interpolate(other_along)]
-            line = shapely.get_coordinates(feet)
-            if obstacles.blocked(np.array([shapely.LineString(line)], object), radius)[0]:
-                continue
-            found.append(Crossing(way, along, other, other_along, line, number, light))
-            found.append(Crossing(other, other_along, way, along, line[::-1], number, light))
+            tried = (_between(rings, own, one, aside) for aside in one.asides)
+            free = (
+                joined
+                for joined in tried
+                if joined is not None
+                and not obstacles.blocked(np.array([shapely.LineString(joined[2])]), radius)[0]
+            )
+            for (way, along), (other, other_along), line in list(free)[:1]:
+                there = Crossing(way, along, other, other_along, line, number, one.light)
+                back = Crossing(other, other_along, way, along, line[::-1], number, one.light)
+                found += [there, back]
     return found
 
 
-def _kerb_to_kerb(scene: Scene) -> list[tuple[Floats, Floats, str, float]]:
-    """Return both ends of each crossing [m], its light, and how far the pavement may be [m]."""
-    told = scene.footways
-    if told.told:
-        each = zip(told.crossings, told.lights, strict=True)
-        return [(line[0], line[1], light, _BEYOND_KERB) for line, light in each]
-    return [(right, left, "", _PAVED) for right, left in _painted(scene, _across(scene))]
+class _Paint(NamedTuple):
+    """A crossing, before it is known which pavements it joins."""
+
+    right: Floats
+    left: Floats
+    """Its ends at the kerbs [m], shape (2,)."""
+    light: str = ""
+    """See `Crossing`."""
+    beyond: float = _PAVED
+    """How far from the kerbs pavements are sought [m]."""
+    asides: tuple[float, ...] = (0.0,)
+    """How far beside its middle one may cross, the best first [m]."""
+
+
+def _between(
+    rings: list[shapely.LineString], own: list[int], one: _Paint, aside: float
+) -> tuple[tuple[int, float], tuple[int, float], Floats] | None:
+    """Return the ways that a crossing joins, the places on them, and the line between [m]."""
+    onwards = (one.left - one.right)[::-1] * [1.0, -1.0] / np.hypot(*(one.left - one.right))
+    right, left = one.right + aside * onwards, one.left + aside * onwards
+    begin, end = (_joint(rings, own, a, b, one.beyond) for a, b in ((right, left), (left, right)))
+    if begin is None or end is None:
+        return None
+    feet = [rings[way].interpolate(along) for way, along in (begin, end)]
+    return begin, end, shapely.get_coordinates(feet)
+
+
+def _kerb_to_kerb(scene: Scene) -> list[_Paint]:
+    """Return all crossings."""
+    footways = scene.footways
+    if footways.told:
+        each = zip(footways.crossings, footways.lights, strict=True)
+        return [_Paint(line[0], line[1], light, _BEYOND_KERB, _ASIDES) for line, light in each]
+    return [_Paint(right, left) for right, left in _painted(scene, _across(scene))]
 
 
 def _across(scene: Scene) -> list[tuple[Floats, Floats]]:

@@ -24,7 +24,7 @@ _BEFORE: Final = 0.5
 _AFTER: Final = 1.5
 """The same afterwards [s]."""
 
-_GREEN: Final = 1.0
+_GREEN: Final = 2.5
 """For how long it is still green, at least, when somebody steps off [s]."""
 
 _PATIENCE: Final = 60.0

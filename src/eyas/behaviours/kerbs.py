@@ -5,12 +5,15 @@ from typing import Final
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 from shapely.ops import substring
 
 from eyas.behaviours.obstacles import Obstacles
-from eyas.behaviours.pavements import Way, along, bridged, paved_parts
+from eyas.behaviours.pavements import Way, along, bridged, is_hard, paved_parts
 from eyas.behaviours.surface import Surface
+from eyas.state.motion import Motion
 from eyas.state.scene import Footways
+from eyas.targets.catalogue import KINDS, MODELS, models_of
 from eyas.world.roads.areas import polygons_of
 
 __all__ = ["kerb_ways"]
@@ -28,8 +31,22 @@ _KERB_HEIGHT: Final = 0.05
 """Pavements are higher than this: paving at the foot of buildings is not [m]."""
 
 
+_FROM_CARS: Final = 1.25
+"""Nobody walks nearer to where vehicles come, at the points that are tested [m]."""
+
+_GRAIN: Final = 0.2
+"""Places nearer to each other than half of this are one [m]."""
+
+_TURN: Final = 0.1
+"""The same for headings [rad]."""
+
+
 def kerb_ways(
-    footways: Footways, obstacles: Obstacles, surface: Surface, radius: float
+    footways: Footways,
+    obstacles: Obstacles,
+    surface: Surface,
+    radius: float,
+    vehicles: Motion | None = None,
 ) -> list[Way]:
     """Return the ways along all kerbs with pavements, round what stands on these.
 
@@ -38,27 +55,59 @@ def kerb_ways(
         obstacles: What stands in the way, without the roads.
         surface: The ground.
         radius: Distance to obstacles that is kept [m].
+        vehicles: Those that may come over kerbs, as in narrow corners; None: there are none.
     """
+    swept = shapely.STRtree(_swept(vehicles) if vehicles is not None else [])
     found = []
     for first, last in pairwise(footways.kerb_first):
         kerb = shapely.LinearRing(footways.kerb_points[first:last])
         for lane, beyond in enumerate(_LANES):
             for ring in _rings(kerb, beyond, obstacles, radius):
                 line = shapely.reverse(ring) if lane == 1 else ring
-                found += _paved(line, surface, lane)
+                found += _paved(line, surface, swept, lane)
     return found
 
 
-def _paved(ring: shapely.LinearRing, surface: Surface, lane: int) -> list[Way]:
-    """Return the parts of a ring that are on pavement."""
-    under = surface.at(along(ring))
+def _paved(
+    ring: shapely.LinearRing, surface: Surface, swept: shapely.STRtree, lane: int
+) -> list[Way]:
+    """Return the parts of a ring that are on pavement, where no vehicle comes."""
+    free, hard = _walked(ring, surface, swept)
+    if not free.all():
+        # It begins where nobody walks, so that no part of it is cut in two.
+        ring = _from(ring, float(np.argmin(free)))
+        free, hard = _walked(ring, surface, swept)
+        free = bridged(free, hard)
+    return paved_parts(ring, free, lane)
+
+
+def _walked(
+    ring: shapely.LinearRing, surface: Surface, swept: shapely.STRtree
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Return which points along a ring are on pavement, and which are hard ground, without cars."""
+    points = along(ring)
+    under, clear = surface.at(points), np.ones(len(points), np.bool_)
+    clear[swept.query(shapely.points(points), predicate="dwithin", distance=_FROM_CARS)[0]] = False
     raised = under.pavement & (under.height > _KERB_HEIGHT)
-    if not raised.all():
-        # It begins where there is no pavement, so that no part of it is cut in two.
-        ring = _from(ring, float(np.argmin(raised)))
-        under = surface.at(along(ring))
-        raised = bridged(under.pavement & (under.height > _KERB_HEIGHT), under.height)
-    return paved_parts(ring, raised, lane)
+    return raised & clear, is_hard(under.height) & clear
+
+
+def _swept(vehicles: Motion) -> NDArray[np.object_]:
+    """Return where vehicles are, as boxes seen from above, each but once."""
+    made = []
+    for kind in np.unique(vehicles.kind).tolist():
+        rows = vehicles.table[:, vehicles.kind == kind]
+        rows = rows[rows["present"] > 0.0]
+        place = np.column_stack([rows["x"] / _GRAIN, rows["y"] / _GRAIN, rows["yaw"] / _TURN])
+        x, y, yaw = np.unique(np.rint(place), axis=0).T * [[_GRAIN], [_GRAIN], [_TURN]]
+        length, width, _ = np.array([MODELS[model].size for model in models_of(kind)]).max(axis=0)
+        ahead = KINDS[kind].ahead + 0.5 * length * np.array([-1.0, 1.0, 1.0, -1.0])
+        aside = 0.5 * width * np.array([-1.0, -1.0, 1.0, 1.0])
+        cosine, sine = np.cos(yaw)[:, None], np.sin(yaw)[:, None]
+        east = x[:, None] + ahead * cosine - aside * sine
+        north = y[:, None] + ahead * sine + aside * cosine
+        made.append(shapely.polygons(np.stack([east, north], axis=2)))
+    return np.concatenate(made) if made else np.zeros(0, object)
 
 
 def _from(ring: shapely.LinearRing, place: float) -> shapely.LinearRing:

@@ -13,7 +13,7 @@ from eyas.state.roads import RoadNetwork
 from eyas.traffic.smoothing import runs
 from eyas.world.roads.areas import blocks, polygons_of, road_area
 
-__all__ = ["LANES", "Way", "along", "bridged", "paved_parts", "pavement_ways"]
+__all__ = ["LANES", "Way", "along", "bridged", "is_hard", "paved_parts", "pavement_ways"]
 
 LANES: Final = (1.0, 1.9)
 """Distances from the kerb of those who have the road on their left, and on their right [m]."""
@@ -76,7 +76,7 @@ def pavement_ways(
             if ring is not None:
                 line = ring if shapely.is_ccw(ring) == (lane == 1) else shapely.reverse(ring)
                 under = surface.at(along(line))
-                found += paved_parts(line, bridged(under.pavement, under.height), lane)
+                found += paved_parts(line, bridged(under.pavement, is_hard(under.height)), lane)
     return found
 
 
@@ -123,15 +123,20 @@ def along(ring: shapely.LinearRing) -> NDArray[np.float64]:
     return np.asarray(shapely.get_coordinates(points), np.float64)
 
 
-def bridged(pavement: NDArray[np.bool_], height: NDArray[np.float64]) -> NDArray[np.bool_]:
+def bridged(paved: NDArray[np.bool_], hard: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Return which points are paved, with the driveways that interrupt pavements.
 
     Args:
-        pavement: Which are on pavement, shape (K,).
-        height: Their heights [m], shape (K,).
+        paved: Which are on pavement, shape (K,).
+        hard: Which are on hard ground, shape (K,).
     """
-    paved, hard = pavement.copy(), height > _LAWN
+    paved = paved.copy()
     for first, last in runs(~paved):
         if last - first <= _DRIVEWAY / _EVERY and hard[first:last].all():
             paved[first:last] = True
     return paved
+
+
+def is_hard(height: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Return whether ground at heights [m] is no lawn."""
+    return height > _LAWN

@@ -106,7 +106,10 @@ def scripted_table(
     seconds = (lives.leaves - lives.enters) / clock.rate
     if (troop.behaviour or habit.behaviour) is Behaviour.CROSSING:
         gaps = Gaps(vehicles, clock.samples, clock.rate, ground.lights)
-        paths = _tours(ground, troop, habit, lives.enters / clock.rate, seconds, gaps, rng)
+        ways = _pavements(ground, troop, habit, vehicles)
+        paths = _tours(ground, troop, habit, ways, lives.enters / clock.rate, seconds, gaps, rng)
+    elif (troop.behaviour or habit.behaviour) is Behaviour.PAVEMENT:
+        paths = _strolls(_pavements(ground, troop, habit, vehicles), habit, seconds, rng)
     else:
         paths = _paths(ground, troop, habit, seconds, rng)
     table = np.zeros((clock.samples, int(lives.slot.max()) + 1), SAMPLE)
@@ -127,8 +130,6 @@ def _paths(
 ) -> list[_Course]:
     behaviour = troop.behaviour or habit.behaviour
     radius = 0.5 * troop.breadth + _ROOM
-    if behaviour is Behaviour.PAVEMENT:
-        return _strolls(ground, troop, habit, seconds, rng)
     aside = wave_of(habit.speed).aside if behaviour is Behaviour.WEAVE else 0.0
     start = ground.roadside.draw(len(seconds), troop.offset, radius + aside, rng, troop.setting)
     task = Task(start, seconds, habit, radius, ground.obstacles, rng)
@@ -142,13 +143,12 @@ def _paths(
 
 
 def _strolls(
-    ground: Ground, troop: Troop, habit: Habit, seconds: Floats, rng: np.random.Generator
+    ways: list[Way], habit: Habit, seconds: Floats, rng: np.random.Generator
 ) -> list[_Course]:
     """Return ways on pavements.
 
     All who go the same way are equally fast and begin apart, so none overtakes or walks in another.
     """
-    ways = _pavements(ground, troop, habit)
     speed = rng.uniform(*STROLL, len(ways))
     length = np.array([way.length for way in ways])
     chosen = rng.choice(len(ways), size=len(seconds), p=length / length.sum())
@@ -169,14 +169,14 @@ def _tours(  # noqa: PLR0913  # who, where, when
     ground: Ground,
     troop: Troop,
     habit: Habit,
+    ways: list[Way],
     enters: Floats,
     seconds: Floats,
     gaps: Gaps,
     rng: np.random.Generator,
 ) -> list[_Course]:
     """Return walks on pavements and over crossings."""
-    ways, radius = _pavements(ground, troop, habit), 0.5 * troop.breadth
-    over = crossings_of(ground.scene, ways, ground.solids, radius)
+    over = crossings_of(ground.scene, ways, ground.solids, 0.5 * troop.breadth)
     if not over:
         raise SpawnError(
             f"{troop.setting}: behaviour 'crossing': '{ground.scene.name}' has no crossing between "
@@ -193,7 +193,7 @@ def _tours(  # noqa: PLR0913  # who, where, when
     return made
 
 
-def _pavements(ground: Ground, troop: Troop, habit: Habit) -> list[Way]:
+def _pavements(ground: Ground, troop: Troop, habit: Habit, vehicles: Motion | None) -> list[Way]:
     """Return the ways on pavements.
 
     Raises:
@@ -203,7 +203,7 @@ def _pavements(ground: Ground, troop: Troop, habit: Habit) -> list[Way]:
     if scene.footways.told:
         # Its kerbs tell where the roads are; those of the network have sharp corners.
         obstacles = ground.solids
-        found = kerb_ways(scene.footways, obstacles, ground.surface, radius)
+        found = kerb_ways(scene.footways, obstacles, ground.surface, radius, vehicles)
     else:
         obstacles = ground.obstacles
         found = pavement_ways(scene.network, scene.size, obstacles, ground.surface, radius)

@@ -138,7 +138,8 @@ def crowd_motions(
         motions.append(_custom(crowd, crowd.custom, scene, clock, seed, vehicles, lights))
     for number, troop in enumerate(troops):
         crosses = troop.behaviour is Behaviour.CROSSING
-        waits_for = (vehicles.table, vehicles.kind) if crosses and vehicles is not None else ()
+        heeds = crosses or (scene.footways.told and troop.behaviour is Behaviour.PAVEMENT)
+        waits_for = (vehicles.table, vehicles.kind) if heeds and vehicles is not None else ()
         obeys = tuple(lights) if crosses and lights is not None else ()
         numbers = cached(
             Kind.MOTION,

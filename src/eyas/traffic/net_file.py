@@ -76,22 +76,30 @@ def road_network(xml: bytes, graph_hash: str) -> RoadNetwork:
 
 
 def pavements_of(xml: bytes) -> Pavements:
-    """Return the sidewalks of a finished network."""
+    """Return the sidewalks of a finished network, without what is driven on within junctions.
+
+    SUMO joins the sidewalks on both sides of a street that has none across its mouth.
+    """
     root = ElementTree.fromstring(xml)
     shapes: list[shapely.Geometry] = []
+    driven: list[shapely.Geometry] = []
     for edge in root.iter("edge"):
         kind = edge.get("function")
         for lane in edge.iter("lane"):
             points = _points(lane.get("shape", ""))
             if kind == "walkingarea" and len(points) >= 3:
                 shapes.append(shapely.make_valid(shapely.Polygon(points)))
+            elif kind == "internal" and len(points) >= 2 and not _only_walked(lane):
+                driven.append(
+                    shapely.buffer(shapely.LineString(points), _width(lane) / 2, cap_style="flat")
+                )
             elif kind is None and _only_walked(lane) and len(points) >= 2:
                 half = _width(lane) / 2
                 line = shapely.LineString(points)
                 shapes.append(
                     shapely.buffer(line, half, cap_style="flat", join_style="mitre", quad_segs=3)
                 )
-    return Pavements(shapely.union_all(shapes))
+    return Pavements(shapely.difference(shapely.union_all(shapes), shapely.union_all(driven)))
 
 
 def crossings_of(xml: bytes) -> dict[str, Line]:

@@ -14,7 +14,7 @@ from eyas.world.build.millimetres import dot, length, rounded, unit
 from eyas.world.osm.features import Features
 from eyas.world.roads.areas import polygons_of
 
-__all__ = ["HALF", "Crosswalk", "crosswalks_of", "footways"]
+__all__ = ["HALF", "Crosswalk", "crosswalks_of", "footways", "kept_free"]
 
 HALF = 1.6
 """Half the width of a crossing [m]."""
@@ -70,13 +70,10 @@ def crosswalks_of(
     for light, here, leftwards in wanted:
         low, high, gaps = _extent(roads, walked, here, leftwards)
         line = rounded(here + np.array([[low], [high]]) * leftwards)
-        if high > low and not any(_same(line, other.line) for other in kept):
+        if high > low and (light or not any(_same(line, other.line) for other in kept)):
             kept.append(Crosswalk(line, light))
-            islands += [
-                shapely.buffer(shapely.LineString(here + np.array(gap)[:, None] * leftwards), HALF,
-                               cap_style="flat")
-                for gap in gaps
-            ]  # fmt: skip
+            across = [shapely.LineString(here + np.array(gap)[:, None] * leftwards) for gap in gaps]
+            islands += [shapely.buffer(line, HALF, cap_style="flat") for line in across]
     return kept, shapely.difference(shapely.union_all(islands), roads)
 
 
@@ -97,6 +94,12 @@ def footways(roads: shapely.Geometry, crosswalks: Sequence[Crosswalk]) -> Footwa
         crossings=np.array([walk.line for walk in crosswalks], np.float64).reshape(-1, 2, 2),
         lights=tuple(walk.light for walk in crosswalks),
     )
+
+
+def kept_free(crosswalks: Sequence[Crosswalk]) -> shapely.Geometry:
+    """Return the crossings and the pavement at their ends, where nothing is put [m]."""
+    lines = [shapely.LineString(walk.line) for walk in crosswalks]
+    return shapely.union_all(shapely.buffer(lines, _BESIDE + HALF, quad_segs=4))
 
 
 def _middle_and_direction(line: Line) -> tuple[Line, Line]:

@@ -54,9 +54,8 @@ def road_paint(network: RoadNetwork, plan: Plan, signalled: Collection[str]) -> 
             lines += _lines(street, both=both)
         if network.edges[index] in signalled:
             lines.append(_stop_line(street))
-    shapely.prepare(plan.roads)
-    zebras = [_zebra(walk, plan.roads) for walk in plan.crosswalks]
-    return RoadPaint(lines, [], [bars for bars in zebras if bars])
+    zebras = _zebras(plan)
+    return RoadPaint(_cut(lines, zebras), [], zebras)
 
 
 def _lines(street: Street, *, both: bool) -> list[Stripe]:
@@ -93,6 +92,43 @@ def _placed(street: Street, points: list[tuple[float, float]]) -> Line:
 def _stop_line(street: Street) -> Stripe:
     ends = [(-_STOP_BACK, 0.15), (-_STOP_BACK, max(_frame(street)[3] - 0.15, 0.5))]
     return Stripe(_placed(street, ends), _STOP_LINE)
+
+
+def _zebras(plan: Plan) -> list[list[Stripe]]:
+    """Return the bars of all crossings; where two meet at a corner, those of the first."""
+    shapely.prepare(plan.roads)
+    made: list[list[Stripe]] = []
+    free = [_zebra(walk, plan.roads) for walk in plan.crosswalks]
+    areas = [[bar.area for bar in bars] for bars in free]
+    every = [area for bars in areas for area in bars]
+    owner = np.repeat(np.arange(len(areas)), [len(bars) for bars in areas])
+    one, two = shapely.STRtree(every).query(every, predicate="dwithin", distance=_BAR / 2)
+    later = np.zeros(len(every), np.bool_)
+    later[one[owner[two] < owner[one]]] = True
+    for number, bars in enumerate(free):
+        kept = [bar for bar, off in zip(bars, later[owner == number], strict=True) if not off]
+        if kept:
+            made.append(kept)
+    return made
+
+
+def _cut(lines: list[Stripe], zebras: list[list[Stripe]]) -> list[Stripe]:
+    """Return lines without their parts on crossings."""
+    outlines = [
+        shapely.convex_hull(shapely.union_all([bar.area for bar in bars])) for bars in zebras
+    ]
+    tree = shapely.STRtree(outlines)
+    made: list[Stripe] = []
+    for stripe in lines:
+        line = shapely.LineString(stripe.middle)
+        met = tree.query(line, predicate="intersects")
+        if not len(met):
+            made.append(stripe)
+            continue
+        rest = shapely.difference(line, shapely.union_all([outlines[k] for k in met.tolist()]))
+        parts = [part for part in shapely.get_parts(rest) if part.length > stripe.width]
+        made += [Stripe(rounded(shapely.get_coordinates(part)), stripe.width) for part in parts]
+    return made
 
 
 def _zebra(walk: Crosswalk, roads: shapely.Geometry) -> list[Stripe]:

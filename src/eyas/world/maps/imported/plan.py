@@ -8,6 +8,7 @@ import shapely
 
 from eyas.state.roads import RoadNetwork
 from eyas.world.build.millimetres import snapped
+from eyas.world.maps.imported.corners import rounded_corners, sharp_bends
 from eyas.world.maps.imported.crosswalks import Crosswalk, crosswalks_of
 from eyas.world.maps.imported.looks import Look, is_small, look_of
 from eyas.world.osm.features import AREA_KINDS, Features, House
@@ -74,7 +75,12 @@ def make_plan(
     extent = shapely.box(-size[0] / 2, -size[1] / 2, size[0] / 2, size[1] / 2)
     lanes, crossings = _lanes(network), _junctions(network)
     walked = shapely.intersection(shapely.difference(features.pavement, lanes), extent)
-    roads = _clean(shapely.union(lanes, shapely.difference(crossings, walked)))
+    sharp = _clean(shapely.union(lanes, shapely.difference(crossings, walked)))
+    places = shapely.union(crossings, sharp_bends(network))
+    shapes = [house.shape for house in features.houses]
+    roads, beside = rounded_corners(sharp, places, walked, shapes)
+    roads = _clean(roads)
+    walked = shapely.union(walked, shapely.intersection(beside, extent))
     houses = _beside(features.houses, roads)
     built = shapely.union_all([one.shape for one in houses if one.bottom < CLEARANCE])
     crosswalks, islands = crosswalks_of(network, roads, walked, features)

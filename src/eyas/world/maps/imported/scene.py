@@ -13,7 +13,7 @@ from eyas.world.build.heights import FLOOR_HEIGHT, KERB_HEIGHT
 from eyas.world.build.scene_builder import SceneBuilder
 from eyas.world.buildings import rooftops
 from eyas.world.maps.imported.building import building_mesh, solids_of
-from eyas.world.maps.imported.crosswalks import footways
+from eyas.world.maps.imported.crosswalks import footways, kept_free
 from eyas.world.maps.imported.greenery import add_greenery, add_parked
 from eyas.world.maps.imported.ground import add_ground
 from eyas.world.maps.imported.lamps import add_lamps_at, usual_lamps
@@ -59,7 +59,8 @@ def build_scene(
     bays = add_parked(builder, plan, cars, stream(seed, "imported parked cars"))
     add_ground(builder, plan, network, features, bays, stream(seed, "imported ground"))
     poles = _add_signals(builder, network, plan, features)
-    taken = shapely.union_all([plan.roads, plan.built, plan.ground["water"], poles])
+    ends = kept_free(plan.crosswalks)
+    taken = shapely.union_all([plan.roads, plan.built, plan.ground["water"], poles, ends])
     lights = _lights(builder, network, features, taken, seed)
     feet = shapely.buffer(shapely.points(lights.position[:, :2].astype(float)), 4.0)
     taken = shapely.union_all([taken, *feet])
