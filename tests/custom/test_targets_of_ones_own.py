@@ -32,7 +32,7 @@ def importable(monkeypatch: pytest.MonkeyPatch):
 
 def begun(**settings: object) -> Simulation:
     start = {"pitch": 1.37, "height": 9.0}
-    config = validated(SimConfig, {"start": start, **settings})
+    config = validated(SimConfig, {"start": start, "extras": [], **settings})
     simulation = build_simulation(config, together(1))
     simulation.reset()
     return simulation

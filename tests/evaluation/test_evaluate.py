@@ -1,14 +1,17 @@
 """The command: folder, table, resuming after a kill."""
 
 import json
+import shlex
 import signal
 import subprocess
 import sys
 import time
+from itertools import pairwise
 
 import pytest
 
-from eyas.core.errors import EyasError
+from eyas.cli.evaluate import _changes
+from eyas.core.errors import ConfigError, EyasError
 from eyas.evaluation.plan import Plan
 from eyas.evaluation.record import RecordFile, read_records
 from eyas.modes.evaluate import run
@@ -35,6 +38,21 @@ def test_the_result_tells_all_that_repeats_it(whole):
     assert {row["group"] for row in result["rows"]} == {"all", "visibility"}
     lines = (whole / "result.csv").read_text().splitlines()
     assert len({line.count(",") for line in lines}) == 1
+
+
+def test_the_command_that_repeats_it_survives_a_shell():
+    crowd = {"extras": [{"kind": "Pedestrian", "count": 9}], "start": {"velocity": "target"}}
+    plan = Plan(policy="my runs/x.onnx", env={"action_repeat": 4}, settings=crowd)
+    words = shlex.split(plan.command)
+    assert words[:4] == ["eyas", "evaluate", "--policy", plan.policy]
+    said = [text for option, text in pairwise(words) if option == "--set"]
+    assert _changes(said) == {"env": plan.env, **plan.settings}
+
+
+def test_what_the_protocol_fixes_is_refused():
+    for text in ("world.map=lake", "extras", "extras.0.count=3", "start.height=3", "env.=1"):
+        with pytest.raises(ConfigError, match=r"^--set .*not allowed: env\.KEY=VALUE"):
+            _changes([text])
 
 
 def test_a_killed_evaluation_continues_to_the_same_bytes(whole, tmp_path):

@@ -103,10 +103,12 @@ def test_the_originals_file_means_its_traffic(values):
 
 
 @pytest.mark.parametrize("values", [{}, *map(read, FILES)])
-def test_the_originals_file_means_a_start_at_rest(values):
-    assert EyasConfig().start.velocity == "target"
-    assert from_legacy(values).start.velocity == "rest"
-    assert from_legacy(values, EyasConfig()).start.velocity == "target"
+def test_the_originals_file_means_a_start_at_rest_and_no_passers_by(values):
+    assert (EyasConfig().start.velocity, EyasConfig().extras) == ("target", None)
+    config = from_legacy(values)
+    assert (config.start.velocity, config.extras) == ("rest", ())
+    config = from_legacy(values, EyasConfig())
+    assert (config.start.velocity, config.extras) == ("target", None)
 
 
 def test_traffic_that_lasts_is_a_key_of_ours_in_its_file():

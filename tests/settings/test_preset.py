@@ -53,6 +53,11 @@ def test_training_starts_from_every_side():
     assert config.reward.view_range == 0.7
 
 
+@pytest.mark.parametrize("name", sorted({*PRESETS} - {"lively", "noisy"}))
+def test_nobody_walks_where_results_are_compared(name):
+    assert load_settings(preset_file(name)).extras == ()
+
+
 def test_an_unknown_name_is_told_with_the_nearest():
     with pytest.raises(UnknownNameError, match=r"^preset: 'dat-evl' .*did you mean 'dat-eval'"):
         TrackingEnv("dat-evl")

@@ -11,6 +11,7 @@ from eyas.exports.frame import Action
 from eyas.exports.labels import label_of
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
+from eyas.sim.crowd import extras_of
 from eyas.sim.worlds import each_alone, together
 from eyas.state.draw import Picture
 from eyas.state.scene import ObjectClass
@@ -95,11 +96,11 @@ def test_truth_agrees_with_its_own_differences(walk):
     assert np.allclose(gain, after.acceleration[:, :2], atol=0.3)
 
 
-def test_extras_leave_the_vehicles_and_their_episodes_as_they_are():
-    alone = built(3)
-    among = built(3, extras=[{"kind": "Create", "count": 2}])
+@pytest.mark.parametrize("extras", [[{"kind": "Create", "count": 2}], None])
+def test_extras_leave_the_vehicles_and_their_episodes_as_they_are(extras):
+    alone, among = built(3, extras=[]), built(3, extras=extras)
     cars = alone.actors
-    assert among.actors == cars + 2
+    assert among.actors > cars
     for _ in range(3):
         for field in ("actor", "model", "position", "yaw"):
             a, b = (getattr(sim.snapshot.targets, field) for sim in (alone, among))
@@ -108,6 +109,27 @@ def test_extras_leave_the_vehicles_and_their_episodes_as_they_are():
         assert np.array_equal(*looks)
         alone.reset()
         among.reset()
+
+
+@pytest.mark.parametrize(
+    ("settings", "behaviour", "count"),
+    [
+        ({}, "crossing", 40),
+        ({"world": {"map": "downtown"}}, "crossing", 80),
+        ({"traffic": {"source": "live"}}, "pavement", 40),
+        ({"target": "BB-8"}, "crossing", 40),
+        ({"world": {"map": "lake"}}, None, 0),
+        ({"extras": []}, None, 0),
+    ],
+)
+def test_pedestrians_walk_in_the_cities_unless_extras_says_otherwise(settings, behaviour, count):
+    found = [(who.kind, who.behaviour, who.count) for who in extras_of(SimConfig(**settings))]
+    assert found == ([("Pedestrian", behaviour, count)] if count else [])
+
+
+def test_the_pedestrians_of_a_city_are_in_its_simulation():
+    assert kinds_around(built())[-40:] == ["Pedestrian"] * 40
+    assert "Pedestrian" not in kinds_around(built(extras=[]))
 
 
 def test_a_slow_robot_has_a_turn_direction():

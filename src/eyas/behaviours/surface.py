@@ -56,7 +56,11 @@ class Surface:
 
         Its height above the terrain is that of a point less than `_GRAIN` away.
         """
-        rounded, place = np.unique(np.rint(points / _GRAIN), axis=0, return_inverse=True)
+        east, north = np.rint(points.T / _GRAIN).astype(np.int64)
+        # One number for each place: unique rows would take five times as long.
+        keys, place = np.unique((east << 32) + north, return_inverse=True)
+        east = (keys + (1 << 31)) >> 32
+        rounded = np.column_stack([east, keys - (east << 32)]).astype(np.float64)
         found = self._exactly(rounded * _GRAIN)
         above = found.height - reliefs(self._terrain, rounded * _GRAIN)
         height = reliefs(self._terrain, points) + above[place]

@@ -52,8 +52,8 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
         typer.Option(
             "--set",
             metavar="env.KEY=VALUE",
-            help="What the policy sees and does; tracker.KEY, control.KEY, start.velocity: "
-            "another protocol.",
+            help="What the policy sees and does; tracker.KEY, control.KEY, start.velocity, "
+            "extras: another protocol.",
         ),
     ] = None,
     out: Annotated[Path | None, typer.Option("--out", help="Folder to write to.")] = None,
@@ -130,6 +130,10 @@ def _names(text: str) -> list[str]:
     return [name.strip() for name in text.split(",") if name.strip()]
 
 
+_FREE = (["start", "velocity"], ["extras"])
+"""Settings that `--set` changes, besides all of some groups."""
+
+
 def _changes(said: list[str]) -> dict[str, Any]:
     """Return changes from `env.key=value`, and of other rooms.
 
@@ -140,11 +144,12 @@ def _changes(said: list[str]) -> dict[str, Any]:
     for text in said:
         path, equals, value = text.partition("=")
         keys = path.strip().split(".")
-        free = keys[0] in ("env", "tracker", "control") or keys == ["start", "velocity"]
-        if not equals or not free or not all(keys[1:] or [""]):
+        free = keys[0] in ("env", "tracker", "control") and all(keys[1:] or [""])
+        if not equals or not (free or keys in _FREE):
             raise ConfigError(
                 f"--set {text!r}: not allowed: env.KEY=VALUE, such as env.action_repeat=4, or "
-                "tracker.KEY, control.KEY or start.velocity; all else belongs to the protocol"
+                "tracker.KEY, control.KEY, start.velocity or extras; all else belongs to the "
+                "protocol"
             )
         group = changes
         for key in keys[:-1]:

@@ -144,18 +144,26 @@ def _plain(value: object) -> object:
 
 def group_of(field: FieldInfo | None) -> type[Config] | None:
     """Return the class of a field that holds a group of settings, or null; None for others."""
-    kind = field.annotation if field else None
-    if isinstance(kind, UnionType):
-        kinds = [part for part in get_args(kind) if part is not NoneType]
-        kind = kinds[0] if len(kinds) == 1 else None
+    kind = _besides_null(field)
     return kind if isinstance(kind, type) and issubclass(kind, Config) else None
 
 
 def _entries_of(field: FieldInfo | None) -> type[Config] | None:
-    """Return the class of a field that holds a list of groups of settings; None for others."""
-    parts = get_args(field.annotation) if field else ()
+    """Return the class of a field that holds a list of groups of settings, or null; None for
+    others.
+    """
+    parts = get_args(_besides_null(field))
     kind = parts[0] if len(parts) == 2 and parts[1] is ... else None
     return kind if isinstance(kind, type) and issubclass(kind, Config) else None
+
+
+def _besides_null(field: FieldInfo | None) -> object:
+    """Return the type of a field's values other than null; None if there are several."""
+    kind = field.annotation if field else None
+    if not isinstance(kind, UnionType):
+        return kind
+    kinds = [part for part in get_args(kind) if part is not NoneType]
+    return kinds[0] if len(kinds) == 1 else None
 
 
 def _merged(config: Config, changes: Mapping[str, Any]) -> dict[str, Any]:

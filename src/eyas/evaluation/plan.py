@@ -1,6 +1,7 @@
 """What an evaluation flies, and with what."""
 
 import json
+import shlex
 from collections.abc import Iterator
 from typing import Annotated, Any
 
@@ -43,7 +44,7 @@ class Plan(Config):
     env: dict[str, Any] = {}  # noqa: RUF012  # pydantic copies it
     """Changes of what the policy sees and does."""
     settings: dict[str, Any] = {}  # noqa: RUF012  # the same
-    """Changes of `tracker`, `control` and `start.velocity`: another protocol."""
+    """Changes of `tracker`, `control`, `start.velocity` and `extras`: another protocol."""
     batch: Annotated[int, Field(ge=1, le=4096)] = 64
     """Episodes that are flown together. A network's last bits may depend on it."""
 
@@ -59,19 +60,15 @@ class Plan(Config):
         told = self.model_dump(
             exclude_defaults=True, exclude={"env", "settings", "sampled", "policy"}
         )
-        words = [f"eyas evaluate --policy {self.policy}"]
+        words = ["eyas", "evaluate", "--policy", self.policy]
         for name, value in told.items():
-            text = ",".join(value) if isinstance(value, tuple) else value
-            words.append(f"--{name} {text}")
+            words += [f"--{name}", ",".join(value) if isinstance(value, tuple) else str(value)]
         if self.sampled:
             words.append("--sample")
-        changes = {"env": self.env, **self.settings}
-        words += [
-            f"--set {key}={value if isinstance(value, str) else json.dumps(value)}"
-            for name, group in changes.items()
-            for key, value in _flat(name, group)
-        ]
-        return " ".join(words)
+        for key, value in _flat("", {"env": self.env, **self.settings}):
+            text = value if isinstance(value, str) else json.dumps(value)
+            words += ["--set", f"{key}={text}"]
+        return shlex.join(words)
 
 
 class Stamp(Config):
@@ -161,6 +158,6 @@ def check(plan: Plan) -> None:
 def _flat(path: str, values: dict[str, Any]) -> Iterator[tuple[str, Any]]:
     for key, value in values.items():
         if isinstance(value, dict):
-            yield from _flat(f"{path}.{key}", value)
+            yield from _flat(f"{path}{key}.", value)
         else:
-            yield f"{path}.{key}", value
+            yield f"{path}{key}", value

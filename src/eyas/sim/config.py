@@ -58,12 +58,13 @@ class SimConfig(Config):
     objects: ObjectsConfig = ObjectsConfig()
     custom: CustomConfig | None = None
     """A target of one's own, in the place of `target`."""
-    extras: tuple[ExtraConfig, ...] = ()
-    """Groups that share the world with the targets as distractors."""
+    extras: tuple[ExtraConfig, ...] | None = None
+    """Groups that share the world with the targets as distractors; None: the map's pedestrians."""
 
     @model_validator(mode="after")
     def _vehicles_once(self) -> "SimConfig":
         followed = self.custom is None and self.target is TargetName.SUMO_VEHICLE
-        if followed and any(extra.kind is TargetName.SUMO_VEHICLE for extra in self.extras):
+        extras = self.extras or ()
+        if followed and any(extra.kind is TargetName.SUMO_VEHICLE for extra in extras):
             raise ValueError("extras must not hold SUMO_VEHICLE (see traffic.max_vehicles)")
         return self

@@ -22,12 +22,14 @@ from eyas.state.motion import SAMPLE, Motion
 from eyas.state.scene import Scene
 from eyas.targets.catalogue import MODELS, kind_index, models_of
 from eyas.targets.config import ObjectsConfig, TargetName
+from eyas.traffic.config import Source
 from eyas.traffic.signals import SignalPlan
+from eyas.world.maps import MAPS
 
 if TYPE_CHECKING:
     from eyas.behaviours.scripted import Ground
 
-__all__ = ["NOBODY", "Crowd", "crowd_motions", "crowd_of", "vehicles_of"]
+__all__ = ["NOBODY", "Crowd", "crowd_motions", "crowd_of", "extras_of", "vehicles_of"]
 
 _MAKERS = (
     *("behaviours", "sim/crowd.py", "state/motion.py", "state/terrain.py", "world/roads"),
@@ -61,16 +63,29 @@ NOBODY = Crowd()
 
 def crowd_of(config: SimConfig) -> Crowd:
     """Return the crowd of a simulation; equal where only settings without effect differ."""
+    extras = extras_of(config)
     if config.custom is None and config.target is TargetName.SUMO_VEHICLE:
-        return Crowd(extras=config.extras)
+        return Crowd(extras=extras)
     seconds = config.done.total_steps * PHYSICS_STEP
     return Crowd(
         target=config.target,
         objects=config.objects,
-        extras=config.extras,
+        extras=extras,
         episode=seconds,
         custom=config.custom,
     )
+
+
+def extras_of(config: SimConfig) -> tuple[ExtraConfig, ...]:
+    """Return who shares a world with the targets: those of `extras`, or else the pedestrians of the
+    map, who cross its roads if it is known in advance where vehicles will be.
+    """
+    if config.extras is not None:
+        return config.extras
+    count = MAPS.get(config.world.map).pedestrians
+    live = config.traffic.source is Source.LIVE
+    behaviour = Behaviour.PAVEMENT if live else Behaviour.CROSSING
+    return (ExtraConfig(count=count, behaviour=behaviour),) if count else ()
 
 
 def vehicles_of(crowd: Crowd, known: int) -> int:

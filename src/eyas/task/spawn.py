@@ -87,7 +87,7 @@ def choose_target(
     if not free:
         followed = sum(actor >= 0 for actor in used)
         raise SpawnError(
-            f"start: no target is free: {len(available)} known, {int(np.sum(available))} in the "
-            f"world, {followed} followed; allowed: at least as many vehicles as trackers"
+            f"start: no target is free: {int(np.sum(available))} in the world, {followed} "
+            "followed; allowed: at least as many vehicles as trackers"
         )
     return free[int(rng.integers(len(free)))]

@@ -3,34 +3,27 @@
 import pytest
 
 from eyas.core.config import updated
-from eyas.modes.demo.choices import Plan, first_plan, plan_of
+from eyas.modes.demo.choices import Plan, plan_of
 from eyas.modes.demo.messages import World
 from eyas.modes.demo.run import cockpit_of
 from eyas.settings.config import EyasConfig
 from eyas.settings.file import load_settings
+from eyas.sim.crowd import extras_of
 
 
 class BuildError(Exception):
     """Holds the plan that a demo wants to build."""
 
 
+def first(config):
+    return Plan(config, 40)
+
+
 def walkers(plan):
-    return [(extra.kind, extra.count, extra.behaviour) for extra in plan.config.extras]
+    return [(extra.kind, extra.count, extra.behaviour) for extra in extras_of(plan.config)]
 
 
-@pytest.mark.parametrize("name", ["citystreet", "downtown"])
-def test_people_walk_in_the_cities_and_cross_their_roads(name):
-    plan = first_plan(EyasConfig(world={"map": name}))
-    assert walkers(plan) == [("Pedestrian", 40, "crossing")]
-
-
-def test_there_are_none_elsewhere_and_others_where_the_settings_name_them():
-    assert walkers(first_plan(EyasConfig(world={"map": "lake"}))) == []
-    dogs = EyasConfig(extras=[{"kind": "GhostDog", "count": 2}])
-    assert walkers(first_plan(dogs)) == [("GhostDog", 2, None)]
-
-
-def test_the_command_has_them_too(monkeypatch):
+def test_the_command_begins_with_the_pedestrians_of_the_map(monkeypatch):
     def build(plan):
         raise BuildError(plan)
 
@@ -40,20 +33,26 @@ def test_the_command_has_them_too(monkeypatch):
     assert walkers(begun.value.args[0]) == [("Pedestrian", 40, "crossing")]
 
 
-def test_as_many_walk_in_the_next_world_in_its_own_way():
-    city = first_plan(EyasConfig())
+def test_each_map_has_its_own_until_a_number_is_chosen():
+    city = first(EyasConfig())
     lake = plan_of(city, World(map="lake"))
-    assert sum(count for _, count, _ in walkers(lake)) == 40
+    assert walkers(lake) == []
+    downtown = plan_of(lake, World(map="downtown"))
+    assert walkers(downtown) == [("Pedestrian", 80, "crossing")]
+    assert walkers(plan_of(downtown, World(weather="snow"))) == walkers(downtown)
+    assert walkers(plan_of(downtown, World(people=0))) == []
+
+
+def test_as_many_as_chosen_walk_in_the_next_world_in_its_own_way():
+    city = plan_of(first(EyasConfig()), World(people=30))
+    assert ("Pedestrian", 18, "crossing") in walkers(city)
+    lake = plan_of(city, World(map="lake"))
+    assert sum(count for _, count, _ in walkers(lake)) == 30
     assert {behaviour for *_, behaviour in walkers(lake)} == {None}
-    back = plan_of(lake, World(map="downtown"))
-    assert ("Pedestrian", 24, "crossing") in walkers(back)
-    assert walkers(plan_of(back, World(weather="snow"))) == walkers(back)
-    assert walkers(plan_of(city, World(map="citystreet", weather="snow"))) == walkers(city)
-    assert walkers(plan_of(back, World(people=0))) == []
+    assert walkers(plan_of(lake, World(map="citystreet"))) == walkers(city)
 
 
 def test_nobody_crosses_where_nobody_knows_what_vehicles_will_do():
-    live = first_plan(updated(EyasConfig(), {"traffic": {"source": "live"}}))
-    assert walkers(live) == []
+    live = first(updated(EyasConfig(), {"traffic": {"source": "live"}}))
     some = walkers(plan_of(live, World(people=20)))
-    assert {behaviour for *_, behaviour in some} == {None}
+    assert ("Pedestrian", 12, "pavement") in some

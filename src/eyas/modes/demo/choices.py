@@ -3,17 +3,16 @@
 from dataclasses import dataclass
 from typing import Any
 
-from eyas.behaviours.config import Behaviour
 from eyas.core.config import updated
 from eyas.modes.demo.flight import Flight
 from eyas.modes.demo.messages import LIGHTS, Light, World
 from eyas.settings.config import EyasConfig
+from eyas.sim.crowd import extras_of
 from eyas.targets.config import TargetName
 from eyas.trackers.config import TrackerKind
-from eyas.traffic.config import Source
 from eyas.world.maps import MAPS
 
-__all__ = ["Plan", "first_plan", "plan_of", "world_of"]
+__all__ = ["Plan", "plan_of", "world_of"]
 
 _TRACKERS: dict[str, dict[str, Any]] = {
     "drone": {"kind": TrackerKind.DRONE, "supervised": True},
@@ -22,10 +21,6 @@ _TRACKERS: dict[str, dict[str, Any]] = {
 }
 _ROBOTS = (TargetName.AIBO_ERS7, TargetName.CREATE)
 """Each is a fifth of those who walk around; the others are people."""
-_CITIES = ("citystreet", "downtown")
-"""Maps with pavements and painted crossings."""
-_PEDESTRIANS = 40
-"""People who walk in the cities, unless the settings name others."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,17 +44,6 @@ class Plan:
             EyasError: It cannot be built.
         """
         return Flight(self.config, self.vehicles)
-
-
-def first_plan(config: EyasConfig) -> Plan:
-    """Return the plan that a demo begins with.
-
-    Raises:
-        ConfigError: The settings do not fit to each other.
-    """
-    if not config.extras and _has_crossings(config):
-        config = updated(config, {"extras": _pedestrians(_PEDESTRIANS, config)})
-    return Plan(config, config.traffic.max_vehicles)
 
 
 def plan_of(before: Plan, said: World) -> Plan:
@@ -93,29 +77,32 @@ def plan_of(before: Plan, said: World) -> Plan:
             **{"sun_replaces": light != "own", "background_replaces": light != "own"},
         }
     people = said.people
-    if people is None and said.map not in (None, now.map):  # others walk there
-        people = sum(extra.count for extra in before.config.extras)
-    config = updated(before.config, changes if people is None else changes | {"extras": []})
-    if people:
+    if people is None and said.map not in (None, now.map) and before.config.extras:
+        people = _count(before.config)  # as many walk there, in the map's own way
+    if people is None:
+        config = updated(before.config, changes)
+    else:
+        config = updated(before.config, changes | {"extras": None})
         config = updated(config, {"extras": _passers_by(people, config)})
     return Plan(config, said.vehicles or before.vehicles, light)
 
 
 def _passers_by(count: int, config: EyasConfig) -> list[dict[str, Any]]:
-    each = count // 5
-    robots = [{"kind": kind, "count": each} for kind in _ROBOTS if each]
-    return [*_pedestrians(count - each * len(_ROBOTS), config), *robots]
+    """Return `count` people and robots; people walk as those of the map do."""
+    each, own = count // 5, extras_of(config)
+    groups: list[dict[str, Any]] = [
+        {
+            "kind": TargetName.PEDESTRIAN,
+            "count": count - each * len(_ROBOTS),
+            "behaviour": own[0].behaviour if own else None,
+        },
+        *({"kind": kind, "count": each} for kind in _ROBOTS),
+    ]
+    return [group for group in groups if group["count"]]
 
 
-def _pedestrians(count: int, config: EyasConfig) -> list[dict[str, Any]]:
-    behaviour = Behaviour.CROSSING if _has_crossings(config) else None
-    return [{"kind": TargetName.PEDESTRIAN, "count": count, "behaviour": behaviour}]
-
-
-def _has_crossings(config: EyasConfig) -> bool:
-    """Return whether people can cross roads: they must know where vehicles will be."""
-    recorded = config.traffic.source is not Source.LIVE
-    return config.world.map in _CITIES and recorded
+def _count(config: EyasConfig) -> int:
+    return sum(extra.count for extra in extras_of(config))
 
 
 def world_of(plan: Plan, flight: Flight) -> dict[str, Any]:
@@ -132,7 +119,7 @@ def world_of(plan: Plan, flight: Flight) -> dict[str, Any]:
         "light": plan.light,
         "hour": config.world.hour or "own",
         "dark": MAPS.get(config.world.map).light(config.world.weather).lamps > 0.0,
-        "people": sum(extra.count for extra in config.extras),
+        "people": _count(config),
         "parked": flight.world.parked >= 0,
     }
     return {"world": chosen}

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 from eyas.modes.demo.building import Builder
-from eyas.modes.demo.choices import first_plan
+from eyas.modes.demo.choices import Plan
 from eyas.modes.demo.controls import Held, command_of
 from eyas.modes.demo.duel import Duel
 from eyas.modes.demo.flight import Flight
@@ -44,7 +44,7 @@ class Cockpit:
         self.duel: Duel | None = None
         self.sides_change = False
         """Whether the next flight of the duel is to begin."""
-        plan = first_plan(config)
+        plan = Plan(config, config.traffic.max_vehicles)
         self.builder = Builder(plan)
         self.board(plan.build())
         self._frames = 0

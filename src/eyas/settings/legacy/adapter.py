@@ -30,7 +30,7 @@ __all__ = [
 
 _LOG = logging.getLogger("eyas")
 
-_LIKE_THE_ORIGINAL = EyasConfig(start=StartConfig(velocity=StartVelocity.REST))
+_LIKE_THE_ORIGINAL = EyasConfig(start=StartConfig(velocity=StartVelocity.REST), extras=())
 """What its file cannot express, and differs from our defaults."""
 
 

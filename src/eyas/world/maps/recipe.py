@@ -86,6 +86,8 @@ class MapRecipe:
     """Folder of a map that is no package: an imported one. It holds the same files."""
     original: Original | None = None
     """Figures of the map that it re-creates; None if there is none."""
+    pedestrians: int = 0
+    """Number of people on its pavements, unless the settings name others (`extras`)."""
 
     def __post_init__(self) -> None:
         if not re.fullmatch(r"\w+(-\w+)*", self.name):

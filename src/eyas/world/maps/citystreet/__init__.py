@@ -43,4 +43,5 @@ CITYSTREET = MapRecipe(
     lighting={DAY: CLEAR_DAY, FOGGY: FOG, NIGHT: CLEAR_NIGHT, SNOW: WINTER_DAY},
     package=__name__,
     original=Original(road=4.01, buildings=83, height=30.0, trees=63),
+    pedestrians=40,
 )

@@ -59,4 +59,5 @@ DOWNTOWN = MapRecipe(
     lighting={DAY: CLEAR_DAY, FOGGY: _MIST, NIGHT: _LIT, SNOW: WINTER_DAY},
     package=__name__,
     original=Original(road=11.05, buildings=470, height=28.0, trees=334),
+    pedestrians=80,
 )
