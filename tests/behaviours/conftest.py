@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+from eyas.behaviours.ground import Ground
 from eyas.behaviours.habits import HABITS
 from eyas.behaviours.lives import lasting
-from eyas.behaviours.scripted import Ground, scripted_table
+from eyas.behaviours.scripted import scripted_table
 from eyas.behaviours.troop import Clock, Troop
 from eyas.core.rng import stream
 from eyas.sim.scenes import load_scene

@@ -5,9 +5,10 @@ import pytest
 
 from eyas.behaviours.config import Behaviour
 from eyas.behaviours.gaps import Gaps
+from eyas.behaviours.ground import Ground
 from eyas.behaviours.habits import HABITS
 from eyas.behaviours.lives import lasting
-from eyas.behaviours.scripted import Ground, scripted_table
+from eyas.behaviours.scripted import scripted_table
 from eyas.behaviours.troop import Clock
 from eyas.core.errors import ConfigError, SpawnError
 from eyas.core.rng import stream

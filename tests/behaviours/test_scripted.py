@@ -5,9 +5,9 @@ import pytest
 import shapely
 
 from eyas.behaviours.config import Behaviour
+from eyas.behaviours.ground import Ground
 from eyas.behaviours.habits import HABITS, STROLL
 from eyas.behaviours.lives import recycled
-from eyas.behaviours.scripted import Ground
 from eyas.behaviours.troop import Clock
 from eyas.core.errors import SpawnError
 from eyas.core.variation import Mirrored

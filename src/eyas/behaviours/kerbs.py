@@ -98,8 +98,10 @@ def _swept(vehicles: Motion) -> NDArray[np.object_]:
     for kind in np.unique(vehicles.kind).tolist():
         rows = vehicles.table[:, vehicles.kind == kind]
         rows = rows[rows["present"] > 0.0]
-        place = np.column_stack([rows["x"] / _GRAIN, rows["y"] / _GRAIN, rows["yaw"] / _TURN])
-        x, y, yaw = np.unique(np.rint(place), axis=0).T * [[_GRAIN], [_GRAIN], [_TURN]]
+        # One number for each place and heading: unique rows would take five times as long.
+        place = np.rint([rows["x"] / _GRAIN, rows["y"] / _GRAIN, rows["yaw"] / _TURN])
+        _, first = np.unique((place[0] * 1e5 + place[1]) * 1e4 + place[2], return_index=True)
+        x, y, yaw = place[:, first] * [[_GRAIN], [_GRAIN], [_TURN]]
         length, width, _ = np.array([MODELS[model].size for model in models_of(kind)]).max(axis=0)
         ahead = KINDS[kind].ahead + 0.5 * length * np.array([-1.0, 1.0, 1.0, -1.0])
         aside = 0.5 * width * np.array([-1.0, -1.0, 1.0, 1.0])

@@ -4,40 +4,30 @@ It is computed at once for the whole length of the traffic, from the map, a seed
 so it is known at any instant without stepping.
 """
 
-from functools import cached_property
 from typing import Final, NamedTuple
 
 import numpy as np
-import shapely
 from numpy.typing import NDArray
 
-from eyas.behaviours.chain import Chain, chain_through, outline
+from eyas.behaviours.chain import Chain, chain_through
 from eyas.behaviours.config import Behaviour
 from eyas.behaviours.crossings import crossings_of
 from eyas.behaviours.gaps import Gaps
+from eyas.behaviours.ground import ROOM, Ground, walkways
 from eyas.behaviours.habits import HABITS, STROLL, Habit
-from eyas.behaviours.kerbs import kerb_ways
-from eyas.behaviours.obstacles import Obstacles
-from eyas.behaviours.pavements import Way, pavement_ways
-from eyas.behaviours.places import Roadside
+from eyas.behaviours.pavements import Way
 from eyas.behaviours.routes import Task, legs, polylines, round_and_round, stops, wave_of
-from eyas.behaviours.surface import Surface
 from eyas.behaviours.timetable import Ride, ride, time_of
 from eyas.behaviours.tours import Streets, Tour, tour, tour_ride
 from eyas.behaviours.troop import Clock, Troop
 from eyas.core.errors import SpawnError
 from eyas.state.motion import SAMPLE, Motion
-from eyas.state.scene import Scene
 from eyas.state.terrain import reliefs
-from eyas.traffic.signals import SignalPlan
 
-__all__ = ["Ground", "scripted_table"]
+__all__ = ["scripted_table"]
 
 _SPAN: Final = 0.25
 """Half the distance over which the slope of the land is taken [m]."""
-
-_ROOM: Final = 0.1
-"""Room between a body and obstacles [m]."""
 
 _JITTER: Final = 0.5
 """How irregularly those who go the same way follow each other, as a share of even distances."""
@@ -58,29 +48,6 @@ class _Course(NamedTuple):
         if isinstance(self.path, Tour):
             return tour_ride(self.path, self.habit, time)
         return ride(self.path, self.habit, self.begun + time)
-
-
-class Ground:
-    """A map, as those see it who walk on it.
-
-    Args:
-        scene: The map.
-        roads: Whether roads are left to cars.
-        lights: What crossings with lights show, see `walk_plan`; None: there are none.
-    """
-
-    def __init__(self, scene: Scene, *, roads: bool, lights: SignalPlan | None = None) -> None:
-        self.scene, self.lights = scene, lights
-        self.obstacles = Obstacles(scene, roads=roads)
-        self._roads = roads
-        # Pavement walkers are beside the roads by the choice of their ways.
-        self.surface = Surface(scene)
-        self.roadside = Roadside(scene.network, self.obstacles)
-
-    @cached_property
-    def solids(self) -> Obstacles:
-        """The obstacles without the roads."""
-        return Obstacles(self.scene, roads=False) if self._roads else self.obstacles
 
 
 def scripted_table(
@@ -106,10 +73,10 @@ def scripted_table(
     seconds = (lives.leaves - lives.enters) / clock.rate
     if (troop.behaviour or habit.behaviour) is Behaviour.CROSSING:
         gaps = Gaps(vehicles, clock.samples, clock.rate, ground.lights)
-        ways = _pavements(ground, troop, habit, vehicles)
+        ways = _walkways(ground, troop, habit, vehicles)
         paths = _tours(ground, troop, habit, ways, lives.enters / clock.rate, seconds, gaps, rng)
     elif (troop.behaviour or habit.behaviour) is Behaviour.PAVEMENT:
-        paths = _strolls(_pavements(ground, troop, habit, vehicles), habit, seconds, rng)
+        paths = _strolls(_walkways(ground, troop, habit, vehicles), habit, seconds, rng)
     else:
         paths = _paths(ground, troop, habit, seconds, rng)
     table = np.zeros((clock.samples, int(lives.slot.max()) + 1), SAMPLE)
@@ -129,7 +96,7 @@ def _paths(
     ground: Ground, troop: Troop, habit: Habit, seconds: Floats, rng: np.random.Generator
 ) -> list[_Course]:
     behaviour = troop.behaviour or habit.behaviour
-    radius = 0.5 * troop.breadth + _ROOM
+    radius = 0.5 * troop.breadth + ROOM
     aside = wave_of(habit.speed).aside if behaviour is Behaviour.WEAVE else 0.0
     start = ground.roadside.draw(len(seconds), troop.offset, radius + aside, rng, troop.setting)
     task = Task(start, seconds, habit, radius, ground.obstacles, rng)
@@ -193,29 +160,17 @@ def _tours(  # noqa: PLR0913  # who, where, when
     return made
 
 
-def _pavements(ground: Ground, troop: Troop, habit: Habit, vehicles: Motion | None) -> list[Way]:
+def _walkways(ground: Ground, troop: Troop, habit: Habit, vehicles: Motion | None) -> list[Way]:
     """Return the ways on pavements.
 
     Raises:
         SpawnError: There are none.
     """
-    scene, radius = ground.scene, 0.5 * troop.breadth + _ROOM
-    if scene.footways.told:
-        # Its kerbs tell where the roads are; those of the network have sharp corners.
-        obstacles = ground.solids
-        found = kerb_ways(scene.footways, obstacles, ground.surface, radius, vehicles)
-    else:
-        obstacles = ground.obstacles
-        found = pavement_ways(scene.network, scene.size, obstacles, ground.surface, radius)
-    once = [outline(chain_through(way.corners, habit.radius, 1)) for way in found]
-    # A rounded corner may come too near to what the way leads round.
-    lines = np.array([shapely.LineString(points) for points in once], object)
-    blocked = obstacles.blocked(lines, 0.5 * troop.breadth)
-    ways = [way for way, stopped in zip(found, blocked.tolist(), strict=True) if not stopped]
+    ways = walkways(ground, troop.breadth, habit.radius, vehicles)
     if not ways:
         behaviour = (troop.behaviour or habit.behaviour).value
         raise SpawnError(
-            f"{troop.setting}: behaviour '{behaviour}': '{scene.name}' has no pavement; "
+            f"{troop.setting}: behaviour '{behaviour}': '{ground.scene.name}' has no pavement; "
             "allowed: another behaviour, or another map such as citystreet"
         )
     return ways

@@ -5,9 +5,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.behaviours.ground import Ground
 from eyas.behaviours.habits import Habit
 from eyas.behaviours.lives import Lives
-from eyas.behaviours.scripted import Ground, scripted_table
+from eyas.behaviours.scripted import scripted_table
 from eyas.behaviours.troop import Clock, Troop
 from eyas.core.errors import ConfigError
 from eyas.core.files import user_path

@@ -27,7 +27,7 @@ from eyas.traffic.signals import SignalPlan
 from eyas.world.maps import MAPS
 
 if TYPE_CHECKING:
-    from eyas.behaviours.scripted import Ground
+    from eyas.behaviours.ground import Ground
 
 __all__ = ["NOBODY", "Crowd", "crowd_motions", "crowd_of", "extras_of", "vehicles_of"]
 
@@ -140,7 +140,8 @@ def crowd_motions(
     ground: list[Ground] = []  # made when the first motion is not in the cache
 
     def made(number: int, troop: Troop) -> NDArray[np.float32]:
-        from eyas.behaviours.scripted import Ground, scripted_table  # with shapely
+        from eyas.behaviours.ground import Ground  # with shapely
+        from eyas.behaviours.scripted import scripted_table
 
         if not ground:
             ground.append(Ground(scene, roads=driven, lights=lights))
@@ -208,7 +209,7 @@ def _custom(  # as of `crowd_motions`
     lights: SignalPlan | None,
 ) -> Motion:
     """Return the motion of a target of one's own; not kept, as its class may have changed."""
-    from eyas.behaviours.scripted import Ground
+    from eyas.behaviours.ground import Ground
     from eyas.custom.motion import Places, custom_motion
 
     driven = any(map(_is_traffic, crowd.extras))

@@ -6,6 +6,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.behaviours.ground import usable_crossings
 from eyas.sim.scenes import load_scene
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import ObjectClass, Scene
@@ -134,6 +135,12 @@ def describe(name: str, seed: int) -> list[str]:
         f"trees: {said.trees} ({said.trees / area:.0f} per km2)"
         + (f", in {said.stands} stands" if said.stands else ""),
     ]
+    lights = usable_crossings(load_scene(name, seed))
+    lit = sum(map(bool, lights))
+    lines.append(
+        f"crossings from pavement to pavement: {len(lights)}"
+        + (f", of which {lit} have traffic lights" if lit else "")
+    )
     if recipe.original is not None:
         lines.append(_of_the_original(recipe.original))
     shipped = seed == 0 or recipe.home is not None  # an imported map has its streets at any seed

@@ -1,0 +1,84 @@
+"""A map as those see it who walk on it: what is in their way, and where they walk."""
+
+from functools import cached_property
+from typing import Final
+
+import numpy as np
+import shapely
+
+from eyas.behaviours.chain import chain_through, outline
+from eyas.behaviours.crossings import crossings_of
+from eyas.behaviours.habits import HABITS
+from eyas.behaviours.kerbs import kerb_ways
+from eyas.behaviours.obstacles import Obstacles
+from eyas.behaviours.pavements import Way, pavement_ways
+from eyas.behaviours.places import Roadside
+from eyas.behaviours.surface import Surface
+from eyas.state.motion import Motion
+from eyas.state.scene import Scene
+from eyas.traffic.signals import SignalPlan
+
+__all__ = ["ROOM", "Ground", "usable_crossings", "walkways"]
+
+ROOM: Final = 0.1
+"""Room between a body and obstacles [m]."""
+
+_BREADTH: Final = 0.82
+"""Diameter of the circle in which any pedestrian fits [m]."""
+
+
+class Ground:
+    """A map, as those see it who walk on it.
+
+    Args:
+        scene: The map.
+        roads: Whether roads are left to cars.
+        lights: What crossings with lights show, see `walk_plan`; None: there are none.
+    """
+
+    def __init__(self, scene: Scene, *, roads: bool, lights: SignalPlan | None = None) -> None:
+        self.scene, self.lights = scene, lights
+        self.obstacles = Obstacles(scene, roads=roads)
+        self._roads = roads
+        # Pavement walkers are beside the roads by the choice of their ways.
+        self.surface = Surface(scene)
+        self.roadside = Roadside(scene.network, self.obstacles)
+
+    @cached_property
+    def solids(self) -> Obstacles:
+        """The obstacles without the roads."""
+        return Obstacles(self.scene, roads=False) if self._roads else self.obstacles
+
+
+def walkways(
+    ground: Ground, breadth: float, bend: float, vehicles: Motion | None = None
+) -> list[Way]:
+    """Return the ways on pavements.
+
+    Args:
+        ground: The map.
+        breadth: Diameter of the circle in which those fit who walk [m].
+        bend: Radius at which they round corners [m].
+        vehicles: Those that may come over kerbs in narrow corners; None: there are none.
+    """
+    scene, radius = ground.scene, 0.5 * breadth + ROOM
+    if scene.footways.told:
+        # Its kerbs tell where the roads are; those of the network have sharp corners.
+        obstacles = ground.solids
+        found = kerb_ways(scene.footways, obstacles, ground.surface, radius, vehicles)
+    else:
+        obstacles = ground.obstacles
+        found = pavement_ways(scene.network, scene.size, obstacles, ground.surface, radius)
+    once = [outline(chain_through(way.corners, bend, 1)) for way in found]
+    # A rounded corner may come too near to what the way leads round.
+    lines = np.array([shapely.LineString(points) for points in once], object)
+    blocked = obstacles.blocked(lines, 0.5 * breadth)
+    return [way for way, stopped in zip(found, blocked.tolist(), strict=True) if not stopped]
+
+
+def usable_crossings(scene: Scene) -> list[str]:
+    """Return the name of the light of each crossing that joins pavements; empty: it has none."""
+    ground, bend = Ground(scene, roads=True), HABITS["Pedestrian"].radius
+    ways = walkways(ground, _BREADTH, bend)
+    found = crossings_of(scene, ways, ground.solids, 0.5 * _BREADTH)
+    return list({one.number: one.light for one in found}.values())
