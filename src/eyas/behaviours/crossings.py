@@ -51,6 +51,8 @@ class Crossing(NamedTuple):
     """Which of the map's crossings it is: there and back, near the kerb or not."""
     light: str = ""
     """Name of its traffic light in the network; empty: it has none."""
+    to_kerb: float = 0.0
+    """From its beginning to the kerb [m]."""
 
 
 def crossings_of(
@@ -66,10 +68,11 @@ def crossings_of(
     """
     rings = [way.line for way in ways]
     lanes = [[k for k, way in enumerate(ways) if way.lane == lane] for lane in range(len(LANES))]
+    sides = [_Side(own, shapely.STRtree([rings[k] for k in own])) for own in lanes]
     found = []
     for number, one in enumerate(_kerb_to_kerb(scene)):
-        for own in lanes:
-            tried = (_between(rings, own, one, aside) for aside in one.asides)
+        for side in sides:
+            tried = (_between(side, one, aside) for aside in one.asides)
             free = (
                 joined
                 for joined in tried
@@ -77,10 +80,18 @@ def crossings_of(
                 and not obstacles.blocked(np.array([shapely.LineString(joined[2])]), radius)[0]
             )
             for (way, along), (other, other_along), line in list(free)[:1]:
-                there = Crossing(way, along, other, other_along, line, number, one.light)
-                back = Crossing(other, other_along, way, along, line[::-1], number, one.light)
-                found += [there, back]
+                kerb = [float(np.hypot(*(a - b))) for a, b in zip(line, one[:2], strict=True)]
+                there, back = (way, along), (other, other_along)
+                found.append(Crossing(*there, *back, line, number, one.light, kerb[0]))
+                found.append(Crossing(*back, *there, line[::-1], number, one.light, kerb[1]))
     return found
+
+
+class _Side(NamedTuple):
+    """The ways at one distance from the kerb."""
+
+    ways: list[int]
+    tree: shapely.STRtree
 
 
 class _Paint(NamedTuple):
@@ -98,16 +109,15 @@ class _Paint(NamedTuple):
 
 
 def _between(
-    rings: list[shapely.LineString], own: list[int], one: _Paint, aside: float
+    side: _Side, one: _Paint, aside: float
 ) -> tuple[tuple[int, float], tuple[int, float], Floats] | None:
     """Return the ways that a crossing joins, the places on them, and the line between [m]."""
     onwards = (one.left - one.right)[::-1] * [1.0, -1.0] / np.hypot(*(one.left - one.right))
     right, left = one.right + aside * onwards, one.left + aside * onwards
-    begin, end = (_joint(rings, own, a, b, one.beyond) for a, b in ((right, left), (left, right)))
+    begin, end = _joint(side, right, left, one.beyond), _joint(side, left, right, one.beyond)
     if begin is None or end is None:
         return None
-    feet = [rings[way].interpolate(along) for way, along in (begin, end)]
-    return begin, end, shapely.get_coordinates(feet)
+    return begin[:2], end[:2], np.array([begin[2], end[2]])
 
 
 def _kerb_to_kerb(scene: Scene) -> list[_Paint]:
@@ -155,19 +165,22 @@ def _painted(scene: Scene, across: list[tuple[Floats, Floats]]) -> list[tuple[Fl
 
 
 def _joint(
-    rings: list[shapely.LineString], own: list[int], kerb: Floats, opposite: Floats, beyond: float
-) -> tuple[int, float] | None:
+    side: _Side, kerb: Floats, opposite: Floats, beyond: float
+) -> tuple[int, float, Floats] | None:
     """Return the way nearest to a kerb on the line from the other kerb, and the place on it."""
     outwards = (kerb - opposite) / np.hypot(*(kerb - opposite))
     line = shapely.LineString([0.5 * (kerb + opposite), kerb + beyond * outwards])
     best, place = np.inf, None
-    for k in own:
-        met = shapely.get_coordinates(rings[k].intersection(line))
-        if beyond < _PAVED and not len(met) and shapely.dwithin(rings[k], line, _BESIDE):
-            met = shapely.get_coordinates(shapely.shortest_line(rings[k], line))[:1]
-        if len(met):
-            away = (met - kerb) @ outwards
-            if away.min() < best:
-                best = float(away.min())
-                place = k, float(rings[k].project(shapely.Point(met[away.argmin()])))
+    reach = _BESIDE if beyond < _PAVED else 0.0
+    for k in np.sort(side.tree.query(line, predicate="dwithin", distance=reach)).tolist():
+        ring = side.tree.geometries[k]
+        met = shapely.get_coordinates(shapely.intersection(ring, line))
+        if not len(met):
+            met = shapely.get_coordinates(shapely.shortest_line(ring, line))[:1]
+        away = (met - kerb) @ outwards
+        if away.min() < best:
+            best = float(away.min())
+            along = float(ring.project(shapely.Point(met[away.argmin()])))
+            foot = shapely.get_coordinates(ring.interpolate(along))[0]
+            place = side.ways[k], along, foot
     return place

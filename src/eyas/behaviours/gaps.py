@@ -24,9 +24,6 @@ _BEFORE: Final = 0.5
 _AFTER: Final = 1.5
 """The same afterwards [s]."""
 
-_GREEN: Final = 2.5
-"""For how long it is still green, at least, when somebody steps off [s]."""
-
 _PATIENCE: Final = 60.0
 """The longest that somebody waits for a gap [s]."""
 
@@ -55,7 +52,9 @@ class Gaps:
         self._lights = lights
         self._rows = {} if lights is None else {name: k for k, name in enumerate(lights.edges)}
 
-    def first(self, line: Floats, ready: float, lasts: float, light: str = "") -> float | None:
+    def first(
+        self, line: Floats, ready: float, lasts: float, light: str = "", to_kerb: float = 0.0
+    ) -> float | None:
         """Return when a line can be crossed [s]; None: not before patience is at an end.
 
         Args:
@@ -63,22 +62,28 @@ class Gaps:
             ready: Earliest time [s].
             lasts: How long it takes [s].
             light: Name of the crossing's light; empty: it has none.
+            to_kerb: How long after one's start one is on the road [s].
         """
         busy, rate = self._busy_before(line), self._rate
         first = math.ceil(ready * rate)
         starts = np.arange(first, first + int(_PATIENCE * rate))
         low = np.clip(starts - int(_BEFORE * rate), 0, self._samples)
         high = np.clip(starts + math.ceil((lasts + _AFTER) * rate) + 1, 0, self._samples)
-        free = np.flatnonzero((busy[high] == busy[low]) & self._shown(light, starts, lasts))
+        free = np.flatnonzero(
+            (busy[high] == busy[low]) & self._shown(light, starts, lasts, to_kerb)
+        )
         return float(starts[free[0]]) / rate if len(free) else None
 
-    def _shown(self, light: str, starts: NDArray[np.int64], lasts: float) -> NDArray[np.bool_]:
-        """Return at which of consecutive samples a light lets one cross: it is green, and traffic
-        has red until one has crossed.
+    def _shown(
+        self, light: str, starts: NDArray[np.int64], lasts: float, to_kerb: float
+    ) -> NDArray[np.bool_]:
+        """Return at which of consecutive samples a light lets one cross.
+
+        It is green until one is on the road, and traffic has red until one has crossed.
         """
         if self._lights is None or light not in self._rows:
             return np.full(len(starts), not light)
-        after, still = math.ceil(lasts * self._rate) + 1, math.ceil(_GREEN * self._rate)
+        after, still = math.ceil(lasts * self._rate) + 1, math.ceil(to_kerb * self._rate)
         times = np.arange(starts[0], starts[-1] + max(after, still) + 1) / self._rate
         aspect = self._lights.only(self._rows[light]).at(times)[:, 0]
         held = np.concatenate([[0], np.cumsum(aspect == Aspect.RED)])

@@ -74,14 +74,13 @@ def tour(
         straight = chain_of(
             [(0.0, float(np.hypot(*over)), 0.0)], (*crossing.line[0].tolist(), heading)
         )
-        begins = streets.gaps.first(
-            crossing.line, enters + time, time_of(straight, habit), crossing.light
-        )
+        takes, to_kerb = time_of(straight, habit), _time_to(crossing.to_kerb, habit)
+        begins = streets.gaps.first(crossing.line, enters + time, takes, crossing.light, to_kerb)
         if begins is not None:
             time = begins - enters
             made.legs.append(straight)
             made.begins.append(time)
-            time += time_of(straight, habit)
+            time += takes
             way, along = crossing.other, crossing.other_along
     return made
 
@@ -107,6 +106,11 @@ def _next(streets: Streets, way: int, along: float, rng: np.random.Generator) ->
     order: list[int] = np.argsort(ahead).tolist()
     taken: int = next((k for k in order if rng.uniform() > _PASSED_BY), order[0])
     return streets.crossings[way][taken]
+
+
+def _time_to(away: float, habit: Habit) -> float:
+    """Return how long one needs from a start to a line at a distance [s]."""
+    return away / habit.speed + 0.5 * habit.speed / habit.acceleration
 
 
 def _walk(way: Way, along: float, crossing: Crossing, habit: Habit, heading: float | None) -> Chain:
