@@ -41,6 +41,7 @@ from eyas.world.osm.projection import Projection
 from eyas.world.osm.reader import covered, read_osm
 from eyas.world.osm.rings import Shapes
 from eyas.world.osm.streets import street_file
+from eyas.world.roads.areas import polygons_of
 from eyas.world.roads.network_file import save_network
 
 __all__ = ["ATTRIBUTION", "Report", "run"]
@@ -208,7 +209,8 @@ def _features(shapes: Shapes, net: bytes, report: Report) -> Features:
 
     features = Features(houses=houses_of(shapes, odd))
     add_land(features, shapes, odd, stream(0, "imported tree rows"))
-    features.pavement = snapped(pavements_of(net).area)
+    # Without the lines in which sidewalks of bridges meet others.
+    features.pavement = shapely.MultiPolygon(polygons_of(snapped(pavements_of(net).area)))
     features.signals = signalled_edges(net)
     features.lit_crossings = {k: shapely.LineString(v) for k, v in crossings_of(net).items()}
     report.buildings, report.trees = len(features.houses), len(features.trees)

@@ -20,6 +20,8 @@ HALF = 1.6
 """Half the width of a crossing [m]."""
 _ACROSS = 20.0
 """Farthest kerb from where a street is crossed [m]."""
+_ROUND = 6.0
+"""Kerbs are at most so much farther apart, at each end, than SUMO's crossings are long [m]."""
 _OFF = 8.0
 """Farthest lane from a mapped crossing: it may lie within a junction [m]."""
 _FROM_END = 2.2
@@ -60,15 +62,18 @@ def crosswalks_of(
     shapely.prepare(roads)
     shapely.prepare(walked)
     wanted = [
-        (name, *_middle_and_direction(shapely.get_coordinates(line)[[0, -1]]))
+        (name, *_middle_and_direction(shapely.get_coordinates(line)[[0, -1]]),
+         0.5 * line.length + _ROUND)
         for name, line in features.lit_crossings.items()
         if line.length > 2 * _BESIDE
-    ]
-    wanted += [("", *place) for place in _mapped(network, features.crossings)]
+    ]  # fmt: skip
+    wanted += [("", *place, _ACROSS - 0.5) for place in _mapped(network, features.crossings)]
     kept: list[Crosswalk] = []
     islands: list[shapely.Geometry] = []
-    for light, here, leftwards in wanted:
+    for light, here, leftwards, farthest in wanted:
         low, high, gaps = _extent(roads, walked, here, leftwards)
+        if max(-low, high) > farthest:
+            continue
         line = rounded(here + np.array([[low], [high]]) * leftwards)
         if high > low and (light or not any(_same(line, other.line) for other in kept)):
             kept.append(Crosswalk(line, light))
@@ -147,8 +152,7 @@ def _extent(
         if low - _ISLAND < end < low and not _paved(walked, here, leftwards, low - _BESIDE):
             gaps.append((end, low))
             low = start
-    widest = _ACROSS - 0.5
-    return (low, high, gaps) if -widest < low < high < widest else (0.0, 0.0, [])
+    return low, high, gaps
 
 
 def _paved(walked: shapely.Geometry, here: Line, leftwards: Line, aside: float) -> bool:
