@@ -7,7 +7,8 @@ import pytest
 
 from eyas.core.errors import DataFileError
 from eyas.exports.frame import Action
-from eyas.exports.labels import LabelWriter, label_of, read_labels
+from eyas.exports.label import label_of
+from eyas.exports.labels import LabelWriter, read_labels
 from eyas.exports.summary import Scores, Summary
 from eyas.state.scene import ObjectClass
 from eyas.task.done import DoneReason

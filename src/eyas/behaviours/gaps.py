@@ -6,16 +6,16 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.jit import interpreted
 from eyas.state.motion import Motion
-from eyas.targets.catalogue import KINDS, MODELS, models_of
+from eyas.targets.catalogue import KINDS, MODELS, models_of, sections_of
+from eyas.targets.kind import Section
+from eyas.traffic.trailer import folded
 
 __all__ = ["Gaps"]
 
 _CLEAR: Final = 1.8
 """From the line that is crossed to the side of a vehicle, at least [m]."""
-
-_BENT: Final = 1.5
-"""The same for vehicles with a trailer is so much more: in bends they leave their box [m]."""
 
 _BEFORE: Final = 0.5
 """For how long before somebody crosses nothing may be on the line [s]."""
@@ -27,6 +27,8 @@ _PATIENCE: Final = 60.0
 """The longest that somebody waits for a gap [s]."""
 
 Floats = NDArray[np.float64]
+
+_folded = interpreted(folded)
 
 
 class Gaps:
@@ -71,20 +73,56 @@ class Gaps:
     def _met_by(self, kind: int, line: Floats) -> NDArray[np.bool_]:
         """Return when a vehicle of a kind is on a line, shape (samples,)."""
         assert self._vehicles is not None
-        sizes = np.array([MODELS[model].size for model in models_of(kind)])
-        length, width = sizes[:, 0].max(), sizes[:, 1].max()
-        clear = 0.5 * width + _CLEAR + (_BENT if KINDS[kind].trailers else 0.0)
+        length, width = np.array([MODELS[model].size[:2] for model in models_of(kind)]).max(axis=0)
         rows = self._vehicles.table[: self._samples, self._vehicles.kind == kind]
         middle, across = line.mean(axis=0), line[1] - line[0]
-        reach = 0.5 * (float(np.hypot(*across)) + length) + clear + abs(KINDS[kind].ahead)
+        reach = 0.5 * (float(np.hypot(*across)) + length + width) + _CLEAR + abs(KINDS[kind].ahead)
         near = (np.abs(rows["x"] - middle[0]) < reach) & (np.abs(rows["y"] - middle[1]) < reach)
         sample, actor = np.nonzero(near & (rows["present"] > 0.0))
         own = rows[sample, actor]
-        places = KINDS[kind].ahead + np.linspace(-0.5, 0.5, int(length) + 2) * length
-        x = own["x"][:, None] + places * np.cos(own["yaw"])[:, None] - line[0, 0]
-        y = own["y"][:, None] + places * np.sin(own["yaw"])[:, None] - line[0, 1]
-        share = np.clip((x * across[0] + y * across[1]) / (across @ across), 0.0, 1.0)
-        away = np.hypot(x - share * across[0], y - share * across[1]).min(axis=1, initial=np.inf)
         met = np.zeros(self._samples, np.bool_)
-        met[sample[away < clear]] = True
+        for section in _largest(kind):
+            x, y = _axis(own, section, KINDS[kind].ahead) - line[0][:, None, None]
+            share = np.clip((x * across[0] + y * across[1]) / (across @ across), 0.0, 1.0)
+            away = np.hypot(x - share * across[0], y - share * across[1])
+            clear = 0.5 * section.size[1] + _CLEAR
+            met[sample[away.min(axis=1, initial=np.inf) < clear]] = True
         return met
+
+
+def _largest(kind: int) -> list[Section]:
+    """Return the sections of a kind's models, each as large as in any; rigid ones are one."""
+    largest = []
+    for same in zip(*(_sections(model) for model in models_of(kind)), strict=True):
+        length, width, height = np.array([section.size for section in same]).max(axis=0).tolist()
+        longest = max(same, key=lambda section: section.size[0])
+        largest.append(longest._replace(size=(length, width, height)))
+    return largest
+
+
+def _sections(model: int) -> tuple[Section, ...]:
+    return sections_of(model) or (Section(MODELS[model].name, 0.0, MODELS[model].size, 0),)
+
+
+def _axis(own: NDArray[np.void], section: Section, middle: float) -> Floats:
+    """Return points along a section of some vehicles [m], shape (2, vehicles, points).
+
+    Args:
+        own: Their samples.
+        section: The section.
+        middle: Distance of their middles ahead of their reference points [m].
+    """
+    yaw = own["yaw"]
+    x, y, turn = _folded(own["hitch"], section.towed)
+    # Where their reference points would be if they were straight, from where they are.
+    x, y = x + middle * (1.0 - np.cos(turn)), y - middle * np.sin(turn)
+    east = own["x"] + np.cos(yaw) * x - np.sin(yaw) * y
+    north = own["y"] + np.sin(yaw) * x + np.cos(yaw) * y
+    length, heading = section.size[0], yaw + turn
+    places = middle + section.ahead + np.linspace(-0.5, 0.5, int(length) + 2) * length
+    return np.stack(
+        [
+            east[:, None] + places * np.cos(heading)[:, None],
+            north[:, None] + places * np.sin(heading)[:, None],
+        ]
+    )

@@ -1,6 +1,7 @@
 """The boxes of what moves near a tracker: actors, and the bodies of other trackers."""
 
 import math
+from typing import NamedTuple
 
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.jit import step_kernel
@@ -9,6 +10,7 @@ from eyas.sensors.obstacles import Boxes, Movers
 from eyas.state.scene import ACTOR_OBJECT
 from eyas.state.snapshot import TrackerState
 from eyas.traffic.interpolation import ActorPose, interpolate_actor, sample_before
+from eyas.traffic.trailer import folded
 
 __all__ = ["find_boxes"]
 
@@ -20,7 +22,7 @@ _SLACK = 20.0
 def find_boxes(
     movers: Movers, n: int, tick: int, place: tuple[float, float, float], reach: float, boxes: Boxes
 ) -> int:
-    """Find what moves and may be near a place; return its number.
+    """Find the boxes of what moves and may be near a place; return their number.
 
     Args:
         movers: What moves.
@@ -42,13 +44,17 @@ def find_boxes(
         pose = interpolate_actor(motion, actor, time)
         if not pose.present:
             continue
-        model = movers.model[world, actor]
-        _write_box(pose, movers, model, boxes, count)
         before = interpolate_actor(motion, actor, time - PHYSICS_STEP)
-        moved = boxes.moved[count]
-        moved[0], moved[1], moved[2] = pose.x - before.x, pose.y - before.y, pose.z - before.z
-        boxes.thing[count] = ACTOR_OBJECT + actor
-        count += 1
+        model = movers.model[world, actor]
+        middle = movers.middle[model]
+        for k in range(movers.first[model], movers.first[model + 1]):
+            towed = movers.section[k].towed
+            now, last = _carried(pose, middle, towed), _carried(before, middle, towed)
+            _write_box(now, movers, k, boxes, count)
+            moved = boxes.moved[count]
+            moved[0], moved[1], moved[2] = now.x - last.x, now.y - last.y, now.z - last.z
+            boxes.thing[count] = ACTOR_OBJECT + actor
+            count += 1
     bodies = movers.bodies
     for other in range(bodies.position.shape[0]):
         if other == n or movers.world[other] != world:
@@ -76,15 +82,49 @@ def _write_body(bodies: TrackerState, other: int, boxes: Boxes, count: int) -> N
         boxes.moved[count, axis] = bodies.velocity[other, axis] * PHYSICS_STEP
 
 
+class _Place(NamedTuple):
+    """Where the reference point of a straight vehicle is, as one of its sections carries it."""
+
+    x: float
+    """[m]"""
+    y: float
+    z: float
+    cosine: float
+    """Of the section's heading."""
+    sine: float
+
+
 @step_kernel
-def _write_box(pose: ActorPose, movers: Movers, model: int, boxes: Boxes, count: int) -> None:
-    """Write an actor's box, which stands upright: its pitch on a slope is neglected."""
-    size, ahead = movers.size[model], movers.ahead[model]
+def _carried(pose: ActorPose, middle: float, towed: int) -> _Place:
+    """Return the place of a section; that of a rigid actor, or a straight one, is the pose.
+
+    Args:
+        pose: Pose of the whole.
+        middle: Distance of its middle ahead of its reference point [m].
+        towed: See `folded`.
+    """
     cosine, sine = math.cos(pose.yaw), math.sin(pose.yaw)
+    if pose.hitch == 0.0:
+        return _Place(pose.x, pose.y, pose.z, cosine, sine)
+    x, y, turn = folded(pose.hitch, towed)
+    x, y = x + middle * (1.0 - math.cos(turn)), y - middle * math.sin(turn)
+    return _Place(
+        pose.x + cosine * x - sine * y,
+        pose.y + sine * x + cosine * y,
+        pose.z,
+        math.cos(pose.yaw + turn),
+        math.sin(pose.yaw + turn),
+    )
+
+
+@step_kernel
+def _write_box(place: _Place, movers: Movers, k: int, boxes: Boxes, count: int) -> None:
+    """Write the box of section `k`, which stands upright: its pitch on a slope is neglected."""
+    section = movers.section[k]
     for corner in range(4):
-        forward = ahead + (0.5 if corner == 0 or corner == 3 else -0.5) * size[0]
-        left = (0.5 if corner < 2 else -0.5) * size[1]
-        boxes.corners[4 * count + corner, 0] = pose.x + cosine * forward - sine * left
-        boxes.corners[4 * count + corner, 1] = pose.y + sine * forward + cosine * left
-    boxes.bottom[count] = pose.z
-    boxes.top[count] = pose.z + size[2]
+        forward = section.ahead + (0.5 if corner == 0 or corner == 3 else -0.5) * section.length
+        left = (0.5 if corner < 2 else -0.5) * section.width
+        boxes.corners[4 * count + corner, 0] = place.x + place.cosine * forward - place.sine * left
+        boxes.corners[4 * count + corner, 1] = place.y + place.sine * forward + place.cosine * left
+    boxes.bottom[count] = place.z
+    boxes.top[count] = place.z + section.height

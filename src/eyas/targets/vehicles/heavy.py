@@ -17,7 +17,7 @@ from eyas.targets.vehicles.finishes import (
     TRIM,
     plain,
 )
-from eyas.targets.vehicles.models import VehicleModel
+from eyas.targets.vehicles.models import CHASSIS_BEHIND, VehicleModel
 
 __all__ = ["trailer_levels", "truck_levels"]
 
@@ -122,7 +122,7 @@ def _facing(x: float, y: tuple[float, float], z: tuple[float, float]) -> list[tu
 
 def _chassis(shell: Shell, vehicle: VehicleModel, detail: int) -> None:
     front, rear = vehicle.axles[0].x, vehicle.axles[1].x
-    end = -vehicle.length / 2 if len(vehicle.axles) == 2 else rear - 1.0
+    end = -vehicle.length / 2 if len(vehicle.axles) == 2 else rear - CHASSIS_BEHIND
     if len(vehicle.axles) == 2:
         shell.box((end, -1.2, 0.62), (end + 0.12, 1.2, 0.84), TRIM)
         _tail_lamps(shell, end, 0.73)
