@@ -19,6 +19,7 @@ from eyas.sim.worlds import together
 from eyas.state.motion import SAMPLE, Motion
 from eyas.state.scene import ObjectClass
 from eyas.targets.catalogue import KINDS, MODELS, kind_index, models_of
+from eyas.traffic.trailer import BUMPER_AHEAD, TAIL_BEHIND
 
 from .conftest import troop
 
@@ -130,6 +131,24 @@ def test_a_gap_is_long_enough_for_who_crosses():
     assert 20.4 < gaps.first(LINE, 15.0, 7.0) < 22.0
     assert gaps.first(LINE, 30.0, 7.0) == 30.0
     assert Gaps(None, 601, 10.0).first(LINE, 15.02, 7.0) == 15.1
+
+
+def test_nobody_crosses_behind_a_folded_truck_where_its_kingpin_is():
+    """Its kingpin is at the origin, its bumper east of it, the tail of its trailer south of it."""
+    yaw = np.arctan2(TAIL_BEHIND, BUMPER_AHEAD)
+    table = np.zeros((2001, 1), SAMPLE)
+    table["x"], table["y"] = 0.5 * BUMPER_AHEAD + np.cos(yaw), -0.5 * TAIL_BEHIND + np.sin(yaw)
+    table["yaw"], table["hitch"], table["present"] = yaw, 0.5 * np.pi, 1.0
+    kind = np.array([kind_index("trailer")], np.int32)
+    gaps = Gaps(Motion(table, kind, 10.0, 0.0), 2001, 10.0)
+
+    def free(x, y):
+        return gaps.first(np.array([[x, y], [x + 0.5, y + 0.5]]), 3.0, 7.0) is not None
+
+    assert not free(-2.5, 2.0)  # 1.6 m from the corner of the truck, 5 m from the chord
+    assert not free(4.0, 2.8)
+    assert free(-5.0, 2.0)
+    assert free(4.0, -4.2)  # 1.6 m from the chord, 2.8 m from truck and trailer
 
 
 def test_nobody_waits_longer_than_a_minute():

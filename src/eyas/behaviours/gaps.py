@@ -101,7 +101,7 @@ def _largest(kind: int) -> list[Section]:
 
 
 def _sections(model: int) -> tuple[Section, ...]:
-    return sections_of(model) or (Section(MODELS[model].name, 0.0, MODELS[model].size, 0),)
+    return sections_of(model) or (Section(MODELS[model].name, 0.0, MODELS[model].size, 0, ()),)
 
 
 def _axis(own: NDArray[np.void], section: Section, middle: float) -> Floats:

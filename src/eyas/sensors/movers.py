@@ -48,7 +48,7 @@ def find_boxes(
         model = movers.model[world, actor]
         middle = movers.middle[model]
         for k in range(movers.first[model], movers.first[model + 1]):
-            towed = movers.section[k].towed
+            towed = movers.block[k].towed
             now, last = _carried(pose, middle, towed), _carried(before, middle, towed)
             _write_box(now, movers, k, boxes, count)
             moved = boxes.moved[count]
@@ -83,20 +83,20 @@ def _write_body(bodies: TrackerState, other: int, boxes: Boxes, count: int) -> N
 
 
 class _Place(NamedTuple):
-    """Where the reference point of a straight vehicle is, as one of its sections carries it."""
+    """Where the reference point of the straight vehicle is, carried by its truck or trailer."""
 
     x: float
     """[m]"""
     y: float
     z: float
     cosine: float
-    """Of the section's heading."""
+    """Of the heading of that one."""
     sine: float
 
 
 @step_kernel
 def _carried(pose: ActorPose, middle: float, towed: int) -> _Place:
-    """Return the place of a section; that of a rigid actor, or a straight one, is the pose.
+    """Return where a truck or its trailer is; others, and straight ones, are where the pose is.
 
     Args:
         pose: Pose of the whole.
@@ -119,12 +119,12 @@ def _carried(pose: ActorPose, middle: float, towed: int) -> _Place:
 
 @step_kernel
 def _write_box(place: _Place, movers: Movers, k: int, boxes: Boxes, count: int) -> None:
-    """Write the box of section `k`, which stands upright: its pitch on a slope is neglected."""
-    section = movers.section[k]
+    """Write box `k` of the models, which stands upright: its pitch on a slope is neglected."""
+    block = movers.block[k]
     for corner in range(4):
-        forward = section.ahead + (0.5 if corner == 0 or corner == 3 else -0.5) * section.length
-        left = (0.5 if corner < 2 else -0.5) * section.width
+        forward = block.ahead + (0.5 if corner == 0 or corner == 3 else -0.5) * block.length
+        left = (0.5 if corner < 2 else -0.5) * block.width
         boxes.corners[4 * count + corner, 0] = place.x + place.cosine * forward - place.sine * left
         boxes.corners[4 * count + corner, 1] = place.y + place.sine * forward + place.cosine * left
     boxes.bottom[count] = place.z
-    boxes.top[count] = place.z + section.height
+    boxes.top[count] = place.z + block.height

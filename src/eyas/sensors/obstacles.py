@@ -43,7 +43,7 @@ class Solids(NamedTuple):
     """Object of the scene that the ground is."""
 
 
-SECTION: Final = np.dtype(
+BLOCK: Final = np.dtype(
     [
         ("ahead", np.float64),
         ("length", np.float64),
@@ -53,7 +53,7 @@ SECTION: Final = np.dtype(
     ],
     align=True,
 )
-"""A rigid section of a model, see `eyas.targets.kind.Section`; the whole of a rigid model is one.
+"""An upright box that is solid; a rigid model is one, an articulated one has several.
 
 ahead: distance of its middle ahead of the reference point of the straight vehicle [m]; length,
 width, height [m]; towed: 1 for a trailer, else 0.
@@ -68,10 +68,10 @@ class Movers(NamedTuple):
     """World of each tracker, shape (N,)."""
     model: NDArray[np.int32]
     """Model of each actor in each world, index into the catalogue, shape (W, A)."""
-    section: NDArray[np.void]
-    """Sections of all models, of dtype `SECTION`, shape (S,)."""
+    block: NDArray[np.void]
+    """Boxes of all models, of dtype `BLOCK`, shape (K,)."""
     first: NDArray[np.int32]
-    """Start of each model's sections, shape (M + 1,)."""
+    """Start of each model's boxes, shape (M + 1,)."""
     middle: Floats
     """Distance of each model's middle ahead of its reference point [m], shape (M,)."""
     bodies: TrackerState
@@ -79,10 +79,7 @@ class Movers(NamedTuple):
 
 
 class Boxes(NamedTuple):
-    """Working memory: the upright boxes of what moves near one tracker at one time, at most B.
-
-    An articulated actor has a box for each of its sections.
-    """
+    """Working memory: the upright boxes of what moves near one tracker at one time, at most B."""
 
     corners: Floats
     """Corners, counter-clockwise, those of box b from 4 b [m], shape (4 B, 2)."""
@@ -123,17 +120,17 @@ def obstacles_of(
         model: Shape (W, A).
         bodies: The trackers; None: these have no bodies.
     """
-    sections = [_sections(number) for number in range(len(MODELS))]
+    blocks = [_blocks_of(number) for number in range(len(MODELS))]
     movers = Movers(
         motion=motion,
         world=world,
         model=model,
-        section=np.concatenate(sections),
-        first=np.cumsum([0, *map(len, sections)]).astype(np.int32),
+        block=np.concatenate(blocks),
+        first=np.cumsum([0, *map(len, blocks)]).astype(np.int32),
         middle=np.array([kind_of(number).ahead for number in range(len(MODELS))], np.float64),
         bodies=TrackerState.create(0) if bodies is None else bodies,
     )
-    most = model.shape[1] * max(map(len, sections)) + len(movers.bodies.position)
+    most = model.shape[1] * max(map(len, blocks)) + len(movers.bodies.position)
     boxes = Boxes(
         corners=np.zeros((4 * most, 2)),
         bottom=np.zeros(most),
@@ -144,11 +141,12 @@ def obstacles_of(
     return Obstacles(solids, terrain, movers, boxes)
 
 
-def _sections(model: int) -> NDArray[np.void]:
-    """Return the sections of a model, of dtype `SECTION`."""
+def _blocks_of(model: int) -> NDArray[np.void]:
+    """Return the boxes of a model, of dtype `BLOCK`."""
     middle, whole = kind_of(model).ahead, (0.0, MODELS[model].size, 0)
-    parts = [(part.ahead, part.size, part.towed) for part in sections_of(model)] or [whole]
-    return np.array([(middle + ahead, *size, towed) for ahead, size, towed in parts], SECTION)
+    parts = [(*block, part.towed) for part in sections_of(model) for block in part.blocks]
+    rows = [(middle + ahead, *size, towed) for ahead, size, towed in parts or [whole]]
+    return np.array(rows, BLOCK)
 
 
 def solids_of(scene: Scene) -> Solids:

@@ -12,7 +12,7 @@ from eyas.state.mesh import Mesh
 from eyas.state.motion import ActorState
 from eyas.state.scene import ObjectClass
 
-__all__ = ["MANY", "Colour", "Group", "Kind", "Looks", "Model", "Rig", "Section"]
+__all__ = ["MANY", "Block", "Colour", "Group", "Kind", "Looks", "Model", "Rig", "Section"]
 
 MANY = 4096
 """Actors from which on two threads pose them: waking one takes as long as some hundred actors."""
@@ -50,17 +50,28 @@ class Model(Protocol):
         ...
 
 
-class Section(NamedTuple):
-    """A rigid part of an articulated vehicle, as an upright box on the ground."""
+class Block(NamedTuple):
+    """An upright box on the ground."""
 
-    name: str
-    """"truck" or "trailer"."""
     ahead: float
     """Distance of its middle ahead of that of the vehicle when it drives straight on [m]."""
     size: tuple[float, float, float]
     """Length, width and height [m]."""
+
+
+class Section(NamedTuple):
+    """A rigid part of an articulated vehicle, and the upright box around it."""
+
+    name: str
+    """"truck" or "trailer"."""
+    ahead: float
+    """See `Block`."""
+    size: tuple[float, float, float]
+    """See `Block`."""
     towed: int
     """1 for a trailer, 0 for what pulls it, see `eyas.traffic.trailer.folded`."""
+    blocks: tuple[Block, ...]
+    """What is solid of it."""
 
 
 class Group(NamedTuple):

@@ -17,12 +17,9 @@ from eyas.targets.vehicles.finishes import (
     TRIM,
     plain,
 )
-from eyas.targets.vehicles.models import CHASSIS_BEHIND, VehicleModel
+from eyas.targets.vehicles.models import CAB, CHASSIS_BEHIND, VehicleModel
 
 __all__ = ["trailer_levels", "truck_levels"]
-
-_CAB = 2.5
-"""Length of the cab above the wheels [m]."""
 
 _HALF = 1.25
 """Half the width of cab and trailer [m]."""
@@ -75,7 +72,7 @@ def _pane(
 
 
 def _cab(shell: Shell, front: float, detail: int) -> None:
-    back = front - _CAB
+    back = front - CAB
     low = _slice(back, front, _HALF, 1.06)
     waist = _slice(back, front, _HALF, 2.02)
     brow = _slice(back, front - 0.16, 1.2, 3.02)

@@ -6,12 +6,13 @@ y left, z up, origin on the ground in the middle of the overall length and width
 
 from dataclasses import dataclass
 
-from eyas.targets.kind import Colour, Section
+from eyas.targets.kind import Block, Colour, Section
 from eyas.traffic.config import VehicleType
 from eyas.traffic.trailer import BUMPER_AHEAD, REAR_AXLE, TAIL_BEHIND
 
 __all__ = [
     "BODY_COLOURS",
+    "CAB",
     "CHASSIS_BEHIND",
     "MOTORCYCLE_COLOURS",
     "VEHICLES",
@@ -24,8 +25,17 @@ VEHICLE_AHEAD = -1.0
 """Distance of the middle of a vehicle, the point that the reward uses, ahead of the actor's
 reference point [m]: the original rewards a point 1 m behind it; kernels read it."""
 
+CAB = 2.5
+"""Length of the cab of a truck above the wheels [m]."""
+
 CHASSIS_BEHIND = 1.0
 """From the rear axle of a truck with a trailer to the end of its chassis [m]."""
+
+_EXHAUST = 0.25
+"""How far the exhaust is behind the cab [m]."""
+
+_CHASSIS = 2.5, 1.26
+"""Width and height of a truck behind its cab [m]."""
 
 _OVERHANG = 1.35
 """From the front axle of a truck to its bumper [m]."""
@@ -114,11 +124,12 @@ class VehicleModel:
         """The truck, with the chassis under its trailer, and the trailer; none without one."""
         if self.trailer is None:
             return ()
-        end = self.axles[1].x - CHASSIS_BEHIND
-        ahead = 0.25 * self.length + 0.5 * end
-        truck = 0.5 * self.length - end, self.width, self.height
-        behind = 0.5 * (self.trailer[0] - self.length)
-        return Section("truck", ahead, truck, 0), Section("trailer", behind, self.trailer, 1)
+        front, end = 0.5 * self.length, self.axles[1].x - CHASSIS_BEHIND
+        cab = front - CAB - _EXHAUST
+        truck = _block(end, front, self.width, self.height)
+        blocks = _block(cab, front, *truck.size[1:]), _block(end, cab, *_CHASSIS)
+        trailer = _block(-front, self.trailer[0] - front, *self.trailer[1:])
+        return Section("truck", *truck, 0, blocks), Section("trailer", *trailer, 1, (trailer,))
 
     @property
     def rise(self) -> float:
@@ -129,6 +140,10 @@ class VehicleModel:
     def size(self) -> tuple[float, float, float]:
         """Length, width and height [m]."""
         return self.length, self.width, self.height
+
+
+def _block(back: float, front: float, width: float, height: float) -> Block:
+    return Block(0.5 * (back + front), (front - back, width, height))
 
 
 def _car(
