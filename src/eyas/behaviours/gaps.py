@@ -112,17 +112,13 @@ def _axis(own: NDArray[np.void], section: Section, middle: float) -> Floats:
         section: The section.
         middle: Distance of their middles ahead of their reference points [m].
     """
-    yaw = own["yaw"]
-    x, y, turn = _folded(own["hitch"], section.towed)
+    x, y, c, s = _folded(own["hitch"], section.towed)
     # Where their reference points would be if they were straight, from where they are.
-    x, y = x + middle * (1.0 - np.cos(turn)), y - middle * np.sin(turn)
-    east = own["x"] + np.cos(yaw) * x - np.sin(yaw) * y
-    north = own["y"] + np.sin(yaw) * x + np.cos(yaw) * y
-    length, heading = section.size[0], yaw + turn
+    x, y = x + middle * (1.0 - c), y - middle * s
+    cosine, sine = np.cos(own["yaw"]), np.sin(own["yaw"])
+    place = np.stack([own["x"] + cosine * x - sine * y, own["y"] + sine * x + cosine * y])
+    heading = np.stack([cosine * c - sine * s, sine * c + cosine * s])
+    length = section.size[0]
     places = middle + section.ahead + np.linspace(-0.5, 0.5, int(length) + 2) * length
-    return np.stack(
-        [
-            east[:, None] + places * np.cos(heading)[:, None],
-            north[:, None] + places * np.sin(heading)[:, None],
-        ]
-    )
+    points: Floats = place[..., None] + places * heading[..., None]
+    return points

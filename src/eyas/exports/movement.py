@@ -93,11 +93,10 @@ def _outline(section: Section, hitch: float) -> tuple[Floats, float]:
     """Return the outline of a section [m], shape (4, 2), and its heading [rad], in the frame of the
     whole vehicle.
     """
-    x, y, turn = _folded(hitch, section.towed)
-    cosine, sine = math.cos(turn), math.sin(turn)
+    x, y, cosine, sine = _folded(hitch, section.towed)
     along, aside = (0.5 * _ENDS * section.size[:2] + (section.ahead, 0.0)).T
     ahead, left = x + cosine * along - sine * aside, y + sine * along + cosine * aside
-    return np.column_stack([ahead, left]), float(turn)
+    return np.column_stack([ahead, left]), math.atan2(sine, cosine)
 
 
 def _raised(plan: Floats, height: float, centre: Floats, yaw: float, motion: Movement) -> Floats:

@@ -44,17 +44,14 @@ def find_boxes(
         pose = interpolate_actor(motion, actor, time)
         if not pose.present:
             continue
+        begin = count
+        count = _write_boxes(pose, movers, movers.model[world, actor], boxes, count)
+        # A trailer that swings moves some millimetres more, which is neglected like all turns.
         before = interpolate_actor(motion, actor, time - PHYSICS_STEP)
-        model = movers.model[world, actor]
-        middle = movers.middle[model]
-        for k in range(movers.first[model], movers.first[model + 1]):
-            towed = movers.block[k].towed
-            now, last = _carried(pose, middle, towed), _carried(before, middle, towed)
-            _write_box(now, movers, k, boxes, count)
-            moved = boxes.moved[count]
-            moved[0], moved[1], moved[2] = now.x - last.x, now.y - last.y, now.z - last.z
-            boxes.thing[count] = ACTOR_OBJECT + actor
-            count += 1
+        for box in range(begin, count):
+            moved = boxes.moved[box]
+            moved[0], moved[1], moved[2] = pose.x - before.x, pose.y - before.y, pose.z - before.z
+            boxes.thing[box] = ACTOR_OBJECT + actor
     bodies = movers.bodies
     for other in range(bodies.position.shape[0]):
         if other == n or movers.world[other] != world:
@@ -88,43 +85,49 @@ class _Place(NamedTuple):
     x: float
     """[m]"""
     y: float
-    z: float
     cosine: float
     """Of the heading of that one."""
     sine: float
 
 
 @step_kernel
-def _carried(pose: ActorPose, middle: float, towed: int) -> _Place:
-    """Return where a truck or its trailer is; others, and straight ones, are where the pose is.
+def _carried(whole: _Place, hitch: float, middle: float, towed: int) -> _Place:
+    """Return where a truck or its trailer is.
 
     Args:
-        pose: Pose of the whole.
-        middle: Distance of its middle ahead of its reference point [m].
+        whole: Pose of both together.
+        hitch: Heading of the trailer less that of the truck [rad].
+        middle: Distance of the middle of the whole ahead of its reference point [m].
         towed: See `folded`.
     """
-    cosine, sine = math.cos(pose.yaw), math.sin(pose.yaw)
-    if pose.hitch == 0.0:
-        return _Place(pose.x, pose.y, pose.z, cosine, sine)
-    x, y, turn = folded(pose.hitch, towed)
-    x, y = x + middle * (1.0 - math.cos(turn)), y - middle * math.sin(turn)
+    x, y, c, s = folded(hitch, towed)
+    x, y = x + middle * (1.0 - c), y - middle * s
     return _Place(
-        pose.x + cosine * x - sine * y,
-        pose.y + sine * x + cosine * y,
-        pose.z,
-        math.cos(pose.yaw + turn),
-        math.sin(pose.yaw + turn),
+        whole.x + whole.cosine * x - whole.sine * y,
+        whole.y + whole.sine * x + whole.cosine * y,
+        whole.cosine * c - whole.sine * s,
+        whole.sine * c + whole.cosine * s,
     )
 
 
 @step_kernel
-def _write_box(place: _Place, movers: Movers, k: int, boxes: Boxes, count: int) -> None:
-    """Write box `k` of the models, which stands upright: its pitch on a slope is neglected."""
-    block = movers.block[k]
-    for corner in range(4):
-        forward = block.ahead + (0.5 if corner == 0 or corner == 3 else -0.5) * block.length
-        left = (0.5 if corner < 2 else -0.5) * block.width
-        boxes.corners[4 * count + corner, 0] = place.x + place.cosine * forward - place.sine * left
-        boxes.corners[4 * count + corner, 1] = place.y + place.sine * forward + place.cosine * left
-    boxes.bottom[count] = place.z
-    boxes.top[count] = place.z + block.height
+def _write_boxes(pose: ActorPose, movers: Movers, model: int, boxes: Boxes, count: int) -> int:
+    """Write an actor's boxes, which stand upright: its pitch on a slope is neglected.
+
+    Returns:
+        How many there are then, with `count` before.
+    """
+    whole = _Place(pose.x, pose.y, math.cos(pose.yaw), math.sin(pose.yaw))
+    for k in range(movers.first[model], movers.first[model + 1]):
+        block, at = movers.block[k], whole
+        if pose.hitch != 0.0:
+            at = _carried(whole, pose.hitch, movers.middle[model], block.towed)
+        for corner in range(4):
+            forward = block.ahead + (0.5 if corner == 0 or corner == 3 else -0.5) * block.length
+            left = (0.5 if corner < 2 else -0.5) * block.width
+            boxes.corners[4 * count + corner, 0] = at.x + at.cosine * forward - at.sine * left
+            boxes.corners[4 * count + corner, 1] = at.y + at.sine * forward + at.cosine * left
+        boxes.bottom[count] = pose.z
+        boxes.top[count] = pose.z + block.height
+        count += 1
+    return count

@@ -105,20 +105,23 @@ def tow(front: Floats, length: float, links: Links) -> Articulated:
 
 
 @kernel
-def folded(hitch: Number, towed: int) -> tuple[Number, Number, Number]:
-    """Return where the truck or the trailer has carried the frame of the straight vehicle: x, y [m]
-    and heading [rad] in the frame of the whole. The origin of both is the middle of the chord.
+def folded(hitch: Number, towed: int) -> tuple[Number, Number, Number, Number]:
+    """Return where the truck or trailer has carried the frame of the straight vehicle: x, y [m],
+    cosine and sine of its heading, in the frame of the whole. The origin of both is the middle of
+    the chord.
 
     Args:
         hitch: Angle between the two [rad]; an array only where this is interpreted.
         towed: 1 for the trailer, 0 for the truck.
     """
-    along = BUMPER_AHEAD + TAIL_BEHIND * np.cos(hitch)
-    truck = -np.arctan2(TAIL_BEHIND * np.sin(hitch), along)
-    trailer = truck + hitch
+    c, s = np.cos(hitch), np.sin(hitch)
+    along, aside = BUMPER_AHEAD + TAIL_BEHIND * c, TAIL_BEHIND * s
+    chord = np.sqrt(along * along + aside * aside)
+    ahead, left = along / chord, -aside / chord
+    turned_ahead, turned_left = ahead * c - left * s, left * c + ahead * s
     half = 0.5 * (BUMPER_AHEAD if towed == 1 else TAIL_BEHIND)
-    x, y = np.cos(trailer) - np.cos(truck), np.sin(trailer) - np.sin(truck)
-    return half * x, half * y, truck + towed * hitch
+    x, y = half * (turned_ahead - ahead), half * (turned_left - left)
+    return (x, y, turned_ahead, turned_left) if towed == 1 else (x, y, ahead, left)
 
 
 def _chord(hitch: float) -> tuple[float, float]:

@@ -100,8 +100,7 @@ def _base_of(actors: ActorState, w: int, a: int, most_lean: float) -> _Base:
 @kernel
 def _carried(base: _Base, hitch: float, towed: int) -> _Base:
     """Return the pose of a truck or its trailer, see `folded`; `base` is that of the whole."""
-    x, y, turn = folded(hitch, towed)
-    c, s = np.cos(turn), np.sin(turn)
+    x, y, c, s = folded(hitch, towed)
     return _Base(
         base.xx * c + base.xy * s, base.xy * c - base.xx * s, base.xz,
         base.yx * c + base.yy * s, base.yy * c - base.yx * s, base.yz,
