@@ -10,6 +10,7 @@ from eyas.behaviours.lives import lasting
 from eyas.behaviours.scripted import Ground, scripted_table
 from eyas.behaviours.troop import Clock
 from eyas.core.errors import ConfigError, SpawnError
+from eyas.core.jit import interpreted
 from eyas.core.rng import stream
 from eyas.sim.assets import load_assets
 from eyas.sim.build import build_simulation
@@ -18,8 +19,11 @@ from eyas.sim.scenes import load_scene
 from eyas.sim.worlds import together
 from eyas.state.motion import SAMPLE, Motion
 from eyas.state.scene import ObjectClass
-from eyas.targets.catalogue import KINDS, MODELS, kind_index, models_of
-from eyas.traffic.trailer import BUMPER_AHEAD, TAIL_BEHIND
+from eyas.targets.catalogue import KINDS, MODELS, kind_index, models_of, sections_of
+from eyas.targets.kind import Section
+from eyas.traffic.config import TrafficConfig
+from eyas.traffic.library import CANONICAL_MIX
+from eyas.traffic.trailer import BUMPER_AHEAD, TAIL_BEHIND, folded
 
 from .conftest import troop
 
@@ -31,11 +35,15 @@ def ground():
     return Ground(load_scene("citystreet"), roads=True)
 
 
-@pytest.fixture(scope="module")
-def vehicles() -> Motion:
-    config = SimConfig()
+def driven(traffic=None) -> Motion:
+    config = SimConfig(traffic=traffic or TrafficConfig())
     motion = load_assets(config.world, config.traffic).traffic.motion
     return motion._replace(table=motion.table[: FIVE_MINUTES.samples])
+
+
+@pytest.fixture(scope="module")
+def vehicles() -> Motion:
+    return driven()
 
 
 def walked(ground, vehicles, count=24) -> np.ndarray:
@@ -50,17 +58,23 @@ def table(ground, vehicles):
 
 
 def nearest(table, vehicles) -> float:
-    """The least distance of anyone to the box of a vehicle [m]."""
+    """The least distance of anyone to the box of a vehicle, or to its truck or trailer [m]."""
     least = np.inf
     for kind, one in zip(vehicles.kind.tolist(), vehicles.table.T, strict=True):
-        length, width, _ = np.array([MODELS[m].size for m in models_of(kind)]).max(axis=0)
-        cosine, sine = np.cos(one["yaw"])[:, None], np.sin(one["yaw"])[:, None]
-        east = table["x"] - one["x"][:, None] - KINDS[kind].ahead * cosine
-        north = table["y"] - one["y"][:, None] - KINDS[kind].ahead * sine
-        ahead = np.abs(east * cosine + north * sine) - length / 2
-        aside = np.abs(north * cosine - east * sine) - width / 2
-        away = np.hypot(np.maximum(ahead, 0.0), np.maximum(aside, 0.0))
-        least = min(least, float(away[one["present"] > 0.0].min()))
+        sizes = np.array([MODELS[m].size for m in models_of(kind)]).max(axis=0)
+        whole = Section("", 0.0, tuple(sizes), 0, ())
+        for section in sections_of(models_of(kind).start) or (whole,):
+            x, y, c, s = interpreted(folded)(one["hitch"], section.towed)
+            cosine, sine = np.cos(one["yaw"]), np.sin(one["yaw"])
+            x = x + KINDS[kind].ahead + section.ahead * c
+            y = y + section.ahead * s
+            east = table["x"] - (one["x"] + cosine * x - sine * y)[:, None]
+            north = table["y"] - (one["y"] + sine * x + cosine * y)[:, None]
+            cosine, sine = (cosine * c - sine * s)[:, None], (sine * c + cosine * s)[:, None]
+            ahead = np.abs(east * cosine + north * sine) - section.size[0] / 2
+            aside = np.abs(north * cosine - east * sine) - section.size[1] / 2
+            away = np.hypot(np.maximum(ahead, 0.0), np.maximum(aside, 0.0))
+            least = min(least, float(away[one["present"] > 0.0].min()))
     return least
 
 
@@ -75,6 +89,17 @@ def test_who_does_not_look_is_run_over(ground, vehicles):
 
 def on_road(table) -> np.ndarray:
     return table["z"] < 0.05  # pavements are 15 cm high
+
+
+def test_nor_do_buses_or_trucks_or_their_trailers_come_near_anyone_on_the_road(ground):
+    mixed = driven(TrafficConfig(vehicle_type=CANONICAL_MIX))
+    for looks, safe in ((mixed, True), (None, False)):
+        table = walked(ground, looks)
+        table["x"][~on_road(table)] = np.inf
+        for name in ("bus", "truck", "trailer"):
+            own = mixed.kind == kind_index(name)
+            least = nearest(table, mixed._replace(table=mixed.table[:, own], kind=mixed.kind[own]))
+            assert (least > 1.0) == safe
 
 
 def test_many_cross_and_some_wait_at_the_kerb(table):

@@ -13,15 +13,17 @@ from eyas.sim.worlds import together
 from eyas.state.draw import Picture
 from eyas.targets.catalogue import KINDS, kind_index
 from eyas.targets.rig import Rigs, part_library
-from eyas.traffic.config import Mix, TrafficConfig
+from eyas.traffic.config import TrafficConfig
+from eyas.traffic.library import CANONICAL_MIX
 
-MIX = Mix(passenger=0.7, bus=0.1, truck=0.1, trailer=0.05, motorcycle=0.05)
 SLACK = 0.1  # [m]
 
 
 @pytest.fixture(scope="module")
 def simulation():
-    return build_simulation(SimConfig(traffic=TrafficConfig(vehicle_type=MIX)), together(2))
+    return build_simulation(
+        SimConfig(traffic=TrafficConfig(vehicle_type=CANONICAL_MIX)), together(2)
+    )
 
 
 def bends(simulation, most) -> tuple[int, int]:
