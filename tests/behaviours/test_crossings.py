@@ -138,10 +138,10 @@ def test_their_motion_is_continuous_and_the_same_again(ground, vehicles, table):
     assert walked(ground, vehicles).tobytes() == table.tobytes()
 
 
-def passing(x: np.ndarray) -> Motion:
+def passing(x: np.ndarray, y: float = 0.0) -> Motion:
     """One car along the x axis, ten samples a second."""
     table = np.zeros((len(x), 1), SAMPLE)
-    table["x"][:, 0], table["present"] = x, 1.0
+    table["x"][:, 0], table["y"], table["present"] = x, y, 1.0
     return Motion(table, np.array([kind_index("passenger")], np.int32), 10.0, 0.0)
 
 
@@ -156,6 +156,16 @@ def test_a_gap_is_long_enough_for_who_crosses():
     assert 20.4 < gaps.first(LINE, 15.0, 7.0) < 22.0
     assert gaps.first(LINE, 30.0, 7.0) == 30.0
     assert Gaps(None, 601, 10.0).first(LINE, 15.02, 7.0) == 15.1
+
+
+def test_nobody_waits_where_a_vehicle_drives_over_the_kerb():
+    way, begin = 10.0 * (np.arange(601) / 10.0 - 20.0), LINE[0, 1]
+    half = max(MODELS[model].size[1] for model in models_of(kind_index("passenger"))) / 2
+    for y, waits in ((0.0, True), (begin - half - 0.4, True), (begin - half, False)):
+        gaps = Gaps(passing(way, y), 601, 10.0)
+        begins = gaps.first(LINE, 18.0, 7.0)
+        assert (begins is not None and begins > 20.0) == waits
+        assert gaps.first(LINE, 3.0, 7.0) == 3.0  # it comes later
 
 
 def test_nobody_crosses_behind_a_folded_truck_where_its_kingpin_is():

@@ -1,7 +1,7 @@
 """When a road can be crossed: no recorded vehicle will be there meanwhile."""
 
 import math
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,9 @@ __all__ = ["Gaps"]
 _CLEAR: Final = 1.8
 """From the line that is crossed to the side of a vehicle, at least [m]."""
 
+_ASIDE: Final = 0.3
+"""From who waits at the kerb to the side of a vehicle, at least: tails cut corners [m]."""
+
 _BEFORE: Final = 0.5
 """For how long before somebody crosses nothing may be on the line [s]."""
 
@@ -26,7 +29,7 @@ _AFTER: Final = 1.5
 _PATIENCE: Final = 60.0
 """The longest that somebody waits for a gap [s]."""
 
-Floats = NDArray[np.float64]
+Floats = NDArray[np.floating]
 
 _folded = interpreted(folded)
 
@@ -41,53 +44,88 @@ class Gaps:
     """
 
     def __init__(self, vehicles: Motion | None, samples: int, rate: float) -> None:
-        self._vehicles, self._samples, self._rate = vehicles, samples, rate
-        self._known: dict[bytes, NDArray[np.int64]] = {}
+        self._samples, self._rate = samples, rate
+        self._fleets: list[_Fleet] = []
+        if vehicles is not None:
+            kinds = np.unique(vehicles.kind).tolist()
+            self._fleets = [_fleet(vehicles, kind, samples) for kind in kinds]
+        self._known: dict[tuple[bytes, float], NDArray[np.int64]] = {}
 
     def first(self, line: Floats, ready: float, lasts: float) -> float | None:
-        """Return when a line can be crossed [s]; None: not before patience is at an end.
+        """Return when a line can be crossed [s]; None: not before patience is at an end, or a long
+        vehicle turns over the kerb until then.
 
         Args:
-            line: From kerb to kerb [m], shape (2, 2).
+            line: From the kerb at which one waits to the other one [m], shape (2, 2).
             ready: Earliest time [s].
             lasts: How long it takes [s].
         """
-        busy, rate = self._busy_before(line), self._rate
+        busy, rate = self._busy_before(line, _CLEAR), self._rate
         first = math.ceil(ready * rate)
         starts = np.arange(first, first + int(_PATIENCE * rate))
         low = np.clip(starts - int(_BEFORE * rate), 0, self._samples)
         high = np.clip(starts + math.ceil((lasts + _AFTER) * rate) + 1, 0, self._samples)
         free = np.flatnonzero(busy[high] == busy[low])
-        return float(starts[free[0]]) / rate if len(free) else None
+        if not len(free):
+            return None
+        swept = self._busy_before(line[[0, 0]], _ASIDE)
+        wait = np.clip([first, starts[free[0]]], 0, self._samples)
+        return float(starts[free[0]]) / rate if np.ptp(swept[wait]) == 0 else None
 
-    def _busy_before(self, line: Floats) -> NDArray[np.int64]:
-        """Return at how many samples before each a vehicle is on a line, shape (samples + 1,)."""
-        key = min(line.tobytes(), line[::-1].tobytes())  # there and back
+    def _busy_before(self, line: Floats, clear: float) -> NDArray[np.int64]:
+        """Return at how many samples before each a vehicle is on a line, shape (samples + 1,).
+
+        Args:
+            line: Where it begins and ends [m], shape (2, 2).
+            clear: Up to which distance of its sides it is a vehicle on it [m].
+        """
+        key = min(line.tobytes(), line[::-1].tobytes()), clear  # there and back
         if key not in self._known:
             busy = np.zeros(self._samples, np.bool_)
-            for kind in [] if self._vehicles is None else np.unique(self._vehicles.kind).tolist():
-                busy |= self._met_by(kind, line)
+            for fleet in self._fleets:
+                busy[_met_by(fleet, line, clear)] = True
             self._known[key] = np.concatenate([[0], np.cumsum(busy)])
         return self._known[key]
 
-    def _met_by(self, kind: int, line: Floats) -> NDArray[np.bool_]:
-        """Return when a vehicle of a kind is on a line, shape (samples,)."""
-        assert self._vehicles is not None
-        length, width = np.array([MODELS[model].size[:2] for model in models_of(kind)]).max(axis=0)
-        rows = self._vehicles.table[: self._samples, self._vehicles.kind == kind]
-        middle, across = line.mean(axis=0), line[1] - line[0]
-        reach = 0.5 * (float(np.hypot(*across)) + length + width) + _CLEAR + abs(KINDS[kind].ahead)
-        near = (np.abs(rows["x"] - middle[0]) < reach) & (np.abs(rows["y"] - middle[1]) < reach)
-        sample, actor = np.nonzero(near & (rows["present"] > 0.0))
-        own = rows[sample, actor]
-        met = np.zeros(self._samples, np.bool_)
-        for section in _largest(kind):
-            x, y = _axis(own, section, KINDS[kind].ahead) - line[0][:, None, None]
-            share = np.clip((x * across[0] + y * across[1]) / (across @ across), 0.0, 1.0)
-            away = np.hypot(x - share * across[0], y - share * across[1])
-            clear = 0.5 * section.size[1] + _CLEAR
-            met[sample[away.min(axis=1, initial=np.inf) < clear]] = True
-        return met
+
+class _Fleet(NamedTuple):
+    """The vehicles of one kind."""
+
+    rows: NDArray[np.void]
+    """Their samples, shape (samples, vehicles)."""
+    x: Floats
+    """Their places; far away where they are absent [m], shape (samples, vehicles)."""
+    y: Floats
+    """[m], the same shape."""
+    sections: list[Section]
+    middle: float
+    """Distance of their middles ahead of their reference points [m]."""
+    reach: float
+    """How far from its reference point a vehicle reaches, at most [m]."""
+
+
+def _fleet(vehicles: Motion, kind: int, samples: int) -> _Fleet:
+    rows, middle = vehicles.table[:samples, vehicles.kind == kind], KINDS[kind].ahead
+    length, width = np.array([MODELS[model].size[:2] for model in models_of(kind)]).max(axis=0)
+    x = np.where(rows["present"] > 0.0, rows["x"], np.float32(np.inf))
+    reach = 0.5 * (float(length) + float(width)) + abs(middle)
+    return _Fleet(rows, x, np.ascontiguousarray(rows["y"]), _largest(kind), middle, reach)
+
+
+def _met_by(fleet: _Fleet, line: Floats, clear: float) -> NDArray[np.int64]:
+    """Return at which samples a vehicle is on a line, see `Gaps`; some more than once."""
+    middle, across = line.mean(axis=0), line[1] - line[0]
+    reach = 0.5 * float(np.hypot(*across)) + fleet.reach + clear
+    sample, actor = np.nonzero(
+        (np.abs(fleet.x - middle[0]) < reach) & (np.abs(fleet.y - middle[1]) < reach)
+    )
+    own, met = fleet.rows[sample, actor], []
+    for section in fleet.sections:
+        x, y = _axis(own, section, fleet.middle) - line[0][:, None, None]
+        share = np.clip((x * across[0] + y * across[1]) / max(across @ across, 1e-9), 0.0, 1.0)
+        away = np.hypot(x - share * across[0], y - share * across[1])
+        met.append(sample[away.min(axis=1, initial=np.inf) < 0.5 * section.size[1] + clear])
+    return np.concatenate(met)
 
 
 def _largest(kind: int) -> list[Section]:
