@@ -28,7 +28,10 @@ if TYPE_CHECKING:
 
 __all__ = ["NOBODY", "Crowd", "crowd_motions", "crowd_of", "vehicles_of"]
 
-_MAKERS = ("behaviours", "sim/crowd.py", "state/motion.py", "state/terrain.py", "world/roads")
+_MAKERS = (
+    *("behaviours", "sim/crowd.py", "state/motion.py", "state/terrain.py", "world/roads"),
+    *("targets/vehicles/models.py", "traffic/trailer.py"),
+)
 
 _ASIDE = Mirrored(mirrored=(4.0, 20.0))
 """Distance of extras from the middle of the road, if no pavement is asked for [m]."""
