@@ -10,6 +10,7 @@ from eyas.state.scene import Colliders, ObjectClass, Scene
 from eyas.state.snapshot import Snapshot
 from eyas.state.terrain import Terrain
 from eyas.targets.catalogue import model_index
+from eyas.traffic.trailer import BUMPER_AHEAD, TAIL_BEHIND
 
 GROUND, WALL, POLE = 0, 1, 2
 
@@ -40,7 +41,7 @@ def scene_of(prisms=(), cylinders=(), relief=None):
     )
 
 
-def motion_of(*cars):
+def motion_of(*cars, hitch=0.0):
     """Motion of cars that drive straight ahead for a second: (x, y, yaw, speed) at time 0."""
     table = np.zeros((11, max(len(cars), 1)), SAMPLE)
     for actor, (x, y, yaw, speed) in enumerate(cars):
@@ -50,19 +51,40 @@ def motion_of(*cars):
         table["velocity_x"][:, actor] = speed * np.cos(yaw)
         table["velocity_y"][:, actor] = speed * np.sin(yaw)
         table["yaw"][:, actor], table["present"][:, actor] = yaw, 1.0
+    table["hitch"] = hitch
     return Motion(table, np.zeros(table.shape[1], np.int32), 10.0, 0.0)
 
 
-def build(*poses, prisms=(), cylinders=(), relief=None, cars=(), model="BmwX5Simple", bodies=False):
-    """Return a snapshot of trackers at poses (x, y, z, yaw) in one world, and their obstacles."""
+def folded_truck():
+    """A truck that looks east, its kingpin at the origin; its trailer looks north."""
+    yaw = np.arctan2(TAIL_BEHIND, BUMPER_AHEAD)
+    x, y = 0.5 * BUMPER_AHEAD + np.cos(yaw), -0.5 * TAIL_BEHIND + np.sin(yaw)
+    return motion_of((x, y, yaw, 0.0), hitch=0.5 * np.pi)
+
+
+def build(
+    *poses,
+    prisms=(),
+    cylinders=(),
+    relief=None,
+    cars=(),
+    model="BmwX5Simple",
+    bodies=False,
+    folded=False,
+):
+    """Return a snapshot of trackers at poses (x, y, z, yaw) in one world, and their obstacles.
+
+    Its cars are of a model; if `folded`, there is the truck of `folded_truck` instead.
+    """
     snapshot = Snapshot.create(len(poses))
     for n, (x, y, z, yaw) in enumerate(poses):
         snapshot.trackers.position[n] = x, y, z
         snapshot.trackers.euler[n, 2] = yaw
         snapshot.trackers.orientation[n] = np.cos(yaw / 2), 0.0, 0.0, np.sin(yaw / 2)
-    motion = motion_of(*cars)
+    motion = folded_truck() if folded else motion_of(*cars)
     scene = scene_of(prisms, cylinders, relief)
-    models = np.full((1, motion.table.shape[1]), model_index(model), np.int32)
+    number = model_index("TruckTrailerSimple" if folded else model)
+    models = np.full((1, motion.table.shape[1]), number, np.int32)
     world = np.zeros(len(poses), np.int32)
     trackers = snapshot.trackers if bodies else None
     solids = solids_of(scene)

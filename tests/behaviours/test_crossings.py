@@ -11,6 +11,7 @@ from eyas.behaviours.lives import lasting
 from eyas.behaviours.scripted import scripted_table
 from eyas.behaviours.troop import Clock
 from eyas.core.errors import ConfigError, SpawnError
+from eyas.core.jit import interpreted
 from eyas.core.rng import stream
 from eyas.sim.assets import load_assets
 from eyas.sim.build import build_simulation
@@ -19,7 +20,11 @@ from eyas.sim.scenes import load_scene
 from eyas.sim.worlds import together
 from eyas.state.motion import SAMPLE, Motion
 from eyas.state.scene import ObjectClass
-from eyas.targets.catalogue import KINDS, MODELS, kind_index, models_of
+from eyas.targets.catalogue import KINDS, MODELS, kind_index, models_of, sections_of
+from eyas.targets.kind import Section
+from eyas.traffic.config import TrafficConfig
+from eyas.traffic.library import CANONICAL_MIX
+from eyas.traffic.trailer import BUMPER_AHEAD, TAIL_BEHIND, folded
 
 from .conftest import troop
 
@@ -31,11 +36,15 @@ def ground():
     return Ground(load_scene("citystreet"), roads=True)
 
 
-@pytest.fixture(scope="module")
-def vehicles() -> Motion:
-    config = SimConfig()
+def driven(traffic=None) -> Motion:
+    config = SimConfig(traffic=traffic or TrafficConfig())
     motion = load_assets(config.world, config.traffic).traffic.motion
     return motion._replace(table=motion.table[: FIVE_MINUTES.samples])
+
+
+@pytest.fixture(scope="module")
+def vehicles() -> Motion:
+    return driven()
 
 
 def walked(ground, vehicles, count=24) -> np.ndarray:
@@ -50,17 +59,23 @@ def table(ground, vehicles):
 
 
 def nearest(table, vehicles) -> float:
-    """The least distance of anyone to the box of a vehicle [m]."""
+    """The least distance of anyone to the box of a vehicle, or to its truck or trailer [m]."""
     least = np.inf
     for kind, one in zip(vehicles.kind.tolist(), vehicles.table.T, strict=True):
-        length, width, _ = np.array([MODELS[m].size for m in models_of(kind)]).max(axis=0)
-        cosine, sine = np.cos(one["yaw"])[:, None], np.sin(one["yaw"])[:, None]
-        east = table["x"] - one["x"][:, None] - KINDS[kind].ahead * cosine
-        north = table["y"] - one["y"][:, None] - KINDS[kind].ahead * sine
-        ahead = np.abs(east * cosine + north * sine) - length / 2
-        aside = np.abs(north * cosine - east * sine) - width / 2
-        away = np.hypot(np.maximum(ahead, 0.0), np.maximum(aside, 0.0))
-        least = min(least, float(away[one["present"] > 0.0].min()))
+        sizes = np.array([MODELS[m].size for m in models_of(kind)]).max(axis=0)
+        whole = Section("", 0.0, tuple(sizes), 0, ())
+        for section in sections_of(models_of(kind).start) or (whole,):
+            x, y, c, s = interpreted(folded)(one["hitch"], section.towed)
+            cosine, sine = np.cos(one["yaw"]), np.sin(one["yaw"])
+            x = x + KINDS[kind].ahead + section.ahead * c
+            y = y + section.ahead * s
+            east = table["x"] - (one["x"] + cosine * x - sine * y)[:, None]
+            north = table["y"] - (one["y"] + sine * x + cosine * y)[:, None]
+            cosine, sine = (cosine * c - sine * s)[:, None], (sine * c + cosine * s)[:, None]
+            ahead = np.abs(east * cosine + north * sine) - section.size[0] / 2
+            aside = np.abs(north * cosine - east * sine) - section.size[1] / 2
+            away = np.hypot(np.maximum(ahead, 0.0), np.maximum(aside, 0.0))
+            least = min(least, float(away[one["present"] > 0.0].min()))
     return least
 
 
@@ -75,6 +90,17 @@ def test_who_does_not_look_is_run_over(ground, vehicles):
 
 def on_road(table) -> np.ndarray:
     return table["z"] < 0.05  # pavements are 15 cm high
+
+
+def test_nor_do_buses_or_trucks_or_their_trailers_come_near_anyone_on_the_road(ground):
+    mixed = driven(TrafficConfig(vehicle_type=CANONICAL_MIX))
+    for looks, safe in ((mixed, True), (None, False)):
+        table = walked(ground, looks)
+        table["x"][~on_road(table)] = np.inf
+        for name in ("bus", "truck", "trailer"):
+            own = mixed.kind == kind_index(name)
+            least = nearest(table, mixed._replace(table=mixed.table[:, own], kind=mixed.kind[own]))
+            assert (least > 1.0) == safe
 
 
 def test_many_cross_and_some_wait_at_the_kerb(table):
@@ -113,10 +139,10 @@ def test_their_motion_is_continuous_and_the_same_again(ground, vehicles, table):
     assert walked(ground, vehicles).tobytes() == table.tobytes()
 
 
-def passing(x: np.ndarray) -> Motion:
+def passing(x: np.ndarray, y: float = 0.0) -> Motion:
     """One car along the x axis, ten samples a second."""
     table = np.zeros((len(x), 1), SAMPLE)
-    table["x"][:, 0], table["present"] = x, 1.0
+    table["x"][:, 0], table["y"], table["present"] = x, y, 1.0
     return Motion(table, np.array([kind_index("passenger")], np.int32), 10.0, 0.0)
 
 
@@ -131,6 +157,34 @@ def test_a_gap_is_long_enough_for_who_crosses():
     assert 20.4 < gaps.first(LINE, 15.0, 7.0) < 22.0
     assert gaps.first(LINE, 30.0, 7.0) == 30.0
     assert Gaps(None, 601, 10.0).first(LINE, 15.02, 7.0) == 15.1
+
+
+def test_nobody_waits_where_a_vehicle_drives_over_the_kerb():
+    way, begin = 10.0 * (np.arange(601) / 10.0 - 20.0), LINE[0, 1]
+    half = max(MODELS[model].size[1] for model in models_of(kind_index("passenger"))) / 2
+    for y, waits in ((0.0, True), (begin - half - 0.4, True), (begin - half, False)):
+        gaps = Gaps(passing(way, y), 601, 10.0)
+        begins = gaps.first(LINE, 18.0, 7.0)
+        assert (begins is not None and begins > 20.0) == waits
+        assert gaps.first(LINE, 3.0, 7.0) == 3.0  # it comes later
+
+
+def test_nobody_crosses_behind_a_folded_truck_where_its_kingpin_is():
+    """Its kingpin is at the origin, its bumper east of it, the tail of its trailer south of it."""
+    yaw = np.arctan2(TAIL_BEHIND, BUMPER_AHEAD)
+    table = np.zeros((2001, 1), SAMPLE)
+    table["x"], table["y"] = 0.5 * BUMPER_AHEAD + np.cos(yaw), -0.5 * TAIL_BEHIND + np.sin(yaw)
+    table["yaw"], table["hitch"], table["present"] = yaw, 0.5 * np.pi, 1.0
+    kind = np.array([kind_index("trailer")], np.int32)
+    gaps = Gaps(Motion(table, kind, 10.0, 0.0), 2001, 10.0)
+
+    def free(x, y):
+        return gaps.first(np.array([[x, y], [x + 0.5, y + 0.5]]), 3.0, 7.0) is not None
+
+    assert not free(-2.5, 2.0)  # 1.6 m from the corner of the truck, 5 m from the chord
+    assert not free(4.0, 2.8)
+    assert free(-5.0, 2.0)
+    assert free(4.0, -4.2)  # 1.6 m from the chord, 2.8 m from truck and trailer
 
 
 def test_nobody_waits_longer_than_a_minute():

@@ -7,9 +7,11 @@ import pytest
 
 from eyas.core.errors import DataFileError
 from eyas.exports.frame import Action
-from eyas.exports.labels import LabelWriter, label_of, read_labels
+from eyas.exports.label import label_of
+from eyas.exports.labels import LabelWriter, read_labels
 from eyas.exports.summary import Scores, Summary
 from eyas.state.scene import ObjectClass
+from eyas.targets.catalogue import model_index, sections_of
 from eyas.task.done import DoneReason
 
 
@@ -58,6 +60,22 @@ def test_a_label_lists_the_other_vehicles(written, frame):
     assert (label.target_id, said.id, said.class_id) == (65539, 65545, 12)
     assert (said.box, said.visible_fraction, said.type) == ([10, 11, 20, 17], 0.75, "BmwX5Simple")
     assert (said.centre, said.velocity, said.yaw) == ([13.0, 2.0, 0.37], [13.0, 0.0, 0.0], 0.0)
+
+
+def test_only_articulated_vehicles_have_sections(written, frame):
+    model = model_index("TruckTrailerSimple")
+    bent = replace(frame(0).target.motion, hitch=0.5)
+    truck = replace(frame(0).target, sections=sections_of(model), motion=bent)
+    path = written(frame(0), frame(1, target=truck, others=(truck, frame(0).target)))
+    car, pulled = map(json.loads, path.read_text().splitlines())
+    assert "target_sections" not in car
+    assert ["sections" in other for other in pulled["others"]] == [True, False]
+    first, second = read_labels(path)
+    assert (first.target_sections, second.others[1].sections) == ([], [])
+    assert second.target_sections == second.others[0].sections
+    assert [section.name for section in second.target_sections] == ["truck", "trailer"]
+    yaws = [section.yaw for section in second.target_sections]
+    assert yaws[1] - yaws[0] == pytest.approx(0.5, abs=1e-6)
 
 
 def test_a_target_outside_the_picture_is_not_occluded(frame):

@@ -22,7 +22,8 @@ from eyas.core.folder_lock import folder_lock
 from eyas.exports.files import Files
 from eyas.exports.frame import Frame
 from eyas.exports.gather import Gather
-from eyas.exports.labels import FrameLabel, read_labels
+from eyas.exports.label import FrameLabel
+from eyas.exports.labels import read_labels
 from eyas.exports.registry import WRITERS
 from eyas.exports.summary import Summary
 from eyas.exports.writer import Episode, Writer

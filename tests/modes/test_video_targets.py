@@ -11,7 +11,8 @@ import numpy as np
 import pytest
 
 from eyas.cli.app import run
-from eyas.exports.labels import FrameLabel, read_labels
+from eyas.exports.label import FrameLabel
+from eyas.exports.labels import read_labels
 from eyas.state.scene import ObjectClass
 
 ROOT = Path(__file__).parents[2]

@@ -122,6 +122,25 @@ def test_a_car_is_where_it_drives(around):
     assert np.isinf(turned((snapshot, obstacles)).ranges()).all()
 
 
+def test_a_folded_truck_is_where_its_parts_are(around):
+    """Its kingpin is at the origin, its cab east of it, and its trailer south of it."""
+    trailer, cab, chassis = 0.5 * 2.52, 0.5 * 2.8, 0.5 * 2.5
+    for (x, y, z), west, north in (
+        ((3.0, -5.0, 3.0), 3.0 - trailer, 5.0 - cab),
+        ((1.7, -5.0, 3.0), 1.7 - trailer, np.inf),  # over the chassis
+        ((1.7, -5.0, 1.0), 1.7 - trailer, 5.0 - chassis),
+        ((3.0, 3.0, 3.0), np.inf, np.inf),
+    ):
+        lidar = turned(around((x, y, z, 0.0), folded=True))
+        assert lidar.ranges()[0, [0, 100]] == pytest.approx([west, north], abs=1e-5)
+        hit = np.isfinite(lidar.ranges()[0])
+        assert set(lidar.things()[0, hit].tolist()) <= {ACTOR_OBJECT}
+    # The bumper and the tail.
+    west = turned(around((9.0, 0.0, 2.0, 0.0), folded=True)).ranges()[0, 0]
+    north = turned(around((0.0, -12.0, 2.0, 0.0), folded=True)).ranges()[0, 100]
+    assert (west, north) == pytest.approx((9.0 - 4.75, 12.0 - 9.55), abs=1e-5)
+
+
 def test_only_the_points_that_turn_by_are_new(around):
     snapshot, obstacles = around((0.0, 0, 5.0, 0), prisms=[(room(-5, -5, 5, 5), 0, 9)])
     lidar = turned((snapshot, obstacles))

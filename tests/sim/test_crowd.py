@@ -8,7 +8,7 @@ import pytest
 from eyas.core.errors import ConfigError, SpawnError
 from eyas.exports.capture import frame_of
 from eyas.exports.frame import Action
-from eyas.exports.labels import label_of
+from eyas.exports.label import label_of
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
 from eyas.sim.crowd import extras_of

@@ -116,6 +116,22 @@ def test_a_car_is_hit_from_above_and_hits_what_stands_in_its_way(around):
     assert flight.step(-20.0, 0.0, 0.0)
 
 
+def test_a_folded_truck_is_hit_where_it_is_and_not_on_its_chord(around):
+    """Its kingpin is at the origin, its bumper east of it, the tail of its trailer south of it."""
+    for x, y, met in (
+        (0.0, 0.0, True),
+        (-0.9, 1.2, True),  # 4 m from the chord
+        (4.5, 1.2, True),
+        (0.0, -9.3, True),
+        (2.4, -4.8, False),  # the middle of the chord
+        (3.0, -3.0, False),
+        (-2.0, -2.0, False),
+    ):
+        flight = Flight(around((x, y, 2.0, 0.0), folded=True))
+        assert flight.step(0.0, 0.0, 0.0) == met, (x, y)
+        assert flight.episodes.contact_object[0] == (ACTOR_OBJECT if met else -1)
+
+
 def test_a_crash_lasts_for_the_command_and_its_place_until_the_reset(around):
     flight = Flight(around((0, 0, 5.0, 0.0), prisms=[WALL]))
     assert flight.step(4.7, 0.0, 0.0)

@@ -11,7 +11,7 @@ from eyas.state.draw import Picture
 from eyas.state.episode import EpisodeState
 from eyas.state.scene import ACTOR_OBJECT
 from eyas.state.snapshot import CameraState, Snapshot, TrackerState
-from eyas.targets.catalogue import MODELS, kind_of
+from eyas.targets.catalogue import MODELS, kind_of, sections_of
 from eyas.task.direction import TargetDirection
 from eyas.task.done import DoneReason
 
@@ -106,8 +106,10 @@ def _target(snapshot: Snapshot, tracker: int, picture: Picture, view: int) -> Su
             travelled=float(targets.travelled[tracker]),
             direction=TargetDirection(snapshot.episodes.direction[tracker]),
             rise=float(targets.rise[tracker]),
+            hitch=float(targets.hitch[tracker]),
         ),
         box=picture.subject_box[view].copy(),
         seen_pixels=seen,
         covered_pixels=covered,
+        sections=sections_of(int(targets.model[tracker])),
     )

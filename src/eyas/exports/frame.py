@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
-from eyas.exports.movement import Movement, box_corners
+from eyas.exports.movement import Movement, SectionBox, box_corners, section_boxes
 from eyas.state.scene import ObjectClass
+from eyas.targets.kind import Section
 from eyas.task.direction import TargetDirection
 from eyas.task.done import DoneReason
 
@@ -102,6 +103,8 @@ class Subject:
     """Pixels that would show it if nothing hid it; 0 outside the picture."""
     words: str = ""
     """What it looks like, "a red car"; empty for the target, see `Frame.target_words`."""
+    sections: tuple[Section, ...] = ()
+    """The sections of an articulated vehicle; empty for all others."""
 
     @property
     def visible_fraction(self) -> float:
@@ -111,7 +114,12 @@ class Subject:
     @property
     def corners(self) -> Floats:
         """Corners of its 3D box, see `box_corners`."""
-        return box_corners(self.centre, self.size, self.yaw, self.motion)
+        return box_corners(self.centre, self.size, self.yaw, self.motion, self.sections)
+
+    @property
+    def section_boxes(self) -> tuple[SectionBox, ...]:
+        """The 3D boxes of its sections."""
+        return section_boxes(self.sections, self.centre, self.yaw, self.motion)
 
 
 @dataclass(frozen=True, slots=True)

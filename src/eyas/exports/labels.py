@@ -3,122 +3,20 @@
 import json
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict
 from pathlib import Path
+from typing import Any
 
 from eyas.core.errors import DataFileError
-from eyas.core.frames import rotate_back
-from eyas.core.jit import interpreted
 from eyas.exports.files import Files
-from eyas.exports.frame import Frame, Subject
 from eyas.exports.gather import Gather
-from eyas.exports.rounding import rounded, rounded_list
+from eyas.exports.label import FrameLabel, OtherLabel, SectionLabel, label_of
 from eyas.exports.summary import Scores, Summary
 from eyas.exports.writer import Episode, Writer
-from eyas.task.done import DoneReason
 
-__all__ = ["FrameLabel", "LabelWriter", "OtherLabel", "label_of", "read_labels"]
+__all__ = ["LabelWriter", "read_labels"]
 
 LABELS = "labels.jsonl"
-
-_rotate_back = interpreted(rotate_back)
-
-
-@dataclass(frozen=True, slots=True)
-class OtherLabel:
-    """A moving object that is not the target; its fields are like those of the target."""
-
-    id: int
-    type: str
-    class_id: int
-    """`eyas.state.scene.ObjectClass`, as in the class pictures."""
-    box: list[int]
-    visible_fraction: float
-    size: list[float | None]
-    centre: list[float | None]
-    velocity: list[float | None]
-    yaw: float | None
-    acceleration: list[float | None] = field(default_factory=list)
-    yaw_rate: float | None = None
-    travelled: float | None = None
-    direction: int = 0
-    corners: list[list[float | None]] = field(default_factory=list)
-    """The corners of its 3D box [m]."""
-    words: str = ""
-    """What it looks like, such as "a red car"; others may look the same."""
-
-
-@dataclass(frozen=True, slots=True)
-class FrameLabel:
-    """The label of one frame. World frame, east-north-up; numbers that are not finite are None."""
-
-    frame: int
-    """Number of the frame in its episode, from 0; its picture is `NNNNNN.jpeg`."""
-    time: float
-    """Simulated time since the start of the run [s]."""
-    step: int
-    """Steps of 2 ms since the reset."""
-    episode_time: float
-    """Simulated time since the reset [s]."""
-    target_box: list[int]
-    """Extent of the target in the picture, hidden parts included, clipped to the picture: left,
-    top, right, bottom [pixels], the last two exclusive; all 0 outside the picture."""
-    visible_fraction: float
-    """Visible pixels of the target over those that it would cover if nothing hid it, 0 to 1."""
-    occluded: bool
-    """Whether a part of the target inside the picture is hidden."""
-    in_view: bool
-    """Whether a part of the target, visible or hidden, is inside the picture."""
-    tracker_position: list[float | None]
-    """[m]"""
-    tracker_velocity: list[float | None]
-    """[m/s]"""
-    tracker_orientation: list[float | None]
-    """Body to world, quaternion w, x, y, z."""
-    camera_position: list[float | None]
-    """Optical centre [m]."""
-    camera_rotation: list[list[float | None]]
-    """Camera to world, three rows; columns are the camera's forward, left and up axes."""
-    field_of_view: float | None
-    """Horizontal field of view of the camera [rad]."""
-    target_id: int
-    """Number of the target in the id pictures; the same in all frames of an episode."""
-    target_type: str
-    """Name of the target's model."""
-    target_size: list[float | None]
-    """Length, width, height [m]."""
-    target_position: list[float | None]
-    """Reference point of the target on the road [m]."""
-    target_centre: list[float | None]
-    """Middle of the target's visible body, the point that is rewarded [m]."""
-    target_velocity: list[float | None]
-    """[m/s]"""
-    target_yaw: float | None
-    """Heading, counter-clockwise from east [rad]."""
-    relative_position: list[float | None]
-    """`target_centre` in the tracker's body frame: forward, left, up [m]."""
-    reward: float | None
-    """Reward at this time."""
-    action: int
-    """Number of the random action, 0 to 5; -1 when the target is followed exactly."""
-    direction: int
-    """Turn of the target: 0 stop, 1 straight, 2 left, 3 right."""
-    done: bool
-    """Whether the episode ends with this frame."""
-    others: list[OtherLabel]
-    """All other moving objects of which a pixel is visible, in the order of their ids."""
-    target_acceleration: list[float | None] = field(default_factory=list)
-    """Horizontal [m/s^2]. This and the next are missing in older labels."""
-    target_yaw_rate: float | None = None
-    """Counter-clockwise [rad/s]."""
-    target_travelled: float | None = None
-    """Way since it entered the world [m]."""
-    target_corners: list[list[float | None]] = field(default_factory=list)
-    """Corners of its 3D box: four on the ground, counter-clockwise from the right of its tail, and
-    those above them [m]."""
-    target_words: str = ""
-    """The target in words, such as "a red SUV" or "a red SUV, turning left": nothing else in view
-    shares them."""
 
 
 class LabelWriter(Writer):
@@ -144,69 +42,23 @@ class LabelWriter(Writer):
         return Summary(len(labels), scores)
 
 
-def label_of(frame: Frame) -> FrameLabel:
-    """Return the label of a frame."""
-    tracker, camera, target = frame.tracker, frame.camera, frame.target
-    offset = target.centre - tracker.position
-    return FrameLabel(
-        frame=frame.number,
-        time=round(frame.time, 6),
-        step=frame.step,
-        episode_time=round(frame.episode_time, 6),
-        target_box=target.box.tolist(),
-        visible_fraction=round(target.visible_fraction, 6),
-        occluded=target.seen_pixels < target.covered_pixels,
-        in_view=target.covered_pixels > 0,
-        tracker_position=rounded_list(tracker.position),
-        tracker_velocity=rounded_list(tracker.velocity),
-        tracker_orientation=rounded_list(tracker.orientation),
-        camera_position=rounded_list(camera.position),
-        camera_rotation=[rounded_list(row) for row in camera.rotation],
-        field_of_view=rounded(camera.field_of_view),
-        target_id=target.object_id,
-        target_type=target.type,
-        target_size=rounded_list(target.size),
-        target_position=rounded_list(target.position),
-        target_centre=rounded_list(target.centre),
-        target_velocity=rounded_list(target.velocity),
-        target_yaw=rounded(target.yaw),
-        relative_position=rounded_list(_rotate_back(tracker.orientation, *offset)),
-        reward=rounded(frame.reward),
-        action=frame.action.number,
-        direction=int(frame.direction),
-        done=frame.reason is not DoneReason.NONE,
-        others=[_other(subject) for subject in frame.others],
-        target_acceleration=rounded_list(target.motion.acceleration),
-        target_yaw_rate=rounded(target.motion.yaw_rate),
-        target_travelled=rounded(target.motion.travelled),
-        target_corners=[rounded_list(corner) for corner in target.corners],
-        target_words=frame.target_words,
-    )
-
-
-def _other(subject: Subject) -> OtherLabel:
-    return OtherLabel(
-        id=subject.object_id,
-        type=subject.type,
-        class_id=int(subject.object_class),
-        box=subject.box.tolist(),
-        visible_fraction=round(subject.visible_fraction, 6),
-        size=rounded_list(subject.size),
-        centre=rounded_list(subject.centre),
-        velocity=rounded_list(subject.velocity),
-        yaw=rounded(subject.yaw),
-        acceleration=rounded_list(subject.motion.acceleration),
-        yaw_rate=rounded(subject.motion.yaw_rate),
-        travelled=rounded(subject.motion.travelled),
-        direction=int(subject.motion.direction),
-        corners=[rounded_list(corner) for corner in subject.corners],
-        words=subject.words,
-    )
-
-
 def _encoded(labels: Sequence[FrameLabel]) -> bytes:
-    lines = (json.dumps(asdict(label), allow_nan=False) + "\n" for label in labels)
+    lines = (json.dumps(_record(label), allow_nan=False) + "\n" for label in labels)
     return "".join(lines).encode()
+
+
+def _record(label: FrameLabel) -> dict[str, Any]:
+    """Return a label as an object of JSON, without sections where there are none."""
+    record = asdict(label)
+    for one, key in ((record, "target_sections"), *((o, "sections") for o in record["others"])):
+        if not one[key]:
+            del one[key]
+    return record
+
+
+def _with_sections(record: dict[str, Any], key: str) -> dict[str, Any]:
+    """Return what `_record` has made, with its sections as labels."""
+    return {**record, key: [SectionLabel(**one) for one in record.get(key, [])]}
 
 
 def read_labels(path: Path) -> list[FrameLabel]:
@@ -226,8 +78,10 @@ def read_labels(path: Path) -> list[FrameLabel]:
         except (ValueError, RecursionError):
             raise DataFileError(f"{path}: line {number} is cut off or not JSON") from None
         try:
-            others = [OtherLabel(**other) for other in record["others"]]
-            labels.append(FrameLabel(**{**record, "others": others}))
+            record["others"] = [
+                OtherLabel(**_with_sections(other, "sections")) for other in record["others"]
+            ]
+            labels.append(FrameLabel(**_with_sections(record, "target_sections")))
         except (TypeError, LookupError):
             raise DataFileError(f"{path}: line {number} is not the label of a frame") from None
     return labels

@@ -1,17 +1,25 @@
-"""How a moving object moves, and the box in which it fits."""
+"""How a moving object moves, and the boxes in which it fits."""
 
 import math
 from dataclasses import dataclass
-from typing import TypeAlias
+from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.jit import interpreted
+from eyas.targets.kind import Section
 from eyas.task.direction import TargetDirection
+from eyas.traffic.trailer import folded
 
-__all__ = ["Movement", "box_corners"]
+__all__ = ["Movement", "SectionBox", "box_corners", "section_boxes"]
 
 Floats: TypeAlias = NDArray[np.float64]
+
+_ENDS = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
+"""Ends of length and width: counter-clockwise from the right of the tail."""
+
+_folded = interpreted(folded)
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,23 +38,71 @@ class Movement:
     """Its turn."""
     rise: float
     """Height of its reference point above the ground [m]."""
+    hitch: float = 0.0
+    """Heading of its trailer less that of its truck [rad]; 0 of all others."""
 
 
-def box_corners(centre: Floats, size: Floats, yaw: float, motion: Movement) -> Floats:
+class SectionBox(NamedTuple):
+    """The 3D box of a section of an articulated vehicle."""
+
+    name: str
+    """"truck" or "trailer"."""
+    size: tuple[float, float, float]
+    """Length, width, height [m]."""
+    yaw: float
+    """Heading, counter-clockwise from east [rad]."""
+    corners: Floats
+    """As from `box_corners` [m], shape (8, 3)."""
+
+
+def box_corners(
+    centre: Floats, size: Floats, yaw: float, motion: Movement, sections: tuple[Section, ...] = ()
+) -> Floats:
     """Return the corners of a 3D box: four on the ground, counter-clockwise from the right of its
     tail, and those above them [m], shape (8, 3).
 
     Args:
         centre: Middle of the body, at the height of its reference point [m], shape (3,).
-        size: Length, width, height [m], shape (3,).
+        size: Length, width, height [m], shape (3,). If its trailer swings, the box has another
+            length and width: those that contain its sections.
         yaw: Heading [rad].
         motion: Slope of the ground, and height of the reference point above it.
+        sections: Those of an articulated vehicle.
     """
     length, width, height = size.tolist()
+    plan = 0.5 * _ENDS * (length, width)
+    if motion.hitch != 0.0 and sections:
+        outlines = np.concatenate([_outline(section, motion.hitch)[0] for section in sections])
+        plan = np.where(_ENDS < 0.0, outlines.min(axis=0), outlines.max(axis=0))
+    return _raised(plan, height, centre, yaw, motion)
+
+
+def section_boxes(
+    sections: tuple[Section, ...], centre: Floats, yaw: float, motion: Movement
+) -> tuple[SectionBox, ...]:
+    """Return the boxes of the sections of an articulated vehicle; arguments as of `box_corners`."""
+    boxes = []
+    for section in sections:
+        plan, turn = _outline(section, motion.hitch)
+        corners = _raised(plan, section.size[2], centre, yaw, motion)
+        boxes.append(SectionBox(section.name, section.size, yaw + turn, corners))
+    return tuple(boxes)
+
+
+def _outline(section: Section, hitch: float) -> tuple[Floats, float]:
+    """Return the outline of a section [m], shape (4, 2), and its heading [rad], in the frame of the
+    whole vehicle.
+    """
+    x, y, cosine, sine = _folded(hitch, section.towed)
+    along, aside = (0.5 * _ENDS * section.size[:2] + (section.ahead, 0.0)).T
+    ahead, left = x + cosine * along - sine * aside, y + sine * along + cosine * aside
+    return np.column_stack([ahead, left]), math.atan2(sine, cosine)
+
+
+def _raised(plan: Floats, height: float, centre: Floats, yaw: float, motion: Movement) -> Floats:
+    """Return the corners of an upright box on an outline, ahead and left of the middle [m]."""
     pitch, cosine, sine = motion.slope, math.cos(yaw), math.sin(yaw)
     ahead = np.array([cosine * math.cos(pitch), sine * math.cos(pitch), math.sin(pitch)])
     left, up = np.array([-sine, cosine, 0.0]), np.array([0.0, 0.0, 1.0])
-    ends = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
-    plan = 0.5 * (length * ends[:, :1] * ahead + width * ends[:, 1:] * left)
-    ground = centre - motion.rise * up + plan
+    ground = centre - motion.rise * up + (plan[:, :1] * ahead + plan[:, 1:] * left)
     return np.concatenate([ground, ground + height * up])

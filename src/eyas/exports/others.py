@@ -13,7 +13,7 @@ from eyas.sim.simulation import Simulation
 from eyas.state.draw import Picture
 from eyas.state.motion import ActorState
 from eyas.state.scene import ACTOR_OBJECT
-from eyas.targets.catalogue import MODELS, kind_of
+from eyas.targets.catalogue import MODELS, kind_of, sections_of
 from eyas.targets.words import words_of
 from eyas.task.direction import TargetDirection, target_centre, target_direction
 
@@ -69,6 +69,7 @@ def _movement(actors: ActorState, before: ActorState, actor: int, model: int) ->
         travelled=float(actors.travelled[0, actor]),
         direction=TargetDirection(direction),
         rise=MODELS[model].rise,
+        hitch=float(actors.hitch[0, actor]),
     )
 
 
@@ -94,4 +95,5 @@ def _subject(  # where it is, and where it is seen
         box=picture.actor_box[view, actor].copy(),
         seen_pixels=seen,
         covered_pixels=covered,
+        sections=sections_of(model),
     )

@@ -1,6 +1,7 @@
 """The boxes of what moves near a tracker: actors, and the bodies of other trackers."""
 
 import math
+from typing import NamedTuple
 
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.jit import step_kernel
@@ -9,6 +10,7 @@ from eyas.sensors.obstacles import Boxes, Movers
 from eyas.state.scene import ACTOR_OBJECT
 from eyas.state.snapshot import TrackerState
 from eyas.traffic.interpolation import ActorPose, interpolate_actor, sample_before
+from eyas.traffic.trailer import folded
 
 __all__ = ["find_boxes"]
 
@@ -20,7 +22,7 @@ _SLACK = 20.0
 def find_boxes(
     movers: Movers, n: int, tick: int, place: tuple[float, float, float], reach: float, boxes: Boxes
 ) -> int:
-    """Find what moves and may be near a place; return its number.
+    """Find the boxes of what moves and may be near a place; return their number.
 
     Args:
         movers: What moves.
@@ -42,13 +44,14 @@ def find_boxes(
         pose = interpolate_actor(motion, actor, time)
         if not pose.present:
             continue
-        model = movers.model[world, actor]
-        _write_box(pose, movers, model, boxes, count)
+        begin = count
+        count = _write_boxes(pose, movers, movers.model[world, actor], boxes, count)
+        # A trailer that swings moves some millimetres more, which is neglected like all turns.
         before = interpolate_actor(motion, actor, time - PHYSICS_STEP)
-        moved = boxes.moved[count]
-        moved[0], moved[1], moved[2] = pose.x - before.x, pose.y - before.y, pose.z - before.z
-        boxes.thing[count] = ACTOR_OBJECT + actor
-        count += 1
+        for box in range(begin, count):
+            moved = boxes.moved[box]
+            moved[0], moved[1], moved[2] = pose.x - before.x, pose.y - before.y, pose.z - before.z
+            boxes.thing[box] = ACTOR_OBJECT + actor
     bodies = movers.bodies
     for other in range(bodies.position.shape[0]):
         if other == n or movers.world[other] != world:
@@ -76,15 +79,55 @@ def _write_body(bodies: TrackerState, other: int, boxes: Boxes, count: int) -> N
         boxes.moved[count, axis] = bodies.velocity[other, axis] * PHYSICS_STEP
 
 
+class _Place(NamedTuple):
+    """Where the reference point of the straight vehicle is, carried by its truck or trailer."""
+
+    x: float
+    """[m]"""
+    y: float
+    cosine: float
+    """Of the heading of that one."""
+    sine: float
+
+
 @step_kernel
-def _write_box(pose: ActorPose, movers: Movers, model: int, boxes: Boxes, count: int) -> None:
-    """Write an actor's box, which stands upright: its pitch on a slope is neglected."""
-    size, ahead = movers.size[model], movers.ahead[model]
-    cosine, sine = math.cos(pose.yaw), math.sin(pose.yaw)
-    for corner in range(4):
-        forward = ahead + (0.5 if corner == 0 or corner == 3 else -0.5) * size[0]
-        left = (0.5 if corner < 2 else -0.5) * size[1]
-        boxes.corners[4 * count + corner, 0] = pose.x + cosine * forward - sine * left
-        boxes.corners[4 * count + corner, 1] = pose.y + sine * forward + cosine * left
-    boxes.bottom[count] = pose.z
-    boxes.top[count] = pose.z + size[2]
+def _carried(whole: _Place, hitch: float, middle: float, towed: int) -> _Place:
+    """Return where a truck or its trailer is.
+
+    Args:
+        whole: Pose of both together.
+        hitch: Heading of the trailer less that of the truck [rad].
+        middle: Distance of the middle of the whole ahead of its reference point [m].
+        towed: See `folded`.
+    """
+    x, y, c, s = folded(hitch, towed)
+    x, y = x + middle * (1.0 - c), y - middle * s
+    return _Place(
+        whole.x + whole.cosine * x - whole.sine * y,
+        whole.y + whole.sine * x + whole.cosine * y,
+        whole.cosine * c - whole.sine * s,
+        whole.sine * c + whole.cosine * s,
+    )
+
+
+@step_kernel
+def _write_boxes(pose: ActorPose, movers: Movers, model: int, boxes: Boxes, count: int) -> int:
+    """Write an actor's boxes, which stand upright: its pitch on a slope is neglected.
+
+    Returns:
+        How many there are then, with `count` before.
+    """
+    whole = _Place(pose.x, pose.y, math.cos(pose.yaw), math.sin(pose.yaw))
+    for k in range(movers.first[model], movers.first[model + 1]):
+        block, at = movers.block[k], whole
+        if pose.hitch != 0.0:
+            at = _carried(whole, pose.hitch, movers.middle[model], block.towed)
+        for corner in range(4):
+            forward = block.ahead + (0.5 if corner == 0 or corner == 3 else -0.5) * block.length
+            left = (0.5 if corner < 2 else -0.5) * block.width
+            boxes.corners[4 * count + corner, 0] = at.x + at.cosine * forward - at.sine * left
+            boxes.corners[4 * count + corner, 1] = at.y + at.sine * forward + at.cosine * left
+        boxes.bottom[count] = pose.z
+        boxes.top[count] = pose.z + block.height
+        count += 1
+    return count

@@ -1,7 +1,7 @@
 """Everything solid that a ray or a body may hit, in the form that kernels read."""
 
 from collections.abc import Iterator, Sequence
-from typing import NamedTuple
+from typing import Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from eyas.state.motion import Motion
 from eyas.state.scene import ObjectClass, Scene
 from eyas.state.snapshot import TrackerState
 from eyas.state.terrain import Terrain
-from eyas.targets.catalogue import MODELS, kind_of
+from eyas.targets.catalogue import MODELS, kind_of, sections_of
 
 __all__ = ["Boxes", "Movers", "Obstacles", "Solids", "obstacles_of", "solids_of"]
 
@@ -43,6 +43,23 @@ class Solids(NamedTuple):
     """Object of the scene that the ground is."""
 
 
+BLOCK: Final = np.dtype(
+    [
+        ("ahead", np.float64),
+        ("length", np.float64),
+        ("width", np.float64),
+        ("height", np.float64),
+        ("towed", np.int64),
+    ],
+    align=True,
+)
+"""An upright box that is solid; a rigid model is one, an articulated one has several.
+
+ahead: distance of its middle ahead of the reference point of the straight vehicle [m]; length,
+width, height [m]; towed: 1 for a trailer, else 0.
+"""
+
+
 class Movers(NamedTuple):
     """The actors, and the bodies of the others, around N trackers, in W worlds."""
 
@@ -51,9 +68,11 @@ class Movers(NamedTuple):
     """World of each tracker, shape (N,)."""
     model: NDArray[np.int32]
     """Model of each actor in each world, index into the catalogue, shape (W, A)."""
-    size: Floats
-    """Length, width, height of each model [m], shape (M, 3)."""
-    ahead: Floats
+    block: NDArray[np.void]
+    """Boxes of all models, of dtype `BLOCK`, shape (K,)."""
+    first: NDArray[np.int32]
+    """Start of each model's boxes, shape (M + 1,)."""
+    middle: Floats
     """Distance of each model's middle ahead of its reference point [m], shape (M,)."""
     bodies: TrackerState
     """The N trackers, whose bodies others in their world meet; none: they have no bodies."""
@@ -101,15 +120,17 @@ def obstacles_of(
         model: Shape (W, A).
         bodies: The trackers; None: these have no bodies.
     """
+    blocks = [_blocks_of(number) for number in range(len(MODELS))]
     movers = Movers(
         motion=motion,
         world=world,
         model=model,
-        size=np.array([known.size for known in MODELS], np.float64),
-        ahead=np.array([kind_of(number).ahead for number in range(len(MODELS))], np.float64),
+        block=np.concatenate(blocks),
+        first=np.cumsum([0, *map(len, blocks)]).astype(np.int32),
+        middle=np.array([kind_of(number).ahead for number in range(len(MODELS))], np.float64),
         bodies=TrackerState.create(0) if bodies is None else bodies,
     )
-    most = model.shape[1] + len(movers.bodies.position)
+    most = model.shape[1] * max(map(len, blocks)) + len(movers.bodies.position)
     boxes = Boxes(
         corners=np.zeros((4 * most, 2)),
         bottom=np.zeros(most),
@@ -118,6 +139,14 @@ def obstacles_of(
         thing=np.zeros(most, np.int32),
     )
     return Obstacles(solids, terrain, movers, boxes)
+
+
+def _blocks_of(model: int) -> NDArray[np.void]:
+    """Return the boxes of a model, of dtype `BLOCK`."""
+    middle, whole = kind_of(model).ahead, (0.0, MODELS[model].size, 0)
+    parts = [(*block, part.towed) for part in sections_of(model) for block in part.blocks]
+    rows = [(middle + ahead, *size, towed) for ahead, size, towed in parts or [whole]]
+    return np.array(rows, BLOCK)
 
 
 def solids_of(scene: Scene) -> Solids:

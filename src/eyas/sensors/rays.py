@@ -40,7 +40,7 @@ def cast_ray(ray: Ray, reach: float, obstacles: Obstacles, boxes: int) -> tuple[
         ray: The ray.
         reach: Its length [m].
         obstacles: What it may meet.
-        boxes: Number of actors in `obstacles.boxes`.
+        boxes: Number of boxes in `obstacles.boxes`.
     """
     best, thing = _cast_solids(ray, reach, obstacles.solids)
     near, actor = _cast_boxes(ray, min(reach, best), obstacles.boxes, boxes)

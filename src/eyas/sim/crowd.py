@@ -33,7 +33,7 @@ __all__ = ["NOBODY", "Crowd", "crowd_motions", "crowd_of", "extras_of", "vehicle
 
 _MAKERS = (
     *("behaviours", "sim/crowd.py", "state/motion.py", "state/terrain.py", "world/roads"),
-    "traffic/signals.py",
+    *("targets/vehicles/models.py", "traffic/signals.py", "traffic/trailer.py"),
 )
 
 _ASIDE = Mirrored(mirrored=(4.0, 20.0))

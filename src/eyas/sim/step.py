@@ -227,7 +227,7 @@ def _move_target(
     targets.acceleration[n, 0] = gain * east - swing * north
     targets.acceleration[n, 1] = gain * north + swing * east
     targets.yaw_rate[n], targets.slope[n] = pose.yaw_rate, pose.slope
-    targets.travelled[n] = pose.travelled
+    targets.hitch[n], targets.travelled[n] = pose.hitch, pose.travelled
     position[0], position[1], position[2] = pose.x, pose.y, pose.z + targets.rise[n]
     targets.yaw[n] = pose.yaw
     targets.speed[n] = pose.speed

@@ -121,6 +121,8 @@ class TargetState(NamedTuple):
     """[rad/s], shape (N,)."""
     slope: Floats
     """Pitch of the ground along the heading, positive up [rad], shape (N,)."""
+    hitch: Floats
+    """Heading of its trailer less that of its truck [rad], shape (N,); 0 of all others."""
     travelled: Floats
     """Way since it entered the world [m], shape (N,)."""
     slowest: Floats
@@ -145,6 +147,7 @@ class TargetState(NamedTuple):
             acceleration=np.zeros((count, 3)),
             yaw_rate=np.zeros(count),
             slope=np.zeros(count),
+            hitch=np.zeros(count),
             travelled=np.zeros(count),
             slowest=np.zeros(count),
             centre=np.zeros((count, 3)),

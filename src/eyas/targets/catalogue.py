@@ -4,11 +4,20 @@ A new kind is a file with its shapes and its rig, and one call of `register`.
 """
 
 from eyas.targets.jointed.kinds import JOINTED_KINDS
-from eyas.targets.kind import Kind, Model
+from eyas.targets.kind import Kind, Model, Section
 from eyas.targets.quadrotor import QUADROTOR
 from eyas.targets.vehicles.kinds import VEHICLE_KINDS
 
-__all__ = ["KINDS", "MODELS", "kind_index", "kind_of", "model_index", "models_of", "register"]
+__all__ = [
+    "KINDS",
+    "MODELS",
+    "kind_index",
+    "kind_of",
+    "model_index",
+    "models_of",
+    "register",
+    "sections_of",
+]
 
 KINDS: list[Kind] = []
 """All kinds. In the other rooms, `kind` is the index into this table."""
@@ -53,6 +62,14 @@ def models_of(kind: int) -> range:
     """Return the models of a kind, given by its index in `KINDS`, as indices into `MODELS`."""
     first = model_index(KINDS[kind].models[0].name)
     return range(first, first + len(KINDS[kind].models))
+
+
+def sections_of(model: int) -> tuple[Section, ...]:
+    """Return the sections of an articulated model, given by its index in `MODELS`; none of others,
+    which are rigid.
+    """
+    kind = kind_of(model)
+    return kind.sections[kind.models.index(MODELS[model])] if kind.sections else ()
 
 
 for _kind in (*VEHICLE_KINDS, QUADROTOR, *JOINTED_KINDS):

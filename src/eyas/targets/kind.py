@@ -12,7 +12,7 @@ from eyas.state.mesh import Mesh
 from eyas.state.motion import ActorState
 from eyas.state.scene import ObjectClass
 
-__all__ = ["MANY", "Colour", "Group", "Kind", "Looks", "Model", "Rig"]
+__all__ = ["MANY", "Block", "Colour", "Group", "Kind", "Looks", "Model", "Rig", "Section"]
 
 MANY = 4096
 """Actors from which on two threads pose them: waking one takes as long as some hundred actors."""
@@ -48,6 +48,30 @@ class Model(Protocol):
     def rise(self) -> float:
         """Height of the reference point above the road [m]."""
         ...
+
+
+class Block(NamedTuple):
+    """An upright box on the ground."""
+
+    ahead: float
+    """Distance of its middle ahead of that of the vehicle when it drives straight on [m]."""
+    size: tuple[float, float, float]
+    """Length, width and height [m]."""
+
+
+class Section(NamedTuple):
+    """A rigid part of an articulated vehicle, and the upright box around it."""
+
+    name: str
+    """"truck" or "trailer"."""
+    ahead: float
+    """See `Block`."""
+    size: tuple[float, float, float]
+    """See `Block`."""
+    towed: int
+    """1 for a trailer, 0 for what pulls it, see `eyas.traffic.trailer.folded`."""
+    blocks: tuple[Block, ...]
+    """What is solid of it."""
 
 
 class Group(NamedTuple):
@@ -128,6 +152,8 @@ class Kind:
     """Whether it has head and tail lamps that light the road."""
     trailers: tuple[int, ...] = ()
     """Parts of its rig that are towed: they have shadows of their own, and no lamps."""
+    sections: tuple[tuple[Section, ...], ...] = ()
+    """Of each model what it consists of, if that is not one rigid body."""
     keeps_colours: bool = False
     """Whether `traffic.colour` does not change its colours, as for the original's motorcycles."""
     words: str = ""

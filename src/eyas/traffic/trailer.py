@@ -8,7 +8,7 @@ and the chord from bumper to tail tell where both are. The chord is the heading 
 """
 
 import math
-from typing import NamedTuple
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,6 +46,7 @@ _SHORTEST_LEAD = 0.1
 """[m]"""
 
 Floats = NDArray[np.float64]
+Number = TypeVar("Number", float, NDArray[np.floating])
 
 
 class Links(NamedTuple):
@@ -104,17 +105,23 @@ def tow(front: Floats, length: float, links: Links) -> Articulated:
 
 
 @kernel
-def folded(hitch: float) -> tuple[float, float, float]:
-    """Return where the kingpin is in the frame of the whole, whose origin is the middle of the
-    chord, x and y [m], and the heading of the truck in that frame [rad]; that of the trailer is
-    larger by `hitch`, the angle between the two [rad].
+def folded(hitch: Number, towed: int) -> tuple[Number, Number, Number, Number]:
+    """Return where the truck or trailer has carried the frame of the straight vehicle: x, y [m],
+    cosine and sine of its heading, in the frame of the whole. The origin of both is the middle of
+    the chord.
+
+    Args:
+        hitch: Angle between the two [rad]; an array only where this is interpreted.
+        towed: 1 for the trailer, 0 for the truck.
     """
-    along = BUMPER_AHEAD + TAIL_BEHIND * math.cos(hitch)
-    truck = -math.atan2(TAIL_BEHIND * math.sin(hitch), along)
-    trailer = truck + hitch
-    x = 0.5 * (TAIL_BEHIND * math.cos(trailer) - BUMPER_AHEAD * math.cos(truck))
-    y = 0.5 * (TAIL_BEHIND * math.sin(trailer) - BUMPER_AHEAD * math.sin(truck))
-    return x, y, truck
+    c, s = np.cos(hitch), np.sin(hitch)
+    along, aside = BUMPER_AHEAD + TAIL_BEHIND * c, TAIL_BEHIND * s
+    chord = np.sqrt(along * along + aside * aside)
+    ahead, left = along / chord, -aside / chord
+    turned_ahead, turned_left = ahead * c - left * s, left * c + ahead * s
+    half = 0.5 * (BUMPER_AHEAD if towed == 1 else TAIL_BEHIND)
+    x, y = half * (turned_ahead - ahead), half * (turned_left - left)
+    return (x, y, turned_ahead, turned_left) if towed == 1 else (x, y, ahead, left)
 
 
 def _chord(hitch: float) -> tuple[float, float]:

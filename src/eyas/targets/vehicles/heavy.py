@@ -17,12 +17,9 @@ from eyas.targets.vehicles.finishes import (
     TRIM,
     plain,
 )
-from eyas.targets.vehicles.models import VehicleModel
+from eyas.targets.vehicles.models import CAB, CHASSIS_BEHIND, VehicleModel
 
 __all__ = ["trailer_levels", "truck_levels"]
-
-_CAB = 2.5
-"""Length of the cab above the wheels [m]."""
 
 _HALF = 1.25
 """Half the width of cab and trailer [m]."""
@@ -75,7 +72,7 @@ def _pane(
 
 
 def _cab(shell: Shell, front: float, detail: int) -> None:
-    back = front - _CAB
+    back = front - CAB
     low = _slice(back, front, _HALF, 1.06)
     waist = _slice(back, front, _HALF, 2.02)
     brow = _slice(back, front - 0.16, 1.2, 3.02)
@@ -122,7 +119,7 @@ def _facing(x: float, y: tuple[float, float], z: tuple[float, float]) -> list[tu
 
 def _chassis(shell: Shell, vehicle: VehicleModel, detail: int) -> None:
     front, rear = vehicle.axles[0].x, vehicle.axles[1].x
-    end = -vehicle.length / 2 if len(vehicle.axles) == 2 else rear - 1.0
+    end = -vehicle.length / 2 if len(vehicle.axles) == 2 else rear - CHASSIS_BEHIND
     if len(vehicle.axles) == 2:
         shell.box((end, -1.2, 0.62), (end + 0.12, 1.2, 0.84), TRIM)
         _tail_lamps(shell, end, 0.73)

@@ -35,6 +35,7 @@ def _kind(vehicle_type: VehicleType) -> Kind:
         slowest=0.5,  # as in the original
         lamps=True,
         trailers=trailers_of(models),
+        sections=tuple(model.sections for model in models) if trailers_of(models) else (),
         keeps_colours=two_wheeled,
     )
 

@@ -6,12 +6,14 @@ y left, z up, origin on the ground in the middle of the overall length and width
 
 from dataclasses import dataclass
 
-from eyas.targets.kind import Colour
+from eyas.targets.kind import Block, Colour, Section
 from eyas.traffic.config import VehicleType
 from eyas.traffic.trailer import BUMPER_AHEAD, REAR_AXLE, TAIL_BEHIND
 
 __all__ = [
     "BODY_COLOURS",
+    "CAB",
+    "CHASSIS_BEHIND",
     "MOTORCYCLE_COLOURS",
     "VEHICLES",
     "VEHICLE_AHEAD",
@@ -22,6 +24,18 @@ __all__ = [
 VEHICLE_AHEAD = -1.0
 """Distance of the middle of a vehicle, the point that the reward uses, ahead of the actor's
 reference point [m]: the original rewards a point 1 m behind it; kernels read it."""
+
+CAB = 2.5
+"""Length of the cab of a truck above the wheels [m]."""
+
+CHASSIS_BEHIND = 1.0
+"""From the rear axle of a truck with a trailer to the end of its chassis [m]."""
+
+_EXHAUST = 0.25
+"""How far the exhaust is behind the cab [m]."""
+
+_CHASSIS = 2.5, 1.26
+"""Width and height of a truck behind its cab [m]."""
 
 _OVERHANG = 1.35
 """From the front axle of a truck to its bumper [m]."""
@@ -92,6 +106,8 @@ class VehicleModel:
     """Axles, the front one first."""
     lean: float = 0.0
     """Largest lean in a curve [rad]."""
+    trailer: tuple[float, float, float] | None = None
+    """Length, width and height of its trailer [m]."""
 
     @property
     def typename(self) -> str:
@@ -101,7 +117,19 @@ class VehicleModel:
     @property
     def articulated(self) -> bool:
         """Whether it has a trailer, which swings behind it."""
-        return any(axle.towed for axle in self.axles)
+        return self.trailer is not None
+
+    @property
+    def sections(self) -> tuple[Section, ...]:
+        """The truck, with the chassis under its trailer, and the trailer; none without one."""
+        if self.trailer is None:
+            return ()
+        front, end = 0.5 * self.length, self.axles[1].x - CHASSIS_BEHIND
+        cab = front - CAB - _EXHAUST
+        truck = _block(end, front, self.width, self.height)
+        blocks = _block(cab, front, *truck.size[1:]), _block(end, cab, *_CHASSIS)
+        trailer = _block(-front, self.trailer[0] - front, *self.trailer[1:])
+        return Section("truck", *truck, 0, blocks), Section("trailer", *trailer, 1, (trailer,))
 
     @property
     def rise(self) -> float:
@@ -114,6 +142,10 @@ class VehicleModel:
         return self.length, self.width, self.height
 
 
+def _block(back: float, front: float, width: float, height: float) -> Block:
+    return Block(0.5 * (back + front), (front - back, width, height))
+
+
 def _car(
     name: str, size: tuple[float, float, float], wheels: tuple[float, float, float]
 ) -> VehicleModel:
@@ -124,16 +156,19 @@ def _car(
     return VehicleModel(name, VehicleType.PASSENGER, *size, wheelbase, radius, axles)
 
 
-def _truck(name: str, kind: VehicleType, wheelbase: float, rear: tuple[float, ...]) -> VehicleModel:
-    """Return a truck, 4.5 m high; `rear` holds x of the trailer's axles [m]."""
-    length = BUMPER_AHEAD + TAIL_BEHIND if rear else 7.7
+def _truck(
+    name: str, wheelbase: float, trailer: tuple[float, float, float] | None = None
+) -> VehicleModel:
+    """Return a truck, 4.5 m high; `trailer` holds length, width and height of its trailer [m]."""
+    kind = VehicleType.TRAILER if trailer else VehicleType.TRUCK
+    length = BUMPER_AHEAD + TAIL_BEHIND if trailer else 7.7
     front = length / 2 - _OVERHANG
     axles = (
         Axle(front, 2.14, 0.32, steered=True),
         Axle(front - wheelbase, 1.9, 0.56),
-        *(Axle(x, 2.1, 0.38, towed=True) for x in rear),
+        *(Axle(x, 2.1, 0.38, towed=True) for x in (_TRAILER_AXLES if trailer else ())),
     )
-    return VehicleModel(name, kind, length, 2.8, 4.5, wheelbase, 0.5, axles)
+    return VehicleModel(name, kind, length, 2.8, 4.5, wheelbase, 0.5, axles, trailer=trailer)
 
 
 def _two_wheeler(
@@ -158,9 +193,9 @@ VEHICLES: tuple[VehicleModel, ...] = (
     _car("TeslaModel3Simple", (4.8, 1.85, 1.5), (2.94, 0.36, 1.53)),
     _car("MercedesBenzSprinterSimple", (6.9, 2.0, 2.7), (4.33, 0.40, 2.45)),
     VehicleModel("BusSimple", VehicleType.BUS, 9.73, 2.64, 3.36, 4.5, 0.56, _BUS_AXLES),
-    _truck("TruckSimple", VehicleType.TRUCK, 5.25, ()),
-    _truck("TruckTrailerSimple", VehicleType.TRAILER, _TRACTOR_BASE, _TRAILER_AXLES),
-    _truck("TruckTankSimple", VehicleType.TRAILER, _TRACTOR_BASE, _TRAILER_AXLES),
+    _truck("TruckSimple", 5.25),
+    _truck("TruckTrailerSimple", _TRACTOR_BASE, (11.47, 2.52, 4.22)),
+    _truck("TruckTankSimple", _TRACTOR_BASE, (11.1, 2.52, 4.22)),
     _two_wheeler("ScooterSimple", (1.95, 0.66, 1.7), (1.48, 0.23, 0.745)),
     _two_wheeler("MotorbikeSimple", (2.48, 1.1, 1.55), (1.78, 0.25, 0.94)),
 )

@@ -10,15 +10,12 @@ from eyas.core.parallel import Pointer, parallel_kernel
 from eyas.state.motion import ActorState
 from eyas.targets.kind import Group, Looks
 from eyas.targets.vehicles.models import VEHICLE_AHEAD
-from eyas.traffic.trailer import BUMPER_AHEAD, TAIL_BEHIND, folded
+from eyas.traffic.trailer import folded
 
 __all__ = ["AXLES", "SLOT", "STEER_LIMIT", "RigTable", "Slots", "pose_vehicles"]
 
 STEER_LIMIT = 0.6
 """Largest steering angle [rad]."""
-
-_KINGPIN = 0.5 * (TAIL_BEHIND - BUMPER_AHEAD)
-"""x of the kingpin in the frame of a model with a trailer [m]."""
 
 _SLOWEST = 1.0
 """Smallest speed used to compute the curvature from the yaw rate [m/s]."""
@@ -101,17 +98,9 @@ def _base_of(actors: ActorState, w: int, a: int, most_lean: float) -> _Base:
 
 
 @kernel
-def _turned(base: _Base, x: float, y: float, turn: float) -> _Base:
-    """Return the pose of a truck or its trailer, in the frame of the straight model.
-
-    Args:
-        base: Pose of the whole.
-        x: Where the kingpin is in its frame [m].
-        y: Likewise [m].
-        turn: Heading in that frame [rad].
-    """
-    c, s = np.cos(turn), np.sin(turn)
-    x, y = x - _KINGPIN * c, y - _KINGPIN * s
+def _carried(base: _Base, hitch: float, towed: int) -> _Base:
+    """Return the pose of a truck or its trailer, see `folded`; `base` is that of the whole."""
+    x, y, c, s = folded(hitch, towed)
     return _Base(
         base.xx * c + base.xy * s, base.xy * c - base.xx * s, base.xz,
         base.yx * c + base.yy * s, base.yy * c - base.yx * s, base.yz,
@@ -181,8 +170,7 @@ def _pose_actor(given: tuple[RigTable, Group, ActorState, Looks, Slots], w: int,
     truck = trailer = _base_of(actors, w, a, axles.lean)
     hitch = actors.hitch[w, a]
     if hitch != 0.0:
-        x, y, turn = folded(hitch)
-        truck, trailer = _turned(truck, x, y, turn), _turned(truck, x, y, turn + hitch)
+        truck, trailer = _carried(truck, hitch, 0), _carried(truck, hitch, 1)
     steered, rolled = _wheels_of(axles.radius, axles.wheelbase, actors, w, a)
     for k in range(table.slot.shape[1]):
         slot, part = first + k, table.slot[model, k]
