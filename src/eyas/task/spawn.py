@@ -88,6 +88,6 @@ def choose_target(
         followed = sum(actor >= 0 for actor in used)
         raise SpawnError(
             f"start: no target is free: {len(available)} known, {int(np.sum(available))} in the "
-            f"world, {followed} followed; allowed: at least as many vehicles as trackers"
+            f"world, {followed} followed; allowed: at least as many targets as trackers"
         )
     return free[int(rng.integers(len(free)))]
