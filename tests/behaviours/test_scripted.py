@@ -219,6 +219,24 @@ def test_objects_are_recycled_but_stay_for_an_episode():
     assert min(lasts) >= 5
 
 
+@pytest.mark.parametrize(
+    ("count", "group", "followers", "episode"),
+    [(1, 4, 1, 3.0), (4, 4, 4, 3.0), (6, 4, 4, 3.0), (9, 1, 8, 20.0), (100, 50, 40, 30.0)],
+)
+def test_nobody_is_moved_whom_a_tracker_must_follow(count, group, followers, episode):
+    """In a world whose time goes on, each of the followers finds somebody who stays."""
+    config, clock = ObjectsConfig(max_count=count, group_size=group, interval=5.0), Clock(12601, 10)
+    lives = recycled(config, *clock, episode, followers)
+    table = np.zeros((clock.samples, count), SAMPLE)
+    for slot, a, b in zip(*lives, strict=True):
+        table["present"][a : b + 1, slot] = 1
+    replay = Replay(Motion(table, np.zeros(count, np.int32), 10.0, 0.0))
+    begins = np.arange(0.0, clock.samples / 10.0 - 1.0 - episode, 0.25)
+    stay = [replay.available(t, t + episode).sum() for t in begins.tolist()]
+    assert min(stay) >= followers
+    assert (len(lives.slot) > count) == (count > followers)  # moved, where one can be spared
+
+
 def test_longer_episodes_make_longer_lives():
     long = recycled(ObjectsConfig(), 12601, 10.0, episode=60.0)
     stays = (long.leaves - long.enters)[long.slot == 5] / 10.0

@@ -42,6 +42,9 @@ class Crowd(Config):
     extras: tuple[ExtraConfig, ...] = ()
     episode: float = 0.0
     """Length of an episode [s]."""
+    followers: int = 0
+    """Different targets that are followed at once in a world whose time goes on; 0: there is no
+    such world."""
     custom: CustomConfig | None = None
     """A target of one's own, in the place of `target`."""
 
@@ -55,8 +58,14 @@ NOBODY = Crowd()
 """Only SUMO's vehicles."""
 
 
-def crowd_of(config: SimConfig) -> Crowd:
-    """Return the crowd of a simulation; equal where only settings without effect differ."""
+def crowd_of(config: SimConfig, trackers: int = 0) -> Crowd:
+    """Return the crowd of a simulation; equal where only settings without effect differ.
+
+    Args:
+        config: The settings.
+        trackers: Number of trackers in the largest world whose time goes on from episode to
+            episode; 0: there is none.
+    """
     if config.custom is None and config.target is TargetName.SUMO_VEHICLE:
         return Crowd(extras=config.extras)
     seconds = config.done.total_steps * PHYSICS_STEP
@@ -65,6 +74,7 @@ def crowd_of(config: SimConfig) -> Crowd:
         objects=config.objects,
         extras=config.extras,
         episode=seconds,
+        followers=min(trackers, 1) if config.same_target else trackers,
         custom=config.custom,
     )
 
@@ -147,7 +157,7 @@ def crowd_motions(
 def _troops(crowd: Crowd, clock: Clock) -> list[Troop]:
     troops = []
     if crowd.custom is None and not crowd.follows_vehicles:
-        lives = recycled(crowd.objects, clock.samples, clock.rate, crowd.episode)
+        lives = _lives(crowd, clock)
         target = ExtraConfig(kind=crowd.target)
         troops.append(_troop(target, lives, crowd.objects.offset, "objects.max_count"))
     for number, extra in enumerate(crowd.extras):
@@ -155,6 +165,10 @@ def _troops(crowd: Crowd, clock: Clock) -> list[Troop]:
             lives = lasting(extra.count, clock.samples)
             troops.append(_troop(extra, lives, _ASIDE, f"extras.{number}.count"))
     return troops
+
+
+def _lives(crowd: Crowd, clock: Clock) -> Lives:
+    return recycled(crowd.objects, clock.samples, clock.rate, crowd.episode, crowd.followers)
 
 
 def _refuse_crossing(crowd: Crowd) -> None:
@@ -184,8 +198,7 @@ def _custom(
     from eyas.custom.motion import Places, custom_motion
 
     driven = any(map(_is_traffic, crowd.extras))
-    lives = recycled(crowd.objects, clock.samples, clock.rate, crowd.episode)
-    places = Places(lives, crowd.objects.offset, vehicles)
+    places = Places(_lives(crowd, clock), crowd.objects.offset, vehicles)
     ground = Ground(scene, roads=driven)
     return custom_motion(custom, places, ground, clock, stream(seed, "custom"))
 

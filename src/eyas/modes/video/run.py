@@ -106,7 +106,8 @@ def recording_rules(config: EyasConfig) -> EyasConfig:
 
 def _require_traffic(config: EyasConfig) -> None:
     end = config.video.start_time + config.video.total_time
-    channels, crowd = config.video.channels, crowd_of(config)
+    channels = config.video.channels
+    crowd = crowd_of(config, channels)
     known = load_assets(config.world, config.traffic, channels, crowd).traffic.duration
     if end > known:
         raise ConfigError(
