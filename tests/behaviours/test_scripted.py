@@ -175,8 +175,28 @@ def test_a_map_without_pavements_says_so(hills):
 
 
 def test_a_map_that_is_full_says_so(city):
-    with pytest.raises(SpawnError, match=r"^objects\.max_count: 4 are asked for, but .* only 0"):
+    with pytest.raises(SpawnError, match=r"^objects\.max_count: .* has only 0 of the 4 places"):
         table_of(city, troop("Mantis", count=4, breadth=400.0))
+
+
+def test_nobody_is_placed_beyond_the_map(city):
+    table = table_of(city, troop("Pedestrian", count=20, offset=250.0))
+    assert (np.abs(points_of(table)) < np.array(city.scene.size) / 2).all()
+    beyond = Mirrored(mirrored=(2000.0, 3000.0))
+    with pytest.raises(SpawnError, match="-3000 to 3000 m from their middle"):
+        table_of(city, troop("Pedestrian", count=2000, offset=beyond))
+
+
+def test_the_ground_under_a_point_does_not_depend_on_the_others(city):
+    rng = np.random.default_rng(0)
+    points = rng.uniform(-300.0, 300.0, (200, 2))
+    points = np.concatenate([points, points[:50] + 1e-9])
+    alone = [city.surface.at(point[None]) for point in points]
+    together = city.surface.at(points)
+    assert np.array_equal(together.height, np.concatenate([one.height for one in alone]))
+    assert np.array_equal(together.pavement, np.concatenate([one.pavement for one in alone]))
+    assert together.pavement.any()
+    assert len(set(together.height)) > 1
 
 
 def test_objects_are_recycled_but_stay_for_an_episode():
@@ -197,6 +217,24 @@ def test_objects_are_recycled_but_stay_for_an_episode():
     replay = Replay(Motion(table, np.zeros(10, np.int32), 10.0, 0.0))
     lasts = [replay.available(t, t + 3.0).sum() for t in np.linspace(2.0, 1200.0, 400)]
     assert min(lasts) >= 5
+
+
+@pytest.mark.parametrize(
+    ("count", "group", "followers", "episode"),
+    [(1, 4, 1, 3.0), (4, 4, 4, 3.0), (6, 4, 4, 3.0), (9, 1, 8, 20.0), (100, 50, 40, 30.0)],
+)
+def test_nobody_is_moved_whom_a_tracker_must_follow(count, group, followers, episode):
+    """In a world whose time goes on, each of the followers finds somebody who stays."""
+    config, clock = ObjectsConfig(max_count=count, group_size=group, interval=5.0), Clock(12601, 10)
+    lives = recycled(config, *clock, episode, followers)
+    table = np.zeros((clock.samples, count), SAMPLE)
+    for slot, a, b in zip(*lives, strict=True):
+        table["present"][a : b + 1, slot] = 1
+    replay = Replay(Motion(table, np.zeros(count, np.int32), 10.0, 0.0))
+    begins = np.arange(0.0, clock.samples / 10.0 - 1.0 - episode, 0.25)
+    stay = [replay.available(t, t + episode).sum() for t in begins.tolist()]
+    assert min(stay) >= followers
+    assert (len(lives.slot) > count) == (count > followers)  # moved, where one can be spared
 
 
 def test_longer_episodes_make_longer_lives():

@@ -292,6 +292,23 @@ def test_a_wrong_key_or_value_is_told_in_the_originals_words(values, line):
         ("Drone_Random_Config", {"view_pitch_fixed": True}, "view_pitch_fixed: true"),
         ("Sumo_Params", {"min_rou_distance": 8000}, "min_rou_distance: 8000"),
         ("Sumo_Params", {"max_rou_distance": 0}, "max_rou_distance: 0"),
+        (
+            "Sumo_Params",
+            {"max_rou_distance": 2e9},
+            "max_rou_distance: 2000000000.0 is not allowed: a number above 0 and up to 1e9",
+        ),
+        (
+            "Sumo_Params",
+            {"max_rou_distance": 400},
+            "min_rou_distance: 500 is not allowed: a number from 0 to below "
+            "Sumo_Params.max_rou_distance, which is 400",
+        ),
+        (
+            "Sumo_Params",
+            {"car_type": {"passenger": 1, "bus": 1}},
+            'car_type: {"passenger": 1, "bus": 1} is not allowed: a name; more than one: '
+            "traffic.vehicle_type",
+        ),
         ("Sumo_Params", {"car_group_num": 0}, "car_group_num: 0"),
         (
             "Sumo_Params",

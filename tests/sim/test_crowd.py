@@ -157,6 +157,20 @@ def test_fewer_targets_than_trackers_is_told():
         simulation.reset()
 
 
+def test_all_are_followed_for_as_long_as_the_traffic_lasts():
+    """As many targets as trackers, of which the original moves all at once."""
+    done = {"total_steps": 6000, "no_reward_steps": 10**6}
+    config = SimConfig(target="Pedestrian", objects={**FEW, "max_count": 3}, done=done)
+    simulation = build_simulation(config, together(3))
+    for _ in range(20):
+        simulation.reset()
+        simulation.snapshot.episodes.tick[:] += 6000
+        actors = simulation.snapshot.targets.actor
+        assert sorted(actors) == [0, 1, 2]
+        time = simulation.snapshot.episodes.tick[0] / 500.0
+        assert simulation.traffic.available(time - 12.0, time).all()
+
+
 def test_no_target_for_a_whole_episode_is_told():
     """Objects that come after the recording has ended."""
     settings = {"target": "Pedestrian", "objects": FEW, "done": {"total_steps": 900_000}}

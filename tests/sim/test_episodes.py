@@ -92,6 +92,7 @@ def test_where_nobody_is_there_is_no_start_and_one_line_says_so(config, assets_w
     simulation = Simulation(config, assets_where((0.0, 13.0)), DRONE, together(1))
     with pytest.raises(SpawnError, match="no target is free: 0 in the world") as caught:
         simulation.reset()
+    assert "traffic.group_interval" in str(caught.value)  # more trackers' targets would not help
     assert "\n" not in str(caught.value)
 
 

@@ -45,8 +45,8 @@ def test_the_manuals_example_runs_its_groups_without_sumo(caplog):
     simulation.reset()
     said = [line for line in caplog.messages if line.startswith("traffic")]
     assert said == [
-        "traffic.group_size (Sumo_Params.car_group_num): 5 raised to 12, 3 for each of 4 trackers "
-        "in a world"
+        "traffic.group_size (Sumo_Params.car_group_num): 5 raised to 12, 3 for each tracker, "
+        "of which a world has 4"
     ]
     traffic = load_assets(config.world, config.traffic, 4).traffic
     there = (traffic.motion.table["present"] > 0.0).sum(axis=1)

@@ -64,7 +64,7 @@ def test_trips_are_shortest_routes_within_the_limits():
 
 
 def test_limits_that_no_route_meets_are_an_error():
-    with pytest.raises(ConfigError, match=r"traffic\.route_length: no route of 900 to 1000 m"):
+    with pytest.raises(ConfigError, match=r"no route of 900 to 1000 m .* about 10 to 450 m"):
         next(random_trips(SQUARE, (900.0, 1000.0), np.random.default_rng(1)))
 
 

@@ -193,8 +193,8 @@ def test_a_group_that_is_too_small_is_raised_in_one_line(
     found = find_recording(grid, small, trackers=4, duration=20.0, shipped=shipped)
     assert found.provenance.config.group_size == 12
     assert caplog.messages == [
-        "traffic.group_size (Sumo_Params.car_group_num): 2 raised to 12, 3 for each of 4 trackers "
-        "in a world"
+        "traffic.group_size (Sumo_Params.car_group_num): 2 raised to 12, 3 for each tracker, "
+        "of which a world has 4"
     ]
     enough = small.model_copy(update={"group_size": 12})
     assert find_recording(grid, enough, trackers=4, duration=20.0, shipped=shipped)

@@ -119,7 +119,7 @@ def test_where_no_target_is_free_the_traffic_begins_anew(crews, monkeypatch, cap
 
 def test_more_trackers_than_targets_is_one_line(crews):
     config = CONFIG.model_copy(update={"traffic": TrafficConfig()})
-    with pytest.raises(SpawnError, match="at least as many vehicles as trackers"):
+    with pytest.raises(SpawnError, match="at least as many targets as trackers"):
         crews(41, config).play([RESET] * 41)
 
 

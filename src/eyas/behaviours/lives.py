@@ -16,6 +16,9 @@ _LEAST: Final = 60.0
 _EPISODES: Final = 4.0
 """Least length of a life, in episodes: then three of four objects last one at any time."""
 
+_BETWEEN: Final = 1.0
+"""More than from the end of a life to the next, and what times are rounded by [s]."""
+
 
 class Lives(NamedTuple):
     """L stays in the world, shape (L,) each."""
@@ -33,29 +36,42 @@ def lasting(count: int, samples: int) -> Lives:
     return Lives(np.arange(count), np.zeros(count, np.int64), np.full(count, samples - 1))
 
 
-def recycled(config: ObjectsConfig, samples: int, rate: float, episode: float) -> Lives:
+def recycled(
+    config: ObjectsConfig, samples: int, rate: float, episode: float, followers: int = 0
+) -> Lives:
     """Return objects that come in groups and are moved elsewhere in the same order.
 
     The original moves the oldest group whenever an interval has passed, even if someone follows it;
     with its defaults, an object stays for 1.25 s. Here groups enter as there, but are moved so
     rarely that each object stays for several episodes: a target is drawn from those that stay for
-    the whole of its episode.
+    the whole of its episode. In a world whose time goes on, there are as many of these as followers
+    at any time: as many objects are there from the start, and where a whole group cannot be
+    spared, fewer are moved at a time, or none.
 
     Args:
         config: Numbers and interval.
         samples: Number of samples of the motion.
         rate: Samples per second [Hz].
         episode: Length of an episode [s].
+        followers: Number of trackers in a world whose time goes on from episode to episode; 0:
+            there is none, as trackers alone in their worlds may begin at another time.
     """
-    groups = math.ceil(config.max_count / config.group_size)
-    stay = max(groups * config.interval, _EPISODES * episode, _LEAST)
     made = []
+    spare = max(config.max_count - followers, 0)
+    batch = max(min(config.group_size, spare), 1)
+    turns = math.ceil(config.max_count / batch)
+    stay = max(turns * config.interval, _EPISODES * episode, _LEAST)
+    settled = 0.0
+    if followers and spare:
+        stay = max(stay, turns * (episode + _BETWEEN) / (spare // batch))
+        settled = config.max_count // config.group_size * config.interval + episode + _BETWEEN
     for slot in range(config.max_count):
         group = slot // config.group_size
-        enters = round(group * config.interval * rate)
-        first = (group + 1) / groups * stay
+        enters = 0 if slot < followers else round(group * config.interval * rate)
+        first = (slot // batch + 1) / turns * stay
         moves = np.arange(first, samples / rate, stay) * rate
-        moves = np.rint(moves[moves > enters + 2]).astype(np.int64)
+        moves = np.rint(moves[moves > max(enters + 2, settled * rate)]).astype(np.int64)
+        moves = moves if spare else moves[:0]
         starts = [enters, *(moves + 2).tolist()]
         ends = [*moves.tolist(), samples - 1]
         made += [(slot, a, b) for a, b in zip(starts, ends, strict=True) if b > a]

@@ -24,6 +24,9 @@ _STEEP: Final = 0.5
 _EDGE: Final = 5.0
 """Distance to the edge of the map that is kept [m]."""
 
+_FAR: Final = 1e6
+"""Nobody is farther away than this [m]."""
+
 _SOLID: Final = (
     ObjectClass.BUILDING,
     ObjectClass.TREE,
@@ -186,6 +189,8 @@ def _steep(terrain: Terrain) -> NDArray[np.object_]:
 
 
 def _beyond(scene: Scene) -> NDArray[np.object_]:
-    """Return the edge of the map."""
+    """Return all that lies beyond the map."""
     east, north = scene.size[0] / 2 - _EDGE, scene.size[1] / 2 - _EDGE
-    return np.asarray(shapely.box(-east, -north, east, north).exterior, object).reshape(1)
+    inside = shapely.box(-east, -north, east, north)
+    outside = shapely.box(-_FAR, -_FAR, _FAR, _FAR).difference(inside)
+    return np.asarray(outside, object).reshape(1)

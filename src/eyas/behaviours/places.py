@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from eyas.behaviours.obstacles import Obstacles
 from eyas.core.errors import SpawnError
-from eyas.core.variation import Variation, sample
+from eyas.core.variation import Variation, bounds, sample
 from eyas.state.roads import RoadNetwork
 from eyas.world.roads.areas import Street, streets
 
@@ -22,6 +22,9 @@ _PATIENT: Final = 10
 
 _WIDER: Final = 0.3
 """[m]"""
+
+_HOPELESS: Final = 40
+"""Rounds without a single place after which there is none."""
 
 _APART: Final = 0.3
 """Free ground around each [m]."""
@@ -72,7 +75,8 @@ class Roadside:
         """
         places, open_ = np.zeros((count, 2)), np.arange(count)
         for round_ in range(_ROUNDS):
-            if not len(open_) or not self._lines:
+            hopeless = round_ == _HOPELESS and len(open_) == count
+            if not len(open_) or not self._lines or hopeless:
                 break
             middle = self._middles(len(open_), rng)
             aside = np.array([sample(offset, rng) for _ in open_])
@@ -82,9 +86,11 @@ class Roadside:
             places[open_[free]] = drawn[free]
             open_ = open_[~free]
         if len(open_):
+            least, most = (f"{end:g}" for end in bounds(offset))
             raise SpawnError(
-                f"{what}: {count} are asked for, but the map has room beside its roads for only "
-                f"{count - len(open_)}; allowed: fewer"
+                f"{what}: beside the roads, {least if least == most else f'{least} to {most}'} m "
+                f"from their middle, the map has only {count - len(open_)} of the {count} places "
+                "that are needed one after the other; allowed: fewer, or a smaller offset"
             )
         return places
 

@@ -32,6 +32,9 @@ _SPAN: Final = 0.25
 _JITTER: Final = 0.5
 """How irregularly those who go the same way follow each other, as a share of even distances."""
 
+_TOGETHER: Final = 4
+"""Objects that are laid on the ground at a time: for hundreds at once it takes gigabytes."""
+
 Floats = NDArray[np.float64]
 
 
@@ -177,6 +180,12 @@ def _walkways(ground: Ground, troop: Troop, habit: Habit, vehicles: Motion | Non
 
 
 def _lay(ground: Ground, table: NDArray[np.void], rate: float) -> None:
+    """Set the heights and slopes of samples to those of the ground."""
+    for first in range(0, table.shape[1], _TOGETHER):
+        _lay_some(ground, table[:, first : first + _TOGETHER], rate)
+
+
+def _lay_some(ground: Ground, table: NDArray[np.void], rate: float) -> None:
     """Set the heights and slopes of samples to those of the ground."""
     here = table["present"] > 0.0
     rows = table[here]

@@ -19,6 +19,9 @@ _NEAR: Final = 0.7
 _GRAIN: Final = 0.04
 """Distance between the points at which the ground is sought: slow robots share many [m]."""
 
+_ROW: Final = 2**31
+"""More than all points between one end of a map and the other."""
+
 Floats = NDArray[np.float64]
 
 
@@ -56,11 +59,11 @@ class Surface:
 
         Its height above the terrain is that of a point less than `_GRAIN` away.
         """
-        east, north = np.rint(points.T / _GRAIN).astype(np.int64)
-        # One number for each place: unique rows would take five times as long.
-        keys, place = np.unique((east << 32) + north, return_inverse=True)
-        east = (keys + (1 << 31)) >> 32
-        rounded = np.column_stack([east, keys - (east << 32)]).astype(np.float64)
+        # As single numbers, points are sorted eight times as fast as in pairs.
+        east, north = np.rint(points / _GRAIN).astype(np.int64).T
+        different, place = np.unique(east * _ROW + north, return_inverse=True)
+        column, row = np.divmod(different + _ROW // 2, _ROW)
+        rounded = np.column_stack([column, row - _ROW // 2]).astype(np.float64)
         found = self._exactly(rounded * _GRAIN)
         above = found.height - reliefs(self._terrain, rounded * _GRAIN)
         height = reliefs(self._terrain, points) + above[place]

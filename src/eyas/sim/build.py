@@ -9,7 +9,7 @@ from eyas.sim.assets import load_assets
 from eyas.sim.config import SimConfig
 from eyas.sim.crowd import crowd_of
 from eyas.sim.simulation import Simulation
-from eyas.sim.worlds import largest_world
+from eyas.sim.worlds import ALONE, largest_world
 from eyas.trackers.kinds import tracker_of
 from eyas.trackers.tracker import Tracker
 
@@ -32,8 +32,10 @@ def build_simulation(
     Raises:
         EyasError: A setting is not supported, or no traffic matches the settings.
     """
-    crowd = crowd_of(config)
-    assets = load_assets(config.world, config.traffic, largest_world(world_of), crowd)
+    trackers = largest_world(world_of)
+    goes_on = bool((np.asarray(world_of) != ALONE).any())
+    crowd = crowd_of(config, trackers if goes_on else 0)
+    assets = load_assets(config.world, config.traffic, trackers, crowd)
     if config.light.visibility is not None and not assets.lighting.foggy:
         _LOG.warning(
             "light.visibility (Env_Params.foggy_use_default): without effect in the weather '%s', "

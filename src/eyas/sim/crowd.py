@@ -48,6 +48,9 @@ class Crowd(Config):
     extras: tuple[ExtraConfig, ...] = ()
     episode: float = 0.0
     """Length of an episode [s]."""
+    followers: int = 0
+    """Different targets that are followed at once in a world whose time goes on; 0: there is no
+    such world."""
     custom: CustomConfig | None = None
     """A target of one's own, in the place of `target`."""
 
@@ -61,8 +64,14 @@ NOBODY = Crowd()
 """Only SUMO's vehicles."""
 
 
-def crowd_of(config: SimConfig) -> Crowd:
-    """Return the crowd of a simulation; equal where only settings without effect differ."""
+def crowd_of(config: SimConfig, trackers: int = 0) -> Crowd:
+    """Return the crowd of a simulation; equal where only settings without effect differ.
+
+    Args:
+        config: The settings.
+        trackers: Number of trackers in the largest world whose time goes on from episode to
+            episode; 0: there is none.
+    """
     extras = extras_of(config)
     if config.custom is None and config.target is TargetName.SUMO_VEHICLE:
         return Crowd(extras=extras)
@@ -72,6 +81,7 @@ def crowd_of(config: SimConfig) -> Crowd:
         objects=config.objects,
         extras=extras,
         episode=seconds,
+        followers=min(trackers, 1) if config.same_target else trackers,
         custom=config.custom,
     )
 
@@ -175,7 +185,7 @@ def crowd_motions(
 def _troops(crowd: Crowd, clock: Clock) -> list[Troop]:
     troops = []
     if crowd.custom is None and not crowd.follows_vehicles:
-        lives = recycled(crowd.objects, clock.samples, clock.rate, crowd.episode)
+        lives = _lives(crowd, clock)
         target = ExtraConfig(kind=crowd.target)
         troops.append(_troop(target, lives, crowd.objects.offset, "objects.max_count"))
     for number, extra in enumerate(crowd.extras):
@@ -183,6 +193,10 @@ def _troops(crowd: Crowd, clock: Clock) -> list[Troop]:
             lives = lasting(extra.count, clock.samples)
             troops.append(_troop(extra, lives, _ASIDE, f"extras.{number}.count"))
     return troops
+
+
+def _lives(crowd: Crowd, clock: Clock) -> Lives:
+    return recycled(crowd.objects, clock.samples, clock.rate, crowd.episode, crowd.followers)
 
 
 def _refuse_crossing(crowd: Crowd) -> None:
@@ -213,8 +227,7 @@ def _custom(  # as of `crowd_motions`
     from eyas.custom.motion import Places, custom_motion
 
     driven = any(map(_is_traffic, crowd.extras))
-    lives = recycled(crowd.objects, clock.samples, clock.rate, crowd.episode)
-    places = Places(lives, crowd.objects.offset, vehicles)
+    places = Places(_lives(crowd, clock), crowd.objects.offset, vehicles)
     ground = Ground(scene, roads=driven, lights=lights)
     return custom_motion(custom, places, ground, clock, stream(seed, "custom"))
 

@@ -85,9 +85,12 @@ def choose_target(
     """
     free = [int(actor) for actor in np.flatnonzero(available) if int(actor) not in used]
     if not free:
-        followed = sum(actor >= 0 for actor in used)
+        here, followed = int(np.sum(available)), sum(actor >= 0 for actor in used)
+        enough = "at least as many targets as trackers"
+        # Those who come and go may not have come yet, or have all gone.
+        sooner = "some at any time: see traffic.group_interval and route_count, or objects.interval"
         raise SpawnError(
-            f"start: no target is free: {int(np.sum(available))} in the world, {followed} "
-            "followed; allowed: at least as many vehicles as trackers"
+            f"start: no target is free: {here} in the world, {followed} followed; "
+            f"allowed: {enough if here else sooner}"
         )
     return free[int(rng.integers(len(free)))]

@@ -104,18 +104,21 @@ def random_trips(
     edges = sorted(links.successors)
     trees: dict[str, dict[str, str]] = {}
     while True:
+        tried = []
         for _ in range(TRIES):
             start, end = (edges[int(index)] for index in rng.integers(len(edges), size=2))
             if start not in trees:
                 trees[start] = _shortest_tree(links, start)
             route = _path(trees[start], start, end)
-            if route and lengths[0] <= sum(links.length[edge] for edge in route) <= lengths[1]:
-                break
+            if route:
+                tried.append(sum(links.length[edge] for edge in route))
+                if lengths[0] <= tried[-1] <= lengths[1]:
+                    break
         else:
-            longest = sum(links.length.values())
+            found = f"{min(tried):.0f} to {max(tried):.0f} m" if tried else "none"
             raise ConfigError(
                 f"traffic.route_length: no route of {lengths[0]:g} to {lengths[1]:g} m found in "
-                f"{TRIES} tries; the map has {longest:.0f} m of roads"
+                f"{TRIES} tries; allowed: what the map has, about {found}"
             )
         yield route
 

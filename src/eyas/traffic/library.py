@@ -166,8 +166,8 @@ def _tell_raised(config: TrafficConfig, wanted: TrafficConfig, trackers: int) ->
     said, used = config.group_size, wanted.group_size
     if said is not None and used is not None and used > said:
         _LOG.warning(
-            "traffic.group_size (Sumo_Params.car_group_num): %d raised to %d, %d for each of "
-            "%d trackers in a world",
+            "traffic.group_size (Sumo_Params.car_group_num): %d raised to %d, %d for each tracker, "
+            "of which a world has %d",
             *(said, used, GROUP_SHARE, trackers),
         )
 

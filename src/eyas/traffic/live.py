@@ -26,7 +26,7 @@ from eyas.traffic.network import network_xml
 from eyas.traffic.record import WARM_UP
 from eyas.traffic.recorded import table_of
 from eyas.traffic.replay import check_time
-from eyas.traffic.sumo import RATE, SumoRun
+from eyas.traffic.sumo import RATE, SumoRun, no_room
 
 __all__ = ["LiveSumo", "Reaction"]
 
@@ -91,9 +91,7 @@ class LiveSumo:
         self.prepare(0.0)
         if self._lasting and not self._tracks.present[0].all():
             self.close()
-            raise ConfigError(
-                f"traffic.max_vehicles: {len(kinds)} is too many for the roads of this map"
-            )
+            raise no_room(self._tracks.present[0])
         global _running
         _running = weakref.ref(self)
 

@@ -5,7 +5,6 @@ from importlib.metadata import version
 
 import numpy as np
 
-from eyas.core.errors import ConfigError
 from eyas.state.roads import RoadGraph
 from eyas.traffic.config import Demand, TrafficConfig
 from eyas.traffic.fleet import fleet_of, simplest
@@ -59,8 +58,6 @@ def record(  # noqa: PLR0913  # everything a recording depends on
     origin = provenance(map_name, map_seed, graph_hash(graph), config, duration)
     span = (WARM_UP, WARM_UP + duration)
     raw = drive(network_xml(graph), config, fleet_of(config, span[1]), span, progress)
-    if config.demand is Demand.KEEP_ALIVE:
-        _check_all_there(raw)
     return _as_recording(raw, origin)
 
 
@@ -117,15 +114,6 @@ def provenance(
         sumo_version=sumo_version(),
         eyas_version=version("eyas"),
     )
-
-
-def _check_all_there(raw: Drive) -> None:
-    there = raw.present.all(axis=0)
-    if not there.all():
-        raise ConfigError(
-            f"traffic.max_vehicles: {there.size} is too many for the roads of this map; "
-            f"only {int(there.sum())} vehicles fit for the whole recording"
-        )
 
 
 def _as_recording(raw: Drive, origin: Provenance) -> Recording:

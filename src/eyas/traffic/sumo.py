@@ -18,7 +18,7 @@ from eyas.traffic.fleet import Fleet, vehicle_types
 from eyas.traffic.slots import Slots
 from eyas.traffic.sumo_install import import_libsumo
 
-__all__ = ["RATE", "Drive", "SumoRun", "drive", "options"]
+__all__ = ["RATE", "Drive", "SumoRun", "drive", "no_room", "options"]
 
 RATE = 10
 """SUMO's steps and Eyas's samples per second [Hz], as in the original."""
@@ -97,7 +97,8 @@ def drive(
 
     Raises:
         MissingExtraError: SUMO is not installed.
-        ConfigError: SUMO already runs another simulation in this process.
+        ConfigError: SUMO already runs another simulation in this process, or the roads have no room
+            for all who never leave: told before the whole time is simulated.
     """
     skipped, steps = round(span[0] * RATE), round(span[1] * RATE)
     with closing(SumoRun(network, config, fleet)) as run:
@@ -106,9 +107,20 @@ def drive(
             run.advance()
             if step >= skipped:
                 run.read(result, step - skipped)
+            everyone = config.demand is Demand.RESPAWN or result.present[0].all()
+            if step == skipped and not everyone:
+                raise no_room(result.present[0])
             if progress and step % RATE == 0:
                 progress(step / steps)
     return result
+
+
+def no_room(present: NDArray[np.bool_]) -> ConfigError:
+    """Return the error about vehicles of whom some, shape (A,), have not found room."""
+    return ConfigError(
+        f"traffic.max_vehicles: {present.size} is too many for the roads of this map; allowed: up "
+        f"to about {int(present.sum())}"
+    )
 
 
 class SumoRun:

@@ -56,7 +56,7 @@ def build_world(config: EyasConfig, vehicles: int) -> DemoWorld:
     Raises:
         EyasError: A setting is not supported, or no traffic matches the settings.
     """
-    crowd = crowd_of(config)
+    crowd = crowd_of(config, trackers=1)
     assets = load_assets(config.world, config.traffic, crowd=crowd)
     motion = assets.traffic.motion
     driven = np.isin(motion.kind, [kind_index(kind.name) for kind in VEHICLE_KINDS])

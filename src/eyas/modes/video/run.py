@@ -1,6 +1,7 @@
 """Record videos with labels: `channels` trackers follow their targets together in one world."""
 
 from collections.abc import Callable
+from contextlib import closing
 from pathlib import Path
 
 from eyas.core.clock import PHYSICS_RATE
@@ -15,9 +16,7 @@ from eyas.modes.video.report import Progress, print_report
 from eyas.modes.video.step_log import step_log
 from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.messages import originals_named
-from eyas.sim.assets import load_assets
 from eyas.sim.build import build_simulation
-from eyas.sim.crowd import crowd_of
 from eyas.sim.simulation import Simulation
 from eyas.sim.worlds import together
 from eyas.state.snapshot import Snapshot
@@ -59,11 +58,13 @@ def run(
         chosen_writers(config.video.writers)
         check_folder(folder, config, overwrite=overwrite, resume=resume)
         sim = build_simulation(recording_rules(config), together(config.video.channels))
-        _require_traffic(config)
-        sim.reset()  # raises if there are fewer targets than trackers
-    with folder_lock(folder, "recording into it"):
-        recording = open_folder(folder, config, overwrite=overwrite, resume=resume)
-        _record(sim, config, recording, quiet=quiet)
+    with closing(sim):
+        with originals_named(config):
+            _require_traffic(config, sim.traffic.duration)
+            sim.reset()  # raises if there are fewer targets than trackers
+        with folder_lock(folder, "recording into it"):
+            recording = open_folder(folder, config, overwrite=overwrite, resume=resume)
+            _record(sim, config, recording, quiet=quiet)
 
 
 def _record(sim: Simulation, config: EyasConfig, folder: VideoFolder, *, quiet: bool) -> None:
@@ -104,10 +105,9 @@ def recording_rules(config: EyasConfig) -> EyasConfig:
     return config.model_copy(update={"done": done})
 
 
-def _require_traffic(config: EyasConfig) -> None:
+def _require_traffic(config: EyasConfig, known: float) -> None:
+    """Refuse a recording that ends after the traffic, at a time [s], or before it begins."""
     end = config.video.start_time + config.video.total_time
-    channels, crowd = config.video.channels, crowd_of(config)
-    known = load_assets(config.world, config.traffic, channels, crowd).traffic.duration
     if end > known:
         raise ConfigError(
             f"video.total_time: {config.video.total_time:g} s after {config.video.start_time:g} s"

@@ -169,8 +169,11 @@ class Span(Entry):
 
     @override
     def blame(self, values: Values) -> Iterator[Guess]:
-        yield Guess(self.most, [0.0, values[self.most]], "a number above 0")
-        yield Guess(self.least, None, f"a number from 0 to below {self.most}")
+        most = values[self.most]
+        yield Guess(self.most, [0.0, most], "a number above 0 and up to 1e9")
+        yield Guess(
+            self.least, None, f"a number from 0 to below {self.most}, which is {shown(most)}"
+        )
 
 
 @dataclass(frozen=True, slots=True)

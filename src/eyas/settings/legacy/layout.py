@@ -70,6 +70,10 @@ def check_kinds(entry: Entry, values: Values, *, idle: bool = False) -> None:
 
     A key for one field is checked by that field, unless the entry has no effect (`idle`).
     """
+    for key in entry.keys:
+        if isinstance(values[key], Mapping) and isinstance(every_key()[key], str):
+            allowed = f"a name; more than one: {', '.join(entry.paths)}"
+            raise Problem((key,), values[key], allowed).error()
     if len(entry.keys) == 1 and not idle:
         return
     for key in entry.keys:

@@ -1,0 +1,34 @@
+"""Recording while SUMO drives."""
+
+import pytest
+
+from eyas.modes.video import run as video
+from eyas.modes.video.config import VideoConfig
+from eyas.sensors.config import CameraConfig
+from eyas.settings.config import EyasConfig
+from eyas.task.config import DoneConfig
+from eyas.traffic.config import Source, TrafficConfig
+
+RECORDED = EyasConfig(
+    camera=CameraConfig(width=48, height=36),
+    done=DoneConfig(total_steps=400),
+    video=VideoConfig(
+        channels=2, fps=5.0, start_time=0.7, total_time=2.0, writers=("jpeg", "labels")
+    ),
+)
+LIVE = RECORDED.model_copy(update={"traffic": TrafficConfig(source=Source.LIVE)})
+
+
+def files_of(config, folder) -> dict:
+    video.run(config, folder, quiet=True)
+    return {path.relative_to(folder): path.read_bytes() for path in folder.glob("DRONE*/*/*")}
+
+
+@pytest.mark.sumo
+def test_live_traffic_gives_the_pictures_and_labels_of_its_recording(tmp_path):
+    """Twice, as a live world must be closed when its recording ends."""
+    pytest.importorskip("libsumo")
+    expected = files_of(RECORDED, tmp_path / "recorded")
+    assert len(expected) > 20
+    assert files_of(LIVE, tmp_path / "live") == expected
+    assert files_of(LIVE, tmp_path / "again") == expected
