@@ -1,9 +1,5 @@
 """Frames as they are taken: copies of what steps and pictures change later."""
 
-import math
-
-import numpy as np
-
 from eyas.core.clock import PHYSICS_STEP
 from eyas.exports.frame import Action, Body, CameraPose, Floats, Frame, Subject
 from eyas.exports.movement import Movement
@@ -89,7 +85,6 @@ def _target(snapshot: Snapshot, tracker: int, picture: Picture, view: int) -> Su
     assert picture.subject_box is not None
     assert picture.subject_pixels is not None
     seen, covered = (int(pixels) for pixels in picture.subject_pixels[view])
-    yaw, speed = float(targets.yaw[tracker]), float(targets.speed[tracker])
     return Subject(
         object_id=ACTOR_OBJECT + int(targets.actor[tracker]),
         type=MODELS[targets.model[tracker]].name,
@@ -97,8 +92,8 @@ def _target(snapshot: Snapshot, tracker: int, picture: Picture, view: int) -> Su
         size=targets.size[tracker].copy(),
         position=targets.position[tracker].copy(),
         centre=targets.centre[tracker].copy(),
-        velocity=np.array([speed * math.cos(yaw), speed * math.sin(yaw), 0.0]),
-        yaw=yaw,
+        velocity=targets.velocity[tracker].copy(),
+        yaw=float(targets.yaw[tracker]),
         motion=Movement(
             acceleration=targets.acceleration[tracker].copy(),
             yaw_rate=float(targets.yaw_rate[tracker]),

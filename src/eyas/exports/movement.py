@@ -19,7 +19,7 @@ class Movement:
     """How a moving object moves, and stands on the ground."""
 
     acceleration: Floats
-    """World frame, horizontal [m/s^2], shape (3,)."""
+    """Change of the velocity, world frame [m/s^2], shape (3,)."""
     yaw_rate: float
     """Counter-clockwise [rad/s]."""
     slope: float

@@ -1,6 +1,5 @@
 """The moving objects of a picture besides its target."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -55,15 +54,16 @@ def others_of(
 def _movement(actors: ActorState, before: ActorState, actor: int, model: int) -> Movement:
     """Return the movement of an actor, from its states now and a step earlier."""
     yaw, speed = float(actors.yaw[0, actor]), float(actors.speed[0, actor])
-    yaw_rate, gain = float(actors.yaw_rate[0, actor]), 0.0
+    yaw_rate, velocity = float(actors.yaw_rate[0, actor]), actors.velocity[0, actor]
     if before.present[0, actor]:
-        gain = (speed - float(before.speed[0, actor])) / PHYSICS_STEP
-    way, swing = speed * PHYSICS_STEP, speed * yaw_rate
+        acceleration = (velocity - before.velocity[0, actor]) / PHYSICS_STEP
+    else:
+        acceleration = yaw_rate * np.array([-velocity[1], velocity[0], 0.0])
+    way = speed * PHYSICS_STEP
     last_yaw = yaw - yaw_rate * PHYSICS_STEP
     direction = _target_direction(way, 0.0, yaw, last_yaw, kind_of(model).slowest)
-    east, north = math.cos(yaw), math.sin(yaw)
     return Movement(
-        acceleration=np.array([gain * east - swing * north, gain * north + swing * east, 0.0]),
+        acceleration=acceleration,
         yaw_rate=yaw_rate,
         slope=float(actors.slope[0, actor]),
         travelled=float(actors.travelled[0, actor]),
@@ -78,7 +78,7 @@ def _subject(  # where it is, and where it is seen
     assert picture.actor_box is not None
     assert picture.actor_pixels is not None
     kind, (x, y, z) = kind_of(model), actors.position[0, actor].tolist()
-    yaw, speed = float(actors.yaw[0, actor]), float(actors.speed[0, actor])
+    yaw = float(actors.yaw[0, actor])
     seen, covered = (int(pixels) for pixels in picture.actor_pixels[view, actor])
     height = z + MODELS[model].rise
     return Subject(
@@ -88,7 +88,7 @@ def _subject(  # where it is, and where it is seen
         size=np.array(MODELS[model].size, np.float64),
         position=np.array([x, y, height]),
         centre=np.array([*_target_centre(x, y, yaw, kind.ahead), height]),
-        velocity=np.array([speed * math.cos(yaw), speed * math.sin(yaw), 0.0]),
+        velocity=actors.velocity[0, actor].copy(),
         yaw=yaw,
         motion=_movement(actors, before, actor, model),
         box=picture.actor_box[view, actor].copy(),
