@@ -112,11 +112,11 @@ def test_their_motion_is_continuous_and_the_same_again(ground, vehicles, table):
     assert walked(ground, vehicles).tobytes() == table.tobytes()
 
 
-def passing(x: np.ndarray) -> Motion:
-    """One car along the x axis, ten samples a second."""
+def passing(x: np.ndarray, kind: str = "passenger") -> Motion:
+    """One vehicle along the x axis, ten samples a second."""
     table = np.zeros((len(x), 1), SAMPLE)
     table["x"][:, 0], table["present"] = x, 1.0
-    return Motion(table, np.array([kind_index("passenger")], np.int32), 10.0, 0.0)
+    return Motion(table, np.array([kind_index(kind)], np.int32), 10.0, 0.0)
 
 
 LINE = np.array([[0.0, -5.0], [0.0, 5.0]])
@@ -129,7 +129,16 @@ def test_a_gap_is_long_enough_for_who_crosses():
     assert gaps.first(LINE, 3.0, 7.0) == 3.0
     assert 20.4 < gaps.first(LINE, 15.0, 7.0) < 22.0
     assert gaps.first(LINE, 30.0, 7.0) == 30.0
+    # Who leaves at 12 s is across at 19 s, but that is too narrow an escape.
+    assert gaps.first(LINE, 12.0, 7.0) > 20.0
     assert Gaps(None, 601, 10.0).first(LINE, 15.02, 7.0) == 15.1
+
+
+def test_trailers_in_bends_are_given_a_wider_berth():
+    beside = [[0.0, 3.7], [0.0, 13.7]]  # 2.3 m from the side of a truck that stands there
+    for kind, lets in (("truck", 3.0), ("trailer", None)):
+        gaps = Gaps(passing(np.zeros(2001), kind), 2001, 10.0)
+        assert gaps.first(np.array(beside), 3.0, 7.0) == lets
 
 
 def test_nobody_waits_longer_than_a_minute():

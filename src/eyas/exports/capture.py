@@ -5,7 +5,7 @@ from eyas.exports.frame import Action, Body, CameraPose, Floats, Frame, Subject
 from eyas.exports.movement import Movement
 from eyas.state.draw import Picture
 from eyas.state.episode import EpisodeState
-from eyas.state.scene import ACTOR_OBJECT
+from eyas.state.scene import ACTOR_OBJECT, ObjectClass
 from eyas.state.snapshot import CameraState, Snapshot, TrackerState
 from eyas.targets.catalogue import MODELS, kind_of
 from eyas.task.direction import TargetDirection
@@ -101,6 +101,7 @@ def _target(snapshot: Snapshot, tracker: int, picture: Picture, view: int) -> Su
             travelled=float(targets.travelled[tracker]),
             direction=TargetDirection(snapshot.episodes.direction[tracker]),
             rise=float(targets.rise[tracker]),
+            upright=kind_of(int(targets.model[tracker])).object_class is ObjectClass.PERSON,
         ),
         box=picture.subject_box[view].copy(),
         seen_pixels=seen,

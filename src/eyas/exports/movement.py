@@ -30,6 +30,8 @@ class Movement:
     """Its turn."""
     rise: float
     """Height of its reference point above the ground [m]."""
+    upright: bool = False
+    """Whether it stays upright on slopes, like people; else it tilts with the ground."""
 
 
 def box_corners(centre: Floats, size: Floats, yaw: float, motion: Movement) -> Floats:
@@ -40,13 +42,14 @@ def box_corners(centre: Floats, size: Floats, yaw: float, motion: Movement) -> F
         centre: Middle of the body, at the height of its reference point [m], shape (3,).
         size: Length, width, height [m], shape (3,).
         yaw: Heading [rad].
-        motion: Slope of the ground, and height of the reference point above it.
+        motion: Slope of the ground, height of the reference point above it, and whether it tilts.
     """
     length, width, height = size.tolist()
     pitch, cosine, sine = motion.slope, math.cos(yaw), math.sin(yaw)
     ahead = np.array([cosine * math.cos(pitch), sine * math.cos(pitch), math.sin(pitch)])
     left, up = np.array([-sine, cosine, 0.0]), np.array([0.0, 0.0, 1.0])
+    standing = up if motion.upright else np.cross(ahead, left)
     ends = np.array([[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]])
     plan = 0.5 * (length * ends[:, :1] * ahead + width * ends[:, 1:] * left)
     ground = centre - motion.rise * up + plan
-    return np.concatenate([ground, ground + height * up])
+    return np.concatenate([ground, ground + height * standing])

@@ -11,7 +11,7 @@ from eyas.exports.movement import Movement
 from eyas.sim.simulation import Simulation
 from eyas.state.draw import Picture
 from eyas.state.motion import ActorState
-from eyas.state.scene import ACTOR_OBJECT
+from eyas.state.scene import ACTOR_OBJECT, ObjectClass
 from eyas.targets.catalogue import MODELS, kind_of
 from eyas.targets.words import words_of
 from eyas.task.direction import TargetDirection, target_centre, target_direction
@@ -69,6 +69,7 @@ def _movement(actors: ActorState, before: ActorState, actor: int, model: int) ->
         travelled=float(actors.travelled[0, actor]),
         direction=TargetDirection(direction),
         rise=MODELS[model].rise,
+        upright=kind_of(model).object_class is ObjectClass.PERSON,
     )
 
 
