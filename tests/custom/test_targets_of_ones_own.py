@@ -9,7 +9,7 @@ import pytest
 from eyas.core.config import validated
 from eyas.core.errors import ConfigError, UnknownNameError
 from eyas.custom.config import CustomConfig
-from eyas.custom.kind import _spoken
+from eyas.custom.kind import _spoken, kind_name_of
 from eyas.mesh.shell import Shell
 from eyas.modes.targets.check import check
 from eyas.sim.build import build_simulation
@@ -19,9 +19,11 @@ from eyas.sim.simulation import Simulation
 from eyas.sim.worlds import together
 from eyas.state.draw import Picture
 from eyas.state.mesh import Material
+from eyas.state.motion import ActorState
 from eyas.state.scene import ACTOR_OBJECT, ObjectClass
-from eyas.targets.catalogue import MODELS
-from eyas.targets.kind import Model
+from eyas.targets.catalogue import MODELS, kind_index, models_of
+from eyas.targets.kind import Looks, Model
+from eyas.targets.rig import Rigs
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -274,6 +276,46 @@ def test_who_walks_by_a_trajectory_stands_on_pavements_and_lawns(tmp_path: Path)
         track.write_text(f"t,x,y\n0,{x},{y}\n60,{x + 0.1},{y}\n")
         table = begun(custom={"trajectory": str(track)}).traffic.motion.table
         assert table["z"][0, 0] == pytest.approx(height, abs=0.02)
+
+
+def test_a_trajectory_climbs_with_the_ground_or_as_it_says(tmp_path: Path):
+    terrain = load_scene("village").terrain
+    rise = np.diff(terrain.relief.astype(np.float64), axis=1) / terrain.spacing
+    row, column = np.argwhere(np.abs(rise - 0.2) < 0.02).T
+    x = terrain.west + (column + 0.2) * terrain.spacing
+    y = terrain.south + row * terrain.spacing
+    nearest = np.argmin(np.hypot(x, y))
+    x, y = x[nearest], y[nearest]
+    steps = [(0, 0.0), (1, 0.3), (2, 0.6)]
+    for heights in (False, True):
+        track = tmp_path / f"climb{heights}.csv"
+        lines = [f"{t},{x + d},{y}" + f",{3 + 0.4 * t}" * heights for t, d in steps]
+        track.write_text("t,x,y" + ",z" * heights + "\n" + "\n".join(lines))
+        custom = {"trajectory": str(track), "body": "BB-8"}
+        row = begun(custom=custom, world={"map": "village"}).traffic.motion.table[10, 0]
+        assert row["velocity_x"] == pytest.approx(0.3, abs=0.01)
+        if heights:
+            told = row["z"], row["velocity_z"], row["slope"]
+            assert told == pytest.approx((3.4, 0.4, 0.0), abs=0.01)
+        else:
+            assert np.tan(row["slope"]) == pytest.approx(0.2, abs=0.05)
+            assert row["velocity_z"] == pytest.approx(0.06, abs=0.02)
+
+
+def test_a_target_of_ones_own_tilts_with_its_ground(monkeypatch):
+    monkeypatch.setitem(sys.modules, __name__, _this())
+    name = kind_name_of(CustomConfig(path=f"{__name__}:Whole"))
+    rigs, actors = Rigs(np.array([kind_index(name)], np.int32)), ActorState.create(1, 1)
+    actors.present[:], actors.yaw[:], actors.slope[:] = True, np.pi / 2, 0.3
+    actors.position[0, 0] = 1.0, 2.0, 3.0
+    model = np.full((1, 1), models_of(kind_index(name)).start, np.int32)
+    out = rigs.draw_list(1)
+    rigs.pose(actors, Looks(model, np.ones((1, 1, 3), np.float32)), out)
+    ahead, left, up, origin = out.pose[0, 0].T
+    np.testing.assert_allclose(ahead, [0.0, np.cos(0.3), np.sin(0.3)], atol=1e-6)
+    np.testing.assert_allclose(left, [-1.0, 0.0, 0.0], atol=1e-6)
+    np.testing.assert_allclose(up, np.cross(ahead, left), atol=1e-6)
+    np.testing.assert_allclose(origin, [1.0, 2.0, 3.0], atol=1e-6)
 
 
 def test_words_are_made_of_any_name():
