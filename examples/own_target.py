@@ -26,7 +26,7 @@ TURN = 0.8
 class Sprinkler:
     """A box with an arm that turns above it as it drives round and round."""
 
-    size = (2.0, 1.2, 1.1)
+    size = (3.2, 3.2, 1.1)  # its arm sweeps a circle
 
     def parts(self) -> Sequence[Mesh]:
         """Return the box and the arm, each about its own origin."""

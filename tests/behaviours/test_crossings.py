@@ -156,6 +156,8 @@ def test_a_gap_is_long_enough_for_who_crosses():
     assert gaps.first(LINE, 3.0, 7.0) == 3.0
     assert 20.4 < gaps.first(LINE, 15.0, 7.0) < 22.0
     assert gaps.first(LINE, 30.0, 7.0) == 30.0
+    # Who leaves at 12 s is across at 19 s, but that is too narrow an escape.
+    assert gaps.first(LINE, 12.0, 7.0) > 20.0
     assert Gaps(None, 601, 10.0).first(LINE, 15.02, 7.0) == 15.1
 
 

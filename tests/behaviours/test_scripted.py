@@ -74,6 +74,22 @@ def test_everyone_stands_on_the_upper_side_of_the_ground(hills):
     assert 0.02 < steep.max() < 0.8
 
 
+def test_samples_tell_how_their_places_change(hills):
+    wide = Mirrored(mirrored=(30.0, 90.0))
+    table = table_of(hills, troop("Pedestrian", count=30, offset=wide))
+    assert (table["present"] > 0.0).all()
+    for place, change in (("x", "velocity_x"), ("y", "velocity_y"), ("z", "velocity_z"),
+                          ("yaw", "yaw_rate")):  # fmt: skip
+        went = 0.5 * CLOCK.rate * (table[place][2:].astype(float) - table[place][:-2])
+        assert np.abs(went).max() > 0.2, place
+        off = np.abs(went - table[change][1:-1])
+        assert np.quantile(off, 0.9) < 0.01, place
+    speed, rise = np.hypot(table["velocity_x"], table["velocity_y"]), np.tan(table["slope"])
+    climbing = (speed > 1.0) & (np.abs(rise) > 0.05)
+    off = np.abs(rise * speed - table["velocity_z"])[climbing]
+    assert np.median(off) < 0.06 < 0.1 < np.median(np.abs(table["velocity_z"][climbing]))
+
+
 def test_pavements_are_higher_than_roads_and_lawns_lower(city):
     rows = table_of(city, troop("Pedestrian", behaviour=Behaviour.PAVEMENT))
     assert np.median(rows["z"]) == pytest.approx(0.15)

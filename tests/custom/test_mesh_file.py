@@ -45,6 +45,31 @@ def test_a_file_stands_on_the_ground_and_looks_along_x(box: Path):
     assert list(of_shape(shape)) == []
 
 
+def test_a_positive_turn_is_counter_clockwise_from_above(tmp_path: Path):
+    arrow = trimesh.Trimesh([[0, 0, 0], [4, 0, 0], [0, 1, 0], [0, 0, 1]],
+                            [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])  # fmt: skip
+    arrow.export(tmp_path / "arrow.ply")
+    shape = loaded(CustomConfig(mesh=str(tmp_path / "arrow.ply"), turn=np.pi / 2))
+    assert shape.size == pytest.approx((1.0, 4.0, 1.0))
+    tops = shape.points[shape.points[:, 2] > 0.9]
+    assert tops[0][:2] == pytest.approx([0.5, -2.0])  # its tip is to the left
+
+
+def test_a_factor_dyes_the_texture(tmp_path: Path):
+    from PIL import Image
+
+    white = Image.new("RGB", (8, 8), (255, 255, 255))
+    dyed = trimesh.visual.material.PBRMaterial(
+        baseColorTexture=white, baseColorFactor=[255, 128, 0, 255]
+    )
+    visual = trimesh.visual.TextureVisuals(uv=np.eye(4, 2), material=dyed)
+    points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]
+    faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]
+    trimesh.Trimesh(points, faces, visual=visual, process=False).export(tmp_path / "dyed.glb")
+    colours = loaded(CustomConfig(mesh=str(tmp_path / "dyed.glb"))).colours
+    np.testing.assert_allclose(colours, [[1.0, 0.5, 0.0]] * len(colours), atol=0.02)
+
+
 def test_a_texture_becomes_colours(tmp_path: Path):
     from PIL import Image
 

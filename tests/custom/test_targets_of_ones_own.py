@@ -9,15 +9,21 @@ import pytest
 from eyas.core.config import validated
 from eyas.core.errors import ConfigError, UnknownNameError
 from eyas.custom.config import CustomConfig
+from eyas.custom.kind import _spoken, kind_name_of
+from eyas.mesh.shell import Shell
 from eyas.modes.targets.check import check
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
+from eyas.sim.scenes import load_scene
 from eyas.sim.simulation import Simulation
 from eyas.sim.worlds import together
 from eyas.state.draw import Picture
+from eyas.state.mesh import Material
+from eyas.state.motion import ActorState
 from eyas.state.scene import ACTOR_OBJECT, ObjectClass
-from eyas.targets.catalogue import MODELS
-from eyas.targets.kind import Model
+from eyas.targets.catalogue import MODELS, kind_index, models_of
+from eyas.targets.kind import Looks, Model
+from eyas.targets.rig import Rigs
 
 EXAMPLES = Path(__file__).parents[2] / "examples"
 
@@ -150,9 +156,64 @@ class Partless(Sizeless):
 
 class Crooked(Partless):
     def parts(self):
-        import own_target
+        shell = Shell()
+        shell.box((-0.5, -0.5, 0.0), (0.5, 0.5, 1.0), Material())
+        return [shell.mesh(), shell.mesh()]
 
-        return own_target.Sprinkler().parts()
+
+class Whole(Crooked):
+    def pose(self, ride):
+        return np.tile(np.eye(3, 4), (len(ride.speed), 2, 1, 1))
+
+
+class Failing(Whole):
+    def parts(self):
+        raise RuntimeError("no\nparts today")
+
+
+class Unreadable(Whole):
+    @property
+    def size(self):
+        raise OSError("no such size")
+
+
+class Slim(Whole):
+    size = (5.0, 1.0, 1.0)
+
+
+class Stout(Whole):
+    size = (1.0, 0.8, 1.0)
+
+
+class Wordy(Whole):
+    size = "large"
+
+
+class Greedy(Whole):
+    def __init__(self, name):
+        self.name = name
+
+
+class Ragged(Whole):
+    def pose(self, ride):
+        return [[1.0, 2.0], [3.0]]
+
+
+class Lost(Whole):
+    def tracks(self, scene, time, count, rng):
+        return np.full((len(time), count, 3), 1e5)
+
+
+class Jumping(Whole):
+    def tracks(self, scene, time, count, rng):
+        ways = np.zeros((len(time), count, 3))
+        ways[50:, -1, 0] = 200.0
+        return ways
+
+
+class Narrow(Whole):
+    def tracks(self, scene):
+        return 0.0
 
 
 @pytest.mark.parametrize(
@@ -169,6 +230,19 @@ class Crooked(Partless):
         ({"path": f"{__name__}:Sizeless"}, "size is .*allowed: three lengths above 0"),
         ({"path": f"{__name__}:Partless"}, r"parts\(\) must return one or more meshes"),
         ({"path": f"{__name__}:Crooked"}, r"shape \(1, 1, 3, 4\) for 2 bodies"),
+        (
+            {"path": f"{__name__}:Failing"},
+            r"parts\(\) raised RuntimeError: no parts today \(.*own\.py, line \d+\)$",
+        ),
+        ({"path": f"{__name__}:Unreadable"}, "raised OSError: no such size"),
+        ({"path": f"{__name__}:Wordy"}, "size is 'large'; allowed: three lengths"),
+        ({"path": f"{__name__}:Greedy"}, "the class raised TypeError: .*'name'$"),
+        ({"path": f"{__name__}:Ragged"}, r"returned no array of numbers for 2 bodies; allowed"),
+        ({"path": f"{__name__}:Narrow"}, r"tracks\(...\) raised TypeError: "),
+        ({"path": f"{__name__}:Lost"}, r"body 1 of 10: .* are outside the map 'citystreet'"),
+        ({"path": f"{__name__}:Jumping"}, "body 10 of 10: point 51: it jumps 200 m in 0.1 s"),
+        ({"mesh": "gone.stl"}, r"^custom\.mesh: gone\.stl: cannot read: no such file$"),
+        ({"trajectory": "gone.csv"}, r"^custom\.trajectory: gone\.csv: cannot read: "),
         ({"trajectory": "x.csv", "body": "Pedestrien"}, "did you mean 'Pedestrian'"),
         ({"path": "a:B", "behaviour": "wonder"}, r"custom\.behaviour: .*did you mean 'wander'"),
     ],
@@ -183,8 +257,72 @@ def _this():
     import types
 
     module = types.ModuleType(__name__)
-    module.__dict__.update(Sizeless=Sizeless, Partless=Partless, Crooked=Crooked)
+    module.__dict__.update(globals())
     return module
+
+
+def test_who_walks_by_a_trajectory_stands_on_pavements_and_lawns(tmp_path: Path):
+    scene = load_scene("citystreet")
+    spots = {ObjectClass.PAVEMENT: 0.15, ObjectClass.ROAD: 0.0}
+    kinds = scene.object_class[scene.static_object]
+    for kind, height in spots.items():
+        corners = scene.static.positions[scene.static.triangles[kinds == kind]].astype(np.float64)
+        level = (
+            np.ptp(corners[..., 2], axis=1) + np.abs(corners[..., 2] - height).max(axis=1) < 0.02
+        )
+        across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+        x, y, _ = corners[np.argmax(np.where(level, across[:, 2], 0.0))].mean(axis=0)
+        track = tmp_path / f"{kind.name}.csv"
+        track.write_text(f"t,x,y\n0,{x},{y}\n60,{x + 0.1},{y}\n")
+        table = begun(custom={"trajectory": str(track)}).traffic.motion.table
+        assert table["z"][0, 0] == pytest.approx(height, abs=0.02)
+
+
+def test_a_trajectory_climbs_with_the_ground_or_as_it_says(tmp_path: Path):
+    terrain = load_scene("village").terrain
+    rise = np.diff(terrain.relief.astype(np.float64), axis=1) / terrain.spacing
+    row, column = np.argwhere(np.abs(rise - 0.2) < 0.02).T
+    x = terrain.west + (column + 0.2) * terrain.spacing
+    y = terrain.south + row * terrain.spacing
+    nearest = np.argmin(np.hypot(x, y))
+    x, y = x[nearest], y[nearest]
+    steps = [(0, 0.0), (1, 0.3), (2, 0.6)]
+    for heights in (False, True):
+        track = tmp_path / f"climb{heights}.csv"
+        lines = [f"{t},{x + d},{y}" + f",{3 + 0.4 * t}" * heights for t, d in steps]
+        track.write_text("t,x,y" + ",z" * heights + "\n" + "\n".join(lines))
+        custom = {"trajectory": str(track), "body": "BB-8"}
+        row = begun(custom=custom, world={"map": "village"}).traffic.motion.table[10, 0]
+        assert row["velocity_x"] == pytest.approx(0.3, abs=0.01)
+        if heights:
+            told = row["z"], row["velocity_z"], row["slope"]
+            assert told == pytest.approx((3.4, 0.4, 0.0), abs=0.01)
+        else:
+            assert np.tan(row["slope"]) == pytest.approx(0.2, abs=0.05)
+            assert row["velocity_z"] == pytest.approx(0.06, abs=0.02)
+
+
+def test_a_target_of_ones_own_tilts_with_its_ground(monkeypatch):
+    monkeypatch.setitem(sys.modules, __name__, _this())
+    name = kind_name_of(CustomConfig(path=f"{__name__}:Whole"))
+    rigs, actors = Rigs(np.array([kind_index(name)], np.int32)), ActorState.create(1, 1)
+    actors.present[:], actors.yaw[:], actors.slope[:] = True, np.pi / 2, 0.3
+    actors.position[0, 0] = 1.0, 2.0, 3.0
+    model = np.full((1, 1), models_of(kind_index(name)).start, np.int32)
+    out = rigs.draw_list(1)
+    rigs.pose(actors, Looks(model, np.ones((1, 1, 3), np.float32)), out)
+    ahead, left, up, origin = out.pose[0, 0].T
+    np.testing.assert_allclose(ahead, [0.0, np.cos(0.3), np.sin(0.3)], atol=1e-6)
+    np.testing.assert_allclose(left, [-1.0, 0.0, 0.0], atol=1e-6)
+    np.testing.assert_allclose(up, np.cross(ahead, left), atol=1e-6)
+    np.testing.assert_allclose(origin, [1.0, 2.0, 3.0], atol=1e-6)
+
+
+def test_words_are_made_of_any_name():
+    assert _spoken("DeliveryRobot") == "a delivery robot"
+    assert _spoken("delivery_robot-2") == "a delivery robot 2"
+    assert _spoken("ROSBot") == "a ros bot"
+    assert _spoken("Straßengerät größer") == "a straßengerät größer"
 
 
 def test_a_trajectory_outside_the_map_is_told_before_anything_moves(tmp_path: Path):
@@ -193,12 +331,12 @@ def test_a_trajectory_outside_the_map_is_told_before_anything_moves(tmp_path: Pa
         begun(custom={"trajectory": str(tmp_path / "far.csv")})
 
 
-def test_check_tells_whether_a_target_can_be_used(tmp_path: Path):
+def test_check_tells_whether_a_target_can_be_used(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
     settings = CustomConfig(path="-")
     assert check("BB-8", settings, "citystreet") == (["usable: BB-8"], True)
     lines, usable = check("own_target:Sprinkler", settings, "farmland")
     assert (lines, usable) == (
-        ["note: 2 parts, 2 x 1.2 x 1.1 m", "usable: own_target:Sprinkler"],
+        ["note: 2 parts, 3.2 x 3.2 x 1.1 m", "usable: own_target:Sprinkler"],
         True,
     )
     lines, usable = check(str(EXAMPLES / "own_track.csv"), settings, "citystreet")
@@ -209,5 +347,20 @@ def test_check_tells_whether_a_target_can_be_used(tmp_path: Path):
     lines, usable = check(str(back), settings, "citystreet")
     assert not usable
     assert lines[0].endswith("point 2: t is 0 after 1: time must increase")
+    monkeypatch.setitem(sys.modules, __name__, _this())
+    for name in ("Slim", "Stout"):
+        lines, usable = check(f"{__name__}:{name}", settings, "citystreet")
+        assert usable
+        assert "what is drawn at rest (x -0.5 to 0.5, " in lines[1]
+    for name, text, told in (
+        ("degrees", "".join(f"{k},11.5{k},48.1\n" for k in range(12)), "are x and y degrees"),
+        ("rare", "0,0,0\n100000,1,0\n200000,2,0\n", "is t in milliseconds"),
+    ):
+        track = tmp_path / f"{name}.csv"
+        track.write_text("t,x,y\n" + text)
+        assert told in check(str(track), settings, "citystreet")[0][0]
+    aloft = tmp_path / "aloft.csv"
+    aloft.write_text("t,x,y,z\n0,0,0,500\n1,1,0,500\n")
+    assert check(str(aloft), settings, "citystreet")[0][0].startswith("note: it is up to 500 m ab")
     with pytest.raises(UnknownNameError, match="did you mean 'Mantis'"):
         check("Mantes", settings, "citystreet")

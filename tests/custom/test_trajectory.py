@@ -29,6 +29,15 @@ def test_points_are_passed_at_their_times_and_smoothly(tmp_path: Path):
     assert len(yaw) == 35
 
 
+def test_points_at_uneven_times_give_an_even_motion(tmp_path: Path):
+    times = (0.0, 1.0, 1.4, 4.0, 4.3, 7.0)
+    lines = "".join(f"{t},{2 * t},{-t}\n" for t in times)
+    time = np.arange(0.0, 7.0, 0.1)
+    place, yaw = read_trajectory(written(tmp_path, "t,x,y\n" + lines)).at(time)
+    np.testing.assert_allclose(place[:, :2], np.outer(time, [2.0, -1.0]), atol=1e-9)
+    np.testing.assert_allclose(yaw, math.atan2(-1.0, 2.0), atol=1e-9)
+
+
 def test_columns_come_in_any_order_and_a_told_heading_counts(tmp_path: Path):
     text = "yaw, y, x, t, z\n3.1,0,0,0,1\n-3.1,0,1,1,2\n-2.9,0,2,2,3\n"
     track = read_trajectory(written(tmp_path, text))

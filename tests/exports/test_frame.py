@@ -70,7 +70,7 @@ def test_numbers_of_a_frame_are_not_rounded(snapshot, picture):
     assert (frame.time, frame.step, frame.episode_time) == (0.06, 3, 0.006)
     assert frame.reward == 1 / 3
     assert (frame.direction, frame.reason) == (TargetDirection.RIGHT, DoneReason.STEP_LIMIT)
-    assert frame.target.velocity.tolist() == [3 * np.cos(0.5), 3 * np.sin(0.5), 0.0]
+    assert frame.target.velocity.tolist() == snapshot.targets.velocity[TRACKER].tolist()
 
 
 def test_later_steps_and_pictures_leave_a_frame_alone(snapshot, picture):

@@ -172,7 +172,7 @@ def test_a_class_of_a_users_package(record):
     assert_pixels_agree(recorded, ObjectClass.ROBOT)
     label = recorded.labels[-1]
     assert (label.target_type, label.target_words) == ("Sprinkler", "a sprinkler")
-    assert label.target_size == [2.0, 1.2, 1.1]
+    assert label.target_size == [3.2, 3.2, 1.1]
     red, green, blue = recorded.shown(label)[:, :3].T
     assert ((green > red) & (green > blue)).any()  # its box
     assert ((red > 1.5 * blue) & (red > green)).any()  # its arm

@@ -111,6 +111,71 @@ def test_it_stays_on_the_ground_while_it_moves(name):
         assert lowest.max() < 0.03 * tall
 
 
+def phases(name):
+    """When each leg touches the ground, as a share of the cycle, in the order of the legs."""
+    return [round(-leg.phase % 1.0, 3) for leg in FIGURES[name].legs]
+
+
+@pytest.mark.parametrize("name", WALKERS)
+def test_feet_are_lifted_when_they_swing(name):
+    figure, slot = FIGURES[name], 0
+    slot = len([joint for joint in figure.joints if joint.shape is not None])
+    parts = list(parts_of(figure))
+    for leg in figure.legs:
+        slot += 2 + (leg.coxa is not None) + (leg.shapes[2] is not None)
+        flying = (1.0 + figure.gait.duty) / 2.0 - leg.phase
+        frame = frames_of(figure, np.array([flying % 1.0]), moving=True)[0, slot - 1]
+        height = levels_of(parts[slot - 1][1])[0].positions @ frame[2, :3] + frame[2, 3]
+        assert figure.gait.lift > 0.0
+        assert height.min() > 0.5 * figure.gait.lift
+
+
+def test_legs_step_in_the_order_of_their_kind():
+    """Biped; tripods of a hexapod, opposite; trot, by diagonals; walk; gallop, in pairs."""
+    for name in WALKERS:
+        figure, when = FIGURES[name], phases(name)
+        left = [leg.hip[1] > 0.0 for leg in figure.legs]
+        if len(when) == 2:
+            assert abs(when[0] - when[1]) == 0.5
+        elif len(when) == 6:
+            front = sorted(range(6), key=lambda k: figure.legs[k].foot[0])
+            for side in (True, False):
+                own = [when[k] for k in front if left[k] == side]
+                assert own[0] == own[2] != own[1]
+            assert sorted(when) == [0.0] * 3 + [0.5] * 3
+        else:
+            place = {(leg.foot[0] > 0.0, leg.hip[1] > 0.0): t
+                     for leg, t in zip(figure.legs, when, strict=True)}  # fmt: skip
+            gaps = np.array([place[True, True] - place[False, False],
+                             place[True, False] - place[False, True],
+                             place[True, True] - place[True, False]]) % 1.0  # fmt: skip
+            if name == "BioloidDog":
+                assert gaps.tolist() == [0.0, 0.0, 0.5]
+            elif name == "GhostDog":  # each pair nearly together, apart from the other
+                assert min(gaps[2], 1.0 - gaps[2]) < 0.15
+                assert 0.3 < gaps[0] < 0.7
+            else:  # one after the other
+                assert len(set(when)) == 4
+
+
+@pytest.mark.parametrize("name", [name for name in WALKERS if name.startswith("Pedestrian")])
+def test_arms_swing_against_their_legs_and_knees_bend_forward(name):
+    figure, cycle = FIGURES[name], np.arange(64) / 64
+    frames = frames_of(figure, cycle, moving=True)
+    names = [joint.name for joint in figure.joints if joint.shape is not None]
+    for k, side in enumerate(("left", "right")):
+        leg = figure.legs[k]
+        assert (leg.hip[1] > 0.0) == (side == "left")
+        hand = frames[:, names.index(f"{side} forearm")]
+        foot = frames[:, len(names) + 3 * k + 2, 0, 3]
+        reach = hand[:, 0, 3] - 0.25 * hand[:, 0, 2]  # where the forearm ends
+        assert np.corrcoef(reach, foot)[0, 1] < -0.8
+        hip, knee = frames[:, len(names) + 3 * k, :, 3], frames[:, len(names) + 3 * k + 1, :, 3]
+        share = (hip[:, 2] - knee[:, 2]) / (hip[:, 2] - frames[:, len(names) + 3 * k + 2, 2, 3])
+        straight = hip[:, 0] + share * (foot - hip[:, 0])
+        assert (knee[:, 0] >= straight - 1e-3).all()
+
+
 @pytest.mark.parametrize("name", WALKERS)
 def test_feet_that_stand_do_not_slide(name):
     """Through the table that the actors are posed from, so that its intervals count, too."""

@@ -47,6 +47,27 @@ def test_words_say_as_little_as_tells_a_target_from_the_others():
     assert told_apart(sedan, [suv]) == "a red sedan"
     assert told_apart(tesla, [suv, sedan]) == "a red sedan with a glass roof"
     assert told_apart(sedan, [seen("LincolnMKZSimple", BLUE), suv]) == "a red sedan"
+    assert told_apart(seen("CitroenCZeroSimple"), [suv]) == "a small red car"
+
+
+def test_words_that_hold_for_another_do_not_tell_a_target():
+    assert told_apart(seen("BmwX5Simple"), [seen("RangeRoverSportSVRSimple")]) == (
+        "a red BMW X5 SUV"
+    )
+    assert told_apart(seen("LincolnMKZSimple"), [seen("TeslaModel3Simple")]) == (
+        "a red Lincoln MKZ sedan"
+    )
+    truck, trailer = seen("TruckSimple"), seen("TruckTankSimple")
+    assert told_apart(truck, [trailer]) == "a red truck without a trailer"
+
+
+def test_slow_robots_are_not_said_to_stand():
+    slow, still = seen("Sojourner", speed=0.04), seen("Sojourner", speed=0.0)
+    assert told_apart(slow, [still]).endswith("solar panel, moving")
+    assert told_apart(still, [slow]).endswith("solar panel, standing still")
+    spinning = seen("Create", speed=0.0, yaw_rate=2.0)
+    told = told_apart(spinning, [seen("Create", speed=0.0)])
+    assert told.endswith("robot, turning on the spot")
 
 
 def test_those_who_look_the_same_are_told_by_what_they_do():

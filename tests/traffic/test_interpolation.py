@@ -30,10 +30,11 @@ def test_many_times_at_once_equal_one_by_one(motion):
     for world in range(4096):
         pose = interpolate_actor(motion, int(actor[world]), time[world])
         here = world, actor[world]
-        turning = out.yaw[here], out.slope[here], out.speed[here], out.yaw_rate[here]
+        moving = out.yaw[here], out.slope[here], out.speed[here], *out.velocity[here]
         same = (
             *out.position[here],
-            *turning,
+            *moving,
+            out.yaw_rate[here],
             out.hitch[here],
             out.travelled[here],
             out.present[here],
@@ -51,11 +52,12 @@ def test_every_number_is_the_samples_at_its_time():
     for sample, time in enumerate((7.0, 7.5)):
         pose = interpolate_actor(motion, 1, time)
         speed = np.hypot(table["velocity_x"][sample, 1], table["velocity_y"][sample, 1])
-        for name in ("x", "y", "z", "yaw", "slope", "yaw_rate", "hitch", "travelled"):
+        velocity = ("velocity_x", "velocity_y", "velocity_z")
+        for name in ("x", "y", "z", "yaw", "slope", *velocity, "yaw_rate", "hitch", "travelled"):
             assert getattr(pose, name) == pytest.approx(float(table[name][sample, 1])), name
         assert pose.speed == pytest.approx(float(speed))
         assert pose.present
-    assert interpolate_actor(motion, 0, 7.0) == ActorPose(*[0] * 9, present=False)
+    assert interpolate_actor(motion, 0, 7.0) == ActorPose(*[0] * 12, present=False)
 
 
 def test_times_before_the_first_sample_and_after_the_last_are_held(motion):

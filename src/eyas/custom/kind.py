@@ -8,15 +8,15 @@ from pathlib import Path
 
 import numpy as np
 
-from eyas.core.errors import ConfigError, UnknownNameError
+from eyas.core.errors import ConfigError, DataFileError, UnknownNameError
 from eyas.core.files import user_path
-from eyas.core.registry import Registry
 from eyas.custom.config import CustomConfig
-from eyas.custom.mesh_file import ENDINGS, LARGEST, loaded
-from eyas.custom.own import OwnTarget, Ride, Shaped
+from eyas.custom.mesh_file import ENDINGS, loaded
+from eyas.custom.own import OwnTarget, Shaped
 from eyas.custom.problems import of_shape, worst
 from eyas.custom.rig import OwnRig
 from eyas.custom.shape import levels_of_detail, simplified
+from eyas.custom.user_class import made
 from eyas.state.mesh import Mesh
 from eyas.state.scene import ObjectClass
 from eyas.targets.catalogue import KINDS, MODELS, register
@@ -24,8 +24,6 @@ from eyas.targets.kind import Kind
 from eyas.targets.words import with_article
 
 __all__ = ["OwnModel", "as_custom", "kind_name_of", "own_target"]
-
-_CLASSES: Registry[type] = Registry("custom.path", type, {})
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,37 +95,16 @@ def own_target(config: CustomConfig) -> OwnTarget:
         EyasError: It cannot be used: one line.
     """
     if config.path is not None:
-        return _made(config.path)
-    shape = loaded(config)
+        return made(config.path)
+    try:
+        shape = loaded(config)
+    except DataFileError as error:
+        raise ConfigError(f"custom.mesh: {error}") from None
     if config.most_triangles is not None and np.isfinite(shape.points).all():
         shape = simplified(shape, config.most_triangles)
     if problem := worst(of_shape(shape)):
         raise ConfigError(f"custom.mesh: {config.mesh}: {problem}")
     return Shaped(shape.size, levels_of_detail(shape))
-
-
-def _made(path: str) -> OwnTarget:
-    """Return a new target of a user's class, after looking at what it returns."""
-    target = _CLASSES.get(path)()
-    where = f"custom.path: {path!r}"
-    if not isinstance(target, OwnTarget):
-        raise ConfigError(f"{where} has not all of: size, parts(), pose(ride)")
-    size = np.asarray(target.size, np.float64)
-    if size.shape != (3,) or not (np.isfinite(size) & (size > 0.0)).all():
-        raise ConfigError(f"{where}: size is {target.size}; allowed: three lengths above 0 [m]")
-    parts = target.parts()
-    if not parts or not all(isinstance(part, Mesh) and len(part.triangles) for part in parts):
-        raise ConfigError(f"{where}: parts() must return one or more meshes with triangles")
-    count = sum(len(part.triangles) for part in parts)
-    if count > LARGEST:
-        raise ConfigError(f"{where}: {count} triangles; allowed: up to {LARGEST}")
-    poses = np.asarray(target.pose(Ride(*np.ones((3, 2)))))
-    if poses.shape != (2, len(parts), 3, 4) or not np.isfinite(poses).all():
-        raise ConfigError(
-            f"{where}: pose(ride) returned an array of shape {poses.shape} for 2 bodies; allowed: "
-            f"finite numbers of shape (2, {len(parts)}, 3, 4)"
-        )
-    return target
 
 
 def _word(config: CustomConfig) -> str:
@@ -140,8 +117,17 @@ def _word(config: CustomConfig) -> str:
 
 def _spoken(word: str) -> str:
     """Return what people would call it: `DeliveryRobot` and `delivery_robot` is that."""
-    parts = re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+", word)
-    return with_article(" ".join(parts).lower() or word)
+    runs = re.findall(r"\d+|[^\W\d_]+", word)
+    return with_article(" ".join(map(_parted, runs)).lower() or word)
+
+
+def _parted(letters: str) -> str:
+    """Return letters with a space before each capital that begins a word."""
+    out = letters[:1]
+    for before, letter, after in zip(letters, letters[1:], [*letters[2:], ""], strict=False):
+        begins = letter.isupper() and (before.islower() or after.islower())
+        out += f" {letter}" if begins else letter
+    return out
 
 
 def _digest(meshes: Sequence[Mesh], *texts: str) -> str:

@@ -10,7 +10,7 @@ from eyas.behaviours.habits import Habit
 from eyas.behaviours.lives import Lives
 from eyas.behaviours.scripted import scripted_table
 from eyas.behaviours.troop import Clock, Troop
-from eyas.core.errors import ConfigError
+from eyas.core.errors import ConfigError, DataFileError
 from eyas.core.files import user_path
 from eyas.core.variation import Variation
 from eyas.custom.config import CustomConfig
@@ -18,9 +18,9 @@ from eyas.custom.kind import kind_name_of, own_target
 from eyas.custom.own import MovesItself
 from eyas.custom.problems import of_trajectory, worst
 from eyas.custom.trajectory import read_trajectory
+from eyas.custom.user_class import tracks_of
 from eyas.state.motion import SAMPLE, Motion
-from eyas.state.scene import Scene
-from eyas.state.terrain import Terrain, reliefs
+from eyas.state.terrain import reliefs
 from eyas.targets.catalogue import MODELS, kind_index, models_of
 
 __all__ = ["Places", "custom_motion"]
@@ -61,9 +61,11 @@ def custom_motion(
     name = kind_name_of(config)
     target = own_target(config) if config.path is not None else None
     if config.trajectory is not None:
-        table = _driven(config.trajectory, ground.scene, clock)
+        table = _driven(config.trajectory, ground, clock)
     elif isinstance(target, MovesItself):
-        table = _own(target, int(places.lives.slot.max()) + 1, ground, clock, rng)
+        assert config.path is not None  # the target is of that class
+        count = int(places.lives.slot.max()) + 1
+        table = _own(target, config.path, count, ground, clock, rng)
     else:
         troop = _troop(config, name, places)
         table = scripted_table(ground, troop, clock, rng, places.vehicles)
@@ -78,10 +80,13 @@ def _troop(config: CustomConfig, name: str, places: Places) -> Troop:
     return Troop(name, breadth, config.behaviour, *where, "objects.max_count", habit)
 
 
-def _driven(file: str, scene: Scene, clock: Clock) -> NDArray[np.void]:
+def _driven(file: str, ground: Ground, clock: Clock) -> NDArray[np.void]:
     """Return the samples of a trajectory, again and again."""
-    path = user_path(file)
-    trajectory = read_trajectory(path)
+    path, scene = user_path(file), ground.scene
+    try:
+        trajectory = read_trajectory(path)
+    except DataFileError as error:
+        raise ConfigError(f"custom.trajectory: {error}") from None
     if problem := worst(of_trajectory(trajectory, scene.size, scene.name)):
         raise ConfigError(f"custom.trajectory: {path}: {problem}")
     period = int(trajectory.time[-1] * clock.rate) + 1
@@ -90,7 +95,7 @@ def _driven(file: str, scene: Scene, clock: Clock) -> NDArray[np.void]:
             f"custom.trajectory: {path}: it is shorter than {(_FEWEST - 1) / clock.rate:g} s"
         )
     place, yaw = trajectory.at(np.arange(period) / clock.rate)
-    once = _table(place[:, None], yaw[:, None], scene.terrain, clock.rate)[:, 0]
+    once = _table(place[:, None], yaw[:, None], ground, clock.rate)[:, 0]
     # Two bodies in turn: one begins when the other ends, so there is always one to be followed.
     table = np.zeros((clock.samples, 2), SAMPLE)
     for number, begin in enumerate(range(0, clock.samples - 1, period - 1)):
@@ -100,27 +105,28 @@ def _driven(file: str, scene: Scene, clock: Clock) -> NDArray[np.void]:
 
 
 def _own(
-    target: MovesItself, count: int, ground: Ground, clock: Clock, rng: np.random.Generator
+    target: MovesItself,
+    path: str,
+    count: int,
+    ground: Ground,
+    clock: Clock,
+    rng: np.random.Generator,
 ) -> NDArray[np.void]:
     """Return the samples of a motion that a user's class computes."""
     time = np.arange(clock.samples) / clock.rate
-    tracks = np.asarray(target.tracks(ground.scene, time, count, rng), np.float64)
-    if tracks.shape != (clock.samples, count, 3) or not np.isfinite(tracks).all():
-        raise ConfigError(
-            f"custom.path: tracks(...) returned an array of shape {tracks.shape}; allowed: finite "
-            f"numbers of shape {(clock.samples, count, 3)}"
-        )
+    tracks = tracks_of(target, path, ground.scene, time, count, rng)
     place = np.concatenate([tracks[..., :2], np.full((*tracks.shape[:2], 1), np.nan)], axis=-1)
-    return _table(place, np.unwrap(tracks[..., 2], axis=0), ground.scene.terrain, clock.rate)
+    return _table(place, np.unwrap(tracks[..., 2], axis=0), ground, clock.rate)
 
 
-def _table(place: Floats, yaw: Floats, terrain: Terrain, rate: float) -> NDArray[np.void]:
+def _table(place: Floats, yaw: Floats, ground: Ground, rate: float) -> NDArray[np.void]:
     """Return samples of places (S, A, 3) with headings (S, A); z is NaN: on the ground."""
-    flat = place[..., :2].reshape(-1, 2)
+    flat, terrain = place[..., :2].reshape(-1, 2), ground.scene.terrain
     ahead = _SPAN * np.stack([np.cos(yaw), np.sin(yaw)], axis=-1).reshape(-1, 2)
     rise = reliefs(terrain, flat + ahead) - reliefs(terrain, flat - ahead)
     on_ground = np.isnan(place[..., 2])
-    z = np.where(on_ground, reliefs(terrain, flat).reshape(yaw.shape), place[..., 2])
+    z = place[..., 2].copy()
+    z[on_ground] = ground.surface.at(flat[on_ground.ravel()]).height
     slope = np.arctan(rise / (2.0 * _SPAN)).reshape(yaw.shape)
     table = np.zeros(yaw.shape, SAMPLE)
     table["x"], table["y"], table["z"], table["yaw"] = place[..., 0], place[..., 1], z, yaw

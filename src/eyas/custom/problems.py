@@ -7,14 +7,16 @@ import numpy as np
 
 from eyas.custom.mesh_file import LARGEST, Triangles
 from eyas.custom.trajectory import JUMP, Trajectory
+from eyas.state.scene import Scene
+from eyas.state.terrain import reliefs
 
-__all__ = ["Finding", "of_shape", "of_trajectory", "worst"]
+__all__ = ["LONGEST", "Finding", "of_height", "of_shape", "of_trajectory", "worst"]
 
 _LARGE, _SMALL = 60.0, 0.05
 """Lengths from which on a target is hardly one: a unit is suspected [m]."""
 
-_TOO_LARGE = 100.0
-"""Length of which none is [m]."""
+LONGEST = 100.0
+"""Largest length of a target [m]."""
 
 _USUAL = 2.0
 """Length of a usual target [m]."""
@@ -23,6 +25,16 @@ _UNITS = {0.001: "millimetres", 0.01: "centimetres", 1000.0: "kilometres"}
 
 _GAP = 5.0
 """Time between two points from which on a gap is told [s]."""
+
+
+_RARE = 60.0
+"""Time between most points from which on another unit is suspected [s]."""
+
+_STILL, _FEW = 0.2, 10
+"""Way of a trajectory of so many points from which on it moves [m]."""
+
+_ALOFT = 3.0
+"""Distance from the ground that is told [m]."""
 
 
 class Finding(NamedTuple):
@@ -53,7 +65,7 @@ def of_shape(shape: Triangles) -> Iterator[Finding]:
         yield Finding(f"it has no size: {told} m", fatal=True)
         return
     if max(size) > _LARGE or max(size) < _SMALL:
-        yield Finding(f"{told} m: {_unit(max(size))}", fatal=max(size) > _TOO_LARGE)
+        yield Finding(f"{told} m: {_unit(max(size))}", fatal=max(size) > LONGEST)
     if count <= LARGEST:
         yield from _surface(shape)
 
@@ -84,8 +96,20 @@ def of_trajectory(
             f"({extent} m about the origin), first point {int(np.argmax(outside)) + 1}",
             fatal=bool(outside.all()),
         )
-    gaps = np.flatnonzero(np.diff(trajectory.time) > _GAP)
-    if len(gaps):
+    if np.ptp(trajectory.position[:, :2], axis=0).max() < _STILL and len(outside) > _FEW:
+        yield Finding(
+            f"it moves by less than {_STILL:g} m: are x and y degrees? they are metres from the "
+            "middle of the map",
+            fatal=False,
+        )
+    pause = np.diff(trajectory.time)
+    gaps = np.flatnonzero(pause > _GAP)
+    if np.median(pause) > _RARE:
+        yield Finding(
+            f"points are {np.median(pause):.0f} s apart: is t in milliseconds? it is in seconds",
+            fatal=False,
+        )
+    elif len(gaps):
         yield Finding(
             f"{len(gaps)} gaps of more than {_GAP:g} s, where a curve is guessed; the first after "
             f"point {int(gaps[0]) + 1}",
@@ -93,9 +117,24 @@ def of_trajectory(
         )
 
 
+def of_height(trajectory: Trajectory, scene: Scene) -> Iterator[Finding]:
+    """Yield what is unusual about the heights that a trajectory tells."""
+    above = trajectory.position[:, 2] - reliefs(scene.terrain, trajectory.position[:, :2])
+    most = float(np.abs(above).max())
+    if most > _ALOFT:  # NaN: it stays on the ground
+        side = "above" if np.abs(above).max() == above.max() else "below"
+        yield Finding(
+            f"it is up to {most:.4g} m {side} the ground: z counts from the lowest ground of the "
+            "map; without z it stays on the ground",
+            fatal=False,
+        )
+
+
 def _unit(longest: float) -> str:
     """Return a guess at the unit of a length: that of which it would be the most usual one."""
     scale = min(_UNITS, key=lambda scale: abs(np.log(longest * scale / _USUAL)))
+    if not _SMALL <= longest * scale <= _LARGE:
+        return f"allowed: {_SMALL:g} to {LONGEST:g} m; choose custom.scale"
     return f"in {_UNITS[scale]}? then use custom.scale={scale:g}"
 
 

@@ -1,15 +1,11 @@
 """Frames as they are taken: copies of what steps and pictures change later."""
 
-import math
-
-import numpy as np
-
 from eyas.core.clock import PHYSICS_STEP
 from eyas.exports.frame import Action, Body, CameraPose, Floats, Frame, Subject
 from eyas.exports.movement import Movement
 from eyas.state.draw import Picture
 from eyas.state.episode import EpisodeState
-from eyas.state.scene import ACTOR_OBJECT
+from eyas.state.scene import ACTOR_OBJECT, ObjectClass
 from eyas.state.snapshot import CameraState, Snapshot, TrackerState
 from eyas.targets.catalogue import MODELS, kind_of, sections_of
 from eyas.task.direction import TargetDirection
@@ -89,7 +85,6 @@ def _target(snapshot: Snapshot, tracker: int, picture: Picture, view: int) -> Su
     assert picture.subject_box is not None
     assert picture.subject_pixels is not None
     seen, covered = (int(pixels) for pixels in picture.subject_pixels[view])
-    yaw, speed = float(targets.yaw[tracker]), float(targets.speed[tracker])
     return Subject(
         object_id=ACTOR_OBJECT + int(targets.actor[tracker]),
         type=MODELS[targets.model[tracker]].name,
@@ -97,8 +92,8 @@ def _target(snapshot: Snapshot, tracker: int, picture: Picture, view: int) -> Su
         size=targets.size[tracker].copy(),
         position=targets.position[tracker].copy(),
         centre=targets.centre[tracker].copy(),
-        velocity=np.array([speed * math.cos(yaw), speed * math.sin(yaw), 0.0]),
-        yaw=yaw,
+        velocity=targets.velocity[tracker].copy(),
+        yaw=float(targets.yaw[tracker]),
         motion=Movement(
             acceleration=targets.acceleration[tracker].copy(),
             yaw_rate=float(targets.yaw_rate[tracker]),
@@ -107,6 +102,7 @@ def _target(snapshot: Snapshot, tracker: int, picture: Picture, view: int) -> Su
             direction=TargetDirection(snapshot.episodes.direction[tracker]),
             rise=float(targets.rise[tracker]),
             hitch=float(targets.hitch[tracker]),
+            upright=kind_of(int(targets.model[tracker])).object_class is ObjectClass.PERSON,
         ),
         box=picture.subject_box[view].copy(),
         seen_pixels=seen,

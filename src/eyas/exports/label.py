@@ -112,7 +112,7 @@ class FrameLabel:
     others: list[OtherLabel]
     """All other moving objects of which a pixel is visible, in the order of their ids."""
     target_acceleration: list[float | None] = field(default_factory=list)
-    """Horizontal [m/s^2]. This and the next are missing in older labels."""
+    """[m/s^2]. This and the next are missing in older labels."""
     target_yaw_rate: float | None = None
     """Counter-clockwise [rad/s]."""
     target_travelled: float | None = None

@@ -27,7 +27,7 @@ class Movement:
     """How a moving object moves, and stands on the ground."""
 
     acceleration: Floats
-    """World frame, horizontal [m/s^2], shape (3,)."""
+    """Change of the velocity, world frame [m/s^2], shape (3,)."""
     yaw_rate: float
     """Counter-clockwise [rad/s]."""
     slope: float
@@ -40,6 +40,8 @@ class Movement:
     """Height of its reference point above the ground [m]."""
     hitch: float = 0.0
     """Heading of its trailer less that of its truck [rad]; 0 of all others."""
+    upright: bool = False
+    """Whether it stays upright on slopes, like people; else it tilts with the ground."""
 
 
 class SectionBox(NamedTuple):
@@ -66,7 +68,7 @@ def box_corners(
         size: Length, width, height [m], shape (3,). If its trailer swings, the box has another
             length and width: those that contain its sections.
         yaw: Heading [rad].
-        motion: Slope of the ground, and height of the reference point above it.
+        motion: Slope of the ground, height of the reference point above it, and whether it tilts.
         sections: Those of an articulated vehicle.
     """
     length, width, height = size.tolist()
@@ -100,9 +102,10 @@ def _outline(section: Section, hitch: float) -> tuple[Floats, float]:
 
 
 def _raised(plan: Floats, height: float, centre: Floats, yaw: float, motion: Movement) -> Floats:
-    """Return the corners of an upright box on an outline, ahead and left of the middle [m]."""
+    """Return the corners of a box on an outline, ahead and left of the middle [m]."""
     pitch, cosine, sine = motion.slope, math.cos(yaw), math.sin(yaw)
     ahead = np.array([cosine * math.cos(pitch), sine * math.cos(pitch), math.sin(pitch)])
     left, up = np.array([-sine, cosine, 0.0]), np.array([0.0, 0.0, 1.0])
+    standing = up if motion.upright else np.cross(ahead, left)
     ground = centre - motion.rise * up + (plan[:, :1] * ahead + plan[:, 1:] * left)
-    return np.concatenate([ground, ground + height * up])
+    return np.concatenate([ground, ground + height * standing])

@@ -1,6 +1,5 @@
 """The moving objects of a picture besides its target."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -12,7 +11,7 @@ from eyas.exports.movement import Movement
 from eyas.sim.simulation import Simulation
 from eyas.state.draw import Picture
 from eyas.state.motion import ActorState
-from eyas.state.scene import ACTOR_OBJECT
+from eyas.state.scene import ACTOR_OBJECT, ObjectClass
 from eyas.targets.catalogue import MODELS, kind_of, sections_of
 from eyas.targets.words import words_of
 from eyas.task.direction import TargetDirection, target_centre, target_direction
@@ -55,21 +54,23 @@ def others_of(
 def _movement(actors: ActorState, before: ActorState, actor: int, model: int) -> Movement:
     """Return the movement of an actor, from its states now and a step earlier."""
     yaw, speed = float(actors.yaw[0, actor]), float(actors.speed[0, actor])
-    yaw_rate, gain = float(actors.yaw_rate[0, actor]), 0.0
+    yaw_rate, velocity = float(actors.yaw_rate[0, actor]), actors.velocity[0, actor]
     if before.present[0, actor]:
-        gain = (speed - float(before.speed[0, actor])) / PHYSICS_STEP
-    way, swing = speed * PHYSICS_STEP, speed * yaw_rate
+        acceleration = (velocity - before.velocity[0, actor]) / PHYSICS_STEP
+    else:
+        acceleration = yaw_rate * np.array([-velocity[1], velocity[0], 0.0])
+    way = speed * PHYSICS_STEP
     last_yaw = yaw - yaw_rate * PHYSICS_STEP
     direction = _target_direction(way, 0.0, yaw, last_yaw, kind_of(model).slowest)
-    east, north = math.cos(yaw), math.sin(yaw)
     return Movement(
-        acceleration=np.array([gain * east - swing * north, gain * north + swing * east, 0.0]),
+        acceleration=acceleration,
         yaw_rate=yaw_rate,
         slope=float(actors.slope[0, actor]),
         travelled=float(actors.travelled[0, actor]),
         direction=TargetDirection(direction),
         rise=MODELS[model].rise,
         hitch=float(actors.hitch[0, actor]),
+        upright=kind_of(model).object_class is ObjectClass.PERSON,
     )
 
 
@@ -79,7 +80,7 @@ def _subject(  # where it is, and where it is seen
     assert picture.actor_box is not None
     assert picture.actor_pixels is not None
     kind, (x, y, z) = kind_of(model), actors.position[0, actor].tolist()
-    yaw, speed = float(actors.yaw[0, actor]), float(actors.speed[0, actor])
+    yaw = float(actors.yaw[0, actor])
     seen, covered = (int(pixels) for pixels in picture.actor_pixels[view, actor])
     height = z + MODELS[model].rise
     return Subject(
@@ -89,7 +90,7 @@ def _subject(  # where it is, and where it is seen
         size=np.array(MODELS[model].size, np.float64),
         position=np.array([x, y, height]),
         centre=np.array([*_target_centre(x, y, yaw, kind.ahead), height]),
-        velocity=np.array([speed * math.cos(yaw), speed * math.sin(yaw), 0.0]),
+        velocity=actors.velocity[0, actor].copy(),
         yaw=yaw,
         motion=_movement(actors, before, actor, model),
         box=picture.actor_box[view, actor].copy(),

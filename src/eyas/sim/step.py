@@ -215,17 +215,24 @@ def _move_target(
     """Read the pose of tracker n's target; a target that has left keeps its last pose."""
     time = episodes.tick[n] * PHYSICS_STEP
     pose = interpolate_actor(around.motion, targets.actor[n], time)
+    velocity, acceleration = targets.velocity[n], targets.acceleration[n]
     if targets.lost[n] or not pose.present:
         targets.lost[n] = True
         targets.speed[n] = targets.yaw_rate[n] = 0.0
-        targets.acceleration[n, 0] = targets.acceleration[n, 1] = 0.0
+        for axis in range(3):
+            velocity[axis] = acceleration[axis] = 0.0
         return
     position, centre = targets.position[n], targets.centre[n]
-    gain = (pose.speed - targets.speed[n]) / PHYSICS_STEP if episodes.observations[n] > 0 else 0.0
-    swing = pose.speed * pose.yaw_rate
-    east, north = math.cos(pose.yaw), math.sin(pose.yaw)
-    targets.acceleration[n, 0] = gain * east - swing * north
-    targets.acceleration[n, 1] = gain * north + swing * east
+    now = (pose.velocity_x, pose.velocity_y, pose.velocity_z)
+    if episodes.observations[n] > 0:
+        for axis in range(3):
+            acceleration[axis] = (now[axis] - velocity[axis]) / PHYSICS_STEP
+    else:  # nothing is known of the step before but how it turned
+        acceleration[0] = -pose.yaw_rate * pose.velocity_y
+        acceleration[1] = pose.yaw_rate * pose.velocity_x
+        acceleration[2] = 0.0
+    for axis in range(3):
+        velocity[axis] = now[axis]
     targets.yaw_rate[n], targets.slope[n] = pose.yaw_rate, pose.slope
     targets.hitch[n], targets.travelled[n] = pose.hitch, pose.travelled
     position[0], position[1], position[2] = pose.x, pose.y, pose.z + targets.rise[n]

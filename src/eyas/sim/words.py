@@ -4,6 +4,7 @@ import numpy as np
 
 from eyas.core.pinhole import project
 from eyas.sim.simulation import Simulation
+from eyas.targets.catalogue import MODELS
 from eyas.targets.telling import Seen, told_apart
 
 __all__ = ["target_in_words"]
@@ -28,8 +29,11 @@ def target_in_words(simulation: Simulation, tracker: int, aspect: float) -> str:
         column, row, depth = project(
             actors.position[0], *pose, 1, 1, float(cameras.field_of_view[tracker])
         )
-        # The picture is a unit wide, and its middle at (0.5, 0.5).
-        inside = (np.abs(column - 0.5) < 0.5) & (np.abs(row - 0.5) < 0.5 * aspect) & (depth > 0.0)
+        # The picture is a unit wide, and its middle at (0.5, 0.5). Half a body may be in it.
+        half = np.array([0.25 * max(MODELS[one].size) for one in model.tolist()])
+        reach = half / (depth * np.tan(0.5 * float(cameras.field_of_view[tracker])))
+        inside = (np.abs(column - 0.5) < 0.5 + reach) & (depth > 0.0)
+        inside &= np.abs(row - 0.5) < 0.5 * aspect + reach
     inside &= actors.present[0]
     inside[target] = False
 

@@ -18,7 +18,8 @@ class Surface(IntEnum):
     MATT = 0
     """Plain diffuse."""
     PAINT = 1
-    """Car paint: tint times the colour of the instance, with a gloss."""
+    """Car paint: tint times the colour of the instance, with a gloss where the texture's alpha is
+    high."""
     GLASS = 2
     """Reflects the sky."""
     FOLIAGE = 3

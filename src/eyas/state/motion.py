@@ -62,6 +62,8 @@ class ActorState(NamedTuple):
     """Pitch of the road along the heading, positive up [rad], shape (W, A)."""
     speed: NDArray[np.float64]
     """Horizontal speed [m/s], shape (W, A)."""
+    velocity: NDArray[np.float64]
+    """Change of `position` [m/s], shape (W, A, 3)."""
     yaw_rate: NDArray[np.float64]
     """[rad/s], shape (W, A)."""
     hitch: NDArray[np.float64]
@@ -80,6 +82,7 @@ class ActorState(NamedTuple):
             yaw=np.zeros(plane),
             slope=np.zeros(plane),
             speed=np.zeros(plane),
+            velocity=np.zeros((*plane, 3)),
             yaw_rate=np.zeros(plane),
             hitch=np.zeros(plane),
             travelled=np.zeros(plane),

@@ -114,9 +114,11 @@ class TargetState(NamedTuple):
     yaw: Floats
     """Heading, counter-clockwise from east [rad], shape (N,)."""
     speed: Floats
-    """[m/s], shape (N,)."""
+    """Horizontal [m/s], shape (N,)."""
+    velocity: Floats
+    """Change of `position`, world frame [m/s], shape (N, 3)."""
     acceleration: Floats
-    """World frame, horizontal [m/s^2], shape (N, 3)."""
+    """Change of `velocity`, world frame [m/s^2], shape (N, 3)."""
     yaw_rate: Floats
     """[rad/s], shape (N,)."""
     slope: Floats
@@ -144,6 +146,7 @@ class TargetState(NamedTuple):
             position=np.zeros((count, 3)),
             yaw=np.zeros(count),
             speed=np.zeros(count),
+            velocity=np.zeros((count, 3)),
             acceleration=np.zeros((count, 3)),
             yaw_rate=np.zeros(count),
             slope=np.zeros(count),

@@ -14,11 +14,8 @@ from eyas.targets.words import phrases
 
 __all__ = ["Seen", "told_apart"]
 
-_STANDING: Final = 0.3
-"""Speed below which something stands still [m/s]."""
-
 _TURNING: Final = 0.15
-"""Yaw rate from which on a vehicle turns [rad/s]."""
+"""Yaw rate from which on something turns [rad/s]."""
 
 _ASIDE: Final = 0.04
 """Distance in the picture from which on left and right are seen [its width]."""
@@ -75,9 +72,10 @@ def told_apart(target: Seen, others: Sequence[Seen]) -> str:
 
 
 def _doing(seen: Seen) -> str:
-    if seen.speed < _STANDING:
-        return "standing still"
     kind = kind_of(seen.model).object_class
+    if seen.speed < kind_of(seen.model).slowest:
+        spins = kind is ObjectClass.ROBOT and abs(seen.yaw_rate) >= _TURNING
+        return "turning on the spot" if spins else "standing still"
     if kind is ObjectClass.PERSON:
         return "walking"
     if kind is ObjectClass.ROBOT:

@@ -27,22 +27,26 @@ __all__ = [
 ]
 
 _VEHICLES = {
-    "BmwX5Simple": ("car", "SUV", "BMW X5 SUV"),
-    "CitroenCZeroSimple": ("car", "small car", "Citroen C-Zero small car"),
-    "ToyotaPriusSimple": ("car", "hatchback", "Toyota Prius hatchback"),
-    "LincolnMKZSimple": ("car", "sedan", "Lincoln MKZ sedan"),
-    "RangeRoverSportSVRSimple": ("car", "SUV with a black roof", "Range Rover Sport SUV"),
-    "TeslaModel3Simple": ("car", "sedan with a glass roof", "Tesla Model 3 sedan"),
-    "MercedesBenzSprinterSimple": ("van", "Mercedes Sprinter van"),
-    "BusSimple": ("bus",),
-    "TruckSimple": ("truck", "truck without a trailer"),
-    "TruckTrailerSimple": ("truck", "truck with a box trailer"),
-    "TruckTankSimple": ("truck", "truck with a tank trailer"),
-    "ScooterSimple": ("motorcycle", "scooter"),
-    "MotorbikeSimple": ("motorcycle", "motorbike"),
-    "Quadrotor": ("drone",),
-}
-"""What follows the colour, by model."""
+    "BmwX5Simple": ("{} car", "{} SUV", "{} BMW X5 SUV"),
+    "CitroenCZeroSimple": ("{} car", "small {} car", "small {} Citroen C-Zero"),
+    "ToyotaPriusSimple": ("{} car", "{} hatchback", "{} Toyota Prius hatchback"),
+    "LincolnMKZSimple": ("{} car", "{} sedan", "{} Lincoln MKZ sedan"),
+    "RangeRoverSportSVRSimple": (
+        "{} car", "{} SUV", "{} SUV with a black roof", "{} Range Rover Sport SUV"
+    ),
+    "TeslaModel3Simple": (
+        "{} car", "{} sedan", "{} sedan with a glass roof", "{} Tesla Model 3 sedan"
+    ),
+    "MercedesBenzSprinterSimple": ("{} van", "{} Mercedes Sprinter van"),
+    "BusSimple": ("{} bus",),
+    "TruckSimple": ("{} truck", "{} truck without a trailer"),
+    "TruckTrailerSimple": ("{} truck", "{} truck with a box trailer"),
+    "TruckTankSimple": ("{} truck", "{} truck with a tank trailer"),
+    "ScooterSimple": ("{} motorcycle", "{} scooter"),
+    "MotorbikeSimple": ("{} motorcycle", "{} motorbike"),
+}  # fmt: skip
+"""What stands for the colour and the noun, by model. A phrase that is true of two models is a
+phrase of both: none that holds for others in view tells a target."""
 
 _ROBOTS: dict[str, str] = {
     TargetName.SHRIMP: "a blue robot rover on six wheels",
@@ -52,10 +56,11 @@ _ROBOTS: dict[str, str] = {
     TargetName.BB_8: "a white and orange robot that rolls on a ball",
     TargetName.AIBO_ERS7: "a white robot puppy with a black face",
     TargetName.BIOLOID_DOG: "a robot dog of black motors and grey brackets",
-    TargetName.FIRE_BIRD_6: "a salmon round robot on blue wheels",
+    TargetName.FIRE_BIRD_6: "a round salmon robot on blue wheels",
     TargetName.SCOUT: "a red and magenta robot walker with a grey head",
     TargetName.GHOST_DOG: "a white robot dog with red feet",
     TargetName.HOAP_2: "a silver humanoid robot with a blue head",
+    "Quadrotor": "a grey drone",
 }
 
 _GARMENTS = {
@@ -94,7 +99,7 @@ def phrases(model: int, colour: Sequence[float]) -> tuple[str, ...]:
         return _person(_PEOPLE[name], seen)
     if name in _ROBOTS:
         return (_ROBOTS[name], f"{_ROBOTS[name]} ({name})")
-    return tuple(with_article(f"{seen} {noun}") for noun in _VEHICLES[name])
+    return tuple(with_article(noun.format(seen)) for noun in _VEHICLES[name])
 
 
 def words_of(model: int, colour: Sequence[float]) -> str:

@@ -28,6 +28,9 @@ class ActorPose(NamedTuple):
     yaw: float
     slope: float
     speed: float
+    velocity_x: float
+    velocity_y: float
+    velocity_z: float
     yaw_rate: float
     hitch: float
     travelled: float
@@ -64,7 +67,7 @@ def interpolate_actor(motion: Motion, actor: int, time: float) -> ActorPose:
     step = 1.0 / motion.rate
     x, speed_x = _hermite(a.x, b.x, a.velocity_x, b.velocity_x, step, f)
     y, speed_y = _hermite(a.y, b.y, a.velocity_y, b.velocity_y, step, f)
-    z, _ = _hermite(a.z, b.z, a.velocity_z, b.velocity_z, step, f)
+    z, climb = _hermite(a.z, b.z, a.velocity_z, b.velocity_z, step, f)
     yaw, yaw_rate = _hermite(a.yaw, b.yaw, a.yaw_rate, b.yaw_rate, step, f)
     speed_a = math.hypot(a.velocity_x, a.velocity_y)
     speed_b = math.hypot(b.velocity_x, b.velocity_y)
@@ -73,7 +76,8 @@ def interpolate_actor(motion: Motion, actor: int, time: float) -> ActorPose:
     hitch = a.hitch + f * (b.hitch - a.hitch)
     speed = math.hypot(speed_x, speed_y)
     present = (a.present > 0.0 or f == 1.0) and (b.present > 0.0 or f == 0.0)
-    return ActorPose(x, y, z, yaw, slope, speed, yaw_rate, hitch, travelled, present)
+    velocity = (speed_x, speed_y, climb)
+    return ActorPose(x, y, z, yaw, slope, speed, *velocity, yaw_rate, hitch, travelled, present)
 
 
 @step_kernel
@@ -101,6 +105,9 @@ def write_actor(pose: ActorPose, out: ActorState, world: int, actor: int) -> Non
     out.yaw[world, actor] = pose.yaw
     out.slope[world, actor] = pose.slope
     out.speed[world, actor] = pose.speed
+    out.velocity[world, actor, 0] = pose.velocity_x
+    out.velocity[world, actor, 1] = pose.velocity_y
+    out.velocity[world, actor, 2] = pose.velocity_z
     out.yaw_rate[world, actor] = pose.yaw_rate
     out.hitch[world, actor] = pose.hitch
     out.travelled[world, actor] = pose.travelled

@@ -11,10 +11,11 @@ from eyas.core.rng import stream
 from eyas.custom.config import CustomConfig
 from eyas.custom.kind import as_custom, own_target
 from eyas.custom.mesh_file import ENDINGS, loaded
-from eyas.custom.own import MovesItself
-from eyas.custom.problems import Finding, of_shape, of_trajectory
+from eyas.custom.own import MovesItself, OwnTarget, Ride
+from eyas.custom.problems import Finding, of_height, of_shape, of_trajectory
 from eyas.custom.shape import simplified
 from eyas.custom.trajectory import Trajectory, read_trajectory
+from eyas.custom.user_class import tracks_of
 from eyas.sim.scenes import load_scene
 from eyas.targets.catalogue import KINDS, MODELS
 
@@ -22,6 +23,9 @@ __all__ = ["check"]
 
 _SECONDS = 60
 """Time for which a motion of one's own is tried [s]."""
+
+_OUT, _LOST = 0.05, 0.25
+"""Shares of its size: how far a body may stick out of its box, and what it must fill of it."""
 
 
 def check(what: str, config: CustomConfig, map_name: str) -> tuple[list[str], bool]:
@@ -79,7 +83,9 @@ def _mesh(config: CustomConfig) -> Iterator[Finding]:
 
 def _trajectory(path: Path, map_name: str) -> Iterator[Finding]:
     trajectory = read_trajectory(path)
-    yield from of_trajectory(trajectory, load_scene(map_name).size, map_name)
+    scene = load_scene(map_name)
+    yield from of_trajectory(trajectory, scene.size, map_name)
+    yield from of_height(trajectory, scene)
     step = np.hypot(*np.diff(trajectory.position[:, :2], axis=0).T)
     speed = step / np.diff(trajectory.time)
     yield Finding(
@@ -93,14 +99,31 @@ def _class(path: str, map_name: str) -> Iterator[Finding]:
     target = own_target(CustomConfig(path=path))
     size = " x ".join(f"{length:.3g}" for length in target.size)
     yield Finding(f"{len(target.parts())} parts, {size} m", fatal=False)
+    yield from _drawn(target)
     if isinstance(target, MovesItself):
         scene, time = load_scene(map_name), np.arange(10 * _SECONDS) / 10.0
-        tracks = np.asarray(target.tracks(scene, time, 1, stream(0, "custom")), np.float64)
-        if tracks.shape != (len(time), 1, 3) or not np.isfinite(tracks).all():
-            yield Finding(
-                f"tracks(...) returned an array of shape {tracks.shape}; allowed: finite numbers "
-                f"of shape {(len(time), 1, 3)}",
-                fatal=True,
-            )
-            return
-        yield from of_trajectory(Trajectory(time, tracks[:, 0], None), scene.size, map_name)
+        tracks = tracks_of(target, path, scene, time, 1, stream(0, "custom"))
+        way = Trajectory(time, tracks[:, 0], None)
+        yield from of_trajectory(way, scene.size, map_name)
+
+
+def _drawn(target: OwnTarget) -> Iterator[Finding]:
+    """Yield whether what is drawn at rest is not of the size that is told."""
+    pose = np.asarray(target.pose(Ride(*np.zeros((3, 1)))), np.float64)[0]
+    corners = [
+        part.positions @ place[:, :3].T + place[:, 3]
+        for part, place in zip(target.parts(), pose, strict=True)
+    ]
+    low, high = np.concatenate(corners).min(axis=0), np.concatenate(corners).max(axis=0)
+    size = np.asarray(target.size)
+    box = np.array([[-size[0] / 2, -size[1] / 2, 0.0], [size[0] / 2, size[1] / 2, size[2]]])
+    sticks_out = max((box[0] - low).max(), (high - box[1]).max()) > _OUT * size.max()
+    if sticks_out or (high - low < _LOST * size).any():
+        told = ", ".join(
+            f"{axis} {a:.3g} to {b:.3g}" for axis, a, b in zip("xyz", low, high, strict=True)
+        )
+        yield Finding(
+            f"what is drawn at rest ({told} m) does not match its size; labels, lidar and contacts "
+            "use the box of that size in the middle over the origin",
+            fatal=False,
+        )

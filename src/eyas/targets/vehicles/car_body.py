@@ -67,11 +67,13 @@ def _body(
         back, front = halves[i], halves[i + 1]
         for k, (low, high) in enumerate(zip(detail.points, detail.points[1:], strict=False)):
             quad = [back[k], back[k + 1], front[k + 1], front[k]]
-            shell.quads(quad, _skin(shape, detail, middle, rise, (low, high)), both_sides=True)
+            shell.quads(
+                quad, _skin(vehicle, shape, detail, middle, rise, (low, high)), both_sides=True
+            )
         if detail.points[-1] != 7:
             mirror = [1.0, -1.0, 1.0]
             quad = [back[-1], back[-1] * mirror, front[-1] * mirror, front[-1]]
-            shell.quads(quad, _skin(shape, detail, middle, rise, (6, 7)))
+            shell.quads(quad, _skin(vehicle, shape, detail, middle, rise, (6, 7)))
     _end(shell, shape, detail, halves[0], front=False)
     _end(shell, shape, detail, halves[-1], front=True)
     if 3 not in detail.points:
@@ -83,11 +85,17 @@ def _body(
 
 
 def _skin(
-    shape: CarShape, detail: _Detail, x: float, rise: float, strip: tuple[int, int]
+    vehicle: VehicleModel,
+    shape: CarShape,
+    detail: _Detail,
+    x: float,
+    rise: float,
+    strip: tuple[int, int],
 ) -> Material:
     """Return the material of a panel.
 
     Args:
+        vehicle: The car.
         shape: Shape of the car.
         detail: Resolution of the body.
         x: Position of the panel's middle [m].
@@ -105,7 +113,8 @@ def _skin(
     if (strip == (3, 4) or (low == 4 and shape.tall_tail_lamps)) and x < tail + shape.tail_lamps:
         return TAIL_LAMP
     if strip == (1, 2) and detail.arches:
-        return shape.sill
+        # The dark lower edges of the bumpers go round the corners, to the wheels.
+        return shape.sill if vehicle.axles[1].x < x < vehicle.axles[0].x else TRIM
     return TRIM if low == 0 else PAINT
 
 

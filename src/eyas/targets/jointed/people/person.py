@@ -9,7 +9,7 @@ from enum import Enum
 
 from eyas.mesh.shell import Shell
 from eyas.state.mesh import Material, Surface
-from eyas.targets.jointed.figure import Shape
+from eyas.targets.jointed.figure import DETAILS, Shape
 from eyas.targets.jointed.outlines import limb, matt, stack
 from eyas.targets.kind import Colour
 
@@ -24,8 +24,10 @@ UPPER_ARM, FOREARM = 0.30, 0.25
 HEEL, TOES = 0.07, 0.19
 """Length of a shoe behind and ahead of the ankle [m]."""
 
-_CLOTH = Material(surface=Surface.PAINT)
-"""The colour of the instance."""
+_CLOTH = Material(texture="cloth", surface=Surface.PAINT)
+"""The colour of the instance, without gloss."""
+
+_EYE = matt(0.13, 0.11, 0.10)
 
 
 class Garment(Enum):
@@ -123,8 +125,13 @@ def shapes_of_person(person: Person) -> PersonShapes:
             )  # fmt: skip
 
     def thigh(shell: Shell, detail: int) -> None:
+        sides = (4, 6, 9)[detail]
         radii = (0.098 * g, 0.09 * g, 0.068 * g) if detail else (0.092 * g, 0.068 * g)
-        limb(shell, THIGH * s, radii, leg, (4, 6, 9)[detail])
+        limb(shell, THIGH * s, radii, leg, sides)
+        if _is_long(person.garment):
+            # What the leg pushes out of the skirt or coat is cloth.
+            hem = [(0.0, 0.0, 0.0), (0.0, 0.0, -0.27 * s)]
+            shell.tube(hem, (0.105 * g, 0.1 * g), _CLOTH, sides=sides)
 
     def shank(shell: Shell, detail: int) -> None:
         flare = 0.06 if leg is trousers else 0.042
@@ -146,15 +153,15 @@ def _torso(shell: Shell, person: Person, detail: int) -> None:
         return [(z * s, x * g, y * g, ahead * s) for z, x, y, ahead in of]
 
     hem = {Garment.COAT: -0.24, Garment.DRESS: -0.28, Garment.JACKET: -0.10}.get(
-        person.garment, -0.02
+        person.garment, -0.05
     )
-    flare = 0.03 if hem < -0.2 else 0.0
-    low = (hem, 0.145 + 2.8 * flare, 0.185 + 1.3 * flare, 0.01)
-    if hem > -0.2:
+    flare = 0.03 if _is_long(person.garment) else 0.0
+    low = (hem, 0.145 + 2.8 * flare, 0.205 + 0.7 * flare, 0.01)
+    if not _is_long(person.garment):
         bottom = (-0.12, 0.09, 0.15, 0.0)
         stack(shell, rows(bottom, (0.0, 0.125, 0.18, 0.0)), trousers, sides, box=0.25)
-    chest = [low, (0.10, 0.115, 0.165, 0.0), (0.32, 0.135, 0.195, 0.0), (0.43, 0.115, 0.20, -0.01)]
-    shoulder = [(0.50, 0.085, 0.135, -0.015), (0.53, 0.06, 0.07, -0.01)]
+    chest = [low, (0.10, 0.12, 0.18, 0.0), (0.32, 0.135, 0.195, 0.0), (0.43, 0.115, 0.20, -0.01)]
+    shoulder = [(0.48, 0.095, 0.18, -0.012), (0.51, 0.08, 0.12, -0.015), (0.53, 0.06, 0.07, -0.01)]
     stack(shell, rows(*(chest if detail else chest[::2]), *shoulder), _CLOTH, sides, box=0.25)
     if person.bag is not None:
         low_corner, high = (-0.27 * s, -0.14 * s, 0.05 * s), (-0.10 * s, 0.14 * s, 0.47 * s)
@@ -171,6 +178,8 @@ def _head(shell: Shell, person: Person, detail: int) -> None:
         shell.tube(neck, (0.055 * s, 0.052 * s), skin, sides=sides - 2)
     shell.ball((0.02 * s, 0.0, middle * s), (0.098 * s, 0.078 * s, 0.122 * s), skin, rows=rows,
                sides=sides)  # fmt: skip
+    if detail == DETAILS[0]:
+        _face(shell, skin, s)
     if person.hair is Hair.HAT:
         brim = [(0.775, 0.155, 0.14, 0.015), (0.785, 0.155, 0.14, 0.015)]
         crown = [(0.78, 0.108, 0.092, 0.01), (0.88, 0.09, 0.075, 0.01)]
@@ -189,6 +198,20 @@ def _head(shell: Shell, person: Person, detail: int) -> None:
     if person.hair is Hair.LONG:
         fall = [(0.42, 0.03, 0.075, -0.10), (0.56, 0.055, 0.10, -0.075), (0.74, 0.07, 0.088, -0.05)]
         stack(shell, [(z * s, x * s, y * s, a * s) for z, x, y, a in fall], hair, sides)
+
+
+def _face(shell: Shell, skin: Material, s: float) -> None:
+    """Add eyes and a nose, which are seen from near only."""
+    for side in (-1.0, 1.0):
+        shell.ball((0.107 * s, 0.03 * side * s, 0.74 * s), (0.01 * s, 0.014 * s, 0.009 * s), _EYE,
+                   rows=2, sides=4)  # fmt: skip
+    shell.prism([(0.105 * s, 0.688 * s), (0.138 * s, 0.694 * s), (0.108 * s, 0.745 * s)],
+                (-0.014 * s, 0.014 * s), skin)  # fmt: skip
+
+
+def _is_long(garment: Garment) -> bool:
+    """Return whether it reaches down to the thighs."""
+    return garment in (Garment.COAT, Garment.DRESS)
 
 
 def _shoe(shell: Shell, material: Material, s: float, detail: int) -> None:
