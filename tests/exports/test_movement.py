@@ -11,7 +11,9 @@ SIZE = np.array([4.0, 2.0, 1.5])
 
 def boxed(slope: float, *, upright: bool) -> np.ndarray:
     still = (np.zeros(3), 0.0, slope, 0.0, TargetDirection.STRAIGHT, 0.4)
-    return box_corners(np.array([10.0, 20.0, 5.4]), SIZE, np.pi / 2, Movement(*still, upright))
+    return box_corners(
+        np.array([10.0, 20.0, 5.4]), SIZE, np.pi / 2, Movement(*still, upright=upright)
+    )
 
 
 def test_on_level_ground_corners_go_round_from_the_right_of_the_tail():

@@ -166,7 +166,8 @@ def test_fewer_targets_than_trackers_is_told():
 def test_all_are_followed_for_as_long_as_the_traffic_lasts():
     """As many targets as trackers, of which the original moves all at once."""
     done = {"total_steps": 6000, "no_reward_steps": 10**6}
-    config = SimConfig(target="Pedestrian", objects={**FEW, "max_count": 3}, done=done)
+    objects = {**FEW, "max_count": 3}
+    config = SimConfig(target="Pedestrian", objects=objects, done=done, extras=())
     simulation = build_simulation(config, together(3))
     for _ in range(20):
         simulation.reset()
