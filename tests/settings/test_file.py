@@ -2,11 +2,13 @@ import json
 
 import pytest
 
+from eyas.core.config import updated
 from eyas.core.errors import ConfigError, DataFileError
 from eyas.core.variation import Mirrored, Uniform
 from eyas.settings.config import EyasConfig
 from eyas.settings.file import load_settings, save_settings
 from eyas.settings.legacy.adapter import from_legacy
+from eyas.traffic.config import TrafficConfig
 
 CONFIG = EyasConfig(
     seed=3,
@@ -151,3 +153,15 @@ def test_the_settings_of_the_originals_client_are_recognised(tmp_path):
     path = write(tmp_path, '{"Benchmark": {"Need_render": 0, "Action_dim": 7}}')
     with pytest.raises(DataFileError, match=r"the original's client.*config/env_config\.json"):
         load_settings(path)
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_a_name_stands_for_the_source_of_the_traffic(order, tmp_path):
+    changes = ["traffic=live", "traffic.max_vehicles=8"][::order]
+    assert load_settings(None, changes).traffic == TrafficConfig(source="live", max_vehicles=8)
+    path = tmp_path / "settings.json"
+    path.write_text('{"traffic": "live"}')
+    assert load_settings(path).traffic == TrafficConfig(source="live")
+    assert updated(EyasConfig(seed=4), {"traffic": "live"}).traffic.source == "live"
+    with pytest.raises(ConfigError, match=r"^traffic\.source: 'liv' is not .* mean 'live'"):
+        load_settings(None, ["traffic=liv"])

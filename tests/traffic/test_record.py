@@ -1,3 +1,4 @@
+from contextlib import closing
 from pathlib import Path
 from xml.etree import ElementTree
 
@@ -11,6 +12,7 @@ from eyas.state.motion import ActorState
 from eyas.state.roads import RoadEdge, RoadGraph, RoadNode
 from eyas.traffic import sumo as sumo_room
 from eyas.traffic.config import Demand, Mix, TrafficConfig, VehicleType
+from eyas.traffic.fleet import fleet_of
 from eyas.traffic.network import network_xml
 from eyas.traffic.record import WARM_UP, record, resolved
 from eyas.traffic.recording import Recording
@@ -76,7 +78,7 @@ def test_a_recording_is_what_sumo_itself_writes_down(
     grid: RoadGraph, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
     log = tmp_path / "fcd.xml"
-    told = sumo_room.options(Demand.KEEP_ALIVE)
+    told = sumo_room.options(TrafficConfig())
     monkeypatch.setattr(sumo_room, "options", lambda _: (*told, "--fcd-output", str(log)))
     recording = record("grid", 0, grid, CARS, 20.0, 1)
     compared = 0
@@ -194,6 +196,19 @@ def test_top_speed_and_acceleration_reach_sumo(grid: RoadGraph):
     # of crossings the middle of a vehicle is now and then moved by its turning.
     mean = np.mean([change[k : len(change) - 5 + k] for k in range(5)], axis=0)
     assert 0.9 < np.percentile(mean, 99) < 1.4
+
+
+@pytest.mark.parametrize("demand", Demand)
+def test_no_driver_exceeds_the_maximum(grid: RoadGraph, demand: Demand):
+    """By SUMO's own figures."""
+    slow = TrafficConfig(demand=demand, max_vehicles=20, max_speed=3.0, group_interval=5.0)
+    config = resolved(slow.model_copy(update={"route_length": (100.0, 2000.0)}), 1)
+    speed = []
+    with closing(sumo_room.SumoRun(network_xml(grid), config, fleet_of(config, 60.0))) as run:
+        for _ in range(600):
+            run.advance()
+            speed += map(run.sumo.vehicle.getSpeed, run.sumo.vehicle.getIDList())
+    assert 2.9 < max(speed) < 3.01
 
 
 def test_more_cars_than_fit_are_an_error_before_all_is_driven(grid: RoadGraph):

@@ -87,8 +87,10 @@ class Obstacles:
         lines = shapely.linestrings(np.stack([start, end], axis=1))
         which, what = self._tree.query(lines, predicate="dwithin", distance=radius)
         # A polygon around the obstacle, a little larger than the circle of eight edges in it.
-        swollen = shapely.buffer(self._tree.geometries.take(what), 1.01 * radius, quad_segs=4)
-        met = shapely.intersection(lines[which], swollen)
+        different, again = np.unique(what, return_inverse=True)
+        near = self._tree.geometries.take(different)
+        swollen = shapely.buffer(near, 1.01 * radius, quad_segs=4)
+        met = shapely.intersection(lines[which], swollen[again])
         away = shapely.distance(shapely.points(start)[which], met)
         reach = np.full(len(start), far)
         np.minimum.at(reach, which, np.where(np.isfinite(away), away, far))

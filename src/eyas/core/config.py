@@ -4,7 +4,7 @@ import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from types import NoneType, UnionType
-from typing import Any, TypeVar, get_args
+from typing import Any, ClassVar, TypeVar, get_args
 
 from pydantic import BaseModel, ConfigDict, GetCoreSchemaHandler, ValidationError
 from pydantic.fields import FieldInfo
@@ -42,6 +42,8 @@ class Config(BaseModel):
     """
 
     model_config = ConfigDict(frozen=True, extra="forbid", allow_inf_nan=False)
+    named_by: ClassVar[str | None] = None
+    """Field that a name in the place of the whole group stands for; None: no name may."""
 
     def __init__(self, **values: Any) -> None:  # noqa: ANN401  # as in pydantic
         try:
@@ -102,6 +104,7 @@ def validated(model: type[Model], values: Mapping[str, Any], root: str = "") -> 
     Raises:
         ConfigError: One line: path, value, allowed values, the nearest known key.
     """
+    values = {key: _spelt_out(model, key, value) for key, value in values.items()}
     try:
         return model.model_validate(values)
     except ValidationError as error:
@@ -171,10 +174,18 @@ def _merged(config: Config, changes: Mapping[str, Any]) -> dict[str, Any]:
     values: dict[str, Any] = {name: getattr(config, name) for name in fields}
     for name, change in changes.items():
         old, group = values.get(name), group_of(fields.get(name))
+        change = _spelt_out(type(config), name, change)
         if group and isinstance(old, Config) and isinstance(change, Mapping):
             change = _merged(old, change)
         values[name] = change
     return values
+
+
+def _spelt_out(model: type[Config], key: str, value: object) -> object:
+    """Return the group that a name in its place stands for; other values as they are."""
+    group = group_of(model.model_fields.get(key))
+    named = group is not None and group.named_by is not None and isinstance(value, str)
+    return {group.named_by: value} if group and named else value
 
 
 def _problem(error: ValidationError, model: type[Config], values: Mapping[str, Any]) -> Problem:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from eyas.core.clock import PHYSICS_RATE, physics_steps
-from eyas.core.config import updated, validated
+from eyas.core.config import group_of, updated, validated
 from eyas.core.errors import ConfigError, DataFileError
 from eyas.core.files import write_atomic
 from eyas.settings.config import EyasConfig
@@ -119,9 +119,13 @@ def _parsed(override: str) -> tuple[list[str], Any]:
     if not equals or not all(keys):
         raise ConfigError(f"--set {override!r}: not of the form key=value, such as video.fps=30")
     try:
-        return keys, json.loads(text)
+        value = json.loads(text)
     except (ValueError, RecursionError):
-        return keys, text.strip()
+        value = text.strip()
+    group = group_of(EyasConfig.model_fields.get(keys[0]))
+    if len(keys) == 1 and group and group.named_by and isinstance(value, str):
+        keys.append(group.named_by)
+    return keys, value
 
 
 def _put(values: Nested, keys: Sequence[str], value: Any) -> None:  # noqa: ANN401  # JSON

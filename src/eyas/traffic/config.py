@@ -67,8 +67,9 @@ class Demand(StrEnum):
 
 
 class TrafficConfig(Config):
-    """Settings of the traffic that SUMO simulates."""
+    """Settings of the traffic that SUMO simulates; `traffic=live` is short for its `source`."""
 
+    named_by: ClassVar[str] = "source"
     source: Source = Source.RECORDED
     """Where the traffic comes from."""
     demand: Demand = Demand.KEEP_ALIVE

@@ -153,7 +153,7 @@ def _cache_file(graph: RoadGraph, wanted: TrafficConfig, duration: float) -> Pat
         "config": wanted.model_dump(mode="json"),
         "duration": duration,
         "warm_up": WARM_UP,
-        "options": options(wanted.demand),
+        "options": options(wanted),
         "recorder": _RECORDER,
         "format": FORMAT,
     }

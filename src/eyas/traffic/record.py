@@ -110,7 +110,7 @@ def provenance(
         config=config,
         duration=duration,
         warm_up=WARM_UP,
-        options=options(config.demand),
+        options=options(config),
         sumo_version=sumo_version(),
         eyas_version=version("eyas"),
     )
