@@ -24,6 +24,9 @@ _STEEP: Final = 0.5
 _EDGE: Final = 5.0
 """Distance to the edge of the map that is kept [m]."""
 
+_FAR: Final = 1e5
+"""Farther than anything is put [m]."""
+
 _SOLID: Final = (
     ObjectClass.BUILDING,
     ObjectClass.TREE,
@@ -171,6 +174,8 @@ def _steep(terrain: Terrain) -> NDArray[np.object_]:
 
 
 def _beyond(scene: Scene) -> NDArray[np.object_]:
-    """Return the edge of the map."""
+    """Return all beyond the edge of the map, a strip at each side."""
     east, north = scene.size[0] / 2 - _EDGE, scene.size[1] / 2 - _EDGE
-    return np.asarray(shapely.box(-east, -north, east, north).exterior, object).reshape(1)
+    low = [[-_FAR, -_FAR], [-_FAR, -_FAR], [east, -_FAR], [-_FAR, north]]
+    high = [[_FAR, -north], [-east, _FAR], [_FAR, _FAR], [_FAR, _FAR]]
+    return np.asarray(shapely.box(*np.transpose(low), *np.transpose(high)), object)

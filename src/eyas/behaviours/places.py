@@ -84,7 +84,7 @@ class Roadside:
         if len(open_):
             raise SpawnError(
                 f"{what}: {count} are asked for, but the map has room beside its roads for only "
-                f"{count - len(open_)}; allowed: fewer"
+                f"{count - len(open_)}; allowed: fewer, or nearer to the roads (objects.offset)"
             )
         return places
 
