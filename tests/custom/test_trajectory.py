@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from eyas.core.errors import DataFileError
-from eyas.custom.problems import of_trajectory
+from eyas.custom.problems import of_noise, of_trajectory
 from eyas.custom.trajectory import Trajectory, read_trajectory
 
 
@@ -27,6 +27,15 @@ def test_points_are_passed_at_their_times_and_smoothly(tmp_path: Path):
     angle = np.unwrap(np.arctan2(between[:, 1], between[:, 0])) + math.pi / 2
     np.testing.assert_allclose(np.sin(heading - angle), 0.0, atol=0.02)
     assert len(yaw) == 35
+
+
+def test_errors_of_a_receiver_are_told():
+    time = np.arange(60.0)
+    walk = np.column_stack([1.4 * time, 10.0 * np.sin(time / 10.0), np.full(60, np.nan)])
+    assert list(of_noise(Trajectory(time, walk, None))) == []
+    walk[:, :2] += np.random.default_rng(0).normal(0.0, 1.0, (60, 2))
+    (told,) = of_noise(Trajectory(time, walk, None))
+    assert "smooth the points before" in told.text
 
 
 def test_points_at_uneven_times_give_an_even_motion(tmp_path: Path):

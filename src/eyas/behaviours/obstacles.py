@@ -24,8 +24,8 @@ _STEEP: Final = 0.5
 _EDGE: Final = 5.0
 """Distance to the edge of the map that is kept [m]."""
 
-_FAR: Final = 1e6
-"""Nobody is farther away than this [m]."""
+_FAR: Final = 1e5
+"""Farther than anything is put [m]."""
 
 _SOLID: Final = (
     ObjectClass.BUILDING,
@@ -191,8 +191,8 @@ def _steep(terrain: Terrain) -> NDArray[np.object_]:
 
 
 def _beyond(scene: Scene) -> NDArray[np.object_]:
-    """Return all that lies beyond the map."""
+    """Return all beyond the edge of the map, a strip at each side."""
     east, north = scene.size[0] / 2 - _EDGE, scene.size[1] / 2 - _EDGE
-    inside = shapely.box(-east, -north, east, north)
-    outside = shapely.box(-_FAR, -_FAR, _FAR, _FAR).difference(inside)
-    return np.asarray(outside, object).reshape(1)
+    low = [[-_FAR, -_FAR], [-_FAR, -_FAR], [east, -_FAR], [-_FAR, north]]
+    high = [[_FAR, -north], [-east, _FAR], [_FAR, _FAR], [_FAR, _FAR]]
+    return np.asarray(shapely.box(*np.transpose(low), *np.transpose(high)), object)

@@ -10,7 +10,7 @@ from eyas.custom.trajectory import JUMP, Trajectory
 from eyas.state.scene import Scene
 from eyas.state.terrain import reliefs
 
-__all__ = ["LONGEST", "Finding", "of_height", "of_shape", "of_trajectory", "worst"]
+__all__ = ["LONGEST", "Finding", "of_height", "of_noise", "of_shape", "of_trajectory", "worst"]
 
 _LARGE, _SMALL = 60.0, 0.05
 """Lengths from which on a target is hardly one: a unit is suspected [m]."""
@@ -32,6 +32,9 @@ _RARE = 60.0
 
 _STILL, _FEW = 0.2, 10
 """Way of a trajectory of so many points from which on it moves [m]."""
+
+_TICK, _ROUGH = 0.1, 1.5
+"""Steps in which accelerations are looked at [s], and what half of them seldom exceed [m/s^2]."""
 
 _ALOFT = 3.0
 """Distance from the ground that is told [m]."""
@@ -126,6 +129,22 @@ def of_height(trajectory: Trajectory, scene: Scene) -> Iterator[Finding]:
         yield Finding(
             f"it is up to {most:.4g} m {side} the ground: z counts from the lowest ground of the "
             "map; without z it stays on the ground",
+            fatal=False,
+        )
+
+
+def of_noise(trajectory: Trajectory) -> Iterator[Finding]:
+    """Yield that a trajectory is hardly that of a body, but of a receiver that errs."""
+    time = np.arange(0.0, trajectory.time[-1], _TICK)
+    if len(time) < _FEW:
+        return
+    velocity = np.gradient(trajectory.at(time)[0][:, :2], _TICK, axis=0)
+    change = np.hypot(*np.gradient(velocity, _TICK, axis=0).T)
+    usual = float(np.median(change))
+    if usual > _ROUGH:
+        yield Finding(
+            f"its velocity changes by {usual:.1f} m/s^2 most of the time: if these are errors of "
+            "a receiver, smooth the points before",
             fatal=False,
         )
 

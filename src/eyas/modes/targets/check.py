@@ -12,7 +12,7 @@ from eyas.custom.config import CustomConfig
 from eyas.custom.kind import as_custom, own_target
 from eyas.custom.mesh_file import ENDINGS, loaded
 from eyas.custom.own import MovesItself, OwnTarget, Ride
-from eyas.custom.problems import Finding, of_height, of_shape, of_trajectory
+from eyas.custom.problems import Finding, of_height, of_noise, of_shape, of_trajectory
 from eyas.custom.shape import simplified
 from eyas.custom.trajectory import Trajectory, read_trajectory
 from eyas.custom.user_class import tracks_of
@@ -86,6 +86,7 @@ def _trajectory(path: Path, map_name: str) -> Iterator[Finding]:
     scene = load_scene(map_name)
     yield from of_trajectory(trajectory, scene.size, map_name)
     yield from of_height(trajectory, scene)
+    yield from of_noise(trajectory)
     step = np.hypot(*np.diff(trajectory.position[:, :2], axis=0).T)
     speed = step / np.diff(trajectory.time)
     yield Finding(
