@@ -106,7 +106,7 @@ def ground(scene, lights):
     return Ground(scene, roads=True, lights=lights)
 
 
-def walked(ground, vehicles, behaviour=Behaviour.CROSSING, count=24) -> np.ndarray:
+def walked(ground, vehicles, behaviour=Behaviour.CROSSING, count=50) -> np.ndarray:
     lives = lasting(count, TEN_MINUTES.samples)
     who = Troop("Pedestrian", 0.81, behaviour, lives, 0.0, "extras.0.count")
     return scripted_table(ground, who, TEN_MINUTES, stream(1, "towns"), vehicles)
@@ -149,7 +149,7 @@ def test_pavements_lead_round_corners_without_a_gap(ground):
     # Blocks in the west have pavements on all sides; ways there and back meet each corner twice.
     whole = [way for way in ways if len(np.unique(way.corners, axis=0)) == len(way.corners)]
     for x, y in ((-60, -50), (-60, 50)):
-        around = [way for way in whole if shapely.Polygon(way.corners).contains_xy(x, y)]
+        around = [way for way in whole if shapely.contains_xy(shapely.Polygon(way.corners), x, y)]
         inner = [way for way in around if way.length < 600.0]
         assert sorted(way.lane for way in inner) == [0, 1]
         for way in inner:
@@ -237,7 +237,7 @@ def broken(scene, lights, table) -> tuple[int, int, int]:
 def test_many_cross_and_at_lights_on_green_only(scene, lights, table):
     times = crossed(scene, table)
     assert len(times) > 60
-    assert len({who for _, who, _, _ in times}) > 18
+    assert len({who for _, who, _, _ in times}) > 35
     assert len({crossing for crossing, _, _, _ in times}) == 7
     entered, late, caught = broken(scene, lights, table)
     assert entered > 15
@@ -248,7 +248,7 @@ def test_who_does_not_look_at_lights_would_be_noticed(scene, lights, vehicles, m
     monkeypatch.setattr(Gaps, "_shown", lambda *_: True)
     blind = walked(Ground(scene, roads=True, lights=lights), vehicles)
     entered, late, caught = broken(scene, lights, blind)
-    assert late > 0.3 * entered
+    assert late > 0.2 * entered
     assert caught > 0
 
 

@@ -30,6 +30,9 @@ _SPARE: Final = 0.15
 _ROUNDED: Final = 0.05
 """How much nearer to obstacles ways may come where their corners are cut [m]."""
 
+_APART: Final = 1.0
+"""Distance to such places that is kept [m]."""
+
 _KERB_HEIGHT: Final = 0.05
 """Pavements are higher than this: paving at the foot of buildings is not [m]."""
 
@@ -103,9 +106,12 @@ def _walked(ring: shapely.LinearRing, place: _Place) -> tuple[NDArray[np.bool_],
     under, clear = place.surface.at(points), np.ones(len(points), np.bool_)
     near = place.swept.query(shapely.points(points), predicate="dwithin", distance=_FROM_CARS)
     clear[near[0]] = False
-    onwards = np.stack([points, np.roll(points, -1, axis=0)], axis=1)
-    met = place.obstacles.blocked(shapely.linestrings(onwards), place.radius - _ROUNDED)
-    clear &= ~(met | np.roll(met, 1))
+    least = place.radius - _ROUNDED
+    narrow = shapely.buffer(place.obstacles.near(ring, least), least, quad_segs=2)
+    if len(narrow):
+        met = shapely.intersection(ring, shapely.union_all(narrow))
+        shapely.prepare(met)
+        clear &= ~shapely.dwithin(shapely.points(points), met, _APART)
     raised = under.pavement & (under.height > _KERB_HEIGHT)
     return raised & clear, is_hard(under.height) & clear
 
