@@ -10,7 +10,7 @@ from eyas.traffic.config import TrafficConfig
 from eyas.traffic.fleet import fleet_of
 from eyas.traffic.network import network_xml
 from eyas.traffic.record import WARM_UP, resolved
-from eyas.traffic.signals import Aspect, signal_plan
+from eyas.traffic.signals import Aspect, signal_plan, walk_plan
 from eyas.traffic.sumo import RATE, SumoRun
 
 NET = """<net>
@@ -51,6 +51,39 @@ def test_a_phase_begins_at_the_physics_step_at_which_the_last_one_ends():
         for off in (-1e-9, 0.0, 1e-9):
             assert plan.at(np.array([begin + ends + off]))[0, 0] == aspect
         assert plan.at(np.array([begin + ends - 0.002]))[0, 0] != aspect
+
+
+WALKED = """<net>
+<edge id=":x_c0" function="crossing" crossingEdges="in out"/>
+<edge id=":x_c1" function="crossing" crossingEdges="other"/>
+<edge id=":y_c0" function="crossing" crossingEdges="in"/>
+<edge id=":z_c0" function="crossing" crossingEdges="in"/>
+<tlLogic id="x" type="static" programID="0" offset="5">
+<phase duration="10" state="GrrG"/><phase duration="4" state="yrrr"/>
+<phase duration="20" state="rGGr"/><phase duration="5" state="rGrr"/>
+<phase duration="2" state="uyrr"/>
+</tlLogic>
+<tlLogic id="y" type="actuated" programID="0" offset="0"><phase duration="9" state="rG"/></tlLogic>
+<connection from="in" to="out" linkIndex="0" tl="x" dir="s"/>
+<connection from="other" to="out" linkIndex="1" tl="x" dir="r"/>
+<connection from=":x_w0" to=":x_c0" linkIndex="2" tl="x" dir="s"/>
+<connection from=":x_w1" to=":x_c1" linkIndex="3" tl="x" dir="s"/>
+<connection from=":y_w0" to=":y_c0" linkIndex="1" tl="y" dir="s"/>
+<connection from=":z_w0" to=":z_c0" dir="s"/>
+</net>"""
+
+
+def test_people_go_while_those_on_the_crossed_street_have_red():
+    plan = walk_plan(WALKED.encode())
+    assert plan.edges == (":x_c0", ":x_c1", ":y_c0")
+    time = 5.0 - WARM_UP + np.array([5.0, 12.0, 20.0, 36.0, 40.0])
+    shown = [[Aspect(one).name for one in row] for row in plan.at(time).tolist()]
+    own = ["RED", "RED", "GREEN", "AMBER", "RED"]
+    other = ["GREEN", "AMBER", "RED", "RED", "RED"]
+    assert [row[:2] for row in shown] == [list(pair) for pair in zip(own, other, strict=True)]
+    # What SUMO will do by what drives is not known: nobody is sent to cross.
+    assert {row[2] for row in shown} == {"RED"}
+    np.testing.assert_array_equal(plan.only(1).at(time)[:, 0], plan.at(time)[:, 1])
 
 
 @pytest.fixture(scope="module")

@@ -1,7 +1,7 @@
 """Ways along the kerbs of imported towns, whose pavements begin and end and are narrow."""
 
 from itertools import pairwise
-from typing import Final
+from typing import Final, NamedTuple
 
 import numpy as np
 import shapely
@@ -26,6 +26,12 @@ _BESIDE_CARS: Final = 0.6
 
 _SPARE: Final = 0.15
 """How much wider obstacles are passed than need be, as corners of ways are rounded [m]."""
+
+_ROUNDED: Final = 0.05
+"""How much nearer to obstacles ways may come where their corners are cut [m]."""
+
+_APART: Final = 1.0
+"""Distance to such places that is kept [m]."""
 
 _KERB_HEIGHT: Final = 0.05
 """Pavements are higher than this: paving at the foot of buildings is not [m]."""
@@ -58,36 +64,54 @@ def kerb_ways(
         vehicles: Those that may come over kerbs, as in narrow corners; None: there are none.
     """
     swept = shapely.STRtree(_swept(vehicles) if vehicles is not None else [])
+    place = _Place(obstacles, surface, swept, radius)
     found = []
     for first, last in pairwise(footways.kerb_first):
         kerb = shapely.LinearRing(footways.kerb_points[first:last])
         for lane, beyond in enumerate(_LANES):
             for ring in _rings(kerb, beyond, obstacles, radius):
                 line = shapely.reverse(ring) if lane == 1 else ring
-                found += _paved(line, surface, swept, lane)
+                found += _paved(line, place, lane)
     return found
 
 
-def _paved(
-    ring: shapely.LinearRing, surface: Surface, swept: shapely.STRtree, lane: int
-) -> list[Way]:
+class _Place(NamedTuple):
+    """What decides where one walks along a kerb."""
+
+    obstacles: Obstacles
+    surface: Surface
+    swept: shapely.STRtree
+    """Where vehicles come."""
+    radius: float
+    """Distance to obstacles that is kept [m]."""
+
+
+def _paved(ring: shapely.LinearRing, place: _Place, lane: int) -> list[Way]:
     """Return the parts of a ring that are on pavement, where no vehicle comes."""
-    free, hard = _walked(ring, surface, swept)
+    free, hard = _walked(ring, place)
     if not free.all():
         # It begins where nobody walks, so that no part of it is cut in two.
         ring = _from(ring, float(np.argmin(free)))
-        free, hard = _walked(ring, surface, swept)
+        free, hard = _walked(ring, place)
         free = bridged(free, hard)
     return paved_parts(ring, free, lane)
 
 
-def _walked(
-    ring: shapely.LinearRing, surface: Surface, swept: shapely.STRtree
-) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
-    """Return which points along a ring are on pavement, and which are hard ground, without cars."""
+def _walked(ring: shapely.LinearRing, place: _Place) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Return which points along a ring are on pavement, and which are hard ground.
+
+    Neither are those where cars come, or where obstacles leave no room on either side.
+    """
     points = along(ring)
-    under, clear = surface.at(points), np.ones(len(points), np.bool_)
-    clear[swept.query(shapely.points(points), predicate="dwithin", distance=_FROM_CARS)[0]] = False
+    under, clear = place.surface.at(points), np.ones(len(points), np.bool_)
+    near = place.swept.query(shapely.points(points), predicate="dwithin", distance=_FROM_CARS)
+    clear[near[0]] = False
+    least = place.radius - _ROUNDED
+    narrow = shapely.buffer(place.obstacles.near(ring, least), least, quad_segs=2)
+    if len(narrow):
+        met = shapely.intersection(ring, shapely.union_all(narrow))
+        shapely.prepare(met)
+        clear &= ~shapely.dwithin(shapely.points(points), met, _APART)
     raised = under.pavement & (under.height > _KERB_HEIGHT)
     return raised & clear, is_hard(under.height) & clear
 

@@ -100,7 +100,7 @@ def _zebras(plan: Plan) -> list[list[Stripe]]:
     made: list[list[Stripe]] = []
     free = [_zebra(walk, plan.roads) for walk in plan.crosswalks]
     areas = [[bar.area for bar in bars] for bars in free]
-    every = [area for bars in areas for area in bars]
+    every = np.array([area for bars in areas for area in bars], object)
     owner = np.repeat(np.arange(len(areas)), [len(bars) for bars in areas])
     one, two = shapely.STRtree(every).query(every, predicate="dwithin", distance=_BAR / 2)
     later = np.zeros(len(every), np.bool_)

@@ -29,6 +29,10 @@ from eyas.world.street.parked_cars import VARIANTS, parked_car
 
 __all__ = ["build_scene"]
 
+_WIDE = 3.5
+"""Width of pavements from which things may stand anywhere on them [m]."""
+_AT_KERB = 1.3
+"""On narrower ones they stand nearer to the kerb [m]."""
 _NO_EQUIPMENT = 250.0
 """Smaller flat roofs carry nothing [m^2]."""
 
@@ -65,7 +69,7 @@ def build_scene(
     feet = shapely.buffer(shapely.points(lights.position[:, :2].astype(float)), 4.0)
     taken = shapely.union_all([taken, *feet])
     rng = stream(seed, "imported furniture")
-    add_furniture(builder, network, plan.pavement, taken, KERB_HEIGHT, rng)
+    add_furniture(builder, network, _room_to_furnish(plan), taken, KERB_HEIGHT, rng)
     plants = {name: builder.prototype(name, make) for name, make in plant_makers(beds).items()}
     add_greenery(builder, plan, features, kinds, plants, stream(seed, "imported plants"))
     scene = builder.build(network, lights)
@@ -100,6 +104,16 @@ def _add_signals(
         builder.add_cylinder(foot, radius, FLOOR_HEIGHT, top, owner)
         feet.append(shapely.Point(foot).buffer(1.0))
     return shapely.union_all(feet)
+
+
+def _room_to_furnish(plan: Plan) -> shapely.Geometry:
+    """Return the pavements [m], of narrow ones only the side at the kerb, so that one can pass."""
+    inside = shapely.buffer(plan.pavement, -_WIDE / 2, join_style="mitre")
+    wide = shapely.buffer(inside, _WIDE / 2, join_style="mitre")
+    at_kerb = shapely.buffer(plan.roads, _AT_KERB, quad_segs=3)
+    return shapely.union(
+        shapely.intersection(plan.pavement, wide), shapely.intersection(plan.pavement, at_kerb)
+    )
 
 
 def _lights(
