@@ -122,15 +122,18 @@ def test_who_is_half_in_the_picture_is_told_apart(monkeypatch):
     simulation = built(1, target="Mantis", objects={**FEW, "max_count": 2, "group_size": 2})
     cameras, target = simulation.snapshot.cameras, int(simulation.snapshot.targets.actor[0])
     seen = simulation.actors_around
-    away = cameras.position[0] - simulation.snapshot.targets.position[0]
-    side = np.linalg.norm(away) * math.tan(0.5 * cameras.field_of_view[0])
+    place = seen(0)[0].position[0, target].copy()
+    deep = (place - cameras.position[0]) @ cameras.rotation[0, :, 0]
+    side = deep * math.tan(0.5 * cameras.field_of_view[0])  # half the picture's width
+    middle = (
+        place
+        - (place - cameras.position[0]) @ cameras.rotation[0, :, 1] * (cameras.rotation[0, :, 1])
+    )
 
     def moved(share: float) -> str:
         actors, models = seen(0)
         actors.present[:] = True
-        actors.position[0, 1 - target] = (
-            actors.position[0, target] + share * side * cameras.rotation[0, :, 1]
-        )
+        actors.position[0, 1 - target] = middle + share * side * cameras.rotation[0, :, 1]
         monkeypatch.setattr(simulation, "actors_around", lambda tracker, ago=0: (actors, models))
         return target_in_words(simulation, 0, 0.75)
 
