@@ -148,9 +148,7 @@ def test_what_is_wrong_with_a_shape_is_told():
     )
     broken = good.points.copy()
     broken[7, 1] = np.nan
-    assert told(Triangles(broken, good.corners, good.colours)) == [
-        "1 vertices are not finite numbers (NaN)"
-    ]
+    assert told(Triangles(broken, good.corners, good.colours)) == ["1 vertex not finite (NaN)"]
     flat = Triangles(good.points * [1, 1, 0], good.corners, good.colours)
     assert told(flat)[0].startswith("it has no size: ")
 
@@ -180,10 +178,22 @@ def test_files_that_are_none_are_told_in_one_line(tmp_path: Path):
         assert "\n" not in str(caught.value)
 
 
+def test_files_that_a_mesh_needs_are_named(tmp_path: Path):
+    import json
+
+    text = trimesh.creation.box(SIZE).export(file_type="gltf")["model.gltf"]
+    model = json.loads(text)
+    for buffer in model["buffers"]:
+        buffer["uri"] = "corners.bin"
+    (tmp_path / "model.gltf").write_text(json.dumps(model))
+    with pytest.raises(DataFileError, match=r"it needs 'corners\.bin'; there is none$"):
+        loaded(CustomConfig(mesh=str(tmp_path / "model.gltf")))
+
+
 def test_a_corner_that_is_no_number_is_told(tmp_path: Path):
     corners = "v nan 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
     (tmp_path / "nan.obj").write_text(corners + "f 1 2 3\nf 1 3 4\nf 2 3 4\nf 1 4 2\n")
-    with pytest.raises(ConfigError, match=r"nan\.obj: 1 vertices are not finite numbers"):
+    with pytest.raises(ConfigError, match=r"nan\.obj: 1 vertex not finite"):
         kind_name_of(CustomConfig(mesh=str(tmp_path / "nan.obj")))
 
 

@@ -241,7 +241,7 @@ class Narrow(Whole):
         ({"path": f"{__name__}:Narrow"}, r"tracks\(...\) raised TypeError: "),
         ({"path": f"{__name__}:Lost"}, r"body 1 of 10: .* are outside the map 'citystreet'"),
         ({"path": f"{__name__}:Jumping"}, "body 10 of 10: point 51: it jumps 200 m in 0.1 s"),
-        ({"mesh": "gone.stl"}, r"^custom\.mesh: gone\.stl: cannot read: no such file$"),
+        ({"mesh": "gone.stl"}, r"^custom\.mesh: gone\.stl: cannot read: no such file in /"),
         ({"trajectory": "gone.csv"}, r"^custom\.trajectory: gone\.csv: cannot read: "),
         ({"trajectory": "x.csv", "body": "Pedestrien"}, "did you mean 'Pedestrian'"),
         ({"path": "a:B", "behaviour": "wonder"}, r"custom\.behaviour: .*did you mean 'wander'"),

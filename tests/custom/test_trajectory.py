@@ -88,4 +88,4 @@ def test_jumps_gaps_and_places_outside_the_map_are_told():
     assert [finding.fatal for finding in told] == [True, False, False]
     assert told[0].text == "point 3: it jumps 399 m in 1 s; allowed: up to 100 m/s"
     assert told[1].text.startswith("2 of 4 points are outside the map 'meadow' (600 x 600 m")
-    assert told[2].text.startswith("1 gaps of more than 5 s")
+    assert told[2].text.startswith("1 gap of more than 5 s")

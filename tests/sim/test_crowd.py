@@ -12,6 +12,7 @@ from eyas.exports.label import label_of
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
 from eyas.sim.crowd import extras_of
+from eyas.sim.words import target_in_words
 from eyas.sim.worlds import each_alone, together
 from eyas.state.draw import Picture
 from eyas.state.scene import ObjectClass
@@ -65,6 +66,7 @@ def test_a_target_on_foot_is_in_the_picture_and_in_the_labels(walk):
             frame.target.type,
             ObjectClass.PERSON,
         )
+        assert frame.target.motion.upright
         assert label.visible_fraction > 0.1
         assert (picture.class_id[tracker] == ObjectClass.PERSON).any()
         assert math.hypot(*label.target_velocity) <= 2.001
@@ -136,6 +138,31 @@ def test_pedestrians_walk_in_the_cities_unless_extras_says_otherwise(settings, b
 def test_the_pedestrians_of_a_city_are_in_its_simulation():
     assert kinds_around(built())[-40:] == ["Pedestrian"] * 40
     assert "Pedestrian" not in kinds_around(built(extras=[]))
+
+
+def test_who_is_half_in_the_picture_is_told_apart(monkeypatch):
+    simulation = built(
+        1, target="Mantis", objects={**FEW, "max_count": 2, "group_size": 2}, extras=[]
+    )
+    cameras, target = simulation.snapshot.cameras, int(simulation.snapshot.targets.actor[0])
+    seen = simulation.actors_around
+    place = seen(0)[0].position[0, target].copy()
+    deep = (place - cameras.position[0]) @ cameras.rotation[0, :, 0]
+    side = deep * math.tan(0.5 * cameras.field_of_view[0])  # half the picture's width
+    middle = (
+        place
+        - (place - cameras.position[0]) @ cameras.rotation[0, :, 1] * (cameras.rotation[0, :, 1])
+    )
+
+    def moved(share: float) -> str:
+        actors, models = seen(0)
+        actors.present[:] = True
+        actors.position[0, 1 - target] = middle + share * side * cameras.rotation[0, :, 1]
+        monkeypatch.setattr(simulation, "actors_around", lambda tracker, ago=0: (actors, models))
+        return target_in_words(simulation, 0, 0.75)
+
+    assert moved(1.1) == "a dark grey walking machine on six legs, moving"  # the other stands
+    assert moved(2.5) == "a dark grey walking machine on six legs"
 
 
 def test_a_slow_robot_has_a_turn_direction():

@@ -5,12 +5,15 @@ import functools
 import numpy as np
 import pytest
 
+from eyas.state.mesh import Surface
 from eyas.state.motion import ActorState
 from eyas.targets.catalogue import KINDS, MODELS, kind_index, models_of
 from eyas.targets.config import TargetName
 from eyas.targets.jointed.cycle import frames_of
 from eyas.targets.jointed.figure import levels_of
 from eyas.targets.jointed.kinds import FIGURES, JOINTED_KINDS
+from eyas.targets.jointed.people.people import PEOPLE
+from eyas.targets.jointed.people.person import Garment, shapes_of_person
 from eyas.targets.kind import Looks
 from eyas.targets.rig import Rigs
 
@@ -174,6 +177,17 @@ def test_arms_swing_against_their_legs_and_knees_bend_forward(name):
         share = (hip[:, 2] - knee[:, 2]) / (hip[:, 2] - frames[:, len(names) + 3 * k + 2, 2, 3])
         straight = hip[:, 0] + share * (foot - hip[:, 0])
         assert (knee[:, 0] >= straight - 1e-3).all()
+
+
+@pytest.mark.parametrize(
+    "person", [p for p in PEOPLE if p.garment in (Garment.COAT, Garment.DRESS)]
+)
+def test_thighs_are_clothed_as_far_as_coats_and_dresses_reach(person):
+    for level in range(3):
+        mesh = levels_of(shapes_of_person(person).thigh)[level]
+        cloth = np.array([material.surface is Surface.PAINT for material in mesh.palette])
+        covered = mesh.positions[mesh.triangles[cloth[mesh.materials]].ravel()]
+        assert covered[:, 2].min() < -0.25 * person.scale
 
 
 @pytest.mark.parametrize("name", WALKERS)

@@ -83,13 +83,17 @@ def read_mesh(path: Path) -> Triangles:
     if path.suffix.lower() not in ENDINGS:
         raise DataFileError(f"{path}: not a mesh file; allowed: {', '.join(ENDINGS)}")
     if not path.is_file():
-        raise DataFileError(f"{path}: cannot read: no such file")
+        where = "" if path.is_absolute() else f" in {Path.cwd()}"
+        raise DataFileError(f"{path}: cannot read: no such file{where}")
     if path.stat().st_size == 0:
         raise DataFileError(f"{path}: holds no triangles: the file is empty")
     if path.stat().st_size > _LARGEST_FILE:
         raise DataFileError(f"{path}: larger than {_LARGEST_FILE >> 20} MiB")
     try:
         parts = list(_parts(trimesh, path))
+    except (KeyError, FileNotFoundError) as error:  # a buffer or a picture beside it
+        missing = getattr(error, "filename", None) or error.args[0]
+        raise DataFileError(f"{path}: cannot read: it needs {missing!r}; there is none") from None
     except Exception as error:  # its readers raise whatever they stumble on
         raise DataFileError(f"{path}: cannot read as a mesh: {error}") from None
     if not parts:
@@ -111,11 +115,11 @@ def placed(shape: Triangles, up: str, turn: float, scale: float) -> Triangles:
         turn: Angle by which it is turned, counter-clockwise from above [rad].
         scale: Metres in the file's unit.
     """
-    points = shape.points * scale
-    if up == "y":
-        points = points @ _GLTF.T
+    axes = _GLTF if up == "y" else np.eye(3)
     cosine, sine = np.cos(turn), np.sin(turn)
-    points = points @ np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]]).T
+    axes = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]]) @ axes
+    with np.errstate(invalid="ignore"):  # what is no number is told later
+        points = shape.points * scale @ axes.T
     used = points[shape.corners.ravel()]
     if not np.isfinite(used).all():
         return replace(shape, points=points)  # `eyas.custom.problems` tells it

@@ -10,7 +10,16 @@ from eyas.custom.trajectory import JUMP, Trajectory
 from eyas.state.scene import Scene
 from eyas.state.terrain import reliefs
 
-__all__ = ["LONGEST", "Finding", "of_height", "of_noise", "of_shape", "of_trajectory", "worst"]
+__all__ = [
+    "LONGEST",
+    "Finding",
+    "numbered",
+    "of_height",
+    "of_noise",
+    "of_shape",
+    "of_trajectory",
+    "worst",
+]
 
 _LARGE, _SMALL = 60.0, 0.05
 """Lengths from which on a target is hardly one: a unit is suspected [m]."""
@@ -48,6 +57,11 @@ class Finding(NamedTuple):
     """Whether the target cannot be used."""
 
 
+def numbered(count: int, noun: str, several: str = "") -> str:
+    """Return a number of things in words."""
+    return f"{count} {noun if count == 1 else several or noun + 's'}"
+
+
 def worst(findings: Iterator[Finding]) -> str:
     """Return the first that is fatal; empty if none is."""
     return next((finding.text for finding in findings if finding.fatal), "")
@@ -57,7 +71,7 @@ def of_shape(shape: Triangles) -> Iterator[Finding]:
     """Yield what is wrong with a shape in metres."""
     if not np.isfinite(shape.points[shape.corners]).all():
         bad = int((~np.isfinite(shape.points)).any(axis=1).sum())
-        yield Finding(f"{bad} vertices are not finite numbers (NaN)", fatal=True)
+        yield Finding(f"{numbered(bad, 'vertex', 'vertices')} not finite (NaN)", fatal=True)
         return
     count, size = len(shape.corners), shape.size
     if count > LARGEST:
@@ -114,8 +128,8 @@ def of_trajectory(
         )
     elif len(gaps):
         yield Finding(
-            f"{len(gaps)} gaps of more than {_GAP:g} s, where a curve is guessed; the first after "
-            f"point {int(gaps[0]) + 1}",
+            f"{numbered(len(gaps), 'gap')} of more than {_GAP:g} s, where a curve is guessed; the "
+            f"first after point {int(gaps[0]) + 1}",
             fatal=False,
         )
 
@@ -169,8 +183,8 @@ def _surface(shape: Triangles) -> Iterator[Finding]:
     single = int((times == 1).sum())
     if single:
         yield Finding(
-            f"it is not closed: {single} edges have one triangle only, and behind them one looks "
-            "through it",
+            f"it is not closed: {numbered(single, 'edge')} with one triangle only, behind which "
+            "one looks through it",
             fatal=False,
         )
     p, q, r = np.moveaxis(shape.points[shape.corners], 1, 0)

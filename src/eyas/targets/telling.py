@@ -74,7 +74,8 @@ def told_apart(target: Seen, others: Sequence[Seen]) -> str:
 def _doing(seen: Seen) -> str:
     kind = kind_of(seen.model).object_class
     if seen.speed < kind_of(seen.model).slowest:
-        spins = kind is ObjectClass.ROBOT and abs(seen.yaw_rate) >= _TURNING
+        alive = kind in (ObjectClass.PERSON, ObjectClass.ROBOT)
+        spins = alive and abs(seen.yaw_rate) >= _TURNING
         return "turning on the spot" if spins else "standing still"
     if kind is ObjectClass.PERSON:
         return "walking"

@@ -12,7 +12,7 @@ from eyas.custom.config import CustomConfig
 from eyas.custom.kind import as_custom, own_target
 from eyas.custom.mesh_file import ENDINGS, loaded
 from eyas.custom.own import MovesItself, OwnTarget, Ride
-from eyas.custom.problems import Finding, of_height, of_noise, of_shape, of_trajectory
+from eyas.custom.problems import Finding, numbered, of_height, of_noise, of_shape, of_trajectory
 from eyas.custom.shape import simplified
 from eyas.custom.trajectory import Trajectory, read_trajectory
 from eyas.custom.user_class import tracks_of
@@ -77,7 +77,8 @@ def _mesh(config: CustomConfig) -> Iterator[Finding]:
     size = " x ".join(f"{length:.3g}" for length in shape.size)
     colours = len(np.unique(shape.colours, axis=0))
     yield Finding(
-        f"{len(shape.corners)}{simpler} triangles, {colours} colours, {size} m", fatal=False
+        f"{len(shape.corners)}{simpler} triangles, {numbered(colours, 'colour')}, {size} m",
+        fatal=False,
     )
 
 
@@ -99,7 +100,7 @@ def _trajectory(path: Path, map_name: str) -> Iterator[Finding]:
 def _class(path: str, map_name: str) -> Iterator[Finding]:
     target = own_target(CustomConfig(path=path))
     size = " x ".join(f"{length:.3g}" for length in target.size)
-    yield Finding(f"{len(target.parts())} parts, {size} m", fatal=False)
+    yield Finding(f"{numbered(len(target.parts()), 'part')}, {size} m", fatal=False)
     yield from _drawn(target)
     if isinstance(target, MovesItself):
         scene, time = load_scene(map_name), np.arange(10 * _SECONDS) / 10.0

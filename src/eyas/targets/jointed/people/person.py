@@ -6,6 +6,7 @@ Lengths are those of a person of 1.80 m, from the usual proportions of limbs (Dr
 
 from dataclasses import dataclass
 from enum import Enum
+from itertools import pairwise
 
 from eyas.mesh.shell import Shell
 from eyas.state.mesh import Material, Surface
@@ -27,7 +28,8 @@ HEEL, TOES = 0.07, 0.19
 _CLOTH = Material(texture="cloth", surface=Surface.PAINT)
 """The colour of the instance, without gloss."""
 
-_EYE = matt(0.13, 0.11, 0.10)
+_BLACK = matt(0.13, 0.11, 0.10)
+"""Eyes and zips."""
 
 
 class Garment(Enum):
@@ -155,7 +157,7 @@ def _torso(shell: Shell, person: Person, detail: int) -> None:
     hem = {Garment.COAT: -0.24, Garment.DRESS: -0.28, Garment.JACKET: -0.10}.get(
         person.garment, -0.05
     )
-    flare = 0.03 if _is_long(person.garment) else 0.0
+    flare = 0.03 if _is_long(person.garment) else 0.007
     low = (hem, 0.145 + 2.8 * flare, 0.205 + 0.7 * flare, 0.01)
     if not _is_long(person.garment):
         bottom = (-0.12, 0.09, 0.15, 0.0)
@@ -163,9 +165,21 @@ def _torso(shell: Shell, person: Person, detail: int) -> None:
     chest = [low, (0.10, 0.12, 0.18, 0.0), (0.32, 0.135, 0.195, 0.0), (0.43, 0.115, 0.20, -0.01)]
     shoulder = [(0.48, 0.095, 0.18, -0.012), (0.51, 0.08, 0.12, -0.015), (0.53, 0.06, 0.07, -0.01)]
     stack(shell, rows(*(chest if detail else chest[::2]), *shoulder), _CLOTH, sides, box=0.25)
+    if detail == DETAILS[0] and person.garment in (Garment.COAT, Garment.JACKET):
+        _zip(shell, rows(*chest, shoulder[0]), s)
     if person.bag is not None:
         low_corner, high = (-0.27 * s, -0.14 * s, 0.05 * s), (-0.10 * s, 0.14 * s, 0.47 * s)
         shell.box(low_corner, high, matt(*person.bag), taper=0.03)
+
+
+def _zip(shell: Shell, rows: list[tuple[float, float, float, float]], s: float) -> None:
+    """Add a dark strip down the front of a body of ovals, see `stack`."""
+    half, off = 0.011 * s, 0.004 * s
+    front = [(ahead + x + off, z) for z, x, _, ahead in rows]
+    for (x, z), (higher_x, higher_z) in pairwise(front):
+        corners = [(x, -half, z), (x, half, z), (higher_x, half, higher_z),
+                   (higher_x, -half, higher_z)]  # fmt: skip
+        shell.quads(corners, _BLACK)
 
 
 def _head(shell: Shell, person: Person, detail: int) -> None:
@@ -203,7 +217,7 @@ def _head(shell: Shell, person: Person, detail: int) -> None:
 def _face(shell: Shell, skin: Material, s: float) -> None:
     """Add eyes and a nose, which are seen from near only."""
     for side in (-1.0, 1.0):
-        shell.ball((0.107 * s, 0.03 * side * s, 0.74 * s), (0.01 * s, 0.014 * s, 0.009 * s), _EYE,
+        shell.ball((0.107 * s, 0.03 * side * s, 0.74 * s), (0.01 * s, 0.014 * s, 0.009 * s), _BLACK,
                    rows=2, sides=4)  # fmt: skip
     shell.prism([(0.105 * s, 0.688 * s), (0.138 * s, 0.694 * s), (0.108 * s, 0.745 * s)],
                 (-0.014 * s, 0.014 * s), skin)  # fmt: skip
