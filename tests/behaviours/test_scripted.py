@@ -4,19 +4,18 @@ import numpy as np
 import pytest
 import shapely
 
+from eyas.behaviours import places
 from eyas.behaviours.config import Behaviour
 from eyas.behaviours.ground import Ground
 from eyas.behaviours.habits import HABITS, STROLL
-from eyas.behaviours.lives import recycled
-from eyas.behaviours.troop import Clock
 from eyas.core.errors import SpawnError
-from eyas.core.variation import Mirrored
+from eyas.core.variation import Mirrored, Uniform
 from eyas.sim.scenes import load_scene
-from eyas.state.motion import SAMPLE, ActorState, Motion
+from eyas.state.motion import ActorState, Motion
 from eyas.state.scene import ObjectClass
 from eyas.state.terrain import reliefs
 from eyas.targets.catalogue import MODELS
-from eyas.targets.config import ObjectsConfig, TargetName
+from eyas.targets.config import TargetName
 from eyas.traffic.replay import Replay
 from eyas.world.roads.areas import streets
 
@@ -158,6 +157,29 @@ def test_offsets_are_perpendicular_to_the_road_and_on_the_asked_side(city):
     assert 0.9 < np.percentile(away, 10) < np.percentile(away, 90) < 3.1
 
 
+@pytest.mark.parametrize(
+    ("offset", "least", "most"),
+    [
+        (2.0, 2.0, 2.0),
+        (-3.0, -3.0, -3.0),
+        (Uniform(uniform=(1.0, 4.0)), 1.0, 4.0),
+        (Mirrored(mirrored=(2.0, 4.0)), -4.0, 4.0),
+    ],
+)
+def test_an_offset_is_to_the_left_of_its_road(city, monkeypatch, offset, least, most):
+    road = max(streets(city.scene.network), key=lambda road: shapely.LineString(road.left).length)
+    monkeypatch.setattr(places, "streets", lambda _network: [road])
+    roadside = places.Roadside(city.scene.network, city.obstacles)
+    points = roadside.draw(200, offset, 0.1, np.random.default_rng(0), "objects.max_count")
+    line = shapely.LineString(road.left)
+    left = line.buffer(5.0, single_sided=True)
+    away = shapely.distance(shapely.points(points), line)
+    aside = np.where(shapely.intersects(left, shapely.points(points)), away, -away)
+    assert (aside.min(), aside.max()) == pytest.approx((least, most), abs=0.25)
+    if isinstance(offset, Mirrored):
+        assert (np.abs(aside) > 1.9).all()
+
+
 def test_where_cars_drive_nobody_is_on_the_road():
     ground = Ground(load_scene("citystreet"), roads=True)
     for behaviour in (None, Behaviour.PAVEMENT):
@@ -213,50 +235,6 @@ def test_the_ground_under_a_point_does_not_depend_on_the_others(city):
     assert np.array_equal(together.pavement, np.concatenate([one.pavement for one in alone]))
     assert together.pavement.any()
     assert len(set(together.height)) > 1
-
-
-def test_objects_are_recycled_but_stay_for_an_episode():
-    config, clock = ObjectsConfig(), Clock(12601, 10.0)
-    lives = recycled(config, *clock, episode=3.0)
-    assert set(lives.slot.tolist()) == set(range(10))
-    assert len(lives.slot) > 100  # moved elsewhere again and again
-    motion = np.zeros((clock.samples, 10))
-    for slot, a, b in zip(*lives, strict=True):
-        assert not motion[a - 1 if a else 0 : b + 1, slot].any()  # never twice at once
-        motion[a : b + 1, slot] = 1
-    assert motion[50:].sum(axis=1).min() >= 10 - config.group_size
-    # Groups enter after each other, as in the original.
-    assert motion[0].sum() == 4
-    assert motion[6].sum() == 8
-    table = np.zeros(motion.shape, SAMPLE)
-    table["present"] = motion
-    replay = Replay(Motion(table, np.zeros(10, np.int32), 10.0, 0.0))
-    lasts = [replay.available(t, t + 3.0).sum() for t in np.linspace(2.0, 1200.0, 400)]
-    assert min(lasts) >= 5
-
-
-@pytest.mark.parametrize(
-    ("count", "group", "followers", "episode"),
-    [(1, 4, 1, 3.0), (4, 4, 4, 3.0), (6, 4, 4, 3.0), (9, 1, 8, 20.0), (100, 50, 40, 30.0)],
-)
-def test_nobody_is_moved_whom_a_tracker_must_follow(count, group, followers, episode):
-    """In a world whose time goes on, each of the followers finds somebody who stays."""
-    config, clock = ObjectsConfig(max_count=count, group_size=group, interval=5.0), Clock(12601, 10)
-    lives = recycled(config, *clock, episode, followers)
-    table = np.zeros((clock.samples, count), SAMPLE)
-    for slot, a, b in zip(*lives, strict=True):
-        table["present"][a : b + 1, slot] = 1
-    replay = Replay(Motion(table, np.zeros(count, np.int32), 10.0, 0.0))
-    begins = np.arange(0.0, clock.samples / 10.0 - 1.0 - episode, 0.25)
-    stay = [replay.available(t, t + episode).sum() for t in begins.tolist()]
-    assert min(stay) >= followers
-    assert (len(lives.slot) > count) == (count > followers)  # moved, where one can be spared
-
-
-def test_longer_episodes_make_longer_lives():
-    long = recycled(ObjectsConfig(), 12601, 10.0, episode=60.0)
-    stays = (long.leaves - long.enters)[long.slot == 5] / 10.0
-    assert sorted(stays)[len(stays) // 2] == pytest.approx(240.0, abs=1.0)
 
 
 def test_a_full_turn_is_no_jump(city_tables):

@@ -9,7 +9,9 @@ from eyas.settings.config import EyasConfig
 from eyas.task.config import DoneConfig
 from eyas.traffic.config import Source, TrafficConfig
 
+# Without pedestrians, who cross roads only where it is known in advance where vehicles will be.
 RECORDED = EyasConfig(
+    extras=(),
     camera=CameraConfig(width=48, height=36),
     done=DoneConfig(total_steps=400),
     video=VideoConfig(
