@@ -20,6 +20,7 @@ from eyas.sim.worlds import together
 from eyas.state.motion import SAMPLE, Motion
 from eyas.state.scene import ObjectClass
 from eyas.targets.catalogue import KINDS, MODELS, kind_index, models_of
+from eyas.traffic.signals import Aspect, SignalPlan
 
 from .conftest import troop
 
@@ -136,6 +137,19 @@ def test_a_gap_is_long_enough_for_who_crosses():
 def test_nobody_waits_longer_than_a_minute():
     gaps = Gaps(passing(np.zeros(2001)), 2001, 10.0)
     assert gaps.first(LINE, 3.0, 7.0) is None
+
+
+def test_one_steps_off_on_green_and_has_crossed_before_red():
+    shown = np.array([[Aspect.GREEN, Aspect.AMBER, Aspect.RED]], np.int64)
+    end, cycle, offset = np.array([[10.0, 14.0, 30.0]]), np.array([30.0]), np.zeros(1)
+    gaps = Gaps(None, 2001, 10.0, SignalPlan(("walk",), cycle, offset, end, shown))
+    assert gaps.first(LINE, 3.0, 7.0, "walk", 1.0) == 3.0
+    assert gaps.first(LINE, 7.5, 7.0, "walk", 1.0) == 30.0  # red would come too early
+    assert gaps.first(LINE, 9.5, 3.0, "walk", 1.0) == 30.0  # the kerb is reached too late
+    assert gaps.first(LINE, 14.0, 7.0, "walk", 1.0) == 30.0
+    assert gaps.first(LINE, 14.0, 7.0) == 14.0
+    assert gaps.first(LINE, 3.0, 15.0, "walk", 1.0) is None
+    assert gaps.first(LINE, 3.0, 7.0, "a light without a program", 1.0) is None
 
 
 def test_maps_without_crossings_and_live_traffic_say_so():
