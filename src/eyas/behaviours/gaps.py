@@ -49,6 +49,7 @@ class Gaps:
     ) -> None:
         self._vehicles, self._samples, self._rate = vehicles, samples, rate
         self._known: dict[bytes, NDArray[np.int64]] = {}
+        self._columns: dict[int, dict[str, NDArray[np.float32]]] = {}
         self._lights = lights
         self._rows = {} if lights is None else {name: k for k, name in enumerate(lights.edges)}
 
@@ -109,12 +110,12 @@ class Gaps:
         sizes = np.array([MODELS[model].size for model in models_of(kind)])
         length, width = sizes[:, 0].max(), sizes[:, 1].max()
         clear = 0.5 * width + _CLEAR + (_BENT if KINDS[kind].trailers else 0.0)
-        rows = self._vehicles.table[: self._samples, self._vehicles.kind == kind]
+        rows = self._of(kind)
         middle, across = line.mean(axis=0), line[1] - line[0]
         reach = 0.5 * (float(np.hypot(*across)) + length) + clear + abs(KINDS[kind].ahead)
         near = (np.abs(rows["x"] - middle[0]) < reach) & (np.abs(rows["y"] - middle[1]) < reach)
         sample, actor = np.nonzero(near & (rows["present"] > 0.0))
-        own = rows[sample, actor]
+        own = {name: column[sample, actor] for name, column in rows.items()}
         places = KINDS[kind].ahead + np.linspace(-0.5, 0.5, int(length) + 2) * length
         x = own["x"][:, None] + places * np.cos(own["yaw"])[:, None] - line[0, 0]
         y = own["y"][:, None] + places * np.sin(own["yaw"])[:, None] - line[0, 1]
@@ -123,3 +124,12 @@ class Gaps:
         met = np.zeros(self._samples, np.bool_)
         met[sample[away < clear]] = True
         return met
+
+    def _of(self, kind: int) -> dict[str, NDArray[np.float32]]:
+        """Return where vehicles of a kind are, shape (samples, vehicles) each: read many times."""
+        if kind not in self._columns:
+            assert self._vehicles is not None
+            table, chosen = self._vehicles.table[: self._samples], self._vehicles.kind == kind
+            columns = {name: table[name][:, chosen] for name in ("x", "y", "yaw", "present")}
+            self._columns[kind] = columns
+        return self._columns[kind]
