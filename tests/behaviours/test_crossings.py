@@ -24,6 +24,7 @@ from eyas.targets.catalogue import KINDS, MODELS, kind_index, models_of, section
 from eyas.targets.kind import Section
 from eyas.traffic.config import TrafficConfig
 from eyas.traffic.library import CANONICAL_MIX
+from eyas.traffic.signals import Aspect, SignalPlan
 from eyas.traffic.trailer import BUMPER_AHEAD, TAIL_BEHIND, folded
 
 from .conftest import troop
@@ -192,6 +193,19 @@ def test_nobody_crosses_behind_a_folded_truck_where_its_kingpin_is():
 def test_nobody_waits_longer_than_a_minute():
     gaps = Gaps(passing(np.zeros(2001)), 2001, 10.0)
     assert gaps.first(LINE, 3.0, 7.0) is None
+
+
+def test_one_steps_off_on_green_and_has_crossed_before_red():
+    shown = np.array([[Aspect.GREEN, Aspect.AMBER, Aspect.RED]], np.int64)
+    end, cycle, offset = np.array([[10.0, 14.0, 30.0]]), np.array([30.0]), np.zeros(1)
+    gaps = Gaps(None, 2001, 10.0, SignalPlan(("walk",), cycle, offset, end, shown))
+    assert gaps.first(LINE, 3.0, 7.0, "walk", 1.0) == 3.0
+    assert gaps.first(LINE, 7.5, 7.0, "walk", 1.0) == 30.0  # red would come too early
+    assert gaps.first(LINE, 9.5, 3.0, "walk", 1.0) == 30.0  # the kerb is reached too late
+    assert gaps.first(LINE, 14.0, 7.0, "walk", 1.0) == 30.0
+    assert gaps.first(LINE, 14.0, 7.0) == 14.0
+    assert gaps.first(LINE, 3.0, 15.0, "walk", 1.0) is None
+    assert gaps.first(LINE, 3.0, 7.0, "a light without a program", 1.0) is None
 
 
 def test_maps_without_crossings_and_live_traffic_say_so():

@@ -285,7 +285,8 @@ def test_towns_without_pavements_or_crossings_say_so_in_a_line(writer, maps, tmp
 
 
 def test_extras_walk_with_the_lights_of_the_map(scene, lights):
-    people = ExtraConfig(count=6, behaviour=Behaviour.CROSSING)
+    people = ExtraConfig(count=30, behaviour=Behaviour.CROSSING)
     motion = load_assets(WorldConfig(map=NAME), TRAFFIC, crowd=Crowd(extras=(people,))).traffic
-    _, late, caught = broken(scene, lights, motion.motion.table[:, -6:])
+    entered, late, caught = broken(scene, lights, motion.motion.table[:, -30:])
+    assert entered > 15
     assert (late, caught) == (0, 0)

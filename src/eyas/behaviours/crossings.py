@@ -35,6 +35,8 @@ _PAINTED: Final = 0.3
 """Least share of them that is painted: bars cover half of a crossing."""
 
 Floats = NDArray[np.float64]
+_Joined = tuple[tuple[int, float], tuple[int, float], Floats]
+"""Two ways with the places on them [m], and the line between them [m]."""
 
 
 class Crossing(NamedTuple):
@@ -72,18 +74,13 @@ def crossings_of(
     found = []
     for number, one in enumerate(_kerb_to_kerb(scene)):
         for side in sides:
-            tried = (_between(side, one, aside) for aside in one.asides)
-            free = (
-                joined
-                for joined in tried
-                if joined is not None
-                and not obstacles.blocked(np.array([shapely.LineString(joined[2])]), radius)[0]
-            )
-            for (way, along), (other, other_along), line in list(free)[:1]:
-                kerb = [float(np.hypot(*(a - b))) for a, b in zip(line, one[:2], strict=True)]
-                there, back = (way, along), (other, other_along)
-                found.append(Crossing(*there, *back, line, number, one.light, kerb[0]))
-                found.append(Crossing(*back, *there, line[::-1], number, one.light, kerb[1]))
+            joined = _free(side, one, obstacles, radius)
+            if joined is None:
+                continue
+            there, back, line = joined
+            kerb = [float(np.hypot(*(a - b))) for a, b in zip(line, one[:2], strict=True)]
+            found.append(Crossing(*there, *back, line, number, one.light, kerb[0]))
+            found.append(Crossing(*back, *there, line[::-1], number, one.light, kerb[1]))
     return found
 
 
@@ -108,9 +105,18 @@ class _Paint(NamedTuple):
     """How far beside its middle one may cross, the best first [m]."""
 
 
-def _between(
-    side: _Side, one: _Paint, aside: float
-) -> tuple[tuple[int, float], tuple[int, float], Floats] | None:
+def _free(side: _Side, one: _Paint, obstacles: Obstacles, radius: float) -> _Joined | None:
+    """Return what a crossing joins, the first way over it that nothing blocks."""
+    for aside in one.asides:
+        joined = _between(side, one, aside)
+        if joined is not None:
+            line = np.array([shapely.LineString(joined[2])], object)
+            if not obstacles.blocked(line, radius)[0]:
+                return joined
+    return None
+
+
+def _between(side: _Side, one: _Paint, aside: float) -> _Joined | None:
     """Return the ways that a crossing joins, the places on them, and the line between [m]."""
     onwards = (one.left - one.right)[::-1] * [1.0, -1.0] / np.hypot(*(one.left - one.right))
     right, left = one.right + aside * onwards, one.left + aside * onwards

@@ -18,7 +18,7 @@ from eyas.world.roads.areas import polygons_of
 
 __all__ = ["kerb_ways"]
 
-_LANES: Final = (0.7, 1.4)
+_LANES: Final = (0.9, 1.45)
 """Distances from the kerb of those who have the road on their left, and on their right [m]."""
 
 _BESIDE_CARS: Final = 0.6
@@ -37,13 +37,13 @@ _KERB_HEIGHT: Final = 0.05
 """Pavements are higher than this: paving at the foot of buildings is not [m]."""
 
 
-_FROM_CARS: Final = 1.25
+_FROM_CARS: Final = 1.1
 """Nobody walks nearer to where vehicles come, at the points that are tested [m]."""
 
-_GRAIN: Final = 0.2
+_GRAIN: Final = 0.1
 """Places nearer to each other than half of this are one [m]."""
 
-_TURN: Final = 0.1
+_TURN: Final = 0.03
 """The same for headings [rad]."""
 
 

@@ -99,21 +99,22 @@ def walk_plan(xml: bytes) -> SignalPlan:
     lights by what drives, always red, as what they will show is not known.
     """
     root = ElementTree.fromstring(xml)
-    programs, links = _programs(root), list(root.iter("connection"))
+    programs = _programs(root)
+    own: dict[str, tuple[str, int]] = {}
+    driven: dict[tuple[str, str], list[int]] = {}
+    for one in root.iter("connection"):
+        light = one.get("tl", "")
+        if light in programs:
+            link = int(one.attrib["linkIndex"])
+            own.setdefault(one.attrib["to"], (light, link))
+            driven.setdefault((light, one.attrib["from"]), []).append(link)
     shown = {}
     for crossing in root.iter("edge"):
-        name = crossing.attrib["id"]
-        own = [one for one in links if one.get("to") == name and one.get("tl") in programs]
-        if crossing.get("function") != "crossing" or not own:
-            continue
-        light, crossed = own[0].attrib["tl"], crossing.get("crossingEdges", "").split()
-        held = [
-            int(one.attrib["linkIndex"])
-            for one in links
-            if one.get("tl") == light and one.attrib["from"] in crossed
-        ]
-        phases = _walked(programs[light], int(own[0].attrib["linkIndex"]), held)
-        shown[name] = programs[light], phases
+        name, crossed = crossing.attrib["id"], crossing.get("crossingEdges", "").split()
+        if crossing.get("function") == "crossing" and name in own:
+            light, link = own[name]
+            held = [k for edge in crossed for k in driven.get((light, edge), [])]
+            shown[name] = programs[light], _walked(programs[light], link, held)
     return _plan(shown)
 
 
