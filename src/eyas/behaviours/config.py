@@ -39,3 +39,8 @@ class ExtraConfig(Config):
     """How many."""
     behaviour: Behaviour | None = None
     """How they move; None: as their kind does. Vehicles drive as SUMO has them drive."""
+
+    @property
+    def is_traffic(self) -> bool:
+        """Whether they are vehicles of SUMO's."""
+        return self.kind is TargetName.SUMO_VEHICLE

@@ -11,7 +11,8 @@ from eyas.core.errors import ConfigError
 from eyas.render.ahead import begin_ahead, drawing_is_ready
 from eyas.render.renderer import Renderer, build_renderer
 from eyas.sensors.obstacles import Solids
-from eyas.sim.crowd import NOBODY, Crowd, crowd_motions, vehicles_of
+from eyas.sim.crowd import NOBODY, Crowd, vehicles_of
+from eyas.sim.crowd_motion import Surroundings, crowd_motions
 from eyas.sim.scenes import load_geometry, load_scene, load_solids
 from eyas.sim.signals import SignalLights, lights_of
 from eyas.state.lighting import Lighting
@@ -116,7 +117,8 @@ def _traffic(
     # A scene depends on the season, but its ground does not.
     scene = load_scene(map_name, seed)
     lights = _walk_plan(map_name, seed) if scene.footways.told else None
-    others = crowd_motions(crowd, scene, clock, _seed_of(config), vehicles, lights)
+    around = Surroundings(scene, clock, _seed_of(config), vehicles, lights)
+    others = crowd_motions(crowd, around)
     every = others if vehicles is None else [vehicles, *others]
     followed = vehicles if crowd.follows_vehicles else others[0]
     targets = np.concatenate([np.full(len(motion.kind), motion is followed) for motion in every])
@@ -139,7 +141,7 @@ def _live(
         scene.terrain,
         kind_index,
         STANDARD_DURATION,
-        others=crowd_motions(crowd, scene, clock, own_seed),
+        others=crowd_motions(crowd, Surroundings(scene, clock, own_seed)),
     )
 
 

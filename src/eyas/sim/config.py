@@ -65,6 +65,6 @@ class SimConfig(Config):
     def _vehicles_once(self) -> "SimConfig":
         followed = self.custom is None and self.target is TargetName.SUMO_VEHICLE
         extras = self.extras or ()
-        if followed and any(extra.kind is TargetName.SUMO_VEHICLE for extra in extras):
+        if followed and any(extra.is_traffic for extra in extras):
             raise ValueError("extras must not hold SUMO_VEHICLE (see traffic.max_vehicles)")
         return self

@@ -1,0 +1,171 @@
+"""The motion of a crowd: of the targets that are no vehicles of SUMO's, and of extras."""
+
+import zlib
+from collections.abc import Callable
+from functools import cache, partial
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.behaviours.config import Behaviour, ExtraConfig
+from eyas.behaviours.lives import Lives, lasting, recycled
+from eyas.behaviours.troop import Clock, Troop
+from eyas.core.cache.cached import cached
+from eyas.core.cache.folder import Kind
+from eyas.core.errors import ConfigError
+from eyas.core.rng import stream
+from eyas.core.variation import Mirrored, Variation
+from eyas.custom.config import CustomConfig
+from eyas.sim.crowd import Crowd
+from eyas.state.motion import SAMPLE, Motion
+from eyas.state.scene import Scene
+from eyas.targets.catalogue import MODELS, kind_index, models_of
+from eyas.traffic.signals import SignalPlan
+
+if TYPE_CHECKING:
+    from eyas.behaviours.ground import Ground
+
+__all__ = ["Surroundings", "crowd_motions"]
+
+_MAKERS = (
+    *("behaviours", "sim/crowd_motion.py", "state/motion.py", "state/terrain.py", "world/roads"),
+    *("targets/vehicles/models.py", "traffic/signals.py", "traffic/trailer.py"),
+)
+
+_ASIDE = Mirrored(mirrored=(4.0, 20.0))
+"""Distance of extras from the middle of the road, if no pavement is asked for [m]."""
+
+
+class Surroundings(NamedTuple):
+    """Where and when a crowd moves."""
+
+    scene: Scene
+    clock: Clock
+    """Number of samples, and their rate."""
+    seed: int
+    """Of places and ways."""
+    vehicles: Motion | None = None
+    """The vehicles, for which those wait who cross roads; None: there are none, or their motion is
+    not known in advance."""
+    lights: SignalPlan | None = None
+    """What crossings with lights show, see `walk_plan`; None: there are none."""
+
+
+def crowd_motions(crowd: Crowd, around: Surroundings) -> list[Motion]:
+    """Return the motions of a crowd, kept in the cache: of the targets first, if it has any.
+
+    Args:
+        crowd: The crowd.
+        around: Where and when it moves.
+
+    Raises:
+        ConfigError: Somebody is to cross roads among vehicles whose motion is not known.
+        SpawnError: The map has no room for all.
+    """
+    if crowd.driven and around.vehicles is None:
+        _refuse_crossing(crowd)
+    ground = cache(partial(_ground, around, crowd.driven))  # unneeded if all motions are kept
+    troops = _troops(crowd, around.clock)
+    motions = [
+        _kept(troop, number, around, crowd.driven, ground) for number, troop in enumerate(troops)
+    ]
+    if crowd.custom is not None:
+        motions.insert(0, _custom(crowd, crowd.custom, around, ground()))
+    return motions
+
+
+def _ground(around: Surroundings, driven: bool) -> "Ground":  # as of `Ground`
+    from eyas.behaviours.ground import Ground  # with shapely
+
+    return Ground(around.scene, roads=driven, lights=around.lights)
+
+
+def _kept(
+    troop: Troop,
+    number: int,
+    around: Surroundings,
+    driven: bool,  # whether vehicles drive
+    ground: Callable[[], "Ground"],
+) -> Motion:
+    """Return the motion of a troop, from the cache if it is there."""
+    scene, clock, seed, vehicles, lights = around
+
+    def made() -> NDArray[np.float32]:
+        from eyas.behaviours.scripted import scripted_table  # with shapely
+
+        rng = stream(seed, "crowd", number, zlib.crc32(troop.kind.encode()))
+        table = scripted_table(ground(), troop, clock, rng, vehicles)
+        return table.view(np.float32).reshape(*table.shape, -1)
+
+    crosses = troop.behaviour is Behaviour.CROSSING
+    heeds = crosses or (scene.footways.told and troop.behaviour is Behaviour.PAVEMENT)
+    waits_for = (vehicles.table, vehicles.kind) if heeds and vehicles is not None else ()
+    obeys = tuple(lights) if crosses and lights is not None else ()
+    depends_on = (
+        *(*_plan_of(scene), *troop.lives, troop[:3], troop[4:], clock, seed, number),
+        *(driven, *waits_for, *obeys),
+    )
+    numbers = cached(Kind.MOTION, _MAKERS, depends_on, made, of=NDArray[np.float32])
+    kind = np.full(numbers.shape[1], kind_index(troop.kind), np.int32)
+    return Motion(numbers.view(SAMPLE)[..., 0], kind, clock.rate, 0.0)
+
+
+def _troops(crowd: Crowd, clock: Clock) -> list[Troop]:
+    troops = []
+    if crowd.custom is None and not crowd.follows_vehicles:
+        lives = _lives(crowd, clock)
+        target = ExtraConfig(kind=crowd.target)
+        troops.append(_troop(target, lives, crowd.objects.offset, "objects.max_count"))
+    for number, extra in enumerate(crowd.extras):
+        if not extra.is_traffic:
+            lives = lasting(extra.count, clock.samples)
+            troops.append(_troop(extra, lives, _ASIDE, f"extras.{number}.count"))
+    return troops
+
+
+def _lives(crowd: Crowd, clock: Clock) -> Lives:
+    return recycled(crowd.objects, clock.samples, clock.rate, crowd.episode, crowd.followers)
+
+
+def _refuse_crossing(crowd: Crowd) -> None:
+    """Raise an error if somebody is to cross roads."""
+    custom = crowd.custom.behaviour if crowd.custom is not None else None
+    for setting, behaviour in (
+        ("custom.behaviour", custom),
+        *((f"extras.{k}.behaviour", extra.behaviour) for k, extra in enumerate(crowd.extras)),
+    ):
+        if behaviour is Behaviour.CROSSING:
+            raise ConfigError(
+                f"{setting}: 'crossing' is not allowed with traffic.source=live, as it is unknown "
+                "in advance; allowed: 'pavement'"
+            )
+
+
+def _custom(crowd: Crowd, custom: CustomConfig, around: Surroundings, ground: "Ground") -> Motion:
+    """Return the motion of a target of one's own; not kept, as its class may have changed."""
+    from eyas.custom.motion import Places, custom_motion  # with shapely
+
+    clock = around.clock
+    places = Places(_lives(crowd, clock), crowd.objects.offset, around.vehicles)
+    return custom_motion(custom, places, ground, clock, stream(around.seed, "custom"))
+
+
+def _troop(extra: ExtraConfig, lives: Lives, offset: Variation, setting: str) -> Troop:
+    models = [MODELS[model] for model in models_of(kind_index(extra.kind))]
+    breadth = max(float(np.hypot(*model.size[:2])) for model in models)
+    return Troop(extra.kind.value, breadth, extra.behaviour, lives, offset, setting)
+
+
+def _plan_of(scene: Scene) -> tuple[object, ...]:
+    """Return what of a map paths depend on."""
+    mesh, fixtures, colliders = scene.static, scene.fixtures, scene.colliders
+    told = scene.footways
+    return (
+        *(told.kerb_points, told.kerb_first, told.crossings, told.lights),
+        *(scene.name, scene.size, *scene.terrain, scene.network.graph_hash),
+        *(mesh.positions, mesh.triangles, scene.static_object, scene.object_class),
+        *(fixtures.pose, fixtures.prototype, colliders.prism_points, colliders.prism_first),
+        *(colliders.prism_bottom, colliders.prism_top, colliders.cylinder_centre),
+        *(colliders.cylinder_radius, colliders.cylinder_bottom, colliders.cylinder_top),
+    )
