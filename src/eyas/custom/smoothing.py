@@ -15,6 +15,9 @@ _SLOW = 0.5
 _LONG = 4.0
 """Shortest stand, in times of the smoothing: within it, the spline forgets what was before."""
 
+_SHORTEST = 1e-3
+"""Shortest smoothing, which does nothing yet; numbers of a much shorter one overflow [s]."""
+
 _VAGUE = 1e10
 """Variance of the first position before any point is seen, in that of a point: it counts for
 nothing."""
@@ -40,6 +43,7 @@ def smoothed(trajectory: Trajectory, seconds: float) -> Trajectory:
     Where the path is slow and winds about less than the points err, the body stands: these points
     are put into their middle, and smoothed again. Headings of the file stay as they are.
     """
+    seconds = max(seconds, _SHORTEST)
     known = ~np.isnan(trajectory.position).any(axis=0)
     points = trajectory.position[:, known]
     place, velocity = _spline(trajectory.time, points, seconds)
