@@ -1,7 +1,7 @@
 """A target that goes where a file says, for example along your own GPS track.
 
     python examples/own_track.py
-    eyas video --set custom='{"trajectory": "examples/own_track.csv", "body": "Pedestrian"}'
+    eyas video --set video.channels=1 --set custom.trajectory=examples/own_track.csv
 
 The file has a line for each point: the time [s], x and y (east and north of the middle of the map
 [m]), and perhaps z [m] and yaw [rad]. Any body can follow it: a kind of the catalogue, a mesh file,

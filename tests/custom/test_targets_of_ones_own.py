@@ -199,6 +199,13 @@ class Ragged(Whole):
         return [[1.0, 2.0], [3.0]]
 
 
+class Tired(Whole):
+    def pose(self, ride):
+        if ride.travelled.max() > 30.0 and len(ride.speed) < 9:
+            raise RuntimeError("no\nfarther")
+        return super().pose(ride)
+
+
 class Lost(Whole):
     def tracks(self, scene, time, count, rng):
         return np.full((len(time), count, 3), 1e5)
@@ -229,7 +236,10 @@ class Narrow(Whole):
         ({"path": "pathlib:PurePath"}, "has not all of: size, parts"),
         ({"path": f"{__name__}:Sizeless"}, "size is .*allowed: three lengths above 0"),
         ({"path": f"{__name__}:Partless"}, r"parts\(\) must return one or more meshes"),
-        ({"path": f"{__name__}:Crooked"}, r"shape \(1, 1, 3, 4\) for 2 bodies"),
+        (
+            {"path": f"{__name__}:Crooked"},
+            r"pose\(ride\) of 2 bodies after 1 m returned an array of shape \(1, 1, 3, 4\); a",
+        ),
         (
             {"path": f"{__name__}:Failing"},
             r"parts\(\) raised RuntimeError: no parts today \(.*own\.py, line \d+\)$",
@@ -237,12 +247,19 @@ class Narrow(Whole):
         ({"path": f"{__name__}:Unreadable"}, "raised OSError: no such size"),
         ({"path": f"{__name__}:Wordy"}, "size is 'large'; allowed: three lengths"),
         ({"path": f"{__name__}:Greedy"}, "the class raised TypeError: .*'name'$"),
-        ({"path": f"{__name__}:Ragged"}, r"returned no array of numbers for 2 bodies; allowed"),
+        (
+            {"path": f"{__name__}:Ragged"},
+            r"2 bodies after 1 m returned no array of numbers; allowed",
+        ),
         ({"path": f"{__name__}:Narrow"}, r"tracks\(...\) raised TypeError: "),
         ({"path": f"{__name__}:Lost"}, r"body 1 of 10: .* are outside the map 'citystreet'"),
         ({"path": f"{__name__}:Jumping"}, "body 10 of 10: point 51: it jumps 200 m in 0.1 s"),
         ({"mesh": "gone.stl"}, r"^custom\.mesh: gone\.stl: cannot read: no such file in /"),
         ({"trajectory": "gone.csv"}, r"^custom\.trajectory: gone\.csv: cannot read: "),
+        ({"mesh": "a.obj", "smoothing": 1.0}, "smoothing: .*must be left out where no trajectory"),
+        ({"trajectory": "x.csv", "smoothing": -1}, r"custom\.smoothing: -1 .*allowed: .*0"),
+        ({"trajectory": "x.csv", "smoothing": 1e9}, r"custom\.smoothing: 1000000000\.0 .* 10"),
+        ({"trajectory": "x.csv", "smoothing": "much"}, r"custom\.smoothing: 'much' .*number"),
         ({"trajectory": "x.csv", "body": "Pedestrien"}, "did you mean 'Pedestrian'"),
         ({"path": "a:B", "behaviour": "wonder"}, r"custom\.behaviour: .*did you mean 'wander'"),
     ],
@@ -251,6 +268,20 @@ def test_what_cannot_be_used_is_told_in_one_line(custom, message, monkeypatch):
     monkeypatch.setitem(sys.modules, __name__, sys.modules.get(__name__, _this()))
     with pytest.raises(ConfigError, match=message):
         begun(custom=custom)
+
+
+def test_what_a_class_raises_in_flight_is_told_in_one_line(tmp_path: Path, monkeypatch):
+    monkeypatch.setitem(sys.modules, __name__, sys.modules.get(__name__, _this()))
+    (tmp_path / "fast.csv").write_text("t,x,y\n0,0,0\n20,200,0\n")
+    custom = {"path": f"{__name__}:Tired", "trajectory": str(tmp_path / "fast.csv")}
+    simulation = begun(custom=custom)
+    seen(simulation)
+    simulation.carry(2000)  # 4 s, 40 m
+    told = (
+        r"Tired': pose\(ride\) of 1 body after [34]\d(\.\d+)? m raised RuntimeError: no farther \("
+    )
+    with pytest.raises(ConfigError, match=told):
+        seen(simulation)
 
 
 def _this():

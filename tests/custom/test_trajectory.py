@@ -35,7 +35,11 @@ def test_errors_of_a_receiver_are_told():
     assert list(of_noise(Trajectory(time, walk, None))) == []
     walk[:, :2] += np.random.default_rng(0).normal(0.0, 1.0, (60, 2))
     (told,) = of_noise(Trajectory(time, walk, None))
-    assert "smooth the points before" in told.text
+    assert "custom.smoothing=2 leaves 0.1 m/s^2, and cuts a sharp turn by up to 2 m" in told.text
+    drive = np.column_stack([8.0 * time, 30.0 * np.sin(time / 5.0), np.full(60, np.nan)])
+    drive[:, :2] += np.random.default_rng(0).normal(0.0, 2.0, (60, 2))
+    (told,) = of_noise(Trajectory(time, drive, None))
+    assert "custom.smoothing=1 leaves" in told.text  # more would cut its bends
 
 
 def test_points_at_uneven_times_give_an_even_motion(tmp_path: Path):

@@ -23,6 +23,9 @@ class CustomConfig(Config):
     """Its class, `package.module:Class`, see `eyas.custom.own.OwnTarget`."""
     trajectory: Text | None = None
     """CSV file with the columns t, x, y and perhaps z and yaw, which moves it."""
+    smoothing: Annotated[float, Field(ge=0, le=10)] = 0.0
+    """Time over which the trajectory's positions are smoothed, see
+    `eyas.custom.smoothing.smoothed`; 0: it passes all points [s]."""
     body: Text = "Pedestrian"
     """Kind that is moved by `trajectory` or `behaviour`, if there is neither `mesh` nor `path`."""
     up: Literal["y", "z"] | None = None
@@ -47,4 +50,6 @@ class CustomConfig(Config):
             raise ValueError("mesh must be given, or path, trajectory or behaviour")
         if self.mesh is not None and self.path is not None:
             raise ValueError("path must be left out where a mesh is given")
+        if self.smoothing > 0.0 and self.trajectory is None:
+            raise ValueError("smoothing must be left out where no trajectory is given")
         return self

@@ -55,9 +55,9 @@ def kind_name_of(config: CustomConfig) -> str:
         if config.body not in names:
             raise UnknownNameError("custom.body", config.body, names)
         return config.body
-    target, word = own_target(config), _word(config)
+    target, word, path = own_target(config), _word(config), config.path or ""
     words = config.words or _spoken(word)
-    meshes = [mesh for levels in OwnRig(target).part_levels() for mesh in levels]
+    meshes = [mesh for levels in OwnRig(target, path).part_levels() for mesh in levels]
     name = f"{word}-{_digest(meshes, word, words)}"
     if name not in (kind.name for kind in KINDS):
         # Labels tell the model's name.
@@ -68,7 +68,7 @@ def kind_name_of(config: CustomConfig) -> str:
                 models=(OwnModel(model, word, name, target.size),),
                 colours=((1.0, 1.0, 1.0),),
                 object_class=ObjectClass.ROBOT,
-                rig=lambda: OwnRig(target),
+                rig=lambda: OwnRig(target, path),
                 keeps_colours=True,
                 words=words,
             )

@@ -17,6 +17,7 @@ from eyas.custom.config import CustomConfig
 from eyas.custom.kind import kind_name_of, own_target
 from eyas.custom.own import MovesItself
 from eyas.custom.problems import of_trajectory, worst
+from eyas.custom.smoothing import smoothed
 from eyas.custom.trajectory import read_trajectory
 from eyas.custom.user_class import tracks_of
 from eyas.state.motion import SAMPLE, Motion
@@ -61,7 +62,7 @@ def custom_motion(
     name = kind_name_of(config)
     target = own_target(config) if config.path is not None else None
     if config.trajectory is not None:
-        table = _driven(config.trajectory, ground, clock)
+        table = _driven(config.trajectory, config.smoothing, ground, clock)
     elif isinstance(target, MovesItself):
         assert config.path is not None  # the target is of that class
         count = int(places.lives.slot.max()) + 1
@@ -80,7 +81,7 @@ def _troop(config: CustomConfig, name: str, places: Places) -> Troop:
     return Troop(name, breadth, config.behaviour, *where, "objects.max_count", habit)
 
 
-def _driven(file: str, ground: Ground, clock: Clock) -> NDArray[np.void]:
+def _driven(file: str, smoothing: float, ground: Ground, clock: Clock) -> NDArray[np.void]:
     """Return the samples of a trajectory, again and again."""
     path, scene = user_path(file), ground.scene
     try:
@@ -94,6 +95,8 @@ def _driven(file: str, ground: Ground, clock: Clock) -> NDArray[np.void]:
         raise ConfigError(
             f"custom.trajectory: {path}: it is shorter than {(_FEWEST - 1) / clock.rate:g} s"
         )
+    if smoothing > 0.0:
+        trajectory = smoothed(trajectory, smoothing)
     place, yaw = trajectory.at(np.arange(period) / clock.rate)
     once = _table(place[:, None], yaw[:, None], ground, clock.rate)[:, 0]
     # Two bodies in turn: one begins when the other ends, so there is always one to be followed.

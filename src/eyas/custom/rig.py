@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.custom.own import OwnTarget, Ride, Shaped
+from eyas.custom.user_class import posed
 from eyas.state.draw import DrawList
 from eyas.state.mesh import Mesh
 from eyas.state.motion import ActorState
@@ -29,10 +30,11 @@ class OwnRig:
 
     Args:
         target: The target.
+        path: Its class, as users name it; empty for a mesh file.
     """
 
-    def __init__(self, target: OwnTarget) -> None:
-        self._target = target
+    def __init__(self, target: OwnTarget, path: str) -> None:
+        self._target, self._path = target, path
         parts = target.parts()
         self._levels = [target.levels] if isinstance(target, Shaped) else [(p,) for p in parts]
         self.slots = self.part_count = len(parts)
@@ -44,7 +46,7 @@ class OwnRig:
     def reach(self, parts: NDArray[np.float64]) -> float:
         """Return how far any point may be from the reference point, see `Rig` [m]."""
         still = np.zeros_like(_TRIED)
-        poses = self._target.pose(Ride(_TRIED, still + 1.0, still))
+        poses = self._poses(Ride(_TRIED, still + 1.0, still))
         away = np.linalg.norm(poses[..., 3], axis=-1).max(axis=0)
         return float((_MARGIN * away + parts).max())
 
@@ -53,7 +55,7 @@ class OwnRig:
         who = group.actor
         shape = actors.yaw[:, who].shape
         numbers = (actors.travelled, actors.speed, actors.yaw_rate)
-        local = self._target.pose(Ride(*(array[:, who].ravel() for array in numbers)))
+        local = self._poses(Ride(*(array[:, who].ravel() for array in numbers)))
         local = np.reshape(local, (*shape, self.slots, 3, 4))
         body = _frames(actors.yaw[:, who], actors.slope[:, who])[..., None, :, :]
         poses = body @ local
@@ -64,6 +66,11 @@ class OwnRig:
             out.part[:, slot] = np.where(present, group.first_part + part, -1)
             out.pose[:, slot] = poses[:, :, part]
             out.colour[:, slot] = looks.colour[:, who]
+
+    def _poses(self, ride: Ride) -> NDArray[np.float64]:
+        if not self._path:
+            return self._target.pose(ride)
+        return posed(self._target, self._path, ride, self.slots)
 
 
 def _frames(yaw: NDArray[np.float64], slope: NDArray[np.float64]) -> NDArray[np.float64]:

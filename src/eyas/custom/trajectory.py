@@ -26,6 +26,10 @@ _LARGEST = 64 << 20
 _STANDING = 0.2
 """Speed below which a heading that is not told is that before [m/s]."""
 
+_SWING = 0.05
+"""Share of the highest speed up to which a smoothed body may go back after a sudden stop: the
+kernel of the spline has negative parts, of exp(-pi) = 0.043 of the whole."""
+
 Floats = NDArray[np.float64]
 
 
@@ -40,6 +44,8 @@ class Trajectory:
     yaw: Floats | None
     """Heading, counter-clockwise from east, without jumps at ±180° [rad], shape (N,); None: along
     the way."""
+    velocity: Floats | None = None
+    """At the points, if smoothed [m/s], shape (N, 3); None: central differences."""
 
     def jumps(self) -> NDArray[np.intp]:
         """Return the points that cannot be reached from those before, shape (K,)."""
@@ -49,10 +55,12 @@ class Trajectory:
     def at(self, time: Floats) -> tuple[Floats, Floats]:
         """Return position (S, 3) and heading (S,) at times (S,) within it.
 
-        Positions follow cubic Hermite curves with central differences as slopes.
+        Positions follow cubic Hermite curves.
         """
         knots, points = self.time, self.position
-        slope = np.gradient(points, knots, axis=0, edge_order=1)
+        slope = self.velocity
+        if slope is None:
+            slope = np.gradient(points, knots, axis=0, edge_order=1)
         row = np.clip(np.searchsorted(knots, time, side="right") - 1, 0, len(knots) - 2)
         step = (knots[row + 1] - knots[row])[:, None]
         f = (time - knots[row])[:, None] / step
@@ -63,7 +71,8 @@ class Trajectory:
         if self.yaw is not None:
             return place, np.interp(time, knots, self.yaw)
         velocity = (left + f * (2.0 * bend + f * 3.0 * square)) / step
-        return place, _along(velocity)
+        swing = 0.0 if self.velocity is None else _SWING * np.hypot(*slope[:, :2].T).max()
+        return place, _along(velocity, max(_STANDING, float(swing)))
 
 
 def read_trajectory(path: Path) -> Trajectory:
@@ -111,9 +120,14 @@ def _numbers(path: Path, number: int, line: list[str], count: int) -> list[float
     return values
 
 
-def _along(velocity: Floats) -> Floats:
-    """Return the heading of velocities (S, 3); while standing that before, at first that after."""
-    moving = np.hypot(velocity[:, 0], velocity[:, 1]) > _STANDING
+def _along(velocity: Floats, standing: float) -> Floats:
+    """Return the heading of velocities (S, 3); while standing that before, at first that after.
+
+    Args:
+        velocity: The velocities [m/s].
+        standing: Speed below which a body stands [m/s].
+    """
+    moving = np.hypot(velocity[:, 0], velocity[:, 1]) > standing
     if not moving.any():
         return np.zeros(len(velocity))
     last = np.maximum.accumulate(np.where(moving, np.arange(len(moving)), -1))

@@ -11,12 +11,12 @@ from eyas.core.errors import ConfigError, EyasError
 from eyas.core.registry import Registry
 from eyas.custom.mesh_file import LARGEST
 from eyas.custom.own import MovesItself, OwnTarget, Ride
-from eyas.custom.problems import LONGEST, of_trajectory, worst
+from eyas.custom.problems import LONGEST, numbered, of_trajectory, worst
 from eyas.custom.trajectory import Trajectory
 from eyas.state.mesh import Mesh
 from eyas.state.scene import Scene
 
-__all__ = ["made", "tracks_of"]
+__all__ = ["made", "posed", "tracks_of"]
 
 _CLASSES: Registry[type] = Registry("custom.path", type, {})
 
@@ -50,10 +50,23 @@ def made(path: str) -> OwnTarget:
     count = sum(len(part.triangles) for part in parts)
     if count > LARGEST:
         raise _refused(path, f"{count} triangles; allowed: up to {LARGEST}")
-    with _asking(path, "pose(ride)"):
-        poses = _numbers(target.pose(Ride(*np.ones((3, 2)))))
-    _check(path, "pose(ride)", poses, (2, len(parts), 3, 4), " for 2 bodies")
+    posed(target, path, Ride(*np.ones((3, 2))), len(parts))
     return target
+
+
+def posed(target: OwnTarget, path: str, ride: Ride, parts: int) -> Floats:
+    """Return the poses of P parts of K bodies, shape (K, P, 3, 4), see `OwnTarget.pose`.
+
+    Raises:
+        ConfigError: The user's class fails, or returns something else: one line.
+    """
+    count = len(ride.travelled)
+    farthest = np.max(ride.travelled, initial=0.0)
+    what = f"pose(ride) of {numbered(count, 'body', 'bodies')} after {farthest:.4g} m"
+    with _asking(path, what):
+        poses = _numbers(target.pose(ride))
+    _check(path, what, poses, (count, parts, 3, 4))
+    return poses
 
 
 def tracks_of(
@@ -96,12 +109,12 @@ def _numbers(answer: object) -> Floats:
         return np.array(np.nan)
 
 
-def _check(path: str, what: str, numbers: Floats, shape: tuple[int, ...], of: str = "") -> None:
+def _check(path: str, what: str, numbers: Floats, shape: tuple[int, ...]) -> None:
     if numbers.shape != shape or not np.isfinite(numbers).all():
         got = f"an array of shape {numbers.shape}" if numbers.shape else "no array of numbers"
         if numbers.shape == shape:
             got = "numbers that are not finite"
-        raise _refused(path, f"{what} returned {got}{of}; allowed: finite numbers of shape {shape}")
+        raise _refused(path, f"{what} returned {got}; allowed: finite numbers of shape {shape}")
 
 
 def _refused(path: str, problem: str) -> ConfigError:

@@ -15,7 +15,7 @@ from eyas.custom.own import MovesItself, OwnTarget, Ride
 from eyas.custom.problems import Finding, numbered, of_height, of_noise, of_shape, of_trajectory
 from eyas.custom.shape import simplified
 from eyas.custom.trajectory import Trajectory, read_trajectory
-from eyas.custom.user_class import tracks_of
+from eyas.custom.user_class import posed, tracks_of
 from eyas.sim.scenes import load_scene
 from eyas.targets.catalogue import KINDS, MODELS
 
@@ -101,7 +101,7 @@ def _class(path: str, map_name: str) -> Iterator[Finding]:
     target = own_target(CustomConfig(path=path))
     size = " x ".join(f"{length:.3g}" for length in target.size)
     yield Finding(f"{numbered(len(target.parts()), 'part')}, {size} m", fatal=False)
-    yield from _drawn(target)
+    yield from _drawn(target, path)
     if isinstance(target, MovesItself):
         scene, time = load_scene(map_name), np.arange(10 * _SECONDS) / 10.0
         tracks = tracks_of(target, path, scene, time, 1, stream(0, "custom"))
@@ -109,12 +109,13 @@ def _class(path: str, map_name: str) -> Iterator[Finding]:
         yield from of_trajectory(way, scene.size, map_name)
 
 
-def _drawn(target: OwnTarget) -> Iterator[Finding]:
+def _drawn(target: OwnTarget, path: str) -> Iterator[Finding]:
     """Yield whether what is drawn at rest is not of the size that is told."""
-    pose = np.asarray(target.pose(Ride(*np.zeros((3, 1)))), np.float64)[0]
+    parts = target.parts()
+    pose = posed(target, path, Ride(*np.zeros((3, 1))), len(parts))[0]
     corners = [
         part.positions @ place[:, :3].T + place[:, 3]
-        for part, place in zip(target.parts(), pose, strict=True)
+        for part, place in zip(parts, pose, strict=True)
     ]
     low, high = np.concatenate(corners).min(axis=0), np.concatenate(corners).max(axis=0)
     size = np.asarray(target.size)
