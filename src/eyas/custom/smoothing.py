@@ -34,11 +34,11 @@ def smoothed(trajectory: Trajectory, seconds: float) -> Trajectory:
 
     where a point p_k counts for the time w_k around it: half of that to the point before and to the
     next, each up to T. So uneven points and gaps need no care, and the number of points a second
-    hardly matters. Motion at constant velocity stays as it is, also at both ends. Elsewhere f
-    is an average with the kernel exp(-s) sin(s + pi / 4) / 2T, s = |t| / (sqrt(2) T) (Silverman
-    1984, "Spline smoothing: the equivalent variable kernel method"): a motion of angular frequency
-    a keeps 1 / (1 + (a T)^4) of its extent, white errors of N points a second keep
-    0.51 / sqrt(N T) of their size, and a sharp turn by 90 degrees at speed v is cut by v T / 2.
+    hardly matters. Motion at constant velocity stays as it is, also at both ends. Elsewhere f is an
+    average with the weights exp(-s) sin(s + pi / 4) / 2T, s = |t| / (sqrt(2) T) (Silverman 1984,
+    Annals of Statistics 12, 898-916): a motion of angular frequency a keeps 1 / (1 + (a T)^4) of
+    its extent, white errors of N points a second keep 0.51 / sqrt(N T) of their size, and a sharp
+    turn by 90 degrees at speed v is cut by v T / 2.
 
     Where the path is slow and winds about less than the points err, the body stands: these points
     are put into their middle, and smoothed again. Headings of the file stay as they are.
