@@ -32,6 +32,9 @@ _SPAN: Final = 0.25
 _JITTER: Final = 0.5
 """How irregularly those who go the same way follow each other, as a share of even distances."""
 
+_WIDE: Final = 1.2
+"""Who is broader than this, as no person is, may find no crossing where others do [m]."""
+
 _TOGETHER: Final = 4
 """Objects that are laid on the ground at a time: for hundreds at once it takes gigabytes."""
 
@@ -149,7 +152,9 @@ def _tours(  # noqa: PLR0913  # who, where, when
     over = crossings_of(ground.scene, ways, ground.solids, 0.5 * troop.breadth)
     if not over:
         told, why = ground.scene.footways, ""
-        if len(told.crossings):  # long vehicles cut corners, where nobody walks then
+        if troop.breadth > _WIDE:
+            why = f" wide enough for '{troop.kind}'"
+        elif len(told.crossings):  # long vehicles cut corners, where nobody walks then
             why = " that vehicles leave free"
         elif told.told:
             why = " (if an earlier version imported it, import it again)"
