@@ -1,11 +1,13 @@
 """A target that goes where a file says, for example along your own GPS track.
 
     python examples/own_track.py
-    eyas video --set video.channels=1 --set custom.trajectory=examples/own_track.csv
+    eyas video --set same_target=true \
+        --set custom='{"trajectory": "examples/own_track.csv", "body": "Pedestrian"}'
 
 The file has a line for each point: the time [s], x and y (east and north of the middle of the map
 [m]), and perhaps z [m] and yaw [rad]. Any body can follow it: a kind of the catalogue, a mesh file,
-or a class. At its end it begins again.
+or a class. At its end it begins again. One is there at a time: `same_target` lets all drones of a
+recording follow it.
 """
 
 from pathlib import Path

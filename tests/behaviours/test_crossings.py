@@ -213,6 +213,12 @@ def test_maps_without_crossings_and_live_traffic_say_so():
     with pytest.raises(SpawnError, match=r"'crossing': 'village' has no pavement"):
         walked(hills, None)
     people = {"kind": "Pedestrian", "count": 3, "behaviour": "crossing"}
+    config = SimConfig(extras=[people], world={"map": "village"})
+    with pytest.raises(SpawnError, match=r"^extras\.0\.behaviour: 'crossing': 'village' has no pa"):
+        build_simulation(config, together(1))
+    config = SimConfig(custom={"body": "Mantis", "behaviour": "crossing"})
+    with pytest.raises(SpawnError, match=r"^custom\.behaviour: .* wide enough for 'Mantis';"):
+        build_simulation(config, together(1))
     config = SimConfig(extras=[people], traffic={"source": "live"})
     with pytest.raises(ConfigError, match=r"^extras\.0\.behaviour: 'crossing' is not allowed with"):
         build_simulation(config, together(1))

@@ -10,8 +10,9 @@ import pytest
 from eyas import __version__
 from eyas.cli.main import main
 from eyas.settings.config import EyasConfig
-from eyas.settings.legacy.adapter import to_legacy
+from eyas.settings.legacy.adapter import save_legacy, to_legacy
 from eyas.settings.preset import PRESETS
+from eyas.wire.exchange import SETTINGS_FILE
 
 COMMAND = [sys.executable, "-m", "eyas.cli.main"]
 
@@ -165,3 +166,19 @@ def test_a_reader_that_goes_away_is_no_error():
     assert process.stderr.read() == ""
     process.stderr.close()
     process.wait(timeout=30)
+
+
+def test_the_second_start_of_a_server_serves_what_the_first_one_did(monkeypatch, capsys, tmp_path):
+    served = []
+
+    def run_server(config, root):
+        served.append(config.model_copy(update={"mode": "train", "original": None}))
+        file = root / SETTINGS_FILE
+        file.parent.mkdir(parents=True, exist_ok=True)
+        save_legacy(config, file)
+
+    monkeypatch.setattr("eyas.modes.serve.run.run", run_server)
+    for _ in range(2):  # the second reads the file of the first
+        run(monkeypatch, capsys, "serve", "--root", tmp_path)
+    assert served[0] == served[1]
+    assert served[0].extras == ()

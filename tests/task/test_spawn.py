@@ -80,4 +80,5 @@ def test_no_free_target_is_one_line_that_counts_them():
     with pytest.raises(SpawnError) as caught:
         choose_target(np.array([True, False, True]), {-1, 0, 2}, np.random.default_rng(0))
     assert str(caught.value).startswith("start: no target is free: 2 in the world, 2 foll")
+    assert str(caught.value).endswith("as trackers, or same_target")
     assert "\n" not in str(caught.value)

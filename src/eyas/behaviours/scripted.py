@@ -32,6 +32,9 @@ _SPAN: Final = 0.25
 _JITTER: Final = 0.5
 """How irregularly those who go the same way follow each other, as a share of even distances."""
 
+_WIDE: Final = 1.2
+"""Who is broader than this, as no person is, may find no crossing where others do [m]."""
+
 _TOGETHER: Final = 4
 """Objects that are laid on the ground at a time: for hundreds at once it takes gigabytes."""
 
@@ -148,11 +151,16 @@ def _tours(  # noqa: PLR0913  # who, where, when
     """Return walks on pavements and over crossings."""
     over = crossings_of(ground.scene, ways, ground.solids, 0.5 * troop.breadth)
     if not over:
-        # Long vehicles cut the corners of imported towns, where nobody walks then.
-        free = " that vehicles leave free" if ground.scene.footways.told else ""
+        told, why = ground.scene.footways, ""
+        if troop.breadth > _WIDE:
+            why = f" wide enough for '{troop.kind}'"
+        elif len(told.crossings):  # long vehicles cut corners, where nobody walks then
+            why = " that vehicles leave free"
+        elif told.told:
+            why = " (if an earlier version imported it, import it again)"
         raise SpawnError(
-            f"{troop.setting}: behaviour 'crossing': '{ground.scene.name}' has no crossing between "
-            f"pavements{free}; allowed: another behaviour, or another map such as citystreet"
+            f"{troop.chosen_by}: 'crossing': '{ground.scene.name}' has no crossing between "
+            f"pavements{why}; allowed: another behaviour, or another map such as citystreet"
         )
     from_each = [
         sorted((one for one in over if one.way == k), key=lambda one: one.along)
@@ -175,7 +183,7 @@ def _walkways(ground: Ground, troop: Troop, habit: Habit, vehicles: Motion | Non
     if not ways:
         behaviour = (troop.behaviour or habit.behaviour).value
         raise SpawnError(
-            f"{troop.setting}: behaviour '{behaviour}': '{ground.scene.name}' has no pavement; "
+            f"{troop.chosen_by}: '{behaviour}': '{ground.scene.name}' has no pavement; "
             "allowed: another behaviour, or another map such as citystreet"
         )
     return ways

@@ -31,6 +31,8 @@ class Troop(NamedTuple):
     offset: Variation
     """Where it begins: distance from the middle of the road [m]."""
     setting: str
-    """Setting that asks for it, for messages."""
+    """Setting of the number, for messages."""
     habit: Habit | None = None
     """How it moves; None: as its kind does."""
+    chosen_by: str = "custom.behaviour"
+    """Setting of the behaviour, for messages."""

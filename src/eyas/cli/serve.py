@@ -18,6 +18,10 @@ from eyas.cli.options import (
 
 __all__ = ["command"]
 
+_UNTOLD = ("extras=[]", "start.velocity=rest")
+"""What `env_config.json` cannot tell, as the original does it: the first start in a folder, which
+writes the file, and the next, which reads it, serve the same."""
+
 
 def command(  # noqa: PLR0913  # one parameter for each option
     root: Annotated[
@@ -41,12 +45,15 @@ def command(  # noqa: PLR0913  # one parameter for each option
     from eyas.wire.exchange import SETTINGS_FILE
 
     file = chosen_file(config, preset)
+    said = gathered(set_, map_name, weather, seed)
     if file is None and (root / SETTINGS_FILE).exists():
         file = root / SETTINGS_FILE
-    settings = load_settings(file, gathered(set_, map_name, weather, seed))
+    elif file is None:
+        said = [*_UNTOLD, *said]
+    settings = load_settings(file, said)
     if settings.original is not None and settings.mode is not Mode.TRAIN:
-        said = f"mode (Simulation_Mode) is '{settings.mode}'; 'eyas serve' trains anyway"
-        typer.echo(f"eyas: note: {said}", err=True)
+        note = f"mode (Simulation_Mode) is '{settings.mode}'; 'eyas serve' trains anyway"
+        typer.echo(f"eyas: note: {note}", err=True)
     from eyas.modes.serve.run import run  # after all checks
 
     run(settings, root)

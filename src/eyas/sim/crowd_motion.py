@@ -120,7 +120,8 @@ def _troops(crowd: Crowd, clock: Clock) -> list[Troop]:
     for number, extra in enumerate(crowd.extras):
         if not extra.is_traffic:
             lives = lasting(extra.count, clock.samples)
-            troops.append(_troop(extra, lives, _ASIDE, f"extras.{number}.count"))
+            one = _troop(extra, lives, _ASIDE, f"extras.{number}.count")
+            troops.append(one._replace(chosen_by=f"extras.{number}.behaviour"))
     return troops
 
 

@@ -86,7 +86,7 @@ def choose_target(
     free = [int(actor) for actor in np.flatnonzero(available) if int(actor) not in used]
     if not free:
         here, followed = int(np.sum(available)), sum(actor >= 0 for actor in used)
-        enough = "at least as many targets as trackers"
+        enough = "at least as many targets as trackers, or same_target"
         # Those who come and go may not have come yet, or have all gone.
         sooner = "some at any time: see traffic.group_interval and route_count, or objects.interval"
         raise SpawnError(
