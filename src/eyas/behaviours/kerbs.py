@@ -36,7 +36,6 @@ _APART: Final = 1.0
 _KERB_HEIGHT: Final = 0.05
 """Pavements are higher than this: paving at the foot of buildings is not [m]."""
 
-
 _FROM_CARS: Final = 1.1
 """Nobody walks nearer to where vehicles come, at the points that are tested [m]."""
 

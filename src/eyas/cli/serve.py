@@ -18,10 +18,6 @@ from eyas.cli.options import (
 
 __all__ = ["command"]
 
-_UNTOLD = ("extras=[]", "start.velocity=rest")
-"""What `env_config.json` cannot tell, as the original does it: the first start in a folder, which
-writes the file, and the next, which reads it, serve the same."""
-
 
 def command(  # noqa: PLR0913  # one parameter for each option
     root: Annotated[
@@ -42,18 +38,18 @@ def command(  # noqa: PLR0913  # one parameter for each option
     """Serve algorithm code of the DAT benchmark in the place of its simulator, until Ctrl-C."""
     from eyas.settings.config import Mode
     from eyas.settings.file import load_settings
+    from eyas.settings.legacy.adapter import LIKE_THE_ORIGINAL
     from eyas.wire.exchange import SETTINGS_FILE
 
     file = chosen_file(config, preset)
-    said = gathered(set_, map_name, weather, seed)
     if file is None and (root / SETTINGS_FILE).exists():
         file = root / SETTINGS_FILE
-    elif file is None:
-        said = [*_UNTOLD, *said]
-    settings = load_settings(file, said)
+    # The first start writes a file, which cannot tell all, and serves what the next will read.
+    overrides = gathered(set_, map_name, weather, seed)
+    settings = load_settings(file, overrides, base=LIKE_THE_ORIGINAL)
     if settings.original is not None and settings.mode is not Mode.TRAIN:
-        note = f"mode (Simulation_Mode) is '{settings.mode}'; 'eyas serve' trains anyway"
-        typer.echo(f"eyas: note: {note}", err=True)
+        said = f"mode (Simulation_Mode) is '{settings.mode}'; 'eyas serve' trains anyway"
+        typer.echo(f"eyas: note: {said}", err=True)
     from eyas.modes.serve.run import run  # after all checks
 
     run(settings, root)

@@ -27,8 +27,8 @@ _STANDING = 0.2
 """Speed below which a heading that is not told is that before [m/s]."""
 
 _SWING = 0.05
-"""Share of the highest speed up to which a smoothed body may go back after a sudden stop: the
-kernel of the spline has negative parts, of exp(-pi) = 0.043 of the whole."""
+"""Share of the highest speed up to which a smoothed body may go back after a sudden stop: some
+weights of the spline are negative, in all exp(-pi) = 0.043 of the others."""
 
 Floats = NDArray[np.float64]
 

@@ -32,9 +32,8 @@ def made(path: str) -> OwnTarget:
     kind = _CLASSES.get(path)
     with _asking(path, "the class"):
         instance = kind()
-        target = (
-            instance if isinstance(instance, OwnTarget) else None
-        )  # reads what may be a property
+        # This reads its attributes, of which some may be properties.
+        target = instance if isinstance(instance, OwnTarget) else None
     if target is None:
         raise _refused(path, "it has not all of: size, parts(), pose(ride)")
     with _asking(path, "size"):

@@ -25,29 +25,25 @@ _CLIENT_KEY = "Benchmark"
 """The one group of the `config.json` of the original's client."""
 
 
-def load_settings(path: Path | None, overrides: Sequence[str] = ()) -> EyasConfig:
+def load_settings(
+    path: Path | None, overrides: Sequence[str] = (), base: EyasConfig | None = None
+) -> EyasConfig:
     """Return the settings of a file, with some of them changed.
 
     Allowed settings that may have an unexpected effect (a control frequency that does not divide
     500, a pitch that is limited) give a warning in Python's logger `eyas`.
 
     Args:
-        path: JSON, native or the original's `env_config.json`; None: the defaults.
+        path: JSON, native or the original's `env_config.json`; None: there is none.
         overrides: `key=value`; a later one wins; keys are dotted paths, native (`video.fps`) or the
             original's (`Out_Video.fps`); values are JSON, or else text.
+        base: The settings where there is no file; None: the defaults.
 
     Raises:
         DataFileError: The file cannot be read, or is not a JSON object.
         ConfigError: A key or a value is wrong.
     """
-    values = {} if path is None else read_settings(path)
-    if _CLIENT_KEY in values:
-        raise DataFileError(
-            f"{path}: the settings of the original's client, not of its simulator; give its "
-            "Webots_Simulation/traffic_project/config/env_config.json (the speeds of actions are "
-            "env.speeds here)"
-        )
-    config = from_legacy(values) if is_legacy(values) else validated(EyasConfig, values)
+    config = (base or EyasConfig()) if path is None else _loaded(path)
     pairs = [_parsed(override) for override in overrides]
     for capital, group in groupby(pairs, key=lambda pair: pair[0][0][:1].isupper()):
         changes: Nested = {}
@@ -57,6 +53,18 @@ def load_settings(path: Path | None, overrides: Sequence[str] = ()) -> EyasConfi
     check_original(config)
     _tell_surprises(config)
     return config
+
+
+def _loaded(path: Path) -> EyasConfig:
+    """Return the settings of a file; errors as from `load_settings`."""
+    values = read_settings(path)
+    if _CLIENT_KEY in values:
+        raise DataFileError(
+            f"{path}: the settings of the original's client, not of its simulator; give its "
+            "Webots_Simulation/traffic_project/config/env_config.json (the speeds of actions are "
+            "env.speeds here)"
+        )
+    return from_legacy(values) if is_legacy(values) else validated(EyasConfig, values)
 
 
 def save_settings(config: EyasConfig, path: Path) -> None:

@@ -75,7 +75,8 @@ def crowd_motions(crowd: Crowd, around: Surroundings) -> list[Motion]:
     return motions
 
 
-def _ground(around: Surroundings, driven: bool) -> "Ground":  # as of `Ground`
+def _ground(around: Surroundings, driven: bool) -> "Ground":
+    """Return the ground, whose roads are left to vehicles where these drive."""
     from eyas.behaviours.ground import Ground  # with shapely
 
     return Ground(around.scene, roads=driven, lights=around.lights)
@@ -85,10 +86,18 @@ def _kept(
     troop: Troop,
     number: int,
     around: Surroundings,
-    driven: bool,  # whether vehicles drive
+    driven: bool,
     ground: Callable[[], "Ground"],
 ) -> Motion:
-    """Return the motion of a troop, from the cache if it is there."""
+    """Return the motion of a troop, from the cache if it is there.
+
+    Args:
+        troop: Who moves.
+        number: Which of the crowd's troops it is.
+        around: Where and when it moves.
+        driven: Whether vehicles drive there.
+        ground: Returns the ground.
+    """
     scene, clock, seed, vehicles, lights = around
 
     def made() -> NDArray[np.float32]:

@@ -19,6 +19,7 @@ from eyas.targets.config import TargetName
 from eyas.task.config import StartConfig, StartVelocity
 
 __all__ = [
+    "LIKE_THE_ORIGINAL",
     "check_original",
     "from_legacy",
     "is_legacy",
@@ -30,8 +31,8 @@ __all__ = [
 
 _LOG = logging.getLogger("eyas")
 
-_LIKE_THE_ORIGINAL = EyasConfig(start=StartConfig(velocity=StartVelocity.REST), extras=())
-"""What its file cannot express, and differs from our defaults."""
+LIKE_THE_ORIGINAL = EyasConfig(start=StartConfig(velocity=StartVelocity.REST), extras=())
+"""Our defaults, but for what its file cannot express and the original does in another way."""
 
 
 def is_legacy(values: Nested) -> bool:
@@ -53,7 +54,7 @@ def from_legacy(values: Nested, base: EyasConfig | None = None) -> EyasConfig:
         ConfigError: An unknown key, a wrong type or a value that is not allowed: one line with the
             original's path.
     """
-    config = (base or _LIKE_THE_ORIGINAL).model_copy(update={"original": {}})
+    config = (base or LIKE_THE_ORIGINAL).model_copy(update={"original": {}})
     return _with(config, every_key() | flat(values), ENTRIES)
 
 
