@@ -122,6 +122,31 @@ def test_a_signal_while_compiling_is_one_line_and_what_is_kept_is_whole(tmp_path
     assert not list(tmp_path.rglob("*.tmp.*"))
 
 
+IN_RUST = """
+import os, signal
+from pydantic_core import SchemaValidator, core_schema
+from eyas.cli import app
+from eyas.cli.main import main
+
+class Member:
+    @property
+    def value(self):
+        os.kill(os.getpid(), signal.SIGINT)
+
+def run():
+    SchemaValidator(core_schema.enum_schema(Member, [Member()]))
+
+app.run = run
+print("ready", flush=True)
+main()
+"""
+
+
+def test_an_interrupt_that_pydantic_puts_in_words_is_one_line(tmp_path):
+    process = started(tmp_path, program=IN_RUST)
+    assert ended(process, signal.SIGINT) == "eyas: interrupted"
+
+
 def test_a_program_started_with_the_signal_ignored_goes_on(tmp_path):
     before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
     try:

@@ -3,7 +3,7 @@
 import os
 import sys
 
-from eyas.core.interrupts import EndingSignals
+from eyas.core.interrupts import EndingSignals, Interrupted
 
 __all__ = ["main"]
 
@@ -40,11 +40,14 @@ def main() -> None:
 
 
 def _interrupt_behind(error: BaseException | None) -> BaseException | None:
-    """Return the interrupt that an error is or comes of.
+    """Return the interrupt that an error is or comes of, or the error that holds it in words.
 
-    Where a class is made, Python 3.11 turns whatever is raised into a `RuntimeError`.
+    Where a class is made, Python 3.11 turns whatever is raised into a `RuntimeError`, and pydantic
+    into a `SchemaError` whose text ends with the name and the text of what was raised.
     """
     while error is not None and not isinstance(error, KeyboardInterrupt):
+        if str(error).rstrip().endswith(f"{Interrupted.__name__}:"):
+            return error
         error = error.__cause__
     return error
 
