@@ -4,7 +4,7 @@ import dataclasses
 import json
 from dataclasses import dataclass, field
 from enum import IntEnum, StrEnum
-from typing import NamedTuple
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 import pytest
@@ -12,6 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as npst
 from numpy.typing import NDArray
+from typing_extensions import TypeAliasType
 
 from eyas.core.cache.flat import FlatError, flatten, restore
 
@@ -114,6 +115,19 @@ def test_what_was_flattened_comes_back_equal_and_of_the_same_types(tree):
 def test_a_type_need_not_be_a_class_of_ours(kind, value):
     flat, arrays = flatten(value)
     assert_same(restore(kind, json.loads(json.dumps(flat)), arrays), value)
+
+
+Number = TypeVar("Number", bound=np.generic)
+Numbers = TypeAliasType("Numbers", np.ndarray[Any, np.dtype[Number]], type_params=(Number,))
+Counts = TypeAliasType("Counts", Numbers[np.int32])
+
+
+@pytest.mark.parametrize("kind", [Numbers[np.int32], Counts])
+def test_an_alias_of_a_type_is_that_type(kind):
+    flat, arrays = flatten(np.arange(3, dtype=np.int32))
+    assert restore(kind, flat, arrays) is arrays[0]
+    with pytest.raises(FlatError, match="not of int32"):
+        restore(kind, flat, [np.zeros(3, np.float32)])
 
 
 def test_an_array_that_occurs_twice_comes_back_as_one():

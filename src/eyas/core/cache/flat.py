@@ -66,6 +66,7 @@ def restore(expected: type[Thing], flat: Json, arrays: Sequence[Array]) -> Thing
 
 
 def _restore(expected: Any, flat: Json, arrays: Sequence[Array]) -> object:  # noqa: ANN401  # a type
+    expected = _without_alias(expected)
     origin = get_origin(expected) or expected
     if origin in _BY_ORIGIN:
         return _BY_ORIGIN[origin](get_args(expected), flat, arrays)
@@ -79,6 +80,16 @@ def _restore(expected: Any, flat: Json, arrays: Sequence[Array]) -> object:  # n
     if type(flat) is expected or (expected is float and type(flat) is int):
         return flat
     raise FlatError(f"{expected}: not of this type: {flat!r:.40}")
+
+
+def _without_alias(expected: Any) -> Any:  # noqa: ANN401  # a type
+    """Return what an alias by PEP 695 stands for: `NDArray` is one since numpy 2.5."""
+    alias = get_origin(expected) or expected
+    meaning = getattr(alias, "__value__", None)  # of `typing` or of `typing_extensions`
+    if meaning is None:
+        return expected
+    parameters = get_args(expected)
+    return _without_alias(meaning[parameters] if parameters else meaning)
 
 
 def _array(types_: tuple[Any, ...], flat: Json, arrays: Sequence[Array]) -> Array:
