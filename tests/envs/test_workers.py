@@ -12,6 +12,7 @@ from pathlib import Path
 import gymnasium
 import numpy as np
 import pytest
+from gymnasium.error import ClosedEnvironmentError
 from gymnasium.vector import AutoresetMode
 
 from eyas.core.errors import ActionError, EyasError
@@ -115,7 +116,7 @@ def test_gymnasium_makes_them_by_one_argument():
     here = gymnasium.make_vec(NAME, num_envs=2, observation={"width": 8, "height": 8})
     here.reset(seed=0)
     assert told == here.call("task_description")
-    with pytest.raises(EyasError, match=r"^the environments are closed$"):
+    with pytest.raises(ClosedEnvironmentError, match=r"^the environments are closed$"):
         env.reset()
 
 

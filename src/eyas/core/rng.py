@@ -1,11 +1,13 @@
 """Random numbers: one seed, and one named stream for each tracker and room."""
 
 import zlib
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-__all__ = ["EpisodeKey", "stream"]
+from eyas.core.errors import ConfigError
+
+__all__ = ["EpisodeKey", "checked_seed", "stream"]
 
 
 def stream(seed: int, room: str, *indices: int) -> np.random.Generator:
@@ -21,6 +23,18 @@ def stream(seed: int, room: str, *indices: int) -> np.random.Generator:
     """
     key = (zlib.crc32(room.encode()), *indices)
     return np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed, spawn_key=key)))
+
+
+def checked_seed(seed: Any) -> int:  # noqa: ANN401  # whatever a caller gives
+    """Return a seed that a caller gives.
+
+    Raises:
+        ConfigError: It is no whole number from 0 to 2**63 - 1.
+    """
+    whole = isinstance(seed, int | np.integer) and not isinstance(seed, bool)
+    if not whole or not 0 <= int(seed) < 2**63:
+        raise ConfigError(f"seed: {seed!r} is not allowed: a whole number from 0 to 2**63 - 1")
+    return int(seed)
 
 
 class EpisodeKey(NamedTuple):

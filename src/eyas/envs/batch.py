@@ -10,8 +10,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import physics_steps
+from eyas.core.errors import EyasError
+from eyas.core.memento import Memento, recall, remember
 from eyas.core.rng import EpisodeKey
 from eyas.envs.actions import make_actions
+from eyas.envs.copies import FIXED
 from eyas.envs.information import Info, information
 from eyas.envs.observation import Observer
 from eyas.settings.config import EyasConfig
@@ -76,6 +79,7 @@ class Batch:
         numbers: Sequence[int] | None = None,
     ) -> None:
         self.config = config
+        self._made = config, count, shared, numbers
         self._shared, self._seed = shared, config.seed
         with originals_named(config):
             self._simulation = build_simulation(config, (together if shared else each_alone)(count))
@@ -94,6 +98,37 @@ class Batch:
         """Close the logs and end live traffic; may be called again."""
         self._journal.close()
         self._simulation.close()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Describe a copy, which goes on where this is: settings, and what these trackers remember.
+
+        Raises:
+            EyasError: There can be no second one.
+        """
+        return _again, (*self._made, self.memento())
+
+    def memento(self) -> Memento:
+        """Return what distinguishes these trackers from new ones.
+
+        Raises:
+            EyasError: There can be no second one.
+        """
+        if self._simulation.traffic.live:
+            raise EyasError("traffic.live: an environment with live traffic cannot be copied")
+        if self._journal.writes:
+            raise EyasError(
+                f"env.log_folder: an environment that writes logs ({self.config.env.log_folder}) "
+                "cannot be copied"
+            )
+        return remember(self, FIXED)
+
+    def recall(self, memento: Memento) -> None:
+        """Go on where others of the same settings were."""
+        recall(self, memento)
+
+    def continue_from(self, other: "Batch") -> None:
+        """Continue the sequences of episodes of others, which may have other settings."""
+        self._simulation.continue_from(other._simulation)
 
     def begin(self, chosen: Mask, seeds: Seeds = None) -> None:
         """Begin new episodes of trackers with worlds of their own; `look` comes next.
@@ -186,3 +221,16 @@ class Batch:
         self._simulation.draw(chosen, picture, overlay=overlay)
         assert picture.rgb is not None
         return picture.rgb.copy()
+
+
+def _again(
+    config: EyasConfig,
+    count: int,
+    shared: bool,  # as pickle calls it
+    numbers: Sequence[int] | None,
+    memento: Memento,
+) -> Batch:
+    """Return a copy of a batch."""
+    batch = Batch(config, count, shared=shared, numbers=numbers)
+    batch.recall(memento)
+    return batch

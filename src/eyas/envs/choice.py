@@ -1,7 +1,7 @@
 """The settings of environments: a file, a preset, keywords, and the kinds in a mixture."""
 
 import os
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from pathlib import Path
 from typing import Any, TypedDict, Unpack
 
@@ -17,8 +17,11 @@ from eyas.settings.preset import preset_file
 
 __all__ = [
     "EnvChoices",
+    "EpisodeChoices",
     "Source",
+    "checked_options",
     "chosen_settings",
+    "episode_settings",
     "kinds_of",
     "settings_of_kinds",
     "steps_per_action",
@@ -52,6 +55,19 @@ class EnvChoices(TypedDict, total=False):
     """`done.total_steps`, counted in actions"""
 
 
+class EpisodeChoices(TypedDict, total=False):
+    """Settings that the options of a reset may change for its episode."""
+
+    map: str
+    """`world.map`"""
+    weather: str
+    """`world.weather`"""
+    target: str
+    """`target`"""
+    start: Mapping[str, Any]
+    """`start`"""
+
+
 _PLACES = {"map": ("world", "map"), "weather": ("world", "weather"), "target": ("target",)}
 
 
@@ -77,6 +93,45 @@ def chosen_settings(source: Source, **choices: Unpack[EnvChoices]) -> EyasConfig
     return updated(config, {"done": {"total_steps": limit * steps_per_action(config)}})
 
 
+def episode_settings(config: EyasConfig, options: Mapping[str, Any] | None) -> EyasConfig:
+    """Return the settings of an episode: those of its environment, changed by options of a reset.
+
+    Raises:
+        EyasError: A setting is wrong, or there is no such option; one line.
+    """
+    changes: dict[str, Any] = {}
+    for name, value in checked_options(options, EpisodeChoices.__annotations__).items():
+        group = changes
+        *groups, key = _PLACES.get(name, (name,))
+        for part in groups:
+            group = group.setdefault(part, {})
+        group[key] = value
+    return updated(config, changes) if changes else config
+
+
+def checked_options(
+    options: Mapping[str, Any] | None, allowed: Collection[str], advice: str = ""
+) -> Mapping[str, Any]:
+    """Return the options of a reset.
+
+    Args:
+        options: What a caller gives; None: none.
+        allowed: The names of those that there are.
+        advice: What to use in the place of others.
+
+    Raises:
+        EyasError: They are no dictionary, or there is no such option; one line.
+    """
+    if options is None:
+        return {}
+    if not isinstance(options, Mapping):
+        raise ConfigError(f"options: {options!r} is not allowed: a dictionary or None")
+    for name in options:
+        if name not in allowed:
+            raise ConfigError(f"{UnknownNameError('options', str(name), allowed)}{advice}")
+    return options
+
+
 def steps_per_action(config: EyasConfig) -> int:
     """Return the physics steps that an action lasts."""
     return physics_steps(config.control.frequency) * config.env.action_repeat
@@ -92,8 +147,13 @@ def _settings(source: Source) -> EyasConfig:
             return validated(EyasConfig, dict(source))
         case str() if "." not in source and not os.path.exists(source):
             return load_settings(preset_file(source))
-        case _:
+        case str() | os.PathLike():
             return load_settings(Path(source))
+        case _:
+            raise ConfigError(
+                f"config: {source!r} is not allowed: an EyasConfig, a dictionary of settings, the "
+                "name of a preset, or the path of a file"
+            )
 
 
 def settings_of_kinds(config: EyasConfig) -> list[EyasConfig]:

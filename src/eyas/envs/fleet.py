@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.errors import ActionError
+from eyas.core.memento import Memento
 from eyas.envs.batch import Batch, Outcome, Seeds
 from eyas.envs.choice import kinds_of, settings_of_kinds
 from eyas.envs.information import Info
@@ -120,6 +121,15 @@ class Fleet:
     def picture(self, index: int, overlay: bool) -> NDArray[np.uint8]:
         """As `render`."""
         return self.render(index, overlay=overlay)
+
+    def mementos(self) -> list[Memento]:
+        """Return what distinguishes these environments from new ones, see `Batch.memento`."""
+        return [batch.memento() for batch, _ in self._squads]
+
+    def recall(self, mementos: Sequence[Memento]) -> None:
+        """Go on where others of the same settings were."""
+        for (batch, _), memento in zip(self._squads, mementos, strict=True):
+            batch.recall(memento)
 
     def close(self) -> None:
         """Close the logs and end live traffic; may be called twice."""

@@ -1,15 +1,24 @@
 """Several drones in one world as a PettingZoo environment."""
 
+import logging
 from copy import deepcopy
 from typing import Any, Unpack
 
 import gymnasium
 import numpy as np
+from gymnasium.error import ClosedEnvironmentError, ResetNeeded
 from numpy.typing import NDArray
 
 from eyas.core.errors import ActionError, ConfigError, MissingExtraError
+from eyas.core.rng import checked_seed
 from eyas.envs.batch import Batch
-from eyas.envs.choice import EnvChoices, Source, chosen_settings, settings_of_kinds
+from eyas.envs.choice import (
+    EnvChoices,
+    EpisodeChoices,
+    Source,
+    chosen_settings,
+    settings_of_kinds,
+)
 from eyas.envs.information import Info, by_term, of_one
 from eyas.envs.keys import hover
 from eyas.envs.observation import Observation
@@ -21,6 +30,8 @@ except ImportError as error:
     raise MissingExtraError("eyas.envs.pettingzoo", "pettingzoo") from error
 
 __all__ = ["EyasParallelEnv"]
+
+_LOG = logging.getLogger("eyas")
 
 Stepped = tuple[
     dict[str, Observation], dict[str, float], dict[str, bool], dict[str, bool], dict[str, Info]
@@ -83,6 +94,7 @@ class EyasParallelEnv(ParallelEnv[str, Observation, Any]):  # type: ignore[misc]
         self.metadata = {**self.metadata, "render_fps": max(round(rate), 1)}
         self.render_mode = render_mode
         self._overlay = overlay
+        self._begun = self._closed = False
         self._window = Window(self.metadata["render_fps"]) if render_mode == "human" else None
 
     def observation_space(self, agent: str) -> gymnasium.Space[Any]:
@@ -101,9 +113,17 @@ class EyasParallelEnv(ParallelEnv[str, Observation, Any]):  # type: ignore[misc]
         Args:
             seed: Begin the sequence of episodes of this seed; None continues the current sequence,
                 at first that of the configuration's seed.
-            options: Unused.
+            options: Without effect. PettingZoo's checker gives unknown ones, so these are only
+                logged.
+
+        Raises:
+            EyasError: The seed is wrong, or an option is one of `TrackingEnv`; one line.
+            ClosedEnvironmentError: The environment is closed; Gymnasium's, as in `step`.
         """
-        self._batch.begin_together(seed)
+        self._check_open()
+        self._check_options(options)
+        self._batch.begin_together(None if seed is None else checked_seed(seed))
+        self._begun = True
         self.agents = self.possible_agents[:]
         observations = self._look(begun=True)
         info = self._batch.info()
@@ -115,7 +135,11 @@ class EyasParallelEnv(ParallelEnv[str, Observation, Any]):  # type: ignore[misc]
 
         Raises:
             ActionError: An action is missing, not in the space of actions, or of another drone.
+            ResetNeeded: No episode has begun.
         """
+        self._check_open()
+        if not self._begun:
+            raise ResetNeeded("step: call reset first")
         if not self.agents:  # as other environments of PettingZoo do
             return {}, {}, {}, {}, {}
         if set(actions) != set(self.agents):
@@ -150,10 +174,25 @@ class EyasParallelEnv(ParallelEnv[str, Observation, Any]):  # type: ignore[misc]
         return self._pictures() if self.render_mode == "rgb_array" else None
 
     def close(self) -> None:
-        """Close the window and the logs, and end live traffic."""
+        """Close the window and the logs, and end live traffic; may be called again."""
+        self._closed = True
         self._batch.close()
         if self._window is not None:
             self._window.close()
+
+    def _check_options(self, options: dict[str, Any] | None) -> None:
+        """Refuse options that elsewhere have an effect; log others."""
+        for name in options or {}:
+            if name in EpisodeChoices.__annotations__:
+                raise ConfigError(
+                    f"options: '{name}' is not allowed in a shared world: give it to the "
+                    "constructor"
+                )
+            _LOG.warning("options: %r is without effect", name)
+
+    def _check_open(self) -> None:
+        if self._closed:
+            raise ClosedEnvironmentError("the environment is closed")
 
     def _flying(self) -> list[tuple[int, str]]:
         """Return number and name of each drone in `agents`."""

@@ -4,15 +4,24 @@ from typing import Any, Unpack
 
 import gymnasium
 import numpy as np
+from gymnasium.error import ClosedEnvironmentError, ResetNeeded
 from numpy.typing import NDArray
 
 from eyas.core.errors import ConfigError
+from eyas.core.rng import checked_seed
 from eyas.envs.batch import Batch
-from eyas.envs.choice import EnvChoices, Source, chosen_settings, settings_of_kinds
+from eyas.envs.choice import (
+    EnvChoices,
+    Source,
+    chosen_settings,
+    episode_settings,
+    settings_of_kinds,
+)
 from eyas.envs.information import Info, by_term, of_one
 from eyas.envs.keys import KEYS_TO_ACTION
 from eyas.envs.observation import Observation
 from eyas.envs.window import Window
+from eyas.settings.config import EyasConfig
 
 __all__ = ["TrackingEnv"]
 
@@ -26,6 +35,9 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
     The observation is what the camera sees, RGB uint8, shape (84, 84, 3): the configured 4:3 view
     scaled to a square, as in the original; `env.observation` changes it. `info` holds by name what
     `eyas.envs.information` tells, and after a step the terms of the reward.
+
+    A copy, by `copy.deepcopy` or `pickle`, goes on where the environment is. One with live traffic
+    or with logs cannot be copied.
 
     Args:
         config: Settings, see `eyas.envs.choice.Source`.
@@ -56,7 +68,7 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
                 f"render_mode: '{render_mode}' is not allowed: 'rgb_array', 'human' or None"
             )
         self.config = settings_of_kinds(chosen_settings(config, **choices))[0]
-        self._batch = Batch(self.config, 1)
+        self._own = self._batch = Batch(self.config, 1)
         self.action_space = self._batch.actions.space
         self.observation_space = self._batch.observer.space
         env = self.config.env
@@ -64,6 +76,7 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
         self.metadata = {**self.metadata, "render_fps": max(round(rate), 1)}
         self.render_mode = render_mode
         self._overlay = overlay
+        self._begun = self._closed = False
         self._window = Window(self.metadata["render_fps"]) if render_mode == "human" else None
 
     def reset(
@@ -74,10 +87,19 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
         Args:
             seed: Begin the sequence of episodes of this seed; None continues the current sequence,
                 at first that of the configuration's seed.
-            options: Unused.
+            options: What is different in this episode only: `map`, `weather`, `target` (names) and
+                `start` (settings of `start`), see `eyas.envs.choice.EpisodeChoices`.
+
+        Raises:
+            EyasError: An option or the seed is wrong; one line.
+            ClosedEnvironmentError: The environment is closed; Gymnasium's, as in `step`.
         """
+        self._check_open()
+        seed = None if seed is None else checked_seed(seed)
+        self._enter(episode_settings(self.config, options))
         super().reset(seed=seed)
         self._batch.begin(_ONE, [seed])
+        self._begun = True
         self._batch.look(_ONE, _ONE)
         self._show()
         return self._batch.observer.one(0), of_one(self._batch.info(), 0)
@@ -87,7 +109,9 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
 
         Raises:
             ActionError: The action is not in the space of actions.
+            ResetNeeded: No episode has begun.
         """
+        self._check_begun("step")
         outcome = self._batch.step([action], _ONE)
         self._batch.look(_ONE, _GOES_ON)
         info = self._batch.info() | by_term(outcome.terms)
@@ -105,6 +129,7 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
 
         None if `render_mode` is `human` (the window always shows the last step) or None.
         """
+        self._check_begun("render")
         if self.render_mode != "rgb_array":
             return None
         picture: NDArray[np.uint8] = self._batch.render(overlay=self._overlay)[0]
@@ -115,10 +140,31 @@ class TrackingEnv(gymnasium.Env[Observation, Any]):
         return KEYS_TO_ACTION[self.config.env.actions](self.config.env.speeds)
 
     def close(self) -> None:
-        """Close the window and the logs, and end live traffic."""
+        """Close the window and the logs, and end live traffic; may be called again."""
+        self._closed = True
+        self._own.close()
         self._batch.close()
         if self._window is not None:
             self._window.close()
+
+    def _enter(self, config: EyasConfig) -> None:
+        """Make the next episode one with these settings."""
+        last = self._batch
+        if config == last.config:
+            return
+        self._batch = self._own if config == self.config else Batch(config, 1)
+        self._batch.continue_from(last)
+        if last is not self._own:
+            last.close()
+
+    def _check_open(self) -> None:
+        if self._closed:
+            raise ClosedEnvironmentError("the environment is closed")
+
+    def _check_begun(self, call: str) -> None:
+        self._check_open()
+        if not self._begun:
+            raise ResetNeeded(f"{call}: call reset first")
 
     def _show(self) -> None:
         if self._window is not None:

@@ -5,13 +5,15 @@ from typing import Any, Unpack, cast
 
 import gymnasium
 import numpy as np
+from gymnasium.error import ClosedEnvironmentError, ResetNeeded
 from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space, create_empty_array
 from numpy.typing import NDArray
 
 from eyas.core.errors import ConfigError
+from eyas.core.rng import checked_seed
 from eyas.envs.batch import Outcome
-from eyas.envs.choice import EnvChoices, Source, chosen_settings
+from eyas.envs.choice import EnvChoices, Source, checked_options, chosen_settings
 from eyas.envs.fleet import Fleet
 from eyas.envs.information import Info, by_term, masked
 from eyas.envs.members import Member
@@ -30,7 +32,8 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
     """N environments that are stepped and drawn together, in one process or in several.
 
     Environment i gives the same as `TrackingEnv` with seed s + i if reset with seed s. Without a
-    seed, the first reset takes that of the configuration for s.
+    seed, the first reset takes that of the configuration for s. Copies are as those of
+    `TrackingEnv`.
 
     Args:
         num_envs: N.
@@ -108,9 +111,15 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
             options: `reset_mask` chooses the environments to reset, bool, shape (N,); the
                 observations of the others stay as they are.
             out: Arrays to write the observations into; they are returned.
+
+        Raises:
+            EyasError: An option or a seed is wrong; one line.
+            ClosedEnvironmentError: The environments are closed; Gymnasium's, as in `step`.
         """
+        self._check_open()
         chosen = self._chosen(options)
         self._fleet.begin(chosen, self._seeds(seed))
+        self._begun = True
         self._fleet.look(chosen, chosen)
         self._ended[chosen] = False
         info = masked(self._fleet.info(), chosen)
@@ -133,7 +142,11 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
 
         Raises:
             ActionError: An action is not in the space of actions.
+            ResetNeeded: No episode has begun.
         """
+        self._check_open()
+        if not self._begun:
+            raise ResetNeeded("step: call reset first")
         begin = self._ended
         if self.autoreset_mode == AutoresetMode.DISABLED:
             assert not begin.any(), f"environments {np.flatnonzero(begin)} must be reset first"
@@ -224,7 +237,8 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
 
     def _chosen(self, options: dict[str, Any] | None) -> Mask:
         """Return which environments to reset."""
-        if options is None or "reset_mask" not in options:
+        advice = "; `env.mixture` gives environments settings of their own"
+        if options is None or "reset_mask" not in checked_options(options, ["reset_mask"], advice):
             return self._all
         mask = options.pop("reset_mask")  # Gymnasium's environments take it out, too
         fits = isinstance(mask, np.ndarray) and mask.dtype == np.bool_
@@ -237,14 +251,23 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         return chosen
 
     def _seeds(self, seed: Seed) -> list[int | None] | None:
-        """Return the seed of each environment."""
-        first, self._begun = not self._begun, True
+        """Return the seed of each environment.
+
+        Raises:
+            ConfigError: One is wrong, or there is not one for each.
+        """
         if seed is None:
-            if not first:
+            if self._begun:
                 return None
             seed = self.config.seed
-        if isinstance(seed, int | np.integer):
-            return list(range(int(seed), int(seed) + self.num_envs))
+        if isinstance(seed, str) or not isinstance(seed, Sequence | np.ndarray):
+            first = checked_seed(seed)
+            checked_seed(first + self.num_envs - 1)
+            return list(range(first, first + self.num_envs))
         if len(seed) != self.num_envs:
             raise ConfigError(f"seed: {len(seed)} are given for {self.num_envs} environments")
-        return list(seed)
+        return [None if one is None else checked_seed(one) for one in seed]
+
+    def _check_open(self) -> None:
+        if self.closed:
+            raise ClosedEnvironmentError("the environments are closed")

@@ -29,6 +29,10 @@ class Window:
         self._clock = self._pygame.time.Clock()
         self._screen: pygame.Surface | None = None
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Describe a copy: a window of its own."""
+        return Window, (self._rate,)
+
     def show(self, picture: NDArray[np.uint8]) -> None:
         """Show a picture, RGB, shape (H, W, 3); wait if the last one is not old enough."""
         if self._screen is None:

@@ -1,6 +1,6 @@
 """N environments in several processes, as one."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.jit import thread_count
+from eyas.core.memento import Memento
 from eyas.envs.actions import make_actions
 from eyas.envs.batch import Outcome, Seeds
 from eyas.envs.block import Block, Calls
@@ -40,6 +41,7 @@ class WorkerFleet:
     """
 
     def __init__(self, config: EyasConfig, count: int, workers: int) -> None:
+        self._made = config, count, workers
         self._count = count
         kinds = settings_of_kinds(config)
         self._configs = [kinds[kind] for kind in kinds_of(config, count)]
@@ -54,6 +56,10 @@ class WorkerFleet:
         self._waiting: list[Calls] = [[] for _ in self._rows]
         threads = max(thread_count() // workers, 1)
         self._workers = Workers([Block(config, rows, threads, shared) for rows in self._rows])
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Describe a copy with processes of its own, which goes on where this is."""
+        return _again, (*self._made, self._ask("mementos"))
 
     def begin(self, chosen: Mask, seeds: Seeds = None) -> None:
         """Begin new episodes, see `Batch.begin`."""
@@ -110,6 +116,11 @@ class WorkerFleet:
         """End the processes."""
         self._workers.close()
 
+    def recall(self, mementos: Sequence[list[Memento]]) -> None:
+        """Go on where others of the same settings and processes were."""
+        for calls, own in zip(self._waiting, mementos, strict=True):
+            calls.append(("recall", (own,)))
+
     def _wait(self, name: str, *arguments: Any) -> None:  # noqa: ANN401  # None, or a row for each
         """Let a call wait, in each process with its own rows of the arguments."""
         for rows, calls in zip(self._rows, self._waiting, strict=True):
@@ -135,3 +146,12 @@ class WorkerFleet:
             return []
         calls, self._waiting = self._waiting, [[] for _ in self._rows]
         return self._workers.ask(calls)
+
+
+def _again(
+    config: EyasConfig, count: int, workers: int, mementos: Sequence[list[Memento]]
+) -> WorkerFleet:
+    """Return a copy of a fleet."""
+    fleet = WorkerFleet(config, count, workers)
+    fleet.recall(mementos)
+    return fleet

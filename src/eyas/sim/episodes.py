@@ -88,6 +88,11 @@ class Episodes:
         self._stream[trackers] = 0
         self._episodes.number[trackers] = -1
 
+    def continue_from(self, other: "Episodes") -> None:
+        """Continue the sequences of episodes of another simulation with as many trackers."""
+        self._seed[:], self._stream[:] = other._seed, other._stream
+        self._episodes.number[:] = other._episodes.number
+
     @property
     def steps_left(self) -> int:
         """Physics steps until the end of the traffic, for the tracker whose time is latest."""

@@ -107,6 +107,12 @@ class Simulation:
         """
         self._episodes.reseed_alone(trackers, seeds)
 
+    def continue_from(self, other: "Simulation") -> None:
+        """Continue the sequences of episodes of another simulation with as many trackers, whose
+        worlds are their own.
+        """
+        self._episodes.continue_from(other._episodes)
+
     @property
     def steps_left(self) -> int:
         """Physics steps until the recorded traffic ends; afterwards all vehicles stand still.

@@ -62,6 +62,11 @@ class Journal:
     ) -> None:
         self.close()
 
+    @property
+    def writes(self) -> bool:
+        """Whether it has files."""
+        return bool(self._files)
+
     def close(self) -> None:
         """Close the files; may be called again."""
         self._files.clear()
