@@ -182,3 +182,11 @@ def test_the_second_start_of_a_server_serves_what_the_first_one_did(monkeypatch,
         run(monkeypatch, capsys, "serve", "--root", tmp_path)
     assert served[0] == served[1]
     assert served[0].extras == ()
+
+
+@pytest.mark.parametrize("group", [[], ["maps"]])
+def test_a_group_without_a_command_prints_its_help_and_no_empty_error(monkeypatch, capsys, group):
+    code, out, lines = run(monkeypatch, capsys, *group)
+    assert code == 2
+    assert "Usage: " in out + "".join(lines)
+    assert not any(line.startswith("eyas: error") for line in lines)

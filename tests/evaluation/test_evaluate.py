@@ -1,17 +1,20 @@
 """The command: folder, table, resuming after a kill."""
 
 import json
+import os
+import re
 import shlex
 import signal
 import subprocess
 import sys
 import time
+from contextlib import contextmanager
 from itertools import pairwise
 
 import pytest
 
 from eyas.cli.evaluate import _changes
-from eyas.core.errors import ConfigError, EyasError
+from eyas.core.errors import ConfigError, EyasError, OutputError
 from eyas.evaluation.plan import Plan
 from eyas.evaluation.record import RecordFile, read_records
 from eyas.modes.evaluate import run
@@ -128,3 +131,43 @@ def test_the_table_is_printed_as_published_too(tmp_path, capsys):
     figures = json.loads((tmp_path / "result.json").read_text())["rows"][0]["figures"]
     assert 303.0 < figures["cr"]["mean"] < 363.0
     assert figures["tsr"]["mean"] < 0.97
+
+
+@pytest.mark.parametrize("arguments", [(), ("--latency-curve",)])
+def test_a_policy_that_fails_in_all_episodes_is_an_error(tmp_path, arguments):
+    """Also if nothing else is to be printed: a job on a cluster must not look successful."""
+    (tmp_path / "mine.py").write_text("def act(picture):\n    raise RuntimeError('boom')\n")
+    command = [sys.executable, "-m", "eyas.cli.main", "evaluate", "--quiet", *arguments]
+    command += ["--policy", "mine:act", "--episodes", "1", "--out", str(tmp_path / "out")]
+    path = {**os.environ, "PYTHONPATH": os.pathsep.join([str(tmp_path), *sys.path])}
+    done = subprocess.run(command, env=path, capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    assert done.stdout == ""
+    said = done.stderr.partition("eyas: warning: the policy failed in 4 of 4 episodes, first in ")[
+        2
+    ]
+    assert said.splitlines()[0].endswith(": RuntimeError: boom")
+    assert f'{tmp_path / "mine.py"}", line 2, in act' in said
+    if not arguments:
+        assert said.count("Traceback") == 1
+        for record in read_records(tmp_path / "out" / "episodes.jsonl"):
+            assert f'{tmp_path / "mine.py"}", line 2, in act' in record.traceback
+
+
+@contextmanager
+def files_of(size):
+    """Let no file grow beyond a size [bytes], as if the disk were full."""
+    resource = pytest.importorskip("resource")
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (size, limits[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+
+
+def test_a_full_disk_is_blamed_on_the_file_of_records(whole, tmp_path):
+    (record, *_), path = read_records(whole / "episodes.jsonl"), tmp_path / "episodes.jsonl"
+    line = re.escape(f"{path}: cannot write: ")
+    with files_of(100), pytest.raises(OutputError, match=line), RecordFile(path) as file:
+        file.add([record])

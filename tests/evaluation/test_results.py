@@ -9,10 +9,11 @@ from typer.testing import CliRunner
 
 from eyas.cli.app import app
 from eyas.core.errors import EyasError
-from eyas.evaluation.comparison import differences
+from eyas.evaluation.comparison import differences, text_of
 from eyas.evaluation.plan import Plan, batches
 from eyas.evaluation.protocol import PROTOCOLS
 from eyas.evaluation.record import read_records
+from eyas.evaluation.result import NO_INTERVALS, table
 from eyas.evaluation.rows import rows_of, thirds
 from eyas.modes import evaluation_films, leaderboard
 from eyas.modes.evaluate import run
@@ -188,3 +189,23 @@ def test_a_latency_curve_has_a_point_and_a_folder_for_each_latency(tmp_path):
     assert (tmp_path / "latency-40" / "result.json").exists()
     with pytest.raises(EyasError, match="cannot be used together"):
         raise CliRunner().invoke(app, ["evaluate", *arguments, "--latency", "5"]).exception
+
+
+def test_the_same_seeds_in_several_weathers_have_no_interval(folder):
+    """They are not independent: such intervals would be far too narrow."""
+    day = records(folder, "hover")
+    night = [each.model_copy(update={"weather": "night"}) for each in day]
+    rows = {row.name: row for row in rows_of([*day, *night], 3.0)}
+    for name, figure in rows["all"].figures.items():
+        assert (figure.mean_interval, figure.iqm_interval) == (None, None), name
+        assert rows["night"].figures[name].mean_interval is not None
+    text = table(list(rows.values()), "paper")
+    assert "[" not in text.splitlines()[1]
+    assert text.splitlines()[-1] == NO_INTERVALS
+    assert NO_INTERVALS not in table([rows["night"]], "paper")
+    others = [each.model_copy(update={"name": f"{each.name}+"}) for each in night]
+    found = differences([*day, *others], [*day, *others])
+    intervals = {each.name: each.interval for each in found}
+    assert intervals["all"] is None
+    assert intervals["night"] is not None
+    assert text_of(found).splitlines()[-1] == NO_INTERVALS

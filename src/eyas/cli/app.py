@@ -110,7 +110,7 @@ def run() -> int:
     except EyasError as error:
         return _failed(str(error))
     except _UsageError as error:
-        return _failed(error.format_message())
+        return _misused(error)
     except _Carried as carried:
         raise carried.interrupt from None
     except typer.Abort:
@@ -129,6 +129,16 @@ def _not_printed(error: OSError) -> int:
     if isinstance(error, BrokenPipeError):
         return 1  # the reader of our output has seen enough
     return _failed(f"stdout: cannot write: {error.strerror or error}")
+
+
+def _misused(error: Any) -> int:  # noqa: ANN401  # Typer's
+    """Return the exit code of a command line that is wrong."""
+    message = error.format_message()
+    if type(error).__name__ != "NoArgsIsHelpError":
+        return _failed(message)
+    if message:  # new versions of Typer have printed the help already
+        print(message, file=sys.stderr)
+    return 2
 
 
 def _failed(line: str) -> int:

@@ -78,7 +78,10 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
     ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
 ) -> None:
-    """Fly a policy in the episodes of a protocol, and tell how well it tracks."""
+    """Fly a policy in the episodes of a protocol, and tell how well it tracks.
+
+    The exit code is 1 if the policy has failed in all episodes.
+    """
     from eyas.core.config import validated
     from eyas.evaluation.plan import Plan
 
@@ -108,11 +111,14 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
         if latency_curve:
             from eyas.modes.latency_curve import run_curve
 
-            run_curve(plan, folder, flier=flier, **common)
+            records = run_curve(plan, folder, flier=flier, **common)
         else:
             from eyas.modes.evaluate import run
 
-            run(plan, folder, as_published=as_published, videos=videos, flier=flier, **common)
+            own: Any = {"as_published": as_published, "videos": videos}
+            records = run(plan, folder, flier=flier, **own, **common)
+    if all(record.error is not None for record in records):
+        raise typer.Exit(1)
 
 
 def _flier(*, ray: bool) -> "AbstractContextManager[Flier]":

@@ -8,6 +8,7 @@ import numpy as np
 from eyas.core.errors import DataFileError
 from eyas.evaluation.plan import Stamp
 from eyas.evaluation.record import Record
+from eyas.evaluation.result import NO_INTERVALS
 from eyas.evaluation.rows import FIGURES, groups_of, strata_of
 from eyas.evaluation.statistics import (
     Interval,
@@ -36,8 +37,9 @@ class Difference(NamedTuple):
     """Mean of the second policy."""
     mean: float
     """Mean difference."""
-    interval: Interval
-    """95 %, paired and stratified bootstrap of the mean difference."""
+    interval: Interval | None
+    """95 %, paired and stratified bootstrap of the mean difference; None if the same seeds are
+    flown in several places, since these episodes are not independent."""
     improved: float
     """Share of episodes in which the second has the larger figure; equal ones count half."""
 
@@ -67,7 +69,8 @@ def differences(first: Sequence[Record], second: Sequence[Record]) -> list[Diffe
         raise DataFileError("not comparable: the two have no episode in common")
     found = []
     for group, name, records in groups_of(common):
-        resamples = stratified_resamples(strata_of(records))
+        strata = strata_of(records)
+        resamples = None if strata is None else stratified_resamples(strata)
         for figure in COMPARED:
             read = FIGURES[figure]
             old = np.array([read(record) for record in records], np.float64)
@@ -78,7 +81,7 @@ def differences(first: Sequence[Record], second: Sequence[Record]) -> list[Diffe
                     first=float(old.mean()),
                     second=float(new.mean()),
                     mean=float((new - old).mean()),
-                    interval=interval_of(new - old, mean, resamples),
+                    interval=None if resamples is None else interval_of(new - old, mean, resamples),
                     improved=improvement(old.tolist(), new.tolist()),
                 )
             )
@@ -96,11 +99,18 @@ def text_of(found: Sequence[Difference]) -> str:
             f"{each.first:.3f}",
             f"{each.second:.3f}",
             f"{each.mean:+.3f}",
-            f"[{each.interval.low:+.3f}, {each.interval.high:+.3f}]",
+            _interval(each.interval),
             f"{each.improved:.0%}",
         )
         for each in found
     ]
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
     rows = ([cell.ljust(width) for cell, width in zip(line, widths, strict=True)] for line in lines)
-    return "\n".join("  ".join(row).rstrip() for row in rows)
+    text = ["  ".join(row).rstrip() for row in rows]
+    if any(each.interval is None for each in found):
+        text.append(NO_INTERVALS)
+    return "\n".join(text)
+
+
+def _interval(interval: Interval | None) -> str:
+    return "-" if interval is None else f"[{interval.low:+.3f}, {interval.high:+.3f}]"

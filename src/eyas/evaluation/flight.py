@@ -14,7 +14,7 @@ from eyas.evaluation.episode import Episode
 from eyas.evaluation.flock import Flock
 from eyas.evaluation.meter import Meter
 from eyas.evaluation.occlusion import clear_shares
-from eyas.evaluation.policies.policy import Decision, Policy, Sight, Start
+from eyas.evaluation.policies.policy import Decision, Failure, Policy, Sight, Start
 from eyas.evaluation.protocol import Protocol
 from eyas.evaluation.record import Record
 
@@ -50,7 +50,7 @@ class Flight:
         self._actions = make_actions(policy.env.actions, policy.env.speeds)
         count = len(episodes)
         self._active = np.ones(count, np.bool_)
-        self._failed: dict[int, str] = {}
+        self._failed: dict[int, Failure] = {}
         self._commands = np.zeros((count, 4))
         self._next = np.zeros((count, 4))
         self._ready = np.zeros(count, np.int64)
@@ -104,8 +104,8 @@ class Flight:
         self.answers.append(taken)
         if decision is None:
             return
-        for row, error in decision.failed.items():
-            self._fail(row, error)
+        for row, failure in decision.failed.items():
+            self._fail(row, failure)
         deciding &= self._active
         self._take(decision.actions, deciding)
         period, repeat = self._protocol.period, self._policy.env.action_repeat
@@ -121,7 +121,7 @@ class Flight:
             try:
                 self._next[row] = self._actions.commands([actions[row]])[0]
             except (ActionError, IndexError, KeyError, TypeError) as error:
-                self._fail(row, _line(error))
+                self._fail(row, Failure.of(error, traced=False))
 
     def _guarded(self, call: Callable[[], Decision | None]) -> Decision | None:
         """Call the policy; if it raises, all its episodes have failed."""
@@ -129,11 +129,11 @@ class Flight:
             return call()
         except Exception as error:  # whatever a user's code raises is a record
             for row in np.flatnonzero(self._active).tolist():
-                self._fail(row, _line(error))
+                self._fail(row, Failure.of(error))
             return None
 
-    def _fail(self, row: int, error: str) -> None:
-        self._failed[row] = error
+    def _fail(self, row: int, failure: Failure) -> None:
+        self._failed[row] = failure
         self._active[row] = False
 
     def _boxes(self) -> NDArray[np.int32]:
@@ -141,8 +141,3 @@ class Flight:
         size = image.height, image.width
         boxes: NDArray[np.int32] = self._flock.gathered(lambda squad: squad.subjects(size)[1])
         return boxes
-
-
-def _line(error: Exception) -> str:
-    """Return an error as one line."""
-    return " ".join(f"{type(error).__name__}: {error}".split())[:500]

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from eyas.core.rng import stream
 from eyas.evaluation.episode import Episode
 from eyas.evaluation.flock import Flock, Squad
+from eyas.evaluation.policies.policy import Failure
 from eyas.evaluation.protocol import Protocol
 from eyas.evaluation.record import Published, Record, Trace
 from eyas.evaluation.watch import watched
@@ -112,27 +113,28 @@ class Meter:
             sums.shares[rows, 0] += pixels[:, 0] > 0
             sums.shares[rows, 1] += pixels[:, 0] / np.maximum(pixels[:, 1], 1)
 
-    def record(self, row: int, episode: Episode, clear: float, error: str | None) -> Record:
+    def record(self, row: int, episode: Episode, clear: float, failure: Failure | None) -> Record:
         """Return the record of a flight that has ended.
 
         Args:
             row: Its place in the batch.
             episode: The episode.
             clear: See `Record`.
-            error: What its policy has failed with, if it has.
+            failure: What its policy has failed with, if it has.
         """
         protocol, length = self._protocol, int(self.length[row])
         reward, flown = self._reward[row, :length], max(length, 1)
         reason = DoneReason(int(self.reason[row]))
-        broken_off = error is not None or reason in _CRASHES
+        broken_off = failure is not None or reason in _CRASHES
         shares = self._sums.shares[row] / (protocol.steps // LOOK)
         return Record(
             name=episode.name,
             **episode.place._asdict(),
             direction=episode.direction,
             seed=episode.seed,
-            error=error,
-            reason=reason.name.lower() if error is None else "policy_failed",
+            error=None if failure is None else failure.line,
+            traceback=None if failure is None else failure.traceback,
+            reason=reason.name.lower() if failure is None else "policy_failed",
             duration=length * protocol.period,
             cr=float(reward.sum()),
             tsr=int((reward > 0.0).sum()) / protocol.steps,

@@ -47,6 +47,8 @@ class Record(Config):
     seed: int
     error: str | None = None
     """What the policy failed with; its figures count what it had reached until then."""
+    traceback: str | None = None
+    """Where in its code."""
     reason: str
     """`DoneReason` in small letters, or `policy_failed`."""
     duration: float
@@ -122,7 +124,8 @@ class RecordFile:
         error: BaseException | None,
         trace: TracebackType | None,
     ) -> None:
-        self._file.close()
+        with refusals(self._path):  # closing writes what a full disk has not taken
+            self._file.close()
 
 
 def read_records(path: Path) -> list[Record]:

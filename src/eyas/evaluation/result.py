@@ -19,6 +19,7 @@ from eyas.settings.file import read_settings
 __all__ = [
     "COLUMNS",
     "EPISODES",
+    "NO_INTERVALS",
     "RESULT",
     "ROWS",
     "STAMP",
@@ -39,6 +40,12 @@ COLUMNS = {
     "distractor": ("kept", "tsr", "seen", "losses", "crashed", "centre_error"),
 }
 """The columns that are printed; the files have all."""
+
+NO_INTERVALS = (
+    "Rows with the same seeds in several places have no intervals: these episodes are not "
+    "independent."
+)
+"""What is said below a table."""
 
 UNITS = {
     "kept": "s",
@@ -66,7 +73,10 @@ def load_run(folder: Path) -> tuple[Stamp, list[Record]]:
 
 
 def table(rows: Sequence[Row], protocol: str) -> str:
-    """Return a table as text: mean, 95 % interval, and interquartile mean of the first figures."""
+    """Return a table as text: mean, 95 % interval, and interquartile mean of the first figures.
+
+    Rows in which seeds repeat have no intervals, see `eyas.evaluation.rows.strata_of`.
+    """
     columns = COLUMNS[protocol]
     heads = [f"{name} [{UNITS[name]}]" if name in UNITS else name for name in columns]
     lines = [["", "n", *heads]]
@@ -76,13 +86,16 @@ def table(rows: Sequence[Row], protocol: str) -> str:
         label = "all" if row.group == "all" else f"{row.group} {row.name}"
         lines.append([label, str(len(row.records)), *cells])
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
-    return "\n".join(
+    text = [
         "  ".join(
             cell.ljust(width) if place == 0 else cell.rjust(width)
             for place, (cell, width) in enumerate(zip(line, widths, strict=True))
         ).rstrip()
         for line in lines
-    )
+    ]
+    if any(row.figures["tsr"].mean_interval is None for row in rows):
+        text.append(NO_INTERVALS)
+    return "\n".join(text)
 
 
 def write_result(
@@ -123,8 +136,10 @@ def cell(figure: Estimate | None, *, iqm: bool = False) -> str:
     if figure is None:
         return "-"
     digits = 1 if abs(figure.mean) >= 20.0 else 3
-    low, high = figure.mean_interval
-    text = f"{figure.mean:.{digits}f} [{low:.{digits}f}, {high:.{digits}f}]"
+    text = f"{figure.mean:.{digits}f}"
+    if figure.mean_interval is not None:
+        low, high = figure.mean_interval
+        text += f" [{low:.{digits}f}, {high:.{digits}f}]"
     return f"{text} iqm {figure.iqm:.{digits}f}" if iqm else text
 
 
@@ -138,6 +153,6 @@ def _csv(made: Stamp, rows: Sequence[Row]) -> str:
     for row in rows:
         for name, figure in row.figures.items():
             n, mean, iqm, *intervals = figure
-            limits = [limit for interval in intervals for limit in interval]
+            limits = [limit for interval in intervals for limit in interval or ("", "")]
             writer.writerow([*start, row.group, row.name, name, n, mean, iqm, *limits])
     return text.getvalue()

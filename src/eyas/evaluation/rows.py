@@ -50,8 +50,14 @@ class Row(NamedTuple):
     figures: dict[str, Estimate]
 
 
-def strata_of(records: Sequence[Record]) -> list[tuple[str, str, str, float]]:
-    """Return the stratum of each record."""
+def strata_of(records: Sequence[Record]) -> list[tuple[str, str, str, float]] | None:
+    """Return the stratum of each record; None if the records are not independent.
+
+    Those of one seed have the same traffic and start in every weather, so that a lucky seed raises
+    all of them.
+    """
+    if len({each.seed for each in records}) < len(records):
+        return None
     return [(each.map, each.weather, each.target, each.direction) for each in records]
 
 
@@ -138,10 +144,12 @@ def _censored(
     records: list[Record], times: list[float], ended: list[bool], horizon: float
 ) -> Estimate:
     whole = restricted_mean(times, ended, horizon)
+    if (strata := strata_of(records)) is None:
+        return Estimate(len(records), whole, whole, None, None)
     at, happened = np.array(times), np.array(ended)
     means = [
         restricted_mean(at[row], happened[row], horizon)
-        for row in stratified_resamples(strata_of(records), _RESAMPLES)
+        for row in stratified_resamples(strata, _RESAMPLES)
     ]
     spread = Interval(*np.quantile(means, (0.025, 0.975)).tolist())
     return Estimate(len(records), whole, whole, spread, spread)

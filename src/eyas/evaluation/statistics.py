@@ -50,8 +50,9 @@ class Estimate(NamedTuple):
     mean: float
     iqm: float
     """Interquartile mean."""
-    mean_interval: Interval
-    iqm_interval: Interval
+    mean_interval: Interval | None
+    """None, like the other, if the samples are not independent."""
+    iqm_interval: Interval | None
 
 
 def interquartile_mean(values: Floats) -> Floats:
@@ -108,18 +109,22 @@ def interval_of(values: Floats, statistic: Statistic, resamples: NDArray[np.int6
     return Interval(low, high)
 
 
-def estimate(values: Sequence[float], strata: Sequence[Hashable]) -> Estimate:
+def estimate(values: Sequence[float], strata: Sequence[Hashable] | None) -> Estimate:
     """Return the figures of a sample.
 
     Args:
         values: n samples, at least one.
-        strata: Stratum of each.
+        strata: Stratum of each; None: they are not independent, so that there are no intervals.
     """
-    array, resamples = np.asarray(values, np.float64), stratified_resamples(strata)
+    array = np.asarray(values, np.float64)
+    middle, iqm = float(array.mean()), float(interquartile_mean(array))
+    if strata is None:
+        return Estimate(len(array), middle, iqm, None, None)
+    resamples = stratified_resamples(strata)
     return Estimate(
         n=len(array),
-        mean=float(array.mean()),
-        iqm=float(interquartile_mean(array)),
+        mean=middle,
+        iqm=iqm,
         mean_interval=interval_of(array, mean, resamples),
         iqm_interval=interval_of(array, interquartile_mean, resamples),
     )

@@ -60,7 +60,7 @@ def run(  # noqa: PLR0913  # choices of the user's
         as_published: Whether the figures are those that the original's code would have printed.
         plots: Whether plots are drawn.
         videos: Whether the worst, the median and the best flight are filmed.
-        quiet: Whether nothing is printed.
+        quiet: Whether nothing is printed but failures of the policy.
         flier: Flies the batches.
 
     Raises:
@@ -82,7 +82,7 @@ def run(  # noqa: PLR0913  # choices of the user's
     if not quiet:
         print(f"{plan.policy}, protocol {plan.protocol} {made.protocol}, Eyas {made.version}")
         print(table(rows, plan.protocol))
-        _tell_failures(flown)
+    _tell_failures(flown)
     return flown
 
 
@@ -182,7 +182,9 @@ def _write_timing(plan: Plan, out: Path, answers: list[float], wall: float) -> N
 def _tell_failures(records: list[Record]) -> None:
     failed = [record for record in records if record.error is not None]
     if failed:
+        first = failed[0]
         _LOG.warning(
-            "the policy failed in %d of %d episodes, first in %s: %s",
-            *(len(failed), len(records), failed[0].name, failed[0].error),
+            "the policy failed in %d of %d episodes, first in %s: %s%s",
+            *(len(failed), len(records), first.name, first.error),
+            "" if first.traceback is None else f"\n{first.traceback.rstrip()}",
         )

@@ -8,6 +8,8 @@ from eyas.core.errors import ConfigError
 from eyas.core.files import write_atomic
 from eyas.evaluation.fliers import Flier, fly_here
 from eyas.evaluation.plan import Plan, check, stamp
+from eyas.evaluation.record import Record
+from eyas.evaluation.result import cell
 from eyas.evaluation.rows import rows_of
 from eyas.modes.evaluate import run
 from eyas.modes.evaluation_plots import require_matplotlib, save_plot
@@ -27,7 +29,7 @@ class _Point(TypedDict):
     """Means at one latency, with their 95 % intervals."""
 
     latency_ms: float
-    figures: dict[str, tuple[float, float, float]]
+    figures: dict[str, tuple[float, float | None, float | None]]
 
 
 def run_curve(  # noqa: PLR0913  # choices of the user's
@@ -39,8 +41,9 @@ def run_curve(  # noqa: PLR0913  # choices of the user's
     plots: bool,
     quiet: bool,
     flier: Flier = fly_here,
-) -> None:
-    """Evaluate at each latency, in a folder of its own, and write `latency.json`.
+) -> list[Record]:
+    """Evaluate at each latency, in a folder of its own, and write `latency.json`; return all
+    records.
 
     Args:
         plan: The plan; it must not have a latency of its own.
@@ -48,7 +51,7 @@ def run_curve(  # noqa: PLR0913  # choices of the user's
         resume: Whether interrupted evaluations are continued.
         overwrite: Whether those in the folders are deleted first.
         plots: Whether `latency.png` is drawn.
-        quiet: Whether nothing is printed.
+        quiet: Whether nothing is printed but failures of the policy.
         flier: Flies the batches.
 
     Raises:
@@ -60,33 +63,34 @@ def run_curve(  # noqa: PLR0913  # choices of the user's
     if plots:
         require_matplotlib()
     points: list[_Point] = []
+    every: list[Record] = []
     for latency in LATENCIES:
         own, folder = plan.model_copy(update={"latency": latency}), out / f"latency-{latency}"
         records = run(own, folder, resume=resume, overwrite=overwrite, quiet=True, flier=flier)
+        every += records
         figures = rows_of(records, plan.rules.steps * plan.rules.period)[0].figures
-        found = {name: (figures[name].mean, *figures[name].mean_interval) for name in _FIGURES}
+        found = {
+            name: (figures[name].mean, *(figures[name].mean_interval or (None, None)))
+            for name in _FIGURES
+        }
         points.append(_Point(latency_ms=float(latency), figures=found))
         if not quiet:
-            print(_line(latency, found), flush=True)
+            cells = (f"{name} {cell(figures[name])}" for name in _FIGURES)
+            print(f"{latency:>4} ms  " + "  ".join(cells), flush=True)
     made = stamp(plan).model_dump(mode="json")
     content = json.dumps({**made, "points": points}, indent=1) + "\n"
     write_atomic(out / f"{CURVE}.json", content.encode())
     if plots:
         title = f"{plan.policy}, protocol {plan.protocol}"
         save_plot(out / f"{CURVE}.png", title, lambda axes: _draw(axes, points))
-
-
-def _line(latency: str, found: dict[str, tuple[float, float, float]]) -> str:
-    cells = [
-        f"{name} {mean:.3f} [{low:.3f}, {high:.3f}]" for name, (mean, low, high) in found.items()
-    ]
-    return f"{latency:>4} ms  " + "  ".join(cells)
+    return every
 
 
 def _draw(axes: Any, points: list[_Point]) -> None:  # noqa: ANN401  # matplotlib's
     time = [point["latency_ms"] for point in points]
     means, lows, highs = zip(*(point["figures"]["tsr"] for point in points), strict=True)
-    axes.fill_between(time, lows, highs, color="#9db9cc", alpha=0.5, lw=0, label="95 %")
+    if None not in lows:
+        axes.fill_between(time, lows, highs, color="#9db9cc", alpha=0.5, lw=0, label="95 %")
     axes.plot(time, means, "o-", color="#1b6ca8", lw=2, label="mean")
     axes.set(xlabel="latency [ms]", ylabel="TSR", ylim=(0, 1.02), xticks=time)
     axes.legend(frameon=False, loc="best")

@@ -137,6 +137,6 @@ def _page(body: str) -> str:
         f"<title>Eyas leaderboard</title>\n<style>{_STYLE}</style>\n</head>\n<body>\n"
         f"<h1>Eyas leaderboard</h1>\n<p>{FIRST_LINE}</p>\n"
         "<p>Each figure is the mean of all episodes, with its 95 % interval (stratified "
-        "bootstrap) below.</p>\n"
+        "bootstrap) below; none where the same seeds are flown in several places.</p>\n"
         f"{body}\n</body>\n</html>\n"
     )

@@ -10,7 +10,7 @@ import numpy as np
 from eyas.core.errors import ConfigError
 from eyas.envs.config import ActionKind, EnvConfig
 from eyas.envs.observation import Observation
-from eyas.evaluation.policies.policy import Decision, Policy, Sight, Start, env_config
+from eyas.evaluation.policies.policy import Decision, Failure, Policy, Sight, Start, env_config
 from eyas.evaluation.policies.simple import HOVER
 
 __all__ = ["Each", "Whole", "load_callable"]
@@ -49,7 +49,7 @@ class Each:
             try:
                 actions[row] = getattr(own, "act", own)(one_of(sight.observation, row))
             except Exception as error:  # whatever a user's code raises ends only its own episode
-                failed[row] = " ".join(f"{type(error).__name__}: {error}".split())[:500]
+                failed[row] = Failure.of(error)
         return Decision(actions, failed)
 
 

@@ -1,6 +1,7 @@
 """The interface of a policy that flies N drones at once."""
 
 from collections.abc import Callable, Mapping
+from traceback import format_exception
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
@@ -11,7 +12,7 @@ from eyas.envs.config import EnvConfig, ObservationPart
 from eyas.envs.observation import Observation
 from eyas.state.snapshot import Snapshot
 
-__all__ = ["BLIND", "Decision", "Policy", "Sight", "Start", "env_config"]
+__all__ = ["BLIND", "Decision", "Failure", "Policy", "Sight", "Start", "env_config"]
 
 BLIND = {"observation": {"parts": [ObservationPart.PRIVILEGED]}}
 """Changes of `EnvConfig` for policies that see no picture, so that none is drawn."""
@@ -39,12 +40,27 @@ class Sight(NamedTuple):
     """Returns the true state of all N: for oracles."""
 
 
+class Failure(NamedTuple):
+    """What a policy has failed with."""
+
+    line: str
+    """The error."""
+    traceback: str | None
+    """Where it was raised."""
+
+    @classmethod
+    def of(cls, error: BaseException, *, traced: bool = True) -> "Failure":
+        """Return an error that was raised; `traced`: by the policy's own code."""
+        line = " ".join(f"{type(error).__name__}: {error}".split())[:500]
+        return cls(line, "".join(format_exception(error)) if traced else None)
+
+
 class Decision(NamedTuple):
     """Actions of N drones."""
 
     actions: Any
     """An action for each drone, shape (N, ...) or a list; those who do not decide are not read."""
-    failed: Mapping[int, str] = {}  # never changed
+    failed: Mapping[int, Failure] = {}  # never changed
     """Drones whose policy has failed, and how; their episodes end."""
 
 
