@@ -6,7 +6,8 @@
 
 The town has avenues, side streets and traffic lights, closed blocks with courtyards, towers of
 several parts, houses with gardens, sheds, a church, parks with paths and ponds, a river, a railway,
-car parks, trees and rows of trees. Some tags are missing, some are odd, as in real data. With
+car parks, trees and rows of trees. Some tags are missing, some are odd, as in real data. North of
+it, in a quarter of its own, stands every tag that the importer reads (`osm_every_tag.py`). With
 `--as-found` its streets are wider and its blocks denser, each object has a history, there are
 thousands of shops with names in all scripts, and defects of many kinds.
 """
@@ -21,6 +22,7 @@ from xml.sax.saxutils import quoteattr
 import numpy as np
 import shapely
 from osm_as_found import add_defects, add_shops, as_found
+from osm_every_tag import add_quarter
 from shapely import affinity
 
 from eyas.world.osm.projection import Projection
@@ -69,13 +71,17 @@ class Writer:
             return
         ways = [self.ring(ring) for ring in rings]
         roles = ["outer"] + ["inner"] * (len(rings) - 1)
-        members = "".join(
-            f'<member type="way" ref="{way}" role="{role}"/>'
-            for way, role in zip(ways, roles, strict=True)
-        )
+        members = [("way", way, role) for way, role in zip(ways, roles, strict=True)]
+        self.relation(members, type="multipolygon", **tags)
+
+    def relation(self, members: list[tuple[str, int, str]], **tags: str) -> None:
+        """Add a relation of members: kind, number and role of each."""
         self._next += 1
-        tags["type"] = "multipolygon"
-        self._others.append(f'<relation id="{self._next}">{members}{_tags(tags)}</relation>')
+        said = "".join(
+            f'<member type="{kind}" ref="{number}" role="{role}"/>'
+            for kind, number, role in members
+        )
+        self._others.append(f'<relation id="{self._next}">{said}{_tags(tags)}</relation>')
 
     def raw(self, element: str) -> None:
         """Add an element as it is."""
@@ -123,6 +129,7 @@ class Town:
         widths = [self.rng.uniform(88, 128) for _ in range(columns)]
         depths = [self.rng.uniform(88, 132) for _ in range(rows)]
         self.half = (sum(widths) / 2 + 45, sum(depths) / 2 + 45)
+        self._width = sum(widths)
         turn = math.radians(11)
         self.at: dict[tuple[int, int], Point] = {}
         for i in range(columns + 1):
@@ -145,6 +152,7 @@ class Town:
             for j in range(self.rows):
                 self._block(i, j)
         self._railway()
+        self._quarter()
         if not self.found:
             return "\n".join(self.out.lines(self.half))
         add_shops(self.out.node, self.half, _SHOPS, self.rng)
@@ -348,6 +356,13 @@ class Town:
             affinity.translate(affinity.scale(ground, 0.3, 0.2), 0, -0.36 * _depth(ground)),
             building="warehouse",
         )
+
+    def _quarter(self) -> None:
+        """Add the quarter of all tags north of the town."""
+        west, north = -0.5 * self._width, max(y for _, y in self.at.values()) + 40.0
+        start = self.nodes[0, self.rows]
+        end = add_quarter(self.out, west, north, self._width, start)
+        self.half = (self.half[0], max(self.half[1], end))
 
     def _railway(self) -> None:
         x = max(place[0] for place in self.at.values()) + 26

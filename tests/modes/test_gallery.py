@@ -7,6 +7,7 @@ from html.parser import HTMLParser
 
 import numpy as np
 import pytest
+import shapely
 from PIL import Image
 
 from eyas.cli.main import main
@@ -166,6 +167,19 @@ def test_an_open_road_is_far_from_junctions(still):
     far, crossing = on_open_roads(still.scene, cars), on_crossings(still.scene, cars)
     assert 0.0 == far.min() < 50.0 < far.max() <= 100.0
     assert (far[crossing > 0] == 0.0).all()
+
+
+def test_the_outline_of_a_junction_may_cross_itself(still):
+    """As that of a junction of an imported town does."""
+    network = still.scene.network
+    first, last = network.junction_first[:2]
+    assert last - first >= 4
+    twisted = network.junction_points.copy()
+    twisted[[first, first + 1]] = twisted[[first + 1, first]]
+    assert not shapely.Polygon(twisted[first:last]).is_valid
+    bent = replace(still.scene, network=replace(network, junction_points=twisted))
+    far = on_open_roads(bent, all_cars(still))
+    assert 0.0 == far.min() < 50.0 < far.max() <= 100.0
 
 
 def test_all_streets_are_in_the_horizon_view(still, views):

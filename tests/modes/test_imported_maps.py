@@ -4,9 +4,12 @@ import gzip
 import importlib
 import json
 import re
+import shlex
 import struct
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
+from typing import ClassVar
 
 import gymnasium
 import numpy as np
@@ -31,8 +34,11 @@ from eyas.traffic.signals import Aspect
 from eyas.world.config import WorldConfig
 from eyas.world.maps import MAPS
 from eyas.world.maps.imported import IMPORTED, MAP_FILE, ROADS_FILE, origin_of
+from eyas.world.osm import houses, land, streets
+from eyas.world.osm.features import Features
 from eyas.world.osm.projection import Projection
 from eyas.world.osm.reader import read_osm
+from eyas.world.osm.rings import Shapes
 
 pytestmark = pytest.mark.sumo
 NAME = "test-town"
@@ -77,6 +83,52 @@ def test_an_import_says_what_it_found_and_guessed(town):
     text = "\n".join(town.lines())
     assert f"--map {NAME}" in text
     assert text.endswith(NOTICE)
+
+
+def test_a_map_in_a_folder_of_ones_own_is_used_as_the_last_line_says(source, tmp_path):
+    report = importing.run(source, None, out=tmp_path / "my town", record=False)
+    line = next(line for line in report.lines() if line.startswith("kept in "))
+    *_, option, name = shlex.split(line)
+    assert option == "--map"
+    assert MAPS.get(name).name == "town"
+
+
+class Asked(dict):
+    """Tags that remember what is asked of them."""
+
+    keys_asked: ClassVar[set[str]] = set()
+
+    def get(self, key, default=None):
+        self.keys_asked.add(key)
+        return super().get(key, default)
+
+    def __contains__(self, key):
+        self.keys_asked.add(key)
+        return super().__contains__(key)
+
+
+def test_the_file_of_the_town_has_every_tag_that_the_importer_reads(source, monkeypatch):
+    monkeypatch.setattr(Asked, "keys_asked", set())
+    data = read_osm(source)
+    told = [*data.nodes.values(), *(each.tags for each in (*data.ways.values(), *data.relations))]
+    pairs = {pair for tags in told for pair in tags.items()}
+    data.nodes = {name: Asked(tags) for name, tags in data.nodes.items()}
+    data.ways = {name: replace(way, tags=Asked(way.tags)) for name, way in data.ways.items()}
+    data.relations = [replace(each, tags=Asked(each.tags)) for each in data.relations]
+    projection, everywhere = Projection(*np.mean(list(data.places.values()), axis=0)), 1e4
+    extent = shapely.box(-everywhere, -everywhere, everywhere, everywhere)
+    shapes = Shapes(data, projection, extent, lambda _: None)
+    houses.houses_of(shapes, lambda _: None)
+    land.add_land(Features(), shapes, lambda _: None, np.random.default_rng(0))
+    streets.street_file(data, (-180, -90, 180, 90), lambda _: None)
+    assert len(Asked.keys_asked) > 40
+    assert sorted(Asked.keys_asked - {key for key, _ in pairs}) == []
+    kinds = {*land._KINDS, *(("waterway", kind) for kind in land._STREAMS)}
+    kinds |= {("highway", kind) for kind in land._PATHS}
+    kinds |= {("railway", kind) for kind in land._TRACKS}
+    kinds |= {("roof:shape", shape) for shape in houses._ROOFS}
+    kinds |= {("building", kind) for kind in houses._NO_HOUSES}
+    assert sorted(kinds - pairs) == []
 
 
 def test_an_imported_map_is_found_like_any_other(town):
@@ -193,7 +245,7 @@ def test_signals_are_seen_in_their_state_which_changes_with_time(town):
 
 def test_info_tells_figures_and_whose_data_it_is(scene, town):
     said = info.figures_of(scene)
-    assert said.road == pytest.approx(2 * 3 * 0.25, abs=0.4)
+    assert said.road == pytest.approx(2 * 3 * 0.25 + 0.7, abs=0.4)  # with the street of all tags
     assert said.lanes > 1.3 * said.road
     assert town.buildings * 0.9 <= said.buildings <= town.buildings * 1.2
     text = "\n".join(info.describe(NAME, 0))

@@ -217,3 +217,12 @@ def test_every_static_triangle_can_be_shaded(scene):
     with np.errstate(all="raise"):
         table = gradients(mesh.positions, mesh.normals, mesh.uvs, mesh.triangles)
     assert np.isfinite(table).all()
+
+
+def test_parked_cars_are_solid(scene):
+    fixtures, solids = scene.fixtures, scene.colliders
+    kinds = [k for k, name in enumerate(fixtures.names) if name.startswith("parked car")]
+    cars = fixtures.object_id[np.isin(fixtures.prototype, kinds)]
+    assert len(cars) > 100
+    assert np.isin(cars, solids.prism_object).all()
+    assert (solids.prism_top[np.isin(solids.prism_object, cars)] > 1.2).all()

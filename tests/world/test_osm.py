@@ -339,8 +339,9 @@ def test_streets_keep_what_netconvert_needs_and_lose_what_it_stumbles_over(tmp_p
 
 def test_features_come_back_from_their_text():
     house = House(
-        shapely.box(0, 0, 9, 9).difference(shapely.box(2, 2, 4, 4)), "yes", 3.0, roof="dome"
-    )
+        shapely.box(0, 0, 9, 9).difference(shapely.box(2, 2, 4, 4)), "yes", 3.0, roof="dome",
+        cover=(0.5, 0.25, 1.0),
+    )  # fmt: skip
     area = Area("park", shapely.box(0, 0, 50, 50))
     rail = shapely.LineString([(0, 0), (5, 5)])
     whole = Features(
@@ -349,6 +350,8 @@ def test_features_come_back_from_their_text():
     )  # fmt: skip
     again = from_text(to_text(whole), "x")
     assert again.houses == [house]
+    assert hash(again.houses[0].cover)  # colours are parts of materials, which are looked up
+    assert again.houses[0].wall is None
     assert to_text(again) == to_text(whole)
     with pytest.raises(DataFileError, match="not the file of an imported map"):
         from_text('{"houses": 3}', "x")

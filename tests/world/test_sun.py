@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from eyas.core.errors import ConfigError
+from eyas.world.maps import MAPS
 from eyas.world.sun import at_hour, sun_at
 from eyas.world.weather import CLEAR_DAY, CLEAR_NIGHT
 
@@ -37,6 +38,12 @@ def test_a_sun_as_high_as_the_weathers_own_changes_only_its_direction():
     hour = 7.0 + 0.01 * int(np.argmin(heights))
     assert at_hour(CLEAR_DAY, hour).sun_colour == pytest.approx(CLEAR_DAY.sun_colour, rel=0.01)
     assert at_hour(CLEAR_DAY, hour).sun_direction[0] > 0.0 > CLEAR_DAY.sun_direction[0]
+
+
+def test_a_day_on_which_lamps_burn_has_hours():
+    foggy = MAPS.get("farmland").light("day")
+    assert foggy.lamps > 0.0
+    assert at_hour(foggy, 9.0).sun_direction == pytest.approx(sun_at(9.0))
 
 
 def test_a_night_has_no_hour():

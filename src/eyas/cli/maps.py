@@ -59,7 +59,7 @@ def import_map(
     traffic: Annotated[bool, typer.Option(help="Record the traffic now, not on first use.")] = True,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace the map.")] = False,
 ) -> None:
-    """Make a map of an OpenStreetMap file; use it with --map NAME."""
+    """Make a map of an OpenStreetMap file; use it with --map NAME, or --map DIR with --out DIR."""
     from eyas.modes.maps.importing import run
 
     bounds = _bounds(bbox)

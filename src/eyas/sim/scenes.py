@@ -59,7 +59,7 @@ def load_scene(map_name: str, seed: int = 0, season: Season = Season.SUMMER) -> 
     recipe, network = MAPS.get(map_name), load_network(map_name, seed)
 
     def make() -> Scene:
-        _LOG.info("building the map '%s', once: up to 20 s of CPU time", recipe.name)
+        _LOG.info("building the map '%s', once", recipe.name)
         return recipe.scene(network, seed, season)
 
     return _cached(Kind.SCENE, (), _origin(map_name, seed, season, network), make, Scene)

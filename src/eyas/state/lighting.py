@@ -57,3 +57,8 @@ class Lighting:
     """Share of the sky that clouds cover."""
     flakes: float = 0.0
     """Density of falling snow: 0 none, 1 heavy snowfall."""
+
+    @property
+    def night(self) -> bool:
+        """Whether the moon shines in place of the sun."""
+        return self.luminosity < 1.0

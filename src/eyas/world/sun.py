@@ -39,7 +39,7 @@ def at_hour(lighting: Lighting, hour: float) -> Lighting:
     Raises:
         ConfigError: It is the light of a night.
     """
-    if lighting.lamps > 0.0:
+    if lighting.night:
         raise ConfigError("world.hour: not allowed at night; allowed: weathers with a sun")
     direction = sun_at(hour)
     longer = _way(direction[2]) - _way(lighting.sun_direction[2])

@@ -61,8 +61,8 @@ def plan_of(before: Plan, said: World) -> Plan:
     }
     now = before.config.world
     lighting = MAPS.get(said.map or now.map).light(said.weather or now.weather)
-    if said.hour is not None or lighting.lamps > 0.0:
-        fixed = said.hour in (None, "own") or lighting.lamps > 0.0
+    if said.hour is not None or lighting.night:
+        fixed = said.hour in (None, "own") or lighting.night
         changes["world"]["hour"] = None if fixed else said.hour
     if said.target is not None:
         changes["target"] = said.target
@@ -118,7 +118,7 @@ def world_of(plan: Plan, flight: Flight) -> dict[str, Any]:
         "tracker": "flown" if flown else str(tracker.kind),
         "light": plan.light,
         "hour": config.world.hour or "own",
-        "dark": MAPS.get(config.world.map).light(config.world.weather).lamps > 0.0,
+        "dark": MAPS.get(config.world.map).light(config.world.weather).night,
         "people": _count(config),
         "parked": flight.world.parked >= 0,
     }

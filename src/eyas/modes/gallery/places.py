@@ -59,7 +59,9 @@ def on_open_roads(scene: Scene, cars: Cars) -> Points:
     """Return how far each car is from the next junction, at most 100 m, shape (K,)."""
     network = scene.network
     rings = np.split(network.junction_points, network.junction_first[1:-1])
-    shapes = shapely.union_all([shapely.Polygon(ring) for ring in rings if len(ring) >= 3])
+    # The outlines of some junctions of imported towns cross themselves.
+    outlines = [shapely.make_valid(shapely.Polygon(ring)) for ring in rings if len(ring) >= 3]
+    shapes = shapely.union_all(outlines)
     away: Points = np.minimum(shapely.distance(shapely.points(cars.position), shapes), 100.0)
     return np.round(away)
 

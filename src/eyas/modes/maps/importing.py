@@ -3,6 +3,7 @@
 import gzip
 import json
 import re
+import shlex
 import shutil
 import time
 from collections import Counter
@@ -68,6 +69,8 @@ class Report:
 
     name: str
     folder: Path
+    registered: bool
+    """Whether it is known by its name; otherwise by its folder."""
     size: tuple[float, float] = (0.0, 0.0)
     """Extent of the floor [m]."""
     lanes: int = 0
@@ -85,6 +88,11 @@ class Report:
     """What was recorded, or why nothing was."""
     seconds: float = 0.0
 
+    @property
+    def known_as(self) -> str:
+        """What commands and settings call the map."""
+        return self.name if self.registered else str(self.folder)
+
     def lines(self) -> list[str]:
         """Return the report for people."""
         width, height = self.size
@@ -92,7 +100,7 @@ class Report:
             f"{self.name}: {width:.0f} x {height:.0f} m, {self.lanes} lanes, {self.signals} "
             f"traffic lights, {self.buildings} buildings, {self.trees} trees, "
             f"in {self.seconds:.0f} s",
-            f"kept in {self.folder}; use it with --map {self.name}",
+            f"kept in {self.folder}; use it with --map {shlex.quote(self.known_as)}",
         ]
         for word, counted in (("guessed", self.guessed), ("odd tags", self.odd),
                               ("mended or left out", self.broken)):  # fmt: skip
@@ -128,7 +136,7 @@ def run(
     name = _name(name if name is not None else re.sub(r"\.osm(\.\w+)?$|\.pbf$", "", path.name))
     folder = (out if out is not None else maps_folder() / name).absolute()
     _check_free(folder, name, overwrite=overwrite, own=out is None)
-    report = Report(name, folder)
+    report = Report(name, folder, registered=out is None)
     data = read_osm(path)
     limits = covered(data, bounds, str(path))
     west, south, east, north = limits

@@ -1,6 +1,7 @@
 """What an imported map consists of besides its streets, and the file that keeps it."""
 
 import json
+from collections.abc import Sequence
 from dataclasses import dataclass, field, fields
 from typing import Any
 
@@ -99,7 +100,7 @@ def from_text(text: str, source: str) -> Features:
     try:
         kept = json.loads(text)
         return Features(
-            houses=[House(**{**one, "shape": _polygon(one["shape"])}) for one in kept["houses"]],
+            houses=[_house(one) for one in kept["houses"]],
             areas=[Area(one["kind"], _polygon(one["shape"])) for one in kept["areas"]],
             trees=[(float(x), float(y), float(z)) for x, y, z in kept["trees"]],
             lamps=[(float(x), float(y)) for x, y in kept["lamps"]],
@@ -123,6 +124,19 @@ def _plain(thing: House | Area) -> dict[str, Any]:
     kept = {one.name: getattr(thing, one.name) for one in fields(thing)}
     kept["shape"] = _numbers(thing.shape)
     return kept
+
+
+def _house(kept: dict[str, Any]) -> House:
+    house = House(**{**kept, "shape": _polygon(kept["shape"])})
+    house.wall, house.cover = _colour(house.wall), _colour(house.cover)
+    return house
+
+
+def _colour(kept: Sequence[float] | None) -> Colour | None:
+    if kept is None:
+        return None
+    red, green, blue = kept
+    return float(red), float(green), float(blue)
 
 
 def _numbers(shape: shapely.Geometry) -> list[Any]:

@@ -14,7 +14,7 @@ from eyas.world.build.scene_builder import Prototype, SceneBuilder
 from eyas.world.maps.citystreet.plan import EXTENT, Plan
 from eyas.world.plants import gardens
 from eyas.world.roads import overpass
-from eyas.world.street.parked_cars import VARIANTS, parked_car
+from eyas.world.street.parked_cars import VARIANTS, add_car, parked_car
 
 __all__ = ["Flora", "add_greenery", "add_parked"]
 
@@ -103,4 +103,4 @@ def add_parked(builder: SceneBuilder, plan: Plan, flora: Flora, rng: np.random.G
                 slip = (x + rng.normal(0, 0.06), y + rng.normal(0, 0.06), 0.0)
                 way = turn + ahead + rng.normal(0, 0.015)
                 car = cars[int(rng.integers(len(cars)))]
-                builder.add_copy(ObjectClass.STRUCTURE, car, slip, way, rng.uniform(0.94, 1.04))
+                add_car(builder, car, slip, way, rng.uniform(0.94, 1.04))
