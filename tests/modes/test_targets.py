@@ -59,3 +59,16 @@ def test_a_target_of_ones_own_is_shown_in_its_colours(tmp_path, monkeypatch):
     box, arm = green > 1.4 * np.maximum(red, blue), (blue < 0.35 * red) & (green > 0.65 * red)
     for colour in (box, arm):
         assert (colour.sum(axis=(0, 2)) > 50).all()  # in each picture all round
+
+
+def test_a_sheet_shows_vehicles_whole(tmp_path):
+    """With a margin of their ground all round: the tails of cars were cut off."""
+    run("BmwX5Simple", tmp_path / "car.png")
+    sheet = np.asarray(Image.open(tmp_path / "car.png").convert("RGB")).astype(int)
+    row = sheet[40 + 24 : 40 + 24 + 256]
+    for turn in range(8):
+        picture = row[:, 256 * turn : 256 * (turn + 1)]
+        red = (picture[..., 0] > 60) & (picture[..., 0] > 2 * picture[..., 1])
+        columns = np.flatnonzero(red.sum(axis=0) > 2)
+        assert columns[0] > 8, turn
+        assert columns[-1] < 247, turn

@@ -186,3 +186,36 @@ def test_a_second_page_watches_and_can_take_over(page, browser, served):
     until(page, "!document.getElementById('watching').hidden")
     context.close()
     until(page, "document.getElementById('watching').hidden")
+
+
+def test_sliders_have_names(page):
+    names = ["view_range", "view_scale", "distance_range", "distance_scale"]
+    for name in names:
+        assert page.get_by_role("slider", name=name).count() == 1
+
+
+def test_a_duel_counts_down_over_the_picture(page):
+    page.click("#duel")
+    until(page, "document.getElementById('countdown').textContent === '2'")
+    assert page.locator("#countdown").is_visible()
+    until(page, "document.getElementById('countdown').hidden")
+
+
+def test_on_a_phone_held_sideways_nothing_covers_the_controls(browser, served, page):
+    context = browser.new_context(
+        viewport={"width": 844, "height": 390}, has_touch=True, is_mobile=True
+    )
+    phone = context.new_page()
+    phone.goto(served.address)
+    until(phone, "window.eyas !== undefined && !document.getElementById('watching').hidden")
+    notice = phone.locator("#watching").bounding_box()
+    for button in phone.locator("#touch button").all():
+        box = button.bounding_box()
+        assert box["y"] >= notice["y"] + notice["height"] or (
+            box["x"] >= notice["x"] + notice["width"] or box["x"] + box["width"] <= notice["x"]
+        )
+    panel = phone.locator("#panel").bounding_box()
+    for value in phone.locator("#kinds b").all():
+        box = value.bounding_box()
+        assert box["x"] + box["width"] <= panel["x"] + panel["width"]
+    context.close()

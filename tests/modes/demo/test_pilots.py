@@ -75,3 +75,36 @@ def test_a_duel_begins_at_the_same_place_for_both(viewer):
     assert (state["drone"], state["target"]["actor"], state["time"]) == start
     viewer.say("duel", policy=None)
     viewer.until(lambda s: s["duel"] is None)
+
+
+def test_it_opens_with_a_chase(serve):
+    viewer = Viewer(serve().socket)
+    state = viewer.until(lambda s: s["target"]["speed"] > 1.0)
+    assert (state["flies"], state["view"]) == ("follow", "chase")
+    assert state["offset"] < 3
+    viewer.hold("forward")
+    viewer.until(lambda s: s["flies"] is None)
+    viewer.close()
+
+
+def test_who_flies_by_itself_appears_over_the_next_target(viewer):
+    """On the straight way to it stand houses."""
+    viewer.say("fly", policy="follow")
+    viewer.until(lambda s: s["flies"] == "follow")
+    for _ in range(3):
+        actor = viewer.frame()["target"]["actor"]
+        viewer.say("do", what="next_target")
+        state = viewer.until(lambda s, actor=actor: s["target"]["actor"] != actor)
+        assert state["offset"] < 30
+        viewer.until(lambda s: s["offset"] < 3, seconds=5)
+
+
+def test_a_duel_that_is_asked_for_while_a_world_is_built_begins_in_it(viewer):
+    viewer.say("world", vehicles=20)
+    viewer.until(lambda s: viewer.told["busy"])
+    viewer.say("duel", policy="follow")
+    state = viewer.until(lambda s: s["duel"], seconds=120)
+    assert viewer.told["world"]["vehicles"] == 20
+    assert "begins in the new world" in viewer.told["say"]
+    assert state["duel"]["stage"] == "you"
+    assert state["duel"]["ready"] > 0

@@ -42,6 +42,8 @@ class Cockpit:
         self.overlay = True
         self.recording: Recording | None = None
         self.duel: Duel | None = None
+        self.duel_later: str | None = None
+        """The policy of a duel that begins when the new world is built."""
         self.sides_change = False
         """Whether the next flight of the duel is to begin."""
         plan = Plan(config, config.traffic.max_vehicles)

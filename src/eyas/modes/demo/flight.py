@@ -12,6 +12,8 @@ from eyas.task.rules import lenient, make_rules
 
 __all__ = ["Flight"]
 
+_FAR = 30.0
+"""Distance from which on a pilot does not fly to a target, but appears there [m]."""
 _WARNING = 1000
 """Physics steps before the end of the traffic at which it begins anew."""
 
@@ -95,6 +97,19 @@ class Flight:
             SpawnError: There is no such actor.
         """
         self.simulation.follow(0, actor)
+
+    def appear(self) -> bool:
+        """Put the drone over its target if that is far away; return whether it was.
+
+        A pilot that flies straight to it would come through houses.
+        """
+        actors, _ = self.simulation.actors_around(0)
+        drone = self.simulation.snapshot.trackers.position[0]
+        apart = actors.position[0, self.target, :2] - drone[:2]
+        if np.hypot(*apart) <= _FAR:
+            return False
+        self.reset()
+        return True
 
     def follow_next(self) -> None:
         """Make the next actor that is in the world the target."""

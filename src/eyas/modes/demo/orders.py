@@ -2,9 +2,10 @@
 
 import time
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
 
-from eyas.core.errors import ConfigError, UnknownNameError
+from eyas.core.errors import ConfigError, EyasError, UnknownNameError
 from eyas.modes.demo import messages as said
 from eyas.modes.demo.choices import plan_of, world_of
 from eyas.modes.demo.cockpit import Cockpit
@@ -18,6 +19,7 @@ __all__ = [
     "change_sides",
     "end_recording",
     "move_in",
+    "open_with_a_chase",
     "reward_of",
     "world_now",
 ]
@@ -55,6 +57,22 @@ def seat(cockpit: Cockpit, name: str) -> None:
     flight = cockpit.flight
     pilot: Pilot = BoxPilot(flight) if name == BOXES else PolicyPilot(name, flight)
     cockpit.hand_over(pilot, name)
+    _appear(cockpit)
+
+
+def open_with_a_chase(cockpit: Cockpit) -> None:
+    """Show what this is about: a drone that follows a car, until a key is pressed."""
+    cockpit.flight.follow_next()
+    cockpit.flight.reset()
+    cockpit.screen.view = "chase"
+    with suppress(EyasError):  # then it stays where it is
+        seat(cockpit, "follow")
+
+
+def _appear(cockpit: Cockpit) -> None:
+    """Begin a new flight over a target that is far from a drone that flies by itself."""
+    if cockpit.pilot is not None and cockpit.flight.appear():
+        end_recording(cockpit)
 
 
 def change_sides(cockpit: Cockpit) -> None:
@@ -103,12 +121,14 @@ def _click(cockpit: Cockpit, message: said.Click) -> None:
     actor = cockpit.screen.actor_at(message.x, message.y, *cockpit.size.now)
     if actor is not None:
         cockpit.flight.follow(actor)
+        _appear(cockpit)
 
 
 def _do(cockpit: Cockpit, message: said.Do) -> None:
     flight = cockpit.flight
     if message.what == "next_target":
         flight.follow_next()
+        _appear(cockpit)
     elif message.what == "parked_target" and flight.world.parked >= 0:
         end_recording(cockpit)
         flight.follow(flight.world.parked)
@@ -162,11 +182,14 @@ def move_in(cockpit: Cockpit) -> dict[str, Any] | None:
     if new is None:
         return None
     ended = end_recording(cockpit) or {}
-    cockpit.duel = None
+    cockpit.duel, rival = None, cockpit.duel_later
+    cockpit.duel_later = None
     new.adopt_reward(cockpit.flight)
     view = cockpit.screen.view
     cockpit.board(new)
     cockpit.screen.view = view
+    if rival is not None:
+        _duel(cockpit, said.Duel(policy=rival))
     return ended | world_now(cockpit)
 
 
@@ -177,16 +200,20 @@ def _fly(cockpit: Cockpit, message: said.Fly) -> None:
         seat(cockpit, message.policy)
 
 
-def _duel(cockpit: Cockpit, message: said.Duel) -> None:
+def _duel(cockpit: Cockpit, message: said.Duel) -> dict[str, Any] | None:
     if message.policy is None:
-        cockpit.duel = None
+        cockpit.duel = cockpit.duel_later = None
         cockpit.hand_over(None, None)
-        return
+        return None
+    if cockpit.builder.busy:
+        cockpit.duel_later = message.policy
+        return {"say": f"You against {message.policy}: begins in the new world."}
     seat(cockpit, message.policy)  # refuses now what could not fly later
     end_recording(cockpit)
     cockpit.clock.speed = 1.0
     cockpit.duel = Duel(message.policy, time.monotonic())
     change_sides(cockpit)
+    return None
 
 
 def _record(cockpit: Cockpit, message: said.Record) -> dict[str, Any] | None:

@@ -12,6 +12,7 @@ from pathlib import Path
 from eyas.core.errors import OutputError
 from eyas.evaluation.policies.shipped import shipped_names
 from eyas.modes.demo.cockpit import Cockpit
+from eyas.modes.demo.orders import open_with_a_chase
 from eyas.settings.config import EyasConfig
 from eyas.task.step_line import step_line
 
@@ -75,6 +76,8 @@ def run_browser(
         say: Prints the line with the address.
     """
     from eyas.modes.demo.server import Server
+
+    open_with_a_chase(cockpit)
 
     def begun(address: str) -> None:
         say(address)

@@ -105,6 +105,7 @@ class Session:
 
     def _stay(self) -> None:
         """Let the menus show the present world, after another could not be built."""
+        self.cockpit.duel_later = None
         self._audience.tell(world_now(self.cockpit))
 
     def _drop_pilot(self) -> None:

@@ -11,7 +11,7 @@ from eyas.sim.scenes import load_geometry, load_scene
 from eyas.state.draw import Picture, Views
 from eyas.state.motion import ActorState
 from eyas.state.scene import ACTOR_OBJECT
-from eyas.targets.catalogue import KINDS, MODELS, kind_index
+from eyas.targets.catalogue import KINDS, MODELS, kind_index, kind_of
 from eyas.targets.kind import Colour, Looks
 from eyas.targets.rig import Rigs
 from eyas.world.maps import MAPS
@@ -100,7 +100,8 @@ class Stage:
         colours = np.tile(np.array(colour, np.float32), (count, kinds, 1))
         self._rigs.pose(actors, Looks(np.tile(models, (count, 1)), colours), movers)
         picture = Picture.create(count, *size)
-        middles = actors.position[:, actor] + np.array([0.0, 0.0, MODELS[model].size[2] / 2])
+        middles = actors.position[:, actor] + kind_of(model).ahead * self._ahead
+        middles[:, 2] += MODELS[model].size[2] / 2
         views = self._views(middles, actor, [camera for _, camera in shots])
         self._renderer.draw(views, movers, picture, samples)
         assert picture.rgb is not None  # asked for

@@ -13,6 +13,9 @@ export class DuelBoard {
   show(state, terms) {
     const duel = state.duel;
     by("duel-board").hidden = !duel;
+    const left = duel ? Math.ceil(duel.ready) : 0;
+    by("countdown").hidden = !left;
+    by("countdown").textContent = left;
     by("duel").textContent = duel && duel.stage !== "over" ? "Give up" : "You against it: 60 s";
     if (!duel) {
       this.stage = null;

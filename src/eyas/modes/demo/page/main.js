@@ -11,7 +11,7 @@ import { Stage } from "./stage.js";
 
 const by = (id) => document.getElementById(id);
 const SLOW = 0.2;
-const look = { view: "drone", overlay: true };
+const look = { view: "chase", overlay: true };
 const times = [];
 const latencies = [];
 let last = null;

@@ -50,8 +50,8 @@ export class Stage {
   marks(state) {
     const { seen, reward, lines, centre, target, tip } = state.marks;
     const colour = rewardColour(state.reward);
-    this.shape(reward, `rgb(${colour} / .16)`, `rgb(${colour})`, 2.5);
-    this.shape(seen, null, "rgb(64 204 255)", 2);
+    this.shape(reward, null, `rgb(${colour} / .9)`, 1.4); // thin: what is judged is the picture
+    this.shape(seen, null, "rgb(64 204 255 / .8)", 1.2);
     for (const line of lines) this.line(line, "rgb(64 204 255 / .7)", 1.2);
     if (centre) this.cross(centre);
     if (centre && target) this.line([centre, target], "rgb(255 255 255 / .7)", 1.2, [5, 5]);
