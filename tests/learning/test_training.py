@@ -14,6 +14,7 @@ pytest.importorskip("torch")
 
 import torch
 
+from eyas.cli.train import _default_folder
 from eyas.core.config import updated, validated
 from eyas.core.errors import EyasError
 from eyas.evaluation.plan import Plan, batches, fly_batch
@@ -74,7 +75,7 @@ def test_a_run_that_is_interrupted_and_resumed_gives_the_same_bytes(whole, tmp_p
     lines = []
 
     def stop(line):
-        lines.append(line)
+        lines.extend([line] if "return" in line else [])  # of blocks
         if len(lines) == 2:
             raise KeyboardInterrupt
 
@@ -85,6 +86,38 @@ def test_a_run_that_is_interrupted_and_resumed_gives_the_same_bytes(whole, tmp_p
     assert files(tmp_path / "run") == whole
     train(SMALL, tmp_path / "run", resume=True, say=quiet)  # there is nothing left to do
     assert files(tmp_path / "run") == whole
+
+
+def test_it_stops_after_the_update_that_reaches_the_decisions_and_says_so(tmp_path):
+    config = updated(SMALL, {"train": {"stages": [{"decisions": 70}], "updates_per_block": 2}})
+    lines = []
+    train(config, tmp_path / "run", say=lines.append)
+    assert lines[0] == "stage 0: 70 decisions are rounded up to 3 updates of 32: 96"
+    curve = (tmp_path / "run" / "curve.csv").read_text().splitlines()
+    assert [row.split(",")[1] for row in curve[1:]] == ["64", "96"]
+    assert [line.split()[:4] for line in lines[2:]] == [
+        ["64", "of", "96", "decisions"],
+        ["96", "of", "96", "decisions"],
+    ]
+
+
+def test_how_far_it_is_is_told_after_the_first_update(tmp_path):
+    lines = []
+    train(SMALL, tmp_path / "run", say=lines.append)
+    assert lines[0].split()[:4] == ["32", "of", "192", "decisions"]
+    assert lines[0].endswith("min left")
+    assert "return" in lines[1]
+
+
+def test_the_default_folder_is_numbered(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    names = []
+    for _ in range(3):
+        folder = _default_folder(resume=False)
+        folder.mkdir(parents=True)
+        names.append(str(folder))
+    assert names == ["runs/train", "runs/train-2", "runs/train-3"]
+    assert str(_default_folder(resume=True)) == "runs/train-3"
 
 
 def test_a_run_that_is_killed_gives_the_same_bytes(whole, tmp_path):

@@ -20,7 +20,10 @@ __all__ = ["command"]
 
 
 def command(  # noqa: PLR0913  # one parameter for each option
-    out: Annotated[Path, typer.Option("--out", help="Folder to write to.")] = Path("runs/train"),
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", help="Folder to write to; by default runs/train, runs/train-2, ..."),
+    ] = None,
     config: ConfigFile = None,
     preset: Preset = None,
     map_name: MapName = None,
@@ -41,6 +44,16 @@ def command(  # noqa: PLR0913  # one parameter for each option
     settings = load_settings(chosen_file(config, preset), gathered(set_, map_name, weather, seed))
     from eyas.modes.train import run
 
-    policy = run(settings, out, resume=resume, quiet=quiet, ray=ray)
+    policy = run(
+        settings, out or _default_folder(resume=resume), resume=resume, quiet=quiet, ray=ray
+    )
     if not quiet:
         typer.echo(f"{policy}")
+
+
+def _default_folder(*, resume: bool) -> Path:
+    """Return the next numbered folder that is free, or the last that is not, to resume it."""
+    taken, number = None, 1
+    while (folder := Path(f"runs/train-{number}" if number > 1 else "runs/train")).exists():
+        taken, number = folder, number + 1
+    return taken if resume and taken is not None else folder

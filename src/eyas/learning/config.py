@@ -86,6 +86,15 @@ class TrainConfig(Config):
     """Parts into which the environments are split, with random numbers of their own. One is fastest
     in one process; the result does not depend on where the shards run."""
 
+    @property
+    def update_decisions(self) -> int:
+        """Decisions of all environments between two updates."""
+        return self.environments * self.rollout
+
+    def updates_of(self, stage: Stage) -> int:
+        """Return the updates of a stage: as many as have at least its decisions."""
+        return -(-stage.decisions // self.update_decisions)
+
     @model_validator(mode="after")
     def _check_stages(self) -> Self:
         if not self.evaluation.every and any(stage.until_tsr is not None for stage in self.stages):

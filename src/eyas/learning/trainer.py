@@ -1,5 +1,6 @@
 """A training run: stages, blocks of updates, checkpoints."""
 
+import math
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -27,6 +28,9 @@ from eyas.sensors.config import ColourLayout
 from eyas.settings.config import EyasConfig
 
 __all__ = ["train"]
+
+_SILENCE = 10.0
+"""Longest time without a line [s]."""
 
 Say = Callable[[str], None]
 
@@ -56,6 +60,13 @@ def train(
     """
     run = _Run(config, RunFolder(folder), say, make_shards)
     run.files.begin(config, resume=resume)
+    for number, stage in enumerate(config.train.stages):
+        updates, each = config.train.updates_of(stage), config.train.update_decisions
+        if updates * each != stage.decisions:
+            say(
+                f"stage {number}: {stage.decisions:,} decisions are rounded up to {updates:,} "
+                f"updates of {each:,}: {updates * each:,}"
+            )
     if resume:
         run.progress = run.files.load(run.network, run.optimiser)
     while run.progress.stage < len(config.train.stages):
@@ -83,7 +94,10 @@ class _Run:
         self.optimiser = torch.optim.Adam(self.network.parameters(), rate, eps=1e-5)
         self.progress = Progress()
         self._board = Board(files.path / "tensorboard")
-        self._total = sum(stage.decisions for stage in config.train.stages)
+        updates = map(config.train.updates_of, config.train.stages)
+        self._total = sum(updates) * config.train.update_decisions
+        self._told = -math.inf
+        """When it was last told how it goes [s]."""
 
     def stage(self) -> None:
         """Do the current stage, or what is left of it."""
@@ -106,14 +120,17 @@ class _Run:
         draws = stream(self.config.seed, "learning", progress.block)
         shards.begin(draws.spawn(config.shards))
         generator = torch.Generator().manual_seed(int(draws.integers(2**62)))
-        for _ in range(config.updates_per_block):
+        left = config.updates_of(stage) - progress.stage_decisions // config.update_decisions
+        updates = min(left, config.updates_per_block)
+        for number in range(1, updates + 1):
             self._set_rate()
             data = shards.roll()
             losses = update(self.network, self.optimiser, data, config, generator, self._crew)
             progress.decisions += data.rewards.numel()
             progress.stage_decisions += data.rewards.numel()
+            self._tell_meanwhile(number * config.update_decisions / (time.monotonic() - start))
         seconds = time.monotonic() - start
-        rate = config.updates_per_block * data.rewards.numel() / seconds
+        rate = updates * config.update_decisions / seconds
         progress.block += 1
         marks = self._examined(stage)
         progress.seconds += time.monotonic() - start
@@ -153,9 +170,20 @@ class _Run:
             "divergence": losses.divergence,
         }
 
+    def _tell_meanwhile(self, rate: float) -> None:
+        """Tell how far it is after the first update, and whenever nothing was told for a while."""
+        now, done = time.monotonic(), self.progress.decisions
+        if now >= self._told + _SILENCE and done < self._total:
+            self._told = now
+            left = (self._total - done) / rate
+            self._say(
+                f"{done:>9,} of {self._total:,} decisions  {rate:,.0f} decisions/s  "
+                f"{left / 60:.1f} min left"
+            )
+
     def _tell(self, row: dict[str, float], rate: float) -> None:
         """Tell how it goes."""
-        progress = self.progress
+        progress, self._told = self.progress, time.monotonic()
         left = max(self._total - progress.decisions, 0) * progress.seconds / progress.decisions
         physics = rate * steps_per_action(self.config)
         tested = "" if np.isnan(row["tsr"]) else f"CR {row['cr']:.1f}  TSR {row['tsr']:.3f}  "
