@@ -6,8 +6,10 @@ import sys
 import time
 
 import pytest
+import typer
 
 from eyas import __version__
+from eyas.cli.app import app
 from eyas.cli.main import main
 from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.adapter import save_legacy, to_legacy
@@ -190,3 +192,37 @@ def test_a_group_without_a_command_prints_its_help_and_no_empty_error(monkeypatc
     assert code == 2
     assert "Usage: " in out + "".join(lines)
     assert not any(line.startswith("eyas: error") for line in lines)
+
+
+def test_the_package_is_the_command():
+    done = subprocess.run(
+        [sys.executable, "-m", "eyas", "--version"], capture_output=True, text=True, check=True
+    )
+    assert done.stdout == f"eyas {__version__}\n"
+
+
+def commands(group, *names):
+    """Yield the words of each command, and the command."""
+    for name, command in getattr(group, "commands", {}).items():
+        yield from commands(command, *names, name)
+    yield names, group
+
+
+def test_no_help_is_taken_for_markup_and_each_option_means_one_thing():
+    seen = {}
+    for words, command in commands(typer.main.get_command(app)):
+        texts = [command.help or ""]
+        for option in command.params:
+            texts.append(getattr(option, "help", "") or "")
+            if "--json" in option.opts:
+                seen[" ".join(words)] = option.is_flag
+        assert not any("[" in text for text in texts), words
+    assert seen == {"compare": True}
+
+
+def test_everything_that_is_listed_can_be_a_target(monkeypatch, capsys):
+    code, out, _ = run(monkeypatch, capsys, "targets", "list")
+    assert code == 0
+    kinds = {line.split()[1] for line in out.splitlines()[1:] if len(line.split()) > 6}
+    assert {"Pedestrian", "GhostDog"} < kinds
+    assert "Quadrotor" not in out

@@ -143,7 +143,7 @@ def test_what_is_wrong_with_a_shape_is_told():
     inside_out = Triangles(good.points, good.corners[:, ::-1], good.colours)
     assert told(inside_out) == ["it is inside out: its triangles run clockwise from outside"]
     assert (
-        "in millimetres? then use custom.scale=0.001"
+        "in millimetres? then use custom.scale=0.001 (--scale 0.001)"
         in told(Triangles(good.points * 900.0, good.corners, good.colours))[0]
     )
     broken = good.points.copy()

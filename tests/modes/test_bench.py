@@ -13,7 +13,7 @@ UNITS = {"s", "/s", "steps/s", "ms", "MiB"}
 def test_bench_prints_and_writes_what_it_has_measured(tmp_path):
     path = tmp_path / "bench.json"
     command = [sys.executable, "-m", "eyas.cli.main", "bench", "--quick", "--stages"]
-    done = subprocess.run([*command, "--json", str(path)], capture_output=True, text=True)
+    done = subprocess.run([*command, "--out", str(path)], capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (0, "")
     document = json.loads(path.read_text())
     names = [result["name"] for result in document["results"]]

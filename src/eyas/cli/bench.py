@@ -9,8 +9,8 @@ __all__ = ["command"]
 
 
 def command(
-    json: Annotated[
-        Path | None, typer.Option("--json", help="Also write the figures to this file.")
+    out: Annotated[
+        Path | None, typer.Option("--out", help="JSON file to write the figures to, as well.")
     ] = None,
     quick: Annotated[
         bool, typer.Option("--quick", help="Measure for a tenth of the time.")
@@ -25,4 +25,4 @@ def command(
     """Measure the speed of Eyas on this machine, as medians."""
     from eyas.modes.bench import run as bench
 
-    bench.run(json, quick=quick, cold=cold, stages=stages)
+    bench.run(out, quick=quick, cold=cold, stages=stages)

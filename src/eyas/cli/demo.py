@@ -47,7 +47,10 @@ def command(  # noqa: PLR0913  # one parameter for each option
         bool, typer.Option("--headless", help="Print the reward of a hovering drone instead.")
     ] = False,
     seconds: Annotated[
-        float | None, typer.Option("--seconds", min=0.1, help="Stop after this time.")
+        float | None,
+        typer.Option(
+            "--seconds", min=0.1, help="Stop after this time, with --headless or --window."
+        ),
     ] = None,
 ) -> None:
     """Fly a drone by keyboard through any map, in the browser, and watch the reward."""

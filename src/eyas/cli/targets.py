@@ -15,7 +15,7 @@ _WIDTH = 190
 
 _Scale = Annotated[float, typer.Option("--scale", help="Metres in the mesh file's unit.")]
 _Up = Annotated[str | None, typer.Option("--up", help="The mesh file's axis that is up: y or z.")]
-_Turn = Annotated[float, typer.Option("--turn", help="Turn the mesh about its height [rad].")]
+_Turn = Annotated[float, typer.Option("--turn", help="Turn the mesh about its height, in radians.")]
 _Most = Annotated[
     int | None, typer.Option("--most-triangles", help="Simplify larger meshes to so many.")
 ]

@@ -198,8 +198,8 @@ def _unit(longest: float) -> str:
     """Return a guess at the unit of a length: that of which it would be the most usual one."""
     scale = min(_UNITS, key=lambda scale: abs(np.log(longest * scale / _USUAL)))
     if not _SMALL <= longest * scale <= _LARGE:
-        return f"allowed: {_SMALL:g} to {LONGEST:g} m; choose custom.scale"
-    return f"in {_UNITS[scale]}? then use custom.scale={scale:g}"
+        return f"allowed: {_SMALL:g} to {LONGEST:g} m; choose custom.scale (--scale)"
+    return f"in {_UNITS[scale]}? then use custom.scale={scale:g} (--scale {scale:g})"
 
 
 def _surface(shape: Triangles) -> Iterator[Finding]:

@@ -11,6 +11,7 @@ from eyas.state.mesh import Mesh
 from eyas.state.motion import ActorState
 from eyas.targets.catalogue import KINDS, MODELS, kind_index, models_of
 from eyas.targets.kind import Kind, Looks
+from eyas.targets.quadrotor import QUADROTOR
 from eyas.targets.rig import Rigs
 from eyas.targets.words import looks_in_words, motion_in_words
 
@@ -33,9 +34,11 @@ class Entry:
 
 
 def entries() -> list[Entry]:
-    """Return a line for each model, in the order of `MODELS`."""
+    """Return a line for each model that can be a target, in the order of `MODELS`."""
     lines = []
     for kind in KINDS:
+        if kind is QUADROTOR:  # how trackers see each other; none can be followed
+            continue
         levels = kind.rig().part_levels()
         for model in models_of(kind_index(kind.name)):
             parts = [levels[part] for part in _parts(kind, model)]
