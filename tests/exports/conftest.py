@@ -75,4 +75,4 @@ def episode(tmp_path: Path) -> Episode:
 def run(tmp_path: Path) -> Run:
     """A recording of two trackers with a lidar, in an empty folder."""
     config = SimConfig(lidar=LidarConfig(enabled=True))
-    return Run(tmp_path, ("DRONE0", "DRONE1"), config, target_direction=False)
+    return Run(tmp_path, ("DRONE0", "DRONE1"), config, target_direction=False, jpeg_quality=95)

@@ -1,11 +1,14 @@
 """Labels of trucks whose trailers swing, on the shipped map and traffic."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 from eyas.exports.capture import frame_of
 from eyas.exports.frame import Action
 from eyas.exports.label import label_of
+from eyas.exports.writer import Episode
 from eyas.exports.others import others_of
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
@@ -17,6 +20,7 @@ from eyas.traffic.config import TrafficConfig
 from eyas.traffic.library import CANONICAL_MIX
 
 SLACK = 0.1  # [m]
+EPISODE = Episode(Path(), "DRONE0", 0, 320, 240, np.eye(3), 25.0)
 
 
 @pytest.fixture(scope="module")
@@ -52,7 +56,7 @@ def labelled(simulation, tick, actor):
         )
         for n in (0, 1)
     ]
-    target, seen = map(label_of, frames)
+    target, seen = (label_of(frame, EPISODE) for frame in frames)
     return target, next(other for other in seen.others if other.id == target.target_id)
 
 

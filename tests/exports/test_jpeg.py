@@ -1,6 +1,7 @@
 import os
 import subprocess
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -18,7 +19,7 @@ def picture() -> np.ndarray:
 
 
 def test_a_frame_reads_back_nearly_as_it_was(tmp_path):
-    write_picture(tmp_path / "a.jpeg", picture())
+    write_picture(tmp_path / "a.jpeg", picture(), 100)
     with Image.open(tmp_path / "a.jpeg") as image:
         assert image.format == "JPEG"
         shown = np.asarray(image).astype(int)
@@ -27,8 +28,8 @@ def test_a_frame_reads_back_nearly_as_it_was(tmp_path):
 
 
 def test_the_same_picture_gives_the_same_bytes(tmp_path):
-    write_picture(tmp_path / "a.jpeg", picture())
-    write_picture(tmp_path / "b.jpeg", picture())
+    write_picture(tmp_path / "a.jpeg", picture(), 100)
+    write_picture(tmp_path / "b.jpeg", picture(), 100)
     assert (tmp_path / "a.jpeg").read_bytes() == (tmp_path / "b.jpeg").read_bytes()
 
 
@@ -44,6 +45,16 @@ def test_pictures_are_named_with_six_digits_and_counted(run, episode, frame):
     assert writer.read(episode.folder) == Summary(3)
     (episode.folder / "000001.jpeg").unlink()
     assert writer.read(episode.folder) is None
+
+
+def test_pictures_have_the_quality_of_the_run(run, episode, frame, tmp_path):
+    noise = np.random.default_rng(0).integers(0, 255, (48, 64, 3), dtype=np.uint8)
+    sizes = []
+    for quality in (50, 95, 100):
+        part = JpegWriter(replace(run, jpeg_quality=quality)).begin(episode)
+        part.add(replace(frame(0), rgb=noise))
+        sizes.append((episode.folder / "000000.jpeg").stat().st_size)
+    assert sizes == sorted(set(sizes))
 
 
 LIMITED = """
@@ -66,7 +77,7 @@ def movie():
     except OutputError:
         writer.abandon()
         raise
-for write in (lambda: write_picture(folder / "a.jpeg", noise), movie):
+for write in (lambda: write_picture(folder / "a.jpeg", noise, 100), movie):
     try:
         write()
     except OutputError as error:
@@ -89,5 +100,5 @@ def test_a_file_that_does_not_fit_is_one_line_and_leaves_nothing(tmp_path):
 def test_a_folder_in_the_way_is_one_line(tmp_path):
     os.mkdir(tmp_path / "a.jpeg")
     with pytest.raises(OutputError, match=r"a\.jpeg: cannot write"):
-        write_picture(tmp_path / "a.jpeg", picture())
+        write_picture(tmp_path / "a.jpeg", picture(), 100)
     assert [path.name for path in tmp_path.iterdir()] == ["a.jpeg"]

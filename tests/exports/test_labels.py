@@ -29,9 +29,9 @@ def written(run, episode, frame):
     return write
 
 
-def test_labels_read_back_equal(written, frame):
+def test_labels_read_back_equal(written, frame, episode):
     frames = [frame(0), frame(1, reward=math.nan, reason=DoneReason.STEP_LIMIT)]
-    assert read_labels(written(*frames)) == [label_of(each) for each in frames]
+    assert read_labels(written(*frames)) == [label_of(each, episode) for each in frames]
 
 
 def test_each_line_is_a_record_that_any_reader_understands(written, frame):
@@ -41,9 +41,12 @@ def test_each_line_is_a_record_that_any_reader_understands(written, frame):
     assert records[2]["target_box"] == [10, 11, 20, 17]
 
 
-def test_a_label_says_what_the_frame_holds(frame):
+def test_a_label_says_what_the_frame_holds(frame, episode):
     seen = frame(7, action=Action(3, np.zeros(4)), reason=DoneReason.HEIGHT)
-    label = label_of(replace(seen, target_words="a red SUV"))
+    label = label_of(replace(seen, target_words="a red SUV"), episode)
+    assert label.target_class_id == int(seen.target.object_class)
+    assert (label.width, label.height) == (64, 48)
+    np.testing.assert_allclose(label.intrinsics, episode.intrinsics, atol=1e-6)
     assert label.target_words == "a red SUV"
     assert (label.frame, label.step, label.time) == (7, 171, 1.28)
     assert label.episode_time == 0.342
@@ -80,7 +83,7 @@ def test_only_articulated_vehicles_have_sections(written, frame):
 
 def test_a_target_outside_the_picture_is_not_occluded(frame):
     target = replace(frame(0).target, box=np.zeros(4, np.int32), seen_pixels=0, covered_pixels=0)
-    label = label_of(frame(0, target=target))
+    label = label_of(frame(0, target=target), episode)
     assert (label.visible_fraction, label.occluded, label.in_view) == (0.0, False, False)
 
 

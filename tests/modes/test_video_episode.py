@@ -17,7 +17,9 @@ from eyas.state.draw import Picture
 from eyas.state.snapshot import Snapshot
 
 LIDAR = LidarConfig(enabled=True)
-RUN = Run(Path("unused"), ("DRONE0",), SimConfig(lidar=LIDAR), target_direction=False)
+RUN = Run(
+    Path("unused"), ("DRONE0",), SimConfig(lidar=LIDAR), target_direction=False, jpeg_quality=95
+)
 
 
 def writers_of(*names: str) -> list[Writer]:

@@ -103,6 +103,11 @@ def test_the_originals_file_means_its_traffic(values):
 
 
 @pytest.mark.parametrize("values", [{}, *map(read, FILES)])
+def test_the_originals_file_means_its_quality_of_pictures():
+    assert EyasConfig().video.jpeg_quality == 95
+    assert from_legacy({}).video.jpeg_quality == 100
+
+
 def test_the_originals_file_means_a_start_at_rest_and_no_passers_by(values):
     assert (EyasConfig().start.velocity, EyasConfig().extras) == ("target", None)
     config = from_legacy(values)

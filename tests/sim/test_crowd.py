@@ -1,6 +1,7 @@
 """Targets other than vehicles, and extras, in simulations."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from eyas.core.errors import ConfigError, SpawnError
 from eyas.exports.capture import frame_of
 from eyas.exports.frame import Action
 from eyas.exports.label import label_of
+from eyas.exports.writer import Episode
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
 from eyas.sim.crowd import extras_of
@@ -61,7 +63,7 @@ def test_a_target_on_foot_is_in_the_picture_and_in_the_labels(walk):
         frame = frame_of(
             walk.snapshot, walk.snapshot.episodes, tracker, picture, tracker, 0, Action(-1, None)
         )
-        label = label_of(frame)
+        label = label_of(frame, Episode(Path(), "DRONE0", 0, 160, 120, np.eye(3), 25.0))
         assert (label.target_type, frame.target.object_class) == (
             frame.target.type,
             ObjectClass.PERSON,

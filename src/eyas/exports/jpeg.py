@@ -11,7 +11,7 @@ from eyas.core.jpeg import jpeg_bytes
 from eyas.exports.files import Files, pattern_of
 from eyas.exports.frame import Frame
 from eyas.exports.summary import Summary
-from eyas.exports.writer import Episode, EpisodeWriter, Writer
+from eyas.exports.writer import Episode, EpisodeWriter, Run, Writer
 
 __all__ = ["JpegWriter", "write_picture"]
 
@@ -25,9 +25,12 @@ class JpegWriter(Writer):
     wants = frozenset({"rgb"})
     files = Files(frame=(PICTURE,))
 
+    def __init__(self, run: Run) -> None:
+        self._quality = run.jpeg_quality
+
     def begin(self, episode: Episode) -> "JpegEpisode":
         """Return the writer of an episode's pictures."""
-        return JpegEpisode(episode.folder)
+        return JpegEpisode(episode.folder, self._quality)
 
     def read(self, folder: Path) -> Summary | None:
         """Return the number of pictures; None if one is missing."""
@@ -42,25 +45,27 @@ class JpegEpisode(EpisodeWriter):
 
     Args:
         folder: The episode's folder.
+        quality: Of its pictures, 1 to 100.
     """
 
-    def __init__(self, folder: Path) -> None:
-        self._folder = folder
+    def __init__(self, folder: Path, quality: int) -> None:
+        self._folder, self._quality = folder, quality
 
     def add(self, frame: Frame) -> None:
         """Write the next picture."""
         assert frame.rgb is not None
-        write_picture(self._folder / PICTURE.format(frame.number), frame.rgb)
+        write_picture(self._folder / PICTURE.format(frame.number), frame.rgb, self._quality)
 
 
-def write_picture(path: Path, rgb: NDArray[np.uint8]) -> None:
+def write_picture(path: Path, rgb: NDArray[np.uint8], quality: int) -> None:
     """Write one picture, completely or not at all; the same picture gives the same bytes.
 
     Args:
         path: The file.
         rgb: The picture, shape (H, W, 3).
+        quality: 1 to 100.
 
     Raises:
         OutputError: The file cannot be written.
     """
-    write_atomic(path, jpeg_bytes(rgb))
+    write_atomic(path, jpeg_bytes(rgb, quality))

@@ -6,6 +6,7 @@ from eyas.core.frames import rotate_back
 from eyas.core.jit import interpreted
 from eyas.exports.frame import Frame, Subject
 from eyas.exports.rounding import rounded, rounded_list
+from eyas.exports.writer import Episode
 from eyas.task.done import DoneReason
 
 __all__ = ["FrameLabel", "OtherLabel", "SectionLabel", "label_of"]
@@ -126,10 +127,20 @@ class FrameLabel:
     shares them."""
     target_sections: list[SectionLabel] = field(default_factory=list)
     """A truck and its trailer; the file has the key for articulated vehicles only."""
+    target_class_id: int = -1
+    """`eyas.state.scene.ObjectClass` of the target, as in the class pictures. This and the next are
+    missing in older labels."""
+    width: int = 0
+    """Width of the picture [pixels]."""
+    height: int = 0
+    """Height of the picture [pixels]."""
+    intrinsics: list[list[float | None]] = field(default_factory=list)
+    """Camera matrix, three rows: x right, y down, z forward, the centre of pixel (0, 0) at
+    (0.5, 0.5) [pixels]."""
 
 
-def label_of(frame: Frame) -> FrameLabel:
-    """Return the label of a frame."""
+def label_of(frame: Frame, episode: Episode) -> FrameLabel:
+    """Return the label of a frame of an episode."""
     tracker, camera, target = frame.tracker, frame.camera, frame.target
     offset = target.centre - tracker.position
     return FrameLabel(
@@ -166,6 +177,10 @@ def label_of(frame: Frame) -> FrameLabel:
         target_corners=[rounded_list(corner) for corner in target.corners],
         target_words=frame.target_words,
         target_sections=_sections(frame.target),
+        target_class_id=int(target.object_class),
+        width=episode.width,
+        height=episode.height,
+        intrinsics=[rounded_list(row) for row in episode.intrinsics],
     )
 
 

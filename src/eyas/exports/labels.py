@@ -27,7 +27,7 @@ class LabelWriter(Writer):
 
     def begin(self, episode: Episode) -> Gather[FrameLabel]:
         """Return the writer of an episode's labels."""
-        return Gather(episode.folder / LABELS, label_of, _encoded)
+        return Gather(episode.folder / LABELS, lambda frame: label_of(frame, episode), _encoded)
 
     def read(self, folder: Path) -> Summary | None:
         """Return the summary of the labels; None if they are missing or cut off."""

@@ -41,6 +41,8 @@ class Run:
     """The settings of the simulation: map, weather, camera, seed, ..."""
     target_direction: bool
     """Whether `mark.json` holds the target's direction instead of reward and action."""
+    jpeg_quality: int
+    """Of pictures in the JPEG format, 1 to 100."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -57,7 +57,8 @@ class VideoFolder:
         self._camera = config.camera
         kind = config.tracker.original_name
         self.trackers = tuple(f"{kind}{tracker}" for tracker in range(config.video.channels))
-        run = Run(path, self.trackers, config, config.video.target_direction)
+        video = config.video
+        run = Run(path, self.trackers, config, video.target_direction, video.jpeg_quality)
         self.writers = tuple(writer(run) for writer in chosen_writers(config.video.writers))
 
     def episode(self, tracker: int, number: int, field_of_view: float) -> Episode:
