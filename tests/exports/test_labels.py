@@ -81,7 +81,7 @@ def test_only_articulated_vehicles_have_sections(written, frame):
     assert yaws[1] - yaws[0] == pytest.approx(0.5, abs=1e-6)
 
 
-def test_a_target_outside_the_picture_is_not_occluded(frame):
+def test_a_target_outside_the_picture_is_not_occluded(frame, episode):
     target = replace(frame(0).target, box=np.zeros(4, np.int32), seen_pixels=0, covered_pixels=0)
     label = label_of(frame(0, target=target), episode)
     assert (label.visible_fraction, label.occluded, label.in_view) == (0.0, False, False)

@@ -40,7 +40,14 @@ CONFIG = EyasConfig(
     seed=3,
     camera=CameraConfig(width=64, height=48),
     done=DoneConfig(total_steps=100, grace_steps=20),
-    video=VideoConfig(channels=2, fps=250.0, start_time=0.7, total_time=0.7, warm_up_steps=10),
+    video=VideoConfig(
+        channels=2,
+        fps=250.0,
+        start_time=0.7,
+        total_time=0.7,
+        warm_up_steps=10,
+        jpeg_quality=100,  # so that pictures are larger than the settings: they meet a full disk
+    ),
 )
 RUN = """
 import sys

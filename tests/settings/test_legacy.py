@@ -103,11 +103,12 @@ def test_the_originals_file_means_its_traffic(values):
 
 
 @pytest.mark.parametrize("values", [{}, *map(read, FILES)])
-def test_the_originals_file_means_its_quality_of_pictures():
+def test_the_originals_file_means_its_quality_of_pictures(values):
     assert EyasConfig().video.jpeg_quality == 95
-    assert from_legacy({}).video.jpeg_quality == 100
+    assert from_legacy(values).video.jpeg_quality == 100
 
 
+@pytest.mark.parametrize("values", [{}, *map(read, FILES)])
 def test_the_originals_file_means_a_start_at_rest_and_no_passers_by(values):
     assert (EyasConfig().start.velocity, EyasConfig().extras) == ("target", None)
     config = from_legacy(values)

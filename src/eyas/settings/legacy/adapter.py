@@ -11,7 +11,6 @@ from typing import Any
 from eyas.core.config import Problem, updated, validated
 from eyas.core.errors import ConfigError
 from eyas.core.files import write_atomic
-from eyas.core.jpeg import QUALITY
 from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.entries import Entry, Optional, Values
 from eyas.settings.legacy.keys import ENTRIES, GROUP_KEYS, KEEP_ALIVE
@@ -34,7 +33,7 @@ _LOG = logging.getLogger("eyas")
 
 LIKE_THE_ORIGINAL = updated(
     EyasConfig(start=StartConfig(velocity=StartVelocity.REST), extras=()),
-    {"video": {"jpeg_quality": QUALITY}},
+    {"video": {"jpeg_quality": 100}},
 )
 """Our defaults, but for what its file cannot express and the original does in another way."""
 
