@@ -67,3 +67,15 @@ def pytest_runtest_makereport(item, call):
 def around():
     """Build trackers among a few solids, see `solid_worlds.build`."""
     return runpy.run_path(str(Path(__file__).parent / "solid_worlds.py"))["build"]
+
+
+@pytest.fixture(scope="session")
+def staying():
+    """Which actors of a traffic source stay from a time to another [s]: a function of the three."""
+
+    def actors(source, start, end):
+        stays = source.stays()
+        there = (stays.enters - 1e-9 <= start) & (end - 1e-9 <= stays.leaves)
+        return sorted(set(stays.actor[there].tolist()))
+
+    return actors

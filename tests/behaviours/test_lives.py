@@ -10,7 +10,7 @@ from eyas.targets.config import ObjectsConfig
 from eyas.traffic.replay import Replay
 
 
-def test_objects_are_recycled_but_stay_for_an_episode():
+def test_objects_are_recycled_but_stay_for_an_episode(staying):
     config, clock = ObjectsConfig(), Clock(12601, 10.0)
     lives = recycled(config, *clock, episode=3.0)
     assert set(lives.slot.tolist()) == set(range(10))
@@ -26,7 +26,7 @@ def test_objects_are_recycled_but_stay_for_an_episode():
     table = np.zeros(motion.shape, SAMPLE)
     table["present"] = motion
     replay = Replay(Motion(table, np.zeros(10, np.int32), 10.0, 0.0))
-    lasts = [replay.available(t, t + 3.0).sum() for t in np.linspace(2.0, 1200.0, 400)]
+    lasts = [len(staying(replay, t, t + 3.0)) for t in np.linspace(2.0, 1200.0, 400)]
     assert min(lasts) >= 5
 
 
@@ -34,7 +34,7 @@ def test_objects_are_recycled_but_stay_for_an_episode():
     ("count", "group", "followers", "episode"),
     [(1, 4, 1, 3.0), (4, 4, 4, 3.0), (6, 4, 4, 3.0), (9, 1, 8, 20.0), (100, 50, 40, 30.0)],
 )
-def test_nobody_is_moved_whom_a_tracker_must_follow(count, group, followers, episode):
+def test_nobody_is_moved_whom_a_tracker_must_follow(count, group, followers, episode, staying):
     """In a world whose time goes on, each of the followers finds somebody who stays."""
     config, clock = ObjectsConfig(max_count=count, group_size=group, interval=5.0), Clock(12601, 10)
     lives = recycled(config, *clock, episode, followers)
@@ -43,7 +43,7 @@ def test_nobody_is_moved_whom_a_tracker_must_follow(count, group, followers, epi
         table["present"][a : b + 1, slot] = 1
     replay = Replay(Motion(table, np.zeros(count, np.int32), 10.0, 0.0))
     begins = np.arange(0.0, clock.samples / 10.0 - 1.0 - episode, 0.25)
-    stay = [replay.available(t, t + episode).sum() for t in begins.tolist()]
+    stay = [len(staying(replay, t, t + episode)) for t in begins.tolist()]
     assert min(stay) >= followers
     assert (len(lives.slot) > count) == (count > followers)  # moved, where one can be spared
 

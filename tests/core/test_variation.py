@@ -4,7 +4,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from eyas.core.errors import ConfigError
-from eyas.core.variation import Choice, Mirrored, Uniform, bounds, sample
+from eyas.core.jit import interpreted
+from eyas.core.pcg64 import STATE, begin_stream
+from eyas.core.rng import EpisodeKey, room_key
+from eyas.core.variation import Choice, Mirrored, Uniform, bounds, drawn, rule_of, sample
 
 numbers = st.floats(-1e6, 1e6)
 pairs = st.tuples(numbers, numbers)
@@ -48,3 +51,20 @@ def test_choice_takes_each_value():
 def test_nothing_to_choose_from_is_refused():
     with pytest.raises(ConfigError):
         Choice(choice=())
+
+
+@pytest.mark.parametrize(
+    "variation",
+    [
+        2.5,
+        Uniform(uniform=(22.0, 13.0)),
+        Mirrored(mirrored=(-4.5, 2.5)),
+        Choice(choice=(1.0, 2.0, 5.0)),
+    ],
+)
+def test_kernels_draw_the_same(variation):
+    key = EpisodeKey(7, 3, 2)
+    rng, state = key.stream("start"), [0] * STATE
+    interpreted(begin_stream)(state, 7, room_key("start"), 3, 2)
+    for _ in range(50):
+        assert interpreted(drawn)(rule_of(variation), state) == sample(variation, rng)

@@ -192,7 +192,7 @@ def test_fewer_targets_than_trackers_is_told():
         simulation.reset()
 
 
-def test_all_are_followed_for_as_long_as_the_traffic_lasts():
+def test_all_are_followed_for_as_long_as_the_traffic_lasts(staying):
     """As many targets as trackers, of which the original moves all at once."""
     done = {"total_steps": 6000, "no_reward_steps": 10**6}
     objects = {**FEW, "max_count": 3}
@@ -204,7 +204,7 @@ def test_all_are_followed_for_as_long_as_the_traffic_lasts():
         actors = simulation.snapshot.targets.actor
         assert sorted(actors) == [0, 1, 2]
         time = simulation.snapshot.episodes.tick[0] / 500.0
-        assert simulation.traffic.available(time - 12.0, time).all()
+        assert staying(simulation.traffic, time - 12.0, time) == [0, 1, 2]
 
 
 def test_no_target_for_a_whole_episode_is_told():

@@ -4,13 +4,15 @@ import numpy as np
 import pytest
 
 from eyas.core.clock import PHYSICS_STEP
-from eyas.core.errors import SpawnError
+from eyas.core.errors import ConfigError, SpawnError
+from eyas.core.rng import stream
+from eyas.core.variation import Mirrored, Uniform
 from eyas.sim.build import build_simulation
 from eyas.sim.simulation import Simulation
 from eyas.sim.worlds import each_alone, together
 from eyas.state.motion import ActorState
 from eyas.targets.catalogue import MODELS
-from eyas.task.config import DoneConfig, RewardConfig, RewardMode, RewardType
+from eyas.task.config import DoneConfig, RewardConfig, RewardMode, RewardType, StartConfig
 from eyas.task.done import DoneReason
 from eyas.task.rules import BuiltinReward, make_rules
 from eyas.trackers.drone import DRONE
@@ -96,7 +98,9 @@ def test_where_nobody_is_there_is_no_start_and_one_line_says_so(config, assets_w
     assert "\n" not in str(caught.value)
 
 
-def test_where_nobody_stays_for_a_whole_episode_a_shorter_stay_is_enough(config, assets_where):
+def test_where_nobody_stays_for_a_whole_episode_a_shorter_stay_is_enough(
+    config, assets_where, staying
+):
     done = config.done.model_copy(update={"total_steps": 5000})
     long = config.model_copy(update={"done": done})
     comings = assets_where((3.0, 4.0), (6.0, 7.0), (9.0, 10.0))
@@ -104,7 +108,8 @@ def test_where_nobody_stays_for_a_whole_episode_a_shorter_stay_is_enough(config,
     simulation.reset()
     assert (simulation.snapshot.targets.actor >= 0).all()
     start = simulation.snapshot.episodes.tick * PHYSICS_STEP
-    assert all(comings.traffic.available(time, time + 1.0).all() for time in start)
+    everybody = list(range(comings.traffic.actors))
+    assert all(staying(comings.traffic, time, time + 1.0) == everybody for time in start)
     reason = DoneReason.NONE
     while reason == DoneReason.NONE:
         reason = simulation.carry(500).reason[0]
@@ -177,3 +182,66 @@ def test_an_actor_that_is_not_there_cannot_be_followed(config, actor):
     simulation = started(config.model_copy(update={"extras": ()}))
     with pytest.raises(SpawnError, match=f"^target: there is no actor {actor}; allowed: 0 to 39$"):
         simulation.follow(0, actor)
+
+
+def test_starts_are_drawn_from_a_stream_in_the_originals_order(config, assets):
+    start = StartConfig(
+        pitch=Uniform(uniform=(0.6, 1.38)),
+        height=Uniform(uniform=(13.0, 22.0)),
+        direction=Uniform(uniform=(-3.0, 3.0)),
+        horizontal_bias=Uniform(uniform=(-4.0, 4.0)),
+        vertical_bias=Mirrored(mirrored=(2.5, 4.5)),
+    )
+    varied = config.model_copy(update={"start": start, "seed": 11})
+    simulation = Simulation(varied, assets, DRONE, each_alone(2))
+    simulation.reset()
+    simulation.reset()
+    trackers, _, targets, episodes, _ = simulation.snapshot
+    rng = stream(11, "episode", 1, 1)
+    first, last = varied.start.warm_up_steps, int(assets.traffic.duration / PHYSICS_STEP)
+    assert episodes.tick[1] == rng.integers(first, last - varied.done.total_steps + 1)
+    assert targets.actor[1] == rng.integers(assets.traffic.actors)  # all stay
+    pitch, left = rng.uniform(0.6, 1.38), rng.uniform(-4.0, 4.0)
+    sign = 1.0 if rng.random() < 0.5 else -1.0
+    bias, height = sign * rng.uniform(2.5, 4.5), rng.uniform(13.0, 22.0)
+    ahead = targets.ahead[1] + bias - np.tan(np.pi / 2 - pitch) * height
+    offset = [ahead, left, height, rng.uniform(-3.0, 3.0)]
+    np.testing.assert_allclose(episodes.start_offset[1], offset, rtol=1e-12)
+    assert trackers.commanded_gimbal[1, 0] == pytest.approx(pitch)
+
+
+def test_each_free_target_is_as_likely(config, assets_where):
+    simulation = Simulation(config, assets_where((0.0, 13.0)), DRONE, together(2))
+    simulation.traffic.stays().enters[:] = 0.0  # all are there, and some stay
+    simulation.traffic.stays().leaves[4:] = 0.1
+    simulation.traffic.stays().leaves[:4] = 13.0
+    counts = np.zeros(40, int)
+    for seed in range(1500):
+        simulation.reseed(seed)
+        simulation.rewind()
+        simulation.reset()
+        actors = simulation.snapshot.targets.actor
+        assert actors[0] != actors[1]
+        counts[actors] += 1
+    assert counts[4:].sum() == 0
+    assert counts[:4] == pytest.approx(750, abs=100)
+
+
+def test_trackers_without_enough_targets_are_one_line_that_counts_them(config, assets_where):
+    simulation = Simulation(config, assets_where(), DRONE, together(3))
+    simulation.traffic.stays().leaves[2:] = 0.1
+    with pytest.raises(SpawnError) as caught:
+        simulation.reset()
+    assert str(caught.value).startswith("start: no target is free: 2 in the world, 2 followed;")
+    assert str(caught.value).endswith("as trackers, or same_target")
+    assert "\n" not in str(caught.value)
+
+
+def test_a_shared_world_whose_traffic_has_ended_is_told(config, assets):
+    simulation = Simulation(config, assets, DRONE, together(1))
+    simulation.reset()
+    simulation.snapshot.episodes.tick[:] = int(assets.traffic.duration / PHYSICS_STEP) + 500
+    with pytest.raises(ConfigError, match=r"the recording lasts .* s was asked for"):
+        simulation.reset()
+    simulation.rewind()
+    simulation.reset()

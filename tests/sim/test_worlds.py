@@ -5,12 +5,12 @@ import tracemalloc
 import numpy as np
 import pytest
 
-from eyas.core.rng import EpisodeKey
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
 from eyas.sim.worlds import ALONE, Worlds, each_alone, together
 from eyas.state.draw import Picture
 from eyas.state.snapshot import CameraState
+from eyas.targets.looks import LookSampler
 from eyas.world.config import LightConfig
 
 GROUPS = [0, 0, 1, ALONE]
@@ -145,8 +145,10 @@ def test_drawing_other_subsets_takes_no_more_memory_than_drawing_all(config, ass
     count = 8
     tick = np.full(count, 500, np.int64)
     worlds = Worlds(config, assets, each_alone(count))
-    for tracker in range(count):
-        worlds.sample_looks(tracker, EpisodeKey(0, tracker, 0))
+    sampler = LookSampler(assets.traffic.motion.kind)
+    for world in range(count):
+        looks = sampler.sample(np.random.default_rng(world))
+        worlds.looks.model[world], worlds.looks.colour[world] = looks
     cameras = CameraState.create(count)  # with the whole town in front of them
     cameras.position[:, 0], cameras.field_of_view[:] = -2000.0, 2.5
     _, movers = worlds.draw_list(np.arange(count), tick, cameras, 1.0)

@@ -1,9 +1,11 @@
 import numpy as np
 import pytest
 
-from eyas.core.rng import stream
+from eyas.core.jit import interpreted
+from eyas.core.pcg64 import STATE, begin_stream
+from eyas.core.rng import room_key, stream
 from eyas.targets.catalogue import kind_index, models_of
-from eyas.targets.looks import LookSampler
+from eyas.targets.looks import LookSampler, draw_looks
 from eyas.targets.vehicles.models import BODY_COLOURS, MOTORCYCLE_COLOURS
 from eyas.traffic.config import VehicleType
 
@@ -62,3 +64,16 @@ def test_other_kinds_that_join_change_no_look_of_the_first():
     joined = LookSampler(np.repeat([0, 2], [30, 5])).sample(stream(1, "targets"))
     assert np.array_equal(alone[0], joined[0][:30])
     assert np.array_equal(alone[1], joined[1][:30])
+
+
+@pytest.mark.parametrize("colour", [None, PINK])
+def test_kernels_draw_the_same(colour):
+    kinds = ["passenger", "bus", "motorcycle", "Pedestrian"]
+    kind = np.random.default_rng(0).choice([kind_index(name) for name in kinds], 60)
+    sampler, state = LookSampler(kind, colour), [0] * STATE
+    interpreted(begin_stream)(state, 5, room_key("looks"), 2, 9)
+    model, painted = np.empty(60, np.int32), np.empty((60, 3), np.float32)
+    interpreted(draw_looks)(sampler.table, model, painted, state)
+    expected = sampler.sample(stream(5, "looks", 2, 9))
+    np.testing.assert_array_equal(model, expected[0])
+    np.testing.assert_array_equal(painted, expected[1])

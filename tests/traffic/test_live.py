@@ -87,30 +87,32 @@ def test_only_what_lies_ahead_can_be_changed(live: LiveSumo):
     assert speed[late, :3].max() > 5.0
 
 
-def test_what_is_past_stays_and_what_is_too_late_is_refused(live: LiveSumo):
+def test_what_is_past_stays_and_what_is_too_late_is_refused(live: LiveSumo, staying):
     out = ActorState.create(2, live.actors)
     live.at(np.array([3.0, 30.0]), out)
     early = out.position[0].copy()
     live.at(np.array([30.0, 3.0]), out)
     np.testing.assert_array_equal(out.position[1], early)
-    assert live.available(20.0, 50.0).all()
-    with pytest.raises(ConfigError, match=r"lasts 60 s, but 60\.5 s"):
-        live.available(20.0, 60.5)
+    assert staying(live, 20.0, 50.0) == list(range(live.actors))
     live.close()
     with pytest.raises(ConfigError, match=r"live traffic was closed at 3\d\.\d s, but 55 s"):
         live.prepare(55.0)
 
 
-def test_those_who_have_left_are_no_targets(grid: RoadGraph):
+def test_those_who_have_left_are_no_targets(grid: RoadGraph, staying):
     source = started(grid, GROUPS)
     try:
         present = source.motion.table["present"] > 0.0
-        np.testing.assert_array_equal(source.available(0.0, 50.0), present[:20].all(axis=0))
+        known = round(source.stays().known * 10)
+        assert known >= 10
+        there = np.flatnonzero(present[: known + 1].all(axis=0))
+        assert 0 < len(there) < source.actors
+        assert staying(source, 0.0, known / 10) == there.tolist()
     finally:
         source.close()
 
 
-def test_others_share_a_live_world_but_are_no_targets(grid: RoadGraph, live: LiveSumo):
+def test_others_share_a_live_world_but_are_no_targets(grid: RoadGraph, live: LiveSumo, staying):
     table = np.zeros((601, 2), live.motion.table.dtype)
     table["x"], table["present"] = 7.0, 1.0
     live.close()
@@ -121,7 +123,7 @@ def test_others_share_a_live_world_but_are_no_targets(grid: RoadGraph, live: Liv
         assert source.actors == 14
         source.prepare(20.0)
         assert (source.motion.table["x"][:, 12:] == 7.0).all()
-        assert source.available(0.0, 10.0).tolist() == [True] * 12 + [False] * 2
+        assert staying(source, 0.0, 10.0) == list(range(12))
     finally:
         source.close()
 

@@ -4,7 +4,7 @@ import pytest
 from eyas.core.errors import ConfigError
 from eyas.state.motion import ActorState
 from eyas.traffic.recording import Recording
-from eyas.traffic.replay import Replay
+from eyas.traffic.replay import Replay, check_time
 from eyas.traffic.smoothing import smooth
 
 
@@ -58,15 +58,15 @@ def test_an_actor_is_away_between_two_vehicles(replay: Replay):
     assert there.tolist() == [True, False, False, False, True, True, False]
 
 
-def test_only_those_that_stay_are_available(replay: Replay):
-    assert replay.available(0.0, 5.0).tolist() == [True, True, True]
-    assert replay.available(0.0, 5.05).tolist() == [True, True, False]
-    assert replay.available(4.0, 7.0).tolist() == [True, True, False]
-    assert replay.available(5.5, 5.6).tolist() == [True, True, False]
-    assert replay.available(6.0, 15.0).tolist() == [True, True, True]
+def test_it_is_known_who_stays(replay: Replay, staying):
+    assert staying(replay, 0.0, 5.0) == [0, 1, 2]
+    assert staying(replay, 0.0, 5.05) == [0, 1]
+    assert staying(replay, 4.0, 7.0) == [0, 1]
+    assert staying(replay, 5.5, 5.6) == [0, 1]
+    assert staying(replay, 6.0, 15.0) == [0, 1, 2]
 
 
 def test_times_that_were_not_recorded_are_an_error(replay: Replay):
-    assert replay.available(4.0, 20.0 + 1e-12)[0]
+    check_time(20.0 + 1e-12, replay.duration)
     with pytest.raises(ConfigError, match=r"lasts 20 s, but 20\.1 s was asked for"):
-        replay.available(1.0, 20.1)
+        check_time(20.1, replay.duration)

@@ -7,7 +7,12 @@ import numpy as np
 
 from eyas.core.errors import ConfigError
 
-__all__ = ["EpisodeKey", "checked_seed", "stream"]
+__all__ = ["EpisodeKey", "checked_seed", "room_key", "stream"]
+
+
+def room_key(room: str) -> int:
+    """Return the number that stands for a room's name in its streams, 32 bits."""
+    return zlib.crc32(room.encode())
 
 
 def stream(seed: int, room: str, *indices: int) -> np.random.Generator:
@@ -21,7 +26,7 @@ def stream(seed: int, room: str, *indices: int) -> np.random.Generator:
         room: Name of the room that draws.
         *indices: Tracker, episode or other numbers that distinguish the streams of a room.
     """
-    key = (zlib.crc32(room.encode()), *indices)
+    key = (room_key(room), *indices)
     return np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed, spawn_key=key)))
 
 

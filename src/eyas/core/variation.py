@@ -1,14 +1,28 @@
 """A setting that may be drawn anew for each episode."""
 
 from collections.abc import Callable
-from typing import Annotated, ClassVar
+from typing import Annotated, ClassVar, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from pydantic import Field
 
 from eyas.core.config import Config
+from eyas.core.jit import kernel
+from eyas.core.pcg64 import fraction, whole
 
-__all__ = ["Choice", "Mirrored", "Uniform", "Variation", "bounds", "sample", "within"]
+__all__ = [
+    "Choice",
+    "Mirrored",
+    "Rule",
+    "Uniform",
+    "Variation",
+    "bounds",
+    "drawn",
+    "rule_of",
+    "sample",
+    "within",
+]
 
 
 class Uniform(Config):
@@ -52,6 +66,50 @@ def sample(variation: Variation, rng: np.random.Generator) -> float:
             return float(values[int(rng.integers(len(values)))])
         case _:
             return float(variation)
+
+
+class Rule(NamedTuple):
+    """A variation as kernels read it."""
+
+    kind: int
+    """One of the numbers below."""
+    values: NDArray[np.float64]
+    """The number, the two limits in ascending order, or the values to choose from."""
+
+
+_NUMBER, _UNIFORM, _MIRRORED, _CHOICE = range(4)
+
+
+def rule_of(variation: Variation) -> Rule:
+    """Return a variation as kernels read it."""
+    match variation:
+        case Uniform(uniform=pair):
+            return Rule(_UNIFORM, np.array(sorted(pair)))
+        case Mirrored(mirrored=(low, high)):
+            return Rule(_MIRRORED, np.array(sorted((abs(low), abs(high)))))
+        case Choice(choice=values):
+            return Rule(_CHOICE, np.array(values))
+        case _:
+            return Rule(_NUMBER, np.array([float(variation)]))
+
+
+@kernel
+def drawn(rule: Rule, state: NDArray[np.int64]) -> float:
+    """Return one value of a variation, the one that `sample` would draw.
+
+    Args:
+        rule: The variation.
+        state: The random stream, see `eyas.core.pcg64`.
+    """
+    values = rule.values
+    if rule.kind == _NUMBER:
+        return float(values[0])
+    if rule.kind == _CHOICE:
+        return float(values[whole(state, len(values))])
+    sign = 1.0
+    if rule.kind == _MIRRORED and fraction(state) >= 0.5:
+        sign = -1.0
+    return sign * float(values[0] + (values[1] - values[0]) * fraction(state))
 
 
 def bounds(variation: Variation) -> tuple[float, float]:

@@ -1,68 +1,94 @@
 """Changes of the weather's light and fog in each tracker's world, drawn from `LightConfig`."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.rng import EpisodeKey
-from eyas.core.variation import sample
-from eyas.sim.worlds import Worlds
+from eyas.core.jit import kernel
+from eyas.core.variation import Rule, drawn, rule_of
 from eyas.state.lighting import Lighting
 from eyas.world.config import LightConfig
 
-__all__ = ["LightChanges"]
+__all__ = ["LightChanges", "LightRules", "change_light"]
 
 _UNCHANGED = LightConfig()
 
 
-class LightChanges:
-    """Draws light and fog for N trackers.
+class LightRules(NamedTuple):
+    """How light and fog are drawn; 1 means yes, 0 no."""
+
+    changes: int
+    """Whether anything is drawn."""
+    each_reset: int
+    """Whether it is drawn for each episode, not only for the first."""
+    sky: Rule
+    sun: Rule
+    visibility: Rule
+    """[m]"""
+    sky_replaces: int
+    """Whether the drawn luminosity replaces that of the weather, or is added to it."""
+    sun_replaces: int
+    visible: int
+    """Whether the visibility is drawn, or that of the weather."""
+    luminosity: float
+    """Of the weather."""
+    fog_density: float
+    """Of the weather [1/m]."""
+
+
+@kernel
+def change_light(rules: LightRules, state: NDArray[np.int64]) -> tuple[float, float, float]:
+    """Draw factors on the sky's light and the sun's, and the density of the fog [1/m].
 
     As in the original, the luminosity of a world is 1 by day and 0.3 at night; a change is added to
     it or replaces it, and the result is at least 0. Unlike in the original, changes do not
     accumulate over resets.
 
     Args:
+        rules: How they are drawn.
+        state: The random stream, see `eyas.core.pcg64`.
+    """
+    own = rules.luminosity
+    sky = drawn(rules.sky, state) + (0.0 if rules.sky_replaces == 1 else own)
+    sun = drawn(rules.sun, state) + (0.0 if rules.sun_replaces == 1 else own)
+    density = rules.fog_density
+    if rules.visible == 1:
+        density = 1.0 / drawn(rules.visibility, state)
+    return max(sky, 0.0) / own, max(sun, 0.0) / own, density
+
+
+class LightChanges:
+    """Light and fog of N trackers, which differ from those of the weather.
+
+    Attributes:
+        rules: How they are drawn.
+
+    Args:
         config: The settings.
         weather: The weather's own light.
-        worlds: The worlds of the trackers; those in one world share its light.
         factors: `Snapshot.light`, shape (N, 3); set here.
     """
 
     def __init__(
-        self,
-        config: LightConfig,
-        weather: Lighting,
-        worlds: Worlds,
-        factors: NDArray[np.float32],
+        self, config: LightConfig, weather: Lighting, factors: NDArray[np.float32]
     ) -> None:
-        self._config = config
-        self._changes = config != _UNCHANGED
-        self._weather = weather
-        self._worlds = worlds
         self._factors = factors
         factors[:] = 1.0, 1.0, weather.fog_density
-
-    def sample(self, tracker: int, key: EpisodeKey) -> None:
-        """Draw the light around a tracker; the leader of a world draws for all its trackers."""
-        fixed = key.episode > 0 and not self._config.each_reset
-        if not self._changes or fixed or tracker != self._worlds.leader[self._worlds.of[tracker]]:
-            return
-        rng = key.stream("light")
-        config, weather = self._config, self._weather
-        sky = _changed(
-            sample(config.background, rng), config.background_replaces, weather.luminosity
+        visible = weather.foggy and config.visibility is not None
+        self.rules = LightRules(
+            changes=int(config != _UNCHANGED),
+            each_reset=int(config.each_reset),
+            sky=rule_of(config.background),
+            sun=rule_of(config.sun),
+            visibility=rule_of(1.0 if config.visibility is None else config.visibility),
+            sky_replaces=int(config.background_replaces),
+            sun_replaces=int(config.sun_replaces),
+            visible=int(visible),
+            luminosity=float(weather.luminosity),
+            fog_density=float(weather.fog_density),
         )
-        sun = _changed(sample(config.sun, rng), config.sun_replaces, weather.luminosity)
-        density = weather.fog_density
-        if weather.foggy and config.visibility is not None:
-            density = 1.0 / sample(config.visibility, rng)
-        self._factors[self._worlds.trackers_of(tracker)] = sky, sun, density
 
     def of(self, trackers: NDArray[np.integer]) -> NDArray[np.float32] | None:
         """Return `Views.light` of trackers; None if the light of the weather is unchanged."""
-        return self._factors.take(trackers, axis=0) if self._changes else None
-
-
-def _changed(value: float, replaces: bool, own: float) -> float:
-    """Return the factor on a luminosity."""
-    return max(value if replaces else own + value, 0.0) / own
+        return self._factors.take(trackers, axis=0) if self.rules.changes else None

@@ -68,7 +68,7 @@ class Simulation:
         self.count = len(worlds.of)
         self.traffic = assets.traffic
         self.snapshot = Snapshot.create(self.count)
-        light = LightChanges(config.light, assets.lighting, worlds, self.snapshot.light)
+        light = LightChanges(config.light, assets.lighting, self.snapshot.light)
         self._worlds = worlds
         self._stepper = Stepper(config, assets, tracker, worlds, self.snapshot)
         senses, sight, draws = self._stepper.senses, self._stepper.sight, self._stepper.draws

@@ -4,7 +4,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
-from eyas.core.rng import EpisodeKey
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.near import NearMovers
@@ -48,6 +47,8 @@ class Worlds:
         of: World of each tracker, shape (N,).
         leader: First tracker of each world, shape (W,): its random streams are the world's.
         lasting: Whether the time of each world continues when an episode ends, shape (W,).
+        looks: Models and colours of the actors in all W worlds; they change in place.
+        look_table: What these are drawn from.
 
     Args:
         config: The settings.
@@ -73,21 +74,21 @@ class Worlds:
         self._any_lasting = bool(self.lasting.any())
         self._members = [np.flatnonzero(self.of == world) for world in range(len(first))]
         self._assets = assets
-        self._sampler = LookSampler(assets.traffic.motion.kind, config.traffic.colour)
+        self.look_table = LookSampler(assets.traffic.motion.kind, config.traffic.colour).table
         worlds, actors = len(self.leader), assets.traffic.actors
-        self._looks = Looks(
+        self.looks = Looks(
             np.zeros((worlds, actors), np.int32), np.ones((worlds, actors, 3), np.float32)
         )
         renderer, rigs = assets.renderer, assets.rigs
         reach = renderer.influence(rigs.reach(renderer.part_reach()))
-        self._near = NearMovers(assets.traffic.motion, rigs, self._looks, reach)
+        self._near = NearMovers(assets.traffic.motion, rigs, self.looks, reach)
 
     @property
     def models(self) -> NDArray[np.int32]:
         """Model of each actor in each world, index into the catalogue, shape (W, A); it changes in
         place.
         """
-        return self._looks.model
+        return self.looks.model
 
     @property
     def actors(self) -> int:
@@ -98,20 +99,12 @@ class Worlds:
         """Return all trackers in the world of a tracker, shape (K,)."""
         return self._members[int(self.of[tracker])]
 
-    def sample_looks(self, tracker: int, key: EpisodeKey) -> None:
-        """Draw models and colours of the actors around a tracker, if its world starts again."""
-        world = self.of[tracker]
-        if self.lasting[world] and (tracker != self.leader[world] or key.episode > 0):
-            return
-        looks = self._sampler.sample(key.stream("looks"))
-        self._looks.model[world], self._looks.colour[world] = looks
-
     def make_alike(self, tracker: int, actor: int) -> None:
         """Give all actors of an actor's kind around a tracker the model and colour of that one."""
         world, kinds = self.of[tracker], self._assets.traffic.motion.kind
         same = kinds == kinds[actor]
-        self._looks.model[world, same] = self._looks.model[world, actor]
-        self._looks.colour[world, same] = self._looks.colour[world, actor]
+        self.looks.model[world, same] = self.looks.model[world, actor]
+        self.looks.colour[world, same] = self.looks.colour[world, actor]
 
     def dress(self, tracker: int, actor: int, model: int, colour: Colour) -> None:
         """Give an actor around a tracker a model of its kind and a colour, until looks are drawn.
@@ -123,16 +116,16 @@ class Worlds:
             colour: sRGB, each 0 to 1.
         """
         world = self.of[tracker]
-        self._looks.model[world, actor], self._looks.colour[world, actor] = model, colour
+        self.looks.model[world, actor], self.looks.colour[world, actor] = model, colour
 
     def model_of(self, tracker: int, actor: int) -> int:
         """Return the model of an actor around a tracker, an index into the catalogue."""
-        return int(self._looks.model[self.of[tracker], actor])
+        return int(self.looks.model[self.of[tracker], actor])
 
     def looks_around(self, tracker: int) -> Looks:
         """Return the looks of all actors around a tracker, one world; they may change."""
         world = self.of[tracker]
-        return Looks(self._looks.model[world : world + 1], self._looks.colour[world : world + 1])
+        return Looks(self.looks.model[world : world + 1], self.looks.colour[world : world + 1])
 
     def classes_of(self, objects: NDArray[np.integer]) -> Integers:
         """Return the `ObjectClass` of objects and actors, -1 for the id -1, and `DRONE_CLASS` for
@@ -161,7 +154,7 @@ class Worlds:
         """
         actors = ActorState.create(1, self._assets.traffic.actors)
         self._assets.traffic.at(np.array([tick * PHYSICS_STEP]), actors)
-        return actors, self._looks.model[self.of[tracker]]
+        return actors, self.looks.model[self.of[tracker]]
 
     def draw_list(
         self, trackers: NDArray[np.integer], tick: Integers, cameras: CameraState, aspect: float

@@ -5,10 +5,60 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.jit import kernel
+from eyas.core.pcg64 import whole
 from eyas.targets.catalogue import KINDS, models_of
 from eyas.targets.kind import Colour
 
-__all__ = ["LookSampler"]
+__all__ = ["LookSampler", "LookTable", "draw_looks"]
+
+
+class LookTable(NamedTuple):
+    """Possible looks of A actors, G kinds one after the other."""
+
+    actors: NDArray[np.int64]
+    """The actors kind by kind, shape (A,)."""
+    models: NDArray[np.int32]
+    """The models of all kinds, as indices into `MODELS`."""
+    colours: NDArray[np.float32]
+    """The colours of all kinds, sRGB 0 to 1, shape (., 3)."""
+    first: NDArray[np.int64]
+    """Where each kind begins in `actors`, `models` and `colours`, and at last their lengths,
+    shape (G + 1, 3)."""
+    fixed: NDArray[np.bool_]
+    """Whether the actors of each kind have one colour, shape (G,)."""
+    colour: NDArray[np.float32]
+    """That colour, shape (3,)."""
+
+
+@kernel
+def draw_looks(
+    table: LookTable,
+    model: NDArray[np.int32],
+    colour: NDArray[np.float32],
+    state: NDArray[np.int64],
+) -> None:
+    """Draw the looks of all actors, those that `LookSampler.sample` would draw.
+
+    Args:
+        table: The possible looks.
+        model: Index of each into `MODELS`, shape (A,); written.
+        colour: sRGB colour of each, shape (A, 3); written.
+        state: The random stream, see `eyas.core.pcg64`.
+    """
+    actors, first = table.actors, table.first
+    for kind in range(len(table.fixed)):
+        begin, end = first[kind, 0], first[kind + 1, 0]
+        models, colours = first[kind, 1], first[kind, 2]
+        for at in range(begin, end):
+            pick = whole(state, first[kind + 1, 1] - models)
+            model[actors[at]] = table.models[models + pick]
+        for at in range(begin, end):
+            pick = whole(state, first[kind + 1, 2] - colours)
+            for channel in range(3):
+                drawn = table.colours[colours + pick, channel]
+                own = table.colour[channel] if table.fixed[kind] else drawn
+                colour[actors[at], channel] = own
 
 
 class _Choice(NamedTuple):
@@ -44,6 +94,23 @@ class LookSampler:
             )
             for k in sorted({*kind.tolist()})
         ]
+
+    @property
+    def table(self) -> LookTable:
+        """The possible looks as kernels read them."""
+        parts = [(choice.actors, choice.models, choice.colours) for choice in self._choices]
+        first = np.cumsum([(0, 0, 0), *([len(part) for part in row] for row in parts)], axis=0)
+        actors, models, colours = map(np.concatenate, zip(*parts, strict=True))
+        fixed = [choice.fixed for choice in self._choices]
+        colour = next((one for one in fixed if one is not None), (0.0, 0.0, 0.0))
+        return LookTable(
+            actors.astype(np.int64),
+            models,
+            colours,
+            first.astype(np.int64),
+            np.array([one is not None for one in fixed]),
+            np.array(colour, np.float32),
+        )
 
     def sample(self, rng: np.random.Generator) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
         """Draw the model and colour of each actor, kind by kind.

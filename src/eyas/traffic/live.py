@@ -25,7 +25,8 @@ from eyas.traffic.live_tracks import LiveTracks
 from eyas.traffic.network import network_xml
 from eyas.traffic.record import WARM_UP
 from eyas.traffic.recorded import table_of
-from eyas.traffic.replay import check_time
+from eyas.traffic.smoothing import runs
+from eyas.traffic.source import Stays
 from eyas.traffic.sumo import RATE, SumoRun, no_room
 
 __all__ = ["LiveSumo", "Reaction"]
@@ -135,22 +136,20 @@ class LiveSumo:
         self.prepare(float(np.max(time)))
         interpolate_actors(self.motion, time, out)
 
-    def available(self, start: float, end: float) -> NDArray[np.bool_]:
-        """Return whether each actor is in the world at `start`, as far as known until `end` [s].
+    def stays(self) -> Stays:
+        """Return when each vehicle is in the world, as far as SUMO has driven.
 
-        Vehicles that come and go may leave before `end`: where they go is not known before.
-
-        Raises:
-            ConfigError: The traffic does not last that long.
+        Vehicles that come and go may leave at any later time: where they go is not known before.
         """
-        for time in (start, end):
-            check_time(time, self.duration)
-        self.prepare(start)
-        known = min(round(end * RATE), self._tracks.ready - 1)
-        present: NDArray[np.bool_] = self._tracks.present[math.floor(start * RATE) : known + 1]
-        available = np.zeros(self.actors, np.bool_)
-        available[: self._vehicles] = present.all(axis=0)
-        return available
+        ready = self._tracks.ready
+        present = self._tracks.present[:ready]
+        stays = [(who, *stay) for who in range(self._vehicles) for stay in runs(present[:, who])]
+        who, enters, ends = np.array(stays, np.int64).reshape(-1, 3).T.copy()
+        # Half a sample longer: a time between two samples belongs to the nearer one.
+        leaves = np.where(ends == ready, math.inf, (ends - 0.5) / RATE)
+        everything = ready == len(self.motion.table)
+        known = math.inf if everything else float((ready - 1) // RATE - _FARTHEST)
+        return Stays(who, enters / RATE, leaves, known)
 
     def _drive(self, samples: int) -> None:
         """Let SUMO drive on until there are so many samples, and append what is known then."""

@@ -1,5 +1,6 @@
 """Traffic whose whole motion is known in advance."""
 
+import math
 from typing import Final
 
 import numpy as np
@@ -9,6 +10,7 @@ from eyas.core.errors import ConfigError
 from eyas.state.motion import ActorState, Motion
 from eyas.traffic.interpolation import interpolate_actors
 from eyas.traffic.smoothing import runs
+from eyas.traffic.source import Stays
 
 __all__ = ["Replay", "check_time"]
 
@@ -35,9 +37,8 @@ class Replay:
         present = motion.table["present"] > 0.0
         followed = range(self.actors) if targets is None else np.flatnonzero(targets).tolist()
         stays = [(actor, *stay) for actor in followed for stay in runs(present[:, actor])]
-        self._who, enters, leaves = np.array(stays, np.int64).reshape(-1, 3).T
-        # Times of the first and last sample of each stay in the world [s].
-        self._enters, self._leaves = enters / motion.rate, (leaves - 1) / motion.rate
+        who, enters, leaves = np.array(stays, np.int64).reshape(-1, 3).T.copy()
+        self._stays = Stays(who, enters / motion.rate, (leaves - 1) / motion.rate, math.inf)
 
     @property
     def actors(self) -> int:
@@ -59,18 +60,9 @@ class Replay:
         """Write all actors of W worlds at the time of each world [s], shape (W,)."""
         interpolate_actors(self.motion, time, out)
 
-    def available(self, start: float, end: float) -> NDArray[np.bool_]:
-        """Return whether each actor may be a target from `start` to `end` [s], shape (A,).
-
-        Raises:
-            ConfigError: The motion does not last that long.
-        """
-        for time in (start, end):
-            check_time(time, self.duration)
-        stays = (self._enters - ROUNDING <= start) & (end - ROUNDING <= self._leaves)
-        available = np.zeros(self.actors, np.bool_)
-        available[self._who[stays]] = True
-        return available
+    def stays(self) -> Stays:
+        """Return when each actor that may be a target is in the world."""
+        return self._stays
 
 
 def check_time(time: float, duration: float) -> None:

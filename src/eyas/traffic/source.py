@@ -1,13 +1,27 @@
 """The interface between the simulation and any traffic."""
 
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.state.motion import ActorState, Motion
 
-__all__ = ["TrafficSource"]
+__all__ = ["Stays", "TrafficSource"]
+
+
+class Stays(NamedTuple):
+    """When actors that may be targets are in the world; an actor may come and go several times."""
+
+    actor: NDArray[np.int64]
+    """The actor, shape (S,)."""
+    enters: NDArray[np.float64]
+    """Time of its first sample there [s], shape (S,)."""
+    leaves: NDArray[np.float64]
+    """Last time at which it is there [s]; infinite if that is not known yet, shape (S,)."""
+    known: float
+    """Episodes that begin before this time [s] need no more to be known: `prepare` would do
+    nothing."""
 
 
 class TrafficSource(Protocol):
@@ -50,8 +64,8 @@ class TrafficSource(Protocol):
         """
         ...
 
-    def available(self, start: float, end: float) -> NDArray[np.bool_]:
-        """Return whether each actor stays in the world from `start` to `end` [s], shape (A,)."""
+    def stays(self) -> Stays:
+        """Return when actors that may be targets are in the world, as far as it is known."""
         ...
 
     def close(self) -> None:
