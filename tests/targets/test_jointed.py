@@ -7,7 +7,7 @@ import pytest
 
 from eyas.state.mesh import Surface
 from eyas.state.motion import ActorState
-from eyas.targets.catalogue import KINDS, MODELS, kind_index, models_of
+from eyas.targets.catalogue import KINDS, MODELS, extent_of, kind_index, models_of
 from eyas.targets.config import TargetName
 from eyas.targets.jointed.cycle import frames_of
 from eyas.targets.jointed.figure import levels_of
@@ -281,3 +281,40 @@ def test_front_wheels_of_a_rover_steer_into_the_curve_and_rear_wheels_against_it
         across = pose[0, slot, :, 1]
         assert np.sign(-across[0]) == np.sign(joint.steers)
         assert np.arctan(-across[0] / across[1]) == pytest.approx(np.arctan(joint.steers), abs=1e-5)
+
+
+@pytest.mark.parametrize("slope", [0.0, 0.2])
+@pytest.mark.parametrize("name", NAMES)
+def test_the_box_of_a_moment_holds_it_and_is_as_small_as_may_be(name, slope):
+    rng = np.random.default_rng(2)
+    travelled, speed = rng.uniform(0.0, 50.0, 12), rng.choice([0.0, 0.03, 0.6, 3.0], 12)
+    yaw_rate = rng.uniform(-0.5, 0.5, 12)
+    slopes = np.full(12, slope)
+    part, pose = posed(name, travelled=travelled, speed=speed, slope=slopes, yaw_rate=yaw_rate)
+    meshes = [levels_of(shape)[0].positions for _, shape in parts_of(FIGURES[name])]
+    upright = FIGURES[name].upright
+    across = np.array(
+        [[np.cos(slope), 0, -np.sin(slope)], [0, 1, 0], [np.sin(slope), 0, np.cos(slope)]]
+    )
+    if upright:
+        across = np.array([[1.0, 0, 0], [0, 1, 0], [np.tan(slope), 0, 1]])
+    spare = []
+    for k in range(12):
+        points = np.concatenate(
+            [
+                meshes[slot] @ pose[k, slot, :, :3].T + pose[k, slot, :, 3]
+                for slot in range(len(meshes))
+                if part[k, slot] >= 0
+            ]
+        )
+        points = points @ np.linalg.inv(across).T  # in its own frame
+        low, high = extent_of(index_of(name), travelled[k], speed[k], slope)
+        assert (points >= low - 1e-3).all()
+        assert (points <= high + 1e-3).all()
+        spare.append(np.max([points.min(axis=0) - low, high - points.max(axis=0)]))
+    rolls = any(joint.spins for joint in FIGURES[name].joints)
+    assert max(spare) < (0.3 if rolls else 0.03) * max(MODELS[index_of(name)].size)
+
+
+def test_vehicles_fill_the_box_of_their_size():
+    assert extent_of(0, 3.0, 10.0, 0.0) is None

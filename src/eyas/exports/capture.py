@@ -7,7 +7,7 @@ from eyas.state.draw import Picture
 from eyas.state.episode import EpisodeState
 from eyas.state.scene import ACTOR_OBJECT, ObjectClass
 from eyas.state.snapshot import CameraState, Snapshot, TrackerState
-from eyas.targets.catalogue import MODELS, kind_of, sections_of
+from eyas.targets.catalogue import MODELS, extent_of, kind_of, sections_of
 from eyas.task.direction import TargetDirection
 from eyas.task.done import DoneReason
 
@@ -85,10 +85,12 @@ def _target(snapshot: Snapshot, tracker: int, picture: Picture, view: int) -> Su
     assert picture.subject_box is not None
     assert picture.subject_pixels is not None
     seen, covered = (int(pixels) for pixels in picture.subject_pixels[view])
+    model, speed = int(targets.model[tracker]), float(targets.speed[tracker])
+    slope, travelled = float(targets.slope[tracker]), float(targets.travelled[tracker])
     return Subject(
         object_id=ACTOR_OBJECT + int(targets.actor[tracker]),
-        type=MODELS[targets.model[tracker]].name,
-        object_class=kind_of(int(targets.model[tracker])).object_class,
+        type=MODELS[model].name,
+        object_class=kind_of(model).object_class,
         size=targets.size[tracker].copy(),
         position=targets.position[tracker].copy(),
         centre=targets.centre[tracker].copy(),
@@ -97,15 +99,16 @@ def _target(snapshot: Snapshot, tracker: int, picture: Picture, view: int) -> Su
         motion=Movement(
             acceleration=targets.acceleration[tracker].copy(),
             yaw_rate=float(targets.yaw_rate[tracker]),
-            slope=float(targets.slope[tracker]),
-            travelled=float(targets.travelled[tracker]),
+            slope=slope,
+            travelled=travelled,
             direction=TargetDirection(snapshot.episodes.direction[tracker]),
             rise=float(targets.rise[tracker]),
             hitch=float(targets.hitch[tracker]),
-            upright=kind_of(int(targets.model[tracker])).object_class is ObjectClass.PERSON,
+            upright=kind_of(model).object_class is ObjectClass.PERSON,
+            extent=extent_of(model, travelled, speed, slope),
         ),
         box=picture.subject_box[view].copy(),
         seen_pixels=seen,
         covered_pixels=covered,
-        sections=sections_of(int(targets.model[tracker])),
+        sections=sections_of(model),
     )

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
-from eyas.exports.movement import Movement, SectionBox, box_corners, section_boxes
+from eyas.exports.movement import Movement, SectionBox, box_corners, posed_corners, section_boxes
 from eyas.state.scene import ObjectClass
 from eyas.targets.kind import Section
 from eyas.task.direction import TargetDirection
@@ -115,6 +115,11 @@ class Subject:
     def corners(self) -> Floats:
         """Corners of its 3D box, see `box_corners`."""
         return box_corners(self.centre, self.size, self.yaw, self.motion, self.sections)
+
+    @property
+    def posed_corners(self) -> Floats | None:
+        """Corners of the box around its limbs at this moment, see `posed_corners`."""
+        return posed_corners(self.centre, self.yaw, self.motion)
 
     @property
     def section_boxes(self) -> tuple[SectionBox, ...]:

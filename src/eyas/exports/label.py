@@ -47,10 +47,12 @@ class OtherLabel:
     travelled: float | None = None
     direction: int = 0
     corners: list[list[float | None]] = field(default_factory=list)
-    """The corners of its 3D box [m]."""
+    """The corners of its 3D box, which has its `size` [m]."""
     words: str = ""
     """What it looks like, such as "a red car"; others may look the same."""
     sections: list[SectionLabel] = field(default_factory=list)
+    posed_corners: list[list[float | None]] = field(default_factory=list)
+    """As `FrameLabel.target_posed_corners` [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,6 +129,9 @@ class FrameLabel:
     shares them."""
     target_sections: list[SectionLabel] = field(default_factory=list)
     """A truck and its trailer; the file has the key for articulated vehicles only."""
+    target_posed_corners: list[list[float | None]] = field(default_factory=list)
+    """Corners of the box around the limbs of a person or robot at this moment, in the same order:
+    arms and legs swing out of the box of `target_size` [m]; the file has the key for these only."""
     target_class_id: int = -1
     """`eyas.state.scene.ObjectClass` of the target, as in the class pictures. This and the next are
     missing in older labels."""
@@ -177,6 +182,7 @@ def label_of(frame: Frame, episode: Episode) -> FrameLabel:
         target_corners=[rounded_list(corner) for corner in target.corners],
         target_words=frame.target_words,
         target_sections=_sections(frame.target),
+        target_posed_corners=_posed(frame.target),
         target_class_id=int(target.object_class),
         width=episode.width,
         height=episode.height,
@@ -202,7 +208,13 @@ def _other(subject: Subject) -> OtherLabel:
         corners=[rounded_list(corner) for corner in subject.corners],
         words=subject.words,
         sections=_sections(subject),
+        posed_corners=_posed(subject),
     )
+
+
+def _posed(subject: Subject) -> list[list[float | None]]:
+    corners = subject.posed_corners
+    return [] if corners is None else [rounded_list(corner) for corner in corners]
 
 
 def _sections(subject: Subject) -> list[SectionLabel]:

@@ -48,11 +48,12 @@ def _encoded(labels: Sequence[FrameLabel]) -> bytes:
 
 
 def _record(label: FrameLabel) -> dict[str, Any]:
-    """Return a label as an object of JSON, without sections where there are none."""
+    """Return a label as an object of JSON, without the keys of what is not rigid where it is."""
     record = asdict(label)
-    for one, key in ((record, "target_sections"), *((o, "sections") for o in record["others"])):
-        if not one[key]:
-            del one[key]
+    for one, prefix in ((record, "target_"), *((other, "") for other in record["others"])):
+        for key in (f"{prefix}sections", f"{prefix}posed_corners"):
+            if not one[key]:
+                del one[key]
     return record
 
 

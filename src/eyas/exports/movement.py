@@ -12,7 +12,7 @@ from eyas.targets.kind import Section
 from eyas.task.direction import TargetDirection
 from eyas.traffic.trailer import folded
 
-__all__ = ["Movement", "SectionBox", "box_corners", "section_boxes"]
+__all__ = ["Movement", "SectionBox", "box_corners", "posed_corners", "section_boxes"]
 
 Floats: TypeAlias = NDArray[np.float64]
 
@@ -42,6 +42,9 @@ class Movement:
     """Heading of its trailer less that of its truck [rad]; 0 of all others."""
     upright: bool = False
     """Whether it stays upright on slopes, like people; else it tilts with the ground."""
+    extent: Floats | None = None
+    """The box of its limbs at this moment: least and largest coordinates ahead, left and up of the
+    point on the ground below its middle [m], shape (2, 3); None of what is rigid."""
 
 
 class SectionBox(NamedTuple):
@@ -77,6 +80,27 @@ def box_corners(
         outlines = np.concatenate([_outline(section, motion.hitch)[0] for section in sections])
         plan = np.where(_ENDS < 0.0, outlines.min(axis=0), outlines.max(axis=0))
     return _raised(plan, height, centre, yaw, motion)
+
+
+def posed_corners(centre: Floats, yaw: float, motion: Movement) -> Floats | None:
+    """Return the corners of the box around the limbs of a person or robot at this moment.
+
+    Args:
+        centre: Middle of the body, at the height of its reference point [m], shape (3,).
+        yaw: Heading [rad].
+        motion: Its extent, and how it stands.
+
+    Returns:
+        In the order of `box_corners`, shape (8, 3); None of what is rigid.
+    """
+    if motion.extent is None:
+        return None
+    low, high = motion.extent
+    plan = np.where(_ENDS < 0.0, low[:2], high[:2])
+    if motion.upright:  # it is sheared, not tilted, so that its feet are on the ground
+        plan[:, 0] /= math.cos(motion.slope)
+    foot, top = (_raised(plan, float(z), centre, yaw, motion)[4:] for z in (low[2], high[2]))
+    return np.concatenate([foot, top])
 
 
 def section_boxes(

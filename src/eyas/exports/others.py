@@ -12,7 +12,7 @@ from eyas.sim.simulation import Simulation
 from eyas.state.draw import Picture
 from eyas.state.motion import ActorState
 from eyas.state.scene import ACTOR_OBJECT, ObjectClass
-from eyas.targets.catalogue import MODELS, kind_of, sections_of
+from eyas.targets.catalogue import MODELS, extent_of, kind_of, sections_of
 from eyas.targets.words import words_of
 from eyas.task.direction import TargetDirection, target_centre, target_direction
 
@@ -62,15 +62,17 @@ def _movement(actors: ActorState, before: ActorState, actor: int, model: int) ->
     way = speed * PHYSICS_STEP
     last_yaw = yaw - yaw_rate * PHYSICS_STEP
     direction = _target_direction(way, 0.0, yaw, last_yaw, kind_of(model).slowest)
+    slope, travelled = float(actors.slope[0, actor]), float(actors.travelled[0, actor])
     return Movement(
         acceleration=acceleration,
         yaw_rate=yaw_rate,
-        slope=float(actors.slope[0, actor]),
-        travelled=float(actors.travelled[0, actor]),
+        slope=slope,
+        travelled=travelled,
         direction=TargetDirection(direction),
         rise=MODELS[model].rise,
         hitch=float(actors.hitch[0, actor]),
         upright=kind_of(model).object_class is ObjectClass.PERSON,
+        extent=extent_of(model, travelled, speed, slope),
     )
 
 

@@ -3,6 +3,12 @@
 A new kind is a file with its shapes and its rig, and one call of `register`.
 """
 
+from math import cos
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.state.scene import ObjectClass
 from eyas.targets.jointed.kinds import JOINTED_KINDS
 from eyas.targets.kind import Kind, Model, Section
 from eyas.targets.quadrotor import QUADROTOR
@@ -11,6 +17,7 @@ from eyas.targets.vehicles.kinds import VEHICLE_KINDS
 __all__ = [
     "KINDS",
     "MODELS",
+    "extent_of",
     "kind_index",
     "kind_of",
     "model_index",
@@ -18,6 +25,8 @@ __all__ = [
     "register",
     "sections_of",
 ]
+
+Floats = NDArray[np.float64]
 
 KINDS: list[Kind] = []
 """All kinds. In the other rooms, `kind` is the index into this table."""
@@ -62,6 +71,22 @@ def models_of(kind: int) -> range:
     """Return the models of a kind, given by its index in `KINDS`, as indices into `MODELS`."""
     first = model_index(KINDS[kind].models[0].name)
     return range(first, first + len(KINDS[kind].models))
+
+
+def extent_of(model: int, travelled: float, speed: float, slope: float) -> Floats | None:
+    """Return the box of a model at a moment, see `Kind.extent`; None if it is that of its size.
+
+    Args:
+        model: Index in `MODELS`.
+        travelled: Horizontal way since it entered the world [m].
+        speed: [m/s]
+        slope: Pitch of the ground along its heading [rad].
+    """
+    kind = kind_of(model)
+    if kind.extent is None:
+        return None
+    upright = kind.object_class is ObjectClass.PERSON
+    return kind.extent(MODELS[model].name, travelled / (1.0 if upright else cos(slope)), speed)
 
 
 def sections_of(model: int) -> tuple[Section, ...]:

@@ -156,5 +156,9 @@ class Kind:
     """Of each model what it consists of, if that is not one rigid body."""
     keeps_colours: bool = False
     """Whether `traffic.colour` does not change its colours, as for the original's motorcycles."""
+    extent: Callable[[str, float, float], NDArray[np.float64]] | None = None
+    """Returns the box of a model at a moment, by its name, the way that it has travelled along the
+    ground [m] and its speed [m/s]: least and largest x, y and z in the model frame [m], shape
+    (2, 3). None: it is always that of its size."""
     words: str = ""
     """What any of it is in words, "a delivery robot"; empty: `eyas.targets.words` knows."""

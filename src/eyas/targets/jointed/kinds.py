@@ -1,7 +1,11 @@
 """The kinds of people and robots."""
 
+import numpy as np
+from numpy.typing import NDArray
+
 from eyas.state.scene import ObjectClass
 from eyas.targets.config import TargetName
+from eyas.targets.jointed.extent import extents_of
 from eyas.targets.jointed.figure import Figure
 from eyas.targets.jointed.models import PEDESTRIAN_COLOURS, pedestrian, robot
 from eyas.targets.jointed.people.people import PEOPLE, figure_of
@@ -43,6 +47,10 @@ FIGURES: dict[str, Figure] = {
 """The figure of each model, by its name."""
 
 
+def _extent(name: str, travelled: float, speed: float) -> NDArray[np.float64]:
+    return extents_of(FIGURES[name]).at(travelled, speed)
+
+
 def _robot(name: TargetName) -> Kind:
     figure, colour = _ROBOTS[name]
     return Kind(
@@ -51,6 +59,7 @@ def _robot(name: TargetName) -> Kind:
         colours=(colour,),
         object_class=ObjectClass.ROBOT,
         rig=lambda: JointedRig([figure]),
+        extent=_extent,
         keeps_colours=True,
     )
 
@@ -61,6 +70,7 @@ _PEDESTRIAN = Kind(
     colours=PEDESTRIAN_COLOURS,
     object_class=ObjectClass.PERSON,
     rig=lambda: JointedRig([FIGURES[one.name] for one in PEOPLE]),
+    extent=_extent,
     keeps_colours=True,
 )
 
