@@ -106,7 +106,7 @@ def test_its_scene_is_kept_until_its_source_changes(shipped, monkeypatch):
     for text in ("", "", "# another hill\n"):
         source = shipped / "__init__.py"
         source.write_text(source.read_text() + text)
-        scenes.load_scene.cache_clear()
+        scenes._scene.cache_clear()
         scenes.load_scene(NAME, 0)
-    scenes.load_scene.cache_clear()
+    scenes._scene.cache_clear()
     assert made[0] == made[1] != made[2]

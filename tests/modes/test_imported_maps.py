@@ -21,6 +21,7 @@ from eyas.core.errors import ConfigError, DataFileError, OutputError
 from eyas.modes.maps import gltf, importing, info, plan_files, show
 from eyas.modes.video.folder import open_folder
 from eyas.settings.config import EyasConfig
+from eyas.sim import scenes
 from eyas.sim.assets import load_assets
 from eyas.sim.crowd import Crowd
 from eyas.sim.scenes import load_scene
@@ -374,4 +375,4 @@ def test_a_city_as_found_is_imported_and_its_defects_are_counted(tool, town, tmp
         assert re.search(rf"odd tags: .*\d {tag}\b", said)
     scene = load_scene("as-found", 0)
     assert info.figures_of(scene).buildings > 20
-    load_scene.cache_clear()
+    scenes._scene.cache_clear()

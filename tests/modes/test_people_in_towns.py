@@ -17,6 +17,7 @@ from eyas.behaviours.troop import Clock, Troop
 from eyas.core.errors import SpawnError
 from eyas.core.rng import stream
 from eyas.modes.maps import importing, info
+from eyas.sim import scenes
 from eyas.sim.assets import load_assets
 from eyas.sim.crowd import Crowd
 from eyas.sim.scenes import load_scene
@@ -279,7 +280,7 @@ def test_towns_without_pavements_or_crossings_say_so_in_a_line(writer, maps, tmp
             walked(Ground(bare, roads=True), None, behaviour)
     path.write_text(path.read_text().replace('v="no"', 'v="both"'), encoding="utf-8")
     importing.run(path, "test-bare", record=False, overwrite=True)
-    load_scene.cache_clear()
+    scenes._scene.cache_clear()
     again = r"'test-bare' has no crossing between pavements \(.*import it again\)"
     with pytest.raises(SpawnError, match=again):
         walked(Ground(load_scene("test-bare"), roads=True), None)

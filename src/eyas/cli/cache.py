@@ -6,7 +6,9 @@ import typer
 
 __all__ = ["app"]
 
-app = typer.Typer(help="Show or delete the files that Eyas keeps on disk.", no_args_is_help=True)
+app = typer.Typer(
+    help="Show, delete or make the files that Eyas keeps on disk.", no_args_is_help=True
+)
 
 
 @app.command()
@@ -27,3 +29,20 @@ def clear(
     from eyas.modes import cache
 
     cache.run_clear(kind)
+
+
+@app.command()
+def warm(
+    map_name: Annotated[
+        list[str] | None,
+        typer.Option("--map", "--maps", help="Only this map; may be given several times."),
+    ] = None,
+    weather: Annotated[
+        list[str] | None,
+        typer.Option("--weather", help="Only this weather; may be given several times."),
+    ] = None,
+) -> None:
+    """Make what the default settings need now, not on first use: for images of a cluster."""
+    from eyas.modes.warm import run
+
+    run(map_name or (), weather or ())

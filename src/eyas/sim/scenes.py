@@ -53,9 +53,14 @@ def load_network(map_name: str, seed: int) -> RoadNetwork:
     return shipped or build_network(recipe.roads(seed))
 
 
-@lru_cache(maxsize=4)
 def load_scene(map_name: str, seed: int = 0, season: Season = Season.SUMMER) -> Scene:
     """Return everything on a map that does not move."""
+    return _scene(map_name, seed, season)
+
+
+@lru_cache(maxsize=4)
+def _scene(map_name: str, seed: int, season: Season) -> Scene:
+    # `lru_cache` would tell calls apart that leave out defaults, and build the map for each.
     recipe, network = MAPS.get(map_name), load_network(map_name, seed)
 
     def make() -> Scene:
