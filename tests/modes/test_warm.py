@@ -30,11 +30,11 @@ def test_what_a_first_recording_needs_is_there(tmp_path):
     told = eyas(cache, "cache", "warm", "--map", MAP, "--weather", "day").stdout.splitlines()
     assert told[0].startswith(f"{MAP}, day: ")
     assert told[1].startswith(f"{cache}: ")
-    made = {path for path in cache.rglob("*.npy")}
+    made = set(cache.rglob("*.npy"))
     assert {path.parent.name for path in made} >= {"scene", "geometry", "motion", "textures"}
     brief = ("--set", "video.total_time=0.3", "--set", "video.channels=1")
     eyas(cache, "video", "--map", MAP, "--out", out, "--quiet", *brief)
-    assert {path for path in cache.rglob("*.npy")} == made
+    assert set(cache.rglob("*.npy")) == made
 
 
 def test_a_cache_that_cannot_be_written_to_is_one_line(monkeypatch):
