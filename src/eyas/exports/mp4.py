@@ -4,18 +4,20 @@ import os
 from contextlib import suppress
 from fractions import Fraction
 from pathlib import Path
-from typing import IO
+from typing import IO, TYPE_CHECKING
 
-import av
 import numpy as np
-from av.video.stream import VideoStream
 from numpy.typing import NDArray
 
 from eyas.core.files import part_path, refusals
+from eyas.core.pyav import pyav
 from eyas.exports.files import Files
 from eyas.exports.frame import Frame
 from eyas.exports.summary import Summary
-from eyas.exports.writer import Episode, EpisodeWriter, Writer
+from eyas.exports.writer import Episode, EpisodeWriter, Run, Writer
+
+if TYPE_CHECKING:
+    from av.video.stream import VideoStream
 
 __all__ = ["Mp4Episode", "Mp4Writer"]
 
@@ -34,10 +36,17 @@ LARGEST_DENOMINATOR = 1001
 
 
 class Mp4Writer(Writer):
-    """`episode.mp4`."""
+    """`episode.mp4`.
+
+    Raises:
+        ConfigError: PyAV is not installed.
+    """
 
     wants = frozenset({"rgb"})
     files = Files(episode=(MOVIE,))
+
+    def __init__(self, run: Run) -> None:
+        self._av = pyav("video.writers: 'mp4'")  # before anything is recorded
 
     def begin(self, episode: Episode) -> "Mp4Episode":
         """Return the writer of an episode's video."""
@@ -48,7 +57,7 @@ class Mp4Writer(Writer):
         """Return the number of pictures that the video's header states."""
         try:
             # Only as what it should be: of a playlist, FFmpeg would open what it names.
-            with av.open(str(folder / MOVIE), format="mp4") as container:
+            with self._av.open(str(folder / MOVIE), format="mp4") as container:
                 return Summary(container.streams.video[0].frames)
         except (OSError, ValueError, IndexError):
             return None
@@ -67,31 +76,32 @@ class Mp4Episode(EpisodeWriter):
 
     Raises:
         OutputError: The file cannot be written; raised by every method.
+        ConfigError: PyAV is not installed.
     """
 
     def __init__(self, path: Path, height: int, width: int, fps: float) -> None:
+        self._av = pyav("MP4")
         self._path = path
         self._part = part_path(path)
         # yuv420p shares colours among 2 x 2 pixels, so sizes must be even.
         self._padding = ((0, height % 2), (0, width % 2), (0, 0))
         with refusals(path):
             self._file: IO[bytes] = self._part.open("wb")
-        self._container = av.open(
+        self._container = self._av.open(
             self._file, "w", format="mp4", container_options={"fflags": "+bitexact"}
         )
         self._stream = self._video_stream(height, width, fps)
 
-    def _video_stream(self, height: int, width: int, fps: float) -> VideoStream:
-        codec = next(name for name in CODECS if name in av.codecs_available)
+    def _video_stream(self, height: int, width: int, fps: float) -> "VideoStream":
+        codec = next(name for name in CODECS if name in self._av.codecs_available)
         rate = max(
             Fraction(fps).limit_denominator(LARGEST_DENOMINATOR), Fraction(1, LARGEST_DENOMINATOR)
         )
-        stream = self._container.add_stream(codec, rate=rate, options=CODECS[codec])
-        assert isinstance(stream, VideoStream)
+        stream: VideoStream = self._container.add_stream(codec, rate=rate, options=CODECS[codec])
         stream.height, stream.width = height + height % 2, width + width % 2
         stream.pix_fmt = "yuv420p"
         stream.codec_context.thread_count = 1
-        stream.codec_context.flags |= av.codec.context.Flags.bitexact
+        stream.codec_context.flags |= self._av.codec.context.Flags.bitexact
         return stream
 
     def add(self, frame: Frame) -> None:
@@ -102,7 +112,7 @@ class Mp4Episode(EpisodeWriter):
     def add_picture(self, rgb: NDArray[np.uint8]) -> None:
         """Append the next picture, shape (H, W, 3)."""
         padded = np.pad(rgb, self._padding, mode="edge")
-        image = av.VideoFrame.from_ndarray(padded, format="rgb24")
+        image = self._av.VideoFrame.from_ndarray(padded, format="rgb24")
         with refusals(self._path):
             self._container.mux(self._stream.encode(image))
 

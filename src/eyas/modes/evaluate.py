@@ -22,6 +22,7 @@ from eyas.core.errors import OutputError
 from eyas.core.files import refusals, write_atomic
 from eyas.core.folder_lock import folder_lock
 from eyas.core.machine import describe_machine
+from eyas.core.pyav import pyav
 from eyas.evaluation.fliers import Flier, fly_here
 from eyas.evaluation.plan import Plan, Stamp, batches, check, stamp
 from eyas.evaluation.record import Record, RecordFile, order_records, read_records
@@ -69,6 +70,8 @@ def run(  # noqa: PLR0913  # choices of the user's
     check(plan)
     if plots:
         require_matplotlib()
+    if videos:
+        pyav("--videos")
     made = stamp(plan)
     with folder_lock(out, "evaluating into it"):
         records = _prepared(out, made, resume=resume, overwrite=overwrite)

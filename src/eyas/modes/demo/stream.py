@@ -2,13 +2,11 @@
 
 from fractions import Fraction
 
-import av
 import numpy as np
-from av.video.codeccontext import VideoCodecContext
-from av.video.reformatter import ColorRange, Colorspace
 from numpy.typing import NDArray
 
 from eyas.core.errors import ConfigError
+from eyas.core.pyav import pyav
 
 __all__ = ["Stream"]
 
@@ -31,26 +29,30 @@ class Stream:
         factor: x264's constant rate factor; greater is smaller and blurrier.
 
     Raises:
-        ConfigError: PyAV has been built without x264.
+        ConfigError: PyAV is not installed, or has been built without x264.
     """
 
     def __init__(self, height: int, width: int, factor: int) -> None:
+        av = pyav("pictures: H.264")
         if ENCODER not in av.codecs_available:
             raise ConfigError(f"pictures: H.264 needs a PyAV with {ENCODER}; they go on as JPEG")
+        self._av, self._colours = av, av.video.reformatter
         coder = av.CodecContext.create(ENCODER, "w")
-        assert isinstance(coder, VideoCodecContext)
         coder.height, coder.width, coder.pix_fmt = height, width, "yuv420p"
         coder.time_base = Fraction(1, 30)
-        coder.colorspace, coder.color_range = Colorspace.ITU709.value, ColorRange.MPEG.value
-        coder.color_primaries = coder.color_trc = Colorspace.ITU709.value
+        space, extent = self._colours.Colorspace.ITU709, self._colours.ColorRange.MPEG
+        coder.colorspace, coder.color_range = space.value, extent.value
+        coder.color_primaries = coder.color_trc = space.value
         coder.thread_count = 1
         coder.options = _OPTIONS | {"crf": str(factor)}
         self._coder, self._count = coder, 0
 
     def encode(self, rgb: NDArray[np.uint8]) -> bytes:
         """Return the next picture, shape (H, W, 3), in the format of Annex B."""
-        picture = av.VideoFrame.from_ndarray(rgb, format="rgb24").reformat(
-            format="yuv420p", dst_colorspace=Colorspace.ITU709, dst_color_range=ColorRange.MPEG
+        picture = self._av.VideoFrame.from_ndarray(rgb, format="rgb24").reformat(
+            format="yuv420p",
+            dst_colorspace=self._colours.Colorspace.ITU709,
+            dst_color_range=self._colours.ColorRange.MPEG,
         )
         picture.pts, self._count = self._count, self._count + 1
         return b"".join(bytes(packet) for packet in self._coder.encode(picture))
