@@ -8,8 +8,8 @@ import pytest
 from eyas.exports.capture import frame_of
 from eyas.exports.frame import Action
 from eyas.exports.label import label_of
-from eyas.exports.writer import Episode
 from eyas.exports.others import others_of
+from eyas.exports.writer import Episode
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
 from eyas.sim.worlds import together

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from eyas.core import exact
 from eyas.core.pinhole import project
 from eyas.sim.simulation import Simulation
 from eyas.targets.catalogue import MODELS
@@ -31,7 +32,7 @@ def target_in_words(simulation: Simulation, tracker: int, aspect: float) -> str:
         )
         # The picture is a unit wide, and its middle at (0.5, 0.5). Half a body may be in it.
         half = np.array([0.25 * max(MODELS[one].size) for one in model.tolist()])
-        reach = half / (depth * np.tan(0.5 * float(cameras.field_of_view[tracker])))
+        reach = half / (depth * exact.tan(0.5 * float(cameras.field_of_view[tracker])))
         inside = (np.abs(column - 0.5) < 0.5 + reach) & (depth > 0.0)
         inside &= np.abs(row - 0.5) < 0.5 * aspect + reach
     inside &= actors.present[0]
