@@ -35,7 +35,6 @@ ELSEWHERE = ("cli", "modes", "learning")
 
 ALLOWED = {
     "core/exact.py": "takes their place",
-    "core/elementary.py": "takes their place",
     "evaluation/policies/choice.py": "chances of actions from scores of networks, which BLAS made",
     "render/textures/fields.py: np.fft.rfft2": "not by processor; becomes bytes of textures",
     "render/textures/fields.py: np.fft.irfft2": "the same",
@@ -177,7 +176,7 @@ def test_what_decides_is_the_same_on_every_processor():
             if excuse is None:
                 wrong.append(f"src/eyas/{name}:{line}: {text}")
             used.add(excuse)
-    assert wrong == [], "take eyas.core.exact or eyas.core.elementary instead"
+    assert wrong == [], "take eyas.core.exact instead, in kernels eyas.core.elementary"
     assert set(ALLOWED) <= used, "these exceptions are not needed any more"
 
 

@@ -64,7 +64,7 @@ def chain_through(points: Floats, radius: float, rounds: int) -> Chain:
     """
     sides = np.roll(points, -1, axis=0) - points
     lengths = exact.hypot(sides[:, 0], sides[:, 1])
-    headings = exact.arctan2(sides[:, 1], sides[:, 0])
+    headings = exact.atan2(sides[:, 1], sides[:, 0])
     # Turn at the end of each side.
     turn = np.roll(headings, -1) - headings
     turn = (turn + math.pi) % (2.0 * math.pi) - math.pi

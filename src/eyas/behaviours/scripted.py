@@ -204,7 +204,7 @@ def _lay_some(ground: Ground, table: NDArray[np.void], rate: float) -> None:
     ahead = _SPAN * np.column_stack([exact.cos(rows["yaw"]), exact.sin(rows["yaw"])])
     terrain = ground.scene.terrain
     rise = reliefs(terrain, points + ahead) - reliefs(terrain, points - ahead)
-    table["slope"][here] = exact.arctan(rise / (2.0 * _SPAN))
+    table["slope"][here] = exact.atan(rise / (2.0 * _SPAN))
     table["z"][here] = ground.surface.at(points).height
     # Half the way between the neighbouring samples; a life's ends have one only.
     after, before = np.minimum(np.arange(len(table)) + 1, len(table) - 1), np.arange(len(table)) - 1

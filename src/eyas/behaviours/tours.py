@@ -148,7 +148,7 @@ def _walk(way: Way, along: float, crossing: Crossing, habit: Habit, heading: flo
         first = heading
     path = Chain((*whole.start[:2], first), spin, whole.length[:count], bends)
     over = crossing.line[1] - crossing.line[0]
-    turn = math.remainder(exact.arctan2(over[1], over[0]) - joints(path).yaw[-1], 2.0 * math.pi)
+    turn = math.remainder(exact.atan2(over[1], over[0]) - joints(path).yaw[-1], 2.0 * math.pi)
     return Chain(
         path.start,
         np.append(path.spin, turn),

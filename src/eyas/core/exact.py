@@ -15,18 +15,32 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from eyas.core import elementary_arrays
+from eyas.core.elementary_arrays import (
+    acos,
+    asin,
+    atan,
+    atan2,
+    cos,
+    exp,
+    hypot,
+    log,
+    sin,
+    tan,
+    tanh,
+)
+
 __all__ = [
-    "arccos",
-    "arcsin",
-    "arctan",
-    "arctan2",
+    "acos",
+    "asin",
+    "atan",
+    "atan2",
     "cbrt",
     "convolved",
     "cos",
     "determinant",
     "dot",
     "exp",
-    "expm1",
     "geomspace",
     "hypot",
     "length",
@@ -40,21 +54,6 @@ __all__ = [
     "tanh",
 ]
 
-sin, cos, tan, arcsin, arccos, arctan, arctan2, tanh, exp, log, hypot, expm1 = (
-    np.sin,
-    np.cos,
-    np.tan,
-    np.arcsin,
-    np.arccos,
-    np.arctan,
-    np.arctan2,
-    np.tanh,
-    np.exp,
-    np.log,
-    np.hypot,
-    np.expm1,
-)
-
 _DIGITS = 12
 """Decimal places of random numbers that come of a logarithm of the C library."""
 
@@ -62,19 +61,15 @@ _DIGITS = 12
 def log2(value: ArrayLike) -> Any:  # noqa: ANN401  # a number or an array, as numpy's
     """Return the logarithm to the base 2; exact for powers of 2."""
     part, whole = np.frexp(value)
-    return whole + log(part) / -math.log(0.5)
+    return whole + log(part) / -log(0.5)
 
 
-def power(base: ArrayLike, exponent: float) -> Any:  # noqa: ANN401  # as numpy's
+def power(base: Any, exponent: float) -> Any:  # noqa: ANN401  # as numpy's
     """Return a power of what is not negative; with a whole exponent of anything."""
     if isinstance(exponent, int):
         whole = _whole_power(base, abs(exponent))
         return whole if exponent >= 0 else 1.0 / whole
-    base = np.asarray(base, np.float64)
-    if exponent <= 0.0:
-        return exp(exponent * log(base))
-    positive = base > 0.0
-    return np.where(positive, exp(exponent * log(np.where(positive, base, 1.0))), 0.0)[()]
+    return elementary_arrays.power(base, exponent)
 
 
 def _whole_power(base: ArrayLike, exponent: int) -> Any:  # noqa: ANN401

@@ -25,7 +25,7 @@ def field_along(fov: float, ratio: float) -> float:
         fov: Field of view along two sides [rad].
         ratio: Length of the other sides over the length of these.
     """
-    return float(2.0 * exact.arctan(exact.tan(0.5 * fov) * ratio))
+    return float(2.0 * exact.atan(exact.tan(0.5 * fov) * ratio))
 
 
 def intrinsics(width: int, height: int, fov: float) -> NDArray[np.float64]:

@@ -131,7 +131,7 @@ def _table(place: Floats, yaw: Floats, ground: Ground, rate: float) -> NDArray[n
     on_ground = np.isnan(place[..., 2])
     z = place[..., 2].copy()
     z[on_ground] = ground.surface.at(flat[on_ground.ravel()]).height
-    slope = exact.arctan(rise / (2.0 * _SPAN)).reshape(yaw.shape)
+    slope = exact.atan(rise / (2.0 * _SPAN)).reshape(yaw.shape)
     table = np.zeros(yaw.shape, SAMPLE)
     table["x"], table["y"], table["z"], table["yaw"] = place[..., 0], place[..., 1], z, yaw
     table["slope"] = np.where(on_ground, slope, 0.0)

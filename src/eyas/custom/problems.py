@@ -167,7 +167,7 @@ def of_noise(trajectory: Trajectory) -> Iterator[Finding]:
         seconds = _calming(trajectory)
         calm = smoothed(trajectory, seconds)
         assert calm.velocity is not None  # it is smoothed
-        cut = 0.5 * seconds * float(exact.hypot(*calm.velocity[:, :2].T).max())
+        cut = 0.5 * seconds * float(np.linalg.norm(calm.velocity[:, :2], axis=1).max())
         yield Finding(
             f"its velocity changes by {usual:.1f} m/s^2 most of the time: if these are errors of "
             f"a receiver, custom.smoothing={seconds:g} leaves {_roughness(calm):.1f} m/s^2, and "
@@ -183,7 +183,7 @@ def _calming(trajectory: Trajectory) -> float:
     step = float(np.median(np.diff(begin.time)))
     times = [seconds for seconds in _SMOOTHINGS[:-1] if seconds >= step] + [_SMOOTHINGS[-1]]
     rough = np.array([_roughness(smoothed(begin, seconds)) for seconds in times])
-    calms = -np.diff(exact.log(rough + 1e-9)) / np.diff(exact.log(times))
+    calms = -np.diff(exact.log(rough + 1e-9)) / np.diff(exact.log(np.array(times)))
     enough = (rough[:-1] <= _CALM) | (calms <= _SETTLED)
     return times[int(np.argmax(enough)) if enough.any() else -1]
 

@@ -72,7 +72,9 @@ class Trajectory:
         if self.yaw is not None:
             return place, np.interp(time, knots, self.yaw)
         velocity = (left + f * (2.0 * bend + f * 3.0 * square)) / step
-        swing = 0.0 if self.velocity is None else _SWING * exact.hypot(*slope[:, :2].T).max()
+        swing = (
+            0.0 if self.velocity is None else _SWING * np.linalg.norm(slope[:, :2], axis=1).max()
+        )
         return place, _along(velocity, max(_STANDING, float(swing)))
 
 
@@ -133,4 +135,4 @@ def _along(velocity: Floats, standing: float) -> Floats:
         return np.zeros(len(velocity))
     last = np.maximum.accumulate(np.where(moving, np.arange(len(moving)), -1))
     source = np.where(last < 0, int(np.argmax(moving)), last)
-    return np.unwrap(exact.arctan2(velocity[source, 1], velocity[source, 0]))
+    return np.unwrap(exact.atan2(velocity[source, 1], velocity[source, 0]))

@@ -98,7 +98,7 @@ def _outline(section: Section, hitch: float) -> tuple[Floats, float]:
     x, y, cosine, sine = _folded(hitch, section.towed)
     along, aside = (0.5 * _ENDS * section.size[:2] + (section.ahead, 0.0)).T
     ahead, left = x + cosine * along - sine * aside, y + sine * along + cosine * aside
-    return np.column_stack([ahead, left]), exact.arctan2(sine, cosine)
+    return np.column_stack([ahead, left]), exact.atan2(sine, cosine)
 
 
 def _raised(plan: Floats, height: float, centre: Floats, yaw: float, motion: Movement) -> Floats:

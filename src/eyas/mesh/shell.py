@@ -172,7 +172,7 @@ def _angles(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     behind = np.roll(corners, 1, axis=1) - corners
     length = np.linalg.norm(ahead, axis=2) * np.linalg.norm(behind, axis=2)
     cosine = exact.dot(ahead, behind) / length
-    return np.asarray(exact.arccos(np.clip(cosine, -1.0, 1.0)), np.float64)
+    return np.asarray(exact.acos(np.clip(cosine, -1.0, 1.0)), np.float64)
 
 
 def _normals(corners: NDArray[np.float64], material: NDArray[np.int32]) -> NDArray[np.float64]:

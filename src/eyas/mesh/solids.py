@@ -153,7 +153,7 @@ def sphere(subdivisions: int, material: Material, tile: float = 1.0) -> Mesh:
         cells = [(a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca)]
         corners = np.concatenate([np.stack(cell, axis=1) for cell in cells])
     corners /= np.linalg.norm(corners, axis=2, keepdims=True)
-    around = exact.arctan2(corners[..., 1], corners[..., 0]) * (3.0 / np.pi)
+    around = exact.atan2(corners[..., 1], corners[..., 0]) * (3.0 / np.pi)
     # Triangles across the seam continue beyond it instead of spanning the whole texture.
     around += 6.0 * ((around < 0.0) & (around.max(axis=1, keepdims=True) > around + 3.0))
     flat = np.stack([*np.moveaxis(corners, -1, 0), around, corners[..., 2]], -1).reshape(-1, 5)

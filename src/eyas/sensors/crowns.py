@@ -31,7 +31,7 @@ def crown_slices(mesh: Mesh, low: Row, high: Row) -> list[tuple[float, float, fl
     middle = 0.5 * (low + high)[:2]
     most = 0.25 * float((high - low)[:2].sum())  # the corners of a square stand are further away
     points = _points_on(mesh)
-    away = exact.hypot(*(points[:, :2] - middle).T)
+    away = np.linalg.norm(points[:, :2] - middle, axis=1)
     ends = np.linspace(low[2], high[2], _SLICES + 1)
     slices = []
     for bottom, top in zip(ends[:-1].tolist(), ends[1:].tolist(), strict=True):

@@ -66,7 +66,7 @@ def d_vat_3d(  # one argument for each quantity
     looks straight ahead; with a camera that looks down, that would be 0 everywhere.
     """
     ahead, _, above = target_position_camera.T
-    angle = exact.arctan2(above, ahead)
+    angle = exact.atan2(above, ahead)
     upright = np.maximum(0.0, 1.0 - np.abs(2.0 * angle / vertical_field_of_view))
     kept = _kept(target_position_body, first_position_body)
     return _joined(kept * _level(target_position_body, field_of_view) * upright, late_crash)
@@ -94,7 +94,7 @@ def _kept(target: Floats, first: Floats) -> Floats:
 def _level(target: Floats, field_of_view: Floats) -> Floats:
     """Return how near the target is to straight ahead, sideways."""
     # atan(y / x) is the angle of a line: what is behind counts like what is ahead.
-    angle = exact.arctan2(np.abs(target[:, 1]), np.abs(target[:, 0]))
+    angle = exact.atan2(np.abs(target[:, 1]), np.abs(target[:, 0]))
     return np.maximum(0.0, 1.0 - 2.0 / field_of_view * angle)
 
 

@@ -35,7 +35,7 @@ def _target_in_camera(snapshot: Snapshot) -> NDArray[np.float64]:
 
 def _vertical_field(snapshot: Snapshot, setting: Setting) -> NDArray[np.float64]:
     half = setting.aspect * exact.tan(0.5 * snapshot.cameras.field_of_view)
-    return np.asarray(2.0 * exact.arctan(half), np.float64)
+    return np.asarray(2.0 * exact.atan(half), np.float64)
 
 
 def _visible(snapshot: Snapshot, setting: Setting) -> NDArray[np.bool_]:

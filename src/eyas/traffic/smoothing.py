@@ -95,7 +95,7 @@ def smooth(recording: Recording) -> Tracks:
         present = recording.present[:, actor]
         tracks.position[:, actor] = held(tracks.position[:, actor], present)
         tracks.yaw[:, actor] = held(tracks.yaw[:, actor], present)
-        step = exact.hypot(*np.diff(tracks.position[:, actor], axis=0).T)
+        step = np.linalg.norm(np.diff(tracks.position[:, actor], axis=0), axis=1)
         step[~(present[1:] & present[:-1])] = 0.0
         tracks.travelled[1:, actor] = np.cumsum(step)
     return tracks

@@ -70,7 +70,7 @@ class Links(NamedTuple):
         truck = heading - bend
         ahead = half - _REFERENCE
         east, north = front - centre - ahead * np.array([exact.cos(heading), exact.sin(heading)])
-        turn = math.remainder(exact.arctan2(north, east) - truck, 2.0 * math.pi)
+        turn = math.remainder(exact.atan2(north, east) - truck, 2.0 * math.pi)
         return cls(truck + turn, truck, truck + hitch)
 
 
@@ -101,7 +101,7 @@ def tow(front: Floats, length: float, links: Links) -> Articulated:
     trailer = follow_headings(kingpin, links.trailer, AXLES_BEHIND)
     tail, hitch = kingpin - TAIL_BEHIND * _directions(trailer), trailer - truck
     along = BUMPER_AHEAD + TAIL_BEHIND * exact.cos(hitch)
-    heading = truck + exact.arctan2(TAIL_BEHIND * exact.sin(hitch), along)
+    heading = truck + exact.atan2(TAIL_BEHIND * exact.sin(hitch), along)
     return Articulated(0.5 * (bumper + tail) + _REFERENCE * _directions(heading), heading, hitch)
 
 
@@ -129,7 +129,7 @@ def _chord(hitch: float) -> tuple[float, float]:
     """Return the angle from the truck to the chord [rad], and half the chord's length [m]."""
     along = BUMPER_AHEAD + TAIL_BEHIND * exact.cos(hitch)
     aside = TAIL_BEHIND * exact.sin(hitch)
-    return exact.arctan2(aside, along), 0.5 * exact.hypot(along, aside)
+    return exact.atan2(aside, along), 0.5 * exact.hypot(along, aside)
 
 
 def _directions(heading: Floats) -> Floats:

@@ -23,7 +23,7 @@ _LOG = logging.getLogger("eyas")
 
 _ROOT = Path(__file__).parents[2]
 
-_ALWAYS = ("core/exact.py",)
+_ALWAYS = ("core/elementary", "core/elementary_arrays.py", "core/exact.py")
 """Makers of whatever is kept: on their last bits everything depends."""
 
 _LONG = 1.0

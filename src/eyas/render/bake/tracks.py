@@ -137,7 +137,7 @@ def _crossings(network: RoadNetwork) -> Iterator[Line]:
                 continue
             from_, onto = np.diff(lines[lanes[here][0]][-2:], axis=0)[0], lines[lanes[there][0]]
             ahead = onto[1] - onto[0]
-            angle = exact.arctan2(
+            angle = exact.atan2(
                 from_[0] * ahead[1] - from_[1] * ahead[0], exact.product(from_, ahead)
             )
             if abs(angle) > _BACK:

@@ -39,7 +39,7 @@ def frame_angle(block: shapely.Polygon) -> float:
     corners = shapely.get_coordinates(shapely.minimum_rotated_rectangle(block))
     sides = np.diff(corners, axis=0)[:2]
     longest = sides[int(np.argmax(np.linalg.norm(sides, axis=1)))]
-    angle = float(exact.arctan2(longest[1], longest[0]))
+    angle = float(exact.atan2(longest[1], longest[0]))
     # Streets along an axis are common, so they must lie inside the range, not at its ends.
     return round((angle + math.pi / 8) % math.pi - math.pi / 8, 9)
 

@@ -54,7 +54,7 @@ def add_rooftop(builder: SceneBuilder, outline: Outline, top: float, owner: int,
     free = shapely.buffer(shape, -_FROM_PARAPET, join_style="mitre")
     free = shapely.difference(free, shapely.buffer(keep_free, 1.0))
     axis = outline[1] - outline[0]
-    turn = float(exact.arctan2(axis[1], axis[0]))
+    turn = float(exact.atan2(axis[1], axis[0]))
     for kind in _wanted(free.area, top, rng):
         spot = _spot(free, _ROOM[kind], rng)
         if spot is not None:

@@ -50,7 +50,7 @@ class Mound:
         """
         away = (points - (self.x, self.y)) / self.radius
         if self.phases:
-            angle = exact.arctan2(away[:, 1], away[:, 0])
+            angle = exact.atan2(away[:, 1], away[:, 0])
             wave = sum(
                 exact.sin((k + 2) * angle + phase) / (k + 1) for k, phase in enumerate(self.phases)
             )

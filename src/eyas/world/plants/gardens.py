@@ -138,7 +138,7 @@ def add_row(
         rng: Random numbers of the gardens.
     """
     whole, along = length(line[1] - line[0]), unit(line[1] - line[0])
-    turn = float(exact.arctan2(along[1], along[0]))
+    turn = float(exact.atan2(along[1], along[0]))
     step = whole / max(round(whole / PIECE), 1)
     for at in np.arange(step / 2, whole, step):
         middle = line[0] + at * along

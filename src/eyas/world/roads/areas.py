@@ -230,7 +230,7 @@ def _bends(network: RoadNetwork) -> list[tuple[Line, float]]:
         if len(others) == 1 and meeting[node] == 2:
             onwards, back = np.diff(one, axis=0)[0], np.diff(others[0], axis=0)[0]
             sine = onwards[0] * back[1] - onwards[1] * back[0]
-            angle = np.pi - abs(exact.arctan2(sine, dot(onwards, back)))
+            angle = np.pi - abs(exact.atan2(sine, dot(onwards, back)))
             bends.append(((one[1] + others[0][1]) / 2, float(angle)))
     return bends
 

@@ -27,11 +27,11 @@ def arc(before: Points, corner: Points, after: Points, radius: float) -> Points:
         radius: Radius of the arc [m].
     """
     back, onwards = unit(before - corner), unit(after - corner)
-    half = 0.5 * exact.arccos(np.clip(dot(back, onwards), -1.0, 1.0))
+    half = 0.5 * exact.acos(np.clip(dot(back, onwards), -1.0, 1.0))
     reach = radius / exact.tan(half)
     centre = corner + unit(back + onwards) * radius / exact.sin(half)
     first, last = corner + reach * back - centre, corner + reach * onwards - centre
-    turn = exact.arctan2(first[0] * last[1] - first[1] * last[0], dot(first, last))
+    turn = exact.atan2(first[0] * last[1] - first[1] * last[0], dot(first, last))
     steps = max(3, int(np.ceil(abs(turn) / np.radians(5.0))))
     angle = np.linspace(0.0, turn, steps + 1)[:, None]
     return rounded(centre + exact.cos(angle) * first + exact.sin(angle) * [-first[1], first[0]])
@@ -57,7 +57,7 @@ def joined(before: Points, after: Points) -> Points:
     # From the ends of both lines to the point where they would meet; negative if they cross.
     left, right = _cross(gap, further) / sine, _cross(onwards, gap) / sine
     corner = before[-1] + left * onwards
-    angle = float(exact.arctan2(abs(sine), dot(onwards, further)))
+    angle = float(exact.atan2(abs(sine), dot(onwards, further)))
     reach = max(left, right, turn_reach(angle))
     bend = arc(corner - onwards, corner, corner + further, reach / exact.tan(angle / 2))
     return np.concatenate([before[:-1], bend, after[1:]])

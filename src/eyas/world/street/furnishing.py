@@ -92,6 +92,6 @@ def _places(
             )
             onwards = unit(there - here)
             leftwards = np.array([-onwards[1], onwards[0]])
-            turn = float(exact.arctan2(leftwards[1], leftwards[0]) - np.pi / 2)
+            turn = float(exact.atan2(leftwards[1], leftwards[0]) - np.pi / 2)
             made.append((here - rule.beyond_kerb * leftwards, turn))
     return made

@@ -137,7 +137,7 @@ def _candidates(network: RoadNetwork) -> tuple[NDArray[np.float64], NDArray[np.f
         onwards = (there - here) / 0.1
         leftwards = np.stack([-onwards[:, 1], onwards[:, 0]], axis=1)
         feet.append(here - BEYOND_KERB * leftwards)
-        turns.append(exact.arctan2(leftwards[:, 1], leftwards[:, 0]))
+        turns.append(exact.atan2(leftwards[:, 1], leftwards[:, 0]))
     return np.concatenate(feet), np.concatenate(turns)
 
 

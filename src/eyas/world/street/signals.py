@@ -93,7 +93,7 @@ def pole_at(street: "Street") -> tuple[tuple[float, float], float]:
     onwards = unit(street.right[-1] - street.right[-2])
     leftwards = np.array([-onwards[1], onwards[0]])
     foot = street.right[-1] - _BEYOND_KERB * leftwards - _BEFORE_LINE * onwards
-    return (float(foot[0]), float(foot[1])), float(exact.arctan2(leftwards[1], leftwards[0]))
+    return (float(foot[0]), float(foot[1])), float(exact.atan2(leftwards[1], leftwards[0]))
 
 
 def add_signals(builder: SceneBuilder, network: RoadNetwork) -> None:

@@ -113,7 +113,7 @@ def _tongues(roads: shapely.Geometry, rng: np.random.Generator) -> list[shapely.
             half = (rng.uniform(2.5, 9.0), rng.uniform(0.35, 1.0))
             if rng.random() < _TONGUES and length(there - here) > 0.1:
                 onwards = unit(there - here)
-                turn = exact.arctan2(onwards[1], onwards[0])
+                turn = exact.atan2(onwards[1], onwards[0])
                 made.append(blob(here, half, turn, rng, corners=16))
     return made
 
@@ -137,7 +137,7 @@ def _drifts(ways: Sequence[Street], rng: np.random.Generator) -> list[Drift]:
             continue
         places.append(here)
         onwards = unit(there - here)
-        turn = exact.arctan2(onwards[1], onwards[0]) + float(rng.uniform(-_ASKEW, _ASKEW))
+        turn = exact.atan2(onwards[1], onwards[0]) + float(rng.uniform(-_ASKEW, _ASKEW))
         half = (_DRIFT[0] / 2 * rng.uniform(0.9, 1.1), _DRIFT[1] / 2 * rng.uniform(0.9, 1.1))
         area = blob(here, half, turn, rng)
         fringe = blob(here, (half[0] + 3.2, half[1] + 2.0), turn, rng)
@@ -165,7 +165,7 @@ def _houses(
             onwards = unit(there - here)
             right = side * np.array([onwards[1], -onwards[0]])
             away = 8.0 + rng.uniform(*_SETBACKS) + SIDE / 2
-            turn = exact.arctan2(-right[1], -right[0]) - math.pi / 2
+            turn = exact.atan2(-right[1], -right[0]) - math.pi / 2
             house = Cottage(rounded(here + away * right), round(turn, 4), 3, int(rng.integers(3)))
             shape = shapely.Polygon(house.outline)
             near = any(shapely.distance(shape, other) < 6.0 for other in shapes)

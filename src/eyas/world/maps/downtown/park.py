@@ -196,5 +196,5 @@ def _benches(trails: shapely.Geometry, taken: shapely.Geometry, inner: shapely.G
                     if not taken.intersects(shapely.Point(place).buffer(0.6)) and inner.contains(
                         shapely.Point(place)
                     ):
-                        made.append([*place, round(exact.arctan2(-out[1], -out[0]), 6)])
+                        made.append([*place, round(exact.atan2(-out[1], -out[0]), 6)])
     return np.array(made).reshape(-1, 3)

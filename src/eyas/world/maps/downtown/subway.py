@@ -61,7 +61,7 @@ def add_entrances(
             and rng.random() < _SHARE
             and not shapely.intersects(keep_free, shapely.Point(place).buffer(0.5 * _WIDE + 0.4))
         ):
-            turn = float(exact.arctan2(onwards[1], onwards[0]))
+            turn = float(exact.atan2(onwards[1], onwards[0]))
             spot = (float(place[0]), float(place[1]), KERB_HEIGHT)
             owner = builder.add_copy(ObjectClass.STRUCTURE, kind, spot, turn, 1.0)
             half = 0.5 * np.array([_LONG, _WIDE])

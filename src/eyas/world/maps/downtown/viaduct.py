@@ -78,7 +78,7 @@ class Viaduct:
     @property
     def turn(self) -> float:
         """Its direction [rad]."""
-        return float(exact.arctan2(self.along[1], self.along[0]))
+        return float(exact.atan2(self.along[1], self.along[0]))
 
     def at(self, place: float, aside: float = 0.0) -> Points:
         """Return a point of the line, or to the left of it, in whole millimetres [m]."""

@@ -112,5 +112,5 @@ def _lamp_places(network: RoadNetwork, seed: int) -> list[tuple[tuple[float, flo
         # One for each direction: beyond the middle of the link, on the right.
         middle = at[start] + along / 2 + _LAMPS_APART / 2 * onwards
         foot = middle - (ROAD_WIDTH / 2 + _FROM_KERB) * leftwards
-        places.append(((float(foot[0]), float(foot[1])), float(exact.arctan2(*leftwards[::-1]))))
+        places.append(((float(foot[0]), float(foot[1])), float(exact.atan2(*leftwards[::-1]))))
     return places

@@ -80,7 +80,7 @@ def add_lamps_at(
         ends = shapely.get_coordinates(
             shapely.shortest_line(point, lanes[int(tree.nearest(point))])
         )
-        turn = round(float(exact.arctan2(*(ends[1] - ends[0])[::-1])), 6)
+        turn = round(float(exact.atan2(*(ends[1] - ends[0])[::-1])), 6)
         onto_road = np.array([exact.cos(turn), exact.sin(turn)])
         owner = builder.add_copy(ObjectClass.POLE, prototype, (x, y, 0.0), turn, 1.0)
         builder.add_cylinder((x, y), POLE_RADIUS, FLOOR_HEIGHT, POLE_HEIGHT, owner)

@@ -120,7 +120,7 @@ def _add_tunnels(builder: SceneBuilder, plan: Plan, rng: np.random.Generator) ->
         owner = builder.add(ObjectClass.STRUCTURE, mesh)
         for outline, bottom, top in tunnel_prisms(tunnel, FLOOR_HEIGHT):
             builder.add_prism(outline, bottom, top, owner)
-        turn = float(exact.arctan2(tunnel.along[1], tunnel.along[0]))
+        turn = float(exact.atan2(tunnel.along[1], tunnel.along[0]))
         for at in (-11.0, 11.0):
             spot = tunnel.placed(np.array([at, 0.0]))
             builder.add_copy(ObjectClass.STRUCTURE, case, (*spot.tolist(), 6.75), turn, 1.0, owner)
