@@ -5,6 +5,7 @@ Its kernels get the address of their arguments (`eyas.core.parallel`): unpacking
 at each call would take four times as long as a step of one tracker.
 """
 
+import math
 from collections.abc import Callable
 from functools import lru_cache
 from typing import Any, NamedTuple
@@ -12,7 +13,6 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core import exact
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.jit import specialised, step_kernel
 from eyas.core.parallel import BoundKernel, Held, Pointer, parallel_kernel
@@ -200,7 +200,7 @@ def _begin(parts: Parts, worker: int, workers: int) -> None:
         start(trackers, memory, n, x, y, z, yaw, pitch[k])
         if launched == 1:
             speed, way = targets.speed[n], targets.yaw[n]
-            launch(trackers, memory, n, speed * exact.cos(way), speed * exact.sin(way))
+            launch(trackers, memory, n, speed * math.cos(way), speed * math.sin(way))
         rest(trackers, n, share)
         aim(trackers, memory, cameras, n)
         carried(trackers, cameras, n, mount)
