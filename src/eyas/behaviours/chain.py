@@ -6,6 +6,8 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
+
 __all__ = ["Chain", "Poses", "chain_of", "chain_through", "joints", "outline", "poses_on"]
 
 _SHARP: Final = 2.0
@@ -61,13 +63,13 @@ def chain_through(points: Floats, radius: float, rounds: int) -> Chain:
         rounds: How often the path is gone round.
     """
     sides = np.roll(points, -1, axis=0) - points
-    lengths = np.hypot(sides[:, 0], sides[:, 1])
-    headings = np.arctan2(sides[:, 1], sides[:, 0])
+    lengths = exact.hypot(sides[:, 0], sides[:, 1])
+    headings = exact.atan2(sides[:, 1], sides[:, 0])
     # Turn at the end of each side.
     turn = np.roll(headings, -1) - headings
     turn = (turn + math.pi) % (2.0 * math.pi) - math.pi
     sharp = np.abs(turn) > _SHARP
-    half = np.tan(0.5 * np.where(sharp, 0.0, np.abs(turn)))
+    half = exact.tan(0.5 * np.where(sharp, 0.0, np.abs(turn)))
     cut = np.minimum(radius * half, 0.45 * np.minimum(lengths, np.roll(lengths, -1)))
     line = lengths - cut - np.roll(cut, 1)
     rounded = (half > 1e-6) & ~sharp
@@ -127,5 +129,6 @@ def outline(chain: Chain) -> Floats:
 def _moved(yaw: Floats, along: Floats, bend: Floats) -> tuple[Floats, Floats]:
     """Return how far east and north an arc leads [m]."""
     turned = 0.5 * bend * along
-    chord = along * np.sinc(turned / math.pi)
-    return chord * np.cos(yaw + turned), chord * np.sin(yaw + turned)
+    straight = turned == 0.0
+    chord = along * np.where(straight, 1.0, exact.sin(turned) / np.where(straight, 1.0, turned))
+    return chord * exact.cos(yaw + turned), chord * exact.sin(yaw + turned)

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from eyas.behaviours.obstacles import Obstacles
 from eyas.behaviours.pavements import LANES, Way
+from eyas.core import exact
 from eyas.state.scene import ObjectClass, Scene
 from eyas.world.roads.areas import joints, streets
 
@@ -78,7 +79,7 @@ def crossings_of(
             if joined is None:
                 continue
             there, back, line = joined
-            kerb = [float(np.hypot(*(a - b))) for a, b in zip(line, one[:2], strict=True)]
+            kerb = [float(exact.hypot(*(a - b))) for a, b in zip(line, one[:2], strict=True)]
             found.append(Crossing(*there, *back, line, number, one.light, kerb[0]))
             found.append(Crossing(*back, *there, line[::-1], number, one.light, kerb[1]))
     return found
@@ -118,7 +119,7 @@ def _free(side: _Side, one: _Paint, obstacles: Obstacles, radius: float) -> _Joi
 
 def _between(side: _Side, one: _Paint, aside: float) -> _Joined | None:
     """Return the ways that a crossing joins, the places on them, and the line between [m]."""
-    onwards = (one.left - one.right)[::-1] * [1.0, -1.0] / np.hypot(*(one.left - one.right))
+    onwards = (one.left - one.right)[::-1] * [1.0, -1.0] / exact.hypot(*(one.left - one.right))
     right, left = one.right + aside * onwards, one.left + aside * onwards
     begin, end = _joint(side, right, left, one.beyond), _joint(side, left, right, one.beyond)
     if begin is None or end is None:
@@ -144,9 +145,9 @@ def _across(scene: Scene) -> list[tuple[Floats, Floats]]:
         if meeting[street.end] < 3 or len(street.right) < 2:
             continue
         onwards = street.right[-1] - street.right[-2]
-        onwards /= max(float(np.hypot(*onwards)), 1e-9)
+        onwards /= max(float(exact.hypot(*onwards)), 1e-9)
         leftwards = np.array([-onwards[1], onwards[0]])
-        width = float((street.left[-1] - street.right[-1]) @ leftwards)
+        width = float(exact.product(street.left[-1] - street.right[-1], leftwards))
         right = street.right[-1] + _BEYOND * onwards
         sides = 2.0 if (street.end, street.start) in ways else 1.0
         made.append((right, right + sides * width * leftwards))
@@ -161,7 +162,7 @@ def _painted(scene: Scene, across: list[tuple[Floats, Floats]]) -> list[tuple[Fl
     tree = shapely.STRtree(shapely.polygons(paint) if len(paint) else [])
     kept = []
     for right, left in across:
-        count = max(int(np.hypot(*(left - right)) / _STEP), 1)
+        count = max(int(exact.hypot(*(left - right)) / _STEP), 1)
         share = (np.arange(count) + 0.5)[:, None] / count
         points = shapely.points(right + share * (left - right))
         on_paint = np.unique(tree.query(points, predicate="intersects")[0])
@@ -174,7 +175,7 @@ def _joint(
     side: _Side, kerb: Floats, opposite: Floats, beyond: float
 ) -> tuple[int, float, Floats] | None:
     """Return the way nearest to a kerb on the line from the other kerb, and the place on it."""
-    outwards = (kerb - opposite) / np.hypot(*(kerb - opposite))
+    outwards = (kerb - opposite) / exact.hypot(*(kerb - opposite))
     line = shapely.LineString([0.5 * (kerb + opposite), kerb + beyond * outwards])
     best, place = np.inf, None
     reach = _BESIDE if beyond < _PAVED else 0.0
@@ -183,7 +184,7 @@ def _joint(
         met = shapely.get_coordinates(shapely.intersection(ring, line))
         if not len(met):
             met = shapely.get_coordinates(shapely.shortest_line(ring, line))[:1]
-        away = (met - kerb) @ outwards
+        away = exact.product(met - kerb, outwards)
         if away.min() < best:
             best = float(away.min())
             along = float(ring.project(shapely.Point(met[away.argmin()])))

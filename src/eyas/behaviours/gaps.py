@@ -6,6 +6,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.core.jit import interpreted
 from eyas.state.motion import Motion
 from eyas.targets.catalogue import KINDS, MODELS, models_of, sections_of
@@ -150,15 +151,17 @@ def _fleet(vehicles: Motion, kind: int, samples: int) -> _Fleet:
 def _met_by(fleet: _Fleet, line: Floats, clear: float) -> NDArray[np.int64]:
     """Return at which samples a vehicle is on a line, see `Gaps`; some more than once."""
     middle, across = line.mean(axis=0), line[1] - line[0]
-    reach = 0.5 * float(np.hypot(*across)) + fleet.reach + clear
+    reach = 0.5 * float(exact.hypot(*across)) + fleet.reach + clear
     sample, actor = np.nonzero(
         (np.abs(fleet.x - middle[0]) < reach) & (np.abs(fleet.y - middle[1]) < reach)
     )
     own, met = fleet.rows[sample, actor], []
     for section in fleet.sections:
         x, y = _axis(own, section, fleet.middle) - line[0][:, None, None]
-        share = np.clip((x * across[0] + y * across[1]) / max(across @ across, 1e-9), 0.0, 1.0)
-        away = np.hypot(x - share * across[0], y - share * across[1])
+        share = np.clip(
+            (x * across[0] + y * across[1]) / max(exact.product(across, across), 1e-9), 0.0, 1.0
+        )
+        away = exact.hypot(x - share * across[0], y - share * across[1])
         met.append(sample[away.min(axis=1, initial=np.inf) < 0.5 * section.size[1] + clear])
     return np.concatenate(met)
 
@@ -188,7 +191,7 @@ def _axis(own: NDArray[np.void], section: Section, middle: float) -> Floats:
     x, y, c, s = _folded(own["hitch"], section.towed)
     # Where their reference points would be if they were straight, from where they are.
     x, y = x + middle * (1.0 - c), y - middle * s
-    cosine, sine = np.cos(own["yaw"]), np.sin(own["yaw"])
+    cosine, sine = exact.cos(own["yaw"]), exact.sin(own["yaw"])
     place = np.stack([own["x"] + cosine * x - sine * y, own["y"] + sine * x + cosine * y])
     heading = np.stack([cosine * c - sine * s, sine * c + cosine * s])
     length = section.size[0]

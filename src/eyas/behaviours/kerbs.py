@@ -11,6 +11,7 @@ from shapely.ops import substring
 from eyas.behaviours.obstacles import Obstacles
 from eyas.behaviours.pavements import Way, along, bridged, is_hard, paved_parts
 from eyas.behaviours.surface import Surface
+from eyas.core import exact
 from eyas.state.motion import Motion
 from eyas.state.scene import Footways
 from eyas.targets.catalogue import KINDS, MODELS, models_of
@@ -128,7 +129,7 @@ def _swept(vehicles: Motion) -> NDArray[np.object_]:
         length, width, _ = np.array([MODELS[model].size for model in models_of(kind)]).max(axis=0)
         ahead = KINDS[kind].ahead + 0.5 * length * np.array([-1.0, 1.0, 1.0, -1.0])
         aside = 0.5 * width * np.array([-1.0, -1.0, 1.0, 1.0])
-        cosine, sine = np.cos(yaw)[:, None], np.sin(yaw)[:, None]
+        cosine, sine = exact.cos(yaw)[:, None], exact.sin(yaw)[:, None]
         east = x[:, None] + ahead * cosine - aside * sine
         north = y[:, None] + ahead * sine + aside * cosine
         made.append(shapely.polygons(np.stack([east, north], axis=2)))

@@ -6,6 +6,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.state.scene import Fixtures, ObjectClass, Scene
 from eyas.state.terrain import Terrain, reliefs
 from eyas.world.roads.areas import corridors, split_on_grid
@@ -83,7 +84,7 @@ class Obstacles:
             far: The most that is returned [m].
             radius: Distance to obstacles that is kept [m].
         """
-        end = start + far * np.column_stack([np.cos(direction), np.sin(direction)])
+        end = start + far * np.column_stack([exact.cos(direction), exact.sin(direction)])
         lines = shapely.linestrings(np.stack([start, end], axis=1))
         which, what = self._tree.query(lines, predicate="dwithin", distance=radius)
         # A polygon around the obstacle, a little larger than the circle of eight edges in it.
@@ -112,7 +113,7 @@ def _cylinders(scene: Scene) -> NDArray[np.object_]:
     centre = colliders.cylinder_centre
     kept = _in_the_way(scene, centre, colliders.cylinder_bottom, colliders.cylinder_top)
     # Its polygon of 16 corners lies outside the circle.
-    radius = colliders.cylinder_radius[kept] / np.cos(np.pi / 16)
+    radius = colliders.cylinder_radius[kept] / exact.cos(np.pi / 16)
     return np.asarray(shapely.buffer(shapely.points(centre[kept]), radius, quad_segs=4), object)
 
 
@@ -142,7 +143,7 @@ def _fixtures(fixtures: Fixtures, *, as_placed: bool) -> NDArray[np.object_]:
             ring = _outline(levels[0].positions, size)
             if ring is not None:
                 own = pose[scale == size]
-                placed = np.einsum("fij,kj->fki", own[:, :2, :2], ring) + own[:, None, :2, 3]
+                placed = exact.product(ring, own[:, :2, :2].swapaxes(1, 2)) + own[:, None, :2, 3]
                 shapes += list(shapely.polygons(placed))
     return np.array(shapes, object)
 

@@ -7,6 +7,7 @@ import shapely
 from numpy.typing import NDArray
 
 from eyas.behaviours.obstacles import Obstacles
+from eyas.core import exact
 from eyas.core.errors import SpawnError
 from eyas.core.variation import Variation, bounds, sample
 from eyas.state.roads import RoadNetwork
@@ -105,7 +106,7 @@ class Roadside:
             for way in (along, before, after)
         )
         onwards = high - low
-        onwards /= np.maximum(np.hypot(onwards[:, 0], onwards[:, 1]), 1e-9)[:, None]
+        onwards /= np.maximum(exact.hypot(onwards[:, 0], onwards[:, 1]), 1e-9)[:, None]
         return _Middle(here, np.column_stack([-onwards[:, 1], onwards[:, 0]]))
 
 

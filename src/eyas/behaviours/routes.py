@@ -13,6 +13,7 @@ from eyas.behaviours.config import Behaviour
 from eyas.behaviours.habits import Habit
 from eyas.behaviours.obstacles import Obstacles
 from eyas.behaviours.timetable import time_of
+from eyas.core import exact
 
 __all__ = ["Task", "legs", "polylines", "round_and_round", "stops", "wave_of"]
 
@@ -76,7 +77,7 @@ def polylines(task: Task) -> list[Chain]:
     for round_ in range(_ROUNDS):
         if not len(open_):
             break
-        around = _AROUND * 0.95**round_
+        around = _AROUND * exact.power(0.95, round_)
         count = task.rng.integers(2, 5, len(open_)).tolist()
         aside = task.rng.uniform(-around, around, (len(open_), 4, 2))
         aside[:, 0] = 0.0
@@ -114,7 +115,7 @@ def stops(task: Task) -> list[Chain]:
     for round_ in range(_ROUNDS):
         if not len(open_):
             break
-        distance = habit.distance * 0.97**round_
+        distance = habit.distance * exact.power(0.97, round_)
         tried = []
         for life in open_.tolist():
             start = (*task.start[life].tolist(), float(task.rng.uniform(-math.pi, math.pi)))
@@ -157,7 +158,7 @@ def legs(task: Task, behaviour: Behaviour) -> list[Chain]:
             if wave:
                 made, onwards = wave.leg(turn[k], way[k])
             heading[life] += turn[k]
-            at[life] += onwards * np.array([math.cos(heading[life]), math.sin(heading[life])])
+            at[life] += onwards * np.array([exact.cos(heading[life]), exact.sin(heading[life])])
             pieces[life] += made
             # What has no way out stands still.
             left[life] -= max(time_of(chain_of(made, (0.0, 0.0, 0.0)), habit), _LEAST)
@@ -222,7 +223,7 @@ class Wave(NamedTuple):
         if count == 0:
             return [(turn + self.swing, way, 0.0), (-self.swing, 0.0, 0.0)], way
         place = 2.0 * math.pi / _PIECES * np.arange(_PIECES + 1)
-        bends = -self.swing * np.diff(np.cos(place)) * _PIECES / self.period
+        bends = -self.swing * np.diff(exact.cos(place)) * _PIECES / self.period
         once = [(0.0, self.period / _PIECES, bend) for bend in bends.tolist()]
         many = once * count
         return [(turn, *many[0][1:]), *many[1:]], count * self.onwards

@@ -20,6 +20,7 @@ from eyas.behaviours.routes import Task, legs, polylines, round_and_round, stops
 from eyas.behaviours.timetable import Ride, ride, time_of
 from eyas.behaviours.tours import Streets, Tour, tour, tour_ride
 from eyas.behaviours.troop import Clock, Troop
+from eyas.core import exact
 from eyas.core.errors import SpawnError
 from eyas.state.motion import SAMPLE, Motion
 from eyas.state.terrain import reliefs
@@ -90,8 +91,8 @@ def scripted_table(
         motion = course.ride(np.arange(leaves - enters + 1) / clock.rate)
         rows = table[enters : leaves + 1, slot]
         rows["x"], rows["y"], rows["yaw"] = motion.poses
-        rows["velocity_x"] = motion.speed * np.cos(motion.poses.yaw)
-        rows["velocity_y"] = motion.speed * np.sin(motion.poses.yaw)
+        rows["velocity_x"] = motion.speed * exact.cos(motion.poses.yaw)
+        rows["velocity_y"] = motion.speed * exact.sin(motion.poses.yaw)
         rows["yaw_rate"], rows["travelled"] = motion.yaw_rate, motion.travelled
         rows["present"] = 1.0
     _lay(ground, table, clock.rate)
@@ -200,10 +201,10 @@ def _lay_some(ground: Ground, table: NDArray[np.void], rate: float) -> None:
     here = table["present"] > 0.0
     rows = table[here]
     points = np.column_stack([rows["x"], rows["y"]]).astype(np.float64)
-    ahead = _SPAN * np.column_stack([np.cos(rows["yaw"]), np.sin(rows["yaw"])])
+    ahead = _SPAN * np.column_stack([exact.cos(rows["yaw"]), exact.sin(rows["yaw"])])
     terrain = ground.scene.terrain
     rise = reliefs(terrain, points + ahead) - reliefs(terrain, points - ahead)
-    table["slope"][here] = np.arctan(rise / (2.0 * _SPAN))
+    table["slope"][here] = exact.atan(rise / (2.0 * _SPAN))
     table["z"][here] = ground.surface.at(points).height
     # Half the way between the neighbouring samples; a life's ends have one only.
     after, before = np.minimum(np.arange(len(table)) + 1, len(table) - 1), np.arange(len(table)) - 1

@@ -45,10 +45,10 @@ def ride(chain: Chain, habit: Habit, time: Floats) -> Ride:
     # Phases that last no time are passed over, as the last of those that begin at once is found.
     passed = np.minimum(time - start[phase], duration[phase])
     piece, spinning = phase // _PHASES, phase % _PHASES == 0
-    way = v * duration + 0.5 * rate * duration**2
+    way = v * duration + 0.5 * rate * np.square(duration)
     done = np.cumsum(way) - way
     first = done[::_PHASES]
-    travelled = done[phase] + v[phase] * passed + 0.5 * rate[phase] * passed**2
+    travelled = done[phase] + v[phase] * passed + 0.5 * rate[phase] * np.square(passed)
     along = np.clip(travelled - first[piece], 0.0, chain.length[piece])
     poses = poses_on(chain, piece, along)
     left = np.where(duration[phase] > 0.0, 1.0 - passed / np.maximum(duration[phase], 1e-12), 0.0)
@@ -78,9 +78,9 @@ def _speeds(chain: Chain, habit: Habit) -> tuple[Floats, Floats]:
     joint[:-1][chain.spin != 0.0] = 0.0
     gain = 2.0 * habit.acceleration * chain.length
     for i, more in enumerate(gain):
-        joint[i + 1] = min(joint[i + 1], np.sqrt(joint[i] ** 2 + more))
+        joint[i + 1] = min(joint[i + 1], np.sqrt(np.square(joint[i]) + more))
     for i in range(len(gain) - 1, -1, -1):
-        joint[i] = min(joint[i], np.sqrt(joint[i + 1] ** 2 + gain[i]))
+        joint[i] = min(joint[i], np.sqrt(np.square(joint[i + 1]) + gain[i]))
     return joint[:-1], joint[1:]
 
 
@@ -95,10 +95,10 @@ def _phases(
 ) -> tuple[Floats, Floats, Floats]:
     """Return duration [s], first speed [m/s] and acceleration [m/s^2] of all phases, (4 M,)."""
     gain = habit.acceleration
-    top = np.sqrt(gain * chain.length + 0.5 * (begin**2 + end**2))
+    top = np.sqrt(gain * chain.length + 0.5 * (np.square(begin) + np.square(end)))
     top = np.maximum(np.minimum(_caps(chain, habit), top), np.maximum(begin, end))
     up, down = (top - begin) / gain, (top - end) / gain
-    ramps = (top**2 - begin**2 + top**2 - end**2) / (2.0 * gain)
+    ramps = (np.square(top) - np.square(begin) + np.square(top) - np.square(end)) / (2.0 * gain)
     flat = np.maximum(chain.length - ramps, 0.0) / np.maximum(top, 1e-9)
     zero = np.zeros_like(top)
     duration = np.column_stack([np.abs(chain.spin) / habit.yaw_rate, up, flat, down]).ravel()

@@ -13,6 +13,7 @@ from eyas.behaviours.gaps import Gaps
 from eyas.behaviours.habits import Habit
 from eyas.behaviours.pavements import Way
 from eyas.behaviours.timetable import Ride, ride, time_of
+from eyas.core import exact
 
 __all__ = ["Streets", "Tour", "tour", "tour_ride"]
 
@@ -72,7 +73,7 @@ def tour(
         way, along = crossing.way, crossing.along
         heading, over = float(joints(walk).yaw[-1]), crossing.line[1] - crossing.line[0]
         straight = chain_of(
-            [(0.0, float(np.hypot(*over)), 0.0)], (*crossing.line[0].tolist(), heading)
+            [(0.0, float(exact.hypot(*over)), 0.0)], (*crossing.line[0].tolist(), heading)
         )
         takes, to_kerb = time_of(straight, habit), _time_to(crossing.to_kerb, habit)
         begins = streets.gaps.first(crossing.line, enters + time, takes, crossing.light, to_kerb)
@@ -103,7 +104,7 @@ def _next(streets: Streets, way: int, along: float, rng: np.random.Generator) ->
     around = streets.ways[way].length
     # One that is just here is reached after going all round.
     ahead = [(one.along - along - _LEAST) % around for one in streets.crossings[way]]
-    order: list[int] = np.argsort(ahead).tolist()
+    order: list[int] = np.argsort(ahead, kind="stable").tolist()
     taken: int = next((k for k in order if rng.uniform() > _PASSED_BY), order[0])
     return streets.crossings[way][taken]
 
@@ -124,12 +125,12 @@ def _walk(way: Way, along: float, crossing: Crossing, habit: Habit, heading: flo
         heading: Heading before it [rad]; None: along the way.
     """
     sides = np.roll(way.corners, -1, axis=0) - way.corners
-    lengths = np.hypot(sides[:, 0], sides[:, 1])
+    lengths = exact.hypot(sides[:, 0], sides[:, 1])
     at = np.cumsum(lengths) - lengths
     length = (crossing.along - along) % way.length
     onwards = (at - along) % way.length
     # From the beginning to the end of the path, and on to its beginning.
-    order = np.argsort(onwards)
+    order = np.argsort(onwards, kind="stable")
     clear = (onwards > _NEAR) & (onwards < way.length - _NEAR) & (np.abs(onwards - length) > _NEAR)
     corners = [(onwards[k], way.corners[k]) for k in order.tolist() if clear[k]]
     start = shapely.get_coordinates(way.line.interpolate(along))[0]
@@ -147,7 +148,7 @@ def _walk(way: Way, along: float, crossing: Crossing, habit: Habit, heading: flo
         first = heading
     path = Chain((*whole.start[:2], first), spin, whole.length[:count], bends)
     over = crossing.line[1] - crossing.line[0]
-    turn = math.remainder(math.atan2(over[1], over[0]) - joints(path).yaw[-1], 2.0 * math.pi)
+    turn = math.remainder(exact.atan2(over[1], over[0]) - joints(path).yaw[-1], 2.0 * math.pi)
     return Chain(
         path.start,
         np.append(path.spin, turn),

@@ -1,9 +1,9 @@
 """The pinhole camera; its optical axis passes through the middle of the picture."""
 
-import math
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from eyas.core import exact
 
 __all__ = ["field_along", "focal_length", "intrinsics", "project", "rays"]
 
@@ -15,7 +15,7 @@ def focal_length(width: int, fov: float) -> float:
         width: Width of the picture [pixels].
         fov: Horizontal field of view [rad].
     """
-    return 0.5 * width / math.tan(0.5 * fov)
+    return float(0.5 * width / exact.tan(0.5 * fov))
 
 
 def field_along(fov: float, ratio: float) -> float:
@@ -25,7 +25,7 @@ def field_along(fov: float, ratio: float) -> float:
         fov: Field of view along two sides [rad].
         ratio: Length of the other sides over the length of these.
     """
-    return 2.0 * math.atan(math.tan(0.5 * fov) * ratio)
+    return float(2.0 * exact.atan(exact.tan(0.5 * fov) * ratio))
 
 
 def intrinsics(width: int, height: int, fov: float) -> NDArray[np.float64]:
@@ -68,7 +68,7 @@ def project(  # noqa: PLR0913  # a pose and a lens, as they come
         distance is not positive, and NaN where it is 0.
     """
     offset = np.asarray(points, np.float64) - np.asarray(position, np.float64)
-    forward, left, up = np.moveaxis(offset @ np.asarray(rotation, np.float64), -1, 0)
+    forward, left, up = np.moveaxis(exact.product(offset, np.asarray(rotation, np.float64)), -1, 0)
     focal = focal_length(width, fov)
     focal_vertical = focal if vertical_fov is None else focal_length(height, vertical_fov)
     distance = np.where(forward == 0.0, np.nan, forward)
@@ -100,4 +100,4 @@ def rays(
     local[..., 0] = 1.0
     local[..., 1] = left
     local[..., 2] = up[:, None]
-    return local @ np.asarray(rotation, np.float64).T
+    return np.asarray(exact.product(local, np.asarray(rotation, np.float64).T), np.float64)

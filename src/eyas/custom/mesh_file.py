@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.core.errors import DataFileError, MissingExtraError
 from eyas.core.files import user_path
 from eyas.custom.config import CustomConfig
@@ -116,10 +117,12 @@ def placed(shape: Triangles, up: str, turn: float, scale: float) -> Triangles:
         scale: Metres in the file's unit.
     """
     axes = _GLTF if up == "y" else np.eye(3)
-    cosine, sine = np.cos(turn), np.sin(turn)
-    axes = np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]]) @ axes
+    cosine, sine = exact.cos(turn), exact.sin(turn)
+    axes = exact.product(
+        np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]]), axes
+    )
     with np.errstate(invalid="ignore"):  # what is no number is told later
-        points = shape.points * scale @ axes.T
+        points = exact.product(shape.points * scale, axes.T)
     used = points[shape.corners.ravel()]
     if not np.isfinite(used).all():
         return replace(shape, points=points)  # `eyas.custom.problems` tells it
@@ -191,7 +194,7 @@ def _looked_up(pixels: NDArray[np.float64], uv: NDArray[np.float64]) -> NDArray[
         uv: Coordinates in it of the corners of the triangles, shape (T, 3, 2).
     """
     height, width = pixels.shape[:2]
-    u, v = np.einsum("sk,tkc->cst", _INSIDE, uv)
+    u, v = np.moveaxis(exact.product(_INSIDE, uv), (2, 1), (0, 1))
     column = np.floor(u * width).astype(np.int64) % width
     row = np.floor((1.0 - v) * height).astype(np.int64) % height
     return np.asarray(pixels[row, column])

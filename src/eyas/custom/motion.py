@@ -10,6 +10,7 @@ from eyas.behaviours.habits import Habit
 from eyas.behaviours.lives import Lives
 from eyas.behaviours.scripted import scripted_table
 from eyas.behaviours.troop import Clock, Troop
+from eyas.core import exact
 from eyas.core.errors import ConfigError, DataFileError
 from eyas.core.files import user_path
 from eyas.core.variation import Variation
@@ -75,7 +76,7 @@ def custom_motion(
 
 def _troop(config: CustomConfig, name: str, places: Places) -> Troop:
     speed, size = config.speed, MODELS[models_of(kind_index(name)).start].size
-    breadth = float(np.hypot(*size[:2]))
+    breadth = float(exact.hypot(*size[:2]))
     habit = Habit(config.behaviour, speed, max(1.0, speed), 2.0, max(0.5, breadth))
     where = (places.lives, places.offset)
     return Troop(name, breadth, config.behaviour, *where, "objects.max_count", habit)
@@ -125,19 +126,19 @@ def _own(
 def _table(place: Floats, yaw: Floats, ground: Ground, rate: float) -> NDArray[np.void]:
     """Return samples of places (S, A, 3) with headings (S, A); z is NaN: on the ground."""
     flat, terrain = place[..., :2].reshape(-1, 2), ground.scene.terrain
-    ahead = _SPAN * np.stack([np.cos(yaw), np.sin(yaw)], axis=-1).reshape(-1, 2)
+    ahead = _SPAN * np.stack([exact.cos(yaw), exact.sin(yaw)], axis=-1).reshape(-1, 2)
     rise = reliefs(terrain, flat + ahead) - reliefs(terrain, flat - ahead)
     on_ground = np.isnan(place[..., 2])
     z = place[..., 2].copy()
     z[on_ground] = ground.surface.at(flat[on_ground.ravel()]).height
-    slope = np.arctan(rise / (2.0 * _SPAN)).reshape(yaw.shape)
+    slope = exact.atan(rise / (2.0 * _SPAN)).reshape(yaw.shape)
     table = np.zeros(yaw.shape, SAMPLE)
     table["x"], table["y"], table["z"], table["yaw"] = place[..., 0], place[..., 1], z, yaw
     table["slope"] = np.where(on_ground, slope, 0.0)
     for name, values in (("velocity_x", place[..., 0]), ("velocity_y", place[..., 1])):
         table[name] = np.gradient(values, axis=0) * rate
     table["velocity_z"], table["yaw_rate"] = (np.gradient(v, axis=0) * rate for v in (z, yaw))
-    step = np.hypot(*np.moveaxis(np.diff(place[..., :2], axis=0), -1, 0))
+    step = exact.hypot(*np.moveaxis(np.diff(place[..., :2], axis=0), -1, 0))
     table["travelled"][1:] = np.cumsum(step, axis=0)
     table["present"] = 1.0
     return table

@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from eyas.core import exact
 from eyas.custom.mesh_file import LARGEST, Triangles
 from eyas.custom.smoothing import smoothed
 from eyas.custom.trajectory import JUMP, Trajectory
@@ -108,7 +109,7 @@ def of_trajectory(
         map_name: Its name.
     """
     for k in trajectory.jumps().tolist()[:3]:
-        step = float(np.hypot(*(trajectory.position[k] - trajectory.position[k - 1])[:2]))
+        step = float(exact.hypot(*(trajectory.position[k] - trajectory.position[k - 1])[:2]))
         seconds = trajectory.time[k] - trajectory.time[k - 1]
         yield Finding(
             f"point {k + 1}: it jumps {step:.0f} m in {seconds:g} s; allowed: up to {JUMP:g} m/s",
@@ -166,7 +167,7 @@ def of_noise(trajectory: Trajectory) -> Iterator[Finding]:
         seconds = _calming(trajectory)
         calm = smoothed(trajectory, seconds)
         assert calm.velocity is not None  # it is smoothed
-        cut = 0.5 * seconds * float(np.hypot(*calm.velocity[:, :2].T).max())
+        cut = 0.5 * seconds * float(np.linalg.norm(calm.velocity[:, :2], axis=1).max())
         yield Finding(
             f"its velocity changes by {usual:.1f} m/s^2 most of the time: if these are errors of "
             f"a receiver, custom.smoothing={seconds:g} leaves {_roughness(calm):.1f} m/s^2, and "
@@ -182,7 +183,7 @@ def _calming(trajectory: Trajectory) -> float:
     step = float(np.median(np.diff(begin.time)))
     times = [seconds for seconds in _SMOOTHINGS[:-1] if seconds >= step] + [_SMOOTHINGS[-1]]
     rough = np.array([_roughness(smoothed(begin, seconds)) for seconds in times])
-    calms = -np.diff(np.log(rough + 1e-9)) / np.diff(np.log(times))
+    calms = -np.diff(exact.log(rough + 1e-9)) / np.diff(exact.log(np.array(times)))
     enough = (rough[:-1] <= _CALM) | (calms <= _SETTLED)
     return times[int(np.argmax(enough)) if enough.any() else -1]
 
@@ -191,12 +192,12 @@ def _roughness(trajectory: Trajectory) -> float:
     """Return the acceleration that a trajectory exceeds half of the time [m/s^2]."""
     time = np.arange(0.0, trajectory.time[-1], _TICK)
     velocity = np.gradient(trajectory.at(time)[0][:, :2], _TICK, axis=0)
-    return float(np.median(np.hypot(*np.gradient(velocity, _TICK, axis=0).T)))
+    return float(np.median(exact.hypot(*np.gradient(velocity, _TICK, axis=0).T)))
 
 
 def _unit(longest: float) -> str:
     """Return a guess at the unit of a length: that of which it would be the most usual one."""
-    scale = min(_UNITS, key=lambda scale: abs(np.log(longest * scale / _USUAL)))
+    scale = min(_UNITS, key=lambda scale: abs(exact.log(longest * scale / _USUAL)))
     if not _SMALL <= longest * scale <= _LARGE:
         return f"allowed: {_SMALL:g} to {LONGEST:g} m; choose custom.scale (--scale)"
     return f"in {_UNITS[scale]}? then use custom.scale={scale:g} (--scale {scale:g})"
@@ -219,5 +220,5 @@ def _surface(shape: Triangles) -> Iterator[Finding]:
             fatal=False,
         )
     p, q, r = np.moveaxis(shape.points[shape.corners], 1, 0)
-    if not single and float(np.einsum("ij,ij->", p, np.cross(q, r))) < 0.0:
+    if not single and float(exact.dot(p, np.cross(q, r)).sum()) < 0.0:
         yield Finding("it is inside out: its triangles run clockwise from outside", fatal=False)

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.custom.own import OwnTarget, Ride, Shaped
 from eyas.custom.user_class import posed
 from eyas.state.draw import DrawList
@@ -58,7 +59,7 @@ class OwnRig:
         local = self._poses(Ride(*(array[:, who].ravel() for array in numbers)))
         local = np.reshape(local, (*shape, self.slots, 3, 4))
         body = _frames(actors.yaw[:, who], actors.slope[:, who])[..., None, :, :]
-        poses = body @ local
+        poses = exact.product(body, local)
         poses[..., 3] += actors.position[:, who, None]
         present = actors.present[:, who]
         for part in range(self.slots):
@@ -75,8 +76,8 @@ class OwnRig:
 
 def _frames(yaw: NDArray[np.float64], slope: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return rotations, shape (..., 3, 3): x along the heading and the slope."""
-    cosine, sine, rise = np.cos(yaw), np.sin(yaw), np.sin(slope)
-    level, none = np.cos(slope), np.zeros_like(yaw)
+    cosine, sine, rise = exact.cos(yaw), exact.sin(yaw), exact.sin(slope)
+    level, none = exact.cos(slope), np.zeros_like(yaw)
     columns = [
         np.stack([cosine * level, sine * level, rise], axis=-1),
         np.stack([-sine, cosine, none], axis=-1),

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from eyas.core import exact
 from eyas.custom.mesh_file import Triangles
 from eyas.state.mesh import Material, Mesh
 
@@ -12,7 +13,7 @@ __all__ = ["levels_of_detail", "mesh_of", "simplified"]
 _COLOURS = 64
 """Largest number of colours of a target."""
 
-_CREASE = np.cos(np.radians(40.0))
+_CREASE = exact.cos(np.radians(40.0))
 """Cosine of the angle between two faces above which the edge between them is sharp."""
 
 _SHARES = (1.0, 0.25, 0.06)

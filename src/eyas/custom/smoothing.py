@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.custom.trajectory import Trajectory
 
 __all__ = ["smoothed"]
@@ -67,7 +68,7 @@ def _with_stands(
         velocity: Its velocity, shape (N, D) [m/s].
         seconds: Time of the smoothing [s].
     """
-    slow = np.hypot(velocity[:, 0], velocity[:, 1]) < _SLOW
+    slow = exact.hypot(velocity[:, 0], velocity[:, 1]) < _SLOW
     edges = np.flatnonzero(np.diff(np.concatenate([[False], slow, [False]])))
     out, stands = points.copy(), False
     for first, end in edges.reshape(-1, 2):
@@ -91,11 +92,11 @@ def _spline(time: Floats, points: Floats, seconds: float) -> tuple[Floats, Float
     near = np.concatenate([[0.0], np.minimum(step, seconds), [0.0]])
     variance = 2.0 * seconds / (near[:-1] + near[1:])
     x, v = points[0], np.zeros(points.shape[1])
-    a, b, c = _VAGUE, 0.0, _VAGUE / seconds**2  # covariance of x and v: [[a, b], [b, c]]
+    a, b, c = _VAGUE, 0.0, _VAGUE / (seconds * seconds)  # covariance of x and v: [[a, b], [b, c]]
     known, guessed = [], []
     for k, point in enumerate(points):
         if k:
-            h, noise = step[k - 1], step[k - 1] / seconds**3
+            h, noise = step[k - 1], step[k - 1] / (seconds * seconds * seconds)
             x = x + h * v
             a, b, c = (
                 a + h * (2.0 * b + h * c) + noise * h * h / 3.0,

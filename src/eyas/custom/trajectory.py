@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.core.config import shown
 from eyas.core.errors import DataFileError
 from eyas.core.files import read_limited
@@ -49,7 +50,7 @@ class Trajectory:
 
     def jumps(self) -> NDArray[np.intp]:
         """Return the points that cannot be reached from those before, shape (K,)."""
-        step = np.hypot(*np.diff(self.position[:, :2], axis=0).T)
+        step = exact.hypot(*np.diff(self.position[:, :2], axis=0).T)
         return np.flatnonzero(step > JUMP * np.diff(self.time)) + 1
 
     def at(self, time: Floats) -> tuple[Floats, Floats]:
@@ -71,7 +72,9 @@ class Trajectory:
         if self.yaw is not None:
             return place, np.interp(time, knots, self.yaw)
         velocity = (left + f * (2.0 * bend + f * 3.0 * square)) / step
-        swing = 0.0 if self.velocity is None else _SWING * np.hypot(*slope[:, :2].T).max()
+        swing = (
+            0.0 if self.velocity is None else _SWING * np.linalg.norm(slope[:, :2], axis=1).max()
+        )
         return place, _along(velocity, max(_STANDING, float(swing)))
 
 
@@ -127,9 +130,9 @@ def _along(velocity: Floats, standing: float) -> Floats:
         velocity: The velocities [m/s].
         standing: Speed below which a body stands [m/s].
     """
-    moving = np.hypot(velocity[:, 0], velocity[:, 1]) > standing
+    moving = exact.hypot(velocity[:, 0], velocity[:, 1]) > standing
     if not moving.any():
         return np.zeros(len(velocity))
     last = np.maximum.accumulate(np.where(moving, np.arange(len(moving)), -1))
     source = np.where(last < 0, int(np.argmax(moving)), last)
-    return np.unwrap(np.arctan2(velocity[source, 1], velocity[source, 0]))
+    return np.unwrap(exact.atan2(velocity[source, 1], velocity[source, 0]))

@@ -103,7 +103,7 @@ class Meter:
         sums.error[rows] += np.linalg.norm(target - state[:, _MIDDLE], axis=1)
         sums.path[rows] += np.linalg.norm(place - self._last[rows, _POSITION], axis=1)
         change = (state - self._last[rows])[:, _ACCELERATION] / self._protocol.period
-        sums.jerk[rows] += (change**2).sum(axis=1)
+        sums.jerk[rows] += np.square(change).sum(axis=1)
         self._last[rows] = state
         # All active flights have begun together, so that they have flown equally many steps.
         if len(rows) and (step[0] + 1) % _TRACE == 0:

@@ -1,12 +1,12 @@
 """How a moving object moves, and the boxes in which it fits."""
 
-import math
 from dataclasses import dataclass
 from typing import NamedTuple, TypeAlias
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.core.jit import interpreted
 from eyas.targets.kind import Section
 from eyas.task.direction import TargetDirection
@@ -122,13 +122,13 @@ def _outline(section: Section, hitch: float) -> tuple[Floats, float]:
     x, y, cosine, sine = _folded(hitch, section.towed)
     along, aside = (0.5 * _ENDS * section.size[:2] + (section.ahead, 0.0)).T
     ahead, left = x + cosine * along - sine * aside, y + sine * along + cosine * aside
-    return np.column_stack([ahead, left]), math.atan2(sine, cosine)
+    return np.column_stack([ahead, left]), exact.atan2(sine, cosine)
 
 
 def _raised(plan: Floats, height: float, centre: Floats, yaw: float, motion: Movement) -> Floats:
     """Return the corners of a box on an outline, ahead and left of the middle [m]."""
-    pitch, cosine, sine = motion.slope, math.cos(yaw), math.sin(yaw)
-    ahead = np.array([cosine * math.cos(pitch), sine * math.cos(pitch), math.sin(pitch)])
+    pitch, cosine, sine = motion.slope, exact.cos(yaw), exact.sin(yaw)
+    ahead = np.array([cosine * exact.cos(pitch), sine * exact.cos(pitch), exact.sin(pitch)])
     left, up = np.array([-sine, cosine, 0.0]), np.array([0.0, 0.0, 1.0])
     standing = up if motion.upright else np.cross(ahead, left)
     ground = centre - motion.rise * up + (plan[:, :1] * ahead + plan[:, 1:] * left)

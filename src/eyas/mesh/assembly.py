@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.state.mesh import Material, Mesh
 
 __all__ = ["concatenate", "of_one_material", "transformed"]
@@ -55,8 +56,8 @@ def transformed(mesh: Mesh, pose: NDArray[np.floating]) -> Mesh:
         pose: Rotation (times a uniform scale) and translation, shape (3, 4).
     """
     linear = np.asarray(pose[:, :3], np.float64)
-    positions = mesh.positions @ linear.T + pose[:, 3]
-    normals = mesh.normals @ (linear / np.cbrt(np.linalg.det(linear))).T
+    positions = exact.product(mesh.positions, linear.T) + pose[:, 3]
+    normals = exact.product(mesh.normals, (linear / exact.cbrt(exact.determinant(linear))).T)
     return Mesh(
         positions=positions.astype(np.float32),
         normals=normals.astype(np.float32),

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from eyas.core import exact
 from eyas.mesh.assembly import of_one_material
 from eyas.mesh.panels import cells
 from eyas.state.mesh import Material, Mesh
@@ -74,7 +75,7 @@ def flat_polygons(
     points, index = _distinct(corners)
     positions = np.column_stack([points, np.full(len(points), z)])
     up = np.tile([0.0, 0.0, 1.0], (len(points), 1))
-    cosine, sine = np.cos(turn), np.sin(turn)
+    cosine, sine = exact.cos(turn), exact.sin(turn)
     u = points[:, 0] * cosine + points[:, 1] * sine
     v = points[:, 1] * cosine - points[:, 0] * sine
     uvs = np.column_stack([u, v]) / tile

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from eyas.core import exact
 from eyas.mesh.panels import box_panels, cells, closed, fan, halves, mirrored
 from eyas.state.mesh import Material, Mesh
 
@@ -113,7 +114,7 @@ class Shell:
         u /= np.linalg.norm(u, axis=1, keepdims=True)
         v = np.cross(along, u)
         angle = np.arange(sides) * (2 * np.pi / sides)
-        circle = np.cos(angle)[:, None] * u[:, None] + np.sin(angle)[:, None] * v[:, None]
+        circle = exact.cos(angle)[:, None] * u[:, None] + exact.sin(angle)[:, None] * v[:, None]
         size = np.asarray(radii, np.float64)[:, None, None]
         self.rings(points[:, None] + size * circle, material, both_sides=both_sides)
 
@@ -130,8 +131,8 @@ class Shell:
         """Add an ellipsoid with axes along x, y and z [m]."""
         upwards = np.linspace(-np.pi / 2, np.pi / 2, rows + 1)[:, None]
         angle = np.arange(sides) * (2 * np.pi / sides)
-        unit = [np.cos(upwards) * np.cos(angle), np.cos(upwards) * np.sin(angle)]
-        unit.append(np.broadcast_to(np.sin(upwards), unit[0].shape))
+        unit = [exact.cos(upwards) * exact.cos(angle), exact.cos(upwards) * exact.sin(angle)]
+        unit.append(np.broadcast_to(exact.sin(upwards), unit[0].shape))
         rings = np.stack(unit, axis=-1) * np.asarray(radii) + np.asarray(centre)
         self.rings(rings, material, both_sides=both_sides, caps=False)
 
@@ -170,8 +171,8 @@ def _angles(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     ahead = np.roll(corners, -1, axis=1) - corners
     behind = np.roll(corners, 1, axis=1) - corners
     length = np.linalg.norm(ahead, axis=2) * np.linalg.norm(behind, axis=2)
-    cosine = np.einsum("tci,tci->tc", ahead, behind) / length
-    return np.asarray(np.arccos(np.clip(cosine, -1.0, 1.0)), np.float64)
+    cosine = exact.dot(ahead, behind) / length
+    return np.asarray(exact.acos(np.clip(cosine, -1.0, 1.0)), np.float64)
 
 
 def _normals(corners: NDArray[np.float64], material: NDArray[np.int32]) -> NDArray[np.float64]:
@@ -192,9 +193,9 @@ def _normals(corners: NDArray[np.float64], material: NDArray[np.int32]) -> NDArr
     member = np.full((len(size), size.max()), -1)
     member[np.repeat(np.arange(len(size)), size), rank] = order
     others = member[group.reshape(-1)]
-    cosine = np.einsum("ci,coi->co", unit, unit[others])
-    close = (others >= 0) & (cosine > np.cos(_CREASE))
-    total = np.einsum("co,coi->ci", close.astype(np.float64), weighted[others])
+    cosine = exact.dot(unit[:, None], unit[others])
+    close = (others >= 0) & (cosine > exact.cos(_CREASE))
+    total = np.where(close[:, :, None], weighted[others], 0.0).sum(axis=1)
     total /= np.linalg.norm(total, axis=1, keepdims=True)
     smooth: NDArray[np.float64] = total.reshape(-1, 3, 3)
     return smooth

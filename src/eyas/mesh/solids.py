@@ -1,10 +1,12 @@
 """Meshes of simple solids. Angles in radians, lengths in metres, z up."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from eyas.core import exact
 from eyas.mesh.assembly import of_one_material
 from eyas.mesh.flat import quads
 from eyas.state.mesh import Material, Mesh
@@ -49,7 +51,7 @@ def cylinder(
         tile: Length that one repeat of the texture covers [m].
     """
     angle = np.arange(sides + 1) * (2 * np.pi / sides)
-    ring = np.column_stack([np.cos(angle), np.sin(angle)])
+    ring = np.column_stack([exact.cos(angle), exact.sin(angle)])
     slope = (radius[0] - radius[1]) / max(height[1] - height[0], 1e-9)
     normal = np.column_stack([ring, np.full(sides + 1, slope)])
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)
@@ -109,7 +111,9 @@ def tube(
     across /= np.linalg.norm(across, axis=1, keepdims=True)
     other = np.cross(along, across)
     angle = np.arange(sides + 1) * (2 * np.pi / sides)
-    normals = across[:, None] * np.cos(angle)[:, None] + other[:, None] * np.sin(angle)[:, None]
+    normals = (
+        across[:, None] * exact.cos(angle)[:, None] + other[:, None] * exact.sin(angle)[:, None]
+    )
     radius = np.asarray(radii, np.float64)[:, None, None]
     travelled = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(points, axis=0), axis=1))])
     around = np.maximum(np.round(2 * np.pi * max(radii) / tile), 1) * angle / (2 * np.pi)
@@ -131,7 +135,7 @@ def sphere(subdivisions: int, material: Material, tile: float = 1.0) -> Mesh:
 
     If `tile` is 1, there are six tiles around the equator and two from pole to pole.
     """
-    golden = (1 + 5**0.5) / 2
+    golden = (1 + math.sqrt(5)) / 2
     points = [
         (-1, golden, 0), (1, golden, 0), (-1, -golden, 0), (1, -golden, 0),
         (0, -1, golden), (0, 1, golden), (0, -1, -golden), (0, 1, -golden),
@@ -149,7 +153,7 @@ def sphere(subdivisions: int, material: Material, tile: float = 1.0) -> Mesh:
         cells = [(a, ab, ca), (b, bc, ab), (c, ca, bc), (ab, bc, ca)]
         corners = np.concatenate([np.stack(cell, axis=1) for cell in cells])
     corners /= np.linalg.norm(corners, axis=2, keepdims=True)
-    around = np.arctan2(corners[..., 1], corners[..., 0]) * (3.0 / np.pi)
+    around = exact.atan2(corners[..., 1], corners[..., 0]) * (3.0 / np.pi)
     # Triangles across the seam continue beyond it instead of spanning the whole texture.
     around += 6.0 * ((around < 0.0) & (around.max(axis=1, keepdims=True) > around + 3.0))
     flat = np.stack([*np.moveaxis(corners, -1, 0), around, corners[..., 2]], -1).reshape(-1, 5)

@@ -9,6 +9,7 @@ of its gradient. This makes lines smooth and of constant width at any distance a
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.core.jit import interpreted
 from eyas.overlay.canvas import CASING, NEAR, Canvas, cover
 from eyas.overlay.items import GroundArea
@@ -79,7 +80,7 @@ def _inside(canvas: Canvas, corners: NDArray[np.float64], where: Window) -> tupl
     outer = inner = np.full((1, 1), np.inf, np.float32)
     for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
         along = end - start
-        length = float(np.hypot(along[0], along[1]))
+        length = float(exact.hypot(along[0], along[1]))
         if length < 1e-9:
             continue
         inwards = np.array([-along[1], along[0], 0.0]) / length
@@ -96,6 +97,6 @@ def _beyond(
 ) -> Floats:
     """Return how far pixels are to the left of a line on the ground, in the picture [pixels]."""
     offset = point - canvas.position
-    normal = canvas.rotation.T @ np.cross(along, offset)
-    slope = float(np.hypot(normal[1] / canvas.across, normal[2] / canvas.down))
+    normal = exact.product(canvas.rotation.T, np.cross(along, offset))
+    slope = float(exact.hypot(normal[1] / canvas.across, normal[2] / canvas.down))
     return canvas.plane(normal / max(slope, 1e-12), where)

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.mesh.panels import cells, closed, fan, halves
 from eyas.overlay.items import Solid
 
@@ -35,7 +36,7 @@ def gem(tip: NDArray[np.float64], height: float, turn: float) -> Solid:
         turn: Rotation about its axis [rad].
     """
     angles = turn + np.arange(GEM_SIDES) * (2.0 * np.pi / GEM_SIDES)
-    girdle = np.column_stack([np.cos(angles), np.sin(angles), np.ones(GEM_SIDES)])
+    girdle = np.column_stack([exact.cos(angles), exact.sin(angles), np.ones(GEM_SIDES)])
     girdle *= GEM_RADIUS, GEM_RADIUS, GEM_GIRDLE
     table = girdle * (0.55, 0.55, 1.0 / GEM_GIRDLE)
     parts = [
@@ -72,7 +73,7 @@ def _solid(
 ) -> Solid:
     corners = np.concatenate([part[0] for part in parts]).reshape(-1, 3)
     return Solid(
-        positions=corners @ axes.T + position,
+        positions=exact.product(corners, axes.T) + position,
         triangles=np.arange(len(corners), dtype=np.int32).reshape(-1, 3),
         colours=np.concatenate([part[1] for part in parts]),
     )
@@ -93,8 +94,8 @@ def _prism(
     angles = (np.arange(sides) + 0.5) * (2.0 * np.pi / sides)
     ring = np.column_stack(
         [
-            middle[0] + radius[0] * np.cos(angles),
-            middle[1] + radius[1] * np.sin(angles),
+            middle[0] + radius[0] * exact.cos(angles),
+            middle[1] + radius[1] * exact.sin(angles),
             np.full(sides, span[0]),
         ]
     )
@@ -103,7 +104,7 @@ def _prism(
 
 def _arm(motor: NDArray[np.float64], colour: tuple[float, float, float]) -> Triangles:
     """Return a bar from the middle to a motor."""
-    along = motor / np.hypot(*motor)
+    along = motor / exact.hypot(*motor)
     side = 0.035 * np.array([-along[1], along[0]])
     ring = np.zeros((4, 3))
     ring[:, :2] = -side, motor - side, motor + side, side

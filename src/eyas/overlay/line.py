@@ -5,6 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.overlay.canvas import CASING, NEAR, Canvas, cover
 from eyas.overlay.items import Line
 
@@ -23,13 +24,13 @@ def paint_line(canvas: Canvas, line: Line) -> None:
         return
     start, end = canvas.project(ends)
     along = end[:2] - start[:2]
-    length = float(np.hypot(*along))
+    length = float(exact.hypot(*along))
     if length < 1e-9:
         return
     rows, columns = _near(canvas, start, end, WIDTH * canvas.unit + 1.0)
     right, below = columns + 0.5 - start[0], rows + 0.5 - start[1]
-    share = np.clip((right * along[0] + below * along[1]) / length**2, 0.0, 1.0)
-    away = np.hypot(right - share * along[0], below - share * along[1])
+    share = np.clip((right * along[0] + below * along[1]) / np.square(length), 0.0, 1.0)
+    away = exact.hypot(right - share * along[0], below - share * along[1])
     # One over the depth is linear in the picture; the depth is not.
     depth = 1.0 / ((1.0 - share) / start[2] + share / end[2])
     seen = (depth <= canvas.depth[rows, columns]) * OPACITY
@@ -68,7 +69,7 @@ def _near(
 def _before_the_camera(canvas: Canvas, line: Line) -> np.ndarray | None:
     """Return the ends of the part beyond the near plane, shape (2, 3), or None."""
     ends = np.stack([line.start, line.end]).astype(np.float64)
-    depth = (ends - canvas.position) @ canvas.rotation[:, 0]
+    depth = exact.product(ends - canvas.position, canvas.rotation[:, 0])
     near = depth < NEAR
     if near.all():
         return None

@@ -1,11 +1,11 @@
 """The overlay of a tracker: its view, its reward and its target, placed in the world."""
 
-import math
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.frames import rotate
 from eyas.core.jit import interpreted
@@ -118,7 +118,7 @@ class Marks:
     def _corners(self, n: int, share: float) -> NDArray[np.float64]:
         """Return the corners of the ground that a share of a picture's sides shows."""
         cameras = self._snapshot.cameras
-        half_width = share * math.tan(0.5 * float(cameras.field_of_view[n]))
+        half_width = share * exact.tan(0.5 * float(cameras.field_of_view[n]))
         half_size = half_width, half_width * self._aspect
         return ground_corners(
             cameras.position[n], cameras.rotation[n], half_size, self._ground(n), FARTHEST
@@ -134,7 +134,7 @@ class Marks:
         if rules.reward not in (BuiltinReward.DISTANCE_CONTINUOUS, BuiltinReward.DISTANCE_DISCRETE):
             return self._corners(n, rules.view_range)
         angles = np.arange(CIRCLE) * (2.0 * np.pi / CIRCLE)
-        circle: NDArray[np.float64] = np.column_stack([np.cos(angles), np.sin(angles)])
+        circle: NDArray[np.float64] = np.column_stack([exact.cos(angles), exact.sin(angles)])
         return on_plane(ground, rules.distance_range * circle + _view_centre(eye, rotation, depth))
 
     def _top_of_target(self, n: int) -> NDArray[np.float64]:

@@ -1,8 +1,11 @@
 """Small bodies of flat faces."""
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.overlay.canvas import CASING, NEAR, Canvas
 from eyas.overlay.items import Solid
 
@@ -140,7 +143,7 @@ def _shaded(solid: Solid) -> NDArray[np.float64]:
     a, b, c = np.moveaxis(solid.positions[solid.triangles], 1, 0)
     normal = np.cross(b - a, c - a)
     normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-12)
-    light = 0.5 + 0.5 * normal @ TOWARDS_LIGHT
+    light = 0.5 + exact.product(0.5 * normal, TOWARDS_LIGHT)
     shaded: NDArray[np.float64] = solid.colours * (SHADE + (1.0 - SHADE) * light)[:, None]
     return shaded
 
@@ -151,7 +154,7 @@ def _grown(mask: NDArray[np.bool_], radius: int) -> NDArray[np.bool_]:
     padded = np.pad(mask, radius)
     grown = np.zeros_like(mask)
     for dy in range(-radius, radius + 1):
-        reach = int((radius**2 - dy**2) ** 0.5)
+        reach = math.isqrt(radius * radius - dy * dy)
         row = padded[radius + dy : radius + dy + height]
         # Runs in a row are found with cumulative sums.
         sums = np.pad(np.cumsum(row, axis=1), ((0, 0), (1, 0)))

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.state.mesh import Mesh, Surface
 
 __all__ = ["crown_slices", "leaves_of"]
@@ -30,7 +31,7 @@ def crown_slices(mesh: Mesh, low: Row, high: Row) -> list[tuple[float, float, fl
     middle = 0.5 * (low + high)[:2]
     most = 0.25 * float((high - low)[:2].sum())  # the corners of a square stand are further away
     points = _points_on(mesh)
-    away = np.hypot(*(points[:, :2] - middle).T)
+    away = np.linalg.norm(points[:, :2] - middle, axis=1)
     ends = np.linspace(low[2], high[2], _SLICES + 1)
     slices = []
     for bottom, top in zip(ends[:-1].tolist(), ends[1:].tolist(), strict=True):
@@ -53,5 +54,5 @@ def _points_on(mesh: Mesh) -> NDArray[np.float64]:
     share = np.array(
         [(a, b, _CUTS - a - b) for a in range(_CUTS + 1) for b in range(_CUTS + 1 - a)]
     )
-    points: NDArray[np.float64] = np.einsum("sk,tkx->tsx", share / _CUTS, corners).reshape(-1, 3)
+    points: NDArray[np.float64] = exact.product(share / _CUTS, corners).reshape(-1, 3)
     return points

@@ -2,13 +2,13 @@
 hedges, parked cars, benches.
 """
 
-import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.sensors.crowns import crown_slices, leaves_of
 from eyas.state.mesh import Mesh
 from eyas.state.scene import ObjectClass, Scene
@@ -107,11 +107,11 @@ def _add(
     bottom, top = tall * low + foot, tall * high + foot
     if not span.slices:
         corners = np.array([[west, south], [east, south], [east, north], [west, north]])
-        outline = corners @ pose[:2, :2].T + pose[:2, 3]
+        outline = exact.product(corners, pose[:2, :2].T) + pose[:2, 3]
         made.boxes.append(Box(outline, bottom, top, thing))
         return
-    middle = pose[:2, :2] @ [0.5 * (west + east), 0.5 * (south + north)] + pose[:2, 3]
-    x, y, scale = float(middle[0]), float(middle[1]), math.hypot(pose[0, 0], pose[1, 0])
+    middle = exact.product(pose[:2, :2], [0.5 * (west + east), 0.5 * (south + north)]) + pose[:2, 3]
+    x, y, scale = float(middle[0]), float(middle[1]), exact.hypot(pose[0, 0], pose[1, 0])
     for begin, end, radius in span.slices:
         place = (x, y, scale * radius)
         made.cylinders.append(Cylinder(place, tall * begin + foot, tall * end + foot, thing))

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.core.jit import thread_count
 from eyas.core.parallel import Held, Pointer, parallel_kernel
 from eyas.sensors.chance import SEEDS, mixed
@@ -41,7 +42,7 @@ class Grain:
     def begin(self, tracker: int, rng: np.random.Generator) -> None:
         """Begin an episode."""
         self._seed[tracker] = rng.integers(SEEDS)
-        self._bias[tracker] = self._deviation * rng.standard_normal(3)
+        self._bias[tracker] = exact.normal(rng, 0.0, self._deviation, 3)
 
     def add(
         self,

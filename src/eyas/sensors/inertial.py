@@ -9,6 +9,7 @@ sensors of a flown drone, which cannot jump, read its own motion.
 
 import math
 
+from eyas.core import exact
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.frames import rotate_back
 from eyas.core.jit import kernel, step_kernel
@@ -26,7 +27,10 @@ def smoothing_share(time_constant: float) -> float:
     Args:
         time_constant: Of each of the two low-passes [s]; 0: no smoothing.
     """
-    return 1.0 if time_constant == 0.0 else -math.expm1(-PHYSICS_STEP / time_constant)
+    if time_constant == 0.0:
+        return 1.0
+    half = exact.tanh(0.5 * PHYSICS_STEP / time_constant)
+    return 2.0 * half / (1.0 + half)  # 1 - exp(-PHYSICS_STEP / time_constant)
 
 
 @step_kernel

@@ -11,6 +11,7 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.frames import rotate
 from eyas.core.jit import step_kernel
@@ -77,7 +78,7 @@ class Lidar:
         self._thing = np.full((count, kept), -1, np.int32)
         self._time = np.zeros((count, kept))
         angle = -math.pi - 2.0 * math.pi / points * np.arange(points)
-        self._ahead = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        self._ahead = np.stack([exact.cos(angle), exact.sin(angle)], axis=1)
         place = config.mount or mount
         scan = _Scan(
             snapshot.trackers,
@@ -85,7 +86,7 @@ class Lidar:
             obstacles,
             active,
             np.array([place.x, place.y, place.z]),
-            np.ascontiguousarray(self._ahead @ turn_of(place)[:, :2].T),
+            np.ascontiguousarray(exact.product(self._ahead, turn_of(place)[:, :2].T)),
             self._turned,
             self._seed,
             self._range,

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from eyas.behaviours.config import Behaviour, ExtraConfig
 from eyas.behaviours.lives import Lives, lasting, recycled
 from eyas.behaviours.troop import Clock, Troop
+from eyas.core import exact
 from eyas.core.cache.cached import cached
 from eyas.core.cache.folder import Kind
 from eyas.core.errors import ConfigError
@@ -163,7 +164,7 @@ def _custom(crowd: Crowd, custom: CustomConfig, around: Surroundings, ground: "G
 
 def _troop(extra: ExtraConfig, lives: Lives, offset: Variation, setting: str) -> Troop:
     models = [MODELS[model] for model in models_of(kind_index(extra.kind))]
-    breadth = max(float(np.hypot(*model.size[:2])) for model in models)
+    breadth = max(float(exact.hypot(*model.size[:2])) for model in models)
     return Troop(extra.kind.value, breadth, extra.behaviour, lives, offset, setting)
 
 

@@ -1,10 +1,9 @@
 """The target in words that tell it from what else is in view."""
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.sim.simulation import Simulation
 from eyas.state.motion import ActorState
 from eyas.state.snapshot import CameraState
@@ -31,7 +30,7 @@ def target_in_words(simulation: Simulation, tracker: int, aspect: float) -> str:
     actors, _ = simulation.actors_around(tracker, ago=sight.age_of(tracker))
     (model,), (colour,) = simulation.looks_around(tracker)
     corners = _in_camera(_corners(actors, model.tolist()), cameras, tracker)
-    wide = math.tan(0.5 * float(cameras.field_of_view[tracker]))
+    wide = exact.tan(0.5 * float(cameras.field_of_view[tracker]))
     inside = _in_view(corners, wide, wide * aspect) & actors.present[0]
     inside[target] = False
     # Where the middle is: half across the picture is 0.5, also if it is behind the camera.
@@ -58,10 +57,10 @@ def _corners(actors: ActorState, models: list[int]) -> Floats:
         low[actor], high[actor] = _extent(actors, actor, model)
     pick = np.array([[bit >> axis & 1 for axis in range(3)] for bit in range(8)], bool)
     own = np.where(pick, high[:, None], low[:, None])
-    cosine, sine = np.cos(actors.yaw[0])[:, None], np.sin(actors.yaw[0])[:, None]
+    cosine, sine = exact.cos(actors.yaw[0])[:, None], exact.sin(actors.yaw[0])[:, None]
     east = cosine * own[..., 0] - sine * own[..., 1]
     north = sine * own[..., 0] + cosine * own[..., 1]
-    up = own[..., 2] + own[..., 0] * np.tan(actors.slope[0])[:, None]
+    up = own[..., 2] + own[..., 0] * exact.tan(actors.slope[0])[:, None]
     corners: Floats = np.stack([east, north, up], axis=-1) + actors.position[0][:, None]
     return corners
 

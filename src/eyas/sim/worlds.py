@@ -67,7 +67,7 @@ class Worlds:
         # Worlds are numbered in the order of their first trackers.
         own = np.where(given == ALONE, given.max(initial=0) + 1 + np.arange(len(given)), given)
         _, first, numbered = np.unique(own, return_index=True, return_inverse=True)
-        order = np.argsort(np.argsort(first))
+        order = np.argsort(np.argsort(first, kind="stable"), kind="stable")
         self.of: NDArray[np.int32] = order[numbered].astype(np.int32)
         self.leader: Integers = np.sort(first)
         self.lasting: NDArray[np.bool_] = given[self.leader] != ALONE

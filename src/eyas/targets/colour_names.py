@@ -41,6 +41,6 @@ def colour_name(colour: Sequence[float]) -> str:
     def away(name: str) -> float:
         red, green, blue = (a - b for a, b in zip(colour, COLOUR_NAMES[name], strict=True))
         mean = (colour[0] + COLOUR_NAMES[name][0]) / 2
-        return (2.0 + mean) * red**2 + 4.0 * green**2 + (3.0 - mean) * blue**2
+        return (2.0 + mean) * red * red + 4.0 * green * green + (3.0 - mean) * blue * blue
 
     return min(COLOUR_NAMES, key=away)

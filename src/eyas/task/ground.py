@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from eyas.core import exact
 from eyas.core.jit import interpreted
 from eyas.state.terrain import Plane, height_over
 
@@ -36,7 +37,7 @@ def ground_corners(
     height = _height_over(ground, centre[0], centre[1], centre[2])
     signs = np.array([(1.0, 1.0), (1.0, -1.0), (-1.0, -1.0), (-1.0, 1.0)])
     corners = np.column_stack([np.ones(4), signs * half_size])
-    rays = corners @ axes.T
+    rays = exact.product(corners, axes.T)
     if height <= 0.0:
         return np.zeros((0, 3))
     # Decrease of each ray's height above the plane per unit of depth.

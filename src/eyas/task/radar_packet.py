@@ -8,6 +8,8 @@ from dataclasses import astuple, dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
+
 __all__ = ["RADAR_FIELDS", "RADAR_POINTS", "RadarPacket", "RadarPoint"]
 
 RADAR_POINTS = 400
@@ -37,7 +39,7 @@ class RadarPoint:
     @property
     def distance(self) -> float:
         """Distance from the lidar [m], infinity where nothing was within range."""
-        return float(np.hypot(self.x, self.y))
+        return float(exact.hypot(self.x, self.y))
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,6 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from eyas.core import exact
+from eyas.core.elementary import tan
 from eyas.core.frames import wrap_angle
 from eyas.core.jit import interpreted, kernel
 
@@ -44,7 +46,7 @@ def start_distance(pitch: float, height: float, vertical_bias: float, ahead: flo
         vertical_bias: [m]
         ahead: See `start_pose` [m].
     """
-    return ahead + vertical_bias - math.tan(abs(0.5 * math.pi - pitch)) * height
+    return ahead + vertical_bias - tan(abs(0.5 * math.pi - pitch)) * height
 
 
 _distance = interpreted(start_distance)
@@ -67,7 +69,7 @@ def start_pose(
     yaw = target_yaw + start.direction
     forward = _distance(start.pitch, start.height, start.vertical_bias, ahead)
     left = start.horizontal_bias
-    east = math.cos(yaw) * forward - math.sin(yaw) * left
-    north = math.sin(yaw) * forward + math.cos(yaw) * left
+    east = exact.cos(yaw) * forward - exact.sin(yaw) * left
+    north = exact.sin(yaw) * forward + exact.cos(yaw) * left
     offset = np.array([east, north, start.height])
     return np.asarray(target_position, np.float64) + offset, _wrapped(yaw)

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.jit import kernel
 from eyas.core.rng import EpisodeKey
@@ -68,10 +69,10 @@ def begin_wind(
     """
     rng = key.stream("wind")
     angle = sample(direction, rng)
-    memory.along[n] = math.cos(angle), math.sin(angle)
+    memory.along[n] = exact.cos(angle), exact.sin(angle)
     memory.mean[n] = sample(speed, rng) * memory.along[n]
     memory.random[n] = rng.integers(1, 2**63)
-    first = rng.standard_normal(5)
+    first = exact.normal(rng, size=5)
     # Stationary: the first filter of a pair has the variance 1/2, the second 1/4, both together
     # the covariance 1/4.
     memory.gust[n, 0] = first[0]

@@ -5,6 +5,7 @@ from dataclasses import fields
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.traffic.config import Demand, VehicleType
 from eyas.traffic.recording import ANGLE_UNIT, POSITION_UNIT, quantised, restored
 from eyas.traffic.smoothing import (
@@ -144,6 +145,6 @@ class LiveTracks:
             tracks.position[row, absent] = tracks.position[row - 1, absent]
             tracks.yaw[row, absent] = tracks.yaw[row - 1, absent]
             tracks.hitch[row, absent] = 0.0
-            step = np.hypot(*(tracks.position[row] - tracks.position[row - 1]).T)
+            step = exact.hypot(*(tracks.position[row] - tracks.position[row - 1]).T)
             step[absent | ~self.present[row - 1]] = 0.0
             tracks.travelled[row] = tracks.travelled[row - 1] + step

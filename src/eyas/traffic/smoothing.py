@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.traffic.config import Demand, VehicleType
 from eyas.traffic.recording import Recording
 from eyas.traffic.tractrix import follow_headings
@@ -94,7 +95,7 @@ def smooth(recording: Recording) -> Tracks:
         present = recording.present[:, actor]
         tracks.position[:, actor] = held(tracks.position[:, actor], present)
         tracks.yaw[:, actor] = held(tracks.yaw[:, actor], present)
-        step = np.hypot(*np.diff(tracks.position[:, actor], axis=0).T)
+        step = np.linalg.norm(np.diff(tracks.position[:, actor], axis=0), axis=1)
         step[~(present[1:] & present[:-1])] = 0.0
         tracks.travelled[1:, actor] = np.cumsum(step)
     return tracks
@@ -159,7 +160,7 @@ def front_path(
     position: NDArray[np.float64], yaw: NDArray[np.float64], ahead: float
 ) -> NDArray[np.float64]:
     """Return points ahead of middles (S, 2) with headings (S,) by a distance [m], shape (S, 2)."""
-    return position + ahead * np.stack([np.cos(yaw), np.sin(yaw)], axis=-1)
+    return position + ahead * np.stack([exact.cos(yaw), exact.sin(yaw)], axis=-1)
 
 
 def follow(
@@ -173,7 +174,7 @@ def follow(
         wheelbase: Distance between the axles [m].
     """
     heading = follow_headings(front, yaw, wheelbase)
-    centre = front - 0.5 * wheelbase * np.stack([np.cos(heading), np.sin(heading)], axis=-1)
+    centre = front - 0.5 * wheelbase * np.stack([exact.cos(heading), exact.sin(heading)], axis=-1)
     return centre, heading
 
 
@@ -184,13 +185,13 @@ def filtered(points: NDArray[np.float64], rate: float) -> NDArray[np.float64]:
     """
     sigma = SIGMA * rate
     reach = math.ceil(REACH * sigma)
-    weight = np.exp(-0.5 * (np.arange(-reach, reach + 1) / sigma) ** 2)
+    weight = exact.exp(-0.5 * np.square(np.arange(-reach, reach + 1) / sigma))
     weight /= weight.sum()
     mirror = np.minimum(np.arange(1, reach + 1), len(points) - 1)
     before = 2 * points[0] - points[mirror[::-1]]
     after = 2 * points[-1] - points[len(points) - 1 - mirror]
     padded = np.concatenate([before, points, after])
-    columns = [np.convolve(padded[:, axis], weight, "valid") for axis in range(2)]
+    columns = [exact.convolved(padded[:, axis], weight) for axis in range(2)]
     return np.stack(columns, axis=-1)
 
 
@@ -202,10 +203,10 @@ def as_far(
     The path is followed from each of its points by what the point driven is ahead of it; never
     backwards.
     """
-    step = np.hypot(*np.diff(path, axis=0).T)
+    step = exact.hypot(*np.diff(path, axis=0).T)
     length = np.concatenate([[0.0], np.cumsum(step)])
     gap = driven - path
-    ahead = gap[:, 0] * np.cos(yaw) + gap[:, 1] * np.sin(yaw)
+    ahead = gap[:, 0] * exact.cos(yaw) + gap[:, 1] * exact.sin(yaw)
     place = np.maximum.accumulate(length + ahead)
     return np.stack([np.interp(place, length, path[:, axis]) for axis in range(2)], axis=-1)
 

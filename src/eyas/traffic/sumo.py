@@ -10,6 +10,7 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.core.errors import ConfigError
 from eyas.traffic.config import Demand, TrafficConfig, VehicleType
 from eyas.traffic.demand import RoadLinks, Route, without_turnarounds
@@ -176,7 +177,7 @@ class SumoRun:
             half = 0.5 * result.vehicle_length[actor]
             east, north = self.sumo.vehicle.getPosition(str(vehicle))
             yaw = np.radians(90.0 - self.sumo.vehicle.getAngle(str(vehicle)))
-            place = east - half * np.cos(yaw), north - half * np.sin(yaw)
+            place = east - half * exact.cos(yaw), north - half * exact.sin(yaw)
             result.position[sample, actor] = place
             result.yaw[sample, actor] = yaw
             result.present[sample, actor] = True

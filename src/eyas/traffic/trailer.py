@@ -13,6 +13,7 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.core.jit import kernel
 from eyas.traffic.tractrix import follow_headings
 
@@ -68,8 +69,8 @@ class Links(NamedTuple):
         bend, half = _chord(hitch)
         truck = heading - bend
         ahead = half - _REFERENCE
-        east, north = front - centre - ahead * np.array([math.cos(heading), math.sin(heading)])
-        turn = math.remainder(math.atan2(north, east) - truck, 2.0 * math.pi)
+        east, north = front - centre - ahead * np.array([exact.cos(heading), exact.sin(heading)])
+        turn = math.remainder(exact.atan2(north, east) - truck, 2.0 * math.pi)
         return cls(truck + turn, truck, truck + hitch)
 
 
@@ -99,8 +100,8 @@ def tow(front: Floats, length: float, links: Links) -> Articulated:
     kingpin = bumper - BUMPER_AHEAD * _directions(truck)
     trailer = follow_headings(kingpin, links.trailer, AXLES_BEHIND)
     tail, hitch = kingpin - TAIL_BEHIND * _directions(trailer), trailer - truck
-    along = BUMPER_AHEAD + TAIL_BEHIND * np.cos(hitch)
-    heading = truck + np.arctan2(TAIL_BEHIND * np.sin(hitch), along)
+    along = BUMPER_AHEAD + TAIL_BEHIND * exact.cos(hitch)
+    heading = truck + exact.atan2(TAIL_BEHIND * exact.sin(hitch), along)
     return Articulated(0.5 * (bumper + tail) + _REFERENCE * _directions(heading), heading, hitch)
 
 
@@ -126,10 +127,10 @@ def folded(hitch: Number, towed: int) -> tuple[Number, Number, Number, Number]:
 
 def _chord(hitch: float) -> tuple[float, float]:
     """Return the angle from the truck to the chord [rad], and half the chord's length [m]."""
-    along = BUMPER_AHEAD + TAIL_BEHIND * math.cos(hitch)
-    aside = TAIL_BEHIND * math.sin(hitch)
-    return math.atan2(aside, along), 0.5 * math.hypot(along, aside)
+    along = BUMPER_AHEAD + TAIL_BEHIND * exact.cos(hitch)
+    aside = TAIL_BEHIND * exact.sin(hitch)
+    return exact.atan2(aside, along), 0.5 * exact.hypot(along, aside)
 
 
 def _directions(heading: Floats) -> Floats:
-    return np.stack([np.cos(heading), np.sin(heading)], axis=-1)
+    return np.stack([exact.cos(heading), exact.sin(heading)], axis=-1)

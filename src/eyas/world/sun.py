@@ -3,6 +3,7 @@
 import math
 from dataclasses import replace
 
+from eyas.core import exact
 from eyas.core.errors import ConfigError
 from eyas.state.lighting import Lighting
 
@@ -20,12 +21,12 @@ def sun_at(hour: float) -> tuple[float, float, float]:
     The usual formulas of hour angle, declination and latitude, by true solar time.
     """
     turn = math.radians(15.0 * (hour - 12.0))
-    south = math.cos(DECLINATION) * math.cos(turn)
-    up = math.sin(DECLINATION)
+    south = exact.cos(DECLINATION) * exact.cos(turn)
+    up = exact.sin(DECLINATION)
     return (
-        -math.cos(DECLINATION) * math.sin(turn),
-        math.cos(LATITUDE) * up - math.sin(LATITUDE) * south,
-        math.sin(LATITUDE) * up + math.cos(LATITUDE) * south,
+        -exact.cos(DECLINATION) * exact.sin(turn),
+        exact.cos(LATITUDE) * up - exact.sin(LATITUDE) * south,
+        exact.sin(LATITUDE) * up + exact.cos(LATITUDE) * south,
     )
 
 
@@ -63,12 +64,12 @@ def _way(height: float) -> float:
 
     Rozenberg, Twilight (1966): finite at the horizon, where 1 / sine is not.
     """
-    return 1.0 / (height + 0.025 * math.exp(-11.0 * height))
+    return float(1.0 / (height + 0.025 * exact.exp(-11.0 * height)))
 
 
 def _dimmed(colour: tuple[float, float, float], way: float) -> tuple[float, float, float]:
     red, green, blue = (
-        part * math.exp(-taken * way) for part, taken in zip(colour, DIMMING, strict=True)
+        part * exact.exp(-taken * way) for part, taken in zip(colour, DIMMING, strict=True)
     )
     return red, green, blue
 

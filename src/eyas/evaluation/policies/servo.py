@@ -77,11 +77,11 @@ def _correlation(area: Floats, pattern: Floats) -> Floats:
     """Return the normalised correlation of a pattern with each place of an area, -1 to 1."""
     windows = sliding_window_view(area, pattern.shape[1:], axis=(1, 2))
     centred = pattern - pattern.mean(axis=(1, 2), keepdims=True)
-    dot = np.einsum("crsij,cij->rs", windows, centred)
-    spread = (windows**2).sum(axis=(0, 3, 4)) - (
-        windows.sum(axis=(3, 4)) ** 2 / pattern[0].size
+    dot = (windows * centred[:, None, None]).sum(axis=(0, 3, 4))
+    spread = np.square(windows).sum(axis=(0, 3, 4)) - (
+        np.square(windows.sum(axis=(3, 4))) / pattern[0].size
     ).sum(axis=0)
-    match: Floats = dot / np.sqrt(np.maximum(spread, 1.0) * max((centred**2).sum(), 1.0))
+    match: Floats = dot / np.sqrt(np.maximum(spread, 1.0) * max(np.square(centred).sum(), 1.0))
     return match
 
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.core.cache.cached import cached
 from eyas.core.cache.folder import Kind
 from eyas.core.jit import thread_count
@@ -122,7 +123,7 @@ def _ways(texel: float) -> NDArray[np.float64]:
     angles = [(k + 0.5) * (2.0 * math.pi / DIRECTIONS) for k in range(DIRECTIONS)]
     return np.array(
         [
-            [(math.sin(angle) / texel * far, math.cos(angle) / texel * far) for far in DISTANCES]
+            [(exact.sin(angle) / texel * far, exact.cos(angle) / texel * far) for far in DISTANCES]
             for angle in angles
         ]
     )
@@ -173,7 +174,7 @@ def canopy_map(
     for index in np.flatnonzero(scene.object_class[fixtures.object_id] == ObjectClass.TREE):
         points = fixtures.levels[fixtures.prototype[index]][0].positions
         pose = fixtures.pose[index].astype(np.float64)
-        scale = float(np.cbrt(np.linalg.det(pose[:, :3])))
+        scale = float(exact.cbrt(exact.determinant(pose[:, :3])))
         # The outermost leaves are few: the crown is a disc of the mean radius.
         reach = 0.9 * scale * float(np.abs(points[:, :2]).max())
         x, y = (pose[:2, 3] - frame[:2]) * frame[2]

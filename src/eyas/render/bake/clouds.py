@@ -6,6 +6,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.core.jit import thread_count
 from eyas.core.parallel import Held
 from eyas.render.kernels.sky.clouds import DEEPEST, CloudRays, cloud_rays
@@ -50,7 +51,7 @@ def plan_directions(columns: int) -> NDArray[np.float64]:
     turn = (np.arange(columns) + 0.5) * 4 / columns
     x, y = np.abs(turn - 2.0) - 1.0, 1.0 - np.abs((turn + 1.0) % 4.0 - 2.0)
     # On |x| + |y| = 1: x falls from 1 to -1 and rises again; y is a quarter turn behind.
-    return np.stack([x, y], axis=1) / np.hypot(x, y)[:, None]
+    return np.stack([x, y], axis=1) / exact.hypot(x, y)[:, None]
 
 
 def _field(cover: float, sun: tuple[float, float, float]) -> Field:
@@ -71,17 +72,17 @@ def _heap_heights(cover: float, rng: np.random.Generator) -> Field:
     Each cloud is a heap of balls, larger and higher in the middle, filled down to the base.
     Clouds are added until they cover enough; from a cover of three quarters on they form a layer.
     """
-    layer = 2.5 * (cover - 0.75) + 0.26 * np.tanh(1.5 * fractal(rng, 1.6, longest=120.0))
+    layer = 2.5 * (cover - 0.75) + 0.26 * exact.tanh(1.5 * fractal(rng, 1.6, longest=120.0))
     heights = np.maximum(layer, 0.0)
     while (heights > 0.1).mean() < _SEEN * cover:
-        middle, radius = rng.uniform(0, SIZE, 2), rng.uniform(0.35, 1.0) ** 1.5 * 0.9
+        middle, radius = rng.uniform(0, SIZE, 2), exact.power(rng.uniform(0.35, 1.0), 1.5) * 0.9
         lengthen = rng.uniform(1.0, 1.8)
         for _ in range(int(8 + 40 * radius)):
             share = math.sqrt(rng.random())
             angle = rng.uniform(0.0, math.tau)
-            way = share * np.array([math.sin(angle), lengthen * math.cos(angle)])
+            way = share * np.array([exact.sin(angle), lengthen * exact.cos(angle)])
             ball = radius * rng.uniform(0.2, 0.45) * (1.2 - 0.6 * share)
-            lift = rng.uniform(-0.3, 0.9) * radius * (1.0 - share**2) * 0.6
+            lift = rng.uniform(-0.3, 0.9) * radius * (1.0 - np.square(share)) * 0.6
             _put_ball(heights, middle + way * radius / _TEXEL, ball, lift)
     # Blurred, so that single texels do not show.
     return np.clip(blurred(heights, 0.7), 0.0, DEEPEST)
@@ -94,7 +95,7 @@ def _put_ball(heights: Field, middle: NDArray[np.float64], radius: float, lift: 
     whole = np.floor(middle).astype(int)
     row, column = (whole[:, None] + around) % SIZE
     off = (around[None] + (whole - middle)[:, None]) * _TEXEL
-    square = radius**2 - off[0][:, None] ** 2 - off[1][None] ** 2
+    square = np.square(radius) - np.square(off[0][:, None]) - np.square(off[1][None])
     top = lift + np.sqrt(np.maximum(square, 0.0))
     texels = np.ix_(row, column)
     heights[texels] = np.maximum(heights[texels], np.where(square > 0, top, 0.0))
@@ -119,7 +120,7 @@ def _billows(rng: np.random.Generator, longest: float) -> Field:
 
 def _sunlit(tops: Field, sun: tuple[float, float, float]) -> Field:
     """Return the lowest height above the base that is in sunlight [km]."""
-    plan = math.hypot(sun[0], sun[1])
+    plan = exact.hypot(sun[0], sun[1])
     if plan < 1e-3:
         return tops
     highest = tops.copy()

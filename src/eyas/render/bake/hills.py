@@ -5,6 +5,7 @@ import functools
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.render.bake.clouds import plan_directions
 from eyas.render.kernels.bundles import Geometry
 from eyas.render.kernels.sky.fog import HAZE_END
@@ -33,13 +34,13 @@ def build_hills(horizon: Horizon, sun: tuple[float, float, float]) -> NDArray[np
         Cover, sunlight, woods, and distance from `HAZE_END` to `HILL_FARTHEST`, each 0 to 255
         for 0 to 1; rows go up to `HILL_TOP`; shape (rows, columns, 4).
     """
-    away = np.geomspace(HAZE_END, HILL_FARTHEST, _STEPS)
+    away = exact.geomspace(HAZE_END, HILL_FARTHEST, _STEPS)
     column, row = np.divide(plan_directions(_COLUMNS), _TEXEL).T[..., None] * away
     texel = (np.floor(row).astype(int) % SIZE, np.floor(column).astype(int) % SIZE)
     land, sunlight, woods = _land(horizon, sun)
     rise = np.clip((away - HAZE_END) / (0.45 * HILL_FARTHEST), 0.0, 1.0)
     slope = horizon.height * rise * _between(land, row, column)
-    sine = slope / np.hypot(1.0, slope)
+    sine = slope / exact.hypot(1.0, slope)
     ridge = np.maximum.accumulate(sine, axis=1)
     step = _first_seen(ridge)
     who = np.arange(_COLUMNS)[None]
@@ -65,7 +66,9 @@ def far_ground(geometry: Geometry) -> NDArray[np.float64]:
     # The last texel is the mean of the texture.
     packed = geometry.texture[geometry.layer, -1]
     root = np.stack([packed & 255, packed >> 8 & 255, packed >> 16 & 255], axis=1) / 255.0
-    mean: NDArray[np.float64] = share @ (root**2 * geometry.tint) / max(share.sum(), 1e-9)
+    mean: NDArray[np.float64] = exact.product(share, np.square(root) * geometry.tint) / max(
+        share.sum(), 1e-9
+    )
     return mean
 
 
@@ -95,7 +98,9 @@ def _land(horizon: Horizon, sun: tuple[float, float, float]) -> tuple[Field, Fie
     land = blurred(land, 0.6)
     east = (np.roll(land, -1, 1) - np.roll(land, 1, 1)) * 4.5
     north = (np.roll(land, -1, 0) - np.roll(land, 1, 0)) * 4.5
-    facing = (sun[2] - east * sun[0] - north * sun[1]) / np.sqrt(1.0 + east**2 + north**2)
+    facing = (sun[2] - east * sun[0] - north * sun[1]) / np.sqrt(
+        1.0 + np.square(east) + np.square(north)
+    )
     woods = fractal(rng, 1.5, longest=60.0) + 1.5 * (land - 0.4)
     cover = np.clip(horizon.woods * (0.5 + 1.5 * woods), 0.0, 1.0)
     return land, np.clip(facing, 0.0, 1.0), cover

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.core.cache.cached import cached
 from eyas.core.cache.folder import Kind
 from eyas.core.jit import thread_count
@@ -91,9 +92,9 @@ def bake_shadows(
 
 
 def _bake(geometry: Geometry, sun: tuple[float, float, float], ground: float) -> ShadowMap:
-    toward = np.asarray(sun, np.float64) / np.linalg.norm(sun)
+    toward = np.asarray(sun, np.float64) / exact.length(sun)
     right = np.array([-toward[1], toward[0], 0.0])
-    right = right / np.linalg.norm(right) if np.linalg.norm(right) > 1e-6 else np.eye(3)[0]
+    right = right / exact.length(right) if exact.length(right) > 1e-6 else np.eye(3)[0]
     axes = np.stack([right, np.cross(toward, right), toward])
     casting = _bounds(_casting_points(geometry, ground + _FLAT), axes)
     texel = TEXEL
@@ -148,7 +149,7 @@ def _bounds(things: NDArray[np.float64], axes: NDArray[np.float64]) -> NDArray[n
         things: Corners of each thing [m], shape (N, K, 3).
         axes: Shape (3, 3), or (3, 4) with an offset.
     """
-    places = things @ axes[:, :3].T + (axes[:, 3] if axes.shape[1] == 4 else 0.0)
+    places = exact.product(things, axes[:, :3].T) + (axes[:, 3] if axes.shape[1] == 4 else 0.0)
     return np.concatenate([places.min(axis=1), places.max(axis=1)], axis=1)
 
 
@@ -168,7 +169,7 @@ def _casting_points(geometry: Geometry, height: float) -> NDArray[np.float64]:
     static = static[static[:, :, 2].max(axis=1) > height].astype(np.float64)
     boxes = _box_corners(geometry.box[geometry.fixture_prototype])
     linear, offset = geometry.fixture_pose[:, :, :3], geometry.fixture_pose[:, :, 3]
-    posed = np.einsum("fij,fcj->fci", linear, boxes) + offset[:, None]
+    posed = exact.product(boxes, linear.swapaxes(1, 2)) + offset[:, None]
     posed = posed[posed[:, :, 2].max(axis=1) > height]
     return np.concatenate([static[:, [0, 1, 2, 0, 1, 2, 0, 1]], posed])
 

@@ -7,6 +7,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import Scene
 
@@ -136,7 +137,9 @@ def _crossings(network: RoadNetwork) -> Iterator[Line]:
                 continue
             from_, onto = np.diff(lines[lanes[here][0]][-2:], axis=0)[0], lines[lanes[there][0]]
             ahead = onto[1] - onto[0]
-            angle = np.arctan2(from_[0] * ahead[1] - from_[1] * ahead[0], from_ @ ahead)
+            angle = exact.atan2(
+                from_[0] * ahead[1] - from_[1] * ahead[0], exact.product(from_, ahead)
+            )
             if abs(angle) > _BACK:
                 continue
             ins, outs = lanes[here], lanes[there]
@@ -152,13 +155,18 @@ def _crossings(network: RoadNetwork) -> Iterator[Line]:
 def _bent(arriving: Line, leaving: Line) -> Line:
     """Return a cubic Bezier curve from the end of one lane to the start of another."""
     start, end = arriving[-1], leaving[0]
-    reach = 0.45 * np.linalg.norm(end - start)
+    reach = 0.45 * exact.length(end - start)
     toward, away = np.diff(arriving[-2:], axis=0)[0], leaving[1] - leaving[0]
-    one = start + reach * toward / np.linalg.norm(toward)
-    other = end - reach * away / np.linalg.norm(away)
+    one = start + reach * toward / exact.length(toward)
+    other = end - reach * away / exact.length(away)
     t = np.linspace(0.0, 1.0, 12)[:, None]
     s = 1.0 - t
-    return np.asarray(s**3 * start + 3 * s**2 * t * one + 3 * s * t**2 * other + t**3 * end)
+    return np.asarray(
+        exact.power(s, 3) * start
+        + 3 * np.square(s) * t * one
+        + 3 * s * np.square(t) * other
+        + exact.power(t, 3) * end
+    )
 
 
 def _stations(line: Line) -> tuple[Line, Line]:
@@ -178,8 +186,8 @@ def _waves(points: Line, length: float, seed: int) -> Line:
     rng = np.random.default_rng(seed)
     angle, phase = rng.uniform(0, 2 * np.pi, 6), rng.uniform(0, 2 * np.pi, 6)
     number = 2 * np.pi / (length * rng.uniform(0.7, 1.6, 6))
-    way = np.stack([np.cos(angle), np.sin(angle)]) * number
-    return np.asarray(np.sin(points @ way + phase).sum(axis=1) / 2.5)
+    way = np.stack([exact.cos(angle), exact.sin(angle)]) * number
+    return np.asarray(exact.sin(exact.product(points, way) + phase).sum(axis=1) / 2.5)
 
 
 def _blurred(values: NDArray[np.float32], texels: int) -> NDArray[np.float32]:

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.render.kernels.bundles import GROUP
 from eyas.render.pack.clusters import NOWHERE
 
@@ -27,8 +28,8 @@ def sphere_of(positions: NDArray[np.float32]) -> NDArray[np.float32]:
 def posed_boxes(boxes: NDArray[np.float32], poses: NDArray[np.float32]) -> NDArray[np.float32]:
     """Return boxes around boxes that were moved by poses, shape (F, 6)."""
     centre, half = (boxes[:, :3] + boxes[:, 3:]) / 2, (boxes[:, 3:] - boxes[:, :3]) / 2
-    middle = np.einsum("fij,fj->fi", poses[:, :, :3], centre) + poses[:, :, 3]
-    reach = np.einsum("fij,fj->fi", np.abs(poses[:, :, :3]), half)
+    middle = exact.dot(poses[:, :, :3], centre[:, None]) + poses[:, :, 3]
+    reach = exact.dot(np.abs(poses[:, :, :3]), half[:, None])
     return np.concatenate([middle - reach, middle + reach], axis=1)
 
 

@@ -5,6 +5,7 @@ from typing import TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.render.kernels.visibility.clusters import (
     APEX,
     BOUNDS_ROWS,
@@ -65,7 +66,7 @@ def cluster_order(
     normals /= np.linalg.norm(normals, axis=1, keepdims=True)
     middle = (points.min(axis=1) + points.max(axis=1)) / 2
     reach = max(float(np.ptp(points.reshape(-1, 3), axis=0).max()) if len(points) else 0.0, 1e-6)
-    small = np.where(np.isfinite(sizes[solid]), np.log2(np.maximum(sizes[solid], 1e-3)), 8.0)
+    small = np.where(np.isfinite(sizes[solid]), exact.log2(np.maximum(sizes[solid], 1e-3)), 8.0)
     places = np.concatenate([middle / reach, TURN * normals, 0.1 * small[:, None]], axis=1)
     return np.concatenate([solid[_together(places)], np.flatnonzero(leafy)])
 
@@ -143,14 +144,14 @@ def _cones(corners: NDArray[np.float64], clusters: NDArray[np.float32]) -> NDArr
     normals = np.where(real[:, :, None], normals / np.where(length > 0.0, length, 1.0), 0.0)
     axis = normals.sum(axis=1)
     axis /= np.maximum(np.linalg.norm(axis, axis=1, keepdims=True), 1e-9)
-    cosine = np.where(real, np.einsum("bkj,bj->bk", normals, axis), 1.0)
+    cosine = np.where(real, exact.dot(normals, axis[:, None]), 1.0)
     middle = corners.reshape(len(corners), -1, 3).mean(axis=1)
-    height = np.einsum("bkj,bkj->bk", middle[:, None] - corners[:, :, 0], normals)
+    height = exact.dot(middle[:, None] - corners[:, :, 0], normals)
     behind = np.where(real, height / np.maximum(cosine, 1e-9), 0.0).max(axis=1)
     narrow = (cosine.min(axis=1) > _WIDEST) & ~(clusters[:, LEAVES] >= 0.0).any(axis=1)
     cone = np.empty((len(corners), 7))
     cone[:, 0:3] = middle - behind[:, None] * axis
     cone[:, 3:6] = axis
-    cone[:, 6] = np.sqrt(np.maximum(1.0 - cosine.min(axis=1) ** 2, 0.0)) + 1e-3
+    cone[:, 6] = np.sqrt(np.maximum(1.0 - np.square(cosine.min(axis=1)), 0.0)) + 1e-3
     cone[~narrow, :6], cone[~narrow, 6] = 0.0, NO_CONE
     return cone

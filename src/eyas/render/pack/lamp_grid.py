@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.render.kernels.bundles import LampFrame
 from eyas.state.scene import Lamps
 
@@ -32,7 +33,7 @@ def lamp_grid(
     nothing = np.zeros((count, 1), np.float32)  # eight numbers, so that lanes can be loaded
     lamp = np.concatenate([lamps.position, lamps.axis, strength, nothing], axis=1)
     lamp = lamp.astype(np.float32)
-    cut_off = float(np.cos(lamps.cut_off))
+    cut_off = float(exact.cos(lamps.cut_off))
     if count == 0:
         return lamp, np.full((0, 0, 1), -1, np.int32), _frame(0.0, 0.0, cell, cut_off)
     low = lamps.position[:, :2].min(axis=0).astype(np.float64) - REACH

@@ -5,6 +5,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from eyas.core import exact
 from eyas.core.cache.cached import cached
 from eyas.core.cache.folder import Kind
 from eyas.render.bake.ambient import AmbientMap
@@ -41,7 +42,7 @@ def build_light(
     lit = scene.lamps if lighting.lamps > 0 else Lamps.none()
     lamp, lamp_cell, lamp_frame = lamp_grid(lit)
     sun = np.array(lighting.sun_direction, np.float64)
-    sun /= np.linalg.norm(sun)
+    sun /= exact.length(sun)
     toward = (float(sun[0]), float(sun[1]), float(sun[2]))
     clouds, hills = cached(
         Kind.SKY,
@@ -72,7 +73,7 @@ def build_light(
 def tile_starts(tile: NDArray[np.int32]) -> NDArray[np.int32]:
     """Return `Light.shadow_tile` of the numbers of tiles."""
     line, column = np.indices(tile.shape, np.int32) * TILE
-    starts: NDArray[np.int32] = tile * (TILE + 1) ** 2 - line * (TILE + 1) - column
+    starts: NDArray[np.int32] = tile * (TILE + 1) * (TILE + 1) - line * (TILE + 1) - column
     return starts
 
 
@@ -110,8 +111,8 @@ def tone_table() -> NDArray[np.uint8]:
     contrast above the brightness of white paper.
     """
     radiance = (np.arange(TONE_STEPS) + 0.5) * (TONE_TOP / TONE_STEPS)
-    tone = 1.0 - np.exp(-1.35 * radiance)
-    encoded = np.where(tone <= 0.0031308, 12.92 * tone, 1.055 * tone ** (1 / 2.4) - 0.055)
+    tone = 1.0 - exact.exp(-1.35 * radiance)
+    encoded = np.where(tone <= 0.0031308, 12.92 * tone, 1.055 * exact.power(tone, 1 / 2.4) - 0.055)
     table: NDArray[np.uint8] = np.round(255.0 * np.clip(encoded, 0.0, 1.0)).astype(np.uint8)
     return table
 

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.state.mesh import Mesh
 
 __all__ = ["silhouette"]
@@ -39,7 +40,7 @@ def _points(mesh: Mesh) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     inside = first + second <= _GRID
     share = np.stack([first, second, _GRID - first - second], axis=1)[inside] / _GRID
     corners = mesh.positions[mesh.triangles].astype(np.float64)
-    points = np.einsum("pc,tcx->tpx", share, corners).reshape(-1, 3)
+    points = exact.product(share, corners).reshape(-1, 3)
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     area = np.linalg.norm(across, axis=1)
     return points, np.repeat(area, len(share))
@@ -55,5 +56,5 @@ def _ends(positions: NDArray[np.float64], weight: NDArray[np.float64]) -> tuple[
     if not weight.sum() > 0.0:
         return 0.0, 0.0
     middle = float(np.average(positions, weights=weight))
-    half = float(np.sqrt(3.0 * np.average((positions - middle) ** 2, weights=weight)))
+    half = float(np.sqrt(3.0 * np.average(np.square(positions - middle), weights=weight)))
     return max(float(positions.min()), middle - half), min(float(positions.max()), middle + half)

@@ -5,6 +5,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.state.mesh import Mesh
 
 __all__ = ["SHADING", "MaterialTable", "gradients", "shading_rows", "solid_triangles"]
@@ -44,7 +45,7 @@ def solid_triangles(mesh: Mesh) -> NDArray[np.bool_]:
     # `gradients` divides by this difference, in which the rounding of its terms remains: of a long
     # sliver nothing else may be left, although its area is not 0.
     whole = _dot(e1, e1) * _dot(e2, e2)
-    square = whole - _dot(e1, e2) ** 2
+    square = whole - np.square(_dot(e1, e2))
     return solid & (square > _SLIVER * whole)[:, 0]
 
 
@@ -122,5 +123,5 @@ def shading_rows(
 
 
 def _dot(a: NDArray[np.float64], b: NDArray[np.float64]) -> NDArray[np.float64]:
-    product: NDArray[np.float64] = np.einsum("ij,ij->i", a, b)
+    product: NDArray[np.float64] = exact.dot(a, b)
     return product[:, None]

@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
+
 __all__ = [
     "SIZE",
     "Field",
@@ -40,7 +42,7 @@ def source(name: str) -> np.random.Generator:
 
 def white(rng: np.random.Generator) -> Field:
     """Return an independent value for each pixel, mean 0, deviation 1."""
-    return rng.normal(size=(SIZE, SIZE))
+    return np.asarray(exact.normal(rng, size=(SIZE, SIZE)), np.float64)
 
 
 def fractal(
@@ -60,9 +62,9 @@ def fractal(
     """
     frequency_y = np.fft.fftfreq(SIZE)[:, None] * stretch[0]
     frequency_x = np.fft.rfftfreq(SIZE)[None] * stretch[1]
-    frequency = np.hypot(frequency_y, frequency_x)
-    gain = np.maximum(frequency, 1e-9) ** -slope
-    gain *= 1.0 / (1.0 + (1.0 / (np.maximum(frequency, 1e-9) * longest)) ** 6)
+    frequency = exact.hypot(frequency_y, frequency_x)
+    gain = exact.power(np.maximum(frequency, 1e-9), -slope)
+    gain *= 1.0 / (1.0 + exact.power(1.0 / (np.maximum(frequency, 1e-9) * longest), 6))
     gain[0, 0] = 0.0
     field = np.fft.irfft2(np.fft.rfft2(white(rng)) * gain, (SIZE, SIZE))
     return np.asarray(field / field.std(), np.float64)
@@ -72,7 +74,7 @@ def blurred(field: Field, radius: float) -> Field:
     """Return a field smoothed by a Gaussian of standard deviation `radius` [pixels]."""
     y = np.fft.fftfreq(SIZE)[:, None]
     x = np.fft.rfftfreq(SIZE)[None]
-    gain = np.exp(-2 * (np.pi * radius) ** 2 * (x**2 + y**2))
+    gain = exact.exp(-2 * np.square(np.pi * radius) * (np.square(x) + np.square(y)))
     return np.fft.irfft2(np.fft.rfft2(field) * gain, (SIZE, SIZE))
 
 
@@ -85,7 +87,7 @@ def cracks(rng: np.random.Generator, width: float, share: float) -> Field:
         share: Share of the area that has lines, 0 to 1.
     """
     hills = fractal(rng, 1.7, longest=140.0)
-    steep = np.hypot(hills - np.roll(hills, 1, 0), hills - np.roll(hills, 1, 1)) + 1e-3
+    steep = exact.hypot(hills - np.roll(hills, 1, 0), hills - np.roll(hills, 1, 1)) + 1e-3
     line = np.clip(1.3 - np.abs(hills) / steep / width, 0.0, 1.0)
     where = fractal(rng, 1.8, longest=200.0)
     gate = np.clip((where - np.quantile(where, 1 - share)) * 4.0, 0.0, 1.0)

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.render.textures.fields import (
     SIZE,
     Picture,
@@ -82,7 +83,7 @@ def lawn_mown() -> Texture:
     picture = _grass(rng, dryness=0.4)
     y = (np.arange(SIZE)[:, None] + 0.5) / SIZE
     wander = 0.1 * fractal(rng, 1.6, longest=120.0)
-    swath = np.clip(5.0 * np.sin(2 * np.pi * (4 * y) + wander), -1, 1)
+    swath = np.clip(5.0 * exact.sin(2 * np.pi * (4 * y) + wander), -1, 1)
     return opaque(picture * (1.0 + 0.035 * swath[..., None] * np.array([1.0, 0.9, 1.1])))
 
 

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.render.textures.fields import (
     SIZE,
     Field,
@@ -41,7 +42,7 @@ def sand() -> Texture:
     bend = 0.9 * fractal(rng, 1.8, longest=110.0, stretch=(1.4, 0.8))
     phase = 2 * np.pi * (22 * y + 3 * x) + bend
     # Steeper on the lee side, as in blown sand.
-    ripple = np.sin(phase + 0.5 * np.sin(phase))
+    ripple = exact.sin(phase + 0.5 * exact.sin(phase))
     strength = np.clip(0.6 + 0.3 * fractal(rng, 1.6, longest=90.0), 0.1, 1.0)
     grain = 0.03 * white(rng) + 0.018 * fractal(rng, 0.8, longest=60.0)
     picture = painted((214.0, 190.0, 148.0), 0.06 * ripple * strength + grain)
@@ -153,11 +154,11 @@ def water() -> Texture:
     )
     waves = blurred(waves, 1.0)
     slope_u, slope_v = _slope(waves, 1), -_slope(waves, 0)  # v grows upwards, rows downwards
-    steepness = 0.15 / np.sqrt((slope_u**2 + slope_v**2).mean() / 2)
+    steepness = 0.15 / np.sqrt((np.square(slope_u) + np.square(slope_v)).mean() / 2)
     linear = np.stack(
         [0.5 + steepness * slope_u, 0.5 + steepness * slope_v, np.full_like(waves, 0.5)], axis=-1
     )
-    srgb = 1.055 * np.clip(linear, 0.01, 1.0) ** (1 / 2.4) - 0.055
+    srgb = 1.055 * exact.power(np.clip(linear, 0.01, 1.0), 1 / 2.4) - 0.055
     return opaque(255.0 * srgb)
 
 

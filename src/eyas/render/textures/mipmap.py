@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.core.errors import UnknownNameError
 
 __all__ = ["SIDE", "linear", "packed_layers"]
@@ -16,7 +17,7 @@ SIDE = 256
 def linear(values: NDArray[np.floating]) -> NDArray[np.float64]:
     """Return linear values of sRGB values 0 to 1 (IEC 61966-2-1)."""
     values = np.asarray(values, np.float64)
-    return np.where(values <= 0.04045, values / 12.92, ((values + 0.055) / 1.055) ** 2.4)
+    return np.where(values <= 0.04045, values / 12.92, exact.power((values + 0.055) / 1.055, 2.4))
 
 
 _LINEAR = linear(np.arange(256) / 255.0)

@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.render.textures.fields import SIZE, fractal, mixed, opaque, painted, source, white
 
 __all__ = ["bark", "foliage", "leaves", "pale_foliage", "pale_leaves"]
@@ -88,8 +89,8 @@ def _cluster(picture: NDArray[np.float64], rng: np.random.Generator) -> None:
             bend = rng.uniform(-0.5, 0.5)
             for step in np.arange(0.1, 1.0, 0.058):
                 way = twig + bend * step
-                middle = 64 + step * reach * np.array([np.sin(way), np.cos(way)])
-                middle += rng.normal(0, 2.6, 2)
+                middle = 64 + step * reach * np.array([exact.sin(way), exact.cos(way)])
+                middle += exact.normal(rng, 0, 2.6, 2)
                 side = way + rng.choice([-1, 1]) * rng.uniform(0.3, 1.1)
                 length = rng.uniform(4.0, 5.8) * (1.1 - 0.25 * step)
                 shade = lightness * rng.uniform(0.84, 1.12)
@@ -131,9 +132,9 @@ def _leaf(
     low, high = np.floor(middle - half).astype(int), np.ceil(middle + half).astype(int) + 1
     rows, columns = np.arange(low[0], high[0]), np.arange(low[1], high[1])
     dy, dx = rows[:, None] - middle[0], columns - middle[1]
-    along = (dx * np.cos(way) + dy * np.sin(way)) / half
-    off = (-dx * np.sin(way) + dy * np.cos(way)) / half
-    inside = np.abs(off) < 0.44 * (1 - along**2) * (1 - 0.25 * along)
+    along = (dx * exact.cos(way) + dy * exact.sin(way)) / half
+    off = (-dx * exact.sin(way) + dy * exact.cos(way)) / half
+    inside = np.abs(off) < 0.44 * (1 - np.square(along)) * (1 - 0.25 * along)
     shade = 1 + 0.16 * np.sign(off) * (np.abs(off) > 0.06) + 0.1 * along
     shade = np.where(np.abs(off) <= 0.06, 1.28, shade)
     rgba = np.full((len(rows), len(columns), 4), 255.0)

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.render.textures.fields import fractal, masonry, mixed, opaque, painted, source, white
 
 __all__ = ["bitumen", "roof_gravel", "roof_membrane", "roof_terrace", "roof_tiles"]
@@ -14,7 +15,7 @@ def roof_tiles() -> Texture:
     """Return rows of curved terracotta tiles of a quarter metre, seen up the slope."""
     rng = source("roof_tiles")
     tiles = masonry(rng, 16, 16, joint=0.0, bond=0.0)
-    curve = np.cos((tiles.across - 0.42) * 2 * np.pi)
+    curve = exact.cos((tiles.across - 0.42) * 2 * np.pi)
     light = 0.16 * curve - 0.38 * (tiles.down > 0.86) + 0.1 * (tiles.down < 0.14)
     grain = 0.03 * white(rng) + 0.035 * fractal(rng, 0.9, longest=60.0)
     picture = painted((188.0, 106.0, 76.0), light + grain + 0.075 * tiles.shade)

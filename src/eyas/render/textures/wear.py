@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.render.textures.fields import (
     SIZE,
     fractal,
@@ -56,9 +57,9 @@ def asphalt_lane() -> Texture:
     rng = source("asphalt_lane")
     across = (np.arange(SIZE)[None] + 0.5) / SIZE * 2 - 1
     sway = 0.03 * fractal(rng, 1.5, longest=100.0)
-    track = np.exp(-(((np.abs(across + sway) - 0.5) / 0.17) ** 2))
+    track = exact.exp(-np.square((np.abs(across + sway) - 0.5) / 0.17))
     # Twice as many texels per metre across as along: two make one grain of the road's asphalt.
-    grain = np.repeat(rng.normal(size=(SIZE, SIZE // 2)), 2, axis=1)
+    grain = np.repeat(exact.normal(rng, size=(SIZE, SIZE // 2)), 2, axis=1)
     lumps = fractal(rng, 0.8, longest=14.0, stretch=(0.5, 1.0))
     cloud = fractal(rng, 1.0, longest=70.0, stretch=(0.5, 1.0))
     picture = painted(
@@ -68,7 +69,7 @@ def asphalt_lane() -> Texture:
     picture = mixed(picture, (42.0, 42.0, 42.0), 0.5 * (stone < 0.03))
     picture = mixed(picture, (150.0, 147.0, 140.0), (1 - 0.5 * track) * 0.5 * (stone > 0.985))
     picture = mixed(picture, (64.0, 63.5, 62.5), 0.55 * track * (1 + 0.25 * cloud))
-    drip = np.exp(-((across / 0.12) ** 2)) * np.clip(0.5 + 0.4 * cloud, 0, 1)
+    drip = exact.exp(-np.square(across / 0.12)) * np.clip(0.5 + 0.4 * cloud, 0, 1)
     return opaque(mixed(picture, (56.0, 56.0, 56.0), 0.3 * drip))
 
 
@@ -89,9 +90,9 @@ def manhole() -> Texture:
     """Return a cast-iron lid in a square of new asphalt, from above: ring, gap, a grid of knobs."""
     rng = source("manhole")
     y, x = ((np.mgrid[:SIZE, :SIZE] + 0.5) / SIZE * 2 - 1) / 0.78
-    radius = np.hypot(x, y)
+    radius = exact.hypot(x, y)
     picture = painted((78.0, 74.0, 70.0), 0.05 * white(rng))
-    knob = (np.sin(11 * np.pi * x) * np.sin(11 * np.pi * y) > 0.1) & (radius < 0.72)
+    knob = (exact.sin(11 * np.pi * x) * exact.sin(11 * np.pi * y) > 0.1) & (radius < 0.72)
     picture = mixed(picture, (116.0, 110.0, 103.0), 0.8 * knob)
     ring = np.clip(1.5 - np.abs(radius - 0.88) / 0.06, 0, 1)
     picture = mixed(picture, (112.0, 107.0, 101.0), 0.8 * ring)

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.render.textures.fields import SIZE, Field, Picture, fractal, white
 
 __all__ = ["BAY", "Opening", "Wall"]
@@ -109,7 +110,7 @@ class Wall:
                 pane[:drop] = cloth * slats[:, None, None]
             else:
                 side = max(2, round(width * rng.uniform(0.15, 0.34)))
-                folds = 0.88 + 0.12 * np.cos(np.arange(side) * 1.9)
+                folds = 0.88 + 0.12 * exact.cos(np.arange(side) * 1.9)
                 pane[:, :side] = cloth * folds[None, :, None]
                 pane[:, width - side :] = cloth * folds[None, ::-1, None]
         box = np.ix_(np.arange(top, bottom) % SIZE, np.arange(left, right) % SIZE)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.mesh.shell import Shell
 from eyas.state.mesh import Mesh
 
@@ -53,7 +54,7 @@ class Swing:
 
     def at(self, cycle: NDArray[np.float64], *, moving: bool) -> NDArray[np.float64]:
         """Return the values at parts of a cycle, shape (K,)."""
-        wave = np.sin(2.0 * np.pi * (self.beats * cycle + self.phase))
+        wave = exact.sin(2.0 * np.pi * (self.beats * cycle + self.phase))
         return self.rest + (self.lean + self.size * wave) * float(moving)
 
 

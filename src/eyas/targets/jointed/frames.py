@@ -3,6 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
+
 __all__ = ["along", "directions", "framed", "level", "places", "turned"]
 
 
@@ -30,14 +32,16 @@ def turned(
     yaw: NDArray[np.float64],
 ) -> NDArray[np.float64]:
     """Return frames at a point of others, turned by roll, then pitch, then yaw [rad], (K,)."""
-    cr, sr, cp, sp = np.cos(roll), np.sin(roll), np.cos(pitch), np.sin(pitch)
-    cy, sy = np.cos(yaw), np.sin(yaw)
+    cr, sr, cp, sp = exact.cos(roll), exact.sin(roll), exact.cos(pitch), exact.sin(pitch)
+    cy, sy = exact.cos(yaw), exact.sin(yaw)
     rotation = np.stack([
         np.stack([cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr], axis=-1),
         np.stack([sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr], axis=-1),
         np.stack([-sp, cp * sr, cp * cr], axis=-1),
     ], axis=-2)  # fmt: skip
-    return np.concatenate([frames[..., :3] @ rotation, places(frames, pivot)[..., None]], axis=-1)
+    return np.concatenate(
+        [exact.product(frames[..., :3], rotation), places(frames, pivot)[..., None]], axis=-1
+    )
 
 
 def along(

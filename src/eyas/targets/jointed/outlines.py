@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.mesh.shell import Shell
 from eyas.state.mesh import Material, Surface
 
@@ -34,9 +35,9 @@ def oval(
         box: 0 for an ellipse, 1 for almost a rectangle.
     """
     angle = (np.arange(sides) + 0.5) * (2 * np.pi / sides)
-    c, s = np.cos(angle), np.sin(angle)
+    c, s = exact.cos(angle), exact.sin(angle)
     power = 1.0 - 0.7 * box
-    x, y = np.sign(c) * np.abs(c) ** power, np.sign(s) * np.abs(s) ** power
+    x, y = np.sign(c) * exact.power(np.abs(c), power), np.sign(s) * exact.power(np.abs(s), power)
     x, y = x / np.abs(x).max(), y / np.abs(y).max()
     return np.column_stack([middle[0] + half[0] * x, middle[1] + half[1] * y, np.full(sides, z)])
 

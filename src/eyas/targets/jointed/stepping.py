@@ -8,6 +8,7 @@ foot and knee.
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.targets.jointed.figure import Gait, Leg
 from eyas.targets.jointed.frames import along, directions, framed, level, places, turned
 
@@ -54,23 +55,23 @@ def _ankle(
     stand = np.clip(part / gait.duty, 0.0, 1.0)
     fly = np.clip((part - gait.duty) / (1.0 - gait.duty), 0.0, 1.0)
     # In the world, a foot begins and ends its flight at rest: a cycloid.
-    world = gait.stride * (fly - np.sin(2.0 * np.pi * fly) / (2.0 * np.pi))
+    world = gait.stride * (fly - exact.sin(2.0 * np.pi * fly) / (2.0 * np.pi))
     ahead = world - gait.stride * (part - 0.5 * gait.duty)
     pitch = _pitch(leg, stand, fly)
     # The foot turns about its toes if they point down, else about its heel.
     lever = np.where(pitch > 0.0, -leg.sole[1], leg.sole[0])
-    ankle_x = -lever + lever * np.cos(pitch) + height * np.sin(pitch)
-    ankle_z = -lever * np.sin(pitch) + height * np.cos(pitch)
-    lift = gait.lift * np.sin(np.pi * fly) ** 2
+    ankle_x = -lever + lever * exact.cos(pitch) + height * exact.sin(pitch)
+    ankle_z = -lever * exact.sin(pitch) + height * exact.cos(pitch)
+    lift = gait.lift * np.square(exact.sin(np.pi * fly))
     place = (x + gait.shift + ahead + ankle_x, np.full(len(cycle), y), ankle_z + lift)
     return np.stack(place, axis=-1), pitch
 
 
 def _pitch(leg: Leg, stand: NDArray[np.float64], fly: NDArray[np.float64]) -> NDArray[np.float64]:
     strike, push = leg.roll
-    down = strike * (1.0 - np.minimum(stand / _FLAT[0], 1.0)) ** 2
-    rise = push * (np.maximum(stand - _FLAT[1], 0.0) / (1.0 - _FLAT[1])) ** 2
-    swung = fly**2 * (3.0 - 2.0 * fly)
+    down = strike * np.square(1.0 - np.minimum(stand / _FLAT[0], 1.0))
+    rise = push * np.square(np.maximum(stand - _FLAT[1], 0.0) / (1.0 - _FLAT[1]))
+    swung = np.square(fly) * (3.0 - 2.0 * fly)
     swing = push * (1.0 - swung) - strike * swung
     return np.where(fly > 0.0, swing, rise - down)
 
@@ -89,6 +90,6 @@ def _bent(
     far = np.clip(far, abs(upper - lower) + 1e-6, _SLACK * (upper + lower))
     side = bend - (bend * reach).sum(axis=-1, keepdims=True) * reach
     side /= np.linalg.norm(side, axis=-1, keepdims=True)
-    cosine = (upper**2 + far**2 - lower**2) / (2.0 * upper * far)
-    sine = np.sqrt(np.maximum(1.0 - cosine**2, 0.0))
+    cosine = (np.square(upper) + np.square(far) - np.square(lower)) / (2.0 * upper * far)
+    sine = np.sqrt(np.maximum(1.0 - np.square(cosine), 0.0))
     return hip + upper * (cosine * reach + sine * side), hip + far * reach

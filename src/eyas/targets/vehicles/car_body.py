@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.mesh.shell import Shell
 from eyas.state.mesh import Material, Mesh
 from eyas.targets.vehicles.car_shape import (
@@ -209,8 +210,8 @@ def _trimmings(shell: Shell, vehicle: VehicleModel, shape: CarShape) -> None:
         y = (axle.track - axle.width) / 2 - 0.02
         reach = 1.1 * arch_radius(vehicle.wheel_radius)
         angle = np.linspace(-0.3, np.pi + 0.3, 7)
-        rise = np.maximum(vehicle.wheel_radius + reach * np.sin(angle), shape.clearance)
-        wall = np.column_stack([axle.x - reach * np.cos(angle), np.full(7, y), rise])
+        rise = np.maximum(vehicle.wheel_radius + reach * exact.sin(angle), shape.clearance)
+        wall = np.column_stack([axle.x - reach * exact.cos(angle), np.full(7, y), rise])
         fan = [[wall[0], wall[i], wall[i + 1]] for i in range(1, 6)]
         shell.triangles(fan, TRIM)
         shell.triangles(np.array(fan)[:, ::-1] * [1.0, -1.0, 1.0], TRIM)

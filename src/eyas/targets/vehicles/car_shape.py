@@ -132,7 +132,7 @@ def _floor(vehicle: VehicleModel, shape: CarShape, x: NDArray[np.float64]) -> ND
     reach = arch_radius(vehicle.wheel_radius)
     for axle in vehicle.axles:
         away = np.abs(x - axle.x) / reach
-        arch = vehicle.wheel_radius + reach * np.sqrt(np.maximum(1.0 - away**2, 0.0))
+        arch = vehicle.wheel_radius + reach * np.sqrt(np.maximum(1.0 - np.square(away), 0.0))
         z = np.where(away < 0.99, np.maximum(z, arch), z)
     return z
 

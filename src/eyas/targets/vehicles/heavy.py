@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from eyas.core import exact
 from eyas.mesh.shell import Shell
 from eyas.state.mesh import Material, Mesh
 from eyas.targets.vehicles.finishes import (
@@ -66,7 +67,7 @@ def _pane(
     """Add a panel 1.5 cm above a face, inset by `margin` as a share of its size."""
     face = np.asarray(corners, np.float64)
     normal = np.cross(face[2] - face[0], face[3] - face[1])
-    lift = 0.015 * normal / np.linalg.norm(normal)
+    lift = 0.015 * normal / exact.length(normal)
     middle = face.mean(axis=0)
     shell.quads(middle + (1.0 - margin) * (face - middle) + lift, material, both_sides=both_sides)
 
@@ -189,7 +190,7 @@ def _tank_trailer(shell: Shell, vehicle: VehicleModel, detail: int) -> None:
     angle = (np.arange(sides) + 0.5) * (2 * np.pi / sides)
 
     def ring(x: float, size: float) -> NDArray[np.float64]:
-        y, z = 1.24 * size * np.sin(angle), 2.7 - 1.3 * size * np.cos(angle)
+        y, z = 1.24 * size * exact.sin(angle), 2.7 - 1.3 * size * exact.cos(angle)
         return np.column_stack([np.full(sides, x), y, z])
 
     _trailer_frame(shell, vehicle, 1.5, detail)

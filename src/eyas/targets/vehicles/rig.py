@@ -53,7 +53,7 @@ class VehicleRig:
         """Return how far any point of a vehicle may be from its reference point, see `Rig` [m]."""
         slot = self._table.bundle.slot
         slot = slot[slot["part"] >= 0]
-        offset = np.sqrt(slot["x"] ** 2 + slot["y"] ** 2 + slot["z"] ** 2)
+        offset = np.sqrt(np.square(slot["x"]) + np.square(slot["y"]) + np.square(slot["z"]))
         return abs(VEHICLE_AHEAD) + float((offset + parts[slot["part"]]).max())
 
     def pose(self, group: Group, actors: ActorState, looks: Looks, out: DrawList) -> None:

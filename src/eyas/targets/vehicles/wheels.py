@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.mesh.shell import Shell
 from eyas.state.mesh import Mesh
 from eyas.targets.vehicles.finishes import RIM, TRIM, TYRE
@@ -35,7 +36,9 @@ def wheel_levels(radius: float, width: float, pair: float) -> tuple[Mesh, ...]:
 def _ring(radius: float, y: float, sides: int) -> NDArray[np.float64]:
     """Return a circle, counter-clockwise as seen from the right; its first corner is the lowest."""
     angle = np.arange(sides) * (2 * np.pi / sides) - np.pi / 2
-    return np.column_stack([radius * np.cos(angle), np.full(sides, y), radius * np.sin(angle)])
+    return np.column_stack(
+        [radius * exact.cos(angle), np.full(sides, y), radius * exact.sin(angle)]
+    )
 
 
 def _fine(shell: Shell, radius: float, width: float, y: float) -> None:

@@ -1,6 +1,6 @@
 """Points that keep a distance from each other."""
 
-import math
+from eyas.core import exact
 
 __all__ = ["Apart"]
 
@@ -24,7 +24,7 @@ class Apart:
         for i in (column - 1, column, column + 1):
             for j in (row - 1, row, row + 1):
                 for east, north in self._squares.get((i, j), ()):
-                    if math.sqrt((east - x) ** 2 + (north - y) ** 2) <= self._apart:
+                    if exact.hypot(east - x, north - y) <= self._apart:
                         return False
         self.points.append((x, y))
         self._squares.setdefault((column, row), []).append((x, y))

@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 __all__ = ["dot", "length", "rounded", "snapped", "unit"]
 
 _DIGITS = 3
+_STEP = 0.001
 
 
 def rounded(points: ArrayLike) -> NDArray[np.float64]:
@@ -24,7 +25,7 @@ def rounded(points: ArrayLike) -> NDArray[np.float64]:
 
 def snapped(shape: shapely.Geometry) -> shapely.Geometry:
     """Return a valid shape whose corners are at whole millimetres [m], without slivers."""
-    whole = shapely.set_precision(shape, 10.0**-_DIGITS)
+    whole = shapely.set_precision(shape, _STEP)
     # Shapes that are cut out of this one later must not be rounded: the edges would no longer meet.
     return shapely.set_precision(whole, 0.0)
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from eyas.core import exact
 from eyas.core.errors import ConfigError
 from eyas.mesh.assembly import concatenate
 from eyas.state.lighting import Horizon
@@ -91,7 +92,7 @@ class SceneBuilder:
             scale: Factor on its size.
             owner: Object that the copy is part of; None: a new object of class `kind`.
         """
-        cosine, sine = scale * np.cos(turn), scale * np.sin(turn)
+        cosine, sine = scale * exact.cos(turn), scale * exact.sin(turn)
         pose = np.array(
             [
                 [cosine, -sine, 0.0, place[0]],

@@ -11,6 +11,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.mesh.assembly import concatenate
 from eyas.mesh.flat import flat_polygon, quads, walls
 from eyas.mesh.solids import box
@@ -53,8 +54,8 @@ class Cottage:
     @property
     def outline(self) -> Points:
         """Corners of its walls, counter-clockwise [m], shape (4, 2)."""
-        cosine, sine = np.cos(self.turn), np.sin(self.turn)
-        turned = _SQUARE @ np.array([[cosine, sine], [-sine, cosine]])
+        cosine, sine = exact.cos(self.turn), exact.sin(self.turn)
+        turned = exact.product(_SQUARE, np.array([[cosine, sine], [-sine, cosine]]))
         return np.asarray(self.place + turned, np.float64)
 
 
@@ -116,7 +117,7 @@ def _roof(top: float, tiles: Material) -> Mesh:
     eaves = _SQUARE * (1.0 + 2 * _EAVES / SIDE)
     rim = np.column_stack([eaves, np.full(4, top)])
     peak = np.array([0.0, 0.0, top + _ROOF])
-    half, slope = SIDE / 2 + _EAVES, float(np.hypot(SIDE / 2 + _EAVES, _ROOF))
+    half, slope = SIDE / 2 + _EAVES, float(exact.hypot(SIDE / 2 + _EAVES, _ROOF))
     made = []
     for k in range(4):
         one, other = rim[k], rim[(k + 1) % 4]

@@ -9,6 +9,7 @@ import shapely
 from numpy.typing import NDArray
 from shapely import affinity
 
+from eyas.core import exact
 from eyas.world.build.millimetres import snapped
 
 __all__ = ["BAY", "Lot", "divide", "footprint_in", "frame_angle", "largest", "turned"]
@@ -38,7 +39,7 @@ def frame_angle(block: shapely.Polygon) -> float:
     corners = shapely.get_coordinates(shapely.minimum_rotated_rectangle(block))
     sides = np.diff(corners, axis=0)[:2]
     longest = sides[int(np.argmax(np.linalg.norm(sides, axis=1)))]
-    angle = math.atan2(longest[1], longest[0])
+    angle = float(exact.atan2(longest[1], longest[0]))
     # Streets along an axis are common, so they must lie inside the range, not at its ends.
     return round((angle + math.pi / 8) % math.pi - math.pi / 8, 9)
 
@@ -150,10 +151,10 @@ def _size(lot: Lot, width: float, depth: float, area: float) -> tuple[float, flo
             width = float(np.clip(area / depth, min(width, 13.0), width))
             depth = min(depth, area / width)
         else:
-            shrink = (area / (width * depth)) ** 0.5
+            shrink = math.sqrt(area / (width * depth))
             width, depth = width * shrink, depth * shrink
         if max(width, depth) > 3.2 * min(width, depth):
-            long = min(1.9 * area**0.5, max(width, depth))
+            long = min(1.9 * math.sqrt(area), max(width, depth))
             short = area / long
             width, depth = (long, short) if width > depth else (short, long)
     return _snapped(width), _snapped(depth)

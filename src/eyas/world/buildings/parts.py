@@ -4,6 +4,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.mesh.assembly import concatenate
 from eyas.mesh.flat import flat_polygon, quads, walls
 from eyas.state.mesh import Material, Mesh
@@ -79,7 +80,7 @@ def pyramid_roof(outline: Outline, top: float, stone: Material, tiles: Material)
     corners = np.stack([np.hstack([start, low]), np.hstack([end, low]), apex_end, apex], axis=1)
     along = (end - start) / np.linalg.norm(end - start, axis=1, keepdims=True)
     offset = corners - corners[:, :1]
-    u = np.einsum("qki,qi->qk", offset[:, :, :2], along)
+    u = exact.dot(offset[:, :, :2], along[:, None])
     up = np.linalg.norm(
         offset - np.concatenate([u[..., None] * along[:, None], 0 * u[..., None]], axis=2), axis=2
     )

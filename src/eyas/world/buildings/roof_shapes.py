@@ -12,6 +12,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.mesh.assembly import concatenate
 from eyas.mesh.flat import flat_polygon, quads
 from eyas.state.mesh import Material, Mesh
@@ -96,7 +97,7 @@ def _planes(
 
     def cell(*corners: tuple[float, float]) -> shapely.Polygon:
         frame = np.stack([along, aside])
-        return shapely.Polygon(rounded(np.array(corners) @ frame + origin))
+        return shapely.Polygon(rounded(exact.product(np.array(corners), frame) + origin))
 
     def plane(direction: Points, reach: float, run: float, area: shapely.Polygon) -> _Plane:
         """Return the slope that falls in a direction, to the eaves at a distance [m]."""
@@ -130,7 +131,7 @@ def _frame(shape: shapely.Polygon) -> tuple[Points, Points, float, float]:
     corners = shapely.get_coordinates(shapely.minimum_rotated_rectangle(shape))[:4]
     centre = corners.mean(axis=0)
     sides = np.diff(corners[:3], axis=0)
-    lengths = np.hypot(sides[:, 0], sides[:, 1])
+    lengths = exact.hypot(sides[:, 0], sides[:, 1])
     longer = int(np.round(lengths[1], 3) > np.round(lengths[0], 3))
     along = sides[longer] / lengths[longer]
     return centre, along, float(lengths[longer]) / 2, float(lengths[1 - longer]) / 2
@@ -141,13 +142,16 @@ def _slope(plane: _Plane, area: shapely.Geometry, tiles: Material) -> Mesh:
     mesh = flat_polygon(area, 0.0, tiles, tile)
     flat = mesh.positions[:, :2].astype(np.float64)
     mesh.positions[:, 2] = plane.at(flat)
-    steep = float(np.hypot(*plane.rise))
-    up = np.array([-plane.rise[0], -plane.rise[1], 1.0]) / np.sqrt(1.0 + steep**2)
+    steep = float(exact.hypot(*plane.rise))
+    up = np.array([-plane.rise[0], -plane.rise[1], 1.0]) / np.sqrt(1.0 + np.square(steep))
     mesh.normals[:] = up
     climb = plane.rise / max(steep, 1e-9)
     level = np.array([climb[1], -climb[0]])
-    stretch = np.sqrt(1.0 + steep**2)
-    mesh.uvs[:] = np.stack([flat @ level, (flat @ climb) * stretch], axis=1) / tile
+    stretch = np.sqrt(1.0 + np.square(steep))
+    mesh.uvs[:] = (
+        np.stack([exact.product(flat, level), (exact.product(flat, climb)) * stretch], axis=1)
+        / tile
+    )
     return mesh
 
 
@@ -165,8 +169,8 @@ def _walls_below(
                 shapely.intersection(shapely.LineString([start, end]), seams)
             )
             points = np.concatenate([start[None], stops, end[None]])
-            size = max(float(np.hypot(*(end - start))), 1e-9)
-            order = np.argsort((points - start) @ (end - start) / size, kind="stable")
+            size = max(float(exact.hypot(*(end - start))), 1e-9)
+            order = np.argsort(exact.product(points - start, end - start) / size, kind="stable")
             line = points[order]
             top = np.min([plane.at(line) for plane in planes], axis=0)
             faces += [
@@ -177,7 +181,7 @@ def _walls_below(
     if not faces:
         return Mesh.none()
     upright = np.array(faces)
-    along = np.hypot(*(upright[:, :, :2] - upright[:, :1, :2]).transpose(2, 0, 1))
+    along = exact.hypot(*(upright[:, :, :2] - upright[:, :1, :2]).transpose(2, 0, 1))
     uvs = np.stack([along, upright[:, :, 2] - eaves], axis=2) / _TILE
     return quads(upright, uvs, wall)
 
@@ -231,8 +235,8 @@ def _dome(shape: shapely.Polygon, eaves: float, rise: float, cover: Material) ->
     rings = [
         np.column_stack(
             [
-                centre + max(np.cos(a), 0.0) * (outline - centre),
-                np.full(len(outline), eaves + rise * np.sin(a)),
+                centre + max(exact.cos(a), 0.0) * (outline - centre),
+                np.full(len(outline), eaves + rise * exact.sin(a)),
             ]
         )
         for a in angle

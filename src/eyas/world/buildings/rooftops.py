@@ -6,6 +6,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.mesh.assembly import concatenate, transformed
 from eyas.mesh.solids import box, cylinder, tube
 from eyas.state.mesh import Material, Mesh
@@ -53,7 +54,7 @@ def add_rooftop(builder: SceneBuilder, outline: Outline, top: float, owner: int,
     free = shapely.buffer(shape, -_FROM_PARAPET, join_style="mitre")
     free = shapely.difference(free, shapely.buffer(keep_free, 1.0))
     axis = outline[1] - outline[0]
-    turn = float(np.arctan2(axis[1], axis[0]))
+    turn = float(exact.atan2(axis[1], axis[0]))
     for kind in _wanted(free.area, top, rng):
         spot = _spot(free, _ROOM[kind], rng)
         if spot is not None:

@@ -5,6 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
+
 __all__ = ["FLOOR", "TOWER_SHARE", "evenly", "ground_areas", "storeys"]
 
 FLOOR = 3.0
@@ -41,7 +43,7 @@ def storeys(
     ticket = np.minimum(side, 45.0) * rng.uniform(0.35, 1.0, len(side))
     ticket = np.where(is_tower, ticket + 40.0, np.where(carries, ticket - 40.0, ticket))
     height = np.empty(len(side))
-    height[np.argsort(ticket)] = np.sort(_stratified(_HEIGHT, len(side), rng))
+    height[np.argsort(ticket, kind="stable")] = np.sort(_stratified(_HEIGHT, len(side), rng))
     floors = np.clip(np.round(height / FLOOR), 2, np.maximum(2, np.floor(7 * side / FLOOR)))
     floors[carries] = np.minimum(floors[carries], rng.integers(2, 8, int(carries.sum())))
     floors[is_tower] = np.maximum(floors[is_tower], floors[base[is_tower]] + 3)
@@ -59,6 +61,6 @@ def _stratified(
     """Return one value from each of `count` equal shares of a distribution, shuffled."""
     share, value = np.array(points).T
     at = (np.arange(count) + rng.uniform(0.2, 0.8, count)) / max(count, 1)
-    drawn = np.exp(np.interp(at, share, np.log(value)))
+    drawn = exact.exp(np.interp(at, share, exact.log(value)))
     # Logarithms differ from processor to processor in their last bits.
     return np.asarray(rng.permutation(np.round(drawn, 3)), np.float64)

@@ -160,7 +160,12 @@ def _lattice(half: float, spacing: float, rng: np.random.Generator) -> Points:
 
 def _indices(points: Points, corners: Points) -> NDArray[np.int64]:
     """Return the index of the point at each corner; both have the same coordinates."""
-    keys = points[:, 0] + 1j * points[:, 1]
-    order = np.argsort(keys)
-    wanted = corners[..., 0] + 1j * corners[..., 1]
-    return np.asarray(order[np.searchsorted(keys, wanted, sorter=order)], np.int64)
+    keys = _pairs(points)
+    order = np.argsort(keys, kind="stable")
+    places = np.searchsorted(keys, _pairs(corners), sorter=order)
+    return np.asarray(order[places], np.int64)
+
+
+def _pairs(points: Points) -> NDArray[np.complex128]:
+    """Return points as numbers that are ordered by the first coordinate, then by the second."""
+    return np.ascontiguousarray(points, np.float64).view(np.complex128)[..., 0]

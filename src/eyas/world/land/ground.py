@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import shapely
 
+from eyas.core import exact
 from eyas.mesh.assembly import concatenate
 from eyas.mesh.flat import flat_polygon
 from eyas.state.mesh import Mesh
@@ -155,13 +156,13 @@ def _grass_patches(extent: shapely.Polygon, rng: np.random.Generator) -> list[sh
     """Return where each of the tints may be: edges of patches and what is inside of them [m]."""
     west, south, east, north = extent.bounds
     angle = np.linspace(0.0, 2 * np.pi, 24, endpoint=False)
-    ring = np.stack([1.5 * np.cos(angle), 0.8 * np.sin(angle)], axis=1)
+    ring = np.stack([1.5 * exact.cos(angle), 0.8 * exact.sin(angle)], axis=1)
     inner: list[list[shapely.Polygon]] = [[], []]
     outer: list[list[shapely.Polygon]] = [[], []]
     for index in range(_PATCHES):
         middle = rng.uniform([west, south], [east, north])
         phase, size = rng.uniform(0, 2 * np.pi, (3, 1)), rng.uniform(0.06, 0.18, (3, 1))
-        waves = (size * np.sin(angle * [[1], [2], [3]] + phase)).sum(axis=0)
+        waves = (size * exact.sin(angle * [[1], [2], [3]] + phase)).sum(axis=0)
         outline = rng.uniform(*_PATCH) * (1 + waves)[:, None] * ring
         outer[index % 2].append(shapely.Polygon(rounded(middle + outline)))
         inner[index % 2].append(shapely.Polygon(rounded(middle + _FADE * outline)))

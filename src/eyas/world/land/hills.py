@@ -5,6 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from eyas.core import exact
 from eyas.state.mesh import Material, Mesh
 from eyas.state.terrain import Terrain
 from eyas.world.build.materials import TEXTURES
@@ -43,8 +44,8 @@ def hilly(
     y = south + spacing * np.arange(rows)[:, None]
     relief = np.zeros((rows, columns))
     for hill in hills:
-        apart = np.minimum(np.hypot(x - hill.x, y - hill.y) / hill.radius, 1.0)
-        relief = np.maximum(relief, hill.height * (0.5 + 0.5 * np.cos(np.pi * apart)))
+        apart = np.minimum(exact.hypot(x - hill.x, y - hill.y) / hill.radius, 1.0)
+        relief = np.maximum(relief, hill.height * (0.5 + 0.5 * exact.cos(np.pi * apart)))
     # Whole millimetres: the last bits of a cosine differ between machines.
     return Terrain(floor, np.round(relief, 3).astype(np.float32), west, south, spacing)
 

@@ -1,6 +1,5 @@
 """Hills and dunes of uneven outline: their shapes, and their places beside roads."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -8,6 +7,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.world.build.millimetres import rounded
 
 __all__ = ["Mound", "highest", "place_inside", "place_ring", "sizes"]
@@ -50,18 +50,18 @@ class Mound:
         """
         away = (points - (self.x, self.y)) / self.radius
         if self.phases:
-            angle = np.arctan2(away[:, 1], away[:, 0])
+            angle = exact.atan2(away[:, 1], away[:, 0])
             wave = sum(
-                np.sin((k + 2) * angle + phase) / (k + 1) for k, phase in enumerate(self.phases)
+                exact.sin((k + 2) * angle + phase) / (k + 1) for k, phase in enumerate(self.phases)
             )
             away = away / (1.0 - self.waviness * (0.5 + 0.5 * np.asarray(wave) / 1.9))[:, None]
         # The share of the way from the summit to the edge of the unit circle.
         lean = np.asarray(self.lean)
         way = away - lean
-        square = (way**2).sum(axis=1)
-        onto, inside = way @ lean, 1.0 - float(lean @ lean)
-        share = square / np.maximum(-onto + np.sqrt(onto**2 + square * inside), 1e-12)
-        bell = 0.5 + 0.5 * np.cos(np.pi * np.clip(share, 0.0, 1.0))
+        square = np.square(way).sum(axis=1)
+        onto, inside = exact.product(way, lean), 1.0 - float(exact.product(lean, lean))
+        share = square / np.maximum(-onto + np.sqrt(np.square(onto) + square * inside), 1e-12)
+        bell = 0.5 + 0.5 * exact.cos(np.pi * np.clip(share, 0.0, 1.0))
         # Whole millimetres: the last bits of a cosine differ between machines.
         return rounded(self.height * bell)
 
@@ -122,7 +122,7 @@ def place_inside(
         space = np.round(shapely.distance(edge, shapely.points(spots)), 3)
         fit = np.minimum(space, radius)
         for other in made:
-            apart = np.hypot(*(spots - (other.x, other.y)).T)
+            apart = exact.hypot(*(spots - (other.x, other.y)).T)
             fit[apart < _APART * np.maximum(fit, other.radius)] = 0.0
         # Of the places with room for all of it the tightest, otherwise the roomiest.
         best = int(np.argmax(fit - 1e-3 * np.round(space - fit)))
@@ -156,9 +156,9 @@ def place_ring(
         at = (index + rng.uniform(-0.2, 0.2)) / len(radii) % 1.0
         foot = shapely.get_coordinates(ring.interpolate(at, normalized=True))[0]
         # Small shares are more frequent, as in the original.
-        gap = gaps[0] + (gaps[1] - gaps[0]) * rng.uniform() ** 2
+        gap = gaps[0] + (gaps[1] - gaps[0]) * np.square(rng.uniform())
         away = foot - middle
-        x, y = rounded(foot + away / math.hypot(*away) * (gap + radius)).tolist()
+        x, y = rounded(foot + away / exact.hypot(*away) * (gap + radius)).tolist()
         space = round(float(inside.distance(shapely.Point(x, y))), 3) - gaps[0]
         fit = min(float(radius), space)
         made.append(Mound(x, y, fit, round(float(rng.uniform(*steepness) * fit), 3)))

@@ -4,6 +4,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.world.build.millimetres import rounded
 
 __all__ = ["blob", "wavy"]
@@ -29,12 +30,12 @@ def blob(
     """
     angle = np.linspace(0.0, 2 * np.pi, corners, endpoint=False)
     phase, size = rng.uniform(0, 2 * np.pi, (3, 1)), rng.uniform(0.04, 0.11, (3, 1))
-    waves = 1.0 + (size * np.sin(angle * [[2], [3], [5]] + phase)).sum(axis=0)
+    waves = 1.0 + (size * exact.sin(angle * [[2], [3], [5]] + phase)).sum(axis=0)
     # Between an ellipse and a rectangle: full ends.
-    around = np.stack([np.cos(angle), np.sin(angle)])
-    around = np.sign(around) * np.abs(around) ** 0.75
+    around = np.stack([exact.cos(angle), exact.sin(angle)])
+    around = np.sign(around) * exact.power(np.abs(around), 0.75)
     x, y = np.asarray(half)[:, None] * waves * around
-    cosine, sine = np.cos(turn), np.sin(turn)
+    cosine, sine = exact.cos(turn), exact.sin(turn)
     return shapely.Polygon(
         rounded(middle + np.stack([x * cosine - y * sine, x * sine + y * cosine], axis=1))
     )
@@ -52,7 +53,7 @@ def wavy(shape: shapely.Polygon, depth: float, rng: np.random.Generator) -> shap
     along = np.linspace(0.0, 2 * np.pi, len(ring), endpoint=False)
     phase, size = rng.uniform(0, 2 * np.pi, (6, 1)), rng.uniform(0.08, 0.25, (6, 1))
     rate = np.array([[3], [5], [8], [11], [17], [23]])
-    offset = depth * (size * np.sin(rate * along + phase)).sum(axis=0)
+    offset = depth * (size * exact.sin(rate * along + phase)).sum(axis=0)
     ahead = np.roll(ring, -1, axis=0) - np.roll(ring, 1, axis=0)
     away = np.stack([ahead[:, 1], -ahead[:, 0]], axis=1)
     away /= np.linalg.norm(away, axis=1, keepdims=True)

@@ -4,6 +4,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.mesh.flat import flat_polygons
 from eyas.state.mesh import Material, Mesh
 from eyas.world.build.heights import FLOOR_HEIGHT
@@ -60,8 +61,8 @@ def blob(middle: NDArray[np.float64], radius: float, rng: np.random.Generator) -
     """
     angle = np.linspace(0.0, 2 * np.pi, _CORNERS, endpoint=False)
     phase, swing = rng.uniform(0, 2 * np.pi, (3, 1)), rng.uniform(0.05, 0.16, (3, 1))
-    waves = 1.0 + (swing * np.sin(angle * [[1], [2], [3]] + phase)).sum(axis=0)
-    ring = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    waves = 1.0 + (swing * exact.sin(angle * [[1], [2], [3]] + phase)).sum(axis=0)
+    ring = np.stack([exact.cos(angle), exact.sin(angle)], axis=1)
     return shapely.Polygon(rounded(middle + radius * waves[:, None] * ring))
 
 

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from eyas.core import exact
 from eyas.world.build.millimetres import rounded
 
 __all__ = ["Projection"]
@@ -45,12 +46,16 @@ class Projection:
         """
         degrees = np.asarray(places, np.float64).reshape(-1, 2)
         phi = np.radians(degrees[:, 1])
-        sine, cosine = np.sin(phi), np.cos(phi)
-        t, c = (sine / cosine) ** 2, _EP2 * cosine**2
-        n = _A / np.sqrt(1 - _E2 * sine**2)
+        sine, cosine = exact.sin(phi), exact.cos(phi)
+        t, c = np.square(sine / cosine), _EP2 * np.square(cosine)
+        n = _A / np.sqrt(1 - _E2 * np.square(sine))
         a = np.radians(degrees[:, 0] - self.longitude) * cosine
-        east = n * (a + (1 - t + c) * a**3 / 6 + (5 - 18 * t + t * t + 72 * c) * a**5 / 120)
-        bow = a**2 / 2 + (5 - t + 9 * c + 4 * c * c) * a**4 / 24
+        east = n * (
+            a
+            + (1 - t + c) * exact.power(a, 3) / 6
+            + (5 - 18 * t + t * t + 72 * c) * exact.power(a, 5) / 120
+        )
+        bow = np.square(a) / 2 + (5 - t + 9 * c + 4 * c * c) * exact.power(a, 4) / 24
         start = _meridian(np.array([math.radians(self.latitude)]))
         north = _meridian(phi) - start + n * (sine / cosine) * bow
         return rounded(np.stack([east, north], axis=1))
@@ -62,7 +67,7 @@ class Projection:
             points: East and north [m], shape (K, 2).
         """
         goal = np.asarray(points, np.float64).reshape(-1, 2)
-        scale = np.array([_A * math.cos(math.radians(self.latitude)), _A]) * math.pi / 180
+        scale = np.array([_A * exact.cos(math.radians(self.latitude)), _A]) * math.pi / 180
         found = np.array([self.longitude, self.latitude]) + goal / scale
         for _ in range(4):  # each step leaves about a thousandth of the error
             found = found + (goal - self.metres(found)) / scale
@@ -71,11 +76,11 @@ class Projection:
 
 def _meridian(phi: _Numbers) -> _Numbers:
     """Return the lengths of the meridian from the equator to latitudes [rad], in metres."""
-    e4, e6 = _E2**2, _E2**3
+    e4, e6 = _E2 * _E2, _E2 * _E2 * _E2
     length = _A * (
         (1 - _E2 / 4 - 3 * e4 / 64 - 5 * e6 / 256) * phi
-        - (3 * _E2 / 8 + 3 * e4 / 32 + 45 * e6 / 1024) * np.sin(2 * phi)
-        + (15 * e4 / 256 + 45 * e6 / 1024) * np.sin(4 * phi)
-        - (35 * e6 / 3072) * np.sin(6 * phi)
+        - (3 * _E2 / 8 + 3 * e4 / 32 + 45 * e6 / 1024) * exact.sin(2 * phi)
+        + (15 * e4 / 256 + 45 * e6 / 1024) * exact.sin(4 * phi)
+        - (35 * e6 / 3072) * exact.sin(6 * phi)
     )
     return np.asarray(length, np.float64)

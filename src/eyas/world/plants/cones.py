@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.mesh.assembly import concatenate
 from eyas.mesh.solids import tube
 from eyas.state.mesh import Material, Mesh, Surface
@@ -70,7 +71,7 @@ def _crown(half: float, rng: np.random.Generator) -> Crown:
         angle = rng.uniform(0, 2 * np.pi) + np.arange(count) * 2 * np.pi / count
         out = max(reach - size, 0.0) * rng.uniform(0.9, 1.06, count)
         z = height + rng.uniform(-0.025, 0.025, count)
-        centres.append(np.column_stack([out * np.cos(angle), out * np.sin(angle), z]))
+        centres.append(np.column_stack([out * exact.cos(angle), out * exact.sin(angle), z]))
         radii.append(np.full(count, size))
     return Crown(np.concatenate(centres), np.concatenate(radii), np.array([0.0, 0.0, 0.4]))
 

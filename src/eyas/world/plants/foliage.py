@@ -5,6 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.mesh.solids import sphere
 from eyas.state.mesh import Material, Mesh, Surface
 
@@ -37,13 +38,13 @@ class Crown:
 
         Shapes (count, 3).
         """
-        weight = self.radii**2 / (self.radii**2).sum()
+        weight = np.square(self.radii) / np.square(self.radii).sum()
         kept: list[Array] = []
         facing: list[Array] = []
         have = 0
         while have < count:
             ball = rng.choice(len(self.radii), size=4 * count, p=weight)
-            way = rng.normal(size=(4 * count, 3))
+            way = exact.normal(rng, size=(4 * count, 3))
             way /= np.linalg.norm(way, axis=1, keepdims=True)
             points = self.centres[ball] + way * self.radii[ball, None]
             outside = self.depth(points) < 0.015
@@ -91,7 +92,7 @@ def leaf_cards(
     quad = np.array([[0, 1, columns + 1], [0, columns + 1, columns]])
     pattern = np.concatenate([quad + k for k in range(columns - 1)])
     triangles = (np.arange(count) * 2 * columns)[:, None, None] + pattern
-    brightness = _brightness(crown, points, facing) + rng.normal(0, 0.1, count)
+    brightness = _brightness(crown, points, facing) + exact.normal(rng, 0, 0.1, count)
     level = np.clip(np.floor(brightness * len(tints)), 0, len(tints) - 1).astype(np.int32)
     return Mesh(
         positions=positions.reshape(-1, 3).astype(np.float32),
@@ -109,13 +110,13 @@ def _tilted_cards(facing: Array, columns: int, rng: np.random.Generator) -> Arra
     They face roughly outwards, each tilted and turned at random; three columns make a fold.
     """
     count = len(facing)
-    tilted = facing + 0.55 * rng.normal(size=(count, 3))
-    across = np.cross(tilted, rng.normal(size=(count, 3)))
+    tilted = facing + 0.55 * exact.normal(rng, size=(count, 3))
+    across = np.cross(tilted, exact.normal(rng, size=(count, 3)))
     across /= np.linalg.norm(across, axis=1, keepdims=True)
     tilted /= np.linalg.norm(tilted, axis=1, keepdims=True)
     up = np.cross(tilted, across)
     x, y = (a.ravel() for a in np.meshgrid(np.linspace(-0.5, 0.5, columns), [-0.5, 0.5]))
-    fold = -0.88 * x**2 if columns > 2 else 0 * x
+    fold = -0.88 * np.square(x) if columns > 2 else 0 * x
     corners = (
         across[:, None] * x[:, None] + up[:, None] * y[:, None] + tilted[:, None] * fold[:, None]
     )

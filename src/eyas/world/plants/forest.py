@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.mesh.assembly import concatenate, transformed
 from eyas.mesh.flat import quads
 from eyas.mesh.solids import tube
@@ -92,7 +93,7 @@ def stand_levels(kinds: Sequence[Species], rng: np.random.Generator, *, frosted:
 
 
 def _pose(place: Array, turn: float, size: float) -> Array:
-    cosine, sine = size * np.cos(turn), size * np.sin(turn)
+    cosine, sine = size * exact.cos(turn), size * exact.sin(turn)
     return np.array(
         [[cosine, -sine, 0.0, place[0]], [sine, cosine, 0.0, place[1]], [0.0, 0.0, size, 0.0]]
     )
@@ -142,7 +143,7 @@ def _trunk(kind: Species) -> Mesh:
 
 def _round(half: float, rng: np.random.Generator) -> Crown:
     angle = np.arange(4) * np.pi / 2 + rng.uniform(0, np.pi / 2)
-    ring = np.column_stack([np.cos(angle), np.sin(angle), np.zeros(4)]) * 0.45 * half
+    ring = np.column_stack([exact.cos(angle), exact.sin(angle), np.zeros(4)]) * 0.45 * half
     ring[:, 2] = rng.uniform(0.5, 0.66, 4)
     centres = np.concatenate([ring, [[0.0, 0.0, 0.78]]])
     radii = np.append(0.58 * half * rng.uniform(0.85, 1.1, 4), min(0.55 * half, 0.2))
@@ -157,7 +158,7 @@ def _cone(half: float, rng: np.random.Generator) -> Crown:
 
 def _palm(half: float, rng: np.random.Generator) -> Crown:
     angle = np.arange(7) * 2 * np.pi / 7 + rng.uniform(-0.2, 0.2, 7)
-    ring = np.column_stack([np.cos(angle), np.sin(angle), np.zeros(7)]) * 0.62 * half
+    ring = np.column_stack([exact.cos(angle), exact.sin(angle), np.zeros(7)]) * 0.62 * half
     ring[:, 2] = rng.uniform(0.84, 0.9, 7)
     centres = np.concatenate([ring, [[0.0, 0.0, 0.9]]])
     return Crown(centres, np.append(np.full(7, 0.3 * half), 0.3 * half), np.array([0.0, 0.0, 0.7]))

@@ -6,6 +6,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.state.scene import ObjectClass
 from eyas.world.build.apart import Apart
 from eyas.world.build.millimetres import length, unit
@@ -137,7 +138,7 @@ def add_row(
         rng: Random numbers of the gardens.
     """
     whole, along = length(line[1] - line[0]), unit(line[1] - line[0])
-    turn = float(np.arctan2(along[1], along[0]))
+    turn = float(exact.atan2(along[1], along[0]))
     step = whole / max(round(whole / PIECE), 1)
     for at in np.arange(step / 2, whole, step):
         middle = line[0] + at * along
@@ -191,7 +192,7 @@ def clustered(
         room: Area within which the points must lie [m].
         rng: Random numbers of the points.
     """
-    groups = [c + rng.normal(0, spread, (int(rng.integers(*count)), 2)) for c in centres]
+    groups = [c + exact.normal(rng, 0, spread, (int(rng.integers(*count)), 2)) for c in centres]
     points = np.concatenate([np.zeros((0, 2)), *groups])
     return np.asarray(points[shapely.contains_xy(room, points)], np.float64)
 

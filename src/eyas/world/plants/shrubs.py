@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.mesh.assembly import concatenate
 from eyas.mesh.solids import box
 from eyas.state.mesh import Material, Surface
@@ -72,7 +73,7 @@ def _clump(wide: float, tall: float, rng: np.random.Generator) -> tuple[Array, A
     angle = np.arange(4) * np.pi / 2 + rng.uniform(-0.4, 0.4, 4)
     reach = wide * rng.uniform(0.4, 0.6, 4)
     low = np.stack(
-        [reach * np.cos(angle), reach * np.sin(angle), tall * rng.uniform(0.5, 0.9, 4)], 1
+        [reach * exact.cos(angle), reach * exact.sin(angle), tall * rng.uniform(0.5, 0.9, 4)], 1
     )
     radii = np.append(wide * rng.uniform(0.42, 0.56, 4), 0.6 * wide)
     return np.concatenate([low, [[0.0, 0.0, 1.1 * tall]]]), radii

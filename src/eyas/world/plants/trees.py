@@ -4,6 +4,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.mesh.assembly import concatenate
 from eyas.mesh.solids import tube
 from eyas.state.mesh import Mesh
@@ -75,11 +76,11 @@ def _crown(half_width: float, rng: np.random.Generator) -> Crown:
     ring = 8
     turn = rng.uniform(0, 2 * np.pi)
     angle = turn + (np.arange(ring) + rng.uniform(-0.25, 0.25, ring)) * (2 * np.pi / ring)
-    low = np.column_stack([np.cos(angle), np.sin(angle), np.zeros(ring)])
+    low = np.column_stack([exact.cos(angle), exact.sin(angle), np.zeros(ring)])
     low *= (0.62 * half_width) * rng.uniform(0.9, 1.08, (ring, 1))
     low[:, 2] = rng.uniform(0.44, 0.58, ring)
     upper = turn + 0.5 + (np.arange(5) + rng.uniform(-0.3, 0.3, 5)) * (2 * np.pi / 5)
-    high = np.column_stack([np.cos(upper), np.sin(upper), np.zeros(5)])
+    high = np.column_stack([exact.cos(upper), exact.sin(upper), np.zeros(5)])
     high *= (0.33 * half_width) * rng.uniform(0.8, 1.15, (5, 1))
     high[:, 2] = rng.uniform(0.68, 0.76, 5)
     centres = np.concatenate([low, high, [[0, 0, 0.55], [0.02, -0.03, 0.8]]])

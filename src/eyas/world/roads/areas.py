@@ -8,6 +8,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.mesh.assembly import concatenate
 from eyas.mesh.flat import flat_polygons, wall_along
 from eyas.state.mesh import Material, Mesh
@@ -74,7 +75,7 @@ def streets(network: RoadNetwork) -> list[Street]:
     made = []
     for edge in range(len(network.edges)):
         lanes = np.flatnonzero(network.lane_edge == edge)
-        lanes = lanes[np.argsort(network.lane_index[lanes])]
+        lanes = lanes[np.argsort(network.lane_index[lanes], kind="stable")]
         made.append(
             Street(
                 start=network.edge_start[edge],
@@ -229,7 +230,7 @@ def _bends(network: RoadNetwork) -> list[tuple[Line, float]]:
         if len(others) == 1 and meeting[node] == 2:
             onwards, back = np.diff(one, axis=0)[0], np.diff(others[0], axis=0)[0]
             sine = onwards[0] * back[1] - onwards[1] * back[0]
-            angle = np.pi - abs(np.arctan2(sine, dot(onwards, back)))
+            angle = np.pi - abs(exact.atan2(sine, dot(onwards, back)))
             bends.append(((one[1] + others[0][1]) / 2, float(angle)))
     return bends
 

@@ -4,6 +4,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.world.build.millimetres import dot, rounded, snapped, unit
 
 __all__ = ["TURN", "arc", "joined", "rounded_kerbs", "turn_reach"]
@@ -26,19 +27,19 @@ def arc(before: Points, corner: Points, after: Points, radius: float) -> Points:
         radius: Radius of the arc [m].
     """
     back, onwards = unit(before - corner), unit(after - corner)
-    half = 0.5 * np.arccos(np.clip(dot(back, onwards), -1.0, 1.0))
-    reach = radius / np.tan(half)
-    centre = corner + unit(back + onwards) * radius / np.sin(half)
+    half = 0.5 * exact.acos(np.clip(dot(back, onwards), -1.0, 1.0))
+    reach = radius / exact.tan(half)
+    centre = corner + unit(back + onwards) * radius / exact.sin(half)
     first, last = corner + reach * back - centre, corner + reach * onwards - centre
-    turn = np.arctan2(first[0] * last[1] - first[1] * last[0], dot(first, last))
+    turn = exact.atan2(first[0] * last[1] - first[1] * last[0], dot(first, last))
     steps = max(3, int(np.ceil(abs(turn) / np.radians(5.0))))
     angle = np.linspace(0.0, turn, steps + 1)[:, None]
-    return rounded(centre + np.cos(angle) * first + np.sin(angle) * [-first[1], first[0]])
+    return rounded(centre + exact.cos(angle) * first + exact.sin(angle) * [-first[1], first[0]])
 
 
 def turn_reach(angle: float) -> float:
     """Return how far before a bend by an angle [rad] the arc of the inner kerb begins [m]."""
-    return TURN * max(1.0, float(np.tan(angle / 2)))
+    return TURN * max(1.0, float(exact.tan(angle / 2)))
 
 
 def joined(before: Points, after: Points) -> Points:
@@ -56,9 +57,9 @@ def joined(before: Points, after: Points) -> Points:
     # From the ends of both lines to the point where they would meet; negative if they cross.
     left, right = _cross(gap, further) / sine, _cross(onwards, gap) / sine
     corner = before[-1] + left * onwards
-    angle = float(np.arctan2(abs(sine), dot(onwards, further)))
+    angle = float(exact.atan2(abs(sine), dot(onwards, further)))
     reach = max(left, right, turn_reach(angle))
-    bend = arc(corner - onwards, corner, corner + further, reach / np.tan(angle / 2))
+    bend = arc(corner - onwards, corner, corner + further, reach / exact.tan(angle / 2))
     return np.concatenate([before[:-1], bend, after[1:]])
 
 
@@ -71,7 +72,7 @@ def rounded_kerbs(area: shapely.Geometry, bends: list[tuple[Points, float]]) -> 
     """
     parts = [area, _closed(area, TURN)]
     for place, angle in bends:
-        radius = round(float(turn_reach(angle) / max(np.tan(angle / 2), 1e-3)), 3)
+        radius = round(float(turn_reach(angle) / max(exact.tan(angle / 2), 1e-3)), 3)
         if radius > TURN:
             near = shapely.intersection(area, _disc(place, 45.0))
             parts.append(shapely.intersection(_closed(near, radius), _disc(place, 30.0)))

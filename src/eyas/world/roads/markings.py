@@ -8,6 +8,7 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
 
+from eyas.core import exact
 from eyas.state.roads import RoadNetwork
 from eyas.world.build.millimetres import dot, rounded, unit
 from eyas.world.roads.areas import Street, joints, streets
@@ -155,7 +156,7 @@ def _frame(street: Street) -> tuple[Line, Line, Line, float]:
 def _placed(street: Street, outline: ArrayLike) -> Line:
     """Return points given onwards and leftwards from the stop line's right end [m]."""
     origin, onwards, leftwards, _ = _frame(street)
-    return rounded(np.asarray(outline) @ np.stack([onwards, leftwards]) + origin)
+    return rounded(exact.product(np.asarray(outline), np.stack([onwards, leftwards])) + origin)
 
 
 def _stop_line(street: Street) -> Stripe:

@@ -7,6 +7,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.mesh.assembly import concatenate, of_one_material
 from eyas.mesh.panels import cells, halves
 from eyas.state.mesh import Material, Mesh
@@ -112,7 +113,7 @@ def tunnel_prisms(tunnel: Tunnel, floor: float) -> list[tuple[Points, float, flo
 
 
 def _arch(aside: float, half: float, top: float, power: float) -> float:
-    return round(float(top * (1.0 - (aside / half) ** power) ** (1.0 / power)), 3)
+    return round(float(top * exact.power(1.0 - exact.power(aside / half, power), 1.0 / power)), 3)
 
 
 def _lumps(rng: np.random.Generator) -> Points:
@@ -121,19 +122,19 @@ def _lumps(rng: np.random.Generator) -> Points:
     lumps = np.zeros(i.shape)
     for _ in range(4):
         turn, rate = rng.uniform(0, 2 * np.pi), rng.uniform(0.35, 0.95, 2)
-        lumps += np.sin(rate[0] * i + rate[1] * j + turn) / 4
+        lumps += exact.sin(rate[0] * i + rate[1] * j + turn) / 4
     return np.asarray(_LUMPS * (1.6 * lumps + rng.uniform(-0.45, 0.45, i.shape)), np.float64)
 
 
 def _arches(at: Points, half: Points, top: Points, power: float) -> Points:
     """Return cross-sections from the right foot to the left one, shape (sections, sides + 1, 3)."""
     angle = np.linspace(0.0, np.pi, _SIDES + 1)
-    cosine, sine = np.cos(angle), np.maximum(np.sin(angle), 0.0)
-    aside = -np.sign(cosine) * np.abs(cosine) ** (2 / power)
+    cosine, sine = exact.cos(angle), np.maximum(exact.sin(angle), 0.0)
+    aside = -np.sign(cosine) * exact.power(np.abs(cosine), 2 / power)
     rows = np.empty((len(at), _SIDES + 1, 3))
     rows[..., 0] = at[:, None]
     rows[..., 1] = half * aside
-    rows[..., 2] = top * sine ** (2 / power)
+    rows[..., 2] = top * exact.power(sine, 2 / power)
     rows[:, [0, -1], 2] = -_SUNK
     return rows
 

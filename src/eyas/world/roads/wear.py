@@ -10,6 +10,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.mesh.assembly import concatenate
 from eyas.mesh.flat import quads
 from eyas.state.mesh import Material, Mesh
@@ -135,7 +136,7 @@ def _seal(lane: shapely.LineString, at: float, rng: np.random.Generator) -> Mesh
     way, aside = (leftwards, onwards) if crossing else (onwards, leftwards)
     reach = rng.uniform(1.1, 1.6) if crossing else rng.uniform(2.0, 4.5)
     steps = np.linspace(-reach, reach, _SEAL_STEPS)
-    wander = np.clip(np.cumsum(rng.normal(0.0, 0.16, _SEAL_STEPS)), -1.0, 1.0)
+    wander = np.clip(np.cumsum(exact.normal(rng, 0.0, 0.16, _SEAL_STEPS)), -1.0, 1.0)
     line = here + steps[:, None] * way + (wander - wander.mean())[:, None] * aside
     width = _SEAL_HALF * rng.uniform(0.7, 1.3, _SEAL_STEPS)[:, None] * aside
     one, other = line - width, line + width

@@ -4,6 +4,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.world.build.millimetres import rounded
 from eyas.world.buildings.lots import frame_angle, turned
 
@@ -48,7 +49,7 @@ def bays_in(area: shapely.Geometry) -> tuple[Bays, list[shapely.Polygon]]:
     paint = shapely.box(sides[:, 0] - _PAINT / 2, sides[:, 1], sides[:, 0] + _PAINT / 2,
                         sides[:, 1] + _BAY_LENGTH)  # fmt: skip
     middles = np.stack([x + _BAY_WIDTH / 2, y + _BAY_LENGTH / 2], axis=1)
-    cosine, sine = np.cos(angle), np.sin(angle)
-    places = rounded(middles @ np.array([[cosine, sine], [-sine, cosine]]))
+    cosine, sine = exact.cos(angle), exact.sin(angle)
+    places = rounded(exact.product(middles, np.array([[cosine, sine], [-sine, cosine]])))
     heading = np.full((len(places), 1), angle + np.pi / 2)
     return np.concatenate([places, heading], axis=1), [turned(line, angle) for line in paint]

@@ -7,6 +7,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.world.build.millimetres import rounded
 from eyas.world.buildings.lots import frame_angle, turned
 from eyas.world.land.ground import PAVEMENT_WIDTH
@@ -118,8 +119,8 @@ def _placed(
     lines = [line for line in _bays(rectangle) if not line.intersects(entrance)]
     area = turned(shapely.union(rectangle, way), angle)
     bays = _between(lines)
-    cosine, sine = np.cos(angle), np.sin(angle)
-    bays[:, :2] = rounded(bays[:, :2] @ np.array([[cosine, sine], [-sine, cosine]]))
+    cosine, sine = exact.cos(angle), exact.sin(angle)
+    bays[:, :2] = rounded(exact.product(bays[:, :2], np.array([[cosine, sine], [-sine, cosine]])))
     bays[:, 2] += angle
     return CarPark(area, [turned(line, angle) for line in lines], bays)
 
@@ -128,7 +129,7 @@ def _between(lines: Sequence[shapely.Polygon]) -> NDArray[np.float64]:
     """Return the bays between each line and the next of the same row, in the block's frame."""
     middles = shapely.get_coordinates([line.centroid for line in lines]).reshape(-1, 2)
     step = np.diff(middles, axis=0)
-    together = np.hypot(step[:, 0] - _BAY_WIDTH, step[:, 1]) < 0.01
+    together = exact.hypot(step[:, 0] - _BAY_WIDTH, step[:, 1]) < 0.01
     middle = (middles[:-1] + step / 2)[together]
     return np.column_stack([middle, np.full(len(middle), np.pi / 2)])
 

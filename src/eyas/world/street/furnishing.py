@@ -6,6 +6,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import ObjectClass
 from eyas.world.build.millimetres import unit
@@ -91,6 +92,6 @@ def _places(
             )
             onwards = unit(there - here)
             leftwards = np.array([-onwards[1], onwards[0]])
-            turn = float(np.arctan2(leftwards[1], leftwards[0]) - np.pi / 2)
+            turn = float(exact.atan2(leftwards[1], leftwards[0]) - np.pi / 2)
             made.append((here - rule.beyond_kerb * leftwards, turn))
     return made

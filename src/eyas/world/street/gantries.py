@@ -6,6 +6,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.mesh.assembly import concatenate
 from eyas.mesh.solids import box, tube
 from eyas.state.mesh import Mesh
@@ -55,7 +56,7 @@ def add_gantries(
         number = int((index + rng.integers(2)) % KINDS)
         kind = builder.prototype(f"gantry {number}", partial(_levels, number))
         owner = builder.add_copy(ObjectClass.POLE, kind, (*place.tolist(), 0.0), turn, 1.0)
-        along = np.array([np.cos(turn), np.sin(turn)])
+        along = np.array([exact.cos(turn), exact.sin(turn)])
         across = np.array([-along[1], along[0]])
         for side in (-SPAN / 2, SPAN / 2):
             foot = place + side * across

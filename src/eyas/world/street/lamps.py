@@ -6,6 +6,7 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike, NDArray
 
+from eyas.core import exact
 from eyas.mesh.assembly import concatenate
 from eyas.mesh.solids import box, tube
 from eyas.state.mesh import Material, Mesh, Surface
@@ -90,12 +91,12 @@ def add_lamps_at(
     """
     prototype = builder.prototype("street lamp", lamp_levels)
     position, axis = [], []
-    lean = np.array(beam) / np.linalg.norm(beam)
+    lean = np.array(beam) / exact.length(beam)
     for place, turn in places:
         foot = np.asarray(place, np.float64)
         owner = builder.add_copy(ObjectClass.POLE, prototype, (*foot, 0.0), turn, 1.0)
         builder.add_cylinder((foot[0], foot[1]), POLE_RADIUS, FLOOR_HEIGHT, POLE_HEIGHT, owner)
-        onto_road = np.array([np.cos(turn), np.sin(turn)])
+        onto_road = np.array([exact.cos(turn), exact.sin(turn)])
         position.append([*(foot + LIGHT[0] * onto_road), LIGHT[2]])
         axis.append([*(lean[0] * onto_road), lean[2]])
     return Lamps(
@@ -136,7 +137,7 @@ def _candidates(network: RoadNetwork) -> tuple[NDArray[np.float64], NDArray[np.f
         onwards = (there - here) / 0.1
         leftwards = np.stack([-onwards[:, 1], onwards[:, 0]], axis=1)
         feet.append(here - BEYOND_KERB * leftwards)
-        turns.append(np.arctan2(leftwards[:, 1], leftwards[:, 0]))
+        turns.append(exact.atan2(leftwards[:, 1], leftwards[:, 0]))
     return np.concatenate(feet), np.concatenate(turns)
 
 
@@ -154,7 +155,9 @@ def _lamp(sides: int, bends: int) -> Mesh:
     # The arm rises from the pole and ends level: a quarter of an ellipse.
     angle = np.linspace(0.0, np.pi / 2, bends)
     top = POLE_HEIGHT - 0.6
-    arm = np.stack([(x - 0.3) * (1 - np.cos(angle)), 0 * angle, top + 0.5 * np.sin(angle)], axis=1)
+    arm = np.stack(
+        [(x - 0.3) * (1 - exact.cos(angle)), 0 * angle, top + 0.5 * exact.sin(angle)], axis=1
+    )
     return concatenate(
         [
             tube(pole, [POLE_RADIUS, 0.09, 0.07], sides, _STEEL),

@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.mesh.assembly import concatenate, transformed
 from eyas.mesh.flat import quads
 from eyas.mesh.solids import box, cylinder
@@ -82,8 +83,8 @@ def add_car(
         size: Factor on its size.
     """
     owner = builder.add_copy(ObjectClass.STRUCTURE, car, place, turn, size)
-    ahead = size * _LONG * np.array([np.cos(turn), np.sin(turn)])
-    aside = size * _WIDE * np.array([-np.sin(turn), np.cos(turn)])
+    ahead = size * _LONG * np.array([exact.cos(turn), exact.sin(turn)])
+    aside = size * _WIDE * np.array([-exact.sin(turn), exact.cos(turn)])
     corners = [-ahead - aside, ahead - aside, ahead + aside, aside - ahead]
     outline = rounded(np.array(place[:2]) + np.array(corners))
     builder.add_prism(outline, place[2], place[2] + size * _HIGH, owner)
@@ -121,7 +122,7 @@ def _outwards(faces: Points) -> Points:
     """Return quadrilaterals turned so that they face away from the middle of the car."""
     middle = np.array([0.0, 0.0, 0.7])
     normal = np.cross(faces[:, 2] - faces[:, 0], faces[:, 3] - faces[:, 1])
-    inwards = np.einsum("qi,qi->q", normal, faces.mean(axis=1) - middle) < 0
+    inwards = exact.dot(normal, faces.mean(axis=1) - middle) < 0
     return np.where(inwards[:, None, None], faces[:, ::-1], faces)
 
 

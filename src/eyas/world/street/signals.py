@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.mesh.assembly import concatenate
 from eyas.mesh.solids import box, tube
 from eyas.state.mesh import Material, Mesh, Surface
@@ -92,7 +93,7 @@ def pole_at(street: "Street") -> tuple[tuple[float, float], float]:
     onwards = unit(street.right[-1] - street.right[-2])
     leftwards = np.array([-onwards[1], onwards[0]])
     foot = street.right[-1] - _BEYOND_KERB * leftwards - _BEFORE_LINE * onwards
-    return (float(foot[0]), float(foot[1])), float(np.arctan2(leftwards[1], leftwards[0]))
+    return (float(foot[0]), float(foot[1])), float(exact.atan2(leftwards[1], leftwards[0]))
 
 
 def add_signals(builder: SceneBuilder, network: RoadNetwork) -> None:

@@ -1,10 +1,12 @@
 """Ambient occlusion: the share of the light of the sky that arrives on ground and roofs, baked."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.core.jit import inlined_kernel, inner_kernel
 from eyas.core.lanes import (
     gather_pair,
@@ -49,10 +51,10 @@ _ASIDE = f4(0.9)
 """Distance in front of a wall at which its light is looked up [m]."""
 
 
-DISTANCES = tuple(0.9 * 1.36**step for step in range(STEPS))
+DISTANCES = tuple(0.9 * float(exact.power(1.36, step)) for step in range(STEPS))
 """Distances of these points [m]: 1 to 49, each about a third farther than the last."""
 
-_HALF_WAY = 1.36**-0.5
+_HALF_WAY = 1.0 / math.sqrt(1.36)
 
 
 @inlined_kernel

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from eyas.core import exact
 from eyas.mesh.shell import Shell
 from eyas.mesh.solids import sphere
 from eyas.state.mesh import Material, Surface
@@ -22,7 +23,7 @@ def _ball(shell: Shell, detail: int) -> None:
     corners = _RADIUS * mesh.positions[mesh.triangles].astype(np.float64)
     middle = corners.mean(axis=1)
     toward = np.abs(middle).max(axis=1) / np.linalg.norm(middle, axis=1)
-    angle = np.arccos(np.clip(toward, 0.0, 1.0))
+    angle = exact.acos(np.clip(toward, 0.0, 1.0))
     inner = 0.0
     for outer, material in (*(_RINGS if detail else ((0.40, _ORANGE),)), (9.0, _WHITE)):
         chosen = (angle >= inner) & (angle < outer)

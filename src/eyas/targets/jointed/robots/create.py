@@ -4,6 +4,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from eyas.core import exact
 from eyas.mesh.shell import Shell
 from eyas.targets.jointed.figure import Figure, Joint
 from eyas.targets.jointed.outlines import block, matt, stack, wheel
@@ -24,7 +25,7 @@ def _body(shell: Shell, detail: int) -> None:
     # The bumper goes round the front half.
     angle = np.linspace(-np.pi / 2, np.pi / 2, sides // 2 + 1)
     low, high = 0.018, 0.06
-    rim = _RADIUS * np.column_stack([np.cos(angle), np.sin(angle)])
+    rim = _RADIUS * np.column_stack([exact.cos(angle), exact.sin(angle)])
     for a, b in pairwise(rim):
         shell.quads([(*a, low), (*b, low), (*b, high), (*a, high)], _BUMPER)
         shell.quads([(*(0.9 * a), high), (*a, high), (*b, high), (*(0.9 * b), high)], _BUMPER)

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from eyas.core import exact
 from eyas.mesh.shell import Shell
 from eyas.targets.jointed.figure import Figure, Joint
 from eyas.targets.jointed.outlines import block, cylinder, matt, stack, wheel
@@ -30,7 +31,7 @@ def _body(shell: Shell, detail: int) -> None:
         block(shell, (-0.025, 0.0, 0.2205), (0.06, 0.045, 0.001), _SCREEN)
         block(shell, (0.06, 0.0, 0.20), (0.03, 0.10, 0.03), _SALMON)
         for angle in np.arange(8) * (np.pi / 4):
-            c, s = np.cos(angle), np.sin(angle)
+            c, s = exact.cos(angle), exact.sin(angle)
             path = [(0.145 * c, 0.145 * s, 0.095), (0.165 * c, 0.165 * s, 0.095)]
             shell.tube(path, (0.019, 0.017), _SONAR, sides=4 + 3 * (detail - 1))
 

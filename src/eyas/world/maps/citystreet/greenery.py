@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 import shapely
 
+from eyas.core import exact
 from eyas.state.scene import ObjectClass
 from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.scene_builder import Prototype, SceneBuilder
@@ -100,7 +101,7 @@ def add_parked(builder: SceneBuilder, plan: Plan, flora: Flora, rng: np.random.G
                 gardens.add_small_trees(builder, spot, heights, 0.1, flora.trees, rng)
             elif rng.random() < _OCCUPIED:
                 ahead = np.pi * float(rng.random() < 0.35)
-                slip = (x + rng.normal(0, 0.06), y + rng.normal(0, 0.06), 0.0)
-                way = turn + ahead + rng.normal(0, 0.015)
+                slip = (x + exact.normal(rng, 0, 0.06), y + exact.normal(rng, 0, 0.06), 0.0)
+                way = turn + ahead + exact.normal(rng, 0, 0.015)
                 car = cars[int(rng.integers(len(cars)))]
                 add_car(builder, car, slip, way, rng.uniform(0.94, 1.04))

@@ -7,6 +7,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.core.rng import stream
 from eyas.state.roads import RoadNetwork
 from eyas.world.build.heights import FLOOR_HEIGHT
@@ -167,8 +168,8 @@ def _overpass_path(seed: int) -> Points:
     origin = at["B2"]
     east = unit(at["C2"] - origin)
     frame = np.stack([east, [-east[1], east[0]]])
-    west, third = frame @ (at["A4"] - origin)
-    second = frame[0] @ (at["C2"] - origin)
+    west, third = exact.product(frame, at["A4"] - origin)
+    second = exact.product(frame[0], at["C2"] - origin)
     corners = np.array(
         [
             [west - 68.0, 70.0],
@@ -178,7 +179,7 @@ def _overpass_path(seed: int) -> Points:
             [second + 600.0, _ASIDE],
         ]
     )
-    world = corners @ frame + origin
+    world = exact.product(corners, frame) + origin
     # It leaves the map where the floor ends.
     onwards = frame[0]
     room = (np.sign(onwards) * 0.5 * np.array(FLOOR) - world[3]) / onwards

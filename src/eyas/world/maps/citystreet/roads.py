@@ -5,6 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.core.rng import stream
 from eyas.state.roads import RoadEdge, RoadGraph, RoadNode
 
@@ -80,9 +81,9 @@ def _bent(sides: dict[Link, int], at: dict[str, Point], rng: np.random.Generator
             links.append((start, end))
             continue
         along = at[end] - at[start]
-        outwards = np.array([-along[1], along[0]]) / np.linalg.norm(along)
+        outwards = np.array([-along[1], along[0]]) / exact.length(along)
         half = at[start] + rng.uniform(0.42, 0.58) * along
-        outwards *= np.sign(outwards @ (half - middle))
+        outwards *= np.sign(exact.product(outwards, half - middle))
         name = f"{start}{end}"
         at[name] = half + rng.uniform(*_BEND) * outwards
         links += [(start, name), (name, end)]
@@ -92,9 +93,9 @@ def _bent(sides: dict[Link, int], at: dict[str, Point], rng: np.random.Generator
 def _graph(seed: int, at: dict[str, Point], links: list[Link], rotation: float) -> RoadGraph:
     names = sorted({name for link in links for name in link})
     turn = np.array(
-        [[math.cos(rotation), -math.sin(rotation)], [math.sin(rotation), math.cos(rotation)]]
+        [[exact.cos(rotation), -exact.sin(rotation)], [exact.sin(rotation), exact.cos(rotation)]]
     )
-    points = np.array([at[name] for name in names]) @ turn.T
+    points = exact.product(np.array([at[name] for name in names]), turn.T)
     points -= (points.min(axis=0) + points.max(axis=0)) / 2
     # In millimetres: the last bits of sines differ between processors.
     nodes = [

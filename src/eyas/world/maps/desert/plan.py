@@ -8,6 +8,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.core.rng import stream
 from eyas.state.roads import RoadNetwork
 from eyas.world.build.millimetres import length, rounded, unit
@@ -112,7 +113,7 @@ def _tongues(roads: shapely.Geometry, rng: np.random.Generator) -> list[shapely.
             half = (rng.uniform(2.5, 9.0), rng.uniform(0.35, 1.0))
             if rng.random() < _TONGUES and length(there - here) > 0.1:
                 onwards = unit(there - here)
-                turn = math.atan2(onwards[1], onwards[0])
+                turn = exact.atan2(onwards[1], onwards[0])
                 made.append(blob(here, half, turn, rng, corners=16))
     return made
 
@@ -136,7 +137,7 @@ def _drifts(ways: Sequence[Street], rng: np.random.Generator) -> list[Drift]:
             continue
         places.append(here)
         onwards = unit(there - here)
-        turn = math.atan2(onwards[1], onwards[0]) + float(rng.uniform(-_ASKEW, _ASKEW))
+        turn = exact.atan2(onwards[1], onwards[0]) + float(rng.uniform(-_ASKEW, _ASKEW))
         half = (_DRIFT[0] / 2 * rng.uniform(0.9, 1.1), _DRIFT[1] / 2 * rng.uniform(0.9, 1.1))
         area = blob(here, half, turn, rng)
         fringe = blob(here, (half[0] + 3.2, half[1] + 2.0), turn, rng)
@@ -164,7 +165,7 @@ def _houses(
             onwards = unit(there - here)
             right = side * np.array([onwards[1], -onwards[0]])
             away = 8.0 + rng.uniform(*_SETBACKS) + SIDE / 2
-            turn = math.atan2(-right[1], -right[0]) - math.pi / 2
+            turn = exact.atan2(-right[1], -right[0]) - math.pi / 2
             house = Cottage(rounded(here + away * right), round(turn, 4), 3, int(rng.integers(3)))
             shape = shapely.Polygon(house.outline)
             near = any(shapely.distance(shape, other) < 6.0 for other in shapes)
@@ -192,7 +193,7 @@ def _dunes(
     leaning = []
     for dune in (*made, *ring):
         far, wind = rng.uniform(*_LEAN), _WIND + rng.uniform(-0.3, 0.3)
-        lean = np.round(far * np.array([np.cos(wind), np.sin(wind)]), 4).tolist()
+        lean = np.round(far * np.array([exact.cos(wind), exact.sin(wind)]), 4).tolist()
         leaning.append(
             Mound(
                 *(dune.x, dune.y, dune.radius, dune.height),

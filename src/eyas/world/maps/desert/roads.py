@@ -6,6 +6,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.core.rng import stream
 from eyas.state.roads import RoadEdge, RoadGraph, RoadNode
 from eyas.world.build.millimetres import rounded
@@ -80,11 +81,15 @@ def _inner(start: Points, inwards: Points, onwards: float) -> Points:
         inwards: Its direction there, a unit vector.
         onwards: Its direction in the middle [rad].
     """
-    reach = math.sqrt(start[0] ** 2 + start[1] ** 2)
-    arrive = np.array([math.cos(onwards), math.sin(onwards)])
+    reach = math.sqrt(np.square(start[0]) + np.square(start[1]))
+    arrive = np.array([exact.cos(onwards), exact.sin(onwards)])
     one, other = start + _REACH[0] * reach * inwards, -_REACH[1] * reach * arrive
     t = np.linspace(0.0, 1.0, int(reach / _STEP) + 1)[1:-1, None]
-    return rounded((1 - t) ** 3 * start + 3 * t * (1 - t) ** 2 * one + 3 * t**2 * (1 - t) * other)
+    return rounded(
+        exact.power(1 - t, 3) * start
+        + 3 * t * np.square(1 - t) * one
+        + 3 * np.square(t) * (1 - t) * other
+    )
 
 
 def _graph(

@@ -6,6 +6,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.core.rng import stream
 from eyas.mesh.assembly import concatenate
 from eyas.mesh.flat import flat_polygons, quads
@@ -113,7 +114,7 @@ def _snowed(
     points = ground_.points
     own, _ = highest([dunes[index] for index in sorted(white)], points[:, :2])
     others, _ = highest([d for index, d in enumerate(dunes) if index not in white], points[:, :2])
-    over = points[:, 2] + _WAVE * np.sin(0.11 * points[:, 0]) * np.sin(0.13 * points[:, 1])
+    over = points[:, 2] + _WAVE * exact.sin(0.11 * points[:, 0]) * exact.sin(0.13 * points[:, 1])
     thin, closed_ = (
         np.minimum(own - others - margin, over - line)
         for line, margin in zip(_SNOW_LINES, _MARGINS, strict=True)

@@ -4,6 +4,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.mesh.assembly import concatenate
 from eyas.mesh.flat import quads
 from eyas.state.mesh import Mesh
@@ -58,7 +59,7 @@ def add_backdrop(
     meshes: list[Mesh] = []
     for place in places:
         side = np.round(rng.uniform(*_SIDES, 2) / 3.0) * 1.5
-        height = min(_MEDIAN * float(rng.lognormal(0.0, _SPREAD)), _HIGHEST)
+        height = min(_MEDIAN * float(exact.exp(exact.normal(rng, 0.0, _SPREAD))), _HIGHEST)
         top = FLOOR_HEIGHT + STOREY * max(round(height / STOREY), 2)
         corners = place + side * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
         outline = grid.world(corners)

@@ -5,6 +5,7 @@ from collections.abc import Iterable
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.mesh.assembly import concatenate, transformed
 from eyas.mesh.flat import quads
 from eyas.mesh.solids import box
@@ -41,7 +42,7 @@ def add_skyways(builder: SceneBuilder, skyways: Iterable[Skyway]) -> None:
 
 
 def _placed(skyway: Skyway) -> Mesh:
-    long = float(np.linalg.norm(skyway.end - skyway.start))
+    long = float(exact.length(skyway.end - skyway.start))
     (x, y), (c, s) = skyway.start, (skyway.end - skyway.start) / long
     pose = np.array([[c, -s, 0.0, x], [s, c, 0.0, y], [0.0, 0.0, 1.0, 0.0]])
     glazed = skyway.facade == "facade_glass"

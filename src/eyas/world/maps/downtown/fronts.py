@@ -7,6 +7,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.mesh.assembly import concatenate
 from eyas.mesh.flat import quads
 from eyas.mesh.solids import box
@@ -65,7 +66,7 @@ def add_fronts(
     escape = builder.prototype("fire escape", _escape_levels)
     old = building.facade in _BRICK and 11.0 < building.height < _TALLEST
     for start, along in _fronts(building, pavement):
-        turn = float(np.arctan2(along[1], along[0]))
+        turn = float(exact.atan2(along[1], along[0]))
         bays = max(round(length(along) / _BAY), 1)
         at = [start + k / (2 * bays) * along for k in range(2 * bays)]
         if rng.random() < _AWNED:

@@ -7,6 +7,7 @@ import shapely
 from numpy.typing import NDArray
 from shapely.ops import substring
 
+from eyas.core import exact
 from eyas.state.roads import RoadNetwork
 from eyas.world.build.millimetres import rounded, snapped, unit
 from eyas.world.maps.downtown.roads import Grid
@@ -110,7 +111,7 @@ def crossing_lamps(network: RoadNetwork, beyond: float) -> list[tuple[Points, fl
         onwards = unit(street.right[-1] - street.right[-2])
         leftwards = np.array([-onwards[1], onwards[0]])
         foot = street.right[-1] - beyond * leftwards + _PAST_LINE * onwards
-        made.append((rounded(foot), float(np.arctan2(leftwards[1], leftwards[0]))))
+        made.append((rounded(foot), float(exact.atan2(leftwards[1], leftwards[0]))))
     return made
 
 
@@ -137,7 +138,7 @@ def _parked(row: shapely.LineString, count: int, rng: np.random.Generator) -> li
     start, end = shapely.get_coordinates(row)[[0, -1]]
     along = unit(end - start)
     across = np.array([along[1], -along[0]])
-    heading = float(np.arctan2(along[1], along[0]))
+    heading = float(exact.atan2(along[1], along[0]))
     cars = []
     for k in range(count):
         here = rng.random() < _OCCUPIED

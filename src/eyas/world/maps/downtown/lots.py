@@ -5,6 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
+from eyas.core import exact
+
 __all__ = ["Lot", "divided", "frontage"]
 
 _THROUGH = (30.0, 54.0)
@@ -103,7 +105,7 @@ def _rows(stretch: Box, core: float, rng: np.random.Generator) -> list[Lot]:
     for rear in (1, -1):
         at = west
         while east - at > 0.1:
-            wide = _WIDTH * (0.85 + 0.5 * core) * float(rng.lognormal(0.0, 0.42))
+            wide = _WIDTH * (0.85 + 0.5 * core) * float(exact.exp(exact.normal(rng, 0.0, 0.42)))
             width = _bays(float(np.clip(wide, *_WIDTHS)))
             if east - at - width < 7.0:
                 width = east - at

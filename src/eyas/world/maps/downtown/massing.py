@@ -7,6 +7,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.world.buildings.lots import largest
 from eyas.world.maps.downtown.lots import Box, Lot
 
@@ -68,7 +69,9 @@ def _steps(lot: Lot, storeys: int, rng: np.random.Generator) -> list[Part]:
     """Return a building that steps back above each cornice, as the law of 1916 asked for."""
     steps = min(2 + storeys // 13, 6)
     first = rng.uniform(0.45, 0.72) if storeys < 30 else rng.uniform(0.22, 0.4)
-    cuts = np.round(storeys * (first + (1 - first) * np.linspace(0, 1, steps) ** 0.8)).astype(int)
+    cuts = np.round(
+        storeys * (first + (1 - first) * exact.power(np.linspace(0, 1, steps), 0.8))
+    ).astype(int)
     cuts[-1] = storeys
     parts: list[Part] = []
     box, low = lot.box, 0

@@ -7,6 +7,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.world.build.millimetres import rounded, snapped
 from eyas.world.buildings.lots import largest, turned
 from eyas.world.maps.downtown.roads import Grid
@@ -122,7 +123,7 @@ def _pond(grid: Grid, middle: Points) -> shapely.Polygon:
 
 def _oval(grid: Grid, u: float, v: float, a: float, b: float) -> shapely.Polygon:
     angle = np.linspace(0.0, 2 * np.pi, 28, endpoint=False)
-    ring = np.column_stack([u + a * np.cos(angle), v + b * np.sin(angle)])
+    ring = np.column_stack([u + a * exact.cos(angle), v + b * exact.sin(angle)])
     return shapely.Polygon(grid.world(ring))
 
 
@@ -142,7 +143,7 @@ def _trails(
         straight = np.array(end) - middle
         aside = np.array([-straight[1], straight[0]]) * (0.16 if k % 2 else -0.16)
         t = np.linspace(0.0, 1.0, 15)[:, None]
-        curve = middle + t * straight + np.round(np.sin(np.pi * t), 6) * aside
+        curve = middle + t * straight + np.round(exact.sin(np.pi * t), 6) * aside
         lines.append(shapely.LineString(grid.world(curve)))
     ways = shapely.union_all([shapely.buffer(line, _PATH / 2, quad_segs=3) for line in lines])
     return snapped(shapely.simplify(ways, 0.05))
@@ -187,7 +188,7 @@ def _benches(trails: shapely.Geometry, taken: shapely.Geometry, inner: shapely.G
                 here, there = (
                     shapely.get_coordinates(line.interpolate(s))[0] for s in (at, at + 0.2)
                 )
-                onwards = (there - here) / np.hypot(*(there - here))
+                onwards = (there - here) / exact.hypot(*(there - here))
                 # The path lies on the left or right of its edge; a bench on the other side.
                 for side in (1.0, -1.0):
                     out = side * np.array([-onwards[1], onwards[0]])
@@ -195,5 +196,5 @@ def _benches(trails: shapely.Geometry, taken: shapely.Geometry, inner: shapely.G
                     if not taken.intersects(shapely.Point(place).buffer(0.6)) and inner.contains(
                         shapely.Point(place)
                     ):
-                        made.append([*place, round(math.atan2(-out[1], -out[0]), 6)])
+                        made.append([*place, round(exact.atan2(-out[1], -out[0]), 6)])
     return np.array(made).reshape(-1, 3)

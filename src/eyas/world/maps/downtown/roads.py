@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.core.rng import stream
 from eyas.state.roads import RoadEdge, RoadGraph, RoadNode
 
@@ -59,7 +60,7 @@ class Grid:
 
     def world(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
         """Return points (u, v) in the world frame, in whole millimetres, shape (K, 2) [m]."""
-        cosine, sine = math.cos(self.turn), math.sin(self.turn)
+        cosine, sine = exact.cos(self.turn), exact.sin(self.turn)
         u, v = np.asarray(points, np.float64).T
         return np.round(np.column_stack([cosine * u - sine * v, sine * u + cosine * v]), 3)
 
@@ -81,8 +82,8 @@ def grid(seed: int) -> Grid:
     nodes = {corner for cell in blocks for corner in _corners(cell)}
     at = plain.world(np.array([[plain.avenues[i], plain.streets[j]] for i, j in sorted(nodes)]))
     x, y = (at.min(axis=0) + at.max(axis=0)) / 2
-    u = round(math.cos(turn) * x + math.sin(turn) * y, 3)
-    v = round(math.cos(turn) * y - math.sin(turn) * x, 3)
+    u = round(exact.cos(turn) * x + exact.sin(turn) * y, 3)
+    v = round(exact.cos(turn) * y - exact.sin(turn) * x, 3)
     avenues = tuple(round(float(a - u), 3) for a in plain.avenues)
     return Grid(turn, avenues, tuple(round(float(s - v), 3) for s in plain.streets), blocks)
 

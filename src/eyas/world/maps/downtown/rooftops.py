@@ -3,6 +3,7 @@
 import numpy as np
 import shapely
 
+from eyas.core import exact
 from eyas.mesh.assembly import concatenate
 from eyas.mesh.solids import box, cylinder
 from eyas.state.mesh import Mesh
@@ -51,7 +52,7 @@ def add_water_tank(
         if shapely.contains_xy(room, x, y):
             kind = builder.prototype("water tank", tank_levels)
             side = building.footprint[1] - building.footprint[0]
-            turn = float(np.arctan2(side[1], side[0]))
+            turn = float(exact.atan2(side[1], side[0]))
             scale = float(rng.uniform(0.85, 1.2))
             place = (float(x), float(y), top)
             builder.add_copy(ObjectClass.BUILDING, kind, place, turn, scale, owner)

@@ -7,6 +7,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.core.rng import stream
 from eyas.mesh.assembly import concatenate
 from eyas.mesh.solids import cylinder
@@ -170,7 +171,7 @@ def _add_lamps(builder: SceneBuilder, network: RoadNetwork) -> tuple[Lamps, NDAr
         builder.add_cylinder(
             (foot[0], foot[1]), lamps.POLE_RADIUS, FLOOR_HEIGHT, lamps.POLE_HEIGHT, owner
         )
-        onto_road = np.array([np.cos(turn), np.sin(turn)])
+        onto_road = np.array([exact.cos(turn), exact.sin(turn)])
         position.append([*(foot + x * onto_road), z + KERB_HEIGHT])
         axis.append([*(0.3 * onto_road), -0.954])
         feet.append(foot)

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.state.mesh import Material
 from eyas.world.build.materials import material
 from eyas.world.buildings.looks import Tint, wall_tint
@@ -51,7 +52,7 @@ _ROOFS: tuple[tuple[float, str, Tint], ...] = (
 def cores(places: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return how much places (u, v) belong to a quarter of towers, 0 to 1, shape (K,)."""
     near = [
-        np.exp(-((places[:, 0] - u) ** 2 + (places[:, 1] - v) ** 2) / reach**2)
+        exact.exp(-(np.square(places[:, 0] - u) + np.square(places[:, 1] - v)) / np.square(reach))
         for u, v, reach in _CORES
     ]
     # Exponentials differ from processor to processor in their last bits.
@@ -62,7 +63,7 @@ def storeys(lots: Sequence[Lot], rng: np.random.Generator) -> NDArray[np.int64]:
     """Return the number of storeys of the building on each lot, shape (K,)."""
     share, value = np.array(_HEIGHT).T
     at = (np.arange(len(lots)) + rng.uniform(0.2, 0.8, len(lots))) / max(len(lots), 1)
-    heights = np.round(np.exp(np.interp(at, share, np.log(value))), 3)
+    heights = np.round(exact.exp(np.interp(at, share, exact.log(value))), 3)
     core = cores(np.array([lot.centre for lot in lots]))
     area = np.array([lot.area for lot in lots])
     wide = np.round(np.sqrt(np.minimum(area, 2400.0)) / 49.0, 6)

@@ -6,6 +6,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.millimetres import rounded, unit
 from eyas.world.buildings.placing import Building
@@ -95,7 +96,7 @@ def make_skyways(
     for place, width, gap in _places(lots, high, rng):
         skyway = _skyway(grid, place, width, gap, buildings, rng)
         middle = (skyway.start + skyway.end) / 2
-        near = min((float(np.hypot(*(middle - other))) for other in taken), default=np.inf)
+        near = min((float(exact.hypot(*(middle - other))) for other in taken), default=np.inf)
         free = not keep_free.intersects(shapely.Polygon(skyway.outline()))
         # Elsewhere a yard lies between the two.
         if near > _APART and free and shapely.contains_xy(roads, *middle):

@@ -5,6 +5,7 @@ from itertools import pairwise
 import numpy as np
 import shapely
 
+from eyas.core import exact
 from eyas.mesh.assembly import concatenate, transformed
 from eyas.mesh.flat import quads
 from eyas.mesh.solids import box, sphere, tube
@@ -60,7 +61,7 @@ def add_entrances(
             and rng.random() < _SHARE
             and not shapely.intersects(keep_free, shapely.Point(place).buffer(0.5 * _WIDE + 0.4))
         ):
-            turn = float(np.arctan2(onwards[1], onwards[0]))
+            turn = float(exact.atan2(onwards[1], onwards[0]))
             spot = (float(place[0]), float(place[1]), KERB_HEIGHT)
             owner = builder.add_copy(ObjectClass.STRUCTURE, kind, spot, turn, 1.0)
             half = 0.5 * np.array([_LONG, _WIDE])

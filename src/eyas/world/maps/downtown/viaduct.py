@@ -7,6 +7,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.state.roads import RoadNetwork
 from eyas.world.build.millimetres import rounded
 from eyas.world.maps.downtown.lots import Box, Lot
@@ -77,7 +78,7 @@ class Viaduct:
     @property
     def turn(self) -> float:
         """Its direction [rad]."""
-        return float(np.arctan2(self.along[1], self.along[0]))
+        return float(exact.atan2(self.along[1], self.along[0]))
 
     def at(self, place: float, aside: float = 0.0) -> Points:
         """Return a point of the line, or to the left of it, in whole millimetres [m]."""
@@ -115,7 +116,7 @@ def make_viaduct(network: RoadNetwork, grid: Grid) -> Viaduct:
     origin = shapely.Point(start)
     ends = np.sort([[shapely.distance(origin, shapely.Point(p)) for p in part.coords]
                     for part in crossed], axis=1)  # fmt: skip
-    ends = np.round(ends[np.argsort(ends[:, 0])], 3)
+    ends = np.round(ends[np.argsort(ends[:, 0], kind="stable")], 3)
     beside = (ends + np.array([-_BESIDE_ROAD, _BESIDE_ROAD])).ravel()
     stops = [SECTION / 2, *beside.tolist(), length - SECTION / 2]
     bents = [stops[0]]
@@ -125,7 +126,7 @@ def make_viaduct(network: RoadNetwork, grid: Grid) -> Viaduct:
     over = ends.mean(axis=1)
     return Viaduct(
         start=start,
-        along=np.array([-np.sin(grid.turn), np.cos(grid.turn)]),
+        along=np.array([-exact.sin(grid.turn), exact.cos(grid.turn)]),
         length=length,
         bents=np.array(bents),
         over=over,

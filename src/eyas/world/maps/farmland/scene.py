@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import shapely
 
+from eyas.core import exact
 from eyas.core.rng import stream
 from eyas.state.lighting import Horizon
 from eyas.state.mesh import Mesh
@@ -111,5 +112,5 @@ def _lamp_places(network: RoadNetwork, seed: int) -> list[tuple[tuple[float, flo
         # One for each direction: beyond the middle of the link, on the right.
         middle = at[start] + along / 2 + _LAMPS_APART / 2 * onwards
         foot = middle - (ROAD_WIDTH / 2 + _FROM_KERB) * leftwards
-        places.append(((float(foot[0]), float(foot[1])), float(np.arctan2(*leftwards[::-1]))))
+        places.append(((float(foot[0]), float(foot[1])), float(exact.atan2(*leftwards[::-1]))))
     return places

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 import shapely
 
+from eyas.core import exact
 from eyas.state.roads import RoadNetwork
 from eyas.world.roads.areas import polygons_of
 from eyas.world.roads.curves import TURN
@@ -59,7 +60,7 @@ def sharp_bends(network: RoadNetwork) -> shapely.Geometry:
     """Return the surroundings of the bends of streets between junctions [m]."""
     lane = np.repeat(np.arange(len(network.lane_width)), np.diff(network.lane_first))
     step = np.diff(network.lane_points, axis=0)
-    heading = np.arctan2(step[:, 1], step[:, 0])
+    heading = exact.atan2(step[:, 1], step[:, 0])
     turn = np.abs(np.remainder(np.diff(heading) + np.pi, 2.0 * np.pi) - np.pi)
     bent = (turn > _SHARP) & (lane[2:] == lane[:-2])
     return shapely.union_all(

@@ -6,6 +6,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.scene_builder import Prototype, SceneBuilder
 from eyas.world.maps.imported.plan import Plan
@@ -101,9 +102,9 @@ def add_parked(
         lines += paint
         for x, y, turn in bays:
             if rng.random() < _OCCUPIED:
-                way = turn + np.pi * float(rng.random() < 0.4) + rng.normal(0, 0.015)
+                way = turn + np.pi * float(rng.random() < 0.4) + exact.normal(rng, 0, 0.015)
                 car = cars[int(rng.integers(len(cars)))]
-                spot = (x + rng.normal(0, 0.06), y + rng.normal(0, 0.06), 0.0)
+                spot = (x + exact.normal(rng, 0, 0.06), y + exact.normal(rng, 0, 0.06), 0.0)
                 add_car(builder, car, spot, way, float(rng.uniform(0.94, 1.04)))
     return lines
 

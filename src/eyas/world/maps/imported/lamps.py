@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 import shapely
 
+from eyas.core import exact
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import Lamps, ObjectClass
 from eyas.world.build.apart import Apart
@@ -16,7 +17,7 @@ from eyas.world.street.lamps import BEYOND_KERB, LIGHT, POLE_HEIGHT, POLE_RADIUS
 
 __all__ = ["add_lamps_at", "usual_lamps"]
 
-_AXIS = np.array([0.4, 0.0, -1.0]) / np.hypot(0.4, 1.0)
+_AXIS = np.array([0.4, 0.0, -1.0]) / exact.hypot(0.4, 1.0)
 """Unit vector along the beam, with the arm along x."""
 
 _EVERY = 62.0
@@ -79,8 +80,8 @@ def add_lamps_at(
         ends = shapely.get_coordinates(
             shapely.shortest_line(point, lanes[int(tree.nearest(point))])
         )
-        turn = round(float(np.arctan2(*(ends[1] - ends[0])[::-1])), 6)
-        onto_road = np.array([np.cos(turn), np.sin(turn)])
+        turn = round(float(exact.atan2(*(ends[1] - ends[0])[::-1])), 6)
+        onto_road = np.array([exact.cos(turn), exact.sin(turn)])
         owner = builder.add_copy(ObjectClass.POLE, prototype, (x, y, 0.0), turn, 1.0)
         builder.add_cylinder((x, y), POLE_RADIUS, FLOOR_HEIGHT, POLE_HEIGHT, owner)
         position.append([x + LIGHT[0] * onto_road[0], y + LIGHT[0] * onto_road[1], LIGHT[2]])

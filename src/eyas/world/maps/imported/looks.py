@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 import shapely
 
+from eyas.core import exact
 from eyas.state.mesh import Material
 from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.materials import material
@@ -183,7 +184,7 @@ def _profile(
 
 def _usual_rise(shape: shapely.Polygon, roof: str) -> float:
     corners = shapely.get_coordinates(shapely.minimum_rotated_rectangle(shape))
-    sides = np.hypot(*np.diff(corners[:3], axis=0).T)
+    sides = exact.hypot(*np.diff(corners[:3], axis=0).T)
     return round(float(np.clip(_PITCH[roof] * sides.min(), 0.6, 9.0)), 2)
 
 

@@ -10,6 +10,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.state.roads import RoadNetwork
 from eyas.world.build.millimetres import dot, length, rounded, unit
 from eyas.world.maps.imported.crosswalks import HALF, Crosswalk
@@ -86,7 +87,7 @@ def _frame(street: Street) -> tuple[Line, Line, Line, float]:
 def _placed(street: Street, points: list[tuple[float, float]]) -> Line:
     """Return points given onwards and leftwards from the right end of a street [m]."""
     origin, onwards, leftwards, _ = _frame(street)
-    return rounded(np.array(points) @ np.stack([onwards, leftwards]) + origin)
+    return rounded(exact.product(np.array(points), np.stack([onwards, leftwards])) + origin)
 
 
 def _stop_line(street: Street) -> Stripe:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.core.rng import stream
 from eyas.state.roads import RoadEdge, RoadGraph, RoadNode
 from eyas.world.build.millimetres import rounded
@@ -84,10 +85,10 @@ def _winding(
     if not bends:
         return np.stack([start, end])
     along = end - start
-    left = np.array([-along[1], along[0]]) / np.hypot(*along)
+    left = np.array([-along[1], along[0]]) / exact.hypot(*along)
     share = np.linspace(0.0, 1.0, _STEPS * len(bends))
     part = np.minimum((share * len(bends)).astype(int), len(bends) - 1)
-    swing = np.array(bends)[part] * np.sin(np.pi * (share * len(bends) - part)) ** 2
+    swing = np.array(bends)[part] * np.square(exact.sin(np.pi * (share * len(bends) - part)))
     return rounded(start + share[:, None] * along + swing[:, None] * left)
 
 

@@ -6,6 +6,7 @@ from functools import partial
 import numpy as np
 import shapely
 
+from eyas.core import exact
 from eyas.core.rng import stream
 from eyas.mesh.assembly import concatenate
 from eyas.mesh.flat import flat_polygon
@@ -159,6 +160,6 @@ def _add_parked(builder: SceneBuilder, plan: Plan, rng: np.random.Generator) -> 
     for park in plan.car_parks:
         for x, y, turn in park.bays:
             if rng.random() < _OCCUPIED:
-                way = turn + np.pi * float(rng.random() < 0.35) + rng.normal(0, 0.015)
+                way = turn + np.pi * float(rng.random() < 0.35) + exact.normal(rng, 0, 0.015)
                 car = cars[int(rng.integers(len(cars)))]
                 add_car(builder, car, (x, y, 0.0), way, 1.0)

@@ -4,6 +4,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.world.build.millimetres import rounded
 from eyas.world.roads.areas import polygons_of
 
@@ -49,7 +50,7 @@ def _bar(middle: NDArray[np.float64], half: float, rng: np.random.Generator) -> 
     for side in (-1.0, 1.0):
         wave = np.zeros_like(x)
         for length, height in ((31.0, 0.9), (9.0, 0.55), (3.7, 0.3)):
-            wave += height * np.sin(2 * np.pi * x / length + rng.uniform(0, 2 * np.pi))
+            wave += height * exact.sin(2 * np.pi * x / length + rng.uniform(0, 2 * np.pi))
         edges.append(np.stack([x, side * (half + wave)], axis=1)[:: int(-side)])
     return shapely.make_valid(shapely.Polygon(rounded(middle + np.concatenate(edges))))
 
@@ -65,6 +66,6 @@ def _tufts(
         aside, ahead = rng.uniform(-7.0, 7.0), side * (half + rng.uniform(0.6, 3.2))
         at = middle + np.array([aside, ahead])
         size = rng.uniform([0.5, 0.15], [2.2, 0.45])
-        ring = np.stack([np.cos(angle), np.sin(angle)], axis=1) * size
+        ring = np.stack([exact.cos(angle), exact.sin(angle)], axis=1) * size
         made.append(shapely.Polygon(rounded(at + ring * rng.uniform(0.75, 1.1, (12, 1)))))
     return made

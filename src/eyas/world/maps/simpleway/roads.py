@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.core.rng import stream
 from eyas.state.roads import RoadEdge, RoadGraph, RoadNode
 from eyas.world.build.millimetres import rounded, unit
@@ -73,9 +74,9 @@ def _edge(start: str, end: str, shape: Points | None = None) -> RoadEdge:
 def _loop(end: Points, onwards: Points) -> tuple[Points, Points]:
     """Return the inner edge of a loop: from the end of a road to its top, and back [m]."""
     share = np.linspace(0.0, 1.0, 13)
-    side = np.stack([_LOOP * share, _HALF * share**2 * (3.0 - 2.0 * share)], axis=1)
+    side = np.stack([_LOOP * share, _HALF * np.square(share) * (3.0 - 2.0 * share)], axis=1)
     angle = np.linspace(0.0, np.pi / 2, 9)[1:]
-    top = np.stack([_LOOP + _HALF * np.sin(angle), _HALF * np.cos(angle)], axis=1)
+    top = np.stack([_LOOP + _HALF * exact.sin(angle), _HALF * exact.cos(angle)], axis=1)
     right = np.concatenate([side, top])
     rightwards = np.array([onwards[1], -onwards[0]])
     there, back = (

@@ -7,6 +7,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.world.build.millimetres import length, rounded, unit
 from eyas.world.buildings.cottages import SIDE, Cottage
 from eyas.world.roads.areas import Street
@@ -138,7 +139,7 @@ def _sites(ways: Sequence[Street], rng: np.random.Generator) -> list[Cottage]:
             setback = rng.uniform(*_SETBACKS) + SIDE / 2
             place = rounded(here + setback * right)
             # The front, at y, faces the road.
-            turn = math.atan2(-right[1], -right[0]) - math.pi / 2 + rng.uniform(-0.07, 0.07)
+            turn = exact.atan2(-right[1], -right[0]) - math.pi / 2 + rng.uniform(-0.07, 0.07)
             storeys = int(rng.choice((2, 3, 4), p=(0.15, 0.7, 0.15)))
             made.append(Cottage(place, round(turn, 4), storeys, int(rng.integers(3))))
     return made
@@ -162,5 +163,5 @@ def gantries_along(
         apart = [length(place - other) for other, _ in made]
         clear = not shapely.intersects(taken, shapely.buffer(shapely.Point(place), 9.0))
         if clear and min(apart, default=math.inf) > 70.0:
-            made.append((place, round(math.atan2(along[1], along[0]), 4)))
+            made.append((place, round(exact.atan2(along[1], along[0]), 4)))
     return made

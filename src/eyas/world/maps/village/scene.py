@@ -6,6 +6,7 @@ from itertools import pairwise
 import numpy as np
 import shapely
 
+from eyas.core import exact
 from eyas.core.rng import stream
 from eyas.mesh.solids import box
 from eyas.state.lighting import Horizon
@@ -119,7 +120,7 @@ def _add_tunnels(builder: SceneBuilder, plan: Plan, rng: np.random.Generator) ->
         owner = builder.add(ObjectClass.STRUCTURE, mesh)
         for outline, bottom, top in tunnel_prisms(tunnel, FLOOR_HEIGHT):
             builder.add_prism(outline, bottom, top, owner)
-        turn = float(np.arctan2(tunnel.along[1], tunnel.along[0]))
+        turn = float(exact.atan2(tunnel.along[1], tunnel.along[0]))
         for at in (-11.0, 11.0):
             spot = tunnel.placed(np.array([at, 0.0]))
             builder.add_copy(ObjectClass.STRUCTURE, case, (*spot.tolist(), 6.75), turn, 1.0, owner)
@@ -185,7 +186,7 @@ def _paving(plan: Plan) -> shapely.Geometry:
     parts = []
     for house in plan.cottages:
         shape = shapely.Polygon(house.outline)
-        front = np.array([-np.sin(house.turn), np.cos(house.turn)])
+        front = np.array([-exact.sin(house.turn), exact.cos(house.turn)])
         reach = [house.place, house.place + 24.0 * front]
         path = shapely.buffer(shapely.LineString(reach), 1.9, cap_style="flat")
         parts += [shapely.buffer(shape, 1.8, join_style="mitre"), path]
