@@ -246,7 +246,10 @@ class Narrow(Whole):
         ),
         ({"path": f"{__name__}:Unreadable"}, "raised OSError: no such size"),
         ({"path": f"{__name__}:Wordy"}, "size is 'large'; allowed: three lengths"),
-        ({"path": f"{__name__}:Greedy"}, "the class raised TypeError: .*'name'$"),
+        (
+            {"path": f"{__name__}:Greedy"},
+            "made without arguments is needed; it cannot be called so: .*'name'$",
+        ),
         (
             {"path": f"{__name__}:Ragged"},
             r"2 bodies after 1 m returned no array of numbers; allowed",

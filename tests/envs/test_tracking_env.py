@@ -183,7 +183,7 @@ def test_terms_of_one_s_own_are_rewarded_and_told_by_name(tmp_path, monkeypatch)
 
 def test_a_term_that_is_not_there_is_one_line():
     with pytest.raises(
-        EyasError, match=r"^reward\.terms: 'nowhere:f' cannot be imported"
+        EyasError, match=r"^reward\.terms: 'nowhere:f': there is no module 'nowhere'"
     ) as caught:
         TrackingEnv({"reward": {"terms": {"nowhere:f": 1.0}}})
     assert "\n" not in str(caught.value)

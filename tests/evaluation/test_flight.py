@@ -119,7 +119,7 @@ def test_actions_that_are_not_allowed_are_errors(fly):
     ("changes", "said"),
     [
         ({"policy": "hovr"}, "did you mean 'hover'"),
-        ({"policy": "own_policies:nothing"}, "cannot be imported"),
+        ({"policy": "own_policies:nothing"}, "has no 'nothing'"),
         ({"policy": "missing.onnx"}, "no such file"),
         ({"policy": "hover", "sampled": True}, "--sample"),
         ({"policy": "hover", "protocol": "papr"}, "did you mean 'paper'"),

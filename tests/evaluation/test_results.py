@@ -1,6 +1,7 @@
 """Comparing, ranking, plotting and filming evaluations."""
 
 import json
+import shutil
 from html.parser import HTMLParser
 
 import numpy as np
@@ -122,6 +123,39 @@ class Texts(HTMLParser):
         self.found.append(data.strip())
 
 
+class Tags(HTMLParser):
+    """All tags of a page, and where its texts try to be tags."""
+
+    def __init__(self):
+        super().__init__()
+        self.found = set()
+
+    def handle_starttag(self, tag, attrs):
+        self.found.add(tag)
+
+
+@pytest.mark.parametrize("protocol", ["paper", "distractor"])
+def test_nothing_that_an_evaluation_of_others_says_becomes_markup_or_is_loaded(
+    folder, tmp_path, monkeypatch, protocol
+):
+    (tmp_path / "someones.py").write_text("raise BaseException('it was imported')")
+    monkeypatch.syspath_prepend(tmp_path)
+    evil = "</code><script>alert(1)</script>"
+    shutil.copytree(folder / "hover", tmp_path / "theirs")
+    path = tmp_path / "theirs" / "run.json"
+    said = json.loads(path.read_text())
+    said |= {"policy": evil, "version": evil, "protocol": PROTOCOLS[protocol].hash}
+    plan = {"policy": evil, "latency": evil, "weathers": [evil], "targets": [evil]}
+    said["plan"] |= {**plan, "maps": ["someones:IT"], "protocol": protocol, "env": {evil: evil}}
+    path.write_text(json.dumps(said))
+    leaderboard.run(tmp_path / "theirs", tmp_path / "page.html")
+    page = (tmp_path / "page.html").read_text()
+    tags = Tags()
+    tags.feed(page)
+    assert "alert(1)" in page
+    assert "script" not in tags.found
+
+
 def test_the_leaderboard_ranks_and_tells_how_to_repeat(folder, tmp_path):
     page = tmp_path / "index.html"
     leaderboard.run(folder, page)
@@ -164,6 +198,7 @@ def test_plots_and_films_are_written(folder, tmp_path):
 def test_an_interrupted_film_leaves_nothing_behind(folder, tmp_path, monkeypatch):
     plan = Plan(policy="hover", episodes=1)
     names = {episode.name for part in batches(plan) for episode in part}
+    assert len(names) == plan.count
     shoot, pictures = evaluation_films._Camera.shoot, iter(range(20))
 
     def interrupted(camera, *seen):

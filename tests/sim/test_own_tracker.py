@@ -61,8 +61,8 @@ def test_its_camera_banks_with_it_and_its_sensors_feel_the_turn(aeroplanes):
         ("nowhere.at_all:Plane", "tracker.kind: 'nowhere.at_all:Plane': there is no module "),
         ("math:pin", "tracker.kind: 'math:pin': the module 'math' has no 'pin'"),
         ("math:pi", "tracker.kind: 'math:pi' is a float, not a "),
-        ("os:getcwd", "tracker.kind: 'os:getcwd' cannot be called with it (too many positional "),
-        ("builtins:repr", "tracker.kind: 'builtins:repr' gave a str; allowed: a class or "),
+        ("os:getcwd", "tracker.kind: 'os:getcwd' cannot be called with it (it is a built-in "),
+        ("builtins:repr", "tracker.kind: 'builtins:repr' cannot be called with it (it "),
     ],
 )
 def test_what_is_no_tracker_is_told_in_one_line(kind, line):

@@ -26,6 +26,7 @@ from eyas.cli import (
 )
 from eyas.cli.said import say
 from eyas.core.errors import EyasError
+from eyas.core.own_code import ended
 
 __all__ = ["app", "run"]
 
@@ -117,6 +118,8 @@ def run() -> int:
         raise KeyboardInterrupt from None
     except OSError as error:
         return _not_printed(error)
+    except SystemExit as error:  # Typer raises none: a user's map, writer or file did
+        return _failed(ended(error))
     return status if isinstance(status, int) else 0
 
 

@@ -31,8 +31,13 @@ def show(
 ) -> None:
     """Check the settings, and print all of them as JSON."""
     from eyas.settings.file import load_settings
+    from eyas.settings.trust import code_of
 
-    typer.echo(_text(load_settings(chosen_file(config, preset), gathered(set_)), legacy=legacy))
+    # Nothing that the file names is imported here, so it may be anyone's.
+    settings = load_settings(chosen_file(config, preset), gathered(set_), trust=True)
+    for setting, name in code_of(settings):
+        typer.echo(f"eyas: note: {setting} names code, which a run calls: {name!r}", err=True)
+    typer.echo(_text(settings, legacy=legacy))
 
 
 @app.command()
@@ -50,7 +55,7 @@ def convert(
     if target.exists():
         raise OutputError(f"{target}: already exists; settings files are never overwritten")
     legacy = not is_legacy(read_settings(source))
-    text = _text(load_settings(source, gathered(set_)), legacy=legacy)
+    text = _text(load_settings(source, gathered(set_), trust=True), legacy=legacy)
     write_atomic(target, f"{text}\n".encode())
 
 

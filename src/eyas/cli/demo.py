@@ -10,6 +10,7 @@ from eyas.cli.options import (
     Overrides,
     Preset,
     Seed,
+    Trust,
     Weather,
     chosen_file,
     gathered,
@@ -26,6 +27,7 @@ def command(  # noqa: PLR0913  # one parameter for each option
     weather: Weather = None,
     seed: Seed = None,
     set_: Overrides = None,
+    trust: Trust = False,
     policy: Annotated[
         str | None,
         typer.Option("--policy", help="A policy that may fly too: a file, or module:name."),
@@ -60,7 +62,8 @@ def command(  # noqa: PLR0913  # one parameter for each option
         raise ConfigError("--window and --headless cannot be used together")
     if seconds is not None and not (window or headless):
         raise ConfigError("--seconds: only with --headless or --window")
-    settings = load_settings(chosen_file(config, preset), gathered(set_, map_name, weather, seed))
+    overrides = gathered(set_, map_name, weather, seed)
+    settings = load_settings(chosen_file(config, preset), overrides, trust=trust)
     from eyas.modes.demo import run as demo  # after all checks
 
     listening = None if headless or window else demo.listen(host, port)

@@ -15,6 +15,7 @@ __all__ = [
     "Overrides",
     "Preset",
     "Seed",
+    "Trust",
     "Weather",
     "chosen_file",
     "gathered",
@@ -42,6 +43,9 @@ Overrides = Annotated[
 MapName = Annotated[str | None, typer.Option("--map", help="Name of the map.")]
 Weather = Annotated[str | None, typer.Option("--weather", help="Name of the weather.")]
 Seed = Annotated[int | None, typer.Option("--seed", help="The one seed of the run.")]
+Trust = Annotated[
+    bool, typer.Option("--trust", help="Let the file of settings name code, which is then run.")
+]
 
 
 def chosen_file(config: Path | None, preset: str | None) -> Path | None:

@@ -11,6 +11,7 @@ from eyas.cli.options import (
     Overrides,
     Preset,
     Seed,
+    Trust,
     Weather,
     chosen_file,
     gathered,
@@ -34,6 +35,7 @@ def command(  # noqa: PLR0913  # one parameter for each option
     weather: Weather = None,
     seed: Seed = None,
     set_: Overrides = None,
+    trust: Trust = False,
 ) -> None:
     """Serve algorithm code of the DAT benchmark in the place of its simulator, until Ctrl-C."""
     from eyas.settings.config import Mode
@@ -46,7 +48,7 @@ def command(  # noqa: PLR0913  # one parameter for each option
         file = root / SETTINGS_FILE
     # The first start writes a file, which cannot tell all, and serves what the next will read.
     overrides = gathered(set_, map_name, weather, seed)
-    settings = load_settings(file, overrides, base=LIKE_THE_ORIGINAL)
+    settings = load_settings(file, overrides, base=LIKE_THE_ORIGINAL, trust=trust)
     if settings.original is not None and settings.mode is not Mode.TRAIN:
         said = f"mode (Simulation_Mode) is '{settings.mode}'; 'eyas serve' trains anyway"
         typer.echo(f"eyas: note: {said}", err=True)

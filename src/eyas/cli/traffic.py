@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from eyas.cli.options import ConfigFile, MapName, Overrides, Preset, chosen_file, gathered
+from eyas.cli.options import ConfigFile, MapName, Overrides, Preset, Trust, chosen_file, gathered
 from eyas.core.errors import ConfigError
 
 __all__ = ["app"]
@@ -53,6 +53,7 @@ def record(  # noqa: PLR0913  # one parameter for each option
     config: ConfigFile = None,
     preset: Preset = None,
     set_: Overrides = None,
+    trust: Trust = False,
     canonical: Annotated[
         bool,
         typer.Option(
@@ -70,7 +71,8 @@ def record(  # noqa: PLR0913  # one parameter for each option
     said = [f"{key}={json.dumps(value)}" for key, value in short.items() if value is not None]
     if vehicle_type is not None:
         said.append(f"traffic.vehicle_type={vehicle_type}")
-    settings = load_settings(chosen_file(config, preset), [*gathered(set_, map_name), *said])
+    file, overrides = chosen_file(config, preset), [*gathered(set_, map_name), *said]
+    settings = load_settings(file, overrides, trust=trust)
     many = _numbers(seeds) if seeds is not None else ()
     with originals_named(settings):
         if canonical:

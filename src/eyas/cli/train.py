@@ -11,6 +11,7 @@ from eyas.cli.options import (
     Overrides,
     Preset,
     Seed,
+    Trust,
     Weather,
     chosen_file,
     gathered,
@@ -30,6 +31,7 @@ def command(  # noqa: PLR0913  # one parameter for each option
     weather: Weather = None,
     seed: Seed = None,
     set_: Overrides = None,
+    trust: Trust = False,
     resume: Annotated[bool, typer.Option("--resume", help="Continue an interrupted run.")] = False,
     ray: Annotated[
         bool,
@@ -41,7 +43,8 @@ def command(  # noqa: PLR0913  # one parameter for each option
     from eyas.settings.file import load_settings
 
     preset = preset or (None if config else "fast")
-    settings = load_settings(chosen_file(config, preset), gathered(set_, map_name, weather, seed))
+    overrides = gathered(set_, map_name, weather, seed)
+    settings = load_settings(chosen_file(config, preset), overrides, trust=trust)
     from eyas.modes.train import run
 
     policy = run(

@@ -12,6 +12,7 @@ from eyas.cli.options import (
     Overrides,
     Preset,
     Seed,
+    Trust,
     Weather,
     chosen_file,
     gathered,
@@ -28,6 +29,7 @@ def command(  # noqa: PLR0913  # one parameter for each option
     weather: Weather = None,
     seed: Seed = None,
     set_: Overrides = None,
+    trust: Trust = False,
     resume: Annotated[
         bool, typer.Option("--resume", help="Continue an interrupted recording.")
     ] = False,
@@ -42,7 +44,8 @@ def command(  # noqa: PLR0913  # one parameter for each option
 
     if quiet:
         logging.getLogger("eyas").setLevel(logging.ERROR)
-    settings = load_settings(chosen_file(config, preset), gathered(set_, map_name, weather, seed))
+    overrides = gathered(set_, map_name, weather, seed)
+    settings = load_settings(chosen_file(config, preset), overrides, trust=trust)
     if settings.mode is not Mode.VIDEO and not quiet:
         said = f"mode (Simulation_Mode) is '{settings.mode}'; 'eyas video' records anyway"
         typer.echo(f"eyas: note: {said}", err=True)

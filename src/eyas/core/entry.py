@@ -10,7 +10,15 @@ from typing import Any
 from eyas.core.held import Held
 from eyas.core.interrupts import shielded
 from eyas.core.jit import REFUSAL, folder_in_use, identity
-from eyas.core.machine_code import SUFFIX, MachineCode, code_file, load, read_code, write_code
+from eyas.core.machine_code import (
+    SUFFIX,
+    MachineCode,
+    code_file,
+    entry_of,
+    load,
+    read_code,
+    write_code,
+)
 from eyas.core.shipped import is_shipped, shipped_code
 
 __all__ = ["entry_address", "nothing_compiled"]
@@ -34,7 +42,7 @@ def entry_address(function: Callable[..., Any], parts: tuple[Held[Any], ...]) ->
     with _LOCK, shielded():
         address = _kept(path) if keeps else None
         if address is None:
-            code = _compiled(function, parts, path.stem.replace("-", "_"))
+            code = _compiled(function, parts, entry_of(path))
             address = load(code)
             assert address is not None, f"{name}: cannot be loaded; it needs {code.needs}"
             if keeps and not REFUSAL:

@@ -11,6 +11,7 @@ from eyas.core.errors import DataFileError, OutputError
 __all__ = [
     "PART_SUFFIX",
     "atomic_path",
+    "open_at_once",
     "part_path",
     "read_limited",
     "refusals",
@@ -101,7 +102,7 @@ def read_limited(path: Path, largest: int) -> bytes:
             or a pipe would be read for ever.
     """
     try:
-        with open(path, "rb", opener=_open_at_once) as file:
+        with open(path, "rb", opener=open_at_once) as file:
             if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
                 raise DataFileError(f"{path}: cannot read: not an ordinary file")
             content = file.read(largest + 1)
@@ -114,6 +115,6 @@ def read_limited(path: Path, largest: int) -> bytes:
     return content
 
 
-def _open_at_once(path: str, flags: int) -> int:
-    """Open a file without waiting for the writer of a pipe."""
+def open_at_once(path: str, flags: int) -> int:
+    """Open a file for `open`, without waiting for the writer of a pipe."""
     return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))

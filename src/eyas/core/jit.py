@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 from eyas.core.cache.folder import Kind, cache_folder, touch
+from eyas.core.cache.safety import made_folder, secured
 from eyas.core.interrupts import shielded
 
 __all__ = [
@@ -60,9 +61,11 @@ def kernel_folder() -> Path:
 
 
 def _refusal(folder: Path) -> str:
-    """Return why a folder cannot be written to; nothing if it can."""
+    """Return why kernels cannot be kept in a folder; nothing if they can."""
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        made_folder(folder)
+        if why := secured(folder):
+            return why
     except OSError as error:
         return error.strerror or str(error)
     return "" if os.access(folder, os.W_OK) else os.strerror(errno.EACCES)

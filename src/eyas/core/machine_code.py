@@ -9,6 +9,7 @@ import json
 import logging
 import os
 import secrets
+import stat
 import threading
 import zlib
 from collections.abc import Iterable
@@ -21,11 +22,14 @@ import llvmlite
 import llvmlite.binding as llvm
 
 from eyas.core.cache.folder import not_kept
+from eyas.core.cache.safety import FILE_MODE, unsafe
+from eyas.core.files import open_at_once
 
 __all__ = [
     "SUFFIX",
     "MachineCode",
     "code_file",
+    "entry_of",
     "load",
     "optimised",
     "read_code",
@@ -170,20 +174,51 @@ def _digest(parts: Iterable[str]) -> str:
     return sha256("\0".join(parts).encode()).hexdigest()[:24]
 
 
-def read_code(path: Path) -> MachineCode | None:
-    """Return the content of a file; None if there is none, or it is damaged."""
+def read_code(path: Path, *, shipped: bool = False) -> MachineCode | None:
+    """Return the content of a file; None if there is none, or it is damaged, or not to be trusted.
+
+    Args:
+        path: The file.
+        shipped: Whether it lies in the package, whose code of Python is run as well.
+    """
     try:
-        content = path.read_bytes()
+        content = path.read_bytes() if shipped else _own(path)
         if zlib.crc32(content[4:]) != int.from_bytes(content[:4], "little"):
             raise ValueError("damaged")
         head, code = content[4:].split(b"\n", 1)
         entry, needs = json.loads(head)
+        # Code that ships is named without what depends on numba and Python.
+        if not (entry == entry_of(path) or (shipped and entry.startswith(entry_of(path)))):
+            raise ValueError("in the place of another kernel")
         return MachineCode(entry, tuple(needs), code)
     except (FileNotFoundError, NotADirectoryError, PermissionError):
         return None  # if it cannot be replaced either, that is told
+    except UnsafeError as error:
+        _LOG.warning("%s: %s; so it is compiled anew", path, error)
+        return None
     except (OSError, ValueError):
         _LOG.warning("%s: damaged or unreadable, so it is compiled anew", path)
         return None
+
+
+def entry_of(path: Path) -> str:
+    """Return the name of the function in a kernel's file."""
+    return path.stem.replace("-", "_")
+
+
+class UnsafeError(Exception):
+    """Someone else may have written a file of machine code."""
+
+
+def _own(path: Path) -> bytes:
+    """Return the content of a file that nobody but its user, or root, can have written."""
+    with open(path, "rb", opener=open_at_once) as file:
+        status = os.fstat(file.fileno())
+        if not stat.S_ISREG(status.st_mode):
+            raise ValueError("no ordinary file")
+        if why := unsafe(status) or unsafe(path.parent.stat()):
+            raise UnsafeError(why)
+        return file.read()
 
 
 def write_code(path: Path, code: MachineCode) -> None:
@@ -192,9 +227,15 @@ def write_code(path: Path, code: MachineCode) -> None:
     part = path.with_name(f"{path.name}.tmp.{secrets.token_hex(8)}")
     try:
         try:
-            part.write_bytes(zlib.crc32(content).to_bytes(4, "little") + content)
+            with open(part, "xb", opener=_opened) as file:
+                file.write(zlib.crc32(content).to_bytes(4, "little") + content)
             part.replace(path)
         finally:
             part.unlink(missing_ok=True)
     except OSError as error:
         not_kept(error)
+
+
+def _opened(path: str, flags: int) -> int:
+    """Open a new file to which others may not write."""
+    return os.open(path, flags, FILE_MODE)

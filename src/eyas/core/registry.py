@@ -4,13 +4,11 @@ An object is found by its name in the table, or by its path `package.module:attr
 user-defined object needs no entry in a table. An object is imported when it is first used.
 """
 
-import sys
 from collections.abc import Mapping
-from importlib import import_module
-from importlib.util import find_spec
 from typing import Generic, Protocol, TypeVar
 
-from eyas.core.errors import ConfigError, UnknownNameError, nearest
+from eyas.core.errors import ConfigError, UnknownNameError
+from eyas.core.own_code import imported
 
 __all__ = ["Found", "Registry"]
 
@@ -135,35 +133,9 @@ class Registry(Generic[T]):
 
     def _checked(self, name: str, found: T | str) -> T:
         """Return the object that was found, imported if it is a path."""
-        what = self._imported(found) if isinstance(found, str) else found
+        what = imported(found, self._setting) if isinstance(found, str) else found
         if not isinstance(what, self._kind):
             raise ConfigError(
                 f"{self._setting}: {name!r} is a {type(what).__name__}, not a {self._kind.__name__}"
             )
         return what
-
-    def _imported(self, path: str) -> object:
-        """Return the object at a path; errors raised by its module pass through."""
-        name, _, attribute = path.partition(":")
-        if not all(part.isidentifier() for part in (*name.split("."), attribute)):
-            raise ConfigError(
-                f"{self._setting}: {path!r} is not a path; allowed: package.module:attribute"
-            )
-        if not _exists(name):
-            raise ConfigError(f"{self._setting}: {path!r}: there is no module '{name}'")
-        module = import_module(name)
-        if not hasattr(module, attribute):
-            raise ConfigError(
-                f"{self._setting}: {path!r}: the module '{name}' has no '{attribute}'"
-                f"{nearest(attribute, vars(module))}"
-            )
-        return getattr(module, attribute)
-
-
-def _exists(module: str) -> bool:
-    if module in sys.modules:
-        return True
-    try:
-        return find_spec(module) is not None
-    except ModuleNotFoundError:  # one of its parents is missing
-        return False

@@ -56,7 +56,7 @@ def shipped_code(name: str) -> MachineCode | None:
         name: Name of the kernel and hash of what it is compiled from, see `code_file`.
     """
     folder = _folder()
-    return None if folder is None else read_code(folder / f"{name}{SUFFIX}")
+    return None if folder is None else read_code(folder / f"{name}{SUFFIX}", shipped=True)
 
 
 def is_shipped(name: str) -> bool:

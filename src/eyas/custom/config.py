@@ -6,6 +6,7 @@ from pydantic import Field, model_validator
 
 from eyas.behaviours.config import Behaviour
 from eyas.core.config import Config
+from eyas.core.own_code import NAMES_CODE
 
 __all__ = ["CustomConfig"]
 
@@ -19,7 +20,7 @@ class CustomConfig(Config):
 
     mesh: Text | None = None
     """File of its shape: glTF, GLB, OBJ, STL or PLY (extra `mesh`)."""
-    path: Text | None = None
+    path: Annotated[Text | None, NAMES_CODE] = None
     """Its class, `package.module:Class`, see `eyas.custom.own.OwnTarget`."""
     trajectory: Text | None = None
     """CSV file with the columns t, x, y and perhaps z and yaw, which moves it."""

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.errors import ConfigError, EyasError
+from eyas.core.own_code import takes
 from eyas.core.registry import Registry
 from eyas.custom.mesh_file import LARGEST
 from eyas.custom.own import MovesItself, OwnTarget, Ride
@@ -30,6 +31,10 @@ def made(path: str) -> OwnTarget:
         EyasError: It cannot be used: one line.
     """
     kind = _CLASSES.get(path)
+    if not all(callable(getattr(kind, method, None)) for method in ("parts", "pose")):
+        raise _refused(path, "it has not all of: size, parts(), pose(ride)")
+    if why := takes(kind):
+        raise _refused(path, f"a class that is made without arguments is needed; {why}")
     with _asking(path, "the class"):
         instance = kind()
         # This reads its attributes, of which some may be properties.
@@ -91,9 +96,9 @@ def _asking(path: str, what: str) -> Iterator[None]:
     """Turn what a user's code raises into one line that says where."""
     try:
         yield
-    except EyasError:
+    except (EyasError, KeyboardInterrupt):
         raise
-    except Exception as error:  # anyone's code can raise anything
+    except BaseException as error:  # anyone's code can raise anything, `SystemExit` too
         last = extract_tb(error.__traceback__)[-1]
         place = "" if last.filename == __file__ else f" ({last.filename}, line {last.lineno})"
         text = " ".join(f"{type(error).__name__}: {error}".split())[:500]

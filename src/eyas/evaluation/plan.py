@@ -55,6 +55,13 @@ class Plan(Config):
         return protocol.changed(self.settings) if self.settings else protocol
 
     @property
+    def count(self) -> int:
+        """Number of all episodes; nothing that the plan names is loaded to know it."""
+        places = len(self.maps) * len(self.weathers) * len(self.targets)
+        each = self.episodes or self.rules.episodes
+        return places * len(self.rules.directions) * each
+
+    @property
     def command(self) -> str:
         """The command that repeats it."""
         told = self.model_dump(

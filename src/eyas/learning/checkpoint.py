@@ -62,7 +62,7 @@ class RunFolder:
         if resume:
             if not self._config.exists():
                 raise OutputError(f"{self.path}: there is no run to resume")
-            if load_settings(self._config) != config:
+            if load_settings(self._config, trust=True) != config:  # only compared
                 raise OutputError(
                     f"{self.path}: the run in it has other settings, see its config.json; only a "
                     "run with the same settings can be resumed"

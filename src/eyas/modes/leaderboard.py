@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from eyas.core.errors import DataFileError
 from eyas.core.files import write_atomic
-from eyas.evaluation.plan import Stamp, batches
+from eyas.evaluation.plan import Stamp
 from eyas.evaluation.protocol import PROTOCOLS
 from eyas.evaluation.record import Record
 from eyas.evaluation.result import COLUMNS, STAMP, UNITS, cell, load_run
@@ -78,7 +78,7 @@ def _entries(folder: Path) -> Iterator[_Entry]:
         if stamp.plan.protocol not in PROTOCOLS or stamp.protocol != stamp.plan.rules.hash:
             _LOG.warning("%s: left out: flown in a protocol of another version", path.parent)
             continue
-        missing = sum(map(len, batches(stamp.plan))) - len(records)
+        missing = stamp.plan.count - len(records)
         if missing > 0:
             _LOG.warning("%s: left out: %d episodes are missing", path.parent, missing)
             continue
@@ -115,7 +115,7 @@ def _rank(entry: _Entry) -> tuple[float, str]:
 def _line(entry: _Entry, columns: Sequence[str]) -> str:
     plan, figures = entry.stamp.plan, entry.row.figures
     drawn = " (drawn)" if plan.sampled else ""
-    mark = f"<br><code>{entry.stamp.policy}</code>" if entry.stamp.policy else ""
+    mark = f"<br><code>{html.escape(entry.stamp.policy)}</code>" if entry.stamp.policy else ""
     failed = sum(record.error is not None for record in entry.records)
     cells = [f"<td>{html.escape(plan.policy)}{drawn}{mark}</td>"]
     cells.append(f"<td>{html.escape(plan.latency)}</td>")

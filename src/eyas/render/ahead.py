@@ -9,6 +9,7 @@ import sys
 import numpy as np
 
 from eyas.core.cache.folder import not_kept
+from eyas.core.cache.safety import made_folder
 from eyas.core.entry import nothing_compiled
 from eyas.core.jit import REFUSAL, folder_in_use
 from eyas.render.bake.ambient import AmbientMap
@@ -61,7 +62,7 @@ def begin_ahead(other: str) -> None:
     if REFUSAL or (os.cpu_count() or 1) < 2 or getattr(sys, "frozen", False):
         return
     with contextlib.suppress(OSError):
-        cache.mkdir(parents=True, exist_ok=True)
+        made_folder(cache)
         (cache / "started").touch(exist_ok=False)  # exactly one of several processes succeeds
         processes = _compiling if compiles else _doing_other
         processes.append(_started(_COMPILE if compiles else other))

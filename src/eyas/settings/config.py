@@ -1,14 +1,20 @@
 """The root of all settings: those of the simulation and those of each mode and interface."""
 
+from collections.abc import Iterator, Mapping
 from enum import StrEnum
+from typing import Any, Self
 
+from pydantic import model_validator
+
+from eyas.core.config import updated
+from eyas.core.errors import ConfigError
 from eyas.envs.config import EnvConfig
 from eyas.learning.config import TrainConfig
 from eyas.modes.video.config import VideoConfig
 from eyas.sim.config import SimConfig
 from eyas.wire.config import WireConfig
 
-__all__ = ["EyasConfig", "Mode"]
+__all__ = ["EyasConfig", "Mode", "variants"]
 
 Value = bool | int | float | str | tuple[float, ...]
 """Value of one of the original's keys."""
@@ -43,3 +49,34 @@ class EyasConfig(SimConfig):
     """Values of the original's `env_config.json` that no other setting holds, such as those whose
     switch is off: they are written back with it. None if the settings do not come from such a
     file."""
+
+    @model_validator(mode="after")
+    def _check_variants(self) -> Self:
+        for _ in variants(self):
+            pass
+        return self
+
+
+def variants(config: EyasConfig) -> Iterator[tuple[str, EyasConfig]]:
+    """Yield the settings of each kind of a mixture and each stage of a curriculum, by their path.
+
+    Mixture and curriculum themselves are left out of them.
+
+    Raises:
+        ConfigError: Some of them are wrong: one line.
+    """
+    parts: list[tuple[str, Mapping[str, Any]]] = [
+        *((f"env.mixture.{at}", part.settings) for at, part in enumerate(config.env.mixture)),
+        *((f"train.stages.{at}", part.settings) for at, part in enumerate(config.train.stages)),
+    ]
+    if not any(settings for _, settings in parts):
+        return
+    env = config.env.model_copy(update={"mixture": ()})
+    train = config.train.model_copy(update={"stages": ()})
+    common = config.model_copy(update={"env": env, "train": train})
+    for path, settings in parts:
+        try:
+            variant = updated(common, settings)
+        except ConfigError as error:
+            raise ConfigError(f"{path}.settings.{error}") from None
+        yield f"{path}.settings", variant

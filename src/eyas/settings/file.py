@@ -2,7 +2,7 @@
 
 import json
 import logging
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from itertools import groupby
 from pathlib import Path
 from typing import Any
@@ -14,6 +14,7 @@ from eyas.core.files import write_atomic
 from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.adapter import check_original, from_legacy, is_legacy, with_legacy
 from eyas.settings.legacy.messages import named_path
+from eyas.settings.trust import refuse_code
 
 __all__ = ["load_settings", "read_settings", "save_settings"]
 
@@ -26,7 +27,11 @@ _CLIENT_KEY = "Benchmark"
 
 
 def load_settings(
-    path: Path | None, overrides: Sequence[str] = (), base: EyasConfig | None = None
+    path: Path | None,
+    overrides: Sequence[str] = (),
+    base: EyasConfig | None = None,
+    *,
+    trust: bool = False,
 ) -> EyasConfig:
     """Return the settings of a file, with some of them changed.
 
@@ -38,10 +43,11 @@ def load_settings(
         overrides: `key=value`; a later one wins; keys are dotted paths, native (`video.fps`) or the
             original's (`Out_Video.fps`); values are JSON, or else text.
         base: The settings where there is no file; None: the defaults.
+        trust: Whether the file may name code, see `eyas.settings.trust`.
 
     Raises:
         DataFileError: The file cannot be read, or is not a JSON object.
-        ConfigError: A key or a value is wrong.
+        ConfigError: A key or a value is wrong, or the file names code without being trusted.
     """
     config = (base or EyasConfig()) if path is None else _loaded(path)
     pairs = [_parsed(override) for override in overrides]
@@ -51,6 +57,8 @@ def load_settings(
             _put(changes, keys, value)
         config = with_legacy(config, changes) if capital else updated(config, changes)
     check_original(config)
+    if path is not None and not trust:
+        refuse_code(path, config, {text for _, value in pairs for text in _texts(value)})
     _tell_surprises(config)
     return config
 
@@ -134,6 +142,19 @@ def _parsed(override: str) -> tuple[list[str], Any]:
     if len(keys) == 1 and group and group.named_by and isinstance(value, str):
         keys.append(group.named_by)
     return keys, value
+
+
+def _texts(value: object) -> Iterator[str]:
+    """Yield all texts and keys in a value of JSON."""
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, dict):
+        for key, inner in value.items():
+            yield key
+            yield from _texts(inner)
+    elif isinstance(value, list):
+        for inner in value:
+            yield from _texts(inner)
 
 
 def _put(values: Nested, keys: Sequence[str], value: Any) -> None:  # noqa: ANN401  # JSON

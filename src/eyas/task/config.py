@@ -7,6 +7,7 @@ from typing import Annotated, Self
 from pydantic import AfterValidator, Field, model_validator
 
 from eyas.core.config import Config
+from eyas.core.own_code import NAMES_CODE
 from eyas.core.variation import Uniform, Variation, within
 
 __all__ = [
@@ -92,7 +93,7 @@ class RewardConfig(Config):
     """Values that the reward takes."""
     weight: Weight = 1.0
     """Factor on the built-in reward."""
-    terms: dict[str, Weight] = Field(default_factory=dict)
+    terms: Annotated[dict[str, Weight], NAMES_CODE] = Field(default_factory=dict)
     """Terms to add, and the factor on each: the name of a published one (`e2e`, `d_vat`,
     `d_vat_3d`, `speed`, `effort`), or the path of a function, `package.module:function`, which
     takes a `Snapshot`, or the quantities that its parameters name, and returns a number for each

@@ -5,6 +5,8 @@ d there, is how far ahead the target is when it is first observed, at the reset;
 the first step after it, because what it tells at a reset is old.
 """
 
+from collections.abc import Callable, Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -102,5 +104,7 @@ def _joined(product: Floats, crash: NDArray[np.bool_]) -> Floats:
     return np.where(crash, _CRASH, exact.cbrt(np.clip(product, 0.0, 1.0)))
 
 
-TERMS = {"e2e": e2e, "d_vat": d_vat, "d_vat_3d": d_vat_3d, "speed": speed, "effort": effort}
+TERMS: Mapping[str, Callable[..., Floats]] = {
+    **{"e2e": e2e, "d_vat": d_vat, "d_vat_3d": d_vat_3d, "speed": speed, "effort": effort}
+}
 """Terms that `reward.terms` may name without a path."""

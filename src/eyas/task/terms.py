@@ -2,12 +2,13 @@
 
 import inspect
 from collections.abc import Callable
-from importlib import import_module
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.errors import ConfigError, nearest
+from eyas.core.own_code import imported, running
 from eyas.state.snapshot import Snapshot
 from eyas.task.config import RewardConfig
 from eyas.task.published import TERMS
@@ -19,6 +20,13 @@ Floats = NDArray[np.float64]
 
 RewardTerm = Callable[[Snapshot, Setting], Floats]
 """Function that returns one number for each tracker of a snapshot, shape (N,)."""
+
+_ALLOWED = (
+    f"allowed: {', '.join(TERMS)}, or 'package.module:function', which takes a snapshot or named "
+    "quantities"
+)
+
+_ANY = (inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD)
 
 BUILTIN = "builtin"
 """Name of the term that the step's kernel computes, set by `reward.type` and `reward.mode`."""
@@ -48,7 +56,13 @@ class RewardTerms:
         terms = {BUILTIN: snapshot.episodes.reward.copy()}
         total = self._weight * terms[BUILTIN]
         for name, term, weight in self._terms:
-            values = np.array(term(snapshot, self._setting), np.float64)
+            with running("reward.terms", name):
+                values = _numbers(term(snapshot, self._setting))
+            if values is None:
+                raise ConfigError(
+                    f"reward.terms.{name}: it returned no numbers; allowed: an array of shape "
+                    f"{total.shape}, a number for each tracker"
+                )
             if values.shape != total.shape:
                 raise ConfigError(
                     f"reward.terms.{name}: it returned an array of shape {values.shape}; "
@@ -65,35 +79,64 @@ def load_term(name: str) -> RewardTerm:
     Raises:
         ConfigError: There is no such function, or its parameters are no quantities.
     """
-    function = TERMS.get(name) or _imported(name)
-    if not callable(function):
-        raise ConfigError(f"reward.terms: '{name}' is not a function")
-    parameters = inspect.signature(function).parameters.values()
-    wanted = [p.name for p in parameters if p.default is p.empty or p.name in QUANTITIES]
-    if len(wanted) == 1 and wanted[0] not in QUANTITIES:
+    function = TERMS[name] if name in TERMS else _function(name)
+    wanted = _wanted(name, function)
+    if not wanted:
         return lambda snapshot, _: function(snapshot)
-    for quantity in wanted:
-        if quantity not in QUANTITIES:
-            raise ConfigError(
-                f"reward.terms: '{name}' asks for '{quantity}'{nearest(quantity, QUANTITIES)}; "
-                f"allowed: a snapshot, or {', '.join(QUANTITIES)}"
-            )
     return lambda snapshot, setting: function(
         **{quantity: QUANTITIES[quantity](snapshot, setting) for quantity in wanted}
     )
 
 
-def _imported(name: str) -> Callable[..., Floats]:
-    module, colon, attribute = name.partition(":")
-    try:
-        if not colon:
-            raise ImportError(f"no term has that name{nearest(name, TERMS)}")
-        if module.startswith("."):
-            raise ImportError("no module has such a name")
-        function: Callable[..., Floats] = getattr(import_module(module), attribute)
-    except (ImportError, AttributeError, ValueError) as error:
+def _function(name: str) -> Callable[..., Floats]:
+    """Return a user's function."""
+    if ":" not in name:
         raise ConfigError(
-            f"reward.terms: '{name}' cannot be imported ({error}); allowed: {', '.join(TERMS)}, or "
-            "'package.module:function', which takes a snapshot or named quantities"
+            f"reward.terms: '{name}' cannot be imported (no term has that name"
+            f"{nearest(name, TERMS)}); {_ALLOWED}"
+        )
+    try:
+        found: Any = imported(name, "reward.terms")
+    except ImportError as error:
+        raise ConfigError(
+            f"reward.terms: '{name}' cannot be imported ({error}); {_ALLOWED}"
         ) from error
+    if not callable(found) or inspect.isclass(found):
+        raise ConfigError(f"reward.terms: '{name}' is not a function")
+    function: Callable[..., Floats] = found
     return function
+
+
+def _wanted(name: str, function: Callable[..., Floats]) -> list[str]:
+    """Return the quantities that a function wants by name; none: it wants the snapshot.
+
+    What was not written to be a term is refused before it is called, as far as parameters tell.
+    """
+    try:
+        parameters = list(inspect.signature(function).parameters.values())
+    except (TypeError, ValueError):  # many functions in C do not tell
+        parameters = []
+    needed = [p for p in parameters if p.kind not in _ANY and p.default is p.empty]
+    asked = [p for p in parameters if p in needed or p.name in QUANTITIES]
+    if not asked or inspect.isbuiltin(function):
+        raise ConfigError(
+            f"reward.terms: '{name}' asks for no snapshot and for no quantity; {_ALLOWED}"
+        )
+    (first, *others) = asked
+    if not others and first.name not in QUANTITIES and first.kind is not first.KEYWORD_ONLY:
+        return []
+    for each in asked:
+        if each.name not in QUANTITIES or each.kind is each.POSITIONAL_ONLY:
+            raise ConfigError(
+                f"reward.terms: '{name}' asks for '{each.name}'{nearest(each.name, QUANTITIES)}; "
+                f"allowed: a snapshot, or {', '.join(QUANTITIES)}"
+            )
+    return [each.name for each in asked]
+
+
+def _numbers(answer: object) -> Floats | None:
+    """Return a copy of an answer as numbers; None if it is none."""
+    try:
+        return np.array(answer, np.float64)
+    except (TypeError, ValueError):
+        return None

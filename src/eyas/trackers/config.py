@@ -6,6 +6,7 @@ from typing import Annotated, Self
 from pydantic import AfterValidator, Field, model_validator
 
 from eyas.core.config import Config
+from eyas.core.own_code import NAMES_CODE
 from eyas.core.variation import Variation, bounds, within
 
 __all__ = ["TrackerConfig", "TrackerKind", "WindConfig"]
@@ -41,7 +42,9 @@ class WindConfig(Config):
 class TrackerConfig(Config):
     """Kind of the tracker, and how it follows its commands."""
 
-    kind: TrackerKind | Annotated[str, AfterValidator(_path)] = TrackerKind.DRONE
+    kind: Annotated[TrackerKind | Annotated[str, AfterValidator(_path)], NAMES_CODE] = (
+        TrackerKind.DRONE
+    )
     """Kind of the tracker, or a class of your own, `package.module:Class`."""
     supervised: bool = True
     """True: the drone follows its commands exactly; False: a flight controller flies it."""

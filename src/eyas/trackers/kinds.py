@@ -1,10 +1,10 @@
 """The kinds of trackers: the built-in ones by name, and a user's own by path."""
 
-import inspect
 from collections.abc import Callable
 from typing import Any
 
 from eyas.core.errors import ConfigError
+from eyas.core.own_code import running, takes
 from eyas.core.registry import Registry
 from eyas.trackers.car import CAR
 from eyas.trackers.config import TrackerConfig, TrackerKind
@@ -43,11 +43,10 @@ def tracker_of(config: TrackerConfig) -> Tracker:
         ConfigError: There is no such tracker, or what the path names does not make one.
     """
     make = TRACKERS.get(config.kind)
-    try:
-        inspect.signature(make).bind(config)
-    except (TypeError, ValueError) as error:
-        raise _refused(config, f"cannot be called with it ({error})") from error
-    made = make(config)
+    if why := takes(make, config):
+        raise _refused(config, f"cannot be called with it ({why})")
+    with running("tracker.kind", config.kind):
+        made = make(config)
     if not isinstance(made, Tracker):
         raise _refused(config, f"gave a {type(made).__name__}")
     return made

@@ -184,7 +184,8 @@ def _cached(graph: RoadGraph, wanted: TrafficConfig, duration: float) -> Recordi
         origin = kept.load().provenance  # whole, or it is recorded again
     except DataFileError:
         return None
-    if not _fits(origin, graph, wanted):
+    whole = origin.duration == duration and origin.options == options(wanted)
+    if not (whole and _fits(origin, graph, wanted)):
         return None
     touch(path)
     return kept

@@ -5,6 +5,7 @@ from typing import Annotated
 from pydantic import AfterValidator, Field
 
 from eyas.core.config import Config
+from eyas.core.own_code import NAMES_CODE
 from eyas.core.variation import Variation, within
 
 __all__ = ["LightConfig", "WorldConfig"]
@@ -16,7 +17,7 @@ Visibility = Annotated[Variation, AfterValidator(within(0.1, 1e6))]
 class WorldConfig(Config):
     """The map and its weather."""
 
-    map: Annotated[str, Field(min_length=1)] = "citystreet"
+    map: Annotated[str, Field(min_length=1), NAMES_CODE] = "citystreet"
     """Name of the map, or the path of a user's own, `package.module:attribute`."""
     weather: Annotated[str, Field(min_length=1)] = "day"
     """Name of the weather."""

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from eyas.core.cache.array_file import Content, array_file, map_arrays
+from eyas.core.machine_code import read_code
 
 ARRAYS = [
     np.arange(12, dtype=np.float32).reshape(3, 4),
@@ -23,7 +24,7 @@ CONTENT = Content({"name": "town", "size": [1, 2.5, None]}, ARRAYS)
 @pytest.fixture
 def file(tmp_path):
     path = tmp_path / "arrays.npy"
-    path.write_bytes(b"".join(array_file(CONTENT)))
+    path.write_bytes(b"".join(array_file(CONTENT, path.name)))
     return path
 
 
@@ -78,6 +79,23 @@ def test_every_flipped_byte_and_every_cut_is_noticed(file):
         map_arrays(file)
 
 
+def test_a_file_in_the_place_of_another_is_noticed(file):
+    other = file.rename(file.with_name("others.npy"))
+    with pytest.raises(ValueError, match="in the place of another entry"):
+        map_arrays(other)
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="there are no pipes with names here")
+@pytest.mark.parametrize("reader", [map_arrays, read_code])
+def test_a_pipe_in_the_place_of_a_file_does_not_hang(tmp_path, reader):
+    os.mkfifo(tmp_path / "pipe")
+    if reader is read_code:
+        assert read_code(tmp_path / "pipe") is None
+    else:
+        with pytest.raises(ValueError, match="no ordinary file"):
+            map_arrays(tmp_path / "pipe")
+
+
 SHARES = """
 import sys
 from pathlib import Path
@@ -97,7 +115,7 @@ print(*(int(line.split()[1])
 def test_processes_share_the_memory_of_what_they_only_read(tmp_path):
     path = tmp_path / "large.npy"
     with path.open("wb") as written:
-        written.writelines(array_file(Content(None, [np.ones(1 << 20)])))
+        written.writelines(array_file(Content(None, [np.ones(1 << 20)]), path.name))
         os.fsync(written.fileno())  # what is not yet on the disk counts as changed
 
     def own(action):

@@ -1,8 +1,12 @@
 """Who walks around in a demo."""
 
+import json
+import sys
+
 import pytest
 
 from eyas.core.config import updated
+from eyas.core.errors import UnknownNameError
 from eyas.modes.demo.choices import Plan, plan_of
 from eyas.modes.demo.messages import World
 from eyas.modes.demo.run import cockpit_of
@@ -56,3 +60,26 @@ def test_nobody_crosses_where_nobody_knows_what_vehicles_will_do():
     live = first(updated(EyasConfig(), {"traffic": {"source": "live"}}))
     some = walkers(plan_of(live, World(people=20)))
     assert ("Pedestrian", 12, "pavement") in some
+
+
+@pytest.mark.parametrize(
+    "name", ["someones:MAP", "lake/../lake", "/tmp", "../x", ".", "", "citystret"]
+)
+def test_a_page_names_only_maps_that_are_offered(name, tmp_path, monkeypatch):
+    (tmp_path / "someones.py").write_text("raise SystemExit('it was imported')")
+    monkeypatch.syspath_prepend(tmp_path)
+    with pytest.raises(UnknownNameError, match=r"^world\.map: .* known: citystreet, "):
+        plan_of(first(EyasConfig()), World(map=name))
+    assert "someones" not in sys.modules
+
+
+def test_a_page_does_not_name_the_folder_of_a_map(tmp_path):
+    """Not even one that is there."""
+    folder = tmp_path / "town"
+    folder.mkdir()
+    said = {"name": "town", "title": "", "source": "", "longitude": 0.0, "latitude": 0.0}
+    (folder / "map.json").write_text(json.dumps({**said, "size": [100, 100]}))
+    config = updated(EyasConfig(), {"world": {"map": str(folder)}})
+    with pytest.raises(UnknownNameError):
+        plan_of(first(EyasConfig()), World(map=str(folder)))
+    assert plan_of(first(config), World(weather="night")).config.world.map == str(folder)

@@ -2,6 +2,7 @@
 
 import contextlib
 import json
+import socket
 import subprocess
 import sys
 import urllib.error
@@ -70,6 +71,75 @@ def test_a_foreign_name_for_our_address_is_refused(served):
     request = urllib.request.Request(served.address, headers={"Host": "evil.example"})
     with pytest.raises(urllib.error.HTTPError, match="403"):
         urllib.request.urlopen(request)
+
+
+@pytest.mark.parametrize(
+    "lines",
+    [
+        "GET / HTTP/1.1|Host: [",
+        "GET / HTTP/1.1|Host: [::1",
+        "GET / HTTP/1.1|Host: HERE|Host: evil.example",
+        "GET / HTTP/1.1",
+        "GET / HTTP/1.1|Host: HERE|Origin: http://[",
+        "GET / HTTP/1.1|Host: HERE|Origin: http://HERE|Origin: http://evil.example",
+        "GET //[::1 HTTP/1.1|Host: HERE",
+        "GET //[::1?role=tracker HTTP/1.1|Host: HERE",
+        "GET /socket?role=[&%ff&token=%ff HTTP/1.1|Host: HERE|Origin: http://\xff",
+    ],
+)
+def test_what_is_malformed_is_refused_and_no_failure_of_ours(served, lines):
+    text = lines.replace("HERE", f"127.0.0.1:{served.port}").replace("|", "\r\n") + "\r\n\r\n"
+    with socket.create_connection(("127.0.0.1", served.port), 20) as connection:
+        connection.sendall(text.encode("latin-1"))
+        answer = connection.makefile("rb").readline()
+    assert answer.split()[1:2] in ([b"403"], [b"404"], [b"400"])
+
+
+def test_a_page_cannot_name_code_or_files(served, viewer):
+    for message in (
+        {"message": "world", "map": "unittest.__main__:main"},
+        {"message": "world", "map": "/"},
+        {"message": "world", "weather": "os:abort"},
+        {"message": "world", "target": "os:abort"},
+        {"message": "world", "tracker": "os:abort"},
+        {"message": "fly", "policy": "os:abort"},
+        {"message": "fly", "policy": "/tmp/x.zip"},
+        {"message": "duel", "policy": "os:abort"},
+    ):
+        viewer.errors.clear()
+        viewer.connection.send(json.dumps(message))
+        viewer.until(lambda s: viewer.errors)
+        assert "known: " in viewer.errors[0] or "allowed: " in viewer.errors[0]
+    viewer.frame()
+
+
+def test_ctrl_c_while_a_page_is_served_ends_the_loop_without_a_word():
+    script = """
+import asyncio, os, signal
+from eyas.core.interrupts import EndingSignals
+from eyas.modes.demo.ending import run_until_signal
+
+async def page():
+    os.kill(os.getpid(), signal.SIGINT)
+    await asyncio.sleep(0.2)
+
+async def serve():
+    pages = [asyncio.create_task(page())]
+    try:
+        await asyncio.sleep(60)
+    finally:
+        print("closed", flush=True)
+
+EndingSignals().take()
+try:
+    run_until_signal(serve())
+except KeyboardInterrupt:
+    print("interrupted")
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, timeout=60
+    )
+    assert (done.stdout, done.stderr) == ("closed\ninterrupted\n", "")
 
 
 @pytest.mark.parametrize("path", ["../server.py", "%2e%2e/run.py", "nothing", "socket"])

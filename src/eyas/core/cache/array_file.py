@@ -7,6 +7,8 @@ hundreds of arrays takes a hundredth of the time of mapping one file for each ar
 
 import io
 import json
+import os
+import stat
 import struct
 import zlib
 from pathlib import Path
@@ -16,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.cache.flat import Array, Json
+from eyas.core.files import open_at_once
 
 __all__ = ["Content", "array_file", "map_arrays"]
 
@@ -31,13 +34,18 @@ class Content(NamedTuple):
     arrays: list[Array]
 
 
-def array_file(content: Content) -> list[bytes | memoryview]:
-    """Return the pieces of a file, in order."""
+def array_file(content: Content, name: str) -> list[bytes | memoryview]:
+    """Return the pieces of a file, in order.
+
+    Args:
+        content: What it holds.
+        name: The name that it gets; under another one, it is not read.
+    """
     table, size = [], 0
     for array in content.arrays:
         table.append([array.dtype.str, array.shape, size])
         size += array.nbytes + _padding(array.nbytes)
-    header = json.dumps({"arrays": table, "value": content.flat}).encode()
+    header = json.dumps({"name": name, "arrays": table, "value": content.flat}).encode()
     header += b" " * _padding(2 * _NUMBER.size + len(header))
     pieces: list[bytes | memoryview] = [_NUMBER.pack(len(header)), header]
     for array in content.arrays:
@@ -51,11 +59,14 @@ def map_arrays(path: Path) -> Content:
 
     Raises:
         OSError: The file does not exist or cannot be read.
-        ValueError: The file is damaged or not a file of arrays.
+        ValueError: The file is damaged, not a file of arrays, or was written under another name.
     """
     # Mapped copy-on-write: for numba, read-only arrays have a different type, and it would compile
     # all kernels again.
-    whole = np.asarray(np.memmap(path, np.uint8, mode="c"))
+    with open(path, "rb", opener=open_at_once) as file:
+        if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+            raise ValueError(f"{path}: no ordinary file")
+        whole = np.asarray(np.memmap(file, np.uint8, mode="c"))
     first = len(_npy_header(0))
     if bytes(whole[:first]) != _npy_header(len(whole) - first):
         raise ValueError(f"{path}: not a file of arrays, or cut off")
@@ -71,9 +82,12 @@ def map_arrays(path: Path) -> Content:
             np.ndarray(tuple(shape), _plain(kind), body, data + offset)
             for kind, shape, offset in header["arrays"]
         ]
-        return Content(header["value"], arrays)
+        name = header["name"]
     except (KeyError, TypeError, struct.error) as error:
         raise ValueError(f"{path}: not as Eyas writes it: {error}") from None
+    if name != path.name:
+        raise ValueError(f"{path}: in the place of another entry")
+    return Content(header["value"], arrays)
 
 
 def _plain(kind: str) -> np.dtype[Any]:

@@ -55,7 +55,7 @@ def cached(
         ConfigError: `EYAS_CACHE_LIMIT` is not a size.
     """
     limit = cache_limit()
-    path = (folder or cache_folder()) / kind / f"eyas-{_key(makers, inputs)}.npy"
+    path = (folder or cache_folder()) / kind / f"eyas-{_key(kind, makers, inputs)}.npy"
     found = _found(path, of)
     if found is not None:
         return found
@@ -67,7 +67,7 @@ def cached(
     # A value just made is restored like one read from the file, so that both have the same types.
     restored = restore(of, *content)
     try:
-        write_entry(path, array_file(content), limit)
+        write_entry(path, array_file(content, path.name), limit)
     except OSError as error:
         not_kept(error)
     if taken > _LONG:
@@ -88,8 +88,8 @@ def _found(path: Path, of: type[Thing]) -> Thing | None:
     return found
 
 
-def _key(makers: tuple[str, ...], inputs: tuple[object, ...]) -> str:
-    digest = blake2b(np.__version__.encode(), digest_size=16)
+def _key(kind: Kind, makers: tuple[str, ...], inputs: tuple[object, ...]) -> str:
+    digest = blake2b(f"{np.__version__} {kind}".encode(), digest_size=16)
     for maker in makers:
         digest.update(_sources(_ROOT, maker))
     for maker in _MATHEMATICS:

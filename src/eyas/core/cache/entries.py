@@ -17,6 +17,7 @@ from pathlib import Path
 from stat import S_ISDIR, S_ISREG
 
 from eyas.core.cache.folder import Kind
+from eyas.core.cache.safety import made_folder
 from eyas.core.files import PART_SUFFIX
 
 __all__ = ["Entry", "clear", "entries", "prune", "write_entry"]
@@ -80,7 +81,7 @@ def write_entry(path: Path, pieces: Iterable[bytes | memoryview], limit: int) ->
     Raises:
         OSError: The file cannot be written.
     """
-    path.parent.mkdir(parents=True, exist_ok=True)
+    made_folder(path.parent)
     # Several processes may write the same entry at once; each writes its own part.
     part = path.with_name(f".{path.name}.{secrets.token_hex(8)}{PART_SUFFIX}")
     try:

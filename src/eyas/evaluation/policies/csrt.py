@@ -68,4 +68,4 @@ def csrt(changes: Mapping[str, Any]) -> Each:
     image = {"width": _SIZE[1], "height": _SIZE[0], "layout": "hwc", "colours": "rgb", "frames": 1}
     fixed = {"observation": image, "actions": "discrete"}
     env = env_config({**fixed, "action_repeat": 4}, {**changes, **fixed})
-    return Each(lambda: Csrt(cv2, env), env)
+    return Each(lambda: Csrt(cv2, env), env, "csrt")

@@ -2,12 +2,12 @@
 
 import inspect
 from collections.abc import Callable, Mapping
-from importlib import import_module
 from typing import Any
 
 import numpy as np
 
 from eyas.core.errors import ConfigError
+from eyas.core.own_code import imported, running, takes
 from eyas.envs.config import ActionKind, EnvConfig
 from eyas.envs.observation import Observation
 from eyas.evaluation.policies.policy import Decision, Failure, Policy, Sight, Start, env_config
@@ -26,19 +26,21 @@ class Each:
         make: Returns the policy of an episode: a function of its observation, or an object with
             `act(observation)` and, if it wants the target's first box, `reset(box)`.
         env: What it sees, and what its actions mean.
+        path: Where its code is, for messages.
     """
 
     sampled = False
 
-    def __init__(self, make: Callable[[], Any], env: EnvConfig) -> None:
-        self.env, self._make = env, make
+    def __init__(self, make: Callable[[], Any], env: EnvConfig, path: str) -> None:
+        self.env, self._make, self._path = env, make, path
 
     def begin(self, start: Start) -> None:
         """Make the policy of each episode; a box tracker gets the box in its first picture."""
-        self._own = [self._make() for _ in start.seeds]
-        if hasattr(self._own[0], "reset"):
-            for own, box in zip(self._own, start.boxes().tolist(), strict=True):
-                own.reset(tuple(box))
+        with running("--policy", self._path):
+            self._own = [self._make() for _ in start.seeds]
+            if hasattr(self._own[0], "reset"):
+                for own, box in zip(self._own, start.boxes().tolist(), strict=True):
+                    own.reset(tuple(box))
 
     def act(self, sight: Sight) -> Decision:
         """Ask the policies of those who decide."""
@@ -48,7 +50,9 @@ class Each:
             own = self._own[row]
             try:
                 actions[row] = getattr(own, "act", own)(one_of(sight.observation, row))
-            except Exception as error:  # whatever a user's code raises ends only its own episode
+            except KeyboardInterrupt:
+                raise
+            except BaseException as error:  # whatever a user's code raises ends only its episode
                 failed[row] = Failure.of(error)
         return Decision(actions, failed)
 
@@ -58,15 +62,16 @@ class Whole:
 
     sampled = False
 
-    def __init__(self, function: Callable[[Any], Any], env: EnvConfig) -> None:
-        self.env, self._function = env, function
+    def __init__(self, function: Callable[[Any], Any], env: EnvConfig, path: str) -> None:
+        self.env, self._function, self._path = env, function, path
 
     def begin(self, start: Start) -> None:
         """Do nothing: a function remembers nothing."""
 
     def act(self, sight: Sight) -> Decision:
         """Call the function."""
-        return Decision(self._function(sight.observation))
+        with running("--policy", self._path):
+            return Decision(self._function(sight.observation))
 
 
 def no_action(env: EnvConfig) -> Any:  # noqa: ANN401  # a number, or four
@@ -93,17 +98,20 @@ def load_callable(path: str, changes: Mapping[str, Any]) -> Policy:
     Raises:
         ConfigError: There is no such thing, or it is none of these.
     """
-    module, _, name = path.partition(":")
     try:
-        found = getattr(import_module(module), name)
-    except (ImportError, AttributeError, ValueError) as error:
+        found: Any = imported(path, "--policy")
+    except ImportError as error:
         raise ConfigError(f"--policy: '{path}' cannot be imported: {error}") from error
-    if not callable(found) or (inspect.isclass(found) and not hasattr(found, "act")):
+    made = inspect.isclass(found)
+    fits = callable(getattr(found, "act", None)) if made else callable(found)
+    if not fits or takes(found, *() if made else (None,)):
         raise ConfigError(
             f"--policy: '{path}' is not allowed: a function of an observation, or a class with "
             "act(observation)"
         )
     env = env_config(getattr(found, SETTINGS, {}), changes)
-    if inspect.isclass(found):
-        return Each(found, env)
-    return Whole(found, env) if getattr(found, "batched", False) else Each(lambda: found, env)
+    if made:
+        return Each(found, env, path)
+    if getattr(found, "batched", False):
+        return Whole(found, env, path)
+    return Each(lambda: found, env, path)

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from eyas.core.config import updated
+from eyas.core.errors import UnknownNameError
 from eyas.modes.demo.flight import Flight
 from eyas.modes.demo.messages import LIGHTS, Light, World
 from eyas.settings.config import EyasConfig
@@ -60,6 +61,9 @@ def plan_of(before: Plan, said: World) -> Plan:
         "world": said.model_dump(include={"map", "weather"}, exclude_none=True)
     }
     now = before.config.world
+    if said.map is not None and said.map not in (now.map, *MAPS.names()):
+        # A page must not name code or folders of this machine, which a setting may.
+        raise UnknownNameError("world.map", said.map, MAPS.names())
     lighting = MAPS.get(said.map or now.map).light(said.weather or now.weather)
     if said.hour is not None or lighting.night:
         fixed = said.hour in (None, "own") or lighting.night

@@ -2,11 +2,11 @@
 
 import hmac
 import secrets
-from urllib.parse import parse_qs, urlsplit
+from urllib.parse import SplitResult, parse_qs, urlsplit
 
 from websockets.http11 import Request
 
-__all__ = ["Gate", "is_loopback"]
+__all__ = ["Gate", "is_loopback", "path_of", "query_of"]
 
 _LOOPBACK = ("localhost", "127.0.0.1", "::1")
 
@@ -39,14 +39,34 @@ class Gate:
             request: The request.
             private: Whether it needs the token, as all but the page's own files.
         """
-        host = request.headers.get("Host", "")
-        if self.token is None and urlsplit(f"//{host}").hostname not in _LOOPBACK:
+        hosts, origins = (request.headers.get_all(name) for name in ("Host", "Origin"))
+        host = hosts[0] if len(hosts) == 1 else ""
+        if self.token is None and _name_of(f"//{host}").hostname not in _LOOPBACK:
             return "this demo answers only to localhost"
-        origin = request.headers.get("Origin")
-        if origin is not None and urlsplit(origin).netloc != host:
+        if origins and (len(origins) > 1 or _name_of(origins[0]).netloc != host):
             return "the page is of another origin"
         if private and self.token is not None:
-            given = parse_qs(urlsplit(request.path).query).get("token", [""])[0]
-            if not hmac.compare_digest(given.encode(), self.token.encode()):
+            given = query_of(request).get("token", [""])[0]
+            if not hmac.compare_digest(given.encode(errors="replace"), self.token.encode()):
                 return "the address needs ?token=..., as the demo has printed it"
         return None
+
+
+def path_of(request: Request) -> str:
+    """Return the path that is asked for; unlike `urlsplit`, whatever it looks like."""
+    return request.path.partition("?")[0]
+
+
+def query_of(request: Request) -> dict[str, list[str]]:
+    """Return what is asked for behind the path."""
+    return parse_qs(request.path.partition("?")[2])
+
+
+def _name_of(address: str) -> SplitResult:
+    """Return an address in parts; empty ones if it is none."""
+    try:
+        parts = urlsplit(address)
+        parts.hostname  # noqa: B018  # raises for some
+    except ValueError:
+        return urlsplit("")
+    return parts

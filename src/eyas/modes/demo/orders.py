@@ -52,12 +52,17 @@ def seat(cockpit: Cockpit, name: str) -> None:
     Raises:
         EyasError: It cannot fly.
     """
-    if name not in (*cockpit.policies, BOXES):
-        raise UnknownNameError("policy", name, (*cockpit.policies, BOXES))
+    _require_known(cockpit, name)
     flight = cockpit.flight
     pilot: Pilot = BoxPilot(flight) if name == BOXES else PolicyPilot(name, flight)
     cockpit.hand_over(pilot, name)
     _appear(cockpit)
+
+
+def _require_known(cockpit: Cockpit, name: str) -> None:
+    """Refuse policies that are not offered: a page must not name code or files of this machine."""
+    if name not in (*cockpit.policies, BOXES):
+        raise UnknownNameError("policy", name, (*cockpit.policies, BOXES))
 
 
 def open_with_a_chase(cockpit: Cockpit) -> None:
@@ -205,6 +210,7 @@ def _duel(cockpit: Cockpit, message: said.Duel) -> dict[str, Any] | None:
         cockpit.duel = cockpit.duel_later = None
         cockpit.hand_over(None, None)
         return None
+    _require_known(cockpit, message.policy)
     if cockpit.builder.busy:
         cockpit.duel_later = message.policy
         return {"say": f"You against {message.policy}: begins in the new world."}

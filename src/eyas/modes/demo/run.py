@@ -1,6 +1,5 @@
 """Runs the demo in the browser, or as lines in a terminal."""
 
-import asyncio
 import os
 import socket
 import sys
@@ -12,6 +11,7 @@ from pathlib import Path
 from eyas.core.errors import OutputError
 from eyas.evaluation.policies.shipped import shipped_names
 from eyas.modes.demo.cockpit import Cockpit
+from eyas.modes.demo.ending import run_until_signal
 from eyas.modes.demo.orders import open_with_a_chase
 from eyas.settings.config import EyasConfig
 from eyas.task.step_line import step_line
@@ -84,7 +84,7 @@ def run_browser(
         if browser and _has_screen():
             webbrowser.open(address)
 
-    asyncio.run(Server(cockpit, host, listening).run(begun))
+    run_until_signal(Server(cockpit, host, listening).run(begun))
 
 
 def _has_screen() -> bool:

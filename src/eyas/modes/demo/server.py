@@ -6,7 +6,6 @@ import socket
 from collections.abc import Callable
 from http import HTTPStatus
 from typing import Any
-from urllib.parse import parse_qs, urlsplit
 
 from websockets.asyncio.server import Server as WebSocketServer
 from websockets.asyncio.server import ServerConnection, serve
@@ -20,7 +19,7 @@ from eyas.modes.demo import messages as said
 from eyas.modes.demo.cockpit import Cockpit
 from eyas.modes.demo.files import own_file, page_file
 from eyas.modes.demo.frame import Frame
-from eyas.modes.demo.gate import Gate
+from eyas.modes.demo.gate import Gate, path_of, query_of
 from eyas.modes.demo.orders import BOXES, reward_of, world_now
 from eyas.modes.demo.session import Session
 from eyas.modes.demo.viewers import Viewer, Viewers
@@ -91,7 +90,7 @@ class Server:
 
     def _answer(self, connection: ServerConnection, request: Request) -> Response | None:
         """Answer a request, or let a WebSocket begin."""
-        path = urlsplit(request.path).path
+        path = path_of(request)
         page = page_file(path)
         public = page is not None and path not in ("/", "/index.html")
         refused = self._gate.refusal(request, private=not public)
@@ -110,7 +109,7 @@ class Server:
     async def _talk(self, connection: ServerConnection) -> None:
         """Serve one viewer until it goes."""
         assert connection.request is not None
-        asked = parse_qs(urlsplit(connection.request.path).query)
+        asked = query_of(connection.request)
         viewer = Viewer(flies=asked.get("role") != ["tracker"])
         if self.viewers.count >= MOST_VIEWERS:
             await connection.close(1013, "there are too many viewers")

@@ -4,6 +4,7 @@ from typing import Annotated
 
 from pydantic import AfterValidator, Field
 
+from eyas.core.own_code import NAMES_CODE
 from eyas.envs.config import ActionSpeeds
 
 __all__ = ["VideoConfig"]
@@ -35,7 +36,9 @@ class VideoConfig(ActionSpeeds):
     target is rewarded, and a marker over the target; labels stay the same."""
     random_action: bool = False
     """True: seeded random actions; False: the target is followed exactly."""
-    writers: Annotated[tuple[str, ...], AfterValidator(_some)] = ("jpeg", "mp4", "labels", "mark")
+    writers: Annotated[tuple[str, ...], AfterValidator(_some), NAMES_CODE] = (
+        *("jpeg", "mp4", "labels", "mark"),
+    )
     """Output formats: `jpeg`, `mp4`, `labels`, `mark`, or your own as
     `my_package.module:Class`."""
     jpeg_quality: Annotated[int, Field(ge=1, le=100)] = 95
