@@ -98,7 +98,7 @@ def posed_corners(centre: Floats, yaw: float, motion: Movement) -> Floats | None
     low, high = motion.extent
     plan = np.where(_ENDS < 0.0, low[:2], high[:2])
     if motion.upright:  # it is sheared, not tilted, so that its feet are on the ground
-        plan[:, 0] /= math.cos(motion.slope)
+        plan[:, 0] /= exact.cos(motion.slope)
     foot, top = (_raised(plan, float(z), centre, yaw, motion)[4:] for z in (low[2], high[2]))
     return np.concatenate([foot, top])
 

@@ -7,8 +7,6 @@ integrating them gives its motion. A time constant of 0 gives the differences th
 sensors of a flown drone, which cannot jump, read its own motion.
 """
 
-import math
-
 from eyas.core import exact
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.elementary import sin_cos

@@ -3,11 +3,10 @@
 A new kind is a file with its shapes and its rig, and one call of `register`.
 """
 
-from math import cos
-
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.elementary_arrays import cos
 from eyas.state.scene import ObjectClass
 from eyas.targets.jointed.kinds import JOINTED_KINDS
 from eyas.targets.kind import Kind, Model, Section
