@@ -77,7 +77,7 @@ def _points(figure: Figure, number: int) -> Floats:
 
 def _swept(points: Floats, a: int, b: int) -> Floats:
     """Return corners around all that points cover when they turn in the plane of two axes."""
-    radius = np.sqrt(points[:, a] ** 2 + points[:, b] ** 2)
+    radius = np.sqrt(points[:, a] * points[:, a] + points[:, b] * points[:, b])
     corners = np.repeat(points[None], 4, axis=0)
     corners[:, :, a] = np.array([1, 1, -1, -1])[:, None] * radius
     corners[:, :, b] = np.array([1, -1, 1, -1])[:, None] * radius
