@@ -82,6 +82,28 @@ def test_what_is_no_policy_is_one_line(onnx, tmp_path):
         check(Plan(policy=path))
 
 
+@pytest.mark.parametrize(
+    "said", ["[]", "1", "null", '"text"', "[" * 100_000, '{"observation": 5}', '{"env": {}}', "{"]
+)
+def test_metadata_that_is_no_table_of_settings_is_one_line(onnx, tmp_path, said):
+    path = network(onnx, tmp_path / "x.onnx", memory=False)
+    model = onnx.load(path)
+    model.metadata_props[0].value = said
+    onnx.save(model, path)
+    with pytest.raises(EyasError, match="metadata 'eyas': ") as caught:
+        check(Plan(policy=path))
+    assert "\n" not in str(caught.value)
+    assert path in str(caught.value)
+
+
+def test_a_file_does_not_ask_for_pictures_that_take_minutes_unless_the_user_does(onnx, tmp_path):
+    large = {"observation": {"width": 4096, "height": 4096}}
+    path = network(onnx, tmp_path / "x.onnx", memory=False, settings=large)
+    with pytest.raises(EyasError, match=r"1 x 4096 x 4096 pixels; allowed: up to 4194304, unless"):
+        check(Plan(policy=path))
+    check(Plan(policy=path, env={"observation": {"width": 16, "height": 12}}))
+
+
 def test_a_module_of_torch_flies(fly, tmp_path):
     torch = pytest.importorskip("torch")
     from own_policies import hovering_module

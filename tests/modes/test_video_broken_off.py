@@ -3,6 +3,7 @@
 `EYAS_TEST_KILLS=30` kills as often as before a release.
 """
 
+import hashlib
 import os
 import random
 import subprocess
@@ -72,7 +73,7 @@ def check_resumed(out, recorded):
 def check_whole(out, recorded):
     """Check that whatever has its last name has its last content."""
     for name, data in contents(out).items():
-        if not name.endswith((".part", ".lock")):
+        if not name.endswith((".part", ".lock", ".checksums")):
             assert data == recorded[name], name
 
 
@@ -132,3 +133,47 @@ def test_on_a_full_disk_it_ends_in_one_line_and_goes_on(settings, tmp_path, reco
         check_resumed(disk / "out", recorded)
     finally:
         subprocess.run(["umount", "-l", str(disk)], check=True)
+
+
+def flipped(path):
+    content = bytearray(path.read_bytes())
+    content[len(content) // 2] ^= 0x10
+    path.write_bytes(content)
+
+
+def emptied(path):
+    path.write_bytes(b"")
+
+
+def edited(path):
+    path.write_text(path.read_text().replace("0.", "1.", 1))
+
+
+@pytest.mark.parametrize(
+    ("name", "damage"),
+    [
+        ("DRONE0/episode0/000000.jpeg", flipped),
+        ("DRONE0/episode0/000001.jpeg", emptied),
+        ("DRONE1/episode0/mark.json", edited),
+        ("DRONE1/episode0/labels.jsonl", edited),
+        ("checksums.sha256", emptied),
+        ("checksums.sha256", flipped),
+    ],
+)
+def test_what_was_damaged_after_its_end_is_drawn_again(tmp_path, recorded, name, damage):
+    for inside, content in recorded.items():
+        path = tmp_path / inside
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content)
+    damage(tmp_path / name)
+    assert (tmp_path / name).read_bytes() != recorded[name]
+    check_resumed(tmp_path, recorded)
+
+
+def test_the_checksums_are_those_of_all_files_of_episodes(recorded):
+    lines = recorded["checksums.sha256"].decode().split("\n")[:-1]
+    told = dict(line.split("  ")[::-1] for line in lines)
+    assert list(told) == sorted(told)
+    found = {name: hashlib.sha256(recorded[name]).hexdigest() for name in told}
+    assert found == told
+    assert {name for name in recorded if "/" in name} == told.keys()

@@ -155,6 +155,7 @@ def test_a_binary_file_without_pyosmium_says_how_to_install_it(tmp_path, monkeyp
         (b"<html></html>", "its content is <html>"),
         (b"<osm><node id='1' lat='1'", "not a complete OpenStreetMap file"),
         (b"<osm><node id='1' lat='a' lon='2'/></osm>", "not a readable"),
+        (b"<?xml version='1.0' encoding='klingon'?><osm/>", "not a readable"),
         (b"<osm><node lat='1' lon='2'/></osm>", "not a readable"),
         (b"<osm><node id='1' lat='nan' lon='2'/></osm>", "lies nowhere"),
         (b"<osm></osm>", "has no nodes"),

@@ -91,9 +91,9 @@ def read_mesh(path: Path) -> Triangles:
     if path.stat().st_size > _LARGEST_FILE:
         raise DataFileError(f"{path}: larger than {_LARGEST_FILE >> 20} MiB")
     try:
-        parts = list(_parts(trimesh, path))
+        parts = [_checked(part) for part in _parts(trimesh, path)]
     except (KeyError, FileNotFoundError) as error:  # a buffer or a picture beside it
-        missing = getattr(error, "filename", None) or error.args[0]
+        missing = getattr(error, "filename", None) or next(iter(error.args), "")
         raise DataFileError(f"{path}: cannot read: it needs {missing!r}; there is none") from None
     except Exception as error:  # its readers raise whatever they stumble on
         raise DataFileError(f"{path}: cannot read as a mesh: {error}") from None
@@ -142,6 +142,21 @@ def _parts(trimesh: ModuleType, path: Path) -> Iterator[Triangles]:
                 yield Triangles(points, corners, _colours(part.visual, corners))
             else:
                 yield _textured(trimesh, part.visual, points, corners)
+
+
+def _checked(part: Triangles) -> Triangles:
+    """Return triangles whose arrays fit to each other.
+
+    Raises:
+        ValueError: They do not.
+    """
+    count = len(part.corners)
+    shapes = part.points.shape[1:], part.corners.shape[1:], part.colours.shape
+    if part.points.ndim != 2 or shapes != ((3,), (3,), (count, 3)):
+        raise ValueError("its points, triangles and colours do not fit to each other")
+    if not ((part.corners >= 0) & (part.corners < len(part.points))).all():
+        raise ValueError("a triangle has a corner that is not there")
+    return part
 
 
 def _colours(visual: Any, corners: NDArray[np.int64]) -> NDArray[np.float64]:  # noqa: ANN401

@@ -86,7 +86,11 @@ def read_trajectory(path: Path) -> Trajectory:
             missing or not finite.
     """
     text = read_limited(path, _LARGEST).decode("utf-8-sig", errors="replace")
-    lines = list(csv.reader(io.StringIO(text)))
+    try:
+        # Also lines that end with a carriage return, as some spreadsheets write them.
+        lines = list(csv.reader(io.StringIO(text, newline=None)))
+    except csv.Error as error:  # a quotation mark that is never closed
+        raise DataFileError(f"{path}: not a CSV file: {error}") from None
     names = [name.strip() for name in lines[0]] if lines else []
     missing = [name for name in COLUMNS[:3] if name not in names]
     if missing:

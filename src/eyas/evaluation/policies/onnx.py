@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from eyas.core.errors import DataFileError, MissingExtraError
 from eyas.envs.config import ActionKind
 from eyas.evaluation.policies.choice import Chooser
-from eyas.evaluation.policies.policy import Decision, Sight, Start, env_config
+from eyas.evaluation.policies.policy import Decision, Sight, Start, env_config, settings_in
 from eyas.evaluation.policies.simple import ACTIONS, HOVER
 
 __all__ = ["METADATA", "OnnxPolicy", "load_onnx"]
@@ -51,9 +51,10 @@ class OnnxPolicy:
         self._session = _session(path)
         described = self._session.get_modelmeta().custom_metadata_map.get(METADATA, "{}")
         try:
-            settings = json.loads(described)
-        except ValueError as error:
+            said = json.loads(described)
+        except (ValueError, RecursionError) as error:
             raise DataFileError(f"{path}: metadata '{METADATA}': not valid JSON") from error
+        settings = settings_in(path, f"metadata '{METADATA}'", said)
         self.env = env_config({"observation": {"layout": "chw"}, **settings}, changes)
         self.sampled = sampled
         self._chooser = Chooser(sampled=sampled)

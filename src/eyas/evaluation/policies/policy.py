@@ -1,18 +1,20 @@
 """The interface of a policy that flies N drones at once."""
 
 from collections.abc import Callable, Mapping
+from pathlib import Path
 from traceback import format_exception
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.config import updated
+from eyas.core.config import shown, updated
+from eyas.core.errors import ConfigError, DataFileError
 from eyas.envs.config import EnvConfig, ObservationPart
 from eyas.envs.observation import Observation
 from eyas.state.snapshot import Snapshot
 
-__all__ = ["BLIND", "Decision", "Failure", "Policy", "Sight", "Start", "env_config"]
+__all__ = ["BLIND", "Decision", "Failure", "Policy", "Sight", "Start", "env_config", "settings_in"]
 
 BLIND = {"observation": {"parts": [ObservationPart.PRIVILEGED]}}
 """Changes of `EnvConfig` for policies that see no picture, so that none is drawn."""
@@ -79,6 +81,26 @@ class Policy(Protocol):
     def act(self, sight: Sight) -> Decision:
         """Choose actions."""
         ...
+
+
+def settings_in(path: Path, place: str, said: object) -> Mapping[str, Any]:
+    """Return the changes of the defaults of `env` that a policy's file holds.
+
+    Args:
+        path: The file.
+        place: Where in it they stand.
+        said: What stands there.
+
+    Raises:
+        DataFileError: They are none.
+    """
+    if not isinstance(said, Mapping) or not all(isinstance(key, str) for key in said):
+        raise DataFileError(f"{path}: {place}: {shown(said)} is not allowed: settings of env")
+    try:
+        env_config(said)
+    except ConfigError as error:
+        raise DataFileError(f"{path}: {place}: {error}") from None
+    return said
 
 
 def env_config(settings: Mapping[str, Any], changes: Mapping[str, Any] | None = None) -> EnvConfig:

@@ -33,6 +33,10 @@ FILES = {
 """Functions that take a path and changes of `env` and return a policy, by the file's ending."""
 
 
+_LARGEST = 1 << 22
+"""Largest number of pixels of an observation, with its frames, that a file may ask for."""
+
+
 def open_policy(said: str, changes: Mapping[str, Any], *, sampled: bool = False) -> Policy:
     """Return a policy.
 
@@ -53,6 +57,7 @@ def open_policy(said: str, changes: Mapping[str, Any], *, sampled: bool = False)
         if not path.is_file():
             raise DataFileError(f"{path}: cannot read: no such file")
         policy = _imported(FILES[path.suffix])(path, changes, sampled=sampled)
+        _refuse_large(path, policy, changes)
     elif ":" in said:
         from eyas.evaluation.policies.each import load_callable
 
@@ -76,6 +81,17 @@ def fingerprint(said: str) -> str | None:
     if said in BUILT_IN or path.suffix not in FILES:
         return None
     return sha256(path.read_bytes()).hexdigest()[:16]
+
+
+def _refuse_large(path: Path, policy: Policy, changes: Mapping[str, Any]) -> None:
+    """Refuse pictures that would take minutes, unless the user has asked for them."""
+    image = policy.env.observation
+    asked = {"width", "height", "frames"} & set(changes.get("observation", {}))
+    if image.width * image.height * image.frames > _LARGEST and not asked:
+        raise ConfigError(
+            f"{path}: asks for observations of {image.frames} x {image.width} x {image.height} "
+            f"pixels; allowed: up to {_LARGEST}, unless --set env.observation.width=... says so"
+        )
 
 
 def _refuse_sampled(said: str, *, sampled: bool) -> None:

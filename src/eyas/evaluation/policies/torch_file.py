@@ -10,7 +10,7 @@ import numpy as np
 from eyas.core.errors import DataFileError, MissingExtraError
 from eyas.envs.config import ActionKind
 from eyas.evaluation.policies.choice import Chooser
-from eyas.evaluation.policies.policy import Decision, Sight, Start, env_config
+from eyas.evaluation.policies.policy import Decision, Sight, Start, env_config, settings_in
 
 __all__ = ["TorchPolicy", "load_torch"]
 
@@ -36,7 +36,8 @@ class TorchPolicy:
 
     def __init__(self, path: Path, changes: Mapping[str, Any], *, sampled: bool) -> None:
         self._torch = _torch()
-        self._module, settings = self._loaded(path)
+        self._module, said = self._loaded(path)
+        settings = settings_in(path, "its settings", said)
         self.env = env_config({"observation": {"layout": "chw"}, **settings}, changes)
         self.sampled = sampled
         self._chooser = Chooser(sampled=sampled)
@@ -54,7 +55,7 @@ class TorchPolicy:
             return Decision(answer)
         return Decision(self._chooser.of(np.asarray(answer), sight.deciding))
 
-    def _loaded(self, path: Path) -> tuple[Any, Mapping[str, Any]]:
+    def _loaded(self, path: Path) -> tuple[Any, object]:
         torch, extra = self._torch, {"eyas.json": ""}
         try:
             if path.suffix == _EXPORTED:

@@ -17,6 +17,7 @@ from eyas.core.pinhole import intrinsics
 from eyas.exports.files import Files, joined
 from eyas.exports.registry import WRITERS, chosen_writers
 from eyas.exports.writer import Episode, Run
+from eyas.modes.video.checksums import CHECKSUMS, GROWING
 from eyas.modes.video.contents import Contents, paths_below
 from eyas.modes.video.step_log import STEP_LOGS
 from eyas.settings.config import EyasConfig
@@ -35,7 +36,7 @@ since another one may draw different pictures; the files, so that `--overwrite` 
 if the package of a user's own writer is no longer installed."""
 
 
-_OWN = (SETTINGS, LEGACY_SETTINGS, ORIGIN, ATTRIBUTION_FILE, LOCK)
+_OWN = (SETTINGS, LEGACY_SETTINGS, ORIGIN, CHECKSUMS, GROWING, ATTRIBUTION_FILE, LOCK)
 
 
 class VideoFolder:

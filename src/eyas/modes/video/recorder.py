@@ -12,6 +12,7 @@ from eyas.exports.others import others_of
 from eyas.exports.summary import Scores, Summary
 from eyas.exports.writer import EndedEpisode, Episode
 from eyas.modes.video.action import Mover
+from eyas.modes.video.checksums import Checksums
 from eyas.modes.video.episode import EpisodeFiles, read_complete
 from eyas.modes.video.folder import VideoFolder
 from eyas.modes.video.lanes import WriterLanes
@@ -37,7 +38,8 @@ class _Going:
 class Recorder:
     """Records the episodes of all trackers into a folder.
 
-    An episode that an earlier run has recorded completely is kept and not drawn again.
+    An episode that an earlier run has recorded completely is kept and not drawn again, if its files
+    are what they were.
 
     Args:
         sim: What is recorded.
@@ -55,6 +57,7 @@ class Recorder:
         self._sim = sim
         self._folder = folder
         self._lanes = WriterLanes(count)
+        self._checksums = Checksums(folder.path, folder.writers)
         wanted = {output for writer in folder.writers for output in writer.wants}
         self._overlay = config.video.overlay and "rgb" in wanted
         pictures = wanted - {"others"}
@@ -107,7 +110,7 @@ class Recorder:
         field = float(self._sim.snapshot.cameras.field_of_view[tracker])
         episode = self._folder.episode(tracker, len(self.episodes[tracker]), field)
         found = read_complete(writers, episode.folder)
-        if found is not None:
+        if found is not None and self._checksums.match(episode.folder):
             return _Going(episode, None, found)
         files = EpisodeFiles(writers, episode)
         self._begun = [begun for begun in self._begun if not begun.finished] + [files]
@@ -141,6 +144,7 @@ class Recorder:
             if going is not None:
                 if going.files is not None:
                     self._lanes.submit(tracker, going.files.finish)
+                    self._lanes.submit(tracker, self._checksums.add, going.episode.folder)
                 self.episodes[tracker].append(EndedEpisode(going.episode, going.summary))
             self._going[tracker] = None
 
@@ -154,6 +158,7 @@ class Recorder:
         self._lanes.finish()
         for writer in self._folder.writers:
             writer.finish([ended for own in self.episodes for ended in own])
+        self._checksums.finish()
 
     def stop(self) -> None:
         """Stop before the end; every file that exists is complete."""

@@ -91,7 +91,7 @@ def _read_xml(path: Path, *, compressed: bool) -> OsmData:
         raise DataFileError(f"{path}: not a complete OpenStreetMap file: {error}") from error
     except (OSError, EOFError, zlib.error) as error:
         raise DataFileError(f"{path}: cannot read: {error}") from error
-    except (ValueError, KeyError) as error:
+    except (ValueError, LookupError) as error:  # the encoding may be unknown
         raise DataFileError(f"{path}: not a readable OpenStreetMap file: {error!r}") from error
     return data
 
