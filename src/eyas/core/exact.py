@@ -104,6 +104,8 @@ def product(a: ArrayLike, b: ArrayLike) -> Any:  # noqa: ANN401  # as numpy's
     columns = second[:, None] if second.ndim == 1 else second
     if rows.shape[-1] != columns.shape[-2]:
         raise ValueError(f"matrices of shapes {first.shape} and {second.shape} have no product")
+    if rows.shape[-1] == 0:  # a sum of nothing
+        return first @ second
     total = rows[..., :, :1] * columns[..., :1, :]
     for k in range(1, rows.shape[-1]):
         total += rows[..., :, k : k + 1] * columns[..., k : k + 1, :]
