@@ -14,6 +14,8 @@ from eyas.core.elementary.inverse import acos, asin, atan, atan2
 from eyas.core.elementary.lengths import hypot
 
 __all__ = [
+    "OF_MATH",
+    "OF_NUMPY",
     "acos",
     "asin",
     "atan",
@@ -28,3 +30,11 @@ __all__ = [
     "tan",
     "tanh",
 ]
+
+OF_MATH = ("acos", "asin", "atan", "atan2", "cos", "exp", "hypot", "log", "sin", "tan", "tanh")
+"""Those that `math` has by the same names; kernels that name `math`'s get these."""
+
+OF_NUMPY = tuple(
+    (name, name.replace("a", "arc", 1) if name[0] == "a" else name) for name in OF_MATH
+)
+"""Those that numpy has, with its names for them."""

@@ -6,7 +6,7 @@ approximations for an eighth of a turn to both sides.
 
 from eyas.core.elementary.exact import leading
 from eyas.core.elementary.reduction import reduced
-from eyas.core.jit import inlined_kernel, kernel
+from eyas.core.jit import double_kernel, inlined_kernel, kernel
 
 __all__ = ["cos", "sin", "sin_cos", "tan"]
 
@@ -54,7 +54,7 @@ def _cosine(x: float, tail: float) -> float:
     return most + (((1.0 - most) - half) + (z * r - x * tail))
 
 
-@kernel
+@double_kernel
 def sin(angle: float) -> float:
     """Return the sine of any angle [rad]."""
     quarters, x, tail = reduced(angle)
@@ -62,7 +62,7 @@ def sin(angle: float) -> float:
     return -value if quarters & 2 else value
 
 
-@kernel
+@double_kernel
 def cos(angle: float) -> float:
     """Return the cosine of any angle [rad]."""
     quarters, x, tail = reduced(angle)
@@ -70,7 +70,7 @@ def cos(angle: float) -> float:
     return -value if (quarters + 1) & 2 else value
 
 
-@kernel
+@double_kernel
 def sin_cos(angle: float) -> tuple[float, float]:
     """Return both, in little more time than one."""
     quarters, x, tail = reduced(angle)
@@ -80,7 +80,7 @@ def sin_cos(angle: float) -> tuple[float, float]:
     return (-sine, -cosine) if quarters & 2 else (sine, cosine)
 
 
-@kernel
+@double_kernel
 def tan(angle: float) -> float:
     """Return the tangent of any angle [rad]."""
     if angle == 0.0:

@@ -9,7 +9,7 @@ import math
 
 from eyas.core.elementary.exact import product_error
 from eyas.core.intrinsics import bits_of_float, float_of_bits
-from eyas.core.jit import inlined_kernel, kernel
+from eyas.core.jit import double_kernel, inlined_kernel, kernel
 
 __all__ = ["exp", "log", "power", "tanh"]
 
@@ -62,7 +62,7 @@ def _scaled(whole: int, value: float) -> float:
     return value * _power_of_two(half) * _power_of_two(whole - half)
 
 
-@kernel
+@double_kernel
 def exp(x: float) -> float:
     """Return e^x."""
     if x != x:
@@ -93,7 +93,7 @@ def _log_series(z: float) -> float:
     return z * (_L1 + w * (_L3 + w * (_L5 + w * _L7))) + even
 
 
-@kernel
+@double_kernel
 def log(x: float) -> float:
     """Return the natural logarithm; -inf of 0, and nan below."""
     if not 0.0 < x < math.inf:
@@ -149,7 +149,7 @@ def _added(a: float, b: float) -> tuple[float, float]:
     return total, (a - (total - part)) + (b - part)
 
 
-@kernel
+@double_kernel
 def power(base: float, exponent: float) -> float:
     """Return base^exponent for a base that is not negative; nan for others.
 
@@ -179,7 +179,7 @@ def _power_at_ends(base: float, exponent: float) -> float:
     return math.inf if (base > 1.0) == (exponent > 0.0) else 0.0
 
 
-@kernel
+@double_kernel
 def tanh(x: float) -> float:
     """Return the hyperbolic tangent."""
     size = abs(x)

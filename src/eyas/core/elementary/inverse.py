@@ -6,7 +6,7 @@ The polynomials are those of fdlibm (Sun Microsystems, 1993: `e_asin.c`, `s_atan
 import math
 
 from eyas.core.elementary.exact import leading, product_error
-from eyas.core.jit import inlined_kernel, kernel
+from eyas.core.jit import double_kernel, inlined_kernel, kernel
 
 __all__ = ["acos", "asin", "atan", "atan2"]
 
@@ -44,7 +44,7 @@ def _arc_near_quarter(x: float) -> tuple[float, float]:
     return high, root * _bend(z) + low
 
 
-@kernel
+@double_kernel
 def asin(x: float) -> float:
     """Return the angle of a sine, -pi/2 to pi/2 [rad]; nan beyond -1 to 1."""
     size = abs(x)
@@ -58,7 +58,7 @@ def asin(x: float) -> float:
     return -angle if x < 0.0 else angle
 
 
-@kernel
+@double_kernel
 def acos(x: float) -> float:
     """Return the angle of a cosine, 0 to pi [rad]; nan beyond -1 to 1."""
     size = abs(x)
@@ -72,13 +72,13 @@ def acos(x: float) -> float:
     return 2.0 * (_QUARTER - (high + (low - _QUARTER_REST)))
 
 
-@kernel
+@double_kernel
 def atan(x: float) -> float:
     """Return the angle of a tangent, -pi/2 to pi/2 [rad]."""
     return atan2(x, 1.0)
 
 
-@kernel
+@double_kernel
 def atan2(y: float, x: float) -> float:
     """Return the direction of a vector, counter-clockwise from x, -pi to pi [rad].
 

@@ -3,7 +3,7 @@
 import math
 
 from eyas.core.elementary.exact import leading
-from eyas.core.jit import inlined_kernel, kernel
+from eyas.core.jit import double_kernel, inlined_kernel, kernel
 
 __all__ = ["hypot"]
 
@@ -17,7 +17,7 @@ def _square(x: float) -> tuple[float, float]:
     return square, (high * high - square + 2.0 * high * low) + low * low
 
 
-@kernel
+@double_kernel
 def hypot(x: float, y: float) -> float:
     """Return the length of a vector; infinite if one part is, even if the other is nan."""
     wide, tall = abs(x), abs(y)

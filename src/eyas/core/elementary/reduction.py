@@ -8,6 +8,8 @@ Hanek, Radian reduction for trigonometric functions, SIGNUM Newsletter 18, 1983)
 
 import math
 
+import numpy as np
+
 from eyas.core.elementary.exact import product_error
 from eyas.core.intrinsics import bits_of_float
 from eyas.core.jit import inlined_kernel, separate_kernel
@@ -28,58 +30,20 @@ _QUARTER, _QUARTER_REST = 1.57079632679489655800e00, 6.12323399573676603587e-17
 _DIGIT = 28
 _MASK = (1 << _DIGIT) - 1
 
-_LEADING_ZEROS = 2
-_TWO_BY_PI = (
-    0x0000000,
-    0x0000000,
-    0xA2F9836,
-    0xE4E4415,
-    0x29FC275,
-    0x7D1F534,
-    0xDDC0DB6,
-    0x295993C,
-    0x439041F,
-    0xE5163AB,
-    0xDEBBC56,
-    0x1B7246E,
-    0x3A424DD,
-    0x2E00649,
-    0x2EEA09D,
-    0x1921CFE,
-    0x1DEB1CB,
-    0x129A73E,
-    0xE88235F,
-    0x52EBB44,
-    0x84E99C7,
-    0x026B45F,
-    0x7E41399,
-    0x1D63983,
-    0x5339F49,
-    0xC845F8B,
-    0xBDF9283,
-    0xB1FF897,
-    0xFFDE059,
-    0x80FEF2F,
-    0x118B5A0,
-    0xA6D1F6D,
-    0x367ECF2,
-    0x7CB09B7,
-    0x4F463F6,
-    0x69E5FEA,
-    0x2D7527B,
-    0xAC7EBE5,
-    0xF17B3D0,
-    0x739F78A,
-    0x5292EA6,
-    0xBFB5FB1,
-    0x1F8D5D0,
-    0x8560330,
-    0x46FC7B6,
-    0xBABF0CF,
-    0xBC209AF,
-    0x4361DA9,
+_DIGITS = (
+    "A2F9836E4E441529FC2757D1F534DDC0DB6295993C439041FE5163ABDEBBC561B7246E3A424DD2E00649"
+    "2EEA09D1921CFE1DEB1CB129A73EE88235F52EBB4484E99C7026B45F7E413991D639835339F49C845F8B"
+    "BDF9283B1FF897FFDE05980FEF2F118B5A0A6D1F6D367ECF27CB09B74F463F669E5FEA2D7527BAC7EBE5"
+    "F17B3D0739F78A5292EA6BFB5FB11F8D5D0856033046FC7B6BABF0CFBC209AF4361DA9"
 )
-"""Binary digits of 2/pi, 28 in a number, after `_LEADING_ZEROS` numbers of zeros."""
+"""The first 1288 binary digits of 2/pi, in hexadecimal notation."""
+
+_LEADING_ZEROS = 2
+_TWO_BY_PI = np.array(
+    [0] * _LEADING_ZEROS + [int(_DIGITS[k : k + 7], 16) for k in range(0, len(_DIGITS), 7)],
+    np.int64,
+)
+"""The same, 28 in a number, after some numbers of zeros."""
 
 
 @inlined_kernel
@@ -146,7 +110,7 @@ def _product_digit(
     """Return a number of the product's digits, that of 2/pi it comes from, and what is carried."""
     first = exponent - 2 + _DIGIT * (place + _LEADING_ZEROS)
     at, shift = first // _DIGIT, first % _DIGIT
-    pair = (_TWO_BY_PI[at] << _DIGIT) | _TWO_BY_PI[at + 1]
+    pair = (int(_TWO_BY_PI[at]) << _DIGIT) | int(_TWO_BY_PI[at + 1])
     digit = (pair >> (_DIGIT - shift)) & _MASK
     sum_ = low * digit + high * digit_below + carry
     return sum_ & _MASK, digit, sum_ >> _DIGIT
