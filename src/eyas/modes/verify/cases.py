@@ -80,8 +80,8 @@ def _others() -> Iterator[Case]:
     for words, settings in _SETTINGS.items():
         yield _flown(words, updated(_in("citystreet"), settings))
     for preset in PRESETS:
-        settings = load_settings(preset_file(preset))
-        yield _flown(f"preset {preset}", updated(settings, {"video": _ALONE}))
+        config = load_settings(preset_file(preset))
+        yield _flown(f"preset {preset}", updated(config, {"video": _ALONE}))
 
 
 def _in(name: str, weather: str | None = None) -> EyasConfig:

@@ -94,7 +94,7 @@ def _action(env: TrackingEnv, rng: np.random.Generator) -> object:
 
 def _note(hashes: _Hashes, observation: object, info: Info) -> None:
     assert isinstance(observation, Mapping)
-    for part, values in observation.items():
+    for part, values in sorted(observation.items()):
         picture = part in ("image", "depth", "classes")
         hashes.add_array("pictures" if picture else "packets", values)
     for name, value in sorted(info.items()):
