@@ -22,6 +22,7 @@ from eyas.cli import (
     targets,
     traffic,
     train,
+    verify,
     video,
 )
 from eyas.cli.said import say
@@ -62,6 +63,7 @@ app.command("video")(video.command)
 app.command("train")(train.command)
 app.command("serve")(serve.command)
 app.command("bench")(bench.command)
+app.command("verify")(verify.command)
 app.command("evaluate")(evaluate.evaluate)
 app.command("compare")(evaluate.compare)
 app.command("leaderboard")(evaluate.leaderboard)

@@ -1,0 +1,1 @@
+"""`eyas verify`: whether this machine computes the bytes that the manifest promises."""

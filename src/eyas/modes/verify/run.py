@@ -1,0 +1,119 @@
+"""Compute the cases of the manifest, and say what differs."""
+
+import json
+import os
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from itertools import groupby
+from tempfile import TemporaryDirectory
+from typing import NamedTuple
+
+from rich.console import Console
+
+from eyas.core.cache.folder import FOLDER_VARIABLE
+from eyas.core.errors import UnknownNameError
+from eyas.modes.verify.cases import Case, cases
+from eyas.modes.verify.machine import machine_facts
+from eyas.modes.verify.manifest import Hashes, read_manifest
+
+__all__ = ["Verdict", "compared", "measured", "run"]
+
+
+class Verdict(NamedTuple):
+    """What was compared."""
+
+    same: int
+    """Number of hashes that are those of the manifest."""
+    different: dict[str, list[str]]
+    """Names of the others by case."""
+
+
+def run(*, quick: bool = False, map_name: str | None = None, as_json: bool = False) -> bool:
+    """Compute, print what differs, and return whether all is as promised.
+
+    Args:
+        quick: Whether to look at a tenth of the cases only.
+        map_name: Look at the cases of this map only; None: at all.
+        as_json: Whether to print JSON.
+
+    Raises:
+        UnknownNameError: The manifest has no such map.
+        DataFileError: The installation is damaged.
+    """
+    known = read_manifest()
+    chosen = _chosen(quick, map_name)
+    found = measured(chosen)
+    verdict = compared(found, known)
+    facts = machine_facts()
+    if as_json:
+        told = {"same": verdict.same, "different": verdict.different, "machine": facts}
+        print(json.dumps(told | {"hashes": found}, indent=2))
+    else:
+        _print(verdict, facts, len(chosen))
+    return not verdict.different
+
+
+def measured(chosen: Iterable[Case]) -> Hashes:
+    """Return the hashes of cases, and show meanwhile on a screen which one is computed.
+
+    Nothing is taken from the cache, which another machine may have filled, but compiled kernels.
+    """
+    found: Hashes = {}
+    with Console(stderr=True).status("verifying") as status:
+        for _, of_map in groupby(chosen, key=lambda case: case.map):
+            with _empty_cache():
+                for case in of_map:
+                    status.update(f"verifying: {case.name}")
+                    found[case.name] = case.measure()
+    return found
+
+
+@contextmanager
+def _empty_cache() -> Iterator[None]:
+    """Have what is kept written to a folder that is removed at the end."""
+    before = os.environ.get(FOLDER_VARIABLE)
+    with TemporaryDirectory(prefix="eyas-verify-", ignore_cleanup_errors=True) as folder:
+        os.environ[FOLDER_VARIABLE] = folder
+        try:
+            yield
+        finally:
+            if before is None:
+                del os.environ[FOLDER_VARIABLE]
+            else:
+                os.environ[FOLDER_VARIABLE] = before
+
+
+def compared(found: Hashes, known: Hashes) -> Verdict:
+    """Return what is the same and what is not."""
+    same, different = 0, {}
+    for case, hashes in found.items():
+        promised = known.get(case, {})
+        names = [name for name in hashes if promised.get(name) != hashes[name]]
+        names += [name for name in promised if name not in hashes]
+        same += sum(name not in names for name in hashes)
+        if names:
+            different[case] = names
+    return Verdict(same, different)
+
+
+def _chosen(quick: bool, map_name: str | None) -> list[Case]:
+    every = list(cases())
+    names = tuple(dict.fromkeys(case.map for case in every))
+    if map_name is not None and map_name not in names:
+        raise UnknownNameError("--map", map_name, names)
+    of_map = [case for case in every if map_name in (None, case.map)]
+    few = [case for case in of_map if case.quick]
+    return few if quick and few else of_map
+
+
+def _print(verdict: Verdict, facts: dict[str, str], count: int) -> None:
+    for case, names in verdict.different.items():
+        print(f"differs: {case}: {', '.join(names)}")
+    other = sum(map(len, verdict.different.values()))
+    if other:
+        print(f"{other} of {verdict.same + other} hashes, in {len(verdict.different)} of {count} "
+              "cases, are not those of the manifest")  # fmt: skip
+    else:
+        print(f"all {verdict.same} hashes, in {count} cases, are those of the manifest")
+    for name, fact in facts.items():
+        print(f"{name}: {fact}")
