@@ -23,6 +23,7 @@ from eyas.cli import (
     traffic,
     train,
     video,
+    webots_shim,
 )
 from eyas.cli.said import say
 from eyas.core.errors import EyasError
@@ -60,6 +61,7 @@ app.command("demo")(demo.command)
 app.command("video")(video.command)
 app.command("train")(train.command)
 app.command("serve")(serve.command)
+app.command("webots-shim")(webots_shim.command)
 app.command("bench")(bench.command)
 app.command("evaluate")(evaluate.evaluate)
 app.command("compare")(evaluate.compare)
