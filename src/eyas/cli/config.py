@@ -31,8 +31,14 @@ def show(
 ) -> None:
     """Check the settings, and print all of them as JSON."""
     from eyas.settings.file import load_settings
+    from eyas.settings.legacy.messages import originals_named
+    from eyas.world.maps import MAPS
 
-    typer.echo(_text(load_settings(chosen_file(config, preset), gathered(set_)), legacy=legacy))
+    settings = load_settings(chosen_file(config, preset), gathered(set_))
+    if ":" not in settings.world.map:  # code of the user's is not run to show settings
+        with originals_named(settings):
+            MAPS.get(settings.world.map).light(settings.world.weather)
+    typer.echo(_text(settings, legacy=legacy))
 
 
 @app.command()
