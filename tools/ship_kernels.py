@@ -27,6 +27,7 @@ from eyas.trackers.drone import DRONE
 
 USES_ALL = """
 import numpy as np
+from eyas.core.elementary_arrays import sin
 from eyas.sensors.config import Colours
 from eyas.sensors.stack import FrameStack
 from eyas.sim.assets import load_assets
@@ -40,6 +41,7 @@ from eyas.traffic.recorded import recorded_motion
 from eyas.traffic.recording_file import load
 from eyas.world.maps import MAPS
 
+sin(np.zeros(1))
 picture = Picture.create(1, 84, 84)
 for settings in (
     {},

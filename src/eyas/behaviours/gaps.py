@@ -6,12 +6,13 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.elementary_arrays import cos, sin
 from eyas.core.jit import interpreted
 from eyas.state.motion import Motion
 from eyas.targets.catalogue import KINDS, MODELS, models_of, sections_of
 from eyas.targets.kind import Section
 from eyas.traffic.signals import Aspect, SignalPlan
-from eyas.traffic.trailer import folded
+from eyas.traffic.trailer import folded_by
 
 __all__ = ["Gaps"]
 
@@ -32,7 +33,7 @@ _PATIENCE: Final = 60.0
 
 Floats = NDArray[np.floating]
 
-_folded = interpreted(folded)
+_folded_by = interpreted(folded_by)
 
 
 class Gaps:
@@ -185,7 +186,7 @@ def _axis(own: NDArray[np.void], section: Section, middle: float) -> Floats:
         section: The section.
         middle: Distance of their middles ahead of their reference points [m].
     """
-    x, y, c, s = _folded(own["hitch"], section.towed)
+    x, y, c, s = _folded_by(sin(own["hitch"]), cos(own["hitch"]), section.towed)
     # Where their reference points would be if they were straight, from where they are.
     x, y = x + middle * (1.0 - c), y - middle * s
     cosine, sine = np.cos(own["yaw"]), np.sin(own["yaw"])

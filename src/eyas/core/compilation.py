@@ -79,8 +79,8 @@ def _with_all_that_it_calls(library: Any) -> tuple[Any, ...]:  # noqa: ANN401  #
 class KernelType(numba.types.Callable, numba.types.Opaque):  # type: ignore[misc]
     """The type of a kernel in the kernels that call it."""
 
-    def __init__(self, function: Callable[..., Any], *, inline: bool | None) -> None:
-        self._function, self._inline = function, inline
+    def __init__(self, function: Callable[..., Any], *, inline: bool | None, double: bool) -> None:
+        self._function, self._inline, self._double = function, inline, double
         self._parameters = inspect.signature(function)
         self._overloads: dict[tuple[Kind, ...], _Overload] = {}
         name = f"{function.__module__}.{function.__qualname__}"
@@ -91,7 +91,9 @@ class KernelType(numba.types.Callable, numba.types.Opaque):  # type: ignore[misc
         let_in()
         given = self._parameters.bind(*args, **dict(kws)).arguments
         kinds = tuple(
-            _widened(given[name]) if name in given else numba.types.Omitted(parameter.default)
+            _widened(given[name], self._double)
+            if name in given
+            else numba.types.Omitted(parameter.default)
             for name, parameter in self._parameters.parameters.items()
         )
         if kinds not in self._overloads:
@@ -112,13 +114,15 @@ class KernelType(numba.types.Callable, numba.types.Opaque):  # type: ignore[misc
 register_model(KernelType)(models.OpaqueModel)
 
 
-def _widened(kind: Kind) -> Kind:
-    """Return one type for all signed whole numbers.
+def _widened(kind: Kind, double: bool) -> Kind:
+    """Return one type for all signed whole numbers, and float64 for all numbers if `double`.
 
     For the calls `f(0)`, `f(1)` and `f(i)` in other kernels numba would compile `f` three times,
     and once more if `i` has 32 bits.
     """
     kind = numba.types.unliteral(kind)
+    if double and isinstance(kind, numba.types.Number):
+        return numba.types.float64
     signed = isinstance(kind, numba.types.Integer) and kind.signed
     return numba.types.int64 if signed else kind
 

@@ -1,9 +1,11 @@
 """numba's compiler without what kernels do not need, which was half of the time of compiling."""
 
+import math
 from functools import cache
 from typing import Any
 
 import llvmlite.binding as llvm
+import numpy as np
 from numba import types
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags
@@ -11,6 +13,8 @@ from numba.core.registry import cpu_target
 from numba.core.typed_passes import NopythonRewrites
 from numba.core.typing import Context
 from numba.core.untyped_passes import InlineClosureLikes
+
+from eyas.core import elementary
 
 __all__ = ["SETTINGS", "Compiler", "Library", "flags", "typing"]
 
@@ -23,6 +27,13 @@ Kind = Any
 SETTINGS = {"error_model": "numpy", "fastmath": False, "_nrt": False}
 
 _INNER = {"nopython": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+
+
+_OWN = {
+    **{id(getattr(math, name)): getattr(elementary, name) for name in elementary.OF_MATH},
+    **{id(getattr(np, name)): getattr(elementary, own) for own, name in elementary.OF_NUMPY},
+}
+"""What kernels call instead of functions of `math` and numpy, which are those of the C library."""
 
 
 class Library(JITCodeLibrary):  # type: ignore[misc]  # numba has no types
@@ -82,7 +93,8 @@ class Compiler(CompilerBase):  # type: ignore[misc]
 
 
 class _Typing(Context):  # type: ignore[misc]
-    """numba's knowledge of types, shared with it, and the signatures of operators remembered.
+    """numba's knowledge of types, shared with it, but with elementary functions of our own, and the
+    signatures of operators remembered.
 
     numba tries a dozen rules at each `+`: a fifth of the time of compiling.
     """
@@ -92,6 +104,15 @@ class _Typing(Context):  # type: ignore[misc]
     def __init__(self) -> None:
         self.__dict__ = vars(cpu_target.typing_context)  # type: ignore[misc]  # no slot
         self._known: dict[tuple[int, tuple[Kind, ...]], tuple[Kind, Any, Any]] = {}
+
+    def resolve_value_type(self, val: object) -> Kind:
+        """Return the type of a global value."""
+        return super().resolve_value_type(_OWN.get(id(val), val))
+
+    def resolve_getattr(self, typ: Kind, attr: str) -> Kind:
+        """Return the type of an attribute, such as `sin` of `math`."""
+        own = _OWN.get(id(getattr(typ.pymod, attr, None))) if type(typ) is types.Module else None
+        return super().resolve_getattr(typ, attr) if own is None else self.resolve_value_type(own)
 
     def resolve_function_type(
         self, func: Kind, args: tuple[Kind, ...], kws: dict[str, Kind]

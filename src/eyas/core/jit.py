@@ -21,6 +21,7 @@ from eyas.core.interrupts import shielded
 __all__ = [
     "REFUSAL",
     "Kernel",
+    "double_kernel",
     "folder_in_use",
     "identity",
     "inlined_kernel",
@@ -99,17 +100,19 @@ class Kernel:
         py_func: The function.
     """
 
-    def __init__(self, function: Callable[..., Any], *, inline: bool | None = None) -> None:
+    def __init__(
+        self, function: Callable[..., Any], *, inline: bool | None = None, double: bool = False
+    ) -> None:
         functools.update_wrapper(self, function)
         self.py_func = function
-        self._inline = inline
+        self._inline, self._double = inline, double
 
     @functools.cached_property
     def _numba_type_(self) -> object:
         """The type by which numba knows it in functions that call it."""
         from eyas.core.compilation import KernelType
 
-        return KernelType(self.py_func, inline=self._inline)
+        return KernelType(self.py_func, inline=self._inline, double=self._double)
 
     @functools.cached_property
     def _compiled(self) -> Callable[..., Any]:
@@ -143,6 +146,11 @@ def inlined_kernel(function: Function) -> Function:
     dozens of arrays, which would otherwise be copied at each call.
     """
     return cast("Function", Kernel(function, inline=True))
+
+
+def double_kernel(function: Function) -> Function:
+    """Compile like `kernel`; numbers of any kind are given to it as float64."""
+    return cast("Function", Kernel(function, double=True))
 
 
 inner_kernel = kernel

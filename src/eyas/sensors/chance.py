@@ -7,6 +7,7 @@ length of a control step change it.
 
 import math
 
+from eyas.core.elementary import cos, log
 from eyas.core.jit import kernel
 
 __all__ = ["SEEDS", "mixed", "normal", "uniform"]
@@ -41,5 +42,5 @@ def uniform(seed: int, number: int, channel: int) -> float:
 @kernel
 def normal(seed: int, number: int, channel: int) -> float:
     """Return a normally distributed number of mean 0 and deviation 1 (Box and Muller, 1958)."""
-    length = math.sqrt(-2.0 * math.log(uniform(seed, number, 2 * channel)))
-    return length * math.cos(2.0 * math.pi * uniform(seed, number, 2 * channel + 1))
+    length = math.sqrt(-2.0 * log(uniform(seed, number, 2 * channel)))
+    return length * cos(2.0 * math.pi * uniform(seed, number, 2 * channel + 1))

@@ -10,6 +10,7 @@ sensors of a flown drone, which cannot jump, read its own motion.
 import math
 
 from eyas.core.clock import PHYSICS_STEP
+from eyas.core.elementary import sin_cos
 from eyas.core.frames import rotate_back
 from eyas.core.jit import kernel, step_kernel
 from eyas.state.snapshot import TrackerState
@@ -64,7 +65,7 @@ def accelerometer(trackers: TrackerState, n: int) -> tuple[float, float, float]:
     """
     felt = trackers.smoothed_acceleration[n]
     x, y, z = rotate_back(trackers.orientation[n], felt[0], felt[1], felt[2] + GRAVITY)
-    sine, cosine = math.sin(trackers.smoothed_lag[n]), math.cos(trackers.smoothed_lag[n])
+    sine, cosine = sin_cos(trackers.smoothed_lag[n])
     return cosine * x - sine * y, sine * x + cosine * y, z
 
 

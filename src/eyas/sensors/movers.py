@@ -1,9 +1,9 @@
 """The boxes of what moves near a tracker: actors, and the bodies of other trackers."""
 
-import math
 from typing import NamedTuple
 
 from eyas.core.clock import PHYSICS_STEP
+from eyas.core.elementary import sin_cos
 from eyas.core.jit import step_kernel
 from eyas.sensors.bodies import body_box
 from eyas.sensors.obstacles import Boxes, Movers
@@ -117,7 +117,8 @@ def _write_boxes(pose: ActorPose, movers: Movers, model: int, boxes: Boxes, coun
     Returns:
         How many there are then, with `count` before.
     """
-    whole = _Place(pose.x, pose.y, math.cos(pose.yaw), math.sin(pose.yaw))
+    sine, cosine = sin_cos(pose.yaw)
+    whole = _Place(pose.x, pose.y, cosine, sine)
     for k in range(movers.first[model], movers.first[model + 1]):
         block, at = movers.block[k], whole
         if pose.hitch != 0.0:

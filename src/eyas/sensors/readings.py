@@ -2,13 +2,13 @@
 noise, bias, delay and drop-out.
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_RATE
+from eyas.core.elementary import sin_cos
 from eyas.core.frames import wrap_angle
 from eyas.core.jit import step_kernel
 from eyas.core.parallel import Held, Pointer, parallel_kernel
@@ -183,8 +183,7 @@ def _write_truth(trackers: TrackerState, n: int, sensor: int, row: NDArray[np.fl
 def _write_quaternion(row: NDArray[np.float64]) -> None:
     """Write the quaternion of a row's Euler angles: yaw, then pitch, then roll."""
     roll, pitch, yaw = 0.5 * row[_EULER], 0.5 * row[_EULER + 1], 0.5 * row[_EULER + 2]
-    cr, sr, cp, sp = math.cos(roll), math.sin(roll), math.cos(pitch), math.sin(pitch)
-    cy, sy = math.cos(yaw), math.sin(yaw)
+    (sr, cr), (sp, cp), (sy, cy) = sin_cos(roll), sin_cos(pitch), sin_cos(yaw)
     row[_QUATERNION] = cr * cp * cy + sr * sp * sy
     row[_QUATERNION + 1] = sr * cp * cy - cr * sp * sy
     row[_QUATERNION + 2] = cr * sp * cy + sr * cp * sy

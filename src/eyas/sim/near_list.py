@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.elementary import tan
 from eyas.core.jit import inlined_kernel, step_kernel
 from eyas.core.lanes import WIDTH, bits_of, first_bit, load, magnitude
 from eyas.core.parallel import Pointer, parallel_kernel
@@ -105,7 +106,7 @@ class _Camera(NamedTuple):
 def _set_cameras(query: Query) -> None:
     """Fill `Query.camera`."""
     for v in range(query.end[query.worlds[0] - 1]):
-        camera, wide = query.camera[v], math.tan(0.5 * query.field_of_view[v])
+        camera, wide = query.camera[v], tan(0.5 * query.field_of_view[v])
         high = wide * query.aspect[0]
         for axis in range(3):
             camera[axis] = query.eye[v, axis]

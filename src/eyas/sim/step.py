@@ -5,7 +5,6 @@ Its kernels get the address of their arguments (`eyas.core.parallel`): unpacking
 at each call would take four times as long as a step of one tracker.
 """
 
-import math
 from collections.abc import Callable
 from functools import lru_cache
 from typing import Any, NamedTuple
@@ -14,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
+from eyas.core.elementary import sin_cos
 from eyas.core.jit import specialised, step_kernel
 from eyas.core.parallel import BoundKernel, Held, Pointer, parallel_kernel
 from eyas.sensors.inertial import feel, rest
@@ -199,8 +199,8 @@ def _begin(parts: Parts, worker: int, workers: int) -> None:
         x, y, z, yaw = offset_pose(targets.position[n], targets.yaw[n], episodes.start_offset[n])
         start(trackers, memory, n, x, y, z, yaw, pitch[k])
         if launched == 1:
-            speed, way = targets.speed[n], targets.yaw[n]
-            launch(trackers, memory, n, speed * math.cos(way), speed * math.sin(way))
+            speed, (north, east) = targets.speed[n], sin_cos(targets.yaw[n])
+            launch(trackers, memory, n, speed * east, speed * north)
         rest(trackers, n, share)
         aim(trackers, memory, cameras, n)
         carried(trackers, cameras, n, mount)

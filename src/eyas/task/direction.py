@@ -4,6 +4,7 @@ import math
 from enum import IntEnum
 
 from eyas.core.clock import PHYSICS_STEP
+from eyas.core.elementary import sin_cos
 from eyas.core.frames import wrap_angle
 from eyas.core.jit import kernel
 
@@ -58,4 +59,5 @@ def target_centre(x: float, y: float, yaw: float, ahead: float) -> tuple[float, 
         yaw: Heading of the target [rad].
         ahead: Distance of the point ahead of the reference point, see `eyas.targets.kind.Kind` [m].
     """
-    return x + ahead * math.cos(yaw), y + ahead * math.sin(yaw)
+    sine, cosine = sin_cos(yaw)
+    return x + ahead * cosine, y + ahead * sine

@@ -1,10 +1,9 @@
 """Pose of a body that keeps an offset from its target."""
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.elementary import sin_cos
 from eyas.core.frames import wrap_angle
 from eyas.core.jit import step_kernel
 
@@ -24,7 +23,7 @@ def offset_pose(
             target's [rad], shape (4,).
     """
     yaw = target_yaw + offset[3]
-    cosine, sine = math.cos(yaw), math.sin(yaw)
+    sine, cosine = sin_cos(yaw)
     x = target[0] + cosine * offset[0] - sine * offset[1]
     y = target[1] + sine * offset[0] + cosine * offset[1]
     return x, y, target[2] + offset[2], wrap_angle(yaw)

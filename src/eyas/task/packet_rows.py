@@ -3,12 +3,12 @@
 Numbers keep their full precision; the original's text streams round them to six digits.
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.elementary import sin_cos, tan
 from eyas.core.frames import wrap_angle
 from eyas.core.jit import step_kernel
 from eyas.core.parallel import Held, Pointer, parallel_kernel
@@ -110,11 +110,11 @@ def _fill_reward(
     """
     centre, rotation = targets.centre[n], cameras.rotation[n]
     row[2] = cameras.field_of_view[n]
-    row[3] = 0.5 * row[0] / math.tan(0.5 * row[2])
+    row[3] = 0.5 * row[0] / tan(0.5 * row[2])
     row[4] = trackers.commanded_gimbal[n, 0]
     row[5] = trackers.commanded_position[n, 2]
     row[6] = episodes.start_offset[n, 3]
-    cosine, sine = np.cos(targets.yaw[n]), np.sin(targets.yaw[n])
+    sine, cosine = sin_cos(targets.yaw[n])
     row[_TARGET_POSE], row[_TARGET_POSE + 1] = cosine, -sine
     row[_TARGET_POSE + 4], row[_TARGET_POSE + 5] = sine, cosine
     for axis in range(3):

@@ -9,11 +9,10 @@ the ground and 0 on the edge, so divided by its value in the middle it gives the
 computing the corners.
 """
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.elementary import tan, tanh
 from eyas.core.jit import kernel, step_kernel
 from eyas.state.terrain import Plane, height_over
 from eyas.task.rules import BuiltinReward, Rules
@@ -69,7 +68,7 @@ def rewarded_size(field_of_view: float, rules: Rules) -> tuple[float, float]:
         field_of_view: Horizontal [rad].
         rules: `view_range`, `aspect` are used.
     """
-    half_width = rules.view_range * math.tan(0.5 * field_of_view)
+    half_width = rules.view_range * tan(0.5 * field_of_view)
     return half_width, half_width * rules.aspect
 
 
@@ -141,7 +140,7 @@ def reward_value(share: float, distance: float, depth: float, rules: Rules) -> f
 @kernel
 def view_continuous(share: float, rules: Rules) -> float:
     """Return the reward that decreases smoothly from the middle of the view to its edge."""
-    return math.tanh(rules.view_scale * share * share * share)
+    return tanh(rules.view_scale * share * share * share)
 
 
 @kernel
@@ -155,7 +154,7 @@ def distance_continuous(distance: float, rules: Rules) -> float:
     """Return the reward that decreases smoothly with the distance [m] from the view centre."""
     if not distance < rules.distance_range:
         return 0.0
-    return 1.0 - math.tanh(rules.distance_scale * distance * distance * distance)
+    return 1.0 - tanh(rules.distance_scale * distance * distance * distance)
 
 
 @kernel

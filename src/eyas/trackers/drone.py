@@ -1,12 +1,12 @@
 """The supervised drone: a level body that follows its low-pass filtered commands exactly."""
 
-import math
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
+from eyas.core.elementary import sin_cos
 from eyas.core.frames import wrap_angle
 from eyas.core.jit import step_kernel
 from eyas.state.snapshot import CameraState, TrackerState
@@ -158,8 +158,8 @@ def _stand_level(trackers: TrackerState, n: int, yaw: float) -> None:
     """Set the attitude of a level body; `yaw` must be wrapped [rad]."""
     euler, orientation = trackers.euler[n], trackers.orientation[n]
     euler[0], euler[1], euler[2] = 0.0, 0.0, yaw
-    orientation[0], orientation[1], orientation[2] = math.cos(0.5 * yaw), 0.0, 0.0
-    orientation[3] = math.sin(0.5 * yaw)
+    orientation[1], orientation[2] = 0.0, 0.0
+    orientation[3], orientation[0] = sin_cos(0.5 * yaw)
 
 
 DRONE = Tracker("drone", DroneMemory.create, start, advance, carry, aim)

@@ -11,6 +11,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.elementary import sin_cos, tan
 from eyas.core.frames import rotate, rotate_back
 from eyas.core.jit import kernel
 from eyas.trackers.airframe import Airframe
@@ -60,7 +61,7 @@ def within_tilt(force: Vector, weight: float, limit: float) -> Vector:
         limit: Largest angle between the sum and the vertical [rad].
     """
     x, y, z = force
-    aside, tangent = math.sqrt(x * x + y * y), math.tan(limit)
+    aside, tangent = math.sqrt(x * x + y * y), tan(limit)
     scale = 1.0
     if aside > tangent * (z + weight):
         # A sum that points down, with nothing aside, has no such scale but 0.
@@ -102,7 +103,7 @@ def body_axes(force: Vector, yaw: float) -> tuple[Vector, Vector, Vector]:
         yaw: Commanded heading [rad].
     """
     x, y, z = _unit(force)
-    sine, cosine = math.sin(yaw), math.cos(yaw)
+    sine, cosine = sin_cos(yaw)
     left = _unit((-z * sine, z * cosine, x * sine - y * cosine))
     ahead = (left[1] * z - left[2] * y, left[2] * x - left[0] * z, left[0] * y - left[1] * x)
     return ahead, left, (x, y, z)

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
+from eyas.core.elementary import asin, atan2
 from eyas.core.jit import kernel, step_kernel
 from eyas.core.rng import EpisodeKey
 from eyas.core.variation import bounds
@@ -183,9 +184,9 @@ def _write(trackers: TrackerState, memory: FlightMemory, n: int, before: Body, a
     w, x, y, z = after.attitude
     attitude, euler = trackers.orientation[n], trackers.euler[n]
     attitude[0], attitude[1], attitude[2], attitude[3] = w, x, y, z
-    euler[0] = math.atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))
-    euler[1] = math.asin(min(max(2.0 * (w * y - z * x), -1.0), 1.0))
-    euler[2] = math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+    euler[0] = atan2(2.0 * (w * x + y * z), 1.0 - 2.0 * (x * x + y * y))
+    euler[1] = asin(min(max(2.0 * (w * y - z * x), -1.0), 1.0))
+    euler[2] = atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
 
 
 def flown_drone(config: TrackerConfig, frame: Airframe = ORIGINAL) -> Tracker:

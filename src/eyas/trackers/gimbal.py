@@ -5,6 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.elementary import atan2, sin_cos
 from eyas.core.frames import rotate
 from eyas.core.jit import kernel, step_kernel
 from eyas.state.snapshot import TrackerState
@@ -108,8 +109,8 @@ def camera_pose(
         camera_position: Optical centre, world frame [m], shape (3,); set.
         camera_rotation: Camera to world; columns forward, left, up, shape (3, 3); set.
     """
-    sp, cp = math.sin(gimbal[1]), math.cos(gimbal[1])
-    sy, cy = math.sin(gimbal[2]), math.cos(gimbal[2])
+    sp, cp = sin_cos(gimbal[1])
+    sy, cy = sin_cos(gimbal[2])
     x = _PITCH_JOINT[0] + cp * _ROLL_JOINT[0] + sp * _ROLL_JOINT[2]
     y = _PITCH_JOINT[1] + _ROLL_JOINT[1]
     z = _PITCH_JOINT[2] - sp * _ROLL_JOINT[0] + cp * _ROLL_JOINT[2]
@@ -128,9 +129,9 @@ def camera_axes(
     camera_rotation: NDArray[np.float64],
 ) -> None:
     """Compute the axes of the camera; arguments as in `camera_pose`."""
-    sr, cr = math.sin(gimbal[0]), math.cos(gimbal[0])
-    sp, cp = math.sin(gimbal[1]), math.cos(gimbal[1])
-    sy, cy = math.sin(gimbal[2]), math.cos(gimbal[2])
+    sr, cr = sin_cos(gimbal[0])
+    sp, cp = sin_cos(gimbal[1])
+    sy, cy = sin_cos(gimbal[2])
     _set_column(camera_rotation, 0, rotate(orientation, cy * cp, sy * cp, -sp))
     left = rotate(orientation, cy * sp * sr - sy * cr, sy * sp * sr + cy * cr, cp * sr)
     _set_column(camera_rotation, 1, left)
@@ -156,10 +157,10 @@ def desired_angles(
     roll = 0.0
     # A supervised body is level, which saves most of this function's time.
     if body_roll != 0.0 or body_pitch != 0.0:
-        sp, cp = math.sin(pitch), math.cos(pitch)
-        sy, cy = math.sin(yaw), math.cos(yaw)
-        sb, cb = math.sin(body_pitch), math.cos(body_pitch)
-        sa, ca = math.sin(body_roll), math.cos(body_roll)
+        sp, cp = sin_cos(pitch)
+        sy, cy = sin_cos(yaw)
+        sb, cb = sin_cos(body_pitch)
+        sa, ca = sin_cos(body_roll)
         # m = Ry(-body pitch) Rz(yaw) Ry(pitch); r = Rx(-body roll) m; mij, rij: row i, column j.
         m00, m20 = cb * cy * cp + sb * sp, sb * cy * cp - cb * sp
         m21 = -sb * sy
@@ -168,9 +169,9 @@ def desired_angles(
         r20 = ca * m20 - sa * sy * cp
         r21 = ca * m21 - sa * cy
         r22 = ca * m22 - sa * sy * sp
-        roll = math.atan2(r21, r22)
-        pitch = math.atan2(-r20, math.sqrt(r21 * r21 + r22 * r22))
-        yaw = math.atan2(r10, m00)
+        roll = atan2(r21, r22)
+        pitch = atan2(-r20, math.sqrt(r21 * r21 + r22 * r22))
+        yaw = atan2(r10, m00)
     return (
         min(max(roll, -_SIDEWAYS_LIMIT), _SIDEWAYS_LIMIT),
         min(max(pitch, limits[2]), limits[3]),

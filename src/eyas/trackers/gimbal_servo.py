@@ -1,12 +1,12 @@
 """The gimbal of the flown drone: motors turn its joints, and the body turns below it."""
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
+from eyas.core.elementary import sin_cos
 from eyas.core.jit import kernel, step_kernel
 from eyas.state.snapshot import TrackerState
 from eyas.trackers.airframe import GimbalServo
@@ -57,10 +57,10 @@ def advance_servo(
     """
     commanded, euler, gimbal = trackers.commanded_gimbal[n], trackers.euler[n], trackers.gimbal[n]
     desired = desired_angles(commanded[0], commanded[1], euler[0], euler[1])
-    sy, cy = math.sin(gimbal[2]), math.cos(gimbal[2])
+    (sp, cp), (sy, cy) = sin_cos(gimbal[1]), sin_cos(gimbal[2])
     ahead = cy * change[0] + sy * change[1]
     carried = (
-        math.cos(gimbal[1]) * ahead - math.sin(gimbal[1]) * change[2],
+        cp * ahead - sp * change[2],
         cy * change[1] - sy * change[0],
         change[2],
     )

@@ -3,6 +3,7 @@
 import math
 from typing import NamedTuple
 
+from eyas.core.elementary import sin_cos
 from eyas.core.frames import rotate, rotate_back
 from eyas.core.jit import kernel
 from eyas.state.terrain import Terrain, ground_at
@@ -92,7 +93,8 @@ def turned(attitude: Quaternion, rotation: Vector) -> Quaternion:
         share = 0.5 - square / 48.0 * (1.0 - square / 80.0 * (1.0 - square / 168.0))
     else:
         angle = math.sqrt(square)
-        real, share = math.cos(0.5 * angle), math.sin(0.5 * angle) / angle
+        sine, real = sin_cos(0.5 * angle)
+        share = sine / angle
     x, y, z = share * x, share * y, share * z
     w, i, j, k = attitude
     return (

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
+from eyas.core.elementary import exp
 from eyas.core.jit import kernel
 from eyas.trackers.airframe import Airframe
 from eyas.trackers.rigid_body import Thrusts
@@ -28,7 +29,7 @@ def spun_up(
     """
     if frame.motor_time_constant <= 0.0:
         return wanted, wanted, wanted
-    left = math.exp(-0.5 * PHYSICS_STEP / frame.motor_time_constant)
+    left = exp(-0.5 * PHYSICS_STEP / frame.motor_time_constant)
     a = _spun(frame, rotor, 0, wanted[0], left)
     b = _spun(frame, rotor, 1, wanted[1], left)
     c = _spun(frame, rotor, 2, wanted[2], left)

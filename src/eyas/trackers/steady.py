@@ -4,6 +4,7 @@ import math
 from typing import Any
 
 from eyas.core.clock import PHYSICS_STEP
+from eyas.core.elementary import asin, atan2, sin_cos
 from eyas.core.jit import step_kernel
 from eyas.state.snapshot import TrackerState
 from eyas.trackers.airframe import Airframe
@@ -67,12 +68,11 @@ def _lean(trackers: TrackerState, n: int, force: Vector) -> None:
     """Set the attitude in which the rotors of a body pull along a force, at its heading."""
     ahead, left, up = body_axes(force, trackers.commanded_yaw[n])
     euler, attitude = trackers.euler[n], trackers.orientation[n]
-    euler[0] = math.atan2(left[2], up[2])
-    euler[1] = math.asin(min(max(-ahead[2], -1.0), 1.0))
-    euler[2] = math.atan2(ahead[1], ahead[0])
-    cr, sr = math.cos(0.5 * euler[0]), math.sin(0.5 * euler[0])
-    cp, sp = math.cos(0.5 * euler[1]), math.sin(0.5 * euler[1])
-    cy, sy = math.cos(0.5 * euler[2]), math.sin(0.5 * euler[2])
+    euler[0] = atan2(left[2], up[2])
+    euler[1] = asin(min(max(-ahead[2], -1.0), 1.0))
+    euler[2] = atan2(ahead[1], ahead[0])
+    (sr, cr), (sp, cp) = sin_cos(0.5 * euler[0]), sin_cos(0.5 * euler[1])
+    sy, cy = sin_cos(0.5 * euler[2])
     attitude[0] = cr * cp * cy + sr * sp * sy
     attitude[1] = sr * cp * cy - cr * sp * sy
     attitude[2] = cr * sp * cy + sr * cp * sy

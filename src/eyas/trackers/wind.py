@@ -13,6 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
+from eyas.core.elementary import exp, power
+from eyas.core.elementary_arrays import cos, sin
 from eyas.core.jit import kernel
 from eyas.core.rng import EpisodeKey
 from eyas.core.variation import Variation, sample
@@ -68,7 +70,7 @@ def begin_wind(
     """
     rng = key.stream("wind")
     angle = sample(direction, rng)
-    memory.along[n] = math.cos(angle), math.sin(angle)
+    memory.along[n] = cos(angle), sin(angle)
     memory.mean[n] = sample(speed, rng) * memory.along[n]
     memory.random[n] = rng.integers(1, 2**63)
     first = rng.standard_normal(5)
@@ -102,13 +104,14 @@ def blow(
         return mean[0], mean[1], 0.0
     height = min(max(height, _LOWEST), _HIGHEST)
     base = 0.177 + 0.000823 * height / _FOOT
-    length = height / base**1.2  # of gusts along and across the wind; that of gusts up is `height`
+    # The length of gusts along and across the wind; that of gusts up is `height`.
+    length = height / power(base, 1.2)
     rise = 0.1 * turbulence
-    strength = rise / base**0.4
+    strength = rise / power(base, 0.4)
     x, y, z = velocity[0] - mean[0], velocity[1] - mean[1], velocity[2]
     speed = max(math.sqrt(x * x + y * y + z * z), _SLOWEST)
-    keep = math.exp(-PHYSICS_STEP * speed / length)
-    keep_up = math.exp(-PHYSICS_STEP * speed / height)
+    keep = exp(-PHYSICS_STEP * speed / length)
+    keep_up = exp(-PHYSICS_STEP * speed / height)
     gust[0] = keep * gust[0] + math.sqrt(1.0 - keep * keep) * _noise(memory.random, n)
     along = strength * gust[0]
     left = strength * _second_order(memory, n, 1, keep)

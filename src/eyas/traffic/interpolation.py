@@ -1,11 +1,11 @@
 """Interpolation of actors: cubic Hermite curves between the samples of a motion."""
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.elementary import hypot
 from eyas.core.jit import step_kernel
 from eyas.core.parallel import Held, Pointer, parallel_kernel
 from eyas.state.motion import ActorState, Motion
@@ -69,12 +69,12 @@ def interpolate_actor(motion: Motion, actor: int, time: float) -> ActorPose:
     y, speed_y = _hermite(a.y, b.y, a.velocity_y, b.velocity_y, step, f)
     z, climb = _hermite(a.z, b.z, a.velocity_z, b.velocity_z, step, f)
     yaw, yaw_rate = _hermite(a.yaw, b.yaw, a.yaw_rate, b.yaw_rate, step, f)
-    speed_a = math.hypot(a.velocity_x, a.velocity_y)
-    speed_b = math.hypot(b.velocity_x, b.velocity_y)
+    speed_a = hypot(a.velocity_x, a.velocity_y)
+    speed_b = hypot(b.velocity_x, b.velocity_y)
     travelled, _ = _hermite(a.travelled, b.travelled, speed_a, speed_b, step, f)
     slope = a.slope + f * (b.slope - a.slope)
     hitch = a.hitch + f * (b.hitch - a.hitch)
-    speed = math.hypot(speed_x, speed_y)
+    speed = hypot(speed_x, speed_y)
     present = (a.present > 0.0 or f == 1.0) and (b.present > 0.0 or f == 0.0)
     velocity = (speed_x, speed_y, climb)
     return ActorPose(x, y, z, yaw, slope, speed, *velocity, yaw_rate, hitch, travelled, present)

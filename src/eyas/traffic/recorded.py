@@ -1,12 +1,11 @@
 """Conversion of a recording to a motion."""
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.cache.cached import cached
 from eyas.core.cache.folder import Kind
+from eyas.core.elementary import atan, sin_cos
 from eyas.core.parallel import Held, Pointer, parallel_kernel
 from eyas.state.motion import SAMPLE, Motion
 from eyas.state.terrain import Terrain, relief_at, slope_at
@@ -86,5 +85,5 @@ def _lay(
             east, north = slope_at(terrain, sample.x, sample.y)
             sample.z = relief_at(terrain, sample.x, sample.y)
             sample.velocity_z = east * sample.velocity_x + north * sample.velocity_y
-            along = east * math.cos(sample.yaw) + north * math.sin(sample.yaw)
-            sample.slope = math.atan(along)
+            sine, cosine = sin_cos(sample.yaw)
+            sample.slope = atan(east * cosine + north * sine)

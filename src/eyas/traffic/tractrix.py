@@ -5,6 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.elementary import atan, atan2, exp, hypot, tan
 from eyas.core.parallel import Held, Pointer, parallel_kernel
 
 __all__ = ["follow_headings"]
@@ -41,10 +42,10 @@ def _follow(
     for sample in range(1, front.shape[0]):
         east = front[sample, 0] - front[sample - 1, 0]
         north = front[sample, 1] - front[sample - 1, 1]
-        distance = math.hypot(east, north)
+        distance = hypot(east, north)
         if distance > 1e-9:
-            angle = math.atan2(north, east) - yaw
+            angle = atan2(north, east) - yaw
             angle -= 2.0 * math.pi * math.floor(angle / (2.0 * math.pi) + 0.5)
-            left = 2.0 * math.atan(math.tan(0.5 * angle) * math.exp(-distance / wheelbase))
+            left = 2.0 * atan(tan(0.5 * angle) * exp(-distance / wheelbase))
             yaw += angle - left
         heading[sample] = yaw

@@ -13,6 +13,7 @@ from typing import NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.elementary import sin_cos
 from eyas.core.jit import kernel
 from eyas.traffic.tractrix import follow_headings
 
@@ -24,6 +25,7 @@ __all__ = [
     "Articulated",
     "Links",
     "folded",
+    "folded_by",
     "tow",
 ]
 
@@ -105,16 +107,22 @@ def tow(front: Floats, length: float, links: Links) -> Articulated:
 
 
 @kernel
-def folded(hitch: Number, towed: int) -> tuple[Number, Number, Number, Number]:
+def folded(hitch: float, towed: int) -> tuple[float, float, float, float]:
     """Return where the truck or trailer has carried the frame of the straight vehicle: x, y [m],
     cosine and sine of its heading, in the frame of the whole. The origin of both is the middle of
     the chord.
 
     Args:
-        hitch: Angle between the two [rad]; an array only where this is interpreted.
+        hitch: Angle between the two [rad].
         towed: 1 for the trailer, 0 for the truck.
     """
-    c, s = np.cos(hitch), np.sin(hitch)
+    s, c = sin_cos(hitch)
+    return folded_by(s, c, towed)
+
+
+@kernel
+def folded_by(s: Number, c: Number, towed: int) -> tuple[Number, Number, Number, Number]:
+    """Return the same for the sine and cosine of the angle; arrays only where it is interpreted."""
     along, aside = BUMPER_AHEAD + TAIL_BEHIND * c, TAIL_BEHIND * s
     chord = np.sqrt(along * along + aside * aside)
     ahead, left = along / chord, -aside / chord

@@ -9,6 +9,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.elementary import sin_cos, tan
 from eyas.core.jit import kernel
 from eyas.core.parallel import Pointer, parallel_kernel
 from eyas.state.motion import ActorState
@@ -88,13 +89,13 @@ def _base_of(actors: ActorState, w: int, a: int, upright: bool) -> _Base:
     On a slope, one that stays upright is sheared, so that its feet are on the ground.
     """
     yaw, slope = actors.yaw[w, a], actors.slope[w, a]
-    c, s = np.cos(yaw), np.sin(yaw)
+    s, c = sin_cos(yaw)
     cp, sp, rise = 1.0, 0.0, 0.0
     if slope != 0.0:
         if upright:
-            rise = np.tan(slope)
+            rise = tan(slope)
         else:
-            cp, sp = np.cos(slope), np.sin(slope)
+            sp, cp = sin_cos(slope)
             rise = sp
     return _Base(
         c * cp, -s, -c * sp,
@@ -186,7 +187,7 @@ def _pose_actor(given: tuple[CycleTable, Group, ActorState, Looks, Slots], w: in
     cosine, sine = 1.0, 0.0
     if body.wheel_radius > 0.0:
         angle = travelled / body.wheel_radius
-        cosine, sine = np.cos(angle), np.sin(angle)
+        sine, cosine = sin_cos(angle)
     for k in range(table.part.shape[1]):
         slot, part = first + k, table.part[model, k]
         if part.part < 0:

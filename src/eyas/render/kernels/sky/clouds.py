@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.elementary import exp
 from eyas.core.jit import inlined_kernel, inner_kernel
 from eyas.core.parallel import Pointer, parallel_kernel
 from eyas.render.kernels.scalars import f4, u4
@@ -138,7 +139,7 @@ def _heaps(field: NDArray[np.float32], x: float, y: float, climb: float) -> tupl
         if inside > zero:
             depth = _smooth(field, x * away * _TILE, y * away * _TILE, 1) - height
             depth = max(depth, zero) + f4(0.06) * bump
-            passed = math.exp(-_DENSE * inside * path)
+            passed = f4(exp(-_DENSE * inside * path))
             bright += clear * (one - passed) / (one + f4(7.5) * depth)
             clear *= passed
         away += short
