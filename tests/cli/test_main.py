@@ -40,6 +40,14 @@ def run(monkeypatch, capsys, *arguments):
         (["video", "--preset", "dat"], "preset: 'dat' is not allowed; "),
         (["config", "show", "--preset", "easy", "--config", "a.json"], "--preset and --config "),
         (["config", "show", "--set", "seed"], "--set 'seed': not of the form key=value"),
+        (
+            ["config", "show", "--set", "world.map=simpleway-city", "--set", "world.weather=night"],
+            "world.weather: 'night' is not allowed on the map 'simpleway-city'",
+        ),
+        (
+            ["config", "show", "--set", "World_Path=worlds/simpleway-clinker_snow.wbt"],
+            "world.weather: 'snow' is not allowed on the map 'simpleway-clinker'",
+        ),
         (["serve", "--root", "nowhere"], "nowhere: no such folder; give the one that holds "),
         (["serve"], "Missing option '--root'"),
         (["video", "--seed", "-1"], "seed: -1 is not allowed: "),
@@ -174,7 +182,7 @@ def test_a_reader_that_goes_away_is_no_error():
 def test_the_second_start_of_a_server_serves_what_the_first_one_did(monkeypatch, capsys, tmp_path):
     served = []
 
-    def run_server(config, root):
+    def run_server(config, root, load):
         served.append(config.model_copy(update={"mode": "train", "original": None}))
         file = root / SETTINGS_FILE
         file.parent.mkdir(parents=True, exist_ok=True)

@@ -73,3 +73,10 @@ def test_the_rules_are_those_that_results_were_published_with():
         "search": "6c1587d6dd0e",
         "distractor": "b9906084cebc",
     }
+
+
+def test_a_flown_drone_flies_as_in_the_original_unless_told_and_its_results_are_apart():
+    flown = PROTOCOLS["paper"].changed({"tracker": {"supervised": False}})
+    assert flown.settings.tracker.flight == "original"
+    mended = flown.changed({"tracker": {"flight": "mended"}})
+    assert len({PROTOCOLS["paper"].hash, flown.hash, mended.hash}) == 3

@@ -111,8 +111,10 @@ def test_the_originals_file_means_its_quality_of_pictures(values):
 @pytest.mark.parametrize("values", [{}, *map(read, FILES)])
 def test_the_originals_file_means_a_start_at_rest_and_no_passers_by(values):
     assert (EyasConfig().start.velocity, EyasConfig().extras) == ("target", None)
+    assert EyasConfig().tracker.flight == "mended"
     config = from_legacy(values)
     assert (config.start.velocity, config.extras) == ("rest", ())
+    assert config.tracker.flight == "original"
     config = from_legacy(values, EyasConfig())
     assert (config.start.velocity, config.extras) == ("target", None)
 

@@ -88,6 +88,38 @@ def test_saturated_rotors_keep_the_torque_and_raise_the_total_one_after_the_othe
     assert produced(thrusts)[0] >= total - 1e-9
 
 
+@settings(max_examples=300)
+@given(st.floats(0.0, 60.0), st.tuples(*[st.floats(-5.0, 5.0)] * 3))
+def test_the_original_s_loop_raises_only_the_rotors_before_one_that_lacks_thrust(total, torque):
+    m1, m2, m3 = torque[0] / 0.22978, torque[1] / 0.22978, torque[2] / 0.02
+    thrust = [
+        0.25 * (total - m1 - m2 - m3),
+        0.25 * (total + m1 - m2 + m3),
+        0.25 * (total + m1 + m2 - m3),
+        0.25 * (total - m1 + m2 + m3),
+    ]
+    for i in range(4):
+        if thrust[i] < 0.0:
+            thrust[0] -= thrust[i]  # one statement after the other, as there
+            thrust[1] -= thrust[i]
+            thrust[2] -= thrust[i]
+            thrust[3] -= thrust[i]
+    as_there = ORIGINAL._replace(as_original=1)
+    assert _mixed(as_there, (0.0, 0.0, total), torque, LEVEL) == pytest.approx(thrust, abs=1e-9)
+
+
+def test_the_original_s_loop_does_not_keep_the_torque():
+    torque = (-4.0, 0.0, 0.0)  # front left and rear left would have to pull down
+    as_there = _mixed(ORIGINAL._replace(as_original=1), (0.0, 0.0, 10.0), torque, LEVEL)
+    assert produced(as_there)[1] > -3.7
+    assert produced(_mixed(ORIGINAL, (0.0, 0.0, 10.0), torque, LEVEL))[1] == pytest.approx(-4.0)
+
+
+def test_no_rounding_asks_a_rotor_for_less_than_nothing():
+    torque = (1.869140625, -3.0, 0.0005880412408202641)
+    assert min(_mixed(ORIGINAL, (0.0, 0.0, 1.8675980384350641), torque, LEVEL)) == 0.0
+
+
 def test_rotors_reach_no_more_than_their_largest_rate():
     weak = ORIGINAL._replace(rotor_limit=600.0)
     most = 2.55e-5 * 600.0**2

@@ -11,6 +11,7 @@ from eyas.trackers.config import TrackerConfig
 from .flight import FLOWN, Drones, held
 
 LIMIT = math.pi / 5
+AS_THERE = TrackerConfig(supervised=False, flight="original")
 
 
 def test_it_hovers_without_drift_a_little_below_its_command():
@@ -73,10 +74,48 @@ def test_the_camera_looks_where_commanded_while_the_body_tilts():
 
 
 def test_joints_stop_at_their_limit_and_hold_it():
-    drones = Drones()
-    drones.trackers.commanded_gimbal[0] = 3.0, 0.0
-    log = drones.fly(held(steps=500))
-    assert log.gimbal[-1, 0] == pytest.approx([0.0, 1.5, 0.0], abs=1e-3)
+    for config, most in ((FLOWN, 2.2), (AS_THERE, 1.5)):
+        drones = Drones(config=config)
+        drones.trackers.commanded_gimbal[0] = 3.0 if config is AS_THERE else 2.5, 0.0
+        log = drones.fly(held(steps=500))
+        assert log.gimbal[-1, 0] == pytest.approx([0.0, most, 0.0], abs=1e-3)
+
+
+def off(log, pitch):
+    """Angle between the camera and where it should look in each step [rad], shape (K,)."""
+    heading = log.euler[:, 0, 2]
+    axis = np.stack(
+        [
+            np.cos(heading) * math.cos(pitch),
+            np.sin(heading) * math.cos(pitch),
+            np.full(len(heading), -math.sin(pitch)),
+        ],
+        axis=-1,
+    )
+    return np.arccos(np.clip((log.camera[:, 0, :, 0] * axis).sum(axis=1), -1.0, 1.0))
+
+
+WEAVING = np.concatenate(
+    [held(8.0, 0.0, steps=600), held(-8.0, 0.0, steps=600), held(6.0, 4.0, 0.0, 1.0, steps=600)]
+)
+"""Hard acceleration and braking, turns, and both at once."""
+
+
+@pytest.mark.parametrize("pitch", [0.5, 1.0, 1.37, 1.5])
+def test_the_mended_camera_looks_where_commanded_at_any_pitch(pitch):
+    log = Drones(pitch=pitch).fly(WEAVING)
+    assert off(log, pitch).max() < 0.02
+    roll = np.arcsin(np.clip(log.camera[:, 0, 2, 1], -1.0, 1.0))
+    assert np.abs(roll).max() < 0.02
+    assert np.abs(log.euler[:, 0, 1]).max() > 0.6
+
+
+def test_the_original_s_joints_swing_round_near_the_vertical():
+    log = Drones(config=AS_THERE, pitch=1.37).fly(WEAVING)
+    assert 0.7 < off(log, 1.37).max() < 0.9
+    assert np.abs(log.gimbal[:, 0]).max(axis=0) == pytest.approx([1.76, 1.5, 1.79], abs=0.05)
+    log = Drones(config=AS_THERE, pitch=0.8).fly(WEAVING)
+    assert off(log, 0.8).max() < 0.03
 
 
 def test_each_drone_flies_as_if_alone_whatever_the_number():

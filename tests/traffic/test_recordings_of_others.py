@@ -93,8 +93,14 @@ def test_arrays_that_do_not_fit_are_refused(arrays, name):
 
 
 def test_vehicles_out_of_the_world_are_refused(arrays):
-    far = np.full_like(arrays["position_second"], 30_000)
+    far = np.full_like(arrays["position_second"], 30_000, np.int16)
     assert "out of the world" in refused(packed({**arrays, "position_second": far}))
+
+
+def test_larger_changes_than_there_are_places_are_refused(arrays):
+    for place in (arrays["position_second"].size, 2**40):
+        more = {"position_far": np.array([place]), "position_far_second": np.array([1000])}
+        refused(packed({**arrays, **more}))
 
 
 class Trap:

@@ -14,8 +14,10 @@ from eyas.state.motion import ActorState
 from eyas.traffic import library
 from eyas.traffic.config import Demand, Mix, TrafficConfig, VehicleType
 from eyas.traffic.library import STANDARD_DURATION, find_recording
+from eyas.traffic.recording_file import load
 from eyas.traffic.replay import Replay
 from eyas.traffic.smoothing import smooth
+from eyas.world.maps import MAPS
 from eyas.world.maps.citystreet import CITYSTREET
 from eyas.world.maps.downtown import DOWNTOWN
 from eyas.world.roads.areas import road_area
@@ -26,6 +28,7 @@ sys.modules.update(dict.fromkeys(["libsumo", "sumo", "sumolib", "traci"]))
 from eyas.traffic import library
 from eyas.traffic.config import TrafficConfig
 from eyas.traffic.library import find_recording
+from eyas.world.maps import MAPS
 from eyas.world.maps.citystreet import CITYSTREET
 def actors(config, trackers):
     shipped = CITYSTREET.shipped_traffic()
@@ -99,6 +102,69 @@ def test_it_needs_no_sumo():
     assert (" ".join(done.stdout.split()), done.stderr) == ("40 40 40 40 40", "")
 
 
+WITHOUT_SUMO_OF_ANY_NUMBER = """
+import logging, sys
+sys.modules.update(dict.fromkeys(["libsumo", "sumo", "sumolib", "traci"]))
+logging.getLogger("eyas").disabled = True
+from eyas.traffic.config import TrafficConfig
+from eyas.traffic.library import find_file
+from eyas.world.maps import MAPS
+groups = TrafficConfig(demand="respawn")
+recipes = {str(recipe.folder): recipe for recipe in map(MAPS.get, MAPS.built_in)}
+for recipe in recipes.values():  # the simple maps share theirs
+    roads, shipped = recipe.roads(0), recipe.shipped_traffic()
+    found = [
+        find_file(roads, groups, trackers=count, shipped=shipped).outline().provenance.config
+        for count in range(1, 41)
+    ]
+    print(*(one.group_size if one.demand == "respawn" else "lasting" for one in found))
+"""
+
+
+def test_one_to_forty_trackers_need_no_sumo_on_any_map():
+    done = subprocess.run(
+        [sys.executable, "-c", WITHOUT_SUMO_OF_ANY_NUMBER], capture_output=True, text=True
+    )
+    assert done.stderr == ""
+    sizes = ["3", "10", "10", "12", *26 * ["40"], *10 * ["lasting"]]
+    assert len(done.stdout.splitlines()) == 7
+    assert {tuple(line.split()) for line in done.stdout.splitlines()} == {tuple(sizes)}
+
+
+@pytest.mark.parametrize(
+    "name", ["citystreet", "downtown", "lake", "village", "desert", "farmland", "simpleway-grass"]
+)
+def test_of_forty_cars_that_come_and_go_three_quarters_stay_for_an_episode(name):
+    (file,) = (file for file in MAPS.get(name).shipped_traffic() if file.name.endswith("of-40.npz"))
+    present = load(file).present
+    stays = np.array([present[k : k + 32].all(axis=0).sum() for k in range(len(present) - 32)])
+    assert stays.min() >= 31
+    assert present.sum(axis=1).mean() > 39.8
+
+
+def test_larger_groups_are_told_and_those_asked_for_are_not_replaced(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+):
+    caplog.set_level("INFO", "eyas")
+    groups = TrafficConfig(demand=Demand.RESPAWN)
+    assert recording(0, groups, trackers=2).provenance.config.group_size == 10
+    assert caplog.messages == [
+        "traffic: groups of 10 vehicles for 2 trackers, the next that are shipped; "
+        "traffic.group_size=6 has SUMO record such groups"
+    ]
+    recording(0, groups, trackers=31)
+    assert caplog.messages[1].startswith("traffic: of 40 vehicles that come and go, too few stay")
+    monkeypatch.setenv("EYAS_CACHE_DIR", str(tmp_path))
+    monkeypatch.setattr(library, "sumo_version", not_installed)
+    six = groups.model_copy(update={"group_size": 6})
+    with pytest.raises(MissingExtraError, match="no recording fits"):
+        recording(0, six, trackers=2)
+
+
+def not_installed(purpose: str) -> str:
+    raise MissingExtraError(purpose, "sumo")
+
+
 def test_groups_drive_as_in_the_original():
     """Within 15 % of what its own network and settings give, for groups of 12 every 52 s."""
     shipped = recording(0, TrafficConfig(demand=Demand.RESPAWN), trackers=4)
@@ -130,9 +196,6 @@ def test_groups_drive_as_in_the_original():
 def test_it_is_not_taken_for_anything_else(
     map_seed: int, config: TrafficConfig, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ):
-    def not_installed(purpose: str) -> str:
-        raise MissingExtraError(purpose, "sumo")
-
     monkeypatch.setenv("EYAS_CACHE_DIR", str(tmp_path))
     monkeypatch.setattr(library, "sumo_version", not_installed)
     with pytest.raises(MissingExtraError, match="no recording fits"):

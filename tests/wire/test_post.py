@@ -106,6 +106,21 @@ def test_a_pipe_or_a_link_in_the_place_of_an_action_is_not_read(post, tmp_path, 
     assert len(caplog.records) == 2
 
 
+def test_a_folder_in_the_place_of_an_action_is_put_aside_with_what_is_in_it(post, caplog):
+    for number in (1, 2):
+        post.names.action.mkdir()
+        (post.names.action / "mine.txt").write_text("kept")
+        assert post.poll()
+        assert post.action == HOVER
+        assert files(post)[number - 1 :] == [f"DRONE0_AlgAction.txt.folder-{number}"]
+        post.answer([])
+    assert caplog.messages == 2 * ["DRONE0: DRONE0_AlgAction.txt: not an ordinary file; it hovers"]
+    assert (post.names.action.parent / files(post)[0] / "mine.txt").read_text() == "kept"
+    post.names.action.write_text("0,0,0,0,1\n")
+    assert post.poll()
+    assert post.action.reset
+
+
 def test_a_new_client_takes_the_place_of_one_that_has_left_its_answer(post, caplog, monkeypatch):
     now = [100.0]
     monkeypatch.setattr("time.monotonic", lambda: now[0])

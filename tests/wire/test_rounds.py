@@ -10,7 +10,7 @@ from eyas.wire.codec import HOVER, RESET
 from eyas.wire.config import WireConfig
 from eyas.wire.exchange import Exchange
 from eyas.wire.pause import Pause
-from eyas.wire.server import Server
+from eyas.wire.server import Server, Service
 
 
 class EnoughError(Exception):
@@ -71,10 +71,11 @@ def run(tmp_path, port):
             begin(count, announce, lambda n: exchange.names(f"DRONE{n}"))
             return Crew(played)
 
-        starter = threading.Thread(target=first)
+        service = Service(WireConfig(port=port), "DRONE", build, verbose=False)
+        starter = threading.Thread(target=first, daemon=True)
         starter.start()
         with pytest.raises(EnoughError):
-            Server(WireConfig(port=port), exchange, "DRONE", build, verbose=False).run()
+            Server(exchange, lambda: service, lambda: ("127.0.0.1", port)).run()
         starter.join()
         return played
 

@@ -11,7 +11,7 @@ from eyas.world.maps import MAPS
 from eyas.world.maps.simpleway.roads import ROADS, road_graph, road_lines
 from eyas.world.maps.simpleway.scene import paved
 from eyas.world.maps.simpleway.skins import SKINS
-from eyas.world.weather import SNOW, Season
+from eyas.world.weather import Season
 
 NAMES = [name for name in MAPS.built_in if name.startswith("simpleway-")]
 
@@ -31,11 +31,23 @@ def farm(network):
     return MAPS.get("simpleway-farm").scene(network, 0, Season.WINTER)
 
 
-def test_there_are_the_originals_seven_skins_and_twenty_three_maps():
-    assert {name.removeprefix("simpleway-") for name in NAMES} == set(SKINS)
-    assert sum(len(MAPS.get(name).weathers) for name in NAMES) == 23
-    assert MAPS.get("simpleway-city").weathers == (SNOW.name,)
-    assert MAPS.get("simpleway-clinker").weathers == ("day", "night")
+ORIGINAL = {
+    "grass": "day foggy night",
+    "clinker": "day foggy night",
+    **dict.fromkeys(["desert", "farm", "lake", "village"], "day foggy night snow"),
+    "city": "snow",
+}
+"""The original's 23 worlds."""
+
+
+def test_there_are_the_original_s_twenty_three_worlds_and_a_lawn_in_snow():
+    ours = {name.removeprefix("simpleway-"): MAPS.get(name).weathers for name in NAMES}
+    assert set(ours) == set(SKINS)
+    worlds = {(skin, weather) for skin in ours for weather in ours[skin]}
+    theirs = {(skin, weather) for skin in ORIGINAL for weather in ORIGINAL[skin].split()}
+    assert len(theirs) == 23
+    assert worlds - theirs == {("grass", "snow")}
+    assert theirs <= worlds
 
 
 def test_all_skins_share_roads_and_recordings():

@@ -24,6 +24,7 @@ from eyas.cli import (
     train,
     verify,
     video,
+    webots_shim,
 )
 from eyas.cli.said import say
 from eyas.core.errors import EyasError
@@ -62,6 +63,7 @@ app.command("demo")(demo.command)
 app.command("video")(video.command)
 app.command("train")(train.command)
 app.command("serve")(serve.command)
+app.command("webots-shim")(webots_shim.command)
 app.command("bench")(bench.command)
 app.command("verify")(verify.command)
 app.command("evaluate")(evaluate.evaluate)

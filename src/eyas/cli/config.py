@@ -31,10 +31,15 @@ def show(
 ) -> None:
     """Check the settings, and print all of them as JSON."""
     from eyas.settings.file import load_settings
+    from eyas.settings.legacy.messages import originals_named
     from eyas.settings.trust import code_of
+    from eyas.world.maps import MAPS
 
     # Nothing that the file names is imported here, so it may be anyone's.
     settings = load_settings(chosen_file(config, preset), gathered(set_), trust=True)
+    if ":" not in settings.world.map:  # code of the user's is not run to show settings
+        with originals_named(settings):
+            MAPS.get(settings.world.map).light(settings.world.weather)
     for setting, name in code_of(settings):
         typer.echo(f"eyas: note: {setting} names code, which a run calls: {name!r}", err=True)
     typer.echo(_text(settings, legacy=legacy))

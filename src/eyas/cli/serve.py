@@ -1,5 +1,6 @@
 """`eyas serve`."""
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated
 
@@ -48,10 +49,11 @@ def command(  # noqa: PLR0913  # one parameter for each option
         file = root / SETTINGS_FILE
     # The first start writes a file, which cannot tell all, and serves what the next will read.
     overrides = gathered(set_, map_name, weather, seed)
-    settings = load_settings(file, overrides, base=LIKE_THE_ORIGINAL, trust=trust)
+    load = partial(load_settings, file, overrides, base=LIKE_THE_ORIGINAL, trust=trust)
+    settings = load()
     if settings.original is not None and settings.mode is not Mode.TRAIN:
         said = f"mode (Simulation_Mode) is '{settings.mode}'; 'eyas serve' trains anyway"
         typer.echo(f"eyas: note: {said}", err=True)
     from eyas.modes.serve.run import run  # after all checks
 
-    run(settings, root)
+    run(settings, root, load if file == root / SETTINGS_FILE else None)

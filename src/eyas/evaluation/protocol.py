@@ -36,6 +36,7 @@ world of its own, so that none shares its target."""
 
 _LATER: Mapping[str, Any] = {
     "start.velocity": "rest",
+    "tracker.flight": "original",
     "camera.mount": None,
     "control.action_latency_steps": 0.0,
     "control.observation_latency_steps": 0.0,
@@ -104,10 +105,12 @@ class Protocol:
     def hash(self) -> str:
         """Twelve hexadecimal digits that differ between protocols."""
         settings = self.settings.model_dump(mode="json", include=_FIXED)
+        # Before, a flown drone flew in neither of the two ways.
+        flown = not self.settings.tracker.supervised
         for path, default in _LATER.items():
             *groups, name = path.split(".")
             group = reduce(operator.getitem, groups, settings)
-            if group[name] == default:
+            if group[name] == default and not (flown and path == "tracker.flight"):
                 del group[name]
         content = [FORMAT, settings, self.directions, self.alike]
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:12]

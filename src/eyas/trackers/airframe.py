@@ -69,6 +69,9 @@ class Airframe(NamedTuple):
     """Torque against a turn rate [N m s/rad]."""
 
     servo: GimbalServo = GimbalServo()
+    as_original: int = 0
+    """1: mixer and gimbal act as in the original's code where they are at a limit; 0: mended, see
+    `eyas.trackers.config.Flight`."""
 
     motor_time_constant: float = 0.0
     """With which rotors reach their commanded rates [s]; 0: at once, as in the original."""

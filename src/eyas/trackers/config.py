@@ -9,7 +9,7 @@ from eyas.core.config import Config
 from eyas.core.own_code import NAMES_CODE
 from eyas.core.variation import Variation, bounds, within
 
-__all__ = ["TrackerConfig", "TrackerKind", "WindConfig"]
+__all__ = ["Flight", "TrackerConfig", "TrackerKind", "WindConfig"]
 
 
 class TrackerKind(StrEnum):
@@ -19,6 +19,17 @@ class TrackerKind(StrEnum):
     """A quadrotor with a camera on a gimbal."""
     CAR = "car"
     """An ideal robot that keeps its height over the ground."""
+
+
+class Flight(StrEnum):
+    """What a flown drone does where a rotor or its gimbal is at a limit."""
+
+    MENDED = "mended"
+    """Rotors that would have to pull down raise all four, which keeps the torque; the gimbal looks
+    past straight down, and none of its joints swings round."""
+    ORIGINAL = "original"
+    """As in the original's code: the torque is not kept, and near straight down the joints of yaw
+    and roll swing round."""
 
 
 def _path(text: str) -> str:
@@ -48,6 +59,9 @@ class TrackerConfig(Config):
     """Kind of the tracker, or a class of your own, `package.module:Class`."""
     supervised: bool = True
     """True: the drone follows its commands exactly; False: a flight controller flies it."""
+    flight: Flight = Flight.MENDED
+    """What a flown drone does where a rotor or its gimbal is at a limit; the original's files mean
+    `original`."""
     judged: bool | None = None
     """Whether its view is rewarded, and limits of its body end the episode; if not, the reward is
     1. None: a drone's are, a car's not, as in the original."""

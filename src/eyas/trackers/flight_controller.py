@@ -114,10 +114,12 @@ def mixed(frame: Airframe, force: Vector, torque: Vector, attitude: Row) -> Thru
     """Return the thrusts of the rotors, each from 0 to that of the largest rate [N].
 
     A rotor cannot pull down: what it lacks is added to all four, one after the other, which keeps
-    the torque and raises the total.
+    the torque and raises the total. As in the original's code, if so told, what it lacks is added
+    only to those before it: its loop takes the thrust of rotor i from each in turn, and that is 0
+    once its own turn has come. Then the torque is not kept.
 
     Args:
-        frame: Its arm and rotor constants are used.
+        frame: Its arm, its rotor constants and its way at the limits are used.
         force: Force that the rotors should exert, world frame [N].
         torque: Torque that they should exert, body frame [N m].
         attitude: Body to world, shape (4,).
@@ -130,17 +132,32 @@ def mixed(frame: Airframe, force: Vector, torque: Vector, attitude: Row) -> Thru
     front_left = 0.25 * (total + roll - pitch + yaw)
     rear_left = 0.25 * (total + roll + pitch - yaw)
     rear_right = 0.25 * (total - roll + pitch + yaw)
+    most = frame.thrust_constant * frame.rotor_limit * frame.rotor_limit
+    if frame.as_original:
+        second = max(0.0, -front_left)
+        third, fourth = max(0.0, -rear_left), max(0.0, -rear_right)
+        return (
+            min(max(front_right, 0.0) + second + third + fourth, most),
+            min(front_left + second + third + fourth, most),
+            min(rear_left + third + fourth, most),
+            min(rear_right + fourth, most),
+        )
     raised = max(0.0, -front_right)
     raised += max(0.0, -(front_left + raised))
     raised += max(0.0, -(rear_left + raised))
     raised += max(0.0, -(rear_right + raised))
-    most = frame.thrust_constant * frame.rotor_limit * frame.rotor_limit
     return (
-        min(front_right + raised, most),
-        min(front_left + raised, most),
-        min(rear_left + raised, most),
-        min(rear_right + raised, most),
+        _within(front_right + raised, most),
+        _within(front_left + raised, most),
+        _within(rear_left + raised, most),
+        _within(rear_right + raised, most),
     )
+
+
+@kernel
+def _within(thrust: float, most: float) -> float:
+    """Return a thrust that a rotor can have [N]; rounding may leave less than none."""
+    return min(max(thrust, 0.0), most)
 
 
 @kernel

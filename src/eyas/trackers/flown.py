@@ -12,15 +12,16 @@ from eyas.core.elementary import asin, atan2
 from eyas.core.jit import kernel, step_kernel
 from eyas.core.rng import EpisodeKey
 from eyas.core.variation import bounds
-from eyas.state.snapshot import TrackerState
+from eyas.state.snapshot import CameraState, TrackerState
 from eyas.state.terrain import Terrain, ground_at
 from eyas.trackers.airframe import FIRM_GROUND, ORIGINAL, Airframe
 from eyas.trackers.commands import follow_command
-from eyas.trackers.config import TrackerConfig
-from eyas.trackers.drone import aim, move_level, place
+from eyas.trackers.config import Flight, TrackerConfig
+from eyas.trackers.drone import move_level, place
 from eyas.trackers.flight_controller import attitude_torque, desired_force, mixed
-from eyas.trackers.gimbal import advance_gimbal, reset_gimbal
+from eyas.trackers.gimbal import advance_gimbal, camera_pose, reset_gimbal
 from eyas.trackers.gimbal_servo import ServoMemory, advance_servo, settle_servo
+from eyas.trackers.level_gimbal import level_pose
 from eyas.trackers.rigid_body import Body, Thrusts, moved
 from eyas.trackers.rotors import spun_up
 from eyas.trackers.steady import launch
@@ -141,7 +142,17 @@ def advance(
     _write(trackers, memory, n, before, after)
     a, b = before.rate, after.rate
     change = (b[0] - a[0], b[1] - a[1], b[2] - a[2])
-    advance_servo(trackers, memory.gimbal, memory.servo, frame.servo, n, change)
+    advance_servo(trackers, memory.gimbal, memory.servo, frame, n, change)
+
+
+@step_kernel
+def aim(trackers: TrackerState, memory: FlightMemory, cameras: CameraState, n: int) -> None:
+    """Write the pose of the camera on the gimbal."""
+    body, attitude, gimbal = trackers.position[n], trackers.orientation[n], trackers.gimbal[n]
+    if memory.frame.as_original:
+        camera_pose(body, attitude, gimbal, cameras.position[n], cameras.rotation[n])
+    else:
+        level_pose(body, attitude, gimbal, cameras.position[n], cameras.rotation[n])
 
 
 @step_kernel
@@ -200,6 +211,7 @@ def flown_drone(config: TrackerConfig, frame: Airframe = ORIGINAL) -> Tracker:
     frame = frame._replace(
         motor_time_constant=float(config.motor_time_constant),
         drag_area=float(config.drag_area),
+        as_original=int(config.flight is Flight.ORIGINAL),
         contact_stiffness=FIRM_GROUND if config.ground_contact else 0.0,
     )
     blows = wind.turbulence > 0.0 or bounds(wind.speed) != (0.0, 0.0)

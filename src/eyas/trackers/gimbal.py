@@ -13,15 +13,20 @@ from eyas.trackers.lowpass import low_pass, settle
 
 __all__ = [
     "CAR_LIMITS",
+    "PITCH_JOINT",
+    "ROLL_JOINT",
+    "SIDEWAYS_LIMIT",
+    "YAW_JOINT",
     "advance_gimbal",
     "camera_axes",
     "camera_pose",
     "desired_angles",
     "held_pitch",
     "reset_gimbal",
+    "set_column",
 ]
 
-_SIDEWAYS_LIMIT = 1.7
+SIDEWAYS_LIMIT = 1.7
 """Largest roll and yaw of the joints [rad]."""
 
 Limits = tuple[float, float, float, float]
@@ -30,11 +35,11 @@ Limits = tuple[float, float, float, float]
 DRONE_LIMITS: Limits = (0.5, 1.5, -0.5, 1.5)
 CAR_LIMITS: Limits = (-1.0, 1.5, -1.0, 1.5)
 
-_YAW_JOINT = (0.13, -0.00469654, -0.013)
+YAW_JOINT = (0.13, -0.00469654, -0.013)
 """Position of the yaw joint, body frame [m]."""
-_PITCH_JOINT = (0.000625212, -0.00530346, -0.0207448)
+PITCH_JOINT = (0.000625212, -0.00530346, -0.0207448)
 """Position of the pitch joint, frame of the yaw link [m]."""
-_ROLL_JOINT = (0.00754686, 0.0160388, -0.00586401)
+ROLL_JOINT = (0.00754686, 0.0160388, -0.00586401)
 """Position of the roll joint and the camera, frame of the pitch link [m]."""
 
 
@@ -111,11 +116,11 @@ def camera_pose(
     """
     sp, cp = sin_cos(gimbal[1])
     sy, cy = sin_cos(gimbal[2])
-    x = _PITCH_JOINT[0] + cp * _ROLL_JOINT[0] + sp * _ROLL_JOINT[2]
-    y = _PITCH_JOINT[1] + _ROLL_JOINT[1]
-    z = _PITCH_JOINT[2] - sp * _ROLL_JOINT[0] + cp * _ROLL_JOINT[2]
-    x, y = _YAW_JOINT[0] + cy * x - sy * y, _YAW_JOINT[1] + sy * x + cy * y
-    x, y, z = rotate(orientation, x, y, _YAW_JOINT[2] + z)
+    x = PITCH_JOINT[0] + cp * ROLL_JOINT[0] + sp * ROLL_JOINT[2]
+    y = PITCH_JOINT[1] + ROLL_JOINT[1]
+    z = PITCH_JOINT[2] - sp * ROLL_JOINT[0] + cp * ROLL_JOINT[2]
+    x, y = YAW_JOINT[0] + cy * x - sy * y, YAW_JOINT[1] + sy * x + cy * y
+    x, y, z = rotate(orientation, x, y, YAW_JOINT[2] + z)
     camera_position[0] = position[0] + x
     camera_position[1] = position[1] + y
     camera_position[2] = position[2] + z
@@ -132,17 +137,18 @@ def camera_axes(
     sr, cr = sin_cos(gimbal[0])
     sp, cp = sin_cos(gimbal[1])
     sy, cy = sin_cos(gimbal[2])
-    _set_column(camera_rotation, 0, rotate(orientation, cy * cp, sy * cp, -sp))
+    set_column(camera_rotation, 0, rotate(orientation, cy * cp, sy * cp, -sp))
     left = rotate(orientation, cy * sp * sr - sy * cr, sy * sp * sr + cy * cr, cp * sr)
-    _set_column(camera_rotation, 1, left)
+    set_column(camera_rotation, 1, left)
     up = rotate(orientation, cy * sp * cr + sy * sr, sy * sp * cr - cy * sr, cp * cr)
-    _set_column(camera_rotation, 2, up)
+    set_column(camera_rotation, 2, up)
 
 
 @kernel
-def _set_column(
+def set_column(
     matrix: NDArray[np.float64], column: int, vector: tuple[float, float, float]
 ) -> None:
+    """Set a column of a matrix, shape (3, 3)."""
     matrix[0, column], matrix[1, column], matrix[2, column] = vector
 
 
@@ -173,7 +179,7 @@ def desired_angles(
         pitch = atan2(-r20, math.sqrt(r21 * r21 + r22 * r22))
         yaw = atan2(r10, m00)
     return (
-        min(max(roll, -_SIDEWAYS_LIMIT), _SIDEWAYS_LIMIT),
+        min(max(roll, -SIDEWAYS_LIMIT), SIDEWAYS_LIMIT),
         min(max(pitch, limits[2]), limits[3]),
-        min(max(yaw, -_SIDEWAYS_LIMIT), _SIDEWAYS_LIMIT),
+        min(max(yaw, -SIDEWAYS_LIMIT), SIDEWAYS_LIMIT),
     )

@@ -9,8 +9,9 @@ from eyas.core.clock import PHYSICS_STEP
 from eyas.core.elementary import sin_cos
 from eyas.core.jit import kernel, step_kernel
 from eyas.state.snapshot import TrackerState
-from eyas.trackers.airframe import GimbalServo
+from eyas.trackers.airframe import Airframe, GimbalServo
 from eyas.trackers.gimbal import desired_angles
+from eyas.trackers.level_gimbal import carried_along, level_angles
 from eyas.trackers.lowpass import low_pass, settle
 
 __all__ = ["ServoMemory", "advance_servo", "settle_servo"]
@@ -37,7 +38,7 @@ def advance_servo(
     trackers: TrackerState,
     filters: NDArray[np.float64],
     memory: ServoMemory,
-    servo: GimbalServo,
+    frame: Airframe,
     n: int,
     change: Vector,
 ) -> None:
@@ -51,19 +52,18 @@ def advance_servo(
         trackers: Source of the body's attitude and the commanded angles; its joint angles are set.
         filters: Low-pass filters of the desired roll, pitch and yaw, shape (N, 3, 2); updated.
         memory: Updated.
-        servo: Constants of the motors.
+        frame: Its servo and its way at the limits are used.
         n: Index of the tracker.
         change: Change of the body's angular velocity in this step, body frame [rad/s].
     """
     commanded, euler, gimbal = trackers.commanded_gimbal[n], trackers.euler[n], trackers.gimbal[n]
-    desired = desired_angles(commanded[0], commanded[1], euler[0], euler[1])
-    (sp, cp), (sy, cy) = sin_cos(gimbal[1]), sin_cos(gimbal[2])
-    ahead = cy * change[0] + sy * change[1]
-    carried = (
-        cp * ahead - sp * change[2],
-        cy * change[1] - sy * change[0],
-        change[2],
-    )
+    servo = frame.servo
+    if frame.as_original:
+        desired = desired_angles(commanded[0], commanded[1], euler[0], euler[1])
+        carried = _carried_along(gimbal, change)
+    else:
+        desired = level_angles(commanded[0], commanded[1], euler[0], euler[1])
+        carried = carried_along(gimbal, change)
     for axis in range(3):
         error = low_pass(filters[n, axis], desired[axis]) - gimbal[axis]
         rate = memory.rate[n, axis]
@@ -73,6 +73,18 @@ def advance_servo(
         rate = min(max(rate, -servo.rate_limit), servo.rate_limit)
         memory.rate[n, axis] = rate
         gimbal[axis] += rate * PHYSICS_STEP
+
+
+@kernel
+def _carried_along(gimbal: NDArray[np.float64], change: Vector) -> Vector:
+    """Return what the body's turn is about the axes of the original's joints: roll, pitch, yaw."""
+    (sp, cp), (sy, cy) = sin_cos(gimbal[1]), sin_cos(gimbal[2])
+    ahead = cy * change[0] + sy * change[1]
+    return (
+        cp * ahead - sp * change[2],
+        cy * change[1] - sy * change[0],
+        change[2],
+    )
 
 
 @kernel

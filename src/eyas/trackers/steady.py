@@ -12,6 +12,7 @@ from eyas.trackers.commands import heading
 from eyas.trackers.flight_controller import body_axes, within_tilt
 from eyas.trackers.gimbal import reset_gimbal
 from eyas.trackers.gimbal_servo import settle_servo
+from eyas.trackers.level_gimbal import reset_level
 from eyas.trackers.lowpass import settle
 
 __all__ = ["launch"]
@@ -50,8 +51,11 @@ def launch(
     cosine, sine = heading(trackers.orientation[n])
     settle(memory.forward[n], cosine * east + sine * north)
     settle(memory.left[n], cosine * north - sine * east)
-    pitch, yaw = trackers.commanded_gimbal[n, 0], trackers.commanded_gimbal[n, 1]
-    reset_gimbal(trackers, memory.gimbal, n, pitch, yaw)
+    if frame.as_original:
+        pitch, yaw = trackers.commanded_gimbal[n, 0], trackers.commanded_gimbal[n, 1]
+        reset_gimbal(trackers, memory.gimbal, n, pitch, yaw)
+    else:
+        reset_level(trackers, memory.gimbal, n)
     settle_servo(trackers, memory.gimbal, memory.servo, n)
 
 

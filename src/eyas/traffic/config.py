@@ -86,7 +86,8 @@ class TrafficConfig(Config):
     """[m/s^2]"""
     group_size: Annotated[int, Field(ge=1, le=1000)] | None = None
     """Vehicles that enter together (respawn), at least three for each tracker of a world; None:
-    three for each."""
+    three for each. Where the number of trackers decides, the next larger groups that are shipped
+    are taken (3, 5, 10, 12, 40), and above three quarters of `max_vehicles` none leaves."""
     group_interval: Annotated[float, Field(ge=0.1, le=3600)] = 52.0
     """Time between groups (respawn) [s]."""
     route_length: tuple[Least, Most] = (500.0, 7000.0)

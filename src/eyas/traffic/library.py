@@ -4,7 +4,7 @@ import hashlib
 import json
 import logging
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from importlib.resources.abc import Traversable
 from pathlib import Path
 
@@ -14,7 +14,7 @@ from eyas.core.config import shown
 from eyas.core.errors import DataFileError
 from eyas.core.files import user_path
 from eyas.state.roads import RoadGraph
-from eyas.traffic.config import Mix, TrafficConfig
+from eyas.traffic.config import Demand, Mix, TrafficConfig
 from eyas.traffic.network import graph_hash
 from eyas.traffic.record import GROUP_SHARE, WARM_UP, record, resolved
 from eyas.traffic.recording import Provenance, Recording, check_map
@@ -37,9 +37,14 @@ _LOG = logging.getLogger("eyas")
 CANONICAL_SEED = 1
 """Seed of the shipped recordings, and the default seed of others."""
 
-RESPAWN_GROUPS = (3, 5, 10, 12)
+RESPAWN_GROUPS = (3, 5, 10, 12, 40)
 """Sizes of the groups in the shipped recordings with `respawn`: 3 for one tracker and 12 for the
-four of a video by default; 5 in the manual's example; 10 in the original's own file."""
+four of a video by default; 5 in the manual's example; 10 in the original's own file; 40 for
+more trackers: as many as there are vehicles, so one enters soon after another has left."""
+
+_SHARED_OUT = 0.75
+"""Largest share of vehicles that come and go which trackers may follow: beyond it, some find none
+that stays for an episode of 3 s (of 40, at least 31 did at any time on each of the maps)."""
 
 CANONICAL_MIX = Mix(passenger=0.7, bus=0.1, truck=0.1, trailer=0.05, motorcycle=0.05)
 """Classes of vehicles in the shipped recordings of a mixed fleet, which the two cities have."""
@@ -82,19 +87,28 @@ def find_file(
         check_map(origin, graph.map_name, graph.seed, graph_hash(graph), str(path))
         return named
     seed = CANONICAL_SEED if config.seed is None else config.seed
-    wanted = resolved(config, seed, trackers)
+    wanted = resolved(_lasting(config, trackers), seed, trackers)
     _tell_raised(config, wanted, trackers)
-    others = []
+    others: dict[RecordingFile, Provenance] = {}
     for file in shipped:
         found = RecordingFile.read(file)
         origin = found.outline().provenance
         if _fits(origin, graph, wanted) and origin.duration >= duration:
             return found
-        others.append(origin)
+        others[found] = origin
+    if _may_be_larger(config, trackers):
+        roomy = _with_larger_groups(others, graph, wanted, duration)
+        if roomy is not None:
+            _LOG.info(
+                "traffic: groups of %d vehicles for %d trackers, the next that are shipped; "
+                "traffic.group_size=%d has SUMO record such groups",
+                *(others[roomy].config.group_size or 0, trackers, wanted.group_size or 0),
+            )
+            return roomy
     kept = _cached(graph, wanted, duration)
     if kept is not None:
         return kept
-    reason = _reason(others, graph, wanted, duration)
+    reason = _reason(others.values(), graph, wanted, duration)
     if not config.update_routes:
         reason = f"although traffic.update_routes (Sumo_Params.rou_update) is false, {reason}"
     return _new(graph, wanted, duration, reason)
@@ -160,6 +174,45 @@ def _cache_file(graph: RoadGraph, wanted: TrafficConfig, duration: float) -> Pat
     key = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:32]
     name = re.sub(r"[^\w.-]", "_", graph.map_name)
     return cache_folder() / Kind.TRAFFIC / f"{name}-{graph.seed}-{key}.npz"
+
+
+def _lasting(config: TrafficConfig, trackers: int) -> TrafficConfig:
+    """Return the settings, without vehicles that leave if these are too few for the trackers."""
+    if config.demand is Demand.KEEP_ALIVE or trackers <= _SHARED_OUT * config.max_vehicles:
+        return config
+    _LOG.warning(
+        "traffic: of %d vehicles that come and go, too few stay for %d trackers; so none leaves "
+        "(traffic.demand: 'keep_alive')",
+        *(config.max_vehicles, trackers),
+    )
+    return config.model_copy(update={"demand": Demand.KEEP_ALIVE})
+
+
+def _may_be_larger(config: TrafficConfig, trackers: int) -> bool:
+    """Return whether the number of trackers, not the user, determines the size of the groups."""
+    said = config.group_size
+    return config.demand is Demand.RESPAWN and (said is None or said < GROUP_SHARE * trackers)
+
+
+def _with_larger_groups(
+    others: Mapping[RecordingFile, Provenance],
+    graph: RoadGraph,
+    wanted: TrafficConfig,
+    duration: float,
+) -> RecordingFile | None:
+    """Return the recording with the least groups that are large enough; None if there is none.
+
+    More than all vehicles there are cannot enter together, so groups of that size are enough.
+    """
+    least, found = min(wanted.group_size or 0, wanted.max_vehicles), dict[int, RecordingFile]()
+    for file, origin in others.items():
+        size = origin.config.group_size
+        if origin.config.demand is Demand.KEEP_ALIVE or size is None or size < least:
+            continue
+        alike = _fits(origin, graph, wanted.model_copy(update={"group_size": size}))
+        if alike and origin.duration >= duration:
+            found[size] = file
+    return found[min(found)] if found else None
 
 
 def _tell_raised(config: TrafficConfig, wanted: TrafficConfig, trackers: int) -> None:

@@ -3,9 +3,10 @@
 import logging
 import socket
 import time
+from collections.abc import Callable
 from contextlib import suppress
 
-from eyas.core.errors import ConfigError, OutputError
+from eyas.core.errors import ConfigError, EyasError, OutputError
 
 __all__ = ["MOST_AGENTS", "Announcements"]
 
@@ -31,31 +32,37 @@ class Announcements:
     """
 
     def __init__(self, address: str, port: int) -> None:
-        try:
-            family, kind, _, _, place = socket.getaddrinfo(
-                address, port, type=socket.SOCK_DGRAM, flags=socket.AI_PASSIVE
-            )[0]
-        except (OSError, UnicodeError) as error:
-            raise ConfigError(f"wire.address: {address!r} is no network address: {error}") from None
-        self._socket = socket.socket(family, kind)
+        self._socket = _listening(address, port)
+        self._place = address, port
         self._told = -1.0
-        try:
-            self._socket.bind(place)
-        except OSError as error:
-            self._socket.close()
-            raise OutputError(
-                f"wire.port: cannot listen on UDP port {port} of {address}: {error.strerror}; "
-                "another server may use it: choose another, in the clients' port_process too"
-            ) from None
 
     def close(self) -> None:
         """Close the socket."""
         self._socket.close()
 
-    def wait(self) -> int:
-        """Wait for the first announcement; return the number of agents."""
-        self._socket.settimeout(0.5)  # not for ever: some systems let no signal in before
+    def move(self, address: str, port: int) -> None:
+        """Listen elsewhere from now on; where that is not possible, in a line, as before."""
+        if (address, port) == self._place:
+            return
+        self._place = address, port  # tried once
+        try:
+            new = _listening(address, port)
+        except EyasError as error:
+            _LOG.warning("%s", error)
+            return
+        self._socket.close()
+        self._socket = new
+        _LOG.info("now waiting for clients on UDP port %d of %s", port, address)
+
+    def wait(self, meanwhile: Callable[[], None] = lambda: None) -> int:
+        """Wait for the first announcement; return the number of agents.
+
+        Args:
+            meanwhile: Called twice a second.
+        """
         while True:
+            meanwhile()
+            self._socket.settimeout(0.5)  # not for ever: some systems let no signal in before
             with suppress(TimeoutError):
                 count = self._next()
                 if count is not None:
@@ -98,3 +105,28 @@ class Announcements:
                 "message %r from %s ignored: not a number of agents, 1 to %d",
                 *(message[:40], sender, MOST_AGENTS),
             )
+
+
+def _listening(address: str, port: int) -> socket.socket:
+    """Return a socket that listens.
+
+    Raises:
+        ConfigError: No such address on this machine.
+        OutputError: The port is not free.
+    """
+    try:
+        family, kind, _, _, place = socket.getaddrinfo(
+            address, port, type=socket.SOCK_DGRAM, flags=socket.AI_PASSIVE
+        )[0]
+    except (OSError, UnicodeError) as error:
+        raise ConfigError(f"wire.address: {address!r} is no network address: {error}") from None
+    made = socket.socket(family, kind)
+    try:
+        made.bind(place)
+    except OSError as error:
+        made.close()
+        raise OutputError(
+            f"wire.port: cannot listen on UDP port {port} of {address}: {error.strerror}; "
+            "another server may use it: choose another, in the clients' port_process too"
+        ) from None
+    return made

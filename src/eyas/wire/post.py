@@ -6,6 +6,7 @@ import stat
 import time
 from collections import deque
 from collections.abc import Callable
+from itertools import count
 from pathlib import Path
 from typing import NamedTuple
 
@@ -83,8 +84,7 @@ class Post:
         """
         if self._shown:
             part = self._answer[0].path
-            with refusals(part):
-                part.unlink(missing_ok=True)
+            _put_away(part)
         self._answer.clear()
         self._shown = False
 
@@ -159,8 +159,7 @@ class Post:
         except ActionError as error:
             _LOG.error("%s: %s; it hovers", self.names.tracker, error)
             action = HOVER
-        with refusals(self.names.action):
-            self.names.action.unlink(missing_ok=True)
+        _put_away(self.names.action)
         self._unfinished = (b"", 0.0)
         self.action = action
         return True
@@ -195,6 +194,20 @@ class Post:
         if content != self._unfinished[0]:
             self._unfinished = (content, now)
         return bool(content) and now - self._unfinished[1] > _UNFINISHED
+
+
+def _put_away(path: Path) -> None:
+    """Delete a file; a folder in its place is renamed, as nobody knows what is in it.
+
+    Raises:
+        OutputError: That is not possible.
+    """
+    with refusals(path):
+        if path.is_dir() and not path.is_symlink():
+            names = (path.with_name(f"{path.name}.folder-{number}") for number in count(1))
+            path.rename(next(name for name in names if not os.path.lexists(name)))
+        else:
+            path.unlink(missing_ok=True)
 
 
 def _exists(path: Path) -> bool:

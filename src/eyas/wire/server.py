@@ -3,8 +3,9 @@
 import logging
 import time
 from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
+from eyas.core.errors import ConfigError, DataFileError, MissingExtraError, SpawnError
 from eyas.task.journal import Journal
 from eyas.wire.announcements import Announcements
 from eyas.wire.codec import RESET
@@ -16,45 +17,55 @@ from eyas.wire.post import Part, Post
 if TYPE_CHECKING:
     from eyas.wire.crew import Answer, Crew
 
-__all__ = ["Server"]
+__all__ = ["Server", "Service"]
 
 _LOG = logging.getLogger("eyas")
+
+_LOOKS = 0.5
+"""Time between two looks at the settings' port [s]."""
+
+
+class Service(NamedTuple):
+    """What is served to agents that announce themselves."""
+
+    config: WireConfig
+    tracker: str
+    """Name of the trackers, such as `DRONE`."""
+    build: Callable[[int], "Crew"]
+    """Returns the trackers, for a number of agents."""
+    verbose: bool
+    """Whether all that is said and done is logged as by the original."""
 
 
 class Server:
     """Serves clients of the original's protocol, until it is interrupted.
 
     Args:
-        config: The settings.
         exchange: The folder.
-        tracker: Name of the trackers, such as `DRONE`.
-        build: Returns the trackers, for a number of agents.
-        verbose: Whether all that is said and done is logged as by the original.
+        ask: Returns what to serve, whenever agents announce themselves; the same object as long as
+            nothing has changed.
+        place: Returns the address and the port on which to listen, which may change.
     """
 
     def __init__(
         self,
-        config: WireConfig,
         exchange: Exchange,
-        tracker: str,
-        build: Callable[[int], "Crew"],
-        *,
-        verbose: bool,
+        ask: Callable[[], Service],
+        place: Callable[[], tuple[str, int]],
     ) -> None:
-        self._config = config
         self._exchange = exchange
-        self._tracker = tracker
-        self._build = build
-        self._verbose = verbose
+        self._ask = ask
+        self._place = place
+        self._looked = time.monotonic()
         self._late: set[str] = set()
 
     def run(self) -> None:
         """Serve; each change of the number of agents begins with a new world.
 
         Raises:
-            EyasError: The folder or the port cannot be used, or nothing can be built.
+            EyasError: The folder or the port cannot be used.
         """
-        address, port = self._config.address, self._config.port
+        address, port = self._place()
         announcements = Announcements(address, port)
         try:
             with self._exchange.opened() as removed:
@@ -65,51 +76,83 @@ class Server:
                         *(self._exchange.files, removed),
                     )
                 _LOG.info("waiting for clients on UDP port %d of %s", port, address)
-                count, begun = announcements.wait(), frozenset[int]()
+                count, begun = self._wait(announcements), frozenset[int]()
                 while True:
-                    count, begun = self._serve(count, begun, announcements)
+                    count, begun = self._served(count, begun, announcements)
         finally:
             announcements.close()
 
-    def _serve(
+    def _wait(self, announcements: Announcements) -> int:
+        return announcements.wait(lambda: announcements.move(*self._place()))
+
+    def _served(
         self, count: int, begun: frozenset[int], announcements: Announcements
     ) -> tuple[int, frozenset[int]]:
-        """Serve some agents until another number of them is announced.
+        """Do as `_serve`; agents that cannot be served are told of in a line, and others waited
+        for.
+        """
+        _LOG.info("%d agent%s announced", count, "s" * (count > 1))
+        service = self._ask()
+        try:
+            crew = service.build(count)
+            try:
+                return self._serve(service, crew, (count, begun), announcements)
+            finally:
+                crew.close()
+        except (ConfigError, DataFileError, MissingExtraError, SpawnError) as error:
+            _LOG.error(
+                "%d agent%s cannot be served: %s; their clients wait in vain: end them; waiting "
+                "for the next",
+                *(count, "s" * (count > 1), error),
+            )
+            announcements.poll()  # of the others of them
+        return self._wait(announcements), frozenset()
+
+    def _serve(
+        self,
+        service: Service,
+        crew: "Crew",
+        agents: tuple[int, frozenset[int]],
+        announcements: Announcements,
+    ) -> tuple[int, frozenset[int]]:
+        """Serve some agents until others are announced.
 
         Args:
-            count: Number of agents.
-            begun: Those of them whose first reset has been taken already.
-            announcements: Where another number may be announced.
+            service: What is served.
+            crew: The trackers.
+            agents: Number of agents, and those of them whose first reset has been taken already.
+            announcements: Where others may be announced.
 
         Returns:
-            Another number of agents, and those whose first reset has been taken already.
-        """
-        names = [f"{self._tracker}{number}" for number in range(count)]
-        _LOG.info("%d agent%s announced", count, "s" * (count > 1))
-        crew = self._build(count)
-        try:
-            with Journal(self._exchange.logs, names, verbose=self._verbose) as journal:
-                posts = [
-                    Post(self._exchange.names(name), journal.hearer(number))
-                    for number, name in enumerate(names)
-                ]
-                for number in begun & set(range(count)):
-                    posts[number].action = RESET
-                _LOG.info("serving %s in %s", _named(names), self._exchange.files)
-                self._late.clear()
-                while True:
-                    other = self._gather(posts, count, announcements)
-                    if other is not None:
-                        return other, _begun(posts)
-                    self._play(crew, posts, journal)
-        finally:
-            crew.close()
+            The number of the others, and those whose first reset has been taken already.
 
-    def _gather(self, posts: list[Post], count: int, announcements: Announcements) -> int | None:
+        Raises:
+            SpawnError: There are fewer targets than agents.
+        """
+        count, begun = agents
+        names = [f"{service.tracker}{number}" for number in range(count)]
+        with Journal(self._exchange.logs, names, verbose=service.verbose) as journal:
+            posts = [
+                Post(self._exchange.names(name), journal.hearer(number))
+                for number, name in enumerate(names)
+            ]
+            for number in begun & set(range(count)):
+                posts[number].action = RESET
+            _LOG.info("serving %s in %s", _named(names), self._exchange.files)
+            self._late.clear()
+            while True:
+                other = self._gather(service, posts, announcements)
+                if other is not None:
+                    return other, _begun(posts)
+                self._play(service, crew, posts, journal)
+
+    def _gather(
+        self, service: Service, posts: list[Post], announcements: Announcements
+    ) -> int | None:
         """Give all answers and wait for the next action of each client.
 
         Returns:
-            Another number of agents, if one is announced; None when all actions are there.
+            The number of other agents, if such are announced; None when all actions are there.
         """
         pause = Pause()
         while any(post.action is None for post in posts):
@@ -119,43 +162,43 @@ class Server:
                 pause.restart()
                 continue
             if pause.long:
+                self._look(announcements)
                 other = announcements.poll()
-                if other not in (None, count):
+                if other is not None and self._is_new(service, other, len(posts)):
                     return other
-                self._tell_late(posts)
+                self._tell_late(posts, service.config.patience)
             pause.sleep()
         other = announcements.poll()
-        return None if other == count else other
+        return other if other is not None and self._is_new(service, other, len(posts)) else None
 
-    def _play(self, crew: "Crew", posts: list[Post], journal: Journal) -> None:
+    def _is_new(self, service: Service, announced: int, count: int) -> bool:
+        """Return whether agents that are announced need a world of their own."""
+        return announced != count or self._ask() is not service
+
+    def _look(self, announcements: Announcements) -> None:
+        """Follow the settings' port, twice a second."""
+        now = time.monotonic()
+        if now - self._looked > _LOOKS:
+            self._looked = now
+            announcements.move(*self._place())
+
+    def _play(self, service: Service, crew: "Crew", posts: list[Post], journal: Journal) -> None:
         actions = [post.action for post in posts]
         answers = crew.play([action for action in actions if action is not None])
         journal.step(crew.sim.snapshot)
         for post, answer in zip(posts, answers, strict=True):
-            post.answer(self._parts(post, answer))
+            post.answer(_parts(service, post, answer))
 
-    def _parts(self, post: Post, answer: "Answer") -> list[Part]:
-        """Return the files of an answer, in the original's order."""
-        names, picture = post.names, answer.picture
-        parts = [Part(names.state, lambda: answer.state)]
-        if self._config.reward_packet:
-            parts.append(Part(names.reward, lambda: answer.reward))
-        radar = answer.radar
-        if radar is not None:
-            parts.append(Part(names.radar, lambda: radar))
-        drawn = Part(names.picture, lambda: picture.result() if picture.done() else None)
-        return [*parts, drawn]
-
-    def _tell_late(self, posts: list[Post]) -> None:
+    def _tell_late(self, posts: list[Post], patience: float) -> None:
         """Report clients that do not go on, once."""
-        since = time.monotonic() - self._config.patience
+        since = time.monotonic() - patience
         late = [post.names.tracker for post in posts if post.owes and post.waiting < since]
         if set(late) - self._late:
             self._late |= set(late)
             _LOG.warning(
                 "%s: nothing for %g s: the client is busy, stopped or dead; all others wait for "
                 "it, and a new client can take its place",
-                *(", ".join(late), self._config.patience),
+                *(", ".join(late), patience),
             )
 
     def _welcome(self, posts: list[Post]) -> None:
@@ -163,6 +206,19 @@ class Server:
             if post.names.tracker in self._late:
                 self._late.discard(post.names.tracker)
                 _LOG.info("%s: goes on", post.names.tracker)
+
+
+def _parts(service: Service, post: Post, answer: "Answer") -> list[Part]:
+    """Return the files of an answer, in the original's order."""
+    names, picture = post.names, answer.picture
+    parts = [Part(names.state, lambda: answer.state)]
+    if service.config.reward_packet:
+        parts.append(Part(names.reward, lambda: answer.reward))
+    radar = answer.radar
+    if radar is not None:
+        parts.append(Part(names.radar, lambda: radar))
+    drawn = Part(names.picture, lambda: picture.result() if picture.done() else None)
+    return [*parts, drawn]
 
 
 def _begun(posts: list[Post]) -> frozenset[int]:

@@ -1,5 +1,6 @@
 """Serve clients of the original, in the place of its simulator."""
 
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -7,11 +8,12 @@ from typing import TYPE_CHECKING
 from eyas.core.clock import physics_steps
 from eyas.core.files import refusals
 from eyas.modes.serve.agreement import tell_disagreements
+from eyas.modes.serve.source import SettingsSource
 from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.adapter import save_legacy
 from eyas.settings.legacy.messages import originals_named
-from eyas.wire.exchange import Exchange
-from eyas.wire.server import Server
+from eyas.wire.exchange import SETTINGS_FILE, Exchange
+from eyas.wire.server import Server, Service
 from eyas.world.maps import MAPS
 
 if TYPE_CHECKING:
@@ -20,7 +22,11 @@ if TYPE_CHECKING:
 __all__ = ["run"]
 
 
-def run(config: EyasConfig, root: Path) -> None:
+def run(
+    config: EyasConfig,
+    root: Path,
+    load: Callable[[], EyasConfig] | None = None,
+) -> None:
     """Serve clients until the user stops it.
 
     If `root` has no `env_config.json`, which clients read too, the settings are written there; an
@@ -29,6 +35,8 @@ def run(config: EyasConfig, root: Path) -> None:
     Args:
         config: The settings.
         root: Folder with the original's `Webots_Simulation` and `Alg_Base`.
+        load: Reads the settings again where `env_config.json` holds them, as programs of clients
+            change it before they announce themselves; None: they do not change.
 
     Raises:
         EyasError: Something cannot be built, read or written, or the folder or the port is in use.
@@ -42,14 +50,41 @@ def run(config: EyasConfig, root: Path) -> None:
                 exchange.settings.parent.mkdir(parents=True, exist_ok=True)
             save_legacy(config, exchange.settings)
         tell_disagreements(config, root, exchange.settings)
-        tracker = config.tracker.original_name
-        crew = partial(_crew, config)
-        server = Server(config.wire, exchange, tracker, crew, verbose=config.verbose)
+        source = SettingsSource(config, exchange.settings if load else None, load)
+        desk = _Desk(source, config, root)
         try:
-            server.run()
+            Server(exchange, desk.ask, source.place).run()
         except KeyboardInterrupt as error:
             error.add_note("clients that still wait must be started again")
             raise
+
+
+class _Desk:
+    """Knows what to serve.
+
+    Args:
+        source: The settings, which may change.
+        config: The settings as they are.
+        root: Folder with the original's files.
+    """
+
+    def __init__(self, source: SettingsSource, config: EyasConfig, root: Path) -> None:
+        self._source, self._root = source, root
+        self._config, self._service = config, _service(config)
+
+    def ask(self) -> Service:
+        """Return what to serve now; the same as before if the settings are."""
+        new = self._source.read()
+        if new != self._config:
+            self._config, self._service = new, _service(new)
+            tell_disagreements(new, self._root, self._root / SETTINGS_FILE)
+        return self._service
+
+
+def _service(config: EyasConfig) -> Service:
+    return Service(
+        config.wire, config.tracker.original_name, partial(_crew, config), config.verbose
+    )
 
 
 def _crew(config: EyasConfig, count: int) -> "Crew":
@@ -60,4 +95,5 @@ def _crew(config: EyasConfig, count: int) -> "Crew":
     from eyas.wire.crew import Crew
 
     steps = physics_steps(config.control.frequency)
-    return Crew(build_simulation(config, together(count)), steps)
+    with originals_named(config):
+        return Crew(build_simulation(config, together(count)), steps)

@@ -17,6 +17,7 @@ from eyas.settings.legacy.keys import ENTRIES, GROUP_KEYS, KEEP_ALIVE
 from eyas.settings.legacy.layout import Nested, check_kinds, every_key, flat, nested
 from eyas.targets.config import TargetName
 from eyas.task.config import StartConfig, StartVelocity
+from eyas.trackers.config import Flight
 
 __all__ = [
     "LIKE_THE_ORIGINAL",
@@ -33,7 +34,7 @@ _LOG = logging.getLogger("eyas")
 
 LIKE_THE_ORIGINAL = updated(
     EyasConfig(start=StartConfig(velocity=StartVelocity.REST), extras=()),
-    {"video": {"jpeg_quality": 100}},
+    {"video": {"jpeg_quality": 100}, "tracker": {"flight": Flight.ORIGINAL.value}},
 )
 """Our defaults, but for what its file cannot express and the original does in another way."""
 

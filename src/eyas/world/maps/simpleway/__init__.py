@@ -1,7 +1,7 @@
 """The simple maps: sixteen straight roads that never meet, on grounds of seven kinds.
 
-All have the same roads, and share the network and the recordings in this package. As in the
-original there are 23 of them, weathers included.
+All have the same roads, and share the network and the recordings in this package. Weathers
+included there are 24 of them: the original's 23, and the lawn in snow.
 """
 
 from collections.abc import Mapping
@@ -77,7 +77,9 @@ GRASS = _skinned(
     seasons=True,
 )
 CLINKER = _skinned(
-    "clinker", "Straight roads on a grey plain", {DAY: CLEAR_DAY, NIGHT: _PURPLE_NIGHT}
+    "clinker",
+    "Straight roads on a grey plain",
+    {DAY: CLEAR_DAY, FOGGY: _FOG, NIGHT: _PURPLE_NIGHT},
 )
 DESERT = _skinned("desert", "Straight roads under bars of sand", _DESERT, seasons=True)
 FARM = _skinned("farm", "Straight roads between coloured strips", _ALL, seasons=True)
