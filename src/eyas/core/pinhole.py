@@ -1,9 +1,9 @@
 """The pinhole camera; its optical axis passes through the middle of the picture."""
 
-import math
-
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from eyas.core.elementary_arrays import atan, tan
 
 __all__ = ["field_along", "focal_length", "intrinsics", "project", "rays"]
 
@@ -15,7 +15,7 @@ def focal_length(width: int, fov: float) -> float:
         width: Width of the picture [pixels].
         fov: Horizontal field of view [rad].
     """
-    return 0.5 * width / math.tan(0.5 * fov)
+    return 0.5 * width / tan(0.5 * fov)
 
 
 def field_along(fov: float, ratio: float) -> float:
@@ -25,7 +25,7 @@ def field_along(fov: float, ratio: float) -> float:
         fov: Field of view along two sides [rad].
         ratio: Length of the other sides over the length of these.
     """
-    return 2.0 * math.atan(math.tan(0.5 * fov) * ratio)
+    return 2.0 * atan(tan(0.5 * fov) * ratio)
 
 
 def intrinsics(width: int, height: int, fov: float) -> NDArray[np.float64]:

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.elementary_arrays import cos, sin
 from eyas.sim.simulation import Simulation
 from eyas.state.scene import ObjectClass
 from eyas.state.snapshot import Snapshot
@@ -147,7 +148,7 @@ def privileged_state(snapshot: Snapshot, out: NDArray[np.float32]) -> None:
     out[:, 3:6] = episodes.relative_velocity
     out[:, 6:9] = episodes.relative_acceleration
     turn = targets.yaw - trackers.euler[:, 2]
-    out[:, 9], out[:, 10] = np.sin(turn), np.cos(turn)
+    out[:, 9], out[:, 10] = sin(turn), cos(turn)
     out[:, 11] = targets.speed
     out[:, 12:15] = targets.size
     out[:, 15] = trackers.gimbal[:, 1]

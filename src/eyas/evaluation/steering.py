@@ -1,10 +1,9 @@
 """Steering with the seven actions: towards what is not in the middle."""
 
-import math
-
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.elementary_arrays import tan
 from eyas.envs.config import EnvConfig
 
 __all__ = ["pixel_offset", "towards"]
@@ -17,7 +16,7 @@ _FIELD_OF_VIEW, _ASPECT = 0.7854, 0.75
 _DEPTH = 22.0
 """Distance of the ground that is assumed where only a picture is known [m]."""
 
-_HALF_WIDTH = _DEPTH * math.tan(0.5 * _FIELD_OF_VIEW)
+_HALF_WIDTH = _DEPTH * tan(0.5 * _FIELD_OF_VIEW)
 """Half the width of the ground that is then in the picture [m]."""
 
 _FORWARD, _BACKWARD, _LEFT, _RIGHT, _HOVER = 0, 1, 2, 3, 6

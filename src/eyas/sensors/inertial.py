@@ -7,10 +7,9 @@ integrating them gives its motion. A time constant of 0 gives the differences th
 sensors of a flown drone, which cannot jump, read its own motion.
 """
 
-import math
-
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.elementary import sin_cos
+from eyas.core.elementary_arrays import tanh
 from eyas.core.frames import rotate_back
 from eyas.core.jit import kernel, step_kernel
 from eyas.state.snapshot import TrackerState
@@ -27,7 +26,10 @@ def smoothing_share(time_constant: float) -> float:
     Args:
         time_constant: Of each of the two low-passes [s]; 0: no smoothing.
     """
-    return 1.0 if time_constant == 0.0 else -math.expm1(-PHYSICS_STEP / time_constant)
+    if time_constant == 0.0:
+        return 1.0
+    half = tanh(0.5 * PHYSICS_STEP / time_constant)
+    return 2.0 * half / (1.0 + half)  # 1 - exp(-PHYSICS_STEP / time_constant)
 
 
 @step_kernel

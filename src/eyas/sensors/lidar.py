@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
+from eyas.core.elementary_arrays import cos, sin
 from eyas.core.frames import rotate
 from eyas.core.jit import step_kernel
 from eyas.core.parallel import Held, Pointer, parallel_kernel
@@ -77,7 +78,7 @@ class Lidar:
         self._thing = np.full((count, kept), -1, np.int32)
         self._time = np.zeros((count, kept))
         angle = -math.pi - 2.0 * math.pi / points * np.arange(points)
-        self._ahead = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        self._ahead = np.stack([cos(angle), sin(angle)], axis=1)
         place = config.mount or mount
         scan = _Scan(
             snapshot.trackers,

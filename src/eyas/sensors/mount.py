@@ -1,11 +1,11 @@
 """Where sensors are fixed to the body."""
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.elementary_arrays import cos, sin
 from eyas.core.frames import rotate
 from eyas.core.jit import step_kernel
 from eyas.sensors.config import MountConfig
@@ -37,9 +37,9 @@ def mount_of(config: MountConfig) -> Mount:
 
 def turn_of(config: MountConfig) -> Floats:
     """Return the rotation of a mount, sensor to body, shape (3, 3)."""
-    cr, sr = math.cos(config.roll), math.sin(config.roll)
-    cp, sp = math.cos(config.pitch), math.sin(config.pitch)
-    cy, sy = math.cos(config.yaw), math.sin(config.yaw)
+    cr, sr = cos(config.roll), sin(config.roll)
+    cp, sp = cos(config.pitch), sin(config.pitch)
+    cy, sy = cos(config.yaw), sin(config.yaw)
     about_x = np.array([[1.0, 0.0, 0.0], [0.0, cr, -sr], [0.0, sr, cr]])
     about_y = np.array([[cp, 0.0, sp], [0.0, 1.0, 0.0], [-sp, 0.0, cp]])
     about_z = np.array([[cy, -sy, 0.0], [sy, cy, 0.0], [0.0, 0.0, 1.0]])

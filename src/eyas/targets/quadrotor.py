@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.elementary_arrays import cos, sin
 from eyas.mesh.shell import Shell
 from eyas.state.draw import DrawList
 from eyas.state.mesh import Material, Mesh, Surface
@@ -96,7 +97,7 @@ def _arm(
     motor = [(x, y, top - 0.045), (x, y, top - 0.005)]
     shell.tube(motor, (0.016, 0.016), _DARK, sides=sides + 1, both_sides=True)
     for angle in (turn, turn + math.pi):
-        along = np.array([math.cos(angle), math.sin(angle), 0.0])
+        along = np.array([cos(angle), sin(angle), 0.0])
         aside, up = np.array([-along[1], along[0], 0.0]), np.array([0.0, 0.0, 1.0])
         rings = [
             np.array(hub) + reach * along + np.outer(half * _ACROSS, aside) + np.outer(_LIFT, up)
@@ -123,7 +124,7 @@ class QuadrotorRig:
         """Write the slots of all actors, see `Rig`."""
         actor, slot = group.actor, group.slot
         present = actors.present[:, actor]
-        cosine, sine = np.cos(actors.yaw[:, actor]), np.sin(actors.yaw[:, actor])
+        cosine, sine = cos(actors.yaw[:, actor]), sin(actors.yaw[:, actor])
         pose = np.zeros((*present.shape, 3, 4), np.float32)
         pose[..., 0, 0], pose[..., 1, 1], pose[..., 2, 2] = cosine, cosine, 1.0
         pose[..., 0, 1], pose[..., 1, 0] = -sine, sine

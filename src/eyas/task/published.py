@@ -8,6 +8,8 @@ the first step after it, because what it tells at a reset is old.
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.elementary_arrays import atan2, hypot
+
 __all__ = ["TERMS", "d_vat", "d_vat_3d", "e2e", "effort", "speed"]
 
 Floats = NDArray[np.float64]
@@ -29,7 +31,7 @@ def e2e(
     1 - (((x - d)^2 + y^2)^(1/2) / 9 + 2 |w| / field of view), where w is the relative yaw [rad].
     """
     away = target_position_body[:, :2] - first_position_body[:, :2] * (1.0, 0.0)
-    miss = np.hypot(away[:, 0], away[:, 1]) / _E2E_DISTANCE
+    miss = hypot(away[:, 0], away[:, 1]) / _E2E_DISTANCE
     return np.clip(1.0 - (miss + 2.0 / field_of_view * np.abs(relative_yaw)), -1.0, 1.0)
 
 
@@ -64,7 +66,7 @@ def d_vat_3d(  # one argument for each quantity
     looks straight ahead; with a camera that looks down, that would be 0 everywhere.
     """
     ahead, _, above = target_position_camera.T
-    angle = np.arctan2(above, ahead)
+    angle = atan2(above, ahead)
     upright = np.maximum(0.0, 1.0 - np.abs(2.0 * angle / vertical_field_of_view))
     kept = _kept(target_position_body, first_position_body)
     return _joined(kept * _level(target_position_body, field_of_view) * upright, late_crash)
@@ -92,7 +94,7 @@ def _kept(target: Floats, first: Floats) -> Floats:
 def _level(target: Floats, field_of_view: Floats) -> Floats:
     """Return how near the target is to straight ahead, sideways."""
     # atan(y / x) is the angle of a line: what is behind counts like what is ahead.
-    angle = np.arctan2(np.abs(target[:, 1]), np.abs(target[:, 0]))
+    angle = atan2(np.abs(target[:, 1]), np.abs(target[:, 0]))
     return np.maximum(0.0, 1.0 - 2.0 / field_of_view * angle)
 
 

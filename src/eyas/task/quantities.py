@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.elementary_arrays import atan, tan
 from eyas.state.snapshot import Snapshot
 
 __all__ = ["QUANTITIES", "Setting"]
@@ -33,13 +34,13 @@ def _target_in_camera(snapshot: Snapshot) -> NDArray[np.float64]:
 
 
 def _vertical_field(snapshot: Snapshot, setting: Setting) -> NDArray[np.float64]:
-    half = setting.aspect * np.tan(0.5 * snapshot.cameras.field_of_view)
-    return np.asarray(2.0 * np.arctan(half), np.float64)
+    half = setting.aspect * tan(0.5 * snapshot.cameras.field_of_view)
+    return np.asarray(2.0 * atan(half), np.float64)
 
 
 def _visible(snapshot: Snapshot, setting: Setting) -> NDArray[np.bool_]:
     forward, left, up = _target_in_camera(snapshot).T
-    wide = np.tan(0.5 * snapshot.cameras.field_of_view) * forward
+    wide = tan(0.5 * snapshot.cameras.field_of_view) * forward
     inside = (np.abs(left) <= wide) & (np.abs(up) <= setting.aspect * wide)
     return np.asarray(inside & (forward > 0.0) & ~snapshot.targets.lost, np.bool_)
 

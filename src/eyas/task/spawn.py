@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from eyas.core.elementary_arrays import cos, sin, tan
 from eyas.core.errors import SpawnError
 from eyas.core.frames import wrap_angle
 from eyas.core.jit import interpreted
@@ -62,10 +63,10 @@ def start_pose(
     """
     yaw = target_yaw + start.direction
     forward = ahead + start.vertical_bias
-    forward -= math.tan(abs(0.5 * math.pi - start.pitch)) * start.height
+    forward -= tan(abs(0.5 * math.pi - start.pitch)) * start.height
     left = start.horizontal_bias
-    east = math.cos(yaw) * forward - math.sin(yaw) * left
-    north = math.sin(yaw) * forward + math.cos(yaw) * left
+    east = cos(yaw) * forward - sin(yaw) * left
+    north = sin(yaw) * forward + cos(yaw) * left
     offset = np.array([east, north, start.height])
     return np.asarray(target_position, np.float64) + offset, _wrapped(yaw)
 

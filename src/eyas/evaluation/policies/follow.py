@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from eyas.core.elementary_arrays import cos, sin
 from eyas.evaluation.policies.policy import BLIND, Decision, Sight, Start, env_config
 from eyas.evaluation.steering import towards
 
@@ -27,7 +28,7 @@ class Follow:
         trackers, _, targets, episodes, _ = sight.snapshot()
         error = targets.centre[:, :2] - episodes.view_centre[:, :2]
         yaw = trackers.euler[:, 2]
-        sine, cosine = np.sin(yaw), np.cos(yaw)
+        sine, cosine = sin(yaw), cos(yaw)
         ahead = cosine * error[:, 0] + sine * error[:, 1]
         left = -sine * error[:, 0] + cosine * error[:, 1]
         return Decision(towards(np.stack((ahead, left), axis=-1), self.env))
