@@ -1,4 +1,4 @@
-"""Elementary functions: right to the last place; the same bytes compiled, interpreted, in arrays."""
+"""Elementary functions: right to the last place, and the same compiled, interpreted, in arrays."""
 
 import itertools
 import math
