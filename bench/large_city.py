@@ -18,7 +18,6 @@ from eyas.mesh.assembly import concatenate
 from eyas.render.bake.ambient import bake_ambient
 from eyas.render.bake.shadows import bake_shadows
 from eyas.render.bake.tracks import TrackMap
-from eyas.render.classes import class_table
 from eyas.render.kernels.visibility.passes import SMALLEST_DETAIL
 from eyas.render.pack.geometry import build_geometry
 from eyas.render.pack.light import build_light
@@ -186,7 +185,7 @@ def _report(name: str, scene: Scene) -> None:
         print(f"  baked in {baked - packed:.1f} s CPU")
         print(f"  ambient: {ambient.openness.nbytes / 2**20:.1f} MiB in {opened - baked:.1f} s CPU")
         light = build_light(scene, lighting, shadows, ambient, TrackMap.none(), geometry)
-        renderer = Renderer(geometry, light, class_table(scene))
+        renderer = Renderer(geometry, light)
         _measured("  street, 84x84", renderer, street_views(scene))
         _measured("  street, pitch 0.3", renderer, street_views(scene, pitch=0.3))
         _measured("  horizon", renderer, horizon_views(scene))

@@ -79,18 +79,23 @@ def test_threads_and_neighbours_change_no_byte(city, renderer_of, drawn, threads
             np.testing.assert_array_equal(array[0], reference[name][k], err_msg=name)
 
 
-def test_bands_change_no_byte(city, drawn, threads, monkeypatch):
+@pytest.mark.parametrize("samples", [1, 4])
+@pytest.mark.parametrize("weather", ["day", "all"])
+def test_bands_change_no_byte(city, renderer_of, drawn, threads, monkeypatch, samples, weather):
     renderer, traffic = city
+    if weather == "all":
+        renderer = in_all_weathers(renderer_of)
     views = looking([(-60.0, -2.0, 7.0)], 0.1, 0.15, fov=1.2, subject=SUBJECT)
+    views.instant = np.array([3.0])
     threads(1)
-    whole = arrays(drawn(renderer, views, traffic, (120, 160)))
+    whole = arrays(drawn(renderer, views, traffic, (120, 160), samples))
     assert (whole["subject_pixels"] > 0).all()
     threads(2)
     monkeypatch.setattr(jobs, "SMALLEST_BAND", 800)
     monkeypatch.setattr(jobs, "JOBS_PER_THREAD", 12)
     renderer._tasks.clear()  # which keep their bands
     assert len(jobs.new_task(jobs.Size(1, 120, 160, 1, 0, False, 2)).job.band) == 24
-    for name, array in arrays(drawn(renderer, views, traffic, (120, 160))).items():
+    for name, array in arrays(drawn(renderer, views, traffic, (120, 160), samples)).items():
         np.testing.assert_array_equal(array, whole[name], err_msg=name)
 
 

@@ -27,7 +27,15 @@ from eyas.core.interrupts import let_in
 from eyas.core.lanes import operators as _operators  # noqa: F401  # registers them with numba
 from eyas.core.machine_code import MachineCode, optimised
 
-__all__ = ["KernelType", "caller_from_python", "entry_code", "intrinsic_type", "size_of"]
+__all__ = [
+    "KernelType",
+    "caller_from_python",
+    "entry_code",
+    "entry_module",
+    "intrinsic_type",
+    "kinds_of",
+    "size_of",
+]
 
 Kind = Any
 """One of numba's types."""
@@ -128,7 +136,14 @@ def _widened(kind: Kind, double: bool) -> Kind:
 
 
 def entry_code(function: Callable[..., Any], kinds: tuple[Kind, ...], entry: str) -> MachineCode:
-    """Return the machine code of a function and of all that it calls.
+    """Return the machine code of a function and of all that it calls; arguments as below."""
+    return optimised(entry_module(function, kinds, entry), entry)
+
+
+def entry_module(
+    function: Callable[..., Any], kinds: tuple[Kind, ...], entry: str
+) -> llvm.ModuleRef:
+    """Return a module of a function and of all that it calls.
 
     Args:
         function: A plain function that returns nothing.
@@ -143,7 +158,14 @@ def entry_code(function: Callable[..., Any], kinds: tuple[Kind, ...], entry: str
     for called in made.libraries:
         module.link_in(_shared(called))
     let_in()
-    return optimised(module, entry)
+    return module
+
+
+def kinds_of(bundles: Iterable[tuple[Any, ...]]) -> tuple[Kind, ...]:
+    """Return the types of a kernel's arguments: pointers to bundles in a table, and two numbers."""
+    pointers = [numba.types.CPointer(numba.typeof(bundle)) for bundle in bundles]
+    table = numba.types.CPointer(numba.types.Tuple(pointers))
+    return table, numba.types.intp, numba.types.intp
 
 
 def _shared(library: Any) -> llvm.ModuleRef:  # noqa: ANN401  # numba's library

@@ -51,6 +51,9 @@ _FUNCTIONS: tuple[Callable[..., float], ...] = (
 (_SIN, _COS, _TAN, _ASIN, _ACOS, _ATAN, _EXP, _LOG, _TANH, _ATAN2, _HYPOT, _POWER) = range(12)
 _OF_NUMBERS = tuple(interpreted(function) for function in _FUNCTIONS)
 
+_FEW = 4
+"""So many numbers are computed faster one by one in Python than by a call of a kernel."""
+
 
 class _Work(NamedTuple):
     """What to compute."""
@@ -141,6 +144,11 @@ class _OfTwo:
 
 def _of_all(function: int, first: Floats, second: Floats) -> Floats:
     """Return the values for arrays of one shape, which are new, so that all are of one kind."""
+    if first.size <= _FEW:
+        kernel, pairs = _OF_NUMBERS[function], zip(first.flat, second.flat, strict=True)
+        one = function < _ATAN2
+        values = [kernel(float(a)) if one else kernel(float(a), float(b)) for a, b in pairs]
+        return np.array(values, np.float64).reshape(first.shape)
     result = np.empty(first.shape)
     flat = first.reshape(-1), second.reshape(-1), result.reshape(-1)
     elementary_of_all.bound(Held(_Work(function, *flat)))()

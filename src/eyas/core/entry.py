@@ -66,11 +66,9 @@ def _compiled(
 ) -> MachineCode:
     import numba  # half a second, for the first start only
 
-    from eyas.core.compilation import entry_code, size_of
+    from eyas.core.compilation import entry_code, kinds_of, size_of
 
-    kinds = [numba.typeof(part.bundle) for part in parts]
-    for kind, part in zip(kinds, parts, strict=True):
+    for part in parts:
+        kind = numba.typeof(part.bundle)
         assert size_of(kind) == part.size, f"this version of numba lays {kind} out differently"
-    pointers = [numba.types.CPointer(kind) for kind in kinds]
-    table = numba.types.CPointer(numba.types.Tuple(pointers))
-    return entry_code(function, (table, numba.types.intp, numba.types.intp), entry)
+    return entry_code(function, kinds_of(part.bundle for part in parts), entry)

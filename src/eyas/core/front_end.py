@@ -127,7 +127,7 @@ class _Typing(Context):  # type: ignore[misc]
             self._known[key] = func, signature, func.get_impl_key(signature)
         _, signature, implementation = self._known[key]
         # What numba generates code with is noted in the function, which others resolve too, each
-        # with code of its own: numba with other settings, or numba-cuda.
+        # with code of its own, as numba with other settings does.
         func._impl_keys[signature.args] = implementation
         return signature
 

@@ -133,7 +133,7 @@ class Kernel:
 
 
 def kernel(function: Function) -> Function:
-    """Compile a function that allocates nothing, so that CUDA kernels can call it too."""
+    """Compile a function that allocates nothing, so that a graphics processor can run it too."""
     return cast("Function", Kernel(function))
 
 

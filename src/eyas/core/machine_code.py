@@ -30,6 +30,7 @@ __all__ = [
     "MachineCode",
     "code_file",
     "entry_of",
+    "improve",
     "load",
     "optimised",
     "read_code",
@@ -112,16 +113,30 @@ define float @sqrtf(float %x) alwaysinline {
 def optimised(module: llvm.ModuleRef, entry: str) -> MachineCode:
     """Return the machine code of a module, of which only the function `entry` is called."""
     module.link_in(llvm.parse_assembly(_ROOTS))
+    improve(module, entry, _machine(), loops=True)
+    needs = (f.name for f in module.functions if f.is_declaration)
+    needed = tuple(sorted(name for name in needs if not name.startswith("llvm.")))
+    return MachineCode(entry, needed, _machine().emit_object(module))
+
+
+def improve(
+    module: llvm.ModuleRef, entry: str, machine: llvm.TargetMachine, *, loops: bool
+) -> None:
+    """Optimise a module, of which only the function `entry` is called.
+
+    Args:
+        module: Changed in place.
+        entry: Name of the function.
+        machine: The processor to optimise for.
+        loops: Whether loops may do several of their turns at once.
+    """
     for value in (*module.functions, *module.global_variables):
         if not value.is_declaration and value.name != entry:
             value.linkage = "internal"
     tuning = llvm.create_pipeline_tuning_options(speed_level=3)
-    tuning.loop_vectorization, tuning.slp_vectorization = True, False
-    builder = llvm.create_pass_builder(_machine(), tuning)
+    tuning.loop_vectorization, tuning.slp_vectorization = loops, False
+    builder = llvm.create_pass_builder(machine, tuning)
     builder.getModulePassManager().run(module, builder)
-    needs = (f.name for f in module.functions if f.is_declaration)
-    needed = tuple(sorted(name for name in needs if not name.startswith("llvm.")))
-    return MachineCode(entry, needed, _machine().emit_object(module))
 
 
 @cache

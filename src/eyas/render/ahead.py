@@ -15,7 +15,6 @@ from eyas.core.jit import REFUSAL, folder_in_use
 from eyas.render.bake.ambient import AmbientMap
 from eyas.render.bake.shadows import ShadowMap
 from eyas.render.bake.tracks import TrackMap
-from eyas.render.classes import class_table
 from eyas.render.pack.geometry import build_geometry
 from eyas.render.pack.light import build_light
 from eyas.render.renderer import Renderer
@@ -111,5 +110,5 @@ def draw_nothing() -> None:
         subject=np.zeros(1, np.int32),
         field_of_view=1.0,
     )
-    renderer = Renderer(geometry, light, class_table(scene))
+    renderer = Renderer(geometry, light)
     renderer.draw(views, DrawList.create(1, 1), Picture.create(1, 8, 8))

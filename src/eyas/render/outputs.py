@@ -13,18 +13,10 @@ NOTHING = Output(
     rgb=np.empty((0, 0, 0, 3), np.uint8),
     depth=np.empty((0, 0, 0), np.float32),
     object_id=np.empty((0, 0, 0), np.int32),
+    class_id=np.empty((0, 0, 0), np.uint8),
     subject=np.empty((0, 6), np.int32),
     actor=np.empty((0, 0, 6), np.int32),
 )
-
-
-def _objects(picture: Picture) -> NDArray[np.int32]:
-    """Return the array for object ids; classes need them even if they are not wanted."""
-    if picture.object_id is not None:
-        return picture.object_id
-    if picture.class_id is not None:
-        return np.empty(picture.class_id.shape, np.int32)
-    return NOTHING.object_id
 
 
 def wanted_output(picture: Picture) -> Output:
@@ -37,7 +29,8 @@ def wanted_output(picture: Picture) -> Output:
     return Output(
         rgb=NOTHING.rgb if picture.rgb is None else picture.rgb,
         depth=NOTHING.depth if picture.depth is None else picture.depth,
-        object_id=_objects(picture),
+        object_id=NOTHING.object_id if picture.object_id is None else picture.object_id,
+        class_id=NOTHING.class_id if picture.class_id is None else picture.class_id,
         subject=np.empty((1, 6), np.int32) if subject and actors is None else NOTHING.subject,
         actor=NOTHING.actor if actors is None else np.empty((1, actors.shape[1], 6), np.int32),
     )

@@ -14,7 +14,6 @@ from eyas.core.parallel import Held
 from eyas.render.bake.ambient import bake_ambient
 from eyas.render.bake.shadows import bake_shadows
 from eyas.render.bake.tracks import TrackMap, track_map
-from eyas.render.classes import class_table, write_classes
 from eyas.render.jobs import Size, new_task, set_views
 from eyas.render.kernels.bundles import Geometry, Light, Movers, Output, Scratch, Task
 from eyas.render.kernels.draw import draw_views
@@ -48,7 +47,6 @@ class Renderer:
     Args:
         geometry: Everything that can be drawn.
         light: Light and air.
-        classes: Class of each object of the scene, see `class_table`.
         ready: Called before anything is drawn; returns when the kernels are compiled.
     """
 
@@ -56,11 +54,10 @@ class Renderer:
         self,
         geometry: Geometry,
         light: Light,
-        classes: NDArray[np.uint8],
         ready: Callable[[], object] | None = None,
     ) -> None:
         self._geometry, self._light = geometry, light
-        self._classes, self._ready = classes, ready
+        self._ready = ready
         self._held = Held(geometry), Held(light)
         self._last = Held(_NO_MOVERS), Held(NOTHING)
         self._scratch: dict[tuple[int, ...], Held[Scratch]] = {}
@@ -112,7 +109,7 @@ class Renderer:
             raise ConfigError(f"camera.samples: {samples} is not allowed; allowed: 1, 4")
         if self._ready is not None:
             self._ready()
-        movers = Movers(draw_list.part, draw_list.pose, draw_list.colour, draw_list.object_id)
+        movers = Movers(*(getattr(draw_list, name) for name in Movers._fields))
         output = wanted_output(picture)
         if samples == 4 and picture.rgb is not None:
             colours = NOTHING._replace(rgb=output.rgb)
@@ -120,8 +117,6 @@ class Renderer:
             output = output._replace(rgb=NOTHING.rgb)
         if any(len(array) for array in output):
             self._draw(views, movers, output, picture, 1, until)
-        if picture.class_id is not None:
-            write_classes(self._classes, draw_list, views.world, output.object_id, picture.class_id)
 
     def _draw(
         self,
@@ -201,7 +196,7 @@ def build_renderer(
     tracks = track_map(scene) if lighting.snow > 0 else TrackMap.none()
     ambient = bake_ambient(scene, cache)
     light = build_light(scene, lighting, shadows, ambient, tracks, geometry)
-    return Renderer(geometry, light, class_table(scene), ready)
+    return Renderer(geometry, light, ready)
 
 
 Key = TypeVar("Key", bound=Hashable)
@@ -217,6 +212,7 @@ _NO_MOVERS = Movers(
     pose=np.empty((0, 0, 3, 4), np.float32),
     colour=np.empty((0, 0, 3), np.float32),
     object_id=np.empty((0, 0), np.int32),
+    object_class=np.empty((0, 0), np.uint8),
 )
 
 

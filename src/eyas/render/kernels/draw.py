@@ -11,7 +11,7 @@ from eyas.render.kernels.sky.backdrop import draw_backdrop
 from eyas.render.kernels.sky.flakes import let_flakes_fall
 from eyas.render.kernels.surface.band import shade_band
 from eyas.render.kernels.visibility.measure import measure_actors, measure_subject
-from eyas.render.kernels.visibility.outputs import write_depth, write_objects
+from eyas.render.kernels.visibility.outputs import write_classes, write_depth, write_objects
 from eyas.render.kernels.visibility.passes import draw_scene
 from eyas.render.kernels.visibility.transform import view_of
 from eyas.state.draw import DrawStage
@@ -60,6 +60,8 @@ def _draw_band(
         write_depth(key, output.depth[number, top:bottom])
     if len(output.object_id) > 0:
         write_objects(geometry, movers, world, drawn, key, output.object_id[number, top:bottom])
+    if len(output.class_id) > 0:
+        write_classes(geometry, movers, world, drawn, key, output.class_id[number, top:bottom])
     if len(output.subject) > 0 and until >= RASTERISING:
         measure_subject(
             geometry, movers, world, job.subject[number], view, scratch, worker, key, count,

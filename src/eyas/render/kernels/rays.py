@@ -25,7 +25,9 @@ class Rays(NamedTuple):
     middle: float
     """Column of the optical axis [samples]."""
     centre_line: float
-    """Its row in the band [samples]."""
+    """Its row in the picture [samples]."""
+    top: float
+    """First row of the band [samples]."""
     pixel: float
     """Angle that a pixel spans [rad]."""
 
@@ -46,14 +48,19 @@ def rays_of(view: View) -> Rays:
         f4(1.0 / view.focal_x),
         f4(1.0 / view.focal_y),
         f4(0.5 * view.width),
-        f4(0.5 * view.height - view.top),
+        f4(0.5 * view.height),
+        f4(view.top),
         f4(1.0 / view.focal),
     )
 
 
 @inlined_kernel
 def ray_of(rays: Rays, line: float, column: float) -> tuple[float, float, float]:
-    """Return the ray through a place of the band [samples], of length 1 along the optical axis."""
+    """Return the ray through a place of the picture [samples], of length 1 along the optical axis.
+
+    The row is that of the picture, not of the band: it may be no whole or half number, and would
+    otherwise be rounded differently in each band.
+    """
     left, up = (rays.middle - column) * rays.across, (rays.centre_line - line) * rays.down
     ahead, aside, above = rays.ahead, rays.left, rays.up
     return (

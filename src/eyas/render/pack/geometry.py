@@ -90,6 +90,7 @@ def build_geometry(
         shading=shading_rows(slopes, objects, materials.of(material)),
         material=material,
         object_id=objects,
+        object_class=np.append(scene.object_class, ObjectClass.SKY).astype(np.uint8),
         chunk_box=columns_of(chunk_boxes, GROUP),
         chunk_group_box=columns_of(group_boxes(chunk_boxes), CLUSTER),
         chunk_range=chunk_range,

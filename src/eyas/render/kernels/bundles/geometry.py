@@ -31,6 +31,9 @@ class Geometry(NamedTuple):
     """Material of each triangle, shape (T,)."""
     object_id: NDArray[np.int32]
     """Object id of each static triangle, -1 for prototypes, shape (T,)."""
+    object_class: NDArray[np.uint8]
+    """`eyas.state.scene.ObjectClass` of each object of the scene, then of the sky,
+    shape (O + 1,)."""
     chunk_box: NDArray[np.float32]
     """Lower and upper corner [m] of each chunk in a column, then of boxes that are nowhere, up to
     a multiple of `GROUP`, shape (6, .)."""
@@ -82,3 +85,4 @@ class Movers(NamedTuple):
     pose: NDArray[np.float32]
     colour: NDArray[np.float32]
     object_id: NDArray[np.int32]
+    object_class: NDArray[np.uint8]

@@ -72,6 +72,7 @@ class Output(NamedTuple):
     rgb: NDArray[np.uint8]
     depth: NDArray[np.float32]
     object_id: NDArray[np.int32]
+    class_id: NDArray[np.uint8]
     subject: NDArray[np.int32]
     """Left, top, right, bottom, seen and covered pixels of the view's subject in each job, all 0
     if it covers none, shape (J, 6)."""

@@ -17,7 +17,7 @@ __all__ = ["draw_backdrop", "sky_pixel"]
 
 @inlined_kernel
 def sky_pixel(light: Light, lit: Illumination, rays: Rays, line: float, column: float) -> int:
-    """Return the packed bytes of the sky at a place of the band [samples]."""
+    """Return the packed bytes of the sky at a place of the picture [samples]."""
     x, y, z = ray_of(rays, line, column)
     unit = f4(1.0) / root(x * x + y * y + z * z)
     colour = sky(light, lit, x * unit, y * unit, z * unit, rays.pixel)
@@ -65,5 +65,5 @@ def draw_backdrop(
             if chosen == 0:
                 continue
             column = to_f4(lane_numbers()) * side + (f4(first) * side + half)
-            packed = sky_pixel(light, lit, rays, f4(row) * side + half, column)
+            packed = sky_pixel(light, lit, rays, rays.top + f4(row) * side + half, column)
             write_pixels(pixels, row, first, chosen, packed)

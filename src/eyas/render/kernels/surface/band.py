@@ -81,7 +81,7 @@ def _shade_one(
     words = load_words(shade, 4 * (row * key.shape[1] + first))
     packed = packed_points(
         rays, geometry, light, lit, movers, world, drawn, tag_of(keys), seen,
-        f4(1.0) / select(seen, distance_inverse(keys), f4(1.0)), half + f4(row),
+        f4(1.0) / select(seen, distance_inverse(keys), f4(1.0)), half + (rays.top + f4(row)),
         numbers + f4(first) + half, words,
     )  # fmt: skip
     write_pixels(pixels, row, first, bits_of(seen), packed)
@@ -126,7 +126,7 @@ def _shade_four(
         at = (line + (k >> 1)) * key.shape[1] + sample + (k & 1)
         packed = packed_points(
             rays, geometry, light, lit, movers, world, drawn, tag, seen,
-            f4(1.0) / select(seen, inverse, f4(1.0)), down + f4(line),
+            f4(1.0) / select(seen, inverse, f4(1.0)), down + (rays.top + f4(line)),
             numbers * f4(2.0) + f4(sample) + right, _spread_words(shade, at),
         )  # fmt: skip
         both, green = both + weight * (packed & even), green + weight * ((packed >> eight) & even)

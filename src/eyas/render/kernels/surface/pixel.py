@@ -48,7 +48,7 @@ def shade_pixel(
         column: Column of the picture.
     """
     rays = rays_of(view)
-    line, across = f4(row) + f4(0.5), f4(column) + f4(0.5)
+    line, across = rays.top + f4(row) + f4(0.5), f4(column) + f4(0.5)
     if key == i8(0):
         return sky_pixel(light, lit, rays, line, across)
     tag = tag_of(key)

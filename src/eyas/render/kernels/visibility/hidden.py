@@ -86,13 +86,14 @@ def box_is_hidden(
         tiles: See `measure_tiles`.
     """
     x, y, z = _side(boxes, column, 0), _side(boxes, column, 1), _side(boxes, column, 2)
-    distance = _along(view.screen.distance, x, y, z) * f4(_SHARE) - f4(_SLACK)
-    if any_of(distance < f4(NEAR)):
+    distance = _along(view.screen.distance, x, y, z)
+    least = distance * f4(_SHARE) - f4(_SLACK)
+    if any_of(least < f4(NEAR)):
         return False
     inverse = f4(1.0) / distance
     across = _along(view.screen.column, x, y, z) * inverse + f4(0.5 * view.width)
     down = _along(view.screen.row, x, y, z) * inverse + f4(0.5 * view.height - view.top)
-    nearest, last_row = _most(inverse), (view.rows - 1) // TILE
+    nearest, last_row = _most(f4(1.0) / least), (view.rows - 1) // TILE
     left, right = _tile(_least(across) - _MARGIN), _tile(_most(across) + _MARGIN)
     top, bottom = _tile(_least(down) - _MARGIN), _tile(_most(down) + _MARGIN)
     for i in range(max(top, 0), min(bottom, last_row) + 1):

@@ -1,4 +1,4 @@
-"""What a visibility buffer shows, as depths and as object ids."""
+"""What a visibility buffer shows, as depths, as object ids and as classes."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -8,9 +8,9 @@ from eyas.core.lanes import WIDTH, load, store
 from eyas.render.kernels.bundles import Geometry, Movers
 from eyas.render.kernels.scalars import f4, i8
 from eyas.render.kernels.visibility.key import distance_inverse, drawn_of, tag_of, triangle_of
-from eyas.state.scene import SKY_OBJECT
+from eyas.state.scene import ACTOR_OBJECT, SKY_OBJECT
 
-__all__ = ["object_of", "write_depth", "write_objects"]
+__all__ = ["object_of", "write_classes", "write_depth", "write_objects"]
 
 
 @inner_kernel
@@ -70,3 +70,38 @@ def write_objects(
     for row in range(output.shape[0]):
         for column in range(output.shape[1]):
             output[row, column] = object_of(geometry, movers, world, drawn, key[row, column])
+
+
+@inner_kernel
+def _class_of(
+    geometry: Geometry, movers: Movers, world: int, drawn: NDArray[np.int32], key: int
+) -> int:
+    """Return the class for a key."""
+    shown = object_of(geometry, movers, world, drawn, key)
+    if shown >= ACTOR_OBJECT:
+        return i8(movers.object_class[world, shown - ACTOR_OBJECT])
+    sky = len(geometry.object_class) - 1
+    return i8(geometry.object_class[sky if shown == SKY_OBJECT else shown])
+
+
+@inner_kernel
+def write_classes(
+    geometry: Geometry,
+    movers: Movers,
+    world: int,
+    drawn: NDArray[np.int32],
+    key: NDArray[np.int64],
+    output: NDArray[np.uint8],
+) -> None:
+    """Write the class of each pixel; arguments as above.
+
+    Most pixels show the same triangle as the one before them.
+    """
+    for row in range(output.shape[0]):
+        before, shown = i8(0), _class_of(geometry, movers, world, drawn, i8(0))
+        for column in range(output.shape[1]):
+            now = key[row, column]
+            if tag_of(now) != tag_of(before) or (now == i8(0)) != (before == i8(0)):
+                shown = _class_of(geometry, movers, world, drawn, now)
+            before = now
+            output[row, column] = shown

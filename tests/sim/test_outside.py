@@ -1,0 +1,49 @@
+"""Kernels call nothing outside: the C library's functions have other bytes on other machines."""
+
+import runpy
+import struct
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from eyas.core.jit import folder_in_use, source_hash
+from eyas.core.machine_code import SUFFIX, read_code
+from eyas.core.shipped import SHIPPED
+
+TOOL = Path(__file__).parents[2] / "tools" / "ship_kernels.py"
+
+MEMORY = {"memcpy", "memmove", "memset"}
+"""What LLVM itself calls to copy and to clear memory; there is only one result."""
+
+SYMBOLS, ENTRY, UNDEFINED = 2, 24, 0
+
+
+def outside(code: bytes) -> set[str]:
+    """Return the names that an object file of 64-bit ELF leaves undefined."""
+    assert code[:5] == b"\x7fELF\x02"
+    (start,), (count,) = struct.unpack_from("<Q", code, 40), struct.unpack_from("<H", code, 60)
+    sections = [struct.unpack_from("<IIQQQQIIQQ", code, start + 64 * k) for k in range(count)]
+    found = set()
+    for _, kind, _, _, offset, size, link, *_ in sections:
+        if kind != SYMBOLS:
+            continue
+        names = sections[link][4]
+        for at in range(offset, offset + size, ENTRY):
+            name, _, _, section = struct.unpack_from("<IBBH", code, at)
+            if name and section == UNDEFINED:
+                found.add(code[names + name : code.index(b"\0", names + name)].decode())
+    return found
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="reads object files of Linux")
+@pytest.mark.slow  # runs, and perhaps compiles, every kernel
+def test_no_kernel_calls_a_function_of_the_c_library():
+    program = runpy.run_path(str(TOOL))
+    subprocess.run([sys.executable, "-c", program["USES_ALL"]], check=True)
+    files = [*folder_in_use().glob(f"*{SUFFIX}"), *(SHIPPED / source_hash()).rglob(f"*{SUFFIX}")]
+    used = {file.name.partition("-")[0] for file in files}
+    assert program["kernels"]() <= {name.removesuffix("_") for name in used} | used
+    needs = {file.name: outside(read_code(file).code) for file in files}
+    assert {name: found - MEMORY for name, found in needs.items() if found - MEMORY} == {}
