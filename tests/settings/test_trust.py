@@ -6,8 +6,8 @@ import sys
 import pytest
 
 from eyas.cli.main import main
+from eyas.core.code_names import code_named
 from eyas.core.errors import ConfigError
-from eyas.core.own_code import code_named
 from eyas.core.registry import Registry
 from eyas.custom.user_class import made
 from eyas.envs.choice import chosen_settings

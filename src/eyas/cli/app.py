@@ -4,6 +4,8 @@ import logging
 import os
 import sys
 import warnings
+from pathlib import Path
+from traceback import extract_tb
 from typing import Annotated, Any
 
 import typer
@@ -118,9 +120,16 @@ def run() -> int:
         raise KeyboardInterrupt from None
     except OSError as error:
         return _not_printed(error)
-    except SystemExit as error:  # Typer raises none: a user's map, writer or file did
-        return _failed(ended(error))
+    except SystemExit as error:
+        if error.code == 1 and _is_of_typer(error):  # the reader of our output is gone
+            return 1
+        return _failed(ended(error))  # a user's map, writer or file
     return status if isinstance(status, int) else 0
+
+
+def _is_of_typer(error: SystemExit) -> bool:
+    last = extract_tb(error.__traceback__)[-1]
+    return Path(last.filename).parent == Path(typer.core.__file__).parent
 
 
 def _not_printed(error: OSError) -> int:

@@ -10,9 +10,9 @@ import os
 from collections.abc import Collection, Iterator
 from pathlib import Path
 
+from eyas.core.code_names import code_named
 from eyas.core.errors import ConfigError
 from eyas.core.files import user_path
-from eyas.core.own_code import code_named
 from eyas.settings.config import EyasConfig, variants
 
 __all__ = ["TRUST_VARIABLE", "code_of", "is_trusted", "refuse_code"]
@@ -22,7 +22,7 @@ TRUST_VARIABLE = "EYAS_TRUST"
 
 
 def code_of(config: EyasConfig) -> Iterator[tuple[str, str]]:
-    """Yield each piece of code that settings name, as `eyas.core.own_code.code_named`.
+    """Yield each piece of code that settings name, as `eyas.core.code_names.code_named`.
 
     Those of mixtures and stages are included, where they differ from the common ones.
     """
