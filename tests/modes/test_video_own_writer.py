@@ -29,7 +29,15 @@ def work(tmp_path_factory) -> Path:
 
 
 def eyas(work: Path, *options: str, **variables: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "eyas.cli.main", "video", "--config", "settings.json", "--trust"]
+    command = [
+        sys.executable,
+        "-m",
+        "eyas.cli.main",
+        "video",
+        "--config",
+        "settings.json",
+        "--trust",
+    ]
     paths = [str(work), os.environ.get("PYTHONPATH", "")]
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(paths)} | variables
     return subprocess.run(

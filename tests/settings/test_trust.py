@@ -85,6 +85,10 @@ def test_a_folder_can_be_trusted(someones, monkeypatch):
             load_settings(refused)
     monkeypatch.setenv(TRUST_VARIABLE, f"{someones / 'other'}:{someones}")
     load_settings(path)
+    monkeypatch.setenv(TRUST_VARIABLE, ".")
+    monkeypatch.chdir(someones)
+    with pytest.raises(ConfigError, match=r"^EYAS_TRUST: '\.' is not allowed: absolute folders"):
+        load_settings(path)
 
 
 @pytest.mark.parametrize(

@@ -39,11 +39,14 @@ def is_trusted(path: Path) -> bool:
     """Return whether a file lies in a folder of `EYAS_TRUST`, links followed.
 
     Raises:
-        DataFileError: A folder there is of no user.
+        EyasError: A folder there is relative, or of no user.
     """
     named = os.environ.get(TRUST_VARIABLE, "").split(os.pathsep)
-    folders = [user_path(text).resolve() for text in named if text]
-    return any(path.resolve().is_relative_to(folder) for folder in folders)
+    folders = [user_path(text) for text in named if text]
+    for folder in folders:
+        if not folder.is_absolute():  # it would be wherever the user happens to be
+            raise ConfigError(f"{TRUST_VARIABLE}: '{folder}' is not allowed: absolute folders")
+    return any(path.resolve().is_relative_to(folder.resolve()) for folder in folders)
 
 
 def refuse_code(path: Path, config: EyasConfig, said: Collection[str] = ()) -> None:
