@@ -123,7 +123,7 @@ def run() -> int:
     except SystemExit as error:
         if error.code == 1 and _is_of_typer(error):  # the reader of our output is gone
             return 1
-        return _failed(ended(error))  # a user's map, writer or file
+        return _failed(f"code of a map, a writer or a file {ended(error)}")
     return status if isinstance(status, int) else 0
 
 

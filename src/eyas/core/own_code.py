@@ -77,14 +77,14 @@ def running(setting: str, name: str) -> Iterator[None]:
     except (Exception, KeyboardInterrupt):
         raise
     except BaseException as error:
-        raise ConfigError(f"{setting}: {name!r}: {ended(error)}") from error
+        raise ConfigError(f"{setting}: {name!r}: its code {ended(error)}") from error
 
 
 def ended(error: BaseException) -> str:
     """Return in words what raised, and where; for exceptions that are no `Exception`."""
     last = extract_tb(error.__traceback__)[-1]
     said = f"{type(error).__name__}({error})"
-    return f"its code tried to end the program: {said} in {last.filename}, line {last.lineno}"
+    return f"tried to end the program: {said} in {last.filename}, line {last.lineno}"
 
 
 def takes(what: Callable[..., object], *arguments: object) -> str | None:
