@@ -4,8 +4,6 @@ import logging
 import os
 import sys
 import warnings
-from pathlib import Path
-from traceback import extract_tb
 from typing import Annotated, Any
 
 import typer
@@ -121,15 +119,10 @@ def run() -> int:
     except OSError as error:
         return _not_printed(error)
     except SystemExit as error:
-        if error.code == 1 and _is_of_typer(error):  # the reader of our output is gone
-            return 1
+        if isinstance(error.__context__, BrokenPipeError):  # Typer and rich end so
+            return 1  # the reader of our output has seen enough
         return _failed(f"code of a map, a writer or a file {ended(error)}")
     return status if isinstance(status, int) else 0
-
-
-def _is_of_typer(error: SystemExit) -> bool:
-    last = extract_tb(error.__traceback__)[-1]
-    return Path(last.filename).parent == Path(typer.core.__file__).parent
 
 
 def _not_printed(error: OSError) -> int:
