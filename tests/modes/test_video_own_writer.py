@@ -28,8 +28,32 @@ def work(tmp_path_factory) -> Path:
     return folder
 
 
+ENDS = """
+import sys
+from eyas.exports.files import Files
+
+class Writer:
+    wants, files = frozenset(), Files(episode=("ends.json",))
+
+    def __init__(self, run): ...
+    def begin(self, episode): return self
+    def add(self, frame): sys.exit(0)
+    def abandon(self): ...
+    def finish(self, *episodes): ...
+    def read(self, folder): ...
+"""
+
+
 def eyas(work: Path, *options: str, **variables: str) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "eyas.cli.main", "video", "--config", "settings.json"]
+    command = [
+        sys.executable,
+        "-m",
+        "eyas.cli.main",
+        "video",
+        "--config",
+        "settings.json",
+        "--trust",
+    ]
     paths = [str(work), os.environ.get("PYTHONPATH", "")]
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(paths)} | variables
     return subprocess.run(
@@ -78,3 +102,13 @@ def test_a_recording_is_overwritten_where_its_writer_has_gone(work):
     assert done.returncode == 0, done.stderr
     assert not list((work / "out").rglob("*.csv"))
     assert (work / "out" / "dir_info.json").exists()
+
+
+def test_a_writer_that_ends_the_program_is_an_error(tmp_path):
+    (tmp_path / "ends.py").write_text(ENDS)
+    (tmp_path / "settings.json").write_text(json.dumps({"video": {"channels": 1, "total_time": 1}}))
+    done = eyas(tmp_path, "--set", 'video.writers=["labels", "ends:Writer"]', "--quiet")
+    assert done.returncode == 2
+    (line,) = [each for each in done.stderr.splitlines() if each.startswith("eyas: error: ")]
+    assert "tried to end the program: SystemExit(0) in " in line
+    assert "ends.py, line " in line

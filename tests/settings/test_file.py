@@ -2,7 +2,7 @@ import json
 
 import pytest
 
-from eyas.core.config import updated
+from eyas.core.config import updated, validated
 from eyas.core.errors import ConfigError, DataFileError
 from eyas.core.variation import Mirrored, Uniform
 from eyas.settings.config import EyasConfig
@@ -165,3 +165,43 @@ def test_a_name_stands_for_the_source_of_the_traffic(order, tmp_path):
     assert updated(EyasConfig(seed=4), {"traffic": "live"}).traffic.source == "live"
     with pytest.raises(ConfigError, match=r"^traffic\.source: 'liv' is not .* mean 'live'"):
         load_settings(None, ["traffic=liv"])
+
+
+MISSPELT = {
+    "env": lambda settings: {"env": {"mixture": [{}, {"settings": settings}]}},
+    "train": lambda settings: {"train": {"stages": [{"decisions": 1000, "settings": settings}]}},
+}
+
+
+@pytest.mark.parametrize("place", MISSPELT)
+@pytest.mark.parametrize(
+    ("settings", "line"),
+    [
+        ({"worl": {"map": "x"}}, "worl: unknown key; did you mean 'world'"),
+        ({"done": {"max_height": float("inf")}}, "done.max_height: Infinity is not allowed"),
+        ({"done": {"max_height": float("nan")}}, "done.max_height: NaN is not allowed"),
+        ({"world": {"map": "\ud800"}}, "world.map: "),
+        ({"\ud800": 1}, "settings: "),
+        (
+            {"env": {"mixture": [{"settings": {"lidr": {}}}]}},
+            "env.mixture.0.settings.lidr: unknown",
+        ),
+        ({"reward": 5}, "reward: 5 is not allowed: an object with "),
+    ],
+)
+def test_settings_of_kinds_and_stages_are_checked_when_loaded(tmp_path, place, settings, line):
+    path = tmp_path / "settings.json"
+    path.write_text(json.dumps(MISSPELT[place](settings)))
+    where = {"env": "env.mixture.1.settings.", "train": "train.stages.0.settings."}[place]
+    with pytest.raises(ConfigError) as caught:
+        load_settings(path)
+    assert str(caught.value).startswith(where + line)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("place", MISSPELT)
+def test_right_ones_come_back_as_they_were(tmp_path, place):
+    values = MISSPELT[place]({"world": {"weather": "night"}, "custom": {"mesh": "a.glb"}})
+    config = validated(EyasConfig, values)
+    save_settings(config, tmp_path / "saved.json")
+    assert load_settings(tmp_path / "saved.json") == config

@@ -6,8 +6,8 @@ import sys
 import pytest
 
 from eyas.cli.main import main
+from eyas.core.code_names import code_named
 from eyas.core.errors import ConfigError
-from eyas.core.own_code import code_named
 from eyas.core.registry import Registry
 from eyas.custom.user_class import made
 from eyas.envs.choice import chosen_settings
@@ -85,6 +85,10 @@ def test_a_folder_can_be_trusted(someones, monkeypatch):
             load_settings(refused)
     monkeypatch.setenv(TRUST_VARIABLE, f"{someones / 'other'}:{someones}")
     load_settings(path)
+    monkeypatch.setenv(TRUST_VARIABLE, ".")
+    monkeypatch.chdir(someones)
+    with pytest.raises(ConfigError, match=r"^EYAS_TRUST: '\.' is not allowed: absolute folders"):
+        load_settings(path)
 
 
 @pytest.mark.parametrize(

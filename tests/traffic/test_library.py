@@ -10,6 +10,7 @@ import pytest
 from eyas.core.cache.entries import entries
 from eyas.core.cache.folder import Kind
 from eyas.core.errors import DataFileError, MissingExtraError
+from eyas.core.installed import install_command
 from eyas.state.roads import RoadGraph
 from eyas.traffic import library
 from eyas.traffic.config import Demand, TrafficConfig, VehicleType
@@ -176,7 +177,7 @@ def test_without_sumo_one_line_says_what_to_install():
     (line,) = done.stdout.splitlines()
     assert line.startswith(
         "new traffic, as no recording fits the settings, needs the extra 'sumo': "
-        "pip install 'eyas[sumo]'"
+        f"{install_command('sumo')}"
     )
     assert done.stderr == ""
 

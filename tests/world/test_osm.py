@@ -1,6 +1,8 @@
 """OpenStreetMap files made by hand, a few lines each: every feature, and every defect."""
 
 import gzip
+import json
+import re
 import sys
 from collections import Counter
 
@@ -9,6 +11,8 @@ import pytest
 import shapely
 
 from eyas.core.errors import ConfigError, DataFileError, MissingExtraError
+from eyas.core.installed import install_command
+from eyas.world.maps.imported import IMPORTED
 from eyas.world.maps.imported.looks import look_of
 from eyas.world.osm.features import Area, Features, House, from_text, to_text
 from eyas.world.osm.houses import houses_of
@@ -143,7 +147,7 @@ def test_a_binary_file_without_pyosmium_says_how_to_install_it(tmp_path, monkeyp
     path = tmp_path / "map.osm.pbf"
     path.write_bytes(b"\x00\x00\x00\x0d\x0a\x09OSMHeader\x18")
     monkeypatch.setitem(sys.modules, "osmium", None)
-    with pytest.raises(MissingExtraError, match=r"pip install 'eyas\[osm\]'"):
+    with pytest.raises(MissingExtraError, match=re.escape(install_command("osm"))):
         read_osm(path)
 
 
@@ -368,3 +372,17 @@ def test_what_is_not_told_is_guessed_by_kind_and_seed():
     assert len(tops) > 3
     carport = look_of(house("carport"), 0)
     assert carport.bottom > 1.5  # one can drive below it
+
+
+@pytest.mark.parametrize("name", ["someones:x", "../x", "", "a b", 5, None, ["a"]])
+def test_a_folder_whose_map_has_an_odd_name_is_told_and_hides_no_others(
+    name, tmp_path, monkeypatch, caplog
+):
+    monkeypatch.setenv("EYAS_MAPS_DIR", str(tmp_path))
+    (tmp_path / "town").mkdir()
+    said = {"title": "", "source": "", "longitude": 0, "latitude": 0, "size": [100, 100]}
+    (tmp_path / "town" / "map.json").write_text(json.dumps({"name": name, **said}))
+    assert IMPORTED.names() == ()
+    assert "an imported map is left out" in caplog.text
+    with pytest.raises(DataFileError, match=r"town/map\.json: "):
+        IMPORTED.get(str(tmp_path / "town"))

@@ -122,8 +122,10 @@ def run() -> int:
         raise KeyboardInterrupt from None
     except OSError as error:
         return _not_printed(error)
-    except SystemExit as error:  # Typer raises none: a user's map, writer or file did
-        return _failed(ended(error))
+    except SystemExit as error:
+        if isinstance(error.__context__, BrokenPipeError):  # Typer and rich end so
+            return 1  # the reader of our output has seen enough
+        return _failed(f"code of a map, a writer or a file {ended(error)}")
     return status if isinstance(status, int) else 0
 
 

@@ -64,7 +64,9 @@ class MissingExtraError(EyasError):
     """
 
     def __init__(self, purpose: str, extra: str, detail: str = "") -> None:
-        line = f"{purpose} needs the extra '{extra}': pip install 'eyas[{extra}]'"
+        from eyas.core.installed import install_command  # rarely needed
+
+        line = f"{purpose} needs the extra '{extra}': {install_command(extra)}"
         super().__init__(f"{line} {detail}".rstrip())
 
 

@@ -1,55 +1,17 @@
-"""Settings that name code of a user's, by its path `package.module:attribute`, and calls of it."""
+"""Code of a user's: found by its path `package.module:attribute`, looked at, and run."""
 
 import inspect
 import os
 import sys
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
 from importlib import import_module
 from importlib.util import find_spec
 from traceback import extract_tb
 
-from eyas.core.config import Config
 from eyas.core.errors import ConfigError, nearest
 
-__all__ = ["NAMES_CODE", "NamesCode", "code_named", "ended", "imported", "running", "takes"]
-
-
-@dataclass(frozen=True, slots=True)
-class NamesCode:
-    """Marks a field, in `Annotated`, whose texts or keys with a colon are imported and called."""
-
-
-NAMES_CODE = NamesCode()
-
-
-def code_named(config: Config, path: str = "") -> Iterator[tuple[str, str]]:
-    """Yield each piece of code that settings name: path of the setting, and what it names.
-
-    Args:
-        config: The settings.
-        path: Their own path, to put before each.
-    """
-    for name, field in type(config).model_fields.items():
-        value, inner = getattr(config, name), f"{path}.{name}".lstrip(".")
-        if NAMES_CODE in field.metadata:
-            for text in _texts(value):
-                if ":" in text:
-                    yield inner, text
-        elif isinstance(value, Config):
-            yield from code_named(value, inner)
-        elif isinstance(value, tuple):
-            for number, part in enumerate(value):
-                if isinstance(part, Config):
-                    yield from code_named(part, f"{inner}.{number}")
-
-
-def _texts(value: object) -> Iterator[str]:
-    if isinstance(value, str):
-        yield value
-    elif isinstance(value, Mapping | tuple):
-        yield from (part for part in value if isinstance(part, str))
+__all__ = ["ended", "imported", "running", "takes"]
 
 
 def imported(path: str, setting: str) -> object:
@@ -115,14 +77,14 @@ def running(setting: str, name: str) -> Iterator[None]:
     except (Exception, KeyboardInterrupt):
         raise
     except BaseException as error:
-        raise ConfigError(f"{setting}: {name!r}: {ended(error)}") from error
+        raise ConfigError(f"{setting}: {name!r}: its code {ended(error)}") from error
 
 
 def ended(error: BaseException) -> str:
     """Return in words what raised, and where; for exceptions that are no `Exception`."""
     last = extract_tb(error.__traceback__)[-1]
     said = f"{type(error).__name__}({error})"
-    return f"its code tried to end the program: {said} in {last.filename}, line {last.lineno}"
+    return f"tried to end the program: {said} in {last.filename}, line {last.lineno}"
 
 
 def takes(what: Callable[..., object], *arguments: object) -> str | None:

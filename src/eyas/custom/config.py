@@ -5,8 +5,8 @@ from typing import Annotated, Literal
 from pydantic import Field, model_validator
 
 from eyas.behaviours.config import Behaviour
+from eyas.core.code_names import NAMES_CODE
 from eyas.core.config import Config
-from eyas.core.own_code import NAMES_CODE
 
 __all__ = ["CustomConfig"]
 

@@ -6,9 +6,6 @@ from collections.abc import Sequence
 from importlib.machinery import ModuleSpec
 from types import ModuleType
 
-from eyas.world.maps import MAPS
-from eyas.world.maps.imported import IMPORTED
-
 __all__ = ["register", "register_map"]
 
 
@@ -19,6 +16,10 @@ def register() -> None:
     the rest of Eyas, and drawing, recording and the demo do without it.
     """
     if "gymnasium" in sys.modules:
+        # Only now: until a program that has just begun handles Ctrl-C, it should do little.
+        from eyas.world.maps import MAPS
+        from eyas.world.maps.imported import IMPORTED
+
         for name in (*MAPS.built_in, *IMPORTED.names()):
             register_map(name)
     elif not any(isinstance(finder, _Registrar) for finder in sys.meta_path):
@@ -35,6 +36,8 @@ def register_map(name: str) -> None:
         ConfigError: The map does not exist.
     """
     import gymnasium
+
+    from eyas.world.maps import MAPS
 
     recipe = MAPS.get(name)
     for weather in recipe.weathers:

@@ -10,9 +10,9 @@ import os
 from collections.abc import Collection, Iterator
 from pathlib import Path
 
+from eyas.core.code_names import code_named
 from eyas.core.errors import ConfigError
 from eyas.core.files import user_path
-from eyas.core.own_code import code_named
 from eyas.settings.config import EyasConfig, variants
 
 __all__ = ["TRUST_VARIABLE", "code_of", "is_trusted", "refuse_code"]
@@ -22,7 +22,7 @@ TRUST_VARIABLE = "EYAS_TRUST"
 
 
 def code_of(config: EyasConfig) -> Iterator[tuple[str, str]]:
-    """Yield each piece of code that settings name, as `eyas.core.own_code.code_named`.
+    """Yield each piece of code that settings name, as `eyas.core.code_names.code_named`.
 
     Those of mixtures and stages are included, where they differ from the common ones.
     """
@@ -39,11 +39,14 @@ def is_trusted(path: Path) -> bool:
     """Return whether a file lies in a folder of `EYAS_TRUST`, links followed.
 
     Raises:
-        DataFileError: A folder there is of no user.
+        EyasError: A folder there is relative, or of no user.
     """
     named = os.environ.get(TRUST_VARIABLE, "").split(os.pathsep)
-    folders = [user_path(text).resolve() for text in named if text]
-    return any(path.resolve().is_relative_to(folder) for folder in folders)
+    folders = [user_path(text) for text in named if text]
+    for folder in folders:
+        if not folder.is_absolute():  # it would be wherever the user happens to be
+            raise ConfigError(f"{TRUST_VARIABLE}: '{folder}' is not allowed: absolute folders")
+    return any(path.resolve().is_relative_to(folder.resolve()) for folder in folders)
 
 
 def refuse_code(path: Path, config: EyasConfig, said: Collection[str] = ()) -> None:

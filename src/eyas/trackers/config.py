@@ -5,8 +5,8 @@ from typing import Annotated, Self
 
 from pydantic import AfterValidator, Field, model_validator
 
+from eyas.core.code_names import NAMES_CODE
 from eyas.core.config import Config
-from eyas.core.own_code import NAMES_CODE
 from eyas.core.variation import Variation, bounds, within
 
 __all__ = ["Flight", "TrackerConfig", "TrackerKind", "WindConfig"]

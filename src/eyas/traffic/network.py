@@ -2,15 +2,14 @@
 
 import hashlib
 import subprocess
-import tempfile
 from collections import Counter
-from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.errors import ConfigError
+from eyas.core.scratch import scratch
 from eyas.state.roads import RoadEdge, RoadGraph, RoadNetwork, RoadNode
 from eyas.traffic.sumo_install import sumo_binary, sumo_environment, sumo_version
 
@@ -99,8 +98,8 @@ def network_xml(graph: RoadGraph) -> bytes:
                 "name of its own"
             )
     netconvert = sumo_binary("netconvert")
-    with tempfile.TemporaryDirectory(prefix="eyas-roads-") as folder:
-        nodes, edges, out = (Path(folder) / name for name in ("nod.xml", "edg.xml", "net.xml"))
+    with scratch() as folder:
+        nodes, edges, out = (folder / name for name in ("nod.xml", "edg.xml", "net.xml"))
         nodes.write_text(_node_xml(graph.nodes), encoding="utf-8")
         edges.write_text(_edge_xml(graph.edges), encoding="utf-8")
         files = ("-n", str(nodes), "-e", str(edges), "-o", str(out))

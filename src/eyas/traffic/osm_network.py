@@ -1,10 +1,10 @@
 """Streets of OpenStreetMap through SUMO's netconvert, with its tables of road types."""
 
 import subprocess
-import tempfile
 from pathlib import Path
 
 from eyas.core.errors import DataFileError
+from eyas.core.scratch import scratch
 from eyas.traffic.network import without_comments
 from eyas.traffic.sumo_install import sumo_binary, sumo_environment
 
@@ -57,8 +57,8 @@ def osm_network(streets: bytes, projection: str, source: str) -> bytes:
     program, environment = sumo_binary("netconvert"), sumo_environment()
     folder_of_types = Path(environment["SUMO_HOME"]) / "data" / "typemap"
     types = ",".join(str(folder_of_types / name) for name in _TYPES)
-    with tempfile.TemporaryDirectory(prefix="eyas-osm-") as folder:
-        given, out = Path(folder) / "streets.osm", Path(folder) / "net.xml"
+    with scratch() as folder:
+        given, out = folder / "streets.osm", folder / "net.xml"
         given.write_bytes(streets)
         files = ("--osm-files", str(given), "--type-files", types, "-o", str(out))
         done = subprocess.run(

@@ -1,10 +1,8 @@
 """Interface to SUMO: a simulation in this process, sampled ten times per second."""
 
-import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, closing, contextmanager
 from dataclasses import dataclass
-from pathlib import Path
 from types import ModuleType
 
 import numpy as np
@@ -12,6 +10,7 @@ from numpy.typing import NDArray
 
 from eyas.core import exact
 from eyas.core.errors import ConfigError
+from eyas.core.scratch import scratch
 from eyas.traffic.config import Demand, TrafficConfig, VehicleType
 from eyas.traffic.demand import RoadLinks, Route, without_turnarounds
 from eyas.traffic.entrance import Entrance
@@ -197,8 +196,8 @@ def _simulation(
         raise ConfigError(
             "traffic: SUMO already runs in this process (libsumo allows one); close it"
         )
-    with tempfile.TemporaryDirectory(prefix="eyas-sumo-") as folder:
-        roads, types = Path(folder) / "net.xml", Path(folder) / "types.xml"
+    with scratch() as folder:
+        roads, types = folder / "net.xml", folder / "types.xml"
         roads.write_bytes(network)
         lines = "".join(_type_xml(name, config) for name in classes)
         types.write_text(f"<additional>{lines}</additional>")

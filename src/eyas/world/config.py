@@ -4,8 +4,8 @@ from typing import Annotated
 
 from pydantic import AfterValidator, Field
 
+from eyas.core.code_names import NAMES_CODE
 from eyas.core.config import Config
-from eyas.core.own_code import NAMES_CODE
 from eyas.core.variation import Variation, within
 
 __all__ = ["LightConfig", "WorldConfig"]

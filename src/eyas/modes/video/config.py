@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import AfterValidator, Field
 
-from eyas.core.own_code import NAMES_CODE
+from eyas.core.code_names import NAMES_CODE
 from eyas.envs.config import ActionSpeeds
 
 __all__ = ["VideoConfig"]

@@ -16,7 +16,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from eyas.core.errors import DataFileError
+from eyas.core.errors import ConfigError, DataFileError
 from eyas.core.files import user_path
 from eyas.world.maps.recipe import MapRecipe
 from eyas.world.weather import (
@@ -94,6 +94,8 @@ def origin_of(folder: Path) -> Origin:
         said = json.loads(path.read_text(encoding="utf-8"))
         origin = Origin(**{**said, "size": tuple(map(float, said["size"]))})
         width, height = origin.size
+        if not all(isinstance(text, str) for text in (origin.name, origin.title, origin.source)):
+            raise TypeError("name, title and source must be texts")
     except (OSError, ValueError, TypeError, KeyError, RecursionError) as error:
         raise DataFileError(f"{path}: not the file of an imported map: {error}") from error
     if origin.format != FORMAT or not (0 < width < 1e5 and 0 < height < 1e5):
@@ -137,14 +139,17 @@ class ImportedMaps:
 
 def _recipe(folder: Path) -> MapRecipe:
     origin = origin_of(folder)
-    return MapRecipe(
-        name=origin.name,
-        title=origin.title,
-        roads=partial(_roads, folder, origin.name),
-        scene=partial(_scene, folder, origin.name, origin.size),
-        lighting={DAY: CLEAR_DAY, FOGGY: FOG, NIGHT: CLEAR_NIGHT, SNOW: WINTER_DAY},
-        home=folder,
-    )
+    try:
+        return MapRecipe(
+            name=origin.name,
+            title=origin.title,
+            roads=partial(_roads, folder, origin.name),
+            scene=partial(_scene, folder, origin.name, origin.size),
+            lighting={DAY: CLEAR_DAY, FOGGY: FOG, NIGHT: CLEAR_NIGHT, SNOW: WINTER_DAY},
+            home=folder,
+        )
+    except ConfigError as error:
+        raise DataFileError(f"{folder / MAP_FILE}: {error}") from None
 
 
 def _roads(folder: Path, name: str, seed: int) -> "RoadGraph":
