@@ -246,6 +246,7 @@ def test_its_switches_have_an_effect(serve):
     lines = [line.partition(" : ")[2] for line in log.read_text().splitlines()]
     assert lines[0] == "received b'0.0,0.0,0.0,0.0,1'"
     assert lines[-1].startswith("id: DRONE0 done: 0 reward: ")
+    assert lines[-2] == "id: DRONE0 ACTIONS forward:15 leftRight:0 turn:0(deg/s)"
     assert " count: 6 " in lines[-1]
 
 
