@@ -19,7 +19,8 @@ def test_the_original_s_switch_writes_the_lidar_s_file(tmp_path):
     config = load_settings(tmp_path / "env_config.json", small)
     run(config, tmp_path / "out", quiet=True)
     lines = (tmp_path / "out/DRONE0/episode0/lidar.csv").read_text().splitlines()
-    assert len(lines) > 400
+    assert lines[0].startswith("frame,step,point_0,")
+    assert len(lines) > 5
 
 
 def test_writers_that_were_chosen_stay():

@@ -33,7 +33,7 @@ def test_a_name_is_that_of_a_proto_where_the_manual_wants_it(folder):
     (folder / "protos" / "Fox.proto").write_text(PROTO)
     custom = load_settings(settings(folder, Tracking_Object="Fox")).custom
     assert custom.mesh == str(folder / "protos" / "Fox.proto")
-    assert (custom.words, custom.trajectory) == ("Fox", None)
+    assert custom.trajectory is None
     again = load_settings(settings(folder), ["Tracking_Object=Fox"]).custom
     assert again.mesh == custom.mesh
 
@@ -50,11 +50,11 @@ def test_a_trajectory_of_the_same_name_moves_it(folder):
 def test_a_name_is_that_of_the_settings_beside_it(folder):
     path = settings(folder, Tracking_Object="Fox", custom={"behaviour": "wander", "speed": 2.5})
     config = load_settings(path)
-    assert (config.custom.speed, config.custom.words) == (2.5, "Fox")
+    assert config.custom.speed == 2.5
     assert config.original is not None
     few = folder / "config" / "few.json"
     few.write_text(json.dumps({"Tracking_Object": "Fox", "custom": {"behaviour": "wander"}}))
-    assert load_settings(few).custom.words == "Fox"
+    assert load_settings(few).custom.behaviour == "wander"
     with pytest.raises(EyasError, match=r"custom\.sped: unknown key"):
         load_settings(settings(folder, Tracking_Object="Fox", custom={"sped": 2.5}))
 

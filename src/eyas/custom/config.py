@@ -7,7 +7,13 @@ from pydantic import Field, model_validator
 from eyas.behaviours.config import Behaviour
 from eyas.core.config import Config
 
-__all__ = ["CustomConfig"]
+__all__ = ["ENDINGS", "MESHES", "CustomConfig"]
+
+MESHES = (".glb", ".gltf", ".obj", ".ply", ".stl")
+"""Endings of the mesh files that can be read."""
+
+ENDINGS = (*MESHES, ".proto")
+"""Endings of the files of shapes that can be read."""
 
 Text = Annotated[str, Field(min_length=1)]
 
@@ -18,7 +24,7 @@ class CustomConfig(Config):
     """
 
     mesh: Text | None = None
-    """File of its shape: glTF, GLB, OBJ, STL or PLY (extra `mesh`)."""
+    """File of its shape: glTF, GLB, OBJ, STL or PLY (extra `mesh`), or a Webots `.proto`."""
     path: Text | None = None
     """Its class, `package.module:Class`, see `eyas.custom.own.OwnTarget`."""
     trajectory: Text | None = None

@@ -11,15 +11,10 @@ from numpy.typing import NDArray
 
 from eyas.core.errors import DataFileError, MissingExtraError
 from eyas.core.files import user_path
-from eyas.custom.config import CustomConfig
+from eyas.custom.config import ENDINGS, MESHES, CustomConfig
 from eyas.custom.proto_file import read_proto
 
-__all__ = ["ENDINGS", "LARGEST", "Triangles", "loaded", "placed", "read_mesh"]
-
-_MESHES = (".glb", ".gltf", ".obj", ".ply", ".stl")
-
-ENDINGS = (*_MESHES, ".proto")
-"""Endings of the files that can be read."""
+__all__ = ["LARGEST", "Triangles", "loaded", "placed", "read_mesh"]
 
 LARGEST = 200_000
 """Largest number of triangles of a target."""
@@ -117,8 +112,8 @@ def _plain_mesh(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     Raises:
         DataFileError: As from `read_mesh`.
     """
-    if path.suffix.lower() not in _MESHES:
-        raise DataFileError(f"{path}: not a mesh file; allowed: {', '.join(_MESHES)}")
+    if path.suffix.lower() not in MESHES:
+        raise DataFileError(f"{path}: not a mesh file; allowed: {', '.join(MESHES)}")
     shape = read_mesh(path)
     return shape.points, shape.corners
 

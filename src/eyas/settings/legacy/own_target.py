@@ -7,7 +7,7 @@ from typing import Any
 
 from eyas.core.config import shown
 from eyas.core.errors import ConfigError, UnknownNameError
-from eyas.custom.mesh_file import ENDINGS
+from eyas.custom.config import ENDINGS
 from eyas.settings.legacy.layout import Nested
 from eyas.targets.config import TargetName
 
@@ -61,7 +61,7 @@ def with_own_target(
         looked = ", ".join(str(folder) for folder in dict.fromkeys(folders))
         raise _unknown(name, looked)
     rest[_KEY] = TargetName.PEDESTRIAN.value  # as no vehicle drives where an object is followed
-    return rest, {"words": name, **found} if "path" not in found else found
+    return rest, found
 
 
 def _found(name: str, folders: Sequence[Path]) -> dict[str, Any] | None:
