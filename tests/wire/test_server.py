@@ -19,11 +19,13 @@ from eyas.sim.build import build_simulation
 from eyas.sim.worlds import together as in_one_world
 from eyas.state.draw import Picture
 
+from .conftest import PATIENCE
+
 AHEAD, TURN = (15.0, 0.0, 0.0, 0.0), (10.0, 0.0, 0.0, 0.3)
 
 
-def done(process, timeout=120):
-    out, err = process.communicate(timeout=timeout)
+def done(process):
+    out, err = process.communicate(timeout=PATIENCE)
     assert process.returncode == 0, err
     return json.loads(out.splitlines()[-1])
 
