@@ -11,7 +11,7 @@ from eyas.world.maps import MAPS
 from eyas.world.maps.simpleway.roads import ROADS, road_graph, road_lines
 from eyas.world.maps.simpleway.scene import paved
 from eyas.world.maps.simpleway.skins import SKINS
-from eyas.world.weather import SNOW, Season
+from eyas.world.weather import Season
 
 NAMES = [name for name in MAPS.built_in if name.startswith("simpleway-")]
 
