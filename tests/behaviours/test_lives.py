@@ -52,3 +52,12 @@ def test_longer_episodes_make_longer_lives():
     long = recycled(ObjectsConfig(), 12601, 10.0, episode=60.0)
     stays = (long.leaves - long.enters)[long.slot == 5] / 10.0
     assert sorted(stays)[len(stays) // 2] == pytest.approx(240.0, abs=1.0)
+
+
+def test_an_interval_that_leaves_each_four_episodes_is_that_between_groups():
+    for interval, stay in ((0.5, 60.0), (3.9, 60.0), (4.0, 12.0), (10.0, 30.0), (30.0, 90.0)):
+        lives = recycled(ObjectsConfig(interval=interval), 12601, 10.0, episode=3.0)
+        moved = np.sort(lives.enters[lives.slot == 5])[2:]
+        assert np.diff(moved).mean() / 10.0 == pytest.approx(stay, abs=0.1)
+        begun = np.unique(lives.enters[lives.enters > 3000])
+        assert np.diff(begun).mean() / 10.0 == pytest.approx(stay / 3, abs=0.1)

@@ -1,6 +1,7 @@
 """A client of the original's protocol, written from its description alone; it imports no Eyas.
 
-As a program it plays one agent: `client.py ROOT AGENT AGENTS PORT ROUNDS`, and prints how it went.
+As a program it plays one agent: `client.py ROOT AGENT AGENTS PORT ROUNDS [PATIENCE]`, and prints
+how it went.
 A round is a step or a reset: all agents must send equally many of them.
 """
 
@@ -90,9 +91,13 @@ class Client:
             time.sleep(0.001)  # as the original
 
 
-def main(root, agent, agents, port, rounds):
-    """Play: turn with each agent's own speed, and reset after each end."""
-    client = Client(root, agent)
+def main(root, agent, agents, port, rounds, patience=60.0):
+    """Play: turn with each agent's own speed, and reset after each end.
+
+    The first answer comes when the server has built its world, which may take minutes where others
+    have most of the processors.
+    """
+    client = Client(root, agent, patience=float(patience))
     client.announce(int(port), int(agents))
     state, _, _ = client.reset()
     print("begun", flush=True)

@@ -21,6 +21,11 @@ _spec.loader.exec_module(client)
 SETTINGS = ("camera.width=64", "camera.height=48", "traffic.demand=keep_alive")
 
 
+PATIENCE = 900.0
+"""Time after which something has gone wrong, on a machine of whatever load: a server that waits for
+its turn is not told from one that hangs in less [s]. What ends too early is told at once."""
+
+
 def free_port():
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
         taken.bind(("127.0.0.1", 0))
@@ -46,7 +51,7 @@ class Served:
         for line in self.process.stderr:
             self.lines.append(line.rstrip("\n"))
 
-    def until(self, words, timeout=120):
+    def until(self, words, timeout=PATIENCE):
         """Wait for a line with these words; return it."""
         end = time.monotonic() + timeout
         while True:
@@ -58,7 +63,7 @@ class Served:
             time.sleep(0.01)
 
     def client(self, agent, **options):
-        return client.Client(self.root, agent, **options)
+        return client.Client(self.root, agent, **{"patience": PATIENCE, **options})
 
     def announce(self, agents=None, message=None):
         self.until("waiting for clients")
@@ -66,7 +71,7 @@ class Served:
 
     def play(self, agent, agents, rounds):
         """Start a client in a process of its own; return it when its first reset is done."""
-        words = map(str, (self.root, agent, agents, self.port, rounds))
+        words = map(str, (self.root, agent, agents, self.port, rounds, PATIENCE))
         command = [sys.executable, str(CLIENT), *words]
         pipe = subprocess.PIPE
         player = subprocess.Popen(command, stdout=pipe, stderr=pipe, text=True)
@@ -80,7 +85,7 @@ class Served:
     def end(self, number=signal.SIGINT):
         if self.process.poll() is None:
             self.process.send_signal(number)
-        code = self.process.wait(30)
+        code = self.process.wait(PATIENCE)
         self._reader.join()
         self.process.stderr.close()
         for player in self._players:

@@ -19,11 +19,13 @@ from eyas.sim.build import build_simulation
 from eyas.sim.worlds import together as in_one_world
 from eyas.state.draw import Picture
 
+from .conftest import PATIENCE
+
 AHEAD, TURN = (15.0, 0.0, 0.0, 0.0), (10.0, 0.0, 0.0, 0.3)
 
 
-def done(process, timeout=120):
-    out, err = process.communicate(timeout=timeout)
+def done(process):
+    out, err = process.communicate(timeout=PATIENCE)
     assert process.returncode == 0, err
     return json.loads(out.splitlines()[-1])
 
@@ -246,6 +248,7 @@ def test_its_switches_have_an_effect(serve):
     lines = [line.partition(" : ")[2] for line in log.read_text().splitlines()]
     assert lines[0] == "received b'0.0,0.0,0.0,0.0,1'"
     assert lines[-1].startswith("id: DRONE0 done: 0 reward: ")
+    assert lines[-2] == "id: DRONE0 ACTIONS forward:15 leftRight:0 turn:0(deg/s)"
     assert " count: 6 " in lines[-1]
 
 

@@ -14,7 +14,7 @@ import pytest
 from eyas.core.errors import EyasError, OutputError
 from eyas.modes.serve.stand_in import install, serve_arguments
 
-from .conftest import free_port
+from .conftest import PATIENCE, free_port
 
 TRAINER = Path(__file__).with_name("trainer.py")
 SETTINGS = Path("Webots_Simulation", "traffic_project", "config", "env_config.json")
@@ -44,7 +44,7 @@ def trained(dat, tmp_path, world, agents):
 def ended(said):
     """End the server by the id that it has told; return all that was said."""
     os.kill(int(re.search(r"until 'kill (\d+)'", said.read_text())[1]), signal.SIGTERM)
-    end = time.monotonic() + 60.0
+    end = time.monotonic() + PATIENCE
     while "terminated" not in said.read_text():
         assert time.monotonic() < end
         time.sleep(0.05)
@@ -81,7 +81,7 @@ def test_a_server_that_was_there_before_follows_the_trainer_s_settings(dat, tmp_
         code, said = trained(dat, tmp_path, "worlds/simpleway-grass_day.wbt", 1)
     finally:
         server.send_signal(signal.SIGINT)
-        assert server.wait(120) == 130
+        assert server.wait(PATIENCE) == 130
     text, said = told.read_text(), said.read_text()
     assert code == 0, (said, text)
     port = next(line for line in said.splitlines() if line.isdigit())

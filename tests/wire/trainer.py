@@ -27,7 +27,7 @@ def free_port():
 
 
 def train(root, agent, rounds):
-    client = Client(root, agent, patience=300.0)
+    client = Client(root, agent, patience=900.0)
     client.reset()
     for _ in range(rounds):
         client.step((10.0, 0.0, 0.0, 0.0))
@@ -43,7 +43,7 @@ def main(root, world, agents, rounds):
     folder = root / FILES
     command = f"webots --batch --mode=fast --no-rendering --minimize {world} &"
     subprocess.call(command, shell=True, cwd=root / "Webots_Simulation")
-    end = time.monotonic() + 120.0
+    end = time.monotonic() + 900.0
     while not (folder / "start.txt").exists():  # the original sleeps for so long as it is told
         assert time.monotonic() < end
         time.sleep(0.05)

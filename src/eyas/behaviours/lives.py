@@ -11,7 +11,7 @@ from eyas.targets.config import ObjectsConfig
 __all__ = ["Lives", "lasting", "recycled"]
 
 _LEAST: Final = 60.0
-"""Least length of a life [s]."""
+"""Least length of a life, where that of the original is too short [s]."""
 
 _EPISODES: Final = 4.0
 """Least length of a life, in episodes: then three of four objects last one at any time."""
@@ -42,11 +42,13 @@ def recycled(
     """Return objects that come in groups and are moved elsewhere in the same order.
 
     The original moves the oldest group whenever an interval has passed, even if someone follows it;
-    with its defaults, an object stays for 1.25 s. Here groups enter as there, but are moved so
-    rarely that each object stays for several episodes: a target is drawn from those that stay for
-    the whole of its episode. In a world whose time goes on, there are as many of these as followers
-    at any time: as many objects are there from the start, and where a whole group cannot be
-    spared, fewer are moved at a time, or none.
+    with its defaults, an object stays for 1.25 s. Here it is so where each object then stays for
+    four episodes; otherwise groups enter as there, but are moved so rarely that each stays for four
+    episodes and a minute: a target is drawn from those that stay for the whole of its episode.
+
+    In a world whose time goes on, there are as many of these as followers at any time: as many
+    objects are there from the start, and where a whole group cannot be spared, fewer are moved at a
+    time, or none.
 
     Args:
         config: Numbers and interval.
@@ -60,7 +62,9 @@ def recycled(
     spare = max(config.max_count - followers, 0)
     batch = max(min(config.group_size, spare), 1)
     turns = math.ceil(config.max_count / batch)
-    stay = max(turns * config.interval, _EPISODES * episode, _LEAST)
+    stay = turns * config.interval
+    if stay < _EPISODES * episode:
+        stay = max(_EPISODES * episode, _LEAST)
     settled = 0.0
     if followers and spare:
         stay = max(stay, turns * (episode + _BETWEEN) / (spare // batch))

@@ -8,7 +8,13 @@ from eyas.behaviours.config import Behaviour
 from eyas.core.code_names import NAMES_CODE
 from eyas.core.config import Config
 
-__all__ = ["CustomConfig"]
+__all__ = ["ENDINGS", "MESHES", "CustomConfig"]
+
+MESHES = (".glb", ".gltf", ".obj", ".ply", ".stl")
+"""Endings of the mesh files that can be read."""
+
+ENDINGS = (*MESHES, ".proto")
+"""Endings of the files of shapes that can be read."""
 
 Text = Annotated[str, Field(min_length=1)]
 
@@ -19,7 +25,7 @@ class CustomConfig(Config):
     """
 
     mesh: Text | None = None
-    """File of its shape: glTF, GLB, OBJ, STL or PLY (extra `mesh`)."""
+    """File of its shape: glTF, GLB, OBJ, STL or PLY (extra `mesh`), or a Webots `.proto`."""
     path: Annotated[Text | None, NAMES_CODE] = None
     """Its class, `package.module:Class`, see `eyas.custom.own.OwnTarget`."""
     trajectory: Text | None = None

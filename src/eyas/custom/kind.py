@@ -10,8 +10,8 @@ import numpy as np
 
 from eyas.core.errors import ConfigError, DataFileError, UnknownNameError
 from eyas.core.files import user_path
-from eyas.custom.config import CustomConfig
-from eyas.custom.mesh_file import ENDINGS, loaded
+from eyas.custom.config import ENDINGS, CustomConfig
+from eyas.custom.mesh_file import loaded
 from eyas.custom.own import OwnTarget, Shaped
 from eyas.custom.problems import of_shape, worst
 from eyas.custom.rig import OwnRig

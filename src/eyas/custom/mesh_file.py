@@ -1,6 +1,6 @@
 """Reading of mesh files through trimesh: triangles in metres, each with one colour."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from types import ModuleType
@@ -12,12 +12,10 @@ from numpy.typing import NDArray
 from eyas.core import exact
 from eyas.core.errors import DataFileError, MissingExtraError
 from eyas.core.files import user_path
-from eyas.custom.config import CustomConfig
+from eyas.custom.config import ENDINGS, MESHES, CustomConfig
+from eyas.custom.proto_file import read_proto
 
-__all__ = ["ENDINGS", "LARGEST", "Triangles", "loaded", "placed", "read_mesh"]
-
-ENDINGS = (".glb", ".gltf", ".obj", ".ply", ".stl")
-"""Endings of the files that can be read."""
+__all__ = ["LARGEST", "Triangles", "loaded", "placed", "read_mesh"]
 
 LARGEST = 200_000
 """Largest number of triangles of a target."""
@@ -80,7 +78,6 @@ def read_mesh(path: Path) -> Triangles:
         DataFileError: The file is missing, empty or cannot be read.
         MissingExtraError: trimesh is not installed.
     """
-    trimesh = _trimesh()
     if path.suffix.lower() not in ENDINGS:
         raise DataFileError(f"{path}: not a mesh file; allowed: {', '.join(ENDINGS)}")
     if not path.is_file():
@@ -90,6 +87,14 @@ def read_mesh(path: Path) -> Triangles:
         raise DataFileError(f"{path}: holds no triangles: the file is empty")
     if path.stat().st_size > _LARGEST_FILE:
         raise DataFileError(f"{path}: larger than {_LARGEST_FILE >> 20} MiB")
+    if path.suffix.lower() == ".proto":
+        return _joined(
+            [
+                Triangles(points, corners, np.tile(colour, (len(corners), 1)))
+                for points, corners, colour in read_proto(path, _plain_mesh)
+            ]
+        )
+    trimesh = _trimesh()
     try:
         parts = [_checked(part) for part in _parts(trimesh, path)]
     except (KeyError, FileNotFoundError) as error:  # a buffer or a picture beside it
@@ -99,6 +104,22 @@ def read_mesh(path: Path) -> Triangles:
         raise DataFileError(f"{path}: cannot read as a mesh: {error}") from None
     if not parts:
         raise DataFileError(f"{path}: holds no triangles")
+    return _joined(parts)
+
+
+def _plain_mesh(path: Path) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Return points and corners of the mesh file that a PROTO names.
+
+    Raises:
+        DataFileError: As from `read_mesh`.
+    """
+    if path.suffix.lower() not in MESHES:
+        raise DataFileError(f"{path}: not a mesh file; allowed: {', '.join(MESHES)}")
+    shape = read_mesh(path)
+    return shape.points, shape.corners
+
+
+def _joined(parts: Sequence[Triangles]) -> Triangles:
     first = np.cumsum([0, *(len(part.points) for part in parts)])
     return Triangles(
         np.concatenate([part.points for part in parts]),

@@ -14,6 +14,7 @@ from eyas.core.files import write_atomic
 from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.adapter import check_original, from_legacy, is_legacy, with_legacy
 from eyas.settings.legacy.messages import named_path
+from eyas.settings.legacy.own_target import CUSTOM, own_target_folders, with_own_target
 from eyas.settings.trust import refuse_code
 
 __all__ = ["load_settings", "read_settings", "save_settings"]
@@ -50,12 +51,17 @@ def load_settings(
         ConfigError: A key or a value is wrong, or the file names code without being trusted.
     """
     config = (base or EyasConfig()) if path is None else _loaded(path)
+    folders = own_target_folders(path)
     pairs = [_parsed(override) for override in overrides]
     for capital, group in groupby(pairs, key=lambda pair: pair[0][0][:1].isupper()):
         changes: Nested = {}
         for keys, value in group:
             _put(changes, keys, value)
-        config = with_legacy(config, changes) if capital else updated(config, changes)
+        if capital:
+            changes, own = with_own_target(changes, folders)
+            config = _with_custom(with_legacy(config, changes), own)
+        else:
+            config = updated(config, changes)
     check_original(config)
     if path is not None and not trust:
         refuse_code(path, config, {text for _, value in pairs for text in _texts(value)})
@@ -72,7 +78,14 @@ def _loaded(path: Path) -> EyasConfig:
             "Webots_Simulation/traffic_project/config/env_config.json (the speeds of actions are "
             "env.speeds here)"
         )
-    return from_legacy(values) if is_legacy(values) else validated(EyasConfig, values)
+    if not is_legacy(values):
+        return validated(EyasConfig, values)
+    values, own = with_own_target(values, own_target_folders(path))
+    return _with_custom(from_legacy(values), own)
+
+
+def _with_custom(config: EyasConfig, custom: Nested | None) -> EyasConfig:
+    return config if custom is None else updated(config, {CUSTOM: custom})
 
 
 def save_settings(config: EyasConfig, path: Path) -> None:

@@ -1,6 +1,7 @@
 """The original's logs of what each client says and of each step (`Verbose`)."""
 
 import logging
+import math
 import time
 from collections.abc import Callable, Sequence
 from contextlib import ExitStack
@@ -75,6 +76,16 @@ class Journal:
     def hearer(self, number: int) -> Callable[[bytes], None]:
         """Return a function that logs a line of a client."""
         return lambda line: self._write(number, f"received {line!r}")
+
+    def actions(self, commands: Sequence[Sequence[float]]) -> None:
+        """Log what each tracker is told, in the original's words: forward, left, up, turn rate."""
+        for number in range(len(self._files)):
+            ahead, left, _, turn = commands[number]
+            self._write(
+                number,
+                f"id: {self._trackers[number]} ACTIONS forward:{ahead:g} leftRight:{left:g} "
+                f"turn:{math.degrees(turn):g}(deg/s)",
+            )
 
     def step(self, snapshot: Snapshot) -> None:
         """Log a step of all trackers."""

@@ -184,7 +184,9 @@ class Server:
 
     def _play(self, service: Service, crew: "Crew", posts: list[Post], journal: Journal) -> None:
         actions = [post.action for post in posts]
-        answers = crew.play([action for action in actions if action is not None])
+        given = [action for action in actions if action is not None]
+        journal.actions([action.command for action in given])
+        answers = crew.play(given)
         journal.step(crew.sim.snapshot)
         for post, answer in zip(posts, answers, strict=True):
             post.answer(_parts(service, post, answer))

@@ -8,9 +8,9 @@ import numpy as np
 from eyas.core.errors import EyasError, UnknownNameError
 from eyas.core.files import user_path
 from eyas.core.rng import stream
-from eyas.custom.config import CustomConfig
+from eyas.custom.config import ENDINGS, CustomConfig
 from eyas.custom.kind import as_custom, own_target
-from eyas.custom.mesh_file import ENDINGS, loaded
+from eyas.custom.mesh_file import loaded
 from eyas.custom.own import MovesItself, OwnTarget, Ride
 from eyas.custom.problems import Finding, numbered, of_height, of_noise, of_shape, of_trajectory
 from eyas.custom.shape import simplified

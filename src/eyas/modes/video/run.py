@@ -52,6 +52,7 @@ def run(
             the folder.
         KeyboardInterrupt: The user stopped it; every file that exists is complete.
     """
+    config = with_lidar(config)
     # Building may take a minute, so writers and folder are checked first. The folder is changed
     # only after building, so that a failed build neither makes nor deletes one.
     with originals_named(config):
@@ -82,6 +83,15 @@ def _record(sim: Simulation, config: EyasConfig, folder: VideoFolder, *, quiet: 
             raise OutputError(f"{error}; continue with --resume") from error
         raise
     print_report(folder, recorder, progress, quiet=quiet)
+
+
+def with_lidar(config: EyasConfig) -> EyasConfig:
+    """Return settings that write the lidar's file, too, if it is on and no writers are chosen."""
+    video = config.video
+    if not config.lidar.enabled or video.writers != type(video)().writers:
+        return config
+    writers = (*video.writers, "lidar")
+    return config.model_copy(update={"video": video.model_copy(update={"writers": writers})})
 
 
 def recording_rules(config: EyasConfig) -> EyasConfig:

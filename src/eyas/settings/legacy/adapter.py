@@ -15,6 +15,7 @@ from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.entries import Entry, Optional, Values
 from eyas.settings.legacy.keys import ENTRIES, GROUP_KEYS, KEEP_ALIVE
 from eyas.settings.legacy.layout import Nested, check_kinds, every_key, flat, nested
+from eyas.settings.legacy.own_target import CUSTOM
 from eyas.targets.config import TargetName
 from eyas.task.config import StartConfig, StartVelocity
 from eyas.trackers.config import Flight
@@ -41,8 +42,8 @@ LIKE_THE_ORIGINAL = updated(
 
 def is_legacy(values: Nested) -> bool:
     """Return whether settings are the original's, whose keys begin with a capital letter."""
-    capitals = sum(key[:1].isupper() for key in values)
-    return 2 * capitals > len(values)
+    keys = [key for key in values if key != CUSTOM]
+    return 2 * sum(key[:1].isupper() for key in keys) > len(keys)
 
 
 def from_legacy(values: Nested, base: EyasConfig | None = None) -> EyasConfig:

@@ -9,7 +9,7 @@ from eyas.traffic.config import Demand
 __all__ = ["ENTRIES", "GROUP_KEYS", "KEEP_ALIVE"]
 
 KEEP_ALIVE = "Sumo_Params.keep_alive"
-"""The one key of ours, which the original ignores: without it, or false, its traffic is meant."""
+"""A key of ours, which the original ignores: without it, or false, its traffic is meant."""
 
 GROUP_KEYS = frozenset(
     f"Sumo_Params.{name}"
@@ -62,6 +62,7 @@ _TASK = (
     Same("Done_Range.roll", "done.roll"),
     Same("Done_Range.pitch", "done.pitch"),
     Same("Done_Range.distance_error", "done.distance_error"),
+    Same("Done_Range.crash", "done.crash"),  # ours, which the original ignores
     Same("Reward_Config.reward_type", "reward.type"),
     Same("Reward_Config.reward_mode", "reward.mode"),
     Same("Reward_Config.reward_cut_off", "reward.cut_off"),

@@ -14,6 +14,9 @@ __all__ = ["Nested", "check_kinds", "every_key", "flat", "legacy_defaults", "nes
 Nested = Mapping[str, Any]
 """The content of a JSON object."""
 
+_COUNTS = "_Steps"
+"""End of the keys of numbers of steps, which may be written as 1500.0 too."""
+
 
 @cache
 def legacy_defaults() -> Nested:
@@ -42,7 +45,7 @@ def flat(values: Nested) -> dict[str, object]:
             raise Problem((key,), value, "", tuple(defaults), unknown_key=True).error()
         known = defaults[key]
         if not isinstance(known, Mapping):
-            by_path[key] = value
+            by_path[key] = _whole(value) if key.endswith(_COUNTS) else value
             continue
         if not isinstance(value, Mapping):
             raise Problem((key,), value, f"an object with {', '.join(known)}").error()
@@ -86,6 +89,12 @@ def check_kinds(entry: Entry, values: Values, *, idle: bool = False) -> None:
             fits, allowed = _is_number(value), "a number"
         if not fits:
             raise Problem((key,), value, allowed).error()
+
+
+def _whole(value: object) -> object:
+    """Return 1500.0 as 1500."""
+    whole = isinstance(value, float) and value.is_integer() and abs(value) < 2**53
+    return int(value) if whole and isinstance(value, float) else value
 
 
 def _is_number(value: object) -> bool:
