@@ -53,7 +53,7 @@ def _space(
             shape = FrameStack(0, size, config.colours, config.layout, config.frames).shape
             return gymnasium.spaces.Box(0, 255, shape, np.uint8)
         case _Parts.CLASSES:
-            return gymnasium.spaces.Box(0, max(ObjectClass), plane, np.uint8)
+            return gymnasium.spaces.Box(0, int(max(ObjectClass)), plane, np.uint8)
         case _Parts.DEPTH:
             return gymnasium.spaces.Box(0.0, np.inf, plane, np.float32)
         case _Parts.SENSORS:
@@ -94,7 +94,7 @@ class Observer:
         self._draws = bool(wanted & {_Parts.IMAGE, _Parts.DEPTH, _Parts.CLASSES})
         self._stack = FrameStack(count, size, config.colours, config.layout, config.frames)
         self._latest: dict[ObservationPart, Array] = {}
-        for part in wanted:
+        for part in config.parts:
             space = _space(part, config, lidar)
             self._latest[part] = np.zeros((count, *space.shape), space.dtype)
         if _Parts.IMAGE in wanted:
