@@ -104,8 +104,8 @@ def test_convert_writes_the_other_notation_and_rewrites_nothing(monkeypatch, cap
     )
     legacy.write_text(json.dumps(to_legacy(EyasConfig(video={"fps": 9}))))
     assert run(monkeypatch, capsys, "config", "convert", legacy, native)[0] == 0
-    video = {"fps": 9, "jpeg_quality": 100}
-    meant = EyasConfig(video=video, start={"velocity": "rest"}, extras=[], original={})
+    changed = {"video": {"fps": 9, "jpeg_quality": 100}, "tracker": {"flight": "original"}}
+    meant = EyasConfig(**changed, start={"velocity": "rest"}, extras=[], original={})
     assert EyasConfig(**json.loads(native.read_text())) == meant
     assert run(monkeypatch, capsys, "config", "convert", native, again)[0] == 0
     assert json.loads(again.read_text()) == json.loads(legacy.read_text())
@@ -226,7 +226,7 @@ def test_no_help_is_taken_for_markup_and_each_option_means_one_thing():
             if "--json" in option.opts:
                 seen[" ".join(words)] = option.is_flag
         assert not any("[" in text for text in texts), words
-    assert seen == {"compare": True}
+    assert seen == {"compare": True, "verify": True}
 
 
 def test_everything_that_is_listed_can_be_a_target(monkeypatch, capsys):
