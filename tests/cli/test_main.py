@@ -105,7 +105,13 @@ def test_convert_writes_the_other_notation_and_rewrites_nothing(monkeypatch, cap
     legacy.write_text(json.dumps(to_legacy(EyasConfig(video={"fps": 9}))))
     assert run(monkeypatch, capsys, "config", "convert", legacy, native)[0] == 0
     video = {"fps": 9, "jpeg_quality": 100}
-    meant = EyasConfig(video=video, start={"velocity": "rest"}, extras=[], original={})
+    meant = EyasConfig(
+        video=video,
+        start={"velocity": "rest"},
+        tracker={"flight": "original"},
+        extras=[],
+        original={},
+    )
     assert EyasConfig(**json.loads(native.read_text())) == meant
     assert run(monkeypatch, capsys, "config", "convert", native, again)[0] == 0
     assert json.loads(again.read_text()) == json.loads(legacy.read_text())
