@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.core.errors import DataFileError
 from eyas.core.files import read_limited
 from eyas.custom.proto_parser import Node, parsed
@@ -70,8 +71,8 @@ class _Walk:
         self._visited += 1
         if depth > 64 or self._visited > 20 * _MOST_PARTS:
             raise ValueError("nested too deep, or too many nodes")
-        place = place + turn @ _vector(node, "translation", (0.0, 0.0, 0.0))
-        turn = turn @ _rotation(node.fields.get("rotation"))
+        place = place + exact.product(turn, _vector(node, "translation", (0.0, 0.0, 0.0)))
+        turn = exact.product(turn, _rotation(node.fields.get("rotation")))
         turn = turn * _vector(node, "scale", (1.0, 1.0, 1.0))
         if node.kind == "Shape":
             self._add(node, turn, place)
@@ -87,12 +88,12 @@ class _Walk:
         if not isinstance(geometry, Node):
             return
         points, faces = self._solid(geometry)
-        if np.linalg.det(turn) < 0.0:
+        if exact.dot(turn[0], np.cross(turn[1], turn[2])) < 0.0:
             faces = faces[:, ::-1]  # mirrored
         self._triangles += len(faces)
         if len(self.parts) >= _MOST_PARTS or self._triangles > _MOST_TRIANGLES:
             raise ValueError(f"more than {_MOST_PARTS} shapes or {_MOST_TRIANGLES} triangles")
-        self.parts.append((points @ turn.T + place, faces, _colour(shape)))
+        self.parts.append((exact.product(points, turn.T) + place, faces, _colour(shape)))
 
     def _solid(self, node: Node) -> Solid:
         if node.kind == "Mesh":
@@ -134,7 +135,8 @@ def _rotation(value: object) -> Floats:
     if length == 0.0:
         return np.eye(3)
     cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]]) / length
-    turned = np.eye(3) + math.sin(angle) * cross + (1.0 - math.cos(angle)) * (cross @ cross)
+    twice = exact.product(cross, cross)
+    turned = np.eye(3) + exact.sin(angle) * cross + (1.0 - exact.cos(angle)) * twice
     return np.asarray(turned, np.float64)
 
 
@@ -164,7 +166,7 @@ def _box(node: Node) -> Solid:
 def _turned(profile: Sequence[tuple[float, float]]) -> Solid:
     """Return a solid of revolution about z from radii and heights, the lowest first."""
     angle = 2.0 * math.pi * np.arange(_ROUND) / _ROUND
-    ring = np.stack([np.cos(angle), np.sin(angle)], axis=-1)
+    ring = np.stack([exact.cos(angle), exact.sin(angle)], axis=-1)
     points = [np.column_stack([r * ring, np.full(_ROUND, z)]) for r, z in profile]
     here = np.arange(_ROUND)
     after = (here + 1) % _ROUND
@@ -191,7 +193,7 @@ def _cone(node: Node) -> Solid:
 def _arc(radius: float, middle: float, first: float, last: float) -> list[tuple[float, float]]:
     """Return points of a circle between two heights above its middle, as angles [rad]."""
     angles = np.linspace(first, last, _ROUND // 2 + 1)
-    return [(radius * max(math.cos(a), 0.0), middle + radius * math.sin(a)) for a in angles]
+    return [(radius * max(exact.cos(a), 0.0), middle + radius * exact.sin(a)) for a in angles]
 
 
 def _ended(profile: list[tuple[float, float]]) -> list[tuple[float, float]]:
