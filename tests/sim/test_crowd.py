@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from eyas.behaviours.troop import Clock
 from eyas.core.errors import ConfigError, SpawnError
 from eyas.exports.capture import frame_of
 from eyas.exports.frame import Action
@@ -13,10 +14,13 @@ from eyas.exports.label import label_of
 from eyas.exports.writer import Episode
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
-from eyas.sim.crowd import extras_of
+from eyas.sim.crowd import crowd_of, extras_of
+from eyas.sim.crowd_motion import Surroundings, crowd_motions, with_crowd
+from eyas.sim.scenes import load_scene
 from eyas.sim.words import target_in_words
 from eyas.sim.worlds import each_alone, together
 from eyas.state.draw import Picture
+from eyas.state.motion import SAMPLE, Motion, joined
 from eyas.state.scene import ObjectClass
 from eyas.targets.catalogue import KINDS
 
@@ -212,3 +216,20 @@ def test_no_target_for_a_whole_episode_is_told():
     settings = {"target": "Pedestrian", "objects": FEW, "done": {"total_steps": 900_000}}
     with pytest.raises(ConfigError, match=r"done\.total_steps: 900000"):
         build_simulation(SimConfig(**settings), each_alone(1))
+
+
+def test_a_crowd_beside_vehicles_is_kept_with_them_and_moves_as_alone():
+    crowd = crowd_of(
+        SimConfig(extras=[{"kind": "Pedestrian", "count": 3}, {"kind": "BB-8", "count": 2}])
+    )
+    scene = load_scene("citystreet")
+    around = Surroundings(scene, Clock(101, 10.0), 3)
+    table = np.zeros((101, 2), SAMPLE)
+    table["x"], table["present"] = 5.0, 1.0
+    vehicles = Motion(table, np.zeros(2, np.int32), 10.0, 0.0)
+    motion, targets = with_crowd(vehicles, crowd, around)
+    in_memory = joined([vehicles, *crowd_motions(crowd, around)])
+    np.testing.assert_array_equal(motion.table, in_memory.table)
+    np.testing.assert_array_equal(motion.kind, in_memory.kind)
+    assert motion.kind.dtype == in_memory.kind.dtype
+    assert targets.tolist() == [True, True, *[False] * (len(motion.kind) - 2)]

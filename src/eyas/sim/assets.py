@@ -7,16 +7,17 @@ from functools import lru_cache, partial
 import numpy as np
 
 from eyas.behaviours.troop import Clock
+from eyas.core.cache.array_file import let_go
 from eyas.core.errors import ConfigError
 from eyas.render.ahead import begin_ahead, drawing_is_ready
 from eyas.render.renderer import Renderer, build_renderer
 from eyas.sensors.obstacles import Solids
 from eyas.sim.crowd import NOBODY, Crowd, vehicles_of
-from eyas.sim.crowd_motion import Surroundings, crowd_motions
+from eyas.sim.crowd_motion import Surroundings, crowd_motions, with_crowd
 from eyas.sim.scenes import load_geometry, load_scene, load_solids
 from eyas.sim.signals import SignalLights, lights_of
 from eyas.state.lighting import Lighting
-from eyas.state.motion import Motion, joined
+from eyas.state.motion import Motion
 from eyas.state.scene import Scene
 from eyas.targets.catalogue import kind_index
 from eyas.targets.quadrotor import QUADROTOR
@@ -118,11 +119,10 @@ def _traffic(
     scene = load_scene(map_name, seed)
     lights = _walk_plan(map_name, seed) if scene.footways.told else None
     around = Surroundings(scene, clock, _seed_of(config), vehicles, lights)
-    others = crowd_motions(crowd, around)
-    every = others if vehicles is None else [vehicles, *others]
-    followed = vehicles if crowd.follows_vehicles else others[0]
-    targets = np.concatenate([np.full(len(motion.kind), motion is followed) for motion in every])
-    return Replay(joined(every), targets)
+    motion, targets = with_crowd(vehicles, crowd, around)
+    replay = Replay(motion, targets)
+    let_go(motion.table)  # which has been read to its end
+    return replay
 
 
 def _live(

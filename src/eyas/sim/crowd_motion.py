@@ -1,7 +1,7 @@
 """The motion of a crowd: of the targets that are no vehicles of SUMO's, and of extras."""
 
 import zlib
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import cache, partial
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -19,7 +19,7 @@ from eyas.core.rng import stream
 from eyas.core.variation import Mirrored, Variation
 from eyas.custom.config import CustomConfig
 from eyas.sim.crowd import Crowd
-from eyas.state.motion import SAMPLE, Motion
+from eyas.state.motion import SAMPLE, Motion, joined
 from eyas.state.scene import Scene
 from eyas.targets.catalogue import MODELS, kind_index, models_of
 from eyas.traffic.signals import SignalPlan
@@ -27,7 +27,7 @@ from eyas.traffic.signals import SignalPlan
 if TYPE_CHECKING:
     from eyas.behaviours.ground import Ground
 
-__all__ = ["Surroundings", "crowd_motions"]
+__all__ = ["Surroundings", "crowd_motions", "with_crowd"]
 
 _MAKERS = (
     *("behaviours", "sim/crowd_motion.py", "state/motion.py", "state/terrain.py", "world/roads"),
@@ -76,11 +76,68 @@ def crowd_motions(crowd: Crowd, around: Surroundings) -> list[Motion]:
     return motions
 
 
+def with_crowd(
+    vehicles: Motion | None, crowd: Crowd, around: Surroundings
+) -> tuple[Motion, NDArray[np.bool_]]:
+    """Return the motion of vehicles and, after them, of a crowd, and who may be a target.
+
+    Args:
+        vehicles: The vehicles; None: there are none.
+        crowd: The crowd.
+        around: Where and when it moves.
+
+    Raises:
+        SpawnError: The map has no room for all.
+    """
+    before = [] if vehicles is None else [vehicles]
+    if crowd.custom is None and _troops(crowd, around.clock):
+        motion, counts = _all_kept(before, crowd, around)
+    else:
+        every = [*before, *crowd_motions(crowd, around)]
+        motion, counts = joined(every), [len(one.kind) for one in every]
+    followed = 0 if crowd.follows_vehicles else len(before)
+    return motion, np.repeat(np.arange(len(counts)) == followed, counts)
+
+
+def _all_kept(
+    before: Sequence[Motion], crowd: Crowd, around: Surroundings
+) -> tuple[Motion, list[int]]:
+    """Return the motion of vehicles and troops as one entry of the cache, and how many each are.
+
+    Joined in memory, that of 400 people would take half a gigabyte of each process, of which it
+    reads little.
+    """
+    ground, troops = cache(partial(_ground, around, crowd.driven)), _troops(crowd, around.clock)
+    parts = [
+        _made(troop, number, around, crowd.driven, ground) for number, troop in enumerate(troops)
+    ]
+    tables = [motion.table for motion in before]
+
+    def made() -> NDArray[np.float32]:
+        driven = [table.view(np.float32).reshape(*table.shape, -1) for table in tables]
+        return np.concatenate([*driven, *(part.make() for part in parts)], axis=1)
+
+    depends_on = (*tables, *(value for part in parts for value in part.depends_on))
+    numbers = cached(Kind.MOTION, _MAKERS, depends_on, made, of=NDArray[np.float32])
+    counts = [int(troop.lives.slot.max()) + 1 for troop in troops]
+    indices = [kind_index(troop.kind) for troop in troops]
+    kind = np.concatenate([*(one.kind for one in before), np.repeat(indices, counts)])
+    motion = Motion(numbers.view(SAMPLE)[..., 0], kind.astype(np.int32), around.clock.rate, 0.0)
+    return motion, [*(len(one.kind) for one in before), *counts]
+
+
 def _ground(around: Surroundings, driven: bool) -> "Ground":
     """Return the ground, whose roads are left to vehicles where these drive."""
     from eyas.behaviours.ground import Ground  # with shapely
 
     return Ground(around.scene, roads=driven, lights=around.lights)
+
+
+class _Part(NamedTuple):
+    """The motion of a troop, that may be in the cache."""
+
+    depends_on: tuple[object, ...]
+    make: Callable[[], NDArray[np.float32]]
 
 
 def _kept(
@@ -90,7 +147,21 @@ def _kept(
     driven: bool,
     ground: Callable[[], "Ground"],
 ) -> Motion:
-    """Return the motion of a troop, from the cache if it is there.
+    """Return the motion of a troop, from the cache if it is there; arguments as of `_made`."""
+    depends_on, make = _made(troop, number, around, driven, ground)
+    numbers = cached(Kind.MOTION, _MAKERS, depends_on, make, of=NDArray[np.float32])
+    kind = np.full(numbers.shape[1], kind_index(troop.kind), np.int32)
+    return Motion(numbers.view(SAMPLE)[..., 0], kind, around.clock.rate, 0.0)
+
+
+def _made(
+    troop: Troop,
+    number: int,
+    around: Surroundings,
+    driven: bool,
+    ground: Callable[[], "Ground"],
+) -> _Part:
+    """Return how the motion of a troop is made, and what it depends on.
 
     Args:
         troop: Who moves.
@@ -116,9 +187,7 @@ def _kept(
         *(*_plan_of(scene), *troop.lives, troop[:3], troop[4:], clock, seed, number),
         *(driven, *waits_for, *obeys),
     )
-    numbers = cached(Kind.MOTION, _MAKERS, depends_on, made, of=NDArray[np.float32])
-    kind = np.full(numbers.shape[1], kind_index(troop.kind), np.int32)
-    return Motion(numbers.view(SAMPLE)[..., 0], kind, clock.rate, 0.0)
+    return _Part(depends_on, made)
 
 
 def _troops(crowd: Crowd, clock: Clock) -> list[Troop]:

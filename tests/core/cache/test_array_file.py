@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eyas.core.cache.array_file import Content, array_file, map_arrays
+from eyas.core.cache.array_file import Content, array_file, let_go, map_arrays
 from eyas.core.machine_code import read_code
 
 ARRAYS = [
@@ -124,3 +124,14 @@ def test_processes_share_the_memory_of_what_they_only_read(tmp_path):
 
     assert own("read") == ["0", "0"]
     assert set(own("write")) == {"4"}  # one page of 8 MiB, in KiB
+
+
+def test_pages_that_were_let_go_come_back(tmp_path):
+    values = np.arange(1 << 20, dtype=np.float32)
+    path = tmp_path / "a.npy"
+    path.write_bytes(b"".join(array_file(Content(None, [values]), path.name)))
+    (mapped,) = map_arrays(path).arrays
+    let_go(mapped)
+    let_go(mapped.view(np.int32)[::2])  # of any part of it
+    np.testing.assert_array_equal(mapped, values)
+    let_go(np.zeros(3))  # not mapped: nothing to do

@@ -7,6 +7,7 @@ hundreds of arrays takes a hundredth of the time of mapping one file for each ar
 
 import io
 import json
+import mmap
 import os
 import stat
 import struct
@@ -20,7 +21,7 @@ from numpy.typing import NDArray
 from eyas.core.cache.flat import Array, Json
 from eyas.core.files import open_at_once
 
-__all__ = ["Content", "array_file", "map_arrays"]
+__all__ = ["Content", "array_file", "let_go", "map_arrays"]
 
 _ALIGNMENT = 64
 _NUMBER = struct.Struct("<I")
@@ -88,6 +89,19 @@ def map_arrays(path: Path) -> Content:
     if name != path.name:
         raise ValueError(f"{path}: in the place of another entry")
     return Content(header["value"], arrays)
+
+
+def let_go(array: NDArray[Any]) -> None:
+    """Let go of the memory of an array that has just been mapped, and that nobody has written into.
+
+    Its pages come back one by one when they are used, from the system's memory. The checksum reads
+    all of a file; of the motion of 400 people, for example, a process needs little.
+    """
+    owner: Any = array
+    while isinstance(owner, np.ndarray | memoryview):
+        owner = owner.base if isinstance(owner, np.ndarray) else owner.obj
+    if isinstance(owner, mmap.mmap) and hasattr(mmap, "MADV_DONTNEED"):
+        owner.madvise(mmap.MADV_DONTNEED)
 
 
 def _plain(kind: str) -> np.dtype[Any]:
