@@ -25,7 +25,7 @@ from eyas.targets.kind import Section
 from eyas.traffic.config import TrafficConfig
 from eyas.traffic.library import CANONICAL_MIX
 from eyas.traffic.signals import Aspect, SignalPlan
-from eyas.traffic.trailer import BUMPER_AHEAD, TAIL_BEHIND, folded
+from eyas.traffic.trailer import BUMPER_AHEAD, TAIL_BEHIND, folded_by
 
 from .conftest import troop
 
@@ -66,7 +66,9 @@ def nearest(table, vehicles) -> float:
         sizes = np.array([MODELS[m].size for m in models_of(kind)]).max(axis=0)
         whole = Section("", 0.0, tuple(sizes), 0, ())
         for section in sections_of(models_of(kind).start) or (whole,):
-            x, y, c, s = interpreted(folded)(one["hitch"], section.towed)
+            x, y, c, s = interpreted(folded_by)(
+                np.sin(one["hitch"]), np.cos(one["hitch"]), section.towed
+            )
             cosine, sine = np.cos(one["yaw"]), np.sin(one["yaw"])
             x = x + KINDS[kind].ahead + section.ahead * c
             y = y + section.ahead * s

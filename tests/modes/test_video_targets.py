@@ -91,7 +91,7 @@ def record(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
         }
         (tmp_path / "settings.json").write_text(json.dumps({**always, **settings}))
         out, given = tmp_path / "out", str(tmp_path / "settings.json")
-        command = ["eyas", "video", "--quiet", "--overwrite", "--config", given]
+        command = ["eyas", "video", "--quiet", "--overwrite", "--trust", "--config", given]
         monkeypatch.setattr(sys, "argv", [*command, "--out", str(out)])
         assert run() == 0
         episode = out / "DRONE0" / "episode0"

@@ -10,11 +10,14 @@ from pydantic import BaseModel
 from eyas.core.parallel import BoundKernel, Held, parallel_kernel
 from eyas.render.renderer import Renderer
 from eyas.sim.assets import Assets
+from eyas.sim.episode_draw import DrawRules, ModelTable
+from eyas.sim.light import LightRules
 from eyas.sim.near import NearMovers
 from eyas.state.draw import Picture
 from eyas.state.lighting import Lighting
 from eyas.state.motion import Motion
 from eyas.state.terrain import Terrain
+from eyas.targets.looks import LookTable
 from eyas.task.journal import Journal
 
 __all__ = ["FIXED"]
@@ -22,10 +25,12 @@ __all__ = ["FIXED"]
 _CODE = (types.FunctionType, types.MethodType, partial, type, parallel_kernel)
 _SETTINGS = (BaseModel, Enum, gymnasium.Space)
 _SHARED = (Assets, Renderer, Lighting, Motion, Terrain)
+_TABLES = (DrawRules, LightRules, LookTable, ModelTable)
+"""Made of the settings and the catalogue, which may have grown in this process."""
 _BOUND = (BoundKernel, Held)
 """To the addresses of arrays, which stay."""
 _SCRATCH = (NearMovers, Picture)
 """Worked out at each use."""
 
-FIXED = (*_CODE, *_SETTINGS, *_SHARED, *_BOUND, *_SCRATCH, Journal)
+FIXED = (*_CODE, *_SETTINGS, *_SHARED, *_TABLES, *_BOUND, *_SCRATCH, Journal)
 """Types of parts for `eyas.core.memento.remember` to leave out."""
