@@ -51,6 +51,10 @@ _NUMBERS = itertools.count()
 """Numbers of the kernels that this process has tried to load."""
 
 
+_TOLD: set[Path] = set()
+"""Folders of which it is told that someone else may have written into them."""
+
+
 class MachineCode(NamedTuple):
     """Machine code of a kernel."""
 
@@ -209,7 +213,9 @@ def read_code(path: Path, *, shipped: bool = False) -> MachineCode | None:
     except (FileNotFoundError, NotADirectoryError, PermissionError):
         return None  # if it cannot be replaced either, that is told
     except UnsafeError as error:
-        _LOG.warning("%s: %s; so it is compiled anew", path, error)
+        if path.parent not in _TOLD:
+            _TOLD.add(path.parent)
+            _LOG.warning("%s: %s; so it is compiled anew", path, error)
         return None
     except (OSError, ValueError):
         _LOG.warning("%s: damaged or unreadable, so it is compiled anew", path)
