@@ -3,7 +3,7 @@
     python tools/ship_kernels.py          # some minutes; commit what it changes
     python tools/ship_kernels.py --check  # is the code in the package that of these sources?
 
-The files belong to exactly these sources: after any change of a kernel Eyas passes them over, and
+Each file belongs to exactly one kernel: after a change of what it computes Eyas passes it over, and
 compiles. So they are made before a release, not with each change.
 """
 
@@ -18,10 +18,11 @@ import tempfile
 from pathlib import Path
 
 import eyas
-from eyas.core.jit import source_hash
+from eyas.core.identity import language_files, language_hash
 from eyas.core.machine_code import SUFFIX
 from eyas.core.parallel import parallel_kernel
 from eyas.core.shipped import LEVELS, SHIPPED
+from eyas.core.syntax import INDEX, index_of
 from eyas.sim.step import step_of
 from eyas.trackers.drone import DRONE
 
@@ -74,26 +75,45 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--check", action="store_true", help="change nothing; fail if out of date")
     if parser.parse_args().check:
-        raise SystemExit(missing(SHIPPED / source_hash()))
+        raise SystemExit(missing(SHIPPED / language_hash()) or compiled())
+    INDEX.write_text(index_of(files_of_kernels()))
     for level in LEVELS:
         print(f"compiling for {level} ...", flush=True)
-        compile_for(level, SHIPPED / source_hash() / level)
+        compile_for(level, SHIPPED / language_hash() / level)
     for folder in SHIPPED.iterdir():
-        if folder.name != source_hash():
+        if folder.is_dir() and folder.name != language_hash():
             shutil.rmtree(folder)
-    raise SystemExit(missing(SHIPPED / source_hash()))
+    raise SystemExit(missing(SHIPPED / language_hash()) or compiled())
+
+
+def files_of_kernels() -> list[Path]:
+    """Return the files of the package that may hold kernels, and those of their language."""
+    every = SHIPPED.parents[1].rglob("*.py")
+    return sorted({*language_files(), *(path for path in every if b"kernel" in path.read_bytes())})
+
+
+def compiled() -> str | None:
+    """Return which kernels are not shipped for this machine as they are now; None if all are."""
+    with tempfile.TemporaryDirectory() as cache:
+        use_all(cache, {})
+        found = sorted(file.stem for file in Path(cache).rglob(f"*{SUFFIX}"))
+    return f"not shipped as they are now: {', '.join(found)}" if found else None
+
+
+def use_all(cache: str, variables: dict[str, str]) -> None:
+    """Use every kernel in a process with an empty cache."""
+    environment = {**os.environ, "EYAS_CACHE_DIR": cache, **variables}
+    environment.pop("NUMBA_CACHE_DIR", None)
+    subprocess.run([sys.executable, "-c", USES_ALL], env=environment, check=True)
 
 
 def compile_for(level: str, folder: Path) -> None:
     """Compile all kernels for a level into a folder."""
     with tempfile.TemporaryDirectory() as cache:
-        environment = {**os.environ, "EYAS_CACHE_DIR": cache, "NUMBA_CPU_NAME": level}
-        environment["NUMBA_CPU_FEATURES"] = ""
-        environment.pop("NUMBA_CACHE_DIR", None)
-        subprocess.run([sys.executable, "-c", USES_ALL], env=environment, check=True)
+        use_all(cache, {"NUMBA_CPU_NAME": level, "NUMBA_CPU_FEATURES": ""})
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
-        for file in Path(cache, "kernels", source_hash()).glob(f"*{SUFFIX}"):
+        for file in Path(cache, "kernels", language_hash()).glob(f"*{SUFFIX}"):
             shutil.copy(file, folder / f"{file.stem.rpartition('-')[0]}{SUFFIX}")
 
 

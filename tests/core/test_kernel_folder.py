@@ -1,6 +1,5 @@
-"""Where compiled kernels are kept, in processes of their own, and for which sources."""
+"""Where compiled kernels are kept, in processes of their own."""
 
-import ast
 import os
 import subprocess
 import sys
@@ -8,8 +7,6 @@ import time
 from pathlib import Path
 
 import eyas
-
-ROOT = Path(eyas.__file__).parent
 
 TELLS = """
 import os
@@ -55,30 +52,3 @@ def test_where_nothing_can_be_kept_kernels_are_not_kept_beside_their_sources(tmp
     assert warned.count("\n") == 1
     assert "cannot write: Not a directory; so every start" in warned
     assert set(Path(eyas.__file__).parent.rglob("*.nb[ci]")) == beside
-
-
-def imported(path):
-    """Yield the files of Eyas from which the kernels of a file take a name, with these names."""
-    tree = ast.parse(path.read_text())
-    functions = [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)]
-    used = {node.id for f in functions for node in ast.walk(f) if isinstance(node, ast.Name)}
-    for node in ast.walk(tree):
-        if isinstance(node, ast.ImportFrom) and (node.module or "").startswith("eyas."):
-            source = ROOT.parent / node.module.replace(".", "/")
-            names = {name.asname or name.name for name in node.names} & used
-            whole = source / "__init__.py" if source.is_dir() else source.with_suffix(".py")
-            yield whole, {name for name in names if name.isupper()}
-
-
-def test_every_file_with_a_value_that_kernels_read_counts_as_their_source():
-    """A value that changes must not leave machine code with the old one in use."""
-    sources = [path for path in ROOT.rglob("*.py") if "kernel" in path.read_text()]
-    kernels = [path for path in sources if "_kernel\n" in path.read_text()]
-    assert len(kernels) > 40
-    missing = {
-        (path.name, source.name, *names)
-        for path in kernels
-        for source, names in imported(path)
-        if names and source not in sources
-    }
-    assert not missing

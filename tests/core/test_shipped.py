@@ -9,7 +9,7 @@ import pytest
 
 from eyas.core import entry, shipped
 from eyas.core.held import Held
-from eyas.core.jit import source_hash
+from eyas.core.identity import language_hash
 from eyas.core.machine_code import SUFFIX, read_code, write_code
 from eyas.core.parallel import parallel_kernel
 
@@ -58,7 +58,7 @@ def machine(monkeypatch):
 @pytest.fixture
 def ships(tmp_path, monkeypatch, compiled, machine):
     """Return the folder of a level, in which the code of `double` is shipped; nothing is cached."""
-    cache, folder = tmp_path / "cache", tmp_path / "shipped" / source_hash() / "x86-64-v3"
+    cache, folder = tmp_path / "cache", tmp_path / "shipped" / language_hash() / "x86-64-v3"
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(cache))
     monkeypatch.setattr(shipped, "SHIPPED", tmp_path / "shipped")
     cache.mkdir()
@@ -80,7 +80,7 @@ def test_shipped_code_is_used_and_nothing_is_compiled_or_cached(ships, compiled,
     assert entry.nothing_compiled("other")
 
 
-def test_code_of_other_sources_is_passed_over(ships, compiled):
+def test_code_of_another_language_of_kernels_is_passed_over(ships, compiled):
     ships.parent.rename(ships.parent.with_name("0123456789abcdef"))
     assert doubled() == 2.0
     assert len(compiled) == 1

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from eyas.core.jit import folder_in_use, source_hash
+from eyas.core.identity import language_hash
+from eyas.core.jit import folder_in_use
 from eyas.core.machine_code import SUFFIX, read_code
 from eyas.core.shipped import SHIPPED
 
@@ -45,7 +46,7 @@ def outside(code: bytes) -> set[str]:
 def test_no_kernel_calls_a_function_of_the_c_library():
     program = runpy.run_path(str(TOOL))
     subprocess.run([sys.executable, "-c", program["USES_ALL"]], check=True)
-    files = [*folder_in_use().glob(f"*{SUFFIX}"), *(SHIPPED / source_hash()).rglob(f"*{SUFFIX}")]
+    files = [*folder_in_use().glob(f"*{SUFFIX}"), *(SHIPPED / language_hash()).rglob(f"*{SUFFIX}")]
     used = {file.name.partition("-")[0] for file in files}
     assert program["kernels"]() - BAKING <= used
     needs = {file.name: outside(read_code(file).code) for file in files}

@@ -1,15 +1,19 @@
 """The address of a kernel that gets bundles: from its file, or compiled, which takes seconds."""
 
+import logging
 import platform
 import threading
+import time
 from collections.abc import Callable
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from eyas.core.cache.folder import touch
 from eyas.core.held import Held
+from eyas.core.identity import identity
 from eyas.core.interrupts import shielded
-from eyas.core.jit import REFUSAL, folder_in_use, identity
+from eyas.core.jit import REFUSAL, folder_in_use
 from eyas.core.machine_code import (
     SUFFIX,
     MachineCode,
@@ -22,6 +26,8 @@ from eyas.core.machine_code import (
 from eyas.core.shipped import is_shipped, shipped_code
 
 __all__ = ["entry_address", "nothing_compiled"]
+
+_LOG = logging.getLogger("eyas")
 
 _LOCK = threading.RLock()
 
@@ -42,7 +48,9 @@ def entry_address(function: Callable[..., Any], parts: tuple[Held[Any], ...]) ->
     with _LOCK, shielded():
         address = _kept(path) if keeps else None
         if address is None:
+            start = time.perf_counter()
             code = _compiled(function, parts, entry_of(path))
+            _LOG.debug("compiled %s in %.1f s", name, time.perf_counter() - start)
             address = load(code)
             assert address is not None, f"{name}: cannot be loaded; it needs {code.needs}"
             if keeps and not REFUSAL:
@@ -52,7 +60,11 @@ def entry_address(function: Callable[..., Any], parts: tuple[Held[Any], ...]) ->
 
 def _kept(path: Path) -> int | None:
     """Return the address of a kernel that is cached, or else shipped; None if it is neither."""
-    found = read_code(path) or shipped_code(path.stem.rpartition("-")[0])
+    found = read_code(path)
+    if found is not None:
+        touch(path)
+    else:
+        found = shipped_code(path.stem.rpartition("-")[0])
     return None if found is None else load(found)
 
 

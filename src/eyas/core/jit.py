@@ -1,14 +1,13 @@
 """Kernels: functions to be compiled, and the folder where the result is kept.
 
-The folder is named after a hash of every source file that holds kernels: what is compiled from a
-function depends on the functions that it calls. numba's own cache is not used: it would notice only
-a change in the file of the function itself, and it unpickles its files.
+The folder is named after the language of kernels, the files after what each computes
+(`eyas.core.identity`). numba's own cache is not used: it would notice only a change in the file of
+the function itself, not in what that calls, and it unpickles its files.
 """
 
 import errno
 import functools
 import hashlib
-import inspect
 import os
 import types
 from collections.abc import Callable
@@ -17,6 +16,7 @@ from typing import Any, TypeVar, cast
 
 from eyas.core.cache.folder import Kind, cache_folder, touch
 from eyas.core.cache.safety import made_folder, secured
+from eyas.core.identity import identity, language_hash
 from eyas.core.interrupts import shielded
 
 __all__ = [
@@ -24,7 +24,6 @@ __all__ = [
     "Kernel",
     "double_kernel",
     "folder_in_use",
-    "identity",
     "inlined_kernel",
     "inner_kernel",
     "interpreted",
@@ -32,7 +31,6 @@ __all__ = [
     "kernel_folder",
     "limit_threads",
     "separate_kernel",
-    "source_hash",
     "specialised",
     "step_kernel",
     "thread_count",
@@ -41,23 +39,9 @@ __all__ = [
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
-@functools.cache
-def source_hash() -> str:
-    """Return a hash of every source file that holds kernels, or values that they read.
-
-    It is known by the word "kernel" in it.
-    """
-    digest = hashlib.sha256()
-    for path in sorted(Path(__file__).parent.parent.rglob("*.py")):
-        text = path.read_bytes()
-        if "kernels" in path.parts or b"kernel" in text or b"numba" in text:
-            digest.update(text)
-    return digest.hexdigest()[:16]
-
-
 def kernel_folder() -> Path:
-    """Return the folder of the kernels compiled from exactly these sources."""
-    return cache_folder() / Kind.KERNELS / source_hash()
+    """Return the folder of compiled kernels of this version of their language."""
+    return cache_folder() / Kind.KERNELS / language_hash()
 
 
 def _refusal(folder: Path) -> str:
@@ -192,19 +176,3 @@ def specialised(function: Function, **kernels: Callable[..., Any]) -> Function:
     made.__module__ = function.__module__
     made.__qualname__ = f"{function.__qualname__}_{digest}"
     return cast("Function", made)
-
-
-def identity(function: Callable[..., Any], seen: frozenset[str] = frozenset()) -> str:
-    """Return a text that identifies a function and what it calls, kernel or not.
-
-    Functions of Eyas have only their names there: their sources determine the folder of kernels.
-    """
-    function = getattr(function, "py_func", function)
-    name = f"{function.__module__}.{function.__qualname__}"
-    if name in seen or name.startswith("eyas."):
-        return name
-    source = Path(inspect.getsourcefile(function) or "")
-    text = source.read_text() if source.is_file() else repr(function.__code__.co_code)
-    called = map(function.__globals__.get, function.__code__.co_names)
-    others = [identity(other, seen | {name}) for other in called if isinstance(other, Kernel)]
-    return " ".join([name, text, *others])

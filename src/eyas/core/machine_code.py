@@ -181,8 +181,8 @@ def code_file(folder: Path, name: str, made_of: Iterable[str], made_by: Iterable
     Args:
         folder: The folder of kernels.
         name: The name of the kernel, for people who look into the folder.
-        made_of: All that determines what the kernel computes, except the sources that name the
-            folder.
+        made_of: All that determines what the kernel computes, except the language of kernels,
+            which names the folder.
         made_by: What else the code depends on, except the processor and llvmlite.
     """
     by = (*cpu(), llvmlite.__version__, *made_by)

@@ -1,7 +1,7 @@
 """Machine code that comes with Eyas, so that the first start need not compile.
 
-It is made for two levels of x86-64 by `tools/ship_kernels.py` and found by a hash of the sources:
-after a change of any kernel it is passed over, as on other processors, and kernels are compiled.
+It is made for two levels of x86-64 by `tools/ship_kernels.py`, and each kernel is found by what it
+computes (`eyas.core.identity`): one that was changed is compiled, as all are on other processors.
 Kernels call nothing of Python or numba, and no operation is fused or reordered, so the code serves
 all versions of these, and computes the same bytes as code compiled for the very machine.
 """
@@ -14,13 +14,13 @@ from pathlib import Path
 
 import llvmlite.binding as llvm
 
-from eyas.core.jit import source_hash
+from eyas.core.identity import language_hash
 from eyas.core.machine_code import SUFFIX, MachineCode, read_code
 
 __all__ = ["LEVELS", "SHIPPED", "is_shipped", "shipped_code"]
 
 SHIPPED = Path(__file__).parent / "shipped"
-"""Folder of shipped code: `<hash of the sources>/<level>/<file>`."""
+"""Folder of shipped code: `<hash of the language of kernels>/<level>/<file>`."""
 
 _V3 = frozenset(
     "cx16 sahf popcnt sse3 ssse3 sse4.1 sse4.2 avx avx2 bmi bmi2 f16c fma lzcnt movbe xsave".split()
@@ -35,12 +35,12 @@ LEVELS = {
 
 @cache
 def _folder() -> Path | None:
-    """Return the folder of code for this machine and these sources; None if there is none."""
+    """Return the folder of code for this machine and this language; None if there is none."""
     named = {"NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES"} & os.environ.keys()
     if named or sys.platform != "linux" or platform.machine() != "x86_64":
         return None
     has = _features()
-    folders = (SHIPPED / source_hash() / name for name, needed in LEVELS.items() if needed <= has)
+    folders = (SHIPPED / language_hash() / name for name, needed in LEVELS.items() if needed <= has)
     return next((folder for folder in folders if folder.is_dir()), None)
 
 
@@ -50,7 +50,7 @@ def _features() -> set[str]:
 
 
 def shipped_code(name: str) -> MachineCode | None:
-    """Return the code of a kernel; None if none is shipped for this machine and these sources.
+    """Return the code of a kernel; None if none is shipped that computes this, for this machine.
 
     Args:
         name: Name of the kernel and hash of what it is compiled from, see `code_file`.

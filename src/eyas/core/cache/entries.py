@@ -98,7 +98,7 @@ def prune(folder: Path, limit: int) -> None:
     """Remove the least recently used entries until the cache is no larger than its limit.
 
     Kernels unused for a month, and parts left by processes that were killed, are always removed.
-    The kernels of this process are kept.
+    Other kernels in the folder that this process uses are kept.
     """
     now = time.time()
     _remove_parts(folder, [kind.value for kind in Kind], now - _PARTS_LAST)
@@ -109,6 +109,16 @@ def prune(folder: Path, limit: int) -> None:
         stale = entry.kind == Kind.KERNELS and now - entry.used > _KERNELS_LAST
         if entry.path != mine and (stale or total > limit):
             total -= _remove(entry)
+        elif entry.path == mine:
+            _remove_unused(mine, now - _KERNELS_LAST)
+
+
+def _remove_unused(folder: Path, before: float) -> None:
+    """Remove the kernels of a folder that were last used before a time [s since 1970]."""
+    for file in _kernel_files(folder):
+        with contextlib.suppress(OSError):
+            if file.lstat().st_mtime < before:
+                file.unlink()
 
 
 def _remove(entry: Entry) -> int:
