@@ -18,6 +18,7 @@ from eyas.core.machine_code import (
     SUFFIX,
     MachineCode,
     code_file,
+    code_name,
     entry_of,
     load,
     read_code,
@@ -40,9 +41,9 @@ def entry_address(function: Callable[..., Any], parts: tuple[Held[Any], ...]) ->
         parts: The bundles.
     """
     name = function.__qualname__.rpartition(".")[2]
-    made_of = identity(function), *(part.kind for part in parts)
     made_by = version("numba"), platform.python_version()
-    path = code_file(folder_in_use(), name, made_of, made_by)
+    kinds = [part.kind for part in parts]
+    path = code_file(folder_in_use(), _name_of(function), kinds, made_by)
     keeps = function.__closure__ is None  # or what it depends on is not all in the name
     # An interrupt in the middle of numba or LLVM leaves objects in pieces, whose end crashes.
     with _LOCK, shielded():
@@ -68,9 +69,18 @@ def _kept(path: Path) -> int | None:
     return None if found is None else load(found)
 
 
-def nothing_compiled(name: str) -> bool:
-    """Return whether no kernel of such a name is cached or shipped, as at a first start."""
-    return not any(folder_in_use().glob(f"{name}*{SUFFIX}")) and not is_shipped(name)
+def nothing_compiled(function: Callable[..., Any]) -> bool:
+    """Return whether a kernel is neither cached nor shipped for any bundles, as at a first start.
+
+    Args:
+        function: See `eyas.core.parallel.parallel_kernel`.
+    """
+    name = _name_of(function)
+    return not any(folder_in_use().glob(f"{name}-*{SUFFIX}")) and not is_shipped(name)
+
+
+def _name_of(function: Callable[..., Any]) -> str:
+    return code_name(function.__qualname__.rpartition(".")[2], identity(function))
 
 
 def _compiled(

@@ -29,6 +29,7 @@ __all__ = [
     "SUFFIX",
     "MachineCode",
     "code_file",
+    "code_name",
     "entry_of",
     "improve",
     "load",
@@ -175,22 +176,31 @@ def load(code: MachineCode) -> int | None:
     return int(loaded[code.entry])
 
 
-def code_file(folder: Path, name: str, made_of: Iterable[str], made_by: Iterable[str]) -> Path:
-    """Return the file of a kernel's machine code, `<name>-<hash of made_of>-<of made_by>`.
+def code_name(name: str, made_of: str) -> str:
+    """Return the beginning of the names of a kernel's files, whatever its bundles are.
+
+    Args:
+        name: The name of the kernel, for people who look into the folder.
+        made_of: Its `eyas.core.identity.identity`.
+    """
+    return f"{name}-{_digest((name, made_of))}"
+
+
+def code_file(folder: Path, name: str, kinds: Iterable[str], made_by: Iterable[str]) -> Path:
+    """Return the file of a kernel's machine code, `<name>-<hash of kinds>-<of made_by>`.
 
     Args:
         folder: The folder of kernels.
-        name: The name of the kernel, for people who look into the folder.
-        made_of: All that determines what the kernel computes, except the language of kernels,
-            which names the folder.
+        name: From `code_name`.
+        kinds: The kinds of its bundles, see `eyas.core.held.Held`.
         made_by: What else the code depends on, except the processor and llvmlite.
     """
     by = (*cpu(), llvmlite.__version__, *made_by)
-    return folder / f"{name}-{_digest((name, *made_of))}-{_digest(by)}{SUFFIX}"
+    return folder / f"{name}-{_digest(kinds)}-{_digest(by)}{SUFFIX}"
 
 
 def _digest(parts: Iterable[str]) -> str:
-    return sha256("\0".join(parts).encode()).hexdigest()[:24]
+    return sha256("\0".join(parts).encode()).hexdigest()[:16]
 
 
 def read_code(path: Path, *, shipped: bool = False) -> MachineCode | None:

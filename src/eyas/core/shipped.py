@@ -53,13 +53,13 @@ def shipped_code(name: str) -> MachineCode | None:
     """Return the code of a kernel; None if none is shipped that computes this, for this machine.
 
     Args:
-        name: Name of the kernel and hash of what it is compiled from, see `code_file`.
+        name: Name of its file without the last part, see `code_file`.
     """
     folder = _folder()
     return None if folder is None else read_code(folder / f"{name}{SUFFIX}", shipped=True)
 
 
 def is_shipped(name: str) -> bool:
-    """Return whether kernels whose names begin so are shipped for this machine."""
+    """Return whether a kernel, by its `code_name`, is shipped for this machine."""
     folder = _folder()
-    return folder is not None and any(folder.glob(f"{name}*{SUFFIX}"))
+    return folder is not None and any(folder.glob(f"{name}-*{SUFFIX}"))

@@ -15,6 +15,7 @@ from eyas.core.jit import REFUSAL, folder_in_use
 from eyas.render.bake.ambient import AmbientMap
 from eyas.render.bake.shadows import ShadowMap
 from eyas.render.bake.tracks import TrackMap
+from eyas.render.kernels.draw import draw_views
 from eyas.render.pack.geometry import build_geometry
 from eyas.render.pack.light import build_light
 from eyas.render.renderer import Renderer
@@ -49,7 +50,7 @@ def begin_ahead(other: str) -> None:
     Args:
         other: Program that makes something which is kept in the cache, and needed by this process.
     """
-    compiles, cache = nothing_compiled("draw"), folder_in_use()
+    compiles, cache = nothing_compiled(draw_views.function), folder_in_use()
     if compiles and REFUSAL:
         not_kept(REFUSAL)
     elif compiles:
