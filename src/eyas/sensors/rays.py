@@ -120,11 +120,11 @@ def _is_before(grid: Grid, cells: tuple[int, int, int, int], one: int, other: in
     row_a = max(math.floor((a[1] - grid.south) / SPACING), cells[0])
     row_b = max(math.floor((b[1] - grid.south) / SPACING), cells[0])
     if row_a != row_b:
-        return row_a < row_b
+        return bool(row_a < row_b)
     column_a = max(math.floor((a[0] - grid.west) / SPACING), cells[2])
     column_b = max(math.floor((b[0] - grid.west) / SPACING), cells[2])
     if column_a != column_b:
-        return column_a < column_b
+        return bool(column_a < column_b)
     return one < other
 
 
@@ -137,7 +137,7 @@ def _may_meet(ray: Ray, limit: float, bounds: NDArray[np.float64]) -> bool:
     if abs(x * ray.ahead_y - y * ray.ahead_x) > half_x * way_y + half_y * way_x + _SLACK:
         return False
     middle, half = x * ray.ahead_x + y * ray.ahead_y, half_x * way_x + half_y * way_y + _SLACK
-    return -half <= middle <= limit * (way_x * way_x + way_y * way_y) + half
+    return bool(-half <= middle <= limit * (way_x * way_x + way_y * way_y) + half)
 
 
 @step_kernel

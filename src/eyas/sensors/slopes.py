@@ -81,6 +81,5 @@ def free_way(
     height, (level, rise) = above - _SLACK, ahead
     near = height / (max(slopes.near[row, column] * level - rise, 0.0) + _SLACK)
     far = height / (max(slopes.far[row, column] * level - rise, 0.0) + _SLACK)
-    return max(
-        min(near, _AROUND[0] * slopes.width - _SLACK), min(far, _AROUND[1] * slopes.width - _SLACK)
-    )
+    width = slopes.width
+    return float(max(min(near, _AROUND[0] * width - _SLACK), min(far, _AROUND[1] * width - _SLACK)))
