@@ -86,17 +86,41 @@ def scripted_table(
         paths = _strolls(_walkways(ground, troop, habit, vehicles), habit, seconds, rng)
     else:
         paths = _paths(ground, troop, habit, seconds, rng)
-    table = np.zeros((clock.samples, int(lives.slot.max()) + 1), SAMPLE)
-    for course, slot, enters, leaves in zip(paths, *(a.tolist() for a in lives), strict=True):
-        motion = course.ride(np.arange(leaves - enters + 1) / clock.rate)
-        rows = table[enters : leaves + 1, slot]
-        rows["x"], rows["y"], rows["yaw"] = motion.poses
-        rows["velocity_x"] = motion.speed * exact.cos(motion.poses.yaw)
-        rows["velocity_y"] = motion.speed * exact.sin(motion.poses.yaw)
-        rows["yaw_rate"], rows["travelled"] = motion.yaw_rate, motion.travelled
-        rows["present"] = 1.0
-    _lay(ground, table, clock.rate)
+    return _gone(ground, troop, clock, paths)
+
+
+def _gone(ground: Ground, troop: Troop, clock: Clock, paths: list[_Course]) -> NDArray[np.void]:
+    """Return the samples of those who go along the paths of their lives.
+
+    A few objects are done at a time, side by side in memory: in the table of all, the samples of
+    one are so far apart that each would be fetched anew for each of its numbers.
+    """
+    slot, enters, leaves = (part.tolist() for part in troop.lives)
+    table = np.zeros((clock.samples, max(slot) + 1), SAMPLE)
+    for first in range(0, table.shape[1], _TOGETHER):
+        few = np.zeros((clock.samples, min(_TOGETHER, table.shape[1] - first)), SAMPLE)
+        for life, at in enumerate(slot):
+            if first <= at < first + _TOGETHER:
+                rows = few[enters[life] : leaves[life] + 1, at - first]
+                _go(paths[life], rows, clock.rate)
+        _lay(ground, few, clock.rate)
+        _numbers(table)[:, first : first + _TOGETHER] = _numbers(few)
     return table
+
+
+def _numbers(table: NDArray[np.void]) -> NDArray[np.float32]:
+    """Return a view of samples as plain numbers, which numpy copies many times as fast."""
+    return table.view(np.float32).reshape(*table.shape, -1)
+
+
+def _go(course: _Course, rows: NDArray[np.void], rate: float) -> None:
+    """Set where somebody is in each sample of a life, and how fast."""
+    motion = course.ride(np.arange(len(rows)) / rate)
+    rows["x"], rows["y"], rows["yaw"] = motion.poses
+    rows["velocity_x"] = motion.speed * exact.cos(motion.poses.yaw)
+    rows["velocity_y"] = motion.speed * exact.sin(motion.poses.yaw)
+    rows["yaw_rate"], rows["travelled"] = motion.yaw_rate, motion.travelled
+    rows["present"] = 1.0
 
 
 def _paths(
@@ -192,16 +216,10 @@ def _walkways(ground: Ground, troop: Troop, habit: Habit, vehicles: Motion | Non
 
 def _lay(ground: Ground, table: NDArray[np.void], rate: float) -> None:
     """Set the heights and slopes of samples to those of the ground."""
-    for first in range(0, table.shape[1], _TOGETHER):
-        _lay_some(ground, table[:, first : first + _TOGETHER], rate)
-
-
-def _lay_some(ground: Ground, table: NDArray[np.void], rate: float) -> None:
-    """Set the heights and slopes of samples to those of the ground."""
     here = table["present"] > 0.0
-    rows = table[here]
-    points = np.column_stack([rows["x"], rows["y"]]).astype(np.float64)
-    ahead = _SPAN * np.column_stack([exact.cos(rows["yaw"]), exact.sin(rows["yaw"])])
+    points = np.column_stack([table["x"][here], table["y"][here]]).astype(np.float64)
+    yaw = table["yaw"][here]
+    ahead = _SPAN * np.column_stack([exact.cos(yaw), exact.sin(yaw)])
     terrain = ground.scene.terrain
     rise = reliefs(terrain, points + ahead) - reliefs(terrain, points - ahead)
     table["slope"][here] = exact.atan(rise / (2.0 * _SPAN))

@@ -1,5 +1,6 @@
 """When something is where on its path: speeds that curves and brakes allow."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -76,12 +77,14 @@ def _speeds(chain: Chain, habit: Habit) -> tuple[Floats, Floats]:
     cap = _caps(chain, habit)
     joint = np.minimum(np.append(cap, 0.0), np.append(cap[:1], cap))
     joint[:-1][chain.spin != 0.0] = 0.0
-    gain = 2.0 * habit.acceleration * chain.length
+    # Numbers of Python's own: each depends on the one before, and those of numpy take longer.
+    gain: list[float] = (2.0 * habit.acceleration * chain.length).tolist()
+    at: list[float] = joint.tolist()
     for i, more in enumerate(gain):
-        joint[i + 1] = min(joint[i + 1], np.sqrt(np.square(joint[i]) + more))
+        at[i + 1] = min(at[i + 1], math.sqrt(at[i] * at[i] + more))
     for i in range(len(gain) - 1, -1, -1):
-        joint[i] = min(joint[i], np.sqrt(np.square(joint[i + 1]) + gain[i]))
-    return joint[:-1], joint[1:]
+        at[i] = min(at[i], math.sqrt(at[i + 1] * at[i + 1] + gain[i]))
+    return np.array(at[:-1]), np.array(at[1:])
 
 
 def _caps(chain: Chain, habit: Habit) -> Floats:

@@ -8,10 +8,22 @@ from numpy.typing import NDArray
 
 from eyas.core.jit import step_kernel
 
-__all__ = ["Grid", "cells_between", "grid_of"]
+__all__ = [
+    "SPACING",
+    "Grid",
+    "Walk",
+    "cells_between",
+    "entered",
+    "grid_of",
+    "lane_cells",
+    "walk_along",
+]
 
 SPACING = 8.0
 """Width of a cell [m]."""
+
+_BESIDE = 1e-3
+"""How far beside a ray cells are looked at, far more than rounding moves it [m]."""
 
 
 class Grid(NamedTuple):
@@ -29,6 +41,40 @@ class Grid(NamedTuple):
     """[m]"""
     south: float
     """[m]"""
+    bounds: NDArray[np.float64]
+    """West, south, east, north of each item [m], shape (I, 4)."""
+
+
+class Walk(NamedTuple):
+    """The way of a ray through the cells, lane by lane from where it begins.
+
+    Lanes are the columns of a ray that goes rather east or west, else the rows.
+    """
+
+    lane: int
+    """The first lane."""
+    lanes: int
+    """Number of lanes."""
+    onward: int
+    """1 or -1: to the next lane."""
+    stride: int
+    """From a cell to the one beside it in the next lane of a higher number."""
+    start: float
+    """Where the ray begins along it, from the edge of the grid [m]."""
+    farthest: float
+    """Where it ends [m]."""
+    inverse: float
+    """Length of the ray over its way along it; 0 for an upright one."""
+    least: int
+    """First cell of each lane that the ray may reach at all."""
+    most: int
+    """The last one."""
+    cell_stride: int
+    """From a cell to the next one of its lane."""
+    aside: float
+    """Where the ray begins across the lanes, from the edge of the grid [m]."""
+    slope: float
+    """Its way across lanes over that along it."""
 
 
 def grid_of(bounds: NDArray[np.float64], top: NDArray[np.float64]) -> Grid:
@@ -56,6 +102,7 @@ def grid_of(bounds: NDArray[np.float64], top: NDArray[np.float64]) -> Grid:
         rows=rows,
         west=float(corner[0]),
         south=float(corner[1]),
+        bounds=np.ascontiguousarray(bounds, np.float64),
     )
 
 
@@ -76,3 +123,54 @@ def cells_between(
     lower = math.floor((min(y[0], y[1]) - beside - grid.south) / SPACING)
     upper = math.floor((max(y[0], y[1]) + beside - grid.south) / SPACING)
     return max(lower, 0), min(upper, grid.rows - 1), max(left, 0), min(right, grid.columns - 1)
+
+
+@step_kernel
+def walk_along(
+    grid: Grid,
+    start: tuple[float, float],
+    ahead: tuple[float, float],
+    end: tuple[float, float],
+    cells: tuple[int, int, int, int],
+) -> Walk:
+    """Return the way of a ray.
+
+    Args:
+        grid: The grid.
+        start: Where it begins, east and north [m].
+        ahead: Its way east and north, per metre of its length.
+        end: Where it ends [m].
+        cells: See `cells_between`: those of the rectangle around it.
+    """
+    first_row, last_row, left, right = cells
+    x, y = start[0] - grid.west, start[1] - grid.south
+    if abs(ahead[0]) >= abs(ahead[1]):
+        inverse = 1.0 / ahead[0] if ahead[0] != 0.0 else 0.0
+        onward, far = (1 if ahead[0] >= 0.0 else -1), end[0] - grid.west
+        lane, lanes = (left if onward > 0 else right), right - left + 1
+        least, most, slope = first_row, last_row, ahead[1] * inverse
+        return Walk(lane, lanes, onward, 1, x, far, inverse, least, most, grid.columns, y, slope)
+    inverse = 1.0 / ahead[1]
+    onward, far = (1 if ahead[1] >= 0.0 else -1), end[1] - grid.south
+    lane, lanes = (first_row if onward > 0 else last_row), last_row - first_row + 1
+    return Walk(
+        lane, lanes, onward, grid.columns, y, far, inverse, left, right, 1, x, ahead[0] * inverse
+    )
+
+
+@step_kernel
+def entered(walk: Walk, lane: int) -> float:
+    """Return a distance before which a ray is not in a lane [m]."""
+    edge = lane * SPACING if walk.onward > 0 else (lane + 1) * SPACING
+    return (edge - walk.onward * _BESIDE - walk.start) * walk.inverse
+
+
+@step_kernel
+def lane_cells(walk: Walk, lane: int) -> tuple[int, int]:
+    """Return the first and last cell of a lane that a ray goes through."""
+    low = max(lane * SPACING, min(walk.start, walk.farthest)) - walk.start
+    high = min((lane + 1) * SPACING, max(walk.start, walk.farthest)) - walk.start
+    one, other = walk.aside + low * walk.slope, walk.aside + high * walk.slope
+    first = math.floor((min(one, other) - _BESIDE) / SPACING)
+    last = math.floor((max(one, other) + _BESIDE) / SPACING)
+    return max(first, walk.least), min(last, walk.most)

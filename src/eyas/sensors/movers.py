@@ -61,7 +61,20 @@ def find_boxes(
             _write_body(bodies, other, boxes, count)
             boxes.thing[count] = ACTOR_OBJECT + motion.table.shape[1] + other
             count += 1
+    for box in range(count):
+        _write_bounds(boxes, box)
     return count
+
+
+@step_kernel
+def _write_bounds(boxes: Boxes, box: int) -> None:
+    """Write the bounds of a box whose corners are known."""
+    corners, first = boxes.corners, 4 * box
+    for axis in range(2):
+        a, b = corners[first, axis], corners[first + 1, axis]
+        c, d = corners[first + 2, axis], corners[first + 3, axis]
+        boxes.bounds[box, axis] = min(a, b, c, d)
+        boxes.bounds[box, 2 + axis] = max(a, b, c, d)
 
 
 @step_kernel

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from eyas.sensors.furniture import Box, Cylinder, furniture
 from eyas.sensors.grid import Grid, grid_of
+from eyas.sensors.slopes import Slopes, slopes_of
 from eyas.state.motion import Motion
 from eyas.state.scene import ObjectClass, Scene
 from eyas.state.snapshot import TrackerState
@@ -91,6 +92,8 @@ class Boxes(NamedTuple):
     """Motion in the last physics step [m], shape (B, 3)."""
     thing: NDArray[np.int32]
     """Object id, shape (B,)."""
+    bounds: Floats
+    """West, south, east, north [m], shape (B, 4)."""
 
 
 class Obstacles(NamedTuple):
@@ -100,6 +103,7 @@ class Obstacles(NamedTuple):
     terrain: Terrain
     movers: Movers
     boxes: Boxes
+    slopes: Slopes
 
 
 def obstacles_of(
@@ -137,8 +141,9 @@ def obstacles_of(
         top=np.zeros(most),
         moved=np.zeros((most, 3)),
         thing=np.zeros(most, np.int32),
+        bounds=np.zeros((most, 4)),
     )
-    return Obstacles(solids, terrain, movers, boxes)
+    return Obstacles(solids, terrain, movers, boxes, slopes_of(terrain))
 
 
 def _blocks_of(model: int) -> NDArray[np.void]:

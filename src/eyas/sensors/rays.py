@@ -7,14 +7,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.jit import step_kernel
-from eyas.sensors.grid import cells_between
+from eyas.sensors.grid import (
+    SPACING,
+    Grid,
+    cells_between,
+    entered,
+    lane_cells,
+    walk_along,
+)
 from eyas.sensors.obstacles import Boxes, Obstacles, Solids
+from eyas.sensors.slopes import Slopes, free_way
 from eyas.state.terrain import Terrain, ground_at
 
 __all__ = ["Ray", "cast_ray"]
 
 _HALVINGS = 24
 """How often the part of a ray that enters a hill is halved."""
+
+_SLACK = 1e-3
+"""What is nearer than this is looked at exactly: far more than rounding moves anything [m]."""
 
 
 class Ray(NamedTuple):
@@ -46,7 +57,7 @@ def cast_ray(ray: Ray, reach: float, obstacles: Obstacles, boxes: int) -> tuple[
     near, actor = _cast_boxes(ray, min(reach, best), obstacles.boxes, boxes)
     if near < best:
         best, thing = near, actor
-    near = _cast_ground(ray, min(reach, best), obstacles.terrain)
+    near = _cast_ground(ray, min(reach, best), obstacles.terrain, obstacles.slopes)
     if near < best:
         best, thing = near, obstacles.solids.ground
     return best, thing
@@ -54,38 +65,87 @@ def cast_ray(ray: Ray, reach: float, obstacles: Obstacles, boxes: int) -> tuple[
 
 @step_kernel
 def _cast_solids(ray: Ray, reach: float, solids: Solids) -> tuple[float, int]:
-    best, thing = math.inf, -1
+    """Return the distance of the first solid, infinity if there is none, and its object id.
+
+    Lanes are left when what was found is nearer than the next. Of solids at the same distance, the
+    first counts: that of the southernmost row, of the westernmost column, of the least number.
+    """
+    best, found = math.inf, -1
     end_x, end_y = ray.x + reach * ray.ahead_x, ray.y + reach * ray.ahead_y
     end_z = ray.z + reach * ray.ahead_z
     low, high = min(ray.z, end_z), max(ray.z, end_z)
-    prisms = solids.first.shape[0] - 1
     grid = solids.grid
-    first_row, last_row, left, right = cells_between(grid, (ray.x, end_x), (ray.y, end_y), 0.0)
-    for row in range(first_row, last_row + 1):
-        for column in range(left, right + 1):
-            cell = row * grid.columns + column
+    cells = cells_between(grid, (ray.x, end_x), (ray.y, end_y), 0.0)
+    start, ahead = (ray.x, ray.y), (ray.ahead_x, ray.ahead_y)
+    walk = walk_along(grid, start, ahead, (end_x, end_y), cells)
+    lane = walk.lane
+    for _ in range(walk.lanes):
+        if entered(walk, lane) > best:
+            break
+        first, last = lane_cells(walk, lane)
+        for place in range(first, last + 1):
+            cell = lane * walk.stride + place * walk.cell_stride
             if grid.top[cell] < low:
                 continue
             for k in range(grid.first[cell], grid.first[cell + 1]):
                 item = grid.item[k]
-                bottom, top = solids.bottom[item], solids.top[item]
-                if top < low or bottom > high:
+                if solids.top[item] < low or solids.bottom[item] > high:
                     continue
-                limit = min(best, reach)
-                if item < prisms:
-                    corners = (solids.first[item], solids.first[item + 1])
-                    near = _cast_prism(ray, limit, solids.points, corners, (bottom, top))
-                else:
-                    near = _cast_cylinder(ray, limit, solids.round[item - prisms], bottom, top)
-                if near < best:
-                    best, thing = near, int(solids.thing[item])
-    return best, thing
+                near = _cast_solid(ray, min(best, reach), solids, item)
+                if near < best or (
+                    near == best < math.inf and _is_before(grid, cells, item, found)
+                ):
+                    best, found = near, item
+        lane += walk.onward
+    return best, (int(solids.thing[found]) if found >= 0 else -1)
+
+
+@step_kernel
+def _cast_solid(ray: Ray, limit: float, solids: Solids, item: int) -> float:
+    """Return the distance of a solid, infinity if it is not met before the limit [m]."""
+    if not _may_meet(ray, limit, solids.grid.bounds[item]):
+        return math.inf
+    prisms = solids.first.shape[0] - 1
+    bottom, top = solids.bottom[item], solids.top[item]
+    if item < prisms:
+        corners = (solids.first[item], solids.first[item + 1])
+        return _cast_prism(ray, limit, solids.points, corners, (bottom, top))
+    return _cast_cylinder(ray, limit, solids.round[item - prisms], bottom, top)
+
+
+@step_kernel
+def _is_before(grid: Grid, cells: tuple[int, int, int, int], one: int, other: int) -> bool:
+    """Return whether an item comes before another in a rectangle of cells, row by row."""
+    a, b = grid.bounds[one], grid.bounds[other]
+    row_a = max(math.floor((a[1] - grid.south) / SPACING), cells[0])
+    row_b = max(math.floor((b[1] - grid.south) / SPACING), cells[0])
+    if row_a != row_b:
+        return bool(row_a < row_b)
+    column_a = max(math.floor((a[0] - grid.west) / SPACING), cells[2])
+    column_b = max(math.floor((b[0] - grid.west) / SPACING), cells[2])
+    if column_a != column_b:
+        return bool(column_a < column_b)
+    return one < other
+
+
+@step_kernel
+def _may_meet(ray: Ray, limit: float, bounds: NDArray[np.float64]) -> bool:
+    """Return whether a ray comes by a rectangle on the ground before the limit [m]."""
+    half_x, half_y = 0.5 * (bounds[2] - bounds[0]), 0.5 * (bounds[3] - bounds[1])
+    x, y = bounds[0] + half_x - ray.x, bounds[1] + half_y - ray.y
+    way_x, way_y = abs(ray.ahead_x), abs(ray.ahead_y)
+    if abs(x * ray.ahead_y - y * ray.ahead_x) > half_x * way_y + half_y * way_x + _SLACK:
+        return False
+    middle, half = x * ray.ahead_x + y * ray.ahead_y, half_x * way_x + half_y * way_y + _SLACK
+    return bool(-half <= middle <= limit * (way_x * way_x + way_y * way_y) + half)
 
 
 @step_kernel
 def _cast_boxes(ray: Ray, reach: float, boxes: Boxes, count: int) -> tuple[float, int]:
     best, thing = math.inf, -1
     for box in range(count):
+        if not _may_meet(ray, min(best, reach), boxes.bounds[box]):
+            continue
         corners, heights = (4 * box, 4 * box + 4), (boxes.bottom[box], boxes.top[box])
         near = _cast_prism(ray, min(best, reach), boxes.corners, corners, heights)
         if near < best:
@@ -114,10 +174,13 @@ def _cast_prism(
         across = ray.ahead_x * side_y - ray.ahead_y * side_x
         if across == 0.0:
             continue
+        # The share of the side at which it is met is between 0 and 1: no need to divide.
+        share = from_x * ray.ahead_y - from_y * ray.ahead_x
+        if not (0.0 <= share <= across or across <= share <= 0.0):
+            continue
         t = (from_x * side_y - from_y * side_x) / across
-        share = (from_x * ray.ahead_y - from_y * ray.ahead_x) / across
         z = ray.z + t * ray.ahead_z
-        if 0.0 <= share <= 1.0 and 0.0 <= t <= min(limit, best) and bottom <= z <= top:
+        if 0.0 <= t <= min(limit, best) and bottom <= z <= top:
             best = t
     if ray.ahead_z != 0.0:
         for end in range(2):
@@ -175,11 +238,12 @@ def _cast_cylinder(
 
 
 @step_kernel
-def _cast_ground(ray: Ray, limit: float, terrain: Terrain) -> float:
+def _cast_ground(ray: Ray, limit: float, terrain: Terrain, slopes: Slopes) -> float:
     """Return the distance of the ground, infinity if it is not met before the limit [m].
 
     On hills, the ray is followed in steps of half a cell of the relief, and the step that enters
-    the ground is halved; what is narrower may be missed.
+    the ground is halved; what is narrower may be missed. Steps in which the ground, however steep,
+    cannot rise to the ray are left out.
     """
     if terrain.relief.shape[0] == 0:
         if ray.ahead_z >= 0.0:
@@ -187,21 +251,34 @@ def _cast_ground(ray: Ray, limit: float, terrain: Terrain) -> float:
         t = (terrain.floor - ray.z) / ray.ahead_z
         return t if 0.0 <= t <= limit else math.inf
     steps = int(limit / (0.5 * terrain.spacing)) + 1
-    from_t = 0.0
-    if _above_ground(ray, 0.0, terrain) <= 0.0:
+    above, at = _above_ground(ray, 0.0, terrain), 0.0
+    if above <= 0.0:
         return math.inf
-    for step in range(1, steps + 1):
-        to_t = limit * step / steps
-        if _above_ground(ray, to_t, terrain) <= 0.0:
-            for _ in range(_HALVINGS):
-                middle = 0.5 * (from_t + to_t)
-                if _above_ground(ray, middle, terrain) <= 0.0:
-                    to_t = middle
-                else:
-                    from_t = middle
-            return to_t
-        from_t = to_t
+    level = math.sqrt(ray.ahead_x * ray.ahead_x + ray.ahead_y * ray.ahead_y)
+    step, per_metre = 0, (steps / limit if limit > 0.0 else 0.0)
+    while step < steps:
+        place = (ray.x + at * ray.ahead_x, ray.y + at * ray.ahead_y)
+        free = free_way(slopes, terrain, place, (level, ray.ahead_z), above)
+        step = max(step, math.floor((at + free) * per_metre)) + 1
+        if step > steps:
+            break
+        at = limit * step / steps
+        above = _above_ground(ray, at, terrain)
+        if above <= 0.0:
+            return _entered_ground(ray, limit * (step - 1) / steps, at, terrain)
     return math.inf
+
+
+@step_kernel
+def _entered_ground(ray: Ray, from_t: float, to_t: float, terrain: Terrain) -> float:
+    """Return where a ray enters the ground between two distances [m]."""
+    for _ in range(_HALVINGS):
+        middle = 0.5 * (from_t + to_t)
+        if _above_ground(ray, middle, terrain) <= 0.0:
+            to_t = middle
+        else:
+            from_t = middle
+    return to_t
 
 
 @step_kernel
