@@ -21,7 +21,7 @@ import eyas
 from eyas.core.identity import language_files, language_hash
 from eyas.core.machine_code import SUFFIX
 from eyas.core.parallel import parallel_kernel
-from eyas.core.shipped import LEVELS, SHIPPED
+from eyas.core.shipped import LEVELS, SHIPPED, features
 from eyas.core.syntax import INDEX, index_of
 from eyas.sim.step import step_of
 from eyas.trackers.drone import DRONE
@@ -77,13 +77,22 @@ def main() -> None:
     if parser.parse_args().check:
         raise SystemExit(missing(SHIPPED / language_hash()) or compiled())
     INDEX.write_text(index_of(files_of_kernels()))
-    for level in LEVELS:
+    for level, needed in LEVELS.items():
+        folder, lacks = SHIPPED / language_hash() / level, needed - features()
+        shutil.rmtree(folder, ignore_errors=True)
+        if lacks:  # the code is run to know which kernels there are
+            print(f"{level}: left out, as this processor lacks {', '.join(sorted(lacks))}")
+            continue
         print(f"compiling for {level} ...", flush=True)
-        compile_for(level, SHIPPED / language_hash() / level)
+        compile_for(level, folder)
     for folder in SHIPPED.iterdir():
         if folder.is_dir() and folder.name != language_hash():
             shutil.rmtree(folder)
     raise SystemExit(missing(SHIPPED / language_hash()) or compiled())
+
+
+LEAST = "x86-64-v3"
+"""The level whose code serves those above, too, where theirs is left out."""
 
 
 def files_of_kernels() -> list[Path]:
@@ -111,7 +120,6 @@ def compile_for(level: str, folder: Path) -> None:
     """Compile all kernels for a level into a folder."""
     with tempfile.TemporaryDirectory() as cache:
         use_all(cache, {"NUMBA_CPU_NAME": level, "NUMBA_CPU_FEATURES": ""})
-        shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir(parents=True)
         for file in Path(cache, "kernels", language_hash()).glob(f"*{SUFFIX}"):
             shutil.copy(file, folder / f"{file.stem.rpartition('-')[0]}{SUFFIX}")
@@ -122,6 +130,7 @@ def missing(folder: Path) -> str | None:
     lacks = [
         f"{level}: {name}"
         for level in LEVELS
+        if (folder / level).is_dir() or level == LEAST
         for name in sorted(kernels())
         if not any((folder / level).glob(f"{name}-*{SUFFIX}"))
     ]

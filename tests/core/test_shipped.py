@@ -45,7 +45,7 @@ def compiled(monkeypatch):
 def machine(monkeypatch):
     """A machine whose processor can be changed; it does run the code of the real one."""
     has = SimpleNamespace(features=FEATURES, platform="linux", machine="x86_64")
-    monkeypatch.setattr(shipped, "_features", lambda: has.features)
+    monkeypatch.setattr(shipped, "features", lambda: has.features)
     monkeypatch.setattr(shipped.platform, "machine", lambda: has.machine)
     monkeypatch.setattr(shipped, "sys", SimpleNamespace(platform=has.platform))
     for name in ("NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES"):

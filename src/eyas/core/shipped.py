@@ -1,6 +1,6 @@
 """Machine code that comes with Eyas, so that the first start need not compile.
 
-It is made for two levels of x86-64 by `tools/ship_kernels.py`, and each kernel is found by what it
+It is made for levels of x86-64 by `tools/ship_kernels.py`, and each kernel is found by what it
 computes (`eyas.core.identity`): one that was changed is compiled, as all are on other processors.
 Kernels call nothing of Python or numba, and no operation is fused or reordered, so the code serves
 all versions of these, and computes the same bytes as code compiled for the very machine.
@@ -17,7 +17,7 @@ import llvmlite.binding as llvm
 from eyas.core.identity import language_hash
 from eyas.core.machine_code import SUFFIX, MachineCode, read_code
 
-__all__ = ["LEVELS", "SHIPPED", "is_shipped", "shipped_code"]
+__all__ = ["LEVELS", "SHIPPED", "features", "is_shipped", "shipped_code"]
 
 SHIPPED = Path(__file__).parent / "shipped"
 """Folder of shipped code: `<hash of the language of kernels>/<level>/<file>`."""
@@ -30,7 +30,7 @@ LEVELS = {
     "x86-64-v4": _V3 | {"avx512f", "avx512bw", "avx512cd", "avx512dq", "avx512vl"},
     "x86-64-v3": _V3,
 }
-"""Levels of the x86-64 ABI for which code is shipped, the best first, with what each requires."""
+"""Levels of the x86-64 ABI for which code may be shipped, the best first, with what each needs."""
 
 
 @cache
@@ -39,12 +39,12 @@ def _folder() -> Path | None:
     named = {"NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES"} & os.environ.keys()
     if named or sys.platform != "linux" or platform.machine() != "x86_64":
         return None
-    has = _features()
+    has = features()
     folders = (SHIPPED / language_hash() / name for name, needed in LEVELS.items() if needed <= has)
     return next((folder for folder in folders if folder.is_dir()), None)
 
 
-def _features() -> set[str]:
+def features() -> set[str]:
     """Return what this processor has, as LLVM names it."""
     return {name for name, present in llvm.get_host_cpu_features().items() if present}
 
