@@ -155,7 +155,7 @@ def run(command: list[object] | str, place: Path, more: Mapping[str, str]) -> st
         errors="replace",
         check=False,
     )
-    return "" if done.returncode == 0 else "\n".join(done.stdout.splitlines()[-25:]) or "failed"
+    return "" if done.returncode == 0 else "\n".join(done.stdout.splitlines()[-60:]) or "failed"
 
 
 def copy_of_tree(folder: Path) -> None:

@@ -29,7 +29,9 @@ def main() -> None:
         if interrupt is None:
             raise
         status = 130
-        remarks = "".join(f"; {note}" for note in getattr(interrupt, "__notes__", ()))
+        # Python 3.12 and later add notes of their own, where it was raised in `__set_name__`.
+        notes = (n for n in getattr(interrupt, "__notes__", ()) if not n.startswith("Error calling"))
+        remarks = "".join(f"; {note}" for note in notes)
     signals.close()  # again, if a signal came before
     if signals.first is not None:
         status = 128 + signals.first
