@@ -30,7 +30,8 @@ def main() -> None:
             raise
         status = 130
         # Python 3.12 and later add notes of their own, where it was raised in `__set_name__`.
-        notes = (n for n in getattr(interrupt, "__notes__", ()) if not n.startswith("Error calling"))
+        told = getattr(interrupt, "__notes__", ())
+        notes = [note for note in told if not note.startswith("Error calling")]
         remarks = "".join(f"; {note}" for note in notes)
     signals.close()  # again, if a signal came before
     if signals.first is not None:
