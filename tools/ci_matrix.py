@@ -140,25 +140,34 @@ def first_command(python: Path) -> str:
     return block[1].replace("python3", str(python), 1) + SHORT
 
 
-def run(command: list[object] | str, place: Path, more: Mapping[str, str]) -> str:
-    """Run a command; return nothing, or the end of what it printed if it failed."""
+def run(
+    command: list[object] | str, place: Path, more: Mapping[str, str], limit: float | None = None
+) -> str:
+    """Run a command; return nothing, or the end of what it printed if it failed.
+
+    One that is not done after a limit [s] counts as skipped.
+    """
     clean = {
         key: value
         for key, value in os.environ.items()
         if not key.startswith(("EYAS_", "PYTHONPATH"))
     }
-    done = subprocess.run(
-        ["bash", "-euo", "pipefail", "-c", command]
-        if isinstance(command, str)
-        else [*map(str, command)],
-        cwd=place,
-        env=clean | dict(more),
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        errors="replace",
-        check=False,
-    )
+    try:
+        done = subprocess.run(
+            ["bash", "-euo", "pipefail", "-c", command]
+            if isinstance(command, str)
+            else [*map(str, command)],
+            cwd=place,
+            env=clean | dict(more),
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            errors="replace",
+            check=False,
+            timeout=limit,
+        )
+    except subprocess.TimeoutExpired:
+        return f"skipped: not done after {limit:.0f} s"
     return "" if done.returncode == 0 else "\n".join(done.stdout.splitlines()[-60:]) or "failed"
 
 
@@ -303,7 +312,7 @@ def _emulated(work: Path, known: Mapping[str, Path]) -> Callable[[], str]:
                 more = {"EYAS_CACHE_DIR": str(place.cache), "NUMBA_CPU_NAME": "nehalem"}
                 python = [place.python.resolve(), "-m", "eyas", "verify", "--map", SMALLEST]
                 more["PYTHONPATH"] = str(next((place.folder / ".venv/lib").glob("*/site-packages")))
-                return run(["qemu-x86_64", "-cpu", "Nehalem", *python], place.folder, more)
+                return run(["qemu-x86_64", "-cpu", "Nehalem", *python], place.folder, more, 600.0)
         return "skipped: its Python is missing"
 
     return verify
