@@ -14,7 +14,7 @@ from eyas.world.weather import Season, Weather
 
 if TYPE_CHECKING:  # maps load with `eyas`; the scene modules only when a scene is built
     from eyas.state.roads import RoadGraph, RoadNetwork
-    from eyas.state.scene import Scene
+    from eyas.world.plan.plan import MapPlan
 
 __all__ = [
     "ATTRIBUTION_FILE",
@@ -71,8 +71,8 @@ class MapRecipe:
     """Name for people, a few words."""
     roads: Callable[[int], "RoadGraph"]
     """Returns the roads of a seed; seed 0 is the canonical map."""
-    scene: Callable[["RoadNetwork", int, Season], "Scene"]
-    """Builds everything else around the processed roads of the same seed."""
+    plan: Callable[["RoadNetwork", int], "MapPlan"]
+    """Returns the plan of all else around the processed roads of the same seed."""
     lighting: Mapping[Weather, Lighting]
     """Light and air of each weather of the map."""
     seasons: bool = False

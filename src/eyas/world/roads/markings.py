@@ -1,7 +1,6 @@
 """What is painted on roads: lane and stop lines, zebra crossings, arrows."""
 
 from collections.abc import Sequence
-from enum import Enum, auto
 from functools import reduce
 
 import numpy as np
@@ -11,11 +10,12 @@ from numpy.typing import ArrayLike, NDArray
 from eyas.core import exact
 from eyas.state.roads import RoadNetwork
 from eyas.world.build.millimetres import dot, rounded, unit
+from eyas.world.plan.plan import Paint
 from eyas.world.roads.areas import Street, joints, streets
 from eyas.world.roads.curves import joined
 from eyas.world.roads.painting import RoadPaint, Stripe, stripes
 
-__all__ = ["Centre", "road_paint"]
+__all__ = ["paint_of", "road_paint"]
 
 _DASH, _GAP = 3.0, 6.0
 _LINE = 0.18
@@ -36,23 +36,14 @@ _BAR = 0.55
 Line = NDArray[np.float64]
 
 
-class Centre(Enum):
-    """The line between the two directions of a road."""
-
-    WHITE = auto()
-    """One white line."""
-    DOUBLE_YELLOW = auto()
-    """Two yellow lines."""
-
-
 def road_paint(
-    network: RoadNetwork, *, centre: Centre = Centre.WHITE, crossings: bool = True
+    network: RoadNetwork, *, centre: str = "white", crossings: bool = True
 ) -> RoadPaint:
     """Return the paint of all roads.
 
     Args:
         network: The roads.
-        centre: The line between the two directions.
+        centre: The line between the two directions, `white` or `double yellow`.
         crossings: Whether there are zebra crossings where three or more roads meet.
     """
     meeting, all_streets = joints(network), streets(network)
@@ -77,8 +68,16 @@ def road_paint(
     return RoadPaint(lines, arrows, zebras)
 
 
+def paint_of(network: RoadNetwork, paint: Paint) -> RoadPaint:
+    """Return the paint of all roads by the rules of a plan."""
+    made = road_paint(network, centre=paint.centre, crossings=paint.crossings > 0)
+    zebras = made.zebras[:: max(paint.crossings, 1)]
+    others = [Stripe(line.middle, line.width) for line in paint.lines]
+    return RoadPaint([*made.lines, *others], made.arrows, zebras)
+
+
 def _along(
-    chain: Sequence[Street], centre: Centre | None
+    chain: Sequence[Street], centre: str | None
 ) -> tuple[list[Stripe], list[list[Stripe]]]:
     """Return the white and the yellow lines along joined streets; no centre: one way."""
     middle, *dividers, kerb = (
@@ -88,7 +87,7 @@ def _along(
     if centre is None:
         edge = shapely.offset_curve(path, -_EDGE)
         white += stripes(shapely.get_coordinates(edge), _EDGE_LINE)
-    elif _comes_first(middle) and centre is Centre.DOUBLE_YELLOW:
+    elif _comes_first(middle) and centre == "double yellow":
         beside = [shapely.offset_curve(path, side) for side in (-_DOUBLE, _DOUBLE)]
         yellow = [[Stripe(shapely.get_coordinates(line), _LINE) for line in beside]]
     elif _comes_first(middle):

@@ -1,8 +1,10 @@
-"""The outside of skyways: glazed passages, glazed storeys in frames of steel, storeys of stone."""
+"""Bridges for walkers: glazed passages, glazed storeys in frames of steel, storeys of stone."""
 
-from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
+from annotated_types import Ge, Le
 from numpy.typing import NDArray
 
 from eyas.core import exact
@@ -11,12 +13,17 @@ from eyas.mesh.flat import quads
 from eyas.mesh.solids import box
 from eyas.state.mesh import Mesh
 from eyas.state.scene import ObjectClass
+from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.materials import TEXTURES, facade, material
+from eyas.world.build.millimetres import rounded, unit
 from eyas.world.build.scene_builder import SceneBuilder
-from eyas.world.maps.downtown.skyways import Skyway
+from eyas.world.build.values import Colour, Facade, Place, Positive
+from eyas.world.buildings.skyline import FLOOR
 
-__all__ = ["RIM", "add_skyways"]
+__all__ = ["FLOORS_UNDER", "RIM", "Skyway", "add_skyway"]
 
+FLOORS_UNDER = 2
+"""Storeys under it."""
 RIM = 0.4
 """Height of the rim of a roof [m]."""
 
@@ -31,14 +38,48 @@ _GRAVEL = material("roof_gravel", (0.90, 0.88, 0.85))
 _SKYLIGHT = material("plain", (0.16, 0.24, 0.30))
 _UNIT = material("plain", (0.66, 0.68, 0.69))
 
-Rows = NDArray[np.float64]
+Points = NDArray[np.float64]
 
 
-def add_skyways(builder: SceneBuilder, skyways: Iterable[Skyway]) -> None:
-    """Add skyways, each an object of its own."""
-    for skyway in skyways:
-        owner = builder.add(ObjectClass.STRUCTURE, _placed(skyway))
-        builder.add_prism(skyway.outline(), skyway.bottom, skyway.top + RIM, owner)
+@dataclass(frozen=True, slots=True)
+class Skyway:
+    """A bridge from front to front, in the world frame."""
+
+    start: Place
+    """Middle of its end at a front [m], shape (2,)."""
+    end: Place
+    """The same at the front across the street."""
+    width: Positive
+    """Width [m]."""
+    floors: Annotated[int, Ge(1), Le(2)]
+    """Storeys: 1 is a passage, 2 a part of the buildings that it joins."""
+    facade: Facade
+    """Its walls."""
+    tint: Colour
+    """Factor on their colour."""
+
+    @property
+    def bottom(self) -> float:
+        """Height of its underside, as z [m]."""
+        return FLOOR_HEIGHT + FLOOR * FLOORS_UNDER
+
+    @property
+    def top(self) -> float:
+        """Height of its roof, as z [m]."""
+        return self.bottom + FLOOR * self.floors
+
+    def outline(self) -> Points:
+        """Return its corners, counter-clockwise [m], shape (4, 2)."""
+        along = unit(self.end - self.start)
+        aside = 0.5 * self.width * np.array([-along[1], along[0]])
+        corners = [self.start - aside, self.end - aside, self.end + aside, self.start + aside]
+        return rounded(corners)
+
+
+def add_skyway(builder: SceneBuilder, skyway: Skyway) -> None:
+    """Add a skyway, an object of its own."""
+    owner = builder.add(ObjectClass.STRUCTURE, _placed(skyway))
+    builder.add_prism(skyway.outline(), skyway.bottom, skyway.top + RIM, owner)
 
 
 def _placed(skyway: Skyway) -> Mesh:
