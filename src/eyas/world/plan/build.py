@@ -38,7 +38,7 @@ from eyas.world.weather import Season
 
 __all__ = ["build_scene"]
 
-_NEAR = 90.0
+_NEAR = 80.0
 """Reach of the ground that is cut into small squares beside streets [m]."""
 _SLOPE = 1.4
 """Width of the slope around a heap [m]."""
@@ -100,7 +100,8 @@ class _Work:
     def near(self) -> shapely.Geometry:
         """The surroundings of the streets [m]."""
         areas = [layer.area for layer in self.plan.layers if isinstance(layer, p.Streets)]
-        return shapely.buffer(shapely.union_all(areas), _NEAR, quad_segs=2)
+        streets = areas[0] if len(areas) == 1 else shapely.union_all(areas)
+        return shapely.buffer(streets, _NEAR, join_style="mitre")
 
     def kind(self, name: str) -> p.Kind:
         """Return a kind of the library.

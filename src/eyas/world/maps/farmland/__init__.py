@@ -13,12 +13,11 @@ from eyas.world.weather import (
     NIGHT,
     SNOW,
     WINTER_DAY,
-    Season,
 )
 
 if TYPE_CHECKING:
     from eyas.state.roads import RoadGraph, RoadNetwork
-    from eyas.state.scene import Scene
+    from eyas.world.plan.plan import MapPlan
 
 __all__ = ["FARMLAND", "FARMLAND_BARE"]
 
@@ -34,24 +33,24 @@ def _roads(seed: int) -> "RoadGraph":
     return road_graph(seed)
 
 
-def _scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
-    from eyas.world.maps.farmland.scene import build_scene
+def _plan(network: "RoadNetwork", seed: int) -> "MapPlan":
+    from eyas.world.maps.farmland.plan import make_plan
 
-    return build_scene(network, seed, season)
+    return make_plan(network, seed)
 
 
-def _bare_scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
-    from eyas.world.maps.bare import build_bare_scene
-    from eyas.world.maps.farmland.scene import FLOOR, MOUNTAINS, SOIL
+def _bare_plan(network: "RoadNetwork", seed: int) -> "MapPlan":
+    from eyas.world.maps.bare import make_plan
+    from eyas.world.maps.farmland.plan import FLOOR, MOUNTAINS, SOIL
 
-    return build_bare_scene("farmland-bare", network, seed, FLOOR, SOIL, MOUNTAINS)
+    return make_plan("farmland-bare", network, seed, FLOOR, SOIL, MOUNTAINS)
 
 
 FARMLAND = MapRecipe(
     name="farmland",
     title="A patchwork of fields in four colours",
     roads=_roads,
-    scene=_scene,
+    plan=_plan,
     lighting={
         DAY: replace(CLEAR_DAY, lamps=_BY_DAY, fog_density=_CLEAR),
         FOGGY: replace(FOG, fog_density=1.0 / 400.0, lamps=_BY_DAY),
@@ -73,7 +72,7 @@ FARMLAND_BARE = replace(
     FARMLAND,
     name="farmland-bare",
     title="The roads of the farmland on bare soil, without scenery",
-    scene=_bare_scene,
+    plan=_bare_plan,
     lighting={DAY: CLEAR_DAY},
     seasons=False,
     original=Original(road=4.45),

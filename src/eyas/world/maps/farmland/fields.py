@@ -6,18 +6,13 @@ from itertools import pairwise
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
-from eyas.mesh.assembly import concatenate
-from eyas.mesh.flat import quads
-from eyas.state.mesh import Material, Mesh
-from eyas.world.build.heights import FLOOR_HEIGHT
-from eyas.world.build.materials import TEXTURES, material, without_snow
+from eyas.state.mesh import Material
+from eyas.world.build.materials import material, without_snow
 from eyas.world.maps.farmland.roads import ROAD_WIDTH
-from eyas.world.roads.areas import GRID, skirt, surface
 from eyas.world.weather import Season
 
-__all__ = ["CROPS", "SIDE", "VERGE", "Crop", "Field", "field_mesh", "lay_out"]
+__all__ = ["CROPS", "SIDE", "VERGE", "Crop", "Lot", "lay_out"]
 
 SIDE = 80.0
 """Largest side of a field [m]."""
@@ -63,7 +58,7 @@ CROPS = (
 
 
 @dataclass(frozen=True, slots=True)
-class Field:
+class Lot:
     """A rectangular field."""
 
     area: shapely.Polygon
@@ -76,7 +71,7 @@ class Field:
     """Factor on its colour, near 1."""
 
 
-def lay_out(x: Sequence[float], y: Sequence[float], rng: np.random.Generator) -> list[Field]:
+def lay_out(x: Sequence[float], y: Sequence[float], rng: np.random.Generator) -> list[Lot]:
     """Return the fields in the cells and in a ring around them; neighbours differ.
 
     Args:
@@ -85,7 +80,7 @@ def lay_out(x: Sequence[float], y: Sequence[float], rng: np.random.Generator) ->
         rng: Random numbers of the fields.
     """
     columns, rows = _spans(x), _spans(y)
-    made: list[Field] = []
+    made: list[Lot] = []
     kinds = np.full((len(columns) + 1, len(rows) + 1), -1)
     for i, (west, east) in enumerate(columns):
         for j, (south, north) in enumerate(rows):
@@ -93,7 +88,7 @@ def lay_out(x: Sequence[float], y: Sequence[float], rng: np.random.Generator) ->
             odds[[kind for kind in (kinds[i - 1, j], kinds[i, j - 1]) if kind >= 0]] *= 0.06
             kinds[i, j] = rng.choice(len(CROPS), p=odds / odds.sum())
             made.append(
-                Field(
+                Lot(
                     shapely.box(west, south, east, north),
                     int(kinds[i, j]),
                     bool(rng.integers(2)),

@@ -20,13 +20,12 @@ from eyas.world.weather import (
     NIGHT,
     SNOW,
     WINTER_DAY,
-    Season,
     Weather,
 )
 
 if TYPE_CHECKING:
     from eyas.state.roads import RoadGraph, RoadNetwork
-    from eyas.state.scene import Scene
+    from eyas.world.plan.plan import MapPlan
 
 __all__ = ["CITY", "CLINKER", "DESERT", "FARM", "GRASS", "LAKE", "VILLAGE"]
 
@@ -53,16 +52,16 @@ def _skinned(
 ) -> MapRecipe:
     """Return the simple map with one kind of ground."""
 
-    def scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
-        from eyas.world.maps.simpleway.scene import build_scene
+    def plan(network: "RoadNetwork", seed: int) -> "MapPlan":
+        from eyas.world.maps.simpleway.plan import make_plan
 
-        return build_scene(skin, network, seed, season)
+        return make_plan(skin, network, seed)
 
     return MapRecipe(
         name=f"simpleway-{skin}",
         title=title,
         roads=_roads,
-        scene=scene,
+        plan=plan,
         lighting=lighting,
         seasons=seasons,
         package=__name__,
