@@ -98,7 +98,9 @@ class _Work:
 
     @cached_property
     def near(self) -> shapely.Geometry:
-        """The surroundings of the streets [m]."""
+        """Where ground is cut into small squares [m]."""
+        if self.plan.near is not None:
+            return self.plan.near
         areas = [layer.area for layer in self.plan.layers if isinstance(layer, p.Streets)]
         streets = areas[0] if len(areas) == 1 else shapely.union_all(areas)
         return shapely.buffer(streets, _NEAR, join_style="mitre")
@@ -226,6 +228,8 @@ def _paved(work: _Work, layer: p.Paved) -> None:
 
 
 def _ground(work: _Work, layer: p.Ground) -> None:
+    if layer.season not in (None, work.season.value):
+        return
     work.builder.add(layer.kind, *(_PIECES[type(piece)](work, piece) for piece in layer.pieces))
 
 

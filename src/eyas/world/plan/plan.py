@@ -387,6 +387,8 @@ class Ground:
     layer: Literal["ground"] = "ground"
     kind: ClassName = ObjectClass.GROUND
     """Class of the object."""
+    season: Literal["summer", "winter"] | None = None
+    """The only season in which it is there; None: it always is."""
     pieces: tuple[Piece, ...]
 
 
@@ -528,6 +530,8 @@ class MapPlan:
     """All that stands on the map, largest occluders first."""
     lamps: LampLight = field(default_factory=LampLight)
     horizon: Horizon = field(default_factory=Horizon)
+    near: Area | None = None
+    """Where `wide` ground is cut into small squares; None: up to 80 m beside streets [m]."""
     walkways: Walkways | None = None
 
 

@@ -13,12 +13,11 @@ from eyas.world.weather import (
     NIGHT,
     SNOW,
     WINTER_DAY,
-    Season,
 )
 
 if TYPE_CHECKING:
     from eyas.state.roads import RoadGraph, RoadNetwork
-    from eyas.state.scene import Scene
+    from eyas.world.plan.plan import MapPlan
 
 __all__ = ["LAKE"]
 
@@ -29,17 +28,17 @@ def _roads(seed: int) -> "RoadGraph":
     return road_graph(seed)
 
 
-def _scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
-    from eyas.world.maps.lake.scene import build_scene
+def _plan(network: "RoadNetwork", seed: int) -> "MapPlan":
+    from eyas.world.maps.lake.plan import make_plan
 
-    return build_scene(network, seed, season)
+    return make_plan(network, seed)
 
 
 LAKE = MapRecipe(
     name="lake",
     title="A suburb between ponds and strips of forest",
     roads=_roads,
-    scene=_scene,
+    plan=_plan,
     lighting={
         DAY: CLEAR_DAY,
         FOGGY: replace(FOG, fog_density=1.0 / 400.0),

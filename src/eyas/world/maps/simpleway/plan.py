@@ -64,21 +64,26 @@ def make_plan(skin_name: str, network: RoadNetwork, seed: int) -> MapPlan:
         flat = (Flat(area=bar, z=_BAR_HEIGHT, cover=skin.ground, cells="whole") for bar in bars)
         layers.append(Ground(pieces=tuple(flat)))
     rest, banks = shapely.difference(rectangle(*FLOOR), roads), shapely.buffer(roads, _BANK)
-    white: list[shapely.Geometry] = []
+    white: list[Flat] = []
     for patch in skin.patches(road_lines(seed), stream(seed, "simpleway strips")):
         area = shapely.difference(patch.area, banks)
-        if patch.cover is None:
-            white.append(area)
+        piece = Flat(area=area, cover=patch.cover, cells="wide")
+        if patch.in_winter:
+            white.append(piece)
             continue
         water = patch.cover.surface == Surface.WATER
-        piece = Flat(area=area, cover=patch.cover, cells="wide")
         kind = ObjectClass.WATER if water else ObjectClass.GROUND
         layers.append(Ground(kind=kind, pieces=(piece,)))
         rest = shapely.difference(rest, area)
     snow = None if skin.bars else skin.winter  # sand stays bare
     far = Far(rule="plain", covers=(skin.ground,), winter=(snow,) if snow else ())
-    pieces = _whitened(_spotted(rest, skin, snow, seed), white, skin)
-    layers.append(Ground(pieces=(*pieces, far)))
+    bare = (*_spotted(rest, skin, snow, seed), far)
+    layers.append(Ground(season="summer" if white else None, pieces=bare))
+    if white:
+        layers += [Ground(season="winter", pieces=(piece,)) for piece in white]
+        rest = reduce(shapely.difference, (piece.area for piece in white), rest)
+        bare = (*_spotted(rest, skin, snow, seed), far)
+        layers.append(Ground(season="winter", pieces=bare))
     return MapPlan(
         name="simpleway", seed=seed, size=FLOOR, layers=tuple(layers), horizon=skin.horizon
     )
@@ -126,15 +131,3 @@ def _spotted(area: shapely.Geometry, skin: Skin, snow: Material | None, seed: in
 def _tinted(cover: Material, tint: tuple[float, float, float]) -> Material:
     red, green, blue = (a * b for a, b in zip(cover.tint, tint, strict=True))
     return replace(cover, tint=(red, green, blue))
-
-
-def _whitened(pieces: list[Flat], white: list[shapely.Geometry], skin: Skin) -> list[Flat]:
-    """Return pieces of ground, cut where some is white in winter."""
-    if not white:
-        return pieces
-    squares = reduce(shapely.union, white)
-    made = []
-    for piece in pieces:
-        inside, outside = (cut(piece.area, squares) for cut in (shapely.intersection, shapely.difference))
-        made += [replace(piece, area=outside), replace(piece, area=inside, winter=skin.winter)]
-    return made

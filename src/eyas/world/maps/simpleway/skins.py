@@ -33,10 +33,9 @@ class Patch:
 
     area: shapely.Geometry
     """[m]"""
-    cover: Material | None
-    """None: that of the ground."""
-    winter: Material | None = None
-    """What covers it in winter; None: the same."""
+    cover: Material
+    in_winter: bool = False
+    """Whether it is there only in winter."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,7 +123,7 @@ def _white_squares(lines: Points, rng: np.random.Generator) -> list[Patch]:
         middle = lines[column : column + 2, :, 0].mean() + rng.uniform(-22.0, 22.0)
         west, south = rounded([middle - _SQUARE / 2, rows[row] - _SQUARE / 2])
         square = shapely.box(west, south, west + _SQUARE, south + _SQUARE)
-        made.append(Patch(square, None, snow))
+        made.append(Patch(square, snow, in_winter=True))
     return made
 
 

@@ -5,11 +5,11 @@ from typing import TYPE_CHECKING
 
 from eyas.world.maps.recipe import MapRecipe, Original
 from eyas.world.maps.village.air import VILLAGE_FOG, VILLAGE_NIGHT
-from eyas.world.weather import CLEAR_DAY, DAY, FOGGY, NIGHT, SNOW, WINTER_DAY, Season
+from eyas.world.weather import CLEAR_DAY, DAY, FOGGY, NIGHT, SNOW, WINTER_DAY
 
 if TYPE_CHECKING:
     from eyas.state.roads import RoadGraph, RoadNetwork
-    from eyas.state.scene import Scene
+    from eyas.world.plan.plan import MapPlan
 
 __all__ = ["VILLAGE", "VILLAGE_BARE"]
 
@@ -20,22 +20,20 @@ def _roads(seed: int) -> "RoadGraph":
     return road_graph(seed)
 
 
-def _scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
-    """Build the village; in winter it is the same, and the weather's light adds the snow."""
-    from eyas.world.maps.village.scene import build_scene
+def _plan(network: "RoadNetwork", seed: int) -> "MapPlan":
+    from eyas.world.maps.village.plan import make_plan
 
-    return build_scene(network, seed)
+    return make_plan(network, seed)
 
 
-def _bare_scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
-    from eyas.world.maps.bare import build_bare_scene
+def _bare_plan(network: "RoadNetwork", seed: int) -> "MapPlan":
+    from eyas.world.maps.bare import make_plan
+    from eyas.world.maps.village.layout import FLOOR
     from eyas.world.maps.village.looks import GRASS
-    from eyas.world.maps.village.plan import FLOOR
-    from eyas.world.maps.village.scene import VALLEY
-    from eyas.world.roads import markings
+    from eyas.world.maps.village.plan import VALLEY
 
-    return build_bare_scene(
-        "village-bare", network, seed, FLOOR, GRASS, VALLEY, markings.Centre.DOUBLE_YELLOW
+    return make_plan(
+        "village-bare", network, seed, FLOOR, GRASS, VALLEY, "double yellow"
     )
 
 
@@ -43,7 +41,7 @@ VILLAGE = MapRecipe(
     name="village",
     title="A green valley with hills and tunnels",
     roads=_roads,
-    scene=_scene,
+    plan=_plan,
     lighting={DAY: CLEAR_DAY, FOGGY: VILLAGE_FOG, NIGHT: VILLAGE_NIGHT, SNOW: WINTER_DAY},
     package=__name__,
     original=Original(road=3.59, buildings=24, height=12.0, trees=41),
@@ -53,7 +51,7 @@ VILLAGE_BARE = replace(
     VILLAGE,
     name="village-bare",
     title="The roads of the village on bare grass, without scenery",
-    scene=_bare_scene,
+    plan=_bare_plan,
     lighting={DAY: CLEAR_DAY},
     seasons=False,
     original=Original(road=3.59),
