@@ -18,7 +18,7 @@ from eyas.world.build.millimetres import rounded
 from eyas.world.build.scene_builder import SceneBuilder
 from eyas.world.build.values import Heights, Place, Unit
 
-__all__ = ["COLUMNS", "SECTION", "Viaduct", "add_railway"]
+__all__ = ["BESIDE", "COLUMNS", "SECTION", "Viaduct", "add_railway"]
 
 _UNDER = 5.5
 """z of the underside: higher than any vehicle [m]."""
@@ -34,7 +34,7 @@ _STATION = 84.0
 COLUMNS = (-3.6, 3.6)
 """Places of the columns across the line [m]."""
 
-_BESIDE = 9.0
+BESIDE = 9.0
 """From its middle to the walls beside it [m]."""
 
 _PLATFORM = (3.45, 7.6)
@@ -126,7 +126,7 @@ class Viaduct:
     @property
     def ground(self) -> shapely.Polygon:
         """The ground between the walls beside it [m]."""
-        return shapely.Polygon(self.strip(0.0, self.length, -_BESIDE, _BESIDE))
+        return shapely.Polygon(self.strip(0.0, self.length, -BESIDE, BESIDE))
 
     @property
     def feet(self) -> Points:

@@ -13,12 +13,11 @@ from eyas.world.weather import (
     NIGHT,
     SNOW,
     WINTER_DAY,
-    Season,
 )
 
 if TYPE_CHECKING:
     from eyas.state.roads import RoadGraph, RoadNetwork
-    from eyas.state.scene import Scene
+    from eyas.world.plan.plan import MapPlan
 
 __all__ = ["DOWNTOWN"]
 
@@ -29,11 +28,10 @@ def _roads(seed: int) -> "RoadGraph":
     return road_graph(seed)
 
 
-def _scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
-    """Build the city; in winter it is the same, and the weather's light adds the snow."""
-    from eyas.world.maps.downtown.scene import build_scene
+def _plan(network: "RoadNetwork", seed: int) -> "MapPlan":
+    from eyas.world.maps.downtown.plan import make_plan
 
-    return build_scene(network, seed)
+    return make_plan(network, seed)
 
 
 # In the original the fog is too thin to be seen from above; here it veils the far end of a block.
@@ -55,7 +53,7 @@ DOWNTOWN = MapRecipe(
     name="downtown",
     title="Canyons between towers, and a park",
     roads=_roads,
-    scene=_scene,
+    plan=_plan,
     lighting={DAY: CLEAR_DAY, FOGGY: _MIST, NIGHT: _LIT, SNOW: WINTER_DAY},
     package=__name__,
     original=Original(road=11.05, buildings=470, height=28.0, trees=334),
