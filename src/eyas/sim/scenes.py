@@ -64,8 +64,10 @@ def _scene(map_name: str, seed: int, season: Season) -> Scene:
     recipe, network = MAPS.get(map_name), load_network(map_name, seed)
 
     def make() -> Scene:
+        from eyas.world.plan.build import build_scene  # not needed where the scene is kept
+
         _LOG.info("building the map '%s', once", recipe.name)
-        return recipe.scene(network, seed, season)
+        return build_scene(recipe.plan(network, seed), network, season)
 
     return _cached(Kind.SCENE, (), _origin(map_name, seed, season, network), make, Scene)
 

@@ -1,5 +1,6 @@
 """Things at their places, as planners list them."""
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 __all__ = ["Placed"]
@@ -18,3 +19,10 @@ class Placed(NamedTuple):
     """Angle, counter-clockwise about z [rad]."""
     scale: float = 1.0
     """Factor on its size."""
+
+    @classmethod
+    def at(
+        cls, kind: str, place: Sequence[float], z: float, turn: float = 0.0, scale: float = 1.0
+    ) -> "Placed":
+        """Return a copy at a place of 2 numbers [m]."""
+        return cls(kind, float(place[0]), float(place[1]), z, turn, scale)

@@ -22,6 +22,7 @@ __all__ = [
     "ClassName",
     "Colour",
     "Cover",
+    "Curve",
     "Facade",
     "Heights",
     "Line",
@@ -128,8 +129,64 @@ def _numbers(value: object, told: str) -> NDArray[np.float64]:
     return array
 
 
-class _Shape:
-    """Polygons, each a list of rings: its outline, and its holes."""
+@dataclass(frozen=True)
+class Shape:
+    """A polygon: its outline, or a list of its outline and its holes; or a list of polygons."""
+
+    several: bool
+
+    def __get_pydantic_core_schema__(
+        self, source: type, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        return core_schema.no_info_plain_validator_function(self._read)
+
+    def __get_pydantic_json_schema__(
+        self, schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> dict[str, Any]:
+        ring = {**_list_of(_list_of({"type": "number"}, 2), None), "minItems": 3}
+        forms = [ring, _list_of(ring, None)]
+        if self.several:
+            forms.append(_list_of(_list_of(ring, None), None))
+        return {"anyOf": forms}
+
+    def _read(self, value: object) -> shapely.Geometry:
+        if isinstance(value, shapely.Geometry):
+            return value
+        depth = _depth(value)
+        if depth == 2:
+            return _polygon([value])
+        if depth == 3 or (depth == 1 and not self.several):
+            return _polygon(value)
+        if self.several and isinstance(value, list | tuple):
+            return shapely.MultiPolygon([_polygon(one) for one in value])
+        raise ValueError(_RINGS)
+
+
+_RINGS = "a ring of at least 3 points [x, y], or a list of rings: an outline and its holes"
+
+
+def _depth(value: object) -> int:
+    """Return how many lists are in each other at the beginning of a value."""
+    depth = 0
+    while isinstance(value, list | tuple):
+        depth, value = depth + 1, value[0] if value else None
+    return depth
+
+
+def _polygon(value: object) -> shapely.Polygon:
+    if not isinstance(value, list | tuple):
+        raise ValueError(_RINGS)
+    rings = [_numbers(ring, _RINGS) for ring in value]
+    if any(ring.ndim != 2 or ring.shape[1] != 2 or len(ring) < 3 for ring in rings):
+        raise ValueError(_RINGS)
+    made = shapely.Polygon(rings[0] if rings else None, rings[1:])
+    if not made.is_valid:
+        raise ValueError(f"{_RINGS}, none of which cross ({shapely.is_valid_reason(made)})")
+    return made
+
+
+class _Curve:
+    """A line."""
 
     @classmethod
     def __get_pydantic_core_schema__(
@@ -141,47 +198,16 @@ class _Shape:
     def __get_pydantic_json_schema__(
         cls, schema: CoreSchema, handler: GetJsonSchemaHandler
     ) -> dict[str, Any]:
-        ring = {**_list_of(_list_of({"type": "number"}, 2), None), "minItems": 3}
-        return cls.listed(_list_of(ring, None))
+        return {**_list_of(_list_of({"type": "number"}, 2), None), "minItems": 2}
 
     @classmethod
-    def listed(cls, polygon: dict[str, Any]) -> dict[str, Any]:
-        return _list_of(polygon, None)
-
-    @classmethod
-    def read(cls, value: object) -> shapely.Geometry:
-        if isinstance(value, shapely.Geometry):
+    def read(cls, value: object) -> shapely.LineString:
+        if isinstance(value, shapely.LineString):
             return value
-        told = "a list of polygons, each a list of rings of at least 3 points [x, y]"
-        if not isinstance(value, list | tuple):
-            raise ValueError(told)
-        return shapely.MultiPolygon([_polygon(one, told) for one in value])
-
-
-class _OneShape(_Shape):
-    """A polygon: a list of rings, or one ring."""
-
-    @classmethod
-    def listed(cls, polygon: dict[str, Any]) -> dict[str, Any]:
-        return polygon
-
-    @classmethod
-    def read(cls, value: object) -> shapely.Geometry:
-        if isinstance(value, shapely.Geometry):
-            return value
-        return _polygon(value, "a list of rings of at least 3 points [x, y]")
-
-
-def _polygon(value: object, told: str) -> shapely.Polygon:
-    if not isinstance(value, list | tuple) or not value:
-        raise ValueError(told)
-    rings = [_numbers(ring, told) for ring in value]
-    if any(ring.ndim != 2 or ring.shape[1] != 2 or len(ring) < 3 for ring in rings):
-        raise ValueError(told)
-    made = shapely.Polygon(rings[0], rings[1:])
-    if not made.is_valid:
-        raise ValueError(f"{told}, that does not cross itself ({shapely.is_valid_reason(made)})")
-    return made
+        points = _numbers(value, "at least 2 points [x, y]")
+        if points.ndim != 2 or points.shape[1] != 2 or len(points) < 2:
+            raise ValueError("at least 2 points [x, y]")
+        return shapely.LineString(points)
 
 
 class _EnumName:
@@ -244,9 +270,9 @@ Facade = Annotated[str, Named(lambda: FACADES)]
 """Walls with windows: one of `eyas.world.build.materials.FACADES`."""
 ClassName = Annotated[ObjectClass, _EnumName]
 """Class of objects."""
-Area = Annotated[shapely.Geometry, _Shape]
+Area = Annotated[shapely.Geometry, Shape(several=True)]
 """Any number of polygons, with holes [m]."""
-Outline = Annotated[shapely.Polygon, _OneShape]
+Outline = Annotated[shapely.Polygon, Shape(several=False)]
 """One polygon, with holes [m]."""
 Place = Annotated[NDArray[np.float64], Rows(None, 2)]
 """East and north [m], shape (2,)."""
@@ -260,5 +286,5 @@ Heights = Annotated[NDArray[np.float64], Rows(None)]
 """Numbers, shape (K,)."""
 Numbers = Annotated[NDArray[np.int64], Rows(None, whole=True)]
 """Whole numbers, shape (K,)."""
-
-
+Curve = Annotated[shapely.LineString, _Curve]
+"""A line [m]."""

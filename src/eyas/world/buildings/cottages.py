@@ -61,7 +61,7 @@ _DARK = material("plain", (0.12, 0.11, 0.10))
 
 
 def outline_at(place: Points, turn: float) -> Points:
-    """Return the corners of the walls of a house at a place, counter-clockwise [m], shape (4, 2)."""
+    """Return the corners of the walls of a house, counter-clockwise [m], shape (4, 2)."""
     cosine, sine = exact.cos(turn), exact.sin(turn)
     turned = exact.product(_SQUARE, np.array([[cosine, sine], [-sine, cosine]]))
     return np.asarray(place + turned, np.float64)

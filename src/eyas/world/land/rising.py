@@ -42,7 +42,7 @@ def kinds_of(ground: Relief, covers: int, rng: np.random.Generator) -> NDArray[n
     """Return which cover each triangle has: higher up mostly a later one."""
     height = ground.corners[..., 2].mean(axis=1)
     level = np.clip(height / _TOP, 0.0, 1.0) * (covers - 2) + rng.uniform(0.0, 1.8, len(height))
-    return np.clip(level.astype(np.intp), 0, covers - 1)
+    return np.asarray(np.clip(level.astype(np.intp), 0, covers - 1), np.intp)
 
 
 def snowed(

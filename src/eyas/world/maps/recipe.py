@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from eyas.core.errors import ConfigError, UnknownNameError
+from eyas.core.files import read_limited
 from eyas.state.lighting import Lighting
 from eyas.world.weather import Season, Weather
 
@@ -18,9 +19,10 @@ if TYPE_CHECKING:  # maps load with `eyas`; the scene modules only when a scene 
 
 __all__ = [
     "ATTRIBUTION_FILE",
-    "FEATURES_FILE",
     "MIXED_FILE",
     "NETWORK_FILE",
+    "PLAN_FILE",
+    "PLAN_SUFFIXES",
     "TRAFFIC_FILE",
     "MapRecipe",
     "Original",
@@ -30,8 +32,11 @@ __all__ = [
 ATTRIBUTION_FILE = "ATTRIBUTION.txt"
 """File in a map's folder that names those whose data it is made of."""
 
-FEATURES_FILE = "features.json"
-"""File in the folder of an imported map with what stands on it."""
+PLAN_FILE = "map.plan.json"
+"""File in the folder of an imported map with its plan."""
+
+PLAN_SUFFIXES = (".plan.json", ".plan.json.gz")
+"""Endings of the names of files with plans."""
 
 NETWORK_FILE = "network.npz"
 """File in a map's package with the processed roads of its seed 0."""
@@ -63,7 +68,7 @@ class Original:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MapRecipe:
-    """A map: its roads, its scene for each season, its light for each weather."""
+    """A map: its roads, its plan, its light for each weather."""
 
     name: str
     """Words joined by hyphens; used in the names of folders and environments."""
@@ -84,6 +89,10 @@ class MapRecipe:
     the scene is not cached between runs."""
     home: Path | None = None
     """Folder of a map that is no package: an imported one. It holds the same files."""
+    file: Path | None = None
+    """File with the plan of a map that has neither."""
+    notice: str = ""
+    """What must be said wherever the map is shown, unless a file beside it says so."""
     original: Original | None = None
     """Figures of the map that it re-creates; None if there is none."""
     pedestrians: int = 0
@@ -138,13 +147,15 @@ class MapRecipe:
         return tuple(sorted(found, key=lambda file: (file.name != TRAFFIC_FILE, file.name)))
 
     def source_hash(self) -> str | None:
-        """Return a hash of the sources in the map's folder; None without a folder."""
+        """Return a hash of the sources in the map's folder, or of its file; None without both."""
+        if self.file is not None:
+            return blake2b(read_limited(self.file, 1 << 30), digest_size=16).hexdigest()
         return None if self.folder is None else _source_hash(self.folder)
 
     def attribution(self) -> str:
         """Return what must be said wherever the map or data made from it is shown, or nothing."""
         file = self.shipped(ATTRIBUTION_FILE)
-        return file.read_text(encoding="utf-8") if file is not None else ""
+        return file.read_text(encoding="utf-8") if file is not None else self.notice
 
     def shipped_network(self) -> "RoadNetwork | None":
         """Return the processed roads of seed 0 that come with the package, if there are any.
@@ -176,6 +187,6 @@ def _source_hash(folder: Traversable) -> str:
             continue
         if path.is_dir():
             digest.update(f"{path.name}/{_source_hash(path)}".encode())
-        elif path.name.endswith((".py", FEATURES_FILE)):
+        elif path.name.endswith((".py", PLAN_FILE)):
             digest.update(path.name.encode() + path.read_bytes())
     return digest.hexdigest()

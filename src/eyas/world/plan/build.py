@@ -17,7 +17,7 @@ from eyas.mesh.panels import cells, closed
 from eyas.mesh.solids import box
 from eyas.state.mesh import Material, Mesh, Surface
 from eyas.state.roads import RoadNetwork
-from eyas.state.scene import Lamps, ObjectClass, Scene
+from eyas.state.scene import Footways, Lamps, ObjectClass, Scene
 from eyas.state.terrain import Terrain
 from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.materials import TEXTURES
@@ -29,8 +29,8 @@ from eyas.world.land.ground import asphalt
 from eyas.world.land.rising import kinds_of, relief_of, snowed
 from eyas.world.plan import plan as p
 from eyas.world.roads import markings, overpass, painting, pillars, tunnels
-from eyas.world.roads.areas import skirt, surface
-from eyas.world.roads.wear import road_wear
+from eyas.world.roads.areas import polygons_of, skirt, surface
+from eyas.world.roads.wear import road_wear, worn_lanes
 from eyas.world.things import fronts, railway, skyways
 from eyas.world.things.fields import field_mesh
 from eyas.world.things.kinds import SOLIDS, THINGS, Pose
@@ -83,9 +83,7 @@ class _Work:
         if rising:
             ground = terrain_of(relief_of(rising[0], plan.seed), FLOOR_HEIGHT, rising[0].half[1])
         self.builder = SceneBuilder(plan.name, plan.seed, plan.size, ground)
-        self._chances = {
-            name: chance.generator(plan.seed) for name, chance in plan.chances.items()
-        }
+        self._chances = {name: chance.generator(plan.seed) for name, chance in plan.chances.items()}
         self._library = {kind.name: kind for kind in plan.library}
 
     @cached_property
@@ -124,7 +122,10 @@ class _Work:
     def prototype(self, kind: p.Kind) -> Prototype:
         """Return what the copies of a kind are made of."""
         thing = THINGS[kind.make or kind.name]
-        make = partial(thing.levels, kind, self._chances.get(kind.chance), self.season)
+        rng = self._chances.get(kind.chance)
+        if rng is None:
+            rng = p.Chance(stream=f"kind {kind.name}").generator(self.plan.seed)
+        make = partial(thing.levels, kind, rng, self.season)
         return self.builder.prototype(kind.name, make, trees=thing.trees)
 
     def light(self, pose: Pose, reach: float, height: float) -> None:
@@ -147,7 +148,25 @@ class _Work:
             self.plan.lamps.intensity,
             self.plan.lamps.cut_off,
         )
-        return self.builder.build(self.network, lamps, self.plan.horizon)
+        scene = self.builder.build(self.network, lamps, self.plan.horizon)
+        if self.plan.walkways is not None:
+            scene.footways = _footways(self.plan)
+        return scene
+
+
+def _footways(plan: p.MapPlan) -> Footways:
+    """Return where people walk: along the asphalt of streets, and over crossings."""
+    areas = [layer.area for layer in plan.layers if isinstance(layer, p.Streets)]
+    solid = [shapely.geometry.polygon.orient(part) for area in areas for part in polygons_of(area)]
+    rings = (ring for part in solid for ring in (part.exterior, *part.interiors))
+    kerbs = [shapely.get_coordinates(ring) for ring in rings]
+    walks = plan.walkways or p.Walkways()
+    return Footways(
+        kerb_points=np.concatenate([np.zeros((0, 2)), *kerbs]),
+        kerb_first=np.cumsum([0, *map(len, kerbs)]).astype(np.int32),
+        crossings=np.array(walks.lines, np.float64).reshape(-1, 2, 2),
+        lights=walks.lights or ("",) * len(walks.lines),
+    )
 
 
 def _buildings(work: _Work, layer: p.Buildings) -> None:
@@ -180,7 +199,9 @@ def _on_roof(
 
 def _backdrop(work: _Work, layer: p.Backdrop) -> None:
     made = []
-    rows = zip(layer.outlines, layer.tops.tolist(), layer.walls, layer.roofs, layer.bays, strict=True)
+    rows = zip(
+        layer.outlines, layer.tops.tolist(), layer.walls, layer.roofs, layer.bays, strict=True
+    )
     for outline, top, wall, cover, bays in rows:
         made.append(parts.window_wall(outline, FLOOR_HEIGHT, top, wall, bays))
         corners = np.column_stack([outline, np.full(len(outline), top)])
@@ -208,7 +229,8 @@ def _streets(work: _Work, layer: p.Streets) -> None:
     paint = markings.paint_of(work.network, layer.paint)
     shapes = painting.painted(layer.paint.shapes, painting.WHITE)
     work.builder.add(ObjectClass.MARKING, painting.mesh_of(paint), shapes)
-    wear = road_wear(work.network, layer.wear.generator(work.plan.seed), layer.apart)
+    worn = worn_lanes(work.network, layer.worn_from) if layer.worn_from else work.network
+    wear = road_wear(worn, layer.wear.generator(work.plan.seed), layer.apart)
     smooth = [_flat(work, asphalt(layer.area))]
     if layer.bays is not None:
         smooth.append(_flat(work, asphalt(layer.bays, light=True)))

@@ -38,5 +38,5 @@ def houses(
         walls, roof = looks[which]
         name = f"house of {house.storeys} storeys {which}"
         kinds[name] = Kind(name=name, make="house", storeys=house.storeys, walls=walls, roof=roof)
-        placed.append(Placed(name, *house.place.tolist(), FLOOR_HEIGHT, house.turn))
+        placed.append(Placed.at(name, house.place, FLOOR_HEIGHT, house.turn))
     return tuple(kinds.values()), placed

@@ -2,7 +2,7 @@
 
 Areas are already cut out of each other, and every thing has its place: the builder decides nothing.
 Random numbers are left for what is texture: wear, leaves, the roughness of mounds. A plan may also
-be incomplete: what is `None` in it, and what `MapPlan.survey` tells, `completed` decides.
+be incomplete: `eyas.world.plan.completed` makes layers of what `MapPlan.survey` knows.
 
 Lengths are in metres, angles in radians, colours sRGB from 0 to 1. x is east, y is north; z is 0
 on roads and -0.1 on the ground.
@@ -23,9 +23,8 @@ from eyas.state.lighting import Horizon
 from eyas.state.roads import RoadEdge, RoadNode
 from eyas.state.scene import ObjectClass
 from eyas.world.build.heights import FLOOR_HEIGHT, KERB_HEIGHT
-from eyas.world.build.materials import material
+from eyas.world.build.materials import facade, material
 from eyas.world.build.placed import Placed
-from eyas.world.land.mounds import Mound
 from eyas.world.build.values import (
     Area,
     ClassName,
@@ -43,6 +42,8 @@ from eyas.world.build.values import (
     Rows,
     Share,
 )
+from eyas.world.land.mounds import Mound
+from eyas.world.osm.features import Features
 from eyas.world.roads.pillars import Pillar
 from eyas.world.roads.tunnels import Tunnel
 from eyas.world.things.railway import Viaduct
@@ -79,6 +80,10 @@ __all__ = [
     "state_of",
     "things",
 ]
+
+
+_PAVING, _KERB = material("paving"), material("stone", (1.0, 0.95, 0.92))
+_PLASTER, _TILES = facade("facade_plaster"), material("roof_tiles")
 
 
 def _makers() -> tuple[str, ...]:
@@ -140,14 +145,14 @@ class Kind:
     """Which of its shapes."""
     width: Positive = 1.0
     """Factor on the width of a tree's crown."""
-    storeys: Natural = 0
+    storeys: Annotated[int, Ge(1)] = 2
     """Storeys of a house."""
-    walls: Cover | None = None
+    walls: Cover = _PLASTER
     """Walls of a house."""
-    roof: Cover | None = None
+    roof: Cover = _TILES
     """Roof of a house."""
     chance: str = ""
-    """One of `MapPlan.chances`, which kinds share in their order; empty: nothing is random."""
+    """One of `MapPlan.chances`, which kinds share in their order; empty: one of its own."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -182,11 +187,12 @@ class Shell:
     @property
     def footprint(self) -> NDArray[np.float64]:
         """Its corners without those of courtyards, shape (K, 2) [m]."""
-        return shapely.get_coordinates(self.outline.exterior)[:-1]
+        corners: NDArray[np.float64] = shapely.get_coordinates(self.outline.exterior)[:-1]
+        return corners
 
     @property
     def top(self) -> float:
-        """z of the eaves [m]."""
+        """Z of the eaves [m]."""
         return self.bottom + self.height
 
 
@@ -254,16 +260,19 @@ class Stripe:
 class Paint:
     """White and yellow paint on roads."""
 
-    rule: Literal["grid", "town"] = "grid"
-    """Streets of a regular grid, or of a grown town, where lanes end and streets bend."""
+    rule: Literal["grid", "none"] = "grid"
+    """What is painted besides the shapes given here: lines, arrows and crossings as on streets of a
+    regular grid, or nothing."""
     centre: Literal["white", "double yellow"] = "white"
     """Line between the two directions of a road."""
     crossings: Natural = 1
     """One zebra crossing in so many is painted; 0: none."""
     lines: tuple[Stripe, ...] = ()
-    """Other white lines."""
+    """White lines."""
+    bars: tuple[Stripe, ...] = ()
+    """Yellow bars of zebra crossings."""
     shapes: tuple[Outline, ...] = ()
-    """Other white shapes, such as the lines of parking bays."""
+    """White shapes, such as the lines of parking bays."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -280,6 +289,8 @@ class Streets:
     """Of tracks, patches, seals and lids."""
     apart: Positive = 1.0
     """Factor on the distances between these."""
+    worn_from: Annotated[float, Ge(0.0)] = 0.0
+    """Least length of lanes with wear; narrower ones than 3 m have none then [m]."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -291,8 +302,10 @@ class Paved:
     """[m]"""
     beside: Area
     """Asphalt at which the kerb stones are [m]."""
-    slabs: Cover = material("paving")
-    kerb: Cover = material("stone", (1.0, 0.95, 0.92))
+    slabs: Cover = _PAVING
+    """Cover of the pavements."""
+    kerb: Cover = _KERB
+    """Cover of the kerb stones and of all sides."""
     kerb_width: Positive = 0.35
     """[m]"""
     kerb_turn: float = 0.0
@@ -517,6 +530,8 @@ class MapPlan:
     """Words joined by hyphens."""
     title: str = ""
     """Name for people, a few words."""
+    attribution: str = ""
+    """What must be said wherever the map, or data made from it, is shown."""
     seed: Natural = 0
     """Seed of all that is left to chance."""
     size: tuple[Positive, Positive]
@@ -533,6 +548,10 @@ class MapPlan:
     near: Area | None = None
     """Where `wide` ground is cut into small squares; None: up to 80 m beside streets [m]."""
     walkways: Walkways | None = None
+    """Where people cross streets; None: at zebra crossings."""
+    survey: Features | None = None
+    """What is known of the land, from which `completed` makes the rest of the map; None: the plan
+    is complete."""
 
 
 def things(placed: Sequence[Placed], kinds: Sequence[str] = (), solid: str = "") -> Things:

@@ -36,9 +36,7 @@ _BAR = 0.55
 Line = NDArray[np.float64]
 
 
-def road_paint(
-    network: RoadNetwork, *, centre: str = "white", crossings: bool = True
-) -> RoadPaint:
+def road_paint(network: RoadNetwork, *, centre: str = "white", crossings: bool = True) -> RoadPaint:
     """Return the paint of all roads.
 
     Args:
@@ -70,15 +68,16 @@ def road_paint(
 
 def paint_of(network: RoadNetwork, paint: Paint) -> RoadPaint:
     """Return the paint of all roads by the rules of a plan."""
+    lines = [Stripe(line.middle, line.width) for line in paint.lines]
+    bars = [[Stripe(bar.middle, bar.width)] for bar in paint.bars]
+    if paint.rule == "none":
+        return RoadPaint(lines, [], bars)
     made = road_paint(network, centre=paint.centre, crossings=paint.crossings > 0)
     zebras = made.zebras[:: max(paint.crossings, 1)]
-    others = [Stripe(line.middle, line.width) for line in paint.lines]
-    return RoadPaint([*made.lines, *others], made.arrows, zebras)
+    return RoadPaint([*made.lines, *lines], made.arrows, [*zebras, *bars])
 
 
-def _along(
-    chain: Sequence[Street], centre: str | None
-) -> tuple[list[Stripe], list[list[Stripe]]]:
+def _along(chain: Sequence[Street], centre: str | None) -> tuple[list[Stripe], list[list[Stripe]]]:
     """Return the white and the yellow lines along joined streets; no centre: one way."""
     middle, *dividers, kerb = (
         reduce(joined, parts) for parts in zip(*(link.lines for link in chain), strict=True)

@@ -137,5 +137,7 @@ def bale_levels() -> Levels:
 def _lying(sides: int) -> Mesh:
     half = _BALE_LENGTH / 2
     drum = cylinder((BALE_RADIUS, BALE_RADIUS), (-half, half), sides, _HAY, cap=True, tile=1.6)
-    onto_side = np.array([[0.0, 0.0, 1.0, 0.0], [0.0, 1.0, 0.0, 0.0], [-1.0, 0.0, 0.0, BALE_RADIUS]])
+    onto_side = np.array(
+        [[0.0, 0.0, 1.0, 0.0], [0.0, 1.0, 0.0, 0.0], [-1.0, 0.0, 0.0, BALE_RADIUS]]
+    )
     return transformed(drum, onto_side)

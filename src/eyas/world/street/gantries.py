@@ -1,6 +1,5 @@
 """Blue direction signs on gantries over roads."""
 
-
 import numpy as np
 
 from eyas.mesh.assembly import concatenate

@@ -1,6 +1,5 @@
 """Street lamps: a dark pole beyond the kerb, and an arm with the light over the road."""
 
-
 from collections.abc import Sequence
 
 import numpy as np
@@ -82,8 +81,7 @@ def lamps_along(
             if near.add(*feet[index].tolist()):
                 chosen.append(index)
     return [
-        Placed("street lamp", *feet[index].tolist(), 0.0, float(turns[index]))
-        for index in sorted(chosen)
+        Placed.at("street lamp", feet[index], 0.0, float(turns[index])) for index in sorted(chosen)
     ]
 
 

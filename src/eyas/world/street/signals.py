@@ -96,7 +96,7 @@ def pole_at(street: "Street") -> tuple[tuple[float, float], float]:
 
 def signals_along(network: RoadNetwork) -> list[Placed]:
     """Return a traffic light on each road into each junction."""
-    return [Placed("traffic light", *at.tolist(), 0.0, turn) for at, turn in signal_places(network)]
+    return [Placed.at("traffic light", at, 0.0, turn) for at, turn in signal_places(network)]
 
 
 def signal_levels(*, amber: bool = True) -> tuple[Mesh, ...]:

@@ -1,11 +1,12 @@
 """The kinds of things that stand on maps: their shapes, classes, solids and lights."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from eyas.core import exact
 from eyas.state.mesh import Mesh
@@ -40,7 +41,7 @@ class Pose(NamedTuple):
     """[rad]"""
     scale: float
 
-    def placed(self, corners: object) -> np.ndarray:
+    def placed(self, corners: Sequence[tuple[float, float]]) -> NDArray[np.float64]:
         """Return points given ahead and to the left of it, in the world, shape (K, 2) [m]."""
         ahead = np.array([exact.cos(self.turn), exact.sin(self.turn)])
         aside = np.array([-ahead[1], ahead[0]])
@@ -66,9 +67,7 @@ class Thing:
     """Distance along its arm and height of its light [m]; None: it gives none."""
 
 
-def _upright(
-    radius: float, top: float, *, by_size: bool = False, from_foot: bool = False
-) -> Solid:
+def _upright(radius: float, top: float, *, by_size: bool = False, from_foot: bool = False) -> Solid:
     """Return the rule of a trunk or a pole, which stands on the floor unless it is `from_foot`.
 
     Args:
@@ -89,7 +88,10 @@ def _upright(
 
 def _car(builder: SceneBuilder, kind: "Kind", pose: Pose, owner: int) -> None:
     size, (x, y) = pose.scale, (exact.cos(pose.turn), exact.sin(pose.turn))
-    ahead, aside = size * parked_cars.LONG * np.array([x, y]), size * parked_cars.WIDE * np.array([-y, x])
+    ahead, aside = (
+        size * parked_cars.LONG * np.array([x, y]),
+        size * parked_cars.WIDE * np.array([-y, x]),
+    )
     corners = [-ahead - aside, ahead - aside, ahead + aside, aside - ahead]
     outline = rounded(np.array(pose[:2]) + np.array(corners))
     builder.add_prism(outline, pose.z, pose.z + size * parked_cars.HIGH, owner)
@@ -116,7 +118,9 @@ def _entrance(builder: SceneBuilder, kind: "Kind", pose: Pose, owner: int) -> No
 
 
 def _bale(builder: SceneBuilder, kind: "Kind", pose: Pose, owner: int) -> None:
-    builder.add_cylinder(pose[:2], furniture.BALE_RADIUS, pose.z, pose.z + 2 * furniture.BALE_RADIUS, owner)
+    builder.add_cylinder(
+        pose[:2], furniture.BALE_RADIUS, pose.z, pose.z + 2 * furniture.BALE_RADIUS, owner
+    )
 
 
 SOLIDS: dict[str, Solid] = {
@@ -158,7 +162,6 @@ def _stand(kind: "Kind", rng: np.random.Generator, season: Season) -> Levels:
 
 
 def _house(kind: "Kind", rng: np.random.Generator, season: Season) -> Levels:
-    assert kind.walls is not None and kind.roof is not None  # as the table of its fields asks
     return cottages.cottage_levels(kind.storeys, kind.walls, kind.roof)
 
 
@@ -196,15 +199,11 @@ THINGS: Mapping[str, Thing] = {
     **{name: Thing(levels=_plant(name), kind=_TREE) for name in PLANTS if name != "island"},
     "island": Thing(levels=_plant("island")),
     "house": Thing(levels=_house, kind=ObjectClass.BUILDING, solid="cottage"),
-    "traffic light": Thing(
-        levels=_always(signals.signal_levels), kind=_POLE, solid="signal"
-    ),
+    "traffic light": Thing(levels=_always(signals.signal_levels), kind=_POLE, solid="signal"),
     "dark traffic light": Thing(
         levels=_always(partial(signals.signal_levels, amber=False)), kind=_POLE, solid="signal"
     ),
-    "street lamp": Thing(
-        levels=_always(lamps.lamp_levels), kind=_POLE, solid="lamp", light=_LIGHT
-    ),
+    "street lamp": Thing(levels=_always(lamps.lamp_levels), kind=_POLE, solid="lamp", light=_LIGHT),
     **{name: Thing(levels=_always(make)) for name, make in furniture.FURNITURE.items()},
     "gantry": Thing(
         levels=lambda kind, rng, season: gantries.gantry_levels(kind.variant),

@@ -38,7 +38,10 @@ from eyas.world.things.subway import LONG, WIDE
 
 __all__ = ["make_plan"]
 
-_GREAT, _SLIM = tuple(f"great tree {k}" for k in range(3)), tuple(f"slim tree {k}" for k in range(2))
+_GREAT, _SLIM = (
+    tuple(f"great tree {k}" for k in range(3)),
+    tuple(f"slim tree {k}" for k in range(2)),
+)
 _GREAT_HEIGHTS = (13.6, 15.4)
 _SLIM_HEIGHTS = (11.5, 14.0)
 _BROADER, _SLIMMER = 1.15, 0.64
@@ -65,8 +68,10 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
         seed: Seed of the map, >= 0.
     """
     city = lay_out(network, seed)
-    fittings = ("fronts", "tank", "roof units")
-    buildings = (Building(parts=tuple(parts), fittings=fittings) for parts in city.buildings)
+    buildings = (
+        Building(parts=tuple(parts), fittings=("fronts", "tank", "roof units"))
+        for parts in city.buildings
+    )
     fronts = [shapely.Polygon(corners) for corners in city.footprints]
     built = shapely.union_all([city.roads, city.park.ground, city.viaduct.ground, *fronts])
     return MapPlan(
@@ -115,7 +120,7 @@ def _trees(city: Layout, rng: np.random.Generator) -> list[Placed]:
 def _along_streets(city: Layout, network: RoadNetwork, rng: np.random.Generator) -> list[Things]:
     """Return signals, lamps, entrances of the subway and furniture."""
     lit = crossing_lamps(network, lamps.BEYOND_KERB)
-    lights = [Placed("street lamp", *foot.tolist(), KERB_HEIGHT, turn) for foot, turn in lit]
+    lights = [Placed.at("street lamp", foot, KERB_HEIGHT, turn) for foot, turn in lit]
     feet = np.array([foot for foot, _ in lit])
     poles = [place for place, _ in signal_places(network)]
     trunks = [*city.kerbs.great_trees, *city.kerbs.slim_trees, *city.viaduct.feet]
@@ -153,7 +158,7 @@ def _entrances(
         room = shapely.Point(place).buffer(0.5 * WIDE + 0.4)
         if wide and rng.random() < _ENTRANCES and not shapely.intersects(keep_free, room):
             turn = float(exact.atan2(onwards[1], onwards[0]))
-            made.append(Placed("subway entrance", *place.tolist(), KERB_HEIGHT, turn))
+            made.append(Placed.at("subway entrance", place, KERB_HEIGHT, turn))
     return made
 
 
@@ -172,4 +177,4 @@ def _in_park(city: Layout) -> list[Placed]:
         Placed("bench", x, y, FLOOR_HEIGHT, facing - np.pi / 2)
         for x, y, facing in city.park.benches.tolist()
     ]
-    return [*benches, Placed("fountain", *city.park.fountain, FLOOR_HEIGHT)]
+    return [*benches, Placed.at("fountain", city.park.fountain, FLOOR_HEIGHT)]

@@ -72,7 +72,9 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
     areas = [shapely.difference(lot.area, verge) for lot in lots]
     fields = [_field(lot, area) for lot, area in zip(lots, areas, strict=True)]
     # Tan fields are harvested.
-    harvested = [area for lot, area in zip(lots, areas, strict=True) if CROPS[lot.crop].name == "tan"]
+    harvested = [
+        area for lot, area in zip(lots, areas, strict=True) if CROPS[lot.crop].name == "tan"
+    ]
     covered = shapely.union(roads, shapely.union_all(areas))
     soil = Flat(area=shapely.difference(rectangle(*FLOOR), covered), cover=SOIL)
     return MapPlan(
@@ -111,9 +113,7 @@ def _far_fields() -> Far:
     return Far(rule="fields", covers=summer, winter=winter, shares=shares, chance=chance)
 
 
-def _bales(
-    areas: Sequence[shapely.Polygon], z: float, rng: np.random.Generator
-) -> list[Placed]:
+def _bales(areas: Sequence[shapely.Polygon], z: float, rng: np.random.Generator) -> list[Placed]:
     """Return bales of hay on some of the harvested fields, at the height of the stubble."""
     made = []
     for area in areas:
@@ -137,5 +137,5 @@ def _lamps(network: RoadNetwork, seed: int) -> list[Placed]:
         middle = at[start] + along / 2 + _LAMPS_APART / 2 * onwards
         foot = middle - (ROAD_WIDTH / 2 + _FROM_KERB) * leftwards
         turn = float(exact.atan2(*leftwards[::-1]))
-        places.append(Placed("street lamp", *foot.tolist(), 0.0, turn))
+        places.append(Placed.at("street lamp", foot, 0.0, turn))
     return places

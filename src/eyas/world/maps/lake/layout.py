@@ -146,9 +146,7 @@ def _odd_ponds(
     return made
 
 
-def _houses(
-    network: RoadNetwork, taken: shapely.Geometry, rng: np.random.Generator
-) -> list[Shell]:
+def _houses(network: RoadNetwork, taken: shapely.Geometry, rng: np.random.Generator) -> list[Shell]:
     """Return houses beside roads, most of them along the diagonal main road."""
     sites = []
     for street in streets(network):

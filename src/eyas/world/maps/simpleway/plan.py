@@ -77,7 +77,7 @@ def make_plan(skin_name: str, network: RoadNetwork, seed: int) -> MapPlan:
         rest = shapely.difference(rest, area)
     snow = None if skin.bars else skin.winter  # sand stays bare
     far = Far(rule="plain", covers=(skin.ground,), winter=(snow,) if snow else ())
-    bare = (*_spotted(rest, skin, snow, seed), far)
+    bare: tuple[Flat | Far, ...] = (*_spotted(rest, skin, snow, seed), far)
     layers.append(Ground(season="summer" if white else None, pieces=bare))
     if white:
         layers += [Ground(season="winter", pieces=(piece,)) for piece in white]

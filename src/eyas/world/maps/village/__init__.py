@@ -32,9 +32,7 @@ def _bare_plan(network: "RoadNetwork", seed: int) -> "MapPlan":
     from eyas.world.maps.village.looks import GRASS
     from eyas.world.maps.village.plan import VALLEY
 
-    return make_plan(
-        "village-bare", network, seed, FLOOR, GRASS, VALLEY, "double yellow"
-    )
+    return make_plan("village-bare", network, seed, FLOOR, GRASS, VALLEY, "double yellow")
 
 
 VILLAGE = MapRecipe(

@@ -136,7 +136,7 @@ def _ground(valley: Layout, hills: shapely.Geometry, seed: int) -> list[Layer]:
     # Slightly below the hills' feet, so that rounding leaves no gap between them.
     rest = shapely.buffer(hills, -0.4, join_style="mitre")
     lawn = shapely.difference(EXTENT, shapely.union_all([roads, paved, verge, shore, lake, rest]))
-    pieces = (
+    pieces: tuple[Flat | Far, ...] = (
         *_meadow(lawn, stream(seed, "village meadow")),
         Flat(area=shapely.intersection(verge, passages), cover=without_snow(VERGE)),
         Flat(area=shapely.difference(verge, passages), cover=VERGE),
@@ -184,9 +184,7 @@ def _paving(valley: Layout) -> shapely.Geometry:
     return shapely.difference(shapely.union_all(parts), valley.roads)
 
 
-def _plants(
-    valley: Layout, hills: shapely.Geometry, rng: np.random.Generator
-) -> list[Placed]:
+def _plants(valley: Layout, hills: shapely.Geometry, rng: np.random.Generator) -> list[Placed]:
     """Return the rows of trees, hedges round the gardens, and bushes in the valley."""
     made = []
     for x, y in valley.trees.tolist():
@@ -195,7 +193,9 @@ def _plants(
         made.append(Placed(kind, x, y, FLOOR_HEIGHT, turn, height))
     room = shapely.difference(
         shapely.union_all(valley.blocks),
-        shapely.union_all([shapely.buffer(_paving(valley), 0.6), shapely.buffer(valley.roads, 1.9)]),
+        shapely.union_all(
+            [shapely.buffer(_paving(valley), 0.6), shapely.buffer(valley.roads, 1.9)]
+        ),
     )
     for house in valley.cottages:
         yard = shapely.buffer(shapely.Polygon(house.outline), 3.1, join_style="mitre")
@@ -219,7 +219,7 @@ def _signs(valley: Layout, rng: np.random.Generator) -> list[Placed]:
     made = []
     for index, (place, turn) in enumerate(valley.gantries):
         kind = int((index + rng.integers(2)) % gantries.KINDS)
-        made.append(Placed(f"gantry {kind}", *place.tolist(), 0.0, turn))
+        made.append(Placed.at(f"gantry {kind}", place, 0.0, turn))
     return made
 
 

@@ -1,7 +1,7 @@
-"""Maps made of OpenStreetMap: each is a folder of files, made by `eyas maps import`.
+"""Maps that are files: a plan, or the folder that `eyas maps import` makes of OpenStreetMap.
 
 <folder>/<name>/map.json          name, title, origin, size
-<folder>/<name>/features.json     buildings, ground, trees, lamps
+<folder>/<name>/map.plan.json     its plan: what is known of buildings, ground, trees, lamps
 <folder>/<name>/roads.net.xml.gz  SUMO's network
 <folder>/<name>/network.npz       its lanes
 <folder>/<name>/traffic*.npz      recordings
@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 
 from eyas.core.errors import ConfigError, DataFileError
 from eyas.core.files import user_path
-from eyas.world.maps.recipe import MapRecipe
+from eyas.world.maps.recipe import PLAN_FILE, PLAN_SUFFIXES, MapRecipe
 from eyas.world.weather import (
     CLEAR_DAY,
     CLEAR_NIGHT,
@@ -28,18 +28,17 @@ from eyas.world.weather import (
     NIGHT,
     SNOW,
     WINTER_DAY,
-    Season,
 )
 
 if TYPE_CHECKING:
     from eyas.state.roads import RoadGraph, RoadNetwork
-    from eyas.state.scene import Scene
+    from eyas.world.plan.plan import MapPlan
 
 __all__ = [
     "FOLDER_VARIABLE",
     "FORMAT",
-    "IMPORTED",
     "MAP_FILE",
+    "MAP_FILES",
     "ROADS_FILE",
     "Origin",
     "maps_folder",
@@ -103,8 +102,8 @@ def origin_of(folder: Path) -> Origin:
     return origin
 
 
-class ImportedMaps:
-    """The imported maps of the user, by their names or by the paths of their folders."""
+class MapFiles:
+    """Imported maps, by their names or folders, and plans, by the paths of their files."""
 
     def names(self) -> tuple[str, ...]:
         """Return the names of the maps in the folder of imported maps."""
@@ -115,11 +114,13 @@ class ImportedMaps:
         return tuple(folder.name for folder in inside if self._whole(folder))
 
     def get(self, name: str) -> MapRecipe | None:
-        """Return the map with a name or in a folder; None if there is none.
+        """Return the map with a name, in a folder or a file; None if there is none.
 
         Raises:
             DataFileError: Its files are damaged, or the path is of no user.
         """
+        if name.endswith(PLAN_SUFFIXES):
+            return _recipe_of_plan(user_path(name).absolute())
         folder = user_path(name) if "/" in name or "\\" in name else maps_folder() / name
         try:
             there = (folder / MAP_FILE).is_file()
@@ -143,8 +144,8 @@ def _recipe(folder: Path) -> MapRecipe:
         return MapRecipe(
             name=origin.name,
             title=origin.title,
-            roads=partial(_roads, folder, origin.name),
-            scene=partial(_scene, folder, origin.name, origin.size),
+            roads=partial(_roads, folder / ROADS_FILE, origin.name),
+            plan=partial(_plan, folder),
             lighting={DAY: CLEAR_DAY, FOGGY: FOG, NIGHT: CLEAR_NIGHT, SNOW: WINTER_DAY},
             home=folder,
         )
@@ -152,38 +153,76 @@ def _recipe(folder: Path) -> MapRecipe:
         raise DataFileError(f"{folder / MAP_FILE}: {error}") from None
 
 
-def _roads(folder: Path, name: str, seed: int) -> "RoadGraph":
-    """Return the streets, the same for every seed."""
+def _roads(path: Path, name: str, seed: int) -> "RoadGraph":
+    """Return the streets in a file of SUMO, the same for every seed."""
     import gzip
     import zlib
 
     from eyas.state.roads import RoadGraph
 
-    path = folder / ROADS_FILE
     try:
         return RoadGraph(name, seed, (), (), gzip.decompress(path.read_bytes()))
     except (OSError, EOFError, zlib.error) as error:
-        raise DataFileError(f"{path}: cannot read: {error}; import the map again") from error
+        raise DataFileError(f"{path}: cannot read: {error}") from error
 
 
-def _scene(
-    folder: Path,
-    name: str,
-    size: tuple[float, float],
-    network: "RoadNetwork",
-    seed: int,
-    season: Season,
-) -> "Scene":
-    """Build the town; the seed decides what the map does not tell."""
-    from eyas.core.files import read_limited
-    from eyas.world.maps.imported.scene import build_scene
-    from eyas.world.maps.recipe import FEATURES_FILE
-    from eyas.world.osm.features import from_text
+def _plan(folder: Path, network: "RoadNetwork", seed: int) -> "MapPlan":
+    """Return the plan of an imported town; the seed decides what it does not tell."""
+    from dataclasses import replace
 
-    path = folder / FEATURES_FILE
-    text = read_limited(path, 1 << 30).decode("utf-8", errors="replace")
-    return build_scene(name, size, network, from_text(text, str(path)), seed)
+    from eyas.world.plan.file import read_plan
+    from eyas.world.towns.completed import completed
+
+    return completed(replace(read_plan(folder / PLAN_FILE), seed=seed), network)
 
 
-IMPORTED = ImportedMaps()
-"""The imported maps of the user."""
+def _recipe_of_plan(path: Path) -> MapRecipe:
+    """Return the map of a plan in a file; the rest of it is read when it is built.
+
+    Raises:
+        DataFileError: It is no plan, or has no name.
+    """
+    from eyas.world.plan.file import content_of
+
+    content = content_of(path)
+    name, title = content.get("name"), content.get("title", "")
+    try:
+        return MapRecipe(
+            name=str(name),
+            title=str(title) or str(name),
+            roads=partial(_roads_of_plan, path),
+            plan=partial(_plan_of_file, path),
+            lighting={DAY: CLEAR_DAY, FOGGY: FOG, NIGHT: CLEAR_NIGHT, SNOW: WINTER_DAY},
+            seasons=True,
+            file=path,
+            notice=str(content.get("attribution", "")),
+        )
+    except ConfigError as error:
+        raise DataFileError(f"{path}: {error}") from None
+
+
+def _roads_of_plan(path: Path, seed: int) -> "RoadGraph":
+    """Return the roads of a plan, the same for every seed."""
+    from eyas.state.roads import RoadGraph
+    from eyas.world.plan.file import read_plan
+
+    plan = read_plan(path)
+    roads = plan.roads
+    if roads.file:
+        return _roads(path.parent / roads.file, plan.name, seed)
+    return RoadGraph(plan.name, plan.seed, roads.nodes, roads.edges)
+
+
+def _plan_of_file(path: Path, network: "RoadNetwork", seed: int) -> "MapPlan":
+    """Return a plan with all that it leaves open; a seed other than 0 decides that anew."""
+    from dataclasses import replace
+
+    from eyas.world.plan.file import read_plan
+    from eyas.world.towns.completed import completed
+
+    plan = read_plan(path)
+    return completed(replace(plan, seed=plan.seed + seed) if plan.survey else plan, network)
+
+
+MAP_FILES = MapFiles()
+"""The imported maps of the user, and plans in files."""

@@ -1,4 +1,4 @@
-"""Heights, roofs and walls of imported buildings; what their tags leave open is guessed."""
+"""Heights, roofs and walls of buildings of which only some is known; the rest is guessed."""
 
 import zlib
 from dataclasses import dataclass
@@ -13,9 +13,10 @@ from eyas.world.build.materials import material
 from eyas.world.buildings.looks import roof_cover, wall_tint
 from eyas.world.buildings.roof_shapes import fullness
 from eyas.world.buildings.skyline import FLOOR
-from eyas.world.osm.features import House
+from eyas.world.osm.features import House, Roof
+from eyas.world.plan.plan import Building, Shell
 
-__all__ = ["Look", "is_small", "look_of"]
+__all__ = ["building_of", "is_small"]
 
 Tint = tuple[float, float, float]
 
@@ -65,9 +66,13 @@ _KINDS: dict[str, _Guess] = {
 _SIZES = ((40.0, _SHED), (170.0, _HOUSE), (700.0, _TOWN), (2500.0, _FLATS))
 """Buildings of no named kind are judged by their ground area, up to these [m^2]."""
 
-_SLOPES = ("gabled", "gabled", "hipped")
+_SLOPES: tuple[Roof, ...] = ("gabled", "gabled", "hipped")
 _PITCH = {"gabled": 0.42, "hipped": 0.36, "pyramidal": 0.5, "skillion": 0.12, "dome": 0.5}
 """Height of a roof as a share of the width of the building."""
+_NO_PARAPET, _NO_EQUIPMENT = 60.0, 250.0
+"""Smaller flat roofs have no parapet, and carry nothing [m^2]."""
+_SEEN_BELOW = 2.0
+"""Height of the foot from which one may see a building from below [m]."""
 _SLAB = 0.5
 """Thickness of a roof on posts [m]."""
 _OPEN = ("roof", "carport")
@@ -79,45 +84,13 @@ _RED = 1.15
 """A colour whose red is stronger than its blue by this factor suits tiles."""
 
 
-@dataclass(frozen=True, slots=True)
-class Look:
-    """A building as it is drawn."""
-
-    shape: shapely.Polygon
-    """Footprint [m]."""
-    bottom: float
-    """Z of its foot [m]."""
-    eaves: float
-    """Z of the top of its walls [m]."""
-    rise: float
-    """Height of the roof above the eaves [m]; 0 for flat ones."""
-    roof: str
-    """`flat`, or one of `roof_shapes.SHAPES`."""
-    across: bool
-    facade: str
-    """One of `FACADES`."""
-    tint: Tint
-    """Factor on the facade's colour."""
-    front: bool
-    """Whether it has shop windows or a lobby at street level."""
-    cover: Material
-    """Of the roof."""
-    chance: int
-    """Seed of the rest of its appearance."""
-
-    @property
-    def top(self) -> float:
-        """Z of its highest point [m]."""
-        return self.eaves + self.rise
-
-
 def is_small(house: House) -> bool:
     """Return whether a building is a house with a garden, or smaller."""
     return _guess(house) in (_HOUSE, _SHED)
 
 
-def look_of(house: House, seed: int) -> Look:
-    """Return the appearance of a building, the same whatever else stands on the map.
+def building_of(house: House, seed: int) -> Building:
+    """Return a building with all that is known and guessed, the same whatever else is on the map.
 
     Args:
         house: The building.
@@ -130,19 +103,23 @@ def look_of(house: House, seed: int) -> Look:
     levels = int(rng.integers(guess.levels[0], guess.levels[1] + 1))
     bottom, eaves, roof, rise = _profile(house, guess, levels, rng)
     facade, tint = _walls(house, guess, rng)
-    return Look(
-        shape=house.shape,
+    area, flat = house.shape.area, roof == "flat"
+    shell = Shell(
+        outline=house.shape,
         bottom=FLOOR_HEIGHT + bottom,
-        eaves=FLOOR_HEIGHT + eaves,
-        rise=rise,
-        roof=roof,
-        across=house.across,
+        height=max(eaves - bottom, 0.0),
         facade=facade,
         tint=tint,
-        front=bool(bottom < 0.5 and eaves > 2 * FLOOR and rng.random() < guess.shops),
-        cover=_cover(house, eaves, rng, sloping=roof != "flat"),
-        chance=chance,
+        shops=bool(bottom < 0.5 and eaves > 2 * FLOOR and rng.random() < guess.shops),
+        roof=roof,
+        rise=rise,
+        across=house.across,
+        cover=_cover(house, eaves, rng, sloping=not flat),
+        parapet=area > _NO_PARAPET,
+        underside=bottom > _SEEN_BELOW,
     )
+    equipped = flat and area > _NO_EQUIPMENT and not house.shape.interiors
+    return Building(parts=(shell,), fittings=("roof units",) if equipped else ())
 
 
 def _guess(house: House) -> _Guess:
@@ -155,10 +132,10 @@ def _guess(house: House) -> _Guess:
 
 def _profile(
     house: House, guess: _Guess, levels: int, rng: np.random.Generator
-) -> tuple[float, float, str, float]:
+) -> tuple[float, float, Roof, float]:
     """Return foot, eaves [m], shape and height [m] of the roof; heights above the ground."""
-    roof = house.roof
-    if not roof:
+    roof: Roof = house.roof or "flat"
+    if not house.roof:
         full = fullness(house.shape)
         may = full > 0.7 and house.shape.area < 1200 and not house.shape.interiors
         sloping = may and bool(rng.random() < guess.sloping)
