@@ -198,6 +198,7 @@ def _given(plan: MapPlan) -> Given:
             covered += [piece.area for piece in layer.pieces if not isinstance(piece, Far)]
         elif isinstance(layer, Paved | Streets):
             covered.append(layer.area)
+    covered = [shapely.make_valid(area) for area in covered]
     return Given(shapely.union_all(built), shapely.union_all(covered))
 
 

@@ -100,7 +100,8 @@ def lay_out(
     extent = shapely.box(-size[0] / 2, -size[1] / 2, size[0] / 2, size[1] / 2)
     lanes, crossings = _lanes(network), _junctions(network)
     beside = shapely.buffer(lanes, features.sidewalks, join_style="mitre", mitre_limit=2.0)
-    told = shapely.union(features.pavement, beside) if features.sidewalks else features.pavement
+    told = shapely.make_valid(features.pavement)
+    told = shapely.union(told, beside) if features.sidewalks else told
     walked = shapely.intersection(shapely.difference(told, lanes), extent)
     sharp = _clean(shapely.union(lanes, shapely.difference(crossings, walked)))
     places = shapely.union(crossings, _sharp_bends(network))
