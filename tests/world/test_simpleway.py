@@ -8,9 +8,10 @@ from eyas.state.mesh import Surface
 from eyas.state.scene import ObjectClass
 from eyas.traffic.recording_file import load
 from eyas.world.maps import MAPS
+from eyas.world.maps.simpleway.plan import paved
 from eyas.world.maps.simpleway.roads import ROADS, road_graph, road_lines
-from eyas.world.maps.simpleway.scene import paved
 from eyas.world.maps.simpleway.skins import SKINS
+from eyas.world.plan.build import build_scene
 from eyas.world.weather import Season
 
 NAMES = [name for name in MAPS.built_in if name.startswith("simpleway-")]
@@ -23,12 +24,12 @@ def network():
 
 @pytest.fixture(scope="module")
 def desert(network):
-    return MAPS.get("simpleway-desert").scene(network, 0, Season.WINTER)
+    return build_scene(MAPS.get("simpleway-desert").plan(network, 0), network, Season.WINTER)
 
 
 @pytest.fixture(scope="module")
 def farm(network):
-    return MAPS.get("simpleway-farm").scene(network, 0, Season.WINTER)
+    return build_scene(MAPS.get("simpleway-farm").plan(network, 0), network, Season.WINTER)
 
 
 ORIGINAL = {

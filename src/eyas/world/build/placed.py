@@ -3,6 +3,8 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from eyas.world.build.values import Place
+
 __all__ = ["Placed"]
 
 
@@ -22,7 +24,12 @@ class Placed(NamedTuple):
 
     @classmethod
     def at(
-        cls, kind: str, place: Sequence[float], z: float, turn: float = 0.0, scale: float = 1.0
+        cls,
+        kind: str,
+        place: Sequence[float] | Place,
+        z: float,
+        turn: float = 0.0,
+        scale: float = 1.0,
     ) -> "Placed":
         """Return a copy at a place of 2 numbers [m]."""
         return cls(kind, float(place[0]), float(place[1]), z, turn, scale)

@@ -106,7 +106,7 @@ class Chance:
     """Name of the stream."""
     index: tuple[Natural, ...] = ()
     """Numbers that tell streams of one name apart."""
-    state: Annotated[str, StringConstraints(pattern="([0-9a-f]+:){2}[01]:[0-9]+|")] = ""
+    state: Annotated[str, StringConstraints(pattern="^(([0-9a-f]+:){2}[01]:[0-9]+)?$")] = ""
     """State of a generator that has placed things before, in place of a stream."""
 
     def generator(self, seed: int) -> np.random.Generator:
@@ -526,7 +526,7 @@ class Roads:
 class MapPlan:
     """Everything on a map, in the order in which it is built."""
 
-    name: Annotated[str, StringConstraints(pattern=r"\w+(-\w+)*")]
+    name: Annotated[str, StringConstraints(pattern=r"^\w+(-\w+)*$")]
     """Words joined by hyphens."""
     title: str = ""
     """Name for people, a few words."""

@@ -45,7 +45,8 @@ class Pose(NamedTuple):
         """Return points given ahead and to the left of it, in the world, shape (K, 2) [m]."""
         ahead = np.array([exact.cos(self.turn), exact.sin(self.turn)])
         aside = np.array([-ahead[1], ahead[0]])
-        return np.array([self.x, self.y]) + np.array([a * ahead + b * aside for a, b in corners])
+        moved = np.array([a * ahead + b * aside for a, b in corners])
+        return np.asarray(np.array([self.x, self.y]) + moved, np.float64)
 
 
 Solid = Callable[[SceneBuilder, "Kind", Pose, int], None]
