@@ -149,18 +149,22 @@ class _Work:
             self.plan.lamps.cut_off,
         )
         scene = self.builder.build(self.network, lamps, self.plan.horizon)
-        if self.plan.walkways is not None:
-            scene.footways = _footways(self.plan)
+        scene.footways = _footways(self.plan, self.network)
         return scene
 
 
-def _footways(plan: p.MapPlan) -> Footways:
+def _footways(plan: p.MapPlan, network: RoadNetwork) -> Footways:
     """Return where people walk: along the asphalt of streets, and over crossings."""
-    areas = [layer.area for layer in plan.layers if isinstance(layer, p.Streets)]
+    roads = [layer for layer in plan.layers if isinstance(layer, p.Streets)]
+    if plan.walkways is None:
+        painted = [markings.crossings_of(network, layer.paint) for layer in roads]
+        lines = np.concatenate([np.zeros((0, 2, 2)), *painted])
+        return Footways(np.zeros((0, 2)), np.zeros(1, np.int32), lines, ("",) * len(lines))
+    areas = [layer.area for layer in roads]
     solid = [shapely.geometry.polygon.orient(part) for area in areas for part in polygons_of(area)]
     rings = (ring for part in solid for ring in (part.exterior, *part.interiors))
     kerbs = [shapely.get_coordinates(ring) for ring in rings]
-    walks = plan.walkways or p.Walkways()
+    walks = plan.walkways
     return Footways(
         kerb_points=np.concatenate([np.zeros((0, 2)), *kerbs]),
         kerb_first=np.cumsum([0, *map(len, kerbs)]).astype(np.int32),

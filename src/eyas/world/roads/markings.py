@@ -15,7 +15,7 @@ from eyas.world.roads.areas import Street, joints, streets
 from eyas.world.roads.curves import joined
 from eyas.world.roads.painting import RoadPaint, Stripe, stripes
 
-__all__ = ["paint_of", "road_paint"]
+__all__ = ["crossings_of", "paint_of", "road_paint"]
 
 _DASH, _GAP = 3.0, 6.0
 _LINE = 0.18
@@ -30,6 +30,8 @@ _STOP_LINE = 0.4
 """Width of a stop line [m]."""
 _ZEBRA_START, _ZEBRA_LENGTH = 0.7, 5.6
 """From the stop line to a crossing, and its extent along the road, as in the original [m]."""
+_WALKED = 3.0
+"""From the stop line to the line on which people cross [m]."""
 _BAR = 0.55
 """Width of a bar of a zebra crossing, nearly that of the gap to the next bar [m]."""
 
@@ -75,6 +77,37 @@ def paint_of(network: RoadNetwork, paint: Paint) -> RoadPaint:
     made = road_paint(network, centre=paint.centre, crossings=paint.crossings > 0)
     zebras = made.zebras[:: max(paint.crossings, 1)]
     return RoadPaint([*made.lines, *lines], made.arrows, [*zebras, *bars])
+
+
+def crossings_of(network: RoadNetwork, paint: Paint) -> NDArray[np.float64]:
+    """Return where people cross roads on zebras painted by the rule of a plan.
+
+    Returns:
+        The right and the left kerb of each, shape (C, 2, 2) [m].
+    """
+    if paint.rule == "none" or not paint.crossings:
+        return np.zeros((0, 2, 2))
+    meeting, every = joints(network), streets(network)
+    ways = {(street.start, street.end) for street in every}
+    made: list[Line | None] = []
+    for street in every:
+        both = (street.end, street.start) in ways
+        if meeting[street.end] >= 3:
+            made.append(_walk(street, 2.0 if both else 1.0))
+        if meeting[street.start] >= 3 and not both:
+            made.append(None)  # painted, but reached from the other side
+    kept = [line for line in made[:: paint.crossings] if line is not None]
+    return np.array(kept, np.float64).reshape(-1, 2, 2)
+
+
+def _walk(street: Street, sides: float) -> Line:
+    """Return the line from kerb to kerb on which people cross a road beyond its stop line."""
+    onwards = street.right[-1] - street.right[-2]
+    onwards /= max(float(exact.hypot(*onwards)), 1e-9)
+    leftwards = np.array([-onwards[1], onwards[0]])
+    width = float(exact.product(street.left[-1] - street.right[-1], leftwards))
+    right = street.right[-1] + _WALKED * onwards
+    return np.array([right, right + sides * width * leftwards])
 
 
 def _along(chain: Sequence[Street], centre: str | None) -> tuple[list[Stripe], list[list[Stripe]]]:
