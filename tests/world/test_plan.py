@@ -318,6 +318,7 @@ layers = st.one_of(
 plans = st.builds(
     plan.MapPlan, name=st.just("x"), title=st.text(max_size=9), seed=st.integers(0, 9),
     size=st.tuples(st.floats(1, 1e4), st.floats(1, 1e4)), layers=st.lists(layers).map(tuple),
+    library=st.just((plan.Kind(name="bench"),)),
     chances=st.dictionaries(st.text(max_size=5), chances, max_size=2),
     survey=st.none() | st.builds(
         lambda shape: Features(houses=[House(shape, "house", roof="gabled")]), boxes

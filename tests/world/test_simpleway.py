@@ -132,7 +132,7 @@ def test_the_winter_of_the_desert_has_thirty_five_white_squares(desert):
 
 
 def test_seventeen_coloured_strips_lie_between_the_roads_of_the_farm(farm, network):
-    covers = SKINS["farm"].patches(road_lines(0), Season.SUMMER, np.random.default_rng(1))
+    covers = SKINS["farm"].patches(road_lines(0), np.random.default_rng(1))
     assert len(covers) == 17
     assert sum(patch.cover.surface == Surface.WATER for patch in covers) == 4
     assert len({patch.cover for patch in covers}) == 6
@@ -154,7 +154,7 @@ def test_winter_whitens_the_soil_of_the_farm_and_no_snow_lies_on_roads(farm):
 
 
 def test_nine_strips_of_water_lie_on_the_soil_of_the_lake():
-    water = SKINS["lake"].patches(road_lines(0), Season.SUMMER, np.random.default_rng(1))
+    water = SKINS["lake"].patches(road_lines(0), np.random.default_rng(1))
     assert [patch.cover.surface for patch in water] == 9 * [Surface.WATER]
 
 

@@ -3,7 +3,8 @@
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from eyas.world.build.values import Place
+import numpy as np
+from numpy.typing import NDArray
 
 __all__ = ["Placed"]
 
@@ -26,7 +27,7 @@ class Placed(NamedTuple):
     def at(
         cls,
         kind: str,
-        place: Sequence[float] | Place,
+        place: Sequence[float] | NDArray[np.float64],
         z: float,
         turn: float = 0.0,
         scale: float = 1.0,

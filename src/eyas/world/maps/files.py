@@ -204,9 +204,11 @@ def _recipe_of_plan(path: Path) -> MapRecipe:
 def _roads_of_plan(path: Path, seed: int) -> "RoadGraph":
     """Return the roads of a plan, the same for every seed."""
     from eyas.state.roads import RoadGraph
-    from eyas.world.plan.file import read_plan
+    from eyas.world.plan.file import read_plan, road_faults
 
     plan = read_plan(path)
+    for line in road_faults(plan, path.parent):
+        raise DataFileError(f"{path}: {line}")
     roads = plan.roads
     if roads.file:
         return _roads(path.parent / roads.file, plan.name, seed)

@@ -10,7 +10,6 @@ import shapely
 from numpy.typing import NDArray
 
 from eyas.core import exact
-from eyas.core.errors import ConfigError, nearest
 from eyas.mesh.assembly import concatenate
 from eyas.mesh.flat import flat_polygons, quads
 from eyas.mesh.panels import cells, closed
@@ -52,12 +51,9 @@ def build_scene(plan: p.MapPlan, network: RoadNetwork, season: Season = Season.S
     """Return the scene of a plan.
 
     Args:
-        plan: A complete plan.
+        plan: A complete plan, without `eyas.world.plan.file.faults`.
         network: What SUMO has made of its roads.
         season: Season of trees, crops and hills.
-
-    Raises:
-        ConfigError: A layer refers to something that the plan does not have.
     """
     work = _Work(plan, network, season)
     for layer in plan.layers:
@@ -84,7 +80,7 @@ class _Work:
             ground = terrain_of(relief_of(rising[0], plan.seed), FLOOR_HEIGHT, rising[0].half[1])
         self.builder = SceneBuilder(plan.name, plan.seed, plan.size, ground)
         self._chances = {name: chance.generator(plan.seed) for name, chance in plan.chances.items()}
-        self._library = {kind.name: kind for kind in plan.library}
+        self.library = {kind.name: kind for kind in plan.library}
 
     @cached_property
     def pavement(self) -> shapely.Geometry:
@@ -102,22 +98,6 @@ class _Work:
         areas = [layer.area for layer in self.plan.layers if isinstance(layer, p.Streets)]
         streets = areas[0] if len(areas) == 1 else shapely.union_all(areas)
         return shapely.buffer(streets, _NEAR, join_style="mitre")
-
-    def kind(self, name: str) -> p.Kind:
-        """Return a kind of the library.
-
-        Raises:
-            ConfigError: There is no such kind, or its shape is random without a chance.
-        """
-        found = self._library.get(name)
-        if found is None:
-            hint = nearest(name, self._library)
-            raise ConfigError(f"layers.kinds: {name!r} is not a name in the library{hint}")
-        if found.chance and found.chance not in self._chances:
-            raise ConfigError(
-                f"library.{name}.chance: {found.chance!r} is not allowed: one of chances"
-            )
-        return found
 
     def prototype(self, kind: p.Kind) -> Prototype:
         """Return what the copies of a kind are made of."""
@@ -216,7 +196,7 @@ def _backdrop(work: _Work, layer: p.Backdrop) -> None:
 
 
 def _things(work: _Work, layer: p.Things) -> None:
-    kinds = [work.kind(name) for name in layer.kinds]
+    kinds = [work.library[name] for name in layer.kinds]
     prototypes = [work.prototype(kind) for kind in kinds]
     for index, row in zip(layer.kind.tolist(), layer.pose.tolist(), strict=True):
         kind, pose = kinds[index], Pose(*row)

@@ -3,7 +3,7 @@
 import gzip
 import json
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence, Sized
 from dataclasses import MISSING, Field, fields, is_dataclass
 from enum import IntEnum
 from functools import cache
@@ -12,15 +12,26 @@ from typing import Any, cast, get_args, get_type_hints
 
 import numpy as np
 import shapely
+from numpy.typing import NDArray
 from pydantic import TypeAdapter, ValidationError
 from pydantic_core import ErrorDetails, SchemaValidator
 
 from eyas.core.config import shown
 from eyas.core.errors import DataFileError, nearest
 from eyas.core.files import read_limited, write_atomic
-from eyas.world.plan.plan import MapPlan
+from eyas.world.plan.plan import Backdrop, Far, Ground, MapPlan, Relief, Things
+from eyas.world.things.kinds import THINGS
 
-__all__ = ["FORMAT", "content_of", "problems", "read_plan", "schema", "text_of", "write_plan"]
+__all__ = [
+    "FORMAT",
+    "content_of",
+    "problems",
+    "read_plan",
+    "road_faults",
+    "schema",
+    "text_of",
+    "write_plan",
+]
 
 FORMAT = "eyas-plan-1"
 """Value of `format` in the files of this version."""
@@ -68,7 +79,9 @@ def problems(path: Path) -> list[str]:
         DataFileError: It cannot be read.
     """
     plan = _read(path)
-    return [] if isinstance(plan, MapPlan) else plan
+    if isinstance(plan, MapPlan):
+        return [f"{path}: {line}" for line in road_faults(plan, path.parent)]
+    return plan
 
 
 def content_of(path: Path) -> dict[str, Any]:
@@ -95,12 +108,101 @@ def _read(path: Path) -> MapPlan | list[str]:
     """Return the plan in a file, or what is wrong with it."""
     content = content_of(path)
     try:
-        return cast("MapPlan", _validator().validate_python(content))
+        plan = cast("MapPlan", _validator().validate_python(content))
+        return [f"{path}: {line}" for line in _faults(plan)] or plan
     except ValidationError as error:
         entries = error.errors(include_url=False)
         told = [f"{path}: {_told(entry)}" for entry in entries[:_MOST]]
         more = len(entries) - _MOST
         return told + [f"{path}: and {more} more"] * (more > 0)
+
+
+def _faults(plan: MapPlan) -> Iterator[str]:
+    """Yield what in a plan does not fit together, a line each."""
+    for index, kind in enumerate(plan.library):
+        if not kind.make:
+            yield from _one_of(f"library[{index}].name", kind.name, THINGS)
+        if kind.chance:
+            yield from _one_of(f"library[{index}].chance", kind.chance, plan.chances)
+    for index, layer in enumerate(plan.layers):
+        if type(layer) in _CHECKS:
+            yield from _CHECKS[type(layer)](f"layers[{index}]", layer, plan)
+    if plan.walkways is not None and plan.walkways.lights:
+        lights, lines = plan.walkways.lights, plan.walkways.lines
+        yield from _as_many("walkways.lights", lights, len(lines), "lines")
+
+
+def _things(where: str, layer: Things, plan: MapPlan) -> Iterator[str]:
+    names = [kind.name for kind in plan.library]
+    for number, name in enumerate(layer.kinds):
+        yield from _one_of(f"{where}.kinds[{number}]", name, names)
+    yield from _as_many(f"{where}.kind", layer.kind, len(layer.pose), "poses")
+    yield from _below(f"{where}.kind", layer.kind, len(layer.kinds), "kinds")
+
+
+def _relief(where: str, layer: Relief, plan: MapPlan) -> Iterator[str]:
+    yield from _below(f"{where}.white", layer.white, len(layer.mounds), "mounds")
+
+
+def _backdrop(where: str, layer: Backdrop, plan: MapPlan) -> Iterator[str]:
+    for part in ("tops", "walls", "roofs", "bays"):
+        yield from _as_many(
+            f"{where}.{part}", getattr(layer, part), len(layer.outlines), "outlines"
+        )
+
+
+def _ground(where: str, layer: Ground, plan: MapPlan) -> Iterator[str]:
+    for number, piece in enumerate(layer.pieces):
+        if isinstance(piece, Far):
+            yield from _far(f"{where}.pieces[{number}]", piece)
+
+
+_CHECKS: dict[type, Callable[[str, Any, MapPlan], Iterator[str]]] = {
+    Things: _things, Relief: _relief, Backdrop: _backdrop, Ground: _ground,
+}  # fmt: skip
+
+
+def _far(where: str, piece: Far) -> Iterator[str]:
+    count = len(piece.covers)
+    if piece.winter:
+        yield from _as_many(f"{where}.winter", piece.winter, count, "covers")
+    if piece.chance is not None:
+        yield from _as_many(f"{where}.shares", piece.shares, count, "covers")
+        if abs(sum(piece.shares) - 1.0) > 1e-6:
+            yield f"{where}.shares: {sum(piece.shares):g} together is not allowed: 1 together"
+
+
+def road_faults(plan: MapPlan, folder: Path) -> Iterator[str]:
+    """Yield what is wrong with the roads of a plan whose file is in a folder, a line each."""
+    roads = plan.roads
+    if roads.file:
+        if not (folder / roads.file).is_file():
+            yield f"roads.file: {roads.file!r} is not allowed: a file in {folder}"
+        return
+    if not roads.edges:
+        yield "roads.edges: [] is not allowed: at least one edge, or a file"
+    nodes = [node.name for node in roads.nodes]
+    for index, edge in enumerate(roads.edges):
+        for end in ("start", "end"):
+            yield from _one_of(f"roads.edges[{index}].{end}", getattr(edge, end), nodes)
+
+
+def _one_of(where: str, name: str, names: Collection[str]) -> Iterator[str]:
+    if name not in names:
+        yield f"{where}: {name!r} is not allowed: one of {', '.join(names)}{nearest(name, names)}"
+
+
+def _as_many(where: str, rows: Sized, count: int, what: str) -> Iterator[str]:
+    if len(rows) != count:
+        yield f"{where}: {len(rows)} rows are not allowed: as many as {what}, {count}"
+
+
+def _below(
+    where: str, values: Sequence[int] | NDArray[np.int64], count: int, what: str
+) -> Iterator[str]:
+    wrong = [value for value in values if not 0 <= value < count]
+    if wrong:
+        yield f"{where}: {wrong[0]} is not allowed: an index of {what}, 0 to {count - 1}"
 
 
 @cache
