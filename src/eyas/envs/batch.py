@@ -105,14 +105,6 @@ class Batch:
         Raises:
             EyasError: There can be no second one.
         """
-        return _again, (*self._made, self.memento())
-
-    def memento(self) -> Memento:
-        """Return what distinguishes these trackers from new ones.
-
-        Raises:
-            EyasError: There can be no second one.
-        """
         if self._simulation.traffic.live:
             raise EyasError("traffic.live: an environment with live traffic cannot be copied")
         if self._journal.writes:
@@ -120,11 +112,7 @@ class Batch:
                 f"env.log_folder: an environment that writes logs ({self.config.env.log_folder}) "
                 "cannot be copied"
             )
-        return remember(self, FIXED)
-
-    def recall(self, memento: Memento) -> None:
-        """Go on where others of the same settings were."""
-        recall(self, memento)
+        return _again, (*self._made, remember(self, FIXED))
 
     def continue_from(self, other: "Batch") -> None:
         """Continue the sequences of episodes of others, which may have other settings."""
@@ -232,5 +220,5 @@ def _again(
 ) -> Batch:
     """Return a copy of a batch."""
     batch = Batch(config, count, shared=shared, numbers=numbers)
-    batch.recall(memento)
+    recall(batch, memento)
     return batch
