@@ -53,7 +53,7 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         "autoreset_mode": AutoresetMode.NEXT_STEP,
     }
 
-    def __init__(  # noqa: PLR0913  # one for each choice
+    def __init__(  # one for each choice
         self,
         num_envs: int = 1,
         config: Source = None,
