@@ -20,7 +20,6 @@ from eyas.envs.observation import Observer
 from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.messages import originals_named
 from eyas.sim.build import build_simulation
-from eyas.sim.words import target_in_words
 from eyas.sim.worlds import each_alone, together
 from eyas.state.draw import Picture
 from eyas.task.done import DoneReason
@@ -195,7 +194,7 @@ class Batch:
     def words_of(self, tracker: int) -> str:
         """Return the target of a tracker in words, see `eyas.sim.words`."""
         camera = self.config.camera
-        return target_in_words(self._simulation, tracker, camera.height / camera.width)
+        return self._simulation.perception.words(tracker, camera.height / camera.width)
 
     def render(
         self, chosen: NDArray[np.int32] | None = None, *, overlay: bool
