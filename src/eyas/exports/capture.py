@@ -5,9 +5,9 @@ from typing import NamedTuple
 import numpy as np
 
 from eyas.core.clock import PHYSICS_STEP
-from eyas.core.jit import interpreted
 from eyas.exports.frame import Action, Body, CameraPose, Floats, Frame, Subject
 from eyas.exports.movement import Movement
+from eyas.lanes import interpreted
 from eyas.sim.words import target_in_words
 from eyas.state.draw import Picture
 from eyas.state.episode import EpisodeState

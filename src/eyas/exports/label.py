@@ -8,10 +8,10 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Any, NamedTuple
 
 from eyas.core.frames import rotate_back
-from eyas.core.jit import interpreted
 from eyas.exports.frame import Frame, Subject
 from eyas.exports.rounding import rounded, rounded_list
 from eyas.exports.writer import Episode
+from eyas.lanes import interpreted
 from eyas.task.done import DoneReason
 
 __all__ = ["FIELDS", "Label", "LabelField", "checked", "label_of", "label_schema"]
