@@ -35,7 +35,14 @@ _LOG = logging.getLogger("eyas")
 Thing = TypeVar("Thing")
 
 _MAKERS = ("world", "mesh", "state", "core/rng.py")
-"""Packages whose source files determine a scene."""
+"""Packages whose source files determine a plan."""
+
+_BUILDERS = (
+    *(f"world/{room}" for room in ("plan", "things", "build", "buildings", "land", "plants",
+                                   "roads", "street")),
+    "mesh", "state", "core/rng.py",
+)  # fmt: skip
+"""Packages whose source files determine the scene of a plan."""
 
 
 _SHAPERS = ("sensors/furniture.py", "sensors/crowns.py", "sensors/grid.py", "sensors/obstacles.py")
@@ -62,14 +69,29 @@ def load_scene(map_name: str, seed: int = 0, season: Season = Season.SUMMER) -> 
 def _scene(map_name: str, seed: int, season: Season) -> Scene:
     # `lru_cache` would tell calls apart that leave out defaults, and build the map for each.
     recipe, network = MAPS.get(map_name), load_network(map_name, seed)
+    sources = recipe.source_hash()
 
-    def make() -> Scene:
-        from eyas.world.plan.build import build_scene  # not needed where the scene is kept
+    def told() -> NDArray[np.uint8]:
+        from eyas.world.plan.file import text_of  # not needed where the plan is kept
+
+        return np.frombuffer(text_of(recipe.plan(network, seed)).encode(), np.uint8)
+
+    def built(text: NDArray[np.uint8]) -> Scene:
+        from eyas.world.plan.build import build_scene
+        from eyas.world.plan.file import plan_of
 
         _LOG.info("building the map '%s', once", recipe.name)
-        return build_scene(recipe.plan(network, seed), network, season)
+        return build_scene(plan_of(text.tobytes()), network, season)
 
-    return _cached(Kind.SCENE, (), _origin(map_name, seed, season, network), make, Scene)
+    if sources is None:
+        return built(told())
+    # The plan and what is built of it are kept apart: a change of a shape places nothing anew, and
+    # a change of a planner builds anew only what it has placed elsewhere.
+    roads = network.graph_hash, network.builder, version("shapely")
+    inputs = recipe.name, sources, seed, *roads
+    text = cached(Kind.PLAN, _MAKERS, inputs, told, of=NDArray[np.uint8])
+    make = partial(built, text)
+    return cached(Kind.SCENE, _BUILDERS, (text, season.value, *roads), make, of=Scene)
 
 
 @lru_cache(maxsize=4)

@@ -26,6 +26,7 @@ __all__ = [
     "Facade",
     "Heights",
     "Line",
+    "MaterialRecord",
     "Named",
     "Natural",
     "Numbers",
@@ -34,6 +35,7 @@ __all__ = [
     "Place",
     "Positive",
     "Rows",
+    "Shape",
     "Share",
     "Unit",
 ]
@@ -236,18 +238,18 @@ class _EnumName:
         return {"type": "string", "enum": schema.get("metadata", {})["names"]}
 
 
-class _MaterialRecord:
+class _MaterialType:
     """A material, whose texture must exist."""
 
     @classmethod
     def __get_pydantic_core_schema__(
         cls, source: type, handler: GetCoreSchemaHandler
     ) -> CoreSchema:
-        return core_schema.no_info_after_validator_function(_material, handler(_Look))
+        return core_schema.no_info_after_validator_function(_material, handler(MaterialRecord))
 
 
 @dataclass(frozen=True, slots=True)
-class _Look:
+class MaterialRecord:
     """A material: what a surface looks like."""
 
     texture: Annotated[str, Named(lambda: TEXTURES)] = "plain"
@@ -260,11 +262,11 @@ class _Look:
     """Emitted light, as a factor on the colour."""
 
 
-def _material(look: "_Look | Material") -> Material:
+def _material(look: "MaterialRecord | Material") -> Material:
     return Material(look.texture, look.tint, look.surface, look.emission)
 
 
-Cover = Annotated[Material, _MaterialRecord]
+Cover = Annotated[Material, _MaterialType]
 """A material."""
 Facade = Annotated[str, Named(lambda: FACADES)]
 """Walls with windows: one of `eyas.world.build.materials.FACADES`."""

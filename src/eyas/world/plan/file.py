@@ -38,7 +38,7 @@ FORMAT = "eyas-plan-1"
 
 _LARGEST = 1 << 30
 """Largest file that is read [bytes]."""
-_TAGS = ("layer", "form")
+TAGS = ("layer", "form")
 """Fields that tell which record it is."""
 _MOST = 20
 """Number of errors that are told of a file."""
@@ -46,7 +46,14 @@ _MOST = 20
 
 def text_of(plan: MapPlan) -> str:
     """Return a plan as JSON; what is as usual is left out, and equal plans give equal texts."""
-    return json.dumps({"format": FORMAT, **_plain(plan)}, separators=(",", ":"), ensure_ascii=False)
+    return json.dumps({"format": FORMAT, **plain(plan)}, separators=(",", ":"), ensure_ascii=False)
+
+
+def plan_of(text: bytes) -> MapPlan:
+    """Return the plan that `text_of` has told."""
+    content = json.loads(text)
+    del content["format"]
+    return cast("MapPlan", _validator().validate_python(content))
 
 
 def write_plan(path: Path, plan: MapPlan) -> None:
@@ -283,7 +290,7 @@ def _place_of(loc: tuple[int | str, ...]) -> tuple[str, type]:
 
 
 def _tag_of(record: type) -> object:
-    return next((one.default for one in fields(record) if one.name in _TAGS), None)
+    return next((one.default for one in fields(record) if one.name in TAGS), None)
 
 
 def _hints(record: type) -> dict[str, Any]:
@@ -298,10 +305,11 @@ def _records_in(kind: object) -> Iterator[type]:
         yield from _records_in(part)
 
 
-def _plain(value: Any) -> Any:  # noqa: ANN401  # any part of a plan
+def plain(value: Any) -> Any:  # noqa: ANN401  # any part of a plan
+    """Return a part of a plan as JSON."""
     if is_dataclass(value):
         kept = ((one, getattr(value, one.name)) for one in fields(value))
-        return {one.name: _plain(part) for one, part in kept if not _is_usual(one, part)}
+        return {one.name: plain(part) for one, part in kept if not _is_usual(one, part)}
     if isinstance(value, np.ndarray | np.generic):
         return value.tolist()
     if isinstance(value, shapely.Geometry):
@@ -309,15 +317,15 @@ def _plain(value: Any) -> Any:  # noqa: ANN401  # any part of a plan
     if isinstance(value, IntEnum):
         return value.name.lower()
     if isinstance(value, Mapping):
-        return {key: _plain(part) for key, part in value.items()}
+        return {key: plain(part) for key, part in value.items()}
     if isinstance(value, list | tuple):
-        return [_plain(part) for part in value]
+        return [plain(part) for part in value]
     return value
 
 
 def _is_usual(one: Field[Any], value: object) -> bool:
     """Return whether a field has its default, and so can be left out."""
-    if one.name in _TAGS or isinstance(value, np.ndarray):
+    if one.name in TAGS or isinstance(value, np.ndarray):
         return False
     usual = one.default if one.default_factory is MISSING else one.default_factory()
     return bool(value == usual)
