@@ -23,15 +23,15 @@ from eyas.task.config import Crash
 from eyas.task.contact import Contacts
 from eyas.trackers.config import TrackerKind
 
-__all__ = ["Senses"]
+__all__ = ["SensorSuite"]
 
 
-class _Sense(Protocol):
+class _Sensor(Protocol):
     def begin(self, tracker: int, rng: np.random.Generator) -> None: ...
 
 
-class Senses:
-    """The senses of N trackers that the settings ask for.
+class SensorSuite:
+    """The sensors of N trackers that the settings ask for.
 
     Attributes:
         lidar: None if it is off.
@@ -82,7 +82,7 @@ class Senses:
         self.grain = Grain.of(config.sensors.camera, len(active))
         # Contacts come first: they may end the episode that the others then see.
         self._following = [
-            sense for sense in (self._contacts, self.lidar, self.readings) if sense is not None
+            sensor for sensor in (self._contacts, self.lidar, self.readings) if sensor is not None
         ]
         self.follow = bool(self._following)
 
@@ -98,16 +98,16 @@ class Senses:
             trackers: The trackers.
             key_of: Returns what the random numbers of a tracker's episode depend on.
         """
-        senses: dict[str, _Sense | None] = {
+        sensors: dict[str, _Sensor | None] = {
             "contacts": self._contacts,
             "lidar": self.lidar,
             "readings": self.readings,
             "grain": self.grain,
         }
-        for name, sense in senses.items():
-            if sense is not None:
+        for name, sensor in sensors.items():
+            if sensor is not None:
                 for tracker in trackers:
-                    sense.begin(tracker, key_of(tracker).stream(name))
+                    sensor.begin(tracker, key_of(tracker).stream(name))
         self.advance()
 
     def renew(self) -> None:
@@ -117,8 +117,8 @@ class Senses:
 
     def advance(self) -> None:
         """Sense, after a physics step."""
-        for sense in self._following:
-            sense.advance()
+        for sensor in self._following:
+            sensor.advance()
 
 
 def _contacts(

@@ -12,7 +12,7 @@ from eyas.sensors.config import ReadingConfig
 from eyas.sim.latency import Latency, is_always_0
 from eyas.state.snapshot import Snapshot
 
-__all__ = ["Sight"]
+__all__ = ["SeenState"]
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -22,7 +22,7 @@ _ON_TIME = ReadingConfig()
 _uniform = interpreted(uniform)
 
 
-class LateSight:
+class PastState:
     """What N trackers saw some time ago: the state at the last exposure of a sensor before that.
 
     Attributes:
@@ -61,7 +61,7 @@ class LateSight:
         self._every = np.arange(count)
         self._clock = now.episodes.step_count
 
-    def draw(self, tracker: int, key: EpisodeKey) -> None:
+    def sample(self, tracker: int, key: EpisodeKey) -> None:
         """Begin the random numbers of a tracker's episode."""
         if self._drop_out > 0.0:
             self._seed[tracker] = key.stream("exposures").integers(SEEDS)
@@ -96,8 +96,8 @@ class LateSight:
         exposed: NDArray[np.bool_] = self._clock % self._period == 0
         if self._drop_out > 0.0:
             for n in np.flatnonzero(exposed).tolist():
-                drawn = _uniform(int(self._seed[n]), int(self._clock[n]), 0)
-                exposed[n] = drawn >= self._drop_out
+                sampled = _uniform(int(self._seed[n]), int(self._clock[n]), 0)
+                exposed[n] = sampled >= self._drop_out
         return exposed
 
     def begin(self, trackers: Integers) -> None:
@@ -114,7 +114,7 @@ class LateSight:
             seen[...] = past[slots, self._every]
 
 
-class Sight:
+class SeenState:
     """What N agents see: the truth, as far as neither a latency nor their cameras make it late.
 
     Attributes:
@@ -134,22 +134,22 @@ class Sight:
         self, latency: Variation, camera: ReadingConfig, now: Snapshot, told: Floats | None
     ) -> None:
         self._latency = Latency(latency, "observation_latency", len(now.light))
-        self._past: list[LateSight] = []
+        self._past: list[PastState] = []
         self._now = now
         self.snapshot, self.shown, self.told, self.late = now, now, told, None
         if not is_always_0(latency):
-            past = LateSight(self._latency, now, told)
+            past = PastState(self._latency, now, told)
             self._past.append(past)
             self.snapshot, self.shown, self.told = past.snapshot, past.snapshot, past.told
             self.late = self._latency.steps
         if _timing_of(camera) != _timing_of(_ON_TIME):
-            pictures = LateSight(self._latency, now, None, camera)
+            pictures = PastState(self._latency, now, None, camera)
             self._past.append(pictures)
             self.shown = pictures.snapshot
 
     @classmethod
-    def on_time(cls, now: Snapshot, told: Floats | None) -> "Sight":
-        """Return the sight of who sees the present."""
+    def on_time(cls, now: Snapshot, told: Floats | None) -> "SeenState":
+        """Return the state as who sees the present has it."""
         return cls(0.0, _ON_TIME, now, told)
 
     @property
@@ -161,12 +161,12 @@ class Sight:
         """Return how many physics steps ago the pictures of a tracker show."""
         return int(self._now.episodes.tick[tracker] - self.shown.episodes.tick[tracker])
 
-    def draw(self, tracker: int, key: EpisodeKey) -> None:
-        """Draw what is random in a tracker's episode."""
+    def sample(self, tracker: int, key: EpisodeKey) -> None:
+        """Sample what is random in a tracker's episode."""
         if self.late is not None:
-            self._latency.draw(tracker, key)
+            self._latency.sample(tracker, key)
         for past in self._past:
-            past.draw(tracker, key)
+            past.sample(tracker, key)
 
     def record(self) -> None:
         """Remember the present state, after a physics step."""

@@ -1,6 +1,6 @@
 """Where actors are in each second, roughly: enough to leave out those that are far from a view.
 
-A row of the chart is made when its second is asked for first.
+A row is made when its second is asked for first.
 """
 
 from typing import NamedTuple
@@ -12,13 +12,13 @@ from eyas.lanes import kernel
 from eyas.lanes.vector import WIDTH
 from eyas.state.motion import Motion
 
-__all__ = ["Chart", "chart_of", "charted"]
+__all__ = ["ActorBounds", "bounds_of", "made_row"]
 
 NOWHERE = -1e30
 """Radius around actors that are absent: it reaches no view."""
 
 
-class Chart(NamedTuple):
+class ActorBounds(NamedTuple):
     """Spheres around A actors in each of S seconds."""
 
     actor: NDArray[np.int64]
@@ -31,34 +31,36 @@ class Chart(NamedTuple):
     """Centre x, y, z and radius [m], shape (S, 4, A, filled up for lanes)."""
 
 
-def chart_of(motion: Motion, actor: NDArray[np.int64]) -> Chart:
-    """Return an empty chart of actors."""
+def bounds_of(motion: Motion, actor: NDArray[np.int64]) -> ActorBounds:
+    """Return bounds of actors of which no row is made."""
     samples = max(round(motion.rate), 1)
     rows = max(-(-(len(motion.table) - 1) // samples), 1)
     # Not filled: the system gives memory only to rows that are written.
     sphere = np.empty((rows, 4, len(actor) + WIDTH), np.float32)
-    return Chart(actor, np.zeros(rows, np.bool_), np.array([samples], np.int64), sphere)
+    return ActorBounds(actor, np.zeros(rows, np.bool_), np.array([samples], np.int64), sphere)
 
 
 @kernel(inline=True)
-def charted(chart: Chart, motion: Motion, sample: int) -> int:
-    """Return the row of the chart for the time after a sample of the motion; make it if needed."""
-    row = sample // chart.samples[0]
-    if not chart.ready[row]:
-        for column in range(chart.sphere.shape[2]):
-            chart.sphere[row, 3, column] = NOWHERE
-        first = row * chart.samples[0]
-        last = min(first + chart.samples[0], motion.table.shape[0] - 1)
-        for column in range(chart.actor.shape[0]):
-            _enclose(chart, motion, row, column, first, last)
-        chart.ready[row] = True
+def made_row(bounds: ActorBounds, motion: Motion, sample: int) -> int:
+    """Return the row for the time after a sample of the motion; make it if needed."""
+    row = sample // bounds.samples[0]
+    if not bounds.ready[row]:
+        for column in range(bounds.sphere.shape[2]):
+            bounds.sphere[row, 3, column] = NOWHERE
+        first = row * bounds.samples[0]
+        last = min(first + bounds.samples[0], motion.table.shape[0] - 1)
+        for column in range(bounds.actor.shape[0]):
+            _enclose(bounds, motion, row, column, first, last)
+        bounds.ready[row] = True
     return int(row)
 
 
 @kernel(inline=True)
-def _enclose(chart: Chart, motion: Motion, row: int, column: int, first: int, last: int) -> None:
+def _enclose(
+    bounds: ActorBounds, motion: Motion, row: int, column: int, first: int, last: int
+) -> None:
     """Put a sphere around an actor from sample `first` to `last`."""
-    actor = chart.actor[column]
+    actor = bounds.actor[column]
     low_x, low_y, low_z, high_x, high_y, high_z = 1e30, 1e30, 1e30, -1e30, -1e30, -1e30
     slope = 0.0
     for k in range(first, last):
@@ -73,7 +75,7 @@ def _enclose(chart: Chart, motion: Motion, row: int, column: int, first: int, la
     if high_x < low_x:
         return
     wide, deep, high = 0.5 * (high_x - low_x), 0.5 * (high_y - low_y), 0.5 * (high_z - low_z)
-    sphere = chart.sphere[row]
+    sphere = bounds.sphere[row]
     sphere[0, column], sphere[1, column] = low_x + wide, low_y + deep
     sphere[2, column] = low_z + high
     # A cubic with given slopes at its ends leaves the range between them by 4/27 of each at most.

@@ -29,7 +29,7 @@ def simulation_of(config, late=0.0, **camera):
 
 def exposures(simulation, steps=80):
     """The step that the pictures show after each physics step, shape (steps + 1, 2)."""
-    shown, seen = simulation.perception.sight.shown.episodes.step_count, []
+    shown, seen = simulation.view.state.shown.episodes.step_count, []
     seen.append(shown.copy())
     for _ in range(steps):
         simulation.advance(FORWARD)
@@ -74,7 +74,7 @@ def test_a_reset_of_one_is_no_exposure_of_another(config):
         simulation = simulation_of(config, **camera)
         shown = exposures(simulation, 17)[-1].copy()
         simulation.reset(np.array([True, False]))
-        seen = simulation.perception.sight.shown.episodes.step_count
+        seen = simulation.view.state.shown.episodes.step_count
         assert seen.tolist() == [0, shown[1]]
         simulation.advance(FORWARD)
         assert seen.tolist() == [0, shown[1]]
@@ -85,14 +85,14 @@ def test_only_pictures_are_late_and_they_are_whole(config):
     then = None
     for _ in range(4):
         pictures = [Picture.create(2, 24, 32, depth=True) for _ in range(3)]
-        late.perception.draw(EVERY, pictures[0])
-        now.perception.draw(EVERY, pictures[1])
+        late.view.draw(EVERY, pictures[0])
+        now.view.draw(EVERY, pictures[1])
         if then is not None:
             for name in ("rgb", "depth"):
                 assert np.array_equal(getattr(pictures[0], name), getattr(then, name))
         late.draw(EVERY, pictures[2])
         assert np.array_equal(pictures[2].rgb, pictures[1].rgb)  # the truth is on time
-        for ours, theirs in zip(late.perception.packets(), now.perception.packets(), strict=True):
+        for ours, theirs in zip(late.view.packets(), now.view.packets(), strict=True):
             assert np.array_equal(ours, theirs)
         then = pictures[1]
         for simulation in (late, now):
@@ -114,7 +114,7 @@ def test_the_lidar_that_agents_see_is_as_late_as_the_rest(config):
         if before is not None:
             assert np.array_equal(seen, before)
         before = present
-        assert np.array_equal(late.perception.lidar.ranges(), now.perception.lidar.ranges())
+        assert np.array_equal(late.view.lidar.ranges(), now.view.lidar.ranges())
         for simulation in (late, now):
             simulation.advance(FORWARD, 8)
     assert (seen != present).any()
@@ -128,7 +128,7 @@ def test_a_cars_lidar_is_where_the_originals_is(config):
         settings = config.model_copy(update={**low, "lidar": lidar, "tracker": tracker})
         simulation = build_simulation(settings, each_alone(4))
         simulation.reset()
-        return simulation.perception.lidar.ranges()
+        return simulation.view.lidar.ranges()
 
     car, drone = TrackerConfig(kind="car"), TrackerConfig()
     assert np.isfinite(ranges(car)).any()
@@ -150,7 +150,7 @@ def test_the_words_for_a_target_are_those_of_what_is_shown(config):
     now, late = ([] for _ in sims)
     for _ in range(6):
         for words, simulation in zip((now, late), sims, strict=True):
-            words.append([simulation.perception.words(n, 0.75) for n in range(12)])
+            words.append([simulation.view.words(n, 0.75) for n in range(12)])
             simulation.carry(500)
     assert late[1:] == now[:-1]
     assert now[1:] != now[:-1]

@@ -68,7 +68,7 @@ def test_what_is_sensed_depends_on_seed_and_tracker_only(config, assets):
         command[0] = 6.0, 2.0, 0.0, 0.5
         for steps in chunks:
             simulation.advance(command, steps)
-        lidar = simulation.perception.lidar
+        lidar = simulation.view.lidar
         return lidar.ranges()[0], lidar.packets()[0], simulation.packets()[0][0]
 
     first = seen(1, [4] * 30)
@@ -102,11 +102,11 @@ def test_a_drone_that_sinks_onto_its_target_crashes_into_it(config, assets):
 def test_trackers_of_one_world_and_those_that_wait_are_sensed_too(config, assets):
     shared = started(sensing(config, start=StartConfig(height=4.0)), 3, together)
     shared.advance(np.zeros((3, 4)), 8)
-    assert shared.perception.lidar.ranges().shape == (3, 400)
+    assert shared.view.lidar.ranges().shape == (3, 400)
     alone = started(sensing(config, start=StartConfig(height=4.0)), 2)
-    before = alone.perception.lidar.ranges()[1]
+    before = alone.view.lidar.ranges()[1]
     alone.advance(np.full((2, 4), 3.0), 40, np.array([True, False]))
-    np.testing.assert_array_equal(alone.perception.lidar.ranges()[1], before)
+    np.testing.assert_array_equal(alone.view.lidar.ranges()[1], before)
 
 
 def test_noise_of_the_camera_is_only_in_its_pictures(config, assets):

@@ -7,8 +7,8 @@ from hypothesis import strategies as st
 
 from eyas.lanes import kernel
 from eyas.sim.assets import load_assets
-from eyas.sim.chart import NOWHERE, chart_of, charted
-from eyas.sim.near import NearMovers
+from eyas.sim.views.actor_bounds import NOWHERE, bounds_of, made_row
+from eyas.sim.views.visible_actors import VisibleActors
 from eyas.state.draw import DrawList, Picture, Views
 from eyas.state.motion import ActorState
 from eyas.state.snapshot import CameraState
@@ -33,11 +33,11 @@ def looks_of(motion, worlds: int) -> Looks:
     return Looks(*(np.stack(part) for part in zip(*drawn, strict=True)))
 
 
-def near_of(assets, looks, *, everything: bool = False) -> NearMovers:
+def near_of(assets, looks, *, everything: bool = False) -> VisibleActors:
     reach = assets.renderer.influence(assets.rigs.reach(assets.renderer.part_reach()))
     if everything:
         reach = np.full_like(reach, 1e6)
-    return NearMovers(assets.traffic.motion, assets.rigs, looks, reach)
+    return VisibleActors(assets.traffic.motion, assets.rigs, looks, reach)
 
 
 def cameras_among(assets, times, rng) -> CameraState:
@@ -121,7 +121,7 @@ def test_actors_of_several_kinds_are_posed_by_their_own_rigs(config, assets):
     actors, expected = ActorState.create(1, len(kind)), rigs.draw_list(1)
     assets.traffic.at(times, actors)
     rigs.pose(actors, looks, expected)
-    near = NearMovers(motion, rigs, looks, np.array([10.0, 60.0, 30.0]))
+    near = VisibleActors(motion, rigs, looks, np.array([10.0, 60.0, 30.0]))
     cameras = cameras_among(assets, times, np.random.default_rng(4))
     made = near.of(np.zeros(1, int), times, np.zeros(1, int), cameras, 1.0)
     for slot in np.flatnonzero(made.part[0] >= 0):
@@ -152,7 +152,7 @@ def test_lists_grow_and_shrink_with_what_is_asked_for(assets):
 
 @kernel
 def row_at(chart, motion, time):
-    return charted(chart, motion, sample_before(motion, time))
+    return made_row(chart, motion, sample_before(motion, time))
 
 
 @settings(max_examples=60)
@@ -161,7 +161,7 @@ def test_every_actor_is_in_its_sphere_of_the_chart(assets_where, time):
     traffic = assets_where((2.5, 4.0)).traffic
     motion = traffic.motion
     order = np.arange(traffic.actors)[::-1].copy()
-    chart = chart_of(motion, order)
+    chart = bounds_of(motion, order)
     sphere = chart.sphere[row_at(chart, motion, time)]
     actors = ActorState.create(1, traffic.actors)
     traffic.at(np.array([time]), actors)
@@ -174,7 +174,7 @@ def test_every_actor_is_in_its_sphere_of_the_chart(assets_where, time):
 
 def test_absent_actors_are_not_charted(assets_where):
     traffic = assets_where((2.5, 6.5)).traffic
-    chart = chart_of(traffic.motion, np.arange(traffic.actors))
+    chart = bounds_of(traffic.motion, np.arange(traffic.actors))
     away = chart.sphere[row_at(chart, traffic.motion, 4.5)]
     assert (away[3] == np.float32(NOWHERE)).all()
     there = chart.sphere[row_at(chart, traffic.motion, 8.5)]
@@ -187,7 +187,7 @@ def test_a_motion_of_two_samples_is_enough(assets):
     short = motion._replace(table=motion.table[:2])
     cameras = cameras_among(assets, np.zeros(1), np.random.default_rng(0))
     looks = looks_of(motion, 1)
-    movers = NearMovers(short, assets.rigs, looks, np.full(len(assets.rigs.casts), 1e6)).of(
+    movers = VisibleActors(short, assets.rigs, looks, np.full(len(assets.rigs.casts), 1e6)).of(
         np.zeros(1, int), np.array([50.0]), np.zeros(1, int), cameras, 1.0
     )
     assert len(np.unique(movers.object_id[movers.part >= 0])) == assets.traffic.actors

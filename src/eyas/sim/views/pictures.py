@@ -4,25 +4,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
+from eyas.core.pinhole import field_along
 from eyas.overlay.marks import Marks
 from eyas.overlay.paint import paint_overlays, with_depth
 from eyas.render.outputs import picture_size
-from eyas.sensors.camera import Camera
 from eyas.sim.assets import Assets
-from eyas.sim.bodies import Bodies
 from eyas.sim.config import SimConfig
 from eyas.sim.light import LightChanges
+from eyas.sim.views.additions import TrackerBodies
 from eyas.sim.worlds import Worlds
 from eyas.state.draw import DrawList, DrawStage, Picture, Views
 from eyas.state.snapshot import CameraState, Snapshot
 from eyas.task.rules import Rules
 
-__all__ = ["Pictures"]
+__all__ = ["PictureDrawer"]
 
 Chosen = NDArray[np.int32]
 
 
-class Pictures:
+class PictureDrawer:
     """Draws the worlds around N trackers.
 
     Args:
@@ -45,39 +45,43 @@ class Pictures:
         visible: bool = True,
     ) -> None:
         self._worlds = worlds
-        self._bodies = Bodies(worlds, assets, visible=visible)
+        mates = [worlds.trackers_of(n) for n in range(len(worlds.of))]
+        actors, part = worlds.actors, assets.body_part
+        self._bodies = TrackerBodies(mates, actors, part, visible=visible)
         self._light = light
         self._snapshot = snapshot
         self._flakes = config.light.flakes
         self._samples = config.camera.samples
         self._renderer = assets.renderer
-        self._camera = Camera(config.camera, assets.renderer)
+        self._aspect = config.camera.height / config.camera.width
         self._marks = Marks(snapshot, assets.scene.terrain, config.camera)
 
-    def draw(self, chosen: Chosen, picture: Picture, until: DrawStage) -> Views:
-        """Draw the pictures of trackers' cameras; return the drawn views.
+    def draw(
+        self, chosen: Chosen, picture: Picture, until: DrawStage, overlaid: Rules | None = None
+    ) -> None:
+        """Draw the pictures of trackers' cameras.
+
+        Cameras are pinholes with the aspect ratio of the configured picture. Pictures with another
+        one show the same view distorted, like the original's observations: 320x240 resized to
+        84x84.
 
         Args:
             chosen: The trackers, shape (V,).
             picture: V pictures to draw into; the subject of each is its tracker's target.
             until: The stage at which to stop; see `Renderer.draw`.
+            overlaid: Rules whose overlay is drawn over the colours; None: no overlay.
         """
         cameras = CameraState(*(array[chosen] for array in self._snapshot.cameras))
-        views, movers = self._views(chosen, cameras, self._camera.aspect)
+        views, movers = self._views(chosen, cameras, self._aspect)
         if self._bodies.any:
             movers = self._bodies.added(chosen, views.world, movers, self._snapshot.trackers)
             views.world = np.arange(len(chosen), dtype=np.int32)
-        views.vertical_field_of_view = self._camera.vertical(cameras.field_of_view)
-        self._camera.read(views, movers, picture, until)
-        return views
-
-    def draw_overlaid(
-        self, chosen: Chosen, picture: Picture, rules: Rules, until: DrawStage
-    ) -> None:
-        """Draw like `draw`, with the overlay of each tracker over the colours."""
-        deep = with_depth(picture)
-        views = self.draw(chosen, deep, until)
-        paint_overlays(views, [self._marks.of(n, rules) for n in chosen.tolist()], deep)
+        fields = cameras.field_of_view.tolist()
+        views.vertical_field_of_view = np.array([field_along(f, self._aspect) for f in fields])
+        deep = picture if overlaid is None else with_depth(picture)
+        self._renderer.draw(views, movers, deep, self._samples, until)
+        if overlaid is not None:
+            paint_overlays(views, [self._marks.of(n, overlaid) for n in chosen.tolist()], deep)
 
     def draw_from(
         self,
