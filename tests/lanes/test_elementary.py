@@ -8,7 +8,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from eyas.lanes import Held, elementary, elementary_arrays, parallel_kernel
+from eyas.lanes import Held, elementary, parallel_kernel
+from eyas.lanes.elementary import arrays as elementary_arrays
 from eyas.lanes.elementary import reduction
 
 from .elementary_points import MPMATH, largest_error, points

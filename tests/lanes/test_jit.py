@@ -70,18 +70,16 @@ def other(x):
     return FACTOR * x
 """
 SPECIALISED = """
-import json, os, sys
-from pathlib import Path
+import json, sys
 import numpy as np
-from eyas.lanes import Held
-from eyas.lanes import specialised
-from eyas.lanes import parallel_kernel
+from eyas.lanes import Held, parallel_kernel, specialised
+from eyas.lanes.folder import kernel_folder
 from function import write
 from own import other
 made = parallel_kernel(specialised(write, first=other))
 out = np.zeros(1)
 made(1, Held((2.0, out)))
-files = Path(os.environ["NUMBA_CACHE_DIR"]).glob("write_*")
+files = kernel_folder().glob("write_*")
 print(json.dumps([out[0], len(list(files)), "numba" in sys.modules]))
 """
 

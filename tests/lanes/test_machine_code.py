@@ -5,8 +5,8 @@ import os
 import numpy as np
 import pytest
 
-from eyas.core.cache.safety import made_folder, secured
 from eyas.lanes import Held, entry, machine_code, parallel_kernel
+from eyas.lanes.folder import made_folder, secured
 from eyas.lanes.machine_code import MachineCode, code_file, load, read_code, write_code
 
 

@@ -21,9 +21,9 @@ from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import cpu_target
 from numba.extending import models, register_model
 
-from eyas.core.interrupts import let_in
 from eyas.lanes import pointers as _pointers  # noqa: F401  # registers fields with numba
 from eyas.lanes.front_end import SETTINGS, Compiler, Library, flags, typing
+from eyas.lanes.interrupts import let_in
 from eyas.lanes.machine_code import MachineCode, optimised
 from eyas.lanes.vector import operators as _operators  # noqa: F401  # registers them with numba
 

@@ -9,11 +9,10 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from eyas.core.cache.folder import touch
-from eyas.core.interrupts import shielded
+from eyas.lanes.folder import OWNER, kernel_folder, refusal, touch
 from eyas.lanes.held import Held
 from eyas.lanes.identity import identity
-from eyas.lanes.jit import REFUSAL, folder_in_use
+from eyas.lanes.interrupts import shielded
 from eyas.lanes.machine_code import (
     SUFFIX,
     MachineCode,
@@ -28,7 +27,7 @@ from eyas.lanes.shipped import is_shipped, shipped_code
 
 __all__ = ["entry_address", "nothing_compiled"]
 
-_LOG = logging.getLogger("eyas")
+_LOG = logging.getLogger(OWNER)
 
 _LOCK = threading.RLock()
 
@@ -43,7 +42,7 @@ def entry_address(function: Callable[..., Any], parts: tuple[Held[Any], ...]) ->
     name = function.__qualname__.rpartition(".")[2]
     made_by = version("numba"), platform.python_version()
     kinds = [part.kind for part in parts]
-    path = code_file(folder_in_use(), _name_of(function), kinds, made_by)
+    path = code_file(kernel_folder(), _name_of(function), kinds, made_by)
     keeps = function.__closure__ is None  # or what it depends on is not all in the name
     # An interrupt in the middle of numba or LLVM leaves objects in pieces, whose end crashes.
     with _LOCK, shielded():
@@ -54,7 +53,7 @@ def entry_address(function: Callable[..., Any], parts: tuple[Held[Any], ...]) ->
             _LOG.debug("compiled %s in %.1f s", name, time.perf_counter() - start)
             address = load(code)
             assert address is not None, f"{name}: cannot be loaded; it needs {code.needs}"
-            if keeps and not REFUSAL:
+            if keeps and not refusal():
                 write_code(path, code)
     return address
 
@@ -76,7 +75,7 @@ def nothing_compiled(function: Callable[..., Any]) -> bool:
         function: See `eyas.lanes.parallel.parallel_kernel`.
     """
     name = _name_of(function)
-    return not any(folder_in_use().glob(f"{name}-*{SUFFIX}")) and not is_shipped(name)
+    return not any(kernel_folder().glob(f"{name}-*{SUFFIX}")) and not is_shipped(name)
 
 
 def _name_of(function: Callable[..., Any]) -> str:

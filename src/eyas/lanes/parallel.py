@@ -13,9 +13,8 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from typing import Any, Generic, Protocol, TypeVar
 
-from eyas.core.interrupts import shielded
-from eyas.lanes.entry import entry_address
 from eyas.lanes.held import Held
+from eyas.lanes.interrupts import shielded
 from eyas.lanes.jit import thread_count
 
 __all__ = ["BoundKernel", "Held", "Pointer", "parallel_kernel"]
@@ -190,4 +189,6 @@ class parallel_kernel(Generic[Bundle]):  # noqa: N801  # a decorator like `kerne
         return self._compiled[kinds]
 
     def _load(self, parts: tuple[Held[Any], ...]) -> Callable[[int, int, int], int]:
+        from eyas.lanes.entry import entry_address  # LLVM, for the first call only
+
         return _ENTRY(entry_address(self.function, parts))

@@ -12,7 +12,8 @@ from pathlib import Path
 import pytest
 
 from eyas.core.cache.array_file import map_arrays
-from eyas.core.cache.folder import Kind, cache_folder
+from eyas.core.cache.folder import Kind
+from eyas.lanes.folder import cache_folder
 from eyas.lanes.machine_code import read_code
 
 PROGRAM = """
