@@ -65,7 +65,7 @@ class Kernel:
     def __call__(self, *args: object) -> Any:  # noqa: ANN401  # as the function
         """Call the compiled function; for tests, since it is compiled in each process anew.
 
-        Eyas itself calls `parallel_kernel`s, and single numbers are computed by `interpreted`.
+        Programs call what is `compiled`, and compute single numbers by what is `interpreted`.
         """
         with shielded():
             return self._compiled(*args)
