@@ -18,7 +18,7 @@ import tempfile
 from pathlib import Path
 
 import eyas
-from eyas.lanes import parallel_kernel
+from eyas.lanes import CompiledCall
 from eyas.lanes.identity import language_files, language_hash
 from eyas.lanes.machine_code import SUFFIX
 from eyas.lanes.shipped import LEVELS, SHIPPED, features
@@ -138,11 +138,11 @@ def missing(folder: Path) -> str | None:
 
 
 def kernels() -> set[str]:
-    """Return the names of all parallel kernels of the package."""
+    """Return the names of all compiled functions of the package."""
     modules = pkgutil.walk_packages(eyas.__path__, "eyas.")
     found = [vars(importlib.import_module(module.name)).values() for module in modules]
     kept = [value for values in (*found, step_of(DRONE)) for value in values]
-    return {kernel.function.__name__ for kernel in kept if isinstance(kernel, parallel_kernel)}
+    return {kernel.function.__name__ for kernel in kept if isinstance(kernel, CompiledCall)}
 
 
 if __name__ == "__main__":

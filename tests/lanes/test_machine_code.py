@@ -5,13 +5,12 @@ import os
 import numpy as np
 import pytest
 
-from eyas.core.cache.safety import made_folder, secured
-from eyas.lanes import Held, entry, machine_code, parallel_kernel
+from eyas.lanes import CompiledCall, entry, machine_code
+from eyas.lanes.folder import made_folder, secured
 from eyas.lanes.machine_code import MachineCode, code_file, load, read_code, write_code
 
 
-def double(parts, worker, workers):
-    values = parts[0][0][0][0]
+def double(values):
     for k in range(len(values)):
         values[k] *= 2.0
 
@@ -27,9 +26,9 @@ def compiled(monkeypatch):
     """Return the kernels that were compiled."""
     found, before = [], entry._compiled
 
-    def counted(function, *others):
+    def counted(function, *others, **options):
         found.append(function)
-        return before(function, *others)
+        return before(function, *others, **options)
 
     monkeypatch.setattr(entry, "_compiled", counted)
     return found
@@ -37,7 +36,7 @@ def compiled(monkeypatch):
 
 def doubled() -> float:
     values = np.ones(1)
-    parallel_kernel(double)(1, Held((values,)))
+    CompiledCall(double)(values)
     return float(values[0])
 
 
@@ -80,11 +79,11 @@ def test_each_kind_of_processor_has_its_own_code(folder, compiled, monkeypatch):
 
 
 def scaled_by(factor):
-    def scale(parts, worker, workers):
-        parts[0][0][0][0][0] *= factor
+    def scale(values):
+        values[0] *= factor
 
     values = np.ones(1)
-    parallel_kernel(scale)(1, Held((values,)))
+    CompiledCall(scale)(values)
     return float(values[0])
 
 

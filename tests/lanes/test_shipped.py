@@ -7,22 +7,21 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from eyas.lanes import Held, entry, parallel_kernel, shipped
+from eyas.lanes import CompiledCall, entry, shipped
 from eyas.lanes.identity import language_hash
 from eyas.lanes.machine_code import SUFFIX, read_code, write_code
 
 FEATURES = shipped.LEVELS["x86-64-v4"]
 
 
-def double(parts, worker, workers):
-    values = parts[0][0][0][0]
+def double(values):
     for k in range(len(values)):
         values[k] *= 2.0
 
 
 def doubled(dtype=np.float64) -> float:
     values = np.ones(1, dtype)
-    parallel_kernel(double)(1, Held((values,)))
+    CompiledCall(double)(values)
     return float(values[0])
 
 
@@ -31,9 +30,9 @@ def compiled(monkeypatch):
     """Return the kernels that were compiled."""
     found, before = [], entry._compiled
 
-    def counted(function, *others):
+    def counted(function, *others, **options):
         found.append(function)
-        return before(function, *others)
+        return before(function, *others, **options)
 
     monkeypatch.setattr(entry, "_compiled", counted)
     return found

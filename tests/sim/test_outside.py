@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from eyas.lanes.folder import kernel_folder
 from eyas.lanes.identity import language_hash
-from eyas.lanes.jit import folder_in_use
 from eyas.lanes.machine_code import SUFFIX, read_code
 from eyas.lanes.shipped import SHIPPED
 
@@ -46,7 +46,7 @@ def outside(code: bytes) -> set[str]:
 def test_no_kernel_calls_a_function_of_the_c_library():
     program = runpy.run_path(str(TOOL))
     subprocess.run([sys.executable, "-c", program["USES_ALL"]], check=True)
-    files = [*folder_in_use().glob(f"*{SUFFIX}"), *(SHIPPED / language_hash()).rglob(f"*{SUFFIX}")]
+    files = [*kernel_folder().glob(f"*{SUFFIX}"), *(SHIPPED / language_hash()).rglob(f"*{SUFFIX}")]
     used = {file.name.partition("-")[0] for file in files}
     assert program["kernels"]() - BAKING <= used
     codes = {file: read_code(file, shipped=SHIPPED in file.parents) for file in files}

@@ -10,7 +10,7 @@ document.
 """
 
 import inspect
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NamedTuple
 
 import llvmlite.binding as llvm
@@ -21,9 +21,9 @@ from numba.core.compiler_lock import global_compiler_lock
 from numba.core.registry import cpu_target
 from numba.extending import models, register_model
 
-from eyas.core.interrupts import let_in
 from eyas.lanes import pointers as _pointers  # noqa: F401  # registers fields with numba
 from eyas.lanes.front_end import SETTINGS, Compiler, Library, flags, typing
+from eyas.lanes.interrupts import let_in
 from eyas.lanes.machine_code import MachineCode, optimised
 from eyas.lanes.vector import operators as _operators  # noqa: F401  # registers them with numba
 
@@ -33,7 +33,6 @@ __all__ = [
     "entry_code",
     "entry_module",
     "intrinsic_type",
-    "kinds_of",
     "size_of",
 ]
 
@@ -135,25 +134,30 @@ def _widened(kind: Kind, double: bool) -> Kind:
     return numba.types.int64 if signed else kind
 
 
-def entry_code(function: Callable[..., Any], kinds: tuple[Kind, ...], entry: str) -> MachineCode:
+def entry_code(
+    function: Callable[..., Any], bundles: Sequence[Kind], entry: str, *, over_workers: bool
+) -> MachineCode:
     """Return the machine code of a function and of all that it calls; arguments as below."""
-    return optimised(entry_module(function, kinds, entry), entry)
+    return optimised(entry_module(function, bundles, entry, over_workers=over_workers), entry)
 
 
 def entry_module(
-    function: Callable[..., Any], kinds: tuple[Kind, ...], entry: str
+    function: Callable[..., Any], bundles: Sequence[Kind], entry: str, *, over_workers: bool
 ) -> llvm.ModuleRef:
     """Return a module of a function and of all that it calls.
 
     Args:
-        function: A plain function that returns nothing.
-        kinds: The types of its arguments.
-        entry: Name of the function in C, which returns 0, or another number if `function` raised
-            an exception.
+        function: A plain function that returns nothing, see `eyas.lanes.calls.CompiledCall`.
+        bundles: The types of what it is called with.
+        entry: Name of the function in C. It is given the address of a table with the addresses of
+            the bundles, and two numbers, which reach `function` if it works `over_workers`. It
+            returns 0, or another number if `function` raised an exception.
+        over_workers: See `eyas.lanes.calls.CompiledCall`.
     """
-    made = _compile(function, kinds, inline=None)
+    first = (numba.types.intp, numba.types.intp) if over_workers else ()
+    made = _compile(function, (*first, *map(_passed, bundles)), inline=None)
     let_in()
-    library = _entry(made, entry)
+    library = _entry(made, entry, len(first))
     module = library._final_module
     for called in made.libraries:
         module.link_in(_shared(called))
@@ -161,11 +165,10 @@ def entry_module(
     return module
 
 
-def kinds_of(bundles: Iterable[tuple[Any, ...]]) -> tuple[Kind, ...]:
-    """Return the types of a kernel's arguments: pointers to bundles in a table, and two numbers."""
-    pointers = [numba.types.CPointer(numba.typeof(bundle)) for bundle in bundles]
-    table = numba.types.CPointer(numba.types.Tuple(pointers))
-    return table, numba.types.intp, numba.types.intp
+def _passed(bundle: Kind) -> Kind:
+    """Return the type by which a function gets a bundle: by value, unless it is a named tuple."""
+    named = isinstance(bundle, numba.types.BaseNamedTuple)
+    return numba.types.CPointer(bundle) if named else bundle
 
 
 def _shared(library: Any) -> llvm.ModuleRef:  # noqa: ANN401  # numba's library
@@ -177,19 +180,29 @@ def _shared(library: Any) -> llvm.ModuleRef:  # noqa: ANN401  # numba's library
     return module
 
 
-def _entry(made: _Overload, entry: str) -> Library:
-    """Return the function that C can call."""
+def _entry(made: _Overload, entry: str, numbers: int) -> Library:
+    """Return the function that C can call; `numbers` of its own are handed on before bundles."""
     context = cpu_target.target_context
     library = Library(context.codegen(), entry)
     module = context.create_module(entry)
     described, convention = made.described, context.call_conv
     kind = convention.get_function_type(described.restype, described.argtypes)
     callee = ir.Function(module, kind, described.llvm_func_name)
-    arguments = [context.get_value_type(kind) for kind in described.argtypes]
-    called = ir.Function(module, ir.FunctionType(ir.IntType(32), arguments), entry)
+    number, address = ir.IntType(64), ir.IntType(8).as_pointer()
+    c_type = ir.FunctionType(ir.IntType(32), [address.as_pointer(), number, number])
+    called = ir.Function(module, c_type, entry)
     builder = ir.IRBuilder(called.append_basic_block())
+    given = list(called.args[1 : 1 + numbers])
+    for place, bundle in enumerate(described.argtypes[numbers:]):
+        slot = builder.load(builder.gep(called.args[0], [number(place)]))
+        model = context.data_model_manager[bundle]
+        if isinstance(bundle, numba.types.CPointer):
+            given.append(builder.bitcast(slot, model.get_value_type()))
+        else:
+            pointer = builder.bitcast(slot, model.get_data_type().as_pointer())
+            given.append(model.load_from_data_pointer(builder, pointer))
     status, _ = convention.call_function(
-        builder, callee, described.restype, described.argtypes, called.args
+        builder, callee, described.restype, described.argtypes, given
     )
     builder.ret(status.code)
     library.add_ir_module(module)

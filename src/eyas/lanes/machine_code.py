@@ -21,9 +21,7 @@ from typing import NamedTuple
 import llvmlite
 import llvmlite.binding as llvm
 
-from eyas.core.cache.folder import not_kept
-from eyas.core.cache.safety import FILE_MODE, unsafe
-from eyas.core.files import open_at_once
+from eyas.lanes.folder import FILE_MODE, OWNER, not_kept, open_at_once, unsafe
 
 __all__ = [
     "SUFFIX",
@@ -41,7 +39,7 @@ __all__ = [
 SUFFIX = ".eyk"
 """End of the names of files of machine code."""
 
-_LOG = logging.getLogger("eyas")
+_LOG = logging.getLogger(OWNER)
 
 _LOCK = threading.Lock()
 

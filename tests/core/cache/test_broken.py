@@ -12,7 +12,8 @@ from pathlib import Path
 import pytest
 
 from eyas.core.cache.array_file import map_arrays
-from eyas.core.cache.folder import Kind, cache_folder
+from eyas.core.cache.folder import Kind
+from eyas.lanes.folder import cache_folder
 from eyas.lanes.machine_code import read_code
 
 PROGRAM = """
@@ -20,16 +21,14 @@ import json, sys
 import numpy as np
 from eyas.core.cache.cached import cached
 from eyas.core.cache.folder import Kind
-from eyas.lanes import Held
-from eyas.lanes import parallel_kernel
+from eyas.lanes import compiled
 
-def double(parts, worker, workers):
-    values = parts[0][0][0][0]
+def double(values):
     for k in range(len(values)):
         values[k] *= 2.0
 
 values = np.array(cached(Kind.SKY, ("core/clock.py",), (1,), lambda: np.arange(3.0), of=np.ndarray))
-parallel_kernel(double)(1, Held((values,)))
+compiled(double)(values)
 print(json.dumps([values.tolist(), "numba" in sys.modules]))
 """
 UNPRIVILEGED = ["setpriv", "--bounding-set=-dac_override,-dac_read_search,-fowner"]

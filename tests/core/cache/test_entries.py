@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 
 from eyas.core.cache.cached import cached
 from eyas.core.cache.entries import clear, entries, prune, write_entry
-from eyas.core.cache.folder import Kind, cache_folder, cache_limit
+from eyas.core.cache.folder import Kind, cache_limit
 from eyas.core.errors import ConfigError
+from eyas.lanes.folder import cache_folder
 
 DAY = 86_400.0
 KEY = "0123456789abcdef" * 2

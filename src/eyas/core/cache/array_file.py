@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.cache.flat import Array, Json
-from eyas.core.files import open_at_once
+from eyas.lanes.folder import open_at_once
 
 __all__ = ["Content", "array_file", "let_go", "map_arrays"]
 

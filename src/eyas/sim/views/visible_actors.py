@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.lanes import Held, Pointer, kernel, parallel_kernel
+from eyas.lanes import Held, compiled, kernel
 from eyas.lanes.elementary import tan
 from eyas.lanes.vector import WIDTH, bits_of, first_bit, load, magnitude
 from eyas.render.kernels.scalars import f4
@@ -175,14 +175,16 @@ def _write(
         listed.object_id[w, slot] = ACTOR_OBJECT + actor
 
 
-@parallel_kernel
-def _list_actors(
-    parts: Pointer[tuple[Motion, ActorBounds, KindTable, Looks, ViewQuery, Listed]],
-    worker: int,
-    workers: int,
+@compiled
+def _list_actors(  # the records that it reads
+    motion: Motion,
+    bounds: ActorBounds,
+    kinds: KindTable,
+    looks: Looks,
+    query: ViewQuery,
+    listed: Listed,
 ) -> None:
     """Find the actors that matter, and give each its slots; the lists get in their order."""
-    motion, bounds, kinds, looks, query, listed = parts[0]
     _set_cameras(query)
     listed.needed[1] = 0
     for w in range(query.worlds[0]):
@@ -346,4 +348,4 @@ class VisibleActors:
             part=self._movers.part,
             object_id=self._movers.object_id,
         )
-        self._list = _list_actors.bound(*self._given, Held(self._query), Held(self._listed))
+        self._list = _list_actors.bind(*self._given, self._query, self._listed)
