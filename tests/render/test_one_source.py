@@ -24,7 +24,7 @@ def one_by_one(parts, worker, workers):
     geometry, light, scratch, movers, _output, task, places, found = parts[0]
     job = task.job
     view = address_of(view_of(job, 0, task.width, task.height, task.samples))
-    lit = address_of(view_light(light.weather, job.light[0]))
+    lit = address_of(view_light(light.weather, job.light, 0))
     for k in range(len(places[0])):
         row, column = places[0][k, 0], places[0][k, 1]
         shade = scratch.shade[0, row, column]
