@@ -8,11 +8,10 @@ from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.errors import ConfigError, SpawnError
-from eyas.core.jit import interpreted
-from eyas.core.parallel import Held
 from eyas.core.pcg64 import STATE
 from eyas.core.rng import EpisodeKey
 from eyas.core.variation import rule_of
+from eyas.lanes import Held, interpreted
 from eyas.sim.config import SimConfig
 from eyas.sim.episode_draw import (
     Call,
@@ -166,6 +165,10 @@ class Episodes:
             )
         model = self._worlds.model_of(tracker, actor)
         _follow(self._targets, self._episodes, self._models, tracker, actor, model)
+
+    def restart_count(self, tracker: int) -> None:
+        """Count a tracker's steps, and those without reward, from 0 again."""
+        self._episodes.step_count[tracker] = self._episodes.no_reward_count[tracker] = 0
 
     def key(self, tracker: int) -> EpisodeKey:
         """Return what the random values of a tracker's episode depend on."""

@@ -1,6 +1,6 @@
 """The light of one view: the weather's, with the changes of the view."""
 
-from eyas.core.jit import inlined_kernel
+from eyas.lanes import kernel
 from eyas.render.kernels.bundles import Direction, Illumination
 from eyas.render.kernels.scalars import f4
 from eyas.state.lighting import LightState
@@ -8,12 +8,12 @@ from eyas.state.lighting import LightState
 __all__ = ["view_light"]
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _scaled(share: float, colour: Direction) -> Direction:
     return Direction(share * colour.x, share * colour.y, share * colour.z)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def view_light(weather: Illumination, changes: LightState, view: int) -> Illumination:
     """Return the light of a view.
 
