@@ -85,7 +85,7 @@ def information(simulation: Simulation) -> Info:
     info["step"] = episodes.step_count.copy()
     info["done_reason"] = episodes.reason.copy()
     info["done_state"] = episodes.breach.copy()
-    info["light"] = light.copy()
+    info["light"] = np.stack(light, axis=1)
     if simulation.config.done.crash is not Crash.ORIGINAL:
         info["contact"] = episodes.contact.copy()
         info["contact_object"] = episodes.contact_object.copy()

@@ -32,7 +32,6 @@ from eyas.traffic.signals import SignalPlan, signal_plan, walk_plan
 from eyas.traffic.source import TrafficSource
 from eyas.world.config import WorldConfig
 from eyas.world.maps import MAPS
-from eyas.world.sun import at_hour
 
 __all__ = ["Assets", "load_assets"]
 
@@ -179,5 +178,4 @@ def _renderer(world: WorldConfig, kinds: tuple[int, ...], *, signals: bool) -> R
 
 
 def _lighting(world: WorldConfig) -> Lighting:
-    own = MAPS.get(world.map).light(world.weather)
-    return own if world.hour is None else at_hour(own, world.hour)
+    return MAPS.get(world.map).light(world.weather, world.hour)

@@ -43,7 +43,7 @@ class PastState:
         told: Floats | None = None,
         sensor: ReadingConfig = _ON_TIME,
     ) -> None:
-        count = len(now.light)
+        count = len(now.light.sky)
         self.snapshot = Snapshot.create(count)
         self._latency, self._delay = latency, sensor.delay_steps
         self._period = max(round(PHYSICS_RATE / sensor.rate), 1)
@@ -133,7 +133,7 @@ class SeenState:
     def __init__(
         self, latency: Variation, camera: ReadingConfig, now: Snapshot, told: Floats | None
     ) -> None:
-        self._latency = Latency(latency, "observation_latency", len(now.light))
+        self._latency = Latency(latency, "observation_latency", len(now.light.sky))
         self._past: list[PastState] = []
         self._now = now
         self.snapshot, self.shown, self.told, self.late = now, now, told, None
@@ -190,5 +190,4 @@ def _timing_of(sensor: ReadingConfig) -> tuple[float, int, float]:
 
 def _arrays(snapshot: Snapshot) -> list[NDArray[np.generic]]:
     """Return all arrays of a snapshot."""
-    *records, light = snapshot
-    return [*(array for record in records for array in record), light]
+    return [array for record in snapshot for array in record]
