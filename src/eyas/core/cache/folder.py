@@ -57,6 +57,7 @@ class Kind(StrEnum):
     TRAFFIC = "traffic"
     MOTION = "motion"
     OCCLUSION = "occlusion"
+    DEFINITIONS = "definitions"
     KERNELS = "kernels"
     OLD = "old"
     """Entries of older versions of Eyas with another layout; they have no common folder."""
