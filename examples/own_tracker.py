@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 import eyas  # noqa: F401  # registers the environments
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.frames import rotate
-from eyas.core.jit import step_kernel
+from eyas.lanes import kernel
 from eyas.state.snapshot import CameraState, TrackerState
 from eyas.state.terrain import Terrain
 from eyas.trackers.config import TrackerConfig
@@ -48,7 +48,7 @@ class Memory(NamedTuple):
 # The kernels: plain functions of numbers and arrays, compiled by Eyas. They work on tracker `n`.
 
 
-@step_kernel
+@kernel(inline=True)
 def start(
     trackers: TrackerState,
     memory: Memory,
@@ -73,7 +73,7 @@ def start(
     point_nose(trackers, n)
 
 
-@step_kernel
+@kernel(inline=True)
 def advance(trackers: TrackerState, memory: Memory, n: int, command: NDArray[np.float64]) -> None:
     """Fly for 2 ms: `command` is forward, left [m/s], up [m per 2 ms], turn rate [rad/s]."""
     speed = min(max(command[0], SLOWEST), FASTEST)
@@ -100,7 +100,7 @@ def advance(trackers: TrackerState, memory: Memory, n: int, command: NDArray[np.
     point_nose(trackers, n)
 
 
-@step_kernel
+@kernel(inline=True)
 def carry(
     trackers: TrackerState, memory: Memory, n: int, x: float, y: float, z: float, yaw: float
 ) -> None:
@@ -108,7 +108,7 @@ def carry(
     start(trackers, memory, n, x, y, z, yaw, memory.pitch[n])
 
 
-@step_kernel
+@kernel(inline=True)
 def aim(trackers: TrackerState, memory: Memory, cameras: CameraState, n: int) -> None:
     """Write the camera's place and its axes, forward, left and up: it banks with the body."""
     sine, cosine = math.sin(memory.pitch[n]), math.cos(memory.pitch[n])
@@ -120,7 +120,7 @@ def aim(trackers: TrackerState, memory: Memory, cameras: CameraState, n: int) ->
     axes[0, 2], axes[1, 2], axes[2, 2] = rotate(trackers.orientation[n], sine, 0.0, cosine)
 
 
-@step_kernel
+@kernel(inline=True)
 def point_nose(trackers: TrackerState, n: int) -> None:
     """Set the attitude of a body that heads and banks."""
     half_bank, half_yaw = 0.5 * trackers.euler[n, 0], 0.5 * trackers.euler[n, 2]

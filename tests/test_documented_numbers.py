@@ -72,7 +72,7 @@ def test_sizes_and_speeds_of_targets_are_those_of_the_catalogue():
 
 
 def test_the_machine_code_that_ships_is_as_large_as_told():
-    shipped = ROOT / "src/eyas/core/shipped"
+    shipped = ROOT / "src/eyas/lanes/shipped"
     told = float(re.search(r"The code is (\d+) kB for a level", text("docs/architecture.md"))[1])
     for folder in shipped.glob("*/x86-64-v*"):
         size = sum(path.stat().st_size for path in folder.glob("*.eyk")) / 1000.0

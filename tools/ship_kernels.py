@@ -1,4 +1,4 @@
-"""Make the machine code that ships in the package, for each level of `eyas.core.shipped.LEVELS`.
+"""Make the machine code that ships in the package, for each level of `eyas.lanes.shipped.LEVELS`.
 
     python tools/ship_kernels.py          # some minutes; commit what it changes
     python tools/ship_kernels.py --check  # is the code in the package that of these sources?
@@ -18,17 +18,17 @@ import tempfile
 from pathlib import Path
 
 import eyas
-from eyas.core.identity import language_files, language_hash
-from eyas.core.machine_code import SUFFIX
-from eyas.core.parallel import parallel_kernel
-from eyas.core.shipped import LEVELS, SHIPPED, features
-from eyas.core.syntax import INDEX, index_of
+from eyas.lanes import parallel_kernel
+from eyas.lanes.identity import language_files, language_hash
+from eyas.lanes.machine_code import SUFFIX
+from eyas.lanes.shipped import LEVELS, SHIPPED, features
+from eyas.lanes.syntax import INDEX, index_of
 from eyas.sim.step import step_of
 from eyas.trackers.drone import DRONE
 
 USES_ALL = """
 import numpy as np
-from eyas.core.elementary_arrays import sin
+from eyas.lanes.elementary.arrays import sin
 from eyas.sensors.config import Colours
 from eyas.sensors.stack import FrameStack
 from eyas.sim.assets import load_assets

@@ -11,8 +11,8 @@ from eyas.behaviours.lives import lasting
 from eyas.behaviours.scripted import scripted_table
 from eyas.behaviours.troop import Clock
 from eyas.core.errors import ConfigError, SpawnError
-from eyas.core.jit import interpreted
 from eyas.core.rng import stream
+from eyas.lanes import interpreted
 from eyas.sim.assets import load_assets
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig

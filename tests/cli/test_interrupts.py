@@ -11,7 +11,7 @@ import time
 import pytest
 from PIL import Image
 
-from eyas.core.machine_code import read_code
+from eyas.lanes.machine_code import read_code
 
 PROGRAM = """
 import sys
@@ -102,7 +102,7 @@ from eyas.cli import app
 from eyas.cli.main import main
 
 def run():
-    from eyas.core import entry
+    from eyas.lanes import entry
     entry.shipped_code = lambda name: None  # so that there is something to compile
     from eyas.render.ahead import draw_nothing
     print("ready", flush=True)

@@ -176,7 +176,7 @@ def test_what_decides_is_the_same_on_every_processor():
             if excuse is None:
                 wrong.append(f"src/eyas/{name}:{line}: {text}")
             used.add(excuse)
-    assert wrong == [], "take eyas.core.exact instead, in kernels eyas.core.elementary"
+    assert wrong == [], "take eyas.core.exact instead, in kernels eyas.lanes.elementary"
     assert set(ALLOWED) <= used, "these exceptions are not needed any more"
 
 

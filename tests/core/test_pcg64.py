@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from eyas.core.jit import interpreted, kernel
 from eyas.core.pcg64 import STATE, begin_stream, fraction, whole
 from eyas.core.rng import room_key, stream
+from eyas.lanes import interpreted, kernel
 
 SEEDS = st.integers(0, 2**63 - 1)
 NUMBERS = st.integers(0, 2**32 - 1)

@@ -4,10 +4,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from eyas.core.errors import ConfigError
-from eyas.core.jit import interpreted
 from eyas.core.pcg64 import STATE, begin_stream
 from eyas.core.rng import EpisodeKey, room_key
 from eyas.core.variation import Choice, Mirrored, Uniform, bounds, drawn, rule_of, sample
+from eyas.lanes import interpreted
 
 numbers = st.floats(-1e6, 1e6)
 pairs = st.tuples(numbers, numbers)

@@ -61,7 +61,7 @@ def test_where_kernels_are_shipped_the_second_process_does_something_else(begins
 
 ASKS = """
 import sys
-from eyas.core import parallel
+from eyas.lanes import parallel
 from eyas.render import ahead
 address = parallel.entry_address
 parallel.entry_address = lambda function, parts: (

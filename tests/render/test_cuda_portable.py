@@ -8,8 +8,8 @@ import subprocess
 import numpy as np
 import pytest
 
-from eyas.core.intrinsics import address_of
-from eyas.core.ptx import ptx_of
+from eyas.lanes import address_of
+from eyas.lanes.ptx import ptx_of
 from eyas.render.jobs import Size, new_task, set_views
 from eyas.render.kernels.bundles import Movers
 from eyas.render.kernels.light.view_light import view_light

@@ -8,8 +8,7 @@ import pytest
 
 from eyas.core.cache.cached import cached
 from eyas.core.cache.folder import Kind
-from eyas.core.jit import kernel
-from eyas.core.parallel import Held
+from eyas.lanes import Held, kernel
 from eyas.render.kernels.bundles import GROUP, Geometry
 from eyas.render.kernels.surface.texture import detail_of, texel
 from eyas.render.kernels.visibility.clusters import (

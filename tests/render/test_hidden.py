@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from eyas.core.jit import kernel
+from eyas.lanes import kernel
 from eyas.render.kernels.bundles import Plane, Planes, Point, Projection, Row, View
 from eyas.render.kernels.visibility.hidden import TILE, box_is_hidden, measure_tiles
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from eyas.core.jit import kernel
+from eyas.lanes import kernel
 from eyas.render.kernels.surface.marking import painted_share
 from eyas.state.mesh import MARGIN
 

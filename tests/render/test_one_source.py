@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from eyas.core.intrinsics import address_of
-from eyas.core.parallel import Held, parallel_kernel
+from eyas.lanes import Held, address_of, parallel_kernel
 from eyas.render import renderer as module
 from eyas.render.kernels.light.view_light import view_light
 from eyas.render.kernels.scalars import u4

@@ -5,9 +5,9 @@ import math
 import numpy as np
 import pytest
 
-from eyas.core.jit import kernel
-from eyas.core.lanes import any_of, lane_numbers, splat
 from eyas.core.pinhole import rays
+from eyas.lanes import kernel
+from eyas.lanes.vector import any_of, lane_numbers, splat
 from eyas.render.kernels.scalars import i4
 from eyas.render.kernels.visibility.fill import SPAN_ROWS, fill
 from eyas.render.kernels.visibility.holes import no_holes

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from eyas.core.jit import kernel
-from eyas.core.lanes import WIDTH, load, store
+from eyas.lanes import kernel
+from eyas.lanes.vector import WIDTH, load, store
 from eyas.render.kernels.bundles import Direction
 from eyas.render.kernels.light.shadow_boxes import Box, darken, shadow_boxes
 from eyas.render.kernels.scalars import f4

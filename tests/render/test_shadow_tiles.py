@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from eyas.core.parallel import Held, parallel_kernel
+from eyas.lanes import Held, parallel_kernel
 from eyas.mesh.solids import cylinder
 from eyas.render.bake import shadows as module
 from eyas.render.bake.shadows import TEXEL, ShadowMap, bake_shadows

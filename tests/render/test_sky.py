@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from eyas.core.jit import kernel
+from eyas.lanes import kernel
 from eyas.render.bake.clouds import build_clouds, plan_directions
 from eyas.render.bake.hills import build_hills
 from eyas.render.kernels.sky.panorama import azimuth

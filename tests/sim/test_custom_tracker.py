@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from eyas.core.jit import step_kernel
+from eyas.lanes import kernel
 from eyas.sim.build import build_simulation
 from eyas.sim.simulation import Simulation
 from eyas.sim.worlds import each_alone
@@ -29,7 +29,7 @@ class RoverMemory(NamedTuple):
         return cls(np.zeros(count))
 
 
-@step_kernel
+@kernel(inline=True)
 def start(trackers, memory, n, x, y, z, yaw, pitch):
     memory.travelled[n] = 0.0
     trackers.position[n, 0], trackers.position[n, 1], trackers.position[n, 2] = x, y, HEIGHT
@@ -40,7 +40,7 @@ def start(trackers, memory, n, x, y, z, yaw, pitch):
         trackers.commanded_position[n, axis] = trackers.position[n, axis]
 
 
-@step_kernel
+@kernel(inline=True)
 def advance(trackers, memory, n, command):
     speed = max(command[0], 0.0)
     yaw = trackers.euler[n, 2]
@@ -51,12 +51,12 @@ def advance(trackers, memory, n, command):
         trackers.commanded_position[n, axis] = trackers.position[n, axis]
 
 
-@step_kernel
+@kernel(inline=True)
 def carry(trackers, memory, n, x, y, z, yaw):
     start(trackers, memory, n, x, y, z, yaw, 0.0)
 
 
-@step_kernel
+@kernel(inline=True)
 def aim(trackers, memory, cameras, n):
     cosine, sine = math.cos(trackers.euler[n, 2]), math.sin(trackers.euler[n, 2])
     rotation = cameras.rotation[n]

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from eyas.core.jit import kernel
+from eyas.lanes import kernel
 from eyas.sim.assets import load_assets
 from eyas.sim.chart import NOWHERE, chart_of, charted
 from eyas.sim.near import NearMovers

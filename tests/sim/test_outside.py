@@ -8,10 +8,10 @@ from pathlib import Path
 
 import pytest
 
-from eyas.core.identity import language_hash
-from eyas.core.jit import folder_in_use
-from eyas.core.machine_code import SUFFIX, read_code
-from eyas.core.shipped import SHIPPED
+from eyas.lanes.identity import language_hash
+from eyas.lanes.jit import folder_in_use
+from eyas.lanes.machine_code import SUFFIX, read_code
+from eyas.lanes.shipped import SHIPPED
 
 TOOL = Path(__file__).parents[2] / "tools" / "ship_kernels.py"
 

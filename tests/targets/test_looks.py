@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
-from eyas.core.jit import interpreted
 from eyas.core.pcg64 import STATE, begin_stream
 from eyas.core.rng import room_key, stream
+from eyas.lanes import interpreted
 from eyas.targets.catalogue import kind_index, models_of
 from eyas.targets.looks import LookSampler, draw_looks
 from eyas.targets.vehicles.models import BODY_COLOURS, MOTORCYCLE_COLOURS

@@ -9,7 +9,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from shapely.affinity import rotate, translate
 
-from eyas.core.jit import interpreted
+from eyas.lanes import interpreted
 from eyas.task.sweep import NEVER, Sweep, sweep_cylinder, sweep_prism, while_level
 
 prism, cylinder, level = map(interpreted, (sweep_prism, sweep_cylinder, while_level))

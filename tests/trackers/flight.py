@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.parallel import Held, parallel_kernel
+from eyas.lanes import Held, parallel_kernel
 from eyas.state.snapshot import CameraState, TrackerState
 from eyas.state.terrain import Terrain
 from eyas.trackers.config import TrackerConfig

@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from eyas.core.parallel import Held, parallel_kernel
+from eyas.lanes import Held, parallel_kernel
 from eyas.state.snapshot import CameraState, TrackerState
 from eyas.state.terrain import Terrain
 from eyas.trackers.car import CAR, advance, aim, carry, start

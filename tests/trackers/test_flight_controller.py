@@ -7,7 +7,7 @@ import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
-from eyas.core.jit import interpreted
+from eyas.lanes import interpreted
 from eyas.trackers.airframe import ORIGINAL
 from eyas.trackers.flight_controller import attitude_torque, mixed, within_tilt
 

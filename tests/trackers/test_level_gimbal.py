@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from eyas.core.jit import interpreted
+from eyas.lanes import interpreted
 from eyas.trackers.gimbal import camera_pose
 from eyas.trackers.level_gimbal import carried_along, level_angles, level_pose
 

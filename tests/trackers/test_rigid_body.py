@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from eyas.core.frames import rotate
-from eyas.core.jit import interpreted
+from eyas.lanes import interpreted
 from eyas.state.terrain import Terrain
 from eyas.trackers.airframe import FIRM_GROUND, ORIGINAL
 from eyas.trackers.rigid_body import Body, moved, turned

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from eyas.core.parallel import Held, parallel_kernel
 from eyas.core.rng import EpisodeKey
 from eyas.core.variation import Uniform
+from eyas.lanes import Held, parallel_kernel
 from eyas.trackers.wind import WindMemory, begin_wind, blow
 
 COUNT, STEPS, SPARSE, TURBULENCE, HEIGHT, SPEED = 48, 60_000, 10, 12.0, 20.0, 15.0

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core import exact
-from eyas.core.jit import interpreted
+from eyas.lanes import interpreted
 from eyas.state.motion import Motion
 from eyas.targets.catalogue import KINDS, MODELS, models_of, sections_of
 from eyas.targets.kind import Section

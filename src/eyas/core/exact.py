@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from eyas.core import elementary_arrays
-from eyas.core.elementary_arrays import (
+from eyas.lanes.elementary import arrays as elementary_arrays
+from eyas.lanes.elementary.arrays import (
     acos,
     asin,
     atan,

@@ -14,7 +14,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import kernel
+from eyas.lanes import kernel
 
 __all__ = ["STATE", "begin_stream", "fraction", "whole"]
 

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from pydantic import Field
 
 from eyas.core.config import Config
-from eyas.core.jit import kernel
 from eyas.core.pcg64 import fraction, whole
+from eyas.lanes import kernel
 
 __all__ = [
     "Choice",

@@ -6,9 +6,9 @@ from multiprocessing.connection import Connection
 from typing import Any, NamedTuple
 
 from eyas.core.errors import EyasError
-from eyas.core.jit import limit_threads
 from eyas.envs.fleet import Fleet
 from eyas.envs.shared import SharedObservations
+from eyas.lanes import limit_threads
 from eyas.settings.config import EyasConfig
 
 __all__ = ["Answer", "Block", "Calls", "serve"]

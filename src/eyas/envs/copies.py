@@ -7,7 +7,7 @@ from functools import partial
 import gymnasium
 from pydantic import BaseModel
 
-from eyas.core.parallel import BoundKernel, Held, parallel_kernel
+from eyas.lanes import BoundKernel, Held, parallel_kernel
 from eyas.render.renderer import Renderer
 from eyas.sim.assets import Assets
 from eyas.sim.episode_draw import DrawRules, ModelTable

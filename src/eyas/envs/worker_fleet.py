@@ -8,7 +8,6 @@ import gymnasium
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import thread_count
 from eyas.core.memento import Memento
 from eyas.envs.actions import make_actions
 from eyas.envs.batch import Outcome, Seeds
@@ -19,6 +18,7 @@ from eyas.envs.information import Info
 from eyas.envs.observation import Observation, observation_space
 from eyas.envs.shared import SharedObservations
 from eyas.envs.workers import Workers
+from eyas.lanes import thread_count
 from eyas.settings.config import EyasConfig
 
 __all__ = ["WorkerFleet"]

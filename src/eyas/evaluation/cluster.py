@@ -8,11 +8,11 @@ from typing import Any
 
 from eyas.core.cluster import connected, one_line
 from eyas.core.errors import EyasError
-from eyas.core.jit import limit_threads
 from eyas.evaluation.episode import Episode
 from eyas.evaluation.fliers import Flier, flown
 from eyas.evaluation.plan import Plan, Stamp, stamp
 from eyas.evaluation.record import Record
+from eyas.lanes import limit_threads
 
 __all__ = ["on_ray"]
 

@@ -16,7 +16,18 @@ from eyas.evaluation.protocol import Protocol
 __all__ = ["clear_shares"]
 
 _MAKERS = (
-    *("core", "state", "mesh", "world", "render", "traffic", "targets", "trackers", "sensors"),
+    *(
+        "lanes",
+        "core",
+        "state",
+        "mesh",
+        "world",
+        "render",
+        "traffic",
+        "targets",
+        "trackers",
+        "sensors",
+    ),
     *("task", "sim", "evaluation/occlusion.py", "evaluation/flock.py"),
 )
 

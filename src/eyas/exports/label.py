@@ -3,10 +3,10 @@
 from dataclasses import dataclass, field
 
 from eyas.core.frames import rotate_back
-from eyas.core.jit import interpreted
 from eyas.exports.frame import Frame, Subject
 from eyas.exports.rounding import rounded, rounded_list
 from eyas.exports.writer import Episode
+from eyas.lanes import interpreted
 from eyas.task.done import DoneReason
 
 __all__ = ["FrameLabel", "OtherLabel", "SectionLabel", "label_of"]

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core import exact
-from eyas.core.jit import interpreted
+from eyas.lanes import interpreted
 from eyas.targets.kind import Section
 from eyas.task.direction import TargetDirection
 from eyas.traffic.trailer import folded

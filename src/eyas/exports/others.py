@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 
 from eyas.core.clock import PHYSICS_STEP
-from eyas.core.jit import interpreted
 from eyas.exports.frame import Subject
 from eyas.exports.movement import Movement
+from eyas.lanes import interpreted
 from eyas.sim.simulation import Simulation
 from eyas.state.draw import Picture
 from eyas.state.motion import ActorState

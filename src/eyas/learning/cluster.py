@@ -10,7 +10,7 @@ import torch
 
 from eyas.core.cluster import connected, one_line
 from eyas.core.errors import ConfigError, EyasError
-from eyas.core.jit import limit_threads
+from eyas.lanes import limit_threads
 from eyas.learning.network import NetworkShape, TrackingNetwork
 from eyas.learning.rollout import Finished, Roller, Rollout
 from eyas.learning.shards import MakeShards

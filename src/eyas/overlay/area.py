@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core import exact
-from eyas.core.jit import interpreted
+from eyas.lanes import interpreted
 from eyas.overlay.canvas import CASING, NEAR, Canvas, cover
 from eyas.overlay.items import GroundArea
 from eyas.state.terrain import Plane, height_over

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from eyas.core import exact
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.frames import rotate
-from eyas.core.jit import interpreted
+from eyas.lanes import interpreted
 from eyas.overlay.bodies import GEM_GIRDLE, GEM_RADIUS, drone, gem
 from eyas.overlay.items import GroundArea, Label, Line, Overlay
 from eyas.sensors.config import CameraConfig

@@ -10,8 +10,8 @@ import numpy as np
 
 from eyas.core.cache.folder import not_kept
 from eyas.core.cache.safety import made_folder
-from eyas.core.entry import nothing_compiled
-from eyas.core.jit import REFUSAL, folder_in_use
+from eyas.lanes.entry import nothing_compiled
+from eyas.lanes.jit import REFUSAL, folder_in_use
 from eyas.render.bake.ambient import AmbientMap
 from eyas.render.bake.shadows import ShadowMap
 from eyas.render.bake.tracks import TrackMap

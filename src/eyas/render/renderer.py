@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.errors import ConfigError
-from eyas.core.jit import interpreted, thread_count
-from eyas.core.lanes import WIDTH
-from eyas.core.parallel import Held
+from eyas.lanes import Held, interpreted, thread_count
+from eyas.lanes.vector import WIDTH
 from eyas.render.bake.ambient import bake_ambient
 from eyas.render.bake.shadows import bake_shadows
 from eyas.render.bake.tracks import TrackMap, track_map

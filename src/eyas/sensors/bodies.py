@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.frames import rotate
-from eyas.core.jit import step_kernel
+from eyas.lanes import kernel
 
 __all__ = ["BODY", "Body", "body_box"]
 
@@ -29,7 +29,7 @@ class Body(NamedTuple):
     half_height: float
 
 
-@step_kernel
+@kernel(inline=True)
 def body_box(orientation: NDArray[np.float64]) -> Body:
     """Return the box around a body, given body to world, shape (4,)."""
     ahead = rotate(orientation, _LONG, 0.0, 0.0)

@@ -7,8 +7,8 @@ length of a control step change it.
 
 import math
 
-from eyas.core.elementary import cos, log
-from eyas.core.jit import kernel
+from eyas.lanes import kernel
+from eyas.lanes.elementary import cos, log
 
 __all__ = ["SEEDS", "mixed", "normal", "uniform"]
 

@@ -6,8 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core import exact
-from eyas.core.jit import thread_count
-from eyas.core.parallel import Held, Pointer, parallel_kernel
+from eyas.lanes import Held, Pointer, parallel_kernel, thread_count
 from eyas.sensors.chance import SEEDS, mixed
 from eyas.sensors.config import CameraErrors
 

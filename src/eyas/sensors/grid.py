@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import step_kernel
+from eyas.lanes import kernel
 
 __all__ = [
     "SPACING",
@@ -106,7 +106,7 @@ def grid_of(bounds: NDArray[np.float64], top: NDArray[np.float64]) -> Grid:
     )
 
 
-@step_kernel
+@kernel(inline=True)
 def cells_between(
     grid: Grid, x: tuple[float, float], y: tuple[float, float], beside: float
 ) -> tuple[int, int, int, int]:
@@ -125,7 +125,7 @@ def cells_between(
     return max(lower, 0), min(upper, grid.rows - 1), max(left, 0), min(right, grid.columns - 1)
 
 
-@step_kernel
+@kernel(inline=True)
 def walk_along(
     grid: Grid,
     start: tuple[float, float],
@@ -158,14 +158,14 @@ def walk_along(
     )
 
 
-@step_kernel
+@kernel(inline=True)
 def entered(walk: Walk, lane: int) -> float:
     """Return a distance before which a ray is not in a lane [m]."""
     edge = lane * SPACING if walk.onward > 0 else (lane + 1) * SPACING
     return (edge - walk.onward * _BESIDE - walk.start) * walk.inverse
 
 
-@step_kernel
+@kernel(inline=True)
 def lane_cells(walk: Walk, lane: int) -> tuple[int, int]:
     """Return the first and last cell of a lane that a ray goes through."""
     low = max(lane * SPACING, min(walk.start, walk.farthest)) - walk.start

@@ -9,9 +9,9 @@ sensors of a flown drone, which cannot jump, read its own motion.
 
 from eyas.core import exact
 from eyas.core.clock import PHYSICS_STEP
-from eyas.core.elementary import sin_cos
 from eyas.core.frames import rotate_back
-from eyas.core.jit import kernel, step_kernel
+from eyas.lanes import kernel
+from eyas.lanes.elementary import sin_cos
 from eyas.state.snapshot import TrackerState
 
 __all__ = ["GRAVITY", "accelerometer", "feel", "gyroscope", "rest", "smoothing_share"]
@@ -32,7 +32,7 @@ def smoothing_share(time_constant: float) -> float:
     return 2.0 * half / (1.0 + half)  # 1 - exp(-PHYSICS_STEP / time_constant)
 
 
-@step_kernel
+@kernel(inline=True)
 def feel(trackers: TrackerState, n: int, share: float) -> None:
     """Let the smoothed motion of tracker `n` follow the true one for a physics step of 2 ms."""
     first, second = trackers.smoothed[n, 0], trackers.smoothed[n, 1]
@@ -48,7 +48,7 @@ def feel(trackers: TrackerState, n: int, share: float) -> None:
     trackers.smoothed_lag[n] = (1.0 / share - 1.0) * PHYSICS_STEP * (first[5] + second[5])
 
 
-@step_kernel
+@kernel(inline=True)
 def rest(trackers: TrackerState, n: int, share: float) -> None:
     """Begin the smoothed motion of tracker `n` as if it had moved for long as it does now."""
     for stage in range(2):

@@ -14,8 +14,7 @@ from numpy.typing import NDArray
 from eyas.core import exact
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.frames import rotate
-from eyas.core.jit import step_kernel
-from eyas.core.parallel import Held, Pointer, parallel_kernel
+from eyas.lanes import Held, Pointer, kernel, parallel_kernel
 from eyas.sensors.chance import SEEDS, normal, uniform
 from eyas.sensors.config import LidarConfig, MountConfig
 from eyas.sensors.mount import turn_of
@@ -203,7 +202,7 @@ def _scan_all(parts: Pointer[tuple[Pointer[_Scan]]], worker: int, workers: int) 
             _scan_one(scan, n, 0)
 
 
-@step_kernel
+@kernel(inline=True)
 def _scan_one(scan: _Scan, n: int, due: int) -> None:
     """Measure the points of tracker `n` up to the number that is due."""
     trackers, tick = scan.trackers, scan.episodes.tick[n]
@@ -224,7 +223,7 @@ def _scan_one(scan: _Scan, n: int, due: int) -> None:
     scan.turned[n] = due
 
 
-@step_kernel
+@kernel(inline=True)
 def _measured(scan: _Scan, seed: int, number: int, distance: float) -> float:
     """Return what is told of a distance [m]."""
     if not scan.nearest <= distance <= scan.farthest:

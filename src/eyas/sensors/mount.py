@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from eyas.core import exact
 from eyas.core.frames import rotate
-from eyas.core.jit import step_kernel
+from eyas.lanes import kernel
 from eyas.sensors.config import MountConfig
 from eyas.state.snapshot import CameraState, TrackerState
 
@@ -47,7 +47,7 @@ def turn_of(config: MountConfig) -> Floats:
     return turn
 
 
-@step_kernel
+@kernel(inline=True)
 def fixed(trackers: TrackerState, cameras: CameraState, n: int, mount: Mount) -> None:
     """Write the pose of a camera that is fixed to the body of tracker `n`."""
     orientation, place, turn = trackers.orientation[n], mount.place, mount.turn
@@ -61,7 +61,7 @@ def fixed(trackers: TrackerState, cameras: CameraState, n: int, mount: Mount) ->
     commanded[0], commanded[1] = mount.pitch, mount.yaw
 
 
-@step_kernel
+@kernel(inline=True)
 def left_on_gimbal(trackers: TrackerState, cameras: CameraState, n: int, mount: Mount) -> None:
     """Leave the camera of tracker `n` where its tracker has aimed it."""
 

@@ -3,8 +3,8 @@
 from typing import NamedTuple
 
 from eyas.core.clock import PHYSICS_STEP
-from eyas.core.elementary import sin_cos
-from eyas.core.jit import step_kernel
+from eyas.lanes import kernel
+from eyas.lanes.elementary import sin_cos
 from eyas.sensors.bodies import body_box
 from eyas.sensors.obstacles import Boxes, Movers
 from eyas.state.scene import ACTOR_OBJECT
@@ -18,7 +18,7 @@ _SLACK = 20.0
 """Half the length of the longest actor, and more than any drives between two samples [m]."""
 
 
-@step_kernel
+@kernel(inline=True)
 def find_boxes(
     movers: Movers, n: int, tick: int, place: tuple[float, float, float], reach: float, boxes: Boxes
 ) -> int:
@@ -66,7 +66,7 @@ def find_boxes(
     return count
 
 
-@step_kernel
+@kernel(inline=True)
 def _write_bounds(boxes: Boxes, box: int) -> None:
     """Write the bounds of a box whose corners are known."""
     corners, first = boxes.corners, 4 * box
@@ -77,7 +77,7 @@ def _write_bounds(boxes: Boxes, box: int) -> None:
         boxes.bounds[box, 2 + axis] = max(a, b, c, d)
 
 
-@step_kernel
+@kernel(inline=True)
 def _write_body(bodies: TrackerState, other: int, boxes: Boxes, count: int) -> None:
     """Write the box of a tracker's body, which stands upright around the tilted one."""
     at, box = bodies.position[other], body_box(bodies.orientation[other])
@@ -103,7 +103,7 @@ class _Place(NamedTuple):
     sine: float
 
 
-@step_kernel
+@kernel(inline=True)
 def _carried(whole: _Place, hitch: float, middle: float, towed: int) -> _Place:
     """Return where a truck or its trailer is.
 
@@ -123,7 +123,7 @@ def _carried(whole: _Place, hitch: float, middle: float, towed: int) -> _Place:
     )
 
 
-@step_kernel
+@kernel(inline=True)
 def _write_boxes(pose: ActorPose, movers: Movers, model: int, boxes: Boxes, count: int) -> int:
     """Write an actor's boxes, which stand upright: its pitch on a slope is neglected.
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import step_kernel
+from eyas.lanes import kernel
 from eyas.sensors.grid import (
     SPACING,
     Grid,
@@ -41,7 +41,7 @@ class Ray(NamedTuple):
     ahead_z: float
 
 
-@step_kernel
+@kernel(inline=True)
 def cast_ray(ray: Ray, reach: float, obstacles: Obstacles, boxes: int) -> tuple[float, int]:
     """Return the distance of the first thing [m], infinity if there is none, and its object id.
 
@@ -63,7 +63,7 @@ def cast_ray(ray: Ray, reach: float, obstacles: Obstacles, boxes: int) -> tuple[
     return best, thing
 
 
-@step_kernel
+@kernel(inline=True)
 def _cast_solids(ray: Ray, reach: float, solids: Solids) -> tuple[float, int]:
     """Return the distance of the first solid, infinity if there is none, and its object id.
 
@@ -100,7 +100,7 @@ def _cast_solids(ray: Ray, reach: float, solids: Solids) -> tuple[float, int]:
     return best, (int(solids.thing[found]) if found >= 0 else -1)
 
 
-@step_kernel
+@kernel(inline=True)
 def _cast_solid(ray: Ray, limit: float, solids: Solids, item: int) -> float:
     """Return the distance of a solid, infinity if it is not met before the limit [m]."""
     if not _may_meet(ray, limit, solids.grid.bounds[item]):
@@ -113,7 +113,7 @@ def _cast_solid(ray: Ray, limit: float, solids: Solids, item: int) -> float:
     return _cast_cylinder(ray, limit, solids.round[item - prisms], bottom, top)
 
 
-@step_kernel
+@kernel(inline=True)
 def _is_before(grid: Grid, cells: tuple[int, int, int, int], one: int, other: int) -> bool:
     """Return whether an item comes before another in a rectangle of cells, row by row."""
     a, b = grid.bounds[one], grid.bounds[other]
@@ -128,7 +128,7 @@ def _is_before(grid: Grid, cells: tuple[int, int, int, int], one: int, other: in
     return one < other
 
 
-@step_kernel
+@kernel(inline=True)
 def _may_meet(ray: Ray, limit: float, bounds: NDArray[np.float64]) -> bool:
     """Return whether a ray comes by a rectangle on the ground before the limit [m]."""
     half_x, half_y = 0.5 * (bounds[2] - bounds[0]), 0.5 * (bounds[3] - bounds[1])
@@ -140,7 +140,7 @@ def _may_meet(ray: Ray, limit: float, bounds: NDArray[np.float64]) -> bool:
     return bool(-half <= middle <= limit * (way_x * way_x + way_y * way_y) + half)
 
 
-@step_kernel
+@kernel(inline=True)
 def _cast_boxes(ray: Ray, reach: float, boxes: Boxes, count: int) -> tuple[float, int]:
     best, thing = math.inf, -1
     for box in range(count):
@@ -153,7 +153,7 @@ def _cast_boxes(ray: Ray, reach: float, boxes: Boxes, count: int) -> tuple[float
     return best, thing
 
 
-@step_kernel
+@kernel(inline=True)
 def _cast_prism(
     ray: Ray,
     limit: float,
@@ -191,7 +191,7 @@ def _cast_prism(
     return best
 
 
-@step_kernel
+@kernel(inline=True)
 def _inside(points: NDArray[np.float64], first: int, last: int, x: float, y: float) -> bool:
     """Return whether a point is inside a polygon: sides to its east are crossed an odd number of
     times.
@@ -210,7 +210,7 @@ def _inside(points: NDArray[np.float64], first: int, last: int, x: float, y: flo
     return odd
 
 
-@step_kernel
+@kernel(inline=True)
 def _cast_cylinder(
     ray: Ray, limit: float, place: NDArray[np.float64], bottom: float, top: float
 ) -> float:
@@ -237,7 +237,7 @@ def _cast_cylinder(
     return best
 
 
-@step_kernel
+@kernel(inline=True)
 def _cast_ground(ray: Ray, limit: float, terrain: Terrain, slopes: Slopes) -> float:
     """Return the distance of the ground, infinity if it is not met before the limit [m].
 
@@ -269,7 +269,7 @@ def _cast_ground(ray: Ray, limit: float, terrain: Terrain, slopes: Slopes) -> fl
     return math.inf
 
 
-@step_kernel
+@kernel(inline=True)
 def _entered_ground(ray: Ray, from_t: float, to_t: float, terrain: Terrain) -> float:
     """Return where a ray enters the ground between two distances [m]."""
     for _ in range(_HALVINGS):
@@ -281,7 +281,7 @@ def _entered_ground(ray: Ray, from_t: float, to_t: float, terrain: Terrain) -> f
     return to_t
 
 
-@step_kernel
+@kernel(inline=True)
 def _above_ground(ray: Ray, t: float, terrain: Terrain) -> float:
     """Return the height of a point of the ray above the ground [m]."""
     return (

@@ -8,10 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_RATE
-from eyas.core.elementary import sin_cos
 from eyas.core.frames import wrap_angle
-from eyas.core.jit import step_kernel
-from eyas.core.parallel import Held, Pointer, parallel_kernel
+from eyas.lanes import Held, Pointer, kernel, parallel_kernel
+from eyas.lanes.elementary import sin_cos
 from eyas.sensors.chance import SEEDS, normal, uniform
 from eyas.sensors.config import ReadingConfig, SensorsConfig
 from eyas.sensors.inertial import accelerometer, gyroscope
@@ -124,7 +123,7 @@ def _read_all(parts: Pointer[tuple[Pointer[_Work]]], worker: int, workers: int) 
         _tell(work, n, step)
 
 
-@step_kernel
+@kernel(inline=True)
 def _read(work: _Work, n: int, step: int) -> None:
     """Read the sensors of tracker `n` that are due; the others keep their last readings."""
     slots, seed = work.history.shape[1], work.seed[n]
@@ -140,7 +139,7 @@ def _read(work: _Work, n: int, step: int) -> None:
                 row[column] = last[column]
 
 
-@step_kernel
+@kernel(inline=True)
 def _read_one(work: _Work, n: int, step: int, sensor: int, row: NDArray[np.float64]) -> None:
     """Write a new reading of a sensor."""
     _write_truth(work.trackers, n, sensor, row)
@@ -159,7 +158,7 @@ def _read_one(work: _Work, n: int, step: int, sensor: int, row: NDArray[np.float
         _write_quaternion(row)
 
 
-@step_kernel
+@kernel(inline=True)
 def _write_truth(trackers: TrackerState, n: int, sensor: int, row: NDArray[np.float64]) -> None:
     """Write what a sensor without errors reads."""
     if sensor == 0:
@@ -179,7 +178,7 @@ def _write_truth(trackers: TrackerState, n: int, sensor: int, row: NDArray[np.fl
             row[_QUATERNION + part] = trackers.orientation[n, part]
 
 
-@step_kernel
+@kernel(inline=True)
 def _write_quaternion(row: NDArray[np.float64]) -> None:
     """Write the quaternion of a row's Euler angles: yaw, then pitch, then roll."""
     roll, pitch, yaw = 0.5 * row[_EULER], 0.5 * row[_EULER + 1], 0.5 * row[_EULER + 2]
@@ -190,7 +189,7 @@ def _write_quaternion(row: NDArray[np.float64]) -> None:
     row[_QUATERNION + 3] = cr * cp * sy - sr * sp * cy
 
 
-@step_kernel
+@kernel(inline=True)
 def _tell(work: _Work, n: int, step: int) -> None:
     """Tell the readings of the time before each sensor's delay, or the first."""
     slots = work.history.shape[1]

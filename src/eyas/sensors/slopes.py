@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core import exact
-from eyas.core.jit import step_kernel
+from eyas.lanes import kernel
 from eyas.state.terrain import Terrain
 
 __all__ = ["Slopes", "free_way", "slopes_of"]
@@ -58,7 +58,7 @@ def _most_around(blocks: Floats, reach: int) -> Floats:
     return np.ascontiguousarray(windows.max(axis=(2, 3)))
 
 
-@step_kernel
+@kernel(inline=True)
 def free_way(
     slopes: Slopes,
     terrain: Terrain,

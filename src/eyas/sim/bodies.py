@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.frames import rotate
-from eyas.core.jit import interpreted
+from eyas.lanes import interpreted
 from eyas.sim.assets import Assets
 from eyas.sim.worlds import Worlds
 from eyas.state.draw import DrawList

@@ -8,8 +8,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import step_kernel
-from eyas.core.lanes import WIDTH
+from eyas.lanes import kernel
+from eyas.lanes.vector import WIDTH
 from eyas.state.motion import Motion
 
 __all__ = ["Chart", "chart_of", "charted"]
@@ -40,7 +40,7 @@ def chart_of(motion: Motion, actor: NDArray[np.int64]) -> Chart:
     return Chart(actor, np.zeros(rows, np.bool_), np.array([samples], np.int64), sphere)
 
 
-@step_kernel
+@kernel(inline=True)
 def charted(chart: Chart, motion: Motion, sample: int) -> int:
     """Return the row of the chart for the time after a sample of the motion; make it if needed."""
     row = sample // chart.samples[0]
@@ -55,7 +55,7 @@ def charted(chart: Chart, motion: Motion, sample: int) -> int:
     return int(row)
 
 
-@step_kernel
+@kernel(inline=True)
 def _enclose(chart: Chart, motion: Motion, row: int, column: int, first: int, last: int) -> None:
     """Put a sphere around an actor from sample `first` to `last`."""
     actor = chart.actor[column]

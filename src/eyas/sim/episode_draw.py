@@ -9,11 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
-from eyas.core.jit import step_kernel
-from eyas.core.parallel import Pointer, parallel_kernel
 from eyas.core.pcg64 import begin_stream, whole
 from eyas.core.rng import room_key
 from eyas.core.variation import Rule, drawn
+from eyas.lanes import Pointer, kernel, parallel_kernel
 from eyas.sim.light import LightRules, change_light
 from eyas.state.episode import EpisodeState
 from eyas.state.snapshot import Snapshot, TargetState
@@ -157,14 +156,14 @@ def draw_episodes(parts: Parts, worker: int, workers: int) -> None:
         _draw_start(draw, n, call[0].pitch, k)
 
 
-@step_kernel
+@kernel(inline=True)
 def _stream(draw: EpisodeDraw, n: int, room: int) -> None:
     """Begin the stream of a room in a tracker's episode."""
     episode = draw.snapshot.episodes.number[n]
     begin_stream(draw.state, draw.streams.seed[n], room, draw.streams.number[n], episode)
 
 
-@step_kernel
+@kernel(inline=True)
 def _draw_world(draw: EpisodeDraw, n: int) -> None:
     """Draw what is around a tracker: looks, light; and its lens."""
     world, first = draw.world_of[n], draw.snapshot.episodes.number[n] == 0
@@ -184,7 +183,7 @@ def _draw_world(draw: EpisodeDraw, n: int) -> None:
     draw.snapshot.cameras.field_of_view[n] = drawn(draw.rules.field_of_view, draw.state)
 
 
-@step_kernel
+@kernel(inline=True)
 def _draw_target(draw: EpisodeDraw, stays: Stays, n: int, problem: NDArray[np.int64]) -> bool:
     """Draw time and target of an episode; return whether there is one, else see `Call.problem`.
 
@@ -219,7 +218,7 @@ def _draw_target(draw: EpisodeDraw, stays: Stays, n: int, problem: NDArray[np.in
     return False
 
 
-@step_kernel
+@kernel(inline=True)
 def _now(draw: EpisodeDraw, n: int) -> int:
     """Return the latest time of a tracker's world, or the first time [physics steps]."""
     tick, world = draw.rules.first_tick, draw.world_of[n]
@@ -229,7 +228,7 @@ def _now(draw: EpisodeDraw, n: int) -> int:
     return tick
 
 
-@step_kernel
+@kernel(inline=True)
 def _followed(draw: EpisodeDraw, stays: Stays, n: int, time: float) -> int:
     """Return the target of the first tracker of a world that follows one who is there, or -1."""
     world, actors = draw.world_of[n], draw.snapshot.targets.actor
@@ -241,14 +240,14 @@ def _followed(draw: EpisodeDraw, stays: Stays, n: int, time: float) -> int:
     return -1
 
 
-@step_kernel
+@kernel(inline=True)
 def _covers(stays: Stays, stay: int, start: float, end: float) -> bool:
     return bool(stays.enters[stay] - _ROUNDING <= start) and bool(
         end - _ROUNDING <= stays.leaves[stay]
     )
 
 
-@step_kernel
+@kernel(inline=True)
 def _free_targets(
     draw: EpisodeDraw, stays: Stays, n: int, start: float, end: float
 ) -> tuple[int, int]:
@@ -275,7 +274,7 @@ def _free_targets(
     return here, followed
 
 
-@step_kernel
+@kernel(inline=True)
 def _any_of(free: NDArray[np.bool_], state: NDArray[np.int64]) -> int:
     """Return one of the free actors, each as likely, or -1."""
     count = 0
@@ -292,7 +291,7 @@ def _any_of(free: NDArray[np.bool_], state: NDArray[np.int64]) -> int:
     return -1
 
 
-@step_kernel
+@kernel(inline=True)
 def _follow(draw: EpisodeDraw, n: int, actor: int, tick: int) -> None:
     """Make an actor of its world the target of tracker n, at a time of it [physics steps]."""
     draw.snapshot.episodes.tick[n] = tick
@@ -300,7 +299,7 @@ def _follow(draw: EpisodeDraw, n: int, actor: int, tick: int) -> None:
     follow(draw.snapshot.targets, draw.snapshot.episodes, draw.models, n, actor, model)
 
 
-@step_kernel
+@kernel(inline=True)
 def follow(
     targets: TargetState, episodes: EpisodeState, models: ModelTable, n: int, actor: int, model: int
 ) -> None:
@@ -316,7 +315,7 @@ def follow(
     targets.slowest[n] = models.slowest[model]
 
 
-@step_kernel
+@kernel(inline=True)
 def _draw_start(draw: EpisodeDraw, n: int, pitches: NDArray[np.float64], k: int) -> None:
     """Draw a start in the original's order, and set it relative to the target."""
     rules, state = draw.rules, draw.state

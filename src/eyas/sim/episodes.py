@@ -8,11 +8,10 @@ from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.errors import ConfigError, SpawnError
-from eyas.core.jit import interpreted
-from eyas.core.parallel import Held
 from eyas.core.pcg64 import STATE
 from eyas.core.rng import EpisodeKey
 from eyas.core.variation import rule_of
+from eyas.lanes import Held, interpreted
 from eyas.sim.config import SimConfig
 from eyas.sim.episode_draw import (
     Call,

@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import kernel
 from eyas.core.variation import Rule, drawn, rule_of
+from eyas.lanes import kernel
 from eyas.state.lighting import Lighting
 from eyas.world.config import LightConfig
 

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.parallel import Held
+from eyas.lanes import Held
 from eyas.sim.chart import chart_of
 from eyas.sim.near_list import Near, Plan, Query, list_near
 from eyas.state.draw import DrawList

@@ -10,10 +10,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.elementary import tan
-from eyas.core.jit import inlined_kernel, step_kernel
-from eyas.core.lanes import WIDTH, bits_of, first_bit, load, magnitude
-from eyas.core.parallel import Pointer, parallel_kernel
+from eyas.lanes import Pointer, kernel, parallel_kernel
+from eyas.lanes.elementary import tan
+from eyas.lanes.vector import WIDTH, bits_of, first_bit, load, magnitude
 from eyas.render.kernels.scalars import f4
 from eyas.sim.chart import Chart, charted
 from eyas.state.motion import ActorState, Motion
@@ -102,7 +101,7 @@ class _Camera(NamedTuple):
     """Length of the ray to the upper edge."""
 
 
-@step_kernel
+@kernel(inline=True)
 def _set_cameras(query: Query) -> None:
     """Fill `Query.camera`."""
     for v in range(query.end[query.worlds[0] - 1]):
@@ -116,7 +115,7 @@ def _set_cameras(query: Query) -> None:
         camera[14], camera[15] = math.sqrt(1.0 + wide * wide), math.sqrt(1.0 + high * high)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _camera_of(query: Query, v: int) -> _Camera:
     c = query.camera[v]
     return _Camera(
@@ -131,12 +130,12 @@ def _camera_of(query: Query, v: int) -> _Camera:
     )
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _along(axis: tuple[float, float, float], x: float, y: float, z: float) -> float:
     return axis[0] * x + axis[1] * y + axis[2] * z
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _may_show(camera: _Camera, x: float, y: float, z: float, reach: float) -> bool:
     """Return which spheres, of float32, a camera may show; it is not told how far it sees."""
     eye = camera.eye
@@ -150,7 +149,7 @@ def _may_show(camera: _Camera, x: float, y: float, z: float, reach: float) -> bo
     return seen
 
 
-@step_kernel
+@kernel(inline=True)
 def _eight_may_matter(
     query: Query, w: int, sphere: NDArray[np.float32], first: int, reach: float
 ) -> int:
@@ -164,7 +163,7 @@ def _eight_may_matter(
     return seen
 
 
-@step_kernel
+@kernel(inline=True)
 def _one_may_matter(query: Query, w: int, pose: ActorPose, reach: float) -> bool:
     """Return whether a view of world `w` may show something of an actor."""
     x, y, z = f4(pose.x), f4(pose.y), f4(pose.z)
@@ -174,7 +173,7 @@ def _one_may_matter(query: Query, w: int, pose: ActorPose, reach: float) -> bool
     return False
 
 
-@step_kernel
+@kernel(inline=True)
 def _write(near: Near, k: int, actor: int, w: int, slots: int, looks: Looks, world: int) -> None:
     """Write entry `k` except its state: its looks, and the object ids of its slots in list `w`."""
     first = near.used[w]

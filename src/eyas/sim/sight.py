@@ -4,9 +4,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_RATE
-from eyas.core.jit import interpreted
 from eyas.core.rng import EpisodeKey
 from eyas.core.variation import Variation
+from eyas.lanes import interpreted
 from eyas.sensors.chance import SEEDS, uniform
 from eyas.sensors.config import ReadingConfig
 from eyas.sim.latency import Latency, is_always_0

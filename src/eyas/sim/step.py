@@ -1,7 +1,7 @@
 """The step: one kernel call moves all trackers and computes their rewards and ends, for all
 physics steps of a command.
 
-Its kernels get the address of their arguments (`eyas.core.parallel`): unpacking about fifty arrays
+Its kernels get the address of their arguments (`eyas.lanes.parallel`): unpacking about fifty arrays
 at each call would take four times as long as a step of one tracker.
 """
 
@@ -13,9 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
-from eyas.core.elementary import sin_cos
-from eyas.core.jit import specialised, step_kernel
-from eyas.core.parallel import BoundKernel, Held, Pointer, parallel_kernel
+from eyas.lanes import BoundKernel, Held, Pointer, kernel, parallel_kernel, specialised
+from eyas.lanes.elementary import sin_cos
 from eyas.sensors.inertial import feel, rest
 from eyas.sensors.mount import Mount
 from eyas.sensors.mount import left_on_gimbal as carried
@@ -208,7 +207,7 @@ def _begin(parts: Parts, worker: int, workers: int) -> None:
         observe(trackers, cameras, targets, episodes, n, around.terrain, rules, half_size)
 
 
-@step_kernel
+@kernel(inline=True)
 def _move_target(
     targets: TargetState, episodes: EpisodeState, n: int, around: Surroundings
 ) -> None:

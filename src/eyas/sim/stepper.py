@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
-from eyas.core.parallel import BoundKernel, Held
 from eyas.core.rng import EpisodeKey
+from eyas.lanes import BoundKernel, Held
 from eyas.sensors.config import MountConfig
 from eyas.sensors.inertial import smoothing_share
 from eyas.sensors.mount import CARRIED, mount_of

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import kernel
+from eyas.lanes import kernel
 
 __all__ = [
     "Plane",

@@ -6,7 +6,7 @@ A new kind is a file with its shapes and its rig, and one call of `register`.
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.elementary_arrays import cos
+from eyas.lanes.elementary.arrays import cos
 from eyas.state.scene import ObjectClass
 from eyas.targets.jointed.kinds import JOINTED_KINDS
 from eyas.targets.kind import Kind, Model, Section

@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import kernel
 from eyas.core.pcg64 import whole
+from eyas.lanes import kernel
 from eyas.targets.catalogue import KINDS, models_of
 from eyas.targets.kind import Colour
 

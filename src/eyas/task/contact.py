@@ -5,8 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import step_kernel
-from eyas.core.parallel import Held, Pointer, parallel_kernel
+from eyas.lanes import Held, Pointer, kernel, parallel_kernel
 from eyas.sensors.bodies import body_box
 from eyas.sensors.obstacles import Obstacles
 from eyas.state.episode import EpisodeState
@@ -114,7 +113,7 @@ def _find_all(parts: Pointer[tuple[Pointer[_Work]]], worker: int, workers: int) 
             episodes.reason[n] = _CRASH
 
 
-@step_kernel
+@kernel(inline=True)
 def _find(trackers: TrackerState, episodes: EpisodeState, work: _Work, n: int) -> bool:
     """Find what the body of tracker `n` touches first on its way of the last step."""
     sweep = _sweep_of(trackers, work, n)
@@ -136,7 +135,7 @@ def _find(trackers: TrackerState, episodes: EpisodeState, work: _Work, n: int) -
     return True
 
 
-@step_kernel
+@kernel(inline=True)
 def _sweep_of(trackers: TrackerState, work: _Work, n: int) -> Sweep:
     """Return the way of the body in the last step."""
     at, last, box = trackers.position[n], work.last[n], body_box(trackers.orientation[n])

@@ -4,9 +4,9 @@ import math
 from enum import IntEnum
 
 from eyas.core.clock import PHYSICS_STEP
-from eyas.core.elementary import sin_cos
 from eyas.core.frames import wrap_angle
-from eyas.core.jit import kernel
+from eyas.lanes import kernel
+from eyas.lanes.elementary import sin_cos
 
 __all__ = ["TargetDirection", "target_centre", "target_direction"]
 

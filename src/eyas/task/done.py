@@ -3,7 +3,7 @@
 import math
 from enum import IntEnum
 
-from eyas.core.jit import kernel, step_kernel
+from eyas.lanes import kernel
 from eyas.state.episode import EpisodeState
 from eyas.state.snapshot import TargetState, TrackerState
 from eyas.state.terrain import Terrain, relief_at
@@ -73,7 +73,7 @@ _TARGET_LOST, _NO_REWARD = int(DoneReason.TARGET_LOST), int(DoneReason.NO_REWARD
 _STEP_LIMIT, _NOT_A_NUMBER = int(DoneReason.STEP_LIMIT), int(DoneReason.NOT_A_NUMBER)
 
 
-@step_kernel
+@kernel(inline=True)
 def broken_limit(trackers: TrackerState, n: int, terrain: Terrain, rules: Rules) -> int:
     """Return the `DoneReason` of the first limit that body `n` violates, or `NONE`.
 
@@ -98,7 +98,7 @@ def broken_limit(trackers: TrackerState, n: int, terrain: Terrain, rules: Rules)
     return _NONE
 
 
-@step_kernel
+@kernel(inline=True)
 def judge(
     trackers: TrackerState,
     targets: TargetState,
@@ -128,7 +128,7 @@ def judge(
     return reason
 
 
-@step_kernel
+@kernel(inline=True)
 def _total(trackers: TrackerState, targets: TargetState, episodes: EpisodeState, n: int) -> float:
     """Return a sum that is finite if the state is, unless its terms come near 1e308."""
     euler = trackers.euler[n]
@@ -139,7 +139,7 @@ def _total(trackers: TrackerState, targets: TargetState, episodes: EpisodeState,
     return total
 
 
-@step_kernel
+@kernel(inline=True)
 def _reason(targets: TargetState, episodes: EpisodeState, n: int, rules: Rules) -> int:
     if episodes.not_a_number[n]:
         return _NOT_A_NUMBER

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from eyas.core import exact
-from eyas.core.jit import interpreted
+from eyas.lanes import interpreted
 from eyas.state.terrain import Plane, height_over
 
 __all__ = ["ground_corners", "on_plane"]

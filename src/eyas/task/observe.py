@@ -4,7 +4,7 @@ import math
 
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.frames import rotate_back
-from eyas.core.jit import step_kernel
+from eyas.lanes import kernel
 from eyas.state.episode import EpisodeState
 from eyas.state.snapshot import CameraState, TargetState, TrackerState
 from eyas.state.terrain import Terrain, height_over, plane_at
@@ -15,7 +15,7 @@ from eyas.task.rules import Rules
 __all__ = ["clear_episode", "observe"]
 
 
-@step_kernel
+@kernel(inline=True)
 def clear_episode(episodes: EpisodeState, n: int) -> None:
     """Clear the previous episode, so that the next `observe` is the first of a new one."""
     episodes.step_count[n] = 0
@@ -34,7 +34,7 @@ def clear_episode(episodes: EpisodeState, n: int) -> None:
         episodes.relative_acceleration[n, axis] = 0.0
 
 
-@step_kernel
+@kernel(inline=True)
 def observe(
     trackers: TrackerState,
     cameras: CameraState,
@@ -67,7 +67,7 @@ def observe(
     episodes.observations[n] = min(episodes.observations[n] + 1, 3)
 
 
-@step_kernel
+@kernel(inline=True)
 def _follow_target(targets: TargetState, episodes: EpisodeState, n: int) -> None:
     x, y, yaw = targets.position[n, 0], targets.position[n, 1], targets.yaw[n]
     last = episodes.last_target[n]
@@ -77,7 +77,7 @@ def _follow_target(targets: TargetState, episodes: EpisodeState, n: int) -> None
     last[0], last[1], last[2] = x, y, yaw
 
 
-@step_kernel
+@kernel(inline=True)
 def _follow_relative(
     trackers: TrackerState, targets: TargetState, episodes: EpisodeState, n: int
 ) -> None:

@@ -3,14 +3,14 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.elementary import sin_cos
 from eyas.core.frames import wrap_angle
-from eyas.core.jit import step_kernel
+from eyas.lanes import kernel
+from eyas.lanes.elementary import sin_cos
 
 __all__ = ["offset_pose"]
 
 
-@step_kernel
+@kernel(inline=True)
 def offset_pose(
     target: NDArray[np.float64], target_yaw: float, offset: NDArray[np.float64]
 ) -> tuple[float, float, float, float]:

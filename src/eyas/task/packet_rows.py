@@ -8,10 +8,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.elementary import sin_cos, tan
 from eyas.core.frames import wrap_angle
-from eyas.core.jit import step_kernel
-from eyas.core.parallel import Held, Pointer, parallel_kernel
+from eyas.lanes import Held, Pointer, kernel, parallel_kernel
+from eyas.lanes.elementary import sin_cos, tan
 from eyas.sensors.config import CameraConfig
 from eyas.sensors.inertial import accelerometer, gyroscope
 from eyas.state.episode import EpisodeState
@@ -76,7 +75,7 @@ def _fill_packets(parts: Pointer[tuple[Pointer[_Packets]]], worker: int, workers
         _fill_reward(trackers, cameras, targets, episodes, n, floor, reward[n])
 
 
-@step_kernel
+@kernel(inline=True)
 def _fill_basic(
     trackers: TrackerState, episodes: EpisodeState, n: int, row: NDArray[np.float64]
 ) -> None:
@@ -93,7 +92,7 @@ def _fill_basic(
     row[21] = 1.0 if episodes.reason[n] > 0 else 0.0
 
 
-@step_kernel
+@kernel(inline=True)
 def _fill_reward(
     trackers: TrackerState,
     cameras: CameraState,

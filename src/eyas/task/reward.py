@@ -12,8 +12,8 @@ computing the corners.
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.elementary import tan, tanh
-from eyas.core.jit import kernel, step_kernel
+from eyas.lanes import kernel
+from eyas.lanes.elementary import tan, tanh
 from eyas.state.terrain import Plane, height_over
 from eyas.task.rules import BuiltinReward, Rules
 
@@ -40,7 +40,7 @@ _DISTANCE_CONTINUOUS = int(BuiltinReward.DISTANCE_CONTINUOUS)
 _CONSTANT = int(BuiltinReward.CONSTANT)
 
 
-@step_kernel
+@kernel(inline=True)
 def axis_depth(
     position: NDArray[np.float64], rotation: NDArray[np.float64], ground: Plane
 ) -> float:
@@ -60,7 +60,7 @@ def axis_depth(
     return 0.0
 
 
-@step_kernel
+@kernel(inline=True)
 def rewarded_size(field_of_view: float, rules: Rules) -> tuple[float, float]:
     """Return half the width and height of the rewarded part of the picture, at a depth of 1 m.
 
@@ -72,7 +72,7 @@ def rewarded_size(field_of_view: float, rules: Rules) -> tuple[float, float]:
     return half_width, half_width * rules.aspect
 
 
-@step_kernel
+@kernel(inline=True)
 def view_centre(
     position: NDArray[np.float64], rotation: NDArray[np.float64], depth: float
 ) -> tuple[float, float]:
@@ -83,7 +83,7 @@ def view_centre(
     return position[0] + depth * rotation[0, 0], position[1] + depth * rotation[1, 0]
 
 
-@step_kernel
+@kernel(inline=True)
 def view_share(
     position: NDArray[np.float64],
     rotation: NDArray[np.float64],
@@ -114,7 +114,7 @@ def view_share(
     return 0.0
 
 
-@step_kernel
+@kernel(inline=True)
 def reward_value(share: float, distance: float, depth: float, rules: Rules) -> float:
     """Return the reward, 0 to 1; 0 if the optical axis does not meet the ground, unless constant.
 

@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from eyas.core import exact
-from eyas.core.elementary import tan
 from eyas.core.frames import wrap_angle
-from eyas.core.jit import interpreted, kernel
+from eyas.lanes import interpreted, kernel
+from eyas.lanes.elementary import tan
 
 __all__ = ["Start", "start_distance", "start_pose"]
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import step_kernel
+from eyas.lanes import kernel
 
 __all__ = ["NEVER", "Sweep", "Touch", "sweep_cylinder", "sweep_prism", "while_level"]
 
@@ -48,7 +48,7 @@ class Touch(NamedTuple):
     y: float
 
 
-@step_kernel
+@kernel(inline=True)
 def while_level(sweep: Sweep, bottom: float, top: float) -> tuple[float, float]:
     """Return the share of the motion from which, and to which, the box is as high as a solid; the
     first is larger if it never is.
@@ -60,7 +60,7 @@ def while_level(sweep: Sweep, bottom: float, top: float) -> tuple[float, float]:
     return max(min(a, b), 0.0), min(max(a, b), 1.0)
 
 
-@step_kernel
+@kernel(inline=True)
 def sweep_prism(
     sweep: Sweep, points: NDArray[np.float64], first: int, last: int, start: float, end: float
 ) -> Touch:
@@ -118,7 +118,7 @@ def sweep_prism(
     return _touch(sweep, best, start, at_x, at_y)
 
 
-@step_kernel
+@kernel(inline=True)
 def sweep_cylinder(sweep: Sweep, place: NDArray[np.float64], start: float, end: float) -> Touch:
     """Return the first touch of a cylinder, given by its centre and radius [m], shape (3,)."""
     motion_x, motion_y = _turned(sweep, sweep.motion_x, sweep.motion_y)
@@ -139,13 +139,13 @@ def sweep_cylinder(sweep: Sweep, place: NDArray[np.float64], start: float, end: 
     return _touch(sweep, best, start, at_x, at_y)
 
 
-@step_kernel
+@kernel(inline=True)
 def _turned(sweep: Sweep, x: float, y: float) -> tuple[float, float]:
     """Return a horizontal vector in the frame of the box."""
     return sweep.cosine * x + sweep.sine * y, sweep.cosine * y - sweep.sine * x
 
 
-@step_kernel
+@kernel(inline=True)
 def _touch(sweep: Sweep, best: float, start: float, x: float, y: float) -> Touch:
     """Return a touch at a place in the frame of the box, `best` after the start."""
     if best >= NEVER:
@@ -158,7 +158,7 @@ def _touch(sweep: Sweep, best: float, start: float, x: float, y: float) -> Touch
     )
 
 
-@step_kernel
+@kernel(inline=True)
 def _enters(x: float, y: float, by_x: float, by_y: float, length: float, width: float) -> float:
     """Return the share of its path, 0 to 1, at which a point enters a box; else `NEVER`.
 
@@ -182,7 +182,7 @@ def _enters(x: float, y: float, by_x: float, by_y: float, length: float, width: 
     return begin if begin <= end else NEVER
 
 
-@step_kernel
+@kernel(inline=True)
 def _reaches(x: float, y: float, by_x: float, by_y: float, radius: float) -> float:
     """Return the share of its path, 0 to 1, at which a point enters a circle about the origin."""
     excess = x * x + y * y - radius * radius

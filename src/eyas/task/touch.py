@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import step_kernel
+from eyas.lanes import kernel
 from eyas.sensors.grid import cells_between
 from eyas.sensors.movers import find_boxes
 from eyas.sensors.obstacles import Obstacles
@@ -31,7 +31,7 @@ class Hit(NamedTuple):
     top: float
 
 
-@step_kernel
+@kernel(inline=True)
 def touch_solids(sweep: Sweep, obstacles: Obstacles) -> Hit:
     """Return the first solid that is touched."""
     solids, best = obstacles.solids, NEVER
@@ -63,7 +63,7 @@ def touch_solids(sweep: Sweep, obstacles: Obstacles) -> Hit:
     return Hit(best, x, y, thing, low, high)
 
 
-@step_kernel
+@kernel(inline=True)
 def touch_movers(sweep: Sweep, obstacles: Obstacles, n: int, tick: int) -> Hit:
     """Return the first vehicle, or body of another tracker, that is touched.
 
@@ -92,7 +92,7 @@ def touch_movers(sweep: Sweep, obstacles: Obstacles, n: int, tick: int) -> Hit:
     return Hit(best, x, y, thing, low, high)
 
 
-@step_kernel
+@kernel(inline=True)
 def _seen_from(sweep: Sweep, moved: NDArray[np.float64]) -> Sweep:
     """Return a motion relative to something that has moved, and has come to rest where it is."""
     return Sweep(
@@ -110,7 +110,7 @@ def _seen_from(sweep: Sweep, moved: NDArray[np.float64]) -> Sweep:
     )
 
 
-@step_kernel
+@kernel(inline=True)
 def touch_ground(sweep: Sweep, obstacles: Obstacles) -> Hit:
     """Return the first touch of the ground, looked for at the corners and the middle of the box, in
     steps of half a cell of the relief.

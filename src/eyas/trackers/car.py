@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import step_kernel
+from eyas.lanes import kernel
 from eyas.state.snapshot import CameraState, TrackerState
 from eyas.state.terrain import Terrain, ground_at
 from eyas.trackers.commands import follow_command
@@ -42,7 +42,7 @@ class CarMemory(NamedTuple):
         return cls(np.zeros(pair), np.zeros(pair), np.zeros(pair), filters, terrain)
 
 
-@step_kernel
+@kernel(inline=True)
 def start(
     trackers: TrackerState,
     memory: CarMemory,
@@ -59,7 +59,7 @@ def start(
     reset_gimbal(trackers, memory.gimbal, n, pitch, 0.0, CAR_LIMITS)
 
 
-@step_kernel
+@kernel(inline=True)
 def advance(
     trackers: TrackerState, memory: CarMemory, n: int, command: NDArray[np.float64]
 ) -> None:
@@ -73,7 +73,7 @@ def advance(
     advance_gimbal(trackers, memory.gimbal, n, CAR_LIMITS)
 
 
-@step_kernel
+@kernel(inline=True)
 def carry(
     trackers: TrackerState, memory: CarMemory, n: int, x: float, y: float, z: float, yaw: float
 ) -> None:
@@ -83,7 +83,7 @@ def carry(
     advance_gimbal(trackers, memory.gimbal, n, CAR_LIMITS)
 
 
-@step_kernel
+@kernel(inline=True)
 def aim(trackers: TrackerState, memory: CarMemory, cameras: CameraState, n: int) -> None:
     """Write the pose of the camera: at the origin of the body, turned by its gimbal."""
     for axis in range(3):

@@ -7,14 +7,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
-from eyas.core.jit import step_kernel
+from eyas.lanes import kernel
 from eyas.state.snapshot import TrackerState
 from eyas.trackers.lowpass import low_pass, settle
 
 __all__ = ["follow_command", "forget_commands", "heading"]
 
 
-@step_kernel
+@kernel(inline=True)
 def follow_command(
     trackers: TrackerState,
     memory: Any,  # noqa: ANN401  # a record with the filters `forward`, `left`, `yaw_rate`
@@ -42,7 +42,7 @@ def follow_command(
     return along_east, along_north, yaw_rate
 
 
-@step_kernel
+@kernel(inline=True)
 def forget_commands(memory: Any, n: int) -> None:  # noqa: ANN401  # as above
     """Set the filters of tracker `n` as if it had been told to hover for long."""
     settle(memory.forward[n], 0.0)
@@ -50,7 +50,7 @@ def forget_commands(memory: Any, n: int) -> None:  # noqa: ANN401  # as above
     settle(memory.yaw_rate[n], 0.0)
 
 
-@step_kernel
+@kernel(inline=True)
 def heading(orientation: NDArray[np.float64]) -> tuple[float, float]:
     """Return the horizontal direction of the body's x axis, a unit vector."""
     w, x, y, z = orientation[0], orientation[1], orientation[2], orientation[3]

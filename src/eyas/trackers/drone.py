@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
-from eyas.core.elementary import sin_cos
 from eyas.core.frames import wrap_angle
-from eyas.core.jit import step_kernel
+from eyas.lanes import kernel
+from eyas.lanes.elementary import sin_cos
 from eyas.state.snapshot import CameraState, TrackerState
 from eyas.state.terrain import Terrain
 from eyas.trackers.commands import follow_command, forget_commands
@@ -47,7 +47,7 @@ class DroneMemory(NamedTuple):
         return cls(np.zeros(pair), np.zeros(pair), np.zeros(pair), np.zeros((count, 3, 2)))
 
 
-@step_kernel
+@kernel(inline=True)
 def advance(
     trackers: TrackerState, memory: DroneMemory, n: int, command: NDArray[np.float64]
 ) -> None:
@@ -62,7 +62,7 @@ def advance(
     advance_gimbal(trackers, memory.gimbal, n)
 
 
-@step_kernel
+@kernel(inline=True)
 def obey(trackers: TrackerState, n: int, yaw_rate: float) -> None:
     """Put a level body at its commanded pose within one physics step; `yaw_rate` led there."""
     commanded = trackers.commanded_position[n]
@@ -71,7 +71,7 @@ def obey(trackers: TrackerState, n: int, yaw_rate: float) -> None:
     _stand_level(trackers, n, wrap_angle(trackers.commanded_yaw[n]))
 
 
-@step_kernel
+@kernel(inline=True)
 def carry(
     trackers: TrackerState, memory: DroneMemory, n: int, x: float, y: float, z: float, yaw: float
 ) -> None:
@@ -80,7 +80,7 @@ def carry(
     advance_gimbal(trackers, memory.gimbal, n)
 
 
-@step_kernel
+@kernel(inline=True)
 def move_level(trackers: TrackerState, n: int, x: float, y: float, z: float, yaw: float) -> None:
     """Move a level body to a pose within one physics step of 2 ms, as if it had been commanded."""
     commanded = trackers.commanded_position[n]
@@ -91,7 +91,7 @@ def move_level(trackers: TrackerState, n: int, x: float, y: float, z: float, yaw
     _stand_level(trackers, n, yaw)
 
 
-@step_kernel
+@kernel(inline=True)
 def start(
     trackers: TrackerState,
     memory: DroneMemory,
@@ -107,7 +107,7 @@ def start(
     reset_gimbal(trackers, memory.gimbal, n, pitch, 0.0)
 
 
-@step_kernel
+@kernel(inline=True)
 def place(
     trackers: TrackerState,
     memory: Any,  # noqa: ANN401  # as for `forget_commands`
@@ -130,7 +130,7 @@ def place(
     _stand_level(trackers, n, wrap_angle(yaw))
 
 
-@step_kernel
+@kernel(inline=True)
 def aim(trackers: TrackerState, memory: DroneMemory, cameras: CameraState, n: int) -> None:
     """Write the pose of the camera on the gimbal."""
     camera_pose(
@@ -142,7 +142,7 @@ def aim(trackers: TrackerState, memory: DroneMemory, cameras: CameraState, n: in
     )
 
 
-@step_kernel
+@kernel(inline=True)
 def _move_to(trackers: TrackerState, n: int, x: float, y: float, z: float) -> None:
     """Move within one physics step, and set the velocity and acceleration of that motion."""
     goal = (x, y, z)
@@ -153,7 +153,7 @@ def _move_to(trackers: TrackerState, n: int, x: float, y: float, z: float) -> No
         trackers.position[n, axis] = goal[axis]
 
 
-@step_kernel
+@kernel(inline=True)
 def _stand_level(trackers: TrackerState, n: int, yaw: float) -> None:
     """Set the attitude of a level body; `yaw` must be wrapped [rad]."""
     euler, orientation = trackers.euler[n], trackers.orientation[n]

@@ -11,9 +11,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.elementary import sin_cos, tan
 from eyas.core.frames import rotate, rotate_back
-from eyas.core.jit import kernel
+from eyas.lanes import kernel
+from eyas.lanes.elementary import sin_cos, tan
 from eyas.trackers.airframe import Airframe
 
 __all__ = ["attitude_torque", "body_axes", "desired_force", "mixed", "within_tilt"]

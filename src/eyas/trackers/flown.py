@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
-from eyas.core.elementary import asin, atan2
-from eyas.core.jit import kernel, step_kernel
 from eyas.core.rng import EpisodeKey
 from eyas.core.variation import bounds
+from eyas.lanes import kernel
+from eyas.lanes.elementary import asin, atan2
 from eyas.state.snapshot import CameraState, TrackerState
 from eyas.state.terrain import Terrain, ground_at
 from eyas.trackers.airframe import FIRM_GROUND, ORIGINAL, Airframe
@@ -78,7 +78,7 @@ class FlightMemory(NamedTuple):
         )
 
 
-@step_kernel
+@kernel(inline=True)
 def start(
     trackers: TrackerState,
     memory: FlightMemory,
@@ -95,7 +95,7 @@ def start(
     _settle(trackers, memory, n)
 
 
-@step_kernel
+@kernel(inline=True)
 def carry(
     trackers: TrackerState, memory: FlightMemory, n: int, x: float, y: float, z: float, yaw: float
 ) -> None:
@@ -105,7 +105,7 @@ def carry(
     _settle(trackers, memory, n)
 
 
-@step_kernel
+@kernel(inline=True)
 def _settle(trackers: TrackerState, memory: FlightMemory, n: int) -> None:
     """Forget the past: what was commanded is what is."""
     memory.last_command[n, 0], memory.last_command[n, 1] = 0.0, 0.0
@@ -118,7 +118,7 @@ def _settle(trackers: TrackerState, memory: FlightMemory, n: int) -> None:
     settle_servo(trackers, memory.gimbal, memory.servo, n)
 
 
-@step_kernel
+@kernel(inline=True)
 def advance(
     trackers: TrackerState, memory: FlightMemory, n: int, command: NDArray[np.float64]
 ) -> None:
@@ -145,7 +145,7 @@ def advance(
     advance_servo(trackers, memory.gimbal, memory.servo, frame, n, change)
 
 
-@step_kernel
+@kernel(inline=True)
 def aim(trackers: TrackerState, memory: FlightMemory, cameras: CameraState, n: int) -> None:
     """Write the pose of the camera on the gimbal."""
     body, attitude, gimbal = trackers.position[n], trackers.orientation[n], trackers.gimbal[n]
@@ -155,7 +155,7 @@ def aim(trackers: TrackerState, memory: FlightMemory, cameras: CameraState, n: i
         level_pose(body, attitude, gimbal, cameras.position[n], cameras.rotation[n])
 
 
-@step_kernel
+@kernel(inline=True)
 def _wanted(
     trackers: TrackerState, memory: FlightMemory, n: int, east: float, north: float
 ) -> Thrusts:
@@ -182,7 +182,7 @@ def _body(trackers: TrackerState, n: int) -> Body:
     )
 
 
-@step_kernel
+@kernel(inline=True)
 def _write(trackers: TrackerState, memory: FlightMemory, n: int, before: Body, after: Body) -> None:
     """Write the state of a body after a step of 2 ms."""
     for axis in range(3):

@@ -5,9 +5,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.elementary import atan2, sin_cos
 from eyas.core.frames import rotate
-from eyas.core.jit import kernel, step_kernel
+from eyas.lanes import kernel
+from eyas.lanes.elementary import atan2, sin_cos
 from eyas.state.snapshot import TrackerState
 from eyas.trackers.lowpass import low_pass, settle
 
@@ -49,7 +49,7 @@ def held_pitch(pitch: float, limits: Limits = DRONE_LIMITS) -> float:
     return min(max(pitch, limits[0]), limits[1])
 
 
-@step_kernel
+@kernel(inline=True)
 def advance_gimbal(
     trackers: TrackerState, memory: NDArray[np.float64], n: int, limits: Limits = DRONE_LIMITS
 ) -> None:
@@ -68,7 +68,7 @@ def advance_gimbal(
     gimbal[2] = low_pass(memory[n, 2], yaw)
 
 
-@step_kernel
+@kernel(inline=True)
 def reset_gimbal(
     trackers: TrackerState,
     memory: NDArray[np.float64],

@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
-from eyas.core.elementary import sin_cos
-from eyas.core.jit import kernel, step_kernel
+from eyas.lanes import kernel
+from eyas.lanes.elementary import sin_cos
 from eyas.state.snapshot import TrackerState
 from eyas.trackers.airframe import Airframe, GimbalServo
 from eyas.trackers.gimbal import desired_angles
@@ -33,7 +33,7 @@ class ServoMemory(NamedTuple):
         return cls(np.zeros((count, 3)), np.zeros((count, 3)))
 
 
-@step_kernel
+@kernel(inline=True)
 def advance_servo(
     trackers: TrackerState,
     filters: NDArray[np.float64],
@@ -98,7 +98,7 @@ def _torque(
     return float(min(max(torque, -servo.torque_limit), servo.torque_limit))
 
 
-@step_kernel
+@kernel(inline=True)
 def settle_servo(
     trackers: TrackerState, filters: NDArray[np.float64], memory: ServoMemory, n: int
 ) -> None:

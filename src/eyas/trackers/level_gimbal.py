@@ -8,9 +8,9 @@ joint of its own, so nothing swings. For a level body both hold the camera at th
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.elementary import asin, atan2, sin_cos
 from eyas.core.frames import rotate
-from eyas.core.jit import kernel, step_kernel
+from eyas.lanes import kernel
+from eyas.lanes.elementary import asin, atan2, sin_cos
 from eyas.state.snapshot import TrackerState
 from eyas.trackers.gimbal import PITCH_JOINT, ROLL_JOINT, SIDEWAYS_LIMIT, YAW_JOINT, set_column
 from eyas.trackers.lowpass import settle
@@ -47,7 +47,7 @@ def level_angles(pitch: float, yaw: float, body_roll: float, body_pitch: float) 
     )
 
 
-@step_kernel
+@kernel(inline=True)
 def reset_level(trackers: TrackerState, filters: NDArray[np.float64], n: int) -> None:
     """Move the joints of gimbal `n` to what its commanded angles need, at once.
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
-from eyas.core.jit import step_kernel
+from eyas.lanes import kernel
 
 __all__ = ["low_pass", "settle"]
 
@@ -21,7 +21,7 @@ _A1 = 2.0 * (_K * _K - 1.0) / _D
 _A2 = (_K * _K - math.sqrt(2.0) * _K + 1.0) / _D
 
 
-@step_kernel
+@kernel(inline=True)
 def low_pass(memory: NDArray[np.float64], value: float) -> float:
     """Return the filtered value of one 2 ms step.
 
@@ -36,7 +36,7 @@ def low_pass(memory: NDArray[np.float64], value: float) -> float:
     return result
 
 
-@step_kernel
+@kernel(inline=True)
 def settle(memory: NDArray[np.float64], value: float) -> None:
     """Set the filter to its steady state for the input `value`."""
     memory[1] = (_B2 - _A2) * value

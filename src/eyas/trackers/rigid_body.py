@@ -3,9 +3,9 @@
 import math
 from typing import NamedTuple
 
-from eyas.core.elementary import sin_cos
 from eyas.core.frames import rotate, rotate_back
-from eyas.core.jit import kernel
+from eyas.lanes import kernel
+from eyas.lanes.elementary import sin_cos
 from eyas.state.terrain import Terrain, ground_at
 from eyas.trackers.airframe import Airframe
 

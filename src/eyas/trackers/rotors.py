@@ -6,8 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
-from eyas.core.elementary import exp
-from eyas.core.jit import kernel
+from eyas.lanes import kernel
+from eyas.lanes.elementary import exp
 from eyas.trackers.airframe import Airframe
 from eyas.trackers.rigid_body import Thrusts
 

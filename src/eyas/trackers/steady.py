@@ -4,8 +4,8 @@ import math
 from typing import Any
 
 from eyas.core.clock import PHYSICS_STEP
-from eyas.core.elementary import asin, atan2, sin_cos
-from eyas.core.jit import step_kernel
+from eyas.lanes import kernel
+from eyas.lanes.elementary import asin, atan2, sin_cos
 from eyas.state.snapshot import TrackerState
 from eyas.trackers.airframe import Airframe
 from eyas.trackers.commands import heading
@@ -20,7 +20,7 @@ __all__ = ["launch"]
 Vector = tuple[float, float, float]
 
 
-@step_kernel
+@kernel(inline=True)
 def launch(
     trackers: TrackerState,
     memory: Any,  # noqa: ANN401  # a `FlightMemory`
@@ -59,7 +59,7 @@ def launch(
     settle_servo(trackers, memory.gimbal, memory.servo, n)
 
 
-@step_kernel
+@kernel(inline=True)
 def _drag(frame: Airframe, east: float, north: float) -> tuple[float, float]:
     """Return the force of air that passes the drone at a velocity, towards east and north [N]."""
     speed = math.sqrt(east * east + north * north)
@@ -67,7 +67,7 @@ def _drag(frame: Airframe, east: float, north: float) -> tuple[float, float]:
     return share * east, share * north
 
 
-@step_kernel
+@kernel(inline=True)
 def _lean(trackers: TrackerState, n: int, force: Vector) -> None:
     """Set the attitude in which the rotors of a body pull along a force, at its heading."""
     ahead, left, up = body_axes(force, trackers.commanded_yaw[n])

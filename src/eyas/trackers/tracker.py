@@ -4,8 +4,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
-from eyas.core.jit import step_kernel
 from eyas.core.rng import EpisodeKey
+from eyas.lanes import kernel
 from eyas.state.snapshot import TrackerState
 from eyas.state.terrain import Terrain
 
@@ -14,7 +14,7 @@ __all__ = ["Tracker", "stand"]
 Kernel = Callable[..., Any]
 
 
-@step_kernel
+@kernel(inline=True)
 def stand(
     trackers: TrackerState,
     memory: Any,  # noqa: ANN401  # of any kind of tracker

@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 
 from eyas.core import exact
 from eyas.core.clock import PHYSICS_STEP
-from eyas.core.elementary import exp, power
-from eyas.core.jit import kernel
 from eyas.core.rng import EpisodeKey
 from eyas.core.variation import Variation, sample
+from eyas.lanes import kernel
+from eyas.lanes.elementary import exp, power
 
 __all__ = ["WindMemory", "begin_wind", "blow"]
 

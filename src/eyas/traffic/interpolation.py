@@ -5,9 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.elementary import hypot
-from eyas.core.jit import step_kernel
-from eyas.core.parallel import Held, Pointer, parallel_kernel
+from eyas.lanes import Held, Pointer, kernel, parallel_kernel
+from eyas.lanes.elementary import hypot
 from eyas.state.motion import ActorState, Motion
 
 __all__ = [
@@ -37,21 +36,21 @@ class ActorPose(NamedTuple):
     present: bool
 
 
-@step_kernel
+@kernel(inline=True)
 def _place(motion: Motion, time: float) -> float:
     """Return a time in samples since the first, within the motion."""
     last = motion.table.shape[0] - 1
     return min(max((time - motion.first_time) * motion.rate, 0.0), float(last))
 
 
-@step_kernel
+@kernel(inline=True)
 def sample_before(motion: Motion, time: float) -> int:
     """Return the sample at the beginning of the interval that a time [s] lies in."""
     last: int = motion.table.shape[0] - 1
     return min(int(_place(motion, time)), last - 1)
 
 
-@step_kernel
+@kernel(inline=True)
 def interpolate_actor(motion: Motion, actor: int, time: float) -> ActorPose:
     """Return one actor at one time; times outside the samples are clamped to their ends.
 
@@ -80,7 +79,7 @@ def interpolate_actor(motion: Motion, actor: int, time: float) -> ActorPose:
     return ActorPose(x, y, z, yaw, slope, speed, *velocity, yaw_rate, hitch, travelled, present)
 
 
-@step_kernel
+@kernel(inline=True)
 def _hermite(
     a: float, b: float, slope_a: float, slope_b: float, step: float, f: float
 ) -> tuple[float, float]:
@@ -96,7 +95,7 @@ def _hermite(
     return value, slope
 
 
-@step_kernel
+@kernel(inline=True)
 def write_actor(pose: ActorPose, out: ActorState, world: int, actor: int) -> None:
     """Write an actor as one of a world."""
     out.position[world, actor, 0] = pose.x

@@ -5,8 +5,8 @@ from numpy.typing import NDArray
 
 from eyas.core.cache.cached import cached
 from eyas.core.cache.folder import Kind
-from eyas.core.elementary import atan, sin_cos
-from eyas.core.parallel import Held, Pointer, parallel_kernel
+from eyas.lanes import Held, Pointer, parallel_kernel
+from eyas.lanes.elementary import atan, sin_cos
 from eyas.state.motion import SAMPLE, Motion
 from eyas.state.terrain import Terrain, relief_at, slope_at
 from eyas.traffic.recording import Recording

@@ -5,8 +5,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.elementary import atan, atan2, exp, hypot, tan
-from eyas.core.parallel import Held, Pointer, parallel_kernel
+from eyas.lanes import Held, Pointer, parallel_kernel
+from eyas.lanes.elementary import atan, atan2, exp, hypot, tan
 
 __all__ = ["follow_headings"]
 

@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core import exact
-from eyas.core.elementary import sin_cos
-from eyas.core.jit import kernel
+from eyas.lanes import kernel
+from eyas.lanes.elementary import sin_cos
 from eyas.traffic.tractrix import follow_headings
 
 __all__ = [

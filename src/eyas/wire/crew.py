@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.errors import SpawnError
-from eyas.core.jit import thread_count
 from eyas.core.jpeg import jpeg_bytes
+from eyas.lanes import thread_count
 from eyas.sim.simulation import Simulation
 from eyas.state.draw import Picture
 from eyas.targets.catalogue import MODELS

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from eyas.core.cache.array_file import Content, array_file, let_go, map_arrays
-from eyas.core.machine_code import read_code
+from eyas.lanes.machine_code import read_code
 
 ARRAYS = [
     np.arange(12, dtype=np.float32).reshape(3, 4),

@@ -13,15 +13,15 @@ import pytest
 
 from eyas.core.cache.array_file import map_arrays
 from eyas.core.cache.folder import Kind, cache_folder
-from eyas.core.machine_code import read_code
+from eyas.lanes.machine_code import read_code
 
 PROGRAM = """
 import json, sys
 import numpy as np
 from eyas.core.cache.cached import cached
 from eyas.core.cache.folder import Kind
-from eyas.core.held import Held
-from eyas.core.parallel import parallel_kernel
+from eyas.lanes import Held
+from eyas.lanes import parallel_kernel
 
 def double(parts, worker, workers):
     values = parts[0][0][0][0]

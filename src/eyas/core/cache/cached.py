@@ -22,10 +22,9 @@ Thing = TypeVar("Thing")
 _LOG = logging.getLogger("eyas")
 
 _ROOT = Path(__file__).parents[2]
-_CORE = Path(__file__).parents[1]
 
-_MATHEMATICS = ("elementary", "elementary_arrays.py", "exact.py")
-"""Makers of whatever is kept, in this room: on their last bits everything depends."""
+_MATHEMATICS = ("lanes/elementary", "core/exact.py")
+"""Makers of whatever is kept: on their last bits everything depends."""
 
 _LONG = 1.0
 """Values that took longer than this to make are reported in the log [s]."""
@@ -93,7 +92,7 @@ def _key(kind: Kind, makers: tuple[str, ...], inputs: tuple[object, ...]) -> str
     for maker in makers:
         digest.update(_sources(_ROOT, maker))
     for maker in _MATHEMATICS:
-        digest.update(_sources(_CORE, maker))
+        digest.update(_sources(_ROOT, maker))
     for value in inputs:
         if isinstance(value, np.ndarray):
             digest.update(repr((value.dtype.str, value.shape)).encode())

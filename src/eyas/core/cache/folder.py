@@ -2,7 +2,7 @@
 
     <folder>/<kind>/eyas-<key>.npy             arrays, see `eyas.core.cache.array_file`
     <folder>/traffic/<map>-<seed>-<key>.npz    recordings of traffic
-    <folder>/kernels/<key>/                    compiled kernels, see `eyas.core.machine_code`
+    <folder>/kernels/<key>/                    compiled kernels, see `eyas.lanes.machine_code`
 
 The modification time of an entry is the time of its last use.
 """

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from eyas.core.clock import PHYSICS_STEP
-from eyas.core.jit import interpreted
+from eyas.lanes import interpreted
 from eyas.modes.demo.flight import Flight
 from eyas.state.terrain import plane_at, relief_at
 from eyas.targets.catalogue import MODELS

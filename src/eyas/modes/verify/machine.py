@@ -7,8 +7,8 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 from eyas import __version__
-from eyas.core.jit import thread_count
 from eyas.core.machine import describe_machine
+from eyas.lanes import thread_count
 
 __all__ = ["machine_facts"]
 

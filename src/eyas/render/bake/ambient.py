@@ -11,8 +11,7 @@ from numpy.typing import NDArray
 from eyas.core import exact
 from eyas.core.cache.cached import cached
 from eyas.core.cache.folder import Kind
-from eyas.core.jit import thread_count
-from eyas.core.parallel import Held
+from eyas.lanes import Held, thread_count
 from eyas.render.kernels.light.ambient import (
     BOUNCED,
     DIRECTIONS,

@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core import exact
-from eyas.core.jit import thread_count
-from eyas.core.parallel import Held
+from eyas.lanes import Held, thread_count
 from eyas.render.kernels.sky.clouds import DEEPEST, CloudRays, cloud_rays
 from eyas.render.kernels.sky.radiance import CLOUD_BEND, CLOUDS_FROM
 from eyas.render.textures.fields import SIZE, Field, blurred, fractal, source

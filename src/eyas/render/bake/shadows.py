@@ -14,9 +14,8 @@ from numpy.typing import NDArray
 from eyas.core import exact
 from eyas.core.cache.cached import cached
 from eyas.core.cache.folder import Kind
-from eyas.core.jit import thread_count
-from eyas.core.lanes import WIDTH
-from eyas.core.parallel import Held
+from eyas.lanes import Held, thread_count
+from eyas.lanes.vector import WIDTH
 from eyas.render.kernels.bundles import TILE, Geometry, Projection, Row
 from eyas.render.kernels.light.shadow_map import BLOCK, BLOCK_TEXELS, ShadowBake, bake_tiles
 from eyas.render.kernels.visibility.clusters import CLUSTER

@@ -1,13 +1,13 @@
 """Hash-based noise: numbers that look random but are always the same."""
 
-from eyas.core.jit import inlined_kernel
-from eyas.core.lanes import greater, to_f4, to_i4, to_u4
+from eyas.lanes import kernel
+from eyas.lanes.vector import greater, to_f4, to_i4, to_u4
 from eyas.render.kernels.scalars import f4, u4
 
 __all__ = ["hashed", "noise", "scrambled", "tenth"]
 
 
-@inlined_kernel
+@kernel(inline=True)
 def scrambled(value: int) -> int:
     """Return a number that looks random, for a number."""
     value = to_u4((value ^ (value >> u4(16))) * u4(0x7FEB352D))
@@ -15,13 +15,13 @@ def scrambled(value: int) -> int:
     return to_u4(value ^ (value >> u4(16)))
 
 
-@inlined_kernel
+@kernel(inline=True)
 def tenth(number: int, bits: int) -> float:
     """Return ten bits of a number as 0 to 1."""
     return float((number >> u4(bits)) & u4(1023)) / 1023.0
 
 
-@inlined_kernel
+@kernel(inline=True)
 def hashed(a: int, b: int, c: int) -> int:
     """Return 32 bits that look random, for three numbers."""
     mixed = to_u4(a * u4(0x9E3779B1)) ^ to_u4(b * u4(0x85EBCA77)) ^ to_u4(c * u4(0xC2B2AE3D))
@@ -30,7 +30,7 @@ def hashed(a: int, b: int, c: int) -> int:
     return to_u4(mixed ^ (mixed >> u4(15)))
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _grain(column: int, row: int) -> float:
     """Return a number, 0 to 1, that looks random, for two hashed coordinates of a cell."""
     mixed = column ^ row
@@ -38,7 +38,7 @@ def _grain(column: int, row: int) -> float:
     return to_f4((mixed ^ (mixed >> u4(13))) & u4(0xFFFF)) * f4(1.0 / 65535.0)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def noise(x: float, y: float) -> float:
     """Return smooth noise, 0 to 1, with cells of one unit."""
     # Moved so that all cells of the land have numbers above 0, where cutting off is rounding down.

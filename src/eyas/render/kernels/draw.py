@@ -1,8 +1,6 @@
 """Pictures: the loop over bands of views, and the steps of each."""
 
-from eyas.core.intrinsics import address_of, claim
-from eyas.core.jit import inner_kernel
-from eyas.core.parallel import Pointer, parallel_kernel
+from eyas.lanes import Pointer, address_of, claim, kernel, parallel_kernel
 from eyas.render.kernels.bundles import Geometry, Light, Movers, Output, Scratch, Task
 from eyas.render.kernels.light.casters import cast_light
 from eyas.render.kernels.light.view_light import view_light
@@ -37,7 +35,7 @@ def draw_views(
         index = claim(job.begun)
 
 
-@inner_kernel
+@kernel
 def _draw_band(
     index: int,
     geometry: Geometry,

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inlined_kernel
-from eyas.core.lanes import (
+from eyas.lanes import kernel
+from eyas.lanes.vector import (
     WIDTH,
     first_bit,
     gather,
@@ -21,13 +21,13 @@ __all__ = ["keys_of", "pack", "write_pixels"]
 _ALL = (1 << WIDTH) - 1
 
 
-@inlined_kernel
+@kernel(inline=True)
 def pack(red: int, green: int, blue: int) -> int:
     """Return three bytes in one number, red in the lowest."""
     return to_u4(red | (green << u4(8)) | (blue << u4(16)))
 
 
-@inlined_kernel
+@kernel(inline=True)
 def write_pixels(pixels: NDArray[np.uint8], row: int, first: int, chosen: int, packed: int) -> None:
     """Write packed bytes to those of eight pixels, from column `first` on, whose bit is set."""
     if chosen == _ALL:
@@ -43,7 +43,7 @@ def write_pixels(pixels: NDArray[np.uint8], row: int, first: int, chosen: int, p
         pixels[row, column, 2] = (value >> u4(16)) & u4(255)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def keys_of(key: NDArray[np.int64], line: int, sample: int, step: int) -> int:
     """Return eight keys of a line, from a sample on, `step` apart."""
     at = i8(line) * key.shape[1] + sample

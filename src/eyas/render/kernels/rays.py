@@ -2,7 +2,7 @@
 
 from typing import NamedTuple
 
-from eyas.core.jit import inlined_kernel
+from eyas.lanes import kernel
 from eyas.render.kernels.bundles import Direction, Point, View
 from eyas.render.kernels.scalars import f4
 
@@ -32,12 +32,12 @@ class Rays(NamedTuple):
     """Angle that a pixel spans [rad]."""
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _rounded(vector: Point) -> Direction:
     return Direction(f4(vector.x), f4(vector.y), f4(vector.z))
 
 
-@inlined_kernel
+@kernel(inline=True)
 def rays_of(view: View) -> Rays:
     """Return the rays of a band."""
     return Rays(
@@ -54,7 +54,7 @@ def rays_of(view: View) -> Rays:
     )
 
 
-@inlined_kernel
+@kernel(inline=True)
 def ray_of(rays: Rays, line: float, column: float) -> tuple[float, float, float]:
     """Return the ray through a place of the picture [samples], of length 1 along the optical axis.
 

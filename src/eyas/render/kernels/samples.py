@@ -2,8 +2,8 @@
 
 from typing import NamedTuple
 
-from eyas.core.jit import inlined_kernel
-from eyas.core.lanes import to_f4
+from eyas.lanes import kernel
+from eyas.lanes.vector import to_f4
 from eyas.render.kernels.bundles import Direction, View
 from eyas.render.kernels.scalars import f4
 
@@ -38,13 +38,13 @@ class Sight(NamedTuple):
     up: Direction
 
 
-@inlined_kernel
+@kernel(inline=True)
 def nowhere() -> ScreenBox:
     """Return an empty box."""
     return ScreenBox(1e9, 1e9, -1e9, -1e9)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def around(box: ScreenBox, view: View, x: float, y: float, z: float) -> ScreenBox:
     """Return a screen box extended by a point; unbounded if the point is not in front."""
     ahead, across, down = view.screen.distance, view.screen.column, view.screen.row
@@ -58,7 +58,7 @@ def around(box: ScreenBox, view: View, x: float, y: float, z: float) -> ScreenBo
     )
 
 
-@inlined_kernel
+@kernel(inline=True)
 def sight_from(view: View, origin: Direction, along_x: float, along_y: float) -> Sight:
     """Return the camera of a view in an upright frame.
 
@@ -95,7 +95,7 @@ def sight_from(view: View, origin: Direction, along_x: float, along_y: float) ->
     )
 
 
-@inlined_kernel
+@kernel(inline=True)
 def ray_of_row(sight: Sight, view: View, line: int) -> Direction:
     """Return the ray, of length 1 along the optical axis, to the middle of a row of samples.
 
@@ -109,7 +109,7 @@ def ray_of_row(sight: Sight, view: View, line: int) -> Direction:
     return Direction(ahead.x + rise * up.x, ahead.y + rise * up.y, ahead.z + rise * up.z)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def point_of(
     sight: Sight, view: View, ray: Direction, column: int, inverse: float
 ) -> tuple[float, float, float]:

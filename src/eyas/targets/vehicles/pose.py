@@ -5,9 +5,8 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.elementary import sin_cos, tan
-from eyas.core.jit import kernel
-from eyas.core.parallel import Pointer, parallel_kernel
+from eyas.lanes import Pointer, kernel, parallel_kernel
+from eyas.lanes.elementary import sin_cos, tan
 from eyas.state.motion import ActorState
 from eyas.targets.kind import Group, Looks
 from eyas.targets.vehicles.models import VEHICLE_AHEAD

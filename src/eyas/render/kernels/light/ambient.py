@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core import exact
-from eyas.core.jit import inlined_kernel, inner_kernel
-from eyas.core.lanes import (
+from eyas.lanes import Pointer, kernel, parallel_kernel
+from eyas.lanes.vector import (
     gather_pair,
     gather_pair_after,
     greater,
@@ -18,7 +18,6 @@ from eyas.core.lanes import (
     to_f4,
     to_i4,
 )
-from eyas.core.parallel import Pointer, parallel_kernel
 from eyas.render.kernels.bundles import Light
 from eyas.render.kernels.scalars import f4, i4, u4
 
@@ -57,13 +56,13 @@ DISTANCES = tuple(0.9 * float(exact.power(1.36, step)) for step in range(STEPS))
 _HALF_WAY = 1.0 / math.sqrt(1.36)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _sine_squared(height: float, far: float) -> float:
     """Return sin^2 of the angle below which something is seen: the share of the light below it."""
     return height * height / (height * height + far * far)
 
 
-@inner_kernel
+@kernel
 def _open_share(
     bake: "OpennessBake", row: int, column: int, near_decks: bool
 ) -> tuple[float, float]:
@@ -109,7 +108,7 @@ def _open_share(
     return BOUNCED + (1.0 - BOUNCED) * max(share, 0.0), height
 
 
-@inner_kernel
+@kernel
 def _covered(
     bake: "OpennessBake", row: int, column: int, direction: int, hidden: float
 ) -> tuple[float, float]:
@@ -177,7 +176,7 @@ def bake_openness(parts: Pointer[tuple[Pointer[OpennessBake]]], worker: int, wor
             result[row, column] = np.uint16(int(255.0 * share + 0.5) | (int(height) << 8))
 
 
-@inner_kernel
+@kernel
 def _outside(solid: NDArray[np.float32], row: int, column: int) -> tuple[int, int]:
     """Return the nearest texel within 3 that is lower by a storey, or this one."""
     rows, columns = solid.shape
@@ -195,7 +194,7 @@ def _outside(solid: NDArray[np.float32], row: int, column: int) -> tuple[int, in
     return row, column
 
 
-@inlined_kernel
+@kernel(inline=True)
 def openness(light: Light, x: float, y: float, z: float, normal_x: float, normal_y: float) -> float:
     """Return the share of the sky's light that reaches a point, 0 to 1.
 

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inlined_kernel, inner_kernel
-from eyas.core.lanes import (
+from eyas.lanes import kernel
+from eyas.lanes.vector import (
     WIDTH,
     any_of,
     greater,
@@ -50,7 +50,7 @@ BEAM_REACH = _REACH + _SPREAD
 """Distance from the end of a vehicle up to which its lamps may light things, at most [m]."""
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _head(ahead: float, aside: float, rise: float) -> float:
     """Return the light at points ahead of a vehicle's front [m], 0 to 1.
 
@@ -67,7 +67,7 @@ def _head(ahead: float, aside: float, rise: float) -> float:
     return select(lit, fan * fan * near * near * far * far * low, zero)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _tail(behind: float, aside: float, rise: float) -> float:
     """Return the red light at points behind a vehicle's back [m], 0 to 1."""
     one, zero = f4(1.0), f4(0.0)
@@ -77,7 +77,7 @@ def _tail(behind: float, aside: float, rise: float) -> float:
     return select(lit, greater(one - across * across, zero) * far * far, zero)
 
 
-@inner_kernel
+@kernel
 def _screen_box(caster: Caster, view: View) -> ScreenBox:
     """Return the box around all that a vehicle's lamps may light, see `around`."""
     box = nowhere()
@@ -91,7 +91,7 @@ def _screen_box(caster: Caster, view: View) -> ScreenBox:
     return box
 
 
-@inner_kernel
+@kernel
 def cast_beam(caster: Caster, view: View, key: NDArray[np.int64], shade: NDArray[np.uint8]) -> None:
     """Brighten the samples that one vehicle's lamps light, channels 2 and 3 of `Scratch.shade`.
 

@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-from eyas.core.jit import inlined_kernel, inner_kernel
+from eyas.lanes import kernel
 from eyas.render.kernels.bundles import Direction, Geometry, Movers, View
 from eyas.render.kernels.light.shadow_boxes import Box, ShadowBoxes, shadow_boxes
 from eyas.render.kernels.samples import Sight, sight_from
@@ -54,13 +54,13 @@ class Caster(NamedTuple):
     """Distance from the thing up to which it blocks the sky's light on the ground."""
 
 
-@inlined_kernel
+@kernel(inline=True)
 def beyond(height: float) -> float:
     """Return the distance up to which a thing of a height blocks the sky's light [m]."""
     return 0.55 + 0.2 * height
 
 
-@inner_kernel
+@kernel
 def reach_of(geometry: Geometry, movers: Movers, world: int, first: int, last: int) -> float:
     """Return how far the parts in slots `first` to `last` are from the first's origin [m].
 
@@ -82,7 +82,7 @@ def reach_of(geometry: Geometry, movers: Movers, world: int, first: int, last: i
     return reach
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _largest(geometry: Geometry, movers: Movers, world: int, first: int, last: int) -> int:
     """Return the slot of the largest part that is not upright."""
     poses, parts = movers.pose[world], movers.part[world]
@@ -97,14 +97,14 @@ def _largest(geometry: Geometry, movers: Movers, world: int, first: int, last: i
     return body
 
 
-@inlined_kernel
+@kernel(inline=True)
 def has_lamps(geometry: Geometry, movers: Movers, world: int, first: int, last: int) -> bool:
     """Return whether a thing has head and tail lamps."""
     body = _largest(geometry, movers, world, first, last)
     return bool(geometry.lamps[geometry.part_first + movers.part[world, body]])
 
 
-@inner_kernel
+@kernel
 def caster_of(geometry: Geometry, movers: Movers, world: int, first: int, last: int) -> Caster:
     """Return the box around slots `first` to `last`."""
     poses, parts = movers.pose[world], movers.part[world]
@@ -153,14 +153,14 @@ def caster_of(geometry: Geometry, movers: Movers, world: int, first: int, last: 
     )
 
 
-@inlined_kernel
+@kernel(inline=True)
 def sight_of(caster: Caster, view: View) -> Sight:
     """Return the camera in the thing's own frame: origin at the middle of its bottom."""
     origin = Direction(caster.x, caster.y, caster.bottom)
     return sight_from(view, origin, caster.along_x, caster.along_y)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def boxes_of(caster: Caster, sun: Direction) -> ShadowBoxes:
     """Return what blocks the light from a direction."""
     waist, top = f4(caster.waist - caster.bottom), f4(caster.top - caster.bottom)

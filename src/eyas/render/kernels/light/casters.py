@@ -9,9 +9,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.intrinsics import address_of
-from eyas.core.jit import inlined_kernel, inner_kernel, kernel
-from eyas.core.lanes import (
+from eyas.lanes import address_of, kernel
+from eyas.lanes.vector import (
     WIDTH,
     any_of,
     lane_numbers,
@@ -55,7 +54,7 @@ _BELOW = 0.3
 """Distance below the bottom of a thing down to which its shadow falls [m]."""
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _throw(sun: Direction) -> float:
     """Return the distance of a shadow's end, per metre of height and unit of the sun's x and y."""
     return min(1.0 / max(float(sun.z), 1e-3), _LONGEST)
@@ -76,7 +75,7 @@ def influence(reach: float, sun: Direction, lamps_on: bool) -> float:
     return max(most, CORNER * reach + BEAM_REACH) if lamps_on else most
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _may_reach(
     geometry: Geometry, movers: Movers, world: int, first: int, last: int, sun: Direction,
     lamps_on: bool, view: View,
@@ -92,7 +91,7 @@ def _may_reach(
     )
 
 
-@inner_kernel
+@kernel
 def _may_show(caster: Caster, sun: Direction, view: View) -> bool:
     """Return whether a shadow may be in the picture, and large enough to see."""
     height = caster.top - caster.bottom
@@ -106,7 +105,7 @@ def _may_show(caster: Caster, sun: Direction, view: View) -> bool:
     return sphere_is_visible(view.planes, x, y, z, reach)
 
 
-@inner_kernel
+@kernel
 def _screen_box(caster: Caster, sun: Direction, view: View) -> ScreenBox:
     """Return the box around a thing and its shadow on the ground, see `around`."""
     box = nowhere()
@@ -125,7 +124,7 @@ def _screen_box(caster: Caster, sun: Direction, view: View) -> ScreenBox:
     return box
 
 
-@inner_kernel
+@kernel
 def _cast_shadow(
     caster: Caster,
     sun: Direction,
@@ -164,7 +163,7 @@ def _cast_shadow(
             store_words(shade, 4 * at, select(seen, dark, words))
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _end_of_body(geometry: Geometry, movers: Movers, world: int, first: int, last: int) -> int:
     """Return the slot after those of a body: that of the trailer of what begins at `first`."""
     parts = movers.part[world]
@@ -176,14 +175,14 @@ def _end_of_body(geometry: Geometry, movers: Movers, world: int, first: int, las
     return end
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _stretch(truck: Caster, trailer: Caster) -> float:
     """Return how much farther back a trailer ends, if it is straight behind its truck [m]."""
     apart = math.sqrt((truck.x - trailer.x) ** 2 + (truck.y - trailer.y) ** 2)
     return max(apart + trailer.length - truck.length, 0.0)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _longer(caster: Caster, more: float) -> Caster:
     """Return a caster that ends farther back [m]."""
     half = 0.5 * more
@@ -195,7 +194,7 @@ def _longer(caster: Caster, more: float) -> Caster:
     )  # fmt: skip
 
 
-@inner_kernel
+@kernel
 def cast_light(
     geometry: Geometry,
     movers: Movers,

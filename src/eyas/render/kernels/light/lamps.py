@@ -1,7 +1,7 @@
 """Light of street lamps, windows and other sources."""
 
-from eyas.core.jit import inlined_kernel
-from eyas.core.lanes import (
+from eyas.lanes import kernel
+from eyas.lanes.vector import (
     any_of,
     gather,
     greater,
@@ -33,7 +33,7 @@ _BAYS = f4(4.0)
 """Windows along a side of one repeat of a facade's texture."""
 
 
-@inlined_kernel
+@kernel(inline=True)
 def night_light(
     light: Light,
     on: float,
@@ -61,7 +61,7 @@ def night_light(
     )
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _street_light(
     light: Light, point: tuple[float, float, float], normal: tuple[float, float, float]
 ) -> float:
@@ -98,7 +98,7 @@ def _street_light(
     return total
 
 
-@inlined_kernel
+@kernel(inline=True)
 def window_light(
     share: float, building: int, detail: int, u: float, v: float
 ) -> tuple[float, float, float]:

@@ -2,8 +2,8 @@
 
 from typing import NamedTuple
 
-from eyas.core.jit import inlined_kernel
-from eyas.core.lanes import greater, lesser, magnitude, root, select
+from eyas.lanes import kernel
+from eyas.lanes.vector import greater, lesser, magnitude, root, select
 from eyas.render.kernels.bundles import Direction
 from eyas.render.kernels.scalars import f4
 
@@ -55,12 +55,12 @@ class ShadowBoxes(NamedTuple):
     """Share of it that is blocked under the thing."""
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _inverse(step: float) -> float:
     return f4(1.0 / (step if abs(step) > _STEEP else _STEEP))
 
 
-@inlined_kernel
+@kernel(inline=True)
 def shadow_boxes(
     lower: Box, upper: Box, sun: Direction, width: float, beyond: float
 ) -> ShadowBoxes:
@@ -85,14 +85,14 @@ def shadow_boxes(
     )
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _between(start: float, inverse: float, low: float, high: float) -> tuple[float, float]:
     """Return when a point enters and leaves a range; `inverse` is 1 over its speed."""
     first, last = (low - start) * inverse, (high - start) * inverse
     return lesser(first, last), greater(first, last)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _blocked(x: float, y: float, z: float, box: Box, inverse: Direction) -> float:
     """Return how much of the sun a box hides from a point; 1 or more is all.
 
@@ -107,7 +107,7 @@ def _blocked(x: float, y: float, z: float, box: Box, inverse: Direction) -> floa
     return inside / (f4(_EDGE) + f4(_WIDENING) * enters)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def may_darken(boxes: ShadowBoxes, x: float, y: float, z: float) -> bool:
     """Return which points in the thing's frame it may darken; it is certain of the others."""
     up = boxes.upper.top - z
@@ -117,7 +117,7 @@ def may_darken(boxes: ShadowBoxes, x: float, y: float, z: float) -> bool:
     return inside & (lesser(y, end_y) < far_y) & (greater(y, end_y) > -far_y) & (up >= f4(0.0))
 
 
-@inlined_kernel
+@kernel(inline=True)
 def darken(boxes: ShadowBoxes, x: float, y: float, z: float) -> tuple[float, float]:
     """Return the shares of sun and sky light that a thing lets through to points in its frame."""
     zero, one = f4(0.0), f4(1.0)

@@ -5,9 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inlined_kernel, inner_kernel
-from eyas.core.lanes import any_of, bits_of, first_bit, greater, lane_numbers, load, to_f8
-from eyas.core.parallel import Pointer, parallel_kernel
+from eyas.lanes import Pointer, kernel, parallel_kernel
+from eyas.lanes.vector import any_of, bits_of, first_bit, greater, lane_numbers, load, to_f8
 from eyas.render.kernels.bundles import TILE, Geometry, Projection, Row
 from eyas.render.kernels.scalars import f4, i4, i8
 from eyas.render.kernels.visibility.clusters import (
@@ -89,7 +88,7 @@ def bake_tiles(parts: Pointer[tuple[Geometry, ShadowBake]], worker: int, workers
                     )  # fmt: skip
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _copy_tile(key: NDArray[np.int64], top: int, left: int, heights: NDArray[np.uint16]) -> None:
     for line in range(TILE + 1):
         for column in range(TILE + 1):
@@ -97,7 +96,7 @@ def _copy_tile(key: NDArray[np.int64], top: int, left: int, heights: NDArray[np.
             heights[line, column] = np.uint16(min(height, f4(65535.0)))
 
 
-@inner_kernel
+@kernel
 def _draw_block(geometry: Geometry, bake: ShadowBake, top: int, left: int, worker: int) -> None:
     """Draw a block, whose first texel is that of row `top` and column `left` of the map."""
     bake.key[worker][:] = 0
@@ -125,7 +124,7 @@ def _draw_block(geometry: Geometry, bake: ShadowBake, top: int, left: int, worke
             _draw(geometry, bake, mesh, screen, -EVERYWHERE, right, down, worker)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _is_in(reach: NDArray[np.float32], thing: int, top: int, left: int) -> bool:
     """Return whether a chunk or fixture may cover texels of a block."""
     return (
@@ -136,12 +135,12 @@ def _is_in(reach: NDArray[np.float32], thing: int, top: int, left: int) -> bool:
     )
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _along(row: Row, x: float, y: float, z: float) -> float:
     return row.x * x + row.y * y + row.z * z + row.w
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _corner(
     cluster: NDArray[np.float32], at: int, screen: Projection
 ) -> tuple[float, float, float]:
@@ -155,7 +154,7 @@ def _corner(
     )
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _project(
     cluster: NDArray[np.float32], number: int, screen: Projection, right: float, down: float
 ) -> Corners:
@@ -167,7 +166,7 @@ def _project(
     return Corners(ax + right, ay + down, ai, bx + right, by + down, bi, cx + right, cy + down, ci)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _top(cluster: NDArray[np.float32], number: int) -> float:
     """Return z of the highest corner of eight triangles."""
     at = number * CLUSTER_ROWS * CLUSTER + 2 * CLUSTER
@@ -175,7 +174,7 @@ def _top(cluster: NDArray[np.float32], number: int) -> float:
     return greater(greater(load(cluster, at), b), c)
 
 
-@inner_kernel
+@kernel
 def _draw(
     geometry: Geometry,
     bake: ShadowBake,

@@ -1,7 +1,7 @@
 """Light that comes straight from the sun."""
 
-from eyas.core.jit import inlined_kernel
-from eyas.core.lanes import (
+from eyas.lanes import kernel
+from eyas.lanes.vector import (
     any_of,
     gather,
     gather_pair,
@@ -21,7 +21,7 @@ __all__ = ["sunlight", "sunlit"]
 TILE_BITS = i4(TILE.bit_length() - 1)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _first_texel(light: Light, line: int, column: int) -> int:
     """Return the index in `Light.shadow_texel` of a texel of the map; its neighbours in the next
     column and line, and the one beside both, lie in the same tile.
@@ -30,7 +30,7 @@ def _first_texel(light: Light, line: int, column: int) -> int:
     return gather(light.shadow_tile, tile) + line * i4(TILE + 1) + column
 
 
-@inlined_kernel
+@kernel(inline=True)
 def sunlit(light: Light, x: float, y: float, z: float) -> float:
     """Return how much of the sun reaches a point, 0 to 1, blended over four texels."""
     rows, texels = light.shadow_rows, light.shadow_texel
@@ -55,7 +55,7 @@ def sunlit(light: Light, x: float, y: float, z: float) -> float:
     return above + down * (below - above)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def sunlight(
     light: Light,
     sun: Direction,

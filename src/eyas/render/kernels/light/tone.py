@@ -1,7 +1,7 @@
 """Conversion of light to bytes."""
 
-from eyas.core.jit import inlined_kernel
-from eyas.core.lanes import gather, greater, lesser, to_i4
+from eyas.lanes import kernel
+from eyas.lanes.vector import gather, greater, lesser, to_i4
 from eyas.render.kernels.bundles import Light
 from eyas.render.kernels.scalars import f4
 
@@ -18,7 +18,7 @@ _STEPS_PER_UNIT = f4(TONE_STEPS / TONE_TOP)
 _LAST_STEP = f4(TONE_STEPS - 1)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def tone_byte(light: Light, exposure: float, radiance: float) -> int:
     """Return the byte of the picture for a radiance."""
     # In this order NaN, for which every comparison is false, becomes black, not an index error.
@@ -26,7 +26,7 @@ def tone_byte(light: Light, exposure: float, radiance: float) -> int:
     return gather(light.tone, to_i4(lesser(step, _LAST_STEP)))
 
 
-@inlined_kernel
+@kernel(inline=True)
 def tone_bytes(
     light: Light, exposure: float, colour: tuple[float, float, float]
 ) -> tuple[int, int, int]:

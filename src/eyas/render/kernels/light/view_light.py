@@ -3,19 +3,19 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inlined_kernel
+from eyas.lanes import kernel
 from eyas.render.kernels.bundles import Air, Direction, Illumination
 from eyas.render.kernels.scalars import f4
 
 __all__ = ["view_light"]
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _scaled(share: float, colour: Direction) -> Direction:
     return Direction(share * colour.x, share * colour.y, share * colour.z)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def view_light(weather: Illumination, change: NDArray[np.float32]) -> Illumination:
     """Return the light of a view.
 
@@ -39,7 +39,7 @@ def view_light(weather: Illumination, change: NDArray[np.float32]) -> Illuminati
     )
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _air(air: Air, density: float) -> Air:
     """Return the air with another density of fog."""
     return Air(

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inlined_kernel, inner_kernel
-from eyas.core.lanes import WIDTH, bits_of, lane_numbers, root, to_f4
+from eyas.lanes import kernel
+from eyas.lanes.vector import WIDTH, bits_of, lane_numbers, root, to_f4
 from eyas.render.kernels.bundles import Illumination, Light, View
 from eyas.render.kernels.light.tone import tone_bytes
 from eyas.render.kernels.pixels import keys_of, pack, write_pixels
@@ -15,7 +15,7 @@ from eyas.render.kernels.sky.radiance import sky
 __all__ = ["draw_backdrop", "sky_pixel"]
 
 
-@inlined_kernel
+@kernel(inline=True)
 def sky_pixel(light: Light, lit: Illumination, rays: Rays, line: float, column: float) -> int:
     """Return the packed bytes of the sky at a place of the picture [samples]."""
     x, y, z = ray_of(rays, line, column)
@@ -25,7 +25,7 @@ def sky_pixel(light: Light, lit: Illumination, rays: Rays, line: float, column: 
     return pack(red, green, blue)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _sky_bits(key: NDArray[np.int64], line: int, sample: int, samples: int) -> int:
     """Return in which of eight pixels any sample shows the sky, a bit each."""
     bits = i8(0)
@@ -35,7 +35,7 @@ def _sky_bits(key: NDArray[np.int64], line: int, sample: int, samples: int) -> i
     return bits
 
 
-@inner_kernel
+@kernel
 def draw_backdrop(
     view: View,
     light: Light,

@@ -6,9 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.elementary import exp
-from eyas.core.jit import inlined_kernel, inner_kernel
-from eyas.core.parallel import Pointer, parallel_kernel
+from eyas.lanes import Pointer, kernel, parallel_kernel
+from eyas.lanes.elementary import exp
 from eyas.render.kernels.scalars import f4, u4
 
 __all__ = ["DEEPEST", "CloudRays", "cloud_rays"]
@@ -32,7 +31,7 @@ _BUMP = f4(0.15)
 """Depth by which details reduce a heap [km]."""
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _smooth(field: NDArray[np.float32], x: float, y: float, channel: int) -> float:
     """Return a value of a field that repeats, shape (256, 256, .), at texel (x, y)."""
     # Moved to where cutting digits off is rounding down: no ray comes as far.
@@ -46,7 +45,7 @@ def _smooth(field: NDArray[np.float32], x: float, y: float, channel: int) -> flo
     return f4(lower + up * (upper - lower))
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _reach(climb: float, height: float) -> float:
     """Return how far away [km] a ray is at a height [km] over the round earth.
 
@@ -85,7 +84,7 @@ def cloud_rays(parts: Pointer[tuple[Pointer[CloudRays]]], worker: int, workers: 
         _cloud_row(field, climb, directions, output[row])
 
 
-@inner_kernel
+@kernel
 def _cloud_row(
     field: NDArray[np.float32],
     climb: float,
@@ -104,7 +103,7 @@ def _cloud_row(
         output[column, 1] = u4(f4(255.0) * min(bright, one) + f4(0.5))
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _heaps(field: NDArray[np.float32], x: float, y: float, climb: float) -> tuple[float, float]:
     """Return the share of light that passes the heaps along a ray, and their brightness.
 

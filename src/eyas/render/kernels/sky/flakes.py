@@ -10,8 +10,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.intrinsics import address_of
-from eyas.core.jit import inlined_kernel, inner_kernel
+from eyas.lanes import address_of, kernel
 from eyas.render.kernels.bundles import Illumination, Light, View
 from eyas.render.kernels.chance import scrambled, tenth
 from eyas.render.kernels.light.tone import tone_bytes
@@ -40,14 +39,14 @@ SMALLEST = 0.35
 """Radius below which flakes are invisible [pixels]."""
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _wave(turn: float) -> float:
     """Return approximately the sine of an angle given in turns, made of parabolas."""
     part = turn - math.floor(turn) - 0.5
     return float(16.0 * part * (abs(part) - 0.5))
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _white(light: Light, lit: Illumination) -> tuple[int, int, int]:
     """Return a flake's bytes: it is lit by the sky and, a little, by sunlight shining through."""
     above, sun = lit.above, lit.sun_colour
@@ -60,7 +59,7 @@ def _white(light: Light, lit: Illumination) -> tuple[int, int, int]:
     return i8(red), i8(green), i8(blue)
 
 
-@inner_kernel
+@kernel
 def let_flakes_fall(
     view: View,
     light: Light,
@@ -89,13 +88,13 @@ def let_flakes_fall(
         begin = end
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _radius(size: float, distance: float) -> float:
     """Return the radius of a flake [m]; a distant flake represents several."""
     return (0.4 + 0.6 * size) * (0.0035 + 0.0007 * distance)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _cells(
     ahead: float, left: float, up: float, end: float, origin: float, view: View
 ) -> tuple[int, int]:
@@ -117,7 +116,7 @@ def _cells(
     return i8(first) - 1, i8(last) + 2
 
 
-@inner_kernel
+@kernel
 def _fill_shell(shell: int, begin: float, end: float, snowfall: Snowfall) -> None:
     """Draw the flakes of all cells that the band may show."""
     view, instant, side = snowfall.band, snowfall.instant, end / CELLS
@@ -143,7 +142,7 @@ def _fill_shell(shell: int, begin: float, end: float, snowfall: Snowfall) -> Non
                     _draw_flake(number, middle, begin, end, snowfall)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _seen_from(view: View, x: float, y: float, z: float) -> tuple[float, float, float]:
     """Return how far a direction goes forward, left and up."""
     ahead, left, up = view.ahead, view.left, view.up
@@ -154,7 +153,7 @@ def _seen_from(view: View, x: float, y: float, z: float) -> tuple[float, float, 
     )
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _in_band(
     middle: tuple[float, float, float],
     begin: float,
@@ -176,7 +175,7 @@ def _in_band(
     return bool(up >= low * ahead - ball * math.sqrt(1.0 + low * low))
 
 
-@inner_kernel
+@kernel
 def _draw_flake(
     number: int, middle: tuple[float, float, float], begin: float, end: float, snowfall: Snowfall
 ) -> None:

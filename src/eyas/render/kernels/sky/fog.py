@@ -1,7 +1,7 @@
 """The air between the camera and things."""
 
-from eyas.core.jit import inlined_kernel
-from eyas.core.lanes import lesser
+from eyas.lanes import kernel
+from eyas.lanes.vector import lesser
 from eyas.render.kernels.bundles import Illumination
 from eyas.render.kernels.scalars import f4
 
@@ -14,7 +14,7 @@ the hills matches the end of the land, however high the viewer is."""
 _FARTHEST = f4(1000.0 * HAZE_END)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def hidden_at(lit: Illumination, distance: float) -> float:
     """Return how much of what lies at a distance [m] the air hides, 0 to 1."""
     thickness = distance * lit.air.density
@@ -28,7 +28,7 @@ def hidden_at(lit: Illumination, distance: float) -> float:
     return f4(1.0) - f4(1.0) / (power * power)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def fog_share(lit: Illumination, distance: float) -> float:
     """Return how much of what lies at a distance [m] the air hides, 0 to 1; see `HAZE_END`."""
     return hidden_at(lit, lesser(distance, _FARTHEST))

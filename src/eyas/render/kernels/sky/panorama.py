@@ -8,14 +8,14 @@ value of a column or row is that at its centre.
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inlined_kernel
-from eyas.core.lanes import gather, greater, lesser, magnitude, select, to_f4, to_i4
+from eyas.lanes import kernel
+from eyas.lanes.vector import gather, greater, lesser, magnitude, select, to_f4, to_i4
 from eyas.render.kernels.scalars import f4, i4
 
 __all__ = ["azimuth", "panorama"]
 
 
-@inlined_kernel
+@kernel(inline=True)
 def azimuth(x: float, y: float) -> float:
     """Return the azimuth of the direction (x, y), 0 to 4."""
     share = y / (magnitude(x) + magnitude(y) + f4(1e-9))
@@ -23,7 +23,7 @@ def azimuth(x: float, y: float) -> float:
     return select(x < f4(0.0), f4(2.0) - share, south)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def panorama(values: NDArray[np.uint8], row: float, around: float, channel: int) -> float:
     """Return a channel, 0 to 1, interpolated between the four nearest values.
 

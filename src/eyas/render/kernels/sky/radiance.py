@@ -1,7 +1,7 @@
 """The sky in a direction, and what smooth surfaces mirror of it."""
 
-from eyas.core.jit import inlined_kernel
-from eyas.core.lanes import any_of, greater, lesser, like, select
+from eyas.lanes import kernel
+from eyas.lanes.vector import any_of, greater, lesser, like, select
 from eyas.render.kernels.bundles import Direction, Illumination, Light
 from eyas.render.kernels.scalars import f4
 from eyas.render.kernels.sky.fog import HAZE_END, hidden_at
@@ -41,19 +41,19 @@ _FOOT = f4(0.012)
 Colour = tuple[float, float, float]
 
 
-@inlined_kernel
+@kernel(inline=True)
 def blended(a: Colour, b: Colour, share: float) -> Colour:
     """Return a colour on the way from one to another."""
     return a[0] + share * (b[0] - a[0]), a[1] + share * (b[1] - a[1]), a[2] + share * (b[2] - a[2])
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _dot(x: float, y: float, z: float, direction: Direction) -> float:
     """Return the cosine of the angle to a direction, at least 0."""
     return greater(x * direction.x + y * direction.y + z * direction.z, f4(0.0))
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _air(lit: Illumination, z: float, toward_sun: float) -> tuple[float, float, float, float]:
     """Return the radiance of a cloudless sky and the transparency of the haze.
 
@@ -84,7 +84,7 @@ def _air(lit: Illumination, z: float, toward_sun: float) -> tuple[float, float, 
     return red + glow * sun.x, green + glow * sun.y, blue + glow * sun.z, clear
 
 
-@inlined_kernel
+@kernel(inline=True)
 def sky(light: Light, lit: Illumination, x: float, y: float, z: float, pixel: float) -> Colour:
     """Return the colour of a direction of length 1 in which nothing stands.
 
@@ -114,7 +114,7 @@ def sky(light: Light, lit: Illumination, x: float, y: float, z: float, pixel: fl
     return colour
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _open_sky(
     light: Light, lit: Illumination, x: float, y: float, z: float, around: float, pixel: float
 ) -> Colour:
@@ -152,12 +152,12 @@ def _open_sky(
     return red, green, blue
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _hill_row(light: Light, z: float) -> float:
     return z * f4(len(light.hills) / HILL_TOP) - f4(0.5)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _hills(light: Light, lit: Illumination, z: float, around: float) -> Colour:
     """Return the colour of the hills, and below the horizon of the far plain."""
     zero, one, hills = f4(0.0), f4(1.0), light.hills
@@ -176,7 +176,7 @@ def _hills(light: Light, lit: Illumination, z: float, around: float) -> Colour:
     return blended((red, green, blue), lit.fog, hidden_at(lit, away))
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _surroundings(lit: Illumination) -> Colour:
     """Return the mean radiance of walls and trees: half in the sun, and half of the sky above."""
     sun, above, below, share = lit.sun_colour, lit.above, lit.below, f4(0.5)
@@ -187,7 +187,7 @@ def _surroundings(lit: Illumination) -> Colour:
     )
 
 
-@inlined_kernel
+@kernel(inline=True)
 def reflection(
     lit: Illumination,
     ray: Colour,

@@ -1,7 +1,7 @@
 """Stars: at most one in each cell of the sky, always the same."""
 
-from eyas.core.jit import inlined_kernel
-from eyas.core.lanes import greater, lesser, like, magnitude, root, select, to_f4, to_i4, to_u4
+from eyas.lanes import kernel
+from eyas.lanes.vector import greater, lesser, like, magnitude, root, select, to_f4, to_i4, to_u4
 from eyas.render.kernels.chance import hashed
 from eyas.render.kernels.scalars import f4, u4
 
@@ -17,7 +17,7 @@ _SIZE = f4(0.0011)
 """Radius to which the brightness of stars refers [rad]; wider pixels dim them."""
 
 
-@inlined_kernel
+@kernel(inline=True)
 def starlight(x: float, y: float, z: float, around: float, pixel: float) -> tuple[float, float]:
     """Return the radiance of the star in a direction of length 1, and its tint: red above 0.
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inner_kernel
+from eyas.lanes import kernel
 from eyas.render.kernels.bundles import View
 from eyas.render.kernels.scalars import i8
 from eyas.render.kernels.visibility.key import distance_inverse
@@ -30,7 +30,7 @@ class Snowfall(NamedTuple):
     """sRGB, shape (rows, columns, 3)."""
 
 
-@inner_kernel
+@kernel
 def smear(
     column: float,
     row: float,

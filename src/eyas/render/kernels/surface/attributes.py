@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inlined_kernel
-from eyas.core.lanes import any_of, bit_pattern, like, magnitude, root, select, transposed
+from eyas.lanes import kernel
+from eyas.lanes.vector import any_of, bit_pattern, like, magnitude, root, select, transposed
 from eyas.render.kernels.scalars import f4, i4
 
 __all__ = ["Attributes", "Frame", "attributes_of", "frame_of", "no_frame"]
@@ -70,13 +70,13 @@ class Attributes(NamedTuple):
     """Object id of static triangles."""
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _linear(value: float) -> float:
     """Return the linear value of an sRGB value (a cubic fit, within 0.003)."""
     return f4(value * (value * (value * f4(0.305306011) + f4(0.682171111)) + f4(0.012522878)))
 
 
-@inlined_kernel
+@kernel(inline=True)
 def frame_of(poses: NDArray[np.float32], colours: NDArray[np.float32], index: int) -> Frame:
     """Return row `index` of poses, shape (., 3, 4), and of colours if there are any, (., 3)."""
     p, one = poses[index], f4(1.0)
@@ -92,14 +92,14 @@ def frame_of(poses: NDArray[np.float32], colours: NDArray[np.float32], index: in
     )  # fmt: skip
 
 
-@inlined_kernel
+@kernel(inline=True)
 def no_frame() -> Frame:
     """Return what stands for the pose of the static mesh, and is not read."""
     o, i = f4(0.0), f4(1.0)
     return Frame(i, o, o, o, o, i, o, o, o, o, i, o, i, i, i, i)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _to_own(frame: Frame, point: Vector) -> Vector:
     """Return a world point in the frame of an instance."""
     f = frame
@@ -111,7 +111,7 @@ def _to_own(frame: Frame, point: Vector) -> Vector:
     )
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _turned(frame: Frame, v: Vector) -> Vector:
     """Return a vector of an instance's frame in the world, longer by its scale."""
     f = frame
@@ -122,7 +122,7 @@ def _turned(frame: Frame, v: Vector) -> Vector:
     )
 
 
-@inlined_kernel
+@kernel(inline=True)
 def attributes_of(
     shading: NDArray[np.float32], triangle: int, point: Vector, moved: bool, frame: Frame
 ) -> Attributes:

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inlined_kernel, inner_kernel
-from eyas.core.lanes import (
+from eyas.lanes import kernel
+from eyas.lanes.vector import (
     WIDTH,
     any_of,
     bits_of,
@@ -28,7 +28,7 @@ from eyas.render.kernels.visibility.key import distance_inverse, tag_of
 __all__ = ["shade_band"]
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _alike(
     key: NDArray[np.int64], line: int, sample: int, k: int
 ) -> tuple[int, bool, int, float, float, float]:
@@ -57,7 +57,7 @@ def _alike(
     return tag, is_first, to_u4(to_i4(count)), total * part, down * part, right * part
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _shade_one(
     rays: Rays,
     geometry: Geometry,
@@ -87,7 +87,7 @@ def _shade_one(
     write_pixels(pixels, row, first, bits_of(seen), packed)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _shade_four(
     rays: Rays,
     geometry: Geometry,
@@ -136,7 +136,7 @@ def _shade_four(
         write_pixels(pixels, row, first, shown, to_u4(both | (green << eight)))
 
 
-@inner_kernel
+@kernel
 def shade_band(
     view: View,
     geometry: Geometry,
@@ -178,7 +178,7 @@ def shade_band(
                 )
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _spread_words(shade: NDArray[np.uint8], at: int) -> int:
     """Return the four bytes of every second sample, from sample `at` on."""
     first = (lane_numbers() * i4(2) + i4(at)) * i4(4)
@@ -188,7 +188,7 @@ def _spread_words(shade: NDArray[np.uint8], at: int) -> int:
     return words
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _written(pixels: NDArray[np.uint8], row: int, first: int, mask: bool) -> int:
     """Return the packed bytes that eight pixels have already, 0 where the mask is not set."""
     packed = splat(u4(0))

@@ -1,7 +1,7 @@
 """Lines of paint on roads: as much paint in a pixel as it covers of the line."""
 
-from eyas.core.jit import inlined_kernel
-from eyas.core.lanes import greater, lesser, magnitude, root
+from eyas.lanes import kernel
+from eyas.lanes.vector import greater, lesser, magnitude, root
 from eyas.render.kernels.scalars import f4
 from eyas.state.mesh import MARGIN
 
@@ -15,7 +15,7 @@ _WIDEST = f4(2.0 * MARGIN)
 Vector = tuple[float, float, float]
 
 
-@inlined_kernel
+@kernel(inline=True)
 def painted_share(
     across: float, slope: Vector, scale: float, way: Vector, cosine: float, size: float
 ) -> float:

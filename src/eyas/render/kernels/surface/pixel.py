@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inlined_kernel
+from eyas.lanes import kernel
 from eyas.render.kernels.bundles import Geometry, Illumination, Light, Movers, View
 from eyas.render.kernels.light.tone import tone_bytes
 from eyas.render.kernels.pixels import pack
@@ -18,7 +18,7 @@ from eyas.render.kernels.visibility.key import distance_inverse, drawn_of, tag_o
 __all__ = ["shade_pixel"]
 
 
-@inlined_kernel
+@kernel(inline=True)
 def shade_pixel(
     view: View,
     geometry: Geometry,

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inlined_kernel, separate_kernel
-from eyas.core.lanes import bits_of, first_bit, lane, select, splat
+from eyas.lanes import kernel
+from eyas.lanes.vector import bits_of, first_bit, lane, select, splat
 from eyas.render.kernels.bundles import Geometry, Illumination, Light, Movers
 from eyas.render.kernels.light.tone import tone_bytes
 from eyas.render.kernels.pixels import pack
@@ -19,7 +19,7 @@ __all__ = ["instance_frame", "packed_points"]
 Colour = tuple[float, float, float]
 
 
-@inlined_kernel
+@kernel(inline=True)
 def instance_frame(
     geometry: Geometry, movers: Movers, world: int, drawn: NDArray[np.int32], row: int
 ) -> Frame:
@@ -30,7 +30,7 @@ def instance_frame(
     return frame_of(geometry.fixture_pose, movers.colour[world, :0], instance)
 
 
-@separate_kernel
+@kernel(inline=False)
 def _one_instance(
     geometry: Geometry,
     light: Light,
@@ -61,7 +61,7 @@ def _one_instance(
     return pack(red, green, blue)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def packed_points(
     rays: Rays,
     geometry: Geometry,

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inlined_kernel
-from eyas.core.lanes import any_of, greater, lesser, like, magnitude, root, select, to_f4
+from eyas.lanes import kernel
+from eyas.lanes.vector import any_of, greater, lesser, like, magnitude, root, select, to_f4
 from eyas.render.kernels.bundles import Geometry, Illumination, Light
 from eyas.render.kernels.light.ambient import openness
 from eyas.render.kernels.light.lamps import night_light, window_light
@@ -36,12 +36,12 @@ rows of pixels, and a blend would cost a tenth of the shading to hide what is ha
 Colour = tuple[float, float, float]
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _dot(a: Colour, b: Colour) -> float:
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _wavy(
     textures: NDArray[np.uint32],
     layer: int,
@@ -62,7 +62,7 @@ def _wavy(
     return (x * scale, y * scale, z * scale), f4(1.0) + f4(0.8) * (slope_x + slope_y)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _smoothness(surface: int, alpha: float) -> float:
     """Return the share of light that a surface mirrors at normal incidence."""
     zero = f4(0.0)
@@ -72,7 +72,7 @@ def _smoothness(surface: int, alpha: float) -> float:
     return painted + glassy + wet + select(surface == FACADE, f4(0.16) * (f4(1.0) - alpha), zero)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def shade_point(
     geometry: Geometry,
     light: Light,

@@ -2,8 +2,8 @@
 
 from enum import IntEnum
 
-from eyas.core.jit import inlined_kernel
-from eyas.core.lanes import (
+from eyas.lanes import kernel
+from eyas.lanes.vector import (
     any_of,
     gather,
     greater,
@@ -42,13 +42,13 @@ BARE, DRIVEN = i4(int(Bed.BARE)), i4(int(Bed.DRIVEN))
 LEAVES, VEHICLE = i4(int(Bed.LEAVES)), i4(int(Bed.VEHICLE))
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _clip(value: float) -> float:
     """Return a value brought into 0 to 1."""
     return lesser(greater(value, f4(0.0)), f4(1.0))
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _seen_noise(x: float, y: float, cells: float, footprint: float) -> float:
     """Return noise with some cells in a metre, faded to its mean where a pixel covers them [m]."""
     sharp = greater(f4(1.6) - f4(2.0) * cells * footprint, f4(0.0))
@@ -58,7 +58,7 @@ def _seen_noise(x: float, y: float, cells: float, footprint: float) -> float:
     return value
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _worn(light: Light, x: float, y: float, footprint: float) -> float:
     """Return how far wheels have worn the snow at a point, 0 to 1, see `tracks.TrackMap`."""
     frame, tracks = light.track_frame, light.tracks
@@ -83,13 +83,13 @@ def _worn(light: Light, x: float, y: float, footprint: float) -> float:
     return select(inside, worn * f4(1.0 / 255.0), zero)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _texel(light: Light, at: int, far: float) -> float:
     near = to_f4(gather(light.tracks, at))
     return near + far * (to_f4(gather(light.tracks, at + i4(1))) - near)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _on_leaves(
     green: float, point: Colour, above: Colour, rise: float, footprint: float
 ) -> tuple[float, float]:
@@ -116,7 +116,7 @@ def _on_leaves(
     return f4(0.92) * _clip(f4(1.7) * (cover - f4(0.1))), f4(0.78) + f4(0.2) * leaf
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _on_road(colour: Colour, worn: float, grain: float, fine: float) -> Colour:
     """Return the colour of a road with snow: white beside the lanes, wet and dark in the tracks.
 
@@ -134,7 +134,7 @@ def _on_road(colour: Colour, worn: float, grain: float, fine: float) -> Colour:
     return _mixed((wet * colour[0], wet * colour[1], wet * colour[2]), share, light)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _mixed(colour: Colour, share: float, light: float) -> Colour:
     return (
         colour[0] + share * (f4(0.84) * light - colour[0]),
@@ -143,12 +143,12 @@ def _mixed(colour: Colour, share: float, light: float) -> Colour:
     )
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _where(mask: int, a: Colour, b: Colour) -> Colour:
     return select(mask, a[0], b[0]), select(mask, a[1], b[1]), select(mask, a[2], b[2])
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _lying(
     colour: Colour, depth: float, point: Colour, rise: float, foot: float, footprint: float
 ) -> Colour:
@@ -171,7 +171,7 @@ def _lying(
     return _mixed(colour, share, f4(0.88) + f4(0.1) * drift)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def snowed(
     colour: Colour,
     light: Light,

@@ -6,8 +6,8 @@ A layer holds 256 x 256 texels, then its mip levels down to one texel, in one ro
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inlined_kernel
-from eyas.core.lanes import (
+from eyas.lanes import kernel
+from eyas.lanes.vector import (
     any_of,
     bit_pattern,
     gather,
@@ -35,7 +35,7 @@ _ONE = i4(0x3F800000)
 """The bits of 1.0."""
 
 
-@inlined_kernel
+@kernel(inline=True)
 def detail_of(texels_squared: float) -> int:
     """Return the level of detail, 0 to 2048, from the squared number of texels that a pixel spans.
 
@@ -46,21 +46,21 @@ def detail_of(texels_squared: float) -> int:
     return to_i4(lesser(greater(steps, i4(0)), _COARSEST << i4(8)))
 
 
-@inlined_kernel
+@kernel(inline=True)
 def fraction(x: float) -> float:
     """Return the fractional part of a number; truncation is faster than rounding down."""
     part = x - to_f4(to_i4(x))
     return part + select(part < f4(0.0), like(x, f4(1.0)), f4(0.0))
 
 
-@inlined_kernel
+@kernel(inline=True)
 def first_texel(level: int) -> int:
     """Return the first texel of a level: 65536 + 16384 + ... = (4^9 - 4^(9 - level)) / 3."""
     above = i4(262144) - (like(level, i4(262144)) >> (level + level))
     return to_i4(above * _THIRD)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def texel(
     textures: NDArray[np.uint32], layer: int, detail: int, blend: bool, u: float, v: float
 ) -> tuple[int, int]:
@@ -96,7 +96,7 @@ def texel(
     return low, high
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _of_level(
     textures: NDArray[np.uint32], layer: int, level: int, u: float, v: float
 ) -> tuple[int, int]:
@@ -135,7 +135,7 @@ def _of_level(
     return to_u4(low >> eight), to_u4(high >> eight)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def colour_of(low: int, high: int) -> tuple[float, float, float, float]:
     """Return the linear colour and the alpha, 0 to 1, of a texel as `texel` returns it.
 

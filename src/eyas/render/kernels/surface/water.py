@@ -3,15 +3,15 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inlined_kernel
-from eyas.core.lanes import lesser, to_i4
+from eyas.lanes import kernel
+from eyas.lanes.vector import lesser, to_i4
 from eyas.render.kernels.scalars import f4, i4
 from eyas.render.kernels.surface.texture import colour_of, texel
 
 __all__ = ["water_slope"]
 
 
-@inlined_kernel
+@kernel(inline=True)
 def water_slope(
     textures: NDArray[np.uint32], layer: int, detail: int, blend: bool, u: float, v: float
 ) -> tuple[float, float]:

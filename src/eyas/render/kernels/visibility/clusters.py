@@ -9,8 +9,8 @@ places in the cone all its triangles are seen from behind.
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inlined_kernel
-from eyas.core.lanes import any_of, bits_of, greater, lane_numbers, load, select, to_f8
+from eyas.lanes import kernel
+from eyas.lanes.vector import any_of, bits_of, greater, lane_numbers, load, select, to_f8
 from eyas.render.kernels.bundles import NEAR, Plane, Planes, Point, Projection, Row, View
 from eyas.render.kernels.scalars import f4, i4
 from eyas.render.kernels.visibility.cull import in_boxes
@@ -65,7 +65,7 @@ _SLACK = 0.02
 """How deep in a cone places must be [m]: more than float32 rounds them off."""
 
 
-@inlined_kernel
+@kernel(inline=True)
 def clusters_seen(
     bounds: NDArray[np.float32], row: int, planes: Planes, eye: Point, smallest: float
 ) -> int:
@@ -94,12 +94,12 @@ def clusters_seen(
     return bits_of(seen & ~(along * along > cut_off * cut_off * (x * x + y * y + z * z)))
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _along(row: Row, x: float, y: float, z: float) -> float:
     return row.x * x + row.y * y + row.z * z + row.w
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _corner(
     cluster: NDArray[np.float32], at: int, screen: Projection, view: View
 ) -> tuple[float, float, float, bool]:
@@ -117,7 +117,7 @@ def _corner(
     return column, row, inverse, front
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _reaches(plane: Plane, cluster: NDArray[np.float32], at: int) -> bool:
     """Return which triangles reach inside a plane."""
     row, inside = Row(plane.x, plane.y, plane.z, plane.w), lane_numbers() < i4(0)
@@ -127,7 +127,7 @@ def _reaches(plane: Plane, cluster: NDArray[np.float32], at: int) -> bool:
     return inside
 
 
-@inlined_kernel
+@kernel(inline=True)
 def project_cluster(
     cluster: NDArray[np.float32],
     number: int,
@@ -163,7 +163,7 @@ def project_cluster(
     return Corners(ax, ay, ai, bx, by, bi, cx, cy, ci), front & large, cut
 
 
-@inlined_kernel
+@kernel(inline=True)
 def has_leaves(cluster: NDArray[np.float32], number: int) -> bool:
     """Return which triangles of a cluster are leaves."""
     return load(cluster, (number * CLUSTER_ROWS + LEAVES) * CLUSTER) >= f4(0.0)

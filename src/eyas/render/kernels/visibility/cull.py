@@ -9,8 +9,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inlined_kernel
-from eyas.core.lanes import bits_of, load
+from eyas.lanes import kernel
+from eyas.lanes.vector import bits_of, load
 from eyas.render.kernels.bundles import NEAR, Plane, Planes, Projection, Row
 from eyas.render.kernels.scalars import f4
 
@@ -20,12 +20,12 @@ SLACK = 0.05
 """How far outside a plane things are still kept [m]: more than float32 rounds places off."""
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _plane(x: float, y: float, z: float, w: float) -> Plane:
     return Plane(x, y, z, w, math.sqrt(x * x + y * y + z * z))
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _border(row: Row, sign: float, distance: Row, share: float) -> Plane:
     """Return the plane `sign * row + share * distance`."""
     return _plane(
@@ -36,7 +36,7 @@ def _border(row: Row, sign: float, distance: Row, share: float) -> Plane:
     )
 
 
-@inlined_kernel
+@kernel(inline=True)
 def planes_of(screen: Projection, width: float, height: float, top: float, bottom: float) -> Planes:
     """Return the planes around the space that rows `top` to `bottom` of a picture show."""
     column, row, distance = screen.column, screen.row, screen.distance
@@ -50,7 +50,7 @@ def planes_of(screen: Projection, width: float, height: float, top: float, botto
     )
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _box_reaches(plane: Plane, boxes: NDArray[np.float32], at: int, step: int) -> bool:
     """Return which of eight boxes may reach inside a plane."""
     x, y, z = f4(plane.x), f4(plane.y), f4(plane.z)
@@ -60,7 +60,7 @@ def _box_reaches(plane: Plane, boxes: NDArray[np.float32], at: int, step: int) -
     return reach > f4(-plane.w - SLACK * plane.length)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def in_boxes(planes: Planes, boxes: NDArray[np.float32], at: int, step: int) -> bool:
     """Return which of eight boxes may reach inside all planes.
 
@@ -79,7 +79,7 @@ def in_boxes(planes: Planes, boxes: NDArray[np.float32], at: int, step: int) -> 
     )
 
 
-@inlined_kernel
+@kernel(inline=True)
 def boxes_seen(planes: Planes, boxes: NDArray[np.float32], first: int) -> int:
     """Return which of the eight boxes from column `first` on may reach inside all planes, a bit
     each.
@@ -87,13 +87,13 @@ def boxes_seen(planes: Planes, boxes: NDArray[np.float32], first: int) -> int:
     return bits_of(in_boxes(planes, boxes, first, boxes.shape[1]))
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _sphere_reaches(plane: Plane, x: float, y: float, z: float, radius: float) -> bool:
     height = f4(plane.x) * x + f4(plane.y) * y + f4(plane.z) * z + f4(plane.length) * radius
     return height > f4(-plane.w - SLACK * plane.length)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def spheres_seen(planes: Planes, x: float, y: float, z: float, radius: float) -> bool:
     """Return which spheres, of float32, may reach inside all planes."""
     return (
@@ -105,12 +105,12 @@ def spheres_seen(planes: Planes, x: float, y: float, z: float, radius: float) ->
     )
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _height(plane: Plane, x: float, y: float, z: float) -> float:
     return plane.x * x + plane.y * y + plane.z * z + plane.w
 
 
-@inlined_kernel
+@kernel(inline=True)
 def sphere_is_visible(planes: Planes, x: float, y: float, z: float, radius: float) -> bool:
     """Return whether a sphere, of float64, reaches inside all planes."""
     return (

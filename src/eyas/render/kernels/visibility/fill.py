@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inlined_kernel
-from eyas.core.lanes import (
+from eyas.lanes import kernel
+from eyas.lanes.vector import (
     WIDTH,
     any_of,
     bits_of,
@@ -61,12 +61,12 @@ VALUE, U_VALUE, V_VALUE = 4, 5, 6
 """Bits of 1/distance, u/distance and v/distance at the span's first sample, of float32."""
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _entry(triangle: NDArray[np.float64], row: int, number: int) -> float:
     return gather(triangle, row * WIDTH + number)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _crossing(triangle: NDArray[np.float64], number: int, edge: int, y: float) -> float:
     """Return the first columns at or after an edge, in rows with their centres at `y`.
 
@@ -80,7 +80,7 @@ def _crossing(triangle: NDArray[np.float64], number: int, edge: int, y: float) -
     return (down - 0.5) * _entry(triangle, edge + FALL, number) + _entry(triangle, edge + X, number)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _ends(triangle: NDArray[np.float64], number: int, rows: float, width: float) -> tuple[int, int]:
     """Return the first and the last column + 1 of a triangle in eight rows."""
     y = rows * SIXTEENTHS + 0.5 * SIXTEENTHS
@@ -96,7 +96,7 @@ def _ends(triangle: NDArray[np.float64], number: int, rows: float, width: float)
     return to_i4(ceiling(first)), to_i4(ceiling(last))
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _values(
     triangle: NDArray[np.float64], number: int, plane: int, scale: float, rows: float, columns: int
 ) -> float:
@@ -106,7 +106,7 @@ def _values(
     return to_f4(value * scale)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _find_spans(
     triangle: NDArray[np.float64],
     number: int,
@@ -133,7 +133,7 @@ def _find_spans(
     return bits_of(first < last)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _show(
     key: NDArray[np.int64], at: int, wanted: bool, inverse: float, tag: int, old: int
 ) -> None:
@@ -142,7 +142,7 @@ def _show(
     store(key, at, greater(key_of(select(wanted, inverse, f4(-1.0)), tag), old))
 
 
-@inlined_kernel
+@kernel(inline=True)
 def fill(
     triangle: NDArray[np.float64],
     number: int,

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inlined_kernel, inner_kernel
-from eyas.core.lanes import WIDTH, any_of, lane, lane_numbers, like, load, select, to_f4
+from eyas.lanes import kernel
+from eyas.lanes.vector import WIDTH, any_of, lane, lane_numbers, like, load, select, to_f4
 from eyas.render.kernels.bundles import NEAR, Row, View
 from eyas.render.kernels.scalars import f4, i4, i8
 from eyas.render.kernels.visibility.key import distance_inverse
@@ -24,7 +24,7 @@ _SHARE = 0.98
 """The same as a share: 1/distance at a sample may exceed that of a triangle's corners by 1/64."""
 
 
-@inner_kernel
+@kernel
 def measure_tiles(key: NDArray[np.int64], width: int, tiles: NDArray[np.float32]) -> None:
     """Set 1/distance of the farthest that each tile shows, 0 where it shows sky.
 
@@ -44,7 +44,7 @@ def measure_tiles(key: NDArray[np.int64], width: int, tiles: NDArray[np.float32]
             tiles[i, k] = _least(select(inside, distance_inverse(least), f4(np.inf)))
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _least(values: float) -> float:
     least = lane(values, 0)
     for number in range(1, WIDTH):
@@ -52,7 +52,7 @@ def _least(values: float) -> float:
     return least
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _most(values: float) -> float:
     most = lane(values, 0)
     for number in range(1, WIDTH):
@@ -60,12 +60,12 @@ def _most(values: float) -> float:
     return most
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _along(row: Row, x: float, y: float, z: float) -> float:
     return f4(row.x) * x + f4(row.y) * y + f4(row.z) * z + f4(row.w)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _side(boxes: NDArray[np.float32], column: int, axis: int) -> float:
     """Return a coordinate of the eight corners of a box."""
     upper = (lane_numbers() & i4(1 << axis)) != i4(0)
@@ -73,7 +73,7 @@ def _side(boxes: NDArray[np.float32], column: int, axis: int) -> float:
     return select(upper, like(low, boxes[axis + 3, column]), low)
 
 
-@inner_kernel
+@kernel
 def box_is_hidden(
     boxes: NDArray[np.float32], column: int, view: View, tiles: NDArray[np.float32]
 ) -> bool:
@@ -103,7 +103,7 @@ def box_is_hidden(
     return True
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _tile(place: float) -> int:
     """Return the tile of a place [samples]; places far away become some tile outside."""
     return i8(np.floor(min(max(place, -1e6), 1e6) / TILE))

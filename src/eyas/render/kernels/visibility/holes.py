@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inlined_kernel
-from eyas.core.lanes import gather, to_i4, whole
+from eyas.lanes import kernel
+from eyas.lanes.vector import gather, to_i4, whole
 from eyas.render.kernels.scalars import i4, i8
 
 __all__ = ["Holes", "has_leaf", "holes_level", "holes_of", "no_holes"]
@@ -30,13 +30,13 @@ class Holes(NamedTuple):
     """Texels along its sides."""
 
 
-@inlined_kernel
+@kernel(inline=True)
 def no_holes(texture: NDArray[np.uint32]) -> Holes:
     """Return what triangles without holes have."""
     return Holes(texture, i8(0), i8(-1), 1.0)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def holes_of(texture: NDArray[np.uint32], layer: int, level: int) -> Holes:
     """Return the holes of a layer at a mip level, below 8."""
     # 65536 + 16384 + ... = (4^9 - 4^(9 - level)) / 3
@@ -45,7 +45,7 @@ def holes_of(texture: NDArray[np.uint32], layer: int, level: int) -> Holes:
     return Holes(texture, first, i8(level), float(1 << (_BITS - level)))
 
 
-@inlined_kernel
+@kernel(inline=True)
 def holes_level(texels: float) -> int:
     """Return the mip level for a number of texels that a pixel spans; -1: no holes."""
     level, limit = 0, 2.0
@@ -55,7 +55,7 @@ def holes_level(texels: float) -> int:
     return level if level < SMALLEST_HOLES else -1
 
 
-@inlined_kernel
+@kernel(inline=True)
 def has_leaf(holes: Holes, u: float, v: float) -> bool:
     """Return where there is a leaf at texture coordinates [texels of the level]."""
     bits = _BITS - holes.level

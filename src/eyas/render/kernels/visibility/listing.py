@@ -5,8 +5,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inlined_kernel
-from eyas.core.lanes import (
+from eyas.lanes import kernel
+from eyas.lanes.vector import (
     bits_of,
     first_bit,
     gather,
@@ -34,7 +34,7 @@ _POSE = 12
 """Numbers in a pose."""
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _sort_key(distance: float, item: int) -> int:
     """Return an entry of `Scratch.order` for a thing at a distance [m]: in millimetres, in its
     upper half. Its lower half holds a chunk, or C + a row of `drawn`.
@@ -42,7 +42,7 @@ def _sort_key(distance: float, item: int) -> int:
     return (i8(1000.0 * distance) << i8(32)) | i8(item)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def list_chunks(geometry: Geometry, view: View, order: NDArray[np.int64]) -> int:
     """List the visible chunks; return how many there are."""
     boxes, eye, count = geometry.chunk_box, view.eye, i8(0)
@@ -64,7 +64,7 @@ def list_chunks(geometry: Geometry, view: View, order: NDArray[np.int64]) -> int
     return count
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _list_instance(
     geometry: Geometry,
     prototype: int,
@@ -101,7 +101,7 @@ def _list_instance(
     return count + 1
 
 
-@inlined_kernel
+@kernel(inline=True)
 def list_fixtures(
     geometry: Geometry, view: View, scratch: Scratch, worker: int, chunks: int
 ) -> int:
@@ -124,7 +124,7 @@ def list_fixtures(
     return count
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _slots_seen(
     geometry: Geometry, movers: Movers, world: int, first: int, last: int, view: View
 ) -> int:
@@ -151,7 +151,7 @@ def _slots_seen(
     return bits_of(wanted & spheres_seen(view.planes, x, y, z, radius))
 
 
-@inlined_kernel
+@kernel(inline=True)
 def list_slots(
     geometry: Geometry,
     movers: Movers,

@@ -3,9 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.intrinsics import address_of
-from eyas.core.jit import inlined_kernel, inner_kernel
-from eyas.core.lanes import (
+from eyas.lanes import address_of, kernel
+from eyas.lanes.vector import (
     WIDTH,
     any_of,
     greater,
@@ -35,7 +34,7 @@ _MARGIN = 2
 _FAR = 1 << 30
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _sum(lanes: int) -> int:
     total = i8(0)
     for number in range(WIDTH):
@@ -43,7 +42,7 @@ def _sum(lanes: int) -> int:
     return total
 
 
-@inner_kernel
+@kernel
 def _screen_box(thing: Caster, view: View) -> ScreenBox:
     box = nowhere()
     for corner in range(8):
@@ -55,7 +54,7 @@ def _screen_box(thing: Caster, view: View) -> ScreenBox:
     return box
 
 
-@inner_kernel
+@kernel
 def _count(
     box: ScreenBox,
     view: View,
@@ -103,7 +102,7 @@ def _count(
     result[4], result[5] = _sum(seen_count), _sum(covered_count)
 
 
-@inner_kernel
+@kernel
 def _measure(
     geometry: Geometry,
     movers: Movers,
@@ -131,7 +130,7 @@ def _measure(
     )  # fmt: skip
 
 
-@inner_kernel
+@kernel
 def measure_actors(
     geometry: Geometry,
     movers: Movers,
@@ -169,7 +168,7 @@ def measure_actors(
         first = next_thing(movers, world, last)
 
 
-@inner_kernel
+@kernel
 def measure_subject(
     geometry: Geometry,
     movers: Movers,

@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inlined_kernel
-from eyas.core.lanes import any_of, bits_of, first_bit, gather, lane_numbers, splat
+from eyas.lanes import kernel
+from eyas.lanes.vector import any_of, bits_of, first_bit, gather, lane_numbers, splat
 from eyas.render.kernels.bundles import Geometry, Point, Projection, View
 from eyas.render.kernels.scalars import i4, i8
 from eyas.render.kernels.visibility.clusters import (
@@ -43,7 +43,7 @@ ASIDE = 1.0 / 64.0
 """See `rasterise`: less would let roads rise over their paint at their far edges."""
 
 
-@inlined_kernel
+@kernel(inline=True)
 def level_of_detail(
     geometry: Geometry, prototype: int, radius: float, distance: float, focal: float
 ) -> int:
@@ -57,7 +57,7 @@ def level_of_detail(
     return last
 
 
-@inlined_kernel
+@kernel(inline=True)
 def draw_mesh(
     until: int,
     geometry: Geometry,
@@ -115,7 +115,7 @@ def draw_mesh(
             )  # fmt: skip
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _prepared(
     corners: Corners, wanted: bool, leafy: bool, view: View, triangle: NDArray[np.float64]
 ) -> bool:
@@ -124,7 +124,7 @@ def _prepared(
     return set_up(corners, wanted, leafy, top, bottom, width, ASIDE, triangle)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _draw_triangles(
     geometry: Geometry,
     cluster: int,
@@ -166,13 +166,13 @@ def _draw_triangles(
         fill(triangle, column, view.top, view.width, key, tag + at, holes, span)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _tiles(geometry: Geometry, cluster: int, number: int) -> float:
     """Return `LEAVES` of a triangle."""
     return gather(geometry.cluster, (cluster * CLUSTER_ROWS + LEAVES) * CLUSTER + number)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _cut_triangle(
     geometry: Geometry,
     cluster: int,

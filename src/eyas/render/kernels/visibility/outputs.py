@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inlined_kernel, inner_kernel
-from eyas.core.lanes import WIDTH, load, store
+from eyas.lanes import kernel
+from eyas.lanes.vector import WIDTH, load, store
 from eyas.render.kernels.bundles import Geometry, Movers
 from eyas.render.kernels.scalars import f4, i8
 from eyas.render.kernels.visibility.key import distance_inverse, drawn_of, tag_of, triangle_of
@@ -13,7 +13,7 @@ from eyas.state.scene import ACTOR_OBJECT, SKY_OBJECT
 __all__ = ["object_of", "write_classes", "write_depth", "write_objects"]
 
 
-@inner_kernel
+@kernel
 def write_depth(key: NDArray[np.int64], output: NDArray[np.float32]) -> None:
     """Write the distance along the optical axis of each pixel [m], infinity for sky.
 
@@ -31,7 +31,7 @@ def write_depth(key: NDArray[np.int64], output: NDArray[np.float32]) -> None:
             output[row, column] = f4(1.0) / distance_inverse(key[row, column])
 
 
-@inlined_kernel
+@kernel(inline=True)
 def object_of(
     geometry: Geometry, movers: Movers, world: int, drawn: NDArray[np.int32], key: int
 ) -> int:
@@ -48,7 +48,7 @@ def object_of(
     return i8(movers.object_id[world, instance - fixtures])
 
 
-@inner_kernel
+@kernel
 def write_objects(
     geometry: Geometry,
     movers: Movers,
@@ -72,7 +72,7 @@ def write_objects(
             output[row, column] = object_of(geometry, movers, world, drawn, key[row, column])
 
 
-@inner_kernel
+@kernel
 def _class_of(
     geometry: Geometry, movers: Movers, world: int, drawn: NDArray[np.int32], key: int
 ) -> int:
@@ -84,7 +84,7 @@ def _class_of(
     return i8(geometry.object_class[sky if shown == SKY_OBJECT else shown])
 
 
-@inner_kernel
+@kernel
 def write_classes(
     geometry: Geometry,
     movers: Movers,

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inlined_kernel, inner_kernel
+from eyas.lanes import kernel
 from eyas.render.kernels.bundles import Geometry, Movers, Point, Projection, Scratch, View
 from eyas.render.kernels.scalars import i8
 from eyas.render.kernels.visibility.hidden import box_is_hidden, measure_tiles
@@ -26,7 +26,7 @@ SMALLEST_DETAIL = 0.35
 """Details whose area has a smaller root are left out [pixels]."""
 
 
-@inner_kernel
+@kernel
 def draw_scene(
     until: int,
     geometry: Geometry,
@@ -61,7 +61,7 @@ def draw_scene(
     return count
 
 
-@inner_kernel
+@kernel
 def draw_slots(
     geometry: Geometry,
     movers: Movers,
@@ -93,7 +93,7 @@ def draw_slots(
     return after
 
 
-@inner_kernel
+@kernel
 def _draw_listed(
     until: int,
     geometry: Geometry,
@@ -139,7 +139,7 @@ def _draw_listed(
         )  # fmt: skip
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _is_hidden(
     geometry: Geometry,
     item: int,
@@ -157,7 +157,7 @@ def _is_hidden(
     return False
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _in_frame(
     view: View, poses: NDArray[np.float32], index: int
 ) -> tuple[Projection, Point, float]:
@@ -168,7 +168,7 @@ def _in_frame(
     return object_projection(view.screen, poses, index), in_frame(view.eye, poses, index), focal
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _shell_sort(values: NDArray[np.int64], count: int) -> None:
     """Sort the first `count` values in place; np.sort would allocate."""
     gap = 1

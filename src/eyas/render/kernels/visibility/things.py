@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inlined_kernel
-from eyas.core.lanes import any_of, gather_column, select
+from eyas.lanes import kernel
+from eyas.lanes.vector import any_of, gather_column, select
 from eyas.render.kernels.bundles import Movers
 from eyas.render.kernels.scalars import i4
 from eyas.render.kernels.visibility.key import drawn_of
@@ -12,7 +12,7 @@ from eyas.render.kernels.visibility.key import drawn_of
 __all__ = ["belongs_to", "end_of_thing", "next_thing"]
 
 
-@inlined_kernel
+@kernel(inline=True)
 def next_thing(movers: Movers, world: int, slot: int) -> int:
     """Return the first slot from `slot` on that is not empty, or the number of slots."""
     parts = movers.part[world]
@@ -21,7 +21,7 @@ def next_thing(movers: Movers, world: int, slot: int) -> int:
     return slot
 
 
-@inlined_kernel
+@kernel(inline=True)
 def end_of_thing(movers: Movers, world: int, first: int) -> int:
     """Return the slot after those in a row with the object id of slot `first`.
 
@@ -34,7 +34,7 @@ def end_of_thing(movers: Movers, world: int, first: int) -> int:
     return last
 
 
-@inlined_kernel
+@kernel(inline=True)
 def belongs_to(tag: int, drawn: NDArray[np.int32], first: int, last: int) -> bool:
     """Return which samples show instances `first` to `last`.
 

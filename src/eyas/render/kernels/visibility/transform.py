@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inlined_kernel, inner_kernel
+from eyas.lanes import kernel
 from eyas.render.kernels.bundles import NEAR, Job, Point, Projection, Row, View
 from eyas.render.kernels.scalars import i8
 from eyas.render.kernels.visibility.cull import planes_of
@@ -13,7 +13,7 @@ from eyas.render.kernels.visibility.cull import planes_of
 __all__ = ["clip_near", "in_frame", "object_projection", "scale_of", "view_of"]
 
 
-@inlined_kernel
+@kernel(inline=True)
 def view_of(job: Job, band: int, width: int, height: int, samples: int) -> View:
     """Return a band of a view.
 
@@ -40,19 +40,19 @@ def view_of(job: Job, band: int, width: int, height: int, samples: int) -> View:
     )  # fmt: skip
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _axis(job: Job, view: int, axis: int) -> Point:
     return Point(job.axes[view, axis, 0], job.axes[view, axis, 1], job.axes[view, axis, 2])
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _through(eye: Point, scale: float, axis: Point) -> Row:
     """Return the row that gives the place along an axis from the eye, times a scale."""
     x, y, z = scale * axis.x, scale * axis.y, scale * axis.z
     return Row(x, y, z, -(x * eye.x + y * eye.y + z * eye.z))
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _posed(row: Row, poses: NDArray[np.float32], index: int) -> Row:
     """Return a row for points in the frame of pose `index`."""
     p = poses[index]
@@ -64,7 +64,7 @@ def _posed(row: Row, poses: NDArray[np.float32], index: int) -> Row:
     )
 
 
-@inlined_kernel
+@kernel(inline=True)
 def object_projection(world: Projection, poses: NDArray[np.float32], index: int) -> Projection:
     """Return the projection of points in the frame of pose `index`."""
     return Projection(
@@ -74,14 +74,14 @@ def object_projection(world: Projection, poses: NDArray[np.float32], index: int)
     )
 
 
-@inlined_kernel
+@kernel(inline=True)
 def scale_of(poses: NDArray[np.float32], index: int) -> float:
     """Return the scale of pose `index`."""
     x, y, z = float(poses[index, 0, 0]), float(poses[index, 1, 0]), float(poses[index, 2, 0])
     return math.sqrt(x * x + y * y + z * z)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def in_frame(point: Point, poses: NDArray[np.float32], index: int) -> Point:
     """Return a world point in the frame of pose `index`, a rotation and a scale."""
     p = poses[index]
@@ -94,7 +94,7 @@ def in_frame(point: Point, poses: NDArray[np.float32], index: int) -> Point:
     )
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _projected(
     screen: Projection, cluster: NDArray[np.float32], number: int, corner: int
 ) -> tuple[float, float, float]:
@@ -112,7 +112,7 @@ def _projected(
     )
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _write(
     polygon: NDArray[np.float64],
     count: int,
@@ -129,7 +129,7 @@ def _write(
         _write_corner(polygon, 1, max(count - 1, 0), column, row, inverse, u, v)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _write_corner(
     polygon: NDArray[np.float64],
     piece: int,
@@ -147,7 +147,7 @@ def _write_corner(
     polygon[10 + 2 * corner, piece] = v
 
 
-@inner_kernel
+@kernel
 def clip_near(
     screen: Projection,
     cluster: NDArray[np.float32],

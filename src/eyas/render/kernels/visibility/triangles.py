@@ -10,8 +10,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.jit import inlined_kernel
-from eyas.core.lanes import (
+from eyas.lanes import kernel
+from eyas.lanes.vector import (
     WIDTH,
     any_of,
     ceiling,
@@ -101,7 +101,7 @@ class Corners(NamedTuple):
     ci: float
 
 
-@inlined_kernel
+@kernel(inline=True)
 def load_corners(rows: NDArray[np.float64]) -> Corners:
     """Return corners from an array with a row for each field."""
     return Corners(
@@ -111,19 +111,19 @@ def load_corners(rows: NDArray[np.float64]) -> Corners:
     )  # fmt: skip
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _snapped(place: float) -> float:
     """Return places [samples] in whole sixteenths of a sample."""
     return whole(place * SIXTEENTHS + 0.5)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _first_at(place: float) -> float:
     """Return the first row or column whose centre is at a place [sixteenths] or after it."""
     return ceiling((place - 0.5 * SIXTEENTHS) * (1.0 / SIXTEENTHS))
 
 
-@inlined_kernel
+@kernel(inline=True)
 def set_up(
     corners: Corners,
     wanted: bool,
@@ -178,7 +178,7 @@ def set_up(
     return seen
 
 
-@inlined_kernel
+@kernel(inline=True)
 def set_up_leaves(
     corners: Corners, uv: NDArray[np.floating], first: int, triangle: NDArray[np.float64]
 ) -> None:
@@ -197,7 +197,7 @@ def set_up_leaves(
         _set_plane(triangle, U + (V - U) * k, c, a, b, to_f8(load(uv, at + 4 * WIDTH)) * c.ci)
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _set_edge(
     triangle: NDArray[np.float64], row: int, x0: float, y0: float, x1: float, y1: float
 ) -> None:
@@ -207,7 +207,7 @@ def _set_edge(
     store(triangle, (row + FALL) * WIDTH, (1.0 / SIXTEENTHS) / (y1 - y0))
 
 
-@inlined_kernel
+@kernel(inline=True)
 def _set_plane(
     triangle: NDArray[np.float64], row: int, c: Corners, a: float, b: float, value: float
 ) -> None:

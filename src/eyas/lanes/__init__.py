@@ -1,0 +1,35 @@
+"""The language of kernels: functions compiled for lanes of the processor, and kept on disk.
+
+The bottom room: it knows nothing of drones or pictures. Begin with `docs/lanes.md`; operations on
+lanes are in `eyas.lanes.vector`, elementary functions in `eyas.lanes.elementary`.
+"""
+
+from eyas.lanes.held import Held
+from eyas.lanes.intrinsics import Intrinsic, address_of, bits_of_float, claim, float_of_bits
+from eyas.lanes.jit import (
+    Kernel,
+    interpreted,
+    kernel,
+    limit_threads,
+    specialised,
+    thread_count,
+)
+from eyas.lanes.parallel import BoundKernel, Pointer, parallel_kernel
+
+__all__ = [
+    "BoundKernel",
+    "Held",
+    "Intrinsic",
+    "Kernel",
+    "Pointer",
+    "address_of",
+    "bits_of_float",
+    "claim",
+    "float_of_bits",
+    "interpreted",
+    "kernel",
+    "limit_threads",
+    "parallel_kernel",
+    "specialised",
+    "thread_count",
+]

@@ -1,0 +1,96 @@
+"""The address of a kernel that gets bundles: from its file, or compiled, which takes seconds."""
+
+import logging
+import platform
+import threading
+import time
+from collections.abc import Callable
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from eyas.core.cache.folder import touch
+from eyas.core.interrupts import shielded
+from eyas.lanes.held import Held
+from eyas.lanes.identity import identity
+from eyas.lanes.jit import REFUSAL, folder_in_use
+from eyas.lanes.machine_code import (
+    SUFFIX,
+    MachineCode,
+    code_file,
+    code_name,
+    entry_of,
+    load,
+    read_code,
+    write_code,
+)
+from eyas.lanes.shipped import is_shipped, shipped_code
+
+__all__ = ["entry_address", "nothing_compiled"]
+
+_LOG = logging.getLogger("eyas")
+
+_LOCK = threading.RLock()
+
+
+def entry_address(function: Callable[..., Any], parts: tuple[Held[Any], ...]) -> int:
+    """Return the address of a kernel for bundles of these kinds.
+
+    Args:
+        function: See `eyas.lanes.parallel.parallel_kernel`.
+        parts: The bundles.
+    """
+    name = function.__qualname__.rpartition(".")[2]
+    made_by = version("numba"), platform.python_version()
+    kinds = [part.kind for part in parts]
+    path = code_file(folder_in_use(), _name_of(function), kinds, made_by)
+    keeps = function.__closure__ is None  # or what it depends on is not all in the name
+    # An interrupt in the middle of numba or LLVM leaves objects in pieces, whose end crashes.
+    with _LOCK, shielded():
+        address = _kept(path) if keeps else None
+        if address is None:
+            start = time.perf_counter()
+            code = _compiled(function, parts, entry_of(path))
+            _LOG.debug("compiled %s in %.1f s", name, time.perf_counter() - start)
+            address = load(code)
+            assert address is not None, f"{name}: cannot be loaded; it needs {code.needs}"
+            if keeps and not REFUSAL:
+                write_code(path, code)
+    return address
+
+
+def _kept(path: Path) -> int | None:
+    """Return the address of a kernel that is cached, or else shipped; None if it is neither."""
+    found = read_code(path)
+    if found is not None:
+        touch(path)
+    else:
+        found = shipped_code(path.stem.rpartition("-")[0])
+    return None if found is None else load(found)
+
+
+def nothing_compiled(function: Callable[..., Any]) -> bool:
+    """Return whether a kernel is neither cached nor shipped for any bundles, as at a first start.
+
+    Args:
+        function: See `eyas.lanes.parallel.parallel_kernel`.
+    """
+    name = _name_of(function)
+    return not any(folder_in_use().glob(f"{name}-*{SUFFIX}")) and not is_shipped(name)
+
+
+def _name_of(function: Callable[..., Any]) -> str:
+    return code_name(function.__qualname__.rpartition(".")[2], identity(function))
+
+
+def _compiled(
+    function: Callable[..., Any], parts: tuple[Held[Any], ...], entry: str
+) -> MachineCode:
+    import numba  # half a second, for the first start only
+
+    from eyas.lanes.compilation import entry_code, kinds_of, size_of
+
+    for part in parts:
+        kind = numba.typeof(part.bundle)
+        assert size_of(kind) == part.size, f"this version of numba lays {kind} out differently"
+    return entry_code(function, kinds_of(part.bundle for part in parts), entry)

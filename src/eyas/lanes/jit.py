@@ -1,0 +1,170 @@
+"""Kernels: functions to be compiled, and the folder where the result is kept.
+
+The folder is named after the language of kernels, the files after what each computes
+(`eyas.lanes.identity`). numba's own cache is not used: it would notice only a change in the file of
+the function itself, not in what that calls, and it unpickles its files.
+"""
+
+import errno
+import functools
+import hashlib
+import os
+import types
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, TypeVar, cast, overload
+
+from eyas.core.cache.folder import Kind, cache_folder, touch
+from eyas.core.cache.safety import made_folder, secured
+from eyas.core.interrupts import shielded
+from eyas.lanes.identity import identity, language_hash
+
+__all__ = [
+    "REFUSAL",
+    "Kernel",
+    "folder_in_use",
+    "interpreted",
+    "kernel",
+    "kernel_folder",
+    "limit_threads",
+    "specialised",
+    "thread_count",
+]
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def kernel_folder() -> Path:
+    """Return the folder of compiled kernels of this version of their language."""
+    return cache_folder() / Kind.KERNELS / language_hash()
+
+
+def _refusal(folder: Path) -> str:
+    """Return why kernels cannot be kept in a folder; nothing if they can."""
+    try:
+        made_folder(folder)
+        if why := secured(folder):
+            return why
+    except OSError as error:
+        return error.strerror or str(error)
+    return "" if os.access(folder, os.W_OK) else os.strerror(errno.EACCES)
+
+
+def folder_in_use() -> Path:
+    """Return the folder of compiled kernels that this process uses."""
+    return Path(os.environ["NUMBA_CACHE_DIR"])
+
+
+os.environ.setdefault("NUMBA_CACHE_DIR", str(kernel_folder()))
+touch(folder_in_use())
+
+REFUSAL = _refusal(folder_in_use())
+"""Why compiled kernels are not kept on disk; nothing if they are."""
+
+
+def thread_count() -> int:
+    """Return the number of threads that draw: all cores, or `NUMBA_NUM_THREADS`."""
+    named = os.environ.get("NUMBA_NUM_THREADS")
+    if named:
+        return int(named)
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def limit_threads(count: int) -> None:
+    """Let this process, and those that it starts, draw with so many threads."""
+    os.environ["NUMBA_NUM_THREADS"] = str(count)
+
+
+class Kernel:
+    """A function to be compiled; numba is imported when that is needed.
+
+    Attributes:
+        py_func: The function.
+    """
+
+    def __init__(
+        self, function: Callable[..., Any], *, inline: bool | None = None, double: bool = False
+    ) -> None:
+        functools.update_wrapper(self, function)
+        self.py_func = function
+        self._inline, self._double = inline, double
+
+    @functools.cached_property
+    def _numba_type_(self) -> object:
+        """The type by which numba knows it in functions that call it."""
+        from eyas.lanes.compilation import KernelType
+
+        return KernelType(self.py_func, inline=self._inline, double=self._double)
+
+    @functools.cached_property
+    def _compiled(self) -> Callable[..., Any]:
+        from eyas.lanes.compilation import caller_from_python
+
+        return caller_from_python(self.py_func)
+
+    def __call__(self, *args: object) -> Any:  # noqa: ANN401  # as the function
+        """Call the compiled function; for tests, since it is compiled in each process anew.
+
+        Eyas itself calls `parallel_kernel`s, and single numbers are computed by `interpreted`.
+        """
+        with shielded():
+            return self._compiled(*args)
+
+
+@overload
+def kernel(function: Function, /) -> Function: ...
+@overload
+def kernel(
+    *, inline: bool | None = None, double: bool = False
+) -> Callable[[Function], Function]: ...
+def kernel(
+    function: Function | None = None, /, *, inline: bool | None = None, double: bool = False
+) -> Function | Callable[[Function], Function]:
+    """Compile a function that allocates nothing, so that a graphics processor can run it too.
+
+    Args:
+        function: A plain function.
+        inline: True: LLVM inlines it into its callers: for functions that are called for each
+            pixel, and for those whose arguments are records of dozens of arrays, which would
+            otherwise be copied at each call. False: never. None: as LLVM thinks best.
+        double: Whether numbers of any kind are given to it as float64.
+    """
+
+    def made(function: Function) -> Function:
+        return cast("Function", Kernel(function, inline=inline, double=double))
+
+    return made if function is None else made(function)
+
+
+def interpreted(function: Function) -> Function:
+    """Return a kernel of plain numbers as a function of Python.
+
+    For few calls: numba, which `Kernel.__call__` needs, takes half a second to import.
+    """
+    plain = cast("Kernel", function).py_func
+    names = plain.__globals__
+    called = {name: names[name] for name in plain.__code__.co_names if name in names}
+    own = {k: interpreted(v) if isinstance(v, Kernel) else v for k, v in called.items()}
+    return cast("Function", types.FunctionType(plain.__code__, own, plain.__name__))
+
+
+def specialised(function: Function, **kernels: Callable[..., Any]) -> Function:
+    """Return a function that calls other kernels instead of some that its module names.
+
+    The kernels that a step calls are chosen when it is built, not in each step. The compiled
+    result is cached on disk like any kernel; the names and sources of the chosen kernels are part
+    of its name there.
+
+    Args:
+        function: A plain function of this package, to be compiled.
+        kernels: The kernels to call, keyed by the names they replace in the function's module.
+    """
+    if all(function.__globals__[name] is kernel for name, kernel in kernels.items()):
+        return function
+    names = {**function.__globals__, **kernels}
+    made = types.FunctionType(function.__code__, names, function.__name__)
+    parts = [identity(kernel) for _, kernel in sorted(kernels.items())]
+    digest = hashlib.sha256("".join(parts).encode()).hexdigest()[:16]
+    made.__module__ = function.__module__
+    made.__qualname__ = f"{function.__qualname__}_{digest}"
+    return cast("Function", made)

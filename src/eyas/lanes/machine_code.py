@@ -1,0 +1,272 @@
+"""Machine code of kernels: made of LLVM's modules, kept in files, loaded without numba.
+
+A file holds the code of a kernel with everything that it calls, for one kind of processor. Loading
+it takes a millisecond; importing numba, which is needed only to compile, takes half a second.
+"""
+
+import itertools
+import json
+import logging
+import os
+import secrets
+import stat
+import threading
+import zlib
+from collections.abc import Iterable
+from functools import cache
+from hashlib import sha256
+from pathlib import Path
+from typing import NamedTuple
+
+import llvmlite
+import llvmlite.binding as llvm
+
+from eyas.core.cache.folder import not_kept
+from eyas.core.cache.safety import FILE_MODE, unsafe
+from eyas.core.files import open_at_once
+
+__all__ = [
+    "SUFFIX",
+    "MachineCode",
+    "code_file",
+    "code_name",
+    "entry_of",
+    "improve",
+    "load",
+    "optimised",
+    "read_code",
+    "write_code",
+]
+
+SUFFIX = ".eyk"
+"""End of the names of files of machine code."""
+
+_LOG = logging.getLogger("eyas")
+
+_LOCK = threading.Lock()
+
+_LOADED: list[llvm.ResourceTracker] = []
+"""Kernels loaded, kept until the process ends."""
+
+_NUMBERS = itertools.count()
+"""Numbers of the kernels that this process has tried to load."""
+
+
+_TOLD: set[Path] = set()
+"""Folders of which it is told that someone else may have written into them."""
+
+
+class MachineCode(NamedTuple):
+    """Machine code of a kernel."""
+
+    entry: str
+    """Name of the function to call; different for each kernel, as all are loaded together."""
+    needs: tuple[str, ...]
+    """Functions outside the kernel that it calls, such as those of the C library."""
+    code: bytes
+    """An object file."""
+
+
+class Cpu(NamedTuple):
+    """A kind of processor, as LLVM names it."""
+
+    triple: str
+    name: str
+    features: str
+
+
+@cache
+def cpu() -> Cpu:
+    """Return the processor to compile for: this one, unless numba's variables name another."""
+    name = os.environ.get("NUMBA_CPU_NAME") or llvm.get_host_cpu_name()
+    features = os.environ.get("NUMBA_CPU_FEATURES")
+    if features is None:
+        features = llvm.get_host_cpu_features().flatten()
+    return Cpu(llvm.get_process_triple(), name, features)
+
+
+@cache
+def _machine() -> llvm.TargetMachine:
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    triple, name, features = cpu()
+    target = llvm.Target.from_triple(triple)
+    # Code reaches constants, which lie close to it (see `_linker`), by their distances; by their
+    # addresses, shading would take 5 % more instructions.
+    return target.create_target_machine(
+        cpu=name, features=features, opt=3, reloc="pic", codemodel="small", jit=True
+    )
+
+
+_ROOTS = """
+declare double @llvm.sqrt.f64(double)
+declare float @llvm.sqrt.f32(float)
+
+define double @sqrt(double %x) alwaysinline {
+  %root = call double @llvm.sqrt.f64(double %x)
+  ret double %root
+}
+
+define float @sqrtf(float %x) alwaysinline {
+  %root = call float @llvm.sqrt.f32(float %x)
+  ret float %root
+}
+"""
+"""Square roots as the processor's instructions; the C library's set `errno` too."""
+
+
+def optimised(module: llvm.ModuleRef, entry: str) -> MachineCode:
+    """Return the machine code of a module, of which only the function `entry` is called."""
+    module.link_in(llvm.parse_assembly(_ROOTS))
+    improve(module, entry, _machine(), loops=True)
+    needs = (f.name for f in module.functions if f.is_declaration)
+    needed = tuple(sorted(name for name in needs if not name.startswith("llvm.")))
+    return MachineCode(entry, needed, _machine().emit_object(module))
+
+
+def improve(
+    module: llvm.ModuleRef, entry: str, machine: llvm.TargetMachine, *, loops: bool
+) -> None:
+    """Optimise a module, of which only the function `entry` is called.
+
+    Args:
+        module: Changed in place.
+        entry: Name of the function.
+        machine: The processor to optimise for.
+        loops: Whether loops may do several of their turns at once.
+    """
+    for value in (*module.functions, *module.global_variables):
+        if not value.is_declaration and value.name != entry:
+            value.linkage = "internal"
+    tuning = llvm.create_pipeline_tuning_options(speed_level=3)
+    tuning.loop_vectorization, tuning.slp_vectorization = loops, False
+    builder = llvm.create_pass_builder(machine, tuning)
+    builder.getModulePassManager().run(module, builder)
+
+
+@cache
+def _linker() -> llvm.LLJIT:
+    llvm.initialize_native_target()
+    llvm.initialize_native_asmprinter()
+    machine = llvm.Target.from_triple(cpu().triple).create_target_machine(jit=True)
+    # JITLink puts a kernel's code and constants side by side, as its code expects; LLVM's older
+    # linker may put them more than 2 GiB apart.
+    return llvm.create_lljit_compiler(machine, use_jit_link=True, suppress_errors=True)
+
+
+def load(code: MachineCode) -> int | None:
+    """Return the address of a kernel's entry.
+
+    None if this process lacks a function it needs, or this version of LLVM cannot read it.
+    """
+    library = llvm.JITLibraryBuilder().add_current_process().add_object_img(code.code)
+    library.export_symbol(code.entry)
+    with _LOCK:
+        linker = _linker()
+        for name in code.needs:
+            address = llvm.address_of_symbol(name)
+            if not address:
+                return None
+            library.import_symbol(name, address)
+        try:
+            loaded = library.link(linker, f"{code.entry}-{next(_NUMBERS)}")
+        except RuntimeError:
+            return None
+        _LOADED.append(loaded)
+    return int(loaded[code.entry])
+
+
+def code_name(name: str, made_of: str) -> str:
+    """Return the beginning of the names of a kernel's files, whatever its bundles are.
+
+    Args:
+        name: The name of the kernel, for people who look into the folder.
+        made_of: Its `eyas.lanes.identity.identity`.
+    """
+    return f"{name}-{_digest((name, made_of))}"
+
+
+def code_file(folder: Path, name: str, kinds: Iterable[str], made_by: Iterable[str]) -> Path:
+    """Return the file of a kernel's machine code, `<name>-<hash of kinds>-<of made_by>`.
+
+    Args:
+        folder: The folder of kernels.
+        name: From `code_name`.
+        kinds: The kinds of its bundles, see `eyas.lanes.held.Held`.
+        made_by: What else the code depends on, except the processor and llvmlite.
+    """
+    by = (*cpu(), llvmlite.__version__, *made_by)
+    return folder / f"{name}-{_digest(kinds)}-{_digest(by)}{SUFFIX}"
+
+
+def _digest(parts: Iterable[str]) -> str:
+    return sha256("\0".join(parts).encode()).hexdigest()[:16]
+
+
+def read_code(path: Path, *, shipped: bool = False) -> MachineCode | None:
+    """Return the content of a file; None if there is none, or it is damaged, or not to be trusted.
+
+    Args:
+        path: The file.
+        shipped: Whether it lies in the package, whose code of Python is run as well.
+    """
+    try:
+        content = path.read_bytes() if shipped else _own(path)
+        if zlib.crc32(content[4:]) != int.from_bytes(content[:4], "little"):
+            raise ValueError("damaged")
+        head, code = content[4:].split(b"\n", 1)
+        entry, needs = json.loads(head)
+        # Code that ships is named without what depends on numba and Python.
+        if not (entry == entry_of(path) or (shipped and entry.startswith(entry_of(path)))):
+            raise ValueError("in the place of another kernel")
+        return MachineCode(entry, tuple(needs), code)
+    except (FileNotFoundError, NotADirectoryError, PermissionError):
+        return None  # if it cannot be replaced either, that is told
+    except UnsafeError as error:
+        if path.parent not in _TOLD:
+            _TOLD.add(path.parent)
+            _LOG.warning("%s: %s; so it is compiled anew", path, error)
+        return None
+    except (OSError, ValueError):
+        _LOG.warning("%s: damaged or unreadable, so it is compiled anew", path)
+        return None
+
+
+def entry_of(path: Path) -> str:
+    """Return the name of the function in a kernel's file."""
+    return path.stem.replace("-", "_")
+
+
+class UnsafeError(Exception):
+    """Someone else may have written a file of machine code."""
+
+
+def _own(path: Path) -> bytes:
+    """Return the content of a file that nobody but its user, or root, can have written."""
+    with open(path, "rb", opener=open_at_once) as file:
+        status = os.fstat(file.fileno())
+        if not stat.S_ISREG(status.st_mode):
+            raise ValueError("no ordinary file")
+        if why := unsafe(status) or unsafe(path.parent.stat()):
+            raise UnsafeError(why)
+        return file.read()
+
+
+def write_code(path: Path, code: MachineCode) -> None:
+    """Write a file completely or not at all; not at all if the folder cannot be written to."""
+    content = json.dumps([code.entry, code.needs]).encode() + b"\n" + code.code
+    part = path.with_name(f"{path.name}.tmp.{secrets.token_hex(8)}")
+    try:
+        try:
+            with open(part, "xb", opener=_opened) as file:
+                file.write(zlib.crc32(content).to_bytes(4, "little") + content)
+            part.replace(path)
+        finally:
+            part.unlink(missing_ok=True)
+    except OSError as error:
+        not_kept(error)
+
+
+def _opened(path: str, flags: int) -> int:
+    """Open a new file to which others may not write."""
+    return os.open(path, flags, FILE_MODE)

@@ -1,0 +1,88 @@
+"""Lanes: eight numbers at once, in kernels that also run on one number.
+
+A kernel written with these functions handles eight pixels, triangles, boxes or vertices where its
+arguments are lanes, and one where they are numbers, as in a thread of a graphics processor: every
+function here takes either. `docs/lanes.md` tells how to write such a kernel.
+
+What the functions do is written in `eyas.lanes.vector.memory` and `eyas.lanes.vector.values`; those
+import numba, so they are loaded only when a kernel is compiled.
+"""
+
+from eyas.lanes.intrinsics import Intrinsic
+
+__all__ = [
+    "WIDTH",
+    "all_of",
+    "any_of",
+    "bit_pattern",
+    "bits_of",
+    "ceiling",
+    "first_bit",
+    "from_bits",
+    "gather",
+    "gather_column",
+    "gather_pair",
+    "gather_pair_after",
+    "greater",
+    "lane",
+    "lane_numbers",
+    "lesser",
+    "like",
+    "load",
+    "load_words",
+    "magnitude",
+    "root",
+    "select",
+    "splat",
+    "store",
+    "store_triples",
+    "store_where",
+    "store_words",
+    "to_f4",
+    "to_f8",
+    "to_i4",
+    "to_i8",
+    "to_u4",
+    "transposed",
+    "whole",
+]
+
+WIDTH = 8
+"""Numbers in lanes."""
+
+_MEMORY, _VALUES = "eyas.lanes.vector.memory", "eyas.lanes.vector.values"
+
+gather = Intrinsic(_MEMORY, "gather")
+gather_column = Intrinsic(_MEMORY, "gather_column")
+gather_pair = Intrinsic(_MEMORY, "gather_pair")
+gather_pair_after = Intrinsic(_MEMORY, "gather_pair_after")
+load = Intrinsic(_MEMORY, "load")
+load_words = Intrinsic(_MEMORY, "load_words")
+store = Intrinsic(_MEMORY, "store")
+store_triples = Intrinsic(_MEMORY, "store_triples")
+store_where = Intrinsic(_MEMORY, "store_where")
+store_words = Intrinsic(_MEMORY, "store_words")
+transposed = Intrinsic(_MEMORY, "transposed")
+
+all_of = Intrinsic(_VALUES, "all_of")
+any_of = Intrinsic(_VALUES, "any_of")
+bit_pattern = Intrinsic(_VALUES, "bit_pattern")
+bits_of = Intrinsic(_VALUES, "bits_of")
+ceiling = Intrinsic(_VALUES, "ceiling")
+first_bit = Intrinsic(_VALUES, "first_bit")
+from_bits = Intrinsic(_VALUES, "from_bits")
+greater = Intrinsic(_VALUES, "greater")
+lane = Intrinsic(_VALUES, "lane")
+lane_numbers = Intrinsic(_VALUES, "lane_numbers")
+lesser = Intrinsic(_VALUES, "lesser")
+like = Intrinsic(_VALUES, "like")
+magnitude = Intrinsic(_VALUES, "magnitude")
+root = Intrinsic(_VALUES, "root")
+select = Intrinsic(_VALUES, "select")
+splat = Intrinsic(_VALUES, "splat")
+to_f4 = Intrinsic(_VALUES, "to_f4")
+to_f8 = Intrinsic(_VALUES, "to_f8")
+to_i4 = Intrinsic(_VALUES, "to_i4")
+to_i8 = Intrinsic(_VALUES, "to_i8")
+to_u4 = Intrinsic(_VALUES, "to_u4")
+whole = Intrinsic(_VALUES, "whole")

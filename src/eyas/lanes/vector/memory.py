@@ -1,0 +1,226 @@
+"""Loads and stores of lanes. Arrays are seen as one row, so they must be contiguous."""
+
+from typing import Any
+
+from llvmlite import ir
+from numba.core import types
+from numba.extending import intrinsic
+
+from eyas.lanes.vector import WIDTH
+from eyas.lanes.vector.kinds import F4, U4, Lanes, as_lanes, ir_type
+from eyas.lanes.vector.shuffles import columns_of, order_of
+
+__all__ = [
+    "gather", "gather_column", "gather_pair", "gather_pair_after", "load", "load_words", "store",
+    "store_triples", "store_where", "store_words", "transposed",
+]  # fmt: skip
+
+_I32, _I64 = ir.IntType(32), ir.IntType(64)
+
+
+def _pointer(context: Any, builder: Any, array: Any, value: Any, at: Any) -> ir.Value:
+    data = context.make_array(array)(context, builder, value).data
+    return builder.gep(data, [at])
+
+
+def _load(builder: Any, pointer: Any, align: int) -> ir.Value:
+    value = builder.load(pointer)
+    value.align = align
+    return value
+
+
+def _each(builder: Any, kind: types.Type, index: ir.Value) -> list[ir.Value]:
+    """Return the indices in the lanes, or the one index, as 64 bits; none is negative."""
+    if not isinstance(kind, Lanes):
+        return [index if index.type == _I64 else builder.zext(index, _I64)]
+    items = [builder.extract_element(index, _I32(k)) for k in range(WIDTH)]
+    return [builder.zext(item, _I64) for item in items]
+
+
+def _collected(builder: Any, kind: types.Type, items: list[ir.Value]) -> ir.Value:
+    if not isinstance(kind, Lanes):
+        return items[0]
+    value = ir.Constant(ir_type(kind), ir.Undefined)
+    for k, item in enumerate(items):
+        value = builder.insert_element(value, item, _I32(k))
+    return value
+
+
+def _numbered(kind: types.Type, element: types.Type) -> types.Type:
+    return Lanes(element) if isinstance(kind, Lanes) else element
+
+
+@intrinsic
+def gather(typing_context, array, index):
+    """Return the elements at some indices, none negative; smaller types become uint32."""
+    element = array.dtype if array.dtype.bitwidth >= 32 else types.uint32
+    result = _numbered(index, element)
+
+    def generate(context, builder, sig, args):
+        items = []
+        for at in _each(builder, index, args[1]):
+            item = builder.load(_pointer(context, builder, array, args[0], at))
+            if array.dtype.bitwidth < 32:
+                item = builder.zext(item, _I32)
+            items.append(item)
+        return _collected(builder, result, items)
+
+    return result(array, index), generate
+
+
+@intrinsic
+def gather_pair(typing_context, array, index):
+    """Return pairs of neighbours of an array of uint16, the first in the lower half."""
+    result = _numbered(index, types.uint32)
+
+    def generate(context, builder, sig, args):
+        items = []
+        for at in _each(builder, index, args[1]):
+            pointer = _pointer(context, builder, array, args[0], at)
+            items.append(_load(builder, builder.bitcast(pointer, _I32.as_pointer()), 2))
+        return _collected(builder, result, items)
+
+    return result(array, index), generate
+
+
+@intrinsic
+def gather_pair_after(typing_context, array, index, step):
+    """Return the same as `gather_pair(array, index + step)`, for one step of all lanes.
+
+    If both are gathered, the indices are taken out of the lanes only once.
+    """
+    result = _numbered(index, types.uint32)
+
+    def generate(context, builder, sig, args):
+        step = context.cast(builder, args[2], sig.args[2], types.int64)
+        items = []
+        for at in _each(builder, index, args[1]):
+            pointer = _pointer(context, builder, array, args[0], at)
+            pointer = builder.bitcast(builder.gep(pointer, [step]), _I32.as_pointer())
+            items.append(_load(builder, pointer, 2))
+        return _collected(builder, result, items)
+
+    return result(array, index, step), generate
+
+
+@intrinsic
+def gather_column(typing_context, array, index, column, width):
+    """Return `array[index, column]` of rows of `width` elements."""
+    result = _numbered(index, array.dtype)
+
+    def generate(context, builder, sig, args):
+        offset = context.cast(builder, args[2], sig.args[2], types.int64)
+        step = context.cast(builder, args[3], sig.args[3], types.int64)
+        items = []
+        for row in _each(builder, index, args[1]):
+            at = builder.add(builder.mul(row, step), offset)
+            items.append(builder.load(_pointer(context, builder, array, args[0], at)))
+        return _collected(builder, result, items)
+
+    return result(array, index, column, width), generate
+
+
+@intrinsic
+def transposed(typing_context, array, index, first, width):
+    """Return `array[index, first + k]` for k from 0 to 7, of rows of `width` float32.
+
+    Eight loads and shuffles take the place of 64 loads.
+    """
+    result = types.UniTuple(_numbered(index, types.float32), 8)
+
+    def generate(context, builder, sig, args):
+        offset = context.cast(builder, args[2], sig.args[2], types.int64)
+        step = context.cast(builder, args[3], sig.args[3], types.int64)
+        rows = []
+        for row in _each(builder, index, args[1]):
+            at = builder.add(builder.mul(row, step), offset)
+            pointer = _pointer(context, builder, array, args[0], at)
+            if isinstance(index, Lanes):
+                pointer = builder.bitcast(pointer, ir_type(F4).as_pointer())
+                rows.append(_load(builder, pointer, 4))
+            else:
+                rows = [builder.load(builder.gep(pointer, [_I64(k)])) for k in range(8)]
+        columns = columns_of(builder, rows) if isinstance(index, Lanes) else rows
+        return context.make_tuple(builder, result, columns)
+
+    return result(array, index, first, width), generate
+
+
+def _loading(result: types.Type, align: int) -> Any:
+    def generate(context, builder, sig, args):
+        at = context.cast(builder, args[1], sig.args[1], types.int64)
+        pointer = _pointer(context, builder, sig.args[0], args[0], at)
+        pointer = builder.bitcast(pointer, ir_type(result).as_pointer())
+        return _load(builder, pointer, align)
+
+    return generate
+
+
+@intrinsic
+def load(typing_context, array, at):
+    """Return eight elements in a row, from index `at` on."""
+    result = Lanes(array.dtype)
+    return result(array, at), _loading(result, array.dtype.bitwidth // 8)
+
+
+@intrinsic
+def load_words(typing_context, array, at):
+    """Return eight uint32 from an array of bytes, from byte `at` on."""
+    return U4(array, at), _loading(U4, 1)
+
+
+def _storing(align: int) -> Any:
+    def generate(context, builder, sig, args):
+        at = context.cast(builder, args[1], sig.args[1], types.int64)
+        pointer = _pointer(context, builder, sig.args[0], args[0], at)
+        pointer = builder.bitcast(pointer, args[2].type.as_pointer())
+        builder.store(args[2], pointer).align = align
+        return context.get_dummy_value()
+
+    return generate
+
+
+@intrinsic
+def store(typing_context, array, at, value):
+    """Write eight elements in a row, from index `at` on."""
+    return types.void(array, at, value), _storing(array.dtype.bitwidth // 8)
+
+
+@intrinsic
+def store_words(typing_context, array, at, value):
+    """Write eight uint32 into an array of bytes, from byte `at` on."""
+    return types.void(array, at, value), _storing(1)
+
+
+@intrinsic
+def store_where(typing_context, array, at, mask, value):
+    """Write those of eight elements in a row whose mask is set; the others are written back."""
+    kind = Lanes(array.dtype)
+
+    def generate(context, builder, sig, args):
+        index = context.cast(builder, args[1], sig.args[1], types.int64)
+        pointer = _pointer(context, builder, array, args[0], index)
+        pointer = builder.bitcast(pointer, ir_type(kind).as_pointer())
+        align = array.dtype.bitwidth // 8
+        new = as_lanes(context, builder, sig.args[3], args[3], kind)
+        chosen = builder.select(args[2], new, _load(builder, pointer, align))
+        builder.store(chosen, pointer).align = align
+        return context.get_dummy_value()
+
+    return types.void(array, at, mask, value), generate
+
+
+@intrinsic
+def store_triples(typing_context, array, at, packed):
+    """Write the lower three bytes of each lane one after the other, from byte `at` on."""
+
+    def generate(context, builder, sig, args):
+        index = context.cast(builder, args[1], sig.args[1], types.int64)
+        pointer = _pointer(context, builder, array, args[0], index)
+        bytes_ = builder.bitcast(args[2], ir.VectorType(ir.IntType(8), 4 * WIDTH))
+        order = order_of(4 * (k // 3) + k % 3 for k in range(3 * WIDTH))
+        three = builder.shuffle_vector(bytes_, ir.Constant(bytes_.type, ir.Undefined), order)
+        builder.store(three, builder.bitcast(pointer, three.type.as_pointer())).align = 1
+        return context.get_dummy_value()
+
+    return types.void(array, at, packed), generate

@@ -1,0 +1,54 @@
+"""Where compiled kernels are kept, in processes of their own."""
+
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import eyas
+
+TELLS = """
+import os
+from eyas.lanes.jit import REFUSAL, kernel_folder
+print(not REFUSAL, kernel_folder(), os.environ["NUMBA_CACHE_DIR"])
+"""
+
+COMPILES = """
+from eyas.core.frames import wrap_angle
+from eyas.lanes.jit import REFUSAL
+from eyas.render import ahead
+ahead.nothing_compiled = lambda name: True  # even if Eyas brings code for this machine
+ahead.begin_ahead("")
+assert not ahead._compiling + ahead._doing_other
+print(not REFUSAL, wrap_angle(1.0))
+"""
+
+
+def run(program, cache):
+    """Run a program with a cache of its own; return what it says and what it warns of."""
+    environment = {**os.environ, "EYAS_CACHE_DIR": str(cache)}
+    environment.pop("NUMBA_CACHE_DIR", None)
+    command = [sys.executable, "-c", program]
+    done = subprocess.run(command, check=True, capture_output=True, text=True, env=environment)
+    return done.stdout.split(), done.stderr
+
+
+def test_kernels_are_kept_in_the_cache_and_their_use_is_remembered(tmp_path):
+    (kept, folder, used_by_numba), _ = run(TELLS, tmp_path)
+    assert kept == "True"
+    assert folder == used_by_numba
+    assert Path(folder).parent == tmp_path / "kernels"
+    os.utime(folder, (0, 0))
+    run(TELLS, tmp_path)
+    assert time.time() - Path(folder).stat().st_mtime < 100
+
+
+def test_where_nothing_can_be_kept_kernels_are_not_kept_beside_their_sources(tmp_path):
+    (tmp_path / "file").write_text("in the way")
+    beside = set(Path(eyas.__file__).parent.rglob("*.nb[ci]"))
+    said, warned = run(COMPILES, tmp_path / "file" / "cache")
+    assert said == ["False", "1.0"]
+    assert warned.count("\n") == 1
+    assert "cannot write: Not a directory; so every start" in warned
+    assert set(Path(eyas.__file__).parent.rglob("*.nb[ci]")) == beside
