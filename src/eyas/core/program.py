@@ -18,29 +18,26 @@ import json
 import re
 import sys
 from collections.abc import Callable, Iterable, Iterator
+from contextlib import suppress
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from eyas.core.cache.entries import write_whole
 from eyas.core.cache.folder import Kind, cache_folder
-from eyas.core.errors import OutputError
-from eyas.core.files import write_atomic
-from eyas.core.identity import LANGUAGE, language_hash
+from eyas.lanes.identity import language_hash
 
 __all__ = ["INDEX", "Definition", "Place", "closure_of", "code_of", "definitions_of", "index_of"]
 
-INDEX = Path(__file__).parent / "shipped" / "definitions.json"
+INDEX = Path(__file__).with_name("definitions.json")
 """The definitions in the files of the package, by digests of their text: reading them from the text
 takes some milliseconds for each file. Those of files that were edited are kept in the cache."""
 
 _APART = ("eyas.core.cache", "eyas.core.errors", "eyas.core.own_code", "eyas.core.program")
 """Modules that keep, refuse or find things, and decide no value; not followed."""
 
-_COMPILER = tuple(
-    "eyas.core." + name.removesuffix(".py")
-    for name in (*LANGUAGE, "entry", "identity", "jit", "parallel", "ptx", "shipped", "syntax")
-)
+_COMPILER = ("eyas.lanes",)
 """Modules that make code of kernels; not followed, `language_hash` stands for all of them."""
 
 _LIBRARIES = {"numpy": "numpy", "shapely": "shapely", "PIL": "pillow", "trimesh": "trimesh"}
@@ -67,12 +64,12 @@ def code_of(function: Callable[..., Any]) -> str:
     Raises:
         TypeError: It is not known where its code lies.
     """
-    while isinstance(function, functools.partial) or hasattr(function, "__wrapped__"):
-        function = function.func if isinstance(function, functools.partial) else function.__wrapped__
-    function = getattr(function, "function", function)  # of a kernel
-    function = getattr(function, "py_func", function)
-    function = getattr(function, "__func__", function)
-    module, name = getattr(function, "__module__", None), getattr(function, "__qualname__", "")
+    found: Any = function
+    while isinstance(found, functools.partial) or hasattr(found, "__wrapped__"):
+        found = found.func if isinstance(found, functools.partial) else found.__wrapped__
+    for inner in ("function", "py_func", "__func__"):  # of a kernel, and of a bound method
+        found = getattr(found, inner, found)
+    module, name = getattr(found, "__module__", None), getattr(found, "__qualname__", "")
     if not module or not name:
         raise TypeError(f"{function!r}: not a function or a class, whose code could be found")
     return _code(module, name.partition(".")[0])
@@ -227,11 +224,8 @@ def definitions_in(text: bytes) -> dict[str, Definition]:
             return _as_definitions(known)
         except (OSError, ValueError, TypeError, AttributeError):
             found = _Reader(text).read()
-        try:
-            kept.parent.mkdir(parents=True, exist_ok=True)
-            write_atomic(kept, json.dumps(found).encode())
-        except (OSError, OutputError):
-            pass  # the cache cannot be written to: what is kept there tells it
+        with suppress(OSError):  # whoever keeps what was made tells of it
+            write_whole(kept, [json.dumps(found).encode()])
         return found
     return _as_definitions(known)
 
@@ -339,7 +333,7 @@ def _bound(node: ast.stmt | ast.excepthandler) -> Iterator[str]:
 
 
 def _changed(node: ast.AST) -> Iterator[str]:
-    """Yield the names whose things are changed: `NAME.append(...)`, `NAME[...] = `, `global NAME`."""
+    """Yield names whose things are changed: `NAME.append(...)`, `NAME[...] = `, `global NAME`."""
     for part in ast.walk(node):
         if isinstance(part, ast.Global):
             yield from part.names
