@@ -112,14 +112,12 @@ def test_a_pickle_is_small() -> None:
     assert len(pickle.dumps(env)) < 200_000
 
 
-@pytest.mark.parametrize("workers", [0, 2])
-def test_vector_environments_are_copied(workers: int) -> None:
+def test_vector_environments_are_copied() -> None:
     mixture = [{"settings": {}}, {"settings": {"world": {"weather": "snow"}}}]
     env = EyasVectorEnv(
         3,
         {"env": {"observation": {**SMALL, "frames": 2}}, "done": {"total_steps": 40}},
         mixture=mixture,
-        workers=workers,
     )
     env.reset(seed=5)
     actions = np.zeros(3, np.int64)

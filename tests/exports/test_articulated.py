@@ -5,10 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eyas.exports.capture import frame_of
+from eyas.exports.capture import Moment, frame_of
 from eyas.exports.frame import Action
 from eyas.exports.label import label_of
-from eyas.exports.others import others_of
 from eyas.exports.writer import Episode
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
@@ -51,13 +50,13 @@ def labelled(simulation, tick, actor):
     snapshot = simulation.snapshot
     frames = [
         frame_of(
-            *(snapshot, snapshot.episodes, n, picture, n, 0, Action(-1, None)),
-            others_of(simulation, n, picture, n),
+            Moment(snapshot, snapshot.episodes, simulation.perception.actors(n)),
+            *(n, picture, n, 0, Action(-1, None)),
         )
         for n in (0, 1)
     ]
     target, seen = (label_of(frame, EPISODE) for frame in frames)
-    return target, next(other for other in seen.others if other.id == target.target_id)
+    return target, next(other for other in seen["others"] if other["id"] == target["target_id"])
 
 
 def vertices(simulation, actor) -> list[np.ndarray]:
@@ -94,21 +93,24 @@ def test_everything_that_is_drawn_is_in_the_boxes(simulation, most):
     tick, actor = bends(simulation, most)
     target, other = labelled(simulation, tick, actor)
     shown = vertices(simulation, actor)
-    yaws = [section.yaw for section in target.target_sections]
+    yaws = [section["yaw"] for section in target["target_sections"]]
     assert 0.8 * min(most, 0.7) < abs(yaws[1] - yaws[0]) <= most
-    for points, section in zip(shown, target.target_sections, strict=True):
-        assert outside(points, section.corners) < SLACK
-        size = np.linalg.norm(sides(section.corners), axis=1)
-        assert size == pytest.approx(section.size, abs=1e-5)
+    for points, section in zip(shown, target["target_sections"], strict=True):
+        assert outside(points, section["corners"]) < SLACK
+        size = np.linalg.norm(sides(section["corners"]), axis=1)
+        assert size == pytest.approx(section["size"], abs=1e-5)
     whole = np.concatenate(shown)
-    assert outside(whole, target.target_corners) < SLACK
-    assert (other.corners, other.sections) == (target.target_corners, target.target_sections)
+    assert outside(whole, target["target_corners"]) < SLACK
+    assert (other["corners"], other["sections"]) == (
+        target["target_corners"],
+        target["target_sections"],
+    )
     # The box around both is no larger than that.
-    parts = np.concatenate([section.corners for section in target.target_sections])
-    size = np.linalg.norm(sides(target.target_corners), axis=1)
-    along = parts @ (sides(target.target_corners) / size[:, None]).T
+    parts = np.concatenate([section["corners"] for section in target["target_sections"]])
+    size = np.linalg.norm(sides(target["target_corners"]), axis=1)
+    along = parts @ (sides(target["target_corners"]) / size[:, None]).T
     assert np.ptp(along, axis=0) == pytest.approx(size, abs=1e-5)
-    assert size[1] > target.target_size[1] + 0.5
+    assert size[1] > target["target_size"][1] + 0.5
 
 
 def test_the_box_of_a_straight_truck_is_as_large_as_it_is(simulation):
@@ -119,10 +121,10 @@ def test_the_box_of_a_straight_truck_is_as_large_as_it_is(simulation):
     )
     tick = round(rows[rows > 30 * motion.rate][1] / motion.rate * 500)
     target, _ = labelled(simulation, tick, actor)
-    corners = np.array(target.target_corners)
+    corners = np.array(target["target_corners"])
     size = np.linalg.norm(sides(corners), axis=1)
-    assert size == pytest.approx(target.target_size, abs=1e-5)
-    assert corners[:4, :2].mean(axis=0) == pytest.approx(target.target_centre[:2], abs=1e-5)
-    for points, section in zip(vertices(simulation, actor), target.target_sections, strict=True):
-        assert section.yaw == target.target_yaw
-        assert outside(points, section.corners) < SLACK
+    assert size == pytest.approx(target["target_size"], abs=1e-5)
+    assert corners[:4, :2].mean(axis=0) == pytest.approx(target["target_centre"][:2], abs=1e-5)
+    for points, section in zip(vertices(simulation, actor), target["target_sections"], strict=True):
+        assert section["yaw"] == target["target_yaw"]
+        assert outside(points, section["corners"]) < SLACK

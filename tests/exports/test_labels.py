@@ -43,26 +43,39 @@ def test_each_line_is_a_record_that_any_reader_understands(written, frame):
 
 def test_a_label_says_what_the_frame_holds(frame, episode):
     seen = frame(7, action=Action(3, np.zeros(4)), reason=DoneReason.HEIGHT)
-    label = label_of(replace(seen, target_words="a red SUV"), episode)
-    assert label.target_class_id == int(seen.target.object_class)
-    assert (label.width, label.height) == (64, 48)
-    np.testing.assert_allclose(label.intrinsics, episode.intrinsics, atol=1e-6)
-    assert label.target_words == "a red SUV"
-    assert (label.frame, label.step, label.time) == (7, 171, 1.28)
-    assert label.episode_time == 0.342
-    assert (label.action, label.direction, label.done, label.reward) == (3, 1, True, 0.5)
-    assert (label.visible_fraction, label.occluded, label.in_view) == (0.75, True, True)
-    assert label.relative_position == [12.0, 0.0, -21.63]
-    assert label.target_velocity == [13.0, 0.0, 0.0]
+    label = label_of(replace(seen, target=replace(seen.target, words="a red SUV")), episode)
+    assert label["target_class_id"] == int(seen.target.object_class)
+    assert (label["width"], label["height"]) == (64, 48)
+    np.testing.assert_allclose(label["intrinsics"], episode.intrinsics, atol=1e-6)
+    assert label["target_words"] == "a red SUV"
+    assert (label["frame"], label["step"], label["time"]) == (7, 171, 1.28)
+    assert label["episode_time"] == 0.342
+    assert (label["action"], label["direction"], label["done"], label["reward"]) == (
+        3,
+        1,
+        True,
+        0.5,
+    )
+    assert (label["visible_fraction"], label["occluded"], label["in_view"]) == (0.75, True, True)
+    assert label["relative_position"] == [12.0, 0.0, -21.63]
+    assert label["target_velocity"] == [13.0, 0.0, 0.0]
 
 
 def test_a_label_lists_the_other_vehicles(written, frame):
     other = replace(frame(0).target, object_id=65536 + 9, object_class=ObjectClass.BUS)
     (label,) = read_labels(written(frame(0, others=(other,))))
-    (said,) = label.others
-    assert (label.target_id, said.id, said.class_id) == (65539, 65545, 12)
-    assert (said.box, said.visible_fraction, said.type) == ([10, 11, 20, 17], 0.75, "BmwX5Simple")
-    assert (said.centre, said.velocity, said.yaw) == ([13.0, 2.0, 0.37], [13.0, 0.0, 0.0], 0.0)
+    (said,) = label["others"]
+    assert (label["target_id"], said["id"], said["class_id"]) == (65539, 65545, 12)
+    assert (said["box"], said["visible_fraction"], said["type"]) == (
+        [10, 11, 20, 17],
+        0.75,
+        "BmwX5Simple",
+    )
+    assert (said["centre"], said["velocity"], said["yaw"]) == (
+        [13.0, 2.0, 0.37],
+        [13.0, 0.0, 0.0],
+        0.0,
+    )
 
 
 def test_only_articulated_vehicles_have_sections(written, frame):
@@ -74,17 +87,17 @@ def test_only_articulated_vehicles_have_sections(written, frame):
     assert "target_sections" not in car
     assert ["sections" in other for other in pulled["others"]] == [True, False]
     first, second = read_labels(path)
-    assert (first.target_sections, second.others[1].sections) == ([], [])
-    assert second.target_sections == second.others[0].sections
-    assert [section.name for section in second.target_sections] == ["truck", "trailer"]
-    yaws = [section.yaw for section in second.target_sections]
+    assert "target_sections" not in first
+    assert second["target_sections"] == second["others"][0]["sections"]
+    assert [section["name"] for section in second["target_sections"]] == ["truck", "trailer"]
+    yaws = [section["yaw"] for section in second["target_sections"]]
     assert yaws[1] - yaws[0] == pytest.approx(0.5, abs=1e-6)
 
 
 def test_a_target_outside_the_picture_is_not_occluded(frame, episode):
     target = replace(frame(0).target, box=np.zeros(4, np.int32), seen_pixels=0, covered_pixels=0)
     label = label_of(frame(0, target=target), episode)
-    assert (label.visible_fraction, label.occluded, label.in_view) == (0.0, False, False)
+    assert (label["visible_fraction"], label["occluded"], label["in_view"]) == (0.0, False, False)
 
 
 def test_labels_tell_what_an_episode_came_to(run, written, frame):

@@ -5,9 +5,8 @@ from dataclasses import asdict, fields, is_dataclass
 import numpy as np
 import pytest
 
-from eyas.exports.capture import frame_of
+from eyas.exports.capture import Moment, frame_of, others_of
 from eyas.exports.frame import Action
-from eyas.exports.others import others_of
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
 from eyas.sim.worlds import together
@@ -32,14 +31,18 @@ def picture_of(simulation, **wanted) -> Picture:
     return picture
 
 
+def seen_by(simulation, tracker, picture):
+    actors = simulation.perception.actors(tracker)
+    return others_of(simulation.snapshot, actors, tracker, picture, tracker)
+
+
 def test_another_s_target_is_described_like_a_target(simulation):
     picture = picture_of(simulation, actors=simulation.actors)
     picture.actor_pixels[:] = 3, 4  # as if every actor was seen
     picture.actor_box[:] = 1, 2, 3, 4
-    target = frame_of(
-        simulation.snapshot, simulation.snapshot.episodes, 1, picture, 1, 0, Action(-1, None)
-    ).target
-    others = others_of(simulation, 0, picture, 0)
+    moment = Moment(simulation.snapshot, simulation.snapshot.episodes)
+    target = frame_of(moment, 1, picture, 1, 0, Action(-1, None)).target
+    others = seen_by(simulation, 0, picture)
     own = ACTOR_OBJECT + int(simulation.snapshot.targets.actor[0])
     everyone = [ACTOR_OBJECT + actor for actor in range(simulation.actors)]
     assert [other.object_id for other in others] == [id_ for id_ in everyone if id_ != own]
@@ -63,7 +66,7 @@ def test_they_are_those_whose_pixels_are_in_the_picture(simulation):
         own = ACTOR_OBJECT + int(simulation.snapshot.targets.actor[tracker])
         shown, count = np.unique(picture.object_id[tracker], return_counts=True)
         seen = {i: n for i, n in zip(shown.tolist(), count.tolist(), strict=True) if i != own}
-        others = others_of(simulation, tracker, picture, tracker)
+        others = seen_by(simulation, tracker, picture)
         expected = {i: n for i, n in seen.items() if i >= ACTOR_OBJECT}
         assert {other.object_id: other.seen_pixels for other in others} == expected
         for other in others:
@@ -71,5 +74,7 @@ def test_they_are_those_whose_pixels_are_in_the_picture(simulation):
             assert set(classes.tolist()) == {int(other.object_class)}
 
 
-def test_there_are_none_where_they_were_not_measured(simulation):
-    assert others_of(simulation, 0, picture_of(simulation), 0) == ()
+def test_there_are_none_where_nobody_wants_them(simulation):
+    moment = Moment(simulation.snapshot, simulation.snapshot.episodes)
+    frame = frame_of(moment, 0, picture_of(simulation), 0, 0, Action(-1, None))
+    assert (frame.others, frame.target.words) == ((), "")

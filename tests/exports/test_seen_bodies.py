@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from eyas.core.pinhole import project
-from eyas.exports.capture import frame_of
+from eyas.exports.capture import Moment, frame_of
 from eyas.exports.frame import Action
-from eyas.exports.others import others_of
 from eyas.settings.config import EyasConfig
 from eyas.sim.build import build_simulation
 from eyas.sim.worlds import each_alone
@@ -31,10 +30,9 @@ def frames():
         simulation.carry(90)
         simulation.draw(np.arange(COUNT, dtype=np.int32), picture)
         for n in range(COUNT):
-            others = others_of(simulation, n, picture, n)
-            now = simulation.snapshot.episodes
-            given = (simulation.snapshot, now, n, picture, n, 0, Action(-1, None))
-            seen.append(frame_of(*given, others=others))
+            shown, actors = simulation.snapshot, simulation.perception.actors(n)
+            moment = Moment(shown, shown.episodes, actors)
+            seen.append(frame_of(moment, n, picture, n, 0, Action(-1, None)))
     return seen
 
 

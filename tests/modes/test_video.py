@@ -22,7 +22,7 @@ from eyas.core.folder_lock import folder_lock
 from eyas.exports.files import Files
 from eyas.exports.frame import Frame
 from eyas.exports.gather import Gather
-from eyas.exports.label import FrameLabel
+from eyas.exports.label import Label
 from eyas.exports.labels import read_labels
 from eyas.exports.registry import WRITERS
 from eyas.exports.summary import Summary
@@ -92,7 +92,9 @@ def test_every_description_counts_the_same_frames(recorded):
         assert frames > 10
         assert sorted(path.stem for path in episode.glob("*.jpeg")) == names
         assert list(json.loads((episode / "mark.json").read_text())) == names
-        assert [label.frame for label in read_labels(episode / "labels.jsonl")] == [*range(frames)]
+        assert [label["frame"] for label in read_labels(episode / "labels.jsonl")] == [
+            *range(frames)
+        ]
         assert movie_length(episode / "episode.mp4") == frames
 
 
@@ -107,33 +109,35 @@ def test_labels_agree_with_the_marks_and_the_geometry(recorded):
     for episode in episodes_of(recorded):
         marks = json.loads((episode / "mark.json").read_text())
         for label in read_labels(episode / "labels.jsonl"):
-            reward, action = marks[f"{label.frame:06d}"]
-            assert (round(reward, 6), action) == (label.reward, -1.0)
-            left, top, right, bottom = label.target_box
-            assert label.in_view
+            reward, action = marks[f"{label['frame']:06d}"]
+            assert (round(reward, 6), action) == (label["reward"], -1.0)
+            left, top, right, bottom = label["target_box"]
+            assert label["in_view"]
             assert 0 <= left < right <= 64
             assert 0 <= top < bottom <= 48
-            assert 0.0 <= label.visible_fraction <= 1.0
-            assert label.occluded == (label.visible_fraction < 1.0)
-            offset = np.subtract(label.target_centre, label.tracker_position)
-            assert np.linalg.norm(offset) == pytest.approx(np.linalg.norm(label.relative_position))
+            assert 0.0 <= label["visible_fraction"] <= 1.0
+            assert label["occluded"] == (label["visible_fraction"] < 1.0)
+            offset = np.subtract(label["target_centre"], label["tracker_position"])
+            assert np.linalg.norm(offset) == pytest.approx(
+                np.linalg.norm(label["relative_position"])
+            )
 
 
 def test_a_box_lies_where_the_camera_projects_the_target(recorded):
     for episode in episodes_of(recorded):
         label = read_labels(episode / "labels.jsonl")[-1]
-        offset = np.subtract(label.target_centre, label.camera_position)
-        forward, left, up = np.array(label.camera_rotation).T @ offset
+        offset = np.subtract(label["target_centre"], label["camera_position"])
+        forward, left, up = np.array(label["camera_rotation"]).T @ offset
         focal = 32 / np.tan(CONFIG.camera.field_of_view / 2)
         u, v = 32 - focal * left / forward, 24 - focal * up / forward
-        box = label.target_box
+        box = label["target_box"]
         assert box[0] - 2 <= u <= box[2] + 2
         assert box[1] - 2 <= v <= box[3] + 2
 
 
 def test_frames_come_at_the_asked_rate_and_time(recorded):
     for episode in episodes_of(recorded):
-        times = [label.time for label in read_labels(episode / "labels.jsonl")]
+        times = [label["time"] for label in read_labels(episode / "labels.jsonl")]
         assert np.diff(times) == pytest.approx(0.004)
         assert times[0] >= 0.7
         assert times[-1] <= 1.4
@@ -141,7 +145,7 @@ def test_frames_come_at_the_asked_rate_and_time(recorded):
 
 def test_exact_following_keeps_the_target_in_its_place(recorded):
     labels = read_labels(recorded / "DRONE0" / "episode0" / "labels.jsonl")
-    places = np.array([label.relative_position for label in labels])
+    places = np.array([label["relative_position"] for label in labels])
     assert np.ptp(places, axis=0).max() < 0.05
 
 
@@ -247,8 +251,8 @@ def test_random_actions_are_seeded_held_and_marked(tmp_path):
     video.run(config, tmp_path / "b", quiet=True)
     assert contents(tmp_path / "a") == contents(tmp_path / "b")
     labels = read_labels(tmp_path / "a" / "DRONE0" / "episode0" / "labels.jsonl")
-    actions = {(label.step - 1) // 4: label.action for label in labels}
-    assert all(actions[(label.step - 1) // 4] == label.action for label in labels)
+    actions = {(label["step"] - 1) // 4: label["action"] for label in labels}
+    assert all(actions[(label["step"] - 1) // 4] == label["action"] for label in labels)
     assert set(actions.values()) == {0, 1, 2, 3, 4, 5}
 
 
@@ -268,13 +272,13 @@ def test_direction_replaces_the_marks(recorded, tmp_path):
     assert len(found) > 1  # some turn, some drive straight on
 
 
-def directions(labels: list[FrameLabel]) -> tuple[np.ndarray, np.ndarray]:
+def directions(labels: list[Label]) -> tuple[np.ndarray, np.ndarray]:
     """Return which way the target goes in each frame but the first, and where that is beyond doubt.
 
     A frame is two steps; between the limits of turning, one step may differ from the other.
     """
-    turn = np.diff([label.target_yaw for label in labels]) / 2.0
-    speed = np.linalg.norm([label.target_velocity for label in labels], axis=1)[1:]
+    turn = np.diff([label["target_yaw"] for label in labels]) / 2.0
+    speed = np.linalg.norm([label["target_velocity"] for label in labels], axis=1)[1:]
     along = np.where(speed > 0.5, TargetDirection.STRAIGHT, TargetDirection.STOP)
     aside = np.where(turn > 0.0, TargetDirection.LEFT, TargetDirection.RIGHT)
     clear = np.abs(np.abs(turn) - 1e-4) > 0.5e-4

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from eyas.core.errors import OutputError
-from eyas.exports.capture import frame_of
+from eyas.exports.capture import Moment, frame_of
 from eyas.exports.files import Files
 from eyas.exports.frame import Action
 from eyas.exports.registry import WRITERS, chosen_writers
@@ -35,7 +35,8 @@ def write(folder: Path, frames: int, writers: list[Writer] | None = None) -> Epi
     for number in range(frames):
         picture.rgb[:] = 40 * number
         action, now = Action(-1, None), snapshot.episodes
-        files.add(frame_of(snapshot, now, 0, picture, 0, number, action, lidar=np.ones(400)))
+        moment = Moment(snapshot, now, lidar=np.ones(400))
+        files.add(frame_of(moment, 0, picture, 0, number, action))
     return files
 
 

@@ -1,7 +1,6 @@
 """Recordings of what agents see late: each label is true of its picture."""
 
 import itertools
-from dataclasses import asdict
 
 import pytest
 
@@ -38,7 +37,7 @@ def recorded(folder, **changes):
     )
     video.run(config, folder, quiet=True)
     episodes = [folder / f"DRONE{n}" / "episode0" for n in range(2)]
-    labels = [[asdict(label) for label in read_labels(e / "labels.jsonl")] for e in episodes]
+    labels = [read_labels(e / "labels.jsonl") for e in episodes]
     pictures = [[path.read_bytes() for path in sorted(e.glob("*.jpeg"))] for e in episodes]
     rows = [(e / "lidar.csv").read_text().splitlines()[1:] for e in episodes]
     return labels, pictures, [[row.split(",")[1:] for row in table] for table in rows]

@@ -82,7 +82,7 @@ def test_it_writes_what_the_labels_say(work):
         rows = [line.split(",") for line in (episode / "boxes.csv").read_text().splitlines()]
         labels = read_labels(episode / "labels.jsonl")
         assert [[int(cell) for cell in row[2:6]] for row in rows] == [
-            label.target_box for label in labels
+            label["target_box"] for label in labels
         ]
 
 

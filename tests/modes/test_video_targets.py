@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from eyas.cli.app import run
-from eyas.exports.label import FrameLabel
+from eyas.exports.label import Label
 from eyas.exports.labels import read_labels
 from eyas.state.scene import ObjectClass
 
@@ -51,24 +51,24 @@ WIDTH, HEIGHT = 96, 72
 class Recorded(NamedTuple):
     """One episode of a second and a half."""
 
-    labels: list[FrameLabel]
+    labels: list[Label]
     pixels: np.ndarray
     """Red, green, blue, object and class, shape (frames, HEIGHT, WIDTH, 5)."""
 
-    def shown(self, label: FrameLabel) -> np.ndarray:
+    def shown(self, label: Label) -> np.ndarray:
         """Return the colour and class of the target's pixels, shape (K, 4)."""
-        picture = self.pixels[label.frame]
-        own = picture[..., 3] == label.target_id
+        picture = self.pixels[label["frame"]]
+        own = picture[..., 3] == label["target_id"]
         return picture[own][:, [0, 1, 2, 4]]
 
     def moved(self) -> float:
         """Return how far the target is from where it was at first [m]."""
-        first, last = (self.labels[k].target_position for k in (0, -1))
+        first, last = (self.labels[k]["target_position"] for k in (0, -1))
         return float(np.hypot(*np.subtract(last, first)[:2]))
 
     def seconds(self) -> float:
         """Return the time from the first frame to the last [s]."""
-        return self.labels[-1].time - self.labels[0].time
+        return self.labels[-1]["time"] - self.labels[0]["time"]
 
 
 @pytest.fixture
@@ -105,28 +105,28 @@ def assert_pixels_agree(recorded: Recorded, kind: ObjectClass) -> None:
     """The box of the label holds the pixels of the target, which are of its class."""
     assert len(recorded.labels) == len(recorded.pixels) > 20
     for label in recorded.labels:
-        own = recorded.pixels[label.frame][..., 3] == label.target_id
+        own = recorded.pixels[label["frame"]][..., 3] == label["target_id"]
         row, column = np.nonzero(own)
         assert len(row) > 20
-        left, top, right, bottom = label.target_box
+        left, top, right, bottom = label["target_box"]
         assert left <= column.min() <= column.max() < right
         assert top <= row.min() <= row.max() < bottom
-        if not label.occluded:
+        if not label["occluded"]:
             found = [column.min(), row.min(), column.max() + 1, row.max() + 1]
-            assert label.target_box == found
+            assert label["target_box"] == found
         assert set(recorded.shown(label)[:, 3]) == {kind}
-        corners = np.array(label.target_corners)
-        assert np.ptp(corners[:, 2]) == pytest.approx(label.target_size[2], abs=0.1)
+        corners = np.array(label["target_corners"])
+        assert np.ptp(corners[:, 2]) == pytest.approx(label["target_size"][2], abs=0.1)
 
 
 def test_a_pedestrian(record):
     recorded = record(target="Pedestrian", seed=3)
     assert_pixels_agree(recorded, ObjectClass.PERSON)
     label = recorded.labels[0]
-    assert label.target_type.startswith("Pedestrian")
-    assert label.target_size == pytest.approx([0.4, 0.6, 1.8], rel=0.2)
-    assert re.match(r"an? pedestrian in an? \w+", label.target_words)
-    ways = [label.target_travelled for label in recorded.labels]
+    assert label["target_type"].startswith("Pedestrian")
+    assert label["target_size"] == pytest.approx([0.4, 0.6, 1.8], rel=0.2)
+    assert re.match(r"an? pedestrian in an? \w+", label["target_words"])
+    ways = [label["target_travelled"] for label in recorded.labels]
     assert ways[-1] - ways[0] == pytest.approx(2.0 * recorded.seconds(), rel=0.05)
     assert 1.0 < recorded.moved() <= ways[-1] - ways[0] + 0.01
 
@@ -154,9 +154,9 @@ def test_a_mesh_file_in_the_settings_alone(record, tmp_path: Path):
     recorded = record(custom=mesh)
     assert_pixels_agree(recorded, ObjectClass.ROBOT)
     for label in recorded.labels:
-        assert label.target_type == "blue_red_crate"
-        assert label.target_size == pytest.approx([1.2, 0.8, 0.8], abs=1e-6)
-        assert label.target_words == "a blue red crate"
+        assert label["target_type"] == "blue_red_crate"
+        assert label["target_size"] == pytest.approx([1.2, 0.8, 0.8], abs=1e-6)
+        assert label["target_words"] == "a blue red crate"
         red, blue = recorded.shown(label)[:, [0, 2]].T
         # Both colours of its texture are seen from above, and little else.
         assert (red > 1.5 * blue).mean() > 0.2
@@ -164,22 +164,22 @@ def test_a_mesh_file_in_the_settings_alone(record, tmp_path: Path):
     assert recorded.moved() == pytest.approx(1.5 * recorded.seconds(), rel=0.05)
     told = record(custom={**mesh, "words": "a parcel"}, video={"total_time": 0.1, "channels": 1,
                   "writers": ["labels", "pixel_writer:Pixels"]})  # fmt: skip
-    assert told.labels[0].target_words == "a parcel"
+    assert told.labels[0]["target_words"] == "a parcel"
 
 
 def test_a_class_of_a_users_package(record):
     recorded = record(custom={"path": "own_target:Sprinkler"}, world={"map": "farmland"})
     assert_pixels_agree(recorded, ObjectClass.ROBOT)
     label = recorded.labels[-1]
-    assert (label.target_type, label.target_words) == ("Sprinkler", "a sprinkler")
-    assert label.target_size == [3.2, 3.2, 1.1]
+    assert (label["target_type"], label["target_words"]) == ("Sprinkler", "a sprinkler")
+    assert label["target_size"] == [3.2, 3.2, 1.1]
     red, green, blue = recorded.shown(label)[:, :3].T
     assert ((green > red) & (green > blue)).any()  # its box
     assert ((red > 1.5 * blue) & (red > green)).any()  # its arm
     # On a circle of 8 m, 2 m/s.
     angle = 2.0 * recorded.seconds() / 8.0
     assert recorded.moved() == pytest.approx(16.0 * np.sin(angle / 2), rel=0.02)
-    turned = (label.target_yaw - recorded.labels[0].target_yaw) % (2 * np.pi)
+    turned = (label["target_yaw"] - recorded.labels[0]["target_yaw"]) % (2 * np.pi)
     assert turned == pytest.approx(angle, rel=0.02)
 
 
@@ -189,12 +189,12 @@ def test_a_trajectory_file(record, tmp_path: Path):
     recorded = record(custom={"trajectory": str(tmp_path / "walk.csv"), "body": "BB-8"})
     assert_pixels_agree(recorded, ObjectClass.ROBOT)
     label = recorded.labels[-1]
-    assert (label.target_type, label.target_size) == ("BB-8", [0.5, 0.5, 0.68])
-    assert label.target_words == "a white and orange robot that rolls on a ball"
+    assert (label["target_type"], label["target_size"]) == ("BB-8", [0.5, 0.5, 0.68])
+    assert label["target_words"] == "a white and orange robot that rolls on a ball"
     assert recorded.moved() == pytest.approx(1.3 * recorded.seconds(), rel=0.01)
     for one in recorded.labels:
-        x, y = one.target_position[:2]
+        x, y = one["target_position"][:2]
         assert (x + 41.0) * 0.5 == pytest.approx((y - 3.0) * 1.2, abs=1e-3)  # on its line
-        assert one.target_yaw == pytest.approx(np.arctan2(0.5, 1.2), abs=1e-3)
-    speed = np.hypot(*recorded.labels[0].target_velocity[:2])
+        assert one["target_yaw"] == pytest.approx(np.arctan2(0.5, 1.2), abs=1e-3)
+    speed = np.hypot(*recorded.labels[0]["target_velocity"][:2])
     assert speed == pytest.approx(1.3, rel=0.01)

@@ -8,7 +8,7 @@ import pytest
 
 from eyas.behaviours.troop import Clock
 from eyas.core.errors import ConfigError, SpawnError
-from eyas.exports.capture import frame_of
+from eyas.exports.capture import Moment, frame_of
 from eyas.exports.frame import Action
 from eyas.exports.label import label_of
 from eyas.exports.writer import Episode
@@ -17,7 +17,6 @@ from eyas.sim.config import SimConfig
 from eyas.sim.crowd import crowd_of, extras_of
 from eyas.sim.crowd_motion import Surroundings, crowd_motions, with_crowd
 from eyas.sim.scenes import load_scene
-from eyas.sim.words import target_in_words
 from eyas.sim.worlds import each_alone, together
 from eyas.state.draw import Picture
 from eyas.state.motion import SAMPLE, Motion, joined
@@ -65,24 +64,29 @@ def test_a_target_on_foot_is_in_the_picture_and_in_the_labels(walk):
     walk.draw(np.arange(4, dtype=np.int32), picture)
     for tracker in range(4):
         frame = frame_of(
-            walk.snapshot, walk.snapshot.episodes, tracker, picture, tracker, 0, Action(-1, None)
+            Moment(walk.snapshot, walk.snapshot.episodes),
+            tracker,
+            picture,
+            tracker,
+            0,
+            Action(-1, None),
         )
         label = label_of(frame, Episode(Path(), "DRONE0", 0, 160, 120, np.eye(3), 25.0))
-        assert (label.target_type, frame.target.object_class) == (
+        assert (label["target_type"], frame.target.object_class) == (
             frame.target.type,
             ObjectClass.PERSON,
         )
         assert frame.target.motion.upright
-        assert label.visible_fraction > 0.1
+        assert label["visible_fraction"] > 0.1
         assert (picture.class_id[tracker] == ObjectClass.PERSON).any()
-        assert math.hypot(*label.target_velocity) <= 2.001
-        assert label.target_travelled > 0.0
-        assert label.direction in (0, 1, 2, 3)
-        corners = np.array(label.target_corners)
+        assert math.hypot(*label["target_velocity"]) <= 2.001
+        assert label["target_travelled"] > 0.0
+        assert label["direction"] in (0, 1, 2, 3)
+        corners = np.array(label["target_corners"])
         ground = corners[:4, 2].mean()
         assert -0.11 < ground < 0.16
-        assert corners[4:, 2].mean() - ground == pytest.approx(label.target_size[2])
-        assert np.allclose(corners.mean(axis=0)[:2], label.target_centre[:2], atol=1e-3)
+        assert corners[4:, 2].mean() - ground == pytest.approx(label["target_size"][2])
+        assert np.allclose(corners.mean(axis=0)[:2], label["target_centre"][:2], atol=1e-3)
 
 
 @pytest.mark.parametrize("target", ["Pedestrian", "BB-8", "SUMO_VEHICLE"])
@@ -164,8 +168,10 @@ def test_who_is_half_in_the_picture_is_told_apart(monkeypatch):
         actors, models = seen(0)
         actors.present[:] = True
         actors.position[0, 1 - target] = middle + share * side * cameras.rotation[0, :, 1]
-        monkeypatch.setattr(simulation, "actors_around", lambda tracker, ago=0: (actors, models))
-        return target_in_words(simulation, 0, 0.75)
+        monkeypatch.setattr(
+            simulation.perception._worlds, "actors_around", lambda *_: (actors, models)
+        )
+        return simulation.perception.words(0, 0.75)
 
     assert moved(1.1) == "a dark grey walking machine on six legs, moving"  # the other stands
     assert moved(2.5) == "a dark grey walking machine on six legs"

@@ -8,7 +8,6 @@ from eyas.envs.observation import Observer
 from eyas.sensors.config import CameraErrors, LidarConfig, MountConfig, SensorsConfig
 from eyas.sim.build import build_simulation
 from eyas.sim.config import ControlConfig
-from eyas.sim.words import target_in_words
 from eyas.sim.worlds import each_alone
 from eyas.state.draw import Picture
 from eyas.task.config import StartConfig
@@ -151,7 +150,7 @@ def test_the_words_for_a_target_are_those_of_what_is_shown(config):
     now, late = ([] for _ in sims)
     for _ in range(6):
         for words, simulation in zip((now, late), sims, strict=True):
-            words.append([target_in_words(simulation, n, 0.75) for n in range(12)])
+            words.append([simulation.perception.words(n, 0.75) for n in range(12)])
             simulation.carry(500)
     assert late[1:] == now[:-1]
     assert now[1:] != now[:-1]

@@ -42,37 +42,26 @@ def command(  # noqa: PLR0913  # one parameter for each option
     browser: Annotated[
         bool, typer.Option("--browser/--no-browser", help="Open the page in a browser.")
     ] = True,
-    window: Annotated[
-        bool, typer.Option("--window", help="In a window instead (extra play).")
-    ] = False,
     headless: Annotated[
         bool, typer.Option("--headless", help="Print the reward of a hovering drone instead.")
     ] = False,
     seconds: Annotated[
         float | None,
-        typer.Option(
-            "--seconds", min=0.1, help="Stop after this time, with --headless or --window."
-        ),
+        typer.Option("--seconds", min=0.1, help="Stop after this time, with --headless."),
     ] = None,
 ) -> None:
     """Fly a drone by keyboard through any map, in the browser, and watch the reward."""
     from eyas.settings.file import load_settings
 
-    if window and headless:
-        raise ConfigError("--window and --headless cannot be used together")
-    if seconds is not None and not (window or headless):
-        raise ConfigError("--seconds: only with --headless or --window")
+    if seconds is not None and not headless:
+        raise ConfigError("--seconds: only with --headless")
     overrides = gathered(set_, map_name, weather, seed)
     settings = load_settings(chosen_file(config, preset), overrides, trust=trust)
     from eyas.modes.demo import run as demo  # after all checks
 
-    listening = None if headless or window else demo.listen(host, port)
+    listening = None if headless else demo.listen(host, port)
     cockpit = demo.cockpit_of(settings, policy)
-    if headless:
+    if listening is None:
         demo.run_headless(cockpit, seconds or 10.0, typer.echo)
-    elif listening is None:
-        from eyas.modes.demo.window import run_window
-
-        run_window(cockpit, seconds)
     else:
         demo.run_browser(cockpit, host, listening, browser=browser, say=typer.echo)

@@ -20,7 +20,6 @@ from eyas.envs.observation import Observer
 from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.messages import originals_named
 from eyas.sim.build import build_simulation
-from eyas.sim.words import target_in_words
 from eyas.sim.worlds import each_alone, together
 from eyas.state.draw import Picture
 from eyas.task.done import DoneReason
@@ -105,14 +104,6 @@ class Batch:
         Raises:
             EyasError: There can be no second one.
         """
-        return _again, (*self._made, self.memento())
-
-    def memento(self) -> Memento:
-        """Return what distinguishes these trackers from new ones.
-
-        Raises:
-            EyasError: There can be no second one.
-        """
         if self._simulation.traffic.live:
             raise EyasError("traffic.live: an environment with live traffic cannot be copied")
         if self._journal.writes:
@@ -120,11 +111,7 @@ class Batch:
                 f"env.log_folder: an environment that writes logs ({self.config.env.log_folder}) "
                 "cannot be copied"
             )
-        return remember(self, FIXED)
-
-    def recall(self, memento: Memento) -> None:
-        """Go on where others of the same settings were."""
-        recall(self, memento)
+        return _again, (*self._made, remember(self, FIXED))
 
     def continue_from(self, other: "Batch") -> None:
         """Continue the sequences of episodes of others, which may have other settings."""
@@ -207,7 +194,7 @@ class Batch:
     def words_of(self, tracker: int) -> str:
         """Return the target of a tracker in words, see `eyas.sim.words`."""
         camera = self.config.camera
-        return target_in_words(self._simulation, tracker, camera.height / camera.width)
+        return self._simulation.perception.words(tracker, camera.height / camera.width)
 
     def render(
         self, chosen: NDArray[np.int32] | None = None, *, overlay: bool
@@ -232,5 +219,5 @@ def _again(
 ) -> Batch:
     """Return a copy of a batch."""
     batch = Batch(config, count, shared=shared, numbers=numbers)
-    batch.recall(memento)
+    recall(batch, memento)
     return batch

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.errors import ActionError
-from eyas.core.memento import Memento
 from eyas.envs.batch import Batch, Outcome, Seeds
 from eyas.envs.choice import kinds_of, settings_of_kinds
 from eyas.envs.information import Info
@@ -35,19 +34,18 @@ class Fleet:
     Args:
         config: The settings.
         count: N.
-        first: Index of its first environment in a larger fleet; the kinds depend on it.
 
     Raises:
         EyasError: A setting is wrong; the message is one line.
     """
 
-    def __init__(self, config: EyasConfig, count: int, first: int = 0) -> None:
+    def __init__(self, config: EyasConfig, count: int) -> None:
         kinds = settings_of_kinds(config)
-        kind_of = np.array(kinds_of(config, first + count)[first:])
+        kind_of = np.array(kinds_of(config, count))
         self._count = count
         rows_of = [np.flatnonzero(kind_of == kind) for kind in range(len(kinds))]
         self._squads = [
-            _Squad(Batch(kind, len(rows), numbers=(first + rows).tolist()), rows)
+            _Squad(Batch(kind, len(rows), numbers=rows.tolist()), rows)
             for kind, rows in zip(kinds, rows_of, strict=True)
             if len(rows)
         ]
@@ -117,19 +115,6 @@ class Fleet:
         """Return the target of one in words, see `eyas.sim.words`."""
         batch, tracker = self._place[index]
         return batch.words_of(tracker)
-
-    def picture(self, index: int, overlay: bool) -> NDArray[np.uint8]:
-        """As `render`."""
-        return self.render(index, overlay=overlay)
-
-    def mementos(self) -> list[Memento]:
-        """Return what distinguishes these environments from new ones, see `Batch.memento`."""
-        return [batch.memento() for batch, _ in self._squads]
-
-    def recall(self, mementos: Sequence[Memento]) -> None:
-        """Go on where others of the same settings were."""
-        for (batch, _), memento in zip(self._squads, mementos, strict=True):
-            batch.recall(memento)
 
     def close(self) -> None:
         """Close the logs and end live traffic; may be called twice."""

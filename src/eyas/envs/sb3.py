@@ -40,7 +40,6 @@ class EyasVecEnv(VecEnv):  # type: ignore[misc]  # no types where it is not inst
         config: Settings, see `eyas.envs.choice.Source`.
         render_mode: `rgb_array` or None.
         overlay: As for `TrackingEnv`.
-        workers: As for `EyasVectorEnv`.
         choices: Settings by keyword, see `eyas.envs.choice.EnvChoices`.
 
     Raises:
@@ -54,7 +53,6 @@ class EyasVecEnv(VecEnv):  # type: ignore[misc]  # no types where it is not inst
         *,
         render_mode: str | None = None,
         overlay: bool = False,
-        workers: int = 0,
         **choices: Unpack[EnvChoices],
     ) -> None:
         choices.setdefault("observation", {"layout": "chw"})
@@ -64,7 +62,6 @@ class EyasVecEnv(VecEnv):  # type: ignore[misc]  # no types where it is not inst
             autoreset_mode=AutoresetMode.SAME_STEP,
             render_mode=render_mode,
             overlay=overlay,
-            workers=workers,
             **choices,
         )
         self._actions: NDArray[Any] = np.zeros(0)

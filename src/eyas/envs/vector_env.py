@@ -18,7 +18,6 @@ from eyas.envs.fleet import Fleet
 from eyas.envs.information import Info, by_term, masked
 from eyas.envs.members import Member
 from eyas.envs.observation import Observation
-from eyas.envs.worker_fleet import WorkerFleet
 from eyas.settings.config import EyasConfig
 
 __all__ = ["EyasVectorEnv"]
@@ -29,7 +28,7 @@ Stepped = tuple[Observation, NDArray[np.float64], Mask, Mask, Info]
 
 
 class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
-    """N environments that are stepped and drawn together, in one process or in several.
+    """N environments that are stepped together, and drawn with all threads.
 
     Environment i gives the same as `TrackingEnv` with seed s + i if reset with seed s. Without a
     seed, the first reset takes that of the configuration for s. Copies are as those of
@@ -42,7 +41,6 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         copy: Whether each step returns new arrays; False: they are written again two steps later.
         render_mode: `rgb_array` or None.
         overlay: As for `TrackingEnv`.
-        workers: Number of processes with the environments, which changes no result; 0: this one.
         choices: Settings by keyword, see `eyas.envs.choice.EnvChoices`.
 
     Raises:
@@ -55,7 +53,7 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         "autoreset_mode": AutoresetMode.NEXT_STEP,
     }
 
-    def __init__(  # noqa: PLR0913  # one for each choice
+    def __init__(  # one for each choice
         self,
         num_envs: int = 1,
         config: Source = None,
@@ -64,18 +62,14 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         copy: bool = True,
         render_mode: str | None = None,
         overlay: bool = False,
-        workers: int = 0,
         **choices: Unpack[EnvChoices],
     ) -> None:
         if num_envs < 1:
             raise ConfigError(f"num_envs: {num_envs} is not allowed: a whole number, at least 1")
         if render_mode not in (None, *self.metadata["render_modes"]):
             raise ConfigError(f"render_mode: '{render_mode}' is not allowed: 'rgb_array' or None")
-        if not 0 <= workers <= num_envs:
-            raise ConfigError(f"workers: {workers} is not allowed: 0 to num_envs, here {num_envs}")
         self.config = chosen_settings(config, **choices)
-        made = self.config, num_envs
-        self._fleet = WorkerFleet(*made, workers) if workers else Fleet(*made)
+        self._fleet = Fleet(self.config, num_envs)
         self.num_envs = num_envs
         self.render_mode = render_mode
         self.single_action_space = self._fleet.action_space
@@ -209,7 +203,7 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         return self._fleet.render(index, overlay=self._overlay)
 
     def close_extras(self, **_: Any) -> None:  # noqa: ANN401  # Gymnasium's
-        """End the processes, if there are some."""
+        """Close the logs and end live traffic."""
         self._fleet.close()
 
     def _final(self, ended: Mask, outcome: Outcome) -> Info:

@@ -1,52 +1,71 @@
 """Frames as they are taken: copies of what steps and pictures change later."""
 
+from typing import NamedTuple
+
+import numpy as np
+
 from eyas.core.clock import PHYSICS_STEP
 from eyas.exports.frame import Action, Body, CameraPose, Floats, Frame, Subject
 from eyas.exports.movement import Movement
+from eyas.lanes import interpreted
+from eyas.sim.words import target_in_words
 from eyas.state.draw import Picture
 from eyas.state.episode import EpisodeState
+from eyas.state.motion import ActorState, ActorView
 from eyas.state.scene import ACTOR_OBJECT, ObjectClass
 from eyas.state.snapshot import CameraState, Snapshot, TrackerState
 from eyas.targets.catalogue import MODELS, extent_of, kind_of, sections_of
-from eyas.task.direction import TargetDirection
+from eyas.targets.words import words_of
+from eyas.task.direction import TargetDirection, target_centre, target_direction
 from eyas.task.done import DoneReason
 
-__all__ = ["frame_of"]
+__all__ = ["Moment", "frame_of", "others_of"]
+
+_target_centre = interpreted(target_centre)
+_target_direction = interpreted(target_direction)
 
 
-def frame_of(  # noqa: PLR0913  # everything that a frame holds
-    shown: Snapshot,
-    now: EpisodeState,
-    tracker: int,
-    picture: Picture,
-    view: int,
-    number: int,
-    action: Action,
-    others: tuple[Subject, ...] = (),
-    lidar: Floats | None = None,
-    words: str = "",
+class Moment(NamedTuple):
+    """What is known of a tracker at the time of a frame."""
+
+    shown: Snapshot
+    """The state that its picture shows."""
+    now: EpisodeState
+    """The episodes at the time of the frame, which is later if pictures are late."""
+    actors: ActorView | None = None
+    """The actors around it that the picture shows; None: only the target is wanted."""
+    lidar: Floats | None = None
+    """Distances of its lidar [m], shape (points,), which nothing changes later; None: it has
+    none."""
+
+
+def frame_of(
+    moment: Moment, tracker: int, picture: Picture, view: int, number: int, action: Action
 ) -> Frame:
     """Return a frame that later steps and pictures do not change.
 
     Args:
-        shown: The state that the picture shows.
-        now: The episodes at the time of the frame, which is later if pictures are late.
+        moment: What is known.
         tracker: The tracker of the frame.
-        picture: The picture, with the box and pixels of the target.
+        picture: The picture, with the box and pixels of the target, and of all actors if the
+            moment has them.
         view: The tracker's row in `picture`.
         number: Number of the frame in its episode.
         action: The tracker's action.
-        others: Other moving objects in the picture, see `eyas.exports.others.others_of`.
-        lidar: Distances of its lidar, which nothing changes later.
-        words: The target in words.
     """
+    shown, now, actors, lidar = moment
+    words = ""
+    others: tuple[Subject, ...] = ()
+    if actors is not None:
+        words = target_in_words(shown, actors, tracker, picture.aspect)
+        others = others_of(shown, actors, tracker, picture, view)
     return Frame(
         number=number,
         time=float(shown.episodes.tick[tracker]) * PHYSICS_STEP,
         step=int(shown.episodes.step_count[tracker]),
         tracker=_body(shown.trackers, tracker),
         camera=_camera(shown.cameras, tracker),
-        target=_target(shown, tracker, picture, view),
+        target=_target(shown, tracker, picture, view, words),
         others=others,
         action=action,
         reward=float(now.reward[tracker]),
@@ -57,7 +76,6 @@ def frame_of(  # noqa: PLR0913  # everything that a frame holds
         object_id=None if picture.object_id is None else picture.object_id[view].copy(),
         class_id=None if picture.class_id is None else picture.class_id[view].copy(),
         lidar=lidar,
-        target_words=words,
     )
 
 
@@ -80,7 +98,7 @@ def _camera(cameras: CameraState, tracker: int) -> CameraPose:
     )
 
 
-def _target(snapshot: Snapshot, tracker: int, picture: Picture, view: int) -> Subject:
+def _target(snapshot: Snapshot, tracker: int, picture: Picture, view: int, words: str) -> Subject:
     targets = snapshot.targets
     assert picture.subject_box is not None
     assert picture.subject_pixels is not None
@@ -110,5 +128,76 @@ def _target(snapshot: Snapshot, tracker: int, picture: Picture, view: int) -> Su
         box=picture.subject_box[view].copy(),
         seen_pixels=seen,
         covered_pixels=covered,
+        words=words,
         sections=sections_of(model),
+    )
+
+
+def others_of(
+    shown: Snapshot, actors: ActorView, tracker: int, picture: Picture, view: int
+) -> tuple[Subject, ...]:
+    """Return all visible moving objects except the tracker's target, in the order of their ids.
+
+    Args:
+        shown: The state that the picture shows.
+        actors: The actors that it shows.
+        tracker: The tracker of the picture.
+        picture: The picture, with the boxes and pixels of all actors.
+        view: The tracker's row in `picture`.
+    """
+    assert picture.actor_pixels is not None
+    visible = picture.actor_pixels[view, :, 0] > 0
+    visible[shown.targets.actor[tracker]] = False
+    return tuple(_other(actors, actor, picture, view) for actor in np.flatnonzero(visible).tolist())
+
+
+def _other(around: ActorView, actor: int, picture: Picture, view: int) -> Subject:
+    """Return an actor that is not the target."""
+    assert picture.actor_box is not None
+    assert picture.actor_pixels is not None
+    actors, model = around.state, int(around.model[actor])
+    kind, (x, y, z) = kind_of(model), actors.position[0, actor].tolist()
+    yaw = float(actors.yaw[0, actor])
+    seen, covered = (int(pixels) for pixels in picture.actor_pixels[view, actor])
+    height = z + MODELS[model].rise
+    return Subject(
+        object_id=ACTOR_OBJECT + actor,
+        type=MODELS[model].name,
+        object_class=kind.object_class,
+        size=np.array(MODELS[model].size, np.float64),
+        position=np.array([x, y, height]),
+        centre=np.array([*_target_centre(x, y, yaw, kind.ahead), height]),
+        velocity=actors.velocity[0, actor].copy(),
+        yaw=yaw,
+        motion=_movement(actors, around.before, actor, model),
+        box=picture.actor_box[view, actor].copy(),
+        seen_pixels=seen,
+        covered_pixels=covered,
+        words=words_of(model, around.colour[actor].tolist()),
+        sections=sections_of(model),
+    )
+
+
+def _movement(actors: ActorState, before: ActorState, actor: int, model: int) -> Movement:
+    """Return the movement of an actor, from its states now and a step earlier."""
+    yaw, speed = float(actors.yaw[0, actor]), float(actors.speed[0, actor])
+    yaw_rate, velocity = float(actors.yaw_rate[0, actor]), actors.velocity[0, actor]
+    if before.present[0, actor]:
+        acceleration = (velocity - before.velocity[0, actor]) / PHYSICS_STEP
+    else:
+        acceleration = yaw_rate * np.array([-velocity[1], velocity[0], 0.0])
+    way = speed * PHYSICS_STEP
+    last_yaw = yaw - yaw_rate * PHYSICS_STEP
+    direction = _target_direction(way, 0.0, yaw, last_yaw, kind_of(model).slowest)
+    slope, travelled = float(actors.slope[0, actor]), float(actors.travelled[0, actor])
+    return Movement(
+        acceleration=acceleration,
+        yaw_rate=yaw_rate,
+        slope=slope,
+        travelled=travelled,
+        direction=TargetDirection(direction),
+        rise=MODELS[model].rise,
+        hitch=float(actors.hitch[0, actor]),
+        upright=kind_of(model).object_class is ObjectClass.PERSON,
+        extent=extent_of(model, travelled, speed, slope),
     )

@@ -102,7 +102,8 @@ class Subject:
     covered_pixels: int
     """Pixels that would show it if nothing hid it; 0 outside the picture."""
     words: str = ""
-    """What it looks like, "a red car"; empty for the target, see `Frame.target_words`."""
+    """What it looks like, "a red car". The target's words are shared by nothing else in view; empty
+    if no writer wants `others`."""
     sections: tuple[Section, ...] = ()
     """The sections of an articulated vehicle; empty for all others."""
 
@@ -166,9 +167,6 @@ class Frame:
     lidar: Floats | None = None
     """Distances that the lidar has measured [m], infinity where nothing was within range, shape
     (points,); None: there is no lidar."""
-    target_words: str = ""
-    """The target in words that tell it from what else is in view; empty if no writer wants
-    `others`."""
 
     @property
     def episode_time(self) -> float:

@@ -1,6 +1,11 @@
-"""The label of a frame: what `labels.jsonl` tells of it."""
+"""The label of a frame: what `labels.jsonl` says of it.
 
-from dataclasses import dataclass, field
+`FIELDS` is the one table of all fields. The records of target and others, the JSON schema and the
+table of docs/labels.md (`python tools/write_docs.py`) are made of it: a new field is one row.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any, NamedTuple
 
 from eyas.core.frames import rotate_back
 from eyas.exports.frame import Frame, Subject
@@ -9,221 +14,250 @@ from eyas.exports.writer import Episode
 from eyas.lanes import interpreted
 from eyas.task.done import DoneReason
 
-__all__ = ["FrameLabel", "OtherLabel", "SectionLabel", "label_of"]
+__all__ = ["FIELDS", "Label", "LabelField", "checked", "label_of", "label_schema"]
+
+Label = dict[str, Any]
+"""The label of a frame, as JSON has it; numbers that are not finite are None."""
 
 _rotate_back = interpreted(rotate_back)
 
 
-@dataclass(frozen=True, slots=True)
-class SectionLabel:
-    """A section of an articulated vehicle, with a 3D box of its own."""
+class Type(NamedTuple):
+    """The type of a field."""
 
     name: str
-    """"truck" or "trailer"."""
-    size: list[float | None]
-    """Length, width, height [m]."""
-    yaw: float | None
-    """Heading, counter-clockwise from east [rad]."""
-    corners: list[list[float | None]]
-    """The corners of its 3D box, as in `FrameLabel.target_corners` [m]."""
+    schema: Mapping[str, Any]
+    """JSON schema."""
 
 
-@dataclass(frozen=True, slots=True)
-class OtherLabel:
-    """A moving object that is not the target; its fields are like those of the target."""
-
-    id: int
-    type: str
-    class_id: int
-    """`eyas.state.scene.ObjectClass`, as in the class pictures."""
-    box: list[int]
-    visible_fraction: float
-    size: list[float | None]
-    centre: list[float | None]
-    velocity: list[float | None]
-    yaw: float | None
-    acceleration: list[float | None] = field(default_factory=list)
-    yaw_rate: float | None = None
-    travelled: float | None = None
-    direction: int = 0
-    corners: list[list[float | None]] = field(default_factory=list)
-    """The corners of its 3D box, which has its `size` [m]."""
-    words: str = ""
-    """What it looks like, such as "a red car"; others may look the same."""
-    sections: list[SectionLabel] = field(default_factory=list)
-    posed_corners: list[list[float | None]] = field(default_factory=list)
-    """As `FrameLabel.target_posed_corners` [m]."""
+def _array(name: str, of: Mapping[str, Any], count: int) -> Type:
+    return Type(name, {"type": "array", "items": of, "minItems": count, "maxItems": count})
 
 
-@dataclass(frozen=True, slots=True)
-class FrameLabel:
-    """The label of one frame. World frame, east-north-up; numbers that are not finite are None."""
-
-    frame: int
-    """Number of the frame in its episode, from 0; its picture is `NNNNNN.jpeg`."""
-    time: float
-    """Simulated time since the start of the run [s]."""
-    step: int
-    """Steps of 2 ms since the reset."""
-    episode_time: float
-    """Simulated time since the reset [s]."""
-    target_box: list[int]
-    """Extent of the target in the picture, hidden parts included, clipped to the picture: left,
-    top, right, bottom [pixels], the last two exclusive; all 0 outside the picture."""
-    visible_fraction: float
-    """Visible pixels of the target over those that it would cover if nothing hid it, 0 to 1."""
-    occluded: bool
-    """Whether a part of the target inside the picture is hidden."""
-    in_view: bool
-    """Whether a part of the target, visible or hidden, is inside the picture."""
-    tracker_position: list[float | None]
-    """[m]"""
-    tracker_velocity: list[float | None]
-    """[m/s]"""
-    tracker_orientation: list[float | None]
-    """Body to world, quaternion w, x, y, z."""
-    camera_position: list[float | None]
-    """Optical centre [m]."""
-    camera_rotation: list[list[float | None]]
-    """Camera to world, three rows; columns are the camera's forward, left and up axes."""
-    field_of_view: float | None
-    """Horizontal field of view of the camera [rad]."""
-    target_id: int
-    """Number of the target in the id pictures; the same in all frames of an episode."""
-    target_type: str
-    """Name of the target's model."""
-    target_size: list[float | None]
-    """Length, width, height [m]."""
-    target_position: list[float | None]
-    """Reference point of the target on the road [m]."""
-    target_centre: list[float | None]
-    """Middle of the target's visible body, the point that is rewarded [m]."""
-    target_velocity: list[float | None]
-    """[m/s]"""
-    target_yaw: float | None
-    """Heading, counter-clockwise from east [rad]."""
-    relative_position: list[float | None]
-    """`target_centre` in the tracker's body frame: forward, left, up [m]."""
-    reward: float | None
-    """Reward at this time."""
-    action: int
-    """Number of the random action, 0 to 5; -1 when the target is followed exactly."""
-    direction: int
-    """Turn of the target: 0 stop, 1 straight, 2 left, 3 right."""
-    done: bool
-    """Whether the episode ends with this frame."""
-    others: list[OtherLabel]
-    """All other moving objects of which a pixel is visible, in the order of their ids."""
-    target_acceleration: list[float | None] = field(default_factory=list)
-    """[m/s^2]. This and the next are missing in older labels."""
-    target_yaw_rate: float | None = None
-    """Counter-clockwise [rad/s]."""
-    target_travelled: float | None = None
-    """Way since it entered the world [m]."""
-    target_corners: list[list[float | None]] = field(default_factory=list)
-    """Corners of its 3D box: four on the ground, counter-clockwise from the right of its tail, and
-    those above them [m]. It contains the whole of a truck whose trailer swings, so it is then wider
-    than `target_size`."""
-    target_words: str = ""
-    """The target in words, such as "a red SUV" or "a red SUV, turning left": nothing else in view
-    shares them."""
-    target_sections: list[SectionLabel] = field(default_factory=list)
-    """A truck and its trailer; the file has the key for articulated vehicles only."""
-    target_posed_corners: list[list[float | None]] = field(default_factory=list)
-    """Corners of the box around the limbs of a person or robot at this moment, in the same order:
-    arms and legs swing out of the box of `target_size` [m]; the file has the key for these only."""
-    target_class_id: int = -1
-    """`eyas.state.scene.ObjectClass` of the target, as in the class pictures. This and the next are
-    missing in older labels."""
-    width: int = 0
-    """Width of the picture [pixels]."""
-    height: int = 0
-    """Height of the picture [pixels]."""
-    intrinsics: list[list[float | None]] = field(default_factory=list)
-    """Camera matrix, three rows: x right, y down, z forward, the centre of pixel (0, 0) at
-    (0.5, 0.5) [pixels]."""
+WHOLE = Type("whole number", {"type": "integer"})
+NUMBER = Type("number", {"type": ["number", "null"]})
+TRUTH = Type("true or false", {"type": "boolean"})
+TEXT = Type("text", {"type": "string"})
+BOX = _array("4 whole numbers", WHOLE.schema, 4)
+VECTOR = _array("3 numbers", NUMBER.schema, 3)
+QUATERNION = _array("4 numbers", NUMBER.schema, 4)
+MATRIX = _array("3 rows of 3 numbers", VECTOR.schema, 3)
+CORNERS = _array("8 points", VECTOR.schema, 8)
+SECTIONS = Type(
+    "list of `name`, `size`, `yaw`, `corners`",
+    {
+        "type": "array",
+        "items": {
+            "type": "object",
+            "properties": {
+                "name": TEXT.schema,
+                "size": VECTOR.schema,
+                "yaw": NUMBER.schema,
+                "corners": CORNERS.schema,
+            },
+            "required": ["name", "size", "yaw", "corners"],
+            "additionalProperties": False,
+        },
+    },
+)
 
 
-def label_of(frame: Frame, episode: Episode) -> FrameLabel:
-    """Return the label of a frame of an episode."""
-    tracker, camera, target = frame.tracker, frame.camera, frame.target
-    offset = target.centre - tracker.position
-    return FrameLabel(
-        frame=frame.number,
-        time=round(frame.time, 6),
-        step=frame.step,
-        episode_time=round(frame.episode_time, 6),
-        target_box=target.box.tolist(),
-        visible_fraction=round(target.visible_fraction, 6),
-        occluded=target.seen_pixels < target.covered_pixels,
-        in_view=target.covered_pixels > 0,
-        tracker_position=rounded_list(tracker.position),
-        tracker_velocity=rounded_list(tracker.velocity),
-        tracker_orientation=rounded_list(tracker.orientation),
-        camera_position=rounded_list(camera.position),
-        camera_rotation=[rounded_list(row) for row in camera.rotation],
-        field_of_view=rounded(camera.field_of_view),
-        target_id=target.object_id,
-        target_type=target.type,
-        target_size=rounded_list(target.size),
-        target_position=rounded_list(target.position),
-        target_centre=rounded_list(target.centre),
-        target_velocity=rounded_list(target.velocity),
-        target_yaw=rounded(target.yaw),
-        relative_position=rounded_list(_rotate_back(tracker.orientation, *offset)),
-        reward=rounded(frame.reward),
-        action=frame.action.number,
-        direction=int(frame.direction),
-        done=frame.reason is not DoneReason.NONE,
-        others=[_other(subject) for subject in frame.others],
-        target_acceleration=rounded_list(target.motion.acceleration),
-        target_yaw_rate=rounded(target.motion.yaw_rate),
-        target_travelled=rounded(target.motion.travelled),
-        target_corners=[rounded_list(corner) for corner in target.corners],
-        target_words=frame.target_words,
-        target_sections=_sections(frame.target),
-        target_posed_corners=_posed(frame.target),
-        target_class_id=int(target.object_class),
-        width=episode.width,
-        height=episode.height,
-        intrinsics=[rounded_list(row) for row in episode.intrinsics],
-    )
+class LabelField(NamedTuple):
+    """A field of the labels: of the frame, or of moving objects, of which the target is one.
+
+    One that is of moving objects stands in the label of the frame for the target, and in each entry
+    of `others` for the others.
+    """
+
+    key: str | None
+    """Its name in the label of a frame; None: the target has none."""
+    type: Type
+    meaning: str
+    of_frame: Callable[[Frame, Episode], Any] | None = None
+    """Returns its value, if it is of the frame."""
+    of_object: Callable[[Frame, Subject], Any] | None = None
+    """Returns its value, if it is of moving objects."""
+    others: str | None = None
+    """Its name in an entry of `others`; None: these have none."""
+    unit: str = ""
+    frame: str = ""
+    """The frame of reference."""
+    left_out: bool = False
+    """Whether a label has it only where it is not empty."""
 
 
-def _other(subject: Subject) -> OtherLabel:
-    return OtherLabel(
-        id=subject.object_id,
-        type=subject.type,
-        class_id=int(subject.object_class),
-        box=subject.box.tolist(),
-        visible_fraction=round(subject.visible_fraction, 6),
-        size=rounded_list(subject.size),
-        centre=rounded_list(subject.centre),
-        velocity=rounded_list(subject.velocity),
-        yaw=rounded(subject.yaw),
-        acceleration=rounded_list(subject.motion.acceleration),
-        yaw_rate=rounded(subject.motion.yaw_rate),
-        travelled=rounded(subject.motion.travelled),
-        direction=int(subject.motion.direction),
-        corners=[rounded_list(corner) for corner in subject.corners],
-        words=subject.words,
-        sections=_sections(subject),
-        posed_corners=_posed(subject),
-    )
-
-
-def _posed(subject: Subject) -> list[list[float | None]]:
-    corners = subject.posed_corners
+def _points(corners: Any) -> list[list[float | None]]:  # noqa: ANN401  # an array, or None
     return [] if corners is None else [rounded_list(corner) for corner in corners]
 
 
-def _sections(subject: Subject) -> list[SectionLabel]:
+def _sections(subject: Subject) -> list[dict[str, Any]]:
     return [
-        SectionLabel(
-            name=box.name,
-            size=[rounded(side) for side in box.size],
-            yaw=rounded(box.yaw),
-            corners=[rounded_list(corner) for corner in box.corners],
-        )
+        {
+            "name": box.name,
+            "size": [rounded(side) for side in box.size],
+            "yaw": rounded(box.yaw),
+            "corners": _points(box.corners),
+        }
         for box in subject.section_boxes
     ]
+
+
+def _relative(frame: Frame, subject: Subject) -> list[float | None]:
+    tracker = frame.tracker
+    return rounded_list(_rotate_back(tracker.orientation, *(subject.centre - tracker.position)))
+
+
+FIELDS = (
+    LabelField("frame", WHOLE, "Number of the frame in its episode, from 0; its picture is "
+               "`NNNNNN.jpeg`.", lambda f, e: f.number),
+    LabelField("time", NUMBER, "Simulated time since the start of the run.",
+               lambda f, e: round(f.time, 6), unit="s"),
+    LabelField("step", WHOLE, "Steps of 2 ms since the reset.", lambda f, e: f.step),
+    LabelField("episode_time", NUMBER, "Simulated time since the reset.",
+               lambda f, e: round(f.episode_time, 6), unit="s"),
+    LabelField("target_box", BOX, "Extent in the picture, hidden parts included, clipped to the "
+               "picture: left, top, right, bottom, the last two exclusive; all 0 outside the "
+               "picture.", None, lambda f, s: s.box.tolist(), "box", unit="pixels"),
+    LabelField("visible_fraction", NUMBER, "Visible pixels over those that it would cover if "
+               "nothing hid it, 0 to 1.", None, lambda f, s: round(s.visible_fraction, 6),
+               "visible_fraction"),
+    LabelField("occluded", TRUTH, "Whether a part inside the picture is hidden.", None,
+               lambda f, s: s.seen_pixels < s.covered_pixels),
+    LabelField("in_view", TRUTH, "Whether a part, visible or hidden, is inside the picture.", None,
+               lambda f, s: s.covered_pixels > 0),
+    LabelField("tracker_position", VECTOR, "Centre of the tracker's body.",
+               lambda f, e: rounded_list(f.tracker.position), unit="m", frame="world"),
+    LabelField("tracker_velocity", VECTOR, "Velocity of the tracker.",
+               lambda f, e: rounded_list(f.tracker.velocity), unit="m/s", frame="world"),
+    LabelField("tracker_orientation", QUATERNION, "Body to world, quaternion w, x, y, z.",
+               lambda f, e: rounded_list(f.tracker.orientation), frame="body to world"),
+    LabelField("camera_position", VECTOR, "Optical centre of the camera.",
+               lambda f, e: rounded_list(f.camera.position), unit="m", frame="world"),
+    LabelField("camera_rotation", MATRIX, "Camera to world; columns are the camera's forward, left "
+               "and up axes.", lambda f, e: _points(f.camera.rotation), frame="camera to world"),
+    LabelField("field_of_view", NUMBER, "Horizontal field of view of the camera.",
+               lambda f, e: rounded(f.camera.field_of_view), unit="rad"),
+    LabelField("target_id", WHOLE, "Its number in the id pictures; the same in all frames of an "
+               "episode.", None, lambda f, s: s.object_id, "id"),
+    LabelField("target_type", TEXT, "Name of its model.", None, lambda f, s: s.type, "type"),
+    LabelField("target_size", VECTOR, "Length, width, height.", None,
+               lambda f, s: rounded_list(s.size), "size", unit="m"),
+    LabelField("target_position", VECTOR, "Its reference point on the road.", None,
+               lambda f, s: rounded_list(s.position), unit="m", frame="world"),
+    LabelField("target_centre", VECTOR, "Middle of its visible body, the point that is rewarded.",
+               None, lambda f, s: rounded_list(s.centre), "centre", unit="m", frame="world"),
+    LabelField("target_velocity", VECTOR, "Its velocity.", None,
+               lambda f, s: rounded_list(s.velocity), "velocity", unit="m/s", frame="world"),
+    LabelField("target_yaw", NUMBER, "Its heading, counter-clockwise from east.", None,
+               lambda f, s: rounded(s.yaw), "yaw", unit="rad", frame="world"),
+    LabelField("relative_position", VECTOR, "Its centre, seen from the tracker: forward, left, up.",
+               None, _relative, unit="m", frame="tracker's body"),
+    LabelField("reward", NUMBER, "Reward at this time.", lambda f, e: rounded(f.reward)),
+    LabelField("action", WHOLE, "Number of the random action, 0 to 5; -1 when the target is "
+               "followed exactly.", lambda f, e: f.action.number),
+    LabelField("direction", WHOLE, "Its turn: 0 stop, 1 straight, 2 left, 3 right.", None,
+               lambda f, s: int(s.motion.direction), "direction"),
+    LabelField("done", TRUTH, "Whether the episode ends with this frame.",
+               lambda f, e: f.reason is not DoneReason.NONE),
+    LabelField("others", Type("list", {}), "All other moving objects of which a pixel is visible, "
+               "in the order of their ids.", lambda f, e: [_other(f, each) for each in f.others]),
+    LabelField("target_acceleration", VECTOR, "Change of its velocity.", None,
+               lambda f, s: rounded_list(s.motion.acceleration), "acceleration",
+               unit="m/s²", frame="world"),
+    LabelField("target_yaw_rate", NUMBER, "Counter-clockwise.", None,
+               lambda f, s: rounded(s.motion.yaw_rate), "yaw_rate", unit="rad/s"),
+    LabelField("target_travelled", NUMBER, "Way since it entered the world.", None,
+               lambda f, s: rounded(s.motion.travelled), "travelled", unit="m"),
+    LabelField("target_corners", CORNERS, "Corners of its 3D box: four on the ground, "
+               "counter-clockwise from the right of its tail, and those above them. It contains "
+               "the whole of a truck whose trailer swings, so it is then wider than its size.",
+               None, lambda f, s: _points(s.corners), "corners", unit="m", frame="world"),
+    LabelField("target_words", TEXT, 'It in words. The target\'s are shared by nothing else in '
+               'view ("a red SUV, turning left"); others may look the same.', None,
+               lambda f, s: s.words, "words"),
+    LabelField("target_sections", SECTIONS, "A truck and its trailer, each with a 3D box of its "
+               "own; only of articulated vehicles.", None, lambda f, s: _sections(s), "sections",
+               unit="m, rad", frame="world", left_out=True),
+    LabelField("target_posed_corners", CORNERS, "Corners of the box around its limbs at this "
+               "moment, which swing out of the box of its size; only of people and robots.", None,
+               lambda f, s: _points(s.posed_corners), "posed_corners", unit="m", frame="world",
+               left_out=True),
+    LabelField("target_class_id", WHOLE, "Its class, as in the class pictures.", None,
+               lambda f, s: int(s.object_class), "class_id"),
+    LabelField("width", WHOLE, "Width of the picture.", lambda f, e: e.width, unit="pixels"),
+    LabelField("height", WHOLE, "Height of the picture.", lambda f, e: e.height, unit="pixels"),
+    LabelField("intrinsics", MATRIX, "Camera matrix: x right, y down, z forward, the centre of "
+               "pixel (0, 0) at (0.5, 0.5).", lambda f, e: _points(e.intrinsics), unit="pixels"),
+)  # fmt: skip
+"""All fields, in the order of the file."""
+
+_OTHERS = {field.others: field for field in FIELDS if field.others is not None}
+_FRAME = {field.key: field for field in FIELDS if field.key is not None}
+
+
+def label_of(frame: Frame, episode: Episode) -> Label:
+    """Return the label of a frame of an episode."""
+    return dict(_values(_FRAME, frame, frame.target, episode))
+
+
+def _other(frame: Frame, subject: Subject) -> Label:
+    return dict(_values(_OTHERS, frame, subject, None))
+
+
+def _values(
+    fields: Mapping[str, LabelField], frame: Frame, subject: Subject, episode: Episode | None
+) -> Iterator[tuple[str, Any]]:
+    for key, field in fields.items():
+        if field.of_object is not None:
+            value = field.of_object(frame, subject)
+        else:
+            assert field.of_frame is not None
+            assert episode is not None
+            value = field.of_frame(frame, episode)
+        if value or not field.left_out:
+            yield key, value
+
+
+def checked(record: object) -> Label:
+    """Return a record that a file holds as a label.
+
+    Raises:
+        ValueError: It has not the fields of a label.
+    """
+    label = _checked(record, _FRAME)
+    for other in label["others"]:
+        _checked(other, _OTHERS)
+    return label
+
+
+def _checked(record: object, fields: Mapping[str, LabelField]) -> Label:
+    if not isinstance(record, dict):
+        raise ValueError("not an object")
+    needed = {key for key, field in fields.items() if not field.left_out}
+    if not needed <= record.keys() <= fields.keys():
+        raise ValueError("other fields")
+    return record
+
+
+def label_schema() -> dict[str, Any]:
+    """Return the JSON schema of one line of `labels.jsonl`."""
+    schema = _schema_of(_FRAME)
+    schema["properties"]["others"] |= {"type": "array", "items": _schema_of(_OTHERS)}
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **schema}
+
+
+def _schema_of(fields: Mapping[str, LabelField]) -> dict[str, Any]:
+    return {
+        "type": "object",
+        "properties": {
+            key: {**field.type.schema, "description": described(field)}
+            for key, field in fields.items()
+        },
+        "required": [key for key, field in fields.items() if not field.left_out],
+        "additionalProperties": False,
+    }
+
+
+def described(field: LabelField) -> str:
+    """Return the meaning of a field with its unit."""
+    return f"{field.meaning} [{field.unit}]" if field.unit else field.meaning

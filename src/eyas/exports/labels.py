@@ -3,14 +3,12 @@
 import json
 import math
 from collections.abc import Sequence
-from dataclasses import asdict
 from pathlib import Path
-from typing import Any
 
 from eyas.core.errors import DataFileError
 from eyas.exports.files import Files
 from eyas.exports.gather import Gather
-from eyas.exports.label import FrameLabel, OtherLabel, SectionLabel, label_of
+from eyas.exports.label import Label, checked, label_of
 from eyas.exports.summary import Scores, Summary
 from eyas.exports.writer import Episode, Writer
 
@@ -25,7 +23,7 @@ class LabelWriter(Writer):
     wants = frozenset({"others"})
     files = Files(episode=(LABELS,))
 
-    def begin(self, episode: Episode) -> Gather[FrameLabel]:
+    def begin(self, episode: Episode) -> Gather[Label]:
         """Return the writer of an episode's labels."""
         return Gather(episode.folder / LABELS, lambda frame: label_of(frame, episode), _encoded)
 
@@ -35,35 +33,19 @@ class LabelWriter(Writer):
         try:
             labels = read_labels(folder / LABELS)
             for label in labels:
-                reward = math.nan if label.reward is None else label.reward
-                scores = scores.plus(reward, seen=label.visible_fraction > 0.0)
+                reward = math.nan if label["reward"] is None else label["reward"]
+                scores = scores.plus(reward, seen=label["visible_fraction"] > 0.0)
         except (DataFileError, TypeError, OverflowError):  # a field may hold anything
             return None
         return Summary(len(labels), scores)
 
 
-def _encoded(labels: Sequence[FrameLabel]) -> bytes:
-    lines = (json.dumps(_record(label), allow_nan=False) + "\n" for label in labels)
-    return "".join(lines).encode()
+def _encoded(labels: Sequence[Label]) -> bytes:
+    return "".join(json.dumps(label, allow_nan=False) + "\n" for label in labels).encode()
 
 
-def _record(label: FrameLabel) -> dict[str, Any]:
-    """Return a label as an object of JSON, without the keys of what is not rigid where it is."""
-    record = asdict(label)
-    for one, prefix in ((record, "target_"), *((other, "") for other in record["others"])):
-        for key in (f"{prefix}sections", f"{prefix}posed_corners"):
-            if not one[key]:
-                del one[key]
-    return record
-
-
-def _with_sections(record: dict[str, Any], key: str) -> dict[str, Any]:
-    """Return what `_record` has made, with its sections as labels."""
-    return {**record, key: [SectionLabel(**one) for one in record.get(key, [])]}
-
-
-def read_labels(path: Path) -> list[FrameLabel]:
-    """Return the labels of an episode.
+def read_labels(path: Path) -> list[Label]:
+    """Return the labels of an episode, one for each frame, see docs/labels.md.
 
     Raises:
         DataFileError: The file is missing, cut off, or does not hold labels.
@@ -79,10 +61,7 @@ def read_labels(path: Path) -> list[FrameLabel]:
         except (ValueError, RecursionError):
             raise DataFileError(f"{path}: line {number} is cut off or not JSON") from None
         try:
-            record["others"] = [
-                OtherLabel(**_with_sections(other, "sections")) for other in record["others"]
-            ]
-            labels.append(FrameLabel(**_with_sections(record, "target_sections")))
-        except (TypeError, LookupError):
+            labels.append(checked(record))
+        except (TypeError, ValueError):
             raise DataFileError(f"{path}: line {number} is not the label of a frame") from None
     return labels

@@ -166,6 +166,10 @@ class Episodes:
         model = self._worlds.model_of(tracker, actor)
         _follow(self._targets, self._episodes, self._models, tracker, actor, model)
 
+    def restart_count(self, tracker: int) -> None:
+        """Count a tracker's steps, and those without reward, from 0 again."""
+        self._episodes.step_count[tracker] = self._episodes.no_reward_count[tracker] = 0
+
     def key(self, tracker: int) -> EpisodeKey:
         """Return what the random values of a tracker's episode depend on."""
         return EpisodeKey(

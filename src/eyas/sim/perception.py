@@ -10,8 +10,10 @@ from eyas.sim.light import LightChanges
 from eyas.sim.pictures import Pictures
 from eyas.sim.senses import Senses
 from eyas.sim.sight import Sight
+from eyas.sim.words import target_in_words
 from eyas.sim.worlds import Worlds
 from eyas.state.draw import DrawStage, Picture
+from eyas.state.motion import ActorView
 from eyas.task.packet_rows import SENSOR_COLUMNS, PacketRows
 from eyas.task.rules import Rules
 
@@ -52,6 +54,7 @@ class Perception:
         self.pictures = Pictures(config, assets, worlds, light, sight.shown, visible=visible)
         self._packets = PacketRows(sight.snapshot, config.camera, assets.scene.terrain)
         self._senses = senses
+        self._worlds = worlds
 
     def draw(
         self,
@@ -82,6 +85,17 @@ class Perception:
         if self.sight.told is not None:
             basic[:, SENSOR_COLUMNS] = self.sight.told
         return basic, reward
+
+    def actors(self, tracker: int) -> ActorView:
+        """Return the actors around a tracker at the instant that its pictures show."""
+        tick = int(self.sight.shown.episodes.tick[tracker])
+        state, model = self._worlds.actors_around(tracker, tick)
+        before, _ = self._worlds.actors_around(tracker, tick - 1)
+        return ActorView(state, before, model, self._worlds.looks_around(tracker).colour[0])
+
+    def words(self, tracker: int, aspect: float) -> str:
+        """Return the target of a tracker in words, see `eyas.sim.words`."""
+        return target_in_words(self.sight.shown, self.actors(tracker), tracker, aspect)
 
     @property
     def lidar(self) -> Lidar | None:

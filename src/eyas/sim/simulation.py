@@ -162,6 +162,18 @@ class Simulation:
         """Make another actor of its world the target of a tracker, from the next step on."""
         self._episodes.follow(tracker, actor)
 
+    def command_gimbal(self, angles: Floats) -> None:
+        """Command the cameras' angles, from the next step on; the joints stop at their limits.
+
+        Args:
+            angles: Pitch, positive down, and yaw relative to the body [rad], shape (N, 2).
+        """
+        self.snapshot.trackers.commanded_gimbal[:] = angles
+
+    def restart_count(self, tracker: int) -> None:
+        """Count the steps of a tracker's episode, and those without reward, from 0 again."""
+        self._episodes.restart_count(tracker)
+
     def make_alike(self) -> None:
         """Make the other actors of the target's kind look like it, until the next reset.
 

@@ -4,9 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core import exact
-from eyas.sim.simulation import Simulation
-from eyas.state.motion import ActorState
-from eyas.state.snapshot import CameraState
+from eyas.state.motion import ActorState, ActorView
+from eyas.state.snapshot import CameraState, Snapshot
 from eyas.targets.catalogue import MODELS, extent_of, kind_of
 from eyas.targets.telling import Seen, told_apart
 
@@ -15,20 +14,19 @@ __all__ = ["target_in_words"]
 Floats = NDArray[np.float64]
 
 
-def target_in_words(simulation: Simulation, tracker: int, aspect: float) -> str:
+def target_in_words(shown: Snapshot, around: ActorView, tracker: int, aspect: float) -> str:
     """Return a description of a tracker's target as its camera shows it, such as "a red SUV".
 
     No other actor of which a part is in the camera's view shares it, hidden or not.
 
     Args:
-        simulation: The simulation.
+        shown: The state that the picture shows.
+        around: The actors around the tracker at that time.
         tracker: The tracker.
         aspect: Height of the camera's picture over its width.
     """
-    sight = simulation.perception.sight
-    cameras, target = sight.shown.cameras, int(sight.shown.targets.actor[tracker])
-    actors, _ = simulation.actors_around(tracker, ago=sight.age_of(tracker))
-    (model,), (colour,) = simulation.looks_around(tracker)
+    cameras, target = shown.cameras, int(shown.targets.actor[tracker])
+    actors, _, model, colour = around
     corners = _in_camera(_corners(actors, model.tolist()), cameras, tracker)
     wide = exact.tan(0.5 * float(cameras.field_of_view[tracker]))
     inside = _in_view(corners, wide, wide * aspect) & actors.present[0]

@@ -185,6 +185,13 @@ class Picture:
             actor_pixels=np.zeros((views, actors, 2), np.int32) if actors else None,
         )
 
+    @property
+    def aspect(self) -> float:
+        """Height over width."""
+        planes = (self.rgb, self.depth, self.object_id, self.class_id)
+        height, width = next(plane for plane in planes if plane is not None).shape[1:3]
+        return float(height / width)
+
     def first(self, views: int) -> "Picture":
         """Return the first views; the arrays are shared."""
         arrays = (getattr(self, array.name) for array in fields(self))

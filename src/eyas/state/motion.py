@@ -6,7 +6,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["SAMPLE", "ActorState", "Motion", "joined"]
+__all__ = ["SAMPLE", "ActorState", "ActorView", "Motion", "joined"]
 
 SAMPLE: Final = np.dtype(
     [
@@ -92,6 +92,19 @@ class ActorState(NamedTuple):
     def first(self, worlds: int) -> "ActorState":
         """Return the first worlds; the arrays are shared."""
         return ActorState._make(array[:worlds] for array in self)
+
+
+class ActorView(NamedTuple):
+    """All A actors of a tracker's world at the instant that its pictures show."""
+
+    state: ActorState
+    """Of one world."""
+    before: ActorState
+    """A physics step of 2 ms earlier."""
+    model: NDArray[np.int32]
+    """Indices into `eyas.targets.catalogue.MODELS`, shape (A,)."""
+    colour: NDArray[np.float32]
+    """sRGB, 0 to 1, shape (A, 3)."""
 
 
 def joined(motions: Sequence[Motion]) -> Motion:

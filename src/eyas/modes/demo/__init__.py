@@ -1,1 +1,1 @@
-"""The demo: a drone that a person flies, in the browser, a window or a terminal."""
+"""The demo: a drone that a person flies, in the browser or a terminal."""

@@ -65,12 +65,8 @@ class Flight:
             self.simulation.follow(0, target)
         # In one step it comes to its place, in the next it has no speed.
         self.simulation.carry(2)
-        self._forget_time()
+        self.simulation.restart_count(0)
         self._start_pitch = float(self.simulation.snapshot.trackers.commanded_gimbal[0, 0])
-
-    def _forget_time(self) -> None:
-        self.simulation.snapshot.episodes.step_count[0] = 0
-        self.simulation.snapshot.episodes.no_reward_count[0] = 0
 
     def fly(self, command: NDArray[np.float64], steps: int, held: Held) -> None:
         """Hold a command, see `Simulation.advance`, and turn the camera by the held controls."""
@@ -81,14 +77,15 @@ class Flight:
             self.reset()
 
     def _aim(self, held: Held, steps: int) -> None:
-        commanded = self.simulation.snapshot.trackers.commanded_gimbal[0]
+        angles = self.simulation.snapshot.trackers.commanded_gimbal.copy()
         if Control.CAMERA_CENTRE in held:
-            commanded[:] = self._start_pitch, 0.0
+            angles[0] = self._start_pitch, 0.0
         pitch, yaw = camera_turn(held)
         if pitch:
-            commanded[0] = np.clip(commanded[0] + steps * pitch, *CAMERA_PITCH)
+            angles[0, 0] = np.clip(angles[0, 0] + steps * pitch, *CAMERA_PITCH)
         if yaw:
-            commanded[1] = np.clip(commanded[1] + steps * yaw, *CAMERA_YAW)
+            angles[0, 1] = np.clip(angles[0, 1] + steps * yaw, *CAMERA_YAW)
+        self.simulation.command_gimbal(angles)
 
     def follow(self, actor: int) -> None:
         """Make an actor the target.

@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.errors import OutputError
-from eyas.exports.capture import frame_of
-from eyas.exports.others import others_of
+from eyas.exports.capture import Moment, frame_of
 from eyas.exports.summary import Scores, Summary
 from eyas.exports.writer import EndedEpisode, Episode
 from eyas.modes.video.action import Mover
@@ -18,7 +17,6 @@ from eyas.modes.video.folder import VideoFolder
 from eyas.modes.video.lanes import WriterLanes
 from eyas.settings.config import EyasConfig
 from eyas.sim.simulation import Simulation
-from eyas.sim.words import target_in_words
 from eyas.state.draw import Picture
 
 __all__ = ["Recorder"]
@@ -121,15 +119,14 @@ class Recorder:
         assert going is not None
         assert going.files is not None
         number, action = going.summary.frames, mover.action(tracker)
-        others = others_of(self._sim, tracker, picture, view)
-        seen, now = self._sim.perception, self._sim.snapshot.episodes
-        ranges = None if seen.lidar is None else seen.lidar.ranges(seen.sight.late)[tracker]
-        words = ""
-        if picture.actor_pixels is not None:  # labels are written
-            episode = going.episode
-            words = target_in_words(self._sim, tracker, episode.height / episode.width)
-        shown = seen.sight.shown
-        frame = frame_of(shown, now, tracker, picture, view, number, action, others, ranges, words)
+        seen = self._sim.perception
+        moment = Moment(
+            seen.sight.shown,
+            self._sim.snapshot.episodes,
+            None if picture.actor_pixels is None else seen.actors(tracker),
+            None if seen.lidar is None else seen.lidar.ranges(seen.sight.late)[tracker],
+        )
+        frame = frame_of(moment, tracker, picture, view, number, action)
         going.summary = going.summary.plus(frame)
         self._lanes.submit(tracker, going.files.add, frame)
 

@@ -1,0 +1,65 @@
+"""Write the parts of the documents that are made from the code: docs/labels.md and its schema.
+
+python tools/write_docs.py           # writes them
+python tools/write_docs.py --check   # ends with 1 if they are not up to date
+"""
+
+import argparse
+import json
+import sys
+from pathlib import Path
+
+from eyas.exports.label import FIELDS, LabelField, label_schema
+
+DOCS = Path(__file__).parents[1] / "docs"
+BEGIN, END = "<!-- made by tools/write_docs.py -->", "<!-- end -->"
+
+
+def label_table() -> str:
+    """Return the table of the fields of the labels."""
+    rows = [
+        "| of the frame, or target | of each of `others` | type | unit | frame of reference | |",
+        "|---|---|---|---|---|---|",
+    ]
+    rows += map(_row, FIELDS)
+    return "\n".join(rows)
+
+
+def _row(field: LabelField) -> str:
+    others = f"`{field.others}`" if field.others else ""
+    cells = (f"`{field.key}`", others, field.type.name, field.unit, field.frame, field.meaning)
+    return f"| {' | '.join(cells)} |"
+
+
+def made(page: str, table: str) -> str:
+    """Return a page with its made part replaced."""
+    head, rest = page.split(BEGIN)
+    return f"{head}{BEGIN}\n\n{table}\n\n{END}{rest.split(END)[1]}"
+
+
+def documents() -> dict[Path, str]:
+    """Return the texts of all files that are made."""
+    labels = DOCS / "labels.md"
+    schema = json.dumps(label_schema(), indent=2, ensure_ascii=False) + "\n"
+    return {labels: made(labels.read_text(), label_table()), DOCS / "labels.schema.json": schema}
+
+
+def main() -> int:
+    """Write the files, or tell which are not up to date."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--check", action="store_true", help="write nothing")
+    check = parser.parse_args().check
+    stale = [
+        (path, text)
+        for path, text in documents().items()
+        if not path.exists() or path.read_text() != text
+    ]
+    for path, text in stale:
+        print(f"{path.relative_to(DOCS.parent)}: {'not up to date' if check else 'written'}")
+        if not check:
+            path.write_text(text)
+    return int(check and bool(stale))
+
+
+if __name__ == "__main__":
+    sys.exit(main())
