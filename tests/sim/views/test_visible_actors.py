@@ -11,6 +11,7 @@ from eyas.sim.views.actor_bounds import NOWHERE, bounds_of, made_row
 from eyas.sim.views.visible_actors import VisibleActors
 from eyas.state.draw import DrawList, Picture, Views
 from eyas.state.motion import ActorState
+from eyas.state.scene import ACTOR_OBJECT
 from eyas.state.snapshot import CameraState
 from eyas.targets.catalogue import KINDS, kind_index
 from eyas.targets.kind import Looks
@@ -134,6 +135,30 @@ def test_actors_of_several_kinds_are_posed_by_their_own_rigs(config, assets):
     listed = np.unique(made.object_id[0][made.part[0] >= 0])
     assert 3 < len(listed) < len(kind)
     assert len({KINDS[kind[i - (1 << 16)]].name for i in listed.tolist()}) == 3
+
+
+@pytest.mark.parametrize("side", range(3), ids=["behind", "aside", "above"])
+def test_an_actor_is_listed_up_to_its_reach_outside_of_a_view(assets, side):
+    reach, time = 25.0, np.array([20.0])
+    actors = ActorState.create(1, assets.traffic.actors)
+    assets.traffic.at(time, actors)
+    actor = np.flatnonzero(actors.present[0])[0]
+    looks = looks_of(assets.traffic.motion, 1)
+    visible = VisibleActors(assets.traffic.motion, assets.rigs, looks, np.array([reach]))
+    field, listed = 1.0, []
+    for away in (0.99 * reach, 1.01 * reach + 0.1):
+        # The camera looks north, and the plane behind it, its left edge or its upper edge is so
+        # far from the actor, which is 100 m ahead of it in the last two cases.
+        edge = 100.0 * np.tan(field / 2) + away / np.cos(field / 2)
+        place = np.array([(0.0, away, 0.0), (edge, -100.0, 0.0), (0.0, -100.0, -edge)][side])
+        camera = CameraState(
+            (actors.position[0, actor] + place)[None],
+            np.array([[[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]]]),
+            np.array([field]),
+        )
+        movers = visible.of(np.zeros(1, int), time, None, camera, 1.0)
+        listed.append(ACTOR_OBJECT + actor in movers.object_id[movers.part >= 0])
+    assert listed == [True, False]
 
 
 def test_lists_grow_and_shrink_with_what_is_asked_for(assets):
