@@ -73,7 +73,7 @@ class Build(Config):
             one, two = (each.libraries.get(name, "none") for each in (self, other))
             if one != two:
                 told.append(f"{name} {one} and {two}")
-        return ", ".join(told)
+        return ", ".join(f"{each:.40}" for each in told[:12])
 
 
 @cache

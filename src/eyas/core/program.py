@@ -29,7 +29,16 @@ from eyas.core.cache.folder import Kind
 from eyas.lanes.folder import cache_folder
 from eyas.lanes.identity import language_hash
 
-__all__ = ["INDEX", "Definition", "Place", "closure_of", "code_of", "definitions_of", "index_of"]
+__all__ = [
+    "INDEX",
+    "Definition",
+    "Place",
+    "UnknownCodeError",
+    "closure_of",
+    "code_of",
+    "definitions_of",
+    "index_of",
+]
 
 INDEX = Path(__file__).with_name("definitions.json")
 """The definitions in the files of the package, by digests of their text: reading them from the text
@@ -59,21 +68,24 @@ class Definition(NamedTuple):
     """Other names of the module, `name`, and of others, `package.module:name.attribute`."""
 
 
-def code_of(function: Callable[..., Any]) -> str:
+class UnknownCodeError(TypeError):
+    """It is not known where the code of something lies: it was typed in, or made by `exec`."""
+
+
+def code_of(what: Callable[..., Any]) -> str:
     """Return what identifies the code of a function, of a `partial` of one, or of a class.
 
     Raises:
-        TypeError: It is not known where its code lies.
+        UnknownCodeError: It is not known where its code lies.
     """
-    found: Any = function
+    found: Any = what
     while isinstance(found, functools.partial) or hasattr(found, "__wrapped__"):
         found = found.func if isinstance(found, functools.partial) else found.__wrapped__
     for inner in ("function", "py_func", "__func__"):  # of a kernel, and of a bound method
         found = getattr(found, inner, found)
-    module, name = getattr(found, "__module__", None), getattr(found, "__qualname__", "")
-    if not module or not name:
-        raise TypeError(f"{function!r}: not a function or a class, whose code could be found")
-    return _code(module, name.partition(".")[0])
+    if not hasattr(found, "__qualname__"):  # an object that can be called
+        found = type(found)
+    return _code(found.__module__ or "", found.__qualname__.partition(".")[0])
 
 
 @cache
@@ -93,11 +105,13 @@ def closure_of(module: str, name: str) -> set[Place]:
     """Return a definition and all that it refers to, in Eyas and in the package that it lies in.
 
     Raises:
-        TypeError: The module's file is not found.
+        UnknownCodeError: The module's file is not found.
     """
     package = module.partition(".")[0]
-    if _path(module) is None:
-        raise TypeError(f"{module}: its file is not found, so its code cannot be identified")
+    if package in _LIBRARIES:
+        return {(package, "")}
+    if not definitions_of(module):
+        raise UnknownCodeError(f"{module}: its file is not found, so {name} is not identified")
     known = definitions_of(module)
     left = list(_targets(module, name if name in known else "", package))
     seen = set(left)
@@ -205,13 +219,12 @@ def _path(module: str) -> Path | None:
 
 @cache
 def definitions_of(module: str) -> dict[str, Definition]:
-    """Return the definitions in a module by name; empty if it has no file.
-
-    Raises:
-        SyntaxError: Its file is no Python.
-    """
+    """Return the definitions in a module by name; empty if its file cannot be read."""
     path = _path(module)
-    return {} if path is None else definitions_in(path.read_bytes())
+    try:
+        return {} if path is None else definitions_in(path.read_bytes())
+    except (OSError, SyntaxError, ValueError):
+        return {}
 
 
 def definitions_in(text: bytes) -> dict[str, Definition]:

@@ -16,7 +16,7 @@ from eyas.core.cache.array_file import Content, array_file, map_arrays
 from eyas.core.cache.entries import write_entry
 from eyas.core.cache.flat import flatten, restore
 from eyas.core.cache.folder import Kind, cache_limit
-from eyas.core.program import code_of
+from eyas.core.program import UnknownCodeError, code_of
 from eyas.lanes.folder import cache_folder, not_kept, touch
 
 __all__ = ["cached", "key_of"]
@@ -52,8 +52,12 @@ def cached(
         ConfigError: `EYAS_CACHE_LIMIT` is not a size.
     """
     limit = cache_limit()
-    path = (folder or cache_folder()) / kind / f"eyas-{key_of(make, inputs)}.npy"
-    found = _found(path, of)
+    try:
+        path = (folder or cache_folder()) / kind / f"eyas-{key_of(make, inputs)}.npy"
+    except UnknownCodeError as error:  # typed in by the user, for example
+        _LOG.debug("%s is made at each start: %s", kind, error)
+        path = None
+    found = None if path is None else _found(path, of)
     if found is not None:
         return found
     start = time.perf_counter()
@@ -63,10 +67,11 @@ def cached(
     content = Content(flat, [np.asarray(array, order="C") for array in arrays])
     # A value just made is restored like one read from the file, so that both have the same types.
     restored = restore(of, *content)
-    try:
-        write_entry(path, array_file(content, path.name), limit)
-    except OSError as error:
-        not_kept(error)
+    if path is not None:
+        try:
+            write_entry(path, array_file(content, path.name), limit)
+        except OSError as error:
+            not_kept(error)
     if taken > _LONG:
         _LOG.info("made %s in %.1f s", kind, taken)
     return restored
@@ -94,7 +99,8 @@ def key_of(make: Callable[..., object], inputs: tuple[object, ...]) -> str:
             and values that differ in their `repr`.
 
     Raises:
-        TypeError: An input has no `repr` that would be the same in another process.
+        UnknownCodeError: The code of something cannot be found, or an input has no `repr` that
+            would be the same in another process.
     """
     digest = blake2b(code_of(make).encode(), digest_size=16)
     for value in inputs:
@@ -123,5 +129,5 @@ def _add(value: object, add: Callable[[bytes | memoryview], None]) -> None:
     else:
         text = repr(value)
         if " at 0x" in text:
-            raise TypeError(f"{text}: no input of what is kept, as it differs in every process")
+            raise UnknownCodeError(f"{text}: its `repr` is another one in each process")
         add(text.encode())
