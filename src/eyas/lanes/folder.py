@@ -130,7 +130,7 @@ def read_trusted(path: Path) -> Contents | None:
         return None
 
 
-def write_trusted(path: Path, header: object, pieces: Iterable[bytes]) -> None:
+def write_trusted(path: Path, header: object, pieces: Iterable[bytes | memoryview]) -> None:
     """Write a file completely or not at all; not at all if the folder cannot be written to."""
     part = path.with_name(f"{path.name}.tmp.{secrets.token_hex(8)}")
     try:

@@ -101,7 +101,7 @@ def _symbol(
     """Return a function's symbol; numba's own tell all types, in up to three thousand letters."""
     if isinstance(uid, str):
         return re.sub(r"\W", "_", f"{name}.{uid}")
-    return default_mangler(name, kinds, abi_tags=abi_tags, uid=uid)
+    return str(default_mangler(name, kinds, abi_tags=abi_tags, uid=uid))
 
 
 class Compiler(CompilerBase):  # type: ignore[misc]

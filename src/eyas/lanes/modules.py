@@ -13,7 +13,6 @@ from typing import Any
 import llvmlite
 import llvmlite.binding as llvm
 import numba
-from numba.core import types
 from numba.core.codegen import JITCodeLibrary
 
 from eyas.lanes.folder import kernel_folder, read_trusted, refusal, touch, write_trusted
@@ -38,7 +37,12 @@ class Module:
     _reload_init: frozenset[str] = frozenset()  # as numba's libraries have it
 
     def __init__(
-        self, name: str, symbol: str, calls: tuple["Module", ...], code: bytes, returns: types.Type
+        self,
+        name: str,
+        symbol: str,
+        calls: tuple["Module", ...],
+        code: bytes,
+        returns: numba.types.Type,
     ) -> None:
         self.name = name
         self.symbol = symbol
@@ -59,7 +63,7 @@ class Module:
 
 
 def module_name(
-    function: Callable[..., Any], kinds: tuple[types.Type, ...], made_of: str | None
+    function: Callable[..., Any], kinds: tuple[numba.types.Type, ...], made_of: str | None
 ) -> str | None:
     """Return the name of a function's module; None if it cannot be told from others.
 
@@ -75,13 +79,13 @@ def module_name(
     return f"{function.__name__}-{digest((made_of, *told))}-{digest(made_by)}"
 
 
-def _told(kind: types.Type) -> str:
+def _told(kind: Any) -> str:  # noqa: ANN401  # numba's types have none
     """Return a text for a type, with the fields of named tuples, which numba leaves out."""
-    if isinstance(kind, types.BaseTuple):
+    if isinstance(kind, numba.types.BaseTuple):
         parts = ", ".join(map(_told, kind))
         of = getattr(kind, "instance_class", tuple)
         return f"{of.__module__}.{of.__qualname__}{getattr(of, '_fields', '')}({parts})"
-    return f"*{_told(kind.dtype)}" if isinstance(kind, types.CPointer) else str(kind)
+    return f"*{_told(kind.dtype)}" if isinstance(kind, numba.types.CPointer) else str(kind)
 
 
 def kept_module(name: str) -> Module | None:
@@ -92,18 +96,18 @@ def kept_module(name: str) -> Module | None:
         if found is None:
             return None
         symbol, names = found.header
-        calls = tuple(kept_module(called) for called in names)
-        if None in calls:
+        calls = [called for called in map(kept_module, names) if called is not None]
+        if len(calls) < len(names):
             return None
         touch(path)
         # Whoever could aim this at other classes could as well have written other machine code.
         returns = pickle.loads(found.pieces[0])
-        _LOADED[name] = Module(name, symbol, calls, bytes(found.pieces[1]), returns)
+        _LOADED[name] = Module(name, symbol, tuple(calls), bytes(found.pieces[1]), returns)
     return _LOADED[name]
 
 
 def module_of(
-    library: JITCodeLibrary, symbol: str, returns: types.Type, name: str | None
+    library: JITCodeLibrary, symbol: str, returns: numba.types.Type, name: str | None
 ) -> Module:
     """Return the module of a function just compiled, and keep it if it has a name.
 
