@@ -62,7 +62,9 @@ def test_functions_of_numba_are_linked_too():
     assert call(work, 3.0, 1.0, 2.0) == [5.0, 8.0, 9.0]
 
 
-def test_a_kernel_is_compiled_once_for_all_signed_whole_numbers():
+def test_a_kernel_is_compiled_once_for_all_signed_whole_numbers(tmp_path, monkeypatch):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))  # or it might not be compiled at all
+
     @kernel
     def work(a):
         wide = len(a)

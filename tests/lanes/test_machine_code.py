@@ -42,7 +42,7 @@ def doubled() -> float:
 
 def test_a_kernel_is_compiled_once_and_its_file_is_found_by_the_next(folder, compiled):
     assert [doubled(), doubled(), len(compiled)] == [2.0, 2.0, 1]
-    (file,) = folder.iterdir()
+    (file,) = folder.glob("*.eyk")
     assert file.name.startswith("double-")
 
 
@@ -51,7 +51,7 @@ def test_a_kernel_is_compiled_once_and_its_file_is_found_by_the_next(folder, com
 )
 def test_a_damaged_file_is_made_anew(folder, compiled, damage):
     doubled()
-    (file,) = folder.iterdir()
+    (file,) = folder.glob("*.eyk")
     content = file.read_bytes()
     file.write_bytes(damage(content))
     assert read_code(file) is None
@@ -62,7 +62,7 @@ def test_a_damaged_file_is_made_anew(folder, compiled, damage):
 
 def test_code_that_needs_what_this_process_lacks_is_made_anew(folder, compiled):
     doubled()
-    (file,) = folder.iterdir()
+    (file,) = folder.glob("*.eyk")
     code = read_code(file)
     assert load(code._replace(needs=("no_such_function",))) is None
     write_code(file, code._replace(needs=("no_such_function",)))
@@ -99,7 +99,7 @@ def test_where_nothing_can_be_written_nothing_fails(tmp_path):
 
 def test_the_code_of_another_kernel_is_not_run(folder, compiled):
     doubled()
-    (file,) = folder.iterdir()
+    (file,) = folder.glob("*.eyk")
     other = file.with_name(f"other-{file.name.partition('-')[2]}")
     file.rename(other)
     assert read_code(other) is None
@@ -131,7 +131,7 @@ UNSAFE = [
 @pytest.mark.parametrize("what", ["the file", "its folder"])
 def test_code_that_someone_else_may_have_written_is_not_run(folder, compiled, change, what, caplog):
     doubled()
-    (file,) = folder.iterdir()
+    (file,) = folder.glob("*.eyk")
     change(file if what == "the file" else folder)
     assert read_code(file) is None
     assert doubled() == 2.0

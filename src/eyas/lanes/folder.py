@@ -5,17 +5,19 @@ their user, or root, can have written.
 import errno
 import logging
 import os
+import secrets
 import stat
+from collections.abc import Iterable
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
 import platformdirs
 
+from eyas.lanes.container import Contents, packed, unpacked
 from eyas.lanes.identity import language_hash
 
 __all__ = [
-    "FILE_MODE",
     "FOLDER_VARIABLE",
     "OWNER",
     "cache_folder",
@@ -23,10 +25,11 @@ __all__ = [
     "made_folder",
     "not_kept",
     "open_at_once",
+    "read_trusted",
     "refusal",
     "secured",
     "touch",
-    "unsafe",
+    "write_trusted",
 ]
 
 OWNER = "eyas"
@@ -36,6 +39,9 @@ _LOG = logging.getLogger(OWNER)
 
 FOLDER_VARIABLE = f"{OWNER.upper()}_CACHE_DIR"
 """Environment variable: the folder of the cache, instead of the user's default."""
+
+_TOLD: set[Path] = set()
+"""Folders of which it is told that someone else may have written into them."""
 
 _WARNED: list[object] = []
 """Why something could not be kept: one reason of maybe many."""
@@ -89,6 +95,58 @@ def made_folder(folder: Path) -> None:
 def open_at_once(path: str, flags: int) -> int:
     """Open a file for `open`, without waiting for the writer of a pipe."""
     return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))
+
+
+class _UnsafeError(Exception):
+    """Someone else may have written a file."""
+
+
+def read_trusted(path: Path) -> Contents | None:
+    """Return the content of a file that `write_trusted` has written.
+
+    None if there is none, or it is damaged, or someone else than this user, or root, may have
+    written it; but for the first, a warning is logged.
+    """
+    try:
+        with open(path, "rb", opener=open_at_once) as file:
+            status = os.fstat(file.fileno())
+            if not stat.S_ISREG(status.st_mode):
+                raise ValueError("no ordinary file")
+            if why := unsafe(status) or unsafe(path.parent.stat()):
+                raise _UnsafeError(why)
+            name, header = (found := unpacked(file.read())).header
+        if name != path.name:
+            raise ValueError("in the place of another file")
+        return Contents(header, found.pieces)
+    except (FileNotFoundError, NotADirectoryError, PermissionError):
+        return None  # if it cannot be replaced either, that is told
+    except _UnsafeError as error:
+        if path.parent not in _TOLD:
+            _TOLD.add(path.parent)
+            _LOG.warning("%s: %s; so it is compiled anew", path, error)
+        return None
+    except (OSError, TypeError, ValueError):
+        _LOG.warning("%s: damaged or unreadable, so it is compiled anew", path)
+        return None
+
+
+def write_trusted(path: Path, header: object, pieces: Iterable[bytes | memoryview]) -> None:
+    """Write a file completely or not at all; not at all if the folder cannot be written to."""
+    part = path.with_name(f"{path.name}.tmp.{secrets.token_hex(8)}")
+    try:
+        try:
+            with open(part, "xb", opener=_opened) as file:
+                file.writelines(packed([path.name, header], pieces))
+            part.replace(path)
+        finally:
+            part.unlink(missing_ok=True)
+    except OSError as error:
+        not_kept(error)
+
+
+def _opened(path: str, flags: int) -> int:
+    """Open a new file to which others may not write."""
+    return os.open(path, flags, FILE_MODE)
 
 
 def touch(path: Path) -> None:

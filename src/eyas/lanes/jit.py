@@ -54,7 +54,8 @@ class Kernel:
         """The type by which numba knows it in functions that call it."""
         from eyas.lanes.compilation import KernelType
 
-        return KernelType(self.py_func, inline=self._inline, double=self._double)
+        made_of = identity(self) if self.py_func.__closure__ is None else None
+        return KernelType(self.py_func, made_of, inline=self._inline, double=self._double)
 
     @functools.cached_property
     def _compiled(self) -> Callable[..., Any]:

@@ -88,13 +88,13 @@ def cache(made, tmp_path):
 
 @pytest.mark.parametrize("damage", [cut_off, emptied, flipped, replaced])
 def test_damaged_entries_are_told_in_a_line_each_and_made_anew(cache, damage, tmp_path):
-    files = [path for path in cache.rglob("*") if path.suffix in (".eyk", ".npy")]
-    assert sorted(path.suffix for path in files) == [".eyk", ".npy"]
+    files = [path for path in cache.rglob("*") if path.suffix in (".eyk", ".eym", ".npy")]
+    assert sorted(path.suffix for path in files) == [".eyk", ".eym", ".npy"]
     for path in files:
         damage(path)
     compiled, said = run(cache, cwd=tmp_path)
     assert compiled
-    assert len(said) == 2
+    assert len(said) == 3
     for line, path in zip(sorted(said), sorted(map(str, files)), strict=True):
         assert line.startswith(f"{path}: damaged or unreadable")
     assert run(cache) == (False, [])

@@ -28,7 +28,7 @@ FOREIGN = [
     "traffic/mine.npz",
     f".eyas-{KEY}.npy.0123456789abcdef.part",
     "scene/.mine.part",
-    "kernels/mine/draw.nbc",
+    "kernels/mine/draw.eym",
     f"kernels/{KEY[:16]}/notes.txt",
     "made/model.pickle",
     "shadows/mine.npz",
@@ -47,8 +47,8 @@ def put(folder, name, size=1000, age=0.0):
 
 def kernels(folder, name, age, size=1000):
     path = folder / "kernels" / name
-    put(path, "render_0123/draw.draw-7.py311.nbi", size // 2)
-    put(path, "render_0123/draw.draw-7.py311.1.nbc", size // 4)
+    put(path, "render_0123/draw.draw-7.py311.eyk", size // 2)
+    put(path, "render_0123/draw.draw-7.py311.eym", size // 4)
     put(path, "draw-0123.eyk", size - size // 2 - size // 4)
     put(path, "started", 0)
     used = time.time() - age

@@ -43,7 +43,7 @@ _FORMS = (
 )
 """Kinds, their folders, and the forms of the names in them."""
 
-_KERNEL_FILE = re.compile(r".*\.(nb[ci]|eyk)(\.tmp\..*)?|started")
+_KERNEL_FILE = re.compile(r".*\.ey[km](\.tmp\..*)?|started")
 
 
 @dataclass(frozen=True, slots=True)
