@@ -61,10 +61,10 @@ def test_where_kernels_are_shipped_the_second_process_does_something_else(begins
 
 ASKS = """
 import sys
-from eyas.lanes import parallel
+from eyas.lanes import calls
 from eyas.render import ahead
-address = parallel.entry_address
-parallel.entry_address = lambda function, parts: (
+address = calls.entry_address
+calls.entry_address = lambda function, parts: (
     print(function.__name__) or address(function, parts)
 )
 if sys.argv[1] == "second":
