@@ -26,8 +26,8 @@ from eyas.sim.step import step_of
 from eyas.trackers.drone import DRONE
 
 found = list(step_of(DRONE))
-rooms = ("render.kernels.draw", "traffic.interpolation", "sensors.lidar", "sim.views.visible_actors")
-for name in rooms:
+rooms = ("render.kernels.draw", "traffic.interpolation", "sensors.lidar")
+for name in (*rooms, "sim.views.visible_actors"):
     found += vars(importlib.import_module("eyas." + name)).values()
 told = {k.function.__name__: identity(k.function) for k in found if isinstance(k, CompiledCall)}
 print(json.dumps(told | {"language": language_hash()}))

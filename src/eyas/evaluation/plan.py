@@ -70,7 +70,11 @@ class Plan(Config):
         )
         words = ["eyas", "evaluate", "--policy", self.policy]
         for name, value in told.items():
-            words += [f"--{name}", ",".join(value) if isinstance(value, tuple) else str(value)]
+            if isinstance(value, tuple):
+                option = f"--{name.removesuffix('s')}"
+                words += [word for each in value for word in (option, each)]
+            else:
+                words += [f"--{name}", str(value)]
         if self.sampled:
             words.append("--sample")
         for key, value in _flat("", {"env": self.env, **self.settings}):
@@ -165,7 +169,7 @@ def check(plan: Plan) -> None:
     """
     delay_from(plan.latency)
     if len(set(plan.maps)) < len(plan.maps) or len(set(plan.weathers)) < len(plan.weathers):
-        raise ConfigError("--maps, --weathers: a name is there twice")
+        raise ConfigError("--map, --weather: a name is there twice")
     policy = open_policy(plan.policy, plan.env, sampled=plan.sampled)
     for name in plan.maps:
         for weather in plan.weathers:
