@@ -21,14 +21,14 @@ TELLS = """
 import importlib, json, pkgutil
 import eyas
 from eyas.lanes.identity import identity, language_hash
-from eyas.lanes import parallel_kernel
+from eyas.lanes import CompiledCall
 from eyas.sim.step import step_of
 from eyas.trackers.drone import DRONE
 
 found = list(step_of(DRONE))
 for name in ("render.kernels.draw", "traffic.interpolation", "sensors.lidar", "sim.near_list"):
     found += vars(importlib.import_module("eyas." + name)).values()
-told = {k.function.__name__: identity(k.function) for k in found if isinstance(k, parallel_kernel)}
+told = {k.function.__name__: identity(k.function) for k in found if isinstance(k, CompiledCall)}
 print(json.dumps(told | {"language": language_hash()}))
 """
 

@@ -25,7 +25,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from eyas.core.cache.entries import write_whole
-from eyas.core.cache.folder import Kind, cache_folder
+from eyas.core.cache.folder import Kind
+from eyas.lanes.folder import cache_folder
 from eyas.lanes.identity import language_hash
 
 __all__ = [

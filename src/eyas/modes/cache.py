@@ -7,8 +7,9 @@ from rich.console import Console
 from rich.table import Table
 
 from eyas.core.cache.entries import Entry, clear, entries
-from eyas.core.cache.folder import FOLDER_VARIABLE, LIMIT_VARIABLE, Kind, cache_folder, cache_limit
+from eyas.core.cache.folder import LIMIT_VARIABLE, Kind, cache_limit
 from eyas.core.errors import OutputError, UnknownNameError
+from eyas.lanes.folder import FOLDER_VARIABLE, cache_folder
 
 __all__ = ["run_clear", "run_info"]
 

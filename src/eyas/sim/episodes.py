@@ -92,7 +92,7 @@ class Episodes:
 
     def _bind(self) -> None:
         """Bind the draw of episodes to what is known of the traffic."""
-        self._drawn = draw_episodes.bound(self._draw, Held(self._traffic.stays()), self._call)
+        self._drawn = draw_episodes.bind(self._draw, self._traffic.stays(), self._call)
 
     def reseed(self, seed: int) -> None:
         """Begin the sequence of episodes of another seed."""

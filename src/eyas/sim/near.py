@@ -150,7 +150,7 @@ class NearMovers:
             part=self._movers.part,
             object_id=self._movers.object_id,
         )
-        self._list = list_near.bound(*self._given, Held(self._query), Held(self._near))
+        self._list = list_near.bind(*self._given, self._query, self._near)
 
 
 class _Size(NamedTuple):

@@ -10,7 +10,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.lanes import Pointer, kernel, parallel_kernel
+from eyas.lanes import compiled, kernel
 from eyas.lanes.elementary import tan
 from eyas.lanes.vector import WIDTH, bits_of, first_bit, load, magnitude
 from eyas.render.kernels.scalars import f4
@@ -185,12 +185,11 @@ def _write(near: Near, k: int, actor: int, w: int, slots: int, looks: Looks, wor
         near.object_id[w, slot] = ACTOR_OBJECT + actor
 
 
-@parallel_kernel
+@compiled
 def list_near(
-    parts: Pointer[tuple[Motion, Chart, Plan, Looks, Query, Near]], worker: int, workers: int
+    motion: Motion, chart: Chart, plan: Plan, looks: Looks, query: Query, near: Near
 ) -> None:
     """Find the actors that matter, and give each its slots; the lists get in their order."""
-    motion, chart, plan, looks, query, near = parts[0]
     _set_cameras(query)
     near.needed[1] = 0
     for w in range(query.worlds[0]):

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.rng import EpisodeKey
-from eyas.lanes import BoundKernel, Held
+from eyas.lanes import BoundCall, Held
 from eyas.sensors.config import MountConfig
 from eyas.sensors.inertial import smoothing_share
 from eyas.sensors.mount import CARRIED, mount_of
@@ -81,7 +81,7 @@ class Stepper:
         """Judge by these rules from the next step on."""
         snapshot, memory, around = self._snapshot, self._memory, self._around
         state = StepState(snapshot, memory, around, rules, self._share, self._mount, self._launched)
-        self._step = self._kernels.bound(Held(state), self._held_orders)
+        self._step = self._kernels.bind(Held(state), self._held_orders)
 
     def begin(
         self, chosen: NDArray[np.int64], pitch: Floats, key_of: Callable[[int], EpisodeKey]
@@ -119,7 +119,7 @@ class Stepper:
         self.senses.renew()
         self._take(self._step.carry, steps)
 
-    def _take(self, step: BoundKernel, steps: int) -> None:
+    def _take(self, step: BoundCall, steps: int) -> None:
         if self._traffic.live:
             last = int(self._snapshot.episodes.tick.max()) + steps
             self._traffic.prepare(last * PHYSICS_STEP)

@@ -9,11 +9,12 @@ from importlib.resources.abc import Traversable
 from pathlib import Path
 
 from eyas.core.cache.entries import write_entry
-from eyas.core.cache.folder import Kind, cache_folder, cache_limit, touch
+from eyas.core.cache.folder import Kind, cache_limit
 from eyas.core.config import shown
 from eyas.core.errors import DataFileError
 from eyas.core.files import user_path
 from eyas.core.program import code_of
+from eyas.lanes.folder import cache_folder, touch
 from eyas.state.roads import RoadGraph
 from eyas.traffic.config import Demand, Mix, TrafficConfig
 from eyas.traffic.network import graph_hash

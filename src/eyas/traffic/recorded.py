@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from eyas.core.cache.cached import cached
 from eyas.core.cache.folder import Kind
-from eyas.lanes import Held, Pointer, parallel_kernel
+from eyas.lanes import compiled
 from eyas.lanes.elementary import atan, sin_cos
 from eyas.state.motion import SAMPLE, Motion
 from eyas.state.terrain import Terrain, relief_at, slope_at
@@ -62,16 +62,13 @@ def table_of(tracks: Tracks, terrain: Terrain) -> NDArray[np.void]:
     table["travelled"] = tracks.travelled
     table["present"] = tracks.present
     if terrain.relief.size:  # on flat ground all heights and slopes are 0 already
-        _lay(1, Held((table, terrain)))
+        _lay(table, terrain)
     return table
 
 
-@parallel_kernel
-def _lay(
-    parts: Pointer[tuple[Pointer[tuple[NDArray[np.void], Terrain]]]], worker: int, workers: int
-) -> None:
+@compiled
+def _lay(table: NDArray[np.void], terrain: Terrain) -> None:
     """Set the heights and slopes of the samples to those of the ground."""
-    table, terrain = parts[0][0][0]
     for row in range(table.shape[0]):
         for actor in range(table.shape[1]):
             sample = table[row, actor]

@@ -12,7 +12,8 @@ from pathlib import Path
 import pytest
 
 from eyas.core.cache.array_file import map_arrays
-from eyas.core.cache.folder import Kind, cache_folder
+from eyas.core.cache.folder import Kind
+from eyas.lanes.folder import cache_folder
 from eyas.lanes.machine_code import read_code
 
 PROGRAM = """
@@ -22,16 +23,14 @@ import numpy as np
 from eyas.core.cache.cached import cached
 from eyas.core import exact
 from eyas.core.cache.folder import Kind
-from eyas.lanes import Held
-from eyas.lanes import parallel_kernel
+from eyas.lanes import compiled
 
-def double(parts, worker, workers):
-    values = parts[0][0][0][0]
+def double(values):
     for k in range(len(values)):
         values[k] *= 2.0
 
 values = np.array(cached(Kind.SKY, partial(exact.exp, np.zeros(3)), (1,), of=np.ndarray))
-parallel_kernel(double)(1, Held((values,)))
+compiled(double)(values)
 print(json.dumps([values.tolist(), "numba" in sys.modules]))
 """
 UNPRIVILEGED = ["setpriv", "--bounding-set=-dac_override,-dac_read_search,-fowner"]
@@ -89,13 +88,13 @@ def cache(made, tmp_path):
 
 @pytest.mark.parametrize("damage", [cut_off, emptied, flipped, replaced])
 def test_damaged_entries_are_told_in_a_line_each_and_made_anew(cache, damage, tmp_path):
-    files = [path for path in cache.rglob("*") if path.suffix in (".eyk", ".npy")]
-    assert sorted(path.suffix for path in files) == [".eyk", ".npy"]
+    files = [path for path in cache.rglob("*") if path.suffix in (".eyk", ".eym", ".npy")]
+    assert sorted(path.suffix for path in files) == [".eyk", ".eym", ".npy"]
     for path in files:
         damage(path)
     compiled, said = run(cache, cwd=tmp_path)
     assert compiled
-    assert len(said) == 2
+    assert len(said) == 3
     for line, path in zip(sorted(said), sorted(map(str, files)), strict=True):
         assert line.startswith(f"{path}: damaged or unreadable")
     assert run(cache) == (False, [])

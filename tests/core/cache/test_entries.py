@@ -10,10 +10,12 @@ import platformdirs
 import pytest
 from numpy.typing import NDArray
 
+from eyas.core.cache.array_file import map_arrays
 from eyas.core.cache.cached import cached
 from eyas.core.cache.entries import clear, entries, prune, write_entry
-from eyas.core.cache.folder import Kind, cache_folder, cache_limit
+from eyas.core.cache.folder import Kind, cache_limit
 from eyas.core.errors import ConfigError
+from eyas.lanes.folder import cache_folder
 
 DAY = 86_400.0
 KEY = "0123456789abcdef" * 2
@@ -27,7 +29,7 @@ FOREIGN = [
     "traffic/mine.npz",
     f".eyas-{KEY}.npy.0123456789abcdef.part",
     "scene/.mine.part",
-    "kernels/mine/draw.nbc",
+    "kernels/mine/draw.eym",
     f"kernels/{KEY[:16]}/notes.txt",
     "made/model.pickle",
     "shadows/mine.npz",
@@ -46,8 +48,8 @@ def put(folder, name, size=1000, age=0.0):
 
 def kernels(folder, name, age, size=1000):
     path = folder / "kernels" / name
-    put(path, "render_0123/draw.draw-7.py311.nbi", size // 2)
-    put(path, "render_0123/draw.draw-7.py311.1.nbc", size // 4)
+    put(path, "render_0123/draw.draw-7.py311.eyk", size // 2)
+    put(path, "render_0123/draw.draw-7.py311.eym", size // 4)
     put(path, "draw-0123.eyk", size - size // 2 - size // 4)
     put(path, "started", 0)
     used = time.time() - age
@@ -82,7 +84,7 @@ def test_writing_makes_room_and_use_counts(tmp_path, monkeypatch):
     def use(i):
         cached(Kind.SKY, partial(np.full, 12_000, i, np.uint8), (i,), of=NDArray[np.uint8])
         time.sleep(0.02)
-        return {int(np.load(path)[-1000]) for path in kept(tmp_path)}
+        return {int(map_arrays(path).arrays[0][0]) for path in kept(tmp_path)}
 
     assert [use(i) for i in (1, 2, 3)] == [{1}, {1, 2}, {1, 2, 3}]
     assert use(1) == {1, 2, 3}

@@ -15,8 +15,9 @@ import numpy as np
 from eyas.core.cache.array_file import Content, array_file, map_arrays
 from eyas.core.cache.entries import write_entry
 from eyas.core.cache.flat import flatten, restore
-from eyas.core.cache.folder import Kind, cache_folder, cache_limit, not_kept, touch
+from eyas.core.cache.folder import Kind, cache_limit
 from eyas.core.program import UnknownCodeError, code_of
+from eyas.lanes.folder import cache_folder, not_kept, touch
 
 __all__ = ["cached", "key_of"]
 

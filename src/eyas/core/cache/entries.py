@@ -17,8 +17,8 @@ from pathlib import Path
 from stat import S_ISDIR, S_ISREG
 
 from eyas.core.cache.folder import Kind
-from eyas.core.cache.safety import made_folder
 from eyas.core.files import PART_SUFFIX
+from eyas.lanes.folder import kernel_folder, made_folder
 
 __all__ = ["Entry", "clear", "entries", "prune", "write_entry", "write_whole"]
 
@@ -43,7 +43,7 @@ _FORMS = (
 )
 """Kinds, their folders, and the forms of the names in them."""
 
-_KERNEL_FILE = re.compile(r".*\.(nb[ci]|eyk)(\.tmp\..*)?|started")
+_KERNEL_FILE = re.compile(r".*\.ey[km](\.tmp\..*)?|started")
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +110,7 @@ def prune(folder: Path, limit: int) -> None:
     """
     now = time.time()
     _remove_parts(folder, [kind.value for kind in Kind], now - _PARTS_LAST)
-    mine = Path(os.environ.get("NUMBA_CACHE_DIR", ""))
+    mine = kernel_folder()
     found = entries(folder)
     total = sum(entry.size for entry in found)
     for entry in found:

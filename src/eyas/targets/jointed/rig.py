@@ -73,7 +73,7 @@ class JointedRig:
             )
         self._last = arrays
         if looks.model.shape[0] * len(group.actor) < MANY:
-            pose_jointed.bound(self._table, Held(group), *arrays)()
+            pose_jointed.bind(self._table, Held(group), *arrays)()
         else:
             pose_jointed(2, self._table, Held(group), *arrays)
 

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.lanes import BoundKernel, Held
+from eyas.lanes import BoundCall, Held
 from eyas.state.draw import DrawList
 from eyas.state.mesh import Mesh
 from eyas.state.motion import ActorState
@@ -64,7 +64,7 @@ class VehicleRig:
         else:
             held = tuple(map(Held.again, last.held, given))
         if last is None or not all(map(operator.is_, held, last.held)):
-            last = self._last = _Call(held, pose_vehicles.bound(self._table, *held))
+            last = self._last = _Call(held, pose_vehicles.bind(self._table, *held))
         if looks.model.shape[0] * len(group.actor) < MANY:
             last.kernel()
         else:
@@ -83,7 +83,7 @@ class _Call(NamedTuple):
     """A call; that of the next picture is mostly the same."""
 
     held: tuple[Held[Any], ...]
-    kernel: BoundKernel
+    kernel: BoundCall
 
 
 class _Wheels(NamedTuple):

@@ -1,4 +1,4 @@
-"""Parallel kernels: each worker's share runs in a thread, and arguments are passed by address.
+"""Calls of kernels from Python: bundles are passed by address, shares of work run in threads.
 
 numba's own solution, `parallel=True` on each kernel, compiles everything that the kernel calls
 three times (half a minute for the renderer), unpacks every array at every call (a tenth of the time
@@ -11,29 +11,19 @@ import threading
 from array import array
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from typing import Any, Generic, Protocol, TypeVar
+from typing import Any
 
-from eyas.core.interrupts import shielded
-from eyas.lanes.entry import entry_address
 from eyas.lanes.held import Held
+from eyas.lanes.interrupts import shielded
 from eyas.lanes.jit import thread_count
 
-__all__ = ["BoundKernel", "Held", "Pointer", "parallel_kernel"]
-
-Bundle = TypeVar("Bundle")
-Pointee = TypeVar("Pointee", covariant=True)
+__all__ = ["BoundCall", "CompiledCall", "ParallelCall", "compiled", "parallel"]
 
 _ENTRY = ctypes.CFUNCTYPE(ctypes.c_int32, ctypes.c_ssize_t, ctypes.c_ssize_t, ctypes.c_ssize_t)
 """Addresses of the bundles, worker, workers; returns 0 unless the kernel raised an exception."""
 
 
-class Pointer(Protocol[Pointee]):
-    """Pointer through which a parallel kernel reads a bundle: `pointer[0]`."""
-
-    def __getitem__(self, index: int) -> Pointee: ...
-
-
-class _Call:
+class _Job:
     """A call with everything that it reads and writes, kept until the last worker is done.
 
     Attributes:
@@ -84,12 +74,12 @@ class _Call:
                 pass
 
 
-class _Crew:
+class _ThreadPool:
     """The threads that help the calling thread; a forked process gets its own.
 
     Attributes:
         busy: Lock held by the calling thread: calls share the kernels' working memory.
-        call: The call in progress, or one whose end a signal (Ctrl-C) prevented; it is kept, with
+        job: The call in progress, or one whose end a signal (Ctrl-C) prevented; it is kept, with
             all that its workers use, and the next call waits for them first.
     """
 
@@ -100,7 +90,7 @@ class _Crew:
 
     def _begin(self) -> None:
         self.busy = threading.Lock()
-        self.call: _Call | None = None
+        self.job: _Job | None = None
         self._threads: ThreadPoolExecutor | None = None
 
     @property
@@ -109,25 +99,25 @@ class _Crew:
             self._threads = ThreadPoolExecutor(max(thread_count() - 1, 1), "eyas-kernel")
         return self._threads
 
-    def run(self, call: _Call) -> None:
+    def run(self, job: _Job) -> None:
         """Do all shares of a call; the caller must hold `busy`."""
-        if self.call is not None:
-            self.call.end()
-        self.call = call
+        if self.job is not None:
+            self.job.end()
+        self.job = job
         try:
-            call.do_all(self.threads if len(call.turns) > 1 else None)
+            job.do_all(self.threads if len(job.turns) > 1 else None)
         except BaseException:
             with shielded():  # a second Ctrl-C waits: what workers use may be freed afterwards
-                call.end()
-                self.call = None
+                job.end()
+                self.job = None
             raise
-        self.call = None
+        self.job = None
 
 
-_CREW = _Crew()
+_POOL = _ThreadPool()
 
 
-class BoundKernel:
+class BoundCall:
     """A kernel bound to its bundles, for short calls that are repeated often.
 
     A call takes one microsecond instead of eight. It does not wait for other calls, so nothing
@@ -137,15 +127,15 @@ class BoundKernel:
     __slots__ = ("_address", "_function", "_kept")
 
     def __init__(
-        self, function: Callable[[int, int, int], int], parts: tuple[Held[Any], ...]
+        self, function: Callable[[int, int, int], int], bundles: tuple[Held[Any], ...]
     ) -> None:
-        table = array("q", [part.address for part in parts])
+        table = array("q", [bundle.address for bundle in bundles])
         self._function = function
         self._address = table.buffer_info()[0]
-        self._kept = table, parts
+        self._kept = table, bundles
 
     def __call__(self) -> None:
-        """Do all shares."""
+        """Do all of it in the calling thread."""
         _check(self._function(self._address, 0, 1))
 
 
@@ -154,40 +144,74 @@ def _check(status: int) -> None:
         raise RuntimeError("a kernel raised an exception")
 
 
-class parallel_kernel(Generic[Bundle]):  # noqa: N801  # a decorator like `kernel`
-    """Compile a function that does the share of one worker, and run it for all workers in parallel.
+class CompiledCall:
+    """A function that Python calls, compiled with all kernels that it calls.
 
-    Calls from several Python threads wait for each other.
+    Its parameters are bundles. Named tuples come by pointer, which is read as the tuple itself,
+    `bundle.field`; arrays and numbers come as they are.
 
-    Args:
-        function: Called with `parts`, `worker` and `workers`; `parts[0]` holds a pointer to each
-            bundle, and `parts[0][i][0]` is bundle i.
+    Attributes:
+        function: The function, which returns nothing.
     """
 
-    def __init__(self, function: Callable[[Pointer[Bundle], int, int], None]) -> None:
+    over_workers = False
+    """Whether the function begins with two parameters of its own, `worker` and `workers`."""
+
+    def __init__(self, function: Callable[..., None]) -> None:
         self.__doc__ = function.__doc__
         self.function = function
-        self._compiled: dict[tuple[str, ...], Callable[[int, int, int], int]] = {}
+        self._loaded: dict[tuple[str, ...], Callable[[int, int, int], int]] = {}
 
-    def __call__(self, workers: int, *parts: Held[Any]) -> None:
-        """Run the shares of all workers and wait for them."""
-        if workers == 0:
-            return
-        with _CREW.busy:
-            _CREW.run(_Call(self._function(parts), parts, workers))
+    def bind(self, *bundles: Any) -> BoundCall:  # noqa: ANN401
+        """Return the call bound to bundles, `Held` or not; it runs in the calling thread."""
+        held = _held(bundles)
+        return BoundCall(self._function(held), held)
 
-    def bound(self, *parts: Held[Any]) -> "BoundKernel":
-        """Return the kernel bound to these bundles; it runs in the calling thread."""
-        return BoundKernel(self._function(parts), parts)
+    def __call__(self, *bundles: Any) -> None:  # noqa: ANN401
+        """Call it once."""
+        self.bind(*bundles)()
 
-    def _function(self, parts: tuple[Held[Any], ...]) -> Callable[[int, int, int], int]:
+    def _function(self, bundles: tuple[Held[Any], ...]) -> Callable[[int, int, int], int]:
         """Return the function for bundles of these kinds; as a ctypes function, it releases the
         interpreter's lock.
         """
-        kinds = tuple([part.kind for part in parts])
-        if kinds not in self._compiled:
-            self._compiled[kinds] = self._load(parts)
-        return self._compiled[kinds]
+        kinds = tuple([bundle.kind for bundle in bundles])
+        if kinds not in self._loaded:
+            self._loaded[kinds] = self._load(bundles)
+        return self._loaded[kinds]
 
-    def _load(self, parts: tuple[Held[Any], ...]) -> Callable[[int, int, int], int]:
-        return _ENTRY(entry_address(self.function, parts))
+    def _load(self, bundles: tuple[Held[Any], ...]) -> Callable[[int, int, int], int]:
+        from eyas.lanes.entry import entry_address  # LLVM, for the first call only
+
+        return _ENTRY(entry_address(self.function, bundles, over_workers=self.over_workers))
+
+
+def _held(bundles: tuple[Any, ...]) -> tuple[Held[Any], ...]:
+    return tuple([b if isinstance(b, Held) else Held(b) for b in bundles])
+
+
+class ParallelCall(CompiledCall):
+    """A call of a function that does the share of one worker; it runs for all workers in parallel.
+
+    Calls from several Python threads wait for each other.
+    """
+
+    over_workers = True
+
+    def __call__(self, workers: int, *bundles: Any) -> None:  # noqa: ANN401
+        """Run the shares of all workers and wait for them."""
+        if workers == 0:
+            return
+        held = _held(bundles)
+        with _POOL.busy:
+            _POOL.run(_Job(self._function(held), held, workers))
+
+
+def compiled(function: Callable[..., None]) -> CompiledCall:
+    """Compile a function of bundles, for calls from Python."""
+    return CompiledCall(function)
+
+
+def parallel(function: Callable[..., None]) -> ParallelCall:
+    """Compile a function of `worker`, `workers` and bundles, to be run by threads."""
+    return ParallelCall(function)

@@ -11,21 +11,19 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 import pytest
 
-from eyas.lanes import Held, parallel, parallel_kernel
+from eyas.lanes import CompiledCall, Held, ParallelCall, calls, compiled, parallel
 
 
-@parallel_kernel
-def add_up(parts, worker, workers):
-    first, others = parts[0]
-    factor, values, sums = first[0]
+@parallel
+def add_up(worker, workers, factor, values, sums, other):
     for row in range(worker, len(values), workers):
         for column in range(values.shape[1]):
-            sums[row] += factor * values[row, column] + others[0][0]
+            sums[row] += factor * values[row, column] + other
 
 
 def summed(values, workers=3, more=0) -> np.ndarray:
     sums = np.zeros(len(values))
-    add_up(workers, Held((2.0, values, sums)), Held((more,)))
+    add_up(workers, 2.0, values, sums, more)
     return sums
 
 
@@ -48,15 +46,15 @@ def test_arrays_of_other_kinds_are_read_as_what_they_are():
 
 def test_what_is_written_into_a_held_array_later_is_seen():
     values, sums = np.ones((4, 2)), np.zeros(4)
-    held, none = Held((1.0, values, sums)), Held((0,))
+    held = Held(values)
     values[:] = 5.0
-    add_up(2, held, none)
+    add_up(2, 1.0, held, sums, 0)
     np.testing.assert_array_equal(sums, 10.0)
 
 
 def test_a_bound_kernel_does_all_shares_and_keeps_what_it_works_on():
     values, sums = np.ones((5, 2)), np.zeros(5)
-    add = add_up.bound(Held((2.0, values, sums)), Held((1.0,)))
+    add = add_up.bind(2.0, values, sums, 1.0)
     gc.collect()
     filler = [np.full(4096, 7, np.uint8) for _ in range(50)]  # where a lost bundle would have been
     add()
@@ -68,15 +66,13 @@ def test_a_bound_kernel_does_all_shares_and_keeps_what_it_works_on():
 
 def test_a_bundle_of_many_arrays_is_held_whole():
     many = tuple(np.full(1, float(i)) for i in range(120))
-    held = Held(many)
     last = np.zeros((1, 1))
 
-    @parallel_kernel
-    def take_last(parts, worker, workers):
-        bundle, out = parts[0]
-        out[0][0][0, 0] = bundle[0][119][0]
+    @compiled
+    def take_last(bundle, out):
+        out[0, 0] = bundle[119][0]
 
-    take_last(1, held, Held((last,)))
+    take_last(many, last)
     assert last[0, 0] == 119.0
 
 
@@ -94,8 +90,8 @@ class SlowWorker:
 
     def __init__(self, monkeypatch):
         self.told, self.begun, self.ended = (threading.Event() for _ in range(3))
-        monkeypatch.setattr(parallel_kernel, "_load", lambda kernel, parts: self.work)
-        self.kernel = parallel_kernel(None)
+        monkeypatch.setattr(CompiledCall, "_load", lambda kernel, parts: self.work)
+        self.kernel = ParallelCall(None)
 
     def work(self, table, worker, workers):
         if worker == 0:  # so that a thread, not this one, takes the other share
@@ -119,7 +115,7 @@ class SlowWorker:
         presser = threading.Thread(target=press)
         presser.start()
         with pytest.raises(KeyboardInterrupt):
-            self.kernel(2, Held((0,)))
+            self.kernel(2, 0)
         presser.join()
 
 
@@ -127,7 +123,7 @@ def test_a_process_that_is_forked_during_a_call_may_call_too(monkeypatch):
     values = np.ones((300, 50))
     summed(values)  # compiled, before the kernel of the slow call takes the place of what compiles
     slow = SlowWorker(monkeypatch)
-    call = threading.Thread(target=slow.kernel, args=(2, Held((0,))))
+    call = threading.Thread(target=slow.kernel, args=(2, 0))
     call.start()
     try:
         assert slow.begun.wait(10)
@@ -155,27 +151,27 @@ def test_after_two_interrupts_workers_still_end_before_what_they_use_is_free(mon
 
 def test_a_call_that_could_not_even_end_is_kept_and_the_next_waits_for_its_workers(monkeypatch):
     slow = SlowWorker(monkeypatch)
-    whole = parallel._Call.end
+    whole = calls._Job.end
 
     def cut_off(call):  # a second Ctrl-C at the first instant of the end
-        monkeypatch.setattr(parallel._Call, "end", whole)
+        monkeypatch.setattr(calls._Job, "end", whole)
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(parallel._Call, "end", cut_off)
+    monkeypatch.setattr(calls._Job, "end", cut_off)
     slow.call_and_interrupt(times=1)
     assert not slow.ended.is_set()  # or there would be nothing to wait for
-    assert parallel._CREW.call is not None
+    assert calls._POOL.job is not None
 
     seen = []
 
     def work(*_):
         seen.append(slow.ended.is_set())
 
-    monkeypatch.setattr(parallel_kernel, "_load", lambda kernel, parts: work)
+    monkeypatch.setattr(CompiledCall, "_load", lambda kernel, parts: work)
     threading.Timer(0.2, slow.told.set).start()
-    parallel_kernel(None)(3, Held((0,)))
+    ParallelCall(None)(3, 0)
     assert seen == [True] * 3
-    assert parallel._CREW.call is None
+    assert calls._POOL.job is None
 
 
 def test_an_interrupt_before_a_share_begins_leaves_it_undone(monkeypatch):
@@ -187,9 +183,9 @@ def test_an_interrupt_before_a_share_begins_leaves_it_undone(monkeypatch):
         time.sleep(0.1)  # or the threads could keep up with the one that hands out shares
         done.append(worker)
 
-    monkeypatch.setattr(parallel_kernel, "_load", lambda kernel, parts: work)
+    monkeypatch.setattr(CompiledCall, "_load", lambda kernel, parts: work)
     with pytest.raises(KeyboardInterrupt):
-        parallel_kernel(None)(2000, Held((0,)))
+        ParallelCall(None)(2000, 0)
     count = len(done)
     time.sleep(0.2)
     assert len(done) == count < 1999

@@ -6,7 +6,7 @@ import threading
 
 import pytest
 
-from eyas.core.interrupts import let_in, shielded
+from eyas.lanes.interrupts import let_in, shielded
 
 
 def press():
