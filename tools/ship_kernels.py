@@ -20,6 +20,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import eyas
+from eyas.core import program
 from eyas.lanes import CompiledCall
 from eyas.lanes.identity import language_files, language_hash
 from eyas.lanes.machine_code import SUFFIX, MachineCode, read_code
@@ -72,6 +73,9 @@ recorded_motion(recording, hill, np.zeros(recording.actors, np.int32))
 """A program that uses every kernel of the package; `missing` names those that it forgets."""
 
 
+PACKAGE = Path(eyas.__file__).parent
+
+
 def main() -> None:
     """Make the code, or check it."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
@@ -84,6 +88,7 @@ def main() -> None:
         raise SystemExit(f"{LEVEL}: this processor lacks {', '.join(sorted(lacks))}")
     options.out.mkdir(parents=True, exist_ok=True)
     (options.out / INDEX.name).write_text(index_of(files_of_kernels()))
+    program.INDEX.write_text(program.index_of(sorted(PACKAGE.rglob("*.py"))))
     codes = compiled_for(LEVEL)
     (options.out / ARCHIVE.name).write_bytes(archive_of(codes))
     raise SystemExit(missing(codes))
@@ -91,7 +96,7 @@ def main() -> None:
 
 def files_of_kernels() -> list[Path]:
     """Return the files of the package that may hold kernels, and those of their language."""
-    every = Path(eyas.__file__).parent.rglob("*.py")
+    every = PACKAGE.rglob("*.py")
     return sorted({*language_files(), *(path for path in every if b"kernel" in path.read_bytes())})
 
 

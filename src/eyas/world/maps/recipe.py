@@ -83,8 +83,8 @@ class MapRecipe:
     unchanged scene is part of the light (`Lighting.snow`) and needs no scene of its own."""
     package: str | None = None
     """Package that contains the map, mostly `__name__`: it may hold `NETWORK_FILE` and recordings
-    (`traffic*.npz`), and a change of its source rebuilds the scene. None: nothing is shipped, and
-    the scene is not cached between runs."""
+    (`traffic*.npz`), and a change of its code or data rebuilds the scene. None: nothing is shipped,
+    and the scene is not cached between runs."""
     home: Path | None = None
     """Folder of a map that is no package: an imported one. It holds the same files."""
     original: Original | None = None
