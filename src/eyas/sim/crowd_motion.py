@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.behaviours.config import Behaviour, ExtraConfig
+from eyas.behaviours.config import ExtraConfig
 from eyas.behaviours.lives import Lives, lasting, recycled
 from eyas.behaviours.troop import Clock, Troop
 from eyas.core import exact
@@ -21,7 +21,8 @@ from eyas.custom.config import CustomConfig
 from eyas.sim.crowd import Crowd
 from eyas.state.motion import SAMPLE, Motion, joined
 from eyas.state.scene import Scene
-from eyas.targets.catalogue import MODELS, kind_index, models_of
+from eyas.targets.catalogue import MODELS, habit_of, kind_index, models_of
+from eyas.targets.habit import Behaviour
 from eyas.traffic.signals import SignalPlan
 
 if TYPE_CHECKING:
@@ -31,7 +32,7 @@ __all__ = ["Surroundings", "crowd_motions", "with_crowd"]
 
 _MAKERS = (
     *("behaviours", "sim/crowd_motion.py", "state/motion.py", "state/terrain.py", "world/roads"),
-    *("targets/vehicles/models.py", "traffic/signals.py", "traffic/trailer.py"),
+    *("targets/vehicles", "traffic/signals.py", "traffic/trailer.py"),
 )
 
 _ASIDE = Mirrored(mirrored=(4.0, 20.0))
@@ -184,7 +185,8 @@ def _made(
     waits_for = (vehicles.table, vehicles.kind) if heeds and vehicles is not None else ()
     obeys = tuple(lights) if crosses and lights is not None else ()
     depends_on = (
-        *(*_plan_of(scene), *troop.lives, troop[:3], troop[4:], clock, seed, number),
+        *(*_plan_of(scene), *troop.lives, troop.kind, troop.breadth, troop.behaviour),
+        *(troop.habit, troop.offset, clock, seed, number),
         *(driven, *waits_for, *obeys),
     )
     return _Part(depends_on, made)
@@ -234,7 +236,15 @@ def _custom(crowd: Crowd, custom: CustomConfig, around: Surroundings, ground: "G
 def _troop(extra: ExtraConfig, lives: Lives, offset: Variation, setting: str) -> Troop:
     models = [MODELS[model] for model in models_of(kind_index(extra.kind))]
     breadth = max(float(exact.hypot(*model.size[:2])) for model in models)
-    return Troop(extra.kind.value, breadth, extra.behaviour, lives, offset, setting)
+    return Troop(
+        kind=extra.kind.value,
+        breadth=breadth,
+        behaviour=extra.behaviour,
+        habit=habit_of(extra.kind.value),
+        lives=lives,
+        offset=offset,
+        setting=setting,
+    )
 
 
 def _plan_of(scene: Scene) -> tuple[object, ...]:

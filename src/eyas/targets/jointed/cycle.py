@@ -3,7 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.targets.jointed.figure import Figure, Gait, Joint, Shape
+from eyas.mesh.shell import Shape
+from eyas.targets.jointed.figure import Figure, Gait, Joint
 from eyas.targets.jointed.frames import level, turned
 from eyas.targets.jointed.stepping import leg_frames
 

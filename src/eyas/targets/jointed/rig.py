@@ -7,11 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.lanes import Held
+from eyas.mesh.shell import Shape, levels_of
 from eyas.state.draw import DrawList
 from eyas.state.mesh import Mesh
 from eyas.state.motion import ActorState
 from eyas.targets.jointed.cycle import frames_of, shapes_of
-from eyas.targets.jointed.figure import Figure, Shape, levels_of
+from eyas.targets.jointed.figure import Figure
+from eyas.targets.jointed.model import JointedModel
 from eyas.targets.jointed.pose import BODY, PART, CycleTable, Slots, pose_jointed
 from eyas.targets.kind import MANY, Group, Looks
 
@@ -31,13 +33,14 @@ class JointedRig:
         slots: As in `Rig`.
 
     Args:
-        figures: The figure of each model.
+        models: All models of a kind.
     """
 
     slots: int
 
-    def __init__(self, figures: Sequence[Figure]) -> None:
-        self._shapes: list[Shape] = []
+    def __init__(self, models: Sequence[JointedModel]) -> None:
+        self._models, self._shapes = models, list[Shape]()
+        figures = [model.figure for model in models]
         drawn = [shapes_of(figure) for figure in figures]
         for shape in (shape for shapes in drawn for shape in shapes):
             if shape not in self._shapes:
@@ -54,8 +57,20 @@ class JointedRig:
         return len(self._shapes)
 
     def part_levels(self) -> list[tuple[Mesh, ...]]:
-        """Return the meshes of each part, the finest first."""
-        return [levels_of(shape) for shape in self._shapes]
+        """Return the meshes of each part, the finest first.
+
+        Raises:
+            ValueError: A model is not of the size that it says.
+        """
+        levels = [levels_of(shape) for shape in self._shapes]
+        for model in self._models:
+            frames = frames_of(model.figure, np.zeros(1), moving=False)[0]
+            placed = [
+                levels[self._shapes.index(shape)][0].positions @ frame[:, :3].T + frame[:, 3]
+                for shape, frame in zip(shapes_of(model.figure), frames, strict=True)
+            ]
+            model.check_meshes(np.concatenate(placed), 0.1, antennas=True)
+        return levels
 
     def reach(self, parts: NDArray[np.float64]) -> float:
         """Return how far any point of an actor may be from its reference point, see `Rig` [m]."""

@@ -9,7 +9,7 @@ from eyas.lanes import Pointer, kernel, parallel_kernel
 from eyas.lanes.elementary import sin_cos, tan
 from eyas.state.motion import ActorState
 from eyas.targets.kind import Group, Looks
-from eyas.targets.vehicles.models import VEHICLE_AHEAD
+from eyas.targets.vehicles.vehicle import VEHICLE_AHEAD
 from eyas.traffic.trailer import folded
 
 __all__ = ["AXLES", "SLOT", "STEER_LIMIT", "RigTable", "Slots", "pose_vehicles"]

@@ -8,14 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.lanes import BoundKernel, Held
+from eyas.mesh.shell import levels_of
 from eyas.state.draw import DrawList
 from eyas.state.mesh import Mesh
 from eyas.state.motion import ActorState
 from eyas.targets.kind import MANY, Group, Looks
-from eyas.targets.vehicles.bodies import body_levels
-from eyas.targets.vehicles.heavy import trailer_levels
-from eyas.targets.vehicles.models import VEHICLE_AHEAD, Axle, VehicleModel
 from eyas.targets.vehicles.pose import AXLES, SLOT, RigTable, Slots, pose_vehicles
+from eyas.targets.vehicles.vehicle import VEHICLE_AHEAD, Axle, Trailer, VehicleModel
 from eyas.targets.vehicles.wheels import wheel_levels
 
 __all__ = ["VehicleRig", "trailers_of"]
@@ -36,6 +35,7 @@ class VehicleRig:
     def __init__(self, models: Sequence[VehicleModel]) -> None:
         self._parts: list[_Part] = []
         layouts = [_layout(model, self._parts) for model in models]
+        self._models, self._layouts = models, layouts
         self.slots = max(len(layout) for layout in layouts)
         self._table = Held(_tabulate(models, layouts, self.slots))
         self._last: _Call | None = None
@@ -46,8 +46,16 @@ class VehicleRig:
         return len(self._parts)
 
     def part_levels(self) -> list[tuple[Mesh, ...]]:
-        """Return the meshes of each part, the finest first."""
-        return [_levels(part) for part in self._parts]
+        """Return the meshes of each part, the finest first.
+
+        Raises:
+            ValueError: A model is not of the size that it says.
+        """
+        levels = [_levels(part) for part in self._parts]
+        for model, slots in zip(self._models, self._layouts, strict=True):
+            placed = [levels[slot.part][0].positions + slot.offset for slot in slots]
+            model.check_meshes(np.concatenate(placed), 0.05)
+        return levels
 
     def reach(self, parts: NDArray[np.float64]) -> float:
         """Return how far any point of a vehicle may be from its reference point, see `Rig` [m]."""
@@ -76,7 +84,7 @@ def trailers_of(models: Sequence[VehicleModel]) -> tuple[int, ...]:
     parts: list[_Part] = []
     for model in models:
         _layout(model, parts)
-    return tuple(k for k, part in enumerate(parts) if isinstance(part, _Trailer))
+    return tuple(k for k, part in enumerate(parts) if isinstance(part, _Towed))
 
 
 class _Call(NamedTuple):
@@ -93,18 +101,22 @@ class _Wheels(NamedTuple):
     """Distance between the two wheels of an axle [m]; 0 for a single wheel."""
 
 
-class _Trailer(NamedTuple):
+class _Towed(NamedTuple):
+    trailer: Trailer
     vehicle: VehicleModel
 
 
-_Part = VehicleModel | _Wheels | _Trailer
+_Part = VehicleModel | _Wheels | _Towed
 """The body of a model, or wheels, which several models may share, or its trailer."""
 
 
 def _levels(part: _Part) -> tuple[Mesh, ...]:
-    if isinstance(part, _Trailer):
-        return trailer_levels(part.vehicle)
-    return wheel_levels(*part) if isinstance(part, _Wheels) else body_levels(part)
+    if isinstance(part, _Wheels):
+        return wheel_levels(*part)
+    if isinstance(part, VehicleModel):
+        return part.body(part)
+    shape, vehicle = part.trailer.shape, part.vehicle
+    return levels_of(lambda shell, detail: shape(shell, vehicle, detail))
 
 
 class _Slot(NamedTuple):
@@ -121,7 +133,9 @@ def _layout(vehicle: VehicleModel, parts: list[_Part]) -> list[_Slot]:
     slots = [_Slot(_index(vehicle, parts), (0.0, 0.0, 0.0))]
     for axle in sorted(vehicle.axles, key=lambda axle: axle.towed):
         if axle.towed and not slots[-1].towed:
-            slots.append(_Slot(_index(_Trailer(vehicle), parts), (0.0, 0.0, 0.0), towed=True))
+            assert vehicle.trailer is not None
+            behind = _index(_Towed(vehicle.trailer, vehicle), parts)
+            slots.append(_Slot(behind, (0.0, 0.0, 0.0), towed=True))
         # Steered wheels turn about their own middles, so each is a part; others are one per axle.
         pair = 0.0 if axle.steered else axle.track
         part = _index(_Wheels(vehicle.wheel_radius, axle.width, pair), parts)
