@@ -13,10 +13,7 @@ from eyas.state.motion import ActorState
 from eyas.state.scene import ObjectClass
 from eyas.targets.habit import Habit
 
-__all__ = ["MANY", "Block", "Colour", "Group", "Kind", "Looks", "Model", "Rig", "Section"]
-
-MANY = 4096
-"""Actors from which on two threads pose them: waking one takes as long as some hundred actors."""
+__all__ = ["Block", "Colour", "Group", "Kind", "Looks", "Model", "Rig", "Section"]
 
 Colour = tuple[float, float, float]
 """sRGB, each 0 to 1."""

@@ -1,19 +1,15 @@
 """The rig of vehicles: a body, wheels that roll and steer, and a trailer that swings."""
 
-import operator
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.lanes import BoundKernel, Held
 from eyas.mesh.shell import levels_of
-from eyas.state.draw import DrawList
 from eyas.state.mesh import Mesh
-from eyas.state.motion import ActorState
-from eyas.targets.kind import MANY, Group, Looks
-from eyas.targets.vehicles.pose import AXLES, SLOT, RigTable, Slots, pose_vehicles
+from eyas.targets.posing import PoseCall
+from eyas.targets.vehicles.pose import AXLES, SLOT, RigTable, pose_vehicles
 from eyas.targets.vehicles.vehicle import VEHICLE_AHEAD, Axle, Trailer, VehicleModel
 from eyas.targets.vehicles.wheels import wheel_levels
 
@@ -25,6 +21,7 @@ class VehicleRig:
 
     Attributes:
         slots: As in `Rig`.
+        pose: As in `Rig`.
 
     Args:
         models: All models of a kind.
@@ -37,8 +34,9 @@ class VehicleRig:
         layouts = [_layout(model, self._parts) for model in models]
         self._models, self._layouts = models, layouts
         self.slots = max(len(layout) for layout in layouts)
-        self._table = Held(_tabulate(models, layouts, self.slots))
-        self._last: _Call | None = None
+        table = _tabulate(models, layouts, self.slots)
+        self._slots = table.slot
+        self.pose = PoseCall(pose_vehicles, table)
 
     @property
     def part_count(self) -> int:
@@ -59,24 +57,9 @@ class VehicleRig:
 
     def reach(self, parts: NDArray[np.float64]) -> float:
         """Return how far any point of a vehicle may be from its reference point, see `Rig` [m]."""
-        slot = self._table.bundle.slot
-        slot = slot[slot["part"] >= 0]
+        slot = self._slots[self._slots["part"] >= 0]
         offset = np.sqrt(np.square(slot["x"]) + np.square(slot["y"]) + np.square(slot["z"]))
         return abs(VEHICLE_AHEAD) + float((offset + parts[slot["part"]]).max())
-
-    def pose(self, group: Group, actors: ActorState, looks: Looks, out: DrawList) -> None:
-        """Write all slots of the kind's actors, see `Rig`."""
-        given, last = (group, actors, looks, Slots(out.part, out.pose, out.colour)), self._last
-        if last is None:
-            held = tuple(map(Held, given))
-        else:
-            held = tuple(map(Held.again, last.held, given))
-        if last is None or not all(map(operator.is_, held, last.held)):
-            last = self._last = _Call(held, pose_vehicles.bound(self._table, *held))
-        if looks.model.shape[0] * len(group.actor) < MANY:
-            last.kernel()
-        else:
-            pose_vehicles(2, self._table, *held)
 
 
 def trailers_of(models: Sequence[VehicleModel]) -> tuple[int, ...]:
@@ -85,13 +68,6 @@ def trailers_of(models: Sequence[VehicleModel]) -> tuple[int, ...]:
     for model in models:
         _layout(model, parts)
     return tuple(k for k, part in enumerate(parts) if isinstance(part, _Towed))
-
-
-class _Call(NamedTuple):
-    """A call; that of the next picture is mostly the same."""
-
-    held: tuple[Held[Any], ...]
-    kernel: BoundKernel
 
 
 class _Wheels(NamedTuple):
