@@ -25,6 +25,7 @@ from eyas.state.scene import ObjectClass
 from eyas.targets.catalogue import KINDS, MODELS, habit_of, models_of
 from eyas.targets.habit import Behaviour
 from eyas.traffic.config import TrafficConfig
+from eyas.traffic.net_file import SumoNet
 from eyas.traffic.signals import Aspect, walk_plan
 from eyas.world.config import WorldConfig
 from eyas.world.maps import MAPS
@@ -94,7 +95,7 @@ def scene(writer, maps, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def lights(scene):
-    return walk_plan(MAPS.get(NAME).roads(0).finished)
+    return walk_plan(SumoNet(MAPS.get(NAME).roads(0).finished))
 
 
 @pytest.fixture(scope="module")
