@@ -25,6 +25,7 @@ from eyas.targets.rig import Rigs
 from eyas.traffic.config import Demand, Source, TrafficConfig
 from eyas.traffic.library import CANONICAL_SEED, STANDARD_DURATION, find_file
 from eyas.traffic.live import LiveSumo
+from eyas.traffic.net_file import SumoNet
 from eyas.traffic.record import resolved
 from eyas.traffic.recorded import kept_motion
 from eyas.traffic.replay import Replay
@@ -85,25 +86,21 @@ def load_assets(
         body_part, parts = parts, parts + 1
         kinds.append(kind_index(QUADROTOR.name))
     scene = load_scene(world.map, world.seed, season)
-    plan = _signal_plan(world.map, world.seed)
-    signals = None if plan is None else lights_of(scene, plan, parts)
+    plans = _signal_plans(world.map, world.seed)
+    signals = None if plans is None else lights_of(scene, plans[0], parts)
     renderer = _renderer(world, tuple(kinds), signals=signals is not None)
     solids = partial(load_solids, world.map, world.seed, season)
     return Assets(scene, source, lighting, renderer, rigs, solids, body_part, signals)
 
 
 @lru_cache(maxsize=4)
-def _signal_plan(map_name: str, seed: int) -> SignalPlan | None:
-    """Return the programs of the signals in a network of SUMO; None if recipes drew the roads."""
+def _signal_plans(map_name: str, seed: int) -> tuple[SignalPlan, SignalPlan] | None:
+    """Return what signals and crossings with lights show; None if recipes drew the roads."""
     network = MAPS.get(map_name).roads(seed).finished
-    return signal_plan(network) if network else None
-
-
-@lru_cache(maxsize=4)
-def _walk_plan(map_name: str, seed: int) -> SignalPlan | None:
-    """Return what the crossings with lights show, as `_signal_plan`."""
-    network = MAPS.get(map_name).roads(seed).finished
-    return walk_plan(network) if network else None
+    if not network:
+        return None
+    net = SumoNet(network)
+    return signal_plan(net), walk_plan(net)
 
 
 @lru_cache(maxsize=4)
@@ -116,7 +113,8 @@ def _traffic(
         clock = Clock(len(vehicles.table), vehicles.rate)
     # A scene depends on the season, but its ground does not.
     scene = load_scene(map_name, seed)
-    lights = _walk_plan(map_name, seed) if scene.footways.told else None
+    plans = _signal_plans(map_name, seed) if scene.footways.told else None
+    lights = None if plans is None else plans[1]
     around = Surroundings(scene, clock, _seed_of(config), vehicles, lights)
     motion, targets = with_crowd(vehicles, crowd, around)
     replay = Replay(motion, targets)

@@ -7,7 +7,7 @@ from eyas.core import exact
 from eyas.state.motion import ActorState, ActorView
 from eyas.state.snapshot import CameraState, Snapshot
 from eyas.targets.catalogue import MODELS, extent_of, kind_of
-from eyas.targets.telling import Seen, told_apart
+from eyas.targets.words import Seen, told_apart
 
 __all__ = ["target_in_words"]
 
