@@ -44,7 +44,7 @@ def main(decisions: int = 50_000, folder: Path = Path("runs/field")) -> Path:
     # wherever the package is installed.
     MAPS.register(FIELD.name, FIELD)
     policy = train(settings(decisions), folder)
-    print(f"eyas evaluate --policy {policy} --maps own_map:FIELD --videos")
+    print(f"eyas evaluate --policy {policy} --map own_map:FIELD --videos")
     return policy
 
 

@@ -23,7 +23,6 @@ from eyas.world.land.rising import relief_of
 from eyas.world.maps import MapRecipe
 from eyas.world.plan.plan import Chance, Far, Flat, Ground, MapPlan, Relief, Streets
 from eyas.world.roads.areas import road_area
-from eyas.world.weather import CLEAR_DAY, DAY, FOG, FOGGY
 
 SIZE = (400.0, 400.0)
 HILL = Mound(x=0.0, y=0.0, radius=75.0, height=30.0)
@@ -81,7 +80,7 @@ FIELD = MapRecipe(
     title="A field with a hill",
     roads=roads,
     plan=plan,
-    lighting={DAY: CLEAR_DAY, FOGGY: FOG},
+    without=("night", "snow"),
     package=__package__ or None,
 )
 

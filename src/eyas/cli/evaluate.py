@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from eyas.cli.options import SEVERAL
 from eyas.core.errors import ConfigError
 
 if TYPE_CHECKING:
@@ -28,14 +29,23 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
     protocol: Annotated[
         str, typer.Option("--protocol", help="paper, long, search or distractor.")
     ] = "paper",
-    maps: Annotated[str, typer.Option("--maps", metavar="A,B,...")] = "citystreet",
-    weathers: Annotated[str, typer.Option("--weathers", metavar="A,B,...")] = "day",
-    targets: Annotated[str, typer.Option("--targets", metavar="A,B,...")] = "SUMO_VEHICLE",
+    maps: Annotated[
+        list[str] | None, typer.Option("--map", help=f"By default citystreet; {SEVERAL}.")
+    ] = None,
+    weathers: Annotated[
+        list[str] | None, typer.Option("--weather", help=f"By default day; {SEVERAL}.")
+    ] = None,
+    targets: Annotated[
+        list[str] | None, typer.Option("--target", help=f"By default SUMO_VEHICLE; {SEVERAL}.")
+    ] = None,
     episodes: Annotated[
         int | None,
         typer.Option("--episodes", help="For each map, weather, target and start direction."),
     ] = None,
-    seed: Annotated[int | None, typer.Option("--seed", help="Seed of the first episode.")] = None,
+    seed: Annotated[
+        int | None,
+        typer.Option("--seed", help="The one seed of the run: that of its first episode."),
+    ] = None,
     latency: Annotated[
         str,
         typer.Option("--latency", help="Milliseconds, a file with one in each line, or measured."),
@@ -88,9 +98,9 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
     values: dict[str, Any] = {
         "policy": policy,
         "protocol": protocol,
-        "maps": _names(maps),
-        "weathers": _names(weathers),
-        "targets": _names(targets),
+        "maps": maps or ["citystreet"],
+        "weathers": weathers or ["day"],
+        "targets": targets or ["SUMO_VEHICLE"],
         "episodes": episodes,
         "latency": latency,
         "sampled": sample,
@@ -132,10 +142,6 @@ def _flier(*, ray: bool) -> "AbstractContextManager[Flier]":
     return nullcontext(fly_here)
 
 
-def _names(text: str) -> list[str]:
-    return [name.strip() for name in text.split(",") if name.strip()]
-
-
 _FREE = (["start", "velocity"], ["extras"])
 """Settings that `--set` changes, besides all of some groups."""
 
@@ -146,12 +152,12 @@ def _changes(said: list[str]) -> dict[str, Any]:
     Raises:
         ConfigError: One is of another form, or changes what the protocol fixes.
     """
+    from eyas.settings.file import parsed_override
+
     changes: dict[str, Any] = {}
     for text in said:
-        path, equals, value = text.partition("=")
-        keys = path.strip().split(".")
-        free = keys[0] in ("env", "tracker", "control") and all(keys[1:] or [""])
-        if not equals or not (free or keys in _FREE):
+        keys, value = parsed_override(text)
+        if keys[0] not in ("env", "tracker", "control") and keys not in _FREE:
             raise ConfigError(
                 f"--set {text!r}: not allowed: env.KEY=VALUE, such as env.action_repeat=4, or "
                 "tracker.KEY, control.KEY, start.velocity or extras; all else belongs to the "
@@ -160,10 +166,7 @@ def _changes(said: list[str]) -> dict[str, Any]:
         group = changes
         for key in keys[:-1]:
             group = group.setdefault(key, {})
-        try:
-            group[keys[-1]] = json.loads(value)
-        except ValueError:
-            group[keys[-1]] = value.strip()
+        group[keys[-1]] = value
     return changes
 
 
@@ -174,20 +177,23 @@ def _folder_name(policy: str, protocol: str) -> str:
 def compare(
     first: Annotated[Path, typer.Argument(metavar="A", help="Folder of an evaluation.")],
     second: Annotated[Path, typer.Argument(metavar="B", help="Folder of another.")],
+    across_builds: Annotated[
+        bool, typer.Option("--across-builds", help="Compare although Eyas itself differs.")
+    ] = False,
     json_: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Tell by how much B differs from A in the episodes that both have flown."""
-    from eyas.evaluation.comparison import differences, refuse_other_protocol, text_of
+    from eyas.evaluation.comparison import differences, refuse_incomparable, text_of
     from eyas.evaluation.result import load_run
 
     (stamp_a, records_a), (stamp_b, records_b) = load_run(first), load_run(second)
-    refuse_other_protocol(stamp_a, stamp_b)
+    refuse_incomparable(stamp_a, stamp_b, across_builds=across_builds)
     found = differences(records_a, records_b)
     if json_:
         typer.echo(json.dumps([each._asdict() for each in found], indent=1))
         return
     for name, stamp in (("A", stamp_a), ("B", stamp_b)):
-        typer.echo(f"{name}: {stamp.plan.command} (Eyas {stamp.version})")
+        typer.echo(f"{name}: {stamp.plan.command} (Eyas {stamp.version}, build {stamp.build.id})")
     typer.echo(text_of(found))
 
 

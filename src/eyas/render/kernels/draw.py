@@ -1,6 +1,6 @@
 """Pictures: the loop over bands of views, and the steps of each."""
 
-from eyas.lanes import Pointer, address_of, claim, kernel, parallel_kernel
+from eyas.lanes import address_of, claim, kernel, parallel
 from eyas.render.kernels.bundles import Geometry, Light, Movers, Output, Scratch, Task
 from eyas.render.kernels.light.casters import cast_light
 from eyas.render.kernels.light.view_light import view_light
@@ -20,14 +20,18 @@ RASTERISING = int(DrawStage.RASTERISING)
 MOVERS_LIGHT = int(DrawStage.MOVERS_LIGHT)
 
 
-@parallel_kernel
+@parallel
 def draw_views(
-    parts: Pointer[tuple[Geometry, Light, Scratch, Movers, Output, Task]],
     worker: int,
     workers: int,
+    geometry: Geometry,
+    light: Light,
+    scratch: Scratch,
+    movers: Movers,
+    output: Output,
+    task: Task,
 ) -> None:
     """Draw all jobs. Each is drawn alone, so neither workers nor other jobs change its bytes."""
-    geometry, light, scratch, movers, output, task = parts[0]
     job = task.job
     index = i8(worker)
     while index < len(job.band):
@@ -73,7 +77,7 @@ def _draw_band(
         lamps_on = light.weather.air.lamps > f4(0.0)
         cast_light(geometry, movers, world, view, lamps_on, light.weather.sun, key, drawn, shade)
     if len(output.rgb) > 0 and until > MOVERS_LIGHT:
-        lit = address_of(view_light(light.weather, job.light[number]))
+        lit = address_of(view_light(light.weather, job.light, number))
         pixels = output.rgb[number, top:bottom]
         draw_backdrop(view, light, lit, key, pixels)
         shade_band(view, geometry, light, lit, movers, world, drawn, key, shade, pixels)

@@ -9,23 +9,16 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.lanes import Pointer, kernel, parallel_kernel
+from eyas.lanes import kernel, parallel
 from eyas.lanes.elementary import sin_cos, tan
 from eyas.state.motion import ActorState
 from eyas.targets.kind import Group, Looks
+from eyas.targets.posing import ActorFrame, Slots
 
-__all__ = ["BODY", "PART", "CycleTable", "Slots", "pose_jointed"]
+__all__ = ["BODY", "PART", "CycleTable", "pose_jointed"]
 
 _TIGHTEST = 0.3
 """Radius of the tightest curve that wheels steer [m]."""
-
-
-class Slots(NamedTuple):
-    """The arrays of a `DrawList` that the kernel writes."""
-
-    part: NDArray[np.int32]
-    pose: NDArray[np.float32]
-    colour: NDArray[np.float32]
 
 
 PART: Final = np.dtype([("part", np.int64), ("spins", "?"), ("steers", np.float64)], align=True)
@@ -65,24 +58,8 @@ class CycleTable(NamedTuple):
     (M, K + 1, S, 4, 3)."""
 
 
-class _Base(NamedTuple):
-    """Frame of an actor: its axes, row by row, and its origin on the ground."""
-
-    xx: float
-    xy: float
-    xz: float
-    yx: float
-    yy: float
-    yz: float
-    zx: float
-    zz: float
-    x: float
-    y: float
-    z: float
-
-
 @kernel
-def _base_of(actors: ActorState, w: int, a: int, upright: bool) -> _Base:
+def _base_of(actors: ActorState, w: int, a: int, upright: bool) -> ActorFrame:
     """Return the frame of an actor on its ground.
 
     On a slope, one that stays upright is sheared, so that its feet are on the ground.
@@ -96,10 +73,10 @@ def _base_of(actors: ActorState, w: int, a: int, upright: bool) -> _Base:
         else:
             sp, cp = sin_cos(slope)
             rise = sp
-    return _Base(
+    return ActorFrame(
         c * cp, -s, -c * sp,
         s * cp, c, -s * sp,
-        rise, cp,
+        rise, 0.0, cp,
         actors.position[w, a, 0], actors.position[w, a, 1], actors.position[w, a, 2],
     )  # fmt: skip
 
@@ -107,7 +84,7 @@ def _base_of(actors: ActorState, w: int, a: int, upright: bool) -> _Base:
 @kernel
 def _place_part(
     pose: NDArray[np.float32],
-    base: _Base,
+    base: ActorFrame,
     first: NDArray[np.float32],
     second: NDArray[np.float32],
     later: float,
@@ -135,7 +112,7 @@ def _place_part(
 
 @kernel
 def _fade_part(
-    pose: NDArray[np.float32], base: _Base, rest: NDArray[np.float32], moving: float
+    pose: NDArray[np.float32], base: ActorFrame, rest: NDArray[np.float32], moving: float
 ) -> None:
     """Blend a pose with the resting one; arguments as above."""
     for axis in range(4):
@@ -170,9 +147,10 @@ def _steering(ahead: float, yaw_rate: float, speed: float) -> tuple[float, float
 
 
 @kernel
-def _pose_actor(given: tuple[CycleTable, Group, ActorState, Looks, Slots], w: int, g: int) -> None:
+def _pose_actor(
+    table: CycleTable, group: Group, actors: ActorState, looks: Looks, out: Slots, w: int, g: int
+) -> None:
     """Write the slots of one actor."""
-    table, group, actors, looks, out = given
     a, first = group.actor[g], group.slot[g]
     model = looks.model[w, a] - group.first_model
     body = table.body[model]
@@ -207,19 +185,24 @@ def _pose_actor(given: tuple[CycleTable, Group, ActorState, Looks, Slots], w: in
             out.colour[w, slot, channel] = looks.colour[w, a, channel]
 
 
-@parallel_kernel
+@parallel
 def pose_jointed(
-    parts: Pointer[tuple[CycleTable, Group, ActorState, Looks, Slots]], worker: int, workers: int
+    worker: int,
+    workers: int,
+    table: CycleTable,
+    group: Group,
+    actors: ActorState,
+    looks: Looks,
+    out: Slots,
 ) -> None:
     """Write the slots of the actors of one kind in all worlds, see `Rig`."""
-    table, group, actors, looks, out = parts[0]
     count = group.actor.shape[0]
     total = looks.model.shape[0] * count
     for i in range(worker * total // workers, (worker + 1) * total // workers):
         w, g = i // count, i % count
         a, first = group.actor[g], group.slot[g]
         if actors.present[w, a]:
-            _pose_actor(parts[0], w, g)
+            _pose_actor(table, group, actors, looks, out, w, g)
         else:
             for k in range(table.part.shape[1]):
                 out.part[w, first + k] = -1

@@ -19,16 +19,6 @@ from typing import TYPE_CHECKING
 from eyas.core.errors import ConfigError, DataFileError
 from eyas.core.files import user_path
 from eyas.world.maps.recipe import PLAN_FILE, PLAN_SUFFIXES, MapRecipe
-from eyas.world.weather import (
-    CLEAR_DAY,
-    CLEAR_NIGHT,
-    DAY,
-    FOG,
-    FOGGY,
-    NIGHT,
-    SNOW,
-    WINTER_DAY,
-)
 
 if TYPE_CHECKING:
     from eyas.state.roads import RoadGraph, RoadNetwork
@@ -146,7 +136,6 @@ def _recipe(folder: Path) -> MapRecipe:
             title=origin.title,
             roads=partial(_roads, folder / ROADS_FILE, origin.name),
             plan=partial(_plan, folder),
-            lighting={DAY: CLEAR_DAY, FOGGY: FOG, NIGHT: CLEAR_NIGHT, SNOW: WINTER_DAY},
             home=folder,
         )
     except ConfigError as error:
@@ -192,7 +181,6 @@ def _recipe_of_plan(path: Path) -> MapRecipe:
             title=str(title) or str(name),
             roads=partial(_roads_of_plan, path),
             plan=partial(_plan_of_file, path),
-            lighting={DAY: CLEAR_DAY, FOGGY: FOG, NIGHT: CLEAR_NIGHT, SNOW: WINTER_DAY},
             seasons=True,
             file=path,
             notice=str(content.get("attribution", "")),
