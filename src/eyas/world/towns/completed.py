@@ -6,7 +6,6 @@ from itertools import pairwise
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
 from eyas.core import exact
 from eyas.core.rng import stream
@@ -17,6 +16,7 @@ from eyas.world.build.apart import Apart
 from eyas.world.build.heights import FLOOR_HEIGHT, KERB_HEIGHT
 from eyas.world.build.materials import material
 from eyas.world.build.placed import Placed
+from eyas.world.buildings.parts import rings
 from eyas.world.land import ground, outskirts
 from eyas.world.osm.features import Features
 from eyas.world.plan.library import CAR_KINDS, FURNITURE_KINDS, STREET_KINDS, plant_kinds
@@ -367,14 +367,9 @@ def _greenery(town: Town, known: Features, rng: np.random.Generator) -> list[Pla
         chosen = np.concatenate(spots)[:left]
         left -= len(chosen)
         made += gardens.small_trees(chosen, heights, FLOOR_HEIGHT, _TREES, rng)
-    corners = [_corners(shape) for shape in town.gardens]
+    corners = [rings(shape)[0] for shape in town.gardens]
     room = shapely.union(town.ground["residential"], town.lawn)
     return made + gardens.borders(corners, room, FLOOR_HEIGHT, rng)
-
-
-def _corners(shape: shapely.Polygon) -> NDArray[np.float64]:
-    ring = shapely.geometry.polygon.orient(shape).exterior
-    return np.ascontiguousarray(shapely.get_coordinates(ring)[:-1])
 
 
 def _parked(town: Town, rng: np.random.Generator) -> tuple[list[shapely.Polygon], list[Placed]]:

@@ -9,11 +9,10 @@ from eyas.state.roads import RoadNetwork
 from eyas.world.build.heights import FLOOR_HEIGHT, KERB_HEIGHT
 from eyas.world.build.millimetres import rounded, unit
 from eyas.world.build.placed import Placed
-from eyas.world.maps.downtown.backdrop import backdrop
 from eyas.world.maps.downtown.kerbs import crossing_lamps
 from eyas.world.maps.downtown.layout import EXTENT, FLOOR, Layout, lay_out
 from eyas.world.maps.downtown.roads import NAME
-from eyas.world.maps.downtown.surfaces import surfaces
+from eyas.world.maps.downtown.surfaces import backdrop, surfaces
 from eyas.world.plan.library import CAR_KINDS, FURNITURE_KINDS, STREET_KINDS, plant_kinds
 from eyas.world.plan.plan import (
     Building,

@@ -8,15 +8,15 @@ import shapely
 from eyas.core import exact
 from eyas.core.rng import stream
 from eyas.state.lighting import Horizon
+from eyas.state.mesh import Material, Surface
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import ObjectClass
 from eyas.world.build.heights import FLOOR_HEIGHT
-from eyas.world.build.materials import material, without_snow
+from eyas.world.build.materials import facade, material, without_snow
 from eyas.world.build.placed import Placed
 from eyas.world.land.outlines import blob
 from eyas.world.land.rising import relief_of
 from eyas.world.maps.village.layout import EXTENT, FLOOR, HALF, Layout, lay_out
-from eyas.world.maps.village.looks import GRASS, HILLS, HOUSES, MEADOWS, ROCK, SHORE, VERGE, WATER
 from eyas.world.maps.village.roads import NAME
 from eyas.world.plan.library import STREET_KINDS, houses, plant_kinds
 from eyas.world.plan.plan import (
@@ -40,7 +40,34 @@ from eyas.world.street import gantries
 from eyas.world.street.lamps import lamps_along
 from eyas.world.street.signals import signal_places, signals_along
 
-__all__ = ["VALLEY", "make_plan"]
+__all__ = ["GRASS", "VALLEY", "make_plan"]
+
+GRASS = material("lawn", (0.61, 0.74, 0.74))
+"""The valley."""
+
+_MEADOWS = (material("lawn", (0.70, 0.76, 0.66)), material("lawn", (0.54, 0.68, 0.69)))
+"""Patches of drier and of lusher grass."""
+
+_HILLS = (
+    material("lawn", (0.62, 0.77, 0.77)),
+    material("lawn", (0.66, 0.82, 0.84)),
+    material("lawn", (0.70, 0.87, 0.91)),
+    material("lawn", (0.75, 0.91, 0.96)),
+)
+"""Greens of the hills, from the foot up."""
+
+_VERGE = material("roof_gravel", (0.86, 0.82, 0.74))
+_SHORE = material("sand", (0.80, 0.78, 0.70))
+_ROCK = material("stone", (0.50, 0.52, 0.47))
+"""Inside of the tunnels."""
+
+_WATER = Material("water", (0.20, 0.44, 0.72), Surface.WATER)
+
+_HOUSES = (
+    (facade("facade_concrete", (1.0, 1.0, 1.0)), material("roof_tiles", (1.0, 0.96, 0.94))),
+    (facade("facade_plaster", (0.88, 0.94, 1.0)), material("roof_tiles", (0.96, 0.88, 0.84))),
+    (facade("facade_concrete", (1.0, 0.99, 0.97)), material("roof_tiles", (1.0, 0.92, 0.86))),
+)
 
 VALLEY = Horizon(name="village", height=0.05, woods=0.6)
 """What stands beyond the hills."""
@@ -71,15 +98,15 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
     valley = lay_out(network, seed)
     hills = _hills(valley)
     rising = relief_of(hills, seed).area
-    kinds, placed = houses(valley.cottages, HOUSES)
+    kinds, placed = houses(valley.cottages, _HOUSES)
     rng = stream(seed, "village plants")
     plants = _plants(valley, rising, rng)
     signs = _signs(valley, stream(seed, "village signs"))
     lamps, taken = _LAMPS - 2 * len(valley.tunnels), _taken(valley, network)
     tunnels = Tunnels(
         items=tuple(valley.tunnels),
-        outside=HILLS[1],
-        inside=ROCK,
+        outside=_HILLS[1],
+        inside=_ROCK,
         chance=Chance(stream="village mounds"),
     )
     gantry_kinds = (
@@ -121,7 +148,7 @@ def _hills(valley: Layout) -> Relief:
         spacing=_FACETS,
         rough=_ROUGH,
         chance=Chance(stream="village facets"),
-        covers=HILLS,
+        covers=_HILLS,
         shades=Chance(stream="village grass"),
     )
 
@@ -138,13 +165,13 @@ def _ground(valley: Layout, hills: shapely.Geometry, seed: int) -> list[Layer]:
     lawn = shapely.difference(EXTENT, shapely.union_all([roads, paved, verge, shore, lake, rest]))
     pieces: tuple[Flat | Far, ...] = (
         *_meadow(lawn, stream(seed, "village meadow")),
-        Flat(area=shapely.intersection(verge, passages), cover=without_snow(VERGE)),
-        Flat(area=shapely.difference(verge, passages), cover=VERGE),
-        Flat(area=shore, cover=SHORE, sides=SHORE, foot=FLOOR_HEIGHT - 0.3),
+        Flat(area=shapely.intersection(verge, passages), cover=without_snow(_VERGE)),
+        Flat(area=shapely.difference(verge, passages), cover=_VERGE),
+        Flat(area=shore, cover=_SHORE, sides=_SHORE, foot=FLOOR_HEIGHT - 0.3),
         Far(rule="plain", covers=(GRASS,), beyond=(2 * HALF, 2 * HALF)),
     )
     slabs = Flat(area=paved, cover=material("paving", (0.95, 0.94, 0.92)))
-    water = Flat(area=lake, z=FLOOR_HEIGHT - 0.2, cover=WATER)
+    water = Flat(area=lake, z=FLOOR_HEIGHT - 0.2, cover=_WATER)
     return [
         Streets(
             area=roads,
@@ -160,7 +187,7 @@ def _ground(valley: Layout, hills: shapely.Geometry, seed: int) -> list[Layer]:
 def _meadow(lawn: shapely.Geometry, rng: np.random.Generator) -> list[Flat]:
     """Return the grass of the valley, with drier and lusher patches."""
     made = []
-    for cover in MEADOWS:
+    for cover in _MEADOWS:
         spots = rng.uniform(-_CORE, _CORE, (_PATCHES, 2))
         shapes = [
             blob(spot, (rng.uniform(8.0, 34.0), rng.uniform(6.0, 16.0)), rng.uniform(0, 3.1), rng)
