@@ -1,7 +1,6 @@
 """`eyas evaluate`, `eyas compare` and `eyas leaderboard`."""
 
 import json
-import re
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
@@ -93,7 +92,7 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
     The exit code is 1 if the policy has failed in all episodes.
     """
     from eyas.core.config import validated
-    from eyas.evaluation.plan import Plan
+    from eyas.evaluation.plan import Plan, folder_name
 
     values: dict[str, Any] = {
         "policy": policy,
@@ -111,7 +110,7 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
     if seed is not None:
         values["seed"] = seed
     plan = validated(Plan, values)
-    folder = out or Path("runs/evaluation") / _folder_name(plan.policy, plan.protocol)
+    folder = out or Path("runs/evaluation") / folder_name(plan)
     if latency_curve and (as_published or videos):
         raise ConfigError("--latency-curve: not together with --as-published or --videos")
     if ray and latency == "measured":
@@ -168,10 +167,6 @@ def _changes(said: list[str]) -> dict[str, Any]:
             group = group.setdefault(key, {})
         group[keys[-1]] = value
     return changes
-
-
-def _folder_name(policy: str, protocol: str) -> str:
-    return re.sub(r"[^\w.-]+", "-", f"{Path(policy).stem}-{protocol}")
 
 
 def compare(
