@@ -1,27 +1,29 @@
-"""Make the machine code that ships in the package, for each level of `eyas.lanes.shipped.LEVELS`.
+"""Make the archive of machine code that ships in the package, see `eyas.lanes.shipped`.
 
-    python tools/ship_kernels.py          # some minutes; commit what it changes
-    python tools/ship_kernels.py --check  # is the code in the package that of these sources?
+    python tools/ship_kernels.py              # some minutes; commit what it changes
+    python tools/ship_kernels.py --check      # is the code in the package that of these sources?
+    python tools/ship_kernels.py --out /tmp/a # elsewhere, to be compared: the same versions of
+                                              # numba, llvmlite and Python make the same bytes
 
-Each file belongs to exactly one kernel: after a change of what it computes Eyas passes it over, and
-compiles. So they are made before a release, not with each change.
+A kernel that was changed since is passed over and compiled. So the archive is made before a
+release, not with each change.
 """
 
 import argparse
 import importlib
 import os
 import pkgutil
-import shutil
 import subprocess
 import sys
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 
 import eyas
-from eyas.lanes import parallel_kernel
+from eyas.lanes import CompiledCall
 from eyas.lanes.identity import language_files, language_hash
-from eyas.lanes.machine_code import SUFFIX
-from eyas.lanes.shipped import LEVELS, SHIPPED, features
+from eyas.lanes.machine_code import SUFFIX, MachineCode, read_code
+from eyas.lanes.shipped import ARCHIVE, LEVEL, archive_of, features, needed, read_archive
 from eyas.lanes.syntax import INDEX, index_of
 from eyas.sim.step import step_of
 from eyas.trackers.drone import DRONE
@@ -74,30 +76,22 @@ def main() -> None:
     """Make the code, or check it."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--check", action="store_true", help="change nothing; fail if out of date")
-    if parser.parse_args().check:
-        raise SystemExit(missing(SHIPPED / language_hash()) or compiled())
-    INDEX.write_text(index_of(files_of_kernels()))
-    for level, needed in LEVELS.items():
-        folder, lacks = SHIPPED / language_hash() / level, needed - features()
-        shutil.rmtree(folder, ignore_errors=True)
-        if lacks:  # the code is run to know which kernels there are
-            print(f"{level}: left out, as this processor lacks {', '.join(sorted(lacks))}")
-            continue
-        print(f"compiling for {level} ...", flush=True)
-        compile_for(level, folder)
-    for folder in SHIPPED.iterdir():
-        if folder.is_dir() and folder.name != language_hash():
-            shutil.rmtree(folder)
-    raise SystemExit(missing(SHIPPED / language_hash()) or compiled())
-
-
-LEAST = "x86-64-v3"
-"""The level whose code serves those above, too, where theirs is left out."""
+    parser.add_argument("--out", type=Path, default=ARCHIVE.parent, help="folder to write into")
+    options = parser.parse_args()
+    if options.check:
+        raise SystemExit(missing(read_archive(ARCHIVE)) or compiled())
+    if lacks := needed - features():  # the code is run to know which kernels there are
+        raise SystemExit(f"{LEVEL}: this processor lacks {', '.join(sorted(lacks))}")
+    options.out.mkdir(parents=True, exist_ok=True)
+    (options.out / INDEX.name).write_text(index_of(files_of_kernels()))
+    codes = compiled_for(LEVEL)
+    (options.out / ARCHIVE.name).write_bytes(archive_of(codes))
+    raise SystemExit(missing(codes))
 
 
 def files_of_kernels() -> list[Path]:
     """Return the files of the package that may hold kernels, and those of their language."""
-    every = SHIPPED.parents[1].rglob("*.py")
+    every = Path(eyas.__file__).parent.rglob("*.py")
     return sorted({*language_files(), *(path for path in every if b"kernel" in path.read_bytes())})
 
 
@@ -116,33 +110,27 @@ def use_all(cache: str, variables: dict[str, str]) -> None:
     subprocess.run([sys.executable, "-c", USES_ALL], env=environment, check=True)
 
 
-def compile_for(level: str, folder: Path) -> None:
-    """Compile all kernels for a level into a folder."""
+def compiled_for(level: str) -> dict[str, MachineCode]:
+    """Return the code of all kernels for a level, by the names by which it is found."""
     with tempfile.TemporaryDirectory() as cache:
         use_all(cache, {"NUMBA_CPU_NAME": level, "NUMBA_CPU_FEATURES": ""})
-        folder.mkdir(parents=True)
-        for file in Path(cache, "kernels", language_hash()).glob(f"*{SUFFIX}"):
-            shutil.copy(file, folder / f"{file.stem.rpartition('-')[0]}{SUFFIX}")
+        files = Path(cache, "kernels", language_hash()).glob(f"*{SUFFIX}")
+        codes = {file.stem.rpartition("-")[0]: read_code(file) for file in files}
+    return {name: code for name, code in codes.items() if code is not None}
 
 
-def missing(folder: Path) -> str | None:
-    """Return what is missing in the package; None if nothing is."""
-    lacks = [
-        f"{level}: {name}"
-        for level in LEVELS
-        if (folder / level).is_dir() or level == LEAST
-        for name in sorted(kernels())
-        if not any((folder / level).glob(f"{name}-*{SUFFIX}"))
-    ]
-    return f"not in {folder}: {', '.join(lacks)}" if lacks else None
+def missing(codes: Mapping[str, MachineCode]) -> str | None:
+    """Return which kernels of the package are not in an archive; None if all are."""
+    lacks = [name for name in sorted(kernels()) if not any(c.startswith(f"{name}-") for c in codes)]
+    return f"not in {ARCHIVE}: {', '.join(lacks)}" if lacks else None
 
 
 def kernels() -> set[str]:
-    """Return the names of all parallel kernels of the package."""
+    """Return the names of all compiled functions of the package."""
     modules = pkgutil.walk_packages(eyas.__path__, "eyas.")
     found = [vars(importlib.import_module(module.name)).values() for module in modules]
     kept = [value for values in (*found, step_of(DRONE)) for value in values]
-    return {kernel.function.__name__ for kernel in kept if isinstance(kernel, parallel_kernel)}
+    return {kernel.function.__name__ for kernel in kept if isinstance(kernel, CompiledCall)}
 
 
 if __name__ == "__main__":

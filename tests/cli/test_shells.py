@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 import eyas
-from eyas.core.cache.folder import cache_folder
+from eyas.lanes.folder import cache_folder
 from eyas.modes.video import run as video
 from eyas.modes.video.config import VideoConfig
 from eyas.sensors.config import CameraConfig

@@ -9,7 +9,7 @@ import pytest
 from numba.core.registry import cpu_target
 from numba.core.typing import Context
 
-from eyas.lanes import Held, compilation, front_end, kernel, parallel_kernel
+from eyas.lanes import compilation, compiled, front_end, kernel
 from eyas.lanes.compilation import entry_code
 from eyas.lanes.machine_code import load
 
@@ -32,11 +32,11 @@ def counted(n):
 def call(function, *values) -> list[float]:
     """Return what a function of one array writes into it, called from a kernel."""
 
-    def work(parts, worker, workers):
-        function(parts[0][0][0][0])
+    def work(values):
+        function(values)
 
     array = np.array(values, np.float64)
-    parallel_kernel(work)(1, Held((array,)))
+    compiled(work)(array)
     return array.tolist()
 
 
@@ -62,7 +62,9 @@ def test_functions_of_numba_are_linked_too():
     assert call(work, 3.0, 1.0, 2.0) == [5.0, 8.0, 9.0]
 
 
-def test_a_kernel_is_compiled_once_for_all_signed_whole_numbers():
+def test_a_kernel_is_compiled_once_for_all_signed_whole_numbers(tmp_path, monkeypatch):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))  # or it might not be compiled at all
+
     @kernel
     def work(a):
         wide = len(a)
@@ -107,14 +109,10 @@ def test_kernels_divide_by_zero_as_numpy_does_and_count_no_references():
 
     assert call(work, 1.0, 0.0)[0] == math.inf
 
-    def passed_on(parts, worker, workers):
-        part = parts[0][0][0][0]
-        work(part[1:])
+    def passed_on(values):
+        work(values[1:])
 
-    kinds = numba.types.CPointer(
-        numba.types.Tuple([numba.types.CPointer(numba.typeof((np.ones(2),)))])
-    )
-    code = entry_code(passed_on, (kinds, numba.types.intp, numba.types.intp), "passed_on")
+    code = entry_code(passed_on, [numba.typeof(np.ones(2))], "passed_on", over_workers=False)
     assert code.needs == ()
     assert load(code)
 

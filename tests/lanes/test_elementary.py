@@ -8,7 +8,8 @@ import mpmath
 import numpy as np
 import pytest
 
-from eyas.lanes import Held, elementary, elementary_arrays, parallel_kernel
+from eyas.lanes import compiled, elementary
+from eyas.lanes.elementary import arrays as elementary_arrays
 from eyas.lanes.elementary import reduction
 
 from .elementary_points import MPMATH, largest_error, points
@@ -98,9 +99,8 @@ def test_digits_of_two_over_pi():
     assert int(reduction._DIGITS, 16) == int(digits)
 
 
-@parallel_kernel
-def named_otherwise(parts, worker, workers):
-    x, single, out = parts[0][0][0]
+@compiled
+def named_otherwise(x, single, out):
     for k in range(len(x)):
         out[k, 0] = math.sin(x[k])
         out[k, 1] = np.cos(x[k])
@@ -116,7 +116,7 @@ tanh_of_math = math.tanh
 def test_kernels_that_name_those_of_math_or_numpy_get_these():
     x = np.linspace(-9.0, 9.0, 999)
     single, out = x.astype(np.float32), np.zeros((len(x), 6))
-    named_otherwise(1, Held((x, single, out)))
+    named_otherwise(x, single, out)
     own = elementary_arrays
     expected = own.sin(x), own.cos(x), own.atan2(x, 2.0), own.tanh(x), own.sin(single), own.sin(x)
     np.testing.assert_array_equal(out.T, expected)

@@ -6,7 +6,7 @@ import numba
 import numpy as np
 import pytest
 
-from eyas.lanes import Held, parallel_kernel
+from eyas.lanes import Held, compiled
 from eyas.lanes.compilation import size_of
 
 
@@ -38,11 +38,9 @@ def mixed():
     )  # fmt: skip
 
 
-@parallel_kernel
-def read(parts, worker, workers):
-    bundle, out = parts[0][0][0], parts[0][1][0]
+@compiled
+def read(bundle, row):
     plane, (pair, number) = bundle.plane, bundle.inner
-    row = out[0]
     row[0] = bundle.byte
     row[1] = bundle.small.flag
     row[2] = bundle.small.share
@@ -59,7 +57,7 @@ def read(parts, worker, workers):
 
 def test_kernels_read_every_number_where_it_was_written():
     row = np.zeros(12)
-    read(1, Held(mixed()), Held((row,)))
+    read(mixed(), row)
     expected = [-3, 1, 0.5, 40_000, 1.25, 504, 1, -2.5, 0, -7, 10 + 200 + 60_000, 200]
     np.testing.assert_array_equal(row, expected)
 

@@ -21,14 +21,15 @@ TELLS = """
 import importlib, json, pkgutil
 import eyas
 from eyas.lanes.identity import identity, language_hash
-from eyas.lanes import parallel_kernel
+from eyas.lanes import CompiledCall
 from eyas.sim.step import step_of
 from eyas.trackers.drone import DRONE
 
 found = list(step_of(DRONE))
-for name in ("render.kernels.draw", "traffic.interpolation", "sensors.lidar", "sim.near_list"):
+rooms = ("render.kernels.draw", "traffic.interpolation", "sensors.lidar", "sim.views.visible_actors")
+for name in rooms:
     found += vars(importlib.import_module("eyas." + name)).values()
-told = {k.function.__name__: identity(k.function) for k in found if isinstance(k, parallel_kernel)}
+told = {k.function.__name__: identity(k.function) for k in found if isinstance(k, CompiledCall)}
 print(json.dumps(told | {"language": language_hash()}))
 """
 
@@ -50,7 +51,7 @@ def edited(tmp_path_factory):
         return json.loads(done.stdout)
 
     before = told()
-    assert {"_fly", "_carry", "_begin", "draw_views", "list_near"} <= set(before)
+    assert {"_fly", "_carry", "_begin", "draw_views", "_list_actors"} <= set(before)
 
     def others(edits):
         texts = {copy / name: (copy / name).read_text() for name in edits}

@@ -70,18 +70,16 @@ def other(x):
     return FACTOR * x
 """
 SPECIALISED = """
-import json, os, sys
-from pathlib import Path
+import json, sys
 import numpy as np
-from eyas.lanes import Held
-from eyas.lanes import specialised
-from eyas.lanes import parallel_kernel
+from eyas.lanes import compiled, specialised
+from eyas.lanes.folder import kernel_folder
 from function import write
 from own import other
-made = parallel_kernel(specialised(write, first=other))
+made = compiled(specialised(write, first=other))
 out = np.zeros(1)
-made(1, Held((2.0, out)))
-files = Path(os.environ["NUMBA_CACHE_DIR"]).glob("write_*")
+made(2.0, out)
+files = kernel_folder().glob("write_*")
 print(json.dumps([out[0], len(list(files)), "numba" in sys.modules]))
 """
 
@@ -106,10 +104,7 @@ def run(tmp_path):
 def test_processes_share_what_was_compiled_until_the_source_of_a_kernel_changes(run, tmp_path):
     """And who finds all compiled does without numba, whose import takes half a second."""
     (tmp_path / "function.py").write_text(
-        "from own import first\n\n"
-        "def write(parts, worker, workers):\n"
-        "    x, out = parts[0][0][0]\n"
-        "    out[0] = first(x)\n"
+        "from own import first\n\ndef write(x, out):\n    out[0] = first(x)\n"
     )
     own = tmp_path / "own.py"
     own.write_text(OWN.replace("FACTOR", "3.0"))
@@ -128,9 +123,10 @@ def test_eyas_itself_calls_no_kernel_from_python():
         for function in functions_of(importlib.import_module(info.name))
     ]
     assert len(functions) > 500
+    compiled = {call.function.__code__ for call in step_of(DRONE)}
     for function in functions:
         hands_on = function.__annotations__.get("return") is Tracker
-        if function.__code__.co_varnames[:1] != ("parts",) and not hands_on:  # a kernel itself
+        if function.__code__ not in compiled and not hands_on:
             loads = [each for each in dis.get_instructions(function) if "GLOBAL" in each.opname]
             used = (function.__globals__.get(each.argval) for each in loads)
             called = [kernel.__name__ for kernel in used if isinstance(kernel, Kernel)]

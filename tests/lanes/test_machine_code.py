@@ -5,13 +5,12 @@ import os
 import numpy as np
 import pytest
 
-from eyas.core.cache.safety import made_folder, secured
-from eyas.lanes import Held, entry, machine_code, parallel_kernel
+from eyas.lanes import CompiledCall, entry, machine_code
+from eyas.lanes.folder import made_folder, secured
 from eyas.lanes.machine_code import MachineCode, code_file, load, read_code, write_code
 
 
-def double(parts, worker, workers):
-    values = parts[0][0][0][0]
+def double(values):
     for k in range(len(values)):
         values[k] *= 2.0
 
@@ -27,9 +26,9 @@ def compiled(monkeypatch):
     """Return the kernels that were compiled."""
     found, before = [], entry._compiled
 
-    def counted(function, *others):
+    def counted(function, *others, **options):
         found.append(function)
-        return before(function, *others)
+        return before(function, *others, **options)
 
     monkeypatch.setattr(entry, "_compiled", counted)
     return found
@@ -37,13 +36,13 @@ def compiled(monkeypatch):
 
 def doubled() -> float:
     values = np.ones(1)
-    parallel_kernel(double)(1, Held((values,)))
+    CompiledCall(double)(values)
     return float(values[0])
 
 
 def test_a_kernel_is_compiled_once_and_its_file_is_found_by_the_next(folder, compiled):
     assert [doubled(), doubled(), len(compiled)] == [2.0, 2.0, 1]
-    (file,) = folder.iterdir()
+    (file,) = folder.glob("*.eyk")
     assert file.name.startswith("double-")
 
 
@@ -52,7 +51,7 @@ def test_a_kernel_is_compiled_once_and_its_file_is_found_by_the_next(folder, com
 )
 def test_a_damaged_file_is_made_anew(folder, compiled, damage):
     doubled()
-    (file,) = folder.iterdir()
+    (file,) = folder.glob("*.eyk")
     content = file.read_bytes()
     file.write_bytes(damage(content))
     assert read_code(file) is None
@@ -63,7 +62,7 @@ def test_a_damaged_file_is_made_anew(folder, compiled, damage):
 
 def test_code_that_needs_what_this_process_lacks_is_made_anew(folder, compiled):
     doubled()
-    (file,) = folder.iterdir()
+    (file,) = folder.glob("*.eyk")
     code = read_code(file)
     assert load(code._replace(needs=("no_such_function",))) is None
     write_code(file, code._replace(needs=("no_such_function",)))
@@ -80,11 +79,11 @@ def test_each_kind_of_processor_has_its_own_code(folder, compiled, monkeypatch):
 
 
 def scaled_by(factor):
-    def scale(parts, worker, workers):
-        parts[0][0][0][0][0] *= factor
+    def scale(values):
+        values[0] *= factor
 
     values = np.ones(1)
-    parallel_kernel(scale)(1, Held((values,)))
+    CompiledCall(scale)(values)
     return float(values[0])
 
 
@@ -100,7 +99,7 @@ def test_where_nothing_can_be_written_nothing_fails(tmp_path):
 
 def test_the_code_of_another_kernel_is_not_run(folder, compiled):
     doubled()
-    (file,) = folder.iterdir()
+    (file,) = folder.glob("*.eyk")
     other = file.with_name(f"other-{file.name.partition('-')[2]}")
     file.rename(other)
     assert read_code(other) is None
@@ -132,7 +131,7 @@ UNSAFE = [
 @pytest.mark.parametrize("what", ["the file", "its folder"])
 def test_code_that_someone_else_may_have_written_is_not_run(folder, compiled, change, what, caplog):
     doubled()
-    (file,) = folder.iterdir()
+    (file,) = folder.glob("*.eyk")
     change(file if what == "the file" else folder)
     assert read_code(file) is None
     assert doubled() == 2.0

@@ -7,7 +7,8 @@ import numpy as np
 import pytest
 from numba.core.errors import TypingError
 
-from eyas.lanes import kernel, lanes
+from eyas.lanes import kernel
+from eyas.lanes import vector as lanes
 from eyas.lanes.vector import (
     WIDTH,
     all_of,

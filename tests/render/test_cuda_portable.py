@@ -8,7 +8,7 @@ import subprocess
 import numpy as np
 import pytest
 
-from eyas.lanes import address_of
+from eyas.lanes import address_of, parallel
 from eyas.lanes.ptx import ptx_of
 from eyas.render.jobs import Size, new_task, set_views
 from eyas.render.kernels.bundles import Movers
@@ -42,13 +42,13 @@ def checked(text) -> str:
     return text
 
 
-def shade_thread(parts, row, column):
+@parallel
+def shade_thread(row, column, geometry, light, scratch, movers, task, found):
     """Do what one thread does for one pixel whose triangle is known."""
-    geometry, light, scratch, movers, task, found = parts[0]
     job = task.job
     view = address_of(view_of(job, 0, task.width, task.height, task.samples))
     lit = address_of(view_light(light.weather, job.light, 0))
-    found[0][0][row, column] = shade_pixel(
+    found[row, column] = shade_pixel(
         view, geometry, light, lit, movers, 0, scratch.drawn[0], scratch.key[0, row, column],
         u4(scratch.shade[0, row, column, 0]), row, column,
     )  # fmt: skip
@@ -62,7 +62,7 @@ def test_shading_a_pixel_in_all_weathers_compiles_for_cuda(renderer_of, tmp_path
     task = new_task(Size(1, 24, 32, 1, int(DrawStage.SHADING), False, 1))
     set_views(task, looking([(0.0, 0.0, 20.0)]), 0.0, 1)
     scratch = renderer._scratch_for(1, 24, 32, 1, movers.part.shape[1], False).bundle
-    found = (np.zeros((24, 32), np.uint32),)
+    found = np.zeros((24, 32), np.uint32)
     bundles = (*(held.bundle for held in renderer._held), scratch, movers, task, found)
     text = checked(ptx_of(shade_thread, bundles, "kernel"))
     assert "sqrt.rn.f32" in text
@@ -107,4 +107,4 @@ def test_the_step_compiles_for_cuda(tracker, mounted, kernel):
     memory, mount = tracker.memory(2, Terrain.flat(0.0)), mount_of(MountConfig())
     state = StepState(Snapshot.create(2), memory, around, rules, 0.02, mount, 1)
     step = getattr(step_of(tracker, CARRIED[mounted]), kernel)
-    checked(ptx_of(step.function, (state, Orders.create(2)), "kernel"))
+    checked(ptx_of(step, (state, Orders.create(2)), "kernel"))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from eyas.lanes import Held, address_of, parallel_kernel
+from eyas.lanes import address_of, compiled
 from eyas.render import renderer as module
 from eyas.render.kernels.light.view_light import view_light
 from eyas.render.kernels.scalars import u4
@@ -18,17 +18,16 @@ SIZE = (100, 203)
 WEATHERS = {"day": CLEAR_DAY, "foggy": FOG, "night": CLEAR_NIGHT, "snow": WINTER_DAY}
 
 
-@parallel_kernel
-def one_by_one(parts, worker, workers):
-    geometry, light, scratch, movers, _output, task, places, found = parts[0]
+@compiled
+def one_by_one(geometry, light, scratch, movers, _output, task, places, found):
     job = task.job
     view = address_of(view_of(job, 0, task.width, task.height, task.samples))
     lit = address_of(view_light(light.weather, job.light, 0))
-    for k in range(len(places[0])):
-        row, column = places[0][k, 0], places[0][k, 1]
+    for k in range(len(places)):
+        row, column = places[k, 0], places[k, 1]
         shade = scratch.shade[0, row, column]
         word = u4(shade[0]) | (u4(shade[1]) << u4(8)) | (u4(shade[2]) << u4(16))
-        found[0][k] = shade_pixel(
+        found[k] = shade_pixel(
             view, geometry, light, lit, movers, 0, scratch.drawn[0], scratch.key[0, row, column],
             word | (u4(shade[3]) << u4(24)), row, column,
         )  # fmt: skip
@@ -52,7 +51,7 @@ def test_eight_pixels_at_once_are_the_same_as_one_at_a_time(renderer_of, monkeyp
     rng = np.random.default_rng(1)
     places = np.stack([rng.integers(0, side, 10_000) for side in SIZE], axis=1).astype(np.int64)
     found = np.zeros(len(places), np.uint32)
-    one_by_one(1, *calls[0], Held(places), Held(found))
+    one_by_one(*calls[0], places, found)
     colours = np.stack([found & 255, (found >> 8) & 255, (found >> 16) & 255], axis=1)
     np.testing.assert_array_equal(picture.rgb[0][places[:, 0], places[:, 1]], colours)
     assert len(np.unique(found)) > 1000

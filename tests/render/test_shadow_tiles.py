@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from eyas.lanes import Held, parallel_kernel
+from eyas.lanes import compiled
 from eyas.mesh.solids import cylinder
 from eyas.render.bake import shadows as module
 from eyas.render.bake.shadows import TEXEL, ShadowMap, bake_shadows
@@ -84,11 +84,10 @@ def test_neighbours_share_their_border(shadows):
         assert not edge.any()
 
 
-@parallel_kernel
-def light_at(parts, worker, workers):
-    light, points, found = parts[0]
-    for k in range(len(points[0])):
-        found[0][k] = sunlit(light, points[0][k, 0], points[0][k, 1], points[0][k, 2])
+@compiled
+def light_at(light, points, found):
+    for k in range(len(points)):
+        found[k] = sunlit(light, points[k, 0], points[k, 1], points[k, 2])
 
 
 def test_the_light_of_a_point_is_blended_over_four_texels_of_the_whole_map(
@@ -102,7 +101,7 @@ def test_the_light_of_a_point_is_blended_over_four_texels_of_the_whole_map(
     )
     points = np.random.default_rng(4).uniform((-90, -90, 0), (120, 90, 6), (40_000, 3))
     found = np.zeros(len(points), np.float32)
-    light_at(1, Held(with_towers), Held(points.astype(np.float32)), Held(found))
+    light_at(with_towers, points.astype(np.float32), found)
     whole = np.pad(untiled(shadows), 600)  # beyond the map the sun shines
     column, line, height = (points @ shadows.rows[:, :3].T + shadows.rows[:, 3]).T
     column, line, height = column - 0.5 + 600, line - 0.5 + 600, np.maximum(height, 0.0)

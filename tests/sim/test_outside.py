@@ -8,10 +8,9 @@ from pathlib import Path
 
 import pytest
 
-from eyas.lanes.identity import language_hash
-from eyas.lanes.jit import folder_in_use
+from eyas.lanes.folder import kernel_folder
 from eyas.lanes.machine_code import SUFFIX, read_code
-from eyas.lanes.shipped import SHIPPED
+from eyas.lanes.shipped import ARCHIVE, read_archive
 
 TOOL = Path(__file__).parents[2] / "tools" / "ship_kernels.py"
 
@@ -46,9 +45,9 @@ def outside(code: bytes) -> set[str]:
 def test_no_kernel_calls_a_function_of_the_c_library():
     program = runpy.run_path(str(TOOL))
     subprocess.run([sys.executable, "-c", program["USES_ALL"]], check=True)
-    files = [*folder_in_use().glob(f"*{SUFFIX}"), *(SHIPPED / language_hash()).rglob(f"*{SUFFIX}")]
-    used = {file.name.partition("-")[0] for file in files}
+    codes = {file.name: read_code(file) for file in kernel_folder().glob(f"*{SUFFIX}")}
+    codes |= read_archive(ARCHIVE) if ARCHIVE.exists() else {}
+    used = {name.partition("-")[0] for name in codes}
     assert program["kernels"]() - BAKING <= used
-    codes = {file: read_code(file, shipped=SHIPPED in file.parents) for file in files}
-    needs = {file.name: outside(code.code) for file, code in codes.items()}
+    needs = {name: outside(bytes(code.code)) for name, code in codes.items()}
     assert {name: found - MEMORY for name, found in needs.items() if found - MEMORY} == {}

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.lanes import Held, parallel_kernel
+from eyas.lanes import compiled
 from eyas.state.snapshot import CameraState, TrackerState
 from eyas.state.terrain import Terrain
 from eyas.trackers.config import TrackerConfig
@@ -40,14 +40,14 @@ class Log(NamedTuple):
         )
 
 
-def _begin(parts, worker, workers):
-    trackers, memory, poses = parts[0][0][0]
+@compiled
+def begin(trackers, memory, poses):
     for n in range(poses.shape[0]):
         start(trackers, memory, n, poses[n, 0], poses[n, 1], poses[n, 2], poses[n, 3], poses[n, 4])
 
 
-def _fly(parts, worker, workers):
-    trackers, memory, cameras, commands, log = parts[0][0][0]
+@compiled
+def fly(trackers, memory, cameras, commands, log):
     for k in range(commands.shape[0]):
         for n in range(commands.shape[1]):
             advance(trackers, memory, n, commands[k, n])
@@ -66,14 +66,10 @@ def _fly(parts, worker, workers):
                 log.rotor[k, n, part] = memory.rotor[n, part]
 
 
-def _launch(parts, worker, workers):
-    trackers, memory, velocities = parts[0][0][0]
+@compiled
+def set_going(trackers, memory, velocities):
     for n in range(velocities.shape[0]):
         launch(trackers, memory, n, velocities[n, 0], velocities[n, 1])
-
-
-set_going = parallel_kernel(_launch)
-begin, fly = parallel_kernel(_begin), parallel_kernel(_fly)
 
 
 class Drones:
@@ -92,11 +88,11 @@ class Drones:
 
     def start(self, poses):
         """Place them at x, y, z, yaw, pitch, shape (N, 5)."""
-        begin(1, Held((self.trackers, self.memory, poses)))
+        begin(self.trackers, self.memory, poses)
 
     def launch(self, velocities):
         """Let them fly on at velocities towards east and north [m/s], shape (N, 2)."""
-        set_going(1, Held((self.trackers, self.memory, np.asarray(velocities, np.float64))))
+        set_going(self.trackers, self.memory, np.asarray(velocities, np.float64))
 
     def fly(self, commands):
         """Fly commands, shape (K, 4) for all or (K, N, 4), one for each step of 2 ms."""
@@ -105,7 +101,7 @@ class Drones:
             commands = np.repeat(commands[:, None], self.count, axis=1)
         commands = np.ascontiguousarray(commands)
         log = Log.create(*commands.shape[:2])
-        fly(1, Held((self.trackers, self.memory, self.cameras, commands, log)))
+        fly(self.trackers, self.memory, self.cameras, commands, log)
         return log
 
 

@@ -5,14 +5,14 @@ import math
 import numpy as np
 import pytest
 
-from eyas.lanes import Held, parallel_kernel
+from eyas.lanes import compiled
 from eyas.state.snapshot import CameraState, TrackerState
 from eyas.state.terrain import Terrain
 from eyas.trackers.car import CAR, advance, aim, carry, start
 
 
-def _drive(parts, worker, workers):
-    trackers, memory, cameras, poses, commands, pose = parts[0][0][0]
+@compiled
+def _driven(trackers, memory, cameras, poses, commands, pose):
     for n in range(poses.shape[0]):
         start(trackers, memory, n, poses[n, 0], poses[n, 1], poses[n, 2], poses[n, 3], poses[n, 4])
         for k in range(commands.shape[0]):
@@ -22,15 +22,12 @@ def _drive(parts, worker, workers):
         aim(trackers, memory, cameras, n)
 
 
-_driven = parallel_kernel(_drive)
-
-
 def driven(start, commands=(), terrain=None, pose=()):
     """State and cameras of a car after commands, shape (K, 4), from x, y, z, yaw, pitch."""
     trackers, cameras = TrackerState.create(1), CameraState.create(1)
     memory = CAR.memory(1, terrain or Terrain.flat(-0.1))
     numbers = [np.array([start]), np.reshape(commands, (-1, 4)).astype(float), np.array(pose)]
-    _driven(1, Held((trackers, memory, cameras, *numbers)))
+    _driven(trackers, memory, cameras, *numbers)
     return trackers, cameras
 
 

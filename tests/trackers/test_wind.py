@@ -5,7 +5,7 @@ import pytest
 
 from eyas.core.rng import EpisodeKey
 from eyas.core.variation import Uniform
-from eyas.lanes import Held, parallel_kernel
+from eyas.lanes import compiled
 from eyas.trackers.wind import WindMemory, begin_wind, blow
 
 COUNT, STEPS, SPARSE, TURBULENCE, HEIGHT, SPEED = 48, 60_000, 10, 12.0, 20.0, 15.0
@@ -15,8 +15,8 @@ SIGMA_UP = 0.1 * TURBULENCE
 SIGMA = SIGMA_UP / (0.177 + 0.000823 * FEET) ** 0.4
 
 
-def _blow(parts, worker, workers):
-    memory, out, numbers = parts[0][0][0]
+@compiled
+def _blown(memory, out, numbers):
     for k in range(out.shape[1]):
         for n in range(out.shape[0]):
             wind = (0.0, 0.0, 0.0)
@@ -26,16 +26,13 @@ def _blow(parts, worker, workers):
                 out[n, k, axis] = wind[axis]
 
 
-_blown = parallel_kernel(_blow)
-
-
 def blown(episodes, direction=0.0, steps=STEPS // SPARSE, sparse=SPARSE, turbulence=TURBULENCE):
     """Wind at some places, shape (N, K, 3), of episodes of the same seed."""
     memory = WindMemory.create(len(episodes))
     for n, episode in enumerate(episodes):
         begin_wind(memory, n, SPEED, direction, EpisodeKey(7, 0, episode))
     out = np.zeros((len(episodes), steps, 3))
-    _blown(1, Held((memory, out, (turbulence, HEIGHT, float(sparse)))))
+    _blown(memory, out, (turbulence, HEIGHT, float(sparse)))
     return out
 
 

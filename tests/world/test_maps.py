@@ -73,19 +73,23 @@ def test_a_map_outside_of_a_package_ships_nothing():
     assert loose.shipped_network() is None
     assert loose.shipped(TRAFFIC_FILE) is None
     assert loose.shipped_traffic() == ()
-    assert loose.source_hash() is None
+    assert loose.data_hash() is None
 
 
-def test_a_change_of_a_maps_source_shows_in_its_hash(tmp_path, monkeypatch):
+def test_a_change_of_what_a_map_of_ones_own_is_made_of_shows_in_its_hash(tmp_path, monkeypatch):
     package = tmp_path / "fields_of_the_test"
     (package / "parts").mkdir(parents=True)
     for path in ("__init__.py", "parts/__init__.py", "parts/hedge.py"):
         (package / path).write_text("")
     monkeypatch.syspath_prepend(tmp_path)
     recipe = replace(CITYSTREET, package=package.name)
-    first = recipe.source_hash()
-    (package / "notes.txt").write_text("no source")
+    first = recipe.data_hash()
     (package / "parts" / "__pycache__").mkdir()  # by the first start: the second finds its map
-    assert recipe.source_hash() == first
+    (package / "parts" / "hedge.py").write_text("# no code")
+    (package / "traffic.npz").write_text("is not part of the scene")
+    assert recipe.data_hash() == first
     (package / "parts" / "hedge.py").write_text("HEIGHT = 2.0")
-    assert recipe.source_hash() != first
+    second = recipe.data_hash()
+    assert second != first
+    (package / "heights.bin").write_text("a hill")
+    assert recipe.data_hash() not in (first, second)

@@ -179,13 +179,13 @@ def _tours(  # noqa: PLR0913  # who, where, when
     """Return walks on pavements and over crossings."""
     over = crossings_of(ground.scene, ways, ground.solids, 0.5 * troop.breadth)
     if not over:
-        told, why = ground.scene.footways, ""
+        why = ""
         if troop.breadth > _WIDE:
             why = f" wide enough for '{troop.kind}'"
-        elif len(told.crossings):  # long vehicles cut corners, where nobody walks then
+        elif len(
+            ground.scene.footways.crossings
+        ):  # long vehicles cut corners, where nobody walks then
             why = " that vehicles leave free"
-        elif told.told:
-            why = " (if an earlier version imported it, import it again)"
         raise SpawnError(
             f"{troop.chosen_by}: 'crossing': '{ground.scene.name}' has no crossing between "
             f"pavements{why}; allowed: another behaviour, or another map such as citystreet"

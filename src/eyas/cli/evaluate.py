@@ -174,20 +174,23 @@ def _folder_name(policy: str, protocol: str) -> str:
 def compare(
     first: Annotated[Path, typer.Argument(metavar="A", help="Folder of an evaluation.")],
     second: Annotated[Path, typer.Argument(metavar="B", help="Folder of another.")],
+    across_builds: Annotated[
+        bool, typer.Option("--across-builds", help="Compare although Eyas itself differs.")
+    ] = False,
     json_: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Tell by how much B differs from A in the episodes that both have flown."""
-    from eyas.evaluation.comparison import differences, refuse_other_protocol, text_of
+    from eyas.evaluation.comparison import differences, refuse_incomparable, text_of
     from eyas.evaluation.result import load_run
 
     (stamp_a, records_a), (stamp_b, records_b) = load_run(first), load_run(second)
-    refuse_other_protocol(stamp_a, stamp_b)
+    refuse_incomparable(stamp_a, stamp_b, across_builds=across_builds)
     found = differences(records_a, records_b)
     if json_:
         typer.echo(json.dumps([each._asdict() for each in found], indent=1))
         return
     for name, stamp in (("A", stamp_a), ("B", stamp_b)):
-        typer.echo(f"{name}: {stamp.plan.command} (Eyas {stamp.version})")
+        typer.echo(f"{name}: {stamp.plan.command} (Eyas {stamp.version}, build {stamp.build.id})")
     typer.echo(text_of(found))
 
 

@@ -7,11 +7,11 @@ from contextlib import contextmanager
 from pathlib import Path
 
 from eyas.core.errors import DataFileError, OutputError
+from eyas.lanes.folder import open_at_once
 
 __all__ = [
     "PART_SUFFIX",
     "atomic_path",
-    "open_at_once",
     "part_path",
     "read_limited",
     "refusals",
@@ -113,8 +113,3 @@ def read_limited(path: Path, largest: int) -> bytes:
     if len(content) > largest:
         raise DataFileError(f"{path}: cannot read: larger than {largest >> 20} MiB")
     return content
-
-
-def open_at_once(path: str, flags: int) -> int:
-    """Open a file for `open`, without waiting for the writer of a pipe."""
-    return os.open(path, flags | getattr(os, "O_NONBLOCK", 0))

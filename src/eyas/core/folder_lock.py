@@ -1,4 +1,8 @@
-"""The lock by which only one process at a time works in a folder."""
+"""The lock by which only one process at a time works in a folder.
+
+Not by the package `filelock`, which would take the place of `_lock` and `_is_at` only: it does not
+tell which process holds a lock, which is what the user wants to know.
+"""
 
 import errno
 import logging

@@ -8,6 +8,7 @@ from typing import Annotated, Any
 from pydantic import Field
 
 from eyas import __version__
+from eyas.core.build import Build, this_build
 from eyas.core.config import Config
 from eyas.core.errors import ConfigError
 from eyas.evaluation.delay import Measured, delay_from
@@ -78,22 +79,34 @@ class Plan(Config):
         return shlex.join(words)
 
 
+_NOT_FLOWN = ("exports", "learning", "modes/video", "overlay", "wire")
+"""Rooms that have no part in an evaluation."""
+
+
 class Stamp(Config):
     """What tells whether records belong together."""
 
     version: str
     """Of Eyas."""
+    build: Build
+    """Of Eyas, too: what its code and data are."""
     protocol: str
     """Hash of the protocol."""
     policy: str | None
-    """Hash of the policy's file; None if it is none."""
+    """Hash of the policy's file; None if it has none."""
     plan: Plan
+
+    def other_build(self, other: "Stamp") -> str:
+        """Return in words what differs in the programs that fly; nothing if nothing does."""
+        networks = self.policy is not None or other.policy is not None
+        return self.build.difference(other.build, without=_NOT_FLOWN, libraries=networks)
 
 
 def stamp(plan: Plan) -> Stamp:
     """Return the stamp of a plan."""
     return Stamp(
         version=__version__,
+        build=this_build(),
         protocol=plan.rules.hash,
         policy=fingerprint(plan.policy),
         plan=plan,

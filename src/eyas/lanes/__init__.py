@@ -4,6 +4,7 @@ The bottom room: it knows nothing of drones or pictures. Begin with `docs/lanes.
 lanes are in `eyas.lanes.vector`, elementary functions in `eyas.lanes.elementary`.
 """
 
+from eyas.lanes.calls import BoundCall, CompiledCall, ParallelCall, compiled, parallel
 from eyas.lanes.held import Held
 from eyas.lanes.intrinsics import Intrinsic, address_of, bits_of_float, claim, float_of_bits
 from eyas.lanes.jit import (
@@ -14,22 +15,23 @@ from eyas.lanes.jit import (
     specialised,
     thread_count,
 )
-from eyas.lanes.parallel import BoundKernel, Pointer, parallel_kernel
 
 __all__ = [
-    "BoundKernel",
+    "BoundCall",
+    "CompiledCall",
     "Held",
     "Intrinsic",
     "Kernel",
-    "Pointer",
+    "ParallelCall",
     "address_of",
     "bits_of_float",
     "claim",
+    "compiled",
     "float_of_bits",
     "interpreted",
     "kernel",
     "limit_threads",
-    "parallel_kernel",
+    "parallel",
     "specialised",
     "thread_count",
 ]

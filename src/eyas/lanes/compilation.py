@@ -10,7 +10,7 @@ document.
 """
 
 import inspect
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any, NamedTuple
 
 import llvmlite.binding as llvm
@@ -18,13 +18,22 @@ import numba
 from llvmlite import ir
 from numba.core.compiler import compile_extra
 from numba.core.compiler_lock import global_compiler_lock
+from numba.core.funcdesc import FunctionDescriptor
 from numba.core.registry import cpu_target
 from numba.extending import models, register_model
 
-from eyas.core.interrupts import let_in
-from eyas.lanes import pointers as _pointers  # noqa: F401  # registers fields with numba
+from eyas.lanes import operations as _fields  # noqa: F401  # registers them with numba
 from eyas.lanes.front_end import SETTINGS, Compiler, Library, flags, typing
+from eyas.lanes.identity import identity
+from eyas.lanes.interrupts import let_in
 from eyas.lanes.machine_code import MachineCode, optimised
+from eyas.lanes.modules import (
+    Module,
+    kept_module,
+    linked,
+    module_name,
+    module_of,
+)
 from eyas.lanes.vector import operators as _operators  # noqa: F401  # registers them with numba
 
 __all__ = [
@@ -33,7 +42,6 @@ __all__ = [
     "entry_code",
     "entry_module",
     "intrinsic_type",
-    "kinds_of",
     "size_of",
 ]
 
@@ -47,16 +55,49 @@ class _Overload(NamedTuple):
     signature: Any
     described: Any
     """numba's description of the function: its name and types."""
-    libraries: tuple[Any, ...]
-    """Its module and those of all that it calls."""
+    module: Module
 
 
 @global_compiler_lock
+def _overload(
+    function: Callable[..., Any], kinds: tuple[Kind, ...], inline: bool | None, made_of: str | None
+) -> _Overload:
+    """Return a function for arguments of some types: as it is kept, or compiled.
+
+    Args:
+        function: A plain function.
+        kinds: The types.
+        inline: See `eyas.lanes.jit.kernel`.
+        made_of: Its `eyas.lanes.identity.identity`; None if it depends on more than that.
+    """
+    name = module_name(function, kinds, made_of)
+    kept = None if name is None else kept_module(name)
+    if kept is None:
+        return _compile(function, kinds, inline, name)
+    signature = numba.core.typing.signature(kept.returns, *kinds)
+    described = FunctionDescriptor(
+        native=True,
+        modname=function.__module__,
+        qualname=function.__qualname__,
+        unique_name=kept.name,
+        doc="",
+        typemap=None,
+        restype=kept.returns,
+        calltypes=None,
+        args=tuple(inspect.signature(function).parameters),
+        kws=(),
+        mangler=lambda *_, **__: kept.symbol,
+        argtypes=kinds,
+        inline=inline is True,
+    )
+    return _Overload(signature, described, kept)
+
+
 def _compile(
-    function: Callable[..., Any], kinds: tuple[Kind, ...], *, inline: bool | None
+    function: Callable[..., Any], kinds: tuple[Kind, ...], inline: bool | None, name: str | None
 ) -> _Overload:
     target = cpu_target.target_context
-    library = Library(target.codegen(), function.__qualname__)
+    library = Library(target.codegen(), function.__qualname__, name and name.split("-")[1])
     made = compile_extra(
         typing(),
         target,
@@ -68,27 +109,26 @@ def _compile(
         library=library,
         pipeline_class=Compiler,
     )
+    symbol = made.fndesc.llvm_func_name
     if inline is False:
-        own = library._final_module.get_function(made.fndesc.llvm_func_name)
-        own.add_function_attribute("noinline")
-    return _Overload(made.signature, made.fndesc, _with_all_that_it_calls(library))
-
-
-def _with_all_that_it_calls(library: Any) -> tuple[Any, ...]:  # noqa: ANN401  # numba's library
-    found = {library: None}
-    left = [library]
-    while left:
-        called = [other for other in left.pop()._linking_libraries if other not in found]
-        found.update(dict.fromkeys(called))
-        left += called
-    return tuple(found)
+        library._final_module.get_function(symbol).add_function_attribute("noinline")
+    module = module_of(library, symbol, made.signature.return_type, name)
+    return _Overload(made.signature, made.fndesc, module)
 
 
 class KernelType(numba.types.Callable, numba.types.Opaque):  # type: ignore[misc]
     """The type of a kernel in the kernels that call it."""
 
-    def __init__(self, function: Callable[..., Any], *, inline: bool | None, double: bool) -> None:
-        self._function, self._inline, self._double = function, inline, double
+    def __init__(
+        self,
+        function: Callable[..., Any],
+        made_of: str | None,
+        *,
+        inline: bool | None,
+        double: bool,
+    ) -> None:
+        self._function, self._made_of = function, made_of
+        self._inline, self._double = inline, double
         self._parameters = inspect.signature(function)
         self._overloads: dict[tuple[Kind, ...], _Overload] = {}
         name = f"{function.__module__}.{function.__qualname__}"
@@ -105,8 +145,8 @@ class KernelType(numba.types.Callable, numba.types.Opaque):  # type: ignore[misc
             for name, parameter in self._parameters.parameters.items()
         )
         if kinds not in self._overloads:
-            made = _compile(self._function, kinds, inline=self._inline)
-            cpu_target.target_context.insert_user_function(made, made.described, made.libraries)
+            made = _overload(self._function, kinds, self._inline, self._made_of)
+            cpu_target.target_context.insert_user_function(made, made.described, (made.module,))
             self._overloads[kinds] = made
         return self._overloads[kinds].signature.replace(pysig=self._parameters)
 
@@ -135,61 +175,64 @@ def _widened(kind: Kind, double: bool) -> Kind:
     return numba.types.int64 if signed else kind
 
 
-def entry_code(function: Callable[..., Any], kinds: tuple[Kind, ...], entry: str) -> MachineCode:
+def entry_code(
+    function: Callable[..., Any], bundles: Sequence[Kind], entry: str, *, over_workers: bool
+) -> MachineCode:
     """Return the machine code of a function and of all that it calls; arguments as below."""
-    return optimised(entry_module(function, kinds, entry), entry)
+    return optimised(entry_module(function, bundles, entry, over_workers=over_workers), entry)
 
 
 def entry_module(
-    function: Callable[..., Any], kinds: tuple[Kind, ...], entry: str
+    function: Callable[..., Any], bundles: Sequence[Kind], entry: str, *, over_workers: bool
 ) -> llvm.ModuleRef:
     """Return a module of a function and of all that it calls.
 
     Args:
-        function: A plain function that returns nothing.
-        kinds: The types of its arguments.
-        entry: Name of the function in C, which returns 0, or another number if `function` raised
-            an exception.
+        function: A plain function that returns nothing, see `eyas.lanes.calls.CompiledCall`.
+        bundles: The types of what it is called with.
+        entry: Name of the function in C. It is given the address of a table with the addresses of
+            the bundles, and two numbers, which reach `function` if it works `over_workers`. It
+            returns 0, or another number if `function` raised an exception.
+        over_workers: See `eyas.lanes.calls.CompiledCall`.
     """
-    made = _compile(function, kinds, inline=None)
+    made_of = identity(function) if function.__closure__ is None else None
+    first = (numba.types.intp, numba.types.intp) if over_workers else ()
+    made = _overload(function, (*first, *map(_passed, bundles)), None, made_of)
     let_in()
-    library = _entry(made, entry)
-    module = library._final_module
-    for called in made.libraries:
-        module.link_in(_shared(called))
+    module = linked(made.module, _entry(made, entry, len(first))._final_module)
     let_in()
     return module
 
 
-def kinds_of(bundles: Iterable[tuple[Any, ...]]) -> tuple[Kind, ...]:
-    """Return the types of a kernel's arguments: pointers to bundles in a table, and two numbers."""
-    pointers = [numba.types.CPointer(numba.typeof(bundle)) for bundle in bundles]
-    table = numba.types.CPointer(numba.types.Tuple(pointers))
-    return table, numba.types.intp, numba.types.intp
+def _passed(bundle: Kind) -> Kind:
+    """Return the type by which a function gets a bundle: by value, unless it is a named tuple."""
+    named = isinstance(bundle, numba.types.BaseNamedTuple)
+    return numba.types.CPointer(bundle) if named else bundle
 
 
-def _shared(library: Any) -> llvm.ModuleRef:  # noqa: ANN401  # numba's library
-    """Return a copy of a library's module whose functions may be in other copies too."""
-    module = library._final_module.clone()
-    for function in module.functions:
-        if not function.is_declaration and function.linkage == llvm.Linkage.external:
-            function.linkage = "linkonce_odr"
-    return module
-
-
-def _entry(made: _Overload, entry: str) -> Library:
-    """Return the function that C can call."""
+def _entry(made: _Overload, entry: str, numbers: int) -> Library:
+    """Return the function that C can call; `numbers` of its own are handed on before bundles."""
     context = cpu_target.target_context
     library = Library(context.codegen(), entry)
     module = context.create_module(entry)
     described, convention = made.described, context.call_conv
     kind = convention.get_function_type(described.restype, described.argtypes)
     callee = ir.Function(module, kind, described.llvm_func_name)
-    arguments = [context.get_value_type(kind) for kind in described.argtypes]
-    called = ir.Function(module, ir.FunctionType(ir.IntType(32), arguments), entry)
+    number, address = ir.IntType(64), ir.IntType(8).as_pointer()
+    c_type = ir.FunctionType(ir.IntType(32), [address.as_pointer(), number, number])
+    called = ir.Function(module, c_type, entry)
     builder = ir.IRBuilder(called.append_basic_block())
+    given = list(called.args[1 : 1 + numbers])
+    for place, bundle in enumerate(described.argtypes[numbers:]):
+        slot = builder.load(builder.gep(called.args[0], [number(place)]))
+        model = context.data_model_manager[bundle]
+        if isinstance(bundle, numba.types.CPointer):
+            given.append(builder.bitcast(slot, model.get_value_type()))
+        else:
+            pointer = builder.bitcast(slot, model.get_data_type().as_pointer())
+            given.append(model.load_from_data_pointer(builder, pointer))
     status, _ = convention.call_function(
-        builder, callee, described.restype, described.argtypes, called.args
+        builder, callee, described.restype, described.argtypes, given
     )
     builder.ret(status.code)
     library.add_ir_module(module)

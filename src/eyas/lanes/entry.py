@@ -9,11 +9,10 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from eyas.core.cache.folder import touch
-from eyas.core.interrupts import shielded
+from eyas.lanes.folder import OWNER, kernel_folder, refusal, touch
 from eyas.lanes.held import Held
 from eyas.lanes.identity import identity
-from eyas.lanes.jit import REFUSAL, folder_in_use
+from eyas.lanes.interrupts import shielded
 from eyas.lanes.machine_code import (
     SUFFIX,
     MachineCode,
@@ -28,33 +27,36 @@ from eyas.lanes.shipped import is_shipped, shipped_code
 
 __all__ = ["entry_address", "nothing_compiled"]
 
-_LOG = logging.getLogger("eyas")
+_LOG = logging.getLogger(OWNER)
 
 _LOCK = threading.RLock()
 
 
-def entry_address(function: Callable[..., Any], parts: tuple[Held[Any], ...]) -> int:
+def entry_address(
+    function: Callable[..., Any], bundles: tuple[Held[Any], ...], *, over_workers: bool
+) -> int:
     """Return the address of a kernel for bundles of these kinds.
 
     Args:
-        function: See `eyas.lanes.parallel.parallel_kernel`.
-        parts: The bundles.
+        function: See `eyas.lanes.calls.CompiledCall`.
+        bundles: What it is called with.
+        over_workers: See there.
     """
     name = function.__qualname__.rpartition(".")[2]
     made_by = version("numba"), platform.python_version()
-    kinds = [part.kind for part in parts]
-    path = code_file(folder_in_use(), _name_of(function), kinds, made_by)
+    kinds = [bundle.kind for bundle in bundles]
+    path = code_file(kernel_folder(), _name_of(function), kinds, made_by)
     keeps = function.__closure__ is None  # or what it depends on is not all in the name
     # An interrupt in the middle of numba or LLVM leaves objects in pieces, whose end crashes.
     with _LOCK, shielded():
         address = _kept(path) if keeps else None
         if address is None:
             start = time.perf_counter()
-            code = _compiled(function, parts, entry_of(path))
+            code = _compiled(function, bundles, entry_of(path), over_workers=over_workers)
             _LOG.debug("compiled %s in %.1f s", name, time.perf_counter() - start)
             address = load(code)
             assert address is not None, f"{name}: cannot be loaded; it needs {code.needs}"
-            if keeps and not REFUSAL:
+            if keeps and not refusal():
                 write_code(path, code)
     return address
 
@@ -73,10 +75,10 @@ def nothing_compiled(function: Callable[..., Any]) -> bool:
     """Return whether a kernel is neither cached nor shipped for any bundles, as at a first start.
 
     Args:
-        function: See `eyas.lanes.parallel.parallel_kernel`.
+        function: See `eyas.lanes.calls.CompiledCall`.
     """
     name = _name_of(function)
-    return not any(folder_in_use().glob(f"{name}-*{SUFFIX}")) and not is_shipped(name)
+    return not any(kernel_folder().glob(f"{name}-*{SUFFIX}")) and not is_shipped(name)
 
 
 def _name_of(function: Callable[..., Any]) -> str:
@@ -84,13 +86,14 @@ def _name_of(function: Callable[..., Any]) -> str:
 
 
 def _compiled(
-    function: Callable[..., Any], parts: tuple[Held[Any], ...], entry: str
+    function: Callable[..., Any], bundles: tuple[Held[Any], ...], entry: str, *, over_workers: bool
 ) -> MachineCode:
     import numba  # half a second, for the first start only
 
-    from eyas.lanes.compilation import entry_code, kinds_of, size_of
+    from eyas.lanes.compilation import entry_code, size_of
 
-    for part in parts:
-        kind = numba.typeof(part.bundle)
-        assert size_of(kind) == part.size, f"this version of numba lays {kind} out differently"
-    return entry_code(function, kinds_of(part.bundle for part in parts), entry)
+    for held in bundles:
+        kind = numba.typeof(held.bundle)
+        assert size_of(kind) == held.size, f"this version of numba lays {kind} out differently"
+    kinds = [numba.typeof(held.bundle) for held in bundles]
+    return entry_code(function, kinds, entry, over_workers=over_workers)

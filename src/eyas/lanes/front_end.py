@@ -1,6 +1,7 @@
 """numba's compiler without what kernels do not need, which was half of the time of compiling."""
 
 import math
+import re
 from functools import cache
 from typing import Any
 
@@ -9,6 +10,7 @@ import numpy as np
 from numba import types
 from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import CompilerBase, DefaultPassBuilder, Flags
+from numba.core.funcdesc import default_mangler
 from numba.core.registry import cpu_target
 from numba.core.typed_passes import NopythonRewrites
 from numba.core.typing import Context
@@ -37,7 +39,18 @@ _OWN = {
 
 
 class Library(JITCodeLibrary):  # type: ignore[misc]  # numba has no types
-    """The module of one function, which is linked into others but never made machine code."""
+    """The module of one function, which is linked into others but never made machine code.
+
+    Args:
+        codegen: numba's generator of code.
+        name: Of the function.
+        unique: What tells its symbol from those of other functions, the same in every process;
+            None: a number.
+    """
+
+    def __init__(self, codegen: Any, name: str, unique: str | None = None) -> None:  # noqa: ANN401
+        super().__init__(codegen, name)
+        self.unique = unique
 
     def finalize(self) -> None:
         """Make nothing of it."""
@@ -78,6 +91,19 @@ def flags(*, inline: bool) -> _Flags:
     return made
 
 
+def _symbol(
+    name: str,
+    kinds: tuple[Kind, ...],
+    *,
+    abi_tags: tuple[str, ...] = (),
+    uid: int | str | None = None,
+) -> str:
+    """Return a function's symbol; numba's own tell all types, in up to three thousand letters."""
+    if isinstance(uid, str):
+        return re.sub(r"\W", "_", f"{name}.{uid}")
+    return str(default_mangler(name, kinds, abi_tags=abi_tags, uid=uid))
+
+
 class Compiler(CompilerBase):  # type: ignore[misc]
     """numba's compiler without what kernels do not need: a tenth of the time."""
 
@@ -90,6 +116,12 @@ class Compiler(CompilerBase):  # type: ignore[misc]
         passes.passes = [step for step in passes.passes if step[0] not in self._LEFT_OUT]
         passes.finalize()
         return [passes]
+
+    def _compile_bytecode(self) -> Any:  # noqa: ANN401  # numba's result
+        if self.state.library.unique is not None:
+            self.state.func_id.unique_id = self.state.library.unique
+            self.state.targetctx.mangler = _symbol  # of a copy that is this compiler's own
+        return super()._compile_bytecode()
 
 
 class _Typing(Context):  # type: ignore[misc]

@@ -1,65 +1,25 @@
-"""Kernels: functions to be compiled, and the folder where the result is kept.
+"""Kernels: functions to be compiled, which other kernels call."""
 
-The folder is named after the language of kernels, the files after what each computes
-(`eyas.lanes.identity`). numba's own cache is not used: it would notice only a change in the file of
-the function itself, not in what that calls, and it unpickles its files.
-"""
-
-import errno
 import functools
 import hashlib
 import os
 import types
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any, TypeVar, cast, overload
 
-from eyas.core.cache.folder import Kind, cache_folder, touch
-from eyas.core.cache.safety import made_folder, secured
-from eyas.core.interrupts import shielded
-from eyas.lanes.identity import identity, language_hash
+from eyas.lanes.identity import identity
+from eyas.lanes.interrupts import shielded
 
 __all__ = [
-    "REFUSAL",
     "Kernel",
-    "folder_in_use",
     "interpreted",
     "kernel",
-    "kernel_folder",
     "limit_threads",
     "specialised",
     "thread_count",
 ]
 
 Function = TypeVar("Function", bound=Callable[..., Any])
-
-
-def kernel_folder() -> Path:
-    """Return the folder of compiled kernels of this version of their language."""
-    return cache_folder() / Kind.KERNELS / language_hash()
-
-
-def _refusal(folder: Path) -> str:
-    """Return why kernels cannot be kept in a folder; nothing if they can."""
-    try:
-        made_folder(folder)
-        if why := secured(folder):
-            return why
-    except OSError as error:
-        return error.strerror or str(error)
-    return "" if os.access(folder, os.W_OK) else os.strerror(errno.EACCES)
-
-
-def folder_in_use() -> Path:
-    """Return the folder of compiled kernels that this process uses."""
-    return Path(os.environ["NUMBA_CACHE_DIR"])
-
-
-os.environ.setdefault("NUMBA_CACHE_DIR", str(kernel_folder()))
-touch(folder_in_use())
-
-REFUSAL = _refusal(folder_in_use())
-"""Why compiled kernels are not kept on disk; nothing if they are."""
 
 
 def thread_count() -> int:
@@ -94,7 +54,8 @@ class Kernel:
         """The type by which numba knows it in functions that call it."""
         from eyas.lanes.compilation import KernelType
 
-        return KernelType(self.py_func, inline=self._inline, double=self._double)
+        made_of = identity(self) if self.py_func.__closure__ is None else None
+        return KernelType(self.py_func, made_of, inline=self._inline, double=self._double)
 
     @functools.cached_property
     def _compiled(self) -> Callable[..., Any]:
@@ -105,7 +66,7 @@ class Kernel:
     def __call__(self, *args: object) -> Any:  # noqa: ANN401  # as the function
         """Call the compiled function; for tests, since it is compiled in each process anew.
 
-        Eyas itself calls `parallel_kernel`s, and single numbers are computed by `interpreted`.
+        Programs call what is `compiled`, and compute single numbers by what is `interpreted`.
         """
         with shielded():
             return self._compiled(*args)

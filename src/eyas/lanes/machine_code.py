@@ -5,13 +5,8 @@ it takes a millisecond; importing numba, which is needed only to compile, takes 
 """
 
 import itertools
-import json
-import logging
 import os
-import secrets
-import stat
 import threading
-import zlib
 from collections.abc import Iterable
 from functools import cache
 from hashlib import sha256
@@ -21,15 +16,16 @@ from typing import NamedTuple
 import llvmlite
 import llvmlite.binding as llvm
 
-from eyas.core.cache.folder import not_kept
-from eyas.core.cache.safety import FILE_MODE, unsafe
-from eyas.core.files import open_at_once
+from eyas.lanes.folder import read_trusted, write_trusted
+from eyas.lanes.identity import language_hash
 
 __all__ = [
     "SUFFIX",
     "MachineCode",
     "code_file",
     "code_name",
+    "cpu",
+    "digest",
     "entry_of",
     "improve",
     "load",
@@ -41,8 +37,6 @@ __all__ = [
 SUFFIX = ".eyk"
 """End of the names of files of machine code."""
 
-_LOG = logging.getLogger("eyas")
-
 _LOCK = threading.Lock()
 
 _LOADED: list[llvm.ResourceTracker] = []
@@ -52,10 +46,6 @@ _NUMBERS = itertools.count()
 """Numbers of the kernels that this process has tried to load."""
 
 
-_TOLD: set[Path] = set()
-"""Folders of which it is told that someone else may have written into them."""
-
-
 class MachineCode(NamedTuple):
     """Machine code of a kernel."""
 
@@ -63,7 +53,7 @@ class MachineCode(NamedTuple):
     """Name of the function to call; different for each kernel, as all are loaded together."""
     needs: tuple[str, ...]
     """Functions outside the kernel that it calls, such as those of the C library."""
-    code: bytes
+    code: bytes | memoryview
     """An object file."""
 
 
@@ -159,7 +149,7 @@ def load(code: MachineCode) -> int | None:
 
     None if this process lacks a function it needs, or this version of LLVM cannot read it.
     """
-    library = llvm.JITLibraryBuilder().add_current_process().add_object_img(code.code)
+    library = llvm.JITLibraryBuilder().add_current_process().add_object_img(bytes(code.code))
     library.export_symbol(code.entry)
     with _LOCK:
         linker = _linker()
@@ -183,7 +173,7 @@ def code_name(name: str, made_of: str) -> str:
         name: The name of the kernel, for people who look into the folder.
         made_of: Its `eyas.lanes.identity.identity`.
     """
-    return f"{name}-{_digest((name, made_of))}"
+    return f"{name}-{digest((name, made_of))}"
 
 
 def code_file(folder: Path, name: str, kinds: Iterable[str], made_by: Iterable[str]) -> Path:
@@ -195,78 +185,31 @@ def code_file(folder: Path, name: str, kinds: Iterable[str], made_by: Iterable[s
         kinds: The kinds of its bundles, see `eyas.lanes.held.Held`.
         made_by: What else the code depends on, except the processor and llvmlite.
     """
-    by = (*cpu(), llvmlite.__version__, *made_by)
-    return folder / f"{name}-{_digest(kinds)}-{_digest(by)}{SUFFIX}"
+    by = (*cpu(), llvmlite.__version__, language_hash(), *made_by)
+    return folder / f"{name}-{digest(kinds)}-{digest(by)}{SUFFIX}"
 
 
-def _digest(parts: Iterable[str]) -> str:
+def digest(parts: Iterable[str]) -> str:
+    """Return a short digest of some texts."""
     return sha256("\0".join(parts).encode()).hexdigest()[:16]
 
 
-def read_code(path: Path, *, shipped: bool = False) -> MachineCode | None:
-    """Return the content of a file; None if there is none, or it is damaged, or not to be trusted.
-
-    Args:
-        path: The file.
-        shipped: Whether it lies in the package, whose code of Python is run as well.
-    """
-    try:
-        content = path.read_bytes() if shipped else _own(path)
-        if zlib.crc32(content[4:]) != int.from_bytes(content[:4], "little"):
-            raise ValueError("damaged")
-        head, code = content[4:].split(b"\n", 1)
-        entry, needs = json.loads(head)
-        # Code that ships is named without what depends on numba and Python.
-        if not (entry == entry_of(path) or (shipped and entry.startswith(entry_of(path)))):
-            raise ValueError("in the place of another kernel")
-        return MachineCode(entry, tuple(needs), code)
-    except (FileNotFoundError, NotADirectoryError, PermissionError):
-        return None  # if it cannot be replaced either, that is told
-    except UnsafeError as error:
-        if path.parent not in _TOLD:
-            _TOLD.add(path.parent)
-            _LOG.warning("%s: %s; so it is compiled anew", path, error)
+def read_code(path: Path) -> MachineCode | None:
+    """Return the content of a file, or None, see `read_trusted`."""
+    found = read_trusted(path)
+    if found is None:
         return None
-    except (OSError, ValueError):
-        _LOG.warning("%s: damaged or unreadable, so it is compiled anew", path)
-        return None
+    entry, needs = found.header
+    return MachineCode(entry, tuple(needs), found.pieces[0])
 
 
 def entry_of(path: Path) -> str:
-    """Return the name of the function in a kernel's file."""
-    return path.stem.replace("-", "_")
-
-
-class UnsafeError(Exception):
-    """Someone else may have written a file of machine code."""
-
-
-def _own(path: Path) -> bytes:
-    """Return the content of a file that nobody but its user, or root, can have written."""
-    with open(path, "rb", opener=open_at_once) as file:
-        status = os.fstat(file.fileno())
-        if not stat.S_ISREG(status.st_mode):
-            raise ValueError("no ordinary file")
-        if why := unsafe(status) or unsafe(path.parent.stat()):
-            raise UnsafeError(why)
-        return file.read()
+    """Return the name of the function in a kernel's file: without what made it, so that others make
+    the same bytes.
+    """
+    return path.stem.rpartition("-")[0].replace("-", "_")
 
 
 def write_code(path: Path, code: MachineCode) -> None:
     """Write a file completely or not at all; not at all if the folder cannot be written to."""
-    content = json.dumps([code.entry, code.needs]).encode() + b"\n" + code.code
-    part = path.with_name(f"{path.name}.tmp.{secrets.token_hex(8)}")
-    try:
-        try:
-            with open(part, "xb", opener=_opened) as file:
-                file.write(zlib.crc32(content).to_bytes(4, "little") + content)
-            part.replace(path)
-        finally:
-            part.unlink(missing_ok=True)
-    except OSError as error:
-        not_kept(error)
-
-
-def _opened(path: str, flags: int) -> int:
-    """Open a new file to which others may not write."""
-    return os.open(path, flags, FILE_MODE)
+    write_trusted(path, [code.entry, code.needs], [code.code])

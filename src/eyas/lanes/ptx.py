@@ -6,12 +6,13 @@ would give other bytes. Neither CUDA nor a graphics processor is needed for it.
 """
 
 import re
-from collections.abc import Callable
 from typing import Any
 
 import llvmlite.binding as llvm
+import numba
 
-from eyas.lanes.compilation import entry_module, kinds_of
+from eyas.lanes.calls import CompiledCall
+from eyas.lanes.compilation import entry_module
 from eyas.lanes.machine_code import improve
 
 __all__ = ["ptx_of"]
@@ -30,16 +31,16 @@ _INSTRUCTIONS = {
 
 
 def ptx_of(
-    function: Callable[..., Any],
+    call: CompiledCall,
     bundles: tuple[tuple[Any, ...], ...],
     name: str,
     processor: str = "sm_90",
 ) -> str:
-    """Return the PTX of a function and of all that it calls.
+    """Return the PTX of a compiled function and of all that it calls.
 
     Args:
-        function: Has the arguments of a `parallel_kernel`'s, and returns nothing.
-        bundles: What it gets pointers to; only their types count.
+        call: The function.
+        bundles: What it is called with; only their types count.
         name: Of the entry, which takes the address of the table of pointers and two numbers.
         processor: LLVM's name of the oldest graphics processor to serve.
     """
@@ -47,7 +48,8 @@ def ptx_of(
     llvm.initialize_all_asmprinters()
     target = llvm.Target.from_triple(_TRIPLE)
     machine = target.create_target_machine(cpu=processor, features="+ptx80", opt=3)
-    module = entry_module(function, kinds_of(bundles), f"{name}_status")
+    kinds = [numba.typeof(bundle) for bundle in bundles]
+    module = entry_module(call.function, kinds, f"{name}_status", over_workers=call.over_workers)
     module = llvm.parse_assembly(_retargeted(str(module), name, str(machine.target_data)))
     module.verify()
     # Loops that do several turns at once need more registers, which all threads share.

@@ -7,8 +7,9 @@ from rich.console import Console
 from rich.table import Table
 
 from eyas.core.cache.entries import Entry, clear, entries
-from eyas.core.cache.folder import FOLDER_VARIABLE, LIMIT_VARIABLE, Kind, cache_folder, cache_limit
+from eyas.core.cache.folder import LIMIT_VARIABLE, Kind, cache_limit
 from eyas.core.errors import OutputError, UnknownNameError
+from eyas.lanes.folder import FOLDER_VARIABLE, cache_folder
 
 __all__ = ["run_clear", "run_info"]
 
@@ -29,7 +30,7 @@ def run_info() -> None:
         chosen = [entry for entry in found if entry.kind == kind]
         if chosen:
             used = time.strftime("%Y-%m-%d %H:%M", time.localtime(chosen[-1].used))
-            table.add_row(_WORDS.get(kind, kind), str(len(chosen)), _shown(_total(chosen)), used)
+            table.add_row(kind, str(len(chosen)), _shown(_total(chosen)), used)
     Console().print(table)
 
 
@@ -52,9 +53,6 @@ def run_clear(kind: str | None) -> None:
     left = [entry for entry in entries(folder) if chosen in (None, entry.kind)]
     if left:
         raise OutputError(f"{left[0].path}: cannot remove it (one of {len(left)} entries)")
-
-
-_WORDS = {Kind.OLD: "old (of earlier versions of Eyas)"}
 
 
 def _total(found: Iterable[Entry]) -> int:

@@ -6,9 +6,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from eyas.core.cache.entries import entries
-from eyas.core.cache.folder import FOLDER_VARIABLE, cache_folder, cache_limit
+from eyas.core.cache.folder import cache_limit
 from eyas.core.errors import OutputError
 from eyas.core.files import refusals
+from eyas.lanes.folder import FOLDER_VARIABLE, cache_folder
 from eyas.modes.gallery.run import conditions
 from eyas.settings.config import EyasConfig
 from eyas.sim.build import build_simulation

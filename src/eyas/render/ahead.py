@@ -8,10 +8,8 @@ import sys
 
 import numpy as np
 
-from eyas.core.cache.folder import not_kept
-from eyas.core.cache.safety import made_folder
 from eyas.lanes.entry import nothing_compiled
-from eyas.lanes.jit import REFUSAL, folder_in_use
+from eyas.lanes.folder import kernel_folder, made_folder, not_kept, refusal
 from eyas.render.bake.ambient import AmbientMap
 from eyas.render.bake.shadows import ShadowMap
 from eyas.render.bake.tracks import TrackMap
@@ -50,16 +48,16 @@ def begin_ahead(other: str) -> None:
     Args:
         other: Program that makes something which is kept in the cache, and needed by this process.
     """
-    compiles, cache = nothing_compiled(draw_views.function), folder_in_use()
-    if compiles and REFUSAL:
-        not_kept(REFUSAL)
+    compiles, cache = nothing_compiled(draw_views.function), kernel_folder()
+    if compiles and refusal():
+        not_kept(refusal())
     elif compiles:
         _log.warning(
             "first start of this version: compiling takes about half a minute, once; cached in %s",
             cache,
         )
     # A frozen program has no interpreter to start.
-    if REFUSAL or (os.cpu_count() or 1) < 2 or getattr(sys, "frozen", False):
+    if refusal() or (os.cpu_count() or 1) < 2 or getattr(sys, "frozen", False):
         return
     with contextlib.suppress(OSError):
         made_folder(cache)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core import exact
-from eyas.lanes import Held, Pointer, parallel_kernel, thread_count
+from eyas.lanes import parallel, thread_count
 from eyas.sensors.chance import SEEDS, mixed
 from eyas.sensors.config import CameraErrors
 
@@ -64,7 +64,7 @@ class Grain:
             step[trackers],
             self._scale,
         )
-        _add_noise(min(thread_count(), views), Held(work))
+        _add_noise(min(thread_count(), views), work)
 
 
 class _Work(NamedTuple):
@@ -79,12 +79,12 @@ class _Work(NamedTuple):
     scale: float
 
 
-@parallel_kernel
-def _add_noise(parts: Pointer[tuple[Pointer[_Work]]], worker: int, workers: int) -> None:
+@parallel
+def _add_noise(worker: int, workers: int, work: _Work) -> None:
     """Add noise to the pictures whose turn is this worker's."""
-    pixels, seed, bias, step, scale = parts[0][0][0]
+    pixels, bias, scale = work.pixels, work.bias, work.scale
     for view in range(worker, pixels.shape[0], workers):
-        base = mixed(mixed(seed[view]) ^ (step[view] & 0xFFFFFFFF))
+        base = mixed(mixed(work.seed[view]) ^ (work.step[view] & 0xFFFFFFFF))
         for at in range(pixels.shape[1]):
             word = mixed(base ^ at)
             four = (word & 255) + ((word >> 8) & 255) + ((word >> 16) & 255) + (word >> 24)

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from eyas.core import exact
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.frames import rotate
-from eyas.lanes import Held, Pointer, kernel, parallel_kernel
+from eyas.lanes import compiled, kernel
 from eyas.sensors.chance import SEEDS, normal, uniform
 from eyas.sensors.config import LidarConfig, MountConfig
 from eyas.sensors.mount import turn_of
@@ -99,7 +99,7 @@ class Lidar:
             config.resolution,
             config.drop_out,
         )
-        self._scan = _scan_all.bound(Held(scan))
+        self._scan = _scan_all.bind(scan)
 
     def begin(self, tracker: int, rng: np.random.Generator) -> None:
         """Begin an episode: the next `advance` measures a whole turn from where the tracker is."""
@@ -190,10 +190,9 @@ class _Scan(NamedTuple):
     drop_out: float
 
 
-@parallel_kernel
-def _scan_all(parts: Pointer[tuple[Pointer[_Scan]]], worker: int, workers: int) -> None:
+@compiled
+def _scan_all(scan: _Scan) -> None:
     """Measure the due points of all active trackers."""
-    scan = parts[0][0][0]
     for n in range(scan.active.shape[0]):
         due = math.floor(scan.episodes.step_count[n] * scan.per_step + _ROUNDING)
         if scan.active[n] and scan.turned[n] < due:
@@ -211,12 +210,13 @@ def _scan_one(scan: _Scan, n: int, due: int) -> None:
     off_x, off_y, off_z = rotate(orientation, place[0], place[1], place[2])
     x, y, z = position[0] + off_x, position[1] + off_y, position[2] + off_z
     points, kept, reach = scan.ahead.shape[0], scan.range.shape[1], scan.farthest
-    boxes = find_boxes(scan.obstacles.movers, n, tick, (x, y, z), reach, scan.obstacles.boxes)
+    obstacles = scan.obstacles
+    boxes = find_boxes(obstacles.movers, n, tick, (x, y, z), reach, obstacles.boxes)
     for number in range(max(scan.turned[n], due - points), due):
         aim, slot = scan.ahead[number % points], number % kept
         ahead_x, ahead_y, ahead_z = rotate(orientation, aim[0], aim[1], aim[2])
         ray = Ray(x, y, z, ahead_x, ahead_y, ahead_z)
-        distance, thing = cast_ray(ray, reach, scan.obstacles, boxes)
+        distance, thing = cast_ray(ray, reach, obstacles, boxes)
         scan.range[n, slot] = _measured(scan, scan.seed[n], number, distance)
         scan.thing[n, slot] = thing if scan.range[n, slot] < math.inf else -1
         scan.time[n, slot] = tick * PHYSICS_STEP

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_RATE
 from eyas.core.frames import wrap_angle
-from eyas.lanes import Held, Pointer, kernel, parallel_kernel
+from eyas.lanes import compiled, kernel
 from eyas.lanes.elementary import sin_cos
 from eyas.sensors.chance import SEEDS, normal, uniform
 from eyas.sensors.config import ReadingConfig, SensorsConfig
@@ -71,7 +71,7 @@ class Readings:
             np.zeros((count, int(delays.max()) + 2, READ_COLUMNS)),
             self.told,
         )
-        self._readings = _read_all.bound(Held(work))
+        self._readings = _read_all.bind(work)
 
     def begin(self, tracker: int, rng: np.random.Generator) -> None:
         """Begin an episode: the next `advance` makes its first reading."""
@@ -107,10 +107,9 @@ class _Work(NamedTuple):
     """Shape (N, C)."""
 
 
-@parallel_kernel
-def _read_all(parts: Pointer[tuple[Pointer[_Work]]], worker: int, workers: int) -> None:
+@compiled
+def _read_all(work: _Work) -> None:
     """Read all sensors of all active trackers."""
-    work = parts[0][0][0]
     for n in range(work.active.shape[0]):
         step = work.episodes.step_count[n]
         if step == 0:

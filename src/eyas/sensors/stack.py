@@ -3,14 +3,13 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.lanes import Held, Pointer, parallel_kernel, thread_count
+from eyas.lanes import parallel, thread_count
 from eyas.sensors.config import ColourLayout, Colours
 
 __all__ = ["FrameStack"]
 
 Bytes = NDArray[np.uint8]
 
-_Work = tuple[Bytes, Bytes]
 """Pixels, shape (V, pixels, 3), and their lumas, shape (V, pixels)."""
 
 
@@ -70,15 +69,14 @@ def _lumas(rgb: Bytes) -> Bytes:
     """Return the luma of pixels, shape (V, H, W, 1)."""
     views, pixels = len(rgb), rgb.shape[1] * rgb.shape[2]
     lumas = np.empty((*rgb.shape[:-1], 1), np.uint8)
-    work = Held((rgb.reshape(views, pixels, 3), lumas.reshape(views, pixels)))
-    _find_lumas(min(thread_count(), views), work)
+    workers = min(thread_count(), views)
+    _find_lumas(workers, rgb.reshape(views, pixels, 3), lumas.reshape(views, pixels))
     return lumas
 
 
-@parallel_kernel
-def _find_lumas(parts: Pointer[tuple[Pointer[_Work]]], worker: int, workers: int) -> None:
+@parallel
+def _find_lumas(worker: int, workers: int, rgb: Bytes, lumas: Bytes) -> None:
     """Find the lumas of the pictures whose turn is this worker's, in Pillow's arithmetic."""
-    rgb, lumas = parts[0][0][0]
     for view in range(worker, rgb.shape[0], workers):
         for at in range(rgb.shape[1]):
             red, green, blue = rgb[view, at, 0], rgb[view, at, 1], rgb[view, at, 2]

@@ -15,7 +15,7 @@ from eyas.sensors.obstacles import Solids
 from eyas.sim.crowd import NOBODY, Crowd, vehicles_of
 from eyas.sim.crowd_motion import Surroundings, crowd_motions, with_crowd
 from eyas.sim.scenes import load_geometry, load_scene, load_solids
-from eyas.sim.signals import SignalLights, lights_of
+from eyas.sim.views.additions import SignalLights, lights_of
 from eyas.state.lighting import Lighting
 from eyas.state.motion import Motion
 from eyas.state.scene import Scene

@@ -30,11 +30,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Surroundings", "crowd_motions", "with_crowd"]
 
-_MAKERS = (
-    *("behaviours", "sim/crowd_motion.py", "state/motion.py", "state/terrain.py", "world/roads"),
-    *("targets/vehicles", "traffic/signals.py", "traffic/trailer.py"),
-)
-
 _ASIDE = Mirrored(mirrored=(4.0, 20.0))
 """Distance of extras from the middle of the road, if no pavement is asked for [m]."""
 
@@ -108,18 +103,17 @@ def _all_kept(
     Joined in memory, that of 400 people would take half a gigabyte of each process, of which it
     reads little.
     """
-    ground, troops = cache(partial(_ground, around, crowd.driven)), _troops(crowd, around.clock)
+    troops = _troops(crowd, around.clock)
+    ground = cache(partial(_ground, around, crowd.driven))
     parts = [
-        _made(troop, number, around, crowd.driven, ground) for number, troop in enumerate(troops)
+        partial(_numbers_of, troop, number, around, ground) for number, troop in enumerate(troops)
     ]
     tables = [motion.table for motion in before]
-
-    def made() -> NDArray[np.float32]:
-        driven = [table.view(np.float32).reshape(*table.shape, -1) for table in tables]
-        return np.concatenate([*driven, *(part.make() for part in parts)], axis=1)
-
-    depends_on = (*tables, *(value for part in parts for value in part.depends_on))
-    numbers = cached(Kind.MOTION, _MAKERS, depends_on, made, of=NDArray[np.float32])
+    depends_on = [
+        _depends_on(troop, number, around, crowd.driven) for number, troop in enumerate(troops)
+    ]
+    make, inputs = partial(_side_by_side, tables, parts), (_numbers_of, *tables, *depends_on)
+    numbers = cached(Kind.MOTION, make, inputs, of=NDArray[np.float32])
     counts = [int(troop.lives.slot.max()) + 1 for troop in troops]
     indices = [kind_index(troop.kind) for troop in troops]
     kind = np.concatenate([*(one.kind for one in before), np.repeat(indices, counts)])
@@ -134,11 +128,11 @@ def _ground(around: Surroundings, driven: bool) -> "Ground":
     return Ground(around.scene, roads=driven, lights=around.lights)
 
 
-class _Part(NamedTuple):
-    """The motion of a troop, that may be in the cache."""
-
-    depends_on: tuple[object, ...]
-    make: Callable[[], NDArray[np.float32]]
+def _side_by_side(
+    tables: Sequence[NDArray[np.void]], parts: Sequence[Callable[[], NDArray[np.float32]]]
+) -> NDArray[np.float32]:
+    driven = [table.view(np.float32).reshape(*table.shape, -1) for table in tables]
+    return np.concatenate([*driven, *(part() for part in parts)], axis=1)
 
 
 def _kept(
@@ -148,48 +142,43 @@ def _kept(
     driven: bool,
     ground: Callable[[], "Ground"],
 ) -> Motion:
-    """Return the motion of a troop, from the cache if it is there; arguments as of `_made`."""
-    depends_on, make = _made(troop, number, around, driven, ground)
-    numbers = cached(Kind.MOTION, _MAKERS, depends_on, make, of=NDArray[np.float32])
+    """Return the motion of a troop, from the cache if it is there; see `_numbers_of`."""
+    make = partial(_numbers_of, troop, number, around, ground)
+    inputs = _depends_on(troop, number, around, driven)
+    numbers = cached(Kind.MOTION, make, inputs, of=NDArray[np.float32])
     kind = np.full(numbers.shape[1], kind_index(troop.kind), np.int32)
     return Motion(numbers.view(SAMPLE)[..., 0], kind, around.clock.rate, 0.0)
 
 
-def _made(
-    troop: Troop,
-    number: int,
-    around: Surroundings,
-    driven: bool,
-    ground: Callable[[], "Ground"],
-) -> _Part:
-    """Return how the motion of a troop is made, and what it depends on.
+def _numbers_of(
+    troop: Troop, number: int, around: Surroundings, ground: Callable[[], "Ground"]
+) -> NDArray[np.float32]:
+    """Return the numbers of the samples of a troop's motion.
 
     Args:
         troop: Who moves.
         number: Which of the crowd's troops it is.
         around: Where and when it moves.
-        driven: Whether vehicles drive there.
         ground: Returns the ground.
     """
+    from eyas.behaviours.scripted import scripted_table  # with shapely
+
+    rng = stream(around.seed, "crowd", number, zlib.crc32(troop.kind.encode()))
+    table = scripted_table(ground(), troop, around.clock, rng, around.vehicles)
+    return table.view(np.float32).reshape(*table.shape, -1)
+
+
+def _depends_on(
+    troop: Troop, number: int, around: Surroundings, driven: bool
+) -> tuple[object, ...]:
+    """Return what `_numbers_of` depends on; `driven`: whether vehicles drive there."""
     scene, clock, seed, vehicles, lights = around
-
-    def made() -> NDArray[np.float32]:
-        from eyas.behaviours.scripted import scripted_table  # with shapely
-
-        rng = stream(seed, "crowd", number, zlib.crc32(troop.kind.encode()))
-        table = scripted_table(ground(), troop, clock, rng, vehicles)
-        return table.view(np.float32).reshape(*table.shape, -1)
-
     crosses = troop.behaviour is Behaviour.CROSSING
     heeds = crosses or (scene.footways.told and troop.behaviour is Behaviour.PAVEMENT)
     waits_for = (vehicles.table, vehicles.kind) if heeds and vehicles is not None else ()
-    obeys = tuple(lights) if crosses and lights is not None else ()
-    depends_on = (
-        *(*_plan_of(scene), *troop.lives, troop.kind, troop.breadth, troop.behaviour),
-        *(troop.habit, troop.offset, clock, seed, number),
-        *(driven, *waits_for, *obeys),
-    )
-    return _Part(depends_on, made)
+    obeys = lights if crosses else None
+    moves = troop._replace(setting="", chosen_by="")  # which only messages name
+    return (_ground, _plan_of(scene), moves, clock, seed, number, driven, waits_for, obeys)
 
 
 def _troops(crowd: Crowd, clock: Clock) -> list[Troop]:
@@ -253,7 +242,7 @@ def _plan_of(scene: Scene) -> tuple[object, ...]:
     told = scene.footways
     return (
         *(told.kerb_points, told.kerb_first, told.crossings, told.lights),
-        *(scene.name, scene.size, *scene.terrain, scene.network.graph_hash),
+        *(scene.name, scene.size, scene.terrain, scene.network),
         *(mesh.positions, mesh.triangles, scene.static_object, scene.object_class),
         *(fixtures.pose, fixtures.prototype, colliders.prism_points, colliders.prism_first),
         *(colliders.prism_bottom, colliders.prism_top, colliders.cylinder_centre),

@@ -12,7 +12,7 @@ from eyas.core.clock import PHYSICS_STEP
 from eyas.core.pcg64 import begin_stream, whole
 from eyas.core.rng import room_key
 from eyas.core.variation import Rule, drawn
-from eyas.lanes import Pointer, kernel, parallel_kernel
+from eyas.lanes import compiled, kernel
 from eyas.sim.light import LightRules, change_light
 from eyas.state.episode import EpisodeState
 from eyas.state.snapshot import Snapshot, TargetState
@@ -132,28 +132,23 @@ class Call(NamedTuple):
         )
 
 
-Parts = Pointer[tuple[Pointer[EpisodeDraw], Pointer[Stays], Pointer[Call]]]
-
-
-@parallel_kernel
-def draw_episodes(parts: Parts, worker: int, workers: int) -> None:
+@compiled
+def draw_episodes(draw: EpisodeDraw, stays: Stays, call: Call) -> None:
     """Draw episodes one after the other: who shares a world takes what others leave."""
-    world, stays, call = parts[0]
-    draw, count = world[0], call[0].starts[0]
-    targets = draw.snapshot.targets
-    call[0].problem[0] = -1
+    count, targets = call.starts[0], draw.snapshot.targets
+    call.problem[0] = -1
     for k in range(count):
-        targets.actor[call[0].chosen[k]] = -1
+        targets.actor[call.chosen[k]] = -1
     for k in range(count):
-        n = call[0].chosen[k]
+        n = call.chosen[k]
         draw.snapshot.episodes.number[n] += 1
         _draw_world(draw, n)
         _stream(draw, n, _EPISODE)
-        if not _draw_target(draw, stays[0], n, call[0].problem):
-            if call[0].problem[1] < 0:  # it is drawn again
+        if not _draw_target(draw, stays, n, call.problem):
+            if call.problem[1] < 0:  # it is drawn again
                 draw.snapshot.episodes.number[n] -= 1
             return
-        _draw_start(draw, n, call[0].pitch, k)
+        _draw_start(draw, n, call.pitch, k)
 
 
 @kernel(inline=True)

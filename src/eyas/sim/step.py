@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
-from eyas.lanes import BoundKernel, Held, Pointer, kernel, parallel_kernel, specialised
+from eyas.lanes import BoundCall, CompiledCall, Held, compiled, kernel, specialised
 from eyas.lanes.elementary import sin_cos
 from eyas.sensors.inertial import feel, rest
 from eyas.sensors.mount import Mount
@@ -93,30 +93,29 @@ class Orders(NamedTuple):
 
 
 Kernel = Callable[..., Any]
-Parts = Pointer[tuple[Pointer[StepState], Pointer[Orders]]]
 
 
 class Step(NamedTuple):
     """The calls of the step, bound to the state of a simulation."""
 
-    fly: BoundKernel
+    fly: BoundCall
     """Moves all trackers by their commands."""
-    carry: BoundKernel
+    carry: BoundCall
     """Moves all trackers with their targets."""
-    begin: BoundKernel
+    begin: BoundCall
     """Puts the chosen trackers at their start poses."""
 
 
 class StepKernels(NamedTuple):
     """The kernels of a step, for one kind of tracker."""
 
-    fly: parallel_kernel[Any]
-    carry: parallel_kernel[Any]
-    begin: parallel_kernel[Any]
+    fly: CompiledCall
+    carry: CompiledCall
+    begin: CompiledCall
 
-    def bound(self, state: Held[StepState], orders: Held[Orders]) -> Step:
+    def bind(self, state: Held[StepState], orders: Held[Orders]) -> Step:
         """Return the calls, bound to a state."""
-        return Step(*(kernel.bound(state, orders) for kernel in self))
+        return Step(*(kernel.bind(state, orders) for kernel in self))
 
 
 def step_of(tracker: Tracker, carried: Kernel = carried) -> StepKernels:
@@ -137,17 +136,17 @@ def _step_of(
 ) -> StepKernels:
     seen: dict[str, Kernel] = {"aim": aim, "carried": carried}
     return StepKernels(
-        fly=parallel_kernel(specialised(_fly, advance=advance, **seen)),
-        carry=parallel_kernel(specialised(_carry, carry=carry, **seen)),
-        begin=parallel_kernel(specialised(_begin, start=start, launch=launch, **seen)),
+        fly=compiled(specialised(_fly, advance=advance, **seen)),
+        carry=compiled(specialised(_carry, carry=carry, **seen)),
+        begin=compiled(specialised(_begin, start=start, launch=launch, **seen)),
     )
 
 
-def _fly(parts: Parts, worker: int, workers: int) -> None:
-    state, orders = parts[0]
-    snapshot, memory, around, rules, share, mount, _ = state[0]
-    trackers, cameras, targets, episodes, _ = snapshot
-    steps, commands, active, _, _, _ = orders[0]
+def _fly(state: StepState, orders: Orders) -> None:
+    trackers, cameras, targets, episodes, _ = state.snapshot
+    memory, around, rules, mount = state.memory, state.around, state.rules, state.mount
+    share = state.inertial_share
+    steps, commands, active = orders.steps, orders.commands, orders.active
     for n in range(commands.shape[0]):
         if not active[n]:
             continue
@@ -163,11 +162,11 @@ def _fly(parts: Parts, worker: int, workers: int) -> None:
             judge(trackers, targets, episodes, n, around.terrain, rules)
 
 
-def _carry(parts: Parts, worker: int, workers: int) -> None:
-    state, orders = parts[0]
-    snapshot, memory, around, rules, share, mount, _ = state[0]
-    trackers, cameras, targets, episodes, _ = snapshot
-    steps = orders[0].steps
+def _carry(state: StepState, orders: Orders) -> None:
+    trackers, cameras, targets, episodes, _ = state.snapshot
+    memory, around, rules, mount = state.memory, state.around, state.rules, state.mount
+    share = state.inertial_share
+    steps = orders.steps
     for n in range(episodes.tick.shape[0]):
         half_size = rewarded_size(cameras.field_of_view[n], rules)
         for _step in range(steps[0]):
@@ -184,20 +183,19 @@ def _carry(parts: Parts, worker: int, workers: int) -> None:
             judge(trackers, targets, episodes, n, around.terrain, rules)
 
 
-def _begin(parts: Parts, worker: int, workers: int) -> None:
+def _begin(state: StepState, orders: Orders) -> None:
     """Put trackers at their start poses and aim their cameras; target, tick and offset are set."""
-    state, orders = parts[0]
-    snapshot, memory, around, rules, share, mount, launched = state[0]
-    trackers, cameras, targets, episodes, _ = snapshot
-    _, _, _, starts, chosen, pitch = orders[0]
-    for k in range(starts[0]):
-        n = chosen[k]
+    trackers, cameras, targets, episodes, _ = state.snapshot
+    memory, around, rules, mount = state.memory, state.around, state.rules, state.mount
+    share = state.inertial_share
+    for k in range(orders.starts[0]):
+        n = orders.chosen[k]
         clear_episode(episodes, n)
         targets.lost[n] = False
         _move_target(targets, episodes, n, around)
         x, y, z, yaw = offset_pose(targets.position[n], targets.yaw[n], episodes.start_offset[n])
-        start(trackers, memory, n, x, y, z, yaw, pitch[k])
-        if launched == 1:
+        start(trackers, memory, n, x, y, z, yaw, orders.pitch[k])
+        if state.launched == 1:
             speed, (north, east) = targets.speed[n], sin_cos(targets.yaw[n])
             launch(trackers, memory, n, speed * east, speed * north)
         rest(trackers, n, share)

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.lanes import BoundKernel, Held, parallel_kernel
+from eyas.lanes import BoundCall, Held, ParallelCall
 from eyas.state.draw import DrawList
 from eyas.state.motion import ActorState
 from eyas.targets.kind import Group, Looks
@@ -51,10 +51,10 @@ class PoseCall:
         table: What it knows of the models.
     """
 
-    def __init__(self, kernel: parallel_kernel[Any], table: tuple[Any, ...]) -> None:
+    def __init__(self, kernel: ParallelCall, table: tuple[Any, ...]) -> None:
         self._kernel, self._table = kernel, Held(table)
         self._held: tuple[Held[Any], ...] = ()
-        self._bound: BoundKernel | None = None
+        self._bound: BoundCall | None = None
 
     def __call__(self, group: Group, actors: ActorState, looks: Looks, out: DrawList) -> None:
         """Write all slots of the kind's actors, see `Rig.pose`."""
@@ -62,7 +62,7 @@ class PoseCall:
         before = self._held
         held = tuple(map(Held.again, before, given)) if before else tuple(map(Held, given))
         if self._bound is None or not all(map(operator.is_, held, before)):
-            self._held, self._bound = held, self._kernel.bound(self._table, *held)
+            self._held, self._bound = held, self._kernel.bind(self._table, *held)
         if looks.model.shape[0] * len(group.actor) < _MANY:
             self._bound()
         else:

@@ -93,7 +93,9 @@ def _arm(
 
 
 class QuadrotorRig:
-    """One part, at the heading of its actor; `eyas.sim.bodies` poses trackers, which may tilt."""
+    """One part, at the heading of its actor; `eyas.sim.views.additions` poses
+    trackers, which may tilt.
+    """
 
     slots = 1
     part_count = 1

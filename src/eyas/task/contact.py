@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.lanes import Held, Pointer, kernel, parallel_kernel
+from eyas.lanes import compiled, kernel
 from eyas.sensors.bodies import body_box
 from eyas.sensors.obstacles import Obstacles
 from eyas.state.episode import EpisodeState
@@ -58,7 +58,7 @@ class Contacts:
             grace_steps,
             int(ends),
         )
-        self._find = _find_all.bound(Held(work))
+        self._find = _find_all.bind(work)
 
     def begin(self, tracker: int, rng: np.random.Generator) -> None:
         """Begin an episode, without a contact, where the tracker is now."""
@@ -94,10 +94,9 @@ class _Work(NamedTuple):
     """1: a crash ends the episode; 0: it does not."""
 
 
-@parallel_kernel
-def _find_all(parts: Pointer[tuple[Pointer[_Work]]], worker: int, workers: int) -> None:
+@compiled
+def _find_all(work: _Work) -> None:
     """Find the contacts of all active trackers."""
-    work = parts[0][0][0]
     trackers, episodes = work.trackers, work.episodes
     for n in range(work.active.shape[0]):
         if not work.active[n] or episodes.step_count[n] == 0:

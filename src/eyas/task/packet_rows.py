@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.frames import wrap_angle
-from eyas.lanes import Held, Pointer, kernel, parallel_kernel
+from eyas.lanes import compiled, kernel
 from eyas.lanes.elementary import sin_cos, tan
 from eyas.sensors.config import CameraConfig
 from eyas.sensors.inertial import accelerometer, gyroscope
@@ -47,7 +47,7 @@ class PacketRows:
         rows[:, _CAMERA_POSE + 15] = rows[:, _TARGET_POSE + 15] = 1.0
         rows[:, _TARGET_POSE + 10] = 1.0
         packets = _Packets(snapshot, terrain.floor, self._basic, self._reward)
-        self._fill = _fill_packets.bound(Held(packets))
+        self._fill = _fill_packets.bind(packets)
 
     def now(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Return the basic packets, shape (N, 22), and the reward packets, shape (N, 60)."""
@@ -65,11 +65,11 @@ class _Packets(NamedTuple):
     reward: NDArray[np.float64]
 
 
-@parallel_kernel
-def _fill_packets(parts: Pointer[tuple[Pointer[_Packets]]], worker: int, workers: int) -> None:
+@compiled
+def _fill_packets(packets: _Packets) -> None:
     """Fill the packets of all trackers."""
-    snapshot, floor, basic, reward = parts[0][0][0]
-    trackers, cameras, targets, episodes, _ = snapshot
+    trackers, cameras, targets, episodes, _ = packets.snapshot
+    floor, basic, reward = packets.floor, packets.basic, packets.reward
     for n in range(basic.shape[0]):
         _fill_basic(trackers, episodes, n, basic[n])
         _fill_reward(trackers, cameras, targets, episodes, n, floor, reward[n])

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.lanes import Held, Pointer, kernel, parallel_kernel
+from eyas.lanes import compiled, kernel
 from eyas.lanes.elementary import hypot
 from eyas.state.motion import ActorState, Motion
 
@@ -115,17 +115,12 @@ def write_actor(pose: ActorPose, out: ActorState, world: int, actor: int) -> Non
 
 def interpolate_actors(motion: Motion, time: NDArray[np.float64], out: ActorState) -> None:
     """Write all actors of W worlds at the worlds' own times [s], shape (W,)."""
-    # One worker: waking a second one takes longer than 64 worlds of 40 actors.
-    _interpolate(1, Held((motion, time, out)))
+    # In this thread: waking a second one takes longer than 64 worlds of 40 actors.
+    _interpolate(motion, time, out)
 
 
-@parallel_kernel
-def _interpolate(
-    parts: Pointer[tuple[Pointer[tuple[Motion, NDArray[np.float64], ActorState]]]],
-    worker: int,
-    workers: int,
-) -> None:
-    motion, time, out = parts[0][0][0]
+@compiled
+def _interpolate(motion: Motion, time: NDArray[np.float64], out: ActorState) -> None:
     for world in range(len(time)):
         for actor in range(motion.table.shape[1]):
             pose = interpolate_actor(motion, actor, time[world])

@@ -1,11 +1,13 @@
 """Conversion of a recording to a motion."""
 
+from functools import partial
+
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.cache.cached import cached
 from eyas.core.cache.folder import Kind
-from eyas.lanes import Held, Pointer, parallel_kernel
+from eyas.lanes import compiled
 from eyas.lanes.elementary import atan, sin_cos
 from eyas.state.motion import SAMPLE, Motion
 from eyas.state.terrain import Terrain, relief_at, slope_at
@@ -14,15 +16,6 @@ from eyas.traffic.recording_file import RecordingFile
 from eyas.traffic.smoothing import Tracks, smooth
 
 __all__ = ["kept_motion", "recorded_motion", "table_of"]
-
-_MAKERS = (
-    "traffic/recorded.py",
-    "traffic/smoothing.py",
-    "traffic/tractrix.py",
-    "traffic/trailer.py",
-    "state/motion.py",
-    "state/terrain.py",
-)
 
 
 def kept_motion(file: RecordingFile, terrain: Terrain, kind: NDArray[np.int32]) -> Motion:
@@ -33,16 +26,16 @@ def kept_motion(file: RecordingFile, terrain: Terrain, kind: NDArray[np.int32]) 
     """
     numbers = cached(
         Kind.MOTION,
-        _MAKERS,
-        (np.frombuffer(file.data, np.uint8), *terrain),
-        lambda: _numbers(recorded_motion(file.load(), terrain, kind).table),
+        partial(_numbers, file, terrain),
+        (np.frombuffer(file.data, np.uint8), terrain),
         of=NDArray[np.float32],
     )
     return Motion(numbers.view(SAMPLE)[..., 0], kind, file.outline().rate, 0.0)
 
 
-def _numbers(table: NDArray[np.void]) -> NDArray[np.float32]:
-    """Return the numbers of samples, shape (S, A, numbers of a sample)."""
+def _numbers(file: RecordingFile, terrain: Terrain) -> NDArray[np.float32]:
+    """Return the numbers of the samples of a recording, shape (S, A, numbers of a sample)."""
+    table = table_of(smooth(file.load()), terrain)
     return table.view(np.float32).reshape(*table.shape, -1)
 
 
@@ -69,16 +62,13 @@ def table_of(tracks: Tracks, terrain: Terrain) -> NDArray[np.void]:
     table["travelled"] = tracks.travelled
     table["present"] = tracks.present
     if terrain.relief.size:  # on flat ground all heights and slopes are 0 already
-        _lay(1, Held((table, terrain)))
+        _lay(table, terrain)
     return table
 
 
-@parallel_kernel
-def _lay(
-    parts: Pointer[tuple[Pointer[tuple[NDArray[np.void], Terrain]]]], worker: int, workers: int
-) -> None:
+@compiled
+def _lay(table: NDArray[np.void], terrain: Terrain) -> None:
     """Set the heights and slopes of the samples to those of the ground."""
-    table, terrain = parts[0][0][0]
     for row in range(table.shape[0]):
         for actor in range(table.shape[1]):
             sample = table[row, actor]

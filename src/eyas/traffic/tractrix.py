@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.lanes import Held, Pointer, parallel_kernel
+from eyas.lanes import compiled
 from eyas.lanes.elementary import atan, atan2, exp, hypot, tan
 
 __all__ = ["follow_headings"]
@@ -22,22 +22,19 @@ def follow_headings(
         wheelbase: Distance from the front to the axle that does not slide [m].
     """
     heading = np.empty(len(front))
-    _follow(1, Held((front, float(yaw), float(wheelbase), heading)))
+    _follow(front, float(yaw), float(wheelbase), heading)
     return heading
 
 
-@parallel_kernel
+@compiled
 def _follow(
-    parts: Pointer[tuple[Pointer[tuple[NDArray[np.float64], float, float, NDArray[np.float64]]]]],
-    worker: int,
-    workers: int,
+    front: NDArray[np.float64], yaw: float, wheelbase: float, heading: NDArray[np.float64]
 ) -> None:
     """Write the heading (S,) of a body whose front is pulled along `front` (S, 2).
 
     Between two points the pull is straight, and the angle a between heading and pull shrinks:
     tan(a / 2) falls by the factor exp(-distance / wheelbase), the tractrix in closed form.
     """
-    front, yaw, wheelbase, heading = parts[0][0][0]
     heading[0] = yaw
     for sample in range(1, front.shape[0]):
         east = front[sample, 0] - front[sample - 1, 0]

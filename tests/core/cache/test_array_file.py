@@ -41,12 +41,6 @@ def test_what_was_written_is_read_as_numba_wants_it(file):
         assert read.ctypes.data % 64 == 0
 
 
-def test_the_file_is_one_that_numpy_reads(file):
-    whole = np.load(file, allow_pickle=False)
-    assert whole.dtype == np.uint8
-    assert len(whole) == file.stat().st_size - 128
-
-
 def test_what_is_written_into_an_array_stays_in_the_process(file):
     before = file.read_bytes()
     _, (first, *_) = map_arrays(file)
@@ -75,7 +69,7 @@ def test_every_flipped_byte_and_every_cut_is_noticed(file):
         with pytest.raises(ValueError, match=r"damaged|cut off|empty|unpack"):
             map_arrays(file)
     file.write_bytes(good + b"\0")
-    with pytest.raises(ValueError, match="cut off"):
+    with pytest.raises(ValueError, match=r"damaged|cut off"):
         map_arrays(file)
 
 

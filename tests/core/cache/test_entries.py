@@ -2,6 +2,7 @@
 
 import os
 import time
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -11,8 +12,9 @@ from numpy.typing import NDArray
 
 from eyas.core.cache.cached import cached
 from eyas.core.cache.entries import clear, entries, prune, write_entry
-from eyas.core.cache.folder import Kind, cache_folder, cache_limit
+from eyas.core.cache.folder import Kind, cache_limit
 from eyas.core.errors import ConfigError
+from eyas.lanes.folder import cache_folder
 
 DAY = 86_400.0
 KEY = "0123456789abcdef" * 2
@@ -26,7 +28,7 @@ FOREIGN = [
     "traffic/mine.npz",
     f".eyas-{KEY}.npy.0123456789abcdef.part",
     "scene/.mine.part",
-    "kernels/mine/draw.nbc",
+    "kernels/mine/draw.eym",
     f"kernels/{KEY[:16]}/notes.txt",
     "made/model.pickle",
     "shadows/mine.npz",
@@ -45,8 +47,8 @@ def put(folder, name, size=1000, age=0.0):
 
 def kernels(folder, name, age, size=1000):
     path = folder / "kernels" / name
-    put(path, "render_0123/draw.draw-7.py311.nbi", size // 2)
-    put(path, "render_0123/draw.draw-7.py311.1.nbc", size // 4)
+    put(path, "render_0123/draw.draw-7.py311.eyk", size // 2)
+    put(path, "render_0123/draw.draw-7.py311.eym", size // 4)
     put(path, "draw-0123.eyk", size - size // 2 - size // 4)
     put(path, "started", 0)
     used = time.time() - age
@@ -79,7 +81,7 @@ def test_writing_makes_room_and_use_counts(tmp_path, monkeypatch):
     monkeypatch.setenv("EYAS_CACHE_LIMIT", "40K")
 
     def use(i):
-        cached(Kind.SKY, (), (i,), lambda: np.full(12_000, i, np.uint8), of=NDArray[np.uint8])
+        cached(Kind.SKY, partial(np.full, 12_000, i, np.uint8), (i,), of=NDArray[np.uint8])
         time.sleep(0.02)
         return {int(np.load(path)[-1000]) for path in kept(tmp_path)}
 
@@ -92,7 +94,7 @@ def test_writing_makes_room_and_use_counts(tmp_path, monkeypatch):
 def test_an_array_that_is_in_use_survives_its_entry(tmp_path):
     def use(limit_folder):
         return cached(
-            Kind.SKY, (), (), lambda: np.arange(1 << 16), of=NDArray[np.int64], folder=limit_folder
+            Kind.SKY, partial(np.arange, 1 << 16), (), of=NDArray[np.int64], folder=limit_folder
         )
 
     use(tmp_path)
@@ -106,23 +108,19 @@ def test_all_kinds_are_counted_and_removed(tmp_path):
     files = {
         put(tmp_path, entry_name(kind, 1))
         for kind in Kind
-        if kind.value not in ("traffic", "kernels", "old")
+        if kind.value not in ("traffic", "kernels", "definitions")
     }
     files |= {
         put(tmp_path, f"traffic/citystreet-0-{KEY}.npz"),
-        put(tmp_path, f"made/geometry-{KEY}.pickle"),
-        put(tmp_path, f"shadows/{KEY}.npz"),
-        put(tmp_path, f"traffic/citystreet-0-{KEY[:16]}.npz"),
+        put(tmp_path, f"definitions/eyas-{KEY}.json"),
         kernels(tmp_path, KEY[:16], age=1.0),
     }
     found = entries(tmp_path)
     assert {entry.path for entry in found} == files
     assert {entry.kind for entry in found} == set(Kind)
-    assert sum(entry.kind == Kind.OLD for entry in found) == 3
     assert {entry.size for entry in found} == {1000}
     assert clear(tmp_path, Kind.TRAFFIC) == 1000
-    assert clear(tmp_path, Kind.OLD) == 3000
-    assert clear(tmp_path) == sum(entry.size for entry in found) - 4000
+    assert clear(tmp_path) == sum(entry.size for entry in found) - 1000
     assert list(tmp_path.rglob("*")) == []
 
 

@@ -1,17 +1,13 @@
 """Files of arrays that are mapped into memory: processes that use the same file share its pages.
 
-A file is a `.npy` array of bytes, which hold: the CRC-32 of all bytes after it; the length of the
-header; the header, in JSON; the arrays, each at a multiple of 64 bytes. Mapping one file with
-hundreds of arrays takes a hundredth of the time of mapping one file for each array.
+A file is a container (`eyas.lanes.container`) whose pieces are the arrays. Mapping one file with
+hundreds of arrays takes a hundredth of the time of mapping one file for each array. Recordings are
+`.npz` (`eyas.traffic.recording_file`) instead: packed, and read by other programs too.
 """
 
-import io
-import json
 import mmap
 import os
 import stat
-import struct
-import zlib
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -19,12 +15,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.cache.flat import Array, Json
-from eyas.core.files import open_at_once
+from eyas.lanes.container import packed, unpacked
+from eyas.lanes.folder import open_at_once
 
 __all__ = ["Content", "array_file", "let_go", "map_arrays"]
-
-_ALIGNMENT = 64
-_NUMBER = struct.Struct("<I")
 
 
 class Content(NamedTuple):
@@ -42,17 +36,8 @@ def array_file(content: Content, name: str) -> list[bytes | memoryview]:
         content: What it holds.
         name: The name that it gets; under another one, it is not read.
     """
-    table, size = [], 0
-    for array in content.arrays:
-        table.append([array.dtype.str, array.shape, size])
-        size += array.nbytes + _padding(array.nbytes)
-    header = json.dumps({"name": name, "arrays": table, "value": content.flat}).encode()
-    header += b" " * _padding(2 * _NUMBER.size + len(header))
-    pieces: list[bytes | memoryview] = [_NUMBER.pack(len(header)), header]
-    for array in content.arrays:
-        pieces += [_bytes_of(array), bytes(_padding(array.nbytes))]
-    size += 2 * _NUMBER.size + len(header)
-    return [_npy_header(size), _NUMBER.pack(_checksum(pieces)), *pieces]
+    table = [[array.dtype.str, array.shape] for array in content.arrays]
+    return packed([name, table, content.flat], map(_bytes_of, content.arrays))
 
 
 def map_arrays(path: Path) -> Content:
@@ -68,27 +53,18 @@ def map_arrays(path: Path) -> Content:
         if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
             raise ValueError(f"{path}: no ordinary file")
         whole = np.asarray(np.memmap(file, np.uint8, mode="c"))
-    first = len(_npy_header(0))
-    if bytes(whole[:first]) != _npy_header(len(whole) - first):
-        raise ValueError(f"{path}: not a file of arrays, or cut off")
-    body = whole[first:].data
     # Kernels index these arrays without checking bounds, so not a single bit may be wrong.
-    if bytes(body[: _NUMBER.size]) != _NUMBER.pack(zlib.crc32(body[_NUMBER.size :])):
-        raise ValueError(f"{path}: damaged")
     try:
-        (length,) = _NUMBER.unpack_from(body, _NUMBER.size)
-        data = 2 * _NUMBER.size + length
-        header = json.loads(bytes(body[2 * _NUMBER.size : data]))
+        (name, table, flat), pieces = unpacked(whole.data)
         arrays = [
-            np.ndarray(tuple(shape), _plain(kind), body, data + offset)
-            for kind, shape, offset in header["arrays"]
+            np.ndarray(tuple(shape), _plain(kind), piece)
+            for (kind, shape), piece in zip(table, pieces, strict=True)
         ]
-        name = header["name"]
-    except (KeyError, TypeError, struct.error) as error:
+    except (TypeError, ValueError) as error:
         raise ValueError(f"{path}: not as Eyas writes it: {error}") from None
     if name != path.name:
         raise ValueError(f"{path}: in the place of another entry")
-    return Content(header["value"], arrays)
+    return Content(flat, arrays)
 
 
 def let_go(array: NDArray[Any]) -> None:
@@ -112,25 +88,6 @@ def _plain(kind: str) -> np.dtype[Any]:
     return dtype
 
 
-def _npy_header(size: int) -> bytes:
-    """Return the header of a `.npy` of `size` bytes; its length is the same for every size."""
-    header = io.BytesIO()
-    layout = {"descr": "|u1", "fortran_order": False, "shape": (size,)}
-    np.lib.format.write_array_header_1_0(header, layout)
-    return header.getvalue()
-
-
-def _padding(size: int) -> int:
-    return -size % _ALIGNMENT
-
-
 def _bytes_of(array: Array) -> memoryview:
     flat: NDArray[np.uint8] = np.ascontiguousarray(array).reshape(-1).view(np.uint8)
     return flat.data
-
-
-def _checksum(pieces: list[bytes | memoryview]) -> int:
-    checksum = 0
-    for piece in pieces:
-        checksum = zlib.crc32(piece, checksum)
-    return checksum

@@ -1,39 +1,24 @@
-"""The folder of the cache: its location, size limit and layout.
+"""The layout and size limit of the cache, which lies in `eyas.lanes.folder.cache_folder`.
 
     <folder>/<kind>/eyas-<key>.npy             arrays, see `eyas.core.cache.array_file`
     <folder>/traffic/<map>-<seed>-<key>.npz    recordings of traffic
+    <folder>/definitions/eyas-<key>.json       what source files say, see `eyas.core.program`
     <folder>/kernels/<key>/                    compiled kernels, see `eyas.lanes.machine_code`
 
 The modification time of an entry is the time of its last use.
 """
 
-import logging
 import os
 import re
 from enum import StrEnum
-from pathlib import Path
-
-import platformdirs
 
 from eyas.core.errors import ConfigError
 
 __all__ = [
-    "FOLDER_VARIABLE",
     "LIMIT_VARIABLE",
     "Kind",
-    "cache_folder",
     "cache_limit",
-    "not_kept",
-    "touch",
 ]
-
-_LOG = logging.getLogger("eyas")
-
-_WARNED: list[object] = []
-"""Why something could not be kept: one reason of maybe many."""
-
-FOLDER_VARIABLE = "EYAS_CACHE_DIR"
-"""Environment variable: the folder of the cache, instead of the user's default."""
 
 LIMIT_VARIABLE = "EYAS_CACHE_LIMIT"
 """Environment variable: largest size of the cache."""
@@ -57,18 +42,8 @@ class Kind(StrEnum):
     TRAFFIC = "traffic"
     MOTION = "motion"
     OCCLUSION = "occlusion"
+    DEFINITIONS = "definitions"
     KERNELS = "kernels"
-    OLD = "old"
-    """Entries of older versions of Eyas with another layout; they have no common folder."""
-
-
-def cache_folder() -> Path:
-    """Return the folder of the cache; it need not exist."""
-    named = os.environ.get(FOLDER_VARIABLE)
-    try:
-        return Path(named or platformdirs.user_cache_dir("eyas")).expanduser().absolute()
-    except RuntimeError:  # the user has no home
-        return Path(os.devnull, "eyas")  # where nothing can be kept
 
 
 def cache_limit() -> int:
@@ -87,22 +62,3 @@ def cache_limit() -> int:
             "K, M, G or T, for example 500M"
         )
     return int(float(size[1]) * (1 << _UNITS[size[2].upper()]))
-
-
-def not_kept(reason: object) -> None:
-    """Warn that something made could not be kept; only once in a process."""
-    if not _WARNED:
-        _WARNED.append(reason)
-        _LOG.warning(
-            "%s: cannot write: %s; so every start makes and compiles again what is missing there "
-            "(%s names another folder)",
-            *(cache_folder(), getattr(reason, "strerror", None) or reason, FOLDER_VARIABLE),
-        )
-
-
-def touch(path: Path) -> None:
-    """Set the last use of an entry to now, if the cache can be written to."""
-    try:
-        os.utime(path)
-    except OSError:
-        pass

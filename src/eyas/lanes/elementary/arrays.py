@@ -8,14 +8,14 @@ broadcast as numpy's do, and give a float for numbers. An array takes some 15 mi
 """
 
 from collections.abc import Callable
-from typing import NamedTuple, overload
+from typing import overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from eyas.lanes import elementary
+from eyas.lanes.calls import compiled
 from eyas.lanes.jit import interpreted, kernel
-from eyas.lanes.parallel import Held, Pointer, parallel_kernel
 
 __all__ = [
     "acos",
@@ -55,16 +55,6 @@ _FEW = 4
 """So many numbers are computed faster one by one in Python than by a call of a kernel."""
 
 
-class _Work(NamedTuple):
-    """What to compute."""
-
-    function: int
-    first: Floats
-    second: Floats
-    """Used by functions of two numbers only."""
-    result: Floats
-
-
 @kernel(inline=True)
 def _value(function: int, a: float, b: float) -> float:  # noqa: C901  # a table
     if function == _SIN:
@@ -92,16 +82,11 @@ def _value(function: int, a: float, b: float) -> float:  # noqa: C901  # a table
     return elementary.power(a, b)
 
 
-@parallel_kernel
-def elementary_of_all(
-    parts: Pointer[tuple[Pointer[_Work]]],
-    worker: int,
-    workers: int,
-) -> None:
-    """Compute all elements."""
-    work = parts[0][0][0]
-    for k in range(worker, len(work.result), workers):
-        work.result[k] = _value(work.function, work.first[k], work.second[k])
+@compiled
+def elementary_of_all(function: int, first: Floats, second: Floats, result: Floats) -> None:
+    """Compute all elements; functions of one number pay no heed to `second`."""
+    for k in range(len(result)):
+        result[k] = _value(function, first[k], second[k])
 
 
 class _OfOne:
@@ -151,7 +136,7 @@ def _of_all(function: int, first: Floats, second: Floats) -> Floats:
         return np.array(values, np.float64).reshape(first.shape)
     result = np.empty(first.shape)
     flat = first.reshape(-1), second.reshape(-1), result.reshape(-1)
-    elementary_of_all.bound(Held(_Work(function, *flat)))()
+    elementary_of_all(function, *flat)
     return result
 
 

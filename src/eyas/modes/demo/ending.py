@@ -4,7 +4,7 @@ import asyncio
 from collections.abc import Coroutine
 from typing import Any
 
-from eyas.core.interrupts import let_in, shielded
+from eyas.lanes.interrupts import let_in, shielded
 
 __all__ = ["run_until_signal"]
 

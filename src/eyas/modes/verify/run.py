@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 from rich.console import Console
 
-from eyas.core.cache.folder import FOLDER_VARIABLE
 from eyas.core.errors import UnknownNameError
+from eyas.lanes.folder import FOLDER_VARIABLE
 from eyas.modes.verify.cases import Case, cases
 from eyas.modes.verify.machine import machine_facts
 from eyas.modes.verify.manifest import Hashes, read_manifest

@@ -1,6 +1,6 @@
 """Pictures: the loop over bands of views, and the steps of each."""
 
-from eyas.lanes import Pointer, address_of, claim, kernel, parallel_kernel
+from eyas.lanes import address_of, claim, kernel, parallel
 from eyas.render.kernels.bundles import Geometry, Light, Movers, Output, Scratch, Task
 from eyas.render.kernels.light.casters import cast_light
 from eyas.render.kernels.light.view_light import view_light
@@ -20,14 +20,18 @@ RASTERISING = int(DrawStage.RASTERISING)
 MOVERS_LIGHT = int(DrawStage.MOVERS_LIGHT)
 
 
-@parallel_kernel
+@parallel
 def draw_views(
-    parts: Pointer[tuple[Geometry, Light, Scratch, Movers, Output, Task]],
     worker: int,
     workers: int,
+    geometry: Geometry,
+    light: Light,
+    scratch: Scratch,
+    movers: Movers,
+    output: Output,
+    task: Task,
 ) -> None:
     """Draw all jobs. Each is drawn alone, so neither workers nor other jobs change its bytes."""
-    geometry, light, scratch, movers, output, task = parts[0]
     job = task.job
     index = i8(worker)
     while index < len(job.band):

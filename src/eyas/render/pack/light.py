@@ -1,5 +1,6 @@
 """Light and air as the kernels read them, and the tone curve."""
 
+from functools import partial
 from typing import cast
 
 import numpy as np
@@ -24,7 +25,7 @@ from eyas.render.kernels.bundles import (
 )
 from eyas.render.kernels.light.tone import TONE_STEPS, TONE_TOP
 from eyas.render.pack.lamp_grid import lamp_grid
-from eyas.state.lighting import Lighting
+from eyas.state.lighting import Horizon, Lighting
 from eyas.state.scene import Lamps, Scene
 
 __all__ = ["build_light", "tile_starts", "tone_table"]
@@ -46,9 +47,8 @@ def build_light(
     toward = (float(sun[0]), float(sun[1]), float(sun[2]))
     clouds, hills = cached(
         Kind.SKY,
-        ("render",),
+        partial(_sky, lighting.clouds, scene.horizon, toward),
         (lighting.clouds, scene.horizon, toward),
-        lambda: (build_clouds(lighting.clouds, toward), build_hills(scene.horizon, toward)),
         of=tuple[NDArray[np.uint8], NDArray[np.uint8]],
     )
     return Light(
@@ -68,6 +68,12 @@ def build_light(
         clouds=clouds,
         hills=hills,
     )
+
+
+def _sky(
+    cover: float, horizon: Horizon, sun: tuple[float, float, float]
+) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
+    return build_clouds(cover, sun), build_hills(horizon, sun)
 
 
 def tile_starts(tile: NDArray[np.int32]) -> NDArray[np.int32]:

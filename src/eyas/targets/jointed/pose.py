@@ -9,7 +9,7 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.lanes import Pointer, kernel, parallel_kernel
+from eyas.lanes import kernel, parallel
 from eyas.lanes.elementary import sin_cos, tan
 from eyas.state.motion import ActorState
 from eyas.targets.kind import Group, Looks
@@ -147,9 +147,10 @@ def _steering(ahead: float, yaw_rate: float, speed: float) -> tuple[float, float
 
 
 @kernel
-def _pose_actor(given: tuple[CycleTable, Group, ActorState, Looks, Slots], w: int, g: int) -> None:
+def _pose_actor(
+    table: CycleTable, group: Group, actors: ActorState, looks: Looks, out: Slots, w: int, g: int
+) -> None:
     """Write the slots of one actor."""
-    table, group, actors, looks, out = given
     a, first = group.actor[g], group.slot[g]
     model = looks.model[w, a] - group.first_model
     body = table.body[model]
@@ -184,19 +185,24 @@ def _pose_actor(given: tuple[CycleTable, Group, ActorState, Looks, Slots], w: in
             out.colour[w, slot, channel] = looks.colour[w, a, channel]
 
 
-@parallel_kernel
+@parallel
 def pose_jointed(
-    parts: Pointer[tuple[CycleTable, Group, ActorState, Looks, Slots]], worker: int, workers: int
+    worker: int,
+    workers: int,
+    table: CycleTable,
+    group: Group,
+    actors: ActorState,
+    looks: Looks,
+    out: Slots,
 ) -> None:
     """Write the slots of the actors of one kind in all worlds, see `Rig`."""
-    table, group, actors, looks, out = parts[0]
     count = group.actor.shape[0]
     total = looks.model.shape[0] * count
     for i in range(worker * total // workers, (worker + 1) * total // workers):
         w, g = i // count, i % count
         a, first = group.actor[g], group.slot[g]
         if actors.present[w, a]:
-            _pose_actor(parts[0], w, g)
+            _pose_actor(table, group, actors, looks, out, w, g)
         else:
             for k in range(table.part.shape[1]):
                 out.part[w, first + k] = -1

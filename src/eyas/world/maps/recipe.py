@@ -1,7 +1,7 @@
 """The definition of a map, one object for each."""
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from hashlib import blake2b
 from importlib.resources.abc import Traversable
@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from eyas.core.errors import ConfigError, UnknownNameError
+from eyas.core.program import definitions_in
 from eyas.state.lighting import Lighting
 from eyas.world.weather import WEATHERS, Season, Weather, unchanged
 
@@ -139,9 +140,17 @@ class MapRecipe:
         found = [file for file in files if re.fullmatch(r"traffic.*\.npz", file.name)]
         return tuple(sorted(found, key=lambda file: (file.name != TRAFFIC_FILE, file.name)))
 
-    def source_hash(self) -> str | None:
-        """Return a hash of the sources in the map's folder; None without a folder."""
-        return None if self.folder is None else _source_hash(self.folder)
+    def data_hash(self) -> str | None:
+        """Return a digest of what the folder holds beside code of Eyas, roads and recordings.
+
+        None without a folder: then nobody knows what the map is made of.
+        """
+        if self.folder is None:
+            return None
+        if self.package is None:
+            return _digest_of([self.folder / FEATURES_FILE])
+        foreign = self.package.partition(".")[0] != __name__.partition(".")[0]
+        return _digest_of(_files_in(self.folder, sources=foreign))
 
     def attribution(self) -> str:
         """Return what must be said wherever the map or data made from it is shown, or nothing."""
@@ -175,13 +184,21 @@ class MapRecipe:
         return weather
 
 
-def _source_hash(folder: Traversable) -> str:
-    digest = blake2b(digest_size=16)
+def _files_in(folder: Traversable, *, sources: bool) -> Iterator[Traversable]:
     for path in sorted(folder.iterdir(), key=lambda path: path.name):
-        if path.name == "__pycache__":  # which comes with the first start
-            continue
         if path.is_dir():
-            digest.update(f"{path.name}/{_source_hash(path)}".encode())
-        elif path.name.endswith((".py", FEATURES_FILE)):
-            digest.update(path.name.encode() + path.read_bytes())
+            if path.name != "__pycache__":  # which comes with the first start
+                yield from _files_in(path, sources=sources)
+        elif not path.name.endswith(".npz") and (sources or not path.name.endswith(".py")):
+            yield path
+
+
+def _digest_of(files: Iterable[Traversable]) -> str:
+    """Return a digest of files; of sources what they say, since a foreign one may do anything."""
+    digest = blake2b(digest_size=16)
+    for path in files:
+        content = path.read_bytes() if path.is_file() else b""
+        if path.name.endswith(".py"):
+            content = repr(definitions_in(content)).encode()
+        digest.update(f"{path.name} {len(content)} ".encode() + content)
     return digest.hexdigest()

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core import exact
-from eyas.lanes import Pointer, kernel, parallel_kernel
+from eyas.lanes import kernel, parallel
 from eyas.lanes.vector import (
     gather_pair,
     gather_pair_after,
@@ -156,14 +156,13 @@ class OpennessBake(NamedTuple):
     """`AmbientMap.openness`, filled, shape (rows, columns)."""
 
 
-@parallel_kernel
-def bake_openness(parts: Pointer[tuple[Pointer[OpennessBake]]], worker: int, workers: int) -> None:
+@parallel
+def bake_openness(worker: int, workers: int, bake: OpennessBake) -> None:
     """Fill `AmbientMap.openness`, for the ground and for roofs.
 
     Up to 3 texels into a building, where the feet of its walls are looked up, it copies the
     nearest texel of what they stand on.
     """
-    bake = parts[0][0][0]
     solid, result = bake.solid, bake.result
     for row in range(worker, solid.shape[0], workers):
         for column in range(solid.shape[1]):

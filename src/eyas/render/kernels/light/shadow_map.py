@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.lanes import Pointer, kernel, parallel_kernel
+from eyas.lanes import kernel, parallel
 from eyas.lanes.vector import any_of, bits_of, first_bit, greater, lane_numbers, load, to_f8
 from eyas.render.kernels.bundles import TILE, Geometry, Projection, Row
 from eyas.render.kernels.scalars import f4, i4, i8
@@ -72,10 +72,9 @@ class ShadowBake(NamedTuple):
     """Tiles that are wanted are filled, shape (tiles, TILE + 1, TILE + 1)."""
 
 
-@parallel_kernel
-def bake_tiles(parts: Pointer[tuple[Geometry, ShadowBake]], worker: int, workers: int) -> None:
+@parallel
+def bake_tiles(worker: int, workers: int, geometry: Geometry, bake: ShadowBake) -> None:
     """Draw static triangles and the finest level of all fixtures into the tiles that are wanted."""
-    geometry, bake = parts[0]
     for block in range(worker, len(bake.block), workers):
         row, column = bake.block[block]
         _draw_block(geometry, bake, row * TILE, column * TILE, worker)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.lanes import Pointer, kernel, parallel_kernel
+from eyas.lanes import kernel, parallel
 from eyas.lanes.elementary import exp
 from eyas.render.kernels.scalars import f4, u4
 
@@ -70,18 +70,18 @@ class CloudRays(NamedTuple):
     """Opacity, and brightness times opacity, 0 to 255, shape (rows, columns, 2)."""
 
 
-@parallel_kernel
-def cloud_rays(parts: Pointer[tuple[Pointer[CloudRays]]], worker: int, workers: int) -> None:
+@parallel
+def cloud_rays(worker: int, workers: int, rays: CloudRays) -> None:
     """Fill the panorama.
 
     Multiply scattered light falls off as `1 / (1 + depth)`, not exponentially; `depth` is the
     distance of a point below the sunlit surface of the clouds.
     """
-    field, sines, directions, output = parts[0][0][0]
+    sines = rays.sines
     # Far clouds take longest, so they are spread over all workers.
     for row in range(worker, len(sines), workers):
         climb = sines[row] / math.sqrt(max(f4(1.0) - sines[row] * sines[row], f4(1e-6)))
-        _cloud_row(field, climb, directions, output[row])
+        _cloud_row(rays.field, climb, rays.directions, rays.output[row])
 
 
 @kernel
