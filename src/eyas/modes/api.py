@@ -1,8 +1,8 @@
 """What the commands do, as functions of Python; `eyas` offers them by these names."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import TYPE_CHECKING, Any, TypedDict, Unpack
 
 from eyas.envs.choice import EnvChoices, Source, chosen_settings
 
@@ -110,19 +110,40 @@ def record(
     return folder
 
 
-def evaluate(  # noqa: PLR0913  # choices of the user's
+class EvaluationChoices(TypedDict, total=False):
+    """What an evaluation flies, by keyword."""
+
+    map: Names
+    """A map, or several; by default citystreet."""
+    weather: Names
+    """A weather, or several; by default day."""
+    target: Names
+    """A target, or several; by default SUMO_VEHICLE."""
+    episodes: int
+    """For each place and start direction; by default the protocol's number."""
+    seed: int
+    """Seed of the first episode."""
+    latency: str
+    """Milliseconds, the path of a file with one in each line, or `measured`."""
+    sampled: bool
+    """Whether a network's actions are sampled, not the best ones."""
+    env: Mapping[str, Any]
+    """Changes of what the policy sees and does, settings of `env`."""
+    settings: Mapping[str, Any]
+    """Changes of `tracker`, `control`, `start.velocity` and `extras`: another protocol."""
+    batch: int
+    """Episodes that are flown together."""
+
+
+def evaluate(
     policy: str,
     protocol: str = "paper",
     out: Path | str | None = None,
     *,
-    map: Names = "citystreet",  # as the setting
-    weather: Names = "day",
-    target: Names = "SUMO_VEHICLE",
-    episodes: int | None = None,
     resume: bool = False,
     overwrite: bool = False,
     quiet: bool = True,
-    **plan: Any,  # noqa: ANN401  # fields of `Plan`
+    **choices: Unpack[EvaluationChoices],
 ) -> "list[Record]":
     """Fly a policy in the episodes of a protocol, like `eyas evaluate`; return their records.
 
@@ -130,14 +151,10 @@ def evaluate(  # noqa: PLR0913  # choices of the user's
         policy: A name of `list_policies()`, a file, or `package.module:name`.
         protocol: `paper`, `long`, `search` or `distractor`.
         out: The folder; by default `runs/evaluation/<policy>-<protocol>`.
-        map: A map, or several.
-        weather: A weather, or several.
-        target: A target, or several.
-        episodes: For each place and start direction; None: the protocol's number.
         resume: Whether an evaluation in the folder is continued.
         overwrite: Whether one in the folder is deleted first.
         quiet: Whether nothing is printed but failures of the policy.
-        plan: Other fields of `eyas.evaluation.plan.Plan`, such as `latency` and `seed`.
+        choices: See `EvaluationChoices`.
 
     Raises:
         EyasError: A setting is wrong, or the folder; one line.
@@ -146,11 +163,14 @@ def evaluate(  # noqa: PLR0913  # choices of the user's
     from eyas.evaluation.plan import Plan, folder_name
     from eyas.modes.evaluate import run
 
-    places = {"maps": _several(map), "weathers": _several(weather), "targets": _several(target)}
-    said = {"policy": policy, "protocol": protocol, "episodes": episodes, **places, **plan}
-    made = validated(Plan, said)
-    folder = Path(out) if out is not None else Path("runs/evaluation") / folder_name(made)
-    return run(made, folder, resume=resume, overwrite=overwrite, quiet=quiet)
+    said: dict[str, Any] = {"policy": policy, "protocol": protocol, **choices}
+    for name in ("map", "weather", "target"):
+        if name in said:
+            names = said.pop(name)
+            said[f"{name}s"] = [names] if isinstance(names, str) else list(names)
+    plan = validated(Plan, said)
+    folder = Path(out) if out is not None else Path("runs/evaluation") / folder_name(plan)
+    return run(plan, folder, resume=resume, overwrite=overwrite, quiet=quiet)
 
 
 def train(
@@ -216,7 +236,3 @@ def list_presets() -> tuple[str, ...]:
     from eyas.settings.preset import PRESETS
 
     return PRESETS
-
-
-def _several(names: Names) -> list[str]:
-    return [names] if isinstance(names, str) else list(names)
