@@ -22,7 +22,7 @@ from numba.core.funcdesc import FunctionDescriptor
 from numba.core.registry import cpu_target
 from numba.extending import models, register_model
 
-from eyas.lanes import pointers as _pointers  # noqa: F401  # registers fields with numba
+from eyas.lanes import operations as _fields  # noqa: F401  # registers them with numba
 from eyas.lanes.front_end import SETTINGS, Compiler, Library, flags, typing
 from eyas.lanes.identity import identity
 from eyas.lanes.interrupts import let_in

@@ -20,8 +20,8 @@ from eyas.lanes.syntax import syntax_of
 __all__ = ["LANGUAGE", "identity", "language_files", "language_hash"]
 
 LANGUAGE = (
-    *("atomics.py", "compilation.py", "elementary", "front_end.py", "held.py", "intrinsics.py"),
-    *("machine_code.py", "pointers.py", "vector", "words.py"),
+    *("compilation.py", "elementary", "front_end.py", "held.py", "intrinsics.py"),
+    *("machine_code.py", "modules.py", "operations.py", "vector"),
 )
 """Files and folders of this room that decide what a kernel is compiled to, beside the kernel."""
 

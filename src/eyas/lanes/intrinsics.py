@@ -42,13 +42,13 @@ class Intrinsic:
         raise NotImplementedError(f"{self._module}.{self._name} is for kernels only")
 
 
-address_of = Intrinsic("eyas.lanes.pointers", "address_of")
-claim = Intrinsic("eyas.lanes.atomics", "claim")
+_OPERATIONS = "eyas.lanes.operations"
+
+address_of = Intrinsic(_OPERATIONS, "address_of")
+claim = Intrinsic(_OPERATIONS, "claim")
 bits_of_float = Intrinsic(
-    "eyas.lanes.words", "bits_of_float", lambda x: struct.unpack("<q", struct.pack("<d", x))[0]
+    _OPERATIONS, "bits_of_float", lambda x: struct.unpack("<q", struct.pack("<d", x))[0]
 )
 float_of_bits = Intrinsic(
-    "eyas.lanes.words",
-    "float_of_bits",
-    lambda bits: struct.unpack("<d", struct.pack("<q", bits))[0],
+    _OPERATIONS, "float_of_bits", lambda x: struct.unpack("<d", struct.pack("<q", x))[0]
 )

@@ -9,6 +9,8 @@ bytes.
 import hashlib
 import io
 import json
+import math
+import zipfile
 from contextlib import suppress
 from dataclasses import asdict
 from importlib.resources.abc import Traversable
@@ -21,7 +23,6 @@ from numpy.typing import NDArray
 from eyas.core.config import shown, validated
 from eyas.core.errors import DataFileError, EyasError
 from eyas.core.files import read_limited, write_atomic
-from eyas.core.npz import read_npz
 from eyas.traffic.config import Mix, TrafficConfig, VehicleType
 from eyas.traffic.recording import (
     ANGLE_UNIT,
@@ -40,6 +41,9 @@ FORMAT = "eyas traffic recording 2"
 
 _LARGEST = 256 << 20
 """Largest size of a file, and of its arrays: a day of 50 vehicles [bytes]."""
+
+_MOST_ARRAYS = 64
+"""Largest number of arrays in a file."""
 
 Arrays = dict[str, NDArray[np.generic]]
 
@@ -208,7 +212,7 @@ def _provenance(header: dict[str, Any], source: str) -> Provenance:
 
 def _read_arrays(data: bytes, source: str) -> Arrays:
     try:
-        arrays = read_npz(data, _LARGEST)
+        arrays = _read_npz(data, _LARGEST)
     except Exception as error:  # damaged bytes raise many kinds in zipfile, zlib, numpy
         raise DataFileError(f"{source}: not a complete traffic recording") from error
     if {"header", "checksum"} - set(arrays):
@@ -254,3 +258,50 @@ def _integrated(name: str, arrays: Arrays) -> NDArray[np.int64]:
     first = np.concatenate([np.diff(start, axis=-1), second], axis=-1).cumsum(axis=-1)
     values: NDArray[np.int64] = np.concatenate([start[..., :1], first], axis=-1).cumsum(axis=-1)
     return values
+
+
+def _read_npz(data: bytes, largest: int) -> dict[str, NDArray[np.generic]]:
+    """Return the arrays of a `.npz` file that may come from anyone, read-only.
+
+    `numpy.load` makes arrays of the size that their headers claim before it reads them, and
+    decompresses whatever there is. Here every size is known and checked first.
+
+    Args:
+        data: Content of the file.
+        largest: Largest number of bytes of all arrays together.
+
+    Raises:
+        ValueError: The file is damaged or too large, or has other content than arrays of numbers or
+            text.
+        Exception: Other kinds, which `zipfile` and `zlib` raise for damaged bytes.
+    """
+    with zipfile.ZipFile(io.BytesIO(data)) as archive:
+        members = archive.infolist()
+        size = sum(member.file_size for member in members)
+        if len(members) > _MOST_ARRAYS or size > largest:
+            raise ValueError(f"{len(members)} arrays of {size} bytes; allowed: {largest} bytes")
+        return {
+            member.filename.removesuffix(".npy"): _array_of(_content(archive, member))
+            for member in members
+        }
+
+
+def _content(archive: zipfile.ZipFile, member: zipfile.ZipInfo) -> bytes:
+    with archive.open(member) as file:
+        content = file.read(member.file_size + 1)  # never more, whatever there is
+    if len(content) != member.file_size:
+        raise ValueError(f"{member.filename}: cut off")
+    return content
+
+
+def _array_of(content: bytes) -> NDArray[np.generic]:
+    stream = io.BytesIO(content)
+    version = np.lib.format.read_magic(stream)
+    if version != (1, 0):
+        raise ValueError(f"npy version {version}; allowed: 1.0")
+    shape, by_columns, dtype = np.lib.format.read_array_header_1_0(stream)
+    rest = memoryview(content)[stream.tell() :]
+    if dtype.kind not in "biufU" or math.prod(shape) * dtype.itemsize != len(rest):
+        raise ValueError(f"an array of {dtype}, shape {shape}, in {len(rest)} bytes")
+    flat = np.frombuffer(rest, dtype)
+    return flat.reshape(shape, order="F" if by_columns else "C")

@@ -2,7 +2,7 @@
 
 A file is a container (`eyas.lanes.container`) whose pieces are the arrays. Mapping one file with
 hundreds of arrays takes a hundredth of the time of mapping one file for each array. Recordings are
-`.npz` (`eyas.core.npz`) instead: they are packed, and read by other programs.
+`.npz` (`eyas.traffic.recording_file`) instead: packed, and read by other programs too.
 """
 
 import mmap

@@ -1,5 +1,6 @@
 """Loads and stores of lanes. Arrays are seen as one row, so they must be contiguous."""
 
+from collections.abc import Iterable
 from typing import Any
 
 from llvmlite import ir
@@ -8,7 +9,6 @@ from numba.extending import intrinsic
 
 from eyas.lanes.vector import WIDTH
 from eyas.lanes.vector.kinds import F4, U4, Lanes, as_lanes, ir_type
-from eyas.lanes.vector.shuffles import columns_of, order_of
 
 __all__ = [
     "gather", "gather_column", "gather_pair", "gather_pair_after", "load", "load_words", "store",
@@ -140,7 +140,7 @@ def transposed(typing_context, array, index, first, width):
                 rows.append(_load(builder, pointer, 4))
             else:
                 rows = [builder.load(builder.gep(pointer, [_I64(k)])) for k in range(8)]
-        columns = columns_of(builder, rows) if isinstance(index, Lanes) else rows
+        columns = _columns_of(builder, rows) if isinstance(index, Lanes) else rows
         return context.make_tuple(builder, result, columns)
 
     return result(array, index, first, width), generate
@@ -218,9 +218,35 @@ def store_triples(typing_context, array, at, packed):
         index = context.cast(builder, args[1], sig.args[1], types.int64)
         pointer = _pointer(context, builder, array, args[0], index)
         bytes_ = builder.bitcast(args[2], ir.VectorType(ir.IntType(8), 4 * WIDTH))
-        order = order_of(4 * (k // 3) + k % 3 for k in range(3 * WIDTH))
+        order = _order_of(4 * (k // 3) + k % 3 for k in range(3 * WIDTH))
         three = builder.shuffle_vector(bytes_, ir.Constant(bytes_.type, ir.Undefined), order)
         builder.store(three, builder.bitcast(pointer, three.type.as_pointer())).align = 1
         return context.get_dummy_value()
 
     return types.void(array, at, packed), generate
+
+
+def _order_of(numbers: Iterable[int]) -> ir.Constant:
+    """Return the mask of a `shufflevector` that takes the lanes of these numbers."""
+    items = [_I32(number) for number in numbers]
+    return ir.Constant(ir.VectorType(_I32, len(items)), items)
+
+
+def _columns_of(builder: ir.IRBuilder, rows: list[ir.Value]) -> list[ir.Value]:
+    """Return the columns of eight rows: pairs, then fours, then halves are exchanged."""
+
+    def mixed(a: ir.Value, b: ir.Value, order: list[int]) -> ir.Value:
+        return builder.shuffle_vector(a, b, _order_of(order))
+
+    low, high = [0, 8, 1, 9, 4, 12, 5, 13], [2, 10, 3, 11, 6, 14, 7, 15]
+    pairs = []
+    for k in range(0, 8, 2):
+        pairs += [mixed(rows[k], rows[k + 1], low), mixed(rows[k], rows[k + 1], high)]
+    even, odd = [0, 1, 8, 9, 4, 5, 12, 13], [2, 3, 10, 11, 6, 7, 14, 15]
+    fours = []
+    for k in (0, 4):
+        fours += [mixed(pairs[k], pairs[k + 2], even), mixed(pairs[k], pairs[k + 2], odd)]
+        fours += [mixed(pairs[k + 1], pairs[k + 3], even), mixed(pairs[k + 1], pairs[k + 3], odd)]
+    first, last = [0, 1, 2, 3, 8, 9, 10, 11], [4, 5, 6, 7, 12, 13, 14, 15]
+    columns = [mixed(fours[k], fours[k + 4], first) for k in range(4)]
+    return columns + [mixed(fours[k], fours[k + 4], last) for k in range(4)]

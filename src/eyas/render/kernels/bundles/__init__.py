@@ -5,7 +5,7 @@ grouped by prototype), F fixtures, I instances, K workers, J jobs (bands of view
 mesh begins with a triangle whose number is a multiple of 8: eight triangles in a row are a cluster,
 which is drawn at once. What fills its last cluster up has no area.
 
-Kernels get bundles of arrays by pointer, see `eyas.lanes.pointers`, and read them like the bundles
+Kernels get bundles of arrays by pointer (`eyas.lanes.operations`) and read them like the bundles
 themselves. Numbers of a bundle are float32 if their names are those of light, else float64.
 """
 
