@@ -33,8 +33,9 @@ SETTINGS, LEGACY_SETTINGS = "config.json", "env_config.json"
 
 ORIGIN = "version.json"
 """Version and build of Eyas and the files of the writers: `{"eyas": "0.1.0", "build_id": "...",
-"build": {...}, "files": {...}}`. The build, since another one may draw different pictures; the files, so that
-`--overwrite` can delete them even if the package of a user's own writer is no longer installed."""
+"build": {...}, "files": {...}}`. The build, since another one may draw different pictures; the
+files, so that `--overwrite` can delete them even if the package of a user's own writer is no longer
+installed."""
 
 
 _NOT_PICTURED = ("learning", "wire")
