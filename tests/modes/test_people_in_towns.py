@@ -7,13 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapely
+from eyas.behaviours.gap_acceptance import GapAcceptance
 
 from eyas.behaviours.config import ExtraConfig
-from eyas.behaviours.gaps import Gaps
 from eyas.behaviours.ground import Ground, usable_crossings, walkways
-from eyas.behaviours.lives import lasting
+from eyas.behaviours.groups import SampleClock, ScriptedGroup, lasting
 from eyas.behaviours.scripted import scripted_table
-from eyas.behaviours.troop import Clock, Troop
 from eyas.core.errors import SpawnError
 from eyas.core.rng import stream
 from eyas.modes.maps import importing, info
@@ -32,7 +31,7 @@ from eyas.world.maps import MAPS
 
 pytestmark = pytest.mark.sumo
 NAME = "test-walks"
-TEN_MINUTES = Clock(6001, 10.0)
+TEN_MINUTES = SampleClock(6001, 10.0)
 TRAFFIC = TrafficConfig(max_vehicles=30)
 
 
@@ -111,7 +110,9 @@ def ground(scene, lights):
 
 def walked(ground, vehicles, behaviour=Behaviour.CROSSING, count=50) -> np.ndarray:
     lives = lasting(count, TEN_MINUTES.samples)
-    who = Troop("Pedestrian", 0.81, behaviour, habit_of("Pedestrian"), lives, 0.0, "extras.0.count")
+    who = ScriptedGroup(
+        "Pedestrian", 0.81, behaviour, habit_of("Pedestrian"), lives, 0.0, "extras.0.count"
+    )
     return scripted_table(ground, who, TEN_MINUTES, stream(1, "towns"), vehicles)
 
 
