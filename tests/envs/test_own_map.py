@@ -97,7 +97,7 @@ def test_its_hill_is_what_the_camera_sees_and_what_the_terrain_says():
     there.renderer.draw(views, DrawList.create(1, 1), picture)
     seen = 100.0 - picture.depth[:, 4, 4]
     said = [ground_at(there.scene.terrain, *spot) for spot in spots]
-    assert said[0] == pytest.approx(29.9, abs=0.01)
+    assert said[0] == pytest.approx(29.9, abs=0.3)
     assert seen[:2] == pytest.approx(said[:2], abs=0.3)
     assert seen[2] == pytest.approx(0.0, abs=0.02)  # the road lies on the floor
 

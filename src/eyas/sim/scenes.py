@@ -60,13 +60,37 @@ def load_scene(map_name: str, seed: int = 0, season: Season = Season.SUMMER) -> 
 def _scene(map_name: str, seed: int, season: Season) -> Scene:
     # `lru_cache` would tell calls apart that leave out defaults, and build the map for each.
     recipe, network = MAPS.get(map_name), load_network(map_name, seed)
-    make, origin = partial(_built, recipe, network, seed, season), _origin(map_name, seed, season)
+    text, origin = _text_of(map_name, seed), _origin(map_name, seed, season)
+    make = partial(_built, text, network, season, recipe.name)
     return make() if origin is None else cached(Kind.SCENE, make, origin, of=Scene)
 
 
-def _built(recipe: MapRecipe, network: RoadNetwork, seed: int, season: Season) -> Scene:
-    _LOG.info("building the map '%s', once", recipe.name)
-    return recipe.scene(network, seed, season)
+def _built(text: NDArray[np.uint8], network: RoadNetwork, season: Season, name: str) -> Scene:
+    from eyas.world.plan.build import build_scene  # not needed where the scene is kept
+    from eyas.world.plan.file import plan_of
+
+    _LOG.info("building the map '%s', once", name)
+    return build_scene(plan_of(text.tobytes()), network, season)
+
+
+@lru_cache(maxsize=4)
+def _text_of(map_name: str, seed: int) -> NDArray[np.uint8]:
+    """Return the plan of a map as its file tells it, UTF-8.
+
+    It is kept apart from what is built of it: a change of a shape places nothing anew, and a
+    change of a planner builds anew only what it has placed elsewhere.
+    """
+    recipe, network = MAPS.get(map_name), load_network(map_name, seed)
+    make, data = partial(_planned, recipe, network, seed), recipe.data_hash()
+    if data is None:
+        return make()
+    return cached(Kind.PLAN, make, (recipe.plan, data, seed, network), of=NDArray[np.uint8])
+
+
+def _planned(recipe: MapRecipe, network: RoadNetwork, seed: int) -> NDArray[np.uint8]:
+    from eyas.world.plan.file import text_of
+
+    return np.frombuffer(text_of(recipe.plan(network, seed)).encode(), np.uint8)
 
 
 @lru_cache(maxsize=4)
@@ -75,11 +99,9 @@ def _origin(map_name: str, seed: int, season: Season) -> tuple[object, ...] | No
 
     None for a map without a folder: nobody knows what it is made of, so nothing is kept on disk.
     """
-    recipe = MAPS.get(map_name)
-    data, network = recipe.data_hash(), load_network(map_name, seed)
-    if data is None:
+    if MAPS.get(map_name).data_hash() is None:
         return None
-    return (_built, recipe.scene, recipe.name, data, seed, season.value, network)
+    return _built, _text_of(map_name, seed), season.value, load_network(map_name, seed)
 
 
 @lru_cache(maxsize=4)

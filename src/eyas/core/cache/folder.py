@@ -31,6 +31,7 @@ _UNITS = {"": 0, "K": 10, "M": 20, "G": 30, "T": 40}
 class Kind(StrEnum):
     """Kinds of entries; the value is the name of the folder in the cache."""
 
+    PLAN = "plan"
     SCENE = "scene"
     TEXTURES = "textures"
     PARTS = "parts"

@@ -32,16 +32,18 @@ from eyas.traffic.network import graph_hash
 from eyas.traffic.osm_network import osm_network
 from eyas.world.build.millimetres import snapped
 from eyas.world.maps import MAPS
-from eyas.world.maps.imported import MAP_FILE, ROADS_FILE, Origin, maps_folder
-from eyas.world.maps.recipe import ATTRIBUTION_FILE, FEATURES_FILE, NETWORK_FILE, TRAFFIC_FILE
+from eyas.world.maps.files import MAP_FILE, ROADS_FILE, Origin, maps_folder
+from eyas.world.maps.recipe import ATTRIBUTION_FILE, NETWORK_FILE, PLAN_FILE, TRAFFIC_FILE
 from eyas.world.osm.data import Bounds
-from eyas.world.osm.features import Features, to_text
+from eyas.world.osm.features import Features
 from eyas.world.osm.houses import houses_of
 from eyas.world.osm.land import add_land
 from eyas.world.osm.projection import Projection
 from eyas.world.osm.reader import covered, read_osm
 from eyas.world.osm.rings import Shapes
 from eyas.world.osm.streets import street_file
+from eyas.world.plan.file import write_plan
+from eyas.world.plan.plan import MapPlan, Roads
 from eyas.world.roads.areas import polygons_of
 from eyas.world.roads.network_file import save_network
 
@@ -161,7 +163,15 @@ def run(
         folder.mkdir(parents=True)
     write_atomic(folder / ROADS_FILE, gzip.compress(finished, mtime=0))
     save_network(folder / NETWORK_FILE, network)
-    write_atomic(folder / FEATURES_FILE, to_text(features).encode())
+    plan = MapPlan(
+        name=name,
+        title=origin.title,
+        attribution=ATTRIBUTION,
+        size=report.size,
+        roads=Roads(file=ROADS_FILE),
+        survey=features,
+    )
+    write_plan(folder / PLAN_FILE, plan)
     write_atomic(folder / ATTRIBUTION_FILE, ATTRIBUTION.encode())
     # Last, since a folder with this file is a map.
     write_atomic(folder / MAP_FILE, (json.dumps(asdict(origin), indent=1) + "\n").encode())

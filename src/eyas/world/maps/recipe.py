@@ -15,13 +15,14 @@ from eyas.world.weather import WEATHERS, Season, Weather, unchanged
 
 if TYPE_CHECKING:  # maps load with `eyas`; the scene modules only when a scene is built
     from eyas.state.roads import RoadGraph, RoadNetwork
-    from eyas.state.scene import Scene
+    from eyas.world.plan.plan import MapPlan
 
 __all__ = [
     "ATTRIBUTION_FILE",
-    "FEATURES_FILE",
     "MIXED_FILE",
     "NETWORK_FILE",
+    "PLAN_FILE",
+    "PLAN_SUFFIXES",
     "TRAFFIC_FILE",
     "MapRecipe",
     "Original",
@@ -31,8 +32,11 @@ __all__ = [
 ATTRIBUTION_FILE = "ATTRIBUTION.txt"
 """File in a map's folder that names those whose data it is made of."""
 
-FEATURES_FILE = "features.json"
-"""File in the folder of an imported map with what stands on it."""
+PLAN_FILE = "map.plan.json"
+"""File in the folder of an imported map with its plan."""
+
+PLAN_SUFFIXES = (".plan.json", ".plan.json.gz")
+"""Endings of the names of files with plans."""
 
 NETWORK_FILE = "network.npz"
 """File in a map's package with the processed roads of its seed 0."""
@@ -64,7 +68,7 @@ class Original:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MapRecipe:
-    """A map: its roads, its scene for each season, and what is special about its weathers."""
+    """A map: its roads, its plan, and what is special about its weathers."""
 
     name: str
     """Words joined by hyphens; used in the names of folders and environments."""
@@ -72,8 +76,8 @@ class MapRecipe:
     """Name for people, a few words."""
     roads: Callable[[int], "RoadGraph"]
     """Returns the roads of a seed; seed 0 is the canonical map."""
-    scene: Callable[["RoadNetwork", int, Season], "Scene"]
-    """Builds everything else around the processed roads of the same seed."""
+    plan: Callable[["RoadNetwork", int], "MapPlan"]
+    """Returns the plan of all else around the processed roads of the same seed."""
     weather: Callable[[Weather], Weather] = unchanged
     """Returns how a weather is on this map, also one of a user's own."""
     without: tuple[str, ...] = ()
@@ -87,6 +91,10 @@ class MapRecipe:
     and the scene is not cached between runs."""
     home: Path | None = None
     """Folder of a map that is no package: an imported one. It holds the same files."""
+    file: Path | None = None
+    """File with the plan of a map that has neither."""
+    notice: str = ""
+    """What must be said wherever the map is shown, unless a file beside it says so."""
     original: Original | None = None
     """Figures of the map that it re-creates; None if there is none."""
     pedestrians: int = 0
@@ -141,21 +149,24 @@ class MapRecipe:
         return tuple(sorted(found, key=lambda file: (file.name != TRAFFIC_FILE, file.name)))
 
     def data_hash(self) -> str | None:
-        """Return a digest of what the folder holds beside code of Eyas, roads and recordings.
+        """Return a digest of a plan in a file, or of what a folder holds beside code of Eyas, roads
+        and recordings.
 
-        None without a folder: then nobody knows what the map is made of.
+        None without both: then nobody knows what the map is made of.
         """
+        if self.file is not None:
+            return _digest_of([self.file])
         if self.folder is None:
             return None
         if self.package is None:
-            return _digest_of([self.folder / FEATURES_FILE])
+            return _digest_of([self.folder / PLAN_FILE])
         foreign = self.package.partition(".")[0] != __name__.partition(".")[0]
         return _digest_of(_files_in(self.folder, sources=foreign))
 
     def attribution(self) -> str:
         """Return what must be said wherever the map or data made from it is shown, or nothing."""
         file = self.shipped(ATTRIBUTION_FILE)
-        return file.read_text(encoding="utf-8") if file is not None else ""
+        return file.read_text(encoding="utf-8") if file is not None else self.notice
 
     def shipped_network(self) -> "RoadNetwork | None":
         """Return the processed roads of seed 0 that come with the package, if there are any.

@@ -4,11 +4,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from eyas.world.maps.recipe import MapRecipe, Original
-from eyas.world.weather import CLEAR_NIGHT, Season, Weather, in_fog
+from eyas.world.weather import CLEAR_NIGHT, Weather, in_fog
 
 if TYPE_CHECKING:
     from eyas.state.roads import RoadGraph, RoadNetwork
-    from eyas.state.scene import Scene
+    from eyas.world.plan.plan import MapPlan
 
 __all__ = ["DOWNTOWN"]
 
@@ -19,11 +19,10 @@ def _roads(seed: int) -> "RoadGraph":
     return road_graph(seed)
 
 
-def _scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
-    """Build the city; in winter it is the same, and the weather's light adds the snow."""
-    from eyas.world.maps.downtown.scene import build_scene
+def _plan(network: "RoadNetwork", seed: int) -> "MapPlan":
+    from eyas.world.maps.downtown.plan import make_plan
 
-    return build_scene(network, seed)
+    return make_plan(network, seed)
 
 
 # Fronts and shop windows throw light back into the streets; the sky between them is black.
@@ -48,7 +47,7 @@ DOWNTOWN = MapRecipe(
     name="downtown",
     title="Canyons between towers, and a park",
     roads=_roads,
-    scene=_scene,
+    plan=_plan,
     weather=_weather,
     package=__name__,
     original=Original(road=11.05, buildings=470, height=28.0, trees=334),

@@ -4,11 +4,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from eyas.world.maps.recipe import MapRecipe, Original
-from eyas.world.weather import Season, Weather, in_fog, unchanged
+from eyas.world.weather import Weather, in_fog, unchanged
 
 if TYPE_CHECKING:
     from eyas.state.roads import RoadGraph, RoadNetwork
-    from eyas.state.scene import Scene
+    from eyas.world.plan.plan import MapPlan
 
 __all__ = ["FARMLAND", "FARMLAND_BARE"]
 
@@ -24,10 +24,10 @@ def _roads(seed: int) -> "RoadGraph":
     return road_graph(seed)
 
 
-def _scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
-    from eyas.world.maps.farmland.scene import build_scene
+def _plan(network: "RoadNetwork", seed: int) -> "MapPlan":
+    from eyas.world.maps.farmland.plan import make_plan
 
-    return build_scene(network, seed, season)
+    return make_plan(network, seed)
 
 
 def _weather(weather: Weather) -> Weather:
@@ -44,18 +44,18 @@ def _weather(weather: Weather) -> Weather:
     return replace(weather, day=in_fog(day, 400.0), night=in_fog(night, 400.0))
 
 
-def _bare_scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
-    from eyas.world.maps.bare import build_bare_scene
-    from eyas.world.maps.farmland.scene import FLOOR, MOUNTAINS, SOIL
+def _bare_plan(network: "RoadNetwork", seed: int) -> "MapPlan":
+    from eyas.world.maps.bare import make_plan
+    from eyas.world.maps.farmland.plan import FLOOR, MOUNTAINS, SOIL
 
-    return build_bare_scene("farmland-bare", network, seed, FLOOR, SOIL, MOUNTAINS)
+    return make_plan("farmland-bare", network, seed, FLOOR, SOIL, MOUNTAINS)
 
 
 FARMLAND = MapRecipe(
     name="farmland",
     title="A patchwork of fields in four colours",
     roads=_roads,
-    scene=_scene,
+    plan=_plan,
     weather=_weather,
     seasons=True,
     package=__name__,
@@ -66,7 +66,7 @@ FARMLAND_BARE = replace(
     FARMLAND,
     name="farmland-bare",
     title="The roads of the farmland on bare soil, without scenery",
-    scene=_bare_scene,
+    plan=_bare_plan,
     weather=unchanged,
     without=("foggy", "night", "snow"),
     seasons=False,

@@ -3,11 +3,11 @@
 from typing import TYPE_CHECKING
 
 from eyas.world.maps.recipe import MapRecipe, Original
-from eyas.world.weather import Season, Weather, in_fog
+from eyas.world.weather import Weather, in_fog
 
 if TYPE_CHECKING:
     from eyas.state.roads import RoadGraph, RoadNetwork
-    from eyas.state.scene import Scene
+    from eyas.world.plan.plan import MapPlan
 
 __all__ = ["LAKE"]
 
@@ -18,10 +18,10 @@ def _roads(seed: int) -> "RoadGraph":
     return road_graph(seed)
 
 
-def _scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
-    from eyas.world.maps.lake.scene import build_scene
+def _plan(network: "RoadNetwork", seed: int) -> "MapPlan":
+    from eyas.world.maps.lake.plan import make_plan
 
-    return build_scene(network, seed, season)
+    return make_plan(network, seed)
 
 
 def _weather(weather: Weather) -> Weather:
@@ -32,7 +32,7 @@ LAKE = MapRecipe(
     name="lake",
     title="A suburb between ponds and strips of forest",
     roads=_roads,
-    scene=_scene,
+    plan=_plan,
     weather=_weather,
     seasons=True,
     package=__name__,

@@ -11,11 +11,11 @@ from typing import TYPE_CHECKING
 
 from eyas.world.maps.desert.air import desert_weather
 from eyas.world.maps.recipe import MapRecipe, Original
-from eyas.world.weather import Season, Weather, in_fog
+from eyas.world.weather import Weather, in_fog
 
 if TYPE_CHECKING:
     from eyas.state.roads import RoadGraph, RoadNetwork
-    from eyas.state.scene import Scene
+    from eyas.world.plan.plan import MapPlan
 
 __all__ = ["CITY", "CLINKER", "DESERT", "FARM", "GRASS", "LAKE", "VILLAGE"]
 
@@ -47,16 +47,16 @@ def _skinned(
 ) -> MapRecipe:
     """Return the simple map with one kind of ground."""
 
-    def scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
-        from eyas.world.maps.simpleway.scene import build_scene
+    def plan(network: "RoadNetwork", seed: int) -> "MapPlan":
+        from eyas.world.maps.simpleway.plan import make_plan
 
-        return build_scene(skin, network, seed, season)
+        return make_plan(skin, network, seed)
 
     return MapRecipe(
         name=f"simpleway-{skin}",
         title=title,
         roads=_roads,
-        scene=scene,
+        plan=plan,
         weather=weather,
         without=without,
         seasons=seasons,

@@ -4,11 +4,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from eyas.world.maps.recipe import MapRecipe, Original
-from eyas.world.weather import CLEAR_DAY, CLEAR_NIGHT, FOG, Season, Weather, in_fog, unchanged
+from eyas.world.weather import CLEAR_DAY, CLEAR_NIGHT, FOG, Weather, in_fog, unchanged
 
 if TYPE_CHECKING:
     from eyas.state.roads import RoadGraph, RoadNetwork
-    from eyas.state.scene import Scene
+    from eyas.world.plan.plan import MapPlan
 
 __all__ = ["VILLAGE", "VILLAGE_BARE"]
 
@@ -19,23 +19,19 @@ def _roads(seed: int) -> "RoadGraph":
     return road_graph(seed)
 
 
-def _scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
-    """Build the village; in winter it is the same, and the weather's light adds the snow."""
-    from eyas.world.maps.village.scene import build_scene
+def _plan(network: "RoadNetwork", seed: int) -> "MapPlan":
+    from eyas.world.maps.village.plan import make_plan
 
-    return build_scene(network, seed)
+    return make_plan(network, seed)
 
 
-def _bare_scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
-    from eyas.world.maps.bare import build_bare_scene
+def _bare_plan(network: "RoadNetwork", seed: int) -> "MapPlan":
+    from eyas.world.maps.bare import make_plan
+    from eyas.world.maps.village.layout import FLOOR
     from eyas.world.maps.village.looks import GRASS
-    from eyas.world.maps.village.plan import FLOOR
-    from eyas.world.maps.village.scene import VALLEY
-    from eyas.world.roads import markings
+    from eyas.world.maps.village.plan import VALLEY
 
-    return build_bare_scene(
-        "village-bare", network, seed, FLOOR, GRASS, VALLEY, markings.Centre.DOUBLE_YELLOW
-    )
+    return make_plan("village-bare", network, seed, FLOOR, GRASS, VALLEY, "double yellow")
 
 
 # Haze that fills the valley to the original's visibility range, below a sky that stays blue: the
@@ -74,7 +70,7 @@ VILLAGE = MapRecipe(
     name="village",
     title="A green valley with hills and tunnels",
     roads=_roads,
-    scene=_scene,
+    plan=_plan,
     weather=_weather,
     package=__name__,
     original=Original(road=3.59, buildings=24, height=12.0, trees=41),
@@ -84,7 +80,7 @@ VILLAGE_BARE = replace(
     VILLAGE,
     name="village-bare",
     title="The roads of the village on bare grass, without scenery",
-    scene=_bare_scene,
+    plan=_bare_plan,
     weather=unchanged,
     without=("foggy", "night", "snow"),
     seasons=False,
