@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 import shapely
-from eyas.behaviours.gap_acceptance import GapAcceptance
 
 from eyas.behaviours.config import ExtraConfig
 from eyas.behaviours.ground import Ground, usable_crossings, walkways
