@@ -248,7 +248,7 @@ def test_many_cross_and_at_lights_on_green_only(scene, lights, table):
 
 
 def test_who_does_not_look_at_lights_would_be_noticed(scene, lights, vehicles, monkeypatch):
-    monkeypatch.setattr(Gaps, "_shown", lambda *_: True)
+    monkeypatch.setattr(GapAcceptance, "_shown", lambda *_: True)
     blind = walked(Ground(scene, roads=True, lights=lights), vehicles)
     entered, late, caught = broken(scene, lights, blind)
     assert late > 0.2 * entered
