@@ -9,6 +9,7 @@ import pytest
 import shapely
 
 from eyas.behaviours.config import ExtraConfig
+from eyas.behaviours.gap_acceptance import GapAcceptance
 from eyas.behaviours.ground import Ground, usable_crossings, walkways
 from eyas.behaviours.groups import SampleClock, ScriptedGroup, lasting
 from eyas.behaviours.scripted import scripted_table
