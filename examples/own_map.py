@@ -23,7 +23,7 @@ from eyas.world.land.ground import asphalt
 from eyas.world.land.hills import Hill, hilly, relief_mesh
 from eyas.world.maps import MapRecipe
 from eyas.world.roads.areas import road_area
-from eyas.world.weather import CLEAR_DAY, DAY, FOG, FOGGY, Season
+from eyas.world.weather import Season
 
 SIZE = (400.0, 400.0)
 HILL = Hill(x=0.0, y=0.0, radius=75.0, height=30.0)
@@ -58,7 +58,7 @@ FIELD = MapRecipe(
     title="A field with a hill",
     roads=roads,
     scene=scene,
-    lighting={DAY: CLEAR_DAY, FOGGY: FOG},
+    without=("night", "snow"),
     package=__package__ or None,
 )
 

@@ -4,12 +4,14 @@ import numpy as np
 import pytest
 
 from eyas.behaviours.ground import Ground
-from eyas.behaviours.habits import HABITS
 from eyas.behaviours.lives import lasting
 from eyas.behaviours.scripted import scripted_table
 from eyas.behaviours.troop import Clock, Troop
 from eyas.core.rng import stream
 from eyas.sim.scenes import load_scene
+from eyas.targets.catalogue import habit_of
+
+from .habits import HABITS
 
 CLOCK = Clock(601, 10.0)
 
@@ -25,7 +27,8 @@ def hills():
 
 
 def troop(kind: str, count: int = 8, breadth: float = 0.6, **changes) -> Troop:
-    made = Troop(kind, breadth, None, lasting(count, CLOCK.samples), 0.0, "objects.max_count")
+    lives = lasting(count, CLOCK.samples)
+    made = Troop(kind, breadth, None, habit_of(kind), lives, 0.0, "objects.max_count")
     return made._replace(**changes)
 
 

@@ -3,10 +3,8 @@
 import numpy as np
 import pytest
 
-from eyas.behaviours.config import Behaviour
 from eyas.behaviours.gaps import Gaps
 from eyas.behaviours.ground import Ground
-from eyas.behaviours.habits import HABITS
 from eyas.behaviours.lives import lasting
 from eyas.behaviours.scripted import scripted_table
 from eyas.behaviours.troop import Clock
@@ -21,6 +19,7 @@ from eyas.sim.worlds import together
 from eyas.state.motion import SAMPLE, Motion
 from eyas.state.scene import ObjectClass
 from eyas.targets.catalogue import KINDS, MODELS, kind_index, models_of, sections_of
+from eyas.targets.habit import Behaviour
 from eyas.targets.kind import Section
 from eyas.traffic.config import TrafficConfig
 from eyas.traffic.library import CANONICAL_MIX
@@ -28,6 +27,7 @@ from eyas.traffic.signals import Aspect, SignalPlan
 from eyas.traffic.trailer import BUMPER_AHEAD, TAIL_BEHIND, folded_by
 
 from .conftest import troop
+from .habits import HABITS
 
 FIVE_MINUTES = Clock(3001, 10.0)
 

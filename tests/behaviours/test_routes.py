@@ -6,13 +6,14 @@ import numpy as np
 import pytest
 
 from eyas.behaviours.chain import joints
-from eyas.behaviours.config import Behaviour
-from eyas.behaviours.habits import HABITS
 from eyas.behaviours.obstacles import Obstacles
 from eyas.behaviours.routes import Task, legs, polylines, stops
 from eyas.behaviours.timetable import time_of
 from eyas.core.rng import stream
 from eyas.state.scene import Scene
+from eyas.targets.habit import Behaviour
+
+from .habits import HABITS
 
 COUNT = 200
 

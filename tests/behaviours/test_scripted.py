@@ -5,9 +5,8 @@ import pytest
 import shapely
 
 from eyas.behaviours import places
-from eyas.behaviours.config import Behaviour
 from eyas.behaviours.ground import Ground
-from eyas.behaviours.habits import HABITS, STROLL
+from eyas.behaviours.scripted import STROLL
 from eyas.core.errors import SpawnError
 from eyas.core.variation import Mirrored, Uniform
 from eyas.sim.scenes import load_scene
@@ -16,10 +15,12 @@ from eyas.state.scene import ObjectClass
 from eyas.state.terrain import reliefs
 from eyas.targets.catalogue import MODELS
 from eyas.targets.config import TargetName
+from eyas.targets.habit import Behaviour
 from eyas.traffic.replay import Replay
 from eyas.world.roads.areas import streets
 
 from .conftest import CLOCK, table_of, troop
+from .habits import HABITS
 
 STOPPED = {kind for kind, habit in HABITS.items() if habit.behaviour is Behaviour.STOP}
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import shapely
 
-from eyas.behaviours.config import Behaviour, ExtraConfig
+from eyas.behaviours.config import ExtraConfig
 from eyas.behaviours.gaps import Gaps
 from eyas.behaviours.ground import Ground, usable_crossings, walkways
 from eyas.behaviours.lives import lasting
@@ -22,8 +22,10 @@ from eyas.sim.assets import load_assets
 from eyas.sim.crowd import Crowd
 from eyas.sim.scenes import load_scene
 from eyas.state.scene import ObjectClass
-from eyas.targets.catalogue import KINDS, MODELS, models_of
+from eyas.targets.catalogue import KINDS, MODELS, habit_of, models_of
+from eyas.targets.habit import Behaviour
 from eyas.traffic.config import TrafficConfig
+from eyas.traffic.net_file import SumoNet
 from eyas.traffic.signals import Aspect, walk_plan
 from eyas.world.config import WorldConfig
 from eyas.world.maps import MAPS
@@ -93,7 +95,7 @@ def scene(writer, maps, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def lights(scene):
-    return walk_plan(MAPS.get(NAME).roads(0).finished)
+    return walk_plan(SumoNet(MAPS.get(NAME).roads(0).finished))
 
 
 @pytest.fixture(scope="module")
@@ -109,7 +111,7 @@ def ground(scene, lights):
 
 def walked(ground, vehicles, behaviour=Behaviour.CROSSING, count=50) -> np.ndarray:
     lives = lasting(count, TEN_MINUTES.samples)
-    who = Troop("Pedestrian", 0.81, behaviour, lives, 0.0, "extras.0.count")
+    who = Troop("Pedestrian", 0.81, behaviour, habit_of("Pedestrian"), lives, 0.0, "extras.0.count")
     return scripted_table(ground, who, TEN_MINUTES, stream(1, "towns"), vehicles)
 
 

@@ -61,10 +61,10 @@ def test_where_kernels_are_shipped_the_second_process_does_something_else(begins
 
 ASKS = """
 import sys
-from eyas.lanes import parallel
+from eyas.lanes import calls
 from eyas.render import ahead
-address = parallel.entry_address
-parallel.entry_address = lambda function, parts: (
+address = calls.entry_address
+calls.entry_address = lambda function, parts: (
     print(function.__name__) or address(function, parts)
 )
 if sys.argv[1] == "second":
@@ -94,6 +94,6 @@ def asked_for(process):
 def test_no_kernel_is_compiled_by_both_processes():
     first, second = asked_for("first"), asked_for("second")
     own = first[: first.index("waits")]
-    assert {"_fly", "list_near"} <= set(own)
+    assert {"_fly", "_list_actors"} <= set(own)
     assert not set(own) & set(second)
     assert set(first[len(own) + 1 :]) == set(second) == {"draw_views"}

@@ -47,7 +47,7 @@ def shade_thread(row, column, geometry, light, scratch, movers, task, found):
     """Do what one thread does for one pixel whose triangle is known."""
     job = task.job
     view = address_of(view_of(job, 0, task.width, task.height, task.samples))
-    lit = address_of(view_light(light.weather, job.light[0]))
+    lit = address_of(view_light(light.weather, job.light, 0))
     found[row, column] = shade_pixel(
         view, geometry, light, lit, movers, 0, scratch.drawn[0], scratch.key[0, row, column],
         u4(scratch.shade[0, row, column, 0]), row, column,

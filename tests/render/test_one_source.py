@@ -22,7 +22,7 @@ WEATHERS = {"day": CLEAR_DAY, "foggy": FOG, "night": CLEAR_NIGHT, "snow": WINTER
 def one_by_one(geometry, light, scratch, movers, _output, task, places, found):
     job = task.job
     view = address_of(view_of(job, 0, task.width, task.height, task.samples))
-    lit = address_of(view_light(light.weather, job.light[0]))
+    lit = address_of(view_light(light.weather, job.light, 0))
     for k in range(len(places)):
         row, column = places[k, 0], places[k, 1]
         shade = scratch.shade[0, row, column]

@@ -168,10 +168,8 @@ def test_who_is_half_in_the_picture_is_told_apart(monkeypatch):
         actors, models = seen(0)
         actors.present[:] = True
         actors.position[0, 1 - target] = middle + share * side * cameras.rotation[0, :, 1]
-        monkeypatch.setattr(
-            simulation.perception._worlds, "actors_around", lambda *_: (actors, models)
-        )
-        return simulation.perception.words(0, 0.75)
+        monkeypatch.setattr(simulation.view._worlds, "actors_around", lambda *_: (actors, models))
+        return simulation.view.words(0, 0.75)
 
     assert moved(1.1) == "a dark grey walking machine on six legs, moving"  # the other stands
     assert moved(2.5) == "a dark grey walking machine on six legs"

@@ -11,7 +11,7 @@ from eyas.traffic.library import RESPAWN_GROUPS
 from eyas.world.maps import MAPS
 from eyas.world.maps.citystreet import CITYSTREET
 from eyas.world.maps.recipe import MIXED_FILE, TRAFFIC_FILE, respawn_file
-from eyas.world.weather import DAY, SNOW, WEATHERS, Season, Weather
+from eyas.world.weather import DAY, SNOW, WEATHERS, Season
 
 
 def test_an_unknown_map_is_told_with_the_nearest_name():
@@ -34,7 +34,7 @@ def test_a_map_ships_the_roads_and_the_traffic_of_seed_0(name):
 
 @pytest.mark.parametrize("name", MAPS.built_in)
 def test_a_maps_weathers_come_in_the_order_of_the_table(name):
-    names = [weather.name for weather in WEATHERS]
+    names = WEATHERS.names()
     assert sorted(MAPS.get(name).weathers, key=names.index) == list(MAPS.get(name).weathers)
 
 
@@ -47,20 +47,12 @@ def test_knowing_the_maps_imports_nothing_that_builds_one():
 def test_a_weather_that_a_map_lacks_is_told_with_those_it_has():
     with pytest.raises(UnknownNameError, match=r"world\.weather: .*'fogy'.*did you mean 'foggy'"):
         CITYSTREET.light("fogy")
-    bare = replace(CITYSTREET, name="bare-land", lighting={DAY: CITYSTREET.light("day")})
+    bare = replace(CITYSTREET, name="bare-land", without=("foggy", "night", "snow"))
     for ask in (bare.light, bare.season):
         with pytest.raises(UnknownNameError) as caught:
             ask("snow")
         line = "world.weather: 'snow' is not allowed on the map 'bare-land'; known: day"
         assert str(caught.value) == line
-
-
-def test_a_map_can_have_a_weather_of_its_own():
-    dusk = Weather("dusk", Season.WINTER)
-    recipe = replace(CITYSTREET, lighting={dusk: CITYSTREET.light("night")}, seasons=True)
-    assert recipe.weathers == ("dusk",)
-    assert recipe.light("dusk").lamps == 1.0
-    assert recipe.season("dusk") is Season.WINTER
 
 
 def test_a_map_without_seasons_has_one_scene_for_all_weathers():

@@ -8,7 +8,6 @@ import shapely
 
 from eyas.behaviours.chain import chain_through, outline
 from eyas.behaviours.crossings import crossings_of
-from eyas.behaviours.habits import HABITS
 from eyas.behaviours.kerbs import kerb_ways
 from eyas.behaviours.obstacles import Obstacles
 from eyas.behaviours.pavements import Way, pavement_ways
@@ -16,6 +15,8 @@ from eyas.behaviours.places import Roadside
 from eyas.behaviours.surface import Surface
 from eyas.state.motion import Motion
 from eyas.state.scene import Scene
+from eyas.targets.catalogue import habit_of
+from eyas.targets.config import TargetName
 from eyas.traffic.signals import SignalPlan
 
 __all__ = ["ROOM", "Ground", "usable_crossings", "walkways"]
@@ -78,7 +79,7 @@ def walkways(
 
 def usable_crossings(scene: Scene) -> list[str]:
     """Return the name of the light of each crossing that joins pavements; empty: it has none."""
-    ground, bend = Ground(scene, roads=True), HABITS["Pedestrian"].radius
+    ground, bend = Ground(scene, roads=True), habit_of(TargetName.PEDESTRIAN).radius
     ways = walkways(ground, _BREADTH, bend)
     found = crossings_of(scene, ways, ground.solids, 0.5 * _BREADTH)
     return list({one.number: one.light for one in found}.values())

@@ -9,11 +9,10 @@ import shapely
 from numpy.typing import NDArray
 
 from eyas.behaviours.chain import Chain, chain_of, chain_through, outline
-from eyas.behaviours.config import Behaviour
-from eyas.behaviours.habits import Habit
 from eyas.behaviours.obstacles import Obstacles
 from eyas.behaviours.timetable import time_of
 from eyas.core import exact
+from eyas.targets.habit import Behaviour, Habit
 
 __all__ = ["Task", "legs", "polylines", "round_and_round", "stops", "wave_of"]
 

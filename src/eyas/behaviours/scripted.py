@@ -10,11 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.behaviours.chain import Chain, chain_through
-from eyas.behaviours.config import Behaviour
 from eyas.behaviours.crossings import crossings_of
 from eyas.behaviours.gaps import Gaps
 from eyas.behaviours.ground import ROOM, Ground, walkways
-from eyas.behaviours.habits import HABITS, STROLL, Habit
 from eyas.behaviours.pavements import Way
 from eyas.behaviours.routes import Task, legs, polylines, round_and_round, stops, wave_of
 from eyas.behaviours.timetable import Ride, ride, time_of
@@ -24,6 +22,7 @@ from eyas.core import exact
 from eyas.core.errors import SpawnError
 from eyas.state.motion import SAMPLE, Motion
 from eyas.state.terrain import reliefs
+from eyas.targets.habit import Behaviour, Habit
 
 __all__ = ["scripted_table"]
 
@@ -40,6 +39,10 @@ _TOGETHER: Final = 4
 """Objects that are laid on the ground at a time: for hundreds at once it takes gigabytes."""
 
 Floats = NDArray[np.float64]
+
+
+STROLL: Final = (1.1, 1.7)
+"""Slowest and fastest walk on a pavement [m/s]."""
 
 
 class _Course(NamedTuple):
@@ -76,7 +79,7 @@ def scripted_table(
     Raises:
         SpawnError: The map has no room for it.
     """
-    lives, habit = troop.lives, troop.habit or HABITS[troop.kind]
+    lives, habit = troop.lives, troop.habit
     seconds = (lives.leaves - lives.enters) / clock.rate
     if (troop.behaviour or habit.behaviour) is Behaviour.CROSSING:
         gaps = Gaps(vehicles, clock.samples, clock.rate, ground.lights)

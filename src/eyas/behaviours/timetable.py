@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.behaviours.chain import Chain, Poses, poses_on
-from eyas.behaviours.habits import Habit
+from eyas.targets.habit import Habit
 
 __all__ = ["Ride", "ride", "time_of"]
 

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from eyas.behaviours.chain import Chain, Poses, chain_of, chain_through, joints
 from eyas.behaviours.crossings import Crossing
 from eyas.behaviours.gaps import Gaps
-from eyas.behaviours.habits import Habit
 from eyas.behaviours.pavements import Way
 from eyas.behaviours.timetable import Ride, ride, time_of
 from eyas.core import exact
+from eyas.targets.habit import Habit
 
 __all__ = ["Streets", "Tour", "tour", "tour_ride"]
 

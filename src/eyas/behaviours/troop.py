@@ -2,10 +2,9 @@
 
 from typing import NamedTuple
 
-from eyas.behaviours.config import Behaviour
-from eyas.behaviours.habits import Habit
 from eyas.behaviours.lives import Lives
 from eyas.core.variation import Variation
+from eyas.targets.habit import Behaviour, Habit
 
 __all__ = ["Clock", "Troop"]
 
@@ -22,17 +21,17 @@ class Troop(NamedTuple):
     """Some of one kind."""
 
     kind: str
-    """Name of the kind, one of `HABITS`."""
+    """Name of the kind."""
     breadth: float
     """Diameter of the circle in which it fits [m]."""
     behaviour: Behaviour | None
-    """None: that of the kind."""
+    """None: that of the habit."""
+    habit: Habit
+    """How they move."""
     lives: Lives
     offset: Variation
     """Where it begins: distance from the middle of the road [m]."""
     setting: str
     """Setting of the number, for messages."""
-    habit: Habit | None = None
-    """How it moves; None: as its kind does."""
     chosen_by: str = "custom.behaviour"
     """Setting of the behaviour, for messages."""

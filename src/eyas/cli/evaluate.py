@@ -1,13 +1,13 @@
 """`eyas evaluate`, `eyas compare` and `eyas leaderboard`."""
 
 import json
-import re
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from eyas.cli.options import SEVERAL
 from eyas.core.errors import ConfigError
 
 if TYPE_CHECKING:
@@ -28,14 +28,23 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
     protocol: Annotated[
         str, typer.Option("--protocol", help="paper, long, search or distractor.")
     ] = "paper",
-    maps: Annotated[str, typer.Option("--maps", metavar="A,B,...")] = "citystreet",
-    weathers: Annotated[str, typer.Option("--weathers", metavar="A,B,...")] = "day",
-    targets: Annotated[str, typer.Option("--targets", metavar="A,B,...")] = "SUMO_VEHICLE",
+    maps: Annotated[
+        list[str] | None, typer.Option("--map", help=f"By default citystreet; {SEVERAL}.")
+    ] = None,
+    weathers: Annotated[
+        list[str] | None, typer.Option("--weather", help=f"By default day; {SEVERAL}.")
+    ] = None,
+    targets: Annotated[
+        list[str] | None, typer.Option("--target", help=f"By default SUMO_VEHICLE; {SEVERAL}.")
+    ] = None,
     episodes: Annotated[
         int | None,
         typer.Option("--episodes", help="For each map, weather, target and start direction."),
     ] = None,
-    seed: Annotated[int | None, typer.Option("--seed", help="Seed of the first episode.")] = None,
+    seed: Annotated[
+        int | None,
+        typer.Option("--seed", help="The one seed of the run: that of its first episode."),
+    ] = None,
     latency: Annotated[
         str,
         typer.Option("--latency", help="Milliseconds, a file with one in each line, or measured."),
@@ -83,14 +92,14 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
     The exit code is 1 if the policy has failed in all episodes.
     """
     from eyas.core.config import validated
-    from eyas.evaluation.plan import Plan
+    from eyas.evaluation.plan import Plan, folder_name
 
     values: dict[str, Any] = {
         "policy": policy,
         "protocol": protocol,
-        "maps": _names(maps),
-        "weathers": _names(weathers),
-        "targets": _names(targets),
+        "maps": maps or ["citystreet"],
+        "weathers": weathers or ["day"],
+        "targets": targets or ["SUMO_VEHICLE"],
         "episodes": episodes,
         "latency": latency,
         "sampled": sample,
@@ -101,7 +110,7 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
     if seed is not None:
         values["seed"] = seed
     plan = validated(Plan, values)
-    folder = out or Path("runs/evaluation") / _folder_name(plan.policy, plan.protocol)
+    folder = out or Path("runs/evaluation") / folder_name(plan)
     if latency_curve and (as_published or videos):
         raise ConfigError("--latency-curve: not together with --as-published or --videos")
     if ray and latency == "measured":
@@ -132,10 +141,6 @@ def _flier(*, ray: bool) -> "AbstractContextManager[Flier]":
     return nullcontext(fly_here)
 
 
-def _names(text: str) -> list[str]:
-    return [name.strip() for name in text.split(",") if name.strip()]
-
-
 _FREE = (["start", "velocity"], ["extras"])
 """Settings that `--set` changes, besides all of some groups."""
 
@@ -146,12 +151,12 @@ def _changes(said: list[str]) -> dict[str, Any]:
     Raises:
         ConfigError: One is of another form, or changes what the protocol fixes.
     """
+    from eyas.settings.file import parsed_override
+
     changes: dict[str, Any] = {}
     for text in said:
-        path, equals, value = text.partition("=")
-        keys = path.strip().split(".")
-        free = keys[0] in ("env", "tracker", "control") and all(keys[1:] or [""])
-        if not equals or not (free or keys in _FREE):
+        keys, value = parsed_override(text)
+        if keys[0] not in ("env", "tracker", "control") and keys not in _FREE:
             raise ConfigError(
                 f"--set {text!r}: not allowed: env.KEY=VALUE, such as env.action_repeat=4, or "
                 "tracker.KEY, control.KEY, start.velocity or extras; all else belongs to the "
@@ -160,15 +165,8 @@ def _changes(said: list[str]) -> dict[str, Any]:
         group = changes
         for key in keys[:-1]:
             group = group.setdefault(key, {})
-        try:
-            group[keys[-1]] = json.loads(value)
-        except ValueError:
-            group[keys[-1]] = value.strip()
+        group[keys[-1]] = value
     return changes
-
-
-def _folder_name(policy: str, protocol: str) -> str:
-    return re.sub(r"[^\w.-]+", "-", f"{Path(policy).stem}-{protocol}")
 
 
 def compare(

@@ -5,12 +5,13 @@ from typing import Annotated
 
 import typer
 
+from eyas.cli.options import SEVERAL
 from eyas.core.errors import ConfigError
 
 __all__ = ["app"]
 
 Name = Annotated[str, typer.Argument(help="Name of the map, or the folder of an imported one.")]
-Seed = Annotated[int, typer.Option("--seed", min=0, help="Seed of the map.")]
+Seed = Annotated[int, typer.Option("--map-seed", min=0, help="Seed of the map.")]
 
 app = typer.Typer(help="List and draw the maps.", no_args_is_help=True)
 
@@ -33,11 +34,11 @@ def list_maps() -> None:
 def draw_gallery(
     out: Annotated[Path, typer.Option("--out", help="Folder to write to.")] = Path("runs/gallery"),
     map_name: Annotated[
-        list[str] | None, typer.Option("--map", help="Only this map; may be given several times.")
+        list[str] | None, typer.Option("--map", help=f"Only this map; {SEVERAL}.")
     ] = None,
     weather: Annotated[
         list[str] | None,
-        typer.Option("--weather", help="Only this weather; may be given several times."),
+        typer.Option("--weather", help=f"Only this weather; {SEVERAL}."),
     ] = None,
 ) -> None:
     """Draw a page of pictures of each map in each weather."""
@@ -71,7 +72,7 @@ def import_map(
 @app.command("new")
 def new_map(
     name: Annotated[str, typer.Argument(help="Name of the map whose kind it is.")],
-    seed: Annotated[int, typer.Option("--seed", min=0, help="Seed of the new map.")],
+    seed: Annotated[int, typer.Option("--map-seed", min=0, help="Seed of the new map.")],
 ) -> None:
     """Make another map of a kind now, with its traffic, not on first use."""
     from eyas.modes.maps.another import run

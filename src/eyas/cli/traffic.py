@@ -27,7 +27,7 @@ def record(  # noqa: PLR0913  # one parameter for each option
     map_name: MapName = None,
     map_seed: Annotated[int | None, typer.Option("--map-seed", help="Seed of the map.")] = None,
     seed: Annotated[
-        int | None, typer.Option("--seed", help="Seed of SUMO and of the routes.")
+        int | None, typer.Option("--traffic-seed", help="Seed of SUMO and of the routes.")
     ] = None,
     duration: Annotated[float, typer.Option("--duration", help="Seconds to record.")] = 1260.0,
     vehicle_type: Annotated[
@@ -40,14 +40,14 @@ def record(  # noqa: PLR0913  # one parameter for each option
     ] = None,
     seeds: Annotated[
         str | None,
-        typer.Option("--seeds", help="Several seeds, such as 1-8 or 3,5,9: a file for each."),
+        typer.Option("--traffic-seeds", help="Several, such as 1-8 or 3,5,9: a file for each."),
     ] = None,
     workers: Annotated[
         int | None,
         typer.Option("--workers", min=1, help="Processes for several seeds; default: all cores."),
     ] = None,
     out: Annotated[
-        Path | None, typer.Option("--out", help="File to write; with --seeds the folder.")
+        Path | None, typer.Option("--out", help="File to write; with --traffic-seeds the folder.")
     ] = None,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace files.")] = False,
     config: ConfigFile = None,
@@ -106,5 +106,6 @@ def _numbers(text: str) -> tuple[int, ...]:
     if all(ends) and all(spans) and sum(map(len, spans)) <= _MOST:
         return tuple(dict.fromkeys(number for span in spans for number in span))
     raise ConfigError(
-        f"--seeds: {text!r} is not allowed; allowed: at most {_MOST} numbers, such as 1-8 or 3,5,9"
+        f"--traffic-seeds: {text!r} is not allowed; allowed: at most {_MOST} numbers, "
+        "such as 1-8 or 3,5,9"
     )

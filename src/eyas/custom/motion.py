@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.behaviours.ground import Ground
-from eyas.behaviours.habits import Habit
 from eyas.behaviours.lives import Lives
 from eyas.behaviours.scripted import scripted_table
 from eyas.behaviours.troop import Clock, Troop
@@ -24,6 +23,7 @@ from eyas.custom.user_class import tracks_of
 from eyas.state.motion import SAMPLE, Motion
 from eyas.state.terrain import reliefs
 from eyas.targets.catalogue import MODELS, kind_index, models_of
+from eyas.targets.habit import Habit
 
 __all__ = ["Places", "custom_motion"]
 
@@ -78,8 +78,15 @@ def _troop(config: CustomConfig, name: str, places: Places) -> Troop:
     speed, size = config.speed, MODELS[models_of(kind_index(name)).start].size
     breadth = float(exact.hypot(*size[:2]))
     habit = Habit(config.behaviour, speed, max(1.0, speed), 2.0, max(0.5, breadth))
-    where = (places.lives, places.offset)
-    return Troop(name, breadth, config.behaviour, *where, "objects.max_count", habit)
+    return Troop(
+        kind=name,
+        breadth=breadth,
+        behaviour=config.behaviour,
+        habit=habit,
+        lives=places.lives,
+        offset=places.offset,
+        setting="objects.max_count",
+    )
 
 
 def _driven(file: str, smoothing: float, ground: Ground, clock: Clock) -> NDArray[np.void]:

@@ -1,8 +1,10 @@
 """What an evaluation flies, and with what."""
 
 import json
+import re
 import shlex
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Annotated, Any
 
 from pydantic import Field
@@ -20,7 +22,7 @@ from eyas.evaluation.protocol import Protocol, protocol_named
 from eyas.evaluation.record import Record
 from eyas.world.maps import MAPS
 
-__all__ = ["Plan", "Stamp", "batches", "fly_batch", "stamp"]
+__all__ = ["Plan", "Stamp", "batches", "fly_batch", "folder_name", "stamp"]
 
 Names = Annotated[tuple[str, ...], Field(min_length=1)]
 
@@ -70,7 +72,11 @@ class Plan(Config):
         )
         words = ["eyas", "evaluate", "--policy", self.policy]
         for name, value in told.items():
-            words += [f"--{name}", ",".join(value) if isinstance(value, tuple) else str(value)]
+            if isinstance(value, tuple):
+                option = f"--{name.removesuffix('s')}"
+                words += [word for each in value for word in (option, each)]
+            else:
+                words += [f"--{name}", str(value)]
         if self.sampled:
             words.append("--sample")
         for key, value in _flat("", {"env": self.env, **self.settings}):
@@ -111,6 +117,11 @@ def stamp(plan: Plan) -> Stamp:
         policy=fingerprint(plan.policy),
         plan=plan,
     )
+
+
+def folder_name(plan: Plan) -> str:
+    """Return the name of the folder of a plan's results, unless a user chooses one."""
+    return re.sub(r"[^\w.-]+", "-", f"{Path(plan.policy).stem}-{plan.protocol}")
 
 
 def batches(plan: Plan) -> list[list[Episode]]:
@@ -165,7 +176,7 @@ def check(plan: Plan) -> None:
     """
     delay_from(plan.latency)
     if len(set(plan.maps)) < len(plan.maps) or len(set(plan.weathers)) < len(plan.weathers):
-        raise ConfigError("--maps, --weathers: a name is there twice")
+        raise ConfigError("--map, --weather: a name is there twice")
     policy = open_policy(plan.policy, plan.env, sampled=plan.sampled)
     for name in plan.maps:
         for weather in plan.weathers:

@@ -4,6 +4,7 @@ from typing import Annotated, Any, Self
 
 from pydantic import Field, model_validator
 
+from eyas.core.code_names import NAMES_CODE
 from eyas.core.config import Config
 
 __all__ = ["Evaluation", "Stage", "TrainConfig"]
@@ -30,7 +31,7 @@ class Evaluation(Config):
     """Blocks from one evaluation to the next; 0: none."""
     protocol: str = "paper"
     """Of `eyas evaluate`."""
-    weathers: tuple[str, ...] = ()
+    weathers: Annotated[tuple[str, ...], NAMES_CODE] = ()
     """None: `world.weather`."""
     episodes: Annotated[int, Field(ge=1, le=1000)] = 5
     """For each weather and start direction."""

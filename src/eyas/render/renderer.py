@@ -134,7 +134,7 @@ class Renderer:
         task = self._tasks.pop(size, None) or Held(new_task(size))
         band = task.bundle.job.band
         jobs, workers = len(band), min(threads, len(band))
-        set_views(task.bundle, views, float(self._light.weather.air.density), workers)
+        set_views(task.bundle, views, float(self._light.weather.fog_density), workers)
         wanted = len(output.subject) + len(output.actor) > 0
         if wanted:
             output = measured_alone(output, jobs)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.behaviours.config import Behaviour, ExtraConfig
+from eyas.behaviours.config import ExtraConfig
 from eyas.behaviours.lives import Lives, lasting, recycled
 from eyas.behaviours.troop import Clock, Troop
 from eyas.core import exact
@@ -21,7 +21,8 @@ from eyas.custom.config import CustomConfig
 from eyas.sim.crowd import Crowd
 from eyas.state.motion import SAMPLE, Motion, joined
 from eyas.state.scene import Scene
-from eyas.targets.catalogue import MODELS, kind_index, models_of
+from eyas.targets.catalogue import MODELS, habit_of, kind_index, models_of
+from eyas.targets.habit import Behaviour
 from eyas.traffic.signals import SignalPlan
 
 if TYPE_CHECKING:
@@ -224,7 +225,15 @@ def _custom(crowd: Crowd, custom: CustomConfig, around: Surroundings, ground: "G
 def _troop(extra: ExtraConfig, lives: Lives, offset: Variation, setting: str) -> Troop:
     models = [MODELS[model] for model in models_of(kind_index(extra.kind))]
     breadth = max(float(exact.hypot(*model.size[:2])) for model in models)
-    return Troop(extra.kind.value, breadth, extra.behaviour, lives, offset, setting)
+    return Troop(
+        kind=extra.kind.value,
+        breadth=breadth,
+        behaviour=extra.behaviour,
+        habit=habit_of(extra.kind.value),
+        lives=lives,
+        offset=offset,
+        setting=setting,
+    )
 
 
 def _plan_of(scene: Scene) -> tuple[object, ...]:

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.pinhole import focal_length
+from eyas.state.lighting import LightState
 from eyas.state.mesh import Mesh
 from eyas.state.scene import ObjectClass
 
@@ -99,9 +100,8 @@ class Views:
     vertical_field_of_view: float | NDArray[np.float64] | None = None
     """[rad], as above; None: pixels are square. Set it to squeeze a wide view into a square
     picture."""
-    light: NDArray[np.float32] | None = None
-    """Changes of the light for each view: factor on the sky and its light, factor on the sun, and
-    one over the visibility range [1/m], shape (V, 3); None: the weather's own light."""
+    light: LightState | None = None
+    """Changes of the light for each view; None: the weather's own light."""
     instant: NDArray[np.float64] | None = None
     """Time at which falling snow is shown [s], shape (V,); None: nothing falls."""
 

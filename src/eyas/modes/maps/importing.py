@@ -22,10 +22,10 @@ from eyas.modes.progress import sumo_progress
 from eyas.state.roads import RoadGraph
 from eyas.traffic.library import record_canonical
 from eyas.traffic.net_file import (
-    crossings_of,
-    pavements_of,
+    SumoNet,
+    crossing_lines,
+    pavement_area,
     road_network,
-    signal_programs,
     signalled_edges,
 )
 from eyas.traffic.network import graph_hash
@@ -143,14 +143,14 @@ def run(
     projection = Projection(round((west + east) / 2, 7), round((south + north) / 2, 7))
     extent = _extent(projection, limits, str(path))
     streets = street_file(data, limits, lambda key: report.odd.update([key]))
-    net = osm_network(streets, projection.text, str(path))
-    graph = RoadGraph(name, 0, (), (), net)
+    finished = osm_network(streets, projection.text, str(path))
+    graph, net = RoadGraph(name, 0, (), (), finished), SumoNet(finished)
     network = road_network(net, graph_hash(graph))
     shapes = Shapes(data, projection, extent, lambda what: report.broken.update([what]))
     features = _features(shapes, net, report)
     x, y = np.abs(shapely.get_coordinates(extent)).max(axis=0)
     report.size = (2 * float(np.ceil(x + _MARGIN)), 2 * float(np.ceil(y + _MARGIN)))
-    report.lanes, report.signals = len(network.lane_width), signal_programs(net)
+    report.lanes, report.signals = len(network.lane_width), len(net.programs)
     origin = Origin(
         name, f"Imported from OpenStreetMap: {path.name}", path.name,
         projection.longitude, projection.latitude, report.size,
@@ -159,7 +159,7 @@ def run(
         if folder.exists():
             shutil.rmtree(folder)
         folder.mkdir(parents=True)
-    write_atomic(folder / ROADS_FILE, gzip.compress(net, mtime=0))
+    write_atomic(folder / ROADS_FILE, gzip.compress(finished, mtime=0))
     save_network(folder / NETWORK_FILE, network)
     write_atomic(folder / FEATURES_FILE, to_text(features).encode())
     write_atomic(folder / ATTRIBUTION_FILE, ATTRIBUTION.encode())
@@ -209,7 +209,7 @@ def _extent(projection: Projection, limits: Bounds, source: str) -> shapely.Poly
     return shapely.Polygon(corners)
 
 
-def _features(shapes: Shapes, net: bytes, report: Report) -> Features:
+def _features(shapes: Shapes, net: SumoNet, report: Report) -> Features:
     """Return everything but the streets, and count what is not told."""
 
     def odd(key: str) -> None:
@@ -218,9 +218,9 @@ def _features(shapes: Shapes, net: bytes, report: Report) -> Features:
     features = Features(houses=houses_of(shapes, odd))
     add_land(features, shapes, odd, stream(0, "imported tree rows"))
     # Without the lines in which sidewalks of bridges meet others.
-    features.pavement = shapely.MultiPolygon(polygons_of(snapped(pavements_of(net).area)))
+    features.pavement = shapely.MultiPolygon(polygons_of(snapped(pavement_area(net))))
     features.signals = signalled_edges(net)
-    features.lit_crossings = {k: shapely.LineString(v) for k, v in crossings_of(net).items()}
+    features.lit_crossings = {k: shapely.LineString(v) for k, v in crossing_lines(net).items()}
     report.buildings, report.trees = len(features.houses), len(features.trees)
     for house in features.houses:
         report.guessed["heights"] += house.height is None and house.levels is None

@@ -87,16 +87,15 @@ def _weather(
     lighting: Lighting, sun: tuple[float, float, float], shadows: ShadowMap
 ) -> Illumination:
     """Return the light of a weather; `sun` is of length 1."""
-    numbers = (
-        lighting.fog_density,
-        lighting.fog_power,
-        lighting.exposure,
-        1.1 * shadows.texel,  # the largest error of the shadow map within a texel
-        lighting.snow,
-        lighting.lamps,
-        lighting.windows,
-        lighting.clouds,
-        lighting.flakes,
+    air = Air(
+        power=_float(lighting.fog_power),
+        exposure=_float(lighting.exposure),
+        offset=_float(1.1 * shadows.texel),  # its map's largest error within a texel
+        snow=_float(lighting.snow),
+        lamps=_float(lighting.lamps),
+        windows=_float(lighting.windows),
+        clouds=_float(lighting.clouds),
+        flakes=_float(lighting.flakes),
     )
     return Illumination(
         sun=_direction(sun),
@@ -106,7 +105,8 @@ def _weather(
         above=_direction(lighting.ambient_up),
         below=_direction(lighting.ambient_down),
         fog=_direction(lighting.fog_colour),
-        air=Air(*_floats(numbers)),
+        fog_density=_float(lighting.fog_density),
+        air=air,
     )
 
 
@@ -126,6 +126,10 @@ def tone_table() -> NDArray[np.uint8]:
 def _floats(values: ArrayLike) -> tuple[float, ...]:
     """Return numbers of float32, whose type decides that of the kernels' arithmetic."""
     return cast("tuple[float, ...]", tuple(np.asarray(values, np.float32)))
+
+
+def _float(value: float) -> float:
+    return cast("float", np.float32(value))
 
 
 def _direction(values: ArrayLike) -> Direction:

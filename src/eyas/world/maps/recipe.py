@@ -1,7 +1,7 @@
 """The definition of a map, one object for each."""
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from hashlib import blake2b
 from importlib.resources.abc import Traversable
@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from eyas.core.errors import ConfigError, UnknownNameError
 from eyas.core.program import definitions_in
 from eyas.state.lighting import Lighting
-from eyas.world.weather import Season, Weather
+from eyas.world.weather import WEATHERS, Season, Weather, unchanged
 
 if TYPE_CHECKING:  # maps load with `eyas`; the scene modules only when a scene is built
     from eyas.state.roads import RoadGraph, RoadNetwork
@@ -64,7 +64,7 @@ class Original:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MapRecipe:
-    """A map: its roads, its scene for each season, its light for each weather."""
+    """A map: its roads, its scene for each season, and what is special about its weathers."""
 
     name: str
     """Words joined by hyphens; used in the names of folders and environments."""
@@ -74,8 +74,10 @@ class MapRecipe:
     """Returns the roads of a seed; seed 0 is the canonical map."""
     scene: Callable[["RoadNetwork", int, Season], "Scene"]
     """Builds everything else around the processed roads of the same seed."""
-    lighting: Mapping[Weather, Lighting]
-    """Light and air of each weather of the map."""
+    weather: Callable[[Weather], Weather] = unchanged
+    """Returns how a weather is on this map, also one of a user's own."""
+    without: tuple[str, ...] = ()
+    """Names of the weathers that the map does not have."""
     seasons: bool = False
     """Whether the winter scene differs from that of summer: other trees, roofs or crops. Snow on an
     unchanged scene is part of the light (`Lighting.snow`) and needs no scene of its own."""
@@ -99,15 +101,15 @@ class MapRecipe:
     @property
     def weathers(self) -> tuple[str, ...]:
         """Names of the weathers of the map."""
-        return tuple(weather.name for weather in self.lighting)
+        return tuple(name for name in WEATHERS.names() if name not in self.without)
 
-    def light(self, weather: str) -> Lighting:
-        """Return light and air of a weather.
+    def light(self, weather: str, hour: float | None = None) -> Lighting:
+        """Return light and air of a weather at an hour, 0 to 24; None: the weather's own.
 
         Raises:
             UnknownNameError: The map has no such weather.
         """
-        return self.lighting[self._weather(weather)]
+        return self.weather(self._known(weather)).light(hour)
 
     def season(self, weather: str) -> Season:
         """Return the season of the scene in a weather; summer on a map without seasons.
@@ -115,7 +117,7 @@ class MapRecipe:
         Raises:
             UnknownNameError: The map has no such weather.
         """
-        season = self._weather(weather).season
+        season = self._known(weather).season
         return season if self.seasons else Season.SUMMER
 
     @property
@@ -171,11 +173,15 @@ class MapRecipe:
         with as_file(found) as path:
             return load_network(path)
 
-    def _weather(self, name: str) -> Weather:
-        for weather in self.lighting:
-            if weather.name == name:
-                return weather
-        raise UnknownNameError("world.weather", name, self.weathers, f"on the map '{self.name}'")
+    def _known(self, name: str) -> Weather:
+        here = f"on the map '{self.name}'"
+        try:
+            weather = WEATHERS.get(name)
+        except UnknownNameError:
+            raise UnknownNameError("world.weather", name, self.weathers, here) from None
+        if weather.name in self.without:
+            raise UnknownNameError("world.weather", name, self.weathers, here)
+        return weather
 
 
 def _files_in(folder: Traversable, *, sources: bool) -> Iterator[Traversable]:

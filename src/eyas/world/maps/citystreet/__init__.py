@@ -3,17 +3,7 @@
 from typing import TYPE_CHECKING
 
 from eyas.world.maps.recipe import MapRecipe, Original
-from eyas.world.weather import (
-    CLEAR_DAY,
-    CLEAR_NIGHT,
-    DAY,
-    FOG,
-    FOGGY,
-    NIGHT,
-    SNOW,
-    WINTER_DAY,
-    Season,
-)
+from eyas.world.weather import Season
 
 if TYPE_CHECKING:
     from eyas.state.roads import RoadGraph, RoadNetwork
@@ -40,7 +30,6 @@ CITYSTREET = MapRecipe(
     title="Mid-rise city blocks with rows of great trees",
     roads=_roads,
     scene=_scene,
-    lighting={DAY: CLEAR_DAY, FOGGY: FOG, NIGHT: CLEAR_NIGHT, SNOW: WINTER_DAY},
     package=__name__,
     original=Original(road=4.01, buildings=83, height=30.0, trees=63),
     pedestrians=40,

@@ -3,9 +3,9 @@
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from eyas.world.maps.desert.air import DESERT_DAY, DESERT_FOG, DESERT_NIGHT, DESERT_WINTER
+from eyas.world.maps.desert.air import desert_weather
 from eyas.world.maps.recipe import MapRecipe, Original
-from eyas.world.weather import DAY, FOGGY, NIGHT, SNOW, Season
+from eyas.world.weather import Season
 
 if TYPE_CHECKING:
     from eyas.state.roads import RoadGraph, RoadNetwork
@@ -40,7 +40,7 @@ DESERT = MapRecipe(
     title="Dunes, and roads under sand",
     roads=_roads,
     scene=_scene,
-    lighting={DAY: DESERT_DAY, FOGGY: DESERT_FOG, NIGHT: DESERT_NIGHT, SNOW: DESERT_WINTER},
+    weather=desert_weather,
     seasons=True,
     package=__name__,
     original=Original(road=3.37, buildings=7, height=12.0),
@@ -51,7 +51,7 @@ DESERT_BARE = replace(
     name="desert-bare",
     title="The roads of the desert on bare sand, without scenery",
     scene=_bare_scene,
-    lighting={DAY: DESERT_DAY},
+    without=("foggy", "night", "snow"),
     seasons=False,
     original=Original(road=3.35),
 )

@@ -4,17 +4,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from eyas.world.maps.recipe import MapRecipe, Original
-from eyas.world.weather import (
-    CLEAR_DAY,
-    CLEAR_NIGHT,
-    DAY,
-    FOG,
-    FOGGY,
-    NIGHT,
-    SNOW,
-    WINTER_DAY,
-    Season,
-)
+from eyas.world.weather import CLEAR_NIGHT, Season, Weather, in_fog
 
 if TYPE_CHECKING:
     from eyas.state.roads import RoadGraph, RoadNetwork
@@ -36,9 +26,6 @@ def _scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
     return build_scene(network, seed)
 
 
-# In the original the fog is too thin to be seen from above; here it veils the far end of a block.
-_MIST = replace(FOG, fog_density=1.0 / 500.0)
-
 # Fronts and shop windows throw light back into the streets; the sky between them is black.
 _LIT = replace(
     CLEAR_NIGHT,
@@ -51,12 +38,18 @@ _LIT = replace(
     windows=0.36,
 )
 
+
+def _weather(weather: Weather) -> Weather:
+    # In the original the fog is too thin to be seen from above; here it veils the end of a block.
+    return weather.each(lambda light: _LIT if light == CLEAR_NIGHT else in_fog(light, 500.0))
+
+
 DOWNTOWN = MapRecipe(
     name="downtown",
     title="Canyons between towers, and a park",
     roads=_roads,
     scene=_scene,
-    lighting={DAY: CLEAR_DAY, FOGGY: _MIST, NIGHT: _LIT, SNOW: WINTER_DAY},
+    weather=_weather,
     package=__name__,
     original=Original(road=11.05, buildings=470, height=28.0, trees=334),
     pedestrians=80,

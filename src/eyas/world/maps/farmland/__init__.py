@@ -4,17 +4,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from eyas.world.maps.recipe import MapRecipe, Original
-from eyas.world.weather import (
-    CLEAR_DAY,
-    CLEAR_NIGHT,
-    DAY,
-    FOG,
-    FOGGY,
-    NIGHT,
-    SNOW,
-    WINTER_DAY,
-    Season,
-)
+from eyas.world.weather import Season, Weather, in_fog, unchanged
 
 if TYPE_CHECKING:
     from eyas.state.roads import RoadGraph, RoadNetwork
@@ -40,6 +30,20 @@ def _scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
     return build_scene(network, seed, season)
 
 
+def _weather(weather: Weather) -> Weather:
+    day = replace(weather.day, lamps=max(weather.day.lamps, _BY_DAY))
+    # Under its black sky, the original's farmland keeps half of the day's light.
+    night = replace(
+        weather.night,
+        sun_colour=(0.16, 0.17, 0.19),
+        ambient_up=(0.115, 0.12, 0.14),
+        ambient_down=(0.056, 0.052, 0.046),
+    )
+    if not day.foggy:
+        day = replace(day, fog_density=_CLEAR)
+    return replace(weather, day=in_fog(day, 400.0), night=in_fog(night, 400.0))
+
+
 def _bare_scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
     from eyas.world.maps.bare import build_bare_scene
     from eyas.world.maps.farmland.scene import FLOOR, MOUNTAINS, SOIL
@@ -52,18 +56,7 @@ FARMLAND = MapRecipe(
     title="A patchwork of fields in four colours",
     roads=_roads,
     scene=_scene,
-    lighting={
-        DAY: replace(CLEAR_DAY, lamps=_BY_DAY, fog_density=_CLEAR),
-        FOGGY: replace(FOG, fog_density=1.0 / 400.0, lamps=_BY_DAY),
-        # Under its black sky, the original's farmland keeps half of the day's light.
-        NIGHT: replace(
-            CLEAR_NIGHT,
-            sun_colour=(0.16, 0.17, 0.19),
-            ambient_up=(0.115, 0.12, 0.14),
-            ambient_down=(0.056, 0.052, 0.046),
-        ),
-        SNOW: replace(WINTER_DAY, lamps=_BY_DAY, fog_density=_CLEAR),
-    },
+    weather=_weather,
     seasons=True,
     package=__name__,
     original=Original(road=4.43),
@@ -74,7 +67,8 @@ FARMLAND_BARE = replace(
     name="farmland-bare",
     title="The roads of the farmland on bare soil, without scenery",
     scene=_bare_scene,
-    lighting={DAY: CLEAR_DAY},
+    weather=unchanged,
+    without=("foggy", "night", "snow"),
     seasons=False,
     original=Original(road=4.45),
 )

@@ -19,17 +19,7 @@ from typing import TYPE_CHECKING
 from eyas.core.errors import ConfigError, DataFileError
 from eyas.core.files import user_path
 from eyas.world.maps.recipe import MapRecipe
-from eyas.world.weather import (
-    CLEAR_DAY,
-    CLEAR_NIGHT,
-    DAY,
-    FOG,
-    FOGGY,
-    NIGHT,
-    SNOW,
-    WINTER_DAY,
-    Season,
-)
+from eyas.world.weather import Season
 
 if TYPE_CHECKING:
     from eyas.state.roads import RoadGraph, RoadNetwork
@@ -145,7 +135,6 @@ def _recipe(folder: Path) -> MapRecipe:
             title=origin.title,
             roads=partial(_roads, folder, origin.name),
             scene=partial(_scene, folder, origin.name, origin.size),
-            lighting={DAY: CLEAR_DAY, FOGGY: FOG, NIGHT: CLEAR_NIGHT, SNOW: WINTER_DAY},
             home=folder,
         )
     except ConfigError as error:

@@ -4,8 +4,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from eyas.world.maps.recipe import MapRecipe, Original
-from eyas.world.maps.village.air import VILLAGE_FOG, VILLAGE_NIGHT
-from eyas.world.weather import CLEAR_DAY, DAY, FOGGY, NIGHT, SNOW, WINTER_DAY, Season
+from eyas.world.weather import CLEAR_DAY, CLEAR_NIGHT, FOG, Season, Weather, in_fog, unchanged
 
 if TYPE_CHECKING:
     from eyas.state.roads import RoadGraph, RoadNetwork
@@ -39,12 +38,44 @@ def _bare_scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
     )
 
 
+# Haze that fills the valley to the original's visibility range, below a sky that stays blue: the
+# sun still casts shadows.
+_HAZE = replace(
+    CLEAR_DAY,
+    sun_colour=(0.55, 0.53, 0.48),
+    zenith_colour=(0.22, 0.34, 0.56),
+    horizon_colour=(0.80, 0.84, 0.88),
+    ambient_up=(0.44, 0.47, 0.51),
+    ambient_down=(0.20, 0.21, 0.18),
+    fog_colour=(0.74, 0.78, 0.81),
+    fog_density=1.0 / 400.0,
+    foggy=True,
+    clouds=0.45,
+)
+
+# Darker than in a city, and greenish as under the lights of a stadium.
+_DARK = replace(
+    CLEAR_NIGHT,
+    sun_colour=(0.062, 0.070, 0.074),
+    ambient_up=(0.050, 0.059, 0.058),
+    ambient_down=(0.022, 0.026, 0.022),
+    horizon_colour=(0.016, 0.019, 0.022),
+    fog_colour=(0.016, 0.019, 0.022),
+)
+
+_SKIES = {FOG: _HAZE, CLEAR_NIGHT: _DARK}
+
+
+def _weather(weather: Weather) -> Weather:
+    return weather.each(lambda light: _SKIES.get(light) or in_fog(light, 400.0))
+
+
 VILLAGE = MapRecipe(
     name="village",
     title="A green valley with hills and tunnels",
     roads=_roads,
     scene=_scene,
-    lighting={DAY: CLEAR_DAY, FOGGY: VILLAGE_FOG, NIGHT: VILLAGE_NIGHT, SNOW: WINTER_DAY},
+    weather=_weather,
     package=__name__,
     original=Original(road=3.59, buildings=24, height=12.0, trees=41),
 )
@@ -54,7 +85,8 @@ VILLAGE_BARE = replace(
     name="village-bare",
     title="The roads of the village on bare grass, without scenery",
     scene=_bare_scene,
-    lighting={DAY: CLEAR_DAY},
+    weather=unchanged,
+    without=("foggy", "night", "snow"),
     seasons=False,
     original=Original(road=3.59),
 )
