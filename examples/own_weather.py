@@ -14,7 +14,7 @@ from dataclasses import replace
 import gymnasium
 
 import eyas  # noqa: F401  # registers the environments
-from eyas.world.weather import CLEAR_DAY, DAY
+from eyas import CLEAR_DAY, DAY
 
 HAZE = replace(
     DAY,  # a summer's day, whose hours after sunset are those of a clear night

@@ -1,4 +1,5 @@
-"""Make the archive of machine code that ships in the package, see `eyas.lanes.shipped`.
+"""Make what ships in the package: machine code (`eyas.lanes.shipped`), modules of functions
+(`eyas.lanes.modules`), and digests of syntax (`eyas.lanes.syntax`).
 
     python tools/ship_kernels.py              # some minutes; commit what it changes
     python tools/ship_kernels.py --check      # is the code in the package that of these sources?
@@ -21,10 +22,10 @@ from pathlib import Path
 
 import eyas
 from eyas.core import program
-from eyas.lanes import CompiledCall
+from eyas.lanes import CompiledCall, modules
 from eyas.lanes.identity import language_files, language_hash
 from eyas.lanes.machine_code import SUFFIX, MachineCode, read_code
-from eyas.lanes.shipped import ARCHIVE, LEVEL, archive_of, features, needed, read_archive
+from eyas.lanes.shipped import ARCHIVE, LEVEL, VARIABLE, archive_of, features, needed, read_archive
 from eyas.lanes.syntax import INDEX, index_of
 from eyas.sim.step import step_of
 from eyas.trackers.drone import DRONE
@@ -75,6 +76,9 @@ recorded_motion(recording, hill, np.zeros(recording.actors, np.int32))
 
 PACKAGE = Path(eyas.__file__).parent
 
+DRAWING = "draw_views"
+"""The function whose modules ship: to make them takes longer than those of all others together."""
+
 
 def main() -> None:
     """Make the code, or check it."""
@@ -89,8 +93,12 @@ def main() -> None:
     options.out.mkdir(parents=True, exist_ok=True)
     (options.out / INDEX.name).write_text(index_of(files_of_kernels()))
     program.INDEX.write_text(program.index_of(sorted(PACKAGE.rglob("*.py"))))
-    codes = compiled_for(LEVEL)
-    (options.out / ARCHIVE.name).write_bytes(archive_of(codes))
+    with tempfile.TemporaryDirectory() as cache:
+        use_all(cache, {"NUMBA_CPU_NAME": LEVEL, "NUMBA_CPU_FEATURES": "", VARIABLE: "0"})
+        folder = Path(cache, "kernels", language_hash())
+        codes = codes_in(folder)
+        (options.out / ARCHIVE.name).write_bytes(archive_of(codes))
+        (options.out / modules.ARCHIVE.name).write_bytes(modules.archive_of(folder, DRAWING))
     raise SystemExit(missing(codes))
 
 
@@ -115,12 +123,10 @@ def use_all(cache: str, variables: dict[str, str]) -> None:
     subprocess.run([sys.executable, "-c", USES_ALL], env=environment, check=True)
 
 
-def compiled_for(level: str) -> dict[str, MachineCode]:
-    """Return the code of all kernels for a level, by the names by which it is found."""
-    with tempfile.TemporaryDirectory() as cache:
-        use_all(cache, {"NUMBA_CPU_NAME": level, "NUMBA_CPU_FEATURES": ""})
-        files = Path(cache, "kernels", language_hash()).glob(f"*{SUFFIX}")
-        codes = {file.stem.rpartition("-")[0]: read_code(file) for file in files}
+def codes_in(folder: Path) -> dict[str, MachineCode]:
+    """Return the machine code in a folder, by the names by which it is found."""
+    files = folder.glob(f"*{SUFFIX}")
+    codes = {file.stem.rpartition("-")[0]: read_code(file) for file in files}
     return {name: code for name, code in codes.items() if code is not None}
 
 

@@ -4,16 +4,15 @@ import numpy as np
 import pytest
 
 from eyas.behaviours.ground import Ground
-from eyas.behaviours.lives import lasting
+from eyas.behaviours.groups import SampleClock, ScriptedGroup, lasting
 from eyas.behaviours.scripted import scripted_table
-from eyas.behaviours.troop import Clock, Troop
 from eyas.core.rng import stream
 from eyas.sim.scenes import load_scene
 from eyas.targets.catalogue import habit_of
 
 from .habits import HABITS
 
-CLOCK = Clock(601, 10.0)
+CLOCK = SampleClock(601, 10.0)
 
 
 @pytest.fixture(scope="session")
@@ -26,9 +25,9 @@ def hills():
     return Ground(load_scene("village"), roads=False)
 
 
-def troop(kind: str, count: int = 8, breadth: float = 0.6, **changes) -> Troop:
+def group(kind: str, count: int = 8, breadth: float = 0.6, **changes) -> ScriptedGroup:
     lives = lasting(count, CLOCK.samples)
-    made = Troop(kind, breadth, None, habit_of(kind), lives, 0.0, "objects.max_count")
+    made = ScriptedGroup(kind, breadth, None, habit_of(kind), lives, 0.0, "objects.max_count")
     return made._replace(**changes)
 
 
@@ -39,4 +38,4 @@ def table_of(ground, which, seed=0) -> np.ndarray:
 @pytest.fixture(scope="session")
 def city_tables(city):
     """One minute of eight of each kind."""
-    return {kind: table_of(city, troop(kind)) for kind in HABITS}
+    return {kind: table_of(city, group(kind)) for kind in HABITS}

@@ -1,6 +1,7 @@
 """Modules of functions are kept: an edit compiles only what it touches."""
 
 import importlib.util
+import json
 import sys
 from typing import NamedTuple
 
@@ -9,7 +10,12 @@ import numpy as np
 import pytest
 
 from eyas.lanes import CompiledCall, compilation, kernel, modules, syntax
+from eyas.lanes.container import Contents
 from eyas.lanes.modules import SUFFIX, module_name
+from eyas.lanes.vector.kinds import Lanes
+
+PACKED = Contents(1, (2.0, 3))
+"""A named tuple of a module that can be imported."""
 
 SOURCE = """
 from typing import NamedTuple
@@ -117,6 +123,61 @@ def test_modules_that_others_may_have_written_are_not_used(compiled, tmp_path):
     compiled()
     (tmp_path / "cache").chmod(0o777)
     assert compiled()[1] == ["both", "ordered", "scaled", "work"]
+
+
+@pytest.fixture
+def ships(compiled, tmp_path, monkeypatch):
+    """An archive with the modules of `work`; nothing is in the cache."""
+    compiled()
+    archive = tmp_path / "modules.xz"
+    archive.write_bytes(modules.archive_of(tmp_path / "cache", "work"))
+    for file in (tmp_path / "cache").iterdir():
+        file.unlink()
+    monkeypatch.setattr(modules, "ARCHIVE", archive)
+    modules._shipped.cache_clear()
+    yield archive
+    modules._shipped.cache_clear()
+
+
+def test_an_edit_compiles_what_it_touches_where_the_other_modules_ship(ships, compiled):
+    assert compiled(SOURCE.replace("2.0", "10.0")) == (28.0, ["both", "scaled", "work"])
+    assert compiled() == (4.0, [])
+
+
+def test_a_damaged_archive_of_modules_is_told_and_not_used(ships, compiled, caplog):
+    ships.write_bytes(ships.read_bytes()[:-9])
+    modules._shipped.cache_clear()
+    assert compiled() == (4.0, ["both", "ordered", "scaled", "work"])
+    assert [record.getMessage().partition(":")[0] for record in caplog.records] == [str(ships)]
+
+
+def test_who_wants_no_shipped_code_gets_no_shipped_modules(ships, compiled, monkeypatch):
+    monkeypatch.setenv("EYAS_SHIPPED_CODE", "0")
+    modules._shipped.cache_clear()
+    assert compiled() == (4.0, ["both", "ordered", "scaled", "work"])
+
+
+@pytest.mark.parametrize(
+    "kind",
+    [
+        numba.types.float32,
+        numba.types.boolean,
+        numba.types.none,
+        numba.types.Tuple([numba.types.int64, numba.types.UniTuple(numba.types.float64, 2)]),
+        Lanes(numba.types.boolean),
+        numba.typeof(PACKED),
+    ],
+)
+def test_the_types_that_kernels_return_are_told_and_understood(kind):
+    assert modules._type_of(json.loads(json.dumps(modules._as_json(kind)))) is kind
+
+
+def test_types_that_no_module_names_are_not_told():
+    class Local(NamedTuple):
+        x: float
+
+    for value in (Local(1.0), (1.0, Local(1.0)), np.zeros(1)):
+        assert modules._as_json(numba.typeof(value)) is None
 
 
 class Pair(NamedTuple):

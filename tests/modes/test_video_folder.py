@@ -85,8 +85,9 @@ def test_a_recording_says_which_files_its_writers_write(tmp_path):
     origin = json.loads((tmp_path / "version.json").read_text())
     episode = ["labels.jsonl", "mark.json"]
     files = {"frame": [], "episode": episode, "run": ["dir_info.json"]}
-    build = {"eyas": __version__, "build": this_build().model_dump()}
-    assert origin == {**build, "files": files}
+    build = this_build()
+    told = {"eyas": __version__, "build_id": build.id, "build": build.model_dump()}
+    assert origin == {**told, "files": files}
 
 
 @pytest.mark.parametrize("name", ["thesis.txt", "DRONE0/notes.txt", "DRONE0/episode0/best.jpeg"])

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eyas.behaviours.troop import Clock
+from eyas.behaviours.groups import SampleClock
 from eyas.core.errors import ConfigError, SpawnError
 from eyas.exports.capture import Moment, frame_of
 from eyas.exports.frame import Action
@@ -227,7 +227,7 @@ def test_a_crowd_beside_vehicles_is_kept_with_them_and_moves_as_alone():
         SimConfig(extras=[{"kind": "Pedestrian", "count": 3}, {"kind": "BB-8", "count": 2}])
     )
     scene = load_scene("citystreet")
-    around = Surroundings(scene, Clock(101, 10.0), 3)
+    around = Surroundings(scene, SampleClock(101, 10.0), 3)
     table = np.zeros((101, 2), SAMPLE)
     table["x"], table["present"] = 5.0, 1.0
     vehicles = Motion(table, np.zeros(2, np.int32), 10.0, 0.0)

@@ -6,8 +6,8 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from eyas.behaviours.obstacles import Obstacles
-from eyas.behaviours.pavements import LANES, Way
+from eyas.behaviours.obstacles import GroundObstacles
+from eyas.behaviours.pavements import LANES, Walkway
 from eyas.core import exact
 from eyas.state.scene import Scene
 
@@ -49,7 +49,7 @@ class Crossing(NamedTuple):
 
 
 def crossings_of(
-    scene: Scene, ways: list[Way], obstacles: Obstacles, radius: float
+    scene: Scene, ways: list[Walkway], obstacles: GroundObstacles, radius: float
 ) -> list[Crossing]:
     """Return the crossings between ways, in both directions.
 
@@ -96,7 +96,7 @@ class _Paint(NamedTuple):
     """How far beside its middle one may cross, the best first [m]."""
 
 
-def _free(side: _Side, one: _Paint, obstacles: Obstacles, radius: float) -> _Joined | None:
+def _free(side: _Side, one: _Paint, obstacles: GroundObstacles, radius: float) -> _Joined | None:
     """Return what a crossing joins, the first way over it that nothing blocks."""
     for aside in one.asides:
         joined = _between(side, one, aside)

@@ -9,10 +9,10 @@ import shapely
 from eyas.behaviours.chain import chain_through, outline
 from eyas.behaviours.crossings import crossings_of
 from eyas.behaviours.kerbs import kerb_ways
-from eyas.behaviours.obstacles import Obstacles
-from eyas.behaviours.pavements import Way, pavement_ways
+from eyas.behaviours.obstacles import GroundObstacles
+from eyas.behaviours.pavements import Walkway, pavement_ways
 from eyas.behaviours.places import Roadside
-from eyas.behaviours.surface import Surface
+from eyas.behaviours.surface import WalkedSurface
 from eyas.state.motion import Motion
 from eyas.state.scene import Scene
 from eyas.targets.catalogue import habit_of
@@ -39,21 +39,21 @@ class Ground:
 
     def __init__(self, scene: Scene, *, roads: bool, lights: SignalPlan | None = None) -> None:
         self.scene, self.lights = scene, lights
-        self.obstacles = Obstacles(scene, roads=roads)
+        self.obstacles = GroundObstacles(scene, roads=roads)
         self._roads = roads
         # Pavement walkers are beside the roads by the choice of their ways.
-        self.surface = Surface(scene)
+        self.surface = WalkedSurface(scene)
         self.roadside = Roadside(scene.network, self.obstacles)
 
     @cached_property
-    def solids(self) -> Obstacles:
+    def solids(self) -> GroundObstacles:
         """The obstacles without the roads."""
-        return Obstacles(self.scene, roads=False) if self._roads else self.obstacles
+        return GroundObstacles(self.scene, roads=False) if self._roads else self.obstacles
 
 
 def walkways(
     ground: Ground, breadth: float, bend: float, vehicles: Motion | None = None
-) -> list[Way]:
+) -> list[Walkway]:
     """Return the ways on pavements.
 
     Args:

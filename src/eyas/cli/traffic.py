@@ -1,6 +1,5 @@
 """`eyas traffic`."""
 
-import json
 import re
 from pathlib import Path
 from typing import Annotated
@@ -67,10 +66,8 @@ def record(  # noqa: PLR0913  # one parameter for each option
     from eyas.settings.file import load_settings
     from eyas.settings.legacy.messages import originals_named
 
-    short = {"world.seed": map_seed, "traffic.seed": seed}
-    said = [f"{key}={json.dumps(value)}" for key, value in short.items() if value is not None]
-    if vehicle_type is not None:
-        said.append(f"traffic.vehicle_type={vehicle_type}")
+    short = {"world.seed": map_seed, "traffic.seed": seed, "traffic.vehicle_type": vehicle_type}
+    said = [f"{key}={value}" for key, value in short.items() if value is not None]
     file, overrides = chosen_file(config, preset), [*gathered(set_, map_name), *said]
     settings = load_settings(file, overrides, trust=trust)
     many = _numbers(seeds) if seeds is not None else ()

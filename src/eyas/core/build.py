@@ -29,7 +29,7 @@ _ROOT = Path(__file__).parents[1]
 _APART = ("cli", "modes")
 _VIDEO = "modes/video"
 
-_CODE_OF_KERNELS = "lanes/shipped"
+_CODE_OF_KERNELS = "lanes/shipped/"
 """Computes what the sources say, or is not used."""
 
 _LIBRARIES = ("onnxruntime", "torch")

@@ -8,7 +8,7 @@ import gymnasium
 from pydantic import BaseModel
 
 from eyas.lanes import BoundCall, CompiledCall, Held
-from eyas.render.renderer import Renderer
+from eyas.render.renderer import CpuRenderer
 from eyas.sim.assets import Assets
 from eyas.sim.episode_draw import DrawRules, ModelTable
 from eyas.sim.light import LightRules
@@ -24,7 +24,7 @@ __all__ = ["FIXED"]
 
 _CODE = (types.FunctionType, types.MethodType, partial, type, CompiledCall)
 _SETTINGS = (BaseModel, Enum, gymnasium.Space)
-_SHARED = (Assets, Renderer, Lighting, Motion, Terrain)
+_SHARED = (Assets, CpuRenderer, Lighting, Motion, Terrain)
 _TABLES = (DrawRules, LightRules, LookTable, ModelTable)
 """Made of the settings and the catalogue, which may have grown in this process."""
 _BOUND = (BoundCall, Held)

@@ -1,8 +1,10 @@
 """What an evaluation flies, and with what."""
 
 import json
+import re
 import shlex
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Annotated, Any
 
 from pydantic import Field
@@ -20,7 +22,7 @@ from eyas.evaluation.protocol import Protocol, protocol_named
 from eyas.evaluation.record import Record
 from eyas.world.maps import MAPS
 
-__all__ = ["Plan", "Stamp", "batches", "fly_batch", "stamp"]
+__all__ = ["Plan", "Stamp", "batches", "fly_batch", "folder_name", "stamp"]
 
 Names = Annotated[tuple[str, ...], Field(min_length=1)]
 
@@ -115,6 +117,11 @@ def stamp(plan: Plan) -> Stamp:
         policy=fingerprint(plan.policy),
         plan=plan,
     )
+
+
+def folder_name(plan: Plan) -> str:
+    """Return the name of the folder of a plan's results, unless a user chooses one."""
+    return re.sub(r"[^\w.-]+", "-", f"{Path(plan.policy).stem}-{plan.protocol}")
 
 
 def batches(plan: Plan) -> list[list[Episode]]:

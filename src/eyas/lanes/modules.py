@@ -6,8 +6,13 @@ what its function computes (`eyas.lanes.identity`) and by the types of its argum
 """
 
 import itertools
-import pickle
+import logging
+import lzma
+import sys
 from collections.abc import Callable
+from functools import cache
+from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 import llvmlite
@@ -15,17 +20,26 @@ import llvmlite.binding as llvm
 import numba
 from numba.core.codegen import JITCodeLibrary
 
-from eyas.lanes.folder import kernel_folder, read_trusted, refusal, touch, write_trusted
+from eyas.lanes.container import Contents, packed, unpacked
+from eyas.lanes.folder import OWNER, kernel_folder, read_trusted, refusal, touch, write_trusted
 from eyas.lanes.identity import language_hash
 from eyas.lanes.machine_code import cpu, digest
+from eyas.lanes.shipped import wanted
+from eyas.lanes.vector.kinds import Lanes
 
-__all__ = ["Module", "kept_module", "linked", "module_name", "module_of"]
+__all__ = ["ARCHIVE", "Module", "archive_of", "kept_module", "linked", "module_name", "module_of"]
 
 SUFFIX = ".eym"
 """End of the names of files of modules."""
 
 _NUMBERS = itertools.count()
 """Numbers of the modules that are not kept."""
+
+_LOG = logging.getLogger(OWNER)
+
+ARCHIVE = Path(__file__).parent / "shipped" / "modules.xz"
+"""Modules that come with the package, so that the first edit of a kernel costs no more than later
+ones. They serve one version of numba and llvmlite, that of the release."""
 
 _LOADED: dict[str, "Module"] = {}
 """Modules read or made by this process, by name."""
@@ -92,17 +106,16 @@ def kept_module(name: str) -> Module | None:
     """Return a module that is kept, with those of all that it calls; None if one is missing."""
     if name not in _LOADED:
         path = kernel_folder() / f"{name}{SUFFIX}"
-        found = read_trusted(path)
+        found = read_trusted(path) or _shipped().get(name)
         if found is None:
             return None
-        symbol, names = found.header
+        symbol, names, returns = found.header
         calls = [called for called in map(kept_module, names) if called is not None]
         if len(calls) < len(names):
             return None
         touch(path)
-        # Whoever could aim this at other classes could as well have written other machine code.
-        returns = pickle.loads(found.pieces[0])
-        _LOADED[name] = Module(name, symbol, tuple(calls), bytes(found.pieces[1]), returns)
+        code = bytes(found.pieces[0])
+        _LOADED[name] = Module(name, symbol, tuple(calls), code, _type_of(returns))
     return _LOADED[name]
 
 
@@ -153,14 +166,70 @@ def _shared(module: llvm.ModuleRef) -> llvm.ModuleRef:
 
 
 def _keep(module: Module) -> None:
-    try:
-        returns = pickle.dumps(module.returns)
-    except (AttributeError, pickle.PicklingError):  # a class that no module holds
-        return
-    if not refusal():
+    returns = _as_json(module.returns)
+    if returns is not None and not refusal():
         path = kernel_folder() / f"{module.name}{SUFFIX}"
-        header = [module.symbol, [called.name for called in module.calls]]
-        write_trusted(path, header, [returns, module.code])
+        header = [module.symbol, [called.name for called in module.calls], returns]
+        write_trusted(path, header, [module.code])
+
+
+def _as_json(kind: Any) -> Any:  # noqa: ANN401  # what JSON can tell
+    """Return what tells a type that a kernel returns; None if it is not one of the usual ones."""
+    if isinstance(kind, Lanes):
+        return ["lanes", _as_json(kind.element)]
+    if isinstance(kind, numba.types.BaseTuple):
+        of: Any = getattr(kind, "instance_class", tuple)
+        parts = [_as_json(part) for part in kind]
+        found = getattr(sys.modules.get(of.__module__), of.__qualname__, None)
+        usual = found is of and None not in parts
+        return [of.__module__, of.__qualname__, *parts] if usual else None
+    return str(kind) if getattr(numba.types, str(kind), None) is kind else None
+
+
+def _type_of(told: Any) -> Any:  # noqa: ANN401  # from JSON; numba's types have none
+    """Return the type of `_as_json`."""
+    if isinstance(told, str):
+        return getattr(numba.types, told)
+    if told[0] == "lanes":
+        return Lanes(_type_of(told[1]))
+    of = getattr(import_module(told[0]), told[1])
+    return numba.types.BaseTuple.from_types(tuple(map(_type_of, told[2:])), of)
+
+
+@cache
+def _shipped() -> dict[str, Contents]:
+    """Return the modules that come with the package, by name."""
+    if not wanted() or not ARCHIVE.exists():
+        return {}
+    try:
+        table, pieces = unpacked(lzma.decompress(ARCHIVE.read_bytes()))
+    except (OSError, ValueError, lzma.LZMAError) as error:
+        _LOG.warning("%s: damaged or unreadable, so kernels are compiled: %s", ARCHIVE, error)
+        return {}
+    return {
+        name: Contents(header, [piece])
+        for (name, *header), piece in zip(table, pieces, strict=True)
+    }
+
+
+def archive_of(folder: Path, function: str) -> bytes:
+    """Return the content of an archive of modules.
+
+    Args:
+        folder: Where they are kept.
+        function: Name of the compiled function whose modules they are, with all that it calls.
+    """
+    left = [path.stem for path in folder.glob(f"{function}-*{SUFFIX}")]
+    found: dict[str, Contents] = {}
+    while left:
+        contents = read_trusted(folder / f"{(name := left.pop())}{SUFFIX}")
+        assert contents is not None, name
+        found[name] = contents
+        left += [called for called in contents.header[1] if called not in found]
+    names = sorted(found)
+    table = [[name, *found[name].header] for name in names]
+    content = b"".join(packed(table, [found[name].pieces[0] for name in names]))
+    return lzma.compress(content, preset=lzma.PRESET_EXTREME)
 
 
 def linked(module: Module, into: llvm.ModuleRef | None = None) -> llvm.ModuleRef:

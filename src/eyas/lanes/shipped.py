@@ -32,6 +32,7 @@ __all__ = [
     "needed",
     "read_archive",
     "shipped_code",
+    "wanted",
 ]
 
 _LOG = logging.getLogger(OWNER)
@@ -77,12 +78,17 @@ def read_archive(path: Path) -> dict[str, MachineCode]:
     }
 
 
+def wanted() -> bool:
+    """Return whether code that comes with the package may be used."""
+    return os.environ.get(VARIABLE) != "0"
+
+
 @cache
 def _shipped() -> dict[str, MachineCode]:
     """Return the code for this machine and this language."""
     named = {"NUMBA_CPU_NAME", "NUMBA_CPU_FEATURES"} & os.environ.keys()
     other = sys.platform != "linux" or platform.machine() != "x86_64"
-    if named or other or os.environ.get(VARIABLE) == "0" or not needed <= features():
+    if named or other or not wanted() or not needed <= features():
         return {}
     try:
         return read_archive(ARCHIVE)

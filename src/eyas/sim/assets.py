@@ -6,16 +6,17 @@ from functools import lru_cache, partial
 
 import numpy as np
 
-from eyas.behaviours.troop import Clock
+from eyas.behaviours.groups import SampleClock
 from eyas.core.cache.array_file import let_go
 from eyas.core.errors import ConfigError
 from eyas.render.ahead import begin_ahead, drawing_is_ready
-from eyas.render.renderer import Renderer, build_renderer
+from eyas.render.renderer import build_renderer
 from eyas.sensors.obstacles import Solids
 from eyas.sim.crowd import NOBODY, Crowd, vehicles_of
 from eyas.sim.crowd_motion import Surroundings, crowd_motions, with_crowd
 from eyas.sim.scenes import load_geometry, load_scene, load_solids
 from eyas.sim.views.additions import SignalLights, lights_of
+from eyas.state.draw import Renderer
 from eyas.state.lighting import Lighting
 from eyas.state.motion import Motion
 from eyas.state.scene import Scene
@@ -108,9 +109,9 @@ def _traffic(
     map_name: str, seed: int, config: TrafficConfig, trackers: int, crowd: Crowd
 ) -> TrafficSource:
     vehicles = _vehicles(map_name, seed, config, trackers, crowd)
-    clock = Clock(round(STANDARD_DURATION * _RATE) + 1, _RATE)
+    clock = SampleClock(round(STANDARD_DURATION * _RATE) + 1, _RATE)
     if vehicles is not None:
-        clock = Clock(len(vehicles.table), vehicles.rate)
+        clock = SampleClock(len(vehicles.table), vehicles.rate)
     # A scene depends on the season, but its ground does not.
     scene = load_scene(map_name, seed)
     plans = _signal_plans(map_name, seed) if scene.footways.told else None
@@ -131,7 +132,7 @@ def _live(
             "traffic.source: 'live' is for targets that SUMO drives, 'SUMO_VEHICLE'; use 'recorded'"
         )
     scene, own_seed = load_scene(map_name, seed), _seed_of(config)
-    clock = Clock(round(STANDARD_DURATION * _RATE) + 1, _RATE)
+    clock = SampleClock(round(STANDARD_DURATION * _RATE) + 1, _RATE)
     return LiveSumo(
         MAPS.get(map_name).roads(seed),
         resolved(config, own_seed, trackers),

@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.behaviours.config import ExtraConfig
-from eyas.behaviours.lives import Lives, lasting, recycled
-from eyas.behaviours.troop import Clock, Troop
+from eyas.behaviours.groups import Lifetimes, SampleClock, ScriptedGroup, lasting, recycled
 from eyas.core import exact
 from eyas.core.cache.cached import cached
 from eyas.core.cache.folder import Kind
@@ -38,7 +37,7 @@ class Surroundings(NamedTuple):
     """Where and when a crowd moves."""
 
     scene: Scene
-    clock: Clock
+    clock: SampleClock
     """Number of samples, and their rate."""
     seed: int
     """Of places and ways."""
@@ -63,9 +62,9 @@ def crowd_motions(crowd: Crowd, around: Surroundings) -> list[Motion]:
     if crowd.driven and around.vehicles is None:
         _refuse_crossing(crowd)
     ground = cache(partial(_ground, around, crowd.driven))  # unneeded if all motions are kept
-    troops = _troops(crowd, around.clock)
+    groups = _groups(crowd, around.clock)
     motions = [
-        _kept(troop, number, around, crowd.driven, ground) for number, troop in enumerate(troops)
+        _kept(group, number, around, crowd.driven, ground) for number, group in enumerate(groups)
     ]
     if crowd.custom is not None:
         motions.insert(0, _custom(crowd, crowd.custom, around, ground()))
@@ -86,7 +85,7 @@ def with_crowd(
         SpawnError: The map has no room for all.
     """
     before = [] if vehicles is None else [vehicles]
-    if crowd.custom is None and _troops(crowd, around.clock):
+    if crowd.custom is None and _groups(crowd, around.clock):
         motion, counts = _all_kept(before, crowd, around)
     else:
         every = [*before, *crowd_motions(crowd, around)]
@@ -98,24 +97,24 @@ def with_crowd(
 def _all_kept(
     before: Sequence[Motion], crowd: Crowd, around: Surroundings
 ) -> tuple[Motion, list[int]]:
-    """Return the motion of vehicles and troops as one entry of the cache, and how many each are.
+    """Return the motion of vehicles and groups as one entry of the cache, and how many each are.
 
     Joined in memory, that of 400 people would take half a gigabyte of each process, of which it
     reads little.
     """
-    troops = _troops(crowd, around.clock)
+    groups = _groups(crowd, around.clock)
     ground = cache(partial(_ground, around, crowd.driven))
     parts = [
-        partial(_numbers_of, troop, number, around, ground) for number, troop in enumerate(troops)
+        partial(_numbers_of, group, number, around, ground) for number, group in enumerate(groups)
     ]
     tables = [motion.table for motion in before]
     depends_on = [
-        _depends_on(troop, number, around, crowd.driven) for number, troop in enumerate(troops)
+        _depends_on(group, number, around, crowd.driven) for number, group in enumerate(groups)
     ]
     make, inputs = partial(_side_by_side, tables, parts), (_numbers_of, *tables, *depends_on)
     numbers = cached(Kind.MOTION, make, inputs, of=NDArray[np.float32])
-    counts = [int(troop.lives.slot.max()) + 1 for troop in troops]
-    indices = [kind_index(troop.kind) for troop in troops]
+    counts = [int(group.lives.slot.max()) + 1 for group in groups]
+    indices = [kind_index(group.kind) for group in groups]
     kind = np.concatenate([*(one.kind for one in before), np.repeat(indices, counts)])
     motion = Motion(numbers.view(SAMPLE)[..., 0], kind.astype(np.int32), around.clock.rate, 0.0)
     return motion, [*(len(one.kind) for one in before), *counts]
@@ -136,66 +135,66 @@ def _side_by_side(
 
 
 def _kept(
-    troop: Troop,
+    group: ScriptedGroup,
     number: int,
     around: Surroundings,
     driven: bool,
     ground: Callable[[], "Ground"],
 ) -> Motion:
-    """Return the motion of a troop, from the cache if it is there; see `_numbers_of`."""
-    make = partial(_numbers_of, troop, number, around, ground)
-    inputs = _depends_on(troop, number, around, driven)
+    """Return the motion of a group, from the cache if it is there; see `_numbers_of`."""
+    make = partial(_numbers_of, group, number, around, ground)
+    inputs = _depends_on(group, number, around, driven)
     numbers = cached(Kind.MOTION, make, inputs, of=NDArray[np.float32])
-    kind = np.full(numbers.shape[1], kind_index(troop.kind), np.int32)
+    kind = np.full(numbers.shape[1], kind_index(group.kind), np.int32)
     return Motion(numbers.view(SAMPLE)[..., 0], kind, around.clock.rate, 0.0)
 
 
 def _numbers_of(
-    troop: Troop, number: int, around: Surroundings, ground: Callable[[], "Ground"]
+    group: ScriptedGroup, number: int, around: Surroundings, ground: Callable[[], "Ground"]
 ) -> NDArray[np.float32]:
-    """Return the numbers of the samples of a troop's motion.
+    """Return the numbers of the samples of a group's motion.
 
     Args:
-        troop: Who moves.
-        number: Which of the crowd's troops it is.
+        group: Who moves.
+        number: Which of the crowd's groups it is.
         around: Where and when it moves.
         ground: Returns the ground.
     """
     from eyas.behaviours.scripted import scripted_table  # with shapely
 
-    rng = stream(around.seed, "crowd", number, zlib.crc32(troop.kind.encode()))
-    table = scripted_table(ground(), troop, around.clock, rng, around.vehicles)
+    rng = stream(around.seed, "crowd", number, zlib.crc32(group.kind.encode()))
+    table = scripted_table(ground(), group, around.clock, rng, around.vehicles)
     return table.view(np.float32).reshape(*table.shape, -1)
 
 
 def _depends_on(
-    troop: Troop, number: int, around: Surroundings, driven: bool
+    group: ScriptedGroup, number: int, around: Surroundings, driven: bool
 ) -> tuple[object, ...]:
     """Return what `_numbers_of` depends on; `driven`: whether vehicles drive there."""
     scene, clock, seed, vehicles, lights = around
-    crosses = troop.behaviour is Behaviour.CROSSING
-    heeds = crosses or (scene.footways.told and troop.behaviour is Behaviour.PAVEMENT)
+    crosses = group.behaviour is Behaviour.CROSSING
+    heeds = crosses or (scene.footways.told and group.behaviour is Behaviour.PAVEMENT)
     waits_for = (vehicles.table, vehicles.kind) if heeds and vehicles is not None else ()
     obeys = lights if crosses else None
-    moves = troop._replace(setting="", chosen_by="")  # which only messages name
+    moves = group._replace(setting="", chosen_by="")  # which only messages name
     return (_ground, _plan_of(scene), moves, clock, seed, number, driven, waits_for, obeys)
 
 
-def _troops(crowd: Crowd, clock: Clock) -> list[Troop]:
-    troops = []
+def _groups(crowd: Crowd, clock: SampleClock) -> list[ScriptedGroup]:
+    groups = []
     if crowd.custom is None and not crowd.follows_vehicles:
         lives = _lives(crowd, clock)
         target = ExtraConfig(kind=crowd.target)
-        troops.append(_troop(target, lives, crowd.objects.offset, "objects.max_count"))
+        groups.append(_group(target, lives, crowd.objects.offset, "objects.max_count"))
     for number, extra in enumerate(crowd.extras):
         if not extra.is_traffic:
             lives = lasting(extra.count, clock.samples)
-            one = _troop(extra, lives, _ASIDE, f"extras.{number}.count")
-            troops.append(one._replace(chosen_by=f"extras.{number}.behaviour"))
-    return troops
+            one = _group(extra, lives, _ASIDE, f"extras.{number}.count")
+            groups.append(one._replace(chosen_by=f"extras.{number}.behaviour"))
+    return groups
 
 
-def _lives(crowd: Crowd, clock: Clock) -> Lives:
+def _lives(crowd: Crowd, clock: SampleClock) -> Lifetimes:
     return recycled(crowd.objects, clock.samples, clock.rate, crowd.episode, crowd.followers)
 
 
@@ -222,10 +221,10 @@ def _custom(crowd: Crowd, custom: CustomConfig, around: Surroundings, ground: "G
     return custom_motion(custom, places, ground, clock, stream(around.seed, "custom"))
 
 
-def _troop(extra: ExtraConfig, lives: Lives, offset: Variation, setting: str) -> Troop:
+def _group(extra: ExtraConfig, lives: Lifetimes, offset: Variation, setting: str) -> ScriptedGroup:
     models = [MODELS[model] for model in models_of(kind_index(extra.kind))]
     breadth = max(float(exact.hypot(*model.size[:2])) for model in models)
-    return Troop(
+    return ScriptedGroup(
         kind=extra.kind.value,
         breadth=breadth,
         behaviour=extra.behaviour,

@@ -15,11 +15,11 @@ from eyas.targets.quadrotor import QUADROTOR
 from eyas.targets.rig import Rigs
 from eyas.targets.words import looks_in_words
 
-__all__ = ["Entry", "entries", "table"]
+__all__ = ["ModelRow", "entries", "table"]
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class ModelRow:
     """A line of the table."""
 
     name: str
@@ -35,7 +35,7 @@ class Entry:
     """Number of triangles at the finest and at the coarsest level of detail."""
 
 
-def entries() -> list[Entry]:
+def entries() -> list[ModelRow]:
     """Return a line for each model that can be a target, in the order of `MODELS`."""
     lines = []
     for kind in KINDS:
@@ -45,7 +45,7 @@ def entries() -> list[Entry]:
         for model in models_of(kind_index(kind.name)):
             parts = [levels[part] for part in _parts(kind, model)]
             lines.append(
-                Entry(
+                ModelRow(
                     name=MODELS[model].name,
                     kind=kind.name,
                     size=MODELS[model].size,

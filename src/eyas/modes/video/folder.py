@@ -32,9 +32,10 @@ __all__ = ["VideoFolder", "check_folder", "open_folder"]
 SETTINGS, LEGACY_SETTINGS = "config.json", "env_config.json"
 
 ORIGIN = "version.json"
-"""Version and build of Eyas and the files of the writers: `{"eyas": "0.1.0", "build": {...},
-"files": {...}}`. The build, since another one may draw different pictures; the files, so that
-`--overwrite` can delete them even if the package of a user's own writer is no longer installed."""
+"""Version and build of Eyas and the files of the writers: `{"eyas": "0.1.0", "build_id": "...",
+"build": {...}, "files": {...}}`. The build, since another one may draw different pictures; the
+files, so that `--overwrite` can delete them even if the package of a user's own writer is no longer
+installed."""
 
 
 _NOT_PICTURED = ("learning", "wire")
@@ -142,7 +143,11 @@ def open_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: bool
     save_legacy(config, path / LEGACY_SETTINGS)
     folder = VideoFolder(path, config)
     files = joined(writer.files for writer in folder.writers)
-    origin = {"eyas": __version__, "build": this_build().model_dump(), "files": asdict(files)}
+    build = this_build()
+    origin = {
+        **{"eyas": __version__, "build_id": build.id, "build": build.model_dump()},
+        "files": asdict(files),
+    }
     notice = MAPS.get(config.world.map).attribution()
     if notice:
         write_atomic(path / ATTRIBUTION_FILE, notice.encode())

@@ -14,7 +14,7 @@ from eyas.targets.kind import Section
 from eyas.traffic.signals import Aspect, SignalPlan
 from eyas.traffic.trailer import folded_by
 
-__all__ = ["Gaps"]
+__all__ = ["GapAcceptance"]
 
 _CLEAR: Final = 1.8
 """From the line that is crossed to the side of a vehicle, at least [m]."""
@@ -36,7 +36,7 @@ Floats = NDArray[np.floating]
 _folded_by = interpreted(folded_by)
 
 
-class Gaps:
+class GapAcceptance:
     """The gaps in traffic.
 
     Args:
@@ -149,7 +149,7 @@ def _fleet(vehicles: Motion, kind: int, samples: int) -> _Fleet:
 
 
 def _met_by(fleet: _Fleet, line: Floats, clear: float) -> NDArray[np.int64]:
-    """Return at which samples a vehicle is on a line, see `Gaps`; some more than once."""
+    """Return at which samples a vehicle is on a line, see `GapAcceptance`; some more than once."""
     middle, across = line.mean(axis=0), line[1] - line[0]
     reach = 0.5 * float(exact.hypot(*across)) + fleet.reach + clear
     sample, actor = np.nonzero(

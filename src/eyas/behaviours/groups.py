@@ -1,4 +1,7 @@
-"""When objects come and go: the original's groups, without taking anything from who follows it."""
+"""Who moves: how many of a kind, where, when they come and go, and how they move.
+
+They come and go in the original's groups, without taking anything from who follows it.
+"""
 
 import math
 from typing import Final, NamedTuple
@@ -6,9 +9,11 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.variation import Variation
 from eyas.targets.config import ObjectsConfig
+from eyas.targets.habit import Behaviour, Habit
 
-__all__ = ["Lives", "lasting", "recycled"]
+__all__ = ["Lifetimes", "SampleClock", "ScriptedGroup", "lasting", "recycled"]
 
 _LEAST: Final = 60.0
 """Least length of a life, where that of the original is too short [s]."""
@@ -20,7 +25,7 @@ _BETWEEN: Final = 1.0
 """More than from the end of a life to the next, and what times are rounded by [s]."""
 
 
-class Lives(NamedTuple):
+class Lifetimes(NamedTuple):
     """L stays in the world, shape (L,) each."""
 
     slot: NDArray[np.int64]
@@ -31,14 +36,42 @@ class Lives(NamedTuple):
     """Last sample; the next life begins two samples later, so that no motion joins the two."""
 
 
-def lasting(count: int, samples: int) -> Lives:
+class SampleClock(NamedTuple):
+    """The instants of a motion."""
+
+    samples: int
+    rate: float
+    """[Hz]"""
+
+
+class ScriptedGroup(NamedTuple):
+    """Some of one kind."""
+
+    kind: str
+    """Name of the kind."""
+    breadth: float
+    """Diameter of the circle in which it fits [m]."""
+    behaviour: Behaviour | None
+    """None: that of the habit."""
+    habit: Habit
+    """How they move."""
+    lives: Lifetimes
+    offset: Variation
+    """Where it begins: distance from the middle of the road [m]."""
+    setting: str
+    """Setting of the number, for messages."""
+    chosen_by: str = "custom.behaviour"
+    """Setting of the behaviour, for messages."""
+
+
+def lasting(count: int, samples: int) -> Lifetimes:
     """Return objects that stay from the first to the last sample."""
-    return Lives(np.arange(count), np.zeros(count, np.int64), np.full(count, samples - 1))
+    return Lifetimes(np.arange(count), np.zeros(count, np.int64), np.full(count, samples - 1))
 
 
 def recycled(
     config: ObjectsConfig, samples: int, rate: float, episode: float, followers: int = 0
-) -> Lives:
+) -> Lifetimes:
     """Return objects that come in groups and are moved elsewhere in the same order.
 
     The original moves the oldest group whenever an interval has passed, even if someone follows it;
@@ -79,4 +112,4 @@ def recycled(
         starts = [enters, *(moves + 2).tolist()]
         ends = [*moves.tolist(), samples - 1]
         made += [(slot, a, b) for a, b in zip(starts, ends, strict=True) if b > a]
-    return Lives(*np.array(made, np.int64).reshape(-1, 3).T)
+    return Lifetimes(*np.array(made, np.int64).reshape(-1, 3).T)

@@ -3,15 +3,14 @@
 import numpy as np
 import pytest
 
-from eyas.behaviours.lives import recycled
-from eyas.behaviours.troop import Clock
+from eyas.behaviours.groups import SampleClock, recycled
 from eyas.state.motion import SAMPLE, Motion
 from eyas.targets.config import ObjectsConfig
 from eyas.traffic.replay import Replay
 
 
 def test_objects_are_recycled_but_stay_for_an_episode(staying):
-    config, clock = ObjectsConfig(), Clock(12601, 10.0)
+    config, clock = ObjectsConfig(), SampleClock(12601, 10.0)
     lives = recycled(config, *clock, episode=3.0)
     assert set(lives.slot.tolist()) == set(range(10))
     assert len(lives.slot) > 100  # moved elsewhere again and again
@@ -36,7 +35,10 @@ def test_objects_are_recycled_but_stay_for_an_episode(staying):
 )
 def test_nobody_is_moved_whom_a_tracker_must_follow(count, group, followers, episode, staying):
     """In a world whose time goes on, each of the followers finds somebody who stays."""
-    config, clock = ObjectsConfig(max_count=count, group_size=group, interval=5.0), Clock(12601, 10)
+    config, clock = (
+        ObjectsConfig(max_count=count, group_size=group, interval=5.0),
+        SampleClock(12601, 10),
+    )
     lives = recycled(config, *clock, episode, followers)
     table = np.zeros((clock.samples, count), SAMPLE)
     for slot, a, b in zip(*lives, strict=True):

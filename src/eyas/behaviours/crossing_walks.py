@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 
 from eyas.behaviours.chain import Chain, Poses, chain_of, chain_through, joints
 from eyas.behaviours.crossings import Crossing
-from eyas.behaviours.gaps import Gaps
-from eyas.behaviours.pavements import Way
-from eyas.behaviours.timetable import Ride, ride, time_of
+from eyas.behaviours.gap_acceptance import GapAcceptance
+from eyas.behaviours.pavements import Walkway
+from eyas.behaviours.timetable import TimedMotion, ride, time_of
 from eyas.core import exact
 from eyas.targets.habit import Habit
 
-__all__ = ["Streets", "Tour", "tour", "tour_ride"]
+__all__ = ["CrossingWalk", "Streets", "crossing_walk", "walk_motion"]
 
 _PASSED_BY: Final = 0.4
 """Share of the crossings that somebody does not take."""
@@ -33,13 +33,13 @@ _NEAR: Final = 0.05
 class Streets(NamedTuple):
     """What is walked on."""
 
-    ways: list[Way]
+    ways: list[Walkway]
     crossings: list[list[Crossing]]
     """Those that begin at each way, in the order of their places on it."""
-    gaps: Gaps
+    gaps: GapAcceptance
 
 
-class Tour(NamedTuple):
+class CrossingWalk(NamedTuple):
     """Paths one after the other; each is stood at the end of until the next begins."""
 
     legs: list[Chain]
@@ -47,9 +47,9 @@ class Tour(NamedTuple):
     """When each begins, from the beginning of the life [s]."""
 
 
-def tour(
+def crossing_walk(
     streets: Streets, habit: Habit, enters: float, lasts: float, rng: np.random.Generator
-) -> Tour:
+) -> CrossingWalk:
     """Return a walk from a random place.
 
     Args:
@@ -63,7 +63,7 @@ def tour(
     length = np.array([streets.ways[k].length for k in open_])
     way = open_[int(rng.choice(len(open_), p=length / length.sum()))]
     along, heading, time = float(rng.uniform(0.0, streets.ways[way].length)), None, 0.0
-    made = Tour([], [])
+    made = CrossingWalk([], [])
     while time < lasts:
         crossing = _next(streets, way, along, rng)
         walk = _walk(streets.ways[way], along, crossing, habit, heading)
@@ -86,7 +86,7 @@ def tour(
     return made
 
 
-def tour_ride(walk: Tour, habit: Habit, time: Floats) -> Ride:
+def walk_motion(walk: CrossingWalk, habit: Habit, time: Floats) -> TimedMotion:
     """Return the motion on a walk at increasing times [s], shape (K,), see `ride`."""
     leg = np.searchsorted(walk.begins, time, side="right") - 1
     travelled, parts = 0.0, []
@@ -96,7 +96,7 @@ def tour_ride(walk: Tour, habit: Habit, time: Floats) -> Ride:
         travelled += float(walk.legs[k].length.sum())
     poses = [np.concatenate(column) for column in zip(*(part.poses for part in parts), strict=True)]
     rest = [np.concatenate(column) for column in zip(*(part[1:] for part in parts), strict=True)]
-    return Ride(Poses(*poses), *rest)
+    return TimedMotion(Poses(*poses), *rest)
 
 
 def _next(streets: Streets, way: int, along: float, rng: np.random.Generator) -> Crossing:
@@ -114,7 +114,9 @@ def _time_to(away: float, habit: Habit) -> float:
     return away / habit.speed + 0.5 * habit.speed / habit.acceleration
 
 
-def _walk(way: Way, along: float, crossing: Crossing, habit: Habit, heading: float | None) -> Chain:
+def _walk(
+    way: Walkway, along: float, crossing: Crossing, habit: Habit, heading: float | None
+) -> Chain:
     """Return the path on a way to a crossing, at which one turns towards it.
 
     Args:
