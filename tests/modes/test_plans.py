@@ -17,7 +17,7 @@ from eyas.sim.scenes import load_network, load_scene
 from eyas.state.scene import ObjectClass
 from eyas.world.maps import MAPS
 from eyas.world.plan.file import read_plan
-from eyas.world.plan.plan import Buildings, Ground, Paved, Streets
+from eyas.world.plan.plan import Buildings, GroundCover, Paved, Roadway
 from eyas.world.weather import Season
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "own_map.plan.json"
@@ -99,11 +99,11 @@ def test_a_plan_drawn_by_hand_is_completed(hamlet):
     assert len(buildings.items) == len(known.houses)
     tall = max(buildings.items, key=lambda one: one.parts[0].height).parts[0]
     assert tall.height == pytest.approx(27.3)  # nine storeys
-    flat = [layer.area for layer in made.layers if isinstance(layer, Streets | Paved)]
+    flat = [layer.area for layer in made.layers if isinstance(layer, Roadway | Paved)]
     flat += [
         piece.area
         for layer in made.layers
-        if isinstance(layer, Ground) and layer.kind is not ObjectClass.WATER
+        if isinstance(layer, GroundCover) and layer.kind is not ObjectClass.WATER
         for piece in layer.pieces
         if piece.form == "flat"
     ]

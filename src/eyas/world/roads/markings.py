@@ -70,13 +70,12 @@ def road_paint(network: RoadNetwork, *, centre: str = "white", crossings: bool =
 
 def paint_of(network: RoadNetwork, paint: Paint) -> RoadPaint:
     """Return the paint of all roads by the rules of a plan."""
-    lines = [Stripe(line.middle, line.width) for line in paint.lines]
-    bars = [[Stripe(bar.middle, bar.width)] for bar in paint.bars]
+    bars = [[bar] for bar in paint.bars]
     if paint.rule == "none":
-        return RoadPaint(lines, [], bars)
+        return RoadPaint(list(paint.lines), [], bars)
     made = road_paint(network, centre=paint.centre, crossings=paint.crossings > 0)
     zebras = made.zebras[:: max(paint.crossings, 1)]
-    return RoadPaint([*made.lines, *lines], made.arrows, [*zebras, *bars])
+    return RoadPaint([*made.lines, *paint.lines], made.arrows, [*zebras, *bars])
 
 
 def crossings_of(network: RoadNetwork, paint: Paint) -> NDArray[np.float64]:

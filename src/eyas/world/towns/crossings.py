@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from eyas.state.roads import RoadNetwork
 from eyas.world.build.millimetres import dot, length, rounded, unit
-from eyas.world.osm.features import Features
+from eyas.world.osm.features import Survey
 from eyas.world.roads.areas import Street, streets
 from eyas.world.roads.markings import frame_of, placed
 from eyas.world.roads.painting import Stripe, stripes
@@ -62,7 +62,7 @@ class Crosswalk:
 
 
 def crosswalks_of(
-    network: RoadNetwork, roads: shapely.Geometry, walked: shapely.Geometry, features: Features
+    network: RoadNetwork, roads: shapely.Geometry, walked: shapely.Geometry, features: Survey
 ) -> tuple[list[Crosswalk], shapely.Geometry]:
     """Return all crossings, and the islands in their course [m].
 

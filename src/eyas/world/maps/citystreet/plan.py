@@ -14,7 +14,7 @@ from eyas.state.scene import ObjectClass
 from eyas.world.build.heights import FLOOR_HEIGHT, KERB_HEIGHT
 from eyas.world.build.placed import Placed
 from eyas.world.land import ground, outskirts
-from eyas.world.maps.citystreet.layout import EXTENT, FLOOR, Layout, lay_out
+from eyas.world.maps.citystreet.layout import EXTENT, FLOOR, CityLayout, lay_out
 from eyas.world.maps.citystreet.roads import NAME
 from eyas.world.plan.library import CAR_KINDS, FURNITURE_KINDS, STREET_KINDS, plant_kinds
 from eyas.world.plan.plan import (
@@ -24,13 +24,13 @@ from eyas.world.plan.plan import (
     Deck,
     Far,
     Flat,
-    Ground,
-    Kind,
+    GroundCover,
     Layer,
     MapPlan,
     Paint,
     Paved,
-    Streets,
+    Roadway,
+    ThingKind,
     state_of,
     things,
 )
@@ -91,7 +91,7 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
         seed=seed,
         size=FLOOR,
         library=(
-            *(Kind(name=name, make="street tree", variant=k, chance="trees")
+            *(ThingKind(name=name, make="street tree", variant=k, chance="trees")
               for k, name in enumerate(_TREES)),
             *plant_kinds("beds"), *STREET_KINDS, *FURNITURE_KINDS, *CAR_KINDS,
         ),
@@ -112,7 +112,7 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
     )  # fmt: skip
 
 
-def _buildings(city: Layout) -> Buildings:
+def _buildings(city: CityLayout) -> Buildings:
     """Return the buildings, and what keeps free the roofs below towers."""
     towers = [shell.outline for shell in city.buildings if shell.bottom > FLOOR_HEIGHT]
     made = []
@@ -124,19 +124,19 @@ def _buildings(city: Layout) -> Buildings:
     return Buildings(items=tuple(made))
 
 
-def _deck(city: Layout) -> Deck:
+def _deck(city: CityLayout) -> Deck:
     down = outskirts.descent(city.deck, FLOOR_HEIGHT)  # beyond the floor; not solid
     legs = pillars(down, _LEGS, FLOOR_HEIGHT, city.roads)
     return Deck(middle=city.deck, pillars=tuple(city.pillars), descent=down, legs=tuple(legs))
 
 
-def _no_lawn(city: Layout) -> shapely.Geometry:
+def _no_lawn(city: CityLayout) -> shapely.Geometry:
     """Return roads, pavements, car parks and pools with their rims [m]."""
     rims = [shapely.buffer(pool, 0.8, join_style="mitre") for pool in city.pools]
     return shapely.union_all([city.roads, city.access, city.lots, city.pavement, *rims])
 
 
-def _taken(city: Layout, network: RoadNetwork) -> shapely.Geometry:
+def _taken(city: CityLayout, network: RoadNetwork) -> shapely.Geometry:
     """Return the area where something already stands or drives, in plan view."""
     built = [shell.outline for shell in city.buildings]
     areas = [park.area for park in city.car_parks] + [pillar.base for pillar in city.pillars]
@@ -145,7 +145,7 @@ def _taken(city: Layout, network: RoadNetwork) -> shapely.Geometry:
     return shapely.union_all([city.roads, city.access, *city.pools, *built, *areas, *thin])
 
 
-def _ground(city: Layout, yards: Sequence[shapely.Geometry], seed: int) -> list[Layer]:
+def _ground(city: CityLayout, yards: Sequence[shapely.Geometry], seed: int) -> list[Layer]:
     rng = stream(seed, "citystreet lawn")
     outskirts.fields(FLOOR, FLOOR_HEIGHT, rng, outskirts.CROPS)  # which shares the stream
     pools, turn = shapely.union_all(city.pools), city.turn
@@ -157,23 +157,23 @@ def _ground(city: Layout, yards: Sequence[shapely.Geometry], seed: int) -> list[
     far = Far(rule="fields", covers=crops, shares=shares, chance=Chance(stream="citystreet lawn"))
     bays = [line for park in city.car_parks for line in park.lines]
     made: list[Layer] = [
-        Streets(
+        Roadway(
             area=paved, paint=Paint(shapes=tuple(bays)), wear=Chance(stream="citystreet road wear")
         ),
         Paved(area=city.pavement, beside=paved, turn=turn),
-        Ground(kind=ObjectClass.PAVEMENT, pieces=tuple(paving)),
-        Ground(kind=ObjectClass.ROAD, pieces=(ground.asphalt(city.lots, light=True),)),
-        Ground(pieces=(*lawn, far)),
+        GroundCover(kind=ObjectClass.PAVEMENT, pieces=tuple(paving)),
+        GroundCover(kind=ObjectClass.ROAD, pieces=(ground.asphalt(city.lots, light=True),)),
+        GroundCover(pieces=(*lawn, far)),
     ]
     if city.pools:
         rim = shapely.difference(shapely.buffer(pools, 0.8, join_style="mitre"), pools)
         water = Flat(area=pools, z=-0.15, cover=_WATER)
-        made.append(Ground(kind=ObjectClass.WATER, pieces=(water,)))
+        made.append(GroundCover(kind=ObjectClass.WATER, pieces=(water,)))
         made.append(Paved(area=rim, beside=pools))
     return made
 
 
-def _great_trees(city: Layout, rng: np.random.Generator) -> list[Placed]:
+def _great_trees(city: CityLayout, rng: np.random.Generator) -> list[Placed]:
     """Return a tree of a random kind at each trunk."""
     made = []
     for x, y in city.trees.tolist():
@@ -184,7 +184,7 @@ def _great_trees(city: Layout, rng: np.random.Generator) -> list[Placed]:
 
 
 def greenery(
-    plan: Layout, taken: shapely.Geometry, trees: Sequence[str], rng: np.random.Generator
+    plan: CityLayout, taken: shapely.Geometry, trees: Sequence[str], rng: np.random.Generator
 ) -> list[Placed]:
     """Return borders along walls, hedges around car parks, and small trees.
 
@@ -217,7 +217,7 @@ def greenery(
     return made + gardens.small_trees(spots, heights, FLOOR_HEIGHT, trees, rng)
 
 
-def parked(plan: Layout, trees: Sequence[str], rng: np.random.Generator) -> list[Placed]:
+def parked(plan: CityLayout, trees: Sequence[str], rng: np.random.Generator) -> list[Placed]:
     """Return what is in the bays of the car parks: islands, small trees and cars.
 
     Args:

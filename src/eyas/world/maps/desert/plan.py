@@ -10,19 +10,19 @@ from eyas.state.lighting import Horizon
 from eyas.state.roads import RoadNetwork
 from eyas.world.build.materials import facade, material
 from eyas.world.land.rising import relief_of
-from eyas.world.maps.desert.layout import EXTENT, FLOOR, HALF, Layout, lay_out
+from eyas.world.maps.desert.layout import EXTENT, FLOOR, HALF, DesertLayout, lay_out
 from eyas.world.maps.desert.roads import NAME
 from eyas.world.plan.library import STREET_KINDS, houses
 from eyas.world.plan.plan import (
     Chance,
     Far,
     Flat,
-    Ground,
+    GroundCover,
     Heap,
+    Hills,
     MapPlan,
     Paint,
-    Relief,
-    Streets,
+    Roadway,
     things,
 )
 from eyas.world.street.lamps import lamps_along
@@ -76,7 +76,7 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
         seed: Seed of the map, >= 0.
     """
     desert = lay_out(network, seed)
-    dunes = Relief(
+    dunes = Hills(
         mounds=tuple(desert.dunes),
         flat=shapely.union(shapely.buffer(desert.roads, 5.0), shapely.buffer(desert.walls, 3.0)),
         half=(_CORE, HALF),
@@ -101,11 +101,11 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
         layers=(
             dunes,
             things(placed),
-            Ground(pieces=tuple(_sand(desert))),
-            Streets(
+            GroundCover(pieces=tuple(_sand(desert))),
+            Roadway(
                 area=desert.roads, paint=Paint(crossings=0), wear=Chance(stream="desert road wear")
             ),
-            Ground(pieces=(level, far)),
+            GroundCover(pieces=(level, far)),
             things(signals_along(network)),
             things(lamps_along(network, _LAMPS, taken, stream(seed, "desert lamps"))),
         ),
@@ -119,7 +119,7 @@ def _white(dunes: int, rng: np.random.Generator) -> tuple[int, ...]:
     return tuple(np.flatnonzero(np.diff(kept) > 0).tolist())
 
 
-def _sand(desert: Layout) -> Sequence[Heap | Flat]:
+def _sand(desert: DesertLayout) -> Sequence[Heap | Flat]:
     """Return the drifts on the roads, with thin sand around them."""
     sand = shapely.union_all([drift.area for drift in desert.drifts])
     dusty = shapely.union_all([drift.fringe for drift in desert.drifts])

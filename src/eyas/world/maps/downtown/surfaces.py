@@ -11,7 +11,7 @@ from eyas.state.scene import ObjectClass
 from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.materials import facade, material
 from eyas.world.land import ground
-from eyas.world.maps.downtown.layout import EXTENT, Layout
+from eyas.world.maps.downtown.layout import EXTENT, DowntownLayout
 from eyas.world.maps.downtown.massing import STOREY
 from eyas.world.maps.downtown.roads import Grid
 from eyas.world.maps.downtown.skyline import facade_of, roof_of
@@ -20,11 +20,11 @@ from eyas.world.plan.plan import (
     Chance,
     Far,
     Flat,
-    Ground,
+    GroundCover,
     Layer,
     Paint,
     Paved,
-    Streets,
+    Roadway,
     state_of,
 )
 
@@ -64,7 +64,7 @@ _LAND = (
 _LAND_SHARES = (0.34, 0.26, 0.2, 0.2)
 
 
-def surfaces(city: Layout, seed: int) -> list[Layer]:
+def surfaces(city: DowntownLayout, seed: int) -> list[Layer]:
     """Return paint, roads, pavements, courts, the park and the land around."""
     park, turn, rng = city.park, city.grid.turn, stream(seed, "downtown lawn")
     bays = shapely.difference(city.kerbs.bays, city.roads)
@@ -77,19 +77,19 @@ def surfaces(city: Layout, seed: int) -> list[Layer]:
     court = Flat(area=shapely.difference(EXTENT, covered), cover=_COURT, turn=turn)
     ponds = (Flat(area=pond, z=-0.15, cover=_WATER) for pond in shapely.get_parts(park.water))
     return [
-        Streets(
+        Roadway(
             area=city.roads,
             bays=bays,
             paint=Paint(shapes=tuple(city.kerbs.lines)),
             wear=Chance(stream="downtown road wear"),
         ),
         _paved(city.pavement, shapely.union(city.roads, bays), turn, _SLABS),
-        Ground(pieces=tuple(lawn)),
-        Ground(kind=ObjectClass.PAVEMENT, pieces=(Flat(area=park.paths, cover=_TRAIL),)),
+        GroundCover(pieces=tuple(lawn)),
+        GroundCover(kind=ObjectClass.PAVEMENT, pieces=(Flat(area=park.paths, cover=_TRAIL),)),
         _paved(park.rim, nowhere, 0.0, _RIM),
-        *(Ground(kind=ObjectClass.WATER, pieces=(pond,)) for pond in ponds),
-        Ground(kind=ObjectClass.STRUCTURE, pieces=(_park_wall(city),)),
-        Ground(pieces=(court, land)),
+        *(GroundCover(kind=ObjectClass.WATER, pieces=(pond,)) for pond in ponds),
+        GroundCover(kind=ObjectClass.STRUCTURE, pieces=(_park_wall(city),)),
+        GroundCover(pieces=(court, land)),
     ]
 
 
@@ -105,7 +105,7 @@ def _paved(area: shapely.Geometry, road: shapely.Geometry, turn: float, slabs: M
     )
 
 
-def _park_wall(city: Layout) -> Flat:
+def _park_wall(city: DowntownLayout) -> Flat:
     """Return the low wall between the streets and the park, with gaps where paths enter."""
     park = city.park
     line = shapely.intersection(shapely.buffer(park.walk, _WALL, join_style="mitre"), park.ground)

@@ -16,20 +16,20 @@ from eyas.world.build.materials import facade, material, without_snow
 from eyas.world.build.placed import Placed
 from eyas.world.land.outlines import blob
 from eyas.world.land.rising import relief_of
-from eyas.world.maps.village.layout import EXTENT, FLOOR, HALF, Layout, lay_out
+from eyas.world.maps.village.layout import EXTENT, FLOOR, HALF, VillageLayout, lay_out
 from eyas.world.maps.village.roads import NAME
 from eyas.world.plan.library import STREET_KINDS, houses, plant_kinds
 from eyas.world.plan.plan import (
     Chance,
     Far,
     Flat,
-    Ground,
-    Kind,
+    GroundCover,
+    Hills,
     Layer,
     MapPlan,
     Paint,
-    Relief,
-    Streets,
+    Roadway,
+    ThingKind,
     Tunnels,
     state_of,
     things,
@@ -110,10 +110,10 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
         chance=Chance(stream="village mounds"),
     )
     gantry_kinds = (
-        Kind(name=f"gantry {k}", make="gantry", variant=k) for k in range(gantries.KINDS)
+        ThingKind(name=f"gantry {k}", make="gantry", variant=k) for k in range(gantries.KINDS)
     )
     cones = (
-        Kind(name=name, make="cone tree", variant=k, chance="plants")
+        ThingKind(name=name, make="cone tree", variant=k, chance="plants")
         for k, name in enumerate(_CONES)
     )
     return MapPlan(
@@ -136,12 +136,12 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
     )
 
 
-def _hills(valley: Layout) -> Relief:
+def _hills(valley: VillageLayout) -> Hills:
     """Return the hills as facets; each has one of a few greens, lighter and drier higher up."""
     passages = [shapely.buffer(tunnel.passage, 0.5) for tunnel in valley.tunnels]
     trunks = shapely.buffer(shapely.union_all(shapely.points(valley.trees)), 1.5)
     flat = [shapely.buffer(valley.roads, 6.0), shapely.buffer(valley.walls, 4.0)]
-    return Relief(
+    return Hills(
         mounds=tuple(valley.hills),
         flat=shapely.union_all([*flat, shapely.buffer(valley.lake, 4.0), trunks, *passages]),
         half=(_CORE, HALF),
@@ -153,7 +153,7 @@ def _hills(valley: Layout) -> Relief:
     )
 
 
-def _ground(valley: Layout, hills: shapely.Geometry, seed: int) -> list[Layer]:
+def _ground(valley: VillageLayout, hills: shapely.Geometry, seed: int) -> list[Layer]:
     roads, lake = valley.roads, valley.lake
     passages = shapely.union_all([tunnel.passage for tunnel in valley.tunnels])
     beside = shapely.buffer(roads, 1.4, quad_segs=4)
@@ -173,14 +173,14 @@ def _ground(valley: Layout, hills: shapely.Geometry, seed: int) -> list[Layer]:
     slabs = Flat(area=paved, cover=material("paving", (0.95, 0.94, 0.92)))
     water = Flat(area=lake, z=FLOOR_HEIGHT - 0.2, cover=_WATER)
     return [
-        Streets(
+        Roadway(
             area=roads,
             paint=Paint(centre="double yellow", crossings=0),
             wear=Chance(stream="village road wear"),
         ),
-        Ground(pieces=pieces),
-        Ground(kind=ObjectClass.PAVEMENT, pieces=(slabs,)),
-        Ground(kind=ObjectClass.WATER, pieces=(water,)),
+        GroundCover(pieces=pieces),
+        GroundCover(kind=ObjectClass.PAVEMENT, pieces=(slabs,)),
+        GroundCover(kind=ObjectClass.WATER, pieces=(water,)),
     ]
 
 
@@ -199,7 +199,7 @@ def _meadow(lawn: shapely.Geometry, rng: np.random.Generator) -> list[Flat]:
     return [Flat(area=lawn, cover=GRASS), *made]
 
 
-def _paving(valley: Layout) -> shapely.Geometry:
+def _paving(valley: VillageLayout) -> shapely.Geometry:
     """Return the paving round the houses and from their doors to the roads [m]."""
     parts = []
     for house in valley.cottages:
@@ -211,7 +211,9 @@ def _paving(valley: Layout) -> shapely.Geometry:
     return shapely.difference(shapely.union_all(parts), valley.roads)
 
 
-def _plants(valley: Layout, hills: shapely.Geometry, rng: np.random.Generator) -> list[Placed]:
+def _plants(
+    valley: VillageLayout, hills: shapely.Geometry, rng: np.random.Generator
+) -> list[Placed]:
     """Return the rows of trees, hedges round the gardens, and bushes in the valley."""
     made = []
     for x, y in valley.trees.tolist():
@@ -241,7 +243,7 @@ def _plants(valley: Layout, hills: shapely.Geometry, rng: np.random.Generator) -
     return made
 
 
-def _signs(valley: Layout, rng: np.random.Generator) -> list[Placed]:
+def _signs(valley: VillageLayout, rng: np.random.Generator) -> list[Placed]:
     """Return the gantries with their boards."""
     made = []
     for index, (place, turn) in enumerate(valley.gantries):
@@ -250,7 +252,7 @@ def _signs(valley: Layout, rng: np.random.Generator) -> list[Placed]:
     return made
 
 
-def _taken(valley: Layout, network: RoadNetwork) -> shapely.Geometry:
+def _taken(valley: VillageLayout, network: RoadNetwork) -> shapely.Geometry:
     """Return the area where something already stands or drives, in plan view."""
     poles = [place for place, _ in signal_places(network)]
     signs = [place for place, _ in valley.gantries]
