@@ -21,7 +21,7 @@ from eyas.world.land.mounds import Mound
 from eyas.world.land.plain import rectangle
 from eyas.world.land.rising import relief_of
 from eyas.world.maps import MapRecipe
-from eyas.world.plan.plan import Chance, Far, Flat, Ground, MapPlan, Relief, Streets
+from eyas.world.plan.plan import Chance, Far, Flat, GroundCover, Hills, MapPlan, Roadway
 from eyas.world.roads.areas import road_area
 
 SIZE = (400.0, 400.0)
@@ -46,7 +46,7 @@ def roads(seed: int) -> RoadGraph:
 def plan(network: RoadNetwork, seed: int) -> MapPlan:
     """Return grass, the hill and the road."""
     road = road_area(network)
-    hill = Relief(
+    hill = Hills(
         mounds=(HILL,),
         flat=shapely.buffer(road, 5.0),
         half=(100.0, 200.0),
@@ -64,8 +64,8 @@ def plan(network: RoadNetwork, seed: int) -> MapPlan:
         size=SIZE,
         layers=(
             hill,
-            Streets(area=road, wear=Chance(stream="field wear")),
-            Ground(
+            Roadway(area=road, wear=Chance(stream="field wear")),
+            GroundCover(
                 pieces=(
                     Flat(area=grass, cover=material("lawn")),
                     Far(rule="plain", covers=(material("lawn"),)),

@@ -21,7 +21,7 @@ from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.land.mounds import Mound
 from eyas.world.land.rising import relief_of
 from eyas.world.maps import MAPS
-from eyas.world.osm.features import Features, House
+from eyas.world.osm.features import House, Survey
 from eyas.world.plan import build, plan
 from eyas.world.plan.build import build_scene
 from eyas.world.plan.file import problems, read_plan, text_of, write_plan
@@ -167,7 +167,7 @@ def sample():
         {"layer": "backdrop", "outlines": [square], "tops": [9.0], "walls": [{}], "roofs": [{}],
          "bays": [[[0, 1]] * 4]},
         {"layer": "things", "kinds": ["bench"], "kind": [0], "pose": [[0, 0, 0, 0, 1.0]]},
-        {"layer": "streets", "area": square, "wear": chance,
+        {"layer": "roadway", "area": square, "wear": chance,
          "paint": {"lines": [stripe], "bars": [stripe], "shapes": [square]}},
         {"layer": "paved", "area": square, "beside": []},
         {"layer": "ground", "pieces": [
@@ -179,7 +179,7 @@ def sample():
          "legs": []},
         {"layer": "tunnels", "items": [{"place": [0, 0], "along": [1, 0], "length": 9.0}],
          "outside": {}, "inside": {}, "chance": chance},
-        {"layer": "relief", "mounds": [{"x": 0.0, "y": 0.0, "radius": 9.0, "height": 5.0}],
+        {"layer": "hills", "mounds": [{"x": 0.0, "y": 0.0, "radius": 9.0, "height": 5.0}],
          "flat": [], "half": [9.0, 9.0], "spacing": [1.0, 1.0], "chance": chance, "covers": [{}]},
         {"layer": "skyways", "items": [skyway]},
         {"layer": "railway", "line": {**line, "station": 4.0}},
@@ -252,7 +252,7 @@ def test_every_field_is_refused_in_one_line_when_it_is_wrong(tmp_path):
         ({"name": "two words"}, "name: 'two words' is not allowed"),
         ({"layers": [{"layer": "thing"}]}, r"layers\[0\]\.layer: 'thing' is not allowed: one of "),
         ({"layers": [{}]}, r"layers\[0\]\.layer: is missing"),
-        ({"layers": [{"layer": "streets", "area": []}]}, r"layers\[0\]\.wear: is missing"),
+        ({"layers": [{"layer": "roadway", "area": []}]}, r"layers\[0\]\.wear: is missing"),
         ({"format": "eyas-plan-0"}, r"format: 'eyas-plan-0' is not allowed: a plan has"),
     ],
 )
@@ -321,7 +321,7 @@ plans = st.builds(
     library=st.just((plan.Kind(name="bench"),)),
     chances=st.dictionaries(st.text(max_size=5), chances, max_size=2),
     survey=st.none() | st.builds(
-        lambda shape: Features(houses=[House(shape, "house", roof="gabled")]), boxes
+        lambda shape: Survey(houses=[House(shape, "house", roof="gabled")]), boxes
     ),
 )  # fmt: skip
 

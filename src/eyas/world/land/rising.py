@@ -25,7 +25,7 @@ _WAVE = 1.5
 """By how much the lines rise and fall [m]."""
 
 
-def relief_of(layer: plan.Relief, seed: int) -> Relief:
+def relief_of(layer: plan.Hills, seed: int) -> Relief:
     """Return the triangles of rising ground."""
     rng = layer.chance.generator(seed)
 

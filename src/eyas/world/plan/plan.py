@@ -32,7 +32,6 @@ from eyas.world.build.values import (
     Cover,
     Facade,
     Heights,
-    Line,
     Named,
     Natural,
     Numbers,
@@ -43,7 +42,8 @@ from eyas.world.build.values import (
     Share,
 )
 from eyas.world.land.mounds import Mound
-from eyas.world.osm.features import Features
+from eyas.world.osm.features import Survey
+from eyas.world.roads.painting import Stripe
 from eyas.world.roads.pillars import Pillar
 from eyas.world.roads.tunnels import Tunnel
 from eyas.world.things.railway import Viaduct
@@ -52,6 +52,7 @@ from eyas.world.things.skyways import Skyway
 __all__ = [
     "Backdrop",
     "Building",
+    "BuildingPart",
     "Buildings",
     "Chance",
     "Cover",
@@ -59,21 +60,19 @@ __all__ = [
     "Far",
     "Field",
     "Flat",
-    "Ground",
+    "GroundCover",
     "Heap",
-    "Kind",
+    "Hills",
     "LampLight",
     "Layer",
     "MapPlan",
     "Paint",
     "Paved",
     "Railway",
-    "Relief",
     "Roads",
-    "Shell",
+    "Roadway",
     "Skyways",
-    "Streets",
-    "Stripe",
+    "ThingKind",
     "Things",
     "Tunnels",
     "Walkways",
@@ -134,7 +133,7 @@ def state_of(rng: np.random.Generator) -> Chance:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Kind:
+class ThingKind:
     """A kind of thing, whose shape is made once and copied."""
 
     name: str
@@ -156,7 +155,7 @@ class Kind:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Shell:
+class BuildingPart:
     """A building, or a part of one: walls, and a roof."""
 
     outline: Outline
@@ -200,7 +199,7 @@ class Shell:
 class Building:
     """A building: one object."""
 
-    parts: Annotated[tuple[Shell, ...], Len(1)]
+    parts: Annotated[tuple[BuildingPart, ...], Len(1)]
     """Its parts, the lowest first."""
     fittings: tuple[Literal["roof units", "tank", "fronts"], ...] = ()
     """What is on it: equipment of flat roofs, a water tank, awnings and fire escapes."""
@@ -247,16 +246,6 @@ class Things:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Stripe:
-    """A painted line."""
-
-    middle: Line
-    """Points along its middle [m]."""
-    width: Positive
-    """Width [m]."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class Paint:
     """White and yellow paint on roads."""
 
@@ -276,10 +265,10 @@ class Paint:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Streets:
+class Roadway:
     """The asphalt for traffic, with its paint."""
 
-    layer: Literal["streets"] = "streets"
+    layer: Literal["roadway"] = "roadway"
     area: Area
     """Asphalt [m]."""
     bays: Area | None = None
@@ -394,7 +383,7 @@ Piece = Annotated[
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Ground:
+class GroundCover:
     """Pieces of ground, water or paving that are one object."""
 
     layer: Literal["ground"] = "ground"
@@ -432,10 +421,10 @@ class Tunnels:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Relief:
+class Hills:
     """Rising ground, as triangles."""
 
-    layer: Literal["relief"] = "relief"
+    layer: Literal["hills"] = "hills"
     mounds: tuple[Mound, ...]
     flat: Area
     """Area that stays level [m]."""
@@ -477,12 +466,12 @@ Layer = Annotated[
     Annotated[Buildings, Tag("buildings")]
     | Annotated[Backdrop, Tag("backdrop")]
     | Annotated[Things, Tag("things")]
-    | Annotated[Streets, Tag("streets")]
+    | Annotated[Roadway, Tag("roadway")]
     | Annotated[Paved, Tag("paved")]
-    | Annotated[Ground, Tag("ground")]
+    | Annotated[GroundCover, Tag("ground")]
     | Annotated[Deck, Tag("deck")]
     | Annotated[Tunnels, Tag("tunnels")]
-    | Annotated[Relief, Tag("relief")]
+    | Annotated[Hills, Tag("hills")]
     | Annotated[Skyways, Tag("skyways")]
     | Annotated[Railway, Tag("railway")],
     Discriminator("layer"),
@@ -537,7 +526,7 @@ class MapPlan:
     size: tuple[Positive, Positive]
     """Extent of the floor, centred on the origin [m]."""
     roads: Roads = field(default_factory=Roads)
-    library: tuple[Kind, ...] = ()
+    library: tuple[ThingKind, ...] = ()
     """Kinds of things that layers refer to."""
     chances: dict[str, Chance] = field(default_factory=dict)
     """Random numbers of the kinds' shapes, by names that kinds refer to."""
@@ -549,7 +538,7 @@ class MapPlan:
     """Where `wide` ground is cut into small squares; None: up to 80 m beside streets [m]."""
     walkways: Walkways | None = None
     """Where people cross streets; None: at zebra crossings."""
-    survey: Features | None = None
+    survey: Survey | None = None
     """What is known of the land, from which `completed` makes the rest of the map; None: the plan
     is complete."""
 
