@@ -17,7 +17,7 @@ def test_drawing_nothing_compiles_what_drawing_a_city_needs(city, drawn, monkeyp
     def compiled_by(draw):
         monkeypatch.setattr(draw_views, "_loaded", {})  # other tests have drawn already
         draw()
-        return set(draw_views._compiled)
+        return set(draw_views._loaded)
 
     needed = compiled_by(lambda: drawn(renderer, looking([(0, 0, 20)]), traffic))
     assert needed
