@@ -10,10 +10,7 @@ import math
 import statistics
 from collections.abc import Callable
 
-from eyas.core.config import updated
-from eyas.envs.tracking_env import Observation, TrackingEnv
-from eyas.settings.file import load_settings
-from eyas.settings.preset import preset_file
+from eyas import Observation, TrackingEnv, make_config, updated
 
 EPISODES = 10
 """Episodes for each start direction."""
@@ -35,7 +32,7 @@ def hover(observation: Observation) -> int:
 
 def scores(policy: Policy, direction: float, episodes: int = EPISODES) -> list[tuple[float, float]]:
     """Return CR and TSR of some episodes that start in a direction."""
-    config = updated(load_settings(preset_file("dat-eval")), {"start": {"direction": direction}})
+    config = updated(make_config("dat-eval"), {"start": {"direction": direction}})
     env = TrackingEnv(config)
     found = []
     for episode in range(episodes):

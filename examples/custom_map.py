@@ -8,20 +8,14 @@ network by PyTorch (extra `train`). From the command line, the same map is `--ma
 import sys
 from pathlib import Path
 
-from own_map import FIELD
-
-from eyas.core.config import validated
-from eyas.learning.trainer import train
-from eyas.settings.config import EyasConfig
-from eyas.world.maps import MAPS
+from eyas import EyasConfig, make_config, train
 
 
 def settings(decisions: int) -> EyasConfig:
     """Return settings for a short training: small pictures, each action held for 32 ms."""
-    return validated(
-        EyasConfig,
+    return make_config(
         {
-            "world": {"map": "field"},
+            "world": {"map": "own_map:FIELD"},
             "traffic": {"max_vehicles": 4},
             "start": {"pitch": 1.37, "height": 22.0},
             "env": {
@@ -34,17 +28,14 @@ def settings(decisions: int) -> EyasConfig:
                 "stages": [{"decisions": decisions}],
                 "evaluation": {"every": 0},
             },
-        },
+        }
     )
 
 
 def main(decisions: int = 50_000, folder: Path = Path("runs/field")) -> Path:
     """Train for a minute; return the path of the network."""
-    # The name is known to this process; an entry point in the group `eyas.maps` makes it known
-    # wherever the package is installed.
-    MAPS.register(FIELD.name, FIELD)
-    policy = train(settings(decisions), folder)
-    print(f"eyas evaluate --policy {policy} --maps own_map:FIELD --videos")
+    policy = train(settings(decisions), folder, quiet=False)
+    print(f"eyas evaluate --policy {policy} --map own_map:FIELD --videos")
     return policy
 
 

@@ -12,21 +12,20 @@ package, so that they ship with it.
 import math
 
 import gymnasium
+import shapely
 
 from eyas.envs.registration import register_map
 from eyas.state.roads import RoadEdge, RoadGraph, RoadNetwork, RoadNode
-from eyas.state.scene import ObjectClass, Scene
-from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.materials import material
-from eyas.world.build.scene_builder import SceneBuilder
-from eyas.world.land.ground import asphalt
-from eyas.world.land.hills import Hill, hilly, relief_mesh
+from eyas.world.land.mounds import Mound
+from eyas.world.land.plain import rectangle
+from eyas.world.land.rising import relief_of
 from eyas.world.maps import MapRecipe
+from eyas.world.plan.plan import Chance, Far, Flat, Ground, MapPlan, Relief, Streets
 from eyas.world.roads.areas import road_area
-from eyas.world.weather import CLEAR_DAY, DAY, FOG, FOGGY, Season
 
 SIZE = (400.0, 400.0)
-HILL = Hill(x=0.0, y=0.0, radius=75.0, height=30.0)
+HILL = Mound(x=0.0, y=0.0, radius=75.0, height=30.0)
 CORNERS = 8
 
 
@@ -44,21 +43,44 @@ def roads(seed: int) -> RoadGraph:
     return RoadGraph("field", seed, nodes, edges)
 
 
-def scene(network: RoadNetwork, seed: int, season: Season) -> Scene:
+def plan(network: RoadNetwork, seed: int) -> MapPlan:
     """Return grass, the hill and the road."""
-    terrain = hilly(SIZE, FLOOR_HEIGHT, [HILL])
-    builder = SceneBuilder("field", seed, SIZE, terrain)
-    builder.add(ObjectClass.ROAD, asphalt(road_area(network)))
-    builder.add(ObjectClass.GROUND, relief_mesh(terrain, material("lawn")))
-    return builder.build(network)
+    road = road_area(network)
+    hill = Relief(
+        mounds=(HILL,),
+        flat=shapely.buffer(road, 5.0),
+        half=(100.0, 200.0),
+        spacing=(5.0, 12.0),
+        chance=Chance(stream="field hill"),
+        covers=(material("lawn"),),
+        smooth=True,
+    )
+    # Slightly below the foot of the hill, so that rounding leaves no gap between them.
+    rising = shapely.buffer(relief_of(hill, seed).area, -0.4, join_style="mitre")
+    grass = shapely.difference(rectangle(*SIZE), shapely.union(road, rising))
+    return MapPlan(
+        name="field",
+        seed=seed,
+        size=SIZE,
+        layers=(
+            hill,
+            Streets(area=road, wear=Chance(stream="field wear")),
+            Ground(
+                pieces=(
+                    Flat(area=grass, cover=material("lawn")),
+                    Far(rule="plain", covers=(material("lawn"),)),
+                )
+            ),
+        ),
+    )
 
 
 FIELD = MapRecipe(
     name="field",
     title="A field with a hill",
     roads=roads,
-    scene=scene,
-    lighting={DAY: CLEAR_DAY, FOGGY: FOG},
+    plan=plan,
+    without=("night", "snow"),
     package=__package__ or None,
 )
 

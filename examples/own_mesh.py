@@ -14,9 +14,7 @@ from pathlib import Path
 
 import gymnasium
 
-import eyas.envs.registration
-
-assert eyas.envs.registration, "registers the environments"
+import eyas  # noqa: F401  # registers the environments
 
 ROBOT = {
     "mesh": str(Path(__file__).with_suffix(".obj")),

@@ -13,7 +13,7 @@ from gymnasium.spaces import Box, Dict
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
-from eyas.envs.vector_env import EyasVectorEnv
+from eyas import EyasVectorEnv
 
 SIZE = 48
 HEIGHT, VELOCITY = 2, slice(3, 6)

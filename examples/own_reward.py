@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import eyas  # noqa: F401  # registers the environments
-from eyas.state.snapshot import Snapshot
+from eyas import Snapshot
 
 
 def calm(snapshot: Snapshot) -> NDArray[np.float64]:

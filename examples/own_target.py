@@ -13,10 +13,7 @@ import gymnasium
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.custom.own import Ride
-from eyas.mesh.shell import Shell
-from eyas.state.mesh import Material, Mesh
-from eyas.state.scene import Scene
+from eyas import Material, Mesh, Ride, Scene, Shell
 
 BODY, ARM = Material(tint=(0.15, 0.45, 0.20)), Material(tint=(0.95, 0.75, 0.10))
 TURN = 0.8

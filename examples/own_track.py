@@ -14,9 +14,7 @@ from pathlib import Path
 
 import gymnasium
 
-import eyas.envs.registration
-
-assert eyas.envs.registration, "registers the environments"
+import eyas  # noqa: F401  # registers the environments
 
 WALK = {"trajectory": str(Path(__file__).with_suffix(".csv")), "body": "Pedestrian"}
 

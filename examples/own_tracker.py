@@ -14,13 +14,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 import eyas  # noqa: F401  # registers the environments
-from eyas.core.clock import PHYSICS_STEP
-from eyas.core.frames import rotate
-from eyas.lanes import kernel
-from eyas.state.snapshot import CameraState, TrackerState
-from eyas.state.terrain import Terrain
-from eyas.trackers.config import TrackerConfig
-from eyas.trackers.tracker import Tracker
+from eyas import (
+    PHYSICS_STEP,
+    CameraState,
+    Terrain,
+    Tracker,
+    TrackerConfig,
+    TrackerState,
+    kernel,
+    rotate,
+)
 
 CRUISE, SLOWEST, FASTEST = 16.0, 12.0, 24.0
 """Speeds through the air [m/s]."""

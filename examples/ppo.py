@@ -13,7 +13,7 @@ import torch
 from torch import Tensor, nn
 from torch.distributions import Categorical
 
-from eyas.envs.vector_env import EyasVectorEnv
+from eyas import EyasVectorEnv
 
 SETTINGS = {
     "start": {"pitch": 1.37, "height": 22.0},

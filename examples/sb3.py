@@ -7,7 +7,7 @@ an action held for 32 ms, a short horizon, and many environments.
 from stable_baselines3 import PPO
 from stable_baselines3.common.evaluation import evaluate_policy
 
-from eyas.envs.sb3 import EyasVecEnv
+from eyas import EyasVecEnv
 
 SETTINGS = {
     "start": {"pitch": 1.37, "height": 22.0},

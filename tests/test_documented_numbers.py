@@ -6,10 +6,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eyas.behaviours.habits import HABITS
 from eyas.modes.maps.info import figures_of
 from eyas.sim.scenes import load_scene
-from eyas.targets.catalogue import KINDS, kind_index
+from eyas.targets.catalogue import KINDS, habit_of, kind_index
 from eyas.targets.config import TargetName
 from eyas.targets.vehicles.kinds import VEHICLE_KINDS
 from eyas.world.maps import MAPS
@@ -66,7 +65,7 @@ def test_sizes_and_speeds_of_targets_are_those_of_the_catalogue():
         if len(sizes) > 1:
             assert int(number(models)) == len(sizes)
         speed = re.search(r"([\d.]+) m/s", motion)
-        assert float(speed.group(1)) == pytest.approx(HABITS[name].speed)
+        assert float(speed.group(1)) == pytest.approx(habit_of(name).speed)
     vehicles = next(row for row in page if "passenger" in row[0])
     assert int(number(vehicles[1])) == sum(len(kind.models) for kind in VEHICLE_KINDS)
 

@@ -21,6 +21,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import eyas
+from eyas.core import program
 from eyas.lanes import CompiledCall, modules
 from eyas.lanes.identity import language_files, language_hash
 from eyas.lanes.machine_code import SUFFIX, MachineCode, read_code
@@ -73,6 +74,8 @@ recorded_motion(recording, hill, np.zeros(recording.actors, np.int32))
 """A program that uses every kernel of the package; `missing` names those that it forgets."""
 
 
+PACKAGE = Path(eyas.__file__).parent
+
 DRAWING = "draw_views"
 """The function whose modules ship: to make them takes longer than those of all others together."""
 
@@ -89,6 +92,7 @@ def main() -> None:
         raise SystemExit(f"{LEVEL}: this processor lacks {', '.join(sorted(lacks))}")
     options.out.mkdir(parents=True, exist_ok=True)
     (options.out / INDEX.name).write_text(index_of(files_of_kernels()))
+    program.INDEX.write_text(program.index_of(sorted(PACKAGE.rglob("*.py"))))
     with tempfile.TemporaryDirectory() as cache:
         use_all(cache, {"NUMBA_CPU_NAME": LEVEL, "NUMBA_CPU_FEATURES": "", VARIABLE: "0"})
         folder = Path(cache, "kernels", language_hash())
@@ -100,7 +104,7 @@ def main() -> None:
 
 def files_of_kernels() -> list[Path]:
     """Return the files of the package that may hold kernels, and those of their language."""
-    every = Path(eyas.__file__).parent.rglob("*.py")
+    every = PACKAGE.rglob("*.py")
     return sorted({*language_files(), *(path for path in every if b"kernel" in path.read_bytes())})
 
 

@@ -1,4 +1,4 @@
-"""Write the parts of the documents that are made from the code: docs/labels.md and its schema.
+"""Write the parts of the documents that are made from the code: of labels, and of plans of maps.
 
 python tools/write_docs.py           # writes them
 python tools/write_docs.py --check   # ends with 1 if they are not up to date
@@ -8,6 +8,8 @@ import argparse
 import json
 import sys
 from pathlib import Path
+
+from plan_page import page_of_records, schema_text
 
 from eyas.exports.label import FIELDS, LabelField, label_schema
 
@@ -41,7 +43,13 @@ def documents() -> dict[Path, str]:
     """Return the texts of all files that are made."""
     labels = DOCS / "labels.md"
     schema = json.dumps(label_schema(), indent=2, ensure_ascii=False) + "\n"
-    return {labels: made(labels.read_text(), label_table()), DOCS / "labels.schema.json": schema}
+    plan = DOCS / "maps" / "plan.md"
+    return {
+        labels: made(labels.read_text(), label_table()),
+        DOCS / "labels.schema.json": schema,
+        plan: made(plan.read_text(), page_of_records()),
+        DOCS / "maps" / "plan.schema.json": schema_text(),
+    }
 
 
 def main() -> int:

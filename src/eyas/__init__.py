@@ -1,12 +1,167 @@
 """Eyas: a simulator and benchmark for drone visual active tracking.
 
-Importing it makes its environments known to Gymnasium.
+The names of `__all__` are public; they are imported when they are asked for. All modules are
+private: they move and change without notice. Importing `eyas` makes its environments known to
+Gymnasium.
 """
+
+from typing import TYPE_CHECKING, Any
 
 from eyas.envs.registration import register as _register
 
-__all__ = ["__version__"]
+if TYPE_CHECKING:
+    from eyas.core.clock import PHYSICS_STEP as PHYSICS_STEP
+    from eyas.core.config import updated as updated
+    from eyas.core.errors import ActionError as ActionError
+    from eyas.core.errors import ConfigError as ConfigError
+    from eyas.core.errors import DataFileError as DataFileError
+    from eyas.core.errors import EyasError as EyasError
+    from eyas.core.errors import MissingExtraError as MissingExtraError
+    from eyas.core.errors import OutputError as OutputError
+    from eyas.core.errors import SpawnError as SpawnError
+    from eyas.core.errors import UnknownNameError as UnknownNameError
+    from eyas.core.files import write_atomic as write_atomic
+    from eyas.core.frames import rotate as rotate
+    from eyas.custom.own import Ride as Ride
+    from eyas.envs.observation import Observation as Observation
+    from eyas.envs.pettingzoo import EyasParallelEnv as EyasParallelEnv
+    from eyas.envs.registration import register_map as register_map
+    from eyas.envs.sb3 import EyasVecEnv as EyasVecEnv
+    from eyas.envs.tracking_env import TrackingEnv as TrackingEnv
+    from eyas.envs.vector_env import EyasVectorEnv as EyasVectorEnv
+    from eyas.evaluation.policies.policy import Decision as Decision
+    from eyas.evaluation.policies.policy import Policy as Policy
+    from eyas.evaluation.policies.policy import PolicyInput as PolicyInput
+    from eyas.evaluation.policies.policy import Start as Start
+    from eyas.exports.files import Files as Files
+    from eyas.exports.frame import Frame as Frame
+    from eyas.exports.gather import Gather as Gather
+    from eyas.exports.label import label_schema as label_schema
+    from eyas.exports.labels import read_labels as read_labels
+    from eyas.exports.summary import Summary as Summary
+    from eyas.exports.writer import Episode as Episode
+    from eyas.exports.writer import EpisodeWriter as EpisodeWriter
+    from eyas.exports.writer import Run as Run
+    from eyas.exports.writer import Writer as Writer
+    from eyas.lanes import kernel as kernel
+    from eyas.mesh.shell import Shell as Shell
+    from eyas.modes.api import evaluate as evaluate
+    from eyas.modes.api import list_maps as list_maps
+    from eyas.modes.api import list_policies as list_policies
+    from eyas.modes.api import list_presets as list_presets
+    from eyas.modes.api import list_targets as list_targets
+    from eyas.modes.api import list_weathers as list_weathers
+    from eyas.modes.api import make as make
+    from eyas.modes.api import make_config as make_config
+    from eyas.modes.api import make_vec as make_vec
+    from eyas.modes.api import record as record
+    from eyas.modes.api import train as train
+    from eyas.settings.config import EyasConfig as EyasConfig
+    from eyas.settings.file import load_settings as load_settings
+    from eyas.sim.build import build_simulation as build_simulation
+    from eyas.sim.config import SimConfig as SimConfig
+    from eyas.sim.simulation import Simulation as Simulation
+    from eyas.sim.simulation import StepResult as StepResult
+    from eyas.sim.worlds import each_alone as each_alone
+    from eyas.sim.worlds import together as together
+    from eyas.state.draw import Picture as Picture
+    from eyas.state.mesh import Material as Material
+    from eyas.state.mesh import Mesh as Mesh
+    from eyas.state.roads import RoadEdge as RoadEdge
+    from eyas.state.roads import RoadGraph as RoadGraph
+    from eyas.state.roads import RoadNetwork as RoadNetwork
+    from eyas.state.roads import RoadNode as RoadNode
+    from eyas.state.scene import ObjectClass as ObjectClass
+    from eyas.state.scene import Scene as Scene
+    from eyas.state.snapshot import CameraState as CameraState
+    from eyas.state.snapshot import Snapshot as Snapshot
+    from eyas.state.snapshot import TrackerState as TrackerState
+    from eyas.state.terrain import Terrain as Terrain
+    from eyas.task.terms import RewardTerm as RewardTerm
+    from eyas.trackers.config import TrackerConfig as TrackerConfig
+    from eyas.trackers.tracker import Tracker as Tracker
+    from eyas.world.maps import MapRecipe as MapRecipe
+    from eyas.world.weather import CLEAR_DAY as CLEAR_DAY
+    from eyas.world.weather import DAY as DAY
+    from eyas.world.weather import Season as Season
+    from eyas.world.weather import Weather as Weather
 
 __version__ = "0.1.0"
 
+build_id: str
+"""Identifies code and data of this Eyas, see `eyas.core.build`: results of the same build, settings
+and seed are the same to the bit."""
+
+_PLACES = {
+    "core.clock": ("PHYSICS_STEP",),
+    "core.config": ("updated",),
+    "core.errors": (
+        *("ActionError", "ConfigError", "DataFileError", "EyasError", "MissingExtraError"),
+        *("OutputError", "SpawnError", "UnknownNameError"),
+    ),
+    "core.files": ("write_atomic",),
+    "core.frames": ("rotate",),
+    "custom.own": ("Ride",),
+    "envs.observation": ("Observation",),
+    "envs.pettingzoo": ("EyasParallelEnv",),
+    "envs.registration": ("register_map",),
+    "envs.sb3": ("EyasVecEnv",),
+    "envs.tracking_env": ("TrackingEnv",),
+    "envs.vector_env": ("EyasVectorEnv",),
+    "evaluation.policies.policy": ("Decision", "Policy", "PolicyInput", "Start"),
+    "exports.files": ("Files",),
+    "exports.frame": ("Frame",),
+    "exports.gather": ("Gather",),
+    "exports.label": ("label_schema",),
+    "exports.labels": ("read_labels",),
+    "exports.summary": ("Summary",),
+    "exports.writer": ("Episode", "EpisodeWriter", "Run", "Writer"),
+    "lanes": ("kernel",),
+    "mesh.shell": ("Shell",),
+    "modes.api": (
+        *("evaluate", "list_maps", "list_policies", "list_presets", "list_targets"),
+        *("list_weathers", "make", "make_config", "make_vec", "record", "train"),
+    ),
+    "settings.config": ("EyasConfig",),
+    "settings.file": ("load_settings",),
+    "sim.build": ("build_simulation",),
+    "sim.config": ("SimConfig",),
+    "sim.simulation": ("Simulation", "StepResult"),
+    "sim.worlds": ("each_alone", "together"),
+    "state.draw": ("Picture",),
+    "state.mesh": ("Material", "Mesh"),
+    "state.roads": ("RoadEdge", "RoadGraph", "RoadNetwork", "RoadNode"),
+    "state.scene": ("ObjectClass", "Scene"),
+    "state.snapshot": ("CameraState", "Snapshot", "TrackerState"),
+    "state.terrain": ("Terrain",),
+    "task.terms": ("RewardTerm",),
+    "trackers.config": ("TrackerConfig",),
+    "trackers.tracker": ("Tracker",),
+    "world.maps": ("MapRecipe",),
+    "world.weather": ("CLEAR_DAY", "DAY", "Season", "Weather"),
+}
+"""Where the public names are. A test holds them equal to the imports above, which type checkers and
+editors read."""
+
+_MODULE_OF = {name: f"eyas.{module}" for module, names in _PLACES.items() for name in names}
+
+__all__ = ["__version__", "build_id", *_MODULE_OF]  # texts
+
 _register()
+
+
+def __getattr__(name: str) -> Any:  # noqa: ANN401  # a public name
+    if name == "build_id":  # reads all files of the package, so only when it is asked for
+        from eyas.core.build import this_build
+
+        return this_build().id
+    if name in _MODULE_OF:
+        from importlib import import_module
+
+        value = globals()[name] = getattr(import_module(_MODULE_OF[name]), name)
+        return value
+    raise AttributeError(f"module 'eyas' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

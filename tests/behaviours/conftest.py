@@ -4,14 +4,15 @@ import numpy as np
 import pytest
 
 from eyas.behaviours.ground import Ground
-from eyas.behaviours.habits import HABITS
-from eyas.behaviours.lives import lasting
+from eyas.behaviours.groups import SampleClock, ScriptedGroup, lasting
 from eyas.behaviours.scripted import scripted_table
-from eyas.behaviours.troop import Clock, Troop
 from eyas.core.rng import stream
 from eyas.sim.scenes import load_scene
+from eyas.targets.catalogue import habit_of
 
-CLOCK = Clock(601, 10.0)
+from .habits import HABITS
+
+CLOCK = SampleClock(601, 10.0)
 
 
 @pytest.fixture(scope="session")
@@ -24,8 +25,9 @@ def hills():
     return Ground(load_scene("village"), roads=False)
 
 
-def troop(kind: str, count: int = 8, breadth: float = 0.6, **changes) -> Troop:
-    made = Troop(kind, breadth, None, lasting(count, CLOCK.samples), 0.0, "objects.max_count")
+def group(kind: str, count: int = 8, breadth: float = 0.6, **changes) -> ScriptedGroup:
+    lives = lasting(count, CLOCK.samples)
+    made = ScriptedGroup(kind, breadth, None, habit_of(kind), lives, 0.0, "objects.max_count")
     return made._replace(**changes)
 
 
@@ -36,4 +38,4 @@ def table_of(ground, which, seed=0) -> np.ndarray:
 @pytest.fixture(scope="session")
 def city_tables(city):
     """One minute of eight of each kind."""
-    return {kind: table_of(city, troop(kind)) for kind in HABITS}
+    return {kind: table_of(city, group(kind)) for kind in HABITS}

@@ -6,9 +6,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from eyas.behaviours.chain import chain_of, chain_through, joints, outline
-from eyas.behaviours.config import Behaviour
-from eyas.behaviours.habits import Habit
 from eyas.behaviours.timetable import ride, time_of
+from eyas.targets.habit import Behaviour, Habit
 
 WALK = Habit(Behaviour.POLYLINE, 2.0, 2.0, 2.5, 1.0)
 Corner = st.tuples(st.floats(-30, 30), st.floats(-30, 30))

@@ -3,13 +3,10 @@
 import numpy as np
 import pytest
 
-from eyas.behaviours.config import Behaviour
-from eyas.behaviours.gaps import Gaps
+from eyas.behaviours.gap_acceptance import GapAcceptance
 from eyas.behaviours.ground import Ground
-from eyas.behaviours.habits import HABITS
-from eyas.behaviours.lives import lasting
+from eyas.behaviours.groups import SampleClock, lasting
 from eyas.behaviours.scripted import scripted_table
-from eyas.behaviours.troop import Clock
 from eyas.core.errors import ConfigError, SpawnError
 from eyas.core.rng import stream
 from eyas.lanes import interpreted
@@ -21,15 +18,17 @@ from eyas.sim.worlds import together
 from eyas.state.motion import SAMPLE, Motion
 from eyas.state.scene import ObjectClass
 from eyas.targets.catalogue import KINDS, MODELS, kind_index, models_of, sections_of
+from eyas.targets.habit import Behaviour
 from eyas.targets.kind import Section
 from eyas.traffic.config import TrafficConfig
 from eyas.traffic.library import CANONICAL_MIX
 from eyas.traffic.signals import Aspect, SignalPlan
 from eyas.traffic.trailer import BUMPER_AHEAD, TAIL_BEHIND, folded_by
 
-from .conftest import troop
+from .conftest import group
+from .habits import HABITS
 
-FIVE_MINUTES = Clock(3001, 10.0)
+FIVE_MINUTES = SampleClock(3001, 10.0)
 
 
 @pytest.fixture(scope="module")
@@ -49,7 +48,7 @@ def vehicles() -> Motion:
 
 
 def walked(ground, vehicles, count=24) -> np.ndarray:
-    who = troop("Pedestrian", behaviour=Behaviour.CROSSING)
+    who = group("Pedestrian", behaviour=Behaviour.CROSSING)
     who = who._replace(lives=lasting(count, FIVE_MINUTES.samples))
     return scripted_table(ground, who, FIVE_MINUTES, stream(1, "crossing"), vehicles)
 
@@ -155,20 +154,20 @@ LINE = np.array([[0.0, -5.0], [0.0, 5.0]])
 def test_a_gap_is_long_enough_for_who_crosses():
     time = np.arange(601) / 10.0
     # It passes the line after 20 s, with 10 m/s.
-    gaps = Gaps(passing(10.0 * (time - 20.0)), 601, 10.0)
+    gaps = GapAcceptance(passing(10.0 * (time - 20.0)), 601, 10.0)
     assert gaps.first(LINE, 3.0, 7.0) == 3.0
     assert 20.4 < gaps.first(LINE, 15.0, 7.0) < 22.0
     assert gaps.first(LINE, 30.0, 7.0) == 30.0
     # Who leaves at 12 s is across at 19 s, but that is too narrow an escape.
     assert gaps.first(LINE, 12.0, 7.0) > 20.0
-    assert Gaps(None, 601, 10.0).first(LINE, 15.02, 7.0) == 15.1
+    assert GapAcceptance(None, 601, 10.0).first(LINE, 15.02, 7.0) == 15.1
 
 
 def test_nobody_waits_where_a_vehicle_drives_over_the_kerb():
     way, begin = 10.0 * (np.arange(601) / 10.0 - 20.0), LINE[0, 1]
     half = max(MODELS[model].size[1] for model in models_of(kind_index("passenger"))) / 2
     for y, waits in ((0.0, True), (begin - half - 0.4, True), (begin - half, False)):
-        gaps = Gaps(passing(way, y), 601, 10.0)
+        gaps = GapAcceptance(passing(way, y), 601, 10.0)
         begins = gaps.first(LINE, 18.0, 7.0)
         assert (begins is not None and begins > 20.0) == waits
         assert gaps.first(LINE, 3.0, 7.0) == 3.0  # it comes later
@@ -181,7 +180,7 @@ def test_nobody_crosses_behind_a_folded_truck_where_its_kingpin_is():
     table["x"], table["y"] = 0.5 * BUMPER_AHEAD + np.cos(yaw), -0.5 * TAIL_BEHIND + np.sin(yaw)
     table["yaw"], table["hitch"], table["present"] = yaw, 0.5 * np.pi, 1.0
     kind = np.array([kind_index("trailer")], np.int32)
-    gaps = Gaps(Motion(table, kind, 10.0, 0.0), 2001, 10.0)
+    gaps = GapAcceptance(Motion(table, kind, 10.0, 0.0), 2001, 10.0)
 
     def free(x, y):
         return gaps.first(np.array([[x, y], [x + 0.5, y + 0.5]]), 3.0, 7.0) is not None
@@ -193,14 +192,14 @@ def test_nobody_crosses_behind_a_folded_truck_where_its_kingpin_is():
 
 
 def test_nobody_waits_longer_than_a_minute():
-    gaps = Gaps(passing(np.zeros(2001)), 2001, 10.0)
+    gaps = GapAcceptance(passing(np.zeros(2001)), 2001, 10.0)
     assert gaps.first(LINE, 3.0, 7.0) is None
 
 
 def test_one_steps_off_on_green_and_has_crossed_before_red():
     shown = np.array([[Aspect.GREEN, Aspect.AMBER, Aspect.RED]], np.int64)
     end, cycle, offset = np.array([[10.0, 14.0, 30.0]]), np.array([30.0]), np.zeros(1)
-    gaps = Gaps(None, 2001, 10.0, SignalPlan(("walk",), cycle, offset, end, shown))
+    gaps = GapAcceptance(None, 2001, 10.0, SignalPlan(("walk",), cycle, offset, end, shown))
     assert gaps.first(LINE, 3.0, 7.0, "walk", 1.0) == 3.0
     assert gaps.first(LINE, 7.5, 7.0, "walk", 1.0) == 30.0  # red would come too early
     assert gaps.first(LINE, 9.5, 3.0, "walk", 1.0) == 30.0  # the kerb is reached too late

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 import shapely
 
-from eyas.behaviours.obstacles import Obstacles
+from eyas.behaviours.obstacles import GroundObstacles
 from eyas.mesh.shell import Shell
 from eyas.state.mesh import Material
 from eyas.state.scene import ObjectClass, Scene
 
 
 @pytest.fixture(scope="module")
-def obstacles() -> Obstacles:
+def obstacles() -> GroundObstacles:
     """A pond, a wall, a roof, and a slab in a square of 100 m."""
     things = {
         ObjectClass.WATER: [[10, 10, 0], [20, 10, 0], [20, 20, 0], [10, 20, 0]],
@@ -30,7 +30,7 @@ def obstacles() -> Obstacles:
         static_object=np.repeat(np.arange(4, dtype=np.int32), 2),
         object_class=np.array(list(things), np.int32),
     )
-    return Obstacles(scene, roads=True)
+    return GroundObstacles(scene, roads=True)
 
 
 def test_water_and_walls_are_in_the_way_but_not_roofs_and_pavements(obstacles):

@@ -6,25 +6,26 @@ import numpy as np
 import pytest
 
 from eyas.behaviours.chain import joints
-from eyas.behaviours.config import Behaviour
-from eyas.behaviours.habits import HABITS
-from eyas.behaviours.obstacles import Obstacles
-from eyas.behaviours.routes import Task, legs, polylines, stops
+from eyas.behaviours.obstacles import GroundObstacles
+from eyas.behaviours.routes import RouteTask, legs, polylines, stops
 from eyas.behaviours.timetable import time_of
 from eyas.core.rng import stream
 from eyas.state.scene import Scene
+from eyas.targets.habit import Behaviour
+
+from .habits import HABITS
 
 COUNT = 200
 
 
 @pytest.fixture(scope="module")
-def field() -> Obstacles:
-    return Obstacles(replace(Scene.empty(), size=(400.0, 400.0)), roads=False)
+def field() -> GroundObstacles:
+    return GroundObstacles(replace(Scene.empty(), size=(400.0, 400.0)), roads=False)
 
 
-def task(field, kind, seconds=60.0) -> Task:
+def task(field, kind, seconds=60.0) -> RouteTask:
     lasts = np.full(COUNT, seconds)
-    return Task(np.zeros((COUNT, 2)), lasts, HABITS[kind], 0.5, field, stream(3, kind))
+    return RouteTask(np.zeros((COUNT, 2)), lasts, HABITS[kind], 0.5, field, stream(3, kind))
 
 
 def test_polylines_have_two_to_four_corners_within_thirty_metres(field):

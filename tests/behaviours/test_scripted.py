@@ -5,9 +5,8 @@ import pytest
 import shapely
 
 from eyas.behaviours import places
-from eyas.behaviours.config import Behaviour
 from eyas.behaviours.ground import Ground
-from eyas.behaviours.habits import HABITS, STROLL
+from eyas.behaviours.scripted import STROLL
 from eyas.core.errors import SpawnError
 from eyas.core.variation import Mirrored, Uniform
 from eyas.sim.scenes import load_scene
@@ -16,10 +15,12 @@ from eyas.state.scene import ObjectClass
 from eyas.state.terrain import reliefs
 from eyas.targets.catalogue import MODELS
 from eyas.targets.config import TargetName
+from eyas.targets.habit import Behaviour
 from eyas.traffic.replay import Replay
 from eyas.world.roads.areas import streets
 
-from .conftest import CLOCK, table_of, troop
+from .conftest import CLOCK, group, table_of
+from .habits import HABITS
 
 STOPPED = {kind for kind, habit in HABITS.items() if habit.behaviour is Behaviour.STOP}
 
@@ -53,7 +54,7 @@ def test_the_catalogue_tells_the_speeds_of_the_habits():
 @pytest.mark.parametrize("kind", ["Pedestrian", "BB-8", "Create"])
 def test_nobody_goes_through_a_solid_or_water(request, place, kind):
     ground = request.getfixturevalue(place)
-    points = shapely.points(points_of(table_of(ground, troop(kind))))
+    points = shapely.points(points_of(table_of(ground, group(kind))))
     assert not len(solids_at_feet(ground.scene).query(points, predicate="intersects")[0])
     kinds = ground.scene.object_class[ground.scene.static_object]
     wet = ground.scene.static.triangles[kinds == ObjectClass.WATER]
@@ -63,7 +64,7 @@ def test_nobody_goes_through_a_solid_or_water(request, place, kind):
 
 
 def test_everyone_stands_on_the_upper_side_of_the_ground(hills):
-    table = table_of(hills, troop("Pedestrian", count=30, offset=Mirrored(mirrored=(30.0, 90.0))))
+    table = table_of(hills, group("Pedestrian", count=30, offset=Mirrored(mirrored=(30.0, 90.0))))
     here = table[table["present"] > 0.0]
     points = points_of(table)
     relief = reliefs(hills.scene.terrain, points)
@@ -75,7 +76,7 @@ def test_everyone_stands_on_the_upper_side_of_the_ground(hills):
 
 def test_samples_tell_how_their_places_change(hills):
     wide = Mirrored(mirrored=(30.0, 90.0))
-    table = table_of(hills, troop("Pedestrian", count=30, offset=wide))
+    table = table_of(hills, group("Pedestrian", count=30, offset=wide))
     assert (table["present"] > 0.0).all()
     for place, change in (("x", "velocity_x"), ("y", "velocity_y"), ("z", "velocity_z"),
                           ("yaw", "yaw_rate")):  # fmt: skip
@@ -90,9 +91,9 @@ def test_samples_tell_how_their_places_change(hills):
 
 
 def test_pavements_are_higher_than_roads_and_lawns_lower(city):
-    rows = table_of(city, troop("Pedestrian", behaviour=Behaviour.PAVEMENT))
+    rows = table_of(city, group("Pedestrian", behaviour=Behaviour.PAVEMENT))
     assert np.median(rows["z"]) == pytest.approx(0.15)
-    wide = table_of(city, troop("Pedestrian", count=20, offset=Mirrored(mirrored=(5.0, 20.0))))
+    wide = table_of(city, group("Pedestrian", count=20, offset=Mirrored(mirrored=(5.0, 20.0))))
     assert {-0.1, 0.15} <= set(np.round(wide["z"].astype(float), 2).ravel().tolist())
 
 
@@ -136,9 +137,9 @@ def test_the_pose_between_samples_is_the_same_alone_and_among_other_times(city_t
 
 
 def test_the_same_seed_gives_the_same_bytes_and_another_does_not(city, city_tables):
-    again = table_of(city, troop("Create"))
+    again = table_of(city, group("Create"))
     assert again.tobytes() == city_tables["Create"].tobytes()
-    assert table_of(city, troop("Create"), seed=1).tobytes() != again.tobytes()
+    assert table_of(city, group("Create"), seed=1).tobytes() != again.tobytes()
 
 
 def from_middle(ground, points) -> np.ndarray:
@@ -149,10 +150,10 @@ def from_middle(ground, points) -> np.ndarray:
 
 def test_offsets_are_perpendicular_to_the_road_and_on_the_asked_side(city):
     for offset in (2.0, -2.0):
-        starts = points_of(table_of(city, troop("Sojourner", count=40, offset=offset))[:1])
+        starts = points_of(table_of(city, group("Sojourner", count=40, offset=offset))[:1])
         assert np.median(from_middle(city, starts)) == pytest.approx(2.0, abs=0.05)
     mirrored = Mirrored(mirrored=(1.0, 3.0))
-    starts = points_of(table_of(city, troop("Sojourner", count=40, offset=mirrored))[:1])
+    starts = points_of(table_of(city, group("Sojourner", count=40, offset=mirrored))[:1])
     away = from_middle(city, starts)
     assert 0.9 < np.percentile(away, 10) < np.percentile(away, 90) < 3.1
 
@@ -183,7 +184,7 @@ def test_an_offset_is_to_the_left_of_its_road(city, monkeypatch, offset, least, 
 def test_where_cars_drive_nobody_is_on_the_road():
     ground = Ground(load_scene("citystreet"), roads=True)
     for behaviour in (None, Behaviour.PAVEMENT):
-        table = table_of(ground, troop("Pedestrian", behaviour=behaviour))
+        table = table_of(ground, group("Pedestrian", behaviour=behaviour))
         lanes = ground.scene.network.lane_points
         points = points_of(table[::10])
         away = np.linalg.norm(points[:, None] - lanes, axis=2).min()
@@ -191,7 +192,7 @@ def test_where_cars_drive_nobody_is_on_the_road():
 
 
 def test_strollers_walk_on_pavements_only(city):
-    table = table_of(city, troop("Pedestrian", count=12, behaviour=Behaviour.PAVEMENT))
+    table = table_of(city, group("Pedestrian", count=12, behaviour=Behaviour.PAVEMENT))
     assert city.surface.at(points_of(table)).pavement.mean() > 0.95
     speed = np.hypot(table["velocity_x"], table["velocity_y"]).max(axis=0)
     assert ((STROLL[0] <= speed) & (speed <= STROLL[1])).all()
@@ -199,7 +200,7 @@ def test_strollers_walk_on_pavements_only(city):
 
 def test_those_who_go_the_same_way_keep_apart(city):
     """Two may meet, but none walks in another all the time."""
-    table = table_of(city, troop("Pedestrian", count=100, behaviour=Behaviour.PAVEMENT))
+    table = table_of(city, group("Pedestrian", count=100, behaviour=Behaviour.PAVEMENT))
     points = np.stack([table["x"], table["y"]], axis=-1)[:: round(CLOCK.rate)]
     first, second = np.triu_indices(100, 1)
     near = np.linalg.norm(points[:, first] - points[:, second], axis=-1) < 0.5
@@ -209,20 +210,20 @@ def test_those_who_go_the_same_way_keep_apart(city):
 
 def test_a_map_without_pavements_says_so(hills):
     with pytest.raises(SpawnError, match=r"pavement.*'village' has no pavement"):
-        table_of(hills, troop("Pedestrian", behaviour=Behaviour.PAVEMENT))
+        table_of(hills, group("Pedestrian", behaviour=Behaviour.PAVEMENT))
 
 
 def test_a_map_that_is_full_says_so(city):
     with pytest.raises(SpawnError, match=r"^objects\.max_count: .* has only 0 of the 4 places"):
-        table_of(city, troop("Mantis", count=4, breadth=400.0))
+        table_of(city, group("Mantis", count=4, breadth=400.0))
 
 
 def test_nobody_is_placed_beyond_the_map(city):
-    table = table_of(city, troop("Pedestrian", count=20, offset=250.0))
+    table = table_of(city, group("Pedestrian", count=20, offset=250.0))
     assert (np.abs(points_of(table)) < np.array(city.scene.size) / 2).all()
     beyond = Mirrored(mirrored=(2000.0, 3000.0))
     with pytest.raises(SpawnError, match="-3000 to 3000 m from their middle"):
-        table_of(city, troop("Pedestrian", count=2000, offset=beyond))
+        table_of(city, group("Pedestrian", count=2000, offset=beyond))
 
 
 def test_the_ground_under_a_point_does_not_depend_on_the_others(city):

@@ -21,11 +21,11 @@ SMALL = validated(
         "train": {
             "environments": 4,
             "shards": 2,
-            "rollout": 8,
+            "n_steps": 8,
             "updates_per_block": 3,
             "hidden": 16,
             "evaluation": {"every": 0},
-            "stages": [{"decisions": 96}, {"decisions": 96}],
+            "stages": [{"total_timesteps": 96}, {"total_timesteps": 96}],
         },
     },
 )

@@ -100,4 +100,4 @@ def test_a_network_is_trained_on_a_map_of_ones_own(tmp_path, monkeypatch, capsys
     assert policy.is_file()
     rows = (tmp_path / "field" / "curve.csv").read_text().splitlines()
     assert len(rows) == 2
-    assert f"--policy {policy} --maps own_map:FIELD" in capsys.readouterr().out
+    assert f"--policy {policy} --map own_map:FIELD" in capsys.readouterr().out

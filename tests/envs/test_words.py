@@ -25,7 +25,7 @@ def own_phrases(simulation):
 
 def test_a_target_alone_in_view_is_called_by_its_class_and_colour(simulation):
     simulation.snapshot.cameras.field_of_view[0] = 0.01
-    assert simulation.perception.words(0, 0.75) == own_phrases(simulation)[0]
+    assert simulation.view.words(0, 0.75) == own_phrases(simulation)[0]
 
 
 def test_where_all_look_alike_it_is_told_by_what_it_does_or_where_it_is(simulation):
@@ -37,7 +37,7 @@ def test_where_all_look_alike_it_is_told_by_what_it_does_or_where_it_is(simulati
     ahead = (away @ simulation.snapshot.cameras.rotation[0][:, 0] > 0) & actors.present[0]
     ahead[target] = False
     assert ahead.any()
-    told = simulation.perception.words(0, 1.0)
+    told = simulation.view.words(0, 1.0)
     assert told.startswith(f"{own_phrases(simulation)[0]}, ")
     assert "driving" in told or "turning" in told or "standing" in told or " of " in told
 
@@ -61,5 +61,5 @@ def test_a_rival_counts_if_a_sliver_of_it_is_in_the_picture(simulation):
             seen[target] = False
             if seen.any():
                 slivers += 1
-                assert ", " in simulation.perception.words(0, 48 / 64)
+                assert ", " in simulation.view.words(0, 48 / 64)
     assert slivers > 20

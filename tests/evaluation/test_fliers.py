@@ -68,10 +68,11 @@ def test_what_came_back_before_the_end_is_kept_and_the_rest_is_flown(whole, tmp_
     same(tmp_path, whole)
 
 
-def test_a_worker_with_another_version_or_another_policy_is_refused(tmp_path):
+def test_a_worker_with_another_build_or_another_policy_is_refused(tmp_path):
     made = stamp(PLAN)
-    with pytest.raises(ConfigError, match=r"another version: .*, not 9"):
-        flown(made.model_copy(update={"version": "9"}), batches(PLAN)[0])
+    build = made.build.model_copy(update={"rooms": made.build.rooms | {"task": "0"}})
+    with pytest.raises(ConfigError, match=r"another build of Eyas, which differs in task$"):
+        flown(made.model_copy(update={"build": build}), batches(PLAN)[0])
     (tmp_path / "a.onnx").write_bytes(b"1")
     made = stamp(PLAN.model_copy(update={"policy": str(tmp_path / "a.onnx")}))
     (tmp_path / "a.onnx").write_bytes(b"2")

@@ -1,5 +1,7 @@
 """What is special in each protocol."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,6 +11,8 @@ from eyas.evaluation.flock import squads_of
 from eyas.evaluation.neighbours import NEAR, episodes_with_neighbours
 from eyas.evaluation.occlusion import clear_shares
 from eyas.evaluation.protocol import PROTOCOLS
+from eyas.sensors.config import CameraConfig
+from eyas.settings.config import EyasConfig
 
 HOME = [Place("citystreet", "day", "SUMO_VEHICLE")]
 
@@ -66,12 +70,12 @@ def test_distractors_look_like_the_target_and_one_is_beside_it():
 
 
 def test_the_rules_are_those_that_results_were_published_with():
-    """A change of a hash makes all earlier results incomparable, and has to be meant."""
+    """A change of a hash makes all results so far incomparable, and has to be meant."""
     assert {name: protocol.hash for name, protocol in PROTOCOLS.items()} == {
-        "paper": "5d95fb4b5777",
-        "long": "1b1faf0441cc",
-        "search": "6c1587d6dd0e",
-        "distractor": "b9906084cebc",
+        "paper": "b1b99d4efaf3",
+        "long": "a414b3ab2533",
+        "search": "b5e4e2c99423",
+        "distractor": "17ebb2473aad",
     }
 
 
@@ -80,3 +84,52 @@ def test_a_flown_drone_flies_as_in_the_original_unless_told_and_its_results_are_
     assert flown.settings.tracker.flight == "original"
     mended = flown.changed({"tracker": {"flight": "mended"}})
     assert len({PROTOCOLS["paper"].hash, flown.hash, mended.hash}) == 3
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"lidar": {"max_range": 50.0, "noise": 0.3}},  # nobody has one
+        {"tracker": {"flight": "original"}},  # nobody flies
+        {"traffic": {"update_routes": False}},
+        {"control": {"frequency": 125.0}, "sensors": {"imu": {"noise": 0.0}}},  # the defaults
+        {"world": {"weather": "night"}, "target": "Pedestrian"},  # each episode has its own
+        {"seed": 3},
+    ],
+)
+def test_a_setting_without_effect_is_no_other_protocol(changes):
+    assert PROTOCOLS["paper"].changed(changes).hash == PROTOCOLS["paper"].hash
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"lidar": {"enabled": True}},
+        {"control": {"frequency": 100.0}},
+        {"sensors": {"imu": {"noise": 0.1}}},
+        {"traffic": {"max_vehicles": 41}},
+        {"traffic": {"group_size": 4}},
+        {"world": {"hour": 17.0}},
+        {"camera": {"width": 85}},
+    ],
+)
+def test_a_setting_with_an_effect_is_another_protocol(changes):
+    assert PROTOCOLS["paper"].changed(changes).hash != PROTOCOLS["paper"].hash
+
+
+class Lens(CameraConfig):
+    distortion: float | None = None
+
+
+class Later(EyasConfig):
+    camera: Lens = Lens()
+
+
+@pytest.mark.parametrize(("distortion", "same"), [(None, True), (0.1, False)])
+def test_a_setting_that_comes_with_a_default_is_no_other_protocol(distortion, same):
+    paper = PROTOCOLS["paper"]
+    camera = Lens(**paper.settings.camera.model_dump(), distortion=distortion)
+    others = {name: getattr(paper.settings, name) for name in EyasConfig.model_fields}
+    new = replace(paper)
+    new.__dict__["settings"] = Later.model_construct(**{**others, "camera": camera})
+    assert (new.hash == paper.hash) is same

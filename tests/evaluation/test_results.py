@@ -14,7 +14,7 @@ from eyas.evaluation.comparison import differences, text_of
 from eyas.evaluation.plan import Plan, batches
 from eyas.evaluation.protocol import PROTOCOLS
 from eyas.evaluation.record import read_records
-from eyas.evaluation.result import NO_INTERVALS, table
+from eyas.evaluation.result import NO_INTERVALS, load_run, table
 from eyas.evaluation.rows import rows_of, thirds
 from eyas.modes import evaluation_films, leaderboard
 from eyas.modes.evaluate import run
@@ -94,6 +94,33 @@ def test_what_has_nothing_in_common_is_not_compared(folder, tmp_path):
     answer = CliRunner().invoke(app, ["compare", str(folder / "hover"), str(tmp_path)])
     assert isinstance(answer.exception, EyasError)
     assert "not comparable" in str(answer.exception)
+
+
+def other_build(folder, out, room):
+    """Copy an evaluation, as if a build with another room had flown it."""
+    shutil.copytree(folder, out)
+    said = json.loads((out / "run.json").read_text())
+    said["build"]["rooms"][room] = "0"
+    (out / "run.json").write_text(json.dumps(said))
+    return out
+
+
+def test_what_another_build_has_flown_is_compared_and_continued_only_if_asked(folder, tmp_path):
+    changed = other_build(folder / "follow", tmp_path / "a", "targets")
+    words = ["compare", str(folder / "hover"), str(changed)]
+    answer = CliRunner().invoke(app, words)
+    assert isinstance(answer.exception, EyasError)
+    assert "of Eyas; the world differs in targets; fly one again, or" in str(answer.exception)
+    assert "B - A" in CliRunner().invoke(app, [*words, "--across-builds"]).output
+    figures = other_build(folder / "follow", tmp_path / "b", "evaluation")
+    answer = CliRunner().invoke(app, ["compare", str(folder / "hover"), str(figures)])
+    assert "they differ in evaluation;" in str(answer.exception)
+    heard = other_build(folder / "follow", tmp_path / "c", "wire")
+    assert "B - A" in CliRunner().invoke(app, ["compare", words[1], str(heard)]).output
+    plan, _ = load_run(changed)
+    with pytest.raises(EyasError, match=r"cannot be continued: .* differs from this one in targe"):
+        run(plan.plan, changed, resume=True, quiet=True)
+    run(plan.plan, heard, resume=True, quiet=True)
 
 
 def test_the_command_prints_both_ways(folder):

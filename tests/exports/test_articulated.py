@@ -50,7 +50,7 @@ def labelled(simulation, tick, actor):
     snapshot = simulation.snapshot
     frames = [
         frame_of(
-            Moment(snapshot, snapshot.episodes, simulation.perception.actors(n)),
+            Moment(snapshot, snapshot.episodes, simulation.view.actors(n)),
             *(n, picture, n, 0, Action(-1, None)),
         )
         for n in (0, 1)

@@ -32,7 +32,7 @@ def picture_of(simulation, **wanted) -> Picture:
 
 
 def seen_by(simulation, tracker, picture):
-    actors = simulation.perception.actors(tracker)
+    actors = simulation.view.actors(tracker)
     return others_of(simulation.snapshot, actors, tracker, picture, tracker)
 
 

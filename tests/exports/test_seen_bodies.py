@@ -30,7 +30,7 @@ def frames():
         simulation.carry(90)
         simulation.draw(np.arange(COUNT, dtype=np.int32), picture)
         for n in range(COUNT):
-            shown, actors = simulation.snapshot, simulation.perception.actors(n)
+            shown, actors = simulation.snapshot, simulation.view.actors(n)
             moment = Moment(shown, shown.episodes, actors)
             seen.append(frame_of(moment, n, picture, n, 0, Action(-1, None)))
     return seen

@@ -26,7 +26,8 @@ from eyas.sim.step import step_of
 from eyas.trackers.drone import DRONE
 
 found = list(step_of(DRONE))
-for name in ("render.kernels.draw", "traffic.interpolation", "sensors.lidar", "sim.near_list"):
+rooms = ("render.kernels.draw", "traffic.interpolation", "sensors.lidar")
+for name in (*rooms, "sim.views.visible_actors"):
     found += vars(importlib.import_module("eyas." + name)).values()
 told = {k.function.__name__: identity(k.function) for k in found if isinstance(k, CompiledCall)}
 print(json.dumps(told | {"language": language_hash()}))
@@ -50,7 +51,7 @@ def edited(tmp_path_factory):
         return json.loads(done.stdout)
 
     before = told()
-    assert {"_fly", "_carry", "_begin", "draw_views", "list_near"} <= set(before)
+    assert {"_fly", "_carry", "_begin", "draw_views", "_list_actors"} <= set(before)
 
     def others(edits):
         texts = {copy / name: (copy / name).read_text() for name in edits}

@@ -28,23 +28,23 @@ def rollout(steps, count, shape=None, seed=0):
 
 
 def test_advantages_are_the_weighted_sum_of_later_errors():
-    data, discount, trace = rollout(12, 5), 0.9, 0.7
-    got = advantages(data, discount, trace).numpy()
+    data, gamma, gae_lambda = rollout(12, 5), 0.9, 0.7
+    got = advantages(data, gamma, gae_lambda).numpy()
     r, v, e = (array.numpy() for array in (data.rewards, data.values, data.ended))
     for n in range(5):
         for t in range(12):
             total, weight = 0.0, 1.0
             for later in range(t, 12):
                 following = 0.0 if e[later, n] else v[later + 1, n]
-                total += weight * (r[later, n] + discount * following - v[later, n])
-                weight *= 0.0 if e[later, n] else discount * trace
+                total += weight * (r[later, n] + gamma * following - v[later, n])
+                weight *= 0.0 if e[later, n] else gamma * gae_lambda
             assert got[t, n] == pytest.approx(total, abs=1e-5)
 
 
 @pytest.mark.parametrize("memory", [False, True])
 def test_an_action_that_is_rewarded_becomes_likely(memory):
     """Two pictures, each with one action that is rewarded."""
-    config = TrainConfig(learning_rate=3e-3, discount=0.0, hidden=16, memory=memory)
+    config = TrainConfig(learning_rate=3e-3, gamma=0.0, hidden=16, memory=memory)
     shape = NetworkShape(3, 24, 24, 16, memory=memory)
     network = TrackingNetwork(shape)
     generator = torch.Generator().manual_seed(0)

@@ -15,6 +15,7 @@ pytest.importorskip("torch")
 import torch
 
 from eyas.cli.train import _default_folder
+from eyas.core.build import this_build
 from eyas.core.config import updated, validated
 from eyas.core.errors import EyasError
 from eyas.evaluation.plan import Plan, batches, fly_batch
@@ -32,13 +33,13 @@ SMALL = validated(
         },
         "train": {
             "environments": 4,
-            "rollout": 8,
+            "n_steps": 8,
             "updates_per_block": 2,
             "hidden": 16,
             "evaluation": {"every": 2, "episodes": 1},
             "stages": [
-                {"decisions": 128},
-                {"decisions": 64, "settings": {"world": {"weather": "night"}}},
+                {"total_timesteps": 128},
+                {"total_timesteps": 64, "settings": {"world": {"weather": "night"}}},
             ],
         },
     },
@@ -89,7 +90,9 @@ def test_a_run_that_is_interrupted_and_resumed_gives_the_same_bytes(whole, tmp_p
 
 
 def test_it_stops_after_the_update_that_reaches_the_decisions_and_says_so(tmp_path):
-    config = updated(SMALL, {"train": {"stages": [{"decisions": 70}], "updates_per_block": 2}})
+    config = updated(
+        SMALL, {"train": {"stages": [{"total_timesteps": 70}], "updates_per_block": 2}}
+    )
     lines = []
     train(config, tmp_path / "run", say=lines.append)
     assert lines[0] == "stage 0: 70 decisions are rounded up to 3 updates of 32: 96"
@@ -140,7 +143,7 @@ def test_a_run_that_is_killed_gives_the_same_bytes(whole, tmp_path):
 
 
 def test_a_stage_ends_early_at_its_score(tmp_path):
-    stages = [{"decisions": 10_000_000, "until_tsr": 0.01}, {"decisions": 64}]
+    stages = [{"total_timesteps": 10_000_000, "until_tsr": 0.01}, {"total_timesteps": 64}]
     config = updated(SMALL, {"train": {"stages": stages, "evaluation": {"every": 1}}})
     train(config, tmp_path / "run", say=quiet)
     rows = (tmp_path / "run" / "curve.csv").read_text().splitlines()[1:]
@@ -148,7 +151,7 @@ def test_a_stage_ends_early_at_its_score(tmp_path):
 
 
 def test_a_score_without_evaluations_is_refused():
-    stages = [{"decisions": 10, "until_tsr": 0.5}]
+    stages = [{"total_timesteps": 10, "until_tsr": 0.5}]
     with pytest.raises(EyasError, match=r"^train: .*'until_tsr' needs evaluations"):
         updated(SMALL, {"train": {"stages": stages, "evaluation": {"every": 0}}})
 
@@ -179,7 +182,9 @@ def test_shards_are_of_equal_size():
 
 
 def test_other_settings_and_other_folders_are_refused(tmp_path, whole):
-    train(updated(SMALL, {"train": {"stages": [{"decisions": 1}]}}), tmp_path / "run", say=quiet)
+    train(
+        updated(SMALL, {"train": {"stages": [{"total_timesteps": 1}]}}), tmp_path / "run", say=quiet
+    )
     for config, folder, resume, message in [
         (SMALL, "run", False, "has a run already; continue it with --resume"),
         (SMALL, "run", True, "has other settings"),
@@ -191,7 +196,7 @@ def test_other_settings_and_other_folders_are_refused(tmp_path, whole):
 
 
 def test_a_damaged_checkpoint_is_one_line(tmp_path):
-    config = updated(SMALL, {"train": {"stages": [{"decisions": 1}]}})
+    config = updated(SMALL, {"train": {"stages": [{"total_timesteps": 1}]}})
     train(config, tmp_path / "run", say=quiet)
     (tmp_path / "run" / "checkpoint.pt").write_bytes(b"no checkpoint")
     with pytest.raises(EyasError, match=r"checkpoint\.pt: not a checkpoint") as caught:
@@ -200,9 +205,28 @@ def test_a_damaged_checkpoint_is_one_line(tmp_path):
     assert RunFolder(tmp_path / "run").policy.exists()
 
 
+def test_a_run_of_another_build_is_not_resumed_but_may_be_taught_further(tmp_path):
+    config = updated(SMALL, {"train": {"stages": [{"total_timesteps": 1}]}})
+    train(config, tmp_path / "run", say=quiet)
+    path = tmp_path / "run" / "checkpoint.pt"
+    saved = torch.load(path, weights_only=True)
+    saved["build"]["rooms"] |= {"task": "0", "wire": "0"}
+    torch.save(saved, path)
+    with pytest.raises(
+        EyasError, match=r"differs from this one in task; resume with that"
+    ) as caught:
+        train(config, tmp_path / "run", resume=True, say=quiet)
+    assert "\n" not in str(caught.value)
+    further = updated(config, {"train": {"begin_from": str(tmp_path / "run")}})
+    train(further, tmp_path / "second", say=quiet)
+    saved["build"]["rooms"] |= {"task": this_build().rooms["task"]}
+    torch.save(saved, path)
+    train(config, tmp_path / "run", resume=True, say=quiet)  # `wire` has no part in it
+
+
 def test_what_another_run_has_learned_is_taught_further(tmp_path):
     first = tmp_path / "first"
-    short = updated(SMALL, {"train": {"stages": [{"decisions": 64}]}})
+    short = updated(SMALL, {"train": {"stages": [{"total_timesteps": 64}]}})
     train(short, first, say=quiet)
     rate = {"learning_rate": 1e-30}  # so small that nothing changes
     second = updated(short, {"seed": 5, "train": rate | {"begin_from": str(first)}})
@@ -215,7 +239,9 @@ def test_what_another_run_has_learned_is_taught_further(tmp_path):
 
 
 def test_only_a_run_of_the_same_network_can_be_taught_further(tmp_path):
-    train(updated(SMALL, {"train": {"stages": [{"decisions": 1}]}}), tmp_path / "run", say=quiet)
+    train(
+        updated(SMALL, {"train": {"stages": [{"total_timesteps": 1}]}}), tmp_path / "run", say=quiet
+    )
     for folder, other, message in [
         ("none", {}, r"none/checkpoint\.pt: no such file"),
         ("run", {"memory": True}, r"checkpoint\.pt: not a checkpoint of this network"),
@@ -262,14 +288,14 @@ def test_an_evaluation_that_cannot_be_flown_is_refused_at_once(evaluation, messa
     ],
 )
 def test_a_wrong_later_stage_is_refused_at_once(settings, message, tmp_path):
-    stages = [{"decisions": 64}, {"decisions": 64, "settings": settings}]
+    stages = [{"total_timesteps": 64}, {"total_timesteps": 64, "settings": settings}]
     with pytest.raises(EyasError, match=message):
         train(updated(SMALL, {"train": {"stages": stages}}), tmp_path / "run", say=quiet)
     assert not (tmp_path / "run").exists()
 
 
 def test_a_network_with_memory_learns_too(tmp_path):
-    config = updated(SMALL, {"train": {"memory": True, "stages": [{"decisions": 64}]}})
+    config = updated(SMALL, {"train": {"memory": True, "stages": [{"total_timesteps": 64}]}})
     train(config, tmp_path / "run", say=quiet)
     saved = torch.load(tmp_path / "run" / "checkpoint.pt", weights_only=True)
     assert saved["network"]["memory.weight_hh"].shape == (48, 16)

@@ -23,7 +23,6 @@ from eyas.traffic.config import TrafficConfig
 from eyas.world.config import WorldConfig
 from eyas.world.maps import MAPS
 from eyas.world.maps.citystreet import CITYSTREET
-from eyas.world.weather import DAY
 
 SUN = CITYSTREET.light("day").sun_direction
 
@@ -245,7 +244,7 @@ def test_only_what_is_named_is_drawn_and_wrong_names_are_told():
 
 
 def test_maps_that_lack_a_named_weather_are_left_out_unless_they_are_named(monkeypatch):
-    bare = replace(CITYSTREET, name="bare-land", lighting={DAY: CITYSTREET.light("day")})
+    bare = replace(CITYSTREET, name="bare-land", without=("foggy", "night", "snow"))
     monkeypatch.setattr(gallery.MAPS, "_table", {"citystreet": CITYSTREET, "bare-land": bare})
     assert gallery.conditions([], ["snow"]) == [("citystreet", "snow")]
     assert gallery.conditions([], ["day"]) == [("bare-land", "day"), ("citystreet", "day")]

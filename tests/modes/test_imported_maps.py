@@ -34,12 +34,13 @@ from eyas.traffic.record import record
 from eyas.traffic.signals import Aspect
 from eyas.world.config import WorldConfig
 from eyas.world.maps import MAPS
-from eyas.world.maps.imported import IMPORTED, MAP_FILE, ROADS_FILE, origin_of
+from eyas.world.maps.files import MAP_FILE, MAP_FILES, ROADS_FILE, origin_of
 from eyas.world.osm import houses, land, streets
 from eyas.world.osm.features import Features
 from eyas.world.osm.projection import Projection
 from eyas.world.osm.reader import read_osm
 from eyas.world.osm.rings import Shapes
+from eyas.world.plan.build import build_scene
 
 pytestmark = pytest.mark.sumo
 NAME = "test-town"
@@ -133,7 +134,7 @@ def test_the_file_of_the_town_has_every_tag_that_the_importer_reads(source, monk
 
 
 def test_an_imported_map_is_found_like_any_other(town):
-    assert IMPORTED.names() == (NAME,)
+    assert MAP_FILES.names() == (NAME,)
     assert NAME in MAPS.names()
     for name in (NAME, str(town.folder)):
         recipe = MAPS.get(name)
@@ -159,7 +160,7 @@ def test_streets_lie_where_buildings_expect_them(town, source):
 
 def test_a_scene_is_the_same_each_time(scene, town):
     recipe, network = MAPS.get(NAME), scene.network
-    again = recipe.scene(network, 0, recipe.season("day"))
+    again = build_scene(recipe.plan(network, 0), network)
     np.testing.assert_array_equal(again.static.positions, scene.static.positions)
     np.testing.assert_array_equal(again.fixtures.pose, scene.fixtures.pose)
 
@@ -335,7 +336,7 @@ def test_damaged_maps_are_told_in_one_line_and_hide_no_others(town, tmp_path, mo
     monkeypatch.setenv("EYAS_MAPS_DIR", str(tmp_path))
     (tmp_path / "bad").mkdir()
     (tmp_path / "bad" / MAP_FILE).write_text("{")
-    assert IMPORTED.names() == ()
+    assert MAP_FILES.names() == ()
     assert "an imported map is left out" in caplog.text
     with pytest.raises(DataFileError, match="not the file of an imported map"):
         MAPS.get("bad")

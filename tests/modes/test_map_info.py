@@ -43,7 +43,7 @@ def test_a_new_map_of_a_kind_is_made_at_once_with_its_traffic(
     monkeypatch, capsys, caplog, tmp_path
 ):
     monkeypatch.setenv("EYAS_CACHE_DIR", str(tmp_path))
-    monkeypatch.setattr(sys, "argv", ["eyas", "maps", "new", "farmland-bare", "--seed", "3"])
+    monkeypatch.setattr(sys, "argv", ["eyas", "maps", "new", "farmland-bare", "--map-seed", "3"])
     with pytest.raises(SystemExit, match="0"):
         main()
     assert "recording 1260 s of traffic" in caplog.text

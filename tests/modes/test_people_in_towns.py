@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 import shapely
 
-from eyas.behaviours.config import Behaviour, ExtraConfig
-from eyas.behaviours.gaps import Gaps
+from eyas.behaviours.config import ExtraConfig
+from eyas.behaviours.gap_acceptance import GapAcceptance
 from eyas.behaviours.ground import Ground, usable_crossings, walkways
-from eyas.behaviours.lives import lasting
+from eyas.behaviours.groups import SampleClock, ScriptedGroup, lasting
 from eyas.behaviours.scripted import scripted_table
-from eyas.behaviours.troop import Clock, Troop
 from eyas.core.errors import SpawnError
 from eyas.core.rng import stream
 from eyas.modes.maps import importing, info
@@ -22,15 +21,17 @@ from eyas.sim.assets import load_assets
 from eyas.sim.crowd import Crowd
 from eyas.sim.scenes import load_scene
 from eyas.state.scene import ObjectClass
-from eyas.targets.catalogue import KINDS, MODELS, models_of
+from eyas.targets.catalogue import KINDS, MODELS, habit_of, models_of
+from eyas.targets.habit import Behaviour
 from eyas.traffic.config import TrafficConfig
+from eyas.traffic.net_file import SumoNet
 from eyas.traffic.signals import Aspect, walk_plan
 from eyas.world.config import WorldConfig
 from eyas.world.maps import MAPS
 
 pytestmark = pytest.mark.sumo
 NAME = "test-walks"
-TEN_MINUTES = Clock(6001, 10.0)
+TEN_MINUTES = SampleClock(6001, 10.0)
 TRAFFIC = TrafficConfig(max_vehicles=30)
 
 
@@ -93,7 +94,7 @@ def scene(writer, maps, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def lights(scene):
-    return walk_plan(MAPS.get(NAME).roads(0).finished)
+    return walk_plan(SumoNet(MAPS.get(NAME).roads(0).finished))
 
 
 @pytest.fixture(scope="module")
@@ -109,7 +110,9 @@ def ground(scene, lights):
 
 def walked(ground, vehicles, behaviour=Behaviour.CROSSING, count=50) -> np.ndarray:
     lives = lasting(count, TEN_MINUTES.samples)
-    who = Troop("Pedestrian", 0.81, behaviour, lives, 0.0, "extras.0.count")
+    who = ScriptedGroup(
+        "Pedestrian", 0.81, behaviour, habit_of("Pedestrian"), lives, 0.0, "extras.0.count"
+    )
     return scripted_table(ground, who, TEN_MINUTES, stream(1, "towns"), vehicles)
 
 
@@ -246,7 +249,7 @@ def test_many_cross_and_at_lights_on_green_only(scene, lights, table):
 
 
 def test_who_does_not_look_at_lights_would_be_noticed(scene, lights, vehicles, monkeypatch):
-    monkeypatch.setattr(Gaps, "_shown", lambda *_: True)
+    monkeypatch.setattr(GapAcceptance, "_shown", lambda *_: True)
     blind = walked(Ground(scene, roads=True, lights=lights), vehicles)
     entered, late, caught = broken(scene, lights, blind)
     assert late > 0.2 * entered

@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from eyas import __version__
+from eyas.core.build import this_build
 from eyas.core.errors import ConfigError, DataFileError, OutputError
 from eyas.modes.video.config import VideoConfig
 from eyas.modes.video.folder import open_folder
@@ -84,7 +85,9 @@ def test_a_recording_says_which_files_its_writers_write(tmp_path):
     origin = json.loads((tmp_path / "version.json").read_text())
     episode = ["labels.jsonl", "mark.json"]
     files = {"frame": [], "episode": episode, "run": ["dir_info.json"]}
-    assert origin == {"eyas": __version__, "files": files}
+    build = this_build()
+    told = {"eyas": __version__, "build_id": build.id, "build": build.model_dump()}
+    assert origin == {**told, "files": files}
 
 
 @pytest.mark.parametrize("name", ["thesis.txt", "DRONE0/notes.txt", "DRONE0/episode0/best.jpeg"])
@@ -139,19 +142,32 @@ def test_resume_refuses_settings_that_cannot_be_read(tmp_path, text):
         open_folder(path, CONFIG, overwrite=False, resume=True)
 
 
-@pytest.mark.parametrize("recorded", ['{"eyas": "0.0.1"}', "{", "[]", None])
-def test_resume_refuses_a_recording_of_another_version(tmp_path, recorded):
+BUILD = this_build()
+REPAINTED = BUILD.model_copy(update={"rooms": BUILD.rooms | {"render": "0", "wire": "0"}})
+LISTENING = BUILD.model_copy(update={"rooms": BUILD.rooms | {"wire": "0"}})
+
+
+@pytest.mark.parametrize("recorded", [REPAINTED, '{"eyas": "0.0.1"}', "{", "[]", None])
+def test_resume_refuses_a_recording_of_another_build(tmp_path, recorded):
     path = recording(tmp_path / "a")
     if recorded is None:
         (path / "version.json").unlink()
     else:
-        (path / "version.json").write_text(recorded)
-    said = r"0\.0\.1" if recorded and "0.0.1" in recorded else "unknown"
-    with pytest.raises(OutputError, match=rf"Eyas .*{said}.* this is {__version__}") as caught:
+        told = {"eyas": __version__, "build": REPAINTED.model_dump()}
+        (path / "version.json").write_text(json.dumps(told) if recorded is REPAINTED else recorded)
+    said = "differs from this one in render;" if recorded is REPAINTED else "of an unknown version"
+    with pytest.raises(OutputError, match=rf"recorded by Eyas .*{said}") as caught:
         open_folder(path, OTHER, overwrite=False, resume=True)
     assert "\n" not in str(caught.value)
     open_folder(path, OTHER, overwrite=True, resume=False)
     open_folder(path, OTHER, overwrite=False, resume=True)
+
+
+def test_a_change_that_no_picture_shows_does_not_refuse_a_recording(tmp_path):
+    path = recording(tmp_path / "a")
+    told = {"eyas": "0.0.9", "build": LISTENING.model_dump()}
+    (path / "version.json").write_text(json.dumps(told))
+    open_folder(path, CONFIG, overwrite=False, resume=True)
 
 
 def test_resume_keeps_what_is_whole_and_drops_what_is_not(tmp_path):

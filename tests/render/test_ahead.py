@@ -94,6 +94,6 @@ def asked_for(process):
 def test_no_kernel_is_compiled_by_both_processes():
     first, second = asked_for("first"), asked_for("second")
     own = first[: first.index("waits")]
-    assert {"_fly", "list_near"} <= set(own)
+    assert {"_fly", "_list_actors"} <= set(own)
     assert not set(own) & set(second)
     assert set(first[len(own) + 1 :]) == set(second) == {"draw_views"}

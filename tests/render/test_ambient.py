@@ -4,6 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+import shapely
 
 from eyas.mesh.solids import box
 from eyas.render.bake.ambient import bake_ambient, canopy_map, height_map, openness_of
@@ -11,7 +12,8 @@ from eyas.render.kernels.light.ambient import BOUNCED
 from eyas.state.scene import ObjectClass
 from eyas.state.terrain import Terrain, ground_at
 from eyas.world.build.materials import material
-from eyas.world.land.hills import Hill, hilly, relief_mesh
+from eyas.world.land.facets import relief, surface_of, terrain_of
+from eyas.world.land.mounds import Mound
 
 from .small_city import (
     DAY,
@@ -142,8 +144,11 @@ def test_light_on_a_roof_and_a_deck_follows_what_is_higher(drawn, renderer_of):
 
 
 def test_a_hill_is_no_wall_and_what_stands_on_it_is_as_high_as_it_is():
-    terrain = hilly((120.0, 120.0), 0.0, [Hill(0.0, 0.0, 50.0, 30.0)])
-    hill = relief_mesh(terrain, material("plain"))
+    ground = relief(Mound(0.0, 0.0, 50.0, 30.0).heights, (60.0, 64.0), (2.0, 2.0),
+                    shapely.Polygon(), np.random.default_rng(0))  # fmt: skip
+    terrain = terrain_of(ground, 0.0, 60.0, spacing=2.0)
+    none = np.zeros(len(ground.triangles), np.int64)
+    hill = surface_of(ground, 0.0, [material("plain")], none, smooth=True)
     top = tower(0.0, 0.0, 10.0, 12.0)
     top.positions[:, 2] += np.where(top.positions[:, 2] > 0, 30.0, 0.0)
     scene = scene_of([hill, top], [GROUND, TOWER], size=120.0)

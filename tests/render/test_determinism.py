@@ -9,6 +9,7 @@ from eyas.render import jobs
 from eyas.render import renderer as module
 from eyas.render.kernels.draw import draw_views
 from eyas.state.draw import Views
+from eyas.state.lighting import LightState
 from eyas.state.scene import Lamps
 
 from .small_city import DAY, car_parts, city_scene, looking
@@ -23,7 +24,8 @@ def sixteen_views() -> Views:
     places[7:] = [(x, 0.3 * y / 8, z) for x, y, z in places[7:]]
     places[7], pitch[7] = (-34.0, -2.0, 12.0), 1.4  # above the subject
     views = looking(places, list(rng.uniform(-3, 3, 16)), pitch, fov=1.1, subject=SUBJECT)
-    views.light = rng.uniform((0.5, 0.5, 0.0), (1.5, 1.5, 0.005), (16, 3)).astype(np.float32)
+    changes = rng.uniform((0.5, 0.5, 0.0), (1.5, 1.5, 0.005), (16, 3)).astype(np.float32)
+    views.light = LightState(*np.ascontiguousarray(changes.T))
     views.instant = rng.uniform(0.0, 100.0, 16)
     views.world[:] = np.arange(16) % 2
     return views
@@ -33,7 +35,8 @@ def one_of(views: Views, k: int) -> Views:
     part = slice(k, k + 1)
     return Views(
         views.position[part], views.rotation[part], views.world[part], views.subject[part],
-        views.field_of_view, None, views.light[part], views.instant[part],
+        views.field_of_view, None, LightState(*(array[part] for array in views.light)),
+        views.instant[part],
     )  # fmt: skip
 
 

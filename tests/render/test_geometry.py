@@ -43,7 +43,7 @@ def detail_at(square):
 def test_a_kept_geometry_is_read_by_the_same_kernels_as_a_new_one(images, tmp_path):
     new = build_geometry(city_scene(), car_parts(), images)
     for _ in range(2):
-        old = cached(Kind.GEOMETRY, (), (), lambda: new, of=Geometry, folder=tmp_path)
+        old = cached(Kind.GEOMETRY, lambda: new, (), of=Geometry, folder=tmp_path)
     assert old is not new
     assert Held(old).kind == Held(new).kind
     for name, array in new._asdict().items():

@@ -7,11 +7,11 @@ from eyas.lanes import address_of, compiled
 from eyas.render import renderer as module
 from eyas.render.kernels.light.view_light import view_light
 from eyas.render.kernels.scalars import u4
-from eyas.render.kernels.surface.pixel import shade_pixel
 from eyas.render.kernels.visibility.transform import view_of
 from eyas.state.draw import Picture
 from eyas.world.weather import CLEAR_DAY, CLEAR_NIGHT, FOG, WINTER_DAY
 
+from .one_pixel import shade_pixel
 from .small_city import car_parts, city_scene, city_traffic, looking, with_line
 
 SIZE = (100, 203)
@@ -22,7 +22,7 @@ WEATHERS = {"day": CLEAR_DAY, "foggy": FOG, "night": CLEAR_NIGHT, "snow": WINTER
 def one_by_one(geometry, light, scratch, movers, _output, task, places, found):
     job = task.job
     view = address_of(view_of(job, 0, task.width, task.height, task.samples))
-    lit = address_of(view_light(light.weather, job.light[0]))
+    lit = address_of(view_light(light.weather, job.light, 0))
     for k in range(len(places)):
         row, column = places[k, 0], places[k, 1]
         shade = scratch.shade[0, row, column]

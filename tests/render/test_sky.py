@@ -11,7 +11,7 @@ from eyas.render.bake.hills import build_hills
 from eyas.render.kernels.sky.panorama import azimuth
 from eyas.render.kernels.sky.radiance import HILL_TOP
 from eyas.render.pack.light import tone_table
-from eyas.state.lighting import Horizon
+from eyas.state.lighting import Horizon, LightState
 from eyas.world.maps.citystreet import CITYSTREET
 
 from .small_city import DAY, GROUND, floor, looking, scene_of
@@ -87,7 +87,10 @@ def test_clouds_cover_the_picture_and_darken_with_the_sky(sky_of, renderer_of, d
     assert 0.1 < changed < 0.95
     assert cloudy[np.abs(plain - cloudy).max(axis=2) > 60].min(axis=1).mean() > 170
     renderer = renderer_of(scene_of([], []), lighting=replace(DAY, clouds=0.4))
-    night = replace(looking([(0.0, 0.0, 30.0)], pitch=-0.5, fov=1.2), light=np.zeros((1, 3)))
+    night = replace(
+        looking([(0.0, 0.0, 30.0)], pitch=-0.5, fov=1.2),
+        light=LightState(*np.zeros((3, 1), np.float32)),
+    )
     assert drawn(renderer, night).rgb.max() <= 1
 
 

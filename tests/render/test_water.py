@@ -4,10 +4,15 @@ import numpy as np
 import pytest
 import shapely
 
+from eyas.lanes import kernel
+from eyas.lanes.vector import lane, splat
 from eyas.mesh.flat import flat_polygon
+from eyas.render.kernels.scalars import i4
+from eyas.render.kernels.surface.water import water_slope
 from eyas.render.pack.geometry import build_geometry
 from eyas.render.renderer import build_renderer
 from eyas.render.textures.library import build_textures
+from eyas.render.textures.mipmap import packed_layers
 from eyas.state.draw import PartLibrary
 from eyas.state.mesh import Material, Surface
 from eyas.world.build.materials import TEXTURES
@@ -49,3 +54,20 @@ def test_water_has_waves_that_calm_down_with_distance(lake, drawn):
 def test_slopes_of_the_waves_are_even(lake):
     linear = (build_textures()["water"][..., :2] / 255.0 + 0.055) / 1.055
     assert (linear**2.4).mean(axis=(0, 1)) == pytest.approx([0.5, 0.5], abs=0.01)
+
+
+@kernel
+def slopes(textures, u, v):
+    east, north = water_slope(textures, i4(0), splat(i4(0)), False, splat(u), splat(v))
+    return lane(east, 0), lane(north, 0)
+
+
+def test_small_waves_are_the_large_ones_turned_by_a_right_angle():
+    """On water whose texture slopes alike everywhere, by `a` along its u and `b` along its v."""
+    image = np.full((256, 256, 4), (200, 120, 0, 255), np.uint8)
+    (texture,) = packed_layers({"water": image}, ["water"])
+    a, b = (((int(texture[0]) >> shift & 255) / 255.0) ** 2 - 0.5 for shift in (0, 8))
+    assert a > 0.05 > -0.05 > b
+    # Their own u runs north and their own v west; they are half as steep.
+    found = slopes(texture[None], np.float32(0.3), np.float32(0.6))
+    assert found == pytest.approx((a - 0.5 * b, b + 0.5 * a), abs=1e-3)

@@ -169,7 +169,9 @@ def test_a_name_stands_for_the_source_of_the_traffic(order, tmp_path):
 
 MISSPELT = {
     "env": lambda settings: {"env": {"mixture": [{}, {"settings": settings}]}},
-    "train": lambda settings: {"train": {"stages": [{"decisions": 1000, "settings": settings}]}},
+    "train": lambda settings: {
+        "train": {"stages": [{"total_timesteps": 1000, "settings": settings}]}
+    },
 }
 
 

@@ -29,7 +29,7 @@ NAMING = {
 INSIDE = {
     "env.mixture.1.settings.": lambda inner: {"env": {"mixture": [{}, {"settings": inner}]}},
     "train.stages.0.settings.": lambda inner: {
-        "train": {"stages": [{"decisions": 1000, "settings": inner}]}
+        "train": {"stages": [{"total_timesteps": 1000, "settings": inner}]}
     },
 }
 HARMFUL = "raise BaseException('it was imported')"

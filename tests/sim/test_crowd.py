@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from eyas.behaviours.troop import Clock
+from eyas.behaviours.groups import SampleClock
 from eyas.core.errors import ConfigError, SpawnError
 from eyas.exports.capture import Moment, frame_of
 from eyas.exports.frame import Action
@@ -168,10 +168,8 @@ def test_who_is_half_in_the_picture_is_told_apart(monkeypatch):
         actors, models = seen(0)
         actors.present[:] = True
         actors.position[0, 1 - target] = middle + share * side * cameras.rotation[0, :, 1]
-        monkeypatch.setattr(
-            simulation.perception._worlds, "actors_around", lambda *_: (actors, models)
-        )
-        return simulation.perception.words(0, 0.75)
+        monkeypatch.setattr(simulation.view._worlds, "actors_around", lambda *_: (actors, models))
+        return simulation.view.words(0, 0.75)
 
     assert moved(1.1) == "a dark grey walking machine on six legs, moving"  # the other stands
     assert moved(2.5) == "a dark grey walking machine on six legs"
@@ -229,7 +227,7 @@ def test_a_crowd_beside_vehicles_is_kept_with_them_and_moves_as_alone():
         SimConfig(extras=[{"kind": "Pedestrian", "count": 3}, {"kind": "BB-8", "count": 2}])
     )
     scene = load_scene("citystreet")
-    around = Surroundings(scene, Clock(101, 10.0), 3)
+    around = Surroundings(scene, SampleClock(101, 10.0), 3)
     table = np.zeros((101, 2), SAMPLE)
     table["x"], table["present"] = 5.0, 1.0
     vehicles = Motion(table, np.zeros(2, np.int32), 10.0, 0.0)

@@ -85,7 +85,7 @@ def test_agents_see_the_state_of_so_many_steps_ago(config, late):
         past.append(now.snapshot.copy())
     for k, command in enumerate(COMMANDS):
         simulation.advance(command, 4)
-        seen = simulation.perception.sight.snapshot
+        seen = simulation.view.state.snapshot
         then = past[max(4 * (k + 1) - late, 0)]
         for record, expected in zip(seen[:4], then[:4], strict=True):
             for array, other in zip(record, expected, strict=True):
@@ -120,7 +120,7 @@ def test_a_reset_forgets_what_was_seen_before_it(config):
     simulation = simulation_of(config, observation_latency_steps=50.0)
     track(simulation, COMMANDS)
     simulation.reset(np.array([True, False]))
-    seen, now = simulation.perception.sight.snapshot, simulation.snapshot
+    seen, now = simulation.view.state.snapshot, simulation.snapshot
     assert np.array_equal(seen.trackers.position[0], now.trackers.position[0])
     assert not np.array_equal(seen.trackers.position[1], now.trackers.position[1])
     first = now.trackers.position[0].copy()

@@ -40,7 +40,8 @@ def test_what_is_added_to_sky_and_sun_is_seen():
 
 def test_luminosities_refer_to_the_originals_own():
     night = started({"background": 0.3, "sun": 0.15, "sun_replaces": True}, weather="night")
-    np.testing.assert_allclose(night.snapshot.light[0, :2], [2.0, 0.5], rtol=1e-6)
+    light = night.snapshot.light
+    np.testing.assert_allclose([light.sky[0], light.sun[0]], [2.0, 0.5], rtol=1e-6)
     assert CITYSTREET.light("night").luminosity == 0.3
 
 
@@ -49,9 +50,8 @@ def test_visibility_is_that_of_the_fog_and_only_foggy_weather_has_some():
     usual = pictures(started(weather="foggy"))
     # At 22 m, 1 - exp(-22 / 30) = 52 % of everything is the grey of the air.
     assert thick.std(axis=(1, 2)).mean() < 0.75 * usual.std(axis=(1, 2)).mean()
-    assert started({"visibility": 30.0}, weather="foggy").snapshot.light[0, 2] == pytest.approx(
-        1 / 30
-    )
+    foggy = started({"visibility": 30.0}, weather="foggy")
+    assert foggy.snapshot.light.fog_density[0] == pytest.approx(1 / 30)
     clear = started({"visibility": 30.0})
     np.testing.assert_array_equal(pictures(clear), pictures(started()))
 
@@ -93,23 +93,23 @@ def test_visibility_where_there_is_no_fog_is_told_to_have_no_effect(caplog):
 
 def test_each_episode_draws_anew_within_the_limits_or_only_the_first():
     simulation = started(RANDOM, count=3)
-    drawn = [simulation.snapshot.light.copy()]
+    drawn = [np.array(simulation.snapshot.light)]
     for _ in range(4):
         simulation.reset()
-        drawn.append(simulation.snapshot.light.copy())
-    sky, sun = np.stack(drawn)[..., 0], np.stack(drawn)[..., 1]
+        drawn.append(np.array(simulation.snapshot.light))
+    sky, sun = np.stack(drawn)[:, 0], np.stack(drawn)[:, 1]
     assert len(np.unique(sky)) == sky.size
     assert ((sky >= 0.4) & (sky <= 1.6) & (sun >= 0.5) & (sun <= 1.5)).all()
     once = started(RANDOM | {"each_reset": False}, count=2)
-    first = once.snapshot.light.copy()
+    first = np.array(once.snapshot.light)
     once.reset()
     np.testing.assert_array_equal(once.snapshot.light, first)
-    np.testing.assert_array_equal(first, drawn[0][:2])
+    np.testing.assert_array_equal(first, drawn[0][:, :2])
 
 
 def test_a_tracker_draws_the_same_alone_and_changes_nothing_else():
     alone, among = started(RANDOM), started(RANDOM, count=5)
-    np.testing.assert_array_equal(alone.snapshot.light[0], among.snapshot.light[0])
+    np.testing.assert_array_equal(alone.snapshot.light.sky[0], among.snapshot.light.sky[0])
     np.testing.assert_array_equal(pictures(alone)[0], pictures(among)[0])
     plain = started()
     for part in ("trackers", "cameras", "targets", "episodes"):
@@ -121,12 +121,12 @@ def test_a_tracker_draws_the_same_alone_and_changes_nothing_else():
 
 def test_in_a_shared_world_all_see_one_light():
     simulation = started(RANDOM, count=3, shared=True)
-    assert len(np.unique(simulation.snapshot.light[:, 0])) == 1
-    before = simulation.snapshot.light.copy()
+    assert len(np.unique(simulation.snapshot.light.sky)) == 1
+    before = simulation.snapshot.light.sky.copy()
     simulation.reset(np.array([False, True, False]))
-    np.testing.assert_array_equal(simulation.snapshot.light, before)
+    np.testing.assert_array_equal(simulation.snapshot.light.sky, before)
     simulation.reset(np.array([True, False, False]))
-    assert (simulation.snapshot.light[:, 0] != before[:, 0]).all()
+    assert (simulation.snapshot.light.sky != before).all()
 
 
 def test_env_params_of_the_original_work_and_are_told_in_info():

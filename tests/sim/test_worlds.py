@@ -99,7 +99,7 @@ def test_looks_of_a_lasting_world_stay_when_its_trackers_begin_anew(config):
 def test_light_is_one_in_each_world_and_its_leader_draws_it(config):
     light = LightConfig(background={"uniform": [0.4, 1.6]}, background_replaces=True)
     simulation = started(config.model_copy(update={"light": light}), GROUPS)
-    sky = simulation.snapshot.light[:, 0]
+    sky = simulation.snapshot.light.sky
     assert sky[0] == sky[1]
     assert len(set(sky.tolist())) == 3
     before = sky.copy()

@@ -1,23 +1,10 @@
-from dataclasses import dataclass
-
 import numpy as np
 import pytest
 
 from eyas.state.mesh import Material, Mesh
 from eyas.state.scene import ObjectClass
 from eyas.targets.catalogue import KINDS, MODELS
-from eyas.targets.kind import Kind
-
-
-@dataclass(frozen=True, slots=True)
-class Walker:
-    """A model of a kind that has no wheels."""
-
-    name: str
-    kind: str
-    size: tuple[float, float, float] = (0.5, 0.5, 1.75)
-    rise: float = 0.0
-    typename: str = "Pedestrian"
+from eyas.targets.kind import Kind, Model
 
 
 class WalkerRig:
@@ -58,7 +45,19 @@ def walker():
 def walker_of(parts: int, name: str = "walker") -> Kind:
     return Kind(
         name=name,
-        models=(Walker(f"{name} of {parts} parts", name),),
+        models=(
+            Model(
+                name=f"{name} of {parts} parts",
+                typename="Pedestrian",
+                kind=name,
+                size=(0.5, 0.5, 1.75),
+                rise=0.0,
+                words=(f"a {{}} {name}",),
+                motion="stands",
+                speed=0.0,
+                stride=1.0,
+            ),
+        ),
         colours=((0.2, 0.3, 0.4), (0.5, 0.1, 0.1)),
         object_class=ObjectClass.PERSON,
         rig=lambda: WalkerRig(parts),

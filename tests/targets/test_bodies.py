@@ -4,12 +4,11 @@ import itertools
 import numpy as np
 import pytest
 
+from eyas.mesh import shell
 from eyas.mesh.assembly import concatenate, transformed
 from eyas.state.mesh import Surface
 from eyas.targets.catalogue import MODELS, model_index
-from eyas.targets.vehicles.bodies import body_levels
 from eyas.targets.vehicles.finishes import BLACK_PAINT, HEAD_LAMP, ROOF_GLASS, TAIL_LAMP
-from eyas.targets.vehicles.heavy import trailer_levels
 from eyas.targets.vehicles.models import VEHICLES
 from eyas.targets.vehicles.wheels import wheel_levels
 
@@ -20,10 +19,12 @@ NAMES = [vehicle.name for vehicle in VEHICLES]
 def levels_of(name):
     """The bodies; of a truck with a trailer, both."""
     vehicle = MODELS[model_index(name)]
-    bodies = body_levels(vehicle)
+    bodies = vehicle.body(vehicle)
     if not vehicle.articulated:
         return bodies
-    return [concatenate(pair) for pair in zip(bodies, trailer_levels(vehicle), strict=True)]
+    add = vehicle.trailer.shape
+    trailers = shell.levels_of(lambda mesh, detail: add(mesh, vehicle, detail))
+    return [concatenate(pair) for pair in zip(bodies, trailers, strict=True)]
 
 
 @functools.cache

@@ -1,5 +1,13 @@
+import os
+import shutil
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
 import pytest
 
+import eyas
 from eyas.state.scene import ObjectClass
 from eyas.targets.catalogue import (
     KINDS,
@@ -10,7 +18,9 @@ from eyas.targets.catalogue import (
     models_of,
     register,
 )
-from eyas.targets.vehicles.models import BODY_COLOURS, VEHICLES
+from eyas.targets.config import TargetName
+from eyas.targets.vehicles.models import VEHICLES
+from eyas.targets.vehicles.vehicle import BODY_COLOURS
 from eyas.traffic.config import VehicleType
 
 ORIGINAL = {
@@ -89,7 +99,7 @@ def test_names_are_taken_once_and_models_are_their_kinds(walker):
     register(walker)
     with pytest.raises(ValueError, match=r"\['walker', 'walker of 2 parts'\] are in the catalogue"):
         register(walker)
-    stranger = type(walker)(**{f: getattr(walker, f) for f in walker.__slots__} | {"name": "bus 2"})
+    stranger = replace(walker, name="bus 2")
     KINDS.pop()
     del MODELS[-1:]
     with pytest.raises(ValueError, match="'bus 2' needs models of its own"):
@@ -99,3 +109,87 @@ def test_names_are_taken_once_and_models_are_their_kinds(walker):
 def test_there_are_the_eight_body_colours_of_the_original():
     assert len(set(BODY_COLOURS)) == 8
     assert (0.85, 0.85, 0.05) in BODY_COLOURS
+
+
+def with_model(kind, **changes):
+    """The kind with another model."""
+    return replace(kind, models=(replace(kind.models[0], **changes),))
+
+
+@pytest.mark.parametrize(
+    ("changes", "line"),
+    [
+        ({"words": ()}, "targets: 'walker of 2 parts' has no words; allowed: phrases like"),
+        ({"words": ("a {} walker", " ")}, "targets: 'walker of 2 parts' has no words"),
+        ({"size": (1.0, 0.0, 1.0)}, r"targets: 'walker of 2 parts' is \(1.0, 0.0, 1.0\) m"),
+        ({"name": "BmwX5Simple"}, r"targets: \['BmwX5Simple'\] are in the catalogue already"),
+    ],
+)
+def test_an_entry_that_lacks_something_is_refused_when_it_is_read(walker, changes, line):
+    before = len(MODELS)
+    with pytest.raises(ValueError, match=line):
+        register(with_model(walker, **changes))
+    assert len(MODELS) == before
+
+
+def test_a_name_twice_in_one_kind_is_refused(walker):
+    with pytest.raises(ValueError, match="'walker of 2 parts'"):
+        register(replace(walker, models=walker.models * 2))
+
+
+@pytest.mark.parametrize("kind", ["passenger", "bus", "Pedestrian", "Create"])
+def test_a_size_that_the_meshes_do_not_have_is_refused_before_anything_is_drawn(kind):
+    entry = KINDS[kind_index(kind)].models[-1]
+    length, width, height = entry.size
+    wrong = replace(entry, size=(1.12 * length, width, height))
+    rig = type(KINDS[kind_index(kind)].rig())
+    rig([entry]).part_levels()
+    with pytest.raises(ValueError, match=rf"targets: '{entry.name}' says that it is .* m; allowed"):
+        rig([wrong]).part_levels()
+
+
+NEW_CAR = """
+from eyas.targets.vehicles.models.toyota_prius import MODEL as _PRIUS
+from dataclasses import replace
+
+MODEL = replace(
+    _PRIUS, name="TestCarSimple", typename="TestCarSimple",
+    words=("a {} car", "a {} test car"),
+)
+"""
+
+ASK = """
+import numpy as np
+from eyas.modes.targets.listing import entries
+from eyas.targets.catalogue import MODELS, kind_index, model_index, models_of
+from eyas.targets.looks import LookSampler
+from eyas.targets.words import Seen, told_apart
+
+car = model_index("TestCarSimple")
+print(car, [MODELS[m].name for m in models_of(kind_index("passenger"))][-1])
+print("TestCarSimple" in [line.name for line in entries()])
+sampler = LookSampler(np.zeros(100, np.int32))
+print(car in sampler.sample(np.random.default_rng(1))[0])
+seen = Seen(car, (0.74, 0.10, 0.09), 10.0, 0.0, 0.5, 25.0)
+print(told_apart(seen, [seen._replace(model=0), seen._replace(model=2)]))
+"""
+
+
+def test_a_new_car_in_one_file_of_the_package_is_everywhere(tmp_path):
+    copy = tmp_path / "eyas"
+    shutil.copytree(Path(eyas.__file__).parent, copy, copy_function=os.link,
+                    ignore=shutil.ignore_patterns("__pycache__", "*.npz"))  # fmt: skip
+    (copy / "targets" / "vehicles" / "models" / "test_car.py").write_text(NEW_CAR)
+    asked = subprocess.run(
+        [sys.executable, "-c", ASK], env=os.environ | {"PYTHONPATH": str(tmp_path)},
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    assert asked.stdout.splitlines() == [
+        "7 TestCarSimple", "True", "True", "a red test car"
+    ]  # fmt: skip
+
+
+def test_every_target_of_the_settings_has_an_entry():
+    kinds = {kind.name for kind in KINDS}
+    assert {name.value for name in TargetName} - {"SUMO_VEHICLE"} <= kinds
+    assert all(model.mass for model in VEHICLES)

@@ -5,18 +5,19 @@ import functools
 import numpy as np
 import pytest
 
+from eyas.mesh.shell import levels_of
 from eyas.state.mesh import Surface
 from eyas.state.motion import ActorState
 from eyas.targets.catalogue import KINDS, MODELS, extent_of, kind_index, models_of
 from eyas.targets.config import TargetName
 from eyas.targets.jointed.cycle import frames_of
-from eyas.targets.jointed.figure import levels_of
-from eyas.targets.jointed.kinds import FIGURES, JOINTED_KINDS
+from eyas.targets.jointed.kinds import JOINTED_KINDS
 from eyas.targets.jointed.people.people import PEOPLE
 from eyas.targets.jointed.people.person import Garment, shapes_of_person
 from eyas.targets.kind import Looks
 from eyas.targets.rig import Rigs
 
+FIGURES = {model.name: model.figure for kind in JOINTED_KINDS for model in kind.models}
 NAMES = sorted(FIGURES)
 WALKERS = [name for name in NAMES if FIGURES[name].legs]
 SLIDES = 0.01

@@ -6,7 +6,7 @@ from eyas.core.rng import room_key, stream
 from eyas.lanes import interpreted
 from eyas.targets.catalogue import kind_index, models_of
 from eyas.targets.looks import LookSampler, draw_looks
-from eyas.targets.vehicles.models import BODY_COLOURS, MOTORCYCLE_COLOURS
+from eyas.targets.vehicles.vehicle import BODY_COLOURS, MOTORCYCLE_COLOURS
 from eyas.traffic.config import VehicleType
 
 PINK = (0.9, 0.3, 0.6)

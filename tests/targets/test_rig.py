@@ -9,8 +9,8 @@ from eyas.state.scene import ACTOR_OBJECT, ObjectClass
 from eyas.targets.catalogue import KINDS, MODELS, kind_index, models_of, register
 from eyas.targets.kind import Looks
 from eyas.targets.rig import Rigs, part_library
-from eyas.targets.vehicles.models import LEAN_LIMIT
 from eyas.targets.vehicles.pose import STEER_LIMIT
+from eyas.targets.vehicles.two_wheelers import LEAN_LIMIT
 from eyas.traffic.config import VehicleType
 
 TYPES = list(VehicleType)

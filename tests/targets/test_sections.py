@@ -3,12 +3,11 @@
 import numpy as np
 import pytest
 
+from eyas.mesh.shell import levels_of
 from eyas.state.motion import ActorState
 from eyas.targets.catalogue import KINDS, MODELS, kind_index, models_of, sections_of
 from eyas.targets.kind import Looks
 from eyas.targets.rig import Rigs, part_library
-from eyas.targets.vehicles.bodies import body_levels
-from eyas.targets.vehicles.heavy import trailer_levels
 
 ARTICULATED = [model for model in range(len(MODELS)) if sections_of(model)]
 SLACK = 0.1  # [m]
@@ -30,7 +29,8 @@ def test_vehicles_with_trailers_have_sections_and_no_others():
 @pytest.mark.parametrize("model", ARTICULATED)
 def test_a_section_is_as_large_as_its_mesh(model):
     one = MODELS[model]
-    meshes = body_levels(one), trailer_levels(one)
+    add = one.trailer.shape
+    meshes = one.body(one), levels_of(lambda shell, detail: add(shell, one, detail))
     for section, levels in zip(sections_of(model), meshes, strict=True):
         low, high = box_of(section)
         points = levels[0].positions

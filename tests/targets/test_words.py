@@ -2,8 +2,7 @@ import pytest
 
 from eyas.targets.catalogue import KINDS, MODELS, kind_of, model_index
 from eyas.targets.colour_names import COLOUR_NAMES, colour_name
-from eyas.targets.telling import Seen, told_apart
-from eyas.targets.words import looks_in_words, motion_in_words, phrases, words_of
+from eyas.targets.words import Seen, looks_in_words, phrases, told_apart, words_of
 
 RED, BLUE = (0.74, 0.10, 0.09), (0.13, 0.27, 0.62)
 
@@ -25,7 +24,7 @@ def test_all_colours_of_a_kind_have_names_of_their_own(kind):
 def test_the_longest_words_tell_every_model_from_every_other():
     seen = [phrases(m, kind_of(m).colours[0])[-1] for m in range(len(MODELS))]
     assert len(set(seen)) == len(MODELS)
-    assert all(motion_in_words(m) for m in range(len(MODELS)))
+    assert all(model.motion for model in MODELS)
 
 
 @pytest.mark.parametrize("model", range(len(MODELS)), ids=lambda m: MODELS[m].name)

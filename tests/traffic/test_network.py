@@ -13,7 +13,7 @@ from eyas.traffic import network, sumo_install
 from eyas.traffic.network import build_network, graph_hash, network_xml
 from eyas.world.maps import MAPS
 from eyas.world.maps.citystreet import CITYSTREET
-from eyas.world.weather import Season
+from eyas.world.plan.build import build_scene
 
 needs_sumo = pytest.mark.sumo
 
@@ -97,7 +97,8 @@ def test_from_every_road_of_a_city_every_other_can_be_reached_without_turning_ro
 @needs_sumo
 @pytest.mark.parametrize("seed", [1, 4])
 def test_other_seeds_become_whole_cities(seed):
-    scene = CITYSTREET.scene(build_network(CITYSTREET.roads(seed)), seed, Season.SUMMER)
+    network = build_network(CITYSTREET.roads(seed))
+    scene = build_scene(CITYSTREET.plan(network, seed), network)
     assert (np.linalg.norm(scene.fixtures.pose[:, 0, :2], axis=1) > 12.0).sum() == 63
     assert (scene.object_class == ObjectClass.BUILDING).sum() > 70
 

@@ -9,7 +9,6 @@ from eyas.core.errors import DataFileError, OutputError
 from eyas.traffic.recording import Recording
 from eyas.traffic.recording_file import (
     RecordingFile,
-    _checksum,
     from_bytes,
     load,
     save,
@@ -34,22 +33,6 @@ def test_a_loaded_recording_equals_the_saved_one(wandering: Recording, tmp_path:
 def test_equal_recordings_give_equal_bytes(wandering: Recording):
     data = to_bytes(wandering)
     assert to_bytes(from_bytes(data, "memory")) == data
-
-
-def test_the_first_format_is_read_too(wandering: Recording):
-    with np.load(io.BytesIO(to_bytes(wandering))) as file:
-        arrays = {name: array for name, array in file.items() if "_far" not in name}
-        for name in ("position", "yaw"):
-            whole = file[f"{name}_second"].astype(np.int32)
-            whole.flat[file[f"{name}_far"]] = file[f"{name}_far_second"]
-            arrays[f"{name}_second"] = whole
-    header = arrays["header"].tobytes().replace(b"recording 2", b"recording 1")
-    arrays["header"] = np.frombuffer(header, np.uint8)
-    arrays["checksum"] = _checksum({name: arrays[name] for name in arrays if name != "checksum"})
-    buffer = io.BytesIO()
-    np.savez_compressed(buffer, **arrays)
-    back = from_bytes(buffer.getvalue(), "old.npz")
-    assert to_bytes(back) == to_bytes(wandering)
 
 
 def test_an_actor_that_appears_far_away_is_kept(wandering: Recording):

@@ -8,6 +8,7 @@ import pytest
 from eyas.traffic import network
 from eyas.traffic.config import TrafficConfig
 from eyas.traffic.fleet import fleet_of
+from eyas.traffic.net_file import SumoNet
 from eyas.traffic.network import network_xml
 from eyas.traffic.record import WARM_UP, resolved
 from eyas.traffic.signals import Aspect, signal_plan, walk_plan
@@ -32,7 +33,7 @@ NET = """<net>
 
 
 def test_phases_are_those_of_the_program_for_who_drives_straight_on():
-    plan = signal_plan(NET.encode())
+    plan = signal_plan(SumoNet(NET.encode()))
     assert plan.edges == ("left", "right", "dark", "yields", "clever")
     begin = 7.0 - WARM_UP
     time = begin + np.array([0.0, 9.999, 10.0, 12.999, 13.0, 19.999, 20.0, 400.0, -0.001])
@@ -44,7 +45,7 @@ def test_phases_are_those_of_the_program_for_who_drives_straight_on():
 
 
 def test_a_phase_begins_at_the_physics_step_at_which_the_last_one_ends():
-    plan = signal_plan(NET.encode())
+    plan = signal_plan(SumoNet(NET.encode()))
     begin = 7.0 - WARM_UP
     # A nanosecond is less than the error of sums of steps of 2 ms.
     for ends, aspect in ((10.0, Aspect.RED_AMBER), (13.0, Aspect.GREEN), (20.0, Aspect.RED)):
@@ -74,7 +75,7 @@ WALKED = """<net>
 
 
 def test_people_go_while_those_on_the_crossed_street_have_red():
-    plan = walk_plan(WALKED.encode())
+    plan = walk_plan(SumoNet(WALKED.encode()))
     assert plan.edges == (":x_c0", ":x_c1", ":y_c0")
     time = 5.0 - WARM_UP + np.array([5.0, 12.0, 20.0, 36.0, 40.0])
     shown = [[Aspect(one).name for one in row] for row in plan.at(time).tolist()]
@@ -97,7 +98,7 @@ def lit(grid):
 
 @pytest.mark.sumo
 def test_what_is_shown_is_what_sumo_shows_and_nobody_passes_red(lit):
-    plan = signal_plan(lit)
+    plan = signal_plan(SumoNet(lit))
     assert len(plan.edges) >= 4
     links = [one for one in ElementTree.fromstring(lit).iter("connection") if one.get("tl")]
     inside = {one.attrib["via"]: (one.attrib["tl"], int(one.attrib["linkIndex"])) for one in links}

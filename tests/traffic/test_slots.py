@@ -1,5 +1,5 @@
 from eyas.traffic.config import VehicleType
-from eyas.traffic.slots import Slots
+from eyas.traffic.entrance import ActorSlots
 
 CAR, BUS = VehicleType.PASSENGER, VehicleType.BUS
 
@@ -9,14 +9,14 @@ def cars(*numbers: int) -> dict[int, VehicleType]:
 
 
 def test_vehicles_keep_their_actor():
-    slots = Slots([CAR] * 3)
+    slots = ActorSlots([CAR] * 3)
     slots.advance(cars(7, 3))
     slots.advance(cars(3, 7, 9))
     assert slots.taken == {3: 0, 7: 1, 9: 2}
 
 
 def test_an_actor_is_absent_a_step_before_it_is_another_vehicle():
-    slots = Slots([CAR] * 2)
+    slots = ActorSlots([CAR] * 2)
     slots.advance(cars(0))
     slots.advance(cars(1))
     assert slots.taken == {1: 1}
@@ -25,7 +25,7 @@ def test_an_actor_is_absent_a_step_before_it_is_another_vehicle():
 
 
 def test_an_actor_never_changes_its_class():
-    slots = Slots([CAR, BUS, CAR])
+    slots = ActorSlots([CAR, BUS, CAR])
     slots.advance({0: BUS, 1: CAR})
     slots.advance({2: CAR})
     assert slots.taken == {2: 2}

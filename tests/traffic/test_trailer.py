@@ -10,7 +10,7 @@ from eyas.state.terrain import Terrain
 from eyas.targets.catalogue import kind_index, model_index
 from eyas.targets.kind import Looks
 from eyas.targets.rig import Rigs
-from eyas.targets.vehicles.models import VEHICLE_AHEAD
+from eyas.targets.vehicles.vehicle import VEHICLE_AHEAD
 from eyas.traffic import trailer
 from eyas.traffic.config import VehicleType
 from eyas.traffic.recorded import recorded_motion

@@ -144,9 +144,7 @@ def test_the_fastest_commands_that_are_let_through_can_be_drawn(crews, speed):
 def test_the_radar_packet_is_that_of_the_lidar(crews):
     config = CONFIG.model_copy(update={"lidar": LidarConfig(enabled=True)})
     crew = crews(2, config)
-    for answer, row in zip(
-        crew.play([RESET] * 2), crew.sim.perception.lidar.packets(), strict=True
-    ):
+    for answer, row in zip(crew.play([RESET] * 2), crew.sim.view.lidar.packets(), strict=True):
         assert [float(word) for word in answer.radar.decode().split(",")] == row.tolist()
     assert [answer.radar for answer in crews(1).play([RESET])] == [None]
 

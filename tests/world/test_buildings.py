@@ -6,9 +6,11 @@ import shapely
 
 from eyas.state.mesh import Surface
 from eyas.world.build.materials import FACADES, TEXTURES, material
-from eyas.world.buildings.facades import mesh_of
+from eyas.world.buildings.facades import mesh_of, prisms_of
 from eyas.world.buildings.lots import turned
-from eyas.world.buildings.placing import PARAPET, SETBACK, Building, place_buildings, prism_of
+from eyas.world.buildings.parts import PARAPET
+from eyas.world.buildings.placing import SETBACK, place_buildings
+from eyas.world.plan.plan import Shell
 
 COUNT = 83
 
@@ -39,15 +41,15 @@ def buildings(blocks, park):
 
 def a_building(**changes):
     values = {
-        "footprint": np.array([[0.0, 0], [30, 0], [30, 18], [0, 18]]),
+        "outline": shapely.Polygon([(0, 0), (30, 0), (30, 18), (0, 18)]),
         "bottom": 0.0,
         "height": 24.0,
         "facade": "facade_brick",
         "tint": (1.0, 1.0, 1.0),
         "roof": "flat",
-        "roof_material": material("bitumen"),
+        "cover": material("bitumen"),
     }
-    return Building(**(values | changes))
+    return Shell(**(values | changes))
 
 
 def footprint_area(building):
@@ -89,7 +91,7 @@ def test_buildings_keep_off_the_kerb_and_out_of_the_park(buildings, blocks, park
 
 
 def test_no_two_buildings_share_space(buildings):
-    prisms = [(shapely.Polygon(p), low, high) for p, low, high in map(prism_of, buildings)]
+    prisms = [(shapely.Polygon(p), low, high) for b in buildings for p, low, high in prisms_of(b)]
     for i, (shape, low, high) in enumerate(prisms):
         for other, other_low, other_high in prisms[:i]:
             if min(high - PARAPET, other_high - PARAPET) > max(low, other_low) + 0.01:
@@ -113,7 +115,7 @@ def test_walls_are_whole_storeys_and_roofs_and_facades_are_mixed(buildings):
     assert {b.facade for b in buildings} == set(FACADES)
     assert 0.03 < np.mean([b.roof == "pyramid" for b in buildings]) < 0.25
     low = [b for b in buildings if b.bottom + b.height < 20]
-    assert np.mean([b.roof_material.texture != "bitumen" for b in low]) > 0.7
+    assert np.mean([b.cover.texture != "bitumen" for b in low]) > 0.7
 
 
 def test_small_things_are_walked_round():
@@ -148,8 +150,8 @@ def test_triangles_face_outwards(roof):
 def test_a_mesh_encloses_the_volume_of_its_building(roof, least, most):
     # Divergence theorem: the flow of (x, y, z) / 3 out of the surface; the missing floor is at
     # z = 0, where nothing flows. The house is too small for anything to stand on its roof.
-    outline = np.array([[0.0, 0], [10, 0], [10, 9], [0, 9]])
-    mesh = mesh_of(a_building(footprint=outline, roof=roof))
+    outline = shapely.Polygon([(0, 0), (10, 0), (10, 9), (0, 9)])
+    mesh = mesh_of(a_building(outline=outline, roof=roof))
     corners = mesh.positions[mesh.triangles].astype(np.float64)
     face = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
     volume = np.einsum("ti,ti->", face, corners.mean(axis=1)) / 3
@@ -172,7 +174,7 @@ def test_a_building_always_looks_the_same():
 def test_materials_are_known_and_solids_cover_the_parapet():
     building = a_building()
     assert {m.texture for m in mesh_of(building).palette} <= set(TEXTURES)
-    _, bottom, top = prism_of(building)
+    ((_, bottom, top),) = prisms_of(building)
     assert (bottom, top) == (0.0, 24.0 + PARAPET)
 
 
@@ -189,9 +191,33 @@ def test_a_high_building_has_a_base_a_shaft_and_a_top_and_keeps_its_storeys():
 
 
 def test_most_roofs_are_terracotta_but_no_two_alike(buildings):
-    covers = [b.roof_material for b in buildings]
+    covers = [b.cover for b in buildings]
     kinds = [material.texture for material in covers]
     assert 0.5 < np.mean([kind in ("roof_terrace", "roof_tiles") for kind in kinds]) < 0.9
     assert {"bitumen", "roof_gravel", "roof_membrane"} < set(kinds)
     assert len(set(covers)) > 0.9 * len(covers)
     assert len({b.tint for b in buildings}) > 0.9 * len(buildings)
+
+
+def test_a_courtyard_has_walls_and_a_parapet_and_is_not_solid():
+    yard = shapely.box(0, 0, 40, 30).difference(shapely.box(12, 10, 28, 20))
+    building = a_building(outline=yard)
+    mesh = mesh_of(building)
+    corners = mesh.positions[mesh.triangles].astype(np.float64)
+    face = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]) / 2
+    volume = np.einsum("ti,ti->", face, corners.mean(axis=1)) / 3
+    assert volume == pytest.approx(yard.area * 24, rel=0.02)
+    solid = shapely.union_all([shapely.Polygon(outline) for outline, _, _ in prisms_of(building)])
+    assert solid.symmetric_difference(yard).area < 1e-6
+
+
+@pytest.mark.parametrize("height", [7.0, 8.2, 10.9])
+def test_storeys_of_any_height_are_whole(height):
+    mesh = mesh_of(a_building(bottom=-0.1, height=height))
+    walls = np.array([m.surface == Surface.FACADE for m in mesh.palette])[mesh.materials]
+    used = mesh.triangles[walls].ravel()
+    storey = height / round(height / 3)
+    stories = (mesh.positions[used, 2] + 0.1) / storey
+    assert np.abs(stories - np.round(stories)).max() < 1e-4
+    rows = mesh.uvs[used, 1] * 4
+    assert np.abs(rows - np.round(rows)).max() < 1e-4

@@ -9,10 +9,10 @@ import shapely
 from eyas.render.pack.triangles import gradients
 from eyas.state.scene import ObjectClass
 from eyas.world.maps.citystreet import CITYSTREET
+from eyas.world.plan.build import build_scene
 from eyas.world.roads.areas import road_area
 from eyas.world.roads.painting import MARGIN_HEIGHT
 from eyas.world.roads.wear import WEAR_HEIGHTS
-from eyas.world.weather import Season
 
 SEEDS = range(6)
 
@@ -206,7 +206,7 @@ def test_triangles_are_few_enough_for_small_machines(scene):
 
 
 def test_building_again_gives_the_same_bytes(scene, network):
-    again = CITYSTREET.scene(network, 0, Season.SUMMER)
+    again = build_scene(CITYSTREET.plan(network, 0), network)
     assert again.static.positions.tobytes() == scene.static.positions.tobytes()
     assert again.fixtures.pose.tobytes() == scene.fixtures.pose.tobytes()
     assert again.colliders.prism_points.tobytes() == scene.colliders.prism_points.tobytes()

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 import shapely
 
-from eyas.world.land.cut import cut
 from eyas.world.land.facets import relief
+from eyas.world.land.rising import cut
 
 
 @pytest.fixture(scope="module")

@@ -10,9 +10,10 @@ from eyas.state.terrain import reliefs
 from eyas.traffic.recording_file import load
 from eyas.world.land.mounds import highest
 from eyas.world.maps.desert import DESERT
-from eyas.world.maps.desert.plan import make_plan
-from eyas.world.maps.desert.scene import DRIFT_HEIGHT
+from eyas.world.maps.desert.layout import lay_out
+from eyas.world.maps.desert.plan import DRIFT_HEIGHT
 from eyas.world.maps.recipe import TRAFFIC_FILE
+from eyas.world.plan.build import build_scene
 from eyas.world.roads.areas import joints, road_area
 from eyas.world.roads.painting import PAINT_HEIGHT
 from eyas.world.weather import Season
@@ -34,12 +35,12 @@ def desert():
 
 @pytest.fixture(scope="module")
 def winter(roads):
-    return DESERT.scene(roads, 0, Season.WINTER)
+    return build_scene(DESERT.plan(roads, 0), roads, Season.WINTER)
 
 
 @pytest.fixture(scope="module")
 def plan(roads):
-    return make_plan(roads, 0)
+    return lay_out(roads, 0)
 
 
 def lines_of(graph):
@@ -214,6 +215,6 @@ def test_scenes_are_small_enough_for_small_machines(desert):
 
 def test_another_seed_is_another_desert_of_the_same_kind():
     network = load_network("desert", 3)
-    other = make_plan(network, 3)
+    other = lay_out(network, 3)
     assert (len(other.drifts), len(other.houses)) == (11, 7)
     assert len(other.dunes) >= 46

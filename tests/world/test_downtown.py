@@ -12,7 +12,7 @@ from eyas.state.scene import ObjectClass
 from eyas.traffic.demand import RoadLinks, lasting_edges
 from eyas.traffic.recording_file import load
 from eyas.world.maps.downtown import DOWNTOWN
-from eyas.world.maps.downtown.plan import make_plan
+from eyas.world.maps.downtown.layout import lay_out
 from eyas.world.maps.recipe import TRAFFIC_FILE
 from eyas.world.roads.areas import road_area
 from eyas.world.roads.markings import road_paint
@@ -43,7 +43,7 @@ def asphalt(streets):
 
 @pytest.fixture(scope="session")
 def plan(streets):
-    return make_plan(streets, 0)
+    return lay_out(streets, 0)
 
 
 @pytest.fixture(scope="session")
@@ -131,7 +131,7 @@ def test_seeds_differ_and_repeat():
 
 
 def test_planning_again_gives_the_same_city(plan, streets, city):
-    again = make_plan(streets, 0)
+    again = lay_out(streets, 0)
     for parts, others in zip(plan.buildings, again.buildings, strict=True):
         for part, other in zip(parts, others, strict=True):
             assert part.footprint.tobytes() == other.footprint.tobytes()

@@ -11,7 +11,7 @@ from eyas.sim.scenes import load_network, load_scene
 from eyas.state.scene import ObjectClass
 from eyas.traffic.recording_file import load
 from eyas.world.maps.downtown import DOWNTOWN
-from eyas.world.maps.downtown.plan import make_plan
+from eyas.world.maps.downtown.layout import lay_out
 from eyas.world.maps.recipe import TRAFFIC_FILE
 from eyas.world.roads.areas import road_area
 
@@ -23,7 +23,7 @@ LOWEST_DRONE = 13.0
 
 @pytest.fixture(scope="module")
 def plan():
-    return make_plan(DOWNTOWN.shipped_network(), 0)
+    return lay_out(DOWNTOWN.shipped_network(), 0)
 
 
 @pytest.fixture(scope="module")
@@ -117,7 +117,7 @@ def test_it_hides_cars_from_the_drone_above_them(solids):
 @pytest.mark.parametrize("seed", [1, 2])
 def test_other_cities_hold_together_too(seed):
     network = load_network("downtown", seed)
-    plan = make_plan(network, seed)
+    plan = lay_out(network, seed)
     fronts = shapely.union_all([shapely.Polygon(corners) for corners in plan.footprints])
     assert fronts.is_valid
     assert not plan.viaduct.ground.buffer(-0.01).intersects(fronts)

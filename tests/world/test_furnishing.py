@@ -9,19 +9,19 @@ import shapely
 from eyas.state.scene import ObjectClass
 from eyas.world.build.heights import FLOOR_HEIGHT, KERB_HEIGHT
 from eyas.world.buildings import rooftops
-from eyas.world.maps.citystreet.plan import make_plan
+from eyas.world.maps.citystreet.layout import lay_out
 from eyas.world.plants import shrubs as plants
 from eyas.world.street import furniture, parked_cars
 
 FURNITURE = tuple(furniture.FURNITURE)
-PLANTS = tuple(plants.plant_makers(np.random.default_rng(0)))
+PLANTS = tuple(plants.PLANTS)
 CARS = tuple(f"parked car {k}" for k in range(parked_cars.VARIANTS))
 UNITS = tuple(f"roof {kind}" for kind in rooftops.UNITS)
 
 
 @pytest.fixture(scope="module")
 def plan(scene):
-    return make_plan(scene.network, 0)
+    return lay_out(scene.network, 0)
 
 
 def some(scene, names):
@@ -107,7 +107,7 @@ def test_roof_units_belong_to_their_building_and_stay_on_its_roof(scene):
         furniture.FURNITURE,
         rooftops.UNITS,
         {k: partial(parked_cars.parked_car, k) for k in range(parked_cars.VARIANTS)},
-        plants.plant_makers(np.random.default_rng(0)),
+        {name: partial(make, np.random.default_rng(0)) for name, make in plants.PLANTS.items()},
     ],
 )
 def test_coarser_levels_have_fewer_triangles_and_the_same_size(makers):

@@ -10,10 +10,10 @@ from eyas.sim.scenes import load_scene
 from eyas.state.scene import ObjectClass
 from eyas.traffic.recording_file import load
 from eyas.world.maps.lake import LAKE
-from eyas.world.maps.lake.plan import MIXED, make_plan
+from eyas.world.maps.lake.layout import MIXED, lay_out
 from eyas.world.maps.lake.roads import lattice, road_graph
+from eyas.world.plan.build import build_scene
 from eyas.world.plants.forest import FROSTED, SPECIES, STAND, TREES, stand_levels
-from eyas.world.weather import Season
 
 SEEDS = range(4)
 
@@ -25,7 +25,7 @@ def network():
 
 @pytest.fixture(scope="module")
 def plan(network):
-    return make_plan(network, 0)
+    return lay_out(network, 0)
 
 
 @pytest.fixture(scope="module")
@@ -169,7 +169,7 @@ def test_lamps_stand_free(scene, plan):
 
 
 def test_building_again_gives_the_same_bytes(scene, network):
-    again = LAKE.scene(network, 0, Season.SUMMER)
+    again = build_scene(LAKE.plan(network, 0), network)
     assert again.static.positions.tobytes() == scene.static.positions.tobytes()
     assert again.fixtures.pose.tobytes() == scene.fixtures.pose.tobytes()
     for one, other in zip(again.fixtures.levels[-1], scene.fixtures.levels[-1], strict=True):

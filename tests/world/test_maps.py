@@ -11,7 +11,7 @@ from eyas.traffic.library import RESPAWN_GROUPS
 from eyas.world.maps import MAPS
 from eyas.world.maps.citystreet import CITYSTREET
 from eyas.world.maps.recipe import MIXED_FILE, TRAFFIC_FILE, respawn_file
-from eyas.world.weather import DAY, SNOW, WEATHERS, Season, Weather
+from eyas.world.weather import DAY, SNOW, WEATHERS, Season
 
 
 def test_an_unknown_map_is_told_with_the_nearest_name():
@@ -34,7 +34,7 @@ def test_a_map_ships_the_roads_and_the_traffic_of_seed_0(name):
 
 @pytest.mark.parametrize("name", MAPS.built_in)
 def test_a_maps_weathers_come_in_the_order_of_the_table(name):
-    names = [weather.name for weather in WEATHERS]
+    names = WEATHERS.names()
     assert sorted(MAPS.get(name).weathers, key=names.index) == list(MAPS.get(name).weathers)
 
 
@@ -47,20 +47,12 @@ def test_knowing_the_maps_imports_nothing_that_builds_one():
 def test_a_weather_that_a_map_lacks_is_told_with_those_it_has():
     with pytest.raises(UnknownNameError, match=r"world\.weather: .*'fogy'.*did you mean 'foggy'"):
         CITYSTREET.light("fogy")
-    bare = replace(CITYSTREET, name="bare-land", lighting={DAY: CITYSTREET.light("day")})
+    bare = replace(CITYSTREET, name="bare-land", without=("foggy", "night", "snow"))
     for ask in (bare.light, bare.season):
         with pytest.raises(UnknownNameError) as caught:
             ask("snow")
         line = "world.weather: 'snow' is not allowed on the map 'bare-land'; known: day"
         assert str(caught.value) == line
-
-
-def test_a_map_can_have_a_weather_of_its_own():
-    dusk = Weather("dusk", Season.WINTER)
-    recipe = replace(CITYSTREET, lighting={dusk: CITYSTREET.light("night")}, seasons=True)
-    assert recipe.weathers == ("dusk",)
-    assert recipe.light("dusk").lamps == 1.0
-    assert recipe.season("dusk") is Season.WINTER
 
 
 def test_a_map_without_seasons_has_one_scene_for_all_weathers():
@@ -81,19 +73,23 @@ def test_a_map_outside_of_a_package_ships_nothing():
     assert loose.shipped_network() is None
     assert loose.shipped(TRAFFIC_FILE) is None
     assert loose.shipped_traffic() == ()
-    assert loose.source_hash() is None
+    assert loose.data_hash() is None
 
 
-def test_a_change_of_a_maps_source_shows_in_its_hash(tmp_path, monkeypatch):
+def test_a_change_of_what_a_map_of_ones_own_is_made_of_shows_in_its_hash(tmp_path, monkeypatch):
     package = tmp_path / "fields_of_the_test"
     (package / "parts").mkdir(parents=True)
     for path in ("__init__.py", "parts/__init__.py", "parts/hedge.py"):
         (package / path).write_text("")
     monkeypatch.syspath_prepend(tmp_path)
     recipe = replace(CITYSTREET, package=package.name)
-    first = recipe.source_hash()
-    (package / "notes.txt").write_text("no source")
+    first = recipe.data_hash()
     (package / "parts" / "__pycache__").mkdir()  # by the first start: the second finds its map
-    assert recipe.source_hash() == first
+    (package / "parts" / "hedge.py").write_text("# no code")
+    (package / "traffic.npz").write_text("is not part of the scene")
+    assert recipe.data_hash() == first
     (package / "parts" / "hedge.py").write_text("HEIGHT = 2.0")
-    assert recipe.source_hash() != first
+    second = recipe.data_hash()
+    assert second != first
+    (package / "heights.bin").write_text("a hill")
+    assert recipe.data_hash() not in (first, second)

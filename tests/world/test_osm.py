@@ -12,9 +12,8 @@ import shapely
 
 from eyas.core.errors import ConfigError, DataFileError, MissingExtraError
 from eyas.core.installed import install_command
-from eyas.world.maps.imported import IMPORTED
-from eyas.world.maps.imported.looks import look_of
-from eyas.world.osm.features import Area, Features, House, from_text, to_text
+from eyas.world.maps.files import MAP_FILES
+from eyas.world.osm.features import Area, Features, House
 from eyas.world.osm.houses import houses_of
 from eyas.world.osm.land import add_land
 from eyas.world.osm.measures import colour, length, number
@@ -22,6 +21,9 @@ from eyas.world.osm.projection import Projection
 from eyas.world.osm.reader import covered, read_osm
 from eyas.world.osm.rings import Shapes
 from eyas.world.osm.streets import street_file
+from eyas.world.plan.file import read_plan, write_plan
+from eyas.world.plan.plan import MapPlan
+from eyas.world.towns.buildings import building_of
 
 HERE = Projection(13.4, 52.5)
 EXTENT = shapely.box(-500, -500, 500, 500)
@@ -208,8 +210,8 @@ def test_heights_levels_and_roofs_come_from_tags(tmp_path):
     assert (office.levels, office.across, office.height) == (5, True, None)
     assert house.shape.area == pytest.approx(200, abs=0.1)
     assert not read.odd
-    assert look_of(house, 0).eaves == pytest.approx(9.9)
-    assert look_of(office, 0).eaves == pytest.approx(15.2)
+    assert shell_of(house, 0).top == pytest.approx(9.9)
+    assert shell_of(office, 0).top == pytest.approx(15.2)
 
 
 def test_odd_tags_are_counted_and_never_fatal(tmp_path):
@@ -342,7 +344,7 @@ def test_streets_keep_what_netconvert_needs_and_lose_what_it_stumbles_over(tmp_p
     )
 
 
-def test_features_come_back_from_their_text():
+def test_features_come_back_from_the_file_of_their_plan(tmp_path):
     house = House(
         shapely.box(0, 0, 9, 9).difference(shapely.box(2, 2, 4, 4)), "yes", 3.0, roof="dome",
         cover=(0.5, 0.25, 1.0),
@@ -351,26 +353,30 @@ def test_features_come_back_from_their_text():
     rail = shapely.LineString([(0, 0), (5, 5)])
     whole = Features(
         [house], [area], [(1.0, 2.0, 0.0)], [(3.0, 4.0)], signals=("a#1",), rails=[rail],
-        pavement=shapely.box(0, 0, 1, 1),
+        pavement=shapely.box(0, 0, 1, 1), lit_crossings={":1_c0": rail},
     )  # fmt: skip
-    again = from_text(to_text(whole), "x")
+    path = tmp_path / "x.plan.json"
+    write_plan(path, MapPlan(name="x", size=(100.0, 100.0), survey=whole))
+    again = read_plan(path).survey
     assert again.houses == [house]
     assert hash(again.houses[0].cover)  # colours are parts of materials, which are looked up
     assert again.houses[0].wall is None
-    assert to_text(again) == to_text(whole)
-    with pytest.raises(DataFileError, match="not the file of an imported map"):
-        from_text('{"houses": 3}', "x")
+    assert again == whole
+
+
+def shell_of(house, seed):
+    return building_of(house, seed).parts[0]
 
 
 def test_what_is_not_told_is_guessed_by_kind_and_seed():
     def house(kind, size=10.0):
         return House(shapely.box(0, 0, size, size), kind)
 
-    assert look_of(house("garage"), 0).top < 6 < look_of(house("office", 30.0), 0).top
-    assert look_of(house("house"), 0) == look_of(house("house"), 0)
-    tops = {look_of(house("apartments", 20.0), seed).top for seed in range(20)}
+    assert shell_of(house("garage"), 0).top < 6 < shell_of(house("office", 30.0), 0).top
+    assert shell_of(house("house"), 0) == shell_of(house("house"), 0)
+    tops = {shell_of(house("apartments", 20.0), seed).top for seed in range(20)}
     assert len(tops) > 3
-    carport = look_of(house("carport"), 0)
+    carport = shell_of(house("carport"), 0)
     assert carport.bottom > 1.5  # one can drive below it
 
 
@@ -382,7 +388,7 @@ def test_a_folder_whose_map_has_an_odd_name_is_told_and_hides_no_others(
     (tmp_path / "town").mkdir()
     said = {"title": "", "source": "", "longitude": 0, "latitude": 0, "size": [100, 100]}
     (tmp_path / "town" / "map.json").write_text(json.dumps({"name": name, **said}))
-    assert IMPORTED.names() == ()
+    assert MAP_FILES.names() == ()
     assert "an imported map is left out" in caplog.text
     with pytest.raises(DataFileError, match=r"town/map\.json: "):
-        IMPORTED.get(str(tmp_path / "town"))
+        MAP_FILES.get(str(tmp_path / "town"))

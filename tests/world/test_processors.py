@@ -21,28 +21,29 @@ from eyas.sim.config import SimConfig
 from eyas.sim.crowd import crowd_of
 from eyas.world.buildings.facades import mesh_of
 from eyas.world.maps.citystreet import CITYSTREET
-from eyas.world.maps.citystreet.plan import make_plan
+from eyas.world.maps.citystreet.layout import lay_out
 from eyas.world.maps.desert import DESERT, DESERT_BARE
-from eyas.world.maps.desert.plan import make_plan as plan_of_dunes
-from eyas.world.plants.shrubs import plant_makers
+from eyas.world.maps.desert.layout import lay_out as plan_of_dunes
+from eyas.world.plan.build import build_scene
+from eyas.world.plants.shrubs import PLANTS
 from eyas.world.plants.trees import street_tree_levels
-from eyas.world.weather import Season
 
 
 def of_the_plan():
-    plan = make_plan(CITYSTREET.shipped_network(), 0)
+    plan = lay_out(CITYSTREET.shipped_network(), 0)
     rng = stream(0, "test")
-    plants = [street_tree_levels(rng, 0), *(make() for make in plant_makers(rng).values())]
+    plants = [street_tree_levels(rng, 0), *(make(rng) for make in PLANTS.values())]
     return plan, [mesh_of(building) for building in plan.buildings[:20]], plants
 
 
 def of_the_desert():
     network = DESERT.shipped_network()
-    return plan_of_dunes(network, 0), DESERT_BARE.scene(network, 0, Season.SUMMER)
+    return plan_of_dunes(network, 0), build_scene(DESERT_BARE.plan(network, 0), network)
 
 
 def of_the_scene():
-    return CITYSTREET.scene(CITYSTREET.shipped_network(), 0, Season.SUMMER)
+    network = CITYSTREET.shipped_network()
+    return build_scene(CITYSTREET.plan(network, 0), network)
 
 
 def of_the_people():

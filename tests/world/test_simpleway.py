@@ -8,9 +8,10 @@ from eyas.state.mesh import Surface
 from eyas.state.scene import ObjectClass
 from eyas.traffic.recording_file import load
 from eyas.world.maps import MAPS
+from eyas.world.maps.simpleway.plan import paved
 from eyas.world.maps.simpleway.roads import ROADS, road_graph, road_lines
-from eyas.world.maps.simpleway.scene import paved
 from eyas.world.maps.simpleway.skins import SKINS
+from eyas.world.plan.build import build_scene
 from eyas.world.weather import Season
 
 NAMES = [name for name in MAPS.built_in if name.startswith("simpleway-")]
@@ -23,12 +24,12 @@ def network():
 
 @pytest.fixture(scope="module")
 def desert(network):
-    return MAPS.get("simpleway-desert").scene(network, 0, Season.WINTER)
+    return build_scene(MAPS.get("simpleway-desert").plan(network, 0), network, Season.WINTER)
 
 
 @pytest.fixture(scope="module")
 def farm(network):
-    return MAPS.get("simpleway-farm").scene(network, 0, Season.WINTER)
+    return build_scene(MAPS.get("simpleway-farm").plan(network, 0), network, Season.WINTER)
 
 
 ORIGINAL = {
@@ -131,7 +132,7 @@ def test_the_winter_of_the_desert_has_thirty_five_white_squares(desert):
 
 
 def test_seventeen_coloured_strips_lie_between_the_roads_of_the_farm(farm, network):
-    covers = SKINS["farm"].patches(road_lines(0), Season.SUMMER, np.random.default_rng(1))
+    covers = SKINS["farm"].patches(road_lines(0), np.random.default_rng(1))
     assert len(covers) == 17
     assert sum(patch.cover.surface == Surface.WATER for patch in covers) == 4
     assert len({patch.cover for patch in covers}) == 6
@@ -153,7 +154,7 @@ def test_winter_whitens_the_soil_of_the_farm_and_no_snow_lies_on_roads(farm):
 
 
 def test_nine_strips_of_water_lie_on_the_soil_of_the_lake():
-    water = SKINS["lake"].patches(road_lines(0), Season.SUMMER, np.random.default_rng(1))
+    water = SKINS["lake"].patches(road_lines(0), np.random.default_rng(1))
     assert [patch.cover.surface for patch in water] == 9 * [Surface.WATER]
 
 

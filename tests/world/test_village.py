@@ -10,9 +10,9 @@ from eyas.state.terrain import reliefs
 from eyas.traffic.recording_file import load
 from eyas.world.maps.recipe import TRAFFIC_FILE
 from eyas.world.maps.village import VILLAGE
-from eyas.world.maps.village.plan import make_plan
+from eyas.world.maps.village.layout import lay_out
+from eyas.world.plan.build import build_scene
 from eyas.world.roads.areas import road_area
-from eyas.world.weather import Season
 
 from .hills import in_the_way, recorded_off_road, relief_on_lanes, surface_heights
 
@@ -32,7 +32,7 @@ def village():
 
 @pytest.fixture(scope="module")
 def plan(roads):
-    return make_plan(roads, 0)
+    return lay_out(roads, 0)
 
 
 @pytest.mark.parametrize("seed", SEEDS)
@@ -169,7 +169,7 @@ def test_a_followed_car_is_hidden_in_several_percent_of_the_time(plan):
 
 
 def test_building_again_gives_the_same_bytes(village, roads):
-    again = VILLAGE.scene(roads, 0, Season.SUMMER)
+    again = build_scene(VILLAGE.plan(roads, 0), roads)
     assert again.static.positions.tobytes() == village.static.positions.tobytes()
     assert again.fixtures.pose.tobytes() == village.fixtures.pose.tobytes()
     assert again.terrain.relief.tobytes() == village.terrain.relief.tobytes()
@@ -184,7 +184,7 @@ def test_scenes_are_small_enough_for_small_machines(village):
 
 def test_another_seed_is_another_village_of_the_same_kind():
     network = load_network("village", 3)
-    other = make_plan(network, 3)
+    other = lay_out(network, 3)
     assert len(other.tunnels) == 10
     assert len(other.cottages) == 24
     assert len(other.trees) == 41

@@ -1,9 +1,54 @@
-"""Light by map and weather."""
+"""The table of weathers, their light by map and hour, and weathers of a user's own."""
 
+import hashlib
+import math
+import sys
+from dataclasses import asdict, replace
+from pathlib import Path
+
+import gymnasium
 import numpy as np
 import pytest
 
+from eyas.core.errors import ConfigError, UnknownNameError
+from eyas.envs.registration import register_map
+from eyas.envs.tracking_env import TrackingEnv
+from eyas.settings.file import load_settings
+from eyas.world.maps import MAPS
 from eyas.world.maps.citystreet import CITYSTREET
+from eyas.world.weather import (
+    CLEAR_DAY,
+    CLEAR_NIGHT,
+    DAY,
+    FOGGY,
+    NIGHT,
+    SNOW,
+    WEATHERS,
+    Season,
+    sun_at,
+)
+
+EXAMPLES = Path(__file__).parents[2] / "examples"
+
+PUBLISHED = {
+    "citystreet": "cd69768e785f",
+    "downtown": "d9010ef8449d",
+    "lake": "1777e828507c",
+    "village": "137fdca41e4f",
+    "village-bare": "0552a9589a96",
+    "desert": "dc1bd83db2f0",
+    "desert-bare": "9a47fb700148",
+    "farmland": "c7910a4fab7b",
+    "farmland-bare": "0552a9589a96",
+    "simpleway-grass": "81e6576c0e3b",
+    "simpleway-clinker": "031ba753b366",
+    "simpleway-desert": "dc1bd83db2f0",
+    "simpleway-farm": "5cd4982ba96c",
+    "simpleway-lake": "5cd4982ba96c",
+    "simpleway-village": "5cd4982ba96c",
+    "simpleway-city": "dde353746ff6",
+}
+"""A hash of light and air of all weathers of each map, as results and pictures were published."""
 
 
 def test_the_sun_of_the_street_city_stands_in_the_north_west_51_degrees_high():
@@ -27,3 +72,146 @@ def test_fog_of_the_street_city_is_the_originals():
     # Grey: no colour stands out, and the sun hardly adds to what the sky gives.
     assert np.ptp(fog.fog_colour) < 0.03
     assert max(fog.sun_colour) < 0.25 * min(fog.ambient_up)
+
+
+@pytest.mark.parametrize("name", MAPS.built_in)
+def test_the_published_weathers_keep_every_number(name):
+    recipe, digest = MAPS.get(name), hashlib.sha256()
+    for weather in recipe.weathers:
+        numbers = sorted(asdict(recipe.light(weather)).items())
+        digest.update(f"{weather} {numbers}".encode())
+    assert digest.hexdigest()[:12] == PUBLISHED[name]
+
+
+def test_the_sun_rises_in_the_east_and_stands_in_the_south_at_noon():
+    morning, noon, evening = (np.array(sun_at(hour)) for hour in (7.0, 12.0, 17.0))
+    assert morning[0] > 0.8
+    assert noon == pytest.approx([0.0, -math.cos(math.radians(65)), math.sin(math.radians(65))])
+    assert evening == pytest.approx(morning * [-1.0, 1.0, 1.0])
+    assert 0.3 < morning[2] < 0.5
+
+
+@pytest.mark.parametrize("weather", [DAY, FOGGY, NIGHT, SNOW], ids=lambda weather: weather.name)
+def test_every_hour_has_light_from_above(weather):
+    for hour in np.linspace(0.0, 24.0, 97).tolist():
+        light = weather.light(hour)
+        assert np.linalg.norm(light.sun_direction) == pytest.approx(1.0, abs=0.01)
+        assert light.sun_direction[2] > 0.06
+        for name, value in asdict(light).items():
+            assert np.isfinite(value).all(), (hour, name)
+            assert name == "sun_direction" or np.min(value) >= 0.0, (hour, name)
+
+
+def test_a_low_sun_is_weaker_and_warmer():
+    noon, evening = DAY.light(12.0), DAY.light(17.5)
+    red, _, blue = np.array(evening.sun_colour) / noon.sun_colour
+    assert blue < red < 1.0
+    assert sum(evening.ambient_up) < sum(noon.ambient_up)
+    assert evening.clouds == CLEAR_DAY.clouds
+
+
+def test_a_sun_as_high_as_the_weathers_own_changes_only_its_direction():
+    heights = [abs(sun_at(hour)[2] - CLEAR_DAY.sun_direction[2]) for hour in np.arange(7, 12, 0.01)]
+    light = DAY.light(7.0 + 0.01 * int(np.argmin(heights)))
+    assert light.sun_colour == pytest.approx(CLEAR_DAY.sun_colour, rel=0.01)
+    assert light.sun_direction[0] > 0.0 > CLEAR_DAY.sun_direction[0]
+
+
+def test_an_hour_of_the_night_is_the_night_and_a_night_has_hours_of_the_day():
+    assert DAY.light(0.0) == NIGHT.light() == CLEAR_NIGHT
+    assert NIGHT.light(12.0) == DAY.light(12.0)
+    assert DAY.light() == CLEAR_DAY
+    assert FOGGY.light(23.0).foggy
+    assert SNOW.light(1.0).snow == 1.0
+
+
+def test_dusk_grows_darker_without_a_jump():
+    """In five minutes nothing changes by much, also not where sun and moon change places."""
+    hours = np.arange(18.0, 22.0, 1 / 12)
+    lights = [DAY.light(float(hour)) for hour in hours]
+    sky = np.array([light.ambient_up for light in lights]).mean(axis=1)
+    assert (np.diff(sky) < 0.001).all()
+    for name in ("sun_colour", "horizon_colour", "fog_colour", "ambient_up", "exposure", "lamps"):
+        values = np.array([getattr(light, name) for light in lights])
+        assert np.abs(np.diff(values, axis=0)).max() < 0.25, name
+    directions = np.array([light.sun_direction for light in lights])
+    jumps = np.flatnonzero(np.abs(np.diff(directions, axis=0)).max(axis=1) > 0.1)
+    assert len(jumps) == 1
+    assert max(max(lights[jump].sun_colour) for jump in (jumps[0], jumps[0] + 1)) < 0.02
+
+
+def test_lamps_are_lit_at_dusk_and_not_by_day():
+    assert [DAY.light(hour).lamps for hour in (12.0, 19.0, 22.0)] == [0.0, 0.0, 1.0]
+    assert 0.0 < DAY.light(19.6).lamps < 1.0
+
+
+def test_a_day_on_which_lamps_burn_has_hours():
+    farmland = MAPS.get("farmland")
+    assert farmland.light("day").lamps > 0.0
+    assert farmland.light("day", 9.0).sun_direction == pytest.approx(sun_at(9.0))
+    assert farmland.light("day", 9.0).lamps == farmland.light("day").lamps
+
+
+@pytest.fixture
+def haze(monkeypatch):
+    """The weather of the example, which is in one file that Eyas does not know."""
+    monkeypatch.syspath_prepend(EXAMPLES)
+    import own_weather
+
+    yield own_weather.HAZE
+    del sys.modules["own_weather"]
+
+
+@pytest.fixture
+def registered(haze, monkeypatch):
+    """The same with a short name, until the end of the test."""
+    monkeypatch.setattr(WEATHERS, "_table", dict(WEATHERS._table))
+    monkeypatch.setattr(WEATHERS, "_loaded", {})
+    WEATHERS.register("haze", haze)
+    yield haze
+    for name in [name for name in gymnasium.registry if name.endswith("-haze-v0")]:
+        del gymnasium.registry[name]
+
+
+def test_a_users_weather_flies_by_its_path_at_dusk(haze):
+    means = []
+    for weather in ("day", "own_weather:HAZE"):
+        env = TrackingEnv(weather=weather, config={"world": {"hour": 18.5}}, render_mode=None)
+        observation, _ = env.reset(seed=1)
+        for _ in range(3):
+            observation, *_ = env.step(0)
+        means.append(observation.astype(float).mean())
+    assert means[1] != pytest.approx(means[0], abs=2.0)
+
+
+def test_a_users_weather_has_a_name_and_environments_on_every_map(registered):
+    assert CITYSTREET.weathers == ("day", "foggy", "night", "snow", "haze")
+    register_map("lake")
+    assert "eyas/lake-haze-v0" in gymnasium.registry
+    assert CITYSTREET.light("haze") == registered.day
+    assert CITYSTREET.season("haze") is Season.SUMMER
+
+
+def test_maps_add_to_a_users_weather_what_is_special_about_them(registered):
+    assert MAPS.get("farmland").light("haze").lamps == MAPS.get("farmland").light("day").lamps
+    assert MAPS.get("lake").light("haze").fog_density == 1.0 / 400.0
+    dusty = MAPS.get("desert").light("haze")
+    assert dusty.horizon_colour != registered.day.horizon_colour
+    assert dusty.sun_colour == registered.day.sun_colour
+
+
+def test_a_file_of_settings_names_a_users_weather_only_if_it_is_trusted(tmp_path):
+    file = tmp_path / "eyas.json"
+    file.write_text('{"world": {"weather": "own_weather:HAZE"}}')
+    with pytest.raises(ConfigError, match=r"would run code: 'own_weather:HAZE' \(world\.weather\)"):
+        load_settings(file)
+    assert load_settings(file, trust=True).world.weather == "own_weather:HAZE"
+
+
+def test_what_is_no_weather_is_refused_in_a_line():
+    with pytest.raises(ConfigError, match=r"world\.weather: 'math:pi' is a float, not a Weather"):
+        CITYSTREET.light("math:pi")
+    with pytest.raises(ConfigError, match=r"Weather\.name: 'a b' is not allowed"):
+        replace(DAY, name="a b")
+    with pytest.raises(UnknownNameError, match="known: day, foggy, night, snow"):
+        CITYSTREET.light("hail")

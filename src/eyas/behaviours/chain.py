@@ -106,7 +106,7 @@ def poses_on(chain: Chain, piece: NDArray[np.int64], along: Floats) -> Poses:
     Args:
         chain: The path.
         piece: Index of the piece, shape (K,).
-        along: Way from its beginning [m], shape (K,).
+        along: Walkway from its beginning [m], shape (K,).
     """
     at, bend = joints(chain), chain.curvature[piece]
     yaw = at.yaw[piece]

@@ -6,16 +6,12 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from eyas.behaviours.obstacles import Obstacles
-from eyas.behaviours.pavements import LANES, Way
+from eyas.behaviours.obstacles import GroundObstacles
+from eyas.behaviours.pavements import LANES, Walkway
 from eyas.core import exact
-from eyas.state.scene import ObjectClass, Scene
-from eyas.world.roads.areas import joints, streets
+from eyas.state.scene import Scene
 
 __all__ = ["Crossing", "crossings_of"]
-
-_BEYOND: Final = 3.0
-"""From the stop line to the line on which one crosses: within the bars of all maps [m]."""
 
 _PAVED: Final = 9.0
 """How far from the kerb pavements are sought: corners are round [m]."""
@@ -28,12 +24,6 @@ _ASIDES: Final = (0.0, 0.9, -0.9)
 
 _BESIDE: Final = 1.2
 """There, pavements may end so far beside the middle of a crossing [m]."""
-
-_STEP: Final = 0.2
-"""Distance between the points at which paint is sought [m]."""
-
-_PAINTED: Final = 0.3
-"""Least share of them that is painted: bars cover half of a crossing."""
 
 Floats = NDArray[np.float64]
 _Joined = tuple[tuple[int, float], tuple[int, float], Floats]
@@ -59,7 +49,7 @@ class Crossing(NamedTuple):
 
 
 def crossings_of(
-    scene: Scene, ways: list[Way], obstacles: Obstacles, radius: float
+    scene: Scene, ways: list[Walkway], obstacles: GroundObstacles, radius: float
 ) -> list[Crossing]:
     """Return the crossings between ways, in both directions.
 
@@ -98,15 +88,15 @@ class _Paint(NamedTuple):
     right: Floats
     left: Floats
     """Its ends at the kerbs [m], shape (2,)."""
-    light: str = ""
+    light: str
     """See `Crossing`."""
-    beyond: float = _PAVED
+    beyond: float
     """How far from the kerbs pavements are sought [m]."""
-    asides: tuple[float, ...] = (0.0,)
+    asides: tuple[float, ...]
     """How far beside its middle one may cross, the best first [m]."""
 
 
-def _free(side: _Side, one: _Paint, obstacles: Obstacles, radius: float) -> _Joined | None:
+def _free(side: _Side, one: _Paint, obstacles: GroundObstacles, radius: float) -> _Joined | None:
     """Return what a crossing joins, the first way over it that nothing blocks."""
     for aside in one.asides:
         joined = _between(side, one, aside)
@@ -130,45 +120,9 @@ def _between(side: _Side, one: _Paint, aside: float) -> _Joined | None:
 def _kerb_to_kerb(scene: Scene) -> list[_Paint]:
     """Return all crossings."""
     footways = scene.footways
-    if footways.told:
-        each = zip(footways.crossings, footways.lights, strict=True)
-        return [_Paint(line[0], line[1], light, _BEYOND_KERB, _ASIDES) for line, light in each]
-    return [_Paint(right, left) for right, left in _painted(scene, _across(scene))]
-
-
-def _across(scene: Scene) -> list[tuple[Floats, Floats]]:
-    """Return the right and the left kerb beyond each stop line, where it might be crossed."""
-    network, made = scene.network, []
-    meeting, every = joints(network), streets(network)
-    ways = {(street.start, street.end) for street in every}
-    for street in every:
-        if meeting[street.end] < 3 or len(street.right) < 2:
-            continue
-        onwards = street.right[-1] - street.right[-2]
-        onwards /= max(float(exact.hypot(*onwards)), 1e-9)
-        leftwards = np.array([-onwards[1], onwards[0]])
-        width = float(exact.product(street.left[-1] - street.right[-1], leftwards))
-        right = street.right[-1] + _BEYOND * onwards
-        sides = 2.0 if (street.end, street.start) in ways else 1.0
-        made.append((right, right + sides * width * leftwards))
-    return made
-
-
-def _painted(scene: Scene, across: list[tuple[Floats, Floats]]) -> list[tuple[Floats, Floats]]:
-    """Return the lines on which a crossing is painted."""
-    kinds = scene.object_class[scene.static_object]
-    corners = scene.static.triangles[kinds == ObjectClass.MARKING]
-    paint = scene.static.positions[corners][..., :2].astype(np.float64)
-    tree = shapely.STRtree(shapely.polygons(paint) if len(paint) else [])
-    kept = []
-    for right, left in across:
-        count = max(int(exact.hypot(*(left - right)) / _STEP), 1)
-        share = (np.arange(count) + 0.5)[:, None] / count
-        points = shapely.points(right + share * (left - right))
-        on_paint = np.unique(tree.query(points, predicate="intersects")[0])
-        if len(on_paint) >= _PAINTED * count:
-            kept.append((right, left))
-    return kept
+    reach, asides = (_BEYOND_KERB, _ASIDES) if footways.told else (_PAVED, (0.0,))
+    each = zip(footways.crossings, footways.lights, strict=True)
+    return [_Paint(line[0], line[1], light, reach, asides) for line, light in each]
 
 
 def _joint(

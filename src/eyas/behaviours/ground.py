@@ -8,14 +8,15 @@ import shapely
 
 from eyas.behaviours.chain import chain_through, outline
 from eyas.behaviours.crossings import crossings_of
-from eyas.behaviours.habits import HABITS
 from eyas.behaviours.kerbs import kerb_ways
-from eyas.behaviours.obstacles import Obstacles
-from eyas.behaviours.pavements import Way, pavement_ways
+from eyas.behaviours.obstacles import GroundObstacles
+from eyas.behaviours.pavements import Walkway, pavement_ways
 from eyas.behaviours.places import Roadside
-from eyas.behaviours.surface import Surface
+from eyas.behaviours.surface import WalkedSurface
 from eyas.state.motion import Motion
 from eyas.state.scene import Scene
+from eyas.targets.catalogue import habit_of
+from eyas.targets.config import TargetName
 from eyas.traffic.signals import SignalPlan
 
 __all__ = ["ROOM", "Ground", "usable_crossings", "walkways"]
@@ -38,21 +39,21 @@ class Ground:
 
     def __init__(self, scene: Scene, *, roads: bool, lights: SignalPlan | None = None) -> None:
         self.scene, self.lights = scene, lights
-        self.obstacles = Obstacles(scene, roads=roads)
+        self.obstacles = GroundObstacles(scene, roads=roads)
         self._roads = roads
         # Pavement walkers are beside the roads by the choice of their ways.
-        self.surface = Surface(scene)
+        self.surface = WalkedSurface(scene)
         self.roadside = Roadside(scene.network, self.obstacles)
 
     @cached_property
-    def solids(self) -> Obstacles:
+    def solids(self) -> GroundObstacles:
         """The obstacles without the roads."""
-        return Obstacles(self.scene, roads=False) if self._roads else self.obstacles
+        return GroundObstacles(self.scene, roads=False) if self._roads else self.obstacles
 
 
 def walkways(
     ground: Ground, breadth: float, bend: float, vehicles: Motion | None = None
-) -> list[Way]:
+) -> list[Walkway]:
     """Return the ways on pavements.
 
     Args:
@@ -78,7 +79,7 @@ def walkways(
 
 def usable_crossings(scene: Scene) -> list[str]:
     """Return the name of the light of each crossing that joins pavements; empty: it has none."""
-    ground, bend = Ground(scene, roads=True), HABITS["Pedestrian"].radius
+    ground, bend = Ground(scene, roads=True), habit_of(TargetName.PEDESTRIAN).radius
     ways = walkways(ground, _BREADTH, bend)
     found = crossings_of(scene, ways, ground.solids, 0.5 * _BREADTH)
     return list({one.number: one.light for one in found}.values())

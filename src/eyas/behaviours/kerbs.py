@@ -8,9 +8,9 @@ import shapely
 from numpy.typing import NDArray
 from shapely.ops import substring
 
-from eyas.behaviours.obstacles import Obstacles
-from eyas.behaviours.pavements import Way, along, bridged, is_hard, paved_parts
-from eyas.behaviours.surface import Surface
+from eyas.behaviours.obstacles import GroundObstacles
+from eyas.behaviours.pavements import Walkway, along, bridged, is_hard, paved_parts
+from eyas.behaviours.surface import WalkedSurface
 from eyas.core import exact
 from eyas.state.motion import Motion
 from eyas.state.scene import Footways
@@ -49,11 +49,11 @@ _TURN: Final = 0.03
 
 def kerb_ways(
     footways: Footways,
-    obstacles: Obstacles,
-    surface: Surface,
+    obstacles: GroundObstacles,
+    surface: WalkedSurface,
     radius: float,
     vehicles: Motion | None = None,
-) -> list[Way]:
+) -> list[Walkway]:
     """Return the ways along all kerbs with pavements, round what stands on these.
 
     Args:
@@ -78,15 +78,15 @@ def kerb_ways(
 class _Place(NamedTuple):
     """What decides where one walks along a kerb."""
 
-    obstacles: Obstacles
-    surface: Surface
+    obstacles: GroundObstacles
+    surface: WalkedSurface
     swept: shapely.STRtree
     """Where vehicles come."""
     radius: float
     """Distance to obstacles that is kept [m]."""
 
 
-def _paved(ring: shapely.LinearRing, place: _Place, lane: int) -> list[Way]:
+def _paved(ring: shapely.LinearRing, place: _Place, lane: int) -> list[Walkway]:
     """Return the parts of a ring that are on pavement, where no vehicle comes."""
     free, hard = _walked(ring, place)
     if not free.all():
@@ -144,7 +144,7 @@ def _from(ring: shapely.LinearRing, place: float) -> shapely.LinearRing:
 
 
 def _rings(
-    kerb: shapely.LinearRing, beyond: float, obstacles: Obstacles, radius: float
+    kerb: shapely.LinearRing, beyond: float, obstacles: GroundObstacles, radius: float
 ) -> list[shapely.LinearRing]:
     """Return the ways at a distance from a kerb [m], with the road on their left."""
     around = shapely.is_ccw(kerb)  # the road lies within; otherwise it lies round a block

@@ -11,7 +11,7 @@ from eyas.state.scene import Fixtures, ObjectClass, Scene
 from eyas.state.terrain import Terrain, reliefs
 from eyas.world.roads.areas import corridors, split_on_grid
 
-__all__ = ["Obstacles"]
+__all__ = ["GroundObstacles"]
 
 _STEP: Final = 0.3
 """Height above the ground up to which one can step over things [m]."""
@@ -38,7 +38,7 @@ _SOLID: Final = (
 Floats = NDArray[np.float64]
 
 
-class Obstacles:
+class GroundObstacles:
     """The plan shapes of all obstacles of a map.
 
     Args:

@@ -7,13 +7,13 @@ import shapely
 from numpy.typing import NDArray
 from shapely.ops import substring
 
-from eyas.behaviours.obstacles import Obstacles
-from eyas.behaviours.surface import Surface
+from eyas.behaviours.obstacles import GroundObstacles
+from eyas.behaviours.surface import WalkedSurface
 from eyas.state.roads import RoadNetwork
 from eyas.traffic.smoothing import runs
 from eyas.world.roads.areas import blocks, polygons_of, road_area
 
-__all__ = ["LANES", "Way", "along", "bridged", "is_hard", "paved_parts", "pavement_ways"]
+__all__ = ["LANES", "Walkway", "along", "bridged", "is_hard", "paved_parts", "pavement_ways"]
 
 LANES: Final = (1.0, 1.9)
 """Distances from the kerb of those who have the road on their left, and on their right [m]."""
@@ -31,7 +31,7 @@ _EVERY: Final = 1.0
 """Distance between points that are tested for pavement [m]."""
 
 
-class Way(NamedTuple):
+class Walkway(NamedTuple):
     """A way that ends where it begins: round a block, or there and back."""
 
     corners: NDArray[np.float64]
@@ -50,10 +50,10 @@ class Way(NamedTuple):
 def pavement_ways(
     network: RoadNetwork,
     size: tuple[float, float],
-    obstacles: Obstacles,
-    surface: Surface,
+    obstacles: GroundObstacles,
+    surface: WalkedSurface,
     radius: float,
-) -> list[Way]:
+) -> list[Walkway]:
     """Return the ways along the pavements of all blocks, round what stands on them.
 
     Where a block has no pavement all round, they lead there and back.
@@ -81,7 +81,7 @@ def pavement_ways(
 
 
 def _ring(
-    block: shapely.Polygon, beyond: float, obstacles: Obstacles, radius: float
+    block: shapely.Polygon, beyond: float, obstacles: GroundObstacles, radius: float
 ) -> shapely.LinearRing | None:
     """Return the way at a distance from the kerb of a block [m]; None if there is none."""
     inner = shapely.buffer(block, -beyond, join_style="round", quad_segs=2)
@@ -96,7 +96,7 @@ def _ring(
     return max(parts, key=shapely.area).exterior if parts else None
 
 
-def paved_parts(ring: shapely.LinearRing, paved: NDArray[np.bool_], lane: int) -> list[Way]:
+def paved_parts(ring: shapely.LinearRing, paved: NDArray[np.bool_], lane: int) -> list[Walkway]:
     """Return the parts of a ring that are on pavement, or all of it.
 
     Args:
@@ -105,14 +105,14 @@ def paved_parts(ring: shapely.LinearRing, paved: NDArray[np.bool_], lane: int) -
         lane: Index into `LANES`.
     """
     if paved.all():
-        return [Way(shapely.get_coordinates(ring)[:-1], ring.length, lane)]
+        return [Walkway(shapely.get_coordinates(ring)[:-1], ring.length, lane)]
     made = []
     for first, last in runs(paved):
         if (last - first) * _EVERY < _SHORTEST:
             continue
         part = substring(ring, first * _EVERY, (last - 1) * _EVERY)
         corners = shapely.get_coordinates(part)
-        made.append(Way(np.concatenate([corners, corners[-2:0:-1]]), 2.0 * part.length, lane))
+        made.append(Walkway(np.concatenate([corners, corners[-2:0:-1]]), 2.0 * part.length, lane))
     return made
 
 

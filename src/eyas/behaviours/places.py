@@ -6,7 +6,7 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from eyas.behaviours.obstacles import Obstacles
+from eyas.behaviours.obstacles import GroundObstacles
 from eyas.core import exact
 from eyas.core.errors import SpawnError
 from eyas.core.variation import Variation, bounds, sample
@@ -53,7 +53,7 @@ class Roadside:
         obstacles: What stands in the way.
     """
 
-    def __init__(self, network: RoadNetwork, obstacles: Obstacles) -> None:
+    def __init__(self, network: RoadNetwork, obstacles: GroundObstacles) -> None:
         self._lines = [_line(street) for street in streets(network)]
         self._obstacles = obstacles
 

@@ -9,13 +9,12 @@ import shapely
 from numpy.typing import NDArray
 
 from eyas.behaviours.chain import Chain, chain_of, chain_through, outline
-from eyas.behaviours.config import Behaviour
-from eyas.behaviours.habits import Habit
-from eyas.behaviours.obstacles import Obstacles
+from eyas.behaviours.obstacles import GroundObstacles
 from eyas.behaviours.timetable import time_of
 from eyas.core import exact
+from eyas.targets.habit import Behaviour, Habit
 
-__all__ = ["Task", "legs", "polylines", "round_and_round", "stops", "wave_of"]
+__all__ = ["RouteTask", "legs", "polylines", "round_and_round", "stops", "wave_of"]
 
 Floats = NDArray[np.float64]
 
@@ -56,7 +55,7 @@ _PIECES: Final = 24
 """Arcs that stand for a wave."""
 
 
-class Task(NamedTuple):
+class RouteTask(NamedTuple):
     """What paths are wanted for: L lives."""
 
     start: Floats
@@ -66,11 +65,11 @@ class Task(NamedTuple):
     habit: Habit
     radius: float
     """Distance to obstacles that is kept [m]."""
-    obstacles: Obstacles
+    obstacles: GroundObstacles
     rng: np.random.Generator
 
 
-def polylines(task: Task) -> list[Chain]:
+def polylines(task: RouteTask) -> list[Chain]:
     """Return closed paths through 2 to 4 random points around each start, which is the first."""
     found: dict[int, Floats] = {}
     open_ = np.arange(len(task.start))
@@ -106,7 +105,7 @@ def standing(at: Floats, yaw: float) -> Chain:
     return chain_of([(0.0, 0.0, 0.0)], (float(at[0]), float(at[1]), yaw))
 
 
-def stops(task: Task) -> list[Chain]:
+def stops(task: RouteTask) -> list[Chain]:
     """Return paths that lead straight on, turn, and end; shorter ones where there is no room."""
     habit, found = task.habit, [standing(at, 0.0) for at in task.start]
     open_, distance = np.arange(len(task.start)), habit.distance
@@ -127,13 +126,13 @@ def stops(task: Task) -> list[Chain]:
     return found
 
 
-def _free(chains: Sequence[Chain], task: Task) -> NDArray[np.bool_]:
+def _free(chains: Sequence[Chain], task: RouteTask) -> NDArray[np.bool_]:
     """Return which paths keep clear of obstacles."""
     lines = np.array([shapely.LineString(outline(chain)) for chain in chains], object)
     return ~task.obstacles.blocked(lines, task.radius)
 
 
-def legs(task: Task, behaviour: Behaviour) -> list[Chain]:
+def legs(task: RouteTask, behaviour: Behaviour) -> list[Chain]:
     """Return paths of legs in random directions; each ends before an obstacle."""
     habit, count = task.habit, len(task.start)
     wave = wave_of(habit.speed) if behaviour is Behaviour.WEAVE else None
@@ -168,14 +167,14 @@ def legs(task: Task, behaviour: Behaviour) -> list[Chain]:
     return [chain_of(own, start) for own, start in zip(pieces, starts, strict=True)]
 
 
-def _reach(task: Task, at: Floats, heading: Floats, far: float, radius: float) -> Floats:
+def _reach(task: RouteTask, at: Floats, heading: Floats, far: float, radius: float) -> Floats:
     """Return how far legs may lead in some directions [m], at most a little less than `far`."""
     reach = task.obstacles.reach(at, heading, far, radius)
     return np.maximum(reach - _MARGIN, 0.0)
 
 
 def _turns(
-    task: Task, at: Floats, heading: Floats, span: tuple[float, float], radius: float
+    task: RouteTask, at: Floats, heading: Floats, span: tuple[float, float], radius: float
 ) -> tuple[Floats, Floats]:
     """Return random turns [rad] that lead far enough, or else farthest, and how far [m].
 

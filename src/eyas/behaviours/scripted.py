@@ -10,20 +10,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.behaviours.chain import Chain, chain_through
-from eyas.behaviours.config import Behaviour
+from eyas.behaviours.crossing_walks import CrossingWalk, Streets, crossing_walk, walk_motion
 from eyas.behaviours.crossings import crossings_of
-from eyas.behaviours.gaps import Gaps
+from eyas.behaviours.gap_acceptance import GapAcceptance
 from eyas.behaviours.ground import ROOM, Ground, walkways
-from eyas.behaviours.habits import HABITS, STROLL, Habit
-from eyas.behaviours.pavements import Way
-from eyas.behaviours.routes import Task, legs, polylines, round_and_round, stops, wave_of
-from eyas.behaviours.timetable import Ride, ride, time_of
-from eyas.behaviours.tours import Streets, Tour, tour, tour_ride
-from eyas.behaviours.troop import Clock, Troop
+from eyas.behaviours.groups import SampleClock, ScriptedGroup
+from eyas.behaviours.pavements import Walkway
+from eyas.behaviours.routes import RouteTask, legs, polylines, round_and_round, stops, wave_of
+from eyas.behaviours.timetable import TimedMotion, ride, time_of
 from eyas.core import exact
 from eyas.core.errors import SpawnError
 from eyas.state.motion import SAMPLE, Motion
 from eyas.state.terrain import reliefs
+from eyas.targets.habit import Behaviour, Habit
 
 __all__ = ["scripted_table"]
 
@@ -42,33 +41,37 @@ _TOGETHER: Final = 4
 Floats = NDArray[np.float64]
 
 
+STROLL: Final = (1.1, 1.7)
+"""Slowest and fastest walk on a pavement [m/s]."""
+
+
 class _Course(NamedTuple):
     """The path of a life, and how it is gone."""
 
-    path: Chain | Tour
+    path: Chain | CrossingWalk
     habit: Habit
     begun: float = 0.0
     """For how long it has been gone when the life begins [s]."""
 
-    def ride(self, time: Floats) -> Ride:
+    def ride(self, time: Floats) -> TimedMotion:
         """Return the motion at times since the beginning of the life [s]."""
-        if isinstance(self.path, Tour):
-            return tour_ride(self.path, self.habit, time)
+        if isinstance(self.path, CrossingWalk):
+            return walk_motion(self.path, self.habit, time)
         return ride(self.path, self.habit, self.begun + time)
 
 
 def scripted_table(
     ground: Ground,
-    troop: Troop,
-    clock: Clock,
+    group: ScriptedGroup,
+    clock: SampleClock,
     rng: np.random.Generator,
     vehicles: Motion | None = None,
 ) -> NDArray[np.void]:
-    """Return the samples of a troop, of dtype `SAMPLE`, shape (samples, objects).
+    """Return the samples of a group, of dtype `SAMPLE`, shape (samples, objects).
 
     Args:
         ground: The map.
-        troop: Who moves.
+        group: Who moves.
         clock: Number of samples, and their rate.
         rng: Random numbers.
         vehicles: Motion, at the same instants, of the vehicles for which those wait who cross.
@@ -76,26 +79,30 @@ def scripted_table(
     Raises:
         SpawnError: The map has no room for it.
     """
-    lives, habit = troop.lives, troop.habit or HABITS[troop.kind]
+    lives, habit = group.lives, group.habit
     seconds = (lives.leaves - lives.enters) / clock.rate
-    if (troop.behaviour or habit.behaviour) is Behaviour.CROSSING:
-        gaps = Gaps(vehicles, clock.samples, clock.rate, ground.lights)
-        ways = _walkways(ground, troop, habit, vehicles)
-        paths = _tours(ground, troop, habit, ways, lives.enters / clock.rate, seconds, gaps, rng)
-    elif (troop.behaviour or habit.behaviour) is Behaviour.PAVEMENT:
-        paths = _strolls(_walkways(ground, troop, habit, vehicles), habit, seconds, rng)
+    if (group.behaviour or habit.behaviour) is Behaviour.CROSSING:
+        gaps = GapAcceptance(vehicles, clock.samples, clock.rate, ground.lights)
+        ways = _walkways(ground, group, habit, vehicles)
+        paths = _crossing_walks(
+            ground, group, habit, ways, lives.enters / clock.rate, seconds, gaps, rng
+        )
+    elif (group.behaviour or habit.behaviour) is Behaviour.PAVEMENT:
+        paths = _strolls(_walkways(ground, group, habit, vehicles), habit, seconds, rng)
     else:
-        paths = _paths(ground, troop, habit, seconds, rng)
-    return _gone(ground, troop, clock, paths)
+        paths = _paths(ground, group, habit, seconds, rng)
+    return _gone(ground, group, clock, paths)
 
 
-def _gone(ground: Ground, troop: Troop, clock: Clock, paths: list[_Course]) -> NDArray[np.void]:
+def _gone(
+    ground: Ground, group: ScriptedGroup, clock: SampleClock, paths: list[_Course]
+) -> NDArray[np.void]:
     """Return the samples of those who go along the paths of their lives.
 
     A few objects are done at a time, side by side in memory: in the table of all, the samples of
     one are so far apart that each would be fetched anew for each of its numbers.
     """
-    slot, enters, leaves = (part.tolist() for part in troop.lives)
+    slot, enters, leaves = (part.tolist() for part in group.lives)
     table = np.zeros((clock.samples, max(slot) + 1), SAMPLE)
     for first in range(0, table.shape[1], _TOGETHER):
         few = np.zeros((clock.samples, min(_TOGETHER, table.shape[1] - first)), SAMPLE)
@@ -124,13 +131,13 @@ def _go(course: _Course, rows: NDArray[np.void], rate: float) -> None:
 
 
 def _paths(
-    ground: Ground, troop: Troop, habit: Habit, seconds: Floats, rng: np.random.Generator
+    ground: Ground, group: ScriptedGroup, habit: Habit, seconds: Floats, rng: np.random.Generator
 ) -> list[_Course]:
-    behaviour = troop.behaviour or habit.behaviour
-    radius = 0.5 * troop.breadth + ROOM
+    behaviour = group.behaviour or habit.behaviour
+    radius = 0.5 * group.breadth + ROOM
     aside = wave_of(habit.speed).aside if behaviour is Behaviour.WEAVE else 0.0
-    start = ground.roadside.draw(len(seconds), troop.offset, radius + aside, rng, troop.setting)
-    task = Task(start, seconds, habit, radius, ground.obstacles, rng)
+    start = ground.roadside.draw(len(seconds), group.offset, radius + aside, rng, group.setting)
+    task = RouteTask(start, seconds, habit, radius, ground.obstacles, rng)
     if behaviour is Behaviour.POLYLINE:
         chains = polylines(task)
     elif behaviour is Behaviour.STOP:
@@ -141,7 +148,7 @@ def _paths(
 
 
 def _strolls(
-    ways: list[Way], habit: Habit, seconds: Floats, rng: np.random.Generator
+    ways: list[Walkway], habit: Habit, seconds: Floats, rng: np.random.Generator
 ) -> list[_Course]:
     """Return ways on pavements.
 
@@ -163,28 +170,28 @@ def _strolls(
     return made
 
 
-def _tours(  # noqa: PLR0913  # who, where, when
+def _crossing_walks(  # noqa: PLR0913  # who, where, when
     ground: Ground,
-    troop: Troop,
+    group: ScriptedGroup,
     habit: Habit,
-    ways: list[Way],
+    ways: list[Walkway],
     enters: Floats,
     seconds: Floats,
-    gaps: Gaps,
+    gaps: GapAcceptance,
     rng: np.random.Generator,
 ) -> list[_Course]:
     """Return walks on pavements and over crossings."""
-    over = crossings_of(ground.scene, ways, ground.solids, 0.5 * troop.breadth)
+    over = crossings_of(ground.scene, ways, ground.solids, 0.5 * group.breadth)
     if not over:
-        told, why = ground.scene.footways, ""
-        if troop.breadth > _WIDE:
-            why = f" wide enough for '{troop.kind}'"
-        elif len(told.crossings):  # long vehicles cut corners, where nobody walks then
+        why = ""
+        if group.breadth > _WIDE:
+            why = f" wide enough for '{group.kind}'"
+        elif len(
+            ground.scene.footways.crossings
+        ):  # long vehicles cut corners, where nobody walks then
             why = " that vehicles leave free"
-        elif told.told:
-            why = " (if an earlier version imported it, import it again)"
         raise SpawnError(
-            f"{troop.chosen_by}: 'crossing': '{ground.scene.name}' has no crossing between "
+            f"{group.chosen_by}: 'crossing': '{ground.scene.name}' has no crossing between "
             f"pavements{why}; allowed: another behaviour, or another map such as citystreet"
         )
     from_each = [
@@ -194,21 +201,23 @@ def _tours(  # noqa: PLR0913  # who, where, when
     where, made = Streets(ways, from_each, gaps), []
     for begins, lasts in zip(enters.tolist(), seconds.tolist(), strict=True):
         paced = habit._replace(speed=min(float(rng.uniform(*STROLL)), habit.speed))
-        made.append(_Course(tour(where, paced, begins, lasts, rng), paced))
+        made.append(_Course(crossing_walk(where, paced, begins, lasts, rng), paced))
     return made
 
 
-def _walkways(ground: Ground, troop: Troop, habit: Habit, vehicles: Motion | None) -> list[Way]:
+def _walkways(
+    ground: Ground, group: ScriptedGroup, habit: Habit, vehicles: Motion | None
+) -> list[Walkway]:
     """Return the ways on pavements.
 
     Raises:
         SpawnError: There are none.
     """
-    ways = walkways(ground, troop.breadth, habit.radius, vehicles)
+    ways = walkways(ground, group.breadth, habit.radius, vehicles)
     if not ways:
-        behaviour = (troop.behaviour or habit.behaviour).value
+        behaviour = (group.behaviour or habit.behaviour).value
         raise SpawnError(
-            f"{troop.chosen_by}: '{behaviour}': '{ground.scene.name}' has no pavement; "
+            f"{group.chosen_by}: '{behaviour}': '{ground.scene.name}' has no pavement; "
             "allowed: another behaviour, or another map such as citystreet"
         )
     return ways

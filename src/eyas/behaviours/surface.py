@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from eyas.state.scene import ObjectClass, Scene
 from eyas.state.terrain import reliefs
 
-__all__ = ["Footing", "Surface"]
+__all__ = ["Footing", "WalkedSurface"]
 
 _WALKABLE: Final = (ObjectClass.GROUND, ObjectClass.ROAD, ObjectClass.PAVEMENT)
 
@@ -34,7 +34,7 @@ class Footing(NamedTuple):
     """Whether it is a pavement."""
 
 
-class Surface:
+class WalkedSurface:
     """The upper sides of ground, roads and pavements.
 
     Args:

@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.behaviours.chain import Chain, Poses, poses_on
-from eyas.behaviours.habits import Habit
+from eyas.targets.habit import Habit
 
-__all__ = ["Ride", "ride", "time_of"]
+__all__ = ["TimedMotion", "ride", "time_of"]
 
 Floats = NDArray[np.float64]
 
@@ -17,7 +17,7 @@ _PHASES = 4
 """Phases of a piece: turn on the spot, accelerate, keep the speed, brake."""
 
 
-class Ride(NamedTuple):
+class TimedMotion(NamedTuple):
     """Motion at K instants, shape (K,) each."""
 
     poses: Poses
@@ -26,10 +26,10 @@ class Ride(NamedTuple):
     yaw_rate: Floats
     """[rad/s]"""
     travelled: Floats
-    """Way since the beginning [m]."""
+    """Walkway since the beginning [m]."""
 
 
-def ride(chain: Chain, habit: Habit, time: Floats) -> Ride:
+def ride(chain: Chain, habit: Habit, time: Floats) -> TimedMotion:
     """Return the motion along a path, at the end of which it stands still.
 
     Speed changes evenly; where a curve would need too fast a turn, or a spin follows, it is lower.
@@ -59,7 +59,7 @@ def ride(chain: Chain, habit: Habit, time: Floats) -> Ride:
     moving = time < start[phase] + duration[phase]
     turning = np.where(spinning, np.sign(chain.spin[piece]) * habit.yaw_rate, 0.0)
     yaw_rate = np.where(moving, turning + chain.curvature[piece] * speed, 0.0)
-    return Ride(
+    return TimedMotion(
         Poses(poses.x, poses.y, poses.yaw - missing),
         np.where(moving, np.maximum(speed, 0.0), 0.0),
         yaw_rate,

@@ -4,6 +4,8 @@ from typing import Annotated
 
 import typer
 
+from eyas.cli.options import SEVERAL
+
 __all__ = ["app"]
 
 app = typer.Typer(
@@ -35,11 +37,11 @@ def clear(
 def warm(
     map_name: Annotated[
         list[str] | None,
-        typer.Option("--map", "--maps", help="Only this map; may be given several times."),
+        typer.Option("--map", help=f"Only this map; {SEVERAL}."),
     ] = None,
     weather: Annotated[
         list[str] | None,
-        typer.Option("--weather", help="Only this weather; may be given several times."),
+        typer.Option("--weather", help=f"Only this weather; {SEVERAL}."),
     ] = None,
 ) -> None:
     """Make what the default settings need now, not on first use: for images of a cluster."""

@@ -1,13 +1,13 @@
 """`eyas evaluate`, `eyas compare` and `eyas leaderboard`."""
 
 import json
-import re
 from contextlib import AbstractContextManager, nullcontext
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from eyas.cli.options import SEVERAL
 from eyas.core.errors import ConfigError
 
 if TYPE_CHECKING:
@@ -16,92 +16,112 @@ if TYPE_CHECKING:
 __all__ = ["compare", "evaluate", "leaderboard"]
 
 
+_Policy = Annotated[
+    str,
+    typer.Option(
+        "--policy",
+        help="random, hover, follow, servo, csrt, a file (.onnx, .zip, .pt, .pt2), or "
+        "package.module:name.",
+    ),
+]
+_Protocol = Annotated[str, typer.Option("--protocol", help="paper, long, search or distractor.")]
+_Maps = Annotated[
+    list[str] | None, typer.Option("--map", help=f"By default citystreet; {SEVERAL}.")
+]
+_Weathers = Annotated[
+    list[str] | None, typer.Option("--weather", help=f"By default day; {SEVERAL}.")
+]
+_Targets = Annotated[
+    list[str] | None, typer.Option("--target", help=f"By default SUMO_VEHICLE; {SEVERAL}.")
+]
+_Episodes = Annotated[
+    int | None,
+    typer.Option("--episodes", help="For each map, weather, target and start direction."),
+]
+_Seed = Annotated[
+    int | None, typer.Option("--seed", help="The one seed of the run: that of its first episode.")
+]
+_Latency = Annotated[
+    str, typer.Option("--latency", help="Milliseconds, a file with one in each line, or measured.")
+]
+_LatencyCurve = Annotated[
+    bool, typer.Option("--latency-curve", help="Evaluate at 0, 20, 40, 80 and 160 ms.")
+]
+_Sample = Annotated[
+    bool, typer.Option("--sample", help="Sample a network's actions instead of taking the best.")
+]
+_Batch = Annotated[int, typer.Option("--batch", help="Episodes flown together.")]
+_Changes = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--set",
+        metavar="KEY=VALUE",
+        help="Change a setting of env, what the policy sees and does; one of tracker, control, "
+        "start.velocity or extras makes another protocol.",
+    ),
+]
+_Out = Annotated[Path | None, typer.Option("--out", help="Folder to write to.")]
+_AsPublished = Annotated[
+    bool, typer.Option("--as-published", help="Figures as the original's code prints them.")
+]
+_Plots = Annotated[
+    bool, typer.Option("--plots", help="Draw reward, losses and flights (extra plots).")
+]
+_Videos = Annotated[
+    bool, typer.Option("--videos", help="Film the worst, the median and the best flight.")
+]
+_Resume = Annotated[bool, typer.Option("--resume", help="Continue an interrupted evaluation.")]
+_Overwrite = Annotated[
+    bool, typer.Option("--overwrite", help="First delete an evaluation in the folder.")
+]
+_Ray = Annotated[
+    bool, typer.Option("--ray", help="Spread the batches over a Ray cluster (extra cluster).")
+]
+_Quiet = Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")]
+
+
 def evaluate(  # noqa: PLR0913  # one parameter for each option
-    policy: Annotated[
-        str,
-        typer.Option(
-            "--policy",
-            help="random, hover, follow, servo, csrt, a file (.onnx, .zip, .pt, .pt2), or "
-            "package.module:name.",
-        ),
-    ],
-    protocol: Annotated[
-        str, typer.Option("--protocol", help="paper, long, search or distractor.")
-    ] = "paper",
-    maps: Annotated[str, typer.Option("--maps", metavar="A,B,...")] = "citystreet",
-    weathers: Annotated[str, typer.Option("--weathers", metavar="A,B,...")] = "day",
-    targets: Annotated[str, typer.Option("--targets", metavar="A,B,...")] = "SUMO_VEHICLE",
-    episodes: Annotated[
-        int | None,
-        typer.Option("--episodes", help="For each map, weather, target and start direction."),
-    ] = None,
-    seed: Annotated[int | None, typer.Option("--seed", help="Seed of the first episode.")] = None,
-    latency: Annotated[
-        str,
-        typer.Option("--latency", help="Milliseconds, a file with one in each line, or measured."),
-    ] = "0",
-    latency_curve: Annotated[
-        bool, typer.Option("--latency-curve", help="Evaluate at 0, 20, 40, 80 and 160 ms.")
-    ] = False,
-    sample: Annotated[
-        bool, typer.Option("--sample", help="Draw a network's actions instead of the best.")
-    ] = False,
-    batch: Annotated[int, typer.Option("--batch", help="Episodes flown together.")] = 64,
-    set_: Annotated[
-        list[str] | None,
-        typer.Option(
-            "--set",
-            metavar="env.KEY=VALUE",
-            help="What the policy sees and does; tracker.KEY, control.KEY, start.velocity, "
-            "extras: another protocol.",
-        ),
-    ] = None,
-    out: Annotated[Path | None, typer.Option("--out", help="Folder to write to.")] = None,
-    as_published: Annotated[
-        bool, typer.Option("--as-published", help="Figures as the original's code prints them.")
-    ] = False,
-    plots: Annotated[
-        bool, typer.Option("--plots", help="Draw reward, losses and flights (extra plots).")
-    ] = False,
-    videos: Annotated[
-        bool, typer.Option("--videos", help="Film the worst, the median and the best flight.")
-    ] = False,
-    resume: Annotated[
-        bool, typer.Option("--resume", help="Continue an interrupted evaluation.")
-    ] = False,
-    overwrite: Annotated[
-        bool, typer.Option("--overwrite", help="First delete an evaluation in the folder.")
-    ] = False,
-    ray: Annotated[
-        bool,
-        typer.Option("--ray", help="Spread the batches over a Ray cluster (extra cluster)."),
-    ] = False,
-    quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
+    policy: _Policy,
+    protocol: _Protocol = "paper",
+    maps: _Maps = None,
+    weathers: _Weathers = None,
+    targets: _Targets = None,
+    episodes: _Episodes = None,
+    seed: _Seed = None,
+    latency: _Latency = "0",
+    latency_curve: _LatencyCurve = False,
+    sample: _Sample = False,
+    batch: _Batch = 64,
+    set_: _Changes = None,
+    out: _Out = None,
+    as_published: _AsPublished = False,
+    plots: _Plots = False,
+    videos: _Videos = False,
+    resume: _Resume = False,
+    overwrite: _Overwrite = False,
+    ray: _Ray = False,
+    quiet: _Quiet = False,
 ) -> None:
     """Fly a policy in the episodes of a protocol, and tell how well it tracks.
 
     The exit code is 1 if the policy has failed in all episodes.
     """
     from eyas.core.config import validated
-    from eyas.evaluation.plan import Plan
+    from eyas.evaluation.plan import Plan, folder_name
 
     values: dict[str, Any] = {
         "policy": policy,
         "protocol": protocol,
-        "maps": _names(maps),
-        "weathers": _names(weathers),
-        "targets": _names(targets),
-        "episodes": episodes,
-        "latency": latency,
-        "sampled": sample,
-        "batch": batch,
+        "maps": maps or ["citystreet"],
+        "weathers": weathers or ["day"],
+        "targets": targets or ["SUMO_VEHICLE"],
+        **{"episodes": episodes, "latency": latency, "sampled": sample, "batch": batch},
     }
     changes = _changes(set_ or [])
     values |= {"env": changes.pop("env", {}), "settings": changes}
-    if seed is not None:
-        values["seed"] = seed
+    values |= {} if seed is None else {"seed": seed}
     plan = validated(Plan, values)
-    folder = out or Path("runs/evaluation") / _folder_name(plan.policy, plan.protocol)
+    folder = out or Path("runs/evaluation") / folder_name(plan)
     if latency_curve and (as_published or videos):
         raise ConfigError("--latency-curve: not together with --as-published or --videos")
     if ray and latency == "measured":
@@ -132,10 +152,6 @@ def _flier(*, ray: bool) -> "AbstractContextManager[Flier]":
     return nullcontext(fly_here)
 
 
-def _names(text: str) -> list[str]:
-    return [name.strip() for name in text.split(",") if name.strip()]
-
-
 _FREE = (["start", "velocity"], ["extras"])
 """Settings that `--set` changes, besides all of some groups."""
 
@@ -146,12 +162,12 @@ def _changes(said: list[str]) -> dict[str, Any]:
     Raises:
         ConfigError: One is of another form, or changes what the protocol fixes.
     """
+    from eyas.settings.file import parsed_override
+
     changes: dict[str, Any] = {}
     for text in said:
-        path, equals, value = text.partition("=")
-        keys = path.strip().split(".")
-        free = keys[0] in ("env", "tracker", "control") and all(keys[1:] or [""])
-        if not equals or not (free or keys in _FREE):
+        keys, value = parsed_override(text)
+        if keys[0] not in ("env", "tracker", "control") and keys not in _FREE:
             raise ConfigError(
                 f"--set {text!r}: not allowed: env.KEY=VALUE, such as env.action_repeat=4, or "
                 "tracker.KEY, control.KEY, start.velocity or extras; all else belongs to the "
@@ -160,34 +176,30 @@ def _changes(said: list[str]) -> dict[str, Any]:
         group = changes
         for key in keys[:-1]:
             group = group.setdefault(key, {})
-        try:
-            group[keys[-1]] = json.loads(value)
-        except ValueError:
-            group[keys[-1]] = value.strip()
+        group[keys[-1]] = value
     return changes
-
-
-def _folder_name(policy: str, protocol: str) -> str:
-    return re.sub(r"[^\w.-]+", "-", f"{Path(policy).stem}-{protocol}")
 
 
 def compare(
     first: Annotated[Path, typer.Argument(metavar="A", help="Folder of an evaluation.")],
     second: Annotated[Path, typer.Argument(metavar="B", help="Folder of another.")],
+    across_builds: Annotated[
+        bool, typer.Option("--across-builds", help="Compare although Eyas itself differs.")
+    ] = False,
     json_: Annotated[bool, typer.Option("--json", help="Print JSON.")] = False,
 ) -> None:
     """Tell by how much B differs from A in the episodes that both have flown."""
-    from eyas.evaluation.comparison import differences, refuse_other_protocol, text_of
+    from eyas.evaluation.comparison import differences, refuse_incomparable, text_of
     from eyas.evaluation.result import load_run
 
     (stamp_a, records_a), (stamp_b, records_b) = load_run(first), load_run(second)
-    refuse_other_protocol(stamp_a, stamp_b)
+    refuse_incomparable(stamp_a, stamp_b, across_builds=across_builds)
     found = differences(records_a, records_b)
     if json_:
         typer.echo(json.dumps([each._asdict() for each in found], indent=1))
         return
     for name, stamp in (("A", stamp_a), ("B", stamp_b)):
-        typer.echo(f"{name}: {stamp.plan.command} (Eyas {stamp.version})")
+        typer.echo(f"{name}: {stamp.plan.command} (Eyas {stamp.version}, build {stamp.build.id})")
     typer.echo(text_of(found))
 
 

@@ -5,12 +5,15 @@ from typing import Annotated
 
 import typer
 
+from eyas.cli.options import SEVERAL
 from eyas.core.errors import ConfigError
 
 __all__ = ["app"]
 
-Name = Annotated[str, typer.Argument(help="Name of the map, or the folder of an imported one.")]
-Seed = Annotated[int, typer.Option("--seed", min=0, help="Seed of the map.")]
+Name = Annotated[
+    str, typer.Argument(help="Name of the map, the folder of an imported one, or a plan.")
+]
+Seed = Annotated[int, typer.Option("--map-seed", min=0, help="Seed of the map.")]
 
 app = typer.Typer(help="List and draw the maps.", no_args_is_help=True)
 
@@ -33,11 +36,11 @@ def list_maps() -> None:
 def draw_gallery(
     out: Annotated[Path, typer.Option("--out", help="Folder to write to.")] = Path("runs/gallery"),
     map_name: Annotated[
-        list[str] | None, typer.Option("--map", help="Only this map; may be given several times.")
+        list[str] | None, typer.Option("--map", help=f"Only this map; {SEVERAL}.")
     ] = None,
     weather: Annotated[
         list[str] | None,
-        typer.Option("--weather", help="Only this weather; may be given several times."),
+        typer.Option("--weather", help=f"Only this weather; {SEVERAL}."),
     ] = None,
 ) -> None:
     """Draw a page of pictures of each map in each weather."""
@@ -71,7 +74,7 @@ def import_map(
 @app.command("new")
 def new_map(
     name: Annotated[str, typer.Argument(help="Name of the map whose kind it is.")],
-    seed: Annotated[int, typer.Option("--seed", min=0, help="Seed of the new map.")],
+    seed: Annotated[int, typer.Option("--map-seed", min=0, help="Seed of the new map.")],
 ) -> None:
     """Make another map of a kind now, with its traffic, not on first use."""
     from eyas.modes.maps.another import run
@@ -108,6 +111,38 @@ def show_map(
     path = out if out is not None else Path(f"{MAPS.get(name).name}.png")
     run(name, seed, path, width, tracks=tracks)
     typer.echo(path)
+
+
+@app.command("plan")
+def write_plan(
+    name: Name,
+    out: Annotated[
+        Path | None, typer.Option("--out", help="File to write; by default NAME.plan.json.")
+    ] = None,
+    seed: Seed = 0,
+) -> None:
+    """Write the plan of a map: all that stands on it. Use it, or a copy, with --map FILE."""
+    from eyas.modes.maps.plans import run
+    from eyas.world.maps import MAPS
+
+    path = out if out is not None else Path(f"{MAPS.get(name).name}.plan.json")
+    for made in run(name, seed, path):
+        typer.echo(made)
+
+
+@app.command("check")
+def check_plan(
+    file: Annotated[Path, typer.Argument(help="A plan of a map: .plan.json or .plan.json.gz.")],
+) -> None:
+    """Say what is wrong with a plan, one line each."""
+    from eyas.modes.maps.plans import check
+
+    wrong = check(file)
+    for line in wrong:
+        typer.echo(line)
+    if wrong:
+        raise typer.Exit(1)
+    typer.echo(f"{file}: a plan of a map; use it with --map {file}")
 
 
 @app.command("export")

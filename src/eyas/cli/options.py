@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from eyas.core.errors import ConfigError
-from eyas.settings.preset import PRESETS
+from eyas.settings.preset import DAT_MODES, TRAININGS, WORLDS
 
 __all__ = [
     "ConfigFile",
@@ -31,7 +31,8 @@ Preset = Annotated[
     str | None,
     typer.Option(
         "--preset",
-        help=f"Settings that come with Eyas: {', '.join(PRESETS[:-1])} or {PRESETS[-1]}.",
+        help=f"Settings that come with Eyas: of the DAT benchmark ({', '.join(DAT_MODES)}), of "
+        f"harder or easier worlds ({', '.join(WORLDS)}), of trainings ({', '.join(TRAININGS)}).",
     ),
 ]
 Overrides = Annotated[
@@ -40,6 +41,8 @@ Overrides = Annotated[
         "--set", metavar="KEY=VALUE", help="Change a setting; may be given several times."
     ),
 ]
+SEVERAL = "may be given several times"
+
 MapName = Annotated[str | None, typer.Option("--map", help="Name of the map.")]
 Weather = Annotated[str | None, typer.Option("--weather", help="Name of the weather.")]
 Seed = Annotated[int | None, typer.Option("--seed", help="The one seed of the run.")]

@@ -1,6 +1,5 @@
 """`eyas traffic`."""
 
-import json
 import re
 from pathlib import Path
 from typing import Annotated
@@ -27,7 +26,7 @@ def record(  # noqa: PLR0913  # one parameter for each option
     map_name: MapName = None,
     map_seed: Annotated[int | None, typer.Option("--map-seed", help="Seed of the map.")] = None,
     seed: Annotated[
-        int | None, typer.Option("--seed", help="Seed of SUMO and of the routes.")
+        int | None, typer.Option("--traffic-seed", help="Seed of SUMO and of the routes.")
     ] = None,
     duration: Annotated[float, typer.Option("--duration", help="Seconds to record.")] = 1260.0,
     vehicle_type: Annotated[
@@ -40,14 +39,14 @@ def record(  # noqa: PLR0913  # one parameter for each option
     ] = None,
     seeds: Annotated[
         str | None,
-        typer.Option("--seeds", help="Several seeds, such as 1-8 or 3,5,9: a file for each."),
+        typer.Option("--traffic-seeds", help="Several, such as 1-8 or 3,5,9: a file for each."),
     ] = None,
     workers: Annotated[
         int | None,
         typer.Option("--workers", min=1, help="Processes for several seeds; default: all cores."),
     ] = None,
     out: Annotated[
-        Path | None, typer.Option("--out", help="File to write; with --seeds the folder.")
+        Path | None, typer.Option("--out", help="File to write; with --traffic-seeds the folder.")
     ] = None,
     overwrite: Annotated[bool, typer.Option("--overwrite", help="Replace files.")] = False,
     config: ConfigFile = None,
@@ -67,10 +66,8 @@ def record(  # noqa: PLR0913  # one parameter for each option
     from eyas.settings.file import load_settings
     from eyas.settings.legacy.messages import originals_named
 
-    short = {"world.seed": map_seed, "traffic.seed": seed}
-    said = [f"{key}={json.dumps(value)}" for key, value in short.items() if value is not None]
-    if vehicle_type is not None:
-        said.append(f"traffic.vehicle_type={vehicle_type}")
+    short = {"world.seed": map_seed, "traffic.seed": seed, "traffic.vehicle_type": vehicle_type}
+    said = [f"{key}={value}" for key, value in short.items() if value is not None]
     file, overrides = chosen_file(config, preset), [*gathered(set_, map_name), *said]
     settings = load_settings(file, overrides, trust=trust)
     many = _numbers(seeds) if seeds is not None else ()
@@ -106,5 +103,6 @@ def _numbers(text: str) -> tuple[int, ...]:
     if all(ends) and all(spans) and sum(map(len, spans)) <= _MOST:
         return tuple(dict.fromkeys(number for span in spans for number in span))
     raise ConfigError(
-        f"--seeds: {text!r} is not allowed; allowed: at most {_MOST} numbers, such as 1-8 or 3,5,9"
+        f"--traffic-seeds: {text!r} is not allowed; allowed: at most {_MOST} numbers, "
+        "such as 1-8 or 3,5,9"
     )

@@ -4,9 +4,9 @@ from typing import Annotated, Literal
 
 from pydantic import Field, model_validator
 
-from eyas.behaviours.config import Behaviour
 from eyas.core.code_names import NAMES_CODE
 from eyas.core.config import Config
+from eyas.targets.habit import Behaviour
 
 __all__ = ["ENDINGS", "MESHES", "CustomConfig"]
 

@@ -3,7 +3,6 @@
 import hashlib
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -20,26 +19,10 @@ from eyas.custom.user_class import made
 from eyas.state.mesh import Mesh
 from eyas.state.scene import ObjectClass
 from eyas.targets.catalogue import KINDS, MODELS, register
-from eyas.targets.kind import Kind
-from eyas.targets.words import with_article
+from eyas.targets.colour_names import with_article
+from eyas.targets.kind import Kind, Model
 
-__all__ = ["OwnModel", "as_custom", "kind_name_of", "own_target"]
-
-
-@dataclass(frozen=True, slots=True)
-class OwnModel:
-    """The one model of a user's kind."""
-
-    name: str
-    typename: str
-    kind: str
-    size: tuple[float, float, float]
-    """Length, width and height [m]."""
-
-    @property
-    def rise(self) -> float:
-        """Height of the reference point above the ground [m]."""
-        return self.size[2] / 2
+__all__ = ["as_custom", "kind_name_of", "own_target"]
 
 
 def kind_name_of(config: CustomConfig) -> str:
@@ -65,15 +48,28 @@ def kind_name_of(config: CustomConfig) -> str:
         register(
             Kind(
                 name=name,
-                models=(OwnModel(model, word, name, target.size),),
+                models=(_model(model, word, name, target.size, words),),
                 colours=((1.0, 1.0, 1.0),),
                 object_class=ObjectClass.ROBOT,
                 rig=lambda: OwnRig(target, path),
                 keeps_colours=True,
-                words=words,
             )
         )
     return name
+
+
+def _model(name: str, word: str, kind: str, size: tuple[float, float, float], words: str) -> Model:
+    return Model(
+        name=name,
+        typename=word,
+        kind=kind,
+        size=size,
+        rise=size[2] / 2,
+        words=(words,),
+        motion="moves as its settings say",
+        speed=1.0,
+        stride=4.0 * size[0],
+    )
 
 
 def as_custom(what: str, config: CustomConfig) -> CustomConfig | None:

@@ -6,10 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.behaviours.ground import Ground
-from eyas.behaviours.habits import Habit
-from eyas.behaviours.lives import Lives
+from eyas.behaviours.groups import Lifetimes, SampleClock, ScriptedGroup
 from eyas.behaviours.scripted import scripted_table
-from eyas.behaviours.troop import Clock, Troop
 from eyas.core import exact
 from eyas.core.errors import ConfigError, DataFileError
 from eyas.core.files import user_path
@@ -24,6 +22,7 @@ from eyas.custom.user_class import tracks_of
 from eyas.state.motion import SAMPLE, Motion
 from eyas.state.terrain import reliefs
 from eyas.targets.catalogue import MODELS, kind_index, models_of
+from eyas.targets.habit import Habit
 
 __all__ = ["Places", "custom_motion"]
 
@@ -39,14 +38,18 @@ Floats = NDArray[np.float64]
 class Places(NamedTuple):
     """When and where targets with a behaviour begin, see `ObjectsConfig`."""
 
-    lives: Lives
+    lives: Lifetimes
     offset: Variation
     vehicles: Motion | None = None
     """For which those wait who cross roads."""
 
 
 def custom_motion(
-    config: CustomConfig, places: Places, ground: Ground, clock: Clock, rng: np.random.Generator
+    config: CustomConfig,
+    places: Places,
+    ground: Ground,
+    clock: SampleClock,
+    rng: np.random.Generator,
 ) -> Motion:
     """Return the motion of the user's targets.
 
@@ -69,20 +72,27 @@ def custom_motion(
         count = int(places.lives.slot.max()) + 1
         table = _own(target, config.path, count, ground, clock, rng)
     else:
-        troop = _troop(config, name, places)
-        table = scripted_table(ground, troop, clock, rng, places.vehicles)
+        group = _group(config, name, places)
+        table = scripted_table(ground, group, clock, rng, places.vehicles)
     return Motion(table, np.full(table.shape[1], kind_index(name), np.int32), clock.rate, 0.0)
 
 
-def _troop(config: CustomConfig, name: str, places: Places) -> Troop:
+def _group(config: CustomConfig, name: str, places: Places) -> ScriptedGroup:
     speed, size = config.speed, MODELS[models_of(kind_index(name)).start].size
     breadth = float(exact.hypot(*size[:2]))
     habit = Habit(config.behaviour, speed, max(1.0, speed), 2.0, max(0.5, breadth))
-    where = (places.lives, places.offset)
-    return Troop(name, breadth, config.behaviour, *where, "objects.max_count", habit)
+    return ScriptedGroup(
+        kind=name,
+        breadth=breadth,
+        behaviour=config.behaviour,
+        habit=habit,
+        lives=places.lives,
+        offset=places.offset,
+        setting="objects.max_count",
+    )
 
 
-def _driven(file: str, smoothing: float, ground: Ground, clock: Clock) -> NDArray[np.void]:
+def _driven(file: str, smoothing: float, ground: Ground, clock: SampleClock) -> NDArray[np.void]:
     """Return the samples of a trajectory, again and again."""
     path, scene = user_path(file), ground.scene
     try:
@@ -113,7 +123,7 @@ def _own(
     path: str,
     count: int,
     ground: Ground,
-    clock: Clock,
+    clock: SampleClock,
     rng: np.random.Generator,
 ) -> NDArray[np.void]:
     """Return the samples of a motion that a user's class computes."""

@@ -192,9 +192,9 @@ class Batch:
         return information(self._simulation)
 
     def words_of(self, tracker: int) -> str:
-        """Return the target of a tracker in words, see `eyas.sim.words`."""
+        """Return the target of a tracker in words, see `eyas.sim.views.words`."""
         camera = self.config.camera
-        return self._simulation.perception.words(tracker, camera.height / camera.width)
+        return self._simulation.view.words(tracker, camera.height / camera.width)
 
     def render(
         self, chosen: NDArray[np.int32] | None = None, *, overlay: bool

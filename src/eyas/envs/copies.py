@@ -8,11 +8,11 @@ import gymnasium
 from pydantic import BaseModel
 
 from eyas.lanes import BoundCall, CompiledCall, Held
-from eyas.render.renderer import Renderer
+from eyas.render.renderer import CpuRenderer
 from eyas.sim.assets import Assets
 from eyas.sim.episode_draw import DrawRules, ModelTable
 from eyas.sim.light import LightRules
-from eyas.sim.near import NearMovers
+from eyas.sim.views.visible_actors import VisibleActors
 from eyas.state.draw import Picture
 from eyas.state.lighting import Lighting
 from eyas.state.motion import Motion
@@ -24,12 +24,12 @@ __all__ = ["FIXED"]
 
 _CODE = (types.FunctionType, types.MethodType, partial, type, CompiledCall)
 _SETTINGS = (BaseModel, Enum, gymnasium.Space)
-_SHARED = (Assets, Renderer, Lighting, Motion, Terrain)
+_SHARED = (Assets, CpuRenderer, Lighting, Motion, Terrain)
 _TABLES = (DrawRules, LightRules, LookTable, ModelTable)
 """Made of the settings and the catalogue, which may have grown in this process."""
 _BOUND = (BoundCall, Held)
 """To the addresses of arrays, which stay."""
-_SCRATCH = (NearMovers, Picture)
+_SCRATCH = (VisibleActors, Picture)
 """Worked out at each use."""
 
 FIXED = (*_CODE, *_SETTINGS, *_SHARED, *_TABLES, *_BOUND, *_SCRATCH, Journal)

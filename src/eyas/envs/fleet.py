@@ -112,7 +112,7 @@ class Fleet:
         return picture
 
     def words_of(self, index: int) -> str:
-        """Return the target of one in words, see `eyas.sim.words`."""
+        """Return the target of one in words, see `eyas.sim.views.words`."""
         batch, tracker = self._place[index]
         return batch.words_of(tracker)
 

@@ -85,12 +85,12 @@ def information(simulation: Simulation) -> Info:
     info["step"] = episodes.step_count.copy()
     info["done_reason"] = episodes.reason.copy()
     info["done_state"] = episodes.breach.copy()
-    info["light"] = light.copy()
+    info["light"] = np.stack(light, axis=1)
     if simulation.config.done.crash is not Crash.ORIGINAL:
         info["contact"] = episodes.contact.copy()
         info["contact_object"] = episodes.contact_object.copy()
         info["contact_class"] = simulation.classes_of(episodes.contact_object)
-    if (lidar := simulation.perception.lidar) is not None:
+    if (lidar := simulation.view.lidar) is not None:
         info["lidar"] = lidar.ranges()
     return info
 
@@ -129,7 +129,7 @@ def sensor_state(simulation: Simulation, out: NDArray[np.float32]) -> None:
         simulation: N trackers.
         out: Shape (N, 19).
     """
-    out[:] = simulation.perception.packets()[0][:, SENSOR_COLUMNS]
+    out[:] = simulation.view.packets()[0][:, SENSOR_COLUMNS]
 
 
 def privileged_state(snapshot: Snapshot, out: NDArray[np.float32]) -> None:

@@ -109,7 +109,7 @@ class Observer:
         """
         if self._draws:
             picture = self._picture.first(len(chosen))
-            self._simulation.perception.draw(chosen, picture)
+            self._simulation.view.draw(chosen, picture)
             if picture.rgb is not None:
                 self._stack.add(picture.rgb, chosen, begun)
             for part, plane in ((_Parts.DEPTH, picture.depth), (_Parts.CLASSES, picture.class_id)):
@@ -119,9 +119,9 @@ class Observer:
         if (sensors := self._latest.get(_Parts.SENSORS)) is not None:
             sensor_state(self._simulation, sensors)
         if (ranges := self._latest.get(_Parts.LIDAR)) is not None:
-            seen = self._simulation.perception
+            seen = self._simulation.view
             assert seen.lidar is not None  # its space says so
-            seen.lidar.fill(ranges, seen.sight.late)
+            seen.lidar.fill(ranges, seen.state.late)
         if (privileged := self._latest.get(_Parts.PRIVILEGED)) is not None:
             privileged_state(self._simulation.snapshot, privileged)
 

@@ -18,7 +18,7 @@ from eyas.evaluation.statistics import (
     stratified_resamples,
 )
 
-__all__ = ["COMPARED", "Difference", "differences", "refuse_other_protocol", "text_of"]
+__all__ = ["COMPARED", "Difference", "differences", "refuse_incomparable", "text_of"]
 
 COMPARED = ("cr", "tsr", "seen", "watched", "losses", "centre_error")
 """The figures that every episode has."""
@@ -44,16 +44,28 @@ class Difference(NamedTuple):
     """Share of episodes in which the second has the larger figure; equal ones count half."""
 
 
-def refuse_other_protocol(first: Stamp, second: Stamp) -> None:
-    """Refuse to compare what was flown in different protocols.
+def refuse_incomparable(first: Stamp, second: Stamp, *, across_builds: bool) -> None:
+    """Refuse to compare what was flown in different protocols, or by different programs.
+
+    Args:
+        first: Of the first evaluation.
+        second: Of the second one.
+        across_builds: Whether the programs may differ.
 
     Raises:
-        DataFileError: The protocols differ.
+        DataFileError: They differ.
     """
     if first.protocol != second.protocol:
         raise DataFileError(
             f"not comparable: '{first.plan.policy}' was flown in protocol {first.plan.protocol} "
             f"{first.protocol}, '{second.plan.policy}' in {second.plan.protocol} {second.protocol}"
+        )
+    differs = "" if across_builds else first.other_build(second)
+    if differs:
+        world = "the world differs" if first.build.world != second.build.world else "they differ"
+        raise DataFileError(
+            f"not comparable: flown by builds {first.build.id} and {second.build.id} of Eyas; "
+            f"{world} in {differs}; fly one again, or compare with --across-builds"
         )
 
 

@@ -26,14 +26,15 @@ def flown(made: Stamp, part: list[Episode]) -> list[Record]:
     """Return the records of a batch: the same on every machine, however often it is flown.
 
     Raises:
-        ConfigError: This machine has another version of Eyas, or another or no file of the policy.
+        ConfigError: This machine has another build of Eyas, or another or no file of the policy.
         EyasError: The policy cannot be loaded here.
     """
     try:
         here = stamp(made.plan)
     except OSError as error:
         raise ConfigError(f"{made.plan.policy}: cannot read on a worker: {error}") from None
-    for name, mine in here:
-        if mine != (told := getattr(made, name)):
-            raise ConfigError(f"a worker has another {name}: {mine}, not {told}")
+    if differs := made.other_build(here):
+        raise ConfigError(f"a worker has another build of Eyas, which differs in {differs}")
+    if here.policy != made.policy:
+        raise ConfigError(f"a worker has another policy: {here.policy}, not {made.policy}")
     return [record for ended in fly_batch(made.plan, part) for record in ended]

@@ -14,7 +14,7 @@ from eyas.evaluation.episode import Episode
 from eyas.evaluation.flock import Flock
 from eyas.evaluation.meter import Meter
 from eyas.evaluation.occlusion import clear_shares
-from eyas.evaluation.policies.policy import Decision, Failure, Policy, Sight, Start
+from eyas.evaluation.policies.policy import Decision, Failure, Policy, PolicyInput, Start
 from eyas.evaluation.protocol import Protocol
 from eyas.evaluation.record import Record
 
@@ -97,7 +97,7 @@ class Flight:
         if not deciding.any():
             return
         self._flock.look(deciding, np.full(len(deciding), step == 0))
-        sight = Sight(self._flock.observations, deciding, self._flock.snapshot)
+        sight = PolicyInput(self._flock.observations, deciding, self._flock.snapshot)
         begun = time.perf_counter()
         decision = self._guarded(lambda: self._policy.act(sight))
         taken = time.perf_counter() - begun

@@ -1,6 +1,7 @@
 """How much of a target can be seen at all: its visible share under exact following."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,22 +16,6 @@ from eyas.evaluation.protocol import Protocol
 
 __all__ = ["clear_shares"]
 
-_MAKERS = (
-    *(
-        "lanes",
-        "core",
-        "state",
-        "mesh",
-        "world",
-        "render",
-        "traffic",
-        "targets",
-        "trackers",
-        "sensors",
-    ),
-    *("task", "sim", "evaluation/occlusion.py", "evaluation/flock.py"),
-)
-
 _PERIOD = 0.128
 """Time between two looks [s]."""
 
@@ -40,10 +25,8 @@ def clear_shares(episodes: list[Episode], protocol: Protocol) -> list[float]:
 
     Kept in the cache, since it depends on the episodes only.
     """
-    inputs = (protocol.hash, tuple(episodes))
-    made = cached(
-        Kind.OCCLUSION, _MAKERS, inputs, lambda: _flown(episodes, protocol), of=np.ndarray
-    )
+    make = partial(_flown, episodes, protocol)
+    made = cached(Kind.OCCLUSION, make, (protocol.hash, *episodes), of=np.ndarray)
     shares: list[float] = np.asarray(made).tolist()
     return shares
 

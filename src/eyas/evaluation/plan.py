@@ -1,13 +1,16 @@
 """What an evaluation flies, and with what."""
 
 import json
+import re
 import shlex
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Annotated, Any
 
 from pydantic import Field
 
 from eyas import __version__
+from eyas.core.build import Build, this_build
 from eyas.core.config import Config
 from eyas.core.errors import ConfigError
 from eyas.evaluation.delay import Measured, delay_from
@@ -19,7 +22,7 @@ from eyas.evaluation.protocol import Protocol, protocol_named
 from eyas.evaluation.record import Record
 from eyas.world.maps import MAPS
 
-__all__ = ["Plan", "Stamp", "batches", "fly_batch", "stamp"]
+__all__ = ["Plan", "Stamp", "batches", "fly_batch", "folder_name", "stamp"]
 
 Names = Annotated[tuple[str, ...], Field(min_length=1)]
 
@@ -69,7 +72,11 @@ class Plan(Config):
         )
         words = ["eyas", "evaluate", "--policy", self.policy]
         for name, value in told.items():
-            words += [f"--{name}", ",".join(value) if isinstance(value, tuple) else str(value)]
+            if isinstance(value, tuple):
+                option = f"--{name.removesuffix('s')}"
+                words += [word for each in value for word in (option, each)]
+            else:
+                words += [f"--{name}", str(value)]
         if self.sampled:
             words.append("--sample")
         for key, value in _flat("", {"env": self.env, **self.settings}):
@@ -78,26 +85,43 @@ class Plan(Config):
         return shlex.join(words)
 
 
+_NOT_FLOWN = ("exports", "learning", "modes/video", "overlay", "wire")
+"""Rooms that have no part in an evaluation."""
+
+
 class Stamp(Config):
     """What tells whether records belong together."""
 
     version: str
     """Of Eyas."""
+    build: Build
+    """Of Eyas, too: what its code and data are."""
     protocol: str
     """Hash of the protocol."""
     policy: str | None
-    """Hash of the policy's file; None if it is none."""
+    """Hash of the policy's file; None if it has none."""
     plan: Plan
+
+    def other_build(self, other: "Stamp") -> str:
+        """Return in words what differs in the programs that fly; nothing if nothing does."""
+        networks = self.policy is not None or other.policy is not None
+        return self.build.difference(other.build, without=_NOT_FLOWN, libraries=networks)
 
 
 def stamp(plan: Plan) -> Stamp:
     """Return the stamp of a plan."""
     return Stamp(
         version=__version__,
+        build=this_build(),
         protocol=plan.rules.hash,
         policy=fingerprint(plan.policy),
         plan=plan,
     )
+
+
+def folder_name(plan: Plan) -> str:
+    """Return the name of the folder of a plan's results, unless a user chooses one."""
+    return re.sub(r"[^\w.-]+", "-", f"{Path(plan.policy).stem}-{plan.protocol}")
 
 
 def batches(plan: Plan) -> list[list[Episode]]:
@@ -152,7 +176,7 @@ def check(plan: Plan) -> None:
     """
     delay_from(plan.latency)
     if len(set(plan.maps)) < len(plan.maps) or len(set(plan.weathers)) < len(plan.weathers):
-        raise ConfigError("--maps, --weathers: a name is there twice")
+        raise ConfigError("--map, --weather: a name is there twice")
     policy = open_policy(plan.policy, plan.env, sampled=plan.sampled)
     for name in plan.maps:
         for weather in plan.weathers:

@@ -3,10 +3,9 @@
 import hashlib
 import json
 import math
-import operator
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property, reduce
+from functools import cached_property
 from typing import Any
 
 from eyas.core.clock import PHYSICS_STEP, physics_steps
@@ -14,16 +13,13 @@ from eyas.core.config import updated
 from eyas.core.errors import UnknownNameError
 from eyas.envs.config import EnvConfig
 from eyas.evaluation.episode import Episode
-from eyas.sensors.config import LidarConfig, SensorsConfig
 from eyas.settings.config import EyasConfig
 from eyas.settings.file import load_settings
 from eyas.settings.preset import preset_file
 from eyas.sim.config import SimConfig
+from eyas.traffic.config import Demand
 
 __all__ = ["PROTOCOLS", "Protocol", "protocol_named"]
-
-FORMAT = 1
-"""Increased by 1 when the same protocol gives other episodes or figures."""
 
 _DIRECTIONS = (0.0, 0.5 * math.pi, math.pi, -0.5 * math.pi)
 
@@ -33,27 +29,19 @@ _FIXED = set(SimConfig.model_fields) - {"seed", "same_target"}
 """Settings that are part of a protocol: all of the simulation, none of its uses. Each drone has a
 world of its own, so that none shares its target."""
 
+_PLACED = ("world.map", "world.weather", "target", "start.direction")
+"""Settings that the episodes decide, see `Protocol.settings_of`."""
 
-_LATER: Mapping[str, Any] = {
-    "start.velocity": "rest",
-    "tracker.flight": "original",
-    "camera.mount": None,
-    "control.action_latency_steps": 0.0,
-    "control.observation_latency_steps": 0.0,
-    "tracker.judged": None,
-    "tracker.motor_time_constant": 0.0,
-    "tracker.drag_area": 0.0,
-    "tracker.ground_contact": False,
-    "tracker.wind": {"speed": 0.0, "direction": 0.0, "turbulence": 0.0},
-    "traffic.source": "recorded",
-    "done.crash": "original",
-    "custom": None,
-    "extras": [],
-    "world.hour": None,
-    "lidar": LidarConfig().model_dump(mode="json"),
-    "sensors": SensorsConfig().model_dump(mode="json"),
+_IDLE: Mapping[str, Callable[[SimConfig], bool]] = {
+    "lidar": lambda config: not config.lidar.enabled,
+    "tracker.flight": lambda config: config.tracker.supervised,
+    "traffic.group_size": lambda config: config.traffic.demand is Demand.KEEP_ALIVE,
+    "traffic.group_interval": lambda config: config.traffic.demand is Demand.KEEP_ALIVE,
+    "traffic.route_length": lambda config: config.traffic.demand is Demand.KEEP_ALIVE,
+    "traffic.route_count": lambda config: config.traffic.demand is Demand.KEEP_ALIVE,
+    "traffic.update_routes": lambda config: True,
 }
-"""Settings that came after the first results, and the values that these had been made with."""
+"""When settings have no effect on an episode."""
 
 
 def _joined(first: Mapping[str, Any], second: Mapping[str, Any]) -> dict[str, Any]:
@@ -103,16 +91,20 @@ class Protocol:
 
     @cached_property
     def hash(self) -> str:
-        """Twelve hexadecimal digits that differ between protocols."""
-        settings = self.settings.model_dump(mode="json", include=_FIXED)
-        # Before, a flown drone flew in neither of the two ways.
-        flown = not self.settings.tracker.supervised
-        for path, default in _LATER.items():
+        """Twelve hexadecimal digits of what the episodes mean: the settings that have an effect and
+        are not at their defaults. The world in which they happen has a digest of its own
+        (`eyas.core.build.Build.world`).
+        """
+        settings = self.settings.model_dump(mode="json", include=_FIXED, exclude_defaults=True)
+        idle = (path for path, is_idle in _IDLE.items() if is_idle(self.settings))
+        for path in (*_PLACED, *idle):
             *groups, name = path.split(".")
-            group = reduce(operator.getitem, groups, settings)
-            if group[name] == default and not (flown and path == "tracker.flight"):
-                del group[name]
-        content = [FORMAT, settings, self.directions, self.alike]
+            group = settings
+            for each in groups:
+                group = group.get(each, {})
+            group.pop(name, None)
+        meaning = {name: value for name, value in settings.items() if value != {}}
+        content = [meaning, self.directions, self.alike]
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:12]
 
     def settings_of(self, episode: Episode, env: EnvConfig) -> EyasConfig:

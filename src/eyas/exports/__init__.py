@@ -1,1 +1,5 @@
-"""Writers of frames, labels and videos."""
+"""Writers of pictures, films, labels and marks, one for each format.
+
+May import: `sim` and all rooms below; not `wire`.
+Begin with `frame.py`, then `writer.py`. Private: `eyas` offers what is public.
+"""

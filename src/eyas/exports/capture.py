@@ -8,7 +8,7 @@ from eyas.core.clock import PHYSICS_STEP
 from eyas.exports.frame import Action, Body, CameraPose, Floats, Frame, Subject
 from eyas.exports.movement import Movement
 from eyas.lanes import interpreted
-from eyas.sim.words import target_in_words
+from eyas.sim.views.words import target_in_words
 from eyas.state.draw import Picture
 from eyas.state.episode import EpisodeState
 from eyas.state.motion import ActorState, ActorView

@@ -1,7 +1,7 @@
 """The language of kernels: functions compiled for lanes of the processor, and kept on disk.
 
-The bottom room: it knows nothing of drones or pictures. Begin with `docs/lanes.md`; operations on
-lanes are in `eyas.lanes.vector`, elementary functions in `eyas.lanes.elementary`.
+May import: nothing of Eyas. Begin with `docs/lanes.md`; operations on lanes are in
+`eyas.lanes.vector`, elementary functions in `eyas.lanes.elementary`.
 """
 
 from eyas.lanes.calls import BoundCall, CompiledCall, ParallelCall, compiled, parallel

@@ -1,4 +1,5 @@
-"""Learning: proximal policy optimisation with a small convolutional network.
+"""Proximal policy optimisation with a small convolutional network; the extra `train`.
 
-The room is the extra `train`: all of it but `config` imports PyTorch.
+May import: `evaluation` and all rooms below; all but `config` imports PyTorch.
+Begin with `trainer.py`. Private: `eyas` offers what is public.
 """

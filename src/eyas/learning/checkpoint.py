@@ -10,6 +10,7 @@ from typing import Any
 
 import torch
 
+from eyas.core.build import Build, this_build
 from eyas.core.errors import DataFileError, OutputError
 from eyas.core.files import refusals, write_atomic
 from eyas.settings.config import EyasConfig
@@ -18,6 +19,9 @@ from eyas.settings.file import load_settings, save_settings
 __all__ = ["Progress", "RunFolder"]
 
 Row = dict[str, float]
+
+_NOT_LEARNED = ("exports", "modes/video", "overlay", "wire")
+"""Rooms that have no part in a training run."""
 
 
 @dataclass
@@ -79,6 +83,7 @@ class RunFolder:
         data = io.BytesIO()
         torch.save(
             {
+                "build": this_build().model_dump(),
                 "progress": asdict(progress),
                 "network": network.state_dict(),
                 "optimiser": optimiser.state_dict(),
@@ -97,14 +102,23 @@ class RunFolder:
 
         Raises:
             DataFileError: The checkpoint cannot be read.
+            OutputError: Another build of Eyas has made it, which may compute other blocks.
         """
         if not self._checkpoint.exists():
             return Progress()
         with _readable(self._checkpoint):
             saved: dict[str, Any] = torch.load(self._checkpoint, weights_only=True)
+            build = Build(**saved["build"])
             network.load_state_dict(saved["network"])
             optimiser.load_state_dict(saved["optimiser"])
-            return Progress(**saved["progress"])
+            progress = Progress(**saved["progress"])
+        if differs := build.difference(this_build(), without=_NOT_LEARNED, libraries=True):
+            raise OutputError(
+                f"{self.path}: trained by build {build.id} of Eyas, which differs from this one in "
+                f"{differs}; resume with that build, or begin another run from this one "
+                "(train.begin_from)"
+            )
+        return progress
 
     def load_network(self, network: torch.nn.Module) -> None:
         """Set a network to what this run has learned.

@@ -4,6 +4,7 @@ from typing import Annotated, Any, Self
 
 from pydantic import Field, model_validator
 
+from eyas.core.code_names import NAMES_CODE
 from eyas.core.config import Config
 
 __all__ = ["Evaluation", "Stage", "TrainConfig"]
@@ -15,7 +16,7 @@ Count = Annotated[int, Field(ge=1, le=2**40)]
 class Stage(Config):
     """A part of a curriculum."""
 
-    decisions: Count
+    total_timesteps: Count
     """Largest number of decisions, of all environments together."""
     until_tsr: Share | None = None
     """The stage ends as soon as an evaluation has at least this TSR."""
@@ -30,7 +31,7 @@ class Evaluation(Config):
     """Blocks from one evaluation to the next; 0: none."""
     protocol: str = "paper"
     """Of `eyas evaluate`."""
-    weathers: tuple[str, ...] = ()
+    weathers: Annotated[tuple[str, ...], NAMES_CODE] = ()
     """None: `world.weather`."""
     episodes: Annotated[int, Field(ge=1, le=1000)] = 5
     """For each weather and start direction."""
@@ -43,17 +44,17 @@ class TrainConfig(Config):
 
     environments: Annotated[int, Field(ge=1, le=65536)] = 32
     """Environments that are stepped together."""
-    stages: tuple[Stage, ...] = (Stage(decisions=600_000),)
+    stages: tuple[Stage, ...] = (Stage(total_timesteps=600_000),)
     """The curriculum: one stage after the other."""
     evaluation: Evaluation = Evaluation()
     begin_from: str | None = None
     """Folder of another run, whose network this one teaches further; None: a new network."""
-    rollout: Annotated[int, Field(ge=2, le=65536)] = 64
+    n_steps: Annotated[int, Field(ge=2, le=65536)] = 64
     """Decisions of each environment between two updates."""
     updates_per_block: Annotated[int, Field(ge=1, le=100_000)] = 20
     """Updates between two checkpoints. Each block begins with new episodes, so that a run that is
     resumed gives the same as one that never stopped."""
-    epochs: Annotated[int, Field(ge=1, le=100)] = 3
+    n_epochs: Annotated[int, Field(ge=1, le=100)] = 3
     """Passes over the data of a rollout."""
     minibatches: Annotated[int, Field(ge=1, le=4096)] = 4
     """Parts of a pass; each is a step of the optimiser."""
@@ -61,17 +62,17 @@ class TrainConfig(Config):
     """Of Adam; it falls linearly to `final_rate` of this over all stages."""
     final_rate: Share = 0.05
     """Share of the learning rate that is left at the end."""
-    discount: Share = 0.95
-    """Gamma, per decision."""
-    trace: Share = 0.9
+    gamma: Share = 0.95
+    """Discount of rewards, per decision."""
+    gae_lambda: Share = 0.9
     """Lambda of generalised advantage estimation."""
-    clip: Annotated[float, Field(gt=0, le=10)] = 0.2
+    clip_range: Annotated[float, Field(gt=0, le=10)] = 0.2
     """Largest change of the ratio of probabilities that is rewarded."""
-    entropy: Annotated[float, Field(ge=0, le=10)] = 0.01
+    ent_coef: Annotated[float, Field(ge=0, le=10)] = 0.01
     """Weight of the entropy of actions in the loss."""
-    value: Annotated[float, Field(ge=0, le=100)] = 0.5
+    vf_coef: Annotated[float, Field(ge=0, le=100)] = 0.5
     """Weight of the error of the value in the loss."""
-    largest_gradient: Annotated[float, Field(gt=0, le=1e6)] = 0.5
+    max_grad_norm: Annotated[float, Field(gt=0, le=1e6)] = 0.5
     """Norm to which gradients are cut."""
     reward_scale: Annotated[float, Field(gt=0, le=1e6)] = 0.025
     """Factor on the rewards that are learned from."""
@@ -89,11 +90,11 @@ class TrainConfig(Config):
     @property
     def update_decisions(self) -> int:
         """Decisions of all environments between two updates."""
-        return self.environments * self.rollout
+        return self.environments * self.n_steps
 
     def updates_of(self, stage: Stage) -> int:
         """Return the updates of a stage: as many as have at least its decisions."""
-        return -(-stage.decisions // self.update_decisions)
+        return -(-stage.total_timesteps // self.update_decisions)
 
     @model_validator(mode="after")
     def _check_stages(self) -> Self:

@@ -10,7 +10,7 @@ from eyas.envs.config import EnvConfig
 from eyas.evaluation.delay import delay_from
 from eyas.evaluation.episode import Episode, Place, episodes_of
 from eyas.evaluation.flight import Flight
-from eyas.evaluation.policies.policy import Decision, Sight, Start
+from eyas.evaluation.policies.policy import Decision, PolicyInput, Start
 from eyas.evaluation.protocol import Protocol, protocol_named
 from eyas.learning.network import TrackingNetwork
 from eyas.settings.config import EyasConfig
@@ -44,7 +44,7 @@ class _Student:
         self._state = torch.zeros(len(start.seeds), self._network.shape.state)
 
     @torch.no_grad()
-    def act(self, sight: Sight) -> Decision:
+    def act(self, sight: PolicyInput) -> Decision:
         assert isinstance(sight.observation, np.ndarray)
         logits, _, memory = self._network(torch.from_numpy(sight.observation), self._state)
         action: Tensor = logits.argmax(1)

@@ -24,14 +24,14 @@ class Losses(NamedTuple):
     """Estimate of the Kullback-Leibler divergence between the policies before and after."""
 
 
-def advantages(data: Rollout, discount: float, trace: float) -> Tensor:
+def advantages(data: Rollout, gamma: float, gae_lambda: float) -> Tensor:
     """Return generalised advantage estimates (Schulman et al. 2016, arXiv:1506.02438), (T, N)."""
     estimates = torch.zeros_like(data.rewards)
     following = torch.zeros_like(data.rewards[0])
     for step in reversed(range(len(data.rewards))):
         goes_on = 1.0 - data.ended[step]
-        error = data.rewards[step] + discount * goes_on * data.values[step + 1] - data.values[step]
-        following = error + discount * trace * goes_on * following
+        error = data.rewards[step] + gamma * goes_on * data.values[step + 1] - data.values[step]
+        following = error + gamma * gae_lambda * goes_on * following
         estimates[step] = following
     return estimates
 
@@ -54,14 +54,14 @@ def update(
         generator: Source of the random order of the data.
         crew: Finds the gradients of the parts of a minibatch.
     """
-    estimates = advantages(data, config.discount, config.trace)
+    estimates = advantages(data, config.gamma, config.gae_lambda)
     gains = (estimates - estimates.mean()) / (estimates.std() + 1e-8)
     lesson = _Lesson(data, gains, estimates + data.values[:-1])
     # Minibatches are of environments if there is a memory, which needs whole sequences, else of
     # single decisions.
     count = gains.shape[1] if network.shape.memory else gains.numel()
     losses = torch.zeros(len(Losses._fields))
-    for _ in range(config.epochs):
+    for _ in range(config.n_epochs):
         for chosen in torch.randperm(count, generator=generator).chunk(config.minibatches):
             parts = [(part, len(part) / len(chosen)) for part in chosen.chunk(config.parts)]
             found = crew.each(lambda job: _gradients(network, lesson, *job, config), parts)
@@ -89,7 +89,7 @@ def _step(
     """Take a step of the optimiser with the sum of the parts' gradients."""
     for parameter, parts in zip(network.parameters(), zip(*gradients, strict=True), strict=True):
         parameter.grad = torch.stack(parts).sum(0)
-    nn.utils.clip_grad_norm_(network.parameters(), config.largest_gradient)
+    nn.utils.clip_grad_norm_(network.parameters(), config.max_grad_norm)
     optimiser.step()
 
 
@@ -108,11 +108,11 @@ def _gradients(
     all_log = logits.log_softmax(1)
     change = all_log.gather(1, of(data.actions)[:, None])[:, 0] - of(data.log_probability)
     ratio, gain = change.exp(), of(lesson.gains)
-    clipped = ratio.clamp(1.0 - config.clip, 1.0 + config.clip)
+    clipped = ratio.clamp(1.0 - config.clip_range, 1.0 + config.clip_range)
     policy_loss = -torch.min(ratio * gain, clipped * gain).mean()
     value_loss = (values - of(lesson.targets)).square().mean()
     entropy = -(all_log.exp() * all_log).sum(1).mean()
-    loss = policy_loss + config.value * value_loss - config.entropy * entropy
+    loss = policy_loss + config.vf_coef * value_loss - config.ent_coef * entropy
     gradients = torch.autograd.grad(share * loss, tuple(network.parameters()))
     divergence = (ratio - 1.0 - change).mean()
     losses = torch.stack([policy_loss, value_loss, entropy, divergence])

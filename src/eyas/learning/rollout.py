@@ -66,7 +66,7 @@ class Roller:
     """
 
     def __init__(self, config: EyasConfig, network: TrackingNetwork) -> None:
-        count, rollout = config.train.environments // config.train.shards, config.train.rollout
+        count, rollout = config.train.environments // config.train.shards, config.train.n_steps
         self.env = EyasVectorEnv(count, config, autoreset_mode=AutoresetMode.SAME_STEP, copy=False)
         self.finished = Finished()
         self._network = network
@@ -102,7 +102,7 @@ class Roller:
     def roll(self) -> Rollout:
         """Return the next T decisions; the arrays are overwritten by the next call."""
         data = self._data
-        for step in range(self._config.rollout):
+        for step in range(self._config.n_steps):
             logits, value, memory = self._network(self._picture, self._state)
             action = torch.multinomial(logits.softmax(1), 1, generator=self._generator)[:, 0]
             chosen = logits.log_softmax(1).gather(1, action[:, None])[:, 0]
@@ -126,7 +126,7 @@ class Roller:
         cut = np.flatnonzero(truncated)
         if len(cut):  # what would have followed counts as its value
             last = torch.from_numpy(np.stack([info["final_obs"][n] for n in cut]))
-            scaled[cut] += self._config.discount * self._network(last, state[cut])[1]
+            scaled[cut] += self._config.gamma * self._network(last, state[cut])[1]
         self._data.rewards[step] = scaled
         gone = torch.from_numpy(ended)
         self._data.ended[step] = gone.float()

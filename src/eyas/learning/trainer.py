@@ -62,10 +62,10 @@ def train(
     run.files.begin(config, resume=resume)
     for number, stage in enumerate(config.train.stages):
         updates, each = config.train.updates_of(stage), config.train.update_decisions
-        if updates * each != stage.decisions:
+        if updates * each != stage.total_timesteps:
             say(
-                f"stage {number}: {stage.decisions:,} decisions are rounded up to {updates:,} "
-                f"updates of {each:,}: {updates * each:,}"
+                f"stage {number}: {stage.total_timesteps:,} decisions are rounded up to "
+                f"{updates:,} updates of {each:,}: {updates * each:,}"
             )
     if resume:
         run.progress = run.files.load(run.network, run.optimiser)
@@ -104,7 +104,7 @@ class _Run:
         stage = self.config.train.stages[self.progress.stage]
         settings = updated(self.config, stage.settings)
         shards = self._make_shards(settings, self.network)
-        done = self.progress.stage_decisions >= stage.decisions
+        done = self.progress.stage_decisions >= stage.total_timesteps
         while not done:
             done = self._block(shards, stage)
             if done:
@@ -138,12 +138,12 @@ class _Run:
         progress.rows.append(row)
         self._tell(row, rate)
         good = stage.until_tsr is not None and marks.tsr >= stage.until_tsr
-        return good or progress.stage_decisions >= stage.decisions
+        return good or progress.stage_decisions >= stage.total_timesteps
 
     def _examined(self, stage: Stage) -> Marks:
         """Return the marks after a block: of an evaluation, if it is time for one."""
         every = self.config.train.evaluation.every
-        stage_done = self.progress.stage_decisions >= stage.decisions
+        stage_done = self.progress.stage_decisions >= stage.total_timesteps
         if every and (self.progress.block % every == 0 or stage_done):
             return examine(self.network, self.config)
         return NO_MARKS

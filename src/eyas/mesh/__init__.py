@@ -1,1 +1,5 @@
-"""Tools for modelling the meshes of maps, vehicles and overlays."""
+"""The mesh kit: solids, flat faces, walls, rounded panels, moving and joining.
+
+May import: `state`, `core`, `lanes`.
+Begin with `shell.py`. Private: `eyas` offers what is public.
+"""

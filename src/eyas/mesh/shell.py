@@ -1,6 +1,6 @@
 """Meshes of panels with smooth shading across gentle edges, for the bodies of vehicles."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -9,7 +9,7 @@ from eyas.core import exact
 from eyas.mesh.panels import box_panels, cells, closed, fan, halves, mirrored
 from eyas.state.mesh import Material, Mesh
 
-__all__ = ["Shell"]
+__all__ = ["DETAILS", "Shape", "Shell", "levels_of"]
 
 _CREASE = 0.75
 """Panels that meet at a larger angle keep a hard edge [rad]."""
@@ -199,3 +199,20 @@ def _normals(corners: NDArray[np.float64], material: NDArray[np.int32]) -> NDArr
     total /= np.linalg.norm(total, axis=1, keepdims=True)
     smooth: NDArray[np.float64] = total.reshape(-1, 3, 3)
     return smooth
+
+
+Shape = Callable[[Shell, int], None]
+"""Adds the panels of a part to a shell, in the part's own frame. The number is the detail: 2 from
+near, 1, or 0 from afar; a part may be empty from afar."""
+
+DETAILS = (2, 1, 0)
+
+
+def levels_of(shape: Shape) -> tuple[Mesh, ...]:
+    """Return the meshes of a shape, the finest first."""
+    levels = []
+    for detail in DETAILS:
+        shell = Shell()
+        shape(shell, detail)
+        levels.append(shell.mesh())
+    return tuple(levels)

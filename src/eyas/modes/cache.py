@@ -30,7 +30,7 @@ def run_info() -> None:
         chosen = [entry for entry in found if entry.kind == kind]
         if chosen:
             used = time.strftime("%Y-%m-%d %H:%M", time.localtime(chosen[-1].used))
-            table.add_row(_WORDS.get(kind, kind), str(len(chosen)), _shown(_total(chosen)), used)
+            table.add_row(kind, str(len(chosen)), _shown(_total(chosen)), used)
     Console().print(table)
 
 
@@ -53,9 +53,6 @@ def run_clear(kind: str | None) -> None:
     left = [entry for entry in entries(folder) if chosen in (None, entry.kind)]
     if left:
         raise OutputError(f"{left[0].path}: cannot remove it (one of {len(left)} entries)")
-
-
-_WORDS = {Kind.OLD: "old (of earlier versions of Eyas)"}
 
 
 def _total(found: Iterable[Entry]) -> int:

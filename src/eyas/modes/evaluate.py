@@ -83,7 +83,10 @@ def run(  # noqa: PLR0913  # choices of the user's
         if videos:
             film(out, plan, flown)
     if not quiet:
-        print(f"{plan.policy}, protocol {plan.protocol} {made.protocol}, Eyas {made.version}")
+        print(
+            f"{plan.policy}, protocol {plan.protocol} {made.protocol}, Eyas {made.version}, "
+            f"build {made.build.id}"
+        )
         print(table(rows, plan.protocol))
     _tell_failures(flown)
     return flown
@@ -107,7 +110,12 @@ def _prepared(out: Path, made: Stamp, *, resume: bool, overwrite: bool) -> list[
             "with --overwrite"
         )
     found, records = load_run(out)
-    for name in ("version", "protocol", "policy"):
+    if differs := found.other_build(made):
+        raise OutputError(
+            f"{out}: cannot be continued: flown by build {found.build.id} of Eyas, which differs "
+            f"from this one in {differs}; continue with that build, or replace it with --overwrite"
+        )
+    for name in ("protocol", "policy"):
         old, new = getattr(found, name), getattr(made, name)
         if old != new:
             raise OutputError(f"{out}: cannot be continued: its {name} was {old}, now it is {new}")

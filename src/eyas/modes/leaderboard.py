@@ -19,7 +19,7 @@ __all__ = ["run"]
 _LOG = logging.getLogger("eyas")
 
 FIRST_LINE = (
-    "Results repeat to the bit: the same command in the same version of Eyas gives the same "
+    "Results repeat to the bit: the same command in the same build of Eyas gives the same "
     "episodes and the same figures. What varies is the policy and the seed of its training."
 )
 
@@ -65,7 +65,7 @@ def run(folder: Path, out: Path) -> str:
     tables: dict[tuple[str, ...], list[_Entry]] = {}
     for entry in entries:
         names = ",".join(sorted(record.name for record in entry.records))
-        key = (entry.stamp.plan.protocol, entry.stamp.protocol, entry.stamp.version, names)
+        key = (entry.stamp.plan.protocol, entry.stamp.protocol, entry.stamp.build.id, names)
         tables.setdefault(key, []).append(entry)
     body = "\n".join(_section(tables[key]) for key in sorted(tables))
     write_atomic(out, _page(body).encode())
@@ -100,7 +100,8 @@ def _section(entries: Sequence[_Entry]) -> str:
         f"<h2>{html.escape(plan.protocol)}: {html.escape(places)}</h2>\n"
         f"<p>{html.escape(plan.rules.title)}. {html.escape(', '.join(plan.targets))}; "
         f"{len(records)} episodes; protocol "
-        f"<code>{html.escape(stamp.protocol)}</code>, Eyas {html.escape(stamp.version)}</p>\n"
+        f"<code>{html.escape(stamp.protocol)}</code>, Eyas {html.escape(stamp.version)}, build "
+        f"<code>{stamp.build.id}</code></p>\n"
         f'<div class="scroll"><table>\n<thead><tr>{head}</tr></thead>\n<tbody>\n{rows}\n'
         "</tbody></table></div>"
     )

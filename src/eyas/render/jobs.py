@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from eyas.render.kernels.bundles import Job, Task
 from eyas.state.draw import Views
+from eyas.state.lighting import LightState
 
 __all__ = ["Size", "new_task", "set_views"]
 
@@ -47,7 +48,7 @@ def new_task(size: Size) -> Task:
         axes=np.empty((views, 3, 3)),
         world=np.empty(views, np.int32),
         subject=np.empty(views, np.int32),
-        light=np.ones((views, 3), np.float32),
+        light=LightState.create(views),
         instant=np.empty(views if size.falls else 0),
         focal=np.empty((views, 2)),
     )
@@ -69,7 +70,11 @@ def set_views(task: Task, views: Views, density: float, workers: int) -> None:
     job.axes[:] = views.rotation.swapaxes(1, 2)
     job.world[:] = views.world
     job.subject[:] = views.subject
-    job.light[:] = (1.0, 1.0, density) if views.light is None else views.light
+    job.light.sky[:], job.light.sun[:], job.light.fog_density[:] = views.light or (
+        1.0,
+        1.0,
+        density,
+    )
     if views.instant is not None:
         job.instant[:] = views.instant
     job.focal[:] = views.focal(task.height, task.width)

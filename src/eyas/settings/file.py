@@ -17,7 +17,7 @@ from eyas.settings.legacy.messages import named_path
 from eyas.settings.legacy.own_target import CUSTOM, own_target_folders, with_own_target
 from eyas.settings.trust import refuse_code
 
-__all__ = ["load_settings", "read_settings", "save_settings"]
+__all__ = ["load_settings", "parsed_override", "read_settings", "save_settings"]
 
 _LOG = logging.getLogger("eyas")
 
@@ -52,7 +52,7 @@ def load_settings(
     """
     config = (base or EyasConfig()) if path is None else _loaded(path)
     folders = own_target_folders(path)
-    pairs = [_parsed(override) for override in overrides]
+    pairs = [parsed_override(override) for override in overrides]
     for capital, group in groupby(pairs, key=lambda pair: pair[0][0][:1].isupper()):
         changes: Nested = {}
         for keys, value in group:
@@ -142,7 +142,12 @@ def _without_doubles(pairs: list[tuple[str, Any]]) -> Nested:
     return values
 
 
-def _parsed(override: str) -> tuple[list[str], Any]:
+def parsed_override(override: str) -> tuple[list[str], Any]:
+    """Return the keys and the value of a change of settings, `key=value`.
+
+    Raises:
+        ConfigError: It is of another form.
+    """
     key, equals, text = override.partition("=")
     keys = key.strip().split(".")
     if not equals or not all(keys):

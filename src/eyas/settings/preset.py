@@ -5,12 +5,18 @@ from pathlib import Path
 
 from eyas.core.errors import UnknownNameError
 
-__all__ = ["PRESETS", "preset_file"]
+__all__ = ["DAT_MODES", "PRESETS", "TRAININGS", "WORLDS", "preset_file"]
 
-PRESETS = (
-    *("dat-eval", "dat-train", "easy", "lively", "noisy"),
-    *("anywhere", "fast", "long", "paper", "robust"),
-)
+DAT_MODES = ("dat-eval", "dat-train")
+"""The modes of the DAT benchmark."""
+
+WORLDS = ("easy", "lively", "noisy")
+"""Worlds that are easier or harder than the default."""
+
+TRAININGS = ("anywhere", "fast", "long", "paper", "robust")
+"""How the policies that come with Eyas were trained, and a published training."""
+
+PRESETS = (*DAT_MODES, *WORLDS, *TRAININGS)
 """Names of all presets; docs/configuration.md says what each is for."""
 
 

@@ -6,16 +6,17 @@ from functools import lru_cache, partial
 
 import numpy as np
 
-from eyas.behaviours.troop import Clock
+from eyas.behaviours.groups import SampleClock
 from eyas.core.cache.array_file import let_go
 from eyas.core.errors import ConfigError
 from eyas.render.ahead import begin_ahead, drawing_is_ready
-from eyas.render.renderer import Renderer, build_renderer
+from eyas.render.renderer import build_renderer
 from eyas.sensors.obstacles import Solids
 from eyas.sim.crowd import NOBODY, Crowd, vehicles_of
 from eyas.sim.crowd_motion import Surroundings, crowd_motions, with_crowd
 from eyas.sim.scenes import load_geometry, load_scene, load_solids
-from eyas.sim.signals import SignalLights, lights_of
+from eyas.sim.views.additions import SignalLights, lights_of
+from eyas.state.draw import Renderer
 from eyas.state.lighting import Lighting
 from eyas.state.motion import Motion
 from eyas.state.scene import Scene
@@ -25,6 +26,7 @@ from eyas.targets.rig import Rigs
 from eyas.traffic.config import Demand, Source, TrafficConfig
 from eyas.traffic.library import CANONICAL_SEED, STANDARD_DURATION, find_file
 from eyas.traffic.live import LiveSumo
+from eyas.traffic.net_file import SumoNet
 from eyas.traffic.record import resolved
 from eyas.traffic.recorded import kept_motion
 from eyas.traffic.replay import Replay
@@ -32,7 +34,6 @@ from eyas.traffic.signals import SignalPlan, signal_plan, walk_plan
 from eyas.traffic.source import TrafficSource
 from eyas.world.config import WorldConfig
 from eyas.world.maps import MAPS
-from eyas.world.sun import at_hour
 
 __all__ = ["Assets", "load_assets"]
 
@@ -86,25 +87,21 @@ def load_assets(
         body_part, parts = parts, parts + 1
         kinds.append(kind_index(QUADROTOR.name))
     scene = load_scene(world.map, world.seed, season)
-    plan = _signal_plan(world.map, world.seed)
-    signals = None if plan is None else lights_of(scene, plan, parts)
+    plans = _signal_plans(world.map, world.seed)
+    signals = None if plans is None else lights_of(scene, plans[0], parts)
     renderer = _renderer(world, tuple(kinds), signals=signals is not None)
     solids = partial(load_solids, world.map, world.seed, season)
     return Assets(scene, source, lighting, renderer, rigs, solids, body_part, signals)
 
 
 @lru_cache(maxsize=4)
-def _signal_plan(map_name: str, seed: int) -> SignalPlan | None:
-    """Return the programs of the signals in a network of SUMO; None if recipes drew the roads."""
+def _signal_plans(map_name: str, seed: int) -> tuple[SignalPlan, SignalPlan] | None:
+    """Return what signals and crossings with lights show; None if recipes drew the roads."""
     network = MAPS.get(map_name).roads(seed).finished
-    return signal_plan(network) if network else None
-
-
-@lru_cache(maxsize=4)
-def _walk_plan(map_name: str, seed: int) -> SignalPlan | None:
-    """Return what the crossings with lights show, as `_signal_plan`."""
-    network = MAPS.get(map_name).roads(seed).finished
-    return walk_plan(network) if network else None
+    if not network:
+        return None
+    net = SumoNet(network)
+    return signal_plan(net), walk_plan(net)
 
 
 @lru_cache(maxsize=4)
@@ -112,12 +109,13 @@ def _traffic(
     map_name: str, seed: int, config: TrafficConfig, trackers: int, crowd: Crowd
 ) -> TrafficSource:
     vehicles = _vehicles(map_name, seed, config, trackers, crowd)
-    clock = Clock(round(STANDARD_DURATION * _RATE) + 1, _RATE)
+    clock = SampleClock(round(STANDARD_DURATION * _RATE) + 1, _RATE)
     if vehicles is not None:
-        clock = Clock(len(vehicles.table), vehicles.rate)
+        clock = SampleClock(len(vehicles.table), vehicles.rate)
     # A scene depends on the season, but its ground does not.
     scene = load_scene(map_name, seed)
-    lights = _walk_plan(map_name, seed) if scene.footways.told else None
+    plans = _signal_plans(map_name, seed) if scene.footways.told else None
+    lights = None if plans is None else plans[1]
     around = Surroundings(scene, clock, _seed_of(config), vehicles, lights)
     motion, targets = with_crowd(vehicles, crowd, around)
     replay = Replay(motion, targets)
@@ -134,7 +132,7 @@ def _live(
             "traffic.source: 'live' is for targets that SUMO drives, 'SUMO_VEHICLE'; use 'recorded'"
         )
     scene, own_seed = load_scene(map_name, seed), _seed_of(config)
-    clock = Clock(round(STANDARD_DURATION * _RATE) + 1, _RATE)
+    clock = SampleClock(round(STANDARD_DURATION * _RATE) + 1, _RATE)
     return LiveSumo(
         MAPS.get(map_name).roads(seed),
         resolved(config, own_seed, trackers),
@@ -179,5 +177,4 @@ def _renderer(world: WorldConfig, kinds: tuple[int, ...], *, signals: bool) -> R
 
 
 def _lighting(world: WorldConfig) -> Lighting:
-    own = MAPS.get(world.map).light(world.weather)
-    return own if world.hour is None else at_hour(own, world.hour)
+    return MAPS.get(world.map).light(world.weather, world.hour)

@@ -1,12 +1,13 @@
 """Who is in a world besides, or instead of, SUMO's vehicles: the settings that tell."""
 
-from eyas.behaviours.config import Behaviour, ExtraConfig
+from eyas.behaviours.config import ExtraConfig
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.config import Config
 from eyas.core.errors import ConfigError
 from eyas.custom.config import CustomConfig
 from eyas.sim.config import SimConfig
 from eyas.targets.config import ObjectsConfig, TargetName
+from eyas.targets.habit import Behaviour
 from eyas.traffic.config import Source
 from eyas.world.maps import MAPS
 

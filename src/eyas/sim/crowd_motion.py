@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.behaviours.config import Behaviour, ExtraConfig
-from eyas.behaviours.lives import Lives, lasting, recycled
-from eyas.behaviours.troop import Clock, Troop
+from eyas.behaviours.config import ExtraConfig
+from eyas.behaviours.groups import Lifetimes, SampleClock, ScriptedGroup, lasting, recycled
 from eyas.core import exact
 from eyas.core.cache.cached import cached
 from eyas.core.cache.folder import Kind
@@ -21,18 +20,14 @@ from eyas.custom.config import CustomConfig
 from eyas.sim.crowd import Crowd
 from eyas.state.motion import SAMPLE, Motion, joined
 from eyas.state.scene import Scene
-from eyas.targets.catalogue import MODELS, kind_index, models_of
+from eyas.targets.catalogue import MODELS, habit_of, kind_index, models_of
+from eyas.targets.habit import Behaviour
 from eyas.traffic.signals import SignalPlan
 
 if TYPE_CHECKING:
     from eyas.behaviours.ground import Ground
 
 __all__ = ["Surroundings", "crowd_motions", "with_crowd"]
-
-_MAKERS = (
-    *("behaviours", "sim/crowd_motion.py", "state/motion.py", "state/terrain.py", "world/roads"),
-    *("targets/vehicles/models.py", "traffic/signals.py", "traffic/trailer.py"),
-)
 
 _ASIDE = Mirrored(mirrored=(4.0, 20.0))
 """Distance of extras from the middle of the road, if no pavement is asked for [m]."""
@@ -42,7 +37,7 @@ class Surroundings(NamedTuple):
     """Where and when a crowd moves."""
 
     scene: Scene
-    clock: Clock
+    clock: SampleClock
     """Number of samples, and their rate."""
     seed: int
     """Of places and ways."""
@@ -67,9 +62,9 @@ def crowd_motions(crowd: Crowd, around: Surroundings) -> list[Motion]:
     if crowd.driven and around.vehicles is None:
         _refuse_crossing(crowd)
     ground = cache(partial(_ground, around, crowd.driven))  # unneeded if all motions are kept
-    troops = _troops(crowd, around.clock)
+    groups = _groups(crowd, around.clock)
     motions = [
-        _kept(troop, number, around, crowd.driven, ground) for number, troop in enumerate(troops)
+        _kept(group, number, around, crowd.driven, ground) for number, group in enumerate(groups)
     ]
     if crowd.custom is not None:
         motions.insert(0, _custom(crowd, crowd.custom, around, ground()))
@@ -90,7 +85,7 @@ def with_crowd(
         SpawnError: The map has no room for all.
     """
     before = [] if vehicles is None else [vehicles]
-    if crowd.custom is None and _troops(crowd, around.clock):
+    if crowd.custom is None and _groups(crowd, around.clock):
         motion, counts = _all_kept(before, crowd, around)
     else:
         every = [*before, *crowd_motions(crowd, around)]
@@ -102,25 +97,24 @@ def with_crowd(
 def _all_kept(
     before: Sequence[Motion], crowd: Crowd, around: Surroundings
 ) -> tuple[Motion, list[int]]:
-    """Return the motion of vehicles and troops as one entry of the cache, and how many each are.
+    """Return the motion of vehicles and groups as one entry of the cache, and how many each are.
 
     Joined in memory, that of 400 people would take half a gigabyte of each process, of which it
     reads little.
     """
-    ground, troops = cache(partial(_ground, around, crowd.driven)), _troops(crowd, around.clock)
+    groups = _groups(crowd, around.clock)
+    ground = cache(partial(_ground, around, crowd.driven))
     parts = [
-        _made(troop, number, around, crowd.driven, ground) for number, troop in enumerate(troops)
+        partial(_numbers_of, group, number, around, ground) for number, group in enumerate(groups)
     ]
     tables = [motion.table for motion in before]
-
-    def made() -> NDArray[np.float32]:
-        driven = [table.view(np.float32).reshape(*table.shape, -1) for table in tables]
-        return np.concatenate([*driven, *(part.make() for part in parts)], axis=1)
-
-    depends_on = (*tables, *(value for part in parts for value in part.depends_on))
-    numbers = cached(Kind.MOTION, _MAKERS, depends_on, made, of=NDArray[np.float32])
-    counts = [int(troop.lives.slot.max()) + 1 for troop in troops]
-    indices = [kind_index(troop.kind) for troop in troops]
+    depends_on = [
+        _depends_on(group, number, around, crowd.driven) for number, group in enumerate(groups)
+    ]
+    make, inputs = partial(_side_by_side, tables, parts), (_numbers_of, *tables, *depends_on)
+    numbers = cached(Kind.MOTION, make, inputs, of=NDArray[np.float32])
+    counts = [int(group.lives.slot.max()) + 1 for group in groups]
+    indices = [kind_index(group.kind) for group in groups]
     kind = np.concatenate([*(one.kind for one in before), np.repeat(indices, counts)])
     motion = Motion(numbers.view(SAMPLE)[..., 0], kind.astype(np.int32), around.clock.rate, 0.0)
     return motion, [*(len(one.kind) for one in before), *counts]
@@ -133,78 +127,74 @@ def _ground(around: Surroundings, driven: bool) -> "Ground":
     return Ground(around.scene, roads=driven, lights=around.lights)
 
 
-class _Part(NamedTuple):
-    """The motion of a troop, that may be in the cache."""
-
-    depends_on: tuple[object, ...]
-    make: Callable[[], NDArray[np.float32]]
+def _side_by_side(
+    tables: Sequence[NDArray[np.void]], parts: Sequence[Callable[[], NDArray[np.float32]]]
+) -> NDArray[np.float32]:
+    driven = [table.view(np.float32).reshape(*table.shape, -1) for table in tables]
+    return np.concatenate([*driven, *(part() for part in parts)], axis=1)
 
 
 def _kept(
-    troop: Troop,
+    group: ScriptedGroup,
     number: int,
     around: Surroundings,
     driven: bool,
     ground: Callable[[], "Ground"],
 ) -> Motion:
-    """Return the motion of a troop, from the cache if it is there; arguments as of `_made`."""
-    depends_on, make = _made(troop, number, around, driven, ground)
-    numbers = cached(Kind.MOTION, _MAKERS, depends_on, make, of=NDArray[np.float32])
-    kind = np.full(numbers.shape[1], kind_index(troop.kind), np.int32)
+    """Return the motion of a group, from the cache if it is there; see `_numbers_of`."""
+    make = partial(_numbers_of, group, number, around, ground)
+    inputs = _depends_on(group, number, around, driven)
+    numbers = cached(Kind.MOTION, make, inputs, of=NDArray[np.float32])
+    kind = np.full(numbers.shape[1], kind_index(group.kind), np.int32)
     return Motion(numbers.view(SAMPLE)[..., 0], kind, around.clock.rate, 0.0)
 
 
-def _made(
-    troop: Troop,
-    number: int,
-    around: Surroundings,
-    driven: bool,
-    ground: Callable[[], "Ground"],
-) -> _Part:
-    """Return how the motion of a troop is made, and what it depends on.
+def _numbers_of(
+    group: ScriptedGroup, number: int, around: Surroundings, ground: Callable[[], "Ground"]
+) -> NDArray[np.float32]:
+    """Return the numbers of the samples of a group's motion.
 
     Args:
-        troop: Who moves.
-        number: Which of the crowd's troops it is.
+        group: Who moves.
+        number: Which of the crowd's groups it is.
         around: Where and when it moves.
-        driven: Whether vehicles drive there.
         ground: Returns the ground.
     """
+    from eyas.behaviours.scripted import scripted_table  # with shapely
+
+    rng = stream(around.seed, "crowd", number, zlib.crc32(group.kind.encode()))
+    table = scripted_table(ground(), group, around.clock, rng, around.vehicles)
+    return table.view(np.float32).reshape(*table.shape, -1)
+
+
+def _depends_on(
+    group: ScriptedGroup, number: int, around: Surroundings, driven: bool
+) -> tuple[object, ...]:
+    """Return what `_numbers_of` depends on; `driven`: whether vehicles drive there."""
     scene, clock, seed, vehicles, lights = around
-
-    def made() -> NDArray[np.float32]:
-        from eyas.behaviours.scripted import scripted_table  # with shapely
-
-        rng = stream(seed, "crowd", number, zlib.crc32(troop.kind.encode()))
-        table = scripted_table(ground(), troop, clock, rng, vehicles)
-        return table.view(np.float32).reshape(*table.shape, -1)
-
-    crosses = troop.behaviour is Behaviour.CROSSING
-    heeds = crosses or (scene.footways.told and troop.behaviour is Behaviour.PAVEMENT)
+    crosses = group.behaviour is Behaviour.CROSSING
+    heeds = crosses or (scene.footways.told and group.behaviour is Behaviour.PAVEMENT)
     waits_for = (vehicles.table, vehicles.kind) if heeds and vehicles is not None else ()
-    obeys = tuple(lights) if crosses and lights is not None else ()
-    depends_on = (
-        *(*_plan_of(scene), *troop.lives, troop[:3], troop[4:], clock, seed, number),
-        *(driven, *waits_for, *obeys),
-    )
-    return _Part(depends_on, made)
+    obeys = lights if crosses else None
+    moves = group._replace(setting="", chosen_by="")  # which only messages name
+    return (_ground, _plan_of(scene), moves, clock, seed, number, driven, waits_for, obeys)
 
 
-def _troops(crowd: Crowd, clock: Clock) -> list[Troop]:
-    troops = []
+def _groups(crowd: Crowd, clock: SampleClock) -> list[ScriptedGroup]:
+    groups = []
     if crowd.custom is None and not crowd.follows_vehicles:
         lives = _lives(crowd, clock)
         target = ExtraConfig(kind=crowd.target)
-        troops.append(_troop(target, lives, crowd.objects.offset, "objects.max_count"))
+        groups.append(_group(target, lives, crowd.objects.offset, "objects.max_count"))
     for number, extra in enumerate(crowd.extras):
         if not extra.is_traffic:
             lives = lasting(extra.count, clock.samples)
-            one = _troop(extra, lives, _ASIDE, f"extras.{number}.count")
-            troops.append(one._replace(chosen_by=f"extras.{number}.behaviour"))
-    return troops
+            one = _group(extra, lives, _ASIDE, f"extras.{number}.count")
+            groups.append(one._replace(chosen_by=f"extras.{number}.behaviour"))
+    return groups
 
 
-def _lives(crowd: Crowd, clock: Clock) -> Lives:
+def _lives(crowd: Crowd, clock: SampleClock) -> Lifetimes:
     return recycled(crowd.objects, clock.samples, clock.rate, crowd.episode, crowd.followers)
 
 
@@ -231,10 +221,18 @@ def _custom(crowd: Crowd, custom: CustomConfig, around: Surroundings, ground: "G
     return custom_motion(custom, places, ground, clock, stream(around.seed, "custom"))
 
 
-def _troop(extra: ExtraConfig, lives: Lives, offset: Variation, setting: str) -> Troop:
+def _group(extra: ExtraConfig, lives: Lifetimes, offset: Variation, setting: str) -> ScriptedGroup:
     models = [MODELS[model] for model in models_of(kind_index(extra.kind))]
     breadth = max(float(exact.hypot(*model.size[:2])) for model in models)
-    return Troop(extra.kind.value, breadth, extra.behaviour, lives, offset, setting)
+    return ScriptedGroup(
+        kind=extra.kind.value,
+        breadth=breadth,
+        behaviour=extra.behaviour,
+        habit=habit_of(extra.kind.value),
+        lives=lives,
+        offset=offset,
+        setting=setting,
+    )
 
 
 def _plan_of(scene: Scene) -> tuple[object, ...]:
@@ -243,7 +241,7 @@ def _plan_of(scene: Scene) -> tuple[object, ...]:
     told = scene.footways
     return (
         *(told.kerb_points, told.kerb_first, told.crossings, told.lights),
-        *(scene.name, scene.size, *scene.terrain, scene.network.graph_hash),
+        *(scene.name, scene.size, scene.terrain, scene.network),
         *(mesh.positions, mesh.triangles, scene.static_object, scene.object_class),
         *(fixtures.pose, fixtures.prototype, colliders.prism_points, colliders.prism_first),
         *(colliders.prism_bottom, colliders.prism_top, colliders.cylinder_centre),

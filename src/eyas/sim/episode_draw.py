@@ -171,8 +171,8 @@ def _draw_world(draw: EpisodeDraw, n: int) -> None:
         sky, sun, density = change_light(draw.light, draw.state)
         for other in range(len(draw.world_of)):
             if draw.world_of[other] == world:
-                factors = draw.snapshot.light[other]
-                factors[0], factors[1], factors[2] = sky, sun, density
+                light = draw.snapshot.light
+                light.sky[other], light.sun[other], light.fog_density[other] = sky, sun, density
     if draw.rules.varied_field == 1:  # a stream costs a microsecond
         _stream(draw, n, _CAMERA)
     draw.snapshot.cameras.field_of_view[n] = drawn(draw.rules.field_of_view, draw.state)

@@ -29,9 +29,9 @@ from eyas.targets.catalogue import MODELS, kind_of
 from eyas.traffic.replay import check_time
 from eyas.traffic.source import TrafficSource
 
-__all__ = ["Draw", "Episodes"]
+__all__ = ["Episodes", "Sampler"]
 
-Draw = Callable[[int, EpisodeKey], None]
+Sampler = Callable[[int, EpisodeKey], None]
 """Draws something for the episode of a tracker."""
 
 _follow = interpreted(follow)
@@ -51,7 +51,7 @@ class Episodes:
         light: The light around them.
         snapshot: State of N trackers; this class sets its episodes and targets, and the
             fields of view of its cameras.
-        draws: What else is drawn for an episode.
+        samplers: Sample what else is random in an episode.
     """
 
     def __init__(
@@ -61,9 +61,9 @@ class Episodes:
         worlds: Worlds,
         light: LightChanges,
         snapshot: Snapshot,
-        draws: Sequence[Draw] = (),
+        samplers: Sequence[Sampler] = (),
     ) -> None:
-        self._draws = tuple(draws)
+        self._samplers = tuple(samplers)
         count = len(snapshot.episodes.number)
         self._streams = Streams(np.full(count, config.seed, np.int64), np.arange(count))
         self._traffic, self._worlds = traffic, worlds
@@ -148,9 +148,9 @@ class Episodes:
             if stopped >= 0:
                 self._traffic.prepare(more * PHYSICS_STEP)
                 self._bind()
-        for draw in self._draws:
+        for sampler in self._samplers:
             for tracker in trackers.tolist():
-                draw(tracker, self.key(tracker))
+                sampler(tracker, self.key(tracker))
         return pitch
 
     def follow(self, tracker: int, actor: int) -> None:

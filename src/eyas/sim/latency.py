@@ -1,7 +1,7 @@
 """Latencies, and late commands: the delays of a radio link or an autopilot.
 
-They are whole physics steps of 2 ms, drawn for each tracker and episode. No time is lost where the
-settings have no delay.
+They are whole physics steps of 2 ms, sampled for each tracker and episode. No time is lost where
+the settings have no delay.
 """
 
 from collections.abc import Iterator
@@ -26,11 +26,11 @@ def is_always_0(latency: Variation) -> bool:
 
 
 class Latency:
-    """A latency of N trackers, drawn at each reset.
+    """A latency of N trackers, sampled at each reset.
 
     Attributes:
         steps: The latency of each tracker in physics steps, shape (N,).
-        most: The longest that may be drawn.
+        most: The longest that is possible.
 
     Args:
         latency: Physics steps.
@@ -43,8 +43,8 @@ class Latency:
         self.steps: Integers = np.zeros(count, np.int64)
         self.most = round(bounds(latency)[1])
 
-    def draw(self, tracker: int, key: EpisodeKey) -> None:
-        """Draw the latency of a tracker's episode."""
+    def sample(self, tracker: int, key: EpisodeKey) -> None:
+        """Sample the latency of a tracker's episode."""
         self.steps[tracker] = round(sample(self._latency, key.stream(self._name)))
 
 
@@ -59,9 +59,9 @@ class LateCommands:
     """
 
     def __init__(self, latency: Variation, count: int) -> None:
-        self._drawn = Latency(latency, "action_latency", count)
+        self._latency = Latency(latency, "action_latency", count)
         # One command may come in each step: those under way, the one in force, and the new one.
-        slots = self._drawn.most + 2
+        slots = self._latency.most + 2
         self._commands = np.zeros((slots, count, 4))
         self._since: Integers = np.full((slots, count), _NEVER)
         self._next = 0
@@ -71,9 +71,9 @@ class LateCommands:
         """Return late commands; None if they are always in time."""
         return None if is_always_0(latency) else cls(latency, count)
 
-    def draw(self, tracker: int, key: EpisodeKey) -> None:
-        """Draw the latency of a tracker's episode, and forget the commands of the last one."""
-        self._drawn.draw(tracker, key)
+    def sample(self, tracker: int, key: EpisodeKey) -> None:
+        """Sample the latency of a tracker's episode, and forget the commands of the last one."""
+        self._latency.sample(tracker, key)
         self._since[:, tracker] = _NEVER
         self._commands[self._next, tracker] = 0.0
         self._since[self._next, tracker] = -1  # before any that is given
@@ -88,7 +88,7 @@ class LateCommands:
         """
         self._next = (self._next + 1) % len(self._since)
         self._commands[self._next] = commands
-        self._since[self._next] = clock + self._drawn.steps
+        self._since[self._next] = clock + self._latency.steps
         times = clock + np.arange(steps)[:, np.newaxis]
         given = np.where(self._since <= times[:, np.newaxis], self._since, -2)
         slot = given.argmax(axis=1)

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from eyas.core.variation import Rule, drawn, rule_of
 from eyas.lanes import kernel
-from eyas.state.lighting import Lighting
+from eyas.state.lighting import Lighting, LightState
 from eyas.world.config import LightConfig
 
 __all__ = ["LightChanges", "LightRules", "change_light"]
@@ -67,14 +67,13 @@ class LightChanges:
     Args:
         config: The settings.
         weather: The weather's own light.
-        factors: `Snapshot.light`, shape (N, 3); set here.
+        changes: `Snapshot.light`; set here.
     """
 
-    def __init__(
-        self, config: LightConfig, weather: Lighting, factors: NDArray[np.float32]
-    ) -> None:
-        self._factors = factors
-        factors[:] = 1.0, 1.0, weather.fog_density
+    def __init__(self, config: LightConfig, weather: Lighting, changes: LightState) -> None:
+        self._changes = changes
+        changes.sky[:] = changes.sun[:] = 1.0
+        changes.fog_density[:] = weather.fog_density
         visible = weather.foggy and config.visibility is not None
         self.rules = LightRules(
             changes=int(config != _UNCHANGED),
@@ -89,6 +88,8 @@ class LightChanges:
             fog_density=float(weather.fog_density),
         )
 
-    def of(self, trackers: NDArray[np.integer]) -> NDArray[np.float32] | None:
+    def of(self, trackers: NDArray[np.integer]) -> LightState | None:
         """Return `Views.light` of trackers; None if the light of the weather is unchanged."""
-        return self._factors.take(trackers, axis=0) if self.rules.changes else None
+        if not self.rules.changes:
+            return None
+        return LightState(*(array.take(trackers) for array in self._changes))

@@ -5,8 +5,6 @@ of a season.
 import logging
 from collections.abc import Callable, Sequence
 from functools import lru_cache, partial
-from importlib.metadata import version
-from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,24 +20,24 @@ from eyas.state.draw import PartLibrary
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import Scene
 from eyas.targets.catalogue import KINDS
+from eyas.targets.kind import Kind as TargetKind
 from eyas.targets.rig import part_library
 from eyas.traffic.network import build_network
 from eyas.world.maps import MAPS
+from eyas.world.maps.recipe import MapRecipe
 from eyas.world.street.signals import lens_levels
 from eyas.world.weather import Season
 
-__all__ = ["load_geometry", "load_network", "load_scene", "load_solids", "paint"]
+__all__ = [
+    "load_geometry",
+    "load_network",
+    "load_scene",
+    "load_solids",
+    "load_textures",
+    "paint",
+]
 
 _LOG = logging.getLogger("eyas")
-
-Thing = TypeVar("Thing")
-
-_MAKERS = ("world", "mesh", "state", "core/rng.py")
-"""Packages whose source files determine a scene."""
-
-
-_SHAPERS = ("sensors/furniture.py", "sensors/crowns.py", "sensors/grid.py", "sensors/obstacles.py")
-"""Files that make solids of a scene."""
 
 
 def load_network(map_name: str, seed: int) -> RoadNetwork:
@@ -62,20 +60,56 @@ def load_scene(map_name: str, seed: int = 0, season: Season = Season.SUMMER) -> 
 def _scene(map_name: str, seed: int, season: Season) -> Scene:
     # `lru_cache` would tell calls apart that leave out defaults, and build the map for each.
     recipe, network = MAPS.get(map_name), load_network(map_name, seed)
+    text, origin = _text_of(map_name, seed), _origin(map_name, seed, season)
+    make = partial(_built, text, network, season, recipe.name)
+    return make() if origin is None else cached(Kind.SCENE, make, origin, of=Scene)
 
-    def make() -> Scene:
-        _LOG.info("building the map '%s', once", recipe.name)
-        return recipe.scene(network, seed, season)
 
-    return _cached(Kind.SCENE, (), _origin(map_name, seed, season, network), make, Scene)
+def _built(text: NDArray[np.uint8], network: RoadNetwork, season: Season, name: str) -> Scene:
+    from eyas.world.plan.build import build_scene  # not needed where the scene is kept
+    from eyas.world.plan.file import plan_of
+
+    _LOG.info("building the map '%s', once", name)
+    return build_scene(plan_of(text.tobytes()), network, season)
+
+
+@lru_cache(maxsize=4)
+def _text_of(map_name: str, seed: int) -> NDArray[np.uint8]:
+    """Return the plan of a map as its file tells it, UTF-8.
+
+    It is kept apart from what is built of it: a change of a shape places nothing anew, and a
+    change of a planner builds anew only what it has placed elsewhere.
+    """
+    recipe, network = MAPS.get(map_name), load_network(map_name, seed)
+    make, data = partial(_planned, recipe, network, seed), recipe.data_hash()
+    if data is None:
+        return make()
+    return cached(Kind.PLAN, make, (recipe.plan, data, seed, network), of=NDArray[np.uint8])
+
+
+def _planned(recipe: MapRecipe, network: RoadNetwork, seed: int) -> NDArray[np.uint8]:
+    from eyas.world.plan.file import text_of
+
+    return np.frombuffer(text_of(recipe.plan(network, seed)).encode(), np.uint8)
+
+
+@lru_cache(maxsize=4)
+def _origin(map_name: str, seed: int, season: Season) -> tuple[object, ...] | None:
+    """Return what a scene, and so all that is made of it, depends on.
+
+    None for a map without a folder: nobody knows what it is made of, so nothing is kept on disk.
+    """
+    if MAPS.get(map_name).data_hash() is None:
+        return None
+    return _built, _text_of(map_name, seed), season.value, load_network(map_name, seed)
 
 
 @lru_cache(maxsize=4)
 def load_solids(map_name: str, seed: int, season: Season) -> Solids:
     """Return everything on a map that rays and bodies may meet."""
-    scene = load_scene(map_name, seed, season)
-    origin = _origin(map_name, seed, season, scene.network)
-    return _cached(Kind.SOLIDS, _SHAPERS, origin, partial(solids_of, scene), Solids)
+    make = partial(solids_of, load_scene(map_name, seed, season))
+    origin = _origin(map_name, seed, season)
+    return make() if origin is None else cached(Kind.SOLIDS, make, origin, of=Solids)
 
 
 @lru_cache(maxsize=4)
@@ -92,41 +126,23 @@ def load_geometry(
         signals: Whether the lights of signals are parts, too, the last ones.
     """
     scene = load_scene(map_name, seed, season)
-    names = tuple(KINDS[kind].name for kind in kinds)
-    origin = _origin(map_name, seed, season, scene.network)
-
-    def make() -> Geometry:
-        other_is_ready()  # which may be to `paint`
-        return build_geometry(scene, _with_lights(_parts(kinds), wanted=signals), _textures())
-
-    inputs = None if origin is None else (*origin, names, signals)
-    return _cached(Kind.GEOMETRY, ("render", "targets"), inputs, make, Geometry)
+    make = partial(_packed, scene, partial(_parts, kinds), load_textures, signals=signals)
+    origin = _origin(map_name, seed, season)
+    if origin is None:
+        return make()
+    inputs = (*origin, part_library, _chosen(kinds), build_textures, signals)
+    return cached(Kind.GEOMETRY, make, inputs, of=Geometry)
 
 
-def _origin(
-    map_name: str, seed: int, season: Season, network: RoadNetwork
-) -> tuple[object, ...] | None:
-    """Return the key that identifies a scene in the cache.
-
-    None for a map without a package: there are no source files to tell its versions apart, so
-    data made from its scenes is not kept on disk.
-    """
-    recipe = MAPS.get(map_name)
-    sources = recipe.source_hash()
-    if sources is None:
-        return None
-    roads = network.graph_hash, network.builder, version("shapely")
-    return (recipe.name, sources, seed, season.value, *roads)
-
-
-def _cached(
-    kind: Kind,
-    makers: tuple[str, ...],
-    inputs: tuple[object, ...] | None,
-    make: Callable[[], Thing],
-    of: type[Thing],
-) -> Thing:
-    return make() if inputs is None else cached(kind, (*makers, *_MAKERS), inputs, make, of=of)
+def _packed(
+    scene: Scene,
+    parts: Callable[[], PartLibrary],
+    textures: Callable[[], dict[str, NDArray[np.uint8]]],
+    *,
+    signals: bool,
+) -> Geometry:
+    other_is_ready()  # which may be to `paint`
+    return build_geometry(scene, _with_lights(parts()) if signals else parts(), textures())
 
 
 def paint(kinds: Sequence[int]) -> None:
@@ -135,36 +151,26 @@ def paint(kinds: Sequence[int]) -> None:
     Args:
         kinds: See `load_geometry`.
     """
-    _textures()
+    load_textures()
     _parts(tuple(kinds))
 
 
+def _chosen(kinds: tuple[int, ...]) -> tuple[TargetKind, ...]:
+    return tuple(KINDS[kind] for kind in kinds)
+
+
 def _parts(kinds: tuple[int, ...]) -> PartLibrary:
-    chosen = tuple(KINDS[kind] for kind in kinds)
-    names = tuple(kind.name for kind in chosen)
-    return cached(
-        Kind.PARTS,
-        ("targets", "mesh", "state"),
-        names,
-        lambda: part_library(chosen),
-        of=PartLibrary,
-    )
+    chosen = _chosen(kinds)
+    return cached(Kind.PARTS, partial(part_library, chosen), chosen, of=PartLibrary)
 
 
-def _with_lights(parts: PartLibrary, *, wanted: bool) -> PartLibrary:
-    """Return a library with the lights of signals after its other parts, if they are wanted."""
-    if not wanted:
-        return parts
+def _with_lights(parts: PartLibrary) -> PartLibrary:
+    """Return a library with the lights of signals after its other parts."""
     lenses = lens_levels()
     lamps = parts.lamps or (False,) * len(parts.parts)
     return PartLibrary((*parts.parts, *lenses), (*lamps, *(False for _ in lenses)))
 
 
-def _textures() -> dict[str, NDArray[np.uint8]]:
-    return cached(
-        Kind.TEXTURES,
-        ("render", "world/build/materials.py"),
-        (),
-        build_textures,
-        of=dict[str, NDArray[np.uint8]],
-    )
+def load_textures() -> dict[str, NDArray[np.uint8]]:
+    """Return all textures by name."""
+    return cached(Kind.TEXTURES, build_textures, (), of=dict[str, NDArray[np.uint8]])

@@ -11,9 +11,9 @@ from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.episodes import Episodes
 from eyas.sim.light import LightChanges
-from eyas.sim.perception import Perception
-from eyas.sim.sight import Sight
 from eyas.sim.stepper import Stepper
+from eyas.sim.views.delay import SeenState
+from eyas.sim.views.view import View
 from eyas.sim.worlds import Worlds
 from eyas.state.draw import DrawStage, Picture
 from eyas.state.motion import ActorState
@@ -50,7 +50,7 @@ class Simulation:
         count: N.
         traffic: Everything that moves by itself; live traffic takes reactions.
         snapshot: The state of everything; its arrays are written in place by each step.
-        perception: What agents see of it, now or late.
+        view: What agents see of it, now or late.
         judged: Whether views are rewarded and limits end episodes, see `TrackerConfig.judged`.
 
     Args:
@@ -71,12 +71,12 @@ class Simulation:
         light = LightChanges(config.light, assets.lighting, self.snapshot.light)
         self._worlds = worlds
         self._stepper = Stepper(config, assets, tracker, worlds, self.snapshot)
-        senses, sight, draws = self._stepper.senses, self._stepper.sight, self._stepper.draws
-        self._episodes = Episodes(config, assets.traffic, worlds, light, self.snapshot, draws)
-        view = partial(Perception, config, assets, worlds, light, senses, visible=tracker.visible)
-        self._view = self.perception = view(sight)
-        if sight.is_late:
-            self._view = view(Sight.on_time(self.snapshot, senses.told))
+        sensors, seen, samplers = self._stepper.sensors, self._stepper.seen, self._stepper.samplers
+        self._episodes = Episodes(config, assets.traffic, worlds, light, self.snapshot, samplers)
+        view = partial(View, config, assets, worlds, light, sensors, visible=tracker.visible)
+        self._present = self.view = view(seen)
+        if seen.is_late:
+            self._present = view(SeenState.on_time(self.snapshot, sensors.told))
         rules = make_rules(config.reward, config.done, config.camera)
         own = config.tracker.judged
         self.judged = tracker.judged if own is None else own
@@ -208,7 +208,7 @@ class Simulation:
 
         The sensors' columns of the basic packets are what the sensors read, with their errors.
         """
-        return self._view.packets()
+        return self._present.packets()
 
     def classes_of(self, objects: NDArray[np.integer]) -> NDArray[np.int64]:
         """Return the `ObjectClass` of objects, or `DRONE_CLASS`; -1 for the id -1, shape (K,).
@@ -236,7 +236,7 @@ class Simulation:
             until: The stage at which to stop; see `Renderer.draw`.
         """
         rules = self.rules if overlay else None
-        self._view.draw(np.asarray(trackers, np.int32), picture, until, rules)
+        self._present.draw(np.asarray(trackers, np.int32), picture, until, rules)
 
     def draw_from(
         self,
@@ -256,7 +256,7 @@ class Simulation:
             overlay: Whether to draw all trackers of that world and their overlays over the colours.
         """
         chosen, rules = np.asarray(trackers, np.int32), self.rules if overlay else None
-        self._view.pictures.draw_from(chosen, cameras, picture, rules)
+        self._present.pictures.draw_from(chosen, cameras, picture, rules)
 
     def close(self) -> None:
         """End live traffic, if that is what drives; may be called twice."""

@@ -14,11 +14,11 @@ from eyas.sensors.inertial import smoothing_share
 from eyas.sensors.mount import CARRIED, mount_of
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
-from eyas.sim.episodes import Draw
+from eyas.sim.episodes import Sampler
 from eyas.sim.latency import LateCommands
-from eyas.sim.senses import Senses
-from eyas.sim.sight import Sight
 from eyas.sim.step import Orders, StepState, Surroundings, step_of
+from eyas.sim.views.delay import SeenState
+from eyas.sim.views.sensor_suite import SensorSuite
 from eyas.sim.worlds import Worlds
 from eyas.state.snapshot import Snapshot
 from eyas.task.config import StartVelocity
@@ -35,9 +35,9 @@ class Stepper:
     kept to be seen later, after each.
 
     Attributes:
-        senses: What is sensed after each physics step.
-        sight: What agents see.
-        draws: Called with each tracker and the key of its episode that begins.
+        sensors: What is sensed after each physics step.
+        seen: The state that agents see.
+        samplers: Called with each tracker and the key of its episode that begins.
 
     Args:
         config: The settings.
@@ -68,14 +68,14 @@ class Stepper:
         self._orders = Orders.create(count)
         self._held_orders = Held(self._orders)
         active, bodies = self._orders.active, tracker.visible
-        self.senses = Senses(config, assets, worlds, snapshot, active, bodies=bodies)
+        self.sensors = SensorSuite(config, assets, worlds, snapshot, active, bodies=bodies)
         control = config.control
         self._late = LateCommands.of(control.action_latency_steps, count)
         camera, latency = config.sensors.camera, control.observation_latency_steps
-        self.sight = Sight(latency, camera, snapshot, self.senses.told)
-        self.draws: list[Draw] = [late.draw for late in (self._late, self.sight) if late]
+        self.seen = SeenState(latency, camera, snapshot, self.sensors.told)
+        self.samplers: list[Sampler] = [late.sample for late in (self._late, self.seen) if late]
         if tracker.draw:
-            self.draws.insert(0, partial(tracker.draw, self._memory))
+            self.samplers.insert(0, partial(tracker.draw, self._memory))
 
     def obey(self, rules: Rules) -> None:
         """Judge by these rules from the next step on."""
@@ -98,13 +98,13 @@ class Stepper:
         self._orders.chosen[:count] = chosen
         self._orders.starts[0] = count
         self._step.begin()
-        self.senses.begin(chosen.tolist(), key_of)
-        self.sight.begin(chosen)
+        self.sensors.begin(chosen.tolist(), key_of)
+        self.seen.begin(chosen)
 
     def fly(self, commands: Floats, steps: int, active: NDArray[np.bool_] | None) -> None:
         """Hold commands for some physics steps; see `Simulation.advance`."""
         self._orders.active[:] = True if active is None else active
-        self.senses.renew()
+        self.sensors.renew()
         pieces = [(commands, steps)]
         if self._late:
             clock = self._snapshot.episodes.step_count
@@ -116,20 +116,20 @@ class Stepper:
     def carry(self, steps: int) -> None:
         """Move all trackers with their targets."""
         self._orders.active[:] = True
-        self.senses.renew()
+        self.sensors.renew()
         self._take(self._step.carry, steps)
 
     def _take(self, step: BoundCall, steps: int) -> None:
         if self._traffic.live:
             last = int(self._snapshot.episodes.tick.max()) + steps
             self._traffic.prepare(last * PHYSICS_STEP)
-        if not self.senses.follow and not self.sight.is_late:
+        if not self.sensors.follow and not self.seen.is_late:
             self._orders.steps[0] = steps
             step()
             return
         self._orders.steps[0] = 1
         for _ in range(steps):
             step()
-            self.senses.advance()
-            self.sight.record()
-        self.sight.see()
+            self.sensors.advance()
+            self.seen.record()
+        self.seen.see()

@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from eyas.core.clock import PHYSICS_STEP
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
-from eyas.sim.near import NearMovers
+from eyas.sim.views.visible_actors import VisibleActors
 from eyas.state.draw import DrawList
 from eyas.state.motion import ActorState
 from eyas.state.scene import ACTOR_OBJECT, DRONE_CLASS
@@ -81,7 +81,7 @@ class Worlds:
         )
         renderer, rigs = assets.renderer, assets.rigs
         reach = renderer.influence(rigs.reach(renderer.part_reach()))
-        self._near = NearMovers(assets.traffic.motion, rigs, self.looks, reach)
+        self._near = VisibleActors(assets.traffic.motion, rigs, self.looks, reach)
 
     @property
     def models(self) -> NDArray[np.int32]:

@@ -1,1 +1,5 @@
-"""Data only: records of arrays that the rooms pass to each other."""
+"""Records of arrays that the rooms share; no behaviour.
+
+May import: `core`, `lanes`.
+Begin with `snapshot.py`. Private: `eyas` offers what is public.
+"""

@@ -1,8 +1,12 @@
-"""Light and air of a weather, and the hills on the horizon: data defined by recipes."""
+"""Light and air of a weather, how they vary, and the hills on the horizon."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
-__all__ = ["Horizon", "Lighting"]
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["Horizon", "LightState", "Lighting"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -58,7 +62,18 @@ class Lighting:
     flakes: float = 0.0
     """Density of falling snow: 0 none, 1 heavy snowfall."""
 
-    @property
-    def night(self) -> bool:
-        """Whether the moon shines in place of the sun."""
-        return self.luminosity < 1.0
+
+class LightState(NamedTuple):
+    """What differs from the weather's light around each of N trackers, or in each of N views."""
+
+    sky: NDArray[np.float32]
+    """Factor on the sky and its light, shape (N,)."""
+    sun: NDArray[np.float32]
+    """Factor on the sun, shape (N,)."""
+    fog_density: NDArray[np.float32]
+    """One over the visibility range [1/m], shape (N,)."""
+
+    @classmethod
+    def create(cls, count: int) -> "LightState":
+        """Return factors of 1, and a visibility range of 1 m."""
+        return cls(*np.ones((3, count), np.float32))

@@ -124,11 +124,11 @@ class Lamps:
 
 @dataclass(slots=True)
 class Footways:
-    """Where people walk on an imported map, in plan view: beside R kerbs, over C crossings."""
+    """Where people walk, in plan view: beside R kerbs, over C crossings."""
 
     kerb_points: NDArray[np.float64]
     """Outlines of the asphalt, which lies on their left [m], shape (K, 2); the first point of each
-    is also its last."""
+    is also its last. None where pavements lie along the network."""
     kerb_first: NDArray[np.int32]
     """Start of each outline's points, shape (R + 1,)."""
     crossings: NDArray[np.float64]
@@ -138,12 +138,12 @@ class Footways:
 
     @property
     def told(self) -> bool:
-        """Whether the map tells them."""
+        """Whether the map tells its kerbs."""
         return len(self.kerb_first) > 1
 
     @classmethod
     def none(cls) -> "Footways":
-        """Return those of a map whose pavements lie along its network."""
+        """Return those of a map without crossings, whose pavements lie along its network."""
         return cls(np.zeros((0, 2)), np.zeros(1, np.int32), np.zeros((0, 2, 2)), ())
 
 
@@ -176,7 +176,7 @@ class Scene:
     horizon: Horizon = field(default_factory=Horizon)
     """Hills all around the map, far beyond its edge."""
     footways: Footways = field(default_factory=Footways.none)
-    """Where people walk, on imported maps."""
+    """Where people walk."""
 
     @classmethod
     def empty(cls) -> "Scene":

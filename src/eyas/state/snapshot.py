@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.state.episode import EpisodeState
+from eyas.state.lighting import LightState
 
 __all__ = [
     "CameraState",
@@ -165,9 +166,7 @@ class Snapshot(NamedTuple):
     cameras: CameraState
     targets: TargetState
     episodes: EpisodeState
-    light: NDArray[np.float32]
-    """Factor on the sky and its light, factor on the sun, one over the visibility range [1/m],
-    shape (N, 3)."""
+    light: LightState
 
     @classmethod
     def create(cls, count: int) -> "Snapshot":
@@ -177,7 +176,7 @@ class Snapshot(NamedTuple):
             CameraState.create(count),
             TargetState.create(count),
             EpisodeState.create(count),
-            np.ones((count, 3), np.float32),
+            LightState.create(count),
         )
 
     def copy(self) -> "Snapshot":

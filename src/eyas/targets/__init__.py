@@ -1,1 +1,5 @@
-"""Targets: the catalogue of their kinds and models, with shapes and sizes."""
+"""The catalogue of what can be followed: kinds and models, shapes, sizes, colours, words.
+
+May import: `traffic` and all rooms below.
+Begin with `catalogue.py`. Private: `eyas` offers what is public.
+"""

@@ -1,6 +1,8 @@
 """The catalogue: all kinds of targets and all their models.
 
-A new kind is a file with its shapes and its rig, and one call of `register`.
+A model is one entry in one file: vehicles in `vehicles/models`, robots in `jointed/robots`, people
+in the table `jointed/people/people.py`. A new kind is a file with its models and its rig, and one
+call of `register`.
 """
 
 import numpy as np
@@ -8,6 +10,7 @@ from numpy.typing import NDArray
 
 from eyas.lanes.elementary.arrays import cos
 from eyas.state.scene import ObjectClass
+from eyas.targets.habit import Habit
 from eyas.targets.jointed.kinds import JOINTED_KINDS
 from eyas.targets.kind import Kind, Model, Section
 from eyas.targets.quadrotor import QUADROTOR
@@ -17,6 +20,7 @@ __all__ = [
     "KINDS",
     "MODELS",
     "extent_of",
+    "habit_of",
     "kind_index",
     "kind_of",
     "model_index",
@@ -38,15 +42,18 @@ def register(kind: Kind) -> None:
     """Add a kind and its models; existing ones keep their indices.
 
     Raises:
-        ValueError: A name is taken, or a model belongs to another kind.
+        ValueError: A name is taken, a model belongs to another kind, or something is missing.
     """
     taken = {known.name for known in KINDS} & {kind.name}
-    taken |= {known.name for known in MODELS} & {model.name for model in kind.models}
+    names = [known.name for known in (*MODELS, *kind.models)]
+    taken |= {model.name for model in kind.models if names.count(model.name) > 1}
     if taken:
         raise ValueError(f"targets: {sorted(taken)} are in the catalogue already")
     strangers = [model.name for model in kind.models if model.kind != kind.name]
     if strangers or not kind.models:
         raise ValueError(f"targets: {kind.name!r} needs models of its own, not {strangers}")
+    for model in kind.models:
+        model.check()
     KINDS.append(kind)
     MODELS.extend(kind.models)
 
@@ -54,6 +61,13 @@ def register(kind: Kind) -> None:
 def kind_index(name: str) -> int:
     """Return the index of a kind in `KINDS`."""
     return next(i for i, kind in enumerate(KINDS) if kind.name == name)
+
+
+def habit_of(kind: str) -> Habit:
+    """Return how a kind moves by itself, given by its name: a person or a robot."""
+    habit = KINDS[kind_index(kind)].habit
+    assert habit is not None
+    return habit
 
 
 def kind_of(model: int) -> Kind:

@@ -1,8 +1,8 @@
-"""Names of colours."""
+"""Names of colours, and the article before them."""
 
 from collections.abc import Sequence
 
-__all__ = ["COLOUR_NAMES", "colour_name"]
+__all__ = ["COLOUR_NAMES", "colour_name", "with_article"]
 
 COLOUR_NAMES: dict[str, tuple[float, float, float]] = {
     "black": (0.10, 0.12, 0.14),
@@ -44,3 +44,8 @@ def colour_name(colour: Sequence[float]) -> str:
         return (2.0 + mean) * red * red + 4.0 * green * green + (3.0 - mean) * blue * blue
 
     return min(COLOUR_NAMES, key=away)
+
+
+def with_article(noun: str) -> str:
+    """Return a noun after its indefinite article."""
+    return f"{'an' if noun[0].lower() in 'aeio' else 'a'} {noun}"

@@ -11,43 +11,85 @@ from eyas.state.draw import DrawList
 from eyas.state.mesh import Mesh
 from eyas.state.motion import ActorState
 from eyas.state.scene import ObjectClass
+from eyas.targets.habit import Habit
 
-__all__ = ["MANY", "Block", "Colour", "Group", "Kind", "Looks", "Model", "Rig", "Section"]
-
-MANY = 4096
-"""Actors from which on two threads pose them: waking one takes as long as some hundred actors."""
+__all__ = ["Block", "Colour", "Group", "Kind", "Looks", "Model", "Rig", "Section"]
 
 Colour = tuple[float, float, float]
 """sRGB, each 0 to 1."""
 
 
-class Model(Protocol):
-    """One model of a kind, such as one make of car."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Model:
+    """One model of a kind, such as one make of car: all that is known of it."""
+
+    name: str
+    """The original's name of the model; for others, one that no other has."""
+    typename: str
+    """The original's `typename` of a target of this model, which packets tell."""
+    kind: str
+    """Name of its kind."""
+    size: tuple[float, float, float]
+    """Length, width and height, standing, without antennas [m]."""
+    rise: float
+    """Height of the reference point above the ground [m]."""
+    words: tuple[str, ...]
+    """Phrases that describe it, from short to long, "a {} car": `{}` is the name of its colour.
+    One that is true of two models is a phrase of both: none that holds for others in view tells a
+    target."""
+    motion: str
+    """How it usually moves, in words."""
+    speed: float
+    """A usual speed [m/s]."""
+    stride: float
+    """Distance after which its motion repeats [m]: a stride, or a turn of its wheels."""
+    mass: float | None = None
+    """[kg]; None: not known."""
 
     @property
-    def name(self) -> str:
-        """The original's name of the model."""
-        ...
+    def length(self) -> float:
+        """Overall length [m]."""
+        return self.size[0]
 
     @property
-    def typename(self) -> str:
-        """The original's `typename` of a target of this model, which packets tell."""
-        ...
+    def width(self) -> float:
+        """Overall width, of vehicles with mirrors [m]."""
+        return self.size[1]
 
     @property
-    def kind(self) -> str:
-        """Name of its kind."""
-        ...
+    def height(self) -> float:
+        """Overall height [m]."""
+        return self.size[2]
 
-    @property
-    def size(self) -> tuple[float, float, float]:
-        """Length, width and height [m]."""
-        ...
+    def check(self) -> None:
+        """Raise a `ValueError` if something is missing or cannot be."""
+        if not self.words or not all(map(str.strip, self.words)):
+            raise ValueError(
+                f"targets: {self.name!r} has no words; allowed: phrases like 'a {{}} car'"
+            )
+        if not all(side > 0.0 for side in self.size):
+            raise ValueError(f"targets: {self.name!r} is {self.size} m; allowed: above 0")
 
-    @property
-    def rise(self) -> float:
-        """Height of the reference point above the road [m]."""
-        ...
+    def check_meshes(
+        self, points: NDArray[np.floating], tolerance: float, *, antennas: bool = False
+    ) -> None:
+        """Raise a `ValueError` if the meshes are not of the size that is said.
+
+        Args:
+            points: All points of the finest meshes of the resting model [m], shape (P, 3).
+            tolerance: Share of the size that they may differ by.
+            antennas: Whether something may stand out above.
+        """
+        ratio = np.ptp(points, axis=0) / self.size
+        wrong = np.abs(ratio - 1.0) > tolerance
+        wrong[2] &= not (antennas and ratio[2] > 1.0)
+        if wrong.any():
+            sides = " x ".join(f"{side:.2f}" for side in np.ptp(points, axis=0))
+            said = " x ".join(f"{side:.2f}" for side in self.size)
+            raise ValueError(
+                f"targets: {self.name!r} says that it is {said} m, but its meshes are {sides} m; "
+                f"allowed: {tolerance:.0%} more or less"
+            )
 
 
 class Block(NamedTuple):
@@ -160,5 +202,5 @@ class Kind:
     """Returns the box of a model at a moment, by its name, the way that it has travelled along the
     ground [m] and its speed [m/s]: least and largest x, y and z in the model frame [m], shape
     (2, 3). None: it is always that of its size."""
-    words: str = ""
-    """What any of it is in words, "a delivery robot"; empty: `eyas.targets.words` knows."""
+    habit: Habit | None = None
+    """How it moves off the traffic by itself; None: it cannot."""

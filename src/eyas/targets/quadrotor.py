@@ -2,7 +2,6 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,9 +12,9 @@ from eyas.state.draw import DrawList
 from eyas.state.mesh import Material, Mesh, Surface
 from eyas.state.motion import ActorState
 from eyas.state.scene import ObjectClass
-from eyas.targets.kind import Group, Kind, Looks
+from eyas.targets.kind import Group, Kind, Looks, Model
 
-__all__ = ["QUADROTOR", "QuadrotorModel", "quadrotor_levels"]
+__all__ = ["QUADROTOR", "quadrotor_levels"]
 
 _BODY = Material(tint=(0.46, 0.47, 0.49))
 _DARK = Material(tint=(0.17, 0.17, 0.18))
@@ -42,19 +41,6 @@ _HULL = (
     (0.116, 0.026, -0.018, 0.008),
 )
 """Sections of the hull: forward, half width, bottom, top [m]."""
-
-
-@dataclass(frozen=True, slots=True)
-class QuadrotorModel:
-    """A small camera drone, of the size of a DJI Mavic 2."""
-
-    name: str = "Quadrotor"
-    typename: str = "Quadrotor"
-    kind: str = "quadrotor"
-    size: tuple[float, float, float] = (0.405, 0.445, 0.11)
-    """With its rotors [m]."""
-    rise: float = 0.0
-    """Its reference point is its middle."""
 
 
 def quadrotor_levels() -> tuple[Mesh, Mesh, Mesh]:
@@ -107,7 +93,9 @@ def _arm(
 
 
 class QuadrotorRig:
-    """One part, at the heading of its actor; `eyas.sim.bodies` poses trackers, which may tilt."""
+    """One part, at the heading of its actor; `eyas.sim.views.additions` poses
+    trackers, which may tilt.
+    """
 
     slots = 1
     part_count = 1
@@ -135,7 +123,19 @@ class QuadrotorRig:
 
 QUADROTOR = Kind(
     name="quadrotor",
-    models=(QuadrotorModel(),),
+    models=(
+        Model(
+            name="Quadrotor",
+            typename="Quadrotor",
+            kind="quadrotor",
+            size=(0.405, 0.445, 0.11),  # with its rotors, as a DJI Mavic 2
+            rise=0.0,  # its reference point is its middle
+            words=("a grey drone", "a grey drone (Quadrotor)"),
+            motion="flies",
+            speed=0.0,
+            stride=1.0,
+        ),
+    ),
     colours=((1.0, 1.0, 1.0),),
     object_class=ObjectClass.ROBOT,
     rig=QuadrotorRig,

@@ -1,88 +1,57 @@
-"""Targets in words: "a red SUV", "a pedestrian in a blue coat".
+"""Words that tell a target from the others in view: "a red SUV", "a pedestrian in a blue coat".
 
-Each has a few phrases, the shortest first: vehicles their colour and class, then colour and body,
-then also the make; people what they wear, then also the rest of their looks; robots what they are,
-then also their name. `eyas.targets.telling` chooses one that nothing else in view shares.
+The shortest phrase of its model (`Model.words`) that no other shares is enough: "a red SUV". If
+even the longest is shared, the target is told by what it does, "a red SUV, turning left", or else
+by where it is in the picture: "a red SUV, the left one of two".
 """
 
-import math
 from collections.abc import Sequence
+from typing import Final, NamedTuple
 
+from eyas.state.scene import ObjectClass
 from eyas.targets.catalogue import MODELS, kind_of
-from eyas.targets.colour_names import colour_name
-from eyas.targets.config import TargetName
-from eyas.targets.jointed.models import JointedModel
-from eyas.targets.jointed.people.people import PEOPLE
-from eyas.targets.jointed.people.person import Garment, Hair, Person
-from eyas.targets.kind import Colour
-from eyas.targets.vehicles.models import VehicleModel
+from eyas.targets.colour_names import colour_name, with_article
 
-__all__ = [
-    "looks_in_words",
-    "motion_in_words",
-    "phrases",
-    "typical_motion",
-    "with_article",
-    "words_of",
-]
+__all__ = ["Seen", "looks_in_words", "phrases", "told_apart", "words_of"]
 
-_VEHICLES = {
-    "BmwX5Simple": ("{} car", "{} SUV", "{} BMW X5 SUV"),
-    "CitroenCZeroSimple": ("{} car", "small {} car", "small {} Citroen C-Zero"),
-    "ToyotaPriusSimple": ("{} car", "{} hatchback", "{} Toyota Prius hatchback"),
-    "LincolnMKZSimple": ("{} car", "{} sedan", "{} Lincoln MKZ sedan"),
-    "RangeRoverSportSVRSimple": (
-        "{} car", "{} SUV", "{} SUV with a black roof", "{} Range Rover Sport SUV"
-    ),
-    "TeslaModel3Simple": (
-        "{} car", "{} sedan", "{} sedan with a glass roof", "{} Tesla Model 3 sedan"
-    ),
-    "MercedesBenzSprinterSimple": ("{} van", "{} Mercedes Sprinter van"),
-    "BusSimple": ("{} bus",),
-    "TruckSimple": ("{} truck", "{} truck without a trailer"),
-    "TruckTrailerSimple": ("{} truck", "{} truck with a box trailer"),
-    "TruckTankSimple": ("{} truck", "{} truck with a tank trailer"),
-    "ScooterSimple": ("{} motorcycle", "{} scooter"),
-    "MotorbikeSimple": ("{} motorcycle", "{} motorbike"),
-}  # fmt: skip
-"""What stands for the colour and the noun, by model. A phrase that is true of two models is a
-phrase of both: none that holds for others in view tells a target."""
+_TURNING: Final = 0.15
+"""Yaw rate from which on something turns [rad/s]."""
 
-_ROBOTS: dict[str, str] = {
-    TargetName.SHRIMP: "a blue robot rover on six wheels",
-    TargetName.CREATE: "a white disc-shaped robot",
-    TargetName.SOJOURNER: "a gold robot rover under a solar panel",
-    TargetName.MANTIS: "a dark grey walking machine on six legs",
-    TargetName.BB_8: "a white and orange robot that rolls on a ball",
-    TargetName.AIBO_ERS7: "a white robot puppy with a black face",
-    TargetName.BIOLOID_DOG: "a robot dog of black motors and grey brackets",
-    TargetName.FIRE_BIRD_6: "a round salmon robot on blue wheels",
-    TargetName.SCOUT: "a red and magenta robot walker with a grey head",
-    TargetName.GHOST_DOG: "a white robot dog with red feet",
-    TargetName.HOAP_2: "a silver humanoid robot with a blue head",
-    "Quadrotor": "a grey drone",
-}
+_ASIDE: Final = 0.04
+"""Distance in the picture from which on left and right are seen [its width]."""
 
-_GARMENTS = {
-    Garment.SHIRT: "shirt",
-    Garment.T_SHIRT: "T-shirt",
-    Garment.COAT: "coat",
-    Garment.JACKET: "jacket",
-    Garment.DRESS: "dress",
-}
+_NUMBERS: Final = ("", "", "two", "three", "four", "five", "six", "seven", "eight", "nine")
 
-_HEADS = {
-    Hair.SHORT: "short {} hair",
-    Hair.LONG: "long {} hair",
-    Hair.BUN: "a bun of {} hair",
-    Hair.CAP: "a {} cap",
-    Hair.HAT: "a {} hat",
-}
+_ORDINALS: Final = ("first", "second", "third", "fourth", "fifth", "sixth", "seventh")
 
-_HAIR = {"beige": "blond"}
-"""Colours that have another name on a head."""
 
-_PEOPLE = {person.name: person for person in PEOPLE}
+class _Row(NamedTuple):
+    """Words for places in a row."""
+
+    of_two: tuple[str, str]
+    ends: tuple[str, str]
+    between: str
+
+
+_ACROSS: Final = _Row(("left", "right"), ("leftmost", "rightmost"), "{} from the left")
+_AWAY: Final = _Row(("nearer", "farther"), ("nearest", "farthest"), "{} nearest")
+
+
+class Seen(NamedTuple):
+    """What a camera sees of a moving object."""
+
+    model: int
+    """Index into `MODELS`."""
+    colour: Sequence[float]
+    """sRGB 0 to 1."""
+    speed: float
+    """[m/s]"""
+    yaw_rate: float
+    """Counter-clockwise [rad/s]."""
+    column: float
+    """From the left edge of the picture [its width]."""
+    distance: float
+    """From the camera, along its axis [m]."""
 
 
 def phrases(model: int, colour: Sequence[float]) -> tuple[str, ...]:
@@ -92,14 +61,11 @@ def phrases(model: int, colour: Sequence[float]) -> tuple[str, ...]:
         model: Index into `MODELS`.
         colour: Its colour, sRGB 0 to 1.
     """
-    if kind_of(model).words:
-        return (kind_of(model).words,)
-    name, seen = MODELS[model].name, colour_name(colour)
-    if name in _PEOPLE:
-        return _person(_PEOPLE[name], seen)
-    if name in _ROBOTS:
-        return (_ROBOTS[name], f"{_ROBOTS[name]} ({name})")
-    return tuple(with_article(noun.format(seen)) for noun in _VEHICLES[name])
+    seen = colour_name(colour)
+    return tuple(
+        phrase.replace("a {}", with_article(seen)).replace("{}", seen)
+        for phrase in MODELS[model].words
+    )
 
 
 def words_of(model: int, colour: Sequence[float]) -> str:
@@ -112,43 +78,61 @@ def looks_in_words(model: int) -> tuple[str, ...]:
 
     For what always looks the same, such as a robot: what it looks like.
     """
-    always = kind_of(model).words or _ROBOTS.get(MODELS[model].name)
-    if always:
-        return (always,)
-    colours: tuple[Colour, ...] = kind_of(model).colours
-    return tuple(dict.fromkeys(colour_name(colour) for colour in colours))
+    shortest = MODELS[model].words[0]
+    if "{}" not in shortest:
+        return (shortest,)
+    return tuple(dict.fromkeys(colour_name(colour) for colour in kind_of(model).colours))
 
 
-def motion_in_words(model: int) -> str:
-    """Return how a model usually moves."""
-    one = MODELS[model]
-    if isinstance(one, JointedModel):
-        return f"{one.motion}, {one.speed:g} m/s"
-    if isinstance(one, VehicleModel):
-        return "drives in traffic, up to 20 m/s"
-    return "moves as its settings say" if kind_of(model).words else "flies"
+def told_apart(target: Seen, others: Sequence[Seen]) -> str:
+    """Return the shortest description of a target that none of the others in view shares."""
+    rivals: dict[str, list[Seen]] = {own: [] for own in phrases(target.model, target.colour)}
+    for other in others:
+        for phrase in phrases(other.model, other.colour):
+            if phrase in rivals:
+                rivals[phrase].append(other)
+    phrase = min(rivals, key=lambda own: len(rivals[own]))  # the first of the best
+    alike = rivals[phrase]
+    if not alike:
+        return phrase
+    doing = _doing(target)
+    if doing not in {_doing(other) for other in alike}:
+        return f"{phrase}, {doing}"
+    return f"{phrase}, {_place(target, alike)}"
 
 
-def typical_motion(model: int) -> tuple[float, float]:
-    """Return a usual speed [m/s], and the distance after which its motion repeats [m]."""
-    one = MODELS[model]
-    if isinstance(one, JointedModel):
-        return one.speed, one.stride
-    if isinstance(one, VehicleModel):
-        return 8.0, 2.0 * math.pi * one.wheel_radius
-    return (1.0, 4.0 * one.size[0]) if kind_of(model).words else (0.0, 1.0)
+def _doing(seen: Seen) -> str:
+    kind = kind_of(seen.model).object_class
+    if seen.speed < kind_of(seen.model).slowest:
+        alive = kind in (ObjectClass.PERSON, ObjectClass.ROBOT)
+        spins = alive and abs(seen.yaw_rate) >= _TURNING
+        return "turning on the spot" if spins else "standing still"
+    if kind is ObjectClass.PERSON:
+        return "walking"
+    if kind is ObjectClass.ROBOT:
+        return "moving"
+    if abs(seen.yaw_rate) < _TURNING:
+        return "driving straight on"
+    return "turning left" if seen.yaw_rate > 0.0 else "turning right"
 
 
-def _person(person: Person, colour: str) -> tuple[str, ...]:
-    worn = f"a pedestrian in {with_article(f'{colour} {_GARMENTS[person.garment]}')}"
-    hair = colour_name(person.hair_colour)
-    head = f"with {_HEADS[person.hair].format(_HAIR.get(hair, hair))}"
-    if person.garment is Garment.DRESS:
-        return worn, f"{worn}, {head}"
-    below = f"{worn} and {colour_name(person.trousers)} trousers"
-    return worn, below, f"{below}, {head}"
+def _place(target: Seen, alike: Sequence[Seen]) -> str:
+    """Return which of those that look the same it is."""
+    beside = min(abs(other.column - target.column) for other in alike)
+    if beside >= _ASIDE:
+        rank = sum(other.column < target.column for other in alike)
+        return _ranked(rank, len(alike) + 1, _ACROSS)
+    rank = sum(other.distance < target.distance for other in alike)
+    return _ranked(rank, len(alike) + 1, _AWAY)
 
 
-def with_article(noun: str) -> str:
-    """Return a noun after its indefinite article."""
-    return f"{'an' if noun[0].lower() in 'aeio' else 'a'} {noun}"
+def _ranked(rank: int, count: int, words: _Row) -> str:
+    """Return words for a place in a row, counted from its beginning."""
+    if count == 2:
+        return f"the {words.of_two[rank]} one of two"
+    if rank in (0, count - 1):
+        place = words.ends[rank > 0]
+    else:
+        ordinal = _ORDINALS[rank] if rank < len(_ORDINALS) else f"{rank + 1}th"
+        place = words.between.format(ordinal)
+    return f"the {place} of {_NUMBERS[count] if count < len(_NUMBERS) else count}"

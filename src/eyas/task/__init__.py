@@ -1,1 +1,5 @@
-"""The task: start poses, rewards, done reasons, direction, packets."""
+"""The task: start poses, rewards, contacts, the end, the direction of the target, packets.
+
+May import: `sensors` and all rooms below.
+Begin with `reward.py`, then `done.py`. Private: `eyas` offers what is public.
+"""

@@ -17,13 +17,13 @@ from eyas.traffic.demand import (
     random_trips,
 )
 
-__all__ = ["Entry", "Fleet", "Links", "fleet_of", "simplest", "vehicle_types"]
+__all__ = ["Departure", "Fleet", "Links", "fleet_of", "simplest", "vehicle_types"]
 
 Links = Mapping[VehicleType, RoadLinks]
 """The roads, as each class of vehicles may use them."""
 
 
-class Entry(NamedTuple):
+class Departure(NamedTuple):
     """A vehicle that enters the roads."""
 
     time: float
@@ -32,7 +32,7 @@ class Entry(NamedTuple):
     vehicle_type: VehicleType
 
 
-Fleet = Callable[[Links], Iterator[Entry]]
+Fleet = Callable[[Links], Iterator[Departure]]
 """Function of the roads that yields the vehicles, the earliest first."""
 
 
@@ -76,19 +76,19 @@ def fleet_of(config: TrafficConfig, duration: float) -> Fleet:
     rng = stream(config.seed, "traffic")
     actors = vehicle_types(config)
 
-    def keep_alive(links: Links) -> Iterator[Entry]:
+    def keep_alive(links: Links) -> Iterator[Departure]:
         edges = {name: lasting_edges(links[name]) for name in dict.fromkeys(actors)}
         for name in actors:
             walk = endless_walk(links[name], edges[name], duration * config.max_speed, rng)
-            yield Entry(0.0, walk, name)
+            yield Departure(0.0, walk, name)
 
-    def respawn(links: Links) -> Iterator[Entry]:
+    def respawn(links: Links) -> Iterator[Departure]:
         lengths = config.route_length
         trips = {name: random_trips(links[name], lengths, rng) for name in dict.fromkeys(actors)}
         classes = _shuffled(actors, rng)
         for time, size in departures(config, duration):
             for name in (next(classes) for _ in range(size)):
-                yield Entry(time, next(trips[name]), name)
+                yield Departure(time, next(trips[name]), name)
 
     return keep_alive if config.demand is Demand.KEEP_ALIVE else respawn
 

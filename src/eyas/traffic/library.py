@@ -13,13 +13,14 @@ from eyas.core.cache.folder import Kind, cache_limit
 from eyas.core.config import shown
 from eyas.core.errors import DataFileError
 from eyas.core.files import user_path
+from eyas.core.program import code_of
 from eyas.lanes.folder import cache_folder, touch
 from eyas.state.roads import RoadGraph
 from eyas.traffic.config import Demand, Mix, TrafficConfig
 from eyas.traffic.network import graph_hash
 from eyas.traffic.record import GROUP_SHARE, WARM_UP, record, resolved
 from eyas.traffic.recording import Provenance, Recording, check_map
-from eyas.traffic.recording_file import FORMAT, RecordingFile, save, to_bytes
+from eyas.traffic.recording_file import RecordingFile, save, to_bytes
 from eyas.traffic.sumo import options
 from eyas.traffic.sumo_install import sumo_version
 
@@ -52,10 +53,6 @@ CANONICAL_MIX = Mix(passenger=0.7, bus=0.1, truck=0.1, trailer=0.05, motorcycle=
 
 STANDARD_DURATION = 1260.0
 """Default length of a recording: 21 minutes [s]."""
-
-_RECORDER = 1
-"""Increased by 1 when the same settings give different traffic, so that cached recordings are
-made anew."""
 
 
 def find_file(
@@ -169,8 +166,7 @@ def _cache_file(graph: RoadGraph, wanted: TrafficConfig, duration: float) -> Pat
         "duration": duration,
         "warm_up": WARM_UP,
         "options": options(wanted),
-        "recorder": _RECORDER,
-        "format": FORMAT,
+        "code": code_of(_recorded),
     }
     key = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:32]
     name = re.sub(r"[^\w.-]", "_", graph.map_name)
@@ -282,10 +278,13 @@ def _new(graph: RoadGraph, wanted: TrafficConfig, duration: float, reason: str) 
         *(duration, graph.map_name, version, reason, path),
     )
     assert wanted.seed is not None
-    made = record(graph.map_name, graph.seed, graph, wanted, duration, wanted.seed)
-    data = to_bytes(made)
+    data = _recorded(graph, wanted, duration, wanted.seed)
     try:
         write_entry(path, [data], limit)
     except OSError as error:
         _LOG.warning("the recording is used but could not be cached: %s: %s", path, error.strerror)
     return RecordingFile(data, str(path))
+
+
+def _recorded(graph: RoadGraph, wanted: TrafficConfig, duration: float, seed: int) -> bytes:
+    return to_bytes(record(graph.map_name, graph.seed, graph, wanted, duration, seed))

@@ -1,21 +1,30 @@
-"""Reading of a finished network of SUMO: lanes for cars, pavements, traffic lights."""
+"""A finished network of SUMO, read once: lanes for cars, pavements, crossings, traffic lights."""
 
-from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, NamedTuple
 from xml.etree import ElementTree
 
 import numpy as np
-import shapely
 from numpy.typing import NDArray
 
 from eyas.core.errors import ConfigError
 from eyas.state.roads import RoadNetwork
 
+if TYPE_CHECKING:
+    import shapely
+
 __all__ = [
-    "Pavements",
-    "crossings_of",
-    "pavements_of",
+    "NetConnection",
+    "NetEdge",
+    "NetLane",
+    "NetPhase",
+    "NetProgram",
+    "SumoNet",
+    "crossing_lines",
+    "joined",
+    "pavement_area",
+    "points_of",
     "road_network",
-    "signal_programs",
     "signalled_edges",
 ]
 
@@ -25,124 +34,231 @@ _SHORTEST = 0.05
 Line = NDArray[np.float64]
 
 
-@dataclass(frozen=True, slots=True)
-class Pavements:
-    """Where people walk, in plan view."""
+class NetLane(NamedTuple):
+    """A lane, sidewalk or path."""
 
-    area: shapely.Geometry
-    """Sidewalks and the corners between them [m]."""
+    shape: str
+    """Its points, as the file tells them."""
+    width: float
+    """[m]"""
+    speed: float
+    """[m/s]"""
+    walked: bool
+    """Whether it is a sidewalk or a path, no part of the asphalt."""
+
+    @property
+    def points(self) -> Line:
+        """Middle of the lane [m], shape (K, 2)."""
+        return points_of(self.shape)
 
 
-def road_network(xml: bytes, graph_hash: str) -> RoadNetwork:
-    """Return the lanes and junctions of a finished network, without sidewalks.
+class NetEdge(NamedTuple):
+    """A street in one direction, or, with a function, a part of a junction."""
+
+    name: str
+    function: str | None
+    """None for a street; "internal", "crossing" or "walkingarea"."""
+    start: str
+    """Junction where a street begins."""
+    end: str
+    lanes: tuple[NetLane, ...]
+    """From the right."""
+    crossed: tuple[str, ...]
+    """Streets that a crossing crosses."""
+
+
+class NetConnection(NamedTuple):
+    """A way through a junction."""
+
+    start: str
+    """Its edges."""
+    end: str
+    light: str
+    """The program that controls it; empty: none does."""
+    link: int
+    """Place in the states of the program; -1 without one."""
+    direction: str
+
+
+class NetPhase(NamedTuple):
+    """A phase of a traffic light."""
+
+    seconds: float
+    state: str
+    """What each link shows."""
+
+
+class NetProgram(NamedTuple):
+    """The program of a traffic light."""
+
+    name: str
+    kind: str
+    """"static" if it depends on the time alone."""
+    offset: float
+    """[s]"""
+    phases: tuple[NetPhase, ...]
+
+
+class SumoNet:
+    """What is read of a network, in the order of the file, as far as it is asked for.
 
     Args:
         xml: SUMO's network file.
+    """
+
+    def __init__(self, xml: bytes) -> None:
+        self._root = ElementTree.fromstring(xml)
+        self.version = self._root.get("version", "?")
+
+    @cached_property
+    def edges(self) -> tuple[NetEdge, ...]:
+        """Streets, and parts of junctions."""
+        return tuple(map(_edge, self._root.iter("edge")))
+
+    @cached_property
+    def junctions(self) -> dict[str, str]:
+        """Shape of each junction, as the file tells it."""
+        return {one.attrib["id"]: one.get("shape", "") for one in self._root.iter("junction")}
+
+    @cached_property
+    def connections(self) -> tuple[NetConnection, ...]:
+        """Ways through junctions."""
+        return tuple(map(_connection, self._root.iter("connection")))
+
+    @cached_property
+    def programs(self) -> tuple[NetProgram, ...]:
+        """Programs of traffic lights."""
+        return tuple(map(_program, self._root.iter("tlLogic")))
+
+
+def _connection(one: ElementTree.Element) -> NetConnection:
+    told = one.attrib
+    link = int(told.get("linkIndex", "-1"))
+    return NetConnection(told["from"], told["to"], told.get("tl", ""), link, told.get("dir", "s"))
+
+
+def _program(logic: ElementTree.Element) -> NetProgram:
+    phases = (
+        NetPhase(float(one.attrib["duration"]), one.attrib["state"]) for one in logic.iter("phase")
+    )
+    offset = float(logic.get("offset", "0"))
+    return NetProgram(logic.attrib["id"], logic.get("type", "static"), offset, tuple(phases))
+
+
+def _edge(edge: ElementTree.Element) -> NetEdge:
+    return NetEdge(
+        name=edge.attrib["id"],
+        function=edge.get("function"),
+        start=edge.get("from", ""),
+        end=edge.get("to", ""),
+        lanes=tuple(map(_lane, edge.iter("lane"))),
+        crossed=tuple(edge.get("crossingEdges", "").split()),
+    )
+
+
+def _lane(lane: ElementTree.Element) -> NetLane:
+    told = lane.attrib
+    allowed = told.get("allow", "").split()
+    return NetLane(
+        told.get("shape", ""),
+        float(told.get("width", "3.2")),
+        float(told.get("speed", "13.89")),
+        bool(allowed) and {"pedestrian", "wheelchair"}.issuperset(allowed),
+    )
+
+
+def road_network(net: SumoNet, graph_hash: str) -> RoadNetwork:
+    """Return the lanes and junctions of a finished network, without sidewalks.
+
+    Args:
+        net: The network.
         graph_hash: Hash of the graph that holds it.
 
     Raises:
         ConfigError: No car may drive anywhere in it.
     """
-    root = ElementTree.fromstring(xml)
-    edges: list[ElementTree.Element] = []
-    lanes: list[tuple[int, int, ElementTree.Element]] = []
-    for edge in root.iter("edge"):
-        found = [lane for lane in edge.iter("lane") if not _only_walked(lane)]
-        if edge.get("function") is None and found:
+    edges: list[NetEdge] = []
+    lanes: list[tuple[int, int, NetLane]] = []
+    for edge in net.edges:
+        found = [lane for lane in edge.lanes if not lane.walked]
+        if edge.function is None and found:
             lanes += [(len(edges), index, lane) for index, lane in enumerate(found)]
             edges.append(edge)
     if not lanes:
         raise ConfigError("the network has no street on which a car may drive")
-    used = {name for edge in edges for name in (edge.attrib["from"], edge.attrib["to"])}
-    junctions = [one for one in root.iter("junction") if one.get("id") in used]
-    lane_points, lane_first = _joined([_line(lane.attrib["shape"]) for _, _, lane in lanes])
-    corners, corner_first = _joined([_points(one.get("shape", "")) for one in junctions])
+    used = {name for edge in edges for name in (edge.start, edge.end)}
+    junctions = {name: shape for name, shape in net.junctions.items() if name in used}
+    lane_points, lane_first = joined([_line(lane.points) for _, _, lane in lanes])
+    corners, corner_first = joined(list(map(points_of, junctions.values())))
     return RoadNetwork(
         graph_hash=graph_hash,
-        builder=f"network of SUMO's format {root.get('version', '?')}",
+        builder=f"network of SUMO's format {net.version}",
         lane_points=lane_points,
         lane_first=lane_first,
-        lane_width=np.array([_width(lane) for _, _, lane in lanes]),
-        lane_speed=np.array([float(lane.get("speed", "13.89")) for _, _, lane in lanes]),
+        lane_width=np.array([lane.width for _, _, lane in lanes]),
+        lane_speed=np.array([lane.speed for _, _, lane in lanes]),
         lane_edge=np.array([edge for edge, _, _ in lanes], np.int32),
         lane_index=np.array([index for _, index, _ in lanes], np.int32),
-        edges=tuple(edge.attrib["id"] for edge in edges),
-        edge_start=tuple(edge.attrib["from"] for edge in edges),
-        edge_end=tuple(edge.attrib["to"] for edge in edges),
+        edges=tuple(edge.name for edge in edges),
+        edge_start=tuple(edge.start for edge in edges),
+        edge_end=tuple(edge.end for edge in edges),
         junction_points=corners,
         junction_first=corner_first,
-        junctions=tuple(one.attrib["id"] for one in junctions),
+        junctions=tuple(junctions),
     )
 
 
-def pavements_of(xml: bytes) -> Pavements:
-    """Return the sidewalks of a finished network, without what is driven on within junctions.
+def pavement_area(net: SumoNet) -> "shapely.Geometry":
+    """Return the sidewalks of a finished network and the corners between them [m].
 
-    SUMO joins the sidewalks on both sides of a street that has none across its mouth.
+    What is driven on within junctions is left out: SUMO joins the sidewalks on both sides of a
+    street that has none across its mouth.
     """
-    root = ElementTree.fromstring(xml)
+    import shapely  # which few starts need
+
     shapes: list[shapely.Geometry] = []
     driven: list[shapely.Geometry] = []
-    for edge in root.iter("edge"):
-        kind = edge.get("function")
-        for lane in edge.iter("lane"):
-            points = _points(lane.get("shape", ""))
+    for edge in net.edges:
+        kind = edge.function
+        for lane in edge.lanes:
+            points, half = lane.points, lane.width / 2
             if kind == "walkingarea" and len(points) >= 3:
                 shapes.append(shapely.make_valid(shapely.Polygon(points)))
-            elif kind == "internal" and len(points) >= 2 and not _only_walked(lane):
-                driven.append(
-                    shapely.buffer(shapely.LineString(points), _width(lane) / 2, cap_style="flat")
-                )
-            elif kind is None and _only_walked(lane) and len(points) >= 2:
-                half = _width(lane) / 2
+            elif kind == "internal" and len(points) >= 2 and not lane.walked:
+                line = shapely.LineString(points)
+                driven.append(shapely.buffer(line, half, cap_style="flat"))
+            elif kind is None and lane.walked and len(points) >= 2:
                 line = shapely.LineString(points)
                 shapes.append(
                     shapely.buffer(line, half, cap_style="flat", join_style="mitre", quad_segs=3)
                 )
-    return Pavements(shapely.difference(shapely.union_all(shapes), shapely.union_all(driven)))
+    return shapely.difference(shapely.union_all(shapes), shapely.union_all(driven))
 
 
-def crossings_of(xml: bytes) -> dict[str, Line]:
+def crossing_lines(net: SumoNet) -> dict[str, Line]:
     """Return the middle of each crossing for people at a junction [m], shape (K, 2), by name."""
-    root = ElementTree.fromstring(xml)
     return {
-        edge.attrib["id"]: _points(lane.attrib["shape"])
-        for edge in root.iter("edge")
-        if edge.get("function") == "crossing"
-        for lane in edge.iter("lane")
+        edge.name: lane.points
+        for edge in net.edges
+        if edge.function == "crossing"
+        for lane in edge.lanes
     }
 
 
-def signalled_edges(xml: bytes) -> tuple[str, ...]:
+def signalled_edges(net: SumoNet) -> tuple[str, ...]:
     """Return the streets that end at a traffic light, in the order of the file."""
-    root = ElementTree.fromstring(xml)
-    lit = [one.attrib["from"] for one in root.iter("connection") if one.get("tl")]
-    return tuple(name for name in dict.fromkeys(lit) if not name.startswith(":"))
+    lit = dict.fromkeys(one.start for one in net.connections if one.light)
+    return tuple(name for name in lit if not name.startswith(":"))
 
 
-def signal_programs(xml: bytes) -> int:
-    """Return the number of programs of traffic lights."""
-    return len(ElementTree.fromstring(xml).findall("tlLogic"))
-
-
-def _only_walked(lane: ElementTree.Element) -> bool:
-    """Return whether a lane is a sidewalk or a path, no part of the asphalt."""
-    allowed = set(lane.get("allow", "").split())
-    return bool(allowed) and allowed <= {"pedestrian", "wheelchair"}
-
-
-def _width(lane: ElementTree.Element) -> float:
-    return float(lane.get("width", "3.2"))
-
-
-def _points(shape: str) -> Line:
+def points_of(shape: str) -> Line:
+    """Return the points of a shape in a file of SUMO [m], shape (K, 2)."""
     pairs = [[float(v) for v in pair.split(",")[:2]] for pair in shape.split()]
     return np.array(pairs, np.float64).reshape(-1, 2)
 
 
-def _line(shape: str) -> Line:
+def _line(points: Line) -> Line:
     """Return the points of a lane, at least two, without those that lie on their neighbours."""
-    points = _points(shape)
     kept = [points[0]]
     for point in points[1:]:
         if np.abs(point - kept[-1]).max() > _SHORTEST:
@@ -152,6 +268,7 @@ def _line(shape: str) -> Line:
     return np.array(kept, np.float64)
 
 
-def _joined(parts: list[Line]) -> tuple[Line, NDArray[np.int32]]:
+def joined(parts: list[Line]) -> tuple[Line, NDArray[np.int32]]:
+    """Return lines one after the other, and where each begins, and at last their number."""
     first = np.cumsum([0, *(len(part) for part in parts)]).astype(np.int32)
     return np.concatenate([np.zeros((0, 2)), *parts]), first

@@ -6,11 +6,11 @@ from collections import Counter
 from xml.etree import ElementTree
 
 import numpy as np
-from numpy.typing import NDArray
 
 from eyas.core.errors import ConfigError
 from eyas.core.scratch import scratch
 from eyas.state.roads import RoadEdge, RoadGraph, RoadNetwork, RoadNode
+from eyas.traffic.net_file import SumoNet, joined, points_of, road_network
 from eyas.traffic.sumo_install import sumo_binary, sumo_environment, sumo_version
 
 __all__ = ["OPTIONS", "build_network", "graph_hash", "network_xml", "without_comments"]
@@ -48,31 +48,27 @@ def build_network(graph: RoadGraph) -> RoadNetwork:
         ConfigError: Two nodes or edges have one name, or netconvert rejects the graph.
     """
     if graph.finished:
-        from eyas.traffic.net_file import road_network  # shapely, which few starts need
-
-        return road_network(graph.finished, graph_hash(graph))
-    root = ElementTree.fromstring(network_xml(graph))
-    edges = {name: root.find(f"./edge[@id='{name}']") for name in (e.name for e in graph.edges)}
+        return road_network(SumoNet(graph.finished), graph_hash(graph))
+    net = SumoNet(network_xml(graph))
+    found = {edge.name: edge for edge in net.edges}
     lanes = [
-        (index, lane)
-        for index, edge in enumerate(edges.values())
-        for lane in (edge.findall("lane") if edge is not None else [])
+        (number, index, lane)
+        for number, edge in enumerate(graph.edges)
+        for index, lane in enumerate(found[edge.name].lanes if edge.name in found else ())
     ]
-    junctions = [root.find(f"./junction[@id='{node.name}']") for node in graph.nodes]
-    lane_points, lane_first = _joined([_points(lane.get("shape", "")) for _, lane in lanes])
-    junction_points, junction_first = _joined(
-        [_points(found.get("shape", "") if found is not None else "") for found in junctions]
-    )
+    lane_points, lane_first = joined([lane.points for _, _, lane in lanes])
+    corners = [points_of(net.junctions.get(node.name, "")) for node in graph.nodes]
+    junction_points, junction_first = joined(corners)
     return RoadNetwork(
         graph_hash=graph_hash(graph),
         builder=f"netconvert {sumo_version()}",
         lane_points=lane_points,
         lane_first=lane_first,
-        lane_width=np.array([float(lane.get("width", "3.2")) for _, lane in lanes]),
-        lane_speed=np.array([float(lane.get("speed", "nan")) for _, lane in lanes]),
-        lane_edge=np.array([edge for edge, _ in lanes], np.int32),
-        lane_index=np.array([int(lane.get("index", "0")) for _, lane in lanes], np.int32),
-        edges=tuple(edges),
+        lane_width=np.array([lane.width for _, _, lane in lanes]),
+        lane_speed=np.array([lane.speed for _, _, lane in lanes]),
+        lane_edge=np.array([edge for edge, _, _ in lanes], np.int32),
+        lane_index=np.array([index for _, index, _ in lanes], np.int32),
+        edges=tuple(edge.name for edge in graph.edges),
         edge_start=tuple(edge.start for edge in graph.edges),
         edge_end=tuple(edge.end for edge in graph.edges),
         junction_points=junction_points,
@@ -159,14 +155,3 @@ def _edge_xml(edges: tuple[RoadEdge, ...]) -> str:
             f'speed="{edge.speed:.3f}"{middle}/>'
         )
     return "\n".join(["<edges>", *lines, "</edges>"])
-
-
-def _points(shape: str) -> NDArray[np.float64]:
-    return np.array([[float(v) for v in pair.split(",")[:2]] for pair in shape.split()])
-
-
-def _joined(
-    parts: list[NDArray[np.float64]],
-) -> tuple[NDArray[np.float64], NDArray[np.int32]]:
-    first = np.cumsum([0, *(len(part) for part in parts)]).astype(np.int32)
-    return np.concatenate([np.zeros((0, 2)), *(part.reshape(-1, 2) for part in parts)]), first

@@ -1,5 +1,7 @@
 """Conversion of a recording to a motion."""
 
+from functools import partial
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -15,15 +17,6 @@ from eyas.traffic.smoothing import Tracks, smooth
 
 __all__ = ["kept_motion", "recorded_motion", "table_of"]
 
-_MAKERS = (
-    "traffic/recorded.py",
-    "traffic/smoothing.py",
-    "traffic/tractrix.py",
-    "traffic/trailer.py",
-    "state/motion.py",
-    "state/terrain.py",
-)
-
 
 def kept_motion(file: RecordingFile, terrain: Terrain, kind: NDArray[np.int32]) -> Motion:
     """Return `recorded_motion`, kept in the cache.
@@ -33,16 +26,16 @@ def kept_motion(file: RecordingFile, terrain: Terrain, kind: NDArray[np.int32]) 
     """
     numbers = cached(
         Kind.MOTION,
-        _MAKERS,
-        (np.frombuffer(file.data, np.uint8), *terrain),
-        lambda: _numbers(recorded_motion(file.load(), terrain, kind).table),
+        partial(_numbers, file, terrain),
+        (np.frombuffer(file.data, np.uint8), terrain),
         of=NDArray[np.float32],
     )
     return Motion(numbers.view(SAMPLE)[..., 0], kind, file.outline().rate, 0.0)
 
 
-def _numbers(table: NDArray[np.void]) -> NDArray[np.float32]:
-    """Return the numbers of samples, shape (S, A, numbers of a sample)."""
+def _numbers(file: RecordingFile, terrain: Terrain) -> NDArray[np.float32]:
+    """Return the numbers of the samples of a recording, shape (S, A, numbers of a sample)."""
+    table = table_of(smooth(file.load()), terrain)
     return table.view(np.float32).reshape(*table.shape, -1)
 
 

@@ -39,9 +39,6 @@ __all__ = ["FORMAT", "Outline", "RecordingFile", "from_bytes", "load", "save", "
 FORMAT = "eyas traffic recording 2"
 """Format in the header of a file; another layout gets another number."""
 
-_READ = ("eyas traffic recording 1", FORMAT)
-"""Formats that are read; the first has all differences in one array."""
-
 _LARGEST = 256 << 20
 """Largest size of a file, and of its arrays: a day of 50 vehicles [bytes]."""
 
@@ -224,7 +221,7 @@ def _read_arrays(data: bytes, source: str) -> Arrays:
         raise DataFileError(f"{source}: damaged: its checksum does not match its content")
     with suppress(ValueError, TypeError, LookupError, RecursionError):
         kind = json.loads(arrays["header"].tobytes())["format"]
-        if kind in _READ:
+        if kind == FORMAT:
             return arrays
         raise DataFileError(f"{source}: format {shown(kind)} (allowed: '{FORMAT}')")
     raise DataFileError(f"{source}: not a traffic recording: its header cannot be read")
@@ -256,9 +253,8 @@ def _differences(name: str, values: NDArray[np.int64]) -> Arrays:
 def _integrated(name: str, arrays: Arrays) -> NDArray[np.int64]:
     start = arrays[f"{name}_start"].astype(np.int64, casting="safe")
     second = arrays[f"{name}_second"].astype(np.int64, casting="safe")
-    if f"{name}_far" in arrays:
-        far = arrays[f"{name}_far"].astype(np.int64, casting="safe")
-        second.flat[far] = arrays[f"{name}_far_second"]
+    far = arrays[f"{name}_far"].astype(np.int64, casting="safe")
+    second.flat[far] = arrays[f"{name}_far_second"]
     first = np.concatenate([np.diff(start, axis=-1), second], axis=-1).cumsum(axis=-1)
     values: NDArray[np.int64] = np.concatenate([start[..., :1], first], axis=-1).cumsum(axis=-1)
     return values

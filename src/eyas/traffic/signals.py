@@ -2,11 +2,11 @@
 
 from enum import IntEnum
 from typing import Final, NamedTuple
-from xml.etree import ElementTree
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.traffic.net_file import NetConnection, NetProgram, SumoNet
 from eyas.traffic.record import WARM_UP
 
 __all__ = ["Aspect", "SignalPlan", "signal_plan", "walk_plan"]
@@ -69,61 +69,50 @@ class SignalPlan(NamedTuple):
         )
 
 
-def signal_plan(xml: bytes) -> SignalPlan:
+def signal_plan(net: SumoNet) -> SignalPlan:
     """Return the plan of a network of SUMO.
 
     Lights that SUMO switches by what drives show amber, as what they will show is not known.
     """
-    root = ElementTree.fromstring(xml)
-    programs = _programs(root)
-    links: dict[str, tuple[str, int, str]] = {}
-    for one in root.iter("connection"):
-        edge, light = one.attrib["from"], one.get("tl", "")
-        if light not in programs or edge.startswith(":"):
+    programs = {one.name: one for one in net.programs}
+    links: dict[str, NetConnection] = {}
+    for one in net.connections:
+        if one.light not in programs or one.start.startswith(":"):
             continue
-        link = (light, int(one.attrib["linkIndex"]), one.get("dir", "s"))
-        if edge not in links or _rank(link) < _rank(links[edge]):
-            links[edge] = link
+        if one.start not in links or _rank(one) < _rank(links[one.start]):
+            links[one.start] = one
     shown = {
-        edge: (programs[light], _phases(programs[light], index))
-        for edge, (light, index, _) in links.items()
+        edge: (programs[one.light], _phases(programs[one.light], one.link))
+        for edge, one in links.items()
     }
     return _plan(shown)
 
 
-def walk_plan(xml: bytes) -> SignalPlan:
+def walk_plan(net: SumoNet) -> SignalPlan:
     """Return what the crossings with lights of a network of SUMO show those on foot.
 
     Green: who is there may begin to cross. Amber: who is on the way may go on, as red still holds
     up those who drive on the crossed street. Red: it no longer does. Where SUMO switches the
     lights by what drives, always red, as what they will show is not known.
     """
-    root = ElementTree.fromstring(xml)
-    programs = _programs(root)
+    programs = {one.name: one for one in net.programs}
     own: dict[str, tuple[str, int]] = {}
     driven: dict[tuple[str, str], list[int]] = {}
-    for one in root.iter("connection"):
-        light = one.get("tl", "")
-        if light in programs:
-            link = int(one.attrib["linkIndex"])
-            own.setdefault(one.attrib["to"], (light, link))
-            driven.setdefault((light, one.attrib["from"]), []).append(link)
+    for one in net.connections:
+        if one.light in programs:
+            own.setdefault(one.end, (one.light, one.link))
+            driven.setdefault((one.light, one.start), []).append(one.link)
     shown = {}
-    for crossing in root.iter("edge"):
-        name, crossed = crossing.attrib["id"], crossing.get("crossingEdges", "").split()
-        if crossing.get("function") == "crossing" and name in own:
-            light, link = own[name]
-            held = [k for edge in crossed for k in driven.get((light, edge), [])]
-            shown[name] = programs[light], _walked(programs[light], link, held)
+    for crossing in net.edges:
+        if crossing.function == "crossing" and crossing.name in own:
+            light, link = own[crossing.name]
+            held = [k for edge in crossing.crossed for k in driven.get((light, edge), [])]
+            shown[crossing.name] = programs[light], _walked(programs[light], link, held)
     return _plan(shown)
 
 
-def _programs(root: ElementTree.Element) -> dict[str, ElementTree.Element]:
-    return {logic.attrib["id"]: logic for logic in root.iter("tlLogic")}
-
-
 def _plan(
-    shown: dict[str, tuple[ElementTree.Element, list[tuple[float, Aspect]]]],
+    shown: dict[str, tuple[NetProgram, list[tuple[float, Aspect]]]],
 ) -> SignalPlan:
     """Return the plan of lights, from the program and the phases of each."""
     phases = [own for _, own in shown.values()]
@@ -132,25 +121,22 @@ def _plan(
     for row, own in enumerate(phases):
         end[row, : len(own)] = np.cumsum([seconds for seconds, _ in own])
         aspect[row, : len(own)] = [one for _, one in own]
-    offset = [float(program.get("offset", "0")) for program, _ in shown.values()]
+    offset = [program.offset for program, _ in shown.values()]
     cycle = np.where(np.isfinite(end), end, 0.0).max(axis=1, initial=0.0)
     return SignalPlan(tuple(shown), cycle, np.array(offset, np.float64) - WARM_UP, end, aspect)
 
 
-def _rank(link: tuple[str, int, str]) -> tuple[int, int]:
-    return _DIRECTIONS.find(link[2]) % (len(_DIRECTIONS) + 1), link[1]
+def _rank(one: NetConnection) -> tuple[int, int]:
+    return _DIRECTIONS.find(one.direction) % (len(_DIRECTIONS) + 1), one.link
 
 
-def _phases(logic: ElementTree.Element, index: int) -> list[tuple[float, Aspect]]:
+def _phases(logic: NetProgram, index: int) -> list[tuple[float, Aspect]]:
     """Return duration [s] and aspect of the phases of a link."""
-    phases = [
-        (float(one.attrib["duration"]), _ASPECTS.get(one.attrib["state"][index], Aspect.DARK))
-        for one in logic.iter("phase")
-    ]
+    phases = [(one.seconds, _ASPECTS.get(one.state[index], Aspect.DARK)) for one in logic.phases]
     return phases if _is_known(logic) else [(1.0, Aspect.AMBER)]
 
 
-def _walked(logic: ElementTree.Element, own: int, held: list[int]) -> list[tuple[float, Aspect]]:
+def _walked(logic: NetProgram, own: int, held: list[int]) -> list[tuple[float, Aspect]]:
     """Return duration [s] and aspect of the phases of a crossing, see `walk_plan`.
 
     Args:
@@ -159,15 +145,14 @@ def _walked(logic: ElementTree.Element, own: int, held: list[int]) -> list[tuple
         held: The links of those who drive on the crossed street towards the junction.
     """
     phases = []
-    for one in logic.iter("phase"):
-        state = one.attrib["state"]
+    for one in logic.phases:
+        state = one.state
         stand = all(_ASPECTS.get(state[link]) is Aspect.RED for link in held)
         walk = Aspect.GREEN if _ASPECTS.get(state[own]) is Aspect.GREEN else Aspect.AMBER
-        phases.append((float(one.attrib["duration"]), walk if stand else Aspect.RED))
+        phases.append((one.seconds, walk if stand else Aspect.RED))
     return phases if _is_known(logic) else [(1.0, Aspect.RED)]
 
 
-def _is_known(logic: ElementTree.Element) -> bool:
+def _is_known(logic: NetProgram) -> bool:
     """Return whether a program depends on the time alone."""
-    lasts = sum(float(one.attrib["duration"]) for one in logic.iter("phase"))
-    return logic.get("type", "static") == "static" and lasts > 0.0
+    return logic.kind == "static" and sum(one.seconds for one in logic.phases) > 0.0

@@ -13,9 +13,8 @@ from eyas.core.errors import ConfigError
 from eyas.core.scratch import scratch
 from eyas.traffic.config import Demand, TrafficConfig, VehicleType
 from eyas.traffic.demand import RoadLinks, Route, without_turnarounds
-from eyas.traffic.entrance import Entrance
+from eyas.traffic.entrance import ActorSlots, Entrance
 from eyas.traffic.fleet import Fleet, vehicle_types
-from eyas.traffic.slots import Slots
 from eyas.traffic.sumo_install import import_libsumo
 
 __all__ = ["RATE", "Drive", "SumoRun", "drive", "no_room", "options"]
@@ -146,7 +145,7 @@ class SumoRun:
     def __init__(self, network: bytes, config: TrafficConfig, fleet: Fleet) -> None:
         self.actors = vehicle_types(config)
         classes = tuple(dict.fromkeys(self.actors))
-        self._slots = Slots(self.actors)
+        self._slots = ActorSlots(self.actors)
         self._steps = 0
         with ExitStack() as stack:
             self.sumo = stack.enter_context(_simulation(network, config, classes))

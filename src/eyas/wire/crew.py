@@ -78,7 +78,7 @@ class Crew:
         resets = np.array([action.reset for action in actions])
         renewed = self._move(actions, resets)
         basic, reward = self.sim.packets()
-        seen = self.sim.perception
+        seen = self.sim.view
         # What is sensed may be late; time, reward, end and the reward packet are not.
         basic[:, SENSOR_COLUMNS] = seen.packets()[0][:, SENSOR_COLUMNS]
         basic[renewed & ~resets, _DONE] = 1.0
@@ -86,7 +86,7 @@ class Crew:
         models = self.sim.snapshot.targets.model.tolist()
         radar = None
         if seen.lidar is not None:
-            radar = [packet_line(row) for row in seen.lidar.packets(seen.sight.late)]
+            radar = [packet_line(row) for row in seen.lidar.packets(seen.state.late)]
         return [
             Answer(
                 packet_line(basic[n]),
@@ -132,7 +132,7 @@ class Crew:
 
     def _draw_all(self, pictures: list[Future[bytes]]) -> None:
         try:
-            self.sim.perception.draw(self._trackers, self._picture)
+            self.sim.view.draw(self._trackers, self._picture)
         except BaseException as error:
             for picture in pictures:
                 picture.set_exception(error)

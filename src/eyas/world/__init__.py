@@ -1,1 +1,5 @@
-"""The static world: roads, buildings, trees, the maps and the weather."""
+"""The static world: maps, roads, buildings, plants, land, weather, and files of OpenStreetMap.
+
+May import: `mesh`, `state`, `core`, `lanes`.
+Begin with `maps/recipe.py`. Private: `eyas` offers what is public.
+"""

@@ -19,12 +19,12 @@ class WorldConfig(Config):
 
     map: Annotated[str, Field(min_length=1), NAMES_CODE] = "citystreet"
     """Name of the map, or the path of a user's own, `package.module:attribute`."""
-    weather: Annotated[str, Field(min_length=1)] = "day"
-    """Name of the weather."""
+    weather: Annotated[str, Field(min_length=1), NAMES_CODE] = "day"
+    """Name of the weather, or the path of a user's own, `package.module:attribute`."""
     seed: Annotated[int, Field(ge=0, lt=2**31)] = 0
     """Seed of the map: 0 is the canonical map, other seeds give other maps of the same kind."""
-    hour: Annotated[float, Field(ge=6.5, le=17.5)] | None = None
-    """Time of day, which moves the sun and its shadows; None: the weather's own sun."""
+    hour: Annotated[float, Field(ge=0.0, le=24.0)] | None = None
+    """Time of day, which moves the sun and its shadows; None: the weather's own sun or moon."""
 
 
 class LightConfig(Config):

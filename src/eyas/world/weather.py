@@ -1,9 +1,15 @@
-"""The weathers, and their light and air as shared by maps."""
+"""The weathers: one record each, in one table, and the light that each gives at an hour."""
 
 import math
+import re
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from enum import StrEnum
+from typing import Any
 
+from eyas.core import exact
+from eyas.core.errors import ConfigError
+from eyas.core.registry import Registry
 from eyas.state.lighting import Lighting
 
 __all__ = [
@@ -18,7 +24,13 @@ __all__ = [
     "WINTER_DAY",
     "Season",
     "Weather",
+    "in_fog",
+    "sun_at",
+    "unchanged",
 ]
+
+Colour = tuple[float, float, float]
+"""Linear red, green and blue; also a direction."""
 
 
 class Season(StrEnum):
@@ -28,23 +40,37 @@ class Season(StrEnum):
     WINTER = "winter"
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Weather:
-    """A weather that maps can have; a user's map may define its own."""
+    """A weather, as it is where no map changes it."""
 
     name: str
-    """Value of `world.weather`."""
-    season: Season
+    """Words joined by hyphens: value of `world.weather`, part of the names of environments."""
+    season: Season = Season.SUMMER
     """Season in which it occurs."""
+    day: Lighting
+    """Light and air while the sun is up: what falls and lies, too."""
+    night: Lighting
+    """The same while the sun is deep below the horizon; its `sun_direction` is the moon's."""
+    dark: bool = False
+    """Whether it is night unless an hour is given."""
 
+    def __post_init__(self) -> None:
+        if not re.fullmatch(r"\w+(-\w+)*", self.name):
+            raise ConfigError(
+                f"Weather.name: {self.name!r} is not allowed; allowed: words joined by hyphens"
+            )
 
-DAY = Weather("day", Season.SUMMER)
-FOGGY = Weather("foggy", Season.SUMMER)
-NIGHT = Weather("night", Season.SUMMER)
-SNOW = Weather("snow", Season.WINTER)
+    def each(self, change: Callable[[Lighting], Lighting]) -> "Weather":
+        """Return the weather with its light by day and by night changed alike."""
+        return replace(self, day=change(self.day), night=change(self.night))
 
-WEATHERS = (DAY, FOGGY, NIGHT, SNOW)
-"""The weathers of the original."""
+    def light(self, hour: float | None = None) -> Lighting:
+        """Return light and air at an hour, 0 to 24; None: the weather's own, day or night."""
+        if hour is None:
+            return self.night if self.dark else self.day
+        return _at_hour(self, hour)
+
 
 # Light and air. A map uses these, or variants made from them with `dataclasses.replace`.
 
@@ -114,3 +140,164 @@ CLEAR_NIGHT = replace(
     lamps=1.0,
     windows=0.3,
 )
+
+# The original has neither of these two: its fog and its snow come by day. Fog and clouds throw the
+# town's light back, and so does the ground that is white.
+_FOG_NIGHT = replace(
+    CLEAR_NIGHT,
+    sun_colour=(0.003, 0.003, 0.004),
+    zenith_colour=(0.030, 0.030, 0.033),
+    horizon_colour=(0.042, 0.041, 0.041),
+    ambient_up=(0.070, 0.070, 0.074),
+    ambient_down=(0.034, 0.033, 0.032),
+    fog_colour=(0.036, 0.035, 0.035),
+    fog_density=FOG.fog_density,
+    foggy=True,
+    clouds=1.0,
+)
+_WINTER_NIGHT = replace(
+    CLEAR_NIGHT,
+    ambient_down=(0.048, 0.050, 0.056),
+    clouds=WINTER_DAY.clouds,
+    exposure=WINTER_DAY.exposure,
+    snow=1.0,
+    flakes=WINTER_DAY.flakes,
+)
+
+DAY = Weather(name="day", day=CLEAR_DAY, night=CLEAR_NIGHT)
+FOGGY = Weather(name="foggy", day=FOG, night=_FOG_NIGHT)
+NIGHT = replace(DAY, name="night", dark=True)
+SNOW = Weather(name="snow", season=Season.WINTER, day=WINTER_DAY, night=_WINTER_NIGHT)
+
+WEATHERS: Registry[Weather] = Registry(
+    "world.weather",
+    Weather,
+    {each.name: f"{__name__}:{each.name.upper()}" for each in (DAY, FOGGY, NIGHT, SNOW)},
+    group="eyas.weathers",
+)
+"""The weathers of the original, and those of a user's own."""
+
+
+def unchanged(weather: Weather) -> Weather:
+    """Return the weather: how it is on maps where nothing about it is special."""
+    return weather
+
+
+def in_fog(light: Lighting, visibility: float) -> Lighting:
+    """Return light and air with another visibility range [m], if there is fog."""
+    return replace(light, fog_density=1.0 / visibility) if light.foggy else light
+
+
+_LATITUDE, _DECLINATION = math.radians(45.0), math.radians(20.0)
+"""A day in May at 45 degrees north; the sun stands in the south at 12."""
+_DIMMING = (0.06, 0.12, 0.26)
+"""How much of red, green and blue a vertical way through the air takes; a low sun is orange."""
+
+
+def sun_at(hour: float) -> Colour:
+    """Return the unit vector towards the sun: east, north, up.
+
+    The usual formulas of hour angle, declination and latitude, by true solar time.
+    """
+    turn = math.radians(15.0 * (hour - 12.0))
+    south = exact.cos(_DECLINATION) * exact.cos(turn)
+    up = exact.sin(_DECLINATION)
+    return (
+        -exact.cos(_DECLINATION) * exact.sin(turn),
+        exact.cos(_LATITUDE) * up - exact.sin(_LATITUDE) * south,
+        exact.sin(_LATITUDE) * up + exact.cos(_LATITUDE) * south,
+    )
+
+
+_LOW_SUN, _MOONLIGHT, _DARK = 4.0, -6.0, -12.0
+"""Heights of the sun [deg]: below the first night begins, below the second the moon's light, below
+the third it is night."""
+_LAMPS = ("lamps", "windows")
+"""What is switched on as the sun sinks, from the horizon to as far below it as `_LOW_SUN`."""
+_LOWEST = 1.5
+"""Height of the sun below which the formulas of daylight would go on to black [deg]."""
+
+
+def _at_hour(weather: Weather, hour: float) -> Lighting:
+    """Return the light of the day, of the night, or of the twilight between them."""
+    direction = sun_at(hour)
+    height = math.degrees(float(exact.asin(direction[2])))
+    if height >= _LOW_SUN:
+        return _by_day(weather.day, direction)
+    if height <= _DARK:
+        return weather.night
+    day = _by_day(weather.day, _lifted(direction, max(height, _LOWEST)))
+    night, share = weather.night, (_LOW_SUN - height) / (_LOW_SUN - _DARK)
+    mixed = {
+        name: _mixed(getattr(day, name), getattr(night, name), share)
+        for name in (
+            *("zenith_colour", "horizon_colour", "fog_colour", "ambient_up", "ambient_down"),
+            *("fog_density", "exposure", "luminosity", "clouds", "snow", "flakes"),
+        )
+    }
+    # Sun and moon change places while neither throws a shadow, so that none jumps.
+    if height > _MOONLIGHT:
+        mixed["sun_direction"] = _lifted(direction, _LOW_SUN)
+        mixed["sun_colour"] = _scaled(day.sun_colour, max(height, 0.0) / _LOW_SUN)
+    else:
+        risen = (_MOONLIGHT - height) / (_MOONLIGHT - _DARK)
+        mixed["sun_direction"] = night.sun_direction
+        mixed["sun_colour"] = _scaled(night.sun_colour, risen)
+    lit = min(max(-height, 0.0) / _LOW_SUN, 1.0)
+    mixed |= {name: _mixed(getattr(day, name), getattr(night, name), lit) for name in _LAMPS}
+    return replace(day, **mixed)
+
+
+def _by_day(light: Lighting, direction: Colour) -> Lighting:
+    """Return light and air of a weather with the sun somewhere above the horizon."""
+    longer = _way(direction[2]) - _way(light.sun_direction[2])
+    sun = _dimmed(light.sun_colour, longer)
+    sky = min(math.sqrt(direction[2] / light.sun_direction[2]), 1.1)
+    return replace(
+        light,
+        sun_direction=direction,
+        sun_colour=sun,
+        zenith_colour=_scaled(light.zenith_colour, sky),
+        horizon_colour=_scaled(_dimmed(light.horizon_colour, 0.3 * longer), 0.5 + 0.5 * sky),
+        fog_colour=_scaled(_dimmed(light.fog_colour, 0.3 * longer), 0.5 + 0.5 * sky),
+        ambient_up=_scaled(light.ambient_up, sky),
+        ambient_down=_scaled(light.ambient_down, sky),
+        exposure=light.exposure / math.sqrt(sky),
+    )
+
+
+def _lifted(direction: Colour, height: float) -> Colour:
+    """Return the direction of the same azimuth, `height` degrees above the horizon."""
+    east, north, _ = direction
+    flat = exact.cos(math.radians(height)) / math.sqrt(east * east + north * north)
+    return flat * east, flat * north, exact.sin(math.radians(height))
+
+
+def _mixed(day: Any, night: Any, share: float) -> Any:  # noqa: ANN401  # numbers or colours
+    """Return a mixture of day and night; colours by their logarithms, as eyes see."""
+    if not isinstance(day, tuple):
+        return (1.0 - share) * day + share * night
+    return tuple(
+        exact.exp((1.0 - share) * exact.log(a) + share * exact.log(b))
+        for a, b in zip(day, night, strict=True)
+    )
+
+
+def _way(height: float) -> float:
+    """Return the way of light through the air, given the sine of the sun's height; zenith: 1.
+
+    Rozenberg, Twilight (1966): finite at the horizon, where 1 / sine is not.
+    """
+    return float(1.0 / (height + 0.025 * exact.exp(-11.0 * height)))
+
+
+def _dimmed(colour: Colour, way: float) -> Colour:
+    red, green, blue = (
+        part * exact.exp(-taken * way) for part, taken in zip(colour, _DIMMING, strict=True)
+    )
+    return red, green, blue
+
+
+def _scaled(colour: Colour, factor: float) -> Colour:
+    red, green, blue = colour
+    return factor * red, factor * green, factor * blue

@@ -2,6 +2,7 @@
 
 import os
 import time
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ import platformdirs
 import pytest
 from numpy.typing import NDArray
 
+from eyas.core.cache.array_file import map_arrays
 from eyas.core.cache.cached import cached
 from eyas.core.cache.entries import clear, entries, prune, write_entry
 from eyas.core.cache.folder import Kind, cache_limit
@@ -80,9 +82,9 @@ def test_writing_makes_room_and_use_counts(tmp_path, monkeypatch):
     monkeypatch.setenv("EYAS_CACHE_LIMIT", "40K")
 
     def use(i):
-        cached(Kind.SKY, (), (i,), lambda: np.full(12_000, i, np.uint8), of=NDArray[np.uint8])
+        cached(Kind.SKY, partial(np.full, 12_000, i, np.uint8), (i,), of=NDArray[np.uint8])
         time.sleep(0.02)
-        return {int(path.read_bytes()[-1000]) for path in kept(tmp_path)}
+        return {int(map_arrays(path).arrays[0][0]) for path in kept(tmp_path)}
 
     assert [use(i) for i in (1, 2, 3)] == [{1}, {1, 2}, {1, 2, 3}]
     assert use(1) == {1, 2, 3}
@@ -93,7 +95,7 @@ def test_writing_makes_room_and_use_counts(tmp_path, monkeypatch):
 def test_an_array_that_is_in_use_survives_its_entry(tmp_path):
     def use(limit_folder):
         return cached(
-            Kind.SKY, (), (), lambda: np.arange(1 << 16), of=NDArray[np.int64], folder=limit_folder
+            Kind.SKY, partial(np.arange, 1 << 16), (), of=NDArray[np.int64], folder=limit_folder
         )
 
     use(tmp_path)
@@ -107,23 +109,19 @@ def test_all_kinds_are_counted_and_removed(tmp_path):
     files = {
         put(tmp_path, entry_name(kind, 1))
         for kind in Kind
-        if kind.value not in ("traffic", "kernels", "old")
+        if kind.value not in ("traffic", "kernels", "definitions")
     }
     files |= {
         put(tmp_path, f"traffic/citystreet-0-{KEY}.npz"),
-        put(tmp_path, f"made/geometry-{KEY}.pickle"),
-        put(tmp_path, f"shadows/{KEY}.npz"),
-        put(tmp_path, f"traffic/citystreet-0-{KEY[:16]}.npz"),
+        put(tmp_path, f"definitions/eyas-{KEY}.json"),
         kernels(tmp_path, KEY[:16], age=1.0),
     }
     found = entries(tmp_path)
     assert {entry.path for entry in found} == files
     assert {entry.kind for entry in found} == set(Kind)
-    assert sum(entry.kind == Kind.OLD for entry in found) == 3
     assert {entry.size for entry in found} == {1000}
     assert clear(tmp_path, Kind.TRAFFIC) == 1000
-    assert clear(tmp_path, Kind.OLD) == 3000
-    assert clear(tmp_path) == sum(entry.size for entry in found) - 4000
+    assert clear(tmp_path) == sum(entry.size for entry in found) - 1000
     assert list(tmp_path.rglob("*")) == []
 
 

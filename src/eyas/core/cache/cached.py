@@ -1,9 +1,11 @@
 """Values that take long to compute and are always the same, kept from run to run."""
 
+import dataclasses
+import functools
 import logging
 import time
 from collections.abc import Callable
-from functools import cache
+from enum import Enum
 from hashlib import blake2b
 from pathlib import Path
 from typing import TypeVar
@@ -14,18 +16,14 @@ from eyas.core.cache.array_file import Content, array_file, map_arrays
 from eyas.core.cache.entries import write_entry
 from eyas.core.cache.flat import flatten, restore
 from eyas.core.cache.folder import Kind, cache_limit
+from eyas.core.program import UnknownCodeError, code_of
 from eyas.lanes.folder import cache_folder, not_kept, touch
 
-__all__ = ["cached"]
+__all__ = ["cached", "key_of"]
 
 Thing = TypeVar("Thing")
 
 _LOG = logging.getLogger("eyas")
-
-_ROOT = Path(__file__).parents[2]
-
-_MATHEMATICS = ("lanes/elementary", "core/exact.py")
-"""Makers of whatever is kept: on their last bits everything depends."""
 
 _LONG = 1.0
 """Values that took longer than this to make are reported in the log [s]."""
@@ -33,20 +31,19 @@ _LONG = 1.0
 
 def cached(
     kind: Kind,
-    makers: tuple[str, ...],
-    inputs: tuple[object, ...],
     make: Callable[[], Thing],
+    inputs: tuple[object, ...],
     *,
     of: type[Thing],
     folder: Path | None = None,
 ) -> Thing:
-    """Return a value from the cache; make it anew if its makers' sources or its inputs changed.
+    """Return a value from the cache; make it anew if what makes it or its inputs changed.
 
     Args:
         kind: Kind of the value.
-        makers: Packages of Eyas, and files in them, whose sources make the value.
-        inputs: Inputs of the makers: arrays, and values that differ in their `repr`.
-        make: Returns the value.
+        make: Returns the value: a function of a module, or a `partial` of one. Its code and all
+            that this calls are part of the key (`eyas.core.program`); its arguments are not.
+        inputs: What the value depends on: see `key_of`.
         of: Type of the value; `eyas.core.cache.flat` must be able to flatten it.
         folder: The cache; None: the user's. The cache only saves time: one that cannot be written
             to is not used, and a damaged entry is made anew.
@@ -55,8 +52,12 @@ def cached(
         ConfigError: `EYAS_CACHE_LIMIT` is not a size.
     """
     limit = cache_limit()
-    path = (folder or cache_folder()) / kind / f"eyas-{_key(kind, makers, inputs)}.npy"
-    found = _found(path, of)
+    try:
+        path = (folder or cache_folder()) / kind / f"eyas-{key_of(make, inputs)}.npy"
+    except UnknownCodeError as error:  # typed in by the user, for example
+        _LOG.debug("%s is made at each start: %s", kind, error)
+        path = None
+    found = None if path is None else _found(path, of)
     if found is not None:
         return found
     start = time.perf_counter()
@@ -66,10 +67,11 @@ def cached(
     content = Content(flat, [np.asarray(array, order="C") for array in arrays])
     # A value just made is restored like one read from the file, so that both have the same types.
     restored = restore(of, *content)
-    try:
-        write_entry(path, array_file(content, path.name), limit)
-    except OSError as error:
-        not_kept(error)
+    if path is not None:
+        try:
+            write_entry(path, array_file(content, path.name), limit)
+        except OSError as error:
+            not_kept(error)
     if taken > _LONG:
         _LOG.info("made %s in %.1f s", kind, taken)
     return restored
@@ -88,30 +90,44 @@ def _found(path: Path, of: type[Thing]) -> Thing | None:
     return found
 
 
-def _key(kind: Kind, makers: tuple[str, ...], inputs: tuple[object, ...]) -> str:
-    digest = blake2b(f"{np.__version__} {kind}".encode(), digest_size=16)
-    for maker in makers:
-        digest.update(_sources(_ROOT, maker))
-    for maker in _MATHEMATICS:
-        digest.update(_sources(_ROOT, maker))
+def key_of(make: Callable[..., object], inputs: tuple[object, ...]) -> str:
+    """Return what identifies a value: 32 hexadecimal digits.
+
+    Args:
+        make: See `cached`.
+        inputs: Arrays; functions, which stand for their code; records, tuples and dicts of such;
+            and values that differ in their `repr`.
+
+    Raises:
+        UnknownCodeError: The code of something cannot be found, or an input has no `repr` that
+            would be the same in another process.
+    """
+    digest = blake2b(code_of(make).encode(), digest_size=16)
     for value in inputs:
-        if isinstance(value, np.ndarray):
-            digest.update(repr((value.dtype.str, value.shape)).encode())
-            digest.update(np.ascontiguousarray(value).data)
-        else:
-            digest.update(repr(value).encode())
+        _add(value, digest.update)
         digest.update(b"\0")
     return digest.hexdigest()
 
 
-@cache
-def _sources(root: Path, maker: str) -> bytes:
-    """Return a hash of the sources of a package or of one file."""
-    digest = blake2b(maker.encode(), digest_size=16)
-    path = root / maker
-    files = sorted(path.rglob("*.py")) if path.is_dir() else [path]
-    assert files, f"no sources: {path}"
-    for file in files:
-        digest.update(file.relative_to(root).as_posix().encode())
-        digest.update(file.read_bytes())
-    return digest.digest()
+def _add(value: object, add: Callable[[bytes | memoryview], None]) -> None:
+    """Add to a digest what tells a value from others."""
+    if isinstance(value, np.ndarray):
+        add(repr((value.dtype.descr, value.shape)).encode())
+        add(np.ascontiguousarray(value).reshape(-1).view(np.uint8).data)
+    elif isinstance(value, tuple | list | dict):
+        add(f"{type(value).__name__} {len(value)}".encode())
+        for part in value.items() if isinstance(value, dict) else value:
+            _add(part, add)
+    elif dataclasses.is_dataclass(value) and not isinstance(value, type):
+        add(type(value).__name__.encode())
+        for field in dataclasses.fields(value):
+            _add(getattr(value, field.name), add)
+    elif callable(value) and not isinstance(value, Enum):
+        add(code_of(value).encode())
+        if isinstance(value, functools.partial):
+            _add((value.args, value.keywords), add)
+    else:
+        text = repr(value)
+        if " at 0x" in text:
+            raise UnknownCodeError(f"{text}: its `repr` is another one in each process")
+        add(text.encode())

@@ -20,7 +20,7 @@ from eyas.core.cache.folder import Kind
 from eyas.core.files import PART_SUFFIX
 from eyas.lanes.folder import kernel_folder, made_folder
 
-__all__ = ["Entry", "clear", "entries", "prune", "write_entry"]
+__all__ = ["Entry", "clear", "entries", "prune", "write_entry", "write_whole"]
 
 _DAY = 86_400.0
 
@@ -32,15 +32,14 @@ _PARTS_LAST = _DAY
 
 _ARRAYS = r"eyas-[0-9a-f]{32}\.npy"
 _RECORDING = r".+-\d+-[0-9a-f]{32}\.npz"
-_PARTS = rf"\.(?:{_ARRAYS}|{_RECORDING})\.[0-9a-f]{{16}}{re.escape(PART_SUFFIX)}"
+_DEFINITIONS = r"eyas-[0-9a-f]{32}\.json"
+_PARTS = rf"\.(?:{_ARRAYS}|{_RECORDING}|{_DEFINITIONS})\.[0-9a-f]{{16}}{re.escape(PART_SUFFIX)}"
 
 _FORMS = (
     *((kind, kind.value, _ARRAYS) for kind in Kind),
     (Kind.TRAFFIC, "traffic", _RECORDING),
     (Kind.KERNELS, "kernels", r"[0-9a-f]{16}"),
-    (Kind.OLD, "made", r"[a-z]+-[0-9a-f]{32}\.pickle"),
-    (Kind.OLD, "shadows", r"[0-9a-f]{32}\.npz"),
-    (Kind.OLD, "traffic", r".+-\d+-[0-9a-f]{16}\.npz"),
+    (Kind.DEFINITIONS, "definitions", _DEFINITIONS),
 )
 """Kinds, their folders, and the forms of the names in them."""
 
@@ -81,6 +80,16 @@ def write_entry(path: Path, pieces: Iterable[bytes | memoryview], limit: int) ->
     Raises:
         OSError: The file cannot be written.
     """
+    write_whole(path, pieces)
+    prune(path.parent.parent, limit)
+
+
+def write_whole(path: Path, pieces: Iterable[bytes | memoryview]) -> None:
+    """Write an entry completely or not at all, and remove no other.
+
+    Raises:
+        OSError: The file cannot be written.
+    """
     made_folder(path.parent)
     # Several processes may write the same entry at once; each writes its own part.
     part = path.with_name(f".{path.name}.{secrets.token_hex(8)}{PART_SUFFIX}")
@@ -91,7 +100,6 @@ def write_entry(path: Path, pieces: Iterable[bytes | memoryview], limit: int) ->
     except BaseException:
         part.unlink(missing_ok=True)
         raise
-    prune(path.parent.parent, limit)
 
 
 def prune(folder: Path, limit: int) -> None:

@@ -2,6 +2,7 @@
 
     <folder>/<kind>/eyas-<key>.npy             arrays, see `eyas.core.cache.array_file`
     <folder>/traffic/<map>-<seed>-<key>.npz    recordings of traffic
+    <folder>/definitions/eyas-<key>.json       what source files say, see `eyas.core.program`
     <folder>/kernels/<key>/                    compiled kernels, see `eyas.lanes.machine_code`
 
 The modification time of an entry is the time of its last use.
@@ -30,6 +31,7 @@ _UNITS = {"": 0, "K": 10, "M": 20, "G": 30, "T": 40}
 class Kind(StrEnum):
     """Kinds of entries; the value is the name of the folder in the cache."""
 
+    PLAN = "plan"
     SCENE = "scene"
     TEXTURES = "textures"
     PARTS = "parts"
@@ -41,9 +43,8 @@ class Kind(StrEnum):
     TRAFFIC = "traffic"
     MOTION = "motion"
     OCCLUSION = "occlusion"
+    DEFINITIONS = "definitions"
     KERNELS = "kernels"
-    OLD = "old"
-    """Entries of older versions of Eyas with another layout; they have no common folder."""
 
 
 def cache_limit() -> int:

@@ -10,7 +10,14 @@ from eyas.core.errors import ConfigError
 from eyas.core.own_code import imported, running, takes
 from eyas.envs.config import ActionKind, EnvConfig
 from eyas.envs.observation import Observation
-from eyas.evaluation.policies.policy import Decision, Failure, Policy, Sight, Start, env_config
+from eyas.evaluation.policies.policy import (
+    Decision,
+    Failure,
+    Policy,
+    PolicyInput,
+    Start,
+    env_config,
+)
 from eyas.evaluation.policies.simple import HOVER
 
 __all__ = ["Each", "Whole", "load_callable"]
@@ -42,7 +49,7 @@ class Each:
                 for own, box in zip(self._own, start.boxes().tolist(), strict=True):
                     own.reset(tuple(box))
 
-    def act(self, sight: Sight) -> Decision:
+    def act(self, sight: PolicyInput) -> Decision:
         """Ask the policies of those who decide."""
         actions: list[Any] = [no_action(self.env)] * len(self._own)
         failed = {}
@@ -68,7 +75,7 @@ class Whole:
     def begin(self, start: Start) -> None:
         """Do nothing: a function remembers nothing."""
 
-    def act(self, sight: Sight) -> Decision:
+    def act(self, sight: PolicyInput) -> Decision:
         """Call the function."""
         with running("--policy", self._path):
             return Decision(self._function(sight.observation))

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from eyas.core import exact
-from eyas.evaluation.policies.policy import BLIND, Decision, Sight, Start, env_config
+from eyas.evaluation.policies.policy import BLIND, Decision, PolicyInput, Start, env_config
 from eyas.evaluation.steering import towards
 
 __all__ = ["Follow", "follow"]
@@ -23,7 +23,7 @@ class Follow:
     def begin(self, start: Start) -> None:
         """Do nothing, for it remembers nothing."""
 
-    def act(self, sight: Sight) -> Decision:
+    def act(self, sight: PolicyInput) -> Decision:
         """Fly along the axis with the larger error."""
         trackers, _, targets, episodes, _ = sight.snapshot()
         error = targets.centre[:, :2] - episodes.view_centre[:, :2]

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from eyas.core.errors import DataFileError, MissingExtraError
 from eyas.envs.config import ActionKind
 from eyas.evaluation.policies.choice import Chooser
-from eyas.evaluation.policies.policy import Decision, Sight, Start, env_config, settings_in
+from eyas.evaluation.policies.policy import Decision, PolicyInput, Start, env_config, settings_in
 from eyas.evaluation.policies.simple import ACTIONS, HOVER
 
 __all__ = ["METADATA", "OnnxPolicy", "load_onnx"]
@@ -83,7 +83,7 @@ class OnnxPolicy:
         if self._discrete:
             self._last[:, HOVER] = 1.0
 
-    def act(self, sight: Sight) -> Decision:
+    def act(self, sight: PolicyInput) -> Decision:
         """Run the network for all; those who do not decide remember nothing new."""
         feed: dict[str, Any] = {_IMAGE: sight.observation, **self._memory}
         if self._remembers_action:

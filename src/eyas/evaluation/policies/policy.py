@@ -14,7 +14,16 @@ from eyas.envs.config import EnvConfig, ObservationPart
 from eyas.envs.observation import Observation
 from eyas.state.snapshot import Snapshot
 
-__all__ = ["BLIND", "Decision", "Failure", "Policy", "Sight", "Start", "env_config", "settings_in"]
+__all__ = [
+    "BLIND",
+    "Decision",
+    "Failure",
+    "Policy",
+    "PolicyInput",
+    "Start",
+    "env_config",
+    "settings_in",
+]
 
 BLIND = {"observation": {"parts": [ObservationPart.PRIVILEGED]}}
 """Changes of `EnvConfig` for policies that see no picture, so that none is drawn."""
@@ -30,7 +39,7 @@ class Start(NamedTuple):
     right, bottom, the last two exclusive [pixels]; all 0 if it is outside, shape (N, 4)."""
 
 
-class Sight(NamedTuple):
+class PolicyInput(NamedTuple):
     """What a policy sees at one instant."""
 
     observation: Observation
@@ -78,7 +87,7 @@ class Policy(Protocol):
         """Forget everything: N episodes begin."""
         ...
 
-    def act(self, sight: Sight) -> Decision:
+    def act(self, sight: PolicyInput) -> Decision:
         """Choose actions."""
         ...
 

@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from eyas.core.errors import DataFileError, MissingExtraError
-from eyas.evaluation.policies.policy import Decision, Sight, Start, env_config
+from eyas.evaluation.policies.policy import Decision, PolicyInput, Start, env_config
 
 __all__ = ["Sb3Policy", "load_sb3"]
 
@@ -61,7 +61,7 @@ class Sb3Policy:
         """Seed the drawing of actions."""
         self._model.set_random_seed(int(start.seeds[0]) % 2**32)
 
-    def act(self, sight: Sight) -> Decision:
+    def act(self, sight: PolicyInput) -> Decision:
         """Predict."""
         actions, _ = self._model.predict(sight.observation, deterministic=not self.sampled)
         return Decision(actions)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
-from eyas.evaluation.policies.policy import Decision, Sight, Start, env_config
+from eyas.evaluation.policies.policy import Decision, PolicyInput, Start, env_config
 from eyas.evaluation.steering import pixel_offset, towards
 
 __all__ = ["Servo", "servo"]
@@ -44,7 +44,7 @@ class Servo:
         self._pattern: list[Floats | None] = [None] * count
         self._place = np.full((count, 2), 0.5 * (_SIZE - _PATCH))
 
-    def act(self, sight: Sight) -> Decision:
+    def act(self, sight: PolicyInput) -> Decision:
         """Find the patterns, and steer."""
         pictures: Any = sight.observation
         for row in np.flatnonzero(sight.deciding).tolist():

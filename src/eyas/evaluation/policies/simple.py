@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from eyas.core.rng import stream
-from eyas.evaluation.policies.policy import BLIND, Decision, Sight, Start, env_config
+from eyas.evaluation.policies.policy import BLIND, Decision, PolicyInput, Start, env_config
 
 __all__ = ["Hover", "Random", "hover", "random"]
 
@@ -26,7 +26,7 @@ class Hover:
         """Remember the number of drones."""
         self._actions = np.full(len(start.seeds), HOVER)
 
-    def act(self, sight: Sight) -> Decision:
+    def act(self, sight: PolicyInput) -> Decision:
         """Hover."""
         return Decision(self._actions)
 
@@ -43,7 +43,7 @@ class Random:
         """Begin the random numbers of each episode."""
         self._streams = [stream(seed, "policy") for seed in start.seeds.tolist()]
 
-    def act(self, sight: Sight) -> Decision:
+    def act(self, sight: PolicyInput) -> Decision:
         """Draw actions, for those who decide."""
         actions = np.full(len(self._streams), HOVER)
         for row in np.flatnonzero(sight.deciding).tolist():

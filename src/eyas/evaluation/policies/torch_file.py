@@ -10,7 +10,7 @@ import numpy as np
 from eyas.core.errors import DataFileError, MissingExtraError
 from eyas.envs.config import ActionKind
 from eyas.evaluation.policies.choice import Chooser
-from eyas.evaluation.policies.policy import Decision, Sight, Start, env_config, settings_in
+from eyas.evaluation.policies.policy import Decision, PolicyInput, Start, env_config, settings_in
 
 __all__ = ["TorchPolicy", "load_torch"]
 
@@ -46,7 +46,7 @@ class TorchPolicy:
         """Begin the random numbers."""
         self._chooser.begin(start.seeds)
 
-    def act(self, sight: Sight) -> Decision:
+    def act(self, sight: PolicyInput) -> Decision:
         """Run the module."""
         observation: Any = sight.observation
         with self._torch.inference_mode():

@@ -64,10 +64,12 @@ def plan_of(before: Plan, said: World) -> Plan:
     if said.map is not None and said.map not in (now.map, *MAPS.names()):
         # A page must not name code or folders of this machine, which a setting may.
         raise UnknownNameError("world.map", said.map, MAPS.names())
-    lighting = MAPS.get(said.map or now.map).light(said.weather or now.weather)
-    if said.hour is not None or lighting.night:
-        fixed = said.hour in (None, "own") or lighting.night
-        changes["world"]["hour"] = None if fixed else said.hour
+    recipe = MAPS.get(said.map or now.map)
+    if said.weather is not None and said.weather not in (now.weather, *recipe.weathers):
+        raise UnknownNameError("world.weather", said.weather, recipe.weathers)
+    hour = now.hour if said.hour is None else None if said.hour == "own" else said.hour
+    changes["world"]["hour"] = hour
+    lighting = recipe.light(said.weather or now.weather, hour)
     if said.target is not None:
         changes["target"] = said.target
     if said.tracker is not None:
@@ -121,8 +123,7 @@ def world_of(plan: Plan, flight: Flight) -> dict[str, Any]:
         "target": config.target.value,
         "tracker": "flown" if flown else str(tracker.kind),
         "light": plan.light,
-        "hour": config.world.hour or "own",
-        "dark": MAPS.get(config.world.map).light(config.world.weather).night,
+        "hour": "own" if config.world.hour is None else config.world.hour,
         "people": _count(config),
         "parked": flight.world.parked >= 0,
     }

@@ -41,7 +41,7 @@ Side = Annotated[int, Field(ge=16, le=16384)]
 Name = Annotated[str, Field(max_length=200)]
 Positive = Annotated[float, Field(gt=0, le=1000)]
 Light = Literal["own", "bright", "dim", "dark"]
-Hour = Annotated[float, Field(ge=6.5, le=17.5)]
+Hour = Annotated[float, Field(ge=0.0, le=24.0)]
 
 LIGHTS: dict[Light, tuple[float, float]] = {
     "own": (0.0, 0.0),

@@ -14,11 +14,10 @@ from eyas.state.scene import ObjectClass
 from eyas.targets.catalogue import kind_index
 from eyas.traffic.config import VehicleType
 
-__all__ = ["COLOUR", "MODEL", "parked_car"]
+__all__ = ["COLOUR", "parked_car"]
 
-MODEL = "BmwX5Simple"
-"""As the manual says."""
 COLOUR = (0.62, 0.05, 0.06)
+"""Of the first model of a car, as the manual says."""
 
 WANTED = (30.0, 30.0)
 """Where the car stands in most worlds of the original [m]; here, by the road nearest to that."""

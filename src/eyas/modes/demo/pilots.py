@@ -11,7 +11,7 @@ from eyas.core.clock import physics_steps
 from eyas.core.errors import ConfigError
 from eyas.envs.actions import make_actions
 from eyas.envs.observation import Observer
-from eyas.evaluation.policies.policy import Sight, Start
+from eyas.evaluation.policies.policy import PolicyInput, Start
 from eyas.evaluation.policies.table import open_policy
 from eyas.modes.demo.flight import Flight
 from eyas.state.draw import DrawStage, Picture
@@ -66,7 +66,7 @@ class PolicyPilot:
             if isinstance(observation, dict)
             else observation[None]
         )
-        sight = Sight(batch, np.ones(1, np.bool_), lambda: self._simulation.snapshot)
+        sight = PolicyInput(batch, np.ones(1, np.bool_), lambda: self._simulation.snapshot)
         try:
             decision = self._policy.act(sight)
         except Exception as error:  # whatever a user's code raises; the demo goes on

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.modes.demo.parked import COLOUR, MODEL, parked_car
+from eyas.modes.demo.parked import COLOUR, parked_car
 from eyas.settings.config import EyasConfig
 from eyas.sim.assets import Assets, load_assets
 from eyas.sim.config import SimConfig
@@ -14,13 +14,16 @@ from eyas.sim.crowd import Crowd, crowd_of
 from eyas.sim.simulation import Simulation
 from eyas.sim.worlds import together
 from eyas.state.motion import joined
-from eyas.targets.catalogue import kind_index, model_index
+from eyas.targets.catalogue import kind_index, models_of
 from eyas.targets.rig import Rigs
 from eyas.targets.vehicles.kinds import VEHICLE_KINDS
 from eyas.trackers.kinds import tracker_of
+from eyas.traffic.config import VehicleType
 from eyas.traffic.replay import Replay
 
 __all__ = ["DemoSimulation", "DemoWorld", "build_world"]
+
+_CAR = kind_index(VehicleType.PASSENGER)
 
 
 class DemoSimulation(Simulation):
@@ -34,7 +37,7 @@ class DemoSimulation(Simulation):
         """Begin a new episode; see `Simulation.reset`."""
         super().reset(trackers)
         if self._parked >= 0:
-            self._worlds.dress(0, self._parked, model_index(MODEL), COLOUR)
+            self._worlds.dress(0, self._parked, models_of(_CAR).start, COLOUR)
 
 
 class DemoWorld(NamedTuple):

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from eyas.modes.gallery.solids import is_inside
 from eyas.modes.gallery.still import StillScene, Viewpoint
-from eyas.targets.vehicles.models import VEHICLE_AHEAD
+from eyas.targets.vehicles.vehicle import VEHICLE_AHEAD
 from eyas.task.spawn import Start, start_pose
 
 __all__ = ["CAMERA", "POSES", "Cars", "all_cars", "drone_view", "stop"]

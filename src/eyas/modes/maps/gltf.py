@@ -11,11 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from eyas.core.cache.cached import cached
-from eyas.core.cache.folder import Kind
 from eyas.core.files import write_atomic
-from eyas.render.textures.library import build_textures
-from eyas.sim.scenes import load_scene
+from eyas.sim.scenes import load_scene, load_textures
 from eyas.state.mesh import Material, Mesh, Surface
 from eyas.state.scene import Scene
 from eyas.world.maps import MAPS
@@ -146,7 +143,7 @@ def run(name: str, seed: int, path: Path, detail: int) -> int:
         EyasError: The map cannot be built, or the file not written.
     """
     scene = load_scene(name, seed)
-    file = _File(_textures())
+    file = _File(load_textures())
     nodes: list[dict[str, Any]] = [{"name": "static", "mesh": file.mesh(scene.static, "static")}]
     triangles = len(scene.static.triangles)
     fixtures = scene.fixtures
@@ -163,12 +160,6 @@ def run(name: str, seed: int, path: Path, detail: int) -> int:
         triangles += count
     write_atomic(path, _glb(file, nodes, scene, MAPS.get(name).attribution()))
     return triangles
-
-
-def _textures() -> dict[str, NDArray[np.uint8]]:
-    """Return all textures, from where pictures have them too."""
-    makers = ("render", "world/build/materials.py")
-    return cached(Kind.TEXTURES, makers, (), build_textures, of=dict[str, NDArray[np.uint8]])
 
 
 def _glb(file: _File, nodes: list[dict[str, Any]], scene: Scene, notice: str) -> bytes:

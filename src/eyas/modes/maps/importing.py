@@ -22,26 +22,28 @@ from eyas.modes.progress import sumo_progress
 from eyas.state.roads import RoadGraph
 from eyas.traffic.library import record_canonical
 from eyas.traffic.net_file import (
-    crossings_of,
-    pavements_of,
+    SumoNet,
+    crossing_lines,
+    pavement_area,
     road_network,
-    signal_programs,
     signalled_edges,
 )
 from eyas.traffic.network import graph_hash
 from eyas.traffic.osm_network import osm_network
 from eyas.world.build.millimetres import snapped
 from eyas.world.maps import MAPS
-from eyas.world.maps.imported import MAP_FILE, ROADS_FILE, Origin, maps_folder
-from eyas.world.maps.recipe import ATTRIBUTION_FILE, FEATURES_FILE, NETWORK_FILE, TRAFFIC_FILE
+from eyas.world.maps.files import MAP_FILE, ROADS_FILE, Origin, maps_folder
+from eyas.world.maps.recipe import ATTRIBUTION_FILE, NETWORK_FILE, PLAN_FILE, TRAFFIC_FILE
 from eyas.world.osm.data import Bounds
-from eyas.world.osm.features import Features, to_text
+from eyas.world.osm.features import Features
 from eyas.world.osm.houses import houses_of
 from eyas.world.osm.land import add_land
 from eyas.world.osm.projection import Projection
 from eyas.world.osm.reader import covered, read_osm
 from eyas.world.osm.rings import Shapes
 from eyas.world.osm.streets import street_file
+from eyas.world.plan.file import write_plan
+from eyas.world.plan.plan import MapPlan, Roads
 from eyas.world.roads.areas import polygons_of
 from eyas.world.roads.network_file import save_network
 
@@ -143,14 +145,14 @@ def run(
     projection = Projection(round((west + east) / 2, 7), round((south + north) / 2, 7))
     extent = _extent(projection, limits, str(path))
     streets = street_file(data, limits, lambda key: report.odd.update([key]))
-    net = osm_network(streets, projection.text, str(path))
-    graph = RoadGraph(name, 0, (), (), net)
+    finished = osm_network(streets, projection.text, str(path))
+    graph, net = RoadGraph(name, 0, (), (), finished), SumoNet(finished)
     network = road_network(net, graph_hash(graph))
     shapes = Shapes(data, projection, extent, lambda what: report.broken.update([what]))
     features = _features(shapes, net, report)
     x, y = np.abs(shapely.get_coordinates(extent)).max(axis=0)
     report.size = (2 * float(np.ceil(x + _MARGIN)), 2 * float(np.ceil(y + _MARGIN)))
-    report.lanes, report.signals = len(network.lane_width), signal_programs(net)
+    report.lanes, report.signals = len(network.lane_width), len(net.programs)
     origin = Origin(
         name, f"Imported from OpenStreetMap: {path.name}", path.name,
         projection.longitude, projection.latitude, report.size,
@@ -159,9 +161,17 @@ def run(
         if folder.exists():
             shutil.rmtree(folder)
         folder.mkdir(parents=True)
-    write_atomic(folder / ROADS_FILE, gzip.compress(net, mtime=0))
+    write_atomic(folder / ROADS_FILE, gzip.compress(finished, mtime=0))
     save_network(folder / NETWORK_FILE, network)
-    write_atomic(folder / FEATURES_FILE, to_text(features).encode())
+    plan = MapPlan(
+        name=name,
+        title=origin.title,
+        attribution=ATTRIBUTION,
+        size=report.size,
+        roads=Roads(file=ROADS_FILE),
+        survey=features,
+    )
+    write_plan(folder / PLAN_FILE, plan)
     write_atomic(folder / ATTRIBUTION_FILE, ATTRIBUTION.encode())
     # Last, since a folder with this file is a map.
     write_atomic(folder / MAP_FILE, (json.dumps(asdict(origin), indent=1) + "\n").encode())
@@ -209,7 +219,7 @@ def _extent(projection: Projection, limits: Bounds, source: str) -> shapely.Poly
     return shapely.Polygon(corners)
 
 
-def _features(shapes: Shapes, net: bytes, report: Report) -> Features:
+def _features(shapes: Shapes, net: SumoNet, report: Report) -> Features:
     """Return everything but the streets, and count what is not told."""
 
     def odd(key: str) -> None:
@@ -218,9 +228,9 @@ def _features(shapes: Shapes, net: bytes, report: Report) -> Features:
     features = Features(houses=houses_of(shapes, odd))
     add_land(features, shapes, odd, stream(0, "imported tree rows"))
     # Without the lines in which sidewalks of bridges meet others.
-    features.pavement = shapely.MultiPolygon(polygons_of(snapped(pavements_of(net).area)))
+    features.pavement = shapely.MultiPolygon(polygons_of(snapped(pavement_area(net))))
     features.signals = signalled_edges(net)
-    features.lit_crossings = {k: shapely.LineString(v) for k, v in crossings_of(net).items()}
+    features.lit_crossings = {k: shapely.LineString(v) for k, v in crossing_lines(net).items()}
     report.buildings, report.trees = len(features.houses), len(features.trees)
     for house in features.houses:
         report.guessed["heights"] += house.height is None and house.levels is None

@@ -17,7 +17,7 @@ from eyas.sim.scenes import load_scene
 from eyas.state.mesh import Mesh
 from eyas.state.scene import ObjectClass, Scene
 from eyas.world.maps import MAPS
-from eyas.world.maps.imported import MAP_FILE, origin_of
+from eyas.world.maps.files import MAP_FILE, origin_of
 from eyas.world.maps.recipe import ATTRIBUTION_FILE, MapRecipe
 from eyas.world.osm.projection import Projection
 

@@ -13,13 +13,13 @@ from eyas.targets.catalogue import KINDS, MODELS, kind_index, models_of
 from eyas.targets.kind import Kind, Looks
 from eyas.targets.quadrotor import QUADROTOR
 from eyas.targets.rig import Rigs
-from eyas.targets.words import looks_in_words, motion_in_words
+from eyas.targets.words import looks_in_words
 
-__all__ = ["Entry", "entries", "table"]
+__all__ = ["ModelRow", "entries", "table"]
 
 
 @dataclass(frozen=True, slots=True)
-class Entry:
+class ModelRow:
     """A line of the table."""
 
     name: str
@@ -29,11 +29,13 @@ class Entry:
     colours: tuple[str, ...]
     """See `looks_in_words`."""
     motion: str
+    mass: float | None
+    """[kg]; None: not known."""
     triangles: tuple[int, int]
     """Number of triangles at the finest and at the coarsest level of detail."""
 
 
-def entries() -> list[Entry]:
+def entries() -> list[ModelRow]:
     """Return a line for each model that can be a target, in the order of `MODELS`."""
     lines = []
     for kind in KINDS:
@@ -43,12 +45,13 @@ def entries() -> list[Entry]:
         for model in models_of(kind_index(kind.name)):
             parts = [levels[part] for part in _parts(kind, model)]
             lines.append(
-                Entry(
+                ModelRow(
                     name=MODELS[model].name,
                     kind=kind.name,
                     size=MODELS[model].size,
                     colours=looks_in_words(model),
-                    motion=motion_in_words(model),
+                    motion=MODELS[model].motion,
+                    mass=MODELS[model].mass,
                     triangles=(_triangles(parts, 0), _triangles(parts, -1)),
                 )
             )
@@ -71,10 +74,11 @@ def _triangles(parts: Sequence[tuple[Mesh, ...]], level: int) -> int:
 
 def table() -> Table:
     """Return the table for the terminal."""
-    shown = Table("name", "kind", "size [m]", "motion", "triangles", "looks", box=None)
+    shown = Table("name", "kind", "size [m]", "mass [kg]", "motion", "triangles", "looks", box=None)
     for line in entries():
         size = " x ".join(f"{side:.2f}" for side in line.size)
+        mass = "" if line.mass is None else f"{line.mass:.0f}"
         near, far = line.triangles
         colours = ", ".join(line.colours)
-        shown.add_row(line.name, line.kind, size, line.motion, f"{near} to {far}", colours)
+        shown.add_row(line.name, line.kind, size, mass, line.motion, f"{near} to {far}", colours)
     return shown

@@ -13,7 +13,7 @@ from eyas.custom.config import CustomConfig
 from eyas.custom.kind import as_custom, kind_name_of
 from eyas.modes.targets.stage import Camera, Pose, Stage
 from eyas.targets.catalogue import KINDS, MODELS, kind_index, kind_of, models_of
-from eyas.targets.words import motion_in_words, typical_motion, words_of
+from eyas.targets.words import words_of
 
 __all__ = ["ALL", "run"]
 
@@ -97,7 +97,7 @@ def _around(model: int, bearing: float, elevation: float) -> Camera:
 
 def _sheet(stage: Stage, model: int) -> Rgb:
     """Return three rows: all round at rest, from the side in motion, and as a tracker sees it."""
-    colour, (speed, stride) = _colour(model), typical_motion(model)
+    colour, speed, stride = _colour(model), MODELS[model].speed, MODELS[model].stride
     turns = np.arange(_TURNS) * (2.0 * np.pi / _TURNS)
     rest = [(Pose(), _around(model, 0.4 + turn, 0.35)) for turn in turns.tolist()]
     steps = np.arange(_TURNS) / _TURNS * stride
@@ -119,7 +119,7 @@ def _sheet(stage: Stage, model: int) -> Rgb:
     ]
     rows = [near[:_TURNS], near[_TURNS:], np.array(far)]
     name, size = MODELS[model].name, " x ".join(f"{side:.2f}" for side in MODELS[model].size)
-    title = f"{name}: {words_of(model, colour)}; {size} m; {motion_in_words(model)}"
+    title = f"{name}: {words_of(model, colour)}; {size} m; {MODELS[model].motion}"
     notes = (
         "at rest", f"in motion, {speed:g} m/s",
         f"from {_HEIGHT:.0f} m: the middle of pictures of 84 x 84 and of 320 x 320",
@@ -156,7 +156,7 @@ def _all(stage: Stage, models: Sequence[int]) -> Rgb:
     sheet = Image.new("RGB", (columns * _SMALL, -(-len(models) // columns) * cell), _BACK)
     pen = ImageDraw.Draw(sheet)
     for place, model in enumerate(models):
-        speed, stride = typical_motion(model)
+        speed, stride = MODELS[model].speed, MODELS[model].stride
         pose = Pose(travelled=0.1 * stride, speed=speed)
         shot = (pose, _around(model, 0.7, 0.4))
         picture = stage.draw(model, _colour(model), [shot], (_SMALL, _SMALL))[0]
@@ -169,7 +169,7 @@ def _all(stage: Stage, models: Sequence[int]) -> Rgb:
 
 def _film(stage: Stage, model: int) -> Rgb:
     """Return the frames of a target that moves while the camera goes round it."""
-    speed, stride = typical_motion(model)
+    speed, stride = MODELS[model].speed, MODELS[model].stride
     # Whole strides, so that the film can be repeated.
     duration = _FRAMES / _RATE
     length = max(round(speed * duration / stride), 1) * stride

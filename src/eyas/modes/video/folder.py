@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from eyas import __version__
+from eyas.core.build import Build, this_build
 from eyas.core.config import validated
 from eyas.core.errors import ConfigError, DataFileError, OutputError
 from eyas.core.files import PART_SUFFIX, read_limited, refusals, write_atomic
@@ -31,10 +32,14 @@ __all__ = ["VideoFolder", "check_folder", "open_folder"]
 SETTINGS, LEGACY_SETTINGS = "config.json", "env_config.json"
 
 ORIGIN = "version.json"
-"""Version of Eyas and the files of the writers: `{"eyas": "0.1.0", "files": {...}}`. The version,
-since another one may draw different pictures; the files, so that `--overwrite` can delete them even
-if the package of a user's own writer is no longer installed."""
+"""Version and build of Eyas and the files of the writers: `{"eyas": "0.1.0", "build_id": "...",
+"build": {...}, "files": {...}}`. The build, since another one may draw different pictures; the
+files, so that `--overwrite` can delete them even if the package of a user's own writer is no longer
+installed."""
 
+
+_NOT_PICTURED = ("learning", "wire")
+"""Rooms that have no part in a recording."""
 
 _OWN = (SETTINGS, LEGACY_SETTINGS, ORIGIN, CHECKSUMS, GROWING, ATTRIBUTION_FILE, LOCK)
 
@@ -87,7 +92,7 @@ def check_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: boo
 
     Raises:
         OutputError: It is a file, or not empty, or the recording to continue was made by another
-            version of Eyas.
+            build of Eyas.
         ConfigError: The existing recording was made with other settings, or both `overwrite`
             and `resume` are given.
         DataFileError: The settings of the existing recording cannot be read.
@@ -105,7 +110,7 @@ def check_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: boo
         _require_recording(path, _contents(path, config))
     elif used and resume:
         _require_plain(path)
-        _require_same_version(path)
+        _require_same_build(path)
         _require_same_settings(path, config)
     elif used:
         raise OutputError(
@@ -138,7 +143,11 @@ def open_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: bool
     save_legacy(config, path / LEGACY_SETTINGS)
     folder = VideoFolder(path, config)
     files = joined(writer.files for writer in folder.writers)
-    origin = {"eyas": __version__, "files": asdict(files)}
+    build = this_build()
+    origin = {
+        **{"eyas": __version__, "build_id": build.id, "build": build.model_dump()},
+        "files": asdict(files),
+    }
     notice = MAPS.get(config.world.map).attribution()
     if notice:
         write_atomic(path / ATTRIBUTION_FILE, notice.encode())
@@ -198,17 +207,24 @@ def _delete_recording(path: Path) -> None:
         kept.unlink(missing_ok=True)
 
 
-def _require_same_version(path: Path) -> None:
-    """Refuse to continue a recording of another version, whose pictures may differ."""
+def _require_same_build(path: Path) -> None:
+    """Refuse to continue a recording of another build of Eyas, whose pictures may differ."""
+    if not (path / SETTINGS).is_file():
+        return  # which is no recording, and refused as such
     try:
-        recorded = _origin(path)["eyas"]
-    except (DataFileError, ValueError, TypeError, LookupError, RecursionError):
-        recorded = "of an unknown version"
-    if (path / SETTINGS).is_file() and recorded != __version__:
-        raise OutputError(
-            f"{path}: recorded by Eyas {recorded!s:.40}, but this is {__version__}, whose pictures"
-            " may differ; continue with that version, or start again with --overwrite"
-        )
+        origin = _origin(path)
+        version, build = origin["eyas"], Build(**origin["build"])
+    except (DataFileError, ConfigError, ValueError, TypeError, LookupError, RecursionError):
+        told = "of an unknown version"
+    else:
+        differs = build.difference(this_build(), without=_NOT_PICTURED)
+        if not differs:
+            return
+        told = f"{version!s:.40}, build {build.id}, which differs from this one in {differs}"
+    raise OutputError(
+        f"{path}: recorded by Eyas {told}; pictures may differ, so continue with that build, or "
+        "start again with --overwrite"
+    )
 
 
 def _require_same_settings(path: Path, config: EyasConfig) -> None:

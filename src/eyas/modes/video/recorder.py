@@ -91,7 +91,7 @@ class Recorder:
             return
         picture = self._picture.first(len(drawn))
         overlaid = self._sim.rules if self._overlay else None
-        self._sim.perception.draw(np.array(drawn, np.int32), picture, overlaid=overlaid)
+        self._sim.view.draw(np.array(drawn, np.int32), picture, overlaid=overlaid)
         for view, tracker in enumerate(drawn):
             self._write(tracker, picture, view, mover)
         self.drawn += len(drawn)
@@ -119,12 +119,12 @@ class Recorder:
         assert going is not None
         assert going.files is not None
         number, action = going.summary.frames, mover.action(tracker)
-        seen = self._sim.perception
+        seen = self._sim.view
         moment = Moment(
-            seen.sight.shown,
+            seen.state.shown,
             self._sim.snapshot.episodes,
             None if picture.actor_pixels is None else seen.actors(tracker),
-            None if seen.lidar is None else seen.lidar.ranges(seen.sight.late)[tracker],
+            None if seen.lidar is None else seen.lidar.ranges(seen.state.late)[tracker],
         )
         frame = frame_of(moment, tracker, picture, view, number, action)
         going.summary = going.summary.plus(frame)

@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,10 +14,8 @@ from eyas.core.cache.cached import cached
 from eyas.core.cache.folder import Kind
 from eyas.lanes import Held, thread_count
 from eyas.render.kernels.light.ambient import (
-    BOUNCED,
     DIRECTIONS,
     DISTANCES,
-    LEAVES,
     OpennessBake,
     bake_openness,
 )
@@ -39,9 +38,6 @@ _LOWEST = 1.5
 
 _DECK = 3.0
 """Elevated roads less high than this are taken for the ground [m]."""
-
-_FORMAT = "eyas ambient map 2"
-"""Raise its number by 1 whenever the same scene gives a different result."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,27 +65,28 @@ def bake_ambient(scene: Scene, folder: Path | None = None) -> AmbientMap:
     terrain = scene.terrain
     frame = np.array([*(-0.5 * extent), 1.0 / texel, terrain.floor])
     inputs = (
-        _FORMAT,
         (rows, columns),
         frame,
         np.array([terrain.west, terrain.south, terrain.spacing]),
         terrain.relief,
-        np.array([BOUNCED, LEAVES]),
         scene.static.positions,
         scene.static.triangles,
         scene.object_class[scene.static_object],
         scene.fixtures.prototype,
         scene.fixtures.pose,
     )
-
-    def make() -> NDArray[np.uint16]:
-        solid = height_map(scene, frame, (rows, columns))
-        crowns = canopy_map(scene, frame, (rows, columns))
-        decks = height_map(scene, frame, (rows, columns), structures=True)
-        return openness_of(solid, crowns, decks, texel, thread_count())
-
-    openness = cached(Kind.AMBIENT, (), inputs, make, of=NDArray[np.uint16], folder=folder)
+    make = partial(_bake, scene, frame, (rows, columns), texel)
+    openness = cached(Kind.AMBIENT, make, inputs, of=NDArray[np.uint16], folder=folder)
     return AmbientMap(openness, frame)
+
+
+def _bake(
+    scene: Scene, frame: NDArray[np.float64], shape: tuple[int, int], texel: float
+) -> NDArray[np.uint16]:
+    solid = height_map(scene, frame, shape)
+    crowns = canopy_map(scene, frame, shape)
+    decks = height_map(scene, frame, shape, structures=True)
+    return openness_of(solid, crowns, decks, texel, thread_count())
 
 
 def openness_of(

@@ -6,6 +6,7 @@ citystreet's, whose elevated road makes the map much larger than the city.
 
 import itertools
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -39,9 +40,6 @@ over its surface, so a kerb could shade only a line beside it, thinner than a te
 CARDS = 4
 """One in this many leaf cards casts a shadow: they overlap so much that all of them would
 stop all light, but the shade below crowns is dappled."""
-
-_FORMAT = "eyas shadow map 9"
-"""Raise its number by 1 whenever the same scene gives different shadows."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,9 +80,8 @@ def bake_shadows(
     """
     return cached(
         Kind.SHADOWS,
-        (),
-        (_FORMAT, sun, ground, *_casters(geometry)),
-        lambda: _bake(geometry, sun, ground),
+        partial(_bake, geometry, sun, ground),
+        (sun, ground, *_casters(geometry)),
         of=ShadowMap,
         folder=folder,
     )

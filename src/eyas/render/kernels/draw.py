@@ -77,7 +77,7 @@ def _draw_band(
         lamps_on = light.weather.air.lamps > f4(0.0)
         cast_light(geometry, movers, world, view, lamps_on, light.weather.sun, key, drawn, shade)
     if len(output.rgb) > 0 and until > MOVERS_LIGHT:
-        lit = address_of(view_light(light.weather, job.light[number]))
+        lit = address_of(view_light(light.weather, job.light, number))
         pixels = output.rgb[number, top:bottom]
         draw_backdrop(view, light, lit, key, pixels)
         shade_band(view, geometry, light, lit, movers, world, drawn, key, shade, pixels)

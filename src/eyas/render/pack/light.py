@@ -1,5 +1,6 @@
 """Light and air as the kernels read them, and the tone curve."""
 
+from functools import partial
 from typing import cast
 
 import numpy as np
@@ -24,7 +25,7 @@ from eyas.render.kernels.bundles import (
 )
 from eyas.render.kernels.light.tone import TONE_STEPS, TONE_TOP
 from eyas.render.pack.lamp_grid import lamp_grid
-from eyas.state.lighting import Lighting
+from eyas.state.lighting import Horizon, Lighting
 from eyas.state.scene import Lamps, Scene
 
 __all__ = ["build_light", "tile_starts", "tone_table"]
@@ -46,9 +47,8 @@ def build_light(
     toward = (float(sun[0]), float(sun[1]), float(sun[2]))
     clouds, hills = cached(
         Kind.SKY,
-        ("render",),
+        partial(_sky, lighting.clouds, scene.horizon, toward),
         (lighting.clouds, scene.horizon, toward),
-        lambda: (build_clouds(lighting.clouds, toward), build_hills(scene.horizon, toward)),
         of=tuple[NDArray[np.uint8], NDArray[np.uint8]],
     )
     return Light(
@@ -70,6 +70,12 @@ def build_light(
     )
 
 
+def _sky(
+    cover: float, horizon: Horizon, sun: tuple[float, float, float]
+) -> tuple[NDArray[np.uint8], NDArray[np.uint8]]:
+    return build_clouds(cover, sun), build_hills(horizon, sun)
+
+
 def tile_starts(tile: NDArray[np.int32]) -> NDArray[np.int32]:
     """Return `Light.shadow_tile` of the numbers of tiles."""
     line, column = np.indices(tile.shape, np.int32) * TILE
@@ -81,16 +87,15 @@ def _weather(
     lighting: Lighting, sun: tuple[float, float, float], shadows: ShadowMap
 ) -> Illumination:
     """Return the light of a weather; `sun` is of length 1."""
-    numbers = (
-        lighting.fog_density,
-        lighting.fog_power,
-        lighting.exposure,
-        1.1 * shadows.texel,  # the largest error of the shadow map within a texel
-        lighting.snow,
-        lighting.lamps,
-        lighting.windows,
-        lighting.clouds,
-        lighting.flakes,
+    air = Air(
+        power=_float(lighting.fog_power),
+        exposure=_float(lighting.exposure),
+        offset=_float(1.1 * shadows.texel),  # its map's largest error within a texel
+        snow=_float(lighting.snow),
+        lamps=_float(lighting.lamps),
+        windows=_float(lighting.windows),
+        clouds=_float(lighting.clouds),
+        flakes=_float(lighting.flakes),
     )
     return Illumination(
         sun=_direction(sun),
@@ -100,7 +105,8 @@ def _weather(
         above=_direction(lighting.ambient_up),
         below=_direction(lighting.ambient_down),
         fog=_direction(lighting.fog_colour),
-        air=Air(*_floats(numbers)),
+        fog_density=_float(lighting.fog_density),
+        air=air,
     )
 
 
@@ -120,6 +126,10 @@ def tone_table() -> NDArray[np.uint8]:
 def _floats(values: ArrayLike) -> tuple[float, ...]:
     """Return numbers of float32, whose type decides that of the kernels' arithmetic."""
     return cast("tuple[float, ...]", tuple(np.asarray(values, np.float32)))
+
+
+def _float(value: float) -> float:
+    return cast("float", np.float32(value))
 
 
 def _direction(values: ArrayLike) -> Direction:

@@ -7,8 +7,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.mesh.shell import levels_of
 from eyas.targets.jointed.cycle import frames_of, shapes_of
-from eyas.targets.jointed.figure import Figure, levels_of
+from eyas.targets.jointed.figure import Figure
 
 __all__ = ["Extents", "extents_of"]
 

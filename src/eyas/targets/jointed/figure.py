@@ -6,35 +6,17 @@ pitch lowers what is ahead. A cycle is one stride: every leg steps once.
 """
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core import exact
-from eyas.mesh.shell import Shell
-from eyas.state.mesh import Mesh
+from eyas.mesh.shell import Shape
 
-__all__ = ["STILL", "Figure", "Gait", "Joint", "Leg", "Point", "Shape", "Swing", "levels_of"]
+__all__ = ["STILL", "Figure", "Gait", "Joint", "Leg", "Point", "Swing"]
 
 Point = tuple[float, float, float]
-
-Shape = Callable[[Shell, int], None]
-"""Adds the panels of a part to a shell, in the part's own frame. The number is the detail: 2 from
-near, 1, or 0 from afar; a part may be empty from afar."""
-
-DETAILS = (2, 1, 0)
-
-
-def levels_of(shape: Shape) -> tuple[Mesh, ...]:
-    """Return the meshes of a shape, the finest first."""
-    levels = []
-    for detail in DETAILS:
-        shell = Shell()
-        shape(shell, detail)
-        levels.append(shell.mesh())
-    return tuple(levels)
 
 
 @dataclass(frozen=True, slots=True)

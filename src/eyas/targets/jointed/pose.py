@@ -13,19 +13,12 @@ from eyas.lanes import kernel, parallel
 from eyas.lanes.elementary import sin_cos, tan
 from eyas.state.motion import ActorState
 from eyas.targets.kind import Group, Looks
+from eyas.targets.posing import ActorFrame, Slots
 
-__all__ = ["BODY", "PART", "CycleTable", "Slots", "pose_jointed"]
+__all__ = ["BODY", "PART", "CycleTable", "pose_jointed"]
 
 _TIGHTEST = 0.3
 """Radius of the tightest curve that wheels steer [m]."""
-
-
-class Slots(NamedTuple):
-    """The arrays of a `DrawList` that the kernel writes."""
-
-    part: NDArray[np.int32]
-    pose: NDArray[np.float32]
-    colour: NDArray[np.float32]
 
 
 PART: Final = np.dtype([("part", np.int64), ("spins", "?"), ("steers", np.float64)], align=True)
@@ -65,24 +58,8 @@ class CycleTable(NamedTuple):
     (M, K + 1, S, 4, 3)."""
 
 
-class _Base(NamedTuple):
-    """Frame of an actor: its axes, row by row, and its origin on the ground."""
-
-    xx: float
-    xy: float
-    xz: float
-    yx: float
-    yy: float
-    yz: float
-    zx: float
-    zz: float
-    x: float
-    y: float
-    z: float
-
-
 @kernel
-def _base_of(actors: ActorState, w: int, a: int, upright: bool) -> _Base:
+def _base_of(actors: ActorState, w: int, a: int, upright: bool) -> ActorFrame:
     """Return the frame of an actor on its ground.
 
     On a slope, one that stays upright is sheared, so that its feet are on the ground.
@@ -96,10 +73,10 @@ def _base_of(actors: ActorState, w: int, a: int, upright: bool) -> _Base:
         else:
             sp, cp = sin_cos(slope)
             rise = sp
-    return _Base(
+    return ActorFrame(
         c * cp, -s, -c * sp,
         s * cp, c, -s * sp,
-        rise, cp,
+        rise, 0.0, cp,
         actors.position[w, a, 0], actors.position[w, a, 1], actors.position[w, a, 2],
     )  # fmt: skip
 
@@ -107,7 +84,7 @@ def _base_of(actors: ActorState, w: int, a: int, upright: bool) -> _Base:
 @kernel
 def _place_part(
     pose: NDArray[np.float32],
-    base: _Base,
+    base: ActorFrame,
     first: NDArray[np.float32],
     second: NDArray[np.float32],
     later: float,
@@ -135,7 +112,7 @@ def _place_part(
 
 @kernel
 def _fade_part(
-    pose: NDArray[np.float32], base: _Base, rest: NDArray[np.float32], moving: float
+    pose: NDArray[np.float32], base: ActorFrame, rest: NDArray[np.float32], moving: float
 ) -> None:
     """Blend a pose with the resting one; arguments as above."""
     for axis in range(4):

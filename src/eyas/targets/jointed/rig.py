@@ -1,19 +1,17 @@
 """The rig of people and robots."""
 
 from collections.abc import Sequence
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.lanes import Held
-from eyas.state.draw import DrawList
+from eyas.mesh.shell import Shape, levels_of
 from eyas.state.mesh import Mesh
-from eyas.state.motion import ActorState
 from eyas.targets.jointed.cycle import frames_of, shapes_of
-from eyas.targets.jointed.figure import Figure, Shape, levels_of
-from eyas.targets.jointed.pose import BODY, PART, CycleTable, Slots, pose_jointed
-from eyas.targets.kind import MANY, Group, Looks
+from eyas.targets.jointed.figure import Figure
+from eyas.targets.jointed.model import JointedModel
+from eyas.targets.jointed.pose import BODY, PART, CycleTable, pose_jointed
+from eyas.targets.posing import PoseCall
 
 __all__ = ["JointedRig"]
 
@@ -29,15 +27,17 @@ class JointedRig:
 
     Attributes:
         slots: As in `Rig`.
+        pose: As in `Rig`.
 
     Args:
-        figures: The figure of each model.
+        models: All models of a kind.
     """
 
     slots: int
 
-    def __init__(self, figures: Sequence[Figure]) -> None:
-        self._shapes: list[Shape] = []
+    def __init__(self, models: Sequence[JointedModel]) -> None:
+        self._models, self._shapes = models, list[Shape]()
+        figures = [model.figure for model in models]
         drawn = [shapes_of(figure) for figure in figures]
         for shape in (shape for shapes in drawn for shape in shapes):
             if shape not in self._shapes:
@@ -45,8 +45,8 @@ class JointedRig:
         self.slots = max(map(len, drawn))
         table = _tabulate(figures, drawn, self._shapes, self.slots)
         self._far = _farthest(table)
-        self._table = Held(table)
-        self._last: _Arrays | None = None
+        self._parts = table.part["part"]
+        self.pose = PoseCall(pose_jointed, table)
 
     @property
     def part_count(self) -> int:
@@ -54,36 +54,24 @@ class JointedRig:
         return len(self._shapes)
 
     def part_levels(self) -> list[tuple[Mesh, ...]]:
-        """Return the meshes of each part, the finest first."""
-        return [levels_of(shape) for shape in self._shapes]
+        """Return the meshes of each part, the finest first.
+
+        Raises:
+            ValueError: A model is not of the size that it says.
+        """
+        levels = [levels_of(shape) for shape in self._shapes]
+        for model in self._models:
+            frames = frames_of(model.figure, np.zeros(1), moving=False)[0]
+            placed = [
+                levels[self._shapes.index(shape)][0].positions @ frame[:, :3].T + frame[:, 3]
+                for shape, frame in zip(shapes_of(model.figure), frames, strict=True)
+            ]
+            model.check_meshes(np.concatenate(placed), 0.1, antennas=True)
+        return levels
 
     def reach(self, parts: NDArray[np.float64]) -> float:
         """Return how far any point of an actor may be from its reference point, see `Rig` [m]."""
-        part = self._table.bundle.part["part"]
-        return float((self._far + parts[part])[part >= 0].max())
-
-    def pose(self, group: Group, actors: ActorState, looks: Looks, out: DrawList) -> None:
-        """Write all slots of the kind's actors, see `Rig`."""
-        slots, last = Slots(out.part, out.pose, out.colour), self._last
-        if last is None:
-            arrays = _Arrays(Held(actors), Held(looks), Held(slots))
-        else:
-            arrays = _Arrays(
-                last.actors.again(actors), last.looks.again(looks), last.slots.again(slots)
-            )
-        self._last = arrays
-        if looks.model.shape[0] * len(group.actor) < MANY:
-            pose_jointed.bind(self._table, Held(group), *arrays)()
-        else:
-            pose_jointed(2, self._table, Held(group), *arrays)
-
-
-class _Arrays(NamedTuple):
-    """The arrays of a call, mostly the same as in the last one."""
-
-    actors: Held[ActorState]
-    looks: Held[Looks]
-    slots: Held[Slots]
+        return float((self._far + parts[self._parts])[self._parts >= 0].max())
 
 
 def _tabulate(

@@ -26,9 +26,10 @@ from eyas.targets.vehicles.finishes import (
     TAIL_LAMP,
     TRIM,
 )
-from eyas.targets.vehicles.models import VehicleModel
+from eyas.targets.vehicles.vehicle import Axle, VehicleModel, vehicle
+from eyas.traffic.config import VehicleType
 
-__all__ = ["car_levels"]
+__all__ = ["car"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -47,20 +48,58 @@ _MIDDLE = _Detail((0, 1, 2, 3, 4, 6, 7), (-1.0, -0.62, 0.62, 1.0), arches=False)
 _COARSE = _Detail((1, 4, 6), (-1.0, 1.0), arches=False)
 
 
-def car_levels(vehicle: VehicleModel, shape: CarShape) -> tuple[Mesh, Mesh, Mesh]:
-    """Return the levels of detail of a car's body, the finest first."""
-    return (
-        _body(vehicle, shape, _FINE, fine_stations(vehicle, shape)),
-        _body(vehicle, shape, _MIDDLE, middle_stations(shape)),
-        _body(vehicle, shape, _COARSE, coarse_stations(shape)),
+def car(
+    name: str,
+    kind: VehicleType = VehicleType.PASSENGER,
+    *,
+    size: tuple[float, float, float],
+    wheels: tuple[float, float, float],
+    mass: float,
+    words: tuple[str, ...],
+    shape: CarShape,
+    axles: tuple[Axle, ...] | None = None,
+) -> VehicleModel:
+    """Return a car, van or bus.
+
+    Args:
+        name: The original's name.
+        kind: SUMO's class.
+        size: Length, width with mirrors, and height [m].
+        wheels: Wheelbase, wheel radius and x of the front axle [m].
+        mass: Empty [kg].
+        words: See `Model.words`.
+        shape: Its lines.
+        axles: None: two with the wheels of a car.
+    """
+    wheelbase, radius, front = wheels
+    track = size[1] - 0.36
+    usual = Axle(front, track, 0.23, steered=True), Axle(front - wheelbase, track, 0.23)
+
+    def body(model: VehicleModel) -> tuple[Mesh, ...]:
+        return (
+            _body(model, shape, _FINE, fine_stations(model, shape)),
+            _body(model, shape, _MIDDLE, middle_stations(shape)),
+            _body(model, shape, _COARSE, coarse_stations(shape)),
+        )
+
+    return vehicle(
+        name,
+        kind,
+        size=size,
+        wheelbase=wheelbase,
+        wheel_radius=radius,
+        axles=axles or usual,
+        mass=mass,
+        words=words,
+        body=body,
     )
 
 
 def _body(
-    vehicle: VehicleModel, shape: CarShape, detail: _Detail, stations: NDArray[np.float64]
+    model: VehicleModel, shape: CarShape, detail: _Detail, stations: NDArray[np.float64]
 ) -> Mesh:
     shell = Shell()
-    every = sections(vehicle, shape, stations, arches=detail.arches)
+    every = sections(model, shape, stations, arches=detail.arches)
     halves = every[:, detail.points]
     for i in range(len(stations) - 1):
         middle = (stations[i] + stations[i + 1]) / 2
@@ -69,24 +108,24 @@ def _body(
         for k, (low, high) in enumerate(zip(detail.points, detail.points[1:], strict=False)):
             quad = [back[k], back[k + 1], front[k + 1], front[k]]
             shell.quads(
-                quad, _skin(vehicle, shape, detail, middle, rise, (low, high)), both_sides=True
+                quad, _skin(model, shape, detail, middle, rise, (low, high)), both_sides=True
             )
         if detail.points[-1] != 7:
             mirror = [1.0, -1.0, 1.0]
             quad = [back[-1], back[-1] * mirror, front[-1] * mirror, front[-1]]
-            shell.quads(quad, _skin(vehicle, shape, detail, middle, rise, (6, 7)))
+            shell.quads(quad, _skin(model, shape, detail, middle, rise, (6, 7)))
     _end(shell, shape, detail, halves[0], front=False)
     _end(shell, shape, detail, halves[-1], front=True)
     if 3 not in detail.points:
         _lamp_panels(shell, shape, every[1], every[0])
         _lamp_panels(shell, shape, every[-2], every[-1])
     if detail.arches:
-        _trimmings(shell, vehicle, shape)
+        _trimmings(shell, model, shape)
     return shell.mesh()
 
 
 def _skin(
-    vehicle: VehicleModel,
+    model: VehicleModel,
     shape: CarShape,
     detail: _Detail,
     x: float,
@@ -96,7 +135,7 @@ def _skin(
     """Return the material of a panel.
 
     Args:
-        vehicle: The car.
+        model: The car.
         shape: Shape of the car.
         detail: Resolution of the body.
         x: Position of the panel's middle [m].
@@ -115,7 +154,7 @@ def _skin(
         return TAIL_LAMP
     if strip == (1, 2) and detail.arches:
         # The dark lower edges of the bumpers go round the corners, to the wheels.
-        return shape.sill if vehicle.axles[1].x < x < vehicle.axles[0].x else TRIM
+        return shape.sill if model.axles[1].x < x < model.axles[0].x else TRIM
     return TRIM if low == 0 else PAINT
 
 
@@ -193,9 +232,9 @@ def _lamp_panels(
     shell.quads(quads if front else quads[:, ::-1], material, both_sides=True)
 
 
-def _trimmings(shell: Shell, vehicle: VehicleModel, shape: CarShape) -> None:
+def _trimmings(shell: Shell, model: VehicleModel, shape: CarShape) -> None:
     """Add mirrors, boxes on the roof, number plates and the walls inside the wheel arches."""
-    half = vehicle.width / 2
+    half = model.width / 2
     x = shape.windscreen[1] - 0.42
     z = height_at(shape.belt, x)
     low, high = (x - 0.06, half - 0.2, z + 0.02), (x + 0.08, half, z + 0.15)
@@ -206,11 +245,11 @@ def _trimmings(shell: Shell, vehicle: VehicleModel, shape: CarShape) -> None:
     z = shape.clearance + 0.22
     shell.box((nose - 0.02, -0.26, z), (nose + 0.01, 0.26, z + 0.11), PLATE)
     shell.box((tail - 0.01, -0.26, z + 0.12), (tail + 0.02, 0.26, z + 0.23), PLATE)
-    for axle in vehicle.axles:
+    for axle in model.axles:
         y = (axle.track - axle.width) / 2 - 0.02
-        reach = 1.1 * arch_radius(vehicle.wheel_radius)
+        reach = 1.1 * arch_radius(model.wheel_radius)
         angle = np.linspace(-0.3, np.pi + 0.3, 7)
-        rise = np.maximum(vehicle.wheel_radius + reach * exact.sin(angle), shape.clearance)
+        rise = np.maximum(model.wheel_radius + reach * exact.sin(angle), shape.clearance)
         wall = np.column_stack([axle.x - reach * exact.cos(angle), np.full(7, y), rise])
         fan = [[wall[0], wall[i], wall[i + 1]] for i in range(1, 6)]
         shell.triangles(fan, TRIM)

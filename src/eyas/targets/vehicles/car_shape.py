@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from eyas.state.mesh import Material
 from eyas.targets.vehicles.finishes import PAINT
-from eyas.targets.vehicles.models import VehicleModel
+from eyas.targets.vehicles.vehicle import VehicleModel
 
 __all__ = [
     "CarShape",

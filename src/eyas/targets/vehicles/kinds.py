@@ -2,43 +2,38 @@
 
 from eyas.state.scene import ObjectClass
 from eyas.targets.kind import Kind
-from eyas.targets.vehicles.models import (
-    BODY_COLOURS,
-    MOTORCYCLE_COLOURS,
-    VEHICLE_AHEAD,
-    VEHICLES,
-)
+from eyas.targets.vehicles.models import VEHICLES
 from eyas.targets.vehicles.rig import VehicleRig, trailers_of
+from eyas.targets.vehicles.vehicle import BODY_COLOURS, MOTORCYCLE_COLOURS, VEHICLE_AHEAD
 from eyas.traffic.config import VehicleType
 
 __all__ = ["VEHICLE_KINDS"]
 
-_CLASSES = {
-    VehicleType.PASSENGER: ObjectClass.CAR,
-    VehicleType.BUS: ObjectClass.BUS,
-    VehicleType.TRUCK: ObjectClass.TRUCK,
-    VehicleType.TRAILER: ObjectClass.TRUCK,
-    VehicleType.MOTORCYCLE: ObjectClass.MOTORCYCLE,
-}
+_TWO_WHEELED = VehicleType.MOTORCYCLE
 
 
-def _kind(vehicle_type: VehicleType) -> Kind:
+def _kind(vehicle_type: VehicleType, object_class: ObjectClass) -> Kind:
     models = tuple(model for model in VEHICLES if model.kind == vehicle_type)
-    two_wheeled = vehicle_type is VehicleType.MOTORCYCLE
     return Kind(
         name=vehicle_type.value,
         models=models,
-        colours=MOTORCYCLE_COLOURS if two_wheeled else BODY_COLOURS,
-        object_class=_CLASSES[vehicle_type],
+        colours=MOTORCYCLE_COLOURS if vehicle_type is _TWO_WHEELED else BODY_COLOURS,
+        object_class=object_class,
         rig=lambda: VehicleRig(models),
         ahead=VEHICLE_AHEAD,
         slowest=0.5,  # as in the original
         lamps=True,
         trailers=trailers_of(models),
         sections=tuple(model.sections for model in models) if trailers_of(models) else (),
-        keeps_colours=two_wheeled,
+        keeps_colours=vehicle_type is _TWO_WHEELED,
     )
 
 
-VEHICLE_KINDS: tuple[Kind, ...] = tuple(_kind(vehicle_type) for vehicle_type in VehicleType)
+VEHICLE_KINDS: tuple[Kind, ...] = (
+    _kind(VehicleType.PASSENGER, ObjectClass.CAR),
+    _kind(VehicleType.BUS, ObjectClass.BUS),
+    _kind(VehicleType.TRUCK, ObjectClass.TRUCK),
+    _kind(VehicleType.TRAILER, ObjectClass.TRUCK),
+    _kind(VehicleType.MOTORCYCLE, ObjectClass.MOTORCYCLE),
+)
 """All kinds of vehicles, in the order of `VehicleType`."""

@@ -9,24 +9,17 @@ from eyas.lanes import kernel, parallel
 from eyas.lanes.elementary import sin_cos, tan
 from eyas.state.motion import ActorState
 from eyas.targets.kind import Group, Looks
-from eyas.targets.vehicles.models import VEHICLE_AHEAD
+from eyas.targets.posing import ActorFrame, Slots
+from eyas.targets.vehicles.vehicle import VEHICLE_AHEAD
 from eyas.traffic.trailer import folded
 
-__all__ = ["AXLES", "SLOT", "STEER_LIMIT", "RigTable", "Slots", "pose_vehicles"]
+__all__ = ["AXLES", "SLOT", "STEER_LIMIT", "RigTable", "pose_vehicles"]
 
 STEER_LIMIT = 0.6
 """Largest steering angle [rad]."""
 
 _SLOWEST = 1.0
 """Smallest speed used to compute the curvature from the yaw rate [m/s]."""
-
-
-class Slots(NamedTuple):
-    """The arrays of a `DrawList` that the kernel writes."""
-
-    part: NDArray[np.int32]
-    pose: NDArray[np.float32]
-    colour: NDArray[np.float32]
 
 
 SLOT: Final = np.dtype(
@@ -61,25 +54,8 @@ class RigTable(NamedTuple):
     """Dimensions of dtype `AXLES`, shape (M,)."""
 
 
-class _Base(NamedTuple):
-    """Pose of a vehicle: its rotation, row by row, and the middle of its length on the road."""
-
-    xx: float
-    xy: float
-    xz: float
-    yx: float
-    yy: float
-    yz: float
-    zx: float
-    zy: float
-    zz: float
-    x: float
-    y: float
-    z: float
-
-
 @kernel
-def _base_of(actors: ActorState, w: int, a: int, most_lean: float) -> _Base:
+def _base_of(actors: ActorState, w: int, a: int, most_lean: float) -> ActorFrame:
     """Return the pose of vehicle a of world w, on its road and leaning into the curve."""
     yaw, slope = actors.yaw[w, a], actors.slope[w, a]
     s, c = sin_cos(yaw)
@@ -87,7 +63,7 @@ def _base_of(actors: ActorState, w: int, a: int, most_lean: float) -> _Base:
     sp, cp = sin_cos(slope) if slope != 0.0 else (0.0, 1.0)
     lean = min(max(actors.yaw_rate[w, a], -most_lean), most_lean)
     sr, cr = sin_cos(-lean)  # a roll to the left is negative about x
-    return _Base(
+    return ActorFrame(
         c * cp, -s * cr - c * sp * sr, s * sr - c * sp * cr,
         s * cp, c * cr - s * sp * sr, -c * sr - s * sp * cr,
         sp, cp * sr, cp * cr,
@@ -98,10 +74,10 @@ def _base_of(actors: ActorState, w: int, a: int, most_lean: float) -> _Base:
 
 
 @kernel
-def _carried(base: _Base, hitch: float, towed: int) -> _Base:
+def _carried(base: ActorFrame, hitch: float, towed: int) -> ActorFrame:
     """Return the pose of a truck or its trailer, see `folded`; `base` is that of the whole."""
     x, y, c, s = folded(hitch, towed)
-    return _Base(
+    return ActorFrame(
         base.xx * c + base.xy * s, base.xy * c - base.xx * s, base.xz,
         base.yx * c + base.yy * s, base.yy * c - base.yx * s, base.yz,
         base.zx * c + base.zy * s, base.zy * c - base.zx * s, base.zz,
@@ -114,7 +90,7 @@ def _carried(base: _Base, hitch: float, towed: int) -> _Base:
 @kernel
 def _pose_slot(
     pose: NDArray[np.float32],
-    base: _Base,
+    base: ActorFrame,
     offset: tuple[float, float, float],
     steer: tuple[float, float],
     spin: tuple[float, float],

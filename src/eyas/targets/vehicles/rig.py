@@ -1,21 +1,16 @@
 """The rig of vehicles: a body, wheels that roll and steer, and a trailer that swings."""
 
-import operator
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.lanes import BoundCall, Held
-from eyas.state.draw import DrawList
+from eyas.mesh.shell import levels_of
 from eyas.state.mesh import Mesh
-from eyas.state.motion import ActorState
-from eyas.targets.kind import MANY, Group, Looks
-from eyas.targets.vehicles.bodies import body_levels
-from eyas.targets.vehicles.heavy import trailer_levels
-from eyas.targets.vehicles.models import VEHICLE_AHEAD, Axle, VehicleModel
-from eyas.targets.vehicles.pose import AXLES, SLOT, RigTable, Slots, pose_vehicles
+from eyas.targets.posing import PoseCall
+from eyas.targets.vehicles.pose import AXLES, SLOT, RigTable, pose_vehicles
+from eyas.targets.vehicles.vehicle import VEHICLE_AHEAD, Axle, Trailer, VehicleModel
 from eyas.targets.vehicles.wheels import wheel_levels
 
 __all__ = ["VehicleRig", "trailers_of"]
@@ -26,6 +21,7 @@ class VehicleRig:
 
     Attributes:
         slots: As in `Rig`.
+        pose: As in `Rig`.
 
     Args:
         models: All models of a kind.
@@ -36,9 +32,11 @@ class VehicleRig:
     def __init__(self, models: Sequence[VehicleModel]) -> None:
         self._parts: list[_Part] = []
         layouts = [_layout(model, self._parts) for model in models]
+        self._models, self._layouts = models, layouts
         self.slots = max(len(layout) for layout in layouts)
-        self._table = Held(_tabulate(models, layouts, self.slots))
-        self._last: _Call | None = None
+        table = _tabulate(models, layouts, self.slots)
+        self._slots = table.slot
+        self.pose = PoseCall(pose_vehicles, table)
 
     @property
     def part_count(self) -> int:
@@ -46,29 +44,22 @@ class VehicleRig:
         return len(self._parts)
 
     def part_levels(self) -> list[tuple[Mesh, ...]]:
-        """Return the meshes of each part, the finest first."""
-        return [_levels(part) for part in self._parts]
+        """Return the meshes of each part, the finest first.
+
+        Raises:
+            ValueError: A model is not of the size that it says.
+        """
+        levels = [_levels(part) for part in self._parts]
+        for model, slots in zip(self._models, self._layouts, strict=True):
+            placed = [levels[slot.part][0].positions + slot.offset for slot in slots]
+            model.check_meshes(np.concatenate(placed), 0.05)
+        return levels
 
     def reach(self, parts: NDArray[np.float64]) -> float:
         """Return how far any point of a vehicle may be from its reference point, see `Rig` [m]."""
-        slot = self._table.bundle.slot
-        slot = slot[slot["part"] >= 0]
+        slot = self._slots[self._slots["part"] >= 0]
         offset = np.sqrt(np.square(slot["x"]) + np.square(slot["y"]) + np.square(slot["z"]))
         return abs(VEHICLE_AHEAD) + float((offset + parts[slot["part"]]).max())
-
-    def pose(self, group: Group, actors: ActorState, looks: Looks, out: DrawList) -> None:
-        """Write all slots of the kind's actors, see `Rig`."""
-        given, last = (group, actors, looks, Slots(out.part, out.pose, out.colour)), self._last
-        if last is None:
-            held = tuple(map(Held, given))
-        else:
-            held = tuple(map(Held.again, last.held, given))
-        if last is None or not all(map(operator.is_, held, last.held)):
-            last = self._last = _Call(held, pose_vehicles.bind(self._table, *held))
-        if looks.model.shape[0] * len(group.actor) < MANY:
-            last.kernel()
-        else:
-            pose_vehicles(2, self._table, *held)
 
 
 def trailers_of(models: Sequence[VehicleModel]) -> tuple[int, ...]:
@@ -76,14 +67,7 @@ def trailers_of(models: Sequence[VehicleModel]) -> tuple[int, ...]:
     parts: list[_Part] = []
     for model in models:
         _layout(model, parts)
-    return tuple(k for k, part in enumerate(parts) if isinstance(part, _Trailer))
-
-
-class _Call(NamedTuple):
-    """A call; that of the next picture is mostly the same."""
-
-    held: tuple[Held[Any], ...]
-    kernel: BoundCall
+    return tuple(k for k, part in enumerate(parts) if isinstance(part, _Towed))
 
 
 class _Wheels(NamedTuple):
@@ -93,18 +77,22 @@ class _Wheels(NamedTuple):
     """Distance between the two wheels of an axle [m]; 0 for a single wheel."""
 
 
-class _Trailer(NamedTuple):
+class _Towed(NamedTuple):
+    trailer: Trailer
     vehicle: VehicleModel
 
 
-_Part = VehicleModel | _Wheels | _Trailer
+_Part = VehicleModel | _Wheels | _Towed
 """The body of a model, or wheels, which several models may share, or its trailer."""
 
 
 def _levels(part: _Part) -> tuple[Mesh, ...]:
-    if isinstance(part, _Trailer):
-        return trailer_levels(part.vehicle)
-    return wheel_levels(*part) if isinstance(part, _Wheels) else body_levels(part)
+    if isinstance(part, _Wheels):
+        return wheel_levels(*part)
+    if isinstance(part, VehicleModel):
+        return part.body(part)
+    shape, vehicle = part.trailer.shape, part.vehicle
+    return levels_of(lambda shell, detail: shape(shell, vehicle, detail))
 
 
 class _Slot(NamedTuple):
@@ -121,7 +109,9 @@ def _layout(vehicle: VehicleModel, parts: list[_Part]) -> list[_Slot]:
     slots = [_Slot(_index(vehicle, parts), (0.0, 0.0, 0.0))]
     for axle in sorted(vehicle.axles, key=lambda axle: axle.towed):
         if axle.towed and not slots[-1].towed:
-            slots.append(_Slot(_index(_Trailer(vehicle), parts), (0.0, 0.0, 0.0), towed=True))
+            assert vehicle.trailer is not None
+            behind = _index(_Towed(vehicle.trailer, vehicle), parts)
+            slots.append(_Slot(behind, (0.0, 0.0, 0.0), towed=True))
         # Steered wheels turn about their own middles, so each is a part; others are one per axle.
         pair = 0.0 if axle.steered else axle.track
         part = _index(_Wheels(vehicle.wheel_radius, axle.width, pair), parts)

@@ -3,9 +3,7 @@
 The origin is on the ground in the middle of the house; the front faces along y.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 import shapely
@@ -16,19 +14,17 @@ from eyas.mesh.assembly import concatenate
 from eyas.mesh.flat import flat_polygon, quads, walls
 from eyas.mesh.solids import box
 from eyas.state.mesh import Material, Mesh
-from eyas.state.scene import ObjectClass
-from eyas.world.build.heights import FLOOR_HEIGHT
-from eyas.world.build.materials import TEXTURES, facade, material
-from eyas.world.build.scene_builder import Levels, SceneBuilder
+from eyas.world.build.materials import TEXTURES, material
+from eyas.world.build.scene_builder import Levels
 from eyas.world.buildings import parts
 from eyas.world.buildings.skyline import FLOOR
 
-__all__ = ["SIDE", "Cottage", "CottageLook", "add_cottages"]
+__all__ = ["ROOF", "SIDE", "Cottage", "cottage_levels", "outline_at"]
 
 SIDE = 20.0
 """Length of the walls [m]."""
 
-_ROOF = 3.6
+ROOF = 3.6
 """Height of the roof above the eaves [m]."""
 _EAVES = 0.9
 """From the wall to the edge of the roof [m]."""
@@ -54,21 +50,7 @@ class Cottage:
     @property
     def outline(self) -> Points:
         """Corners of its walls, counter-clockwise [m], shape (4, 2)."""
-        cosine, sine = exact.cos(self.turn), exact.sin(self.turn)
-        turned = exact.product(_SQUARE, np.array([[cosine, sine], [-sine, cosine]]))
-        return np.asarray(self.place + turned, np.float64)
-
-
-@dataclass(frozen=True, slots=True)
-class CottageLook:
-    """Paint and tiles of a house."""
-
-    walls: str
-    """One of `FACADES`."""
-    tint: tuple[float, float, float]
-    """Factor on the walls' colour."""
-    tiles: tuple[float, float, float]
-    """Factor on the tiles' colour."""
+        return outline_at(self.place, self.turn)
 
 
 _SQUARE = 0.5 * SIDE * np.array([(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)])
@@ -78,34 +60,19 @@ _CHIMNEY = material("brick", (0.95, 0.9, 0.86))
 _DARK = material("plain", (0.12, 0.11, 0.10))
 
 
-def add_cottages(
-    builder: SceneBuilder, houses: Sequence[Cottage], looks: Sequence[CottageLook]
-) -> None:
-    """Add houses.
-
-    Args:
-        builder: The builder to add to.
-        houses: The houses.
-        looks: Their looks.
-    """
-    for house in houses:
-        look = looks[house.look % len(looks)]
-        name = f"house of {house.storeys} storeys {house.look % len(looks)}"
-        kind = builder.prototype(name, partial(_levels, house.storeys, look))
-        spot = (*house.place.tolist(), FLOOR_HEIGHT)
-        owner = builder.add_copy(ObjectClass.BUILDING, kind, spot, house.turn, 1.0)
-        top = FLOOR_HEIGHT + house.storeys * FLOOR + _ROOF
-        builder.add_prism(house.outline, FLOOR_HEIGHT, top, owner)
+def outline_at(place: Points, turn: float) -> Points:
+    """Return the corners of the walls of a house, counter-clockwise [m], shape (4, 2)."""
+    cosine, sine = exact.cos(turn), exact.sin(turn)
+    turned = exact.product(_SQUARE, np.array([[cosine, sine], [-sine, cosine]]))
+    return np.asarray(place + turned, np.float64)
 
 
-def _levels(storeys: int, look: CottageLook) -> Levels:
+def cottage_levels(storeys: int, wall: Material, tiles: Material) -> Levels:
     """Return a house in two levels of detail."""
     top = storeys * FLOOR
-    wall = facade(look.walls, look.tint)
-    tiles = material("roof_tiles", look.tiles)
     rng = np.random.default_rng(storeys)
     shell = [
-        parts.window_wall(_SQUARE, 0.0, top, wall, rng),
+        parts.window_wall(_SQUARE, 0.0, top, wall, rng.integers(0, 4, (4, 2))),
         _roof(top, tiles),
         walls(_SQUARE * (1.0 + 2 * _EAVES / SIDE), top - 0.25, top, _FRAME, 4.0),
     ]
@@ -116,8 +83,8 @@ def _roof(top: float, tiles: Material) -> Mesh:
     """Return four slopes with their undersides."""
     eaves = _SQUARE * (1.0 + 2 * _EAVES / SIDE)
     rim = np.column_stack([eaves, np.full(4, top)])
-    peak = np.array([0.0, 0.0, top + _ROOF])
-    half, slope = SIDE / 2 + _EAVES, float(exact.hypot(SIDE / 2 + _EAVES, _ROOF))
+    peak = np.array([0.0, 0.0, top + ROOF])
+    half, slope = SIDE / 2 + _EAVES, float(exact.hypot(SIDE / 2 + _EAVES, ROOF))
     made = []
     for k in range(4):
         one, other = rim[k], rim[(k + 1) % 4]

@@ -1,19 +1,27 @@
 """Appearance of a building: street level, base, shaft and top, roof."""
 
 import zlib
+from collections.abc import Iterator
 from itertools import pairwise
 
 import numpy as np
+import shapely
+from numpy.typing import NDArray
 
 from eyas.mesh.assembly import concatenate
-from eyas.state.mesh import Material, Mesh
+from eyas.mesh.flat import flat_polygon
+from eyas.state.mesh import Mesh
 from eyas.world.build.heights import FLOOR_HEIGHT
-from eyas.world.build.materials import GROUND_FLOORS, facade, material
+from eyas.world.build.materials import GROUND_FLOORS, TEXTURES, facade, material
 from eyas.world.buildings import parts
-from eyas.world.buildings.placing import PARAPET, Building
+from eyas.world.buildings.roof_shapes import sloping_roof
 from eyas.world.buildings.skyline import FLOOR
+from eyas.world.plan.plan import Shell
 
-__all__ = ["chance_of", "mesh_of"]
+__all__ = ["chance_of", "mesh_of", "prisms_of"]
+
+_LOWEST = 0.3
+"""Lower walls are left out [m]."""
 
 _TALL = 10
 """Number of storeys from which a building has a base and a top."""
@@ -32,53 +40,109 @@ _CROWNS = {
 """Facades of the top storeys of high buildings, where they differ from the rest."""
 
 
-def mesh_of(building: Building) -> Mesh:
+def mesh_of(building: Shell) -> Mesh:
     """Return the outside of a building; the same building always looks the same."""
     rng = chance_of(building)
-    foot, outline = building.bottom, building.footprint
-    top = foot + building.height
-    street = min(FLOOR, building.height - FLOOR) if foot <= FLOOR_HEIGHT else 0.0
+    shape, foot, top = building.outline, building.bottom, building.top
+    # Storeys are stretched a little, so that whole ones fill the wall.
+    storeys = max(round(building.height / FLOOR), 1)
+    storey = building.height / storeys
+    street = storey if building.shops and foot <= FLOOR_HEIGHT and storeys >= 2 else 0.0
     front = facade(GROUND_FLOORS[int(rng.integers(len(GROUND_FLOORS)))], building.tint)
     stone = material("concrete", building.tint)
-    meshes = _shaft_walls(building, foot + street, top, stone, rng)
+    meshes: list[Mesh] = []
+    for outline in parts.rings(shape) if building.height > _LOWEST else ():
+        meshes += _shaft_walls(building, outline, foot + street, storey, rng)
+        if street > 0:
+            starts = _starts(outline, rng)
+            meshes.append(
+                parts.window_wall(outline, foot, foot + street, front, starts, storey / FLOOR)
+            )
     if street > 0:
-        meshes.append(parts.window_wall(outline, foot, foot + street, front, rng))
-        meshes.append(parts.ledge(outline, foot + street, stone))
-    if building.roof == "flat":
-        meshes.append(parts.flat_roof(outline, top, PARAPET, stone, building.roof_material))
+        meshes.append(parts.ledge(building.footprint, foot + street, stone))
+    if building.roof == "pyramid":
+        meshes.append(parts.pyramid_roof(building.footprint, top, stone, building.cover))
+    elif building.roof != "flat":
+        rise, across, covers = building.rise, building.across, (building.cover, stone)
+        meshes.append(sloping_roof(shape, building.roof, top, rise, covers, across=across))
+    elif building.parapet:
+        meshes.append(parts.flat_roof(shape, top, stone, building.cover))
     else:
-        meshes.append(parts.pyramid_roof(outline, top, stone, building.roof_material))
+        meshes.append(flat_polygon(shape, top, building.cover, TEXTURES[building.cover.texture]))
+    if building.underside:
+        meshes.append(parts.underside(shape, foot, stone))
     return concatenate(meshes)
 
 
-def chance_of(building: Building) -> np.random.Generator:
+def prisms_of(building: Shell) -> Iterator[tuple[NDArray[np.float64], float, float]]:
+    """Yield outlines without holes, bottoms and tops of solids that fill a building [m]."""
+    top = building.top
+    if building.roof == "pyramid":
+        top += parts.pyramid_rise(building.footprint) / 2
+    elif building.roof != "flat":
+        top += building.rise / 2
+    elif building.parapet:
+        top += parts.PARAPET
+    for part in _without_holes(building.outline):
+        yield parts.rings(part)[0], building.bottom, top
+
+
+def _without_holes(shape: shapely.Polygon) -> list[shapely.Polygon]:
+    """Return a shape cut through the middles of its holes until none is left."""
+    if not shape.interiors:
+        return [shape]
+    middle = shape.interiors[0].centroid.x
+    west, south, east, north = shape.bounds
+    halves = (shapely.box(west, south, middle, north), shapely.box(middle, south, east, north))
+    return [
+        piece
+        for half in halves
+        for part in shapely.get_parts(shapely.intersection(shape, half))
+        if isinstance(part, shapely.Polygon) and part.area > 1e-3
+        for piece in _without_holes(part)
+    ]
+
+
+def chance_of(building: Shell) -> np.random.Generator:
     """Return the random numbers for the appearance of a building."""
+    rings = (building.outline.exterior, *building.outline.interiors)
+    points = np.concatenate([shapely.get_coordinates(ring)[:-1] for ring in rings])
     # Seeded by whole millimetres: the last bits of the corners differ between processors.
-    corners = np.rint(1000.0 * building.footprint).astype("<i8")
+    corners = np.rint(1000.0 * points).astype("<i8")
     return np.random.Generator(np.random.PCG64(zlib.crc32(corners.tobytes())))
 
 
+def _starts(outline: NDArray[np.float64], rng: np.random.Generator) -> NDArray[np.int64]:
+    return rng.integers(0, 4, (len(outline), 1, 2))
+
+
 def _shaft_walls(
-    building: Building, low: float, top: float, stone: Material, rng: np.random.Generator
+    building: Shell,
+    outline: NDArray[np.float64],
+    low: float,
+    storey: float,
+    rng: np.random.Generator,
 ) -> list[Mesh]:
     """Return the walls above the street: high ones in a base, a shaft of bands, and a top.
 
     Each band starts at its own bay, so that the pattern of blinds does not repeat up the wall.
     """
-    made = []
+    made, top = [], building.top
+    stone = material("concrete", building.tint)
     walled = facade(building.facade, building.tint)
-    floors = round((top - low) / FLOOR)
+    floors = round((top - low) / storey)
     cuts = [low, top]
     if floors >= _TALL:
         base, crown = (int(n) for n in rng.integers(1, 4, 2))
         dark = (0.8 * building.tint[0], 0.8 * building.tint[1], 0.8 * building.tint[2])
         crowned = facade(_CROWNS.get(building.facade, building.facade), building.tint)
-        between = np.arange(base, floors - crown - _BAND // 2, _BAND) * FLOOR + low
-        cuts = [low, *between.tolist(), top - crown * FLOOR, top]
-        made += [parts.ledge(building.footprint, z, stone) for z in (cuts[1], cuts[-2])]
+        between = np.arange(base, floors - crown - _BAND // 2, _BAND) * storey + low
+        cuts = [low, *between.tolist(), top - crown * storey, top]
+        made += [parts.ledge(outline, z, stone) for z in (cuts[1], cuts[-2])]
     for k, (bottom, upper) in enumerate(pairwise(cuts)):
         look = walled
         if floors >= _TALL and k in (0, len(cuts) - 2):
             look = crowned if k else facade(building.facade, dark)
-        made.append(parts.window_wall(building.footprint, bottom, upper, look, rng))
+        starts = _starts(outline, rng)
+        made.append(parts.window_wall(outline, bottom, upper, look, starts, storey / FLOOR))
     return made

@@ -10,7 +10,19 @@ from eyas.mesh.flat import flat_polygon, quads, walls
 from eyas.state.mesh import Material, Mesh
 from eyas.world.build.materials import TEXTURES
 
-__all__ = ["flat_roof", "ledge", "pyramid_rise", "pyramid_roof", "window_wall"]
+__all__ = [
+    "PARAPET",
+    "flat_roof",
+    "ledge",
+    "pyramid_rise",
+    "pyramid_roof",
+    "rings",
+    "underside",
+    "window_wall",
+]
+
+PARAPET = 0.9
+"""Height of the wall around a flat roof [m]."""
 
 Outline = NDArray[np.float64]
 
@@ -19,12 +31,25 @@ _TILE = 12.0
 
 
 def window_wall(
-    outline: Outline, bottom: float, top: float, wall: Material, rng: np.random.Generator
+    outline: Outline,
+    bottom: float,
+    top: float,
+    wall: Material,
+    starts: NDArray[np.integer],
+    stretch: float = 1.0,
 ) -> Mesh:
     """Return walls whose windows meet corners and storeys in whole bays.
 
-    Each wall starts at its own bay and storey, so that blinds differ from wall to wall; walls too
-    short for a window show only the pier between two windows.
+    Walls too short for a window show only the pier between two windows.
+
+    Args:
+        outline: Corners [m].
+        bottom: z of the foot [m].
+        top: z of the upper edge [m].
+        wall: Material with windows.
+        starts: Bay and storey of the texture at which each wall starts, so that blinds differ from
+            wall to wall, shape (K, 2).
+        stretch: Factor on the height of storeys.
     """
     mesh = walls(outline, bottom, top, wall, _TILE)
     length = np.linalg.norm(np.roll(outline, -1, axis=0) - outline, axis=1)
@@ -32,32 +57,50 @@ def window_wall(
     short = length < 1.8
     uv[short, 1:3, 0] = 0.012
     uv[short, 0, 0] = uv[short, 3, 0] = -0.012
-    uv += rng.integers(0, 4, (len(outline), 1, 2)).astype(np.float32) / 4
+    if stretch != 1.0:
+        uv[..., 1] /= stretch
+    uv += np.reshape(starts, (-1, 1, 2)).astype(np.float32) / 4
     return mesh
 
 
 def ledge(outline: Outline, z: float, stone: Material) -> Mesh:
     """Return a thin band around a building that stands out from its wall."""
     shape = shapely.Polygon(outline)
-    out = _ring(shapely.buffer(shape, 0.22, join_style="mitre"))
+    out = _outer(shapely.buffer(shape, 0.22, join_style="mitre"))
     band = walls(out, z - 0.18, z + 0.12, stone, 6.0)
     return concatenate([band, flat_polygon(shapely.Polygon(out) - shape, z + 0.12, stone, 6.0)])
 
 
-def flat_roof(
-    outline: Outline, top: float, parapet: float, stone: Material, cover: Material
-) -> Mesh:
-    """Return a roof with a parapet around it."""
-    shape = shapely.Polygon(outline)
+def flat_roof(shape: shapely.Polygon, top: float, stone: Material, cover: Material) -> Mesh:
+    """Return a roof with a parapet around it, and around its courtyards."""
     inside = shapely.buffer(shape, -0.35, join_style="mitre")
-    pieces = [walls(outline, top, top + parapet, stone, 6.0)]
-    pieces.append(flat_polygon(shape - inside, top + parapet, stone, 6.0))
+    edge = top + PARAPET
+    pieces = [walls(ring, top, edge, stone, 6.0) for ring in rings(shape)]
+    pieces.append(flat_polygon(shape - inside, edge, stone, 6.0))
     pieces += [
-        walls(_ring(part)[::-1], top, top + parapet, stone, 6.0)
+        walls(ring[::-1], top, edge, stone, 6.0)
         for part in shapely.get_parts(inside)
+        for ring in rings(part)
     ]
     pieces.append(flat_polygon(inside, top, cover, TEXTURES[cover.texture]))
     return concatenate(pieces)
+
+
+def rings(shape: shapely.Polygon) -> list[Outline]:
+    """Return the outlines of a shape, each with the inside of the shape on its left [m]."""
+    solid = shapely.geometry.polygon.orient(shape)
+    return [
+        np.ascontiguousarray(shapely.get_coordinates(ring)[:-1], np.float64)
+        for ring in (solid.exterior, *solid.interiors)
+    ]
+
+
+def underside(shape: shapely.Polygon, z: float, stone: Material) -> Mesh:
+    """Return a shape that is seen from below."""
+    mesh = flat_polygon(shape, z, stone, 6.0)
+    mesh.triangles = np.ascontiguousarray(mesh.triangles[:, ::-1])
+    mesh.normals = -mesh.normals
+    return mesh
 
 
 def pyramid_rise(outline: Outline) -> float:
@@ -68,7 +111,7 @@ def pyramid_rise(outline: Outline) -> float:
 def pyramid_roof(outline: Outline, top: float, stone: Material, tiles: Material) -> Mesh:
     """Return a tiled roof with eaves, rising to a point, or to a ridge over a long rectangle."""
     shape = shapely.Polygon(outline)
-    eaves = _ring(shapely.buffer(shape, 0.6, join_style="mitre"))
+    eaves = _outer(shapely.buffer(shape, 0.6, join_style="mitre"))
     peak = top + pyramid_rise(outline)
     centre = shapely.get_coordinates(shape.centroid)[0]
     start, end = eaves, np.roll(eaves, -1, axis=0)
@@ -87,10 +130,7 @@ def pyramid_roof(outline: Outline, top: float, stone: Material, tiles: Material)
     slopes = quads(corners, np.stack([u, up], axis=2) / 4.0, tiles)
     slopes.triangles = slopes.triangles[_areas(slopes) > 1e-6]
     slopes.materials = slopes.materials[: len(slopes.triangles)]
-    soffit = flat_polygon(shapely.Polygon(eaves) - shape, top, stone, 6.0)
-    soffit.triangles = np.ascontiguousarray(soffit.triangles[:, ::-1])
-    soffit.normals = -soffit.normals
-    return concatenate([slopes, soffit])
+    return concatenate([slopes, underside(shapely.Polygon(eaves) - shape, top, stone)])
 
 
 def _areas(mesh: Mesh) -> NDArray[np.float64]:
@@ -118,6 +158,5 @@ def _short_side(outline: Outline) -> float:
     return float(np.linalg.norm(np.diff(ring, axis=0)[:2], axis=1).min())
 
 
-def _ring(shape: shapely.Polygon) -> Outline:
-    ring = shapely.get_coordinates(shapely.geometry.polygon.orient(shape).exterior)[:-1]
-    return np.ascontiguousarray(ring, np.float64)
+def _outer(shape: shapely.Polygon) -> Outline:
+    return rings(shape)[0]

@@ -1,24 +1,19 @@
 """Buildings: their positions in city blocks, and their appearance."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from eyas.state.mesh import Material
 from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.materials import FACADES
-from eyas.world.buildings import parts
 from eyas.world.buildings.looks import roof_cover, wall_tint
 from eyas.world.buildings.lots import divide, footprint_in, frame_angle, largest, turned
 from eyas.world.buildings.skyline import FLOOR, TOWER_SHARE, evenly, ground_areas, storeys
+from eyas.world.plan.plan import Shell
 
-__all__ = ["PARAPET", "SETBACK", "Building", "place_buildings", "prism_of"]
-
-PARAPET = 0.9
-"""Height of the wall around a flat roof [m]."""
+__all__ = ["SETBACK", "place_buildings"]
 
 SETBACK = 4.4
 """Least distance between a kerb and a building [m]."""
@@ -30,32 +25,12 @@ _SMALL = 200.0
 """Larger parts of the kept-free area shape the lots, smaller ones only the footprints [m^2]."""
 
 
-@dataclass(frozen=True)
-class Building:
-    """A building, or a part of one that stands on another."""
-
-    footprint: NDArray[np.float64]
-    """Corners, counter-clockwise [m], shape (K, 2)."""
-    bottom: float
-    """z of its foot [m]."""
-    height: float
-    """From the foot to the eaves, a whole number of storeys [m]."""
-    facade: str
-    """One of `FACADES`."""
-    tint: tuple[float, float, float]
-    """Factor on the facade's colour, sRGB."""
-    roof: str
-    """`flat` with a parapet, or `pyramid`."""
-    roof_material: Material
-    """Cover of the roof."""
-
-
 def place_buildings(
     blocks: Sequence[shapely.Polygon],
     count: int,
     rng: np.random.Generator,
     keep_free: shapely.Geometry,
-) -> list[Building]:
+) -> list[Shell]:
     """Fill city blocks with buildings whose sizes are spread as in the original's street city.
 
     About a fifth are towers that stand on other buildings. No two share space.
@@ -154,7 +129,7 @@ def _shaft(podium: shapely.Polygon, rng: np.random.Generator) -> shapely.Polygon
 
 def _furnished(
     shapes: Sequence[shapely.Polygon], base: NDArray[np.int64], rng: np.random.Generator
-) -> list[Building]:
+) -> list[Shell]:
     """Give footprints their heights, facades and roofs."""
     area = np.array([shape.area for shape in shapes])
     top = FLOOR * storeys(np.sqrt(area), base, rng)
@@ -169,28 +144,14 @@ def _furnished(
         eligible = compact and area[i] < 1600 and top[i] <= 36 and i not in carries
         pyramid = bool(eligible and base[i] < 0 and rng.random() < 0.55)
         made.append(
-            Building(
-                footprint=_corners(shape),
+            Shell(
+                outline=shapely.geometry.polygon.orient(shape),
                 bottom=float(FLOOR_HEIGHT + foot),
                 height=float(top[i] - foot),
                 facade=kinds[i],
                 tint=wall_tint(rng),
                 roof="pyramid" if pyramid else "flat",
-                roof_material=roof_cover(float(top[i]), rng, pyramid=pyramid),
+                cover=roof_cover(float(top[i]), rng, pyramid=pyramid),
             )
         )
     return made
-
-
-def _corners(shape: shapely.Polygon) -> NDArray[np.float64]:
-    ring = shapely.get_coordinates(shapely.geometry.polygon.orient(shape))[:-1]
-    return np.ascontiguousarray(ring, np.float64)
-
-
-def prism_of(building: Building) -> tuple[NDArray[np.float64], float, float]:
-    """Return footprint, bottom and top of the solid that represents a building [m]."""
-    top = building.bottom + building.height
-    if building.roof == "flat":
-        return building.footprint, building.bottom, top + PARAPET
-    rise = parts.pyramid_rise(building.footprint)
-    return building.footprint, building.bottom, top + rise / 2

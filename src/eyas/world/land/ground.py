@@ -6,19 +6,14 @@ import numpy as np
 import shapely
 
 from eyas.core import exact
-from eyas.mesh.assembly import concatenate
-from eyas.mesh.flat import flat_polygon
-from eyas.state.mesh import Mesh
-from eyas.world.build.heights import FLOOR_HEIGHT, KERB_HEIGHT
-from eyas.world.build.materials import TEXTURES, material
+from eyas.world.build.materials import material
 from eyas.world.build.millimetres import rounded
-from eyas.world.roads.areas import skirt, surface
+from eyas.world.plan.plan import Flat
 
 __all__ = [
     "PAVEMENT_WIDTH",
     "asphalt",
     "lawn",
-    "pavement",
     "pavement_area",
     "verge_area",
     "yards",
@@ -30,10 +25,6 @@ PAVEMENT_WIDTH = 2.6
 _VERGE = 1.5
 """Width of the pavement along the outer side of the outer streets [m]."""
 
-_KERB_WIDTH = 0.35
-_KERB = material("stone", (1.0, 0.95, 0.92))
-_PAVING = material("paving")
-_CONCRETE = material("concrete")
 _YARDS = (
     material("paving", (0.92, 0.92, 0.93)),
     material("concrete", (0.95, 0.94, 0.92)),
@@ -74,37 +65,13 @@ def verge_area(outside: Sequence[shapely.Polygon], paved: shapely.Geometry) -> s
     return shapely.difference(shapely.intersection(shapely.union_all(outside), beside), paved)
 
 
-def pavement(area: shapely.Geometry, road: shapely.Geometry, turn: float = 0.0) -> Mesh:
-    """Return raised pavements with kerb stones where they meet the road.
-
-    Args:
-        area: Pavements [m].
-        road: Asphalt that they meet [m].
-        turn: Direction of the streets, along which the slabs are laid [rad].
-    """
-    kerb = shapely.intersection(area, shapely.buffer(road, _KERB_WIDTH))
-    slabs = shapely.difference(area, kerb)
-    return concatenate(
-        [
-            surface(kerb, KERB_HEIGHT, _KERB, TEXTURES["stone"]),
-            surface(slabs, KERB_HEIGHT, _PAVING, TEXTURES["paving"], turn),
-            skirt(area, FLOOR_HEIGHT, KERB_HEIGHT, _KERB, TEXTURES["stone"]),
-        ]
-    )
-
-
-def asphalt(area: shapely.Geometry, *, light: bool = False) -> Mesh:
+def asphalt(area: shapely.Geometry, *, light: bool = False) -> Flat:
     """Return a road surface at z = 0 with its sides down to the floor."""
-    kind = "asphalt_light" if light else "asphalt"
-    return concatenate(
-        [
-            surface(area, 0.0, material(kind), TEXTURES[kind]),
-            skirt(area, FLOOR_HEIGHT, 0.0, _CONCRETE, TEXTURES["concrete"]),
-        ]
-    )
+    cover = material("asphalt_light" if light else "asphalt")
+    return Flat(area=area, z=0.0, cover=cover, sides=material("concrete"))
 
 
-def yards(areas: Sequence[shapely.Geometry], turn: float, rng: np.random.Generator) -> Mesh:
+def yards(areas: Sequence[shapely.Geometry], turn: float, rng: np.random.Generator) -> list[Flat]:
     """Return the paving around buildings, level with the lawn.
 
     Args:
@@ -112,13 +79,11 @@ def yards(areas: Sequence[shapely.Geometry], turn: float, rng: np.random.Generat
         turn: Direction of the streets [rad].
         rng: Random numbers for the choice of the paving.
     """
-    return concatenate(
-        [
-            flat_polygon(area, FLOOR_HEIGHT, kind, TEXTURES[kind.texture], turn)
-            for area, kind in zip(areas, rng.choice(len(_YARDS), len(areas)), strict=True)
-            for kind in [_YARDS[int(kind)]]
-        ]
-    )
+    kinds = rng.choice(len(_YARDS), len(areas)).tolist()
+    return [
+        Flat(area=area, cover=_YARDS[kind], turn=turn, cells="whole")
+        for area, kind in zip(areas, kinds, strict=True)
+    ]
 
 
 def lawn(
@@ -127,7 +92,7 @@ def lawn(
     rng: np.random.Generator,
     mown: shapely.Geometry,
     turn: float,
-) -> Mesh:
+) -> list[Flat]:
     """Return the floor where nothing else covers it, with dry and lush patches.
 
     Args:
@@ -143,13 +108,12 @@ def lawn(
     for tint, patch in list(zip(_GRASS, _grass_patches(extent, rng), strict=True))[::-1]:
         parts.append((tint, shapely.intersection(rest, patch)))
         rest = shapely.difference(rest, patch)
-    tile = TEXTURES["lawn"]
     made = []
     for tint, part in [((1.0, 1.0, 1.0), rest), *parts]:
         inside, outside = shapely.intersection(part, mown), shapely.difference(part, mown)
-        made.append(surface(inside, FLOOR_HEIGHT, material("lawn_mown", tint), tile, turn))
-        made.append(surface(outside, FLOOR_HEIGHT, material("lawn", tint), tile))
-    return concatenate(made)
+        made.append(Flat(area=inside, cover=material("lawn_mown", tint), turn=turn))
+        made.append(Flat(area=outside, cover=material("lawn", tint)))
+    return made
 
 
 def _grass_patches(extent: shapely.Polygon, rng: np.random.Generator) -> list[shapely.Geometry]:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from eyas.core import exact
 from eyas.world.build.millimetres import rounded
+from eyas.world.build.values import Positive
 
 __all__ = ["Mound", "highest", "place_inside", "place_ring", "sizes"]
 
@@ -30,7 +31,7 @@ class Mound:
     """East [m]."""
     y: float
     """North [m]."""
-    radius: float
+    radius: Positive
     """Largest radius of its foot [m]."""
     height: float
     """Height of the summit above the floor [m]."""

@@ -9,16 +9,17 @@ from numpy.typing import NDArray
 from eyas.mesh.assembly import concatenate
 from eyas.mesh.flat import quads
 from eyas.state.mesh import Material, Mesh
+from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.materials import TEXTURES, material
 from eyas.world.build.millimetres import rounded, snapped, unit
 from eyas.world.roads.curves import TURN, arc
 from eyas.world.roads.overpass import DECK_WIDTH, path
 
-__all__ = ["access_road", "descent", "fields"]
+__all__ = ["CROPS", "access_road", "city_land", "descent", "fields"]
 
 _LINES = (450.0, 620.0, 860.0, 1200.0, 1700.0, 2300.0, 3000.0, 4200.0, 6500.0, 10000.0)
 """Borders of the fields from the centre of a floor of 900 m; scaled with the floor [m]."""
-_CROPS = (
+CROPS = (
     (material("lawn", (0.99, 0.99, 0.97)), 0.26),
     (material("lawn", (0.92, 0.95, 0.86)), 0.22),
     (material("lawn", (0.84, 0.91, 0.80)), 0.2),
@@ -29,6 +30,9 @@ _CROPS = (
 """What grows on the fields, and the share of each."""
 _BELOW = 0.05
 """Depth of the fields below the floor, so that rounding never makes them show through [m]."""
+
+_LAND_LINES = (1000.0, 1400.0, 2100.0, 3200.0, 5000.0, 10000.0)
+"""Borders of the land around a city, from the middle of its floor [m]."""
 
 _BACK = 26.0
 """From the foot of a ramp back to the bend of its access road towards the street [m]."""
@@ -44,7 +48,7 @@ def fields(
     size: tuple[float, float],
     floor: float,
     rng: np.random.Generator,
-    crops: Sequence[tuple[Material, float]] = _CROPS,
+    crops: Sequence[tuple[Material, float]],
 ) -> Mesh:
     """Return the land around the floor up to the horizon, a patchwork of large fields.
 
@@ -112,3 +116,34 @@ def descent(middle: Points, floor: float) -> Points:
     profile = ((0.0, middle[-1, 2]), (0.96, floor + 0.1), (1.0, floor))
     # Far away every third cross-section is enough.
     return path(line, (), profile)[::3]
+
+
+def city_land(
+    size: tuple[float, float],
+    rng: np.random.Generator,
+    covers: Sequence[Material],
+    shares: Sequence[float],
+) -> Mesh:
+    """Return the land around the floor of a city up to the horizon, in large patches.
+
+    Args:
+        size: Extent of the floor [m].
+        rng: Random numbers of the patches.
+        covers: What covers them.
+        shares: The share of each; they add up to 1.
+    """
+    x = np.array([*(-np.array(_LAND_LINES[::-1])), -330.0, 330.0, *_LAND_LINES])
+    y = np.where(np.abs(x) == _LAND_LINES[0], np.sign(x) * 0.5 * size[1], x)
+    east, north = np.meshgrid(x, y, indexing="ij")
+    corner = np.stack([east, north, np.full_like(east, FLOOR_HEIGHT - _BELOW)], axis=-1)
+    cells = np.stack(
+        [corner[:-1, :-1], corner[1:, :-1], corner[1:, 1:], corner[:-1, 1:]], axis=2
+    ).reshape(-1, 4, 3)
+    middle = np.abs(cells[..., :2].mean(axis=1))
+    cells = cells[(middle[:, 0] > 0.5 * size[0]) | (middle[:, 1] > 0.5 * size[1])]
+    kind = rng.choice(len(covers), size=len(cells), p=tuple(shares))
+    made = []
+    for index, cover in enumerate(covers):
+        some = cells[kind == index]
+        made.append(quads(some, some[..., :2] / TEXTURES[cover.texture], cover))
+    return concatenate(made)

@@ -23,20 +23,23 @@ _BELOW = 0.05
 _CORNERS = 24
 
 
-def plain(area: shapely.Geometry, near: shapely.Geometry, cover: Material) -> Mesh:
+def plain(
+    area: shapely.Geometry, near: shapely.Geometry, cover: Material, z: float = FLOOR_HEIGHT
+) -> Mesh:
     """Return level ground.
 
     Args:
         area: The ground [m].
         near: Where it is cut into small squares, so that those out of sight are skipped [m].
         cover: Its material.
+        z: Its height [m].
     """
     pieces = []
     # First into large squares: cutting small ones out of everything at once takes far longer.
     for piece in split_on_grid(area, _WIDE_CELL):
         pieces += split_on_grid(shapely.intersection(piece, near), _CELL)
         pieces += polygons_of(shapely.difference(piece, near))
-    return flat_polygons(pieces, FLOOR_HEIGHT, cover, TEXTURES[cover.texture])
+    return flat_polygons(pieces, z, cover, TEXTURES[cover.texture])
 
 
 def far_plain(floor: tuple[float, float], cover: Material) -> Mesh:

@@ -2,11 +2,12 @@
 
 A user's own map is a `MapRecipe` in another package. It is found by its path
 (`my_package.field:FIELD`), by the name given to `MAPS.register`, or by the name of an entry point
-in the group `eyas.maps`. An imported map is found by its name, or by the path of its folder.
+in the group `eyas.maps`. An imported map is found by its name, or by the path of its folder; a plan
+by the path of its file.
 """
 
 from eyas.core.registry import Registry
-from eyas.world.maps.imported import IMPORTED
+from eyas.world.maps.files import MAP_FILES
 from eyas.world.maps.recipe import MapRecipe
 
 __all__ = ["MAPS", "MapRecipe"]
@@ -33,5 +34,5 @@ MAPS: Registry[MapRecipe] = Registry(
         "simpleway-city": "eyas.world.maps.simpleway:CITY",
     },
     group="eyas.maps",
-    files=IMPORTED,
+    files=MAP_FILES,
 )

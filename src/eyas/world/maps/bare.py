@@ -1,24 +1,19 @@
 """Bare layouts: the roads of a map on plain ground, without scenery or anything that hides."""
 
+from typing import Literal
+
 import numpy as np
 import shapely
 
 from eyas.core.rng import stream
 from eyas.state.lighting import Horizon
-from eyas.state.mesh import Material, Mesh
+from eyas.state.mesh import Material
 from eyas.state.roads import RoadNetwork
-from eyas.state.scene import ObjectClass, Scene
-from eyas.state.terrain import Terrain
-from eyas.world.build.heights import FLOOR_HEIGHT
-from eyas.world.build.materials import TEXTURES
-from eyas.world.build.scene_builder import SceneBuilder
-from eyas.world.land import ground
-from eyas.world.land.plain import blob, far_plain, rectangle
-from eyas.world.roads import markings, painting
-from eyas.world.roads.areas import road_area, surface
-from eyas.world.roads.wear import road_wear
+from eyas.world.land.plain import blob, rectangle
+from eyas.world.plan.plan import Chance, Far, Flat, Ground, MapPlan, Paint, Streets
+from eyas.world.roads.areas import road_area
 
-__all__ = ["build_bare_scene"]
+__all__ = ["make_plan"]
 
 _PATCHES = 70
 _PATCH = (8.0, 34.0)
@@ -27,15 +22,15 @@ _PALER, _DARKER = 1.06, 0.93
 """Factors on the ground's colour in them."""
 
 
-def build_bare_scene(
+def make_plan(
     name: str,
     network: RoadNetwork,
     seed: int,
     floor: tuple[float, float],
     cover: Material,
     horizon: Horizon,
-    centre: markings.Centre = markings.Centre.WHITE,
-) -> Scene:
+    centre: Literal["white", "double yellow"] = "white",
+) -> MapPlan:
     """Return roads on plain ground.
 
     Args:
@@ -47,30 +42,36 @@ def build_bare_scene(
         horizon: Hills beyond the map.
         centre: The line between the two directions of a road.
     """
-    builder = SceneBuilder(name, seed, floor, Terrain.flat(FLOOR_HEIGHT))
     roads = road_area(network)
-    paint = markings.road_paint(network, centre=centre, crossings=False)
-    wear = road_wear(network, stream(seed, f"{name} road wear"))
-    builder.add(ObjectClass.MARKING, painting.mesh_of(paint))
-    builder.add(ObjectClass.ROAD, painting.margins_of(paint), wear, ground.asphalt(roads))
     bare = shapely.difference(rectangle(*floor), roads)
-    meshes = _patchy(bare, floor, cover, stream(seed, f"{name} ground"))
-    builder.add(ObjectClass.GROUND, *meshes, far_plain(floor, cover))
-    return builder.build(network, horizon=horizon)
+    ground = _patchy(bare, floor, cover, stream(seed, f"{name} ground"))
+    return MapPlan(
+        name=name,
+        seed=seed,
+        size=floor,
+        layers=(
+            Streets(
+                area=roads,
+                paint=Paint(centre=centre, crossings=0),
+                wear=Chance(stream=f"{name} road wear"),
+            ),
+            Ground(pieces=(*ground, Far(rule="plain", covers=(cover,)))),
+        ),
+        horizon=horizon,
+    )
 
 
 def _patchy(
     area: shapely.Geometry, floor: tuple[float, float], cover: Material, rng: np.random.Generator
-) -> list[Mesh]:
+) -> list[Flat]:
     """Return ground with paler and darker patches, so that a camera sees that it moves."""
-    made: list[Mesh] = []
+    made: list[Flat] = []
     half = 0.5 * np.array(floor)
     for shade in (_PALER, _DARKER):
         middles = rng.uniform(-half, half, (_PATCHES, 2))
         spots = shapely.union_all([blob(at, float(rng.uniform(*_PATCH)), rng) for at in middles])
         red, green, blue = (min(1.0, shade * channel) for channel in cover.tint)
         tinted = Material(cover.texture, (red, green, blue), cover.surface)
-        patch = shapely.intersection(area, spots)
-        made.append(surface(patch, FLOOR_HEIGHT, tinted, TEXTURES[cover.texture]))
+        made.append(Flat(area=shapely.intersection(area, spots), cover=tinted))
         area = shapely.difference(area, spots)
-    return [*made, surface(area, FLOOR_HEIGHT, cover, TEXTURES[cover.texture])]
+    return [*made, Flat(area=area, cover=cover)]

@@ -1,7 +1,7 @@
 """The definition of a map, one object for each."""
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
 from hashlib import blake2b
 from importlib.resources.abc import Traversable
@@ -9,18 +9,20 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from eyas.core.errors import ConfigError, UnknownNameError
+from eyas.core.program import definitions_in
 from eyas.state.lighting import Lighting
-from eyas.world.weather import Season, Weather
+from eyas.world.weather import WEATHERS, Season, Weather, unchanged
 
 if TYPE_CHECKING:  # maps load with `eyas`; the scene modules only when a scene is built
     from eyas.state.roads import RoadGraph, RoadNetwork
-    from eyas.state.scene import Scene
+    from eyas.world.plan.plan import MapPlan
 
 __all__ = [
     "ATTRIBUTION_FILE",
-    "FEATURES_FILE",
     "MIXED_FILE",
     "NETWORK_FILE",
+    "PLAN_FILE",
+    "PLAN_SUFFIXES",
     "TRAFFIC_FILE",
     "MapRecipe",
     "Original",
@@ -30,8 +32,11 @@ __all__ = [
 ATTRIBUTION_FILE = "ATTRIBUTION.txt"
 """File in a map's folder that names those whose data it is made of."""
 
-FEATURES_FILE = "features.json"
-"""File in the folder of an imported map with what stands on it."""
+PLAN_FILE = "map.plan.json"
+"""File in the folder of an imported map with its plan."""
+
+PLAN_SUFFIXES = (".plan.json", ".plan.json.gz")
+"""Endings of the names of files with plans."""
 
 NETWORK_FILE = "network.npz"
 """File in a map's package with the processed roads of its seed 0."""
@@ -63,7 +68,7 @@ class Original:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MapRecipe:
-    """A map: its roads, its scene for each season, its light for each weather."""
+    """A map: its roads, its plan, and what is special about its weathers."""
 
     name: str
     """Words joined by hyphens; used in the names of folders and environments."""
@@ -71,19 +76,25 @@ class MapRecipe:
     """Name for people, a few words."""
     roads: Callable[[int], "RoadGraph"]
     """Returns the roads of a seed; seed 0 is the canonical map."""
-    scene: Callable[["RoadNetwork", int, Season], "Scene"]
-    """Builds everything else around the processed roads of the same seed."""
-    lighting: Mapping[Weather, Lighting]
-    """Light and air of each weather of the map."""
+    plan: Callable[["RoadNetwork", int], "MapPlan"]
+    """Returns the plan of all else around the processed roads of the same seed."""
+    weather: Callable[[Weather], Weather] = unchanged
+    """Returns how a weather is on this map, also one of a user's own."""
+    without: tuple[str, ...] = ()
+    """Names of the weathers that the map does not have."""
     seasons: bool = False
     """Whether the winter scene differs from that of summer: other trees, roofs or crops. Snow on an
     unchanged scene is part of the light (`Lighting.snow`) and needs no scene of its own."""
     package: str | None = None
     """Package that contains the map, mostly `__name__`: it may hold `NETWORK_FILE` and recordings
-    (`traffic*.npz`), and a change of its source rebuilds the scene. None: nothing is shipped, and
-    the scene is not cached between runs."""
+    (`traffic*.npz`), and a change of its code or data rebuilds the scene. None: nothing is shipped,
+    and the scene is not cached between runs."""
     home: Path | None = None
     """Folder of a map that is no package: an imported one. It holds the same files."""
+    file: Path | None = None
+    """File with the plan of a map that has neither."""
+    notice: str = ""
+    """What must be said wherever the map is shown, unless a file beside it says so."""
     original: Original | None = None
     """Figures of the map that it re-creates; None if there is none."""
     pedestrians: int = 0
@@ -98,15 +109,15 @@ class MapRecipe:
     @property
     def weathers(self) -> tuple[str, ...]:
         """Names of the weathers of the map."""
-        return tuple(weather.name for weather in self.lighting)
+        return tuple(name for name in WEATHERS.names() if name not in self.without)
 
-    def light(self, weather: str) -> Lighting:
-        """Return light and air of a weather.
+    def light(self, weather: str, hour: float | None = None) -> Lighting:
+        """Return light and air of a weather at an hour, 0 to 24; None: the weather's own.
 
         Raises:
             UnknownNameError: The map has no such weather.
         """
-        return self.lighting[self._weather(weather)]
+        return self.weather(self._known(weather)).light(hour)
 
     def season(self, weather: str) -> Season:
         """Return the season of the scene in a weather; summer on a map without seasons.
@@ -114,7 +125,7 @@ class MapRecipe:
         Raises:
             UnknownNameError: The map has no such weather.
         """
-        season = self._weather(weather).season
+        season = self._known(weather).season
         return season if self.seasons else Season.SUMMER
 
     @property
@@ -137,14 +148,25 @@ class MapRecipe:
         found = [file for file in files if re.fullmatch(r"traffic.*\.npz", file.name)]
         return tuple(sorted(found, key=lambda file: (file.name != TRAFFIC_FILE, file.name)))
 
-    def source_hash(self) -> str | None:
-        """Return a hash of the sources in the map's folder; None without a folder."""
-        return None if self.folder is None else _source_hash(self.folder)
+    def data_hash(self) -> str | None:
+        """Return a digest of a plan in a file, or of what a folder holds beside code of Eyas, roads
+        and recordings.
+
+        None without both: then nobody knows what the map is made of.
+        """
+        if self.file is not None:
+            return _digest_of([self.file])
+        if self.folder is None:
+            return None
+        if self.package is None:
+            return _digest_of([self.folder / PLAN_FILE])
+        foreign = self.package.partition(".")[0] != __name__.partition(".")[0]
+        return _digest_of(_files_in(self.folder, sources=foreign))
 
     def attribution(self) -> str:
         """Return what must be said wherever the map or data made from it is shown, or nothing."""
         file = self.shipped(ATTRIBUTION_FILE)
-        return file.read_text(encoding="utf-8") if file is not None else ""
+        return file.read_text(encoding="utf-8") if file is not None else self.notice
 
     def shipped_network(self) -> "RoadNetwork | None":
         """Return the processed roads of seed 0 that come with the package, if there are any.
@@ -162,20 +184,32 @@ class MapRecipe:
         with as_file(found) as path:
             return load_network(path)
 
-    def _weather(self, name: str) -> Weather:
-        for weather in self.lighting:
-            if weather.name == name:
-                return weather
-        raise UnknownNameError("world.weather", name, self.weathers, f"on the map '{self.name}'")
+    def _known(self, name: str) -> Weather:
+        here = f"on the map '{self.name}'"
+        try:
+            weather = WEATHERS.get(name)
+        except UnknownNameError:
+            raise UnknownNameError("world.weather", name, self.weathers, here) from None
+        if weather.name in self.without:
+            raise UnknownNameError("world.weather", name, self.weathers, here)
+        return weather
 
 
-def _source_hash(folder: Traversable) -> str:
-    digest = blake2b(digest_size=16)
+def _files_in(folder: Traversable, *, sources: bool) -> Iterator[Traversable]:
     for path in sorted(folder.iterdir(), key=lambda path: path.name):
-        if path.name == "__pycache__":  # which comes with the first start
-            continue
         if path.is_dir():
-            digest.update(f"{path.name}/{_source_hash(path)}".encode())
-        elif path.name.endswith((".py", FEATURES_FILE)):
-            digest.update(path.name.encode() + path.read_bytes())
+            if path.name != "__pycache__":  # which comes with the first start
+                yield from _files_in(path, sources=sources)
+        elif not path.name.endswith(".npz") and (sources or not path.name.endswith(".py")):
+            yield path
+
+
+def _digest_of(files: Iterable[Traversable]) -> str:
+    """Return a digest of files; of sources what they say, since a foreign one may do anything."""
+    digest = blake2b(digest_size=16)
+    for path in files:
+        content = path.read_bytes() if path.is_file() else b""
+        if path.name.endswith(".py"):
+            content = repr(definitions_in(content)).encode()
+        digest.update(f"{path.name} {len(content)} ".encode() + content)
     return digest.hexdigest()

@@ -1,16 +1,18 @@
 """Buildings of OpenStreetMap: footprints, heights and roofs from their tags."""
 
+from typing import Literal
+
 import shapely
 
 from eyas.world.osm.data import Tags
-from eyas.world.osm.features import House
+from eyas.world.osm.features import House, Roof
 from eyas.world.osm.measures import Odd, colour, length, number
 from eyas.world.osm.rings import Shapes
 from eyas.world.roads.areas import polygons_of
 
 __all__ = ["houses_of"]
 
-_ROOFS = {
+_ROOFS: dict[str, Roof] = {
     "flat": "flat",
     "gabled": "gabled", "gambrel": "gabled", "saltbox": "gabled", "round": "gabled",
     "gabled_height_moved": "gabled", "double_saltbox": "gabled", "crosspitched": "gabled",
@@ -97,7 +99,7 @@ def _house(tags: Tags, shape: shapely.Polygon, key: str, odd: Odd) -> House:
     )
 
 
-def _roof(tags: Tags, odd: Odd) -> str:
+def _roof(tags: Tags, odd: Odd) -> Roof | Literal[""]:
     text = tags.get("roof:shape", tags.get("building:roof:shape", "")).strip().lower()
     if text and text not in _ROOFS:
         odd("roof:shape")

@@ -1,19 +1,18 @@
 """Ground between buildings: paved feet of walls, paths to doors, hedges, shrubs, small trees."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
 from eyas.core import exact
-from eyas.state.scene import ObjectClass
 from eyas.world.build.apart import Apart
 from eyas.world.build.millimetres import length, unit
-from eyas.world.build.scene_builder import Prototype, SceneBuilder
+from eyas.world.build.placed import Placed
 from eyas.world.plants.shrubs import PIECE
 
-__all__ = ["add_borders", "add_row", "add_small_trees", "clustered", "paved_yards", "scattered"]
+__all__ = ["BORDERS", "borders", "clustered", "paved_yards", "row", "scattered", "small_trees"]
 
 _APRON = 0.9
 """Width of the paving at the foot of walls [m]."""
@@ -32,7 +31,8 @@ _CLIPPED = 0.4
 _ROOM = 0.9
 """Radius of the space that a plant needs [m]."""
 
-_BORDERS = ("border", "low border", "tall border")
+BORDERS = ("border", "low border", "tall border")
+"""Kinds of borders of shrubs."""
 
 Points = NDArray[np.float64]
 
@@ -89,49 +89,41 @@ def _paths(
             yield shapely.Polygon([door - side, far - side, far + side, door + side])
 
 
-def add_borders(
-    builder: SceneBuilder,
-    footprints: Sequence[Points],
-    room: shapely.Geometry,
-    floor: float,
-    plants: Mapping[str, Prototype],
-    rng: np.random.Generator,
-) -> None:
-    """Plant hedges and shrubs along walls.
+def borders(
+    footprints: Sequence[Points], room: shapely.Geometry, floor: float, rng: np.random.Generator
+) -> list[Placed]:
+    """Return hedges and shrubs along walls.
 
     Args:
-        builder: The builder to add to.
         footprints: Corners of buildings, counter-clockwise [m].
         room: Lawn on which plants may stand [m].
         floor: z of the lawn [m].
-        plants: Prototypes by the names of `plant_makers`.
         rng: Random numbers of the gardens.
     """
     free = shapely.buffer(room, -_ROOM / 2)
     shapely.prepare(free)
+    made: list[Placed] = []
     for corners in footprints:
         for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
             if length(end - start) < 5.0 or rng.random() > _PLANTED:
                 continue
             along = unit(end - start)
             line = np.stack([start, end]) + _BORDER * np.array([along[1], -along[0]])
-            names = ("hedge",) if rng.random() < _CLIPPED else _BORDERS
-            add_row(builder, [plants[name] for name in names], line, free, floor, rng)
+            made += row(("hedge",) if rng.random() < _CLIPPED else BORDERS, line, free, floor, rng)
+    return made
 
 
-def add_row(
-    builder: SceneBuilder,
-    plants: Sequence[Prototype],
+def row(
+    plants: Sequence[str],
     line: Points,
     room: shapely.Geometry,
     floor: float,
     rng: np.random.Generator,
-) -> None:
-    """Plant pieces of hedge or border along a line where there is room.
+) -> list[Placed]:
+    """Return pieces of hedge or border along a line where there is room.
 
     Args:
-        builder: The builder to add to.
-        plants: Prototypes; one is drawn for each piece.
+        plants: Kinds; one is chosen for each piece.
         line: Both ends [m], shape (2, 2).
         room: Area in which pieces must lie [m].
         floor: z of the lawn [m].
@@ -140,14 +132,16 @@ def add_row(
     whole, along = length(line[1] - line[0]), unit(line[1] - line[0])
     turn = float(exact.atan2(along[1], along[0]))
     step = whole / max(round(whole / PIECE), 1)
+    made = []
     for at in np.arange(step / 2, whole, step):
         middle = line[0] + at * along
         ends = middle + np.outer([-0.5, 0.5], PIECE * along)
         if shapely.contains(room, shapely.LineString(ends)):
             plant = plants[int(rng.integers(len(plants)))]
-            spot = (float(middle[0]), float(middle[1]), floor)
             way = turn + np.pi * float(rng.integers(2))
-            builder.add_copy(ObjectClass.TREE, plant, spot, way, rng.uniform(0.97, 1.06))
+            size = rng.uniform(0.97, 1.06)
+            made.append(Placed(plant, float(middle[0]), float(middle[1]), floor, way, size))
+    return made
 
 
 def scattered(
@@ -197,27 +191,25 @@ def clustered(
     return np.asarray(points[shapely.contains_xy(room, points)], np.float64)
 
 
-def add_small_trees(
-    builder: SceneBuilder,
+def small_trees(
     places: Points,
     heights: tuple[float, float],
     floor: float,
-    kinds: Sequence[Prototype],
+    kinds: Sequence[str],
     rng: np.random.Generator,
-) -> None:
-    """Plant small trees.
+) -> list[Placed]:
+    """Return trees of random heights and kinds.
 
     Args:
-        builder: The builder to add to.
         places: Positions of the trunks, shape (K, 2) [m].
         heights: Least and largest height [m].
         floor: z of the ground [m].
-        kinds: Prototypes; one is drawn for each tree.
+        kinds: Kinds; one is chosen for each tree.
         rng: Random numbers of the gardens.
     """
-    for place in places:
+    made = []
+    for x, y in places.tolist():
         height, turn = float(rng.uniform(*heights)), float(rng.uniform(0, 2 * np.pi))
-        spot = (float(place[0]), float(place[1]), floor)
         kind = kinds[int(rng.integers(len(kinds)))]
-        owner = builder.add_copy(ObjectClass.TREE, kind, spot, turn, height)
-        builder.add_cylinder(spot[:2], 0.022 * height, floor, floor + 0.3 * height, owner)
+        made.append(Placed(kind, x, y, floor, turn, height))
+    return made

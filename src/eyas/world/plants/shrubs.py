@@ -13,7 +13,7 @@ from eyas.world.build.materials import material
 from eyas.world.build.scene_builder import Levels
 from eyas.world.plants.foliage import Crown, leaf_cards, shell
 
-__all__ = ["PIECE", "plant_makers"]
+__all__ = ["PIECE", "PLANTS"]
 
 PIECE = 4.0
 """Length of a piece of a hedge or of a border of shrubs, along x [m]."""
@@ -28,18 +28,7 @@ _CORE = (0.51, 0.6, 0.43)
 _KERB = material("stone", (0.95, 0.92, 0.9))
 _MULCH = material("soil", (0.62, 0.56, 0.52))
 
-
-def plant_makers(rng: np.random.Generator) -> dict[str, Callable[[], Levels]]:
-    """Return the makers of all kinds: borders of shrubs along walls, hedges, beds in car parks."""
-    low, tall = (1.0, 0.5, _BRIGHT), (0.6, 0.95, _DARK)
-    middle = (0.75, 0.62, _OLIVE)
-    return {
-        "border": lambda: _border((middle, tall, middle), rng),
-        "low border": lambda: _border((low, low, middle), rng),
-        "tall border": lambda: _border((tall, low, tall), rng),
-        "hedge": lambda: _hedge(rng),
-        "island": lambda: _island(rng),
-    }
+_LOW, _TALL, _MIDDLE = (1.0, 0.5, _BRIGHT), (0.6, 0.95, _DARK), (0.75, 0.62, _OLIVE)
 
 
 def _border(shrubs: Sequence[tuple[float, float, Tints]], rng: np.random.Generator) -> Levels:
@@ -99,3 +88,13 @@ def _island(rng: np.random.Generator) -> Levels:
     crown = Crown(centres, rng.uniform(0.32, 0.45, 4), np.array([0.0, 0.0, 0.0]))
     cards = leaf_cards(crown, 70, (0.25, 0.4), _OLIVE, rng, bent=False)
     return concatenate([kerb, bed, cards]), concatenate([kerb, bed])
+
+
+PLANTS: dict[str, Callable[[np.random.Generator], Levels]] = {
+    "border": lambda rng: _border((_MIDDLE, _TALL, _MIDDLE), rng),
+    "low border": lambda rng: _border((_LOW, _LOW, _MIDDLE), rng),
+    "tall border": lambda rng: _border((_TALL, _LOW, _TALL), rng),
+    "hedge": _hedge,
+    "island": _island,
+}
+"""Makers of borders of shrubs along walls, hedges, beds in car parks."""

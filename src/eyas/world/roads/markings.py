@@ -1,7 +1,6 @@
 """What is painted on roads: lane and stop lines, zebra crossings, arrows."""
 
 from collections.abc import Sequence
-from enum import Enum, auto
 from functools import reduce
 
 import numpy as np
@@ -11,11 +10,12 @@ from numpy.typing import ArrayLike, NDArray
 from eyas.core import exact
 from eyas.state.roads import RoadNetwork
 from eyas.world.build.millimetres import dot, rounded, unit
+from eyas.world.plan.plan import Paint
 from eyas.world.roads.areas import Street, joints, streets
 from eyas.world.roads.curves import joined
 from eyas.world.roads.painting import RoadPaint, Stripe, stripes
 
-__all__ = ["Centre", "road_paint"]
+__all__ = ["crossings_of", "paint_of", "road_paint"]
 
 _DASH, _GAP = 3.0, 6.0
 _LINE = 0.18
@@ -30,29 +30,20 @@ _STOP_LINE = 0.4
 """Width of a stop line [m]."""
 _ZEBRA_START, _ZEBRA_LENGTH = 0.7, 5.6
 """From the stop line to a crossing, and its extent along the road, as in the original [m]."""
+_WALKED = 3.0
+"""From the stop line to the line on which people cross [m]."""
 _BAR = 0.55
 """Width of a bar of a zebra crossing, nearly that of the gap to the next bar [m]."""
 
 Line = NDArray[np.float64]
 
 
-class Centre(Enum):
-    """The line between the two directions of a road."""
-
-    WHITE = auto()
-    """One white line."""
-    DOUBLE_YELLOW = auto()
-    """Two yellow lines."""
-
-
-def road_paint(
-    network: RoadNetwork, *, centre: Centre = Centre.WHITE, crossings: bool = True
-) -> RoadPaint:
+def road_paint(network: RoadNetwork, *, centre: str = "white", crossings: bool = True) -> RoadPaint:
     """Return the paint of all roads.
 
     Args:
         network: The roads.
-        centre: The line between the two directions.
+        centre: The line between the two directions, `white` or `double yellow`.
         crossings: Whether there are zebra crossings where three or more roads meet.
     """
     meeting, all_streets = joints(network), streets(network)
@@ -77,9 +68,49 @@ def road_paint(
     return RoadPaint(lines, arrows, zebras)
 
 
-def _along(
-    chain: Sequence[Street], centre: Centre | None
-) -> tuple[list[Stripe], list[list[Stripe]]]:
+def paint_of(network: RoadNetwork, paint: Paint) -> RoadPaint:
+    """Return the paint of all roads by the rules of a plan."""
+    lines = [Stripe(line.middle, line.width) for line in paint.lines]
+    bars = [[Stripe(bar.middle, bar.width)] for bar in paint.bars]
+    if paint.rule == "none":
+        return RoadPaint(lines, [], bars)
+    made = road_paint(network, centre=paint.centre, crossings=paint.crossings > 0)
+    zebras = made.zebras[:: max(paint.crossings, 1)]
+    return RoadPaint([*made.lines, *lines], made.arrows, [*zebras, *bars])
+
+
+def crossings_of(network: RoadNetwork, paint: Paint) -> NDArray[np.float64]:
+    """Return where people cross roads on zebras painted by the rule of a plan.
+
+    Returns:
+        The right and the left kerb of each, shape (C, 2, 2) [m].
+    """
+    if paint.rule == "none" or not paint.crossings:
+        return np.zeros((0, 2, 2))
+    meeting, every = joints(network), streets(network)
+    ways = {(street.start, street.end) for street in every}
+    made: list[Line | None] = []
+    for street in every:
+        both = (street.end, street.start) in ways
+        if meeting[street.end] >= 3:
+            made.append(_walk(street, 2.0 if both else 1.0))
+        if meeting[street.start] >= 3 and not both:
+            made.append(None)  # painted, but reached from the other side
+    kept = [line for line in made[:: paint.crossings] if line is not None]
+    return np.array(kept, np.float64).reshape(-1, 2, 2)
+
+
+def _walk(street: Street, sides: float) -> Line:
+    """Return the line from kerb to kerb on which people cross a road beyond its stop line."""
+    onwards = street.right[-1] - street.right[-2]
+    onwards /= max(float(exact.hypot(*onwards)), 1e-9)
+    leftwards = np.array([-onwards[1], onwards[0]])
+    width = float(exact.product(street.left[-1] - street.right[-1], leftwards))
+    right = street.right[-1] + _WALKED * onwards
+    return np.array([right, right + sides * width * leftwards])
+
+
+def _along(chain: Sequence[Street], centre: str | None) -> tuple[list[Stripe], list[list[Stripe]]]:
     """Return the white and the yellow lines along joined streets; no centre: one way."""
     middle, *dividers, kerb = (
         reduce(joined, parts) for parts in zip(*(link.lines for link in chain), strict=True)
@@ -88,7 +119,7 @@ def _along(
     if centre is None:
         edge = shapely.offset_curve(path, -_EDGE)
         white += stripes(shapely.get_coordinates(edge), _EDGE_LINE)
-    elif _comes_first(middle) and centre is Centre.DOUBLE_YELLOW:
+    elif _comes_first(middle) and centre == "double yellow":
         beside = [shapely.offset_curve(path, side) for side in (-_DOUBLE, _DOUBLE)]
         yellow = [[Stripe(shapely.get_coordinates(line), _LINE) for line in beside]]
     elif _comes_first(middle):

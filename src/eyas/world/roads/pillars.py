@@ -11,6 +11,7 @@ from eyas.mesh.solids import box, cylinder
 from eyas.state.mesh import Mesh
 from eyas.world.build.materials import TEXTURES, material
 from eyas.world.build.millimetres import unit
+from eyas.world.build.values import Place, Unit
 from eyas.world.roads.overpass import DECK_DEPTH, SOLID_BELOW
 
 __all__ = ["BASE_HEIGHT", "COLUMN_RADIUS", "Pillar", "pillar_mesh", "pillars"]
@@ -33,9 +34,9 @@ Points = NDArray[np.float64]
 class Pillar:
     """Two columns on a base, below the deck."""
 
-    place: Points
+    place: Place
     """Middle on the ground [m], shape (2,)."""
-    across: Points
+    across: Unit
     """Unit vector from the left to the right column, shape (2,)."""
     top: float
     """z of the underside of the deck [m]."""

@@ -12,6 +12,7 @@ from eyas.mesh.assembly import concatenate, of_one_material
 from eyas.mesh.panels import cells, halves
 from eyas.state.mesh import Material, Mesh
 from eyas.world.build.materials import TEXTURES
+from eyas.world.build.values import Place, Positive, Unit
 
 __all__ = ["HALF_WIDTH", "Tunnel", "tunnel_mesh", "tunnel_prisms"]
 
@@ -38,11 +39,11 @@ Points = NDArray[np.float64]
 class Tunnel:
     """A tunnel in plan view."""
 
-    place: Points
+    place: Place
     """Its middle on the middle of the road [m], shape (2,)."""
-    along: Points
+    along: Unit
     """Direction of the road, a unit vector, shape (2,)."""
-    length: float
+    length: Positive
     """Length [m]."""
 
     @property

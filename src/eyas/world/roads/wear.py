@@ -4,6 +4,7 @@ All of it lies in thin layers above the asphalt and below the paint.
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
@@ -19,7 +20,7 @@ from eyas.world.build.materials import TEXTURES, material
 from eyas.world.build.millimetres import unit
 from eyas.world.roads.areas import GRID
 
-__all__ = ["WEAR_HEIGHTS", "road_wear"]
+__all__ = ["WEAR_HEIGHTS", "road_wear", "worn_lanes"]
 
 WEAR_HEIGHTS = (0.003, 0.006, 0.009)
 """z of tracks; of patches and oil; of lids and seals: between the asphalt and the paint [m]."""
@@ -52,6 +53,9 @@ _SEAL_EVERY = 120.0
 """Mean distance between two sealed cracks along a lane [m]."""
 _SEAL_HALF = 0.045
 _SEAL_STEPS = 6
+
+_NARROWEST = 3.0
+"""Narrower lanes of towns have no wear [m]."""
 
 Line = NDArray[np.float64]
 
@@ -88,6 +92,28 @@ def road_wear(network: RoadNetwork, rng: np.random.Generator, apart: float = 1.0
     stains.uvs[:, 1] *= (_WAITING[1] - _WAITING[0]) / TEXTURES["asphalt_oil"]
     top_down = [*seals, _slabs(lids, WEAR_HEIGHTS[2], _LID), flat, stains, *tracks]
     return concatenate(top_down)
+
+
+def worn_lanes(network: RoadNetwork, shortest: float) -> RoadNetwork:
+    """Return only those lanes that are at least so long [m], and wide enough to show wear."""
+    kept, first, points = [], [0], []
+    for lane in range(len(network.lane_width)):
+        line = network.lane_points[network.lane_first[lane] : network.lane_first[lane + 1]]
+        long = shapely.length(shapely.LineString(line)) >= shortest
+        if long and network.lane_width[lane] >= _NARROWEST:
+            kept.append(lane)
+            points.append(line)
+            first.append(first[-1] + len(line))
+    chosen = np.array(kept, np.int64)
+    return replace(
+        network,
+        lane_points=np.concatenate([np.zeros((0, 2)), *points]),
+        lane_first=np.array(first, np.int32),
+        lane_width=network.lane_width[chosen],
+        lane_speed=network.lane_speed[chosen],
+        lane_edge=network.lane_edge[chosen],
+        lane_index=network.lane_index[chosen],
+    )
 
 
 def _places(length: float, every: float, rng: np.random.Generator) -> Line:

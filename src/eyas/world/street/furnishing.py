@@ -8,13 +8,11 @@ from numpy.typing import NDArray
 
 from eyas.core import exact
 from eyas.state.roads import RoadNetwork
-from eyas.state.scene import ObjectClass
 from eyas.world.build.millimetres import unit
-from eyas.world.build.scene_builder import SceneBuilder
+from eyas.world.build.placed import Placed
 from eyas.world.roads.areas import streets
-from eyas.world.street.furniture import FURNITURE
 
-__all__ = ["add_furniture"]
+__all__ = ["furniture_along"]
 
 _CLEAR = 0.5
 """Room around each thing [m]."""
@@ -45,36 +43,33 @@ _RULES = {
 """The kinds of furniture, the largest first, because small ones find room more easily."""
 
 
-def add_furniture(
-    builder: SceneBuilder,
+def furniture_along(
     network: RoadNetwork,
     pavement: shapely.Geometry,
     keep_free: shapely.Geometry,
     height: float,
     rng: np.random.Generator,
-) -> None:
-    """Furnish the pavements beside kerbs.
+) -> list[Placed]:
+    """Return what furnishes the pavements beside kerbs.
 
     Args:
-        builder: The builder to add to.
         network: The roads.
         pavement: Area where furniture may stand [m].
         keep_free: Area where something else stands, people walk or cars drive [m].
         height: z of the pavement [m].
         rng: Random numbers of the furniture.
     """
-    kinds = {kind: builder.prototype(kind, make) for kind, make in FURNITURE.items()}
     room = shapely.difference(pavement, shapely.buffer(keep_free, _CLEAR))
     shapely.prepare(room)
-    taken = np.zeros((0, 3))
+    taken, made = np.zeros((0, 3)), []
     for kind, rule in _RULES.items():
         for place, turn in _places(network, rule, rng):
             apart = np.linalg.norm(taken[:, :2] - place, axis=1) - taken[:, 2]
             # Legs may reach over the back edge of the pavement, on to the lawn.
             if apart.min(initial=np.inf) > rule.room and shapely.contains_xy(room, *place):
                 taken = np.concatenate([taken, [[*place, rule.room + _CLEAR]]])
-                spot = (float(place[0]), float(place[1]), height)
-                builder.add_copy(ObjectClass.STRUCTURE, kinds[kind], spot, turn, 1.0)
+                made.append(Placed(kind, float(place[0]), float(place[1]), height, turn))
+    return made
 
 
 def _places(

@@ -1,4 +1,4 @@
-"""Street furniture as fixtures: benches, bins, hydrants, bus shelters, post boxes, tree tubs.
+"""Small things: benches, bins, hydrants, shelters, post boxes, tubs, a fountain, bales of hay.
 
 Origins are on the ground; the side towards the road faces along y. Lengths are in metres.
 """
@@ -13,8 +13,13 @@ from eyas.state.mesh import Material, Mesh, Surface
 from eyas.world.build.materials import material
 from eyas.world.build.scene_builder import Levels
 
-__all__ = ["FURNITURE"]
+__all__ = ["BALE_RADIUS", "FURNITURE", "bale_levels", "fountain_levels"]
 
+BALE_RADIUS, _BALE_LENGTH = 0.75, 1.3
+"""Of a bale of hay [m]."""
+
+_HAY = material("crops_tan", (0.98, 0.9, 0.66))
+_JET = material("plain", (0.93, 0.95, 0.97))
 _WOOD = material("bark", (0.70, 0.54, 0.42))
 _IRON = material("plain", (0.22, 0.23, 0.24))
 _STEEL = material("plain", (0.58, 0.60, 0.62))
@@ -104,3 +109,35 @@ FURNITURE: dict[str, Callable[[], Levels]] = {
     "tub": lambda: (_tub(10, 1), _tub(5, 0)),
 }
 """Maker of each kind."""
+
+
+def fountain_levels() -> Levels:
+    """Return a fountain of two bowls, with a jet of water."""
+    return _fountain(20), _fountain(8)
+
+
+def _fountain(sides: int) -> Mesh:
+    stone = material("stone", (0.9, 0.88, 0.84))
+    return concatenate(
+        [
+            cylinder((0.9, 0.6), (-0.1, 2.2), sides, stone),
+            cylinder((1.0, 3.0), (1.5, 2.3), sides, stone, cap=True),
+            cylinder((0.35, 0.3), (2.3, 3.6), sides, stone),
+            cylinder((0.5, 1.5), (3.2, 3.7), sides, stone, cap=True),
+            cylinder((0.12, 0.03), (3.7, 6.2), 6, _JET),
+        ]
+    )
+
+
+def bale_levels() -> Levels:
+    """Return a round bale of hay that lies along x."""
+    return tuple(_lying(sides) for sides in (14, 7))
+
+
+def _lying(sides: int) -> Mesh:
+    half = _BALE_LENGTH / 2
+    drum = cylinder((BALE_RADIUS, BALE_RADIUS), (-half, half), sides, _HAY, cap=True, tile=1.6)
+    onto_side = np.array(
+        [[0.0, 0.0, 1.0, 0.0], [0.0, 1.0, 0.0, 0.0], [-1.0, 0.0, 0.0, BALE_RADIUS]]
+    )
+    return transformed(drum, onto_side)

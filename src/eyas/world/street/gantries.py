@@ -1,28 +1,23 @@
 """Blue direction signs on gantries over roads."""
 
-from collections.abc import Sequence
-from functools import partial
-
 import numpy as np
-from numpy.typing import NDArray
 
-from eyas.core import exact
 from eyas.mesh.assembly import concatenate
 from eyas.mesh.solids import box, tube
 from eyas.state.mesh import Mesh
-from eyas.state.scene import ObjectClass
-from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.materials import material
-from eyas.world.build.scene_builder import Levels, SceneBuilder
+from eyas.world.build.scene_builder import Levels
 
-__all__ = ["KINDS", "SPAN", "add_gantries"]
+__all__ = ["KINDS", "POST_RADIUS", "POST_TOP", "SPAN", "boards_of", "gantry_levels"]
 
 SPAN = 16.6
 """Distance of the two posts, as in the original [m]."""
 
-_POST_RADIUS = 0.2
+POST_RADIUS = 0.2
 _BEAM = 6.0
 """Height of the beam [m]."""
+POST_TOP = _BEAM + 0.4
+"""z of the top of the solid posts [m]."""
 _UNDER = 5.6
 """z of the lowest edge of a board: higher than any vehicle [m]."""
 _STEEL = material("plain", (0.62, 0.64, 0.66))
@@ -39,35 +34,13 @@ _BOARDS: tuple[tuple[tuple[float, float, float], ...], ...] = (
 KINDS = len(_BOARDS)
 """Number of kinds."""
 
-Points = NDArray[np.float64]
+
+def boards_of(number: int) -> tuple[float, float]:
+    """Return z of the lowest and the highest edge of the boards of a kind [m]."""
+    return _UNDER, max(height for _, _, height in _BOARDS[number]) + _UNDER
 
 
-def add_gantries(
-    builder: SceneBuilder, places: Sequence[tuple[Points, float]], rng: np.random.Generator
-) -> None:
-    """Add gantries.
-
-    Args:
-        builder: The builder to add to.
-        places: Middle of the road [m] and its direction [rad], of each.
-        rng: Random numbers for the choice of the boards.
-    """
-    for index, (place, turn) in enumerate(places):
-        number = int((index + rng.integers(2)) % KINDS)
-        kind = builder.prototype(f"gantry {number}", partial(_levels, number))
-        owner = builder.add_copy(ObjectClass.POLE, kind, (*place.tolist(), 0.0), turn, 1.0)
-        along = np.array([exact.cos(turn), exact.sin(turn)])
-        across = np.array([-along[1], along[0]])
-        for side in (-SPAN / 2, SPAN / 2):
-            foot = place + side * across
-            builder.add_cylinder(foot.tolist(), _POST_RADIUS, FLOOR_HEIGHT, _BEAM + 0.4, owner)
-        top = max(height for _, _, height in _BOARDS[number]) + _UNDER
-        corners = [(-0.3, -SPAN / 2), (0.3, -SPAN / 2), (0.3, SPAN / 2), (-0.3, SPAN / 2)]
-        outline = place + np.array([x * along + y * across for x, y in corners])
-        builder.add_prism(outline, _UNDER, top, owner)
-
-
-def _levels(number: int) -> Levels:
+def gantry_levels(number: int) -> Levels:
     """Return a gantry over a road along x; its boards face backwards, to who drives along x."""
     return _gantry(number, 8, fine=True), _gantry(number, 4, fine=False)
 
@@ -78,7 +51,7 @@ def _gantry(number: int, sides: int, *, fine: bool) -> Mesh:
     made.append(box((0.2, SPAN, 0.16), (0.0, 0.0, _BEAM + 0.9), _STEEL, 1.0))
     for side in (-half, half):
         post = np.array([[0, side, -0.2], [0, side, 3.0], [0, side, _BEAM + 1.0]])
-        made.append(tube(post, [_POST_RADIUS, 0.17, 0.15], sides, _STEEL))
+        made.append(tube(post, [POST_RADIUS, 0.17, 0.15], sides, _STEEL))
         if fine:
             made.append(box((0.9, 0.9, 0.25), (0.0, side, 0.02), material("concrete"), 6.0))
     if fine:

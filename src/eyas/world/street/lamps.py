@@ -1,21 +1,19 @@
 """Street lamps: a dark pole beyond the kerb, and an arm with the light over the road."""
 
-from collections.abc import Iterable
+from collections.abc import Sequence
 
 import numpy as np
 import shapely
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from eyas.core import exact
 from eyas.mesh.assembly import concatenate
 from eyas.mesh.solids import box, tube
 from eyas.state.mesh import Material, Mesh, Surface
 from eyas.state.roads import RoadNetwork
-from eyas.state.scene import Lamps, ObjectClass
 from eyas.world.build.apart import Apart
-from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.materials import material
-from eyas.world.build.scene_builder import SceneBuilder
+from eyas.world.build.placed import Placed
 from eyas.world.roads.areas import streets
 
 __all__ = [
@@ -23,9 +21,9 @@ __all__ = [
     "LIGHT",
     "POLE_HEIGHT",
     "POLE_RADIUS",
-    "add_lamps",
-    "add_lamps_at",
     "lamp_levels",
+    "lamps_along",
+    "lit_by",
 ]
 
 POLE_HEIGHT = 7.35
@@ -40,8 +38,6 @@ BEYOND_KERB = 2.0
 LIGHT = (3.1, 0.0, 7.2)
 """Position of the light relative to the foot of its pole, as in the original [m]."""
 
-_AXIS = (0.4, 0.0, -1.0)
-"""Axis of the beam in the same frame, not of length 1; as in the original's cities at night."""
 
 _APART = (53.0, 44.0, 35.0)
 """Least distances from one lamp to the next [m]; the original's median is 58.
@@ -58,56 +54,17 @@ _STEEL = material("plain", (0.20, 0.21, 0.22))
 _LENS = Material(tint=(1.0, 0.90, 0.72), surface=Surface.LAMP, emission=6.0)
 
 
-def add_lamps(
-    builder: SceneBuilder,
-    network: RoadNetwork,
-    count: int,
-    keep_free: shapely.Geometry,
-    rng: np.random.Generator,
-) -> Lamps:
-    """Add street lamps on both sides of the roads; return their lights.
+def lamps_along(
+    network: RoadNetwork, count: int, keep_free: shapely.Geometry, rng: np.random.Generator
+) -> list[Placed]:
+    """Return street lamps on both sides of the roads, their arms over the road.
 
     Args:
-        builder: The builder to add to.
         network: The roads.
         count: Number of lamps, if there is room.
         keep_free: Area where no pole may stand.
         rng: Random numbers of the lamps.
     """
-    return add_lamps_at(builder, _places(network, count, keep_free, rng), _AXIS)
-
-
-def add_lamps_at(
-    builder: SceneBuilder,
-    places: Iterable[tuple[ArrayLike, float]],
-    beam: tuple[float, float, float],
-) -> Lamps:
-    """Add street lamps at given places; return their lights.
-
-    Args:
-        builder: The builder to add to.
-        places: Foot of each lamp [m], 2 numbers, and the direction of its arm [rad].
-        beam: Axis of the beams, not of length 1; x is the direction of the arm.
-    """
-    prototype = builder.prototype("street lamp", lamp_levels)
-    position, axis = [], []
-    lean = np.array(beam) / exact.length(beam)
-    for place, turn in places:
-        foot = np.asarray(place, np.float64)
-        owner = builder.add_copy(ObjectClass.POLE, prototype, (*foot, 0.0), turn, 1.0)
-        builder.add_cylinder((foot[0], foot[1]), POLE_RADIUS, FLOOR_HEIGHT, POLE_HEIGHT, owner)
-        onto_road = np.array([exact.cos(turn), exact.sin(turn)])
-        position.append([*(foot + LIGHT[0] * onto_road), LIGHT[2]])
-        axis.append([*(lean[0] * onto_road), lean[2]])
-    return Lamps(
-        np.array(position, np.float32).reshape(-1, 3), np.array(axis, np.float32).reshape(-1, 3)
-    )
-
-
-def _places(
-    network: RoadNetwork, count: int, keep_free: shapely.Geometry, rng: np.random.Generator
-) -> list[tuple[NDArray[np.float64], float]]:
-    """Return the foot [m] of each lamp and the direction of its arm [rad]."""
     feet, turns = _candidates(network)
     blocked = shapely.buffer(keep_free, _CLEAR)
     shapely.prepare(blocked)
@@ -123,7 +80,17 @@ def _places(
                 break
             if near.add(*feet[index].tolist()):
                 chosen.append(index)
-    return [(feet[index], float(turns[index])) for index in sorted(chosen)]
+    return [
+        Placed.at("street lamp", feet[index], 0.0, float(turns[index])) for index in sorted(chosen)
+    ]
+
+
+def lit_by(lamps: Sequence[Placed]) -> NDArray[np.float64]:
+    """Return the places below the lights of lamps [m], shape (K, 2), as exact as a scene's."""
+    feet = np.array([lamp[1:3] for lamp in lamps], np.float64).reshape(-1, 2)
+    turn = np.array([lamp.turn for lamp in lamps], np.float64)
+    along = np.stack([exact.cos(turn), exact.sin(turn)], axis=1)
+    return (feet + LIGHT[0] * along).astype(np.float32).astype(np.float64)
 
 
 def _candidates(network: RoadNetwork) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

@@ -8,12 +8,10 @@ from eyas.mesh.assembly import concatenate, transformed
 from eyas.mesh.flat import quads
 from eyas.mesh.solids import box, cylinder
 from eyas.state.mesh import Material, Mesh, Surface
-from eyas.state.scene import ObjectClass
 from eyas.world.build.materials import material
-from eyas.world.build.millimetres import rounded
-from eyas.world.build.scene_builder import Levels, Prototype, SceneBuilder
+from eyas.world.build.scene_builder import Levels
 
-__all__ = ["VARIANTS", "add_car", "parked_car"]
+__all__ = ["CARS", "HIGH", "LONG", "VARIANTS", "WIDE", "parked_car"]
 
 Points = NDArray[np.float64]
 
@@ -29,8 +27,10 @@ _COLOURS = (
 )
 VARIANTS = len(_COLOURS)
 """Number of kinds of cars."""
+CARS = tuple(f"parked car {k}" for k in range(VARIANTS))
+"""Names of these kinds."""
 
-_LONG, _WIDE, _HIGH = 2.28, 0.9, 1.5
+LONG, WIDE, HIGH = 2.28, 0.9, 1.5
 """Half the length, half the width and the height of their solid shape [m]."""
 
 _GLASS = Material(tint=(0.105, 0.11, 0.115), surface=Surface.GLASS)
@@ -64,30 +64,6 @@ def parked_car(variant: int) -> Levels:
     fine = concatenate([_hull(body, paint), _cabin(cabin, paint), _lamps(body), *_wheels()])
     coarse = concatenate([_hull(body[[0, 2, 5, 7]], paint), _cabin(cabin, paint)])
     return fine, coarse
-
-
-def add_car(
-    builder: SceneBuilder,
-    car: Prototype,
-    place: tuple[float, float, float],
-    turn: float,
-    size: float,
-) -> None:
-    """Park a car, which is solid.
-
-    Args:
-        builder: The builder to add to.
-        car: A prototype of `parked_car`.
-        place: Where it stands [m].
-        turn: Its heading [rad].
-        size: Factor on its size.
-    """
-    owner = builder.add_copy(ObjectClass.STRUCTURE, car, place, turn, size)
-    ahead = size * _LONG * np.array([exact.cos(turn), exact.sin(turn)])
-    aside = size * _WIDE * np.array([-exact.sin(turn), exact.cos(turn)])
-    corners = [-ahead - aside, ahead - aside, ahead + aside, aside - ahead]
-    outline = rounded(np.array(place[:2]) + np.array(corners))
-    builder.add_prism(outline, place[2], place[2] + size * _HIGH, owner)
 
 
 def _hull(outline: Points, paint: Material) -> Mesh:

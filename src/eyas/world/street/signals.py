@@ -1,8 +1,8 @@
 """Traffic lights: a pole at the kerb with an arm over the lanes.
 
 Where a network has programs for them (imported towns), their lenses are dark here, and
-`eyas.sim.signals` draws the one that shines. Elsewhere they are decoration and shine amber, as
-signals do that leave drivers to give way to each other: so cars drive there, and a fixed red or
+`eyas.sim.views.additions` draws the one that shines. Elsewhere they are decoration and shine amber,
+as signals do that leave drivers to give way to each other: so cars drive there, and a fixed red or
 green would show cars running red lights in every film.
 """
 
@@ -16,10 +16,8 @@ from eyas.mesh.assembly import concatenate
 from eyas.mesh.solids import box, tube
 from eyas.state.mesh import Material, Mesh, Surface
 from eyas.state.roads import RoadNetwork
-from eyas.state.scene import ObjectClass
-from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.materials import material
-from eyas.world.build.scene_builder import SceneBuilder
+from eyas.world.build.placed import Placed
 
 if TYPE_CHECKING:
     from eyas.world.roads.areas import Street
@@ -27,11 +25,11 @@ if TYPE_CHECKING:
 __all__ = [
     "POLE_HEIGHT",
     "POLE_RADIUS",
-    "add_signals",
     "lens_levels",
     "pole_at",
     "signal_levels",
     "signal_places",
+    "signals_along",
 ]
 
 POLE_HEIGHT = 6.6
@@ -96,12 +94,9 @@ def pole_at(street: "Street") -> tuple[tuple[float, float], float]:
     return (float(foot[0]), float(foot[1])), float(exact.atan2(leftwards[1], leftwards[0]))
 
 
-def add_signals(builder: SceneBuilder, network: RoadNetwork) -> None:
-    """Add a pole with an arm over the lanes on each road into each junction."""
-    prototype = builder.prototype("traffic light", signal_levels)
-    for place, turn in signal_places(network):
-        owner = builder.add_copy(ObjectClass.POLE, prototype, (*place, 0.0), turn, 1.0)
-        builder.add_cylinder((place[0], place[1]), POLE_RADIUS, FLOOR_HEIGHT, POLE_HEIGHT, owner)
+def signals_along(network: RoadNetwork) -> list[Placed]:
+    """Return a traffic light on each road into each junction."""
+    return [Placed.at("traffic light", at, 0.0, turn) for at, turn in signal_places(network)]
 
 
 def signal_levels(*, amber: bool = True) -> tuple[Mesh, ...]:

@@ -4,7 +4,7 @@ const SLIDERS = ["view_range", "view_scale", "distance_range", "distance_scale"]
 const NUMBERS = ["vehicles", "people", "hour"];
 const PEOPLE = [0, 10, 30, 60];
 const LIGHTS = { own: "of the weather" };
-const HOURS = { own: "of the weather", 7: "7:00", 9: "9:00", 12: "12:00", 15: "15:00", 17: "17:00" };
+const HOURS = { own: "of the weather", 5: "5:00", 7: "7:00", 9: "9:00", 12: "12:00", 15: "15:00", 17: "17:00", 19: "19:00", 20: "20:00", 22: "22:00" };
 const TARGETS = { SUMO_VEHICLE: "vehicles", Pedestrian: "people", AiboErs7: "Aibo ERS-7", BioloidDog: "Bioloid dog", FireBird6: "Fire Bird 6", GhostDog: "Ghost dog", Hoap2: "Hoap 2" };
 const by = (id) => document.getElementById(id);
 
@@ -59,12 +59,11 @@ export class Settings {
   world(chosen) {
     const { map, people, hour } = chosen;
     this.chosen = chosen;
-    fill(by("weather"), this.maps[map].weathers.map((name) => [name, name]));
+    fill(by("weather"), [...new Set([...this.maps[map].weathers, chosen.weather])].map((name) => [name, name]));
     const counts = [...new Set([...PEOPLE, people])].sort((a, b) => a - b);
     fill(by("people"), counts.map((count) => [count, count ? `${count}` : "nobody"]));
     const hours = [...new Set(["own", ...Object.keys(HOURS).filter(Number), `${hour}`])];
     fill(by("hour"), hours.map((name) => [name, HOURS[name] ?? `${name} h`]));
-    by("hour").disabled = chosen.dark; // a night has its own moon
     for (const name of ["map", "weather", "target", "tracker", "light", "hour", "vehicles", "people"]) by(name).value = chosen[name];
     by("not-saved").hidden = !people && hour === "own";
     by("map").title = this.maps[map].title;

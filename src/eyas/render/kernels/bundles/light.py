@@ -20,12 +20,10 @@ class Direction(NamedTuple):
 
 
 class Air(NamedTuple):
-    """Numbers of the weather, of float32."""
+    """Numbers of the weather, of float32, the same in all views."""
 
-    density: float
-    """Of fog [1/m]."""
     power: float
-    """1 or 2: how its thickness grows with distance."""
+    """1 or 2: how the thickness of fog grows with distance."""
     exposure: float
     offset: float
     """Distance by which points are moved off their surface for the shadow map [m]."""
@@ -50,6 +48,8 @@ class Illumination(NamedTuple):
     below: Direction
     """Light from the ground on surfaces that face down."""
     fog: Direction
+    fog_density: float
+    """[1/m]"""
     air: Air
 
 

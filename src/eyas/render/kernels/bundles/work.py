@@ -5,6 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.state.lighting import LightState
+
 __all__ = ["Job", "Output", "Scratch", "Task"]
 
 
@@ -23,8 +25,7 @@ class Job(NamedTuple):
     """Shape (V,)."""
     subject: NDArray[np.int32]
     """Shape (V,)."""
-    light: NDArray[np.float32]
-    """Factor on the sky and its light, factor on the sun, fog density [1/m], shape (V, 3)."""
+    light: LightState
     instant: NDArray[np.float64]
     """Time for falling snow [s], shape (V,), or (0,) if none falls."""
     focal: NDArray[np.float64]

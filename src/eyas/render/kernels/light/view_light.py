@@ -1,11 +1,9 @@
 """The light of one view: the weather's, with the changes of the view."""
 
-import numpy as np
-from numpy.typing import NDArray
-
 from eyas.lanes import kernel
-from eyas.render.kernels.bundles import Air, Direction, Illumination
+from eyas.render.kernels.bundles import Direction, Illumination
 from eyas.render.kernels.scalars import f4
+from eyas.state.lighting import LightState
 
 __all__ = ["view_light"]
 
@@ -16,7 +14,7 @@ def _scaled(share: float, colour: Direction) -> Direction:
 
 
 @kernel(inline=True)
-def view_light(weather: Illumination, change: NDArray[np.float32]) -> Illumination:
+def view_light(weather: Illumination, changes: LightState, view: int) -> Illumination:
     """Return the light of a view.
 
     The air's colour is scattered light of the sky; light reflected by the ground comes from both
@@ -24,9 +22,10 @@ def view_light(weather: Illumination, change: NDArray[np.float32]) -> Illuminati
 
     Args:
         weather: Light of the weather.
-        change: Factor on the sky, factor on the sun, fog density [1/m], shape (3,).
+        changes: What differs from it.
+        view: Number of the view.
     """
-    sky, sun = change[0], change[1]
+    sky, sun = changes.sky[view], changes.sun[view]
     return Illumination(
         weather.sun,
         _scaled(sun, weather.sun_colour),
@@ -35,14 +34,6 @@ def view_light(weather: Illumination, change: NDArray[np.float32]) -> Illuminati
         _scaled(sky, weather.above),
         _scaled(f4(0.5) * (sky + sun), weather.below),
         _scaled(sky, weather.fog),
-        _air(weather.air, change[2]),
+        changes.fog_density[view],
+        weather.air,
     )
-
-
-@kernel(inline=True)
-def _air(air: Air, density: float) -> Air:
-    """Return the air with another density of fog."""
-    return Air(
-        density, air.power, air.exposure, air.offset, air.snow, air.lamps, air.windows,
-        air.clouds, air.flakes,
-    )  # fmt: skip

@@ -17,7 +17,7 @@ _FARTHEST = f4(1000.0 * HAZE_END)
 @kernel(inline=True)
 def hidden_at(lit: Illumination, distance: float) -> float:
     """Return how much of what lies at a distance [m] the air hides, 0 to 1."""
-    thickness = distance * lit.air.density
+    thickness = distance * lit.fog_density
     if lit.air.power > f4(1.5):
         thickness *= thickness
     # 1 - exp(-t) as (1 + t/8 + (t/8)^2 / 2)^-8: within 0.003 of it, and several times as fast.

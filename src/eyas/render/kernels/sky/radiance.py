@@ -75,7 +75,7 @@ def _air(lit: Illumination, z: float, toward_sun: float) -> tuple[float, float, 
     for _ in range(6):
         glow *= glow
     # exp(-thickness / z), nearly: the path through a layer of haze.
-    clear = up / (up + (lit.air.density * _HAZE_DEPTH + f4(1e-6)))
+    clear = up / (up + (lit.fog_density * _HAZE_DEPTH + f4(1e-6)))
     clear *= clear
     clear *= clear
     glow = (wide + f4(0.3) * glow) * clear
@@ -220,7 +220,7 @@ def reflection(
     red, green, blue, _ = _air(lit, lower, _dot(x, y, lower, lit.sun))
     below = lesser(greater(f4(-6.0) * lower, zero), one)
     below *= below * (f4(3.0) - f4(2.0) * below)
-    below *= f4(0.6) * (one - lesser(lit.air.density * f4(400.0), one))
+    below *= f4(0.6) * (one - lesser(lit.fog_density * f4(400.0), one))
     red, green, blue = blended((red, green, blue), lit.below, below)
     # Around a point that gets half of the sky's light, things are some 45 degrees high.
     around = lesser(greater((f4(1.5) * hidden - z) * f4(5.0), zero), one)

@@ -196,6 +196,6 @@ def shade_point(
         share *= select(window, one - alpha, select(painted, like(alpha, f4(0.85)), one))
         share = select(mirror > zero, share, zero)
         red, green, blue = blended((red, green, blue), mirrored, share)
-    if air.density > zero:
+    if lit.fog_density > zero:
         red, green, blue = blended((red, green, blue), lit.fog, fog_share(lit, distance * stretch))
     return red, green, blue

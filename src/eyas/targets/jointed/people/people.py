@@ -1,6 +1,10 @@
 """The people of the catalogue, and how they walk."""
 
+from eyas.targets.colour_names import colour_name
+from eyas.targets.config import TargetName
+from eyas.targets.habit import Behaviour, Habit
 from eyas.targets.jointed.figure import Figure, Gait, Joint, Leg, Swing
+from eyas.targets.jointed.model import JointedModel
 from eyas.targets.jointed.people.person import (
     ANKLE,
     HEEL,
@@ -16,8 +20,23 @@ from eyas.targets.jointed.people.person import (
     PersonShapes,
     shapes_of_person,
 )
+from eyas.targets.kind import Colour
 
-__all__ = ["PEOPLE", "figure_of"]
+__all__ = ["PEDESTRIANS", "PEOPLE"]
+
+_COLOURS: tuple[Colour, ...] = (
+    (0.25, 0.55, 0.20),
+    (0.72, 0.12, 0.11),
+    (0.13, 0.27, 0.62),
+    (0.90, 0.88, 0.84),
+    (0.13, 0.13, 0.15),
+    (0.88, 0.72, 0.14),
+    (0.86, 0.42, 0.12),
+    (0.45, 0.20, 0.50),
+    (0.55, 0.56, 0.58),
+    (0.12, 0.50, 0.52),
+)
+"""Colours of shirts and coats, sRGB; the first is the original's green."""
 
 _BLACK, _BROWN, _BLOND, _GREY = (
     (0.09, 0.08, 0.08), (0.26, 0.17, 0.11), (0.78, 0.62, 0.36), (0.62, 0.61, 0.60)
@@ -58,7 +77,7 @@ _STRIDE = 1.56
 """Of a person of 1.80 m [m]: 1.3 strides a second at the original's 2 m/s."""
 
 
-def figure_of(person: Person) -> Figure:
+def _figure(person: Person) -> Figure:
     """Return a person who walks."""
     s, g = person.scale, person.girth * person.scale
     shapes = shapes_of_person(person)
@@ -127,3 +146,51 @@ def _leg(shapes: PersonShapes, s: float, g: float, side: float) -> Leg:
         sole=(HEEL * s, TOES * s),
         roll=(0.35, 0.85),
     )
+
+
+_HABIT = Habit(Behaviour.POLYLINE, speed=2.0, acceleration=2.0, yaw_rate=2.5, radius=1.0)
+
+_HEADS = {
+    Hair.SHORT: "short {} hair",
+    Hair.LONG: "long {} hair",
+    Hair.BUN: "a bun of {} hair",
+    Hair.CAP: "a {} cap",
+    Hair.HAT: "a {} hat",
+}
+
+_HAIR = {"beige": "blond"}
+"""Colours that have another name on a head."""
+
+
+def _words(person: Person) -> tuple[str, ...]:
+    """Return what one wears, then also the rest of one's looks."""
+    worn = f"a pedestrian in a {{}} {person.garment.value}"
+    hair = colour_name(person.hair_colour)
+    head = f"with {_HEADS[person.hair].format(_HAIR.get(hair, hair))}"
+    if person.garment is Garment.DRESS:
+        return worn, f"{worn}, {head}"
+    below = f"{worn} and {colour_name(person.trousers)} trousers"
+    return worn, below, f"{below}, {head}"
+
+
+def _pedestrian(person: Person) -> JointedModel:
+    """Return a pedestrian; the original's is 1.80 m high, its reference point at 1.27 m."""
+    figure, name = _figure(person), TargetName.PEDESTRIAN.value
+    return JointedModel(
+        name=person.name,
+        typename=name,
+        kind=name,
+        size=person.size,
+        rise=1.27 / 1.8 * person.height,
+        words=_words(person),
+        motion=f"walks from point to point, {_HABIT.speed:g} m/s",
+        speed=_HABIT.speed,
+        stride=figure.period,
+        figure=figure,
+        habit=_HABIT,
+        colours=_COLOURS,
+    )
+
+
+PEDESTRIANS: tuple[JointedModel, ...] = tuple(map(_pedestrian, PEOPLE))
+"""Their models in the catalogue."""

@@ -8,9 +8,8 @@ from dataclasses import dataclass
 from enum import Enum
 from itertools import pairwise
 
-from eyas.mesh.shell import Shell
+from eyas.mesh.shell import DETAILS, Shape, Shell
 from eyas.state.mesh import Material, Surface
-from eyas.targets.jointed.figure import DETAILS, Shape
 from eyas.targets.jointed.outlines import limb, matt, stack
 from eyas.targets.kind import Colour
 

@@ -1,11 +1,14 @@
 """AIBO ERS-7, a robot puppy."""
 
-from eyas.mesh.shell import Shell
+from eyas.mesh.shell import Shape, Shell
 from eyas.state.mesh import Material, Surface
-from eyas.targets.jointed.figure import Figure, Gait, Joint, Leg, Shape, Swing
+from eyas.targets.config import TargetName
+from eyas.targets.habit import Behaviour, Habit
+from eyas.targets.jointed.figure import Figure, Gait, Joint, Leg, Swing
+from eyas.targets.jointed.model import robot
 from eyas.targets.jointed.outlines import limb, matt
 
-__all__ = ["AIBO"]
+__all__ = ["MODEL"]
 
 _WHITE, _BLACK, _BLUE, _GREY = (
     matt(0.93, 0.93, 0.94), matt(0.09, 0.09, 0.10), matt(0.55, 0.74, 0.90), matt(0.66, 0.67, 0.69)
@@ -60,7 +63,7 @@ def _leg(x: float, side: float, phase: float) -> Leg:
     )
 
 
-AIBO = Figure(
+_FIGURE = Figure(
     joints=(
         Joint(name="body", shape=_body, pivot=(0.0, 0.0, 0.15)),
         Joint(
@@ -97,3 +100,15 @@ AIBO = Figure(
     ),
 )
 """It walks one foot after the other: each hind foot before the front foot of its side."""
+
+MODEL = robot(
+    TargetName.AIBO_ERS7,
+    size=(0.32, 0.18, 0.28),
+    colour=(0.93, 0.93, 0.94),
+    words="a white robot puppy with a black face",
+    motion="walks, then stands",
+    habit=Habit(
+        Behaviour.STOP, speed=0.1, acceleration=0.3, yaw_rate=0.6, radius=0.3, distance=2.5
+    ),
+    figure=_FIGURE,
+)

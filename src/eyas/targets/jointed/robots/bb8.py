@@ -6,10 +6,13 @@ from eyas.core import exact
 from eyas.mesh.shell import Shell
 from eyas.mesh.solids import sphere
 from eyas.state.mesh import Material, Surface
+from eyas.targets.config import TargetName
+from eyas.targets.habit import Behaviour, Habit
 from eyas.targets.jointed.figure import Figure, Gait, Joint, Swing
+from eyas.targets.jointed.model import robot
 from eyas.targets.jointed.outlines import bar, block, matt, stack
 
-__all__ = ["BB8"]
+__all__ = ["MODEL"]
 
 _WHITE, _ORANGE, _GREY = matt(0.90, 0.89, 0.86), matt(0.90, 0.45, 0.10), matt(0.50, 0.51, 0.53)
 _EYE = Material(tint=(0.03, 0.03, 0.05), surface=Surface.GLASS)
@@ -53,7 +56,7 @@ def _antenna(shell: Shell, detail: int) -> None:
         bar(shell, (0.0, y, 0.0), (0.0, y, top), 0.004, _GREY, sides=3 + (detail > 0))
 
 
-BB8 = Figure(
+_FIGURE = Figure(
     joints=(
         Joint(name="ball", shape=_ball, parent="ground", pivot=(0.0, 0.0, _RADIUS), spins=True),
         Joint(name="neck", shape=None, pivot=(0.0, 0.0, _RADIUS), pitch=Swing(lean=0.16)),
@@ -62,4 +65,14 @@ BB8 = Figure(
     ),
     gait=Gait(slowest=0.5),
     wheel_radius=_RADIUS,
+)
+
+MODEL = robot(
+    TargetName.BB_8,
+    size=(0.50, 0.50, 0.68),
+    colour=(0.90, 0.89, 0.86),
+    words="a white and orange robot that rolls on a ball",
+    motion="weaves",
+    habit=Habit(Behaviour.WEAVE, speed=1.0, acceleration=1.0, yaw_rate=1.5, radius=0.5),
+    figure=_FIGURE,
 )

@@ -1,10 +1,13 @@
 """Bioloid dog, built of servo motors and brackets."""
 
 from eyas.mesh.shell import Shell
+from eyas.targets.config import TargetName
+from eyas.targets.habit import Behaviour, Habit
 from eyas.targets.jointed.figure import Figure, Gait, Joint, Leg, Swing
+from eyas.targets.jointed.model import robot
 from eyas.targets.jointed.outlines import block, matt
 
-__all__ = ["BIOLOID_DOG"]
+__all__ = ["MODEL"]
 
 _BRACKET, _SERVO, _WHITE, _HORN = (
     matt(0.72, 0.73, 0.74), matt(0.10, 0.10, 0.11), matt(0.90, 0.90, 0.90), matt(0.50, 0.51, 0.53)
@@ -60,7 +63,7 @@ def _leg(x: float, side: float, phase: float) -> Leg:
     )
 
 
-BIOLOID_DOG = Figure(
+_FIGURE = Figure(
     joints=(
         Joint(name="body", shape=_body, pivot=(0.0, 0.0, _HIP)),
         Joint(name="head", shape=_head, parent="body", pivot=(0.13, 0.0, 0.0)),
@@ -81,3 +84,13 @@ BIOLOID_DOG = Figure(
     ),
 )
 """It trots: diagonal legs step together."""
+
+MODEL = robot(
+    TargetName.BIOLOID_DOG,
+    size=(0.40, 0.35, 0.20),
+    colour=(0.10, 0.10, 0.11),
+    words="a robot dog of black motors and grey brackets",
+    motion="trots",
+    habit=Habit(Behaviour.STRAIGHT, speed=0.35, acceleration=0.7, yaw_rate=0.8, radius=0.5),
+    figure=_FIGURE,
+)

@@ -6,10 +6,13 @@ import numpy as np
 
 from eyas.core import exact
 from eyas.mesh.shell import Shell
+from eyas.targets.config import TargetName
+from eyas.targets.habit import Behaviour, Habit
 from eyas.targets.jointed.figure import Figure, Joint
+from eyas.targets.jointed.model import robot
 from eyas.targets.jointed.outlines import block, matt, stack, wheel
 
-__all__ = ["CREATE"]
+__all__ = ["MODEL"]
 
 _RADIUS, _WHEEL = 0.1675, 0.031
 _SHELL, _BUMPER, _BAY = matt(0.88, 0.88, 0.87), matt(0.42, 0.43, 0.45), matt(0.16, 0.16, 0.17)
@@ -41,10 +44,20 @@ def _wheels(shell: Shell, detail: int) -> None:
     wheel(shell, _WHEEL, 0.022, (-0.13, 0.13), (_TYRE, _HUB), detail)
 
 
-CREATE = Figure(
+_FIGURE = Figure(
     joints=(
         Joint(name="body", shape=_body),
         Joint(name="wheels", shape=_wheels, pivot=(0.0, 0.0, _WHEEL), spins=True),
     ),
     wheel_radius=_WHEEL,
+)
+
+MODEL = robot(
+    TargetName.CREATE,
+    size=(0.335, 0.335, 0.08),
+    colour=(0.88, 0.88, 0.87),
+    words="a white disc-shaped robot",
+    motion="straight, turns away from obstacles",
+    habit=Habit(Behaviour.WANDER, speed=0.5, acceleration=1.0, yaw_rate=2.0, radius=0.2),
+    figure=_FIGURE,
 )

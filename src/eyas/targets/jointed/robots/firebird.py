@@ -4,10 +4,13 @@ import numpy as np
 
 from eyas.core import exact
 from eyas.mesh.shell import Shell
+from eyas.targets.config import TargetName
+from eyas.targets.habit import Behaviour, Habit
 from eyas.targets.jointed.figure import Figure, Joint
+from eyas.targets.jointed.model import robot
 from eyas.targets.jointed.outlines import block, cylinder, matt, stack, wheel
 
-__all__ = ["FIRE_BIRD"]
+__all__ = ["MODEL"]
 
 _SALMON, _PLATE, _BLUE = matt(0.80, 0.40, 0.40), matt(0.22, 0.22, 0.24), matt(0.16, 0.28, 0.72)
 _TYRE, _SONAR, _SCREEN = matt(0.10, 0.10, 0.11), matt(0.70, 0.60, 0.30), matt(0.35, 0.62, 0.38)
@@ -40,10 +43,20 @@ def _wheels(shell: Shell, detail: int) -> None:
     wheel(shell, _RADIUS, 0.03, (-0.148, 0.148), (_BLUE, _TYRE), detail)
 
 
-FIRE_BIRD = Figure(
+_FIGURE = Figure(
     joints=(
         Joint(name="body", shape=_body),
         Joint(name="wheels", shape=_wheels, pivot=(0.0, 0.0, _RADIUS), spins=True),
     ),
     wheel_radius=_RADIUS,
+)
+
+MODEL = robot(
+    TargetName.FIRE_BIRD_6,
+    size=(0.32, 0.32, 0.22),
+    colour=(0.80, 0.40, 0.40),
+    words="a round salmon robot on blue wheels",
+    motion="straight, turns away from obstacles",
+    habit=Habit(Behaviour.WANDER, speed=0.05, acceleration=0.1, yaw_rate=0.5, radius=0.1),
+    figure=_FIGURE,
 )

@@ -2,10 +2,13 @@
 
 from eyas.mesh.shell import Shell
 from eyas.state.mesh import Material, Surface
+from eyas.targets.config import TargetName
+from eyas.targets.habit import Behaviour, Habit
 from eyas.targets.jointed.figure import Figure, Gait, Joint, Leg, Swing
+from eyas.targets.jointed.model import robot
 from eyas.targets.jointed.outlines import block, cylinder, matt
 
-__all__ = ["GHOST_DOG"]
+__all__ = ["MODEL"]
 
 _WHITE, _AMBER, _RED, _GREY = (
     matt(0.94, 0.94, 0.94), matt(1.0, 0.70, 0.02), matt(0.82, 0.06, 0.05), matt(0.45, 0.46, 0.48)
@@ -72,7 +75,7 @@ def _leg(side: float, phase: float, *, front: bool) -> Leg:
     )
 
 
-GHOST_DOG = Figure(
+_FIGURE = Figure(
     joints=(
         # The two halves of the body turn about joints in the back.
         Joint(name="chest", shape=_chest, pivot=(0.04, 0.0, _HIP), pitch=Swing(size=0.13)),
@@ -113,3 +116,13 @@ GHOST_DOG = Figure(
     ),
 )
 """It gallops: first the hind feet land, then the front feet, and it flies in between."""
+
+MODEL = robot(
+    TargetName.GHOST_DOG,
+    size=(0.80, 0.28, 0.50),
+    colour=(0.94, 0.94, 0.94),
+    words="a white robot dog with red feet",
+    motion="gallops",
+    habit=Habit(Behaviour.STRAIGHT, speed=0.8, acceleration=1.0, yaw_rate=1.0, radius=0.8),
+    figure=_FIGURE,
+)

@@ -2,10 +2,13 @@
 
 from eyas.mesh.shell import Shell
 from eyas.state.mesh import Material, Surface
+from eyas.targets.config import TargetName
+from eyas.targets.habit import Behaviour, Habit
 from eyas.targets.jointed.figure import Figure, Gait, Joint, Leg, Swing
+from eyas.targets.jointed.model import robot
 from eyas.targets.jointed.outlines import block, cylinder, limb, matt, stack
 
-__all__ = ["HOAP"]
+__all__ = ["MODEL"]
 
 _SILVER, _DARK, _BLUE, _LIGHT = (
     matt(0.66, 0.67, 0.70), matt(0.22, 0.23, 0.25), matt(0.14, 0.26, 0.66), matt(0.84, 0.85, 0.87)
@@ -92,7 +95,7 @@ def _arm(side: float) -> tuple[Joint, Joint]:
     )
 
 
-HOAP = Figure(
+_FIGURE = Figure(
     joints=(
         Joint(name="torso", shape=_torso, pivot=(0.0, 0.0, _HIP)),
         Joint(name="head", shape=_head, parent="torso", pivot=(0.0, 0.0, 0.17)),
@@ -110,4 +113,16 @@ HOAP = Figure(
         z=Swing(lean=-0.012),
         roll=Swing(size=0.06, phase=0.43),
     ),
+)
+
+MODEL = robot(
+    TargetName.HOAP_2,
+    size=(0.20, 0.25, 0.48),
+    colour=(0.66, 0.67, 0.70),
+    words="a silver humanoid robot with a blue head",
+    motion="walks on two legs, then stops",
+    habit=Habit(
+        Behaviour.STOP, speed=0.05, acceleration=0.1, yaw_rate=0.4, radius=0.2, distance=1.5
+    ),
+    figure=_FIGURE,
 )

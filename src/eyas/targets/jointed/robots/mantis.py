@@ -4,10 +4,13 @@ import numpy as np
 
 from eyas.mesh.shell import Shell
 from eyas.state.mesh import Material, Surface
+from eyas.targets.config import TargetName
+from eyas.targets.habit import Behaviour, Habit
 from eyas.targets.jointed.figure import Figure, Gait, Joint, Leg, Swing
+from eyas.targets.jointed.model import robot
 from eyas.targets.jointed.outlines import bar, block, cylinder, matt, stack
 
-__all__ = ["MANTIS"]
+__all__ = ["MODEL"]
 
 _DARK, _SILVER, _STEEL, _SEAT = (
     matt(0.25, 0.26, 0.28), matt(0.74, 0.75, 0.77), matt(0.46, 0.48, 0.50), matt(0.08, 0.08, 0.09)
@@ -90,7 +93,7 @@ def _leg(side: float, row: int) -> Leg:
     )
 
 
-MANTIS = Figure(
+_FIGURE = Figure(
     joints=(Joint(name="body", shape=_body, pivot=(0.0, 0.0, _HIP)),),
     legs=tuple(_leg(side, row) for side in (1.0, -1.0) for row in range(3)),
     gait=Gait(
@@ -103,3 +106,13 @@ MANTIS = Figure(
     ),
 )
 """It walks on three legs at a time: the first and last of one side, and the middle of the other."""
+
+MODEL = robot(
+    TargetName.MANTIS,
+    size=(4.6, 4.3, 2.0),
+    colour=(0.25, 0.26, 0.28),
+    words="a dark grey walking machine on six legs",
+    motion="walks on six legs, three at a time",
+    habit=Habit(Behaviour.STRAIGHT, speed=0.55, acceleration=0.5, yaw_rate=0.4, radius=2.0),
+    figure=_FIGURE,
+)

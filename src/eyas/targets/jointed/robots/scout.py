@@ -2,10 +2,13 @@
 
 from eyas.mesh.shell import Shell
 from eyas.state.mesh import Material, Surface
+from eyas.targets.config import TargetName
+from eyas.targets.habit import Behaviour, Habit
 from eyas.targets.jointed.figure import Figure, Gait, Joint, Leg, Swing
+from eyas.targets.jointed.model import robot
 from eyas.targets.jointed.outlines import block, cylinder, matt, stack
 
-__all__ = ["SCOUT"]
+__all__ = ["MODEL"]
 
 _GREY, _RED, _MAGENTA, _GREEN, _FOOT = (
     matt(0.78, 0.78, 0.78), matt(0.67, 0.02, 0.02), matt(1.0, 0.05, 1.0), matt(0.10, 0.62, 0.16),
@@ -59,7 +62,7 @@ def _leg(side: float) -> Leg:
     )
 
 
-SCOUT = Figure(
+_FIGURE = Figure(
     joints=(
         Joint(name="body", shape=_body, pivot=(0.0, 0.0, _HIP)),
         Joint(
@@ -82,4 +85,14 @@ SCOUT = Figure(
         z=Swing(lean=-0.008, size=0.003, beats=2),
         roll=Swing(size=0.10, phase=0.44),
     ),
+)
+
+MODEL = robot(
+    TargetName.SCOUT,
+    size=(0.15, 0.20, 0.30),
+    colour=(0.67, 0.02, 0.02),
+    words="a red and magenta robot walker with a grey head",
+    motion="walks on two legs",
+    habit=Habit(Behaviour.STRAIGHT, speed=0.08, acceleration=0.2, yaw_rate=0.4, radius=0.2),
+    figure=_FIGURE,
 )

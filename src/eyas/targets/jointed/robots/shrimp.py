@@ -1,11 +1,16 @@
 """Shrimp, a rover on six wheels: one on a fork ahead, one behind, and two on a bogie each side."""
 
+import math
+
 from eyas.mesh.shell import Shell
 from eyas.state.mesh import Material, Surface
+from eyas.targets.config import TargetName
+from eyas.targets.habit import Behaviour, Habit
 from eyas.targets.jointed.figure import Figure, Joint
+from eyas.targets.jointed.model import robot
 from eyas.targets.jointed.outlines import bar, block, matt, wheel
 
-__all__ = ["SHRIMP"]
+__all__ = ["MODEL"]
 
 _BLUE = Material(tint=(0.19, 0.69, 1.0), surface=Surface.PAINT)
 _ROD, _TYRE, _HUB, _DARK = (
@@ -52,7 +57,7 @@ def _wheel_at(name: str, x: float, *, steers: bool) -> Joint:
     )
 
 
-SHRIMP = Figure(
+_FIGURE = Figure(
     joints=(
         Joint(name="body", shape=_body),
         _wheel_at("front wheel", _END, steers=True),
@@ -61,4 +66,22 @@ SHRIMP = Figure(
         _wheel_at("rear bogie wheels", -_BOGIE, steers=False),
     ),
     wheel_radius=_RADIUS,
+)
+
+MODEL = robot(
+    TargetName.SHRIMP,
+    size=(0.64, 0.41, 0.24),
+    colour=(0.19, 0.69, 1.0),
+    words="a blue robot rover on six wheels",
+    motion="straight, turns, then stops",
+    habit=Habit(
+        Behaviour.STOP,
+        speed=0.26,
+        acceleration=0.5,
+        yaw_rate=0.35,
+        radius=0.75,
+        distance=4.6,
+        turn=math.radians(-75),
+    ),
+    figure=_FIGURE,
 )

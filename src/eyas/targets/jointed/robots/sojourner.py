@@ -2,10 +2,13 @@
 
 from eyas.mesh.shell import Shell
 from eyas.state.mesh import Material, Surface
+from eyas.targets.config import TargetName
+from eyas.targets.habit import Behaviour, Habit
 from eyas.targets.jointed.figure import Figure, Joint
+from eyas.targets.jointed.model import robot
 from eyas.targets.jointed.outlines import bar, block, matt, wheel
 
-__all__ = ["SOJOURNER"]
+__all__ = ["MODEL"]
 
 _FOIL, _PANEL, _CELL = matt(0.80, 0.55, 0.20), matt(0.07, 0.10, 0.27), matt(0.14, 0.19, 0.42)
 _ARM, _WHEEL, _HUB, _WHITE = (
@@ -61,7 +64,7 @@ def _corner(x: float, y: float) -> Joint:
     )
 
 
-SOJOURNER = Figure(
+_FIGURE = Figure(
     joints=(
         Joint(name="body", shape=_body),
         Joint(name="middle wheels", shape=_pair, pivot=(0.0, 0.0, _RADIUS), spins=True),
@@ -69,4 +72,14 @@ SOJOURNER = Figure(
         Joint(name="antenna", shape=_antenna, pivot=(-0.22, 0.15, 0.28)),
     ),
     wheel_radius=_RADIUS,
+)
+
+MODEL = robot(
+    TargetName.SOJOURNER,
+    size=(0.65, 0.48, 0.30),
+    colour=(0.80, 0.55, 0.20),
+    words="a gold robot rover under a solar panel",
+    motion="straight",
+    habit=Habit(Behaviour.STRAIGHT, speed=0.04, acceleration=0.1, yaw_rate=0.2, radius=0.3),
+    figure=_FIGURE,
 )

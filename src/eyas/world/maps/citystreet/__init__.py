@@ -3,21 +3,10 @@
 from typing import TYPE_CHECKING
 
 from eyas.world.maps.recipe import MapRecipe, Original
-from eyas.world.weather import (
-    CLEAR_DAY,
-    CLEAR_NIGHT,
-    DAY,
-    FOG,
-    FOGGY,
-    NIGHT,
-    SNOW,
-    WINTER_DAY,
-    Season,
-)
 
 if TYPE_CHECKING:
     from eyas.state.roads import RoadGraph, RoadNetwork
-    from eyas.state.scene import Scene
+    from eyas.world.plan.plan import MapPlan
 
 __all__ = ["CITYSTREET"]
 
@@ -28,19 +17,17 @@ def _roads(seed: int) -> "RoadGraph":
     return road_graph(seed)
 
 
-def _scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
-    """Build the city; in winter it is the same, and the weather's light adds the snow."""
-    from eyas.world.maps.citystreet.scene import build_scene
+def _plan(network: "RoadNetwork", seed: int) -> "MapPlan":
+    from eyas.world.maps.citystreet.plan import make_plan
 
-    return build_scene(network, seed)
+    return make_plan(network, seed)
 
 
 CITYSTREET = MapRecipe(
     name="citystreet",
     title="Mid-rise city blocks with rows of great trees",
     roads=_roads,
-    scene=_scene,
-    lighting={DAY: CLEAR_DAY, FOGGY: FOG, NIGHT: CLEAR_NIGHT, SNOW: WINTER_DAY},
+    plan=_plan,
     package=__name__,
     original=Original(road=4.01, buildings=83, height=30.0, trees=63),
     pedestrians=40,

@@ -1,220 +1,169 @@
-"""Plan of the street city: the position of everything in it."""
+"""The plan of the street city."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
-from eyas.core import exact
 from eyas.core.rng import stream
+from eyas.state.mesh import Material, Surface
 from eyas.state.roads import RoadNetwork
-from eyas.world.build.heights import FLOOR_HEIGHT
-from eyas.world.build.millimetres import unit
-from eyas.world.buildings import placing as buildings
-from eyas.world.buildings.lots import frame_angle, turned
+from eyas.state.scene import ObjectClass
+from eyas.world.build.heights import FLOOR_HEIGHT, KERB_HEIGHT
+from eyas.world.build.placed import Placed
 from eyas.world.land import ground, outskirts
-from eyas.world.maps.citystreet.roads import road_graph
-from eyas.world.plants import trees
-from eyas.world.roads import overpass
-from eyas.world.roads.areas import (
-    Street,
-    blocks,
-    corners,
-    corridors,
-    joints,
-    polygons_of,
-    road_area,
-    streets,
+from eyas.world.maps.citystreet.greenery import greenery, parked
+from eyas.world.maps.citystreet.layout import EXTENT, FLOOR, Layout, lay_out
+from eyas.world.maps.citystreet.roads import NAME
+from eyas.world.plan.library import CAR_KINDS, FURNITURE_KINDS, STREET_KINDS, plant_kinds
+from eyas.world.plan.plan import (
+    Building,
+    Buildings,
+    Chance,
+    Deck,
+    Far,
+    Flat,
+    Ground,
+    Kind,
+    Layer,
+    MapPlan,
+    Paint,
+    Paved,
+    Streets,
+    state_of,
+    things,
 )
-from eyas.world.roads.pillars import Pillar, pillars
-from eyas.world.street.car_parks import CarPark, place_car_parks, place_rectangle
+from eyas.world.plants import gardens, trees
+from eyas.world.roads.pillars import pillars
+from eyas.world.street import furniture
+from eyas.world.street.furnishing import furniture_along
+from eyas.world.street.lamps import lamps_along, lit_by
+from eyas.world.street.parked_cars import CARS
+from eyas.world.street.signals import signal_places, signals_along
 
-__all__ = ["EXTENT", "FLOOR", "Plan", "make_plan"]
+__all__ = ["make_plan"]
 
-FLOOR = (900.0, 900.0)
-"""Extent of the floor [m]."""
-
-EXTENT = shapely.box(*(-0.5 * np.array(FLOOR)), *(0.5 * np.array(FLOOR)))
-"""The floor."""
-
-_BUILDINGS = 83
-_TREES = 63
-_TREE_SPACING = (15.0, 21.5)
-_BEYOND_KERB = 4.4
-"""From the kerb to the trunks [m]."""
-_TREE_STRIP = 10.0
-"""Strip without buildings beside a row of trees, from the kerb [m]."""
-_CAR_PARKS = ((69.0, 34.0), (58.0, 34.0), (45.0, 34.0), (64.0, 17.0), (49.0, 17.0))
-_POOL = (30.0, 18.8)
-
-_HIGH = 53.5
-"""z of the elevated road [m]."""
-_PILLARS = 18
-_ASIDE = 17.0
-"""From the middle of a street to the middle of the elevated road beside it [m]."""
-_RAMP = ((0.0, 0.0), (0.02, 0.1), (0.09, 3.5), (0.27, 28.0), (0.42, _HIGH), (1.0, _HIGH))
-"""Profile of the elevated road: share of its length, and z [m]."""
-
-Points = NDArray[np.float64]
+_LAMPS = 48
+_TREE_HEIGHTS = (14.8, 19.8, 27.0)
+_TREE_ODDS = (0.3, 0.5, 0.2)
+_TREES = tuple(f"street tree {k}" for k in range(trees.VARIANTS))
+_WATER = Material("water", (0.16, 0.42, 0.54), Surface.WATER)
+_LEGS = 9
+"""Number of pillars beyond the floor, below the descent of the elevated road."""
 
 
-@dataclass(frozen=True, slots=True)
-class Plan:
-    """Positions in plan view."""
-
-    roads: shapely.Geometry
-    """Asphalt of the streets [m]."""
-    access: shapely.Geometry
-    """Asphalt to the foot of the ramp [m]."""
-    blocks: list[shapely.Polygon]
-    """Ground between streets [m]."""
-    outside: list[shapely.Polygon]
-    """Ground beyond the outer streets [m]."""
-    turn: float
-    """Direction of the streets [rad]."""
-    deck: Points
-    """Centre line of the elevated road [m], shape (K, 3)."""
-    pillars: list[Pillar]
-    """Pillars below the elevated road."""
-    car_parks: list[CarPark]
-    """Car parks with their driveways."""
-    pools: list[shapely.Polygon]
-    """Water [m]."""
-    pavement: shapely.Geometry
-    """Raised pavements beside the streets [m]."""
-    trees: Points
-    """Trunks of the street trees [m], shape (K, 2)."""
-    buildings: list[buildings.Building]
-    """Buildings, towers included."""
-
-    @property
-    def lots(self) -> shapely.Geometry:
-        """Asphalt of the car parks [m]."""
-        return shapely.difference(
-            shapely.union_all([park.area for park in self.car_parks]), self.roads
-        )
-
-    @property
-    def footprints(self) -> list[Points]:
-        """Corners of the buildings that stand on the ground [m]."""
-        return [b.footprint for b in self.buildings if b.bottom <= FLOOR_HEIGHT]
-
-
-def make_plan(network: RoadNetwork, seed: int) -> Plan:
-    """Return the plan of a city.
+def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
+    """Return the plan of the street city.
 
     Args:
         network: Made of `road_graph(seed)`.
         seed: Seed of the map, >= 0.
     """
-    roads = road_area(network)
-    closed, _ = blocks(sharp := corridors(network), EXTENT)
-    middle = _overpass_path(seed)
-    onwards = unit((middle[1] - middle[0])[:2])
-    access = outskirts.access_road(middle[0, :2], onwards, roads)
-    columns = pillars(middle, _PILLARS, FLOOR_HEIGHT, roads)
-    deck = shapely.buffer(overpass.deck_area(middle), 3.0)
-    rng = stream(seed, "citystreet lots")
-    car_parks = place_car_parks(closed, _CAR_PARKS, rng, deck)
-    lots = [park.area for park in car_parks]
-    pools = _pools(closed, rng, shapely.union_all([deck, *lots]))
-    bases = [shapely.buffer(pillar.base, 3.0) for pillar in columns]
-    taken = shapely.union_all([roads, *bases, *(shapely.buffer(lot, 2.0) for lot in lots)])
-    trunks, strips = _tree_rows(network, stream(seed, "citystreet trees"), taken)
-    aprons = [shapely.buffer(lot, 2.5, join_style="mitre") for lot in (*lots, *pools)]
-    free = shapely.union_all([deck, *aprons, *strips])
-    # One by one, so that each cuts a corner off a building instead of moving the building.
-    free = shapely.geometrycollections([*polygons_of(free), *corners(roads, sharp)])
-    made = buildings.place_buildings(closed, _BUILDINGS, stream(seed, "citystreet buildings"), free)
-    inside, outside = blocks(roads, EXTENT)
-    return Plan(
-        roads=roads,
-        access=access,
-        blocks=inside,
-        outside=outside,
-        turn=frame_angle(max(closed, key=shapely.area)),
-        deck=middle,
-        pillars=columns,
-        car_parks=car_parks,
-        pools=pools,
-        pavement=_pavement(inside, outside, roads, access, lots, middle),
-        trees=trunks,
-        buildings=made,
-    )
+    city = lay_out(network, seed)
+    yards = gardens.paved_yards(city.footprints, city.pavement, _no_lawn(city))
+    trunks, beds = stream(seed, "citystreet trees", 1), stream(seed, "citystreet gardens")
+    great = _great_trees(city, trunks)
+    taken = _taken(city, network)
+    lamps = lamps_along(network, _LAMPS, taken, stream(seed, "citystreet lamps"))
+    feet = shapely.buffer(shapely.points(lit_by(lamps)), 4.0)
+    taken = shapely.union_all([taken, *feet])
+    rng = stream(seed, "citystreet furniture")
+    furnished = furniture_along(network, city.pavement, taken, KERB_HEIGHT, rng)
+    taken = shapely.union_all([taken, city.pavement, *yards])
+    green = greenery(city, taken, _TREES, beds)
+    cars = parked(city, _TREES, stream(seed, "citystreet parked cars"))
+    return MapPlan(
+        name=NAME,
+        seed=seed,
+        size=FLOOR,
+        library=(
+            *(Kind(name=name, make="street tree", variant=k, chance="trees")
+              for k, name in enumerate(_TREES)),
+            *plant_kinds("beds"), *STREET_KINDS, *FURNITURE_KINDS, *CAR_KINDS,
+        ),
+        chances={"trees": state_of(trunks), "beds": state_of(beds)},
+        # The largest occluders come first: they are drawn first, so less is drawn twice.
+        layers=(
+            things([], _TREES),
+            _buildings(city),
+            _deck(city),
+            *_ground(city, yards, seed),
+            things(great, solid="street trunk"),
+            things(signals_along(network)),
+            things(lamps),
+            things(furnished, tuple(furniture.FURNITURE)),
+            things(green, tuple(kind.name for kind in plant_kinds("beds"))),
+            things(cars, CARS),
+        ),
+    )  # fmt: skip
 
 
-def _pavement(
-    inside: Sequence[shapely.Polygon],
-    outside: Sequence[shapely.Polygon],
-    roads: shapely.Geometry,
-    access: shapely.Geometry,
-    lots: Sequence[shapely.Polygon],
-    deck: Points,
-) -> shapely.Geometry:
-    """Return the pavements without the driveways and the foot of the ramp."""
-    lanes = shapely.difference(shapely.union_all(lots), roads)
-    verge = ground.verge_area(outside, shapely.union(roads, access))
-    # Slightly larger than the ramp: rounding leaves a sliver between it and the access road.
-    ramp = shapely.buffer(overpass.deck_area(deck[:9]), 0.01, join_style="mitre")
-    verge = shapely.difference(verge, ramp)
-    return shapely.union(ground.pavement_area(inside, lanes), verge)
+def _buildings(city: Layout) -> Buildings:
+    """Return the buildings, and what keeps free the roofs below towers."""
+    towers = [shell.outline for shell in city.buildings if shell.bottom > FLOOR_HEIGHT]
+    made = []
+    for shell in city.buildings:
+        on_ground = shell.bottom <= FLOOR_HEIGHT
+        above = [one for one in towers if on_ground and one.intersects(shell.outline)]
+        free = shapely.union_all(above) if above else None
+        made.append(Building(parts=(shell,), fittings=("roof units",), keep_free=free))
+    return Buildings(items=tuple(made))
 
 
-def _overpass_path(seed: int) -> Points:
-    """Return the elevated road: up a ramp in the west, then beside three streets to the east."""
-    at = {node.name: np.array([node.x, node.y]) for node in road_graph(seed).nodes}
-    origin = at["B2"]
-    east = unit(at["C2"] - origin)
-    frame = np.stack([east, [-east[1], east[0]]])
-    west, third = exact.product(frame, at["A4"] - origin)
-    second = exact.product(frame[0], at["C2"] - origin)
-    corners = np.array(
-        [
-            [west - 68.0, 70.0],
-            [west - 68.0, third + _ASIDE],
-            [second + _ASIDE, third + _ASIDE],
-            [second + _ASIDE, _ASIDE],
-            [second + 600.0, _ASIDE],
-        ]
-    )
-    world = exact.product(corners, frame) + origin
-    # It leaves the map where the floor ends.
-    onwards = frame[0]
-    room = (np.sign(onwards) * 0.5 * np.array(FLOOR) - world[3]) / onwards
-    world[4] = world[3] + (room.min() - 2.0) * onwards
-    return overpass.path(world, (55.0, 70.0, 60.0), _RAMP)
+def _deck(city: Layout) -> Deck:
+    down = outskirts.descent(city.deck, FLOOR_HEIGHT)  # beyond the floor; not solid
+    legs = pillars(down, _LEGS, FLOOR_HEIGHT, city.roads)
+    return Deck(middle=city.deck, pillars=tuple(city.pillars), descent=down, legs=tuple(legs))
 
 
-def _pools(
-    closed: Sequence[shapely.Polygon], rng: np.random.Generator, keep_free: shapely.Geometry
-) -> list[shapely.Polygon]:
-    """Return one pool, in the first block that has room for it."""
-    for index in rng.permutation(len(closed)):
-        found = place_rectangle(closed[int(index)], _POOL, rng, keep_free)
-        if found:
-            return [turned(found[0], found[1])]
-    return []
+def _no_lawn(city: Layout) -> shapely.Geometry:
+    """Return roads, pavements, car parks and pools with their rims [m]."""
+    rims = [shapely.buffer(pool, 0.8, join_style="mitre") for pool in city.pools]
+    return shapely.union_all([city.roads, city.access, city.lots, city.pavement, *rims])
 
 
-def _tree_rows(
-    network: RoadNetwork, rng: np.random.Generator, keep_free: shapely.Geometry
-) -> tuple[Points, list[shapely.Polygon]]:
-    """Return trunks along both sides of inner streets, and the strips that their crowns need."""
-    meeting = joints(network)
-    every = streets(network)
-    rows: list[Street] = []
-    for index in rng.permutation(len(every)):
-        street = every[int(index)]
-        if street not in rows and min(meeting[street.start], meeting[street.end]) == 4:
-            rows += [s for s in every if {s.start, s.end} == {street.start, street.end}]
-    trunks, strips = np.zeros((0, 2)), []
-    for street in rows:
-        kerb = shapely.LineString(street.right)
-        line = shapely.offset_curve(kerb, -_BEYOND_KERB)
-        found = trees.place_along(line, _TREE_SPACING, rng, keep_free)[: _TREES - len(trunks)]
-        if len(found):
-            trunks = np.concatenate([trunks, found])
-            strips.append(shapely.buffer(kerb, -_TREE_STRIP, cap_style="flat", single_sided=True))
-    return trunks, strips
+def _taken(city: Layout, network: RoadNetwork) -> shapely.Geometry:
+    """Return the area where something already stands or drives, in plan view."""
+    built = [shell.outline for shell in city.buildings]
+    areas = [park.area for park in city.car_parks] + [pillar.base for pillar in city.pillars]
+    poles = [place for place, _ in signal_places(network)]
+    thin = shapely.buffer(shapely.points([*city.trees, *poles]), 1.0)
+    return shapely.union_all([city.roads, city.access, *city.pools, *built, *areas, *thin])
+
+
+def _ground(city: Layout, yards: Sequence[shapely.Geometry], seed: int) -> list[Layer]:
+    rng = stream(seed, "citystreet lawn")
+    outskirts.fields(FLOOR, FLOOR_HEIGHT, rng, outskirts.CROPS)  # which shares the stream
+    pools, turn = shapely.union_all(city.pools), city.turn
+    paved = shapely.union_all([city.roads, city.access])
+    paving = ground.yards(yards, turn, rng)
+    covered = shapely.union_all([_no_lawn(city), *yards])
+    lawn = ground.lawn(EXTENT, covered, rng, shapely.union_all(city.blocks), turn)
+    crops, shares = zip(*outskirts.CROPS, strict=True)
+    far = Far(rule="fields", covers=crops, shares=shares, chance=Chance(stream="citystreet lawn"))
+    bays = [line for park in city.car_parks for line in park.lines]
+    made: list[Layer] = [
+        Streets(
+            area=paved, paint=Paint(shapes=tuple(bays)), wear=Chance(stream="citystreet road wear")
+        ),
+        Paved(area=city.pavement, beside=paved, turn=turn),
+        Ground(kind=ObjectClass.PAVEMENT, pieces=tuple(paving)),
+        Ground(kind=ObjectClass.ROAD, pieces=(ground.asphalt(city.lots, light=True),)),
+        Ground(pieces=(*lawn, far)),
+    ]
+    if city.pools:
+        rim = shapely.difference(shapely.buffer(pools, 0.8, join_style="mitre"), pools)
+        water = Flat(area=pools, z=-0.15, cover=_WATER)
+        made.append(Ground(kind=ObjectClass.WATER, pieces=(water,)))
+        made.append(Paved(area=rim, beside=pools))
+    return made
+
+
+def _great_trees(city: Layout, rng: np.random.Generator) -> list[Placed]:
+    """Return a tree of a random kind at each trunk."""
+    made = []
+    for x, y in city.trees.tolist():
+        height = float(rng.choice(_TREE_HEIGHTS, p=_TREE_ODDS) * rng.uniform(0.93, 1.0))
+        kind, turn = _TREES[int(rng.integers(len(_TREES)))], float(rng.uniform(0, 2 * np.pi))
+        made.append(Placed(kind, x, y, FLOOR_HEIGHT, turn, height))
+    return made

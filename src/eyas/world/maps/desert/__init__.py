@@ -3,13 +3,12 @@
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from eyas.world.maps.desert.air import DESERT_DAY, DESERT_FOG, DESERT_NIGHT, DESERT_WINTER
+from eyas.world.maps.desert.air import desert_weather
 from eyas.world.maps.recipe import MapRecipe, Original
-from eyas.world.weather import DAY, FOGGY, NIGHT, SNOW, Season
 
 if TYPE_CHECKING:
     from eyas.state.roads import RoadGraph, RoadNetwork
-    from eyas.state.scene import Scene
+    from eyas.world.plan.plan import MapPlan
 
 __all__ = ["DESERT", "DESERT_BARE"]
 
@@ -20,27 +19,27 @@ def _roads(seed: int) -> "RoadGraph":
     return road_graph(seed)
 
 
-def _scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
-    from eyas.world.maps.desert.scene import build_scene
+def _plan(network: "RoadNetwork", seed: int) -> "MapPlan":
+    from eyas.world.maps.desert.plan import make_plan
 
-    return build_scene(network, seed, season)
+    return make_plan(network, seed)
 
 
-def _bare_scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
-    from eyas.world.maps.bare import build_bare_scene
+def _bare_plan(network: "RoadNetwork", seed: int) -> "MapPlan":
+    from eyas.world.maps.bare import make_plan
+    from eyas.world.maps.desert.layout import FLOOR
     from eyas.world.maps.desert.looks import SAND
-    from eyas.world.maps.desert.plan import FLOOR
-    from eyas.world.maps.desert.scene import DUNES
+    from eyas.world.maps.desert.plan import DUNES
 
-    return build_bare_scene("desert-bare", network, seed, FLOOR, SAND, DUNES)
+    return make_plan("desert-bare", network, seed, FLOOR, SAND, DUNES)
 
 
 DESERT = MapRecipe(
     name="desert",
     title="Dunes, and roads under sand",
     roads=_roads,
-    scene=_scene,
-    lighting={DAY: DESERT_DAY, FOGGY: DESERT_FOG, NIGHT: DESERT_NIGHT, SNOW: DESERT_WINTER},
+    plan=_plan,
+    weather=desert_weather,
     seasons=True,
     package=__name__,
     original=Original(road=3.37, buildings=7, height=12.0),
@@ -50,8 +49,8 @@ DESERT_BARE = replace(
     DESERT,
     name="desert-bare",
     title="The roads of the desert on bare sand, without scenery",
-    scene=_bare_scene,
-    lighting={DAY: DESERT_DAY},
+    plan=_bare_plan,
+    without=("foggy", "night", "snow"),
     seasons=False,
     original=Original(road=3.35),
 )

@@ -1,13 +1,15 @@
 """Light and air of the desert."""
 
 from dataclasses import replace
+from typing import Any
 
-from eyas.world.weather import CLEAR_DAY, CLEAR_NIGHT
+from eyas.state.lighting import Lighting
+from eyas.world.weather import CLEAR_DAY, CLEAR_NIGHT, FOG, WINTER_DAY, Weather
 
-__all__ = ["DESERT_DAY", "DESERT_FOG", "DESERT_NIGHT", "DESERT_WINTER"]
+__all__ = ["desert_weather"]
 
 # The original's sky is pale yellow to white, its sun the same as everywhere.
-DESERT_DAY = replace(
+_DAY = replace(
     CLEAR_DAY,
     sun_colour=(1.06, 0.97, 0.80),
     zenith_colour=(0.66, 0.61, 0.42),
@@ -21,8 +23,8 @@ DESERT_DAY = replace(
 )
 
 # Dust in the air: the original's visibility range, and its sun still casts shadows.
-DESERT_FOG = replace(
-    DESERT_DAY,
+_FOG = replace(
+    _DAY,
     sun_colour=(0.50, 0.45, 0.36),
     zenith_colour=(0.78, 0.75, 0.66),
     horizon_colour=(0.94, 0.89, 0.76),
@@ -35,8 +37,8 @@ DESERT_FOG = replace(
 )
 
 # The ground stays sand, so that snow is a matter of the scene; the sky is clearer and colder.
-DESERT_WINTER = replace(
-    DESERT_DAY,
+_WINTER = replace(
+    _DAY,
     sun_colour=(1.00, 0.95, 0.84),
     zenith_colour=(0.46, 0.54, 0.58),
     horizon_colour=(0.86, 0.84, 0.72),
@@ -46,7 +48,7 @@ DESERT_WINTER = replace(
 )
 
 # A low warm moon over chocolate brown, and the last red light of the day at the horizon.
-DESERT_NIGHT = replace(
+_NIGHT = replace(
     CLEAR_NIGHT,
     sun_direction=(0.55, 0.66, 0.51),
     sun_colour=(0.075, 0.056, 0.038),
@@ -57,3 +59,23 @@ DESERT_NIGHT = replace(
     fog_colour=(0.040, 0.018, 0.010),
     clouds=0.0,
 )
+
+_SKIES = {CLEAR_DAY: _DAY, FOG: _FOG, WINTER_DAY: _WINTER, CLEAR_NIGHT: _NIGHT}
+
+
+def desert_weather(weather: Weather) -> Weather:
+    """Return how a weather is in the desert."""
+    return weather.each(lambda light: _SKIES.get(light) or _dusty(light))
+
+
+def _dusty(light: Lighting) -> Lighting:
+    """Return any other light, half of whose sky is dust; the ground stays sand."""
+    sky = _DAY if light.luminosity == 1.0 else _NIGHT
+    half: dict[str, Any] = {
+        name: tuple(
+            0.5 * (own + dust)
+            for own, dust in zip(getattr(light, name), getattr(sky, name), strict=True)
+        )
+        for name in ("zenith_colour", "horizon_colour", "fog_colour", "ambient_up", "ambient_down")
+    }
+    return replace(light, snow=0.0, **half)

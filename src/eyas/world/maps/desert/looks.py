@@ -1,7 +1,6 @@
 """Colours of the desert: sand and asphalt, and houses of the same sand."""
 
-from eyas.world.build.materials import material
-from eyas.world.buildings.cottages import CottageLook
+from eyas.world.build.materials import facade, material
 
 __all__ = ["DUSTY", "HOUSES", "SAND", "SNOW", "THIN_SNOW"]
 
@@ -18,7 +17,7 @@ THIN_SNOW = material("snow", (0.98, 0.91, 0.72))
 """Their feet, where sand shows through."""
 
 HOUSES = (
-    CottageLook("facade_plaster", (1.0, 0.95, 0.82), (1.0, 0.90, 0.80)),
-    CottageLook("facade_plaster", (0.98, 0.90, 0.74), (0.94, 0.84, 0.74)),
-    CottageLook("facade_stone", (1.0, 0.96, 0.84), (0.98, 0.88, 0.78)),
+    (facade("facade_plaster", (1.0, 0.95, 0.82)), material("roof_tiles", (1.0, 0.90, 0.80))),
+    (facade("facade_plaster", (0.98, 0.90, 0.74)), material("roof_tiles", (0.94, 0.84, 0.74))),
+    (facade("facade_stone", (1.0, 0.96, 0.84)), material("roof_tiles", (0.98, 0.88, 0.78))),
 )

@@ -4,21 +4,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from eyas.world.maps.recipe import MapRecipe, Original
-from eyas.world.weather import (
-    CLEAR_DAY,
-    CLEAR_NIGHT,
-    DAY,
-    FOG,
-    FOGGY,
-    NIGHT,
-    SNOW,
-    WINTER_DAY,
-    Season,
-)
+from eyas.world.weather import CLEAR_NIGHT, Weather, in_fog
 
 if TYPE_CHECKING:
     from eyas.state.roads import RoadGraph, RoadNetwork
-    from eyas.state.scene import Scene
+    from eyas.world.plan.plan import MapPlan
 
 __all__ = ["DOWNTOWN"]
 
@@ -29,15 +19,11 @@ def _roads(seed: int) -> "RoadGraph":
     return road_graph(seed)
 
 
-def _scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
-    """Build the city; in winter it is the same, and the weather's light adds the snow."""
-    from eyas.world.maps.downtown.scene import build_scene
+def _plan(network: "RoadNetwork", seed: int) -> "MapPlan":
+    from eyas.world.maps.downtown.plan import make_plan
 
-    return build_scene(network, seed)
+    return make_plan(network, seed)
 
-
-# In the original the fog is too thin to be seen from above; here it veils the far end of a block.
-_MIST = replace(FOG, fog_density=1.0 / 500.0)
 
 # Fronts and shop windows throw light back into the streets; the sky between them is black.
 _LIT = replace(
@@ -51,12 +37,18 @@ _LIT = replace(
     windows=0.36,
 )
 
+
+def _weather(weather: Weather) -> Weather:
+    # In the original the fog is too thin to be seen from above; here it veils the end of a block.
+    return weather.each(lambda light: _LIT if light == CLEAR_NIGHT else in_fog(light, 500.0))
+
+
 DOWNTOWN = MapRecipe(
     name="downtown",
     title="Canyons between towers, and a park",
     roads=_roads,
-    scene=_scene,
-    lighting={DAY: CLEAR_DAY, FOGGY: _MIST, NIGHT: _LIT, SNOW: WINTER_DAY},
+    plan=_plan,
+    weather=_weather,
     package=__name__,
     original=Original(road=11.05, buildings=470, height=28.0, trees=334),
     pedestrians=80,

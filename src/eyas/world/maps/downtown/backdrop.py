@@ -5,19 +5,15 @@ import shapely
 from numpy.typing import NDArray
 
 from eyas.core import exact
-from eyas.mesh.assembly import concatenate
-from eyas.mesh.flat import quads
-from eyas.state.mesh import Mesh
-from eyas.state.scene import ObjectClass
+from eyas.state.mesh import Material
 from eyas.world.build.heights import FLOOR_HEIGHT
-from eyas.world.build.materials import TEXTURES, facade
-from eyas.world.build.scene_builder import SceneBuilder
-from eyas.world.buildings.parts import window_wall
+from eyas.world.build.materials import facade
 from eyas.world.maps.downtown.massing import STOREY
 from eyas.world.maps.downtown.roads import Grid
 from eyas.world.maps.downtown.skyline import facade_of, roof_of
+from eyas.world.plan.plan import Backdrop
 
-__all__ = ["add_backdrop"]
+__all__ = ["backdrop"]
 
 _STEP = (72.0, 66.0)
 """Distances between the middles of neighbours, along the streets and the avenues [m]."""
@@ -33,17 +29,12 @@ _MEDIAN, _SPREAD, _HIGHEST = 26.0, 0.75, 150.0
 """Median height [m], spread of its logarithm, and limit [m]."""
 
 
-def add_backdrop(
-    builder: SceneBuilder,
-    grid: Grid,
-    floor: shapely.Polygon,
-    city: shapely.Geometry,
-    rng: np.random.Generator,
-) -> None:
-    """Add the city beyond the outer streets.
+def backdrop(
+    grid: Grid, floor: shapely.Polygon, city: shapely.Geometry, rng: np.random.Generator
+) -> Backdrop:
+    """Return the city beyond the outer streets.
 
     Args:
-        builder: The builder to add to.
         grid: The grid of the streets.
         floor: The whole floor [m].
         city: Roads, fronts and park [m].
@@ -55,8 +46,7 @@ def add_backdrop(
     v = np.arange(grid.streets[0] - _REACH, grid.streets[-1] + _REACH, _STEP[1])
     places = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
     places += rng.uniform(-9.0, 9.0, places.shape)
-    made: list[tuple[NDArray[np.float64], float]] = []
-    meshes: list[Mesh] = []
+    made: list[tuple[NDArray[np.float64], float, Material, Material, NDArray[np.int64]]] = []
     for place in places:
         side = np.round(rng.uniform(*_SIDES, 2) / 3.0) * 1.5
         height = min(_MEDIAN * float(exact.exp(exact.normal(rng, 0.0, _SPREAD))), _HIGHEST)
@@ -64,18 +54,9 @@ def add_backdrop(
         corners = place + side * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
         outline = grid.world(corners)
         if rng.random() < _SHARE and shapely.contains(free, shapely.Polygon(outline)):
-            meshes.append(_block(outline, top, rng))
-            made.append((outline, top))
-    if made:
-        owner = builder.add(ObjectClass.BUILDING, concatenate(meshes))
-        for outline, top in made:
-            builder.add_prism(outline, FLOOR_HEIGHT, top, owner)
-
-
-def _block(outline: NDArray[np.float64], top: float, rng: np.random.Generator) -> Mesh:
-    """Return a box with windows and a flat roof."""
-    kind, tint = facade_of(top, rng)
-    cover = roof_of(rng)
-    walls = window_wall(outline, FLOOR_HEIGHT, top, facade(kind, tint), rng)
-    corners = np.column_stack([outline, np.full(4, top)])
-    return concatenate([walls, quads([corners], [outline / TEXTURES[cover.texture]], cover)])
+            walls, roof = facade(*facade_of(top, rng)), roof_of(rng)
+            made.append((outline, top, walls, roof, rng.integers(0, 4, (4, 2))))
+    outlines, tops, walls_, roofs, bays = zip(*made, strict=True) if made else ((),) * 5
+    return Backdrop(
+        outlines=outlines, tops=np.array(tops, np.float64), walls=walls_, roofs=roofs, bays=bays
+    )

@@ -1,117 +1,180 @@
-"""Plan of downtown: the position of everything in it."""
-
-from dataclasses import dataclass
+"""The plan of downtown."""
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.core.rng import stream
 from eyas.state.roads import RoadNetwork
-from eyas.world.buildings.lots import turned
-from eyas.world.buildings.placing import Building
-from eyas.world.maps.downtown.blocks import (
-    AVENUE_WALK,
-    STREET_WALK,
-    block_lots,
-    built,
-    inner_blocks,
-    outer_lots,
+from eyas.world.build.heights import FLOOR_HEIGHT, KERB_HEIGHT
+from eyas.world.build.millimetres import rounded, unit
+from eyas.world.build.placed import Placed
+from eyas.world.maps.downtown.backdrop import backdrop
+from eyas.world.maps.downtown.kerbs import crossing_lamps
+from eyas.world.maps.downtown.layout import EXTENT, FLOOR, Layout, lay_out
+from eyas.world.maps.downtown.roads import NAME
+from eyas.world.maps.downtown.surfaces import surfaces
+from eyas.world.plan.library import CAR_KINDS, FURNITURE_KINDS, STREET_KINDS, plant_kinds
+from eyas.world.plan.plan import (
+    Building,
+    Buildings,
+    Chance,
+    Kind,
+    LampLight,
+    MapPlan,
+    Railway,
+    Skyways,
+    Things,
+    things,
 )
-from eyas.world.maps.downtown.kerbs import Kerbs, make_kerbs
-from eyas.world.maps.downtown.park import Park, make_park
-from eyas.world.maps.downtown.roads import Grid, grid
-from eyas.world.maps.downtown.skyways import Skyway, make_skyways
-from eyas.world.maps.downtown.viaduct import Viaduct, cut, make_viaduct
-from eyas.world.roads.areas import blocks, corridors, road_area
+from eyas.world.plants import gardens
+from eyas.world.roads.areas import joints, streets
+from eyas.world.street import lamps
+from eyas.world.street.furnishing import furniture_along
+from eyas.world.street.furniture import FURNITURE
+from eyas.world.street.parked_cars import CARS
+from eyas.world.street.signals import signal_places, signals_along
+from eyas.world.things.subway import LONG, WIDE
 
-__all__ = ["EXTENT", "FLOOR", "Plan", "make_plan"]
+__all__ = ["make_plan"]
 
-FLOOR = (2000.0, 1500.0)
-"""Extent of the floor [m]."""
-
-EXTENT = shapely.box(*(-0.5 * np.array(FLOOR)), *(0.5 * np.array(FLOOR)))
-"""The floor."""
-
-_OUTER_WALK = 6.5
-"""Width of the pavement on the far side of the outer streets [m]."""
-
-_CROWN = 5.0
-"""No skyway comes nearer to a trunk [m]."""
-
-Points = NDArray[np.float64]
-
-
-@dataclass(frozen=True, slots=True)
-class Plan:
-    """Positions in plan view."""
-
-    grid: Grid
-    """The grid of the streets."""
-    roads: shapely.Geometry
-    """Asphalt of the streets [m]."""
-    park: Park
-    """The park."""
-    kerbs: Kerbs
-    """Parked cars and trees along the streets."""
-    pavement: shapely.Geometry
-    """Raised pavements beside the streets, without parking bays [m]."""
-    buildings: list[list[Building]]
-    """Parts of each building, the lowest first."""
-    viaduct: Viaduct
-    """The elevated railway."""
-    skyways: list[Skyway]
-    """Bridges between buildings."""
-
-    @property
-    def footprints(self) -> list[Points]:
-        """Corners of the buildings on the ground [m]."""
-        return [parts[0].footprint for parts in self.buildings]
+_GREAT, _SLIM = (
+    tuple(f"great tree {k}" for k in range(3)),
+    tuple(f"slim tree {k}" for k in range(2)),
+)
+_GREAT_HEIGHTS = (13.6, 15.4)
+_SLIM_HEIGHTS = (11.5, 14.0)
+_BROADER, _SLIMMER = 1.15, 0.64
+"""Factors on the widths of the great and slim trees' crowns; they are usually about as wide as
+high."""
+_PARK_HEIGHTS = (3.6, 8.8)
+_SHRUBS = ("border", "tall border")
+_TAXI = "parked taxi"
+_TAXIS = 0.2
+"""Share of taxis among the parked cars."""
+_LIGHT = LampLight(axis=(0.3, 0.0, -0.954), intensity=96.0)
+"""Three times the usual intensity: one lamp has to light a whole crossing."""
+_ENTRANCES = 0.3
+"""Share of the ends of wide roads with an entrance of the subway."""
+_FROM_END, _BEYOND = 9.0, 2.3
+"""From the end of the road, and from the kerb, to its middle [m]."""
 
 
-def make_plan(network: RoadNetwork, seed: int) -> Plan:
-    """Return the plan of a city.
+def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
+    """Return the plan of downtown.
 
     Args:
         network: Made of `road_graph(seed)`.
         seed: Seed of the map, >= 0.
     """
-    plan = grid(seed)
-    roads = road_area(network)
-    closed, _ = blocks(corridors(network), EXTENT)
-    cells = inner_blocks(plan, closed)
-    rng = stream(seed, "downtown lots")
-    lots = [lot for block in cells.values() for lot in block_lots(block, rng)]
-    lots = cut(lots + outer_lots(plan, rng), plan)
-    viaduct = make_viaduct(network, plan)
-    park = make_park(plan, roads, EXTENT, stream(seed, "downtown park"))
-    kerbs = make_kerbs(network, plan, viaduct.ground, stream(seed, "downtown kerbs"))
-    inside, outside = blocks(roads, EXTENT)
-    courts = [
-        turned(
-            shapely.box(w + AVENUE_WALK, s + STREET_WALK, e - AVENUE_WALK, n - STREET_WALK),
-            plan.turn,
-        )
-        for w, s, e, n in cells.values()
+    city = lay_out(network, seed)
+    buildings = (
+        Building(parts=tuple(parts), fittings=("fronts", "tank", "roof units"))
+        for parts in city.buildings
+    )
+    fronts = [shapely.Polygon(corners) for corners in city.footprints]
+    built = shapely.union_all([city.roads, city.park.ground, city.viaduct.ground, *fronts])
+    return MapPlan(
+        name=NAME,
+        seed=seed,
+        size=FLOOR,
+        library=(
+            *(Kind(name=name, make="street tree", variant=k, width=width, chance="trees")
+              for names, width in ((_GREAT, _BROADER), (_SLIM, _SLIMMER))
+              for k, name in enumerate(names)),
+            *plant_kinds("trees"), *STREET_KINDS, *FURNITURE_KINDS, *CAR_KINDS,
+            Kind(name="subway entrance"), Kind(name=_TAXI), Kind(name="fountain"),
+        ),
+        chances={"trees": Chance(stream="downtown tree shapes")},
+        # The largest occluders come first: they are drawn first, so less is drawn twice.
+        layers=(
+            Buildings(items=tuple(buildings)),
+            Railway(line=city.viaduct),
+            Skyways(items=tuple(city.skyways)),
+            backdrop(city.grid, EXTENT, built, stream(seed, "downtown backdrop")),
+            *surfaces(city, seed),
+            things(_trees(city, stream(seed, "downtown trees")), (*_GREAT, *_SLIM, *_SHRUBS)),
+            *_along_streets(city, network, stream(seed, "downtown furniture")),
+            things(_parked(city, stream(seed, "downtown parked cars")), (*CARS, _TAXI)),
+            things(_in_park(city)),
+        ),
+        lamps=_LIGHT,
+    )  # fmt: skip
+
+
+def _trees(city: Layout, rng: np.random.Generator) -> list[Placed]:
+    """Return the trees along two streets and in the park, and its shrubs."""
+    made = []
+    for trunks, kinds, heights, ground in (
+        (city.kerbs.great_trees, _GREAT, _GREAT_HEIGHTS, KERB_HEIGHT),
+        (city.kerbs.slim_trees, _SLIM, _SLIM_HEIGHTS, KERB_HEIGHT),
+        (city.park.trees, _GREAT, _PARK_HEIGHTS, FLOOR_HEIGHT),
+    ):
+        made += gardens.small_trees(trunks, heights, ground, kinds, rng)
+    for x, y, turn in city.park.shrubs.tolist():
+        kind = _SHRUBS[int(rng.integers(len(_SHRUBS)))]
+        made.append(Placed(kind, x, y, FLOOR_HEIGHT, turn, float(rng.uniform(0.9, 1.5))))
+    return made
+
+
+def _along_streets(city: Layout, network: RoadNetwork, rng: np.random.Generator) -> list[Things]:
+    """Return signals, lamps, entrances of the subway and furniture."""
+    lit = crossing_lamps(network, lamps.BEYOND_KERB)
+    lights = [Placed.at("street lamp", foot, KERB_HEIGHT, turn) for foot, turn in lit]
+    feet = np.array([foot for foot, _ in lit])
+    poles = [place for place, _ in signal_places(network)]
+    trunks = [*city.kerbs.great_trees, *city.kerbs.slim_trees, *city.viaduct.feet]
+    thin = shapely.buffer(shapely.points([*feet, *poles, *trunks]), 1.6)
+    taken = shapely.union_all([city.roads, city.kerbs.bays, *thin])
+    entrances = _entrances(network, taken, rng)
+    room = [shapely.Point(one.x, one.y).buffer(0.5 * LONG + 0.3) for one in entrances]
+    taken = shapely.union(taken, shapely.union_all(room))
+    furnished = furniture_along(network, city.pavement, taken, KERB_HEIGHT, rng)
+    return [
+        things(signals_along(network)),
+        things(lights),
+        things(entrances, ("subway entrance",)),
+        things(furnished, tuple(FURNITURE)),
     ]
-    rings = shapely.difference(shapely.union_all(inside), shapely.union_all(courts))
-    verge = shapely.intersection(
-        shapely.union_all(outside),
-        shapely.buffer(roads, _OUTER_WALK, join_style="mitre", mitre_limit=2.0),
-    )
-    verge = shapely.difference(verge, park.ground)
-    pavement = shapely.union_all([rings, verge, park.walk])
-    buildings = built(plan, lots, seed)
-    trunks = shapely.points(np.concatenate([kerbs.great_trees, kerbs.slim_trees]))
-    taken = shapely.union_all([viaduct.ground, *shapely.buffer(trunks, _CROWN)])
-    rng = stream(seed, "downtown skyways")
-    return Plan(
-        grid=plan,
-        roads=roads,
-        park=park,
-        kerbs=kerbs,
-        pavement=shapely.difference(pavement, kerbs.bays),
-        buildings=buildings,
-        viaduct=viaduct,
-        skyways=make_skyways(plan, lots, buildings, roads, taken, rng),
-    )
+
+
+def _entrances(
+    network: RoadNetwork, keep_free: shapely.Geometry, rng: np.random.Generator
+) -> list[Placed]:
+    """Return entrances of the subway beside the ends of wide roads.
+
+    Args:
+        network: The roads.
+        keep_free: Area where something else stands or drives [m].
+        rng: Random numbers of the street furniture.
+    """
+    meeting, made = joints(network), []
+    for street in streets(network):
+        end = street.right[-1]
+        onwards = unit(end - street.right[-2])
+        leftwards = np.array([-onwards[1], onwards[0]])
+        place = rounded(end - _FROM_END * onwards - _BEYOND * leftwards)
+        wide = len(street.dividers) > 0 and meeting[street.end] >= 3
+        room = shapely.Point(place).buffer(0.5 * WIDE + 0.4)
+        if wide and rng.random() < _ENTRANCES and not shapely.intersects(keep_free, room):
+            turn = float(exact.atan2(onwards[1], onwards[0]))
+            made.append(Placed.at("subway entrance", place, KERB_HEIGHT, turn))
+    return made
+
+
+def _parked(city: Layout, rng: np.random.Generator) -> list[Placed]:
+    """Return cars in the bays; every fifth is a yellow taxi."""
+    made = []
+    for x, y, heading in city.kerbs.cars.tolist():
+        car = _TAXI if rng.random() < _TAXIS else CARS[int(rng.integers(len(CARS)))]
+        made.append(Placed(car, x, y, 0.0, heading, float(rng.uniform(0.94, 1.04))))
+    return made
+
+
+def _in_park(city: Layout) -> list[Placed]:
+    """Return benches along the paths, and the fountain."""
+    benches = [
+        Placed("bench", x, y, FLOOR_HEIGHT, facing - np.pi / 2)
+        for x, y, facing in city.park.benches.tolist()
+    ]
+    return [*benches, Placed.at("fountain", city.park.fountain, FLOOR_HEIGHT)]

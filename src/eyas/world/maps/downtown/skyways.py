@@ -1,20 +1,17 @@
 """Bridges for walkers between the upper floors of buildings that face each other over a street."""
 
-from dataclasses import dataclass
-
 import numpy as np
 import shapely
 from numpy.typing import NDArray
 
 from eyas.core import exact
-from eyas.world.build.heights import FLOOR_HEIGHT
-from eyas.world.build.millimetres import rounded, unit
-from eyas.world.buildings.placing import Building
 from eyas.world.maps.downtown.lots import Box, Lot
 from eyas.world.maps.downtown.massing import STOREY
 from eyas.world.maps.downtown.roads import Grid
+from eyas.world.plan.plan import Shell
+from eyas.world.things.skyways import FLOORS_UNDER, Skyway
 
-__all__ = ["Skyway", "make_skyways"]
+__all__ = ["make_skyways"]
 
 _COUNT = 46
 """Number of skyways, if there are so many places."""
@@ -24,8 +21,6 @@ _WIDEST_STREET = 32.0
 """Fronts farther apart than this are not joined [m]."""
 _FROM_CORNER = 5.0
 """From the corners of blocks to the side of a skyway [m]."""
-_FLOORS = 2
-"""Storeys under it."""
 _STEP = 3.0
 """Distance between the places tried along a street [m]."""
 
@@ -35,45 +30,10 @@ _Gap = tuple[Box, int, int, bool]
 south."""
 
 
-@dataclass(frozen=True, slots=True)
-class Skyway:
-    """A bridge from front to front, in the world frame."""
-
-    start: Points
-    """Middle of its end at a front [m], shape (2,)."""
-    end: Points
-    """The same at the front across the street."""
-    width: float
-    """Width [m]."""
-    floors: int
-    """Storeys: 1 is a passage, 2 a part of the buildings that it joins."""
-    facade: str
-    """Its walls."""
-    tint: tuple[float, float, float]
-    """Factor on their colour."""
-
-    @property
-    def bottom(self) -> float:
-        """Height of its underside, as z [m]."""
-        return FLOOR_HEIGHT + STOREY * _FLOORS
-
-    @property
-    def top(self) -> float:
-        """Height of its roof, as z [m]."""
-        return self.bottom + STOREY * self.floors
-
-    def outline(self) -> Points:
-        """Return its corners, counter-clockwise [m], shape (4, 2)."""
-        along = unit(self.end - self.start)
-        aside = 0.5 * self.width * np.array([-along[1], along[0]])
-        corners = [self.start - aside, self.end - aside, self.end + aside, self.start + aside]
-        return rounded(corners)
-
-
 def make_skyways(
     grid: Grid,
     lots: list[Lot],
-    buildings: list[list[Building]],
+    buildings: list[list[Shell]],
     roads: shapely.Geometry,
     keep_free: shapely.Geometry,
     rng: np.random.Generator,
@@ -88,7 +48,7 @@ def make_skyways(
         keep_free: Ground of trees, poles and the railway [m].
         rng: Random numbers of the skyways.
     """
-    high = [parts[0].height >= STOREY * (_FLOORS + 2) for parts in buildings]
+    high = [parts[0].height >= STOREY * (FLOORS_UNDER + 2) for parts in buildings]
     shapely.prepare(keep_free)
     shapely.prepare(roads)
     made: list[Skyway] = []
@@ -146,7 +106,7 @@ def _skyway(
     place: float,
     width: float,
     gap: _Gap,
-    buildings: list[list[Building]],
+    buildings: list[list[Shell]],
     rng: np.random.Generator,
 ) -> Skyway:
     (west, south, east, north), one, other, across = gap

@@ -1,6 +1,5 @@
 """Where the elevated railway runs: through the middle of a column of blocks, over every street."""
 
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -9,43 +8,17 @@ from numpy.typing import NDArray
 
 from eyas.core import exact
 from eyas.state.roads import RoadNetwork
-from eyas.world.build.millimetres import rounded
 from eyas.world.maps.downtown.lots import Box, Lot
 from eyas.world.maps.downtown.roads import Grid
 from eyas.world.roads.areas import road_area
+from eyas.world.things.railway import BESIDE, SECTION, Viaduct
 
-__all__ = [
-    "COLUMNS",
-    "DECK_WIDTH",
-    "RAIL",
-    "SECTION",
-    "STATION",
-    "UNDER",
-    "Viaduct",
-    "cut",
-    "make_viaduct",
-]
-
-UNDER = 5.5
-"""z of the underside: higher than any vehicle [m]."""
-RAIL = 7.35
-"""z of the rails [m]."""
-
-DECK_WIDTH = 9.2
-"""Width of the deck with its girders [m]."""
-SECTION = 12.0
-"""Length of a section of the deck [m]."""
-STATION = 84.0
-"""Length of the platforms [m]."""
-COLUMNS = (-3.6, 3.6)
-"""Places of the columns across the line [m]."""
+__all__ = ["cut", "make_viaduct"]
 
 _COLUMN = 4
 """The column of blocks in whose middle it runs."""
 _STOP = 4
 """The street over which the station lies."""
-_HALF = 9.0
-"""From its middle to the walls beside it [m]."""
 _REACH = 1248.0
 """From the middle of the floor to either end, beyond its edges [m]."""
 _BESIDE_ROAD = 3.2
@@ -56,49 +29,6 @@ _NARROWEST = 8.0
 """Narrower rests of lots that it cuts stay empty [m]."""
 
 Points = NDArray[np.float64]
-
-
-@dataclass(frozen=True, slots=True)
-class Viaduct:
-    """A straight line along the avenues; places are distances along it from its first end [m]."""
-
-    start: Points
-    """Its first end, world frame [m], shape (2,)."""
-    along: Points
-    """Its direction, a unit vector, shape (2,)."""
-    length: float
-    """Length [m]."""
-    bents: Points
-    """Pairs of columns, shape (K,)."""
-    over: Points
-    """Middles of the roads that it crosses, shape (C,)."""
-    station: float
-    """Middle of the station."""
-
-    @property
-    def turn(self) -> float:
-        """Its direction [rad]."""
-        return float(exact.atan2(self.along[1], self.along[0]))
-
-    def at(self, place: float, aside: float = 0.0) -> Points:
-        """Return a point of the line, or to the left of it, in whole millimetres [m]."""
-        across = np.array([-self.along[1], self.along[0]])
-        return rounded(self.start + place * self.along + aside * across)
-
-    def strip(self, low: float, high: float, right: float, left: float) -> Points:
-        """Return the corners of a rectangle along it, counter-clockwise [m], shape (4, 2)."""
-        sides = ((low, right), (high, right), (high, left), (low, left))
-        return np.array([self.at(place, aside) for place, aside in sides])
-
-    @property
-    def ground(self) -> shapely.Polygon:
-        """The ground between the walls beside it [m]."""
-        return shapely.Polygon(self.strip(0.0, self.length, -_HALF, _HALF))
-
-    @property
-    def feet(self) -> Points:
-        """The columns [m], shape (2 K, 2)."""
-        return np.array([self.at(b, side) for b in self.bents.tolist() for side in COLUMNS])
 
 
 def make_viaduct(network: RoadNetwork, grid: Grid) -> Viaduct:
@@ -140,7 +70,7 @@ def _middle(grid: Grid) -> float:
 
 def cut(lots: list[Lot], grid: Grid) -> list[Lot]:
     """Return lots without the ground of the railway: what it crosses becomes two lots or one."""
-    low, high = _middle(grid) - _HALF, _middle(grid) + _HALF
+    low, high = _middle(grid) - BESIDE, _middle(grid) + BESIDE
     made: list[Lot] = []
     for lot in lots:
         west, south, east, north = lot.box

@@ -4,21 +4,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from eyas.world.maps.recipe import MapRecipe, Original
-from eyas.world.weather import (
-    CLEAR_DAY,
-    CLEAR_NIGHT,
-    DAY,
-    FOG,
-    FOGGY,
-    NIGHT,
-    SNOW,
-    WINTER_DAY,
-    Season,
-)
+from eyas.world.weather import Weather, in_fog, unchanged
 
 if TYPE_CHECKING:
     from eyas.state.roads import RoadGraph, RoadNetwork
-    from eyas.state.scene import Scene
+    from eyas.world.plan.plan import MapPlan
 
 __all__ = ["FARMLAND", "FARMLAND_BARE"]
 
@@ -34,36 +24,39 @@ def _roads(seed: int) -> "RoadGraph":
     return road_graph(seed)
 
 
-def _scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
-    from eyas.world.maps.farmland.scene import build_scene
+def _plan(network: "RoadNetwork", seed: int) -> "MapPlan":
+    from eyas.world.maps.farmland.plan import make_plan
 
-    return build_scene(network, seed, season)
+    return make_plan(network, seed)
 
 
-def _bare_scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
-    from eyas.world.maps.bare import build_bare_scene
-    from eyas.world.maps.farmland.scene import FLOOR, MOUNTAINS, SOIL
+def _weather(weather: Weather) -> Weather:
+    day = replace(weather.day, lamps=max(weather.day.lamps, _BY_DAY))
+    # Under its black sky, the original's farmland keeps half of the day's light.
+    night = replace(
+        weather.night,
+        sun_colour=(0.16, 0.17, 0.19),
+        ambient_up=(0.115, 0.12, 0.14),
+        ambient_down=(0.056, 0.052, 0.046),
+    )
+    if not day.foggy:
+        day = replace(day, fog_density=_CLEAR)
+    return replace(weather, day=in_fog(day, 400.0), night=in_fog(night, 400.0))
 
-    return build_bare_scene("farmland-bare", network, seed, FLOOR, SOIL, MOUNTAINS)
+
+def _bare_plan(network: "RoadNetwork", seed: int) -> "MapPlan":
+    from eyas.world.maps.bare import make_plan
+    from eyas.world.maps.farmland.plan import FLOOR, MOUNTAINS, SOIL
+
+    return make_plan("farmland-bare", network, seed, FLOOR, SOIL, MOUNTAINS)
 
 
 FARMLAND = MapRecipe(
     name="farmland",
     title="A patchwork of fields in four colours",
     roads=_roads,
-    scene=_scene,
-    lighting={
-        DAY: replace(CLEAR_DAY, lamps=_BY_DAY, fog_density=_CLEAR),
-        FOGGY: replace(FOG, fog_density=1.0 / 400.0, lamps=_BY_DAY),
-        # Under its black sky, the original's farmland keeps half of the day's light.
-        NIGHT: replace(
-            CLEAR_NIGHT,
-            sun_colour=(0.16, 0.17, 0.19),
-            ambient_up=(0.115, 0.12, 0.14),
-            ambient_down=(0.056, 0.052, 0.046),
-        ),
-        SNOW: replace(WINTER_DAY, lamps=_BY_DAY, fog_density=_CLEAR),
-    },
+    plan=_plan,
+    weather=_weather,
     seasons=True,
     package=__name__,
     original=Original(road=4.43),
@@ -73,8 +66,9 @@ FARMLAND_BARE = replace(
     FARMLAND,
     name="farmland-bare",
     title="The roads of the farmland on bare soil, without scenery",
-    scene=_bare_scene,
-    lighting={DAY: CLEAR_DAY},
+    plan=_bare_plan,
+    weather=unchanged,
+    without=("foggy", "night", "snow"),
     seasons=False,
     original=Original(road=4.45),
 )

@@ -6,18 +6,13 @@ from itertools import pairwise
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
-from eyas.mesh.assembly import concatenate
-from eyas.mesh.flat import quads
-from eyas.state.mesh import Material, Mesh
-from eyas.world.build.heights import FLOOR_HEIGHT
-from eyas.world.build.materials import TEXTURES, material, without_snow
+from eyas.state.mesh import Material
+from eyas.world.build.materials import material, without_snow
 from eyas.world.maps.farmland.roads import ROAD_WIDTH
-from eyas.world.roads.areas import GRID, skirt, surface
 from eyas.world.weather import Season
 
-__all__ = ["CROPS", "SIDE", "VERGE", "Crop", "Field", "field_mesh", "lay_out"]
+__all__ = ["CROPS", "SIDE", "VERGE", "Crop", "Lot", "lay_out"]
 
 SIDE = 80.0
 """Largest side of a field [m]."""
@@ -25,15 +20,6 @@ VERGE = 1.6
 """Soil between a road and a field, and the least between two fields [m]."""
 _FEWEST = 64.0
 """A strip between roads gets another row of fields when each keeps at least this side [m]."""
-
-_TRAMLINES = 20.0
-"""From one pair of wheel tracks in a crop to the next [m]."""
-_TRACK, _GAUGE = 0.45, 1.8
-"""Width of a wheel track, and from its middle to that of the other [m]."""
-_HEADLAND = 5.0
-"""From the edge of a field to the ends of its tracks [m]."""
-_ABOVE = 0.02
-"""Height of the tracks above the crop, so that they never flicker [m]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +58,7 @@ CROPS = (
 
 
 @dataclass(frozen=True, slots=True)
-class Field:
+class Lot:
     """A rectangular field."""
 
     area: shapely.Polygon
@@ -85,7 +71,7 @@ class Field:
     """Factor on its colour, near 1."""
 
 
-def lay_out(x: Sequence[float], y: Sequence[float], rng: np.random.Generator) -> list[Field]:
+def lay_out(x: Sequence[float], y: Sequence[float], rng: np.random.Generator) -> list[Lot]:
     """Return the fields in the cells and in a ring around them; neighbours differ.
 
     Args:
@@ -94,7 +80,7 @@ def lay_out(x: Sequence[float], y: Sequence[float], rng: np.random.Generator) ->
         rng: Random numbers of the fields.
     """
     columns, rows = _spans(x), _spans(y)
-    made: list[Field] = []
+    made: list[Lot] = []
     kinds = np.full((len(columns) + 1, len(rows) + 1), -1)
     for i, (west, east) in enumerate(columns):
         for j, (south, north) in enumerate(rows):
@@ -102,7 +88,7 @@ def lay_out(x: Sequence[float], y: Sequence[float], rng: np.random.Generator) ->
             odds[[kind for kind in (kinds[i - 1, j], kinds[i, j - 1]) if kind >= 0]] *= 0.06
             kinds[i, j] = rng.choice(len(CROPS), p=odds / odds.sum())
             made.append(
-                Field(
+                Lot(
                     shapely.box(west, south, east, north),
                     int(kinds[i, j]),
                     bool(rng.integers(2)),
@@ -124,47 +110,3 @@ def _spans(roads: Sequence[float]) -> list[tuple[float, float]]:
         spans += [(start + k * (side + gap), start + k * (side + gap) + side) for k in range(count)]
     spans.append((roads[-1] + beside, roads[-1] + beside + SIDE))
     return [(round(low, 3), round(high, 3)) for low, high in spans]
-
-
-def field_mesh(field: Field, season: Season) -> Mesh:
-    """Return a field: the crop, its edges, and the tracks of the tractor through it."""
-    crop = CROPS[field.crop]
-    look = crop.look(season)
-    red, green, blue = (field.shade * part for part in look.tint)
-    cover = Material(look.texture, (red, green, blue), look.surface)
-    tile = TEXTURES[cover.texture]
-    top = surface(field.area, crop.height, cover, tile, np.pi / 2 if field.north else 0.0)
-    # Into the soil, so that no crack shows between the two.
-    edge = skirt(field.area, FLOOR_HEIGHT - 0.05, crop.height, cover, tile)
-    return concatenate([_tracks(field, season), top, edge])
-
-
-def _tracks(field: Field, season: Season) -> Mesh:
-    """Return the wheel tracks of a field, cut along the grid."""
-    west, south, east, north = field.area.bounds
-    low, high, first, last = (
-        (south, north, west, east) if field.north else (west, east, south, north)
-    )
-    middle = np.arange(first + _TRAMLINES / 2, last - _HEADLAND, _TRAMLINES)
-    lines = np.concatenate([middle - _GAUGE / 2, middle + _GAUGE / 2])
-    steps = int(np.ceil((high - low) / GRID))
-    cuts = np.linspace(low + _HEADLAND, high - _HEADLAND, steps + 1)
-    across, along = np.meshgrid(lines, np.arange(steps), indexing="ij")
-    corners = _strips(across.ravel(), cuts[along.ravel()], cuts[along.ravel() + 1])
-    if not field.north:
-        corners = corners[:, ::-1, ::-1]
-    z = np.full((*corners.shape[:2], 1), CROPS[field.crop].height + _ABOVE)
-    soil = material("soil", (0.95, 0.84, 0.62))
-    worn = soil if season is Season.SUMMER else material("soil", (0.9, 0.84, 0.7))
-    uvs = corners / TEXTURES["soil"]
-    return quads(np.concatenate([corners, z], axis=2), uvs, worn)
-
-
-def _strips(
-    middle: NDArray[np.float64], low: NDArray[np.float64], high: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Return the corners of strips along y, counter-clockwise, shape (K, 4, 2) [m]."""
-    left, right = middle - _TRACK / 2, middle + _TRACK / 2
-    x = np.stack([left, right, right, left], axis=1)
-    y = np.stack([low, low, high, high], axis=1)
-    return np.stack([x, y], axis=2)

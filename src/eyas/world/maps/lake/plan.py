@@ -1,199 +1,177 @@
-"""Plan of the lake district: what each block holds, the lakes, the houses."""
+"""The plan of the lake district."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.core.rng import stream
+from eyas.state.mesh import Material, Surface
 from eyas.state.roads import RoadNetwork
-from eyas.world.build.heights import FLOOR_HEIGHT
-from eyas.world.build.materials import FACADES, material
-from eyas.world.build.millimetres import rounded, unit
-from eyas.world.buildings.placing import Building
-from eyas.world.land.plain import blob
-from eyas.world.maps.lake.roads import COLUMNS, ROWS, Lattice, lattice
-from eyas.world.plants.forest import SPECIES
-from eyas.world.roads.areas import blocks, road_area, streets
-from eyas.world.street.car_parks import CarPark, place_car_parks
+from eyas.state.scene import ObjectClass
+from eyas.world.build.heights import FLOOR_HEIGHT, KERB_HEIGHT
+from eyas.world.build.materials import material
+from eyas.world.build.placed import Placed
+from eyas.world.land import ground
+from eyas.world.maps.lake.layout import EXTENT, FLOOR, MIXED, Layout, Strip, lay_out
+from eyas.world.maps.lake.roads import NAME
+from eyas.world.plan.library import CAR_KINDS, STREET_KINDS
+from eyas.world.plan.plan import (
+    Building,
+    Buildings,
+    Chance,
+    Far,
+    Flat,
+    Ground,
+    Kind,
+    Layer,
+    MapPlan,
+    Paint,
+    Streets,
+    state_of,
+    things,
+)
+from eyas.world.plants.forest import SPECIES, STAND
+from eyas.world.street.lamps import lamps_along
+from eyas.world.street.parked_cars import CARS
 
-__all__ = ["EXTENT", "FLOOR", "Plan", "Strip", "make_plan"]
+__all__ = ["make_plan"]
 
-FLOOR = (5000.0, 5000.0)
-"""Extent of the floor, as in the original [m]."""
-EXTENT = shapely.box(-FLOOR[0] / 2, -FLOOR[1] / 2, FLOOR[0] / 2, FLOOR[1] / 2)
-
-MIXED = len(SPECIES)
-"""Number of the strip with trees of all kinds."""
-
-_POND_WIDTH, _POND_LENGTH = 35.0, (150.0, 180.0)
-_ODD_PONDS = ((60.0, 35.0), (70.0, 90.0), (110.0, 60.0), (160.0, 70.0))
-"""Width and length of the ponds outside the grid [m]."""
-_STRIP, _WIDE_STRIP = (40.0, 190.0), (80.0, 180.0)
-_LAKES = ((-1030.0, -420.0, 252.0), (-960.0, 700.0, 288.0), (-330.0, -1180.0, 314.0),
-          (690.0, -1150.0, 329.0), (1830.0, 260.0, 769.0))  # fmt: skip
-"""Middle and mean radius of the five lakes: 0.20 to 1.86 km^2, as in the original [m]."""
-_HOUSES = 50
-_CAR_PARKS = ((185.0, 51.0),)
-
-Points = NDArray[np.float64]
-
-
-@dataclass(frozen=True, slots=True)
-class Strip:
-    """A strip of forest."""
-
-    area: shapely.Polygon
-    """[m]"""
-    kind: int
-    """Index into `SPECIES`, or `MIXED`."""
-
-
-@dataclass(frozen=True, slots=True)
-class Plan:
-    """Positions in plan view."""
-
-    roads: shapely.Geometry
-    """Asphalt of the roads [m]."""
-    ponds: list[shapely.Polygon]
-    """[m]"""
-    lakes: list[shapely.Polygon]
-    """[m]"""
-    strips: list[Strip]
-    car_parks: list[CarPark]
-    houses: list[Building]
+_SOIL = material("soil", (0.97, 0.95, 0.95))
+_DAMP = material("soil", (0.74, 0.70, 0.66))
+_SHORE = material("sand", (0.86, 0.84, 0.80))
+_WATER = Material("water", (0.38, 0.59, 0.85), Surface.WATER)
+_LEAVES = material("dry_leaves")
+_KERB = material("stone", (1.0, 0.92, 0.85))
+_APRON = material("concrete", (0.92, 0.90, 0.88))
+_KERB_WIDTH = 0.8
+_BANK, _BEACH = 1.4, 7.0
+"""Width of the damp ground around ponds and of the shores of lakes [m]."""
+_NEAR = 90.0
+"""Reach of the ground that is cut into small squares beside a road [m]."""
+_LAMPS = 48
+_ZEBRAS_EVERY = 4
+"""One stop line in so many has a crossing."""
+_STANDS = 3
+"""Different stands of each kind of tree."""
+_OCCUPIED = 0.45
 
 
-def make_plan(network: RoadNetwork, seed: int) -> Plan:
-    """Return the plan.
+def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
+    """Return the plan of the lake district.
 
     Args:
         network: Made of `road_graph(seed)`.
         seed: Seed of the map, >= 0.
     """
-    roads, grid, rng = road_area(network), lattice(seed), stream(seed, "lake blocks")
-    cells = _cells(grid)
-    pairs = [cell for cell in cells if cell not in (grid.double, _beside(grid.double))]
-    chosen = _regular(pairs)
-    strips = [
-        Strip(_rectangle(_middle(grid, cell), _STRIP), kind)
-        for kind, cell in enumerate(sorted(chosen))
-    ]
-    both = (_middle(grid, grid.double) + _middle(grid, _beside(grid.double))) / 2
-    strips.append(Strip(_rectangle(both, _WIDE_STRIP), MIXED))
-    free = [cell for cell in pairs if cell not in chosen]
-    spared = {free[int(k)] for k in rng.permutation(len(free))[: len(free) - 21]}
-    ponds = [
-        _rectangle(_middle(grid, cell), (_POND_WIDTH, float(round(rng.uniform(*_POND_LENGTH)))))
-        for cell in free
-        if cell not in spared
-    ]
-    lakes = [blob(np.array([x, y]), radius, rng) for x, y, radius in _LAKES]
-    closed, _ = blocks(roads, EXTENT)
-    covered = shapely.union_all([*ponds, *lakes, *(strip.area for strip in strips)])
-    parks = place_car_parks(closed, _CAR_PARKS, rng, covered)
-    covered = shapely.union_all([covered, *(park.area for park in parks)])
-    ponds += _odd_ponds(closed, covered, rng)
-    covered = shapely.union_all([covered, *ponds])
-    taken = shapely.union(shapely.buffer(covered, 4.0), shapely.buffer(roads, 4.2))
-    houses = _houses(network, taken, stream(seed, "lake houses"))
-    return Plan(roads, ponds, lakes, strips, parks, houses)
-
-
-def _cells(grid: Lattice) -> list[tuple[int, int]]:
-    return [(i, j) for i in range(COLUMNS) for j in range(ROWS)]
-
-
-def _beside(cell: tuple[int, int]) -> tuple[int, int]:
-    return cell[0] + 1, cell[1]
-
-
-def _regular(cells: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
-    """Return every fourth or fifth block, one for each kind of tree."""
-    count = len(SPECIES)
-    return [cells[(2 * k + 1) * len(cells) // (2 * count)] for k in range(count)]
-
-
-def _middle(grid: Lattice, cell: tuple[int, int]) -> Points:
-    i, j = cell
-    return np.array([grid.x[i : i + 2].mean(), grid.y[j : j + 2].mean()])
-
-
-def _rectangle(middle: Points, size: tuple[float, float]) -> shapely.Polygon:
-    (x, y), (width, length) = rounded(middle), size
-    return shapely.box(x - width / 2, y - length / 2, x + width / 2, y + length / 2)
-
-
-def _odd_ponds(
-    grounds: Sequence[shapely.Polygon], taken: shapely.Geometry, rng: np.random.Generator
-) -> list[shapely.Polygon]:
-    """Return the ponds in the large blocks outside the grid."""
-    large = sorted(grounds, key=shapely.area)[-8:]
-    room = shapely.difference(
-        shapely.union_all([shapely.buffer(block, -14.0) for block in large]),
-        shapely.buffer(taken, 12.0),
-    )
-    made: list[shapely.Polygon] = []
-    west, south, east, north = room.bounds
-    for size in _ODD_PONDS:
-        for _ in range(300):
-            pond = _rectangle(rng.uniform((west, south), (east, north)), size)
-            if room.contains(pond) and not any(pond.distance(one) < 40.0 for one in made):
-                made.append(pond)
-                break
-    return made
-
-
-def _houses(
-    network: RoadNetwork, taken: shapely.Geometry, rng: np.random.Generator
-) -> list[Building]:
-    """Return houses beside roads, most of them along the diagonal main road."""
-    sites = []
-    for street in streets(network):
-        kerb = shapely.LineString(street.right)
-        for along in np.arange(18.0, kerb.length - 18.0, 27.0):
-            here, there = (
-                shapely.get_coordinates(kerb.interpolate(s))[0] for s in (along, along + 1)
-            )
-            far = abs(here[0] - here[1] - 330.0) + 300.0 * rng.random() - 0.4 * here[1]
-            sites.append((far, here, unit(there - here)))
-    made: list[Building] = []
-    shapely.prepare(taken)
-    shapes: list[shapely.Polygon] = []
-    for _, here, onwards in sorted(sites, key=lambda site: float(site[0])):
-        outline = _footprint(here, onwards, rng)
-        shape = shapely.Polygon(outline)
-        free = not taken.intersects(shape) and all(shape.distance(other) > 7.0 for other in shapes)
-        if free and len(made) < _HOUSES:
-            shapes.append(shape)
-            made.append(_house(outline, rng))
-    return made
-
-
-def _footprint(here: Points, onwards: Points, rng: np.random.Generator) -> Points:
-    """Return the corners of a house on the right of a road, counter-clockwise [m]."""
-    wide, deep = rng.uniform(11.0, 24.0), rng.uniform(10.0, 16.0)
-    right = np.array([onwards[1], -onwards[0]])
-    front = here + rng.uniform(4.5, 9.0) * right
-    half = wide / 2 * onwards
-    return rounded(
-        [front - half, front - half + deep * right, front + half + deep * right, front + half]
-    )
-
-
-def _house(outline: Points, rng: np.random.Generator) -> Building:
-    sloping = bool(rng.random() < 0.6)
-    light = float(rng.uniform(0.82, 1.0))
-    return Building(
-        footprint=outline,
-        bottom=FLOOR_HEIGHT,
-        height=float(
-            rng.choice([6.0, 9.0, 9.0, 9.0, 12.0, 18.0], p=[0.2, 0.25, 0.2, 0.2, 0.1, 0.05])
+    district = lay_out(network, seed)
+    rng = stream(seed, "lake forests")
+    forests = [stand for strip in district.strips for stand in _stands(strip, rng)]
+    kinds = [kind for strip in district.strips for kind in _kinds(strip)]
+    water = shapely.union_all([*district.ponds, *(strip.area for strip in district.strips)])
+    built = shapely.union_all([house.outline for house in district.houses])
+    parks = (park.area for park in district.car_parks)
+    taken = shapely.union_all([district.roads, water, built, *parks])
+    return MapPlan(
+        name=NAME,
+        seed=seed,
+        size=FLOOR,
+        library=(*kinds, *CAR_KINDS, *STREET_KINDS),
+        chances={"forests": state_of(rng)},
+        layers=(
+            Buildings(items=tuple(Building(parts=(house,)) for house in district.houses)),
+            *_roads(district),
+            *_ground(district),
+            things(forests, [kind.name for kind in kinds]),
+            things(_parked(district, stream(seed, "lake parked cars")), CARS),
+            things(lamps_along(network, _LAMPS, taken, stream(seed, "lake lamps"))),
         ),
-        facade=FACADES[int(rng.choice([1, 2, 3, 7, 9]))],
-        tint=(light, 0.98 * light, 0.95 * light),
-        roof="pyramid" if sloping else "flat",
-        roof_material=material("roof_tiles" if sloping else "roof_terrace", (light, light, light)),
+        near=shapely.buffer(district.roads, _NEAR, quad_segs=2),
     )
+
+
+def _roads(district: Layout) -> list[Layer]:
+    """Return the roads with their kerbs, and the car parks."""
+    bays = tuple(line for park in district.car_parks for line in park.lines)
+    kerbs = Flat(area=_kerbs(district), z=KERB_HEIGHT, cover=_KERB, sides=_KERB)
+    return [
+        Streets(
+            area=district.roads,
+            paint=Paint(crossings=_ZEBRAS_EVERY, shapes=bays),
+            wear=Chance(stream="lake road wear"),
+            apart=2.0,
+        ),
+        Ground(kind=ObjectClass.ROAD, pieces=(ground.asphalt(_lots(district), light=True),)),
+        Ground(kind=ObjectClass.PAVEMENT, pieces=(kerbs,)),
+    ]
+
+
+def _lots(district: Layout) -> shapely.Geometry:
+    areas = shapely.union_all([park.area for park in district.car_parks])
+    return shapely.difference(areas, district.roads)
+
+
+def _kerbs(district: Layout) -> shapely.Geometry:
+    beside = shapely.buffer(district.roads, _KERB_WIDTH, join_style="mitre")
+    return shapely.difference(beside, shapely.union(district.roads, _lots(district)))
+
+
+def _ground(district: Layout) -> list[Layer]:
+    """Return water with its shores, the floors of the forests, the feet of houses, the soil."""
+    paved = shapely.union_all([district.roads, _lots(district), _kerbs(district)])
+    water = [*district.ponds, *district.lakes]
+    covered = shapely.union_all([paved, *water])
+    pieces = []
+    for areas, width, cover in ((district.ponds, _BANK, _DAMP), (district.lakes, _BEACH, _SHORE)):
+        shore = shapely.union_all([shapely.buffer(area, width, quad_segs=3) for area in areas])
+        shore = shapely.difference(shore, covered)
+        pieces.append(_wide(shore, cover))
+        covered = shapely.union(covered, shore)
+    floors = shapely.union_all([shapely.buffer(strip.area, 1.0) for strip in district.strips])
+    feet = [shapely.buffer(house.outline, 1.3, join_style="mitre") for house in district.houses]
+    aprons = shapely.difference(shapely.union_all(feet), covered)
+    covered = shapely.union_all([covered, floors, aprons])
+    pieces += [
+        _wide(floors, _LEAVES),
+        Flat(area=aprons, cover=_APRON, cells="whole"),
+        _wide(shapely.difference(EXTENT, covered), _SOIL),
+    ]
+    far = Far(rule="plain", covers=(_SOIL,))
+    wet = tuple(_wide(area, _WATER) for area in water)
+    return [Ground(kind=ObjectClass.WATER, pieces=wet), Ground(pieces=(*pieces, far))]
+
+
+def _wide(area: shapely.Geometry, cover: Material) -> Flat:
+    return Flat(area=area, cover=cover, cells="wide")
+
+
+def _kinds(strip: Strip) -> list[Kind]:
+    """Return the stands of a strip of forest."""
+    name = "mixed" if strip.kind == MIXED else SPECIES[strip.kind].name
+    return [
+        Kind(name=f"{name} {k}", make="stand", variant=strip.kind, chance="forests")
+        for k in range(_STANDS)
+    ]
+
+
+def _stands(strip: Strip, rng: np.random.Generator) -> list[Placed]:
+    """Return the stands that fill a strip of forest."""
+    kinds, made = _kinds(strip), []
+    west, south, east, north = strip.area.bounds
+    for x in np.arange(west + STAND / 2, east, STAND).tolist():
+        for y in np.arange(south + STAND / 2, north, STAND).tolist():
+            stand = kinds[int(rng.integers(_STANDS))].name
+            turn = np.pi / 2 * float(rng.integers(4))
+            made.append(Placed(stand, x, y, FLOOR_HEIGHT, turn, rng.uniform(0.94, 1.06)))
+    return made
+
+
+def _parked(district: Layout, rng: np.random.Generator) -> Sequence[Placed]:
+    made = []
+    for park in district.car_parks:
+        for x, y, turn in park.bays.tolist():
+            if rng.random() < _OCCUPIED:
+                way = turn + np.pi * float(rng.random() < 0.35) + exact.normal(rng, 0, 0.015)
+                made.append(Placed(CARS[int(rng.integers(len(CARS)))], x, y, 0.0, way))
+    return made

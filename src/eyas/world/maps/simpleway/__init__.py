@@ -4,42 +4,31 @@ All have the same roads, and share the network and the recordings in this packag
 included there are 24 of them: the original's 23, and the lawn in snow.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
-from eyas.state.lighting import Lighting
-from eyas.world.maps.desert.air import DESERT_DAY, DESERT_FOG, DESERT_NIGHT, DESERT_WINTER
+from eyas.world.maps.desert.air import desert_weather
 from eyas.world.maps.recipe import MapRecipe, Original
-from eyas.world.weather import (
-    CLEAR_DAY,
-    CLEAR_NIGHT,
-    DAY,
-    FOG,
-    FOGGY,
-    NIGHT,
-    SNOW,
-    WINTER_DAY,
-    Season,
-    Weather,
-)
+from eyas.world.weather import Weather, in_fog
 
 if TYPE_CHECKING:
     from eyas.state.roads import RoadGraph, RoadNetwork
-    from eyas.state.scene import Scene
+    from eyas.world.plan.plan import MapPlan
 
 __all__ = ["CITY", "CLINKER", "DESERT", "FARM", "GRASS", "LAKE", "VILLAGE"]
 
-_FOG = replace(FOG, fog_density=1.0 / 400.0)
-# The winter scene is white itself and, as in the original, roads stay black.
-_WINTER = replace(WINTER_DAY, snow=0.0)
-_ALL = {DAY: CLEAR_DAY, FOGGY: _FOG, NIGHT: CLEAR_NIGHT, SNOW: _WINTER}
 
-_DESERT = {DAY: DESERT_DAY, FOGGY: DESERT_FOG, NIGHT: DESERT_NIGHT, SNOW: DESERT_WINTER}
+def _weather(weather: Weather, visibility: float = 400.0) -> Weather:
+    # The winter scene is white itself and, as in the original, roads stay black.
+    return weather.each(lambda light: replace(in_fog(light, visibility), snow=0.0))
 
-_PURPLE_NIGHT = replace(
-    CLEAR_NIGHT, zenith_colour=(0.018, 0.015, 0.028), horizon_colour=(0.042, 0.036, 0.057)
-)
+
+def _purple_by_night(weather: Weather) -> Weather:
+    purple, glow = (0.018, 0.015, 0.028), (0.042, 0.036, 0.057)
+    night = replace(weather.night, zenith_colour=purple, horizon_colour=glow)
+    return _weather(replace(weather, night=night))
 
 
 def _roads(seed: int) -> "RoadGraph":
@@ -49,40 +38,43 @@ def _roads(seed: int) -> "RoadGraph":
 
 
 def _skinned(
-    skin: str, title: str, lighting: Mapping[Weather, Lighting], *, seasons: bool = False
+    skin: str,
+    title: str,
+    weather: Callable[[Weather], Weather] = _weather,
+    *,
+    seasons: bool = True,
+    without: tuple[str, ...] = (),
 ) -> MapRecipe:
     """Return the simple map with one kind of ground."""
 
-    def scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
-        from eyas.world.maps.simpleway.scene import build_scene
+    def plan(network: "RoadNetwork", seed: int) -> "MapPlan":
+        from eyas.world.maps.simpleway.plan import make_plan
 
-        return build_scene(skin, network, seed, season)
+        return make_plan(skin, network, seed)
 
     return MapRecipe(
         name=f"simpleway-{skin}",
         title=title,
         roads=_roads,
-        scene=scene,
-        lighting=lighting,
+        plan=plan,
+        weather=weather,
+        without=without,
         seasons=seasons,
         package=__name__,
         original=Original(road=48.1),
     )
 
 
-GRASS = _skinned(
-    "grass",
-    "Straight roads on a lawn",
-    {**_ALL, FOGGY: replace(FOG, fog_density=1.0 / 500.0)},
-    seasons=True,
-)
+GRASS = _skinned("grass", "Straight roads on a lawn", partial(_weather, visibility=500.0))
 CLINKER = _skinned(
     "clinker",
     "Straight roads on a grey plain",
-    {DAY: CLEAR_DAY, FOGGY: _FOG, NIGHT: _PURPLE_NIGHT},
+    _purple_by_night,
+    seasons=False,
+    without=("snow",),
 )
-DESERT = _skinned("desert", "Straight roads under bars of sand", _DESERT, seasons=True)
-FARM = _skinned("farm", "Straight roads between coloured strips", _ALL, seasons=True)
-LAKE = _skinned("lake", "Straight roads between strips of water", _ALL, seasons=True)
-VILLAGE = _skinned("village", "Straight roads on a green plain", _ALL, seasons=True)
-CITY = _skinned("city", "Straight roads on a white plain", {SNOW: _WINTER}, seasons=True)
+DESERT = _skinned("desert", "Straight roads under bars of sand", desert_weather)
+FARM = _skinned("farm", "Straight roads between coloured strips")
+LAKE = _skinned("lake", "Straight roads between strips of water")
+VILLAGE = _skinned("village", "Straight roads on a green plain")
+CITY = _skinned("city", "Straight roads on a white plain", without=("day", "foggy", "night"))

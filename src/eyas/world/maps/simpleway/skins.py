@@ -11,7 +11,6 @@ from eyas.state.lighting import Horizon
 from eyas.state.mesh import Material, Surface
 from eyas.world.build.materials import material, without_snow
 from eyas.world.build.millimetres import rounded
-from eyas.world.weather import Season
 
 __all__ = ["SKINS", "Patch", "Skin"]
 
@@ -35,6 +34,8 @@ class Patch:
     area: shapely.Geometry
     """[m]"""
     cover: Material
+    in_winter: bool = False
+    """Whether it is there only in winter."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,8 +45,8 @@ class Skin:
     ground: Material
     tints: tuple[tuple[float, float, float], ...] = ((0.93, 0.93, 0.93), (0.96, 0.94, 0.9))
     """Factors on its colour in patches."""
-    patches: Callable[[Points, Season, np.random.Generator], list[Patch]] = field(
-        default=lambda lines, season, rng: []
+    patches: Callable[[Points, np.random.Generator], list[Patch]] = field(
+        default=lambda lines, rng: []
     )
     """Returns what else lies between the roads, given their ends."""
     winter: Material = field(default_factory=lambda: material("snow"))
@@ -93,7 +94,7 @@ def _column(lines: Points, index: int, margins: tuple[float, float]) -> shapely.
     )
 
 
-def _farm_strips(lines: Points, season: Season, rng: np.random.Generator) -> list[Patch]:
+def _farm_strips(lines: Points, rng: np.random.Generator) -> list[Patch]:
     covers = [_STRIPS[int(k)] for k in rng.permutation(len(_STRIPS))]
     sides = rng.uniform(*_FROM_ROAD, (len(covers), 2))
     return [
@@ -102,7 +103,7 @@ def _farm_strips(lines: Points, season: Season, rng: np.random.Generator) -> lis
     ]
 
 
-def _lake_strips(lines: Points, season: Season, rng: np.random.Generator) -> list[Patch]:
+def _lake_strips(lines: Points, rng: np.random.Generator) -> list[Patch]:
     """Return water in every other column."""
     made = []
     for index in range(0, len(lines) + 1, 2):
@@ -111,9 +112,8 @@ def _lake_strips(lines: Points, season: Season, rng: np.random.Generator) -> lis
     return made
 
 
-def _white_squares(lines: Points, season: Season, rng: np.random.Generator) -> list[Patch]:
-    if season is Season.SUMMER:
-        return []
+def _white_squares(lines: Points, rng: np.random.Generator) -> list[Patch]:
+    """Return squares that are white in winter."""
     snow = material("snow")
     rows = np.linspace(-1200.0, 1200.0, _SQUARE_ROWS)
     sites = rng.permutation((len(lines) - 1) * _SQUARE_ROWS)[:_SQUARES]
@@ -122,7 +122,8 @@ def _white_squares(lines: Points, season: Season, rng: np.random.Generator) -> l
         column, row = divmod(int(site), _SQUARE_ROWS)
         middle = lines[column : column + 2, :, 0].mean() + rng.uniform(-22.0, 22.0)
         west, south = rounded([middle - _SQUARE / 2, rows[row] - _SQUARE / 2])
-        made.append(Patch(shapely.box(west, south, west + _SQUARE, south + _SQUARE), snow))
+        square = shapely.box(west, south, west + _SQUARE, south + _SQUARE)
+        made.append(Patch(square, snow, in_winter=True))
     return made
 
 

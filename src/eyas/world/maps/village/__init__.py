@@ -4,12 +4,11 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from eyas.world.maps.recipe import MapRecipe, Original
-from eyas.world.maps.village.air import VILLAGE_FOG, VILLAGE_NIGHT
-from eyas.world.weather import CLEAR_DAY, DAY, FOGGY, NIGHT, SNOW, WINTER_DAY, Season
+from eyas.world.weather import CLEAR_DAY, CLEAR_NIGHT, FOG, Weather, in_fog, unchanged
 
 if TYPE_CHECKING:
     from eyas.state.roads import RoadGraph, RoadNetwork
-    from eyas.state.scene import Scene
+    from eyas.world.plan.plan import MapPlan
 
 __all__ = ["VILLAGE", "VILLAGE_BARE"]
 
@@ -20,31 +19,59 @@ def _roads(seed: int) -> "RoadGraph":
     return road_graph(seed)
 
 
-def _scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
-    """Build the village; in winter it is the same, and the weather's light adds the snow."""
-    from eyas.world.maps.village.scene import build_scene
+def _plan(network: "RoadNetwork", seed: int) -> "MapPlan":
+    from eyas.world.maps.village.plan import make_plan
 
-    return build_scene(network, seed)
+    return make_plan(network, seed)
 
 
-def _bare_scene(network: "RoadNetwork", seed: int, season: Season) -> "Scene":
-    from eyas.world.maps.bare import build_bare_scene
+def _bare_plan(network: "RoadNetwork", seed: int) -> "MapPlan":
+    from eyas.world.maps.bare import make_plan
+    from eyas.world.maps.village.layout import FLOOR
     from eyas.world.maps.village.looks import GRASS
-    from eyas.world.maps.village.plan import FLOOR
-    from eyas.world.maps.village.scene import VALLEY
-    from eyas.world.roads import markings
+    from eyas.world.maps.village.plan import VALLEY
 
-    return build_bare_scene(
-        "village-bare", network, seed, FLOOR, GRASS, VALLEY, markings.Centre.DOUBLE_YELLOW
-    )
+    return make_plan("village-bare", network, seed, FLOOR, GRASS, VALLEY, "double yellow")
+
+
+# Haze that fills the valley to the original's visibility range, below a sky that stays blue: the
+# sun still casts shadows.
+_HAZE = replace(
+    CLEAR_DAY,
+    sun_colour=(0.55, 0.53, 0.48),
+    zenith_colour=(0.22, 0.34, 0.56),
+    horizon_colour=(0.80, 0.84, 0.88),
+    ambient_up=(0.44, 0.47, 0.51),
+    ambient_down=(0.20, 0.21, 0.18),
+    fog_colour=(0.74, 0.78, 0.81),
+    fog_density=1.0 / 400.0,
+    foggy=True,
+    clouds=0.45,
+)
+
+# Darker than in a city, and greenish as under the lights of a stadium.
+_DARK = replace(
+    CLEAR_NIGHT,
+    sun_colour=(0.062, 0.070, 0.074),
+    ambient_up=(0.050, 0.059, 0.058),
+    ambient_down=(0.022, 0.026, 0.022),
+    horizon_colour=(0.016, 0.019, 0.022),
+    fog_colour=(0.016, 0.019, 0.022),
+)
+
+_SKIES = {FOG: _HAZE, CLEAR_NIGHT: _DARK}
+
+
+def _weather(weather: Weather) -> Weather:
+    return weather.each(lambda light: _SKIES.get(light) or in_fog(light, 400.0))
 
 
 VILLAGE = MapRecipe(
     name="village",
     title="A green valley with hills and tunnels",
     roads=_roads,
-    scene=_scene,
-    lighting={DAY: CLEAR_DAY, FOGGY: VILLAGE_FOG, NIGHT: VILLAGE_NIGHT, SNOW: WINTER_DAY},
+    plan=_plan,
+    weather=_weather,
     package=__name__,
     original=Original(road=3.59, buildings=24, height=12.0, trees=41),
 )
@@ -53,8 +80,9 @@ VILLAGE_BARE = replace(
     VILLAGE,
     name="village-bare",
     title="The roads of the village on bare grass, without scenery",
-    scene=_bare_scene,
-    lighting={DAY: CLEAR_DAY},
+    plan=_bare_plan,
+    weather=unchanged,
+    without=("foggy", "night", "snow"),
     seasons=False,
     original=Original(road=3.59),
 )

@@ -1,8 +1,7 @@
 """Colours of the village: saturated greens, white houses with orange roofs."""
 
 from eyas.state.mesh import Material, Surface
-from eyas.world.build.materials import material
-from eyas.world.buildings.cottages import CottageLook
+from eyas.world.build.materials import facade, material
 
 __all__ = ["GRASS", "HILLS", "HOUSES", "MEADOWS", "ROCK", "SHORE", "VERGE", "WATER"]
 
@@ -28,7 +27,7 @@ ROCK = material("stone", (0.50, 0.52, 0.47))
 WATER = Material("water", (0.20, 0.44, 0.72), Surface.WATER)
 
 HOUSES = (
-    CottageLook("facade_concrete", (1.0, 1.0, 1.0), (1.0, 0.96, 0.94)),
-    CottageLook("facade_plaster", (0.88, 0.94, 1.0), (0.96, 0.88, 0.84)),
-    CottageLook("facade_concrete", (1.0, 0.99, 0.97), (1.0, 0.92, 0.86)),
+    (facade("facade_concrete", (1.0, 1.0, 1.0)), material("roof_tiles", (1.0, 0.96, 0.94))),
+    (facade("facade_plaster", (0.88, 0.94, 1.0)), material("roof_tiles", (0.96, 0.88, 0.84))),
+    (facade("facade_concrete", (1.0, 0.99, 0.97)), material("roof_tiles", (1.0, 0.92, 0.86))),
 )

@@ -1,167 +1,233 @@
-"""Plan of the village: the position of everything in it."""
+"""The plan of the village."""
 
-import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.core.rng import stream
+from eyas.state.lighting import Horizon
 from eyas.state.roads import RoadNetwork
-from eyas.world.build.millimetres import snapped
-from eyas.world.buildings.cottages import Cottage
-from eyas.world.buildings.lots import largest
-from eyas.world.land.mounds import Mound, place_inside, place_ring, sizes
-from eyas.world.land.outlines import wavy
-from eyas.world.maps.village.places import cottages_along, gantries_along, tunnels_along
-from eyas.world.maps.village.roads import road_graph
-from eyas.world.plants import trees
-from eyas.world.roads.areas import Street, blocks, road_area, streets
-from eyas.world.roads.tunnels import Tunnel
+from eyas.state.scene import ObjectClass
+from eyas.world.build.heights import FLOOR_HEIGHT
+from eyas.world.build.materials import material, without_snow
+from eyas.world.build.placed import Placed
+from eyas.world.land.outlines import blob
+from eyas.world.land.rising import relief_of
+from eyas.world.maps.village.layout import EXTENT, FLOOR, HALF, Layout, lay_out
+from eyas.world.maps.village.looks import GRASS, HILLS, HOUSES, MEADOWS, ROCK, SHORE, VERGE, WATER
+from eyas.world.maps.village.roads import NAME
+from eyas.world.plan.library import STREET_KINDS, houses, plant_kinds
+from eyas.world.plan.plan import (
+    Chance,
+    Far,
+    Flat,
+    Ground,
+    Kind,
+    Layer,
+    MapPlan,
+    Paint,
+    Relief,
+    Streets,
+    Tunnels,
+    state_of,
+    things,
+)
+from eyas.world.plants import gardens
+from eyas.world.plants.cones import VARIANTS
+from eyas.world.street import gantries
+from eyas.world.street.lamps import lamps_along
+from eyas.world.street.signals import signal_places, signals_along
 
-__all__ = ["EXTENT", "FLOOR", "HALF", "Plan", "make_plan"]
+__all__ = ["VALLEY", "make_plan"]
 
-FLOOR = (982.0, 998.0)
-"""Extent of the floor [m]."""
+VALLEY = Horizon(name="village", height=0.05, woods=0.6)
+"""What stands beyond the hills."""
 
-HALF = 730.0
-"""Half the side of the square that the hills fill [m]."""
-
-EXTENT = shapely.box(-HALF, -HALF, HALF, HALF)
-"""That square."""
-
-_INSIDE, _INSIDE_RADII = 15, (60.0, 86.0, 134.0)
-_RING, _RING_RADII = 33, (87.0, 144.0, 201.0)
-"""Numbers of hills, and their smallest, median and largest radius [m]."""
-_STEEP, _RING_STEEP = (0.72, 0.86), (0.73, 0.84)
-"""Least and largest height of a hill, as a share of its radius."""
-_KERB_TO_FOOT = 7.0
-"""Least distance from a kerb to the foot of a hill [m]."""
-_RING_GAPS = (14.0, 73.0)
-_LAKESIDE = "o14"
-"""Node of the outer road beside the lake's block."""
-_LAKE = 41_979.0
-"""Area of the lake, as in the original [m^2]."""
-_LAKE_SHARE = 0.64
-"""Most that the lake takes of its block."""
-_TREES, _TREE_SPACING = 41, (11.0, 17.0)
-_BEYOND_KERB = 5.0
-"""From the kerb to the trunks [m]."""
-
-Points = NDArray[np.float64]
-
-
-@dataclass(frozen=True, slots=True)
-class Plan:
-    """Positions in plan view."""
-
-    roads: shapely.Geometry
-    """Asphalt [m]."""
-    blocks: list[shapely.Polygon]
-    """Ground between roads [m]."""
-    lake: shapely.Polygon
-    """Water [m]."""
-    tunnels: list[Tunnel]
-    """Tunnels over the roads."""
-    cottages: list[Cottage]
-    """Houses."""
-    trees: Points
-    """Trunks [m], shape (K, 2)."""
-    gantries: list[tuple[Points, float]]
-    """Middle of the road [m] and its direction [rad] at each gantry."""
-    hills: list[Mound]
-    """Hills between the roads, then those of the ring."""
-
-    @property
-    def walls(self) -> shapely.Geometry:
-        """Footprints of the houses [m]."""
-        return shapely.union_all([shapely.Polygon(house.outline) for house in self.cottages])
-
-    @property
-    def covered(self) -> shapely.Geometry:
-        """What the tunnels cover [m]."""
-        return shapely.union_all([tunnel.area for tunnel in self.tunnels])
+_LAMPS = 47
+"""Street lamps, and two in each tunnel."""
+_CORE = 345.0
+"""Half the side of the square with the smaller facets [m]."""
+_FACETS = (6.5, 12.5)
+"""Distance between the corners of facets in the middle and outside of it [m]."""
+_ROUGH = 0.045
+"""Most by which a corner lies above or below the smooth shape, as a share of its height."""
+_PATCHES = 60
+"""Number of patches of each kind of grass."""
+_BUSHES = (26.0, 0.004)
+"""Least distance between two bushes [m], and number of attempts on a square metre."""
+_TREE_HEIGHTS = (10.0, 11.8)
+_CONES = tuple(f"cone tree {k}" for k in range(VARIANTS))
 
 
-def make_plan(network: RoadNetwork, seed: int) -> Plan:
-    """Return the plan of a village.
+def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
+    """Return the plan of the village.
 
     Args:
         network: Made of `road_graph(seed)`.
         seed: Seed of the map, >= 0.
     """
-    roads = road_area(network)
-    closed, _ = blocks(roads, EXTENT)
-    ways = streets(network)
-    shore = {node.name: (node.x, node.y) for node in road_graph(seed).nodes}[_LAKESIDE]
-    beside = min(closed, key=lambda block: float(block.distance(shapely.Point(shore))))
-    lake = _lake(beside, stream(seed, "village lake"))
-    tunnels = tunnels_along(ways, roads, stream(seed, "village tunnels"))
-    covered = shapely.union_all([tunnel.area for tunnel in tunnels])
-    taken = shapely.union_all([roads, shapely.buffer(lake, 7.0), shapely.buffer(covered, 5.0)])
-    inside = shapely.union_all(closed)
-    cottages = cottages_along(ways, inside, taken, stream(seed, "village houses"))
-    walls = shapely.union_all([shapely.Polygon(house.outline) for house in cottages])
-    taken = shapely.union_all([roads, shapely.buffer(covered, 6.0), shapely.buffer(walls, 6.0)])
-    trunks = _tree_rows(ways, taken, stream(seed, "village trees"))
-    gantries = gantries_along(ways, covered, trunks, stream(seed, "village gantries"))
-    keep = [shapely.buffer(walls, 7.0), shapely.buffer(lake, 6.0)]
-    keep += [shapely.buffer(tunnel.passage, 2.0) for tunnel in tunnels]
-    hills = _hills(roads, closed, keep, stream(seed, "village hills"))
-    return Plan(roads, closed, lake, tunnels, cottages, trunks, gantries, hills)
-
-
-def _lake(block: shapely.Polygon, rng: np.random.Generator) -> shapely.Polygon:
-    """Return the lake, which fills most of its block."""
-    wanted = min(_LAKE, _LAKE_SHARE * block.area)
-    low, high = 5.0, 120.0
-    for _ in range(24):
-        middle = (low + high) / 2
-        inner = largest(shapely.buffer(block, -middle - 30.0))
-        shape = shapely.buffer(inner, 30.0, quad_segs=6)
-        low, high = (middle, high) if shape.area > wanted else (low, middle)
-    return snapped(wavy(shape, 7.0, rng))
-
-
-def _tree_rows(
-    ways: Sequence[Street], keep_free: shapely.Geometry, rng: np.random.Generator
-) -> Points:
-    """Return trunks along both sides of three roads."""
-    trunks = np.zeros((0, 2))
-    longest = sorted(ways, key=lambda way: -round(shapely.LineString(way.right).length, 1))
-    both = [way for way in longest if way.start < way.end][:12]
-    for index in rng.permutation(len(both)):
-        street = both[int(index)]
-        sides = [w for w in ways if {w.start, w.end} == {street.start, street.end}]
-        for side in sides:
-            line = shapely.offset_curve(shapely.LineString(side.right), -_BEYOND_KERB)
-            found = trees.place_along(line, _TREE_SPACING, rng, keep_free)
-            trunks = np.concatenate([trunks, found[: _TREES - len(trunks)]])
-    return trunks
-
-
-def _hills(
-    roads: shapely.Geometry,
-    closed: Sequence[shapely.Polygon],
-    keep: list[shapely.Geometry],
-    rng: np.random.Generator,
-) -> list[Mound]:
-    """Return the hills, with outlines of their own."""
-    free = shapely.union_all(keep)
-    room = shapely.difference(
-        shapely.union_all([shapely.buffer(block, -_KERB_TO_FOOT) for block in closed]), free
+    valley = lay_out(network, seed)
+    hills = _hills(valley)
+    rising = relief_of(hills, seed).area
+    kinds, placed = houses(valley.cottages, HOUSES)
+    rng = stream(seed, "village plants")
+    plants = _plants(valley, rising, rng)
+    signs = _signs(valley, stream(seed, "village signs"))
+    lamps, taken = _LAMPS - 2 * len(valley.tunnels), _taken(valley, network)
+    tunnels = Tunnels(
+        items=tuple(valley.tunnels),
+        outside=HILLS[1],
+        inside=ROCK,
+        chance=Chance(stream="village mounds"),
     )
-    radii = sizes(_INSIDE, _INSIDE_RADII, rng).tolist()
-    made = place_inside(radii, _STEEP, room, rng)
-    filled = shapely.Polygon(shapely.get_exterior_ring(shapely.get_parts(roads)[0]))
-    ring = place_ring(sizes(_RING, _RING_RADII, rng).tolist(), _RING_GAPS, _RING_STEEP, filled, rng)
+    gantry_kinds = (
+        Kind(name=f"gantry {k}", make="gantry", variant=k) for k in range(gantries.KINDS)
+    )
+    cones = (
+        Kind(name=name, make="cone tree", variant=k, chance="plants")
+        for k, name in enumerate(_CONES)
+    )
+    return MapPlan(
+        name=NAME,
+        seed=seed,
+        size=FLOOR,
+        library=(*kinds, *cones, *plant_kinds("plants"), *STREET_KINDS, *gantry_kinds),
+        chances={"plants": state_of(rng)},
+        layers=(
+            hills,
+            tunnels,
+            things(placed),
+            *_ground(valley, rising, seed),
+            things(plants, (*_CONES, *(kind.name for kind in plant_kinds("plants")))),
+            things(signals_along(network)),
+            things(signs),
+            things(lamps_along(network, lamps, taken, stream(seed, "village lamps"))),
+        ),
+        horizon=VALLEY,
+    )
+
+
+def _hills(valley: Layout) -> Relief:
+    """Return the hills as facets; each has one of a few greens, lighter and drier higher up."""
+    passages = [shapely.buffer(tunnel.passage, 0.5) for tunnel in valley.tunnels]
+    trunks = shapely.buffer(shapely.union_all(shapely.points(valley.trees)), 1.5)
+    flat = [shapely.buffer(valley.roads, 6.0), shapely.buffer(valley.walls, 4.0)]
+    return Relief(
+        mounds=tuple(valley.hills),
+        flat=shapely.union_all([*flat, shapely.buffer(valley.lake, 4.0), trunks, *passages]),
+        half=(_CORE, HALF),
+        spacing=_FACETS,
+        rough=_ROUGH,
+        chance=Chance(stream="village facets"),
+        covers=HILLS,
+        shades=Chance(stream="village grass"),
+    )
+
+
+def _ground(valley: Layout, hills: shapely.Geometry, seed: int) -> list[Layer]:
+    roads, lake = valley.roads, valley.lake
+    passages = shapely.union_all([tunnel.passage for tunnel in valley.tunnels])
+    beside = shapely.buffer(roads, 1.4, quad_segs=4)
+    paved = _paving(valley)
+    verge = shapely.difference(shapely.union(beside, passages), shapely.union(roads, paved))
+    shore = shapely.difference(shapely.buffer(lake, 2.6), lake)
+    # Slightly below the hills' feet, so that rounding leaves no gap between them.
+    rest = shapely.buffer(hills, -0.4, join_style="mitre")
+    lawn = shapely.difference(EXTENT, shapely.union_all([roads, paved, verge, shore, lake, rest]))
+    pieces: tuple[Flat | Far, ...] = (
+        *_meadow(lawn, stream(seed, "village meadow")),
+        Flat(area=shapely.intersection(verge, passages), cover=without_snow(VERGE)),
+        Flat(area=shapely.difference(verge, passages), cover=VERGE),
+        Flat(area=shore, cover=SHORE, sides=SHORE, foot=FLOOR_HEIGHT - 0.3),
+        Far(rule="plain", covers=(GRASS,), beyond=(2 * HALF, 2 * HALF)),
+    )
+    slabs = Flat(area=paved, cover=material("paving", (0.95, 0.94, 0.92)))
+    water = Flat(area=lake, z=FLOOR_HEIGHT - 0.2, cover=WATER)
     return [
-        Mound(
-            *(hill.x, hill.y, hill.radius, hill.height),
-            phases=tuple(rng.uniform(0, 2 * math.pi, 3).tolist()),
-            waviness=0.14,
-        )
-        for hill in (*made, *ring)
+        Streets(
+            area=roads,
+            paint=Paint(centre="double yellow", crossings=0),
+            wear=Chance(stream="village road wear"),
+        ),
+        Ground(pieces=pieces),
+        Ground(kind=ObjectClass.PAVEMENT, pieces=(slabs,)),
+        Ground(kind=ObjectClass.WATER, pieces=(water,)),
     ]
+
+
+def _meadow(lawn: shapely.Geometry, rng: np.random.Generator) -> list[Flat]:
+    """Return the grass of the valley, with drier and lusher patches."""
+    made = []
+    for cover in MEADOWS:
+        spots = rng.uniform(-_CORE, _CORE, (_PATCHES, 2))
+        shapes = [
+            blob(spot, (rng.uniform(8.0, 34.0), rng.uniform(6.0, 16.0)), rng.uniform(0, 3.1), rng)
+            for spot in spots
+        ]
+        patch = shapely.intersection(lawn, shapely.union_all(shapes))
+        lawn = shapely.difference(lawn, patch)
+        made.append(Flat(area=patch, cover=cover))
+    return [Flat(area=lawn, cover=GRASS), *made]
+
+
+def _paving(valley: Layout) -> shapely.Geometry:
+    """Return the paving round the houses and from their doors to the roads [m]."""
+    parts = []
+    for house in valley.cottages:
+        shape = shapely.Polygon(house.outline)
+        front = np.array([-exact.sin(house.turn), exact.cos(house.turn)])
+        reach = [house.place, house.place + 24.0 * front]
+        path = shapely.buffer(shapely.LineString(reach), 1.9, cap_style="flat")
+        parts += [shapely.buffer(shape, 1.8, join_style="mitre"), path]
+    return shapely.difference(shapely.union_all(parts), valley.roads)
+
+
+def _plants(valley: Layout, hills: shapely.Geometry, rng: np.random.Generator) -> list[Placed]:
+    """Return the rows of trees, hedges round the gardens, and bushes in the valley."""
+    made = []
+    for x, y in valley.trees.tolist():
+        height, turn = rng.uniform(*_TREE_HEIGHTS), rng.uniform(0, 2 * np.pi)
+        kind = _CONES[int(rng.integers(len(_CONES)))]
+        made.append(Placed(kind, x, y, FLOOR_HEIGHT, turn, height))
+    room = shapely.difference(
+        shapely.union_all(valley.blocks),
+        shapely.union_all(
+            [shapely.buffer(_paving(valley), 0.6), shapely.buffer(valley.roads, 1.9)]
+        ),
+    )
+    for house in valley.cottages:
+        yard = shapely.buffer(shapely.Polygon(house.outline), 3.1, join_style="mitre")
+        for side in pairwise(shapely.get_coordinates(yard)):
+            made += gardens.row(("hedge",), np.array(side), room, FLOOR_HEIGHT, rng)
+    thin = shapely.buffer(shapely.union_all(shapely.points(valley.trees)), 4.0)
+    yards = shapely.buffer(valley.walls, 6.0)
+    taken = [yards, shapely.buffer(valley.lake, 3.4), valley.covered, hills, thin]
+    open_land = shapely.difference(
+        shapely.intersection(EXTENT, shapely.buffer(valley.roads, 60.0)),
+        shapely.union_all([shapely.buffer(valley.roads, 5.0), *taken]),
+    )
+    for x, y in gardens.scattered(open_land, *_BUSHES, rng).tolist():
+        kind, turn = gardens.BORDERS[int(rng.integers(3))], rng.uniform(0, 2 * np.pi)
+        made.append(Placed(kind, x, y, FLOOR_HEIGHT, turn, rng.uniform(0.7, 1.3)))
+    return made
+
+
+def _signs(valley: Layout, rng: np.random.Generator) -> list[Placed]:
+    """Return the gantries with their boards."""
+    made = []
+    for index, (place, turn) in enumerate(valley.gantries):
+        kind = int((index + rng.integers(2)) % gantries.KINDS)
+        made.append(Placed.at(f"gantry {kind}", place, 0.0, turn))
+    return made
+
+
+def _taken(valley: Layout, network: RoadNetwork) -> shapely.Geometry:
+    """Return the area where something already stands or drives, in plan view."""
+    poles = [place for place, _ in signal_places(network)]
+    signs = [place for place, _ in valley.gantries]
+    thin = shapely.buffer(shapely.points([*valley.trees, *poles]), 2.0)
+    wide = shapely.buffer(shapely.points(signs), 12.0)
+    covered = shapely.buffer(valley.covered, 4.0)
+    return shapely.union_all([valley.roads, valley.walls, valley.lake, covered, *thin, *wide])

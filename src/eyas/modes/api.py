@@ -1,0 +1,238 @@
+"""What the commands do, as functions of Python; `eyas` offers them by these names."""
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, TypedDict, Unpack
+
+from eyas.envs.choice import EnvChoices, Source, chosen_settings
+
+if TYPE_CHECKING:
+    import gymnasium
+
+    from eyas.evaluation.record import Record
+    from eyas.settings.config import EyasConfig
+
+__all__ = [
+    "evaluate",
+    "list_maps",
+    "list_policies",
+    "list_presets",
+    "list_targets",
+    "list_weathers",
+    "make",
+    "make_config",
+    "make_vec",
+    "record",
+    "train",
+]
+
+Names = str | Sequence[str]
+
+
+def make(name: str = "citystreet-day", **choices: Any) -> "gymnasium.Env[Any, Any]":  # noqa: ANN401
+    """Return the environment of one drone: `gymnasium.make("eyas/<name>-v0", ...)`.
+
+    Args:
+        name: Map and weather, such as `village-night`.
+        choices: Settings, as of `TrackingEnv`, and what `gymnasium.make` takes.
+
+    Raises:
+        gymnasium.error.Error: There is no such environment.
+        EyasError: A setting is wrong; one line.
+    """
+    import gymnasium
+
+    return gymnasium.make(f"eyas/{name}-v0", **choices)
+
+
+def make_vec(
+    name: str = "citystreet-day",
+    num_envs: int = 1,
+    **choices: Any,  # noqa: ANN401
+) -> "gymnasium.vector.VectorEnv[Any, Any, Any]":
+    """Return the environment of N drones, each in a world of its own, stepped and drawn together.
+
+    Args:
+        name: Map and weather, such as `village-night`.
+        num_envs: N.
+        choices: Settings, as of `EyasVectorEnv`.
+
+    Raises:
+        gymnasium.error.Error: There is no such environment.
+        EyasError: A setting is wrong; one line.
+    """
+    import gymnasium
+
+    return gymnasium.make_vec(f"eyas/{name}-v0", num_envs=num_envs, **choices)
+
+
+def make_config(source: Source = None, **choices: Unpack[EnvChoices]) -> "EyasConfig":
+    """Return settings.
+
+    Args:
+        source: The name of a preset, the path of a JSON file (native or the original's
+            `env_config.json`), nested dictionaries, whole settings, or None for the defaults.
+        choices: Settings by keyword, which override it.
+
+    Raises:
+        EyasError: A setting is wrong, or the file, or there is no such keyword; one line.
+    """
+    return chosen_settings(source, **choices)
+
+
+def record(
+    config: Source = None,
+    out: Path | str = "runs/video",
+    *,
+    resume: bool = False,
+    overwrite: bool = False,
+    quiet: bool = True,
+    **choices: Unpack[EnvChoices],
+) -> Path:
+    """Record episodes with labels, like `eyas video`; return the folder.
+
+    Args:
+        config: The settings, see `make_config`.
+        out: The folder; holds `DRONE<i>/episode<j>/` afterwards.
+        resume: Whether a recording in the folder is continued.
+        overwrite: Whether one in the folder is deleted first.
+        quiet: Whether nothing is printed.
+        choices: Settings by keyword.
+
+    Raises:
+        EyasError: A setting is wrong, or the folder; one line.
+    """
+    from eyas.modes.video.run import run
+
+    folder = Path(out)
+    settings = chosen_settings(config, **choices)
+    run(settings, folder, resume=resume, overwrite=overwrite, quiet=quiet)
+    return folder
+
+
+class EvaluationChoices(TypedDict, total=False):
+    """What an evaluation flies, by keyword."""
+
+    map: Names
+    """A map, or several; by default citystreet."""
+    weather: Names
+    """A weather, or several; by default day."""
+    target: Names
+    """A target, or several; by default SUMO_VEHICLE."""
+    episodes: int
+    """For each place and start direction; by default the protocol's number."""
+    seed: int
+    """Seed of the first episode."""
+    latency: str
+    """Milliseconds, the path of a file with one in each line, or `measured`."""
+    sampled: bool
+    """Whether a network's actions are sampled, not the best ones."""
+    env: Mapping[str, Any]
+    """Changes of what the policy sees and does, settings of `env`."""
+    settings: Mapping[str, Any]
+    """Changes of `tracker`, `control`, `start.velocity` and `extras`: another protocol."""
+    batch: int
+    """Episodes that are flown together."""
+
+
+def evaluate(
+    policy: str,
+    protocol: str = "paper",
+    out: Path | str | None = None,
+    *,
+    resume: bool = False,
+    overwrite: bool = False,
+    quiet: bool = True,
+    **choices: Unpack[EvaluationChoices],
+) -> "list[Record]":
+    """Fly a policy in the episodes of a protocol, like `eyas evaluate`; return their records.
+
+    Args:
+        policy: A name of `list_policies()`, a file, or `package.module:name`.
+        protocol: `paper`, `long`, `search` or `distractor`.
+        out: The folder; by default `runs/evaluation/<policy>-<protocol>`.
+        resume: Whether an evaluation in the folder is continued.
+        overwrite: Whether one in the folder is deleted first.
+        quiet: Whether nothing is printed but failures of the policy.
+        choices: See `EvaluationChoices`.
+
+    Raises:
+        EyasError: A setting is wrong, or the folder; one line.
+    """
+    from eyas.core.config import validated
+    from eyas.evaluation.plan import Plan, folder_name
+    from eyas.modes.evaluate import run
+
+    said: dict[str, Any] = {"policy": policy, "protocol": protocol, **choices}
+    for name in ("map", "weather", "target"):
+        if name in said:
+            names = said.pop(name)
+            said[f"{name}s"] = [names] if isinstance(names, str) else list(names)
+    plan = validated(Plan, said)
+    folder = Path(out) if out is not None else Path("runs/evaluation") / folder_name(plan)
+    return run(plan, folder, resume=resume, overwrite=overwrite, quiet=quiet)
+
+
+def train(
+    config: Source = None,
+    out: Path | str = "runs/train",
+    *,
+    resume: bool = False,
+    quiet: bool = True,
+    **choices: Unpack[EnvChoices],
+) -> Path:
+    """Train a policy, like `eyas train` (extra `train`); return the path of its ONNX file.
+
+    Args:
+        config: The settings, see `make_config`.
+        out: The folder of the run.
+        resume: Whether a run in the folder is continued.
+        quiet: Whether no progress is printed.
+        choices: Settings by keyword.
+
+    Raises:
+        EyasError: A setting is wrong, or the folder; one line.
+    """
+    from eyas.modes.train import run
+
+    return run(chosen_settings(config, **choices), Path(out), resume=resume, quiet=quiet, ray=False)
+
+
+def list_maps() -> tuple[str, ...]:
+    """Return the names of all maps, imported ones included."""
+    from eyas.world.maps import MAPS
+
+    return tuple(sorted(MAPS.names()))
+
+
+def list_weathers(map: str = "citystreet") -> tuple[str, ...]:  # as the setting
+    """Return the names of the weathers of a map.
+
+    Raises:
+        ConfigError: There is no such map.
+    """
+    from eyas.world.maps import MAPS
+
+    return tuple(MAPS.get(map).weathers)
+
+
+def list_targets() -> tuple[str, ...]:
+    """Return the names of what can be followed, as the setting `target` takes them."""
+    from eyas.targets.config import TargetName
+
+    return tuple(str(name) for name in TargetName)
+
+
+def list_policies() -> tuple[str, ...]:
+    """Return the names of the policies that Eyas brings along."""
+    from eyas.evaluation.policies.shipped import shipped_names
+    from eyas.evaluation.policies.table import BUILT_IN
+
+    return (*BUILT_IN, *shipped_names())
+
+
+def list_presets() -> tuple[str, ...]:
+    """Return the names of the settings that Eyas brings along."""
+    from eyas.settings.preset import PRESETS
+
+    return PRESETS

@@ -1,0 +1,145 @@
+"""What is added to the actors of a view: the bodies of other trackers, and lights of signals."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.frames import rotate
+from eyas.lanes import interpreted
+from eyas.state.draw import DrawList
+from eyas.state.scene import ACTOR_OBJECT, ObjectClass, Scene
+from eyas.state.snapshot import TrackerState
+from eyas.traffic.signals import SignalPlan
+
+__all__ = ["SignalLights", "TrackerBodies", "lights_of"]
+
+_SAME = 0.01
+"""Poles nearer to each other are one [m]."""
+
+_rotate = interpreted(rotate)  # of scalars, but arrays do as well
+
+
+class TrackerBodies:
+    """Adds to what each tracker sees the bodies of the others in its world, not its own.
+
+    Args:
+        mates: The trackers in the world of each of N trackers, itself among them.
+        actors: Number of actors in each world.
+        part: The renderer's part of a body; it has one if trackers share worlds.
+        visible: Whether trackers see each other at all.
+    """
+
+    def __init__(
+        self, mates: Sequence[NDArray[np.int64]], actors: int, part: int, *, visible: bool = True
+    ) -> None:
+        self._part, self._actors = part, actors
+        others = [own[own != n] for n, own in enumerate(mates)]
+        self.any = visible and any(map(len, others))
+        """Whether any tracker sees another."""
+        self._others = np.full((len(others), max(map(len, others), default=0)), -1)
+        for row, own in zip(self._others, others, strict=True):
+            row[: len(own)] = own
+
+    def added(
+        self,
+        chosen: NDArray[np.int32],
+        rows: NDArray[np.int32],
+        movers: DrawList,
+        trackers: TrackerState,
+    ) -> DrawList:
+        """Return a draw list with a row for each view: the movers of its world, and bodies.
+
+        Args:
+            chosen: The tracker of each view, shape (V,).
+            rows: Row of each view in `movers`, shape (V,).
+            movers: The other moving things.
+            trackers: State of all N trackers.
+        """
+        others = self._others[chosen]
+        pose = _poses(trackers)[others]
+        classes = np.full((len(chosen), len(self._others)), ObjectClass.ROBOT, np.uint8)
+        colour = np.ones((*others.shape, 3))
+        object_id = np.where(others < 0, -1, ACTOR_OBJECT + self._actors + others)
+        return DrawList(
+            part=_beside(movers.part[rows], np.where(others < 0, -1, self._part)),
+            pose=_beside(movers.pose[rows], pose),
+            colour=_beside(movers.colour[rows], colour),
+            object_id=_beside(movers.object_id[rows], object_id),
+            object_class=_beside(movers.object_class[rows], classes),
+        )
+
+
+def _beside(movers: NDArray[Any], bodies: NDArray[Any]) -> NDArray[Any]:
+    return np.concatenate([movers, bodies.astype(movers.dtype)], axis=1)
+
+
+def _poses(trackers: TrackerState) -> NDArray[np.float64]:
+    """Return body to world of all trackers: rotation and translation [m], shape (N, 3, 4)."""
+    columns = [_rotate(trackers.orientation.T, *axis) for axis in np.eye(3).tolist()]
+    return np.stack([*(np.stack(column, axis=-1) for column in columns), trackers.position], -1)
+
+
+@dataclass(frozen=True, slots=True)
+class SignalLights:
+    """The lights on the P poles of a scene whose programs are known."""
+
+    plan: SignalPlan
+    row: NDArray[np.int64]
+    """Edge of the plan that each pole is for, shape (P,)."""
+    pose: NDArray[np.float32]
+    """Poles, to world, shape (P, 3, 4)."""
+    object_id: NDArray[np.int32]
+    """Objects of the scene, shape (P,)."""
+    first_part: int
+    """Part that shows `Aspect.RED`; the other aspects follow."""
+
+    def added(self, movers: DrawList, time: NDArray[np.float64]) -> DrawList:
+        """Return a draw list with the lights after the movers.
+
+        Args:
+            movers: Lists of W worlds.
+            time: Time of the traffic in each [s], shape (W,).
+        """
+        aspect, worlds = self.plan.at(time)[:, self.row], len(time)
+        part = np.where(aspect < 0, -1, self.first_part + aspect).astype(np.int32)
+        pose = np.broadcast_to(self.pose, (worlds, *self.pose.shape))
+        ids = np.broadcast_to(self.object_id, part.shape)
+        white = np.ones((*part.shape, 3), np.float32)
+        return DrawList(
+            part=np.concatenate([movers.part, part], axis=1),
+            pose=np.concatenate([movers.pose, pose], axis=1),
+            colour=np.concatenate([movers.colour, white], axis=1),
+            object_id=np.concatenate([movers.object_id, ids], axis=1),
+            object_class=movers.object_class,
+        )
+
+
+def lights_of(scene: Scene, plan: SignalPlan, first_part: int) -> SignalLights | None:
+    """Return the lights on the poles of a scene; None if there are none.
+
+    Args:
+        scene: The scene, on the network of the plan.
+        plan: Programs of the lights.
+        first_part: See `SignalLights`.
+    """
+    # Shapely takes long to import, and few maps have signals.
+    from eyas.world.roads.areas import streets
+    from eyas.world.street.signals import pole_at
+
+    fixtures, rows = scene.fixtures, {name: row for row, name in enumerate(plan.edges)}
+    poles = np.flatnonzero(scene.object_class[fixtures.object_id] == ObjectClass.POLE)
+    feet, found = fixtures.pose[poles][:, :2, 3], []
+    for name, street in zip(scene.network.edges, streets(scene.network), strict=True):
+        if name not in rows or len(street.right) < 2 or not len(poles):
+            continue
+        away = np.abs(feet - np.array(pole_at(street)[0])).max(axis=1)
+        if away.min() < _SAME:
+            found.append((rows[name], int(poles[away.argmin()])))
+    if not found:
+        return None
+    row, fixture = np.array(found, np.int64).T
+    owner = fixtures.object_id[fixture].astype(np.int32)
+    return SignalLights(plan, row, fixtures.pose[fixture], owner, first_part)

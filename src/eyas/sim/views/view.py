@@ -1,0 +1,100 @@
+"""What is seen of a simulation at an instant: pictures and packets."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.sensors.lidar import Lidar
+from eyas.sim.assets import Assets
+from eyas.sim.config import SimConfig
+from eyas.sim.light import LightChanges
+from eyas.sim.views.delay import SeenState
+from eyas.sim.views.pictures import PictureDrawer
+from eyas.sim.views.sensor_suite import SensorSuite
+from eyas.sim.views.words import target_in_words
+from eyas.sim.worlds import Worlds
+from eyas.state.draw import DrawStage, Picture
+from eyas.state.motion import ActorView
+from eyas.task.packet_rows import SENSOR_COLUMNS, PacketRows
+from eyas.task.rules import Rules
+
+__all__ = ["View"]
+
+Floats = NDArray[np.float64]
+
+
+class View:
+    """What N trackers, or those who record them, get to see: pictures, packets, the lidar.
+
+    Attributes:
+        state: The state that is seen, read at each call.
+        pictures: Draws it.
+
+    Args:
+        config: The settings.
+        assets: Scene and renderer.
+        worlds: The worlds, with their moving objects.
+        light: The light around each tracker.
+        sensors: What is sensed.
+        state: The state that is seen.
+        visible: Whether trackers see each other.
+    """
+
+    def __init__(
+        self,
+        config: SimConfig,
+        assets: Assets,
+        worlds: Worlds,
+        light: LightChanges,
+        sensors: SensorSuite,
+        state: SeenState,
+        *,
+        visible: bool,
+    ) -> None:
+        self.state = state
+        self.pictures = PictureDrawer(config, assets, worlds, light, state.shown, visible=visible)
+        self._packets = PacketRows(state.snapshot, config.camera, assets.scene.terrain)
+        self._sensors = sensors
+        self._worlds = worlds
+
+    def draw(
+        self,
+        trackers: NDArray[np.int32],
+        picture: Picture,
+        until: DrawStage = DrawStage.SHADING,
+        overlaid: Rules | None = None,
+    ) -> None:
+        """Draw what the cameras of some trackers see.
+
+        Args:
+            trackers: The trackers, shape (V,).
+            picture: V pictures to draw into.
+            until: Last stage to run, see `Renderer.draw`.
+            overlaid: Rules whose overlay is drawn over the colours; None: no overlay.
+        """
+        self.pictures.draw(trackers, picture, until, overlaid)
+        grain = self._sensors.grain
+        if grain is not None and picture.rgb is not None:
+            grain.add(picture.rgb, trackers, self.state.shown.episodes.step_count)
+
+    def packets(self) -> tuple[Floats, Floats]:
+        """Return copies of the basic packets (N, 22) and the reward packets (N, 60)."""
+        basic, reward = self._packets.now()
+        if self.state.told is not None:
+            basic[:, SENSOR_COLUMNS] = self.state.told
+        return basic, reward
+
+    def actors(self, tracker: int) -> ActorView:
+        """Return the actors around a tracker at the instant that its pictures show."""
+        tick = int(self.state.shown.episodes.tick[tracker])
+        state, model = self._worlds.actors_around(tracker, tick)
+        before, _ = self._worlds.actors_around(tracker, tick - 1)
+        return ActorView(state, before, model, self._worlds.looks_around(tracker).colour[0])
+
+    def words(self, tracker: int, aspect: float) -> str:
+        """Return the target of a tracker in words, see `eyas.sim.views.words`."""
+        return target_in_words(self.state.shown, self.actors(tracker), tracker, aspect)
+
+    @property
+    def lidar(self) -> Lidar | None:
+        """The lidars; what they tell is late by `state.late`. None: there are none."""
+        return self._sensors.lidar

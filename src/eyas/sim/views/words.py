@@ -1,0 +1,97 @@
+"""The target in words that tell it from what else is in view."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core import exact
+from eyas.state.motion import ActorState, ActorView
+from eyas.state.snapshot import CameraState, Snapshot
+from eyas.targets.catalogue import MODELS, extent_of, kind_of
+from eyas.targets.words import Seen, told_apart
+
+__all__ = ["target_in_words"]
+
+Floats = NDArray[np.float64]
+
+
+def target_in_words(shown: Snapshot, around: ActorView, tracker: int, aspect: float) -> str:
+    """Return a description of a tracker's target as its camera shows it, such as "a red SUV".
+
+    No other actor of which a part is in the camera's view shares it, hidden or not.
+
+    Args:
+        shown: The state that the picture shows.
+        around: The actors around the tracker at that time.
+        tracker: The tracker.
+        aspect: Height of the camera's picture over its width.
+    """
+    cameras, target = shown.cameras, int(shown.targets.actor[tracker])
+    actors, _, model, colour = around
+    corners = _in_camera(_corners(actors, model.tolist()), cameras, tracker)
+    wide = exact.tan(0.5 * float(cameras.field_of_view[tracker]))
+    inside = _in_view(corners, wide, wide * aspect) & actors.present[0]
+    inside[target] = False
+    # Where the middle is: half across the picture is 0.5, also if it is behind the camera.
+    forward, left, _ = corners.mean(axis=1).T
+    column = 0.5 - 0.5 * left / (np.maximum(forward, 1e-3) * wide)
+
+    def seen(actor: int) -> Seen:
+        return Seen(
+            model=int(model[actor]),
+            colour=colour[actor].tolist(),
+            speed=float(actors.speed[0, actor]),
+            yaw_rate=float(actors.yaw_rate[0, actor]),
+            column=float(column[actor]),
+            distance=float(forward[actor]),
+        )
+
+    return told_apart(seen(target), [seen(actor) for actor in np.flatnonzero(inside).tolist()])
+
+
+def _corners(actors: ActorState, models: list[int]) -> Floats:
+    """Return the corners of the boxes of all actors of one world [m], shape (A, 8, 3)."""
+    low, high = np.empty((2, len(models), 3))
+    for actor, model in enumerate(models):
+        low[actor], high[actor] = _extent(actors, actor, model)
+    pick = np.array([[bit >> axis & 1 for axis in range(3)] for bit in range(8)], bool)
+    own = np.where(pick, high[:, None], low[:, None])
+    cosine, sine = exact.cos(actors.yaw[0])[:, None], exact.sin(actors.yaw[0])[:, None]
+    east = cosine * own[..., 0] - sine * own[..., 1]
+    north = sine * own[..., 0] + cosine * own[..., 1]
+    up = own[..., 2] + own[..., 0] * exact.tan(actors.slope[0])[:, None]
+    corners: Floats = np.stack([east, north, up], axis=-1) + actors.position[0][:, None]
+    return corners
+
+
+def _extent(actors: ActorState, actor: int, model: int) -> Floats | tuple[list[float], list[float]]:
+    """Return the least and largest coordinates of an actor ahead, left and up of its place [m]."""
+    travelled, speed = float(actors.travelled[0, actor]), float(actors.speed[0, actor])
+    slope, hitch = float(actors.slope[0, actor]), float(actors.hitch[0, actor])
+    limbs = extent_of(model, travelled, speed, slope)
+    if limbs is not None:
+        return limbs
+    length, width, height = MODELS[model].size
+    middle, half = kind_of(model).ahead, 0.5 * width + 0.5 * length * abs(hitch)  # swings aside
+    return [middle - 0.5 * length, -half, 0.0], [middle + 0.5 * length, half, height]
+
+
+def _in_camera(points: Floats, cameras: CameraState, tracker: int) -> Floats:
+    """Return points forward, left and up of a tracker's camera [m], shape (..., 3)."""
+    away, axes = points - cameras.position[tracker], cameras.rotation[tracker]
+    seen = [sum(away[..., k] * axes[k, axis] for k in range(3)) for axis in range(3)]
+    return np.stack(seen, axis=-1)
+
+
+def _in_view(corners: Floats, wide: float, high: float) -> NDArray[np.bool_]:
+    """Return whether any part of boxes may be in a view: none is outside of one of its planes.
+
+    Args:
+        corners: Corners of boxes forward, left and up of the camera [m], shape (A, 8, 3).
+        wide: Tangent of half the horizontal field of view.
+        high: Tangent of half the vertical field of view.
+    """
+    forward, left, up = np.moveaxis(corners, -1, 0)
+    planes = [forward, forward * wide - left, forward * wide + left]
+    planes += [forward * high - up, forward * high + up]
+    inside: NDArray[np.bool_] = np.all([(plane > 0.0).any(axis=1) for plane in planes], axis=0)
+    return inside

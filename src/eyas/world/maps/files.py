@@ -1,0 +1,218 @@
+"""Maps that are files: a plan, or the folder that `eyas maps import` makes of OpenStreetMap.
+
+<folder>/<name>/map.json          name, title, origin, size
+<folder>/<name>/map.plan.json     its plan: what is known of buildings, ground, trees, lamps
+<folder>/<name>/roads.net.xml.gz  SUMO's network
+<folder>/<name>/network.npz       its lanes
+<folder>/<name>/traffic*.npz      recordings
+<folder>/<name>/ATTRIBUTION.txt   whose data it is
+"""
+
+import json
+import logging
+import os
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from eyas.core.errors import ConfigError, DataFileError
+from eyas.core.files import user_path
+from eyas.world.maps.recipe import PLAN_FILE, PLAN_SUFFIXES, MapRecipe
+
+if TYPE_CHECKING:
+    from eyas.state.roads import RoadGraph, RoadNetwork
+    from eyas.world.plan.plan import MapPlan
+
+__all__ = [
+    "FOLDER_VARIABLE",
+    "FORMAT",
+    "MAP_FILE",
+    "MAP_FILES",
+    "ROADS_FILE",
+    "Origin",
+    "maps_folder",
+    "origin_of",
+]
+
+_LOG = logging.getLogger("eyas")
+
+FOLDER_VARIABLE = "EYAS_MAPS_DIR"
+"""Environment variable: the folder of the imported maps, instead of the user's default."""
+
+FORMAT = "eyas-map-1"
+MAP_FILE, ROADS_FILE = "map.json", "roads.net.xml.gz"
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """Where an imported map lies, and what it was made of."""
+
+    name: str
+    title: str
+    source: str
+    """Name of the file that it was made of."""
+    longitude: float
+    """Of the middle of the map, in degrees."""
+    latitude: float
+    """Of the middle of the map, in degrees."""
+    size: tuple[float, float]
+    """Extent of the floor [m]."""
+    format: str = FORMAT
+
+
+def maps_folder() -> Path:
+    """Return the folder of the imported maps; it need not exist."""
+    import platformdirs
+
+    named = os.environ.get(FOLDER_VARIABLE)
+    try:
+        return Path(named or platformdirs.user_data_dir("eyas"), "" if named else "maps").absolute()
+    except RuntimeError:  # the user has no home
+        return Path(os.devnull, "eyas")
+
+
+def origin_of(folder: Path) -> Origin:
+    """Return what the file of an imported map says.
+
+    Raises:
+        DataFileError: It is missing or damaged.
+    """
+    path = folder / MAP_FILE
+    try:
+        said = json.loads(path.read_text(encoding="utf-8"))
+        origin = Origin(**{**said, "size": tuple(map(float, said["size"]))})
+        width, height = origin.size
+        if not all(isinstance(text, str) for text in (origin.name, origin.title, origin.source)):
+            raise TypeError("name, title and source must be texts")
+    except (OSError, ValueError, TypeError, KeyError, RecursionError) as error:
+        raise DataFileError(f"{path}: not the file of an imported map: {error}") from error
+    if origin.format != FORMAT or not (0 < width < 1e5 and 0 < height < 1e5):
+        raise DataFileError(f"{path}: not the file of an imported map of this version; import it")
+    return origin
+
+
+class MapFiles:
+    """Imported maps, by their names or folders, and plans, by the paths of their files."""
+
+    def names(self) -> tuple[str, ...]:
+        """Return the names of the maps in the folder of imported maps."""
+        try:
+            inside = sorted(maps_folder().iterdir())
+        except OSError:
+            return ()
+        return tuple(folder.name for folder in inside if self._whole(folder))
+
+    def get(self, name: str) -> MapRecipe | None:
+        """Return the map with a name, in a folder or a file; None if there is none.
+
+        Raises:
+            DataFileError: Its files are damaged, or the path is of no user.
+        """
+        if name.endswith(PLAN_SUFFIXES):
+            return _recipe_of_plan(user_path(name).absolute())
+        folder = user_path(name) if "/" in name or "\\" in name else maps_folder() / name
+        try:
+            there = (folder / MAP_FILE).is_file()
+        except (OSError, ValueError):  # a name that no file can have
+            return None
+        return _recipe(folder.absolute()) if there else None
+
+    def _whole(self, folder: Path) -> bool:
+        if not (folder / MAP_FILE).is_file():
+            return False
+        try:
+            return _recipe(folder).name == folder.name
+        except DataFileError as error:
+            _LOG.warning("an imported map is left out: %s", error)
+            return False
+
+
+def _recipe(folder: Path) -> MapRecipe:
+    origin = origin_of(folder)
+    try:
+        return MapRecipe(
+            name=origin.name,
+            title=origin.title,
+            roads=partial(_roads, folder / ROADS_FILE, origin.name),
+            plan=partial(_plan, folder),
+            home=folder,
+        )
+    except ConfigError as error:
+        raise DataFileError(f"{folder / MAP_FILE}: {error}") from None
+
+
+def _roads(path: Path, name: str, seed: int) -> "RoadGraph":
+    """Return the streets in a file of SUMO, the same for every seed."""
+    import gzip
+    import zlib
+
+    from eyas.state.roads import RoadGraph
+
+    try:
+        return RoadGraph(name, seed, (), (), gzip.decompress(path.read_bytes()))
+    except (OSError, EOFError, zlib.error) as error:
+        raise DataFileError(f"{path}: cannot read: {error}") from error
+
+
+def _plan(folder: Path, network: "RoadNetwork", seed: int) -> "MapPlan":
+    """Return the plan of an imported town; the seed decides what it does not tell."""
+    from dataclasses import replace
+
+    from eyas.world.plan.file import read_plan
+    from eyas.world.towns.completed import completed
+
+    return completed(replace(read_plan(folder / PLAN_FILE), seed=seed), network)
+
+
+def _recipe_of_plan(path: Path) -> MapRecipe:
+    """Return the map of a plan in a file; the rest of it is read when it is built.
+
+    Raises:
+        DataFileError: It is no plan, or has no name.
+    """
+    from eyas.world.plan.file import content_of
+
+    content = content_of(path)
+    name, title = content.get("name"), content.get("title", "")
+    try:
+        return MapRecipe(
+            name=str(name),
+            title=str(title) or str(name),
+            roads=partial(_roads_of_plan, path),
+            plan=partial(_plan_of_file, path),
+            seasons=True,
+            file=path,
+            notice=str(content.get("attribution", "")),
+        )
+    except ConfigError as error:
+        raise DataFileError(f"{path}: {error}") from None
+
+
+def _roads_of_plan(path: Path, seed: int) -> "RoadGraph":
+    """Return the roads of a plan, the same for every seed."""
+    from eyas.state.roads import RoadGraph
+    from eyas.world.plan.file import read_plan, road_faults
+
+    plan = read_plan(path)
+    for line in road_faults(plan, path.parent):
+        raise DataFileError(f"{path}: {line}")
+    roads = plan.roads
+    if roads.file:
+        return _roads(path.parent / roads.file, plan.name, seed)
+    return RoadGraph(plan.name, plan.seed, roads.nodes, roads.edges)
+
+
+def _plan_of_file(path: Path, network: "RoadNetwork", seed: int) -> "MapPlan":
+    """Return a plan with all that it leaves open; a seed other than 0 decides that anew."""
+    from dataclasses import replace
+
+    from eyas.world.plan.file import read_plan
+    from eyas.world.towns.completed import completed
+
+    plan = read_plan(path)
+    return completed(replace(plan, seed=plan.seed + seed) if plan.survey else plan, network)
+
+
+MAP_FILES = MapFiles()
+"""The imported maps of the user, and plans in files."""

@@ -1,0 +1,1 @@
+"""What stands on maps: the table of its kinds, and the structures that only one map has so far."""

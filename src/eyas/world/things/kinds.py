@@ -1,0 +1,222 @@
+"""The kinds of things that stand on maps: their shapes, classes, solids and lights."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core import exact
+from eyas.state.mesh import Mesh
+from eyas.state.scene import ObjectClass
+from eyas.world.build.heights import FLOOR_HEIGHT, KERB_HEIGHT
+from eyas.world.build.millimetres import rounded
+from eyas.world.build.scene_builder import Levels, SceneBuilder
+from eyas.world.buildings import cottages
+from eyas.world.buildings.skyline import FLOOR
+from eyas.world.plants import cones, forest, trees
+from eyas.world.plants.shrubs import PLANTS
+from eyas.world.street import furniture, gantries, lamps, parked_cars, signals
+from eyas.world.things import subway
+from eyas.world.weather import Season
+
+if TYPE_CHECKING:
+    from eyas.world.plan.plan import Kind
+
+__all__ = ["SOLIDS", "THINGS", "Pose", "Thing"]
+
+_TAXI = (0.93, 0.70, 0.08)
+
+
+class Pose(NamedTuple):
+    """Where a thing stands."""
+
+    x: float
+    y: float
+    z: float
+    """[m]"""
+    turn: float
+    """[rad]"""
+    scale: float
+
+    def placed(self, corners: Sequence[tuple[float, float]]) -> NDArray[np.float64]:
+        """Return points given ahead and to the left of it, in the world, shape (K, 2) [m]."""
+        ahead = np.array([exact.cos(self.turn), exact.sin(self.turn)])
+        aside = np.array([-ahead[1], ahead[0]])
+        moved = np.array([a * ahead + b * aside for a, b in corners])
+        return np.asarray(np.array([self.x, self.y]) + moved, np.float64)
+
+
+Solid = Callable[[SceneBuilder, "Kind", Pose, int], None]
+"""Adds what is solid of a copy of a kind: its pose, and its object."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Thing:
+    """A kind of thing."""
+
+    levels: Callable[["Kind", np.random.Generator, Season], Levels]
+    """Returns its shape, the finest level of detail first; the origin is its foot."""
+    kind: ObjectClass = ObjectClass.STRUCTURE
+    solid: str = "nothing"
+    """What of it is solid, a row of `SOLIDS`."""
+    trees: int = 0
+    """Number of trees in it; shrubs are none."""
+    light: tuple[float, float] | None = None
+    """Distance along its arm and height of its light [m]; None: it gives none."""
+
+
+def _upright(radius: float, top: float, *, by_size: bool = False, from_foot: bool = False) -> Solid:
+    """Return the rule of a trunk or a pole, which stands on the floor unless it is `from_foot`.
+
+    Args:
+        radius: Its radius [m], or as a share of the scale.
+        top: z of its top [m], or as a share of the scale.
+        by_size: Whether both are shares of the scale.
+        from_foot: Whether it begins, and its height is measured, at the foot of the copy.
+    """
+
+    def add(builder: SceneBuilder, kind: "Kind", pose: Pose, owner: int) -> None:
+        size = pose.scale if by_size else 1.0
+        foot = pose.z if by_size else FLOOR_HEIGHT
+        high = top * size + (pose.z if from_foot else 0.0)
+        builder.add_cylinder(pose[:2], radius * size, foot, high, owner)
+
+    return add
+
+
+def _car(builder: SceneBuilder, kind: "Kind", pose: Pose, owner: int) -> None:
+    size, (x, y) = pose.scale, (exact.cos(pose.turn), exact.sin(pose.turn))
+    ahead, aside = (
+        size * parked_cars.LONG * np.array([x, y]),
+        size * parked_cars.WIDE * np.array([-y, x]),
+    )
+    corners = [-ahead - aside, ahead - aside, ahead + aside, aside - ahead]
+    outline = rounded(np.array(pose[:2]) + np.array(corners))
+    builder.add_prism(outline, pose.z, pose.z + size * parked_cars.HIGH, owner)
+
+
+def _cottage(builder: SceneBuilder, kind: "Kind", pose: Pose, owner: int) -> None:
+    outline = cottages.outline_at(np.array(pose[:2]), pose.turn)
+    top = FLOOR_HEIGHT + kind.storeys * FLOOR + cottages.ROOF
+    builder.add_prism(outline, FLOOR_HEIGHT, top, owner)
+
+
+def _gantry(builder: SceneBuilder, kind: "Kind", pose: Pose, owner: int) -> None:
+    half = gantries.SPAN / 2
+    for foot in pose.placed([(0.0, -half), (0.0, half)]):
+        builder.add_cylinder(foot, gantries.POST_RADIUS, FLOOR_HEIGHT, gantries.POST_TOP, owner)
+    outline = pose.placed([(-0.3, -half), (0.3, -half), (0.3, half), (-0.3, half)])
+    builder.add_prism(outline, *gantries.boards_of(kind.variant), owner)
+
+
+def _entrance(builder: SceneBuilder, kind: "Kind", pose: Pose, owner: int) -> None:
+    x, y = subway.LONG / 2, subway.WIDE / 2
+    outline = rounded(pose.placed([(-x, -y), (x, -y), (x, y), (-x, y)]))
+    builder.add_prism(outline, FLOOR_HEIGHT, KERB_HEIGHT + 1.1, owner)
+
+
+def _bale(builder: SceneBuilder, kind: "Kind", pose: Pose, owner: int) -> None:
+    builder.add_cylinder(
+        pose[:2], furniture.BALE_RADIUS, pose.z, pose.z + 2 * furniture.BALE_RADIUS, owner
+    )
+
+
+SOLIDS: dict[str, Solid] = {
+    "nothing": lambda builder, kind, pose, owner: None,
+    "trunk": _upright(0.022, 0.3, by_size=True, from_foot=True),
+    "street trunk": _upright(0.022, 0.3, by_size=True),
+    "cone trunk": _upright(0.03, 0.5, by_size=True),
+    "signal": _upright(signals.POLE_RADIUS, signals.POLE_HEIGHT),
+    "lamp": _upright(lamps.POLE_RADIUS, lamps.POLE_HEIGHT),
+    "car": _car,
+    "cottage": _cottage,
+    "gantry": _gantry,
+    "entrance": _entrance,
+    "bale": _bale,
+}
+"""Rules of what is solid of a copy."""
+
+
+def _street_tree(kind: "Kind", rng: np.random.Generator, season: Season) -> Levels:
+    made = trees.street_tree_levels(rng, kind.variant)
+    return made if kind.width == 1.0 else tuple(_widened(level, kind.width) for level in made)
+
+
+def _widened(mesh: Mesh, width: float) -> Mesh:
+    factor = np.array([width, width, 1.0])
+    normals = mesh.normals / factor
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    return replace(
+        mesh,
+        positions=(mesh.positions * factor).astype(np.float32),
+        normals=normals.astype(np.float32),
+    )
+
+
+def _stand(kind: "Kind", rng: np.random.Generator, season: Season) -> Levels:
+    """Return a stand of one of `forest.SPECIES`, or of all of them, by the variant."""
+    one = forest.SPECIES[kind.variant : kind.variant + 1]
+    return forest.stand_levels(one or forest.SPECIES, rng, frosted=season is Season.WINTER)
+
+
+def _house(kind: "Kind", rng: np.random.Generator, season: Season) -> Levels:
+    return cottages.cottage_levels(kind.storeys, kind.walls, kind.roof)
+
+
+def _taxi(kind: "Kind", rng: np.random.Generator, season: Season) -> Levels:
+    paint = parked_cars.parked_car(0)[0].palette[0]
+    return tuple(
+        replace(
+            mesh,
+            palette=tuple(replace(m, tint=_TAXI) if m == paint else m for m in mesh.palette),
+        )
+        for mesh in parked_cars.parked_car(0)
+    )
+
+
+def _always(make: Callable[[], Levels]) -> Callable[["Kind", np.random.Generator, Season], Levels]:
+    return lambda kind, rng, season: make()
+
+
+def _plant(name: str) -> Callable[["Kind", np.random.Generator, Season], Levels]:
+    return lambda kind, rng, season: PLANTS[name](rng)
+
+
+_TREE, _POLE = ObjectClass.TREE, ObjectClass.POLE
+_LIGHT = (lamps.LIGHT[0], lamps.LIGHT[2])
+
+THINGS: Mapping[str, Thing] = {
+    "street tree": Thing(levels=_street_tree, kind=_TREE, solid="trunk", trees=1),
+    "cone tree": Thing(
+        levels=lambda kind, rng, season: cones.cone_tree_levels(rng, kind.variant),
+        kind=_TREE,
+        solid="cone trunk",
+        trees=1,
+    ),
+    "stand": Thing(levels=_stand, kind=_TREE, trees=forest.TREES),
+    **{name: Thing(levels=_plant(name), kind=_TREE) for name in PLANTS if name != "island"},
+    "island": Thing(levels=_plant("island")),
+    "house": Thing(levels=_house, kind=ObjectClass.BUILDING, solid="cottage"),
+    "traffic light": Thing(levels=_always(signals.signal_levels), kind=_POLE, solid="signal"),
+    "dark traffic light": Thing(
+        levels=_always(partial(signals.signal_levels, amber=False)), kind=_POLE, solid="signal"
+    ),
+    "street lamp": Thing(levels=_always(lamps.lamp_levels), kind=_POLE, solid="lamp", light=_LIGHT),
+    **{name: Thing(levels=_always(make)) for name, make in furniture.FURNITURE.items()},
+    "gantry": Thing(
+        levels=lambda kind, rng, season: gantries.gantry_levels(kind.variant),
+        kind=_POLE,
+        solid="gantry",
+    ),
+    "parked car": Thing(
+        levels=lambda kind, rng, season: parked_cars.parked_car(kind.variant), solid="car"
+    ),
+    "parked taxi": Thing(levels=_taxi, solid="car"),
+    "bale": Thing(levels=_always(furniture.bale_levels), solid="bale"),
+    "subway entrance": Thing(levels=_always(subway.entrance_levels), solid="entrance"),
+    "fountain": Thing(levels=_always(furniture.fountain_levels)),
+}
+"""The kinds by name, each made of a `Kind` of a plan, random numbers, and the season."""

@@ -1,0 +1,91 @@
+"""Tell which roads and recordings in the package other code has made than that of today.
+
+    python tools/shipped_data.py            # names what is stale; nothing is made
+    python tools/shipped_data.py --confirm  # makes what is stale again (SUMO, a minute each),
+                                            # compares, and notes that today's code gives the same
+    python tools/shipped_data.py --note     # notes it for what has just been made anew
+
+The notes, `shipped_data.json` beside this file, hold the code (`eyas.core.program`) that made each
+file. What comes out otherwise is made anew with `eyas traffic record --map NAME --canonical`.
+"""
+
+import argparse
+import json
+from collections.abc import Iterator
+from hashlib import sha256
+from pathlib import Path
+
+import numpy as np
+
+from eyas.core.program import code_of
+from eyas.traffic.library import _recorded
+from eyas.traffic.network import build_network
+from eyas.traffic.record import record
+from eyas.traffic.recording_file import RecordingFile
+from eyas.world.maps import MAPS
+from eyas.world.maps.recipe import NETWORK_FILE, MapRecipe
+from eyas.world.roads.network_file import load_network
+
+NOTES = Path(__file__).with_suffix(".json")
+
+
+def main() -> None:
+    """Print what is stale, or make it again."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--confirm", action="store_true", help="make again what is stale")
+    parser.add_argument("--note", action="store_true", help="note that today's code made all")
+    options = parser.parse_args()
+    notes = json.loads(NOTES.read_text()) if NOTES.exists() else {}
+    stale = []
+    for recipe, path in files():
+        name = f"{path.parent.name}/{path.name}"
+        known, now = notes.get(name), noted(recipe, path)
+        if known != now and not options.note:
+            same = options.confirm and is_the_same(recipe, path)
+            print(f"{name}: {'comes out the same' if same else 'made by other code'}", flush=True)
+            if not same:
+                stale.append(name)
+                continue
+        notes[name] = now
+    NOTES.write_text(json.dumps(notes, indent=1, sort_keys=True) + "\n")
+    if stale:
+        raise SystemExit(f"{len(stale)} files are stale")
+
+
+def files() -> Iterator[tuple[MapRecipe, Path]]:
+    """Yield the roads and recordings in the package, each with a map that uses it."""
+    seen = set()
+    for name in MAPS.built_in:
+        recipe = MAPS.get(name)
+        network = recipe.shipped(NETWORK_FILE)
+        for file in (*((network,) if network else ()), *recipe.shipped_traffic()):
+            if str(file) not in seen:
+                seen.add(str(file))
+                yield recipe, Path(str(file))
+
+
+def noted(recipe: MapRecipe, path: Path) -> list[str]:
+    """Return what identifies the code that makes a file, and its content."""
+    maker = build_network if path.name == NETWORK_FILE else _recorded
+    return [code_of(maker), code_of(recipe.roads), sha256(path.read_bytes()).hexdigest()[:32]]
+
+
+def is_the_same(recipe: MapRecipe, path: Path) -> bool:
+    """Make a file again and compare what is in it."""
+    graph = recipe.roads(0)
+    if path.name == NETWORK_FILE:
+        old, new = load_network(path), build_network(graph)
+        names = (name for name in old.__slots__ if name != "builder")
+        return all(np.array_equal(getattr(old, name), getattr(new, name)) for name in names)
+    old = RecordingFile.read(path).load()
+    origin = old.provenance  # which tells SUMO's version, too
+    new = record(origin.map_name, 0, graph, origin.config, origin.duration, origin.config.seed or 0)
+    return all(np.array_equal(getattr(old, name), getattr(new, name)) for name in MOVES)
+
+
+MOVES = ("position", "yaw", "present", "vehicle_types", "vehicle_length")
+"""What a recording says of its vehicles."""
+
+
+if __name__ == "__main__":
+    main()
