@@ -14,15 +14,26 @@ import math
 import gymnasium
 import shapely
 
-from eyas.envs.registration import register_map
-from eyas.state.roads import RoadEdge, RoadGraph, RoadNetwork, RoadNode
-from eyas.world.build.materials import material
-from eyas.world.land.mounds import Mound
-from eyas.world.land.plain import rectangle
-from eyas.world.land.rising import relief_of
-from eyas.world.maps import MapRecipe
-from eyas.world.plan.plan import Chance, Far, Flat, GroundCover, Hills, MapPlan, Roadway
-from eyas.world.roads.areas import road_area
+from eyas import (
+    Chance,
+    Far,
+    Flat,
+    GroundCover,
+    Hills,
+    MapPlan,
+    MapRecipe,
+    Mound,
+    RoadEdge,
+    RoadGraph,
+    RoadNetwork,
+    RoadNode,
+    Roadway,
+    material,
+    rectangle,
+    register_map,
+    relief_of,
+    road_area,
+)
 
 SIZE = (400.0, 400.0)
 HILL = Mound(x=0.0, y=0.0, radius=75.0, height=30.0)
