@@ -9,6 +9,7 @@ import pytest
 import shapely
 
 from eyas.behaviours.config import ExtraConfig
+from eyas.behaviours.gap_acceptance import GapAcceptance
 from eyas.behaviours.ground import Ground, usable_crossings, walkways
 from eyas.behaviours.groups import SampleClock, ScriptedGroup, lasting
 from eyas.behaviours.scripted import scripted_table
@@ -248,7 +249,7 @@ def test_many_cross_and_at_lights_on_green_only(scene, lights, table):
 
 
 def test_who_does_not_look_at_lights_would_be_noticed(scene, lights, vehicles, monkeypatch):
-    monkeypatch.setattr(Gaps, "_shown", lambda *_: True)
+    monkeypatch.setattr(GapAcceptance, "_shown", lambda *_: True)
     blind = walked(Ground(scene, roads=True, lights=lights), vehicles)
     entered, late, caught = broken(scene, lights, blind)
     assert late > 0.2 * entered
