@@ -12,13 +12,8 @@ package, so that they ship with it.
 import math
 
 import gymnasium
-import shapely
 
 from eyas import (
-    Chance,
-    Far,
-    Flat,
-    GroundCover,
     Hills,
     MapPlan,
     MapRecipe,
@@ -27,15 +22,10 @@ from eyas import (
     RoadGraph,
     RoadNetwork,
     RoadNode,
-    Roadway,
-    material,
-    rectangle,
+    Survey,
     register_map,
-    relief_of,
-    road_area,
 )
 
-SIZE = (400.0, 400.0)
 HILL = Mound(x=0.0, y=0.0, radius=75.0, height=30.0)
 CORNERS = 8
 
@@ -55,34 +45,13 @@ def roads(seed: int) -> RoadGraph:
 
 
 def plan(network: RoadNetwork, seed: int) -> MapPlan:
-    """Return grass, the hill and the road."""
-    road = road_area(network)
-    hill = Hills(
-        mounds=(HILL,),
-        flat=shapely.buffer(road, 5.0),
-        half=(100.0, 200.0),
-        spacing=(5.0, 12.0),
-        chance=Chance(stream="field hill"),
-        covers=(material("lawn"),),
-        smooth=True,
-    )
-    # Slightly below the foot of the hill, so that rounding leaves no gap between them.
-    rising = shapely.buffer(relief_of(hill, seed).area, -0.4, join_style="mitre")
-    grass = shapely.difference(rectangle(*SIZE), shapely.union(road, rising))
+    """Return the hill; with a survey of nothing else, Eyas adds the road, grass and lamps."""
     return MapPlan(
         name="field",
         seed=seed,
-        size=SIZE,
-        layers=(
-            hill,
-            Roadway(area=road, wear=Chance(stream="field wear")),
-            GroundCover(
-                pieces=(
-                    Flat(area=grass, cover=material("lawn")),
-                    Far(rule="plain", covers=(material("lawn"),)),
-                )
-            ),
-        ),
+        size=(400.0, 400.0),
+        layers=(Hills(mounds=(HILL,), smooth=True),),
+        survey=Survey(),
     )
 
 

@@ -80,21 +80,13 @@ if TYPE_CHECKING:
     from eyas.task.terms import RewardTerm as RewardTerm
     from eyas.trackers.config import TrackerConfig as TrackerConfig
     from eyas.trackers.tracker import Tracker as Tracker
-    from eyas.world.build.materials import material as material
     from eyas.world.land.mounds import Mound as Mound
-    from eyas.world.land.plain import rectangle as rectangle
-    from eyas.world.land.rising import relief_of as relief_of
     from eyas.world.maps import MapRecipe as MapRecipe
+    from eyas.world.osm.features import Survey as Survey
     from eyas.world.plan.file import read_plan as read_plan
     from eyas.world.plan.file import write_plan as write_plan
-    from eyas.world.plan.plan import Chance as Chance
-    from eyas.world.plan.plan import Far as Far
-    from eyas.world.plan.plan import Flat as Flat
-    from eyas.world.plan.plan import GroundCover as GroundCover
     from eyas.world.plan.plan import Hills as Hills
     from eyas.world.plan.plan import MapPlan as MapPlan
-    from eyas.world.plan.plan import Roadway as Roadway
-    from eyas.world.roads.areas import road_area as road_area
     from eyas.world.weather import CLEAR_DAY as CLEAR_DAY
     from eyas.world.weather import DAY as DAY
     from eyas.world.weather import Season as Season
@@ -110,14 +102,8 @@ _PLACES = {
     "core.clock": ("PHYSICS_STEP",),
     "core.config": ("updated",),
     "core.errors": (
-        "ActionError",
-        "ConfigError",
-        "DataFileError",
-        "EyasError",
-        "MissingExtraError",
-        "OutputError",
-        "SpawnError",
-        "UnknownNameError",
+        *("ActionError", "ConfigError", "DataFileError", "EyasError", "MissingExtraError"),
+        *("OutputError", "SpawnError", "UnknownNameError"),
     ),
     "core.files": ("write_atomic",),
     "core.frames": ("rotate",),
@@ -139,17 +125,8 @@ _PLACES = {
     "lanes": ("kernel",),
     "mesh.shell": ("Shell",),
     "modes.api": (
-        "evaluate",
-        "list_maps",
-        "list_policies",
-        "list_presets",
-        "list_targets",
-        "list_weathers",
-        "make",
-        "make_config",
-        "make_vec",
-        "record",
-        "train",
+        *("evaluate", "list_maps", "list_policies", "list_presets", "list_targets"),
+        *("list_weathers", "make", "make_config", "make_vec", "record", "train"),
     ),
     "settings.config": ("EyasConfig",),
     "settings.file": ("load_settings",),
@@ -166,14 +143,11 @@ _PLACES = {
     "task.terms": ("RewardTerm",),
     "trackers.config": ("TrackerConfig",),
     "trackers.tracker": ("Tracker",),
-    "world.build.materials": ("material",),
     "world.land.mounds": ("Mound",),
-    "world.land.plain": ("rectangle",),
-    "world.land.rising": ("relief_of",),
     "world.maps": ("MapRecipe",),
+    "world.osm.features": ("Survey",),
     "world.plan.file": ("read_plan", "write_plan"),
-    "world.plan.plan": ("Chance", "Far", "Flat", "GroundCover", "Hills", "MapPlan", "Roadway"),
-    "world.roads.areas": ("road_area",),
+    "world.plan.plan": ("Hills", "MapPlan"),
     "world.weather": ("CLEAR_DAY", "DAY", "Season", "Weather"),
 }
 """Where the public names are. A test holds them equal to the imports above, which type checkers and

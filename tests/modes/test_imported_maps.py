@@ -160,7 +160,7 @@ def test_streets_lie_where_buildings_expect_them(town, source):
 
 def test_a_scene_is_the_same_each_time(scene, town):
     recipe, network = MAPS.get(NAME), scene.network
-    again = build_scene(recipe.plan(network, 0), network)
+    again = build_scene(recipe.complete_plan(network, 0), network)
     np.testing.assert_array_equal(again.static.positions, scene.static.positions)
     np.testing.assert_array_equal(again.fixtures.pose, scene.fixtures.pose)
 

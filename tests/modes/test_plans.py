@@ -93,7 +93,7 @@ def hamlet(tmp_path_factory):
 def test_a_plan_drawn_by_hand_is_completed(hamlet):
     known = read_plan(Path(hamlet)).survey
     network, recipe = load_network(str(hamlet), 0), MAPS.get(str(hamlet))
-    made = recipe.plan(network, 0)
+    made = recipe.complete_plan(network, 0)
     assert made.survey is None
     buildings = next(layer for layer in made.layers if isinstance(layer, Buildings))
     assert len(buildings.items) == len(known.houses)
@@ -111,9 +111,9 @@ def test_a_plan_drawn_by_hand_is_completed(hamlet):
     assert sum(area.area for area in flat) == pytest.approx(joined.area, rel=2e-4)
     pond = shapely.Polygon(known.areas[0].shape)
     assert joined.area + pond.area == pytest.approx(400 * 400, rel=2e-3)
-    other = recipe.plan(network, 1)
+    other = recipe.complete_plan(network, 1)
     assert other.seed == 1
-    assert recipe.plan(network, 0).layers[1] == made.layers[1]
+    assert recipe.complete_plan(network, 0).layers[1] == made.layers[1]
 
 
 @pytest.mark.sumo

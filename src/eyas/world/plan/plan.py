@@ -82,7 +82,7 @@ __all__ = [
 
 
 _PAVING, _KERB = material("paving"), material("stone", (1.0, 0.95, 0.92))
-_PLASTER, _TILES = facade("facade_plaster"), material("roof_tiles")
+_PLASTER, _TILES, _LAWN = facade("facade_plaster"), material("roof_tiles"), material("lawn")
 
 
 def _makers() -> tuple[str, ...]:
@@ -121,6 +121,9 @@ class Chance:
             "uinteger": int(half),
         }
         return np.random.Generator(made)
+
+
+_CORNERS = Chance(stream="hills")
 
 
 def state_of(rng: np.random.Generator) -> Chance:
@@ -426,17 +429,18 @@ class Hills:
 
     layer: Literal["hills"] = "hills"
     mounds: tuple[Mound, ...]
-    flat: Area
-    """Area that stays level [m]."""
-    half: tuple[Positive, Positive]
+    """The hills."""
+    flat: Area | None = None
+    """Area that stays level [m]; with a survey, streets and buildings do so, too."""
+    half: tuple[Positive, Positive] = (345.0, 730.0)
     """Half the side of the square with the smaller triangles, and of the whole relief [m]."""
-    spacing: tuple[Positive, Positive]
+    spacing: tuple[Positive, Positive] = (6.5, 12.5)
     """Distance of their corners inside and outside of that square [m]."""
     rough: Annotated[float, Ge(0.0)] = 0.0
     """Most by which a corner lies above or below the smooth shape, as a share of its height."""
-    chance: Chance
+    chance: Chance = _CORNERS
     """Of the corners."""
-    covers: Annotated[tuple[Cover, ...], Len(1)]
+    covers: Annotated[tuple[Cover, ...], Len(1)] = (_LAWN,)
     """Covers from the foot up; under snow: ground, thin snow, snow."""
     shades: Chance | None = None
     """Of the choice of covers by height; None: all is of the first, with snow on it in winter."""

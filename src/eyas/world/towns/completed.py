@@ -18,6 +18,7 @@ from eyas.world.build.materials import material
 from eyas.world.build.placed import Placed
 from eyas.world.buildings.parts import rings
 from eyas.world.land import ground, outskirts
+from eyas.world.land.rising import relief_of
 from eyas.world.osm.features import Survey
 from eyas.world.plan.library import CAR_KINDS, FURNITURE_KINDS, STREET_KINDS, plant_kinds
 from eyas.world.plan.plan import (
@@ -27,6 +28,7 @@ from eyas.world.plan.plan import (
     Far,
     Flat,
     GroundCover,
+    Hills,
     Layer,
     MapPlan,
     Paint,
@@ -38,7 +40,7 @@ from eyas.world.plan.plan import (
     things,
 )
 from eyas.world.plants import gardens, trees
-from eyas.world.roads.areas import polygons_of, streets
+from eyas.world.roads.areas import polygons_of, road_area, streets
 from eyas.world.street import signals
 from eyas.world.street.bays import bays_in
 from eyas.world.street.furnishing import furniture_along
@@ -91,6 +93,8 @@ _RAIL = Material(tint=(0.36, 0.33, 0.31))
 _GAUGE = 0.72
 """Half the distance between the rails of a track [m]."""
 _RAIL_HEIGHT = 0.12
+_BESIDE_ROAD, _BESIDE_WALL = 6.0, 4.0
+"""From streets with their pavements, and from walls, to the feet of hills [m]."""
 _WORN_FROM = 30.0
 """Shorter lanes have no wear [m]."""
 _USUAL = (6.5, 12.5)
@@ -135,7 +139,9 @@ def completed(plan: MapPlan, network: RoadNetwork) -> MapPlan:
     known, seed = plan.survey, plan.seed
     if known is None:
         return plan
-    town = lay_out(network, known, plan.size, _given(plan))
+    level = _level(network, known)
+    layers = [_levelled(one, level) if isinstance(one, Hills) else one for one in plan.layers]
+    town = lay_out(network, known, plan.size, _given(layers, seed))
     buildings = [building_of(house, seed) for house in town.houses]
     # The largest occluders come first: they are drawn first, so less is drawn twice.
     buildings.sort(key=lambda one: -_outside(one.parts[0]))
@@ -169,7 +175,7 @@ def completed(plan: MapPlan, network: RoadNetwork) -> MapPlan:
         },
         layers=(
             things([], _TREES),
-            *plan.layers,
+            *layers,
             Buildings(items=tuple(buildings)),
             things(cars, CARS),
             *_ground(town, network, known, bays, seed),
@@ -185,10 +191,21 @@ def completed(plan: MapPlan, network: RoadNetwork) -> MapPlan:
     )
 
 
-def _given(plan: MapPlan) -> Given:
+def _level(network: RoadNetwork, known: Survey) -> shapely.Geometry:
+    """Return where hills leave room for streets, pavements and buildings [m]."""
+    streets_ = shapely.buffer(road_area(network), _BESIDE_ROAD + known.sidewalks)
+    built = [shapely.buffer(house.shape, _BESIDE_WALL) for house in known.houses]
+    return shapely.union_all([streets_, *built])
+
+
+def _levelled(hills: Hills, level: shapely.Geometry) -> Hills:
+    return replace(hills, flat=shapely.union_all([level, hills.flat or shapely.Polygon()]))
+
+
+def _given(layers: Sequence[Layer], seed: int) -> Given:
     """Return what the layers of a plan have already put somewhere."""
     built, covered = [], []
-    for layer in plan.layers:
+    for layer in layers:
         if isinstance(layer, Buildings):
             shells = (one.parts[0] for one in layer.items)
             built += [one.outline for one in shells if one.bottom <= FLOOR_HEIGHT]
@@ -196,6 +213,11 @@ def _given(plan: MapPlan) -> Given:
             covered += [piece.area for piece in layer.pieces if not isinstance(piece, Far)]
         elif isinstance(layer, Paved | Roadway):
             covered.append(layer.area)
+        elif isinstance(layer, Hills):
+            # Slightly below their feet, so that rounding leaves no gap between them and the ground.
+            rising = shapely.buffer(relief_of(layer, seed).area, -0.4, join_style="mitre")
+            built.append(rising)
+            covered.append(rising)
     covered = [shapely.make_valid(area) for area in covered]
     return Given(shapely.union_all(built), shapely.union_all(covered))
 
