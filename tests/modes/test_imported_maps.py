@@ -293,7 +293,7 @@ def test_a_gltf_file_is_read_back_with_the_stated_number_of_triangles(tmp_path, 
 
 
 def test_plans_are_in_degrees_and_rasters_hold_heights(tmp_path, scene, source):
-    plan_files.run(NAME, 0, tmp_path, 1.0)
+    plan_files.write_layers(NAME, 0, tmp_path, 1.0)
     roads, houses = (json.loads((tmp_path / f"{n}.geojson").read_text())
                      for n in ("roads", "buildings"))  # fmt: skip
     assert roads["attribution"] == NOTICE

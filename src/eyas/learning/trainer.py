@@ -15,7 +15,7 @@ from eyas.envs.choice import steps_per_action
 from eyas.envs.config import ActionKind, ObservationPart
 from eyas.envs.observation import observation_space
 from eyas.learning.board import Board
-from eyas.learning.checkpoint import Progress, RunFolder
+from eyas.learning.checkpoint import RunFolder, TrainingProgress
 from eyas.learning.config import Stage
 from eyas.learning.crew import Crew
 from eyas.learning.exam import NO_MARKS, Marks, episodes_of_exam, examine
@@ -92,7 +92,7 @@ class _Run:
             RunFolder(Path(config.train.begin_from)).load_network(self.network)
         rate = config.train.learning_rate
         self.optimiser = torch.optim.Adam(self.network.parameters(), rate, eps=1e-5)
-        self.progress = Progress()
+        self.progress = TrainingProgress()
         self._board = Board(files.path / "tensorboard")
         updates = map(config.train.updates_of, config.train.stages)
         self._total = sum(updates) * config.train.update_decisions

@@ -1,27 +1,79 @@
-"""Who flies in the place of the keys: a policy, or a tracker of boxes outside Eyas."""
+"""Who flies in the place of the keys: a policy, or a tracker of boxes; and duels of both."""
 
 import math
 import time
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.clock import physics_steps
+from eyas.core.clock import PHYSICS_RATE, physics_steps
 from eyas.core.errors import ConfigError
 from eyas.envs.actions import make_actions
 from eyas.envs.observation import Observer
 from eyas.evaluation.policies.policy import PolicyInput, Start
 from eyas.evaluation.policies.table import open_policy
-from eyas.modes.demo.flight import Flight
+from eyas.modes.demo.flight import DemoFlight
 from eyas.state.draw import DrawStage, Picture
 
-__all__ = ["BoxPilot", "Pilot", "PolicyPilot"]
+__all__ = ["SEED", "BoxController", "Controller", "Duel", "PolicyController"]
+
+SEED = 7
+"""Of the episode that is flown, so that results of different days can be compared."""
+SECONDS = 60
+READY = 3.0
+"""Seconds before each flight in which everything stands still."""
+
+
+class Duel:
+    """The two flights. A score is the mean reward, 0 to 100.
+
+    Attributes:
+        policy: Name of the policy.
+        stage: `you`, `policy` or `over`.
+    """
+
+    def __init__(self, policy: str, now: float) -> None:
+        self.policy, self.stage = policy, "you"
+        self._sums = {"you": 0.0, "policy": 0.0}
+        self._steps = {"you": 0, "policy": 0}
+        self._from = now + READY
+
+    def waits(self, now: float) -> bool:
+        """Return whether the next flight has not begun."""
+        return now < self._from
+
+    def count(self, reward: float, steps: int, now: float) -> bool:
+        """Count steps with a reward; return whether a flight has ended with them."""
+        if self.stage == "over":
+            return False
+        self._sums[self.stage] += reward * steps
+        self._steps[self.stage] += steps
+        if self._steps[self.stage] < SECONDS * PHYSICS_RATE:
+            return False
+        self.stage = "policy" if self.stage == "you" else "over"
+        self._from = now + READY
+        return True
+
+    def told(self, now: float) -> dict[str, Any]:
+        """Return stage, scores and seconds left."""
+        steps = self._steps.get(self.stage, 0)
+        return {
+            "policy": self.policy,
+            "stage": self.stage,
+            "ready": round(max(self._from - now, 0.0), 1) if self.stage != "over" else 0.0,
+            "left": round(SECONDS - steps / PHYSICS_RATE, 1),
+            "scores": {
+                who: round(100.0 * total / max(self._steps[who], 1), 1)
+                for who, total in self._sums.items()
+            },
+        }
+
 
 Commands = NDArray[np.float64]
 
 
-class Pilot(Protocol):
+class Controller(Protocol):
     """Flies the drone."""
 
     def decide(self) -> tuple[Commands, int]:
@@ -29,7 +81,7 @@ class Pilot(Protocol):
         ...
 
 
-class PolicyPilot:
+class PolicyController:
     """Lets a policy fly, from now on.
 
     Args:
@@ -40,7 +92,7 @@ class PolicyPilot:
         EyasError: There is no such policy, or what it needs is not installed.
     """
 
-    def __init__(self, name: str, flight: Flight) -> None:
+    def __init__(self, name: str, flight: DemoFlight) -> None:
         self._name = name
         self._policy = open_policy(name, {})
         env = self._policy.env
@@ -83,7 +135,7 @@ class PolicyPilot:
         return picture.subject_box
 
 
-class BoxPilot:
+class BoxController:
     """Flies by the boxes that a tracker outside sees in the pictures of the drone's camera.
 
     The middle of the box is taken for a point of the ground under a camera that looks down, and
@@ -99,7 +151,7 @@ class BoxPilot:
     """How long a box holds [s]."""
     STEPS = 4
 
-    def __init__(self, flight: Flight) -> None:
+    def __init__(self, flight: DemoFlight) -> None:
         self._flight = flight
         self._offset = np.zeros(2)
         self._until = 0.0
