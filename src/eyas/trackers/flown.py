@@ -22,8 +22,7 @@ from eyas.trackers.flight_controller import attitude_torque, desired_force, mixe
 from eyas.trackers.gimbal import advance_gimbal, camera_pose, reset_gimbal
 from eyas.trackers.gimbal_servo import ServoMemory, advance_servo, settle_servo
 from eyas.trackers.level_gimbal import level_pose
-from eyas.trackers.rigid_body import Body, Thrusts, moved
-from eyas.trackers.rotors import spun_up
+from eyas.trackers.rigid_body import Body, Thrusts, moved, spun_up
 from eyas.trackers.steady import launch
 from eyas.trackers.tracker import Tracker
 from eyas.trackers.wind import WindMemory, begin_wind, blow
