@@ -27,7 +27,7 @@ from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.messages import originals_named
 from eyas.sim.assets import Assets
 from eyas.sim.build import build_simulation
-from eyas.sim.episode_draw import DrawRules, ModelTable
+from eyas.sim.episode_sampling import ModelTable, SamplingRules
 from eyas.sim.light import LightRules
 from eyas.sim.views.visible_actors import VisibleActors
 from eyas.sim.worlds import each_alone, together
@@ -45,7 +45,7 @@ __all__ = ["Batch", "Outcome", "Seeds"]
 _CODE = (types.FunctionType, types.MethodType, partial, type, CompiledCall)
 _SETTINGS = (BaseModel, Enum, gymnasium.Space)
 _SHARED = (Assets, Renderer, Lighting, Motion, Terrain)
-_TABLES = (DrawRules, LightRules, LookTable, ModelTable)
+_TABLES = (SamplingRules, LightRules, LookTable, ModelTable)
 """Made of the settings and the catalogue, which may have grown in this process."""
 _BOUND = (BoundCall, Held)
 """To the addresses of arrays, which stay."""

@@ -215,7 +215,7 @@ def flown_drone(config: TrackerConfig, frame: Airframe = ORIGINAL) -> Tracker:
     )
     blows = wind.turbulence > 0.0 or bounds(wind.speed) != (0.0, 0.0)
 
-    def draw(memory: FlightMemory, n: int, key: EpisodeKey) -> None:
+    def sample(memory: FlightMemory, n: int, key: EpisodeKey) -> None:
         begin_wind(memory.wind, n, wind.speed, wind.direction, key)
 
     return Tracker(
@@ -226,6 +226,6 @@ def flown_drone(config: TrackerConfig, frame: Airframe = ORIGINAL) -> Tracker:
         carry,
         aim,
         launch,
-        draw if blows else None,
+        sample if blows else None,
         jumps=False,
     )

@@ -18,7 +18,7 @@ from eyas.task.packet_rows import SENSOR_COLUMNS
 from eyas.task.packets import BASIC_COLUMNS
 from eyas.wire.codec import Action, packet_line
 
-__all__ = ["Answer", "Crew"]
+__all__ = ["Answer", "TrackerGroup"]
 
 _LOG = logging.getLogger("eyas")
 
@@ -36,7 +36,7 @@ class Answer(NamedTuple):
     """JPEG; made in another thread while the client reads the packets."""
 
 
-class Crew:
+class TrackerGroup:
     """N trackers that act at once and share a world, whose time goes on from episode to episode.
 
     Attributes:
