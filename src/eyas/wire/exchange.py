@@ -1,4 +1,4 @@
-"""The folder of the original in which simulator and clients exchange files, and waiting for them."""
+"""The folder of the original in which simulator and clients exchange files, and the waiting."""
 
 import os
 import re
