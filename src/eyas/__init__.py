@@ -80,7 +80,13 @@ if TYPE_CHECKING:
     from eyas.task.terms import RewardTerm as RewardTerm
     from eyas.trackers.config import TrackerConfig as TrackerConfig
     from eyas.trackers.tracker import Tracker as Tracker
+    from eyas.world.land.mounds import Mound as Mound
     from eyas.world.maps import MapRecipe as MapRecipe
+    from eyas.world.osm.features import Survey as Survey
+    from eyas.world.plan.file import read_plan as read_plan
+    from eyas.world.plan.file import write_plan as write_plan
+    from eyas.world.plan.plan import Hills as Hills
+    from eyas.world.plan.plan import MapPlan as MapPlan
     from eyas.world.weather import CLEAR_DAY as CLEAR_DAY
     from eyas.world.weather import DAY as DAY
     from eyas.world.weather import Season as Season
@@ -135,7 +141,11 @@ _PLACES = {
     "task.terms": ("RewardTerm",),
     "trackers.config": ("TrackerConfig",),
     "trackers.tracker": ("Tracker",),
+    "world.land.mounds": ("Mound",),
     "world.maps": ("MapRecipe",),
+    "world.osm.features": ("Survey",),
+    "world.plan.file": ("read_plan", "write_plan"),
+    "world.plan.plan": ("Hills", "MapPlan"),
     "world.weather": ("CLEAR_DAY", "DAY", "Season", "Weather"),
 }
 """Where the public names are. A test holds them equal to the imports above, which type checkers and

@@ -61,13 +61,15 @@ def main() -> None:
         before = {}
         for file, text, new in edits:
             path = PACKAGE / file
-            before.setdefault(path, path.read_text())
-            said = path.read_text()
-            assert said.count(text), f"{file}: has no {text!r}"
+            said = path.read_text() if path.exists() else ""
+            before.setdefault(path, said)
+            assert text in said, f"{file}: has no {text!r}"
             path.write_text(said.replace(text, new, 1))
         found.append(keys())
         for path, said in before.items():
             path.write_text(said)
+            if not said:
+                path.unlink()
     print(json.dumps(found))
 
 

@@ -25,21 +25,18 @@ SILENT = [
     ("render/textures/plants.py", "(46.0, 60.0, 28.0)", "( 46.0,60.0, 28.0, )"),
     ("world/weather.py", "\nimport", "\n# light\nimport"),
     ("world/maps/recipe.py", "is not allowed; allowed: words", "is wrong; allowed: words"),
-    ("targets/vehicles/models.py", '"""Length of the cab', '"""The length of the cab'),
+    ("targets/vehicles/vehicle.py", '"""Length of the cab', '"""The length of the cab'),
     ("render/kernels/surface/shade.py", "SHARP = f4(0.004)", "# a why\nSHARP = f4(0.004)"),
     ("cli/main.py", '"""', '"""Another text. '),
     ("cli/app.py", "import typer", "import typer as typer"),
 ]
-CAR = '    _car("TeslaModel3Simple", (4.8, 1.85, 1.5), (2.94, 0.36, 1.53)),\n'
 EDITS = {
     "silent": SILENT,
     "reward": [("task/reward.py", "_FARTHEST = 1e12", "_FARTHEST = 1e11")],
     "ambient": [("render/bake/ambient.py", "_LOWEST = 1.5", "_LOWEST = 15.0")],
     "texture": [("render/textures/plants.py", "(46.0, 60.0, 28.0)", "(47.0, 60.0, 28.0)")],
-    "car": [
-        ("targets/vehicles/models.py", CAR, CAR + CAR.replace("Tesla", "Lada")),
-        ("targets/vehicles/cars.py", "_FASTBACK,\n", '_FASTBACK,\n    "LadaModel3Simple": _SUV,\n'),
-    ],
+    "car": [("targets/vehicles/models/bus.py", "MODEL =", "MORE = 1\nMODEL =")],
+    "new car": [("targets/vehicles/models/lada.py", "", "MODEL = 1\n")],
     "sun": [("world/weather.py", "sun_colour=(1.02, 0.96, 0.84)", "sun_colour=(1.02, 0.1, 0.1)")],
     "shading": [("render/kernels/surface/shade.py", "SHARP = f4(0.004)", "SHARP = f4(0.005)")],
     "downtown": [("world/maps/downtown/scene.py", "_TAXIS = 0.2", "_TAXIS = 0.3")],
@@ -82,6 +79,7 @@ VEHICLES = {f"kind {name}" for name in ("passenger", "bus", "truck", "trailer", 
         ("ambient", {"render"}, {"ambient"}),
         ("texture", {"render"}, {"textures"}),
         ("car", {"targets"}, VEHICLES | {"people"}),
+        ("new car", {"targets"}, VEHICLES | {"people"}),
         ("sun", {"world"}, set()),
         ("shading", {"render"}, set()),
         ("downtown", {"world"}, {"downtown"}),
@@ -168,6 +166,12 @@ PARTS = {
         def of_table(name):
             return TABLE[name]()
     """,
+    "files/__init__.py": """
+        from importlib import import_module
+        def every(names):
+            return [import_module(f"{__name__}.{name}").SIZE for name in names]
+    """,
+    "files/one.py": "SIZE = 1\n",
     "texts.py": """
         PLACES = {"late": "parts_of_a_test.late:late"}
         def by_name(name):
@@ -189,6 +193,7 @@ def parts(tmp_path, monkeypatch):
     folder = tmp_path / "parts_of_a_test"
     folder.mkdir()
     for name, text in PARTS.items():
+        (folder / name).parent.mkdir(exist_ok=True)
         (folder / name).write_text(textwrap.dedent(text))
     monkeypatch.syspath_prepend(tmp_path)
     monkeypatch.delitem(sys.modules, "parts_of_a_test", raising=False)
@@ -203,6 +208,7 @@ MASS = {("shapes", "Base"), ("shapes", "Ball"), ("numbers", "MASS")}
     ("module", "name", "reached"),
     [
         ("late", "late", MASS | {("late", "late")}),
+        ("files", "every", {("files", "every"), ("files.one", "SIZE")}),
         ("typed", "weigh", MASS | {("typed", "weigh")}),
         ("texts", "by_name", MASS | {("late", "late"), ("texts", "by_name"), ("texts", "PLACES")}),
         (

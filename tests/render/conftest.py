@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from eyas.render.pack.geometry import build_geometry
-from eyas.render.renderer import Renderer, build_renderer
+from eyas.render.renderer import CpuRenderer, build_renderer
 from eyas.state.draw import DrawList, PartLibrary, Picture, Views
 from eyas.state.lighting import Lighting
 from eyas.state.scene import Scene
@@ -18,10 +18,12 @@ def images():
 
 
 @pytest.fixture(scope="session")
-def renderer_of(tmp_path_factory, images) -> Callable[..., Renderer]:
+def renderer_of(tmp_path_factory, images) -> Callable[..., CpuRenderer]:
     folder = tmp_path_factory.mktemp("shadows")
 
-    def build(scene: Scene, parts: PartLibrary | None = None, lighting: Lighting = DAY) -> Renderer:
+    def build(
+        scene: Scene, parts: PartLibrary | None = None, lighting: Lighting = DAY
+    ) -> CpuRenderer:
         geometry = build_geometry(scene, parts or PartLibrary(()), images)
         return build_renderer(scene, geometry, lighting, cache=folder)
 
@@ -29,14 +31,14 @@ def renderer_of(tmp_path_factory, images) -> Callable[..., Renderer]:
 
 
 @pytest.fixture(scope="session")
-def city(renderer_of) -> tuple[Renderer, DrawList]:
+def city(renderer_of) -> tuple[CpuRenderer, DrawList]:
     return renderer_of(city_scene(), car_parts()), city_traffic(2)
 
 
 @pytest.fixture(scope="session")
 def drawn() -> Callable[..., Picture]:
     def draw(
-        renderer: Renderer,
+        renderer: CpuRenderer,
         views: Views,
         draw_list: DrawList | None = None,
         size: tuple[int, int] = (96, 128),

@@ -14,7 +14,6 @@ from eyas.render.jobs import Size, new_task, set_views
 from eyas.render.kernels.bundles import Movers
 from eyas.render.kernels.light.view_light import view_light
 from eyas.render.kernels.scalars import u4
-from eyas.render.kernels.surface.pixel import shade_pixel
 from eyas.render.kernels.visibility.transform import view_of
 from eyas.sensors.config import CameraConfig, MountConfig
 from eyas.sensors.mount import CARRIED, mount_of
@@ -29,6 +28,7 @@ from eyas.trackers.config import TrackerConfig
 from eyas.trackers.drone import DRONE
 from eyas.trackers.kinds import tracker_of
 
+from .one_pixel import shade_pixel
 from .small_city import car_parts, city_scene, city_traffic, looking
 
 

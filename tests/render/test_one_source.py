@@ -7,11 +7,11 @@ from eyas.lanes import address_of, compiled
 from eyas.render import renderer as module
 from eyas.render.kernels.light.view_light import view_light
 from eyas.render.kernels.scalars import u4
-from eyas.render.kernels.surface.pixel import shade_pixel
 from eyas.render.kernels.visibility.transform import view_of
 from eyas.state.draw import Picture
 from eyas.world.weather import CLEAR_DAY, CLEAR_NIGHT, FOG, WINTER_DAY
 
+from .one_pixel import shade_pixel
 from .small_city import car_parts, city_scene, city_traffic, looking, with_line
 
 SIZE = (100, 203)

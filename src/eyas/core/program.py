@@ -8,8 +8,9 @@ of what once made it.
 
 Comments, docstrings, annotations, and the texts of errors and of the log say nothing. Classes that
 annotations name are followed, since their methods are called. A text `package.module:attribute`
-refers to what it names, as in tables of what is imported late. Where a name cannot be found, its
-whole module is taken: one dependency too many costs seconds, a missing one a wrong result.
+refers to what it names, as in tables of what is imported late. A package that
+uses `import_module` refers to all its modules. Where a name cannot be found, its whole module is
+taken: one dependency too many costs seconds, a missing one a wrong result.
 """
 
 import ast
@@ -142,7 +143,18 @@ def _references(place: Place, package: str) -> tuple[Place, ...]:
         at, colon, chain = reference.rpartition(":")
         at = _absolute(at, module) if colon else module
         found.update(dict.fromkeys(_targets(at, chain, package)))
+        if at == "importlib" and chain == "import_module":
+            for inner in _modules_in(module):
+                found.update(dict.fromkeys(_targets(inner, "", package)))
     return tuple(found)
+
+
+def _modules_in(package: str) -> list[str]:
+    """Return the modules in the folder of a package, which it imports by names it has found."""
+    path = _path(package)
+    if path is None or path.name != "__init__.py":
+        return []
+    return [f"{package}.{file.stem}" for file in sorted(path.parent.glob("*.py")) if file != path]
 
 
 @cache

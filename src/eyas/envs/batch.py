@@ -22,7 +22,7 @@ from eyas.envs.actions import make_actions
 from eyas.envs.information import Info, information
 from eyas.envs.observation import Observer
 from eyas.lanes import BoundCall, CompiledCall, Held
-from eyas.render.renderer import Renderer
+from eyas.render.renderer import CpuRenderer
 from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.messages import originals_named
 from eyas.sim.assets import Assets
@@ -44,7 +44,7 @@ __all__ = ["Batch", "Outcome", "Seeds"]
 
 _CODE = (types.FunctionType, types.MethodType, partial, type, CompiledCall)
 _SETTINGS = (BaseModel, Enum, gymnasium.Space)
-_SHARED = (Assets, Renderer, Lighting, Motion, Terrain)
+_SHARED = (Assets, CpuRenderer, Lighting, Motion, Terrain)
 _TABLES = (SamplingRules, LightRules, LookTable, ModelTable)
 """Made of the settings and the catalogue, which may have grown in this process."""
 _BOUND = (BoundCall, Held)

@@ -16,7 +16,7 @@ from eyas.render.bake.tracks import TrackMap
 from eyas.render.kernels.draw import draw_views
 from eyas.render.pack.geometry import build_geometry
 from eyas.render.pack.light import build_light
-from eyas.render.renderer import Renderer
+from eyas.render.renderer import CpuRenderer
 from eyas.state.draw import DrawList, PartLibrary, Picture, Views
 from eyas.state.lighting import Lighting
 from eyas.state.scene import Scene
@@ -109,5 +109,5 @@ def draw_nothing() -> None:
         subject=np.zeros(1, np.int32),
         field_of_view=1.0,
     )
-    renderer = Renderer(geometry, light)
+    renderer = CpuRenderer(geometry, light)
     renderer.draw(views, DrawList.create(1, 1), Picture.create(1, 8, 8))

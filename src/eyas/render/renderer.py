@@ -34,14 +34,11 @@ from eyas.state.draw import DrawList, DrawStage, Picture, Views
 from eyas.state.lighting import Lighting
 from eyas.state.scene import Scene
 
-__all__ = ["Renderer", "build_renderer"]
+__all__ = ["CpuRenderer", "build_renderer"]
 
 
-class Renderer:
-    """Draws a scene and the things that move in it.
-
-    A picture depends on nothing but its view: other views, their order, the number of threads
-    and the division into bands do not change a byte.
+class CpuRenderer:
+    """Draws a scene and the things that move in it, in bands, with all threads; see `Renderer`.
 
     Args:
         geometry: Everything that can be drawn.
@@ -62,11 +59,6 @@ class Renderer:
         self._scratch: dict[tuple[int, ...], Held[Scratch]] = {}
         self._tasks: dict[Size, Held[Task]] = {}
 
-    @property
-    def textures(self) -> NDArray[np.uint32]:
-        """All textures with their mip levels, see `Geometry.texture`."""
-        return self._geometry.texture
-
     def part_reach(self) -> NDArray[np.float64]:
         """Return how far the corners of each part of the library are from its origin [m]."""
         box = self._geometry.box[self._geometry.part_first :].astype(np.float64)
@@ -75,11 +67,7 @@ class Renderer:
         return reach
 
     def influence(self, reach: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Return the distance up to which things, their shadows and lamps may show [m].
-
-        Args:
-            reach: How far the corners of their parts may be from any point of them [m].
-        """
+        """Return the distance up to which things may show [m], see `Renderer`."""
         sun, lamps_on = self._light.weather.sun, bool(self._light.weather.air.lamps > 0.0)
         return np.array([_influence(one, sun, lamps_on) for one in reach.tolist()])
 
@@ -91,19 +79,7 @@ class Renderer:
         samples: int = 1,
         until: DrawStage = DrawStage.SHADING,
     ) -> None:
-        """Draw views into the arrays of a picture that are not None.
-
-        Args:
-            views: V cameras.
-            draw_list: The moving things.
-            picture: Written in place.
-            samples: Colour samples per pixel, 1 or 4. Depth, objects and the subject's
-                measurements are always those at the pixels' centres.
-            until: Last stage to run, to measure the cost of each stage.
-
-        Raises:
-            ConfigError: `samples` is neither 1 nor 4.
-        """
+        """Draw views into the arrays of a picture that are not None, see `Renderer`."""
         if samples not in (1, 4):
             raise ConfigError(f"camera.samples: {samples} is not allowed; allowed: 1, 4")
         if self._ready is not None:
@@ -181,7 +157,7 @@ def build_renderer(
     *,
     cache: Path | None = None,
     ready: Callable[[], object] | None = None,
-) -> Renderer:
+) -> CpuRenderer:
     """Return a renderer of a scene, its shadows baked.
 
     Args:
@@ -195,7 +171,7 @@ def build_renderer(
     tracks = track_map(scene) if lighting.snow > 0 else TrackMap.none()
     ambient = bake_ambient(scene, cache)
     light = build_light(scene, lighting, shadows, ambient, tracks, geometry)
-    return Renderer(geometry, light, ready)
+    return CpuRenderer(geometry, light, ready)
 
 
 Key = TypeVar("Key", bound=Hashable)

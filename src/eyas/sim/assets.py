@@ -10,12 +10,13 @@ from eyas.behaviours.groups import SampleClock
 from eyas.core.cache.array_file import let_go
 from eyas.core.errors import ConfigError
 from eyas.render.ahead import begin_ahead, drawing_is_ready
-from eyas.render.renderer import Renderer, build_renderer
+from eyas.render.renderer import build_renderer
 from eyas.sensors.obstacles import Solids
 from eyas.sim.crowd import NOBODY, Crowd, vehicles_of
 from eyas.sim.crowd_motion import Surroundings, crowd_motions, with_crowd
 from eyas.sim.scenes import load_geometry, load_scene, load_solids
 from eyas.sim.views.additions import SignalLights, lights_of
+from eyas.state.draw import Renderer
 from eyas.state.lighting import Lighting
 from eyas.state.motion import Motion
 from eyas.state.scene import Scene

@@ -1,7 +1,7 @@
 """The step: one kernel call moves all trackers and computes their rewards and ends, for all
 physics steps of a command.
 
-Its kernels get the address of their arguments (`eyas.lanes.parallel`): unpacking about fifty arrays
+Its kernels get the address of their arguments (`eyas.lanes.calls`): unpacking about fifty arrays
 at each call would take four times as long as a step of one tracker.
 """
 

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, fields
 from enum import IntEnum
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,7 +12,7 @@ from eyas.state.lighting import LightState
 from eyas.state.mesh import Mesh
 from eyas.state.scene import ObjectClass
 
-__all__ = ["DrawList", "DrawStage", "PartLibrary", "Picture", "Views"]
+__all__ = ["DrawList", "DrawStage", "PartLibrary", "Picture", "Renderer", "Views"]
 
 
 class DrawStage(IntEnum):
@@ -196,3 +197,46 @@ class Picture:
         """Return the first views; the arrays are shared."""
         arrays = (getattr(self, array.name) for array in fields(self))
         return Picture(*(None if array is None else array[:views] for array in arrays))
+
+
+class Renderer(Protocol):
+    """What simulations ask of a renderer. Another one may stand in the place of `eyas.render`.
+
+    A picture depends on nothing but its view: other views, their order and the number of threads
+    do not change a byte.
+    """
+
+    def part_reach(self) -> NDArray[np.float64]:
+        """Return how far the corners of each part of the library are from its origin [m]."""
+        ...
+
+    def influence(self, reach: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Return the distance up to which things, their shadows and lamps may show [m].
+
+        Args:
+            reach: How far the corners of their parts may be from any point of them [m].
+        """
+        ...
+
+    def draw(
+        self,
+        views: Views,
+        draw_list: DrawList,
+        picture: Picture,
+        samples: int = 1,
+        until: DrawStage = DrawStage.SHADING,
+    ) -> None:
+        """Draw views into the arrays of a picture that are not None.
+
+        Args:
+            views: V cameras.
+            draw_list: The moving things.
+            picture: Written in place.
+            samples: Colour samples per pixel, 1 or 4. Depth, objects and the subject's
+                measurements are always those at the pixels' centres.
+            until: Last stage to run, to measure the cost of each stage.
+
+        Raises:
+            ConfigError: `samples` is neither 1 nor 4.
+        """
+        ...

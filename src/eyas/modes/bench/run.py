@@ -25,11 +25,13 @@ from eyas.modes.bench.pictures import (
     measure_stages,
     stage_table,
 )
-from eyas.sim.assets import load_assets
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
+from eyas.sim.scenes import load_geometry
 from eyas.sim.worlds import each_alone
 from eyas.state.draw import Picture
+from eyas.targets.catalogue import kind_index
+from eyas.world.weather import Season
 
 __all__ = ["run"]
 
@@ -135,7 +137,8 @@ def _reset(seconds: float) -> Measurement:
 
 
 def _textures() -> Measurement:
-    texels = load_assets(SimConfig().world, SimConfig().traffic, 1).renderer.textures
+    world, kind = SimConfig().world, kind_index("passenger")
+    texels = load_geometry(world.map, world.seed, Season.SUMMER, (kind,)).texture
     includes = f"{len(texels)} textures with their mip levels, of the peak memory"
     return Measurement("textures", texels.nbytes / 2**20, "MiB", includes, 1)
 
