@@ -34,7 +34,7 @@ def checked_seed(seed: Any) -> int:  # noqa: ANN401  # whatever a caller gives
     """Return a seed that a caller gives.
 
     Raises:
-        ConfigError: It is no whole number from 0 to 2**63 - 1.
+        ConfigError: It is not a whole number from 0 to 2**63 - 1.
     """
     whole = isinstance(seed, int | np.integer) and not isinstance(seed, bool)
     if not whole or not 0 <= int(seed) < 2**63:

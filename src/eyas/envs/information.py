@@ -77,7 +77,7 @@ def information(simulation: Simulation) -> Info:
 def by_term(terms: dict[str, Floats]) -> Info:
     """Return terms of the reward under the names `reward/<term>`.
 
-    They are no dictionary of their own, because TorchRL takes only arrays.
+    They are not a dictionary of their own, because TorchRL takes only arrays.
     """
     return {f"reward/{name}": values for name, values in terms.items()}
 

@@ -1,4 +1,4 @@
-"""The motion of a crowd: of the targets that are no vehicles of SUMO's, and of extras."""
+"""The motion of a crowd: of the targets that are not vehicles of SUMO's, and of extras."""
 
 import zlib
 from collections.abc import Callable, Sequence

@@ -43,7 +43,7 @@ class OnnxPolicy:
         sampled: Whether discrete actions are drawn.
 
     Raises:
-        DataFileError: The file is no such network.
+        DataFileError: The file does not hold such a network.
         MissingExtraError: onnxruntime is not installed.
     """
 

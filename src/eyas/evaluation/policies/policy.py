@@ -101,7 +101,7 @@ def settings_in(path: Path, place: str, said: object) -> Mapping[str, Any]:
         said: What stands there.
 
     Raises:
-        DataFileError: They are none.
+        DataFileError: Something else stands there, or a setting is wrong.
     """
     if not isinstance(said, Mapping) or not all(isinstance(key, str) for key in said):
         raise DataFileError(f"{path}: {place}: {shown(said)} is not allowed: settings of env")

@@ -41,7 +41,7 @@ class Sb3Policy:
         self._model = _loaded(path)
         shape = self._model.observation_space.shape
         if shape is None or len(shape) != 3:
-            raise DataFileError(f"{path}: its observations are no pictures")
+            raise DataFileError(f"{path}: its observations are not pictures")
         first = shape[0] < shape[2]
         planes, height, width = shape if first else (shape[2], shape[0], shape[1])
         grey = planes % 3 != 0
