@@ -11,13 +11,13 @@ from eyas.core.frames import wrap_angle
 from eyas.lanes import interpreted, kernel
 from eyas.lanes.elementary import tan
 
-__all__ = ["Start", "start_distance", "start_pose"]
+__all__ = ["StartValues", "start_distance", "start_pose"]
 
 _wrapped = interpreted(wrap_angle)
 
 
 @dataclass(frozen=True, slots=True)
-class Start:
+class StartValues:
     """A drawn start, relative to the target; the fields of `StartConfig`."""
 
     pitch: float
@@ -53,7 +53,7 @@ _distance = interpreted(start_distance)
 
 
 def start_pose(
-    start: Start, target_position: ArrayLike, target_yaw: float, ahead: float
+    start: StartValues, target_position: ArrayLike, target_yaw: float, ahead: float
 ) -> tuple[NDArray[np.float64], float]:
     """Return the start position of the tracker's body [m], shape (3,), and its yaw [rad].
 
