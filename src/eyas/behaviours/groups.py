@@ -77,7 +77,7 @@ def recycled(
     The original moves the oldest group whenever an interval has passed, even if someone follows it;
     with its defaults, an object stays for 1.25 s. Here it is so where each object then stays for
     four episodes; otherwise groups enter as there, but are moved so rarely that each stays for four
-    episodes and a minute: a target is drawn from those that stay for the whole of its episode.
+    episodes and a minute: a target is sampled from those that stay for the whole of its episode.
 
     In a world whose time goes on, there are as many of these as followers at any time: as many
     objects are there from the start, and where a whole group cannot be spared, fewer are moved at a

@@ -136,7 +136,7 @@ def _paths(
     behaviour = group.behaviour or habit.behaviour
     radius = 0.5 * group.breadth + ROOM
     aside = wave_of(habit.speed).aside if behaviour is Behaviour.WEAVE else 0.0
-    start = ground.roadside.draw(len(seconds), group.offset, radius + aside, rng, group.setting)
+    start = ground.roadside.sample(len(seconds), group.offset, radius + aside, rng, group.setting)
     task = RouteTask(start, seconds, habit, radius, ground.obstacles, rng)
     if behaviour is Behaviour.POLYLINE:
         chains = polylines(task)

@@ -18,12 +18,12 @@ def room_key(room: str) -> int:
 def stream(seed: int, room: str, *indices: int) -> np.random.Generator:
     """Return the generator of a room.
 
-    Streams of different rooms or indices are independent, so drawing more in one
+    Streams of different rooms or indices are independent, so sampling more in one
     changes nothing in another.
 
     Args:
         seed: Seed of the run, >= 0.
-        room: Name of the room that draws.
+        room: Name of the room that samples.
         *indices: Tracker, episode or other numbers that distinguish the streams of a room.
     """
     key = (room_key(room), *indices)

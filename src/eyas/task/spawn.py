@@ -18,10 +18,10 @@ _wrapped = interpreted(wrap_angle)
 
 @dataclass(frozen=True, slots=True)
 class StartValues:
-    """A drawn start, relative to the target; the fields of `StartConfig`."""
+    """A sampled start, relative to the target; the fields of `StartConfig`."""
 
     pitch: float
-    """Drawn camera pitch, positive down [rad], before the gimbal limits it."""
+    """SampledDelay camera pitch, positive down [rad], before the gimbal limits it."""
     height: float
     """[m]"""
     direction: float
@@ -60,7 +60,7 @@ def start_pose(
     See `start_distance`.
 
     Args:
-        start: The drawn start.
+        start: The sampled start.
         target_position: Reference point of the target [m], shape (3,).
         target_yaw: Heading of the target [rad].
         ahead: Distance of the target's middle ahead of its reference point, see

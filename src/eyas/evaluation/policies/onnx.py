@@ -40,7 +40,7 @@ class OnnxPolicy:
     Args:
         path: The file.
         changes: Changes of `env`.
-        sampled: Whether discrete actions are drawn.
+        sampled: Whether discrete actions are sampled.
 
     Raises:
         DataFileError: The file does not hold such a network.

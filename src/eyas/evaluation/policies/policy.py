@@ -81,7 +81,7 @@ class Policy(Protocol):
     env: EnvConfig
     """What it sees, and what its actions mean."""
     sampled: bool
-    """Whether its actions are drawn at random, from the seeds of the episodes."""
+    """Whether its actions are sampled at random, from the seeds of the episodes."""
 
     def begin(self, start: Start) -> None:
         """Forget everything: N episodes begin."""

@@ -30,7 +30,7 @@ class Sb3Policy:
     Args:
         path: The `.zip`. It holds pickles, which run code: load only files that you trust.
         changes: Changes of `env`.
-        sampled: Whether actions are drawn; not repeatable, since the library seeds no single ones.
+        sampled: Whether actions are sampled; not repeatable, as the library seeds no single ones.
 
     Raises:
         DataFileError: The file is not such a model.

@@ -188,20 +188,20 @@ class Span(LegacyEntry):
 
 @dataclass(frozen=True, slots=True)
 class Varied(LegacyEntry):
-    """The four to six keys that define whether and how one value is drawn."""
+    """The four to six keys that define whether and how one value is sampled."""
 
     random: str
-    """Switch: drawn between `least` and `most`; else it is `fixed`."""
+    """Switch: sampled between `least` and `most`; else it is `fixed`."""
     fixed: str
     least: str
     most: str
     path: str
     sides: str | None = None
-    """Switch: a magnitude is drawn, with a random sign."""
+    """Switch: a magnitude is sampled, with a random sign."""
     default: str | None = None
     """Switch: the other keys have no effect, and our field is None."""
     replaces: str | None = None
-    """A second field of ours: true if drawn, as drawn values replace and fixed ones are added."""
+    """A second field of ours: true if sampled: sampled values replace, fixed ones are added."""
 
     @property
     @override
