@@ -12,11 +12,11 @@ from typer.testing import CliRunner
 
 from eyas.cli.app import app
 from eyas.core.errors import ConfigError, DataFileError
-from eyas.modes.maps import plans
+from eyas.modes.maps.plan_files import write_plan_of
 from eyas.sim.scenes import load_network, load_scene
 from eyas.state.scene import ObjectClass
 from eyas.world.maps import MAPS
-from eyas.world.plan.file import read_plan
+from eyas.world.plan.file import problems, read_plan
 from eyas.world.plan.plan import Buildings, GroundCover, Paved, Roadway
 from eyas.world.weather import Season
 
@@ -41,7 +41,7 @@ def test_the_plan_of_a_map_is_that_map(tmp_path):
 @pytest.mark.sumo
 def test_a_map_of_a_file_has_the_scene_of_its_planner(tmp_path):
     path = tmp_path / "fields.plan.json"
-    plans.run("farmland", 0, path)
+    write_plan_of("farmland", 0, path)
     for season in Season:
         there, here = load_scene(str(path), 0, season), load_scene("farmland", 0, season)
         assert there.static.positions.tobytes() == here.static.positions.tobytes()
@@ -50,7 +50,7 @@ def test_a_map_of_a_file_has_the_scene_of_its_planner(tmp_path):
 
 def test_a_file_of_another_name_is_refused(tmp_path):
     with pytest.raises(ConfigError, match=r"--out: 'x\.json' is not allowed: .*\.plan\.json"):
-        plans.run("farmland", 0, tmp_path / "x.json")
+        write_plan_of("farmland", 0, tmp_path / "x.json")
 
 
 def test_what_is_wrong_with_a_plan_is_told_one_line_each(tmp_path):
@@ -72,7 +72,7 @@ def test_what_is_wrong_with_a_plan_is_told_one_line_each(tmp_path):
     assert lines[0].endswith("did you mean 'bench'?")
     del content["layers"], content["library"]
     path.write_text(json.dumps(content))
-    (line,) = plans.check(path)
+    (line,) = problems(path)
     assert line.startswith(f"{path}: roads.edges[0].end: 'nrth' is not allowed: one of middle")
     with pytest.raises(DataFileError, match=r"roads\.edges\[0\]\.end: 'nrth'"):
         MAPS.get(str(path)).roads(0)

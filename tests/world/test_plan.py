@@ -84,7 +84,7 @@ def digest(scene):
     return made.hexdigest()
 
 
-@pytest.mark.parametrize(("name", "season"), HASHES, ids="-".join)
+@pytest.mark.parametrize(("name", "season"), HASHES, ids=map("-".join, HASHES))
 def test_scenes_have_the_bytes_that_they_had_before_there_were_plans(name, season):
     assert digest(load_scene(name, 0, Season(season))) == HASHES[name, season]
 

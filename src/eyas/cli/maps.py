@@ -135,9 +135,9 @@ def check_plan(
     file: Annotated[Path, typer.Argument(help="A plan of a map: .plan.json or .plan.json.gz.")],
 ) -> None:
     """Say what is wrong with a plan, one line each."""
-    from eyas.modes.maps.plan_files import check
+    from eyas.world.plan.file import problems
 
-    wrong = check(file)
+    wrong = problems(file)
     for line in wrong:
         typer.echo(line)
     if wrong:

@@ -85,7 +85,7 @@ def _text_of(map_name: str, seed: int) -> NDArray[np.uint8]:
     if data is None:
         return make()
     return cached(
-        Kind.PLAN, make, (_planned, recipe.plan, data, seed, network), of=NDArray[np.uint8]
+        Kind.PLAN, make, (recipe.plan, recipe.name, data, seed, network), of=NDArray[np.uint8]
     )
 
 

@@ -23,10 +23,10 @@ from eyas.world.maps import MAPS
 from eyas.world.maps.files import MAP_FILE, origin_of
 from eyas.world.maps.recipe import ATTRIBUTION_FILE, PLAN_SUFFIXES, MapRecipe
 from eyas.world.osm.projection import Projection
-from eyas.world.plan.file import problems, write_plan
+from eyas.world.plan.file import write_plan
 from eyas.world.plan.plan import Roads
 
-__all__ = ["CLASSES", "check", "write_layers", "write_plan_of"]
+__all__ = ["CLASSES", "write_layers", "write_plan_of"]
 
 CLASSES = {
     0: "ground", 1: "road", 2: "pavement", 3: "building", 4: "tree", 5: "structure", 6: "water",
@@ -224,8 +224,3 @@ def write_plan_of(name: str, seed: int, path: Path) -> list[Path]:
     title = plan.title or recipe.title
     write_plan(path, replace(plan, title=title, attribution=recipe.attribution(), roads=roads))
     return made
-
-
-def check(path: Path) -> list[str]:
-    """Return what is wrong with a plan in a file, a line each."""
-    return problems(path)

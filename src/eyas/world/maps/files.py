@@ -40,7 +40,7 @@ _LOG = logging.getLogger("eyas")
 FOLDER_VARIABLE = "EYAS_MAPS_DIR"
 """Environment variable: the folder of the imported maps, instead of the user's default."""
 
-FORMAT = "eyas-map-1"
+FORMAT = "eyas-map-2"
 MAP_FILE, ROADS_FILE = "map.json", "roads.net.xml.gz"
 
 
