@@ -29,7 +29,7 @@ class Lifetimes(NamedTuple):
     """L stays in the world, shape (L,) each."""
 
     slot: NDArray[np.int64]
-    """Number of the object that stays; one object has many lives, each at another place."""
+    """Number of the object that stays; one object has several, each at another place."""
     enters: NDArray[np.int64]
     """First sample."""
     leaves: NDArray[np.int64]
@@ -55,7 +55,7 @@ class ScriptedGroup(NamedTuple):
     """None: that of the habit."""
     habit: Habit
     """How they move."""
-    lives: Lifetimes
+    lifetimes: Lifetimes
     offset: Variation
     """Where it begins: distance from the middle of the road [m]."""
     setting: str

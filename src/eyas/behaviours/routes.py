@@ -56,7 +56,7 @@ _PIECES: Final = 24
 
 
 class RouteTask(NamedTuple):
-    """What paths are wanted for: L lives."""
+    """What paths are wanted for: L lifetimes."""
 
     start: Floats
     """[m], shape (L, 2)."""
