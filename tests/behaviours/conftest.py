@@ -26,8 +26,8 @@ def hills():
 
 
 def group(kind: str, count: int = 8, breadth: float = 0.6, **changes) -> ScriptedGroup:
-    lives = lasting(count, CLOCK.samples)
-    made = ScriptedGroup(kind, breadth, None, habit_of(kind), lives, 0.0, "objects.max_count")
+    lifetimes = lasting(count, CLOCK.samples)
+    made = ScriptedGroup(kind, breadth, None, habit_of(kind), lifetimes, 0.0, "objects.max_count")
     return made._replace(**changes)
 
 

@@ -49,7 +49,7 @@ def vehicles() -> Motion:
 
 def walked(ground, vehicles, count=24) -> np.ndarray:
     who = group("Pedestrian", behaviour=Behaviour.CROSSING)
-    who = who._replace(lives=lasting(count, FIVE_MINUTES.samples))
+    who = who._replace(lifetimes=lasting(count, FIVE_MINUTES.samples))
     return scripted_table(ground, who, FIVE_MINUTES, stream(1, "crossing"), vehicles)
 
 

@@ -11,11 +11,11 @@ from eyas.traffic.replay import Replay
 
 def test_objects_are_recycled_but_stay_for_an_episode(staying):
     config, clock = ObjectsConfig(), SampleClock(12601, 10.0)
-    lives = recycled(config, *clock, episode=3.0)
-    assert set(lives.slot.tolist()) == set(range(10))
-    assert len(lives.slot) > 100  # moved elsewhere again and again
+    lifetimes = recycled(config, *clock, episode=3.0)
+    assert set(lifetimes.slot.tolist()) == set(range(10))
+    assert len(lifetimes.slot) > 100  # moved elsewhere again and again
     motion = np.zeros((clock.samples, 10))
-    for slot, a, b in zip(*lives, strict=True):
+    for slot, a, b in zip(*lifetimes, strict=True):
         assert not motion[a - 1 if a else 0 : b + 1, slot].any()  # never twice at once
         motion[a : b + 1, slot] = 1
     assert motion[50:].sum(axis=1).min() >= 10 - config.group_size
@@ -39,15 +39,15 @@ def test_nobody_is_moved_whom_a_tracker_must_follow(count, group, followers, epi
         ObjectsConfig(max_count=count, group_size=group, interval=5.0),
         SampleClock(12601, 10),
     )
-    lives = recycled(config, *clock, episode, followers)
+    lifetimes = recycled(config, *clock, episode, followers)
     table = np.zeros((clock.samples, count), SAMPLE)
-    for slot, a, b in zip(*lives, strict=True):
+    for slot, a, b in zip(*lifetimes, strict=True):
         table["present"][a : b + 1, slot] = 1
     replay = Replay(Motion(table, np.zeros(count, np.int32), 10.0, 0.0))
     begins = np.arange(0.0, clock.samples / 10.0 - 1.0 - episode, 0.25)
     stay = [len(staying(replay, t, t + episode)) for t in begins.tolist()]
     assert min(stay) >= followers
-    assert (len(lives.slot) > count) == (count > followers)  # moved, where one can be spared
+    assert (len(lifetimes.slot) > count) == (count > followers)  # moved, where one can be spared
 
 
 def test_longer_episodes_make_longer_lives():
@@ -58,8 +58,8 @@ def test_longer_episodes_make_longer_lives():
 
 def test_an_interval_that_leaves_each_four_episodes_is_that_between_groups():
     for interval, stay in ((0.5, 60.0), (3.9, 60.0), (4.0, 12.0), (10.0, 30.0), (30.0, 90.0)):
-        lives = recycled(ObjectsConfig(interval=interval), 12601, 10.0, episode=3.0)
-        moved = np.sort(lives.enters[lives.slot == 5])[2:]
+        lifetimes = recycled(ObjectsConfig(interval=interval), 12601, 10.0, episode=3.0)
+        moved = np.sort(lifetimes.enters[lifetimes.slot == 5])[2:]
         assert np.diff(moved).mean() / 10.0 == pytest.approx(stay, abs=0.1)
-        begun = np.unique(lives.enters[lives.enters > 3000])
+        begun = np.unique(lifetimes.enters[lifetimes.enters > 3000])
         assert np.diff(begun).mean() / 10.0 == pytest.approx(stay / 3, abs=0.1)

@@ -171,7 +171,7 @@ def test_an_offset_is_to_the_left_of_its_road(city, monkeypatch, offset, least, 
     road = max(streets(city.scene.network), key=lambda road: shapely.LineString(road.left).length)
     monkeypatch.setattr(places, "streets", lambda _network: [road])
     roadside = places.Roadside(city.scene.network, city.obstacles)
-    points = roadside.draw(200, offset, 0.1, np.random.default_rng(0), "objects.max_count")
+    points = roadside.sample(200, offset, 0.1, np.random.default_rng(0), "objects.max_count")
     line = shapely.LineString(road.left)
     left = line.buffer(5.0, single_sided=True)
     away = shapely.distance(shapely.points(points), line)

@@ -14,7 +14,7 @@ pytest.importorskip("torch")
 
 import torch
 
-from eyas.cli.train import _default_folder
+from eyas.cli.runs import _default_folder
 from eyas.core.build import this_build
 from eyas.core.config import updated, validated
 from eyas.core.errors import EyasError

@@ -109,9 +109,9 @@ def ground(scene, lights):
 
 
 def walked(ground, vehicles, behaviour=Behaviour.CROSSING, count=50) -> np.ndarray:
-    lives = lasting(count, TEN_MINUTES.samples)
+    lifetimes = lasting(count, TEN_MINUTES.samples)
     who = ScriptedGroup(
-        "Pedestrian", 0.81, behaviour, habit_of("Pedestrian"), lives, 0.0, "extras.0.count"
+        "Pedestrian", 0.81, behaviour, habit_of("Pedestrian"), lifetimes, 0.0, "extras.0.count"
     )
     return scripted_table(ground, who, TEN_MINUTES, stream(1, "towns"), vehicles)
 

@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from eyas.task.offset import offset_pose
+from eyas.sim.step import offset_pose
 
 
 def test_an_offset_turns_with_the_target():

@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from eyas.task.spawn import Start, start_pose
+from eyas.task.spawn import StartValues, start_pose
 
 PLAIN = {
     "pitch": 1.37,
@@ -15,7 +15,7 @@ PLAIN = {
 
 
 def start(**changes):
-    return Start(**{**PLAIN, **changes})
+    return StartValues(**{**PLAIN, **changes})
 
 
 def in_drone_frame(position, yaw, target):

@@ -9,12 +9,12 @@ from eyas.core.frames import rotate
 from eyas.lanes import interpreted
 from eyas.state.terrain import Terrain
 from eyas.trackers.airframe import FIRM_GROUND, ORIGINAL
-from eyas.trackers.rigid_body import Body, moved, turned
+from eyas.trackers.rigid_body import RigidBody, moved, turned
 
 FLAT = Terrain.flat(0.0)
 OFF = ((0.0,) * 4,) * 3
 CALM = (0.0, 0.0, 0.0)
-TUMBLING = Body((1.0, 2.0, 300.0), (3.0, -4.0, 5.0), (1.0, 0.0, 0.0, 0.0), (2.0, 30.0, -1.0))
+TUMBLING = RigidBody((1.0, 2.0, 300.0), (3.0, -4.0, 5.0), (1.0, 0.0, 0.0, 0.0), (2.0, 30.0, -1.0))
 _moved, _rotate, _turned = interpreted(moved), interpreted(rotate), interpreted(turned)
 
 
@@ -73,7 +73,7 @@ def test_a_turn_is_the_same_by_its_series_and_by_sine_and_cosine():
 )
 def test_each_rotor_pulls_up_and_turns_the_body_about_its_own_axes(rotor, signs):
     thrusts = tuple(8.0 if k == rotor else 0.0 for k in range(4))
-    still = Body((0.0, 0.0, 9.0), CALM, (1.0, 0.0, 0.0, 0.0), CALM)
+    still = RigidBody((0.0, 0.0, 9.0), CALM, (1.0, 0.0, 0.0, 0.0), CALM)
     body = after(still, 0.002, thrusts=(thrusts,) * 3)
     arm = 8.0 * 0.22978 / np.array([0.0341171, 0.0363089])
     turning = np.multiply(signs, [*arm, 8.0 * 0.02 / 0.0627386]) * 0.002
@@ -84,7 +84,7 @@ def test_each_rotor_pulls_up_and_turns_the_body_about_its_own_axes(rotor, signs)
 def test_with_drag_it_falls_at_its_terminal_speed_and_drifts_with_the_wind():
     frame = ORIGINAL._replace(drag_area=0.05)
     terminal = math.sqrt(2.0 * 3.0069 * 9.81 / (1.225 * 0.05))
-    still = Body((0.0, 0.0, 9.0), CALM, (1.0, 0.0, 0.0, 0.0), CALM)
+    still = RigidBody((0.0, 0.0, 9.0), CALM, (1.0, 0.0, 0.0, 0.0), CALM)
     falling = after(still, 20.0, 0.01, frame=frame, wind=(4.0, -3.0, 0.0))
     assert falling.velocity == pytest.approx([4.0, -3.0, -terminal], abs=0.05)
 
@@ -94,7 +94,7 @@ def landed():
     """Dropped from 30 cm, tilted, sliding and turning, after 4 s."""
     frame = ORIGINAL._replace(contact_stiffness=FIRM_GROUND)
     slope = Terrain(0.0, np.full((2, 2), 2.0, np.float32), -50.0, -50.0, 100.0)
-    dropped = Body(
+    dropped = RigidBody(
         (0.0, 0.0, 2.0 + 0.183 + 0.3), (1.0, 0.5, 0.0), (0.99, 0.08, 0.1, 0.0), (0.0, 0.0, 1.0)
     )
     return after(dropped, 4.0, frame=frame, terrain=slope)

@@ -57,5 +57,7 @@ def test_it_listens_where_it_is_told_only(line):
     port = line[2]
     with pytest.raises(OutputError, match=r"^wire\.port: "):  # not an address of this machine
         Announcements("192.0.2.1", port)
-    with pytest.raises(ConfigError, match=r"^wire\.address: 'no such host' is no network address"):
+    with pytest.raises(
+        ConfigError, match=r"^wire\.address: 'no such host' is not a network address"
+    ):
         Announcements("no such host", port)

@@ -12,7 +12,7 @@ from eyas.render.renderer import build_renderer
 from eyas.sim.scenes import load_geometry, load_scene
 from eyas.state.draw import DrawList, Picture, Views
 from eyas.state.scene import Scene
-from eyas.task.spawn import Start, start_pose
+from eyas.task.spawn import StartValues, start_pose
 from eyas.world.maps import MAPS
 from eyas.world.plan.build import build_scene
 
@@ -143,7 +143,7 @@ def _starts(scene: Scene) -> Views:
         start, end = network.lane_points[low : low + 2]
         middle, along = (start + end) / 2, end - start
         yaw = float(np.arctan2(along[1], along[0]))
-        place, turn = start_pose(Start(1.37, 22.0, 0.0, 0.0, 0.0), [*middle, 0.0], yaw, 0.0)
+        place, turn = start_pose(StartValues(1.37, 22.0, 0.0, 0.0, 0.0), [*middle, 0.0], yaw, 0.0)
         position.append(place)
         rotation.append(_look(turn, 1.37))
     return Views(

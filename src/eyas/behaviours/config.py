@@ -12,7 +12,7 @@ __all__ = ["ExtraConfig"]
 
 
 class ExtraConfig(Config):
-    """A group that shares the world with the targets, but is never drawn as one."""
+    """A group that shares the world with the targets, but is never chosen as one."""
 
     kind: TargetName = TargetName.PEDESTRIAN
     """What they are. `SUMO_VEHICLE`: vehicles of `traffic`, where the target is none of these."""

@@ -54,10 +54,10 @@ class GapAcceptance:
         lights: SignalPlan | None = None,
     ) -> None:
         self._samples, self._rate = samples, rate
-        self._fleets: list[_Fleet] = []
+        self._tracks: list[_KindTracks] = []
         if vehicles is not None:
             kinds = np.unique(vehicles.kind).tolist()
-            self._fleets = [_fleet(vehicles, kind, samples) for kind in kinds]
+            self._tracks = [_tracks_of(vehicles, kind, samples) for kind in kinds]
         self._known: dict[tuple[bytes, float], NDArray[np.int64]] = {}
         self._lights = lights
         self._rows = {} if lights is None else {name: k for k, name in enumerate(lights.edges)}
@@ -65,8 +65,10 @@ class GapAcceptance:
     def first(
         self, line: Floats, ready: float, lasts: float, light: str = "", to_kerb: float = 0.0
     ) -> float | None:
-        """Return when a line can be crossed [s]; None: not before patience is at an end, or a long
-        vehicle turns over the kerb until then.
+        """Return when a line can be crossed [s].
+
+        None: patience ends before there is a gap, or a long vehicle turns over the kerb in
+        between.
 
         Args:
             line: From the kerb at which one waits to the other one [m], shape (2, 2).
@@ -118,14 +120,14 @@ class GapAcceptance:
         key = min(line.tobytes(), line[::-1].tobytes()), clear  # there and back
         if key not in self._known:
             busy = np.zeros(self._samples, np.bool_)
-            for fleet in self._fleets:
-                busy[_met_by(fleet, line, clear)] = True
+            for tracks in self._tracks:
+                busy[_met_by(tracks, line, clear)] = True
             self._known[key] = np.concatenate([[0], np.cumsum(busy)])
         return self._known[key]
 
 
-class _Fleet(NamedTuple):
-    """The vehicles of one kind."""
+class _KindTracks(NamedTuple):
+    """The motion of the vehicles of one kind."""
 
     rows: NDArray[np.void]
     """Their samples, shape (samples, vehicles)."""
@@ -140,24 +142,24 @@ class _Fleet(NamedTuple):
     """How far from its reference point a vehicle reaches, at most [m]."""
 
 
-def _fleet(vehicles: Motion, kind: int, samples: int) -> _Fleet:
+def _tracks_of(vehicles: Motion, kind: int, samples: int) -> _KindTracks:
     rows, middle = vehicles.table[:samples, vehicles.kind == kind], KINDS[kind].ahead
     length, width = np.array([MODELS[model].size[:2] for model in models_of(kind)]).max(axis=0)
     x = np.where(rows["present"] > 0.0, rows["x"], np.float32(np.inf))
     reach = 0.5 * (float(length) + float(width)) + abs(middle)
-    return _Fleet(rows, x, np.ascontiguousarray(rows["y"]), _largest(kind), middle, reach)
+    return _KindTracks(rows, x, np.ascontiguousarray(rows["y"]), _largest(kind), middle, reach)
 
 
-def _met_by(fleet: _Fleet, line: Floats, clear: float) -> NDArray[np.int64]:
+def _met_by(tracks: _KindTracks, line: Floats, clear: float) -> NDArray[np.int64]:
     """Return at which samples a vehicle is on a line, see `GapAcceptance`; some more than once."""
     middle, across = line.mean(axis=0), line[1] - line[0]
-    reach = 0.5 * float(exact.hypot(*across)) + fleet.reach + clear
+    reach = 0.5 * float(exact.hypot(*across)) + tracks.reach + clear
     sample, actor = np.nonzero(
-        (np.abs(fleet.x - middle[0]) < reach) & (np.abs(fleet.y - middle[1]) < reach)
+        (np.abs(tracks.x - middle[0]) < reach) & (np.abs(tracks.y - middle[1]) < reach)
     )
-    own, met = fleet.rows[sample, actor], []
-    for section in fleet.sections:
-        x, y = _axis(own, section, fleet.middle) - line[0][:, None, None]
+    own, met = tracks.rows[sample, actor], []
+    for section in tracks.sections:
+        x, y = _axis(own, section, tracks.middle) - line[0][:, None, None]
         share = np.clip(
             (x * across[0] + y * across[1]) / max(exact.product(across, across), 1e-9), 0.0, 1.0
         )

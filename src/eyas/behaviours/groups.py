@@ -29,7 +29,7 @@ class Lifetimes(NamedTuple):
     """L stays in the world, shape (L,) each."""
 
     slot: NDArray[np.int64]
-    """Number of the object that stays; one object has many lives, each at another place."""
+    """Number of the object that stays; one object has several, each at another place."""
     enters: NDArray[np.int64]
     """First sample."""
     leaves: NDArray[np.int64]
@@ -55,7 +55,7 @@ class ScriptedGroup(NamedTuple):
     """None: that of the habit."""
     habit: Habit
     """How they move."""
-    lives: Lifetimes
+    lifetimes: Lifetimes
     offset: Variation
     """Where it begins: distance from the middle of the road [m]."""
     setting: str
@@ -77,7 +77,7 @@ def recycled(
     The original moves the oldest group whenever an interval has passed, even if someone follows it;
     with its defaults, an object stays for 1.25 s. Here it is so where each object then stays for
     four episodes; otherwise groups enter as there, but are moved so rarely that each stays for four
-    episodes and a minute: a target is drawn from those that stay for the whole of its episode.
+    episodes and a minute: a target is sampled from those that stay for the whole of its episode.
 
     In a world whose time goes on, there are as many of these as followers at any time: as many
     objects are there from the start, and where a whole group cannot be spared, fewer are moved at a

@@ -16,7 +16,7 @@ from eyas.world.roads.areas import Street, streets
 __all__ = ["Roadside"]
 
 _ROUNDS: Final = 200
-"""How often places are drawn for those that have none yet."""
+"""How often places are sampled for those that have none yet."""
 
 _PATIENT: Final = 10
 """Rounds with the offset that is asked for; then it grows, by up to `_WIDER` more each round."""
@@ -57,7 +57,7 @@ class Roadside:
         self._lines = [_line(street) for street in streets(network)]
         self._obstacles = obstacles
 
-    def draw(
+    def sample(
         self, count: int, offset: Variation, radius: float, rng: np.random.Generator, what: str
     ) -> Floats:
         """Return free places [m], shape (count, 2).
@@ -82,9 +82,9 @@ class Roadside:
             middle = self._middles(len(open_), rng)
             aside = np.array([sample(offset, rng) for _ in open_])
             aside += rng.uniform(-1.0, 1.0, len(open_)) * _WIDER * max(round_ - _PATIENT, 0)
-            drawn = middle.point + aside[:, None] * middle.left
-            free = ~self._obstacles.blocked(shapely.points(drawn), radius + _APART)
-            places[open_[free]] = drawn[free]
+            sampled = middle.point + aside[:, None] * middle.left
+            free = ~self._obstacles.blocked(shapely.points(sampled), radius + _APART)
+            places[open_[free]] = sampled[free]
             open_ = open_[~free]
         if len(open_):
             least, most = (f"{end:g}" for end in bounds(offset))

@@ -25,7 +25,7 @@ _AROUND: Final = 30.0
 """Half the side of the square in which a polyline's points lie, as in the original [m]."""
 
 _ROUNDS: Final = 80
-"""How often polylines are drawn; they shrink from round to round."""
+"""How often polylines are sampled; they shrink from round to round."""
 
 _DIRECTIONS: Final = 12
 """Directions that are tried at an obstacle."""
@@ -56,7 +56,7 @@ _PIECES: Final = 24
 
 
 class RouteTask(NamedTuple):
-    """What paths are wanted for: L lives."""
+    """What paths are wanted for: L lifetimes."""
 
     start: Floats
     """[m], shape (L, 2)."""

@@ -79,13 +79,13 @@ def scripted_table(
     Raises:
         SpawnError: The map has no room for it.
     """
-    lives, habit = group.lives, group.habit
-    seconds = (lives.leaves - lives.enters) / clock.rate
+    lifetimes, habit = group.lifetimes, group.habit
+    seconds = (lifetimes.leaves - lifetimes.enters) / clock.rate
     if (group.behaviour or habit.behaviour) is Behaviour.CROSSING:
         gaps = GapAcceptance(vehicles, clock.samples, clock.rate, ground.lights)
         ways = _walkways(ground, group, habit, vehicles)
         paths = _crossing_walks(
-            ground, group, habit, ways, lives.enters / clock.rate, seconds, gaps, rng
+            ground, group, habit, ways, lifetimes.enters / clock.rate, seconds, gaps, rng
         )
     elif (group.behaviour or habit.behaviour) is Behaviour.PAVEMENT:
         paths = _strolls(_walkways(ground, group, habit, vehicles), habit, seconds, rng)
@@ -97,12 +97,12 @@ def scripted_table(
 def _gone(
     ground: Ground, group: ScriptedGroup, clock: SampleClock, paths: list[_Course]
 ) -> NDArray[np.void]:
-    """Return the samples of those who go along the paths of their lives.
+    """Return the samples of those who go along the paths of their lifetimes.
 
     A few objects are done at a time, side by side in memory: in the table of all, the samples of
     one are so far apart that each would be fetched anew for each of its numbers.
     """
-    slot, enters, leaves = (part.tolist() for part in group.lives)
+    slot, enters, leaves = (part.tolist() for part in group.lifetimes)
     table = np.zeros((clock.samples, max(slot) + 1), SAMPLE)
     for first in range(0, table.shape[1], _TOGETHER):
         few = np.zeros((clock.samples, min(_TOGETHER, table.shape[1] - first)), SAMPLE)
@@ -136,7 +136,7 @@ def _paths(
     behaviour = group.behaviour or habit.behaviour
     radius = 0.5 * group.breadth + ROOM
     aside = wave_of(habit.speed).aside if behaviour is Behaviour.WEAVE else 0.0
-    start = ground.roadside.draw(len(seconds), group.offset, radius + aside, rng, group.setting)
+    start = ground.roadside.sample(len(seconds), group.offset, radius + aside, rng, group.setting)
     task = RouteTask(start, seconds, habit, radius, ground.obstacles, rng)
     if behaviour is Behaviour.POLYLINE:
         chains = polylines(task)

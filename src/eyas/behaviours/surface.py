@@ -14,7 +14,7 @@ __all__ = ["Footing", "WalkedSurface"]
 _WALKABLE: Final = (ObjectClass.GROUND, ObjectClass.ROAD, ObjectClass.PAVEMENT)
 
 _NEAR: Final = 0.7
-"""Largest distance from the height of the terrain: bridges and floors are no ground [m]."""
+"""Largest distance from the height of the terrain, as bridges and floors are not ground [m]."""
 
 _GRAIN: Final = 0.04
 """Distance between the points at which the ground is sought: slow robots share many [m]."""

@@ -10,22 +10,7 @@ import typer
 import typer.core
 
 from eyas import __version__
-from eyas.cli import (
-    bench,
-    cache,
-    config,
-    demo,
-    evaluate,
-    maps,
-    policies,
-    serve,
-    targets,
-    traffic,
-    train,
-    verify,
-    video,
-    webots_shim,
-)
+from eyas.cli import evaluate, maps, runs, targets, tools, traffic
 from eyas.cli.said import say
 from eyas.core.errors import EyasError
 from eyas.core.own_code import ended
@@ -59,20 +44,20 @@ app = typer.Typer(
     add_completion=False,
     pretty_exceptions_enable=False,
 )
-app.command("demo")(demo.command)
-app.command("video")(video.command)
-app.command("train")(train.command)
-app.command("serve")(serve.command)
-app.command("webots-shim")(webots_shim.command)
-app.command("bench")(bench.command)
-app.command("verify")(verify.command)
+app.command("demo")(runs.demo)
+app.command("video")(runs.video)
+app.command("train")(runs.train)
+app.command("serve")(runs.serve)
+app.command("webots-shim")(tools.webots_shim)
+app.command("bench")(tools.bench)
+app.command("verify")(tools.verify)
 app.command("evaluate")(evaluate.evaluate)
 app.command("compare")(evaluate.compare)
 app.command("leaderboard")(evaluate.leaderboard)
-app.add_typer(cache.app, name="cache")
-app.add_typer(config.app, name="config")
+app.add_typer(tools.cache_app, name="cache")
+app.add_typer(tools.config_app, name="config")
 app.add_typer(maps.app, name="maps")
-app.add_typer(policies.app, name="policies")
+app.add_typer(tools.policies_app, name="policies")
 app.add_typer(targets.app, name="targets")
 app.add_typer(traffic.app, name="traffic")
 

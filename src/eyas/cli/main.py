@@ -3,7 +3,7 @@
 import os
 import sys
 
-from eyas.core.interrupts import EndingSignals, Interrupted
+from eyas.core.interrupts import EndingSignals
 
 __all__ = ["main"]
 
@@ -27,7 +27,11 @@ def main() -> None:
     except BaseException as error:
         interrupt = _interrupt_behind(error)
         if interrupt is None:
-            raise
+            # After a signal, what is left of its interrupt: pydantic turns one that is raised in a
+            # class under way into an error of its own, without a cause.
+            if signals.first is None:
+                raise
+            interrupt = error
         status = 130
         # Python 3.12 and later add notes of their own, where it was raised in `__set_name__`.
         told = getattr(interrupt, "__notes__", ())
@@ -43,14 +47,11 @@ def main() -> None:
 
 
 def _interrupt_behind(error: BaseException | None) -> BaseException | None:
-    """Return the interrupt that an error is or comes of, or the error that holds it in words.
+    """Return the interrupt that an error is or comes of.
 
-    Where a class is made, Python 3.11 turns whatever is raised into a `RuntimeError`, and pydantic
-    into a `SchemaError` whose text ends with the name and the text of what was raised.
+    Where a class is made, Python 3.11 turns whatever is raised into a `RuntimeError`.
     """
     while error is not None and not isinstance(error, KeyboardInterrupt):
-        if str(error).rstrip().endswith(f"{Interrupted.__name__}:"):
-            return error
         error = error.__cause__
     return error
 

@@ -96,7 +96,7 @@ def _numbers(text: str) -> tuple[int, ...]:
     """Return the numbers of a list such as `1-4,9`.
 
     Raises:
-        ConfigError: It is no such list, or too long.
+        ConfigError: It is not such a list, or too long.
     """
     ends = [re.fullmatch(r"(\d{1,9})(?:-(\d{1,9}))?", part.strip()) for part in text.split(",")]
     spans = [range(int(one[1]), int(one[2] or one[1]) + 1) for one in ends if one]

@@ -18,12 +18,12 @@ def room_key(room: str) -> int:
 def stream(seed: int, room: str, *indices: int) -> np.random.Generator:
     """Return the generator of a room.
 
-    Streams of different rooms or indices are independent, so drawing more in one
+    Streams of different rooms or indices are independent, so sampling more in one
     changes nothing in another.
 
     Args:
         seed: Seed of the run, >= 0.
-        room: Name of the room that draws.
+        room: Name of the room that samples.
         *indices: Tracker, episode or other numbers that distinguish the streams of a room.
     """
     key = (room_key(room), *indices)
@@ -34,7 +34,7 @@ def checked_seed(seed: Any) -> int:  # noqa: ANN401  # whatever a caller gives
     """Return a seed that a caller gives.
 
     Raises:
-        ConfigError: It is no whole number from 0 to 2**63 - 1.
+        ConfigError: It is not a whole number from 0 to 2**63 - 1.
     """
     whole = isinstance(seed, int | np.integer) and not isinstance(seed, bool)
     if not whole or not 0 <= int(seed) < 2**63:

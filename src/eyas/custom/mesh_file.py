@@ -142,7 +142,7 @@ def placed(shape: Triangles, up: str, turn: float, scale: float) -> Triangles:
     axes = exact.product(
         np.array([[cosine, -sine, 0.0], [sine, cosine, 0.0], [0.0, 0.0, 1.0]]), axes
     )
-    with np.errstate(invalid="ignore"):  # what is no number is told later
+    with np.errstate(invalid="ignore"):  # what is not a number is told later
         points = exact.product(shape.points * scale, axes.T)
     used = points[shape.corners.ravel()]
     if not np.isfinite(used).all():
@@ -153,7 +153,7 @@ def placed(shape: Triangles, up: str, turn: float, scale: float) -> Triangles:
 
 
 def _parts(trimesh: ModuleType, path: Path) -> Iterator[Triangles]:
-    # As it is: cleaned up, it would have lost the corners that are no numbers.
+    # As it is: cleaned up, it would have lost the corners that are not numbers.
     for part in trimesh.load_scene(str(path), process=False).dump():
         corners = getattr(part, "faces", None)
         if corners is not None and len(corners):

@@ -38,7 +38,7 @@ Floats = NDArray[np.float64]
 class Places(NamedTuple):
     """When and where targets with a behaviour begin, see `ObjectsConfig`."""
 
-    lives: Lifetimes
+    lifetimes: Lifetimes
     offset: Variation
     vehicles: Motion | None = None
     """For which those wait who cross roads."""
@@ -69,7 +69,7 @@ def custom_motion(
         table = _driven(config.trajectory, config.smoothing, ground, clock)
     elif isinstance(target, MovesItself):
         assert config.path is not None  # the target is of that class
-        count = int(places.lives.slot.max()) + 1
+        count = int(places.lifetimes.slot.max()) + 1
         table = _own(target, config.path, count, ground, clock, rng)
     else:
         group = _group(config, name, places)
@@ -86,7 +86,7 @@ def _group(config: CustomConfig, name: str, places: Places) -> ScriptedGroup:
         breadth=breadth,
         behaviour=config.behaviour,
         habit=habit,
-        lives=places.lives,
+        lifetimes=places.lifetimes,
         offset=places.offset,
         setting="objects.max_count",
     )

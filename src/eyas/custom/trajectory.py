@@ -82,8 +82,8 @@ def read_trajectory(path: Path) -> Trajectory:
     """Return the trajectory of a CSV file; its first time becomes 0.
 
     Raises:
-        DataFileError: The file is missing, or is no trajectory: time runs backwards, a number is
-            missing or not finite.
+        DataFileError: The file is missing, or does not hold a trajectory: time runs backwards, a
+            number is missing or not finite.
     """
     text = read_limited(path, _LARGEST).decode("utf-8-sig", errors="replace")
     try:

@@ -79,7 +79,7 @@ def tracks_of(
     """Return the ways that a user's class computes, see `MovesItself.tracks`.
 
     Raises:
-        ConfigError: They are no ways on this map: one line.
+        ConfigError: They are not ways on this map: one line.
     """
     with _asking(path, "tracks(...)"):
         tracks = _numbers(target.tracks(scene, time, count, rng))
@@ -106,7 +106,7 @@ def _asking(path: str, what: str) -> Iterator[None]:
 
 
 def _numbers(answer: object) -> Floats:
-    """Return an answer as numbers; with shape () if it is none."""
+    """Return an answer as numbers; with shape () if it is something else."""
     try:
         return np.asarray(answer, np.float64)
     except (TypeError, ValueError):

@@ -46,8 +46,8 @@ def information(simulation: Simulation) -> Info:
       `eyas.targets.catalogue.MODELS`;
     - as numbers of `eyas.task.done.DoneReason`, the reason of the end (`done_reason`) and the limit
       that the body violates (`done_state`); the physics steps since the reset (`step`);
-    - the values drawn from the `light` settings (factor on the sky, factor on the sun, one over the
-      visibility range [1/m]);
+    - the values sampled from the `light` settings (factor on the sky, factor on the sun, one over
+      the visibility range [1/m]);
     - where `done.crash` means contacts, the place of the last one since the reset (`contact`, world
       frame [m]), the object that was touched (`contact_object`, as in `Picture.object_id`; -1:
       none) and its `ObjectClass` (`contact_class`; `DRONE_CLASS`: another drone; -1: none);
@@ -77,7 +77,7 @@ def information(simulation: Simulation) -> Info:
 def by_term(terms: dict[str, Floats]) -> Info:
     """Return terms of the reward under the names `reward/<term>`.
 
-    They are no dictionary of their own, because TorchRL takes only arrays.
+    They are not a dictionary of their own, because TorchRL takes only arrays.
     """
     return {f"reward/{name}": values for name, values in terms.items()}
 

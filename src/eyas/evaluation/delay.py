@@ -1,4 +1,4 @@
-"""How long a policy takes to answer: nothing, a fixed time, drawn times, or measured ones."""
+"""How long a policy takes to answer: nothing, a fixed time, sampled times, or measured ones."""
 
 import math
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from eyas.core.errors import ConfigError, DataFileError
 from eyas.core.files import read_limited
 from eyas.core.rng import stream
 
-__all__ = ["Delay", "Drawn", "Fixed", "Measured", "delay_from"]
+__all__ = ["Delay", "Fixed", "Measured", "SampledDelay", "delay_from"]
 
 _LARGEST = 10_000.0
 """Largest latency [ms]."""
@@ -54,8 +54,8 @@ class Fixed:
 
 
 @dataclass
-class Drawn:
-    """Drawn from measured ones, by the seed of each episode."""
+class SampledDelay:
+    """SampledDelay from measured ones, by the seed of each episode."""
 
     name: str
     values: list[float]
@@ -66,7 +66,7 @@ class Drawn:
         self._streams = [stream(seed, "latency") for seed in seeds]
 
     def next(self, row: int, taken: float) -> float:
-        """Draw one."""
+        """Sample one."""
         return self.values[int(self._streams[row].integers(len(self.values)))]
 
 
@@ -101,7 +101,7 @@ def delay_from(text: str) -> Delay:
     try:
         value = float(text)
     except ValueError:
-        return Drawn(text, [ms * 1e-3 for ms in _read(Path(text))])
+        return SampledDelay(text, [ms * 1e-3 for ms in _read(Path(text))])
     if not 0.0 <= value <= _LARGEST:
         raise ConfigError(f"--latency: {text} is not allowed: 0 to {_LARGEST:g} ms")
     return Fixed(f"{value:g}", value * 1e-3)

@@ -41,7 +41,7 @@ def clear_shares(episodes: list[EpisodeSpec], protocol: Protocol) -> list[float]
 
 
 def _measured_shares(episodes: list[EpisodeSpec], protocol: Protocol) -> NDArray[np.float64]:
-    # Without biases the target is in the middle. They are drawn last, so nothing else changes.
+    # Without biases the target is in the middle. They are sampled last, so nothing else changes.
     start = {**protocol.changes.get("start", {}), "horizontal_bias": 0.0, "vertical_bias": 0.0}
     protocol = replace(protocol, changes={**protocol.changes, "start": start})
     settings = protocol.settings

@@ -238,7 +238,7 @@ class Meter:
 def published(reward: Floats, steps: int, seed: int) -> Published:
     """Return the figures that the original's code prints, see docs/published-results.md.
 
-    Its client makes 305 to 363 actions in an episode, here drawn from the seed and spread evenly,
+    Its client makes 305 to 363 actions in an episode, here sampled from the seed and spread evenly,
     loses the last reward, and divides by 375.
 
     Args:
@@ -247,8 +247,8 @@ def published(reward: Floats, steps: int, seed: int) -> Published:
         seed: Seed of the episode.
     """
     low, high = _PUBLISHED_ACTIONS
-    drawn = int(stream(seed, "published").integers(low, high + 1))
-    full = drawn * steps / _PUBLISHED_LENGTH
+    sampled = int(stream(seed, "published").integers(low, high + 1))
+    full = sampled * steps / _PUBLISHED_LENGTH
     last = np.round(np.arange(1, int(full) + 1) * (steps / full)).astype(np.int64) - 1
     kept = reward[last[last < len(reward)]][:-1]
     return Published(

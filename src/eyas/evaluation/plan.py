@@ -43,7 +43,7 @@ class EvaluationPlan(Config):
     latency: str = "0"
     """Milliseconds, the path of a file with one latency in each line, or `measured`."""
     sampled: bool = False
-    """Whether a network's actions are drawn instead of the best ones."""
+    """Whether a network's actions are sampled instead of the best ones."""
     env: dict[str, Any] = {}  # noqa: RUF012  # pydantic copies it
     """Changes of what the policy sees and does."""
     settings: dict[str, Any] = {}  # noqa: RUF012  # the same

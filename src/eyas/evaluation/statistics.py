@@ -75,7 +75,7 @@ def mean(values: Floats) -> Floats:
 def stratified_resamples(
     strata: Sequence[Hashable], resamples: int = RESAMPLES, seed: int = SEED
 ) -> NDArray[np.int64]:
-    """Return indices that draw as many samples of each stratum as it has, with replacement.
+    """Return indices that take as many samples of each stratum as it has, with replacement.
 
     Args:
         strata: Stratum of each of n samples.
@@ -89,11 +89,11 @@ def stratified_resamples(
     members: dict[Hashable, list[int]] = {}
     for index, stratum in enumerate(strata):
         members.setdefault(stratum, []).append(index)
-    drawn = [
+    sampled = [
         np.array(indices)[rng.integers(len(indices), size=(resamples, len(indices)))]
         for indices in members.values()
     ]
-    return np.concatenate(drawn, axis=1)
+    return np.concatenate(sampled, axis=1)
 
 
 def interval_of(values: Floats, statistic: Statistic, resamples: NDArray[np.int64]) -> Interval:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from eyas.core.frames import rotate
 from eyas.lanes import kernel
 
-__all__ = ["BODY", "Body", "body_box"]
+__all__ = ["BODY", "UprightBox", "body_box"]
 
 BODY = (0.806, 0.806, 0.366)
 """Length, width, height of the original's drone [m]; its camera, a few cm below, is neglected."""
@@ -17,7 +17,7 @@ BODY = (0.806, 0.806, 0.366)
 _LONG, _WIDE, _HIGH = (0.5 * size for size in BODY)
 
 
-class Body(NamedTuple):
+class UprightBox(NamedTuple):
     """An upright box around a body that may be tilted."""
 
     cosine: float
@@ -30,7 +30,7 @@ class Body(NamedTuple):
 
 
 @kernel(inline=True)
-def body_box(orientation: NDArray[np.float64]) -> Body:
+def body_box(orientation: NDArray[np.float64]) -> UprightBox:
     """Return the box around a body, given body to world, shape (4,)."""
     ahead = rotate(orientation, _LONG, 0.0, 0.0)
     left = rotate(orientation, 0.0, _WIDE, 0.0)
@@ -39,7 +39,7 @@ def body_box(orientation: NDArray[np.float64]) -> Body:
     cosine, sine = (ahead[0] / level, ahead[1] / level) if level > 0.0 else (1.0, 0.0)
     length = abs(cosine * ahead[0] + sine * ahead[1]) + abs(cosine * left[0] + sine * left[1])
     width = abs(cosine * ahead[1] - sine * ahead[0]) + abs(cosine * left[1] - sine * left[0])
-    return Body(
+    return UprightBox(
         cosine,
         sine,
         length + abs(cosine * up[0] + sine * up[1]),

@@ -1,6 +1,6 @@
 """Random numbers by their number: kernels read any of them, in any order, without a state.
 
-The noise of a reading depends only on the seed of its stream, which is drawn for each episode
+The noise of a reading depends only on the seed of its stream, which is sampled for each episode
 (`eyas.core.rng.EpisodeKey`), and on the number of the reading; so neither other sensors nor the
 length of a control step change it.
 """

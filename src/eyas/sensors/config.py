@@ -64,7 +64,7 @@ class CameraConfig(Config):
     height: Annotated[int, Field(ge=8, le=8192)] = 240
     """[pixels]"""
     field_of_view: Annotated[Variation, AfterValidator(within(0.05, 2.8))] = 0.7854
-    """Horizontal [rad]; a variation is drawn anew for each tracker at each reset."""
+    """Horizontal [rad]; a variation is sampled anew for each tracker at each reset."""
     samples: Literal[1, 4] = 1
     """Samples per pixel."""
     mount: MountConfig | None = None
@@ -91,7 +91,7 @@ class LidarConfig(Config):
     noise: Deviation = 0.01
     """Standard deviation of a distance [m]."""
     bias: Deviation = 0.0
-    """Standard deviation of the constant error of all distances, drawn for each episode [m]."""
+    """Standard deviation of the constant error of all distances, sampled for each episode [m]."""
     delay_steps: Annotated[int, Field(ge=0, le=500)] = 0
     """Age of the newest point when it is told, in steps of 2 ms."""
     resolution: Annotated[float, Field(ge=0, le=10)] = 0.01
@@ -116,7 +116,7 @@ class ReadingConfig(Config):
     noise: Deviation = 0.0
     """Standard deviation of each number of a reading, in its unit."""
     bias: Deviation = 0.0
-    """Standard deviation of the constant error that is drawn for each number and episode."""
+    """Standard deviation of the constant error that is sampled for each number and episode."""
     delay_steps: Annotated[int, Field(ge=0, le=500)] = 0
     """Age of a reading when it is told, in steps of 2 ms."""
     drop_out: Share = 0.0
@@ -129,7 +129,7 @@ class CameraErrors(ReadingConfig):
     noise: Annotated[float, Field(ge=0, le=255)] = 0.0
     """Standard deviation of each channel of each pixel, of 255."""
     bias: Annotated[float, Field(ge=0, le=255)] = 0.0
-    """Standard deviation of the constant error that is drawn for each channel and episode, of
+    """Standard deviation of the constant error that is sampled for each channel and episode, of
     255."""
 
 

@@ -12,7 +12,7 @@ from eyas.core import exact
 from eyas.state.mesh import Mesh, Surface
 from eyas.state.scene import ObjectClass, Scene
 
-__all__ = ["Box", "Cylinder", "Furniture", "crown_slices", "furniture"]
+__all__ = ["Cylinder", "Furniture", "Prism", "crown_slices", "furniture"]
 
 Row = NDArray[np.float64]
 
@@ -72,7 +72,7 @@ _TRUNK = 0.025
 
 
 @dataclass(frozen=True, slots=True)
-class Box:
+class Prism:
     """An upright prism."""
 
     outline: NDArray[np.float64]
@@ -99,7 +99,7 @@ class Cylinder:
 class Furniture:
     """The solids of all copies."""
 
-    boxes: list[Box]
+    boxes: list[Prism]
     cylinders: list[Cylinder]
 
 
@@ -157,7 +157,7 @@ def _add(
     if not span.slices:
         corners = np.array([[west, south], [east, south], [east, north], [west, north]])
         outline = exact.product(corners, pose[:2, :2].T) + pose[:2, 3]
-        made.boxes.append(Box(outline, bottom, top, thing))
+        made.boxes.append(Prism(outline, bottom, top, thing))
         return
     middle = exact.product(pose[:2, :2], [0.5 * (west + east), 0.5 * (south + north)]) + pose[:2, 3]
     x, y, scale = float(middle[0]), float(middle[1]), exact.hypot(pose[0, 0], pose[1, 0])

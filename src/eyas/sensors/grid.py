@@ -10,7 +10,7 @@ from eyas.lanes import kernel
 
 __all__ = [
     "SPACING",
-    "Grid",
+    "ObstacleGrid",
     "Walk",
     "cells_between",
     "entered",
@@ -26,7 +26,7 @@ _BESIDE = 1e-3
 """How far beside a ray cells are looked at, far more than rounding moves it [m]."""
 
 
-class Grid(NamedTuple):
+class ObstacleGrid(NamedTuple):
     """The items in each cell."""
 
     first: NDArray[np.int32]
@@ -77,7 +77,7 @@ class Walk(NamedTuple):
     """Its way across lanes over that along it."""
 
 
-def grid_of(bounds: NDArray[np.float64], top: NDArray[np.float64]) -> Grid:
+def grid_of(bounds: NDArray[np.float64], top: NDArray[np.float64]) -> ObstacleGrid:
     """Return the grid of I items.
 
     Args:
@@ -94,7 +94,7 @@ def grid_of(bounds: NDArray[np.float64], top: NDArray[np.float64]) -> Grid:
             for column in range(left, right + 1):
                 cells[row * columns + column].append(item)
     heights = top.tolist()
-    return Grid(
+    return ObstacleGrid(
         first=np.cumsum([0, *map(len, cells)]).astype(np.int32),
         item=np.array([item for cell in cells for item in cell], np.int32),
         top=np.array([max((heights[item] for item in cell), default=-math.inf) for cell in cells]),
@@ -108,7 +108,7 @@ def grid_of(bounds: NDArray[np.float64], top: NDArray[np.float64]) -> Grid:
 
 @kernel(inline=True)
 def cells_between(
-    grid: Grid, x: tuple[float, float], y: tuple[float, float], beside: float
+    grid: ObstacleGrid, x: tuple[float, float], y: tuple[float, float], beside: float
 ) -> tuple[int, int, int, int]:
     """Return the first and last row, and the first and last column, of the cells around a line.
 
@@ -127,7 +127,7 @@ def cells_between(
 
 @kernel(inline=True)
 def walk_along(
-    grid: Grid,
+    grid: ObstacleGrid,
     start: tuple[float, float],
     ahead: tuple[float, float],
     end: tuple[float, float],

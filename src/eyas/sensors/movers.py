@@ -6,7 +6,7 @@ from eyas.core.clock import PHYSICS_STEP
 from eyas.lanes import kernel
 from eyas.lanes.elementary import sin_cos
 from eyas.sensors.bodies import body_box
-from eyas.sensors.obstacles import Boxes, Movers
+from eyas.sensors.obstacles import Boxes, MovingObstacles
 from eyas.state.scene import ACTOR_OBJECT
 from eyas.state.snapshot import TrackerState
 from eyas.traffic.interpolation import ActorPose, interpolate_actor, sample_before
@@ -20,7 +20,12 @@ _SLACK = 20.0
 
 @kernel(inline=True)
 def find_boxes(
-    movers: Movers, n: int, tick: int, place: tuple[float, float, float], reach: float, boxes: Boxes
+    movers: MovingObstacles,
+    n: int,
+    tick: int,
+    place: tuple[float, float, float],
+    reach: float,
+    boxes: Boxes,
 ) -> int:
     """Find the boxes of what moves and may be near a place; return their number.
 
@@ -124,7 +129,9 @@ def _carried(whole: _Place, hitch: float, middle: float, towed: int) -> _Place:
 
 
 @kernel(inline=True)
-def _write_boxes(pose: ActorPose, movers: Movers, model: int, boxes: Boxes, count: int) -> int:
+def _write_boxes(
+    pose: ActorPose, movers: MovingObstacles, model: int, boxes: Boxes, count: int
+) -> int:
     """Write an actor's boxes, which stand upright: its pitch on a slope is neglected.
 
     Returns:

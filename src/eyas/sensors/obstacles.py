@@ -6,8 +6,8 @@ from typing import Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.sensors.furniture import Box, Cylinder, furniture
-from eyas.sensors.grid import Grid, grid_of
+from eyas.sensors.furniture import Cylinder, Prism, furniture
+from eyas.sensors.grid import ObstacleGrid, grid_of
 from eyas.sensors.slopes import Slopes, slopes_of
 from eyas.state.motion import Motion
 from eyas.state.scene import ObjectClass, Scene
@@ -15,7 +15,7 @@ from eyas.state.snapshot import TrackerState
 from eyas.state.terrain import Terrain
 from eyas.targets.catalogue import MODELS, kind_of, sections_of
 
-__all__ = ["Boxes", "Movers", "Obstacles", "Solids", "obstacles_of", "solids_of"]
+__all__ = ["Boxes", "MovingObstacles", "Obstacles", "Solids", "obstacles_of", "solids_of"]
 
 Floats = NDArray[np.float64]
 
@@ -38,7 +38,7 @@ class Solids(NamedTuple):
     """z of each item [m], shape (B + C,)."""
     thing: NDArray[np.int32]
     """Object of the scene that each item belongs to, shape (B + C,)."""
-    grid: Grid
+    grid: ObstacleGrid
     """The items in each cell."""
     ground: int
     """Object of the scene that the ground is."""
@@ -61,7 +61,7 @@ width, height [m]; towed: 1 for a trailer, else 0.
 """
 
 
-class Movers(NamedTuple):
+class MovingObstacles(NamedTuple):
     """The actors, and the bodies of the others, around N trackers, in W worlds."""
 
     motion: Motion
@@ -101,7 +101,7 @@ class Obstacles(NamedTuple):
 
     solids: Solids
     terrain: Terrain
-    movers: Movers
+    movers: MovingObstacles
     boxes: Boxes
     slopes: Slopes
 
@@ -119,13 +119,13 @@ def obstacles_of(
     Args:
         solids: See `solids_of`.
         terrain: The ground.
-        motion: See `Movers`, as for the next two.
+        motion: See `MovingObstacles`, as for the next two.
         world: Shape (N,).
         model: Shape (W, A).
         bodies: The trackers; None: these have no bodies.
     """
     blocks = [_blocks_of(number) for number in range(len(MODELS))]
-    movers = Movers(
+    movers = MovingObstacles(
         motion=motion,
         world=world,
         model=model,
@@ -182,7 +182,7 @@ def solids_of(scene: Scene) -> Solids:
     )
 
 
-def _columns(items: Sequence[Box | Cylinder]) -> tuple[Floats, Floats, NDArray[np.int32]]:
+def _columns(items: Sequence[Prism | Cylinder]) -> tuple[Floats, Floats, NDArray[np.int32]]:
     rows = np.array([(i.bottom, i.top, i.thing) for i in items], np.float64).reshape(-1, 3)
     return rows[:, 0], rows[:, 1], rows[:, 2].astype(np.int32)
 

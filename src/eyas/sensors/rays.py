@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from eyas.lanes import kernel
 from eyas.sensors.grid import (
     SPACING,
-    Grid,
+    ObstacleGrid,
     cells_between,
     entered,
     lane_cells,
@@ -114,7 +114,7 @@ def _cast_solid(ray: Ray, limit: float, solids: Solids, item: int) -> float:
 
 
 @kernel(inline=True)
-def _is_before(grid: Grid, cells: tuple[int, int, int, int], one: int, other: int) -> bool:
+def _is_before(grid: ObstacleGrid, cells: tuple[int, int, int, int], one: int, other: int) -> bool:
     """Return whether an item comes before another in a rectangle of cells, row by row."""
     a, b = grid.bounds[one], grid.bounds[other]
     row_a = max(math.floor((a[1] - grid.south) / SPACING), cells[0])

@@ -15,7 +15,7 @@ __all__ = ["NOBODY", "Crowd", "crowd_of", "extras_of", "vehicles_of"]
 
 
 class Crowd(Config):
-    """Everyone in a world who is no vehicle of SUMO's: the targets that are asked for, and extras.
+    """Everyone in a world who is not a vehicle of SUMO's: targets that are asked for, and extras.
 
     Other settings have no effect on their motion.
     """

@@ -1,4 +1,4 @@
-"""The motion of a crowd: of the targets that are no vehicles of SUMO's, and of extras."""
+"""The motion of a crowd: of the targets that are not vehicles of SUMO's, and of extras."""
 
 import zlib
 from collections.abc import Callable, Sequence
@@ -113,7 +113,7 @@ def _all_kept(
     ]
     make, inputs = partial(_side_by_side, tables, parts), (_numbers_of, *tables, *depends_on)
     numbers = cached(Kind.MOTION, make, inputs, of=NDArray[np.float32])
-    counts = [int(group.lives.slot.max()) + 1 for group in groups]
+    counts = [int(group.lifetimes.slot.max()) + 1 for group in groups]
     indices = [kind_index(group.kind) for group in groups]
     kind = np.concatenate([*(one.kind for one in before), np.repeat(indices, counts)])
     motion = Motion(numbers.view(SAMPLE)[..., 0], kind.astype(np.int32), around.clock.rate, 0.0)
@@ -183,18 +183,18 @@ def _depends_on(
 def _groups(crowd: Crowd, clock: SampleClock) -> list[ScriptedGroup]:
     groups = []
     if crowd.custom is None and not crowd.follows_vehicles:
-        lives = _lives(crowd, clock)
+        lifetimes = _lifetimes(crowd, clock)
         target = ExtraConfig(kind=crowd.target)
-        groups.append(_group(target, lives, crowd.objects.offset, "objects.max_count"))
+        groups.append(_group(target, lifetimes, crowd.objects.offset, "objects.max_count"))
     for number, extra in enumerate(crowd.extras):
         if not extra.is_traffic:
-            lives = lasting(extra.count, clock.samples)
-            one = _group(extra, lives, _ASIDE, f"extras.{number}.count")
+            lifetimes = lasting(extra.count, clock.samples)
+            one = _group(extra, lifetimes, _ASIDE, f"extras.{number}.count")
             groups.append(one._replace(chosen_by=f"extras.{number}.behaviour"))
     return groups
 
 
-def _lives(crowd: Crowd, clock: SampleClock) -> Lifetimes:
+def _lifetimes(crowd: Crowd, clock: SampleClock) -> Lifetimes:
     return recycled(crowd.objects, clock.samples, clock.rate, crowd.episode, crowd.followers)
 
 
@@ -217,11 +217,13 @@ def _custom(crowd: Crowd, custom: CustomConfig, around: Surroundings, ground: "G
     from eyas.custom.motion import Places, custom_motion  # with shapely
 
     clock = around.clock
-    places = Places(_lives(crowd, clock), crowd.objects.offset, around.vehicles)
+    places = Places(_lifetimes(crowd, clock), crowd.objects.offset, around.vehicles)
     return custom_motion(custom, places, ground, clock, stream(around.seed, "custom"))
 
 
-def _group(extra: ExtraConfig, lives: Lifetimes, offset: Variation, setting: str) -> ScriptedGroup:
+def _group(
+    extra: ExtraConfig, lifetimes: Lifetimes, offset: Variation, setting: str
+) -> ScriptedGroup:
     models = [MODELS[model] for model in models_of(kind_index(extra.kind))]
     breadth = max(float(exact.hypot(*model.size[:2])) for model in models)
     return ScriptedGroup(
@@ -229,7 +231,7 @@ def _group(extra: ExtraConfig, lives: Lifetimes, offset: Variation, setting: str
         breadth=breadth,
         behaviour=extra.behaviour,
         habit=habit_of(extra.kind.value),
-        lives=lives,
+        lifetimes=lifetimes,
         offset=offset,
         setting=setting,
     )

@@ -91,7 +91,7 @@ class Episodes:
         self._bind()
 
     def _bind(self) -> None:
-        """Bind the draw of episodes to what is known of the traffic."""
+        """Bind the sampling of episodes to what is known of the traffic."""
         self._drawn = sample_episodes.bind(self._draw, self._traffic.stays(), self._call)
 
     def reseed(self, seed: int) -> None:
@@ -180,7 +180,7 @@ class Episodes:
 
 
 def _rules(config: SimConfig, last_tick: int) -> SamplingRules:
-    """Return how episodes are drawn from traffic that ends at a physics step.
+    """Return how episodes are sampled from traffic that ends at a physics step.
 
     Raises:
         ConfigError: The traffic is shorter than an episode.

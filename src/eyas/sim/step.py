@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
+from eyas.core.frames import wrap_angle
 from eyas.lanes import BoundCall, CompiledCall, Held, compiled, kernel, specialised
 from eyas.lanes.elementary import sin_cos
 from eyas.sensors.inertial import feel, rest
@@ -25,17 +26,41 @@ from eyas.state.terrain import Terrain
 from eyas.task.direction import target_centre
 from eyas.task.done import judge
 from eyas.task.observe import clear_episode, observe
-from eyas.task.offset import offset_pose
 from eyas.task.reward import rewarded_size
 from eyas.task.rules import Rules
-
-# The kernels and the memory of the tracker: those of the drone, unless `step_of` replaces them.
 from eyas.trackers.drone import advance, aim, carry, start
 from eyas.trackers.tracker import Tracker
 from eyas.trackers.tracker import stand as launch
 from eyas.traffic.interpolation import interpolate_actor
 
-__all__ = ["Orders", "Step", "StepKernels", "StepState", "StepSurroundings", "step_of"]
+__all__ = [
+    "Orders",
+    "Step",
+    "StepKernels",
+    "StepState",
+    "StepSurroundings",
+    "offset_pose",
+    "step_of",
+]
+
+
+@kernel(inline=True)
+def offset_pose(
+    target: NDArray[np.float64], target_yaw: float, offset: NDArray[np.float64]
+) -> tuple[float, float, float, float]:
+    """Return x, y, z [m] and yaw [rad] of a body at an offset from a target.
+
+    Args:
+        target: Reference point of the target, world frame [m], shape (3,).
+        target_yaw: Heading of the target [rad].
+        offset: Forward, left, up in the body's heading frame [m], and its heading relative to the
+            target's [rad], shape (4,).
+    """
+    yaw = target_yaw + offset[3]
+    sine, cosine = sin_cos(yaw)
+    x = target[0] + cosine * offset[0] - sine * offset[1]
+    y = target[1] + sine * offset[0] + cosine * offset[1]
+    return x, y, target[2] + offset[2], wrap_angle(yaw)
 
 
 class StepSurroundings(NamedTuple):

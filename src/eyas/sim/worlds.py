@@ -48,7 +48,7 @@ class Worlds:
         leader: First tracker of each world, shape (W,): its random streams are the world's.
         lasting: Whether the time of each world continues when an episode ends, shape (W,).
         looks: Models and colours of the actors in all W worlds; they change in place.
-        look_table: What these are drawn from.
+        look_table: What these are sampled from.
 
     Args:
         config: The settings.
@@ -107,7 +107,7 @@ class Worlds:
         self.looks.colour[world, same] = self.looks.colour[world, actor]
 
     def dress(self, tracker: int, actor: int, model: int, colour: Colour) -> None:
-        """Give an actor around a tracker a model of its kind and a colour, until looks are drawn.
+        """Give an actor around a tracker a model of its kind and a colour, until looks are sampled.
 
         Args:
             tracker: The tracker.

@@ -38,7 +38,7 @@ def sample_looks(
     colour: NDArray[np.float32],
     state: NDArray[np.int64],
 ) -> None:
-    """Draw the looks of all actors, those that `LookSampler.sample` would draw.
+    """Sample the looks of all actors, those that `LookSampler.sample` would return.
 
     Args:
         table: The possible looks.
@@ -56,8 +56,8 @@ def sample_looks(
         for at in range(begin, end):
             pick = whole(state, first[kind + 1, 2] - colours)
             for channel in range(3):
-                drawn = table.colours[colours + pick, channel]
-                own = table.colour[channel] if table.fixed[kind] else drawn
+                sampled = table.colours[colours + pick, channel]
+                own = table.colour[channel] if table.fixed[kind] else sampled
                 colour[actors[at], channel] = own
 
 
@@ -69,9 +69,9 @@ class _Choice(NamedTuple):
     models: NDArray[np.int32]
     """Models of the kind, as indices into `MODELS`."""
     colours: NDArray[np.float32]
-    """Colours to draw from, sRGB 0 to 1, shape (., 3)."""
+    """Colours to sample from, sRGB 0 to 1, shape (., 3)."""
     fixed: Colour | None
-    """Colour of all actors; None: drawn."""
+    """Colour of all actors; None: sampled."""
 
 
 class LookSampler:
@@ -80,7 +80,7 @@ class LookSampler:
     Args:
         kind: Kind of each actor, index into `KINDS`, shape (A,).
         colour: Colour of all actors except those of kinds that keep their colours, sRGB 0 to 1;
-            None: drawn.
+            None: sampled.
     """
 
     def __init__(self, kind: NDArray[np.int32], colour: Colour | None = None) -> None:
@@ -113,10 +113,10 @@ class LookSampler:
         )
 
     def sample(self, rng: np.random.Generator) -> tuple[NDArray[np.int32], NDArray[np.float32]]:
-        """Draw the model and colour of each actor, kind by kind.
+        """Sample the model and colour of each actor, kind by kind.
 
-        Both are uniform, over the models and over the colours of the kind. The same draws are made
-        whether or not the colour is fixed, so fixing it changes no model.
+        Both are uniform, over the models and over the colours of the kind. The same samples are
+        taken whether or not the colour is fixed, so fixing it changes no model.
 
         Args:
             rng: Random stream of this room.

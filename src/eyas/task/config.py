@@ -64,7 +64,7 @@ class StartVelocity(StrEnum):
 
 
 class StartConfig(Config):
-    """Start of the tracker, relative to its target. Variations are drawn anew at each reset."""
+    """Start of the tracker, relative to its target. Variations are sampled anew at each reset."""
 
     pitch: Annotated[Variation, AfterValidator(within(0.1, 3.0))] = 1.0
     """Camera pitch, positive down [rad]; the gimbal limits it to 0.5 to 1.5, but the start position

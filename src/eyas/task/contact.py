@@ -27,7 +27,7 @@ class Contacts:
             written, and the reasons of their ends if a crash is one.
         obstacles: What they may touch.
         active: Whether each tracker moves in a step, shape (N,); read at each.
-        grace_steps: Steps after a reset in which a crash is no end.
+        grace_steps: Steps after a reset in which a crash does not end the episode.
         ends: Whether a crash ends the episode.
     """
 

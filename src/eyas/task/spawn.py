@@ -11,17 +11,17 @@ from eyas.core.frames import wrap_angle
 from eyas.lanes import interpreted, kernel
 from eyas.lanes.elementary import tan
 
-__all__ = ["Start", "start_distance", "start_pose"]
+__all__ = ["StartValues", "start_distance", "start_pose"]
 
 _wrapped = interpreted(wrap_angle)
 
 
 @dataclass(frozen=True, slots=True)
-class Start:
-    """A drawn start, relative to the target; the fields of `StartConfig`."""
+class StartValues:
+    """A sampled start, relative to the target; the fields of `StartConfig`."""
 
     pitch: float
-    """Drawn camera pitch, positive down [rad], before the gimbal limits it."""
+    """SampledDelay camera pitch, positive down [rad], before the gimbal limits it."""
     height: float
     """[m]"""
     direction: float
@@ -53,14 +53,14 @@ _distance = interpreted(start_distance)
 
 
 def start_pose(
-    start: Start, target_position: ArrayLike, target_yaw: float, ahead: float
+    start: StartValues, target_position: ArrayLike, target_yaw: float, ahead: float
 ) -> tuple[NDArray[np.float64], float]:
     """Return the start position of the tracker's body [m], shape (3,), and its yaw [rad].
 
     See `start_distance`.
 
     Args:
-        start: The drawn start.
+        start: The sampled start.
         target_position: Reference point of the target [m], shape (3,).
         target_yaw: Heading of the target [rad].
         ahead: Distance of the target's middle ahead of its reference point, see

@@ -54,7 +54,7 @@ class StepLine:
         """Return the step of a line of a log, whatever precedes it there.
 
         Raises:
-            DataFileError: It is no such line.
+            DataFileError: It is not such a line.
         """
         found = _PATTERN.search(line.rstrip("\n"))
         try:

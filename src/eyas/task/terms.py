@@ -77,7 +77,8 @@ def load_term(name: str) -> RewardTerm:
     """Return a term by its name, or by the path `package.module:function`.
 
     Raises:
-        ConfigError: There is no such function, or its parameters are no quantities.
+        ConfigError: There is no such function, or a parameter is not the name of a
+            quantity.
     """
     function = TERMS[name] if name in TERMS else _function(name)
     wanted = _wanted(name, function)
@@ -135,7 +136,7 @@ def _wanted(name: str, function: Callable[..., Floats]) -> list[str]:
 
 
 def _numbers(answer: object) -> Floats | None:
-    """Return a copy of an answer as numbers; None if it is none."""
+    """Return a copy of an answer as numbers; None if it is something else."""
     try:
         return np.array(answer, np.float64)
     except (TypeError, ValueError):

@@ -22,7 +22,7 @@ from eyas.trackers.flight_controller import attitude_torque, desired_force, mixe
 from eyas.trackers.gimbal import advance_gimbal, camera_pose, reset_gimbal
 from eyas.trackers.gimbal_servo import ServoMemory, advance_servo, settle_servo
 from eyas.trackers.level_gimbal import level_pose
-from eyas.trackers.rigid_body import Body, Thrusts, moved, spun_up
+from eyas.trackers.rigid_body import RigidBody, Thrusts, moved, spun_up
 from eyas.trackers.steady import launch
 from eyas.trackers.tracker import Tracker
 from eyas.trackers.wind import WindMemory, begin_wind, blow
@@ -173,16 +173,18 @@ def _wanted(
 
 
 @kernel
-def _body(trackers: TrackerState, n: int) -> Body:
+def _body(trackers: TrackerState, n: int) -> RigidBody:
     p, v = trackers.position[n], trackers.velocity[n]
     q, w = trackers.orientation[n], trackers.angular_velocity[n]
-    return Body(
+    return RigidBody(
         (p[0], p[1], p[2]), (v[0], v[1], v[2]), (q[0], q[1], q[2], q[3]), (w[0], w[1], w[2])
     )
 
 
 @kernel(inline=True)
-def _write(trackers: TrackerState, memory: FlightMemory, n: int, before: Body, after: Body) -> None:
+def _write(
+    trackers: TrackerState, memory: FlightMemory, n: int, before: RigidBody, after: RigidBody
+) -> None:
     """Write the state of a body after a step of 2 ms."""
     for axis in range(3):
         memory.measured[n, axis] = (after.position[axis] - before.position[axis]) / PHYSICS_STEP

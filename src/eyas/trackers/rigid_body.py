@@ -13,14 +13,14 @@ from eyas.lanes.elementary import exp, sin_cos
 from eyas.state.terrain import Terrain, ground_at
 from eyas.trackers.airframe import Airframe
 
-__all__ = ["Body", "Thrusts", "moved", "spun_up", "turned"]
+__all__ = ["RigidBody", "Thrusts", "moved", "spun_up", "turned"]
 
 Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
 Thrusts = tuple[float, float, float, float]
 
 
-class Body(NamedTuple):
+class RigidBody(NamedTuple):
     """State of a rigid body."""
 
     position: Vector
@@ -49,12 +49,12 @@ class _Change(NamedTuple):
 @kernel
 def moved(
     frame: Airframe,
-    body: Body,
+    body: RigidBody,
     thrusts: tuple[Thrusts, Thrusts, Thrusts],
     wind: Vector,
     terrain: Terrain,
     step: float,
-) -> Body:
+) -> RigidBody:
     """Return a body after a time step.
 
     The step is the Runge-Kutta method of order 4 in the form of Munthe-Kaas ("High order
@@ -79,7 +79,7 @@ def moved(
     attitude = turned(
         body.attitude, _sum(still, a.rotation, b.rotation, c.rotation, d.rotation, step)
     )
-    return Body(
+    return RigidBody(
         _sum(body.position, a.position, b.position, c.position, d.position, step),
         _sum(body.velocity, a.velocity, b.velocity, c.velocity, d.velocity, step),
         _normalised(attitude),
@@ -112,7 +112,7 @@ def turned(attitude: Quaternion, rotation: Vector) -> Quaternion:
 @kernel
 def _stage(
     frame: Airframe,
-    body: Body,
+    body: RigidBody,
     change: _Change,
     step: float,
     thrusts: Thrusts,
@@ -121,7 +121,7 @@ def _stage(
 ) -> _Change:
     """Return the rates of change of a body that has changed for a time at other rates."""
     rotation = _plus((0.0, 0.0, 0.0), change.rotation, step)
-    there = Body(
+    there = RigidBody(
         _plus(body.position, change.position, step),
         _plus(body.velocity, change.velocity, step),
         turned(body.attitude, rotation),
@@ -133,7 +133,7 @@ def _stage(
 @kernel
 def _change(
     frame: Airframe,
-    body: Body,
+    body: RigidBody,
     rotation: Vector,
     thrusts: Thrusts,
     wind: Vector,
@@ -175,7 +175,7 @@ def _change(
 
 
 @kernel
-def _contact(frame: Airframe, body: Body, terrain: Terrain) -> tuple[Vector, Vector]:
+def _contact(frame: Airframe, body: RigidBody, terrain: Terrain) -> tuple[Vector, Vector]:
     """Return force, world frame [N], and torque, body frame [N m], of the ground on four feet.
 
     Each stands on a spring with a damper, and slides if the force along the ground would exceed

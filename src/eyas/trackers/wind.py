@@ -32,7 +32,7 @@ _SHIFTS = (np.uint64(12), np.uint64(25), np.uint64(27), np.uint64(11))
 _FACTOR = np.uint64(2685821657736338717)
 _UNIT = 2.0**-53
 _DEVIATION = math.sqrt(12.0)
-"""One over the standard deviation of a number drawn uniformly from 0 to 1."""
+"""One over the standard deviation of a number sampled uniformly from 0 to 1."""
 
 
 class WindMemory(NamedTuple):

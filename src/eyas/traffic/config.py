@@ -93,14 +93,14 @@ class TrafficConfig(Config):
     route_length: tuple[Least, Most] = (500.0, 7000.0)
     """Shortest and longest route (respawn) [m]."""
     route_count: Annotated[int, Field(ge=1, le=10_000_000)] = 100_000
-    """Largest number of routes drawn (respawn)."""
+    """Largest number of routes sampled (respawn)."""
     update_routes: bool = True
     """The original's `rou_update`. A recording is reused while it fits in any case; with False,
     the line that tells of a new one says that it was made all the same."""
     seed: Annotated[int, Field(ge=0, lt=2**31)] | None = None
     """Seed of SUMO and of the routes; None: the seed of the shipped recording."""
     colour: tuple[Unit, Unit, Unit] | None = None
-    """Body colour of every car, RGB 0 to 1; None: drawn for each car."""
+    """Body colour of every car, RGB 0 to 1; None: sampled for each car."""
     recording: str | None = None
     """Path of a recording to replay; None: a shipped or cached recording that fits."""
 

@@ -59,7 +59,7 @@ def lasting_edges(links: RoadLinks) -> Route:
     Where several parts are the largest, as with roads that never meet, the edges of all of them.
 
     Raises:
-        ConfigError: There is none: every route comes to an end.
+        ConfigError: Every route comes to an end.
     """
     parts = [part for part in _loops(links) if len(part) > 1 or _turns_back(links, part[0])]
     largest = max(map(len, parts), default=0)

@@ -23,7 +23,7 @@ OPTIONS = (
     # Crossings, with lights for those on foot, only where there are traffic lights.
     *("--crossings.guess", "true"),
     *("--crossings.guess.speed-threshold", "0"),
-    # Bends are no junctions, and what is one crossing for drivers is one junction.
+    # Bends are not junctions, and what is one crossing for drivers is one junction.
     *("--geometry.remove", "true"),
     *("--junctions.join", "true"),
     *("--max-join-ids", "3"),

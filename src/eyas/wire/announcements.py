@@ -97,7 +97,7 @@ class Announcements:
         return None
 
     def _tell(self, message: bytes, sender: str) -> None:
-        """Report a message that is no number of agents, one of many in a second."""
+        """Report a message that is not a number of agents, one of many in a second."""
         now = time.monotonic()
         if self._told < 0.0 or now - self._told > 1.0:
             self._told = now
@@ -119,7 +119,7 @@ def _listening(address: str, port: int) -> socket.socket:
             address, port, type=socket.SOCK_DGRAM, flags=socket.AI_PASSIVE
         )[0]
     except (OSError, UnicodeError) as error:
-        raise ConfigError(f"wire.address: {address!r} is no network address: {error}") from None
+        raise ConfigError(f"wire.address: {address!r} is not a network address: {error}") from None
     made = socket.socket(family, kind)
     try:
         made.bind(place)

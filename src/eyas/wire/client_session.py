@@ -167,7 +167,7 @@ class ClientSession:
         """Return the first line of the action file; None while there is none.
 
         Raises:
-            ActionError: It is no ordinary file, or cannot be read.
+            ActionError: It is not an ordinary file, or cannot be read.
         """
         flags = os.O_RDONLY | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_NONBLOCK", 0)
         try:

@@ -32,7 +32,7 @@ class LightConfig(Config):
     """Changes of light and fog; the original's `Env_Params`."""
 
     each_reset: bool = True
-    """Whether the changes are drawn anew at each reset, or only once at the start."""
+    """Whether the changes are sampled anew at each reset, or only once at the start."""
     background: Brightness = 0.0
     """Brightness of the sky and its light, a factor without unit."""
     background_replaces: bool = False

@@ -145,7 +145,7 @@ def _checked(kind: type[Enum], flat: Json) -> Enum:
 def _parts(value: object) -> dict[str, object] | None:
     if isinstance(value, dict):
         if not all(type(name) is str for name in value):
-            raise FlatError("a dict with keys that are no names cannot be flattened")
+            raise FlatError("a dict with keys that are not names cannot be flattened")
         return value
     kind: Any = type(value)
     names = _field_types(kind)

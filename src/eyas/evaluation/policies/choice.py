@@ -1,4 +1,4 @@
-"""From what a network answers to an action: the largest, or one drawn."""
+"""From what a network answers to an action: the largest, or one sampled."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ class Chooser:
     """Chooses actions of N episodes by their scores.
 
     Args:
-        sampled: Whether actions are drawn with the probabilities of a softmax.
+        sampled: Whether actions are sampled with the probabilities of a softmax.
     """
 
     def __init__(self, *, sampled: bool) -> None:
@@ -23,7 +23,7 @@ class Chooser:
         self._streams = [stream(seed, "policy") for seed in seeds.tolist()]
 
     def of(self, scores: NDArray[np.floating], deciding: NDArray[np.bool_]) -> NDArray[np.int64]:
-        """Return an action of each; random numbers are drawn for those who decide.
+        """Return an action of each; random numbers are sampled for those who decide.
 
         Args:
             scores: Logarithms of unnormalised probabilities, shape (N, A).
@@ -34,6 +34,6 @@ class Chooser:
             weights = np.exp(scores.astype(np.float64) - scores.max(axis=1, keepdims=True))
             shares = np.cumsum(weights, axis=1) / weights.sum(axis=1, keepdims=True)
             for row in np.flatnonzero(deciding).tolist():
-                drawn = np.searchsorted(shares[row], self._streams[row].random(), side="right")
-                chosen[row] = min(int(drawn), scores.shape[1] - 1)
+                sampled = np.searchsorted(shares[row], self._streams[row].random(), side="right")
+                chosen[row] = min(int(sampled), scores.shape[1] - 1)
         return chosen

@@ -40,10 +40,10 @@ class OnnxPolicy:
     Args:
         path: The file.
         changes: Changes of `env`.
-        sampled: Whether discrete actions are drawn.
+        sampled: Whether discrete actions are sampled.
 
     Raises:
-        DataFileError: The file is no such network.
+        DataFileError: The file does not hold such a network.
         MissingExtraError: onnxruntime is not installed.
     """
 

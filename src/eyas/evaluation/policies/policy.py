@@ -81,7 +81,7 @@ class Policy(Protocol):
     env: EnvConfig
     """What it sees, and what its actions mean."""
     sampled: bool
-    """Whether its actions are drawn at random, from the seeds of the episodes."""
+    """Whether its actions are sampled at random, from the seeds of the episodes."""
 
     def begin(self, start: Start) -> None:
         """Forget everything: N episodes begin."""
@@ -101,7 +101,7 @@ def settings_in(path: Path, place: str, said: object) -> Mapping[str, Any]:
         said: What stands there.
 
     Raises:
-        DataFileError: They are none.
+        DataFileError: Something else stands there, or a setting is wrong.
     """
     if not isinstance(said, Mapping) or not all(isinstance(key, str) for key in said):
         raise DataFileError(f"{path}: {place}: {shown(said)} is not allowed: settings of env")

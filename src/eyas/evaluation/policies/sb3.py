@@ -30,7 +30,7 @@ class Sb3Policy:
     Args:
         path: The `.zip`. It holds pickles, which run code: load only files that you trust.
         changes: Changes of `env`.
-        sampled: Whether actions are drawn; not repeatable, since the library seeds no single ones.
+        sampled: Whether actions are sampled; not repeatable, as the library seeds no single ones.
 
     Raises:
         DataFileError: The file is not such a model.
@@ -41,7 +41,7 @@ class Sb3Policy:
         self._model = _loaded(path)
         shape = self._model.observation_space.shape
         if shape is None or len(shape) != 3:
-            raise DataFileError(f"{path}: its observations are no pictures")
+            raise DataFileError(f"{path}: its observations are not pictures")
         first = shape[0] < shape[2]
         planes, height, width = shape if first else (shape[2], shape[0], shape[1])
         grey = planes % 3 != 0

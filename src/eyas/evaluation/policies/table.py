@@ -43,7 +43,7 @@ def open_policy(said: str, changes: Mapping[str, Any], *, sampled: bool = False)
     Args:
         said: A built-in or shipped name, the path of a file, or `package.module:name`.
         changes: Changes of `env`.
-        sampled: Whether a network's actions are drawn instead of the best ones.
+        sampled: Whether a network's actions are sampled instead of the best ones.
 
     Raises:
         EyasError: There is no such policy, or it cannot be loaded.
@@ -76,7 +76,7 @@ def open_policy(said: str, changes: Mapping[str, Any], *, sampled: bool = False)
 
 
 def fingerprint(said: str) -> str | None:
-    """Return a hash of a policy's file; None if it is none."""
+    """Return a hash of a policy's file; None if the policy has no file."""
     path = file_of(said) if said in shipped_names() else Path(said)
     if said in BUILT_IN or path.suffix not in FILES:
         return None
@@ -96,7 +96,7 @@ def _refuse_large(path: Path, policy: Policy, changes: Mapping[str, Any]) -> Non
 
 def _refuse_sampled(said: str, *, sampled: bool) -> None:
     if sampled:
-        raise ConfigError(f"--sample: not allowed for '{said}': it is no network with scores")
+        raise ConfigError(f"--sample: not allowed for '{said}': it is not a network with scores")
 
 
 def _imported(path: str) -> Any:  # noqa: ANN401  # a function of the tables above

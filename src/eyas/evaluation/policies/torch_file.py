@@ -27,7 +27,7 @@ class TorchPolicy:
         path: A program of `torch.export.save`, `.pt2`; or a whole module of `torch.save`. The
             latter is a pickle, which runs code: load only files that you trust.
         changes: Changes of `env`.
-        sampled: Whether discrete actions are drawn.
+        sampled: Whether discrete actions are sampled.
 
     Raises:
         DataFileError: The file is neither.

@@ -108,7 +108,7 @@ class PolicyController:
         """Ask the policy.
 
         Raises:
-            EyasError: It fails, or its action is none.
+            EyasError: It fails, or its action is not allowed.
         """
         self._observer.look(np.zeros(1, np.int32), self._begun)
         self._begun = np.zeros(1, np.bool_)

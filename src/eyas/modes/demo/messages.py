@@ -181,7 +181,7 @@ def parsed(text: str | bytes) -> Message:
     """Return the message that a text holds: `{"message": "keys", ...}`.
 
     Raises:
-        ConfigError: It is none; the message is one line.
+        ConfigError: It holds something else; the message is one line.
     """
     if isinstance(text, bytes):
         raise ConfigError("message: bytes are not allowed; allowed: text")

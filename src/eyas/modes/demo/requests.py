@@ -120,7 +120,7 @@ def query_of(request: Request) -> dict[str, list[str]]:
 
 
 def _name_of(address: str) -> SplitResult:
-    """Return an address in parts; empty ones if it is none."""
+    """Return an address in parts; empty ones if it is not valid."""
     try:
         parts = urlsplit(address)
         parts.hostname  # noqa: B018  # raises for some

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from eyas.modes.gallery.still import StillScene, Viewpoint, is_inside, solids
 from eyas.state.scene import ObjectClass, Scene
 from eyas.targets.vehicles.vehicle import VEHICLE_AHEAD
-from eyas.task.spawn import Start, start_pose
+from eyas.task.spawn import StartValues, start_pose
 
 __all__ = ["CAMERA", "POSES", "STOPS", "Cars", "all_cars", "beside_most", "on_open_roads", "stop"]
 
@@ -76,7 +76,7 @@ def drone_view(
 ) -> Viewpoint:
     """Return the view of a car by a drone at one of its starts."""
     height, pitch, kind = pose
-    start, spot = Start(pitch, height, 0.0, 0.0, 0.0), [*cars.position[car], 0.0]
+    start, spot = StartValues(pitch, height, 0.0, 0.0, 0.0), [*cars.position[car], 0.0]
     position, yaw = start_pose(start, spot, float(cars.yaw[car]), VEHICLE_AHEAD)
     time = float(cars.time[car])
     return Viewpoint(

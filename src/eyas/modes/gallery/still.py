@@ -107,7 +107,7 @@ class StillScene:
         return picture.depth[0], seen / covered if covered else 0.0
 
     def sights(self, view: Viewpoint) -> float:
-        """Return how much is in a view: shares of what is no ground, an eighth each at most."""
+        """Return how much is in a view: shares of what is not ground, an eighth each at most."""
         picture = Picture.create(1, 48, 64, rgb=False, class_id=True)
         self._draw(view, picture, 1)
         assert picture.class_id is not None  # set above

@@ -39,7 +39,7 @@ class Following:
 
 
 class RandomActions:
-    """One of six actions, drawn at the start of each control period and held during it.
+    """One of six actions, sampled at the start of each control period and held during it.
 
     Args:
         config: Seed, control frequency and the six speeds.
@@ -58,7 +58,7 @@ class RandomActions:
         for tracker in np.flatnonzero(
             sim.snapshot.episodes.step_count % self._period == 0
         ).tolist():
-            self._numbers[tracker] = self._draw(sim, tracker)
+            self._numbers[tracker] = self._sample(sim, tracker)
         sim.advance(self._vectors[self._numbers], 1)
 
     def action(self, tracker: int) -> RecordedAction:
@@ -66,7 +66,7 @@ class RandomActions:
         number = int(self._numbers[tracker])
         return RecordedAction(number, self._vectors[number])
 
-    def _draw(self, sim: Simulation, tracker: int) -> int:
+    def _sample(self, sim: Simulation, tracker: int) -> int:
         rng = self._streams[tracker]
         if rng is None or sim.snapshot.episodes.step_count[tracker] == 0:
             rng = stream(self._seed, "video", tracker, int(sim.snapshot.episodes.number[tracker]))

@@ -188,7 +188,7 @@ def _delete_parts(path: Path, contents: RecordedPaths) -> None:
 def _require_recording(path: Path, contents: RecordedPaths) -> None:
     """Refuse to delete a folder that is not a recording or holds other files."""
     if not (path / SETTINGS).is_file():
-        raise OutputError(f"{path}: not deleted: it is no recording (it has no {SETTINGS})")
+        raise OutputError(f"{path}: not deleted: it is not a recording (it has no {SETTINGS})")
     for inside, found in paths_below(path):
         if not contents.in_run(inside) or found.is_symlink():
             raise OutputError(f"{path}: not deleted: '{inside}' is not part of a recording")
@@ -210,7 +210,7 @@ def _delete_recording(path: Path) -> None:
 def _require_same_build(path: Path) -> None:
     """Refuse to continue a recording of another build of Eyas, whose pictures may differ."""
     if not (path / SETTINGS).is_file():
-        return  # which is no recording, and refused as such
+        return  # not a recording, and refused as such
     try:
         origin = _origin(path)
         version, build = origin["eyas"], Build(**origin["build"])

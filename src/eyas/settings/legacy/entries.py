@@ -74,24 +74,42 @@ class LegacyEntry(ABC):
         yield from ()
 
 
-@dataclass(frozen=True, slots=True)
-class Same(LegacyEntry):
-    """A key that means what a field means."""
+class _OneField(LegacyEntry):
+    """Keys that mean one field."""
 
-    key: str
+    __slots__ = ()
     path: str
-    upper_case: bool = False
-    """Whether the original has our names in upper case."""
+
+    @property
+    @override
+    def paths(self) -> tuple[str, ...]:
+        return (self.path,)
+
+
+class _OneKey(_OneField):
+    """A key that means one field."""
+
+    __slots__ = ()
+    key: str
 
     @property
     @override
     def keys(self) -> tuple[str, ...]:
         return (self.key,)
 
-    @property
     @override
-    def paths(self) -> tuple[str, ...]:
-        return (self.path,)
+    def blame(self, values: Values) -> Iterator[Guess]:
+        yield Guess(self.key)
+
+
+@dataclass(frozen=True, slots=True)
+class Same(_OneKey):
+    """A key that means what a field means."""
+
+    key: str
+    path: str
+    upper_case: bool = False
+    """Whether the original has our names in upper case."""
 
     @override
     def read(self, values: Values) -> Values:
@@ -110,13 +128,9 @@ class Same(LegacyEntry):
             raise ConfigError(f"{self.path}: {shown(value)} cannot be expressed in env_config.json")
         return {self.key: str(value).upper() if self.upper_case else value}
 
-    @override
-    def blame(self, values: Values) -> Iterator[Guess]:
-        yield Guess(self.key)
-
 
 @dataclass(frozen=True, slots=True)
-class Optional(LegacyEntry):
+class Optional(_OneKey):
     """A key that applies if a switch is true; otherwise our field is None."""
 
     switch: str
@@ -127,11 +141,6 @@ class Optional(LegacyEntry):
     @override
     def keys(self) -> tuple[str, ...]:
         return self.switch, self.key
-
-    @property
-    @override
-    def paths(self) -> tuple[str, ...]:
-        return (self.path,)
 
     @override
     def read(self, values: Values) -> Values:
@@ -144,13 +153,9 @@ class Optional(LegacyEntry):
             return {self.switch: False}
         return {self.switch: True, self.key: list(value) if isinstance(value, tuple) else value}
 
-    @override
-    def blame(self, values: Values) -> Iterator[Guess]:
-        yield Guess(self.key)
-
 
 @dataclass(frozen=True, slots=True)
-class Span(LegacyEntry):
+class Span(_OneField):
     """Two keys that are the limits of one field."""
 
     least: str
@@ -161,11 +166,6 @@ class Span(LegacyEntry):
     @override
     def keys(self) -> tuple[str, ...]:
         return self.least, self.most
-
-    @property
-    @override
-    def paths(self) -> tuple[str, ...]:
-        return (self.path,)
 
     @override
     def read(self, values: Values) -> Values:
@@ -188,20 +188,20 @@ class Span(LegacyEntry):
 
 @dataclass(frozen=True, slots=True)
 class Varied(LegacyEntry):
-    """The four to six keys that define whether and how one value is drawn."""
+    """The four to six keys that define whether and how one value is sampled."""
 
     random: str
-    """Switch: drawn between `least` and `most`; else it is `fixed`."""
+    """Switch: sampled between `least` and `most`; else it is `fixed`."""
     fixed: str
     least: str
     most: str
     path: str
     sides: str | None = None
-    """Switch: a magnitude is drawn, with a random sign."""
+    """Switch: a magnitude is sampled, with a random sign."""
     default: str | None = None
     """Switch: the other keys have no effect, and our field is None."""
     replaces: str | None = None
-    """A second field of ours: true if drawn, as drawn values replace and fixed ones are added."""
+    """A second field of ours: true if sampled: sampled values replace, fixed ones are added."""
 
     @property
     @override
@@ -297,7 +297,7 @@ class Pitch(Varied):
 
 
 @dataclass(frozen=True, slots=True)
-class Switch(LegacyEntry):
+class Switch(_OneKey):
     """A key that is true for one value of a field and false for the other."""
 
     key: str
@@ -306,16 +306,6 @@ class Switch(LegacyEntry):
     """Value of the field if the key is true."""
     off: str
     """Value of the field if the key is false."""
-
-    @property
-    @override
-    def keys(self) -> tuple[str, ...]:
-        return (self.key,)
-
-    @property
-    @override
-    def paths(self) -> tuple[str, ...]:
-        return (self.path,)
 
     @override
     def read(self, values: Values) -> Values:
@@ -327,7 +317,3 @@ class Switch(LegacyEntry):
     @override
     def write(self, fields: Values) -> Values:
         return {self.key: fields[self.path] == self.on}
-
-    @override
-    def blame(self, values: Values) -> Iterator[Guess]:
-        yield Guess(self.key)

@@ -23,7 +23,7 @@ GROUP_KEYS = frozenset(
 """Keys that have an effect on the original's traffic only."""
 
 
-def _drawn(name: str, path: str, sides: str | None, kind: type[Varied] = Varied) -> Varied:
+def _sampled(name: str, path: str, sides: str | None, kind: type[Varied] = Varied) -> Varied:
     group = "Drone_Random_Config"
     return kind(
         random=f"{group}.{name}_random",
@@ -120,11 +120,11 @@ _VIDEO = (
 _START = (
     # Steps of 2 ms, not milliseconds, in spite of its name.
     Same("Drone_Random_Config.start_time_bias_ms", "start.warm_up_steps"),
-    _drawn("view_pitch", "start.pitch", None, Pitch),
-    _drawn("height", "start.height", None),
-    _drawn("direction", "start.direction", "direction_random_multilateral"),
-    _drawn("horizon_bias", "start.horizontal_bias", "horizon_bias_multilateral"),
-    _drawn("verticle_bias", "start.vertical_bias", "verticle_bias_multilateral"),
+    _sampled("view_pitch", "start.pitch", None, Pitch),
+    _sampled("height", "start.height", None),
+    _sampled("direction", "start.direction", "direction_random_multilateral"),
+    _sampled("horizon_bias", "start.horizontal_bias", "horizon_bias_multilateral"),
+    _sampled("verticle_bias", "start.vertical_bias", "verticle_bias_multilateral"),
 )
 
 _LIGHT = (

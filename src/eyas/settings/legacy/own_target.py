@@ -37,8 +37,8 @@ def with_own_target(
 ) -> tuple[dict[str, Any], dict[str, Any] | None]:
     """Return the original's keys without a name that it does not know, and what that name means.
 
-    A name that is no kind of target is that of the settings `custom` beside it, or of files in one
-    of the folders: `<name>.proto` or a mesh, `<name>.csv`, or both. No code is looked for.
+    A name that is not a kind of target is that of the settings `custom` beside it, or of files in
+    one of the folders: `<name>.proto` or a mesh, `<name>.csv`, or both. No code is looked for.
 
     Args:
         values: Keys of the original, and perhaps `custom`.

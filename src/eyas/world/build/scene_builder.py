@@ -60,7 +60,7 @@ class SceneBuilder:
             name: Name of the prototype, for example `bench`.
             make: Returns the levels. `build` calls it after all copies have been placed, in the
                 order of the first calls: so shapes and positions may share a random generator.
-            trees: Number of trees in it; shrubs and hedges are none.
+            trees: Number of trees in it; shrubs and hedges do not count.
         """
         if name not in self._prototypes:
             self._prototypes[name] = Prototype(name, len(self._prototypes), trees), make

@@ -169,7 +169,7 @@ def _recipe_of_plan(path: Path) -> MapRecipe:
     """Return the map of a plan in a file; the rest of it is read when it is built.
 
     Raises:
-        DataFileError: It is no plan, or has no name.
+        DataFileError: It is not a plan, or has no name.
     """
     from eyas.world.plan.file import content_of
 

@@ -91,7 +91,7 @@ class MapRecipe:
     (`traffic*.npz`), and a change of its code or data rebuilds the scene. None: nothing is shipped,
     and the scene is not cached between runs."""
     home: Path | None = None
-    """Folder of a map that is no package: an imported one. It holds the same files."""
+    """Folder of an imported map, which is not a package. It holds the same files."""
     file: Path | None = None
     """File with the plan of a map that has neither."""
     notice: str = ""

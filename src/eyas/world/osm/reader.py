@@ -54,7 +54,7 @@ def covered(data: OsmData, asked: Bounds | None, source: str) -> Bounds:
     """Return the area to import: the one asked for, what the file covers, or where its streets are.
 
     Raises:
-        ConfigError: The area asked for is none, or has nothing of the file in it.
+        ConfigError: The area asked for is empty, or has nothing of the file in it.
         DataFileError: The file has no streets.
     """
     if asked is not None:

@@ -23,7 +23,7 @@ class Shapes:
         data: The content of the file.
         projection: From degrees to metres.
         extent: The area of the map; everything is cut to it [m].
-        broken: Called with a word for each area that is none.
+        broken: Called with a word for each area that has no valid outline.
     """
 
     def __init__(

@@ -70,8 +70,8 @@ def read_plan(path: Path) -> MapPlan:
     """Return the plan in a file.
 
     Raises:
-        DataFileError: It is none: one line with the place of the first error, its value, and what
-            is allowed.
+        DataFileError: It does not hold a plan: one line with the place of the first error, its
+            value, and what is allowed.
     """
     plan = _read(path)
     if isinstance(plan, MapPlan):

@@ -44,7 +44,7 @@ class Thing:
     solid: str = "nothing"
     """What of it is solid, a row of `SOLIDS`."""
     trees: int = 0
-    """Number of trees in it; shrubs are none."""
+    """Number of trees in it; shrubs do not count."""
     light: tuple[float, float] | None = None
     """Distance along its arm and height of its light [m]; None: it gives none."""
 

@@ -126,7 +126,7 @@ def _extent(
 ) -> tuple[float, float, list[tuple[float, float]]]:
     """Return how far a crossing reaches to the right and to the left, and the islands in it [m].
 
-    Where one end is no pavement but the other carriageway is near, it is crossed, too.
+    Where one end is not a pavement but the other carriageway is near, it is crossed, too.
     """
     across = shapely.LineString([here - _ACROSS * leftwards, here + _ACROSS * leftwards])
     spans = []

@@ -42,9 +42,9 @@ _SHARP = 0.5
 _BEND = 7.0
 """Radius of the surroundings of a bend [m]."""
 _SLIVER = 0.3
-"""Smaller additions are none [m^2]."""
+"""Smaller additions are left out [m^2]."""
 _NEEDLE = 0.02
-"""Slivers narrower than twice this are no asphalt [m]."""
+"""Slivers narrower than twice this do not count as asphalt [m]."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,0 +1,185 @@
+"""What runs for long: `eyas demo`, `video`, `train` and `serve`."""
+
+import logging
+from functools import partial
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from eyas.cli.options import (
+    ConfigFile,
+    MapName,
+    Overrides,
+    Preset,
+    Seed,
+    Trust,
+    Weather,
+    chosen_file,
+    gathered,
+)
+from eyas.core.errors import ConfigError
+
+__all__ = ["demo", "serve", "train", "video"]
+
+
+def demo(  # noqa: PLR0913  # one parameter for each option
+    config: ConfigFile = None,
+    preset: Preset = None,
+    map_name: MapName = None,
+    weather: Weather = None,
+    seed: Seed = None,
+    set_: Overrides = None,
+    trust: Trust = False,
+    policy: Annotated[
+        str | None,
+        typer.Option("--policy", help="A policy that may fly too: a file, or module:name."),
+    ] = None,
+    host: Annotated[
+        str,
+        typer.Option("--host", help="Address to serve; others than loopback ask for a token."),
+    ] = "127.0.0.1",
+    port: Annotated[
+        int, typer.Option("--port", min=0, max=65535, help="Port to serve; 0: any.")
+    ] = 8720,
+    browser: Annotated[
+        bool, typer.Option("--browser/--no-browser", help="Open the page in a browser.")
+    ] = True,
+    headless: Annotated[
+        bool, typer.Option("--headless", help="Print the reward of a hovering drone instead.")
+    ] = False,
+    seconds: Annotated[
+        float | None,
+        typer.Option("--seconds", min=0.1, help="Stop after this time, with --headless."),
+    ] = None,
+) -> None:
+    """Fly a drone by keyboard through any map, in the browser, and watch the reward."""
+    from eyas.settings.file import load_settings
+
+    if seconds is not None and not headless:
+        raise ConfigError("--seconds: only with --headless")
+    overrides = gathered(set_, map_name, weather, seed)
+    settings = load_settings(chosen_file(config, preset), overrides, trust=trust)
+    from eyas.modes.demo import run as demo  # after all checks
+
+    listening = None if headless else demo.listen(host, port)
+    session = demo.session_of(settings, policy)
+    if listening is None:
+        demo.run_headless(session, seconds or 10.0, typer.echo)
+    else:
+        demo.run_browser(session, host, listening, browser=browser, say=typer.echo)
+
+
+def video(  # noqa: PLR0913  # one parameter for each option
+    out: Annotated[Path, typer.Option("--out", help="Folder to write to.")] = Path("runs/video"),
+    config: ConfigFile = None,
+    preset: Preset = None,
+    map_name: MapName = None,
+    weather: Weather = None,
+    seed: Seed = None,
+    set_: Overrides = None,
+    trust: Trust = False,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Continue an interrupted recording.")
+    ] = False,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="First delete a recording that is in the folder.")
+    ] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
+) -> None:
+    """Record labelled pictures and videos of trackers that follow their targets."""
+    from eyas.settings.config import Mode
+    from eyas.settings.file import load_settings
+
+    if quiet:
+        logging.getLogger("eyas").setLevel(logging.ERROR)
+    overrides = gathered(set_, map_name, weather, seed)
+    settings = load_settings(chosen_file(config, preset), overrides, trust=trust)
+    if settings.mode is not Mode.VIDEO and not quiet:
+        said = f"mode (Simulation_Mode) is '{settings.mode}'; 'eyas video' records anyway"
+        typer.echo(f"eyas: note: {said}", err=True)
+    from eyas.modes.video import (
+        run as video,  # compiled kernels: slow to import, so only after all checks
+    )
+
+    video.run(settings, out, overwrite=overwrite, resume=resume, quiet=quiet)
+
+
+def train(  # noqa: PLR0913  # one parameter for each option
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", help="Folder to write to; by default runs/train, runs/train-2, ..."),
+    ] = None,
+    config: ConfigFile = None,
+    preset: Preset = None,
+    map_name: MapName = None,
+    weather: Weather = None,
+    seed: Seed = None,
+    set_: Overrides = None,
+    trust: Trust = False,
+    resume: Annotated[bool, typer.Option("--resume", help="Continue an interrupted run.")] = False,
+    ray: Annotated[
+        bool,
+        typer.Option("--ray", help="Spread the shards over a Ray cluster (extra cluster)."),
+    ] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
+) -> None:
+    """Teach a network to track, and write it as an ONNX file."""
+    from eyas.settings.file import load_settings
+
+    preset = preset or (None if config else "fast")
+    overrides = gathered(set_, map_name, weather, seed)
+    settings = load_settings(chosen_file(config, preset), overrides, trust=trust)
+    from eyas.modes.train import run
+
+    policy = run(
+        settings, out or _default_folder(resume=resume), resume=resume, quiet=quiet, ray=ray
+    )
+    if not quiet:
+        typer.echo(f"{policy}")
+
+
+def _default_folder(*, resume: bool) -> Path:
+    """Return the next numbered folder that is free, or the last that is not, to resume it."""
+    taken, number = None, 1
+    while (folder := Path(f"runs/train-{number}" if number > 1 else "runs/train")).exists():
+        taken, number = folder, number + 1
+    return taken if resume and taken is not None else folder
+
+
+def serve(  # noqa: PLR0913  # one parameter for each option
+    root: Annotated[
+        Path,
+        typer.Option(
+            "--root",
+            help="Folder of the DAT benchmark, with Webots_Simulation and Alg_Base, or an empty "
+            "one. Its env_config.json is used unless --config or --preset is given.",
+        ),
+    ],
+    config: ConfigFile = None,
+    preset: Preset = None,
+    map_name: MapName = None,
+    weather: Weather = None,
+    seed: Seed = None,
+    set_: Overrides = None,
+    trust: Trust = False,
+) -> None:
+    """Serve algorithm code of the DAT benchmark in the place of its simulator, until Ctrl-C."""
+    from eyas.settings.config import Mode
+    from eyas.settings.file import load_settings
+    from eyas.settings.legacy.adapter import LIKE_THE_ORIGINAL
+    from eyas.wire.exchange import SETTINGS_FILE
+
+    file = chosen_file(config, preset)
+    if file is None and (root / SETTINGS_FILE).exists():
+        file = root / SETTINGS_FILE
+    # The first start writes a file, which cannot tell all, and serves what the next will read.
+    overrides = gathered(set_, map_name, weather, seed)
+    load = partial(load_settings, file, overrides, base=LIKE_THE_ORIGINAL, trust=trust)
+    settings = load()
+    if settings.original is not None and settings.mode is not Mode.TRAIN:
+        said = f"mode (Simulation_Mode) is '{settings.mode}'; 'eyas serve' trains anyway"
+        typer.echo(f"eyas: note: {said}", err=True)
+    from eyas.modes.serve.run import run  # after all checks
+
+    run(settings, root, load if file == root / SETTINGS_FILE else None)

@@ -1,0 +1,204 @@
+"""What there is besides runs: `eyas bench, verify, config, cache, policies, webots-shim`."""
+
+import json
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from eyas.cli.options import SEVERAL, ConfigFile, MapName, Overrides, Preset, chosen_file, gathered
+
+if TYPE_CHECKING:
+    from eyas.settings.config import EyasConfig
+
+
+__all__ = ["bench", "cache_app", "config_app", "policies_app", "verify", "webots_shim"]
+
+
+def bench(
+    out: Annotated[
+        Path | None, typer.Option("--out", help="JSON file to write the figures to, as well.")
+    ] = None,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="Measure for a tenth of the time.")
+    ] = False,
+    cold: Annotated[
+        bool, typer.Option("--cold", help="Also time a first picture with an empty cache.")
+    ] = False,
+    stages: Annotated[
+        bool, typer.Option("--stages", help="Also time each stage of drawing a picture.")
+    ] = False,
+) -> None:
+    """Measure the speed of Eyas on this machine, as medians."""
+    from eyas.modes.bench import run as bench
+
+    bench.run(out, quick=quick, cold=cold, stages=stages)
+
+
+def verify(
+    quick: Annotated[
+        bool, typer.Option("--quick", help="Look at a tenth of the cases only.")
+    ] = False,
+    map_: MapName = None,
+    json_: Annotated[bool, typer.Option("--json", help="Print JSON, with all hashes.")] = False,
+) -> None:
+    """Check that this machine computes the promised bytes: pictures, labels, rewards, people.
+
+    Exit code 1 if anything differs.
+    """
+    from eyas.modes.verify.run import run
+
+    if not run(quick=quick, map_name=map_, as_json=json_):
+        raise typer.Exit(1)
+
+
+config_app = typer.Typer(help="Show and convert settings.", no_args_is_help=True)
+
+
+@config_app.callback()
+def _config_group() -> None: ...
+
+
+@config_app.command("show")
+def show_config(
+    config: ConfigFile = None,
+    preset: Preset = None,
+    set_: Overrides = None,
+    legacy: Annotated[
+        bool, typer.Option("--legacy", help="In the format of the DAT benchmark's env_config.json.")
+    ] = False,
+) -> None:
+    """Check the settings, and print all of them as JSON."""
+    from eyas.settings.file import load_settings
+    from eyas.settings.legacy.messages import originals_named
+    from eyas.settings.trust import code_of
+    from eyas.world.maps import MAPS
+
+    # Nothing that the file names is imported here, so it may be anyone's.
+    settings = load_settings(chosen_file(config, preset), gathered(set_), trust=True)
+    if ":" not in settings.world.map:  # code of the user's is not run to show settings
+        with originals_named(settings):
+            MAPS.get(settings.world.map).light(settings.world.weather)
+    for setting, name in code_of(settings):
+        typer.echo(f"eyas: note: {setting} names code, which a run calls: {name!r}", err=True)
+    typer.echo(_text(settings, legacy=legacy))
+
+
+@config_app.command("convert")
+def convert_config(
+    source: Annotated[Path, typer.Argument(help="Settings to read, in either notation.")],
+    target: Annotated[Path, typer.Argument(help="File to write; it must not exist.")],
+    set_: Overrides = None,
+) -> None:
+    """Convert settings between the native and the DAT benchmark's notation."""
+    from eyas.core.errors import OutputError
+    from eyas.core.files import write_atomic
+    from eyas.settings.file import load_settings, read_settings
+    from eyas.settings.legacy.adapter import is_legacy
+
+    if target.exists():
+        raise OutputError(f"{target}: already exists; settings files are never overwritten")
+    legacy = not is_legacy(read_settings(source))
+    text = _text(load_settings(source, gathered(set_), trust=True), legacy=legacy)
+    write_atomic(target, f"{text}\n".encode())
+
+
+def _text(settings: "EyasConfig", *, legacy: bool) -> str:
+    from eyas.settings.legacy.adapter import to_legacy
+
+    if legacy:
+        return json.dumps(to_legacy(settings), indent=4)
+    return settings.model_dump_json(indent=2)
+
+
+cache_app = typer.Typer(
+    help="Show, delete or make the files that Eyas keeps on disk.", no_args_is_help=True
+)
+
+
+@cache_app.command("info")
+def cache_info() -> None:
+    """Print the folder, size, size limit and contents of the cache."""
+    from eyas.modes import cache
+
+    cache.run_info()
+
+
+@cache_app.command("clear")
+def clear_cache(
+    kind: Annotated[
+        str | None, typer.Option("--kind", help="Only this kind, as `eyas cache info` names it.")
+    ] = None,
+) -> None:
+    """Delete the contents of the cache; they are made again when they are needed."""
+    from eyas.modes import cache
+
+    cache.run_clear(kind)
+
+
+@cache_app.command("warm")
+def warm_cache(
+    map_name: Annotated[
+        list[str] | None,
+        typer.Option("--map", help=f"Only this map; {SEVERAL}."),
+    ] = None,
+    weather: Annotated[
+        list[str] | None,
+        typer.Option("--weather", help=f"Only this weather; {SEVERAL}."),
+    ] = None,
+) -> None:
+    """Make what the default settings need now, not on first use: for images of a cluster."""
+    from eyas.modes.cache import run_warm
+
+    run_warm(map_name or (), weather or ())
+
+
+policies_app = typer.Typer(help="List the policies that Eyas brings along.", no_args_is_help=True)
+
+
+@policies_app.callback()
+def _policies_group() -> None: ...
+
+
+@policies_app.command("list")
+def list_policies() -> None:
+    """Print the policies for `eyas evaluate --policy`, and what the trained ones reach."""
+    from eyas.evaluation.policies.shipped import card_of, shipped_names
+    from eyas.evaluation.policies.table import BUILT_IN
+
+    for name in BUILT_IN:
+        typer.echo(f"{name} (built in)")
+    for name in shipped_names():
+        card = card_of(name)
+        typer.echo(f"{name}: {card.title}; {card.decisions:,} decisions of `{card.command}`")
+        for score in card.scores:
+            typer.echo(
+                f"  {score.protocol:<6} {score.map:<10} {score.weather:<6} TSR {score.tsr:.3f}  "
+                f"CR {score.cr:.1f}  n {score.n}"
+            )
+
+
+def webots_shim(
+    install: Annotated[
+        Path,
+        typer.Option("--install", help="Folder to write the program into, to be put in PATH."),
+    ],
+    root: Annotated[
+        Path | None,
+        typer.Option(
+            "--root",
+            help="Folder of the DAT benchmark; default: the one above the world file, or above the "
+            "folder where the program is started.",
+        ),
+    ] = None,
+    set_: Overrides = None,
+) -> None:
+    """Install a program named webots that starts 'eyas serve', for programs that start Webots."""
+    from eyas.modes.serve.stand_in import install as write
+    from eyas.settings.file import load_settings
+
+    load_settings(None, set_ or ())  # a mistake is told now
+    path = write(install, root, set_ or ())
+    typer.echo(f"{path}: starts Eyas in the place of Webots where its folder comes first in PATH:")
+    typer.echo(f'export PATH="{path.parent.resolve()}{os.pathsep}$PATH"')
