@@ -12,19 +12,20 @@ package, so that they ship with it.
 import math
 
 import gymnasium
-import shapely
 
-from eyas.envs.registration import register_map
-from eyas.state.roads import RoadEdge, RoadGraph, RoadNetwork, RoadNode
-from eyas.world.build.materials import material
-from eyas.world.land.mounds import Mound
-from eyas.world.land.plain import rectangle
-from eyas.world.land.rising import relief_of
-from eyas.world.maps import MapRecipe
-from eyas.world.plan.plan import Chance, Far, Flat, Ground, MapPlan, Relief, Streets
-from eyas.world.roads.areas import road_area
+from eyas import (
+    Hills,
+    MapPlan,
+    MapRecipe,
+    Mound,
+    RoadEdge,
+    RoadGraph,
+    RoadNetwork,
+    RoadNode,
+    Survey,
+    register_map,
+)
 
-SIZE = (400.0, 400.0)
 HILL = Mound(x=0.0, y=0.0, radius=75.0, height=30.0)
 CORNERS = 8
 
@@ -44,34 +45,13 @@ def roads(seed: int) -> RoadGraph:
 
 
 def plan(network: RoadNetwork, seed: int) -> MapPlan:
-    """Return grass, the hill and the road."""
-    road = road_area(network)
-    hill = Relief(
-        mounds=(HILL,),
-        flat=shapely.buffer(road, 5.0),
-        half=(100.0, 200.0),
-        spacing=(5.0, 12.0),
-        chance=Chance(stream="field hill"),
-        covers=(material("lawn"),),
-        smooth=True,
-    )
-    # Slightly below the foot of the hill, so that rounding leaves no gap between them.
-    rising = shapely.buffer(relief_of(hill, seed).area, -0.4, join_style="mitre")
-    grass = shapely.difference(rectangle(*SIZE), shapely.union(road, rising))
+    """Return the hill; with a survey of nothing else, Eyas adds the road, grass and lamps."""
     return MapPlan(
         name="field",
         seed=seed,
-        size=SIZE,
-        layers=(
-            hill,
-            Streets(area=road, wear=Chance(stream="field wear")),
-            Ground(
-                pieces=(
-                    Flat(area=grass, cover=material("lawn")),
-                    Far(rule="plain", covers=(material("lawn"),)),
-                )
-            ),
-        ),
+        size=(400.0, 400.0),
+        layers=(Hills(mounds=(HILL,), smooth=True),),
+        survey=Survey(),
     )
 
 

@@ -118,7 +118,8 @@ def compiled() -> str | None:
 
 def use_all(cache: str, variables: dict[str, str]) -> None:
     """Use every kernel in a process with an empty cache."""
-    environment = {**os.environ, "EYAS_CACHE_DIR": cache, **variables}
+    # numba walks through sets of names, whose order would differ from one process to the next.
+    environment = {**os.environ, "EYAS_CACHE_DIR": cache, "PYTHONHASHSEED": "0", **variables}
     environment.pop("NUMBA_CACHE_DIR", None)
     subprocess.run([sys.executable, "-c", USES_ALL], env=environment, check=True)
 

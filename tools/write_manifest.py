@@ -7,8 +7,7 @@ Run it when bytes have changed on purpose, and commit the file with the change.
 
 from eyas.core.files import write_atomic
 from eyas.modes.verify.cases import cases
-from eyas.modes.verify.manifest import manifest_path, read_manifest, text_of
-from eyas.modes.verify.run import compared, measured
+from eyas.modes.verify.run import compared, manifest_path, measured, read_manifest, text_of
 
 
 def main() -> None:

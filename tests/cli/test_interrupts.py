@@ -11,7 +11,7 @@ import time
 import pytest
 from PIL import Image
 
-from eyas.lanes.machine_code import read_code
+from eyas.lanes.folder import read_trusted
 
 PROGRAM = """
 import sys
@@ -120,7 +120,7 @@ def test_a_signal_while_compiling_is_one_line_and_what_is_kept_is_whole(tmp_path
         time.sleep(wait)
         process.send_signal(signal.SIGINT)
         assert ended(process, signal.SIGINT) == "eyas: interrupted"
-    assert all(map(read_code, tmp_path.rglob("*.eyk")))
+    assert all(map(read_trusted, tmp_path.rglob("*.ey[km]")))
     assert not list(tmp_path.rglob("*.tmp.*"))
 
 

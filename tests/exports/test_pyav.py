@@ -9,7 +9,7 @@ import pytest
 from eyas.core.errors import ConfigError
 from eyas.exports.mp4 import Mp4Episode
 from eyas.exports.registry import chosen_writers
-from eyas.modes.demo.stream import Stream
+from eyas.modes.demo.frame import Stream
 
 
 @pytest.fixture

@@ -6,8 +6,10 @@ import numba
 import numpy as np
 import pytest
 
-from eyas.lanes import Held, compiled
+from eyas.lanes import Held, compiled, vector
 from eyas.lanes.compilation import size_of
+
+f4 = np.float32
 
 
 class Small(NamedTuple):
@@ -89,3 +91,16 @@ def test_bundles_of_the_same_types_are_of_one_kind_and_others_of_another():
 def test_what_kernels_cannot_read_is_refused():
     with pytest.raises(TypeError, match="str"):
         Held((1, "text"))
+
+
+def test_lanes_that_are_not_wanted_may_be_read_from_an_empty_array():
+    @compiled
+    def read_eight(empty, wanted, out):
+        found = vector.load(empty, 0)
+        vector.store(
+            out, 0, vector.select(vector.load(wanted, 0) > f4(0.0), found, found * f4(0.0))
+        )
+
+    out = np.ones(8, np.float32)
+    read_eight(np.zeros((0, 3), np.float32), np.zeros(8, np.float32), out)
+    assert not out.any()

@@ -6,10 +6,10 @@ import pytest
 torch = pytest.importorskip("torch")
 
 from eyas.learning.config import TrainConfig
-from eyas.learning.crew import Crew
 from eyas.learning.network import NetworkShape, TrackingNetwork
-from eyas.learning.ppo import advantages, update
+from eyas.learning.ppo import _gradients, _Lesson, advantages, update
 from eyas.learning.rollout import Rollout
+from eyas.learning.shards import TorchThreads
 
 
 def rollout(steps, count, shape=None, seed=0):
@@ -54,7 +54,7 @@ def test_an_action_that_is_rewarded_becomes_likely(memory):
     bright = torch.arange(8) % 2
     data.pictures[:] = (bright * 200 + 20).to(torch.uint8)[None, :, None, None, None]
     good, state = torch.tensor([2, 5])[bright], torch.zeros(8, shape.state)
-    crew = Crew(2)
+    threads = TorchThreads(2)
     for _ in range(60):
         with torch.no_grad():
             logits, value, _ = network(data.pictures[0], state)
@@ -63,6 +63,26 @@ def test_an_action_that_is_rewarded_becomes_likely(memory):
         data.rewards[:] = (data.actions == good).float()
         data.values[:] = value
         data.ended[:] = 1.0  # each decision is an episode
-        update(network, optimiser, data, config, generator, crew)
+        update(network, optimiser, data, config, generator, threads)
     chances = network(data.pictures[0], state)[0].softmax(1).gather(1, good[:, None])
     assert chances.min() > 0.9
+
+
+@pytest.mark.parametrize(("change", "gain", "learns"), [
+    (0.1, 1.0, True), (0.3, 1.0, False), (-0.3, 1.0, True),
+    (-0.1, -1.0, True), (-0.3, -1.0, False), (0.3, -1.0, True),
+])  # fmt: skip
+def test_a_policy_that_has_moved_far_enough_is_pushed_no_farther(change, gain, learns):
+    """The objective of Schulman et al. 2017, equation 7, by its gradient."""
+    config = TrainConfig(clip_range=0.2, vf_coef=0.0, ent_coef=0.0, hidden=16)
+    shape = NetworkShape(3, 24, 24, 16, memory=False)
+    network = TrackingNetwork(shape)
+    network.initialise(torch.Generator().manual_seed(0))
+    data = rollout(4, 4, shape)
+    with torch.no_grad():
+        logits, _, _ = network(data.pictures.flatten(0, 1), data.states.flatten(0, 1))
+    own = logits.log_softmax(1).gather(1, data.actions.flatten()[:, None])[:, 0]
+    data.log_probability[:] = (own - np.log1p(change)).view(4, 4)  # so that the ratio is 1 + change
+    lesson = _Lesson(data, torch.full((4, 4), gain), data.values[:-1])
+    _, gradients = _gradients(network, lesson, torch.arange(16), 1.0, config)
+    assert any(bool(part.abs().max() > 1e-6) for part in gradients) == learns

@@ -5,9 +5,8 @@ from types import SimpleNamespace
 
 import pytest
 
-from eyas.modes.bench import counters, measurement
-from eyas.modes.bench.counters import Counts
-from eyas.modes.bench.measurement import Measurement, measurement_table, of_pictures, timed
+from eyas.modes.bench import measurement
+from eyas.modes.bench.measurement import Counts, Measurement, measurement_table, of_pictures, timed
 
 
 class Clock:
@@ -52,18 +51,18 @@ def test_without_access_to_counters_their_columns_are_left_out(monkeypatch):
 
 
 def test_counters_count_what_a_call_does_or_say_why_they_cannot():
-    reason = counters.why_not()
+    reason = measurement.why_not()
     if reason is not None:
         assert reason
         with pytest.raises(Exception, match=re.escape(reason)):
-            counters.counted(lambda: None)
+            measurement.counted(lambda: None)
         return
-    few = counters.counted(lambda: sum(range(1_000)))
-    many = counters.counted(lambda: sum(range(1_000_000)))
+    few = measurement.counted(lambda: sum(range(1_000)))
+    many = measurement.counted(lambda: sum(range(1_000_000)))
     assert many.instructions > 10 * few.instructions > 0
     assert many.cycles > 0
 
 
 def test_another_system_has_no_counters(monkeypatch):
-    monkeypatch.setattr(counters.platform, "system", lambda: "Other")
-    assert "Other" in counters.why_not()
+    monkeypatch.setattr(measurement.platform, "system", lambda: "Other")
+    assert "Other" in measurement.why_not()

@@ -5,7 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from eyas.modes.bench import stages as bench_stages
+from eyas.modes.bench import pictures as bench_pictures
 from eyas.sim.assets import load_assets
 from eyas.state.draw import DrawList, DrawStage, Picture, Views
 from eyas.traffic.config import TrafficConfig
@@ -22,9 +22,9 @@ class Clockwork:
         self.now = 0.0
         self.rgb = SimpleNamespace(copy=lambda: self.spend(self.COPYING))
         picture = SimpleNamespace(create=lambda *_: self)
-        monkeypatch.setattr(bench_stages, "time", SimpleNamespace(perf_counter=lambda: self.now))
-        monkeypatch.setattr(bench_stages, "build_simulation", lambda *_: self)
-        monkeypatch.setattr(bench_stages, "Picture", picture)
+        monkeypatch.setattr(bench_pictures, "time", SimpleNamespace(perf_counter=lambda: self.now))
+        monkeypatch.setattr(bench_pictures, "build_simulation", lambda *_: self)
+        monkeypatch.setattr(bench_pictures, "Picture", picture)
 
     def spend(self, seconds):
         self.now += seconds
@@ -39,8 +39,8 @@ class Clockwork:
 
 def test_a_stage_takes_what_it_adds_to_the_stages_before_it(monkeypatch):
     Clockwork(monkeypatch)
-    monkeypatch.setattr(bench_stages, "SIZES", ((2, 16, 12),))
-    times = bench_stages.measure_stages(1.0)
+    monkeypatch.setattr(bench_pictures, "SIZES", ((2, 16, 12),))
+    times = bench_pictures.measure_stages(1.0)
     assert [time.microseconds for time in times] == pytest.approx(
         [500, 1000, 1500, 2000, 2500, 2500]
     )
@@ -49,10 +49,10 @@ def test_a_stage_takes_what_it_adds_to_the_stages_before_it(monkeypatch):
 
 
 def test_the_table_has_a_row_for_each_stage_and_a_column_for_each_size(monkeypatch):
-    monkeypatch.setattr(bench_stages, "SIZES", ((2, 16, 12), (1, 12, 8)))
-    times = bench_stages.measure_stages(0.0)
+    monkeypatch.setattr(bench_pictures, "SIZES", ((2, 16, 12), (1, 12, 8)))
+    times = bench_pictures.measure_stages(0.0)
     assert {time.pictures for time in times} == {"16x12, 2 views", "12x8, 1 view"}
-    table = bench_stages.stage_table(times)
+    table = bench_pictures.stage_table(times)
     assert (table.row_count, len(table.columns)) == (len(DrawStage) + 1, 3)
 
 

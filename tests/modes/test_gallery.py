@@ -14,10 +14,16 @@ from eyas.cli.main import main
 from eyas.core.errors import OutputError, UnknownNameError
 from eyas.modes.gallery import run as gallery
 from eyas.modes.gallery.page import Shown, page
-from eyas.modes.gallery.places import before_spans, beside_most, on_crossings, on_open_roads
+from eyas.modes.gallery.places import (
+    all_cars,
+    before_spans,
+    beside_most,
+    on_crossings,
+    on_open_roads,
+    stop,
+)
+from eyas.modes.gallery.run import choose_viewpoints
 from eyas.modes.gallery.still import StillScene
-from eyas.modes.gallery.stops import all_cars, stop
-from eyas.modes.gallery.views import choose_viewpoints
 from eyas.sim.assets import load_assets
 from eyas.traffic.config import TrafficConfig
 from eyas.world.config import WorldConfig

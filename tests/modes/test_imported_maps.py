@@ -36,7 +36,7 @@ from eyas.world.config import WorldConfig
 from eyas.world.maps import MAPS
 from eyas.world.maps.files import MAP_FILE, MAP_FILES, ROADS_FILE, origin_of
 from eyas.world.osm import houses, land, streets
-from eyas.world.osm.features import Features
+from eyas.world.osm.features import Survey
 from eyas.world.osm.projection import Projection
 from eyas.world.osm.reader import read_osm
 from eyas.world.osm.rings import Shapes
@@ -121,7 +121,7 @@ def test_the_file_of_the_town_has_every_tag_that_the_importer_reads(source, monk
     extent = shapely.box(-everywhere, -everywhere, everywhere, everywhere)
     shapes = Shapes(data, projection, extent, lambda _: None)
     houses.houses_of(shapes, lambda _: None)
-    land.add_land(Features(), shapes, lambda _: None, np.random.default_rng(0))
+    land.add_land(Survey(), shapes, lambda _: None, np.random.default_rng(0))
     streets.street_file(data, (-180, -90, 180, 90), lambda _: None)
     assert len(Asked.keys_asked) > 40
     assert sorted(Asked.keys_asked - {key for key, _ in pairs}) == []
@@ -160,7 +160,7 @@ def test_streets_lie_where_buildings_expect_them(town, source):
 
 def test_a_scene_is_the_same_each_time(scene, town):
     recipe, network = MAPS.get(NAME), scene.network
-    again = build_scene(recipe.plan(network, 0), network)
+    again = build_scene(recipe.complete_plan(network, 0), network)
     np.testing.assert_array_equal(again.static.positions, scene.static.positions)
     np.testing.assert_array_equal(again.fixtures.pose, scene.fixtures.pose)
 
@@ -293,7 +293,7 @@ def test_a_gltf_file_is_read_back_with_the_stated_number_of_triangles(tmp_path, 
 
 
 def test_plans_are_in_degrees_and_rasters_hold_heights(tmp_path, scene, source):
-    plan_files.run(NAME, 0, tmp_path, 1.0)
+    plan_files.write_layers(NAME, 0, tmp_path, 1.0)
     roads, houses = (json.loads((tmp_path / f"{n}.geojson").read_text())
                      for n in ("roads", "buildings"))  # fmt: skip
     assert roads["attribution"] == NOTICE

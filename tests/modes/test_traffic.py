@@ -6,7 +6,7 @@ import pytest
 
 from eyas.core.errors import ConfigError, OutputError
 from eyas.modes.traffic import recording
-from eyas.modes.traffic.info import describe
+from eyas.modes.traffic.recording import describe
 from eyas.traffic.config import Mix, TrafficConfig
 from eyas.traffic.sumo_install import import_libsumo
 from eyas.world.config import WorldConfig

@@ -9,8 +9,7 @@ import numpy as np
 import pytest
 
 from eyas.modes.verify.cases import cases
-from eyas.modes.verify.manifest import read_manifest
-from eyas.modes.verify.run import compared
+from eyas.modes.verify.run import compared, read_manifest
 from eyas.settings.preset import PRESETS
 from eyas.world.maps import MAPS
 

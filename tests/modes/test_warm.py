@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from eyas.core.errors import OutputError, UnknownNameError
-from eyas.modes.warm import run
+from eyas.modes.cache import run_warm
 from eyas.sim.scenes import load_scene
 from eyas.world.weather import Season
 
@@ -40,12 +40,12 @@ def test_what_a_first_recording_needs_is_there(tmp_path):
 def test_a_cache_that_cannot_be_written_to_is_one_line(monkeypatch):
     monkeypatch.setenv("EYAS_CACHE_DIR", "/dev/null/x")
     with pytest.raises(OutputError, match=r"^/dev/null/x: cannot write: Not a directory\Z"):
-        run([MAP], ["day"])
+        run_warm([MAP], ["day"])
 
 
 def test_unknown_maps_are_refused_before_anything_is_made():
     with pytest.raises(UnknownNameError, match="did you mean 'farmland-bare'"):
-        run([MAP, "farmland-bar"])
+        run_warm([MAP, "farmland-bar"])
 
 
 def test_a_map_is_built_once_whether_or_not_its_season_is_named():

@@ -15,9 +15,9 @@ def test_drawing_nothing_compiles_what_drawing_a_city_needs(city, drawn, monkeyp
     renderer, traffic = city
 
     def compiled_by(draw):
-        monkeypatch.setattr(draw_views, "_compiled", {})  # other tests have drawn already
+        monkeypatch.setattr(draw_views, "_loaded", {})  # other tests have drawn already
         draw()
-        return set(draw_views._compiled)
+        return set(draw_views._loaded)
 
     needed = compiled_by(lambda: drawn(renderer, looking([(0, 0, 20)]), traffic))
     assert needed
@@ -61,11 +61,11 @@ def test_where_kernels_are_shipped_the_second_process_does_something_else(begins
 
 ASKS = """
 import sys
-from eyas.lanes import calls
+from eyas.lanes import entry
 from eyas.render import ahead
-address = calls.entry_address
-calls.entry_address = lambda function, parts: (
-    print(function.__name__) or address(function, parts)
+address = entry.entry_address
+entry.entry_address = lambda function, bundles, **options: (
+    print(function.__name__) or address(function, bundles, **options)
 )
 if sys.argv[1] == "second":
     ahead.draw_nothing()

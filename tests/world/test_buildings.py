@@ -10,7 +10,7 @@ from eyas.world.buildings.facades import mesh_of, prisms_of
 from eyas.world.buildings.lots import turned
 from eyas.world.buildings.parts import PARAPET
 from eyas.world.buildings.placing import SETBACK, place_buildings
-from eyas.world.plan.plan import Shell
+from eyas.world.plan.plan import BuildingPart
 
 COUNT = 83
 
@@ -49,7 +49,7 @@ def a_building(**changes):
         "roof": "flat",
         "cover": material("bitumen"),
     }
-    return Shell(**(values | changes))
+    return BuildingPart(**(values | changes))
 
 
 def footprint_area(building):

@@ -13,7 +13,7 @@ import shapely
 from eyas.core.errors import ConfigError, DataFileError, MissingExtraError
 from eyas.core.installed import install_command
 from eyas.world.maps.files import MAP_FILES
-from eyas.world.osm.features import Area, Features, House
+from eyas.world.osm.features import Area, House, Survey
 from eyas.world.osm.houses import houses_of
 from eyas.world.osm.land import add_land
 from eyas.world.osm.measures import colour, length, number
@@ -74,7 +74,7 @@ class Read:
         return houses_of(self.shapes, lambda key: self.odd.update([key]))
 
     def land(self):
-        made, rng = Features(), np.random.default_rng(1)
+        made, rng = Survey(), np.random.default_rng(1)
         add_land(made, self.shapes, lambda key: self.odd.update([key]), rng)
         return made
 
@@ -351,7 +351,7 @@ def test_features_come_back_from_the_file_of_their_plan(tmp_path):
     )  # fmt: skip
     area = Area("park", shapely.box(0, 0, 50, 50))
     rail = shapely.LineString([(0, 0), (5, 5)])
-    whole = Features(
+    whole = Survey(
         [house], [area], [(1.0, 2.0, 0.0)], [(3.0, 4.0)], signals=("a#1",), rails=[rail],
         pavement=shapely.box(0, 0, 1, 1), lit_crossings={":1_c0": rail},
     )  # fmt: skip

@@ -21,7 +21,7 @@ from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.land.mounds import Mound
 from eyas.world.land.rising import relief_of
 from eyas.world.maps import MAPS
-from eyas.world.osm.features import Features, House
+from eyas.world.osm.features import House, Survey
 from eyas.world.plan import build, plan
 from eyas.world.plan.build import build_scene
 from eyas.world.plan.file import problems, read_plan, text_of, write_plan
@@ -84,7 +84,7 @@ def digest(scene):
     return made.hexdigest()
 
 
-@pytest.mark.parametrize(("name", "season"), HASHES, ids="-".join)
+@pytest.mark.parametrize(("name", "season"), HASHES, ids=map("-".join, HASHES))
 def test_scenes_have_the_bytes_that_they_had_before_there_were_plans(name, season):
     assert digest(load_scene(name, 0, Season(season))) == HASHES[name, season]
 
@@ -116,11 +116,11 @@ def test_a_scene_of_a_file_is_that_of_its_planner_on_every_map(name, tmp_path):
 def areas_of(made, season):
     """Yield all areas of a plan that lie level on the floor or on the road, from above [m]."""
     for layer in made.layers:
-        if isinstance(layer, plan.Streets | plan.Paved):
+        if isinstance(layer, plan.Roadway | plan.Paved):
             yield layer.area
-            if isinstance(layer, plan.Streets) and layer.bays is not None:
+            if isinstance(layer, plan.Roadway) and layer.bays is not None:
                 yield layer.bays
-        elif isinstance(layer, plan.Ground) and layer.season in (None, season):
+        elif isinstance(layer, plan.GroundCover) and layer.season in (None, season):
             for piece in layer.pieces:
                 if piece.form in ON_GROUND and layer.kind is not ObjectClass.STRUCTURE:
                     # Thin sand lies over the asphalt.
@@ -137,7 +137,7 @@ def test_no_two_covers_overlap_and_nothing_on_the_floor_is_bare(name):
     total, joined = sum(area.area for area in areas), shapely.union_all(areas)
     assert total == pytest.approx(joined.area, rel=2e-4)
     floor = shapely.box(-made.size[0] / 2, -made.size[1] / 2, made.size[0] / 2, made.size[1] / 2)
-    rising = [layer for layer in made.layers if isinstance(layer, plan.Relief)]
+    rising = [layer for layer in made.layers if isinstance(layer, plan.Hills)]
     raised = [relief_of(layer, 0).area for layer in rising]
     built = [
         one.parts[0].outline
@@ -167,7 +167,7 @@ def sample():
         {"layer": "backdrop", "outlines": [square], "tops": [9.0], "walls": [{}], "roofs": [{}],
          "bays": [[[0, 1]] * 4]},
         {"layer": "things", "kinds": ["bench"], "kind": [0], "pose": [[0, 0, 0, 0, 1.0]]},
-        {"layer": "streets", "area": square, "wear": chance,
+        {"layer": "roadway", "area": square, "wear": chance,
          "paint": {"lines": [stripe], "bars": [stripe], "shapes": [square]}},
         {"layer": "paved", "area": square, "beside": []},
         {"layer": "ground", "pieces": [
@@ -179,7 +179,7 @@ def sample():
          "legs": []},
         {"layer": "tunnels", "items": [{"place": [0, 0], "along": [1, 0], "length": 9.0}],
          "outside": {}, "inside": {}, "chance": chance},
-        {"layer": "relief", "mounds": [{"x": 0.0, "y": 0.0, "radius": 9.0, "height": 5.0}],
+        {"layer": "hills", "mounds": [{"x": 0.0, "y": 0.0, "radius": 9.0, "height": 5.0}],
          "flat": [], "half": [9.0, 9.0], "spacing": [1.0, 1.0], "chance": chance, "covers": [{}]},
         {"layer": "skyways", "items": [skyway]},
         {"layer": "railway", "line": {**line, "station": 4.0}},
@@ -252,7 +252,7 @@ def test_every_field_is_refused_in_one_line_when_it_is_wrong(tmp_path):
         ({"name": "two words"}, "name: 'two words' is not allowed"),
         ({"layers": [{"layer": "thing"}]}, r"layers\[0\]\.layer: 'thing' is not allowed: one of "),
         ({"layers": [{}]}, r"layers\[0\]\.layer: is missing"),
-        ({"layers": [{"layer": "streets", "area": []}]}, r"layers\[0\]\.wear: is missing"),
+        ({"layers": [{"layer": "roadway", "area": []}]}, r"layers\[0\]\.wear: is missing"),
         ({"format": "eyas-plan-0"}, r"format: 'eyas-plan-0' is not allowed: a plan has"),
     ],
 )
@@ -291,18 +291,18 @@ flats = st.builds(
     z=numbers, cover=covers, winter=st.none() | covers, turn=numbers,
 )  # fmt: skip
 shells = st.builds(
-    plan.Shell, outline=boxes, bottom=numbers, height=st.floats(0.0, 900.0),
+    plan.BuildingPart, outline=boxes, bottom=numbers, height=st.floats(0.0, 900.0),
     facade=st.sampled_from(["facade_brick", "facade_glass"]), tint=colours, cover=covers,
     roof=st.sampled_from(["flat", "dome", "hipped"]), parapet=st.booleans(),
 )  # fmt: skip
 layers = st.one_of(
-    st.builds(plan.Ground, kind=st.sampled_from(ObjectClass), pieces=st.tuples(flats)),
-    st.builds(plan.Streets, area=boxes, wear=chances),
+    st.builds(plan.GroundCover, kind=st.sampled_from(ObjectClass), pieces=st.tuples(flats)),
+    st.builds(plan.Roadway, area=boxes, wear=chances),
     st.builds(
         plan.Buildings, items=st.tuples(st.builds(plan.Building, parts=st.tuples(shells)))
     ),
     st.builds(
-        plan.Relief,
+        plan.Hills,
         mounds=st.tuples(st.builds(Mound, numbers, numbers, st.floats(1, 99), numbers)),
         flat=boxes, half=st.just((9.0, 9.0)), spacing=st.just((1.0, 1.0)), chance=chances,
         covers=st.tuples(covers),
@@ -318,10 +318,10 @@ layers = st.one_of(
 plans = st.builds(
     plan.MapPlan, name=st.just("x"), title=st.text(max_size=9), seed=st.integers(0, 9),
     size=st.tuples(st.floats(1, 1e4), st.floats(1, 1e4)), layers=st.lists(layers).map(tuple),
-    library=st.just((plan.Kind(name="bench"),)),
+    library=st.just((plan.ThingKind(name="bench"),)),
     chances=st.dictionaries(st.text(max_size=5), chances, max_size=2),
     survey=st.none() | st.builds(
-        lambda shape: Features(houses=[House(shape, "house", roof="gabled")]), boxes
+        lambda shape: Survey(houses=[House(shape, "house", roof="gabled")]), boxes
     ),
 )  # fmt: skip
 

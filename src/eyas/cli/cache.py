@@ -45,6 +45,6 @@ def warm(
     ] = None,
 ) -> None:
     """Make what the default settings need now, not on first use: for images of a cluster."""
-    from eyas.modes.warm import run
+    from eyas.modes.cache import run_warm
 
-    run(map_name or (), weather or ())
+    run_warm(map_name or (), weather or ())

@@ -60,8 +60,8 @@ def command(  # noqa: PLR0913  # one parameter for each option
     from eyas.modes.demo import run as demo  # after all checks
 
     listening = None if headless else demo.listen(host, port)
-    cockpit = demo.cockpit_of(settings, policy)
+    session = demo.session_of(settings, policy)
     if listening is None:
-        demo.run_headless(cockpit, seconds or 10.0, typer.echo)
+        demo.run_headless(session, seconds or 10.0, typer.echo)
     else:
-        demo.run_browser(cockpit, host, listening, browser=browser, say=typer.echo)
+        demo.run_browser(session, host, listening, browser=browser, say=typer.echo)

@@ -77,9 +77,9 @@ def new_map(
     seed: Annotated[int, typer.Option("--map-seed", min=0, help="Seed of the new map.")],
 ) -> None:
     """Make another map of a kind now, with its traffic, not on first use."""
-    from eyas.modes.maps.another import run
+    from eyas.modes.maps.info import make_another
 
-    for line in run(name, seed):
+    for line in make_another(name, seed):
         typer.echo(line)
 
 
@@ -122,11 +122,11 @@ def write_plan(
     seed: Seed = 0,
 ) -> None:
     """Write the plan of a map: all that stands on it. Use it, or a copy, with --map FILE."""
-    from eyas.modes.maps.plans import run
+    from eyas.modes.maps.plan_files import write_plan_of
     from eyas.world.maps import MAPS
 
     path = out if out is not None else Path(f"{MAPS.get(name).name}.plan.json")
-    for made in run(name, seed, path):
+    for made in write_plan_of(name, seed, path):
         typer.echo(made)
 
 
@@ -135,9 +135,9 @@ def check_plan(
     file: Annotated[Path, typer.Argument(help="A plan of a map: .plan.json or .plan.json.gz.")],
 ) -> None:
     """Say what is wrong with a plan, one line each."""
-    from eyas.modes.maps.plans import check
+    from eyas.world.plan.file import problems
 
-    wrong = check(file)
+    wrong = problems(file)
     for line in wrong:
         typer.echo(line)
     if wrong:
@@ -171,9 +171,9 @@ def export_map(
 
         typer.echo(f"{gltf}: {write_gltf(name, seed, gltf, detail)} triangles")
     if geojson is not None:
-        from eyas.modes.maps.plan_files import run as write_plan
+        from eyas.modes.maps.plan_files import write_layers
 
-        for path in write_plan(name, seed, geojson, cell):
+        for path in write_layers(name, seed, geojson, cell):
             typer.echo(path)
 
 

@@ -86,7 +86,7 @@ def record(  # noqa: PLR0913  # one parameter for each option
 @app.command()
 def info(file: Annotated[Path, typer.Argument(help="A recording of traffic.")]) -> None:
     """Print what is in a recording: its map and settings, vehicles, speeds, lasting tracks."""
-    from eyas.modes.traffic.info import describe
+    from eyas.modes.traffic.recording import describe
 
     for line in describe(file):
         typer.echo(line)

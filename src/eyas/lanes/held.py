@@ -16,6 +16,10 @@ __all__ = ["Held"]
 
 Bundle = TypeVar("Bundle")
 
+_SPARE = np.zeros(512)
+_NOTHING = _SPARE.ctypes.data
+"""Address of empty arrays: lanes that are not wanted are read from where the first elements are."""
+
 _FORMATS = {bool: "?", int: "q", float: "d"}
 """Formats of numbers, in the language of `struct`."""
 
@@ -69,8 +73,8 @@ def _flatten(value: Any, words: list[Any], key: list[object]) -> None:  # noqa: 
             _flatten(part, words, key)
     elif isinstance(value, np.ndarray):
         key += (value.dtype, value.ndim, value.flags.num)
-        # The address takes two microseconds; most arrays of a picture's outputs are empty.
-        address = value.ctypes.data if value.size else 0
+        # Asking for an address takes two microseconds, and most outputs of a picture are empty.
+        address = value.ctypes.data if value.size else _NOTHING
         words += (0, 0, value.size, value.itemsize, address)
         words += value.shape
         words += value.strides

@@ -150,9 +150,13 @@ def module_of(
         whole.as_bitcode(),
         returns,
     )
-    if name is not None and all(called.name in _LOADED for called in made.calls):
+    told = _as_json(returns)
+    if name is not None and told is not None and all(one.name in _LOADED for one in made.calls):
         _LOADED[name] = made
-        _keep(made)
+        if not refusal():
+            path = kernel_folder() / f"{name}{SUFFIX}"
+            header = [symbol, [called.name for called in made.calls], told]
+            write_trusted(path, header, [made.code])
     return made
 
 
@@ -165,18 +169,14 @@ def _shared(module: llvm.ModuleRef) -> llvm.ModuleRef:
     return copy
 
 
-def _keep(module: Module) -> None:
-    returns = _as_json(module.returns)
-    if returns is not None and not refusal():
-        path = kernel_folder() / f"{module.name}{SUFFIX}"
-        header = [module.symbol, [called.name for called in module.calls], returns]
-        write_trusted(path, header, [module.code])
-
-
 def _as_json(kind: Any) -> Any:  # noqa: ANN401  # what JSON can tell
     """Return what tells a type that a kernel returns; None if it is not one of the usual ones."""
     if isinstance(kind, Lanes):
         return ["lanes", _as_json(kind.element)]
+    if isinstance(kind, numba.types.Array):
+        element = _as_json(kind.dtype)
+        told = ["array", element, kind.ndim, kind.layout, not kind.mutable, kind.aligned]
+        return told if isinstance(element, str) else None
     if isinstance(kind, numba.types.BaseTuple):
         of: Any = getattr(kind, "instance_class", tuple)
         parts = [_as_json(part) for part in kind]
@@ -192,6 +192,9 @@ def _type_of(told: Any) -> Any:  # noqa: ANN401  # from JSON; numba's types have
         return getattr(numba.types, told)
     if told[0] == "lanes":
         return Lanes(_type_of(told[1]))
+    if told[0] == "array":
+        dtype, dimensions, layout, readonly, aligned = told[1:]
+        return numba.types.Array(_type_of(dtype), dimensions, layout, readonly, aligned=aligned)
     of = getattr(import_module(told[0]), told[1])
     return numba.types.BaseTuple.from_types(tuple(map(_type_of, told[2:])), of)
 

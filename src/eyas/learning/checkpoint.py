@@ -16,7 +16,7 @@ from eyas.core.files import refusals, write_atomic
 from eyas.settings.config import EyasConfig
 from eyas.settings.file import load_settings, save_settings
 
-__all__ = ["Progress", "RunFolder"]
+__all__ = ["RunFolder", "TrainingProgress"]
 
 Row = dict[str, float]
 
@@ -25,7 +25,7 @@ _NOT_LEARNED = ("exports", "modes/video", "overlay", "wire")
 
 
 @dataclass
-class Progress:
+class TrainingProgress:
     """How far a run has come."""
 
     stage: int = 0
@@ -77,7 +77,7 @@ class RunFolder:
         save_settings(config, self._config)
 
     def save(
-        self, progress: Progress, network: torch.nn.Module, optimiser: torch.optim.Optimizer
+        self, progress: TrainingProgress, network: torch.nn.Module, optimiser: torch.optim.Optimizer
     ) -> None:
         """Write a checkpoint and the curve."""
         data = io.BytesIO()
@@ -97,7 +97,7 @@ class RunFolder:
         writer.writerows(progress.rows)
         write_atomic(self.path / "curve.csv", text.getvalue().encode())
 
-    def load(self, network: torch.nn.Module, optimiser: torch.optim.Optimizer) -> Progress:
+    def load(self, network: torch.nn.Module, optimiser: torch.optim.Optimizer) -> TrainingProgress:
         """Return how far the run has come; set network and optimiser as they were.
 
         Raises:
@@ -105,13 +105,13 @@ class RunFolder:
             OutputError: Another build of Eyas has made it, which may compute other blocks.
         """
         if not self._checkpoint.exists():
-            return Progress()
+            return TrainingProgress()
         with _readable(self._checkpoint):
             saved: dict[str, Any] = torch.load(self._checkpoint, weights_only=True)
             build = Build(**saved["build"])
             network.load_state_dict(saved["network"])
             optimiser.load_state_dict(saved["optimiser"])
-            progress = Progress(**saved["progress"])
+            progress = TrainingProgress(**saved["progress"])
         if differs := build.difference(this_build(), without=_NOT_LEARNED, libraries=True):
             raise OutputError(
                 f"{self.path}: trained by build {build.id} of Eyas, which differs from this one in "

@@ -84,13 +84,16 @@ def _text_of(map_name: str, seed: int) -> NDArray[np.uint8]:
     make, data = partial(_planned, recipe, network, seed), recipe.data_hash()
     if data is None:
         return make()
-    return cached(Kind.PLAN, make, (recipe.plan, data, seed, network), of=NDArray[np.uint8])
+    return cached(
+        Kind.PLAN, make, (recipe.plan, recipe.name, data, seed, network), of=NDArray[np.uint8]
+    )
 
 
 def _planned(recipe: MapRecipe, network: RoadNetwork, seed: int) -> NDArray[np.uint8]:
     from eyas.world.plan.file import text_of
 
-    return np.frombuffer(text_of(recipe.plan(network, seed)).encode(), np.uint8)
+    plan = recipe.complete_plan(network, seed)
+    return np.frombuffer(text_of(plan).encode(), np.uint8)
 
 
 @lru_cache(maxsize=4)

@@ -18,7 +18,8 @@ class WorldConfig(Config):
     """The map and its weather."""
 
     map: Annotated[str, Field(min_length=1), NAMES_CODE] = "citystreet"
-    """Name of the map, or the path of a user's own, `package.module:attribute`."""
+    """Name of the map, or the path of a plan (`my.plan.json`) or of a user's own,
+    `package.module:attribute`."""
     weather: Annotated[str, Field(min_length=1), NAMES_CODE] = "day"
     """Name of the weather, or the path of a user's own, `package.module:attribute`."""
     seed: Annotated[int, Field(ge=0, lt=2**31)] = 0

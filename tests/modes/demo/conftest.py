@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from eyas.modes.demo.messages import Reward
+from eyas.modes.demo.messages import RewardMessage
 from eyas.task.config import RewardConfig
 
 CHROMIUM = shutil.which("chromium") or shutil.which("google-chrome")
@@ -40,7 +40,7 @@ WORLD = {
     "hour": "own",
     "people": 0,
 }
-REWARD = RewardConfig().model_dump(mode="json", include=set(Reward.model_fields))
+REWARD = RewardConfig().model_dump(mode="json", include=set(RewardMessage.model_fields))
 
 
 class Served:

@@ -7,9 +7,9 @@ import pytest
 
 from eyas.core.config import updated
 from eyas.core.errors import UnknownNameError
-from eyas.modes.demo.choices import Plan, plan_of
-from eyas.modes.demo.messages import World
-from eyas.modes.demo.run import cockpit_of
+from eyas.modes.demo.choices import WorldChoice, choice_of
+from eyas.modes.demo.messages import WorldMessage
+from eyas.modes.demo.run import session_of
 from eyas.settings.config import EyasConfig
 from eyas.settings.file import load_settings
 from eyas.sim.crowd import extras_of
@@ -20,7 +20,7 @@ class BuildError(Exception):
 
 
 def first(config):
-    return Plan(config, 40)
+    return WorldChoice(config, 40)
 
 
 def walkers(plan):
@@ -31,34 +31,34 @@ def test_the_command_begins_with_the_pedestrians_of_the_map(monkeypatch):
     def build(plan):
         raise BuildError(plan)
 
-    monkeypatch.setattr(Plan, "build", build)
+    monkeypatch.setattr(WorldChoice, "build", build)
     with pytest.raises(BuildError) as begun:
-        cockpit_of(load_settings(None))
+        session_of(load_settings(None))
     assert walkers(begun.value.args[0]) == [("Pedestrian", 40, "crossing")]
 
 
 def test_each_map_has_its_own_until_a_number_is_chosen():
     city = first(EyasConfig())
-    lake = plan_of(city, World(map="lake"))
+    lake = choice_of(city, WorldMessage(map="lake"))
     assert walkers(lake) == []
-    downtown = plan_of(lake, World(map="downtown"))
+    downtown = choice_of(lake, WorldMessage(map="downtown"))
     assert walkers(downtown) == [("Pedestrian", 80, "crossing")]
-    assert walkers(plan_of(downtown, World(weather="snow"))) == walkers(downtown)
-    assert walkers(plan_of(downtown, World(people=0))) == []
+    assert walkers(choice_of(downtown, WorldMessage(weather="snow"))) == walkers(downtown)
+    assert walkers(choice_of(downtown, WorldMessage(people=0))) == []
 
 
 def test_as_many_as_chosen_walk_in_the_next_world_in_its_own_way():
-    city = plan_of(first(EyasConfig()), World(people=30))
+    city = choice_of(first(EyasConfig()), WorldMessage(people=30))
     assert ("Pedestrian", 18, "crossing") in walkers(city)
-    lake = plan_of(city, World(map="lake"))
+    lake = choice_of(city, WorldMessage(map="lake"))
     assert sum(count for _, count, _ in walkers(lake)) == 30
     assert {behaviour for *_, behaviour in walkers(lake)} == {None}
-    assert walkers(plan_of(lake, World(map="citystreet"))) == walkers(city)
+    assert walkers(choice_of(lake, WorldMessage(map="citystreet"))) == walkers(city)
 
 
 def test_nobody_crosses_where_nobody_knows_what_vehicles_will_do():
     live = first(updated(EyasConfig(), {"traffic": {"source": "live"}}))
-    some = walkers(plan_of(live, World(people=20)))
+    some = walkers(choice_of(live, WorldMessage(people=20)))
     assert ("Pedestrian", 12, "pavement") in some
 
 
@@ -69,7 +69,7 @@ def test_a_page_names_only_maps_that_are_offered(name, tmp_path, monkeypatch):
     (tmp_path / "someones.py").write_text("raise SystemExit('it was imported')")
     monkeypatch.syspath_prepend(tmp_path)
     with pytest.raises(UnknownNameError, match=r"^world\.map: .* known: citystreet, "):
-        plan_of(first(EyasConfig()), World(map=name))
+        choice_of(first(EyasConfig()), WorldMessage(map=name))
     assert "someones" not in sys.modules
 
 
@@ -81,5 +81,5 @@ def test_a_page_does_not_name_the_folder_of_a_map(tmp_path):
     (folder / "map.json").write_text(json.dumps({**said, "size": [100, 100]}))
     config = updated(EyasConfig(), {"world": {"map": str(folder)}})
     with pytest.raises(UnknownNameError):
-        plan_of(first(EyasConfig()), World(map=str(folder)))
-    assert plan_of(first(config), World(weather="night")).config.world.map == str(folder)
+        choice_of(first(EyasConfig()), WorldMessage(map=str(folder)))
+    assert choice_of(first(config), WorldMessage(weather="night")).config.world.map == str(folder)

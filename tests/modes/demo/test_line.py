@@ -2,8 +2,8 @@
 
 import pytest
 
-from eyas.modes.demo.line import FACTORS, IN_FLIGHT, Line
-from eyas.modes.demo.pace import FRAME, Size
+from eyas.modes.demo.frame import FACTORS, IN_FLIGHT, CodingChoice
+from eyas.modes.demo.pace import FRAME, PictureSize
 
 SIZES = (45e3, 15e3, 6e3, 3e3)
 """Of a picture at each level [bytes]."""
@@ -32,7 +32,7 @@ def send(line, seconds, speed, delay=0.001, frame=FRAME, begun=0.0):
 
 
 def automatic():
-    line = Line(0.0)
+    line = CodingChoice(0.0)
     line.choose("auto", 0.0)
     return line
 
@@ -90,7 +90,7 @@ def test_what_the_page_chooses_stays():
 
 
 def test_pictures_shrink_at_once_and_grow_after_a_while():
-    size = Size()
+    size = PictureSize()
     size.fit(1280, 720)
     first = size.now
     for _ in range(20):
@@ -106,7 +106,7 @@ def test_pictures_shrink_at_once_and_grow_after_a_while():
 
 
 def test_pictures_keep_their_size_when_the_time_is_neither_short_nor_long():
-    size = Size()
+    size = PictureSize()
     size.fit(1280, 720)
     sizes = set()
     for i in range(2000):

@@ -117,7 +117,7 @@ def test_ctrl_c_while_a_page_is_served_ends_the_loop_without_a_word():
     script = """
 import asyncio, os, signal
 from eyas.core.interrupts import EndingSignals
-from eyas.modes.demo.ending import run_until_signal
+from eyas.modes.demo.run import run_until_signal
 
 async def page():
     os.kill(os.getpid(), signal.SIGINT)

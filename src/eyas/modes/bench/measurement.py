@@ -1,15 +1,93 @@
 """Measurements of `eyas bench`: how calls are timed, and the table."""
 
+import ctypes
+import os
+import platform
 import statistics
+import struct
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
+from typing import NamedTuple
 
 from rich.table import Table
 
-from eyas.modes.bench.counters import counted, why_not
+__all__ = [
+    "Counts",
+    "Measurement",
+    "Timing",
+    "counted",
+    "measurement_table",
+    "of_pictures",
+    "timed",
+    "why_not",
+]
 
-__all__ = ["Measurement", "Timing", "measurement_table", "of_pictures", "timed"]
+_CALL = {"x86_64": 298, "aarch64": 241}
+"""Number of the system call `perf_event_open`."""
+
+_CYCLES, _INSTRUCTIONS = 0, 1
+_SIZE = 64
+_OWN_CODE_ONLY = 1 << 5 | 1 << 6
+"""Neither the kernel of the system nor a hypervisor."""
+
+
+class Counts(NamedTuple):
+    """What the code of this process did."""
+
+    instructions: int
+    cycles: int
+
+
+class _NoAccessError(Exception):
+    """The system gives no access; the text says why."""
+
+
+def why_not() -> str | None:
+    """Return why the counters cannot be read; None if they can."""
+    try:
+        os.close(_opened(_CYCLES, os.getpid()))
+    except _NoAccessError as error:
+        return str(error)
+    return None
+
+
+def counted(call: Callable[[], object]) -> Counts:
+    """Return what a call does in all threads that exist before it."""
+    threads = [int(path.name) for path in Path("/proc/self/task").iterdir()]
+    files = [[_opened(kind, thread) for thread in threads] for kind in (_INSTRUCTIONS, _CYCLES)]
+    try:
+        before = [sum(map(_read, group)) for group in files]
+        call()
+        after = [sum(map(_read, group)) for group in files]
+    finally:
+        for group in files:
+            for file in group:
+                os.close(file)
+    return Counts(*(b - a for a, b in zip(before, after, strict=True)))
+
+
+def _opened(kind: int, thread: int) -> int:
+    """Return the file of a counter of one thread."""
+    number = _CALL.get(platform.machine())
+    if platform.system() != "Linux" or number is None:
+        raise _NoAccessError(f"{platform.system()} {platform.machine()}")
+    # type, size, what to count, period, samples, format, flags, three for other uses
+    attributes = struct.pack("=IIQQQQQIIQ", 0, _SIZE, kind, 0, 0, 0, _OWN_CODE_ONLY, 0, 0, 0)
+    library = ctypes.CDLL(None, use_errno=True)
+    file: int = library.syscall(
+        *(number, ctypes.c_char_p(attributes), thread, -1, -1, ctypes.c_ulong(0))
+    )
+    if file < 0:
+        raise _NoAccessError(os.strerror(ctypes.get_errno()))
+    return file
+
+
+def _read(file: int) -> int:
+    (value,) = struct.unpack("=Q", os.read(file, 8))
+    return int(value)
+
 
 _BLOCK = 0.05
 """Calls are repeated for at least this time for one timing [s]."""

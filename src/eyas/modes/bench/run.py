@@ -16,11 +16,15 @@ from rich.console import Console
 
 from eyas.core.files import write_atomic
 from eyas.core.machine import describe_machine, peak_memory
-from eyas.modes.bench.counters import why_not
-from eyas.modes.bench.first_picture import FIRST_PICTURE
-from eyas.modes.bench.measurement import Measurement, measurement_table, timed
-from eyas.modes.bench.pictures import BY_DAY, OTHER_WEATHERS, measure_horizon, measure_pictures
-from eyas.modes.bench.stages import measure_stages, stage_table
+from eyas.modes.bench.measurement import Measurement, measurement_table, timed, why_not
+from eyas.modes.bench.pictures import (
+    BY_DAY,
+    OTHER_WEATHERS,
+    measure_horizon,
+    measure_pictures,
+    measure_stages,
+    stage_table,
+)
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
 from eyas.sim.scenes import load_geometry
@@ -30,6 +34,22 @@ from eyas.targets.catalogue import kind_index
 from eyas.world.weather import Season
 
 __all__ = ["run"]
+
+FIRST_PICTURE = """
+import os, sys
+if sys.argv[1]:  # an empty folder for the cache, compiled kernels too
+    os.environ["EYAS_CACHE_DIR"] = sys.argv[1]
+    os.environ.pop("NUMBA_CACHE_DIR", None)
+import numpy as np
+from eyas.sim.build import build_simulation
+from eyas.sim.config import SimConfig
+from eyas.sim.worlds import each_alone
+from eyas.state.draw import Picture
+simulation = build_simulation(SimConfig(), each_alone(1))
+simulation.reset()
+simulation.draw(np.zeros(1, np.int32), Picture.create(1, 84, 84))
+"""
+
 
 _PHYSICS_STEPS = 4
 

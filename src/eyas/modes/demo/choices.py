@@ -1,19 +1,21 @@
-"""What the page's menus choose, and the settings that it means."""
+"""What the page's menus choose, the settings that it means, and the building of such worlds."""
 
+from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import Any
 
 from eyas.core.config import updated
-from eyas.core.errors import UnknownNameError
-from eyas.modes.demo.flight import Flight
-from eyas.modes.demo.messages import LIGHTS, Light, World
+from eyas.core.errors import EyasError, UnknownNameError
+from eyas.modes.demo.flight import DemoFlight
+from eyas.modes.demo.messages import LIGHTS, Light, WorldMessage
 from eyas.settings.config import EyasConfig
 from eyas.sim.crowd import extras_of
 from eyas.targets.config import TargetName
 from eyas.trackers.config import TrackerKind
 from eyas.world.maps import MAPS
 
-__all__ = ["Plan", "plan_of", "world_of"]
+__all__ = ["Builder", "WorldChoice", "choice_of", "world_of"]
+
 
 _TRACKERS: dict[str, dict[str, Any]] = {
     "drone": {"kind": TrackerKind.DRONE, "supervised": True},
@@ -25,7 +27,7 @@ _ROBOTS = (TargetName.AIBO_ERS7, TargetName.CREATE)
 
 
 @dataclass(frozen=True, slots=True)
-class Plan:
+class WorldChoice:
     """A world to build.
 
     Attributes:
@@ -38,16 +40,16 @@ class Plan:
     vehicles: int
     light: Light = "own"
 
-    def build(self) -> Flight:
+    def build(self) -> DemoFlight:
         """Return a flight in this world.
 
         Raises:
             EyasError: It cannot be built.
         """
-        return Flight(self.config, self.vehicles)
+        return DemoFlight(self.config, self.vehicles)
 
 
-def plan_of(before: Plan, said: World) -> Plan:
+def choice_of(before: WorldChoice, said: WorldMessage) -> WorldChoice:
     """Return a plan with what a page has chosen.
 
     Args:
@@ -90,7 +92,7 @@ def plan_of(before: Plan, said: World) -> Plan:
     else:
         config = updated(before.config, changes | {"extras": None})
         config = updated(config, {"extras": _passers_by(people, config)})
-    return Plan(config, said.vehicles or before.vehicles, light)
+    return WorldChoice(config, said.vehicles or before.vehicles, light)
 
 
 def _passers_by(count: int, config: EyasConfig) -> list[dict[str, Any]]:
@@ -111,7 +113,7 @@ def _count(config: EyasConfig) -> int:
     return sum(extra.count for extra in extras_of(config))
 
 
-def world_of(plan: Plan, flight: Flight) -> dict[str, Any]:
+def world_of(plan: WorldChoice, flight: DemoFlight) -> dict[str, Any]:
     """Return what is chosen, for the menus."""
     config = plan.config
     tracker = config.tracker
@@ -128,3 +130,60 @@ def world_of(plan: Plan, flight: Flight) -> dict[str, Any]:
         "parked": flight.world.parked >= 0,
     }
     return {"world": chosen}
+
+
+class Builder:
+    """Builds one world at a time; of those that are ordered meanwhile, only the last.
+
+    Attributes:
+        plan: What is being built, or was last; choices that follow start from it.
+        flown: What was built last.
+
+    Args:
+        plan: The world that there is.
+    """
+
+    def __init__(self, plan: WorldChoice) -> None:
+        self.plan = self.flown = plan
+        self._threads = ThreadPoolExecutor(1, "eyas-world")
+        self._built: Future[DemoFlight] | None = None
+        self._building = plan
+
+    @property
+    def busy(self) -> bool:
+        """Whether a world is being built."""
+        return self._built is not None
+
+    def order(self, plan: WorldChoice) -> None:
+        """Begin to build a world, or do so when the one before is built."""
+        self.plan = plan
+        if self._built is None:
+            self._begin()
+
+    def _begin(self) -> None:
+        self._building = self.plan
+        self._built = self._threads.submit(self.plan.build)
+
+    def take(self) -> DemoFlight | None:
+        """Return the flight in the world that was ordered last, once, when it is built.
+
+        Raises:
+            EyasError: It cannot be built.
+        """
+        if self._built is None or not self._built.done():
+            return None
+        built, self._built = self._built, None
+        if self._building is not self.plan:
+            self._begin()
+            return None
+        try:
+            flight = built.result()
+        except EyasError:
+            self.plan = self.flown
+            raise
+        self.flown = self.plan
+        return flight
+
+    def stop(self) -> None:
+        """Wait for a world that is being built, and drop it."""
+        self._threads.shutdown(cancel_futures=True)

@@ -5,12 +5,12 @@ from numpy.typing import NDArray
 
 from eyas.core.config import updated
 from eyas.modes.demo.controls import CAMERA_PITCH, CAMERA_YAW, Control, Held, camera_turn
-from eyas.modes.demo.messages import Reward
+from eyas.modes.demo.messages import RewardMessage
 from eyas.modes.demo.world import build_world
 from eyas.settings.config import EyasConfig
 from eyas.task.rules import lenient, make_rules
 
-__all__ = ["Flight"]
+__all__ = ["DemoFlight"]
 
 _FAR = 30.0
 """Distance from which on a pilot does not fly to a target, but appears there [m]."""
@@ -18,7 +18,7 @@ _WARNING = 1000
 """Physics steps before the end of the traffic at which it begins anew."""
 
 
-class Flight:
+class DemoFlight:
     """A drone, its target and its world.
 
     Attributes:
@@ -116,12 +116,12 @@ class Flight:
         if len(here):
             self.follow(int(later[0] if len(later) else here[0]))
 
-    def change_reward(self, said: Reward) -> None:
+    def change_reward(self, said: RewardMessage) -> None:
         """Change settings of the reward, from the next step on."""
         self.config = updated(self.config, {"reward": said.model_dump(exclude_none=True)})
         self._obey()
 
-    def adopt_reward(self, other: "Flight") -> None:
+    def adopt_reward(self, other: "DemoFlight") -> None:
         """Take the settings of the reward that sliders have changed in another flight."""
         self.config = self.config.model_copy(update={"reward": other.config.reward})
         self._obey()

@@ -8,28 +8,28 @@ from pydantic import Field
 from eyas.core.config import Config, validated
 from eyas.core.errors import ConfigError, UnknownNameError
 from eyas.modes.demo.controls import Control
-from eyas.modes.demo.line import Coding
+from eyas.modes.demo.frame import Coding
 from eyas.targets.config import TargetName
 from eyas.task.config import RewardMode, RewardType
 
 __all__ = [
     "LIGHTS",
     "LONGEST",
-    "Ack",
-    "Box",
-    "Click",
-    "Do",
-    "Duel",
-    "Fly",
-    "Keys",
+    "AckMessage",
+    "BoxMessage",
+    "ClickMessage",
+    "DoMessage",
+    "DuelMessage",
+    "FlyMessage",
+    "KeysMessage",
     "Light",
-    "Look",
+    "LookMessage",
     "Message",
-    "Pace",
-    "Pictures",
-    "Record",
-    "Reward",
-    "World",
+    "PaceMessage",
+    "PicturesMessage",
+    "RecordMessage",
+    "RewardMessage",
+    "WorldMessage",
     "parsed",
 ]
 
@@ -56,7 +56,7 @@ class Message(Config):
     """Something that a page says."""
 
 
-class Keys(Message):
+class KeysMessage(Message):
     """The controls that are held now; sent on a change and every 100 ms."""
 
     held: dict[Control, Share]
@@ -65,7 +65,7 @@ class Keys(Message):
     """Of the page's clock, at the last change [ms]; it comes back with each frame."""
 
 
-class Ack(Message):
+class AckMessage(Message):
     """A frame has arrived and is shown."""
 
     frame: Annotated[int, Field(ge=0)]
@@ -73,13 +73,13 @@ class Ack(Message):
     """Time from its arrival until then [ms]."""
 
 
-class Pictures(Message):
+class PicturesMessage(Message):
     """How pictures for this viewer are coded; H.264 begins anew, with a whole picture."""
 
     coding: Coding
 
 
-class Look(Message):
+class LookMessage(Message):
     """What the picture shows, and how large it is on the screen."""
 
     view: Literal["drone", "chase", "top"] = "drone"
@@ -88,26 +88,26 @@ class Look(Message):
     height: Side = 360
 
 
-class Click(Message):
+class ClickMessage(Message):
     """A place in the picture: from its left and upper edge, in shares of its sides."""
 
     x: Share
     y: Share
 
 
-class Do(Message):
+class DoMessage(Message):
     """Something to do once; `pilot` takes the controls."""
 
     what: Literal["next_target", "parked_target", "reset", "step", "pilot"]
 
 
-class Pace(Message):
+class PaceMessage(Message):
     """Seconds of the simulation in a second; 0: it stands still."""
 
     speed: Annotated[float, Field(ge=0, le=4)]
 
 
-class Reward(Message):
+class RewardMessage(Message):
     """Settings of the reward; those that are not named stay."""
 
     type: RewardType | None = None
@@ -118,7 +118,7 @@ class Reward(Message):
     distance_scale: Positive | None = None
 
 
-class World(Message):
+class WorldMessage(Message):
     """Another world; what is not named stays."""
 
     map: Name | None = None
@@ -133,25 +133,25 @@ class World(Message):
     """Those who walk around without being asked for as targets: people and robots."""
 
 
-class Fly(Message):
+class FlyMessage(Message):
     """Who flies: a policy, or None for the pilot's keys."""
 
     policy: Name | None
 
 
-class Duel(Message):
+class DuelMessage(Message):
     """The same minute flown by the pilot and by a policy; None: give up."""
 
     policy: Name | None
 
 
-class Record(Message):
+class RecordMessage(Message):
     """Whether to record."""
 
     on: bool
 
 
-class Box(Message):
+class BoxMessage(Message):
     """Where an outside tracker sees the target, to fly by it; None: it sees none.
 
     Left, top, right, bottom, in shares of the picture's sides.
@@ -161,19 +161,19 @@ class Box(Message):
 
 
 _KINDS: dict[str, type[Message]] = {
-    "keys": Keys,
-    "ack": Ack,
-    "pictures": Pictures,
-    "look": Look,
-    "click": Click,
-    "do": Do,
-    "pace": Pace,
-    "reward": Reward,
-    "world": World,
-    "fly": Fly,
-    "duel": Duel,
-    "record": Record,
-    "box": Box,
+    "keys": KeysMessage,
+    "ack": AckMessage,
+    "pictures": PicturesMessage,
+    "look": LookMessage,
+    "click": ClickMessage,
+    "do": DoMessage,
+    "pace": PaceMessage,
+    "reward": RewardMessage,
+    "world": WorldMessage,
+    "fly": FlyMessage,
+    "duel": DuelMessage,
+    "record": RecordMessage,
+    "box": BoxMessage,
 }
 
 

@@ -2,7 +2,7 @@
 
 from eyas.core.clock import PHYSICS_RATE
 
-__all__ = ["FRAME", "Clock", "Size"]
+__all__ = ["FRAME", "Clock", "PictureSize"]
 
 FRAME = 1.0 / 30.0
 """Between frames [s]."""
@@ -40,7 +40,7 @@ class Clock:
         return due
 
 
-class Size:
+class PictureSize:
     """Chooses the largest picture that the machine can draw in time, in the window's shape.
 
     Attributes:

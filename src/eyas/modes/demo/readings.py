@@ -7,7 +7,7 @@ import numpy as np
 
 from eyas.core.clock import PHYSICS_STEP
 from eyas.lanes import interpreted
-from eyas.modes.demo.flight import Flight
+from eyas.modes.demo.flight import DemoFlight
 from eyas.state.terrain import plane_at, relief_at
 from eyas.targets.catalogue import MODELS
 from eyas.task import reward
@@ -24,7 +24,7 @@ _distance = interpreted(reward.distance_continuous)
 _distance_discrete = interpreted(reward.distance_discrete)
 
 
-def readings(flight: Flight) -> dict[str, Any]:
+def readings(flight: DemoFlight) -> dict[str, Any]:
     """Return reward, place, speeds, target and reasons that would end the episode."""
     trackers, cameras, targets, episodes, _ = flight.simulation.snapshot
     rules, terrain = flight.simulation.rules, flight.world.assets.scene.terrain
@@ -66,7 +66,7 @@ def readings(flight: Flight) -> dict[str, Any]:
     }
 
 
-def _kinds(share: float, offset: float, depth: float, flight: Flight) -> dict[str, float]:
+def _kinds(share: float, offset: float, depth: float, flight: DemoFlight) -> dict[str, float]:
     """Return the reward of each of the four kinds."""
     rules = flight.simulation.rules
     if not depth > 0.0:
@@ -79,7 +79,7 @@ def _kinds(share: float, offset: float, depth: float, flight: Flight) -> dict[st
     }
 
 
-def reasons(flight: Flight) -> list[str]:
+def reasons(flight: DemoFlight) -> list[str]:
     """Return every reason for which a training episode would have ended now."""
     _, _, targets, episodes, _ = flight.simulation.snapshot
     rules = flight.simulation.rules
@@ -90,7 +90,7 @@ def reasons(flight: Flight) -> list[str]:
     return [reason.name.lower() for reason in found if reason is not DoneReason.NONE]
 
 
-def traffic(flight: Flight) -> list[list[float]]:
+def traffic(flight: DemoFlight) -> list[list[float]]:
     """Return east, north [m], heading [rad], number and length [m] of each actor in the world."""
     state, model = flight.simulation.actors_around(0)
     here = np.flatnonzero(state.present[0])

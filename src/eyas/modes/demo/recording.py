@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 from eyas.core.clock import PHYSICS_RATE
 from eyas.core.config import updated
 from eyas.core.folder_lock import folder_lock
-from eyas.exports.frame import Action
-from eyas.modes.demo.flight import Flight
+from eyas.exports.frame import RecordedAction
+from eyas.modes.demo.flight import DemoFlight
 from eyas.modes.video.folder import open_folder
 from eyas.modes.video.recorder import Recorder
 
-__all__ = ["Recording"]
+__all__ = ["DemoRecording"]
 
 
 class _Flown:
@@ -25,12 +25,12 @@ class _Flown:
     def move(self, sim: object) -> None:
         """Do nothing: the demo moves the drone."""
 
-    def action(self, tracker: int) -> Action:
+    def action(self, tracker: int) -> RecordedAction:
         """Return the command of the last step."""
-        return Action(-1, self.command)
+        return RecordedAction(-1, self.command)
 
 
-class Recording:
+class DemoRecording:
     """A recording of one episode, from now on.
 
     Attributes:
@@ -45,7 +45,7 @@ class Recording:
         EyasError: It cannot be written.
     """
 
-    def __init__(self, flight: Flight, folder: Path) -> None:
+    def __init__(self, flight: DemoFlight, folder: Path) -> None:
         config = updated(flight.config, {"video": {"channels": 1}})
         self.folder, self.frames = folder, 0
         self.period = max(round(PHYSICS_RATE / config.video.fps), 1)

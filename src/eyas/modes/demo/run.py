@@ -1,22 +1,58 @@
 """Runs the demo in the browser, or as lines in a terminal."""
 
+import asyncio
 import os
 import socket
 import sys
 import time
 import webbrowser
-from collections.abc import Callable
+from collections.abc import Callable, Coroutine
 from pathlib import Path
+from typing import Any
 
 from eyas.core.errors import OutputError
 from eyas.evaluation.policies.shipped import shipped_names
-from eyas.modes.demo.cockpit import Cockpit
-from eyas.modes.demo.ending import run_until_signal
+from eyas.lanes.interrupts import let_in, shielded
 from eyas.modes.demo.orders import open_with_a_chase
+from eyas.modes.demo.session import Session
 from eyas.settings.config import EyasConfig
 from eyas.task.step_line import step_line
 
-__all__ = ["RECORDINGS", "cockpit_of", "listen", "run_browser", "run_headless"]
+__all__ = ["RECORDINGS", "listen", "run_browser", "run_headless", "session_of"]
+
+_LOOK = 0.05
+"""Time from one look for signals to the next [s]."""
+
+
+def run_until_signal(serving: Coroutine[Any, Any, None]) -> None:
+    """Run a coroutine; a signal that asks the program to end cancels it.
+
+    The interrupt is raised when the loop has ended. Raised in the loop, wherever that happens to
+    be, it would be the failure of a task that nobody awaits, such as of one page's.
+
+    Raises:
+        KeyboardInterrupt: There was such a signal.
+    """
+    with shielded():
+        interrupt = asyncio.run(_ended(serving))
+    if interrupt is not None:
+        raise interrupt
+
+
+async def _ended(serving: Coroutine[Any, Any, None]) -> KeyboardInterrupt | None:
+    """Await a coroutine; return the interrupt that has cancelled it, if any."""
+    task, interrupt = asyncio.create_task(serving), None
+    while not task.done():
+        await asyncio.wait([task], timeout=_LOOK)
+        try:
+            let_in()
+        except KeyboardInterrupt as raised:
+            interrupt = interrupt or raised
+            task.cancel()
+    if not task.cancelled():
+        task.result()
+    return interrupt
+
 
 RECORDINGS = Path("runs/demo")
 BUILT_IN = ("follow", "servo")
@@ -24,7 +60,7 @@ LINES = 10
 """Lines per second in a terminal."""
 
 
-def cockpit_of(config: EyasConfig, policy: str | None = None) -> Cockpit:
+def session_of(config: EyasConfig, policy: str | None = None) -> Session:
     """Return what is flown in a demo.
 
     Args:
@@ -35,7 +71,7 @@ def cockpit_of(config: EyasConfig, policy: str | None = None) -> Cockpit:
         EyasError: The world cannot be built.
     """
     names = (*BUILT_IN, *shipped_names(), *((policy,) if policy else ()))
-    return Cockpit(config, tuple(dict.fromkeys(names)), RECORDINGS)
+    return Session(config, tuple(dict.fromkeys(names)), RECORDINGS)
 
 
 def listen(host: str, port: int) -> socket.socket:
@@ -59,7 +95,7 @@ def listen(host: str, port: int) -> socket.socket:
 
 
 def run_browser(
-    cockpit: Cockpit,
+    session: Session,
     host: str,
     listening: socket.socket,
     *,
@@ -69,22 +105,22 @@ def run_browser(
     """Serve the demo's page until it is interrupted.
 
     Args:
-        cockpit: What is flown.
+        session: What is flown.
         host: The address that is bound.
         listening: Its socket, see `listen`.
         browser: Whether to open a browser, where there is one.
         say: Prints the line with the address.
     """
-    from eyas.modes.demo.server import Server
+    from eyas.modes.demo.server import DemoServer
 
-    open_with_a_chase(cockpit)
+    open_with_a_chase(session)
 
     def begun(address: str) -> None:
         say(address)
         if browser and _has_screen():
             webbrowser.open(address)
 
-    run_until_signal(Server(cockpit, host, listening).run(begun))
+    run_until_signal(DemoServer(session, host, listening).run(begun))
 
 
 def _has_screen() -> bool:
@@ -94,17 +130,17 @@ def _has_screen() -> bool:
     return bool(os.environ.get("DISPLAY") or os.environ.get("WAYLAND_DISPLAY"))
 
 
-def run_headless(cockpit: Cockpit, seconds: float, say: Callable[[str], None]) -> None:
+def run_headless(session: Session, seconds: float, say: Callable[[str], None]) -> None:
     """Hover, and print the reward in real time as the original's console does.
 
     Args:
-        cockpit: What is flown.
+        session: What is flown.
         seconds: How long.
         say: Prints a line.
     """
     begun = time.monotonic()
-    cockpit.clock.skip(begun)
+    session.clock.skip(begun)
     for line in range(1, round(seconds * LINES) + 1):
         time.sleep(max(begun + line / LINES - time.monotonic(), 0.0))
-        cockpit.advance(time.monotonic())
-        say(step_line(cockpit.flight.simulation.snapshot, 0, "DRONE0"))
+        session.advance(time.monotonic())
+        say(step_line(session.flight.simulation.snapshot, 0, "DRONE0"))

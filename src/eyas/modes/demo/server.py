@@ -16,17 +16,16 @@ from websockets.http11 import Request, Response
 from eyas import __version__
 from eyas.core.errors import ConfigError
 from eyas.modes.demo import messages as said
-from eyas.modes.demo.cockpit import Cockpit
-from eyas.modes.demo.files import own_file, page_file
-from eyas.modes.demo.frame import Frame
-from eyas.modes.demo.gate import Gate, path_of, query_of
+from eyas.modes.demo.flight_thread import FlightThread
+from eyas.modes.demo.frame import DemoFrame
 from eyas.modes.demo.orders import BOXES, reward_of, world_now
+from eyas.modes.demo.requests import Gate, own_file, page_file, path_of, query_of
 from eyas.modes.demo.session import Session
 from eyas.modes.demo.viewers import Viewer, Viewers
 from eyas.targets.config import TargetName
 from eyas.world.maps import MAPS
 
-__all__ = ["Server"]
+__all__ = ["DemoServer"]
 
 SOCKET = "/socket"
 ERRORS = 20
@@ -42,20 +41,20 @@ _SAFE = {
 }
 
 
-class Server:
-    """Serves one cockpit.
+class DemoServer:
+    """Serves one session.
 
     Attributes:
         viewers: Those who watch.
 
     Args:
-        cockpit: What is flown.
+        session: What is flown.
         host: The address that is bound.
         listening: Its socket, see `listen`.
     """
 
-    def __init__(self, cockpit: Cockpit, host: str, listening: socket.socket) -> None:
-        self._cockpit, self._host, self._listening = cockpit, host, listening
+    def __init__(self, session: Session, host: str, listening: socket.socket) -> None:
+        self._session, self._host, self._listening = session, host, listening
         self._gate = Gate(host)
 
     async def run(self, begun: Callable[[str], None]) -> None:
@@ -65,7 +64,7 @@ class Server:
             begun: Is called with the address, once it answers.
         """
         self.viewers = Viewers(asyncio.get_running_loop())
-        self._session = Session(self._cockpit, self.viewers)
+        self._thread = FlightThread(self._session, self.viewers)
         async with serve(
             self._talk,
             sock=self._listening,
@@ -74,12 +73,12 @@ class Server:
             compression=None,  # pictures are compressed already
             close_timeout=1,
         ) as server:
-            flying = asyncio.create_task(asyncio.to_thread(self._session.run))
+            flying = asyncio.create_task(asyncio.to_thread(self._thread.run))
             begun(self._address(server))
             try:
                 await asyncio.shield(flying)
             finally:
-                self._session.stop()
+                self._thread.stop()
                 await flying
 
     def _address(self, server: WebSocketServer) -> str:
@@ -99,7 +98,7 @@ class Server:
         if path == SOCKET:
             return None
         try:
-            found = page or own_file(path, self._cockpit)
+            found = page or own_file(path, self._session)
         except ConfigError as error:
             return _text(HTTPStatus.CONFLICT, str(error))
         if found is None:
@@ -142,15 +141,15 @@ class Server:
         Raises:
             ConfigError: Only who flies may say this.
         """
-        if isinstance(message, said.Ack):
+        if isinstance(message, said.AckMessage):
             viewer.acknowledge(message.frame, 0.001 * message.spent)
-        elif isinstance(message, said.Pictures):
+        elif isinstance(message, said.PicturesMessage):
             viewer.choose(message.coding)
-        elif isinstance(message, said.Do) and message.what == "pilot" and viewer.flies:
+        elif isinstance(message, said.DoMessage) and message.what == "pilot" and viewer.flies:
             self.viewers.appoint(viewer)
-        elif viewer is self.viewers.pilot or isinstance(message, said.Box):
-            self._session.put(message)
-        elif not isinstance(message, said.Keys | said.Look):
+        elif viewer is self.viewers.pilot or isinstance(message, said.BoxMessage):
+            self._thread.put(message)
+        elif not isinstance(message, said.KeysMessage | said.LookMessage):
             raise ConfigError("message: another page flies; take the controls first")
 
     def _greeting(self) -> dict[str, Any]:
@@ -159,8 +158,8 @@ class Server:
         for name in sorted(MAPS.names()):
             recipe = MAPS.get(name)
             maps[name] = {"title": recipe.title, "weathers": recipe.weathers}
-        policies = [*self._cockpit.policies, BOXES]
-        most = self._cockpit.flight.config.traffic.max_vehicles
+        policies = [*self._session.policies, BOXES]
+        most = self._session.flight.config.traffic.max_vehicles
         told = {
             "hello": __version__,
             "maps": maps,
@@ -169,7 +168,7 @@ class Server:
             "targets": [name.value for name in TargetName],
             "lights": list(said.LIGHTS),
         }
-        return told | reward_of(self._cockpit) | world_now(self._cockpit)
+        return told | reward_of(self._session) | world_now(self._session)
 
 
 async def _send(connection: ServerConnection, viewer: Viewer) -> None:
@@ -177,7 +176,7 @@ async def _send(connection: ServerConnection, viewer: Viewer) -> None:
     try:
         while True:
             what = await viewer.next()
-            if not isinstance(what, Frame):
+            if not isinstance(what, DemoFrame):
                 await connection.send(json.dumps(what))
                 continue
             try:

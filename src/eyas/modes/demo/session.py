@@ -1,117 +1,141 @@
-"""The thread of the demo: it hears the pilot, flies by the clock, and draws frames."""
+"""All that is going on in the demo: the flight, who flies, what is shown and recorded."""
 
-import queue
 import time
-from collections.abc import Callable
-from functools import partial
-from typing import Any, Protocol
+from pathlib import Path
+from typing import Any
 
-from eyas.core.errors import EyasError
-from eyas.modes.demo.cockpit import Cockpit
-from eyas.modes.demo.frame import Frame
-from eyas.modes.demo.messages import Message, World
-from eyas.modes.demo.orders import carry_out, change_sides, end_recording, move_in, world_now
-from eyas.modes.demo.pace import FRAME
+from eyas.modes.demo.choices import Builder, WorldChoice
+from eyas.modes.demo.controllers import Controller, Duel
+from eyas.modes.demo.controls import Held, command_of
+from eyas.modes.demo.flight import DemoFlight
+from eyas.modes.demo.frame import DemoFrame
+from eyas.modes.demo.pace import Clock, PictureSize
+from eyas.modes.demo.readings import readings, traffic
+from eyas.modes.demo.recording import DemoRecording
+from eyas.modes.demo.views import Screen
+from eyas.settings.config import EyasConfig
 
-__all__ = ["Audience", "Session"]
+__all__ = ["Session"]
 
-
-class Audience(Protocol):
-    """Those who watch; its methods are called in the thread of the session."""
-
-    def wants_frame(self) -> bool:
-        """Return whether anyone can take a frame now."""
-        ...
-
-    def show(self, frame: Frame) -> None:
-        """Send a frame to all who can take one."""
-        ...
-
-    def tell(self, what: dict[str, Any]) -> None:
-        """Tell all something."""
-        ...
+SILENCE = 0.5
+"""Time after which the keys of a page that says nothing are released [s]."""
+CHUNK = 10
+"""Largest number of physics steps between two looks at the reward."""
+TRAFFIC = 3
+"""Frames from one list of all vehicles to the next."""
 
 
 class Session:
-    """Flies what is in a cockpit, for an audience.
+    """State of the demo, in the thread that flies.
 
     Args:
-        cockpit: What is flown.
-        audience: Those who watch.
+        config: The settings.
+        policies: Names of the policies that may fly.
+        recordings: The folder in which recordings are made.
     """
 
-    def __init__(self, cockpit: Cockpit, audience: Audience) -> None:
-        self.cockpit = cockpit
-        self._audience = audience
-        self._inbox: queue.SimpleQueue[Message | None] = queue.SimpleQueue()
+    def __init__(self, config: EyasConfig, policies: tuple[str, ...], recordings: Path) -> None:
+        self.policies, self.recordings = policies, recordings
+        self.size, self.clock = PictureSize(), Clock(time.monotonic())
+        self.overlay = True
+        self.recording: DemoRecording | None = None
+        self.duel: Duel | None = None
+        self.duel_later: str | None = None
+        """The policy of a duel that begins when the new world is built."""
+        self.sides_change = False
+        """Whether the next flight of the duel is to begin."""
+        plan = WorldChoice(config, config.traffic.max_vehicles)
+        self.builder = Builder(plan)
+        self.begin_flight(plan.build())
+        self._frames = 0
 
-    def put(self, message: Message) -> None:
-        """Take what the pilot says; may be called in any thread."""
-        self._inbox.put(message)
+    def begin_flight(self, flight: DemoFlight) -> None:
+        """Go on with another flight."""
+        self.flight = flight
+        self.screen = Screen(flight)
+        self.hand_over(None, None)
+        self.hold({}, (0, 0.0), 0.0)
+        self.extra_steps = 0
 
-    def stop(self) -> None:
-        """End `run`; may be called in any thread."""
-        self._inbox.put(None)
+    def hand_over(self, controller: Controller | None, name: str | None) -> None:
+        """Let a controller fly; None: the keys."""
+        self.controller, self.controller_name, self._left = controller, name, 0
 
-    def run(self) -> None:
-        """Fly until `stop`; a recording is ended."""
-        try:
-            due = time.monotonic()
-            while self._hear(due):
-                now = time.monotonic()
-                due = max(due + FRAME, now)
-                self._try(lambda: move_in(self.cockpit), self._stay)
-                self._try(partial(self._fly, now), self._drop_pilot)
-                if self._audience.wants_frame():
-                    self._audience.show(self.cockpit.frame(now))
-        finally:
-            self._try(lambda: end_recording(self.cockpit))
-            self.cockpit.builder.stop()
+    def hold(self, held: Held, source: tuple[int, float], now: float) -> None:
+        """Hold controls, until something else is said, or nothing for half a second.
 
-    def _fly(self, now: float) -> None:
-        """Fly until now, and let the other side of a duel begin."""
-        self.cockpit.advance(now)
-        if self.cockpit.sides_change:
-            change_sides(self.cockpit)
+        Args:
+            held: The controls.
+            source: Sequence number of the message, and the page's time of the last change [ms].
+            now: The time [s].
+        """
+        self._held, self.source, self._heard = held, source, now
 
-    def _hear(self, due: float) -> bool:
-        """Carry out messages until the next frame is due; return whether to go on."""
-        while True:
-            left = due - time.monotonic()
-            try:
-                message = self._inbox.get(timeout=left) if left > 0 else self._inbox.get_nowait()
-            except queue.Empty:
-                return True
-            if message is None:
-                return False
-            self._carry_out(message)
+    def advance(self, now: float) -> None:
+        """Fly until now.
 
-    def _carry_out(self, message: Message) -> None:
-        stay = self._stay if isinstance(message, World) else None
-        self._try(lambda: carry_out(self.cockpit, message), stay)
+        Raises:
+            EyasError: A policy failed, or a frame could not be written.
+        """
+        steps = self.clock.steps(now) + self.extra_steps
+        self.extra_steps = 0
+        if self.duel is not None and self.duel.waits(now):
+            return
+        if now - self._heard > SILENCE:
+            self._held = {}
+        while steps > 0 and not self.sides_change:
+            steps -= self._advance_some(steps, now)
 
-    def _try(
-        self, act: Callable[[], dict[str, Any] | None], otherwise: Callable[[], None] | None = None
-    ) -> None:
-        """Do something, and tell the audience what came of it, also if it failed."""
-        try:
-            told = act()
-        except EyasError as error:
-            told = {"error": str(error)}
-            if otherwise is not None:
-                otherwise()
-        if told is not None:
-            self._audience.tell(told)
+    def _advance_some(self, steps: int, now: float) -> int:
+        """Fly some of the steps that are due; return how many."""
+        some = min(steps, CHUNK)
+        if self.controller is None:
+            command = command_of(self._held)
+        else:
+            if self._left <= 0:
+                self._decided, self._left = self.controller.decide()
+            command, some = self._decided, min(some, self._left)
+        if self.recording is not None:
+            some = min(some, self.recording.steps_left)
+        self.flight.fly(command, some, self._held)
+        self._left -= some
+        if self.recording is not None:
+            self.recording.count(command, some)
+        if self.duel is not None:
+            self._score(some, now)
+        return some
 
-    def _stay(self) -> None:
-        """Let the menus show the present world, after another could not be built."""
-        self.cockpit.duel_later = None
-        self._audience.tell(world_now(self.cockpit))
+    def _score(self, steps: int, now: float) -> None:
+        duel = self.duel
+        assert duel is not None
+        reward = float(self.flight.simulation.snapshot.episodes.reward[0])
+        self.sides_change |= duel.count(reward, steps, now)
 
-    def _drop_pilot(self) -> None:
-        """Let the keys fly, and record no more, after a failure in flight."""
-        self.cockpit.hand_over(None, None)
-        self.cockpit.duel = None
-        recording, self.cockpit.recording = self.cockpit.recording, None
-        if recording is not None:
-            recording.abandon()
+    def frame(self, now: float) -> DemoFrame:
+        """Draw the next frame."""
+        begun = time.perf_counter()
+        self._frames += 1
+        width, height = self.size.now
+        rgb = self.screen.draw(width, height)
+        frame = DemoFrame(self._frames, self._state(now, width, height), rgb)
+        self.size.spent(time.perf_counter() - begun)
+        return frame
+
+    def _state(self, now: float, width: int, height: int) -> dict[str, Any]:
+        """Return what the page gets beside the picture."""
+        state = readings(self.flight) | {
+            "frame": self._frames,
+            "sequence": self.source[0],
+            "input": self.source[1],
+            "view": self.screen.view,
+            "size": [width, height],
+            "speed_of_time": self.clock.speed,
+            "flies": self.controller_name,
+            "recorded": None if self.recording is None else self.recording.frames,
+            "duel": None if self.duel is None else self.duel.told(now),
+            "body": self.screen.body(width, height),
+            "marks": self.screen.marks(width, height) if self.overlay else None,
+        }
+        if self._frames % TRAFFIC == 1:
+            state["traffic"] = traffic(self.flight)
+        return state

@@ -6,11 +6,10 @@ from collections import deque
 from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
-from eyas.modes.demo.frame import Frame, packed
-from eyas.modes.demo.line import FACTORS, IN_FLIGHT, Coding, Line
+from eyas.modes.demo.frame import FACTORS, IN_FLIGHT, Coding, CodingChoice, DemoFrame, packed
 
 if TYPE_CHECKING:  # PyAV takes its time to be imported; only H.264 needs it
-    from eyas.modes.demo.stream import Stream
+    from eyas.modes.demo.frame import Stream
 
 __all__ = ["Viewer", "Viewers"]
 
@@ -27,14 +26,14 @@ class Viewer:
 
     def __init__(self, *, flies: bool) -> None:
         self.flies = flies
-        self._line = Line(time.monotonic())
+        self._coding = CodingChoice(time.monotonic())
         self._stream: Stream | None = None
         self._stream_of: tuple[object, ...] = ()
         self._streams = 0
         self._unseen: deque[int] = deque()
         self._sent: dict[int, float] = {}
         self._texts: deque[dict[str, Any]] = deque(maxlen=TEXTS)
-        self._frame: Frame | None = None
+        self._frame: DemoFrame | None = None
         self._wake = asyncio.Event()
 
     @property
@@ -53,16 +52,16 @@ class Viewer:
             self._unseen.popleft()
         sent, now = self._sent.pop(number, None), time.monotonic()
         if sent is not None:
-            self._line.arrive(now - sent - spent, now)
+            self._coding.arrive(now - sent - spent, now)
         self._sent = {other: then for other, then in self._sent.items() if other > number}
         self._wake.set()
 
     def choose(self, coding: Coding) -> None:
         """Choose how pictures are coded; H.264 begins anew, with a whole picture."""
-        self._line.choose(coding, time.monotonic())
+        self._coding.choose(coding, time.monotonic())
         self._streams += 1
 
-    def show(self, frame: Frame) -> None:
+    def show(self, frame: DemoFrame) -> None:
         """Send a frame, in the place of one that still waits."""
         self._frame = frame
         self._wake.set()
@@ -72,7 +71,7 @@ class Viewer:
         self._texts.append(what)
         self._wake.set()
 
-    async def next(self) -> dict[str, Any] | Frame:
+    async def next(self) -> dict[str, Any] | DemoFrame:
         """Return what to send next; texts come first."""
         while True:
             if self._texts:
@@ -84,11 +83,11 @@ class Viewer:
             self._wake.clear()
             await self._wake.wait()
 
-    def sends(self, frame: Frame) -> None:
+    def sends(self, frame: DemoFrame) -> None:
         """Take that a frame is sent now."""
         self._sent[frame.number] = time.monotonic()
 
-    def coded(self, frame: Frame) -> bytes:
+    def coded(self, frame: DemoFrame) -> bytes:
         """Return a frame as this viewer takes it; call it in a thread, once for each frame.
 
         The kind of the picture is `jpeg`, or of an H.264 stream `key`, which begins one, or
@@ -97,11 +96,11 @@ class Viewer:
         Raises:
             ConfigError: H.264 cannot be had.
         """
-        level = self._line.level
+        level = self._coding.level
         if not level:
             self._stream, self._stream_of = None, ()
             return packed(frame, "jpeg", frame.jpeg())
-        from eyas.modes.demo.stream import Stream
+        from eyas.modes.demo.frame import Stream
 
         of = (*frame.rgb.shape, level, self._streams)
         begins = self._stream is None or of != self._stream_of
@@ -159,7 +158,7 @@ class Viewers:
         """Return whether anyone can take a frame now."""
         return any(viewer.ready for viewer in tuple(self._all))
 
-    def show(self, frame: Frame) -> None:
+    def show(self, frame: DemoFrame) -> None:
         """Send a frame to all who can take one."""
 
         def show() -> None:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.pinhole import field_along, project
-from eyas.modes.demo.flight import Flight
+from eyas.modes.demo.flight import DemoFlight
 from eyas.overlay.marks import Marks
 from eyas.state.draw import Picture
 from eyas.state.scene import ACTOR_OBJECT
@@ -56,7 +56,7 @@ class Screen:
         flight: What is shown.
     """
 
-    def __init__(self, flight: Flight) -> None:
+    def __init__(self, flight: DemoFlight) -> None:
         self._flight = flight
         self.view = "drone"
         self._picture = Picture.create(1, 8, 8)

@@ -6,9 +6,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.modes.gallery.solids import is_inside
-from eyas.modes.gallery.still import StillScene, Viewpoint
-from eyas.modes.gallery.stops import CAMERA, Cars
+from eyas.modes.gallery.places import CAMERA, Cars
+from eyas.modes.gallery.still import StillScene, Viewpoint, is_inside
 from eyas.state.scene import Scene
 
 __all__ = ["along", "horizon", "overview"]

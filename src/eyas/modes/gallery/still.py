@@ -1,9 +1,11 @@
 """Viewpoints of the gallery, and their pictures."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from eyas.core.pinhole import field_along
@@ -11,9 +13,27 @@ from eyas.sim.assets import Assets
 from eyas.sim.still import StillWorld
 from eyas.state.draw import Picture, Views
 from eyas.state.motion import ActorState
-from eyas.state.scene import ACTOR_OBJECT, ObjectClass
+from eyas.state.scene import ACTOR_OBJECT, Colliders, ObjectClass
 
-__all__ = ["StillScene", "Viewpoint"]
+__all__ = ["StillScene", "Viewpoint", "is_inside", "solids"]
+
+
+def solids(colliders: Colliders) -> Iterator[tuple[shapely.Polygon, float, float]]:
+    """Yield outline, bottom and top of each solid prism [m]."""
+    first = colliders.prism_first
+    for index, bottom in enumerate(colliders.prism_bottom):
+        corners = colliders.prism_points[first[index] : first[index + 1]]
+        yield shapely.Polygon(corners), float(bottom), float(colliders.prism_top[index])
+
+
+def is_inside(colliders: Colliders, position: tuple[float, float, float]) -> bool:
+    """Return whether a position is inside a solid."""
+    x, y, z = position
+    return any(
+        bottom <= z <= top and bool(shapely.contains_xy(outline, x, y))
+        for outline, bottom, top in solids(colliders)
+    )
+
 
 _SIGHTS = (ObjectClass.ROAD, ObjectClass.TREE, ObjectClass.WATER, ObjectClass.BUILDING,
            ObjectClass.STRUCTURE)  # fmt: skip

@@ -35,7 +35,7 @@ from eyas.world.maps import MAPS
 from eyas.world.maps.files import MAP_FILE, ROADS_FILE, Origin, maps_folder
 from eyas.world.maps.recipe import ATTRIBUTION_FILE, NETWORK_FILE, PLAN_FILE, TRAFFIC_FILE
 from eyas.world.osm.data import Bounds
-from eyas.world.osm.features import Features
+from eyas.world.osm.features import Survey
 from eyas.world.osm.houses import houses_of
 from eyas.world.osm.land import add_land
 from eyas.world.osm.projection import Projection
@@ -219,13 +219,13 @@ def _extent(projection: Projection, limits: Bounds, source: str) -> shapely.Poly
     return shapely.Polygon(corners)
 
 
-def _features(shapes: Shapes, net: SumoNet, report: Report) -> Features:
+def _features(shapes: Shapes, net: SumoNet, report: Report) -> Survey:
     """Return everything but the streets, and count what is not told."""
 
     def odd(key: str) -> None:
         report.odd[key] += 1
 
-    features = Features(houses=houses_of(shapes, odd))
+    features = Survey(houses=houses_of(shapes, odd))
     add_land(features, shapes, odd, stream(0, "imported tree rows"))
     # Without the lines in which sidewalks of bridges meet others.
     features.pavement = shapely.MultiPolygon(polygons_of(snapped(pavement_area(net))))

@@ -1,4 +1,4 @@
-"""Figures of a map: extent, streets, buildings, trees, and whose data it is."""
+"""Figures of a map: extent, streets, buildings, trees, whose data it is; also with another seed."""
 
 from dataclasses import dataclass
 
@@ -7,13 +7,16 @@ import shapely
 from numpy.typing import NDArray
 
 from eyas.behaviours.ground import usable_crossings
+from eyas.sim.assets import load_assets
 from eyas.sim.scenes import load_scene
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import ObjectClass, Scene
+from eyas.traffic.config import TrafficConfig
+from eyas.world.config import WorldConfig
 from eyas.world.maps import MAPS
 from eyas.world.maps.recipe import Original
 
-__all__ = ["Figures", "describe", "figures_of", "street_lines"]
+__all__ = ["Figures", "describe", "figures_of", "make_another", "street_lines"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -166,3 +169,18 @@ def _lengths(network: RoadNetwork) -> NDArray[np.float64]:
         for k in range(len(first) - 1)
     ]
     return np.asarray(shapely.length(lines), np.float64)
+
+
+def make_another(name: str, seed: int) -> list[str]:
+    """Make the map's roads, scene, geometry and traffic, all of which are kept in the cache.
+
+    Returns:
+        Its figures, and how to use it.
+
+    Raises:
+        EyasError: There is no such map, or it cannot be made.
+    """
+    world = WorldConfig(map=MAPS.get(name).name, seed=seed)
+    load_assets(world, TrafficConfig(), 1)
+    told = [line for line in describe(name, seed) if not line.startswith("recorded traffic")]
+    return [*told, f"use it with --map {world.map} --set world.seed={seed}"]

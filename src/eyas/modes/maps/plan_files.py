@@ -1,6 +1,8 @@
-"""A map's plan for other programs: GeoJSON of streets and buildings, rasters of what is where."""
+"""A map in files: its plan, written and checked; GeoJSON of streets and buildings; rasters."""
 
+import gzip
 import json
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -10,18 +12,21 @@ import shapely
 from numpy.typing import NDArray
 from PIL import Image
 
+from eyas.core.errors import ConfigError
 from eyas.core.files import atomic_path, refusals, write_atomic
 from eyas.mesh.assembly import transformed
 from eyas.modes.maps.info import street_lines
-from eyas.sim.scenes import load_scene
+from eyas.sim.scenes import load_network, load_scene
 from eyas.state.mesh import Mesh
 from eyas.state.scene import ObjectClass, Scene
 from eyas.world.maps import MAPS
 from eyas.world.maps.files import MAP_FILE, origin_of
-from eyas.world.maps.recipe import ATTRIBUTION_FILE, MapRecipe
+from eyas.world.maps.recipe import ATTRIBUTION_FILE, PLAN_SUFFIXES, MapRecipe
 from eyas.world.osm.projection import Projection
+from eyas.world.plan.file import write_plan
+from eyas.world.plan.plan import Roads
 
-__all__ = ["CLASSES", "run"]
+__all__ = ["CLASSES", "write_layers", "write_plan_of"]
 
 CLASSES = {
     0: "ground", 1: "road", 2: "pavement", 3: "building", 4: "tree", 5: "structure", 6: "water",
@@ -37,7 +42,7 @@ _VALUES = {
 Points = NDArray[np.float64]
 
 
-def run(name: str, seed: int, folder: Path, cell: float) -> list[Path]:
+def write_layers(name: str, seed: int, folder: Path, cell: float) -> list[Path]:
     """Write streets, buildings and rasters of a map into a folder; return the files.
 
     Args:
@@ -189,3 +194,33 @@ def _lay(
         above = (s >= 0) & (t >= 0) & (s + t <= 1) & (z > window)
         window[above] = z[above]
         occupancy[y0 : y1 + 1, x0 : x1 + 1][above] = values[k]
+
+
+def write_plan_of(name: str, seed: int, path: Path) -> list[Path]:
+    """Write the complete plan of a map, and its streets where they are of no graph.
+
+    Args:
+        name: Name of the map.
+        seed: Seed of the map.
+        path: The file, whose name ends in `.plan.json` or `.plan.json.gz`.
+
+    Returns:
+        The files.
+
+    Raises:
+        EyasError: The map cannot be made, or a file not written.
+    """
+    suffix = next((one for one in PLAN_SUFFIXES if path.name.endswith(one)), None)
+    if suffix is None:
+        allowed = " or ".join(PLAN_SUFFIXES)
+        raise ConfigError(f"--out: {path.name!r} is not allowed: a name that ends in {allowed}")
+    recipe, made = MAPS.get(name), [path]
+    graph, plan = recipe.roads(seed), recipe.complete_plan(load_network(name, seed), seed)
+    roads = Roads(nodes=graph.nodes, edges=graph.edges)
+    if graph.finished:
+        streets = path.with_name(f"{path.name.removesuffix(suffix)}.net.xml.gz")
+        write_atomic(streets, gzip.compress(graph.finished, mtime=0))
+        roads, made = Roads(file=streets.name), [path, streets]
+    title = plan.title or recipe.title
+    write_plan(path, replace(plan, title=title, attribution=recipe.attribution(), roads=roads))
+    return made

@@ -11,7 +11,7 @@ from eyas.core.errors import ConfigError, UnknownNameError
 from eyas.core.files import atomic_path
 from eyas.custom.config import CustomConfig
 from eyas.custom.kind import as_custom, kind_name_of
-from eyas.modes.targets.stage import Camera, Pose, Stage
+from eyas.modes.targets.stage import Camera, TargetPose, TargetStage
 from eyas.targets.catalogue import KINDS, MODELS, kind_index, kind_of, models_of
 from eyas.targets.words import words_of
 
@@ -51,7 +51,7 @@ def run(name: str, path: Path, custom: CustomConfig | None = None) -> None:
         allowed = ".png" if name == ALL else ".png, .gif, .webp, .apng"
         raise ConfigError(f"--out: {str(path)!r} is not allowed; allowed endings: {allowed}")
     models = _models(name, custom or CustomConfig(path="-"))
-    stage = Stage(sorted({MODELS[model].kind for model in models}))
+    stage = TargetStage(sorted({MODELS[model].kind for model in models}))
     if path.suffix.lower() != ".png":
         frames = [Image.fromarray(frame) for frame in _film(stage, models[0])]
         with atomic_path(path) as part:
@@ -95,19 +95,20 @@ def _around(model: int, bearing: float, elevation: float) -> Camera:
     return Camera(bearing=bearing, elevation=elevation, distance=distance, field_of_view=field)
 
 
-def _sheet(stage: Stage, model: int) -> Rgb:
+def _sheet(stage: TargetStage, model: int) -> Rgb:
     """Return three rows: all round at rest, from the side in motion, and as a tracker sees it."""
     colour, speed, stride = _colour(model), MODELS[model].speed, MODELS[model].stride
     turns = np.arange(_TURNS) * (2.0 * np.pi / _TURNS)
-    rest = [(Pose(), _around(model, 0.4 + turn, 0.35)) for turn in turns.tolist()]
+    rest = [(TargetPose(), _around(model, 0.4 + turn, 0.35)) for turn in turns.tolist()]
     steps = np.arange(_TURNS) / _TURNS * stride
     moving = [
-        (Pose(travelled=step, speed=speed), _around(model, -1.35, 0.12)) for step in steps.tolist()
+        (TargetPose(travelled=step, speed=speed), _around(model, -1.35, 0.12))
+        for step in steps.tolist()
     ]
     near = stage.draw(model, colour, rest + moving, (_NEAR, _NEAR))
     tracked = [
         (
-            Pose(travelled=0.3 * stride, speed=speed),
+            TargetPose(travelled=0.3 * stride, speed=speed),
             Camera(bearing=turn, elevation=1.1, distance=_HEIGHT, field_of_view=_FIELD),
         )
         for turn in turns[::2].tolist()
@@ -149,7 +150,7 @@ def _captioned(title: str, notes: Sequence[str], rows: Sequence[Rgb]) -> Rgb:
     return np.asarray(sheet)
 
 
-def _all(stage: Stage, models: Sequence[int]) -> Rgb:
+def _all(stage: TargetStage, models: Sequence[int]) -> Rgb:
     """Return a picture of each model, with its name."""
     columns, line = 8, 20
     cell = _SMALL + line
@@ -157,7 +158,7 @@ def _all(stage: Stage, models: Sequence[int]) -> Rgb:
     pen = ImageDraw.Draw(sheet)
     for place, model in enumerate(models):
         speed, stride = MODELS[model].speed, MODELS[model].stride
-        pose = Pose(travelled=0.1 * stride, speed=speed)
+        pose = TargetPose(travelled=0.1 * stride, speed=speed)
         shot = (pose, _around(model, 0.7, 0.4))
         picture = stage.draw(model, _colour(model), [shot], (_SMALL, _SMALL))[0]
         left, top = place % columns * _SMALL, place // columns * cell
@@ -167,7 +168,7 @@ def _all(stage: Stage, models: Sequence[int]) -> Rgb:
     return np.asarray(sheet)
 
 
-def _film(stage: Stage, model: int) -> Rgb:
+def _film(stage: TargetStage, model: int) -> Rgb:
     """Return the frames of a target that moves while the camera goes round it."""
     speed, stride = MODELS[model].speed, MODELS[model].stride
     # Whole strides, so that the film can be repeated.
@@ -175,7 +176,7 @@ def _film(stage: Stage, model: int) -> Rgb:
     length = max(round(speed * duration / stride), 1) * stride
     shots = [
         (
-            Pose(travelled=part * length, speed=speed),
+            TargetPose(travelled=part * length, speed=speed),
             _around(model, 0.4 + 2.0 * np.pi * part, 0.3),
         )
         for part in (np.arange(_FRAMES) / _FRAMES).tolist()

@@ -17,13 +17,13 @@ from eyas.targets.rig import Rigs
 from eyas.world.maps import MAPS
 from eyas.world.weather import DAY
 
-__all__ = ["Camera", "Pose", "Stage"]
+__all__ = ["Camera", "TargetPose", "TargetStage"]
 
 _MAP = "simpleway-lake"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Pose:
+class TargetPose:
     """How the target is at an instant; it heads along the street."""
 
     travelled: float = 0.0
@@ -48,7 +48,7 @@ class Camera:
     """Horizontal, and vertical if the picture is square [rad]."""
 
 
-class Stage:
+class TargetStage:
     """Draws targets, one at a time.
 
     Args:
@@ -73,7 +73,7 @@ class Stage:
         self,
         model: int,
         colour: Colour,
-        shots: Sequence[tuple[Pose, Camera]],
+        shots: Sequence[tuple[TargetPose, Camera]],
         size: tuple[int, int],
         samples: int = 4,
     ) -> NDArray[np.uint8]:

@@ -17,7 +17,7 @@ from eyas.traffic.recording_file import save
 from eyas.world.config import WorldConfig
 from eyas.world.maps import MAPS
 
-__all__ = ["Job", "record_all"]
+__all__ = ["RecordingJob", "record_all"]
 
 _LOOK = 0.2
 """Time between two looks at the progress [s]."""
@@ -27,7 +27,7 @@ _shares: Any = ()
 
 
 @dataclass(frozen=True, slots=True)
-class Job:
+class RecordingJob:
     """A recording to make."""
 
     world: WorldConfig
@@ -39,7 +39,7 @@ class Job:
 
 
 def record_all(
-    jobs: Sequence[Job], workers: int | None, progress: Callable[[float], None]
+    jobs: Sequence[RecordingJob], workers: int | None, progress: Callable[[float], None]
 ) -> Iterator[tuple[Path, str]]:
     """Make recordings; yield the file of each that is made, and what is in it.
 
@@ -83,11 +83,11 @@ def _begin(shares: Any) -> None:  # noqa: ANN401  # an array of ctypes
     _shares = shares
 
 
-def _record_one(index: int, job: Job) -> tuple[Path, str]:
+def _record_one(index: int, job: RecordingJob) -> tuple[Path, str]:
     return _record(job, partial(_shares.__setitem__, index))
 
 
-def _record(job: Job, progress: Callable[[float], None]) -> tuple[Path, str]:
+def _record(job: RecordingJob, progress: Callable[[float], None]) -> tuple[Path, str]:
     graph = MAPS.get(job.world.map).roads(job.world.seed)
     name, seed = graph.map_name, graph.seed
     made = record(name, seed, graph, job.config, job.duration, job.seed, progress)

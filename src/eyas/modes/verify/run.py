@@ -1,22 +1,100 @@
 """Compute the cases of the manifest, and say what differs."""
 
+import ctypes
 import json
 import os
+import platform
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
+from importlib.metadata import PackageNotFoundError, version
+from importlib.resources import files
 from itertools import groupby
+from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import NamedTuple
 
 from rich.console import Console
 
-from eyas.core.errors import UnknownNameError
+from eyas import __version__
+from eyas.core.errors import DataFileError, UnknownNameError
+from eyas.core.machine import describe_machine
+from eyas.lanes import thread_count
 from eyas.lanes.folder import FOLDER_VARIABLE
 from eyas.modes.verify.cases import Case, cases
-from eyas.modes.verify.machine import machine_facts
-from eyas.modes.verify.manifest import Hashes, read_manifest
 
-__all__ = ["Verdict", "compared", "measured", "run"]
+__all__ = ["Verdict", "compared", "manifest_path", "measured", "read_manifest", "run", "text_of"]
+
+Hashes = dict[str, dict[str, str]]
+"""Of cases by name, of each by the name of what they are of."""
+
+
+def manifest_path() -> Path:
+    """Return the file that comes with the package."""
+    return Path(str(files("eyas.modes.verify"))) / "manifest.json"
+
+
+def read_manifest() -> Hashes:
+    """Return the hashes of the manifest.
+
+    Raises:
+        DataFileError: The installation is damaged.
+    """
+    try:
+        told: Hashes = json.loads(manifest_path().read_text())["hashes"]
+    except (OSError, ValueError, KeyError) as error:
+        raise DataFileError(f"{manifest_path()}: missing or damaged; install Eyas again") from error
+    return told
+
+
+def text_of(hashes: Hashes) -> str:
+    """Return the content of the file."""
+    return json.dumps({"eyas": __version__, "hashes": hashes}, indent=1) + "\n"
+
+
+_PACKAGES = ("numpy", "numba", "llvmlite", "shapely", "pillow", "pydantic", "gymnasium", "av")
+
+_CHOICES = (
+    "OPENBLAS_CORETYPE",
+    "NPY_DISABLE_CPU_FEATURES",
+    "NUMBA_CPU_NAME",
+    "GLIBC_TUNABLES",
+    "NUMBA_NUM_THREADS",
+)
+"""Variables by which a machine can be made to look like another."""
+
+
+def machine_facts() -> dict[str, str]:
+    """Return what a machine computes with, by names for people."""
+    packages = [f"{name} {_version(name)}" for name in _PACKAGES]
+    facts = {
+        "machine": describe_machine(),
+        "Eyas": f"{__version__}, {thread_count()} threads",
+        "packages": ", ".join(packages),
+        "libraries": f"{' '.join(platform.libc_ver())}, BLAS for {_blas_kernel()}",
+    }
+    chosen = [f"{name}={os.environ[name]}" for name in _CHOICES if name in os.environ]
+    return facts | ({"set": ", ".join(chosen)} if chosen else {})
+
+
+def _version(package: str) -> str:
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return "(unknown)"
+
+
+def _blas_kernel() -> str:
+    """Return the kind of processor whose functions OpenBLAS has chosen."""
+    maps = Path("/proc/self/maps")
+    lines = maps.read_text().splitlines() if maps.exists() else []
+    for path in sorted({line.split()[-1] for line in lines if "openblas" in line}):
+        library = ctypes.CDLL(path)
+        for prefix, suffix in (("scipy_", "64_"), ("", "64_"), ("scipy_", ""), ("", "")):
+            tell = getattr(library, f"{prefix}openblas_get_corename{suffix}", None)
+            if tell is not None:
+                tell.restype = ctypes.c_char_p
+                return str(tell().decode())
+    return "an unknown processor"
 
 
 class Verdict(NamedTuple):

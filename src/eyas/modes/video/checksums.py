@@ -16,9 +16,8 @@ from pathlib import Path
 
 from eyas.core.errors import DataFileError
 from eyas.core.files import read_limited, refusals, write_atomic
-from eyas.exports.files import joined
-from eyas.exports.writer import Writer
-from eyas.modes.video.contents import Contents, paths_below
+from eyas.exports.writer import Writer, joined
+from eyas.modes.video.episode import RecordedPaths, paths_below
 
 __all__ = ["CHECKSUMS", "GROWING", "Checksums"]
 
@@ -40,7 +39,7 @@ class Checksums:
 
     def __init__(self, run: Path, writers: Sequence[Writer]) -> None:
         self._run, self._growing = run, run / GROWING
-        self._contents = Contents(joined(writer.files for writer in writers))
+        self._contents = RecordedPaths(joined(writer.files for writer in writers))
         self._lock = threading.Lock()
         self._known = _read(run / CHECKSUMS) | _read(self._growing)
 

@@ -1,17 +1,65 @@
-"""The files of one recorded episode, of all writers."""
+"""The files of one recorded episode, of all writers, and the names that a recording may hold."""
 
-from collections.abc import Sequence
+import os
+import re
+from collections.abc import Iterable, Iterator, Sequence
 from contextlib import ExitStack
 from pathlib import Path
 
-from eyas.core.files import refusals
-from eyas.exports.files import joined
+from eyas.core.files import PART_SUFFIX, refusals
 from eyas.exports.frame import Frame
-from eyas.exports.summary import Summary
-from eyas.exports.writer import Episode, EpisodeWriter, Writer
-from eyas.modes.video.contents import Contents, paths_below
+from eyas.exports.writer import Episode, EpisodeWriter, Files, Summary, Writer, joined, pattern_of
 
-__all__ = ["EpisodeFiles", "read_complete"]
+__all__ = ["EpisodeFiles", "RecordedPaths", "paths_below", "read_complete"]
+
+_TRACKER = r"(DRONE|CAR)\d+"
+_EPISODE = rf"{_TRACKER}/episode\d+"
+
+
+class RecordedPaths:
+    """Knows the files of writers, their folders, and the names of unfinished files.
+
+    Args:
+        files: The files of all writers.
+        others: Names of other files in the recording's folder.
+    """
+
+    def __init__(self, files: Files, others: Iterable[str] = ()) -> None:
+        in_episode = _patterns([*files.frame, *files.episode])
+        in_run = _patterns([*files.run, *others])
+        below = [f"{_EPISODE}/{pattern}" for pattern in in_episode]
+        self._in_episode = re.compile("|".join(in_episode))
+        self._in_run = re.compile("|".join([*in_run, _TRACKER, _EPISODE, *below]))
+
+    def in_run(self, inside: str) -> bool:
+        """Return whether a recording can hold a path, relative to its folder, with `/`."""
+        return self._in_run.fullmatch(inside) is not None
+
+    def in_episode(self, inside: str) -> bool:
+        """Return whether an episode can hold a path, relative to its folder, with `/`."""
+        return self._in_episode.fullmatch(inside) is not None
+
+
+def _patterns(names: Iterable[str]) -> list[str]:
+    """Return regular expressions for files, their unfinished forms, and the folders above them."""
+    patterns = []
+    for name in names:
+        folder, _, file = name.rpartition("/")
+        above = f"{pattern_of(folder)}/" if folder else ""
+        unfinished = rf"\.{pattern_of(file)}{re.escape(PART_SUFFIX)}"
+        patterns += [pattern_of(name), above + unfinished]
+        while folder:
+            patterns.append(pattern_of(folder))
+            folder = folder.rpartition("/")[0]
+    return patterns
+
+
+def paths_below(folder: Path) -> Iterator[tuple[str, Path]]:
+    """Yield all files and folders below a folder, each with its path relative to it, with `/`."""
+    for parent, folders, names in os.walk(folder):
+        for name in sorted(folders + names):
+            path = Path(parent, name)
+            yield path.relative_to(folder).as_posix(), path
 
 
 class EpisodeFiles:
@@ -47,7 +95,7 @@ class EpisodeFiles:
             self._parts.append(writer.begin(self._episode))
 
     def _clear(self, folder: Path) -> None:
-        contents = Contents(joined(writer.files for writer in self._writers))
+        contents = RecordedPaths(joined(writer.files for writer in self._writers))
         for inside, path in list(paths_below(folder)):
             if contents.in_episode(inside) and not path.is_dir():
                 path.unlink(missing_ok=True)

@@ -15,12 +15,10 @@ from eyas.core.errors import ConfigError, DataFileError, OutputError
 from eyas.core.files import PART_SUFFIX, read_limited, refusals, write_atomic
 from eyas.core.folder_lock import LOCK
 from eyas.core.pinhole import intrinsics
-from eyas.exports.files import Files, joined
 from eyas.exports.registry import WRITERS, chosen_writers
-from eyas.exports.writer import Episode, Run
+from eyas.exports.writer import Episode, Files, Run, joined
 from eyas.modes.video.checksums import CHECKSUMS, GROWING
-from eyas.modes.video.contents import Contents, paths_below
-from eyas.modes.video.step_log import STEP_LOGS
+from eyas.modes.video.episode import RecordedPaths, paths_below
 from eyas.settings.config import EyasConfig
 from eyas.settings.file import read_settings, save_settings
 from eyas.settings.legacy.adapter import save_legacy
@@ -37,6 +35,8 @@ ORIGIN = "version.json"
 files, so that `--overwrite` can delete them even if the package of a user's own writer is no longer
 installed."""
 
+STEP_LOGS = ("DRONE{:d}.log", "CAR{:d}.log")
+"""Names of the logs in the folder of a recording, outside of the trackers' folders."""
 
 _NOT_PICTURED = ("learning", "wire")
 """Rooms that have no part in a recording."""
@@ -155,14 +155,14 @@ def open_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: bool
     return folder
 
 
-def _contents(path: Path, config: EyasConfig) -> Contents:
+def _contents(path: Path, config: EyasConfig) -> RecordedPaths:
     """Return the paths of a recording with these settings, and of the existing one."""
     names = dict.fromkeys((*WRITERS.built_in, *config.video.writers))
     files = [WRITERS.get(name).files for name in names]
     with suppress(DataFileError, ValueError, TypeError, KeyError, RecursionError):
         recorded = _origin(path)["files"]
         files.append(Files(**{kind: tuple(recorded[kind]) for kind in recorded}))
-    return Contents(joined(files), [*_OWN, *STEP_LOGS])
+    return RecordedPaths(joined(files), [*_OWN, *STEP_LOGS])
 
 
 def _origin(path: Path) -> Any:  # noqa: ANN401  # JSON, of anyone
@@ -178,14 +178,14 @@ def _require_plain(path: Path) -> None:
             )
 
 
-def _delete_parts(path: Path, contents: Contents) -> None:
+def _delete_parts(path: Path, contents: RecordedPaths) -> None:
     """Delete the unfinished files of an interrupted run."""
     for inside, part in list(paths_below(path)):
         if part.name.endswith(PART_SUFFIX) and contents.in_run(inside):
             part.unlink(missing_ok=True)
 
 
-def _require_recording(path: Path, contents: Contents) -> None:
+def _require_recording(path: Path, contents: RecordedPaths) -> None:
     """Refuse to delete a folder that is not a recording or holds other files."""
     if not (path / SETTINGS).is_file():
         raise OutputError(f"{path}: not deleted: it is no recording (it has no {SETTINGS})")

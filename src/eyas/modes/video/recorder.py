@@ -1,25 +1,90 @@
 """Draws and writes the frames of a recording, and counts them."""
 
+import os
+from collections import deque
+from collections.abc import Callable
+from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
 from dataclasses import dataclass
+from typing import ParamSpec
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.errors import OutputError
 from eyas.exports.capture import Moment, frame_of
-from eyas.exports.summary import Scores, Summary
-from eyas.exports.writer import EndedEpisode, Episode
+from eyas.exports.writer import EndedEpisode, Episode, Scores, Summary
 from eyas.modes.video.action import Mover
 from eyas.modes.video.checksums import Checksums
 from eyas.modes.video.episode import EpisodeFiles, read_complete
 from eyas.modes.video.folder import VideoFolder
-from eyas.modes.video.lanes import WriterLanes
 from eyas.settings.config import EyasConfig
 from eyas.sim.simulation import Simulation
 from eyas.state.draw import Picture
 
-__all__ = ["Recorder"]
+__all__ = ["Recorder", "WriterThreads"]
+
+Arguments = ParamSpec("Arguments")
+
+MOST_WAITING = 8
+"""Most calls that may wait for a thread; it limits the pictures held in memory."""
+
+
+class WriterThreads:
+    """Runs calls in threads; calls with the same key run one after the other, in order.
+
+    JPEG and video encoding release Python's global lock, so they use cores that drawing leaves
+    idle: with one such core, four pictures of 320 x 240 took 22 ms instead of 31.
+
+    Args:
+        count: Largest number of keys.
+    """
+
+    def __init__(self, count: int) -> None:
+        threads = min(count, os.cpu_count() or 1, 8)
+        self._threads = [
+            ThreadPoolExecutor(1, f"eyas-writer-{number}") for number in range(threads)
+        ]
+        self._waiting: list[deque[Future[None]]] = [deque() for _ in range(threads)]
+        self._failed = [False] * threads
+
+    def submit(
+        self,
+        key: int,
+        call: Callable[Arguments, None],
+        *args: Arguments.args,
+        **kwargs: Arguments.kwargs,
+    ) -> None:
+        """Run a call in the key's thread; raise the error of an earlier call there."""
+        number = key % len(self._threads)
+        waiting = self._waiting[number]
+        while waiting and (len(waiting) >= MOST_WAITING or waiting[0].done()):
+            waiting.popleft().result()
+        waiting.append(
+            self._threads[number].submit(self._run, number, lambda: call(*args, **kwargs))
+        )
+
+    def _run(self, number: int, call: Callable[[], None]) -> None:
+        # After a frame has failed, its episode must not be finished as if it were complete.
+        if self._failed[number]:
+            return
+        try:
+            call()
+        except BaseException:
+            self._failed[number] = True
+            raise
+
+    def finish(self) -> None:
+        """Wait for all calls; raise the error of one that failed."""
+        for waiting in self._waiting:
+            while waiting:
+                waiting.popleft().result()
+        self.stop()
+
+    def stop(self) -> None:
+        """Wait for all calls, and ignore their errors."""
+        for thread in self._threads:
+            thread.shutdown(wait=True)
 
 
 @dataclass(slots=True)
@@ -54,7 +119,7 @@ class Recorder:
         count = config.video.channels
         self._sim = sim
         self._folder = folder
-        self._lanes = WriterLanes(count)
+        self._threads = WriterThreads(count)
         self._checksums = Checksums(folder.path, folder.writers)
         wanted = {output for writer in folder.writers for output in writer.wants}
         self._overlay = config.video.overlay and "rgb" in wanted
@@ -128,7 +193,7 @@ class Recorder:
         )
         frame = frame_of(moment, tracker, picture, view, number, action)
         going.summary = going.summary.plus(frame)
-        self._lanes.submit(tracker, going.files.add, frame)
+        self._threads.submit(tracker, going.files.add, frame)
 
     def end(self, trackers: NDArray[np.bool_]) -> None:
         """End the episodes of the trackers of a mask, shape (N,); those without frames are dropped.
@@ -140,8 +205,8 @@ class Recorder:
             going = self._going[tracker]
             if going is not None:
                 if going.files is not None:
-                    self._lanes.submit(tracker, going.files.finish)
-                    self._lanes.submit(tracker, self._checksums.add, going.episode.folder)
+                    self._threads.submit(tracker, going.files.finish)
+                    self._threads.submit(tracker, self._checksums.add, going.episode.folder)
                 self.episodes[tracker].append(EndedEpisode(going.episode, going.summary))
             self._going[tracker] = None
 
@@ -152,14 +217,14 @@ class Recorder:
             OutputError: Writing failed.
         """
         self.end(np.ones(len(self._going), np.bool_))
-        self._lanes.finish()
+        self._threads.finish()
         for writer in self._folder.writers:
             writer.finish([ended for own in self.episodes for ended in own])
         self._checksums.finish()
 
     def stop(self) -> None:
         """Stop before the end; every file that exists is complete."""
-        self._lanes.stop()
+        self._threads.stop()
         for files in self._begun:
             # Why the recording stops is told, not that its parts lie where nothing can be removed.
             with suppress(OutputError):

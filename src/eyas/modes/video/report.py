@@ -1,20 +1,64 @@
-"""Messages of a recording: progress on stderr, a table at the end."""
+"""What a recording tells: progress on stderr, a table at the end, the log of every step."""
 
+import logging
 import time
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from pathlib import Path
 from types import TracebackType
 
 from rich import progress as bar
 from rich.console import Console
 from rich.table import Table
 
-from eyas.exports.summary import Summary, total
+from eyas.core.files import atomic_path
+from eyas.exports.writer import Summary, total
 from eyas.modes.video.folder import VideoFolder
 from eyas.modes.video.recorder import Recorder
+from eyas.state.snapshot import Snapshot
+from eyas.task.step_line import EpisodeLines, step_line
 
-__all__ = ["Progress", "print_report"]
+__all__ = ["RecordingProgress", "print_report", "step_log"]
+
+_LOG = logging.getLogger("eyas")
 
 
-class Progress:
+@contextmanager
+def step_log(
+    folder: Path, trackers: Sequence[str], *, verbose: bool
+) -> Iterator[Callable[[Snapshot], None]]:
+    """Yield a function that logs a step of all trackers into `<tracker>.log`, one line each, and
+    tells each episode that ends in a line on the console.
+
+    A log is written as a whole: if the recording stops early there is none, and a continued
+    recording, which passes through all steps again, makes it.
+
+    Args:
+        folder: The folder of the recording.
+        trackers: Names of the trackers.
+        verbose: Whether anything is logged.
+
+    Raises:
+        OutputError: A log cannot be written.
+    """
+    with ExitStack() as stack:
+        files = []
+        for name in trackers if verbose else ():
+            part = stack.enter_context(atomic_path(folder / f"{name}.log"))
+            files.append(stack.enter_context(part.open("w")))
+
+        episodes = EpisodeLines(trackers)
+
+        def log(snapshot: Snapshot) -> None:
+            for line in episodes.after(snapshot) if verbose else ():
+                _LOG.info("%s", line)
+            for tracker, file in enumerate(files):
+                file.write(step_line(snapshot, tracker, trackers[tracker]) + "\n")
+
+        yield log
+
+
+class RecordingProgress:
     """A progress bar on stderr with frames per second; only on a terminal.
 
     Args:
@@ -36,7 +80,7 @@ class Progress:
         self._start = time.perf_counter()
         self.frames = 0
 
-    def __enter__(self) -> "Progress":
+    def __enter__(self) -> "RecordingProgress":
         self._start = time.perf_counter()
         self._bar.start()
         return self
@@ -66,7 +110,7 @@ class Progress:
 
 
 def print_report(
-    folder: VideoFolder, recorder: Recorder, progress: Progress, *, quiet: bool
+    folder: VideoFolder, recorder: Recorder, progress: RecordingProgress, *, quiet: bool
 ) -> None:
     """Print a row for each tracker, and the folder of the recording."""
     if quiet:

@@ -6,6 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
+
 __all__ = ["Placed"]
 
 
@@ -34,3 +36,10 @@ class Placed(NamedTuple):
     ) -> "Placed":
         """Return a copy at a place of 2 numbers [m]."""
         return cls(kind, float(place[0]), float(place[1]), z, turn, scale)
+
+    def at_corners(self, corners: Sequence[tuple[float, float]]) -> NDArray[np.float64]:
+        """Return points given ahead and to the left of it, in the world, shape (K, 2) [m]."""
+        ahead = np.array([exact.cos(self.turn), exact.sin(self.turn)])
+        aside = np.array([-ahead[1], ahead[0]])
+        moved = np.array([a * ahead + b * aside for a, b in corners])
+        return np.asarray(np.array([self.x, self.y]) + moved, np.float64)

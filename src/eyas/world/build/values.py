@@ -49,32 +49,64 @@ Share = Annotated[float, Ge(0.0), Le(1.0)]
 Colour = tuple[Share, Share, Share]
 """sRGB, or a factor on such a colour."""
 
+_NUMBER = {"type": "number"}
 
-@dataclass(frozen=True)
-class Named:
-    """A text that must be one of some names."""
 
-    names: Callable[[], Collection[str]]
+class _Read:
+    """How values of a type are read from JSON."""
+
+    def _read(self, value: object) -> object:
+        """Return the value that JSON stands for; a `ValueError` says what is allowed."""
+        raise NotImplementedError
+
+    def _schema(self) -> dict[str, Any]:
+        """Return the JSON schema."""
+        raise NotImplementedError
 
     def __get_pydantic_core_schema__(
         self, source: type, handler: GetCoreSchemaHandler
     ) -> CoreSchema:
-        return core_schema.no_info_after_validator_function(self._checked, handler(source))
+        return core_schema.no_info_plain_validator_function(self._read)
 
     def __get_pydantic_json_schema__(
         self, schema: CoreSchema, handler: GetJsonSchemaHandler
     ) -> dict[str, Any]:
-        return {"type": "string", "enum": list(self.names())}
-
-    def _checked(self, name: str) -> str:
-        names = self.names()
-        if name not in names:
-            raise ValueError(f"one of {', '.join(names)}{nearest(name, names)}")
-        return name
+        return self._schema()
 
 
 @dataclass(frozen=True)
-class Rows:
+class Named(_Read):
+    """A text that must be one of some names."""
+
+    names: Callable[[], Collection[str]]
+
+    def _read(self, value: object) -> str:
+        names = self.names()
+        if not isinstance(value, str) or value not in names:
+            hint = nearest(value, names) if isinstance(value, str) else ""
+            raise ValueError(f"one of {', '.join(names)}{hint}")
+        return value
+
+    def _schema(self) -> dict[str, Any]:
+        return {"type": "string", "enum": list(self.names())}
+
+
+@dataclass(frozen=True)
+class _Member(_Read):
+    """A member of an enum, by its name in small letters."""
+
+    kind: type[IntEnum]
+
+    def _read(self, value: object) -> IntEnum:
+        names = {one.name.lower(): one for one in self.kind}
+        return self.kind[Named(lambda: names)._read(value).upper()]
+
+    def _schema(self) -> dict[str, Any]:
+        return {"type": "string", "enum": [one.name.lower() for one in self.kind]}
+
+
+@dataclass(frozen=True)
+class Rows(_Read):
     """An array of numbers that a file holds as a list, or a list of lists."""
 
     columns: int | None
@@ -83,78 +115,38 @@ class Rows:
     """Number of rows; None: any."""
     whole: bool = False
 
-    def __get_pydantic_core_schema__(
-        self, source: type, handler: GetCoreSchemaHandler
-    ) -> CoreSchema:
-        return core_schema.no_info_plain_validator_function(self._read)
-
-    def __get_pydantic_json_schema__(
-        self, schema: CoreSchema, handler: GetJsonSchemaHandler
-    ) -> dict[str, Any]:
-        number: dict[str, Any] = {"type": "integer" if self.whole else "number"}
-        if self.columns is not None:
-            number = _list_of(number, self.columns)
-        return _list_of(number, self.count)
-
     def _read(self, value: object) -> NDArray[Any]:
-        kind = "whole numbers" if self.whole else "numbers"
-        shape = f"{self.count or 'any number of'} rows of {self.columns}"
-        if self.columns is None:
-            shape = f"{self.count or 'any number of'}"
-        told = f"{shape} {kind}"
+        told = f"{self.count or 'any number of'} {'whole ' * self.whole}numbers"
+        if self.columns is not None:
+            told = told.replace("numbers", f"rows of {self.columns} numbers")
         array = _numbers(value, told)
-        if self.whole and (array != np.rint(array)).any():
-            raise ValueError(told)
         if not array.size and self.columns is not None:
             array = array.reshape(-1, self.columns)
-        wanted = 1 if self.columns is None else 2
-        fits = array.ndim == wanted and (self.columns is None or array.shape[1] == self.columns)
+        fits = array.shape[1:] == (() if self.columns is None else (self.columns,))
         if not fits or self.count not in (None, len(array)):
             raise ValueError(told)
-        return array.astype(np.int64) if self.whole else array
+        if not self.whole:
+            return array
+        if (array != np.rint(array)).any():
+            raise ValueError(told)
+        return array.astype(np.int64)
 
-
-def _list_of(schema: dict[str, Any], count: int | None) -> dict[str, Any]:
-    made = {"type": "array", "items": schema}
-    return made if count is None else {**made, "minItems": count, "maxItems": count}
-
-
-def _numbers(value: object, told: str) -> NDArray[np.float64]:
-    try:
-        array = np.asarray(value)
-        plain = array.dtype.kind in "iuf" or not array.size
-        array = array.astype(np.float64)
-    except (ValueError, TypeError, OverflowError):
-        plain, array = False, np.zeros(0)
-    if not plain or not np.isfinite(array).all():
-        raise ValueError(told)
-    return array
+    def _schema(self) -> dict[str, Any]:
+        number = {"type": "integer"} if self.whole else _NUMBER
+        row = number if self.columns is None else _list_of(number, self.columns)
+        return _list_of(row, self.count)
 
 
 @dataclass(frozen=True)
-class Shape:
+class Shape(_Read):
     """A polygon: its outline, or a list of its outline and its holes; or a list of polygons."""
 
     several: bool
 
-    def __get_pydantic_core_schema__(
-        self, source: type, handler: GetCoreSchemaHandler
-    ) -> CoreSchema:
-        return core_schema.no_info_plain_validator_function(self._read)
-
-    def __get_pydantic_json_schema__(
-        self, schema: CoreSchema, handler: GetJsonSchemaHandler
-    ) -> dict[str, Any]:
-        ring = {**_list_of(_list_of({"type": "number"}, 2), None), "minItems": 3}
-        forms = [ring, _list_of(ring, None)]
-        if self.several:
-            forms.append(_list_of(_list_of(ring, None), None))
-        return {"anyOf": forms}
-
     def _read(self, value: object) -> shapely.Geometry:
-        if isinstance(value, shapely.Geometry):
-            return value
-        depth = _depth(value)
+        depth, first = 0, value
+        while isinstance(first, list | tuple):
+            depth, first = depth + 1, first[0] if first else None
         if depth == 2:
             return _polygon([value])
         if depth == 3 or (depth == 1 and not self.several):
@@ -163,89 +155,56 @@ class Shape:
             return shapely.MultiPolygon([_polygon(one) for one in value])
         raise ValueError(_RINGS)
 
+    def _schema(self) -> dict[str, Any]:
+        ring = {**_list_of(_list_of(_NUMBER, 2)), "minItems": 3}
+        forms = [ring, _list_of(ring)]
+        return {"anyOf": [*forms, _list_of(_list_of(ring))] if self.several else forms}
+
 
 _RINGS = "a ring of at least 3 points [x, y], or a list of rings: an outline and its holes"
 
 
-def _depth(value: object) -> int:
-    """Return how many lists are in each other at the beginning of a value."""
-    depth = 0
-    while isinstance(value, list | tuple):
-        depth, value = depth + 1, value[0] if value else None
-    return depth
+@dataclass(frozen=True)
+class _Line(_Read):
+    """A line of at least two points."""
+
+    def _read(self, value: object) -> shapely.LineString:
+        points = _numbers(value, "at least 2 points [x, y]")
+        if points.shape[1:] != (2,) or len(points) < 2:
+            raise ValueError("at least 2 points [x, y]")
+        return shapely.LineString(points)
+
+    def _schema(self) -> dict[str, Any]:
+        return {**_list_of(_list_of(_NUMBER, 2)), "minItems": 2}
+
+
+def _list_of(schema: dict[str, Any], count: int | None = None) -> dict[str, Any]:
+    made = {"type": "array", "items": schema}
+    return made if count is None else {**made, "minItems": count, "maxItems": count}
+
+
+def _numbers(value: object, told: str) -> NDArray[np.float64]:
+    try:
+        array = np.asarray(value)
+        plain = array.ndim > 0 and (array.dtype.kind in "iuf" or not array.size)
+        array = array.astype(np.float64)
+    except (ValueError, TypeError, OverflowError):
+        plain, array = False, np.zeros(0)
+    if not plain or not np.isfinite(array).all():
+        raise ValueError(told)
+    return array
 
 
 def _polygon(value: object) -> shapely.Polygon:
     if not isinstance(value, list | tuple):
         raise ValueError(_RINGS)
     rings = [_numbers(ring, _RINGS) for ring in value]
-    if any(ring.ndim != 2 or ring.shape[1] != 2 or len(ring) < 3 for ring in rings):
+    if any(ring.shape[1:] != (2,) or len(ring) < 3 for ring in rings):
         raise ValueError(_RINGS)
     made = shapely.Polygon(rings[0] if rings else None, rings[1:])
     if not made.is_valid:
         raise ValueError(f"{_RINGS}, none of which cross ({shapely.is_valid_reason(made)})")
     return made
-
-
-class _Curve:
-    """A line."""
-
-    @classmethod
-    def __get_pydantic_core_schema__(
-        cls, source: type, handler: GetCoreSchemaHandler
-    ) -> CoreSchema:
-        return core_schema.no_info_plain_validator_function(cls.read)
-
-    @classmethod
-    def __get_pydantic_json_schema__(
-        cls, schema: CoreSchema, handler: GetJsonSchemaHandler
-    ) -> dict[str, Any]:
-        return {**_list_of(_list_of({"type": "number"}, 2), None), "minItems": 2}
-
-    @classmethod
-    def read(cls, value: object) -> shapely.LineString:
-        if isinstance(value, shapely.LineString):
-            return value
-        points = _numbers(value, "at least 2 points [x, y]")
-        if points.ndim != 2 or points.shape[1] != 2 or len(points) < 2:
-            raise ValueError("at least 2 points [x, y]")
-        return shapely.LineString(points)
-
-
-class _EnumName:
-    """A member of an enum, by its name in small letters."""
-
-    @classmethod
-    def __get_pydantic_core_schema__(
-        cls, source: type[IntEnum], handler: GetCoreSchemaHandler
-    ) -> CoreSchema:
-        def read(value: object) -> IntEnum:
-            if isinstance(value, source):
-                return value
-            names = {one.name.lower(): one for one in source}
-            if not isinstance(value, str) or value not in names:
-                raise ValueError(f"one of {', '.join(names)}")
-            return names[value]
-
-        return core_schema.no_info_plain_validator_function(
-            read, metadata={"names": [one.name.lower() for one in source]}
-        )
-
-    @classmethod
-    def __get_pydantic_json_schema__(
-        cls, schema: CoreSchema, handler: GetJsonSchemaHandler
-    ) -> dict[str, Any]:
-        return {"type": "string", "enum": schema.get("metadata", {})["names"]}
-
-
-class _MaterialType:
-    """A material, whose texture must exist."""
-
-    @classmethod
-    def __get_pydantic_core_schema__(
-        cls, source: type, handler: GetCoreSchemaHandler
-    ) -> CoreSchema:
-        return core_schema.no_info_after_validator_function(_material, handler(MaterialRecord))
 
 
 @dataclass(frozen=True, slots=True)
@@ -256,26 +215,35 @@ class MaterialRecord:
     """Name of its texture; `plain` is white."""
     tint: Colour = (1.0, 1.0, 1.0)
     """Factor on the texture, sRGB."""
-    surface: Annotated[Surface, _EnumName] = Surface.MATT
+    surface: Annotated[Surface, _Member(Surface)] = Surface.MATT
     """How it reflects or emits light."""
     emission: Annotated[float, Ge(0.0)] = 0.0
     """Emitted light, as a factor on the colour."""
 
 
-def _material(look: "MaterialRecord | Material") -> Material:
-    return Material(look.texture, look.tint, look.surface, look.emission)
+class _MaterialType:
+    @classmethod
+    def __get_pydantic_core_schema__(
+        cls, source: type, handler: GetCoreSchemaHandler
+    ) -> CoreSchema:
+        def made(told: MaterialRecord) -> Material:
+            return Material(told.texture, told.tint, told.surface, told.emission)
+
+        return core_schema.no_info_after_validator_function(made, handler(MaterialRecord))
 
 
 Cover = Annotated[Material, _MaterialType]
-"""A material."""
+"""A material, whose texture must exist."""
 Facade = Annotated[str, Named(lambda: FACADES)]
 """Walls with windows: one of `eyas.world.build.materials.FACADES`."""
-ClassName = Annotated[ObjectClass, _EnumName]
+ClassName = Annotated[ObjectClass, _Member(ObjectClass)]
 """Class of objects."""
 Area = Annotated[shapely.Geometry, Shape(several=True)]
 """Any number of polygons, with holes [m]."""
 Outline = Annotated[shapely.Polygon, Shape(several=False)]
 """One polygon, with holes [m]."""
+Curve = Annotated[shapely.LineString, _Line()]
+"""A line [m]."""
 Place = Annotated[NDArray[np.float64], Rows(None, 2)]
 """East and north [m], shape (2,)."""
 Unit = Annotated[NDArray[np.float64], Rows(None, 2)]
@@ -288,5 +256,3 @@ Heights = Annotated[NDArray[np.float64], Rows(None)]
 """Numbers, shape (K,)."""
 Numbers = Annotated[NDArray[np.int64], Rows(None, whole=True)]
 """Whole numbers, shape (K,)."""
-Curve = Annotated[shapely.LineString, _Curve]
-"""A line [m]."""

@@ -28,8 +28,6 @@ ROOF = 3.6
 """Height of the roof above the eaves [m]."""
 _EAVES = 0.9
 """From the wall to the edge of the roof [m]."""
-_PATIO = 2.2
-"""Width of the paving around a house [m]."""
 
 Points = NDArray[np.float64]
 

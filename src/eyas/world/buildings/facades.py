@@ -16,7 +16,7 @@ from eyas.world.build.materials import GROUND_FLOORS, TEXTURES, facade, material
 from eyas.world.buildings import parts
 from eyas.world.buildings.roof_shapes import sloping_roof
 from eyas.world.buildings.skyline import FLOOR
-from eyas.world.plan.plan import Shell
+from eyas.world.plan.plan import BuildingPart
 
 __all__ = ["chance_of", "mesh_of", "prisms_of"]
 
@@ -40,7 +40,7 @@ _CROWNS = {
 """Facades of the top storeys of high buildings, where they differ from the rest."""
 
 
-def mesh_of(building: Shell) -> Mesh:
+def mesh_of(building: BuildingPart) -> Mesh:
     """Return the outside of a building; the same building always looks the same."""
     rng = chance_of(building)
     shape, foot, top = building.outline, building.bottom, building.top
@@ -74,7 +74,7 @@ def mesh_of(building: Shell) -> Mesh:
     return concatenate(meshes)
 
 
-def prisms_of(building: Shell) -> Iterator[tuple[NDArray[np.float64], float, float]]:
+def prisms_of(building: BuildingPart) -> Iterator[tuple[NDArray[np.float64], float, float]]:
     """Yield outlines without holes, bottoms and tops of solids that fill a building [m]."""
     top = building.top
     if building.roof == "pyramid":
@@ -103,7 +103,7 @@ def _without_holes(shape: shapely.Polygon) -> list[shapely.Polygon]:
     ]
 
 
-def chance_of(building: Shell) -> np.random.Generator:
+def chance_of(building: BuildingPart) -> np.random.Generator:
     """Return the random numbers for the appearance of a building."""
     rings = (building.outline.exterior, *building.outline.interiors)
     points = np.concatenate([shapely.get_coordinates(ring)[:-1] for ring in rings])
@@ -117,7 +117,7 @@ def _starts(outline: NDArray[np.float64], rng: np.random.Generator) -> NDArray[n
 
 
 def _shaft_walls(
-    building: Shell,
+    building: BuildingPart,
     outline: NDArray[np.float64],
     low: float,
     storey: float,

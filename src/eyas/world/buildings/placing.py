@@ -11,7 +11,7 @@ from eyas.world.build.materials import FACADES
 from eyas.world.buildings.looks import roof_cover, wall_tint
 from eyas.world.buildings.lots import divide, footprint_in, frame_angle, largest, turned
 from eyas.world.buildings.skyline import FLOOR, TOWER_SHARE, evenly, ground_areas, storeys
-from eyas.world.plan.plan import Shell
+from eyas.world.plan.plan import BuildingPart
 
 __all__ = ["SETBACK", "place_buildings"]
 
@@ -30,7 +30,7 @@ def place_buildings(
     count: int,
     rng: np.random.Generator,
     keep_free: shapely.Geometry,
-) -> list[Shell]:
+) -> list[BuildingPart]:
     """Fill city blocks with buildings whose sizes are spread as in the original's street city.
 
     About a fifth are towers that stand on other buildings. No two share space.
@@ -129,7 +129,7 @@ def _shaft(podium: shapely.Polygon, rng: np.random.Generator) -> shapely.Polygon
 
 def _furnished(
     shapes: Sequence[shapely.Polygon], base: NDArray[np.int64], rng: np.random.Generator
-) -> list[Shell]:
+) -> list[BuildingPart]:
     """Give footprints their heights, facades and roofs."""
     area = np.array([shape.area for shape in shapes])
     top = FLOOR * storeys(np.sqrt(area), base, rng)
@@ -144,7 +144,7 @@ def _furnished(
         eligible = compact and area[i] < 1600 and top[i] <= 36 and i not in carries
         pyramid = bool(eligible and base[i] < 0 and rng.random() < 0.55)
         made.append(
-            Shell(
+            BuildingPart(
                 outline=shapely.geometry.polygon.orient(shape),
                 bottom=float(FLOOR_HEIGHT + foot),
                 height=float(top[i] - foot),

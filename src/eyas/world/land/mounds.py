@@ -13,8 +13,6 @@ from eyas.world.build.values import Positive
 
 __all__ = ["Mound", "highest", "place_inside", "place_ring", "sizes"]
 
-_WAVES = 3
-"""Number of waves of an outline."""
 _TRIES = 400
 """Number of places tried for each mound inside."""
 _APART = 0.52

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from eyas.core import exact
@@ -25,7 +26,7 @@ _WAVE = 1.5
 """By how much the lines rise and fall [m]."""
 
 
-def relief_of(layer: plan.Relief, seed: int) -> Relief:
+def relief_of(layer: plan.Hills, seed: int) -> Relief:
     """Return the triangles of rising ground."""
     rng = layer.chance.generator(seed)
 
@@ -35,7 +36,7 @@ def relief_of(layer: plan.Relief, seed: int) -> Relief:
             return smooth
         return np.round(smooth * (1.0 + rng.uniform(-layer.rough, layer.rough, len(points))), 3)
 
-    return relief(heights, layer.half, layer.spacing, layer.flat, rng)
+    return relief(heights, layer.half, layer.spacing, layer.flat or shapely.Polygon(), rng)
 
 
 def kinds_of(ground: Relief, covers: int, rng: np.random.Generator) -> NDArray[np.intp]:

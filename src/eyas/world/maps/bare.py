@@ -10,7 +10,7 @@ from eyas.state.lighting import Horizon
 from eyas.state.mesh import Material
 from eyas.state.roads import RoadNetwork
 from eyas.world.land.plain import blob, rectangle
-from eyas.world.plan.plan import Chance, Far, Flat, Ground, MapPlan, Paint, Streets
+from eyas.world.plan.plan import Chance, Far, Flat, GroundCover, MapPlan, Paint, Roadway
 from eyas.world.roads.areas import road_area
 
 __all__ = ["make_plan"]
@@ -50,12 +50,12 @@ def make_plan(
         seed=seed,
         size=floor,
         layers=(
-            Streets(
+            Roadway(
                 area=roads,
                 paint=Paint(centre=centre, crossings=0),
                 wear=Chance(stream=f"{name} road wear"),
             ),
-            Ground(pieces=(*ground, Far(rule="plain", covers=(cover,)))),
+            GroundCover(pieces=(*ground, Far(rule="plain", covers=(cover,)))),
         ),
         horizon=horizon,
     )

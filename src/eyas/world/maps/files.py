@@ -40,7 +40,7 @@ _LOG = logging.getLogger("eyas")
 FOLDER_VARIABLE = "EYAS_MAPS_DIR"
 """Environment variable: the folder of the imported maps, instead of the user's default."""
 
-FORMAT = "eyas-map-1"
+FORMAT = "eyas-map-2"
 MAP_FILE, ROADS_FILE = "map.json", "roads.net.xml.gz"
 
 
@@ -135,7 +135,7 @@ def _recipe(folder: Path) -> MapRecipe:
             name=origin.name,
             title=origin.title,
             roads=partial(_roads, folder / ROADS_FILE, origin.name),
-            plan=partial(_plan, folder),
+            plan=partial(_plan, folder / PLAN_FILE),
             home=folder,
         )
     except ConfigError as error:
@@ -155,14 +155,14 @@ def _roads(path: Path, name: str, seed: int) -> "RoadGraph":
         raise DataFileError(f"{path}: cannot read: {error}") from error
 
 
-def _plan(folder: Path, network: "RoadNetwork", seed: int) -> "MapPlan":
-    """Return the plan of an imported town; the seed decides what it does not tell."""
+def _plan(path: Path, network: "RoadNetwork", seed: int) -> "MapPlan":
+    """Return a plan in a file; the seed decides anew what it leaves open."""
     from dataclasses import replace
 
     from eyas.world.plan.file import read_plan
-    from eyas.world.towns.completed import completed
 
-    return completed(replace(read_plan(folder / PLAN_FILE), seed=seed), network)
+    plan = read_plan(path)
+    return replace(plan, seed=plan.seed + seed) if plan.survey else plan
 
 
 def _recipe_of_plan(path: Path) -> MapRecipe:
@@ -180,7 +180,7 @@ def _recipe_of_plan(path: Path) -> MapRecipe:
             name=str(name),
             title=str(title) or str(name),
             roads=partial(_roads_of_plan, path),
-            plan=partial(_plan_of_file, path),
+            plan=partial(_plan, path),
             seasons=True,
             file=path,
             notice=str(content.get("attribution", "")),
@@ -201,17 +201,6 @@ def _roads_of_plan(path: Path, seed: int) -> "RoadGraph":
     if roads.file:
         return _roads(path.parent / roads.file, plan.name, seed)
     return RoadGraph(plan.name, plan.seed, roads.nodes, roads.edges)
-
-
-def _plan_of_file(path: Path, network: "RoadNetwork", seed: int) -> "MapPlan":
-    """Return a plan with all that it leaves open; a seed other than 0 decides that anew."""
-    from dataclasses import replace
-
-    from eyas.world.plan.file import read_plan
-    from eyas.world.towns.completed import completed
-
-    plan = read_plan(path)
-    return completed(replace(plan, seed=plan.seed + seed) if plan.survey else plan, network)
 
 
 MAP_FILES = MapFiles()

@@ -77,7 +77,8 @@ class MapRecipe:
     roads: Callable[[int], "RoadGraph"]
     """Returns the roads of a seed; seed 0 is the canonical map."""
     plan: Callable[["RoadNetwork", int], "MapPlan"]
-    """Returns the plan of all else around the processed roads of the same seed."""
+    """Returns the plan of all else around the processed roads of the same seed; what it leaves
+    open is decided by `complete_plan`."""
     weather: Callable[[Weather], Weather] = unchanged
     """Returns how a weather is on this map, also one of a user's own."""
     without: tuple[str, ...] = ()
@@ -167,6 +168,12 @@ class MapRecipe:
         """Return what must be said wherever the map or data made from it is shown, or nothing."""
         file = self.shipped(ATTRIBUTION_FILE)
         return file.read_text(encoding="utf-8") if file is not None else self.notice
+
+    def complete_plan(self, network: "RoadNetwork", seed: int) -> "MapPlan":
+        """Return the plan of a seed, with all that it leaves open decided."""
+        from eyas.world.towns.completed import completed
+
+        return completed(self.plan(network, seed), network)
 
     def shipped_network(self) -> "RoadNetwork | None":
         """Return the processed roads of seed 0 that come with the package, if there are any.

@@ -9,7 +9,7 @@ from annotated_types import Ge
 from eyas.world.build.values import Area as Region
 from eyas.world.build.values import Colour, Curve, Named, Outline
 
-__all__ = ["AREA_KINDS", "Area", "Features", "House", "Roof"]
+__all__ = ["AREA_KINDS", "Area", "House", "Roof", "Survey"]
 
 Point = tuple[float, float]
 
@@ -60,7 +60,7 @@ class Area:
 
 
 @dataclass(slots=True)
-class Features:
+class Survey:
     """What is known of a map: buildings, ground, trees, lamps, crossings."""
 
     houses: list[House] = field(default_factory=list)

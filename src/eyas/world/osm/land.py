@@ -5,7 +5,7 @@ import shapely
 
 from eyas.world.build.millimetres import snapped
 from eyas.world.osm.data import Tags
-from eyas.world.osm.features import Area, Features
+from eyas.world.osm.features import Area, Survey
 from eyas.world.osm.measures import Odd, length
 from eyas.world.osm.rings import Shapes
 from eyas.world.osm.streets import is_street
@@ -59,7 +59,7 @@ _APART = (8.0, 12.0)
 """Distances between the trees of a row [m]."""
 
 
-def add_land(features: Features, shapes: Shapes, odd: Odd, rng: np.random.Generator) -> None:
+def add_land(features: Survey, shapes: Shapes, odd: Odd, rng: np.random.Generator) -> None:
     """Add ground, trees, lamps, crossings and railways.
 
     Args:

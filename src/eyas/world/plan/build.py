@@ -20,6 +20,7 @@ from eyas.state.scene import Footways, Lamps, ObjectClass, Scene
 from eyas.state.terrain import Terrain
 from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.materials import TEXTURES
+from eyas.world.build.placed import Placed
 from eyas.world.build.scene_builder import Prototype, SceneBuilder
 from eyas.world.buildings import facades, parts, rooftops
 from eyas.world.land import outskirts, plain
@@ -32,7 +33,7 @@ from eyas.world.roads.areas import polygons_of, skirt, surface
 from eyas.world.roads.wear import road_wear, worn_lanes
 from eyas.world.things import fronts, railway, skyways
 from eyas.world.things.fields import field_mesh
-from eyas.world.things.kinds import SOLIDS, THINGS, Pose
+from eyas.world.things.kinds import SOLIDS, THINGS
 from eyas.world.weather import Season
 
 __all__ = ["build_scene"]
@@ -74,7 +75,7 @@ class _Work:
 
     def __post_init__(self) -> None:
         plan = self.plan
-        rising = [layer for layer in plan.layers if isinstance(layer, p.Relief)]
+        rising = [layer for layer in plan.layers if isinstance(layer, p.Hills)]
         ground = Terrain.flat(FLOOR_HEIGHT)
         if rising:
             ground = terrain_of(relief_of(rising[0], plan.seed), FLOOR_HEIGHT, rising[0].half[1])
@@ -95,11 +96,11 @@ class _Work:
         """Where ground is cut into small squares [m]."""
         if self.plan.near is not None:
             return self.plan.near
-        areas = [layer.area for layer in self.plan.layers if isinstance(layer, p.Streets)]
+        areas = [layer.area for layer in self.plan.layers if isinstance(layer, p.Roadway)]
         streets = areas[0] if len(areas) == 1 else shapely.union_all(areas)
         return shapely.buffer(streets, _NEAR, join_style="mitre")
 
-    def prototype(self, kind: p.Kind) -> Prototype:
+    def prototype(self, kind: p.ThingKind) -> Prototype:
         """Return what the copies of a kind are made of."""
         thing = THINGS[kind.make or kind.name]
         rng = self._chances.get(kind.chance)
@@ -108,11 +109,11 @@ class _Work:
         make = partial(thing.levels, kind, rng, self.season)
         return self.builder.prototype(kind.name, make, trees=thing.trees)
 
-    def light(self, pose: Pose, reach: float, height: float) -> None:
+    def light(self, pose: Placed, reach: float, height: float) -> None:
         """Add the light of a street lamp."""
         lean = np.array(self.plan.lamps.axis) / exact.length(np.array(self.plan.lamps.axis))
         along = np.array([exact.cos(pose.turn), exact.sin(pose.turn)])
-        place = np.array(pose[:2]) + reach * along
+        place = np.array(pose[1:3]) + reach * along
         self.lights.append(([*place, height + pose.z], [*(lean[0] * along), lean[2]]))
 
     def look(self, piece: p.Flat | p.Field) -> Material:
@@ -135,7 +136,7 @@ class _Work:
 
 def _footways(plan: p.MapPlan, network: RoadNetwork) -> Footways:
     """Return where people walk: along the asphalt of streets, and over crossings."""
-    roads = [layer for layer in plan.layers if isinstance(layer, p.Streets)]
+    roads = [layer for layer in plan.layers if isinstance(layer, p.Roadway)]
     if plan.walkways is None:
         painted = [markings.crossings_of(network, layer.paint) for layer in roads]
         lines = np.concatenate([np.zeros((0, 2, 2)), *painted])
@@ -168,7 +169,11 @@ def _buildings(work: _Work, layer: p.Buildings) -> None:
 
 
 def _on_roof(
-    builder: SceneBuilder, one: p.Building, part: p.Shell, taken: shapely.Geometry, owner: int
+    builder: SceneBuilder,
+    one: p.Building,
+    part: p.BuildingPart,
+    taken: shapely.Geometry,
+    owner: int,
 ) -> None:
     """Add what stands on a flat roof beside what is taken of it."""
     rng = facades.chance_of(part)
@@ -199,17 +204,18 @@ def _things(work: _Work, layer: p.Things) -> None:
     kinds = [work.library[name] for name in layer.kinds]
     prototypes = [work.prototype(kind) for kind in kinds]
     for index, row in zip(layer.kind.tolist(), layer.pose.tolist(), strict=True):
-        kind, pose = kinds[index], Pose(*row)
+        kind = kinds[index]
+        pose = Placed(kind.name, *row)
         thing = THINGS[kind.make or kind.name]
         owner = work.builder.add_copy(
-            thing.kind, prototypes[index], pose[:3], pose.turn, pose.scale
+            thing.kind, prototypes[index], pose[1:4], pose.turn, pose.scale
         )
         SOLIDS[layer.solid or thing.solid](work.builder, kind, pose, owner)
         if thing.light is not None:
             work.light(pose, *thing.light)
 
 
-def _streets(work: _Work, layer: p.Streets) -> None:
+def _streets(work: _Work, layer: p.Roadway) -> None:
     paint = markings.paint_of(work.network, layer.paint)
     shapes = painting.painted(layer.paint.shapes, painting.WHITE)
     work.builder.add(ObjectClass.MARKING, painting.mesh_of(paint), shapes)
@@ -233,7 +239,7 @@ def _paved(work: _Work, layer: p.Paved) -> None:
     )
 
 
-def _ground(work: _Work, layer: p.Ground) -> None:
+def _ground(work: _Work, layer: p.GroundCover) -> None:
     if layer.season not in (None, work.season.value):
         return
     work.builder.add(layer.kind, *(_PIECES[type(piece)](work, piece) for piece in layer.pieces))
@@ -318,7 +324,7 @@ def _tunnels(work: _Work, layer: p.Tunnels) -> None:
             work.lights.append(([*spot, light], [0.0, 0.0, -1.0]))
 
 
-def _relief(work: _Work, layer: p.Relief) -> None:
+def _relief(work: _Work, layer: p.Hills) -> None:
     seed, ground = work.plan.seed, relief_of(layer, work.plan.seed)
     kinds: NDArray[np.intp]
     if layer.shades is not None:
@@ -343,12 +349,12 @@ _MAKERS: dict[type, Callable[[_Work, Any], None]] = {
     p.Buildings: _buildings,
     p.Backdrop: _backdrop,
     p.Things: _things,
-    p.Streets: _streets,
+    p.Roadway: _streets,
     p.Paved: _paved,
-    p.Ground: _ground,
+    p.GroundCover: _ground,
     p.Deck: _deck,
     p.Tunnels: _tunnels,
-    p.Relief: _relief,
+    p.Hills: _relief,
     p.Skyways: _skyways,
     p.Railway: lambda work, layer: railway.add_railway(work.builder, layer.line),
 }

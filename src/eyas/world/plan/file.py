@@ -19,7 +19,7 @@ from pydantic_core import ErrorDetails, SchemaValidator
 from eyas.core.config import shown
 from eyas.core.errors import DataFileError, nearest
 from eyas.core.files import read_limited, write_atomic
-from eyas.world.plan.plan import Backdrop, Far, Ground, MapPlan, Relief, Things
+from eyas.world.plan.plan import Backdrop, Far, GroundCover, Hills, MapPlan, Things
 from eyas.world.things.kinds import THINGS
 
 __all__ = [
@@ -147,7 +147,7 @@ def _things(where: str, layer: Things, plan: MapPlan) -> Iterator[str]:
     yield from _below(f"{where}.kind", layer.kind, len(layer.kinds), "kinds")
 
 
-def _relief(where: str, layer: Relief, plan: MapPlan) -> Iterator[str]:
+def _relief(where: str, layer: Hills, plan: MapPlan) -> Iterator[str]:
     yield from _below(f"{where}.white", layer.white, len(layer.mounds), "mounds")
 
 
@@ -158,14 +158,14 @@ def _backdrop(where: str, layer: Backdrop, plan: MapPlan) -> Iterator[str]:
         )
 
 
-def _ground(where: str, layer: Ground, plan: MapPlan) -> Iterator[str]:
+def _ground(where: str, layer: GroundCover, plan: MapPlan) -> Iterator[str]:
     for number, piece in enumerate(layer.pieces):
         if isinstance(piece, Far):
             yield from _far(f"{where}.pieces[{number}]", piece)
 
 
 _CHECKS: dict[type, Callable[[str, Any, MapPlan], Iterator[str]]] = {
-    Things: _things, Relief: _relief, Backdrop: _backdrop, Ground: _ground,
+    Things: _things, Hills: _relief, Backdrop: _backdrop, GroundCover: _ground,
 }  # fmt: skip
 
 

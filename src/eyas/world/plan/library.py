@@ -6,26 +6,26 @@ from eyas.state.mesh import Material
 from eyas.world.build.heights import FLOOR_HEIGHT
 from eyas.world.build.placed import Placed
 from eyas.world.buildings.cottages import Cottage
-from eyas.world.plan.plan import Kind
+from eyas.world.plan.plan import ThingKind
 from eyas.world.plants.shrubs import PLANTS
 from eyas.world.street.furniture import FURNITURE
 from eyas.world.street.parked_cars import CARS
 
 __all__ = ["CAR_KINDS", "FURNITURE_KINDS", "STREET_KINDS", "houses", "plant_kinds"]
 
-CAR_KINDS = tuple(Kind(name=name, make="parked car", variant=k) for k, name in enumerate(CARS))
-FURNITURE_KINDS = tuple(Kind(name=name) for name in FURNITURE)
-STREET_KINDS = (Kind(name="traffic light"), Kind(name="street lamp"))
+CAR_KINDS = tuple(ThingKind(name=name, make="parked car", variant=k) for k, name in enumerate(CARS))
+FURNITURE_KINDS = tuple(ThingKind(name=name) for name in FURNITURE)
+STREET_KINDS = (ThingKind(name="traffic light"), ThingKind(name="street lamp"))
 
 
-def plant_kinds(chance: str) -> tuple[Kind, ...]:
+def plant_kinds(chance: str) -> tuple[ThingKind, ...]:
     """Return borders, hedges and islands, whose shapes share a chance."""
-    return tuple(Kind(name=name, chance=chance) for name in PLANTS)
+    return tuple(ThingKind(name=name, chance=chance) for name in PLANTS)
 
 
 def houses(
     cottages: Sequence[Cottage], looks: Sequence[tuple[Material, Material]]
-) -> tuple[tuple[Kind, ...], list[Placed]]:
+) -> tuple[tuple[ThingKind, ...], list[Placed]]:
     """Return detached houses: their kinds, and their places.
 
     Args:
@@ -37,6 +37,8 @@ def houses(
         which = house.look % len(looks)
         walls, roof = looks[which]
         name = f"house of {house.storeys} storeys {which}"
-        kinds[name] = Kind(name=name, make="house", storeys=house.storeys, walls=walls, roof=roof)
+        kinds[name] = ThingKind(
+            name=name, make="house", storeys=house.storeys, walls=walls, roof=roof
+        )
         placed.append(Placed.at(name, house.place, FLOOR_HEIGHT, house.turn))
     return tuple(kinds.values()), placed

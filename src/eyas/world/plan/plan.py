@@ -32,7 +32,6 @@ from eyas.world.build.values import (
     Cover,
     Facade,
     Heights,
-    Line,
     Named,
     Natural,
     Numbers,
@@ -43,7 +42,8 @@ from eyas.world.build.values import (
     Share,
 )
 from eyas.world.land.mounds import Mound
-from eyas.world.osm.features import Features
+from eyas.world.osm.features import Survey
+from eyas.world.roads.painting import Stripe
 from eyas.world.roads.pillars import Pillar
 from eyas.world.roads.tunnels import Tunnel
 from eyas.world.things.railway import Viaduct
@@ -52,6 +52,7 @@ from eyas.world.things.skyways import Skyway
 __all__ = [
     "Backdrop",
     "Building",
+    "BuildingPart",
     "Buildings",
     "Chance",
     "Cover",
@@ -59,21 +60,19 @@ __all__ = [
     "Far",
     "Field",
     "Flat",
-    "Ground",
+    "GroundCover",
     "Heap",
-    "Kind",
+    "Hills",
     "LampLight",
     "Layer",
     "MapPlan",
     "Paint",
     "Paved",
     "Railway",
-    "Relief",
     "Roads",
-    "Shell",
+    "Roadway",
     "Skyways",
-    "Streets",
-    "Stripe",
+    "ThingKind",
     "Things",
     "Tunnels",
     "Walkways",
@@ -83,7 +82,7 @@ __all__ = [
 
 
 _PAVING, _KERB = material("paving"), material("stone", (1.0, 0.95, 0.92))
-_PLASTER, _TILES = facade("facade_plaster"), material("roof_tiles")
+_PLASTER, _TILES, _LAWN = facade("facade_plaster"), material("roof_tiles"), material("lawn")
 
 
 def _makers() -> tuple[str, ...]:
@@ -124,6 +123,9 @@ class Chance:
         return np.random.Generator(made)
 
 
+_CORNERS = Chance(stream="hills")
+
+
 def state_of(rng: np.random.Generator) -> Chance:
     """Return the chance that goes on where a generator is now."""
     state = rng.bit_generator.state
@@ -134,7 +136,7 @@ def state_of(rng: np.random.Generator) -> Chance:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Kind:
+class ThingKind:
     """A kind of thing, whose shape is made once and copied."""
 
     name: str
@@ -156,7 +158,7 @@ class Kind:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Shell:
+class BuildingPart:
     """A building, or a part of one: walls, and a roof."""
 
     outline: Outline
@@ -200,7 +202,7 @@ class Shell:
 class Building:
     """A building: one object."""
 
-    parts: Annotated[tuple[Shell, ...], Len(1)]
+    parts: Annotated[tuple[BuildingPart, ...], Len(1)]
     """Its parts, the lowest first."""
     fittings: tuple[Literal["roof units", "tank", "fronts"], ...] = ()
     """What is on it: equipment of flat roofs, a water tank, awnings and fire escapes."""
@@ -247,16 +249,6 @@ class Things:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Stripe:
-    """A painted line."""
-
-    middle: Line
-    """Points along its middle [m]."""
-    width: Positive
-    """Width [m]."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
 class Paint:
     """White and yellow paint on roads."""
 
@@ -276,10 +268,10 @@ class Paint:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Streets:
+class Roadway:
     """The asphalt for traffic, with its paint."""
 
-    layer: Literal["streets"] = "streets"
+    layer: Literal["roadway"] = "roadway"
     area: Area
     """Asphalt [m]."""
     bays: Area | None = None
@@ -394,7 +386,7 @@ Piece = Annotated[
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Ground:
+class GroundCover:
     """Pieces of ground, water or paving that are one object."""
 
     layer: Literal["ground"] = "ground"
@@ -432,22 +424,23 @@ class Tunnels:
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Relief:
+class Hills:
     """Rising ground, as triangles."""
 
-    layer: Literal["relief"] = "relief"
+    layer: Literal["hills"] = "hills"
     mounds: tuple[Mound, ...]
-    flat: Area
-    """Area that stays level [m]."""
-    half: tuple[Positive, Positive]
+    """The hills."""
+    flat: Area | None = None
+    """Area that stays level [m]; with a survey, streets and buildings do so, too."""
+    half: tuple[Positive, Positive] = (345.0, 730.0)
     """Half the side of the square with the smaller triangles, and of the whole relief [m]."""
-    spacing: tuple[Positive, Positive]
+    spacing: tuple[Positive, Positive] = (6.5, 12.5)
     """Distance of their corners inside and outside of that square [m]."""
     rough: Annotated[float, Ge(0.0)] = 0.0
     """Most by which a corner lies above or below the smooth shape, as a share of its height."""
-    chance: Chance
+    chance: Chance = _CORNERS
     """Of the corners."""
-    covers: Annotated[tuple[Cover, ...], Len(1)]
+    covers: Annotated[tuple[Cover, ...], Len(1)] = (_LAWN,)
     """Covers from the foot up; under snow: ground, thin snow, snow."""
     shades: Chance | None = None
     """Of the choice of covers by height; None: all is of the first, with snow on it in winter."""
@@ -477,12 +470,12 @@ Layer = Annotated[
     Annotated[Buildings, Tag("buildings")]
     | Annotated[Backdrop, Tag("backdrop")]
     | Annotated[Things, Tag("things")]
-    | Annotated[Streets, Tag("streets")]
+    | Annotated[Roadway, Tag("roadway")]
     | Annotated[Paved, Tag("paved")]
-    | Annotated[Ground, Tag("ground")]
+    | Annotated[GroundCover, Tag("ground")]
     | Annotated[Deck, Tag("deck")]
     | Annotated[Tunnels, Tag("tunnels")]
-    | Annotated[Relief, Tag("relief")]
+    | Annotated[Hills, Tag("hills")]
     | Annotated[Skyways, Tag("skyways")]
     | Annotated[Railway, Tag("railway")],
     Discriminator("layer"),
@@ -537,7 +530,7 @@ class MapPlan:
     size: tuple[Positive, Positive]
     """Extent of the floor, centred on the origin [m]."""
     roads: Roads = field(default_factory=Roads)
-    library: tuple[Kind, ...] = ()
+    library: tuple[ThingKind, ...] = ()
     """Kinds of things that layers refer to."""
     chances: dict[str, Chance] = field(default_factory=dict)
     """Random numbers of the kinds' shapes, by names that kinds refer to."""
@@ -549,7 +542,7 @@ class MapPlan:
     """Where `wide` ground is cut into small squares; None: up to 80 m beside streets [m]."""
     walkways: Walkways | None = None
     """Where people cross streets; None: at zebra crossings."""
-    survey: Features | None = None
+    survey: Survey | None = None
     """What is known of the land, from which `completed` makes the rest of the map; None: the plan
     is complete."""
 

@@ -15,7 +15,7 @@ from eyas.world.roads.areas import Street, joints, streets
 from eyas.world.roads.curves import joined
 from eyas.world.roads.painting import RoadPaint, Stripe, stripes
 
-__all__ = ["crossings_of", "paint_of", "road_paint"]
+__all__ = ["crossings_of", "frame_of", "paint_of", "placed", "road_paint"]
 
 _DASH, _GAP = 3.0, 6.0
 _LINE = 0.18
@@ -70,13 +70,12 @@ def road_paint(network: RoadNetwork, *, centre: str = "white", crossings: bool =
 
 def paint_of(network: RoadNetwork, paint: Paint) -> RoadPaint:
     """Return the paint of all roads by the rules of a plan."""
-    lines = [Stripe(line.middle, line.width) for line in paint.lines]
-    bars = [[Stripe(bar.middle, bar.width)] for bar in paint.bars]
+    bars = [[bar] for bar in paint.bars]
     if paint.rule == "none":
-        return RoadPaint(lines, [], bars)
+        return RoadPaint(list(paint.lines), [], bars)
     made = road_paint(network, centre=paint.centre, crossings=paint.crossings > 0)
     zebras = made.zebras[:: max(paint.crossings, 1)]
-    return RoadPaint([*made.lines, *lines], made.arrows, [*zebras, *bars])
+    return RoadPaint([*made.lines, *paint.lines], made.arrows, [*zebras, *bars])
 
 
 def crossings_of(network: RoadNetwork, paint: Paint) -> NDArray[np.float64]:
@@ -176,7 +175,7 @@ def _comes_first(line: Line) -> bool:
     return tuple(line[0]) < tuple(line[-1])
 
 
-def _frame(street: Street) -> tuple[Line, Line, Line, float]:
+def frame_of(street: Street) -> tuple[Line, Line, Line, float]:
     """Return the right end of the stop line, the directions onwards and left, and the width."""
     onwards = unit(street.right[-1] - street.right[-2])
     leftwards = np.array([-onwards[1], onwards[0]])
@@ -184,16 +183,16 @@ def _frame(street: Street) -> tuple[Line, Line, Line, float]:
     return street.right[-1], onwards, leftwards, width
 
 
-def _placed(street: Street, outline: ArrayLike) -> Line:
+def placed(street: Street, outline: ArrayLike) -> Line:
     """Return points given onwards and leftwards from the stop line's right end [m]."""
-    origin, onwards, leftwards, _ = _frame(street)
+    origin, onwards, leftwards, _ = frame_of(street)
     return rounded(exact.product(np.asarray(outline), np.stack([onwards, leftwards])) + origin)
 
 
 def _stop_line(street: Street) -> Stripe:
     onward = -_STOP_LINE / 2
-    ends = [(onward, _EDGE), (onward, _frame(street)[3] - 0.15)]
-    return Stripe(_placed(street, ends), _STOP_LINE)
+    ends = [(onward, _EDGE), (onward, frame_of(street)[3] - 0.15)]
+    return Stripe(placed(street, ends), _STOP_LINE)
 
 
 def _reversed(street: Street) -> Street:
@@ -204,12 +203,12 @@ def _reversed(street: Street) -> Street:
 
 def _zebra(street: Street, *, one_way: bool) -> list[Stripe]:
     """Return the bars of the crossing beyond a stop line, over all lanes of the road."""
-    road = _frame(street)[3] * (1 if one_way else 2)
+    road = frame_of(street)[3] * (1 if one_way else 2)
     count = int((road - 0.5) // (2 * _BAR))
     first = (road - (2 * count - 1) * _BAR) / 2 + _BAR / 2
     low, high = _ZEBRA_START, _ZEBRA_START + _ZEBRA_LENGTH
     return [
-        Stripe(_placed(street, [(low, y), (high, y)]), _BAR)
+        Stripe(placed(street, [(low, y), (high, y)]), _BAR)
         for y in first + 2 * _BAR * np.arange(count)
     ]
 
@@ -230,7 +229,7 @@ def _arrows(street: Street, leaving: Sequence[Street]) -> list[shapely.Polygon]:
         street: Street that leads to the stop line.
         leaving: Streets that begin beyond it; arrows point only to these.
     """
-    _, onwards, leftwards, width = _frame(street)
+    _, onwards, leftwards, width = frame_of(street)
     turns = [
         unit(other.right[1] - other.right[0]) for other in leaving if other.end != street.start
     ]
@@ -245,6 +244,6 @@ def _arrows(street: Street, leaving: Sequence[Street]) -> list[shapely.Polygon]:
         if len(parts) > 1:
             arrow = shapely.union_all([shapely.Polygon(part) for part in parts])
             shift = [-_ARROW_BACK, width * (lane + 0.5) / lanes]
-            outline = _placed(street, shapely.get_coordinates(arrow) + shift)
+            outline = placed(street, shapely.get_coordinates(arrow) + shift)
             made.append(shapely.Polygon(outline))
     return made

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 from shapely.ops import substring
 
 from eyas.mesh.assembly import concatenate
@@ -13,6 +12,7 @@ from eyas.mesh.flat import flat_polygons, quads
 from eyas.state.mesh import MARGIN, Material, Mesh, Surface
 from eyas.world.build.materials import TEXTURES, material
 from eyas.world.build.millimetres import length
+from eyas.world.build.values import Line, Positive
 from eyas.world.roads.areas import GRID, split_on_grid
 
 __all__ = [
@@ -36,16 +36,14 @@ WHITE = material("paint", (0.99, 0.99, 0.98))
 _WHITE_LINE = Material("asphalt_paint", (0.99, 0.985, 0.96), Surface.MARKING)
 _YELLOW_LINE = Material("asphalt_paint", (1.0, 0.785, 0.176), Surface.MARKING)
 
-Line = NDArray[np.float64]
-
 
 @dataclass(frozen=True, slots=True)
 class Stripe:
     """A painted line."""
 
     middle: Line
-    """Shape (K, 2) [m]."""
-    width: float
+    """Points along its middle, shape (K, 2) [m]."""
+    width: Positive
     """Width [m]."""
 
     @property

@@ -17,7 +17,7 @@ from eyas.world.build.heights import KERB_HEIGHT
 from eyas.world.build.materials import material
 from eyas.world.build.millimetres import length, unit
 from eyas.world.build.scene_builder import Levels, SceneBuilder
-from eyas.world.plan.plan import Shell
+from eyas.world.plan.plan import BuildingPart
 
 __all__ = ["add_fronts", "add_water_tank"]
 
@@ -55,7 +55,7 @@ Points = NDArray[np.float64]
 
 def add_fronts(
     builder: SceneBuilder,
-    building: Shell,
+    building: BuildingPart,
     owner: int,
     pavement: shapely.Geometry,
     rng: np.random.Generator,
@@ -92,7 +92,7 @@ def add_fronts(
                 builder.add_copy(ObjectClass.BUILDING, escape, spot, turn, 1.0, owner)
 
 
-def _fronts(building: Shell, pavement: shapely.Geometry) -> Iterator[tuple[Points, Points]]:
+def _fronts(building: BuildingPart, pavement: shapely.Geometry) -> Iterator[tuple[Points, Points]]:
     """Yield the start of each wall that faces a pavement, and the vector along it [m]."""
     corners = building.footprint
     for start, end in zip(corners, np.roll(corners, -1, axis=0), strict=True):
@@ -135,7 +135,7 @@ def _escape_levels() -> Levels:
 
 def add_water_tank(
     builder: SceneBuilder,
-    building: Shell,
+    building: BuildingPart,
     owner: int,
     free: shapely.Geometry,
     rng: np.random.Generator,

@@ -1,18 +1,18 @@
 """The kinds of things that stand on maps: their shapes, classes, solids and lights."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from functools import partial
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from eyas.core import exact
 from eyas.state.mesh import Mesh
 from eyas.state.scene import ObjectClass
 from eyas.world.build.heights import FLOOR_HEIGHT, KERB_HEIGHT
 from eyas.world.build.millimetres import rounded
+from eyas.world.build.placed import Placed
 from eyas.world.build.scene_builder import Levels, SceneBuilder
 from eyas.world.buildings import cottages
 from eyas.world.buildings.skyline import FLOOR
@@ -23,33 +23,14 @@ from eyas.world.things import subway
 from eyas.world.weather import Season
 
 if TYPE_CHECKING:
-    from eyas.world.plan.plan import Kind
+    from eyas.world.plan.plan import ThingKind
 
-__all__ = ["SOLIDS", "THINGS", "Pose", "Thing"]
+__all__ = ["SOLIDS", "THINGS", "Thing"]
 
 _TAXI = (0.93, 0.70, 0.08)
 
 
-class Pose(NamedTuple):
-    """Where a thing stands."""
-
-    x: float
-    y: float
-    z: float
-    """[m]"""
-    turn: float
-    """[rad]"""
-    scale: float
-
-    def placed(self, corners: Sequence[tuple[float, float]]) -> NDArray[np.float64]:
-        """Return points given ahead and to the left of it, in the world, shape (K, 2) [m]."""
-        ahead = np.array([exact.cos(self.turn), exact.sin(self.turn)])
-        aside = np.array([-ahead[1], ahead[0]])
-        moved = np.array([a * ahead + b * aside for a, b in corners])
-        return np.asarray(np.array([self.x, self.y]) + moved, np.float64)
-
-
-Solid = Callable[[SceneBuilder, "Kind", Pose, int], None]
+Solid = Callable[[SceneBuilder, "ThingKind", Placed, int], None]
 """Adds what is solid of a copy of a kind: its pose, and its object."""
 
 
@@ -57,7 +38,7 @@ Solid = Callable[[SceneBuilder, "Kind", Pose, int], None]
 class Thing:
     """A kind of thing."""
 
-    levels: Callable[["Kind", np.random.Generator, Season], Levels]
+    levels: Callable[["ThingKind", np.random.Generator, Season], Levels]
     """Returns its shape, the finest level of detail first; the origin is its foot."""
     kind: ObjectClass = ObjectClass.STRUCTURE
     solid: str = "nothing"
@@ -78,49 +59,49 @@ def _upright(radius: float, top: float, *, by_size: bool = False, from_foot: boo
         from_foot: Whether it begins, and its height is measured, at the foot of the copy.
     """
 
-    def add(builder: SceneBuilder, kind: "Kind", pose: Pose, owner: int) -> None:
+    def add(builder: SceneBuilder, kind: "ThingKind", pose: Placed, owner: int) -> None:
         size = pose.scale if by_size else 1.0
         foot = pose.z if by_size else FLOOR_HEIGHT
         high = top * size + (pose.z if from_foot else 0.0)
-        builder.add_cylinder(pose[:2], radius * size, foot, high, owner)
+        builder.add_cylinder((pose.x, pose.y), radius * size, foot, high, owner)
 
     return add
 
 
-def _car(builder: SceneBuilder, kind: "Kind", pose: Pose, owner: int) -> None:
+def _car(builder: SceneBuilder, kind: "ThingKind", pose: Placed, owner: int) -> None:
     size, (x, y) = pose.scale, (exact.cos(pose.turn), exact.sin(pose.turn))
     ahead, aside = (
         size * parked_cars.LONG * np.array([x, y]),
         size * parked_cars.WIDE * np.array([-y, x]),
     )
     corners = [-ahead - aside, ahead - aside, ahead + aside, aside - ahead]
-    outline = rounded(np.array(pose[:2]) + np.array(corners))
+    outline = rounded(np.array((pose.x, pose.y)) + np.array(corners))
     builder.add_prism(outline, pose.z, pose.z + size * parked_cars.HIGH, owner)
 
 
-def _cottage(builder: SceneBuilder, kind: "Kind", pose: Pose, owner: int) -> None:
-    outline = cottages.outline_at(np.array(pose[:2]), pose.turn)
+def _cottage(builder: SceneBuilder, kind: "ThingKind", pose: Placed, owner: int) -> None:
+    outline = cottages.outline_at(np.array((pose.x, pose.y)), pose.turn)
     top = FLOOR_HEIGHT + kind.storeys * FLOOR + cottages.ROOF
     builder.add_prism(outline, FLOOR_HEIGHT, top, owner)
 
 
-def _gantry(builder: SceneBuilder, kind: "Kind", pose: Pose, owner: int) -> None:
+def _gantry(builder: SceneBuilder, kind: "ThingKind", pose: Placed, owner: int) -> None:
     half = gantries.SPAN / 2
-    for foot in pose.placed([(0.0, -half), (0.0, half)]):
+    for foot in pose.at_corners([(0.0, -half), (0.0, half)]):
         builder.add_cylinder(foot, gantries.POST_RADIUS, FLOOR_HEIGHT, gantries.POST_TOP, owner)
-    outline = pose.placed([(-0.3, -half), (0.3, -half), (0.3, half), (-0.3, half)])
+    outline = pose.at_corners([(-0.3, -half), (0.3, -half), (0.3, half), (-0.3, half)])
     builder.add_prism(outline, *gantries.boards_of(kind.variant), owner)
 
 
-def _entrance(builder: SceneBuilder, kind: "Kind", pose: Pose, owner: int) -> None:
+def _entrance(builder: SceneBuilder, kind: "ThingKind", pose: Placed, owner: int) -> None:
     x, y = subway.LONG / 2, subway.WIDE / 2
-    outline = rounded(pose.placed([(-x, -y), (x, -y), (x, y), (-x, y)]))
+    outline = rounded(pose.at_corners([(-x, -y), (x, -y), (x, y), (-x, y)]))
     builder.add_prism(outline, FLOOR_HEIGHT, KERB_HEIGHT + 1.1, owner)
 
 
-def _bale(builder: SceneBuilder, kind: "Kind", pose: Pose, owner: int) -> None:
+def _bale(builder: SceneBuilder, kind: "ThingKind", pose: Placed, owner: int) -> None:
     builder.add_cylinder(
-        pose[:2], furniture.BALE_RADIUS, pose.z, pose.z + 2 * furniture.BALE_RADIUS, owner
+        (pose.x, pose.y), furniture.BALE_RADIUS, pose.z, pose.z + 2 * furniture.BALE_RADIUS, owner
     )
 
 
@@ -140,7 +121,7 @@ SOLIDS: dict[str, Solid] = {
 """Rules of what is solid of a copy."""
 
 
-def _street_tree(kind: "Kind", rng: np.random.Generator, season: Season) -> Levels:
+def _street_tree(kind: "ThingKind", rng: np.random.Generator, season: Season) -> Levels:
     made = trees.street_tree_levels(rng, kind.variant)
     return made if kind.width == 1.0 else tuple(_widened(level, kind.width) for level in made)
 
@@ -156,17 +137,17 @@ def _widened(mesh: Mesh, width: float) -> Mesh:
     )
 
 
-def _stand(kind: "Kind", rng: np.random.Generator, season: Season) -> Levels:
+def _stand(kind: "ThingKind", rng: np.random.Generator, season: Season) -> Levels:
     """Return a stand of one of `forest.SPECIES`, or of all of them, by the variant."""
     one = forest.SPECIES[kind.variant : kind.variant + 1]
     return forest.stand_levels(one or forest.SPECIES, rng, frosted=season is Season.WINTER)
 
 
-def _house(kind: "Kind", rng: np.random.Generator, season: Season) -> Levels:
+def _house(kind: "ThingKind", rng: np.random.Generator, season: Season) -> Levels:
     return cottages.cottage_levels(kind.storeys, kind.walls, kind.roof)
 
 
-def _taxi(kind: "Kind", rng: np.random.Generator, season: Season) -> Levels:
+def _taxi(kind: "ThingKind", rng: np.random.Generator, season: Season) -> Levels:
     paint = parked_cars.parked_car(0)[0].palette[0]
     return tuple(
         replace(
@@ -177,11 +158,13 @@ def _taxi(kind: "Kind", rng: np.random.Generator, season: Season) -> Levels:
     )
 
 
-def _always(make: Callable[[], Levels]) -> Callable[["Kind", np.random.Generator, Season], Levels]:
+def _always(
+    make: Callable[[], Levels],
+) -> Callable[["ThingKind", np.random.Generator, Season], Levels]:
     return lambda kind, rng, season: make()
 
 
-def _plant(name: str) -> Callable[["Kind", np.random.Generator, Season], Levels]:
+def _plant(name: str) -> Callable[["ThingKind", np.random.Generator, Season], Levels]:
     return lambda kind, rng, season: PLANTS[name](rng)
 
 
@@ -219,4 +202,4 @@ THINGS: Mapping[str, Thing] = {
     "subway entrance": Thing(levels=_always(subway.entrance_levels), solid="entrance"),
     "fountain": Thing(levels=_always(furniture.fountain_levels)),
 }
-"""The kinds by name, each made of a `Kind` of a plan, random numbers, and the season."""
+"""The kinds by name, each made of a `ThingKind` of a plan, random numbers, and the season."""

@@ -14,7 +14,7 @@ from eyas.world.buildings.looks import roof_cover, wall_tint
 from eyas.world.buildings.roof_shapes import fullness
 from eyas.world.buildings.skyline import FLOOR
 from eyas.world.osm.features import House, Roof
-from eyas.world.plan.plan import Building, Shell
+from eyas.world.plan.plan import Building, BuildingPart
 
 __all__ = ["building_of", "is_small"]
 
@@ -104,7 +104,7 @@ def building_of(house: House, seed: int) -> Building:
     bottom, eaves, roof, rise = _profile(house, guess, levels, rng)
     facade, tint = _walls(house, guess, rng)
     area, flat = house.shape.area, roof == "flat"
-    shell = Shell(
+    shell = BuildingPart(
         outline=house.shape,
         bottom=FLOOR_HEIGHT + bottom,
         height=max(eaves - bottom, 0.0),

@@ -6,7 +6,6 @@ from itertools import pairwise
 
 import numpy as np
 import shapely
-from numpy.typing import NDArray
 
 from eyas.core import exact
 from eyas.core.rng import stream
@@ -17,30 +16,31 @@ from eyas.world.build.apart import Apart
 from eyas.world.build.heights import FLOOR_HEIGHT, KERB_HEIGHT
 from eyas.world.build.materials import material
 from eyas.world.build.placed import Placed
+from eyas.world.buildings.parts import rings
 from eyas.world.land import ground, outskirts
-from eyas.world.osm.features import Features
+from eyas.world.land.rising import relief_of
+from eyas.world.osm.features import Survey
 from eyas.world.plan.library import CAR_KINDS, FURNITURE_KINDS, STREET_KINDS, plant_kinds
 from eyas.world.plan.plan import (
+    BuildingPart,
     Buildings,
     Chance,
     Far,
     Flat,
-    Ground,
-    Kind,
+    GroundCover,
+    Hills,
     Layer,
     MapPlan,
     Paint,
     Paved,
-    Shell,
-    Streets,
-    Stripe,
+    Roadway,
+    ThingKind,
     Walkways,
     state_of,
     things,
 )
 from eyas.world.plants import gardens, trees
-from eyas.world.roads import painting
-from eyas.world.roads.areas import polygons_of, streets
+from eyas.world.roads.areas import polygons_of, road_area, streets
 from eyas.world.street import signals
 from eyas.world.street.bays import bays_in
 from eyas.world.street.furnishing import furniture_along
@@ -93,6 +93,8 @@ _RAIL = Material(tint=(0.36, 0.33, 0.31))
 _GAUGE = 0.72
 """Half the distance between the rails of a track [m]."""
 _RAIL_HEIGHT = 0.12
+_BESIDE_ROAD, _BESIDE_WALL = 6.0, 4.0
+"""From streets with their pavements, and from walls, to the feet of hills [m]."""
 _WORN_FROM = 30.0
 """Shorter lanes have no wear [m]."""
 _USUAL = (6.5, 12.5)
@@ -137,7 +139,9 @@ def completed(plan: MapPlan, network: RoadNetwork) -> MapPlan:
     known, seed = plan.survey, plan.seed
     if known is None:
         return plan
-    town = lay_out(network, known, plan.size, _given(plan))
+    level = _level(network, known)
+    layers = [_levelled(one, level) if isinstance(one, Hills) else one for one in plan.layers]
+    town = lay_out(network, known, plan.size, _given(layers, seed))
     buildings = [building_of(house, seed) for house in town.houses]
     # The largest occluders come first: they are drawn first, so less is drawn twice.
     buildings.sort(key=lambda one: -_outside(one.parts[0]))
@@ -154,10 +158,10 @@ def completed(plan: MapPlan, network: RoadNetwork) -> MapPlan:
     rng = stream(seed, "town plants")
     green = _greenery(town, known, rng)
     ours = (
-        *(Kind(name=name, make="street tree", variant=k, chance="town trees")
+        *(ThingKind(name=name, make="street tree", variant=k, chance="town trees")
           for k, name in enumerate(_TREES)),
         *plant_kinds("town gardens"), *STREET_KINDS[1:], *FURNITURE_KINDS, *CAR_KINDS,
-        Kind(name="traffic light", make="dark traffic light"),
+        ThingKind(name="traffic light", make="dark traffic light"),
     )  # fmt: skip
     given = {kind.name for kind in plan.library}
     walks = town.crosswalks
@@ -171,7 +175,7 @@ def completed(plan: MapPlan, network: RoadNetwork) -> MapPlan:
         },
         layers=(
             things([], _TREES),
-            *plan.layers,
+            *layers,
             Buildings(items=tuple(buildings)),
             things(cars, CARS),
             *_ground(town, network, known, bays, seed),
@@ -187,66 +191,78 @@ def completed(plan: MapPlan, network: RoadNetwork) -> MapPlan:
     )
 
 
-def _given(plan: MapPlan) -> Given:
+def _level(network: RoadNetwork, known: Survey) -> shapely.Geometry:
+    """Return where hills leave room for streets, pavements and buildings [m]."""
+    streets_ = shapely.buffer(road_area(network), _BESIDE_ROAD + known.sidewalks)
+    built = [shapely.buffer(house.shape, _BESIDE_WALL) for house in known.houses]
+    return shapely.union_all([streets_, *built])
+
+
+def _levelled(hills: Hills, level: shapely.Geometry) -> Hills:
+    return replace(hills, flat=shapely.union_all([level, hills.flat or shapely.Polygon()]))
+
+
+def _given(layers: Sequence[Layer], seed: int) -> Given:
     """Return what the layers of a plan have already put somewhere."""
     built, covered = [], []
-    for layer in plan.layers:
+    for layer in layers:
         if isinstance(layer, Buildings):
             shells = (one.parts[0] for one in layer.items)
             built += [one.outline for one in shells if one.bottom <= FLOOR_HEIGHT]
-        elif isinstance(layer, Ground):
+        elif isinstance(layer, GroundCover):
             covered += [piece.area for piece in layer.pieces if not isinstance(piece, Far)]
-        elif isinstance(layer, Paved | Streets):
+        elif isinstance(layer, Paved | Roadway):
             covered.append(layer.area)
+        elif isinstance(layer, Hills):
+            # Slightly below their feet, so that rounding leaves no gap between them and the ground.
+            rising = shapely.buffer(relief_of(layer, seed).area, -0.4, join_style="mitre")
+            built.append(rising)
+            covered.append(rising)
     covered = [shapely.make_valid(area) for area in covered]
     return Given(shapely.union_all(built), shapely.union_all(covered))
 
 
-def _outside(shell: Shell) -> float:
+def _outside(shell: BuildingPart) -> float:
     """Return about how much there is to see of a building [m^2]."""
     return float((shell.top + shell.rise) * shell.outline.length)
 
 
 def _ground(
-    town: Town, network: RoadNetwork, known: Features, bays: Sequence[shapely.Polygon], seed: int
+    town: Town, network: RoadNetwork, known: Survey, bays: Sequence[shapely.Polygon], seed: int
 ) -> list[Layer]:
     """Return streets with their paint, pavements, water and all other ground."""
     rng = stream(seed, "town ground")
     white, yellow = town_paint(network, town.roads, town.crosswalks, set(known.signals))
-    paint = Paint(rule="none", lines=_plain(white), bars=_plain(yellow), shapes=tuple(bays))
+    paint = Paint(rule="none", lines=tuple(white), bars=tuple(yellow), shapes=tuple(bays))
     parking = ground.asphalt(town.ground["parking"], light=True)
     made: list[Layer] = [
-        Streets(
+        Roadway(
             area=town.roads,
             paint=paint,
             wear=Chance(stream="town road wear"),
             worn_from=_WORN_FROM,
         ),
         Paved(area=town.pavement, beside=town.roads),
-        Ground(kind=ObjectClass.ROAD, pieces=(parking,)),
+        GroundCover(kind=ObjectClass.ROAD, pieces=(parking,)),
     ]
     for name, (kind, covers) in _COVERS.items():
         if not town.ground[name].is_empty:
-            made.append(Ground(kind=kind, pieces=_covered(town.ground[name], covers, rng)))
-    made.append(Ground(kind=ObjectClass.PAVEMENT, pieces=_covered(town.yards, _YARDS, rng)))
+            made.append(GroundCover(kind=kind, pieces=_covered(town.ground[name], covers, rng)))
+    made.append(GroundCover(kind=ObjectClass.PAVEMENT, pieces=_covered(town.yards, _YARDS, rng)))
     nothing = shapely.difference(town.extent, town.lawn)
     lawn = ground.lawn(town.extent, nothing, rng, shapely.Polygon(), 0.0)
     crops, shares = zip(*outskirts.CROPS, strict=True)
     far = Far(rule="fields", covers=crops, shares=shares, chance=state_of(rng))
-    made.append(Ground(pieces=(*lawn, far)))
+    made.append(GroundCover(pieces=(*lawn, far)))
     water = town.ground["water"]
     if not water.is_empty:
         below = shapely.buffer(water, _BELOW_BANK, join_style="mitre")
         below = shapely.intersection(below, town.extent)
         wet = Flat(area=below, z=-_WATER_DEPTH, cover=_WATER)
-        made.append(Ground(kind=ObjectClass.WATER, pieces=(wet,)))
+        made.append(GroundCover(kind=ObjectClass.WATER, pieces=(wet,)))
     if known.rails:
-        made.append(Ground(kind=ObjectClass.STRUCTURE, pieces=(_rails(known),)))
+        made.append(GroundCover(kind=ObjectClass.STRUCTURE, pieces=(_rails(known),)))
     return made
-
-
-def _plain(lines: Sequence[painting.Stripe]) -> tuple[Stripe, ...]:
-    return tuple(Stripe(middle=line.middle, width=line.width) for line in lines)
 
 
 def _covered(
@@ -263,7 +279,7 @@ def _covered(
     return tuple(made)
 
 
-def _rails(known: Features) -> Flat:
+def _rails(known: Survey) -> Flat:
     """Return the rails of all tracks."""
     sides = [shapely.offset_curve(line, side) for line in known.rails for side in (-_GAUGE, _GAUGE)]
     strips = shapely.buffer(sides, 0.06, cap_style="flat", quad_segs=2)
@@ -271,7 +287,7 @@ def _rails(known: Features) -> Flat:
     return Flat(area=area, z=FLOOR_HEIGHT + _RAIL_HEIGHT, cover=_RAIL)
 
 
-def _signals(network: RoadNetwork, town: Town, known: Features) -> list[Placed]:
+def _signals(network: RoadNetwork, town: Town, known: Survey) -> list[Placed]:
     """Return a traffic light at the end of each street that has one."""
     lit, made = set(known.signals), []
     for name, street in zip(network.edges, streets(network), strict=True):
@@ -344,7 +360,7 @@ def _lamps(
     return made
 
 
-def _greenery(town: Town, known: Features, rng: np.random.Generator) -> list[Placed]:
+def _greenery(town: Town, known: Survey, rng: np.random.Generator) -> list[Placed]:
     """Return trees, and hedges along houses."""
     solid = shapely.union_all([town.roads, town.built, town.ground["water"], town.ground["rail"]])
     occupied = shapely.buffer(solid, _TRUNK, quad_segs=2)
@@ -367,14 +383,9 @@ def _greenery(town: Town, known: Features, rng: np.random.Generator) -> list[Pla
         chosen = np.concatenate(spots)[:left]
         left -= len(chosen)
         made += gardens.small_trees(chosen, heights, FLOOR_HEIGHT, _TREES, rng)
-    corners = [_corners(shape) for shape in town.gardens]
+    corners = [rings(shape)[0] for shape in town.gardens]
     room = shapely.union(town.ground["residential"], town.lawn)
     return made + gardens.borders(corners, room, FLOOR_HEIGHT, rng)
-
-
-def _corners(shape: shapely.Polygon) -> NDArray[np.float64]:
-    ring = shapely.geometry.polygon.orient(shape).exterior
-    return np.ascontiguousarray(shapely.get_coordinates(ring)[:-1])
 
 
 def _parked(town: Town, rng: np.random.Generator) -> tuple[list[shapely.Polygon], list[Placed]]:

@@ -8,11 +8,11 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from eyas.core import exact
 from eyas.state.roads import RoadNetwork
 from eyas.world.build.millimetres import dot, length, rounded, unit
-from eyas.world.osm.features import Features
+from eyas.world.osm.features import Survey
 from eyas.world.roads.areas import Street, streets
+from eyas.world.roads.markings import frame_of, placed
 from eyas.world.roads.painting import Stripe, stripes
 
 __all__ = ["Crosswalk", "crosswalks_of", "kept_free", "town_paint"]
@@ -62,7 +62,7 @@ class Crosswalk:
 
 
 def crosswalks_of(
-    network: RoadNetwork, roads: shapely.Geometry, walked: shapely.Geometry, features: Features
+    network: RoadNetwork, roads: shapely.Geometry, walked: shapely.Geometry, features: Survey
 ) -> tuple[list[Crosswalk], shapely.Geometry]:
     """Return all crossings, and the islands in their course [m].
 
@@ -210,22 +210,9 @@ def _lines(street: Street, *, both: bool) -> list[Stripe]:
     return made
 
 
-def _frame(street: Street) -> tuple[Line, Line, Line, float]:
-    """Return the right end of a street, the directions onwards and left, and its width [m]."""
-    onwards = unit(street.right[-1] - street.right[-2])
-    leftwards = np.array([-onwards[1], onwards[0]])
-    return street.right[-1], onwards, leftwards, dot(street.left[-1] - street.right[-1], leftwards)
-
-
-def _placed(street: Street, points: list[tuple[float, float]]) -> Line:
-    """Return points given onwards and leftwards from the right end of a street [m]."""
-    origin, onwards, leftwards, _ = _frame(street)
-    return rounded(exact.product(np.array(points), np.stack([onwards, leftwards])) + origin)
-
-
 def _stop_line(street: Street) -> Stripe:
-    ends = [(-_STOP_BACK, 0.15), (-_STOP_BACK, max(_frame(street)[3] - 0.15, 0.5))]
-    return Stripe(_placed(street, ends), _STOP_LINE)
+    ends = [(-_STOP_BACK, 0.15), (-_STOP_BACK, max(frame_of(street)[3] - 0.15, 0.5))]
+    return Stripe(placed(street, ends), _STOP_LINE)
 
 
 def _zebras(roads: shapely.Geometry, crosswalks: Sequence[Crosswalk]) -> list[list[Stripe]]:

@@ -10,7 +10,7 @@ import shapely
 from eyas.core import exact
 from eyas.state.roads import RoadNetwork
 from eyas.world.build.millimetres import snapped
-from eyas.world.osm.features import AREA_KINDS, Features, House
+from eyas.world.osm.features import AREA_KINDS, House, Survey
 from eyas.world.roads.areas import polygons_of
 from eyas.world.roads.curves import TURN
 from eyas.world.towns.buildings import is_small
@@ -85,7 +85,7 @@ class Town:
 
 def lay_out(
     network: RoadNetwork,
-    features: Features,
+    features: Survey,
     size: tuple[float, float],
     given: Given,
 ) -> Town:

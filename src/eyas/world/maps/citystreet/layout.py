@@ -16,7 +16,7 @@ from eyas.world.buildings import placing as buildings
 from eyas.world.buildings.lots import frame_angle, turned
 from eyas.world.land import ground, outskirts
 from eyas.world.maps.citystreet.roads import road_graph
-from eyas.world.plan.plan import Shell
+from eyas.world.plan.plan import BuildingPart
 from eyas.world.plants import trees
 from eyas.world.roads import overpass
 from eyas.world.roads.areas import (
@@ -32,7 +32,7 @@ from eyas.world.roads.areas import (
 from eyas.world.roads.pillars import Pillar, pillars
 from eyas.world.street.car_parks import CarPark, place_car_parks, place_rectangle
 
-__all__ = ["EXTENT", "FLOOR", "Layout", "lay_out"]
+__all__ = ["EXTENT", "FLOOR", "CityLayout", "lay_out"]
 
 FLOOR = (900.0, 900.0)
 """Extent of the floor [m]."""
@@ -62,7 +62,7 @@ Points = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
-class Layout:
+class CityLayout:
     """Positions in plan view."""
 
     roads: shapely.Geometry
@@ -87,7 +87,7 @@ class Layout:
     """Raised pavements beside the streets [m]."""
     trees: Points
     """Trunks of the street trees [m], shape (K, 2)."""
-    buildings: list[Shell]
+    buildings: list[BuildingPart]
     """Buildings, towers included."""
 
     @property
@@ -103,7 +103,7 @@ class Layout:
         return [b.footprint for b in self.buildings if b.bottom <= FLOOR_HEIGHT]
 
 
-def lay_out(network: RoadNetwork, seed: int) -> Layout:
+def lay_out(network: RoadNetwork, seed: int) -> CityLayout:
     """Return the plan of a city.
 
     Args:
@@ -130,7 +130,7 @@ def lay_out(network: RoadNetwork, seed: int) -> Layout:
     free = shapely.geometrycollections([*polygons_of(free), *corners(roads, sharp)])
     made = buildings.place_buildings(closed, _BUILDINGS, stream(seed, "citystreet buildings"), free)
     inside, outside = blocks(roads, EXTENT)
-    return Layout(
+    return CityLayout(
         roads=roads,
         access=access,
         blocks=inside,

@@ -1,10 +1,12 @@
 """The plan of the street city."""
 
 from collections.abc import Sequence
+from itertools import pairwise
 
 import numpy as np
 import shapely
 
+from eyas.core import exact
 from eyas.core.rng import stream
 from eyas.state.mesh import Material, Surface
 from eyas.state.roads import RoadNetwork
@@ -12,8 +14,7 @@ from eyas.state.scene import ObjectClass
 from eyas.world.build.heights import FLOOR_HEIGHT, KERB_HEIGHT
 from eyas.world.build.placed import Placed
 from eyas.world.land import ground, outskirts
-from eyas.world.maps.citystreet.greenery import greenery, parked
-from eyas.world.maps.citystreet.layout import EXTENT, FLOOR, Layout, lay_out
+from eyas.world.maps.citystreet.layout import EXTENT, FLOOR, CityLayout, lay_out
 from eyas.world.maps.citystreet.roads import NAME
 from eyas.world.plan.library import CAR_KINDS, FURNITURE_KINDS, STREET_KINDS, plant_kinds
 from eyas.world.plan.plan import (
@@ -23,17 +24,18 @@ from eyas.world.plan.plan import (
     Deck,
     Far,
     Flat,
-    Ground,
-    Kind,
+    GroundCover,
     Layer,
     MapPlan,
     Paint,
     Paved,
-    Streets,
+    Roadway,
+    ThingKind,
     state_of,
     things,
 )
 from eyas.world.plants import gardens, trees
+from eyas.world.roads import overpass
 from eyas.world.roads.pillars import pillars
 from eyas.world.street import furniture
 from eyas.world.street.furnishing import furniture_along
@@ -42,6 +44,18 @@ from eyas.world.street.parked_cars import CARS
 from eyas.world.street.signals import signal_places, signals_along
 
 __all__ = ["make_plan"]
+
+_GARDEN_TREES = ((4.5, 8.5), 11.0, 0.0022)
+"""Heights and least distance [m], and number of attempts on a square metre."""
+_MEADOW_TREES = ((4.0, 11.0), 70.0, 0.0004)
+"""The same for the groups of trees beyond the outer streets."""
+_FROM_WALL = 4.5
+_FROM_STREET = 14.0
+"""Least distance of the trees beyond the outer streets from a street [m]."""
+_OCCUPIED = 0.62
+"""Share of the bays with a car."""
+_ISLAND_EVERY = 9
+"""Bays from one planted island to the next."""
 
 _LAMPS = 48
 _TREE_HEIGHTS = (14.8, 19.8, 27.0)
@@ -77,7 +91,7 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
         seed=seed,
         size=FLOOR,
         library=(
-            *(Kind(name=name, make="street tree", variant=k, chance="trees")
+            *(ThingKind(name=name, make="street tree", variant=k, chance="trees")
               for k, name in enumerate(_TREES)),
             *plant_kinds("beds"), *STREET_KINDS, *FURNITURE_KINDS, *CAR_KINDS,
         ),
@@ -98,7 +112,7 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
     )  # fmt: skip
 
 
-def _buildings(city: Layout) -> Buildings:
+def _buildings(city: CityLayout) -> Buildings:
     """Return the buildings, and what keeps free the roofs below towers."""
     towers = [shell.outline for shell in city.buildings if shell.bottom > FLOOR_HEIGHT]
     made = []
@@ -110,19 +124,19 @@ def _buildings(city: Layout) -> Buildings:
     return Buildings(items=tuple(made))
 
 
-def _deck(city: Layout) -> Deck:
+def _deck(city: CityLayout) -> Deck:
     down = outskirts.descent(city.deck, FLOOR_HEIGHT)  # beyond the floor; not solid
     legs = pillars(down, _LEGS, FLOOR_HEIGHT, city.roads)
     return Deck(middle=city.deck, pillars=tuple(city.pillars), descent=down, legs=tuple(legs))
 
 
-def _no_lawn(city: Layout) -> shapely.Geometry:
+def _no_lawn(city: CityLayout) -> shapely.Geometry:
     """Return roads, pavements, car parks and pools with their rims [m]."""
     rims = [shapely.buffer(pool, 0.8, join_style="mitre") for pool in city.pools]
     return shapely.union_all([city.roads, city.access, city.lots, city.pavement, *rims])
 
 
-def _taken(city: Layout, network: RoadNetwork) -> shapely.Geometry:
+def _taken(city: CityLayout, network: RoadNetwork) -> shapely.Geometry:
     """Return the area where something already stands or drives, in plan view."""
     built = [shell.outline for shell in city.buildings]
     areas = [park.area for park in city.car_parks] + [pillar.base for pillar in city.pillars]
@@ -131,7 +145,7 @@ def _taken(city: Layout, network: RoadNetwork) -> shapely.Geometry:
     return shapely.union_all([city.roads, city.access, *city.pools, *built, *areas, *thin])
 
 
-def _ground(city: Layout, yards: Sequence[shapely.Geometry], seed: int) -> list[Layer]:
+def _ground(city: CityLayout, yards: Sequence[shapely.Geometry], seed: int) -> list[Layer]:
     rng = stream(seed, "citystreet lawn")
     outskirts.fields(FLOOR, FLOOR_HEIGHT, rng, outskirts.CROPS)  # which shares the stream
     pools, turn = shapely.union_all(city.pools), city.turn
@@ -143,27 +157,84 @@ def _ground(city: Layout, yards: Sequence[shapely.Geometry], seed: int) -> list[
     far = Far(rule="fields", covers=crops, shares=shares, chance=Chance(stream="citystreet lawn"))
     bays = [line for park in city.car_parks for line in park.lines]
     made: list[Layer] = [
-        Streets(
+        Roadway(
             area=paved, paint=Paint(shapes=tuple(bays)), wear=Chance(stream="citystreet road wear")
         ),
         Paved(area=city.pavement, beside=paved, turn=turn),
-        Ground(kind=ObjectClass.PAVEMENT, pieces=tuple(paving)),
-        Ground(kind=ObjectClass.ROAD, pieces=(ground.asphalt(city.lots, light=True),)),
-        Ground(pieces=(*lawn, far)),
+        GroundCover(kind=ObjectClass.PAVEMENT, pieces=tuple(paving)),
+        GroundCover(kind=ObjectClass.ROAD, pieces=(ground.asphalt(city.lots, light=True),)),
+        GroundCover(pieces=(*lawn, far)),
     ]
     if city.pools:
         rim = shapely.difference(shapely.buffer(pools, 0.8, join_style="mitre"), pools)
         water = Flat(area=pools, z=-0.15, cover=_WATER)
-        made.append(Ground(kind=ObjectClass.WATER, pieces=(water,)))
+        made.append(GroundCover(kind=ObjectClass.WATER, pieces=(water,)))
         made.append(Paved(area=rim, beside=pools))
     return made
 
 
-def _great_trees(city: Layout, rng: np.random.Generator) -> list[Placed]:
+def _great_trees(city: CityLayout, rng: np.random.Generator) -> list[Placed]:
     """Return a tree of a random kind at each trunk."""
     made = []
     for x, y in city.trees.tolist():
         height = float(rng.choice(_TREE_HEIGHTS, p=_TREE_ODDS) * rng.uniform(0.93, 1.0))
         kind, turn = _TREES[int(rng.integers(len(_TREES)))], float(rng.uniform(0, 2 * np.pi))
         made.append(Placed(kind, x, y, FLOOR_HEIGHT, turn, height))
+    return made
+
+
+def greenery(
+    plan: CityLayout, taken: shapely.Geometry, trees: Sequence[str], rng: np.random.Generator
+) -> list[Placed]:
+    """Return borders along walls, hedges around car parks, and small trees.
+
+    Args:
+        plan: The layout of the city.
+        taken: Area that is paved or where something stands [m].
+        trees: Kinds of trees, 1 m high.
+        rng: Random numbers of the gardens.
+    """
+    deck = shapely.buffer(overpass.deck_area(plan.deck), 2.0)
+    inside = shapely.difference(shapely.union_all(plan.blocks), shapely.union(taken, deck))
+    shapely.prepare(inside)
+    made = gardens.borders(plan.footprints, inside, FLOOR_HEIGHT, rng)
+    built = shapely.union_all([shapely.Polygon(corners) for corners in plan.footprints])
+    for park in plan.car_parks:
+        ring = shapely.get_coordinates(shapely.buffer(park.area, 1.2, join_style="mitre"))
+        for side in pairwise(ring):
+            made += gardens.row(("hedge",), np.array(side), inside, FLOOR_HEIGHT, rng)
+    heights, apart, density = _GARDEN_TREES
+    room = shapely.difference(shapely.buffer(inside, -1.6), shapely.buffer(built, _FROM_WALL))
+    spots = gardens.scattered(room, apart, density, rng)
+    made += gardens.small_trees(spots, heights, FLOOR_HEIGHT, trees, rng)
+    heights, apart, density = _MEADOW_TREES
+    streets = shapely.buffer(shapely.union_all([plan.roads, plan.access, deck]), _FROM_STREET)
+    room = shapely.difference(
+        shapely.buffer(EXTENT, -8.0), shapely.union_all([streets, *plan.blocks])
+    )
+    groups = gardens.scattered(room, apart, density, rng)
+    spots = gardens.clustered(groups, 7.0, (1, 6), room, rng)
+    return made + gardens.small_trees(spots, heights, FLOOR_HEIGHT, trees, rng)
+
+
+def parked(plan: CityLayout, trees: Sequence[str], rng: np.random.Generator) -> list[Placed]:
+    """Return what is in the bays of the car parks: islands, small trees and cars.
+
+    Args:
+        plan: The layout of the city.
+        trees: Kinds of trees, 1 m high.
+        rng: Random numbers of the car parks.
+    """
+    made = []
+    for park in plan.car_parks:
+        for index, (x, y, turn) in enumerate(park.bays.tolist()):
+            if index % _ISLAND_EVERY == _ISLAND_EVERY // 2:
+                made.append(Placed("island", x, y, 0.0, turn))
+                made += gardens.small_trees(np.array([[x, y]]), (4.0, 6.0), 0.1, trees, rng)
+            elif rng.random() < _OCCUPIED:
+                ahead = np.pi * float(rng.random() < 0.35)
+                east, north = x + exact.normal(rng, 0, 0.06), y + exact.normal(rng, 0, 0.06)
+                way = turn + ahead + exact.normal(rng, 0, 0.015)
+                car = CARS[int(rng.integers(len(CARS)))]
+                made.append(Placed(car, east, north, 0.0, way, rng.uniform(0.94, 1.04)))
     return made

@@ -28,8 +28,7 @@ def _plan(network: "RoadNetwork", seed: int) -> "MapPlan":
 def _bare_plan(network: "RoadNetwork", seed: int) -> "MapPlan":
     from eyas.world.maps.bare import make_plan
     from eyas.world.maps.desert.layout import FLOOR
-    from eyas.world.maps.desert.looks import SAND
-    from eyas.world.maps.desert.plan import DUNES
+    from eyas.world.maps.desert.plan import DUNES, SAND
 
     return make_plan("desert-bare", network, seed, FLOOR, SAND, DUNES)
 

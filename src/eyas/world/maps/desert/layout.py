@@ -17,7 +17,7 @@ from eyas.world.land.mounds import Mound, place_inside, place_ring, sizes
 from eyas.world.land.outlines import blob
 from eyas.world.roads.areas import Street, blocks, road_area, streets
 
-__all__ = ["EXTENT", "FLOOR", "HALF", "Drift", "Layout", "lay_out"]
+__all__ = ["EXTENT", "FLOOR", "HALF", "DesertLayout", "Drift", "lay_out"]
 
 FLOOR = (982.0, 998.0)
 """Extent of the floor [m]."""
@@ -64,7 +64,7 @@ class Drift:
 
 
 @dataclass(frozen=True, slots=True)
-class Layout:
+class DesertLayout:
     """Positions in plan view."""
 
     roads: shapely.Geometry
@@ -86,7 +86,7 @@ class Layout:
         return shapely.union_all([shapely.Polygon(house.outline) for house in self.houses])
 
 
-def lay_out(network: RoadNetwork, seed: int) -> Layout:
+def lay_out(network: RoadNetwork, seed: int) -> DesertLayout:
     """Return the plan of a desert.
 
     Args:
@@ -101,7 +101,7 @@ def lay_out(network: RoadNetwork, seed: int) -> Layout:
     walls = shapely.union_all([shapely.Polygon(house.outline) for house in houses])
     dunes = _dunes(roads, closed, walls, stream(seed, "desert dunes"))
     tongues = _tongues(roads, stream(seed, "desert tongues"))
-    return Layout(roads, closed, drifts, tongues, houses, dunes)
+    return DesertLayout(roads, closed, drifts, tongues, houses, dunes)
 
 
 def _tongues(roads: shapely.Geometry, rng: np.random.Generator) -> list[shapely.Polygon]:

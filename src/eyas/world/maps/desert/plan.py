@@ -8,27 +8,50 @@ import shapely
 from eyas.core.rng import stream
 from eyas.state.lighting import Horizon
 from eyas.state.roads import RoadNetwork
+from eyas.world.build.materials import facade, material
 from eyas.world.land.rising import relief_of
-from eyas.world.maps.desert.layout import EXTENT, FLOOR, HALF, Layout, lay_out
-from eyas.world.maps.desert.looks import DUSTY, HOUSES, SAND, SNOW, THIN_SNOW
+from eyas.world.maps.desert.layout import EXTENT, FLOOR, HALF, DesertLayout, lay_out
 from eyas.world.maps.desert.roads import NAME
 from eyas.world.plan.library import STREET_KINDS, houses
 from eyas.world.plan.plan import (
     Chance,
     Far,
     Flat,
-    Ground,
+    GroundCover,
     Heap,
+    Hills,
     MapPlan,
     Paint,
-    Relief,
-    Streets,
+    Roadway,
     things,
 )
 from eyas.world.street.lamps import lamps_along
 from eyas.world.street.signals import signal_places, signals_along
 
-__all__ = ["DRIFT_HEIGHT", "DUNES", "make_plan"]
+__all__ = [
+    "DRIFT_HEIGHT",
+    "DUNES",
+    "SAND",
+    "make_plan",
+]
+
+SAND = material("sand", (1.0, 0.93, 0.60))
+"""The ground, the dunes, and the drifts on the roads."""
+
+_DUSTY = material("sand", (0.76, 0.70, 0.48))
+"""Asphalt under a thin layer of sand."""
+
+_SNOW = material("snow", (0.97, 0.97, 0.97))
+"""Dunes under snow."""
+
+_THIN_SNOW = material("snow", (0.98, 0.91, 0.72))
+"""Their feet, where sand shows through."""
+
+_HOUSES = (
+    (facade("facade_plaster", (1.0, 0.95, 0.82)), material("roof_tiles", (1.0, 0.90, 0.80))),
+    (facade("facade_plaster", (0.98, 0.90, 0.74)), material("roof_tiles", (0.94, 0.84, 0.74))),
+    (facade("facade_stone", (1.0, 0.96, 0.84)), material("roof_tiles", (0.98, 0.88, 0.78))),
+)
 
 DUNES = Horizon(name="desert", height=0.03, ridges=0.1, woods=0.0)
 """What stands beyond the map."""
@@ -53,13 +76,13 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
         seed: Seed of the map, >= 0.
     """
     desert = lay_out(network, seed)
-    dunes = Relief(
+    dunes = Hills(
         mounds=tuple(desert.dunes),
         flat=shapely.union(shapely.buffer(desert.roads, 5.0), shapely.buffer(desert.walls, 3.0)),
         half=(_CORE, HALF),
         spacing=_SPACING,
         chance=Chance(stream="desert facets"),
-        covers=(SAND, THIN_SNOW, SNOW),
+        covers=(SAND, _THIN_SNOW, _SNOW),
         white=_white(len(desert.dunes), stream(seed, "desert snow")),
         smooth=True,
     )
@@ -67,7 +90,7 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
     rest = shapely.buffer(relief_of(dunes, seed).area, -0.4, join_style="mitre")
     level = Flat(area=shapely.difference(EXTENT, shapely.union(desert.roads, rest)), cover=SAND)
     far = Far(rule="plain", covers=(SAND,), beyond=(2 * HALF, 2 * HALF))
-    kinds, placed = houses(desert.houses, HOUSES)
+    kinds, placed = houses(desert.houses, _HOUSES)
     poles = shapely.buffer(shapely.points([place for place, _ in signal_places(network)]), 2.0)
     taken = shapely.union_all([desert.roads, desert.walls, *poles])
     return MapPlan(
@@ -78,11 +101,11 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
         layers=(
             dunes,
             things(placed),
-            Ground(pieces=tuple(_sand(desert))),
-            Streets(
+            GroundCover(pieces=tuple(_sand(desert))),
+            Roadway(
                 area=desert.roads, paint=Paint(crossings=0), wear=Chance(stream="desert road wear")
             ),
-            Ground(pieces=(level, far)),
+            GroundCover(pieces=(level, far)),
             things(signals_along(network)),
             things(lamps_along(network, _LAMPS, taken, stream(seed, "desert lamps"))),
         ),
@@ -96,7 +119,7 @@ def _white(dunes: int, rng: np.random.Generator) -> tuple[int, ...]:
     return tuple(np.flatnonzero(np.diff(kept) > 0).tolist())
 
 
-def _sand(desert: Layout) -> Sequence[Heap | Flat]:
+def _sand(desert: DesertLayout) -> Sequence[Heap | Flat]:
     """Return the drifts on the roads, with thin sand around them."""
     sand = shapely.union_all([drift.area for drift in desert.drifts])
     dusty = shapely.union_all([drift.fringe for drift in desert.drifts])
@@ -104,5 +127,5 @@ def _sand(desert: Layout) -> Sequence[Heap | Flat]:
     return [
         *(Heap(area=drift.area, z=DRIFT_HEIGHT, cover=SAND) for drift in desert.drifts),
         *(Heap(area=tongue, z=_FRINGE_HEIGHT, cover=SAND) for tongue in desert.tongues),
-        Flat(area=edge, z=_FRINGE_HEIGHT, cover=DUSTY, cells="whole"),
+        Flat(area=edge, z=_FRINGE_HEIGHT, cover=_DUSTY, cells="whole"),
     ]

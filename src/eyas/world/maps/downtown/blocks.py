@@ -13,7 +13,7 @@ from eyas.world.maps.downtown.lots import Box, Lot, divided, frontage
 from eyas.world.maps.downtown.massing import STOREY, Part, stacked
 from eyas.world.maps.downtown.roads import Cell, Grid
 from eyas.world.maps.downtown.skyline import cores, facade_of, roof_of, storeys
-from eyas.world.plan.plan import Shell
+from eyas.world.plan.plan import BuildingPart
 
 __all__ = ["AVENUE_WALK", "STREET_WALK", "block_lots", "built", "inner_blocks", "outer_lots"]
 
@@ -123,14 +123,14 @@ class _Look:
     tint: tuple[float, float, float]
 
 
-def built(grid: Grid, lots: list[Lot], seed: int) -> list[list[Shell]]:
+def built(grid: Grid, lots: list[Lot], seed: int) -> list[list[BuildingPart]]:
     """Return the parts of the building on each lot, the lowest first, in the world frame."""
     rng = stream(seed, "downtown buildings")
     floors = storeys(lots, rng)
     return [_building(grid, lot, int(count), rng) for lot, count in zip(lots, floors, strict=True)]
 
 
-def _building(grid: Grid, lot: Lot, floors: int, rng: np.random.Generator) -> list[Shell]:
+def _building(grid: Grid, lot: Lot, floors: int, rng: np.random.Generator) -> list[BuildingPart]:
     facade, tint = facade_of(STOREY * floors, rng)
     stepped = facade in _STEPPED or rng.random() < 0.15
     parts = stacked(lot, floors, stepped, rng)
@@ -144,9 +144,9 @@ def _building(grid: Grid, lot: Lot, floors: int, rng: np.random.Generator) -> li
     return made
 
 
-def _part(grid: Grid, part: Part, look: _Look, cover: Material, pointed: bool) -> Shell:
+def _part(grid: Grid, part: Part, look: _Look, cover: Material, pointed: bool) -> BuildingPart:
     ring = shapely.get_coordinates(shapely.geometry.polygon.orient(part.shape))[:-1]
-    return Shell(
+    return BuildingPart(
         outline=shapely.Polygon(grid.world(ring)),
         bottom=FLOOR_HEIGHT + STOREY * part.low,
         height=STOREY * (part.high - part.low),

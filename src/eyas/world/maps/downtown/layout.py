@@ -22,12 +22,12 @@ from eyas.world.maps.downtown.park import Park, make_park
 from eyas.world.maps.downtown.roads import Grid, grid
 from eyas.world.maps.downtown.skyways import make_skyways
 from eyas.world.maps.downtown.viaduct import cut, make_viaduct
-from eyas.world.plan.plan import Shell
+from eyas.world.plan.plan import BuildingPart
 from eyas.world.roads.areas import blocks, corridors, road_area
 from eyas.world.things.railway import Viaduct
 from eyas.world.things.skyways import Skyway
 
-__all__ = ["EXTENT", "FLOOR", "Layout", "lay_out"]
+__all__ = ["EXTENT", "FLOOR", "DowntownLayout", "lay_out"]
 
 FLOOR = (2000.0, 1500.0)
 """Extent of the floor [m]."""
@@ -45,7 +45,7 @@ Points = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
-class Layout:
+class DowntownLayout:
     """Positions in plan view."""
 
     grid: Grid
@@ -58,7 +58,7 @@ class Layout:
     """Parked cars and trees along the streets."""
     pavement: shapely.Geometry
     """Raised pavements beside the streets, without parking bays [m]."""
-    buildings: list[list[Shell]]
+    buildings: list[list[BuildingPart]]
     """Parts of each building, the lowest first."""
     viaduct: Viaduct
     """The elevated railway."""
@@ -71,7 +71,7 @@ class Layout:
         return [parts[0].footprint for parts in self.buildings]
 
 
-def lay_out(network: RoadNetwork, seed: int) -> Layout:
+def lay_out(network: RoadNetwork, seed: int) -> DowntownLayout:
     """Return the plan of a city.
 
     Args:
@@ -107,7 +107,7 @@ def lay_out(network: RoadNetwork, seed: int) -> Layout:
     trunks = shapely.points(np.concatenate([kerbs.great_trees, kerbs.slim_trees]))
     taken = shapely.union_all([viaduct.ground, *shapely.buffer(trunks, _CROWN)])
     rng = stream(seed, "downtown skyways")
-    return Layout(
+    return DowntownLayout(
         grid=plan,
         roads=roads,
         park=park,

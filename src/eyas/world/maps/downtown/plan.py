@@ -9,21 +9,20 @@ from eyas.state.roads import RoadNetwork
 from eyas.world.build.heights import FLOOR_HEIGHT, KERB_HEIGHT
 from eyas.world.build.millimetres import rounded, unit
 from eyas.world.build.placed import Placed
-from eyas.world.maps.downtown.backdrop import backdrop
 from eyas.world.maps.downtown.kerbs import crossing_lamps
-from eyas.world.maps.downtown.layout import EXTENT, FLOOR, Layout, lay_out
+from eyas.world.maps.downtown.layout import EXTENT, FLOOR, DowntownLayout, lay_out
 from eyas.world.maps.downtown.roads import NAME
-from eyas.world.maps.downtown.surfaces import surfaces
+from eyas.world.maps.downtown.surfaces import backdrop, surfaces
 from eyas.world.plan.library import CAR_KINDS, FURNITURE_KINDS, STREET_KINDS, plant_kinds
 from eyas.world.plan.plan import (
     Building,
     Buildings,
     Chance,
-    Kind,
     LampLight,
     MapPlan,
     Railway,
     Skyways,
+    ThingKind,
     Things,
     things,
 )
@@ -79,11 +78,11 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
         seed=seed,
         size=FLOOR,
         library=(
-            *(Kind(name=name, make="street tree", variant=k, width=width, chance="trees")
+            *(ThingKind(name=name, make="street tree", variant=k, width=width, chance="trees")
               for names, width in ((_GREAT, _BROADER), (_SLIM, _SLIMMER))
               for k, name in enumerate(names)),
             *plant_kinds("trees"), *STREET_KINDS, *FURNITURE_KINDS, *CAR_KINDS,
-            Kind(name="subway entrance"), Kind(name=_TAXI), Kind(name="fountain"),
+            ThingKind(name="subway entrance"), ThingKind(name=_TAXI), ThingKind(name="fountain"),
         ),
         chances={"trees": Chance(stream="downtown tree shapes")},
         # The largest occluders come first: they are drawn first, so less is drawn twice.
@@ -102,7 +101,7 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
     )  # fmt: skip
 
 
-def _trees(city: Layout, rng: np.random.Generator) -> list[Placed]:
+def _trees(city: DowntownLayout, rng: np.random.Generator) -> list[Placed]:
     """Return the trees along two streets and in the park, and its shrubs."""
     made = []
     for trunks, kinds, heights, ground in (
@@ -117,7 +116,9 @@ def _trees(city: Layout, rng: np.random.Generator) -> list[Placed]:
     return made
 
 
-def _along_streets(city: Layout, network: RoadNetwork, rng: np.random.Generator) -> list[Things]:
+def _along_streets(
+    city: DowntownLayout, network: RoadNetwork, rng: np.random.Generator
+) -> list[Things]:
     """Return signals, lamps, entrances of the subway and furniture."""
     lit = crossing_lamps(network, lamps.BEYOND_KERB)
     lights = [Placed.at("street lamp", foot, KERB_HEIGHT, turn) for foot, turn in lit]
@@ -162,7 +163,7 @@ def _entrances(
     return made
 
 
-def _parked(city: Layout, rng: np.random.Generator) -> list[Placed]:
+def _parked(city: DowntownLayout, rng: np.random.Generator) -> list[Placed]:
     """Return cars in the bays; every fifth is a yellow taxi."""
     made = []
     for x, y, heading in city.kerbs.cars.tolist():
@@ -171,7 +172,7 @@ def _parked(city: Layout, rng: np.random.Generator) -> list[Placed]:
     return made
 
 
-def _in_park(city: Layout) -> list[Placed]:
+def _in_park(city: DowntownLayout) -> list[Placed]:
     """Return benches along the paths, and the fountain."""
     benches = [
         Placed("bench", x, y, FLOOR_HEIGHT, facing - np.pi / 2)

@@ -8,7 +8,7 @@ from eyas.core import exact
 from eyas.world.maps.downtown.lots import Box, Lot
 from eyas.world.maps.downtown.massing import STOREY
 from eyas.world.maps.downtown.roads import Grid
-from eyas.world.plan.plan import Shell
+from eyas.world.plan.plan import BuildingPart
 from eyas.world.things.skyways import FLOORS_UNDER, Skyway
 
 __all__ = ["make_skyways"]
@@ -33,7 +33,7 @@ south."""
 def make_skyways(
     grid: Grid,
     lots: list[Lot],
-    buildings: list[list[Shell]],
+    buildings: list[list[BuildingPart]],
     roads: shapely.Geometry,
     keep_free: shapely.Geometry,
     rng: np.random.Generator,
@@ -106,7 +106,7 @@ def _skyway(
     place: float,
     width: float,
     gap: _Gap,
-    buildings: list[list[Shell]],
+    buildings: list[list[BuildingPart]],
     rng: np.random.Generator,
 ) -> Skyway:
     (west, south, east, north), one, other, across = gap

@@ -1,26 +1,47 @@
 """The ground of downtown: pavements with broad pale kerbs, courts, the park, the land around."""
 
+import numpy as np
 import shapely
+from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.core.rng import stream
 from eyas.state.mesh import Material, Surface
 from eyas.state.scene import ObjectClass
-from eyas.world.build.materials import material
+from eyas.world.build.heights import FLOOR_HEIGHT
+from eyas.world.build.materials import facade, material
 from eyas.world.land import ground
-from eyas.world.maps.downtown.layout import EXTENT, Layout
+from eyas.world.maps.downtown.layout import EXTENT, DowntownLayout
+from eyas.world.maps.downtown.massing import STOREY
+from eyas.world.maps.downtown.roads import Grid
+from eyas.world.maps.downtown.skyline import facade_of, roof_of
 from eyas.world.plan.plan import (
+    Backdrop,
     Chance,
     Far,
     Flat,
-    Ground,
+    GroundCover,
     Layer,
     Paint,
     Paved,
-    Streets,
+    Roadway,
     state_of,
 )
 
-__all__ = ["surfaces"]
+__all__ = ["backdrop", "surfaces"]
+
+_STEP = (72.0, 66.0)
+"""Distances between the middles of neighbours, along the streets and the avenues [m]."""
+_REACH = 420.0
+"""From the outermost roads to the farthest [m]."""
+_APART = 36.0
+"""Least distance from blocks, fronts and the park [m]."""
+_FROM_EDGE = 30.0
+_SHARE = 0.7
+"""Share of the places that are built on."""
+_SIDES = (17.0, 40.0)
+_MEDIAN, _SPREAD, _HIGHEST = 26.0, 0.75, 150.0
+"""Median height [m], spread of its logarithm, and limit [m]."""
 
 _KERB_WIDTH = 0.8
 """As wide as the original's [m]."""
@@ -43,7 +64,7 @@ _LAND = (
 _LAND_SHARES = (0.34, 0.26, 0.2, 0.2)
 
 
-def surfaces(city: Layout, seed: int) -> list[Layer]:
+def surfaces(city: DowntownLayout, seed: int) -> list[Layer]:
     """Return paint, roads, pavements, courts, the park and the land around."""
     park, turn, rng = city.park, city.grid.turn, stream(seed, "downtown lawn")
     bays = shapely.difference(city.kerbs.bays, city.roads)
@@ -56,19 +77,19 @@ def surfaces(city: Layout, seed: int) -> list[Layer]:
     court = Flat(area=shapely.difference(EXTENT, covered), cover=_COURT, turn=turn)
     ponds = (Flat(area=pond, z=-0.15, cover=_WATER) for pond in shapely.get_parts(park.water))
     return [
-        Streets(
+        Roadway(
             area=city.roads,
             bays=bays,
             paint=Paint(shapes=tuple(city.kerbs.lines)),
             wear=Chance(stream="downtown road wear"),
         ),
         _paved(city.pavement, shapely.union(city.roads, bays), turn, _SLABS),
-        Ground(pieces=tuple(lawn)),
-        Ground(kind=ObjectClass.PAVEMENT, pieces=(Flat(area=park.paths, cover=_TRAIL),)),
+        GroundCover(pieces=tuple(lawn)),
+        GroundCover(kind=ObjectClass.PAVEMENT, pieces=(Flat(area=park.paths, cover=_TRAIL),)),
         _paved(park.rim, nowhere, 0.0, _RIM),
-        *(Ground(kind=ObjectClass.WATER, pieces=(pond,)) for pond in ponds),
-        Ground(kind=ObjectClass.STRUCTURE, pieces=(_park_wall(city),)),
-        Ground(pieces=(court, land)),
+        *(GroundCover(kind=ObjectClass.WATER, pieces=(pond,)) for pond in ponds),
+        GroundCover(kind=ObjectClass.STRUCTURE, pieces=(_park_wall(city),)),
+        GroundCover(pieces=(court, land)),
     ]
 
 
@@ -84,10 +105,43 @@ def _paved(area: shapely.Geometry, road: shapely.Geometry, turn: float, slabs: M
     )
 
 
-def _park_wall(city: Layout) -> Flat:
+def _park_wall(city: DowntownLayout) -> Flat:
     """Return the low wall between the streets and the park, with gaps where paths enter."""
     park = city.park
     line = shapely.intersection(shapely.buffer(park.walk, _WALL, join_style="mitre"), park.ground)
     gates = shapely.buffer(park.paths, 0.6)
     wall = shapely.difference(line, shapely.union(park.walk, gates))
     return Flat(area=wall, z=_WALL_TOP, cover=_RIM, turn=city.grid.turn, sides=_STONES)
+
+
+def backdrop(
+    grid: Grid, floor: shapely.Polygon, city: shapely.Geometry, rng: np.random.Generator
+) -> Backdrop:
+    """Return the city beyond the outer streets.
+
+    Args:
+        grid: The grid of the streets.
+        floor: The whole floor [m].
+        city: Roads, fronts and park [m].
+        rng: Random numbers of the backdrop.
+    """
+    free = shapely.difference(shapely.buffer(floor, -_FROM_EDGE), shapely.buffer(city, _APART))
+    shapely.prepare(free)
+    u = np.arange(grid.avenues[0] - _REACH, grid.avenues[-1] + _REACH, _STEP[0])
+    v = np.arange(grid.streets[0] - _REACH, grid.streets[-1] + _REACH, _STEP[1])
+    places = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
+    places += rng.uniform(-9.0, 9.0, places.shape)
+    made: list[tuple[NDArray[np.float64], float, Material, Material, NDArray[np.int64]]] = []
+    for place in places:
+        side = np.round(rng.uniform(*_SIDES, 2) / 3.0) * 1.5
+        height = min(_MEDIAN * float(exact.exp(exact.normal(rng, 0.0, _SPREAD))), _HIGHEST)
+        top = FLOOR_HEIGHT + STOREY * max(round(height / STOREY), 2)
+        corners = place + side * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+        outline = grid.world(corners)
+        if rng.random() < _SHARE and shapely.contains(free, shapely.Polygon(outline)):
+            walls, roof = facade(*facade_of(top, rng)), roof_of(rng)
+            made.append((outline, top, walls, roof, rng.integers(0, 4, (4, 2))))
+    outlines, tops, walls_, roofs, bays = zip(*made, strict=True) if made else ((),) * 5
+    return Backdrop(
+        outlines=outlines, tops=np.array(tops, np.float64), walls=walls_, roofs=roofs, bays=bays
+    )

@@ -12,7 +12,7 @@ from eyas.world.build.materials import material, without_snow
 from eyas.world.maps.farmland.roads import ROAD_WIDTH
 from eyas.world.weather import Season
 
-__all__ = ["CROPS", "SIDE", "VERGE", "Crop", "Lot", "lay_out"]
+__all__ = ["CROPS", "SIDE", "VERGE", "Crop", "FieldLot", "lay_out"]
 
 SIDE = 80.0
 """Largest side of a field [m]."""
@@ -58,7 +58,7 @@ CROPS = (
 
 
 @dataclass(frozen=True, slots=True)
-class Lot:
+class FieldLot:
     """A rectangular field."""
 
     area: shapely.Polygon
@@ -71,7 +71,7 @@ class Lot:
     """Factor on its colour, near 1."""
 
 
-def lay_out(x: Sequence[float], y: Sequence[float], rng: np.random.Generator) -> list[Lot]:
+def lay_out(x: Sequence[float], y: Sequence[float], rng: np.random.Generator) -> list[FieldLot]:
     """Return the fields in the cells and in a ring around them; neighbours differ.
 
     Args:
@@ -80,7 +80,7 @@ def lay_out(x: Sequence[float], y: Sequence[float], rng: np.random.Generator) ->
         rng: Random numbers of the fields.
     """
     columns, rows = _spans(x), _spans(y)
-    made: list[Lot] = []
+    made: list[FieldLot] = []
     kinds = np.full((len(columns) + 1, len(rows) + 1), -1)
     for i, (west, east) in enumerate(columns):
         for j, (south, north) in enumerate(rows):
@@ -88,7 +88,7 @@ def lay_out(x: Sequence[float], y: Sequence[float], rng: np.random.Generator) ->
             odds[[kind for kind in (kinds[i - 1, j], kinds[i, j - 1]) if kind >= 0]] *= 0.06
             kinds[i, j] = rng.choice(len(CROPS), p=odds / odds.sum())
             made.append(
-                Lot(
+                FieldLot(
                     shapely.box(west, south, east, north),
                     int(kinds[i, j]),
                     bool(rng.integers(2)),

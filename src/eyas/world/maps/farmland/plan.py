@@ -13,7 +13,7 @@ from eyas.state.roads import RoadNetwork
 from eyas.world.build.materials import material
 from eyas.world.build.placed import Placed
 from eyas.world.land.plain import rectangle
-from eyas.world.maps.farmland.fields import CROPS, VERGE, Lot, lay_out
+from eyas.world.maps.farmland.fields import CROPS, VERGE, FieldLot, lay_out
 from eyas.world.maps.farmland.roads import NAME, ROAD_WIDTH, road_graph
 from eyas.world.plan.library import STREET_KINDS
 from eyas.world.plan.plan import (
@@ -21,12 +21,12 @@ from eyas.world.plan.plan import (
     Far,
     Field,
     Flat,
-    Ground,
-    Kind,
+    GroundCover,
     LampLight,
     MapPlan,
     Paint,
-    Streets,
+    Roadway,
+    ThingKind,
     things,
 )
 from eyas.world.plants.gardens import scattered
@@ -81,11 +81,11 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
         name=NAME,
         seed=seed,
         size=FLOOR,
-        library=(Kind(name="bale"), *STREET_KINDS),
+        library=(ThingKind(name="bale"), *STREET_KINDS),
         layers=(
-            Streets(area=roads, paint=Paint(crossings=0), wear=Chance(stream="farmland road wear")),
-            Ground(pieces=tuple(fields)),
-            Ground(pieces=(soil, _far_fields())),
+            Roadway(area=roads, paint=Paint(crossings=0), wear=Chance(stream="farmland road wear")),
+            GroundCover(pieces=tuple(fields)),
+            GroundCover(pieces=(soil, _far_fields())),
             things(_bales(harvested, CROPS[2].height, stream(seed, "farmland bales")), ("bale",)),
             things(_lamps(network, seed)),
         ),
@@ -94,7 +94,7 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
     )
 
 
-def _field(lot: Lot, area: shapely.Polygon) -> Field:
+def _field(lot: FieldLot, area: shapely.Polygon) -> Field:
     crop = CROPS[lot.crop]
     summer, winter = (_shaded(crop.look(season), lot.shade) for season in Season)
     return Field(area=area, z=crop.height, cover=summer, winter=winter, north=lot.north)

@@ -14,12 +14,12 @@ from eyas.world.build.materials import FACADES, material
 from eyas.world.build.millimetres import rounded, unit
 from eyas.world.land.plain import blob
 from eyas.world.maps.lake.roads import COLUMNS, ROWS, Lattice, lattice
-from eyas.world.plan.plan import Shell
+from eyas.world.plan.plan import BuildingPart
 from eyas.world.plants.forest import SPECIES
 from eyas.world.roads.areas import blocks, road_area, streets
 from eyas.world.street.car_parks import CarPark, place_car_parks
 
-__all__ = ["EXTENT", "FLOOR", "Layout", "Strip", "lay_out"]
+__all__ = ["EXTENT", "FLOOR", "LakeLayout", "Strip", "lay_out"]
 
 FLOOR = (5000.0, 5000.0)
 """Extent of the floor, as in the original [m]."""
@@ -52,7 +52,7 @@ class Strip:
 
 
 @dataclass(frozen=True, slots=True)
-class Layout:
+class LakeLayout:
     """Positions in plan view."""
 
     roads: shapely.Geometry
@@ -63,10 +63,10 @@ class Layout:
     """[m]"""
     strips: list[Strip]
     car_parks: list[CarPark]
-    houses: list[Shell]
+    houses: list[BuildingPart]
 
 
-def lay_out(network: RoadNetwork, seed: int) -> Layout:
+def lay_out(network: RoadNetwork, seed: int) -> LakeLayout:
     """Return the plan.
 
     Args:
@@ -99,7 +99,7 @@ def lay_out(network: RoadNetwork, seed: int) -> Layout:
     covered = shapely.union_all([covered, *ponds])
     taken = shapely.union(shapely.buffer(covered, 4.0), shapely.buffer(roads, 4.2))
     houses = _houses(network, taken, stream(seed, "lake houses"))
-    return Layout(roads, ponds, lakes, strips, parks, houses)
+    return LakeLayout(roads, ponds, lakes, strips, parks, houses)
 
 
 def _cells(grid: Lattice) -> list[tuple[int, int]]:
@@ -146,7 +146,9 @@ def _odd_ponds(
     return made
 
 
-def _houses(network: RoadNetwork, taken: shapely.Geometry, rng: np.random.Generator) -> list[Shell]:
+def _houses(
+    network: RoadNetwork, taken: shapely.Geometry, rng: np.random.Generator
+) -> list[BuildingPart]:
     """Return houses beside roads, most of them along the diagonal main road."""
     sites = []
     for street in streets(network):
@@ -157,7 +159,7 @@ def _houses(network: RoadNetwork, taken: shapely.Geometry, rng: np.random.Genera
             )
             far = abs(here[0] - here[1] - 330.0) + 300.0 * rng.random() - 0.4 * here[1]
             sites.append((far, here, unit(there - here)))
-    made: list[Shell] = []
+    made: list[BuildingPart] = []
     shapely.prepare(taken)
     shapes: list[shapely.Polygon] = []
     for _, here, onwards in sorted(sites, key=lambda site: float(site[0])):
@@ -181,10 +183,10 @@ def _footprint(here: Points, onwards: Points, rng: np.random.Generator) -> Point
     )
 
 
-def _house(outline: Points, rng: np.random.Generator) -> Shell:
+def _house(outline: Points, rng: np.random.Generator) -> BuildingPart:
     sloping = bool(rng.random() < 0.6)
     light = float(rng.uniform(0.82, 1.0))
-    return Shell(
+    return BuildingPart(
         outline=shapely.Polygon(outline),
         bottom=FLOOR_HEIGHT,
         height=float(

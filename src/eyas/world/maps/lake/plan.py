@@ -14,7 +14,7 @@ from eyas.world.build.heights import FLOOR_HEIGHT, KERB_HEIGHT
 from eyas.world.build.materials import material
 from eyas.world.build.placed import Placed
 from eyas.world.land import ground
-from eyas.world.maps.lake.layout import EXTENT, FLOOR, MIXED, Layout, Strip, lay_out
+from eyas.world.maps.lake.layout import EXTENT, FLOOR, MIXED, LakeLayout, Strip, lay_out
 from eyas.world.maps.lake.roads import NAME
 from eyas.world.plan.library import CAR_KINDS, STREET_KINDS
 from eyas.world.plan.plan import (
@@ -23,12 +23,12 @@ from eyas.world.plan.plan import (
     Chance,
     Far,
     Flat,
-    Ground,
-    Kind,
+    GroundCover,
     Layer,
     MapPlan,
     Paint,
-    Streets,
+    Roadway,
+    ThingKind,
     state_of,
     things,
 )
@@ -91,33 +91,33 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
     )
 
 
-def _roads(district: Layout) -> list[Layer]:
+def _roads(district: LakeLayout) -> list[Layer]:
     """Return the roads with their kerbs, and the car parks."""
     bays = tuple(line for park in district.car_parks for line in park.lines)
     kerbs = Flat(area=_kerbs(district), z=KERB_HEIGHT, cover=_KERB, sides=_KERB)
     return [
-        Streets(
+        Roadway(
             area=district.roads,
             paint=Paint(crossings=_ZEBRAS_EVERY, shapes=bays),
             wear=Chance(stream="lake road wear"),
             apart=2.0,
         ),
-        Ground(kind=ObjectClass.ROAD, pieces=(ground.asphalt(_lots(district), light=True),)),
-        Ground(kind=ObjectClass.PAVEMENT, pieces=(kerbs,)),
+        GroundCover(kind=ObjectClass.ROAD, pieces=(ground.asphalt(_lots(district), light=True),)),
+        GroundCover(kind=ObjectClass.PAVEMENT, pieces=(kerbs,)),
     ]
 
 
-def _lots(district: Layout) -> shapely.Geometry:
+def _lots(district: LakeLayout) -> shapely.Geometry:
     areas = shapely.union_all([park.area for park in district.car_parks])
     return shapely.difference(areas, district.roads)
 
 
-def _kerbs(district: Layout) -> shapely.Geometry:
+def _kerbs(district: LakeLayout) -> shapely.Geometry:
     beside = shapely.buffer(district.roads, _KERB_WIDTH, join_style="mitre")
     return shapely.difference(beside, shapely.union(district.roads, _lots(district)))
 
 
-def _ground(district: Layout) -> list[Layer]:
+def _ground(district: LakeLayout) -> list[Layer]:
     """Return water with its shores, the floors of the forests, the feet of houses, the soil."""
     paved = shapely.union_all([district.roads, _lots(district), _kerbs(district)])
     water = [*district.ponds, *district.lakes]
@@ -139,18 +139,18 @@ def _ground(district: Layout) -> list[Layer]:
     ]
     far = Far(rule="plain", covers=(_SOIL,))
     wet = tuple(_wide(area, _WATER) for area in water)
-    return [Ground(kind=ObjectClass.WATER, pieces=wet), Ground(pieces=(*pieces, far))]
+    return [GroundCover(kind=ObjectClass.WATER, pieces=wet), GroundCover(pieces=(*pieces, far))]
 
 
 def _wide(area: shapely.Geometry, cover: Material) -> Flat:
     return Flat(area=area, cover=cover, cells="wide")
 
 
-def _kinds(strip: Strip) -> list[Kind]:
+def _kinds(strip: Strip) -> list[ThingKind]:
     """Return the stands of a strip of forest."""
     name = "mixed" if strip.kind == MIXED else SPECIES[strip.kind].name
     return [
-        Kind(name=f"{name} {k}", make="stand", variant=strip.kind, chance="forests")
+        ThingKind(name=f"{name} {k}", make="stand", variant=strip.kind, chance="forests")
         for k in range(_STANDS)
     ]
 
@@ -167,7 +167,7 @@ def _stands(strip: Strip, rng: np.random.Generator) -> list[Placed]:
     return made
 
 
-def _parked(district: Layout, rng: np.random.Generator) -> Sequence[Placed]:
+def _parked(district: LakeLayout, rng: np.random.Generator) -> Sequence[Placed]:
     made = []
     for park in district.car_parks:
         for x, y, turn in park.bays.tolist():

@@ -17,15 +17,15 @@ from eyas.world.plan.plan import (
     Chance,
     Far,
     Flat,
-    Ground,
+    GroundCover,
     Layer,
     MapPlan,
     Paint,
-    Streets,
-    Stripe,
+    Roadway,
 )
 from eyas.world.roads.areas import corridors, streets
 from eyas.world.roads.curves import rounded_kerbs
+from eyas.world.roads.painting import Stripe
 
 __all__ = ["FLOOR", "make_plan", "paved"]
 
@@ -52,7 +52,7 @@ def make_plan(skin_name: str, network: RoadNetwork, seed: int) -> MapPlan:
     """
     skin, roads = SKINS[skin_name], paved(network)
     layers: list[Layer] = [
-        Streets(
+        Roadway(
             area=roads,
             paint=Paint(crossings=0, lines=tuple(_loop_lines(network))),
             wear=Chance(stream="simpleway road wear"),
@@ -62,7 +62,7 @@ def make_plan(skin_name: str, network: RoadNetwork, seed: int) -> MapPlan:
     if skin.bars:
         bars = sand_bars(road_lines(seed), roads, stream(seed, "simpleway bars"))
         flat = (Flat(area=bar, z=_BAR_HEIGHT, cover=skin.ground, cells="whole") for bar in bars)
-        layers.append(Ground(pieces=tuple(flat)))
+        layers.append(GroundCover(pieces=tuple(flat)))
     rest, banks = shapely.difference(rectangle(*FLOOR), roads), shapely.buffer(roads, _BANK)
     white: list[Flat] = []
     for patch in skin.patches(road_lines(seed), stream(seed, "simpleway strips")):
@@ -73,17 +73,17 @@ def make_plan(skin_name: str, network: RoadNetwork, seed: int) -> MapPlan:
             continue
         water = patch.cover.surface == Surface.WATER
         kind = ObjectClass.WATER if water else ObjectClass.GROUND
-        layers.append(Ground(kind=kind, pieces=(piece,)))
+        layers.append(GroundCover(kind=kind, pieces=(piece,)))
         rest = shapely.difference(rest, area)
     snow = None if skin.bars else skin.winter  # sand stays bare
     far = Far(rule="plain", covers=(skin.ground,), winter=(snow,) if snow else ())
     bare: tuple[Flat | Far, ...] = (*_spotted(rest, skin, snow, seed), far)
-    layers.append(Ground(season="summer" if white else None, pieces=bare))
+    layers.append(GroundCover(season="summer" if white else None, pieces=bare))
     if white:
-        layers += [Ground(season="winter", pieces=(piece,)) for piece in white]
+        layers += [GroundCover(season="winter", pieces=(piece,)) for piece in white]
         rest = reduce(shapely.difference, (piece.area for piece in white), rest)
         bare = (*_spotted(rest, skin, snow, seed), far)
-        layers.append(Ground(season="winter", pieces=bare))
+        layers.append(GroundCover(season="winter", pieces=bare))
     return MapPlan(
         name="simpleway", seed=seed, size=FLOOR, layers=tuple(layers), horizon=skin.horizon
     )

@@ -28,8 +28,7 @@ def _plan(network: "RoadNetwork", seed: int) -> "MapPlan":
 def _bare_plan(network: "RoadNetwork", seed: int) -> "MapPlan":
     from eyas.world.maps.bare import make_plan
     from eyas.world.maps.village.layout import FLOOR
-    from eyas.world.maps.village.looks import GRASS
-    from eyas.world.maps.village.plan import VALLEY
+    from eyas.world.maps.village.plan import GRASS, VALLEY
 
     return make_plan("village-bare", network, seed, FLOOR, GRASS, VALLEY, "double yellow")
 

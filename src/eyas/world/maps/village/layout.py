@@ -21,7 +21,7 @@ from eyas.world.plants import trees
 from eyas.world.roads.areas import Street, blocks, road_area, streets
 from eyas.world.roads.tunnels import Tunnel
 
-__all__ = ["EXTENT", "FLOOR", "HALF", "Layout", "lay_out"]
+__all__ = ["EXTENT", "FLOOR", "HALF", "VillageLayout", "lay_out"]
 
 FLOOR = (982.0, 998.0)
 """Extent of the floor [m]."""
@@ -54,7 +54,7 @@ Points = NDArray[np.float64]
 
 
 @dataclass(frozen=True, slots=True)
-class Layout:
+class VillageLayout:
     """Positions in plan view."""
 
     roads: shapely.Geometry
@@ -85,7 +85,7 @@ class Layout:
         return shapely.union_all([tunnel.area for tunnel in self.tunnels])
 
 
-def lay_out(network: RoadNetwork, seed: int) -> Layout:
+def lay_out(network: RoadNetwork, seed: int) -> VillageLayout:
     """Return the plan of a village.
 
     Args:
@@ -110,7 +110,7 @@ def lay_out(network: RoadNetwork, seed: int) -> Layout:
     keep = [shapely.buffer(walls, 7.0), shapely.buffer(lake, 6.0)]
     keep += [shapely.buffer(tunnel.passage, 2.0) for tunnel in tunnels]
     hills = _hills(roads, closed, keep, stream(seed, "village hills"))
-    return Layout(roads, closed, lake, tunnels, cottages, trunks, gantries, hills)
+    return VillageLayout(roads, closed, lake, tunnels, cottages, trunks, gantries, hills)
 
 
 def _lake(block: shapely.Polygon, rng: np.random.Generator) -> shapely.Polygon:

@@ -8,28 +8,28 @@ import shapely
 from eyas.core import exact
 from eyas.core.rng import stream
 from eyas.state.lighting import Horizon
+from eyas.state.mesh import Material, Surface
 from eyas.state.roads import RoadNetwork
 from eyas.state.scene import ObjectClass
 from eyas.world.build.heights import FLOOR_HEIGHT
-from eyas.world.build.materials import material, without_snow
+from eyas.world.build.materials import facade, material, without_snow
 from eyas.world.build.placed import Placed
 from eyas.world.land.outlines import blob
 from eyas.world.land.rising import relief_of
-from eyas.world.maps.village.layout import EXTENT, FLOOR, HALF, Layout, lay_out
-from eyas.world.maps.village.looks import GRASS, HILLS, HOUSES, MEADOWS, ROCK, SHORE, VERGE, WATER
+from eyas.world.maps.village.layout import EXTENT, FLOOR, HALF, VillageLayout, lay_out
 from eyas.world.maps.village.roads import NAME
 from eyas.world.plan.library import STREET_KINDS, houses, plant_kinds
 from eyas.world.plan.plan import (
     Chance,
     Far,
     Flat,
-    Ground,
-    Kind,
+    GroundCover,
+    Hills,
     Layer,
     MapPlan,
     Paint,
-    Relief,
-    Streets,
+    Roadway,
+    ThingKind,
     Tunnels,
     state_of,
     things,
@@ -40,7 +40,34 @@ from eyas.world.street import gantries
 from eyas.world.street.lamps import lamps_along
 from eyas.world.street.signals import signal_places, signals_along
 
-__all__ = ["VALLEY", "make_plan"]
+__all__ = ["GRASS", "VALLEY", "make_plan"]
+
+GRASS = material("lawn", (0.61, 0.74, 0.74))
+"""The valley."""
+
+_MEADOWS = (material("lawn", (0.70, 0.76, 0.66)), material("lawn", (0.54, 0.68, 0.69)))
+"""Patches of drier and of lusher grass."""
+
+_HILLS = (
+    material("lawn", (0.62, 0.77, 0.77)),
+    material("lawn", (0.66, 0.82, 0.84)),
+    material("lawn", (0.70, 0.87, 0.91)),
+    material("lawn", (0.75, 0.91, 0.96)),
+)
+"""Greens of the hills, from the foot up."""
+
+_VERGE = material("roof_gravel", (0.86, 0.82, 0.74))
+_SHORE = material("sand", (0.80, 0.78, 0.70))
+_ROCK = material("stone", (0.50, 0.52, 0.47))
+"""Inside of the tunnels."""
+
+_WATER = Material("water", (0.20, 0.44, 0.72), Surface.WATER)
+
+_HOUSES = (
+    (facade("facade_concrete", (1.0, 1.0, 1.0)), material("roof_tiles", (1.0, 0.96, 0.94))),
+    (facade("facade_plaster", (0.88, 0.94, 1.0)), material("roof_tiles", (0.96, 0.88, 0.84))),
+    (facade("facade_concrete", (1.0, 0.99, 0.97)), material("roof_tiles", (1.0, 0.92, 0.86))),
+)
 
 VALLEY = Horizon(name="village", height=0.05, woods=0.6)
 """What stands beyond the hills."""
@@ -71,22 +98,22 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
     valley = lay_out(network, seed)
     hills = _hills(valley)
     rising = relief_of(hills, seed).area
-    kinds, placed = houses(valley.cottages, HOUSES)
+    kinds, placed = houses(valley.cottages, _HOUSES)
     rng = stream(seed, "village plants")
     plants = _plants(valley, rising, rng)
     signs = _signs(valley, stream(seed, "village signs"))
     lamps, taken = _LAMPS - 2 * len(valley.tunnels), _taken(valley, network)
     tunnels = Tunnels(
         items=tuple(valley.tunnels),
-        outside=HILLS[1],
-        inside=ROCK,
+        outside=_HILLS[1],
+        inside=_ROCK,
         chance=Chance(stream="village mounds"),
     )
     gantry_kinds = (
-        Kind(name=f"gantry {k}", make="gantry", variant=k) for k in range(gantries.KINDS)
+        ThingKind(name=f"gantry {k}", make="gantry", variant=k) for k in range(gantries.KINDS)
     )
     cones = (
-        Kind(name=name, make="cone tree", variant=k, chance="plants")
+        ThingKind(name=name, make="cone tree", variant=k, chance="plants")
         for k, name in enumerate(_CONES)
     )
     return MapPlan(
@@ -109,24 +136,24 @@ def make_plan(network: RoadNetwork, seed: int) -> MapPlan:
     )
 
 
-def _hills(valley: Layout) -> Relief:
+def _hills(valley: VillageLayout) -> Hills:
     """Return the hills as facets; each has one of a few greens, lighter and drier higher up."""
     passages = [shapely.buffer(tunnel.passage, 0.5) for tunnel in valley.tunnels]
     trunks = shapely.buffer(shapely.union_all(shapely.points(valley.trees)), 1.5)
     flat = [shapely.buffer(valley.roads, 6.0), shapely.buffer(valley.walls, 4.0)]
-    return Relief(
+    return Hills(
         mounds=tuple(valley.hills),
         flat=shapely.union_all([*flat, shapely.buffer(valley.lake, 4.0), trunks, *passages]),
         half=(_CORE, HALF),
         spacing=_FACETS,
         rough=_ROUGH,
         chance=Chance(stream="village facets"),
-        covers=HILLS,
+        covers=_HILLS,
         shades=Chance(stream="village grass"),
     )
 
 
-def _ground(valley: Layout, hills: shapely.Geometry, seed: int) -> list[Layer]:
+def _ground(valley: VillageLayout, hills: shapely.Geometry, seed: int) -> list[Layer]:
     roads, lake = valley.roads, valley.lake
     passages = shapely.union_all([tunnel.passage for tunnel in valley.tunnels])
     beside = shapely.buffer(roads, 1.4, quad_segs=4)
@@ -138,29 +165,29 @@ def _ground(valley: Layout, hills: shapely.Geometry, seed: int) -> list[Layer]:
     lawn = shapely.difference(EXTENT, shapely.union_all([roads, paved, verge, shore, lake, rest]))
     pieces: tuple[Flat | Far, ...] = (
         *_meadow(lawn, stream(seed, "village meadow")),
-        Flat(area=shapely.intersection(verge, passages), cover=without_snow(VERGE)),
-        Flat(area=shapely.difference(verge, passages), cover=VERGE),
-        Flat(area=shore, cover=SHORE, sides=SHORE, foot=FLOOR_HEIGHT - 0.3),
+        Flat(area=shapely.intersection(verge, passages), cover=without_snow(_VERGE)),
+        Flat(area=shapely.difference(verge, passages), cover=_VERGE),
+        Flat(area=shore, cover=_SHORE, sides=_SHORE, foot=FLOOR_HEIGHT - 0.3),
         Far(rule="plain", covers=(GRASS,), beyond=(2 * HALF, 2 * HALF)),
     )
     slabs = Flat(area=paved, cover=material("paving", (0.95, 0.94, 0.92)))
-    water = Flat(area=lake, z=FLOOR_HEIGHT - 0.2, cover=WATER)
+    water = Flat(area=lake, z=FLOOR_HEIGHT - 0.2, cover=_WATER)
     return [
-        Streets(
+        Roadway(
             area=roads,
             paint=Paint(centre="double yellow", crossings=0),
             wear=Chance(stream="village road wear"),
         ),
-        Ground(pieces=pieces),
-        Ground(kind=ObjectClass.PAVEMENT, pieces=(slabs,)),
-        Ground(kind=ObjectClass.WATER, pieces=(water,)),
+        GroundCover(pieces=pieces),
+        GroundCover(kind=ObjectClass.PAVEMENT, pieces=(slabs,)),
+        GroundCover(kind=ObjectClass.WATER, pieces=(water,)),
     ]
 
 
 def _meadow(lawn: shapely.Geometry, rng: np.random.Generator) -> list[Flat]:
     """Return the grass of the valley, with drier and lusher patches."""
     made = []
-    for cover in MEADOWS:
+    for cover in _MEADOWS:
         spots = rng.uniform(-_CORE, _CORE, (_PATCHES, 2))
         shapes = [
             blob(spot, (rng.uniform(8.0, 34.0), rng.uniform(6.0, 16.0)), rng.uniform(0, 3.1), rng)
@@ -172,7 +199,7 @@ def _meadow(lawn: shapely.Geometry, rng: np.random.Generator) -> list[Flat]:
     return [Flat(area=lawn, cover=GRASS), *made]
 
 
-def _paving(valley: Layout) -> shapely.Geometry:
+def _paving(valley: VillageLayout) -> shapely.Geometry:
     """Return the paving round the houses and from their doors to the roads [m]."""
     parts = []
     for house in valley.cottages:
@@ -184,7 +211,9 @@ def _paving(valley: Layout) -> shapely.Geometry:
     return shapely.difference(shapely.union_all(parts), valley.roads)
 
 
-def _plants(valley: Layout, hills: shapely.Geometry, rng: np.random.Generator) -> list[Placed]:
+def _plants(
+    valley: VillageLayout, hills: shapely.Geometry, rng: np.random.Generator
+) -> list[Placed]:
     """Return the rows of trees, hedges round the gardens, and bushes in the valley."""
     made = []
     for x, y in valley.trees.tolist():
@@ -214,7 +243,7 @@ def _plants(valley: Layout, hills: shapely.Geometry, rng: np.random.Generator) -
     return made
 
 
-def _signs(valley: Layout, rng: np.random.Generator) -> list[Placed]:
+def _signs(valley: VillageLayout, rng: np.random.Generator) -> list[Placed]:
     """Return the gantries with their boards."""
     made = []
     for index, (place, turn) in enumerate(valley.gantries):
@@ -223,7 +252,7 @@ def _signs(valley: Layout, rng: np.random.Generator) -> list[Placed]:
     return made
 
 
-def _taken(valley: Layout, network: RoadNetwork) -> shapely.Geometry:
+def _taken(valley: VillageLayout, network: RoadNetwork) -> shapely.Geometry:
     """Return the area where something already stands or drives, in plan view."""
     poles = [place for place, _ in signal_places(network)]
     signs = [place for place, _ in valley.gantries]

@@ -1,0 +1,109 @@
+"""What a run tells of itself: evaluation with its best actions, and curves for TensorBoard."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import torch
+from torch import Tensor
+
+from eyas.envs.config import EnvConfig
+from eyas.evaluation.delay import delay_from
+from eyas.evaluation.episode import EpisodeSpec, Place, episodes_of
+from eyas.evaluation.flight import BatchFlight
+from eyas.evaluation.policies.policy import Decision, PolicyInput, Start
+from eyas.evaluation.protocol import Protocol, protocol_named
+from eyas.learning.network import TrackingNetwork
+from eyas.settings.config import EyasConfig
+from eyas.world.maps import MAPS
+
+__all__ = ["NO_SCORES", "EvaluationScores", "TensorBoardWriter", "evaluated", "evaluation_episodes"]
+
+
+class EvaluationScores(NamedTuple):
+    """Means over the episodes, see `eyas.evaluation.record.Record`."""
+
+    cr: float
+    tsr: float
+
+
+NO_SCORES = EvaluationScores(float("nan"), float("nan"))
+"""Of a block that is not followed by an evaluation."""
+
+
+class _NetworkPolicy:
+    """The network as a policy."""
+
+    sampled = False
+
+    def __init__(self, network: TrackingNetwork, env: EnvConfig) -> None:
+        self.env = env
+        self._network = network
+        self._state = torch.zeros(0)
+
+    def begin(self, start: Start) -> None:
+        self._state = torch.zeros(len(start.seeds), self._network.shape.state)
+
+    @torch.no_grad()
+    def act(self, sight: PolicyInput) -> Decision:
+        assert isinstance(sight.observation, np.ndarray)
+        logits, _, memory = self._network(torch.from_numpy(sight.observation), self._state)
+        action: Tensor = logits.argmax(1)
+        deciding = torch.from_numpy(sight.deciding)[:, None]
+        after = self._network.next_state(action, memory)
+        self._state = torch.where(deciding, after, self._state)
+        return Decision(action.numpy())
+
+
+def evaluated(network: TrackingNetwork, config: EyasConfig) -> EvaluationScores:
+    """Return how the network does in the episodes of `train.evaluation`."""
+    episodes, protocol = evaluation_episodes(config)
+    env = config.env.model_copy(update={"mixture": ()})
+    flight = BatchFlight(episodes, protocol, _NetworkPolicy(network, env), delay_from("0"))
+    records = [record for ended in flight.fly() for record in ended]
+    means = [
+        np.mean([getattr(record, name) for record in records]) for name in EvaluationScores._fields
+    ]
+    return EvaluationScores(*(round(float(mean), 6) for mean in means))
+
+
+def evaluation_episodes(config: EyasConfig) -> tuple[list[EpisodeSpec], Protocol]:
+    """Return the episodes of `train.evaluation`, and their protocol.
+
+    Raises:
+        UnknownNameError: There is no such protocol, or no such weather on the map.
+    """
+    asked, world = config.train.evaluation, config.world
+    protocol = protocol_named(asked.protocol, "train.evaluation.protocol")
+    weathers = asked.weathers or (world.weather,)
+    for weather in weathers:
+        MAPS.get(world.map).light(weather)
+    places = [Place(world.map, weather, config.target) for weather in weathers]
+    return episodes_of(places, protocol.directions, asked.episodes, asked.seed), protocol
+
+
+class TensorBoardWriter:
+    """Writes numbers for TensorBoard, if it is installed.
+
+    Args:
+        folder: Where its files are.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        try:
+            from torch.utils.tensorboard import SummaryWriter
+        except ImportError:  # curve.csv has the same
+            self._writer = None
+        else:
+            self._writer = SummaryWriter
+        self._folder = folder
+
+    def add(self, decisions: int, values: Mapping[str, float]) -> None:
+        """Add a point to each curve."""
+        if self._writer is None:
+            return
+        with self._writer(str(self._folder), purge_step=decisions) as writer:
+            for name, value in values.items():
+                if name != "decisions":
+                    writer.add_scalar(name, value, decisions)
