@@ -9,7 +9,7 @@ from eyas.core.clock import PHYSICS_STEP
 from eyas.core.pinhole import field_along
 from eyas.mesh.assembly import concatenate, transformed
 from eyas.render.pack.geometry import build_geometry
-from eyas.render.renderer import Renderer, build_renderer
+from eyas.render.renderer import CpuRenderer, build_renderer
 from eyas.render.textures.library import build_textures
 from eyas.sim.assets import Assets, load_assets
 from eyas.sim.build import build_simulation
@@ -113,7 +113,7 @@ def _library(assets: Assets) -> PartLibrary:
     return part_library(tuple(KINDS[kind] for kind in kinds))
 
 
-def finest_renderer(assets: Assets) -> Renderer:
+def finest_renderer(assets: Assets) -> CpuRenderer:
     """Return a renderer that draws what the peers draw: all at the finest level of detail."""
     scene, library = assets.scene, _library(assets)
     levels = tuple(levels[:1] for levels in scene.fixtures.levels)

@@ -21,7 +21,7 @@ from eyas.render.bake.tracks import TrackMap
 from eyas.render.kernels.visibility.passes import SMALLEST_DETAIL
 from eyas.render.pack.geometry import build_geometry
 from eyas.render.pack.light import build_light
-from eyas.render.renderer import Renderer
+from eyas.render.renderer import CpuRenderer
 from eyas.render.textures.library import build_textures
 from eyas.sim.scenes import load_scene
 from eyas.state.draw import DrawList, DrawStage, PartLibrary, Picture, Views
@@ -150,7 +150,7 @@ def _print_facing(scene: Scene) -> None:
     print(f"  triangles that face the horizon: {listed}")
 
 
-def _measured(name: str, renderer: Renderer, views: Views) -> None:
+def _measured(name: str, renderer: CpuRenderer, views: Views) -> None:
     """Print the CPU time of a picture, up to the end of each stage."""
     count = len(views.position)
     picture, nothing = Picture.create(count, _SIZE, _SIZE), DrawList.create(1, 1)
@@ -184,8 +184,8 @@ def _report(name: str, scene: Scene) -> None:
         print(f"  shadows: {held:.1f} MiB, texels of {shadows.texel:.3f} m")
         print(f"  baked in {baked - packed:.1f} s CPU")
         print(f"  ambient: {ambient.openness.nbytes / 2**20:.1f} MiB in {opened - baked:.1f} s CPU")
-        light = build_light(scene, lighting, shadows, ambient, TrackMap.none(), geometry)
-        renderer = Renderer(geometry, light)
+        light = build_light(scene, lighting, shadows, ambient, TrackMap.empty(), geometry)
+        renderer = CpuRenderer(geometry, light)
         _measured("  street, 84x84", renderer, street_views(scene))
         _measured("  street, pitch 0.3", renderer, street_views(scene, pitch=0.3))
         _measured("  horizon", renderer, horizon_views(scene))

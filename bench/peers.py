@@ -21,7 +21,7 @@ from city import City, finest_renderer, load_city
 from PIL import Image
 
 from eyas.core.machine import describe_machine
-from eyas.render.renderer import Renderer
+from eyas.render.renderer import CpuRenderer
 from eyas.sim.assets import load_assets
 from eyas.sim.config import SimConfig
 from eyas.state.draw import DrawList, Picture
@@ -44,7 +44,7 @@ class Drawer(Protocol):
 class Ours:
     """Eyas."""
 
-    def __init__(self, city: City, side: int, name: str, renderer: Renderer) -> None:
+    def __init__(self, city: City, side: int, name: str, renderer: CpuRenderer) -> None:
         self.name, self._renderer, self._views = name, renderer, city.views
         count = sum(map(len, city.slots))
         self._movers = DrawList.create(1, count)

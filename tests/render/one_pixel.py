@@ -6,9 +6,9 @@ from eyas.render.kernels.light.tone import tone_bytes
 from eyas.render.kernels.pixels import pack
 from eyas.render.kernels.rays import ray_of, rays_of
 from eyas.render.kernels.scalars import f4, i4, i8, u4
-from eyas.render.kernels.sky.backdrop import sky_pixel
+from eyas.render.kernels.sky.radiance import sky_pixel
 from eyas.render.kernels.surface.attributes import no_frame
-from eyas.render.kernels.surface.points import instance_frame
+from eyas.render.kernels.surface.band import instance_frame
 from eyas.render.kernels.surface.shade import shade_point
 from eyas.render.kernels.visibility.key import distance_inverse, drawn_of, tag_of, triangle_of
 

@@ -17,7 +17,7 @@ from eyas.render.kernels.scalars import u4
 from eyas.render.kernels.visibility.transform import view_of
 from eyas.sensors.config import CameraConfig, MountConfig
 from eyas.sensors.mount import CARRIED, mount_of
-from eyas.sim.step import Orders, StepState, Surroundings, step_of
+from eyas.sim.step import Orders, StepState, StepSurroundings, step_of
 from eyas.state.draw import DrawStage
 from eyas.state.motion import SAMPLE, Motion
 from eyas.state.snapshot import Snapshot
@@ -101,7 +101,7 @@ FLOWN, CAR = (
 )
 def test_the_step_compiles_for_cuda(tracker, mounted, kernel):
     motion = Motion(np.zeros((2, 1), SAMPLE), np.zeros(1, np.int32), 10.0, 0.0)
-    around = Surroundings(motion, Terrain.flat(0.0))
+    around = StepSurroundings(motion, Terrain.flat(0.0))
     rules = make_rules(RewardConfig(), DoneConfig(), CameraConfig())
     memory, mount = tracker.memory(2, Terrain.flat(0.0)), mount_of(MountConfig())
     state = StepState(Snapshot.create(2), memory, around, rules, 0.02, mount, 1)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from eyas.lanes import kernel
-from eyas.render.kernels.surface.marking import painted_share
+from eyas.render.kernels.surface.shade import painted_share
 from eyas.state.mesh import MARGIN
 
 from .small_city import DAY, GROUND, LINE, ROAD, floor, looking, scene_of, with_line

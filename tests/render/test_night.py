@@ -7,7 +7,7 @@ import pytest
 import shapely
 
 from eyas.mesh.flat import flat_polygon
-from eyas.render.pack.lamp_grid import lamp_grid
+from eyas.render.pack.light import lamp_grid
 from eyas.sim.assets import load_assets
 from eyas.state.draw import DrawList, PartLibrary, Picture
 from eyas.state.scene import Lamps

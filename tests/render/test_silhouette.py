@@ -4,7 +4,7 @@ import numpy as np
 
 from eyas.mesh.assembly import concatenate
 from eyas.mesh.solids import box
-from eyas.render.pack.silhouette import silhouette
+from eyas.render.pack.boxes import silhouette
 from eyas.state.mesh import Material
 
 

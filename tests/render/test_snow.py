@@ -10,7 +10,7 @@ from eyas.mesh.solids import box
 from eyas.render.bake.tracks import TRACK_ASIDE, track_map
 from eyas.render.kernels.surface.snow import Bed
 from eyas.render.pack.geometry import build_geometry
-from eyas.render.pack.snow import crown_middles, snow_beds
+from eyas.render.pack.materials import crown_middles, snow_beds
 from eyas.render.renderer import build_renderer
 from eyas.state.draw import PartLibrary
 from eyas.state.mesh import Material, Surface

@@ -8,7 +8,7 @@ from eyas.lanes import kernel
 from eyas.lanes.vector import lane, splat
 from eyas.mesh.flat import flat_polygon
 from eyas.render.kernels.scalars import i4
-from eyas.render.kernels.surface.water import water_slope
+from eyas.render.kernels.surface.shade import water_slope
 from eyas.render.pack.geometry import build_geometry
 from eyas.render.renderer import build_renderer
 from eyas.render.textures.library import build_textures

@@ -101,7 +101,7 @@ def draw_nothing() -> None:
     ambient = AmbientMap(np.zeros((1, 1), np.uint16), np.zeros(4))
     black = (0.0, 0.0, 0.0)
     lighting = Lighting((0.0, 0.0, 1.0), black, black, black, black, black, black, 0.0)
-    light = build_light(scene, lighting, ShadowMap.none(), ambient, TrackMap.none(), geometry)
+    light = build_light(scene, lighting, ShadowMap.empty(), ambient, TrackMap.empty(), geometry)
     views = Views(
         position=np.zeros((1, 3)),
         rotation=np.eye(3)[None],

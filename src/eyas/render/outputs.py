@@ -7,9 +7,9 @@ from eyas.render.kernels.bundles import Job, Output
 from eyas.state.draw import Picture
 from eyas.state.scene import ACTOR_OBJECT
 
-__all__ = ["NOTHING", "measured_alone", "picture_size", "wanted_output", "write_measured"]
+__all__ = ["NO_OUTPUT", "measured_alone", "picture_size", "wanted_output", "write_measured"]
 
-NOTHING = Output(
+NO_OUTPUT = Output(
     rgb=np.empty((0, 0, 0, 3), np.uint8),
     depth=np.empty((0, 0, 0), np.float32),
     object_id=np.empty((0, 0, 0), np.int32),
@@ -27,12 +27,12 @@ def wanted_output(picture: Picture) -> Output:
     actors = picture.actor_box if picture.actor_pixels is None else picture.actor_pixels
     subject = picture.subject_box is not None or picture.subject_pixels is not None
     return Output(
-        rgb=NOTHING.rgb if picture.rgb is None else picture.rgb,
-        depth=NOTHING.depth if picture.depth is None else picture.depth,
-        object_id=NOTHING.object_id if picture.object_id is None else picture.object_id,
-        class_id=NOTHING.class_id if picture.class_id is None else picture.class_id,
-        subject=np.empty((1, 6), np.int32) if subject and actors is None else NOTHING.subject,
-        actor=NOTHING.actor if actors is None else np.empty((1, actors.shape[1], 6), np.int32),
+        rgb=NO_OUTPUT.rgb if picture.rgb is None else picture.rgb,
+        depth=NO_OUTPUT.depth if picture.depth is None else picture.depth,
+        object_id=NO_OUTPUT.object_id if picture.object_id is None else picture.object_id,
+        class_id=NO_OUTPUT.class_id if picture.class_id is None else picture.class_id,
+        subject=np.empty((1, 6), np.int32) if subject and actors is None else NO_OUTPUT.subject,
+        actor=NO_OUTPUT.actor if actors is None else np.empty((1, actors.shape[1], 6), np.int32),
     )
 
 

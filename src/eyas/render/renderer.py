@@ -23,7 +23,7 @@ from eyas.render.kernels.visibility.hidden import TILE
 from eyas.render.kernels.visibility.key import MOST_INSTANCES
 from eyas.render.kernels.visibility.triangles import TRIANGLE_ROWS
 from eyas.render.outputs import (
-    NOTHING,
+    NO_OUTPUT,
     measured_alone,
     picture_size,
     wanted_output,
@@ -55,7 +55,7 @@ class CpuRenderer:
         self._geometry, self._light = geometry, light
         self._ready = ready
         self._held = Held(geometry), Held(light)
-        self._last = Held(_NO_MOVERS), Held(NOTHING)
+        self._last = Held(_NO_MOVERS), Held(NO_OUTPUT)
         self._scratch: dict[tuple[int, ...], Held[Scratch]] = {}
         self._tasks: dict[Size, Held[Task]] = {}
 
@@ -87,9 +87,9 @@ class CpuRenderer:
         movers = Movers(*(getattr(draw_list, name) for name in Movers._fields))
         output = wanted_output(picture)
         if samples == 4 and picture.rgb is not None:
-            colours = NOTHING._replace(rgb=output.rgb)
+            colours = NO_OUTPUT._replace(rgb=output.rgb)
             self._draw(views, movers, colours, picture, 2, until)
-            output = output._replace(rgb=NOTHING.rgb)
+            output = output._replace(rgb=NO_OUTPUT.rgb)
         if any(len(array) for array in output):
             self._draw(views, movers, output, picture, 1, until)
 
@@ -168,7 +168,7 @@ def build_renderer(
         ready: See `Renderer`.
     """
     shadows = bake_shadows(geometry, lighting.sun_direction, scene.terrain.floor, cache)
-    tracks = track_map(scene) if lighting.snow > 0 else TrackMap.none()
+    tracks = track_map(scene) if lighting.snow > 0 else TrackMap.empty()
     ambient = bake_ambient(scene, cache)
     light = build_light(scene, lighting, shadows, ambient, tracks, geometry)
     return CpuRenderer(geometry, light, ready)

@@ -53,7 +53,7 @@ class AmbientMap:
 
 
 def bake_ambient(scene: Scene, folder: Path | None = None) -> AmbientMap:
-    """Return the map of a scene; computed only if the cache has none.
+    """Return the map of a scene; computed only if the cache lacks it.
 
     Args:
         scene: The static scene. Structures lower than `_DECK` hide little and are left out.

@@ -47,8 +47,8 @@ class ShadowMap:
     """Shadows of the static scene."""
 
     heights: NDArray[np.uint16]
-    """Height towards the sun of the first surface that sunlight meets, 0 for none: tiles of the
-    map, shape (tiles, TILE + 1, TILE + 1). The last line and column of a tile are also the first of
+    """Height towards the sun of the first surface that sunlight meets, or 0: tiles of the map,
+    shape (tiles, TILE + 1, TILE + 1). The last line and column of a tile are also the first of
     the next one, so that four neighbours always lie in one tile. Tile 0 is empty."""
     tile: NDArray[np.int32]
     """Number of each tile of the map, shape (rows, columns); those at its edges are empty."""
@@ -58,7 +58,7 @@ class ShadowMap:
     """Side of a texel [m]."""
 
     @classmethod
-    def none(cls) -> "ShadowMap":
+    def empty(cls) -> "ShadowMap":
         """Return a map without shadows."""
         heights = np.zeros((1, TILE + 1, TILE + 1), np.uint16)
         return cls(heights, np.zeros((1, 1), np.int32), np.zeros((3, 4)), 1.0)
@@ -70,7 +70,7 @@ def bake_shadows(
     ground: float,
     folder: Path | None = None,
 ) -> ShadowMap:
-    """Return the shadow map; computed only if the cache has none.
+    """Return the shadow map; computed only if the cache lacks it.
 
     Args:
         geometry: The scene.

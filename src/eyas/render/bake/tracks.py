@@ -58,7 +58,7 @@ class TrackMap:
     """West and south edge [m], texels per metre."""
 
     @classmethod
-    def none(cls) -> "TrackMap":
+    def empty(cls) -> "TrackMap":
         """Return a map without tracks."""
         return cls(np.zeros((2, 2, 2), np.uint8), np.array([0.0, 0.0, 1.0]))
 
@@ -70,7 +70,7 @@ def track_map(scene: Scene) -> TrackMap:
     """
     network = scene.network
     if len(network.lane_points) == 0:
-        return TrackMap.none()
+        return TrackMap.empty()
     low = network.lane_points.min(axis=0) - _MARGIN
     extent = network.lane_points.max(axis=0) + _MARGIN - low
     texel = max(TEXEL, float(np.sqrt(extent.prod() / MOST_TEXELS)))

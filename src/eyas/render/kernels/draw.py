@@ -15,8 +15,8 @@ from eyas.render.kernels.bundles import (
 )
 from eyas.render.kernels.light.casters import cast_light
 from eyas.render.kernels.scalars import f4, i8
-from eyas.render.kernels.sky.backdrop import draw_backdrop
 from eyas.render.kernels.sky.flakes import let_flakes_fall
+from eyas.render.kernels.sky.radiance import draw_backdrop
 from eyas.render.kernels.surface.band import shade_band
 from eyas.render.kernels.visibility.measure import measure_actors, measure_subject
 from eyas.render.kernels.visibility.outputs import write_classes, write_depth, write_objects

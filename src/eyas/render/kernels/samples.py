@@ -8,13 +8,13 @@ from eyas.render.kernels.bundles import Direction, View
 from eyas.render.kernels.scalars import f4
 
 __all__ = [
+    "LocalCamera",
     "ScreenBox",
-    "Sight",
     "around",
-    "nowhere",
+    "empty_box",
+    "local_camera",
     "point_of",
     "ray_of_row",
-    "sight_from",
 ]
 
 
@@ -27,8 +27,8 @@ class ScreenBox(NamedTuple):
     bottom: float
 
 
-class Sight(NamedTuple):
-    """A camera in the frame of a thing, see `sight_from`; of float32."""
+class LocalCamera(NamedTuple):
+    """A camera in the frame of a thing, see `local_camera`; of float32."""
 
     eye: Direction
     """Optical centre [m]."""
@@ -39,7 +39,7 @@ class Sight(NamedTuple):
 
 
 @kernel(inline=True)
-def nowhere() -> ScreenBox:
+def empty_box() -> ScreenBox:
     """Return an empty box."""
     return ScreenBox(1e9, 1e9, -1e9, -1e9)
 
@@ -59,7 +59,7 @@ def around(box: ScreenBox, view: View, x: float, y: float, z: float) -> ScreenBo
 
 
 @kernel(inline=True)
-def sight_from(view: View, origin: Direction, along_x: float, along_y: float) -> Sight:
+def local_camera(view: View, origin: Direction, along_x: float, along_y: float) -> LocalCamera:
     """Return the camera of a view in an upright frame.
 
     Distances within it are short, so float32 is enough for them.
@@ -73,7 +73,7 @@ def sight_from(view: View, origin: Direction, along_x: float, along_y: float) ->
     eye, ahead, left, up = view.eye, view.ahead, view.left, view.up
     x, y = eye.x - origin.x, eye.y - origin.y
     across, down = 1.0 / view.focal_x, 1.0 / view.focal_y
-    return Sight(
+    return LocalCamera(
         Direction(
             f4(x * along_x + y * along_y), f4(y * along_x - x * along_y), f4(eye.z - origin.z)
         ),
@@ -96,27 +96,27 @@ def sight_from(view: View, origin: Direction, along_x: float, along_y: float) ->
 
 
 @kernel(inline=True)
-def ray_of_row(sight: Sight, view: View, line: int) -> Direction:
+def ray_of_row(camera: LocalCamera, view: View, line: int) -> Direction:
     """Return the ray, of length 1 along the optical axis, to the middle of a row of samples.
 
     Args:
-        sight: The camera in any frame.
+        camera: The camera in any frame.
         view: The samples.
         line: Row of the band.
     """
     rise = f4(0.5 * view.height - (line + view.top + 0.5))
-    ahead, up = sight.ahead, sight.up
+    ahead, up = camera.ahead, camera.up
     return Direction(ahead.x + rise * up.x, ahead.y + rise * up.y, ahead.z + rise * up.z)
 
 
 @kernel(inline=True)
 def point_of(
-    sight: Sight, view: View, ray: Direction, column: int, inverse: float
+    camera: LocalCamera, view: View, ray: Direction, column: int, inverse: float
 ) -> tuple[float, float, float]:
     """Return the points that samples show, in the frame of the camera [m].
 
     Args:
-        sight: The camera in any frame.
+        camera: The camera in any frame.
         view: The samples.
         ray: From `ray_of_row`.
         column: Columns of the samples.
@@ -124,7 +124,7 @@ def point_of(
     """
     w = f4(1.0) / inverse
     shift = f4(0.5 * view.width - 0.5) - to_f4(column)
-    eye, left = sight.eye, sight.left
+    eye, left = camera.eye, camera.left
     return (
         eye.x + w * (ray.x + shift * left.x),
         eye.y + w * (ray.y + shift * left.y),

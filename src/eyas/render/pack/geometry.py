@@ -8,7 +8,14 @@ from numpy.typing import NDArray
 
 from eyas.render.kernels.bundles import GROUP, Geometry
 from eyas.render.kernels.visibility.clusters import BOUNDS_ROWS, CLUSTER, CLUSTER_ROWS, UV_ROWS
-from eyas.render.pack.boxes import box_of, columns_of, group_boxes, posed_boxes, sphere_of
+from eyas.render.pack.boxes import (
+    box_of,
+    columns_of,
+    group_boxes,
+    posed_boxes,
+    silhouette,
+    sphere_of,
+)
 from eyas.render.pack.clusters import (
     bounds_of,
     by_clusters,
@@ -16,15 +23,13 @@ from eyas.render.pack.clusters import (
     clusters_of,
     filled_up,
 )
-from eyas.render.pack.silhouette import silhouette
-from eyas.render.pack.snow import crown_middles, snow_beds
+from eyas.render.pack.materials import material_table
 from eyas.render.pack.triangles import (
-    MaterialTable,
     gradients,
     shading_rows,
     solid_triangles,
 )
-from eyas.render.textures.mipmap import linear, packed_layers
+from eyas.render.textures.mipmap import packed_layers
 from eyas.state.draw import PartLibrary
 from eyas.state.mesh import Material, Mesh, Surface
 from eyas.state.scene import ObjectClass, Scene
@@ -71,15 +76,7 @@ def build_geometry(
     palette = tuple(pool.palette)
     names = sorted({material.texture for material in palette} | {"plain"})
     fixture_boxes = posed_boxes(box[prototype], pose)
-    tint = linear(np.array([material.tint for material in palette]).reshape(-1, 3))
-    materials = MaterialTable(
-        layer=np.array([names.index(material.texture) for material in palette], np.int32),
-        surface=np.array([material.surface for material in palette], np.int32),
-        tint=tint.astype(np.float32),
-        emission=np.array([material.emission for material in palette], np.float32),
-        snow_bed=snow_beds(scene, parts, palette),
-        crown_middle=crown_middles(scene, palette),
-    )
+    materials = material_table(scene, parts, palette, names)
     material = np.concatenate([np.zeros(0, np.int32), *pool.materials])
     objects = np.concatenate([np.zeros(0, np.int32), *pool.objects])
     slopes = np.concatenate([np.zeros((0, 24), np.float32), *pool.gradients])

@@ -1,37 +1,18 @@
 """Data of each triangle for shading, computed once."""
 
-from dataclasses import dataclass, fields
-
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core import exact
+from eyas.render.pack.materials import MaterialTable
 from eyas.state.mesh import Mesh
 
-__all__ = ["SHADING", "MaterialTable", "gradients", "shading_rows", "solid_triangles"]
-
-
-@dataclass(frozen=True, slots=True)
-class MaterialTable:
-    """Materials, or those of each triangle; see the fields of `Geometry` with the same names."""
-
-    layer: NDArray[np.int32]
-    surface: NDArray[np.int32]
-    tint: NDArray[np.float32]
-    emission: NDArray[np.float32]
-    snow_bed: NDArray[np.int32]
-    crown_middle: NDArray[np.float32]
-
-    def of(self, index: NDArray[np.int32]) -> "MaterialTable":
-        """Return the rows of an index."""
-        return MaterialTable(*(getattr(self, array.name)[index] for array in fields(self)))
-
+__all__ = ["SHADING", "gradients", "shading_rows", "solid_triangles"]
 
 SHADING = 32
 """Columns of `Geometry.shading`: columns 0 to 13 of `gradients`; tiles in a metre, negative where
 the normal is not the same all over; texture; surface, and bed of snow times 256; tint; emission;
 middle of the crown; object id; gradients of the normal. Whole numbers lie there as int32."""
-
 
 _SLIVER = 1e-12
 """Squared sine of the least angle between sides: thousands of times the rounding of a float64."""

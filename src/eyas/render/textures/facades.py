@@ -1,4 +1,6 @@
-"""Textures of walls with windows: ten kinds of facades, four storeys by four bays each."""
+"""Textures of walls: ten kinds of facades, four storeys by four bays each; ground floors, of which
+each storey of the tile is one front of four bays; walls without windows.
+"""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,6 +11,7 @@ from eyas.render.textures.fields import (
     fractal,
     masonry,
     mixed,
+    opaque,
     painted,
     source,
     white,
@@ -16,6 +19,8 @@ from eyas.render.textures.fields import (
 from eyas.render.textures.windows import BAY, Opening, Wall
 
 __all__ = [
+    "brick",
+    "concrete",
     "facade_bands",
     "facade_brick",
     "facade_concrete",
@@ -26,6 +31,9 @@ __all__ = [
     "facade_plaster",
     "facade_red_white",
     "facade_stone",
+    "ground_lobby",
+    "ground_shop",
+    "stone",
 ]
 
 Texture = NDArray[np.uint8]
@@ -35,6 +43,7 @@ _STOREYS = range(0, SIZE, BAY)
 _ANTHRACITE = (58.0, 62.0, 66.0)
 _ALUMINIUM = (148.0, 152.0, 156.0)
 _WHITE = (228.0, 225.0, 217.0)
+_SIGNS = ((150.0, 44.0, 40.0), (36.0, 74.0, 112.0), (44.0, 92.0, 66.0), (206.0, 168.0, 66.0))
 
 
 def _plain(rng: np.random.Generator, colour: Colour, stain: float = 0.03) -> Picture:
@@ -219,3 +228,87 @@ def facade_red_white() -> Texture:
             wide = 5 if k % 2 else 3
             wall.rect(x - wide, row, x + wide, row + 7, (232.0, 226.0, 212.0))
     return wall.finished()
+
+
+def ground_shop() -> Texture:
+    """Return shop windows under sign boards and striped awnings."""
+    rng = source("ground_shop")
+    face = painted((150.0, 144.0, 136.0), 0.02 * white(rng) + 0.03 * fractal(rng, 1.1))
+    wall = Wall(face, rng)
+    for x, y in wall.everywhere():
+        sign = _SIGNS[int(rng.integers(len(_SIGNS)))]
+        wall.window(x, y, Opening(5, 20, 40, 56, (64.0, 62.0, 60.0), 2, 1, 0, curtained=0.2))
+        wall.window(x, y, Opening(43, 20, 59, 63, (64.0, 62.0, 60.0), 2, 0, 0, curtained=0.1))
+        wall.rect(x + 4, y + 8, x + 60, y + 18, sign)
+        for letter in range(x + 14, x + 48, 5):
+            wall.rect(
+                letter, y + 11, letter + int(rng.integers(2, 5)), y + 15, (236.0, 232.0, 222.0)
+            )
+        if rng.random() < 0.4:
+            for k, stripe in enumerate(range(x + 3, x + 61, 6)):
+                pale = (234.0, 228.0, 214.0)
+                wall.rect(stripe, y + 18, min(stripe + 6, x + 61), y + 31, sign if k % 2 else pale)
+            wall.shade(x + 3, y + 28, x + 61, y + 31, 0.82)
+            wall.shade(x + 3, y + 31, x + 61, y + 38, 0.6)
+    _plinth(wall)
+    return wall.finished()
+
+
+def ground_lobby() -> Texture:
+    """Return stone piers with tall panes and glass doors between them."""
+    rng = source("ground_lobby")
+    blocks = masonry(rng, 16, 8, joint=1.4)
+    grain = 0.025 * white(rng) + 0.03 * fractal(rng, 1.0, longest=90.0)
+    face = painted((176.0, 168.0, 156.0), grain + 0.04 * blocks.shade)
+    wall = Wall(mixed(face, (118.0, 112.0, 104.0), 0.7 * blocks.joint), rng)
+    for x, y in wall.everywhere():
+        doors = (x // BAY) % 4 == 1
+        bars = (72.0, 66.0, 58.0) if doors else (84.0, 86.0, 88.0)
+        opening = Opening(
+            9, 8, 55, 63 if doors else 54, bars, 2, 3 if doors else 1, 1, curtained=0.15
+        )
+        wall.window(x, y, opening)
+        if not doors:
+            wall.sill(x, y, opening, (194.0, 187.0, 176.0))
+    _plinth(wall)
+    return wall.finished()
+
+
+def _plinth(wall: Wall) -> None:
+    """Darken the feet of the walls, where rain splashes, except at doors."""
+    for y in range(0, SIZE, BAY):
+        wall.shade(0, y + 58, SIZE, y + BAY, 0.86)
+
+
+def concrete() -> Texture:
+    """Return cast concrete: clouds, pores, streaks left by water."""
+    rng = source("concrete")
+    cloud = 0.035 * fractal(rng, 1.1, longest=90.0) + 0.03 * white(rng)
+    streaks = fractal(rng, 1.0, longest=60.0, stretch=(7.0, 1.0))
+    picture = painted((172.0, 168.0, 160.0), cloud + 0.025 * streaks)
+    picture = mixed(picture, (128.0, 124.0, 116.0), 0.3 * np.clip(streaks - 1.0, 0, 1))
+    pores = rng.random(cloud.shape) > 0.992
+    return opaque(mixed(picture, (110.0, 106.0, 100.0), 0.5 * pores))
+
+
+def brick() -> Texture:
+    """Return red bricks in running bond with pale mortar."""
+    rng = source("brick")
+    bricks = masonry(rng, 32, 16, joint=1.4)
+    grain = 0.05 * white(rng) + 0.04 * fractal(rng, 1.0, longest=70.0)
+    picture = painted((158.0, 82.0, 62.0), grain + 0.1 * bricks.shade)
+    burnt = masonry(rng, 32, 16, joint=0.0).shade
+    picture = mixed(picture, painted((98.0, 62.0, 56.0), grain), 0.6 * (burnt > 1.5))
+    picture = mixed(picture, painted((186.0, 116.0, 82.0), grain), 0.5 * (burnt < -1.5))
+    return opaque(mixed(picture, painted((178.0, 166.0, 150.0), grain), 0.85 * bricks.joint))
+
+
+def stone() -> Texture:
+    """Return courses of dressed sandstone."""
+    rng = source("stone")
+    blocks = masonry(rng, 8, 4, joint=2.0)
+    grain = 0.035 * white(rng) + 0.045 * fractal(rng, 0.9, longest=60.0)
+    bed = 0.03 * fractal(rng, 1.0, longest=40.0, stretch=(0.6, 4.0))
+    edge = 0.07 * (blocks.down < 0.08) - 0.09 * (blocks.down > 0.92)
+    picture = painted((194.0, 180.0, 154.0), grain + bed + edge + 0.04 * blocks.shade)
+    return opaque(mixed(picture, (112.0, 101.0, 86.0), 0.75 * blocks.joint))

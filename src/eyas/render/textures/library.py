@@ -5,7 +5,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.render.textures import facades, ground, land, plants, roofs, shops, walls, wear
+from eyas.render.textures import facades, ground, land, plants, roofs, wear
 from eyas.world.build.materials import TEXTURES
 
 __all__ = ["PAINTERS", "build_textures"]
@@ -48,7 +48,7 @@ PAINTERS: dict[str, Callable[[], NDArray[np.uint8]]] = {
     "asphalt_lane": wear.asphalt_lane,
     "asphalt_oil": wear.asphalt_oil,
     "manhole": wear.manhole,
-    "concrete": walls.concrete,
+    "concrete": facades.concrete,
     "bark": plants.bark,
     "leaves": plants.leaves,
     "foliage": plants.foliage,
@@ -59,8 +59,8 @@ PAINTERS: dict[str, Callable[[], NDArray[np.uint8]]] = {
     "roof_gravel": roofs.roof_gravel,
     "roof_membrane": roofs.roof_membrane,
     "bitumen": roofs.bitumen,
-    "brick": walls.brick,
-    "stone": walls.stone,
+    "brick": facades.brick,
+    "stone": facades.stone,
     "facade_concrete": facades.facade_concrete,
     "facade_brick": facades.facade_brick,
     "facade_plaster": facades.facade_plaster,
@@ -71,8 +71,8 @@ PAINTERS: dict[str, Callable[[], NDArray[np.uint8]]] = {
     "facade_old": facades.facade_old,
     "facade_bands": facades.facade_bands,
     "facade_red_white": facades.facade_red_white,
-    "ground_shop": shops.ground_shop,
-    "ground_lobby": shops.ground_lobby,
+    "ground_shop": facades.ground_shop,
+    "ground_lobby": facades.ground_lobby,
 }
 """The function that paints each texture of `eyas.world.build.materials.TEXTURES`."""
 

@@ -15,11 +15,11 @@ from eyas.lanes.vector import (
     to_u4,
 )
 from eyas.render.kernels.bundles import Band, View
-from eyas.render.kernels.light.caster import Caster, sight_of
+from eyas.render.kernels.light.caster import Caster, camera_of
 from eyas.render.kernels.samples import (
     ScreenBox,
     around,
-    nowhere,
+    empty_box,
     point_of,
     ray_of_row,
 )
@@ -77,7 +77,7 @@ def _tail(behind: float, aside: float, rise: float) -> float:
 @kernel
 def _screen_box(caster: Caster, view: View) -> ScreenBox:
     """Return the box around all that a vehicle's lamps may light, see `around`."""
-    box = nowhere()
+    box = empty_box()
     for corner in range(8):
         ahead = caster.length + _REACH if corner & 1 else -caster.length - _BEHIND
         wide = _SPREAD if corner & 1 else 3.0
@@ -101,12 +101,12 @@ def cast_beam(caster: Caster, band: Band) -> None:
     if not sphere_is_visible(view.planes, x, y, caster.bottom, radius):
         return
     box = _screen_box(caster, view)
-    sight = sight_of(caster, view)
+    camera = camera_of(caster, view)
     stride, length = key.shape[1], f4(caster.length)
     begin, end = max(int(box.left), 0), min(int(box.right) + 1, view.width)
     bottom = min(int(box.bottom) + 1 - view.top, view.rows)
     for line in range(max(int(box.top) - view.top, 0), bottom):
-        ray = ray_of_row(sight, view, line)
+        ray = ray_of_row(camera, view, line)
         for start in range(begin, end, WIDTH):
             first = min(start, stride - WIDTH)
             at = line * stride + first
@@ -114,7 +114,7 @@ def cast_beam(caster: Caster, band: Band) -> None:
             inverse = distance_inverse(load(key, at))
             # Samples before `start` had their light from the lanes before.
             seen = (inverse > f4(0.0)) & (columns >= i4(start)) & (columns < i4(end))
-            x, y, z = point_of(sight, view, ray, columns, select(seen, inverse, f4(1.0)))
+            x, y, z = point_of(camera, view, ray, columns, select(seen, inverse, f4(1.0)))
             seen &= (
                 (z <= f4(_CUT_OFF))
                 & (z > f4(-_DEPTH))

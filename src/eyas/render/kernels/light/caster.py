@@ -6,7 +6,7 @@ from typing import NamedTuple
 from eyas.lanes import kernel
 from eyas.render.kernels.bundles import Band, Direction, View
 from eyas.render.kernels.light.shadow_boxes import Box, ShadowBoxes, shadow_boxes
-from eyas.render.kernels.samples import Sight, sight_from
+from eyas.render.kernels.samples import LocalCamera, local_camera
 from eyas.render.kernels.scalars import f4
 
 __all__ = [
@@ -14,10 +14,10 @@ __all__ = [
     "Caster",
     "beyond",
     "boxes_of",
+    "camera_of",
     "caster_of",
     "has_lamps",
     "reach_of",
-    "sight_of",
 ]
 
 CORNER = 1.75
@@ -158,10 +158,10 @@ def caster_of(band: Band, first: int, last: int) -> Caster:
 
 
 @kernel(inline=True)
-def sight_of(caster: Caster, view: View) -> Sight:
+def camera_of(caster: Caster, view: View) -> LocalCamera:
     """Return the camera in the thing's own frame: origin at the middle of its bottom."""
     origin = Direction(caster.x, caster.y, caster.bottom)
-    return sight_from(view, origin, caster.along_x, caster.along_y)
+    return local_camera(view, origin, caster.along_x, caster.along_y)
 
 
 @kernel(inline=True)

@@ -26,13 +26,13 @@ from eyas.render.kernels.light.caster import (
     Caster,
     beyond,
     boxes_of,
+    camera_of,
     caster_of,
     has_lamps,
     reach_of,
-    sight_of,
 )
 from eyas.render.kernels.light.shadow_boxes import darken, may_darken
-from eyas.render.kernels.samples import ScreenBox, around, nowhere, point_of, ray_of_row
+from eyas.render.kernels.samples import ScreenBox, around, empty_box, point_of, ray_of_row
 from eyas.render.kernels.scalars import f4, i4, u4
 from eyas.render.kernels.visibility.cull import sphere_is_visible
 from eyas.render.kernels.visibility.key import distance_inverse, tag_of
@@ -102,7 +102,7 @@ def _may_show(caster: Caster, sun: Direction, view: View) -> bool:
 @kernel
 def _screen_box(caster: Caster, sun: Direction, view: View) -> ScreenBox:
     """Return the box around a thing and its shadow on the ground, see `around`."""
-    box = nowhere()
+    box = empty_box()
     throw = _throw(sun) * (caster.top - caster.bottom)
     for corner in range(16):
         along = (caster.length + caster.beyond) * (1.0 if corner & 1 else -1.0)
@@ -123,19 +123,19 @@ def _cast_shadow(caster: Caster, band: Band, first: int, last: int) -> None:
     """Darken the samples that instances `first` to `last` shade, but not these themselves."""
     sun, view, key, drawn, shade = band.lit.sun, band.camera, band.key, band.drawn, band.shade
     box = _screen_box(caster, sun, view)
-    sight, boxes = sight_of(caster, view), boxes_of(caster, sun)
+    camera, boxes = camera_of(caster, view), boxes_of(caster, sun)
     stride = key.shape[1]
     begin, end = max(int(box.left), 0), min(int(box.right) + 1, view.width)
     bottom = min(int(box.bottom) + 1 - view.top, view.rows)
     for line in range(max(int(box.top) - view.top, 0), bottom):
-        ray = ray_of_row(sight, view, line)
+        ray = ray_of_row(camera, view, line)
         for start in range(begin, end, WIDTH):
             left = min(start, stride - WIDTH)
             at = line * stride + left
             columns, keys = lane_numbers() + i4(left), load(key, at)
             inverse = distance_inverse(keys)
             seen = (inverse > f4(0.0)) & (columns >= i4(begin)) & (columns < i4(end))
-            x, y, z = point_of(sight, view, ray, columns, select(seen, inverse, f4(1.0)))
+            x, y, z = point_of(camera, view, ray, columns, select(seen, inverse, f4(1.0)))
             seen &= may_darken(boxes, x, y, z)
             if any_of(seen):
                 seen &= ~belongs_to(tag_of(keys), drawn, first, last)

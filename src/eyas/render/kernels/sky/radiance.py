@@ -1,21 +1,50 @@
-"""The sky in a direction, and what smooth surfaces mirror of it."""
+"""The sky: its radiance in a direction, its pixels, and what smooth surfaces mirror of it.
+
+Clouds and hills are panoramas, pictures of the whole sky round a viewer. Their columns go round the
+horizon by a measure of azimuth that needs no trigonometry: along the square |x| + |y| = 1, from 0
+in the east over 1 in the north to 4. Their rows start at the horizon. The value of a column or row
+is that at its centre. Stars are not painted: each cell of the sky has at most one.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
 
 from eyas.lanes import kernel
-from eyas.lanes.vector import any_of, greater, lesser, like, select
-from eyas.render.kernels.bundles import Direction, Illumination, Light
-from eyas.render.kernels.scalars import f4
+from eyas.lanes.vector import (
+    WIDTH,
+    any_of,
+    bits_of,
+    gather,
+    greater,
+    lane_numbers,
+    lesser,
+    like,
+    magnitude,
+    root,
+    select,
+    to_f4,
+    to_i4,
+    to_u4,
+)
+from eyas.render.kernels.bundles import Band, Direction, Illumination, Light
+from eyas.render.kernels.chance import hashed
+from eyas.render.kernels.light.tone import tone_bytes
+from eyas.render.kernels.pixels import keys_of, pack, write_pixels
+from eyas.render.kernels.rays import Rays, ray_of, rays_of
+from eyas.render.kernels.scalars import f4, i4, i8, u4
 from eyas.render.kernels.sky.fog import HAZE_END, hidden_at
-from eyas.render.kernels.sky.panorama import azimuth, panorama
-from eyas.render.kernels.sky.stars import starlight
 
 __all__ = [
     "CLOUDS_FROM",
     "CLOUD_BEND",
     "HILL_FARTHEST",
     "HILL_TOP",
+    "azimuth",
     "blended",
+    "draw_backdrop",
     "reflection",
     "sky",
+    "sky_pixel",
 ]
 
 CLOUD_BEND = 0.8
@@ -37,8 +66,88 @@ _FARTHEST = f4(1000.0 * HAZE_END)
 _FOOT = f4(0.012)
 """Sine of the elevation over which the plain turns into hills."""
 
+_STAR_ROWS = f4(72.0)
+"""Rows of cells from the horizon to the zenith, of equal area."""
+
+_STAR_COLUMNS = f4(80.0)
+"""Columns of cells in a quarter of the horizon."""
+
+_STAR_SIZE = f4(0.0011)
+"""Radius to which the brightness of stars refers [rad]; wider pixels dim them."""
+
 
 Colour = tuple[float, float, float]
+
+
+@kernel(inline=True)
+def _starlight(x: float, y: float, z: float, around: float, pixel: float) -> tuple[float, float]:
+    """Return the radiance of the star in a direction of length 1, and its tint: red above 0.
+
+    Each cell's hash says where its star stands and how bright it is: few are bright, most cells
+    have one too faint to see.
+
+    Args:
+        x: The direction.
+        y: The direction.
+        z: The direction.
+        around: Its `azimuth`.
+        pixel: Angle that a pixel spans [rad].
+    """
+    zero, one, unit, byte = f4(0.0), f4(1.0), f4(1.0 / 255.0), u4(255)
+    column, row = to_i4(around * _STAR_COLUMNS), to_i4(greater(z, zero) * _STAR_ROWS)
+    bits = hashed(to_u4(column), to_u4(row), like(to_u4(row), u4(0x57A2)))
+    # Not too near to the cell's edge, where the star would be cut.
+    aside = f4(0.25) + f4(0.5 / 255.0) * to_f4(bits & byte)
+    over = f4(0.25) + f4(0.5 / 255.0) * to_f4((bits >> u4(8)) & byte)
+    turn, high = (to_f4(column) + aside) / _STAR_COLUMNS, (to_f4(row) + over) / _STAR_ROWS
+    east = magnitude(turn - f4(2.0)) - one
+    north = select(turn < f4(3.0), one - magnitude(turn - one), turn - f4(4.0))
+    flat = root((one - high * high) / (east * east + north * north))
+    dx, dy, dz = x - east * flat, y - north * flat, z - high
+    radius = greater(like(x, _STAR_SIZE), f4(0.62) * pixel)
+    near = greater(one - (dx * dx + dy * dy + dz * dz) / (radius * radius), zero)
+    rank = to_f4((bits >> u4(16)) & byte) * unit
+    rank *= rank
+    rank *= rank
+    dim = _STAR_SIZE / radius
+    tint = f4(0.3) * to_f4((bits >> u4(24)) & u4(127)) * f4(1.0 / 127.0) - f4(0.15)
+    return lesser(f4(0.9) * rank * rank * rank * near * dim, one), tint
+
+
+@kernel(inline=True)
+def azimuth(x: float, y: float) -> float:
+    """Return the azimuth of the direction (x, y), 0 to 4."""
+    share = y / (magnitude(x) + magnitude(y) + f4(1e-9))
+    south = select(y < f4(0.0), share + f4(4.0), share)
+    return select(x < f4(0.0), f4(2.0) - share, south)
+
+
+@kernel(inline=True)
+def _panorama(values: NDArray[np.uint8], row: float, around: float, channel: int) -> float:
+    """Return a channel, 0 to 1, interpolated between the four nearest values.
+
+    Args:
+        values: Shape (rows, columns, channels); the number of columns is a power of 2.
+        row: From -0.5; below the first and above the last row it is the row's.
+        around: See `azimuth`.
+        channel: Index of the channel.
+    """
+    rows, columns, channels = values.shape
+    row = lesser(greater(row, f4(0.0)), f4(rows - 1))
+    # One round on: above 0, where cutting off is rounding down.
+    column = (around * f4(0.25) + f4(1.0)) * f4(columns) - f4(0.5)
+    low, left = to_i4(row), to_i4(column)
+    up, across = row - to_f4(low), column - to_f4(left)
+    high, mask = to_i4(lesser(low + i4(1), i4(rows - 1))), i4(columns - 1)
+    left, right = left & mask, (left + i4(1)) & mask
+    step, first = i4(channels), i4(channel)
+    low, high = low * i4(columns), high * i4(columns)
+    a = to_f4(gather(values, (low + left) * step + first))
+    b = to_f4(gather(values, (low + right) * step + first))
+    c = to_f4(gather(values, (high + left) * step + first))
+    d = to_f4(gather(values, (high + right) * step + first))
+    lower, upper = a + across * (b - a), c + across * (d - c)
+    return (lower + up * (upper - lower)) * f4(1.0 / 255.0)
 
 
 @kernel(inline=True)
@@ -104,7 +213,7 @@ def sky(light: Light, lit: Illumination, x: float, y: float, z: float, pixel: fl
     cover = select(z > zero, zero, one)
     hilly = (z > zero) & (z < f4(HILL_TOP))
     if any_of(hilly):
-        hills = panorama(light.hills, _hill_row(light, z), around, 0)
+        hills = _panorama(light.hills, _hill_row(light, z), around, 0)
         cover = select(hilly, hills, cover)
     colour = (zero, zero, zero)
     if any_of(cover < one):
@@ -128,8 +237,8 @@ def _open_sky(
         # Far ones are lost in the haze.
         near = lesser(greater((z - f4(CLOUDS_FROM)) * f4(11.0), zero), one)
         near *= near * (f4(3.0) - f4(2.0) * near) * clear
-        cover = near * panorama(light.clouds, row, around, 0)
-        bright = near * panorama(light.clouds, row, around, 1)
+        cover = near * _panorama(light.clouds, row, around, 0)
+        bright = near * _panorama(light.clouds, row, around, 1)
         dim = f4(0.38) * cover + f4(0.7) * bright
         shine = f4(1.1) * bright
         red += dim * horizon.x + shine * sun.x - cover * red
@@ -144,7 +253,7 @@ def _open_sky(
     disc = (disc + f4(1.5) * ring) * clear
     red, green, blue = red + disc * sun.x, green + disc * sun.y, blue + disc * sun.z
     if lit.air.lamps > zero:
-        star, tint = starlight(x, y, z, around, pixel)
+        star, tint = _starlight(x, y, z, around, pixel)
         star *= clear
         red += star * (one + tint)
         green += star
@@ -163,9 +272,9 @@ def _hills(light: Light, lit: Illumination, z: float, around: float) -> Colour:
     zero, one, hills = f4(0.0), f4(1.0), light.hills
     row = _hill_row(light, z)
     rise = lesser(greater(z / _FOOT, zero), one)
-    direct = lit.sun.z + rise * (panorama(hills, row, around, 1) - lit.sun.z)
-    woods = rise * panorama(hills, row, around, 2)
-    away = _FARTHEST + rise * _BEYOND * panorama(hills, row, around, 3)
+    direct = lit.sun.z + rise * (_panorama(hills, row, around, 1) - lit.sun.z)
+    woods = rise * _panorama(hills, row, around, 2)
+    away = _FARTHEST + rise * _BEYOND * _panorama(hills, row, around, 3)
     colour = blended(light.ground, (f4(0.035), f4(0.06), f4(0.025)), woods)
     white = lit.air.snow * (one - f4(0.75) * woods)
     red, green, blue = blended(colour, (f4(0.78), f4(0.80), f4(0.83)), white)
@@ -231,3 +340,49 @@ def reflection(
         shine *= shine
     shine *= f4(6.0) * sunlit
     return (red + shine * sun.x, green + shine * sun.y, blue + shine * sun.z), share
+
+
+@kernel(inline=True)
+def sky_pixel(light: Light, lit: Illumination, rays: Rays, line: float, column: float) -> int:
+    """Return the packed bytes of the sky at a place of the picture [samples]."""
+    x, y, z = ray_of(rays, line, column)
+    unit = f4(1.0) / root(x * x + y * y + z * z)
+    colour = sky(light, lit, x * unit, y * unit, z * unit, rays.pixel)
+    red, green, blue = tone_bytes(light, lit.air.exposure, colour)
+    return pack(red, green, blue)
+
+
+@kernel(inline=True)
+def _sky_bits(key: NDArray[np.int64], line: int, sample: int, samples: int) -> int:
+    """Return in which of eight pixels any sample shows the sky, a bit each."""
+    bits = i8(0)
+    for k in range(samples * samples):
+        keys = keys_of(key, line + (k >> 1), sample + (k & 1), samples)
+        bits |= bits_of(keys == i8(0))
+    return bits
+
+
+@kernel
+def draw_backdrop(band: Band, pixels: NDArray[np.uint8]) -> None:
+    """Write the sky at the centre of each pixel in which any sample shows it.
+
+    Separate from `shade_band`, so that the code that shades surfaces stays small.
+
+    Args:
+        band: The band.
+        pixels: sRGB, shape (rows, columns, 3).
+    """
+    view, light, lit, key = band.camera, band.light, band.lit, band.key
+    rays, samples = rays_of(view), view.samples
+    side, half = f4(samples), f4(0.5) * f4(samples)
+    width = pixels.shape[1]
+    for row in range(pixels.shape[0]):
+        for first in range(0, width, WIDTH):
+            chosen = _sky_bits(key, row * samples, first * samples, samples)
+            if width - first < WIDTH:
+                chosen &= (1 << (width - first)) - 1
+            if chosen == 0:
+                continue
+            column = to_f4(lane_numbers()) * side + (f4(first) * side + half)
+            packed = sky_pixel(light, lit, rays, rays.top + f4(row) * side + half, column)
+            write_pixels(pixels, row, first, chosen, packed)

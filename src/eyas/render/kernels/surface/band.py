@@ -8,8 +8,10 @@ from eyas.lanes.vector import (
     WIDTH,
     any_of,
     bits_of,
+    first_bit,
     gather,
     greater,
+    lane,
     lane_numbers,
     load_words,
     select,
@@ -19,13 +21,82 @@ from eyas.lanes.vector import (
     to_u4,
 )
 from eyas.render.kernels.bundles import Band
+from eyas.render.kernels.light.tone import tone_bytes
 from eyas.render.kernels.pixels import keys_of, pack, write_pixels
-from eyas.render.kernels.rays import Rays, rays_of
+from eyas.render.kernels.rays import Rays, ray_of, rays_of
 from eyas.render.kernels.scalars import f4, i4, i8, u4
-from eyas.render.kernels.surface.points import packed_points
-from eyas.render.kernels.visibility.key import distance_inverse, tag_of
+from eyas.render.kernels.surface.attributes import Frame, frame_of, no_frame
+from eyas.render.kernels.surface.shade import shade_point
+from eyas.render.kernels.visibility.key import distance_inverse, drawn_of, tag_of, triangle_of
 
-__all__ = ["shade_band"]
+__all__ = ["instance_frame", "shade_band"]
+
+
+Colour = tuple[float, float, float]
+
+
+@kernel(inline=True)
+def instance_frame(band: Band, row: int) -> Frame:
+    """Return pose and colour of an instance, a row of `Band.drawn`; fixtures have no colour."""
+    geometry, movers, world = band.geometry, band.movers, band.world
+    instance, fixtures = band.drawn[row, 1], len(geometry.fixture_object)
+    if instance >= fixtures:
+        return frame_of(movers.pose[world], movers.colour[world], instance - fixtures)
+    return frame_of(geometry.fixture_pose, movers.colour[world, :0], instance)
+
+
+@kernel(inline=False)
+def _one_instance(
+    band: Band,
+    row: int,
+    triangle: int,
+    eye: Colour,
+    ray: Colour,
+    away: float,
+    pixel: float,
+    shade: int,
+) -> int:
+    """Return the packed bytes of eight points of one instance, a row of `Band.drawn`.
+
+    A function of its own: inlined into the loops that call it, the hundred numbers that are the
+    same for all points would be spread over lanes before each loop, kept in memory and read again.
+    """
+    light, lit, frame, first = band.light, band.lit, no_frame(), i4(0)
+    if row >= 0:
+        frame, first = instance_frame(band, row), band.drawn[row, 0]
+    colour = shade_point(
+        band.geometry, light, lit, triangle + first, row >= 0, frame, eye, ray, away, pixel, shade
+    )
+    red, green, blue = tone_bytes(light, lit.air.exposure, colour)
+    return pack(red, green, blue)
+
+
+@kernel(inline=True)
+def _packed_points(
+    band: Band,
+    rays: Rays,
+    tag: int,
+    wanted: bool,
+    distance: float,
+    line: float,
+    column: float,
+    shade: int,
+) -> int:
+    """Return the packed bytes of eight samples; those not wanted are 0.
+
+    All samples of one instance are computed together: its pose is the same number in all lanes.
+    """
+    ray, eye = ray_of(rays, line, column), (rays.eye.x, rays.eye.y, rays.eye.z)
+    row, triangle = drawn_of(tag), triangle_of(tag)
+    packed, left = splat(u4(0)), bits_of(wanted)
+    while left != 0:
+        which = lane(row, first_bit(left))
+        same = wanted & (row == which)
+        left &= ~bits_of(same)
+        known, away = select(same, triangle, i4(0)), select(same, distance, f4(1.0))
+        shown = _one_instance(band, which, known, eye, ray, away, rays.pixel, shade)
+        packed = select(same, shown, packed)
+    return packed
 
 
 @kernel(inline=True)
@@ -68,7 +139,7 @@ def _shade_one(band: Band, rays: Rays, pixels: NDArray[np.uint8], row: int, firs
     words = load_words(band.shade, 4 * (row * key.shape[1] + first))
     distance = f4(1.0) / select(seen, distance_inverse(keys), f4(1.0))
     line, column = half + (rays.top + f4(row)), numbers + f4(first) + half
-    packed = packed_points(band, rays, tag_of(keys), seen, distance, line, column, words)
+    packed = _packed_points(band, rays, tag_of(keys), seen, distance, line, column, words)
     write_pixels(pixels, row, first, bits_of(seen), packed)
 
 
@@ -98,7 +169,7 @@ def _shade_four(band: Band, rays: Rays, pixels: NDArray[np.uint8], row: int, fir
         words = _spread_words(band.shade, (line + (k >> 1)) * key.shape[1] + sample + (k & 1))
         distance = f4(1.0) / select(seen, inverse, f4(1.0))
         down, right = down + (rays.top + f4(line)), numbers * f4(2.0) + f4(sample) + right
-        packed = packed_points(band, rays, tag, seen, distance, down, right, words)
+        packed = _packed_points(band, rays, tag, seen, distance, down, right, words)
         both, green = both + weight * (packed & even), green + weight * ((packed >> eight) & even)
     if shown != 0:
         two, halves = u4(2), u4(0x00020002)

@@ -1,10 +1,10 @@
-"""The colour of one point of a surface."""
+"""The colour of one point of a surface: texture, paint, water, snow, light, mirrors, air."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.lanes import kernel
-from eyas.lanes.vector import any_of, greater, lesser, like, magnitude, root, select, to_f4
+from eyas.lanes.vector import any_of, greater, lesser, like, magnitude, root, select, to_f4, to_i4
 from eyas.render.kernels.bundles import Geometry, Illumination, Light
 from eyas.render.kernels.light.ambient import openness
 from eyas.render.kernels.light.lamps import night_light, window_light
@@ -13,13 +13,11 @@ from eyas.render.kernels.scalars import f4, i4, u4
 from eyas.render.kernels.sky.fog import fog_share
 from eyas.render.kernels.sky.radiance import blended, reflection
 from eyas.render.kernels.surface.attributes import Frame, attributes_of
-from eyas.render.kernels.surface.marking import TILES, painted_share
 from eyas.render.kernels.surface.snow import snowed
 from eyas.render.kernels.surface.texture import colour_of, detail_of, texel
-from eyas.render.kernels.surface.water import water_slope
-from eyas.state.mesh import Surface
+from eyas.state.mesh import MARGIN, Surface
 
-__all__ = ["shade_point"]
+__all__ = ["painted_share", "shade_point", "water_slope"]
 
 PAINT = i4(int(Surface.PAINT))
 GLASS = i4(int(Surface.GLASS))
@@ -33,7 +31,62 @@ SHARP = f4(0.004)
 """Mip levels are blended if a pixel spans less [rad]. In smaller pictures, each level lies in a few
 rows of pixels, and a blend would cost a tenth of the shading to hide what is hardly seen."""
 
+TILES = f4(1.0 / 8.0)
+"""Repeats of the texture in a metre, see `Surface.MARKING`."""
+
+_WIDEST = f4(2.0 * MARGIN)
+
 Colour = tuple[float, float, float]
+Vector = tuple[float, float, float]
+
+
+@kernel(inline=True)
+def water_slope(
+    textures: NDArray[np.uint32], layer: int, detail: int, blend: bool, u: float, v: float
+) -> tuple[float, float]:
+    """Return the slope of the waves eastwards and northwards, see the texture `water`.
+
+    Two sizes of waves that share no period, the smaller ones turned by a right angle, so that
+    no repeat is seen.
+    """
+    low, high = texel(textures, layer, detail, blend, u, v)
+    large_u, large_v, _, _ = colour_of(low, high)
+    finer = to_i4(lesser(detail + i4(256), i4(2048)))
+    low, high = texel(textures, layer, finer, blend, f4(2.31) * v + f4(0.37), f4(-2.31) * u)
+    small_u, small_v, _, _ = colour_of(low, high)
+    half = f4(0.5)
+    # The small waves' own v runs west, their u north.
+    return (
+        (large_u - half) - half * (small_v - half),
+        (large_v - half) + half * (small_u - half),
+    )
+
+
+@kernel(inline=True)
+def painted_share(
+    across: float, slope: Vector, scale: float, way: Vector, cosine: float, size: float
+) -> float:
+    """Return the share of a pixel that a line covers, 0 to 1.
+
+    The pixel is a strip along the line, as wide as the pixel reaches across it, but not wider than
+    the margins let be seen: lines farther away are as bright on average, but less steady.
+
+    Args:
+        across: u, see `Surface.MARKING`.
+        slope: Gradient of u [1/m].
+        scale: Its length: one over half the width of the line [1/m].
+        way: Unit vector from the eye.
+        cosine: Of the angle between the normal and the way to the eye.
+        size: Width of the pixel at the point, seen from the front [m].
+    """
+    one = f4(1.0)
+    # A pixel is a circle seen from the front; on the ground it is longer along the view.
+    lean = (slope[0] * way[0] + slope[1] * way[1] + slope[2] * way[2]) / greater(cosine, f4(0.05))
+    wide = lesser(size * root(scale * scale + lean * lean), _WIDEST * scale)
+    half = greater(f4(0.5) * wide, f4(1e-3))
+    away = magnitude(across - f4(32.0))
+    shown = lesser(away + half, one) - greater(away - half, f4(-1.0))
+    return greater(shown, f4(0.0)) / (half + half)
 
 
 @kernel(inline=True)

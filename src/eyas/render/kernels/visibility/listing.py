@@ -150,6 +150,8 @@ def list_slots(band: Band, first: int, last: int, chunks: int, count: int) -> in
     geometry, movers, world = band.geometry, band.movers, band.world
     parts, poses = movers.part[world], movers.pose[world]
     fixtures = len(geometry.fixture_prototype)
+    if len(geometry.sphere) == geometry.part_first:  # no part at all, so no row to gather
+        return count
     for start in range(first, last, EIGHT):
         seen = _slots_seen(band, start, last)
         while seen != 0:

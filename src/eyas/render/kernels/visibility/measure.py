@@ -19,7 +19,7 @@ from eyas.lanes.vector import (
 )
 from eyas.render.kernels.bundles import Band, View
 from eyas.render.kernels.light.caster import Caster, caster_of
-from eyas.render.kernels.samples import ScreenBox, around, nowhere
+from eyas.render.kernels.samples import ScreenBox, around, empty_box
 from eyas.render.kernels.scalars import i4, i8
 from eyas.render.kernels.visibility.key import tag_of
 from eyas.render.kernels.visibility.passes import draw_slots
@@ -44,7 +44,7 @@ def _sum(lanes: int) -> int:
 
 @kernel
 def _screen_box(thing: Caster, view: View) -> ScreenBox:
-    box = nowhere()
+    box = empty_box()
     for corner in range(8):
         along = thing.length if corner & 1 else -thing.length
         aside = thing.width if corner & 2 else -thing.width

@@ -1,23 +1,56 @@
-"""Behaviour of snow on each material: it lies, is driven on, clings to leaves or does not stay."""
+"""Materials as the kernels read them: texture, tint, and what snow does on them."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.render.kernels.surface.snow import Bed
+from eyas.render.textures.mipmap import linear
 from eyas.state.draw import PartLibrary
 from eyas.state.mesh import Material, Surface
 from eyas.state.scene import ObjectClass, Scene
 
-__all__ = ["crown_middles", "snow_beds"]
+__all__ = ["MaterialTable", "crown_middles", "material_table", "snow_beds"]
 
 _MIDDLE = 0.3
 """Height of a crown's middle between its lower end and its top: crowns are flat below."""
 
 
+@dataclass(frozen=True, slots=True)
+class MaterialTable:
+    """Materials, or those of each triangle; see the fields of `Geometry` with the same names."""
+
+    layer: NDArray[np.int32]
+    surface: NDArray[np.int32]
+    tint: NDArray[np.float32]
+    emission: NDArray[np.float32]
+    snow_bed: NDArray[np.int32]
+    crown_middle: NDArray[np.float32]
+
+    def of(self, index: NDArray[np.int32]) -> "MaterialTable":
+        """Return the rows of an index."""
+        return MaterialTable(*(getattr(self, array.name)[index] for array in fields(self)))
+
+
+def material_table(
+    scene: Scene, parts: PartLibrary, palette: Sequence[Material], names: Sequence[str]
+) -> MaterialTable:
+    """Return the materials of a palette; textures are numbered as in `names`."""
+    tint = linear(np.array([material.tint for material in palette]).reshape(-1, 3))
+    return MaterialTable(
+        layer=np.array([names.index(material.texture) for material in palette], np.int32),
+        surface=np.array([material.surface for material in palette], np.int32),
+        tint=tint.astype(np.float32),
+        emission=np.array([material.emission for material in palette], np.float32),
+        snow_bed=snow_beds(scene, parts, palette),
+        crown_middle=crown_middles(scene, palette),
+    )
+
+
 def snow_beds(scene: Scene, parts: PartLibrary, palette: Iterable[Material]) -> NDArray[np.int32]:
-    """Return the `Bed` of each material of a palette."""
+    """Return the `Bed` of each material: snow lies, is driven on, clings to leaves or melts."""
     driven_on = _road_materials(scene)
     moving = {material for levels in parts.parts for mesh in levels for material in mesh.palette}
 
