@@ -16,7 +16,7 @@ import numpy as np
 
 from eyas import __version__
 from eyas.envs.choice import settings_of_kinds
-from eyas.evaluation.plan import Plan, batches, fly_batch
+from eyas.evaluation.plan import EvaluationPlan, batches, fly_batch
 from eyas.evaluation.policies.shipped import TRAINED, Card, Score
 from eyas.settings.config import EyasConfig
 from eyas.settings.file import load_settings
@@ -61,7 +61,9 @@ def command(run: Path, config: EyasConfig) -> str:
 
 def score(policy: Path, protocol: str, map_name: str, weather: str) -> Score:
     """Fly the protocol's episodes at one place."""
-    plan = Plan(policy=str(policy), protocol=protocol, maps=(map_name,), weathers=(weather,))
+    plan = EvaluationPlan(
+        policy=str(policy), protocol=protocol, maps=(map_name,), weathers=(weather,)
+    )
     records = [
         record for batch in batches(plan) for ended in fly_batch(plan, batch) for record in ended
     ]

@@ -33,15 +33,15 @@ if TYPE_CHECKING:
     from eyas.evaluation.policies.policy import Policy as Policy
     from eyas.evaluation.policies.policy import PolicyInput as PolicyInput
     from eyas.evaluation.policies.policy import Start as Start
-    from eyas.exports.files import Files as Files
     from eyas.exports.frame import Frame as Frame
-    from eyas.exports.gather import Gather as Gather
     from eyas.exports.label import label_schema as label_schema
-    from eyas.exports.labels import read_labels as read_labels
-    from eyas.exports.summary import Summary as Summary
+    from eyas.exports.label import read_labels as read_labels
     from eyas.exports.writer import Episode as Episode
     from eyas.exports.writer import EpisodeWriter as EpisodeWriter
+    from eyas.exports.writer import Files as Files
+    from eyas.exports.writer import Gather as Gather
     from eyas.exports.writer import Run as Run
+    from eyas.exports.writer import Summary as Summary
     from eyas.exports.writer import Writer as Writer
     from eyas.lanes import kernel as kernel
     from eyas.mesh.shell import Shell as Shell
@@ -115,13 +115,11 @@ _PLACES = {
     "envs.tracking_env": ("TrackingEnv",),
     "envs.vector_env": ("EyasVectorEnv",),
     "evaluation.policies.policy": ("Decision", "Policy", "PolicyInput", "Start"),
-    "exports.files": ("Files",),
     "exports.frame": ("Frame",),
-    "exports.gather": ("Gather",),
-    "exports.label": ("label_schema",),
-    "exports.labels": ("read_labels",),
-    "exports.summary": ("Summary",),
-    "exports.writer": ("Episode", "EpisodeWriter", "Run", "Writer"),
+    "exports.label": ("label_schema", "read_labels"),
+    "exports.writer": (
+        *("Episode", "EpisodeWriter", "Files", "Gather", "Run", "Summary", "Writer"),
+    ),
     "lanes": ("kernel",),
     "mesh.shell": ("Shell",),
     "modes.api": (

@@ -8,7 +8,7 @@ import torch
 
 from eyas.core.config import updated, validated
 from eyas.core.errors import ConfigError, EyasError
-from eyas.learning.cluster import RayShards, on_ray
+from eyas.learning.shards import RayShards, on_ray
 from eyas.learning.trainer import train
 from eyas.settings.config import EyasConfig
 

@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from eyas.core.errors import ConfigError
 from eyas.core.pcg64 import STATE, begin_stream
 from eyas.core.rng import EpisodeKey, room_key
-from eyas.core.variation import Choice, Mirrored, Uniform, bounds, drawn, rule_of, sample
+from eyas.core.variation import Choice, Mirrored, Uniform, bounds, rule_of, sample, sampled
 from eyas.lanes import interpreted
 
 numbers = st.floats(-1e6, 1e6)
@@ -67,4 +67,4 @@ def test_kernels_draw_the_same(variation):
     rng, state = key.stream("start"), [0] * STATE
     interpreted(begin_stream)(state, 7, room_key("start"), 3, 2)
     for _ in range(50):
-        assert interpreted(drawn)(rule_of(variation), state) == sample(variation, rng)
+        assert interpreted(sampled)(rule_of(variation), state) == sample(variation, rng)

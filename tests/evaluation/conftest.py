@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from eyas.evaluation.plan import Plan, batches, fly_batch
+from eyas.evaluation.plan import EvaluationPlan, batches, fly_batch
 
 sys.path.insert(0, str(Path(__file__).parent))
 
@@ -13,7 +13,7 @@ def fly():
     """Flies a policy in four episodes; `fly("hover", latency="40")`."""
 
     def flown(policy, episodes=1, **changes):
-        plan = Plan(policy=policy, episodes=episodes, **changes)
+        plan = EvaluationPlan(policy=policy, episodes=episodes, **changes)
         return [
             record for part in batches(plan) for ended in fly_batch(plan, part) for record in ended
         ]

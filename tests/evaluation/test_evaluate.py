@@ -15,11 +15,11 @@ import pytest
 
 from eyas.cli.evaluate import _changes
 from eyas.core.errors import ConfigError, EyasError, OutputError
-from eyas.evaluation.plan import Plan
+from eyas.evaluation.plan import EvaluationPlan
 from eyas.evaluation.record import RecordFile, read_records
 from eyas.modes.evaluate import run
 
-PLAN = Plan(policy="random", episodes=2, batch=2)
+PLAN = EvaluationPlan(policy="random", episodes=2, batch=2)
 FILES = ("episodes.jsonl", "result.json", "result.csv", "run.json")
 
 
@@ -45,7 +45,7 @@ def test_the_result_tells_all_that_repeats_it(whole):
 
 def test_the_command_that_repeats_it_survives_a_shell():
     crowd = {"extras": [{"kind": "Pedestrian", "count": 9}], "start": {"velocity": "target"}}
-    plan = Plan(policy="my runs/x.onnx", env={"action_repeat": 4}, settings=crowd)
+    plan = EvaluationPlan(policy="my runs/x.onnx", env={"action_repeat": 4}, settings=crowd)
     words = shlex.split(plan.command)
     assert words[:4] == ["eyas", "evaluate", "--policy", plan.policy]
     said = [text for option, text in pairwise(words) if option == "--set"]
@@ -99,7 +99,7 @@ def test_overwriting_deletes_only_what_an_evaluation_writes(whole, tmp_path):
     for name in FILES:
         (tmp_path / name).write_bytes((whole / name).read_bytes())
     (tmp_path / "mine.json").write_text("{}")
-    plan = Plan(policy="hover", episodes=1)
+    plan = EvaluationPlan(policy="hover", episodes=1)
     run(plan, tmp_path, overwrite=True, quiet=True)
     assert len(read_records(tmp_path / "episodes.jsonl")) == 4
     assert (tmp_path / "mine.json").exists()
@@ -126,7 +126,7 @@ def test_a_torn_last_line_is_cut_off(whole, tmp_path):
 
 
 def test_the_table_is_printed_as_published_too(tmp_path, capsys):
-    plan = Plan(policy="follow", episodes=1)
+    plan = EvaluationPlan(policy="follow", episodes=1)
     run(plan, tmp_path, as_published=True)
     text = capsys.readouterr().out
     assert "cr" in text

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from eyas.core.errors import EyasError
-from eyas.evaluation.plan import Plan, check
+from eyas.evaluation.plan import EvaluationPlan, check
 
 IMAGE = {"width": 16, "height": 12, "layout": "chw"}
 SETTINGS = {"observation": IMAGE, "actions": "discrete", "action_repeat": 25}
@@ -76,10 +76,10 @@ def test_drawn_actions_come_from_the_episodes_seeds(onnx, fly, tmp_path):
 def test_what_is_no_policy_is_one_line(onnx, tmp_path):
     (tmp_path / "text.onnx").write_text("no network")
     with pytest.raises(EyasError, match="not a network in ONNX"):
-        check(Plan(policy=str(tmp_path / "text.onnx")))
+        check(EvaluationPlan(policy=str(tmp_path / "text.onnx")))
     path = network(onnx, tmp_path / "x.onnx", memory=False, settings={"action_repat": 4})
     with pytest.raises(EyasError, match="did you mean 'action_repeat'"):
-        check(Plan(policy=path))
+        check(EvaluationPlan(policy=path))
 
 
 @pytest.mark.parametrize(
@@ -91,7 +91,7 @@ def test_metadata_that_is_no_table_of_settings_is_one_line(onnx, tmp_path, said)
     model.metadata_props[0].value = said
     onnx.save(model, path)
     with pytest.raises(EyasError, match="metadata 'eyas': ") as caught:
-        check(Plan(policy=path))
+        check(EvaluationPlan(policy=path))
     assert "\n" not in str(caught.value)
     assert path in str(caught.value)
 
@@ -100,8 +100,8 @@ def test_a_file_does_not_ask_for_pictures_that_take_minutes_unless_the_user_does
     large = {"observation": {"width": 4096, "height": 4096}}
     path = network(onnx, tmp_path / "x.onnx", memory=False, settings=large)
     with pytest.raises(EyasError, match=r"1 x 4096 x 4096 pixels; allowed: up to 4194304, unless"):
-        check(Plan(policy=path))
-    check(Plan(policy=path, env={"observation": {"width": 16, "height": 12}}))
+        check(EvaluationPlan(policy=path))
+    check(EvaluationPlan(policy=path, env={"observation": {"width": 16, "height": 12}}))
 
 
 def test_a_module_of_torch_flies(fly, tmp_path):
@@ -120,7 +120,7 @@ def test_a_module_of_torch_flies(fly, tmp_path):
     assert fly(str(tmp_path / "still.pt2")) == hover
     torch.save({"weights": 1}, tmp_path / "dict.pt")
     with pytest.raises(EyasError, match="holds a dict, not a whole module"):
-        check(Plan(policy=str(tmp_path / "dict.pt")))
+        check(EvaluationPlan(policy=str(tmp_path / "dict.pt")))
 
 
 def test_a_model_of_stable_baselines3_flies(fly, tmp_path):

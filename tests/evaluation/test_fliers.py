@@ -6,11 +6,11 @@ import pytest
 
 from eyas.core.errors import ConfigError
 from eyas.evaluation.fliers import flown
-from eyas.evaluation.plan import Plan, batches, stamp
+from eyas.evaluation.plan import EvaluationPlan, batches, stamp
 from eyas.evaluation.record import read_records
 from eyas.modes.evaluate import run
 
-PLAN = Plan(policy="random", episodes=2, batch=3)
+PLAN = EvaluationPlan(policy="random", episodes=2, batch=3)
 FILES = ("episodes.jsonl", "result.json", "result.csv", "run.json")
 
 

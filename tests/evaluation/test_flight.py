@@ -5,8 +5,8 @@ import pytest
 
 from eyas.core.errors import EyasError
 from eyas.evaluation.meter import published
-from eyas.evaluation.plan import Plan, batches, check, fly_batch
-from eyas.evaluation.record import Record
+from eyas.evaluation.plan import EvaluationPlan, batches, check, fly_batch
+from eyas.evaluation.record import EpisodeRecord
 
 
 def figure(records, name):
@@ -46,7 +46,9 @@ def test_a_servo_that_sees_only_pictures_is_between(fly, follow, hover):
 @pytest.mark.slow
 def test_a_box_tracker_of_opencv_is_between(fly, follow, hover):
     pytest.importorskip("cv2")
-    plan = Plan(policy="csrt", episodes=1, batch=1)  # one episode: it takes 60 ms a picture
+    plan = EvaluationPlan(
+        policy="csrt", episodes=1, batch=1
+    )  # one episode: it takes 60 ms a picture
     (csrt,) = next(fly_batch(plan, batches(plan)[0]))
     assert hover[0].cr + 50.0 < csrt.cr < follow[0].cr
 
@@ -132,7 +134,7 @@ def test_actions_that_are_not_allowed_are_errors(fly):
 )
 def test_what_cannot_be_flown_is_one_line(changes, said):
     with pytest.raises(EyasError, match=said):
-        check(Plan(**changes))
+        check(EvaluationPlan(**changes))
 
 
 def test_figures_as_published_are_lower():
@@ -148,4 +150,4 @@ def test_figures_as_published_are_lower():
 
 def test_records_survive_their_file(follow):
     for record in follow:
-        assert Record.model_validate_json(record.model_dump_json()) == record
+        assert EpisodeRecord.model_validate_json(record.model_dump_json()) == record

@@ -7,9 +7,8 @@ import pytest
 
 from eyas.envs.config import EnvConfig
 from eyas.evaluation.episode import Place, episodes_of
-from eyas.evaluation.flock import squads_of
-from eyas.evaluation.neighbours import NEAR, episodes_with_neighbours
-from eyas.evaluation.occlusion import clear_shares
+from eyas.evaluation.episode_batch import NEAR, episode_groups, episodes_with_neighbours
+from eyas.evaluation.flight import clear_shares
 from eyas.evaluation.protocol import PROTOCOLS
 from eyas.sensors.config import CameraConfig
 from eyas.settings.config import EyasConfig
@@ -20,7 +19,7 @@ HOME = [Place("citystreet", "day", "SUMO_VEHICLE")]
 def starts(name, count=2):
     protocol = PROTOCOLS[name]
     episodes = episodes_of(HOME, protocol.directions, count)
-    return episodes, squads_of(episodes, protocol, EnvConfig())
+    return episodes, episode_groups(episodes, protocol, EnvConfig())
 
 
 def test_more_episodes_include_the_fewer():
@@ -31,20 +30,20 @@ def test_more_episodes_include_the_fewer():
 
 
 def test_the_paper_starts_above_the_target_in_four_directions():
-    _, squads = starts("paper")
-    assert sorted(squad.config.start.direction for squad in squads) == pytest.approx(
+    _, groups = starts("paper")
+    assert sorted(group.config.start.direction for group in groups) == pytest.approx(
         [-np.pi / 2, 0.0, np.pi / 2, np.pi]
     )
-    for squad in squads:
-        assert squad.config.reward.view_range == 1.0
-        assert (squad.simulation.snapshot.episodes.reward > 0.9).all()
+    for group in groups:
+        assert group.config.reward.view_range == 1.0
+        assert (group.simulation.snapshot.episodes.reward > 0.9).all()
 
 
 def test_a_search_starts_with_the_target_out_of_view():
-    _, squads = starts("search", 4)
-    for squad in squads:
-        assert (squad.simulation.snapshot.episodes.reward == 0.0).all()
-        pixels, _ = squad.subjects()
+    _, groups = starts("search", 4)
+    for group in groups:
+        assert (group.simulation.snapshot.episodes.reward == 0.0).all()
+        pixels, _ = group.subjects()
         assert (pixels == 0).all()
 
 
@@ -57,14 +56,16 @@ def test_distractors_look_like_the_target_and_one_is_beside_it():
     protocol = PROTOCOLS["distractor"]
     episodes = episodes_with_neighbours(HOME, protocol, 2, 5)
     assert len(episodes) == 8
-    for squad in squads_of(episodes, protocol, EnvConfig()):
-        simulation, targets = squad.simulation, squad.simulation.snapshot.targets
-        for tracker in range(len(squad.rows)):
+    for group in episode_groups(episodes, protocol, EnvConfig()):
+        simulation, targets = group.simulation, group.simulation.snapshot.targets
+        for tracker in range(len(group.rows)):
             actors, models = simulation.actors_around(tracker)
             assert len(set(models.tolist())) == 1
             away = np.linalg.norm(actors.position[0, :, :2] - targets.position[tracker, :2], axis=1)
             assert np.sort(away)[1] <= NEAR
-    other = squads_of(episodes_of(HOME, protocol.directions, 1), PROTOCOLS["long"], EnvConfig())
+    other = episode_groups(
+        episodes_of(HOME, protocol.directions, 1), PROTOCOLS["long"], EnvConfig()
+    )
     _, models = other[0].simulation.actors_around(0)
     assert len(set(models.tolist())) > 1
 

@@ -11,7 +11,7 @@ from typer.testing import CliRunner
 from eyas.cli.app import app
 from eyas.core.errors import EyasError
 from eyas.evaluation.comparison import differences, text_of
-from eyas.evaluation.plan import Plan, batches
+from eyas.evaluation.plan import EvaluationPlan, batches
 from eyas.evaluation.protocol import PROTOCOLS
 from eyas.evaluation.record import read_records
 from eyas.evaluation.result import NO_INTERVALS, load_run, table
@@ -26,7 +26,7 @@ def folder(tmp_path_factory):
     """Evaluations of hover and follow."""
     folder = tmp_path_factory.mktemp("results")
     for name in ("hover", "follow"):
-        run(Plan(policy=name, episodes=2), folder / name, quiet=True)
+        run(EvaluationPlan(policy=name, episodes=2), folder / name, quiet=True)
     return folder
 
 
@@ -214,7 +214,7 @@ def test_plots_and_films_are_written(folder, tmp_path):
     pytest.importorskip("matplotlib")
     import av
 
-    run(Plan(policy="hover", episodes=1), tmp_path, plots=True, videos=True, quiet=True)
+    run(EvaluationPlan(policy="hover", episodes=1), tmp_path, plots=True, videos=True, quiet=True)
     for name in ("reward", "lost", "flights-citystreet"):
         assert (tmp_path / "plots" / f"{name}.png").read_bytes().startswith(b"\x89PNG")
     for name in ("worst", "median", "best"):
@@ -223,7 +223,7 @@ def test_plots_and_films_are_written(folder, tmp_path):
 
 
 def test_an_interrupted_film_leaves_nothing_behind(folder, tmp_path, monkeypatch):
-    plan = Plan(policy="hover", episodes=1)
+    plan = EvaluationPlan(policy="hover", episodes=1)
     names = {episode.name for part in batches(plan) for episode in part}
     assert len(names) == plan.count
     shoot, pictures = evaluation_films._Camera.shoot, iter(range(20))

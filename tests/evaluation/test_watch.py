@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from eyas.evaluation.watch import watched
+from eyas.evaluation.meter import watched
 
 
 def of(text, *, broken_off=False):

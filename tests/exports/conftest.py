@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from eyas.core.pinhole import intrinsics
-from eyas.exports.frame import Action, Body, CameraPose, Frame, Subject
+from eyas.exports.frame import CameraPose, Frame, RecordedAction, RecordedBody, Subject
 from eyas.exports.movement import Movement
 from eyas.exports.writer import Episode, Run
 from eyas.sensors.config import LidarConfig
@@ -35,7 +35,7 @@ def made(number: int, **changes: object) -> Frame:
         "number": number,
         "time": 1.0 + 0.04 * number,
         "step": 20 * number + 31,
-        "tracker": Body(
+        "tracker": RecordedBody(
             position=np.array([1.0, 2.0, 22.0]),
             velocity=np.array([13.0, 0.0, 0.0]),
             acceleration=np.zeros(3),
@@ -46,7 +46,7 @@ def made(number: int, **changes: object) -> Frame:
         "camera": CameraPose(np.array([1.1, 2.0, 21.9]), np.eye(3), 0.8),
         "target": TARGET,
         "others": (),
-        "action": Action(-1, None),
+        "action": RecordedAction(-1, None),
         "reward": 0.5,
         "direction": TargetDirection.STRAIGHT,
         "reason": DoneReason.NONE,

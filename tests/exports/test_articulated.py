@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from eyas.exports.capture import Moment, frame_of
-from eyas.exports.frame import Action
+from eyas.exports.frame import RecordedAction
 from eyas.exports.label import label_of
 from eyas.exports.writer import Episode
 from eyas.sim.build import build_simulation
@@ -51,7 +51,7 @@ def labelled(simulation, tick, actor):
     frames = [
         frame_of(
             Moment(snapshot, snapshot.episodes, simulation.view.actors(n)),
-            *(n, picture, n, 0, Action(-1, None)),
+            *(n, picture, n, 0, RecordedAction(-1, None)),
         )
         for n in (0, 1)
     ]

@@ -2,7 +2,7 @@ import re
 
 import pytest
 
-from eyas.exports.files import Files, joined, pattern_of
+from eyas.exports.writer import Files, joined, pattern_of
 
 
 def test_a_pattern_takes_the_names_that_the_notation_gives_and_no_others():

@@ -9,7 +9,7 @@ from PIL import Image
 
 from eyas.core.errors import OutputError
 from eyas.exports.jpeg import JpegWriter, write_picture
-from eyas.exports.summary import Summary
+from eyas.exports.writer import Summary
 
 
 def picture() -> np.ndarray:

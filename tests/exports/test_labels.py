@@ -6,10 +6,9 @@ import numpy as np
 import pytest
 
 from eyas.core.errors import DataFileError
-from eyas.exports.frame import Action
-from eyas.exports.label import label_of
-from eyas.exports.labels import LabelWriter, read_labels
-from eyas.exports.summary import Scores, Summary
+from eyas.exports.frame import RecordedAction
+from eyas.exports.label import LabelWriter, label_of, read_labels
+from eyas.exports.writer import Scores, Summary
 from eyas.state.scene import ObjectClass
 from eyas.targets.catalogue import model_index, sections_of
 from eyas.task.done import DoneReason
@@ -42,7 +41,7 @@ def test_each_line_is_a_record_that_any_reader_understands(written, frame):
 
 
 def test_a_label_says_what_the_frame_holds(frame, episode):
-    seen = frame(7, action=Action(3, np.zeros(4)), reason=DoneReason.HEIGHT)
+    seen = frame(7, action=RecordedAction(3, np.zeros(4)), reason=DoneReason.HEIGHT)
     label = label_of(replace(seen, target=replace(seen.target, words="a red SUV")), episode)
     assert label["target_class_id"] == int(seen.target.object_class)
     assert (label["width"], label["height"]) == (64, 48)

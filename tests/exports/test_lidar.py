@@ -5,7 +5,7 @@ import pytest
 
 from eyas.core.errors import ConfigError
 from eyas.exports.lidar import LidarWriter
-from eyas.exports.summary import Summary
+from eyas.exports.writer import Summary
 from eyas.sim.config import SimConfig
 
 

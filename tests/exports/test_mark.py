@@ -4,16 +4,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from eyas.exports.frame import Action
+from eyas.exports.frame import RecordedAction
 from eyas.exports.mark import MarkWriter
-from eyas.exports.summary import Summary
-from eyas.exports.writer import EndedEpisode
+from eyas.exports.writer import EndedEpisode, Summary
 from eyas.task.direction import TargetDirection
 
 
 @pytest.fixture
 def frames(frame):
-    turn = {"action": Action(3, np.zeros(4)), "direction": TargetDirection.LEFT}
+    turn = {"action": RecordedAction(3, np.zeros(4)), "direction": TargetDirection.LEFT}
     return [frame(0, reward=0.25), frame(1, reward=1.0, **turn)]
 
 

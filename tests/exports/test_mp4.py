@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from eyas.exports.mp4 import Mp4Episode, Mp4Writer
-from eyas.exports.summary import Summary
+from eyas.exports.writer import Summary
 
 
 def gradient(frame: int, height: int, width: int) -> np.ndarray:

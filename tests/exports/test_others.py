@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from eyas.exports.capture import Moment, frame_of, others_of
-from eyas.exports.frame import Action
+from eyas.exports.frame import RecordedAction
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
 from eyas.sim.worlds import together
@@ -41,7 +41,7 @@ def test_another_s_target_is_described_like_a_target(simulation):
     picture.actor_pixels[:] = 3, 4  # as if every actor was seen
     picture.actor_box[:] = 1, 2, 3, 4
     moment = Moment(simulation.snapshot, simulation.snapshot.episodes)
-    target = frame_of(moment, 1, picture, 1, 0, Action(-1, None)).target
+    target = frame_of(moment, 1, picture, 1, 0, RecordedAction(-1, None)).target
     others = seen_by(simulation, 0, picture)
     own = ACTOR_OBJECT + int(simulation.snapshot.targets.actor[0])
     everyone = [ACTOR_OBJECT + actor for actor in range(simulation.actors)]
@@ -76,5 +76,5 @@ def test_they_are_those_whose_pixels_are_in_the_picture(simulation):
 
 def test_there_are_none_where_nobody_wants_them(simulation):
     moment = Moment(simulation.snapshot, simulation.snapshot.episodes)
-    frame = frame_of(moment, 0, picture_of(simulation), 0, 0, Action(-1, None))
+    frame = frame_of(moment, 0, picture_of(simulation), 0, 0, RecordedAction(-1, None))
     assert (frame.others, frame.target.words) == ((), "")

@@ -4,11 +4,9 @@ from dataclasses import replace
 import pytest
 
 from eyas.core.errors import ConfigError, UnknownNameError
-from eyas.exports.files import Files, pattern_of
 from eyas.exports.frame import OUTPUTS
 from eyas.exports.registry import WRITERS, chosen_writers
-from eyas.exports.summary import Summary
-from eyas.exports.writer import EndedEpisode, Writer
+from eyas.exports.writer import EndedEpisode, Files, Summary, Writer, pattern_of
 
 
 class Whole:

@@ -1,7 +1,7 @@
 import json
 import math
 
-from eyas.exports.rounding import rounded, rounded_list
+from eyas.exports.label import rounded, rounded_list
 
 
 def test_numbers_have_fixed_decimals_and_no_negative_zero():

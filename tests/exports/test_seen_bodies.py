@@ -5,7 +5,7 @@ import pytest
 
 from eyas.core.pinhole import project
 from eyas.exports.capture import Moment, frame_of
-from eyas.exports.frame import Action
+from eyas.exports.frame import RecordedAction
 from eyas.settings.config import EyasConfig
 from eyas.sim.build import build_simulation
 from eyas.sim.worlds import each_alone
@@ -32,7 +32,7 @@ def frames():
         for n in range(COUNT):
             shown, actors = simulation.snapshot, simulation.view.actors(n)
             moment = Moment(shown, shown.episodes, actors)
-            seen.append(frame_of(moment, n, picture, n, 0, Action(-1, None)))
+            seen.append(frame_of(moment, n, picture, n, 0, RecordedAction(-1, None)))
     return seen
 
 

@@ -1,6 +1,6 @@
 import math
 
-from eyas.exports.summary import Scores, Summary, total
+from eyas.exports.writer import Scores, Summary, total
 
 
 def test_frames_are_counted_with_their_scores(frame):

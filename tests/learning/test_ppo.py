@@ -6,10 +6,10 @@ import pytest
 torch = pytest.importorskip("torch")
 
 from eyas.learning.config import TrainConfig
-from eyas.learning.crew import Crew
 from eyas.learning.network import NetworkShape, TrackingNetwork
 from eyas.learning.ppo import _gradients, _Lesson, advantages, update
 from eyas.learning.rollout import Rollout
+from eyas.learning.shards import TorchThreads
 
 
 def rollout(steps, count, shape=None, seed=0):
@@ -54,7 +54,7 @@ def test_an_action_that_is_rewarded_becomes_likely(memory):
     bright = torch.arange(8) % 2
     data.pictures[:] = (bright * 200 + 20).to(torch.uint8)[None, :, None, None, None]
     good, state = torch.tensor([2, 5])[bright], torch.zeros(8, shape.state)
-    crew = Crew(2)
+    threads = TorchThreads(2)
     for _ in range(60):
         with torch.no_grad():
             logits, value, _ = network(data.pictures[0], state)
@@ -63,7 +63,7 @@ def test_an_action_that_is_rewarded_becomes_likely(memory):
         data.rewards[:] = (data.actions == good).float()
         data.values[:] = value
         data.ended[:] = 1.0  # each decision is an episode
-        update(network, optimiser, data, config, generator, crew)
+        update(network, optimiser, data, config, generator, threads)
     chances = network(data.pictures[0], state)[0].softmax(1).gather(1, good[:, None])
     assert chances.min() > 0.9
 

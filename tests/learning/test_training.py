@@ -18,9 +18,9 @@ from eyas.cli.train import _default_folder
 from eyas.core.build import this_build
 from eyas.core.config import updated, validated
 from eyas.core.errors import EyasError
-from eyas.evaluation.plan import Plan, batches, fly_batch
+from eyas.evaluation.plan import EvaluationPlan, batches, fly_batch
 from eyas.learning.checkpoint import RunFolder
-from eyas.learning.crew import Crew
+from eyas.learning.shards import TorchThreads
 from eyas.learning.trainer import train
 from eyas.settings.config import EyasConfig
 
@@ -160,7 +160,7 @@ def test_marks_are_those_of_eyas_evaluate(tmp_path):
     """The network in its ONNX file gets the same records from `eyas evaluate`."""
     policy = train(SMALL, tmp_path / "run", say=quiet)
     row = (tmp_path / "run" / "curve.csv").read_text().splitlines()[-1].split(",")
-    plan = Plan(policy=str(policy), episodes=1, seed=2_000_000)
+    plan = EvaluationPlan(policy=str(policy), episodes=1, seed=2_000_000)
     records = [
         each for batch in batches(plan) for ended in fly_batch(plan, batch) for each in ended
     ]
@@ -171,7 +171,7 @@ def test_marks_are_those_of_eyas_evaluate(tmp_path):
 def test_shards_and_parts_give_the_same_on_any_number_of_threads(tmp_path, monkeypatch):
     config = updated(SMALL, {"train": {"shards": 2, "parts": 3}})
     train(config, tmp_path / "side by side", say=quiet)
-    monkeypatch.setattr(Crew, "each", lambda self, do, jobs: [do(job) for job in jobs])
+    monkeypatch.setattr(TorchThreads, "each", lambda self, do, jobs: [do(job) for job in jobs])
     train(config, tmp_path / "in turn", say=quiet)
     assert files(tmp_path / "side by side") == files(tmp_path / "in turn")
 

@@ -19,14 +19,10 @@ from PIL import Image
 from eyas.cli.main import main
 from eyas.core.errors import ConfigError, OutputError, SpawnError
 from eyas.core.folder_lock import folder_lock
-from eyas.exports.files import Files
 from eyas.exports.frame import Frame
-from eyas.exports.gather import Gather
-from eyas.exports.label import Label
-from eyas.exports.labels import read_labels
+from eyas.exports.label import Label, read_labels
 from eyas.exports.registry import WRITERS
-from eyas.exports.summary import Summary
-from eyas.exports.writer import Episode, Writer
+from eyas.exports.writer import Episode, Files, Gather, Summary, Writer
 from eyas.modes.video import run as video
 from eyas.modes.video.config import VideoConfig
 from eyas.sensors.config import CameraConfig

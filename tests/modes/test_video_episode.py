@@ -5,11 +5,9 @@ import pytest
 
 from eyas.core.errors import OutputError
 from eyas.exports.capture import Moment, frame_of
-from eyas.exports.files import Files
-from eyas.exports.frame import Action
+from eyas.exports.frame import RecordedAction
 from eyas.exports.registry import WRITERS, chosen_writers
-from eyas.exports.summary import Scores, Summary
-from eyas.exports.writer import Episode, EpisodeWriter, Run, Writer
+from eyas.exports.writer import Episode, EpisodeWriter, Files, Run, Scores, Summary, Writer
 from eyas.modes.video.episode import EpisodeFiles, read_complete
 from eyas.sensors.config import LidarConfig
 from eyas.sim.config import SimConfig
@@ -34,7 +32,7 @@ def write(folder: Path, frames: int, writers: list[Writer] | None = None) -> Epi
     picture.subject_pixels[:] = 4, 5
     for number in range(frames):
         picture.rgb[:] = 40 * number
-        action, now = Action(-1, None), snapshot.episodes
+        action, now = RecordedAction(-1, None), snapshot.episodes
         moment = Moment(snapshot, now, lidar=np.ones(400))
         files.add(frame_of(moment, 0, picture, 0, number, action))
     return files

@@ -4,7 +4,7 @@ import itertools
 
 import pytest
 
-from eyas.exports.labels import read_labels
+from eyas.exports.label import read_labels
 from eyas.modes.video import run as video
 from eyas.modes.video.config import VideoConfig
 from eyas.sensors.config import CameraConfig, CameraErrors, LidarConfig, SensorsConfig

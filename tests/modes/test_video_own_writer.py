@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from eyas.exports.labels import read_labels
+from eyas.exports.label import read_labels
 
 DOC = (Path(__file__).parents[2] / "docs" / "writers.md").read_text()
 SETTINGS = {
@@ -30,7 +30,7 @@ def work(tmp_path_factory) -> Path:
 
 ENDS = """
 import sys
-from eyas.exports.files import Files
+from eyas.exports.writer import Files
 
 class Writer:
     wants, files = frozenset(), Files(episode=("ends.json",))

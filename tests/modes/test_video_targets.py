@@ -11,8 +11,7 @@ import numpy as np
 import pytest
 
 from eyas.cli.app import run
-from eyas.exports.label import Label
-from eyas.exports.labels import read_labels
+from eyas.exports.label import Label, read_labels
 from eyas.state.scene import ObjectClass
 
 ROOT = Path(__file__).parents[2]
@@ -20,9 +19,9 @@ ROOT = Path(__file__).parents[2]
 WRITER = '''
 import numpy as np
 
-from eyas.exports.files import Files
-from eyas.exports.gather import Gather
-from eyas.exports.summary import Summary
+from eyas.exports.writer import Files
+from eyas.exports.writer import Gather
+from eyas.exports.writer import Summary
 from eyas.exports.writer import Writer
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from eyas.core.pinhole import project, rays
-from eyas.overlay.items import GroundArea, Label, Line, Overlay, Solid
+from eyas.overlay.items import GroundArea, Label, Overlay, Solid, ThinLine
 from eyas.overlay.paint import paint_overlays, with_depth
 from eyas.state.draw import DrawList, Picture
 from eyas.state.terrain import Plane
@@ -139,7 +139,7 @@ def test_a_line_is_drawn_where_the_pinhole_says_and_clipped_at_the_camera(
 ):
     views = looking([(0.0, 0.0, 5.0)], yaw=0.2, pitch=0.1, fov=FOV)
     ends = np.array([-30.0, 8.0, 3.0]), np.array([60.0, -3.0, 6.0])
-    line = Line(*(ends[::-1] if backwards else ends), BLUE)
+    line = ThinLine(*(ends[::-1] if backwards else ends), BLUE)
     before, after = painted(plain, views, Overlay(lines=(line,)))
     points = ends[0] + np.linspace(0.34, 1.0, 400)[:, None] * (ends[1] - ends[0])
     column, row, depth = project(points, views.position[0], views.rotation[0], 128, 96, FOV)
@@ -154,7 +154,7 @@ def test_a_line_is_drawn_where_the_pinhole_says_and_clipped_at_the_camera(
 
 def test_a_line_behind_the_camera_is_not_drawn(plain, painted):
     views = looking([(0.0, 0.0, 5.0)], fov=FOV)
-    line = Line(np.array([-5.0, 3.0, 5.0]), np.array([-40.0, -3.0, 9.0]), BLUE)
+    line = ThinLine(np.array([-5.0, 3.0, 5.0]), np.array([-40.0, -3.0, 9.0]), BLUE)
     before, after = painted(plain, views, Overlay(lines=(line,)))
     assert not changed(before, after).any()
 
@@ -162,7 +162,7 @@ def test_a_line_behind_the_camera_is_not_drawn(plain, painted):
 def test_walls_hide_lines_and_solids(walled, painted):
     views = looking([(0.0, 0.0, 4.0)], fov=FOV)
     hidden = Overlay(
-        lines=(Line(np.array([30.0, -1.0, 4.0]), np.array([30.0, 1.0, 5.0]), BLUE),),
+        lines=(ThinLine(np.array([30.0, -1.0, 4.0]), np.array([30.0, 1.0, 5.0]), BLUE),),
         solids=(octahedron((30.0, 0.0, 4.0), 1.0),),
     )
     before, after = painted(walled, views, hidden)
@@ -224,7 +224,7 @@ def test_the_same_bytes_twice_and_in_any_company(plain, painted):
     one, other = (0.0, 0.0, 20.0), (3.0, 1.0, 15.0)
     overlay = Overlay(
         areas=(ground_area(SQUARE, fill=0.2),),
-        lines=(Line(np.array([5.0, 0.0, 9.0]), np.array([22.0, 4.0, 0.0]), RED),),
+        lines=(ThinLine(np.array([5.0, 0.0, 9.0]), np.array([22.0, 4.0, 0.0]), RED),),
         solids=(octahedron((17.0, 0.0, 2.0), 1.0),),
         labels=(Label(np.array([17.0, 0.0, 3.0]), "reward 0.50", RED),),
     )

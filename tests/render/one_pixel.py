@@ -1,10 +1,7 @@
 """One pixel at a time: what a thread of a graphics processor runs, from the same functions."""
 
-import numpy as np
-from numpy.typing import NDArray
-
 from eyas.lanes import kernel
-from eyas.render.kernels.bundles import Geometry, Illumination, Light, Movers, View
+from eyas.render.kernels.bundles import Band
 from eyas.render.kernels.light.tone import tone_bytes
 from eyas.render.kernels.pixels import pack
 from eyas.render.kernels.rays import ray_of, rays_of
@@ -19,42 +16,24 @@ __all__ = ["shade_pixel"]
 
 
 @kernel(inline=True)
-def shade_pixel(
-    view: View,
-    geometry: Geometry,
-    light: Light,
-    lit: Illumination,
-    movers: Movers,
-    world: int,
-    drawn: NDArray[np.int32],
-    key: int,
-    shade: int,
-    row: int,
-    column: int,
-) -> int:
+def shade_pixel(band: Band, key: int, shade: int, row: int, column: int) -> int:
     """Return the packed bytes of a pixel with one sample, sky included.
 
     Args:
-        view: The band.
-        geometry: Everything that can be drawn.
-        light: Maps of light and lamps.
-        lit: Light and air of the view.
-        movers: The draw lists.
-        world: The one of this view.
-        drawn: See `Scratch`.
+        band: The band.
         key: What the pixel shows.
         shade: Its four bytes of `Scratch.shade`.
         row: Row in the band.
         column: Column of the picture.
     """
-    rays = rays_of(view)
+    geometry, light, lit, rays = band.geometry, band.light, band.lit, rays_of(band.camera)
     line, across = rays.top + f4(row) + f4(0.5), f4(column) + f4(0.5)
     if key == i8(0):
         return sky_pixel(light, lit, rays, line, across)
     tag = tag_of(key)
     which, frame, first = drawn_of(tag), no_frame(), i4(0)
     if which >= 0:
-        frame, first = instance_frame(geometry, movers, world, drawn, which), drawn[which, 0]
+        frame, first = instance_frame(band, which), band.drawn[which, 0]
     colour = shade_point(
         geometry, light, lit, i4(triangle_of(tag) + first), which >= 0, frame,
         (rays.eye.x, rays.eye.y, rays.eye.z), ray_of(rays, line, across),

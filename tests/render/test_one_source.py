@@ -5,7 +5,7 @@ import pytest
 
 from eyas.lanes import address_of, compiled
 from eyas.render import renderer as module
-from eyas.render.kernels.light.view_light import view_light
+from eyas.render.kernels.draw import band_of, view_light
 from eyas.render.kernels.scalars import u4
 from eyas.render.kernels.visibility.transform import view_of
 from eyas.state.draw import Picture
@@ -23,14 +23,13 @@ def one_by_one(geometry, light, scratch, movers, _output, task, places, found):
     job = task.job
     view = address_of(view_of(job, 0, task.width, task.height, task.samples))
     lit = address_of(view_light(light.weather, job.light, 0))
+    band = address_of(band_of(geometry, light, lit, movers, 0, view, task.until, scratch, 0))
     for k in range(len(places)):
         row, column = places[k, 0], places[k, 1]
-        shade = scratch.shade[0, row, column]
+        shade = band.shade[row, column]
         word = u4(shade[0]) | (u4(shade[1]) << u4(8)) | (u4(shade[2]) << u4(16))
-        found[k] = shade_pixel(
-            view, geometry, light, lit, movers, 0, scratch.drawn[0], scratch.key[0, row, column],
-            word | (u4(shade[3]) << u4(24)), row, column,
-        )  # fmt: skip
+        word |= u4(shade[3]) << u4(24)
+        found[k] = shade_pixel(band, band.key[row, column], word, row, column)
 
 
 @pytest.mark.slow  # compiles the shading of surfaces a second time

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from eyas.sensors.crowns import crown_slices
-from eyas.sensors.furniture import furniture
+from eyas.sensors.furniture import crown_slices, furniture
 from eyas.sensors.obstacles import solids_of
 from eyas.sim.scenes import load_scene, load_solids
 from eyas.state.scene import ObjectClass

@@ -5,7 +5,7 @@ from eyas.core.pcg64 import STATE, begin_stream
 from eyas.core.rng import room_key, stream
 from eyas.lanes import interpreted
 from eyas.targets.catalogue import kind_index, models_of
-from eyas.targets.looks import LookSampler, draw_looks
+from eyas.targets.looks import LookSampler, sample_looks
 from eyas.targets.vehicles.vehicle import BODY_COLOURS, MOTORCYCLE_COLOURS
 from eyas.traffic.config import VehicleType
 
@@ -73,7 +73,7 @@ def test_kernels_draw_the_same(colour):
     sampler, state = LookSampler(kind, colour), [0] * STATE
     interpreted(begin_stream)(state, 5, room_key("looks"), 2, 9)
     model, painted = np.empty(60, np.int32), np.empty((60, 3), np.float32)
-    interpreted(draw_looks)(sampler.table, model, painted, state)
+    interpreted(sample_looks)(sampler.table, model, painted, state)
     expected = sampler.sample(stream(5, "looks", 2, 9))
     np.testing.assert_array_equal(model, expected[0])
     np.testing.assert_array_equal(painted, expected[1])

@@ -7,8 +7,15 @@ from eyas.sensors.config import CameraConfig
 from eyas.state.terrain import Terrain
 from eyas.task.direction import TargetDirection
 from eyas.task.done import DoneReason
-from eyas.task.packet_rows import BASIC_COLUMNS, REWARD_COLUMNS, PacketRows
-from eyas.task.packets import BASIC_FIELDS, REWARD_FIELDS, BasicPacket, RewardPacket
+from eyas.task.packet_rows import PacketRows
+from eyas.task.packets import (
+    BASIC_COLUMNS,
+    BASIC_FIELDS,
+    REWARD_COLUMNS,
+    REWARD_FIELDS,
+    BasicPacket,
+    RewardPacket,
+)
 
 N = 1
 YAW = 0.6
@@ -41,7 +48,7 @@ def told(snapshot, look):
 def packets(snapshot):
     """Return the basic and the reward packet of tracker 1."""
     basic, reward = PacketRows(snapshot, CameraConfig(), Terrain.flat(-0.1)).now()
-    assert (basic.shape, reward.shape) == ((3, BASIC_COLUMNS), (3, REWARD_COLUMNS))
+    assert (basic.shape, reward.shape) == ((3, 22), (3, 60))
     return basic[N], reward[N]
 
 
@@ -85,9 +92,26 @@ def test_crash_is_told_though_the_episode_goes_on(told, crash):
     assert packets(told)[1][58] == crash
 
 
+def test_the_columns_of_a_part_are_where_its_numbers_are_named():
+    for columns, names in ((BASIC_COLUMNS, BASIC_FIELDS), (REWARD_COLUMNS, REWARD_FIELDS)):
+        for part, where in columns.items():
+            if isinstance(where, int):
+                assert names[where] == part
+            else:
+                own = names[where]
+                assert (
+                    own == ("roll", "pitch", "yaw")
+                    if part == "euler"
+                    else all(name.startswith(f"{part}_") for name in own)
+                )
+        assert sum(1 if isinstance(w, int) else w.stop - w.start for w in columns.values()) == len(
+            names
+        )
+
+
 def test_every_column_has_its_own_name(told):
-    assert len(set(BASIC_FIELDS)) == len(BASIC_FIELDS) == BASIC_COLUMNS
-    assert len(set(REWARD_FIELDS)) == len(REWARD_FIELDS) == REWARD_COLUMNS
+    assert len(set(BASIC_FIELDS)) == len(BASIC_FIELDS) == 22
+    assert len(set(REWARD_FIELDS)) == len(REWARD_FIELDS) == 60
     basic, reward = packets(told)
     row = dict(zip(REWARD_FIELDS, reward, strict=True))
     assert row["camera_pose_23"] == pytest.approx(22.1)
@@ -122,9 +146,9 @@ def test_packets_tell_the_state_as_it_is_now_and_later_ones_leave_them_alone(tol
 
 
 def test_rows_pass_through_records_unchanged():
-    numbers = np.random.default_rng(0).normal(size=REWARD_COLUMNS)
+    numbers = np.random.default_rng(0).normal(size=len(REWARD_FIELDS))
     numbers[[0, 1, 58, 59]] = [84, 63, 1, 3]
     assert list(RewardPacket.from_row(numbers, "Bus").to_row()) == list(numbers)
-    numbers = numbers[:BASIC_COLUMNS]
+    numbers = numbers[: len(BASIC_FIELDS)]
     numbers[[0, 21]] = [1500, 1]
     assert list(BasicPacket.from_row(numbers).to_row()) == list(numbers)

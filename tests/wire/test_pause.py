@@ -1,4 +1,4 @@
-from eyas.wire.pause import Pause
+from eyas.wire.exchange import Pause
 
 
 def test_the_longer_it_waits_the_less_often_it_looks(monkeypatch):

@@ -1,4 +1,4 @@
-"""The server in this process, with a crew of its own, where the order of events is certain."""
+"""The server in this process, with a group of its own, where the order of events is certain."""
 
 import socket
 import threading
@@ -8,8 +8,7 @@ import pytest
 
 from eyas.wire.codec import HOVER, RESET
 from eyas.wire.config import WireConfig
-from eyas.wire.exchange import Exchange
-from eyas.wire.pause import Pause
+from eyas.wire.exchange import Exchange, Pause
 from eyas.wire.server import Server, Service
 
 
@@ -17,7 +16,7 @@ class EnoughError(Exception):
     pass
 
 
-class Crew:
+class TrackerGroup:
     """Ends the server at its first round."""
 
     def __init__(self, played):
@@ -69,7 +68,7 @@ def run(tmp_path, port):
 
         def build(count):
             begin(count, announce, lambda n: exchange.names(f"DRONE{n}"))
-            return Crew(played)
+            return TrackerGroup(played)
 
         service = Service(WireConfig(port=port), "DRONE", build, verbose=False)
         starter = threading.Thread(target=first, daemon=True)

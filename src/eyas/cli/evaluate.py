@@ -107,7 +107,7 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
     The exit code is 1 if the policy has failed in all episodes.
     """
     from eyas.core.config import validated
-    from eyas.evaluation.plan import Plan, folder_name
+    from eyas.evaluation.plan import EvaluationPlan, folder_name
 
     values: dict[str, Any] = {
         "policy": policy,
@@ -120,7 +120,7 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
     changes = _changes(set_ or [])
     values |= {"env": changes.pop("env", {}), "settings": changes}
     values |= {} if seed is None else {"seed": seed}
-    plan = validated(Plan, values)
+    plan = validated(EvaluationPlan, values)
     folder = out or Path("runs/evaluation") / folder_name(plan)
     if latency_curve and (as_published or videos):
         raise ConfigError("--latency-curve: not together with --as-published or --videos")
@@ -144,7 +144,7 @@ def evaluate(  # noqa: PLR0913  # one parameter for each option
 def _flier(*, ray: bool) -> "AbstractContextManager[Flier]":
     """Return what flies the batches."""
     if ray:
-        from eyas.evaluation.cluster import on_ray
+        from eyas.evaluation.fliers import on_ray
 
         return on_ray()
     from eyas.evaluation.fliers import fly_here

@@ -1,4 +1,4 @@
-"""A setting that may be drawn anew for each episode."""
+"""A setting that may be sampled anew for each episode."""
 
 from collections.abc import Callable
 from typing import Annotated, ClassVar, NamedTuple
@@ -18,15 +18,15 @@ __all__ = [
     "Uniform",
     "Variation",
     "bounds",
-    "drawn",
     "rule_of",
     "sample",
+    "sampled",
     "within",
 ]
 
 
 class Uniform(Config):
-    """A value drawn uniformly between two limits: `{"uniform": [low, high]}`."""
+    """A value sampled uniformly between two limits: `{"uniform": [low, high]}`."""
 
     written: ClassVar[str] = '{"uniform": [low, high]}'
     uniform: tuple[float, float]
@@ -34,7 +34,7 @@ class Uniform(Config):
 
 
 class Mirrored(Config):
-    """A magnitude drawn uniformly, with a random sign: `{"mirrored": [low, high]}`."""
+    """A magnitude sampled uniformly, with a random sign: `{"mirrored": [low, high]}`."""
 
     written: ClassVar[str] = '{"mirrored": [low, high]}'
     mirrored: tuple[float, float]
@@ -50,11 +50,11 @@ class Choice(Config):
 
 
 Variation = float | Uniform | Mirrored | Choice
-"""A number, or a rule for drawing one."""
+"""A number, or a rule for sampling one."""
 
 
 def sample(variation: Variation, rng: np.random.Generator) -> float:
-    """Return one value of a variation, drawn at random."""
+    """Return one value of a variation, sampled at random."""
     match variation:
         case Uniform(uniform=(low, high)):
             return float(rng.uniform(min(low, high), max(low, high)))
@@ -94,8 +94,8 @@ def rule_of(variation: Variation) -> Rule:
 
 
 @kernel
-def drawn(rule: Rule, state: NDArray[np.int64]) -> float:
-    """Return one value of a variation, the one that `sample` would draw.
+def sampled(rule: Rule, state: NDArray[np.int64]) -> float:
+    """Return one value of a variation, the one that `sample` would return.
 
     Args:
         rule: The variation.

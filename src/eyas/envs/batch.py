@@ -1,32 +1,60 @@
 """N trackers of the same settings, each in a world of its own, as environments step them."""
 
 import logging
+import types
 from collections.abc import Sequence
+from enum import Enum
+from functools import partial
 from itertools import compress
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import gymnasium
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import BaseModel
 
 from eyas.core.clock import physics_steps
 from eyas.core.errors import EyasError
 from eyas.core.memento import Memento, recall, remember
 from eyas.core.rng import EpisodeKey
 from eyas.envs.actions import make_actions
-from eyas.envs.copies import FIXED
 from eyas.envs.information import Info, information
 from eyas.envs.observation import Observer
+from eyas.lanes import BoundCall, CompiledCall, Held
+from eyas.render.renderer import CpuRenderer
 from eyas.settings.config import EyasConfig
 from eyas.settings.legacy.messages import originals_named
+from eyas.sim.assets import Assets
 from eyas.sim.build import build_simulation
+from eyas.sim.episode_sampling import ModelTable, SamplingRules
+from eyas.sim.light import LightRules
+from eyas.sim.views.visible_actors import VisibleActors
 from eyas.sim.worlds import each_alone, together
 from eyas.state.draw import Picture
+from eyas.state.lighting import Lighting
+from eyas.state.motion import Motion
+from eyas.state.terrain import Terrain
+from eyas.targets.looks import LookTable
 from eyas.task.done import DoneReason
 from eyas.task.journal import Journal
 from eyas.task.step_line import step_line
 
 __all__ = ["Batch", "Outcome", "Seeds"]
+
+_CODE = (types.FunctionType, types.MethodType, partial, type, CompiledCall)
+_SETTINGS = (BaseModel, Enum, gymnasium.Space)
+_SHARED = (Assets, CpuRenderer, Lighting, Motion, Terrain)
+_TABLES = (SamplingRules, LightRules, LookTable, ModelTable)
+"""Made of the settings and the catalogue, which may have grown in this process."""
+_BOUND = (BoundCall, Held)
+"""To the addresses of arrays, which stay."""
+_SCRATCH = (VisibleActors, Picture)
+"""Worked out at each use."""
+
+FIXED = (*_CODE, *_SETTINGS, *_SHARED, *_TABLES, *_BOUND, *_SCRATCH, Journal)
+"""Types of parts for `eyas.core.memento.remember` to leave out."""
+
 
 Mask = NDArray[np.bool_]
 Seeds = Sequence[int | None] | None

@@ -13,6 +13,7 @@ from eyas.targets.catalogue import MODELS
 from eyas.task.config import Crash
 from eyas.task.done import DoneReason
 from eyas.task.packet_rows import SENSOR_COLUMNS
+from eyas.task.packets import BASIC_COLUMNS, REWARD_COLUMNS
 
 __all__ = ["Info", "by_term", "information", "masked", "of_one", "privileged_state", "sensor_state"]
 
@@ -20,35 +21,13 @@ Floats = NDArray[np.float64]
 Info = dict[str, Any]
 Mask = NDArray[np.bool_]
 
-_SENSORS = {
-    "position": slice(1, 4),
-    "velocity": slice(4, 7),
-    "felt_acceleration": slice(7, 10),
-    "angular_velocity": slice(10, 13),
-    "orientation": slice(13, 17),
-    "euler": slice(17, 20),
-}
-"""Columns of the basic packet by the names of `BasicPacket`."""
+_SENSORS = tuple(BASIC_COLUMNS)[1:-2]
+"""Parts of the basic packet: all but its step count, its reward and its end."""
 
-_REWARD: dict[str, int | slice] = {
-    "field_of_view": 2,
-    "focal_length": 3,
-    "camera_pitch": 4,
-    "commanded_height": 5,
-    "start_direction": 6,
-    "camera_pose": slice(7, 23),
-    "target_pose": slice(23, 39),
-    "view_centre": slice(39, 42),
-    "target_centre": slice(42, 45),
-    "camera_position": slice(45, 48),
-    "relative_yaw": 48,
-    "relative_position": slice(49, 52),
-    "relative_velocity": slice(52, 55),
-    "relative_acceleration": slice(55, 58),
-}
-"""Columns of the reward packet by the names of `RewardPacket`."""
-_WHOLE = {"camera_width": 0, "camera_height": 1, "target_direction": 59}
-_CRASH = 58
+_WHOLE = ("camera_width", "camera_height", "target_direction")
+"""Parts of the reward packet that are whole numbers."""
+
+_REWARD = tuple(name for name in REWARD_COLUMNS if name not in (*_WHOLE, "crash"))
 
 _WORDS = {
     "done_reason": [reason.name.lower() for reason in DoneReason],
@@ -77,10 +56,10 @@ def information(simulation: Simulation) -> Info:
     """
     basic, reward = simulation.packets()
     _, _, targets, episodes, light = simulation.snapshot
-    info: Info = {name: basic[:, columns] for name, columns in _SENSORS.items()}
-    info.update({name: reward[:, columns] for name, columns in _REWARD.items()})
-    info.update({name: reward[:, column].astype(np.int64) for name, column in _WHOLE.items()})
-    info["crash"] = reward[:, _CRASH] != 0.0
+    info: Info = {name: basic[:, BASIC_COLUMNS[name]] for name in _SENSORS}
+    info |= {name: reward[:, REWARD_COLUMNS[name]] for name in _REWARD}
+    info |= {name: reward[:, REWARD_COLUMNS[name]].astype(np.int64) for name in _WHOLE}
+    info["crash"] = reward[:, REWARD_COLUMNS["crash"]] != 0.0
     info["target_type"] = targets.model.copy()
     info["step"] = episodes.step_count.copy()
     info["done_reason"] = episodes.reason.copy()
@@ -144,11 +123,9 @@ def privileged_state(snapshot: Snapshot, out: NDArray[np.float32]) -> None:
         out: Shape (N, 16).
     """
     trackers, _, targets, episodes, _ = snapshot
-    out[:, 0:3] = episodes.relative_position
-    out[:, 3:6] = episodes.relative_velocity
-    out[:, 6:9] = episodes.relative_acceleration
     turn = targets.yaw - trackers.euler[:, 2]
-    out[:, 9], out[:, 10] = exact.sin(turn), exact.cos(turn)
-    out[:, 11] = targets.speed
-    out[:, 12:15] = targets.size
-    out[:, 15] = trackers.gimbal[:, 1]
+    motion = episodes.relative_position, episodes.relative_velocity, episodes.relative_acceleration
+    heading = exact.sin(turn), exact.cos(turn)
+    out[:] = np.column_stack(
+        (*motion, *heading, targets.speed, targets.size, trackers.gimbal[:, 1])
+    )

@@ -111,13 +111,13 @@ class EyasVecEnv(VecEnv):  # type: ignore[misc]  # no types where it is not inst
 
     def get_attr(self, attr_name: str, indices: Indices = None) -> list[Any]:
         """Return an attribute of some environments."""
-        members = map(self._env.member, self._get_indices(indices))
-        return [getattr(member, attr_name) for member in members]
+        sub_envs = map(self._env.sub_env, self._get_indices(indices))
+        return [getattr(sub_env, attr_name) for sub_env in sub_envs]
 
     def set_attr(self, attr_name: str, value: Any, indices: Indices = None) -> None:  # noqa: ANN401  # anything
         """Give some environments an attribute."""
         for index in self._get_indices(indices):
-            setattr(self._env.member(index), attr_name, value)
+            setattr(self._env.sub_env(index), attr_name, value)
 
     def env_method(
         self,

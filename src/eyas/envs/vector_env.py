@@ -14,10 +14,10 @@ from eyas.core.errors import ConfigError
 from eyas.core.rng import checked_seed
 from eyas.envs.batch import Outcome
 from eyas.envs.choice import EnvChoices, Source, checked_options, chosen_settings
-from eyas.envs.fleet import Fleet
 from eyas.envs.information import Info, by_term, masked
-from eyas.envs.members import Member
+from eyas.envs.mixed_batch import MixedBatch
 from eyas.envs.observation import Observation
+from eyas.envs.sub_env import SubEnv
 from eyas.settings.config import EyasConfig
 
 __all__ = ["EyasVectorEnv"]
@@ -69,11 +69,11 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         if render_mode not in (None, *self.metadata["render_modes"]):
             raise ConfigError(f"render_mode: '{render_mode}' is not allowed: 'rgb_array' or None")
         self.config = chosen_settings(config, **choices)
-        self._fleet = Fleet(self.config, num_envs)
+        self._batch = MixedBatch(self.config, num_envs)
         self.num_envs = num_envs
         self.render_mode = render_mode
-        self.single_action_space = self._fleet.action_space
-        self.single_observation_space = self._fleet.observation_space
+        self.single_action_space = self._batch.action_space
+        self.single_observation_space = self._batch.observation_space
         self.action_space = batch_space(self.single_action_space, num_envs)
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.autoreset_mode = AutoresetMode(autoreset_mode)
@@ -88,7 +88,7 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         self._all = np.ones(num_envs, np.bool_)
         self._begun, self._ended = False, np.zeros(num_envs, np.bool_)
         self._ring = [] if copy else [self._new_observations() for _ in range(2)]
-        self._members = [Member(self, index) for index in range(num_envs)]
+        self._sub_envs = [SubEnv(self, index) for index in range(num_envs)]
 
     def reset(
         self,
@@ -112,13 +112,13 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         """
         self._check_open()
         chosen = self._chosen(options)
-        self._fleet.begin(chosen, self._seeds(seed))
+        self._batch.begin(chosen, self._seeds(seed))
         self._begun = True
-        self._fleet.look(chosen, chosen)
+        self._batch.look(chosen, chosen)
         self._ended[chosen] = False
-        info = masked(self._fleet.info(), chosen)
+        info = masked(self._batch.info(), chosen)
         # The same names as after a step: TorchRL stacks all information.
-        none = {name: np.zeros(self.num_envs) for name in self._fleet.terms}
+        none = {name: np.zeros(self.num_envs) for name in self._batch.terms}
         info |= masked(by_term(none), np.zeros(self.num_envs, np.bool_))
         return self._observations(out), info
 
@@ -144,15 +144,15 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         begin = self._ended
         if self.autoreset_mode == AutoresetMode.DISABLED:
             assert not begin.any(), f"environments {np.flatnonzero(begin)} must be reset first"
-        outcome = self._fleet.step(actions, ~begin)
+        outcome = self._batch.step(actions, ~begin)
         self._ended, final = outcome.terminated | outcome.truncated, {}
         if self.autoreset_mode == AutoresetMode.SAME_STEP:
             begin, self._ended = self._ended, np.zeros(self.num_envs, np.bool_)
             final = self._final(begin, outcome)
         if begin.any():
-            self._fleet.begin(begin)
-        self._fleet.look(self._all, begin)
-        info = {**masked(self._fleet.info(), self._all), **final}
+            self._batch.begin(begin)
+        self._batch.look(self._all, begin)
+        info = {**masked(self._batch.info(), self._all), **final}
         info |= masked(by_term(outcome.terms), ~begin)
         return (
             self._observations(out),
@@ -171,50 +171,50 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
     def call(self, name: str, *args: Any, **kwargs: Any) -> tuple[Any, ...]:  # noqa: ANN401  # anything
         """Return an attribute of each environment, or call it if it is a method.
 
-        The attributes are those of `eyas.envs.members.Member`.
+        The attributes are those of `eyas.envs.sub_env.SubEnv`.
         """
         values = self.get_attr(name)
         return tuple(value(*args, **kwargs) if callable(value) else value for value in values)
 
     def get_attr(self, name: str) -> tuple[Any, ...]:
         """Return an attribute of each environment."""
-        return tuple(getattr(member, name) for member in self._members)
+        return tuple(getattr(sub_env, name) for sub_env in self._sub_envs)
 
     def set_attr(self, name: str, values: Any) -> None:  # noqa: ANN401  # anything
         """Give each environment an attribute: one value for all, or a list or tuple with N."""
         each = values if isinstance(values, list | tuple) else [values] * self.num_envs
-        for member, value in zip(self._members, each, strict=True):
-            setattr(member, name, value)
+        for sub_env, value in zip(self._sub_envs, each, strict=True):
+            setattr(sub_env, name, value)
 
-    def member(self, index: int) -> Member:
+    def sub_env(self, index: int) -> SubEnv:
         """Return what libraries see of one environment."""
-        return self._members[index]
+        return self._sub_envs[index]
 
     def config_of(self, index: int) -> EyasConfig:
         """Return the settings of one environment."""
-        return self._fleet.config_of(index)
+        return self._batch.config_of(index)
 
     def words_of(self, index: int) -> str:
         """Return the target of one environment in words that tell it from what else is in view."""
-        return self._fleet.words_of(index)
+        return self._batch.words_of(index)
 
     def render_one(self, index: int) -> NDArray[np.uint8]:
         """Return the picture of one camera in its configured size, shape (H, W, 3)."""
-        return self._fleet.render(index, overlay=self._overlay)
+        return self._batch.render(index, overlay=self._overlay)
 
     def close_extras(self, **_: Any) -> None:  # noqa: ANN401  # Gymnasium's
         """Close the logs and end live traffic."""
-        self._fleet.close()
+        self._batch.close()
 
     def _final(self, ended: Mask, outcome: Outcome) -> Info:
         """Return the last observations and information of episodes that have ended."""
         if not ended.any():
             return {}
-        self._fleet.look(ended, np.zeros(self.num_envs, np.bool_))
+        self._batch.look(ended, np.zeros(self.num_envs, np.bool_))
         observations = np.full(self.num_envs, None, object)
         for index in np.flatnonzero(ended).tolist():
-            observations[index] = self._fleet.one(index)
-        info = self._fleet.info() | by_term(outcome.terms)
+            observations[index] = self._batch.one(index)
+        info = self._batch.info() | by_term(outcome.terms)
         return masked({"final_obs": observations, "final_info": info}, ended)
 
     def _observations(self, out: Observation | None) -> Observation:
@@ -222,7 +222,7 @@ class EyasVectorEnv(gymnasium.vector.VectorEnv[Observation, Any, Any]):
         if out is None:
             self._ring.reverse()
             out = self._ring[0] if self._ring else self._new_observations()
-        self._fleet.copy_to(out)
+        self._batch.copy_to(out)
         return out
 
     def _new_observations(self) -> Observation:

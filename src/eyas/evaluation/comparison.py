@@ -7,7 +7,7 @@ import numpy as np
 
 from eyas.core.errors import DataFileError
 from eyas.evaluation.plan import Stamp
-from eyas.evaluation.record import Record
+from eyas.evaluation.record import EpisodeRecord
 from eyas.evaluation.result import NO_INTERVALS
 from eyas.evaluation.rows import FIGURES, groups_of, strata_of
 from eyas.evaluation.statistics import (
@@ -69,7 +69,9 @@ def refuse_incomparable(first: Stamp, second: Stamp, *, across_builds: bool) -> 
         )
 
 
-def differences(first: Sequence[Record], second: Sequence[Record]) -> list[Difference]:
+def differences(
+    first: Sequence[EpisodeRecord], second: Sequence[EpisodeRecord]
+) -> list[Difference]:
     """Return the differences in the episodes that both have, for each row of a table.
 
     Raises:

@@ -3,7 +3,7 @@
 import math
 from typing import NamedTuple
 
-__all__ = ["FIRST_SEED", "Episode", "Place", "episodes_of"]
+__all__ = ["FIRST_SEED", "EpisodeSpec", "Place", "episodes_of"]
 
 FIRST_SEED = 1_000_000
 """Seed of the first episode: far from the seeds that training begins with, 0, 1, ..."""
@@ -17,7 +17,7 @@ class Place(NamedTuple):
     target: str
 
 
-class Episode(NamedTuple):
+class EpisodeSpec(NamedTuple):
     """One episode of an evaluation. Protocol and episode determine all but the policy's actions."""
 
     place: Place
@@ -34,7 +34,7 @@ class Episode(NamedTuple):
 
 def episodes_of(
     places: list[Place], directions: tuple[float, ...], count: int, first_seed: int = FIRST_SEED
-) -> list[Episode]:
+) -> list[EpisodeSpec]:
     """Return `count` episodes for each place and direction.
 
     The seeds do not depend on the places, so that conditions are compared with the same traffic,
@@ -48,7 +48,7 @@ def episodes_of(
     """
     turns = len(directions)
     return [
-        Episode(place, direction, first_seed + number * turns + turn)
+        EpisodeSpec(place, direction, first_seed + number * turns + turn)
         for place in places
         for number in range(count)
         for turn, direction in enumerate(directions)

@@ -2,31 +2,67 @@
 
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.cache.cached import cached
+from eyas.core.cache.folder import Kind
+from eyas.core.clock import physics_steps
 from eyas.core.errors import ActionError
 from eyas.envs.actions import make_actions
+from eyas.envs.config import EnvConfig
 from eyas.evaluation.delay import Delay
-from eyas.evaluation.episode import Episode
-from eyas.evaluation.flock import Flock
+from eyas.evaluation.episode import EpisodeSpec
+from eyas.evaluation.episode_batch import EpisodeBatch, episode_groups
 from eyas.evaluation.meter import Meter
-from eyas.evaluation.occlusion import clear_shares
 from eyas.evaluation.policies.policy import Decision, Failure, Policy, PolicyInput, Start
 from eyas.evaluation.protocol import Protocol
-from eyas.evaluation.record import Record
+from eyas.evaluation.record import EpisodeRecord
 
-__all__ = ["Flight", "Watcher"]
+__all__ = ["BatchFlight", "Watcher", "clear_shares"]
+
+_PERIOD = 0.128
+"""Time between two looks [s]."""
+
+
+def clear_shares(episodes: list[EpisodeSpec], protocol: Protocol) -> list[float]:
+    """Return the mean share of each target that nothing hides from a drone exactly above it.
+
+    Kept in the cache, since it depends on the episodes only.
+    """
+    make = partial(_measured_shares, episodes, protocol)
+    made = cached(Kind.OCCLUSION, make, (protocol.hash, *episodes), of=np.ndarray)
+    shares: list[float] = np.asarray(made).tolist()
+    return shares
+
+
+def _measured_shares(episodes: list[EpisodeSpec], protocol: Protocol) -> NDArray[np.float64]:
+    # Without biases the target is in the middle. They are drawn last, so nothing else changes.
+    start = {**protocol.changes.get("start", {}), "horizontal_bias": 0.0, "vertical_bias": 0.0}
+    protocol = replace(protocol, changes={**protocol.changes, "start": start})
+    settings = protocol.settings
+    ticks = round(_PERIOD * 500)
+    looks = settings.done.total_steps // max(ticks, physics_steps(settings.control.frequency))
+    shares = np.zeros(len(episodes))
+    for group in episode_groups(episodes, protocol, EnvConfig()):
+        for _ in range(looks):
+            group.simulation.carry(ticks)
+            pixels, _ = group.subjects()
+            shares[group.rows] += pixels[:, 0] / np.maximum(pixels[:, 1], 1)
+    return shares / max(looks, 1)
+
 
 Mask = NDArray[np.bool_]
 
-Watcher = Callable[[Flock, Meter], None]
+Watcher = Callable[[EpisodeBatch, Meter], None]
 """Called after each control step, for films."""
 
 
-class Flight:
+class BatchFlight:
     """A batch of episodes that begin together.
 
     Attributes:
@@ -41,12 +77,12 @@ class Flight:
     """
 
     def __init__(
-        self, episodes: list[Episode], protocol: Protocol, policy: Policy, delay: Delay
+        self, episodes: list[EpisodeSpec], protocol: Protocol, policy: Policy, delay: Delay
     ) -> None:
         self._episodes, self._protocol, self._policy = episodes, protocol, policy
         self._delay = delay
-        self._flock = Flock(episodes, protocol, policy.env)
-        self._meter = Meter(self._flock, protocol)
+        self._batch = EpisodeBatch(episodes, protocol, policy.env)
+        self._meter = Meter(self._batch, protocol)
         self._actions = make_actions(policy.env.actions, policy.env.speeds)
         count = len(episodes)
         self._active = np.ones(count, np.bool_)
@@ -59,7 +95,7 @@ class Flight:
         """Control step from which its next command holds."""
         self.answers: list[float] = []
 
-    def fly(self, watcher: Watcher | None = None) -> Iterator[list[Record]]:
+    def fly(self, watcher: Watcher | None = None) -> Iterator[list[EpisodeRecord]]:
         """Yield the records of the episodes that end, whenever some end."""
         seeds = np.array([episode.seed for episode in self._episodes])
         clear = clear_shares(self._episodes, self._protocol)
@@ -71,11 +107,11 @@ class Flight:
             self._answer(step)  # before the next look, whose answer takes this one's place
             self._decide(step)
             self._answer(step)
-            self._flock.advance(self._commands, self._active)
+            self._batch.advance(self._commands, self._active)
             self._meter.measure(self._active)
             self._active &= self._meter.reason == 0
             if watcher is not None:
-                watcher(self._flock, self._meter)
+                watcher(self._batch, self._meter)
             if len(ended := np.flatnonzero(~self._active & ~told)):
                 told[ended] = True
                 yield [
@@ -96,8 +132,8 @@ class Flight:
         deciding = self._active & (self._ready <= step)
         if not deciding.any():
             return
-        self._flock.look(deciding, np.full(len(deciding), step == 0))
-        sight = PolicyInput(self._flock.observations, deciding, self._flock.snapshot)
+        self._batch.look(deciding, np.full(len(deciding), step == 0))
+        sight = PolicyInput(self._batch.observations, deciding, self._batch.snapshot)
         begun = time.perf_counter()
         decision = self._guarded(lambda: self._policy.act(sight))
         taken = time.perf_counter() - begun
@@ -139,5 +175,5 @@ class Flight:
     def _boxes(self) -> NDArray[np.int32]:
         image = self._policy.env.observation
         size = image.height, image.width
-        boxes: NDArray[np.int32] = self._flock.gathered(lambda squad: squad.subjects(size)[1])
+        boxes: NDArray[np.int32] = self._batch.gathered(lambda group: group.subjects(size)[1])
         return boxes

@@ -4,21 +4,83 @@ The reward is that of the protocol, read at every control step; the target's pix
 every fourth one.
 """
 
-from typing import NamedTuple
+from typing import NamedTuple, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.rng import stream
-from eyas.evaluation.episode import Episode
-from eyas.evaluation.flock import Flock, Squad
+from eyas.evaluation.episode import EpisodeSpec
+from eyas.evaluation.episode_batch import EpisodeBatch, EpisodeGroup
 from eyas.evaluation.policies.policy import Failure
 from eyas.evaluation.protocol import Protocol
-from eyas.evaluation.record import Published, Record, Trace
-from eyas.evaluation.watch import watched
+from eyas.evaluation.record import EpisodeRecord, Published, Trace
 from eyas.task.done import DoneReason
 
-__all__ = ["LOOK", "TRACE_PERIOD", "Meter", "published"]
+__all__ = ["LOOK", "TRACE_PERIOD", "Meter", "published", "watched"]
+
+LEAST_LOSS = 0.5
+"""Shortest time out of the picture that counts as a loss [s]."""
+
+
+class Watch(TypedDict):
+    """Fields of `eyas.evaluation.record.EpisodeRecord`."""
+
+    found_after: float | None
+    lost_after: float | None
+    watched: float
+    losses: int
+    found_again: int
+    search_time: float | None
+
+
+def watched(in_view: NDArray[np.bool_], period: float, *, broken_off: bool) -> Watch:
+    """Return when a target was found and lost.
+
+    The time until the first loss begins when the target is first in the picture.
+
+    Args:
+        in_view: Whether the target is in the picture at each control step, shape (M,).
+        period: Length of a control step [s].
+        broken_off: Whether the episode has ended by a fault of the policy, which loses the target.
+    """
+    seen = np.flatnonzero(in_view)
+    if not len(seen):
+        return Watch(
+            found_after=None,
+            lost_after=None,
+            watched=0.0,
+            losses=0,
+            found_again=0,
+            search_time=None,
+        )
+    first, end = int(seen[0]), len(in_view)
+    gaps = _gaps(in_view, first)
+    least = round(LEAST_LOSS / period)
+    lost = [(start, stop) for start, stop in gaps if stop - start >= least]
+    found = [(start, stop) for start, stop in lost if stop < end]
+    starts = [start for start, _ in lost]
+    if broken_off and not (lost and lost[-1][1] == end):
+        starts.append(end)
+    until = starts[0] if starts else end
+    return Watch(
+        found_after=first * period,
+        lost_after=(until * period if starts else None),
+        watched=(until - first) * period,
+        losses=len(starts),
+        found_again=len(found),
+        search_time=(
+            float(np.mean([stop - start for start, stop in found])) * period if found else None
+        ),
+    )
+
+
+def _gaps(in_view: NDArray[np.bool_], first: int) -> list[tuple[int, int]]:
+    """Return start and end of each time out of the picture after `first`."""
+    out = np.concatenate(([False], ~in_view[first:], [False]))
+    edges = np.flatnonzero(out[1:] != out[:-1]) + first
+    return list(zip(edges[::2].tolist(), edges[1::2].tolist(), strict=True))
+
 
 Floats = NDArray[np.float64]
 
@@ -42,20 +104,31 @@ _CRASHES = frozenset(
 ) | {DoneReason.TILT, DoneReason.NOT_A_NUMBER}
 
 
-_REWARD, _REASON = 0, 1
-_POSITION, _ACCELERATION = slice(2, 5), slice(5, 8)
-_TARGET, _MIDDLE = slice(8, 10), slice(10, 12)
-"""Columns of what is measured."""
+class _Measured(NamedTuple):
+    """What is measured of N flights at a control step, each with a leading axis of N."""
+
+    reward: Floats
+    reason: NDArray[np.int64]
+    position: Floats
+    """Of the drone [m], shape (N, 3)."""
+    acceleration: Floats
+    """Of the drone [m/s^2], shape (N, 3)."""
+    target: Floats
+    """Its centre, east and north [m], shape (N, 2)."""
+    middle: Floats
+    """What the middle of the picture shows, east and north [m], shape (N, 2)."""
 
 
-def _measured(squad: Squad) -> Floats:
-    """Return what is measured at each control step, shape (K, 12)."""
-    trackers, _, targets, episodes, _ = squad.simulation.snapshot
-    columns = np.empty((len(squad.rows), 12))
-    columns[:, _REWARD], columns[:, _REASON] = episodes.reward, episodes.reason
-    columns[:, _POSITION], columns[:, _ACCELERATION] = trackers.position, trackers.acceleration
-    columns[:, _TARGET], columns[:, _MIDDLE] = targets.centre[:, :2], episodes.view_centre[:, :2]
-    return columns
+def _measured(group: EpisodeGroup) -> _Measured:
+    trackers, _, targets, episodes, _ = group.simulation.snapshot
+    return _Measured(
+        reward=episodes.reward,
+        reason=episodes.reason,
+        position=trackers.position,
+        acceleration=trackers.acceleration,
+        target=targets.centre[:, :2],
+        middle=episodes.view_centre[:, :2],
+    )
 
 
 class _Sums(NamedTuple):
@@ -75,13 +148,13 @@ class Meter:
     """Measures N flights.
 
     Args:
-        flock: The drones, at their start.
+        batch: The drones, at their start.
         protocol: The protocol.
     """
 
-    def __init__(self, flock: Flock, protocol: Protocol) -> None:
-        count, steps = flock.count, protocol.steps
-        self._flock, self._protocol = flock, protocol
+    def __init__(self, batch: EpisodeBatch, protocol: Protocol) -> None:
+        count, steps = batch.count, protocol.steps
+        self._batch, self._protocol = batch, protocol
         self._reward = np.zeros((count, steps))
         self._trace = np.zeros((count, steps // _TRACE, 4))
         self._sums = _Sums(np.zeros(count), np.zeros(count), np.zeros(count), np.zeros((count, 2)))
@@ -89,37 +162,39 @@ class Meter:
         """Control steps flown, shape (N,)."""
         self.reason = np.zeros(count, np.int64)
         """`DoneReason` of each, shape (N,)."""
-        self._last = flock.gathered(_measured)
+        self._last = batch.gathered(_measured)
 
     def measure(self, active: NDArray[np.bool_]) -> None:
         """Measure after a control step of the active flights, shape (N,)."""
         rows = np.flatnonzero(active)
-        state = self._flock.gathered(_measured)[rows]
+        now, last = self._batch.gathered(_measured), self._last
         step, sums = self.length[rows], self._sums
-        self._reward[rows, step] = state[:, _REWARD]
+        self._reward[rows, step] = now.reward[rows]
         self.length[rows] += 1
-        self.reason[rows] = state[:, _REASON]
-        place, target = state[:, _POSITION], state[:, _TARGET]
-        sums.error[rows] += np.linalg.norm(target - state[:, _MIDDLE], axis=1)
-        sums.path[rows] += np.linalg.norm(place - self._last[rows, _POSITION], axis=1)
-        change = (state - self._last[rows])[:, _ACCELERATION] / self._protocol.period
+        self.reason[rows] = now.reason[rows]
+        place, target = now.position[rows], now.target[rows]
+        sums.error[rows] += np.linalg.norm(target - now.middle[rows], axis=1)
+        sums.path[rows] += np.linalg.norm(place - last.position[rows], axis=1)
+        change = (now.acceleration[rows] - last.acceleration[rows]) / self._protocol.period
         sums.jerk[rows] += np.square(change).sum(axis=1)
-        self._last[rows] = state
+        self._last = now
         # All active flights have begun together, so that they have flown equally many steps.
         if len(rows) and (step[0] + 1) % _TRACE == 0:
             self._trace[rows, step[0] // _TRACE] = np.concatenate((place[:, :2], target), axis=1)
         if len(rows) and (step[0] + 1) % LOOK == 0:
-            pixels = self._flock.gathered(lambda squad: squad.subjects()[0])[rows]
+            pixels = self._batch.gathered(lambda group: group.subjects()[0])[rows]
             sums.shares[rows, 0] += pixels[:, 0] > 0
             sums.shares[rows, 1] += pixels[:, 0] / np.maximum(pixels[:, 1], 1)
 
-    def record(self, row: int, episode: Episode, clear: float, failure: Failure | None) -> Record:
+    def record(
+        self, row: int, episode: EpisodeSpec, clear: float, failure: Failure | None
+    ) -> EpisodeRecord:
         """Return the record of a flight that has ended.
 
         Args:
             row: Its place in the batch.
             episode: The episode.
-            clear: See `Record`.
+            clear: See `EpisodeRecord`.
             failure: What its policy has failed with, if it has.
         """
         protocol, length = self._protocol, int(self.length[row])
@@ -127,7 +202,7 @@ class Meter:
         reason = DoneReason(int(self.reason[row]))
         broken_off = failure is not None or reason in _CRASHES
         shares = self._sums.shares[row] / (protocol.steps // LOOK)
-        return Record(
+        return EpisodeRecord(
             name=episode.name,
             **episode.place._asdict(),
             direction=episode.direction,

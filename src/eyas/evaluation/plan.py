@@ -14,20 +14,20 @@ from eyas.core.build import Build, this_build
 from eyas.core.config import Config
 from eyas.core.errors import ConfigError
 from eyas.evaluation.delay import Measured, delay_from
-from eyas.evaluation.episode import FIRST_SEED, Episode, Place, episodes_of
-from eyas.evaluation.flight import Flight, Watcher
-from eyas.evaluation.neighbours import episodes_with_neighbours
+from eyas.evaluation.episode import FIRST_SEED, EpisodeSpec, Place, episodes_of
+from eyas.evaluation.episode_batch import episodes_with_neighbours
+from eyas.evaluation.flight import BatchFlight, Watcher
 from eyas.evaluation.policies.table import fingerprint, open_policy
 from eyas.evaluation.protocol import Protocol, protocol_named
-from eyas.evaluation.record import Record
+from eyas.evaluation.record import EpisodeRecord
 from eyas.world.maps import MAPS
 
-__all__ = ["Plan", "Stamp", "batches", "fly_batch", "folder_name", "stamp"]
+__all__ = ["EvaluationPlan", "Stamp", "batches", "fly_batch", "folder_name", "stamp"]
 
 Names = Annotated[tuple[str, ...], Field(min_length=1)]
 
 
-class Plan(Config):
+class EvaluationPlan(Config):
     """An evaluation. The same plan in the same version gives the same records, bit for bit."""
 
     policy: str
@@ -100,7 +100,7 @@ class Stamp(Config):
     """Hash of the protocol."""
     policy: str | None
     """Hash of the policy's file; None if it has none."""
-    plan: Plan
+    plan: EvaluationPlan
 
     def other_build(self, other: "Stamp") -> str:
         """Return in words what differs in the programs that fly; nothing if nothing does."""
@@ -108,7 +108,7 @@ class Stamp(Config):
         return self.build.difference(other.build, without=_NOT_FLOWN, libraries=networks)
 
 
-def stamp(plan: Plan) -> Stamp:
+def stamp(plan: EvaluationPlan) -> Stamp:
     """Return the stamp of a plan."""
     return Stamp(
         version=__version__,
@@ -119,12 +119,12 @@ def stamp(plan: Plan) -> Stamp:
     )
 
 
-def folder_name(plan: Plan) -> str:
+def folder_name(plan: EvaluationPlan) -> str:
     """Return the name of the folder of a plan's results, unless a user chooses one."""
     return re.sub(r"[^\w.-]+", "-", f"{Path(plan.policy).stem}-{plan.protocol}")
 
 
-def batches(plan: Plan) -> list[list[Episode]]:
+def batches(plan: EvaluationPlan) -> list[list[EpisodeSpec]]:
     """Return the episodes that are flown together; an interrupted batch is flown again whole."""
     protocol = plan.rules
     places = [
@@ -143,11 +143,11 @@ def batches(plan: Plan) -> list[list[Episode]]:
 
 
 def fly_batch(
-    plan: Plan,
-    episodes: list[Episode],
+    plan: EvaluationPlan,
+    episodes: list[EpisodeSpec],
     answers: list[float] | None = None,
     watcher: Watcher | None = None,
-) -> Iterator[list[Record]]:
+) -> Iterator[list[EpisodeRecord]]:
     """Yield the records of a batch, whenever some of its episodes end.
 
     Args:
@@ -162,13 +162,13 @@ def fly_batch(
     delay = delay_from(plan.latency)
     assert len(episodes) == 1 or not isinstance(delay, Measured)
     policy = open_policy(plan.policy, plan.env, sampled=plan.sampled)
-    flight = Flight(episodes, plan.rules, policy, delay)
+    flight = BatchFlight(episodes, plan.rules, policy, delay)
     yield from flight.fly(watcher)
     if answers is not None:
         answers += flight.answers
 
 
-def check(plan: Plan) -> None:
+def check(plan: EvaluationPlan) -> None:
     """Refuse a plan that cannot be flown, before anything is written.
 
     Raises:
@@ -181,7 +181,7 @@ def check(plan: Plan) -> None:
     for name in plan.maps:
         for weather in plan.weathers:
             for target in plan.targets:
-                episode = Episode(Place(name, weather, target), 0.0, 0)
+                episode = EpisodeSpec(Place(name, weather, target), 0.0, 0)
                 MAPS.get(name).light(weather)  # refuses unknown names
                 plan.rules.settings_of(episode, policy.env)  # refuses wrong ones
 

@@ -12,7 +12,7 @@ from eyas.core.clock import PHYSICS_STEP, physics_steps
 from eyas.core.config import updated
 from eyas.core.errors import UnknownNameError
 from eyas.envs.config import EnvConfig
-from eyas.evaluation.episode import Episode
+from eyas.evaluation.episode import EpisodeSpec
 from eyas.settings.config import EyasConfig
 from eyas.settings.file import load_settings
 from eyas.settings.preset import preset_file
@@ -107,7 +107,7 @@ class Protocol:
         content = [meaning, self.directions, self.alike]
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:12]
 
-    def settings_of(self, episode: Episode, env: EnvConfig) -> EyasConfig:
+    def settings_of(self, episode: EpisodeSpec, env: EnvConfig) -> EyasConfig:
         """Return the settings of an episode.
 
         Args:

@@ -11,7 +11,7 @@ from eyas.core.config import Config, validated
 from eyas.core.errors import ConfigError, DataFileError
 from eyas.core.files import refusals, write_atomic
 
-__all__ = ["Published", "Record", "RecordFile", "Trace", "order_records", "read_records"]
+__all__ = ["EpisodeRecord", "Published", "RecordFile", "Trace", "order_records", "read_records"]
 
 
 class Published(Config):
@@ -34,11 +34,11 @@ class Trace(Config):
     """The same of the target."""
 
 
-class Record(Config):
+class EpisodeRecord(Config):
     """One flown episode. Times are in seconds from its start, lengths in metres."""
 
     name: str
-    """See `eyas.evaluation.episode.Episode`."""
+    """See `eyas.evaluation.episode.EpisodeSpec`."""
     map: str
     weather: str
     target: str
@@ -107,7 +107,7 @@ class RecordFile:
             content = self._file.read()
             self._file.truncate(content.rfind(b"\n") + 1)
 
-    def add(self, records: Iterable[Record]) -> None:
+    def add(self, records: Iterable[EpisodeRecord]) -> None:
         """Append records."""
         with refusals(self._path):
             for record in records:
@@ -128,7 +128,7 @@ class RecordFile:
             self._file.close()
 
 
-def read_records(path: Path) -> list[Record]:
+def read_records(path: Path) -> list[EpisodeRecord]:
     """Return the records of a file, without a torn last line; none if there is no file.
 
     Raises:
@@ -146,7 +146,7 @@ def read_records(path: Path) -> list[Record]:
             values = json.loads(line)
             if not isinstance(values, dict):
                 raise ValueError("not a JSON object")
-            records.append(validated(Record, values))
+            records.append(validated(EpisodeRecord, values))
         except (ValueError, RecursionError, ConfigError) as error:
             raise DataFileError(f"{path}: line {number}: not a record: {error}") from error
     return records

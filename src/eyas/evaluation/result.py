@@ -11,8 +11,8 @@ from eyas.core.config import validated
 from eyas.core.errors import DataFileError
 from eyas.core.files import write_atomic
 from eyas.evaluation.plan import Stamp
-from eyas.evaluation.record import Record, read_records
-from eyas.evaluation.rows import Row, rows_of
+from eyas.evaluation.record import EpisodeRecord, read_records
+from eyas.evaluation.rows import TableRow, rows_of
 from eyas.evaluation.statistics import Estimate
 from eyas.settings.file import read_settings
 
@@ -59,7 +59,7 @@ UNITS = {
 """Units of the figures that have one."""
 
 
-def load_run(folder: Path) -> tuple[Stamp, list[Record]]:
+def load_run(folder: Path) -> tuple[Stamp, list[EpisodeRecord]]:
     """Return stamp and records of an evaluation.
 
     Raises:
@@ -72,7 +72,7 @@ def load_run(folder: Path) -> tuple[Stamp, list[Record]]:
     return validated(Stamp, values, str(path)), read_records(folder / EPISODES)
 
 
-def table(rows: Sequence[Row], protocol: str) -> str:
+def table(rows: Sequence[TableRow], protocol: str) -> str:
     """Return a table as text: mean, 95 % interval, and interquartile mean of the first figures.
 
     Rows in which seeds repeat have no intervals, see `eyas.evaluation.rows.strata_of`.
@@ -99,8 +99,8 @@ def table(rows: Sequence[Row], protocol: str) -> str:
 
 
 def write_result(
-    folder: Path, made: Stamp, records: Sequence[Record], *, as_published: bool
-) -> list[Row]:
+    folder: Path, made: Stamp, records: Sequence[EpisodeRecord], *, as_published: bool
+) -> list[TableRow]:
     """Write `result.json` and `result.csv`; return the rows.
 
     Raises:
@@ -143,7 +143,7 @@ def cell(figure: Estimate | None, *, iqm: bool = False) -> str:
     return f"{text} iqm {figure.iqm:.{digits}f}" if iqm else text
 
 
-def _csv(made: Stamp, rows: Sequence[Row]) -> str:
+def _csv(made: Stamp, rows: Sequence[TableRow]) -> str:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     heads = "version protocol protocol_hash policy latency group name figure n mean iqm".split()

@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from eyas.evaluation.record import Record
+from eyas.evaluation.record import EpisodeRecord
 from eyas.evaluation.statistics import (
     Estimate,
     Interval,
@@ -14,9 +14,9 @@ from eyas.evaluation.statistics import (
     stratified_resamples,
 )
 
-__all__ = ["FIGURES", "Row", "groups_of", "rows_of", "strata_of", "thirds"]
+__all__ = ["FIGURES", "TableRow", "groups_of", "rows_of", "strata_of", "thirds"]
 
-Figure = Callable[[Record], float | None]
+Figure = Callable[[EpisodeRecord], float | None]
 
 FIGURES: dict[str, Figure] = {
     "cr": lambda record: record.cr,
@@ -40,17 +40,17 @@ _RESAMPLES = 500
 """Bootstrap samples of a censored time, each of which takes a curve of its own."""
 
 
-class Row(NamedTuple):
+class TableRow(NamedTuple):
     """A row of a table."""
 
     group: str
     """`all`, `map`, `weather`, `target` or `visibility`."""
     name: str
-    records: list[Record]
+    records: list[EpisodeRecord]
     figures: dict[str, Estimate]
 
 
-def strata_of(records: Sequence[Record]) -> list[tuple[str, str, str, float]] | None:
+def strata_of(records: Sequence[EpisodeRecord]) -> list[tuple[str, str, str, float]] | None:
     """Return the stratum of each record; None if the records are not independent.
 
     Those of one seed have the same traffic and start in every weather, so that a lucky seed raises
@@ -61,7 +61,7 @@ def strata_of(records: Sequence[Record]) -> list[tuple[str, str, str, float]] | 
     return [(each.map, each.weather, each.target, each.direction) for each in records]
 
 
-def thirds(records: Sequence[Record]) -> list[str]:
+def thirds(records: Sequence[EpisodeRecord]) -> list[str]:
     """Return the third of visibility of each record: how much of its target can be seen at all.
 
     Equal shares are in the same third, so that thirds may be of unequal size, or empty: most
@@ -77,7 +77,9 @@ def thirds(records: Sequence[Record]) -> list[str]:
     return [names[number] for number in third.tolist()]
 
 
-def rows_of(records: Sequence[Record], horizon: float, *, as_published: bool = False) -> list[Row]:
+def rows_of(
+    records: Sequence[EpisodeRecord], horizon: float, *, as_published: bool = False
+) -> list[TableRow]:
     """Return the rows of a table.
 
     Args:
@@ -92,13 +94,13 @@ def rows_of(records: Sequence[Record], horizon: float, *, as_published: bool = F
         figures["cr"] = lambda record: record.published.cr
         figures["tsr"] = lambda record: record.published.tsr
     return [
-        Row(group, name, chosen, _figures(chosen, figures) | _times(chosen, horizon))
+        TableRow(group, name, chosen, _figures(chosen, figures) | _times(chosen, horizon))
         for group, name, chosen in groups_of(records)
         if chosen
     ]
 
 
-def groups_of(records: Sequence[Record]) -> Iterator[tuple[str, str, list[Record]]]:
+def groups_of(records: Sequence[EpisodeRecord]) -> Iterator[tuple[str, str, list[EpisodeRecord]]]:
     """Yield group, name and records of each row; a group of one row is left out."""
     yield "all", "all", list(records)
     labels_of = {
@@ -113,7 +115,7 @@ def groups_of(records: Sequence[Record]) -> Iterator[tuple[str, str, list[Record
             yield group, label, [record for record, own in pairs if own == label]
 
 
-def _figures(records: list[Record], figures: dict[str, Figure]) -> dict[str, Estimate]:
+def _figures(records: list[EpisodeRecord], figures: dict[str, Figure]) -> dict[str, Estimate]:
     found = {}
     for name, figure in figures.items():
         known = [(record, value) for record in records if (value := figure(record)) is not None]
@@ -123,7 +125,7 @@ def _figures(records: list[Record], figures: dict[str, Figure]) -> dict[str, Est
     return found
 
 
-def _times(records: list[Record], horizon: float) -> dict[str, Estimate]:
+def _times(records: list[EpisodeRecord], horizon: float) -> dict[str, Estimate]:
     """Return times of which some are censored: until the target is lost (`kept`), and found.
 
     Both are restricted means of Kaplan-Meier curves; `iqm` is the same number.
@@ -141,7 +143,7 @@ def _times(records: list[Record], horizon: float) -> dict[str, Estimate]:
 
 
 def _censored(
-    records: list[Record], times: list[float], ended: list[bool], horizon: float
+    records: list[EpisodeRecord], times: list[float], ended: list[bool], horizon: float
 ) -> Estimate:
     whole = restricted_mean(times, ended, horizon)
     if (strata := strata_of(records)) is None:

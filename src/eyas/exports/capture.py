@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from eyas.core.clock import PHYSICS_STEP
-from eyas.exports.frame import Action, Body, CameraPose, Floats, Frame, Subject
+from eyas.exports.frame import CameraPose, Floats, Frame, RecordedAction, RecordedBody, Subject
 from eyas.exports.movement import Movement
 from eyas.lanes import interpreted
 from eyas.sim.views.words import target_in_words
@@ -40,7 +40,7 @@ class Moment(NamedTuple):
 
 
 def frame_of(
-    moment: Moment, tracker: int, picture: Picture, view: int, number: int, action: Action
+    moment: Moment, tracker: int, picture: Picture, view: int, number: int, action: RecordedAction
 ) -> Frame:
     """Return a frame that later steps and pictures do not change.
 
@@ -79,8 +79,8 @@ def frame_of(
     )
 
 
-def _body(trackers: TrackerState, tracker: int) -> Body:
-    return Body(
+def _body(trackers: TrackerState, tracker: int) -> RecordedBody:
+    return RecordedBody(
         position=trackers.position[tracker].copy(),
         velocity=trackers.velocity[tracker].copy(),
         acceleration=trackers.acceleration[tracker].copy(),

@@ -15,11 +15,11 @@ from eyas.task.done import DoneReason
 
 __all__ = [
     "OUTPUTS",
-    "Action",
-    "Body",
     "CameraPose",
     "Frame",
     "Output",
+    "RecordedAction",
+    "RecordedBody",
     "Subject",
 ]
 
@@ -33,7 +33,7 @@ OUTPUTS: tuple[Output, ...] = get_args(Output)
 
 
 @dataclass(frozen=True, slots=True)
-class Action:
+class RecordedAction:
     """The action of a tracker."""
 
     number: int
@@ -44,7 +44,7 @@ class Action:
 
 
 @dataclass(frozen=True, slots=True)
-class Body:
+class RecordedBody:
     """The body of a tracker. World frame, east-north-up, unless it says otherwise."""
 
     position: Floats
@@ -142,14 +142,14 @@ class Frame:
     """Simulated time since the start of the run [s]."""
     step: int
     """Steps of 2 ms since the reset."""
-    tracker: Body
+    tracker: RecordedBody
     camera: CameraPose
     target: Subject
     """The target of the tracker."""
     others: tuple[Subject, ...]
     """All other moving objects of which a pixel is visible, in the order of their ids; empty if no
     writer wants them."""
-    action: Action
+    action: RecordedAction
     reward: float
     """Present reward."""
     direction: TargetDirection

@@ -8,10 +8,8 @@ from numpy.typing import NDArray
 
 from eyas.core.files import write_atomic
 from eyas.core.jpeg import jpeg_bytes
-from eyas.exports.files import Files, pattern_of
 from eyas.exports.frame import Frame
-from eyas.exports.summary import Summary
-from eyas.exports.writer import Episode, EpisodeWriter, Run, Writer
+from eyas.exports.writer import Episode, EpisodeWriter, Files, Run, Summary, Writer, pattern_of
 
 __all__ = ["JpegWriter", "write_picture"]
 

@@ -4,17 +4,48 @@
 table of docs/labels.md (`python tools/write_docs.py`) are made of it: a new field is one row.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+import json
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+from numpy.typing import ArrayLike
+
+from eyas.core.errors import DataFileError
 from eyas.core.frames import rotate_back
 from eyas.exports.frame import Frame, Subject
-from eyas.exports.rounding import rounded, rounded_list
-from eyas.exports.writer import Episode
+from eyas.exports.writer import Episode, Files, Gather, Scores, Summary, Writer
 from eyas.lanes import interpreted
 from eyas.task.done import DoneReason
 
-__all__ = ["FIELDS", "Label", "LabelField", "checked", "label_of", "label_schema"]
+__all__ = [
+    "FIELDS",
+    "Label",
+    "LabelField",
+    "LabelWriter",
+    "checked",
+    "label_of",
+    "label_schema",
+    "read_labels",
+    "rounded",
+    "rounded_list",
+]
+
+DECIMALS = 6
+"""Decimals of every number (micrometres, microradians); few enough for identical bytes."""
+
+
+def rounded(value: float) -> float | None:
+    """Return a number with fixed decimals, without a negative zero; None if it is not finite."""
+    return round(float(value), DECIMALS) + 0.0 if np.isfinite(value) else None
+
+
+def rounded_list(values: ArrayLike) -> list[float | None]:
+    """Return `rounded` of each value, shape (K,)."""
+    return [rounded(value) for value in np.asarray(values, np.float64)]
+
 
 Label = dict[str, Any]
 """The label of a frame, as JSON has it; numbers that are not finite are None."""
@@ -261,3 +292,56 @@ def _schema_of(fields: Mapping[str, LabelField]) -> dict[str, Any]:
 def described(field: LabelField) -> str:
     """Return the meaning of a field with its unit."""
     return f"{field.meaning} [{field.unit}]" if field.unit else field.meaning
+
+
+LABELS = "labels.jsonl"
+
+
+class LabelWriter(Writer):
+    """`labels.jsonl`."""
+
+    wants = frozenset({"others"})
+    files = Files(episode=(LABELS,))
+
+    def begin(self, episode: Episode) -> Gather[Label]:
+        """Return the writer of an episode's labels."""
+        return Gather(episode.folder / LABELS, lambda frame: label_of(frame, episode), _encoded)
+
+    def read(self, folder: Path) -> Summary | None:
+        """Return the summary of the labels; None if they are missing or cut off."""
+        scores = Scores()
+        try:
+            labels = read_labels(folder / LABELS)
+            for label in labels:
+                reward = math.nan if label["reward"] is None else label["reward"]
+                scores = scores.plus(reward, seen=label["visible_fraction"] > 0.0)
+        except (DataFileError, TypeError, OverflowError):  # a field may hold anything
+            return None
+        return Summary(len(labels), scores)
+
+
+def _encoded(labels: Sequence[Label]) -> bytes:
+    return "".join(json.dumps(label, allow_nan=False) + "\n" for label in labels).encode()
+
+
+def read_labels(path: Path) -> list[Label]:
+    """Return the labels of an episode, one for each frame, see docs/labels.md.
+
+    Raises:
+        DataFileError: The file is missing, cut off, or does not hold labels.
+    """
+    labels = []
+    try:
+        text = path.read_text()
+    except (OSError, UnicodeDecodeError) as error:
+        raise DataFileError(f"{path}: cannot read: {error}") from error
+    for number, line in enumerate(text.splitlines(), 1):
+        try:
+            record = json.loads(line)
+        except (ValueError, RecursionError):
+            raise DataFileError(f"{path}: line {number} is cut off or not JSON") from None
+        try:
+            labels.append(checked(record))
+        except (TypeError, ValueError):
+            raise DataFileError(f"{path}: line {number} is not the label of a frame") from None
+    return labels

@@ -6,11 +6,8 @@ from pathlib import Path
 import numpy as np
 
 from eyas.core.errors import ConfigError
-from eyas.exports.files import Files
 from eyas.exports.frame import Frame
-from eyas.exports.gather import Gather
-from eyas.exports.summary import Summary
-from eyas.exports.writer import Episode, Run, Writer
+from eyas.exports.writer import Episode, Files, Gather, Run, Summary, Writer
 
 __all__ = ["LidarWriter"]
 

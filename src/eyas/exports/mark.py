@@ -6,11 +6,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from eyas.core.files import write_atomic
-from eyas.exports.files import Files
 from eyas.exports.frame import Frame
-from eyas.exports.gather import Gather
-from eyas.exports.summary import Summary
-from eyas.exports.writer import EndedEpisode, Episode, Run, Writer
+from eyas.exports.writer import EndedEpisode, Episode, Files, Gather, Run, Summary, Writer
 
 __all__ = ["MarkWriter"]
 

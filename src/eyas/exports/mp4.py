@@ -11,10 +11,8 @@ from numpy.typing import NDArray
 
 from eyas.core.files import part_path, refusals
 from eyas.core.pyav import pyav
-from eyas.exports.files import Files
 from eyas.exports.frame import Frame
-from eyas.exports.summary import Summary
-from eyas.exports.writer import Episode, EpisodeWriter, Run, Writer
+from eyas.exports.writer import Episode, EpisodeWriter, Files, Run, Summary, Writer
 
 if TYPE_CHECKING:
     from av.video.stream import VideoStream

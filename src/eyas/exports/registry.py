@@ -5,9 +5,8 @@ from typing import Any, cast
 
 from eyas.core.errors import ConfigError
 from eyas.core.registry import Registry
-from eyas.exports.files import Files
 from eyas.exports.frame import OUTPUTS
-from eyas.exports.writer import Writer
+from eyas.exports.writer import Files, Writer
 
 __all__ = ["WRITERS", "chosen_writers"]
 
@@ -19,7 +18,7 @@ WRITERS: Registry[type[Any]] = Registry(
     {
         "jpeg": "eyas.exports.jpeg:JpegWriter",
         "mp4": "eyas.exports.mp4:Mp4Writer",
-        "labels": "eyas.exports.labels:LabelWriter",
+        "labels": "eyas.exports.label:LabelWriter",
         "mark": "eyas.exports.mark:MarkWriter",
         "lidar": "eyas.exports.lidar:LidarWriter",
     },

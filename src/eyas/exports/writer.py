@@ -11,22 +11,131 @@ A file is written under another name and renamed when it is complete
 that writes may raise `OutputError`.
 """
 
+import math
+import re
 from abc import abstractmethod
-from collections.abc import Sequence
+from collections.abc import Callable, Iterable, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 from pathlib import Path
-from typing import ClassVar, NamedTuple, Protocol
+from string import Formatter
+from typing import ClassVar, Generic, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.exports.files import Files
+from eyas.core.files import write_atomic
 from eyas.exports.frame import Frame, Output
-from eyas.exports.summary import Summary
 from eyas.sim.config import SimConfig
 
-__all__ = ["EndedEpisode", "Episode", "EpisodeWriter", "Run", "Writer"]
+__all__ = [
+    "EndedEpisode",
+    "Episode",
+    "EpisodeWriter",
+    "Files",
+    "Gather",
+    "Run",
+    "Scores",
+    "Summary",
+    "Writer",
+    "joined",
+    "pattern_of",
+    "total",
+]
+
+
+@dataclass(frozen=True, slots=True)
+class Scores:
+    """Sums over frames."""
+
+    rewarded: int = 0
+    """Frames whose reward is a finite number."""
+    reward: float = 0.0
+    """Sum of those rewards."""
+    sightings: int = 0
+    """Frames in which a pixel of the target is visible."""
+
+    def plus(self, reward: float, *, seen: bool) -> "Scores":
+        """Return the sums including one more frame."""
+        finite = math.isfinite(reward)
+        return Scores(
+            self.rewarded + finite,
+            self.reward + (reward if finite else 0.0),
+            self.sightings + seen,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class Summary:
+    """Summary of some frames."""
+
+    frames: int
+    """Number of frames."""
+    scores: Scores | None = None
+    """None if the files do not contain them."""
+
+    def plus(self, frame: Frame) -> "Summary":
+        """Return the summary including one more frame."""
+        seen = frame.target.seen_pixels > 0
+        scores = self.scores and self.scores.plus(frame.reward, seen=seen)
+        return Summary(self.frames + 1, scores)
+
+
+def total(summaries: Iterable[Summary]) -> Summary:
+    """Return the summary of some episodes; its scores are None if those of any episode are."""
+    listed = list(summaries)
+    scores = [summary.scores for summary in listed if summary.scores is not None]
+    whole = Scores(
+        sum(each.rewarded for each in scores),
+        sum(each.reward for each in scores),
+        sum(each.sightings for each in scores),
+    )
+    frames = sum(summary.frames for summary in listed)
+    return Summary(frames, whole if len(scores) == len(listed) else None)
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Files:
+    """Names of files. `{:06d}` stands for a number; `/` separates folders."""
+
+    frame: tuple[str, ...] = ()
+    """Those of each frame, relative to the episode's folder, such as `{:06d}.jpeg`. They are
+    written during the episode, so they do not show whether it has ended."""
+    episode: tuple[str, ...] = ()
+    """Those written at the end of an episode, relative to its folder."""
+    run: tuple[str, ...] = ()
+    """Those written at the end of the recording, relative to its folder."""
+
+    def __post_init__(self) -> None:
+        for name in (*self.frame, *self.episode, *self.run):
+            pattern_of(name)
+
+
+def joined(several: Iterable[Files]) -> Files:
+    """Return all names of several writers."""
+    listed = list(several)
+    return Files(
+        frame=tuple(name for files in listed for name in files.frame),
+        episode=tuple(name for files in listed for name in files.episode),
+        run=tuple(name for files in listed for name in files.run),
+    )
+
+
+def pattern_of(name: str) -> str:
+    r"""Return a regular expression for a name in the notation of `Files`: `\d{6,}` for `{:06d}`.
+
+    Raises:
+        ValueError: A field of the name is not a number.
+    """
+    parts = []
+    for literal, field, layout, _ in Formatter().parse(name):
+        parts.append(re.escape(literal))
+        if field is not None:
+            digits = re.fullmatch(r"0?(\d{0,2})d", layout or "")
+            if not digits:
+                raise ValueError(f"{name!r} is not a file's name; a number in it is like {{:06d}}")
+            parts.append(rf"\d{{{digits[1] or 1},}}")
+    return "".join(parts)
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,3 +246,39 @@ class Writer(Protocol):
                 `add` were not called now: their data must be read from their folders.
         """
         return
+
+
+Record = TypeVar("Record")
+
+
+class Gather(EpisodeWriter, Generic[Record]):
+    """Keeps a record of each frame and writes one file at the end of the episode.
+
+    Args:
+        path: The file.
+        record: Returns the record of a frame.
+        encode: Returns the bytes of the file, from all records.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        record: Callable[[Frame], Record],
+        encode: Callable[[Sequence[Record]], bytes],
+    ) -> None:
+        self._path = path
+        self._record = record
+        self._encode = encode
+        self._records: list[Record] = []
+
+    def add(self, frame: Frame) -> None:
+        """Keep the record of the next frame."""
+        self._records.append(self._record(frame))
+
+    def finish(self) -> None:
+        """Write the file, completely or not at all.
+
+        Raises:
+            OutputError: The file cannot be written.
+        """
+        write_atomic(self._path, self._encode(self._records))

@@ -7,9 +7,9 @@ import torch
 from torch import Tensor, nn
 
 from eyas.learning.config import TrainConfig
-from eyas.learning.crew import Crew
 from eyas.learning.network import ACTIONS, TrackingNetwork
 from eyas.learning.rollout import Rollout
+from eyas.learning.shards import TorchThreads
 
 __all__ = ["Losses", "advantages", "update"]
 
@@ -42,7 +42,7 @@ def update(
     data: Rollout,
     config: TrainConfig,
     generator: torch.Generator,
-    crew: Crew,
+    threads: TorchThreads,
 ) -> Losses:
     """Improve the network with a rollout.
 
@@ -52,7 +52,7 @@ def update(
         data: A rollout of this network.
         config: The settings.
         generator: Source of the random order of the data.
-        crew: Finds the gradients of the parts of a minibatch.
+        threads: Finds the gradients of the parts of a minibatch.
     """
     estimates = advantages(data, config.gamma, config.gae_lambda)
     gains = (estimates - estimates.mean()) / (estimates.std() + 1e-8)
@@ -64,7 +64,7 @@ def update(
     for _ in range(config.n_epochs):
         for chosen in torch.randperm(count, generator=generator).chunk(config.minibatches):
             parts = [(part, len(part) / len(chosen)) for part in chosen.chunk(config.parts)]
-            found = crew.each(lambda job: _gradients(network, lesson, *job, config), parts)
+            found = threads.each(lambda job: _gradients(network, lesson, *job, config), parts)
             losses = torch.stack([loss for loss, _ in found]).sum(0)
             _step(network, optimiser, [gradients for _, gradients in found], config)
     return Losses(*losses.tolist())

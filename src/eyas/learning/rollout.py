@@ -88,10 +88,10 @@ class Roller:
         self._return, self._length = np.zeros(count), np.zeros(count, np.int64)
         self._generator = torch.Generator()
 
-    def begin(self, draws: np.random.Generator) -> None:
+    def begin(self, rng: np.random.Generator) -> None:
         """Begin new episodes and new random choices of actions."""
-        observation, _ = self.env.reset(seed=int(draws.integers(2**31, 2**62)))
-        self._generator.manual_seed(int(draws.integers(2**62)))
+        observation, _ = self.env.reset(seed=int(rng.integers(2**31, 2**62)))
+        self._generator.manual_seed(int(rng.integers(2**62)))
         assert isinstance(observation, np.ndarray)
         self._picture = torch.from_numpy(observation)
         self._state = torch.zeros_like(self._state)

@@ -14,16 +14,20 @@ from eyas.core.rng import stream
 from eyas.envs.choice import steps_per_action
 from eyas.envs.config import ActionKind, ObservationPart
 from eyas.envs.observation import observation_space
-from eyas.learning.board import Board
 from eyas.learning.checkpoint import RunFolder, TrainingProgress
 from eyas.learning.config import Stage
-from eyas.learning.crew import Crew
-from eyas.learning.exam import NO_MARKS, Marks, episodes_of_exam, examine
 from eyas.learning.export import export
+from eyas.learning.monitoring import (
+    NO_SCORES,
+    EvaluationScores,
+    TensorBoardWriter,
+    evaluated,
+    evaluation_episodes,
+)
 from eyas.learning.network import NetworkShape, TrackingNetwork
 from eyas.learning.ppo import Losses, update
 from eyas.learning.rollout import Finished
-from eyas.learning.shards import LocalShards, MakeShards, Shards
+from eyas.learning.shards import LocalShards, MakeShards, Shards, TorchThreads
 from eyas.sensors.config import ColourLayout
 from eyas.settings.config import EyasConfig
 
@@ -84,7 +88,7 @@ class _Run:
         self._make_shards = make_shards
         _refuse_later_errors(config)
         # Before the network is made, because it sets PyTorch's threads.
-        self._crew = Crew(config.train.parts)
+        self._threads = TorchThreads(config.train.parts)
         self.network = TrackingNetwork(_shape(config))
         generator = torch.Generator().manual_seed(config.seed)
         self.network.initialise(generator)
@@ -93,7 +97,7 @@ class _Run:
         rate = config.train.learning_rate
         self.optimiser = torch.optim.Adam(self.network.parameters(), rate, eps=1e-5)
         self.progress = TrainingProgress()
-        self._board = Board(files.path / "tensorboard")
+        self._tensorboard = TensorBoardWriter(files.path / "tensorboard")
         updates = map(config.train.updates_of, config.train.stages)
         self._total = sum(updates) * config.train.update_decisions
         self._told = -math.inf
@@ -117,36 +121,36 @@ class _Run:
     def _block(self, shards: Shards, stage: Stage) -> bool:
         """Do a block of updates; return whether the stage is done."""
         config, progress, start = self.config.train, self.progress, time.monotonic()
-        draws = stream(self.config.seed, "learning", progress.block)
-        shards.begin(draws.spawn(config.shards))
-        generator = torch.Generator().manual_seed(int(draws.integers(2**62)))
+        rng = stream(self.config.seed, "learning", progress.block)
+        shards.begin(rng.spawn(config.shards))
+        generator = torch.Generator().manual_seed(int(rng.integers(2**62)))
         left = config.updates_of(stage) - progress.stage_decisions // config.update_decisions
         updates = min(left, config.updates_per_block)
         for number in range(1, updates + 1):
             self._set_rate()
             data = shards.roll()
-            losses = update(self.network, self.optimiser, data, config, generator, self._crew)
+            losses = update(self.network, self.optimiser, data, config, generator, self._threads)
             progress.decisions += data.rewards.numel()
             progress.stage_decisions += data.rewards.numel()
             self._tell_meanwhile(number * config.update_decisions / (time.monotonic() - start))
         seconds = time.monotonic() - start
         rate = updates * config.update_decisions / seconds
         progress.block += 1
-        marks = self._examined(stage)
+        scores = self._evaluated(stage)
         progress.seconds += time.monotonic() - start
-        row = self._row(shards.finished(), losses) | marks._asdict()
+        row = self._row(shards.finished(), losses) | scores._asdict()
         progress.rows.append(row)
         self._tell(row, rate)
-        good = stage.until_tsr is not None and marks.tsr >= stage.until_tsr
+        good = stage.until_tsr is not None and scores.tsr >= stage.until_tsr
         return good or progress.stage_decisions >= stage.total_timesteps
 
-    def _examined(self, stage: Stage) -> Marks:
-        """Return the marks after a block: of an evaluation, if it is time for one."""
+    def _evaluated(self, stage: Stage) -> EvaluationScores:
+        """Return the scores after a block: of an evaluation, if it is time for one."""
         every = self.config.train.evaluation.every
         stage_done = self.progress.stage_decisions >= stage.total_timesteps
         if every and (self.progress.block % every == 0 or stage_done):
-            return examine(self.network, self.config)
-        return NO_MARKS
+            return evaluated(self.network, self.config)
+        return NO_SCORES
 
     def _set_rate(self) -> None:
         config = self.config.train
@@ -193,7 +197,7 @@ class _Run:
             f"{rate:,.0f} decisions/s ({physics / 500:,.0f} s of flight per s)  "
             f"{left / 60:.1f} min left"
         )
-        self._board.add(progress.decisions, {**row, "decisions_per_second": rate})
+        self._tensorboard.add(progress.decisions, {**row, "decisions_per_second": rate})
 
 
 def _refuse_later_errors(config: EyasConfig) -> None:
@@ -202,7 +206,7 @@ def _refuse_later_errors(config: EyasConfig) -> None:
     Raises:
         EyasError: The evaluation or a stage cannot be run.
     """
-    episodes_of_exam(config)
+    evaluation_episodes(config)
     for number, stage in enumerate(config.train.stages):
         if updated(config, stage.settings).train != config.train:
             raise ConfigError(

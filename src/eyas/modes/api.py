@@ -9,7 +9,7 @@ from eyas.envs.choice import EnvChoices, Source, chosen_settings
 if TYPE_CHECKING:
     import gymnasium
 
-    from eyas.evaluation.record import Record
+    from eyas.evaluation.record import EpisodeRecord
     from eyas.settings.config import EyasConfig
 
 __all__ = [
@@ -144,7 +144,7 @@ def evaluate(
     overwrite: bool = False,
     quiet: bool = True,
     **choices: Unpack[EvaluationChoices],
-) -> "list[Record]":
+) -> "list[EpisodeRecord]":
     """Fly a policy in the episodes of a protocol, like `eyas evaluate`; return their records.
 
     Args:
@@ -160,7 +160,7 @@ def evaluate(
         EyasError: A setting is wrong, or the folder; one line.
     """
     from eyas.core.config import validated
-    from eyas.evaluation.plan import Plan, folder_name
+    from eyas.evaluation.plan import EvaluationPlan, folder_name
     from eyas.modes.evaluate import run
 
     said: dict[str, Any] = {"policy": policy, "protocol": protocol, **choices}
@@ -168,7 +168,7 @@ def evaluate(
         if name in said:
             names = said.pop(name)
             said[f"{name}s"] = [names] if isinstance(names, str) else list(names)
-    plan = validated(Plan, said)
+    plan = validated(EvaluationPlan, said)
     folder = Path(out) if out is not None else Path("runs/evaluation") / folder_name(plan)
     return run(plan, folder, resume=resume, overwrite=overwrite, quiet=quiet)
 

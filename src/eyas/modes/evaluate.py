@@ -24,8 +24,8 @@ from eyas.core.folder_lock import folder_lock
 from eyas.core.machine import describe_machine
 from eyas.core.pyav import pyav
 from eyas.evaluation.fliers import Flier, fly_here
-from eyas.evaluation.plan import Plan, Stamp, batches, check, stamp
-from eyas.evaluation.record import Record, RecordFile, order_records, read_records
+from eyas.evaluation.plan import EvaluationPlan, Stamp, batches, check, stamp
+from eyas.evaluation.record import EpisodeRecord, RecordFile, order_records, read_records
 from eyas.evaluation.result import EPISODES, RESULT, ROWS, STAMP, load_run, table, write_result
 from eyas.modes import evaluation_films, evaluation_plots
 from eyas.modes.evaluation_films import film
@@ -40,7 +40,7 @@ TIMING = "timing.json"
 
 
 def run(  # noqa: PLR0913  # choices of the user's
-    plan: Plan,
+    plan: EvaluationPlan,
     out: Path,
     *,
     resume: bool = False,
@@ -50,7 +50,7 @@ def run(  # noqa: PLR0913  # choices of the user's
     videos: bool = False,
     quiet: bool = False,
     flier: Flier = fly_here,
-) -> list[Record]:
+) -> list[EpisodeRecord]:
     """Fly all episodes of a plan, or those that are missing in the folder; print a table.
 
     Args:
@@ -92,7 +92,7 @@ def run(  # noqa: PLR0913  # choices of the user's
     return flown
 
 
-def _prepared(out: Path, made: Stamp, *, resume: bool, overwrite: bool) -> list[Record]:
+def _prepared(out: Path, made: Stamp, *, resume: bool, overwrite: bool) -> list[EpisodeRecord]:
     """Return the records that the folder has; write the stamp into an empty one.
 
     Raises:
@@ -138,7 +138,9 @@ def _delete(out: Path) -> None:
             path.unlink(missing_ok=True)
 
 
-def _fly(plan: Plan, out: Path, records: list[Record], flier: Flier, *, quiet: bool) -> None:
+def _fly(
+    plan: EvaluationPlan, out: Path, records: list[EpisodeRecord], flier: Flier, *, quiet: bool
+) -> None:
     """Fly the batches that are not complete, and append the records that are missing."""
     known = {record.name for record in records}
     answers: list[float] = []
@@ -156,7 +158,7 @@ def _fly(plan: Plan, out: Path, records: list[Record], flier: Flier, *, quiet: b
         _write_timing(plan, out, answers, time.perf_counter() - begun)
 
 
-def _in_order(plan: Plan, out: Path) -> list[Record]:
+def _in_order(plan: EvaluationPlan, out: Path) -> list[EpisodeRecord]:
     """Return the records in the order of the plan; in the file, put the batches in this order."""
     parts, found = batches(plan), read_records(out / EPISODES)
     batch = {episode.name: number for number, part in enumerate(parts) for episode in part}
@@ -175,7 +177,7 @@ def _progress(total: int, *, quiet: bool) -> Iterator[Callable[[int], None]]:
         yield lambda flown: bar.update(task, completed=flown)
 
 
-def _write_timing(plan: Plan, out: Path, answers: list[float], wall: float) -> None:
+def _write_timing(plan: EvaluationPlan, out: Path, answers: list[float], wall: float) -> None:
     middle, most = (np.quantile(answers, (0.5, 0.95)) * 1e3).tolist()
     content = {
         "machine": describe_machine(),
@@ -190,7 +192,7 @@ def _write_timing(plan: Plan, out: Path, answers: list[float], wall: float) -> N
     write_atomic(out / TIMING, (json.dumps(content, indent=1) + "\n").encode())
 
 
-def _tell_failures(records: list[Record]) -> None:
+def _tell_failures(records: list[EpisodeRecord]) -> None:
     failed = [record for record in records if record.error is not None]
     if failed:
         first = failed[0]

@@ -8,11 +8,11 @@ from pathlib import Path
 import numpy as np
 
 from eyas.core.files import refusals
-from eyas.evaluation.episode import Episode
-from eyas.evaluation.flock import Flock
+from eyas.evaluation.episode import EpisodeSpec
+from eyas.evaluation.episode_batch import EpisodeBatch
 from eyas.evaluation.meter import LOOK, Meter
-from eyas.evaluation.plan import Plan, batches, fly_batch
-from eyas.evaluation.record import Record
+from eyas.evaluation.plan import EvaluationPlan, batches, fly_batch
+from eyas.evaluation.record import EpisodeRecord
 from eyas.exports.mp4 import Mp4Episode
 from eyas.state.draw import Picture
 
@@ -26,13 +26,13 @@ _SIZE = 480, 640
 """Height and width of the pictures."""
 
 
-def chosen_flights(records: Sequence[Record]) -> dict[str, Record]:
+def chosen_flights(records: Sequence[EpisodeRecord]) -> dict[str, EpisodeRecord]:
     """Return the flights with the least, the median and the largest sum of rewards, by name."""
     ranked = sorted(records, key=lambda record: (record.cr, record.name))
     return {"worst": ranked[0], "median": ranked[len(ranked) // 2], "best": ranked[-1]}
 
 
-def film(folder: Path, plan: Plan, records: Sequence[Record]) -> None:
+def film(folder: Path, plan: EvaluationPlan, records: Sequence[EpisodeRecord]) -> None:
     """Write `videos/worst.mp4`, `median.mp4` and `best.mp4`.
 
     The batches of these flights are flown again whole, so that each is the one of its record.
@@ -64,8 +64,8 @@ def film(folder: Path, plan: Plan, records: Sequence[Record]) -> None:
 
 
 def _filmed(
-    videos: Path, plan: Plan, part: list[Episode], rows: Mapping[str, int]
-) -> dict[str, Record]:
+    videos: Path, plan: EvaluationPlan, part: list[EpisodeSpec], rows: Mapping[str, int]
+) -> dict[str, EpisodeRecord]:
     """Fly a batch, film some rows of it, and return the records by name."""
     with ExitStack() as unfinished:
         cameras = []
@@ -83,21 +83,21 @@ def _filmed(
 class _Camera:
     """Films one flight of a batch, with the overlay."""
 
-    def __init__(self, path: Path, row: int, plan: Plan) -> None:
+    def __init__(self, path: Path, row: int, plan: EvaluationPlan) -> None:
         self._row, self._steps = row, 0
         self._file = Mp4Episode(path, *_SIZE, 1.0 / (plan.rules.period * LOOK))
         self._picture = Picture.create(1, *_SIZE)
 
-    def shoot(self, flock: Flock, meter: Meter) -> None:
+    def shoot(self, batch: EpisodeBatch, meter: Meter) -> None:
         """Add the picture of a control step, if it is one's turn."""
         flown = int(meter.length[self._row])
         if flown == self._steps or flown % LOOK:
             return
         self._steps = flown
-        for squad in flock.squads:
-            place = np.flatnonzero(squad.rows == self._row).astype(np.int32)
+        for group in batch.groups:
+            place = np.flatnonzero(group.rows == self._row).astype(np.int32)
             if len(place):
-                squad.simulation.draw(place, self._picture, overlay=True)
+                group.simulation.draw(place, self._picture, overlay=True)
         assert self._picture.rgb is not None
         self._file.add_picture(self._picture.rgb[0])
 
@@ -110,6 +110,6 @@ class _Camera:
         self._file.abandon()
 
 
-def _shoot(cameras: Sequence[_Camera], flock: Flock, meter: Meter) -> None:
+def _shoot(cameras: Sequence[_Camera], batch: EpisodeBatch, meter: Meter) -> None:
     for camera in cameras:
-        camera.shoot(flock, meter)
+        camera.shoot(batch, meter)

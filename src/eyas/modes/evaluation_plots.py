@@ -10,7 +10,7 @@ from eyas.core.errors import MissingExtraError
 from eyas.core.files import atomic_path, refusals
 from eyas.evaluation.meter import TRACE_PERIOD
 from eyas.evaluation.protocol import Protocol
-from eyas.evaluation.record import Record
+from eyas.evaluation.record import EpisodeRecord
 from eyas.evaluation.statistics import survival
 from eyas.sim.scenes import load_network
 
@@ -37,7 +37,9 @@ def require_matplotlib() -> Any:  # noqa: ANN401  # a module
     return Figure
 
 
-def draw_plots(folder: Path, protocol: Protocol, title: str, records: Sequence[Record]) -> None:
+def draw_plots(
+    folder: Path, protocol: Protocol, title: str, records: Sequence[EpisodeRecord]
+) -> None:
     """Write `plots/reward.png`, `lost.png` and, for each map, `flights-<map>.png`.
 
     Args:
@@ -77,7 +79,7 @@ def save_plot(path: Path, title: str, draw: Any) -> None:  # noqa: ANN401  # a f
         figure.savefig(part, format="png", metadata={"Software": None})
 
 
-def _reward(axes: Any, records: Sequence[Record], horizon: float) -> None:  # noqa: ANN401
+def _reward(axes: Any, records: Sequence[EpisodeRecord], horizon: float) -> None:  # noqa: ANN401
     """Draw the mean reward and its quartiles; flights that have ended early count as 0."""
     points = max(round(horizon / TRACE_PERIOD - 0.5), 1)
     table = np.zeros((len(records), points))
@@ -92,7 +94,7 @@ def _reward(axes: Any, records: Sequence[Record], horizon: float) -> None:  # no
     axes.legend(frameon=False, loc="best")
 
 
-def _lost(axes: Any, records: Sequence[Record], horizon: float) -> None:  # noqa: ANN401
+def _lost(axes: Any, records: Sequence[EpisodeRecord], horizon: float) -> None:  # noqa: ANN401
     """Draw the Kaplan-Meier curve of the share that is not lost yet."""
     seen = [record for record in records if record.found_after is not None]
     at, left = survival(
@@ -108,7 +110,7 @@ def _lost(axes: Any, records: Sequence[Record], horizon: float) -> None:  # noqa
     axes.set(xlim=(0, horizon), ylim=(-0.02, 1.02))
 
 
-def _flights(axes: Any, records: Sequence[Record]) -> None:  # noqa: ANN401
+def _flights(axes: Any, records: Sequence[EpisodeRecord]) -> None:  # noqa: ANN401
     """Draw the paths of drones and targets over the roads of their map."""
     network = load_network(records[0].map, 0)
     for lane in np.split(network.lane_points, network.lane_first[1:-1]):

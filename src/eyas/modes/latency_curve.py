@@ -7,8 +7,8 @@ from typing import Any, TypedDict
 from eyas.core.errors import ConfigError
 from eyas.core.files import write_atomic
 from eyas.evaluation.fliers import Flier, fly_here
-from eyas.evaluation.plan import Plan, check, stamp
-from eyas.evaluation.record import Record
+from eyas.evaluation.plan import EvaluationPlan, check, stamp
+from eyas.evaluation.record import EpisodeRecord
 from eyas.evaluation.result import cell
 from eyas.evaluation.rows import rows_of
 from eyas.modes.evaluate import run
@@ -33,7 +33,7 @@ class _Point(TypedDict):
 
 
 def run_curve(  # noqa: PLR0913  # choices of the user's
-    plan: Plan,
+    plan: EvaluationPlan,
     out: Path,
     *,
     resume: bool,
@@ -41,7 +41,7 @@ def run_curve(  # noqa: PLR0913  # choices of the user's
     plots: bool,
     quiet: bool,
     flier: Flier = fly_here,
-) -> list[Record]:
+) -> list[EpisodeRecord]:
     """Evaluate at each latency, in a folder of its own, and write `latency.json`; return all
     records.
 
@@ -63,7 +63,7 @@ def run_curve(  # noqa: PLR0913  # choices of the user's
     if plots:
         require_matplotlib()
     points: list[_Point] = []
-    every: list[Record] = []
+    every: list[EpisodeRecord] = []
     for latency in LATENCIES:
         own, folder = plan.model_copy(update={"latency": latency}), out / f"latency-{latency}"
         records = run(own, folder, resume=resume, overwrite=overwrite, quiet=True, flier=flier)

@@ -10,9 +10,9 @@ from eyas.core.errors import DataFileError
 from eyas.core.files import write_atomic
 from eyas.evaluation.plan import Stamp
 from eyas.evaluation.protocol import PROTOCOLS
-from eyas.evaluation.record import Record
+from eyas.evaluation.record import EpisodeRecord
 from eyas.evaluation.result import COLUMNS, STAMP, UNITS, cell, load_run
-from eyas.evaluation.rows import Row, rows_of
+from eyas.evaluation.rows import TableRow, rows_of
 
 __all__ = ["run"]
 
@@ -42,8 +42,8 @@ class _Entry(NamedTuple):
     """One evaluation."""
 
     stamp: Stamp
-    records: list[Record]
-    row: Row
+    records: list[EpisodeRecord]
+    row: TableRow
 
 
 def run(folder: Path, out: Path) -> str:

@@ -29,7 +29,7 @@ def run(config: EyasConfig, folder: Path, *, resume: bool, quiet: bool, ray: boo
     say = (lambda _: None) if quiet else _say
     if not ray:
         return train(config, folder, resume=resume, say=say)
-    from eyas.learning.cluster import on_ray
+    from eyas.learning.shards import on_ray
 
     with on_ray() as make_shards:
         return train(config, folder, resume=resume, say=say, make_shards=make_shards)

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from eyas.state.terrain import Plane
 
-__all__ = ["GroundArea", "Label", "Line", "Overlay", "Solid"]
+__all__ = ["GroundArea", "Label", "Overlay", "Solid", "ThinLine"]
 
 Colour = tuple[float, float, float]
 """sRGB, each 0 to 1."""
@@ -28,7 +28,7 @@ class GroundArea:
 
 
 @dataclass(frozen=True, slots=True)
-class Line:
+class ThinLine:
     """A thin straight line through the air."""
 
     start: NDArray[np.float64]
@@ -69,6 +69,6 @@ class Overlay:
     """All items of one view, drawn in this order: ground areas, lines, solids, text."""
 
     areas: tuple[GroundArea, ...] = ()
-    lines: tuple[Line, ...] = ()
+    lines: tuple[ThinLine, ...] = ()
     solids: tuple[Solid, ...] = ()
     labels: tuple[Label, ...] = ()

@@ -10,7 +10,7 @@ from eyas.core.clock import PHYSICS_STEP
 from eyas.core.frames import rotate
 from eyas.lanes import interpreted
 from eyas.overlay.bodies import GEM_GIRDLE, GEM_RADIUS, drone, gem
-from eyas.overlay.items import GroundArea, Label, Line, Overlay
+from eyas.overlay.items import GroundArea, Label, Overlay, ThinLine
 from eyas.sensors.config import CameraConfig
 from eyas.state.snapshot import Snapshot
 from eyas.state.terrain import Plane, Terrain, plane_at
@@ -102,7 +102,7 @@ class Marks:
         """Return a drone, and the edges of its view."""
         trackers, eye = self._snapshot.trackers, self._snapshot.cameras.position[n]
         return Overlay(
-            lines=tuple(Line(eye, end, VIEW_COLOUR) for end in self._seen(n)),
+            lines=tuple(ThinLine(eye, end, VIEW_COLOUR) for end in self._seen(n)),
             solids=(drone(trackers.position[n], _rotation(trackers.orientation[n])),),
         )
 

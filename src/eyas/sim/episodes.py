@@ -13,14 +13,14 @@ from eyas.core.rng import EpisodeKey
 from eyas.core.variation import rule_of
 from eyas.lanes import Held, interpreted
 from eyas.sim.config import SimConfig
-from eyas.sim.episode_draw import (
+from eyas.sim.episode_sampling import (
     Call,
-    DrawRules,
-    EpisodeDraw,
+    EpisodeSampling,
     ModelTable,
+    SamplingRules,
     Streams,
-    draw_episodes,
     follow,
+    sample_episodes,
 )
 from eyas.sim.light import LightChanges
 from eyas.sim.worlds import Worlds
@@ -71,7 +71,7 @@ class Episodes:
         self._models = _model_table()
         self._rules = _rules(config, int(traffic.duration / PHYSICS_STEP))
         self._draw = Held(
-            EpisodeDraw(
+            EpisodeSampling(
                 snapshot,
                 worlds.of,
                 worlds.leader,
@@ -92,7 +92,7 @@ class Episodes:
 
     def _bind(self) -> None:
         """Bind the draw of episodes to what is known of the traffic."""
-        self._drawn = draw_episodes.bind(self._draw, self._traffic.stays(), self._call)
+        self._drawn = sample_episodes.bind(self._draw, self._traffic.stays(), self._call)
 
     def reseed(self, seed: int) -> None:
         """Begin the sequence of episodes of another seed."""
@@ -179,7 +179,7 @@ class Episodes:
         )
 
 
-def _rules(config: SimConfig, last_tick: int) -> DrawRules:
+def _rules(config: SimConfig, last_tick: int) -> SamplingRules:
     """Return how episodes are drawn from traffic that ends at a physics step.
 
     Raises:
@@ -192,7 +192,7 @@ def _rules(config: SimConfig, last_tick: int) -> DrawRules:
             f"than the recording has; allowed: {last_tick - first}"
         )
     field = config.camera.field_of_view
-    return DrawRules(
+    return SamplingRules(
         rule_of(start.pitch),
         rule_of(start.horizontal_bias),
         rule_of(start.vertical_bias),

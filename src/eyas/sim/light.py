@@ -1,11 +1,11 @@
-"""Changes of the weather's light and fog in each tracker's world, drawn from `LightConfig`."""
+"""Changes of the weather's light and fog in each tracker's world, sampled from `LightConfig`."""
 
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.variation import Rule, drawn, rule_of
+from eyas.core.variation import Rule, rule_of, sampled
 from eyas.lanes import kernel
 from eyas.state.lighting import Lighting, LightState
 from eyas.world.config import LightConfig
@@ -16,21 +16,21 @@ _UNCHANGED = LightConfig()
 
 
 class LightRules(NamedTuple):
-    """How light and fog are drawn; 1 means yes, 0 no."""
+    """How light and fog are sampled; 1 means yes, 0 no."""
 
     changes: int
-    """Whether anything is drawn."""
+    """Whether anything is sampled."""
     each_reset: int
-    """Whether it is drawn for each episode, not only for the first."""
+    """Whether it is sampled for each episode, not only for the first."""
     sky: Rule
     sun: Rule
     visibility: Rule
     """[m]"""
     sky_replaces: int
-    """Whether the drawn luminosity replaces that of the weather, or is added to it."""
+    """Whether the sampled luminosity replaces that of the weather, or is added to it."""
     sun_replaces: int
     visible: int
-    """Whether the visibility is drawn, or that of the weather."""
+    """Whether the visibility is sampled, or that of the weather."""
     luminosity: float
     """Of the weather."""
     fog_density: float
@@ -46,15 +46,15 @@ def change_light(rules: LightRules, state: NDArray[np.int64]) -> tuple[float, fl
     accumulate over resets.
 
     Args:
-        rules: How they are drawn.
+        rules: How they are sampled.
         state: The random stream, see `eyas.core.pcg64`.
     """
     own = rules.luminosity
-    sky = drawn(rules.sky, state) + (0.0 if rules.sky_replaces == 1 else own)
-    sun = drawn(rules.sun, state) + (0.0 if rules.sun_replaces == 1 else own)
+    sky = sampled(rules.sky, state) + (0.0 if rules.sky_replaces == 1 else own)
+    sun = sampled(rules.sun, state) + (0.0 if rules.sun_replaces == 1 else own)
     density = rules.fog_density
     if rules.visible == 1:
-        density = 1.0 / drawn(rules.visibility, state)
+        density = 1.0 / sampled(rules.visibility, state)
     return max(sky, 0.0) / own, max(sun, 0.0) / own, density
 
 
@@ -62,7 +62,7 @@ class LightChanges:
     """Light and fog of N trackers, which differ from those of the weather.
 
     Attributes:
-        rules: How they are drawn.
+        rules: How they are sampled.
 
     Args:
         config: The settings.

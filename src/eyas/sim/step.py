@@ -35,10 +35,10 @@ from eyas.trackers.tracker import Tracker
 from eyas.trackers.tracker import stand as launch
 from eyas.traffic.interpolation import interpolate_actor
 
-__all__ = ["Orders", "Step", "StepKernels", "StepState", "Surroundings", "step_of"]
+__all__ = ["Orders", "Step", "StepKernels", "StepState", "StepSurroundings", "step_of"]
 
 
-class Surroundings(NamedTuple):
+class StepSurroundings(NamedTuple):
     """Everything outside the trackers that a step reads."""
 
     motion: Motion
@@ -53,7 +53,7 @@ class StepState(NamedTuple):
     snapshot: Snapshot
     memory: Any
     """Memory of the trackers: the record that their kernels use."""
-    around: Surroundings
+    around: StepSurroundings
     rules: Rules
     inertial_share: float
     """See `eyas.sensors.inertial.smoothing_share`."""
@@ -207,7 +207,7 @@ def _begin(state: StepState, orders: Orders) -> None:
 
 @kernel(inline=True)
 def _move_target(
-    targets: TargetState, episodes: EpisodeState, n: int, around: Surroundings
+    targets: TargetState, episodes: EpisodeState, n: int, around: StepSurroundings
 ) -> None:
     """Read the pose of tracker n's target; a target that has left keeps its last pose."""
     time = episodes.tick[n] * PHYSICS_STEP

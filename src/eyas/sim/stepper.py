@@ -16,7 +16,7 @@ from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.episodes import Sampler
 from eyas.sim.latency import LateCommands
-from eyas.sim.step import Orders, StepState, Surroundings, step_of
+from eyas.sim.step import Orders, StepState, StepSurroundings, step_of
 from eyas.sim.views.delay import SeenState
 from eyas.sim.views.sensor_suite import SensorSuite
 from eyas.sim.worlds import Worlds
@@ -58,7 +58,7 @@ class Stepper:
         count, terrain = len(worlds.of), assets.scene.terrain
         self._traffic, self._snapshot = assets.traffic, snapshot
         self._memory = tracker.memory(count, terrain)
-        self._around = Surroundings(assets.traffic.motion, terrain)
+        self._around = StepSurroundings(assets.traffic.motion, terrain)
         smoothing = config.tracker.inertial_time_constant if tracker.jumps else 0.0
         self._share = smoothing_share(smoothing)
         self._launched = int(config.start.velocity is StartVelocity.TARGET)
@@ -74,8 +74,8 @@ class Stepper:
         camera, latency = config.sensors.camera, control.observation_latency_steps
         self.seen = SeenState(latency, camera, snapshot, self.sensors.told)
         self.samplers: list[Sampler] = [late.sample for late in (self._late, self.seen) if late]
-        if tracker.draw:
-            self.samplers.insert(0, partial(tracker.draw, self._memory))
+        if tracker.sample:
+            self.samplers.insert(0, partial(tracker.sample, self._memory))
 
     def obey(self, rules: Rules) -> None:
         """Judge by these rules from the next step on."""

@@ -10,7 +10,7 @@ from eyas.lanes import kernel
 from eyas.targets.catalogue import KINDS, models_of
 from eyas.targets.kind import Colour
 
-__all__ = ["LookSampler", "LookTable", "draw_looks"]
+__all__ = ["LookSampler", "LookTable", "sample_looks"]
 
 
 class LookTable(NamedTuple):
@@ -32,7 +32,7 @@ class LookTable(NamedTuple):
 
 
 @kernel
-def draw_looks(
+def sample_looks(
     table: LookTable,
     model: NDArray[np.int32],
     colour: NDArray[np.float32],

@@ -16,18 +16,47 @@ from eyas.sensors.inertial import accelerometer, gyroscope
 from eyas.state.episode import EpisodeState
 from eyas.state.snapshot import CameraState, Snapshot, TargetState, TrackerState
 from eyas.state.terrain import Terrain
+from eyas.task.packets import (
+    BASIC_COLUMNS,
+    BASIC_FIELDS,
+    REWARD_COLUMNS,
+    REWARD_FIELDS,
+    first_column,
+)
 
-__all__ = ["BASIC_COLUMNS", "REWARD_COLUMNS", "SENSOR_COLUMNS", "PacketRows"]
+__all__ = ["SENSOR_COLUMNS", "PacketRows"]
 
-BASIC_COLUMNS = 22
-REWARD_COLUMNS = 60
+_STEP_COUNT = first_column(BASIC_COLUMNS, "step_count")
+_POSITION = first_column(BASIC_COLUMNS, "position")
+_VELOCITY = first_column(BASIC_COLUMNS, "velocity")
+_FELT_ACCELERATION = first_column(BASIC_COLUMNS, "felt_acceleration")
+_ANGULAR_VELOCITY = first_column(BASIC_COLUMNS, "angular_velocity")
+_ORIENTATION = first_column(BASIC_COLUMNS, "orientation")
+_EULER = first_column(BASIC_COLUMNS, "euler")
+_REWARD = first_column(BASIC_COLUMNS, "reward")
+_DONE = first_column(BASIC_COLUMNS, "done")
 
-SENSOR_COLUMNS = slice(1, 20)
+SENSOR_COLUMNS = slice(_POSITION, _REWARD)
 """Columns of the basic packet that the sensors measure."""
 
-_CAMERA_POSE, _TARGET_POSE = 7, 23
-_VIEW_CENTRE, _TARGET_CENTRE, _CAMERA_POSITION = 39, 42, 45
-_RELATIVE = 49
+_WIDTH = first_column(REWARD_COLUMNS, "camera_width")
+_HEIGHT = first_column(REWARD_COLUMNS, "camera_height")
+_FIELD_OF_VIEW = first_column(REWARD_COLUMNS, "field_of_view")
+_FOCAL_LENGTH = first_column(REWARD_COLUMNS, "focal_length")
+_CAMERA_PITCH = first_column(REWARD_COLUMNS, "camera_pitch")
+_COMMANDED_HEIGHT = first_column(REWARD_COLUMNS, "commanded_height")
+_START_DIRECTION = first_column(REWARD_COLUMNS, "start_direction")
+_CAMERA_POSE = first_column(REWARD_COLUMNS, "camera_pose")
+_TARGET_POSE = first_column(REWARD_COLUMNS, "target_pose")
+_VIEW_CENTRE = first_column(REWARD_COLUMNS, "view_centre")
+_TARGET_CENTRE = first_column(REWARD_COLUMNS, "target_centre")
+_CAMERA_POSITION = first_column(REWARD_COLUMNS, "camera_position")
+_RELATIVE_YAW = first_column(REWARD_COLUMNS, "relative_yaw")
+_RELATIVE_POSITION = first_column(REWARD_COLUMNS, "relative_position")
+_RELATIVE_VELOCITY = first_column(REWARD_COLUMNS, "relative_velocity")
+_RELATIVE_ACCELERATION = first_column(REWARD_COLUMNS, "relative_acceleration")
+_CRASH = first_column(REWARD_COLUMNS, "crash")
+_TARGET_DIRECTION = first_column(REWARD_COLUMNS, "target_direction")
 
 
 class PacketRows:
@@ -41,9 +70,9 @@ class PacketRows:
 
     def __init__(self, snapshot: Snapshot, camera: CameraConfig, terrain: Terrain) -> None:
         count = len(snapshot.episodes.number)
-        self._basic = np.zeros((count, BASIC_COLUMNS))
-        rows = self._reward = np.zeros((count, REWARD_COLUMNS))
-        rows[:, 0], rows[:, 1] = camera.width, camera.height
+        self._basic = np.zeros((count, len(BASIC_FIELDS)))
+        rows = self._reward = np.zeros((count, len(REWARD_FIELDS)))
+        rows[:, _WIDTH], rows[:, _HEIGHT] = camera.width, camera.height
         rows[:, _CAMERA_POSE + 15] = rows[:, _TARGET_POSE + 15] = 1.0
         rows[:, _TARGET_POSE + 10] = 1.0
         packets = _Packets(snapshot, terrain.floor, self._basic, self._reward)
@@ -79,17 +108,18 @@ def _fill_packets(packets: _Packets) -> None:
 def _fill_basic(
     trackers: TrackerState, episodes: EpisodeState, n: int, row: NDArray[np.float64]
 ) -> None:
-    row[0] = episodes.step_count[n]
-    row[7], row[8], row[9] = accelerometer(trackers, n)
-    row[10], row[11], row[12] = gyroscope(trackers, n)
+    row[_STEP_COUNT] = episodes.step_count[n]
+    felt, turning = accelerometer(trackers, n), gyroscope(trackers, n)
     for axis in range(3):
-        row[1 + axis] = trackers.position[n, axis]
-        row[4 + axis] = trackers.velocity[n, axis]
-        row[17 + axis] = trackers.euler[n, axis]
+        row[_FELT_ACCELERATION + axis] = felt[axis]
+        row[_ANGULAR_VELOCITY + axis] = turning[axis]
+        row[_POSITION + axis] = trackers.position[n, axis]
+        row[_VELOCITY + axis] = trackers.velocity[n, axis]
+        row[_EULER + axis] = trackers.euler[n, axis]
     for part in range(4):
-        row[13 + part] = trackers.orientation[n, part]
-    row[20] = episodes.reward[n]
-    row[21] = 1.0 if episodes.reason[n] > 0 else 0.0
+        row[_ORIENTATION + part] = trackers.orientation[n, part]
+    row[_REWARD] = episodes.reward[n]
+    row[_DONE] = 1.0 if episodes.reason[n] > 0 else 0.0
 
 
 @kernel(inline=True)
@@ -108,11 +138,11 @@ def _fill_reward(
     the view centre, which is in the world frame, as in the original.
     """
     centre, rotation = targets.centre[n], cameras.rotation[n]
-    row[2] = cameras.field_of_view[n]
-    row[3] = 0.5 * row[0] / tan(0.5 * row[2])
-    row[4] = trackers.commanded_gimbal[n, 0]
-    row[5] = trackers.commanded_position[n, 2]
-    row[6] = episodes.start_offset[n, 3]
+    row[_FIELD_OF_VIEW] = cameras.field_of_view[n]
+    row[_FOCAL_LENGTH] = 0.5 * row[_WIDTH] / tan(0.5 * row[_FIELD_OF_VIEW])
+    row[_CAMERA_PITCH] = trackers.commanded_gimbal[n, 0]
+    row[_COMMANDED_HEIGHT] = trackers.commanded_position[n, 2]
+    row[_START_DIRECTION] = episodes.start_offset[n, 3]
     sine, cosine = sin_cos(targets.yaw[n])
     row[_TARGET_POSE], row[_TARGET_POSE + 1] = cosine, -sine
     row[_TARGET_POSE + 4], row[_TARGET_POSE + 5] = sine, cosine
@@ -125,9 +155,9 @@ def _fill_reward(
         row[_TARGET_CENTRE + axis] = centre[axis] + lift
         row[_CAMERA_POSITION + axis] = cameras.position[n, axis] + lift
         row[_VIEW_CENTRE + axis] = episodes.view_centre[n, axis]
-        row[_RELATIVE + axis] = episodes.relative_position[n, axis]
-        row[_RELATIVE + 3 + axis] = episodes.relative_velocity[n, axis]
-        row[_RELATIVE + 6 + axis] = episodes.relative_acceleration[n, axis]
-    row[48] = wrap_angle(targets.yaw[n] - trackers.euler[n, 2])
-    row[58] = 1.0 if episodes.crash[n] else 0.0
-    row[59] = episodes.direction[n]
+        row[_RELATIVE_POSITION + axis] = episodes.relative_position[n, axis]
+        row[_RELATIVE_VELOCITY + axis] = episodes.relative_velocity[n, axis]
+        row[_RELATIVE_ACCELERATION + axis] = episodes.relative_acceleration[n, axis]
+    row[_RELATIVE_YAW] = wrap_angle(targets.yaw[n] - trackers.euler[n, 2])
+    row[_CRASH] = 1.0 if episodes.crash[n] else 0.0
+    row[_TARGET_DIRECTION] = episodes.direction[n]

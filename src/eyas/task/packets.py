@@ -13,8 +13,9 @@ relative acceleration 3, crash, carDir, typename. The original's manual counts 5
 initDirection.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,15 +23,63 @@ from numpy.typing import NDArray
 from eyas.task.direction import TargetDirection
 
 __all__ = [
+    "BASIC_COLUMNS",
     "BASIC_FIELDS",
     "INPUT_FIELDS",
+    "REWARD_COLUMNS",
     "REWARD_FIELDS",
     "BasicPacket",
     "InputPacket",
     "RewardPacket",
+    "first_column",
 ]
 
 Numbers = tuple[float, ...]
+Columns = Mapping[str, int | slice]
+"""Where the parts of a row stand: the column of a single number, the slice of several."""
+
+
+def _columns_of(widths: Mapping[str, int]) -> Columns:
+    columns: dict[str, int | slice] = {}
+    first = 0
+    for name, width in widths.items():
+        columns[name] = first if width == 1 else slice(first, first + width)
+        first += width
+    return columns
+
+
+BASIC_COLUMNS = _columns_of(
+    {
+        **{"step_count": 1, "position": 3, "velocity": 3, "felt_acceleration": 3},
+        **{"angular_velocity": 3, "orientation": 4, "euler": 3, "reward": 1, "done": 1},
+    }
+)
+"""Columns of a basic packet by the names of `BasicPacket`."""
+
+REWARD_COLUMNS = _columns_of(
+    {
+        **{"camera_width": 1, "camera_height": 1, "field_of_view": 1, "focal_length": 1},
+        **{"camera_pitch": 1, "commanded_height": 1, "start_direction": 1},
+        **{"camera_pose": 16, "target_pose": 16, "view_centre": 3, "target_centre": 3},
+        **{"camera_position": 3, "relative_yaw": 1, "relative_position": 3},
+        **{"relative_velocity": 3, "relative_acceleration": 3, "crash": 1, "target_direction": 1},
+    }
+)
+"""Columns of a reward packet by the names of `RewardPacket`."""
+
+
+def first_column(columns: Columns, name: str) -> int:
+    """Return the first column of a part."""
+    found = columns[name]
+    return found.start if isinstance(found, slice) else found
+
+
+def _parts_of(row: NDArray[np.float64], columns: Columns) -> dict[str, Any]:
+    numbers = row.tolist()
+    return {
+        name: tuple(numbers[found]) if isinstance(found, slice) else numbers[found]
+        for name, found in columns.items()
+    }
 
 
 def _named(name: str, parts: str) -> tuple[str, ...]:
@@ -136,18 +185,9 @@ class BasicPacket:
     @classmethod
     def from_row(cls, row: NDArray[np.float64]) -> "BasicPacket":
         """Return the packet of a row, shape (22,)."""
-        n = row.tolist()
-        return cls(
-            step_count=int(n[0]),
-            position=tuple(n[1:4]),
-            velocity=tuple(n[4:7]),
-            felt_acceleration=tuple(n[7:10]),
-            angular_velocity=tuple(n[10:13]),
-            orientation=tuple(n[13:17]),
-            euler=tuple(n[17:20]),
-            reward=n[20],
-            done=bool(n[21]),
-        )
+        parts = _parts_of(row, BASIC_COLUMNS)
+        whole = {"step_count": int(parts["step_count"]), "done": bool(parts["done"])}
+        return cls(**parts | whole)
 
     def to_row(self) -> NDArray[np.float64]:
         """Return the numbers, shape (22,)."""
@@ -204,28 +244,12 @@ class RewardPacket:
     @classmethod
     def from_row(cls, row: NDArray[np.float64], target_type: str) -> "RewardPacket":
         """Return the packet of a row, shape (60,), with the name of the target's type."""
-        n = row.tolist()
-        return cls(
-            camera_width=int(n[0]),
-            camera_height=int(n[1]),
-            field_of_view=n[2],
-            focal_length=n[3],
-            camera_pitch=n[4],
-            commanded_height=n[5],
-            start_direction=n[6],
-            camera_pose=tuple(n[7:23]),
-            target_pose=tuple(n[23:39]),
-            view_centre=tuple(n[39:42]),
-            target_centre=tuple(n[42:45]),
-            camera_position=tuple(n[45:48]),
-            relative_yaw=n[48],
-            relative_position=tuple(n[49:52]),
-            relative_velocity=tuple(n[52:55]),
-            relative_acceleration=tuple(n[55:58]),
-            crash=bool(n[58]),
-            target_direction=TargetDirection(int(n[59])),
-            target_type=target_type,
-        )
+        parts = _parts_of(row, REWARD_COLUMNS)
+        parts["camera_width"] = int(parts["camera_width"])
+        parts["camera_height"] = int(parts["camera_height"])
+        parts["crash"] = bool(parts["crash"])
+        parts["target_direction"] = TargetDirection(int(parts["target_direction"]))
+        return cls(**parts, target_type=target_type)
 
     def to_row(self) -> NDArray[np.float64]:
         """Return the numbers, shape (60,)."""

@@ -22,8 +22,7 @@ from eyas.trackers.flight_controller import attitude_torque, desired_force, mixe
 from eyas.trackers.gimbal import advance_gimbal, camera_pose, reset_gimbal
 from eyas.trackers.gimbal_servo import ServoMemory, advance_servo, settle_servo
 from eyas.trackers.level_gimbal import level_pose
-from eyas.trackers.rigid_body import Body, Thrusts, moved
-from eyas.trackers.rotors import spun_up
+from eyas.trackers.rigid_body import Body, Thrusts, moved, spun_up
 from eyas.trackers.steady import launch
 from eyas.trackers.tracker import Tracker
 from eyas.trackers.wind import WindMemory, begin_wind, blow
@@ -216,7 +215,7 @@ def flown_drone(config: TrackerConfig, frame: Airframe = ORIGINAL) -> Tracker:
     )
     blows = wind.turbulence > 0.0 or bounds(wind.speed) != (0.0, 0.0)
 
-    def draw(memory: FlightMemory, n: int, key: EpisodeKey) -> None:
+    def sample(memory: FlightMemory, n: int, key: EpisodeKey) -> None:
         begin_wind(memory.wind, n, wind.speed, wind.direction, key)
 
     return Tracker(
@@ -227,6 +226,6 @@ def flown_drone(config: TrackerConfig, frame: Airframe = ORIGINAL) -> Tracker:
         carry,
         aim,
         launch,
-        draw if blows else None,
+        sample if blows else None,
         jumps=False,
     )

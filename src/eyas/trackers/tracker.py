@@ -51,8 +51,8 @@ class Tracker:
     """`launch(trackers, memory, n, east, north)` lets it, just started, fly on at a horizontal
     velocity [m/s], that of its target, where `start.velocity` says so; without a `launch` it begins
     as `start` leaves it, which suits what has no inertia."""
-    draw: Callable[[Any, int, EpisodeKey], None] | None = None
-    """`draw(memory, n, key)`, a function of Python, draws what is random in an episode, before
+    sample: Callable[[Any, int, EpisodeKey], None] | None = None
+    """`sample(memory, n, key)`, a function of Python, samples what is random in an episode, before
     `start`; None: nothing is."""
     jumps: bool = True
     """Whether its velocity may jump, so that its inertial sensors read a smoothed motion."""

@@ -8,14 +8,13 @@ from typing import TYPE_CHECKING, NamedTuple
 from eyas.core.errors import ConfigError, DataFileError, MissingExtraError, SpawnError
 from eyas.task.journal import Journal
 from eyas.wire.announcements import Announcements
+from eyas.wire.client_session import AnswerFile, ClientSession
 from eyas.wire.codec import RESET
 from eyas.wire.config import WireConfig
-from eyas.wire.exchange import Exchange
-from eyas.wire.pause import Pause
-from eyas.wire.post import Part, Post
+from eyas.wire.exchange import Exchange, Pause
 
 if TYPE_CHECKING:
-    from eyas.wire.crew import Answer, Crew
+    from eyas.wire.tracker_group import Answer, TrackerGroup
 
 __all__ = ["Server", "Service"]
 
@@ -31,7 +30,7 @@ class Service(NamedTuple):
     config: WireConfig
     tracker: str
     """Name of the trackers, such as `DRONE`."""
-    build: Callable[[int], "Crew"]
+    build: Callable[[int], "TrackerGroup"]
     """Returns the trackers, for a number of agents."""
     verbose: bool
     """Whether all that is said and done is logged as by the original."""
@@ -94,11 +93,11 @@ class Server:
         _LOG.info("%d agent%s announced", count, "s" * (count > 1))
         service = self._ask()
         try:
-            crew = service.build(count)
+            group = service.build(count)
             try:
-                return self._serve(service, crew, (count, begun), announcements)
+                return self._serve(service, group, (count, begun), announcements)
             finally:
-                crew.close()
+                group.close()
         except (ConfigError, DataFileError, MissingExtraError, SpawnError) as error:
             _LOG.error(
                 "%d agent%s cannot be served: %s; their clients wait in vain: end them; waiting "
@@ -111,7 +110,7 @@ class Server:
     def _serve(
         self,
         service: Service,
-        crew: "Crew",
+        group: "TrackerGroup",
         agents: tuple[int, frozenset[int]],
         announcements: Announcements,
     ) -> tuple[int, frozenset[int]]:
@@ -119,7 +118,7 @@ class Server:
 
         Args:
             service: What is served.
-            crew: The trackers.
+            group: The trackers.
             agents: Number of agents, and those of them whose first reset has been taken already.
             announcements: Where others may be announced.
 
@@ -132,22 +131,22 @@ class Server:
         count, begun = agents
         names = [f"{service.tracker}{number}" for number in range(count)]
         with Journal(self._exchange.logs, names, verbose=service.verbose) as journal:
-            posts = [
-                Post(self._exchange.names(name), journal.hearer(number))
+            sessions = [
+                ClientSession(self._exchange.names(name), journal.hearer(number))
                 for number, name in enumerate(names)
             ]
             for number in begun & set(range(count)):
-                posts[number].action = RESET
+                sessions[number].action = RESET
             _LOG.info("serving %s in %s", _named(names), self._exchange.files)
             self._late.clear()
             while True:
-                other = self._gather(service, posts, announcements)
+                other = self._gather(service, sessions, announcements)
                 if other is not None:
-                    return other, _begun(posts)
-                self._play(service, crew, posts, journal)
+                    return other, _begun(sessions)
+                self._play(service, group, sessions, journal)
 
     def _gather(
-        self, service: Service, posts: list[Post], announcements: Announcements
+        self, service: Service, sessions: list[ClientSession], announcements: Announcements
     ) -> int | None:
         """Give all answers and wait for the next action of each client.
 
@@ -155,8 +154,8 @@ class Server:
             The number of other agents, if such are announced; None when all actions are there.
         """
         pause = Pause()
-        while any(post.action is None for post in posts):
-            happened = [post for post in posts if post.poll()]
+        while any(session.action is None for session in sessions):
+            happened = [session for session in sessions if session.poll()]
             if happened:
                 self._welcome(happened)
                 pause.restart()
@@ -164,12 +163,12 @@ class Server:
             if pause.long:
                 self._look(announcements)
                 other = announcements.poll()
-                if other is not None and self._is_new(service, other, len(posts)):
+                if other is not None and self._is_new(service, other, len(sessions)):
                     return other
-                self._tell_late(posts, service.config.patience)
+                self._tell_late(sessions, service.config.patience)
             pause.sleep()
         other = announcements.poll()
-        return other if other is not None and self._is_new(service, other, len(posts)) else None
+        return other if other is not None and self._is_new(service, other, len(sessions)) else None
 
     def _is_new(self, service: Service, announced: int, count: int) -> bool:
         """Return whether agents that are announced need a world of their own."""
@@ -182,19 +181,29 @@ class Server:
             self._looked = now
             announcements.move(*self._place())
 
-    def _play(self, service: Service, crew: "Crew", posts: list[Post], journal: Journal) -> None:
-        actions = [post.action for post in posts]
+    def _play(
+        self,
+        service: Service,
+        group: "TrackerGroup",
+        sessions: list[ClientSession],
+        journal: Journal,
+    ) -> None:
+        actions = [session.action for session in sessions]
         given = [action for action in actions if action is not None]
         journal.actions([action.command for action in given])
-        answers = crew.play(given)
-        journal.step(crew.sim.snapshot)
-        for post, answer in zip(posts, answers, strict=True):
-            post.answer(_parts(service, post, answer))
+        answers = group.play(given)
+        journal.step(group.sim.snapshot)
+        for session, answer in zip(sessions, answers, strict=True):
+            session.answer(_answer_files(service, session, answer))
 
-    def _tell_late(self, posts: list[Post], patience: float) -> None:
+    def _tell_late(self, sessions: list[ClientSession], patience: float) -> None:
         """Report clients that do not go on, once."""
         since = time.monotonic() - patience
-        late = [post.names.tracker for post in posts if post.owes and post.waiting < since]
+        late = [
+            session.names.tracker
+            for session in sessions
+            if session.owes and session.waiting < since
+        ]
         if set(late) - self._late:
             self._late |= set(late)
             _LOG.warning(
@@ -203,34 +212,34 @@ class Server:
                 *(", ".join(late), patience),
             )
 
-    def _welcome(self, posts: list[Post]) -> None:
-        for post in posts:
-            if post.names.tracker in self._late:
-                self._late.discard(post.names.tracker)
-                _LOG.info("%s: goes on", post.names.tracker)
+    def _welcome(self, sessions: list[ClientSession]) -> None:
+        for session in sessions:
+            if session.names.tracker in self._late:
+                self._late.discard(session.names.tracker)
+                _LOG.info("%s: goes on", session.names.tracker)
 
 
-def _parts(service: Service, post: Post, answer: "Answer") -> list[Part]:
+def _answer_files(service: Service, session: ClientSession, answer: "Answer") -> list[AnswerFile]:
     """Return the files of an answer, in the original's order."""
-    names, picture = post.names, answer.picture
-    parts = [Part(names.state, lambda: answer.state)]
+    names, picture = session.names, answer.picture
+    parts = [AnswerFile(names.state, lambda: answer.state)]
     if service.config.reward_packet:
-        parts.append(Part(names.reward, lambda: answer.reward))
+        parts.append(AnswerFile(names.reward, lambda: answer.reward))
     radar = answer.radar
     if radar is not None:
-        parts.append(Part(names.radar, lambda: radar))
-    drawn = Part(names.picture, lambda: picture.result() if picture.done() else None)
+        parts.append(AnswerFile(names.radar, lambda: radar))
+    drawn = AnswerFile(names.picture, lambda: picture.result() if picture.done() else None)
     return [*parts, drawn]
 
 
-def _begun(posts: list[Post]) -> frozenset[int]:
+def _begun(sessions: list[ClientSession]) -> frozenset[int]:
     """Withdraw all answers; return the agents that have begun a new training.
 
     New clients announce themselves first, but may be heard of after their first resets.
     """
-    for post in posts:
-        post.withdraw()
-    resets = [post.action is not None and post.action.reset for post in posts]
+    for session in sessions:
+        session.withdraw()
+    resets = [session.action is not None and session.action.reset for session in sessions]
     return frozenset(number for number, reset in enumerate(resets) if reset)
 
 

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from eyas.core.clock import PHYSICS_RATE
 from eyas.core.config import updated
 from eyas.core.folder_lock import folder_lock
-from eyas.exports.frame import Action
+from eyas.exports.frame import RecordedAction
 from eyas.modes.demo.flight import DemoFlight
 from eyas.modes.video.folder import open_folder
 from eyas.modes.video.recorder import Recorder
@@ -25,9 +25,9 @@ class _Flown:
     def move(self, sim: object) -> None:
         """Do nothing: the demo moves the drone."""
 
-    def action(self, tracker: int) -> Action:
+    def action(self, tracker: int) -> RecordedAction:
         """Return the command of the last step."""
-        return Action(-1, self.command)
+        return RecordedAction(-1, self.command)
 
 
 class DemoRecording:

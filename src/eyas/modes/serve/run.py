@@ -17,7 +17,7 @@ from eyas.wire.server import Server, Service
 from eyas.world.maps import MAPS
 
 if TYPE_CHECKING:
-    from eyas.wire.crew import Crew
+    from eyas.wire.tracker_group import TrackerGroup
 
 __all__ = ["run"]
 
@@ -87,13 +87,13 @@ def _service(config: EyasConfig) -> Service:
     )
 
 
-def _crew(config: EyasConfig, count: int) -> "Crew":
+def _crew(config: EyasConfig, count: int) -> "TrackerGroup":
     """Return the trackers of some agents."""
     # Slow to import, so only when the server listens.
     from eyas.sim.build import build_simulation
     from eyas.sim.worlds import together
-    from eyas.wire.crew import Crew
+    from eyas.wire.tracker_group import TrackerGroup
 
     steps = physics_steps(config.control.frequency)
     with originals_named(config):
-        return Crew(build_simulation(config, together(count)), steps)
+        return TrackerGroup(build_simulation(config, together(count)), steps)

@@ -7,13 +7,13 @@ import numpy as np
 from eyas.core.clock import physics_steps
 from eyas.core.rng import stream
 from eyas.envs.actions import action_table
-from eyas.exports.frame import Action
+from eyas.exports.frame import RecordedAction
 from eyas.settings.config import EyasConfig
 from eyas.sim.simulation import Simulation
 
 __all__ = ["Following", "Mover", "RandomActions", "mover_of"]
 
-_FOLLOWING = Action(number=-1, command=None)
+_FOLLOWING = RecordedAction(number=-1, command=None)
 
 
 class Mover(Protocol):
@@ -22,7 +22,7 @@ class Mover(Protocol):
     def move(self, sim: Simulation) -> None:
         """Advance the simulation by one 2 ms step."""
 
-    def action(self, tracker: int) -> Action:
+    def action(self, tracker: int) -> RecordedAction:
         """Return a tracker's action in the last step."""
 
 
@@ -33,7 +33,7 @@ class Following:
         """Advance the simulation by one 2 ms step."""
         sim.carry(1)
 
-    def action(self, tracker: int) -> Action:
+    def action(self, tracker: int) -> RecordedAction:
         """Return an action without a command."""
         return _FOLLOWING
 
@@ -61,10 +61,10 @@ class RandomActions:
             self._numbers[tracker] = self._draw(sim, tracker)
         sim.advance(self._vectors[self._numbers], 1)
 
-    def action(self, tracker: int) -> Action:
+    def action(self, tracker: int) -> RecordedAction:
         """Return a tracker's action in the last step."""
         number = int(self._numbers[tracker])
-        return Action(number, self._vectors[number])
+        return RecordedAction(number, self._vectors[number])
 
     def _draw(self, sim: Simulation, tracker: int) -> int:
         rng = self._streams[tracker]

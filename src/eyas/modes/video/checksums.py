@@ -16,8 +16,7 @@ from pathlib import Path
 
 from eyas.core.errors import DataFileError
 from eyas.core.files import read_limited, refusals, write_atomic
-from eyas.exports.files import joined
-from eyas.exports.writer import Writer
+from eyas.exports.writer import Writer, joined
 from eyas.modes.video.episode import RecordedPaths, paths_below
 
 __all__ = ["CHECKSUMS", "GROWING", "Checksums"]

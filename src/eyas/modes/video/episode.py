@@ -7,10 +7,8 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from eyas.core.files import PART_SUFFIX, refusals
-from eyas.exports.files import Files, joined, pattern_of
 from eyas.exports.frame import Frame
-from eyas.exports.summary import Summary
-from eyas.exports.writer import Episode, EpisodeWriter, Writer
+from eyas.exports.writer import Episode, EpisodeWriter, Files, Summary, Writer, joined, pattern_of
 
 __all__ = ["EpisodeFiles", "RecordedPaths", "paths_below", "read_complete"]
 

@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 
 from eyas.core.errors import OutputError
 from eyas.exports.capture import Moment, frame_of
-from eyas.exports.summary import Scores, Summary
-from eyas.exports.writer import EndedEpisode, Episode
+from eyas.exports.writer import EndedEpisode, Episode, Scores, Summary
 from eyas.modes.video.action import Mover
 from eyas.modes.video.checksums import Checksums
 from eyas.modes.video.episode import EpisodeFiles, read_complete

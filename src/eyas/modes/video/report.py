@@ -12,7 +12,7 @@ from rich.console import Console
 from rich.table import Table
 
 from eyas.core.files import atomic_path
-from eyas.exports.summary import Summary, total
+from eyas.exports.writer import Summary, total
 from eyas.modes.video.folder import VideoFolder
 from eyas.modes.video.recorder import Recorder
 from eyas.state.snapshot import Snapshot

@@ -1,9 +1,19 @@
 """Pictures: the loop over bands of views, and the steps of each."""
 
 from eyas.lanes import address_of, claim, kernel, parallel
-from eyas.render.kernels.bundles import Geometry, Light, Movers, Output, Scratch, Task
+from eyas.render.kernels.bundles import (
+    Band,
+    Direction,
+    Geometry,
+    Illumination,
+    Light,
+    Movers,
+    Output,
+    Scratch,
+    Task,
+    View,
+)
 from eyas.render.kernels.light.casters import cast_light
-from eyas.render.kernels.light.view_light import view_light
 from eyas.render.kernels.scalars import f4, i8
 from eyas.render.kernels.sky.backdrop import draw_backdrop
 from eyas.render.kernels.sky.flakes import let_flakes_fall
@@ -13,8 +23,9 @@ from eyas.render.kernels.visibility.outputs import write_classes, write_depth, w
 from eyas.render.kernels.visibility.passes import draw_scene
 from eyas.render.kernels.visibility.transform import view_of
 from eyas.state.draw import DrawStage
+from eyas.state.lighting import LightState
 
-__all__ = ["draw_views"]
+__all__ = ["band_of", "draw_views", "view_light"]
 
 RASTERISING = int(DrawStage.RASTERISING)
 MOVERS_LIGHT = int(DrawStage.MOVERS_LIGHT)
@@ -50,36 +61,77 @@ def _draw_band(
     task: Task,
     worker: int,
 ) -> None:
-    """Draw job `index` with a worker's memory."""
+    """Draw job `index` with a worker's memory, and write what is wanted of it."""
     job, until = task.job, task.until
     number, top, bottom = job.band[index, 0], job.band[index, 1], job.band[index, 2]
-    world = i8(job.world[number])
     view = address_of(view_of(job, index, task.width, task.height, task.samples))
-    key, shade = scratch.key[worker, : view.rows], scratch.shade[worker, : view.rows]
-    drawn = scratch.drawn[worker]
-    count = draw_scene(until, geometry, movers, world, view, scratch, worker, key)
+    lit = address_of(view_light(light.weather, job.light, number))
+    world = i8(job.world[number])
+    band = address_of(band_of(geometry, light, lit, movers, world, view, until, scratch, worker))
+    count = draw_scene(band)
     if len(output.depth) > 0:
-        write_depth(key, output.depth[number, top:bottom])
+        write_depth(band.key, output.depth[number, top:bottom])
     if len(output.object_id) > 0:
-        write_objects(geometry, movers, world, drawn, key, output.object_id[number, top:bottom])
+        write_objects(band, output.object_id[number, top:bottom])
     if len(output.class_id) > 0:
-        write_classes(geometry, movers, world, drawn, key, output.class_id[number, top:bottom])
+        write_classes(band, output.class_id[number, top:bottom])
     if len(output.subject) > 0 and until >= RASTERISING:
-        measure_subject(
-            geometry, movers, world, job.subject[number], view, scratch, worker, key, count,
-            output.subject[index],
-        )  # fmt: skip
+        measure_subject(band, job.subject[number], count, output.subject[index])
     if len(output.actor) > 0 and until >= RASTERISING:
-        measure_actors(
-            geometry, movers, world, view, scratch, worker, key, count, output.actor[index]
-        )
+        measure_actors(band, count, output.actor[index])
     if len(output.rgb) > 0 and until > RASTERISING:
-        lamps_on = light.weather.air.lamps > f4(0.0)
-        cast_light(geometry, movers, world, view, lamps_on, light.weather.sun, key, drawn, shade)
+        cast_light(band)
     if len(output.rgb) > 0 and until > MOVERS_LIGHT:
-        lit = address_of(view_light(light.weather, job.light, number))
         pixels = output.rgb[number, top:bottom]
-        draw_backdrop(view, light, lit, key, pixels)
-        shade_band(view, geometry, light, lit, movers, world, drawn, key, shade, pixels)
+        draw_backdrop(band, pixels)
+        shade_band(band, pixels)
         if len(job.instant) > 0 and lit.air.flakes > f4(0.0):
-            let_flakes_fall(view, light, lit, job.instant[number], key, pixels)
+            let_flakes_fall(band, job.instant[number], pixels)
+
+
+@kernel(inline=True)
+def band_of(
+    geometry: Geometry,
+    light: Light,
+    lit: Illumination,
+    movers: Movers,
+    world: int,
+    view: View,
+    until: int,
+    scratch: Scratch,
+    worker: int,
+) -> Band:
+    """Return a band of a view with a worker's rows of the working memory."""
+    rows = view.rows
+    return Band(
+        geometry, light, lit, movers, world, view, until, scratch.key[worker, :rows],
+        scratch.alone[worker, :rows], scratch.shade[worker, :rows], scratch.drawn[worker],
+        scratch.mesh[worker], scratch.tiles[worker], scratch.order[worker],
+        scratch.triangle[worker], scratch.polygon[worker], scratch.span[worker],
+    )  # fmt: skip
+
+
+@kernel(inline=True)
+def _scaled(share: float, colour: Direction) -> Direction:
+    return Direction(share * colour.x, share * colour.y, share * colour.z)
+
+
+@kernel(inline=True)
+def view_light(weather: Illumination, changes: LightState, view: int) -> Illumination:
+    """Return the light of a view: the weather's, with what differs in the view.
+
+    The air's colour is scattered light of the sky; light reflected by the ground comes from both
+    sky and sun.
+    """
+    sky, sun = changes.sky[view], changes.sun[view]
+    return Illumination(
+        weather.sun,
+        _scaled(sun, weather.sun_colour),
+        _scaled(sky, weather.zenith),
+        _scaled(sky, weather.horizon),
+        _scaled(sky, weather.above),
+        _scaled(f4(0.5) * (sky + sun), weather.below),
+        _scaled(sky, weather.fog),
+        changes.fog_density[view],
+        weather.air,
+    )

@@ -12,7 +12,7 @@ from eyas.core.config import Problem, updated, validated
 from eyas.core.errors import ConfigError
 from eyas.core.files import write_atomic
 from eyas.settings.config import EyasConfig
-from eyas.settings.legacy.entries import Entry, Optional, Values
+from eyas.settings.legacy.entries import LegacyEntry, Optional, Values
 from eyas.settings.legacy.keys import ENTRIES, GROUP_KEYS, KEEP_ALIVE
 from eyas.settings.legacy.layout import Nested, check_kinds, every_key, flat, nested
 from eyas.settings.legacy.own_target import CUSTOM
@@ -139,7 +139,7 @@ def legacy_key_of(path: str) -> str:
     return entry.key if isinstance(entry, Optional) else entry.keys[0]
 
 
-def _with(config: EyasConfig, values: Values, entries: Iterable[Entry]) -> EyasConfig:
+def _with(config: EyasConfig, values: Values, entries: Iterable[LegacyEntry]) -> EyasConfig:
     """Return settings in which the fields of these entries have these values of their keys."""
     changes: dict[str, object] = {}
     for entry in entries:
@@ -165,7 +165,7 @@ def _with(config: EyasConfig, values: Values, entries: Iterable[Entry]) -> EyasC
     return validated(EyasConfig, {**dict(new), "original": original})
 
 
-def _is_idle(entry: Entry, target: object) -> bool:
+def _is_idle(entry: LegacyEntry, target: object) -> bool:
     """Return whether an entry has no effect for a target, whatever its values."""
     vehicle = target == TargetName.SUMO_VEHICLE
     return vehicle and all(path.startswith("objects.") for path in entry.paths)
@@ -177,7 +177,7 @@ def _kept(config: EyasConfig) -> Values:
     return {key: list(value) if isinstance(value, tuple) else value for key, value in kept.items()}
 
 
-def _told(entry: Entry, config: EyasConfig) -> Values:
+def _told(entry: LegacyEntry, config: EyasConfig) -> Values:
     """Return the keys of an entry that have an effect; none if they cannot express the settings."""
     try:
         return entry.write(_fields(config, entry))
@@ -185,7 +185,7 @@ def _told(entry: Entry, config: EyasConfig) -> Values:
         return {}
 
 
-def _written(entry: Entry, config: EyasConfig) -> Values:
+def _written(entry: LegacyEntry, config: EyasConfig) -> Values:
     """Return all keys of an entry, as they were in the original's file where that means the same.
 
     Raises:
@@ -226,7 +226,7 @@ def _is_refused(path: str, value: object) -> bool:
     return False
 
 
-def _fields(config: EyasConfig, entry: Entry) -> Values:
+def _fields(config: EyasConfig, entry: LegacyEntry) -> Values:
     fields = {}
     for path in entry.paths:
         value: object = config

@@ -7,11 +7,21 @@ from enum import Enum
 
 from typing_extensions import override
 
-from eyas.core.config import Config, shown
+from eyas.core.config import Config, Problem, shown
 from eyas.core.errors import ConfigError
 from eyas.core.variation import Mirrored, Uniform
 
-__all__ = ["Entry", "Guess", "Optional", "Same", "Span", "Values", "Varied"]
+__all__ = [
+    "Guess",
+    "LegacyEntry",
+    "Optional",
+    "Pitch",
+    "Same",
+    "Span",
+    "Switch",
+    "Values",
+    "Varied",
+]
 
 Values = Mapping[str, object]
 """Values by dotted path: by the original's keys, or by ours."""
@@ -28,7 +38,7 @@ class Guess:
     """Allowed values of the key; None: those of our field."""
 
 
-class Entry(ABC):
+class LegacyEntry(ABC):
     """Keys of the original, and our fields with the same meaning."""
 
     __slots__ = ()
@@ -65,7 +75,7 @@ class Entry(ABC):
 
 
 @dataclass(frozen=True, slots=True)
-class Same(Entry):
+class Same(LegacyEntry):
     """A key that means what a field means."""
 
     key: str
@@ -106,7 +116,7 @@ class Same(Entry):
 
 
 @dataclass(frozen=True, slots=True)
-class Optional(Entry):
+class Optional(LegacyEntry):
     """A key that applies if a switch is true; otherwise our field is None."""
 
     switch: str
@@ -140,7 +150,7 @@ class Optional(Entry):
 
 
 @dataclass(frozen=True, slots=True)
-class Span(Entry):
+class Span(LegacyEntry):
     """Two keys that are the limits of one field."""
 
     least: str
@@ -177,7 +187,7 @@ class Span(Entry):
 
 
 @dataclass(frozen=True, slots=True)
-class Varied(Entry):
+class Varied(LegacyEntry):
     """The four to six keys that define whether and how one value is drawn."""
 
     random: str
@@ -245,3 +255,79 @@ class Varied(Entry):
         active = (self.most, self.least) if values[self.random] else (self.fixed,)
         for key in active:
             yield Guess(key, values[key])
+
+
+_LEAST, _MOST = 0.5, 1.5
+"""The pitches that the gimbal reaches [rad]."""
+
+_FLATTEST, _STEEPEST = 0.1, 3.0
+"""The pitches for which there is a start position [rad]; see `StartConfig.pitch`."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pitch(Varied):
+    """A pitch; one that looks at or above the horizon, or far behind, is limited.
+
+    Others keep their value, because the start position is computed from it.
+    """
+
+    @override
+    def read(self, values: Values) -> Values:
+        # Not `super()`, which a dataclass with slots breaks.
+        return Varied.read(self, {**values, **self._limited(values)})
+
+    @override
+    def remarks(self, values: Values) -> Iterator[str]:
+        for key, used in self._limited(values).items():
+            yield (
+                f"{key}: {shown(values[key])} is out of the gimbal's range of {_LEAST} to {_MOST};"
+                f" {used} is used"
+            )
+
+    def _limited(self, values: Values) -> dict[str, float]:
+        """Return the keys in use whose values are limited."""
+        keys = (self.least, self.most) if values[self.random] else (self.fixed,)
+        limited = {}
+        for key in keys:
+            value = values[key]
+            assert isinstance(value, int | float), "the adapter has checked the types"
+            if not _FLATTEST <= value <= _STEEPEST:
+                limited[key] = _LEAST if value < _FLATTEST else _MOST
+        return limited
+
+
+@dataclass(frozen=True, slots=True)
+class Switch(LegacyEntry):
+    """A key that is true for one value of a field and false for the other."""
+
+    key: str
+    path: str
+    on: str
+    """Value of the field if the key is true."""
+    off: str
+    """Value of the field if the key is false."""
+
+    @property
+    @override
+    def keys(self) -> tuple[str, ...]:
+        return (self.key,)
+
+    @property
+    @override
+    def paths(self) -> tuple[str, ...]:
+        return (self.path,)
+
+    @override
+    def read(self, values: Values) -> Values:
+        value = values[self.key]
+        if not isinstance(value, bool):
+            raise Problem((self.key,), value, "true or false").error()
+        return {self.path: self.on if value else self.off}
+
+    @override
+    def write(self, fields: Values) -> Values:
+        return {self.key: fields[self.path] == self.on}
+
+    @override
+    def blame(self, values: Values) -> Iterator[Guess]:
+        yield Guess(self.key)

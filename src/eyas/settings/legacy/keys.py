@@ -1,8 +1,6 @@
 """Every key of an `env_config.json`, and our setting for it."""
 
-from eyas.settings.legacy.entries import Entry, Optional, Same, Span, Varied
-from eyas.settings.legacy.pitch import Pitch
-from eyas.settings.legacy.switch import Switch
+from eyas.settings.legacy.entries import LegacyEntry, Optional, Pitch, Same, Span, Switch, Varied
 from eyas.settings.legacy.world_path import WorldPath
 from eyas.traffic.config import Demand
 
@@ -157,5 +155,5 @@ _LIGHT = (
     ),
 )
 
-ENTRIES: tuple[Entry, ...] = (*_BASIC, *_TASK, *_SUMO, *_OBJECTS, *_VIDEO, *_START, *_LIGHT)
+ENTRIES: tuple[LegacyEntry, ...] = (*_BASIC, *_TASK, *_SUMO, *_OBJECTS, *_VIDEO, *_START, *_LIGHT)
 """Every key is in exactly one entry."""

@@ -7,7 +7,7 @@ from importlib.resources import files
 from typing import Any
 
 from eyas.core.config import Problem
-from eyas.settings.legacy.entries import Entry, Values
+from eyas.settings.legacy.entries import LegacyEntry, Values
 
 __all__ = ["Nested", "check_kinds", "every_key", "flat", "legacy_defaults", "nested"]
 
@@ -68,7 +68,7 @@ def nested(by_path: Values) -> dict[str, Any]:
     return groups
 
 
-def check_kinds(entry: Entry, values: Values, *, idle: bool = False) -> None:
+def check_kinds(entry: LegacyEntry, values: Values, *, idle: bool = False) -> None:
     """Refuse switches and numbers of a wrong type.
 
     A key for one field is checked by that field, unless the entry has no effect (`idle`).

@@ -8,7 +8,7 @@ from typing_extensions import override
 
 from eyas.core.config import shown
 from eyas.core.errors import ConfigError
-from eyas.settings.legacy.entries import Entry, Guess, Values
+from eyas.settings.legacy.entries import Guess, LegacyEntry, Values
 
 __all__ = ["WorldPath"]
 
@@ -17,7 +17,7 @@ _SIMPLE = "simpleway"
 
 
 @dataclass(frozen=True, slots=True)
-class WorldPath(Entry):
+class WorldPath(LegacyEntry):
     """The path of a world file: `<map>-<weather>.wbt`, or `simpleway-<skin>_<weather>.wbt`."""
 
     key: str

@@ -9,6 +9,7 @@ Kernels get bundles of arrays by pointer (`eyas.lanes.operations`) and read them
 themselves. Numbers of a bundle are float32 if their names are those of light, else float64.
 """
 
+from eyas.render.kernels.bundles.band import Band
 from eyas.render.kernels.bundles.geometry import GROUP, Geometry, Movers
 from eyas.render.kernels.bundles.light import (
     TILE,
@@ -27,6 +28,7 @@ __all__ = [
     "NEAR",
     "TILE",
     "Air",
+    "Band",
     "Direction",
     "Geometry",
     "Illumination",

@@ -1,8 +1,5 @@
 """Light of vehicles' head and tail lamps on the road."""
 
-import numpy as np
-from numpy.typing import NDArray
-
 from eyas.lanes import kernel
 from eyas.lanes.vector import (
     WIDTH,
@@ -17,7 +14,7 @@ from eyas.lanes.vector import (
     store_words,
     to_u4,
 )
-from eyas.render.kernels.bundles import View
+from eyas.render.kernels.bundles import Band, View
 from eyas.render.kernels.light.caster import Caster, sight_of
 from eyas.render.kernels.samples import (
     ScreenBox,
@@ -92,11 +89,12 @@ def _screen_box(caster: Caster, view: View) -> ScreenBox:
 
 
 @kernel
-def cast_beam(caster: Caster, view: View, key: NDArray[np.int64], shade: NDArray[np.uint8]) -> None:
-    """Brighten the samples that one vehicle's lamps light, channels 2 and 3 of `Scratch.shade`.
+def cast_beam(caster: Caster, band: Band) -> None:
+    """Brighten the samples that one vehicle's lamps light, channels 2 and 3 of `Band.shade`.
 
     Its own body lies neither ahead of its front nor behind its back.
     """
+    view, key, shade = band.camera, band.key, band.shade
     half = 0.5 * (_REACH - _BEHIND)
     x, y = caster.x + half * caster.along_x, caster.y + half * caster.along_y
     radius = caster.length + 0.5 * (_REACH + _BEHIND) + _SPREAD

@@ -4,7 +4,7 @@ import math
 from typing import NamedTuple
 
 from eyas.lanes import kernel
-from eyas.render.kernels.bundles import Direction, Geometry, Movers, View
+from eyas.render.kernels.bundles import Band, Direction, View
 from eyas.render.kernels.light.shadow_boxes import Box, ShadowBoxes, shadow_boxes
 from eyas.render.kernels.samples import Sight, sight_from
 from eyas.render.kernels.scalars import f4
@@ -61,11 +61,12 @@ def beyond(height: float) -> float:
 
 
 @kernel
-def reach_of(geometry: Geometry, movers: Movers, world: int, first: int, last: int) -> float:
+def reach_of(band: Band, first: int, last: int) -> float:
     """Return how far the parts in slots `first` to `last` are from the first's origin [m].
 
     In any direction; the corners of a `Caster` may be farther by a factor of `CORNER`.
     """
+    geometry, movers, world = band.geometry, band.movers, band.world
     poses, parts = movers.pose[world], movers.part[world]
     reach = 0.0
     for slot in range(first, last):
@@ -83,8 +84,9 @@ def reach_of(geometry: Geometry, movers: Movers, world: int, first: int, last: i
 
 
 @kernel(inline=True)
-def _largest(geometry: Geometry, movers: Movers, world: int, first: int, last: int) -> int:
+def _largest(band: Band, first: int, last: int) -> int:
     """Return the slot of the largest part that is not upright."""
+    geometry, movers, world = band.geometry, band.movers, band.world
     poses, parts = movers.pose[world], movers.part[world]
     body, largest = first, f4(-1.0)
     for slot in range(first, last):
@@ -98,17 +100,19 @@ def _largest(geometry: Geometry, movers: Movers, world: int, first: int, last: i
 
 
 @kernel(inline=True)
-def has_lamps(geometry: Geometry, movers: Movers, world: int, first: int, last: int) -> bool:
+def has_lamps(band: Band, first: int, last: int) -> bool:
     """Return whether a thing has head and tail lamps."""
-    body = _largest(geometry, movers, world, first, last)
-    return bool(geometry.lamps[geometry.part_first + movers.part[world, body]])
+    body = _largest(band, first, last)
+    geometry, part = band.geometry, band.movers.part[band.world, body]
+    return bool(geometry.lamps[geometry.part_first + part])
 
 
 @kernel
-def caster_of(geometry: Geometry, movers: Movers, world: int, first: int, last: int) -> Caster:
+def caster_of(band: Band, first: int, last: int) -> Caster:
     """Return the box around slots `first` to `last`."""
+    geometry, movers, world = band.geometry, band.movers, band.world
     poses, parts = movers.pose[world], movers.part[world]
-    body = _largest(geometry, movers, world, first, last)
+    body = _largest(band, first, last)
     along_x, along_y = float(poses[body, 0, 0]), float(poses[body, 1, 0])
     flat = math.sqrt(along_x * along_x + along_y * along_y)
     along_x, along_y = (along_x / flat, along_y / flat) if flat > 1e-6 else (1.0, 0.0)

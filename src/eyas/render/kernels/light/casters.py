@@ -6,9 +6,6 @@ shadow where its line to the sun passes through one of them.
 
 import math
 
-import numpy as np
-from numpy.typing import NDArray
-
 from eyas.lanes import address_of, kernel
 from eyas.lanes.vector import (
     WIDTH,
@@ -22,7 +19,7 @@ from eyas.lanes.vector import (
     store_words,
     to_u4,
 )
-from eyas.render.kernels.bundles import Direction, Geometry, Movers, View
+from eyas.render.kernels.bundles import Band, Direction, View
 from eyas.render.kernels.light.beams import BEAM_REACH, cast_beam
 from eyas.render.kernels.light.caster import (
     CORNER,
@@ -76,18 +73,15 @@ def influence(reach: float, sun: Direction, lamps_on: bool) -> float:
 
 
 @kernel(inline=True)
-def _may_reach(
-    geometry: Geometry, movers: Movers, world: int, first: int, last: int, sun: Direction,
-    lamps_on: bool, view: View,
-) -> bool:  # fmt: skip
+def _may_reach(band: Band, first: int, last: int, lamps_on: bool) -> bool:
     """Return whether a thing, its shadow or its light may be in the picture.
 
     This is tested first because it needs no box around the thing.
     """
-    most = influence(reach_of(geometry, movers, world, first, last), sun, lamps_on)
-    origin = movers.pose[world, first]
+    most = influence(reach_of(band, first, last), band.lit.sun, lamps_on)
+    origin = band.movers.pose[band.world, first]
     return sphere_is_visible(
-        view.planes, float(origin[0, 3]), float(origin[1, 3]), float(origin[2, 3]), most
+        band.camera.planes, float(origin[0, 3]), float(origin[1, 3]), float(origin[2, 3]), most
     )
 
 
@@ -125,17 +119,9 @@ def _screen_box(caster: Caster, sun: Direction, view: View) -> ScreenBox:
 
 
 @kernel
-def _cast_shadow(
-    caster: Caster,
-    sun: Direction,
-    first: int,
-    last: int,
-    view: View,
-    key: NDArray[np.int64],
-    drawn: NDArray[np.int32],
-    shade: NDArray[np.uint8],
-) -> None:
+def _cast_shadow(caster: Caster, band: Band, first: int, last: int) -> None:
     """Darken the samples that instances `first` to `last` shade, but not these themselves."""
+    sun, view, key, drawn, shade = band.lit.sun, band.camera, band.key, band.drawn, band.shade
     box = _screen_box(caster, sun, view)
     sight, boxes = sight_of(caster, view), boxes_of(caster, sun)
     stride = key.shape[1]
@@ -164,9 +150,9 @@ def _cast_shadow(
 
 
 @kernel(inline=True)
-def _end_of_body(geometry: Geometry, movers: Movers, world: int, first: int, last: int) -> int:
+def _end_of_body(band: Band, first: int, last: int) -> int:
     """Return the slot after those of a body: that of the trailer of what begins at `first`."""
-    parts = movers.part[world]
+    geometry, parts = band.geometry, band.movers.part[band.world]
     if not geometry.lamps[geometry.part_first + parts[first]]:
         return last
     end = first + 1
@@ -195,53 +181,33 @@ def _longer(caster: Caster, more: float) -> Caster:
 
 
 @kernel
-def cast_light(
-    geometry: Geometry,
-    movers: Movers,
-    world: int,
-    view: View,
-    lamps_on: bool,
-    sun: Direction,
-    key: NDArray[np.int64],
-    drawn: NDArray[np.int32],
-    shade: NDArray[np.uint8],
-) -> None:
+def cast_light(band: Band) -> None:
     """Write the share of light that moving things let through to each sample, and their own light.
 
     Slots in a row with the same object id are one thing. Those of objects of the scene, such as the
     lenses of signals, cast nothing.
-
-    Args:
-        geometry: Everything that can be drawn.
-        movers: The moving things.
-        world: Which world's.
-        view: The samples.
-        lamps_on: Whether the lamps of vehicles are on.
-        sun: Unit vector towards it.
-        key: What each sample shows, see `Scratch.key`, shape (rows, at least 8 columns).
-        drawn: Instances of the keys, see `Scratch.drawn`.
-        shade: See `Scratch`.
     """
-    samples = key.shape[0] * key.shape[1]
+    movers, world, shade = band.movers, band.world, band.shade
+    samples = band.key.shape[0] * band.key.shape[1]
     for at in range(0, samples, WIDTH):
         store_words(shade, 4 * min(at, samples - WIDTH), splat(u4(0xFFFF)))
-    fixtures, slots = len(geometry.fixture_prototype), movers.part.shape[1]
-    first = next_thing(movers, world, 0)
+    lamps_on = band.lit.air.lamps > f4(0.0)
+    fixtures, slots = len(band.geometry.fixture_prototype), movers.part.shape[1]
+    first = next_thing(band, 0)
     while first < slots:
-        last = end_of_thing(movers, world, first)
+        last = end_of_thing(band, first)
         mover = movers.object_id[world, first] >= ACTOR_OBJECT
-        if mover and _may_reach(geometry, movers, world, first, last, sun, lamps_on, view):
-            own, begin = (fixtures + first, fixtures + last), first
+        if mover and _may_reach(band, first, last, lamps_on):
+            begin = first
             while begin < last:
-                end = _end_of_body(geometry, movers, world, begin, last)
-                caster = address_of(caster_of(geometry, movers, world, begin, end))
-                if _may_show(caster, sun, view):
-                    _cast_shadow(caster, sun, own[0], own[1], view, key, drawn, shade)
-                if lamps_on and has_lamps(geometry, movers, world, begin, end):
+                end = _end_of_body(band, begin, last)
+                caster = address_of(caster_of(band, begin, end))
+                if _may_show(caster, band.lit.sun, band.camera):
+                    _cast_shadow(caster, band, fixtures + first, fixtures + last)
+                if lamps_on and has_lamps(band, begin, end):
                     reach = 0.0
                     if end < last:
-                        trailer = caster_of(geometry, movers, world, end, last)
-                        reach = _stretch(caster, trailer)
-                    cast_beam(address_of(_longer(caster, reach)), view, key, shade)
+                        reach = _stretch(caster, caster_of(band, end, last))
+                    cast_beam(address_of(_longer(caster, reach)), band)
                 begin = end
-        first = next_thing(movers, world, last)
+        first = next_thing(band, last)

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from eyas.lanes import kernel
 from eyas.lanes.vector import WIDTH, bits_of, lane_numbers, root, to_f4
-from eyas.render.kernels.bundles import Illumination, Light, View
+from eyas.render.kernels.bundles import Band, Illumination, Light
 from eyas.render.kernels.light.tone import tone_bytes
 from eyas.render.kernels.pixels import keys_of, pack, write_pixels
 from eyas.render.kernels.rays import Rays, ray_of, rays_of
@@ -36,24 +36,16 @@ def _sky_bits(key: NDArray[np.int64], line: int, sample: int, samples: int) -> i
 
 
 @kernel
-def draw_backdrop(
-    view: View,
-    light: Light,
-    lit: Illumination,
-    key: NDArray[np.int64],
-    pixels: NDArray[np.uint8],
-) -> None:
+def draw_backdrop(band: Band, pixels: NDArray[np.uint8]) -> None:
     """Write the sky at the centre of each pixel in which any sample shows it.
 
     Separate from `shade_band`, so that the code that shades surfaces stays small.
 
     Args:
-        view: The band.
-        light: Its panoramas.
-        lit: Light and air.
-        key: See `Scratch`, shape (rows, columns).
+        band: The band.
         pixels: sRGB, shape (rows, columns, 3).
     """
+    view, light, lit, key = band.camera, band.light, band.lit, band.key
     rays, samples = rays_of(view), view.samples
     side, half = f4(samples), f4(0.5) * f4(samples)
     width = pixels.shape[1]

@@ -6,16 +6,17 @@ same. Around the camera are shells, the farther with larger cells, to limit the 
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.lanes import address_of, kernel
-from eyas.render.kernels.bundles import Illumination, Light, View
+from eyas.render.kernels.bundles import Band, Illumination, Light, View
 from eyas.render.kernels.chance import scrambled, tenth
 from eyas.render.kernels.light.tone import tone_bytes
 from eyas.render.kernels.scalars import f4, i8, u4
-from eyas.render.kernels.sky.streaks import Snowfall, smear
+from eyas.render.kernels.visibility.key import distance_inverse
 
 __all__ = ["let_flakes_fall"]
 
@@ -39,6 +40,20 @@ SMALLEST = 0.35
 """Radius below which flakes are invisible [pixels]."""
 
 
+class Snowfall(NamedTuple):
+    """A band, the air in it and its picture, into which flakes are drawn."""
+
+    band: Band
+    instant: float
+    """Time [s]."""
+    most: int
+    """Largest number of flakes in a cell."""
+    white: tuple[int, int, int]
+    """Bytes of a flake."""
+    pixels: NDArray[np.uint8]
+    """sRGB, shape (rows, columns, 3)."""
+
+
 @kernel(inline=True)
 def _wave(turn: float) -> float:
     """Return approximately the sine of an angle given in turns, made of parabolas."""
@@ -60,26 +75,16 @@ def _white(light: Light, lit: Illumination) -> tuple[int, int, int]:
 
 
 @kernel
-def let_flakes_fall(
-    view: View,
-    light: Light,
-    lit: Illumination,
-    instant: float,
-    key: NDArray[np.int64],
-    pixels: NDArray[np.uint8],
-) -> None:
+def let_flakes_fall(band: Band, instant: float, pixels: NDArray[np.uint8]) -> None:
     """Draw flakes into a band.
 
     Args:
-        view: The band.
-        light: Its tone curve.
-        lit: Light and air.
+        band: The band.
         instant: Time [s].
-        key: See `Scratch`, shape (rows, columns).
         pixels: sRGB, shape (rows, columns, 3).
     """
-    most = math.ceil(MOST * lit.air.flakes)
-    snowfall = Snowfall(view, instant, most, _white(light, lit), key, pixels)
+    view, most = band.camera, math.ceil(MOST * band.lit.air.flakes)
+    snowfall = Snowfall(band, instant, most, _white(band.light, band.lit), pixels)
     begin = NEAREST
     for shell in range(SHELLS):
         end = begin * GROWTH
@@ -119,7 +124,7 @@ def _cells(
 @kernel
 def _fill_shell(shell: int, begin: float, end: float, snowfall: Snowfall) -> None:
     """Draw the flakes of all cells that the band may show."""
-    view, instant, side = snowfall.band, snowfall.instant, end / CELLS
+    view, instant, side = snowfall.band.camera, snowfall.instant, end / CELLS
     ahead, left, up = view.ahead, view.left, view.up
     x = view.eye.x - WIND_X * instant
     y = view.eye.y - WIND_Y * instant
@@ -180,7 +185,7 @@ def _draw_flake(
     number: int, middle: tuple[float, float, float], begin: float, end: float, snowfall: Snowfall
 ) -> None:
     """Draw the flake of a number in a cell whose middle lies there from the eye [m]."""
-    view, instant = snowfall.band, snowfall.instant
+    view, instant = snowfall.band.camera, snowfall.instant
     other, side = scrambled(number), end / CELLS
     size = tenth(other, 20) ** 2
     if _radius(size, begin) * view.focal < SMALLEST * begin:
@@ -201,4 +206,55 @@ def _draw_flake(
     down = view.focal_y / (ahead * view.samples)
     column = 0.5 * view.width / view.samples - left * across
     row = (0.5 * view.height - view.top) / view.samples - up * down
-    smear(column, row, -aside * across, -above * down, radius, 1.0 / ahead, snowfall)
+    _smear(column, row, -aside * across, -above * down, radius, 1.0 / ahead, snowfall)
+
+
+@kernel
+def _smear(
+    column: float,
+    row: float,
+    to_column: float,
+    to_row: float,
+    radius: float,
+    inverse: float,
+    snowfall: Snowfall,
+) -> None:
+    """Draw a soft streak.
+
+    Args:
+        column: Column of its end [pixels].
+        row: Row of its end in the band [pixels].
+        to_column: Columns from there to its start [pixels].
+        to_row: Rows from there to its start [pixels].
+        radius: Half its width [pixels].
+        inverse: One over its distance [1/m].
+        snowfall: Band to draw into.
+    """
+    drawn = max(radius, 0.6)
+    soft = 0.5 + 0.35 * drawn
+    reach = drawn + soft
+    pixels, key, step = snowfall.pixels, snowfall.band.key, snowfall.band.camera.samples
+    first = max(i8(math.floor(min(row, row + to_row) - reach)), 0)
+    last = min(i8(math.ceil(max(row, row + to_row) + reach)), pixels.shape[0])
+    start = max(i8(math.floor(min(column, column + to_column) - reach)), 0)
+    stop = min(i8(math.ceil(max(column, column + to_column) + reach)), pixels.shape[1])
+    if first >= last or start >= stop:
+        return
+    length = math.sqrt(to_column * to_column + to_row * to_row)
+    # A small flake covers part of a pixel; a moving one is in each pixel part of the time.
+    strength = (radius / drawn) ** 2 * min(1.0, 2.6 * drawn / (drawn + length))
+    strength *= 0.9 / (1.0 + 0.09 * max(radius - 2.0, 0.0))
+    red, green, blue = snowfall.white
+    for i in range(first, last):
+        for j in range(start, stop):
+            if distance_inverse(key[i * step, j * step]) > inverse:
+                continue
+            y, x = i + 0.5 - row, j + 0.5 - column
+            share = (x * to_column + y * to_row) / (length * length + 1e-9)
+            share = min(max(share, 0.0), 1.0)
+            x, y = x - share * to_column, y - share * to_row
+            cover = (reach - math.sqrt(x * x + y * y)) / (2.0 * soft)
+            cover = strength * min(max(cover, 0.0), 1.0)
+            pixels[i, j, 0] = i8(pixels[i, j, 0] + cover * (red - pixels[i, j, 0]) + 0.5)
+            pixels[i, j, 1] = i8(pixels[i, j, 1] + cover * (green - pixels[i, j, 1]) + 0.5)
+            pixels[i, j, 2] = i8(pixels[i, j, 2] + cover * (blue - pixels[i, j, 2]) + 0.5)

@@ -18,7 +18,7 @@ from eyas.lanes.vector import (
     to_i4,
     to_u4,
 )
-from eyas.render.kernels.bundles import Geometry, Illumination, Light, Movers, View
+from eyas.render.kernels.bundles import Band
 from eyas.render.kernels.pixels import keys_of, pack, write_pixels
 from eyas.render.kernels.rays import Rays, rays_of
 from eyas.render.kernels.scalars import f4, i4, i8, u4
@@ -58,50 +58,22 @@ def _alike(
 
 
 @kernel(inline=True)
-def _shade_one(
-    rays: Rays,
-    geometry: Geometry,
-    light: Light,
-    lit: Illumination,
-    movers: Movers,
-    world: int,
-    drawn: NDArray[np.int32],
-    key: NDArray[np.int64],
-    shade: NDArray[np.uint8],
-    pixels: NDArray[np.uint8],
-    row: int,
-    first: int,
-) -> None:
+def _shade_one(band: Band, rays: Rays, pixels: NDArray[np.uint8], row: int, first: int) -> None:
     """Write eight pixels of a row, with one sample each."""
-    numbers, half = to_f4(lane_numbers()), splat(f4(0.5))
+    key, numbers, half = band.key, to_f4(lane_numbers()), splat(f4(0.5))
     keys = keys_of(key, row, first, 1)
     seen = (numbers < f4(pixels.shape[1] - first)) & (keys != i8(0))
     if not any_of(seen):
         return
-    words = load_words(shade, 4 * (row * key.shape[1] + first))
-    packed = packed_points(
-        rays, geometry, light, lit, movers, world, drawn, tag_of(keys), seen,
-        f4(1.0) / select(seen, distance_inverse(keys), f4(1.0)), half + (rays.top + f4(row)),
-        numbers + f4(first) + half, words,
-    )  # fmt: skip
+    words = load_words(band.shade, 4 * (row * key.shape[1] + first))
+    distance = f4(1.0) / select(seen, distance_inverse(keys), f4(1.0))
+    line, column = half + (rays.top + f4(row)), numbers + f4(first) + half
+    packed = packed_points(band, rays, tag_of(keys), seen, distance, line, column, words)
     write_pixels(pixels, row, first, bits_of(seen), packed)
 
 
 @kernel(inline=True)
-def _shade_four(
-    rays: Rays,
-    geometry: Geometry,
-    light: Light,
-    lit: Illumination,
-    movers: Movers,
-    world: int,
-    drawn: NDArray[np.int32],
-    key: NDArray[np.int64],
-    shade: NDArray[np.uint8],
-    pixels: NDArray[np.uint8],
-    row: int,
-    first: int,
-) -> None:
+def _shade_four(band: Band, rays: Rays, pixels: NDArray[np.uint8], row: int, first: int) -> None:
     """Write eight pixels of a row, with four samples each.
 
     Each triangle that a pixel shows is computed once, in the middle of the samples that show it,
@@ -109,7 +81,7 @@ def _shade_four(
     theirs is the one in the middle.
     """
     numbers, line, sample = to_f4(lane_numbers()), 2 * row, 2 * first
-    inside = numbers < f4(pixels.shape[1] - first)
+    key, inside = band.key, numbers < f4(pixels.shape[1] - first)
     # Sums of red and blue in the halves of one number, and of green.
     both, green, shown = splat(u4(0)), splat(u4(0)), i8(0)
     even, eight = u4(0x00FF00FF), u4(8)
@@ -123,12 +95,10 @@ def _shade_four(
         seen &= is_first
         if not any_of(seen):
             continue
-        at = (line + (k >> 1)) * key.shape[1] + sample + (k & 1)
-        packed = packed_points(
-            rays, geometry, light, lit, movers, world, drawn, tag, seen,
-            f4(1.0) / select(seen, inverse, f4(1.0)), down + (rays.top + f4(line)),
-            numbers * f4(2.0) + f4(sample) + right, _spread_words(shade, at),
-        )  # fmt: skip
+        words = _spread_words(band.shade, (line + (k >> 1)) * key.shape[1] + sample + (k & 1))
+        distance = f4(1.0) / select(seen, inverse, f4(1.0))
+        down, right = down + (rays.top + f4(line)), numbers * f4(2.0) + f4(sample) + right
+        packed = packed_points(band, rays, tag, seen, distance, down, right, words)
         both, green = both + weight * (packed & even), green + weight * ((packed >> eight) & even)
     if shown != 0:
         two, halves = u4(2), u4(0x00020002)
@@ -137,45 +107,22 @@ def _shade_four(
 
 
 @kernel
-def shade_band(
-    view: View,
-    geometry: Geometry,
-    light: Light,
-    lit: Illumination,
-    movers: Movers,
-    world: int,
-    drawn: NDArray[np.int32],
-    key: NDArray[np.int64],
-    shade: NDArray[np.uint8],
-    pixels: NDArray[np.uint8],
-) -> None:
+def shade_band(band: Band, pixels: NDArray[np.uint8]) -> None:
     """Write the pixels of a band except the sky, which `draw_backdrop` has already written.
 
     Args:
-        view: The band.
-        geometry: Everything that can be drawn.
-        light: Maps of light and lamps.
-        lit: Light and air of the view.
-        movers: The draw lists.
-        world: The one of this view.
-        drawn: See `Scratch`.
-        key: See `Scratch`, shape (rows, columns).
-        shade: See `Scratch`, shape (rows, columns, 4).
+        band: The band.
         pixels: sRGB, shape (rows, columns, 3).
     """
-    rays, width = rays_of(view), pixels.shape[1]
-    if view.samples == 1:
+    rays, width = rays_of(band.camera), pixels.shape[1]
+    if band.camera.samples == 1:
         for row in range(pixels.shape[0]):
             for first in range(0, width, WIDTH):
-                _shade_one(
-                    rays, geometry, light, lit, movers, world, drawn, key, shade, pixels, row, first
-                )
+                _shade_one(band, rays, pixels, row, first)
     else:
         for row in range(pixels.shape[0]):
             for first in range(0, width, WIDTH):
-                _shade_four(
-                    rays, geometry, light, lit, movers, world, drawn, key, shade, pixels, row, first
-                )
+                _shade_four(band, rays, pixels, row, first)
 
 
 @kernel(inline=True)

@@ -1,11 +1,8 @@
 """Points of surfaces, eight at once, from the triangles that they show to packed bytes."""
 
-import numpy as np
-from numpy.typing import NDArray
-
 from eyas.lanes import kernel
 from eyas.lanes.vector import bits_of, first_bit, lane, select, splat
-from eyas.render.kernels.bundles import Geometry, Illumination, Light, Movers
+from eyas.render.kernels.bundles import Band
 from eyas.render.kernels.light.tone import tone_bytes
 from eyas.render.kernels.pixels import pack
 from eyas.render.kernels.rays import Rays, ray_of
@@ -20,11 +17,10 @@ Colour = tuple[float, float, float]
 
 
 @kernel(inline=True)
-def instance_frame(
-    geometry: Geometry, movers: Movers, world: int, drawn: NDArray[np.int32], row: int
-) -> Frame:
-    """Return pose and colour of an instance, a row of `Scratch.drawn`; fixtures have no colour."""
-    instance, fixtures = drawn[row, 1], len(geometry.fixture_object)
+def instance_frame(band: Band, row: int) -> Frame:
+    """Return pose and colour of an instance, a row of `Band.drawn`; fixtures have no colour."""
+    geometry, movers, world = band.geometry, band.movers, band.world
+    instance, fixtures = band.drawn[row, 1], len(geometry.fixture_object)
     if instance >= fixtures:
         return frame_of(movers.pose[world], movers.colour[world], instance - fixtures)
     return frame_of(geometry.fixture_pose, movers.colour[world, :0], instance)
@@ -32,12 +28,7 @@ def instance_frame(
 
 @kernel(inline=False)
 def _one_instance(
-    geometry: Geometry,
-    light: Light,
-    lit: Illumination,
-    movers: Movers,
-    world: int,
-    drawn: NDArray[np.int32],
+    band: Band,
     row: int,
     triangle: int,
     eye: Colour,
@@ -46,16 +37,16 @@ def _one_instance(
     pixel: float,
     shade: int,
 ) -> int:
-    """Return the packed bytes of eight points of one instance, a row of `Scratch.drawn`.
+    """Return the packed bytes of eight points of one instance, a row of `Band.drawn`.
 
     A function of its own: inlined into the loops that call it, the hundred numbers that are the
     same for all points would be spread over lanes before each loop, kept in memory and read again.
     """
-    frame, first = no_frame(), i4(0)
+    light, lit, frame, first = band.light, band.lit, no_frame(), i4(0)
     if row >= 0:
-        frame, first = instance_frame(geometry, movers, world, drawn, row), drawn[row, 0]
+        frame, first = instance_frame(band, row), band.drawn[row, 0]
     colour = shade_point(
-        geometry, light, lit, triangle + first, row >= 0, frame, eye, ray, away, pixel, shade
+        band.geometry, light, lit, triangle + first, row >= 0, frame, eye, ray, away, pixel, shade
     )
     red, green, blue = tone_bytes(light, lit.air.exposure, colour)
     return pack(red, green, blue)
@@ -63,13 +54,8 @@ def _one_instance(
 
 @kernel(inline=True)
 def packed_points(
+    band: Band,
     rays: Rays,
-    geometry: Geometry,
-    light: Light,
-    lit: Illumination,
-    movers: Movers,
-    world: int,
-    drawn: NDArray[np.int32],
     tag: int,
     wanted: bool,
     distance: float,
@@ -88,9 +74,7 @@ def packed_points(
         which = lane(row, first_bit(left))
         same = wanted & (row == which)
         left &= ~bits_of(same)
-        shown = _one_instance(
-            geometry, light, lit, movers, world, drawn, which, select(same, triangle, i4(0)), eye,
-            ray, select(same, distance, f4(1.0)), rays.pixel, shade,
-        )  # fmt: skip
+        known, away = select(same, triangle, i4(0)), select(same, distance, f4(1.0))
+        shown = _one_instance(band, which, known, eye, ray, away, rays.pixel, shade)
         packed = select(same, shown, packed)
     return packed

@@ -17,7 +17,7 @@ from eyas.lanes.vector import (
     root,
     transposed,
 )
-from eyas.render.kernels.bundles import GROUP, Geometry, Movers, Scratch, View
+from eyas.render.kernels.bundles import GROUP, Band
 from eyas.render.kernels.scalars import i4, i8
 from eyas.render.kernels.visibility.cull import boxes_seen, sphere_is_visible, spheres_seen
 from eyas.render.kernels.visibility.meshes import level_of_detail
@@ -43,8 +43,9 @@ def _sort_key(distance: float, item: int) -> int:
 
 
 @kernel(inline=True)
-def list_chunks(geometry: Geometry, view: View, order: NDArray[np.int64]) -> int:
+def list_chunks(band: Band) -> int:
     """List the visible chunks; return how many there are."""
+    geometry, view, order = band.geometry, band.camera, band.order
     boxes, eye, count = geometry.chunk_box, view.eye, i8(0)
     for eight in range(0, geometry.chunk_group_box.shape[1], EIGHT):
         groups = boxes_seen(view.planes, geometry.chunk_group_box, eight)
@@ -66,14 +67,11 @@ def list_chunks(geometry: Geometry, view: View, order: NDArray[np.int64]) -> int
 
 @kernel(inline=True)
 def _list_instance(
-    geometry: Geometry,
+    band: Band,
     prototype: int,
     poses: NDArray[np.float32],
     index: int,
     instance: int,
-    view: View,
-    scratch: Scratch,
-    worker: int,
     chunks: int,
     count: int,
 ) -> int:
@@ -82,7 +80,7 @@ def _list_instance(
     Returns:
         How many instances are listed then; `chunks + count` are listed in `order` before.
     """
-    drawn = scratch.drawn[worker]
+    geometry, view, drawn = band.geometry, band.camera, band.drawn
     pose, sphere, eye = poses[index], geometry.sphere[prototype], view.eye
     x = pose[0, 0] * sphere[0] + pose[0, 1] * sphere[1] + pose[0, 2] * sphere[2] + pose[0, 3]
     y = pose[1, 0] * sphere[0] + pose[1, 1] * sphere[1] + pose[1, 2] * sphere[2] + pose[1, 3]
@@ -95,18 +93,16 @@ def _list_instance(
         return count
     mesh = level_of_detail(geometry, prototype, radius, distance, view.focal)
     drawn[count, 0], drawn[count, 1] = geometry.mesh_range[mesh, 0], instance
-    scratch.mesh[worker, count] = mesh
+    band.mesh[count] = mesh
     item = geometry.chunk_range.shape[0] + count
-    scratch.order[worker, chunks + count] = _sort_key(max(distance - radius, 0.0), item)
+    band.order[chunks + count] = _sort_key(max(distance - radius, 0.0), item)
     return count + 1
 
 
 @kernel(inline=True)
-def list_fixtures(
-    geometry: Geometry, view: View, scratch: Scratch, worker: int, chunks: int
-) -> int:
+def list_fixtures(band: Band, chunks: int) -> int:
     """List the visible fixtures; return how many there are."""
-    count = i8(0)
+    geometry, view, count = band.geometry, band.camera, i8(0)
     for eight in range(0, geometry.fixture_group_box.shape[1], EIGHT):
         groups = boxes_seen(view.planes, geometry.fixture_group_box, eight)
         while groups != 0:
@@ -117,18 +113,15 @@ def list_fixtures(
                 while seen != 0:
                     i = start + first_bit(seen)
                     seen &= seen - 1
-                    count = _list_instance(
-                        geometry, geometry.fixture_prototype[i], geometry.fixture_pose, i, i,
-                        view, scratch, worker, chunks, count,
-                    )  # fmt: skip
+                    prototype, poses = geometry.fixture_prototype[i], geometry.fixture_pose
+                    count = _list_instance(band, prototype, poses, i, i, chunks, count)
     return count
 
 
 @kernel(inline=True)
-def _slots_seen(
-    geometry: Geometry, movers: Movers, world: int, first: int, last: int, view: View
-) -> int:
+def _slots_seen(band: Band, first: int, last: int) -> int:
     """Return which of eight slots may be seen, a bit each."""
+    geometry, movers, world = band.geometry, band.movers, band.world
     slot = lane_numbers() + i4(first)
     inside = slot < i4(last)
     slot = lesser(slot, i4(last - 1))
@@ -148,31 +141,20 @@ def _slots_seen(
     x += xx * a + xy * b + xz * c
     y += yx * a + yy * b + yz * c
     z += zx * a + zy * b + zz * c
-    return bits_of(wanted & spheres_seen(view.planes, x, y, z, radius))
+    return bits_of(wanted & spheres_seen(band.camera.planes, x, y, z, radius))
 
 
 @kernel(inline=True)
-def list_slots(
-    geometry: Geometry,
-    movers: Movers,
-    world: int,
-    first: int,
-    last: int,
-    view: View,
-    scratch: Scratch,
-    worker: int,
-    chunks: int,
-    count: int,
-) -> int:
+def list_slots(band: Band, first: int, last: int, chunks: int, count: int) -> int:
     """List the visible slots of a draw list; return how many instances are listed then."""
-    fixtures, parts, poses = len(geometry.fixture_prototype), movers.part[world], movers.pose[world]
+    geometry, movers, world = band.geometry, band.movers, band.world
+    parts, poses = movers.part[world], movers.pose[world]
+    fixtures = len(geometry.fixture_prototype)
     for start in range(first, last, EIGHT):
-        seen = _slots_seen(geometry, movers, world, start, last, view)
+        seen = _slots_seen(band, start, last)
         while seen != 0:
             slot = start + first_bit(seen)
             seen &= seen - 1
-            count = _list_instance(
-                geometry, geometry.part_first + parts[slot], poses, slot, fixtures + slot, view,
-                scratch, worker, chunks, count,
-            )  # fmt: skip
+            prototype = geometry.part_first + parts[slot]
+            count = _list_instance(band, prototype, poses, slot, fixtures + slot, chunks, count)
     return count

@@ -17,7 +17,7 @@ from eyas.lanes.vector import (
     store,
     to_i4,
 )
-from eyas.render.kernels.bundles import Geometry, Movers, Scratch, View
+from eyas.render.kernels.bundles import Band, View
 from eyas.render.kernels.light.caster import Caster, caster_of
 from eyas.render.kernels.samples import ScreenBox, around, nowhere
 from eyas.render.kernels.scalars import i4, i8
@@ -55,20 +55,9 @@ def _screen_box(thing: Caster, view: View) -> ScreenBox:
 
 
 @kernel
-def _count(
-    box: ScreenBox,
-    view: View,
-    key: NDArray[np.int64],
-    alone: NDArray[np.int64],
-    drawn: NDArray[np.int32],
-    first: int,
-    last: int,
-    result: NDArray[np.int32],
-) -> None:
-    """Write box and pixels of instances `first` to `last` from a buffer that holds them alone.
-
-    The buffer is clear afterwards.
-    """
+def _count(band: Band, box: ScreenBox, first: int, last: int, result: NDArray[np.int32]) -> None:
+    """Write box and pixels of instances `first` to `last` from `Band.alone`, clear afterwards."""
+    view, key, alone, drawn = band.camera, band.key, band.alone, band.drawn
     stride = key.shape[1]
     begin = max(int(box.left) - _MARGIN, 0)
     end = min(int(box.right) + 1 + _MARGIN, view.width)
@@ -103,89 +92,42 @@ def _count(
 
 
 @kernel
-def _measure(
-    geometry: Geometry,
-    movers: Movers,
-    world: int,
-    first: int,
-    last: int,
-    view: View,
-    scratch: Scratch,
-    worker: int,
-    key: NDArray[np.int64],
-    count: int,
-    result: NDArray[np.int32],
-) -> None:
+def _measure(band: Band, first: int, last: int, count: int, result: NDArray[np.int32]) -> None:
     """Measure slots `first` to `last`; see `measure_actors`."""
-    alone = scratch.alone[worker, : view.rows]
-    if draw_slots(
-        geometry, movers, world, first, last, view, scratch, worker, alone, count
-    ) == count:  # fmt: skip
+    if draw_slots(band, first, last, count) == count:
         return
-    thing = address_of(caster_of(geometry, movers, world, first, last))
-    fixtures = len(geometry.fixture_prototype)
-    _count(
-        _screen_box(thing, view), view, key, alone, scratch.drawn[worker], fixtures + first,
-        fixtures + last, result,
-    )  # fmt: skip
+    box = _screen_box(address_of(caster_of(band, first, last)), band.camera)
+    fixtures = len(band.geometry.fixture_prototype)
+    _count(band, box, fixtures + first, fixtures + last, result)
 
 
 @kernel
-def measure_actors(
-    geometry: Geometry,
-    movers: Movers,
-    world: int,
-    view: View,
-    scratch: Scratch,
-    worker: int,
-    key: NDArray[np.int64],
-    count: int,
-    output: NDArray[np.int32],
-) -> None:
+def measure_actors(band: Band, count: int, output: NDArray[np.int32]) -> None:
     """Measure all actors of a world in a band, each alone and as the band shows it.
 
     Args:
-        geometry: Everything that can be drawn.
-        movers: The draw lists.
-        world: The one of the view.
-        view: The band; one sample for each pixel.
-        scratch: Working memory; `alone` must be clear, and is so again.
-        worker: Row of it to use.
-        key: What the band shows, shape (rows, columns).
-        count: Rows of `drawn` that it uses.
+        band: One sample for each pixel; `alone` must be clear, and is so again.
+        count: Rows of `Band.drawn` that it uses.
         output: See `Output.actor`, shape (A, 6); rows of actors outside the band are not written.
     """
+    movers, world = band.movers, band.world
     slots = movers.part.shape[1]
-    first = next_thing(movers, world, 0)
+    first = next_thing(band, 0)
     while first < slots:
-        last = end_of_thing(movers, world, first)
+        last = end_of_thing(band, first)
         actor = movers.object_id[world, first] - ACTOR_OBJECT
         if 0 <= actor < len(output):
-            _measure(
-                geometry, movers, world, first, last, view, scratch, worker, key, count,
-                output[actor],
-            )  # fmt: skip
-        first = next_thing(movers, world, last)
+            _measure(band, first, last, count, output[actor])
+        first = next_thing(band, last)
 
 
 @kernel
-def measure_subject(
-    geometry: Geometry,
-    movers: Movers,
-    world: int,
-    subject: int,
-    view: View,
-    scratch: Scratch,
-    worker: int,
-    key: NDArray[np.int64],
-    count: int,
-    result: NDArray[np.int32],
-) -> None:
+def measure_subject(band: Band, subject: int, count: int, result: NDArray[np.int32]) -> None:
     """Measure the object of an id, if it is one of the moving things; see `measure_actors`."""
+    movers, world = band.movers, band.world
     slots = movers.part.shape[1]
-    first = next_thing(movers, world, 0)
+    first = next_thing(band, 0)
     while first < slots and movers.object_id[world, first] != subject:
-        first = next_thing(movers, world, end_of_thing(movers, world, first))
+        first = next_thing(band, end_of_thing(band, first))
     if first < slots:
-        last = end_of_thing(movers, world, first)
-        _measure(geometry, movers, world, first, last, view, scratch, worker, key, count, result)
+        _measure(band, first, end_of_thing(band, first), count, result)

@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from eyas.lanes import kernel
 from eyas.lanes.vector import any_of, bits_of, first_bit, gather, lane_numbers, splat
-from eyas.render.kernels.bundles import Geometry, Point, Projection, View
+from eyas.render.kernels.bundles import Band, Geometry, Point, Projection, View
 from eyas.render.kernels.scalars import i4, i8
 from eyas.render.kernels.visibility.clusters import (
     CLUSTER,
@@ -59,37 +59,28 @@ def level_of_detail(
 
 @kernel(inline=True)
 def draw_mesh(
-    until: int,
-    geometry: Geometry,
+    band: Band,
+    key: NDArray[np.int64],
     mesh: NDArray[np.int32],
     screen: Projection,
     eye: Point,
     focal: float,
     smallest: float,
     tag: int,
-    view: View,
-    key: NDArray[np.int64],
-    triangle: NDArray[np.float64],
-    polygon: NDArray[np.float64],
-    span: NDArray[np.int32],
 ) -> None:
     """Draw a chunk or a level of detail.
 
     Args:
-        until: See `DrawStage`.
-        geometry: Everything that can be drawn.
+        band: The band.
+        key: Drawn into: its `key` or `alone`.
         mesh: Row of `chunk_range` or `mesh_range`.
         screen: Projection of the mesh.
         eye: Optical centre in the frame of the mesh [m].
         focal: Focal length over the scale of the object [pixels].
         smallest: Size of the smallest detail to draw [m].
         tag: Tag of triangle 0.
-        view: The band.
-        key: See `Scratch`, shape (rows, columns).
-        triangle: See `Scratch`, shape (TRIANGLE_ROWS, 8).
-        polygon: See `Scratch`, shape (15, 8).
-        span: See `Scratch`, shape (SPAN_ROWS, 8).
     """
+    geometry, view, until, triangle = band.geometry, band.camera, band.until, band.triangle
     bottom = view.top + view.rows
     planes = planes_of(screen, view.width, view.height, view.top, bottom)
     first, clusters = mesh[0] // CLUSTER, (mesh[1] - mesh[0] + CLUSTER - 1) // CLUSTER
@@ -109,10 +100,7 @@ def draw_mesh(
             if drawn != 0 and any_of(leafy):
                 at = UV_ROWS * CLUSTER * cluster
                 set_up_leaves(corners, geometry.corner_uv, at, triangle)
-            _draw_triangles(
-                geometry, cluster, drawn, bits_of(cut), screen, focal, tag, view, key, triangle,
-                polygon, span,
-            )  # fmt: skip
+            _draw_triangles(band, key, cluster, drawn, bits_of(cut), screen, focal, tag)
 
 
 @kernel(inline=True)
@@ -126,26 +114,23 @@ def _prepared(
 
 @kernel(inline=True)
 def _draw_triangles(
-    geometry: Geometry,
+    band: Band,
+    key: NDArray[np.int64],
     cluster: int,
     drawn: int,
     cut: int,
     screen: Projection,
     focal: float,
     tag: int,
-    view: View,
-    key: NDArray[np.int64],
-    triangle: NDArray[np.float64],
-    polygon: NDArray[np.float64],
-    span: NDArray[np.int32],
 ) -> None:
     """Draw triangles of a cluster, then those that the near plane cuts, a bit each."""
+    geometry, view, triangle, span = band.geometry, band.camera, band.triangle, band.span
     whole, number = True, i8(0)
     while drawn != 0 or cut != 0:
         if drawn == 0:
             whole, number = False, first_bit(cut)
             cut &= cut - 1
-            drawn = _cut_triangle(geometry, cluster, number, screen, view, triangle, polygon)
+            drawn = _cut_triangle(band, cluster, number, screen)
             continue
         column = first_bit(drawn)
         drawn &= drawn - 1
@@ -173,16 +158,9 @@ def _tiles(geometry: Geometry, cluster: int, number: int) -> float:
 
 
 @kernel(inline=True)
-def _cut_triangle(
-    geometry: Geometry,
-    cluster: int,
-    number: int,
-    screen: Projection,
-    view: View,
-    triangle: NDArray[np.float64],
-    polygon: NDArray[np.float64],
-) -> int:
+def _cut_triangle(band: Band, cluster: int, number: int, screen: Projection) -> int:
     """Prepare what the near plane leaves of a triangle: one or two, a bit each."""
+    geometry, view, triangle, polygon = band.geometry, band.camera, band.triangle, band.polygon
     pieces = clip_near(
         screen, geometry.cluster[cluster], geometry.corner_uv[cluster], number,
         0.5 * view.width, 0.5 * view.height, polygon,

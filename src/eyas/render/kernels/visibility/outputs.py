@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from eyas.lanes import kernel
 from eyas.lanes.vector import WIDTH, load, store
-from eyas.render.kernels.bundles import Geometry, Movers
+from eyas.render.kernels.bundles import Band
 from eyas.render.kernels.scalars import f4, i8
 from eyas.render.kernels.visibility.key import distance_inverse, drawn_of, tag_of, triangle_of
 from eyas.state.scene import ACTOR_OBJECT, SKY_OBJECT
@@ -32,10 +32,9 @@ def write_depth(key: NDArray[np.int64], output: NDArray[np.float32]) -> None:
 
 
 @kernel(inline=True)
-def object_of(
-    geometry: Geometry, movers: Movers, world: int, drawn: NDArray[np.int32], key: int
-) -> int:
+def object_of(band: Band, key: int) -> int:
     """Return the object id for a key."""
+    geometry, drawn = band.geometry, band.drawn
     if key == 0:
         return SKY_OBJECT
     tag = tag_of(key)
@@ -45,63 +44,39 @@ def object_of(
     instance, fixtures = drawn[row, 1], len(geometry.fixture_object)
     if instance < fixtures:
         return i8(geometry.fixture_object[instance])
-    return i8(movers.object_id[world, instance - fixtures])
+    return i8(band.movers.object_id[band.world, instance - fixtures])
 
 
 @kernel
-def write_objects(
-    geometry: Geometry,
-    movers: Movers,
-    world: int,
-    drawn: NDArray[np.int32],
-    key: NDArray[np.int64],
-    output: NDArray[np.int32],
-) -> None:
-    """Write the object of each pixel.
-
-    Args:
-        geometry: Everything that can be drawn.
-        movers: The draw lists.
-        world: The one of the view.
-        drawn: See `Scratch`.
-        key: See `Scratch`, shape (rows, columns).
-        output: Shape (rows, width of the picture).
-    """
+def write_objects(band: Band, output: NDArray[np.int32]) -> None:
+    """Write the object of each pixel into an array, shape (rows, width of the picture)."""
+    key = band.key
     for row in range(output.shape[0]):
         for column in range(output.shape[1]):
-            output[row, column] = object_of(geometry, movers, world, drawn, key[row, column])
+            output[row, column] = object_of(band, key[row, column])
 
 
 @kernel
-def _class_of(
-    geometry: Geometry, movers: Movers, world: int, drawn: NDArray[np.int32], key: int
-) -> int:
+def _class_of(band: Band, key: int) -> int:
     """Return the class for a key."""
-    shown = object_of(geometry, movers, world, drawn, key)
+    shown, classes = object_of(band, key), band.geometry.object_class
     if shown >= ACTOR_OBJECT:
-        return i8(movers.object_class[world, shown - ACTOR_OBJECT])
-    sky = len(geometry.object_class) - 1
-    return i8(geometry.object_class[sky if shown == SKY_OBJECT else shown])
+        return i8(band.movers.object_class[band.world, shown - ACTOR_OBJECT])
+    return i8(classes[len(classes) - 1 if shown == SKY_OBJECT else shown])
 
 
 @kernel
-def write_classes(
-    geometry: Geometry,
-    movers: Movers,
-    world: int,
-    drawn: NDArray[np.int32],
-    key: NDArray[np.int64],
-    output: NDArray[np.uint8],
-) -> None:
-    """Write the class of each pixel; arguments as above.
+def write_classes(band: Band, output: NDArray[np.uint8]) -> None:
+    """Write the class of each pixel into an array, shape (rows, width of the picture).
 
     Most pixels show the same triangle as the one before them.
     """
+    key = band.key
     for row in range(output.shape[0]):
-        before, shown = i8(0), _class_of(geometry, movers, world, drawn, i8(0))
+        before, shown = i8(0), _class_of(band, i8(0))
         for column in range(output.shape[1]):
             now = key[row, column]
             if tag_of(now) != tag_of(before) or (now == i8(0)) != (before == i8(0)):
-                shown = _class_of(geometry, movers, world, drawn, now)
+                shown = _class_of(band, now)
             before = now
             output[row, column] = shown

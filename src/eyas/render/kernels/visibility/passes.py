@@ -4,7 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.lanes import kernel
-from eyas.render.kernels.bundles import Geometry, Movers, Point, Projection, Scratch, View
+from eyas.render.kernels.bundles import Band, Geometry, Point, Projection, View
 from eyas.render.kernels.scalars import i8
 from eyas.render.kernels.visibility.hidden import box_is_hidden, measure_tiles
 from eyas.render.kernels.visibility.key import instance_tag
@@ -16,7 +16,6 @@ from eyas.state.draw import DrawStage
 __all__ = ["draw_scene", "draw_slots"]
 
 CULLING = int(DrawStage.CULLING)
-SHADING = int(DrawStage.SHADING)
 
 MEASURED_EVERY = 16
 """Things drawn before it is measured again what they hide; later a quarter of those drawn so far,
@@ -27,90 +26,40 @@ SMALLEST_DETAIL = 0.35
 
 
 @kernel
-def draw_scene(
-    until: int,
-    geometry: Geometry,
-    movers: Movers,
-    world: int,
-    view: View,
-    scratch: Scratch,
-    worker: int,
-    key: NDArray[np.int64],
-) -> int:
-    """Draw everything that a band shows; return how many instances there are in `Scratch.drawn`.
+def draw_scene(band: Band) -> int:
+    """Draw everything that a band shows; return how many instances there are in `Band.drawn`.
 
     They are numbered fixtures first, in the order of the arrays that hold them, so that the order
     of their tags does not depend on the band.
-
-    Args:
-        until: See `DrawStage`.
-        geometry: Everything that can be drawn.
-        movers: The draw lists.
-        world: The one of the view.
-        view: The band.
-        scratch: Working memory.
-        worker: Row of it to use.
-        key: See `Scratch`, shape (rows, columns); cleared here.
     """
-    key[:] = 0
-    listed = list_chunks(geometry, view, scratch.order[worker])
-    count = list_fixtures(geometry, view, scratch, worker, listed)
-    slots = movers.part.shape[1]
-    count = list_slots(geometry, movers, world, 0, slots, view, scratch, worker, listed, count)
-    _draw_listed(until, geometry, movers, world, view, scratch, worker, listed + count, key)
+    band.key[:] = 0
+    listed = list_chunks(band)
+    count = list_fixtures(band, listed)
+    count = list_slots(band, 0, band.movers.part.shape[1], listed, count)
+    _draw_listed(band, band.key, listed + count)
     return count
 
 
 @kernel
-def draw_slots(
-    geometry: Geometry,
-    movers: Movers,
-    world: int,
-    first: int,
-    last: int,
-    view: View,
-    scratch: Scratch,
-    worker: int,
-    key: NDArray[np.int64],
-    count: int,
-) -> int:
-    """Draw slots `first` to `last` of a draw list; return how many rows of `drawn` are used then.
+def draw_slots(band: Band, first: int, last: int, count: int) -> int:
+    """Draw slots `first` to `last` of a draw list into `Band.alone`; `Band.order` is overwritten.
 
-    Args:
-        geometry: Everything that can be drawn.
-        movers: The draw lists.
-        world: The one of the view.
-        first: First slot.
-        last: Last slot + 1.
-        view: The band.
-        scratch: Working memory; `order` is overwritten.
-        worker: Row of it to use.
-        key: Drawn into, shape (rows, columns).
-        count: Rows of `drawn` that are used before.
+    Returns:
+        How many rows of `Band.drawn` are used then; `count` are before.
     """
-    after = list_slots(geometry, movers, world, first, last, view, scratch, worker, -count, count)
-    _draw_listed(SHADING, geometry, movers, world, view, scratch, worker, after - count, key)
+    after = list_slots(band, first, last, -count, count)
+    _draw_listed(band, band.alone, after - count)
     return after
 
 
 @kernel
-def _draw_listed(
-    until: int,
-    geometry: Geometry,
-    movers: Movers,
-    world: int,
-    view: View,
-    scratch: Scratch,
-    worker: int,
-    listed: int,
-    key: NDArray[np.int64],
-) -> None:
-    """Draw what is listed in `Scratch.order`, the nearest first."""
-    if until <= CULLING:
+def _draw_listed(band: Band, key: NDArray[np.int64], listed: int) -> None:
+    """Draw what is listed in `Band.order`, the nearest first."""
+    if band.until <= CULLING:
         return
-    order, drawn, meshes = scratch.order[worker], scratch.drawn[worker], scratch.mesh[worker]
+    geometry, view, movers, world = band.geometry, band.camera, band.movers, band.world
+    order, drawn, meshes, tiles = band.order, band.drawn, band.mesh, band.tiles
     chunks, fixtures = geometry.chunk_range.shape[0], len(geometry.fixture_prototype)
-    tiles = scratch.tiles[worker]
     _shell_sort(order, listed)
     measured = i8(MEASURED_EVERY)
     for k in range(listed):
@@ -133,10 +82,7 @@ def _draw_listed(
             else:
                 screen, eye, focal = _in_frame(view, movers.pose[world], instance - fixtures)
             tag, smallest = instance_tag(row) - mesh[0], 0.0
-        draw_mesh(
-            until, geometry, mesh, screen, eye, focal, smallest, tag, view, key,
-            scratch.triangle[worker], scratch.polygon[worker], scratch.span[worker],
-        )  # fmt: skip
+        draw_mesh(band, key, mesh, screen, eye, focal, smallest, tag)
 
 
 @kernel(inline=True)

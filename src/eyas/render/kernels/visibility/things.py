@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 
 from eyas.lanes import kernel
 from eyas.lanes.vector import any_of, gather_column, select
-from eyas.render.kernels.bundles import Movers
+from eyas.render.kernels.bundles import Band
 from eyas.render.kernels.scalars import i4
 from eyas.render.kernels.visibility.key import drawn_of
 
@@ -13,21 +13,21 @@ __all__ = ["belongs_to", "end_of_thing", "next_thing"]
 
 
 @kernel(inline=True)
-def next_thing(movers: Movers, world: int, slot: int) -> int:
+def next_thing(band: Band, slot: int) -> int:
     """Return the first slot from `slot` on that is not empty, or the number of slots."""
-    parts = movers.part[world]
+    parts = band.movers.part[band.world]
     while slot < len(parts) and parts[slot] < 0:
         slot += 1
     return slot
 
 
 @kernel(inline=True)
-def end_of_thing(movers: Movers, world: int, first: int) -> int:
+def end_of_thing(band: Band, first: int) -> int:
     """Return the slot after those in a row with the object id of slot `first`.
 
     Some between them may be empty.
     """
-    object_ids = movers.object_id[world]
+    object_ids = band.movers.object_id[band.world]
     last = first + 1
     while last < len(object_ids) and object_ids[last] == object_ids[first]:
         last += 1

@@ -1,5 +1,7 @@
-"""Evaluation during training: the network flies episodes of a protocol, with its best actions."""
+"""What a run tells of itself: evaluation with its best actions, and curves for TensorBoard."""
 
+from collections.abc import Mapping
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -8,29 +10,29 @@ from torch import Tensor
 
 from eyas.envs.config import EnvConfig
 from eyas.evaluation.delay import delay_from
-from eyas.evaluation.episode import Episode, Place, episodes_of
-from eyas.evaluation.flight import Flight
+from eyas.evaluation.episode import EpisodeSpec, Place, episodes_of
+from eyas.evaluation.flight import BatchFlight
 from eyas.evaluation.policies.policy import Decision, PolicyInput, Start
 from eyas.evaluation.protocol import Protocol, protocol_named
 from eyas.learning.network import TrackingNetwork
 from eyas.settings.config import EyasConfig
 from eyas.world.maps import MAPS
 
-__all__ = ["NO_MARKS", "Marks", "episodes_of_exam", "examine"]
+__all__ = ["NO_SCORES", "EvaluationScores", "TensorBoardWriter", "evaluated", "evaluation_episodes"]
 
 
-class Marks(NamedTuple):
+class EvaluationScores(NamedTuple):
     """Means over the episodes, see `eyas.evaluation.record.Record`."""
 
     cr: float
     tsr: float
 
 
-NO_MARKS = Marks(float("nan"), float("nan"))
+NO_SCORES = EvaluationScores(float("nan"), float("nan"))
 """Of a block that is not followed by an evaluation."""
 
 
-class _Student:
+class _NetworkPolicy:
     """The network as a policy."""
 
     sampled = False
@@ -54,17 +56,19 @@ class _Student:
         return Decision(action.numpy())
 
 
-def examine(network: TrackingNetwork, config: EyasConfig) -> Marks:
+def evaluated(network: TrackingNetwork, config: EyasConfig) -> EvaluationScores:
     """Return how the network does in the episodes of `train.evaluation`."""
-    episodes, protocol = episodes_of_exam(config)
+    episodes, protocol = evaluation_episodes(config)
     env = config.env.model_copy(update={"mixture": ()})
-    flight = Flight(episodes, protocol, _Student(network, env), delay_from("0"))
+    flight = BatchFlight(episodes, protocol, _NetworkPolicy(network, env), delay_from("0"))
     records = [record for ended in flight.fly() for record in ended]
-    means = [np.mean([getattr(record, name) for record in records]) for name in Marks._fields]
-    return Marks(*(round(float(mean), 6) for mean in means))
+    means = [
+        np.mean([getattr(record, name) for record in records]) for name in EvaluationScores._fields
+    ]
+    return EvaluationScores(*(round(float(mean), 6) for mean in means))
 
 
-def episodes_of_exam(config: EyasConfig) -> tuple[list[Episode], Protocol]:
+def evaluation_episodes(config: EyasConfig) -> tuple[list[EpisodeSpec], Protocol]:
     """Return the episodes of `train.evaluation`, and their protocol.
 
     Raises:
@@ -77,3 +81,29 @@ def episodes_of_exam(config: EyasConfig) -> tuple[list[Episode], Protocol]:
         MAPS.get(world.map).light(weather)
     places = [Place(world.map, weather, config.target) for weather in weathers]
     return episodes_of(places, protocol.directions, asked.episodes, asked.seed), protocol
+
+
+class TensorBoardWriter:
+    """Writes numbers for TensorBoard, if it is installed.
+
+    Args:
+        folder: Where its files are.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        try:
+            from torch.utils.tensorboard import SummaryWriter
+        except ImportError:  # curve.csv has the same
+            self._writer = None
+        else:
+            self._writer = SummaryWriter
+        self._folder = folder
+
+    def add(self, decisions: int, values: Mapping[str, float]) -> None:
+        """Add a point to each curve."""
+        if self._writer is None:
+            return
+        with self._writer(str(self._folder), purge_step=decisions) as writer:
+            for name, value in values.items():
+                if name != "decisions":
+                    writer.add_scalar(name, value, decisions)

@@ -15,12 +15,12 @@ from eyas.envs.observation import Observation
 from eyas.settings.config import EyasConfig
 from eyas.task.terms import BUILTIN
 
-__all__ = ["Fleet", "array_of", "joined", "terms_of"]
+__all__ = ["MixedBatch", "array_of", "joined", "terms_of"]
 
 Mask = NDArray[np.bool_]
 
 
-class _Squad(NamedTuple):
+class _Group(NamedTuple):
     """The environments of one kind."""
 
     batch: Batch
@@ -28,7 +28,7 @@ class _Squad(NamedTuple):
     """Their indices, shape (K,)."""
 
 
-class Fleet:
+class MixedBatch:
     """N environments, with the methods of a `Batch`; results are in the order of their indices.
 
     Args:
@@ -44,46 +44,46 @@ class Fleet:
         kind_of = np.array(kinds_of(config, count))
         self._count = count
         rows_of = [np.flatnonzero(kind_of == kind) for kind in range(len(kinds))]
-        self._squads = [
-            _Squad(Batch(kind, len(rows), numbers=rows.tolist()), rows)
+        self._groups = [
+            _Group(Batch(kind, len(rows), numbers=rows.tolist()), rows)
             for kind, rows in zip(kinds, rows_of, strict=True)
             if len(rows)
         ]
         self._place = {
-            int(row): (squad.batch, tracker)
-            for squad in self._squads
-            for tracker, row in enumerate(squad.rows)
+            int(row): (group.batch, tracker)
+            for group in self._groups
+            for tracker, row in enumerate(group.rows)
         }
-        self._rows = [squad.rows for squad in self._squads]
-        alike = self._squads[0].batch
+        self._rows = [group.rows for group in self._groups]
+        alike = self._groups[0].batch
         self._actions = alike.actions
         self.action_space: gymnasium.Space[Any] = alike.actions.space
         self.observation_space: gymnasium.Space[Any] = alike.observer.space
 
     def begin(self, chosen: Mask, seeds: Seeds = None) -> None:
         """Begin new episodes, see `Batch.begin`."""
-        for batch, rows in self._squads:
+        for batch, rows in self._groups:
             own = None if seeds is None else [seeds[row] for row in rows.tolist()]
             batch.begin(chosen[rows], own)
 
     def step(self, actions: Any, active: Mask) -> Outcome:  # noqa: ANN401  # whatever a learner returns
         """Hold an action of each agent, see `Batch.step`."""
         array = array_of(actions, self._count)
-        if len(self._squads) > 1:
+        if len(self._groups) > 1:
             self._actions.commands(array)  # refuses before any environment has moved
-        outcomes = [batch.step(array[rows], active[rows]) for batch, rows in self._squads]
+        outcomes = [batch.step(array[rows], active[rows]) for batch, rows in self._groups]
         return Outcome(*(joined(parts, self._rows) for parts in zip(*outcomes, strict=True)))
 
     def look(self, chosen: Mask, begun: Mask) -> None:
         """Observe some trackers; `begun` tells whose episode has just begun, shapes (N,)."""
-        for batch, rows in self._squads:
+        for batch, rows in self._groups:
             if chosen[rows].any():
                 batch.look(chosen[rows], begun[rows])
 
     def copy_to(self, out: Observation) -> None:
         """Copy the latest observation of each, with a leading axis of N."""
-        for batch, rows in self._squads:
-            batch.observer.copy_to(out, rows if len(self._squads) > 1 else slice(None))
+        for batch, rows in self._groups:
+            batch.observer.copy_to(out, rows if len(self._groups) > 1 else slice(None))
 
     def one(self, index: int) -> Observation:
         """Return a copy of the latest observation of one."""
@@ -92,13 +92,13 @@ class Fleet:
 
     def info(self) -> Info:
         """Return the state of the trackers by name, see `eyas.envs.information`."""
-        told: Info = joined([batch.info() for batch, _ in self._squads], self._rows)
+        told: Info = joined([batch.info() for batch, _ in self._groups], self._rows)
         return told
 
     @property
     def terms(self) -> tuple[str, ...]:
         """Names of the terms of the reward, of all kinds."""
-        return terms_of([batch.config for batch, _ in self._squads])
+        return terms_of([batch.config for batch, _ in self._groups])
 
     def config_of(self, index: int) -> EyasConfig:
         """Return the settings of one."""
@@ -118,7 +118,7 @@ class Fleet:
 
     def close(self) -> None:
         """Close the logs and end live traffic; may be called twice."""
-        for batch, _ in self._squads:
+        for batch, _ in self._groups:
             batch.close()
 
 

@@ -11,10 +11,10 @@ from eyas.settings.config import EyasConfig
 if TYPE_CHECKING:
     from eyas.envs.vector_env import EyasVectorEnv
 
-__all__ = ["Member"]
+__all__ = ["SubEnv"]
 
 
-class Member:
+class SubEnv:
     """One of N environments. It has the attributes that libraries ask for by name, and any that
     `set_attr` gives it.
 
@@ -78,7 +78,7 @@ class Member:
         )
 
     @property
-    def unwrapped(self) -> "Member":
+    def unwrapped(self) -> "SubEnv":
         """As Gymnasium has it."""
         return self
 

@@ -1,4 +1,4 @@
-"""What is drawn at random when an episode begins, for all trackers in one kernel call.
+"""What is sampled at random when an episode begins, for all trackers in one kernel call.
 
 In Python it took 100 µs for each tracker, a third of what a picture takes.
 """
@@ -11,17 +11,25 @@ from numpy.typing import NDArray
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.pcg64 import begin_stream, whole
 from eyas.core.rng import room_key
-from eyas.core.variation import Rule, drawn
+from eyas.core.variation import Rule, sampled
 from eyas.lanes import compiled, kernel
 from eyas.sim.light import LightRules, change_light
 from eyas.state.episode import EpisodeState
 from eyas.state.snapshot import Snapshot, TargetState
 from eyas.targets.kind import Looks
-from eyas.targets.looks import LookTable, draw_looks
+from eyas.targets.looks import LookTable, sample_looks
 from eyas.task.spawn import start_distance
 from eyas.traffic.source import Stays
 
-__all__ = ["Call", "DrawRules", "EpisodeDraw", "ModelTable", "Streams", "draw_episodes", "follow"]
+__all__ = [
+    "Call",
+    "EpisodeSampling",
+    "ModelTable",
+    "SamplingRules",
+    "Streams",
+    "follow",
+    "sample_episodes",
+]
 
 _LOOKS, _LIGHT, _CAMERA, _EPISODE = map(room_key, ("looks", "light", "camera", "episode"))
 
@@ -57,11 +65,11 @@ class ModelTable(NamedTuple):
     """[m/s], shape (M,)."""
 
 
-class DrawRules(NamedTuple):
-    """How episodes are drawn: settings, and limits that follow from them."""
+class SamplingRules(NamedTuple):
+    """How episodes are sampled: settings, and limits that follow from them."""
 
     pitch: Rule
-    """The start: the fields of `StartConfig`, in the order in which they are drawn."""
+    """The start: the fields of `StartConfig`, in the order in which they are sampled."""
     horizontal_bias: Rule
     vertical_bias: Rule
     height: Rule
@@ -69,7 +77,7 @@ class DrawRules(NamedTuple):
     field_of_view: Rule
     """[rad]"""
     varied_field: int
-    """1: the field of view is drawn; 0: it is a number."""
+    """1: the field of view is sampled; 0: it is a number."""
     same_target: int
     """1: trackers that share a world follow one target."""
     first_tick: int
@@ -82,8 +90,8 @@ class DrawRules(NamedTuple):
     """Longest episode [physics steps]."""
 
 
-class EpisodeDraw(NamedTuple):
-    """Everything that the draw of episodes reads and writes."""
+class EpisodeSampling(NamedTuple):
+    """Everything that the sampling of episodes reads and writes."""
 
     snapshot: Snapshot
     world_of: NDArray[np.int32]
@@ -93,13 +101,13 @@ class EpisodeDraw(NamedTuple):
     lasting: NDArray[np.bool_]
     """Whether the time of each world goes on, shape (W,)."""
     side: NDArray[np.float64]
-    """What is added to the drawn direction of each tracker, whose target others may follow, too
+    """What is added to the sampled direction of each tracker, whose target others may follow, too
     [rad], shape (N,)."""
     looks: Looks
     look_table: LookTable
     models: ModelTable
     light: LightRules
-    rules: DrawRules
+    rules: SamplingRules
     streams: Streams
     free: NDArray[np.bool_]
     """Working memory: whether each actor may be the target, shape (A,)."""
@@ -115,7 +123,7 @@ class Call(NamedTuple):
     chosen: NDArray[np.int64]
     """Those trackers, in the first K of N elements."""
     pitch: NDArray[np.float64]
-    """Their drawn camera pitch, positive down [rad], in the first K of N elements; written."""
+    """Their sampled camera pitch, positive down [rad], in the first K of N elements; written."""
     problem: NDArray[np.int64]
     """A tracker that has no target, or -1; how many actors could be followed, or -1 if that is not
     known yet; how many trackers of its world have a target, or when that must be known [physics
@@ -133,79 +141,90 @@ class Call(NamedTuple):
 
 
 @compiled
-def draw_episodes(draw: EpisodeDraw, stays: Stays, call: Call) -> None:
+def sample_episodes(sampling: EpisodeSampling, stays: Stays, call: Call) -> None:
     """Draw episodes one after the other: who shares a world takes what others leave."""
-    count, targets = call.starts[0], draw.snapshot.targets
+    count, targets = call.starts[0], sampling.snapshot.targets
     call.problem[0] = -1
     for k in range(count):
         targets.actor[call.chosen[k]] = -1
     for k in range(count):
         n = call.chosen[k]
-        draw.snapshot.episodes.number[n] += 1
-        _draw_world(draw, n)
-        _stream(draw, n, _EPISODE)
-        if not _draw_target(draw, stays, n, call.problem):
-            if call.problem[1] < 0:  # it is drawn again
-                draw.snapshot.episodes.number[n] -= 1
+        sampling.snapshot.episodes.number[n] += 1
+        _sample_world(sampling, n)
+        _stream(sampling, n, _EPISODE)
+        if not _sample_target(sampling, stays, n, call.problem):
+            if call.problem[1] < 0:  # it is sampled again
+                sampling.snapshot.episodes.number[n] -= 1
             return
-        _draw_start(draw, n, call.pitch, k)
+        _sample_start(sampling, n, call.pitch, k)
 
 
 @kernel(inline=True)
-def _stream(draw: EpisodeDraw, n: int, room: int) -> None:
+def _stream(sampling: EpisodeSampling, n: int, room: int) -> None:
     """Begin the stream of a room in a tracker's episode."""
-    episode = draw.snapshot.episodes.number[n]
-    begin_stream(draw.state, draw.streams.seed[n], room, draw.streams.number[n], episode)
+    episode = sampling.snapshot.episodes.number[n]
+    begin_stream(
+        sampling.state, sampling.streams.seed[n], room, sampling.streams.number[n], episode
+    )
 
 
 @kernel(inline=True)
-def _draw_world(draw: EpisodeDraw, n: int) -> None:
+def _sample_world(sampling: EpisodeSampling, n: int) -> None:
     """Draw what is around a tracker: looks, light; and its lens."""
-    world, first = draw.world_of[n], draw.snapshot.episodes.number[n] == 0
-    leads = n == draw.leader[world]
-    if not draw.lasting[world] or (leads and first):
-        _stream(draw, n, _LOOKS)
-        draw_looks(draw.look_table, draw.looks.model[world], draw.looks.colour[world], draw.state)
-    if draw.light.changes == 1 and leads and (first or draw.light.each_reset == 1):
-        _stream(draw, n, _LIGHT)
-        sky, sun, density = change_light(draw.light, draw.state)
-        for other in range(len(draw.world_of)):
-            if draw.world_of[other] == world:
-                light = draw.snapshot.light
+    world, first = sampling.world_of[n], sampling.snapshot.episodes.number[n] == 0
+    leads = n == sampling.leader[world]
+    if not sampling.lasting[world] or (leads and first):
+        _stream(sampling, n, _LOOKS)
+        sample_looks(
+            sampling.look_table,
+            sampling.looks.model[world],
+            sampling.looks.colour[world],
+            sampling.state,
+        )
+    if sampling.light.changes == 1 and leads and (first or sampling.light.each_reset == 1):
+        _stream(sampling, n, _LIGHT)
+        sky, sun, density = change_light(sampling.light, sampling.state)
+        for other in range(len(sampling.world_of)):
+            if sampling.world_of[other] == world:
+                light = sampling.snapshot.light
                 light.sky[other], light.sun[other], light.fog_density[other] = sky, sun, density
-    if draw.rules.varied_field == 1:  # a stream costs a microsecond
-        _stream(draw, n, _CAMERA)
-    draw.snapshot.cameras.field_of_view[n] = drawn(draw.rules.field_of_view, draw.state)
+    if sampling.rules.varied_field == 1:  # a stream costs a microsecond
+        _stream(sampling, n, _CAMERA)
+    sampling.snapshot.cameras.field_of_view[n] = sampled(
+        sampling.rules.field_of_view, sampling.state
+    )
 
 
 @kernel(inline=True)
-def _draw_target(draw: EpisodeDraw, stays: Stays, n: int, problem: NDArray[np.int64]) -> bool:
+def _sample_target(
+    sampling: EpisodeSampling, stays: Stays, n: int, problem: NDArray[np.int64]
+) -> bool:
     """Draw time and target of an episode; return whether there is one, else see `Call.problem`.
 
     If vehicles come and go, none may stay for a whole episode. Then other times are tried, and
     vehicles that stay for a shorter time; in a lasting world, whose time is given, only these.
     """
-    rules = draw.rules
-    lasting = draw.lasting[draw.world_of[n]]
-    tick = _now(draw, n) if lasting else 0
+    rules = sampling.rules
+    lasting = sampling.lasting[sampling.world_of[n]]
+    tick = _now(sampling, n) if lasting else 0
     if lasting and rules.same_target == 1:
-        followed = _followed(draw, stays, n, tick * PHYSICS_STEP)
+        followed = _followed(sampling, stays, n, tick * PHYSICS_STEP)
         if followed >= 0:
-            _follow(draw, n, followed, tick)
+            _follow(sampling, n, followed, tick)
             return True
     for attempt in range(ATTEMPTS):
         if not lasting:
-            tick = rules.first_tick + whole(draw.state, rules.times)
+            tick = rules.first_tick + whole(sampling.state, rules.times)
         steps = rules.steps >> (attempt if lasting else attempt // _TIMES)
         start = tick * PHYSICS_STEP
         if start >= stays.known:
             problem[0], problem[1], problem[2] = n, -1, tick
             return False
         end = min(tick + steps, rules.last_tick) * PHYSICS_STEP
-        here, followed = _free_targets(draw, stays, n, start, end)
-        actor = _any_of(draw.free, draw.state)
+        here, followed = _free_targets(sampling, stays, n, start, end)
+        actor = _any_of(sampling.free, sampling.state)
         if actor >= 0:
-            _follow(draw, n, actor, tick)
+            _follow(sampling, n, actor, tick)
             return True
         if attempt == ATTEMPTS - 1 or steps == 0:
             problem[0], problem[1], problem[2] = n, here, followed
@@ -214,21 +233,21 @@ def _draw_target(draw: EpisodeDraw, stays: Stays, n: int, problem: NDArray[np.in
 
 
 @kernel(inline=True)
-def _now(draw: EpisodeDraw, n: int) -> int:
+def _now(sampling: EpisodeSampling, n: int) -> int:
     """Return the latest time of a tracker's world, or the first time [physics steps]."""
-    tick, world = draw.rules.first_tick, draw.world_of[n]
-    for other in range(len(draw.world_of)):
-        if draw.world_of[other] == world:
-            tick = max(tick, draw.snapshot.episodes.tick[other])
+    tick, world = sampling.rules.first_tick, sampling.world_of[n]
+    for other in range(len(sampling.world_of)):
+        if sampling.world_of[other] == world:
+            tick = max(tick, sampling.snapshot.episodes.tick[other])
     return tick
 
 
 @kernel(inline=True)
-def _followed(draw: EpisodeDraw, stays: Stays, n: int, time: float) -> int:
+def _followed(sampling: EpisodeSampling, stays: Stays, n: int, time: float) -> int:
     """Return the target of the first tracker of a world that follows one who is there, or -1."""
-    world, actors = draw.world_of[n], draw.snapshot.targets.actor
-    for other in range(len(draw.world_of)):
-        if draw.world_of[other] == world and actors[other] >= 0:
+    world, actors = sampling.world_of[n], sampling.snapshot.targets.actor
+    for other in range(len(sampling.world_of)):
+        if sampling.world_of[other] == world and actors[other] >= 0:
             for stay in range(len(stays.actor)):
                 if stays.actor[stay] == actors[other] and _covers(stays, stay, time, time):
                     return int(actors[other])
@@ -244,14 +263,14 @@ def _covers(stays: Stays, stay: int, start: float, end: float) -> bool:
 
 @kernel(inline=True)
 def _free_targets(
-    draw: EpisodeDraw, stays: Stays, n: int, start: float, end: float
+    sampling: EpisodeSampling, stays: Stays, n: int, start: float, end: float
 ) -> tuple[int, int]:
     """Find out whether each actor stays from `start` to `end` [s] and nobody follows it.
 
     Returns:
         How many stay, and how many of the tracker's world are followed.
     """
-    free, world = draw.free, draw.world_of[n]
+    free, world = sampling.free, sampling.world_of[n]
     for actor in range(len(free)):
         free[actor] = False
     here, followed = 0, 0
@@ -260,10 +279,10 @@ def _free_targets(
         if not free[actor] and _covers(stays, stay, start, end):
             free[actor] = True
             here += 1
-    if draw.lasting[world]:
-        for other in range(len(draw.world_of)):
-            actor = int(draw.snapshot.targets.actor[other])
-            if draw.world_of[other] == world and actor >= 0:
+    if sampling.lasting[world]:
+        for other in range(len(sampling.world_of)):
+            actor = int(sampling.snapshot.targets.actor[other])
+            if sampling.world_of[other] == world and actor >= 0:
                 free[actor] = False
                 followed += 1
     return here, followed
@@ -287,11 +306,11 @@ def _any_of(free: NDArray[np.bool_], state: NDArray[np.int64]) -> int:
 
 
 @kernel(inline=True)
-def _follow(draw: EpisodeDraw, n: int, actor: int, tick: int) -> None:
+def _follow(sampling: EpisodeSampling, n: int, actor: int, tick: int) -> None:
     """Make an actor of its world the target of tracker n, at a time of it [physics steps]."""
-    draw.snapshot.episodes.tick[n] = tick
-    model = int(draw.looks.model[draw.world_of[n], actor])
-    follow(draw.snapshot.targets, draw.snapshot.episodes, draw.models, n, actor, model)
+    sampling.snapshot.episodes.tick[n] = tick
+    model = int(sampling.looks.model[sampling.world_of[n], actor])
+    follow(sampling.snapshot.targets, sampling.snapshot.episodes, sampling.models, n, actor, model)
 
 
 @kernel(inline=True)
@@ -311,16 +330,16 @@ def follow(
 
 
 @kernel(inline=True)
-def _draw_start(draw: EpisodeDraw, n: int, pitches: NDArray[np.float64], k: int) -> None:
+def _sample_start(sampling: EpisodeSampling, n: int, pitches: NDArray[np.float64], k: int) -> None:
     """Draw a start in the original's order, and set it relative to the target."""
-    rules, state = draw.rules, draw.state
-    pitch = drawn(rules.pitch, state)
-    left = drawn(rules.horizontal_bias, state)
-    vertical_bias = drawn(rules.vertical_bias, state)
-    height = drawn(rules.height, state)
-    direction = drawn(rules.direction, state) + draw.side[n]
-    ahead = draw.snapshot.targets.ahead[n]
-    offset = draw.snapshot.episodes.start_offset[n]
+    rules, state = sampling.rules, sampling.state
+    pitch = sampled(rules.pitch, state)
+    left = sampled(rules.horizontal_bias, state)
+    vertical_bias = sampled(rules.vertical_bias, state)
+    height = sampled(rules.height, state)
+    direction = sampled(rules.direction, state) + sampling.side[n]
+    ahead = sampling.snapshot.targets.ahead[n]
+    offset = sampling.snapshot.episodes.start_offset[n]
     offset[0], offset[1] = start_distance(pitch, height, vertical_bias, ahead), left
     offset[2], offset[3] = height, direction
     pitches[k] = pitch

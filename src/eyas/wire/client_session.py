@@ -13,10 +13,9 @@ from typing import NamedTuple
 from eyas.core.errors import ActionError, OutputError
 from eyas.core.files import refusals, write_atomic
 from eyas.wire.codec import HOVER, Action, parse_action
-from eyas.wire.exchange import Names
-from eyas.wire.pause import RARE
+from eyas.wire.exchange import RARE, Names
 
-__all__ = ["Part", "Post"]
+__all__ = ["AnswerFile", "ClientSession"]
 
 _LONGEST = 4096
 """Largest action file that is read [bytes]."""
@@ -32,7 +31,7 @@ _LOG = logging.getLogger("eyas")
 _LINKS = {"follow_symlinks": False} if os.access in os.supports_follow_symlinks else {}
 
 
-class Part(NamedTuple):
+class AnswerFile(NamedTuple):
     """One file of an answer."""
 
     path: Path
@@ -40,7 +39,7 @@ class Part(NamedTuple):
     """Returns the content; None if it is not ready yet."""
 
 
-class Post:
+class ClientSession:
     """The client of one tracker: takes its actions, and gives it answers file by file.
 
     Attributes:
@@ -57,7 +56,7 @@ class Post:
         self.action: Action | None = None
         self.waiting = time.monotonic()
         self._heard = heard
-        self._answer: deque[Part] = deque()
+        self._answer: deque[AnswerFile] = deque()
         self._shown = False
         self._refused: float | None = None
         self._unfinished: tuple[bytes, float] = (b"", 0.0)
@@ -67,7 +66,7 @@ class Post:
         """Whether the client has to do the next thing."""
         return self._shown or (self.action is None and not self._answer)
 
-    def answer(self, parts: list[Part]) -> None:
+    def answer(self, parts: list[AnswerFile]) -> None:
         """Begin to give an answer; the action is done.
 
         Args:

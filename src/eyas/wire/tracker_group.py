@@ -15,14 +15,12 @@ from eyas.sim.simulation import Simulation
 from eyas.state.draw import Picture
 from eyas.targets.catalogue import MODELS
 from eyas.task.packet_rows import SENSOR_COLUMNS
+from eyas.task.packets import BASIC_COLUMNS
 from eyas.wire.codec import Action, packet_line
 
-__all__ = ["Answer", "Crew"]
+__all__ = ["Answer", "TrackerGroup"]
 
 _LOG = logging.getLogger("eyas")
-
-_DONE = 21
-"""Column of a basic packet that says whether the episode has ended."""
 
 
 class Answer(NamedTuple):
@@ -38,7 +36,7 @@ class Answer(NamedTuple):
     """JPEG; made in another thread while the client reads the packets."""
 
 
-class Crew:
+class TrackerGroup:
     """N trackers that act at once and share a world, whose time goes on from episode to episode.
 
     Attributes:
@@ -81,7 +79,7 @@ class Crew:
         seen = self.sim.view
         # What is sensed may be late; time, reward, end and the reward packet are not.
         basic[:, SENSOR_COLUMNS] = seen.packets()[0][:, SENSOR_COLUMNS]
-        basic[renewed & ~resets, _DONE] = 1.0
+        basic[renewed & ~resets, BASIC_COLUMNS["done"]] = 1.0
         self._drawn = self._draw()
         models = self.sim.snapshot.targets.model.tolist()
         radar = None

@@ -14,7 +14,7 @@ from eyas.state.draw import Picture
 from eyas.task.config import DoneConfig
 from eyas.traffic.config import TrafficConfig
 from eyas.wire.codec import HOVER, RESET, Action
-from eyas.wire.crew import Crew
+from eyas.wire.tracker_group import TrackerGroup
 
 AHEAD = Action((20.0, 0.0, 0.0, 0.5), reset=False)
 
@@ -26,12 +26,12 @@ def crews():
     made = []
 
     def make(count, config=CONFIG, steps=4):
-        made.append(Crew(build_simulation(config, together(count)), steps))
+        made.append(TrackerGroup(build_simulation(config, together(count)), steps))
         return made[-1]
 
     yield make
-    for crew in made:
-        crew.close()
+    for group in made:
+        group.close()
 
 
 def numbers(answer):
@@ -39,10 +39,10 @@ def numbers(answer):
 
 
 def test_answers_are_those_of_a_simulation_of_the_same_seed(crews):
-    crew, sim = crews(3), build_simulation(CONFIG, together(3))
+    group, sim = crews(3), build_simulation(CONFIG, together(3))
     picture = Picture.create(3, 48, 64)
     for actions in ([RESET] * 3, [AHEAD, HOVER, AHEAD], [AHEAD, RESET, HOVER], [RESET] * 3):
-        answers = crew.play(actions)
+        answers = group.play(actions)
         resets = np.array([action.reset for action in actions])
         if not resets.all():
             sim.advance(np.array([action.command for action in actions]), 4)
@@ -60,17 +60,17 @@ def test_answers_are_those_of_a_simulation_of_the_same_seed(crews):
 
 
 def test_a_reset_begins_an_episode_of_its_tracker_only_and_time_goes_on(crews):
-    crew = crews(2)
-    crew.play([RESET, RESET])
+    group = crews(2)
+    group.play([RESET, RESET])
     for _ in range(5):
-        crew.play([AHEAD, AHEAD])
-    ticks = crew.sim.snapshot.episodes.tick
+        group.play([AHEAD, AHEAD])
+    ticks = group.sim.snapshot.episodes.tick
     begun = ticks[0]
-    states = [numbers(answer) for answer in crew.play([RESET, AHEAD])]
+    states = [numbers(answer) for answer in group.play([RESET, AHEAD])]
     assert [state[0] for state in states] == [0, 24]
     assert ticks.tolist() == [begun + 4] * 2
-    assert len(set(crew.sim.snapshot.targets.actor.tolist())) == 2
-    assert numbers(crew.play([HOVER, HOVER])[0])[0] == 4
+    assert len(set(group.sim.snapshot.targets.actor.tolist())) == 2
+    assert numbers(group.play([HOVER, HOVER])[0])[0] == 4
 
 
 def test_whoever_acts_before_its_first_reset_gets_an_episode_too(crews):
@@ -79,31 +79,31 @@ def test_whoever_acts_before_its_first_reset_gets_an_episode_too(crews):
 
 
 def test_where_the_traffic_ends_all_begin_anew_and_those_who_flew_are_told(crews):
-    crew = crews(2)
-    crew.play([RESET, RESET])
-    crew.sim.snapshot.episodes.tick[:] += crew.sim.steps_left - 6
-    states = [numbers(answer) for answer in crew.play([AHEAD, AHEAD])]
+    group = crews(2)
+    group.play([RESET, RESET])
+    group.sim.snapshot.episodes.tick[:] += group.sim.steps_left - 6
+    states = [numbers(answer) for answer in group.play([AHEAD, AHEAD])]
     assert [(state[0], state[21]) for state in states] == [(4, 0), (4, 0)]
-    states = [numbers(answer) for answer in crew.play([RESET, AHEAD])]
+    states = [numbers(answer) for answer in group.play([RESET, AHEAD])]
     assert [(state[0], state[21]) for state in states] == [(0, 0), (0, 1)]
     first = CONFIG.start.warm_up_steps
-    assert crew.sim.snapshot.episodes.tick.tolist() == [first, first]
-    states = [numbers(answer) for answer in crew.play([AHEAD, RESET])]
+    assert group.sim.snapshot.episodes.tick.tolist() == [first, first]
+    states = [numbers(answer) for answer in group.play([AHEAD, RESET])]
     assert [(state[0], state[21]) for state in states] == [(4, 0), (0, 0)]
 
 
 def test_all_who_reset_near_the_end_of_the_traffic_get_whole_episodes(crews):
-    crew = crews(2)
-    crew.play([RESET, RESET])
-    crew.sim.snapshot.episodes.tick[:] += crew.sim.steps_left - 100
-    states = [numbers(answer) for answer in crew.play([RESET, RESET])]
+    group = crews(2)
+    group.play([RESET, RESET])
+    group.sim.snapshot.episodes.tick[:] += group.sim.steps_left - 100
+    states = [numbers(answer) for answer in group.play([RESET, RESET])]
     assert [(state[0], state[21]) for state in states] == [(0, 0), (0, 0)]
-    assert crew.sim.steps_left > CONFIG.done.total_steps
+    assert group.sim.steps_left > CONFIG.done.total_steps
 
 
 def test_where_no_target_is_free_the_traffic_begins_anew(crews, monkeypatch, caplog):
-    crew, reset, refused = crews(2), Simulation.reset, []
-    crew.play([RESET, RESET])
+    group, reset, refused = crews(2), Simulation.reset, []
+    group.play([RESET, RESET])
 
     def once(sim, trackers=None):
         if not refused:
@@ -112,7 +112,7 @@ def test_where_no_target_is_free_the_traffic_begins_anew(crews, monkeypatch, cap
         reset(sim, trackers)
 
     monkeypatch.setattr(Simulation, "reset", once)
-    states = [numbers(answer) for answer in crew.play([RESET, AHEAD])]
+    states = [numbers(answer) for answer in group.play([RESET, AHEAD])]
     assert [(state[0], state[21]) for state in states] == [(0, 0), (0, 1)]
     assert "no target is free; so the traffic begins anew" in caplog.text
 
@@ -133,18 +133,18 @@ def test_an_answer_that_nobody_takes_does_not_disturb_the_next(crews):
 
 @pytest.mark.parametrize("speed", [1e4, -1e4])
 def test_the_fastest_commands_that_are_let_through_can_be_drawn(crews, speed):
-    crew = crews(1)
-    crew.play([RESET])
+    group = crews(1)
+    group.play([RESET])
     for _ in range(50):
-        (answer,) = crew.play([Action((speed, speed, speed, speed), reset=False)])
+        (answer,) = group.play([Action((speed, speed, speed, speed), reset=False)])
     assert np.isfinite(numbers(answer)).all()
     assert answer.picture.result()
 
 
 def test_the_radar_packet_is_that_of_the_lidar(crews):
     config = CONFIG.model_copy(update={"lidar": LidarConfig(enabled=True)})
-    crew = crews(2, config)
-    for answer, row in zip(crew.play([RESET] * 2), crew.sim.view.lidar.packets(), strict=True):
+    group = crews(2, config)
+    for answer, row in zip(group.play([RESET] * 2), group.sim.view.lidar.packets(), strict=True):
         assert [float(word) for word in answer.radar.decode().split(",")] == row.tolist()
     assert [answer.radar for answer in crews(1).play([RESET])] == [None]
 
@@ -152,11 +152,11 @@ def test_the_radar_packet_is_that_of_the_lidar(crews):
 def test_what_is_sensed_is_late_and_what_is_judged_is_not(crews):
     late = {"control": ControlConfig(observation_latency_steps=8.0)}
     lidar = {"lidar": LidarConfig(enabled=True)}
-    crew = crews(2, CONFIG.model_copy(update={**late, **lidar}))
+    group = crews(2, CONFIG.model_copy(update={**late, **lidar}))
     now = crews(2, CONFIG.model_copy(update=lidar))
     history = []
     for actions in ([RESET] * 2, *[[AHEAD, HOVER]] * 5):
-        ours, theirs = crew.play(actions), now.play(actions)
+        ours, theirs = group.play(actions), now.play(actions)
         history.append(theirs)
         then = history[max(len(history) - 3, 0)]
         for n in range(2):

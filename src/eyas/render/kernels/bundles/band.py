@@ -1,0 +1,45 @@
+"""All that the drawing of one band of a view reads and writes but its outputs."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.render.kernels.bundles.geometry import Geometry, Movers
+from eyas.render.kernels.bundles.light import Illumination, Light
+from eyas.render.kernels.bundles.view import View
+
+__all__ = ["Band"]
+
+
+class Band(NamedTuple):
+    """A band of a view, and the memory of the worker that draws it.
+
+    It is filled once (`eyas.render.kernels.draw.band_of`) and handed on by address. A loop reads
+    the arrays that it needs into names of its own first: through the address they would be loaded
+    again after each store.
+    """
+
+    geometry: Geometry
+    light: Light
+    lit: Illumination
+    """Light and air of the view."""
+    movers: Movers
+    world: int
+    """The view's, a row of `movers`."""
+    camera: View
+    """Not `view`: numba takes that for the method of arrays."""
+    until: int
+    """The last `eyas.state.draw.DrawStage`."""
+    key: NDArray[np.int64]
+    """This and the following: the worker's rows of `Scratch`; of this, `alone` and `shade` only as
+    many rows of samples as the band has."""
+    alone: NDArray[np.int64]
+    shade: NDArray[np.uint8]
+    drawn: NDArray[np.int32]
+    mesh: NDArray[np.int32]
+    tiles: NDArray[np.float32]
+    order: NDArray[np.int64]
+    triangle: NDArray[np.float64]
+    polygon: NDArray[np.float64]
+    span: NDArray[np.int32]
