@@ -1,5 +1,13 @@
 """Eyas: a simulator and benchmark for drone visual active tracking.
 
+    env = eyas.make("citystreet-day")                  # one drone; make_vec: many together
+    eyas.record({"video": {"total_time": 2.0}})        # labelled pictures and videos
+    eyas.evaluate("follow", map="village")             # figures of a policy
+    eyas.list_maps()                                   # _weathers, _targets, _presets, _policies
+
+`make_config` returns settings, `train` teaches a policy. Parts of one's own begin with `Writer`,
+`Policy`, `RewardTerm`, `Tracker`, `Weather`, `MapPlan` and `Ride`.
+
 The names of `__all__` are public; they are imported when they are asked for. All modules are
 private: they move and change without notice. Importing `eyas` makes its environments known to
 Gymnasium.

@@ -82,7 +82,8 @@ def test_an_unknown_name_is_told_with_the_nearest_and_all_known_ones():
     with pytest.raises(UnknownNameError) as caught:
         fruits().get("appel")
     assert str(caught.value) == (
-        "meal.fruit: 'appel' is not allowed; did you mean 'apple'?; known: apple, pear"
+        "meal.fruit: 'appel' is not allowed; did you mean 'apple'?; known: apple, pear, "
+        "or package.module:attribute"
     )
 
 

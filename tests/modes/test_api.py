@@ -38,6 +38,11 @@ def test_a_policy_is_evaluated(tmp_path):
     assert {record.map for record in records} == {"simpleway-grass"}
 
 
+def test_a_keyword_that_evaluate_does_not_have_is_told_with_the_nearest():
+    with pytest.raises(eyas.UnknownNameError, match=r"keyword: 'maps' .* did you mean 'map'"):
+        eyas.evaluate("hover", maps=["lake"])
+
+
 def test_the_lists_name_what_the_settings_take():
     assert "citystreet" in eyas.list_maps()
     assert {"day", "foggy", "night", "snow"} <= set(eyas.list_weathers("downtown"))

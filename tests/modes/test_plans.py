@@ -78,6 +78,35 @@ def test_what_is_wrong_with_a_plan_is_told_one_line_each(tmp_path):
         MAPS.get(str(path)).roads(0)
 
 
+@pytest.mark.parametrize(
+    ("index", "change", "said"),
+    [
+        (1, {"name": "n"}, "roads.edges[1].name: 'n' is not allowed: roads.edges[0] has that name"),
+        (2, {"end": "north"}, "roads.edges[2].end: 'north' is not allowed: another node than its"),
+        (0, {"lanes": 0}, "roads.edges[0].lanes: 0 is not allowed: above 0"),
+        (0, {"lane_width": -3.5}, "roads.edges[0].lane_width: -3.5 is not allowed: above 0"),
+        (3, {"speed": 0.0}, "roads.edges[3].speed: 0.0 is not allowed: above 0"),
+    ],
+)
+def test_roads_that_cannot_be_are_refused_before_sumo_sees_them(index, change, said, tmp_path):
+    content = json.loads(EXAMPLE.read_text())
+    content["roads"]["edges"][index] |= change
+    path = tmp_path / "odd.plan.json"
+    path.write_text(json.dumps(content))
+    (line,) = problems(path)
+    assert line.startswith(f"{path}: {said}")
+
+
+def test_a_field_of_several_types_has_one_error(tmp_path):
+    content = json.loads(EXAMPLE.read_text())
+    content["survey"]["houses"][3]["roof"] = "hiped"
+    path = tmp_path / "odd.plan.json"
+    path.write_text(json.dumps(content))
+    (line,) = problems(path)
+    assert line.startswith(f"{path}: survey.houses[3].roof: 'hiped' is not allowed: 'flat', ")
+    assert line.endswith("did you mean 'hipped'?")
+
+
 def test_a_plan_that_is_not_there_is_told(tmp_path):
     with pytest.raises(DataFileError, match=r"no\.plan\.json: cannot read: No such file"):
         MAPS.get(str(tmp_path / "no.plan.json"))

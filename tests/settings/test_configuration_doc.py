@@ -24,7 +24,8 @@ def settings(group=EyasConfig, path=""):
 
 @pytest.mark.parametrize(("path", "default"), list(settings()))
 def test_the_page_has_every_setting_with_its_default(path, default):
-    assert any(line.startswith(f"| `{path}` | `{json.dumps(default)}` |") for line in DOC)
+    row = f"| `{path}` | `{json.dumps(default)}` |"
+    assert any(line.startswith(row) for line in DOC), f"docs/configuration.md needs a row {row}"
 
 
 @pytest.mark.parametrize("entry", ENTRIES, ids=lambda entry: entry.keys[0])

@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 
 import eyas
+from eyas.core.errors import ConfigError
 from eyas.state.scene import ObjectClass
 from eyas.targets.catalogue import (
     KINDS,
@@ -97,12 +98,14 @@ def test_a_kind_is_added_behind_the_others(walker):
 
 def test_names_are_taken_once_and_models_are_their_kinds(walker):
     register(walker)
-    with pytest.raises(ValueError, match=r"\['walker', 'walker of 2 parts'\] are in the catalogue"):
+    with pytest.raises(
+        ConfigError, match=r"\['walker', 'walker of 2 parts'\] are in the catalogue"
+    ):
         register(walker)
     stranger = replace(walker, name="bus 2")
     KINDS.pop()
     del MODELS[-1:]
-    with pytest.raises(ValueError, match="'bus 2' needs models of its own"):
+    with pytest.raises(ConfigError, match="'bus 2' needs models of its own"):
         register(stranger)
 
 
@@ -127,13 +130,13 @@ def with_model(kind, **changes):
 )
 def test_an_entry_that_lacks_something_is_refused_when_it_is_read(walker, changes, line):
     before = len(MODELS)
-    with pytest.raises(ValueError, match=line):
+    with pytest.raises(ConfigError, match=line):
         register(with_model(walker, **changes))
     assert len(MODELS) == before
 
 
 def test_a_name_twice_in_one_kind_is_refused(walker):
-    with pytest.raises(ValueError, match="'walker of 2 parts'"):
+    with pytest.raises(ConfigError, match="'walker of 2 parts'"):
         register(replace(walker, models=walker.models * 2))
 
 
@@ -144,7 +147,9 @@ def test_a_size_that_the_meshes_do_not_have_is_refused_before_anything_is_drawn(
     wrong = replace(entry, size=(1.12 * length, width, height))
     rig = type(KINDS[kind_index(kind)].rig())
     rig([entry]).part_levels()
-    with pytest.raises(ValueError, match=rf"targets: '{entry.name}' says that it is .* m; allowed"):
+    with pytest.raises(
+        ConfigError, match=rf"targets: '{entry.name}' says that it is .* m; allowed"
+    ):
         rig([wrong]).part_levels()
 
 

@@ -38,6 +38,9 @@ def words(snapshot):
 def misspelt(ofset, visible):
     return visible
 
+def alone(ofset):
+    return ofset
+
 number = 3.0
 """
 
@@ -129,10 +132,11 @@ def test_a_term_may_ask_for_quantities_by_name(scored):
     assert terms["own_terms:lateral"].tolist() == [1.0, 0.0, 2.0]
 
 
+@pytest.mark.parametrize("term", ["misspelt", "alone"])
 @pytest.mark.usefixtures("module")
-def test_a_quantity_that_does_not_exist_is_refused_with_the_nearest():
+def test_a_quantity_that_does_not_exist_is_refused_with_the_nearest(term):
     with pytest.raises(ConfigError, match="asks for 'ofset'; did you mean 'offset'"):
-        RewardTerms(RewardConfig(terms={"own_terms:misspelt": 1.0}))
+        RewardTerms(RewardConfig(terms={f"own_terms:{term}": 1.0}))
 
 
 @pytest.mark.usefixtures("module")

@@ -55,6 +55,11 @@ def test_a_weather_that_a_map_lacks_is_told_with_those_it_has():
         assert str(caught.value) == line
 
 
+def test_an_unknown_map_is_told_what_else_names_one():
+    with pytest.raises(UnknownNameError, match=r", or FILE\.plan\.json or package\.module:attr"):
+        MAPS.get("my.json")
+
+
 def test_a_map_without_seasons_has_one_scene_for_all_weathers():
     assert {CITYSTREET.season(weather) for weather in CITYSTREET.weathers} == {Season.SUMMER}
     seasonal = replace(CITYSTREET, seasons=True)

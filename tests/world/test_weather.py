@@ -77,7 +77,8 @@ def test_fog_of_the_street_city_is_the_originals():
 @pytest.mark.parametrize("name", MAPS.built_in)
 def test_the_published_weathers_keep_every_number(name):
     recipe, digest = MAPS.get(name), hashlib.sha256()
-    for weather in recipe.weathers:
+    published = [each.name for each in (DAY, FOGGY, NIGHT, SNOW)]
+    for weather in (each for each in recipe.weathers if each in published):
         numbers = sorted(asdict(recipe.light(weather)).items())
         digest.update(f"{weather} {numbers}".encode())
     assert digest.hexdigest()[:12] == PUBLISHED[name]

@@ -43,8 +43,14 @@ Overrides = Annotated[
 ]
 SEVERAL = "may be given several times"
 
-MapName = Annotated[str | None, typer.Option("--map", help="Name of the map.")]
-Weather = Annotated[str | None, typer.Option("--weather", help="Name of the weather.")]
+MapName = Annotated[
+    str | None,
+    typer.Option("--map", help="Name of the map, FILE.plan.json, or package.module:attribute."),
+]
+Weather = Annotated[
+    str | None,
+    typer.Option("--weather", help="Name of the weather, or package.module:attribute."),
+]
 Seed = Annotated[int | None, typer.Option("--seed", help="The one seed of the run.")]
 Trust = Annotated[
     bool, typer.Option("--trust", help="Let the file of settings name code, which is then run.")

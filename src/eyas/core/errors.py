@@ -78,12 +78,16 @@ class UnknownNameError(ConfigError):
         name: The unknown name.
         known: The names that exist.
         where: Where these names are the known ones, for example `on the map 'lake'`.
+        others: What else is allowed, for example `package.module:attribute`.
     """
 
-    def __init__(self, path: str, name: str, known: Iterable[str], where: str = "") -> None:
+    def __init__(
+        self, path: str, name: str, known: Iterable[str], where: str = "", others: str = ""
+    ) -> None:
         names = sorted(known)
         refused = f"{path}: {name!r} is not allowed {where}".rstrip()
-        super().__init__(f"{refused}{nearest(name, names)}; known: {', '.join(names)}")
+        more = f", or {others}" if others else ""
+        super().__init__(f"{refused}{nearest(name, names)}; known: {', '.join(names)}{more}")
 
 
 def nearest(name: str, known: Iterable[str]) -> str:

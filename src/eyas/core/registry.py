@@ -14,7 +14,10 @@ from eyas.core.own_code import imported
 if TYPE_CHECKING:
     from importlib.metadata import EntryPoint
 
-__all__ = ["Found", "Registry"]
+__all__ = ["OWN", "Found", "Registry"]
+
+OWN = "package.module:attribute"
+"""How an object of a user's own is named."""
 
 T = TypeVar("T")
 T_co = TypeVar("T_co", covariant=True)
@@ -22,6 +25,9 @@ T_co = TypeVar("T_co", covariant=True)
 
 class Found(Protocol[T_co]):
     """Objects that are made of files, wherever these lie."""
+
+    form: str
+    """How the path of such a file looks, for messages."""
 
     def names(self) -> tuple[str, ...]:
         """Return the names of all objects."""
@@ -113,7 +119,8 @@ class Registry(Generic[T]):
         installed = self._installed()
         if name not in installed:
             known = (*self._table, *installed, *self._of_files())
-            raise UnknownNameError(self._setting, name, known)
+            others = f"{self._files.form} or {OWN}" if self._files else OWN
+            raise UnknownNameError(self._setting, name, known, others=others)
         return installed[name]
 
     def _of_files(self) -> tuple[str, ...]:

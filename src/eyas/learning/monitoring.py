@@ -22,7 +22,7 @@ __all__ = ["NO_SCORES", "EvaluationScores", "TensorBoardWriter", "evaluated", "e
 
 
 class EvaluationScores(NamedTuple):
-    """Means over the episodes, see `eyas.evaluation.record.Record`."""
+    """Means over the episodes, see `eyas.evaluation.record.EpisodeRecord`."""
 
     cr: float
     tsr: float

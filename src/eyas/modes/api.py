@@ -154,15 +154,20 @@ def evaluate(
         resume: Whether an evaluation in the folder is continued.
         overwrite: Whether one in the folder is deleted first.
         quiet: Whether nothing is printed but failures of the policy.
-        choices: See `EvaluationChoices`.
+        choices: `map`, `weather`, `target`: a name or several; `episodes`, `seed`, `latency`,
+            `sampled`, `env`, `settings`, `batch`: see `EvaluationChoices` in this module.
 
     Raises:
         EyasError: A setting is wrong, or the folder; one line.
     """
     from eyas.core.config import validated
+    from eyas.core.errors import UnknownNameError
     from eyas.evaluation.plan import EvaluationPlan, folder_name
     from eyas.modes.evaluate import run
 
+    for name in choices:
+        if name not in EvaluationChoices.__annotations__:
+            raise UnknownNameError("keyword", name, EvaluationChoices.__annotations__)
     said: dict[str, Any] = {"policy": policy, "protocol": protocol, **choices}
     for name in ("map", "weather", "target"):
         if name in said:

@@ -128,7 +128,9 @@ class Lidar:
         return self._told(self._thing, None)
 
     def packets(self, late: NDArray[np.int64] | None = None) -> Floats:
-        """Return the radar packets, shape (N, 5 x points); see `eyas.task.packets.RadarPacket`.
+        """Return the radar packets, shape (N, 5 x points).
+
+        `eyas.task.radar_packet.RadarPacket` names their numbers.
 
         Args:
             late: As for `ranges`.

@@ -8,6 +8,7 @@ call of `register`.
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.errors import ConfigError
 from eyas.lanes.elementary.arrays import cos
 from eyas.state.scene import ObjectClass
 from eyas.targets.habit import Habit
@@ -42,16 +43,16 @@ def register(kind: Kind) -> None:
     """Add a kind and its models; existing ones keep their indices.
 
     Raises:
-        ValueError: A name is taken, a model belongs to another kind, or something is missing.
+        ConfigError: A name is taken, a model belongs to another kind, or something is missing.
     """
     taken = {known.name for known in KINDS} & {kind.name}
     names = [known.name for known in (*MODELS, *kind.models)]
     taken |= {model.name for model in kind.models if names.count(model.name) > 1}
     if taken:
-        raise ValueError(f"targets: {sorted(taken)} are in the catalogue already")
+        raise ConfigError(f"targets: {sorted(taken)} are in the catalogue already")
     strangers = [model.name for model in kind.models if model.kind != kind.name]
     if strangers or not kind.models:
-        raise ValueError(f"targets: {kind.name!r} needs models of its own, not {strangers}")
+        raise ConfigError(f"targets: {kind.name!r} needs models of its own, not {strangers}")
     for model in kind.models:
         model.check()
     KINDS.append(kind)

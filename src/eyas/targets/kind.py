@@ -7,6 +7,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core.errors import ConfigError
 from eyas.state.draw import DrawList
 from eyas.state.mesh import Mesh
 from eyas.state.motion import ActorState
@@ -62,18 +63,18 @@ class Model:
         return self.size[2]
 
     def check(self) -> None:
-        """Raise a `ValueError` if something is missing or cannot be."""
+        """Raise a `ConfigError` if something is missing or cannot be."""
         if not self.words or not all(map(str.strip, self.words)):
-            raise ValueError(
+            raise ConfigError(
                 f"targets: {self.name!r} has no words; allowed: phrases like 'a {{}} car'"
             )
         if not all(side > 0.0 for side in self.size):
-            raise ValueError(f"targets: {self.name!r} is {self.size} m; allowed: above 0")
+            raise ConfigError(f"targets: {self.name!r} is {self.size} m; allowed: above 0")
 
     def check_meshes(
         self, points: NDArray[np.floating], tolerance: float, *, antennas: bool = False
     ) -> None:
-        """Raise a `ValueError` if the meshes are not of the size that is said.
+        """Raise a `ConfigError` if the meshes are not of the size that is said.
 
         Args:
             points: All points of the finest meshes of the resting model [m], shape (P, 3).
@@ -86,9 +87,9 @@ class Model:
         if wrong.any():
             sides = " x ".join(f"{side:.2f}" for side in np.ptp(points, axis=0))
             said = " x ".join(f"{side:.2f}" for side in self.size)
-            raise ValueError(
+            raise ConfigError(
                 f"targets: {self.name!r} says that it is {said} m, but its meshes are {sides} m; "
-                f"allowed: {tolerance:.0%} more or less"
+                f"allowed: {tolerance:.0%} more or less; change its size, or its lines [m]"
             )
 
 

@@ -124,7 +124,8 @@ def _wanted(name: str, function: Callable[..., Floats]) -> list[str]:
             f"reward.terms: '{name}' asks for no snapshot and for no quantity; {_ALLOWED}"
         )
     (first, *others) = asked
-    if not others and first.name not in QUANTITIES and first.kind is not first.KEYWORD_ONLY:
+    misspelt = nearest(first.name, QUANTITIES)
+    if not (others or misspelt or first.name in QUANTITIES or first.kind is first.KEYWORD_ONLY):
         return []
     for each in asked:
         if each.name not in QUANTITIES or each.kind is each.POSITIONAL_ONLY:

@@ -95,6 +95,8 @@ def origin_of(folder: Path) -> Origin:
 class MapFiles:
     """Imported maps, by their names or folders, and plans, by the paths of their files."""
 
+    form = "FILE.plan.json"
+
     def names(self) -> tuple[str, ...]:
         """Return the names of the maps in the folder of imported maps."""
         try:

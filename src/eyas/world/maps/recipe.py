@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from eyas.core.errors import ConfigError, UnknownNameError
 from eyas.core.program import definitions_in
+from eyas.core.registry import OWN
 from eyas.state.lighting import Lighting
 from eyas.world.weather import WEATHERS, Season, Weather, unchanged
 
@@ -196,7 +197,7 @@ class MapRecipe:
         try:
             weather = WEATHERS.get(name)
         except UnknownNameError:
-            raise UnknownNameError("world.weather", name, self.weathers, here) from None
+            raise UnknownNameError("world.weather", name, self.weathers, here, OWN) from None
         if weather.name in self.without:
             raise UnknownNameError("world.weather", name, self.weathers, here)
         return weather

@@ -1,4 +1,4 @@
-"""What is known of a map besides its streets; `eyas.world.plan.completed` decides the rest."""
+"""What is known of a map besides its streets; `eyas.world.towns.completed` decides the rest."""
 
 from dataclasses import dataclass, field
 from typing import Annotated, Literal

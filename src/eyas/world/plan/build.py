@@ -52,7 +52,7 @@ def build_scene(plan: p.MapPlan, network: RoadNetwork, season: Season = Season.S
     """Return the scene of a plan.
 
     Args:
-        plan: A complete plan, without `eyas.world.plan.file.faults`.
+        plan: A complete plan, without what `eyas.world.plan.file.problems` tells.
         network: What SUMO has made of its roads.
         season: Season of trees, crops and hills.
     """

@@ -2,6 +2,7 @@
 
 import gzip
 import json
+import re
 import zlib
 from collections.abc import Callable, Collection, Iterator, Mapping, Sequence, Sized
 from dataclasses import MISSING, Field, fields, is_dataclass
@@ -118,7 +119,10 @@ def _read(path: Path) -> MapPlan | list[str]:
         plan = cast("MapPlan", _validator().validate_python(content))
         return [f"{path}: {line}" for line in _faults(plan)] or plan
     except ValidationError as error:
-        entries = error.errors(include_url=False)
+        found = error.errors(include_url=False)
+        # A field of several types has an error for each; the first says what is allowed.
+        entries = list({_place_of(entry["loc"])[0]: entry for entry in reversed(found)}.values())
+        entries.reverse()
         told = [f"{path}: {_told(entry)}" for entry in entries[:_MOST]]
         more = len(entries) - _MOST
         return told + [f"{path}: and {more} more"] * (more > 0)
@@ -189,9 +193,25 @@ def road_faults(plan: MapPlan, folder: Path) -> Iterator[str]:
     if not roads.edges:
         yield "roads.edges: [] is not allowed: at least one edge, or a file"
     nodes = [node.name for node in roads.nodes]
+    yield from _each_once("roads.nodes", nodes)
+    yield from _each_once("roads.edges", [edge.name for edge in roads.edges])
     for index, edge in enumerate(roads.edges):
+        where = f"roads.edges[{index}]"
         for end in ("start", "end"):
-            yield from _one_of(f"roads.edges[{index}].{end}", getattr(edge, end), nodes)
+            yield from _one_of(f"{where}.{end}", getattr(edge, end), nodes)
+        if edge.start == edge.end:
+            yield f"{where}.end: {edge.end!r} is not allowed: another node than its start"
+        for key in ("lanes", "lane_width", "speed"):
+            if getattr(edge, key) <= 0:
+                yield f"{where}.{key}: {getattr(edge, key)} is not allowed: above 0"
+
+
+def _each_once(where: str, names: Sequence[str]) -> Iterator[str]:
+    known: dict[str, int] = {}
+    for index, name in enumerate(names):
+        first = known.setdefault(name, index)
+        if first != index:
+            yield f"{where}[{index}].name: {name!r} is not allowed: {where}[{first}] has that name"
 
 
 def _one_of(where: str, name: str, names: Collection[str]) -> Iterator[str]:
@@ -266,7 +286,11 @@ def _told(entry: ErrorDetails) -> str:
         tag, known = context["tag"], context["expected_tags"].replace("'", "")
         hint = nearest(tag, known.split(", "))
         return f"{where}: {tag!r} is not allowed: one of {known}{hint}"
+    if kind == "string_pattern_mismatch" and where == "name":
+        return f"{where}: {value} is not allowed: words joined by hyphens"
     allowed = entry["msg"].removeprefix("Value error, ").removeprefix("Input should be ")
+    if kind == "literal_error":
+        allowed += nearest(str(entry["input"]), re.findall(r"'([^']+)'", context["expected"]))
     return f"{where}: {value} is not allowed: {allowed}"
 
 
@@ -278,6 +302,8 @@ def _place_of(loc: tuple[int | str, ...]) -> tuple[str, type]:
     for index, part in enumerate(loc):
         if isinstance(part, int):
             path += f"[{part}]"
+            continue
+        if part.startswith("literal["):  # one of the types that the field may have
             continue
         tagged = [one for one in known if _tag_of(one) == part]
         if tagged and index and isinstance(loc[index - 1], int):

@@ -2,7 +2,7 @@
 
 Areas are already cut out of each other, and every thing has its place: the builder decides nothing.
 Random numbers are left for what is texture: wear, leaves, the roughness of mounds. A plan may also
-be incomplete: `eyas.world.plan.completed` makes layers of what `MapPlan.survey` knows.
+be incomplete: `eyas.world.towns.completed` makes layers of what `MapPlan.survey` knows.
 
 Lengths are in metres, angles in radians, colours sRGB from 0 to 1. x is east, y is north; z is 0
 on roads and -0.1 on the ground.
