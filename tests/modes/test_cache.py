@@ -17,7 +17,6 @@ def folder(tmp_path, monkeypatch):
         (f"geometry/eyas-{KEY}.npy", 3 << 20),
         (f"geometry/eyas-{KEY[::-1]}.npy", 1 << 20),
         (f"traffic/citystreet-0-{KEY}.npz", 1 << 19),
-        (f"made/scene-{KEY}.pickle", 2 << 20),
         ("mine.txt", 1 << 20),
     ):
         path = tmp_path / name
@@ -37,12 +36,11 @@ def test_info_tells_the_place_the_limit_and_the_kinds(folder, capsys):
     said = capsys.readouterr().out
     assert said.splitlines()[:2] == [
         f"{folder} (EYAS_CACHE_DIR moves it)",
-        "6.5 MiB of at most 2,048.0 MiB (EYAS_CACHE_LIMIT changes it)",
+        "4.5 MiB of at most 2,048.0 MiB (EYAS_CACHE_LIMIT changes it)",
     ]
     assert rows(said) == {
         "geometry": ["2", "4.0 MiB"],
         "traffic": ["1", "0.5 MiB"],
-        "old": ["1", "2.0 MiB"],
     }
 
 
@@ -50,9 +48,9 @@ def test_clear_removes_one_kind_or_all_and_says_how_much(folder, capsys):
     run_clear("geometry")
     assert capsys.readouterr().out == "freed 4.0 MiB\n"
     run_info()
-    assert rows(capsys.readouterr().out).keys() == {"traffic", "old"}
+    assert rows(capsys.readouterr().out).keys() == {"traffic"}
     run_clear(None)
-    assert capsys.readouterr().out == "freed 2.5 MiB\n"
+    assert capsys.readouterr().out == "freed 0.5 MiB\n"
     assert [path.name for path in folder.iterdir()] == ["mine.txt"]
     run_info()
     assert rows(capsys.readouterr().out) == {}
