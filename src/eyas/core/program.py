@@ -23,12 +23,13 @@ from contextlib import suppress
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, cast
 
 from eyas.core.cache.entries import write_whole
 from eyas.core.cache.folder import Kind
 from eyas.lanes.folder import cache_folder
 from eyas.lanes.identity import language_hash
+from eyas.lanes.syntax import tree_of
 
 __all__ = [
     "INDEX",
@@ -280,7 +281,7 @@ class _Reader:
     """Reads the definitions in the text of one file."""
 
     def __init__(self, text: bytes) -> None:
-        self._body = ast.parse(text).body
+        self._body = cast("ast.Module", tree_of(text)).body
         self._imports = dict(_imported(self._body))
         self._said: dict[str, list[str]] = {}
         self._refers: dict[str, set[str]] = {}
@@ -437,7 +438,7 @@ def _read(node: ast.AST, *, annotation: bool = False) -> Iterator[str]:
 def _read_text(text: str, *, annotation: bool) -> Iterator[str]:
     if annotation:
         try:
-            yield from _read(ast.parse(text, mode="eval"), annotation=True)
+            yield from _read(tree_of(text, mode="eval"), annotation=True)
         except SyntaxError:  # a text among the arguments of `Literal` or `Annotated`
             return
     elif _PATH.fullmatch(text):

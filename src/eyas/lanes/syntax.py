@@ -6,13 +6,14 @@ versions of Python, which is why it is not made of bytecode.
 
 import ast
 import json
+import threading
 from collections.abc import Iterator
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
 from typing import NamedTuple
 
-__all__ = ["INDEX", "Written", "index_of", "syntax_of"]
+__all__ = ["INDEX", "Written", "index_of", "syntax_of", "tree_of"]
 
 INDEX = Path(__file__).parent / "shipped" / "syntax.json"
 """What `syntax_of` returns of the files of the package, by digests of their text: parsing takes
@@ -21,6 +22,9 @@ some milliseconds for each file. Files that are not in it, as they were edited, 
 _LEFT_OUT = frozenset(
     ("annotation", "returns", "decorator_list", "ctx", "type_comment", "type_params", "kind")
 )
+
+
+_PARSING = threading.Lock()
 
 
 class Written(NamedTuple):
@@ -64,8 +68,18 @@ def _index() -> dict[str, dict[str, tuple[str, list[str]]]]:
     return known
 
 
+def tree_of(text: bytes | str, mode: str = "exec") -> ast.AST:
+    """Return the syntax tree of a text; one thread at a time.
+
+    Python 3.11 counts the depth of trees for all threads together, and raises `SystemError` when
+    two parse at once.
+    """
+    with _PARSING:
+        return ast.parse(text, mode=mode)
+
+
 def _parsed(text: bytes) -> dict[str, Written]:
-    tree = ast.parse(text)
+    tree = tree_of(text)
     found = {"": Written(_digest("".join(_said(tree)).encode()), ())}
     for name, node in _functions(tree, ""):
         own = _written(node)
