@@ -34,8 +34,8 @@ def keys() -> dict[str, str]:
                 what.cache_clear()
     kinds = {kind.name: program.code_of(kind.rig) for kind in KINDS}
     makers = {
-        "citystreet": MAPS.get("citystreet").scene,
-        "downtown": MAPS.get("downtown").scene,
+        "citystreet": MAPS.get("citystreet").plan,
+        "downtown": MAPS.get("downtown").plan,
         "solids": solids_of,
         "textures": build_textures,
         "parts": part_library,

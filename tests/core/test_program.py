@@ -39,7 +39,7 @@ EDITS = {
     "new car": [("targets/vehicles/models/lada.py", "", "MODEL = 1\n")],
     "sun": [("world/weather.py", "sun_colour=(1.02, 0.96, 0.84)", "sun_colour=(1.02, 0.1, 0.1)")],
     "shading": [("render/kernels/surface/shade.py", "SHARP = f4(0.004)", "SHARP = f4(0.005)")],
-    "downtown": [("world/maps/downtown/scene.py", "_TAXIS = 0.2", "_TAXIS = 0.3")],
+    "downtown": [("world/maps/downtown/plan.py", "_TAXIS = 0.2", "_TAXIS = 0.3")],
     "exact": [("core/exact.py", "def length(", "def length(unused=0, *,")],
     "kernels": [("lanes/elementary/__init__.py", "\nfrom", "\nNEW = 1\nfrom")],
     "recorder": [("traffic/record.py", "WARM_UP = 60.0", "WARM_UP = 61.0")],
