@@ -25,7 +25,7 @@ def settings(decisions: int) -> EyasConfig:
             "train": {
                 "environments": 16,
                 "updates_per_block": 4,
-                "stages": [{"decisions": decisions}],
+                "stages": [{"total_timesteps": decisions}],
                 "evaluation": {"every": 0},
             },
         }

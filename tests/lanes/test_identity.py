@@ -79,7 +79,7 @@ def test_comments_docstrings_annotations_and_blank_lines_change_nothing(edited):
             },
             "render/kernels/surface/shade.py": {"\nfrom ": "\n# A comment.\nfrom "},
             "lanes/compilation.py": {'"""': '"""Another word. '},
-            "cli/bench.py": {'"""': '"""The word kernel. '},
+            "cli/tools.py": {'"""': '"""The word kernel. '},
         }
     )
 

@@ -9,7 +9,7 @@ import pytest
 from eyas.behaviours.groups import SampleClock
 from eyas.core.errors import ConfigError, SpawnError
 from eyas.exports.capture import Moment, frame_of
-from eyas.exports.frame import Action
+from eyas.exports.frame import RecordedAction
 from eyas.exports.label import label_of
 from eyas.exports.writer import Episode
 from eyas.sim.build import build_simulation
@@ -69,7 +69,7 @@ def test_a_target_on_foot_is_in_the_picture_and_in_the_labels(walk):
             picture,
             tracker,
             0,
-            Action(-1, None),
+            RecordedAction(-1, None),
         )
         label = label_of(frame, Episode(Path(), "DRONE0", 0, 160, 120, np.eye(3), 25.0))
         assert (label["target_type"], frame.target.object_class) == (

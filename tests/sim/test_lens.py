@@ -7,7 +7,7 @@ import pytest
 
 from eyas.core.errors import ConfigError
 from eyas.exports.capture import Moment, frame_of
-from eyas.exports.frame import Action
+from eyas.exports.frame import RecordedAction
 from eyas.sensors.config import CameraConfig
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
@@ -87,7 +87,7 @@ def test_rewards_packets_and_frames_are_those_of_a_simulation_with_that_lens():
             np.testing.assert_array_equal(ours[n], theirs[n])
         assert varied.packets()[1][n, 2] == field
         assert varied.packets()[1][n, 3] == pytest.approx(48 / math.tan(field / 2))
-        now, action = varied.snapshot.episodes, Action(-1, None)
+        now, action = varied.snapshot.episodes, RecordedAction(-1, None)
         frame = frame_of(Moment(varied.snapshot, now), n, pictures(varied), n, 0, action)
         assert frame.camera.field_of_view == field
         varied = started(RANDOM, 2)

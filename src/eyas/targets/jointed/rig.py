@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.mesh.shell import Shape, levels_of
 from eyas.state.mesh import Mesh
 from eyas.targets.jointed.cycle import frames_of, shapes_of
@@ -63,7 +64,8 @@ class JointedRig:
         for model in self._models:
             frames = frames_of(model.figure, np.zeros(1), moving=False)[0]
             placed = [
-                levels[self._shapes.index(shape)][0].positions @ frame[:, :3].T + frame[:, 3]
+                exact.product(levels[self._shapes.index(shape)][0].positions, frame[:, :3].T)
+                + frame[:, 3]
                 for shape, frame in zip(shapes_of(model.figure), frames, strict=True)
             ]
             model.check_meshes(np.concatenate(placed), 0.1, antennas=True)
