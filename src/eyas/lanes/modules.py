@@ -173,6 +173,9 @@ def _as_json(kind: Any) -> Any:  # noqa: ANN401  # what JSON can tell
     """Return what tells a type that a kernel returns; None if it is not one of the usual ones."""
     if isinstance(kind, Lanes):
         return ["lanes", _as_json(kind.element)]
+    if isinstance(kind, numba.types.CPointer):
+        pointee = _as_json(kind.dtype)
+        return None if pointee is None else ["pointer", pointee]
     if isinstance(kind, numba.types.Array):
         element = _as_json(kind.dtype)
         told = ["array", element, kind.ndim, kind.layout, not kind.mutable, kind.aligned]
@@ -192,6 +195,8 @@ def _type_of(told: Any) -> Any:  # noqa: ANN401  # from JSON; numba's types have
         return getattr(numba.types, told)
     if told[0] == "lanes":
         return Lanes(_type_of(told[1]))
+    if told[0] == "pointer":
+        return numba.types.CPointer(_type_of(told[1]))
     if told[0] == "array":
         dtype, dimensions, layout, readonly, aligned = told[1:]
         return numba.types.Array(_type_of(dtype), dimensions, layout, readonly, aligned=aligned)
@@ -223,6 +228,7 @@ def archive_of(folder: Path, function: str) -> bytes:
         function: Name of the compiled function whose modules they are, with all that it calls.
     """
     left = [path.stem for path in folder.glob(f"{function}-*{SUFFIX}")]
+    assert left, f"{function}: no module of it is kept in {folder}"
     found: dict[str, Contents] = {}
     while left:
         contents = read_trusted(folder / f"{(name := left.pop())}{SUFFIX}")
