@@ -250,7 +250,7 @@ def definitions_in(text: bytes) -> dict[str, Definition]:
             known = json.loads(kept.read_bytes())
             return _as_definitions(known)
         except (OSError, ValueError, TypeError, AttributeError):
-            found = _Reader(text).read()
+            found = dict(sorted(_Reader(text).read().items()))
         with suppress(OSError):  # whoever keeps what was made tells of it
             write_whole(kept, [json.dumps(found).encode()])
         return found
@@ -258,7 +258,9 @@ def definitions_in(text: bytes) -> dict[str, Definition]:
 
 
 def _as_definitions(known: Any) -> dict[str, Definition]:  # noqa: ANN401  # JSON
-    return {name: Definition(digest, tuple(refers)) for name, (digest, refers) in known.items()}
+    # In the same order wherever they come from: builds are digests of them.
+    ordered = sorted(known.items())
+    return {name: Definition(digest, tuple(refers)) for name, (digest, refers) in ordered}
 
 
 def index_of(paths: Iterable[Path]) -> str:
