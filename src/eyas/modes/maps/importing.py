@@ -163,11 +163,21 @@ def run(
         folder.mkdir(parents=True)
     write_atomic(folder / ROADS_FILE, gzip.compress(finished, mtime=0))
     save_network(folder / NETWORK_FILE, network)
+    _write_plan(folder, origin, features)
+    if out is None:
+        register_map(name)
+    report.traffic = _recorded(graph, folder, record=record)
+    report.seconds = time.monotonic() - begun
+    return report
+
+
+def _write_plan(folder: Path, origin: Origin, features: Survey) -> None:
+    """Write the plan of a map, and where it comes from."""
     plan = MapPlan(
-        name=name,
+        name=origin.name,
         title=origin.title,
         attribution=ATTRIBUTION,
-        size=report.size,
+        size=origin.size,
         roads=Roads(file=ROADS_FILE),
         survey=features,
     )
@@ -175,11 +185,6 @@ def run(
     write_atomic(folder / ATTRIBUTION_FILE, ATTRIBUTION.encode())
     # Last, since a folder with this file is a map.
     write_atomic(folder / MAP_FILE, (json.dumps(asdict(origin), indent=1) + "\n").encode())
-    if out is None:
-        register_map(name)
-    report.traffic = _recorded(graph, folder, record=record)
-    report.seconds = time.monotonic() - begun
-    return report
 
 
 def _name(text: str) -> str:

@@ -127,6 +127,9 @@ _FROM_END = 8.0
 """Least distance of lamps from the end of a street [m]."""
 
 
+_CHANCES = ("town trees", "town gardens")
+
+
 def completed(plan: MapPlan, network: RoadNetwork) -> MapPlan:
     """Return a plan with layers for all that its survey knows, and for what usually is there.
 
@@ -155,8 +158,7 @@ def completed(plan: MapPlan, network: RoadNetwork) -> MapPlan:
     taken = shapely.union_all([taken, *shapely.buffer(shapely.points(lit_by(lamps)), 4.0)])
     rng = stream(seed, "town furniture")
     furnished = furniture_along(network, _room_to_furnish(town), taken, KERB_HEIGHT, rng)
-    rng = stream(seed, "town plants")
-    green = _greenery(town, known, rng)
+    green = _greenery(town, known, stream(seed, "town plants"))
     ours = (
         *(ThingKind(name=name, make="street tree", variant=k, chance="town trees")
           for k, name in enumerate(_TREES)),
@@ -168,11 +170,7 @@ def completed(plan: MapPlan, network: RoadNetwork) -> MapPlan:
     return replace(
         plan,
         library=(*plan.library, *(kind for kind in ours if kind.name not in given)),
-        chances={
-            "town trees": Chance(stream="town trees"),
-            "town gardens": Chance(stream="town gardens"),
-            **plan.chances,
-        },
+        chances={**{name: Chance(stream=name) for name in _CHANCES}, **plan.chances},
         layers=(
             things([], _TREES),
             *layers,
