@@ -49,3 +49,8 @@ def test_the_lists_name_what_the_settings_take():
     assert "Pedestrian" in eyas.list_targets()
     assert {"servo", "fast"} <= set(eyas.list_policies())
     assert "dat-train" in eyas.list_presets()
+
+
+def test_a_result_tells_the_build(tmp_path):
+    eyas.evaluate("hover", "paper", tmp_path, map="simpleway-grass", episodes=1)
+    assert json.loads((tmp_path / "result.json").read_text())["build_id"] == eyas.build_id

@@ -110,6 +110,7 @@ def write_result(
     rows = rows_of(records, horizon, as_published=as_published)
     content: dict[str, Any] = {
         **made.model_dump(mode="json", exclude={"plan"}),
+        "build_id": made.build.id,
         "protocol_name": made.plan.protocol,
         "as_published": as_published,
         "plan": made.plan.model_dump(mode="json"),
