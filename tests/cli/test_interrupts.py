@@ -98,6 +98,7 @@ def test_further_signals_change_nothing_and_the_line_says_how_to_go_on(tmp_path)
 
 
 COMPILES = """
+import signal
 from eyas.cli import app
 from eyas.cli.main import main
 
@@ -107,7 +108,7 @@ def run():
     from eyas.render.ahead import draw_nothing
     print("ready", flush=True)
     draw_nothing()
-    return 0
+    signal.pause()  # a fast machine is done before the signal comes
 
 app.run = run
 main()
@@ -116,7 +117,7 @@ main()
 
 def test_a_signal_while_compiling_is_one_line_and_what_is_kept_is_whole(tmp_path):
     for wait in (0.2, 1.0, 2.5):
-        process = started(tmp_path, cache=tmp_path, program=COMPILES)
+        process = started(tmp_path, cache=tmp_path / str(wait), program=COMPILES)
         time.sleep(wait)
         process.send_signal(signal.SIGINT)
         assert ended(process, signal.SIGINT) == "eyas: interrupted"
