@@ -23,6 +23,7 @@ from eyas.task.done import DoneReason
 __all__ = [
     "FIELDS",
     "Label",
+    "LABELS",
     "LabelField",
     "LabelWriter",
     "checked",
