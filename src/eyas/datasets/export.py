@@ -272,4 +272,6 @@ def exports_folder(recording: Path, name: str, out: Path | None) -> Path:
 
 def formats_needs(names: Sequence[str]) -> list[str]:
     """Return the writers of whose files these formats are made."""
-    return list(dict.fromkeys(output for name in names for output in sorted(_format_of(name).needs)))
+    return list(
+        dict.fromkeys(output for name in names for output in sorted(_format_of(name).needs))
+    )

@@ -151,7 +151,7 @@ class Job:
         """Return whether an object is too small or too much hidden to count."""
         left, top, right, bottom = seen.label["box"]
         small = min(right - left, bottom - top) < self.least_side
-        return small or seen.label["visible_fraction"] < self.least_visible
+        return small or bool(seen.label["visible_fraction"] < self.least_visible)
 
 
 class Format(Protocol):
@@ -166,7 +166,8 @@ class Format(Protocol):
     @abstractmethod
     def add(self, episode: RecordedEpisode) -> None:
         """Write the files that are of one episode alone; may be called twice, if it was
-        interrupted."""
+        interrupted.
+        """
 
     def finish(self, episodes: Sequence[Exported]) -> None:
         """Write the files that are of several episodes."""

@@ -1,15 +1,16 @@
 """Recordings and data sets, read: episodes, frames, pictures, the arrays of every label.
 
-    data = eyas.load("runs/first")
-    for episode in data:
-        boxes = episode.array("target_box")            # (T, 4)
-        for frame in episode:
-            frame.picture(), frame.label["target_words"]
+data = eyas.load("runs/first")
+for episode in data:
+boxes = episode.array("target_box")            # (T, 4)
+for frame in episode:
+frame.picture(), frame.label["target_words"]
 """
 
 import json
 import re
 from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -62,7 +63,8 @@ class RecordedFrame:
 
     def masks(self) -> NDArray[np.int32]:
         """Return for each pixel the label's `id` of the moving object that it shows, 0 where it
-        shows none, shape (H, W)."""
+        shows none, shape (H, W).
+        """
         masks = self._image(self.file("masks"), np.int32)
         masks[masks != 0] += MASK_OFFSET
         return masks
@@ -73,14 +75,16 @@ class RecordedFrame:
 
     def depth(self) -> NDArray[np.float32]:
         """Return the distance of each pixel along the optical axis [m], infinity for the sky and
-        for what is too far for the file, shape (H, W)."""
+        for what is too far for the file, shape (H, W).
+        """
         levels = self._image(self.file("depth"), np.float32)
         unit = np.float32(self.episode.config.video.depth_unit)
         return np.where(levels > 0, levels * unit, np.float32(np.inf))
 
     def flow(self) -> tuple[NDArray[np.float32], NDArray[np.bool_]]:
         """Return the motion of each pixel to the next frame, right and down [pixels], shape
-        (H, W, 2), and whether it is known: where the point is in view there, shape (H, W)."""
+        (H, W, 2), and whether it is known: where the point is in view there, shape (H, W).
+        """
         import av  # slow to import
 
         path = self.file("flow")
@@ -91,9 +95,10 @@ class RecordedFrame:
 
     def normals(self) -> NDArray[np.float32]:
         """Return the unit normal of the surface in each pixel, in the camera's frame, shape
-        (H, W, 3)."""
-        normals = self._image(self.file("normals"), np.float32) / np.float32(127.5) - 1
-        return normals
+        (H, W, 3).
+        """
+        levels: NDArray[np.float32] = self._image(self.file("normals"), np.float32)
+        return levels / np.float32(127.5) - np.float32(1)
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Return the lossless arrays: `depth`, `object_id`, `class_id`, each of shape (H, W)."""
@@ -318,16 +323,11 @@ def _require_complete(folder: Path) -> None:
             raise DataFileError(f"{folder / name}: missing, though {CHECKSUMS} names it")
 
 
-class _reading:  # noqa: N801  # a context manager
-    """Turns errors of reading a file into one line."""
-
-    def __init__(self, path: Path) -> None:
-        self._path = path
-
-    def __enter__(self) -> None:
-        return
-
-    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _: object) -> None:
-        if isinstance(error, OSError | ValueError | SyntaxError | EOFError):
-            told = getattr(error, "strerror", None) or error
-            raise DataFileError(f"{self._path}: cannot read: {told}") from error
+@contextmanager
+def _reading(path: Path) -> Iterator[None]:
+    """Turn errors of reading a file into one line."""
+    try:
+        yield
+    except (OSError, ValueError, SyntaxError, EOFError) as error:
+        told = getattr(error, "strerror", None) or error
+        raise DataFileError(f"{path}: cannot read: {told}") from error

@@ -56,4 +56,5 @@ def _text(numbers: NDArray[np.int64]) -> str:
     last = np.argmax(~more, axis=1)
     used = np.arange(_MOST_GROUPS) <= last[:, None]
     letters = (low | np.where(np.arange(_MOST_GROUPS) < last[:, None], 32, 0)) + 48
-    return letters[used].astype(np.uint8).tobytes().decode()
+    code: bytes = letters[used].astype(np.uint8).tobytes()
+    return code.decode()

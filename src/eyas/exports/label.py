@@ -23,8 +23,8 @@ from eyas.task.done import DoneReason
 
 __all__ = [
     "FIELDS",
-    "Label",
     "LABELS",
+    "Label",
     "LabelField",
     "LabelWriter",
     "checked",

@@ -53,7 +53,9 @@ class Got10k(Format):
             inside = f"{folder}/{numbered(frame, 1, 8, ending)}"
             job.place(episode.picture_file(frame.number), inside)
         boxes = target_boxes(labels)
-        job.write(f"{folder}/groundtruth.txt", _lines(",".join(map(str, b)) for b in boxes.tolist()))
+        job.write(
+            f"{folder}/groundtruth.txt", _lines(",".join(map(str, b)) for b in boxes.tolist())
+        )
         visible = episode.array("visible_fraction")
         truncated = episode.array("target_truncated")
         job.write(f"{folder}/absence.label", _lines((visible <= 0).astype(int)))
