@@ -65,7 +65,14 @@ class VideoFolder:
         kind = config.tracker.original_name
         self.trackers = tuple(f"{kind}{tracker}" for tracker in range(config.video.channels))
         video = config.video
-        run = Run(path, self.trackers, config, video.target_direction, video.jpeg_quality)
+        run = Run(
+            path,
+            self.trackers,
+            config,
+            video.target_direction,
+            video.jpeg_quality,
+            video.depth_unit,
+        )
         self.writers = tuple(writer(run) for writer in chosen_writers(writers_in(video.writers)))
 
     def episode(self, tracker: int, number: int, field_of_view: float) -> Episode:
