@@ -26,7 +26,8 @@ def print_figures(out: Path, results: dict[str, Any]) -> None:
             if figures["frames"]:
                 table.add_row(f"{criterion}: {value}", *_row(figures))
     console = Console()
-    console.print(table, soft_wrap=True)
+    console.width = max(console.width, 100)  # else a pipe would cut the numbers
+    console.print(table)
     console.print(f"figures in {out}", highlight=False, markup=False, soft_wrap=True)
 
 
