@@ -29,6 +29,11 @@ FORMATS: Registry[type[Any]] = Registry(
         "visdrone-sot": "eyas.datasets.formats.visdrone:VisDroneSot",
         "visdrone-mot": "eyas.datasets.formats.visdrone:VisDroneMot",
         "uavdt": "eyas.datasets.formats.uavdt:Uavdt",
+        "lerobot": "eyas.datasets.formats.lerobot:LeRobot",
+        "webdataset": "eyas.datasets.formats.shards:WebDataset",
+        "minari": "eyas.datasets.formats.minari:Minari",
+        "rerun": "eyas.datasets.formats.rerun:Rerun",
+        "mcap": "eyas.datasets.formats.mcap:Mcap",
     },
     group="eyas.formats",
 )

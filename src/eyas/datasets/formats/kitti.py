@@ -1,9 +1,9 @@
 """KITTI tracking: `<training|validation|testing>/{image_02, label_02, calib, poses, intrinsics}`.
 
-A line of `label_02/<episode>.txt`: frame from 0, track, type, truncation (0 nothing, 1 up to half, 2
-more), occlusion (the same), alpha, box (left, top, right, bottom, hidden parts included, inside the
-picture), height, width, length, location (the bottom's middle in the camera's frame: right, down,
-forward), rotation_y.
+A line of `label_02/<episode>.txt`: frame from 0, track, type, truncation (0 nothing, 1 up to half,
+2 more), occlusion (the same), alpha, box (left, top, right, bottom, hidden parts included, inside
+the picture), height, width, length, location (the bottom's middle in the camera's frame: right,
+down, forward), rotation_y.
 
 KITTI's car drives upright: `rotation_y` and `alpha` are angles about the camera's own vertical. A
 drone looks down, so here they are about the world's vertical, as seen by a camera that looks in the
