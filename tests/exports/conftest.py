@@ -25,6 +25,8 @@ TARGET = Subject(
     yaw=0.0,
     motion=Movement(np.array([0.5, 0.0, 0.0]), 0.0, 0.0, 120.0, TargetDirection.STRAIGHT, 0.37),
     box=np.array([10, 11, 20, 17], np.int32),
+    visible_box=np.array([10, 11, 18, 17], np.int32),
+    whole_box=np.array([10.25, 10.5, 20.0, 17.0]),
     seen_pixels=45,
     covered_pixels=60,
 )
@@ -43,7 +45,7 @@ def made(number: int, **changes: object) -> Frame:
             angular_velocity=np.zeros(3),
             gimbal=np.zeros(3),
         ),
-        "camera": CameraPose(np.array([1.1, 2.0, 21.9]), np.eye(3), 0.8),
+        "camera": CameraPose(np.array([1.1, 2.0, 21.9]), np.eye(3), 0.8, 64, 48),
         "target": TARGET,
         "others": (),
         "action": RecordedAction(-1, None),

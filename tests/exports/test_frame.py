@@ -39,7 +39,7 @@ def snapshot() -> Snapshot:
 @pytest.fixture
 def picture() -> Picture:
     made = Picture.create(2, 4, 5, depth=True, subject=True)
-    filled([made.rgb, made.depth, made.subject_box])
+    filled([made.rgb, made.depth, made.subject_box, made.subject_visible_box])
     made.subject_pixels[VIEW] = 3, 4
     return made
 
@@ -58,6 +58,8 @@ def test_a_frame_holds_the_rows_of_its_tracker_and_of_its_view(snapshot, picture
     assert frame.target.object_id == ACTOR_OBJECT + targets.actor[TRACKER]
     assert frame.target.type == MODELS[4].name
     assert np.array_equal(frame.target.box, picture.subject_box[VIEW])
+    assert np.array_equal(frame.target.visible_box, picture.subject_visible_box[VIEW])
+    assert (frame.camera.width, frame.camera.height) == (5, 4)
     assert frame.target.visible_fraction == 0.75
     assert np.array_equal(frame.rgb, picture.rgb[VIEW])
     assert np.array_equal(frame.depth, picture.depth[VIEW])
@@ -80,9 +82,9 @@ def test_later_steps_and_pictures_leave_a_frame_alone(snapshot, picture):
         Moment(snapshot, snapshot.episodes), TRACKER, picture, VIEW, 0, RecordedAction(-1, None)
     )
     shared = [*snapshot.trackers, *snapshot.cameras, *snapshot.targets]
-    shared += [picture.rgb, picture.depth, picture.subject_box]
+    shared += [picture.rgb, picture.depth, picture.subject_box, picture.subject_visible_box]
     records = (frame.tracker, frame.camera, frame.target, frame)
     own = [getattr(record, name) for record in records for name in record.__slots__]
     arrays = [value for value in own if isinstance(value, np.ndarray)]
-    assert len(arrays) == 6 + 2 + 5 + 2
+    assert len(arrays) == 6 + 2 + 7 + 2
     assert not any(np.shares_memory(mine, theirs) for mine in arrays for theirs in shared)

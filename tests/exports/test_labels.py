@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from eyas.core.errors import DataFileError
+from eyas.core.pinhole import intrinsics
 from eyas.exports.frame import RecordedAction
 from eyas.exports.label import LabelWriter, label_of, read_labels
 from eyas.exports.writer import Scores, Summary
@@ -46,6 +47,10 @@ def test_a_label_says_what_the_frame_holds(frame, episode):
     assert label["target_class_id"] == int(seen.target.object_class)
     assert (label["width"], label["height"]) == (64, 48)
     np.testing.assert_allclose(label["intrinsics"], episode.intrinsics, atol=1e-6)
+    assert label["distortion"] == [0.0] * 5
+    assert label["target_visible_box"] == [10, 11, 18, 17]
+    assert label["target_whole_box"] == [10.25, 10.5, 20.0, 17.0]
+    assert label["target_distance"] == round(math.dist((1.1, 2.0, 21.9), (13.0, 2.0, 0.37)), 6)
     assert label["target_words"] == "a red SUV"
     assert (label["frame"], label["step"], label["time"]) == (7, 171, 1.28)
     assert label["episode_time"] == 0.342
@@ -75,6 +80,33 @@ def test_a_label_lists_the_other_vehicles(written, frame):
         [13.0, 0.0, 0.0],
         0.0,
     )
+
+
+def test_commands_are_told_by_the_second(frame, episode):
+    assert label_of(frame(0), episode)["command"] is None
+    flown = frame(0, action=RecordedAction(3, np.array([2.0, -1.0, 0.004, 0.5])))
+    assert label_of(flown, episode)["command"] == [2.0, -1.0, 2.0, 0.5]
+
+
+def test_the_camera_matrix_is_that_of_the_frame(frame, episode):
+    seen = frame(0)
+    zoomed = replace(seen, camera=replace(seen.camera, field_of_view=0.4))
+    np.testing.assert_allclose(
+        label_of(zoomed, episode)["intrinsics"], intrinsics(64, 48, 0.4), atol=1e-6
+    )
+
+
+def test_what_is_outside_of_the_picture_is_truncated(frame, episode):
+    shares = {
+        (10.0, 10.0, 20.0, 20.0): 0.0,
+        (-10.0, 10.0, 30.0, 20.0): 0.25,
+        (54.0, 38.0, 74.0, 58.0): 0.75,
+        (70.0, 10.0, 80.0, 20.0): 1.0,
+        (0.0, 0.0, 0.0, 0.0): 1.0,
+    }
+    for box, share in shares.items():
+        seen = frame(0, target=replace(frame(0).target, whole_box=np.array(box)))
+        assert label_of(seen, episode)["target_truncated"] == share, box
 
 
 def test_only_articulated_vehicles_have_sections(written, frame):

@@ -5,7 +5,7 @@ from dataclasses import asdict, fields, is_dataclass
 import numpy as np
 import pytest
 
-from eyas.exports.capture import Moment, frame_of, others_of
+from eyas.exports.capture import Moment, frame_of, moment_of, others_of
 from eyas.exports.frame import RecordedAction
 from eyas.sim.build import build_simulation
 from eyas.sim.config import SimConfig
@@ -14,7 +14,7 @@ from eyas.state.draw import Picture
 from eyas.state.scene import ACTOR_OBJECT
 from eyas.targets.words import words_of
 
-MEASURED = ("box", "seen_pixels", "covered_pixels")
+MEASURED = ("box", "visible_box", "whole_box", "seen_pixels", "covered_pixels")
 
 
 @pytest.fixture(scope="module")
@@ -32,8 +32,7 @@ def picture_of(simulation, **wanted) -> Picture:
 
 
 def seen_by(simulation, tracker, picture):
-    actors = simulation.view.actors(tracker)
-    return others_of(simulation.snapshot, actors, tracker, picture, tracker)
+    return others_of(moment_of(simulation, tracker, picture, tracker), tracker, picture, tracker)
 
 
 def test_another_s_target_is_described_like_a_target(simulation):

@@ -40,6 +40,9 @@ def street_views(count=40):
     return views
 
 
+SUBJECT = ("subject_box", "subject_pixels", "subject_visible_box")
+
+
 def measured(renderer, views, traffic, size=SIZE, samples=1, **wanted) -> Picture:
     wanted = {"object_id": True, "subject": True, "actors": COUNT, **wanted}
     picture = Picture.create(len(views.position), *size, **wanted)
@@ -72,6 +75,7 @@ def test_they_are_those_of_each_actor_drawn_alone_and_of_the_object_ids(city, no
             seen = picture.object_id[v] == ACTOR_OBJECT + actor
             assert picture.actor_pixels[v, actor].tolist() == [seen.sum(), covered.sum()]
             assert picture.actor_box[v, actor].tolist() == box_of(covered)
+            assert picture.actor_visible_box[v, actor].tolist() == box_of(seen)
     seen, covered = picture.actor_pixels.reshape(-1, 2).T
     assert ((seen > 0) & (seen < covered)).sum() > 10
     assert ((seen == 0) & (covered > 0)).sum() > 5
@@ -87,7 +91,7 @@ def test_the_subject_is_one_of_them(city):
         measured(renderer, views, traffic, actors=0),
     )
     assert apart.actor_box is None
-    for name in ("subject_box", "subject_pixels"):
+    for name in SUBJECT:
         np.testing.assert_array_equal(getattr(together, name), getattr(apart, name))
     assert not together.subject_pixels[:3].any()
     assert (together.subject_pixels[3:, 1] > 0).sum() > 3
@@ -116,17 +120,16 @@ def test_bands_change_no_measurement(city, monkeypatch):
     monkeypatch.setattr(jobs, "JOBS_PER_THREAD", 12)
     renderer._tasks.clear()  # which keep their bands
     banded = measured(renderer, views, traffic, (120, 160))
-    for name in ("actor_box", "actor_pixels", "subject_box", "subject_pixels"):
+    for name in ("actor_box", "actor_pixels", "actor_visible_box", *SUBJECT):
         np.testing.assert_array_equal(getattr(banded, name), getattr(whole, name))
 
 
 def test_a_part_of_the_arrays_may_be_wanted(city):
     renderer, traffic = city
     views = street_views(4)
-    both, boxes, pixels = (measured(renderer, views, traffic) for _ in range(3))
-    boxes.actor_pixels = boxes.subject_box = boxes.subject_pixels = None
-    pixels.actor_box = None
-    for part in (boxes, pixels):
+    both = measured(renderer, views, traffic)
+    for name in ("actor_box", "actor_pixels", "actor_visible_box", *SUBJECT):
+        part = Picture.create(4, *SIZE)
+        setattr(part, name, np.zeros_like(getattr(both, name)))
         renderer.draw(views, traffic, part)
-    np.testing.assert_array_equal(boxes.actor_box, both.actor_box)
-    np.testing.assert_array_equal(pixels.actor_pixels, both.actor_pixels)
+        np.testing.assert_array_equal(getattr(part, name), getattr(both, name))

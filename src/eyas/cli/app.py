@@ -10,7 +10,7 @@ import typer
 import typer.core
 
 from eyas import __version__
-from eyas.cli import evaluate, maps, runs, targets, tools, traffic
+from eyas.cli import data, evaluate, maps, runs, targets, tools, traffic
 from eyas.cli.said import say
 from eyas.core.errors import EyasError
 from eyas.core.own_code import ended
@@ -46,6 +46,7 @@ app = typer.Typer(
 )
 app.command("demo")(runs.demo)
 app.command("video")(runs.video)
+app.command("export")(data.export)
 app.command("train")(runs.train)
 app.command("serve")(runs.serve)
 app.command("webots-shim")(tools.webots_shim)

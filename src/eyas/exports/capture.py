@@ -8,6 +8,8 @@ from eyas.core.clock import PHYSICS_STEP
 from eyas.exports.frame import CameraPose, Floats, Frame, RecordedAction, RecordedBody, Subject
 from eyas.exports.movement import Movement
 from eyas.lanes import interpreted
+from eyas.render.outputs import picture_size
+from eyas.sim.simulation import Simulation
 from eyas.sim.views.words import target_in_words
 from eyas.state.draw import Picture
 from eyas.state.episode import EpisodeState
@@ -19,7 +21,7 @@ from eyas.targets.words import words_of
 from eyas.task.direction import TargetDirection, target_centre, target_direction
 from eyas.task.done import DoneReason
 
-__all__ = ["Moment", "frame_of", "others_of"]
+__all__ = ["Moment", "frame_of", "moment_of", "others_of"]
 
 _target_centre = interpreted(target_centre)
 _target_direction = interpreted(target_direction)
@@ -34,9 +36,33 @@ class Moment(NamedTuple):
     """The episodes at the time of the frame, which is later if pictures are late."""
     actors: ActorView | None = None
     """The actors around it that the picture shows; None: only the target is wanted."""
+    whole_box: Floats | None = None
+    """See `Subject.whole_box`, of each of these actors, shape (A, 4); only rows of the target and
+    of actors in the picture are read."""
     lidar: Floats | None = None
     """Distances of its lidar [m], shape (points,), which nothing changes later; None: it has
     none."""
+
+
+def moment_of(simulation: Simulation, tracker: int, picture: Picture, view: int) -> Moment:
+    """Return what is known of a tracker at the time of its picture, which has just been drawn.
+
+    Args:
+        simulation: The simulation.
+        tracker: The tracker.
+        picture: The picture; if it measures actors, they are wanted.
+        view: The tracker's row in `picture`.
+    """
+    seen, shown = simulation.view, simulation.view.state.shown
+    actors = whole_box = None
+    if picture.actor_pixels is not None:
+        actors = seen.actors(tracker)
+        wanted = picture.actor_pixels[view, :, 0] > 0
+        wanted[shown.targets.actor[tracker]] = True
+        whole_box = np.zeros((simulation.actors, 4))
+        whole_box[wanted] = seen.whole_boxes(tracker, actors, np.flatnonzero(wanted))
+    lidar = None if seen.lidar is None else seen.lidar.ranges(seen.state.late)[tracker]
+    return Moment(shown, simulation.snapshot.episodes, actors, whole_box, lidar)
 
 
 def frame_of(
@@ -53,19 +79,19 @@ def frame_of(
         number: Number of the frame in its episode.
         action: The tracker's action.
     """
-    shown, now, actors, lidar = moment
+    shown, now = moment.shown, moment.now
     words = ""
     others: tuple[Subject, ...] = ()
-    if actors is not None:
-        words = target_in_words(shown, actors, tracker, picture.aspect)
-        others = others_of(shown, actors, tracker, picture, view)
+    if moment.actors is not None:
+        words = target_in_words(shown, moment.actors, tracker, picture.aspect)
+        others = others_of(moment, tracker, picture, view)
     return Frame(
         number=number,
         time=float(shown.episodes.tick[tracker]) * PHYSICS_STEP,
         step=int(shown.episodes.step_count[tracker]),
         tracker=_body(shown.trackers, tracker),
-        camera=_camera(shown.cameras, tracker),
-        target=_target(shown, tracker, picture, view, words),
+        camera=_camera(shown.cameras, tracker, picture),
+        target=_target(moment, tracker, picture, view, words),
         others=others,
         action=action,
         reward=float(now.reward[tracker]),
@@ -75,7 +101,7 @@ def frame_of(
         depth=None if picture.depth is None else picture.depth[view].copy(),
         object_id=None if picture.object_id is None else picture.object_id[view].copy(),
         class_id=None if picture.class_id is None else picture.class_id[view].copy(),
-        lidar=lidar,
+        lidar=moment.lidar,
     )
 
 
@@ -90,23 +116,28 @@ def _body(trackers: TrackerState, tracker: int) -> RecordedBody:
     )
 
 
-def _camera(cameras: CameraState, tracker: int) -> CameraPose:
+def _camera(cameras: CameraState, tracker: int, picture: Picture) -> CameraPose:
+    height, width = picture_size(picture)
     return CameraPose(
         position=cameras.position[tracker].copy(),
         rotation=cameras.rotation[tracker].copy(),
         field_of_view=float(cameras.field_of_view[tracker]),
+        width=width,
+        height=height,
     )
 
 
-def _target(snapshot: Snapshot, tracker: int, picture: Picture, view: int, words: str) -> Subject:
-    targets = snapshot.targets
+def _target(moment: Moment, tracker: int, picture: Picture, view: int, words: str) -> Subject:
+    targets = moment.shown.targets
     assert picture.subject_box is not None
+    assert picture.subject_visible_box is not None
     assert picture.subject_pixels is not None
     seen, covered = (int(pixels) for pixels in picture.subject_pixels[view])
     model, speed = int(targets.model[tracker]), float(targets.speed[tracker])
     slope, travelled = float(targets.slope[tracker]), float(targets.travelled[tracker])
+    actor = int(targets.actor[tracker])
     return Subject(
-        object_id=ACTOR_OBJECT + int(targets.actor[tracker]),
+        object_id=ACTOR_OBJECT + actor,
         type=MODELS[model].name,
         object_class=kind_of(model).object_class,
         size=targets.size[tracker].copy(),
@@ -119,13 +150,15 @@ def _target(snapshot: Snapshot, tracker: int, picture: Picture, view: int, words
             yaw_rate=float(targets.yaw_rate[tracker]),
             slope=slope,
             travelled=travelled,
-            direction=TargetDirection(snapshot.episodes.direction[tracker]),
+            direction=TargetDirection(moment.shown.episodes.direction[tracker]),
             rise=float(targets.rise[tracker]),
             hitch=float(targets.hitch[tracker]),
             upright=kind_of(model).object_class is ObjectClass.PERSON,
             extent=extent_of(model, travelled, speed, slope),
         ),
         box=picture.subject_box[view].copy(),
+        visible_box=picture.subject_visible_box[view].copy(),
+        whole_box=_whole_box(moment, actor),
         seen_pixels=seen,
         covered_pixels=covered,
         words=words,
@@ -133,28 +166,32 @@ def _target(snapshot: Snapshot, tracker: int, picture: Picture, view: int, words
     )
 
 
-def others_of(
-    shown: Snapshot, actors: ActorView, tracker: int, picture: Picture, view: int
-) -> tuple[Subject, ...]:
+def _whole_box(moment: Moment, actor: int) -> Floats:
+    return np.zeros(4) if moment.whole_box is None else moment.whole_box[actor].copy()
+
+
+def others_of(moment: Moment, tracker: int, picture: Picture, view: int) -> tuple[Subject, ...]:
     """Return all visible moving objects except the tracker's target, in the order of their ids.
 
     Args:
-        shown: The state that the picture shows.
-        actors: The actors that it shows.
+        moment: What is known, with the actors that the picture shows.
         tracker: The tracker of the picture.
         picture: The picture, with the boxes and pixels of all actors.
         view: The tracker's row in `picture`.
     """
     assert picture.actor_pixels is not None
     visible = picture.actor_pixels[view, :, 0] > 0
-    visible[shown.targets.actor[tracker]] = False
-    return tuple(_other(actors, actor, picture, view) for actor in np.flatnonzero(visible).tolist())
+    visible[moment.shown.targets.actor[tracker]] = False
+    return tuple(_other(moment, actor, picture, view) for actor in np.flatnonzero(visible).tolist())
 
 
-def _other(around: ActorView, actor: int, picture: Picture, view: int) -> Subject:
+def _other(moment: Moment, actor: int, picture: Picture, view: int) -> Subject:
     """Return an actor that is not the target."""
+    around = moment.actors
+    assert around is not None
     assert picture.actor_box is not None
     assert picture.actor_pixels is not None
+    assert picture.actor_visible_box is not None
     actors, model = around.state, int(around.model[actor])
     kind, (x, y, z) = kind_of(model), actors.position[0, actor].tolist()
     yaw = float(actors.yaw[0, actor])
@@ -171,6 +208,8 @@ def _other(around: ActorView, actor: int, picture: Picture, view: int) -> Subjec
         yaw=yaw,
         motion=_movement(actors, around.before, actor, model),
         box=picture.actor_box[view, actor].copy(),
+        visible_box=picture.actor_visible_box[view, actor].copy(),
+        whole_box=_whole_box(moment, actor),
         seen_pixels=seen,
         covered_pixels=covered,
         words=words_of(model, around.colour[actor].tolist()),

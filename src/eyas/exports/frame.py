@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_STEP
+from eyas.core.pinhole import intrinsics
 from eyas.exports.movement import Movement, SectionBox, box_corners, posed_corners, section_boxes
 from eyas.state.scene import ObjectClass
 from eyas.targets.kind import Section
@@ -70,7 +71,16 @@ class CameraPose:
     rotation: Floats
     """Camera to world; columns are the camera's forward, left and up axes, shape (3, 3)."""
     field_of_view: float
-    """Horizontal [rad]; the same in all frames of an episode."""
+    """Horizontal [rad]."""
+    width: int
+    """Width of the picture [pixels]."""
+    height: int
+    """Height of the picture [pixels]."""
+
+    @property
+    def intrinsics(self) -> Floats:
+        """Camera matrix, see `Episode.intrinsics`."""
+        return intrinsics(self.width, self.height, self.field_of_view)
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,6 +107,12 @@ class Subject:
     box: NDArray[np.int32]
     """Extent in the picture, hidden parts included, clipped to the picture: left, top, right,
     bottom [pixels], the last two exclusive; all 0 outside the picture; shape (4,)."""
+    visible_box: NDArray[np.int32]
+    """Extent of the pixels that show it, as above; all 0 if none does; shape (4,)."""
+    whole_box: Floats
+    """Extent of all its vertices, not clipped to the picture: left, top, right, bottom [pixels].
+    Those nearer to the camera than 8 cm along the optical axis, or behind it, are left out; all 0
+    if all are, or if no writer wants `others`; shape (4,)."""
     seen_pixels: int
     """Pixels that show it."""
     covered_pixels: int
@@ -111,6 +127,17 @@ class Subject:
     def visible_fraction(self) -> float:
         """Visible share of its pixels, 0 to 1; 0 outside the picture."""
         return self.seen_pixels / self.covered_pixels if self.covered_pixels else 0.0
+
+    def truncated(self, camera: CameraPose) -> float:
+        """Return the share of its whole box that is outside the picture, 0 to 1; 1 if it has
+        none.
+        """
+        left, top, right, bottom = self.whole_box.tolist()
+        whole = (right - left) * (bottom - top)
+        across = min(right, camera.width) - max(left, 0.0)
+        down = min(bottom, camera.height) - max(top, 0.0)
+        inside = max(across, 0.0) * max(down, 0.0)
+        return 1.0 - inside / whole if whole > 0.0 else 1.0
 
     @property
     def corners(self) -> Floats:

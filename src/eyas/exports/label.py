@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from eyas.core.clock import PHYSICS_STEP
 from eyas.core.errors import DataFileError
 from eyas.core.frames import rotate_back
 from eyas.exports.frame import Frame, Subject
@@ -22,6 +23,7 @@ from eyas.task.done import DoneReason
 
 __all__ = [
     "FIELDS",
+    "LABELS",
     "Label",
     "LabelField",
     "LabelWriter",
@@ -50,6 +52,9 @@ def rounded_list(values: ArrayLike) -> list[float | None]:
 Label = dict[str, Any]
 """The label of a frame, as JSON has it; numbers that are not finite are None."""
 
+_PER_SECOND = np.array([1.0, 1.0, 1.0 / PHYSICS_STEP, 1.0])
+"""Commands climb by metres in each physics step; labels tell metres per second."""
+
 _rotate_back = interpreted(rotate_back)
 
 
@@ -70,9 +75,11 @@ NUMBER = Type("number", {"type": ["number", "null"]})
 TRUTH = Type("true or false", {"type": "boolean"})
 TEXT = Type("text", {"type": "string"})
 BOX = _array("4 whole numbers", WHOLE.schema, 4)
+EXTENT = _array("4 numbers", NUMBER.schema, 4)
 VECTOR = _array("3 numbers", NUMBER.schema, 3)
-QUATERNION = _array("4 numbers", NUMBER.schema, 4)
 MATRIX = _array("3 rows of 3 numbers", VECTOR.schema, 3)
+COEFFICIENTS = _array("5 numbers", NUMBER.schema, 5)
+COMMAND = Type("4 numbers, or null", {**EXTENT.schema, "type": ["array", "null"]})
 CORNERS = _array("8 points", VECTOR.schema, 8)
 SECTIONS = Type(
     "list of `name`, `size`, `yaw`, `corners`",
@@ -138,6 +145,15 @@ def _relative(frame: Frame, subject: Subject) -> list[float | None]:
     return rounded_list(_rotate_back(tracker.orientation, *(subject.centre - tracker.position)))
 
 
+def _distance(frame: Frame, subject: Subject) -> float | None:
+    return rounded(math.dist(frame.camera.position.tolist(), subject.centre.tolist()))
+
+
+def _command(frame: Frame, episode: Episode) -> list[float | None] | None:
+    command = frame.action.command
+    return None if command is None else rounded_list(command * _PER_SECOND)
+
+
 FIELDS = (
     LabelField("frame", WHOLE, "Number of the frame in its episode, from 0; its picture is "
                "`NNNNNN.jpeg`.", lambda f, e: f.number),
@@ -160,7 +176,7 @@ FIELDS = (
                lambda f, e: rounded_list(f.tracker.position), unit="m", frame="world"),
     LabelField("tracker_velocity", VECTOR, "Velocity of the tracker.",
                lambda f, e: rounded_list(f.tracker.velocity), unit="m/s", frame="world"),
-    LabelField("tracker_orientation", QUATERNION, "Body to world, quaternion w, x, y, z.",
+    LabelField("tracker_orientation", EXTENT, "Body to world, quaternion w, x, y, z.",
                lambda f, e: rounded_list(f.tracker.orientation), frame="body to world"),
     LabelField("camera_position", VECTOR, "Optical centre of the camera.",
                lambda f, e: rounded_list(f.camera.position), unit="m", frame="world"),
@@ -218,7 +234,26 @@ FIELDS = (
     LabelField("width", WHOLE, "Width of the picture.", lambda f, e: e.width, unit="pixels"),
     LabelField("height", WHOLE, "Height of the picture.", lambda f, e: e.height, unit="pixels"),
     LabelField("intrinsics", MATRIX, "Camera matrix: x right, y down, z forward, the centre of "
-               "pixel (0, 0) at (0.5, 0.5).", lambda f, e: _points(e.intrinsics), unit="pixels"),
+               "pixel (0, 0) at (0.5, 0.5).", lambda f, e: _points(f.camera.intrinsics),
+               unit="pixels"),
+    LabelField("target_visible_box", BOX, "Extent of its visible pixels, as `target_box`; all 0 if "
+               "none is visible.", None, lambda f, s: s.visible_box.tolist(), "visible_box",
+               unit="pixels"),
+    LabelField("target_whole_box", EXTENT, "Extent of the vertices of all its parts in their poses "
+               "at this moment, hidden or not, not clipped to the picture: what it would cover if "
+               "the picture were larger. Vertices less than 8 cm in front of the camera, or behind "
+               "it, are left out; all 0 if all are.", None, lambda f, s: rounded_list(s.whole_box),
+               "whole_box", unit="pixels"),
+    LabelField("target_truncated", NUMBER, "Share of its whole box that is outside the picture, 0 "
+               "to 1; 1 if it is out of view.", None, lambda f, s: rounded(s.truncated(f.camera)),
+               "truncated"),
+    LabelField("target_distance", NUMBER, "From the camera to its centre.", None, _distance,
+               "distance", unit="m"),
+    LabelField("distortion", COEFFICIENTS, "Of the lens: k1, k2, p1, p2, k3; all 0, as it is a "
+               "pinhole.", lambda f, e: [0.0] * 5),
+    LabelField("command", COMMAND, "What the tracker is told to do: forward, left, up and yaw "
+               "rate; null when the target is followed exactly.", _command,
+               unit="m/s, rad/s", frame="tracker's body"),
 )  # fmt: skip
 """All fields, in the order of the file."""
 

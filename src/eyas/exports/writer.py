@@ -170,7 +170,7 @@ class Episode:
     """Height of the pictures [pixels]."""
     intrinsics: NDArray[np.float64]
     """Camera matrix of computer vision (x right, y down, z forward), pixel (0, 0) has its centre at
-    (0.5, 0.5) [pixels], shape (3, 3)."""
+    (0.5, 0.5) [pixels], shape (3, 3). Of its first frame; that of each is in `Frame.camera`."""
     fps: float
     """Frames per second of simulated time [Hz]."""
 

@@ -1,5 +1,7 @@
 """What a picture wants to be written, and what the bands of its views measured."""
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,13 +11,16 @@ from eyas.state.scene import ACTOR_OBJECT
 
 __all__ = ["NO_OUTPUT", "measured_alone", "picture_size", "wanted_output", "write_measured"]
 
+MEASURES = 10
+"""Numbers that are measured of a thing, see `Output.subject`."""
+
 NO_OUTPUT = Output(
     rgb=np.empty((0, 0, 0, 3), np.uint8),
     depth=np.empty((0, 0, 0), np.float32),
     object_id=np.empty((0, 0, 0), np.int32),
     class_id=np.empty((0, 0, 0), np.uint8),
-    subject=np.empty((0, 6), np.int32),
-    actor=np.empty((0, 0, 6), np.int32),
+    subject=np.empty((0, MEASURES), np.int32),
+    actor=np.empty((0, 0, MEASURES), np.int32),
 )
 
 
@@ -24,22 +29,28 @@ def wanted_output(picture: Picture) -> Output:
 
     If all actors are measured, the subjects are among them.
     """
-    actors = picture.actor_box if picture.actor_pixels is None else picture.actor_pixels
-    subject = picture.subject_box is not None or picture.subject_pixels is not None
+    of_actors = (picture.actor_box, picture.actor_pixels, picture.actor_visible_box)
+    actors = next((array for array in of_actors if array is not None), None)
+    of_subject = (picture.subject_box, picture.subject_pixels, picture.subject_visible_box)
+    subject = any(array is not None for array in of_subject)
     return Output(
         rgb=NO_OUTPUT.rgb if picture.rgb is None else picture.rgb,
         depth=NO_OUTPUT.depth if picture.depth is None else picture.depth,
         object_id=NO_OUTPUT.object_id if picture.object_id is None else picture.object_id,
         class_id=NO_OUTPUT.class_id if picture.class_id is None else picture.class_id,
-        subject=np.empty((1, 6), np.int32) if subject and actors is None else NO_OUTPUT.subject,
-        actor=NO_OUTPUT.actor if actors is None else np.empty((1, actors.shape[1], 6), np.int32),
+        subject=np.empty((1, MEASURES), np.int32)
+        if subject and actors is None
+        else NO_OUTPUT.subject,
+        actor=NO_OUTPUT.actor
+        if actors is None
+        else np.empty((1, actors.shape[1], MEASURES), np.int32),
     )
 
 
 def measured_alone(output: Output, jobs: int) -> Output:
     """Return an output with measurements, which are wanted, of so many jobs."""
     return output._replace(
-        subject=np.zeros((jobs if len(output.subject) else 0, 6), np.int32),
+        subject=np.zeros((jobs if len(output.subject) else 0, MEASURES), np.int32),
         actor=np.zeros((jobs if len(output.actor) else 0, *output.actor.shape[1:]), np.int32),
     )
 
@@ -66,39 +77,49 @@ def write_measured(job: Job, output: Output, picture: Picture) -> None:
     """
     views = len(job.eye)
     if len(output.actor):
-        box, pixels = _joined(output.actor.reshape(views, -1, *output.actor.shape[1:]))
-        _write(box, pixels, picture.actor_box, picture.actor_pixels)
+        actors = _joined(output.actor.reshape(views, -1, *output.actor.shape[1:]))
+        _write(actors, picture.actor_box, picture.actor_pixels, picture.actor_visible_box)
         actor = job.subject - ACTOR_OBJECT
-        known = (actor >= 0) & (actor < box.shape[1])
+        known = (actor >= 0) & (actor < output.actor.shape[1])
         actor = np.where(known, actor, 0)[:, None, None]
-        box = np.where(known[:, None], np.take_along_axis(box, actor, 1)[:, 0], 0)
-        pixels = np.where(known[:, None], np.take_along_axis(pixels, actor, 1)[:, 0], 0)
-        _write(box, pixels, picture.subject_box, picture.subject_pixels)
+        subject = _Measured(
+            *(np.where(known[:, None], np.take_along_axis(of, actor, 1)[:, 0], 0) for of in actors)
+        )
+        _write(subject, picture.subject_box, picture.subject_pixels, picture.subject_visible_box)
     elif len(output.subject):
-        box, pixels = _joined(output.subject.reshape(views, -1, 6))
-        _write(box, pixels, picture.subject_box, picture.subject_pixels)
+        subject = _joined(output.subject.reshape(views, -1, MEASURES))
+        _write(subject, picture.subject_box, picture.subject_pixels, picture.subject_visible_box)
 
 
-def _joined(by_band: NDArray[np.int32]) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
-    """Return boxes, shape (V, ..., 4), and pixels, shape (V, ..., 2), of whole views.
+class _Measured(NamedTuple):
+    """What is measured of things in whole views."""
 
-    Args:
-        by_band: See `Output.actor`, shape (V, bands, ..., 6).
-    """
-    pixels = by_band[..., 4:].sum(axis=1, dtype=np.int32)
-    far = np.iinfo(np.int32).max
-    low = np.where(by_band[..., 5:] > 0, by_band[..., :2], far).min(axis=1)
-    box = np.concatenate([low, by_band[..., 2:4].max(axis=1)], axis=-1)
-    return np.where(pixels[..., 1:] > 0, box, 0), pixels
+    box: NDArray[np.int32]
+    """Shape (V, ..., 4)."""
+    pixels: NDArray[np.int32]
+    """Shape (V, ..., 2)."""
+    visible_box: NDArray[np.int32]
+    """Shape (V, ..., 4)."""
 
 
-def _write(
-    box: NDArray[np.int32],
-    pixels: NDArray[np.int32],
-    box_out: NDArray[np.int32] | None,
-    pixels_out: NDArray[np.int32] | None,
-) -> None:
-    if box_out is not None:
-        box_out[:] = box
-    if pixels_out is not None:
-        pixels_out[:] = pixels
+def _joined(by_band: NDArray[np.int32]) -> _Measured:
+    """Return what was measured in the bands of views, shape (V, bands, ..., MEASURES)."""
+    box, pixels, visible = by_band[..., :4], by_band[..., 4:6], by_band[..., 6:]
+    return _Measured(
+        _around(box, pixels[..., 1:]),
+        pixels.sum(axis=1, dtype=np.int32),
+        _around(visible, pixels[..., :1]),
+    )
+
+
+def _around(box: NDArray[np.int32], pixels: NDArray[np.int32]) -> NDArray[np.int32]:
+    """Return the box around those of the bands that have pixels."""
+    low = np.where(pixels > 0, box[..., :2], np.iinfo(np.int32).max).min(axis=1)
+    joined = np.concatenate([low, box[..., 2:].max(axis=1)], axis=-1)
+    return np.where((pixels > 0).any(axis=1), joined, 0)
+
+
+def _write(measured: _Measured, *wanted: NDArray[np.int32] | None) -> None:
+    for array, out in zip(measured, wanted, strict=True):
+        if out is not None:
+            out[:] = array

@@ -158,6 +158,10 @@ class Picture:
     """Boxes like `subject_box` of all actors of each view's world, shape (V, A, 4)."""
     actor_pixels: NDArray[np.int32] | None = None
     """Pixels like `subject_pixels` of the same, shape (V, A, 2)."""
+    subject_visible_box: NDArray[np.int32] | None = None
+    """Box like `subject_box` of the subject's visible pixels only, shape (V, 4)."""
+    actor_visible_box: NDArray[np.int32] | None = None
+    """The same of all actors, shape (V, A, 4)."""
 
     @classmethod
     def create(  # noqa: PLR0913  # every output is requested by name
@@ -184,6 +188,8 @@ class Picture:
             class_id=np.zeros(plane, np.uint8) if class_id else None,
             actor_box=np.zeros((views, actors, 4), np.int32) if actors else None,
             actor_pixels=np.zeros((views, actors, 2), np.int32) if actors else None,
+            subject_visible_box=np.zeros((views, 4), np.int32) if subject else None,
+            actor_visible_box=np.zeros((views, actors, 4), np.int32) if actors else None,
         )
 
     @property

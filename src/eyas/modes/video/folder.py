@@ -15,9 +15,9 @@ from eyas.core.errors import ConfigError, DataFileError, OutputError
 from eyas.core.files import PART_SUFFIX, read_limited, refusals, write_atomic
 from eyas.core.folder_lock import LOCK
 from eyas.core.pinhole import intrinsics
+from eyas.exports.checksums import CHECKSUMS, GROWING
 from eyas.exports.registry import WRITERS, chosen_writers
 from eyas.exports.writer import Episode, Files, Run, joined
-from eyas.modes.video.checksums import CHECKSUMS, GROWING
 from eyas.modes.video.episode import RecordedPaths, paths_below
 from eyas.settings.config import EyasConfig
 from eyas.settings.file import read_settings, save_settings

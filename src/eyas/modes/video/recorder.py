@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.errors import OutputError
-from eyas.exports.capture import Moment, frame_of
+from eyas.exports.capture import frame_of, moment_of
 from eyas.exports.writer import EndedEpisode, Episode, Scores, Summary
 from eyas.modes.video.action import Mover
 from eyas.modes.video.checksums import Checksums
@@ -184,13 +184,7 @@ class Recorder:
         assert going is not None
         assert going.files is not None
         number, action = going.summary.frames, mover.action(tracker)
-        seen = self._sim.view
-        moment = Moment(
-            seen.state.shown,
-            self._sim.snapshot.episodes,
-            None if picture.actor_pixels is None else seen.actors(tracker),
-            None if seen.lidar is None else seen.lidar.ranges(seen.state.late)[tracker],
-        )
+        moment = moment_of(self._sim, tracker, picture, view)
         frame = frame_of(moment, tracker, picture, view, number, action)
         going.summary = going.summary.plus(frame)
         self._threads.submit(tracker, going.files.add, frame)

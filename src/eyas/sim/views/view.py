@@ -1,5 +1,7 @@
 """What is seen of a simulation at an instant: pictures and packets."""
 
+from functools import cached_property
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -8,6 +10,7 @@ from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.light import LightChanges
 from eyas.sim.views.delay import SeenState
+from eyas.sim.views.outlines import Outlines
 from eyas.sim.views.pictures import PictureDrawer
 from eyas.sim.views.sensor_suite import SensorSuite
 from eyas.sim.views.words import target_in_words
@@ -55,6 +58,7 @@ class View:
         self._packets = PacketRows(state.snapshot, config.camera, assets.scene.terrain)
         self._sensors = sensors
         self._worlds = worlds
+        self._kind, self._camera = assets.traffic.motion.kind, config.camera
 
     def draw(
         self,
@@ -89,6 +93,20 @@ class View:
         state, model = self._worlds.actors_around(tracker, tick)
         before, _ = self._worlds.actors_around(tracker, tick - 1)
         return ActorView(state, before, model, self._worlds.looks_around(tracker).colour[0])
+
+    @cached_property
+    def _outlines(self) -> Outlines:
+        return Outlines(self._kind, self._camera.width, self._camera.height)
+
+    def whole_boxes(self, tracker: int, actors: ActorView, wanted: NDArray[np.integer]) -> Floats:
+        """Return what some actors would cover of a tracker's picture, see `Outlines.of`.
+
+        Args:
+            tracker: The tracker.
+            actors: The actors around it.
+            wanted: Which of them, shape (B,).
+        """
+        return self._outlines.of(actors, wanted, self.state.shown.cameras, tracker)
 
     def words(self, tracker: int, aspect: float) -> str:
         """Return the target of a tracker in words, see `eyas.sim.views.words`."""

@@ -76,9 +76,9 @@ class Output(NamedTuple):
     class_id: NDArray[np.uint8]
     subject: NDArray[np.int32]
     """Left, top, right, bottom, seen and covered pixels of the view's subject in each job, all 0
-    if it covers none, shape (J, 6)."""
+    if it covers none, then left, top, right, bottom of the seen ones, shape (J, 10)."""
     actor: NDArray[np.int32]
-    """The same for each actor of the view's world, shape (J, A, 6)."""
+    """The same for each actor of the view's world, shape (J, A, 10)."""
 
 
 class Task(NamedTuple):

@@ -42,6 +42,22 @@ def _sum(lanes: int) -> int:
     return total
 
 
+@kernel(inline=True)
+def _least(lanes: int) -> int:
+    least = lane(lanes, 0)
+    for number in range(1, WIDTH):
+        least = min(least, lane(lanes, number))
+    return least
+
+
+@kernel(inline=True)
+def _most(lanes: int) -> int:
+    most = lane(lanes, 0)
+    for number in range(1, WIDTH):
+        most = max(most, lane(lanes, number))
+    return most
+
+
 @kernel
 def _screen_box(thing: Caster, view: View) -> ScreenBox:
     box = empty_box()
@@ -56,15 +72,16 @@ def _screen_box(thing: Caster, view: View) -> ScreenBox:
 
 @kernel
 def _count(band: Band, box: ScreenBox, first: int, last: int, result: NDArray[np.int32]) -> None:
-    """Write box and pixels of instances `first` to `last` from `Band.alone`, clear afterwards."""
+    """Write boxes and pixels of instances `first` to `last` from `Band.alone`, clear afterwards."""
     view, key, alone, drawn = band.camera, band.key, band.alone, band.drawn
     stride = key.shape[1]
     begin = max(int(box.left) - _MARGIN, 0)
     end = min(int(box.right) + 1 + _MARGIN, view.width)
     bottom = min(int(box.bottom) + 1 + _MARGIN - view.top, view.rows)
     left, right = splat(i4(_FAR)), splat(i4(-1))
+    seen_left, seen_right = splat(i4(_FAR)), splat(i4(-1))
     seen_count, covered_count = splat(i4(0)), splat(i4(0))
-    highest, lowest = -1, -1
+    highest, lowest, seen_highest, seen_lowest = -1, -1, -1, -1
     for line in range(max(int(box.top) - _MARGIN - view.top, 0), bottom):
         for start in range(begin, end, WIDTH):
             place = min(start, stride - WIDTH)
@@ -78,17 +95,21 @@ def _count(band: Band, box: ScreenBox, first: int, last: int, result: NDArray[np
             left = lesser(left, select(covered, columns, i4(_FAR)))
             right = greater(right, select(covered, columns, i4(-1)))
             covered_count += to_i4(covered)
-            seen = belongs_to(tag_of(load(key, at)), drawn, first, last)
-            seen_count += to_i4(covered & seen)
+            seen = covered & belongs_to(tag_of(load(key, at)), drawn, first, last)
+            if not any_of(seen):
+                continue
+            seen_highest, seen_lowest = (line if seen_highest < 0 else seen_highest), line
+            seen_left = lesser(seen_left, select(seen, columns, i4(_FAR)))
+            seen_right = greater(seen_right, select(seen, columns, i4(-1)))
+            seen_count += to_i4(seen)
     if highest < 0:
         return
-    column, column_end = lane(left, 0), lane(right, 0)
-    for number in range(1, WIDTH):
-        column = min(column, lane(left, number))
-        column_end = max(column_end, lane(right, number))
-    result[0], result[1] = column, view.top + highest
-    result[2], result[3] = column_end + 1, view.top + lowest + 1
+    result[0], result[1] = _least(left), view.top + highest
+    result[2], result[3] = _most(right) + 1, view.top + lowest + 1
     result[4], result[5] = _sum(seen_count), _sum(covered_count)
+    if seen_highest >= 0:
+        result[6], result[7] = _least(seen_left), view.top + seen_highest
+        result[8], result[9] = _most(seen_right) + 1, view.top + seen_lowest + 1
 
 
 @kernel
@@ -108,7 +129,7 @@ def measure_actors(band: Band, count: int, output: NDArray[np.int32]) -> None:
     Args:
         band: One sample for each pixel; `alone` must be clear, and is so again.
         count: Rows of `Band.drawn` that it uses.
-        output: See `Output.actor`, shape (A, 6); rows of actors outside the band are not written.
+        output: See `Output.actor`, shape (A, 10); rows of actors outside the band are not written.
     """
     movers, world = band.movers, band.world
     slots = movers.part.shape[1]
