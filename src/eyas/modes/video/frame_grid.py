@@ -39,7 +39,37 @@ class FrameGrid:
         end = video.start_time + video.total_time
         self.last_tick = math.floor(end * PHYSICS_RATE + _SLACK)
         if video.episode_frames is not None:
-            self.last_tick =
+            self.last_tick = _NO_END
+        self._warm_up_steps = video.warm_up_steps
+        self._spacing = PHYSICS_RATE / video.fps
+        self._origin = np.full(count, -1, np.int64)
+        self._frames = np.zeros(count, np.int64)
+
+    def restart(self, trackers: NDArray[np.bool_]) -> None:
+        """Begin a new episode for the trackers of a mask, shape (N,)."""
+        self._origin[trackers] = -1
+        self._frames[trackers] = 0
+
+    @property
+    def frames(self) -> NDArray[np.int64]:
+        """Frames of each tracker's episode up to now, shape (N,)."""
+        return self._frames
+
+    def due(self, tick: int, step_count: NDArray[np.integer]) -> NDArray[np.int32]:
+        """Return the trackers that have a frame at this tick, and count these frames.
+
+        Args:
+            tick: 2 ms steps since the start of the run.
+            step_count: 2 ms steps since each tracker's reset, shape (N,).
+        """
+        if not self.first_tick <= tick <= self.last_tick:
+            return np.zeros(0, np.int32)
+        ready = step_count > self._warm_up_steps
+        self._origin[ready & (self._origin < 0)] = tick
+        nearest = np.floor(self._frames * self._spacing + 0.5).astype(np.int64)
+        due = ready & (tick == self._origin + nearest)
+        self._frames[due] += 1
+        return np.flatnonzero(due).astype(np.int32)
 
 
 class RecordingEnd:

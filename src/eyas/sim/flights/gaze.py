@@ -58,7 +58,9 @@ def glances(
     parts: list[tuple[int, int]] = []
     for kind, share in ((0, cut), (1, away)):
         total = round(min(max(share, 0.0), 1.0) * count)
-        number = max(round(total * STEP / float(rng.uniform(1.5, 3.0))), 1) if total else 0
+        if total == 0:
+            continue
+        number = max(round(total * STEP / float(rng.uniform(1.5, 3.0))), 1)
         parts += [(kind, total // number)] * number
     order = rng.permutation(len(parts)).tolist()
     if away_first and away > 0.0:
