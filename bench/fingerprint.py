@@ -25,7 +25,10 @@ SHORT = {"channels": 3, "total_time": 4.0, "fps": 12.5}
 RECORDINGS = {
     "following": {"video": SHORT | {"flight": "exact"}},
     "random": {"video": SHORT | {"flight": "random", "target_direction": True}, "seed": 3},
-    "overlay": {"video": SHORT | {"flight": "exact", "overlay": True}, "reward": {"type": "distance"}},
+    "overlay": {
+        "video": SHORT | {"flight": "exact", "overlay": True},
+        "reward": {"type": "distance"},
+    },
 }
 FLEETS = ("bus", "truck", "trailer", "motorcycle")
 

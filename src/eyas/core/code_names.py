@@ -14,7 +14,8 @@ PICKLED = (".zip", ".pt", ".pth", ".pt2")
 @dataclass(frozen=True, slots=True)
 class NamesCode:
     """Marks a field, in `Annotated`, whose texts or keys with a colon are imported and called, and
-    whose files in Python's own format run what is in them."""
+    whose files in Python's own format run what is in them.
+    """
 
 
 NAMES_CODE = NamesCode()

@@ -169,9 +169,7 @@ class Simulation:
         self._stepper.place(poses)
         return self._result()
 
-    def start_at(
-        self, trackers: NDArray[np.integer], poses: Floats, pitch: Floats
-    ) -> None:
+    def start_at(self, trackers: NDArray[np.integer], poses: Floats, pitch: Floats) -> None:
         """Begin the episodes of trackers that have just been reset at other poses.
 
         Args:

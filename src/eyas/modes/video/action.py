@@ -15,8 +15,8 @@ from eyas.modes.video.policy import PolicyPilot
 from eyas.settings.config import EyasConfig
 from eyas.sim.flights.registry import PATHS, SETTING, path_named
 from eyas.sim.simulation import Simulation
-from eyas.traffic.config import Source
 from eyas.trackers.config import TrackerKind
+from eyas.traffic.config import Source
 
 __all__ = ["Exact", "Mover", "RandomActions", "check_flight", "flight_of", "mover_of"]
 

@@ -46,7 +46,7 @@ class CameraFlights:
         video, camera = config.video, config.camera
         shares = Asked(video.in_view, video.hidden, video.cut, video.small)
         self._sim, self._seed = sim, config.seed
-        self._wishes = Wishes(path, video.height, video.pitch, shares)
+        self._wishes = Wishes(path, video.flight_height, video.flight_pitch, shares)
         self._picture = camera.width, camera.height
         self._flown: list[_Flown | None] = [None] * sim.count
         self._now = np.zeros((sim.count, 6))

@@ -29,7 +29,7 @@ class VideoConfig(ActionSpeeds):
     start_time: Annotated[float, Field(ge=0, le=1e6)] = 1.0
     """Simulated time at which recording begins [s]."""
     total_time: Annotated[float, Field(gt=0, le=1e6)] = 12.0
-    """Duration of the recording in simulated time [s]."""
+    """Duration of the recording in simulated time [s], unless `episode_frames` is set."""
     warm_up_steps: Annotated[int, Field(ge=0, le=5_000_000)] = 30
     """Steps of 2 ms after each reset that are not recorded."""
     target_direction: bool = False
@@ -45,9 +45,13 @@ class VideoConfig(ActionSpeeds):
     live traffic and trackers that are not drones."""
     policy: Annotated[str | None, NAMES_CODE] = None
     """A policy that flies instead, as in `eyas evaluate --policy`; excludes `flight`."""
-    height: Annotated[Variation, AfterValidator(within(3.0, 300.0))] = Uniform(uniform=(9.0, 26.0))
+    flight_height: Annotated[Variation, AfterValidator(within(3.0, 300.0))] = Uniform(
+        uniform=(9.0, 26.0)
+    )
     """Camera paths: height above the target [m]."""
-    pitch: Annotated[Variation, AfterValidator(within(0.05, 1.45))] = Uniform(uniform=(0.35, 1.2))
+    flight_pitch: Annotated[Variation, AfterValidator(within(0.05, 1.45))] = Uniform(
+        uniform=(0.35, 1.2)
+    )
     """Camera paths: angle at which the camera looks down at the target [rad]."""
     in_view: ShareAsked = None
     """Camera paths: asked share of frames with the target in the picture, hidden or not; None: all,

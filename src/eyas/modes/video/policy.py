@@ -1,6 +1,7 @@
 """Flies the trackers of a recording by a policy of `eyas evaluate`."""
 
 from functools import partial
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -78,7 +79,9 @@ class PolicyPilot:
         return RecordedAction(int(self._numbers[tracker]), self._commands[tracker].copy())
 
     def _decide(self, tracker: int) -> None:
-        sight = PolicyInput(self._observed(tracker), np.ones(1, np.bool_), lambda: self._of(tracker))
+        sight = PolicyInput(
+            self._observed(tracker), np.ones(1, np.bool_), lambda: self._of(tracker)
+        )
         try:
             decision = self._policies[tracker].act(sight)
         except Exception as error:  # whatever a user's code raises
@@ -99,11 +102,9 @@ class PolicyPilot:
 
     def _of(self, tracker: int) -> Snapshot:
         """Return the state of one tracker, as of one drone."""
-        parts = (
-            type(part)(*(array[tracker : tracker + 1] for array in part))
-            for part in self._sim.snapshot
-        )
-        return Snapshot(*parts)
+        parts: list[Any] = list(self._sim.snapshot)  # records of arrays
+        rows = slice(tracker, tracker + 1)
+        return Snapshot(*(type(part)(*(array[rows] for array in part)) for part in parts))
 
     def _failed(self, tracker: int, failure: Failure) -> ConfigError:
         return ConfigError(

@@ -6,7 +6,6 @@ from contextlib import closing
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_RATE
 from eyas.core.errors import ConfigError, OutputError

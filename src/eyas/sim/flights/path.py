@@ -59,12 +59,13 @@ class Scene(NamedTuple):
 
 class Sketch(NamedTuple):
     """A flight as it is meant. The planner smooths it, keeps it above the ground and out of what
-    stands around, and lets the camera look away as often as it is asked to."""
+    stands around, and lets the camera look away as often as it is asked to.
+    """
 
     place: Floats
     """Where the drone is, world frame [m], shape (M, 3)."""
     look: Floats
-    """The point that it looks at, which lags behind the target as a pilot does [m], shape (M, 3)."""
+    """The point that it looks at, behind the target as a pilot is [m], shape (M, 3)."""
     field_of_view: Floats
     """Horizontal [rad], shape (M,)."""
 

@@ -61,7 +61,7 @@ class Orbit(_Path):
     """Circles around the target."""
 
     def sketch(self, scene: Scene, rng: np.random.Generator) -> Sketch:
-        """Sample the speed, the side on which it begins, the direction and how the circle breathes."""
+        """Sample the speed, where it begins, the direction and how the circle breathes."""
         radius = max(scene.distance, 8.0)
         turn = float(rng.uniform(2.5, 7.0)) / radius * float(rng.choice([-1.0, 1.0]))
         begin = float(rng.uniform(-math.pi, math.pi))
@@ -119,7 +119,8 @@ class Zoom(_Path):
         place = trailing(goal, float(rng.uniform(0.6, 1.0)), float(rng.uniform(0.7, 1.0)))
         near = float(rng.uniform(0.3, 0.5))
         wide = float(rng.uniform(1.0, 1.25))
-        count, steps = len(scene.time), []
+        count = len(scene.time)
+        steps: list[float] = []
         is_near = bool(rng.integers(2))
         while len(steps) < count:
             value = scene.field_of_view * (near if is_near else wide)

@@ -46,6 +46,9 @@ MARGIN = Margin(aside=1.5, above=1.5, ground=4.5)
 _BENDS = (1.0, 0.7, 0.45, 0.25)
 """Shares of the distance from the target that are tried where something stands in the way."""
 
+_STRAIGHT = Aside(side=1.0, margin=0.0, searches=False, sweep=0.0)
+"""The camera looks past nothing."""
+
 _LIFT = 2.0
 """What is no higher than this is flown over instead of around [m]."""
 
@@ -150,7 +153,7 @@ def _candidate(
 
 def _scene(around: Surroundings, wishes: Wishes, rng: np.random.Generator) -> Scene:
     return Scene(
-        time=STEP * np.arange(len(around.target)),
+        time=STEP * np.arange(len(around.target), dtype=np.float64),
         target=averaged(around.target, 0.4),
         heading=averaged(around.heading, 0.8),
         height=sample(wishes.height, rng),
@@ -212,8 +215,8 @@ def _bent(place: Floats, target: Floats, clearance: Clearance) -> Floats:
     lifts = np.array(tried)
     fine = lifts <= _LIFT
     chosen = np.where(fine.any(axis=0), fine.argmax(axis=0), lifts.argmin(axis=0))
-    share = -highest(-np.array(_BENDS)[chosen], 1.2)
-    bent: Floats = target + off * (averaged(share, 1.2)[:, None] * [1.0, 1.0, 0.0] + [0.0, 0.0, 1.0])
+    kept = averaged(-highest(-np.array(_BENDS)[chosen], 1.2), 1.2)
+    bent: Floats = target + off * np.column_stack([kept, kept, np.ones(len(kept))])
     return bent
 
 
@@ -289,4 +292,4 @@ def _above(around: Surroundings, wishes: Wishes, rng: np.random.Generator) -> Pl
         height, way[:, 2] = free, free
     sketch = Sketch(way, scene.target, np.full(len(flat), scene.field_of_view))
     nothing = glances(len(flat), 0.0, 0.0, rng, away_first=False)
-    return _aimed(way, sketch, (scene, around), (nothing, Aside(1.0, 0.0, False, 0.0)), wishes)
+    return _aimed(way, sketch, (scene, around), (nothing, _STRAIGHT), wishes)

@@ -87,7 +87,7 @@ def highest(signal: Floats, seconds: float) -> Floats:
 
 
 def later(signal: Floats, seconds: float) -> Floats:
-    """Return a signal that comes later by a time [s], as it would have come before, shape (M, K)."""
+    """Return a signal, shape (M, K), that comes later by a time [s], and was as steady before."""
     by = steps_in(seconds)
     if by == 0:
         return np.array(signal)
