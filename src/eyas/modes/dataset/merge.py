@@ -98,11 +98,11 @@ def _take(source: Path, target: Path, threads: ThreadPoolExecutor) -> None:
                 f"{source / name}: not what was recorded: its SHA-256 is not that of {CHECKSUMS}"
             )
     with refusals(target):
-        inside = [path.relative_to(source) for path in sorted(source.rglob("*"))]
-        files = [name for name in inside if (source / name).is_file() and name.name != LOCK]
+        paths = [path.relative_to(source) for path in sorted(source.rglob("*"))]
+        files = [name for name in paths if (source / name).is_file() and name.name != LOCK]
         # The file that says that the part is complete comes last.
-        for name in sorted(files, key=lambda name: name.as_posix() == PART_FILE):
-            _put(source / name, target / name)
+        for path in sorted(files, key=lambda path: path.as_posix() == PART_FILE):
+            _put(source / path, target / path)
 
 
 def _digest(path: Path) -> str:
