@@ -147,6 +147,22 @@ class Job:
         """Return what was kept of the episode with this name."""
         return json.loads((self.folder / KEPT / f"{name}.json").read_text())
 
+    def settle(self, kept: str, inside: str) -> None:
+        """Give a file that `add` has kept its final place; may be called twice.
+
+        Args:
+            kept: Its name among what is kept.
+            inside: Its path in the export, with `/`.
+
+        Raises:
+            OutputError: It cannot be moved.
+        """
+        source, path = self.folder / KEPT / kept, self.folder / inside
+        with refusals(path):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            if source.exists():  # else an interrupted run has moved it
+                source.replace(path)
+
     def ignores(self, seen: SeenObject) -> bool:
         """Return whether an object is too small or too much hidden to count."""
         left, top, right, bottom = seen.label["box"]

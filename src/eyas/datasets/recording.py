@@ -44,6 +44,8 @@ SPLITS = ("train", "val", "test")
 MASK_OFFSET = ACTOR_OBJECT - 1
 """A mask's value and this make the `id` of the labels."""
 
+_OF_EPISODES = {"labels": LABELS, "mp4": "episode.mp4", "sensors": "sensors.csv"}
+
 _EPISODE = re.compile(r"episode(\d+)")
 _TRACKER = re.compile(r"(DRONE|CAR)(\d+)")
 
@@ -212,8 +214,8 @@ class RecordedEpisode(Sequence[RecordedFrame]):
 
     def has(self, output: str) -> bool:
         """Return whether the writer of this name has recorded the episode."""
-        if output == "labels":
-            return (self.folder / LABELS).exists()
+        if output in _OF_EPISODES:
+            return (self.folder / _OF_EPISODES[output]).exists()
         return self.file(output, 0).exists()
 
 

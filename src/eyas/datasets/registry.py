@@ -13,6 +13,11 @@ FORMATS: Registry[type[Any]] = Registry(
     type,
     {
         "coco": "eyas.datasets.formats.coco:Coco",
+        "lerobot": "eyas.datasets.formats.lerobot:LeRobot",
+        "webdataset": "eyas.datasets.formats.shards:WebDataset",
+        "minari": "eyas.datasets.formats.minari:Minari",
+        "rerun": "eyas.datasets.formats.rerun:Rerun",
+        "mcap": "eyas.datasets.formats.mcap:Mcap",
         "got10k": "eyas.datasets.formats.sot:Got10k",
     },
     group="eyas.formats",

@@ -30,9 +30,8 @@ def encoded_masks(masks: NDArray[np.int32]) -> dict[int, tuple[str, int]]:
     ids, starts, ends = ids[chosen], starts[chosen], ends[chosen]
     objects, first = np.unique(ids, return_index=True)
     codes = {}
-    for number, low, high in zip(
-        objects.tolist(), first.tolist(), [*first[1:].tolist(), len(ids)], strict=True
-    ):
+    edges = np.append(first, len(ids)).tolist()
+    for number, low, high in zip(objects.tolist(), edges, edges[1:], strict=False):
         codes[number] = _encoded(starts[low:high], ends[low:high], flat.size)
     return codes
 

@@ -15,6 +15,7 @@ from eyas.exports.registry import chosen_writers
 from eyas.modes.video.action import mover_of
 from eyas.modes.video.config import VideoConfig
 from eyas.modes.video.folder import VideoFolder, check_folder, open_folder
+from eyas.modes.video.formats import write_formats, writers_in
 from eyas.modes.video.recorder import Recorder
 from eyas.modes.video.report import RecordingProgress, print_report, step_log
 from eyas.settings.config import EyasConfig
@@ -111,7 +112,7 @@ def run(
     # Building may take a minute, so writers and folder are checked first. The folder is changed
     # only after building, so that a failed build neither makes nor deletes one.
     with originals_named(config):
-        chosen_writers(config.video.writers)
+        chosen_writers(writers_in(config.video.writers))
         check_folder(folder, config, overwrite=overwrite, resume=resume)
         sim = build_simulation(recording_rules(config), together(config.video.channels))
     with closing(sim):
@@ -121,6 +122,7 @@ def run(
         with folder_lock(folder, "recording into it"):
             recording = open_folder(folder, config, overwrite=overwrite, resume=resume)
             _record(sim, config, recording, quiet=quiet)
+    write_formats(config.video.writers, folder, quiet=quiet)
 
 
 def _record(sim: Simulation, config: EyasConfig, folder: VideoFolder, *, quiet: bool) -> None:
