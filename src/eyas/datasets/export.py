@@ -15,15 +15,17 @@ from eyas.core.errors import ConfigError, DataFileError, OutputError
 from eyas.core.files import PART_SUFFIX, read_limited, refusals, write_atomic
 from eyas.core.folder_lock import LOCK, folder_lock
 from eyas.datasets.format import KEPT, Exported, Format, Job
-from eyas.datasets.recording import RecordedEpisode, Recording
+from eyas.datasets.recording import DATASET_FILE, RecordedEpisode, Recording
 from eyas.datasets.registry import FORMATS, SETTING
 from eyas.exports.checksums import CHECKSUMS, read_checksums
 
 __all__ = [
     "EXPORTS",
     "ExportOptions",
+    "add_episodes",
     "export",
     "exports_folder",
+    "finish_export",
     "formats_needs",
     "require_outputs",
 ]
@@ -100,6 +102,42 @@ def export(
             (folder / GROWING).replace(folder / FINISHED)
 
 
+def add_episodes(folder: Path, named: str, name: str, episodes: Sequence[RecordedEpisode]) -> None:
+    """Put episodes into the export of a data set that is being made; they are known to be whole.
+
+    Args:
+        folder: The folder of the export.
+        named: Name of the data set.
+        name: The format.
+        episodes: The episodes.
+
+    Raises:
+        EyasError: As `export`.
+    """
+    form = _format_of(name)(Job(folder, named))
+    for episode in episodes:
+        form.add(episode)
+
+
+def finish_export(folder: Path, named: str, name: str, recording: Recording) -> None:
+    """Complete the export of a data set, all episodes of which have been added.
+
+    Args:
+        folder: The folder of the export.
+        named: Name of the data set.
+        name: The format.
+        recording: The data set.
+
+    Raises:
+        EyasError: As `export`.
+    """
+    exported = [Exported(each.name, each.split, len(each)) for each in recording.episodes]
+    _format_of(name)(Job(folder, named)).finish(exported)
+    shutil.rmtree(folder / KEPT, ignore_errors=True)
+    identity = {**_identity(recording, name, ExportOptions()), "recording": named}
+    write_atomic(folder / FINISHED, (json.dumps(identity, indent=1) + "\n").encode())
+
+
 def require_outputs(recording: Recording, name: str, make: type[Format]) -> None:
     """Refuse a recording that lacks what a format needs.
 
@@ -127,7 +165,9 @@ def _format_of(name: str) -> type[Format]:
 
 
 def _name_of(recording: Recording) -> str:
-    return recording.folder.resolve().name or "recording"
+    """Return the name of a data set, or that of a recording's folder."""
+    described = _read(recording.folder / DATASET_FILE).get("recipe", {})
+    return str(described.get("name") or recording.folder.resolve().name or "recording")
 
 
 def _identity(recording: Recording, name: str, options: ExportOptions) -> dict[str, Any]:
@@ -182,7 +222,7 @@ def _open(folder: Path, identity: dict[str, Any], options: ExportOptions) -> boo
 
 def _read(path: Path) -> dict[str, Any]:
     try:
-        found = json.loads(read_limited(path, 1 << 20))
+        found = json.loads(read_limited(path, 1 << 28))
     except (DataFileError, ValueError, RecursionError):
         return {}
     return found if isinstance(found, dict) else {}

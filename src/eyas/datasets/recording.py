@@ -33,7 +33,8 @@ from eyas.state.scene import ACTOR_OBJECT
 if TYPE_CHECKING:
     from torch.utils.data import Dataset
 
-__all__ = ["DATASET_FILE", "RecordedEpisode", "RecordedFrame", "Recording", "load"]
+__all__ = ["DATASET_FILE", "RecordedEpisode", "RecordedFrame", "Recording", "load",
+           "load_part"]  # fmt: skip
 
 DATASET_FILE = "dataset.json"
 """What a data set holds, see `eyas.datasets.plan`."""
@@ -278,8 +279,16 @@ def load(folder: Path | str) -> Recording:
 
 def _parts(root: Path) -> Iterator[list[RecordedEpisode]]:
     for part in _table(root / DATASET_FILE, "parts"):
-        split, name = part["split"], part["name"]
-        yield _episodes(root / "parts" / split / name, f"{name}-", split)
+        yield load_part(root, part["split"], part["name"])
+
+
+def load_part(root: Path, split: str, name: str) -> list[RecordedEpisode]:
+    """Return the episodes of one part of a data set.
+
+    Raises:
+        DataFileError: It is not a complete recording.
+    """
+    return _episodes(root / "parts" / split / name, f"{name}-", split)
 
 
 def _table(path: Path, key: str) -> list[dict[str, Any]]:
