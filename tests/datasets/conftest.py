@@ -30,7 +30,7 @@ def config(seed: int, field_of_view: float, pitch: float) -> EyasConfig:
         start=StartConfig(height=12.0, pitch=pitch),
         done=DoneConfig(total_steps=750, no_reward_steps=10**6, min_height=1.0),
         video=VideoConfig(
-            channels=2, fps=10.0, total_time=3.0, random_action=True,
+            channels=2, fps=10.0, total_time=3.0, flight="random",
             writers=("jpeg", "labels", "mask_writer:Masks"),
         ),
     )  # fmt: skip

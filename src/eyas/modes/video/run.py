@@ -188,7 +188,7 @@ def _run_episodes(
         tick += 1
         due = end.wanted(grid.due(tick, episodes.step_count))
         if due.size:
-            recorder.take(due, mover)
+            recorder.take(due, mover.action)
             progress.show(end.share(tick), recorder.drawn)
         ended = end.of_episodes(episodes.done)
         if ended.any():
