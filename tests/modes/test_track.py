@@ -26,15 +26,14 @@ OWN = "own_box_trackers"
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory):
-    """Four random flights, from which targets get lost."""
+    """Four flights of a drone that follows like a human."""
     folder = tmp_path_factory.mktemp("track") / "flights"
     config = EyasConfig(
         seed=5,
         camera=CameraConfig(width=96, height=72),
         start=StartConfig(height=15.0),
-        video=VideoConfig(channels=4, fps=10.0, total_time=2.0, flight="random",
-                          forward_speed=4.0, backward_speed=-4.0, left_speed=4.0,
-                          right_speed=-4.0, writers=("jpeg", "labels")),
+        video=VideoConfig(channels=4, fps=10.0, total_time=2.0, flight="follow",
+                          writers=("jpeg", "labels")),
     )  # fmt: skip
     video.run(config, folder, quiet=True)
     return folder

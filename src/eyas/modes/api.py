@@ -150,7 +150,6 @@ def track(
     *,
     split: str | None = None,
     restarts: bool = False,
-    workers: int | None = None,
     overwrite: bool = False,
 ) -> dict[str, Any]:
     """Score a box tracker on recorded episodes, like `eyas track`; return `results.json`.
@@ -161,7 +160,6 @@ def track(
         out: Folder for its boxes and figures.
         split: Only `train`, `val` or `test` of a data set.
         restarts: Whether it gets the true box again after a failure.
-        workers: Number of processes; None: one for each core.
         overwrite: Whether what is in the folder is replaced.
 
     Raises:
@@ -170,7 +168,7 @@ def track(
     from eyas.modes.track.run import Scoring, run
 
     scoring = Scoring(tracker, Path(recording), split, restarts)
-    return run(scoring, Path(out), workers=workers, overwrite=overwrite)
+    return run(scoring, Path(out), overwrite=overwrite)
 
 
 class EvaluationChoices(TypedDict, total=False):
