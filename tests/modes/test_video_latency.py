@@ -12,7 +12,7 @@ from eyas.settings.config import EyasConfig
 from eyas.sim.config import ControlConfig
 from eyas.task.config import DoneConfig, StartConfig
 
-PRESENT = {"frame", "reward", "action", "done"}
+PRESENT = {"frame", "reward", "action", "command", "done"}
 """What a label tells of the present: the number of the frame, and what is judged and commanded."""
 
 
