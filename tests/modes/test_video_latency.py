@@ -30,7 +30,7 @@ def recorded(folder, **changes):
             start_time=0.7,
             total_time=0.2,
             warm_up_steps=10,
-            random_action=True,
+            flight="random",
             writers=("jpeg", "labels", "lidar"),
         ),
         **changes,

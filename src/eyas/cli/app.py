@@ -10,7 +10,7 @@ import typer
 import typer.core
 
 from eyas import __version__
-from eyas.cli import evaluate, maps, runs, targets, tools, traffic
+from eyas.cli import data, evaluate, maps, runs, targets, tools, traffic
 from eyas.cli.said import say
 from eyas.core.errors import EyasError
 from eyas.core.own_code import ended
@@ -46,6 +46,8 @@ app = typer.Typer(
 )
 app.command("demo")(runs.demo)
 app.command("video")(runs.video)
+app.command("export")(data.export)
+app.command("track")(data.track)
 app.command("train")(runs.train)
 app.command("serve")(runs.serve)
 app.command("webots-shim")(tools.webots_shim)
@@ -56,6 +58,7 @@ app.command("compare")(evaluate.compare)
 app.command("leaderboard")(evaluate.leaderboard)
 app.add_typer(tools.cache_app, name="cache")
 app.add_typer(tools.config_app, name="config")
+app.add_typer(data.dataset_app, name="dataset")
 app.add_typer(maps.app, name="maps")
 app.add_typer(tools.policies_app, name="policies")
 app.add_typer(targets.app, name="targets")

@@ -40,7 +40,7 @@ class RecordedAction:
     """The action of a tracker."""
 
     number: int
-    """Number of the action: 0 to 5 for a random one, -1 when the target is followed exactly."""
+    """Number of the action if it is one of several, 0 to 5 for a random one; else -1."""
     command: Floats | None
     """Forward [m/s], left [m/s], up [m per 2 ms], yaw rate [rad/s], shape (4,); None when the
     target is followed exactly."""

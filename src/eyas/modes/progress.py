@@ -3,15 +3,38 @@
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
+from rich import progress as bar
 from rich.console import Console
 from rich.progress import Progress
 
-__all__ = ["sumo_progress"]
+__all__ = ["frames_bar", "sumo_progress"]
 
 
 @contextmanager
 def sumo_progress() -> Iterator[Callable[[float], None]]:
     """Show the progress of SUMO, a share from 0 to 1."""
-    with Progress(console=Console(stderr=True), transient=True) as bar:
-        task = bar.add_task("SUMO drives", total=1.0)
-        yield lambda share: bar.update(task, completed=share)
+    with Progress(console=Console(stderr=True), transient=True) as shown:
+        task = shown.add_task("SUMO drives", total=1.0)
+        yield lambda share: shown.update(task, completed=share)
+
+
+@contextmanager
+def frames_bar(doing: str, total: int, *, quiet: bool) -> Iterator[Callable[[int], None]]:
+    """Show how many frames are done, and the time left; only on a terminal.
+
+    Args:
+        doing: What is done with them.
+        total: Number of frames.
+        quiet: Whether nothing is shown.
+    """
+    console = Console(stderr=True)
+    columns = (
+        bar.TextColumn(doing),
+        bar.BarColumn(),
+        bar.MofNCompleteColumn(),
+        bar.TimeRemainingColumn(),
+    )
+    hidden = quiet or not console.is_terminal
+    with Progress(*columns, console=console, disable=hidden) as shown:
+        task = shown.add_task("", total=total)
+        yield lambda frames: shown.update(task, completed=frames)

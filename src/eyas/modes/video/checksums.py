@@ -1,6 +1,6 @@
 """The checksums of a recording's episodes, by which one that is damaged is known and drawn again.
 
-`checksums.sha256`, as `sha256sum` writes and checks it, with the files of all episodes:
+`checksums.sha256` has the files of all episodes:
 
     0f3a...  DRONE0/episode0/000000.jpeg
 
@@ -9,24 +9,17 @@ all have ended.
 """
 
 import hashlib
-import re
 import threading
 from collections.abc import Sequence
 from pathlib import Path
 
 from eyas.core.errors import DataFileError
-from eyas.core.files import read_limited, refusals, write_atomic
+from eyas.core.files import refusals, write_atomic
+from eyas.exports.checksums import CHECKSUMS, GROWING, checksum_lines, read_checksums
 from eyas.exports.writer import Writer, joined
 from eyas.modes.video.episode import RecordedPaths, paths_below
 
-__all__ = ["CHECKSUMS", "GROWING", "Checksums"]
-
-CHECKSUMS, GROWING = "checksums.sha256", ".checksums"
-"""Names of the file, and of the one that grows during a recording, in the recording's folder."""
-
-_LARGEST = 1 << 30
-
-_LINE = re.compile(r"([0-9a-f]{64})  (.+/.+)")
+__all__ = ["Checksums"]
 
 
 class Checksums:
@@ -55,7 +48,7 @@ class Checksums:
             self._known |= sums
             with self._growing.open("ab") as file:
                 # A line that a kill has cut off must not spoil the next one.
-                file.write(b"\n" * bool(file.tell()) + _text(sums))
+                file.write(b"\n" * bool(file.tell()) + checksum_lines(sums))
 
     def match(self, episode: Path) -> bool:
         """Return whether the files of an episode are those that were written when it ended."""
@@ -69,7 +62,7 @@ class Checksums:
         Raises:
             OutputError: They cannot be written.
         """
-        write_atomic(self._run / CHECKSUMS, _text(self._known))
+        write_atomic(self._run / CHECKSUMS, checksum_lines(self._known))
         with refusals(self._growing):
             self._growing.unlink(missing_ok=True)
 
@@ -92,14 +85,8 @@ class Checksums:
 
 
 def _read(path: Path) -> dict[str, str]:
-    """Return what an earlier run has written, without a line that a kill has cut off."""
+    """Return what an earlier run has written; nothing if there was none."""
     try:
-        text = read_limited(path, _LARGEST).decode(errors="replace")
+        return read_checksums(path)
     except DataFileError:
         return {}
-    found = (_LINE.fullmatch(line) for line in text.split("\n")[:-1])
-    return {line[2]: line[1] for line in found if line}
-
-
-def _text(sums: dict[str, str]) -> bytes:
-    return "".join(f"{digest}  {name}\n" for name, digest in sorted(sums.items())).encode()

@@ -1,0 +1,327 @@
+"""The run of an export: episode by episode, so that one that was interrupted goes on."""
+
+import hashlib
+import json
+import shutil
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from eyas import __version__
+from eyas.core.build import this_build
+from eyas.core.errors import ConfigError, DataFileError, OutputError
+from eyas.core.files import PART_SUFFIX, read_limited, refusals, write_atomic
+from eyas.core.folder_lock import LOCK, folder_lock
+from eyas.datasets.format import KEPT, Exported, Format, Job
+from eyas.datasets.recording import DATASET_FILE, RecordedEpisode, Recording
+from eyas.datasets.registry import FORMATS, SETTING
+from eyas.exports.checksums import CHECKSUMS, read_checksums
+
+__all__ = [
+    "EXPORTS",
+    "ExportOptions",
+    "add_episodes",
+    "export",
+    "exports_folder",
+    "finish_export",
+    "formats_needs",
+    "require_outputs",
+]
+
+EXPORTS = "exports"
+"""Folder of the exports in that of a recording or data set."""
+
+FINISHED, GROWING = "export.json", ".export.json"
+"""What an export is of, when it is complete, and while it is in progress."""
+
+DONE = ".done"
+"""Names of the episodes that are written completely, a line each."""
+
+Told = Callable[[int], None]
+"""Is told how many frames have been exported."""
+
+
+@dataclass(frozen=True, slots=True)
+class ExportOptions:
+    """What may be chosen of an export, see `Job`."""
+
+    copies: bool = False
+    least_side: int = 1
+    least_visible: float = 0.0
+    resume: bool = False
+    """Whether an interrupted export in the folder is continued."""
+    overwrite: bool = False
+    """Whether an export in the folder is deleted first."""
+
+
+def export(
+    recording: Recording,
+    name: str,
+    folder: Path,
+    options: ExportOptions,
+    told: Told = lambda frames: None,
+) -> None:
+    """Export a recording or a data set in one format.
+
+    The same recording and options give the same bytes, also when the export was interrupted.
+
+    Args:
+        recording: What is exported.
+        name: The format: a name of `FORMATS`, or `package.module:Class`.
+        folder: The folder of the export.
+        options: What was chosen.
+        told: Is told the frames that are done, after each episode.
+
+    Raises:
+        ConfigError: There is no such format.
+        DataFileError: The recording is not whole, or lacks what the format needs.
+        OutputError: The folder is in use, not empty, or cannot be written.
+        MissingExtraError: The format needs a library that is not installed.
+    """
+    make = _format_of(name)
+    require_outputs(recording, name, make)
+    job = Job(
+        folder,
+        _name_of(recording),
+        copies=options.copies,
+        least_side=options.least_side,
+        least_visible=options.least_visible,
+    )
+    form = make(job)
+    with folder_lock(folder, "exporting into it"):
+        if not _open(folder, _identity(recording, name, options), options):
+            told(recording.frame_count)
+            return
+        exported = _add_all(form, recording, folder, told)
+        form.finish(exported)
+        shutil.rmtree(folder / KEPT, ignore_errors=True)
+        (folder / DONE).unlink(missing_ok=True)
+        with refusals(folder):
+            (folder / GROWING).replace(folder / FINISHED)
+
+
+def add_episodes(folder: Path, named: str, name: str, episodes: Sequence[RecordedEpisode]) -> None:
+    """Put episodes into the export of a data set that is being made; they are known to be whole.
+
+    Args:
+        folder: The folder of the export.
+        named: Name of the data set.
+        name: The format.
+        episodes: The episodes.
+
+    Raises:
+        EyasError: As `export`.
+    """
+    form = _format_of(name)(Job(folder, named))
+    for episode in episodes:
+        form.add(episode)
+
+
+def finish_export(folder: Path, named: str, name: str, recording: Recording) -> None:
+    """Complete the export of a data set, all episodes of which have been added.
+
+    Args:
+        folder: The folder of the export.
+        named: Name of the data set.
+        name: The format.
+        recording: The data set.
+
+    Raises:
+        EyasError: As `export`.
+    """
+    exported = [Exported(each.name, each.split, len(each)) for each in recording.episodes]
+    _format_of(name)(Job(folder, named)).finish(exported)
+    shutil.rmtree(folder / KEPT, ignore_errors=True)
+    identity = {**_identity(recording, name, ExportOptions()), "recording": named}
+    write_atomic(folder / FINISHED, (json.dumps(identity, indent=1) + "\n").encode())
+
+
+def require_outputs(recording: Recording, name: str, make: type[Format]) -> None:
+    """Refuse a recording that lacks what a format needs.
+
+    Raises:
+        DataFileError: The recording has no episodes, or an episode lacks something.
+    """
+    if not recording.episodes:
+        raise DataFileError(f"{recording.folder}: has no episodes")
+    for episode in recording.episodes:
+        for output in sorted(make.needs):
+            has = episode.has(output) or (output == "jpeg" and episode.has("png"))
+            if not has:
+                raise DataFileError(
+                    f"{episode.folder}: the format {name!r} needs the writer {output!r}; record "
+                    f"with video.writers = {json.dumps(sorted(make.needs))}"
+                )
+
+
+def _format_of(name: str) -> type[Format]:
+    found: type[Format] = FORMATS.get(name)
+    missing = [each for each in ("needs", "add", "finish") if not hasattr(found, each)]
+    if missing:
+        raise ConfigError(f"{SETTING}: {name!r} is not a format: it has no '{missing[0]}'")
+    return found
+
+
+def _name_of(recording: Recording) -> str:
+    """Return the name of a data set, or that of a recording's folder."""
+    described = _read(recording.folder / DATASET_FILE).get("recipe", {})
+    return str(described.get("name") or recording.folder.resolve().name or "recording")
+
+
+def _identity(recording: Recording, name: str, options: ExportOptions) -> dict[str, Any]:
+    """Return what an export is of; two that have the same are the same to the byte."""
+    sums = hashlib.sha256()
+    for folder in dict.fromkeys(episode.folder.parent.parent for episode in recording.episodes):
+        sums.update(read_limited(folder / CHECKSUMS, 1 << 30))
+    return {
+        "format": name,
+        "recording": _name_of(recording),
+        "checksums": sums.hexdigest(),
+        "pictures": "copied" if options.copies else "linked",
+        "least_side": options.least_side,
+        "least_visible": options.least_visible,
+        "eyas": __version__,
+        "build_id": this_build().id,
+    }
+
+
+def _open(folder: Path, identity: dict[str, Any], options: ExportOptions) -> bool:
+    """Prepare the folder; return whether something is left to do.
+
+    Raises:
+        OutputError: It is not empty, or not of the same export.
+    """
+    names = {inside.name for inside in folder.iterdir()} - {LOCK}
+    if names and options.overwrite:
+        if not names & {FINISHED, GROWING}:
+            raise OutputError(f"{folder}: not deleted: it is not an export (it has no {FINISHED})")
+        _empty(folder)
+        names = set()
+    if names and options.resume:
+        known = FINISHED if FINISHED in names else GROWING
+        found = _read(folder / known)
+        different = [key for key in identity if found.get(key) != identity[key]]
+        if different:
+            key = different[0]
+            raise OutputError(
+                f"{folder}: not continued: its {key} was {found.get(key)!r}, is {identity[key]!r};"
+                " start again with --overwrite"
+            )
+        _delete_parts(folder)
+        return known == GROWING
+    if names:
+        raise OutputError(
+            f"{folder}: not empty; continue its export with --resume, replace it with --overwrite,"
+            " or name another folder"
+        )
+    write_atomic(folder / GROWING, (json.dumps(identity, indent=1) + "\n").encode())
+    return True
+
+
+def _read(path: Path) -> dict[str, Any]:
+    try:
+        found = json.loads(read_limited(path, 1 << 28))
+    except (DataFileError, ValueError, RecursionError):
+        return {}
+    return found if isinstance(found, dict) else {}
+
+
+def _empty(folder: Path) -> None:
+    with refusals(folder):
+        for inside in sorted(folder.iterdir(), key=lambda path: path.name in (FINISHED, GROWING)):
+            if inside.name == LOCK:
+                continue
+            if inside.is_dir() and not inside.is_symlink():
+                shutil.rmtree(inside)
+            else:
+                inside.unlink()
+
+
+def _delete_parts(folder: Path) -> None:
+    for part in folder.rglob(f".*{PART_SUFFIX}"):
+        with suppress(FileNotFoundError):
+            part.unlink()
+
+
+def _add_all(form: Format, recording: Recording, folder: Path, told: Told) -> list[Exported]:
+    """Export all episodes but those that an earlier run has written completely."""
+    done, sums = _done(folder / DONE), _Checksums()
+    exported, frames = [], 0
+    with refusals(folder), (folder / DONE).open("ab") as finished:
+        # A line that a kill has cut off must not spoil the next one.
+        finished.write(b"\n" * bool(finished.tell()))
+        for episode in recording.episodes:
+            count = len(episode)
+            if episode.name not in done:
+                sums.require_whole(episode)
+                form.add(episode)
+                finished.write(f"{episode.name}\n".encode())
+                finished.flush()
+            exported.append(Exported(episode.name, episode.split or "train", count))
+            frames += count
+            episode.__dict__.pop("labels", None)  # those of one episode are in memory at a time
+            told(frames)
+    return exported
+
+
+def _done(path: Path) -> set[str]:
+    try:
+        return set(path.read_text().split("\n")[:-1])
+    except FileNotFoundError:
+        return set()
+
+
+class _Checksums:
+    """What the recordings of the episodes say of their files; of one recording at a time, as a
+    data set may have a million files.
+    """
+
+    def __init__(self) -> None:
+        self._run: Path | None = None
+        self._sums: dict[str, dict[str, str]] = {}
+
+    def require_whole(self, episode: RecordedEpisode) -> None:
+        """Refuse an episode whose files are not those of the recording's checksums, films and
+        arrays left out, which no format is made of.
+        """
+        run = episode.folder.parent.parent
+        if run != self._run:
+            self._run, self._sums = run, _by_folder(read_checksums(run / CHECKSUMS))
+        inside = episode.folder.relative_to(run).as_posix()
+        for name, digest in self._sums.get(inside, {}).items():
+            path = run / name
+            if path.suffix in (".mp4", ".npz"):
+                continue
+            if hashlib.sha256(read_limited(path, 1 << 30)).hexdigest() != digest:
+                raise DataFileError(
+                    f"{path}: not what was recorded: its SHA-256 is not that of {CHECKSUMS}"
+                )
+
+
+def _by_folder(sums: Mapping[str, str]) -> dict[str, dict[str, str]]:
+    """Return the checksums of each episode's files by its folder, `<tracker>/episode<j>`."""
+    folders: dict[str, dict[str, str]] = {}
+    for name, digest in sums.items():
+        folder = "/".join(name.split("/")[:2])
+        folders.setdefault(folder, {})[name] = digest
+    return folders
+
+
+def exports_folder(recording: Path, name: str, out: Path | None) -> Path:
+    """Return the folder of an export, by default in that of the recording.
+
+    Args:
+        recording: The folder of the recording.
+        name: The format.
+        out: Folder of all exports; None: the recording's `exports`.
+    """
+    return (out or recording / EXPORTS) / name.rpartition(":")[2].lower()
+
+
+def formats_needs(names: Sequence[str]) -> list[str]:
+    """Return the writers of whose files these formats are made."""
+    return list(
+        dict.fromkeys(output for name in names for output in sorted(_format_of(name).needs))
+    )

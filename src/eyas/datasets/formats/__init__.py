@@ -1,0 +1,1 @@
+"""The formats, one family a file."""
