@@ -53,10 +53,11 @@ def made(number: int, **changes: object) -> Frame:
         "direction": TargetDirection.STRAIGHT,
         "reason": DoneReason.NONE,
         "rgb": np.full((48, 64, 3), 40 * number % 256, np.uint8),
-        "depth": None,
-        "object_id": None,
-        "class_id": None,
+        "depth": np.full((48, 64), 12.5, np.float32),
+        "object_id": np.full((48, 64), 7, np.int32),
+        "class_id": np.full((48, 64), 3, np.uint8),
         "lidar": np.array([0.5, np.inf]),
+        "sensors": np.arange(19.0),
     }
     return Frame(**{**values, **changes})  # type: ignore[arg-type]
 
@@ -77,4 +78,7 @@ def episode(tmp_path: Path) -> Episode:
 def run(tmp_path: Path) -> Run:
     """A recording of two trackers with a lidar, in an empty folder."""
     config = SimConfig(lidar=LidarConfig(enabled=True))
-    return Run(tmp_path, ("DRONE0", "DRONE1"), config, target_direction=False, jpeg_quality=95)
+    return Run(
+        tmp_path, ("DRONE0", "DRONE1"), config, target_direction=False, jpeg_quality=95,
+        depth_unit=0.01,
+    )  # fmt: skip

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from eyas.core.errors import ConfigError
-from eyas.exports.lidar import LidarWriter
+from eyas.exports.table import LidarWriter
 from eyas.exports.writer import Summary
 from eyas.sim.config import SimConfig
 

@@ -58,7 +58,8 @@ def test_every_writer_names_its_files_and_counts_its_frames(name, run, episode, 
     writer.finish([EndedEpisode(episode, Summary(2))])
     files = made.files
     for inside, patterns in ((folder, files.frame + files.episode), (run.folder, files.run)):
-        names = [path.name for path in inside.iterdir() if path.is_file()]
+        found_in = inside.rglob("*") if inside is folder else inside.iterdir()
+        names = [path.relative_to(inside).as_posix() for path in found_in if path.is_file()]
         assert bool(names) == bool(patterns)
         for found in names:
             assert any(re.fullmatch(pattern_of(pattern), found) for pattern in patterns), found
@@ -72,7 +73,7 @@ def test_writers_come_in_the_order_of_their_names():
 def test_an_unknown_name_is_one_line_with_the_nearest():
     with pytest.raises(UnknownNameError) as caught:
         chosen_writers(["jpeg", "lables"])
-    line = "video.writers: 'lables' is not allowed; did you mean 'labels'?; known: jpeg, labels, "
+    line = "video.writers: 'lables' is not allowed; did you mean 'labels'?; known: arrays, "
     assert str(caught.value).startswith(line)
 
 

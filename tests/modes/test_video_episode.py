@@ -16,8 +16,9 @@ from eyas.state.snapshot import Snapshot
 
 LIDAR = LidarConfig(enabled=True)
 RUN = Run(
-    Path("unused"), ("DRONE0",), SimConfig(lidar=LIDAR), target_direction=False, jpeg_quality=95
-)
+    Path("unused"), ("DRONE0",), SimConfig(lidar=LIDAR), target_direction=False, jpeg_quality=95,
+    depth_unit=0.01,
+)  # fmt: skip
 
 
 def writers_of(*names: str) -> list[Writer]:
@@ -27,15 +28,34 @@ def writers_of(*names: str) -> list[Writer]:
 def write(folder: Path, frames: int, writers: list[Writer] | None = None) -> EpisodeFiles:
     episode = Episode(folder, "DRONE0", 0, 64, 48, np.eye(3), 25.0)
     files = EpisodeFiles(writers or writers_of(), episode)
-    snapshot, picture = Snapshot.create(1), Picture.create(1, 48, 64, subject=True)
+    snapshot, picture = (
+        Snapshot.create(1),
+        Picture.create(1, 48, 64, subject=True, depth=True, object_id=True, class_id=True),
+    )
     snapshot.episodes.reward[:] = 0.5
     picture.subject_pixels[:] = 4, 5
     for number in range(frames):
         picture.rgb[:] = 40 * number
         action, now = RecordedAction(-1, None), snapshot.episodes
-        moment = Moment(snapshot, now, lidar=np.ones(400))
+        moment = Moment(snapshot, now, lidar=np.ones(400), sensors=np.ones(19))
         files.add(frame_of(moment, 0, picture, 0, number, action))
     return files
+
+
+PICTURES = sorted(
+    f"{place}{number:06d}.{kind}"
+    for place, kind in (
+        *(("", "jpeg"), ("", "png"), ("masks/", "png"), ("classes/", "png"), ("depth/", "png")),
+        *(("arrays/", "npz"),),
+    )
+    for number in range(2)
+)
+
+
+def names_in(folder: Path) -> list[str]:
+    return sorted(
+        path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()
+    )
 
 
 def test_a_finished_episode_is_complete(tmp_path):
@@ -44,14 +64,19 @@ def test_a_finished_episode_is_complete(tmp_path):
     assert found == Summary(3, Scores(3, 1.5, 3))
 
 
-@pytest.mark.parametrize("name", ["mark.json", "labels.jsonl", "episode.mp4", "000001.jpeg"])
+@pytest.mark.parametrize(
+    "name",
+    ["mark.json", "labels.jsonl", "episode.mp4", "000001.jpeg", "masks/000001.png", "sensors.csv"],
+)
 def test_an_episode_that_misses_a_file_is_not_complete(tmp_path, name):
     write(tmp_path / "episode0", 3).finish()
     (tmp_path / "episode0" / name).unlink()
     assert read_complete(writers_of(), tmp_path / "episode0") is None
 
 
-@pytest.mark.parametrize("name", ["mark.json", "labels.jsonl", "episode.mp4", "000002.jpeg"])
+@pytest.mark.parametrize(
+    "name", ["mark.json", "labels.jsonl", "episode.mp4", "000002.jpeg", "arrays/000002.npz"]
+)
 def test_an_episode_whose_files_hold_different_numbers_of_frames_is_not_complete(tmp_path, name):
     write(tmp_path / "episode0", 2).finish()
     write(tmp_path / "other", 3).finish()
@@ -74,8 +99,7 @@ def test_pictures_alone_do_not_tell_that_an_episode_has_ended(tmp_path):
 
 def test_an_abandoned_episode_keeps_its_pictures_only(tmp_path):
     write(tmp_path / "episode0", 2).abandon()
-    names = sorted(path.name for path in (tmp_path / "episode0").iterdir())
-    assert names == ["000000.jpeg", "000001.jpeg"]
+    assert names_in(tmp_path / "episode0") == PICTURES
     assert read_complete(writers_of(), tmp_path / "episode0") is None
 
 
@@ -83,8 +107,7 @@ def test_an_episode_that_is_drawn_anew_leaves_nothing_of_the_old(tmp_path):
     write(tmp_path / "episode0", 5).finish()
     (tmp_path / "episode0" / "notes.txt").write_text("mine")
     files = write(tmp_path / "episode0", 2)
-    names = sorted(path.name for path in (tmp_path / "episode0").iterdir())
-    assert names == [".episode.mp4.part", "000000.jpeg", "000001.jpeg", "notes.txt"]
+    assert names_in(tmp_path / "episode0") == sorted([".episode.mp4.part", *PICTURES, "notes.txt"])
     files.finish()
 
 

@@ -33,7 +33,8 @@ from eyas.state.scene import ACTOR_OBJECT
 if TYPE_CHECKING:
     from torch.utils.data import Dataset
 
-__all__ = ["DATASET_FILE", "RecordedEpisode", "RecordedFrame", "Recording", "load"]
+__all__ = ["DATASET_FILE", "RecordedEpisode", "RecordedFrame", "Recording", "load",
+           "load_part"]  # fmt: skip
 
 DATASET_FILE = "dataset.json"
 """What a data set holds, see `eyas.datasets.plan`."""
@@ -42,6 +43,8 @@ SPLITS = ("train", "val", "test")
 
 MASK_OFFSET = ACTOR_OBJECT - 1
 """A mask's value and this make the `id` of the labels."""
+
+_OF_EPISODES = {"labels": LABELS, "mp4": "episode.mp4", "sensors": "sensors.csv"}
 
 _EPISODE = re.compile(r"episode(\d+)")
 _TRACKER = re.compile(r"(DRONE|CAR)(\d+)")
@@ -211,8 +214,8 @@ class RecordedEpisode(Sequence[RecordedFrame]):
 
     def has(self, output: str) -> bool:
         """Return whether the writer of this name has recorded the episode."""
-        if output == "labels":
-            return (self.folder / LABELS).exists()
+        if output in _OF_EPISODES:
+            return (self.folder / _OF_EPISODES[output]).exists()
         return self.file(output, 0).exists()
 
 
@@ -276,8 +279,16 @@ def load(folder: Path | str) -> Recording:
 
 def _parts(root: Path) -> Iterator[list[RecordedEpisode]]:
     for part in _table(root / DATASET_FILE, "parts"):
-        split, name = part["split"], part["name"]
-        yield _episodes(root / "parts" / split / name, f"{name}-", split)
+        yield load_part(root, part["split"], part["name"])
+
+
+def load_part(root: Path, split: str, name: str) -> list[RecordedEpisode]:
+    """Return the episodes of one part of a data set.
+
+    Raises:
+        DataFileError: It is not a complete recording.
+    """
+    return _episodes(root / "parts" / split / name, f"{name}-", split)
 
 
 def _table(path: Path, key: str) -> list[dict[str, Any]]:

@@ -20,6 +20,7 @@ from eyas.targets.catalogue import MODELS, extent_of, kind_of, sections_of
 from eyas.targets.words import words_of
 from eyas.task.direction import TargetDirection, target_centre, target_direction
 from eyas.task.done import DoneReason
+from eyas.task.packet_rows import SENSOR_COLUMNS
 
 __all__ = ["Moment", "frame_of", "moment_of", "others_of"]
 
@@ -42,6 +43,8 @@ class Moment(NamedTuple):
     lidar: Floats | None = None
     """Distances of its lidar [m], shape (points,), which nothing changes later; None: it has
     none."""
+    sensors: Floats | None = None
+    """What its other sensors tell, see `Frame.sensors`; nothing changes it later."""
 
 
 def moment_of(simulation: Simulation, tracker: int, picture: Picture, view: int) -> Moment:
@@ -62,7 +65,8 @@ def moment_of(simulation: Simulation, tracker: int, picture: Picture, view: int)
         whole_box = np.zeros((simulation.actors, 4))
         whole_box[wanted] = seen.whole_boxes(tracker, actors, np.flatnonzero(wanted))
     lidar = None if seen.lidar is None else seen.lidar.ranges(seen.state.late)[tracker]
-    return Moment(shown, simulation.snapshot.episodes, actors, whole_box, lidar)
+    told = seen.packets()[0][tracker, SENSOR_COLUMNS]
+    return Moment(shown, simulation.snapshot.episodes, actors, whole_box, lidar, told)
 
 
 def frame_of(
@@ -102,6 +106,7 @@ def frame_of(
         object_id=None if picture.object_id is None else picture.object_id[view].copy(),
         class_id=None if picture.class_id is None else picture.class_id[view].copy(),
         lidar=moment.lidar,
+        sensors=moment.sensors,
     )
 
 

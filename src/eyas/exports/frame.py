@@ -194,6 +194,9 @@ class Frame:
     lidar: Floats | None = None
     """Distances that the lidar has measured [m], infinity where nothing was within range, shape
     (points,); None: there is no lidar."""
+    sensors: Floats | None = None
+    """What GPS, accelerometer, gyroscope and IMU tell, with their errors, see
+    `eyas.task.packets.BASIC_FIELDS`, shape (19,); None: it is not known."""
 
     @property
     def episode_time(self) -> float:

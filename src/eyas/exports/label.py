@@ -41,12 +41,12 @@ DECIMALS = 6
 
 def rounded(value: float) -> float | None:
     """Return a number with fixed decimals, without a negative zero; None if it is not finite."""
-    return round(float(value), DECIMALS) + 0.0 if np.isfinite(value) else None
+    return round(float(value), DECIMALS) + 0.0 if math.isfinite(value) else None
 
 
 def rounded_list(values: ArrayLike) -> list[float | None]:
     """Return `rounded` of each value, shape (K,)."""
-    return [rounded(value) for value in np.asarray(values, np.float64)]
+    return [rounded(value) for value in np.asarray(values, np.float64).tolist()]
 
 
 Label = dict[str, Any]

@@ -17,10 +17,16 @@ WRITERS: Registry[type[Any]] = Registry(
     type,
     {
         "jpeg": "eyas.exports.jpeg:JpegWriter",
+        "png": "eyas.exports.images:PngWriter",
         "mp4": "eyas.exports.mp4:Mp4Writer",
         "labels": "eyas.exports.label:LabelWriter",
         "mark": "eyas.exports.mark:MarkWriter",
-        "lidar": "eyas.exports.lidar:LidarWriter",
+        "masks": "eyas.exports.images:MaskWriter",
+        "classes": "eyas.exports.images:ClassWriter",
+        "depth": "eyas.exports.images:DepthWriter",
+        "arrays": "eyas.exports.images:ArrayWriter",
+        "sensors": "eyas.exports.table:SensorWriter",
+        "lidar": "eyas.exports.table:LidarWriter",
     },
     group="eyas.writers",
 )

@@ -152,6 +152,8 @@ class Run:
     """Whether `mark.json` holds the target's direction instead of reward and action."""
     jpeg_quality: int
     """Of pictures in the JPEG format, 1 to 100."""
+    depth_unit: float
+    """Of depth as PNG files [m]."""
 
 
 @dataclass(frozen=True, slots=True)

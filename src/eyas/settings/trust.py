@@ -15,7 +15,7 @@ from eyas.core.errors import ConfigError
 from eyas.core.files import user_path
 from eyas.settings.config import EyasConfig, variants
 
-__all__ = ["TRUST_VARIABLE", "code_of", "is_trusted", "refuse_code"]
+__all__ = ["TRUST_VARIABLE", "code_of", "is_trusted", "refuse_code", "refuse_named"]
 
 TRUST_VARIABLE = "EYAS_TRUST"
 """Environment variable: folders whose files of settings, at any depth, may name code."""
@@ -60,7 +60,16 @@ def refuse_code(path: Path, config: EyasConfig, said: Collection[str] = ()) -> N
     Raises:
         ConfigError: It names code, and is not trusted: one line with all that would run.
     """
-    names = [f"{name!r} ({setting})" for setting, name in code_of(config) if name not in said]
+    refuse_named(path, [(setting, name) for setting, name in code_of(config) if name not in said])
+
+
+def refuse_named(path: Path, code: Collection[tuple[str, str]]) -> None:
+    """Refuse code that a file names: each piece with the path of its setting.
+
+    Raises:
+        ConfigError: There is some, and the file is not trusted.
+    """
+    names = [f"{name!r} ({setting})" for setting, name in code]
     if names and not is_trusted(path):
         raise ConfigError(
             f"{path}: this file would run code: {', '.join(names)}; if you trust whoever wrote it, "

@@ -74,11 +74,13 @@ class VideoConfig(ActionSpeeds):
     writers: Annotated[tuple[str, ...], AfterValidator(_some), NAMES_CODE] = (
         *("jpeg", "mp4", "labels", "mark"),
     )
-    """Output formats: `jpeg`, `mp4`, `labels`, `mark`, or your own as
-    `my_package.module:Class`."""
+    """Output formats: `jpeg`, `png`, `mp4`, `labels`, `mark`, `masks`, `classes`, `depth`,
+    `arrays`, `sensors`, `lidar`, or your own as `my_package.module:Class`."""
     jpeg_quality: Annotated[int, Field(ge=1, le=100)] = 95
     """Quality of the JPEG pictures; one of 320 x 240 takes some 36 kB at 95, and 93 kB at 100,
     which an `env_config.json` means."""
+    depth_unit: Annotated[float, Field(ge=1e-4, le=10.0)] = 0.01
+    """Unit of the numbers in `depth/NNNNNN.png` [m]; the largest is 65535."""
 
     @model_validator(mode="after")
     def _one_pilot(self) -> Self:

@@ -7,6 +7,7 @@ from contextlib import ExitStack
 from pathlib import Path
 
 from eyas.core.files import PART_SUFFIX, refusals
+from eyas.datasets.export import EXPORTS
 from eyas.exports.frame import Frame
 from eyas.exports.writer import Episode, EpisodeWriter, Files, Summary, Writer, joined, pattern_of
 
@@ -14,6 +15,7 @@ __all__ = ["EpisodeFiles", "RecordedPaths", "paths_below", "read_complete"]
 
 _TRACKER = r"(DRONE|CAR)\d+"
 _EPISODE = rf"{_TRACKER}/episode\d+"
+_EXPORTED = rf"{EXPORTS}(/(.|\n)*)?"
 
 
 class RecordedPaths:
@@ -29,7 +31,7 @@ class RecordedPaths:
         in_run = _patterns([*files.run, *others])
         below = [f"{_EPISODE}/{pattern}" for pattern in in_episode]
         self._in_episode = re.compile("|".join(in_episode))
-        self._in_run = re.compile("|".join([*in_run, _TRACKER, _EPISODE, *below]))
+        self._in_run = re.compile("|".join([*in_run, _TRACKER, _EPISODE, *below, _EXPORTED]))
 
     def in_run(self, inside: str) -> bool:
         """Return whether a recording can hold a path, relative to its folder, with `/`."""

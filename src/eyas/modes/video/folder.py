@@ -19,6 +19,7 @@ from eyas.exports.checksums import CHECKSUMS, GROWING
 from eyas.exports.registry import WRITERS, chosen_writers
 from eyas.exports.writer import Episode, Files, Run, joined
 from eyas.modes.video.episode import RecordedPaths, paths_below
+from eyas.modes.video.formats import writers_in
 from eyas.settings.config import EyasConfig
 from eyas.settings.file import read_settings, save_settings
 from eyas.settings.legacy.adapter import save_legacy
@@ -64,8 +65,15 @@ class VideoFolder:
         kind = config.tracker.original_name
         self.trackers = tuple(f"{kind}{tracker}" for tracker in range(config.video.channels))
         video = config.video
-        run = Run(path, self.trackers, config, video.target_direction, video.jpeg_quality)
-        self.writers = tuple(writer(run) for writer in chosen_writers(config.video.writers))
+        run = Run(
+            path,
+            self.trackers,
+            config,
+            video.target_direction,
+            video.jpeg_quality,
+            video.depth_unit,
+        )
+        self.writers = tuple(writer(run) for writer in chosen_writers(writers_in(video.writers)))
 
     def episode(self, tracker: int, number: int, field_of_view: float) -> Episode:
         """Return the description of an episode; its camera's field of view is horizontal [rad]."""
@@ -157,7 +165,7 @@ def open_folder(path: Path, config: EyasConfig, *, overwrite: bool, resume: bool
 
 def _contents(path: Path, config: EyasConfig) -> RecordedPaths:
     """Return the paths of a recording with these settings, and of the existing one."""
-    names = dict.fromkeys((*WRITERS.built_in, *config.video.writers))
+    names = dict.fromkeys((*WRITERS.built_in, *writers_in(config.video.writers)))
     files = [WRITERS.get(name).files for name in names]
     with suppress(DataFileError, ValueError, TypeError, KeyError, RecursionError):
         recorded = _origin(path)["files"]

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from eyas.core.errors import OutputError
 from eyas.exports.capture import frame_of, moment_of
+from eyas.exports.frame import RecordedAction
 from eyas.exports.writer import EndedEpisode, Episode, Scores, Summary
-from eyas.modes.video.action import Mover
 from eyas.modes.video.checksums import Checksums
 from eyas.modes.video.episode import EpisodeFiles, read_complete
 from eyas.modes.video.folder import VideoFolder
@@ -145,12 +145,12 @@ class Recorder:
         self.drawn = 0
         self.reached = [ReachedShares() for _ in range(count)]
 
-    def take(self, due: NDArray[np.int32], mover: Mover) -> None:
+    def take(self, due: NDArray[np.int32], action_of: Callable[[int], RecordedAction]) -> None:
         """Record one frame of each of these trackers.
 
         Args:
             due: Trackers, shape (V,).
-            mover: The mover of the trackers.
+            action_of: Returns the action of a tracker in the last step.
 
         Raises:
             OutputError: This frame or an earlier one could not be written.
@@ -162,7 +162,7 @@ class Recorder:
         overlaid = self._sim.rules if self._overlay else None
         self._sim.view.draw(np.array(drawn, np.int32), picture, overlaid=overlaid)
         for view, tracker in enumerate(drawn):
-            self._write(tracker, picture, view, mover)
+            self._write(tracker, picture, view, action_of(tracker))
         self.drawn += len(drawn)
 
     def _begin(self, tracker: int) -> _Going:
@@ -183,11 +183,11 @@ class Recorder:
         self._begun = [begun for begun in self._begun if not begun.finished] + [files]
         return _Going(episode, files, Summary(0, Scores()))
 
-    def _write(self, tracker: int, picture: Picture, view: int, mover: Mover) -> None:
+    def _write(self, tracker: int, picture: Picture, view: int, action: RecordedAction) -> None:
         going = self._going[tracker]
         assert going is not None
         assert going.files is not None
-        number, action = going.summary.frames, mover.action(tracker)
+        number = going.summary.frames
         moment = moment_of(self._sim, tracker, picture, view)
         frame = frame_of(moment, tracker, picture, view, number, action)
         going.summary = going.summary.plus(frame)

@@ -13,6 +13,7 @@ from eyas.core.folder_lock import folder_lock
 from eyas.exports.registry import chosen_writers
 from eyas.modes.video.action import Mover, check_flight, mover_of
 from eyas.modes.video.folder import VideoFolder, check_folder, open_folder
+from eyas.modes.video.formats import write_formats, writers_in
 from eyas.modes.video.frame_grid import FrameGrid, RecordingEnd
 from eyas.modes.video.recorder import Recorder
 from eyas.modes.video.report import RecordingProgress, print_report, step_log
@@ -58,7 +59,7 @@ def run(
     # Building may take a minute, so writers and folder are checked first. The folder is changed
     # only after building, so that a failed build neither makes nor deletes one.
     with originals_named(config):
-        chosen_writers(config.video.writers)
+        chosen_writers(writers_in(config.video.writers))
         check_flight(config)
         check_folder(folder, config, overwrite=overwrite, resume=resume)
         sim = build_simulation(recording_rules(config), together(config.video.channels))
@@ -70,6 +71,7 @@ def run(
         with folder_lock(folder, "recording into it"):
             recording = open_folder(folder, config, overwrite=overwrite, resume=resume)
             _record(sim, config, mover, recording, quiet=quiet)
+    write_formats(config.video.writers, folder, quiet=quiet)
 
 
 def _record(
@@ -186,7 +188,7 @@ def _run_episodes(
         tick += 1
         due = end.wanted(grid.due(tick, episodes.step_count))
         if due.size:
-            recorder.take(due, mover)
+            recorder.take(due, mover.action)
             progress.show(end.share(tick), recorder.drawn)
         ended = end.of_episodes(episodes.done)
         if ended.any():

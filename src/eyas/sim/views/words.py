@@ -1,5 +1,8 @@
 """The target in words that tell it from what else is in view."""
 
+import math
+from functools import cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -27,39 +30,72 @@ def target_in_words(shown: Snapshot, around: ActorView, tracker: int, aspect: fl
     """
     cameras, target = shown.cameras, int(shown.targets.actor[tracker])
     actors, _, model, colour = around
-    corners = _in_camera(_corners(actors, model.tolist()), cameras, tracker)
     wide = exact.tan(0.5 * float(cameras.field_of_view[tracker]))
-    inside = _in_view(corners, wide, wide * aspect) & actors.present[0]
-    inside[target] = False
+    middles = _in_camera(actors.position[0], cameras, tracker)
+    near = _may_be_in_view(middles, _reach(len(MODELS))[model], wide, wide * aspect)
+    near &= actors.present[0]
+    near[target] = True
+    chosen = np.flatnonzero(near)
+    corners = _in_camera(_corners(actors, chosen, model), cameras, tracker)
+    inside = _in_view(corners, wide, wide * aspect) & (chosen != target)
     # Where the middle is: half across the picture is 0.5, also if it is behind the camera.
     forward, left, _ = corners.mean(axis=1).T
     column = 0.5 - 0.5 * left / (np.maximum(forward, 1e-3) * wide)
 
-    def seen(actor: int) -> Seen:
+    def seen(row: int) -> Seen:
+        actor = chosen[row]
         return Seen(
             model=int(model[actor]),
             colour=colour[actor].tolist(),
             speed=float(actors.speed[0, actor]),
             yaw_rate=float(actors.yaw_rate[0, actor]),
-            column=float(column[actor]),
-            distance=float(forward[actor]),
+            column=float(column[row]),
+            distance=float(forward[row]),
         )
 
-    return told_apart(seen(target), [seen(actor) for actor in np.flatnonzero(inside).tolist()])
+    (own,) = np.flatnonzero(chosen == target).tolist()
+    return told_apart(seen(own), [seen(row) for row in np.flatnonzero(inside).tolist()])
 
 
-def _corners(actors: ActorState, models: list[int]) -> Floats:
-    """Return the corners of the boxes of all actors of one world [m], shape (A, 8, 3)."""
-    low, high = np.empty((2, len(models), 3))
-    for actor, model in enumerate(models):
-        low[actor], high[actor] = _extent(actors, actor, model)
+_LIMBS = 2.0
+"""Limbs reach less than this out of the box of a model's size, and so do trailers that swing [m].
+"""
+
+
+@cache
+def _reach(models: int) -> Floats:
+    """Return how far any corner of each of so many models may be from its place [m]."""
+    return np.array(
+        [math.hypot(*model.size) + abs(kind_of(k).ahead) for k, model in enumerate(MODELS[:models])]
+    )
+
+
+def _may_be_in_view(middles: Floats, reach: Floats, wide: float, high: float) -> NDArray[np.bool_]:
+    """Return whether spheres may be in a view, as `_in_view` does for boxes; most are far aside."""
+    forward, left, up = middles.T
+    reach = reach + _LIMBS
+    across, down = math.hypot(1.0, wide) * reach, math.hypot(1.0, high) * reach
+    inside: NDArray[np.bool_] = (
+        (forward > -reach)
+        & (np.abs(left) - forward * wide < across)
+        & (np.abs(up) - forward * high < down)
+    )
+    return inside
+
+
+def _corners(actors: ActorState, chosen: NDArray[np.integer], model: NDArray[np.int32]) -> Floats:
+    """Return the corners of the boxes of some actors of one world [m], shape (K, 8, 3)."""
+    low, high = np.empty((2, len(chosen), 3))
+    for row, actor in enumerate(chosen.tolist()):
+        low[row], high[row] = _extent(actors, actor, int(model[actor]))
     pick = np.array([[bit >> axis & 1 for axis in range(3)] for bit in range(8)], bool)
     own = np.where(pick, high[:, None], low[:, None])
-    cosine, sine = exact.cos(actors.yaw[0])[:, None], exact.sin(actors.yaw[0])[:, None]
+    yaw, slope = actors.yaw[0, chosen], actors.slope[0, chosen]
+    cosine, sine = exact.cos(yaw)[:, None], exact.sin(yaw)[:, None]
     east = cosine * own[..., 0] - sine * own[..., 1]
     north = sine * own[..., 0] + cosine * own[..., 1]
-    up = own[..., 2] + own[..., 0] * exact.tan(actors.slope[0])[:, None]
-    corners: Floats = np.stack([east, north, up], axis=-1) + actors.position[0][:, None]
+    up = own[..., 2] + own[..., 0] * exact.tan(slope)[:, None]
+    corners: Floats = np.stack([east, north, up], axis=-1) + actors.position[0, chosen][:, None]
     return corners
 
 

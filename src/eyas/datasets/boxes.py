@@ -1,0 +1,86 @@
+"""Boxes and cameras of labels, as other tools want them."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.exports.label import Label
+
+__all__ = ["FROM_OPTICAL", "Box3D", "box_of", "camera_pose", "quaternion_of"]
+
+Floats = NDArray[np.float64]
+
+FROM_OPTICAL = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
+"""From the axes of computer vision (right, down, forward) to those of our cameras (forward, left,
+up)."""
+
+
+class Box3D(NamedTuple):
+    """A 3D box in the world."""
+
+    centre: Floats
+    """[m], shape (3,)."""
+    size: Floats
+    """Length, width, height [m], shape (3,)."""
+    rotation: Floats
+    """Box to world; columns forward, left, up, shape (3, 3)."""
+
+
+def box_of(corners: list[list[float]]) -> Box3D:
+    """Return the box of the corners of a label: four on the ground, counter-clockwise from the
+    right of the tail, and those above them. One that is sheared (a person on a slope) is made
+    rectangular.
+    """
+    points = np.array(corners, np.float64)
+    edges = points[1] - points[0], points[3] - points[0], points[4] - points[0]
+    size = np.array([_length(edge) for edge in edges])
+    ahead = edges[0] / max(size[0], 1e-9)
+    left = edges[1] / max(size[1], 1e-9)
+    up = np.cross(ahead, left)
+    rotation = np.column_stack([ahead, left, up / max(_length(up), 1e-9)])
+    return Box3D(points.mean(axis=0), size, rotation)
+
+
+def camera_pose(label: Label) -> tuple[Floats, Floats]:
+    """Return the optical centre in the world [m], shape (3,), and the rotation from the axes of
+    computer vision (right, down, forward) to the world, shape (3, 3).
+    """
+    rotation = np.array(label["camera_rotation"], np.float64)
+    return np.array(label["camera_position"], np.float64), rotation @ FROM_OPTICAL
+
+
+def quaternion_of(rotation: Floats) -> tuple[float, float, float, float]:
+    """Return a rotation, shape (3, 3), as a quaternion w, x, y, z with w at least 0.
+
+    By the largest of its four numbers (Shepperd, 1978), so that nothing small is divided by.
+    """
+    m, trace = rotation, float(np.trace(rotation))
+    squares = [trace, m[0, 0], m[1, 1], m[2, 2]]
+    largest = int(np.argmax(squares))
+    if largest == 0:
+        w = _root(1.0 + trace)
+        found = (w, (m[2, 1] - m[1, 2]) / w, (m[0, 2] - m[2, 0]) / w, (m[1, 0] - m[0, 1]) / w)
+    else:
+        i = largest - 1
+        j, k = (i + 1) % 3, (i + 2) % 3
+        length = _root(1.0 + m[i, i] - m[j, j] - m[k, k])
+        axes = [0.0, 0.0, 0.0]
+        axes[i], axes[j], axes[k] = (
+            length,
+            (m[j, i] + m[i, j]) / length,
+            (m[k, i] + m[i, k]) / length,
+        )
+        found = ((m[k, j] - m[j, k]) / length, *axes)
+    sign = -0.5 if found[0] < 0.0 else 0.5
+    w, x, y, z = (sign * float(each) for each in found)
+    return w, x, y, z
+
+
+def _root(value: float) -> float:
+    """Return the square root; of what rounding has made negative 0."""
+    return float(np.sqrt(max(value, 0.0)))
+
+
+def _length(edge: Floats) -> float:
+    return _root(float((edge * edge).sum()))

@@ -1,0 +1,92 @@
+"""Rerun: `<split>/<episode>.rrd`, with pictures, camera, boxes in the picture and in the world.
+
+https://rerun.io. Rerun numbers what it stores by the clock, so that the bytes of two exports
+differ, not what they hold.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from eyas.core.errors import MissingExtraError
+from eyas.core.files import atomic_path, refusals
+from eyas.datasets.boxes import box_of, camera_pose, quaternion_of
+from eyas.datasets.format import Format, Job, objects_of, split_of
+from eyas.datasets.recording import RecordedEpisode, RecordedFrame
+
+__all__ = ["Rerun"]
+
+_TARGET, _OTHER = (255, 140, 0), (90, 170, 255)
+"""Colours of boxes."""
+
+
+class Rerun(Format):
+    """One file an episode.
+
+    Raises:
+        MissingExtraError: The Rerun SDK is not installed.
+    """
+
+    needs = frozenset({"jpeg", "labels"})
+
+    def __init__(self, job: Job) -> None:
+        try:
+            import rerun
+        except ImportError as error:
+            raise MissingExtraError("the format 'rerun'", "exports") from error
+        self._job, self._rr = job, rerun
+
+    def add(self, episode: RecordedEpisode) -> None:
+        """Write its file."""
+        path = self._job.folder / split_of(episode) / f"{episode.name}.rrd"
+        with refusals(path):
+            path.parent.mkdir(parents=True, exist_ok=True)
+        with atomic_path(path) as part:
+            stream = self._rr.RecordingStream(
+                "eyas", recording_id=f"{self._job.name}-{episode.name}", send_properties=False
+            )
+            stream.save(part)
+            world = self._rr.ViewCoordinates.RIGHT_HAND_Z_UP
+            stream.log("world", world, static=True)
+            for frame in episode:
+                self._log(stream, frame)
+            stream.flush()
+            stream.disconnect()
+
+    def _log(self, stream: Any, frame: RecordedFrame) -> None:  # noqa: ANN401  # rerun's
+        rr, label = self._rr, frame.label
+        stream.set_time("time", duration=label["episode_time"])
+        stream.set_time("frame", sequence=frame.number)
+        position, rotation = camera_pose(label)
+        stream.log("world/camera", rr.Transform3D(translation=position, mat3x3=rotation))
+        size = [label["width"], label["height"]]
+        lens = rr.Pinhole(image_from_camera=np.array(label["intrinsics"]), resolution=size)
+        stream.log("world/camera/image", lens)
+        file = frame.episode.picture_file(frame.number)
+        kind = f"image/{frame.episode.picture_kind}"
+        picture = rr.EncodedImage(contents=file.read_bytes(), media_type=kind)
+        stream.log("world/camera/image", picture)
+        seen = list(objects_of(label))
+        colours = [_TARGET if each.is_target else _OTHER for each in seen]
+        words = [each.label["words"] for each in seen]
+        plane = np.array([each.label["visible_box"] for each in seen], np.float32).reshape(-1, 4)
+        flat = rr.Boxes2D(
+            array=plane, array_format=rr.Box2DFormat.XYXY, labels=words, colors=colours
+        )
+        stream.log("world/camera/image/boxes", flat)
+        boxes = [box_of(each.label["corners"]) for each in seen]
+        solid = rr.Boxes3D(
+            centers=[box.centre for box in boxes],
+            sizes=[box.size for box in boxes],
+            quaternions=[_xyzw(quaternion_of(box.rotation)) for box in boxes],
+            labels=words,
+            colors=colours,
+        )
+        stream.log("world/boxes", solid)
+        stream.log("reward", rr.Scalars(np.nan if label["reward"] is None else label["reward"]))
+        stream.log("visible_fraction", rr.Scalars(label["visible_fraction"]))
+
+
+def _xyzw(quaternion: tuple[float, float, float, float]) -> list[float]:
+    w, x, y, z = quaternion
+    return [x, y, z, w]

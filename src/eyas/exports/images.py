@@ -1,0 +1,94 @@
+"""Pictures without loss: colours, masks, classes and depth as PNG files, or all as arrays."""
+
+import io
+
+import numpy as np
+
+from eyas.core.png import png_bytes
+from eyas.exports.frame import Frame
+from eyas.exports.per_frame import PerFrameWriter
+from eyas.exports.writer import Files, Run
+from eyas.state.scene import ACTOR_OBJECT
+
+__all__ = ["ArrayWriter", "ClassWriter", "DepthWriter", "MaskWriter", "PngWriter"]
+
+_MOST = np.iinfo(np.uint16).max
+
+
+class PngWriter(PerFrameWriter):
+    """`NNNNNN.png`: the colours."""
+
+    name = "{:06d}.png"
+    wants = frozenset({"rgb"})
+    files = Files(frame=(name,))
+
+    def encoded(self, frame: Frame) -> bytes:
+        """Return a frame's picture."""
+        assert frame.rgb is not None
+        return png_bytes(frame.rgb)
+
+
+class MaskWriter(PerFrameWriter):
+    """`masks/NNNNNN.png`: which moving object each pixel shows, 16 bits: 0 for none, else its
+    number among the actors + 1, that is the label's id - 65535.
+    """
+
+    name = "masks/{:06d}.png"
+    wants = frozenset({"object_id"})
+    files = Files(frame=(name,))
+
+    def encoded(self, frame: Frame) -> bytes:
+        """Return a frame's masks."""
+        assert frame.object_id is not None
+        return png_bytes(np.maximum(frame.object_id - (ACTOR_OBJECT - 1), 0).astype(np.uint16))
+
+
+class ClassWriter(PerFrameWriter):
+    """`classes/NNNNNN.png`: the `ObjectClass` of each pixel, 8 bits."""
+
+    name = "classes/{:06d}.png"
+    wants = frozenset({"class_id"})
+    files = Files(frame=(name,))
+
+    def encoded(self, frame: Frame) -> bytes:
+        """Return a frame's classes."""
+        assert frame.class_id is not None
+        return png_bytes(frame.class_id)
+
+
+class DepthWriter(PerFrameWriter):
+    """`depth/NNNNNN.png`: distance along the optical axis in units of `video.depth_unit`, 16 bits;
+    0 for the sky and what is too far.
+    """
+
+    name = "depth/{:06d}.png"
+    wants = frozenset({"depth"})
+    files = Files(frame=(name,))
+
+    def __init__(self, run: Run) -> None:
+        self._unit = run.depth_unit
+
+    def encoded(self, frame: Frame) -> bytes:
+        """Return a frame's depth."""
+        assert frame.depth is not None
+        units = np.maximum(np.rint(frame.depth / np.float64(self._unit)), 1.0)
+        return png_bytes(np.where(units <= _MOST, units, 0.0).astype(np.uint16))
+
+
+class ArrayWriter(PerFrameWriter):
+    """`arrays/NNNNNN.npz`: `depth` [m], `object_id` and `class_id` as the renderer has them; not
+    compressed.
+    """
+
+    name = "arrays/{:06d}.npz"
+    wants = frozenset({"depth", "object_id", "class_id"})
+    files = Files(frame=(name,))
+
+    def encoded(self, frame: Frame) -> bytes:
+        """Return a frame's arrays."""
+        assert frame.depth is not None
+        assert frame.object_id is not None
+        assert frame.class_id is not None
+        file = io.BytesIO()
+        np.savez(file, depth=frame.depth, object_id=frame.object_id, class_id=frame.class_id)
+        return file.getvalue()

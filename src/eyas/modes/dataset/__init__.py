@@ -1,0 +1,1 @@
+"""`eyas dataset`: makes data sets from recipes, and joins those that were made in shards."""
