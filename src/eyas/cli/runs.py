@@ -85,7 +85,7 @@ def video(  # noqa: PLR0913  # one parameter for each option
         typer.Option(
             "--policy",
             help="Let a policy of eyas evaluate fly: a name such as follow (the oracle), servo or "
-            "eyas, a file, or package.module:name. Else video.flight says how the drones fly.",
+            "fast, a file, or package.module:name. Else video.flight says how drones fly.",
         ),
     ] = None,
     resume: Annotated[

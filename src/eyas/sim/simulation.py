@@ -178,11 +178,11 @@ class Simulation:
             pitch: Pitch of their cameras, positive down [rad], shape (K,).
         """
         targets, chosen = self.snapshot.targets, np.asarray(trackers, np.int64)
-        yaw = targets.yaw[chosen]
+        yaw = poses[:, 3]
         east, north, up = (poses[:, :3] - targets.position[chosen]).T
         cosine, sine = elementary.cos(yaw), elementary.sin(yaw)
         ahead, left = cosine * east + sine * north, cosine * north - sine * east
-        offset = np.stack([ahead, left, up, poses[:, 3] - yaw], axis=1)
+        offset = np.stack([ahead, left, up, yaw - targets.yaw[chosen]], axis=1)
         self.snapshot.episodes.start_offset[chosen] = offset
         self._stepper.begin(chosen, pitch, self._episodes.key)
 
@@ -224,6 +224,10 @@ class Simulation:
     def actors(self) -> int:
         """Number of actors in each world."""
         return self._worlds.actors
+
+    def mates(self, tracker: int) -> NDArray[np.int64]:
+        """Return all trackers in the world of a tracker, shape (K,)."""
+        return self._worlds.trackers_of(tracker)
 
     def actors_around(self, tracker: int, ago: int = 0) -> tuple[ActorState, NDArray[np.int32]]:
         """Return all actors of a tracker's world, one world, and the model of each.

@@ -30,7 +30,7 @@ class _Flown(NamedTuple):
 
     points: Floats
     begun: int
-    """Tick of the first control point."""
+    """Tick of the second control point."""
 
 
 class CameraFlights:
@@ -100,13 +100,13 @@ class CameraFlights:
         return plan_flight(around, self._wishes, rng)
 
     def _course(self, tracker: int, count: int) -> tuple[Floats, Floats, Floats]:
-        """Return where the target will be: its middle (M, 3), heading (M,), ground (M,)."""
+        """Return where the target will be, from a step ago: its middle (M, 3), heading, ground."""
         targets = self._sim.snapshot.targets
         actor, ahead = int(targets.actor[tracker]), float(targets.ahead[tracker])
         middle = 0.5 * float(targets.size[tracker, 2])
         known: list[tuple[float, ...]] = []
         for step in range(0, count + _COURSE, _COURSE):
-            actors, _ = self._sim.actors_around(tracker, -step * _STEP_TICKS)
+            actors, _ = self._sim.actors_around(tracker, (1 - step) * _STEP_TICKS)
             if not actors.present[0, actor] and known:  # one that has left keeps its last place
                 known.append(known[-1])
                 continue
@@ -121,7 +121,8 @@ class CameraFlights:
         """Return where the other drones of the world will be, as far as that is planned."""
         now = int(self._sim.snapshot.episodes.tick[tracker])
         found = []
-        for other, flown in enumerate(self._flown):
+        for other in self._sim.mates(tracker).tolist():
+            flown = self._flown[other]
             if other != tracker and flown is not None:
                 step = np.arange(count) + (now - flown.begun) // _STEP_TICKS
                 found.append(flown.points[np.clip(step, 0, len(flown.points) - 1), :3])

@@ -18,6 +18,7 @@ from eyas.exports.writer import EndedEpisode, Episode, Scores, Summary
 from eyas.modes.video.checksums import Checksums
 from eyas.modes.video.episode import EpisodeFiles, read_complete
 from eyas.modes.video.folder import VideoFolder
+from eyas.modes.video.reached import ReachedShares
 from eyas.settings.config import EyasConfig
 from eyas.sim.simulation import Simulation
 from eyas.state.draw import Picture
@@ -114,6 +115,8 @@ class Recorder:
     """The ended episodes of each tracker that have frames."""
     drawn: int
     """Frames that were drawn."""
+    reached: list[ReachedShares]
+    """How the frames of each tracker that were drawn show its target."""
 
     def __init__(self, sim: Simulation, config: EyasConfig, folder: VideoFolder) -> None:
         count = config.video.channels
@@ -142,6 +145,7 @@ class Recorder:
         self._begun: list[EpisodeFiles] = []
         self.episodes = [[] for _ in range(count)]
         self.drawn = 0
+        self.reached = [ReachedShares() for _ in range(count)]
 
     def take(self, due: NDArray[np.int32], action_of: Callable[[int], RecordedAction]) -> None:
         """Record one frame of each of these trackers.
@@ -189,6 +193,7 @@ class Recorder:
         moment = moment_of(self._sim, tracker, picture, view, parts=self._parts)
         frame = frame_of(moment, tracker, picture, view, number, action)
         going.summary = going.summary.plus(frame)
+        self.reached[tracker].add(frame)
         self._threads.submit(tracker, going.files.add, frame)
 
     def end(self, trackers: NDArray[np.bool_]) -> None:

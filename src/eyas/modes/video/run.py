@@ -90,7 +90,7 @@ def _record(
         if isinstance(error, OutputError):
             raise OutputError(f"{error}; continue with --resume") from error
         raise
-    print_report(folder, recorder, progress, quiet=quiet)
+    print_report(folder, recorder, progress, config.video, quiet=quiet)
 
 
 def with_lidar(config: EyasConfig) -> EyasConfig:

@@ -16,7 +16,7 @@ class Scene(NamedTuple):
     """What a path is told of an episode: M samples, `eyas.sim.flights.signals.STEP` apart."""
 
     time: Floats
-    """Since the start [s], shape (M,)."""
+    """Since a step before the start [s], shape (M,)."""
     target: Floats
     """Middle of the target's body, world frame [m], shape (M, 3)."""
     heading: Floats

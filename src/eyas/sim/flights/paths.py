@@ -68,7 +68,7 @@ class Orbit(_Path):
         breath = 1.0 + tremor(len(scene.time), 1, 0.15, rng)[:, 0]
         place = scene.around(begin + turn * scene.time, radius * breath)
         # The circle does not follow each swerve of the target.
-        place[:, :2] += averaged(scene.target[:, :2], 1.5) - scene.target[:, :2]
+        place[:, :2] += averaged(scene.target[:, :2], 1.5, steady=True) - scene.target[:, :2]
         return Sketch(place, self.glance(scene, rng), self.lens(scene))
 
 
@@ -84,7 +84,7 @@ class FlyBy(_Path):
         passes = float(rng.uniform(0.25, 0.6)) * min(period, float(scene.time[-1]))
         along = reach * exact.sin(math.pi / period * (scene.time - passes))
         east, north = exact.cos(direction), exact.sin(direction)
-        place = averaged(scene.target, 2.0)
+        place = averaged(scene.target, 2.0, steady=True)
         place[:, 0] += along * east - aside * north
         place[:, 1] += along * north + aside * east
         place[:, 2] += scene.height
@@ -104,7 +104,7 @@ class Rise(_Path):
         share = 0.5 - 0.5 * exact.cos(math.pi * np.maximum(scene.time - begin, 0.0) / takes)
         near = max(0.5 * scene.distance, 7.0)
         away = near + (1.3 * scene.distance - near) * share if scene.distance > near else near
-        place = averaged(scene.beside(bearing, away), 1.0)
+        place = averaged(scene.beside(bearing, away), 1.0, steady=True)
         place[:, 2] += lowest + (top - lowest) * share - scene.height
         return Sketch(place, self.glance(scene, rng), self.lens(scene))
 

@@ -58,6 +58,12 @@ _WIDER = 1.5
 _CANDIDATES, _GOOD = 12, 0.03
 """Most flights that are tried, and the cost below which one is taken at once."""
 
+_FOR_HIDDEN = 4
+"""How many times as many are tried for a share of hidden frames, which only chance brings."""
+
+_CORRECTION = 0.7
+"""Share of an error that the next flight makes up for."""
+
 
 class Wishes(NamedTuple):
     """What the settings ask of flights."""
@@ -101,6 +107,29 @@ class Plan(NamedTuple):
     """How far it is from what was asked; 0 is perfect."""
 
 
+class _Aimed(NamedTuple):
+    """Shares of the time that a sketch is given, so that those asked for come out."""
+
+    cut: float
+    away: float
+    small: float | None
+
+    def corrected(self, reached: Shares, asked: Asked) -> "_Aimed":
+        """Return what the next sketch is given."""
+
+        def next_of(given: float, more: float) -> float:
+            return min(max(given + _CORRECTION * more, 0.0), 0.98)
+
+        cut, away, small = self
+        if asked.cut:
+            cut = next_of(cut, asked.cut - reached.cut)
+        if asked.in_view is not None:
+            away = next_of(away, reached.in_view - asked.in_view)
+        if small is not None and asked.small is not None:
+            small = next_of(small, asked.small - reached.small)
+        return _Aimed(cut, away, small)
+
+
 def plan_flight(around: Surroundings, wishes: Wishes, rng: np.random.Generator) -> Plan:
     """Return the best of some flights that are sampled at random.
 
@@ -113,38 +142,36 @@ def plan_flight(around: Surroundings, wishes: Wishes, rng: np.random.Generator) 
     in_view = path.in_view if asked.in_view is None else asked.in_view
     # What is asked for is not what is reached: while the camera turns, the target is neither here
     # nor there. Each flight corrects by what the last one has reached.
-    cut, away = asked.cut or 0.0, 1.0 - in_view
+    aside = _Aimed(asked.cut or 0.0, 1.0 - in_view, asked.small)
     best: Plan | None = None
-    for _ in range(_CANDIDATES):
-        plan = _candidate(around, wishes, (cut, away), rng)
+    for _ in range(_CANDIDATES * (1 if asked.hidden is None else _FOR_HIDDEN)):
+        plan = _candidate(around, wishes, aside, rng)
         if plan is None:
             continue
         if best is None or plan.cost < best.cost:
             best = plan
         if best.cost < _GOOD:
             break
-        if asked.cut:
-            cut = min(max(cut + 0.7 * (asked.cut - plan.shares.cut), 0.0), 0.9)
-        away = min(max(away + 0.7 * (plan.shares.in_view - in_view), 0.0), 0.98)
+        aside = aside.corrected(plan.shares, asked._replace(in_view=in_view))
     return best or _above(around, wishes, rng)
 
 
 def _candidate(
-    around: Surroundings, wishes: Wishes, aside: tuple[float, float], rng: np.random.Generator
+    around: Surroundings, wishes: Wishes, aside: _Aimed, rng: np.random.Generator
 ) -> Plan | None:
     """Return a flight; None if it cannot be flown."""
-    path, asked = wishes.path, wishes.shares
+    path = wishes.path
     scene = _scene(around, wishes, rng)
     sketch = path.sketch(scene, rng)
-    when = glances(len(scene.time), *aside, rng, away_first=path.searches)
+    when = glances(len(scene.time), aside.cut, aside.away, rng, away_first=path.searches)
     how = Aside(
         side=float(rng.choice([-1.0, 1.0])),
         margin=float(rng.uniform(0.4, 0.8)),
         searches=path.searches,
         sweep=float(rng.uniform(1.0, 1.6)),
     )
-    if asked.small is not None:
-        sketch = sketch._replace(place=_sized(sketch, scene, around, asked.small, rng))
+    if aside.small is not None:
+        sketch = sketch._replace(place=_sized(sketch, scene, around, aside.small, rng))
     place = _flyable(sketch.place, scene.target, around.clearance)
     if place is None:
         return None
@@ -154,8 +181,8 @@ def _candidate(
 def _scene(around: Surroundings, wishes: Wishes, rng: np.random.Generator) -> Scene:
     return Scene(
         time=STEP * np.arange(len(around.target), dtype=np.float64),
-        target=averaged(around.target, 0.4),
-        heading=averaged(around.heading, 0.8),
+        target=averaged(around.target, 0.4, steady=True),
+        heading=averaged(around.heading, 0.8, steady=True),
         height=sample(wishes.height, rng),
         pitch=sample(wishes.pitch, rng),
         field_of_view=around.field_of_view,
@@ -188,7 +215,7 @@ def _flyable(place: Floats, target: Floats, clearance: Clearance) -> Floats | No
     """Return a smooth way near a sketched one that touches nothing; None if none is found."""
     flat = _bent(place, target, clearance)
     flat = _smoothed(flat[:, :2], 0.4)
-    z = averaged(place[:, 2], 0.5)
+    z = averaged(place[:, 2], 0.5, steady=True)
     reach = 0.9
     for _ in range(8):
         lift, way = np.zeros(len(z)), np.column_stack([flat, z])
@@ -202,7 +229,7 @@ def _flyable(place: Floats, target: Floats, clearance: Clearance) -> Floats | No
             free = clearance.lifted(way, Margin(1.0, 1.0, MARGIN.ground - 0.5))
             return way if bool((free <= way[:, 2]).all()) else None
         reach *= _WIDER
-        z = averaged(z, 0.5 * reach)
+        z = averaged(z, 0.5 * reach, steady=True)
     return None
 
 
@@ -221,12 +248,12 @@ def _bent(place: Floats, target: Floats, clearance: Clearance) -> Floats:
 
 
 def _smoothed(flat: Floats, seconds: float) -> Floats:
-    smooth = averaged(flat, seconds)
+    smooth = averaged(flat, seconds, steady=True)
     for _ in range(8):
         if _is_smooth(smooth):
             break
         seconds *= _WIDER
-        smooth = averaged(flat, seconds)
+        smooth = averaged(flat, seconds, steady=True)
     return smooth
 
 
@@ -250,13 +277,13 @@ def _aimed(
     aspect = around.picture[1] / around.picture[0]
     view = turned_aside(aimed(place, look), lens, aspect, when, how)
     turns, seconds = np.column_stack(view), 0.2
-    smooth = averaged(turns, seconds)
+    smooth = averaged(turns, seconds, steady=True)
     for _ in range(8):
         rates = rates_of(smooth)
         if rates.first <= LIMITS.turn and rates.second <= LIMITS.turn_acceleration:
             break
         seconds *= _WIDER
-        smooth = averaged(turns, seconds)
+        smooth = averaged(turns, seconds, steady=True)
     flight = np.column_stack([place, smooth, lens])
     shares, _ = foreseen(flight, scene, around.size, around.picture, around.clearance)
     return Plan(flight, shares, _cost(flight, shares, around, wishes))

@@ -16,6 +16,13 @@ Floats = NDArray[np.float64]
 SMALL = 32 * 32
 """A box with fewer pixels is small, as COCO has it."""
 
+_SHAPE = 0.88
+"""Size of a box whose corners span what a body of that box covers in a picture: bodies are round.
+With it, foreseen and recorded shares of 16 flights differ by some 0.02."""
+
+_BODY = 0.6
+"""Size of the box at whose corners it is looked whether something hides the body."""
+
 _NEAR = 0.1
 """Depth from which on points are projected [m]."""
 
@@ -61,7 +68,7 @@ def foreseen(
         picture: Its width and height [pixels].
         clearance: What stands around.
     """
-    across, up, ahead = _seen(flight, _points(scene, size, 1.0), picture)
+    across, up, ahead = _seen(flight, _points(scene, size, _SHAPE), picture)
     left, right = across.min(axis=1), across.max(axis=1)
     low, high = up.min(axis=1), up.max(axis=1)
     in_view = (ahead.min(axis=1) > _NEAR) & (left < 1.0) & (right > -1.0)
@@ -70,8 +77,8 @@ def foreseen(
     width = 0.5 * picture[0] * (np.minimum(right, 1.0) - np.maximum(left, -1.0))
     height = 0.5 * picture[1] * (np.minimum(high, 1.0) - np.maximum(low, -1.0))
     small = in_view & (width * height < SMALL)
-    seen = clearance.in_sight(flight[:, :3], _points(scene, size, 0.6))
-    hidden = in_view & (2 * np.count_nonzero(seen, axis=1) <= seen.shape[1])
+    seen = clearance.in_sight(flight[:, :3], _points(scene, size, _BODY))
+    hidden = in_view & (2 * np.count_nonzero(seen, axis=1) < seen.shape[1])
     whole = np.sort((0.25 * picture[0] * picture[1]) * (right - left) * (high - low))
     pixels = float(whole[len(whole) // 2])
     return Shares(mean(in_view), mean(hidden), mean(cut), mean(small)), pixels

@@ -55,7 +55,7 @@ def rates_of(signal: Floats) -> Rates:
     return Rates(*found)
 
 
-def averaged(signal: Floats, seconds: float) -> Floats:
+def averaged(signal: Floats, seconds: float, *, steady: bool = False) -> Floats:
     """Return a signal smoothed by three moving averages that reach so far to both sides together.
 
     No value comes from farther away, so that an upper bound over that reach stays one.
@@ -63,16 +63,21 @@ def averaged(signal: Floats, seconds: float) -> Floats:
     Args:
         signal: Shape (M, ...).
         seconds: How far a value reaches [s].
+        steady: Whether it is taken to go on beyond its ends as it goes there, as what moves does;
+            else it stays there what it is, as bounds do.
     """
     half = steps_in(seconds) // 3
     if half < 1:
         return np.array(signal, np.float64)
     smooth, width = np.asarray(signal, np.float64), 2 * half + 1
+    beyond: dict[str, str] = {"mode": "edge"}
+    if steady:
+        beyond = {"mode": "reflect", "reflect_type": "odd"}
     for _ in range(3):
-        ends = [(half + 1, half), *[(0, 0)] * (smooth.ndim - 1)]
+        ends = [(half, half), *[(0, 0)] * (smooth.ndim - 1)]
         # Sums of differences from the first value keep the digits of large coordinates.
-        sums = np.cumsum(np.pad(smooth - smooth[0], ends, mode="edge"), axis=0)
-        sums -= sums[0]
+        wide = np.pad(smooth - smooth[0], ends, **beyond)  # type: ignore[call-overload]
+        sums = np.cumsum(np.concatenate([np.zeros_like(wide[:1]), wide]), axis=0)
         smooth = smooth[0] + (sums[width:] - sums[:-width]) / width
     return smooth
 
@@ -126,8 +131,11 @@ def tremor(count: int, columns: int, size: float, rng: np.random.Generator) -> F
 
 
 def sampled_at(points: Floats, time: float) -> Floats:
-    """Return a point of the spline of control points, shape (M, K), at a time [s], shape (K,)."""
-    place = max(time / STEP, 0.0)
+    """Return a point of the spline of control points, shape (M, K), at a time [s], shape (K,).
+
+    The second point is that of time 0, since a spline is led by the points on both sides.
+    """
+    place = max(time / STEP, 0.0) + 1.0
     first = min(int(place), len(points) - 1)
     u = min(place - first, 1.0)
     near = np.clip(np.arange(first - 1, first + 3), 0, len(points) - 1)
