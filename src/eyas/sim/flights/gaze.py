@@ -29,6 +29,10 @@ class Glances(NamedTuple):
     away: Floats
     """1 while it is to be outside, else 0, shape (M,)."""
 
+    def after(self, count: int) -> "Glances":
+        """Return the same after some samples, in which all is as it is at first."""
+        return Glances(*(np.pad(part, (count, 0), mode="edge") for part in self))
+
 
 class Aside(NamedTuple):
     """How the camera looks past the target in one flight."""

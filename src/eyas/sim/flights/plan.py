@@ -94,6 +94,8 @@ class Surroundings(NamedTuple):
     clearance: Clearance
     others: tuple[Floats, ...] = ()
     """Where other drones of the world will be meanwhile [m], shape (M, 3) each."""
+    unseen: int = 0
+    """Samples before the first picture."""
 
 
 class Plan(NamedTuple):
@@ -163,7 +165,9 @@ def _candidate(
     path = wishes.path
     scene = _scene(around, wishes, rng)
     sketch = path.sketch(scene, rng)
-    when = glances(len(scene.time), aside.cut, aside.away, rng, away_first=path.searches)
+    seen = max(len(scene.time) - around.unseen, 1)
+    when = glances(seen, aside.cut, aside.away, rng, away_first=path.searches)
+    when = when.after(len(scene.time) - seen)
     how = Aside(
         side=float(rng.choice([-1.0, 1.0])),
         margin=float(rng.uniform(0.4, 0.8)),
@@ -285,7 +289,7 @@ def _aimed(
         seconds *= _WIDER
         smooth = averaged(turns, seconds, steady=True)
     flight = np.column_stack([place, smooth, lens])
-    shares, _ = foreseen(flight, scene, around.size, around.picture, around.clearance)
+    shares = foreseen(flight, scene, around.size, around.picture, around.clearance, around.unseen)
     return Plan(flight, shares, _cost(flight, shares, around, wishes))
 
 
