@@ -23,9 +23,12 @@ from eyas.settings.config import EyasConfig
 WEATHERS = ("day", "foggy", "night", "snow")
 SHORT = {"channels": 3, "total_time": 4.0, "fps": 12.5}
 RECORDINGS = {
-    "following": {"video": SHORT},
-    "random": {"video": SHORT | {"random_action": True, "target_direction": True}, "seed": 3},
-    "overlay": {"video": SHORT | {"overlay": True}, "reward": {"type": "distance"}},
+    "following": {"video": SHORT | {"flight": "exact"}},
+    "random": {"video": SHORT | {"flight": "random", "target_direction": True}, "seed": 3},
+    "overlay": {
+        "video": SHORT | {"flight": "exact", "overlay": True},
+        "reward": {"type": "distance"},
+    },
 }
 FLEETS = ("bus", "truck", "trailer", "motorcycle")
 

@@ -2,7 +2,7 @@
 
 A small aeroplane, which cannot hover: it turns by banking, and its camera is fixed to it. In a file
 of settings, on the command line and in recordings it is named by the path of its class: `eyas video
---set tracker.kind=own_tracker:Aeroplane --set video.random_action=true` (with this folder on
+--set tracker.kind=own_tracker:Aeroplane --set video.flight=random` (with this folder on
 PYTHONPATH).
 """
 

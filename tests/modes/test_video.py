@@ -42,6 +42,7 @@ CONFIG = EyasConfig(
         start_time=0.7,
         total_time=0.7,
         warm_up_steps=10,
+        flight="exact",
         jpeg_quality=100,  # so that pictures are larger than the settings: they meet a full disk
     ),
 )
@@ -241,7 +242,7 @@ def test_two_recorders_do_not_share_a_folder(tmp_path):
 
 
 def test_random_actions_are_seeded_held_and_marked(tmp_path):
-    changed = CONFIG.video.model_copy(update={"random_action": True, "total_time": 0.4})
+    changed = CONFIG.video.model_copy(update={"flight": "random", "total_time": 0.4})
     config = CONFIG.model_copy(update={"video": changed})
     video.run(config, tmp_path / "a", quiet=True)
     video.run(config, tmp_path / "b", quiet=True)

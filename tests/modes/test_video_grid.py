@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from eyas.modes.video.config import VideoConfig
-from eyas.modes.video.run import FrameGrid
+from eyas.modes.video.frame_grid import FrameGrid
 
 
 def frames_of(video: VideoConfig, *, episode_steps: int, ticks: int, begin: int = 0) -> list[int]:

@@ -12,7 +12,7 @@ from eyas.settings.config import EyasConfig
 from eyas.sim.config import ControlConfig
 from eyas.task.config import DoneConfig, StartConfig
 
-PRESENT = {"frame", "reward", "action", "done"}
+PRESENT = {"frame", "reward", "action", "command", "done"}
 """What a label tells of the present: the number of the frame, and what is judged and commanded."""
 
 
@@ -30,7 +30,7 @@ def recorded(folder, **changes):
             start_time=0.7,
             total_time=0.2,
             warm_up_steps=10,
-            random_action=True,
+            flight="random",
             writers=("jpeg", "labels", "lidar"),
         ),
         **changes,

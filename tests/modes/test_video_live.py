@@ -15,7 +15,12 @@ RECORDED = EyasConfig(
     camera=CameraConfig(width=48, height=36),
     done=DoneConfig(total_steps=400),
     video=VideoConfig(
-        channels=2, fps=5.0, start_time=0.7, total_time=2.0, writers=("jpeg", "labels")
+        channels=2,
+        fps=5.0,
+        start_time=0.7,
+        total_time=2.0,
+        flight="exact",
+        writers=("jpeg", "labels"),
     ),
 )
 LIVE = RECORDED.model_copy(update={"traffic": TrafficConfig(source=Source.LIVE)})

@@ -85,6 +85,7 @@ def record(tmp_path: Path, monkeypatch: pytest.MonkeyPatch):
             "video": {
                 "channels": 1,
                 "total_time": 1.5,
+                "flight": "exact",
                 "writers": ["labels", "pixel_writer:Pixels"],
             },
         }
@@ -161,8 +162,8 @@ def test_a_mesh_file_in_the_settings_alone(record, tmp_path: Path):
         assert (red > 1.5 * blue).mean() > 0.2
         assert (blue > 1.5 * red).mean() > 0.2
     assert recorded.moved() == pytest.approx(1.5 * recorded.seconds(), rel=0.05)
-    told = record(custom={**mesh, "words": "a parcel"}, video={"total_time": 0.1, "channels": 1,
-                  "writers": ["labels", "pixel_writer:Pixels"]})  # fmt: skip
+    told = record(custom={**mesh, "words": "a parcel"}, video={"flight": "exact", "total_time": 0.1,
+                  "channels": 1, "writers": ["labels", "pixel_writer:Pixels"]})  # fmt: skip
     assert told.labels[0]["target_words"] == "a parcel"
 
 

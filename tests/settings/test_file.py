@@ -92,7 +92,7 @@ def test_overrides_are_json_or_bare_words():
             'start.height={"uniform": [1, 2]}',
             "traffic.colour=[1, 0, 0]",
             "traffic.seed=null",
-            "video.random_action=true",
+            "video.flight=random",
             'video={"fps": 9}',
             "wire.address=10.0.0.1",
         ],
@@ -100,7 +100,7 @@ def test_overrides_are_json_or_bare_words():
     assert (config.world.map, config.world.weather) == ("village", "snow")
     assert config.start.height == Uniform(uniform=(1.0, 2.0))
     assert config.traffic.colour == (1.0, 0.0, 0.0)
-    assert (config.video.fps, config.video.random_action) == (9.0, False)
+    assert (config.video.fps, config.video.flight) == (9.0, None)
     assert config.wire.address == "10.0.0.1"
 
 

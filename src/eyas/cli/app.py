@@ -47,6 +47,7 @@ app = typer.Typer(
 app.command("demo")(runs.demo)
 app.command("video")(runs.video)
 app.command("export")(data.export)
+app.command("track")(data.track)
 app.command("train")(runs.train)
 app.command("serve")(runs.serve)
 app.command("webots-shim")(tools.webots_shim)

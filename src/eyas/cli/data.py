@@ -1,4 +1,4 @@
-"""What is done with recordings: `eyas export`; data sets: `eyas dataset`."""
+"""What is done with recordings and data sets: `eyas export`, `eyas dataset`, `eyas track`."""
 
 import math
 from pathlib import Path
@@ -8,7 +8,7 @@ import typer
 
 from eyas.cli.options import SEVERAL
 
-__all__ = ["dataset_app", "export"]
+__all__ = ["dataset_app", "export", "track"]
 
 
 def export(  # noqa: PLR0913  # one parameter for each option
@@ -57,6 +57,59 @@ def export(  # noqa: PLR0913  # one parameter for each option
 
     options = ExportOptions(copy, least_side, least_visible, resume, overwrite)
     run(recording, formats, out, options, quiet=quiet)
+
+
+def track(  # noqa: PLR0913  # one parameter for each option
+    recording: Annotated[
+        Path, typer.Argument(help="Folder of a recording, or of a data set.", show_default=False)
+    ],
+    tracker: Annotated[
+        str, typer.Option("--tracker", help="csrt, kcf, mil, nano, stay, or package.module:Class.")
+    ],
+    out: Annotated[
+        Path | None,
+        typer.Option("--out", help="Folder to write to; by default runs/track/<data>-<tracker>."),
+    ] = None,
+    split: Annotated[
+        str | None, typer.Option("--split", help="Only train, val or test of a data set.")
+    ] = None,
+    restarts: Annotated[
+        bool,
+        typer.Option("--restarts", help="After a failure, give the tracker the true box again."),
+    ] = False,
+    workers: Annotated[
+        int | None, typer.Option("--workers", min=1, help="Processes; by default one a core.")
+    ] = None,
+    plots: Annotated[
+        bool, typer.Option("--plots", help="Draw success and precision (extra plots).")
+    ] = False,
+    resume: Annotated[bool, typer.Option("--resume", help="Continue an interrupted run.")] = False,
+    overwrite: Annotated[
+        bool, typer.Option("--overwrite", help="Replace the run that is in the folder.")
+    ] = False,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
+) -> None:
+    """Score a box tracker on recorded episodes: AO, SR, success, precision, by kinds of frames."""
+    from eyas.core.errors import ConfigError
+    from eyas.modes.track.report import draw_curves, print_figures
+    from eyas.modes.track.run import Scoring, run
+
+    if resume and overwrite:
+        raise ConfigError("--overwrite and --resume cannot be used together")
+    name = tracker.rpartition(":")[2].lower()
+    folder = out or Path("runs/track") / f"{recording.resolve().name}-{name}"
+    results = run(
+        Scoring(tracker, recording, split, restarts),
+        folder,
+        workers=workers,
+        resume=resume,
+        overwrite=overwrite,
+        quiet=quiet,
+    )
+    if plots:
+        draw_curves(folder, results)
+    if not quiet:
+        print_figures(folder, results)
 
 
 dataset_app = typer.Typer(no_args_is_help=True, help="Make data sets from recipes.")

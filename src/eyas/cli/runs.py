@@ -1,5 +1,6 @@
 """What runs for long: `eyas demo`, `video`, `train` and `serve`."""
 
+import json
 import logging
 from functools import partial
 from pathlib import Path
@@ -79,6 +80,14 @@ def video(  # noqa: PLR0913  # one parameter for each option
     seed: Seed = None,
     set_: Overrides = None,
     trust: Trust = False,
+    policy: Annotated[
+        str | None,
+        typer.Option(
+            "--policy",
+            help="Let a policy of eyas evaluate fly: a name such as follow (the oracle), servo or "
+            "fast, a file, or package.module:name. Else video.flight says how drones fly.",
+        ),
+    ] = None,
     resume: Annotated[
         bool, typer.Option("--resume", help="Continue an interrupted recording.")
     ] = False,
@@ -87,13 +96,16 @@ def video(  # noqa: PLR0913  # one parameter for each option
     ] = False,
     quiet: Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")] = False,
 ) -> None:
-    """Record labelled pictures and videos of trackers that follow their targets."""
+    """Record labelled pictures and videos of drones that film their targets."""
     from eyas.settings.config import Mode
     from eyas.settings.file import load_settings
 
     if quiet:
         logging.getLogger("eyas").setLevel(logging.ERROR)
     overrides = gathered(set_, map_name, weather, seed)
+    if policy is not None:
+        # The flight of a file gives way to a policy; one that is asked for beside it does not.
+        overrides = ["video.flight=null", *overrides, f"video.policy={json.dumps(policy)}"]
     settings = load_settings(chosen_file(config, preset), overrides, trust=trust)
     if settings.mode is not Mode.VIDEO and not quiet:
         said = f"mode (Simulation_Mode) is '{settings.mode}'; 'eyas video' records anyway"

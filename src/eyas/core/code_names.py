@@ -7,10 +7,15 @@ from eyas.core.config import Config
 
 __all__ = ["NAMES_CODE", "NamesCode", "code_named"]
 
+PICKLED = (".zip", ".pt", ".pth", ".pt2")
+"""Endings of files of networks that may run code when they are read."""
+
 
 @dataclass(frozen=True, slots=True)
 class NamesCode:
-    """Marks a field, in `Annotated`, whose texts or keys with a colon are imported and called."""
+    """Marks a field, in `Annotated`, whose texts or keys with a colon are imported and called, and
+    whose files in Python's own format run what is in them.
+    """
 
 
 NAMES_CODE = NamesCode()
@@ -27,7 +32,7 @@ def code_named(config: Config, path: str = "") -> Iterator[tuple[str, str]]:
         value, inner = getattr(config, name), f"{path}.{name}".lstrip(".")
         if NAMES_CODE in field.metadata:
             for text in _texts(value):
-                if ":" in text:
+                if ":" in text or text.endswith(PICKLED):
                     yield inner, text
         elif isinstance(value, Config):
             yield from code_named(value, inner)

@@ -3,7 +3,7 @@
 import hashlib
 import json
 import shutil
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -247,7 +247,7 @@ def _delete_parts(folder: Path) -> None:
 
 def _add_all(form: Format, recording: Recording, folder: Path, told: Told) -> list[Exported]:
     """Export all episodes but those that an earlier run has written completely."""
-    done = _done(folder / DONE)
+    done, sums = _done(folder / DONE), _Checksums()
     exported, frames = [], 0
     with refusals(folder), (folder / DONE).open("ab") as finished:
         # A line that a kill has cut off must not spoil the next one.
@@ -255,7 +255,7 @@ def _add_all(form: Format, recording: Recording, folder: Path, told: Told) -> li
         for episode in recording.episodes:
             count = len(episode)
             if episode.name not in done:
-                _require_whole(episode)
+                sums.require_whole(episode)
                 form.add(episode)
                 finished.write(f"{episode.name}\n".encode())
                 finished.flush()
@@ -273,30 +273,40 @@ def _done(path: Path) -> set[str]:
         return set()
 
 
-def _require_whole(episode: RecordedEpisode) -> None:
-    """Refuse an episode whose labels and files are not those of the recording's checksums."""
-    sums = _sums_of(episode)
+class _Checksums:
+    """What the recordings of the episodes say of their files; of one recording at a time, as a
+    data set may have a million files.
+    """
+
+    def __init__(self) -> None:
+        self._run: Path | None = None
+        self._sums: dict[str, dict[str, str]] = {}
+
+    def require_whole(self, episode: RecordedEpisode) -> None:
+        """Refuse an episode whose files are not those of the recording's checksums, films and
+        arrays left out, which no format is made of.
+        """
+        run = episode.folder.parent.parent
+        if run != self._run:
+            self._run, self._sums = run, _by_folder(read_checksums(run / CHECKSUMS))
+        inside = episode.folder.relative_to(run).as_posix()
+        for name, digest in self._sums.get(inside, {}).items():
+            path = run / name
+            if path.suffix in (".mp4", ".npz"):
+                continue
+            if hashlib.sha256(read_limited(path, 1 << 30)).hexdigest() != digest:
+                raise DataFileError(
+                    f"{path}: not what was recorded: its SHA-256 is not that of {CHECKSUMS}"
+                )
+
+
+def _by_folder(sums: Mapping[str, str]) -> dict[str, dict[str, str]]:
+    """Return the checksums of each episode's files by its folder, `<tracker>/episode<j>`."""
+    folders: dict[str, dict[str, str]] = {}
     for name, digest in sums.items():
-        path = episode.folder / name
-        try:
-            same = hashlib.sha256(path.read_bytes()).hexdigest() == digest
-        except OSError as error:
-            raise DataFileError(f"{path}: cannot read: {error.strerror or error}") from error
-        if not same:
-            raise DataFileError(
-                f"{path}: not what was recorded: its SHA-256 is not that of {CHECKSUMS}"
-            )
-
-
-def _sums_of(episode: RecordedEpisode) -> dict[str, str]:
-    run = episode.folder.parent.parent
-    inside = f"{episode.folder.relative_to(run).as_posix()}/"
-    known = read_checksums(run / CHECKSUMS)
-    return {
-        name.removeprefix(inside): digest
-        for name, digest in known.items()
-        if name.startswith(inside) and not name.endswith((".mp4", ".npz"))
-    }
+        folder = "/".join(name.split("/")[:2])
+        folders.setdefault(folder, {})[name] = digest
+    return folders
 
 
 def exports_folder(recording: Path, name: str, out: Path | None) -> Path:

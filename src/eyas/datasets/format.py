@@ -12,7 +12,7 @@ import json
 import os
 import shutil
 from abc import abstractmethod
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from collections.abc import Set as AbstractSet
 from dataclasses import dataclass
 from pathlib import Path
@@ -30,6 +30,9 @@ __all__ = [
     "Format",
     "Job",
     "SeenObject",
+    "by_split",
+    "left_top_width_height",
+    "lines",
     "numbered",
     "objects_of",
     "picture_ending",
@@ -128,6 +131,23 @@ class Job:
         with atomic_path(path) as part:
             shutil.copyfile(picture, part)
 
+    def place_all(
+        self, episode: RecordedEpisode, folder: str, first: int, digits: int, prefix: str = ""
+    ) -> None:
+        """Put the pictures of an episode into a folder of the export.
+
+        Args:
+            episode: The episode.
+            folder: The folder's path in the export.
+            first: Number of the first picture.
+            digits: Digits of the numbers.
+            prefix: What stands before the numbers.
+        """
+        ending = picture_ending(episode)
+        for frame in episode:
+            name = f"{prefix}{numbered(frame, first, digits, ending)}"
+            self.place(episode.picture_file(frame.number), f"{folder}/{name}")
+
     def write(self, inside: str, content: str | bytes) -> None:
         """Write a file of the export, completely or not at all; `inside`: its path in it.
 
@@ -188,6 +208,29 @@ class Format(Protocol):
     def finish(self, episodes: Sequence[Exported]) -> None:
         """Write the files that are of several episodes."""
         return
+
+
+def left_top_width_height(box: Sequence[int]) -> tuple[int, int, int, int]:
+    """Return a box of the labels as left, top, width, height [pixels]."""
+    left, top, right, bottom = box
+    return left, top, right - left, bottom - top
+
+
+def lines(values: Iterable[Any]) -> str:
+    """Return a text with a line for each value; a sequence of several is joined by commas."""
+    rows = (
+        ",".join(map(str, value)) if isinstance(value, tuple | list) else str(value)
+        for value in values
+    )
+    return "".join(f"{row}\n" for row in rows)
+
+
+def by_split(episodes: Sequence[Exported]) -> dict[str, list[Exported]]:
+    """Return the episodes of each split, in the order of the splits."""
+    groups: dict[str, list[Exported]] = {}
+    for episode in episodes:
+        groups.setdefault(episode.split, []).append(episode)
+    return groups
 
 
 def picture_ending(episode: RecordedEpisode) -> str:

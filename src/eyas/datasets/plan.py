@@ -304,7 +304,7 @@ def _settings(
         "extras": chosen["extras"],
         "video": {
             "fps": recipe.fps,
-            "random_action": chosen["flight"] == "random",
+            "flight": chosen["flight"],
             "writers": recipe.writers,
         },
     }

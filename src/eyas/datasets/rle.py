@@ -5,6 +5,8 @@ in turn; from the third run on the difference to the one before the last; each n
 five bits, the lowest first, bit 6 says that another follows, 48 is added.
 """
 
+from itertools import pairwise
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -29,11 +31,11 @@ def encoded_masks(masks: NDArray[np.int32]) -> dict[int, tuple[str, int]]:
     chosen = ids != 0
     ids, starts, ends = ids[chosen], starts[chosen], ends[chosen]
     objects, first = np.unique(ids, return_index=True)
-    codes = {}
-    edges = np.append(first, len(ids)).tolist()
-    for number, low, high in zip(objects.tolist(), edges, edges[1:], strict=False):
-        codes[number] = _encoded(starts[low:high], ends[low:high], flat.size)
-    return codes
+    bounds = [*first.tolist(), len(ids)]
+    return {
+        number: _encoded(starts[low:high], ends[low:high], flat.size)
+        for number, (low, high) in zip(objects.tolist(), pairwise(bounds), strict=True)
+    }
 
 
 def _encoded(starts: NDArray[np.int64], ends: NDArray[np.int64], size: int) -> tuple[str, int]:

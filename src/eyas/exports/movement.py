@@ -130,6 +130,8 @@ def _raised(plan: Floats, height: float, centre: Floats, yaw: float, motion: Mov
     pitch, cosine, sine = motion.slope, exact.cos(yaw), exact.sin(yaw)
     ahead = np.array([cosine * exact.cos(pitch), sine * exact.cos(pitch), exact.sin(pitch)])
     left, up = np.array([-sine, cosine, 0.0]), np.array([0.0, 0.0, 1.0])
-    standing = up if motion.upright else np.cross(ahead, left)
+    # The product of `ahead` and `left`, which np.cross takes 40 us for.
+    tilted = [-ahead[2] * cosine, -ahead[2] * sine, ahead[0] * cosine + ahead[1] * sine]
+    standing = up if motion.upright else np.array(tilted)
     ground = centre - motion.rise * up + (plan[:, :1] * ahead + plan[:, 1:] * left)
     return np.concatenate([ground, ground + height * standing])

@@ -31,6 +31,7 @@ from eyas.world.weather import Season
 __all__ = [
     "load_geometry",
     "load_network",
+    "load_parts",
     "load_scene",
     "load_solids",
     "load_textures",
@@ -129,7 +130,7 @@ def load_geometry(
         signals: Whether the lights of signals are parts, too, the last ones.
     """
     scene = load_scene(map_name, seed, season)
-    make = partial(_packed, scene, partial(_parts, kinds), load_textures, signals=signals)
+    make = partial(_packed, scene, partial(load_parts, kinds), load_textures, signals=signals)
     origin = _origin(map_name, seed, season)
     if origin is None:
         return make()
@@ -155,14 +156,15 @@ def paint(kinds: Sequence[int]) -> None:
         kinds: See `load_geometry`.
     """
     load_textures()
-    _parts(tuple(kinds))
+    load_parts(tuple(kinds))
 
 
 def _chosen(kinds: tuple[int, ...]) -> tuple[TargetKind, ...]:
     return tuple(KINDS[kind] for kind in kinds)
 
 
-def _parts(kinds: tuple[int, ...]) -> PartLibrary:
+def load_parts(kinds: tuple[int, ...]) -> PartLibrary:
+    """Return the parts of kinds of moving objects, indices into `KINDS`, in their order."""
     chosen = _chosen(kinds)
     return cached(Kind.PARTS, partial(part_library, chosen), chosen, of=PartLibrary)
 

@@ -1,11 +1,12 @@
 """The simulation: N trackers, each with a target, in separate or shared worlds."""
 
-from functools import partial
+from functools import cached_property, partial
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact as elementary
 from eyas.core.clock import physics_steps
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
@@ -19,6 +20,7 @@ from eyas.state.draw import DrawStage, Picture
 from eyas.state.motion import ActorState
 from eyas.state.snapshot import CameraState, Snapshot
 from eyas.targets.kind import Looks
+from eyas.task.clearance import Clearance
 from eyas.task.quantities import Setting
 from eyas.task.rules import Rules, exact, lenient, make_rules
 from eyas.task.terms import RewardTerms
@@ -69,7 +71,7 @@ class Simulation:
         self.traffic = assets.traffic
         self.snapshot = Snapshot.create(self.count)
         light = LightChanges(config.light, assets.lighting, self.snapshot.light)
-        self._worlds = worlds
+        self._assets, self._worlds = assets, worlds
         self._stepper = Stepper(config, assets, tracker, worlds, self.snapshot)
         sensors, seen, samplers = self._stepper.sensors, self._stepper.seen, self._stepper.samplers
         self._episodes = Episodes(config, assets.traffic, worlds, light, self.snapshot, samplers)
@@ -158,6 +160,42 @@ class Simulation:
         self._stepper.carry(physics_steps)
         return self._result()
 
+    def place(self, poses: Floats) -> StepResult:
+        """Move all trackers to poses, within one physics step.
+
+        Args:
+            poses: East, north, up [m], heading [rad], shape (N, 4).
+        """
+        self._stepper.place(poses)
+        return self._result()
+
+    def start_at(self, trackers: NDArray[np.integer], poses: Floats, pitch: Floats) -> None:
+        """Begin the episodes of trackers that have just been reset at other poses.
+
+        Args:
+            trackers: The trackers, shape (K,).
+            poses: East, north, up [m], heading [rad], shape (K, 4).
+            pitch: Pitch of their cameras, positive down [rad], shape (K,).
+        """
+        targets, chosen = self.snapshot.targets, np.asarray(trackers, np.int64)
+        yaw = poses[:, 3]
+        east, north, up = (poses[:, :3] - targets.position[chosen]).T
+        cosine, sine = elementary.cos(yaw), elementary.sin(yaw)
+        ahead, left = cosine * east + sine * north, cosine * north - sine * east
+        offset = np.stack([ahead, left, up, yaw - targets.yaw[chosen]], axis=1)
+        self.snapshot.episodes.start_offset[chosen] = offset
+        self._stepper.begin(chosen, pitch, self._episodes.key)
+
+    def set_fields_of_view(self, fields: Floats) -> None:
+        """Zoom the cameras, until the next reset: horizontal fields of view [rad], shape (N,)."""
+        self.snapshot.cameras.field_of_view[:] = fields
+
+    @cached_property
+    def clearance(self) -> Clearance:
+        """Tells what stands in the way of flights and of looks; loaded when first asked for."""
+        assets = self._assets
+        return Clearance(assets.solids(), assets.scene.terrain, assets.traffic.motion)
+
     def follow(self, tracker: int, actor: int) -> None:
         """Make another actor of its world the target of a tracker, from the next step on."""
         self._episodes.follow(tracker, actor)
@@ -186,6 +224,10 @@ class Simulation:
     def actors(self) -> int:
         """Number of actors in each world."""
         return self._worlds.actors
+
+    def mates(self, tracker: int) -> NDArray[np.int64]:
+        """Return all trackers in the world of a tracker, shape (K,)."""
+        return self._worlds.trackers_of(tracker)
 
     def actors_around(self, tracker: int, ago: int = 0) -> tuple[ActorState, NDArray[np.int32]]:
         """Return all actors of a tracker's world, one world, and the model of each.

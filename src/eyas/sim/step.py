@@ -97,6 +97,10 @@ class Orders(NamedTuple):
     """Command of each tracker, see `Tracker.advance`, shape (N, 4)."""
     active: NDArray[np.bool_]
     """Whether each tracker flies, shape (N,); for the others, time stands still."""
+    placed: NDArray[np.int64]
+    """1: trackers are carried to `poses`; 0: along with their targets, shape (1,)."""
+    poses: NDArray[np.float64]
+    """Where they are carried: x, y, z [m], heading [rad], shape (N, 4)."""
     starts: NDArray[np.int64]
     """Number of trackers that begin an episode, K, shape (1,)."""
     chosen: NDArray[np.int64]
@@ -111,6 +115,8 @@ class Orders(NamedTuple):
             steps=np.zeros(1, np.int64),
             commands=np.zeros((trackers, 4)),
             active=np.ones(trackers, np.bool_),
+            placed=np.zeros(1, np.int64),
+            poses=np.zeros((trackers, 4)),
             starts=np.zeros(1, np.int64),
             chosen=np.zeros(trackers, np.int64),
             pitch=np.zeros(trackers),
@@ -200,6 +206,9 @@ def _carry(state: StepState, orders: Orders) -> None:
             x, y, z, yaw = offset_pose(
                 targets.position[n], targets.yaw[n], episodes.start_offset[n]
             )
+            if orders.placed[0] == 1:
+                pose = orders.poses[n]
+                x, y, z, yaw = pose[0], pose[1], pose[2], wrap_angle(pose[3])
             carry(trackers, memory, n, x, y, z, yaw)
             feel(trackers, n, share)
             aim(trackers, memory, cameras, n)

@@ -119,6 +119,13 @@ class Stepper:
         self.sensors.renew()
         self._take(self._step.carry, steps)
 
+    def place(self, poses: Floats) -> None:
+        """Move all trackers to poses, within one physics step; see `Simulation.place`."""
+        self._orders.poses[:] = poses
+        self._orders.placed[0] = 1
+        self.carry(1)
+        self._orders.placed[0] = 0
+
     def _take(self, step: BoundCall, steps: int) -> None:
         if self._traffic.live:
             last = int(self._snapshot.episodes.tick.max()) + steps

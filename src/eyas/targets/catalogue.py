@@ -5,6 +5,8 @@ in the table `jointed/people/people.py`. A new kind is a file with its models an
 call of `register`.
 """
 
+from functools import cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -71,6 +73,7 @@ def habit_of(kind: str) -> Habit:
     return habit
 
 
+@cache
 def kind_of(model: int) -> Kind:
     """Return the kind of a model, given by its index in `MODELS`."""
     return KINDS[kind_index(MODELS[model].kind)]

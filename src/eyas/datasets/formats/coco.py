@@ -2,6 +2,10 @@
 
 Beyond https://cocodataset.org/#format-data: `videos`, `video_id`, `frame_id` and `track_id`, as the
 data sets of video instances have them (TAO, YouTube-VIS), and `visibility`, `words`, `is_target`.
+
+`bbox` is the extent of the visible pixels, what a detector can see and the extent of the mask;
+`amodal_bbox` that of the whole object inside the picture, hidden parts included. An object that is
+to be ignored has `iscrowd`: detections on it count neither way.
 """
 
 import json
@@ -14,6 +18,8 @@ from eyas.datasets.format import (
     Exported,
     Format,
     Job,
+    by_split,
+    left_top_width_height,
     numbered,
     objects_of,
     picture_ending,
@@ -55,17 +61,15 @@ class Coco(Format):
         codes, height, width = encoded_masks(masks), *masks.shape
         rows = []
         for seen in objects_of(frame.label):
-            if self._job.ignores(seen):
-                continue
             label = seen.label
-            left, top, right, bottom = label["visible_box"]
             counts, area = codes[label["id"]]
             row = {
                 "category_id": list(CLASS_NAMES.values()).index(seen.name) + 1,
-                "bbox": [left, top, right - left, bottom - top],
+                "bbox": left_top_width_height(label["visible_box"]),
                 "area": area,
-                "iscrowd": 0,
+                "iscrowd": int(self._job.ignores(seen)),
                 "segmentation": {"size": [height, width], "counts": counts},
+                "amodal_bbox": left_top_width_height(label["box"]),
                 "track_id": label["id"],
                 "visibility": label["visible_fraction"],
                 "words": label["words"],
@@ -76,8 +80,8 @@ class Coco(Format):
 
     def finish(self, episodes: Sequence[Exported]) -> None:
         """Write the annotations of each split."""
-        for split in dict.fromkeys(episode.split for episode in episodes):
-            self._write(split, [episode for episode in episodes if episode.split == split])
+        for split, group in by_split(episodes).items():
+            self._write(split, group)
 
     def _write(self, split: str, episodes: Sequence[Exported]) -> None:
         """Write one file, with the rows of one episode in memory at a time."""

@@ -99,7 +99,8 @@ def load_callable(path: str, changes: Mapping[str, Any]) -> Policy:
 
     Args:
         path: `package.module:name` of a function of one observation; of a function whose attribute
-            `batched` is true, of observations with a leading axis; or of a class with `act`.
+            `batched` is true, of observations with a leading axis; of a class with `act`; or of a
+            box tracker, a class with `begin` and `update`.
         changes: Changes of `env`; those in the attribute `env_settings` come first.
 
     Raises:
@@ -109,6 +110,10 @@ def load_callable(path: str, changes: Mapping[str, Any]) -> Policy:
         found: Any = imported(path, "--policy")
     except ImportError as error:
         raise ConfigError(f"--policy: '{path}' cannot be imported: {error}") from error
+    if hasattr(found, "begin") and hasattr(found, "update"):
+        from eyas.evaluation.policies.boxes import pilot
+
+        return pilot(path, changes)
     made = inspect.isclass(found)
     fits = callable(getattr(found, "act", None)) if made else callable(found)
     if not fits or takes(found, *() if made else (None,)):

@@ -17,19 +17,6 @@ from eyas.modes.video.recorder import Recorder
 __all__ = ["DemoRecording"]
 
 
-class _Flown:
-    """Tells the recorder which command was held."""
-
-    command: NDArray[np.float64]
-
-    def move(self, sim: object) -> None:
-        """Do nothing: the demo moves the drone."""
-
-    def action(self, tracker: int) -> RecordedAction:
-        """Return the command of the last step."""
-        return RecordedAction(-1, self.command)
-
-
 class DemoRecording:
     """A recording of one episode, from now on.
 
@@ -49,7 +36,7 @@ class DemoRecording:
         config = updated(flight.config, {"video": {"channels": 1}})
         self.folder, self.frames = folder, 0
         self.period = max(round(PHYSICS_RATE / config.video.fps), 1)
-        self._flown, self._steps = _Flown(), 0
+        self._steps = 0
         with ExitStack() as stack:
             stack.enter_context(folder_lock(folder, "recording into it"))
             opened = open_folder(folder, config, overwrite=False, resume=False)
@@ -69,8 +56,8 @@ class DemoRecording:
         """
         self._steps += steps
         if self._steps % self.period == 0:
-            self._flown.command = command[0]
-            self._recorder.take(np.zeros(1, np.int32), self._flown)
+            action = RecordedAction(-1, command[0])
+            self._recorder.take(np.zeros(1, np.int32), lambda tracker: action)
             self.frames += 1
 
     def end(self) -> None:

@@ -27,7 +27,7 @@ __all__ = ["flight_of", "recording_of", "world_of"]
 _SEED = 5
 _ACTIONS = 12
 _SIZE = {"width": 160, "height": 120}
-_SHORT = {"total_time": 0.25, "fps": 12.5, "random_action": True}
+_SHORT = {"total_time": 0.25, "fps": 12.5, "flight": "random"}
 _PARTS = ("image", "depth", "classes", "sensors", "privileged")
 _KINDS = {".jpeg": "JPEG files", ".jsonl": "labels", ".json": "marks", ".csv": "lidar files"}
 """The files of an episode by their endings."""

@@ -13,11 +13,12 @@ from numpy.typing import NDArray
 
 from eyas.core.errors import OutputError
 from eyas.exports.capture import frame_of, moment_of
+from eyas.exports.frame import RecordedAction
 from eyas.exports.writer import EndedEpisode, Episode, Scores, Summary
-from eyas.modes.video.action import Mover
 from eyas.modes.video.checksums import Checksums
 from eyas.modes.video.episode import EpisodeFiles, read_complete
 from eyas.modes.video.folder import VideoFolder
+from eyas.modes.video.reached import ReachedShares
 from eyas.settings.config import EyasConfig
 from eyas.sim.simulation import Simulation
 from eyas.state.draw import Picture
@@ -114,6 +115,8 @@ class Recorder:
     """The ended episodes of each tracker that have frames."""
     drawn: int
     """Frames that were drawn."""
+    reached: list[ReachedShares]
+    """How the frames of each tracker that were drawn show its target."""
 
     def __init__(self, sim: Simulation, config: EyasConfig, folder: VideoFolder) -> None:
         count = config.video.channels
@@ -122,8 +125,9 @@ class Recorder:
         self._threads = WriterThreads(count)
         self._checksums = Checksums(folder.path, folder.writers)
         wanted = {output for writer in folder.writers for output in writer.wants}
+        self._parts = "parts" in wanted
         self._overlay = config.video.overlay and "rgb" in wanted
-        pictures = wanted - {"others"}
+        pictures = wanted - {"others", "parts"}
         self._picture = Picture.create(
             count,
             config.camera.height,
@@ -140,13 +144,14 @@ class Recorder:
         self._begun: list[EpisodeFiles] = []
         self.episodes = [[] for _ in range(count)]
         self.drawn = 0
+        self.reached = [ReachedShares() for _ in range(count)]
 
-    def take(self, due: NDArray[np.int32], mover: Mover) -> None:
+    def take(self, due: NDArray[np.int32], action_of: Callable[[int], RecordedAction]) -> None:
         """Record one frame of each of these trackers.
 
         Args:
             due: Trackers, shape (V,).
-            mover: The mover of the trackers.
+            action_of: Returns the action of a tracker in the last step.
 
         Raises:
             OutputError: This frame or an earlier one could not be written.
@@ -158,7 +163,7 @@ class Recorder:
         overlaid = self._sim.rules if self._overlay else None
         self._sim.view.draw(np.array(drawn, np.int32), picture, overlaid=overlaid)
         for view, tracker in enumerate(drawn):
-            self._write(tracker, picture, view, mover)
+            self._write(tracker, picture, view, action_of(tracker))
         self.drawn += len(drawn)
 
     def _begin(self, tracker: int) -> _Going:
@@ -179,14 +184,15 @@ class Recorder:
         self._begun = [begun for begun in self._begun if not begun.finished] + [files]
         return _Going(episode, files, Summary(0, Scores()))
 
-    def _write(self, tracker: int, picture: Picture, view: int, mover: Mover) -> None:
+    def _write(self, tracker: int, picture: Picture, view: int, action: RecordedAction) -> None:
         going = self._going[tracker]
         assert going is not None
         assert going.files is not None
-        number, action = going.summary.frames, mover.action(tracker)
-        moment = moment_of(self._sim, tracker, picture, view)
+        number = going.summary.frames
+        moment = moment_of(self._sim, tracker, picture, view, parts=self._parts)
         frame = frame_of(moment, tracker, picture, view, number, action)
         going.summary = going.summary.plus(frame)
+        self.reached[tracker].add(frame)
         self._threads.submit(tracker, going.files.add, frame)
 
     def end(self, trackers: NDArray[np.bool_]) -> None:

@@ -13,7 +13,9 @@ from rich.table import Table
 
 from eyas.core.files import atomic_path
 from eyas.exports.writer import Summary, total
+from eyas.modes.video.config import VideoConfig
 from eyas.modes.video.folder import VideoFolder
+from eyas.modes.video.reached import ReachedShares, missed
 from eyas.modes.video.recorder import Recorder
 from eyas.state.snapshot import Snapshot
 from eyas.task.step_line import EpisodeLines, step_line
@@ -110,24 +112,39 @@ class RecordingProgress:
 
 
 def print_report(
-    folder: VideoFolder, recorder: Recorder, progress: RecordingProgress, *, quiet: bool
+    folder: VideoFolder,
+    recorder: Recorder,
+    progress: RecordingProgress,
+    video: VideoConfig,
+    *,
+    quiet: bool,
 ) -> None:
-    """Print a row for each tracker, and the folder of the recording."""
+    """Print a row for each tracker, the folder of the recording, and asked shares that are missed.
+
+    How targets are shown is told of the frames that were drawn now.
+    """
     if quiet:
         return
     rate = progress.rate
     table = Table()
     table.add_column("tracker")
-    for title in ("episodes", "frames", "mean reward", "in sight"):
+    titles = ("episodes", "frames", "mean reward", "in sight", "in view", "hidden", "cut", "small")
+    for title in titles:
         table.add_column(title, justify="right")
-    for tracker, episodes in zip(folder.trackers, recorder.episodes, strict=True):
+    every = ReachedShares()
+    for tracker, episodes, reached in zip(
+        folder.trackers, recorder.episodes, recorder.reached, strict=True
+    ):
         whole = total(summary for _, summary in episodes)
-        table.add_row(tracker, str(len(episodes)), str(whole.frames), *_means(whole))
+        shares = [f"{share:.0%}" if reached.frames else "-" for share in reached.shares().values()]
+        table.add_row(tracker, str(len(episodes)), str(whole.frames), *_means(whole), *shares)
+        every = every.plus(reached)
     console = Console()
     console.print(table)
     frames = total(summary for episodes in recorder.episodes for _, summary in episodes).frames
     line = f"{frames} frames in {folder.path} ({recorder.drawn} drawn now, {rate:.0f} a second)"
-    console.print(line, highlight=False, markup=False, soft_wrap=True)
+    for text in (line, *missed(every, video)):
+        console.print(text, highlight=False, markup=False, soft_wrap=True)
 
 
 def _means(whole: Summary) -> tuple[str, str]:

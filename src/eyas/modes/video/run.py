@@ -6,16 +6,15 @@ from contextlib import closing
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from eyas.core.clock import PHYSICS_RATE
 from eyas.core.errors import ConfigError, OutputError
 from eyas.core.folder_lock import folder_lock
 from eyas.exports.registry import chosen_writers
-from eyas.modes.video.action import mover_of
-from eyas.modes.video.config import VideoConfig
+from eyas.modes.video.action import Mover, check_flight, mover_of
 from eyas.modes.video.folder import VideoFolder, check_folder, open_folder
 from eyas.modes.video.formats import write_formats, writers_in
+from eyas.modes.video.frame_grid import FrameGrid, RecordingEnd
 from eyas.modes.video.recorder import Recorder
 from eyas.modes.video.report import RecordingProgress, print_report, step_log
 from eyas.settings.config import EyasConfig
@@ -26,59 +25,7 @@ from eyas.sim.worlds import together
 from eyas.state.snapshot import Snapshot
 from eyas.task.config import DoneConfig
 
-__all__ = ["FrameGrid", "run"]
-
-_SLACK = 1e-6
-"""Largest rounding error of a time in seconds, in ticks."""
-
-
-class FrameGrid:
-    """Frame k of an episode is at the tick nearest to the time of its first frame + k / fps.
-
-    The original compares with the time of the last frame, which it does not set at the start of
-    later episodes, so that their second frame follows 2 ms after the first. Here each episode has
-    its own grid.
-
-    Args:
-        video: When to record.
-        count: Number of trackers.
-    """
-
-    first_tick: int
-    """First tick that may have a frame."""
-    last_tick: int
-    """Last tick that may have a frame."""
-
-    def __init__(self, video: VideoConfig, count: int) -> None:
-        self.first_tick = math.ceil(video.start_time * PHYSICS_RATE - _SLACK)
-        end = video.start_time + video.total_time
-        self.last_tick = math.floor(end * PHYSICS_RATE + _SLACK)
-        self._warm_up_steps = video.warm_up_steps
-        self._spacing = PHYSICS_RATE / video.fps
-        self._origin = np.full(count, -1, np.int64)
-        self._frames = np.zeros(count, np.int64)
-
-    def restart(self, trackers: NDArray[np.bool_]) -> None:
-        """Begin a new episode for the trackers of a mask, shape (N,)."""
-        self._origin[trackers] = -1
-        self._frames[trackers] = 0
-
-    def due(self, tick: int, step_count: NDArray[np.integer]) -> NDArray[np.int32]:
-        """Return the trackers that have a frame at this tick, and count these frames.
-
-        Args:
-            tick: 2 ms steps since the start of the run.
-            step_count: 2 ms steps since each tracker's reset, shape (N,).
-        """
-        if not self.first_tick <= tick <= self.last_tick:
-            return np.zeros(0, np.int32)
-        ready = step_count > self._warm_up_steps
-        self._origin[ready & (self._origin < 0)] = tick
-        nearest = np.floor(self._frames * self._spacing + 0.5).astype(np.int64)
-        due = ready & (tick == self._origin + nearest)
-        self._frames[due] += 1
-        return np.flatnonzero(due).astype(np.int32)
-
+__all__ = ["run"]
 
 _NEVER = 1e6
 """A limit that no tracker reaches."""
@@ -113,24 +60,28 @@ def run(
     # only after building, so that a failed build neither makes nor deletes one.
     with originals_named(config):
         chosen_writers(writers_in(config.video.writers))
+        check_flight(config)
         check_folder(folder, config, overwrite=overwrite, resume=resume)
         sim = build_simulation(recording_rules(config), together(config.video.channels))
     with closing(sim):
         with originals_named(config):
             _require_traffic(config, sim.traffic.duration)
             sim.reset()  # raises if there are fewer targets than trackers
+            mover = mover_of(config, sim)
         with folder_lock(folder, "recording into it"):
             recording = open_folder(folder, config, overwrite=overwrite, resume=resume)
-            _record(sim, config, recording, quiet=quiet)
+            _record(sim, config, mover, recording, quiet=quiet)
     write_formats(config.video.writers, folder, quiet=quiet)
 
 
-def _record(sim: Simulation, config: EyasConfig, folder: VideoFolder, *, quiet: bool) -> None:
+def _record(
+    sim: Simulation, config: EyasConfig, mover: Mover, folder: VideoFolder, *, quiet: bool
+) -> None:
     recorder = Recorder(sim, config, folder)
     progress = RecordingProgress(quiet=quiet)
     try:
         with progress, step_log(folder.path, folder.trackers, verbose=config.verbose) as log:
-            _run_episodes(sim, config, recorder, progress, log)
+            _run_episodes(sim, config, (mover, recorder), progress, log)
         recorder.finish()
     except BaseException as error:
         recorder.stop()
@@ -139,7 +90,7 @@ def _record(sim: Simulation, config: EyasConfig, folder: VideoFolder, *, quiet: 
         if isinstance(error, OutputError):
             raise OutputError(f"{error}; continue with --resume") from error
         raise
-    print_report(folder, recorder, progress, quiet=quiet)
+    print_report(folder, recorder, progress, config.video, quiet=quiet)
 
 
 def with_lidar(config: EyasConfig) -> EyasConfig:
@@ -154,8 +105,10 @@ def with_lidar(config: EyasConfig) -> EyasConfig:
 def recording_rules(config: EyasConfig) -> EyasConfig:
     """Return the settings with the end conditions of the original's video mode.
 
-    Only a lost target, the step limit and NaN end an episode; the limits of height, distance,
-    speed and tilt, and missing reward, do not.
+    Only a target that leaves the world, the step limit and NaN end an episode; the limits of
+    height, distance, speed and tilt, and missing reward, do not: a target that is lost from the
+    picture may be found again. Of episodes with a number of frames, the step limit is where the
+    last one is for sure.
     """
     done = DoneConfig(
         max_height=_NEVER,
@@ -165,27 +118,52 @@ def recording_rules(config: EyasConfig) -> EyasConfig:
         roll=_NEVER,
         pitch=_NEVER,
         distance_error=_NEVER,
-        total_steps=config.done.total_steps,
+        total_steps=_episode_steps(config) or config.done.total_steps,
         grace_steps=config.done.grace_steps,
         no_reward_steps=2**31 - 1,
     )
     return config.model_copy(update={"done": done})
 
 
+def _episode_steps(config: EyasConfig) -> int | None:
+    """Return the 2 ms steps that suffice for the frames of each episode; None: no such number.
+
+    The first episodes begin before `video.start_time`.
+    """
+    video = config.video
+    if video.episode_frames is None:
+        return None
+    before = math.ceil(video.start_time * PHYSICS_RATE) - config.start.warm_up_steps
+    frames = math.ceil(video.episode_frames * PHYSICS_RATE / video.fps)
+    return max(before, video.warm_up_steps) + frames + 2
+
+
 def _require_traffic(config: EyasConfig, known: float) -> None:
     """Refuse a recording that ends after the traffic, at a time [s], or before it begins."""
-    end = config.video.start_time + config.video.total_time
+    video = config.video
+    steps = _episode_steps(config)
+    if steps is not None:
+        longest = config.start.warm_up_steps / PHYSICS_RATE + video.episodes * steps / PHYSICS_RATE
+        if longest > known:
+            raise ConfigError(
+                f"video.episode_frames: {video.episode_frames} in each of {video.episodes} episodes"
+                f" (video.episodes) take {longest:g} s, longer than the traffic's recording; "
+                f"allowed: up to {known:g} s, or a longer traffic.recording (eyas traffic record "
+                "--duration)"
+            )
+        return
+    end = video.start_time + video.total_time
     if end > known:
         raise ConfigError(
-            f"video.total_time: {config.video.total_time:g} s after {config.video.start_time:g} s"
+            f"video.total_time: {video.total_time:g} s after {video.start_time:g} s"
             f" is longer than the traffic's recording; allowed: up to"
-            f" {known - config.video.start_time:g} s, or a longer traffic.recording (eyas traffic"
+            f" {known - video.start_time:g} s, or a longer traffic.recording (eyas traffic"
             " record --duration)"
         )
-    begin = (config.start.warm_up_steps + config.video.warm_up_steps) / PHYSICS_RATE
+    begin = (config.start.warm_up_steps + video.warm_up_steps) / PHYSICS_RATE
     if end <= begin:
         raise ConfigError(
-            f"video.total_time: {config.video.total_time:g} s after {config.video.start_time:g} s "
+            f"video.total_time: {video.total_time:g} s after {video.start_time:g} s "
             f"ends before the trackers start and warm up; allowed: end later than {begin:g} s"
         )
 
@@ -193,25 +171,31 @@ def _require_traffic(config: EyasConfig, known: float) -> None:
 def _run_episodes(
     sim: Simulation,
     config: EyasConfig,
-    recorder: Recorder,
+    recording: tuple[Mover, Recorder],
     progress: RecordingProgress,
     log: Callable[[Snapshot], None],
 ) -> None:
     count = config.video.channels
-    grid, mover = FrameGrid(config.video, count), mover_of(config, count)
+    mover, recorder = recording
+    grid = FrameGrid(config.video, count)
     episodes = sim.snapshot.episodes
-    tick = begin = int(episodes.tick[0])
-    while tick < grid.last_tick:
-        mover.move(sim)
+    tick = int(episodes.tick[0])
+    end = RecordingEnd(config.video, grid, recording_rules(config).done.total_steps, tick)
+    mover.begin(np.arange(count), end.longest(tick))
+    while not end.reached(tick):
+        mover.move()
         log(sim.snapshot)
         tick += 1
-        due = grid.due(tick, episodes.step_count)
+        due = end.wanted(grid.due(tick, episodes.step_count))
         if due.size:
-            recorder.take(due, mover)
-            progress.show((tick - begin) / (grid.last_tick - begin), recorder.drawn)
-        ended = episodes.done
+            recorder.take(due, mover.action)
+            progress.show(end.share(tick), recorder.drawn)
+        ended = end.of_episodes(episodes.done)
         if ended.any():
             recorder.end(ended)
+            if end.reached(tick):
+                break
             sim.reset(ended)
             grid.restart(ended)
+            mover.begin(np.flatnonzero(ended), end.longest(tick))
     progress.show(1.0, recorder.drawn)

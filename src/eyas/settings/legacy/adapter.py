@@ -35,7 +35,10 @@ _LOG = logging.getLogger("eyas")
 
 LIKE_THE_ORIGINAL = updated(
     EyasConfig(start=StartConfig(velocity=StartVelocity.REST), extras=()),
-    {"video": {"jpeg_quality": 100}, "tracker": {"flight": Flight.ORIGINAL.value}},
+    {
+        "video": {"jpeg_quality": 100, "flight": "exact"},
+        "tracker": {"flight": Flight.ORIGINAL.value},
+    },
 )
 """Our defaults, but for what its file cannot express and the original does in another way."""
 

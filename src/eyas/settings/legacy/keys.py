@@ -107,7 +107,7 @@ _VIDEO = (
     Same("Out_Video.total_time", "video.total_time"),
     Same("Out_Video.warm_up_steps", "video.warm_up_steps"),
     Same("Out_Video.output_car_dir", "video.target_direction"),
-    Same("Out_Video.random_action", "video.random_action"),
+    Switch("Out_Video.random_action", "video.flight", on="random", off="exact"),
     Same("Out_Video.forward_speed", "video.forward_speed"),
     Same("Out_Video.backward_speed", "video.backward_speed"),
     Same("Out_Video.left_speed", "video.left_speed"),

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 from eyas.core.pinhole import focal_length
 from eyas.lanes import Held, compiled
 from eyas.render.kernels.bundles import NEAR
+from eyas.sim.scenes import load_parts
 from eyas.state.draw import DrawList
 from eyas.state.motion import ActorView
 from eyas.state.snapshot import CameraState
-from eyas.targets.catalogue import KINDS, kind_index
 from eyas.targets.kind import Looks
 from eyas.targets.rig import Rigs
 
@@ -61,7 +61,7 @@ class Outlines:
     """
 
     def __init__(self, kind: NDArray[np.int32], width: int, height: int) -> None:
-        self._rigs = Rigs(kind)
+        self._rigs, self._kinds = Rigs(kind), tuple(sorted({*kind.tolist()}))
         self._posed = self._rigs.draw_list(1)
         self._width, self._height = width, height
 
@@ -103,7 +103,7 @@ class Outlines:
             lens=np.array([focal, 0.5 * self._width, 0.5 * self._height]),
             box=np.zeros((len(wanted), 4)),
         )
-        _enclose(_vertices_of(tuple(kind.name for kind in self._rigs.kinds)), query)
+        _enclose(_vertices_of(self._kinds), query)
         return query.box
 
 
@@ -138,10 +138,9 @@ def _enclose(vertices: _Vertices, query: _Query) -> None:
 
 
 @lru_cache(maxsize=8)
-def _vertices_of(kinds: tuple[str, ...]) -> Held[_Vertices]:
-    """Return the vertices of the parts of some kinds, in the order of `Rigs`."""
-    levels = [parts for kind in kinds for parts in KINDS[kind_index(kind)].rig().part_levels()]
-    each = [np.unique(meshes[0].positions, axis=0) for meshes in levels]
+def _vertices_of(kinds: tuple[int, ...]) -> Held[_Vertices]:
+    """Return the vertices of the parts of some kinds, indices into `KINDS`, as in `Rigs`."""
+    each = [np.unique(levels[0].positions, axis=0) for levels in load_parts(kinds).parts]
     return Held(
         _Vertices(
             np.concatenate(each).astype(np.float64),

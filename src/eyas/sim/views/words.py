@@ -1,6 +1,7 @@
 """The target in words that tell it from what else is in view."""
 
 import math
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,9 +15,6 @@ from eyas.targets.words import Seen, told_apart
 __all__ = ["target_in_words"]
 
 Floats = NDArray[np.float64]
-
-_LARGEST = 40.0
-"""No point of an actor is farther from its place [m]; twice the longest truck."""
 
 
 def target_in_words(shown: Snapshot, around: ActorView, tracker: int, aspect: float) -> str:
@@ -33,38 +31,63 @@ def target_in_words(shown: Snapshot, around: ActorView, tracker: int, aspect: fl
     cameras, target = shown.cameras, int(shown.targets.actor[tracker])
     actors, _, model, colour = around
     wide = exact.tan(0.5 * float(cameras.field_of_view[tracker]))
-    # Boxes of limbs cost 40 us each, so only those that may be in view get one; of a world with
-    # 160 actors, words took a third of the time of a recorded frame.
-    places = _in_camera(actors.position[0], cameras, tracker)[:, None]
-    near = _in_view(places, wide, wide * aspect, _LARGEST) & actors.present[0]
+    middles = _in_camera(actors.position[0], cameras, tracker)
+    near = _may_be_in_view(middles, _reach(len(MODELS))[model], wide, wide * aspect)
+    near &= actors.present[0]
     near[target] = True
     chosen = np.flatnonzero(near)
     corners = _in_camera(_corners(actors, chosen, model), cameras, tracker)
-    inside = _in_view(corners, wide, wide * aspect)
+    inside = _in_view(corners, wide, wide * aspect) & (chosen != target)
     # Where the middle is: half across the picture is 0.5, also if it is behind the camera.
     forward, left, _ = corners.mean(axis=1).T
     column = 0.5 - 0.5 * left / (np.maximum(forward, 1e-3) * wide)
 
-    def seen(at: int) -> Seen:
-        actor = int(chosen[at])
+    def seen(row: int) -> Seen:
+        actor = chosen[row]
         return Seen(
             model=int(model[actor]),
             colour=colour[actor].tolist(),
             speed=float(actors.speed[0, actor]),
             yaw_rate=float(actors.yaw_rate[0, actor]),
-            column=float(column[at]),
-            distance=float(forward[at]),
+            column=float(column[row]),
+            distance=float(forward[row]),
         )
 
-    others = np.flatnonzero(inside & (chosen != target)).tolist()
-    return told_apart(seen(int(np.searchsorted(chosen, target))), [seen(at) for at in others])
+    (own,) = np.flatnonzero(chosen == target).tolist()
+    return told_apart(seen(own), [seen(row) for row in np.flatnonzero(inside).tolist()])
 
 
-def _corners(actors: ActorState, chosen: NDArray[np.intp], model: NDArray[np.int32]) -> Floats:
-    """Return the corners of the boxes of some actors of one world [m], shape (C, 8, 3)."""
+_LIMBS = 2.0
+"""Limbs reach less than this out of the box of a model's size, and so do trailers that swing [m].
+"""
+
+
+@cache
+def _reach(models: int) -> Floats:
+    """Return how far any corner of each of so many models may be from its place [m]."""
+    return np.array(
+        [math.hypot(*model.size) + abs(kind_of(k).ahead) for k, model in enumerate(MODELS[:models])]
+    )
+
+
+def _may_be_in_view(middles: Floats, reach: Floats, wide: float, high: float) -> NDArray[np.bool_]:
+    """Return whether spheres may be in a view, as `_in_view` does for boxes; most are far aside."""
+    forward, left, up = middles.T
+    reach = reach + _LIMBS
+    across, down = math.hypot(1.0, wide) * reach, math.hypot(1.0, high) * reach
+    inside: NDArray[np.bool_] = (
+        (forward > -reach)
+        & (np.abs(left) - forward * wide < across)
+        & (np.abs(up) - forward * high < down)
+    )
+    return inside
+
+
+def _corners(actors: ActorState, chosen: NDArray[np.integer], model: NDArray[np.int32]) -> Floats:
+    """Return the corners of the boxes of some actors of one world [m], shape (K, 8, 3)."""
     low, high = np.empty((2, len(chosen), 3))
-    for at, actor in enumerate(chosen.tolist()):
-        low[at], high[at] = _extent(actors, actor, int(model[actor]))
+    for row, actor in enumerate(chosen.tolist()):
+        low[row], high[row] = _extent(actors, actor, int(model[actor]))
     pick = np.array([[bit >> axis & 1 for axis in range(3)] for bit in range(8)], bool)
     own = np.where(pick, high[:, None], low[:, None])
     yaw, slope = actors.yaw[0, chosen], actors.slope[0, chosen]
@@ -95,18 +118,16 @@ def _in_camera(points: Floats, cameras: CameraState, tracker: int) -> Floats:
     return np.stack(seen, axis=-1)
 
 
-def _in_view(corners: Floats, wide: float, high: float, radius: float = 0.0) -> NDArray[np.bool_]:
+def _in_view(corners: Floats, wide: float, high: float) -> NDArray[np.bool_]:
     """Return whether any part of boxes may be in a view: none is outside of one of its planes.
 
     Args:
-        corners: Corners of boxes forward, left and up of the camera [m], shape (A, C, 3).
+        corners: Corners of boxes forward, left and up of the camera [m], shape (A, 8, 3).
         wide: Tangent of half the horizontal field of view.
         high: Tangent of half the vertical field of view.
-        radius: Radius of spheres around the corners that count as well [m].
     """
     forward, left, up = np.moveaxis(corners, -1, 0)
-    sides, ends = radius * math.sqrt(1.0 + wide * wide), radius * math.sqrt(1.0 + high * high)
-    planes = [forward + radius, forward * wide - left + sides, forward * wide + left + sides]
-    planes += [forward * high - up + ends, forward * high + up + ends]
+    planes = [forward, forward * wide - left, forward * wide + left]
+    planes += [forward * high - up, forward * high + up]
     inside: NDArray[np.bool_] = np.all([(plane > 0.0).any(axis=1) for plane in planes], axis=0)
     return inside

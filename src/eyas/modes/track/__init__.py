@@ -1,0 +1,1 @@
+"""Scoring box trackers on recordings and data sets."""

@@ -1,0 +1,121 @@
+"""Flies the trackers of a recording by a policy of `eyas evaluate`."""
+
+from functools import partial
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from eyas.core.clock import physics_steps
+from eyas.core.errors import ActionError, ConfigError
+from eyas.core.rng import stream
+from eyas.envs.actions import make_actions
+from eyas.envs.config import ActionKind
+from eyas.envs.observation import Observation, Observer
+from eyas.evaluation.policies.policy import Failure, Policy, PolicyInput, Start
+from eyas.evaluation.policies.table import open_policy
+from eyas.exports.frame import RecordedAction
+from eyas.settings.config import EyasConfig
+from eyas.sim.simulation import Simulation
+from eyas.state.draw import DrawStage, Picture
+from eyas.state.snapshot import Snapshot
+
+__all__ = ["PolicyPilot"]
+
+_SEEDS = 2**62
+
+
+class PolicyPilot:
+    """Each tracker is flown by a policy of its own, since their episodes begin at different times.
+
+    A policy looks at the start of each control period of its action, as in `eyas evaluate`.
+
+    Args:
+        sim: The trackers.
+        config: Seed, control frequency, and what policies see if they leave that open.
+        name: What the user calls the policy.
+
+    Raises:
+        EyasError: There is no such policy, or it cannot be loaded.
+    """
+
+    def __init__(self, sim: Simulation, config: EyasConfig, name: str) -> None:
+        self._sim, self._seed, self._name = sim, config.seed, name
+        changes = config.env.model_dump(
+            mode="json", exclude_defaults=True, exclude={"mixture", "log_folder"}
+        )
+        self._policies: list[Policy] = [open_policy(name, changes) for _ in range(sim.count)]
+        env = self._policies[0].env
+        self._env, self._observer = env, Observer(env.observation, sim)
+        self._actions = make_actions(env.actions, env.speeds)
+        self._period = physics_steps(config.control.frequency) * env.action_repeat
+        self._commands = np.zeros((sim.count, 4))
+        self._numbers = np.full(sim.count, -1)
+
+    def begin(self, trackers: NDArray[np.int64], longest: int) -> None:
+        """Tell the policies of these trackers that an episode begins."""
+        episodes = self._sim.snapshot.episodes
+        for tracker in trackers.tolist():
+            rng = stream(self._seed, "video policy", tracker, int(episodes.number[tracker]))
+            seeds = np.array([rng.integers(_SEEDS)])
+            boxes = partial(self._first_box, tracker)
+            try:
+                self._policies[tracker].begin(Start(seeds, boxes))
+            except Exception as error:  # whatever a user's code raises
+                raise self._failed(tracker, Failure.of(error)) from error
+
+    def move(self) -> None:
+        """Advance the simulation by one 2 ms step."""
+        steps = self._sim.snapshot.episodes.step_count
+        deciding = np.flatnonzero(steps % self._period == 0).astype(np.int32)
+        if len(deciding):
+            self._observer.look(deciding, steps[deciding] == 0)
+            for tracker in deciding.tolist():
+                self._decide(tracker)
+        self._sim.advance(self._commands, 1)
+
+    def action(self, tracker: int) -> RecordedAction:
+        """Return a tracker's action in the last step."""
+        return RecordedAction(int(self._numbers[tracker]), self._commands[tracker].copy())
+
+    def _decide(self, tracker: int) -> None:
+        sight = PolicyInput(
+            self._observed(tracker), np.ones(1, np.bool_), lambda: self._of(tracker)
+        )
+        try:
+            decision = self._policies[tracker].act(sight)
+        except Exception as error:  # whatever a user's code raises
+            raise self._failed(tracker, Failure.of(error)) from error
+        for failure in decision.failed.values():
+            raise self._failed(tracker, failure)
+        try:
+            self._commands[tracker] = self._actions.commands([decision.actions[0]])[0]
+        except (ActionError, IndexError, KeyError, TypeError) as error:
+            raise self._failed(tracker, Failure.of(error, traced=False)) from error
+        if self._env.actions is ActionKind.DISCRETE:
+            self._numbers[tracker] = int(decision.actions[0])
+
+    def _observed(self, tracker: int) -> Observation:
+        """Return the latest observation of a tracker as one of one drone, shape (1, ...)."""
+        seen = self._observer.one(tracker)
+        return {k: v[None] for k, v in seen.items()} if isinstance(seen, dict) else seen[None]
+
+    def _of(self, tracker: int) -> Snapshot:
+        """Return the state of one tracker, as of one drone."""
+        parts: list[Any] = list(self._sim.snapshot)  # records of arrays
+        rows = slice(tracker, tracker + 1)
+        return Snapshot(*(type(part)(*(array[rows] for array in part)) for part in parts))
+
+    def _failed(self, tracker: int, failure: Failure) -> ConfigError:
+        return ConfigError(
+            f"video.policy: '{self._name}' has failed with tracker {tracker}: {failure.line}"
+        )
+
+    def _first_box(self, tracker: int) -> NDArray[np.int32]:
+        """Return the true box of a tracker's target in its first picture, see `Start.boxes`."""
+        image = self._env.observation
+        size = image.height, image.width
+        picture = Picture.create(1, *size, rgb=False, class_id=True, subject=True)
+        self._sim.draw(np.array([tracker], np.int32), picture, until=DrawStage.RASTERISING)
+        assert picture.subject_box is not None
+        return picture.subject_box

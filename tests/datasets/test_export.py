@@ -1,0 +1,209 @@
+"""What all formats have in common."""
+
+import json
+import os
+import random
+import shutil
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import pytest
+
+from eyas.core.errors import ConfigError, DataFileError, OutputError, UnknownNameError
+from eyas.datasets.export import ExportOptions, export
+from eyas.datasets.format import objects_of
+from eyas.datasets.recording import load
+from eyas.datasets.registry import FORMATS
+from eyas.modes.export import run
+from eyas.state.scene import ObjectClass
+
+OF_MOTION = {"lerobot", "webdataset", "minari", "rerun", "mcap"}
+FORMATS_OF_PICTURES = tuple(name for name in FORMATS.built_in if name not in OF_MOTION)
+
+KILLS = int(os.environ.get("EYAS_TEST_KILLS", "3"))
+
+
+def contents(folder: Path) -> dict[str, bytes]:
+    return {
+        path.relative_to(folder).as_posix(): path.read_bytes()
+        for path in folder.rglob("*")
+        if path.is_file()
+    }
+
+
+def test_the_data_set_holds_what_formats_find_difficult(data):
+    labels = [frame.label for frame in data.frames()]
+    others = [other for label in labels for other in label["others"]]
+    classes = {*(label["target_class_id"] for label in labels)}
+    assert any(label["in_view"] and label["visible_fraction"] == 0.0 for label in labels)
+    assert any(0.0 < label["visible_fraction"] < 1.0 for label in labels)
+    assert any(0.0 < label["target_truncated"] < 1.0 for label in labels)
+    assert any(not label["in_view"] for label in labels)
+    assert any("target_sections" in label for label in labels)
+    assert ObjectClass.CAR in classes
+    assert any(other["class_id"] == ObjectClass.PERSON for other in others)
+
+
+def test_an_id_is_the_same_after_an_absence(data):
+    returned = 0
+    for episode in data:
+        seen = {}
+        for frame in episode:
+            for each in objects_of(frame.label):
+                number = each.label["id"]
+                returned += number in seen and seen[number][0] < frame.number - 1
+                assert seen.get(number, (0, each.name))[1] == each.name
+                seen[number] = frame.number, each.name
+    assert returned
+
+
+@pytest.mark.parametrize("name", FORMATS_OF_PICTURES)
+def test_the_same_recording_gives_the_same_bytes(exported, dataset, tmp_path, name):
+    first = contents(exported(name))
+    folder = tmp_path / "again"
+    export(load(dataset), name, folder, ExportOptions())
+    assert contents(folder) == first
+    assert first
+
+
+@pytest.mark.parametrize("name", FORMATS_OF_PICTURES)
+def test_the_split_of_an_episode_decides_its_place(exported, data, name):
+    folder = exported(name)
+    where = {split: {episode.name for episode in data.split(split)} for split in ("train", "val")}
+    pictures = [path.relative_to(folder).as_posix() for path in folder.rglob("*.jpg")]
+    assert len(pictures) == data.frame_count
+    if name in ("nuscenes", "uavdt"):  # their splits are in tables, or train and test
+        return
+    for picture in pictures:
+        (split,) = (s for s, names in where.items() if any(each in picture for each in names))
+        other = {"train": "val", "val": "train"}[split]
+        top = picture.removeprefix("images/").split("/")[0]
+        assert split in top
+        assert other not in top
+
+
+def test_pictures_are_links_or_copies(exported, data):
+    original = data[0].picture_file(0).stat().st_ino
+    (linked,) = exported("otb").glob(f"train/{data[0].name}/img/0001.jpg")
+    (copied,) = exported("dtb70", copies=True).glob(f"train/{data[0].name}/img/00001.jpg")
+    assert linked.stat().st_ino == original
+    assert copied.stat().st_ino != original
+    assert copied.read_bytes() == linked.read_bytes()
+
+
+def test_killed_at_any_moment_it_continues_to_the_same_bytes(dataset, tmp_path):
+    names = FORMATS_OF_PICTURES
+    run(dataset, names, tmp_path / "whole", ExportOptions())
+    whole = contents(tmp_path / "whole")
+    begun = time.perf_counter()
+    run(dataset, names, tmp_path / "timed", ExportOptions())
+    duration = time.perf_counter() - begun
+    chance = random.Random(5)
+    out = tmp_path / "killed"
+    options = [part for name in names for part in ("--format", name)]
+    command = [sys.executable, "-m", "eyas", "export", str(dataset), *options]
+    for _ in range(KILLS):
+        process = subprocess.Popen([*command, "--out", str(out), "--resume", "--quiet"])
+        while process.poll() is None and not out.exists():
+            time.sleep(0.01)
+        time.sleep(chance.uniform(0.0, duration))
+        process.kill()
+        process.wait()
+        for path, content in contents(out).items():
+            if not path.endswith((".part", ".lock", "/.export.json", ".done")) and (
+                "/.kept/" not in path
+            ):
+                assert content == whole[path], path
+    run(dataset, names, out, ExportOptions(resume=True))
+    assert contents(out) == whole
+
+
+def test_two_exports_at_once_disturb_each_other_in_no_way(dataset, tmp_path):
+    threads = [
+        threading.Thread(
+            target=export, args=(load(dataset), "yolo-seg", tmp_path / name, ExportOptions())
+        )
+        for name in ("a", "b")
+    ]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert contents(tmp_path / "a") == contents(tmp_path / "b")
+
+
+def test_a_folder_in_use_is_refused(data, tmp_path):
+    export(data, "otb", tmp_path / "otb", ExportOptions())
+    with pytest.raises(OutputError, match="not empty; continue its export with --resume"):
+        export(data, "otb", tmp_path / "otb", ExportOptions())
+    with pytest.raises(OutputError, match="its least_side was 1, is 5"):
+        export(data, "otb", tmp_path / "otb", ExportOptions(least_side=5, resume=True))
+    export(data, "otb", tmp_path / "otb", ExportOptions(least_side=5, overwrite=True))
+    (tmp_path / "mine").mkdir()
+    (tmp_path / "mine/thesis.tex").touch()
+    with pytest.raises(OutputError, match="not deleted: it is not an export"):
+        export(data, "otb", tmp_path / "mine", ExportOptions(overwrite=True))
+
+
+@pytest.fixture
+def copied(dataset, tmp_path):
+    """One recording of the data set, to be spoilt."""
+    return shutil.copytree(dataset / "parts/train/first", tmp_path / "copied")
+
+
+def test_a_picture_that_is_not_what_was_recorded_is_refused(copied, tmp_path):
+    picture = copied / "DRONE0/episode0/000003.jpeg"
+    picture.write_bytes(picture.read_bytes()[:-1])
+    with pytest.raises(DataFileError, match=r"000003.jpeg: not what was recorded"):
+        export(load(copied), "otb", tmp_path / "out", ExportOptions())
+
+
+def test_a_recording_in_progress_or_without_a_file_is_refused(copied):
+    (copied / ".checksums").touch()
+    with pytest.raises(DataFileError, match="in progress, or was interrupted: continue it"):
+        load(copied)
+    (copied / ".checksums").unlink()
+    (copied / "DRONE0/episode0/000003.jpeg").unlink()
+    with pytest.raises(DataFileError, match=r"000003.jpeg: missing, though"):
+        load(copied)
+
+
+def test_a_recording_without_what_a_format_needs_is_refused(copied, tmp_path):
+    shutil.rmtree(copied / "DRONE0/episode0/masks")
+    sums = copied / "checksums.sha256"
+    kept = [row for row in sums.read_text().splitlines(True) if "DRONE0/episode0/masks" not in row]
+    sums.write_text("".join(kept))
+    with pytest.raises(DataFileError, match="the format 'coco' needs the writer 'masks'; record"):
+        export(load(copied), "coco", tmp_path / "out", ExportOptions())
+    export(load(copied), "yolo", tmp_path / "yolo", ExportOptions())
+
+
+def test_a_name_that_is_no_format_is_refused(data, tmp_path):
+    with pytest.raises(UnknownNameError, match="coco"):
+        export(data, "cocoo", tmp_path / "out", ExportOptions())
+    with pytest.raises(ConfigError, match="is not a format: it has no 'needs'"):
+        export(data, "pathlib:Path", tmp_path / "out", ExportOptions())
+
+
+def test_what_is_ignored_is_marked_or_left_out(exported):
+    def boxes(name, pattern, **options):
+        folder = exported(name, **options)
+        texts = [path.read_text() for path in sorted(folder.glob(pattern))]
+        shutil.rmtree(folder)
+        return [row for text in texts for row in text.splitlines()]
+
+    for name, pattern in (("yolo", "labels/*/*.txt"), ("yolo-obb", "labels/*/*.txt")):
+        assert 0 < len(boxes(name, pattern, least_side=9)) < len(boxes(name, pattern))
+    mot = boxes("mot", "*/*/gt/gt.txt", least_side=9)
+    assert len(mot) == len(boxes("mot", "*/*/gt/gt.txt"))
+    assert all((min(map(int, r[4:6])) < 9) == (r[6] == "0") for r in (x.split(",") for x in mot))
+
+
+def test_export_json_tells_what_it_is_of(exported, dataset):
+    told = json.loads((exported("otb", least_side=4) / "export.json").read_text())
+    assert told["format"] == "otb"
+    assert told["recording"] == dataset.name
+    assert told["least_side"] == 4
