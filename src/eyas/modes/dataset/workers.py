@@ -1,7 +1,7 @@
 """Processes that work on the parts of a data set, each on the parts of one map at a time.
 
-A map that a process has built serves all parts there that it records. When it goes on to another
-map, a new process takes its place, so that memory does not grow with the number of maps.
+A map that a process has built serves all parts there that it records. After some maps a new process
+takes its place, so that memory does not grow with their number.
 """
 
 import signal
@@ -20,6 +20,9 @@ from eyas.modes.dataset.parts import begin_worker
 __all__ = ["work"]
 
 Result = TypeVar("Result")
+
+_MAPS = 4
+"""Maps after which a process is replaced: a new one takes 4 s until its first frame."""
 
 _RETRIES = 2
 """How often a part is tried again whose process was lost, as by a lack of memory."""
@@ -64,11 +67,15 @@ class _Worker:
     pool: ProcessPoolExecutor | None = None
     place: str | None = None
     """The map of its last part."""
+    maps: int = 0
+    """Number of maps on which this process has worked."""
 
     def begin(self, part: Part, call: Callable[..., Any], *args: Any) -> Future[Any]:  # noqa: ANN401
-        if self.pool is not None and part.config.world.map != self.place:
+        self.maps += part.config.world.map != self.place
+        if self.maps > _MAPS:
             self.close()
         if self.pool is None:
+            self.maps = 1
             # Forked processes would inherit locks of threads that they have not.
             context = get_context("spawn")
             self.pool = ProcessPoolExecutor(1, context, begin_worker, (self.threads,))
