@@ -75,11 +75,11 @@ class Detector(nn.Module):
         self.eighth = nn.Sequential(block(32, 64, 2), block(64, 64))
         self.sixteenth = nn.Sequential(block(64, 128, 2), block(128, 128))
         self.last = nn.Sequential(block(128, 160, 2), block(160, 160))
-        self.sides = nn.ModuleList(nn.Conv2d(width, 64, 1) for width in (160, 128, 64, 32))
-        self.joins = nn.ModuleList(block(64, 64) for _ in range(3))
-        self.scores = nn.Sequential(block(64, 64), nn.Conv2d(64, classes, 1))
-        self.places = nn.Sequential(block(64, 64), nn.Conv2d(64, 4, 1))
-        self.scores[1].bias.data.fill_(-4.0)  # objects are rare
+        self.sides = nn.ModuleList(nn.Conv2d(width, 48, 1) for width in (160, 128, 64, 32))
+        self.joins = nn.ModuleList(block(48, 48) for _ in range(3))
+        self.head = block(48, 64)
+        self.scores, self.places = nn.Conv2d(64, classes, 1), nn.Conv2d(64, 4, 1)
+        self.scores.bias.data.fill_(-4.0)  # objects are rare
 
     def forward(self, pictures):
         quarter = self.quarter(self.second(pictures))
@@ -90,7 +90,8 @@ class Detector(nn.Module):
         for side, join, level in zip(self.sides[1:], self.joins, finer, strict=True):
             wide = functional.interpolate(joined, size=level.shape[-2:])
             joined = join(wide + side(level))
-        return self.scores(joined), self.places(joined)
+        shared = self.head(joined)
+        return self.scores(shared), self.places(shared)
 
 
 def goals(boxes, classes):

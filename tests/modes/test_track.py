@@ -207,7 +207,7 @@ def test_opencv_trackers_follow_a_moving_square(tmp_path):
         drawn[40:64, 30 + 2 * number : 54 + 2 * number] = square
         return drawn
 
-    for name in ("csrt", "kcf", "mil"):
+    for name in ("csrt", "kcf", "mil", "mosse", "medianflow"):
         tracker = box_tracker(name)()
         tracker.begin(picture(0), (30.0, 40.0, 24.0, 24.0))
         for number in range(1, 8):

@@ -16,9 +16,7 @@ from eyas.modes.dataset.make import Making, make
 from eyas.modes.dataset.merge import merge
 
 
-def test_a_killed_one_is_continued_to_the_same_bytes(
-    recipe_file, made, contents, start, tmp_path
-):
+def test_a_killed_one_is_continued_to_the_same_bytes(recipe_file, made, contents, start, tmp_path):
     out = tmp_path / "killed"
     process = start("make", recipe_file, "--out", out, "--workers", "2")
     until = time.monotonic() + 300
@@ -74,7 +72,9 @@ def test_shards_of_other_recipes_are_refused(plan, shard, tmp_path):
     make(
         Plan.of(other, "own.json", sample=False, shard=(2, 3)), tmp_path / "two", Making(workers=1)
     )
-    with pytest.raises(DataFileError, match=r"not of the same data set .* recipe\.seed was 7, is 8"):
+    with pytest.raises(
+        DataFileError, match=r"not of the same data set .* recipe\.seed was 7, is 8"
+    ):
         merge([tmp_path / "one", tmp_path / "two"], tmp_path / "out", Making())
 
 
