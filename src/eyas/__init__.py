@@ -2,6 +2,7 @@
 
     env = eyas.make("citystreet-day")                  # one drone; make_vec: many together
     eyas.record({"video": {"total_time": 2.0}})        # labelled pictures and videos
+    eyas.load("runs/video")                            # read them: episodes, frames, arrays
     eyas.evaluate("follow", map="village")             # figures of a policy
     eyas.list_maps()                                   # _weathers, _targets, _presets, _policies
 
@@ -31,12 +32,18 @@ if TYPE_CHECKING:
     from eyas.core.files import write_atomic as write_atomic
     from eyas.core.frames import rotate as rotate
     from eyas.custom.own import Ride as Ride
+    from eyas.datasets.format import Format as Format
+    from eyas.datasets.recording import RecordedEpisode as RecordedEpisode
+    from eyas.datasets.recording import RecordedFrame as RecordedFrame
+    from eyas.datasets.recording import Recording as Recording
+    from eyas.datasets.recording import load as load
     from eyas.envs.observation import Observation as Observation
     from eyas.envs.pettingzoo import EyasParallelEnv as EyasParallelEnv
     from eyas.envs.registration import register_map as register_map
     from eyas.envs.sb3 import EyasVecEnv as EyasVecEnv
     from eyas.envs.tracking_env import TrackingEnv as TrackingEnv
     from eyas.envs.vector_env import EyasVectorEnv as EyasVectorEnv
+    from eyas.evaluation.box_trackers import BoxTracker as BoxTracker
     from eyas.evaluation.policies.policy import Decision as Decision
     from eyas.evaluation.policies.policy import Policy as Policy
     from eyas.evaluation.policies.policy import PolicyInput as PolicyInput
@@ -54,6 +61,8 @@ if TYPE_CHECKING:
     from eyas.lanes import kernel as kernel
     from eyas.mesh.shell import Shell as Shell
     from eyas.modes.api import evaluate as evaluate
+    from eyas.modes.api import export as export
+    from eyas.modes.api import list_formats as list_formats
     from eyas.modes.api import list_maps as list_maps
     from eyas.modes.api import list_policies as list_policies
     from eyas.modes.api import list_presets as list_presets
@@ -63,6 +72,7 @@ if TYPE_CHECKING:
     from eyas.modes.api import make_config as make_config
     from eyas.modes.api import make_vec as make_vec
     from eyas.modes.api import record as record
+    from eyas.modes.api import track as track
     from eyas.modes.api import train as train
     from eyas.settings.config import EyasConfig as EyasConfig
     from eyas.settings.file import load_settings as load_settings
@@ -116,12 +126,15 @@ _PLACES = {
     "core.files": ("write_atomic",),
     "core.frames": ("rotate",),
     "custom.own": ("Ride",),
+    "datasets.format": ("Format",),
+    "datasets.recording": ("RecordedEpisode", "RecordedFrame", "Recording", "load"),
     "envs.observation": ("Observation",),
     "envs.pettingzoo": ("EyasParallelEnv",),
     "envs.registration": ("register_map",),
     "envs.sb3": ("EyasVecEnv",),
     "envs.tracking_env": ("TrackingEnv",),
     "envs.vector_env": ("EyasVectorEnv",),
+    "evaluation.box_trackers": ("BoxTracker",),
     "evaluation.policies.policy": ("Decision", "Policy", "PolicyInput", "Start"),
     "exports.frame": ("Frame",),
     "exports.label": ("label_schema", "read_labels"),
@@ -131,8 +144,9 @@ _PLACES = {
     "lanes": ("kernel",),
     "mesh.shell": ("Shell",),
     "modes.api": (
-        *("evaluate", "list_maps", "list_policies", "list_presets", "list_targets"),
-        *("list_weathers", "make", "make_config", "make_vec", "record", "train"),
+        *("evaluate", "export", "list_formats", "list_maps", "list_policies", "list_presets"),
+        *("list_targets", "list_weathers", "make", "make_config", "make_vec", "record"),
+        *("track", "train"),
     ),
     "settings.config": ("EyasConfig",),
     "settings.file": ("load_settings",),

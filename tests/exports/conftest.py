@@ -10,6 +10,7 @@ from eyas.exports.movement import Movement
 from eyas.exports.writer import Episode, Run
 from eyas.sensors.config import LidarConfig
 from eyas.sim.config import SimConfig
+from eyas.state.draw import MovingParts
 from eyas.state.scene import ObjectClass
 from eyas.task.direction import TargetDirection
 from eyas.task.done import DoneReason
@@ -56,6 +57,12 @@ def made(number: int, **changes: object) -> Frame:
         "depth": np.full((48, 64), 12.5, np.float32),
         "object_id": np.full((48, 64), 7, np.int32),
         "class_id": np.full((48, 64), 3, np.uint8),
+        "parts": MovingParts(
+            row=np.full((48, 64), -1, np.int32),
+            depth=np.full((48, 64), 12.5, np.float32),
+            part=np.zeros(2, np.int32),
+            pose=np.zeros((2, 3, 4), np.float32),
+        ),
         "lidar": np.array([0.5, np.inf]),
         "sensors": np.arange(19.0),
     }

@@ -11,7 +11,7 @@ from eyas.exports.writer import Episode, EpisodeWriter, Files, Run, Scores, Summ
 from eyas.modes.video.episode import EpisodeFiles, read_complete
 from eyas.sensors.config import LidarConfig
 from eyas.sim.config import SimConfig
-from eyas.state.draw import Picture
+from eyas.state.draw import MovingParts, Picture
 from eyas.state.snapshot import Snapshot
 
 LIDAR = LidarConfig(enabled=True)
@@ -37,11 +37,15 @@ def write(folder: Path, frames: int, writers: list[Writer] | None = None) -> Epi
     for number in range(frames):
         picture.rgb[:] = 40 * number
         action, now = RecordedAction(-1, None), snapshot.episodes
-        moment = Moment(snapshot, now, lidar=np.ones(400), sensors=np.ones(19))
+        moment = Moment(snapshot, now, lidar=np.ones(400), sensors=np.ones(19), parts=PARTS)
         files.add(frame_of(moment, 0, picture, 0, number, action))
     return files
 
 
+PARTS = MovingParts(
+    np.full((48, 64), -1, np.int32), np.ones((48, 64), np.float32), np.zeros(0, np.int32),
+    np.zeros((0, 3, 4), np.float32),
+)  # fmt: skip
 PICTURES = sorted(
     f"{place}{number:06d}.{kind}"
     for place, kind in (
@@ -50,6 +54,7 @@ PICTURES = sorted(
     )
     for number in range(2)
 )
+FLOW = ["flow/000000.png"]  # that of the last frame is written at the end
 
 
 def names_in(folder: Path) -> list[str]:
@@ -75,7 +80,15 @@ def test_an_episode_that_misses_a_file_is_not_complete(tmp_path, name):
 
 
 @pytest.mark.parametrize(
-    "name", ["mark.json", "labels.jsonl", "episode.mp4", "000002.jpeg", "arrays/000002.npz"]
+    "name",
+    [
+        "mark.json",
+        "labels.jsonl",
+        "episode.mp4",
+        "000002.jpeg",
+        "arrays/000002.npz",
+        "flow/000002.png",
+    ],
 )
 def test_an_episode_whose_files_hold_different_numbers_of_frames_is_not_complete(tmp_path, name):
     write(tmp_path / "episode0", 2).finish()
@@ -99,7 +112,7 @@ def test_pictures_alone_do_not_tell_that_an_episode_has_ended(tmp_path):
 
 def test_an_abandoned_episode_keeps_its_pictures_only(tmp_path):
     write(tmp_path / "episode0", 2).abandon()
-    assert names_in(tmp_path / "episode0") == PICTURES
+    assert names_in(tmp_path / "episode0") == sorted([*FLOW, *PICTURES])
     assert read_complete(writers_of(), tmp_path / "episode0") is None
 
 
@@ -107,7 +120,9 @@ def test_an_episode_that_is_drawn_anew_leaves_nothing_of_the_old(tmp_path):
     write(tmp_path / "episode0", 5).finish()
     (tmp_path / "episode0" / "notes.txt").write_text("mine")
     files = write(tmp_path / "episode0", 2)
-    assert names_in(tmp_path / "episode0") == sorted([".episode.mp4.part", *PICTURES, "notes.txt"])
+    assert names_in(tmp_path / "episode0") == sorted(
+        [".episode.mp4.part", *FLOW, *PICTURES, "notes.txt"]
+    )
     files.finish()
 
 

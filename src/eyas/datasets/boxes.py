@@ -7,13 +7,9 @@ from numpy.typing import NDArray
 
 from eyas.exports.label import Label
 
-__all__ = ["FROM_OPTICAL", "Box3D", "box_of", "camera_pose", "quaternion_of"]
+__all__ = ["Box3D", "box_of", "camera_pose", "quaternion_of"]
 
 Floats = NDArray[np.float64]
-
-FROM_OPTICAL = np.array([[0.0, 0.0, 1.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]])
-"""From the axes of computer vision (right, down, forward) to those of our cameras (forward, left,
-up)."""
 
 
 class Box3D(NamedTuple):
@@ -46,8 +42,9 @@ def camera_pose(label: Label) -> tuple[Floats, Floats]:
     """Return the optical centre in the world [m], shape (3,), and the rotation from the axes of
     computer vision (right, down, forward) to the world, shape (3, 3).
     """
-    rotation = np.array(label["camera_rotation"], np.float64)
-    return np.array(label["camera_position"], np.float64), rotation @ FROM_OPTICAL
+    forward, left, up = np.array(label["camera_rotation"], np.float64).T
+    rotation = np.column_stack([-left, -up, forward])
+    return np.array(label["camera_position"], np.float64), rotation
 
 
 def quaternion_of(rotation: Floats) -> tuple[float, float, float, float]:

@@ -117,7 +117,8 @@ def write_plan(root: Path, plan: Plan, parts: Sequence[tuple[Part, PartFacts]] =
     if parts:
         told = {"command": plan.command, **told, "parts": described_parts(parts)}
     name = DATASET_FILE if parts else MAKING_FILE
-    write_atomic(root / name, (json.dumps(told, indent=1) + "\n").encode())
+    text = json.dumps(told, indent=1, default=lambda config: config.model_dump(mode="json"))
+    write_atomic(root / name, f"{text}\n".encode())
 
 
 def described_parts(parts: Sequence[tuple[Part, PartFacts]]) -> list[dict[str, Any]]:
@@ -131,10 +132,7 @@ def described_parts(parts: Sequence[tuple[Part, PartFacts]]) -> list[dict[str, A
             "seed": part.config.seed,
             "map": part.config.world.map,
             "weather": part.config.world.weather,
-            "choices": {
-                name: value.model_dump(mode="json") if isinstance(value, Config) else value
-                for name, value in part.choices.items()
-            },
+            "choices": part.choices,
             "episodes": facts.episodes,
             "frames": facts.frames,
             "checksums": facts.checksums,

@@ -13,7 +13,7 @@ from typing import Any
 
 from eyas.core.clock import PHYSICS_RATE
 from eyas.core.config import updated
-from eyas.core.errors import ConfigError, EyasError
+from eyas.core.errors import ConfigError, EyasError, UnknownNameError
 from eyas.datasets.export import formats_needs
 from eyas.datasets.recipe import Recipe
 from eyas.exports.registry import chosen_writers
@@ -134,6 +134,10 @@ def _check_names(recipe: Recipe) -> None:
                     f"writers: the format {name!r} needs {needed!r}, which is not among "
                     f"{', '.join(recipe.writers)}"
                 )
+    maps = [name for split in recipe.splits.given.values() for name in split.maps]
+    for name in recipe.places:
+        if name not in maps:
+            raise UnknownNameError("places", name, maps, "in the splits")
     for name, split in recipe.splits.given.items():
         for at, place in enumerate(split.maps):
             try:
@@ -306,6 +310,8 @@ def _settings(
     }
     config = updated(EyasConfig(), changes)
     named: list[tuple[str, Mapping[str, Any]]] = [("settings", recipe.settings)]
+    if chosen["map"] in recipe.places:
+        named += [(f"places.{chosen['map']}", recipe.places[chosen["map"]])]
     named += [(name, chosen[name]) for name in chosen if name.startswith("factors.")]
     named += [("variants", variant)]
     for path, more in named:

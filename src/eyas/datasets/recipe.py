@@ -135,6 +135,8 @@ class Recipe(Config):
     """Further choices by name: each a list of changes of settings, of which a part takes one."""
     settings: dict[str, Any] = {}  # noqa: RUF012  # pydantic copies it
     """Changes of settings in all parts."""
+    places: dict[str, dict[str, Any]] = {}  # noqa: RUF012  # the same
+    """Changes of settings on single maps."""
     variants: dict[Annotated[str, Field(pattern=r"^[a-z0-9]{1,32}$")], dict[str, Any]] = {}  # noqa: RUF012
     """Every part is recorded once with each of these changes of settings, with the same seed and
     the same traffic, so that frames correspond; empty: once."""
@@ -183,6 +185,7 @@ def _code_of(recipe: Recipe) -> Iterator[tuple[str, str]]:
     """Yield each piece of code that a recipe names: its path, and what it names."""
     yield from code_named(recipe)
     changes = [("settings", recipe.settings)]
+    changes += [(f"places.{name}", change) for name, change in recipe.places.items()]
     changes += [(f"variants.{name}", change) for name, change in recipe.variants.items()]
     for name, values in recipe.factors.items():
         changes += [(f"factors.{name}.{at}", change) for at, change in enumerate(values)]

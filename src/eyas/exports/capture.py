@@ -11,7 +11,7 @@ from eyas.lanes import interpreted
 from eyas.render.outputs import picture_size
 from eyas.sim.simulation import Simulation
 from eyas.sim.views.words import target_in_words
-from eyas.state.draw import Picture
+from eyas.state.draw import MovingParts, Picture
 from eyas.state.episode import EpisodeState
 from eyas.state.motion import ActorState, ActorView
 from eyas.state.scene import ACTOR_OBJECT, ObjectClass
@@ -45,9 +45,13 @@ class Moment(NamedTuple):
     none."""
     sensors: Floats | None = None
     """What its other sensors tell, see `Frame.sensors`; nothing changes it later."""
+    parts: MovingParts | None = None
+    """See `Frame.parts`; nothing changes it later."""
 
 
-def moment_of(simulation: Simulation, tracker: int, picture: Picture, view: int) -> Moment:
+def moment_of(
+    simulation: Simulation, tracker: int, picture: Picture, view: int, *, parts: bool = False
+) -> Moment:
     """Return what is known of a tracker at the time of its picture, which has just been drawn.
 
     Args:
@@ -55,6 +59,7 @@ def moment_of(simulation: Simulation, tracker: int, picture: Picture, view: int)
         tracker: The tracker.
         picture: The picture; if it measures actors, they are wanted.
         view: The tracker's row in `picture`.
+        parts: Whether to draw which moving part each pixel shows, too.
     """
     seen, shown = simulation.view, simulation.view.state.shown
     actors = whole_box = None
@@ -66,7 +71,8 @@ def moment_of(simulation: Simulation, tracker: int, picture: Picture, view: int)
         whole_box[wanted] = seen.whole_boxes(tracker, actors, np.flatnonzero(wanted))
     lidar = None if seen.lidar is None else seen.lidar.ranges(seen.state.late)[tracker]
     told = seen.packets()[0][tracker, SENSOR_COLUMNS]
-    return Moment(shown, simulation.snapshot.episodes, actors, whole_box, lidar, told)
+    moving = seen.parts(tracker, actors or seen.actors(tracker)) if parts else None
+    return Moment(shown, simulation.snapshot.episodes, actors, whole_box, lidar, told, moving)
 
 
 def frame_of(
@@ -107,6 +113,7 @@ def frame_of(
         class_id=None if picture.class_id is None else picture.class_id[view].copy(),
         lidar=moment.lidar,
         sensors=moment.sensors,
+        parts=moment.parts,
     )
 
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.pinhole import intrinsics
 from eyas.exports.movement import Movement, SectionBox, box_corners, posed_corners, section_boxes
+from eyas.state.draw import MovingParts
 from eyas.state.scene import ObjectClass
 from eyas.targets.kind import Section
 from eyas.task.direction import TargetDirection
@@ -26,8 +27,9 @@ __all__ = [
 
 Floats: TypeAlias = NDArray[np.float64]
 
-Output = Literal["rgb", "depth", "object_id", "class_id", "others"]
-"""Name of a field of `Frame` that costs time: a picture, or the other moving objects."""
+Output = Literal["rgb", "depth", "object_id", "class_id", "others", "parts"]
+"""Name of a field of `Frame` that costs time: a picture, the other moving objects, or their parts.
+"""
 
 OUTPUTS: tuple[Output, ...] = get_args(Output)
 """All these names."""
@@ -38,7 +40,7 @@ class RecordedAction:
     """The action of a tracker."""
 
     number: int
-    """Number of the action: 0 to 5 for a random one, -1 when the target is followed exactly."""
+    """Number of the action if it is one of several, 0 to 5 for a random one; else -1."""
     command: Floats | None
     """Forward [m/s], left [m/s], up [m per 2 ms], yaw rate [rad/s], shape (4,); None when the
     target is followed exactly."""
@@ -194,6 +196,8 @@ class Frame:
     lidar: Floats | None = None
     """Distances that the lidar has measured [m], infinity where nothing was within range, shape
     (points,); None: there is no lidar."""
+    parts: MovingParts | None = None
+    """Which moving part each pixel shows; None if no writer wants it."""
     sensors: Floats | None = None
     """What GPS, accelerometer, gyroscope and IMU tell, with their errors, see
     `eyas.task.packets.BASIC_FIELDS`, shape (19,); None: it is not known."""

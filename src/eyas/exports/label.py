@@ -200,8 +200,8 @@ FIELDS = (
     LabelField("relative_position", VECTOR, "Its centre, seen from the tracker: forward, left, up.",
                None, _relative, unit="m", frame="tracker's body"),
     LabelField("reward", NUMBER, "Reward at this time.", lambda f, e: rounded(f.reward)),
-    LabelField("action", WHOLE, "Number of the random action, 0 to 5; -1 when the target is "
-               "followed exactly.", lambda f, e: f.action.number),
+    LabelField("action", WHOLE, "Number of the action if it is one of several, 0 to 5 for a "
+               "random one; else -1.", lambda f, e: f.action.number),
     LabelField("direction", WHOLE, "Its turn: 0 stop, 1 straight, 2 left, 3 right.", None,
                lambda f, s: int(s.motion.direction), "direction"),
     LabelField("done", TRUTH, "Whether the episode ends with this frame.",
@@ -252,7 +252,7 @@ FIELDS = (
     LabelField("distortion", COEFFICIENTS, "Of the lens: k1, k2, p1, p2, k3; all 0, as it is a "
                "pinhole.", lambda f, e: [0.0] * 5),
     LabelField("command", COMMAND, "What the tracker is told to do: forward, left, up and yaw "
-               "rate; null when the target is followed exactly.", _command,
+               "rate; null when it is carried with its target (`exact`).", _command,
                unit="m/s, rad/s", frame="tracker's body"),
 )  # fmt: skip
 """All fields, in the order of the file."""

@@ -24,6 +24,7 @@ WRITERS: Registry[type[Any]] = Registry(
         "masks": "eyas.exports.images:MaskWriter",
         "classes": "eyas.exports.images:ClassWriter",
         "depth": "eyas.exports.images:DepthWriter",
+        "flow": "eyas.exports.flow:FlowWriter",
         "arrays": "eyas.exports.images:ArrayWriter",
         "sensors": "eyas.exports.table:SensorWriter",
         "lidar": "eyas.exports.table:LidarWriter",

@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
 __all__ = [
     "evaluate",
+    "export",
+    "list_formats",
     "list_maps",
     "list_policies",
     "list_presets",
@@ -23,6 +25,7 @@ __all__ = [
     "make_config",
     "make_vec",
     "record",
+    "track",
     "train",
 ]
 
@@ -108,6 +111,64 @@ def record(
     settings = chosen_settings(config, **choices)
     run(settings, folder, resume=resume, overwrite=overwrite, quiet=quiet)
     return folder
+
+
+def export(
+    recording: Path | str,
+    formats: Names,
+    out: Path | str | None = None,
+    **choices: Any,  # noqa: ANN401
+) -> list[Path]:
+    """Export a recording or a data set in other tools' formats, like `eyas export`; return folders.
+
+    Args:
+        recording: Its folder.
+        formats: A name of `list_formats()`, or `package.module:Class`, or several.
+        out: Folder of the exports; by default `exports` in that of the recording.
+        choices: `copies`, `least_side`, `least_visible`, `resume`, `overwrite`, see
+            `eyas.datasets.export.ExportOptions`.
+
+    Raises:
+        EyasError: A name is wrong, or the recording, or the folder; one line.
+    """
+    from eyas.core.errors import UnknownNameError
+    from eyas.datasets.export import ExportOptions
+    from eyas.modes.export import run
+
+    for name in choices:
+        if name not in ExportOptions.__slots__:
+            raise UnknownNameError("keyword", name, ExportOptions.__slots__)
+    names = [formats] if isinstance(formats, str) else list(formats)
+    folder = None if out is None else Path(out)
+    return run(Path(recording), names, folder, ExportOptions(**choices))
+
+
+def track(
+    recording: Path | str,
+    tracker: str,
+    out: Path | str,
+    *,
+    split: str | None = None,
+    restarts: bool = False,
+    overwrite: bool = False,
+) -> dict[str, Any]:
+    """Score a box tracker on recorded episodes, like `eyas track`; return `results.json`.
+
+    Args:
+        recording: Folder of a recording or a data set.
+        tracker: `csrt`, `kcf`, `mil`, `nano`, `stay`, or `package.module:Class`.
+        out: Folder for its boxes and figures.
+        split: Only `train`, `val` or `test` of a data set.
+        restarts: Whether it gets the true box again after a failure.
+        overwrite: Whether what is in the folder is replaced.
+
+    Raises:
+        EyasError: The tracker is wrong, or the recording, or the folder; one line.
+    """
+    from eyas.modes.track.run import Scoring, run
+
+    scoring = Scoring(tracker, Path(recording), split, restarts)
+    return run(scoring, Path(out), overwrite=overwrite)
 
 
 class EvaluationChoices(TypedDict, total=False):
@@ -201,6 +262,13 @@ def train(
     from eyas.modes.train import run
 
     return run(chosen_settings(config, **choices), Path(out), resume=resume, quiet=quiet, ray=False)
+
+
+def list_formats() -> tuple[str, ...]:
+    """Return the names of the formats of `export`."""
+    from eyas.datasets.registry import FORMATS
+
+    return FORMATS.names()
 
 
 def list_maps() -> tuple[str, ...]:

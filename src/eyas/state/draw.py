@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass, fields
 from enum import IntEnum
-from typing import Protocol
+from typing import NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from eyas.state.lighting import LightState
 from eyas.state.mesh import Mesh
 from eyas.state.scene import ObjectClass
 
-__all__ = ["DrawList", "DrawStage", "PartLibrary", "Picture", "Renderer", "Views"]
+__all__ = ["DrawList", "DrawStage", "MovingParts", "PartLibrary", "Picture", "Renderer", "Views"]
 
 
 class DrawStage(IntEnum):
@@ -203,6 +203,21 @@ class Picture:
         """Return the first views; the arrays are shared."""
         arrays = (getattr(self, array.name) for array in fields(self))
         return Picture(*(None if array is None else array[:views] for array in arrays))
+
+
+class MovingParts(NamedTuple):
+    """Which rigid part of a moving thing each pixel of a picture shows, and where these I parts
+    are. A part has the same row in all pictures of an episode.
+    """
+
+    row: NDArray[np.int32]
+    """Row of each pixel's part, -1 for what stands still, and the sky, shape (H, W)."""
+    depth: NDArray[np.float32]
+    """Distance along the optical axis [m], infinity for the sky, shape (H, W)."""
+    part: NDArray[np.int32]
+    """Index into the part library, -1 where there is none now, shape (I,)."""
+    pose: NDArray[np.float32]
+    """Part to world: rotation, or shear, and translation [m], shape (I, 3, 4)."""
 
 
 class Renderer(Protocol):

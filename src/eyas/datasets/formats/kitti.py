@@ -23,8 +23,8 @@ from numpy.typing import NDArray
 
 from eyas.core import exact
 from eyas.core.frames import wrap_angle
+from eyas.datasets.boxes import box_of, camera_pose
 from eyas.datasets.format import Exported, Format, Job, SeenObject, by_split, lines, objects_of
-from eyas.datasets.formats.cuboids import camera_axes, cuboid_of
 from eyas.datasets.recording import RecordedEpisode
 from eyas.exports.label import Label
 from eyas.lanes import interpreted
@@ -70,8 +70,7 @@ class Kitti(Format):
         self._job.write(f"{folder}/intrinsics/{name}.txt", lines(matrices))
 
     def _rows(self, number: int, label: Label) -> Iterable[str]:
-        camera = camera_axes(label["camera_rotation"])
-        position = np.array(label["camera_position"])
+        position, camera = camera_pose(label)
         for seen in objects_of(label):
             if self._job.ignores(seen):
                 box = _text(seen.label["box"])
@@ -89,13 +88,14 @@ class Kitti(Format):
 
 def _row(seen: SeenObject, camera: Floats, position: Floats) -> str:
     label = seen.label
-    cuboid = cuboid_of(label)
-    away = cuboid.foot - position
+    box = box_of(label["corners"])
+    foot = np.array(label["corners"][:4]).mean(axis=0)
+    away = foot - position
     location = exact.product(away[None], camera)[0]
     heading = _heading(camera)
-    turn = _wrapped(heading - _heading_of(cuboid.rotation[:, 0]) - 0.5 * math.pi)
+    turn = _wrapped(heading - _heading_of(box.rotation[:, 0]) - 0.5 * math.pi)
     bearing = heading - _heading_of(away)  # clockwise from straight ahead
-    length, width, height = cuboid.size
+    length, width, height = box.size
     return " ".join([
         f"{label['id']} {TYPES[ObjectClass(label['class_id'])]}",
         f"{_truncation(label['truncated'])} {occlusion_level(label['visible_fraction'])}",
@@ -141,8 +141,8 @@ def _calibration(label: Label) -> list[str]:
 
 
 def _pose(label: Label) -> str:
-    camera = camera_axes(label["camera_rotation"])
-    return _flat(np.column_stack([camera, label["camera_position"]]))
+    position, camera = camera_pose(label)
+    return _flat(np.column_stack([camera, position]))
 
 
 def _flat(matrix: Any) -> str:  # noqa: ANN401  # rows of numbers

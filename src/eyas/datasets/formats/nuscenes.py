@@ -19,6 +19,7 @@ from PIL import Image
 from eyas.core import exact
 from eyas.core.files import atomic_path
 from eyas.core.frames import rotate_back
+from eyas.datasets.boxes import box_of, camera_pose, quaternion_of
 from eyas.datasets.format import (
     Exported,
     Format,
@@ -29,7 +30,6 @@ from eyas.datasets.format import (
     objects_of,
     picture_ending,
 )
-from eyas.datasets.formats.cuboids import camera_axes, cuboid_of, quaternion_of
 from eyas.datasets.recording import RecordedEpisode, RecordedFrame
 from eyas.exports.label import Label
 from eyas.lanes import interpreted
@@ -136,8 +136,8 @@ def _add_frame(tables: Tables, own: _Tokens, frame: RecordedFrame, inside: str, 
     """Add the rows of a frame: sample, picture, pose and calibration."""
     number, label = frame.number, frame.label
     timestamp = round(1e6 * label["time"])
-    body, camera = label["tracker_orientation"], camera_axes(label["camera_rotation"])
-    offset = np.subtract(label["camera_position"], label["tracker_position"])
+    body, (position, camera) = label["tracker_orientation"], camera_pose(label)
+    offset = position - np.array(label["tracker_position"])
     from_body = np.stack([_rotate_back(body, *axis) for axis in camera.T], axis=1)
     neighbours: dict[str, Row] = {"sample": {}, "sample_data": {}}
     for table, row in neighbours.items():
@@ -168,17 +168,17 @@ def _add_frame(tables: Tables, own: _Tokens, frame: RecordedFrame, inside: str, 
 
 def _annotation(own: _Tokens, frame: RecordedFrame, seen: SeenObject) -> Row:
     label = seen.label
-    cuboid = cuboid_of(label)
-    length, width, height = cuboid.size
+    box = box_of(label["corners"])
+    length, width, height = box.size
     return {
         "token": own("annotation", frame.number, label["id"]),
         "sample_token": own("sample", frame.number),
         "instance_token": own("instance", label["id"]),
         "visibility_token": str(1 + sum(label["visible_fraction"] > at for at in (0.4, 0.6, 0.8))),
         "attribute_tokens": [_token(name) for name in _attributes(label)],
-        "translation": _rounded(cuboid.centre),
+        "translation": _rounded(box.centre),
         "size": _rounded([width, length, height]),
-        "rotation": _rounded(quaternion_of(cuboid.rotation)),
+        "rotation": _rounded(quaternion_of(box.rotation)),
         "prev": "",
         "next": "",
         "num_lidar_pts": 0,

@@ -21,7 +21,14 @@ from eyas.datasets.plan import Part
 from eyas.datasets.recording import DATASET_FILE, Recording, load_part
 from eyas.datasets.statistics import PartFacts
 from eyas.modes.dataset.describe import describe
-from eyas.modes.dataset.parts import export_part, read_facts, record_part
+from eyas.modes.dataset.parts import (
+    PART_FILE,
+    check_part,
+    export_part,
+    read_facts,
+    record_part,
+    worlds_of,
+)
 from eyas.modes.dataset.workers import work
 from eyas.modes.progress import frames_bar
 
@@ -78,11 +85,21 @@ def make(
         KeyboardInterrupt: The user stopped it; every file that exists is complete.
     """
     parts = plan.parts()
+    _check_worlds(parts, root, making)
     with folder_lock(root, "making a data set in it"), continuable(root):
         if open_folder(root, plan, resume=making.resume):
             _record(parts, root, making, recorded or _on_this_machine(making), kept)
             complete(plan, root, making)
             kept(None)
+
+
+def _check_worlds(parts: Sequence[Part], root: Path, making: Making) -> None:
+    """Build each world once, so that a recipe that cannot be met is told before any is drawn."""
+    missing = [part for part in parts if not (root / part.folder / PART_FILE).exists()]
+    worlds = worlds_of(missing)
+    if worlds:
+        for _ in work(worlds, check_part, making.processes, making.threads(len(worlds))):
+            pass
 
 
 def _on_this_machine(making: Making) -> Recorded:

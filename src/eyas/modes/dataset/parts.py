@@ -4,10 +4,12 @@
 """
 
 import hashlib
+import logging
 import os
 import signal
 import threading
 from collections.abc import Sequence
+from contextlib import closing
 from multiprocessing import parent_process
 from pathlib import Path
 
@@ -20,10 +22,21 @@ from eyas.datasets.recording import load_part
 from eyas.datasets.statistics import PartFacts, facts_of
 from eyas.exports.checksums import CHECKSUMS
 from eyas.lanes import limit_threads
-from eyas.modes.video.run import run
+from eyas.modes.video.run import recording_rules, run
 from eyas.settings.file import read_settings
+from eyas.sim.build import build_simulation
+from eyas.sim.worlds import together
 
-__all__ = ["PART_FILE", "begin_worker", "digest_of", "export_part", "read_facts", "record_part"]
+__all__ = [
+    "PART_FILE",
+    "begin_worker",
+    "check_part",
+    "digest_of",
+    "export_part",
+    "read_facts",
+    "record_part",
+    "worlds_of",
+]
 
 PART_FILE = "part.json"
 """File of a complete part with its `PartFacts`."""
@@ -32,6 +45,7 @@ PART_FILE = "part.json"
 def begin_worker(threads: int) -> None:
     """Prepare a process that records: so many threads, and it ends when its parent is killed."""
     limit_threads(threads)
+    logging.getLogger("eyas").setLevel(logging.ERROR)  # of each part it would say the same
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent ends it
     parent = parent_process()
     assert parent is not None
@@ -41,6 +55,33 @@ def begin_worker(threads: int) -> None:
         os._exit(1)
 
     threading.Thread(target=follow, daemon=True).start()
+
+
+def worlds_of(parts: Sequence[Part]) -> list[Part]:
+    """Return one part for each world: each map with its traffic, targets and extras."""
+    found: dict[object, Part] = {}
+    for part in parts:
+        config = part.config
+        world, who = config.world, (config.target, config.extras, config.objects, config.custom)
+        key = (world.map, world.seed, *who, config.traffic, config.same_target)
+        known = found.setdefault(repr(key), part)
+        if config.video.channels > known.config.video.channels:
+            found[repr(key)] = part
+    return list(found.values())
+
+
+def check_part(part: Part) -> None:
+    """Build the world of a part, and draw nothing.
+
+    Raises:
+        EyasError: It cannot be recorded; the line begins with its name.
+    """
+    try:
+        config = recording_rules(part.config)
+        with closing(build_simulation(config, together(config.video.channels))) as sim:
+            sim.reset()  # raises if there are fewer targets than trackers
+    except EyasError as error:
+        raise _plain(error, f"{part.name}: ") from None
 
 
 def record_part(part: Part, root: Path) -> PartFacts:

@@ -1,5 +1,7 @@
 """Pictures of the worlds of a simulation, from its trackers' cameras or from any others."""
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -13,7 +15,8 @@ from eyas.sim.config import SimConfig
 from eyas.sim.light import LightChanges
 from eyas.sim.views.additions import TrackerBodies
 from eyas.sim.worlds import Worlds
-from eyas.state.draw import DrawList, DrawStage, Picture, Views
+from eyas.state.draw import DrawList, DrawStage, MovingParts, Picture, Views
+from eyas.state.scene import ACTOR_OBJECT
 from eyas.state.snapshot import CameraState, Snapshot
 from eyas.task.rules import Rules
 
@@ -53,6 +56,7 @@ class PictureDrawer:
         self._flakes = config.light.flakes
         self._samples = config.camera.samples
         self._renderer = assets.renderer
+        self._size = config.camera.height, config.camera.width
         self._aspect = config.camera.height / config.camera.width
         self._marks = Marks(snapshot, assets.scene.terrain, config.camera)
 
@@ -109,6 +113,28 @@ class PictureDrawer:
                 for n, seen in zip(chosen.tolist(), worlds, strict=True)
             ]
             paint_overlays(views, marks, deep)
+
+    def draw_parts(self, tracker: int, posed: DrawList) -> MovingParts:
+        """Draw which moving part each pixel of a tracker's picture shows.
+
+        Args:
+            tracker: The tracker.
+            posed: All actors of its world, each in the same slots in all pictures.
+        """
+        chosen = np.array([tracker], np.int32)
+        cameras = CameraState(*(array[chosen] for array in self._snapshot.cameras))
+        views, _ = self._views(chosen, cameras, self._aspect)
+        views.world = np.zeros(1, np.int32)
+        if self._bodies.any:
+            posed = self._bodies.added(chosen, views.world, posed, self._snapshot.trackers)
+        rows = np.arange(posed.part.shape[1], dtype=np.int32)
+        numbered = replace(posed, object_id=ACTOR_OBJECT + rows[None])
+        picture = Picture.create(1, *self._size, rgb=False, depth=True, object_id=True)
+        self._renderer.draw(views, numbered, picture)
+        assert picture.object_id is not None
+        assert picture.depth is not None
+        row = np.maximum(picture.object_id[0] - ACTOR_OBJECT, -1)
+        return MovingParts(row, picture.depth[0], posed.part[0].copy(), posed.pose[0].copy())
 
     def _views(self, chosen: Chosen, cameras: CameraState, aspect: float) -> tuple[Views, DrawList]:
         """Return views of the worlds of trackers: cameras, with square pixels, and movers.

@@ -15,7 +15,7 @@ from eyas.sim.views.pictures import PictureDrawer
 from eyas.sim.views.sensor_suite import SensorSuite
 from eyas.sim.views.words import target_in_words
 from eyas.sim.worlds import Worlds
-from eyas.state.draw import DrawStage, Picture
+from eyas.state.draw import DrawStage, MovingParts, Picture
 from eyas.state.motion import ActorView
 from eyas.task.packet_rows import SENSOR_COLUMNS, PacketRows
 from eyas.task.rules import Rules
@@ -107,6 +107,15 @@ class View:
             wanted: Which of them, shape (B,).
         """
         return self._outlines.of(actors, wanted, self.state.shown.cameras, tracker)
+
+    def parts(self, tracker: int, actors: ActorView) -> MovingParts:
+        """Return which moving part each pixel of a tracker's picture shows.
+
+        Args:
+            tracker: The tracker.
+            actors: The actors around it.
+        """
+        return self.pictures.draw_parts(tracker, self._outlines.posed(actors))
 
     def words(self, tracker: int, aspect: float) -> str:
         """Return the target of a tracker in words, see `eyas.sim.views.words`."""
