@@ -71,7 +71,7 @@ class RecordedFrame:
         shows none, shape (H, W).
         """
         masks = self._image(self.file("masks"), np.int32)
-        masks[masks != 0] += MASK_OFFSET
+        np.add(masks, MASK_OFFSET, out=masks, where=masks != 0)
         return masks
 
     def classes(self) -> NDArray[np.uint8]:
