@@ -67,7 +67,7 @@ def track(  # noqa: PLR0913  # one parameter for each option
         str,
         typer.Option(
             "--tracker",
-            help="csrt, kcf, mil, mosse, medianflow, nano, stay, or package.module:Class.",
+            help="csrt, kcf, mosse, medianflow, nano, stay, or package.module:Class.",
         ),
     ],
     out: Annotated[

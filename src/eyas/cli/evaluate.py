@@ -20,7 +20,7 @@ _Policy = Annotated[
     str,
     typer.Option(
         "--policy",
-        help="random, hover, follow, servo, a box tracker (csrt, kcf, mil, mosse, medianflow, "
+        help="random, hover, follow, servo, a box tracker (csrt, kcf, mosse, medianflow, "
         "nano, stay), a shipped network, a file (.onnx, .zip, .pt, .pt2), or package.module:name.",
     ),
 ]

@@ -29,11 +29,6 @@ _LEAST = 8
 """Smallest side of a box with which the trackers of OpenCV can begin [pixels]."""
 
 
-_SEED = 1
-"""Seed of OpenCV's random numbers before each call. MIL samples of one generator for all trackers,
-and would find other boxes in another order of sequences."""
-
-
 class BoxTracker(Protocol):
     """Tracks one target through one sequence of pictures."""
 
@@ -48,23 +43,20 @@ class _OpenCv:
     """A tracker of OpenCV.
 
     Args:
-        cv2: The module.
         make: Returns a fresh one.
     """
 
-    def __init__(self, cv2: Any, make: Callable[[], Any]) -> None:  # noqa: ANN401  # a module
-        self._cv2, self._tracker = cv2, make()
+    def __init__(self, make: Callable[[], Any]) -> None:
+        self._tracker = make()
 
     def begin(self, picture: Picture, box: Box) -> None:
         """Begin with a picture and a box."""
         left, top, width, height = (round(side) for side in box)
-        self._cv2.setRNGSeed(_SEED)
         whole = left, top, max(width, _LEAST), max(height, _LEAST)
         self._tracker.init(np.ascontiguousarray(picture[..., ::-1]), whole)
 
     def update(self, picture: Picture) -> Box | None:
         """Return the box in the next picture."""
-        self._cv2.setRNGSeed(_SEED)
         found, box = self._tracker.update(np.ascontiguousarray(picture[..., ::-1]))
         left, top, width, height = box
         return (float(left), float(top), float(width), float(height)) if found else None
@@ -103,10 +95,10 @@ def _opencv(name: str) -> Callable[[], BoxTracker]:
                 f"--tracker: {name!r} is not in this OpenCV {cv2.__version__}: "
                 "pip install opencv-contrib-python-headless, and no other package of OpenCV"
             )
-        return lambda: _OpenCv(cv2, found)
+        return lambda: _OpenCv(found)
     settings = cv2.TrackerNano_Params()
     settings.backbone, settings.neckhead = map(str, _networks())
-    return lambda: _OpenCv(cv2, lambda: cv2.TrackerNano_create(settings))
+    return lambda: _OpenCv(lambda: cv2.TrackerNano_create(settings))
 
 
 def _networks() -> tuple[Path, Path]:
@@ -123,13 +115,10 @@ def _networks() -> tuple[Path, Path]:
     return folder / names[0], folder / names[1]
 
 
-_OF_OPENCV = {
-    "csrt": "CSRT",
-    "kcf": "KCF",
-    "mil": "MIL",
-    "mosse": "MOSSE",
-    "medianflow": "MedianFlow",
-}
+_OF_OPENCV = {"csrt": "CSRT", "kcf": "KCF", "mosse": "MOSSE", "medianflow": "MedianFlow"}
+"""Their names. MIL is not among them: it samples of one generator for all sequences, which cannot
+be seeded, so that its boxes depend on what was tracked before."""
+
 
 BOX_TRACKERS = (*_OF_OPENCV, "nano", "stay")
 """Names of all."""

@@ -21,7 +21,7 @@ BUILT_IN = {
     "servo": f"{_ROOM}.servo:servo",
     **{
         name: f"{_ROOM}.boxes:{name}"
-        for name in ("csrt", "kcf", "mil", "mosse", "medianflow", "nano", "stay")
+        for name in ("csrt", "kcf", "mosse", "medianflow", "nano", "stay")
     },
 }
 """Functions that take changes of `env` and return a policy, by name."""
