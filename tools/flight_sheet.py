@@ -1,6 +1,6 @@
 """Make docs/images/flights.jpg: some frames of an episode of each camera path.
 
-    python tools/flight_sheet.py docs/images/flights.jpg
+python tools/flight_sheet.py docs/images/flights.jpg
 """
 
 import sys
@@ -25,14 +25,18 @@ SHOWN = {
 }
 """Map and seed of each path."""
 
+PITCH = {"pitch": {"uniform": [0.4, 1.1]}}
+
 COLUMNS, FRAMES = 7, 300
 WIDTH, HEIGHT = 200, 150
 
 
 def strip(name: str, map_name: str, seed: int, folder: Path) -> Image.Image:
     """Return frames of an episode side by side, with a box around the target."""
-    recorded = {"channels": 1, "flight": name, "episode_frames": FRAMES, "writers": ["jpeg", "labels"]}
-    settings = {"world": {"map": map_name}, "camera": {"samples": 4}, "video": recorded}
+    recorded = {"channels": 1, "flight": name, "episode_frames": FRAMES}
+    recorded["writers"] = ["jpeg", "labels"]
+    settings = {"world": {"map": map_name}, "camera": {"samples": 4}, "start": PITCH}
+    settings["video"] = recorded
     video.run(updated(EyasConfig(seed=seed), settings), folder, quiet=True)
     episode = folder / "DRONE0" / "episode0"
     labels = read_labels(episode / "labels.jsonl")

@@ -37,7 +37,9 @@ class _Path:
         lead = float(rng.uniform(0.5, 1.0)) * (reaction + 2.0 * damping / frequency)
         speed = np.gradient(scene.target, STEP, axis=0)
         led = scene.target + lead * averaged(speed, 0.5)
-        size = 0.09 * unrest * math.sqrt(scene.distance * scene.distance + scene.height * scene.height)
+        size = (
+            0.09 * unrest * math.sqrt(scene.distance * scene.distance + scene.height * scene.height)
+        )
         wandering = tremor(len(led), 3, size * float(rng.uniform(0.5, 1.5)), rng)
         return trailing(later(led, reaction), frequency, damping) + wandering
 
