@@ -58,13 +58,14 @@ def test_the_target_moves_in_the_picture_but_stays_there(tmp_path):
         {"in_view": 0.7, "cut": 0.2},
         {"flight": "orbit", "in_view": 0.5},
         {"flight": "search"},
-        {"flight": "fly-by", "hidden": 0.3, "flight_pitch": 0.3},
+        {"flight": "fly-by", "hidden": 0.3},
     ],
 )
 def test_shares_are_reached(tmp_path, asked):
     size = {"width": 160, "height": 120}
     settings = {"channels": 4, "fps": 12.5, "episode_frames": 125, "writers": ["labels"], **asked}
-    config = updated(EyasConfig(seed=2), {"camera": size, "video": settings})
+    start = {"pitch": {"uniform": [0.3, 1.0]}}
+    config = updated(EyasConfig(seed=2), {"camera": size, "start": start, "video": settings})
     video.run(config, tmp_path, quiet=True)
     paths = tmp_path.glob("DRONE*/episode0/labels.jsonl")
     labels = [label for path in paths for label in read_labels(path)]

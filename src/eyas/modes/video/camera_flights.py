@@ -50,7 +50,7 @@ class CameraFlights:
         video, camera = config.video, config.camera
         shares = Asked(video.in_view, video.hidden, video.cut, video.small)
         self._sim, self._seed = sim, config.seed
-        self._wishes = Wishes(path, video.flight_height, video.flight_pitch, shares)
+        self._wishes = Wishes(path, config.start.height, config.start.pitch, shares)
         self._picture = camera.width, camera.height
         self._start_time, self._warm_up_steps = video.start_time, video.warm_up_steps
         self._flown: list[_Flown | None] = [None] * sim.count

@@ -5,7 +5,6 @@ from typing import Annotated, Self
 from pydantic import AfterValidator, Field, model_validator
 
 from eyas.core.code_names import NAMES_CODE
-from eyas.core.variation import Uniform, Variation, within
 from eyas.envs.config import ActionSpeeds
 
 __all__ = ["VideoConfig"]
@@ -45,14 +44,6 @@ class VideoConfig(ActionSpeeds):
     live traffic and trackers that are not drones."""
     policy: Annotated[str | None, NAMES_CODE] = None
     """A policy that flies instead, as in `eyas evaluate --policy`; excludes `flight`."""
-    flight_height: Annotated[Variation, AfterValidator(within(3.0, 300.0))] = Uniform(
-        uniform=(9.0, 26.0)
-    )
-    """Camera paths: height above the target [m]."""
-    flight_pitch: Annotated[Variation, AfterValidator(within(0.05, 1.45))] = Uniform(
-        uniform=(0.35, 1.2)
-    )
-    """Camera paths: angle at which the camera looks down at the target [rad]."""
     in_view: ShareAsked = None
     """Camera paths: asked share of frames with the target in the picture, hidden or not; None: all,
     of `search` 0.7."""
