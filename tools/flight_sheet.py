@@ -33,20 +33,10 @@ WIDTH, HEIGHT = 200, 150
 
 def strip(name: str, map_name: str, seed: int, folder: Path) -> Image.Image:
     """Return frames of an episode side by side, with a box around the target."""
-<<<<<<< HEAD
-    recorded = {
-        "channels": 1,
-        "flight": name,
-        "episode_frames": FRAMES,
-        "writers": ["jpeg", "labels"],
-    }
-    settings = {"world": {"map": map_name}, "camera": {"samples": 4}, "video": recorded}
-=======
     recorded = {"channels": 1, "flight": name, "episode_frames": FRAMES}
     recorded["writers"] = ["jpeg", "labels"]
     settings = {"world": {"map": map_name}, "camera": {"samples": 4}, "start": PITCH}
     settings["video"] = recorded
->>>>>>> w-flights
     video.run(updated(EyasConfig(seed=seed), settings), folder, quiet=True)
     episode = folder / "DRONE0" / "episode0"
     labels = read_labels(episode / "labels.jsonl")
