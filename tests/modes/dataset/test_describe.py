@@ -4,6 +4,7 @@ import collections
 import csv
 import hashlib
 import html.parser
+import itertools
 import json
 import math
 import warnings
@@ -120,7 +121,7 @@ def test_the_datasheet_tells_the_statistics(made, statistics):
     for name, count in statistics["total"]["classes"].items():
         assert [f"| {name}", f"{count} |"] in rows
     edges, sizes = EDGES["size"], statistics["total"]["histograms"]["size"]
-    for low, high in zip(edges, edges[1:], strict=False):
+    for low, high in itertools.pairwise(edges):
         assert [f"| {low:g} to {high:g}", f"{sizes[f'{low:g}']} |"] in rows
 
 
