@@ -127,10 +127,11 @@ def print_report(
         return
     rate = progress.rate
     table = Table()
-    table.add_column("tracker")
-    titles = ("episodes", "frames", "mean reward", "in sight", "in view", "hidden", "cut", "small")
+    table.add_column("tracker", no_wrap=True)
+    # Broken here, so that the table fits into 80 columns.
+    titles = ("episodes", "frames", "mean\nreward", "in\nsight", "in\nview", "hidden", "cut", "small")
     for title in titles:
-        table.add_column(title, justify="right")
+        table.add_column(title, justify="right", no_wrap=True)
     every = ReachedShares()
     for tracker, episodes, reached in zip(
         folder.trackers, recorder.episodes, recorder.reached, strict=True
