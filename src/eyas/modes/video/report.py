@@ -127,18 +127,18 @@ def print_report(
         return
     rate = progress.rate
     table = Table()
-    table.add_column("tracker", no_wrap=True)
-    # Broken here, so that the table fits into 80 columns.
-    titles = ("episodes", "frames", "mean\nreward", "in\nsight", "in\nview", "hidden", "cut", "small")
+    table.add_column("tracker")
+    titles = ("episodes", "frames", "mean reward", "in sight", "view/hidden/cut/small")
     for title in titles:
-        table.add_column(title, justify="right", no_wrap=True)
+        table.add_column(title, justify="right")
     every = ReachedShares()
     for tracker, episodes, reached in zip(
         folder.trackers, recorder.episodes, recorder.reached, strict=True
     ):
         whole = total(summary for _, summary in episodes)
-        shares = [f"{share:.0%}" if reached.frames else "-" for share in reached.shares().values()]
-        table.add_row(tracker, str(len(episodes)), str(whole.frames), *_means(whole), *shares)
+        shares = "/".join(f"{100.0 * share:.0f}" for share in reached.shares().values())
+        told = f"{shares} %" if reached.frames else "-"
+        table.add_row(tracker, str(len(episodes)), str(whole.frames), *_means(whole), told)
         every = every.plus(reached)
     console = Console()
     console.print(table)
