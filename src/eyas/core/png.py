@@ -10,13 +10,13 @@ from numpy.typing import NDArray
 from eyas.core.deflate import deflated
 from eyas.lanes import compiled
 
-__all__ = ["png_bytes"]
+__all__ = ["PAETH", "png_bytes"]
 
 i4 = np.int32  # kernels would make unsigned numbers of bytes
 
 _GREY, _COLOURS = 0, 2
 """PNG's types of colour."""
-_PAETH = 4
+PAETH = 4
 """Number of the filter that predicts a byte from those beside and above it."""
 
 
@@ -67,7 +67,7 @@ def _filter(rows: _Rows) -> None:
     step = rows.step[0]
     for line in range(rows.raw.shape[0]):
         raw, out = rows.raw[line], rows.filtered[line]
-        out[0] = _PAETH
+        out[0] = PAETH
         if line == 0:
             for k in range(len(raw)):
                 out[1 + k] = (raw[k] - (raw[k - step] if k >= step else 0)) & 255

@@ -33,7 +33,8 @@ def box_of(corners: list[list[float]]) -> Box3D:
     size = np.array([_length(edge) for edge in edges])
     ahead = edges[0] / max(size[0], 1e-9)
     left = edges[1] / max(size[1], 1e-9)
-    up = np.cross(ahead, left)
+    (a, b, c), (d, e, f) = ahead.tolist(), left.tolist()
+    up = np.array([b * f - c * e, c * d - a * f, a * e - b * d])
     rotation = np.column_stack([ahead, left, up / max(_length(up), 1e-9)])
     return Box3D(points.mean(axis=0), size, rotation)
 

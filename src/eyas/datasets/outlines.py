@@ -75,24 +75,24 @@ def least_rectangle(mask: NDArray[np.bool_]) -> NDArray[np.float64]:
         mask: Shape (H, W), with at least one pixel.
     """
     rows = np.flatnonzero(mask.any(axis=1))
-    left = mask[rows].argmax(axis=1)
-    right = mask.shape[1] - mask[rows, ::-1].argmax(axis=1)
-    points = np.concatenate([
-        np.column_stack([side, rows + below]) for side in (left, right) for below in (0, 1)
-    ])  # fmt: skip
-    hull = shapely.get_coordinates(shapely.convex_hull(shapely.multipoints(points)))
-    edges = np.diff(hull, axis=0)
-    # The same rectangle belongs to four directions; the one down to the right stands for them.
-    along = np.where((edges[:, 0] > 0)[:, None] == (edges[:, 1] >= 0)[:, None], edges,
-                     np.column_stack([-edges[:, 1], edges[:, 0]]))  # fmt: skip
-    along = np.unique(along * np.where(along[:, :1] < 0, -1.0, 1.0), axis=0)
-    along /= np.sqrt(np.square(along).sum(axis=1))[:, None]
-    aside = np.column_stack([-along[:, 1], along[:, 0]])
-    u = along[:, :1] * hull[:, 0] + along[:, 1:] * hull[:, 1]
-    v = aside[:, :1] * hull[:, 0] + aside[:, 1:] * hull[:, 1]
-    low, high = np.stack([u.min(1), v.min(1)], 1), np.stack([u.max(1), v.max(1)], 1)
-    best = int(np.prod(high - low, axis=1).argmin())
-    (u0, v0), (u1, v1) = low[best], high[best]
-    places = np.array([[u0, v0], [u1, v0], [u1, v1], [u0, v1]])
-    corners: NDArray[np.float64] = places[:, :1] * along[best] + places[:, 1:] * aside[best]
-    return corners
+    mask = mask[rows]
+    left, right = mask.argmax(axis=1), mask.shape[1] - mask[:, ::-1].argmax(axis=1)
+    x, y = np.concatenate([left, left, right, right]), np.concatenate([rows, rows + 1] * 2)
+    hull = shapely.get_coordinates(shapely.convex_hull(shapely.linestrings(x, y)))
+    x, y = hull[:, 0], hull[:, 1]
+    # One of its sides lies along one of the hull's. Of the four directions of a rectangle the one
+    # to the right, or down to the right, stands for it.
+    dx, dy = x[1:] - x[:-1], y[1:] - y[:-1]
+    keep = (dx * dy > 0) | (dy == 0)
+    dx, dy = np.abs(dx), np.abs(dy)
+    ahead, down = np.where(keep, dx, dy), np.where(keep, dy, dx)
+    along, aside = (np.outer(ahead, x) + np.outer(down, y), np.outer(ahead, y) - np.outer(down, x))
+    squares = ahead * ahead + down * down
+    areas = np.ptp(along, axis=1) * np.ptp(aside, axis=1) / squares
+    best = np.lexsort((down, ahead, areas))[0]
+    u0, u1 = along[best].min(), along[best].max()
+    v0, v1 = aside[best].min(), aside[best].max()
+    u, v = np.array([u0, u1, u1, u0]), np.array([v0, v0, v1, v1])
+    ahead, down, square = ahead[best], down[best], squares[best]
+    corners = [(u * ahead - v * down) / square, (u * down + v * ahead) / square]
+    return np.stack(corners, axis=1)

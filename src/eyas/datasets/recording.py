@@ -7,6 +7,7 @@ for frame in episode:
 frame.picture(), frame.label["target_words"]
 """
 
+import io
 import json
 import re
 from collections.abc import Iterator, Sequence
@@ -24,6 +25,7 @@ from eyas.core.config import validated
 from eyas.core.errors import DataFileError
 from eyas.core.files import read_limited
 from eyas.core.folder_lock import LOCK
+from eyas.core.png_reading import grey_pixels
 from eyas.exports.checksums import CHECKSUMS, GROWING, read_checksums
 from eyas.exports.label import LABELS, Label, read_labels
 from eyas.settings.config import EyasConfig
@@ -69,7 +71,7 @@ class RecordedFrame:
         shows none, shape (H, W).
         """
         masks = self._image(self.file("masks"), np.int32)
-        masks[masks != 0] += MASK_OFFSET
+        np.add(masks, MASK_OFFSET, out=masks, where=masks != 0)
         return masks
 
     def classes(self) -> NDArray[np.uint8]:
@@ -118,8 +120,13 @@ class RecordedFrame:
         return self.episode.file(output, self.number)
 
     def _image(self, path: Path, kind: Any) -> NDArray[Any]:  # noqa: ANN401  # a dtype
-        with _reading(path), Image.open(path) as image:
-            return np.asarray(image).astype(kind)
+        with _reading(path):
+            content = path.read_bytes()
+            grey = grey_pixels(content)
+            if grey is not None:
+                return grey.astype(kind)
+            with Image.open(io.BytesIO(content)) as image:
+                return np.asarray(image).astype(kind)
 
 
 class RecordedEpisode(Sequence[RecordedFrame]):

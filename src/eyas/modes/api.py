@@ -157,7 +157,7 @@ def track(
 
     Args:
         recording: Folder of a recording or a data set.
-        tracker: `csrt`, `kcf`, `mil`, `nano`, `stay`, or `package.module:Class`.
+        tracker: `csrt`, `kcf`, `nano`, `stay`, or `package.module:Class`.
         out: Folder for its boxes and figures.
         split: Only `train`, `val` or `test` of a data set.
         restarts: Whether it gets the true box again after a failure.
