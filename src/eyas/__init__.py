@@ -70,6 +70,7 @@ if TYPE_CHECKING:
     from eyas.modes.api import list_weathers as list_weathers
     from eyas.modes.api import make as make
     from eyas.modes.api import make_config as make_config
+    from eyas.modes.api import make_dataset as make_dataset
     from eyas.modes.api import make_vec as make_vec
     from eyas.modes.api import record as record
     from eyas.modes.api import track as track
@@ -145,8 +146,8 @@ _PLACES = {
     "mesh.shell": ("Shell",),
     "modes.api": (
         *("evaluate", "export", "list_formats", "list_maps", "list_policies", "list_presets"),
-        *("list_targets", "list_weathers", "make", "make_config", "make_vec", "record"),
-        *("track", "train"),
+        *("list_targets", "list_weathers", "make", "make_config", "make_dataset", "make_vec"),
+        *("record", "track", "train"),
     ),
     "settings.config": ("EyasConfig",),
     "settings.file": ("load_settings",),

@@ -57,6 +57,7 @@ def made(number: int, **changes: object) -> Frame:
         "depth": np.full((48, 64), 12.5, np.float32),
         "object_id": np.full((48, 64), 7, np.int32),
         "class_id": np.full((48, 64), 3, np.uint8),
+        "normal": np.full((48, 64, 3), 200, np.uint8),
         "parts": MovingParts(
             row=np.full((48, 64), -1, np.int32),
             depth=np.full((48, 64), 12.5, np.float32),

@@ -84,8 +84,8 @@ def test_an_unknown_name_is_one_line_with_the_nearest():
         (["mark", "HERE:Twice"], "'mark' and 'HERE:Twice' both write 'dir_info.json'"),
         (
             ["HERE:Greedy"],
-            "'HERE:Greedy' wants 'RGB'; there is only: rgb, depth, object_id, class_id, others,"
-            " parts",
+            "'HERE:Greedy' wants 'RGB'; there is only: rgb, depth, object_id, class_id, normal,"
+            " others, parts",
         ),
         (["HERE:Listed"], "the files of 'HERE:Listed' are a tuple, not a Files"),
         (["HERE:WithoutRead"], "'HERE:WithoutRead' is not a writer: it has no 'read'"),

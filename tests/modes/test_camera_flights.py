@@ -14,13 +14,15 @@ from eyas.sim.flights.registry import PATHS, path_named
 from eyas.sim.worlds import each_alone
 
 STEPS = 1500
+WILD = {"height": {"uniform": [8.0, 30.0]}, "pitch": {"uniform": [0.35, 1.3]}}
 MAPS = ("citystreet", "downtown", "village")
 
 
-def flown(map_name, name, count, steps, seed=0, **video):
+def flown(map_name, name, count, steps, seed=0, start=None):
     """Fly episodes; return the states after each step: bodies, cameras, and whether one crashed."""
     config = updated(
-        EyasConfig(seed=seed), {"world": {"map": map_name}, "video": {**video, "flight": name}}
+        EyasConfig(seed=seed),
+        {"world": {"map": map_name}, "start": start or WILD, "video": {"flight": name}},
     )
     config = updated(recording_rules(config), {"done": {"total_steps": steps, "crash": "contact"}})
     sim = build_simulation(config, each_alone(count))
@@ -69,7 +71,7 @@ def test_only_zoom_zooms():
 
 def test_heights_and_pitches_are_those_asked_for():
     low, high = (
-        flown("desert", "follow", 4, 300, flight_height=h, flight_pitch=1.0)[0][..., 2].mean()
+        flown("desert", "follow", 4, 300, start={"height": h})[0][..., 2].mean()
         for h in (10.0, 30.0)
     )
     assert high - low == pytest.approx(20.0, abs=3.0)
@@ -89,7 +91,7 @@ def test_a_path_of_ones_own(tmp_path, monkeypatch):
         "    searches = False\n"
     )
     monkeypatch.syspath_prepend(tmp_path)
-    place, _, crashed = flown("citystreet", "own_paths:Above", 2, 400, flight_height=20.0)
+    place, _, crashed = flown("citystreet", "own_paths:Above", 2, 400, start={"height": 20.0})
     assert not crashed.any()
     assert np.ptp(place[..., 2]) < 3.0
     with pytest.raises(ConfigError, match=r"^video.flight: 'own_paths:Half' .* no 'sketch'"):

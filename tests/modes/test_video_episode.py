@@ -30,7 +30,9 @@ def write(folder: Path, frames: int, writers: list[Writer] | None = None) -> Epi
     files = EpisodeFiles(writers or writers_of(), episode)
     snapshot, picture = (
         Snapshot.create(1),
-        Picture.create(1, 48, 64, subject=True, depth=True, object_id=True, class_id=True),
+        Picture.create(
+            1, 48, 64, subject=True, depth=True, object_id=True, class_id=True, normal=True
+        ),
     )
     snapshot.episodes.reward[:] = 0.5
     picture.subject_pixels[:] = 4, 5
@@ -50,6 +52,7 @@ PICTURES = sorted(
     f"{place}{number:06d}.{kind}"
     for place, kind in (
         *(("", "jpeg"), ("", "png"), ("masks/", "png"), ("classes/", "png"), ("depth/", "png")),
+        *(("normals/", "png"),),
         *(("arrays/", "npz"),),
     )
     for number in range(2)

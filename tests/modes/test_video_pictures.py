@@ -9,7 +9,7 @@ from eyas.exports.label import read_labels
 from eyas.modes.video import run as video
 from eyas.settings.config import EyasConfig
 
-WRITERS = ("png", "labels", "masks", "classes", "depth", "arrays", "flow", "sensors")
+WRITERS = ("png", "labels", "masks", "classes", "depth", "normals", "arrays", "flow", "sensors")
 CONFIG = EyasConfig(
     seed=2,
     camera={"width": 84, "height": 60},

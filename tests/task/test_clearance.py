@@ -60,5 +60,5 @@ def test_what_stands_hides_what_is_behind_it(clearance):
     eyes = np.array([(-20.0, 0.0, 4.0), (-20.0, 0.0, 12.0)])
     points = np.array([[(15.0, 0.0, 1.0), (-15.0, 0.0, 1.0)]] * 2)
     assert clearance.in_sight(eyes, points).tolist() == [[False, True], [False, True]]
-    beside = points + [0.0, 9.0, 0.0]
-    assert clearance.in_sight(eyes + [0.0, 9.0, 0.0], beside).all()
+    aside = np.array([0.0, 9.0, 0.0])
+    assert clearance.in_sight(eyes + aside, points + aside).all()

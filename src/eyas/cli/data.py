@@ -64,7 +64,11 @@ def track(  # noqa: PLR0913  # one parameter for each option
         Path, typer.Argument(help="Folder of a recording, or of a data set.", show_default=False)
     ],
     tracker: Annotated[
-        str, typer.Option("--tracker", help="csrt, kcf, mil, nano, stay, or package.module:Class.")
+        str,
+        typer.Option(
+            "--tracker",
+            help="csrt, kcf, mosse, medianflow, nano, stay, or package.module:Class.",
+        ),
     ],
     out: Annotated[
         Path | None,

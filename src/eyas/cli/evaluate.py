@@ -20,8 +20,8 @@ _Policy = Annotated[
     str,
     typer.Option(
         "--policy",
-        help="random, hover, follow, servo, csrt, kcf, mil, nano, a file (.onnx, .zip, .pt, .pt2), "
-        "or package.module:name.",
+        help="random, hover, follow, servo, a box tracker (csrt, kcf, mosse, medianflow, "
+        "nano, stay), a shipped network, a file (.onnx, .zip, .pt, .pt2), or package.module:name.",
     ),
 ]
 _Protocol = Annotated[str, typer.Option("--protocol", help="paper, long, search or distractor.")]

@@ -123,11 +123,11 @@ class Recipe(Config):
     """Times of day, 0 to 24; null: the weather's own sun or moon."""
     targets: Annotated[tuple[TargetName, ...], Several] = (TargetName.SUMO_VEHICLE,)
     heights: Annotated[tuple[Variation, ...], Several] = (19.0,)
-    """Heights above the target at the start [m]."""
+    """Heights above the target, at the start and of camera paths [m]."""
     pitches: Annotated[tuple[Variation, ...], Several] = (1.0,)
-    """Pitches of the camera at the start, positive down [rad]."""
+    """Pitches of the camera, positive down, at the start and of camera paths [rad]."""
     cameras: Annotated[tuple[Camera, ...], Several] = (Camera(),)
-    flights: Annotated[tuple[str, ...], Several] = ("exact",)
+    flights: Annotated[Names, NAMES_CODE] = ("follow",)
     """How the trackers fly, see `video.flight`."""
     extras: Annotated[tuple[tuple[ExtraConfig, ...] | None, ...], Several] = (None,)
     """Groups that share the world with the targets; null: the map's pedestrians."""

@@ -88,7 +88,8 @@ def _opencv(name: str) -> Callable[[], BoxTracker]:
     cv2: Any = module  # whose types do not tell all of it
     cv2.setNumThreads(1)  # for the same bytes on every machine
     if name != "nano":
-        found = getattr(cv2, f"Tracker{name.upper()}_create", None)
+        made = f"Tracker{_OF_OPENCV[name]}_create"
+        found = getattr(cv2, made, None) or getattr(getattr(cv2, "legacy", None), made, None)
         if found is None:
             raise ConfigError(
                 f"--tracker: {name!r} is not in this OpenCV {cv2.__version__}: "
@@ -114,7 +115,12 @@ def _networks() -> tuple[Path, Path]:
     return folder / names[0], folder / names[1]
 
 
-BOX_TRACKERS = ("csrt", "kcf", "mil", "nano", "stay")
+_OF_OPENCV = {"csrt": "CSRT", "kcf": "KCF", "mosse": "MOSSE", "medianflow": "MedianFlow"}
+"""Their names. MIL is not among them: it samples of one generator for all sequences, which cannot
+be seeded, so that its boxes depend on what was tracked before."""
+
+
+BOX_TRACKERS = (*_OF_OPENCV, "nano", "stay")
 """Names of all."""
 
 

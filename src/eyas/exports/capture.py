@@ -111,6 +111,7 @@ def frame_of(
         depth=None if picture.depth is None else picture.depth[view].copy(),
         object_id=None if picture.object_id is None else picture.object_id[view].copy(),
         class_id=None if picture.class_id is None else picture.class_id[view].copy(),
+        normal=None if picture.normal is None else picture.normal[view].copy(),
         lidar=moment.lidar,
         sensors=moment.sensors,
         parts=moment.parts,

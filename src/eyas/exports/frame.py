@@ -27,7 +27,7 @@ __all__ = [
 
 Floats: TypeAlias = NDArray[np.float64]
 
-Output = Literal["rgb", "depth", "object_id", "class_id", "others", "parts"]
+Output = Literal["rgb", "depth", "object_id", "class_id", "normal", "others", "parts"]
 """Name of a field of `Frame` that costs time: a picture, the other moving objects, or their parts.
 """
 
@@ -193,6 +193,9 @@ class Frame:
     """Object of each pixel, `SKY_OBJECT` for the sky, shape (H, W)."""
     class_id: NDArray[np.uint8] | None
     """`ObjectClass` of each pixel's object, shape (H, W)."""
+    normal: NDArray[np.uint8] | None = None
+    """Surface normal of each pixel, see `Picture.normal`, shape (H, W, 3); None if no writer wants
+    it."""
     lidar: Floats | None = None
     """Distances that the lidar has measured [m], infinity where nothing was within range, shape
     (points,); None: there is no lidar."""

@@ -1,4 +1,4 @@
-"""Pictures without loss: colours, masks, classes and depth as PNG files, or all as arrays."""
+"""Pictures without loss: colours, masks, classes, depth, normals as PNG files, or as arrays."""
 
 import io
 
@@ -10,7 +10,7 @@ from eyas.exports.per_frame import PerFrameWriter
 from eyas.exports.writer import Files, Run
 from eyas.state.scene import ACTOR_OBJECT
 
-__all__ = ["ArrayWriter", "ClassWriter", "DepthWriter", "MaskWriter", "PngWriter"]
+__all__ = ["ArrayWriter", "ClassWriter", "DepthWriter", "MaskWriter", "NormalWriter", "PngWriter"]
 
 _MOST = np.iinfo(np.uint16).max
 
@@ -73,6 +73,21 @@ class DepthWriter(PerFrameWriter):
         assert frame.depth is not None
         units = np.maximum(np.rint(frame.depth / np.float64(self._unit)), 1.0)
         return png_bytes(np.where(units <= _MOST, units, 0.0).astype(np.uint16))
+
+
+class NormalWriter(PerFrameWriter):
+    """`normals/NNNNNN.png`: the surface normal of each pixel in the camera's frame, right, down and
+    ahead, each from -1 to 1 as 0 to 255; all 0 for the sky.
+    """
+
+    name = "normals/{:06d}.png"
+    wants = frozenset({"normal"})
+    files = Files(frame=(name,))
+
+    def encoded(self, frame: Frame) -> bytes:
+        """Return a frame's normals."""
+        assert frame.normal is not None
+        return png_bytes(frame.normal)
 
 
 class ArrayWriter(PerFrameWriter):

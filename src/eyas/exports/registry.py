@@ -25,6 +25,7 @@ WRITERS: Registry[type[Any]] = Registry(
         "classes": "eyas.exports.images:ClassWriter",
         "depth": "eyas.exports.images:DepthWriter",
         "flow": "eyas.exports.flow:FlowWriter",
+        "normals": "eyas.exports.images:NormalWriter",
         "arrays": "eyas.exports.images:ArrayWriter",
         "sensors": "eyas.exports.table:SensorWriter",
         "lidar": "eyas.exports.table:LidarWriter",

@@ -23,6 +23,7 @@ __all__ = [
     "list_weathers",
     "make",
     "make_config",
+    "make_dataset",
     "make_vec",
     "record",
     "track",
@@ -156,7 +157,7 @@ def track(
 
     Args:
         recording: Folder of a recording or a data set.
-        tracker: `csrt`, `kcf`, `mil`, `nano`, `stay`, or `package.module:Class`.
+        tracker: `csrt`, `kcf`, `nano`, `stay`, or `package.module:Class`.
         out: Folder for its boxes and figures.
         split: Only `train`, `val` or `test` of a data set.
         restarts: Whether it gets the true box again after a failure.
@@ -194,6 +195,21 @@ class EvaluationChoices(TypedDict, total=False):
     """Changes of `tracker`, `control`, `start.velocity` and `extras`: another protocol."""
     batch: int
     """Episodes that are flown together."""
+
+
+class DatasetChoices(TypedDict, total=False):
+    """How a data set is made, by keyword."""
+
+    workers: int
+    """Number of processes; by default one for each core."""
+    sample: bool
+    """Whether only a hundredth is made."""
+    shard: str
+    """`3/100`: only the third of a hundred shards."""
+    ray: bool
+    """Whether the processes of a Ray cluster record."""
+    trust: bool
+    """Whether the recipe may name code."""
 
 
 def evaluate(
@@ -269,6 +285,50 @@ def list_formats() -> tuple[str, ...]:
     from eyas.datasets.registry import FORMATS
 
     return FORMATS.names()
+
+
+def make_dataset(
+    recipe: Mapping[str, Any] | Path | str,
+    out: Path | str,
+    *,
+    resume: bool = False,
+    quiet: bool = True,
+    **choices: Unpack[DatasetChoices],
+) -> Path | str:
+    """Make a data set, like `eyas dataset make`; return its folder.
+
+    A script that calls it with more than one worker must do so under
+    `if __name__ == "__main__":`, as with all processes that Python starts.
+
+    Args:
+        recipe: `detect`, `follow`, `sot`, the path of a recipe, or one as nested dictionaries.
+        out: The folder, or a URL that fsspec knows.
+        resume: Whether an interrupted data set in the folder is continued.
+        quiet: Whether nothing is printed.
+        choices: `workers`, `sample`, `shard`, `ray`, `trust`: see `DatasetChoices` in this module.
+
+    Raises:
+        EyasError: The recipe is wrong or cannot be met, or the folder is taken; one line.
+    """
+    from eyas.core.errors import UnknownNameError
+    from eyas.modes.dataset.make import Making
+    from eyas.modes.dataset.run import parsed_shard, run
+
+    for name in choices:
+        if name not in DatasetChoices.__annotations__:
+            raise UnknownNameError("keyword", name, DatasetChoices.__annotations__)
+    making = Making(workers=choices.get("workers"), resume=resume, quiet=quiet)
+    named = recipe if isinstance(recipe, Mapping) else str(recipe)
+    run(
+        named,
+        str(out),
+        making,
+        sample=choices.get("sample", False),
+        shard=parsed_shard(choices.get("shard")),
+        ray=choices.get("ray", False),
+        trust=choices.get("trust", False),
+    )
+    return out
 
 
 def list_maps() -> tuple[str, ...]:

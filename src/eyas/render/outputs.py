@@ -19,6 +19,7 @@ NO_OUTPUT = Output(
     depth=np.empty((0, 0, 0), np.float32),
     object_id=np.empty((0, 0, 0), np.int32),
     class_id=np.empty((0, 0, 0), np.uint8),
+    normal=np.empty((0, 0, 0, 3), np.uint8),
     subject=np.empty((0, MEASURES), np.int32),
     actor=np.empty((0, 0, MEASURES), np.int32),
 )
@@ -38,6 +39,7 @@ def wanted_output(picture: Picture) -> Output:
         depth=NO_OUTPUT.depth if picture.depth is None else picture.depth,
         object_id=NO_OUTPUT.object_id if picture.object_id is None else picture.object_id,
         class_id=NO_OUTPUT.class_id if picture.class_id is None else picture.class_id,
+        normal=NO_OUTPUT.normal if picture.normal is None else picture.normal,
         subject=np.empty((1, MEASURES), np.int32)
         if subject and actors is None
         else NO_OUTPUT.subject,
@@ -61,10 +63,13 @@ def picture_size(picture: Picture) -> tuple[int, int]:
     Raises:
         ValueError: No array with pixels is wanted, so the size is unknown.
     """
-    for plane in (picture.rgb, picture.depth, picture.object_id, picture.class_id):
+    planes = (picture.rgb, picture.depth, picture.object_id, picture.class_id, picture.normal)
+    for plane in planes:
         if plane is not None:
             return plane.shape[1], plane.shape[2]
-    raise ValueError("picture: rgb, depth, object_id or class_id is needed; it gives the size")
+    raise ValueError(
+        "picture: rgb, depth, object_id, class_id or normal is needed; it gives the size"
+    )
 
 
 def write_measured(job: Job, output: Output, picture: Picture) -> None:

@@ -162,6 +162,9 @@ class Picture:
     """Box like `subject_box` of the subject's visible pixels only, shape (V, 4)."""
     actor_visible_box: NDArray[np.int32] | None = None
     """The same of all actors, shape (V, A, 4)."""
+    normal: NDArray[np.uint8] | None = None
+    """Surface normal of each pixel in the camera's frame: right, down and ahead, each from -1 to 1
+    as 0 to 255; all 0 for the sky, shape (V, H, W, 3)."""
 
     @classmethod
     def create(  # noqa: PLR0913  # every output is requested by name
@@ -175,6 +178,7 @@ class Picture:
         object_id: bool = False,
         subject: bool = False,
         class_id: bool = False,
+        normal: bool = False,
         actors: int = 0,
     ) -> "Picture":
         """Return buffers for the requested outputs; `actors` is the number of actors to measure."""
@@ -190,12 +194,13 @@ class Picture:
             actor_pixels=np.zeros((views, actors, 2), np.int32) if actors else None,
             subject_visible_box=np.zeros((views, 4), np.int32) if subject else None,
             actor_visible_box=np.zeros((views, actors, 4), np.int32) if actors else None,
+            normal=np.zeros((*plane, 3), np.uint8) if normal else None,
         )
 
     @property
     def aspect(self) -> float:
         """Height over width."""
-        planes = (self.rgb, self.depth, self.object_id, self.class_id)
+        planes = (self.rgb, self.depth, self.object_id, self.class_id, self.normal)
         height, width = next(plane for plane in planes if plane is not None).shape[1:3]
         return float(height / width)
 

@@ -12,7 +12,7 @@ from eyas.evaluation.policies.each import Each
 from eyas.evaluation.policies.policy import env_config
 from eyas.evaluation.steering import pixel_offset, towards
 
-__all__ = ["BoxPilot", "csrt", "kcf", "mil", "nano", "pilot"]
+__all__ = ["BoxPilot", "csrt", "kcf", "medianflow", "mosse", "nano", "pilot", "stay"]
 
 _SIZE = 240, 320
 """Height and width of the pictures."""
@@ -66,4 +66,5 @@ def pilot(said: str, changes: Mapping[str, Any]) -> Each:
     return Each(lambda: BoxPilot(make, env), env, said)
 
 
-csrt, kcf, mil, nano = (partial(pilot, name) for name in ("csrt", "kcf", "mil", "nano"))
+csrt, kcf, mosse = (partial(pilot, name) for name in ("csrt", "kcf", "mosse"))
+medianflow, nano, stay = (partial(pilot, name) for name in ("medianflow", "nano", "stay"))

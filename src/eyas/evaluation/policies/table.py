@@ -19,10 +19,10 @@ BUILT_IN = {
     "hover": f"{_ROOM}.simple:hover",
     "follow": f"{_ROOM}.follow:follow",
     "servo": f"{_ROOM}.servo:servo",
-    "csrt": f"{_ROOM}.boxes:csrt",
-    "kcf": f"{_ROOM}.boxes:kcf",
-    "mil": f"{_ROOM}.boxes:mil",
-    "nano": f"{_ROOM}.boxes:nano",
+    **{
+        name: f"{_ROOM}.boxes:{name}"
+        for name in ("csrt", "kcf", "mosse", "medianflow", "nano", "stay")
+    },
 }
 """Functions that take changes of `env` and return a policy, by name."""
 

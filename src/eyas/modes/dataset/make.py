@@ -85,6 +85,8 @@ def make(
         KeyboardInterrupt: The user stopped it; every file that exists is complete.
     """
     parts = plan.parts()
+    if root.exists():
+        _left(root, plan, resume=making.resume)  # refuses a folder at once that is taken
     _check_worlds(parts, root, making)
     with folder_lock(root, "making a data set in it"), continuable(root):
         if open_folder(root, plan, resume=making.resume):
@@ -130,12 +132,24 @@ def open_folder(root: Path, plan: Plan, *, resume: bool) -> bool:
         OutputError: It holds something else, or one that may not be continued.
         DataFileError: What is there cannot be read.
     """
+    found = _left(root, plan, resume=resume)
+    if found is None:
+        write_plan(root, plan)
+    return found != DATASET_FILE
+
+
+def _left(root: Path, plan: Plan, *, resume: bool) -> str | None:
+    """Return the file by which a data set is known that is to be continued; None: there is none.
+
+    Raises:
+        OutputError: As `open_folder`.
+        DataFileError: As `open_folder`.
+    """
     with refusals(root):
         names = {inside.name for inside in root.iterdir()} - {LOCK}
-        names = {name for name in names if not name.endswith(PART_SUFFIX)}
+    names = {name for name in names if not name.endswith(PART_SUFFIX)}
     if not names:
-        write_plan(root, plan)
-        return True
+        return None
     if not resume:
         raise OutputError(
             f"{root}: not empty; continue its data set with --resume, or name another folder"
@@ -146,7 +160,7 @@ def open_folder(root: Path, plan: Plan, *, resume: bool) -> bool:
     differs = read_plan(root / found).difference(plan)
     if differs:
         raise OutputError(f"{root}: not continued: {differs}; name another folder")
-    return found == MAKING_FILE
+    return found
 
 
 def _record(

@@ -8,8 +8,8 @@ import logging
 import os
 import signal
 import threading
-from collections.abc import Sequence
-from contextlib import closing
+from collections.abc import Iterator, Sequence
+from contextlib import closing, contextmanager
 from multiprocessing import parent_process
 from pathlib import Path
 
@@ -45,7 +45,6 @@ PART_FILE = "part.json"
 def begin_worker(threads: int) -> None:
     """Prepare a process that records: so many threads, and it ends when its parent is killed."""
     limit_threads(threads)
-    logging.getLogger("eyas").setLevel(logging.ERROR)  # of each part it would say the same
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent ends it
     parent = parent_process()
     assert parent is not None
@@ -96,7 +95,8 @@ def record_part(part: Part, root: Path) -> PartFacts:
     """
     folder = root / part.folder
     try:
-        run(part.config, folder, resume=True, quiet=True)
+        with _hushed():
+            run(part.config, folder, resume=True, quiet=True)
         facts = _facts(root, part)
         content = facts.model_dump_json().encode() + b"\n"
         write_atomic(folder / PART_FILE, content)
@@ -109,6 +109,18 @@ def _plain(error: EyasError, begin: str = "") -> EyasError:
     """Return an error that can go from one process to another."""
     kind = OutputError if isinstance(error, OutputError) else EyasError
     return kind(f"{begin}{error}")
+
+
+@contextmanager
+def _hushed() -> Iterator[None]:
+    """Keep back warnings, which would be the same for each part."""
+    log = logging.getLogger("eyas")
+    before = log.level
+    log.setLevel(logging.ERROR)
+    try:
+        yield
+    finally:
+        log.setLevel(before)
 
 
 def _facts(root: Path, part: Part) -> PartFacts:

@@ -1,19 +1,23 @@
 """`eyas dataset make`, from the words of a user."""
 
 import re
+from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
+from typing import Any
 
+from eyas.core.config import validated
 from eyas.core.errors import ConfigError
-from eyas.datasets.layout import Plan
-from eyas.datasets.recipe import read_recipe
+from eyas.datasets.layout import RECIPE_FILE, Plan
+from eyas.datasets.recipe import Recipe, read_recipe
 from eyas.modes.dataset.make import Making, make, report
+from eyas.modes.video.action import check_flight
 
 __all__ = ["parsed_shard", "run"]
 
 
 def run(  # noqa: PLR0913  # choices of the user's
-    named: str,
+    named: str | Mapping[str, Any],
     out: str,
     making: Making,
     *,
@@ -25,7 +29,7 @@ def run(  # noqa: PLR0913  # choices of the user's
     """Make a data set, or what is missing of it.
 
     Args:
-        named: `detect`, `follow`, `sot`, or the path of a recipe.
+        named: `detect`, `follow`, `sot`, the path of a recipe, or one from Python, as its JSON.
         out: Its folder, or a URL of one, `s3://bucket/folder`.
         making: How it is made.
         sample: Whether only a hundredth is made.
@@ -38,8 +42,13 @@ def run(  # noqa: PLR0913  # choices of the user's
             be written; one line.
         KeyboardInterrupt: The user stopped it; every file that exists is complete.
     """
-    plan = Plan.of(read_recipe(named, trust=trust), named, sample=sample, shard=shard)
-    plan.parts()  # refuses a recipe that cannot be met, before anything begins
+    if isinstance(named, str):
+        recipe, source = read_recipe(named, trust=trust), named
+    else:
+        recipe, source = validated(Recipe, named), RECIPE_FILE
+    plan = Plan.of(recipe, source, sample=sample, shard=shard)
+    for part in plan.parts():  # refuses a recipe that cannot be met, before anything begins
+        check_flight(part.config)
     with ExitStack() as stack:
         recorded = None
         if ray:

@@ -1,16 +1,18 @@
 """Processes that work on the parts of a data set, each on the parts of one map at a time.
 
-A map that a process has built serves all parts there that it records. When it goes on to another
-map, a new process takes its place, so that memory does not grow with the number of maps.
+A map that a process has built serves all parts there that it records. After some maps a new process
+takes its place, so that memory does not grow with their number.
 """
 
 import signal
+import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing import get_context
+from types import FrameType
 from typing import Any, TypeVar
 
 from eyas.core.errors import EyasError
@@ -20,6 +22,9 @@ from eyas.modes.dataset.parts import begin_worker
 __all__ = ["work"]
 
 Result = TypeVar("Result")
+
+_MAPS = 4
+"""Maps after which a process is replaced: a new one takes 4 s until its first frame."""
 
 _RETRIES = 2
 """How often a part is tried again whose process was lost, as by a lack of memory."""
@@ -64,11 +69,15 @@ class _Worker:
     pool: ProcessPoolExecutor | None = None
     place: str | None = None
     """The map of its last part."""
+    maps: int = 0
+    """Number of maps on which this process has worked."""
 
     def begin(self, part: Part, call: Callable[..., Any], *args: Any) -> Future[Any]:  # noqa: ANN401
-        if self.pool is not None and part.config.world.map != self.place:
+        self.maps += part.config.world.map != self.place
+        if self.maps > _MAPS:
             self.close()
         if self.pool is None:
+            self.maps = 1
             # Forked processes would inherit locks of threads that they have not.
             context = get_context("spawn")
             self.pool = ProcessPoolExecutor(1, context, begin_worker, (self.threads,))
@@ -90,15 +99,27 @@ class _Worker:
 
 @contextmanager
 def _interrupts_held() -> Iterator[None]:
-    """Hold Ctrl-C back while a process begins, which inherits that: its parent ends it."""
-    if not hasattr(signal, "pthread_sigmask"):  # Windows
+    """Hold back signals that end the program while a process begins, which would tell of its half
+    beginning; the process itself never hears of Ctrl-C: its parent ends it.
+    """
+    if threading.current_thread() is not threading.main_thread():
         yield
         return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    came: list[tuple[int, FrameType | None]] = []
+    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
+    for number in before:
+        signal.signal(number, lambda *what: came.append(what))
+    masked = hasattr(signal, "pthread_sigmask")  # not on Windows
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT}) if masked else set()
     try:
         yield
     finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+        for number, handler in before.items():
+            signal.signal(number, handler)
+        if masked:
+            signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+        for number, _ in came[:1]:
+            signal.raise_signal(number)
 
 
 def work(
@@ -112,14 +133,29 @@ def work(
 
     Args:
         parts: The parts.
-        call: A function of a module, called with a part and `args` in another process.
-        count: Number of processes.
+        call: A function of a module, called with a part and `args`.
+        count: Number of processes; 1: this one.
         threads: Threads of each.
         args: Further arguments.
 
     Raises:
         EyasError: What it raises; all processes are ended.
     """
+    if count == 1:  # also in a notebook or a script, which other processes could not import
+        for part in in_order_of_work(parts):
+            yield part, call(part, *args)
+    else:
+        yield from _spread(parts, call, count, threads, *args)
+
+
+def _spread(
+    parts: Sequence[Part],
+    call: Callable[..., Result],
+    count: int,
+    threads: int,
+    *args: Any,  # noqa: ANN401
+) -> Iterator[tuple[Part, Result]]:
+    """Yield what a function returns for each part, from several processes; see `work`."""
     queue, lost = _Queue(parts), dict[str, int]()
     workers = [_Worker(threads) for _ in range(min(count, len(parts)))]
     busy: dict[Future[Result], tuple[_Worker, Part]] = {}
@@ -127,11 +163,11 @@ def work(
         idle = list(workers)
         while True:
             for worker in idle:
-                part = queue.next(worker.place)
-                if part is None:
+                following = queue.next(worker.place)
+                if following is None:
                     worker.close()
                 else:
-                    busy[worker.begin(part, call, *args)] = (worker, part)
+                    busy[worker.begin(following, call, *args)] = (worker, following)
             if not busy:
                 return
             done, _ = wait(busy, return_when=FIRST_COMPLETED)

@@ -1,5 +1,6 @@
 """Flies the trackers of a recording along planned camera paths."""
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -13,7 +14,7 @@ from eyas.settings.config import EyasConfig
 from eyas.sim.flights.path import CameraPath
 from eyas.sim.flights.plan import Plan, Surroundings, Wishes, plan_flight
 from eyas.sim.flights.shares import Asked
-from eyas.sim.flights.signals import STEP, sampled_at, steps_in
+from eyas.sim.flights.signals import STEP, sampled_at
 from eyas.sim.simulation import Simulation
 
 __all__ = ["CameraFlights"]
@@ -21,6 +22,9 @@ __all__ = ["CameraFlights"]
 Floats = NDArray[np.float64]
 
 _STEP_TICKS = round(STEP / PHYSICS_STEP)
+_MORE = 4
+"""Control points before the first step and after the last one, which lead the spline."""
+
 _COURSE = 5
 """The target's course is read once in so many control points: its recording has 10 Hz."""
 
@@ -46,8 +50,9 @@ class CameraFlights:
         video, camera = config.video, config.camera
         shares = Asked(video.in_view, video.hidden, video.cut, video.small)
         self._sim, self._seed = sim, config.seed
-        self._wishes = Wishes(path, video.flight_height, video.flight_pitch, shares)
+        self._wishes = Wishes(path, config.start.height, config.start.pitch, shares)
         self._picture = camera.width, camera.height
+        self._start_time, self._warm_up_steps = video.start_time, video.warm_up_steps
         self._flown: list[_Flown | None] = [None] * sim.count
         self._now = np.zeros((sim.count, 6))
         self._before = np.zeros((sim.count, 6))
@@ -84,7 +89,7 @@ class CameraFlights:
 
     def _planned(self, tracker: int, longest: int) -> Plan:
         episodes, targets = self._sim.snapshot.episodes, self._sim.snapshot.targets
-        count = -(-longest // _STEP_TICKS) + steps_in(1.0)
+        count = -(-longest // _STEP_TICKS) + _MORE
         target, heading, ground = self._course(tracker, count)
         around = Surroundings(
             target,
@@ -95,9 +100,16 @@ class CameraFlights:
             self._picture,
             self._sim.clearance,
             self._others(tracker, count),
+            self._unseen(tracker),
         )
         rng = stream(self._seed, "flight", tracker, int(episodes.number[tracker]))
         return plan_flight(around, self._wishes, rng)
+
+    def _unseen(self, tracker: int) -> int:
+        """Return the number of control points before the first frame of an episode."""
+        tick = int(self._sim.snapshot.episodes.tick[tracker])
+        steps = max(self._start_time / PHYSICS_STEP - tick, self._warm_up_steps)
+        return 1 + math.ceil(steps / _STEP_TICKS)
 
     def _course(self, tracker: int, count: int) -> tuple[Floats, Floats, Floats]:
         """Return where the target will be, from a step ago: its middle (M, 3), heading, ground."""

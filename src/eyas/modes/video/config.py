@@ -5,7 +5,6 @@ from typing import Annotated, Self
 from pydantic import AfterValidator, Field, model_validator
 
 from eyas.core.code_names import NAMES_CODE
-from eyas.core.variation import Uniform, Variation, within
 from eyas.envs.config import ActionSpeeds
 
 __all__ = ["VideoConfig"]
@@ -45,14 +44,6 @@ class VideoConfig(ActionSpeeds):
     live traffic and trackers that are not drones."""
     policy: Annotated[str | None, NAMES_CODE] = None
     """A policy that flies instead, as in `eyas evaluate --policy`; excludes `flight`."""
-    flight_height: Annotated[Variation, AfterValidator(within(3.0, 300.0))] = Uniform(
-        uniform=(9.0, 26.0)
-    )
-    """Camera paths: height above the target [m]."""
-    flight_pitch: Annotated[Variation, AfterValidator(within(0.05, 1.45))] = Uniform(
-        uniform=(0.35, 1.2)
-    )
-    """Camera paths: angle at which the camera looks down at the target [rad]."""
     in_view: ShareAsked = None
     """Camera paths: asked share of frames with the target in the picture, hidden or not; None: all,
     of `search` 0.7."""
@@ -75,7 +66,7 @@ class VideoConfig(ActionSpeeds):
         *("jpeg", "mp4", "labels", "mark"),
     )
     """Output formats: `jpeg`, `png`, `mp4`, `labels`, `mark`, `masks`, `classes`, `depth`,
-    `arrays`, `flow`, `sensors`, `lidar`, or your own as `my_package.module:Class`."""
+    `normals`, `arrays`, `flow`, `sensors`, `lidar`, or your own as `my_package.module:Class`."""
     jpeg_quality: Annotated[int, Field(ge=1, le=100)] = 95
     """Quality of the JPEG pictures; one of 320 x 240 takes some 36 kB at 95, and 93 kB at 100,
     which an `env_config.json` means."""

@@ -137,6 +137,7 @@ class Recorder:
             depth="depth" in wanted or not pictures,
             object_id="object_id" in wanted,
             class_id="class_id" in wanted,
+            normal="normal" in wanted,
             subject=True,
             actors=sim.actors if "others" in wanted else 0,
         )

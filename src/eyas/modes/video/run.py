@@ -62,7 +62,7 @@ def run(
         chosen_writers(writers_in(config.video.writers))
         check_flight(config)
         check_folder(folder, config, overwrite=overwrite, resume=resume)
-        sim = build_simulation(recording_rules(config), together(config.video.channels))
+        sim = _built(config)
     with closing(sim):
         with originals_named(config):
             _require_traffic(config, sim.traffic.duration)
@@ -72,6 +72,16 @@ def run(
             recording = open_folder(folder, config, overwrite=overwrite, resume=resume)
             _record(sim, config, mover, recording, quiet=quiet)
     write_formats(config.video.writers, folder, quiet=quiet)
+
+
+def _built(config: EyasConfig) -> Simulation:
+    try:
+        return build_simulation(recording_rules(config), together(config.video.channels))
+    except ConfigError as error:
+        frames = config.video.episode_frames
+        if frames is None or not str(error).startswith("done.total_steps"):
+            raise
+        raise ConfigError(f"video.episode_frames: {frames} are too many: {error}") from None
 
 
 def _record(

@@ -18,6 +18,7 @@ from eyas.render.kernels.scalars import f4, i8
 from eyas.render.kernels.sky.flakes import let_flakes_fall
 from eyas.render.kernels.sky.radiance import draw_backdrop
 from eyas.render.kernels.surface.band import shade_band
+from eyas.render.kernels.surface.normals import write_normals
 from eyas.render.kernels.visibility.measure import measure_actors, measure_subject
 from eyas.render.kernels.visibility.outputs import write_classes, write_depth, write_objects
 from eyas.render.kernels.visibility.passes import draw_scene
@@ -75,6 +76,8 @@ def _draw_band(
         write_objects(band, output.object_id[number, top:bottom])
     if len(output.class_id) > 0:
         write_classes(band, output.class_id[number, top:bottom])
+    if len(output.normal) > 0 and until >= RASTERISING:
+        write_normals(band, output.normal[number, top:bottom])
     if len(output.subject) > 0 and until >= RASTERISING:
         measure_subject(band, job.subject[number], count, output.subject[index])
     if len(output.actor) > 0 and until >= RASTERISING:

@@ -10,11 +10,11 @@ from eyas.core import exact
 from eyas.core.pinhole import field_along
 from eyas.sim.flights.signals import STEP, averaged, steps_in
 
-__all__ = ["Aside", "Glances", "aimed", "glances", "turned_aside"]
+__all__ = ["STEEPEST", "Aside", "Glances", "aimed", "glances", "held", "turned_aside"]
 
 Floats = NDArray[np.float64]
 
-_LOWEST, _STEEPEST = 0.0, 1.45
+_LOWEST, STEEPEST = 0.0, 1.45
 """Pitches of the camera, positive down, within what the gimbal holds [rad]."""
 
 _SHALLOW = 0.6
@@ -28,6 +28,10 @@ class Glances(NamedTuple):
     """1 while the target is to be at the border of the picture, else 0, shape (M,)."""
     away: Floats
     """1 while it is to be outside, else 0, shape (M,)."""
+
+    def after(self, count: int) -> "Glances":
+        """Return the same after some samples, in which all is as it is at first."""
+        return Glances(*(np.pad(part, (count, 0), mode="edge") for part in self))
 
 
 class Aside(NamedTuple):
@@ -122,7 +126,7 @@ def turned_aside(
         swing = 1.0 + 0.35 * exact.sin(2.0 * math.pi / 3.1 * STEP * np.arange(len(yaw)))
         new_yaw = new_yaw + how.side * how.sweep * swing * away
         new_pitch = new_pitch + (np.minimum(pitch, 0.55) - pitch) * away
-    return new_yaw, np.clip(new_pitch, _LOWEST, _STEEPEST)
+    return new_yaw, np.clip(new_pitch, _LOWEST, STEEPEST)
 
 
 def held(when: Glances) -> Floats:

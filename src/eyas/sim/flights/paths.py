@@ -20,13 +20,16 @@ class _Path:
     in_view = 1.0
     searches = False
 
-    def glance(self, scene: Scene, rng: np.random.Generator, haste: float = 1.0) -> Floats:
+    def glance(
+        self, scene: Scene, rng: np.random.Generator, haste: float = 1.0, unrest: float = 1.0
+    ) -> Floats:
         """Return the point that a pilot looks at: the target, late and not quite held, (M, 3).
 
         Args:
             scene: The episode.
             rng: Samples reaction, quickness, overshoot and unrest.
             haste: Factor on the quickness.
+            unrest: Factor on how far the target wanders from the middle.
         """
         reaction = float(rng.uniform(0.12, 0.35))
         frequency, damping = float(rng.uniform(2.0, 4.5)) * haste, float(rng.uniform(0.4, 0.8))
@@ -34,9 +37,11 @@ class _Path:
         lead = float(rng.uniform(0.5, 1.0)) * (reaction + 2.0 * damping / frequency)
         speed = np.gradient(scene.target, STEP, axis=0)
         led = scene.target + lead * averaged(speed, 0.5)
-        size = 0.05 * math.sqrt(scene.distance * scene.distance + scene.height * scene.height)
-        unrest = tremor(len(led), 3, size * float(rng.uniform(0.5, 1.5)), rng)
-        return trailing(later(led, reaction), frequency, damping) + unrest
+        size = (
+            0.09 * unrest * math.sqrt(scene.distance * scene.distance + scene.height * scene.height)
+        )
+        wandering = tremor(len(led), 3, size * float(rng.uniform(0.5, 1.5)), rng)
+        return trailing(later(led, reaction), frequency, damping) + wandering
 
     def lens(self, scene: Scene) -> Floats:
         """Return the field of view that does not change, shape (M,)."""
@@ -127,7 +132,7 @@ class Zoom(_Path):
             steps += [value] * steps_in(float(rng.uniform(2.0, 4.0)))
             is_near = not is_near
         lens = np.minimum(averaged(np.array(steps[:count]), 0.9), 2.6)
-        return Sketch(place, self.glance(scene, rng, haste=1.4), lens)
+        return Sketch(place, self.glance(scene, rng, haste=1.4, unrest=0.5), lens)
 
 
 class HoverAndPan(_Path):

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core.variation import Variation, sample
-from eyas.sim.flights.gaze import Aside, Glances, aimed, glances, held, turned_aside
+from eyas.sim.flights.gaze import STEEPEST, Aside, Glances, aimed, glances, held, turned_aside
 from eyas.sim.flights.path import CameraPath, Scene, Sketch
 from eyas.sim.flights.shares import SMALL, Asked, Shares, foreseen
 from eyas.sim.flights.signals import STEP, averaged, highest, rates_of
@@ -45,6 +45,9 @@ MARGIN = Margin(aside=1.5, above=1.5, ground=4.5)
 
 _BENDS = (1.0, 0.7, 0.45, 0.25)
 """Shares of the distance from the target that are tried where something stands in the way."""
+
+_FLATTEST = 0.1
+"""Least pitch at which a target is followed; below it the drone would be far away [rad]."""
 
 _STRAIGHT = Aside(side=1.0, margin=0.0, searches=False, sweep=0.0)
 """The camera looks past nothing."""
@@ -94,6 +97,8 @@ class Surroundings(NamedTuple):
     clearance: Clearance
     others: tuple[Floats, ...] = ()
     """Where other drones of the world will be meanwhile [m], shape (M, 3) each."""
+    unseen: int = 0
+    """Samples before the first picture."""
 
 
 class Plan(NamedTuple):
@@ -163,7 +168,9 @@ def _candidate(
     path = wishes.path
     scene = _scene(around, wishes, rng)
     sketch = path.sketch(scene, rng)
-    when = glances(len(scene.time), aside.cut, aside.away, rng, away_first=path.searches)
+    seen = max(len(scene.time) - around.unseen, 1)
+    when = glances(seen, aside.cut, aside.away, rng, away_first=path.searches)
+    when = when.after(len(scene.time) - seen)
     how = Aside(
         side=float(rng.choice([-1.0, 1.0])),
         margin=float(rng.uniform(0.4, 0.8)),
@@ -184,7 +191,7 @@ def _scene(around: Surroundings, wishes: Wishes, rng: np.random.Generator) -> Sc
         target=averaged(around.target, 0.4, steady=True),
         heading=averaged(around.heading, 0.8, steady=True),
         height=sample(wishes.height, rng),
-        pitch=sample(wishes.pitch, rng),
+        pitch=min(max(sample(wishes.pitch, rng), _FLATTEST), STEEPEST),
         field_of_view=around.field_of_view,
         ground=around.ground,
     )
@@ -285,7 +292,7 @@ def _aimed(
         seconds *= _WIDER
         smooth = averaged(turns, seconds, steady=True)
     flight = np.column_stack([place, smooth, lens])
-    shares, _ = foreseen(flight, scene, around.size, around.picture, around.clearance)
+    shares = foreseen(flight, scene, around.size, around.picture, around.clearance, around.unseen)
     return Plan(flight, shares, _cost(flight, shares, around, wishes))
 
 

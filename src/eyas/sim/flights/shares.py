@@ -55,9 +55,14 @@ def mean(flags: NDArray[np.bool_]) -> float:
 
 
 def foreseen(
-    flight: Floats, scene: Scene, size: Floats, picture: tuple[int, int], clearance: Clearance
-) -> tuple[Shares, float]:
-    """Return the shares of a flight, and the median number of pixels of the target's box.
+    flight: Floats,
+    scene: Scene,
+    size: Floats,
+    picture: tuple[int, int],
+    clearance: Clearance,
+    unseen: int,
+) -> Shares:
+    """Return the shares of a flight.
 
     What moves hides nothing here, so the recording may have some more hidden frames.
 
@@ -67,6 +72,7 @@ def foreseen(
         size: Length, width, height of the target [m], shape (3,).
         picture: Its width and height [pixels].
         clearance: What stands around.
+        unseen: Samples before the first picture.
     """
     across, up, ahead = _seen(flight, _points(scene, size, _SHAPE), picture)
     left, right = across.min(axis=1), across.max(axis=1)
@@ -79,9 +85,7 @@ def foreseen(
     small = in_view & (width * height < SMALL)
     seen = clearance.in_sight(flight[:, :3], _points(scene, size, _BODY))
     hidden = in_view & (2 * np.count_nonzero(seen, axis=1) < seen.shape[1])
-    whole = np.sort((0.25 * picture[0] * picture[1]) * (right - left) * (high - low))
-    pixels = float(whole[len(whole) // 2])
-    return Shares(mean(in_view), mean(hidden), mean(cut), mean(small)), pixels
+    return Shares(*(mean(flags[unseen:]) for flags in (in_view, hidden, cut, small)))
 
 
 def _points(scene: Scene, size: Floats, share: float) -> Floats:

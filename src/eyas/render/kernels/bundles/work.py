@@ -74,6 +74,7 @@ class Output(NamedTuple):
     depth: NDArray[np.float32]
     object_id: NDArray[np.int32]
     class_id: NDArray[np.uint8]
+    normal: NDArray[np.uint8]
     subject: NDArray[np.int32]
     """Left, top, right, bottom, seen and covered pixels of the view's subject in each job, all 0
     if it covers none, then left, top, right, bottom of the seen ones, shape (J, 10)."""
