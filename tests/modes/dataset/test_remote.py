@@ -47,7 +47,7 @@ def fetched(files, path, folder):
 
 
 def test_it_is_put_there_whole(bucket, recipe_file, made, contents, tmp_path):
-    run(str(recipe_file), "s3://sets/tiny", Making(workers=2))
+    run(str(recipe_file), "s3://sets/tiny", Making(workers=1))
     assert contents(fetched(bucket, "sets/tiny", tmp_path / "got")) == contents(made)
     with pytest.raises(OutputError, match=r"s3://sets/tiny: not empty; continue .* --resume"):
         run(str(recipe_file), "s3://sets/tiny", Making())
@@ -69,7 +69,7 @@ def test_another_machine_continues_it(bucket, recipe_file, made, contents, tmp_p
     (parts[0] / "part.json").unlink()
     shutil.rmtree(parts[1])
     bucket.put(str(half), "sets/tiny", recursive=True)
-    run(str(recipe_file), "s3://sets/tiny", Making(workers=2, resume=True))
+    run(str(recipe_file), "s3://sets/tiny", Making(workers=1, resume=True))
     assert contents(fetched(bucket, "sets/tiny", tmp_path / "got")) == contents(made)
 
 

@@ -69,7 +69,7 @@ class Remote:
             raise OutputError(f"{self._url}: not a data set: it has no {MAKING_FILE}")
         if there:
             self._fetch(plan, there)
-        elif not (self.root / MAKING_FILE).exists():
+        else:
             shutil.rmtree(self.root, ignore_errors=True)
             self.root.mkdir(parents=True)
             write_plan(self.root, plan)

@@ -3,6 +3,7 @@
 import re
 from collections.abc import Mapping
 from contextlib import ExitStack
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -60,7 +61,7 @@ def run(  # noqa: PLR0913  # choices of the user's
 
             remote = Remote(out)
             with remote.scratch(plan, making) as root:
-                make(plan, root, making, recorded, remote.keep)
+                make(plan, root, replace(making, resume=True), recorded, remote.keep)
         else:
             make(plan, Path(out), making, recorded)
     report(plan, out, quiet=making.quiet)
