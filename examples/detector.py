@@ -53,7 +53,7 @@ class Data:
                 (each["category_id"] - 1, *np.multiply(each["bbox"], scale))
                 for each in self.coco.imgToAnns[number]
             ]
-            # What is smaller than a few pixels cannot be learnt; it counts in the test all the same.
+            # What is smaller cannot be learnt; it counts in the test all the same.
             self.boxes.append([box for box in own if min(box[3:]) >= LEAST])
 
 
