@@ -3,6 +3,9 @@
 import json
 import os
 import signal
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
 
 import pytest
 
@@ -37,42 +40,30 @@ def plan(tmp_path_factory):
     return Plan.of(read_recipe(str(path)), str(path), sample=False, shard=None)
 
 
-def test_a_lost_workers_part_is_made_again_with_the_same_bytes(ray, plan, tmp_path):
+def kill_one(until: float) -> int:
+    """Kill a worker that records a part, as soon as there is one; return its id."""
+    while time.monotonic() < until:
+        for folder in Path("/proc").glob("[0-9]*"):
+            try:
+                told = (folder / "cmdline").read_bytes()
+            except OSError:
+                continue
+            if told.startswith(b"ray::_archive_of"):
+                os.kill(int(folder.name), signal.SIGKILL)
+                return int(folder.name)
+        time.sleep(0.01)
+    return 0
+
+
+@pytest.mark.usefixtures("ray")
+def test_a_lost_workers_part_is_made_again_with_the_same_bytes(plan, tmp_path):
     make(plan, tmp_path / "here", Making(workers=1))
-
-    @ray.remote
-    class Killer:
-        """Kills the worker that records the first part, once."""
-
-        def kill(self, mine):
-            import psutil
-
-            for process in psutil.process_iter(["name", "pid"]):
-                if "_archive_of" in " ".join(process.cmdline()) and process.pid != mine:
-                    os.kill(process.pid, signal.SIGKILL)
-                    return process.pid
-            return 0
-
-    killer, killed = Killer.remote(), 0
-    with on_ray() as recorded:
+    with on_ray() as recorded, ThreadPoolExecutor(1) as threads:
 
         def with_a_loss(parts, root):
-            nonlocal killed
-            made = recorded(parts, root)
-            import threading
-            import time
+            killed = threads.submit(kill_one, time.monotonic() + 60)
+            yield from recorded(parts, root)
+            assert killed.result()
 
-            def kill():
-                nonlocal killed
-                until = time.monotonic() + 60
-                while not killed and time.monotonic() < until:
-                    killed = ray.get(killer.kill.remote(os.getpid()))
-
-            thread = threading.Thread(target=kill)
-            thread.start()
-            yield from made
-            thread.join()
-
-        make(plan, tmp_path / "there", Making(), with_a_loss)
-    assert killed
+        make(plan, tmp_path / "there", Making(workers=1), with_a_loss)
     assert contents(tmp_path / "there") == contents(tmp_path / "here")

@@ -1,7 +1,6 @@
 """A data set of two small recordings, which holds what formats find difficult."""
 
 import json
-from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -15,8 +14,6 @@ from eyas.settings.config import EyasConfig
 from eyas.task.config import DoneConfig, StartConfig
 from eyas.traffic.config import TrafficConfig
 from eyas.traffic.library import CANONICAL_MIX
-
-collect_ignore = [] if find_spec("trackeval") else ["test_hota.py"]
 
 PARTS = {"first": ("train", (16, 1.2, 0.6)), "second": ("val", (0, 0.7854, 0.7))}
 """Split, seed, field of view, pitch. In the first something hides targets, and a truck with a
