@@ -9,6 +9,7 @@ import sys
 import threading
 import time
 from pathlib import Path
+from typing import ClassVar
 
 import pytest
 
@@ -119,6 +120,35 @@ def test_killed_at_any_moment_it_continues_to_the_same_bytes(dataset, tmp_path):
                 assert content == whole[path], path
     run(dataset, names, out, ExportOptions(resume=True))
     assert contents(out) == whole
+
+
+class Interrupted:
+    """A format that is interrupted at its third episode, once."""
+
+    needs = frozenset({"labels"})
+    added: ClassVar[list[str]] = []
+
+    def __init__(self, job):
+        self.job = job
+
+    def add(self, episode):
+        self.added.append(episode.name)
+        if len(self.added) == 3:
+            raise KeyboardInterrupt
+        self.job.keep(episode, len(episode))
+
+    def finish(self, episodes):
+        for each in episodes:
+            assert self.job.kept(each.name) == each.frames
+
+
+def test_what_is_written_completely_is_not_written_again(data, tmp_path):
+    FORMATS.register("interrupted", Interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        export(data, "interrupted", tmp_path / "out", ExportOptions())
+    export(data, "interrupted", tmp_path / "out", ExportOptions(resume=True))
+    names = [episode.name for episode in data]
+    assert Interrupted.added == [*names[:3], *names[2:]]
 
 
 def test_killed_while_it_tidies_up_it_is_finished(data, exported, tmp_path, monkeypatch):

@@ -91,9 +91,27 @@ def test_an_outline_has_only_the_corners():
     assert outlines([np.ones((7, 9), bool)])[0].tolist() == [[0, 0], [9, 0], [9, 7], [0, 7]]
 
 
+@pytest.mark.parametrize("mask", [np.eye(2, dtype=bool), ~np.eye(2, dtype=bool)])
+def test_pixels_that_touch_at_a_corner_are_on_one_path(mask):
+    (points,) = outlines([mask])
+    assert len(points) == 8
+
+
 @given(MASKS)
 def test_the_least_rectangle_is_that_of_shapely(mask):
-    (corners,) = least_rectangles([mask])
+    check_rectangle(mask, *least_rectangles([mask]))
+
+
+def test_least_rectangles_of_triangles_lie_along_any_side():
+    rng = np.random.default_rng(2)
+    masks = [filled(rng.integers(0, 25, (3, 2)), (25, 25)) for _ in range(60)]
+    masks = [mask for mask in masks if mask.any()]
+    for mask, corners in zip(masks, least_rectangles(masks), strict=True):
+        check_rectangle(mask, corners)
+
+
+def check_rectangle(mask, corners):
+    """Check that a rectangle is around all pixels, and no larger than that of shapely."""
     pixels = shapely.union_all([shapely.box(x, y, x + 1, y + 1) for y, x in np.argwhere(mask)])
     rectangle = shapely.Polygon(corners)
     assert rectangle.buffer(1e-6).contains(pixels)
