@@ -1,6 +1,6 @@
 """Make docs/images/flights.jpg: some frames of an episode of each camera path.
 
-python tools/flight_sheet.py docs/images/flights.jpg
+`python tools/flight_sheet.py docs/images/flights.jpg`
 """
 
 import sys

@@ -121,6 +121,19 @@ def test_killed_at_any_moment_it_continues_to_the_same_bytes(dataset, tmp_path):
     assert contents(out) == whole
 
 
+def test_killed_while_it_tidies_up_it_is_finished(data, exported, tmp_path, monkeypatch):
+    def kill(*arguments, **options):
+        raise KeyboardInterrupt
+
+    folder = tmp_path / "killed"
+    with monkeypatch.context() as patch:
+        patch.setattr(shutil, "rmtree", kill)
+        with pytest.raises(KeyboardInterrupt):
+            export(data, "coco", folder, ExportOptions())
+    export(data, "coco", folder, ExportOptions(resume=True))
+    assert contents(folder) == contents(exported("coco"))
+
+
 def test_two_exports_at_once_disturb_each_other_in_no_way(dataset, tmp_path):
     threads = [
         threading.Thread(

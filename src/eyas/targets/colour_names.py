@@ -1,6 +1,7 @@
 """Names of colours, and the article before them."""
 
 from collections.abc import Sequence
+from functools import lru_cache
 
 __all__ = ["COLOUR_NAMES", "colour_name", "with_article"]
 
@@ -37,7 +38,11 @@ def colour_name(colour: Sequence[float]) -> str:
     Distances weigh red and blue by the mean red, a cheap approximation of what people see
     (the `redmean` of T. Riemersma, CompuPhase).
     """
+    return _nearest(tuple(colour))
 
+
+@lru_cache(maxsize=4096)
+def _nearest(colour: tuple[float, ...]) -> str:
     def away(name: str) -> float:
         red, green, blue = (a - b for a, b in zip(colour, COLOUR_NAMES[name], strict=True))
         mean = (colour[0] + COLOUR_NAMES[name][0]) / 2

@@ -118,8 +118,8 @@ def _interrupts_held() -> Iterator[None]:
             signal.signal(number, handler)
         if masked:
             signal.pthread_sigmask(signal.SIG_SETMASK, mask)
-        for ended, _ in came[:1]:
-            signal.raise_signal(ended)
+        for sent, _ in came[:1]:
+            signal.raise_signal(sent)
 
 
 def work(

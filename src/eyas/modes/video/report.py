@@ -128,7 +128,7 @@ def print_report(
     rate = progress.rate
     table = Table()
     table.add_column("tracker")
-    titles = ("episodes", "frames", "mean reward", "in sight", "in view", "hidden", "cut", "small")
+    titles = ("episodes", "frames", "mean reward", "in sight", "view/hidden/cut/small")
     for title in titles:
         table.add_column(title, justify="right")
     every = ReachedShares()
@@ -136,8 +136,9 @@ def print_report(
         folder.trackers, recorder.episodes, recorder.reached, strict=True
     ):
         whole = total(summary for _, summary in episodes)
-        shares = [f"{share:.0%}" if reached.frames else "-" for share in reached.shares().values()]
-        table.add_row(tracker, str(len(episodes)), str(whole.frames), *_means(whole), *shares)
+        shares = "/".join(f"{100.0 * share:.0f}" for share in reached.shares().values())
+        told = f"{shares} %" if reached.frames else "-"
+        table.add_row(tracker, str(len(episodes)), str(whole.frames), *_means(whole), told)
         every = every.plus(reached)
     console = Console()
     console.print(table)

@@ -1,10 +1,12 @@
 """The kinds of people and robots."""
 
+from functools import cache
+
 import numpy as np
 from numpy.typing import NDArray
 
 from eyas.state.scene import ObjectClass
-from eyas.targets.jointed.extent import extents_of
+from eyas.targets.jointed.extent import Extents, extents_of
 from eyas.targets.jointed.model import JointedModel
 from eyas.targets.jointed.people.people import PEDESTRIANS
 from eyas.targets.jointed.rig import JointedRig
@@ -17,8 +19,12 @@ __all__ = ["JOINTED_KINDS"]
 def _kind(models: tuple[JointedModel, ...], object_class: ObjectClass) -> Kind:
     figures = {model.name: model.figure for model in models}
 
+    @cache  # by name: to hash a figure takes longer than all the rest
+    def extents(name: str) -> Extents:
+        return extents_of(figures[name])
+
     def extent(name: str, travelled: float, speed: float) -> NDArray[np.float64]:
-        return extents_of(figures[name]).at(travelled, speed)
+        return extents(name).at(travelled, speed)
 
     return Kind(
         name=models[0].kind,
