@@ -24,7 +24,7 @@ from eyas.state.scene import ObjectClass
 OF_MOTION = {"lerobot", "webdataset", "minari", "rerun", "mcap"}
 FORMATS_OF_PICTURES = tuple(name for name in FORMATS.built_in if name not in OF_MOTION)
 
-KILLS = int(os.environ.get("EYAS_TEST_KILLS", "3"))
+KILLS = int(os.environ.get("EYAS_TEST_KILLS", "2"))
 
 
 def contents(folder: Path) -> dict[str, bytes]:
