@@ -27,6 +27,9 @@ from torch.nn import functional
 WIDTH, HEIGHT, STRIDE = 320, 240, 4
 """What the network sees, and how much smaller its maps are."""
 
+LEAST = 3
+"""Smallest side of an object that is learnt [pixels]."""
+
 
 class Data:
     """The pictures of a split, in memory, with their boxes.
@@ -46,8 +49,12 @@ class Data:
             about = self.coco.imgs[number]
             self.pictures[row] = seen(self.root / about["file_name"])
             scale = WIDTH / about["width"]
-            own = self.coco.imgToAnns[number]
-            self.boxes.append([(a["category_id"] - 1, *np.multiply(a["bbox"], scale)) for a in own])
+            own = [
+                (each["category_id"] - 1, *np.multiply(each["bbox"], scale))
+                for each in self.coco.imgToAnns[number]
+            ]
+            # What is smaller cannot be learnt; it counts in the test all the same.
+            self.boxes.append([box for box in own if min(box[3:]) >= LEAST])
 
 
 def seen(path):

@@ -5,9 +5,9 @@
     python tools/check_peers.py --venvs DIR      # keep the environments there, for the next time
 
 These conflict with what Eyas or its tests need: TrackEval brings another OpenCV, nuscenes-devkit
-wants NumPy 1, LeRobot an older PyAV, vot-toolkit a trick. Run it with a Python that has Eyas and its extra `exports`: it
-records a small flight, exports it, makes each environment, and runs `tools/peers/read_<name>.py FOLDER`
-in it, which ends with an error if something is not as it should be.
+wants NumPy 1, LeRobot an older PyAV, vot-toolkit a trick. Run it with a Python that has Eyas and
+its extra `exports`: it records a small flight, exports it, makes each environment, and runs
+`tools/peers/read_<name>.py FOLDER` in it, which fails if something is not as it should be.
 """
 
 import argparse

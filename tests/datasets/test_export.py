@@ -9,6 +9,7 @@ import sys
 import threading
 import time
 from pathlib import Path
+from typing import ClassVar
 
 import pytest
 
@@ -23,7 +24,7 @@ from eyas.state.scene import ObjectClass
 OF_MOTION = {"lerobot", "webdataset", "minari", "rerun", "mcap"}
 FORMATS_OF_PICTURES = tuple(name for name in FORMATS.built_in if name not in OF_MOTION)
 
-KILLS = int(os.environ.get("EYAS_TEST_KILLS", "3"))
+KILLS = int(os.environ.get("EYAS_TEST_KILLS", "2"))
 
 
 def contents(folder: Path) -> dict[str, bytes]:
@@ -119,6 +120,48 @@ def test_killed_at_any_moment_it_continues_to_the_same_bytes(dataset, tmp_path):
                 assert content == whole[path], path
     run(dataset, names, out, ExportOptions(resume=True))
     assert contents(out) == whole
+
+
+class Interrupted:
+    """A format that is interrupted at its third episode, once."""
+
+    needs = frozenset({"labels"})
+    added: ClassVar[list[str]] = []
+
+    def __init__(self, job):
+        self.job = job
+
+    def add(self, episode):
+        self.added.append(episode.name)
+        if len(self.added) == 3:
+            raise KeyboardInterrupt
+        self.job.keep(episode, len(episode))
+
+    def finish(self, episodes):
+        for each in episodes:
+            assert self.job.kept(each.name) == each.frames
+
+
+def test_what_is_written_completely_is_not_written_again(data, tmp_path):
+    FORMATS.register("interrupted", Interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        export(data, "interrupted", tmp_path / "out", ExportOptions())
+    export(data, "interrupted", tmp_path / "out", ExportOptions(resume=True))
+    names = [episode.name for episode in data]
+    assert Interrupted.added == [*names[:3], *names[2:]]
+
+
+def test_killed_while_it_tidies_up_it_is_finished(data, exported, tmp_path, monkeypatch):
+    def kill(*arguments, **options):
+        raise KeyboardInterrupt
+
+    folder = tmp_path / "killed"
+    with monkeypatch.context() as patch:
+        patch.setattr(shutil, "rmtree", kill)
+        with pytest.raises(KeyboardInterrupt):
+            export(data, "coco", folder, ExportOptions())
+    export(data, "coco", folder, ExportOptions(resume=True))
+    assert contents(folder) == contents(exported("coco"))
 
 
 def test_two_exports_at_once_disturb_each_other_in_no_way(dataset, tmp_path):

@@ -1,6 +1,6 @@
 """Tables as nuScenes has them: complete, chained, and their boxes projected again.
 
-`tools/check_formats.py nuscenes` has its own devkit read them.
+`tools/check_peers.py nuscenes` has its own devkit read them.
 """
 
 import json
@@ -99,6 +99,8 @@ def test_boxes_projected_again_are_those_of_the_labels(folder, data):
                 picture = pictures[token]
                 ego = tables["ego_pose"][picture["ego_pose_token"]]
                 camera = tables["calibrated_sensor"][picture["calibrated_sensor_token"]]
+                placed = rotation(ego["rotation"]) @ camera["translation"] + ego["translation"]
+                assert placed == pytest.approx(frame.label["camera_position"], abs=1e-5)
                 seen = list(objects_of(frame.label))
                 for row, each in zip(rows.get(token, []), seen, strict=True):
                     corners = corners_of(row)

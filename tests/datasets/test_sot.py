@@ -86,10 +86,11 @@ def test_dtb70_loads(exported, data):
         assert boxes.tolist() == [clipped(label) for label in episode.labels]
 
 
-def test_vot_is_read_as_its_toolkit_does(exported, data):
-    folder = exported("vot") / "train"
+@pytest.mark.parametrize("split", ["train", "val"])
+def test_vot_is_read_as_its_toolkit_does(exported, data, split):
+    folder = exported("vot") / split
     names = (folder / "list.txt").read_text().split()
-    assert names == [episode.name for episode in data.split("train")]
+    assert names == [episode.name for episode in data.split(split)]
     for name in names:
         (episode,) = (each for each in data if each.name == name)
         boxes = np.loadtxt(folder / name / "groundtruth.txt", delimiter=",", ndmin=2)

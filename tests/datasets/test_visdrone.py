@@ -7,6 +7,7 @@ import pytest
 from globox import Annotation, BoxFormat
 
 from eyas.datasets.format import objects_of
+from eyas.datasets.formats import uavdt
 
 VISDRONE = {"person": 1, "car": 4, "truck": 6, "bus": 9, "motorcycle": 10, "robot": 11}
 UAVDT = {"car": 1, "truck": 2, "bus": 3}
@@ -143,3 +144,11 @@ def test_what_is_to_be_ignored_is_marked(exported, name):
     assert (True, True) in marks
     assert (False, False) in marks
     assert (True, False) not in marks
+
+
+@pytest.mark.parametrize(("low", "high", "levels"), [(5.0, 70.0, [0, 1, 0]), (5.0, 8.0, [0, 0, 1])])
+def test_levels_of_altitude(exported, monkeypatch, low, high, levels):
+    monkeypatch.setattr(uavdt, "LOW", low)
+    monkeypatch.setattr(uavdt, "HIGH", high)
+    for path in (exported("uavdt") / "M_attr/train").iterdir():
+        assert [int(value) for value in path.read_text().split(",")[3:6]] == levels

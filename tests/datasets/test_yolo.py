@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 
 from eyas.datasets.format import CLASS_NAMES, objects_of
-from eyas.datasets.outlines import least_rectangle, outline
+from eyas.datasets.outlines import least_rectangles, outlines
 
 NAMES = list(CLASS_NAMES.values())
 SIZE = np.array([160, 120])
@@ -81,18 +81,37 @@ def filled(points: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
     return inside
 
 
-@given(MASKS)
-def test_an_outline_fills_its_mask_exactly(mask):
-    assert np.array_equal(filled(outline(mask), mask.shape), mask)
+@given(st.lists(MASKS, min_size=1, max_size=3))
+def test_outlines_fill_their_masks_exactly(masks):
+    for points, mask in zip(outlines(masks), masks, strict=True):
+        assert np.array_equal(filled(points, mask.shape), mask)
 
 
 def test_an_outline_has_only_the_corners():
-    assert outline(np.ones((7, 9), bool)).tolist() == [[0, 0], [9, 0], [9, 7], [0, 7]]
+    assert outlines([np.ones((7, 9), bool)])[0].tolist() == [[0, 0], [9, 0], [9, 7], [0, 7]]
+
+
+@pytest.mark.parametrize("mask", [np.eye(2, dtype=bool), ~np.eye(2, dtype=bool)])
+def test_pixels_that_touch_at_a_corner_are_on_one_path(mask):
+    (points,) = outlines([mask])
+    assert len(points) == 8
 
 
 @given(MASKS)
 def test_the_least_rectangle_is_that_of_shapely(mask):
-    corners = least_rectangle(mask)
+    check_rectangle(mask, *least_rectangles([mask]))
+
+
+def test_least_rectangles_of_triangles_lie_along_any_side():
+    rng = np.random.default_rng(2)
+    masks = [filled(rng.integers(0, 25, (3, 2)), (25, 25)) for _ in range(60)]
+    masks = [mask for mask in masks if mask.any()]
+    for mask, corners in zip(masks, least_rectangles(masks), strict=True):
+        check_rectangle(mask, corners)
+
+
+def check_rectangle(mask, corners):
+    """Check that a rectangle is around all pixels, and no larger than that of shapely."""
     pixels = shapely.union_all([shapely.box(x, y, x + 1, y + 1) for y, x in np.argwhere(mask)])
     rectangle = shapely.Polygon(corners)
     assert rectangle.buffer(1e-6).contains(pixels)

@@ -1,4 +1,4 @@
-"""TrackEval gives the truth of MOTChallenge and KITTI a HOTA of 1, and boxes that are moved less."""
+"""TrackEval gives the truth of MOTChallenge and KITTI a HOTA of 1, boxes that are moved less."""
 
 import sys
 import tempfile

@@ -1,5 +1,5 @@
-"""Grey PNG files that `eyas.core.png` has written, read five times as fast as by Pillow: masks are
-empty for the most part, and where bytes are 0 the filter need not be undone.
+"""Grey PNG files that `eyas.core.png` has written, read in half the time of Pillow: masks are empty
+for the most part, and where bytes are 0 the filter need not be undone.
 """
 
 import struct
@@ -26,9 +26,9 @@ class _Rows(NamedTuple):
     filtered: NDArray[np.uint8]
     """Shape (H, bytes of a row)."""
     first: NDArray[np.int64]
-    """First byte of each row that is not 0; the length of the row if all are; shape (H,)."""
+    """A byte of each row before which all are 0; its length if all are; shape (H,)."""
     last: NDArray[np.int64]
-    """The last one; -1 if all are; shape (H,)."""
+    """One after which all are 0; -1 if all are; shape (H,)."""
     step: NDArray[np.int64]
     """Bytes of a pixel, shape (1,)."""
     raw: NDArray[np.uint8]
@@ -62,11 +62,12 @@ def grey_pixels(content: bytes) -> NDArray[np.uint8] | NDArray[np.uint16] | None
 
 
 def _rows_of(filtered: NDArray[np.uint8], raw: NDArray[np.uint8], step: int) -> _Rows:
-    some = filtered != 0
     length = filtered.shape[1]
+    together = 8 if length % 8 == 0 else 1  # bytes that are looked at at once
+    some = filtered.view(f"u{together}") != 0
     empty = ~some.any(axis=1)
-    first = np.where(empty, length, some.argmax(axis=1))
-    last = np.where(empty, -1, length - 1 - some[:, ::-1].argmax(axis=1))
+    first = np.where(empty, length, together * some.argmax(axis=1))
+    last = np.where(empty, -1, length - 1 - together * some[:, ::-1].argmax(axis=1))
     return _Rows(filtered, first, last, np.array([step]), raw)
 
 

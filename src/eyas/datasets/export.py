@@ -91,15 +91,15 @@ def export(
     )
     form = make(job)
     with folder_lock(folder, "exporting into it"):
-        if not _open(folder, _identity(recording, name, options), options):
+        if _open(folder, _identity(recording, name, options), options):
+            form.finish(_add_all(form, recording, folder, told))
+            with refusals(folder):
+                (folder / GROWING).replace(folder / FINISHED)
+        else:
             told(recording.frame_count)
-            return
-        exported = _add_all(form, recording, folder, told)
-        form.finish(exported)
+        # Last, so that an export which is killed here has all that it needs, or is finished.
         shutil.rmtree(folder / KEPT, ignore_errors=True)
         (folder / DONE).unlink(missing_ok=True)
-        with refusals(folder):
-            (folder / GROWING).replace(folder / FINISHED)
 
 
 def add_episodes(folder: Path, named: str, name: str, episodes: Sequence[RecordedEpisode]) -> None:

@@ -23,7 +23,7 @@ from eyas.datasets.format import (
     picture_ending,
     split_of,
 )
-from eyas.datasets.outlines import least_rectangle, outline
+from eyas.datasets.outlines import least_rectangles, outlines
 from eyas.datasets.recording import RecordedEpisode, RecordedFrame
 from eyas.exports.label import Label
 
@@ -95,27 +95,30 @@ class _OfMasks(_Yolo):
         if not objects:
             return
         masks = frame.masks()
-        for label in objects:
-            left, top, right, bottom = label["visible_box"]
-            mask = masks[top:bottom, left:right] == label["id"]
-            yield self.around(mask) + np.array([left, top])
+        boxes = [label["visible_box"] for label in objects]
+        own = [
+            masks[top:bottom, left:right] == label["id"]
+            for label, (left, top, right, bottom) in zip(objects, boxes, strict=True)
+        ]
+        for points, box in zip(self.around(own), boxes, strict=True):
+            yield points + box[:2]
 
     @abstractmethod
-    def around(self, mask: NDArray[np.bool_]) -> Points:
-        """Return the points around a mask, column and row, shape (K, 2)."""
+    def around(self, masks: Sequence[NDArray[np.bool_]]) -> Sequence[Points]:
+        """Return the points around each mask, column and row, shape (K, 2)."""
 
 
 class YoloSegments(_OfMasks):
     """Outlines of masks, see `eyas.datasets.outlines`."""
 
-    def around(self, mask: NDArray[np.bool_]) -> Points:
-        """Return its outline."""
-        return outline(mask)
+    def around(self, masks: Sequence[NDArray[np.bool_]]) -> Sequence[Points]:
+        """Return the outline of each."""
+        return outlines(masks)
 
 
 class YoloOriented(_OfMasks):
     """Corners of oriented boxes."""
 
-    def around(self, mask: NDArray[np.bool_]) -> Points:
-        """Return the corners of the least rectangle, which may reach out of the picture."""
-        return least_rectangle(mask)
+    def around(self, masks: Sequence[NDArray[np.bool_]]) -> Sequence[Points]:
+        """Return the corners of the least rectangle of each, which may reach out of the picture."""
+        return least_rectangles(masks)

@@ -61,8 +61,14 @@ def _statistics(parts: Sequence[tuple[Part, PartFacts]]) -> dict[str, Any]:
     of_split: dict[str, list[dict[str, Any]]] = {}
     for part, facts in parts:
         of_split.setdefault(part.split, []).append(facts.counts)
-    splits = {name: added(counts) for name, counts in of_split.items()}
-    return {"total": added(splits.values()), "splits": splits}
+    splits = {name: _in_order(added(counts)) for name, counts in of_split.items()}
+    return {"total": _in_order(added(splits.values())), "splits": splits}
+
+
+def _in_order(counts: dict[str, Any]) -> dict[str, Any]:
+    """Return counts whose names are not in the order in which parts happen to have them."""
+    names = ("classes", "types", "targets", "episodes_by")
+    return {**counts, **{name: dict(sorted(counts[name].items())) for name in names}}
 
 
 def _notices(parts: Sequence[tuple[Part, PartFacts]]) -> dict[str, str]:

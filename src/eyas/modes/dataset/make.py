@@ -4,7 +4,6 @@ The same plan gives the same bytes: on one core or many, in shards or at once, k
 or not.
 """
 
-import os
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -20,6 +19,7 @@ from eyas.datasets.layout import MAKING_FILE, Plan, read_plan, write_plan
 from eyas.datasets.plan import Part
 from eyas.datasets.recording import DATASET_FILE, Recording, load_part
 from eyas.datasets.statistics import PartFacts
+from eyas.lanes import thread_count
 from eyas.modes.dataset.describe import describe
 from eyas.modes.dataset.parts import (
     PART_FILE,
@@ -54,12 +54,11 @@ class Making:
     @property
     def processes(self) -> int:
         """Number of processes."""
-        return self.workers or len(os.sched_getaffinity(0))
+        return self.workers or thread_count()
 
     def threads(self, parts: int) -> int:
         """Return how many threads each process has for so many parts."""
-        cores = len(os.sched_getaffinity(0))
-        return max(1, cores // max(1, min(self.processes, parts)))
+        return max(1, thread_count() // max(1, min(self.processes, parts)))
 
 
 def make(

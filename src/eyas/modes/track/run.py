@@ -2,7 +2,6 @@
 
 import json
 import multiprocessing
-import os
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import asdict, dataclass
@@ -27,6 +26,7 @@ from eyas.evaluation.one_pass import (
     true_boxes,
 )
 from eyas.evaluation.strata import strata_of
+from eyas.lanes import thread_count
 from eyas.modes.progress import frames_bar
 
 __all__ = ["Scoring", "run"]
@@ -150,7 +150,7 @@ def _track_all(
 ) -> NDArray[np.float64]:
     """Track what is not tracked yet; return how long each call took [s]."""
     left = [episode for episode in episodes if not _boxes_file(out, episode).exists()]
-    count = min(workers or os.cpu_count() or 1, max(len(left), 1))
+    count = min(workers or thread_count(), max(len(left), 1))
     seconds, frames = [np.zeros(0)], 0
     with frames_bar(f"tracking with {scoring.tracker}", _frames(left), quiet=quiet) as told:
         for episode, (text, taken) in zip(left, _tracked(scoring, left, count), strict=True):
