@@ -59,7 +59,7 @@ def test_data_yaml_names_splits_and_classes(exported, name):
     folder = exported(name)
     facts = yaml.safe_load((folder / "data.yaml").read_text())
     assert facts == {
-        "path": ".", "train": "images/train", "val": "images/val",
+        "train": "images/train", "val": "images/val",
         "names": dict(enumerate(NAMES)),
     }  # fmt: skip
     for split in ("train", "val"):

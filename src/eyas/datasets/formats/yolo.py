@@ -67,7 +67,8 @@ class _Yolo(Format):
         """Write `data.yaml`; Ultralytics wants `train` and `val`, be it the same."""
         splits = list(dict.fromkeys(episode.split for episode in episodes))
         folders = {"train": splits[0], "val": splits[0]} | {split: split for split in splits}
-        rows = ["path: .", *(f"{split}: images/{folder}" for split, folder in folders.items())]
+        # Without "path": Ultralytics takes the folder of the file; "." would be the current one.
+        rows = [f"{split}: images/{folder}" for split, folder in folders.items()]
         names = [f"  {number}: {name}" for name, number in _NUMBERS.items()]
         self._job.write("data.yaml", lines([*rows, "names:", *names]))
 
