@@ -18,7 +18,7 @@ NAMING = [
 """Pages that name files of the code."""
 ELSEWHERE = {
     *(".venv/bin", "definitions/", "core/definitions.json", "eyas/_src", "eyas.json"),
-    *("eyas.steps", "eyas.writers", "eyas.weathers", "eyas.maps"),
+    *("eyas.steps", "eyas.formats", "eyas.writers", "eyas.weathers", "eyas.maps"),
 }
 """What these texts name that is no file or name of the code: loggers, groups of entry points, what
 another build has or a user makes."""

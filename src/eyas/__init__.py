@@ -79,6 +79,8 @@ if TYPE_CHECKING:
     from eyas.settings.file import load_settings as load_settings
     from eyas.sim.build import build_simulation as build_simulation
     from eyas.sim.config import SimConfig as SimConfig
+    from eyas.sim.flights.path import FlightScene as FlightScene
+    from eyas.sim.flights.path import FlightSketch as FlightSketch
     from eyas.sim.simulation import Simulation as Simulation
     from eyas.sim.simulation import StepResult as StepResult
     from eyas.sim.worlds import each_alone as each_alone
@@ -153,6 +155,7 @@ _PLACES = {
     "settings.file": ("load_settings",),
     "sim.build": ("build_simulation",),
     "sim.config": ("SimConfig",),
+    "sim.flights.path": ("FlightScene", "FlightSketch"),
     "sim.simulation": ("Simulation", "StepResult"),
     "sim.worlds": ("each_alone", "together"),
     "state.draw": ("Picture",),

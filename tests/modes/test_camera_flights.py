@@ -78,12 +78,12 @@ def test_heights_and_pitches_are_those_asked_for():
 def test_a_path_of_ones_own(tmp_path, monkeypatch):
     (tmp_path / "own_paths.py").write_text(
         "import numpy as np\n"
-        "from eyas.sim.flights.path import Sketch\n"
+        "from eyas import FlightSketch\n"
         "class Above:\n"
         "    in_view, searches = 1.0, False\n"
         "    def sketch(self, scene, rng):\n"
         "        lens = np.full(len(scene.time), scene.field_of_view)\n"
-        "        return Sketch(scene.around(0.0, 1.0), scene.target, lens)\n"
+        "        return FlightSketch(scene.around(0.0, 1.0), scene.target, lens)\n"
         "class Half:\n"
         "    in_view = 1.0\n"
         "    searches = False\n"

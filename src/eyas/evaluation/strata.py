@@ -7,6 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from eyas.core import exact
 from eyas.datasets.recording import RecordedEpisode
 from eyas.exports.label import Label
 
@@ -70,12 +71,12 @@ def _speeds(
 def _look_alikes(label: Label) -> int:
     """Return how many others of the target's class are near it in the picture."""
     left, top, right, bottom = label["target_box"]
-    reach = _NEAR * float(np.hypot(right - left, bottom - top))
+    reach = _NEAR * float(exact.hypot(right - left, bottom - top))
     x, y = 0.5 * (left + right), 0.5 * (top + bottom)
     found = 0
     for other in label["others"]:
         if other["class_id"] == label["target_class_id"]:
             u, v, w, z = other["box"]
-            distance = float(np.hypot(0.5 * (u + w) - x, 0.5 * (v + z) - y))
+            distance = float(exact.hypot(0.5 * (u + w) - x, 0.5 * (v + z) - y))
             found += distance <= reach
     return found

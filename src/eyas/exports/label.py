@@ -146,7 +146,8 @@ def _relative(frame: Frame, subject: Subject) -> list[float | None]:
 
 
 def _distance(frame: Frame, subject: Subject) -> float | None:
-    return rounded(math.dist(frame.camera.position.tolist(), subject.centre.tolist()))
+    x, y, z = (subject.centre - frame.camera.position).tolist()
+    return rounded(math.sqrt(x * x + y * y + z * z))
 
 
 def _command(frame: Frame, episode: Episode) -> list[float | None] | None:

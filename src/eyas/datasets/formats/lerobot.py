@@ -273,9 +273,9 @@ def _own(row: Row, name: str) -> dict[str, NDArray[np.float64]]:
 def _joined(several: Sequence[dict[str, NDArray[np.float64]]]) -> Stats:
     counts = np.array([own["count"][0] for own in several])
     means = np.stack([own["mean"] for own in several])
-    squares = np.stack([own["std"] ** 2 + own["mean"] ** 2 for own in several])
+    squares = np.stack([np.square(own["std"]) + np.square(own["mean"]) for own in several])
     mean = np.average(means, axis=0, weights=counts)
-    variance = np.average(squares, axis=0, weights=counts) - mean**2
+    variance = np.average(squares, axis=0, weights=counts) - np.square(mean)
     return {
         "min": np.min([own["min"] for own in several], axis=0).tolist(),
         "max": np.max([own["max"] for own in several], axis=0).tolist(),

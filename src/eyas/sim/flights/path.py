@@ -7,12 +7,12 @@ from numpy.typing import NDArray
 
 from eyas.core import exact
 
-__all__ = ["CameraPath", "Scene", "Sketch"]
+__all__ = ["CameraPath", "FlightScene", "FlightSketch"]
 
 Floats = NDArray[np.float64]
 
 
-class Scene(NamedTuple):
+class FlightScene(NamedTuple):
     """What a path is told of an episode: M samples, `eyas.sim.flights.signals.STEP` apart."""
 
     time: Floats
@@ -57,7 +57,7 @@ class Scene(NamedTuple):
         return np.stack([x, y, self.target[:, 2] + self.height], axis=1)
 
 
-class Sketch(NamedTuple):
+class FlightSketch(NamedTuple):
     """A flight as it is meant. The planner smooths it, keeps it above the ground and out of what
     stands around, and lets the camera look away as often as it is asked to.
     """
@@ -79,6 +79,6 @@ class CameraPath(Protocol):
     searches: bool
     """Whether the camera looks around when it looks away, and does so at first."""
 
-    def sketch(self, scene: Scene, rng: np.random.Generator) -> Sketch:
+    def sketch(self, scene: FlightScene, rng: np.random.Generator) -> FlightSketch:
         """Return a flight; whatever is random about it is sampled from `rng`."""
         ...

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core import exact
-from eyas.sim.flights.path import Scene, Sketch
+from eyas.sim.flights.path import FlightScene, FlightSketch
 from eyas.sim.flights.signals import STEP, averaged, later, steps_in, trailing, tremor
 
 __all__ = ["FlyBy", "Follow", "HoverAndPan", "Orbit", "Rise", "Search", "Zoom"]
@@ -21,7 +21,7 @@ class _Path:
     searches = False
 
     def glance(
-        self, scene: Scene, rng: np.random.Generator, haste: float = 1.0, unrest: float = 1.0
+        self, scene: FlightScene, rng: np.random.Generator, haste: float = 1.0, unrest: float = 1.0
     ) -> Floats:
         """Return the point that a pilot looks at: the target, late and not quite held, (M, 3).
 
@@ -43,7 +43,7 @@ class _Path:
         wandering = tremor(len(led), 3, size * float(rng.uniform(0.5, 1.5)), rng)
         return trailing(later(led, reaction), frequency, damping) + wandering
 
-    def lens(self, scene: Scene) -> Floats:
+    def lens(self, scene: FlightScene) -> Floats:
         """Return the field of view that does not change, shape (M,)."""
         return np.full(len(scene.time), scene.field_of_view)
 
@@ -51,7 +51,7 @@ class _Path:
 class Follow(_Path):
     """Goes after the target as a pilot does: late, with overshoot, from behind or from a side."""
 
-    def sketch(self, scene: Scene, rng: np.random.Generator) -> Sketch:
+    def sketch(self, scene: FlightScene, rng: np.random.Generator) -> FlightSketch:
         """Sample the side, the reaction time, the quickness and the overshoot."""
         bearing = math.pi + float(rng.uniform(-1.2, 1.2))
         drift = float(rng.uniform(-0.04, 0.04))
@@ -59,13 +59,13 @@ class Follow(_Path):
         late = later(goal, float(rng.uniform(0.2, 0.6)))
         place = trailing(late, float(rng.uniform(0.7, 1.4)), float(rng.uniform(0.45, 0.8)))
         place += tremor(len(place), 3, 0.05 * scene.height + 0.3, rng)
-        return Sketch(place, self.glance(scene, rng), self.lens(scene))
+        return FlightSketch(place, self.glance(scene, rng), self.lens(scene))
 
 
 class Orbit(_Path):
     """Circles around the target."""
 
-    def sketch(self, scene: Scene, rng: np.random.Generator) -> Sketch:
+    def sketch(self, scene: FlightScene, rng: np.random.Generator) -> FlightSketch:
         """Sample the speed, where it begins, the direction and how the circle breathes."""
         radius = max(scene.distance, 8.0)
         turn = float(rng.uniform(2.5, 7.0)) / radius * float(rng.choice([-1.0, 1.0]))
@@ -74,13 +74,13 @@ class Orbit(_Path):
         place = scene.around(begin + turn * scene.time, radius * breath)
         # The circle does not follow each swerve of the target.
         place[:, :2] += averaged(scene.target[:, :2], 1.5, steady=True) - scene.target[:, :2]
-        return Sketch(place, self.glance(scene, rng), self.lens(scene))
+        return FlightSketch(place, self.glance(scene, rng), self.lens(scene))
 
 
 class FlyBy(_Path):
     """Passes the target on a straight line, turns far from it, and passes it again."""
 
-    def sketch(self, scene: Scene, rng: np.random.Generator) -> Sketch:
+    def sketch(self, scene: FlightScene, rng: np.random.Generator) -> FlightSketch:
         """Sample the line, the time of the first pass and the time between passes."""
         direction = float(scene.heading[0]) + float(rng.uniform(-math.pi, math.pi))
         period = float(rng.uniform(7.0, 12.0))
@@ -93,13 +93,13 @@ class FlyBy(_Path):
         place[:, 0] += along * east - aside * north
         place[:, 1] += along * north + aside * east
         place[:, 2] += scene.height
-        return Sketch(place, self.glance(scene, rng), self.lens(scene))
+        return FlightSketch(place, self.glance(scene, rng), self.lens(scene))
 
 
 class Rise(_Path):
     """Begins low and near, rises and draws back, as on a crane, and comes down again."""
 
-    def sketch(self, scene: Scene, rng: np.random.Generator) -> Sketch:
+    def sketch(self, scene: FlightScene, rng: np.random.Generator) -> FlightSketch:
         """Sample the side, how low it begins, how high it goes and how long that takes."""
         bearing = math.pi + float(rng.uniform(-2.0, 2.0))
         lowest = min(float(rng.uniform(4.5, 7.0)), scene.height)
@@ -111,13 +111,13 @@ class Rise(_Path):
         away = near + (1.3 * scene.distance - near) * share if scene.distance > near else near
         place = averaged(scene.beside(bearing, away), 1.0, steady=True)
         place[:, 2] += lowest + (top - lowest) * share - scene.height
-        return Sketch(place, self.glance(scene, rng), self.lens(scene))
+        return FlightSketch(place, self.glance(scene, rng), self.lens(scene))
 
 
 class Zoom(_Path):
     """Keeps its distance and zooms: wide, near, and back, at moments of its own."""
 
-    def sketch(self, scene: Scene, rng: np.random.Generator) -> Sketch:
+    def sketch(self, scene: FlightScene, rng: np.random.Generator) -> FlightSketch:
         """Sample the side, how far it zooms, and when."""
         bearing = math.pi + float(rng.uniform(-1.5, 1.5))
         goal = scene.beside(bearing, 1.2 * scene.distance)
@@ -132,13 +132,13 @@ class Zoom(_Path):
             steps += [value] * steps_in(float(rng.uniform(2.0, 4.0)))
             is_near = not is_near
         lens = np.minimum(averaged(np.array(steps[:count]), 0.9), 2.6)
-        return Sketch(place, self.glance(scene, rng, haste=1.4, unrest=0.5), lens)
+        return FlightSketch(place, self.glance(scene, rng, haste=1.4, unrest=0.5), lens)
 
 
 class HoverAndPan(_Path):
     """Hovers beside the way of the target and turns after it; then flies on to the next place."""
 
-    def sketch(self, scene: Scene, rng: np.random.Generator) -> Sketch:
+    def sketch(self, scene: FlightScene, rng: np.random.Generator) -> FlightSketch:
         """Sample how long it hovers, and where."""
         count, at = len(scene.time), 0
         goal = np.empty((count, 3))
@@ -153,7 +153,7 @@ class HoverAndPan(_Path):
             goal[at:end] = scene.around(side, scene.distance)[middle]
             at = end
         place = averaged(goal, 2.5) + tremor(count, 3, 0.3, rng)
-        return Sketch(place, self.glance(scene, rng, haste=0.8), self.lens(scene))
+        return FlightSketch(place, self.glance(scene, rng, haste=0.8), self.lens(scene))
 
 
 class Search(Follow):

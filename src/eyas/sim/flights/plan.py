@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from eyas.core.variation import Variation, sample
 from eyas.sim.flights.gaze import STEEPEST, Aside, Glances, aimed, glances, held, turned_aside
-from eyas.sim.flights.path import CameraPath, Scene, Sketch
+from eyas.sim.flights.path import CameraPath, FlightScene, FlightSketch
 from eyas.sim.flights.shares import SMALL, Asked, Shares, foreseen
 from eyas.sim.flights.signals import STEP, averaged, highest, rates_of
 from eyas.task.clearance import Clearance, Margin
@@ -185,8 +185,8 @@ def _candidate(
     return _aimed(place, sketch, (scene, around), (when, how), wishes)
 
 
-def _scene(around: Surroundings, wishes: Wishes, rng: np.random.Generator) -> Scene:
-    return Scene(
+def _scene(around: Surroundings, wishes: Wishes, rng: np.random.Generator) -> FlightScene:
+    return FlightScene(
         time=STEP * np.arange(len(around.target), dtype=np.float64),
         target=averaged(around.target, 0.4, steady=True),
         heading=averaged(around.heading, 0.8, steady=True),
@@ -198,7 +198,11 @@ def _scene(around: Surroundings, wishes: Wishes, rng: np.random.Generator) -> Sc
 
 
 def _sized(
-    sketch: Sketch, scene: Scene, around: Surroundings, share: float, rng: np.random.Generator
+    sketch: FlightSketch,
+    scene: FlightScene,
+    around: Surroundings,
+    share: float,
+    rng: np.random.Generator,
 ) -> Floats:
     """Return places so near, and for a share of the time so far, that the target is small then."""
     off = sketch.place - scene.target
@@ -271,8 +275,8 @@ def _is_smooth(way: Floats) -> bool:
 
 def _aimed(
     place: Floats,
-    sketch: Sketch,
-    about: tuple[Scene, Surroundings],
+    sketch: FlightSketch,
+    about: tuple[FlightScene, Surroundings],
     aside: tuple[Glances, Aside],
     wishes: Wishes,
 ) -> Plan:
@@ -324,6 +328,6 @@ def _above(around: Surroundings, wishes: Wishes, rng: np.random.Generator) -> Pl
         if free <= height:
             break
         height, way[:, 2] = free, free
-    sketch = Sketch(way, scene.target, np.full(len(flat), scene.field_of_view))
+    sketch = FlightSketch(way, scene.target, np.full(len(flat), scene.field_of_view))
     nothing = glances(len(flat), 0.0, 0.0, rng, away_first=False)
     return _aimed(way, sketch, (scene, around), (nothing, _STRAIGHT), wishes)

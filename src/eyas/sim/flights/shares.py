@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from eyas.core import exact
-from eyas.sim.flights.path import Scene
+from eyas.sim.flights.path import FlightScene
 from eyas.task.clearance import Clearance
 
 __all__ = ["SMALL", "Asked", "Shares", "foreseen", "mean"]
@@ -56,7 +56,7 @@ def mean(flags: NDArray[np.bool_]) -> float:
 
 def foreseen(
     flight: Floats,
-    scene: Scene,
+    scene: FlightScene,
     size: Floats,
     picture: tuple[int, int],
     clearance: Clearance,
@@ -88,7 +88,7 @@ def foreseen(
     return Shares(*(mean(flags[unseen:]) for flags in (in_view, hidden, cut, small)))
 
 
-def _points(scene: Scene, size: Floats, share: float) -> Floats:
+def _points(scene: FlightScene, size: Floats, share: float) -> Floats:
     """Return the corners of the target's box, shrunk to a share, shape (M, 8, 3)."""
     signs = np.array([(a, b, c) for a in (1, -1) for b in (1, -1) for c in (1, -1)], np.float64)
     half = 0.5 * share * signs * size

@@ -66,7 +66,10 @@ _LIMBS = 2.0
 def _reach(models: int) -> Floats:
     """Return how far any corner of each of so many models may be from its place [m]."""
     return np.array(
-        [math.hypot(*model.size) + abs(kind_of(k).ahead) for k, model in enumerate(MODELS[:models])]
+        [
+            exact.length(model.size) + abs(kind_of(k).ahead)
+            for k, model in enumerate(MODELS[:models])
+        ]
     )
 
 
@@ -74,7 +77,7 @@ def _may_be_in_view(middles: Floats, reach: Floats, wide: float, high: float) ->
     """Return whether spheres may be in a view, as `_in_view` does for boxes; most are far aside."""
     forward, left, up = middles.T
     reach = reach + _LIMBS
-    across, down = math.hypot(1.0, wide) * reach, math.hypot(1.0, high) * reach
+    across, down = math.sqrt(1.0 + wide * wide) * reach, math.sqrt(1.0 + high * high) * reach
     inside: NDArray[np.bool_] = (
         (forward > -reach)
         & (np.abs(left) - forward * wide < across)
