@@ -1,5 +1,6 @@
 """What is done with recordings and data sets: `eyas export`, `eyas dataset`, `eyas track`."""
 
+import logging
 import math
 from pathlib import Path
 from typing import Annotated
@@ -158,6 +159,8 @@ def make_dataset(  # noqa: PLR0913  # one parameter for each option
     from eyas.modes.dataset.make import Making
     from eyas.modes.dataset.run import parsed_shard, run
 
+    if quiet:
+        logging.getLogger("eyas").setLevel(logging.ERROR)
     making = Making(workers=workers, resume=resume, quiet=quiet)
     run(recipe, out, making, sample=sample, shard=parsed_shard(shard), ray=ray, trust=trust)
 
@@ -176,6 +179,8 @@ def merge_dataset(
     from eyas.modes.dataset.make import Making
     from eyas.modes.dataset.merge import merge
 
+    if quiet:
+        logging.getLogger("eyas").setLevel(logging.ERROR)
     merge(shards, out, Making(workers=workers, resume=resume, quiet=quiet))
 
 

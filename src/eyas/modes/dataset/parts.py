@@ -77,7 +77,7 @@ def check_part(part: Part) -> None:
     """
     try:
         config = recording_rules(part.config)
-        with closing(build_simulation(config, together(config.video.channels))) as sim:
+        with _hushed(), closing(build_simulation(config, together(config.video.channels))) as sim:
             sim.reset()  # raises if there are fewer targets than trackers
     except EyasError as error:
         raise _plain(error, f"{part.name}: ") from None
