@@ -31,7 +31,9 @@ from eyas.sim.step import step_of
 from eyas.trackers.drone import DRONE
 
 USES_ALL = """
+import tempfile
 import numpy as np
+import eyas
 from eyas.lanes.elementary.arrays import sin
 from eyas.sensors.config import Colours
 from eyas.sensors.stack import FrameStack
@@ -70,6 +72,11 @@ StillWorld(load_assets(SimConfig().world, SimConfig().traffic)).actors(0.0)
 recording = load(MAPS.get("citystreet").shipped_traffic()[0])
 hill = Terrain(0.0, np.ones((2, 2), np.float32), 0.0, 0.0, 1.0)
 recorded_motion(recording, hill, np.zeros(recording.actors, np.int32))
+with tempfile.TemporaryDirectory() as folder:
+    video = {"channels": 1, "total_time": 0.1, "flight": "orbit"}
+    video["writers"] = ["png", "labels", "masks", "flow", "normals"]
+    eyas.record({"camera": {"width": 32, "height": 24}, "video": video}, folder)
+    eyas.load(folder)[0][0].masks()
 """
 """A program that uses every kernel of the package; `missing` names those that it forgets."""
 
