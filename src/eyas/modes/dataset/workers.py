@@ -23,8 +23,9 @@ __all__ = ["work"]
 
 Result = TypeVar("Result")
 
-_MAPS = 4
-"""Maps after which a process is replaced: a new one takes 4 s until its first frame."""
+_MAPS = 2
+"""Maps after which a process is replaced, since each in four weathers stays with some 250 MB, while
+a new process takes 4 s until its first frame."""
 
 _RETRIES = 2
 """How often a part is tried again whose process was lost, as by a lack of memory."""
