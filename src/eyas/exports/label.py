@@ -84,6 +84,7 @@ TRUTH = Type("true or false", {"type": "boolean"})
 TEXT = Type("text", {"type": "string", "pattern": r"^[^\x00-\x1f\x7f]*$"})
 ID = Type("whole number", {"type": "integer", "minimum": ACTOR_OBJECT, "maximum": 2**31 - 1})
 CLASS = Type("whole number", {"type": "integer", "enum": [9, 11, 12, 13, 14, 15]})
+SIDE = Type("whole number", {"type": "integer", "minimum": 1, "maximum": 2**16})
 BOX = _array("4 whole numbers", {"type": "integer", "minimum": 0, "maximum": 2**16}, 4)
 EXTENT = _array("4 numbers", NUMBER.schema, 4)
 VECTOR = _array("3 numbers", NUMBER.schema, 3)
@@ -242,8 +243,8 @@ FIELDS = (
                left_out=True),
     LabelField("target_class_id", CLASS, "Its class, as in the class pictures.", None,
                lambda f, s: int(s.object_class), "class_id"),
-    LabelField("width", WHOLE, "Width of the picture.", lambda f, e: e.width, unit="pixels"),
-    LabelField("height", WHOLE, "Height of the picture.", lambda f, e: e.height, unit="pixels"),
+    LabelField("width", SIDE, "Width of the picture.", lambda f, e: e.width, unit="pixels"),
+    LabelField("height", SIDE, "Height of the picture.", lambda f, e: e.height, unit="pixels"),
     LabelField("intrinsics", MATRIX, "Camera matrix: x right, y down, z forward, the centre of "
                "pixel (0, 0) at (0.5, 0.5).", lambda f, e: _points(f.camera.intrinsics),
                unit="pixels"),
