@@ -172,3 +172,26 @@ def test_labels_of_someone_else_that_hold_anything_tell_nothing(run, written, fr
     assert changed != path.read_text()
     path.write_text(changed)
     assert LabelWriter(run).read(path.parent) is None
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "told"),
+    [
+        ("target_box", [1, 2, 3], "target_box: List should have at least 4 items"),
+        ("target_box", [0, 0, 10**30, 1], "target_box.2: Input should be less than"),
+        ("target_id", -4, "target_id: Input should be greater than"),
+        ("target_class_id", 77, "target_class_id: Input should be 9, 11"),
+        ("target_velocity", [math.nan, 0, 0], "target_velocity.0: Input should be a finite"),
+        ("target_words", "a car\nand more", "target_words: String should match"),
+        ("visible_fraction", 99, "visible_fraction: Input should be less than or equal to 1"),
+        ("others", [{"id": 65536}], "others.0.box: Field required"),
+        ("frame", 5, "line 1 is of frame 5"),
+        ("frame", True, "frame: Input should be a valid integer"),
+    ],
+)
+def test_labels_of_someone_else_are_refused_by_their_schema(written, frame, key, value, told):
+    path = written(frame(0))
+    path.write_text(json.dumps({**json.loads(path.read_text()), key: value}) + "\n")
+    with pytest.raises(DataFileError, match=told) as raised:
+        read_labels(path)
+    assert "\n" not in str(raised.value)

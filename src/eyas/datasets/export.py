@@ -2,8 +2,10 @@
 
 import hashlib
 import json
+import re
 import shutil
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Set as AbstractSet
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,7 +17,7 @@ from eyas.core.errors import ConfigError, DataFileError, OutputError
 from eyas.core.files import PART_SUFFIX, read_limited, refusals, write_atomic
 from eyas.core.folder_lock import LOCK, folder_lock
 from eyas.datasets.format import KEPT, Exported, Format, Job
-from eyas.datasets.recording import DATASET_FILE, RecordedEpisode, Recording
+from eyas.datasets.recording import DATASET_FILE, OF_EPISODES, RecordedEpisode, Recording
 from eyas.datasets.registry import FORMATS, SETTING
 from eyas.exports.checksums import CHECKSUMS, read_checksums
 
@@ -166,8 +168,11 @@ def _format_of(name: str) -> type[Format]:
 
 def _name_of(recording: Recording) -> str:
     """Return the name of a data set, or that of a recording's folder."""
-    described = _read(recording.folder / DATASET_FILE).get("recipe", {})
-    return str(described.get("name") or recording.folder.resolve().name or "recording")
+    recipe = _read(recording.folder / DATASET_FILE).get("recipe")
+    named = recipe.get("name") if isinstance(recipe, dict) else None
+    if isinstance(named, str) and re.fullmatch(r"\w[\w.-]*", named):
+        return named
+    return recording.folder.resolve().name or "recording"
 
 
 def _identity(recording: Recording, name: str, options: ExportOptions) -> dict[str, Any]:
@@ -193,7 +198,8 @@ def _open(folder: Path, identity: dict[str, Any], options: ExportOptions) -> boo
     Raises:
         OutputError: It is not empty, or not of the same export.
     """
-    names = {inside.name for inside in folder.iterdir()} - {LOCK}
+    with refusals(folder):
+        names = {inside.name for inside in folder.iterdir()} - {LOCK}
     if names and options.overwrite:
         if not names & {FINISHED, GROWING}:
             raise OutputError(f"{folder}: not deleted: it is not an export (it has no {FINISHED})")
@@ -255,7 +261,7 @@ def _add_all(form: Format, recording: Recording, folder: Path, told: Told) -> li
         for episode in recording.episodes:
             count = len(episode)
             if episode.name not in done:
-                sums.require_whole(episode)
+                sums.require_whole(episode, form.needs)
                 form.add(episode)
                 finished.write(f"{episode.name}\n".encode())
                 finished.flush()
@@ -282,15 +288,19 @@ class _Checksums:
         self._run: Path | None = None
         self._sums: dict[str, dict[str, str]] = {}
 
-    def require_whole(self, episode: RecordedEpisode) -> None:
-        """Refuse an episode whose files are not those of the recording's checksums, films and
-        arrays left out, which no format is made of.
+    def require_whole(self, episode: RecordedEpisode, needs: AbstractSet[str]) -> None:
+        """Refuse an episode whose files are not those of the recording's checksums, which must
+        name all that a format is made of. Films and arrays are not compared: they are large.
         """
         run = episode.folder.parent.parent
         if run != self._run:
             self._run, self._sums = run, _by_folder(read_checksums(run / CHECKSUMS))
         inside = episode.folder.relative_to(run).as_posix()
-        for name, digest in self._sums.get(inside, {}).items():
+        sums = self._sums.get(inside, {})
+        for path in _needed(episode, needs):
+            if path.relative_to(run).as_posix() not in sums:
+                raise DataFileError(f"{path}: not what was recorded: {CHECKSUMS} does not name it")
+        for name, digest in sums.items():
             path = run / name
             if path.suffix in (".mp4", ".npz"):
                 continue
@@ -298,6 +308,15 @@ class _Checksums:
                 raise DataFileError(
                     f"{path}: not what was recorded: its SHA-256 is not that of {CHECKSUMS}"
                 )
+
+
+def _needed(episode: RecordedEpisode, needs: AbstractSet[str]) -> Iterator[Path]:
+    for output in sorted(needs):
+        if output in OF_EPISODES:
+            yield episode.folder / OF_EPISODES[output]
+        else:
+            kind = episode.picture_kind if output == "jpeg" else output
+            yield from (episode.file(kind, number) for number in range(len(episode)))
 
 
 def _by_folder(sums: Mapping[str, str]) -> dict[str, dict[str, str]]:

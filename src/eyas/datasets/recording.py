@@ -10,6 +10,8 @@ frame.picture(), frame.label["target_words"]
 import io
 import json
 import re
+import struct
+import zipfile
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -19,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image
+from PIL import Image, UnidentifiedImageError
 
 from eyas.core.config import validated
 from eyas.core.errors import DataFileError
@@ -35,7 +37,7 @@ from eyas.state.scene import ACTOR_OBJECT
 if TYPE_CHECKING:
     from torch.utils.data import Dataset
 
-__all__ = ["DATASET_FILE", "RecordedEpisode", "RecordedFrame", "Recording", "load",
+__all__ = ["DATASET_FILE", "OF_EPISODES", "RecordedEpisode", "RecordedFrame", "Recording", "load",
            "load_part"]  # fmt: skip
 
 DATASET_FILE = "dataset.json"
@@ -46,7 +48,11 @@ SPLITS = ("train", "val", "test")
 MASK_OFFSET = ACTOR_OBJECT - 1
 """A mask's value and this make the `id` of the labels."""
 
-_OF_EPISODES = {"labels": LABELS, "mp4": "episode.mp4", "sensors": "sensors.csv"}
+_LARGEST = 1 << 28
+"""Of a file of one frame [bytes]."""
+
+OF_EPISODES = {"labels": LABELS, "mp4": "episode.mp4", "sensors": "sensors.csv"}
+"""Files of an episode by their writers; other writers write a file for each frame."""
 
 _EPISODE = re.compile(r"episode(\d+)")
 _TRACKER = re.compile(r"(DRONE|CAR)(\d+)")
@@ -64,14 +70,18 @@ class RecordedFrame:
 
     def picture(self) -> NDArray[np.uint8]:
         """Return the picture, sRGB, shape (H, W, 3)."""
-        return self._image(self.episode.picture_file(self.number), np.uint8)
+        return self._image(self.episode.picture_file(self.number), np.uint8, colours=3)
 
     def masks(self) -> NDArray[np.int32]:
         """Return for each pixel the label's `id` of the moving object that it shows, 0 where it
         shows none, shape (H, W).
         """
-        masks = self._image(self.file("masks"), np.int32)
+        path = self.file("masks")
+        masks = self._image(path, np.int32)
         np.add(masks, MASK_OFFSET, out=masks, where=masks != 0)
+        for number, (left, top, right, bottom) in _visible_boxes(self.label):
+            if not (masks[top:bottom, left:right] == number).any():
+                raise DataFileError(f"{path}: shows nothing of {number}, though its label does")
         return masks
 
     def classes(self) -> NDArray[np.uint8]:
@@ -93,8 +103,10 @@ class RecordedFrame:
         import av  # slow to import
 
         path = self.file("flow")
-        with _reading(path), av.open(str(path)) as container:
+        content = io.BytesIO(read_limited(path, _LARGEST))
+        with _reading(path), av.open(content, mode="r") as container:
             stored = next(container.decode(video=0)).to_ndarray(format="rgb48le")
+        self._require_size(path, stored.shape[1::-1])
         values = stored.astype(np.float32)
         return (values[..., :2] - 32768.0) / 64.0, stored[..., 2] > 0
 
@@ -102,13 +114,14 @@ class RecordedFrame:
         """Return the unit normal of the surface in each pixel, in the camera's frame, shape
         (H, W, 3).
         """
-        levels: NDArray[np.float32] = self._image(self.file("normals"), np.float32)
+        levels: NDArray[np.float32] = self._image(self.file("normals"), np.float32, colours=3)
         return levels / np.float32(127.5) - np.float32(1)
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Return the lossless arrays: `depth`, `object_id`, `class_id`, each of shape (H, W)."""
         path = self.file("arrays")
-        with _reading(path), np.load(path, allow_pickle=False) as stored:
+        content = io.BytesIO(read_limited(path, _LARGEST))
+        with _reading(path), np.load(content, allow_pickle=False) as stored:
             return dict(stored)
 
     def file(self, output: str) -> Path:
@@ -119,14 +132,26 @@ class RecordedFrame:
         """
         return self.episode.file(output, self.number)
 
-    def _image(self, path: Path, kind: Any) -> NDArray[Any]:  # noqa: ANN401  # a dtype
+    def _image(self, path: Path, kind: Any, colours: int = 1) -> NDArray[Any]:  # noqa: ANN401
+        content = read_limited(path, _LARGEST)
         with _reading(path):
-            content = path.read_bytes()
-            grey = grey_pixels(content)
-            if grey is not None:
-                return grey.astype(kind)
+            if content[16:24] == struct.pack(">II", *self.episode.size):  # a PNG of this size
+                grey = grey_pixels(content)
+                if grey is not None and colours == 1:
+                    return grey.astype(kind)
             with Image.open(io.BytesIO(content)) as image:
+                self._require_size(path, image.size)
+                if len(image.getbands()) != colours:
+                    raise DataFileError(
+                        f"{path}: has {len(image.getbands())} colours, not {colours}"
+                    )
                 return np.asarray(image).astype(kind)
+
+    def _require_size(self, path: Path, found: tuple[int, ...]) -> None:
+        """Refuse a picture of another size, before it fills the memory."""
+        if found != self.episode.size:
+            sizes = ("x".join(map(str, size)) for size in (found, self.episode.size))
+            raise DataFileError(f"{path}: has {' pixels, not '.join(sizes)}")
 
 
 class RecordedEpisode(Sequence[RecordedFrame]):
@@ -148,7 +173,13 @@ class RecordedEpisode(Sequence[RecordedFrame]):
     @cached_property
     def labels(self) -> list[Label]:
         """The label of each frame, see docs/labels.md."""
-        return read_labels(self.folder / LABELS)
+        path = self.folder / LABELS
+        labels = read_labels(path)
+        if not labels:
+            raise DataFileError(f"{path}: has no frames")
+        for number, label in enumerate(labels, 1):
+            _require_fitting(label, self.size, f"{path}: line {number}")
+        return labels
 
     @property
     def fps(self) -> float:
@@ -163,8 +194,7 @@ class RecordedEpisode(Sequence[RecordedFrame]):
     @cached_property
     def frame_count(self) -> int:
         """Number of frames, without reading the labels."""
-        with _reading(self.folder / LABELS), (self.folder / LABELS).open("rb") as file:
-            return sum(1 for _ in file)
+        return len(read_limited(self.folder / LABELS, 1 << 30).splitlines())
 
     def __len__(self) -> int:
         return self.frame_count
@@ -221,8 +251,8 @@ class RecordedEpisode(Sequence[RecordedFrame]):
 
     def has(self, output: str) -> bool:
         """Return whether the writer of this name has recorded the episode."""
-        if output in _OF_EPISODES:
-            return (self.folder / _OF_EPISODES[output]).exists()
+        if output in OF_EPISODES:
+            return (self.folder / OF_EPISODES[output]).exists()
         return self.file(output, 0).exists()
 
 
@@ -302,7 +332,7 @@ def _table(path: Path, key: str) -> list[dict[str, Any]]:
     try:
         table: list[dict[str, Any]] = json.loads(read_limited(path, 1 << 28))[key]
         for row in table:
-            if row["split"] not in SPLITS or not re.fullmatch(r"[\w.-]+", row["name"]):
+            if row["split"] not in SPLITS or not re.fullmatch(r"\w[\w.-]*", row["name"]):
                 raise ValueError(f"{key}: {row!r:.200}")
     except (ValueError, TypeError, LookupError, RecursionError) as error:
         raise DataFileError(f"{path}: not a description of a data set: {error}") from None
@@ -341,11 +371,38 @@ def _require_complete(folder: Path) -> None:
             raise DataFileError(f"{folder / name}: missing, though {CHECKSUMS} names it")
 
 
+def _visible_boxes(label: Label) -> Iterator[tuple[int, list[int]]]:
+    """Yield id and box of the visible pixels of each object that a label calls visible."""
+    if label["visible_fraction"] > 0.0:
+        yield label["target_id"], label["target_visible_box"]
+    yield from ((other["id"], other["visible_box"]) for other in label["others"])
+
+
+def _require_fitting(label: Label, size: tuple[int, int], where: str) -> None:
+    """Refuse a label of another picture's size, or with a box that is not inside the picture."""
+    if (label["width"], label["height"]) != size:
+        raise DataFileError(f"{where}: its picture is not {size[0]}x{size[1]} pixels")
+    boxes = [label["target_box"], label["target_visible_box"]]
+    for other in label["others"]:
+        boxes += other["box"], other["visible_box"]
+    for box in boxes:
+        left, top, right, bottom = box
+        if not (left <= right <= size[0] and top <= bottom <= size[1]):
+            raise DataFileError(f"{where}: the box {box} is not inside the picture")
+
+
+_UNREADABLE = (OSError, ValueError, SyntaxError, EOFError, StopIteration, zipfile.BadZipFile,
+               Image.DecompressionBombError)  # fmt: skip
+"""What the libraries raise that read pictures and arrays."""
+
+
 @contextmanager
 def _reading(path: Path) -> Iterator[None]:
     """Turn errors of reading a file into one line."""
     try:
         yield
-    except (OSError, ValueError, SyntaxError, EOFError) as error:
+    except UnidentifiedImageError:  # its own words tell an address in memory
+        raise DataFileError(f"{path}: cannot read: not a picture") from None
+    except _UNREADABLE as error:
         told = getattr(error, "strerror", None) or error
         raise DataFileError(f"{path}: cannot read: {told}") from error

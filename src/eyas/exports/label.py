@@ -7,18 +7,22 @@ table of docs/labels.md (`python tools/write_docs.py`) are made of it: a new fie
 import json
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
+from pydantic_core import SchemaValidator
 
 from eyas.core.clock import PHYSICS_STEP
 from eyas.core.errors import DataFileError
 from eyas.core.frames import rotate_back
 from eyas.exports.frame import Frame, Subject
+from eyas.exports.label_reading import labels_in, reader_of
 from eyas.exports.writer import Episode, Files, Gather, Scores, Summary, Writer
 from eyas.lanes import interpreted
+from eyas.state.scene import ACTOR_OBJECT
 from eyas.task.done import DoneReason
 
 __all__ = [
@@ -27,7 +31,6 @@ __all__ = [
     "Label",
     "LabelField",
     "LabelWriter",
-    "checked",
     "label_of",
     "label_schema",
     "read_labels",
@@ -70,11 +73,19 @@ def _array(name: str, of: Mapping[str, Any], count: int) -> Type:
     return Type(name, {"type": "array", "items": of, "minItems": count, "maxItems": count})
 
 
-WHOLE = Type("whole number", {"type": "integer"})
-NUMBER = Type("number", {"type": ["number", "null"]})
+_LARGEST = 1e12
+"""More than any honest number; its square is still finite in float32."""
+
+WHOLE = Type("whole number", {"type": "integer", "minimum": -1, "maximum": 2**31 - 1})
+NUMBER = Type("number", {"type": "number", "minimum": -_LARGEST, "maximum": _LARGEST})
+REWARD = Type("number, or null", {**NUMBER.schema, "type": ["number", "null"]})
+SHARE = Type("number", {"type": "number", "minimum": 0.0, "maximum": 1.0})
 TRUTH = Type("true or false", {"type": "boolean"})
-TEXT = Type("text", {"type": "string"})
-BOX = _array("4 whole numbers", WHOLE.schema, 4)
+TEXT = Type("text", {"type": "string", "pattern": r"^[^\x00-\x1f\x7f]*$"})
+ID = Type("whole number", {"type": "integer", "minimum": ACTOR_OBJECT, "maximum": 2**31 - 1})
+CLASS = Type("whole number", {"type": "integer", "enum": [9, 11, 12, 13, 14, 15]})
+SIDE = Type("whole number", {"type": "integer", "minimum": 1, "maximum": 2**16})
+BOX = _array("4 whole numbers", {"type": "integer", "minimum": 0, "maximum": 2**16}, 4)
 EXTENT = _array("4 numbers", NUMBER.schema, 4)
 VECTOR = _array("3 numbers", NUMBER.schema, 3)
 MATRIX = _array("3 rows of 3 numbers", VECTOR.schema, 3)
@@ -166,7 +177,7 @@ FIELDS = (
     LabelField("target_box", BOX, "Extent in the picture, hidden parts included, clipped to the "
                "picture: left, top, right, bottom, the last two exclusive; all 0 outside the "
                "picture.", None, lambda f, s: s.box.tolist(), "box", unit="pixels"),
-    LabelField("visible_fraction", NUMBER, "Visible pixels over those that it would cover if "
+    LabelField("visible_fraction", SHARE, "Visible pixels over those that it would cover if "
                "nothing hid it, 0 to 1.", None, lambda f, s: round(s.visible_fraction, 6),
                "visible_fraction"),
     LabelField("occluded", TRUTH, "Whether a part inside the picture is hidden.", None,
@@ -185,7 +196,7 @@ FIELDS = (
                "and up axes.", lambda f, e: _points(f.camera.rotation), frame="camera to world"),
     LabelField("field_of_view", NUMBER, "Horizontal field of view of the camera.",
                lambda f, e: rounded(f.camera.field_of_view), unit="rad"),
-    LabelField("target_id", WHOLE, "Its number in the id pictures; the same in all frames of an "
+    LabelField("target_id", ID, "Its number in the id pictures; the same in all frames of an "
                "episode.", None, lambda f, s: s.object_id, "id"),
     LabelField("target_type", TEXT, "Name of its model.", None, lambda f, s: s.type, "type"),
     LabelField("target_size", VECTOR, "Length, width, height.", None,
@@ -200,7 +211,7 @@ FIELDS = (
                lambda f, s: rounded(s.yaw), "yaw", unit="rad", frame="world"),
     LabelField("relative_position", VECTOR, "Its centre, seen from the tracker: forward, left, up.",
                None, _relative, unit="m", frame="tracker's body"),
-    LabelField("reward", NUMBER, "Reward at this time.", lambda f, e: rounded(f.reward)),
+    LabelField("reward", REWARD, "Reward at this time.", lambda f, e: rounded(f.reward)),
     LabelField("action", WHOLE, "Number of the action if it is one of several, 0 to 5 for a "
                "random one; else -1.", lambda f, e: f.action.number),
     LabelField("direction", WHOLE, "Its turn: 0 stop, 1 straight, 2 left, 3 right.", None,
@@ -230,10 +241,10 @@ FIELDS = (
                "moment, which swing out of the box of its size; only of people and robots.", None,
                lambda f, s: _points(s.posed_corners), "posed_corners", unit="m", frame="world",
                left_out=True),
-    LabelField("target_class_id", WHOLE, "Its class, as in the class pictures.", None,
+    LabelField("target_class_id", CLASS, "Its class, as in the class pictures.", None,
                lambda f, s: int(s.object_class), "class_id"),
-    LabelField("width", WHOLE, "Width of the picture.", lambda f, e: e.width, unit="pixels"),
-    LabelField("height", WHOLE, "Height of the picture.", lambda f, e: e.height, unit="pixels"),
+    LabelField("width", SIDE, "Width of the picture.", lambda f, e: e.width, unit="pixels"),
+    LabelField("height", SIDE, "Height of the picture.", lambda f, e: e.height, unit="pixels"),
     LabelField("intrinsics", MATRIX, "Camera matrix: x right, y down, z forward, the centre of "
                "pixel (0, 0) at (0.5, 0.5).", lambda f, e: _points(f.camera.intrinsics),
                unit="pixels"),
@@ -245,7 +256,7 @@ FIELDS = (
                "the picture were larger. Vertices less than 8 cm in front of the camera, or behind "
                "it, are left out; all 0 if all are.", None, lambda f, s: rounded_list(s.whole_box),
                "whole_box", unit="pixels"),
-    LabelField("target_truncated", NUMBER, "Share of its whole box that is outside the picture, 0 "
+    LabelField("target_truncated", SHARE, "Share of its whole box that is outside the picture, 0 "
                "to 1; 1 if it is out of view.", None, lambda f, s: rounded(s.truncated(f.camera)),
                "truncated"),
     LabelField("target_distance", NUMBER, "From the camera to its centre.", None, _distance,
@@ -283,27 +294,6 @@ def _values(
             value = field.of_frame(frame, episode)
         if value or not field.left_out:
             yield key, value
-
-
-def checked(record: object) -> Label:
-    """Return a record that a file holds as a label.
-
-    Raises:
-        ValueError: It has not the fields of a label.
-    """
-    label = _checked(record, _FRAME)
-    for other in label["others"]:
-        _checked(other, _OTHERS)
-    return label
-
-
-def _checked(record: object, fields: Mapping[str, LabelField]) -> Label:
-    if not isinstance(record, dict):
-        raise ValueError("not an object")
-    needed = {key for key, field in fields.items() if not field.left_out}
-    if not needed <= record.keys() <= fields.keys():
-        raise ValueError("other fields")
-    return record
 
 
 def label_schema() -> dict[str, Any]:
@@ -351,7 +341,7 @@ class LabelWriter(Writer):
             for label in labels:
                 reward = math.nan if label["reward"] is None else label["reward"]
                 scores = scores.plus(reward, seen=label["visible_fraction"] > 0.0)
-        except (DataFileError, TypeError, OverflowError):  # a field may hold anything
+        except DataFileError:
             return None
         return Summary(len(labels), scores)
 
@@ -360,24 +350,15 @@ def _encoded(labels: Sequence[Label]) -> bytes:
     return "".join(json.dumps(label, allow_nan=False) + "\n" for label in labels).encode()
 
 
+@cache
+def _reader() -> SchemaValidator:
+    return reader_of(label_schema())
+
+
 def read_labels(path: Path) -> list[Label]:
     """Return the labels of an episode, one for each frame, see docs/labels.md.
 
     Raises:
         DataFileError: The file is missing, cut off, or does not hold labels.
     """
-    labels = []
-    try:
-        text = path.read_text()
-    except (OSError, UnicodeDecodeError) as error:
-        raise DataFileError(f"{path}: cannot read: {error}") from error
-    for number, line in enumerate(text.splitlines(), 1):
-        try:
-            record = json.loads(line)
-        except (ValueError, RecursionError):
-            raise DataFileError(f"{path}: line {number} is cut off or not JSON") from None
-        try:
-            labels.append(checked(record))
-        except (TypeError, ValueError):
-            raise DataFileError(f"{path}: line {number} is not the label of a frame") from None
-    return labels
+    return labels_in(path, _reader())

@@ -10,11 +10,14 @@ import json
 import tarfile
 from collections.abc import Sequence
 
-from eyas.core.files import atomic_path
+from eyas.core.files import atomic_path, read_limited
 from eyas.datasets.format import KEPT, Exported, Format, Job, picture_ending
 from eyas.datasets.recording import RecordedEpisode
 
 __all__ = ["WebDataset"]
+
+_LARGEST = 1 << 28
+"""Of a file of one frame [bytes]."""
 
 _PLANES = ("masks", "classes", "depth", "flow")
 
@@ -35,10 +38,14 @@ class WebDataset(Format):
         with atomic_path(path) as part, tarfile.open(part, "w", format=tarfile.USTAR_FORMAT) as tar:
             for frame in episode:
                 key = f"{episode.name}_{frame.number:06d}"
-                _put(tar, f"{key}.{ending}", episode.picture_file(frame.number).read_bytes())
+                _put(
+                    tar,
+                    f"{key}.{ending}",
+                    read_limited(episode.picture_file(frame.number), _LARGEST),
+                )
                 _put(tar, f"{key}.json", json.dumps(frame.label).encode())
                 for plane in planes:
-                    _put(tar, f"{key}.{plane}.png", frame.file(plane).read_bytes())
+                    _put(tar, f"{key}.{plane}.png", read_limited(frame.file(plane), _LARGEST))
 
     def finish(self, episodes: Sequence[Exported]) -> None:
         """Number the shards, and write the index of each split."""

@@ -99,6 +99,9 @@ def _take(source: Path, target: Path, threads: ThreadPoolExecutor) -> None:
             )
     with refusals(target):
         paths = [path.relative_to(source) for path in sorted(source.rglob("*"))]
+        linked = next((source / name for name in paths if (source / name).is_symlink()), None)
+        if linked is not None:  # it may lead to a file that nobody means to publish
+            raise DataFileError(f"{linked}: a symbolic link, not a file of a shard")
         files = [name for name in paths if (source / name).is_file() and name.name != LOCK]
         # The file that says that the part is complete comes last.
         for path in sorted(files, key=lambda path: path.as_posix() == PART_FILE):

@@ -4,6 +4,7 @@ import json
 import multiprocessing
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -181,6 +182,11 @@ def _tracked(
         waiting = [pool.submit(_tracked_one, scoring, episode) for episode in episodes]
         try:
             yield from (done.result() for done in waiting)
+        except BrokenProcessPool:
+            raise EyasError(
+                "--workers: a process was killed (too little memory?), or a script calls "
+                "eyas.track outside of `if __name__ == '__main__':`"
+            ) from None
         finally:
             pool.shutdown(cancel_futures=True)
 
