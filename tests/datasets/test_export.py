@@ -1,5 +1,6 @@
 """What all formats have in common."""
 
+import hashlib
 import json
 import os
 import random
@@ -11,9 +12,11 @@ import time
 from pathlib import Path
 from typing import ClassVar
 
+import numpy as np
 import pytest
 
 from eyas.core.errors import ConfigError, DataFileError, OutputError, UnknownNameError
+from eyas.core.png import png_bytes
 from eyas.datasets.export import ExportOptions, export
 from eyas.datasets.format import objects_of
 from eyas.datasets.recording import load
@@ -250,3 +253,57 @@ def test_export_json_tells_what_it_is_of(exported, dataset):
     assert told["format"] == "otb"
     assert told["recording"] == dataset.name
     assert told["least_side"] == 4
+
+
+@pytest.fixture
+def foreign(data, tmp_path):
+    """A copy of a recording whose files may be changed, with checksums that fit."""
+    root = tmp_path / "foreign"
+    source = data.episodes[0].folder.parent.parent
+    shutil.copytree(source, root, ignore=shutil.ignore_patterns("exports"))
+
+    def changed(name: str, content: bytes) -> Path:
+        path = next(root.glob(f"*/episode*/{name}"))
+        path.unlink()
+        path.write_bytes(content)
+        sums = root / "checksums.sha256"
+        digest, own = hashlib.sha256(content).hexdigest(), path.relative_to(root).as_posix()
+        lines = [line for line in sums.read_text().splitlines() if not line.endswith(own)]
+        sums.unlink()
+        sums.write_text("\n".join([*lines, f"{digest}  {own}"]) + "\n")
+        return root
+
+    return changed
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        (b"hello", "cannot read: not a picture"),
+        (png_bytes(np.zeros((12, 16), np.uint16)), "has 16x12 pixels, not"),
+        (None, "though its label does"),
+    ],
+)
+def test_masks_of_someone_else_that_do_not_fit_are_refused(foreign, data, content, told):
+    frame = next(frame for frame in data[0] if frame.label["visible_fraction"] > 0.0)
+    width, height = data[0].size
+    empty = png_bytes(np.zeros((height, width), np.uint16))
+    root = foreign(f"masks/{frame.number:06d}.png", content or empty)
+    with pytest.raises(DataFileError, match=told) as raised:
+        run(root, ["coco"], None, ExportOptions())
+    assert "\n" not in str(raised.value)
+
+
+def test_checksums_that_do_not_name_a_file_do_not_vouch_for_it(foreign):
+    root = foreign("labels.jsonl", b"")
+    (root / "checksums.sha256").unlink()
+    (root / "checksums.sha256").write_bytes(b"")
+    with pytest.raises(DataFileError, match=r"labels.jsonl: has no frames|does not name it"):
+        run(root, ["got10k"], None, ExportOptions())
+
+
+def test_labels_of_another_size_are_refused(foreign, data):
+    labels = [{**label, "width": label["width"] + 1} for label in data[0].labels]
+    root = foreign("labels.jsonl", "".join(f"{json.dumps(each)}\n" for each in labels).encode())
+    with pytest.raises(DataFileError, match=r"labels.jsonl: line 1: its picture is not \d+x\d+"):
+        run(root, ["got10k"], None, ExportOptions())

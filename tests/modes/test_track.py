@@ -1,7 +1,12 @@
 """`eyas track`: box trackers on recorded episodes; GOT-10k's own toolkit checks the figures."""
 
 import json
+import os
 import shutil
+import signal
+import subprocess
+import sys
+import time
 import warnings
 from pathlib import Path
 
@@ -227,3 +232,38 @@ def test_opencv_trackers_follow_a_moving_square(tmp_path):
             box = tracker.update(picture(number))
         truth = np.array([(44.0, 40.0, 24.0, 24.0)])
         assert overlaps(np.array([box]), truth)[0] > 0.3, name
+
+
+def test_a_process_that_is_killed_is_one_line(folder, tmp_path, monkeypatch):
+    (tmp_path / "deadly.py").write_text(
+        "import os\n"
+        "class Tracker:\n"
+        "    def begin(self, picture, box): os._exit(9)\n"
+        "    def update(self, picture): ...\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    with pytest.raises(EyasError, match=r"^--workers: a process was killed"):
+        run(Scoring("deadly:Tracker", folder), tmp_path / "out", workers=2)
+
+
+def test_ctrl_c_is_one_line_that_tells_how_to_go_on(folder, tmp_path):
+    (tmp_path / "slow.py").write_text(
+        "import time\n"
+        "class Tracker:\n"
+        "    def begin(self, picture, box): open('begun', 'w').close(); time.sleep(60)\n"
+        "    def update(self, picture): ...\n"
+    )
+    command = [*(sys.executable, "-m", "eyas", "track", folder, "--tracker", "slow:Tracker"),
+               *("--workers", "2", "--out", "out", "--quiet")]  # fmt: skip
+    paths = os.pathsep.join([".", *sys.path])
+    process = subprocess.Popen(
+        command, cwd=tmp_path, stderr=subprocess.PIPE, text=True, start_new_session=True,
+        env={**os.environ, "PYTHONPATH": paths},
+    )  # fmt: skip
+    while not (tmp_path / "begun").exists():
+        assert process.poll() is None
+        time.sleep(0.05)
+    os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to all processes
+    _, told = process.communicate(timeout=50)
+    line = "eyas: interrupted; every file in out is whole; continue with --resume\n"
+    assert (process.returncode, told) == (130, line)

@@ -18,7 +18,10 @@ def export(  # noqa: PLR0913  # one parameter for each option
     ],
     formats: Annotated[
         list[str],
-        typer.Option("--format", help=f"A format, or package.module:Class; {SEVERAL}."),
+        typer.Option(
+            "--format",
+            help=f"coco, mot, ..., see docs/exports.md, or package.module:Class; {SEVERAL}.",
+        ),
     ],
     out: Annotated[
         Path | None,
@@ -30,7 +33,9 @@ def export(  # noqa: PLR0913  # one parameter for each option
     ] = False,
     least_side: Annotated[
         int,
-        typer.Option("--least-side", min=1, help="Ignore objects that are smaller [pixels]."),
+        typer.Option(
+            "--least-side", min=1, help="Ignore objects narrower or lower than so many pixels."
+        ),
     ] = 1,
     least_visible: Annotated[
         float,
@@ -83,7 +88,8 @@ def track(  # noqa: PLR0913  # one parameter for each option
         typer.Option("--restarts", help="After a failure, give the tracker the true box again."),
     ] = False,
     workers: Annotated[
-        int | None, typer.Option("--workers", min=1, help="Processes; by default one a core.")
+        int | None,
+        typer.Option("--workers", min=1, help="Processes; by default one for each core."),
     ] = None,
     plots: Annotated[
         bool, typer.Option("--plots", help="Draw success and precision (extra plots).")
@@ -96,11 +102,14 @@ def track(  # noqa: PLR0913  # one parameter for each option
 ) -> None:
     """Score a box tracker on recorded episodes: AO, SR, success, precision, by kinds of frames."""
     from eyas.core.errors import ConfigError
+    from eyas.modes.evaluation_plots import require_matplotlib
     from eyas.modes.track.report import draw_curves, print_figures
     from eyas.modes.track.run import Scoring, run
 
     if resume and overwrite:
         raise ConfigError("--overwrite and --resume cannot be used together")
+    if plots:
+        require_matplotlib()  # not only when all is tracked
     name = tracker.rpartition(":")[2].lower()
     folder = out or Path("runs/track") / f"{recording.resolve().name}-{name}"
     results = run(

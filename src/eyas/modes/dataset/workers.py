@@ -4,20 +4,17 @@ A map that a process has built serves all parts there that it records. After som
 takes its place, so that memory does not grow with their number.
 """
 
-import signal
-import threading
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import contextmanager
 from dataclasses import dataclass
 from multiprocessing import get_context
-from types import FrameType
 from typing import Any, TypeVar
 
 from eyas.core.errors import EyasError
 from eyas.datasets.plan import Part, in_order_of_work
 from eyas.modes.dataset.parts import begin_worker
+from eyas.modes.interrupts import interrupts_held
 
 __all__ = ["work"]
 
@@ -83,7 +80,7 @@ class _Worker:
             context = get_context("spawn")
             self.pool = ProcessPoolExecutor(1, context, begin_worker, (self.threads,))
         self.place = part.config.world.map
-        with _interrupts_held():
+        with interrupts_held():
             return self.pool.submit(call, part, *args)
 
     def close(self) -> None:
@@ -96,31 +93,6 @@ class _Worker:
         for process in list((getattr(self.pool, "_processes", None) or {}).values()):
             process.terminate()
         self.close()
-
-
-@contextmanager
-def _interrupts_held() -> Iterator[None]:
-    """Hold back signals that end the program while a process begins, which would tell of its half
-    beginning; the process itself never hears of Ctrl-C: its parent ends it.
-    """
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    came: list[tuple[int, FrameType | None]] = []
-    before = {number: signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM)}
-    for number in before:
-        signal.signal(number, lambda *what: came.append(what))
-    masked = hasattr(signal, "pthread_sigmask")  # not on Windows
-    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT}) if masked else set()
-    try:
-        yield
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)
-        if masked:
-            signal.pthread_sigmask(signal.SIG_SETMASK, mask)
-        for sent, _ in came[:1]:
-            signal.raise_signal(sent)
 
 
 def work(

@@ -28,6 +28,7 @@ from eyas.evaluation.one_pass import (
 )
 from eyas.evaluation.strata import strata_of
 from eyas.lanes import thread_count
+from eyas.modes.interrupts import interrupts_held
 from eyas.modes.progress import frames_bar
 
 __all__ = ["Scoring", "run"]
@@ -79,13 +80,18 @@ def run(
 
     Raises:
         EyasError: Something is wrong with the tracker, the recording or the folder; one line.
+        KeyboardInterrupt: The user stopped it; every file that exists is complete.
     """
     recording = load(scoring.folder)
     episodes = _episodes(recording, scoring.split)
     box_tracker(scoring.tracker)  # raises before anything is written
     with folder_lock(out, "tracking into it"):
         _open(out, scoring, resume=resume, overwrite=overwrite)
-        seconds = _track_all(scoring, episodes, out, workers, quiet=quiet)
+        try:
+            seconds = _track_all(scoring, episodes, out, workers, quiet=quiet)
+        except KeyboardInterrupt as interrupt:
+            interrupt.add_note(f"every file in {out} is whole; continue with --resume")
+            raise
         results = _results(scoring, episodes, out)
         write_atomic(out / RESULTS, (json.dumps(results, indent=1) + "\n").encode())
         if seconds.size:
@@ -179,7 +185,8 @@ def _tracked(
         return
     # Not forked: OpenCV's threads do not survive it.
     with ProcessPoolExecutor(workers, multiprocessing.get_context("spawn")) as pool:
-        waiting = [pool.submit(_tracked_one, scoring, episode) for episode in episodes]
+        with interrupts_held():
+            waiting = [pool.submit(_tracked_one, scoring, episode) for episode in episodes]
         try:
             yield from (done.result() for done in waiting)
         except BrokenProcessPool:
@@ -187,6 +194,10 @@ def _tracked(
                 "--workers: a process was killed (too little memory?), or a script calls "
                 "eyas.track outside of `if __name__ == '__main__':`"
             ) from None
+        except BaseException:  # the processes write nothing: nobody need wait for them
+            for process in list((pool._processes or {}).values()):
+                process.terminate()
+            raise
         finally:
             pool.shutdown(cancel_futures=True)
 
