@@ -18,7 +18,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar, NamedTuple, Protocol
 
-from eyas.core.files import atomic_path, refusals, write_atomic
+from eyas.core.errors import DataFileError
+from eyas.core.files import atomic_path, read_limited, refusals, write_atomic
 from eyas.datasets.recording import RecordedEpisode, RecordedFrame
 from eyas.exports.label import FIELDS, Label
 from eyas.state.scene import ObjectClass
@@ -164,8 +165,16 @@ class Job:
         self.write(f"{KEPT}/{episode.name}.json", json.dumps(what, allow_nan=False))
 
     def kept(self, name: str) -> Any:  # noqa: ANN401  # JSON
-        """Return what was kept of the episode with this name."""
-        return json.loads((self.folder / KEPT / f"{name}.json").read_text())
+        """Return what was kept of the episode with this name.
+
+        Raises:
+            DataFileError: It is not what was kept.
+        """
+        path = self.folder / KEPT / f"{name}.json"
+        try:
+            return json.loads(read_limited(path, 1 << 30))
+        except (ValueError, RecursionError) as error:
+            raise DataFileError(f"{path}: {error}; start again with --overwrite") from None
 
     def settle(self, kept: str, inside: str) -> None:
         """Give a file that `add` has kept its final place; may be called twice.

@@ -4,8 +4,10 @@ As https://github.com/Farama-Foundation/Minari reads it with `MINARI_DATASETS_PA
 folder of the export. Minari itself would make lossy JPEGs of pictures unless told otherwise.
 """
 
+import io
 import json
 import re
+import shutil
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -13,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from eyas.core.errors import MissingExtraError
+from eyas.core.errors import MissingExtraError, OutputError
 from eyas.core.files import atomic_path
 from eyas.datasets.format import KEPT, Exported, Format, Job
 from eyas.datasets.motion import ACTION_NAMES, STATE_NAMES, TRUTH_NAMES, motion_of, task_of
@@ -22,6 +24,9 @@ from eyas.datasets.recording import RecordedEpisode
 __all__ = ["Minari"]
 
 Row = dict[str, Any]
+
+_MARGIN = 1 << 16
+"""What an episode may take more than its part [bytes]."""
 
 
 class Minari(Format):
@@ -44,11 +49,11 @@ class Minari(Format):
         """Write its part, a file of its own."""
         motion, count = motion_of(episode), len(episode)
         width, height = episode.size
-        path = self._job.folder / KEPT / f"{episode.name}.hdf5"
-        path.parent.mkdir(parents=True, exist_ok=True)
         ends = np.array([label["done"] for label in episode.labels[1:]], np.bool_)
         last = np.arange(count - 1) == count - 2
-        with atomic_path(path) as part, self._h5.File(part, "w") as file:
+        # In memory: HDF5 ends the process when it closes a file that it cannot write.
+        stored = io.BytesIO()
+        with self._h5.File(stored, "w") as file:
             seen = file.create_group("observations")
             pictures = seen.create_dataset(
                 "image",
@@ -64,6 +69,7 @@ class Minari(Format):
             file["actions"] = motion.actions[:-1]
             file["rewards"] = motion.rewards[1:].astype(np.float64)
             file["terminations"], file["truncations"] = ends, last & ~ends
+        self._job.write(f"{KEPT}/{episode.name}.hdf5", stored.getvalue())
         about = {"task": task_of(episode), "size": [height, width]}
         self._job.keep(episode, {"seed": episode.config.seed, **about})
 
@@ -72,6 +78,7 @@ class Minari(Format):
         folder = Path("eyas", f"{_plain(self._job.name)}-v0", "data")
         path = self._job.folder / folder / "main_data.hdf5"
         path.parent.mkdir(parents=True, exist_ok=True)
+        self._require_space(path, [episode.name for episode in episodes])
         kept = [self._job.kept(episode.name) for episode in episodes]
         with atomic_path(path) as part, self._h5.File(part, "w", track_order=True) as file:
             for number, (episode, about) in enumerate(zip(episodes, kept, strict=True)):
@@ -94,11 +101,15 @@ class Minari(Format):
         size = round(path.stat().st_size / 1e6, 1)
         about = _metadata(folder.parent.as_posix(), len(episodes), steps, kept[0]["size"], size)
         self._job.write((folder / "metadata.json").as_posix(), json.dumps(about) + "\n")
-        _describe_namespace(self._job)
+        self._job.write("eyas/namespace_metadata.json", json.dumps({"description": "Eyas"}) + "\n")
 
-
-def _describe_namespace(job: Job) -> None:
-    job.write("eyas/namespace_metadata.json", json.dumps({"description": "Eyas"}) + "\n")
+    def _require_space(self, path: Path, names: Sequence[str]) -> None:
+        """Refuse to join what the disk cannot hold, see `add`."""
+        parts = (self._job.folder / KEPT / f"{name}.hdf5" for name in names)
+        needed = sum(part.stat().st_size + _MARGIN for part in parts)
+        if shutil.disk_usage(path.parent).free < needed:
+            raise OutputError(f"{path}: cannot write: it needs {needed >> 20} MiB, and the disk "
+                              "has less left")  # fmt: skip
 
 
 def _plain(name: str) -> str:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from eyas.core.errors import MissingExtraError
+from eyas.core.errors import MissingExtraError, OutputError
 from eyas.core.files import atomic_path, refusals
 from eyas.datasets.boxes import box_of, camera_pose, quaternion_of
 from eyas.datasets.format import Format, Job, objects_of, split_of
@@ -50,8 +50,11 @@ class Rerun(Format):
             stream.log("world", world, static=True)
             for frame in episode:
                 self._log(stream, frame)
-            stream.flush()
-            stream.disconnect()
+            try:
+                stream.flush()
+                stream.disconnect()
+            except RuntimeError as error:  # its thread, which writes, has ended
+                raise OutputError(f"{path}: cannot write: {error}") from None
 
     def _log(self, stream: Any, frame: RecordedFrame) -> None:  # noqa: ANN401  # rerun's
         rr, label = self._rr, frame.label
