@@ -161,3 +161,26 @@ def test_a_missing_library_is_told_in_one_line(recorded, tmp_path, monkeypatch, 
     with pytest.raises(MissingExtraError, match="needs the extra 'exports'"):
         export(recorded, name, tmp_path / "out", ExportOptions())
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("name", ["minari", "rerun", "webdataset"])
+def test_on_a_full_disk_an_export_ends_in_a_line_and_goes_on(recorded, tmp_path, name):
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    mount = ["mount", "-t", "tmpfs", "-o", "size=60k", "tmpfs", str(disk)]
+    if subprocess.run(mount, capture_output=True, check=False).returncode:
+        pytest.skip("disks of a given size are only for root")
+    command = [sys.executable, "-m", "eyas", "export", str(recorded.folder), "--quiet"]
+    command += ["--format", name, "--out", str(disk)]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=100, check=False)
+        told = [line for line in done.stderr.splitlines() if line.startswith("eyas: ")]
+        assert done.returncode == 2, done.stderr
+        assert len(told) == 1
+        assert "cannot write" in told[0]
+        assert "Traceback" not in done.stderr
+        subprocess.run(["mount", "-o", "remount,size=100m", str(disk)], check=True)
+        again = subprocess.run([*command, "--resume"], timeout=100, check=False)
+        assert again.returncode == 0
+    finally:
+        subprocess.run(["umount", "-l", str(disk)], check=True)
