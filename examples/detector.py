@@ -119,7 +119,7 @@ def goals(boxes, classes):
 
 
 def as_input(pictures):
-    tensor = torch.from_numpy(np.ascontiguousarray(pictures)).permute(0, 3, 1, 2)
+    tensor = torch.from_numpy(np.array(pictures)).permute(0, 3, 1, 2)
     return tensor.float().sub_(110.0).div_(60.0)
 
 
