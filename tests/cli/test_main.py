@@ -104,7 +104,8 @@ def test_convert_writes_the_other_notation_and_rewrites_nothing(monkeypatch, cap
     )
     legacy.write_text(json.dumps(to_legacy(EyasConfig(video={"fps": 9}))))
     assert run(monkeypatch, capsys, "config", "convert", legacy, native)[0] == 0
-    changed = {"video": {"fps": 9, "jpeg_quality": 100}, "tracker": {"flight": "original"}}
+    video = {"fps": 9, "jpeg_quality": 100, "flight": "exact"}
+    changed = {"video": video, "tracker": {"flight": "original"}}
     meant = EyasConfig(**changed, start={"velocity": "rest"}, extras=[], original={})
     assert EyasConfig(**json.loads(native.read_text())) == meant
     assert run(monkeypatch, capsys, "config", "convert", native, again)[0] == 0

@@ -34,6 +34,7 @@ def write(folder: Path, frames: int, writers: list[Writer] | None = None) -> Epi
             1, 48, 64, subject=True, depth=True, object_id=True, class_id=True, normal=True
         ),
     )
+    snapshot.targets.actor[:] = 0
     snapshot.episodes.reward[:] = 0.5
     picture.subject_pixels[:] = 4, 5
     for number in range(frames):

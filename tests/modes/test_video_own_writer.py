@@ -22,7 +22,9 @@ SETTINGS = {
 def work(tmp_path_factory) -> Path:
     """A folder with the page's module, settings that name it, and a recording."""
     folder = tmp_path_factory.mktemp("own")
-    (folder / "my_writers.py").write_text(re.search(r"```python\n(.*?)```", DOC, re.DOTALL)[1])
+    blocks = re.findall(r"```python\n(.*?)```", DOC, re.DOTALL)
+    (code,) = (block for block in blocks if "class BoxTable" in block)
+    (folder / "my_writers.py").write_text(code)
     (folder / "settings.json").write_text(json.dumps(SETTINGS))
     assert eyas(folder).returncode == 0
     return folder
