@@ -8,8 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from eyas.core.errors import MissingExtraError, OutputError
-from eyas.core.files import atomic_path, refusals
+from eyas.core.errors import MissingExtraError
 from eyas.datasets.boxes import box_of, camera_pose, quaternion_of
 from eyas.datasets.format import Format, Job, objects_of, split_of
 from eyas.datasets.recording import RecordedEpisode, RecordedFrame
@@ -38,23 +37,19 @@ class Rerun(Format):
 
     def add(self, episode: RecordedEpisode) -> None:
         """Write its file."""
-        path = self._job.folder / split_of(episode) / f"{episode.name}.rrd"
-        with refusals(path):
-            path.parent.mkdir(parents=True, exist_ok=True)
-        with atomic_path(path) as part:
-            stream = self._rr.RecordingStream(
-                "eyas", recording_id=f"{self._job.name}-{episode.name}", send_properties=False
-            )
-            stream.save(part)
-            world = self._rr.ViewCoordinates.RIGHT_HAND_Z_UP
-            stream.log("world", world, static=True)
-            for frame in episode:
-                self._log(stream, frame)
-            try:
-                stream.flush()
-                stream.disconnect()
-            except RuntimeError as error:  # its thread, which writes, has ended
-                raise OutputError(f"{path}: cannot write: {error}") from None
+        stream = self._rr.RecordingStream(
+            "eyas", recording_id=f"{self._job.name}-{episode.name}", send_properties=False
+        )
+        # In memory: on a full disk Rerun's own thread, which writes, may never end.
+        stored = stream.memory_recording()
+        world = self._rr.ViewCoordinates.RIGHT_HAND_Z_UP
+        stream.log("world", world, static=True)
+        for frame in episode:
+            self._log(stream, frame)
+        stream.flush()
+        content = stored.drain_as_bytes()
+        stream.disconnect()
+        self._job.write(f"{split_of(episode)}/{episode.name}.rrd", content)
 
     def _log(self, stream: Any, frame: RecordedFrame) -> None:  # noqa: ANN401  # rerun's
         rr, label = self._rr, frame.label
