@@ -3,7 +3,7 @@ import pytest
 
 from eyas.state.mesh import Material, Mesh
 from eyas.state.scene import ObjectClass
-from eyas.targets.catalogue import KINDS, MODELS
+from eyas.targets.catalogue import KINDS, MODELS, kind_of
 from eyas.targets.kind import Kind, Model
 
 
@@ -40,6 +40,7 @@ def walker():
     kinds, models = len(KINDS), len(MODELS)
     yield walker_of(2)
     del KINDS[kinds:], MODELS[models:]
+    kind_of.cache_clear()
 
 
 def walker_of(parts: int, name: str = "walker") -> Kind:

@@ -82,6 +82,11 @@ class Served:
         """Return the files of the protocol that exist."""
         return sorted(path.name for path in (self.root / client.FILES).glob("[!.]*"))
 
+    def ended(self):
+        """Wait until it has ended by itself; return its exit code."""
+        self.process.wait(PATIENCE)
+        return self.end()
+
     def end(self, number=signal.SIGINT):
         if self.process.poll() is None:
             self.process.send_signal(number)

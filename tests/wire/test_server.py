@@ -208,10 +208,10 @@ def test_servers_side_by_side_keep_apart(serve, tmp_path):
     taken = serve(f"wire.port={servers[0].port}", root=tmp_path / "d")
     line = taken.until("error: wire.port: cannot listen on UDP port")
     assert "Address already in use" in line
-    assert taken.end() == 2
+    assert taken.ended() == 2
     shared = serve(root=tmp_path / "a")
     assert shared.until(f"process {servers[0].process.pid} is serving in it")
-    assert shared.end() == 2
+    assert shared.ended() == 2
 
 
 @pytest.mark.parametrize(
