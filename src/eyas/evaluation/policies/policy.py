@@ -57,8 +57,8 @@ class PolicyInput(NamedTuple):
     """Returns the share of each target that its camera sees now, 0 while the camera is covered,
     shape (N,): for oracles."""
     heard: NDArray[np.float64] | None = None
-    """Latest messages of each drone's mates, NaN before their first, shape (N, mates, numbers); None
-    where drones fly alone."""
+    """Latest messages of each drone's mates, NaN before their first, shape (N, mates, numbers);
+    None where drones fly alone."""
 
 
 class Failure(NamedTuple):
