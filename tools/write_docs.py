@@ -72,6 +72,17 @@ def tables() -> dict[Path, str]:
         text = "(not made yet)" if said is None else markdown(table, said)
         command = f"`eyas reproduce {table.name}`"
         pages[path] = f"{head}{begin}\n\n{text}\n\n{command}\n{end}{rest.split(end, 1)[1]}"
+    path = DOCS / "reproduce.md"
+    begin, end = "<!-- tables of eyas reproduce -->", "<!-- end of tables -->"
+    head, rest = (pages.get(path) or path.read_text()).split(begin)
+    rows = ["| table | episodes | where | command |", "|---|---|---|---|"]
+    rows += [
+        f"| {table.title} | {sum(row.plan.count for row in table.rows):,} | "
+        f"[{table.page}]({table.page}) | `eyas reproduce {table.name}` |"
+        for table in TABLES.values()
+    ]
+    listed = "\n".join(rows)
+    pages[path] = f"{head}{begin}\n\n{listed}\n\n{end}{rest.split(end, 1)[1]}"
     return pages
 
 
