@@ -22,6 +22,7 @@ from eyas.evaluation.meter import Meter
 from eyas.evaluation.policies.policy import Decision, Failure, Policy, PolicyInput, Start
 from eyas.evaluation.protocol import Protocol
 from eyas.evaluation.record import EpisodeRecord
+from eyas.evaluation.scenario import Scenario
 
 __all__ = ["BatchFlight", "Watcher", "clear_shares"]
 
@@ -82,6 +83,10 @@ class BatchFlight:
         self._episodes, self._protocol, self._policy = episodes, protocol, policy
         self._delay = delay
         self._batch = EpisodeBatch(episodes, protocol, policy.env)
+        make = protocol.scenario
+        self._scenario = (
+            Scenario(len(episodes)) if make is None else make(self._batch, protocol, episodes)
+        )
         self._meter = Meter(self._batch, protocol)
         self._actions = make_actions(policy.env.actions, policy.env.speeds)
         count = len(episodes)
@@ -100,22 +105,30 @@ class BatchFlight:
         seeds = np.array([episode.seed for episode in self._episodes])
         clear = clear_shares(self._episodes, self._protocol)
         self._delay.begin(seeds.tolist())
-        start = Start(seeds, self._boxes)
+        start = Start(seeds, self._boxes, self._scenario.told())
         self._guarded(lambda: self._policy.begin(start))
         told = np.zeros(len(seeds), np.bool_)
         for step in range(self._protocol.steps):
+            self._batch.covered[:] = self._scenario.covered(step)
             self._answer(step)  # before the next look, whose answer takes this one's place
             self._decide(step)
             self._answer(step)
             self._batch.advance(self._commands, self._active)
             self._meter.measure(self._active)
+            self._scenario.measure(step, self._active)
             self._active &= self._meter.reason == 0
             if watcher is not None:
                 watcher(self._batch, self._meter)
             if len(ended := np.flatnonzero(~self._active & ~told)):
                 told[ended] = True
                 yield [
-                    self._meter.record(row, self._episodes[row], clear[row], self._failed.get(row))
+                    self._meter.record(
+                        row,
+                        self._episodes[row],
+                        clear[row],
+                        self._failed.get(row),
+                        self._scenario.figures(row),
+                    )
                     for row in ended.tolist()
                 ]
             if not self._active.any():
@@ -133,7 +146,8 @@ class BatchFlight:
         if not deciding.any():
             return
         self._batch.look(deciding, np.full(len(deciding), step == 0))
-        sight = PolicyInput(self._batch.observations, deciding, self._batch.snapshot)
+        batch = self._batch
+        sight = PolicyInput(batch.observations, deciding, batch.snapshot, batch.visible)
         begun = time.perf_counter()
         decision = self._guarded(lambda: self._policy.act(sight))
         taken = time.perf_counter() - begun
@@ -173,6 +187,8 @@ class BatchFlight:
         self._active[row] = False
 
     def _boxes(self) -> NDArray[np.int32]:
+        if not self._protocol.first_box:
+            return np.zeros((len(self._episodes), 4), np.int32)
         image = self._policy.env.observation
         size = image.height, image.width
         boxes: NDArray[np.int32] = self._batch.gathered(lambda group: group.subjects(size)[1])

@@ -14,11 +14,11 @@ from eyas.core.build import Build, this_build
 from eyas.core.config import Config
 from eyas.core.errors import ConfigError
 from eyas.evaluation.delay import Measured, delay_from
-from eyas.evaluation.episode import FIRST_SEED, EpisodeSpec, Place, episodes_of
-from eyas.evaluation.episode_batch import episodes_with_neighbours
+from eyas.evaluation.episode import FIRST_SEED, EpisodeSpec, Place
 from eyas.evaluation.flight import BatchFlight, Watcher
 from eyas.evaluation.policies.table import fingerprint, open_policy
-from eyas.evaluation.protocol import Protocol, protocol_named
+from eyas.evaluation.protocol import Protocol
+from eyas.evaluation.protocols import protocol_named
 from eyas.evaluation.record import EpisodeRecord
 from eyas.world.maps import MAPS
 
@@ -134,10 +134,7 @@ def batches(plan: EvaluationPlan) -> list[list[EpisodeSpec]]:
         for target in plan.targets
     ]
     count = plan.episodes or protocol.episodes
-    if protocol.alike:
-        episodes = episodes_with_neighbours(places, protocol, count, plan.seed)
-    else:
-        episodes = episodes_of(places, protocol.directions, count, plan.seed)
+    episodes = protocol.choose(places, protocol, count, plan.seed)
     size = 1 if plan.latency == "measured" else plan.batch
     return [episodes[at : at + size] for at in range(0, len(episodes), size)]
 

@@ -12,6 +12,7 @@ from eyas.core.config import shown, updated
 from eyas.core.errors import ConfigError, DataFileError
 from eyas.envs.config import EnvConfig, ObservationPart
 from eyas.envs.observation import Observation
+from eyas.evaluation.scenario import Told
 from eyas.state.snapshot import Snapshot
 
 __all__ = [
@@ -36,7 +37,10 @@ class Start(NamedTuple):
     """Seed of each episode, shape (N,)."""
     boxes: Callable[[], NDArray[np.int32]]
     """Returns the true box of each target in its first picture, visible or hidden: left, top,
-    right, bottom, the last two exclusive [pixels]; all 0 if it is outside, shape (N, 4)."""
+    right, bottom, the last two exclusive [pixels]; all 0 if it is outside, or if the protocol does
+    not tell it, shape (N, 4)."""
+    told: Told | None = None
+    """What is told in words; None where the protocol has no words."""
 
 
 class PolicyInput(NamedTuple):
@@ -49,6 +53,9 @@ class PolicyInput(NamedTuple):
     memories of theirs must not change."""
     snapshot: Callable[[], Snapshot]
     """Returns the true state of all N: for oracles."""
+    visible: Callable[[], NDArray[np.float64]]
+    """Returns the share of each target that its camera sees now, 0 while the camera is covered,
+    shape (N,): for oracles."""
 
 
 class Failure(NamedTuple):
