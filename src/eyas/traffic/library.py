@@ -14,6 +14,7 @@ from eyas.core.config import shown
 from eyas.core.errors import DataFileError
 from eyas.core.files import user_path
 from eyas.core.program import code_of
+from eyas.core.rng import TEST_SEEDS
 from eyas.lanes.folder import cache_folder, touch
 from eyas.state.roads import RoadGraph
 from eyas.traffic.config import Demand, Mix, TrafficConfig
@@ -29,6 +30,8 @@ __all__ = [
     "CANONICAL_SEED",
     "RESPAWN_GROUPS",
     "STANDARD_DURATION",
+    "TEST_DURATION",
+    "TEST_TRAFFIC",
     "find_file",
     "find_recording",
     "record_canonical",
@@ -54,13 +57,19 @@ CANONICAL_MIX = Mix(passenger=0.7, bus=0.1, truck=0.1, trailer=0.05, motorcycle=
 STANDARD_DURATION = 1260.0
 """Default length of a recording: 21 minutes [s]."""
 
+TEST_TRAFFIC = tuple(TEST_SEEDS + number for number in (1, 2, 3))
+"""Seeds of the recordings that ship for tests, see `TEST_SEEDS`."""
+
+TEST_DURATION = 300.0
+"""Least length of a recording with such a seed: their episodes are short, but many [s]."""
+
 
 def find_file(
     graph: RoadGraph,
     config: TrafficConfig,
     *,
     trackers: int = 1,
-    duration: float = STANDARD_DURATION,
+    duration: float | None = None,
     shipped: Iterable[Traversable] = (),
 ) -> RecordingFile:
     """Return the file of the recording to replay: the named, the shipped, a cached or a new one.
@@ -71,7 +80,7 @@ def find_file(
         graph: Roads to drive on.
         config: Settings of the traffic.
         trackers: Number of trackers in a world, which determines the least size of a group.
-        duration: Smallest duration of the recording [s].
+        duration: Smallest duration of the recording [s]; None: that of its seed.
         shipped: Files of the recordings that come with the map.
 
     Raises:
@@ -86,6 +95,8 @@ def find_file(
         return named
     seed = CANONICAL_SEED if config.seed is None else config.seed
     wanted = resolved(_lasting(config, trackers), seed, trackers)
+    if duration is None:
+        duration = TEST_DURATION if seed >= TEST_SEEDS else STANDARD_DURATION
     _tell_raised(config, wanted, trackers)
     others: dict[RecordingFile, Provenance] = {}
     for file in shipped:
@@ -117,7 +128,7 @@ def find_recording(
     config: TrafficConfig,
     *,
     trackers: int = 1,
-    duration: float = STANDARD_DURATION,
+    duration: float | None = None,
     shipped: Iterable[Traversable] = (),
 ) -> Recording:
     """Return the recording of `find_file`."""
@@ -129,8 +140,9 @@ def record_canonical(
     path: Path,
     config: TrafficConfig | None = None,
     progress: Callable[[float], None] | None = None,
+    duration: float = STANDARD_DURATION,
 ) -> None:
-    """Record canonical traffic of a map (its seed 0), to be shipped with it.
+    """Record traffic of a map, to be shipped with it.
 
     For developers of a map, after a change in its roads.
 
@@ -139,13 +151,15 @@ def record_canonical(
         path: The file.
         config: Settings of the traffic; None: the default.
         progress: Called with the completed share, 0 to 1.
+        duration: Its length [s].
 
     Raises:
         MissingExtraError: SUMO is not installed.
         OutputError: The file cannot be written.
     """
     name, seed, chosen = graph.map_name, graph.seed, config or TrafficConfig()
-    made = record(name, seed, graph, chosen, STANDARD_DURATION, CANONICAL_SEED, progress)
+    sampled = CANONICAL_SEED if chosen.seed is None else chosen.seed
+    made = record(name, seed, graph, chosen, duration, sampled, progress)
     save(made, path)
 
 
