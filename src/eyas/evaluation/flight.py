@@ -18,12 +18,12 @@ from eyas.envs.config import EnvConfig
 from eyas.evaluation.delay import Delay
 from eyas.evaluation.episode import EpisodeSpec
 from eyas.evaluation.episode_batch import EpisodeBatch, episode_groups
+from eyas.evaluation.messages import Radio
 from eyas.evaluation.meter import Meter
 from eyas.evaluation.policies.policy import Decision, Failure, Policy, PolicyInput, Start
 from eyas.evaluation.protocol import Protocol
 from eyas.evaluation.record import EpisodeRecord
 from eyas.evaluation.scenario import Scenario
-from eyas.evaluation.team import Radio
 
 __all__ = ["BatchFlight", "Watcher", "clear_shares"]
 
