@@ -61,6 +61,9 @@ class PolicyInput(NamedTuple):
     shape (N,): for oracles."""
     covered: NDArray[np.bool_]
     """Whose camera shows nothing now, so that the picture is black, shape (N,)."""
+    heard: NDArray[np.float64] | None = None
+    """Latest messages of each drone's mates, NaN before their first, shape (N, mates, numbers);
+    None where drones fly alone."""
 
 
 class Failure(NamedTuple):
@@ -85,6 +88,8 @@ class Decision(NamedTuple):
     """An action for each drone, shape (N, ...) or a list; those who do not decide are not read."""
     failed: Mapping[int, Failure] = {}  # never changed
     """Drones whose policy has failed, and how; their episodes end."""
+    messages: NDArray[np.float64] | None = None
+    """What each drone tells its mates, shape (N, numbers); None: nothing new."""
 
 
 class Policy(Protocol):
