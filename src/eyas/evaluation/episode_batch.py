@@ -18,6 +18,7 @@ from eyas.settings.config import EyasConfig
 from eyas.sim.build import build_simulation
 from eyas.sim.simulation import Simulation
 from eyas.sim.worlds import each_alone
+from eyas.state.roads import RoadNetwork
 from eyas.state.snapshot import Snapshot
 
 __all__ = ["EpisodeBatch", "EpisodeGroup", "episode_groups"]
@@ -126,6 +127,13 @@ class EpisodeBatch:
         is covered.
         """
         return np.where(self.covered, 0.0, visible_shares(self.pixels()))
+
+    def roads(self) -> list[RoadNetwork]:
+        """Return the roads around each drone, N; those on the same map share one object."""
+        found: dict[int, RoadNetwork] = {}
+        for group in self.groups:
+            found |= dict.fromkeys(group.rows.tolist(), group.simulation.scene.network)
+        return [found[row] for row in range(self.count)]
 
     def gathered(self, read: Callable[[EpisodeGroup], Gathered]) -> Gathered:
         """Return what a function reads of each group, in the order of the episodes, (N, ...).

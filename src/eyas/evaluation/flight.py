@@ -107,7 +107,7 @@ class BatchFlight:
         seeds = np.array([episode.seed for episode in self._episodes])
         clear = clear_shares(self._episodes, self._protocol)
         self._delay.begin(seeds.tolist())
-        start = Start(seeds, self._boxes, self._scenario.told())
+        start = Start(seeds, self._boxes, self._scenario.told(), self._batch.roads)
         self._guarded(lambda: self._policy.begin(start))
         told = np.zeros(len(seeds), np.bool_)
         for step in range(self._protocol.steps):
@@ -150,7 +150,10 @@ class BatchFlight:
         self._batch.look(deciding, np.full(len(deciding), step == 0))
         batch = self._batch
         heard = None if self._radio is None else self._radio.heard()
-        sight = PolicyInput(batch.observations, deciding, batch.snapshot, batch.visible, heard)
+        sight = PolicyInput(
+            *(batch.observations, deciding, batch.snapshot, batch.visible, batch.covered),
+            heard=heard,
+        )
         begun = time.perf_counter()
         decision = self._guarded(lambda: self._policy.act(sight))
         taken = time.perf_counter() - begun

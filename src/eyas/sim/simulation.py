@@ -18,6 +18,7 @@ from eyas.sim.views.view import View
 from eyas.sim.worlds import Worlds
 from eyas.state.draw import DrawStage, Picture
 from eyas.state.motion import ActorState
+from eyas.state.scene import Scene
 from eyas.state.snapshot import CameraState, Snapshot
 from eyas.targets.kind import Looks
 from eyas.task.clearance import Clearance
@@ -120,6 +121,11 @@ class Simulation:
         worlds are their own.
         """
         self._episodes.continue_from(other._episodes)
+
+    @property
+    def scene(self) -> Scene:
+        """All that stands still around the trackers."""
+        return self._assets.scene
 
     @property
     def steps_left(self) -> int:
