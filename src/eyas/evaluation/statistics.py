@@ -212,7 +212,9 @@ def worst_fifth_of(values: ArrayLike, clusters: Clusters) -> Estimate:
     count = int(_WORST * clusters.count)
     if count < FEWEST:
         return Estimate(len(array), clusters.count, mean, None)
-    variance = clusters.variance((limit - mean) - below / _WORST)
+    influence = (limit - mean) - below / _WORST
+    variance = clusters.variance(influence)
+    variance += _largest_again(clusters.sums(influence), len(array))
     spread = interval_of(mean, variance, count, count - 1, 1.0)
     return Estimate(len(array), clusters.count, mean, spread)
 
