@@ -54,7 +54,8 @@ def episode_groups(
 
     def kind(row: int) -> tuple[object, ...]:
         episode = episodes[row]
-        return (episode.place, episode.traffic or 0)
+        changed = episode.variant if protocol.variants.get(episode.variant) else ""
+        return (episode.place, episode.traffic or 0, changed)
 
     groups = []
     for _, numbers in groupby(sorted(range(len(episodes)), key=kind), key=kind):

@@ -23,6 +23,7 @@ from eyas.evaluation.policies.policy import Decision, Failure, Policy, PolicyInp
 from eyas.evaluation.protocol import Protocol
 from eyas.evaluation.record import EpisodeRecord
 from eyas.evaluation.scenario import Scenario
+from eyas.evaluation.team import Radio
 
 __all__ = ["BatchFlight", "Watcher", "clear_shares"]
 
@@ -44,7 +45,7 @@ def clear_shares(episodes: list[EpisodeSpec], protocol: Protocol) -> list[float]
 def _measured_shares(episodes: list[EpisodeSpec], protocol: Protocol) -> NDArray[np.float64]:
     # Without biases the target is in the middle. They are sampled last, so nothing else changes.
     start = {**protocol.changes.get("start", {}), "horizontal_bias": 0.0, "vertical_bias": 0.0}
-    protocol = replace(protocol, changes={**protocol.changes, "start": start})
+    protocol = replace(protocol, changes={**protocol.changes, "start": start}, variants={})
     settings = protocol.settings
     ticks = round(_PERIOD * 500)
     looks = settings.done.total_steps // max(ticks, physics_steps(settings.control.frequency))
@@ -87,6 +88,7 @@ class BatchFlight:
         self._scenario = (
             Scenario(len(episodes)) if make is None else make(self._batch, protocol, episodes)
         )
+        self._radio = Radio(episodes, protocol) if protocol.team else None
         self._meter = Meter(self._batch, protocol)
         self._actions = make_actions(policy.env.actions, policy.env.speeds)
         count = len(episodes)
@@ -119,7 +121,7 @@ class BatchFlight:
             self._active &= self._meter.reason == 0
             if watcher is not None:
                 watcher(self._batch, self._meter)
-            if len(ended := np.flatnonzero(~self._active & ~told)):
+            if len(ended := np.flatnonzero(self._scenario.over(self._active) & ~told)):
                 told[ended] = True
                 yield [
                     self._meter.record(
@@ -147,7 +149,8 @@ class BatchFlight:
             return
         self._batch.look(deciding, np.full(len(deciding), step == 0))
         batch = self._batch
-        sight = PolicyInput(batch.observations, deciding, batch.snapshot, batch.visible)
+        heard = None if self._radio is None else self._radio.heard()
+        sight = PolicyInput(batch.observations, deciding, batch.snapshot, batch.visible, heard)
         begun = time.perf_counter()
         decision = self._guarded(lambda: self._policy.act(sight))
         taken = time.perf_counter() - begun
@@ -157,13 +160,18 @@ class BatchFlight:
         for row, failure in decision.failed.items():
             self._fail(row, failure)
         deciding &= self._active
+        if self._radio is not None and decision.messages is not None:
+            self._radio.say(deciding, decision.messages)
         self._take(decision.actions, deciding)
-        period, repeat = self._protocol.period, self._policy.env.action_repeat
+        repeat = max(self._policy.env.action_repeat, self._control_steps(self._delay.period))
         for row in np.flatnonzero(deciding & self._active).tolist():
-            # Rounded up to control steps; rounding errors of the quotient are not.
-            late = int(np.ceil(self._delay.next(row, taken) / period - 1e-9))
+            late = self._control_steps(self._delay.next(row, taken))
             self._effective[row] = step + late
             self._ready[row] = step + max(late, repeat)
+
+    def _control_steps(self, seconds: float) -> int:
+        """Return a time, rounded up to control steps; rounding errors of the quotient are not."""
+        return int(np.ceil(seconds / self._protocol.period - 1e-9))
 
     def _take(self, actions: Any, deciding: Mask) -> None:  # noqa: ANN401  # a policy's
         """Set the next commands; those whose action is not allowed fail."""

@@ -64,7 +64,8 @@ class EvaluationPlan(Config):
         """Number of all episodes; nothing that the plan names is loaded to know it."""
         places = len(self.maps) * len(self.weathers) * len(self.targets)
         each = self.episodes or self.rules.episodes
-        return places * len(self.rules.directions) * each * len(self.seeds)
+        versions = max(len(self.rules.variants), 1)
+        return places * len(self.rules.directions) * each * versions * len(self.seeds)
 
     @property
     def command(self) -> str:
@@ -145,6 +146,8 @@ def batches(plan: EvaluationPlan) -> list[list[EpisodeSpec]]:
     ]
     count = plan.episodes or protocol.episodes
     size = 1 if plan.latency == "measured" else plan.batch
+    if protocol.team:
+        size = max(size // len(protocol.variants), 1) * len(protocol.variants)
     found = []
     for seed in plan.seeds:
         episodes = protocol.choose(places, protocol, count, seed)
@@ -185,6 +188,11 @@ def check(plan: EvaluationPlan) -> None:
         EyasError: A name or a setting is wrong.
     """
     delay_from(plan.latency)
+    if plan.latency == "measured" and plan.rules.team:
+        raise ConfigError(
+            f"--latency: 'measured' is not allowed in protocol '{plan.protocol}': the answers of a "
+            "team are not made one by one; measure in 'long', and use the file of latencies"
+        )
     if len(set(plan.maps)) < len(plan.maps) or len(set(plan.weathers)) < len(plan.weathers):
         raise ConfigError("--map, --weather: a name is there twice")
     first = sorted(plan.seeds)

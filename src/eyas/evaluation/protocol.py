@@ -70,7 +70,10 @@ def in_order(
     places: Sequence[Place], protocol: "Protocol", count: int, first_seed: int
 ) -> list[EpisodeSpec]:
     """Choose the episodes of consecutive seeds, whatever happens in them; see `Chooser`."""
-    return episodes_of(list(places), protocol.directions, count, first_seed)
+    episodes = episodes_of(list(places), protocol.directions, count, first_seed)
+    if not protocol.variants:
+        return episodes
+    return [each._replace(variant=own) for each in episodes for own in protocol.variants]
 
 
 @dataclass(frozen=True)
@@ -95,6 +98,10 @@ class Protocol:
     """Which its episodes are."""
     scenario: MakeScenario | None = None
     """What happens in its flights beside the flights."""
+    variants: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
+    """Versions of each episode, with changes of the settings; none: there is one."""
+    team: bool = False
+    """Whether the variants are drones that follow one target together."""
     first_box: bool = True
     """Whether policies are told the target's true box in the first picture."""
 
@@ -133,6 +140,7 @@ class Protocol:
             group.pop(name, None)
         meaning = {name: value for name, value in settings.items() if value != {}}
         content = [meaning, self.directions, self.alike, self.first_box]
+        content += [self.variants, self.team] if self.variants else []
         content += [_name_of(self.choose), _name_of(self.scenario)]
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:12]
 
@@ -151,7 +159,8 @@ class Protocol:
         }
         if episode.traffic is not None:
             changes["traffic"] = {"seed": episode.traffic}
-        return updated(self.settings, changes).model_copy(update={"env": env})
+        own = self.variants.get(episode.variant, {})
+        return updated(self.settings, _joined(changes, own)).model_copy(update={"env": env})
 
 
 def _name_of(made: Callable[..., object] | None) -> str:

@@ -40,6 +40,10 @@ class Scenario:
     def measure(self, step: int, active: Mask) -> None:
         """Measure after a control step of the active flights, shape (N,)."""
 
+    def over(self, active: Mask) -> Mask:
+        """Return whose figures are final, shape (N,); `active` tells who still flies."""
+        return ~active
+
     def figures(self, row: int) -> dict[str, float | None]:
         """Return the figures of an episode that has ended, beside those of all protocols.
 

@@ -17,11 +17,12 @@ from incomplete observations" (JASA 1958); Greenwood, "The natural duration of c
 import math
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass
-from statistics import NormalDist
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from eyas.core import exact
 
 __all__ = [
     "ENOUGH",
@@ -50,6 +51,13 @@ LEVEL = 0.95
 
 POWER = 0.8
 """Share of repetitions in which a difference should be told, see `episodes_to_tell`."""
+
+_NORMAL, _NORMAL_OF_POWER = 1.959963984540054, 0.8416212335729143
+"""Quantiles of the normal distribution: 0.5 (1 + LEVEL), and POWER."""
+
+_STUDENT = 2.372271230299, 2.822498615740, 2.555849679508, 1.589534053394
+"""What Student's t adds to the first for one, two, ... inverse degrees of freedom: the expansion of
+Cornish and Fisher (1938)."""
 
 FEWEST = 5
 """Fewest clusters of which an interval is made, and of which a stratum is one of its own."""
@@ -121,7 +129,7 @@ class Clusters:
         for stratum in np.unique(self.strata):
             own = sums[self.strata == stratum]
             total += len(own) * float(own.var(ddof=1))
-        return total / len(influence) ** 2
+        return total / (len(influence) * len(influence))
 
 
 def clusters_of(keys: Sequence[Hashable], strata: Sequence[Hashable]) -> Clusters:
@@ -164,18 +172,18 @@ def interval_of(
     """
     if count < FEWEST or degrees < 1:
         return None
-    wide = _student(0.5 * (1.0 + LEVEL), degrees)
+    wide = _student(degrees)
     if high is None:
         if not (mean > 0.0 and variance > 0.0):
             return None
-        factor = math.exp(wide * math.sqrt(variance) / mean)
+        factor = float(exact.exp(wide * math.sqrt(variance) / mean))
         return Interval(mean / factor, mean * factor)
     share = min(max(mean / high, 0.0), 1.0)
     # A sample whose values are all equal knows no more than one of as many shares 0 and 1.
-    effective = share * (1.0 - share) * high**2 / variance if variance > 0.0 else 0.0
-    weight = wide**2 / (effective or count)
+    effective = share * (1.0 - share) * high * high / variance if variance > 0.0 else 0.0
+    weight = wide * wide / (effective or count)
     middle = (share + 0.5 * weight) / (1.0 + weight)
-    half = math.sqrt(share * (1.0 - share) * weight + 0.25 * weight**2) / (1.0 + weight)
+    half = math.sqrt(share * (1.0 - share) * weight + 0.25 * weight * weight) / (1.0 + weight)
     unseen = min(_UNSEEN / count, 1.0)
     low = min(middle - half, share * (1.0 - unseen))
     top = max(middle + half, share + (1.0 - share) * unseen)
@@ -236,7 +244,7 @@ def difference_interval(
     mean = float(differences.mean())
     largest = _largest_again(clusters.sums(differences), len(differences))
     half = math.sqrt(clusters.variance(differences - mean) + largest)
-    half *= _student(0.5 * (1.0 + LEVEL), clusters.degrees)
+    half *= _student(clusters.degrees)
     if half == 0.0:
         if high is None:
             return None
@@ -257,8 +265,8 @@ def episodes_to_tell(differences: Floats, clusters: Clusters) -> int | None:
     mean = float(differences.mean())
     if clusters.count < FEWEST or mean == 0.0:
         return None
-    wide = NormalDist().inv_cdf(0.5 * (1.0 + LEVEL)) + NormalDist().inv_cdf(POWER)
-    needed = len(differences) * clusters.variance(differences - mean) * (wide / mean) ** 2
+    wide = (_NORMAL + _NORMAL_OF_POWER) / mean
+    needed = len(differences) * clusters.variance(differences - mean) * wide * wide
     return max(int(float(f"{math.ceil(needed):.2g}")), 2 * FEWEST)
 
 
@@ -317,7 +325,7 @@ def _influence(times: ArrayLike, ended: ArrayLike, horizon: float) -> Floats:
     weight = np.divide(after, rest, out=np.zeros_like(after), where=rest > 0.0)
     ends = own[:, None] & (at[:, None] == events)
     expected = (at[:, None] >= events) * (happened / at_risk)
-    moved: Floats = -len(at) * ((ends - expected) @ weight)
+    moved: Floats = -len(at) * ((ends - expected) * weight).sum(axis=1)
     return moved
 
 
@@ -331,16 +339,15 @@ def _events(times: ArrayLike, ended: ArrayLike) -> tuple[Floats, Floats, Floats]
 
 def _largest_again(sums: Floats, total: int) -> float:
     """Return what half a cluster more, as far off as the farthest, adds to a variance."""
-    return _LARGEST_AGAIN * float(np.abs(sums).max()) ** 2 / total**2
+    largest = float(np.abs(sums).max()) / total
+    return _LARGEST_AGAIN * largest * largest
 
 
-def _student(share: float, degrees: int) -> float:
-    """Return a quantile of Student's t to 0.001 for 4 degrees or more (Cornish and Fisher)."""
-    z = NormalDist().inv_cdf(share)
-    terms = (
-        (z**3 + z) / 4.0,
-        (5 * z**5 + 16 * z**3 + 3 * z) / 96.0,
-        (3 * z**7 + 19 * z**5 + 17 * z**3 - 15 * z) / 384.0,
-        (79 * z**9 + 776 * z**7 + 1482 * z**5 - 1920 * z**3 - 945 * z) / 92160.0,
-    )
-    return float(z + sum(term / degrees**power for power, term in enumerate(terms, 1)))
+def _student(degrees: int) -> float:
+    """Return how many standard errors an interval is wide on each side: the quantile of Student's
+    t, to 0.001 for four degrees or more.
+    """
+    more = 0.0
+    for term in reversed(_STUDENT):
+        more = (more + term) / degrees
+    return _NORMAL + more

@@ -56,6 +56,9 @@ class PolicyInput(NamedTuple):
     visible: Callable[[], NDArray[np.float64]]
     """Returns the share of each target that its camera sees now, 0 while the camera is covered,
     shape (N,): for oracles."""
+    heard: NDArray[np.float64] | None = None
+    """Latest messages of each drone's mates, NaN before their first, shape (N, mates, numbers);
+    None where drones fly alone."""
 
 
 class Failure(NamedTuple):
@@ -80,6 +83,8 @@ class Decision(NamedTuple):
     """An action for each drone, shape (N, ...) or a list; those who do not decide are not read."""
     failed: Mapping[int, Failure] = {}  # never changed
     """Drones whose policy has failed, and how; their episodes end."""
+    messages: NDArray[np.float64] | None = None
+    """What each drone tells its mates, shape (N, numbers); None: nothing new."""
 
 
 class Policy(Protocol):
