@@ -166,12 +166,15 @@ class BatchFlight:
         if self._radio is not None and decision.messages is not None:
             self._radio.say(deciding, decision.messages)
         self._take(decision.actions, deciding)
-        period, repeat = self._protocol.period, self._policy.env.action_repeat
+        repeat = max(self._policy.env.action_repeat, self._control_steps(self._delay.period))
         for row in np.flatnonzero(deciding & self._active).tolist():
-            # Rounded up to control steps; rounding errors of the quotient are not.
-            late = int(np.ceil(self._delay.next(row, taken) / period - 1e-9))
+            late = self._control_steps(self._delay.next(row, taken))
             self._effective[row] = step + late
             self._ready[row] = step + max(late, repeat)
+
+    def _control_steps(self, seconds: float) -> int:
+        """Return a time, rounded up to control steps; rounding errors of the quotient are not."""
+        return int(np.ceil(seconds / self._protocol.period - 1e-9))
 
     def _take(self, actions: Any, deciding: Mask) -> None:  # noqa: ANN401  # a policy's
         """Set the next commands; those whose action is not allowed fail."""

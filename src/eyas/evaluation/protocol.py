@@ -86,9 +86,9 @@ class Protocol:
     changes: Mapping[str, Any] = field(default_factory=dict)
     directions: tuple[float, ...] = _DIRECTIONS
     """Start directions [rad]."""
-    episodes: int = 10
-    """Default number of episodes for each place and direction."""
-    columns: tuple[str, ...] = ("cr", "tsr", "seen", "visible")
+    episodes: int = 25
+    """Default number of episodes for each place and direction: a hundred for each place."""
+    columns: tuple[str, ...] = ("cr", "tsr", "flawless", "worst_fifth", "seen", "visible")
     """The figures that are printed; the files have all."""
     rank: str = "tsr"
     """The figure by which a leaderboard ranks."""
