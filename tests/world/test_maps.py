@@ -10,7 +10,7 @@ from eyas.core.errors import ConfigError, UnknownNameError
 from eyas.traffic.library import RESPAWN_GROUPS
 from eyas.world.maps import MAPS
 from eyas.world.maps.citystreet import CITYSTREET
-from eyas.world.maps.recipe import MIXED_FILE, TRAFFIC_FILE, respawn_file
+from eyas.world.maps.recipe import DENSE_FILE, MIXED_FILE, TRAFFIC_FILE, respawn_file
 from eyas.world.weather import DAY, SNOW, WEATHERS, Season
 
 
@@ -27,7 +27,7 @@ def test_a_map_ships_the_roads_and_the_traffic_of_seed_0(name):
     assert recipe.shipped(TRAFFIC_FILE) is not None
     files = [file.name for file in recipe.shipped_traffic()]
     assert files[0] == TRAFFIC_FILE
-    mixed = {MIXED_FILE} if name in ("citystreet", "downtown") else set()
+    mixed = {DENSE_FILE, MIXED_FILE} if name in ("citystreet", "downtown") else set()
     assert {respawn_file(size) for size in RESPAWN_GROUPS} | mixed == set(files[1:])
     assert recipe.shipped("no such file") is None
 

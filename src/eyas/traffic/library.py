@@ -27,6 +27,8 @@ from eyas.traffic.sumo_install import sumo_version
 __all__ = [
     "CANONICAL_MIX",
     "CANONICAL_SEED",
+    "DENSE_DURATION",
+    "DENSE_VEHICLES",
     "RESPAWN_GROUPS",
     "STANDARD_DURATION",
     "find_file",
@@ -51,6 +53,13 @@ that stays for an episode of 3 s (of 40, at least 31 did at any time on each of 
 CANONICAL_MIX = Mix(passenger=0.7, bus=0.1, truck=0.1, trailer=0.05, motorcycle=0.05)
 """Classes of vehicles in the shipped recordings of a mixed fleet, which the two cities have."""
 
+DENSE_VEHICLES = 320
+"""Vehicles in the shipped recordings of dense traffic: downtown then has eight in a view of 38 x 28
+m now and then (with 160, never), and citystreet, which has room for 399, still flows."""
+
+DENSE_DURATION = 300.0
+"""Length of these: as many vehicle hours as in the others [s]."""
+
 STANDARD_DURATION = 1260.0
 """Default length of a recording: 21 minutes [s]."""
 
@@ -71,7 +80,7 @@ def find_file(
         graph: Roads to drive on.
         config: Settings of the traffic.
         trackers: Number of trackers in a world, which determines the least size of a group.
-        duration: Smallest duration of the recording [s].
+        duration: Smallest duration of a cached or new recording [s].
         shipped: Files of the recordings that come with the map.
 
     Raises:
@@ -91,7 +100,7 @@ def find_file(
     for file in shipped:
         found = RecordingFile.read(file)
         origin = found.outline().provenance
-        if _fits(origin, graph, wanted) and origin.duration >= duration:
+        if _fits(origin, graph, wanted):  # as long as whoever made the map wants it
             return found
         others[found] = origin
     if _may_be_larger(config, trackers):
@@ -129,6 +138,8 @@ def record_canonical(
     path: Path,
     config: TrafficConfig | None = None,
     progress: Callable[[float], None] | None = None,
+    *,
+    duration: float = STANDARD_DURATION,
 ) -> None:
     """Record canonical traffic of a map (its seed 0), to be shipped with it.
 
@@ -139,13 +150,14 @@ def record_canonical(
         path: The file.
         config: Settings of the traffic; None: the default.
         progress: Called with the completed share, 0 to 1.
+        duration: Length of the recording [s].
 
     Raises:
         MissingExtraError: SUMO is not installed.
         OutputError: The file cannot be written.
     """
     name, seed, chosen = graph.map_name, graph.seed, config or TrafficConfig()
-    made = record(name, seed, graph, chosen, STANDARD_DURATION, CANONICAL_SEED, progress)
+    made = record(name, seed, graph, chosen, duration, CANONICAL_SEED, progress)
     save(made, path)
 
 

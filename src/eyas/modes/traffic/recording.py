@@ -15,7 +15,10 @@ from eyas.traffic.config import Demand, Mix, TrafficConfig
 from eyas.traffic.library import (
     CANONICAL_MIX,
     CANONICAL_SEED,
+    DENSE_DURATION,
+    DENSE_VEHICLES,
     RESPAWN_GROUPS,
+    STANDARD_DURATION,
     record_canonical,
 )
 from eyas.traffic.network import build_network
@@ -24,7 +27,13 @@ from eyas.traffic.recording_file import load
 from eyas.traffic.smoothing import Tracks, runs, smooth
 from eyas.world.config import WorldConfig
 from eyas.world.maps import MAPS
-from eyas.world.maps.recipe import MIXED_FILE, NETWORK_FILE, TRAFFIC_FILE, respawn_file
+from eyas.world.maps.recipe import (
+    DENSE_FILE,
+    MIXED_FILE,
+    NETWORK_FILE,
+    TRAFFIC_FILE,
+    respawn_file,
+)
 from eyas.world.roads.network_file import save_network
 
 __all__ = ["describe", "run", "run_canonical"]
@@ -116,10 +125,13 @@ def run_canonical(world: WorldConfig) -> None:
     for size in RESPAWN_GROUPS:
         shipped[respawn_file(size)] = TrafficConfig(demand=Demand.RESPAWN, group_size=size)
     if recipe.name in _CITIES:
-        shipped[MIXED_FILE] = TrafficConfig(vehicle_type=CANONICAL_MIX)
+        mixed = TrafficConfig(vehicle_type=CANONICAL_MIX)
+        dense = mixed.model_copy(update={"max_vehicles": DENSE_VEHICLES})
+        shipped |= {MIXED_FILE: mixed, DENSE_FILE: dense}
     for name, config in shipped.items():
+        duration = DENSE_DURATION if name == DENSE_FILE else STANDARD_DURATION
         with sumo_progress() as progress:
-            record_canonical(graph, folder / name, config, progress)
+            record_canonical(graph, folder / name, config, progress, duration=duration)
         _report(folder / name, "a shipped recording")
 
 

@@ -13,10 +13,11 @@ from eyas.sim.views.delay import SeenState
 from eyas.sim.views.outlines import Outlines
 from eyas.sim.views.pictures import PictureDrawer
 from eyas.sim.views.sensor_suite import SensorSuite
-from eyas.sim.views.words import target_in_words
+from eyas.sim.views.words import in_view, target_in_words
 from eyas.sim.worlds import Worlds
 from eyas.state.draw import DrawStage, MovingParts, Picture
 from eyas.state.motion import ActorView
+from eyas.targets.grammar.in_view import InView
 from eyas.task.packet_rows import SENSOR_COLUMNS, PacketRows
 from eyas.task.rules import Rules
 
@@ -120,6 +121,11 @@ class View:
     def words(self, tracker: int, aspect: float) -> str:
         """Return the target of a tracker in words, see `eyas.sim.views.words`."""
         return target_in_words(self.state.shown, self.actors(tracker), tracker, aspect)
+
+    def in_view(self, tracker: int) -> InView:
+        """Return the moving objects in a tracker's view, for phrases about them."""
+        aspect = self._camera.height / self._camera.width
+        return in_view(self.state.shown, self.actors(tracker), tracker, aspect)
 
     @property
     def lidar(self) -> Lidar | None:
