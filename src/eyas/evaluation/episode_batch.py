@@ -13,12 +13,14 @@ from eyas.envs.config import EnvConfig
 from eyas.envs.observation import Observation, Observer
 from eyas.evaluation.episode import EpisodeSpec
 from eyas.evaluation.protocol import Protocol
+from eyas.evaluation.scenario import Told
 from eyas.evaluation.sight import SIZE, subjects, visible_shares
 from eyas.settings.config import EyasConfig
 from eyas.sim.build import build_simulation
 from eyas.sim.simulation import Simulation
 from eyas.sim.worlds import each_alone
 from eyas.state.snapshot import Snapshot
+from eyas.targets.grammar.attributes import ATTRIBUTES
 
 __all__ = ["EpisodeBatch", "EpisodeGroup", "episode_groups"]
 
@@ -104,6 +106,16 @@ class EpisodeBatch:
                 rows = group.rows[mine]
                 observer.look(mine, begun[rows], self.covered[rows])
                 observer.copy_to(self.observations, group.rows)
+
+    def tell(self, told: Told | None) -> None:
+        """Tell policies their targets in words; None: nothing, as in protocols without words."""
+        for group, observer in zip(self.groups, self._observers, strict=True):
+            count = len(group.rows)
+            words, attributes = [""] * count, np.zeros((count, len(ATTRIBUTES)), np.float32)
+            if told is not None:
+                words = [told.words[row] for row in group.rows.tolist()]
+                attributes = told.attributes[group.rows]
+            observer.tell(words, attributes)
 
     def advance(self, commands: NDArray[np.float64], active: Mask) -> None:
         """Hold commands for a control step, shape (N, 4); time stands still for the inactive."""

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from eyas.core import exact as elementary
 from eyas.core.clock import physics_steps
+from eyas.core.rng import EpisodeKey
 from eyas.sim.assets import Assets
 from eyas.sim.config import SimConfig
 from eyas.sim.episodes import Episodes
@@ -120,6 +121,10 @@ class Simulation:
         worlds are their own.
         """
         self._episodes.continue_from(other._episodes)
+
+    def episode_key(self, tracker: int) -> EpisodeKey:
+        """Return what the random values of a tracker's episode depend on."""
+        return self._episodes.key(tracker)
 
     @property
     def steps_left(self) -> int:
