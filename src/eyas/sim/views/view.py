@@ -88,9 +88,14 @@ class View:
             basic[:, SENSOR_COLUMNS] = self.state.told
         return basic, reward
 
-    def actors(self, tracker: int) -> ActorView:
-        """Return the actors around a tracker at the instant that its pictures show."""
-        tick = int(self.state.shown.episodes.tick[tracker])
+    def actors(self, tracker: int, later: int = 0) -> ActorView:
+        """Return the actors around a tracker at the instant that its pictures show.
+
+        Args:
+            tracker: The tracker.
+            later: Physics steps after that.
+        """
+        tick = int(self.state.shown.episodes.tick[tracker]) + later
         state, model = self._worlds.actors_around(tracker, tick)
         before, _ = self._worlds.actors_around(tracker, tick - 1)
         return ActorView(state, before, model, self._worlds.looks_around(tracker).colour[0])
@@ -122,10 +127,16 @@ class View:
         """Return the target of a tracker in words, see `eyas.sim.views.words`."""
         return target_in_words(self.state.shown, self.actors(tracker), tracker, aspect)
 
-    def in_view(self, tracker: int) -> InView:
-        """Return the moving objects in a tracker's view, for phrases about them."""
+    def in_view(self, tracker: int, later: int = 0) -> InView:
+        """Return the moving objects in a tracker's view, for phrases about them.
+
+        Args:
+            tracker: The tracker.
+            later: Physics steps after the instant that its pictures show; the camera stays.
+        """
         aspect = self._camera.height / self._camera.width
-        return in_view(self.state.shown, self.actors(tracker), tracker, aspect)
+        actors = self.actors(tracker, later)
+        return in_view(self.state.shown, actors, tracker, aspect)
 
     @property
     def lidar(self) -> Lidar | None:
