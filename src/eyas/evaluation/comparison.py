@@ -82,7 +82,7 @@ def differences(
     if not common:
         raise DataFileError("not comparable: the two have no episode in common")
     found = []
-    for group, name, records in groups_of(common):
+    for group, name, records in groups_of(common, {}):
         strata = strata_of(records)
         resamples = None if strata is None else stratified_resamples(strata)
         for figure in COMPARED:

@@ -35,6 +35,8 @@ class EpisodeGroup(NamedTuple):
     simulation: Simulation
     rows: NDArray[np.int64]
     """Their places in the batch, shape (K,)."""
+    staged: Sequence[Any] = ()
+    """What the protocol's `stage` has returned for each; empty: there is none."""
 
     def subjects(self, size: tuple[int, int] = SIZE) -> tuple[NDArray[Any], NDArray[Any]]:
         """Return the pixels of each target, visible and all, shape (K, 2), and its box (K, 4).
@@ -71,7 +73,8 @@ def episode_groups(
         simulation.reset()
         if protocol.alike:
             simulation.make_alike()
-        groups.append(EpisodeGroup(config, simulation, rows))
+        staged = () if protocol.stage is None else protocol.stage(simulation, chosen)
+        groups.append(EpisodeGroup(config, simulation, rows, staged))
     return groups
 
 

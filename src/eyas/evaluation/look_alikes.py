@@ -24,11 +24,10 @@ from eyas.targets.grammar.naming import (
     PhraseKind,
     claims_about,
     contradictory,
-    phrase_about,
 )
 from eyas.targets.grammar.wording import Wording, in_words
 
-__all__ = ["CASES", "HEIGHT", "PITCH", "StagedStart", "case_of", "staged_start"]
+__all__ = ["CASES", "HEIGHT", "PITCH", "StagedStart", "case_of", "repeat_start", "staged_start"]
 
 HEIGHT: Final = 45.0
 """Of the drone above the road [m]: it then sees 38 x 28 m. From the 22 m of the other protocols it
@@ -57,17 +56,20 @@ eight alike, hardly ever one alone does something, or is beside something."""
 
 _COLOURS: Final = (
     "red",
-    "yellow",
-    "blue",
     "green",
-    "white",
     "orange",
     "purple",
     "sky blue",
     "pink",
+    "light green",
+    "magenta",
+    "teal",
 )
-"""Colours of look-alikes: from above all differ from each other, from roads, and from the dark
-glass and roofs that cars have in any colour."""
+"""Colours of look-alikes. None is that of a car in the car parks, which is scenery: phrases do not
+know it, but a reader sees it. From above all differ from roads, and from dark glass and roofs."""
+
+_BYSTANDERS: Final = ("yellow", "blue", "white", "grey")
+"""Further colours of all others."""
 
 _CROWDED: Final = 14.0
 """Radius around the middle of the first picture in which enough vehicles are looked for [m]."""
@@ -92,6 +94,8 @@ class StagedStart(NamedTuple):
     """The target."""
     other: int
     """The look-alike that the words are about in the variant `other`."""
+    pose: NDArray[np.float64]
+    """Of the drone: east, north, up [m], heading [rad], shape (4,)."""
     phrases: dict[str, Phrase]
     """What is said in each variant."""
 
@@ -120,6 +124,12 @@ def staged_start(simulation: Simulation, tracker: int, seed: int) -> StagedStart
         if found is not None:
             return found
     return None
+
+
+def repeat_start(simulation: Simulation, tracker: int, source: int, start: StagedStart) -> None:
+    """Give a tracker the start of another one."""
+    simulation.copy_world(tracker, source)
+    _begin_at(simulation, tracker, start.pose)
 
 
 def _staged(
@@ -156,7 +166,8 @@ def _staged(
             "contradictory": Phrase(in_words(wrong, Wording.TEST, rng), wrong, kind),
             "none": NO_PHRASE,
         }
-        return StagedStart(case, int(view.actor[row]), int(view.actor[other[0]]), phrases)
+        actor, named = int(view.actor[row]), int(view.actor[other[0]])
+        return StagedStart(case, actor, named, pose, phrases)
     return None
 
 
@@ -225,16 +236,17 @@ def _dress(
     if kind is PhraseKind.BODY and not _is_car(models[alike[0]]):
         rest = bodies
     shared = _one(_models_called(own), rng)
+    used = len(alike) if kind is PhraseKind.COLOUR else 1
+    left = (*colours[used:], *_BYSTANDERS)
     for actor, model in models.items():
-        place = alike.index(actor) if actor in alike else len(alike)
-        colour = colours[place] if kind is PhraseKind.COLOUR else colours[0]
-        look = shared if kind is not PhraseKind.BODY or place == 0 else _one_called(rest, rng)
         if actor not in alike:
-            left = len(alike) if kind is PhraseKind.COLOUR else 1
-            colour, look = (
-                colours[left + int(rng.integers(len(colours) - left))],
-                _one_called(rest, rng),
-            )
+            colour, look = left[int(rng.integers(len(left)))], _one_called(rest, rng)
+        elif kind is PhraseKind.COLOUR:
+            colour, look = colours[alike.index(actor)], shared
+        elif kind is PhraseKind.BODY and actor != alike[0]:
+            colour, look = colours[0], _one_called(rest, rng)
+        else:
+            colour, look = colours[0], shared
         simulation.dress(tracker, actor, look if _is_car(model) else model, COLOUR_NAMES[colour])
 
 
@@ -295,9 +307,9 @@ def _other(
 ) -> tuple[int, Phrase] | None:
     """Return another of the look-alikes, and a phrase about it, if possible of the same kind."""
     others = [member for member in members if member != row]
-    for kinds in ((kind,), tuple(PhraseKind)):
+    for own in (kind, *PhraseKind):
         for k in rng.permutation(len(others)).tolist():
-            phrase = phrase_about(view, others[k], rng, Wording.TEST, kinds)
-            if phrase.claim is not None:
-                return others[k], phrase
+            for claim in claims_about(view, others[k], own, rng):
+                if claim.colour is not None and tells_apart(claim, view, others[k]):
+                    return others[k], Phrase(in_words(claim, Wording.TEST, rng), claim, own)
     return None

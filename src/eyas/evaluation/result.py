@@ -99,7 +99,8 @@ def write_result(
         OutputError: They cannot be written.
     """
     horizon = made.plan.rules.steps * made.plan.rules.period
-    rows = rows_of(records, horizon, as_published=as_published)
+    rules = made.plan.rules
+    rows = rows_of(records, horizon, as_published=as_published, groups=rules.groups)
     content: dict[str, Any] = {
         **made.model_dump(mode="json", exclude={"plan"}),
         "build_id": made.build.id,

@@ -1,6 +1,6 @@
 """The rows of a table: all episodes, and those of each map, condition, target and visibility."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import NamedTuple
 
@@ -78,8 +78,16 @@ def thirds(records: Sequence[EpisodeRecord]) -> list[str]:
     return [names[number] for number in third.tolist()]
 
 
+Groups = Mapping[str, Callable[[EpisodeRecord], str]]
+"""What each record belongs to, by the name of the group of rows."""
+
+
 def rows_of(
-    records: Sequence[EpisodeRecord], horizon: float, *, as_published: bool = False
+    records: Sequence[EpisodeRecord],
+    horizon: float,
+    *,
+    as_published: bool = False,
+    groups: Groups | None = None,
 ) -> list[TableRow]:
     """Return the rows of a table.
 
@@ -88,6 +96,7 @@ def rows_of(
         horizon: Length of a full episode [s].
         as_published: Whether CR and TSR are those that the original's code would have printed, of
             the episodes that it would not have dropped.
+        groups: Groups that only the protocol has.
     """
     figures = dict(FIGURES)
     own = dict.fromkeys(name for record in records for name in record.figures)
@@ -98,7 +107,7 @@ def rows_of(
         figures["tsr"] = lambda record: record.published.tsr
     return [
         TableRow(group, name, chosen, _figures(chosen, figures) | _times(chosen, horizon))
-        for group, name, chosen in groups_of(records)
+        for group, name, chosen in groups_of(records, groups or {})
         if chosen
     ]
 
@@ -107,7 +116,9 @@ def _own_figure(name: str, record: EpisodeRecord) -> float | None:
     return record.figures.get(name)
 
 
-def groups_of(records: Sequence[EpisodeRecord]) -> Iterator[tuple[str, str, list[EpisodeRecord]]]:
+def groups_of(
+    records: Sequence[EpisodeRecord], groups: Groups
+) -> Iterator[tuple[str, str, list[EpisodeRecord]]]:
     """Yield group, name and records of each row; a group of one row is left out."""
     yield "all", "all", list(records)
     labels_of = {
@@ -115,6 +126,7 @@ def groups_of(records: Sequence[EpisodeRecord]) -> Iterator[tuple[str, str, list
         "weather": [record.weather for record in records],
         "target": [record.target for record in records],
         "visibility": thirds(records),
+        **{name: [belongs(record) for record in records] for name, belongs in groups.items()},
     }
     for group, labels in labels_of.items():
         for label in sorted(set(labels)) if len(set(labels)) > 1 else ():

@@ -246,6 +246,14 @@ class Simulation:
         """
         self._worlds.dress(tracker, actor, model, colour)
 
+    def copy_world(self, tracker: int, source: int) -> None:
+        """Give a tracker with a world of its own the time and the looks of another one's, and the
+        actor that the other one follows as its target; `start_at` comes next.
+        """
+        self._worlds.copy_looks(tracker, source)
+        self.snapshot.episodes.tick[tracker] = self.snapshot.episodes.tick[source]
+        self.follow(tracker, int(self.snapshot.targets.actor[source]))
+
     @property
     def actors(self) -> int:
         """Number of actors in each world."""
