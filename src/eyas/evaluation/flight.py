@@ -107,7 +107,9 @@ class BatchFlight:
         seeds = np.array([episode.seed for episode in self._episodes])
         clear = clear_shares(self._episodes, self._protocol)
         self._delay.begin(seeds.tolist())
-        start = Start(seeds, self._boxes, self._scenario.told(), self._batch.roads)
+        words = self._scenario.told()
+        self._batch.tell(words)
+        start = Start(seeds, self._boxes, words, self._batch.roads)
         self._guarded(lambda: self._policy.begin(start))
         told = np.zeros(len(seeds), np.bool_)
         for step in range(self._protocol.steps):

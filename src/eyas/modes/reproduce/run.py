@@ -72,8 +72,7 @@ def _flown(row: Row, table: Table, out: Path, quiet: bool) -> ExpectedRow:
     if not quiet:
         print(f"{table.name}: {row.plan.command}", flush=True)
     records = evaluate(row.plan, out, resume=True, quiet=True)
-    rules = row.plan.rules
-    figures = rows_of(records, rules.steps * rules.period)[0].figures
+    figures = rows_of(records, row.plan.rules)[0].figures
     return ExpectedRow(
         label=row.label,
         n=len(records),

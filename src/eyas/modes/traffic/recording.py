@@ -15,6 +15,8 @@ from eyas.traffic.config import Demand, Mix, TrafficConfig
 from eyas.traffic.library import (
     CANONICAL_MIX,
     CANONICAL_SEED,
+    DENSE_DURATION,
+    DENSE_VEHICLES,
     RESPAWN_GROUPS,
     STANDARD_DURATION,
     TEST_DURATION,
@@ -28,6 +30,7 @@ from eyas.traffic.smoothing import Tracks, runs, smooth
 from eyas.world.config import WorldConfig
 from eyas.world.maps import MAPS
 from eyas.world.maps.recipe import (
+    DENSE_FILE,
     MIXED_FILE,
     TEST_TOWNS,
     TRAFFIC_FILE,
@@ -132,7 +135,7 @@ def run_canonical(world: WorldConfig) -> None:
         save_network(folder / network_file(seed), build_network(recipe.roads(seed)))
     for name, town, config, duration in _shipped_recordings(recipe):
         with sumo_progress() as progress:
-            record_canonical(recipe.roads(town), folder / name, config, progress, duration)
+            record_canonical(recipe.roads(town), folder / name, config, progress, duration=duration)
         _report(folder / name, "a shipped recording")
 
 
@@ -143,7 +146,10 @@ def _shipped_recordings(recipe: MapRecipe) -> Iterator[tuple[str, int, TrafficCo
         groups = TrafficConfig(demand=Demand.RESPAWN, group_size=size)
         yield respawn_file(size), 0, groups, STANDARD_DURATION
     if recipe.name in _CITIES:
-        yield MIXED_FILE, 0, TrafficConfig(vehicle_type=CANONICAL_MIX), STANDARD_DURATION
+        mixed = TrafficConfig(vehicle_type=CANONICAL_MIX)
+        yield MIXED_FILE, 0, mixed, STANDARD_DURATION
+        dense = mixed.model_copy(update={"max_vehicles": DENSE_VEHICLES})
+        yield DENSE_FILE, 0, dense, DENSE_DURATION
     for seed in TEST_TRAFFIC if recipe.name in _TESTED else ():
         yield town_traffic_file(0, seed), 0, TrafficConfig(seed=seed), 2.0 * TEST_DURATION
     for town in TEST_TOWNS if recipe.name in _WITH_TOWNS else ():

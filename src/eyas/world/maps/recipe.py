@@ -21,6 +21,7 @@ if TYPE_CHECKING:  # maps load with `eyas`; the scene modules only when a scene 
 
 __all__ = [
     "ATTRIBUTION_FILE",
+    "DENSE_FILE",
     "MIXED_FILE",
     "NETWORK_FILE",
     "PLAN_FILE",
@@ -53,6 +54,9 @@ TRAFFIC_FILE = "traffic.npz"
 MIXED_FILE = "traffic-mixed.npz"
 """File in a city's package with the canonical recording of all classes of vehicles."""
 
+
+DENSE_FILE = "traffic-dense.npz"
+"""File in a city's package with the same classes in dense traffic, eight times as many."""
 
 TEST_TOWNS = (TEST_SEEDS + 1, TEST_SEEDS + 2)
 """Seeds of the maps that ship for tests, see `TEST_SEEDS`."""
