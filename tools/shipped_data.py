@@ -18,6 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from eyas.core.program import code_of
+from eyas.sim.cover import cover_of
 from eyas.traffic.library import _recorded
 from eyas.traffic.network import build_network
 from eyas.traffic.record import record
@@ -79,7 +80,9 @@ def is_the_same(recipe: MapRecipe, path: Path) -> bool:
         return all(np.array_equal(getattr(old, name), getattr(new, name)) for name in names)
     old = RecordingFile.read(path).load()
     origin = old.provenance  # which tells SUMO's version, too
-    new = record(origin.map_name, 0, graph, origin.config, origin.duration, origin.config.seed or 0)
+    cover = cover_of(origin.map_name, 0) if origin.cover else ()
+    config, span = origin.config, origin.duration
+    new = record(origin.map_name, 0, graph, config, span, config.seed or 0, cover=cover)
     return all(np.array_equal(getattr(old, name), getattr(new, name)) for name in MOVES)
 
 

@@ -11,10 +11,12 @@ from rich.console import Console
 from eyas.core.errors import ConfigError, OutputError
 from eyas.modes.progress import sumo_progress
 from eyas.modes.traffic.seeds import RecordingJob, record_all
-from eyas.traffic.config import Demand, Mix, TrafficConfig
+from eyas.sim.cover import cover_of
+from eyas.traffic.config import Demand, Drivers, Mix, TrafficConfig
 from eyas.traffic.library import (
     CANONICAL_MIX,
     CANONICAL_SEED,
+    EVADING_MIX,
     RESPAWN_GROUPS,
     record_canonical,
 )
@@ -24,13 +26,32 @@ from eyas.traffic.recording_file import load
 from eyas.traffic.smoothing import Tracks, runs, smooth
 from eyas.world.config import WorldConfig
 from eyas.world.maps import MAPS
-from eyas.world.maps.recipe import MIXED_FILE, NETWORK_FILE, TRAFFIC_FILE, respawn_file
+from eyas.world.maps.recipe import (
+    MIXED_FILE,
+    NETWORK_FILE,
+    TRAFFIC_FILE,
+    drivers_file,
+    respawn_file,
+)
 from eyas.world.roads.network_file import save_network
 
 __all__ = ["describe", "run", "run_canonical"]
 
 _CITIES = ("citystreet", "downtown")
 """Maps that ship a recording of a mixed fleet."""
+
+_LOST_DRIVERS: dict[str, dict[Drivers, TrafficConfig]] = {
+    "village": {Drivers.HIDING: TrafficConfig()},
+    "citystreet": {
+        Drivers.HIDING: TrafficConfig(),
+        Drivers.EVADING: TrafficConfig(vehicle_type=EVADING_MIX),
+    },
+    "downtown": {
+        Drivers.HIDING: TrafficConfig(),
+        Drivers.EVADING: TrafficConfig(vehicle_type=EVADING_MIX),
+    },
+}
+"""Maps that ship recordings of drivers who want to be lost: those where something hides them."""
 
 
 def run(  # noqa: PLR0913  # one parameter for each option
@@ -117,9 +138,12 @@ def run_canonical(world: WorldConfig) -> None:
         shipped[respawn_file(size)] = TrafficConfig(demand=Demand.RESPAWN, group_size=size)
     if recipe.name in _CITIES:
         shipped[MIXED_FILE] = TrafficConfig(vehicle_type=CANONICAL_MIX)
+    for drivers, config in _LOST_DRIVERS.get(recipe.name, {}).items():
+        shipped[drivers_file(drivers)] = config.model_copy(update={"drivers": drivers})
     for name, config in shipped.items():
+        cover = () if config.drivers is Drivers.NORMAL else cover_of(recipe.name, 0)
         with sumo_progress() as progress:
-            record_canonical(graph, folder / name, config, progress)
+            record_canonical(graph, folder / name, config, progress, cover)
         _report(folder / name, "a shipped recording")
 
 

@@ -27,6 +27,7 @@ __all__ = [
     "TRAFFIC_FILE",
     "MapRecipe",
     "Original",
+    "drivers_file",
     "respawn_file",
 ]
 
@@ -48,6 +49,15 @@ TRAFFIC_FILE = "traffic.npz"
 
 MIXED_FILE = "traffic-mixed.npz"
 """File in a city's package with the canonical recording of all classes of vehicles."""
+
+
+def drivers_file(drivers: str) -> str:
+    """Return the file in a map's package with the canonical traffic of drivers who want to be lost.
+
+    Args:
+        drivers: How they behave, a value of `traffic.drivers`.
+    """
+    return f"traffic-{drivers}.npz"
 
 
 def respawn_file(group_size: int) -> str:
